@@ -1,0 +1,171 @@
+#include "storage/file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "hierarchy/error.h"
+
+namespace meshhier::storage {
+namespace {
+
+[[noreturn]] void fail(const char* action, const std::filesystem::path& path, int error) {
+  const char* hint = error == ENOSPC || error == EDQUOT ? " (free some space and run again)" : "";
+  throw Error(ErrorCode::io, fmt::format("cannot {} {}: {}{}", action, path.string(), std::strerror(error), hint));
+}
+
+class PosixFile final : public File {
+ public:
+  PosixFile(std::filesystem::path path, int descriptor, std::shared_ptr<IoCounters> counters)
+      : File(std::move(path)), descriptor_(descriptor), counters_(std::move(counters)) {}
+  ~PosixFile() override { ::close(descriptor_); }
+
+  std::uint64_t size() const override {
+    struct stat status {};
+    if (::fstat(descriptor_, &status) != 0) fail("inspect", path(), errno);
+    return static_cast<std::uint64_t>(status.st_size);
+  }
+
+  void sync() override {
+    if (::fsync(descriptor_) != 0) fail("sync", path(), errno);
+  }
+
+ protected:
+  std::size_t read_some(std::uint64_t offset, std::span<std::byte> bytes) const override {
+    ssize_t count = 0;
+    do {
+      count = ::pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    } while (count < 0 && errno == EINTR);
+    if (count < 0) fail("read", path(), errno);
+    counters_->bytes_read += static_cast<std::uint64_t>(count);
+    return static_cast<std::size_t>(count);
+  }
+
+  std::size_t write_some(std::uint64_t offset, std::span<const std::byte> bytes) override {
+    ssize_t count = 0;
+    do {
+      count = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    } while (count < 0 && errno == EINTR);
+    if (count < 0) fail("write", path(), errno);
+    counters_->bytes_written += static_cast<std::uint64_t>(count);
+    return static_cast<std::size_t>(count);
+  }
+
+ private:
+  int descriptor_;
+  std::shared_ptr<IoCounters> counters_;
+};
+
+class PosixFileSystem final : public FileSystem {
+ public:
+  std::unique_ptr<File> open(const std::filesystem::path& path) override {
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0) fail("open", path, errno);
+    struct stat status {};
+    if (::fstat(descriptor, &status) == 0 && S_ISDIR(status.st_mode)) {
+      ::close(descriptor);
+      fail("open", path, EISDIR);
+    }
+    return std::make_unique<PosixFile>(path, descriptor, counters_);
+  }
+
+  std::unique_ptr<File> create(const std::filesystem::path& path) override {
+    const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (descriptor < 0) fail("create", path, errno);
+    return std::make_unique<PosixFile>(path, descriptor, counters_);
+  }
+
+  bool exists(const std::filesystem::path& path) override {
+    std::error_code error;
+    return std::filesystem::exists(std::filesystem::symlink_status(path, error));
+  }
+
+  void make_directories(const std::filesystem::path& path) override {
+    std::error_code error;
+    std::filesystem::create_directories(path, error);
+    if (error) fail("make the directory", path, error.value());
+  }
+
+  void remove_all(const std::filesystem::path& path) override {
+    std::error_code error;
+    std::filesystem::remove_all(path, error);
+    if (error) fail("remove", path, error.value());
+  }
+
+  void rename(const std::filesystem::path& from, const std::filesystem::path& to) override {
+    std::error_code error;
+    std::filesystem::rename(from, to, error);
+    if (error) fail("rename to", to, error.value());
+  }
+
+  void sync_tree(const std::filesystem::path& directory) override {
+    const int descriptor = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0) fail("open", directory, errno);
+    const int result = ::syncfs(descriptor);
+    const int error = errno;
+    ::close(descriptor);
+    if (result != 0) fail("sync", directory, error);
+  }
+
+  std::uint64_t free_bytes(const std::filesystem::path& directory) override {
+    struct statvfs status {};
+    if (::statvfs(directory.c_str(), &status) != 0) fail("inspect", directory, errno);
+    return std::uint64_t{status.f_bavail} * status.f_frsize;
+  }
+};
+
+}  // namespace
+
+std::size_t File::read_at(std::uint64_t offset, std::span<std::byte> bytes) const {
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const std::size_t count = read_some(offset + done, bytes.subspan(done));
+    if (count == 0) break;
+    done += count;
+  }
+  return done;
+}
+
+void File::read_exact(std::uint64_t offset, std::span<std::byte> bytes) const {
+  const std::size_t count = read_at(offset, bytes);
+  if (count != bytes.size()) {
+    throw Error(ErrorCode::io, fmt::format("{} ends at byte {}, expected {} bytes from byte {}", path_.string(),
+                                           offset + count, bytes.size(), offset));
+  }
+}
+
+void File::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const std::size_t count = write_some(offset, bytes);
+    if (count == 0) throw Error(ErrorCode::io, fmt::format("cannot write {}: no progress", path_.string()));
+    offset += count;
+    bytes = bytes.subspan(count);
+  }
+}
+
+std::unique_ptr<FileSystem> make_posix_file_system() { return std::make_unique<PosixFileSystem>(); }
+
+std::vector<std::byte> read_file(FileSystem& files, const std::filesystem::path& path, std::uint64_t limit_bytes) {
+  const auto file = files.open(path);
+  const std::uint64_t size = file->size();
+  if (size > limit_bytes) {
+    throw Error(ErrorCode::corrupt,
+                fmt::format("{} has {} bytes, at most {} are expected", path.string(), size, limit_bytes));
+  }
+  std::vector<std::byte> bytes(size);
+  file->read_exact(0, bytes);
+  return bytes;
+}
+
+void write_file(FileSystem& files, const std::filesystem::path& path, std::span<const std::byte> bytes) {
+  files.create(path)->write_at(0, bytes);
+}
+
+}  // namespace meshhier::storage

@@ -1,0 +1,89 @@
+// The one I/O seam: every system call of meshhier is behind these two classes.
+//
+// Tests derive from them to inject a full disk, a short write or a failed sync.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace meshhier::storage {
+
+/// An open file, read and written at explicit offsets. Thread-safe for disjoint ranges.
+class File {
+ public:
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+  virtual ~File() = default;
+
+  const std::filesystem::path& path() const { return path_; }
+
+  /// Bytes in the file now. Throws Error(io).
+  virtual std::uint64_t size() const = 0;
+  /// Forces the content to the disk. Throws Error(io).
+  virtual void sync() = 0;
+
+  /// Reads up to bytes.size() at `offset`; returns how many, fewer only at the end of the file.
+  std::size_t read_at(std::uint64_t offset, std::span<std::byte> bytes) const;
+  /// Reads exactly bytes.size(); throws Error(io) naming the offset if the file ends before.
+  void read_exact(std::uint64_t offset, std::span<std::byte> bytes) const;
+  /// Writes all of `bytes` at `offset`, whatever number of calls it takes. Throws Error(io).
+  void write_at(std::uint64_t offset, std::span<const std::byte> bytes);
+
+ protected:
+  explicit File(std::filesystem::path path) : path_(std::move(path)) {}
+
+  /// One system call each: may transfer less than asked, 0 on end of file; throws Error(io).
+  virtual std::size_t read_some(std::uint64_t offset, std::span<std::byte> bytes) const = 0;
+  virtual std::size_t write_some(std::uint64_t offset, std::span<const std::byte> bytes) = 0;
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Bytes moved through a FileSystem since it was made.
+struct IoCounters {
+  std::atomic<std::uint64_t> bytes_read{0};
+  std::atomic<std::uint64_t> bytes_written{0};
+};
+
+/// Opens files and changes directories. Every failure throws Error(io) with path and cause.
+class FileSystem {
+ public:
+  virtual ~FileSystem() = default;
+
+  virtual std::unique_ptr<File> open(const std::filesystem::path& path) = 0;
+  /// Makes or empties the file, for reading and writing.
+  virtual std::unique_ptr<File> create(const std::filesystem::path& path) = 0;
+
+  virtual bool exists(const std::filesystem::path& path) = 0;
+  virtual void make_directories(const std::filesystem::path& path) = 0;
+  /// Removes a file or a whole tree; nothing happens if it is not there.
+  virtual void remove_all(const std::filesystem::path& path) = 0;
+  /// Renames a file or directory; an existing file of that name is replaced.
+  virtual void rename(const std::filesystem::path& from, const std::filesystem::path& to) = 0;
+  /// Forces everything written to the file system that holds `directory` to the disk.
+  virtual void sync_tree(const std::filesystem::path& directory) = 0;
+  /// Bytes free for this user on the file system that holds `directory`.
+  virtual std::uint64_t free_bytes(const std::filesystem::path& directory) = 0;
+
+  const IoCounters& counters() const { return *counters_; }
+
+ protected:
+  std::shared_ptr<IoCounters> counters_ = std::make_shared<IoCounters>();
+};
+
+/// The real one.
+std::unique_ptr<FileSystem> make_posix_file_system();
+
+/// A whole file in memory. `limit_bytes` guards what is allocated: a larger file throws Error(corrupt).
+std::vector<std::byte> read_file(FileSystem& files, const std::filesystem::path& path, std::uint64_t limit_bytes);
+/// Creates `path` with exactly `bytes`.
+void write_file(FileSystem& files, const std::filesystem::path& path, std::span<const std::byte> bytes);
+
+}  // namespace meshhier::storage

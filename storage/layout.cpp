@@ -1,0 +1,25 @@
+#include "storage/layout.h"
+
+#include <fmt/format.h>
+
+namespace meshhier::storage {
+
+std::filesystem::path manifest_path(const std::filesystem::path& hierarchy) { return hierarchy / "hierarchy.json"; }
+std::filesystem::path index_path(const std::filesystem::path& hierarchy) { return hierarchy / "tiles.bin"; }
+std::filesystem::path outline_path(const std::filesystem::path& hierarchy) { return hierarchy / "outline.glb"; }
+
+std::filesystem::path level_directory(const std::filesystem::path& hierarchy, Level level) {
+  return hierarchy / "tiles" / fmt::format("{:02}", raw(level));
+}
+
+std::filesystem::path tile_path(const std::filesystem::path& hierarchy, NodeId node) {
+  return level_directory(hierarchy, node.level) / fmt::format("{:06}.glb", node.index);
+}
+
+std::filesystem::path work_path(const std::filesystem::path& output) {
+  return output.parent_path() / fmt::format(".{}.meshhier-work", output.filename().string());
+}
+
+std::filesystem::path temporary_path(const std::filesystem::path& work) { return work / "build.tmp"; }
+
+}  // namespace meshhier::storage

@@ -1,0 +1,26 @@
+// Every file name of a hierarchy, and of the work towards one, in one place.
+//
+//   NAME.hier/hierarchy.json
+//   NAME.hier/tiles.bin
+//   NAME.hier/outline.glb
+//   NAME.hier/tiles/LL/NNNNNN.glb      level (two digits or more), index in the level (six digits or more)
+//   .NAME.hier.meshhier-work/          beside the output while a build runs; becomes NAME.hier when complete
+//   .NAME.hier.meshhier-work/build.tmp/    temporary files of the stages, gone before the rename
+#pragma once
+
+#include <filesystem>
+
+#include "hierarchy/ids.h"
+
+namespace meshhier::storage {
+
+std::filesystem::path manifest_path(const std::filesystem::path& hierarchy);
+std::filesystem::path index_path(const std::filesystem::path& hierarchy);
+std::filesystem::path outline_path(const std::filesystem::path& hierarchy);
+std::filesystem::path level_directory(const std::filesystem::path& hierarchy, Level level);
+std::filesystem::path tile_path(const std::filesystem::path& hierarchy, NodeId node);
+
+std::filesystem::path work_path(const std::filesystem::path& output);
+std::filesystem::path temporary_path(const std::filesystem::path& work);
+
+}  // namespace meshhier::storage
