@@ -14,7 +14,7 @@
 #include "hierarchy/vec.h"
 #include "storage/file.h"
 
-namespace meshhier::ingest {
+namespace meshhier::mesh_io {
 
 /// What the header says, before any vertex is read.
 struct MeshDescription {
@@ -69,4 +69,4 @@ class MeshSource {
 /// Opens a mesh file; the format is known by its content. PLY: ASCII, binary little and big endian.
 std::unique_ptr<MeshSource> open_mesh(storage::FileSystem& files, const std::filesystem::path& path);
 
-}  // namespace meshhier::ingest
+}  // namespace meshhier::mesh_io

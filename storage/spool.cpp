@@ -1,0 +1,100 @@
+#include "storage/spool.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstring>
+#include <utility>
+
+#include "hierarchy/error.h"
+
+namespace meshhier::storage {
+
+bool MemoryPool::try_take(std::uint64_t bytes) {
+  std::int64_t before = free_.load();
+  do {
+    if (before < static_cast<std::int64_t>(bytes)) return false;
+  } while (!free_.compare_exchange_weak(before, before - static_cast<std::int64_t>(bytes)));
+  return true;
+}
+
+ScratchFile::ScratchFile(FileSystem& files, std::filesystem::path path, MemoryPool& pool)
+    : files_(files), path_(std::move(path)), pool_(pool) {}
+
+ScratchFile::~ScratchFile() {
+  if (!file_) return;
+  file_.reset();
+  try {
+    files_.remove_all(path_);
+  } catch (const Error&) {  // the whole work directory is removed at the end of a build in any case
+  }
+}
+
+std::uint64_t ScratchFile::append(std::span<const std::byte> bytes) {
+  File* file = nullptr;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!file_) file_ = files_.create(path_);
+    file = file_.get();
+  }
+  const std::uint64_t offset = size_.fetch_add(bytes.size());
+  file->write_at(offset, bytes);
+  return offset;
+}
+
+Spool::Spool(Spool&& other) noexcept
+    : scratch_(other.scratch_),
+      block_bytes_(other.block_bytes_),
+      size_(std::exchange(other.size_, 0)),
+      blocks_(std::move(other.blocks_)) {
+  other.blocks_.clear();
+}
+
+void Spool::append(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const std::size_t used = size_ % block_bytes_;
+    if (used == 0) {
+      if (size_ > 0) close_block();
+      Block block;
+      block.memory = std::make_unique_for_overwrite<std::byte[]>(block_bytes_);
+      blocks_.push_back(std::move(block));
+    }
+    const std::size_t count = std::min(bytes.size(), block_bytes_ - used);
+    std::memcpy(blocks_.back().memory.get() + used, bytes.data(), count);
+    size_ += count;
+    bytes = bytes.subspan(count);
+  }
+}
+
+void Spool::close_block() {
+  Block& block = blocks_.back();
+  block.pooled = scratch_->pool().try_take(block_bytes_);
+  if (block.pooled) return;
+  block.offset = scratch_->append({block.memory.get(), block_bytes_});
+  block.memory.reset();
+}
+
+void Spool::read(std::uint64_t offset, std::span<std::byte> bytes) const {
+  assert(offset + bytes.size() <= size_);
+  while (!bytes.empty()) {
+    const Block& block = blocks_[offset / block_bytes_];
+    const std::size_t start = offset % block_bytes_;
+    const std::size_t count = std::min(bytes.size(), block_bytes_ - start);
+    if (block.memory) {
+      std::memcpy(bytes.data(), block.memory.get() + start, count);
+    } else {
+      scratch_->read(block.offset + start, bytes.first(count));
+    }
+    offset += count;
+    bytes = bytes.subspan(count);
+  }
+}
+
+void Spool::clear() {
+  for (const Block& block : blocks_) {
+    if (block.pooled) scratch_->pool().give_back(block_bytes_);
+  }
+  blocks_.clear();
+  size_ = 0;
+}
+
+}  // namespace meshhier::storage

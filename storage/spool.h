@@ -1,0 +1,112 @@
+// Append-only scratch bytes: in memory while the budget lasts, on disk from there on.
+//
+// This is what makes one algorithm serve meshes smaller and larger than memory: stages append to spools and read
+// them back, and only the memory pool decides what touches the disk. What is read never depends on it.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include "storage/file.h"
+
+namespace meshhier::storage {
+
+/// Bytes that may be held in memory by all spools together. Thread-safe.
+class MemoryPool {
+ public:
+  explicit MemoryPool(std::uint64_t capacity_bytes) : free_(static_cast<std::int64_t>(capacity_bytes)) {}
+  bool try_take(std::uint64_t bytes);
+  void give_back(std::uint64_t bytes) { free_ += static_cast<std::int64_t>(bytes); }
+  std::uint64_t free_bytes() const { return static_cast<std::uint64_t>(free_.load()); }
+
+ private:
+  std::atomic<std::int64_t> free_;
+};
+
+/// One temporary file shared by many spools; made when the first block must leave memory, removed at the end.
+class ScratchFile {
+ public:
+  ScratchFile(FileSystem& files, std::filesystem::path path, MemoryPool& pool);
+  ScratchFile(const ScratchFile&) = delete;
+  ScratchFile& operator=(const ScratchFile&) = delete;
+  ~ScratchFile();
+
+  /// Bytes on disk.
+  std::uint64_t size() const { return size_; }
+  MemoryPool& pool() { return pool_; }
+
+  /// Appends `bytes`, returns where. Thread-safe.
+  std::uint64_t append(std::span<const std::byte> bytes);
+  void read(std::uint64_t offset, std::span<std::byte> bytes) const { file_->read_exact(offset, bytes); }
+
+ private:
+  FileSystem& files_;
+  std::filesystem::path path_;
+  MemoryPool& pool_;
+  std::mutex mutex_;
+  std::unique_ptr<File> file_;
+  std::atomic<std::uint64_t> size_{0};
+};
+
+/// A sequence of bytes. One writer; after the last append() any number of readers.
+class Spool {
+ public:
+  /// `block_bytes`: held while writing, the grain of what moves to disk; > 0.
+  Spool(ScratchFile& scratch, std::size_t block_bytes) : scratch_(&scratch), block_bytes_(block_bytes) {}
+  Spool(Spool&& other) noexcept;
+  Spool& operator=(Spool&&) = delete;
+  ~Spool() { clear(); }
+
+  void append(std::span<const std::byte> bytes);
+  std::uint64_t size() const { return size_; }
+
+  /// Copies bytes.size() bytes from `offset`. Requires offset + bytes.size() <= size().
+  void read(std::uint64_t offset, std::span<std::byte> bytes) const;
+
+  /// Forgets the content and gives its memory back.
+  void clear();
+
+ private:
+  struct Block {
+    std::unique_ptr<std::byte[]> memory;  ///< null once on disk
+    std::uint64_t offset = 0;             ///< in the scratch file, if on disk
+    bool pooled = false;                  ///< counted in the memory pool
+  };
+  void close_block();
+
+  ScratchFile* scratch_;
+  std::size_t block_bytes_;
+  std::uint64_t size_ = 0;
+  std::vector<Block> blocks_;
+};
+
+/// A spool of one kind of trivially copyable record.
+template <class Record>
+class RecordSpool {
+ public:
+  RecordSpool(ScratchFile& scratch, std::size_t block_bytes) : spool_(scratch, block_bytes) {}
+  void append(std::span<const Record> records) { spool_.append(std::as_bytes(records)); }
+  void append(const Record& record) { append(std::span(&record, 1)); }
+  std::uint64_t size() const { return spool_.size() / sizeof(Record); }
+  void read(std::uint64_t first, std::span<Record> records) const {
+    spool_.read(first * sizeof(Record), std::as_writable_bytes(records));
+  }
+  std::vector<Record> read_all() const {
+    std::vector<Record> records(size());
+    read(0, records);
+    return records;
+  }
+  void clear() { spool_.clear(); }
+
+ private:
+  static_assert(std::is_trivially_copyable_v<Record>);
+  Spool spool_;
+};
+
+}  // namespace meshhier::storage
