@@ -1,6 +1,11 @@
 // A mesh file as two restartable streams, vertices and triangles, in bounded memory.
 #pragma once
 
+#include "hierarchy/attributes.h"
+#include "hierarchy/ids.h"
+#include "hierarchy/vec.h"
+#include "storage/file.h"
+
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -9,31 +14,27 @@
 #include <span>
 #include <string>
 
-#include "hierarchy/attributes.h"
-#include "hierarchy/ids.h"
-#include "hierarchy/vec.h"
-#include "storage/file.h"
-
 namespace meshhier::mesh_io {
 
 /// What the header says, before any vertex is read.
 struct MeshDescription {
-  std::string format;               ///< for people: "PLY binary little endian"
+  std::string format;  ///< for people: "PLY binary little endian"
   std::uint64_t file_bytes = 0;
-  std::uint64_t vertex_count = 0;   ///< N < 2^32
-  std::uint64_t face_count = 0;     ///< polygons, or triangle strips, as declared
+  std::uint64_t vertex_count = 0;  ///< N < 2^32
+  std::uint64_t face_count = 0;    ///< polygons, or triangle strips, as declared
   AttributeLayout attributes;
-  bool wide_coordinates = false;    ///< declared as double, int32 or uint32: may not fit float exactly
-  bool vertices_in_place = false;   ///< vertices are binary, of one fixed size, at a known offset: reading
-                                    ///< them again costs no more than their bytes
+  bool wide_coordinates =
+      false;  ///< declared as double, int32 or uint32: may not fit float exactly
+  bool vertices_in_place = false;  ///< vertices are binary, of one fixed size, at a known offset:
+                                   ///< reading them again costs no more than their bytes
 };
 
 /// Consecutive vertices of the file. Valid during the visit only.
 struct VertexBlock {
-  std::uint64_t first = 0;             ///< VertexId of the first
-  std::span<const Vec3f> positions;    ///< empty if wide_coordinates
-  std::span<const Vec3d> exact;        ///< empty unless wide_coordinates
-  std::span<const float> attributes;   ///< count * attributes.channels(), see hierarchy/attributes.h
+  std::uint64_t first = 0;            ///< VertexId of the first
+  std::span<const Vec3f> positions;   ///< empty if wide_coordinates
+  std::span<const Vec3d> exact;       ///< empty unless wide_coordinates
+  std::span<const float> attributes;  ///< count * attributes.channels(), see hierarchy/attributes.h
 };
 
 using SourceTriangle = std::array<VertexId, 3>;
@@ -41,21 +42,24 @@ using SourceTriangle = std::array<VertexId, 3>;
 /// What reading all faces found.
 struct FaceCounts {
   std::uint64_t faces = 0;
-  std::uint64_t triangles = 0;             ///< handed out
-  std::uint64_t degenerate_triangles = 0;  ///< dropped: a vertex twice, or a polygon of fewer than three corners
+  std::uint64_t triangles = 0;  ///< handed out
+  std::uint64_t degenerate_triangles =
+      0;  ///< dropped: a vertex twice, or a polygon of fewer than three corners
 };
 
 using VertexVisitor = std::function<void(const VertexBlock&)>;
 using TriangleVisitor = std::function<void(std::span<const SourceTriangle>)>;
 
-/// Every failure throws Error(input) naming file, byte offset (binary) or line (text), what was expected
-/// and what was found; Error(io) if the file cannot be read. An exception of a visitor passes through.
+/// Every failure throws Error(input) naming file, byte offset (binary) or line (text), what was
+/// expected and what was found; Error(io) if the file cannot be read. An exception of a visitor
+/// passes through.
 class MeshSource {
  public:
   virtual ~MeshSource() = default;
   virtual const MeshDescription& description() const = 0;
 
-  /// Visits all vertices in file order, in blocks of at most kBlockSize. Coordinates are checked finite.
+  /// Visits all vertices in file order, in blocks of at most kBlockSize. Coordinates are checked
+  /// finite.
   virtual void read_vertices(const VertexVisitor& visit) = 0;
 
   /// Visits all triangles in file order, in blocks of at most kBlockSize: polygons cut into fans
@@ -63,10 +67,12 @@ class MeshSource {
   /// triangles dropped and counted.
   virtual FaceCounts read_triangles(const TriangleVisitor& visit) = 0;
 
-  static constexpr std::size_t kBlockSize = 65536;  ///< 768 KiB of positions: in the L2 cache, large enough to amortise
+  static constexpr std::size_t kBlockSize =
+      65536;  ///< 768 KiB of positions: in the L2 cache, large enough to amortise
 };
 
 /// Opens a mesh file; the format is known by its content. PLY: ASCII, binary little and big endian.
-std::unique_ptr<MeshSource> open_mesh(storage::FileSystem& files, const std::filesystem::path& path);
+std::unique_ptr<MeshSource> open_mesh(storage::FileSystem& files,
+                                      const std::filesystem::path& path);
 
 }  // namespace meshhier::mesh_io

@@ -1,6 +1,10 @@
 // Writes a binary little endian PLY by stream.
 #pragma once
 
+#include "hierarchy/attributes.h"
+#include "hierarchy/vec.h"
+#include "storage/file.h"
+
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -9,27 +13,25 @@
 #include <string>
 #include <vector>
 
-#include "hierarchy/attributes.h"
-#include "hierarchy/vec.h"
-#include "storage/file.h"
-
 namespace meshhier::mesh_io {
 
 struct PlyContent {
-  std::uint64_t vertex_count = 0;      ///< < 2^32
+  std::uint64_t vertex_count = 0;  ///< < 2^32
   std::uint64_t triangle_count = 0;
-  std::uint64_t edge_count = 0;        ///< 0: no edge element
+  std::uint64_t edge_count = 0;  ///< 0: no edge element
   AttributeLayout attributes;
   bool double_coordinates = false;
-  std::vector<std::string> comments;   ///< one line each
+  std::vector<std::string> comments;  ///< one line each
 };
 
-/// Vertices, then triangles, then edges, in the declared numbers, each in as many calls as one likes. Colours are
-/// written in their stored type (attributes.h), indices as `int` (`uint` from 2^31 vertices on). Buffered: at most
-/// 1 MiB. Throws Error(io). finish() is required and asserts that all declared content came.
+/// Vertices, then triangles, then edges, in the declared numbers, each in as many calls as one
+/// likes. Colours are written in their stored type (attributes.h), indices as `int` (`uint` from
+/// 2^31 vertices on). Buffered: at most 1 MiB. Throws Error(io). finish() is required and asserts
+/// that all declared content came.
 class PlyWriter {
  public:
-  PlyWriter(storage::FileSystem& files, const std::filesystem::path& path, const PlyContent& content);
+  PlyWriter(storage::FileSystem& files, const std::filesystem::path& path,
+            const PlyContent& content);
   ~PlyWriter();
 
   /// `attributes`: positions.size() * content.attributes.channels() floats.

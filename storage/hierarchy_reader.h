@@ -1,9 +1,6 @@
 // Read access to a finished hierarchy.
 #pragma once
 
-#include <filesystem>
-#include <vector>
-
 #include "hierarchy/outline.h"
 #include "hierarchy/published.h"
 #include "hierarchy/tree.h"
@@ -11,10 +8,13 @@
 #include "storage/manifest.h"
 #include "storage/tile_glb.h"
 
+#include <filesystem>
+#include <vector>
+
 namespace meshhier::storage {
 
-/// Every failure throws Error: io if a file is missing or unreadable, corrupt if its size, checksum or
-/// content is wrong; the message starts with the file's path. Thread-safe once constructed.
+/// Every failure throws Error: io if a file is missing or unreadable, corrupt if its size, checksum
+/// or content is wrong; the message starts with the file's path. Thread-safe once constructed.
 class HierarchyReader {
  public:
   /// Reads manifest and index.

@@ -1,20 +1,22 @@
 // tiles.bin: one fixed-size record a tile, ordered by level, then index (docs/file_format.md).
 #pragma once
 
+#include "hierarchy/published.h"
+
 #include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
-
-#include "hierarchy/published.h"
 
 namespace meshhier::storage {
 
 /// `records`: every tile of `tree` once (early nodes have none), ascending by node.
 std::vector<std::byte> encode_index(std::span<const TileRecord> records);
 
-/// Checks version, length, checksum, order, and that exactly the tree's tiles are there. Throws Error(corrupt).
-std::vector<TileRecord> decode_index(std::span<const std::byte> bytes, const Tree& tree, const std::string& name);
+/// Checks version, length, checksum, order, and that exactly the tree's tiles are there. Throws
+/// Error(corrupt).
+std::vector<TileRecord> decode_index(std::span<const std::byte> bytes, const Tree& tree,
+                                     const std::string& name);
 
 /// How many tiles a hierarchy of this tree has: all nodes but the early ones.
 std::uint64_t tile_count(const Tree& tree);

@@ -20,6 +20,10 @@ std::filesystem::path work_path(const std::filesystem::path& output) {
   return output.parent_path() / fmt::format(".{}.meshhier-work", output.filename().string());
 }
 
+std::filesystem::path replaced_path(const std::filesystem::path& output) {
+  return output.parent_path() / fmt::format(".{}.meshhier-old", output.filename().string());
+}
+
 std::filesystem::path temporary_path(const std::filesystem::path& work) { return work / "build.tmp"; }
 
 }  // namespace meshhier::storage

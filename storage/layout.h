@@ -5,6 +5,7 @@
 //   NAME.hier/outline.glb
 //   NAME.hier/tiles/LL/NNNNNN.glb      level (two digits or more), index in the level (six digits or more)
 //   .NAME.hier.meshhier-work/          beside the output while a build runs; becomes NAME.hier when complete
+//   .NAME.hier.meshhier-old/           a replaced hierarchy, for the moment of the rename
 //   .NAME.hier.meshhier-work/build.tmp/    temporary files of the stages, gone before the rename
 #pragma once
 
@@ -21,6 +22,7 @@ std::filesystem::path level_directory(const std::filesystem::path& hierarchy, Le
 std::filesystem::path tile_path(const std::filesystem::path& hierarchy, NodeId node);
 
 std::filesystem::path work_path(const std::filesystem::path& output);
+std::filesystem::path replaced_path(const std::filesystem::path& output);
 std::filesystem::path temporary_path(const std::filesystem::path& work);
 
 }  // namespace meshhier::storage

@@ -1,40 +1,42 @@
 // hierarchy.json: what the hierarchy was made from, how, and what is in it (docs/file_format.md).
 #pragma once
 
+#include "hierarchy/outline.h"
+#include "hierarchy/published.h"
+#include "hierarchy/vec.h"
+
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
-#include "hierarchy/outline.h"
-#include "hierarchy/published.h"
-#include "hierarchy/vec.h"
-
 namespace meshhier::storage {
 
 inline constexpr int kFormatVersion = 1;
 
 struct Manifest {
-  std::string generator;           ///< "meshhier 0.1.0"
+  std::string generator;  ///< "meshhier 0.1.0"
   SourceSummary source;
-  Vec3d origin;                    ///< add to every stored position
+  Vec3d origin;  ///< add to every stored position
   bool unit_normals = true;
   std::uint32_t partition_count = 0;
-  nlohmann::ordered_json config;   ///< resolved: what decides the result (not budget, threads, paths)
+  nlohmann::ordered_json
+      config;  ///< resolved: what decides the result (not budget, threads, paths)
   std::uint64_t index_bytes = 0;
-  std::uint64_t index_checksum = 0;     ///< XXH3-64 of tiles.bin
+  std::uint64_t index_checksum = 0;  ///< XXH3-64 of tiles.bin
   std::uint64_t outline_bytes = 0;
-  std::uint64_t outline_checksum = 0;   ///< XXH3-64 of outline.glb
+  std::uint64_t outline_checksum = 0;  ///< XXH3-64 of outline.glb
   OutlineReport outline;
-  nlohmann::ordered_json levels;   ///< the level table, for people and scripts; derived from tiles.bin
-  std::uint64_t total_bytes = 0;   ///< of tiles, index and outline
+  nlohmann::ordered_json
+      levels;  ///< the level table, for people and scripts; derived from tiles.bin
+  std::uint64_t total_bytes = 0;  ///< of tiles, index and outline
 };
 
 std::string to_json_text(const Manifest& manifest);
 
-/// Throws Error(corrupt) that starts with `name`, and says which key is missing or wrong; a newer format
-/// version is refused by its number.
+/// Throws Error(corrupt) that starts with `name`, and says which key is missing or wrong; a newer
+/// format version is refused by its number.
 Manifest parse_manifest(const std::string& text, const std::string& name);
 
 }  // namespace meshhier::storage

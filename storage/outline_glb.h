@@ -1,18 +1,18 @@
 // The outline as a glTF 2.0 binary with one LINES primitive (docs/file_format.md).
 #pragma once
 
+#include "hierarchy/outline.h"
+#include "hierarchy/vec.h"
+
 #include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "hierarchy/outline.h"
-#include "hierarchy/vec.h"
-
 namespace meshhier::storage {
 
-/// Bytes of the file that encode_outline makes of so many vertices and line segments; exact, so that an outline can be
-/// cut to a budget before it is encoded.
+/// Bytes of the file that encode_outline makes of so many vertices and line segments; exact, so
+/// that an outline can be cut to a budget before it is encoded.
 std::size_t outline_bytes(std::size_t vertex_count, std::size_t segment_count);
 
 /// Deterministic. An outline without polylines gives a valid file with an empty scene.

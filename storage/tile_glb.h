@@ -1,31 +1,47 @@
 // A tile as a glTF 2.0 binary with the extension MESHHIER_tile (docs/file_format.md).
 #pragma once
 
-#include <cstddef>
-#include <span>
-#include <string>
-#include <vector>
-
 #include "hierarchy/attributes.h"
 #include "hierarchy/published.h"
 #include "hierarchy/tree.h"
 #include "hierarchy/vec.h"
 
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
 namespace meshhier::storage {
+
+/// Own vertices of a tile, at most: parent maps and ghost chains hold their numbers in 16 bits.
+inline constexpr std::uint32_t kMaxOwnVertices = 32768;
 
 /// What all tiles of a hierarchy share.
 struct TileFormat {
   AttributeLayout attributes;
-  bool unit_normals = true;  ///< all input normals have unit length; else partitions store them in _NORMAL too
-  Vec3d origin;              ///< added to every position (the node's translation); 0 for float input
+  bool unit_normals = true;  ///< all input normals are is_unit_normal(). Told to readers: each tile
+                             ///< file says itself whether it holds normals beyond those of glTF
+  Vec3d origin;  ///< added to every position (the node's translation); 0 for float input
 };
 
-/// Deterministic, O(size). Requires a consistent tile (see PublishedTile).
-std::vector<std::byte> encode_tile(const PublishedTile& tile, const Tree& tree, const TileFormat& format);
+/// True if glTF lets `normal` stand as it is: its length differs from 1 by 0.001 at most (the
+/// Khronos validator allows 0.00674).
+bool is_unit_normal(Vec3f normal);
 
-/// The inverse of encode_tile, on bytes nobody vouches for: every count, offset and index is checked
-/// before it is used. Throws Error(corrupt) that starts with `name` and says what was expected.
-PublishedTile decode_tile(std::span<const std::byte> bytes, NodeId node, const Tree& tree, const TileFormat& format,
-                          const std::string& name);
+/// Deterministic, O(size). Requires a consistent tile (see PublishedTile) with finite positions, at
+/// most kMaxOwnVertices own vertices and rim vertices below that.
+///
+/// A partition keeps every attribute bit for bit, NaN included. Other tiles keep what glTF can say:
+/// u8 and u16 colours rounded to the nearest number of their type, float colours clamped to [0, 1],
+/// normals brought to unit length ((0, 0, 1) if they have none), NaN and infinities as 0.
+std::vector<std::byte> encode_tile(const PublishedTile& tile, const Tree& tree,
+                                   const TileFormat& format);
+
+/// The inverse of encode_tile, on bytes nobody vouches for: every count, offset and index is
+/// checked before it is used. Requires tree.contains(node). Throws Error(corrupt) that starts with
+/// `name` and says what was expected.
+PublishedTile decode_tile(std::span<const std::byte> bytes, NodeId node, const Tree& tree,
+                          const TileFormat& format, const std::string& name);
 
 }  // namespace meshhier::storage

@@ -1,0 +1,94 @@
+#include "app/command.h"
+#include "app/options.h"
+#include "pipeline/build.h"
+#include "pipeline/config.h"
+
+#include <algorithm>
+#include <memory>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace meshhier::app {
+
+namespace {
+
+struct BuildArguments {
+  std::string config;
+  std::vector<std::string> settings;
+  bool force = false;
+};
+
+/// --set takes all that follows it, so it swallows a config that comes last: the one item without
+/// "=" is given back.
+void give_back_config(BuildArguments& arguments) {
+  if (!arguments.config.empty())
+    return;
+  std::vector<std::string>& settings = arguments.settings;
+  const auto found = std::find_if(settings.begin(), settings.end(), [](const std::string& item) {
+    return item.find('=') == std::string::npos;
+  });
+  if (found == settings.end())
+    throw CLI::RequiredError("CONFIG, a config file,");
+  arguments.config = *found;
+  settings.erase(found);
+}
+
+int run_build(const BuildArguments& arguments, pipeline::ProgressMode mode,
+              Environment& environment) {
+  const pipeline::Config config =
+      pipeline::load_config(environment.files, arguments.config, arguments.settings);
+  const auto progress =
+      pipeline::make_progress(mode, environment.messages, environment.messages_on_terminal);
+  const pipeline::BuildReport report = pipeline::build_hierarchy(
+      config, arguments.force, {environment.files, *progress, environment.cancel});
+  environment.out << report.text;
+  if (!report.text.empty() && report.text.back() != '\n')
+    environment.out << '\n';
+  return 0;
+}
+
+constexpr const char* kFooter =
+    R"(The config is JSON; // comments are allowed. "input" and "output" are required:
+  {
+    "input": "david.ply",                    // relative to this file
+    "output": "david.hier",
+    "memory_budget": "1GiB",
+    "threads": 0,                            // 0: all
+    "partition": { "vertices": 8192, "axis": "compactness" },
+    "simplify": { "method": "cluster", "representative": "quadric" },
+    "outline": { "sectors": 128, "tolerance": 0.002 }
+  }
+
+Examples:
+  meshhier build david.json
+  meshhier build david.json --set partition.count=128 --set memory_budget=256MiB
+  meshhier build david.json --set input=other.ply output=other.hier --force
+)";
+
+}  // namespace
+
+void add_build_command(CLI::App& parser, Invocation& invocation) {
+  const auto arguments = std::make_shared<BuildArguments>();
+  CLI::App* command = parser.add_subcommand("build", "Make a hierarchy from a mesh");
+  command->add_option("CONFIG", arguments->config, "The config file");
+  command
+      ->add_option("--set", arguments->settings,
+                   "Override keys of the config, dotted: partition.vertices=4096. Paths given here "
+                   "are relative to the "
+                   "current directory")
+      ->type_name("KEY=VALUE");
+  command->add_flag("--force", arguments->force, "Replace an existing output");
+  add_progress_option(*command, invocation.progress);
+  command->footer(kFooter);
+  command->callback([arguments, &invocation] {
+    give_back_config(*arguments);
+    invocation.run = [arguments, &invocation](Environment& environment) {
+      return run_build(*arguments, invocation.progress, environment);
+    };
+  });
+}
+
+}  // namespace meshhier::app

@@ -1,0 +1,40 @@
+// The commands of the command line: each adds itself to the parser and, if chosen, leaves what is
+// to be run.
+#pragma once
+
+#include "pipeline/cancel.h"
+#include "pipeline/progress.h"
+#include "storage/file.h"
+
+#include <functional>
+#include <iosfwd>
+
+namespace CLI {
+class App;
+}
+
+namespace meshhier::app {
+
+/// What a command runs in.
+struct Environment {
+  storage::FileSystem& files;
+  const pipeline::CancelToken& cancel;
+  std::ostream& out;       ///< results
+  std::ostream& messages;  ///< progress and errors
+  bool messages_on_terminal = false;
+};
+
+/// What the arguments ask for.
+struct Invocation {
+  std::function<int(Environment&)> run;  ///< returns the exit code; throws Error
+  pipeline::ProgressMode progress = pipeline::ProgressMode::automatic;
+};
+
+/// Each registers one subcommand of `parser`. When arguments choose it, `invocation` is filled;
+/// both must outlive the parsing.
+void add_build_command(CLI::App& parser, Invocation& invocation);
+void add_inspect_command(CLI::App& parser, Invocation& invocation);
+void add_verify_command(CLI::App& parser, Invocation& invocation);
+void add_export_command(CLI::App& parser, Invocation& invocation);
+
+}  // namespace meshhier::app

@@ -1,0 +1,90 @@
+#include "app/command.h"
+#include "app/options.h"
+#include "pipeline/export.h"
+
+#include <memory>
+#include <optional>
+#include <ostream>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+namespace meshhier::app {
+
+namespace {
+
+struct ExportArguments {
+  std::string directory;
+  std::optional<Level> level;
+  std::optional<NodeId> node;
+  std::string cut;
+  bool outline = false;
+  std::string output;
+  std::uint64_t memory_budget = pipeline::ExportOptions{}.memory_budget;
+};
+
+/// Requires that exactly one of the four was given.
+pipeline::ExportSelection selection(const ExportArguments& arguments) {
+  if (arguments.level)
+    return *arguments.level;
+  if (arguments.node)
+    return *arguments.node;
+  if (!arguments.cut.empty())
+    return std::filesystem::path(arguments.cut);
+  return pipeline::OutlineSelection{};
+}
+
+int run_export(const ExportArguments& arguments, pipeline::ProgressMode mode,
+               Environment& environment) {
+  const auto progress =
+      pipeline::make_progress(mode, environment.messages, environment.messages_on_terminal);
+  const pipeline::ExportOptions options{selection(arguments), arguments.output,
+                                        arguments.memory_budget};
+  environment.out << pipeline::export_mesh(environment.files, arguments.directory, options,
+                                           *progress, environment.cancel)
+                  << '\n';
+  return 0;
+}
+
+constexpr const char* kFooter =
+    R"(A cut file lists nodes, one LEVEL/INDEX a line (# begins a comment), or as a JSON list; together they must cover
+every partition once. The pieces are joined without seams.
+
+Examples:
+  meshhier export david.hier --level 0 -o whole.ply
+  meshhier export david.hier --node 3/5 -o sector.ply
+  meshhier export david.hier --cut view.txt -o view.ply
+  meshhier export david.hier --outline -o outline.ply
+)";
+
+}  // namespace
+
+void add_export_command(CLI::App& parser, Invocation& invocation) {
+  const auto arguments = std::make_shared<ExportArguments>();
+  CLI::App* command = parser.add_subcommand("export", "Write part of a hierarchy as a PLY file");
+  command->add_option("DIR", arguments->directory, "The hierarchy")->required();
+
+  CLI::App* what = command->add_option_group("What", "Exactly one of these");
+  add_place_options(*what, arguments->level, arguments->node);
+  what->add_option("--cut", arguments->cut, "The cut that this file lists")
+      ->type_name("FILE")
+      ->check([](const std::string& text) {
+        return text.empty() ? "expected a file, found nothing" : "";
+      });
+  what->add_flag("--outline", arguments->outline, "The shape-outline, as edges");
+  what->require_option(1);
+
+  command->add_option("-o,--output", arguments->output, "The PLY file; replaced if it exists")
+      ->type_name("FILE")
+      ->required();
+  add_memory_budget_option(*command, arguments->memory_budget);
+  add_progress_option(*command, invocation.progress);
+  command->footer(kFooter);
+  command->callback([arguments, &invocation] {
+    invocation.run = [arguments, &invocation](Environment& environment) {
+      return run_export(*arguments, invocation.progress, environment);
+    };
+  });
+}
+
+}  // namespace meshhier::app

@@ -1,0 +1,157 @@
+// meshhier: the command line.
+#include "app/command.h"
+#include "app/signals.h"
+#include "hierarchy/error.h"
+#include "pipeline/suggest.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <new>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+namespace meshhier::app {
+
+namespace {
+
+constexpr const char* kDescription =
+    R"(meshhier makes a hierarchy from one huge triangle mesh: a directory of tiles of about equal size, from a coarse view
+of the whole model down to the original triangles, for viewers that load what the user looks at.)";
+
+constexpr const char* kFooter = R"(Examples:
+  meshhier build david.json                              make the hierarchy that david.json describes
+  meshhier inspect david.hier                            what is in it
+  meshhier verify david.hier --input david.ply           prove that it is sound and holds the input exactly
+  meshhier export david.hier --level 0 -o whole.ply      the coarse view of the whole model
+
+"meshhier COMMAND --help" tells more.
+
+Exit codes:
+  0    done
+  2    the command line or the config is wrong
+  3    the input mesh is broken or not supported
+  4    a file could not be read or written
+  5    the output is already there (see --force)
+  6    the memory budget or the free disk space is too small
+  7    the hierarchy is damaged: verify found a problem
+  70   a defect in meshhier
+  130  interrupted by Ctrl-C or SIGTERM
+)";
+
+int exit_code(ErrorCode code) {
+  return static_cast<int>(code);
+}
+
+std::vector<std::string> command_names(const CLI::App& parser) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : parser.get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(command->get_name());
+  }
+  return names;
+}
+
+/// The parser's own message for a misspelt command is only that one is missing.
+bool is_unknown_command(const std::string& word, const std::vector<std::string>& names) {
+  return !word.starts_with('-') && std::find(names.begin(), names.end(), word) == names.end();
+}
+
+int report_unknown_command(const std::string& word, const std::vector<std::string>& names) {
+  const std::optional<std::string> near = pipeline::nearest_word(word, names);
+  std::cerr << "meshhier: unknown command \"" << word << '"';
+  if (near)
+    std::cerr << "; did you mean \"" << *near << "\"?";
+  std::cerr << "\nRun with --help for more.\n";
+  return exit_code(ErrorCode::usage);
+}
+
+/// Programs that read the progress get the end of it in the same form.
+int report_failure(ErrorCode code, const std::string& message, pipeline::ProgressMode mode) {
+  if (mode == pipeline::ProgressMode::json) {
+    const nlohmann::ordered_json event{
+        {"event", "error"}, {"code", exit_code(code)}, {"message", message}};
+    std::cerr << event.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+              << '\n';
+  } else {
+    std::cerr << "meshhier: " << message << '\n';
+  }
+  return exit_code(code);
+}
+
+/// A result that did not arrive is a failure, as when the disk behind a redirection is full.
+void flush_results() {
+  if (!std::cout.flush())
+    throw Error(ErrorCode::io, "standard output could not be written");
+}
+
+int execute(const Invocation& invocation) {
+  static pipeline::CancelToken cancel;  // signal handlers reach it to the end of the process
+  cancel_on_signals(cancel);
+  const std::unique_ptr<storage::FileSystem> files = storage::make_posix_file_system();
+  Environment environment{*files, cancel, std::cout, std::cerr, isatty(STDERR_FILENO) == 1};
+  const int code = invocation.run(environment);
+  flush_results();
+  return code;
+}
+
+/// The one place where failures end.
+int execute_guarded(const Invocation& invocation) {
+  const auto fail = [&](ErrorCode code, const std::string& message) {
+    return report_failure(code, message, invocation.progress);
+  };
+  try {
+    return execute(invocation);
+  } catch (const Error& error) {
+    return fail(error.code(), error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(ErrorCode::budget,
+                "the system has no more memory; lower memory_budget or close other programs");
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail(ErrorCode::io, error.what());
+  } catch (const std::exception& error) {
+    return fail(ErrorCode::internal,
+                std::string("a defect in meshhier, please report it: ") + error.what());
+  }
+}
+
+int run(int argc, char** argv) {
+  Invocation invocation;
+  CLI::App parser(kDescription, "meshhier");
+  parser.set_version_flag("--version", "meshhier " MESHHIER_VERSION);
+  parser.require_subcommand(1);
+  parser.footer(kFooter);
+  parser.failure_message([](const CLI::App*, const CLI::Error& error) {
+    return std::string("meshhier: ") + error.what() + "\nRun with --help for more.\n";
+  });
+  add_build_command(parser, invocation);
+  add_inspect_command(parser, invocation);
+  add_verify_command(parser, invocation);
+  add_export_command(parser, invocation);
+
+  const std::vector<std::string> names = command_names(parser);
+  if (argc > 1 && is_unknown_command(argv[1], names))
+    return report_unknown_command(argv[1], names);
+  try {
+    parser.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    // --help and --version arrive here too, with code 0.
+    return parser.exit(error) == 0 ? EXIT_SUCCESS : exit_code(ErrorCode::usage);
+  }
+  return execute_guarded(invocation);
+}
+
+}  // namespace
+
+}  // namespace meshhier::app
+
+int main(int argc, char** argv) {
+  return meshhier::app::run(argc, argv);
+}

@@ -1,0 +1,113 @@
+#include "app/options.h"
+
+#include "pipeline/size_text.h"
+
+#include <charconv>
+#include <limits>
+#include <map>
+#include <string_view>
+
+#include <fmt/format.h>
+
+namespace meshhier::app {
+
+namespace {
+
+/// A tree over less than 2^32 partitions is at most so deep.
+constexpr std::uint64_t kDeepestLevel = 32;
+
+std::optional<std::uint64_t> parse_integer(std::string_view text, std::uint64_t maximum) {
+  std::uint64_t value = 0;
+  const char* const last = text.data() + text.size();
+  const auto [end, failure] = std::from_chars(text.data(), last, value);
+  if (failure != std::errc{} || end != last || value > maximum)
+    return std::nullopt;
+  return value;
+}
+
+[[noreturn]] void refuse(const std::string& option, std::string_view expected,
+                         const std::string& found) {
+  throw CLI::ValidationError(option, fmt::format("expected {}, found \"{}\"", expected, found));
+}
+
+}  // namespace
+
+std::optional<NodeId> parse_node(std::string_view text) {
+  const std::size_t slash = text.find('/');
+  if (slash == std::string_view::npos)
+    return std::nullopt;
+  const auto level = parse_integer(text.substr(0, slash), kDeepestLevel);
+  const auto index =
+      parse_integer(text.substr(slash + 1), std::numeric_limits<std::uint32_t>::max());
+  if (!level || !index)
+    return std::nullopt;
+  return NodeId{static_cast<Level>(*level), static_cast<std::uint32_t>(*index)};
+}
+
+void add_progress_option(CLI::App& command, pipeline::ProgressMode& mode) {
+  using pipeline::ProgressMode;
+  const std::map<std::string, ProgressMode> modes{{"auto", ProgressMode::automatic},
+                                                  {"bar", ProgressMode::bar},
+                                                  {"json", ProgressMode::json},
+                                                  {"none", ProgressMode::none}};
+  const auto store = [&mode, modes](const std::string& text) {
+    const auto found = modes.find(text);
+    if (found == modes.end())
+      refuse("--progress", "auto, bar, json or none", text);
+    mode = found->second;
+  };
+  command
+      .add_option_function<std::string>(
+          "--progress", store,
+          "How far the work is, on standard error: a bar, JSON lines, or nothing; auto: "
+          "a bar if standard error is a terminal [auto]")
+      ->type_name("auto|bar|json|none");
+}
+
+void add_memory_budget_option(CLI::App& command, std::uint64_t& bytes) {
+  const auto store = [&bytes](const std::string& text) {
+    const std::optional<std::uint64_t> parsed = pipeline::parse_size(text);
+    if (!parsed || *parsed == 0)
+      refuse("--memory-budget", pipeline::kSizeSyntax, text);
+    bytes = *parsed;
+  };
+  command
+      .add_option_function<std::string>(
+          "--memory-budget", store,
+          fmt::format("Memory it may use [{}]", pipeline::exact_size_text(bytes)))
+      ->type_name("SIZE");
+}
+
+CLI::Option* add_integer_option(CLI::App& command, const IntegerOption& option,
+                                const std::function<void(std::uint64_t)>& store) {
+  const auto checked = [option, store](const std::string& text) {
+    const std::optional<std::uint64_t> value = parse_integer(text, option.maximum);
+    if (!value || *value < option.minimum) {
+      refuse(option.name, fmt::format("an integer from {} to {}", option.minimum, option.maximum),
+             text);
+    }
+    store(*value);
+  };
+  return command.add_option_function<std::string>(option.name, checked, option.help)
+      ->type_name("N");
+}
+
+PlaceOptions add_place_options(CLI::App& command, std::optional<Level>& level,
+                               std::optional<NodeId>& node) {
+  PlaceOptions options;
+  options.level =
+      add_integer_option(command, {"--level", "One level; 0 is the whole model", 0, kDeepestLevel},
+                         [&level](std::uint64_t value) { level = static_cast<Level>(value); });
+  options.level->type_name("L");
+  const auto store_node = [&node](const std::string& text) {
+    node = parse_node(text);
+    if (!node)
+      refuse("--node", "a node as LEVEL/INDEX, for example 3/5", text);
+  };
+  options.node = command.add_option_function<std::string>("--node", store_node,
+                                                          "One node: its level and index");
+  options.node->type_name("L/I")->excludes(options.level);
+  return options;
+}
+
+}  // namespace meshhier::app

@@ -1,0 +1,46 @@
+// Options that several commands share, and texts that stand for values of the hierarchy.
+#pragma once
+
+#include "app/command.h"
+#include "hierarchy/ids.h"
+#include "pipeline/progress.h"
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <CLI/CLI.hpp>
+
+namespace meshhier::app {
+
+/// --progress auto|bar|json|none
+void add_progress_option(CLI::App& command, pipeline::ProgressMode& mode);
+
+/// --memory-budget SIZE
+void add_memory_budget_option(CLI::App& command, std::uint64_t& bytes);
+
+/// An option whose value is an integer from `minimum` to `maximum`. Digits only: no sign, no
+/// fraction.
+struct IntegerOption {
+  const char* name;  ///< "--cuts"
+  const char* help;
+  std::uint64_t minimum = 0;
+  std::uint64_t maximum = 0;
+};
+CLI::Option* add_integer_option(CLI::App& command, const IntegerOption& option,
+                                const std::function<void(std::uint64_t)>& store);
+
+/// --level L and --node L/I, which exclude each other.
+struct PlaceOptions {
+  CLI::Option* level = nullptr;
+  CLI::Option* node = nullptr;
+};
+PlaceOptions add_place_options(CLI::App& command, std::optional<Level>& level,
+                               std::optional<NodeId>& node);
+
+/// "3/17" as level 3, index 17; nothing if the text is anything else.
+std::optional<NodeId> parse_node(std::string_view text);
+
+}  // namespace meshhier::app

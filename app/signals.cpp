@@ -1,0 +1,45 @@
+#include "app/signals.h"
+
+#include <atomic>
+#include <csignal>
+
+namespace meshhier::app {
+
+namespace {
+
+/// What a signal handler can reach: it gets no argument of ours.
+std::atomic<pipeline::CancelToken*> token_to_cancel{nullptr};
+
+/// Only what POSIX allows in a handler: lock-free atomics and signal().
+extern "C" void on_signal(int) {
+  if (pipeline::CancelToken* token = token_to_cancel.load())
+    token->cancel();
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+}
+
+void handle(int signal_number) {
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  action.sa_flags =
+      SA_RESTART;  // reads and writes under way go on; the loops around them look at the token
+  sigemptyset(&action.sa_mask);
+  sigaction(signal_number, &action, nullptr);
+}
+
+bool is_ignored(int signal_number) {
+  struct sigaction current {};
+  return sigaction(signal_number, nullptr, &current) == 0 && current.sa_handler == SIG_IGN;
+}
+
+}  // namespace
+
+void cancel_on_signals(pipeline::CancelToken& token) {
+  token_to_cancel = &token;
+  handle(SIGINT);
+  handle(SIGTERM);
+  if (!is_ignored(SIGHUP))
+    handle(SIGHUP);
+}
+
+}  // namespace meshhier::app

@@ -1,0 +1,13 @@
+// Ctrl-C and its relatives, turned into a cancel token.
+#pragma once
+
+#include "pipeline/cancel.h"
+
+namespace meshhier::app {
+
+/// From now on the first SIGINT or SIGTERM (SIGHUP too, unless it is ignored, as nohup does)
+/// cancels `token`, which must live to the end of the process; the second kills the process at
+/// once.
+void cancel_on_signals(pipeline::CancelToken& token);
+
+}  // namespace meshhier::app

@@ -1,0 +1,131 @@
+// meshgen: makes meshes for tests and measurements.
+#include "bench/generator.h"
+#include "hierarchy/error.h"
+
+#include <cstdio>
+#include <exception>
+#include <map>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+namespace {
+
+using namespace meshhier;
+
+struct Arguments {
+  bench::SurfaceOptions surface;
+  bench::AmplifyOptions amplify;
+  std::uint64_t seed = 1;
+  std::string input;
+  std::string output;
+};
+
+void add_surface(CLI::App& app, Arguments& arguments) {
+  bench::SurfaceOptions& options = arguments.surface;
+  CLI::App* command = app.add_subcommand("surface", "A closed surface with fractal relief");
+  const std::map<std::string, std::uint64_t> units{
+      {"k", 1'000}, {"m", 1'000'000}, {"g", 1'000'000'000}};
+  command->add_option("--triangles", options.triangles, "How many, at least; k, M or G may follow")
+      ->transform(CLI::AsNumberWithUnit(units, CLI::AsNumberWithUnit::CASE_INSENSITIVE))
+      ->required();
+  const auto set_shape = [&options](const std::string& name) {
+    options.shape = bench::shape_named(name).value_or(options.shape);
+  };
+  command->add_option_function<std::string>("--shape", set_shape, "The form below the relief")
+      ->check(CLI::IsMember({"sphere", "torus", "genus5", "shells"}))
+      ->default_str("sphere");
+  command
+      ->add_option("--height", options.height,
+                   "Of the relief, at most, in parts of half the shape's thickness, 0 to 0.9")
+      ->capture_default_str();
+  command
+      ->add_option("--roughness", options.roughness,
+                   "Height of each finer octave relative to the one before, 0 to 0.9")
+      ->capture_default_str();
+  command->add_option("--noise", options.noise, "Measurement noise in grid steps, 0 to 1")
+      ->capture_default_str();
+  command->add_flag("--normals", options.normals, "With a normal a vertex");
+  command->add_flag("--colours", options.colours, "With red, green and blue a vertex");
+  command->add_flag("--alpha", options.alpha, "With a fourth colour channel");
+  command->add_flag("--double", options.double_coordinates, "With double coordinates");
+  command
+      ->add_option_function<std::vector<double>>(
+          "--offset",
+          [&options](const std::vector<double>& xyz) {
+            options.offset = {xyz[0], xyz[1], xyz[2]};
+          },
+          "Added to every position: X Y Z")
+      ->expected(3);
+}
+
+void add_amplify(CLI::App& app, Arguments& arguments) {
+  CLI::App* command = app.add_subcommand("amplify", "Repeated 1:4 subdivision with displacement");
+  command->add_option("input", arguments.input, "A PLY file")->required();
+  command->add_option("--times", arguments.amplify.times, "Subdivision steps, 0 to 10")->required();
+  command
+      ->add_option("--displacement", arguments.amplify.displacement,
+                   "Of a midpoint along the normal, at most, in parts of its edge, 0 to 1")
+      ->capture_default_str();
+}
+
+void add_shuffle(CLI::App& app, Arguments& arguments) {
+  CLI::App* command = app.add_subcommand("shuffle", "Vertices and faces in random order");
+  command->add_option("input", arguments.input, "A PLY file")->required();
+}
+
+bench::LoadedMesh load(storage::FileSystem& files, const std::string& path) {
+  return bench::load_mesh(*mesh_io::open_mesh(files, path));
+}
+
+std::unique_ptr<bench::GeneratedMesh> generate(const CLI::App& app, Arguments& arguments,
+                                               storage::FileSystem& files) {
+  if (app.got_subcommand("surface")) {
+    arguments.surface.seed = arguments.seed;
+    return bench::make_surface(arguments.surface);
+  }
+  if (app.got_subcommand("amplify")) {
+    arguments.amplify.seed = arguments.seed;
+    return bench::amplify(load(files, arguments.input), arguments.amplify);
+  }
+  return bench::shuffle(load(files, arguments.input), arguments.seed);
+}
+
+void run(const CLI::App& app, Arguments& arguments) {
+  const auto files = storage::make_posix_file_system();
+  const auto mesh = generate(app, arguments, *files);
+  bench::write_ply(*files, arguments.output, *mesh);
+  fmt::print("{}: {} vertices, {} triangles, {} bytes\n", arguments.output,
+             mesh->content().vertex_count, mesh->content().triangle_count,
+             files->open(arguments.output)->size());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Makes meshes for tests and measurements; equal arguments give equal bytes");
+  Arguments arguments;
+  add_surface(app, arguments);
+  add_amplify(app, arguments);
+  add_shuffle(app, arguments);
+  app.require_subcommand(1);
+  for (CLI::App* command : app.get_subcommands({})) {
+    command->add_option("--seed", arguments.seed, "Another seed, another mesh")
+        ->capture_default_str();
+    command->add_option("-o,--output", arguments.output, "The PLY file to write")->required();
+  }
+  try {
+    app.parse(argc, argv);
+    run(app, arguments);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : static_cast<int>(ErrorCode::usage);
+  } catch (const Error& error) {
+    fmt::print(stderr, "meshgen: {}\n", error.what());
+    return static_cast<int>(error.code());
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "meshgen: internal error: {}\n", error.what());
+    return static_cast<int>(ErrorCode::internal);
+  }
+  return 0;
+}

@@ -1,0 +1,23 @@
+#include "cluster_simplify/contraction.h"
+
+#include <algorithm>
+
+#include "cluster_simplify/cluster.h"
+#include "hierarchy/error.h"
+
+namespace meshhier::cluster_simplify {
+
+Contraction contract(const BuildTile& joined, std::uint32_t target, const AttributeLayout& layout,
+                     const ContractionOptions& options) {
+  switch (options.method) {
+    case Method::cluster:
+      return cluster(joined, target, layout, options.representative);
+  }
+  throw Error(ErrorCode::internal, "unknown contraction method");
+}
+
+std::uint32_t contraction_target(std::uint32_t own_count, std::uint32_t asked) {
+  return std::max(1U, std::min(asked, static_cast<std::uint32_t>(std::uint64_t{own_count} * 3 / 4)));
+}
+
+}  // namespace meshhier::cluster_simplify

@@ -1,0 +1,32 @@
+#include "mesh_io/input_error.h"
+
+#include "hierarchy/error.h"
+
+#include <fmt/format.h>
+
+namespace meshhier::mesh_io {
+
+void fail_file(const std::filesystem::path& path, const std::string& message) {
+  throw Error(ErrorCode::input, fmt::format("{}: {}", path.string(), message));
+}
+
+void fail_at_byte(const std::filesystem::path& path, std::uint64_t offset,
+                  const std::string& message) {
+  fail_file(path, fmt::format("byte {}: {}", offset, message));
+}
+
+void fail_at_line(const std::filesystem::path& path, std::uint64_t line,
+                  const std::string& message) {
+  fail_file(path, fmt::format("line {}: {}", line, message));
+}
+
+std::string in_quotes(std::string_view text) {
+  constexpr std::size_t kShownBytes = 40;  // a long number still shows whole
+  std::string shown = "'";
+  for (const char c : text.substr(0, kShownBytes)) {
+    shown += c >= ' ' && c <= '~' ? c : '?';
+  }
+  return shown + (text.size() > kShownBytes ? "...'" : "'");
+}
+
+}  // namespace meshhier::mesh_io

@@ -1,0 +1,111 @@
+// Collects vertices and triangles into the blocks that visitors get.
+#pragma once
+
+#include "mesh_io/mesh_source.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace meshhier::mesh_io {
+
+/// Vertices: a reader writes columns of the next rows, then commits the rows.
+class VertexBlocks {
+ public:
+  /// What `mesh` says decides the columns; its vertex count is how many rows will come at most.
+  VertexBlocks(const MeshDescription& mesh, const VertexVisitor& visit);
+
+  /// Where slot (0 to 2: coordinate, from 3 on: attribute channel) of the next row goes, and the
+  /// distance to the same slot of the row after it. Doubles if wide, else floats.
+  struct Column {
+    std::byte* data = nullptr;
+    std::size_t stride = 0;
+    bool wide = false;
+  };
+  Column column(int slot);
+  void set(int slot, double value);
+
+  /// How many rows fit before the block is handed out; > 0.
+  std::size_t room() const { return capacity_ - filled_; }
+
+  struct Defect {
+    std::size_t row = 0;  ///< of the rows committed
+    int slot = 0;
+    double value = 0;
+  };
+  /// Ends `rows` <= room() rows. Nothing is taken if one of them has a number that is not finite or
+  /// (if `check_colours`) a colour that is not one of the integers 0 to 255: the first is returned.
+  std::optional<Defect> commit(std::size_t rows, bool check_colours);
+
+  /// Hands out what is left.
+  void finish() { flush(); }
+
+ private:
+  void flush();
+  std::optional<Defect> find_defect(std::size_t rows, bool check_colours) const;
+  double value_of(std::size_t row, int slot) const;
+
+  AttributeLayout layout_;
+  std::size_t capacity_;  ///< rows of a block
+  std::size_t channels_;
+  bool wide_;
+  const VertexVisitor& visit_;
+  std::vector<Vec3f> positions_;
+  std::vector<Vec3d> exact_;
+  std::vector<float> attributes_;
+  std::size_t filled_ = 0;
+  std::uint64_t first_ = 0;
+};
+
+/// Triangles of polygons and strips. All corners given are < the vertex count.
+class TriangleBlocks {
+ public:
+  explicit TriangleBlocks(const TriangleVisitor& visit)
+      : visit_(visit),
+        block_(std::make_unique_for_overwrite<SourceTriangle[]>(MeshSource::kBlockSize)) {}
+
+  /// A whole face of three corners.
+  void add_triangle_face(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    ++counts_.faces;
+    add(a, b, c);
+  }
+
+  /// A polygon corner by corner, of any number: only the first and the last corner are kept.
+  void begin_polygon() { corner_count_ = 0; }
+  void add_polygon_corner(std::uint32_t corner);
+  void end_polygon();
+
+  /// A triangle strip: triangle i of a run is (i, i + 1, i + 2), with the first two corners swapped
+  /// if i is odd. restart_strip() begins a new run.
+  void begin_strip() { corner_count_ = 0; }
+  void restart_strip() { corner_count_ = 0; }
+  void add_strip_corner(std::uint32_t corner);
+  void end_strip() { ++counts_.faces; }
+
+  /// Hands out what is left.
+  FaceCounts finish();
+
+ private:
+  void add(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    if (a == b || b == c || c == a) {
+      ++counts_.degenerate_triangles;
+      return;
+    }
+    block_[filled_++] = {VertexId{a}, VertexId{b}, VertexId{c}};
+    if (filled_ == MeshSource::kBlockSize)
+      flush();
+  }
+  void flush();
+
+  const TriangleVisitor& visit_;
+  std::unique_ptr<SourceTriangle[]> block_;  ///< kBlockSize
+  std::size_t filled_ = 0;
+  FaceCounts counts_;
+  std::uint64_t corner_count_ = 0;
+  std::uint32_t first_ = 0;  ///< of a polygon; of a strip: the corner before the previous one
+  std::uint32_t previous_ = 0;
+};
+
+}  // namespace meshhier::mesh_io

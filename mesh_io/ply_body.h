@@ -1,0 +1,56 @@
+// The data behind a PLY header, element by element, in binary or in text.
+#pragma once
+
+#include "mesh_io/mesh_blocks.h"
+#include "mesh_io/ply_plan.h"
+#include "storage/file.h"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace meshhier::mesh_io {
+
+/// A place in a file: the byte, and in text also the number of its line.
+struct PlyPosition {
+  std::uint64_t offset = 0;
+  std::uint64_t line = 0;
+};
+
+/// A cursor over the rows. Every call starts at position() and ends behind the element's last row.
+/// Throws Error(input) with the byte (binary) or line (text) of what is wrong, Error(io).
+class PlyBody {
+ public:
+  virtual ~PlyBody() = default;
+
+  virtual PlyPosition position() const = 0;
+  virtual void skip(const PlyElementPlan& plan) = 0;
+  virtual void read_vertices(const PlyElementPlan& plan, VertexBlocks& blocks) = 0;
+  virtual void read_faces(const PlyElementPlan& plan, TriangleBlocks& blocks) = 0;
+  /// Requires that nothing follows but one line end, perhaps behind up to two zeros (binary), or
+  /// blanks and blank lines (text).
+  virtual void expect_end() = 0;
+};
+
+/// Both refer to all their arguments. Memory: one ByteWindow.
+std::unique_ptr<PlyBody> make_binary_body(const storage::File& file, std::uint64_t file_bytes,
+                                          const PlyPlan& plan, PlyPosition start);
+/// One row is one line, as the format has it: rows that are longer or shorter than the header says
+/// are errors. Numbers that are not read are not looked at.
+std::unique_ptr<PlyBody> make_text_body(const storage::File& file, std::uint64_t file_bytes,
+                                        const PlyPlan& plan, PlyPosition start);
+
+/// True if `index` restarts a strip: -1, which a uint holds as 2^32 - 1 (no vertex can have it).
+bool is_strip_restart(std::int64_t index, PlyType type);
+
+// For messages.
+
+/// "row 17 of 20 of element 'face'"; rows count from 0, as vertex indices do.
+std::string row_name(const PlyElementPlan& plan, std::uint64_t row);
+/// The number read for a slot is not finite, or not a colour.
+std::string defect_text(const PlyElementPlan& plan, std::uint64_t row, int slot, double value);
+/// A face refers to a vertex that is not there.
+std::string index_text(const PlyElementPlan& plan, std::uint64_t row, std::int64_t index,
+                       std::uint64_t vertex_count);
+
+}  // namespace meshhier::mesh_io

@@ -1,0 +1,235 @@
+#include "mesh_io/ply_header.h"
+
+#include "mesh_io/input_error.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace meshhier::mesh_io {
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r\n\v\f";
+
+struct TypeName {
+  std::string_view name;
+  PlyType type;
+};
+
+/// The names of the 1994 paper first, in the order of PlyType, then the sized ones.
+constexpr std::array<TypeName, 16> kTypeNames{{{"char", PlyType::i8},
+                                               {"uchar", PlyType::u8},
+                                               {"short", PlyType::i16},
+                                               {"ushort", PlyType::u16},
+                                               {"int", PlyType::i32},
+                                               {"uint", PlyType::u32},
+                                               {"float", PlyType::f32},
+                                               {"double", PlyType::f64},
+                                               {"int8", PlyType::i8},
+                                               {"uint8", PlyType::u8},
+                                               {"int16", PlyType::i16},
+                                               {"uint16", PlyType::u16},
+                                               {"int32", PlyType::i32},
+                                               {"uint32", PlyType::u32},
+                                               {"float32", PlyType::f32},
+                                               {"float64", PlyType::f64}}};
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos)
+    return {};
+  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+/// Takes the first word off `text`; empty if there is none.
+std::string_view take_word(std::string_view& text) {
+  text = trimmed(text);
+  const std::string_view word = text.substr(0, text.find_first_of(kBlanks));
+  text = trimmed(text.substr(word.size()));
+  return word;
+}
+
+class HeaderParser {
+ public:
+  HeaderParser(std::string_view start, const std::filesystem::path& path)
+      : start_(start), path_(path) {}
+
+  PlyHeader parse() {
+    check_magic();
+    while (!parse_line(next_line())) {
+    }
+    if (!has_format_)
+      fail("expected a 'format' line before 'end_header', found none");
+    header_.data_offset = position_;
+    header_.data_line = line_ + 1;
+    return std::move(header_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& message) const { fail_at_line(path_, line_, message); }
+
+  void check_magic();
+  std::string_view next_line();
+  bool parse_line(std::string_view line);
+  void parse_format(std::string_view rest);
+  void parse_element(std::string_view rest);
+  void parse_property(std::string_view rest);
+  PlyType parse_type(std::string_view word) const;
+
+  std::string_view start_;
+  const std::filesystem::path& path_;
+  char line_end_ = '\n';
+  std::size_t position_ = 0;
+  std::uint64_t line_ = 0;
+  bool has_format_ = false;
+  std::set<std::string, std::less<>> names_;
+  PlyHeader header_;
+};
+
+/// Also finds out how lines end: a CR alone ends them only if it ends the first one, so the data
+/// behind "end_header" CR LF starts after the LF, and behind a lone CR right away, even with a LF.
+void HeaderParser::check_magic() {
+  if (start_.empty())
+    fail_file(path_, "expected a PLY file, found an empty file");
+  const std::size_t end = start_.find_first_of("\r\n");
+  const std::string_view first = start_.substr(0, end);
+  if (trimmed(first) != "ply") {
+    const bool gzip = start_.starts_with("\x1f\x8b");
+    fail_file(path_, fmt::format("expected a PLY file, which starts with the line 'ply', found {}",
+                                 gzip ? "gzip data (unpack it first)" : in_quotes(first)));
+  }
+  const bool has_end = end != std::string_view::npos;
+  const bool carriage_return_only =
+      has_end && start_[end] == '\r' && (end + 1 == start_.size() || start_[end + 1] != '\n');
+  line_end_ = carriage_return_only ? '\r' : '\n';
+  next_line();
+}
+
+std::string_view HeaderParser::next_line() {
+  ++line_;
+  if (position_ == start_.size()) {
+    const bool too_long = start_.size() >= kMaxHeaderBytes;
+    fail(too_long ? fmt::format("expected 'end_header' within {} bytes, found none", start_.size())
+                  : "expected a header line, found the end of the file (is it truncated?)");
+  }
+  const std::size_t end = std::min(start_.find(line_end_, position_), start_.size());
+  const std::string_view line = start_.substr(position_, end - position_);
+  if (line.size() > kMaxHeaderLineBytes) {
+    fail(fmt::format("expected header lines of at most {} bytes, found a longer one",
+                     kMaxHeaderLineBytes));
+  }
+  position_ = std::min(end + 1, start_.size());
+  return line;
+}
+
+/// True for the last line of the header.
+bool HeaderParser::parse_line(std::string_view line) {
+  std::string_view rest = line;
+  const std::string_view keyword = take_word(rest);
+  if (keyword.empty() || keyword == "comment" || keyword == "obj_info")
+    return false;
+  if (keyword == "format") {
+    parse_format(rest);
+  } else if (keyword == "element") {
+    parse_element(rest);
+  } else if (keyword == "property") {
+    parse_property(rest);
+  } else if (keyword == "end_header") {
+    if (!rest.empty())
+      fail("expected a line end after 'end_header', found " + in_quotes(rest));
+    return true;
+  } else {
+    fail(
+        "expected 'format', 'comment', 'obj_info', 'element', 'property' or 'end_header', "
+        "found " +
+        in_quotes(keyword));
+  }
+  return false;
+}
+
+void HeaderParser::parse_format(std::string_view rest) {
+  if (has_format_)
+    fail("expected one 'format' line, found a second one");
+  has_format_ = true;
+  const std::string_view format = take_word(rest);
+  if (format == "ascii") {
+    header_.encoding = PlyEncoding::ascii;
+  } else if (format == "binary_little_endian") {
+    header_.encoding = PlyEncoding::little_endian;
+  } else if (format == "binary_big_endian") {
+    header_.encoding = PlyEncoding::big_endian;
+  } else {
+    fail("expected the format 'ascii', 'binary_little_endian' or 'binary_big_endian', found " +
+         in_quotes(format));
+  }
+  if (rest != "1.0")
+    fail("expected format version '1.0', found " + in_quotes(rest));
+}
+
+void HeaderParser::parse_element(std::string_view rest) {
+  PlyElement element;
+  element.name = take_word(rest);
+  if (element.name.empty())
+    fail("expected 'element NAME COUNT', found no name");
+  const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), element.count);
+  if (error != std::errc{} || end != rest.data() + rest.size()) {
+    fail(fmt::format("expected the number of {} rows, an integer below 2^64, found {}",
+                     in_quotes(element.name), in_quotes(rest)));
+  }
+  if (!names_.insert(element.name).second) {
+    fail("expected each element once, found a second " + in_quotes(element.name));
+  }
+  header_.elements.push_back(std::move(element));
+}
+
+void HeaderParser::parse_property(std::string_view rest) {
+  if (header_.elements.empty())
+    fail("expected an 'element' before the first 'property'");
+  PlyProperty property;
+  std::string_view type = take_word(rest);
+  if (type == "list") {
+    property.count_type = parse_type(take_word(rest));
+    if (!is_integer(*property.count_type)) {
+      fail(fmt::format("expected an integer type for a list's length, found '{}'",
+                       name_of(*property.count_type)));
+    }
+    type = take_word(rest);
+  }
+  property.type = parse_type(type);
+  property.name = rest;
+  if (property.name.empty())
+    fail("expected a property's name after its type, found none");
+  header_.elements.back().properties.push_back(std::move(property));
+}
+
+PlyType HeaderParser::parse_type(std::string_view word) const {
+  const auto known = std::find_if(kTypeNames.begin(), kTypeNames.end(),
+                                  [&](const TypeName& entry) { return entry.name == word; });
+  if (known != kTypeNames.end())
+    return known->type;
+  fail(
+      "expected a type (char, uchar, short, ushort, int, uint, float, double or int8 to "
+      "float64), found " +
+      in_quotes(word));
+}
+
+}  // namespace
+
+std::string_view name_of(PlyType type) {
+  return kTypeNames[static_cast<std::size_t>(type)].name;
+}
+
+std::string_view name_of(PlyEncoding encoding) {
+  constexpr std::string_view kNames[] = {"ASCII", "binary little endian", "binary big endian"};
+  return kNames[static_cast<std::size_t>(encoding)];
+}
+
+PlyHeader parse_ply_header(std::string_view start, const std::filesystem::path& path) {
+  return HeaderParser(start, path).parse();
+}
+
+}  // namespace meshhier::mesh_io

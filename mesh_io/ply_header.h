@@ -1,0 +1,68 @@
+// The text header of a PLY file (Turk, "The PLY Polygon File Format", 1994), as a value.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace meshhier::mesh_io {
+
+enum class PlyEncoding : std::uint8_t { ascii, little_endian, big_endian };
+
+/// char uchar short ushort int uint float double, or int8 ... float64.
+enum class PlyType : std::uint8_t { i8, u8, i16, u16, i32, u32, f32, f64 };
+
+constexpr std::uint64_t size_of(PlyType type) {
+  constexpr std::uint8_t kSizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
+  return kSizes[static_cast<std::size_t>(type)];
+}
+constexpr bool is_integer(PlyType type) {
+  return type < PlyType::f32;
+}
+constexpr bool is_unsigned(PlyType type) {
+  return type == PlyType::u8 || type == PlyType::u16 || type == PlyType::u32;
+}
+/// The type's name as most files write it: "uchar".
+std::string_view name_of(PlyType type);
+/// "ASCII", "binary little endian", "binary big endian".
+std::string_view name_of(PlyEncoding encoding);
+
+struct PlyProperty {
+  std::string name;
+  PlyType type{};                     ///< of the value, or of each item of the list
+  std::optional<PlyType> count_type;  ///< of a list's length, an integer type; none: one value
+
+  bool is_list() const { return count_type.has_value(); }
+};
+
+struct PlyElement {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<PlyProperty> properties;
+};
+
+struct PlyHeader {
+  PlyEncoding encoding{};
+  std::vector<PlyElement> elements;  ///< names are unique
+  std::uint64_t data_offset = 0;     ///< byte behind the line end of end_header
+  std::uint64_t data_line = 0;  ///< number of the line at data_offset; the first of a file is 1
+};
+
+/// Real headers have less than 2 KiB, but some writers put metadata (cameras, JSON) into comments.
+/// 256 KiB leaves room for them and stops the search for end_header in a large file of other data.
+inline constexpr std::size_t kMaxHeaderBytes = 256 * 1024;
+
+/// One line of a header: above any real comment, below the point where a message gets absurd.
+inline constexpr std::size_t kMaxHeaderLineBytes = 64 * 1024;
+
+/// Parses the header at the start of a file. `start`: the first min(file size, kMaxHeaderBytes)
+/// bytes; `path` is for messages only. Lines end with LF, CRLF, or (if the first line does) CR
+/// alone; blanks around lines and blank lines are allowed; a property's name is the rest of its
+/// line, so names with spaces, which some writers produce, are read. Throws Error(input) naming the
+/// line. Pure.
+PlyHeader parse_ply_header(std::string_view start, const std::filesystem::path& path);
+
+}  // namespace meshhier::mesh_io

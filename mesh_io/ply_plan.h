@@ -1,0 +1,58 @@
+// What a reader takes of each element of a PLY file, and the checks a header must pass for it.
+#pragma once
+
+#include "hierarchy/attributes.h"
+#include "mesh_io/ply_header.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+namespace meshhier::mesh_io {
+
+/// Where a vertex property goes: coordinates are slots 0, 1, 2, attribute channel c is slot 3 + c.
+inline constexpr int kSkipped = -1;
+inline constexpr int kFirstAttributeSlot = 3;
+
+struct PlyElementPlan {
+  enum class Role : std::uint8_t { skipped, vertices, polygons, strips };
+
+  PlyElement element;
+  Role role = Role::skipped;
+  std::vector<int> slots;   ///< one per property: kSkipped or where a vertex property goes
+  std::size_t corners = 0;  ///< of polygons and strips: the property with the vertex indices
+  std::uint64_t min_row_bytes = 0;  ///< of a row, all lists empty; in text the fewest characters
+  std::optional<std::uint64_t> stride;  ///< bytes of every row: binary, and no property is a list
+
+  bool has_faces() const { return role == Role::polygons || role == Role::strips; }
+};
+
+struct PlyPlan {
+  PlyEncoding encoding{};
+  std::vector<PlyElementPlan> elements;  ///< in the order of the file
+  std::size_t vertex_element = 0;
+  AttributeLayout attributes;
+  bool wide_coordinates = false;  ///< a coordinate is double, int or uint
+  bool check_colours = false;  ///< the stored type holds values that `attributes.colour` does not
+};
+
+/// Decides what is read:
+///
+///   element vertex       x y z                           required, any scalar type
+///                        nx ny nz                        any scalar type, as given
+///                        red green blue [alpha]          or r g b [a], or diffuse_red ... [alpha]
+///                        s t | u v | texture_u texture_v | texture_s texture_t
+///   element face         list vertex_indices | vertex_index
+///   element tristrips    list vertex_indices | vertex_index
+///
+/// Attributes of which not all parts are there are skipped. The parts of a colour must be of one
+/// type, else they are skipped: uchar is u8, ushort is u16, float and double are f32; the other
+/// integer types are read as u8, as 0 to 255 is what files mean by them (other values are errors).
+/// Everything else is skipped. Throws Error(input) if the vertices or faces cannot be read, if
+/// there are 2^32 vertices or more, or if the declared counts do not fit into `file_bytes`.
+/// Allocates nothing that a count sizes.
+PlyPlan make_ply_plan(const PlyHeader& header, std::uint64_t file_bytes,
+                      const std::filesystem::path& path);
+
+}  // namespace meshhier::mesh_io

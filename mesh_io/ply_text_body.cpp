@@ -1,0 +1,239 @@
+#include "mesh_io/input_error.h"
+#include "mesh_io/number_text.h"
+#include "mesh_io/ply_body.h"
+#include "mesh_io/text_cursor.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+
+namespace meshhier::mesh_io {
+namespace {
+
+using Role = PlyElementPlan::Role;
+
+struct IntegerRange {
+  std::int64_t low;
+  std::int64_t high;
+};
+
+/// Of an integer type.
+IntegerRange range_of(PlyType type) {
+  const auto bits = static_cast<int>(8 * size_of(type));
+  if (is_unsigned(type))
+    return {0, (std::int64_t{1} << bits) - 1};
+  return {-(std::int64_t{1} << (bits - 1)), (std::int64_t{1} << (bits - 1)) - 1};
+}
+
+class TextBody final : public PlyBody {
+ public:
+  TextBody(const storage::File& file, std::uint64_t file_bytes, const PlyPlan& plan,
+           PlyPosition start)
+      : cursor_(file, file_bytes, start.offset, start.line),
+        vertex_count_(plan.elements[plan.vertex_element].element.count),
+        check_colours_(plan.check_colours) {}
+
+  PlyPosition position() const override { return {cursor_.offset(), cursor_.line()}; }
+  void skip(const PlyElementPlan& plan) override;
+  void read_vertices(const PlyElementPlan& plan, VertexBlocks& blocks) override;
+  void read_faces(const PlyElementPlan& plan, TriangleBlocks& blocks) override;
+  void expect_end() override;
+
+ private:
+  struct Row {
+    const PlyElementPlan& plan;
+    std::uint64_t number;
+  };
+
+  [[noreturn]] void fail(const std::string& message) const {
+    fail_at_line(cursor_.file().path(), cursor_.line(), message);
+  }
+  [[noreturn]] void fail_number(const Row& row, const PlyProperty& property, PlyType type,
+                                std::string_view word) const;
+  void begin_row(const Row& row);
+  void end_row(const Row& row);
+  std::string_view take_word(const Row& row, const PlyProperty& property);
+  std::int64_t take_integer(const Row& row, const PlyProperty& property, PlyType type);
+  double take_number(const Row& row, const PlyProperty& property);
+  std::uint64_t take_count(const Row& row, const PlyProperty& property);
+  void skip_property(const Row& row, const PlyProperty& property);
+  void take_corners(const Row& row, const PlyProperty& property, TriangleBlocks& blocks);
+
+  TextCursor cursor_;
+  std::uint64_t vertex_count_;
+  bool check_colours_;
+};
+
+void TextBody::begin_row(const Row& row) {
+  if (cursor_.to_row())
+    return;
+  fail(
+      fmt::format("expected {}, found the end of the file (truncated, or the count in the header "
+                  "is wrong)",
+                  row_name(row.plan, row.number)));
+}
+
+void TextBody::end_row(const Row& row) {
+  if (!cursor_.to_word())
+    return;
+  fail(
+      fmt::format("expected the end of the line behind {}, found {} (the row has more numbers "
+                  "than the header declares)",
+                  row_name(row.plan, row.number), in_quotes(cursor_.take_word())));
+}
+
+std::string_view TextBody::take_word(const Row& row, const PlyProperty& property) {
+  if (!cursor_.to_word()) {
+    fail(
+        fmt::format("expected a number for {} in {}, found the end of the {} (the row has fewer "
+                    "numbers than the header declares)",
+                    in_quotes(property.name), row_name(row.plan, row.number),
+                    cursor_.remaining() == 0 ? "file" : "line"));
+  }
+  const std::string_view word = cursor_.take_word();
+  if (word.empty()) {
+    fail(fmt::format("expected a number for {} in {}, found a word of more than {} bytes",
+                     in_quotes(property.name), row_name(row.plan, row.number),
+                     TextCursor::kMaxWordBytes));
+  }
+  return word;
+}
+
+void TextBody::fail_number(const Row& row, const PlyProperty& property, PlyType type,
+                           std::string_view word) const {
+  std::string expected = "a number";
+  if (is_integer(type)) {
+    const IntegerRange range = range_of(type);
+    expected = fmt::format("an integer from {} to {}", range.low, range.high);
+  }
+  fail(fmt::format("expected {} ('{}') for {} in {}, found {}", expected, name_of(type),
+                   in_quotes(property.name), row_name(row.plan, row.number), in_quotes(word)));
+}
+
+std::int64_t TextBody::take_integer(const Row& row, const PlyProperty& property, PlyType type) {
+  const std::string_view word = take_word(row, property);
+  const auto value = parse_integer(word);
+  const IntegerRange range = range_of(type);
+  if (!value || *value < range.low || *value > range.high)
+    fail_number(row, property, type, word);
+  return *value;
+}
+
+double TextBody::take_number(const Row& row, const PlyProperty& property) {
+  const PlyType type = property.type;
+  if (is_integer(type))
+    return static_cast<double>(take_integer(row, property, type));
+  const std::string_view word = take_word(row, property);
+  const auto value = type == PlyType::f32 ? std::optional<double>(parse_real<float>(word))
+                                          : parse_real<double>(word);
+  if (!value)
+    fail_number(row, property, type, word);
+  return *value;
+}
+
+/// Takes a list's length: not more than can follow, at two characters an item.
+std::uint64_t TextBody::take_count(const Row& row, const PlyProperty& property) {
+  const std::int64_t count = take_integer(row, property, *property.count_type);
+  const std::uint64_t fitting = cursor_.remaining() / 2;
+  if (count < 0 || static_cast<std::uint64_t>(count) > fitting) {
+    fail(
+        fmt::format("expected the length of list {} in {} from 0 to {}, as many as fit into the "
+                    "rest of the file, found {} (truncated or damaged)",
+                    in_quotes(property.name), row_name(row.plan, row.number), fitting, count));
+  }
+  return static_cast<std::uint64_t>(count);
+}
+
+void TextBody::skip_property(const Row& row, const PlyProperty& property) {
+  const std::uint64_t words = property.is_list() ? take_count(row, property) : 1;
+  for (std::uint64_t i = 0; i < words; ++i)
+    take_word(row, property);
+}
+
+void TextBody::skip(const PlyElementPlan& plan) {
+  for (std::uint64_t i = 0; i < plan.element.count; ++i) {
+    const Row row{plan, i};
+    begin_row(row);
+    for (const PlyProperty& property : plan.element.properties)
+      skip_property(row, property);
+    end_row(row);
+  }
+}
+
+void TextBody::read_vertices(const PlyElementPlan& plan, VertexBlocks& blocks) {
+  for (std::uint64_t i = 0; i < plan.element.count; ++i) {
+    const Row row{plan, i};
+    begin_row(row);
+    for (std::size_t k = 0; k < plan.slots.size(); ++k) {
+      const PlyProperty& property = plan.element.properties[k];
+      if (plan.slots[k] == kSkipped) {
+        skip_property(row, property);
+      } else {
+        blocks.set(plan.slots[k], take_number(row, property));
+      }
+    }
+    end_row(row);
+    if (const auto bad = blocks.commit(1, check_colours_)) {
+      fail(defect_text(plan, i, bad->slot, bad->value));
+    }
+  }
+}
+
+void TextBody::read_faces(const PlyElementPlan& plan, TriangleBlocks& blocks) {
+  for (std::uint64_t i = 0; i < plan.element.count; ++i) {
+    const Row row{plan, i};
+    begin_row(row);
+    for (std::size_t k = 0; k < plan.element.properties.size(); ++k) {
+      const PlyProperty& property = plan.element.properties[k];
+      if (k == plan.corners) {
+        take_corners(row, property, blocks);
+      } else {
+        skip_property(row, property);
+      }
+    }
+    end_row(row);
+  }
+}
+
+void TextBody::take_corners(const Row& row, const PlyProperty& property, TriangleBlocks& blocks) {
+  const bool strip = row.plan.role == Role::strips;
+  const std::uint64_t count = take_count(row, property);
+  strip ? blocks.begin_strip() : blocks.begin_polygon();
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const std::string_view word = take_word(row, property);
+    const auto index = parse_integer(word);
+    if (!index)
+      fail_number(row, property, property.type, word);
+    if (*index >= 0 && static_cast<std::uint64_t>(*index) < vertex_count_) {
+      const auto corner = static_cast<std::uint32_t>(*index);
+      strip ? blocks.add_strip_corner(corner) : blocks.add_polygon_corner(corner);
+    } else if (strip && is_strip_restart(*index, property.type)) {
+      blocks.restart_strip();
+    } else {
+      fail(index_text(row.plan, row.number, *index, vertex_count_));
+    }
+  }
+  strip ? blocks.end_strip() : blocks.end_polygon();
+}
+
+void TextBody::expect_end() {
+  if (!cursor_.to_row())
+    return;
+  fail(
+      fmt::format("expected the end of the file behind the last row the header declares, found {} "
+                  "(the header's counts do not match the data)",
+                  in_quotes(cursor_.take_word())));
+}
+
+}  // namespace
+
+std::unique_ptr<PlyBody> make_text_body(const storage::File& file, std::uint64_t file_bytes,
+                                        const PlyPlan& plan, PlyPosition start) {
+  return std::make_unique<TextBody>(file, file_bytes, plan, start);
+}
+
+}  // namespace meshhier::mesh_io

@@ -1,0 +1,200 @@
+#include "mesh_io/ply_writer.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace meshhier::mesh_io {
+namespace {
+
+/// Written at once: large enough that a disk streams, as much as the contract allows.
+constexpr std::size_t kBufferBytes = 1024 * 1024;
+
+/// The largest row: three doubles and kMaxChannels floats.
+constexpr std::size_t kMaxRowBytes = 3 * sizeof(double) + kMaxChannels * sizeof(float);
+
+std::string_view colour_type_name(ColourType type) {
+  return type == ColourType::u8 ? "uchar" : type == ColourType::u16 ? "ushort" : "float";
+}
+
+std::string attribute_lines(const AttributeLayout& layout) {
+  std::string lines;
+  const auto add = [&](std::string_view type, std::string_view name) {
+    lines += fmt::format("property {} {}\n", type, name);
+  };
+  if (layout.normals) {
+    for (const std::string_view name : {"nx", "ny", "nz"})
+      add("float", name);
+  }
+  constexpr std::array<std::string_view, 4> kColours{"red", "green", "blue", "alpha"};
+  for (int i = 0; i < layout.colour_channels(); ++i) {
+    add(colour_type_name(layout.colour), kColours[static_cast<std::size_t>(i)]);
+  }
+  if (layout.texcoords) {
+    for (const std::string_view name : {"s", "t"})
+      add("float", name);
+  }
+  return lines;
+}
+
+/// A comment must stay one line.
+std::string one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  return text;
+}
+
+std::string header_text(const PlyContent& content, std::string_view index_type) {
+  std::string text = "ply\nformat binary_little_endian 1.0\n";
+  for (const std::string& comment : content.comments) {
+    text += "comment " + one_line(comment) + "\n";
+  }
+  text += fmt::format("element vertex {}\n", content.vertex_count);
+  for (const char axis : {'x', 'y', 'z'}) {
+    text += fmt::format("property {} {}\n", content.double_coordinates ? "double" : "float", axis);
+  }
+  text += attribute_lines(content.attributes);
+  text += fmt::format("element face {}\nproperty list uchar {} vertex_indices\n",
+                      content.triangle_count, index_type);
+  if (content.edge_count > 0) {
+    text += fmt::format("element edge {0}\nproperty {1} vertex1\nproperty {1} vertex2\n",
+                        content.edge_count, index_type);
+  }
+  return text + "end_header\n";
+}
+
+/// The nearest value of an unsigned type; averages of colours need not be whole.
+template <class T>
+T nearest(float value) {
+  const float high = std::numeric_limits<T>::max();
+  return static_cast<T>(std::lround(std::clamp(value, 0.0F, high)));
+}
+
+}  // namespace
+
+struct PlyWriter::State {
+  std::unique_ptr<storage::File> file;
+  PlyContent content;
+  std::vector<std::byte> buffer;
+  std::uint64_t offset = 0;
+  std::uint64_t vertices = 0;
+  std::uint64_t triangles = 0;
+  std::uint64_t edges = 0;
+
+  template <class T>
+  void put(T value) {
+    auto bytes = std::bit_cast<std::array<std::byte, sizeof(T)>>(value);
+    if constexpr (std::endian::native == std::endian::big)
+      std::reverse(bytes.begin(), bytes.end());
+    buffer.insert(buffer.end(), bytes.begin(), bytes.end());
+  }
+
+  void flush() {
+    file->write_at(offset, buffer);
+    offset += buffer.size();
+    buffer.clear();
+  }
+
+  /// A row is never split: flushes if the largest might not fit.
+  void begin_row() {
+    if (buffer.size() + kMaxRowBytes > kBufferBytes)
+      flush();
+  }
+
+  void put_attributes(std::span<const float> values) {
+    const AttributeLayout& layout = content.attributes;
+    const int first_colour = layout.colour_offset();
+    const int last_colour = first_colour + layout.colour_channels();
+    for (int i = 0; i < layout.channels(); ++i) {
+      const float value = values[static_cast<std::size_t>(i)];
+      const bool colour = i >= first_colour && i < last_colour;
+      if (colour && layout.colour == ColourType::u8) {
+        put(nearest<std::uint8_t>(value));
+      } else if (colour && layout.colour == ColourType::u16) {
+        put(nearest<std::uint16_t>(value));
+      } else {
+        put(value);
+      }
+    }
+  }
+
+  template <class Scalar>
+  void put_vertices(std::span<const Vec3<Scalar>> positions, std::span<const float> attributes) {
+    const auto channels = static_cast<std::size_t>(content.attributes.channels());
+    assert(attributes.size() == positions.size() * channels);
+    assert(triangles == 0 && edges == 0);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      begin_row();
+      for (int axis = 0; axis < 3; ++axis) {
+        if (content.double_coordinates) {
+          put(static_cast<double>(positions[i][axis]));
+        } else {
+          put(static_cast<float>(positions[i][axis]));
+        }
+      }
+      put_attributes(attributes.subspan(i * channels, channels));
+    }
+    vertices += positions.size();
+  }
+};
+
+PlyWriter::PlyWriter(storage::FileSystem& files, const std::filesystem::path& path,
+                     const PlyContent& content)
+    : state_(std::make_unique<State>()) {
+  state_->file = files.create(path);
+  state_->content = content;
+  state_->buffer.reserve(kBufferBytes);
+  constexpr std::uint64_t kMaxIntVertices = std::uint64_t{1} << 31;
+  const std::string header =
+      header_text(content, content.vertex_count < kMaxIntVertices ? "int" : "uint");
+  state_->file->write_at(0, std::as_bytes(std::span(header)));
+  state_->offset = header.size();
+}
+
+PlyWriter::~PlyWriter() = default;
+
+void PlyWriter::write_vertices(std::span<const Vec3f> positions,
+                               std::span<const float> attributes) {
+  state_->put_vertices(positions, attributes);
+}
+
+void PlyWriter::write_vertices(std::span<const Vec3d> positions,
+                               std::span<const float> attributes) {
+  state_->put_vertices(positions, attributes);
+}
+
+void PlyWriter::write_triangles(std::span<const std::array<std::uint32_t, 3>> triangles) {
+  assert(state_->vertices == state_->content.vertex_count && state_->edges == 0);
+  for (const auto& triangle : triangles) {
+    state_->begin_row();
+    state_->put(std::uint8_t{3});
+    for (const std::uint32_t corner : triangle)
+      state_->put(corner);
+  }
+  state_->triangles += triangles.size();
+}
+
+void PlyWriter::write_edges(std::span<const std::array<std::uint32_t, 2>> edges) {
+  assert(state_->triangles == state_->content.triangle_count);
+  for (const auto& edge : edges) {
+    state_->begin_row();
+    for (const std::uint32_t end : edge)
+      state_->put(end);
+  }
+  state_->edges += edges.size();
+}
+
+void PlyWriter::finish() {
+  assert(state_->vertices == state_->content.vertex_count);
+  assert(state_->triangles == state_->content.triangle_count);
+  assert(state_->edges == state_->content.edge_count);
+  state_->flush();
+}
+
+}  // namespace meshhier::mesh_io

@@ -1,0 +1,49 @@
+// A text file as rows of words, with line numbers.
+#pragma once
+
+#include "mesh_io/byte_window.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace meshhier::mesh_io {
+
+/// Lines end with LF, CRLF or CR; words are separated by blanks and tabs; blank lines do not count
+/// as rows. Memory: one ByteWindow, however long a line is.
+class TextCursor {
+ public:
+  /// The longest word: a double written out in full has 1,077 characters.
+  static constexpr std::size_t kMaxWordBytes = 4096;
+
+  TextCursor(const storage::File& file, std::uint64_t file_bytes, std::uint64_t offset,
+             std::uint64_t line)
+      : window_(file, file_bytes), line_(line) {
+    window_.seek(offset);
+  }
+
+  std::uint64_t offset() const { return window_.offset(); }
+  std::uint64_t line() const { return line_; }
+  std::uint64_t remaining() const { return window_.remaining(); }
+  const storage::File& file() const { return window_.file(); }
+
+  /// Goes on to the next word, over line ends; false at the end of the file.
+  bool to_row();
+  /// Goes on to the next word of this line; false if there is none.
+  bool to_word();
+  /// The word here; empty if it is longer than kMaxWordBytes. Valid until the next call. Requires
+  /// that to_row() or to_word() was true just before.
+  std::string_view take_word();
+
+ private:
+  /// Makes a word and what separates it available, if the file has as much.
+  bool look_ahead() {
+    return window_.available() > kMaxWordBytes || window_.ensure(kMaxWordBytes + 1) ||
+           window_.available() > 0;
+  }
+
+  ByteWindow window_;
+  std::uint64_t line_;
+};
+
+}  // namespace meshhier::mesh_io

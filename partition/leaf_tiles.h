@@ -1,0 +1,34 @@
+// Partition tiles out of a split chunk.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "hierarchy/build_tile.h"
+#include "partition/chunk.h"
+
+namespace meshhier::partition {
+
+/// Where a rim vertex of a chunk went: the bridge from provisional ranks to tile vertices.
+struct LeafPlace {
+  std::uint32_t local = 0;      ///< provisional rank within the chunk
+  std::uint16_t partition = 0;  ///< counted from the chunk's first partition
+  std::uint16_t index = 0;      ///< in that partition's tile, in its rim
+};
+
+struct ChunkLeaves {
+  std::vector<WorkTile> tiles;          ///< of the chunk's partitions, in order
+  std::vector<LeafPlace> places;        ///< every rim vertex, ascending by `local`
+  std::uint64_t unreferenced_count = 0; ///< vertices without a triangle
+};
+
+/// Builds the partition tiles: vertices by id, rim first; a border triangle goes to each partition it touches; its
+/// foreign corners are named by chunk and provisional rank within it. Independent of the order of the triangles.
+ChunkLeaves build_leaves(const ChunkMesh& chunk, std::span<const PartitionId> partition_of, const Tree& tree,
+                         const ChunkMap& chunks);
+
+/// Looks a foreign corner of a leaf up in its chunk's places. Throws Error(internal) if it is not there.
+const LeafPlace& find_place(std::span<const LeafPlace> places, std::uint32_t local);
+
+}  // namespace meshhier::partition

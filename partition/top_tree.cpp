@@ -1,0 +1,207 @@
+#include "partition/top_tree.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "partition/select.h"
+
+namespace meshhier::partition {
+namespace {
+
+// Half the width of a window in standard deviations of the sample median's rank. At 4.5 one window in 150,000
+// misses; each more half sigma keeps a tenth more vertices aside.
+constexpr double kWindowSigmas = 4.5;
+
+// Undecided vertices are read back in blocks of this many.
+constexpr std::size_t kReadBlock = 4096;
+
+constexpr std::uint64_t hash(std::uint64_t x) {  // splitmix64 (Steele, Lea, Flood 2014)
+  x += 0x9e3779b97f4a7c15ULL;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
+  return x ^ (x >> 31);
+}
+
+NodeId node_at(std::uint32_t heap) {
+  const int level = std::bit_width(heap + 1) - 1;
+  return {static_cast<Level>(level), heap + 1 - (1U << level)};
+}
+
+std::uint64_t left_target(const Tree& tree, NodeId node) { return tree.ranks(tree.children(node).nodes[0]).size(); }
+
+std::vector<Vec3f> positions_of(std::span<const IdPoint> points) {
+  std::vector<Vec3f> positions(points.size());
+  std::transform(points.begin(), points.end(), positions.begin(), [](const IdPoint& p) { return p.position; });
+  return positions;
+}
+
+/// The window around the sample's quantile. A sample that is the whole node still gets one: nothing depends on it.
+void set_window(PlannedSplit& split, std::span<const SplitKey> sorted, double fraction) {
+  const auto count = static_cast<double>(sorted.size());
+  const double reach = kWindowSigmas * 0.5 * std::sqrt(count) + 2;
+  const double low = fraction * count - reach;
+  const double high = fraction * count + reach;
+  split.low = low < 0 ? SplitKey::lowest() : sorted[static_cast<std::size_t>(low)];
+  split.high = high >= count ? SplitKey::highest() : sorted[static_cast<std::size_t>(high)];
+}
+
+void plan_node(TopPlan& plan, std::uint32_t heap, std::span<IdPoint> sample, const Tree& tree, Axis axis) {
+  if (heap >= plan.splits.size()) return;
+  PlannedSplit& split = plan.splits[heap];
+  if (sample.size() < 2) {  // nothing known: any direction, a window that holds everything
+    split = {{1, 0, 0}, SplitKey::lowest(), SplitKey::highest()};
+    plan_node(plan, 2 * heap + 1, sample, tree, axis);
+    plan_node(plan, 2 * heap + 2, {}, tree, axis);
+    return;
+  }
+  const NodeId node = node_at(heap);
+  const double fraction =
+      static_cast<double>(left_target(tree, node)) / static_cast<double>(tree.ranks(node).size());
+  const std::vector<Vec3f> positions = positions_of(sample);
+  split.direction = thinnest_direction(positions, fraction, candidate_directions(positions, axis));
+  const auto key = [&](const IdPoint& p) { return key_along(split.direction, p.position, p.id); };
+  std::sort(sample.begin(), sample.end(), [&](const IdPoint& a, const IdPoint& b) { return key(a) < key(b); });
+  std::vector<SplitKey> keys(sample.size());
+  std::transform(sample.begin(), sample.end(), keys.begin(), key);
+  set_window(split, keys, fraction);
+  const auto left = static_cast<std::size_t>(fraction * static_cast<double>(sample.size()));
+  plan_node(plan, 2 * heap + 1, sample.first(left), tree, axis);
+  plan_node(plan, 2 * heap + 2, sample.subspan(left), tree, axis);
+}
+
+}  // namespace
+
+Level chunk_level(const Tree& tree) {
+  Level level{0};
+  while (level < tree.depth()) {
+    // The first node of a level is never smaller than another by more than one partition's rounding.
+    std::uint64_t largest = 0;
+    for (std::uint32_t i = 0; i < tree.node_count(level); ++i) largest = std::max(largest, tree.ranks({level, i}).size());
+    if (largest <= kChunkVertices) break;
+    level = finer(level);
+  }
+  return level;
+}
+
+std::uint64_t SampleIds::count() const { return std::min(vertex_count_, kSampleVertices); }
+
+std::uint64_t SampleIds::operator[](std::uint64_t i) const {
+  if (vertex_count_ <= kSampleVertices) return i;
+  const std::uint64_t begin = i * vertex_count_ / kSampleVertices;  // < 2^51
+  const std::uint64_t end = (i + 1) * vertex_count_ / kSampleVertices;
+  return begin + hash(i) % (end - begin);
+}
+
+TopPlan plan_top(std::vector<IdPoint> sample, const Tree& tree, Axis axis) {
+  TopPlan plan;
+  plan.chunks = chunk_level(tree);
+  plan.splits.resize((std::size_t{1} << raw(plan.chunks)) - 1);
+  plan_node(plan, 0, sample, tree, axis);
+  return plan;
+}
+
+SweepBlock sweep(const TopPlan& plan, std::span<const Vec3f> positions, std::uint32_t first) {
+  SweepBlock block;
+  block.left_counts.resize(plan.splits.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const auto id = static_cast<std::uint32_t>(first + i);
+    std::uint32_t node = 0;
+    while (node < plan.splits.size()) {
+      const PlannedSplit& split = plan.splits[node];
+      const SplitKey key = key_along(split.direction, positions[i], id);
+      if (key < split.low) {
+        ++block.left_counts[node];
+        node = 2 * node + 1;
+      } else if (key > split.high) {
+        node = 2 * node + 2;
+      } else {
+        block.undecided.push_back({node, {positions[i], id}});
+        break;
+      }
+    }
+  }
+  return block;
+}
+
+std::uint32_t TopTree::chunk_of(Vec3f position, std::uint32_t id) const {
+  std::uint32_t node = 0;
+  while (node < planes_.size()) node = 2 * node + (planes_[node].is_right(position, id) ? 2 : 1);
+  return node - static_cast<std::uint32_t>(planes_.size());
+}
+
+TopSelector::TopSelector(const TopPlan& plan, const Tree& tree, storage::ScratchFile& scratch,
+                         std::uint64_t memory_bytes)
+    : tree_(tree), memory_bytes_(memory_bytes), chunks_(plan.chunks), left_counts_(plan.splits.size()) {
+  // Open blocks of all nodes together stay within 4 MiB; below 1 KiB a block is not worth its bookkeeping.
+  const std::size_t block =
+      std::clamp<std::size_t>((4U << 20) / std::max<std::size_t>(plan.splits.size(), 1), 1024, 65536);
+  undecided_.reserve(plan.splits.size());
+  for (std::size_t i = 0; i < plan.splits.size(); ++i) undecided_.emplace_back(scratch, block);
+}
+
+void TopSelector::add(const SweepBlock& block) {
+  for (std::size_t node = 0; node < left_counts_.size(); ++node) left_counts_[node] += block.left_counts[node];
+  for (const SweepBlock::Undecided& u : block.undecided) undecided_[u.node].append(u.point);
+}
+
+std::vector<SplitPlane> TopSelector::settle(TopPlan& plan) {
+  std::vector<SplitPlane> planes;
+  for (std::uint32_t node = 0; node < left_counts_.size(); ++node) {
+    planes.push_back(settle_node(node, plan.splits[node]));
+    if (missed_) return {};
+    undecided_[node].clear();
+  }
+  return planes;
+}
+
+SplitPlane TopSelector::settle_node(std::uint32_t node, PlannedSplit& split) {
+  const auto& spool = undecided_[node];
+  const auto for_each_block = [&](const auto& visit) {
+    std::vector<IdPoint> block(std::min<std::uint64_t>(kReadBlock, spool.size()));
+    for (std::uint64_t at = 0; at < spool.size(); at += block.size()) {
+      block.resize(std::min<std::uint64_t>(kReadBlock, spool.size() - at));
+      spool.read(at, block);
+      visit(std::span<const IdPoint>(block));
+    }
+  };
+  const auto in_window = [&](const SplitKey& key) { return split.low <= key && key <= split.high; };
+
+  // Vertices handed down by the nodes above may lie outside the window: they are certain now.
+  std::uint64_t left = left_counts_[node];
+  std::uint64_t inside = 0;
+  for_each_block([&](std::span<const IdPoint> block) {
+    for (const IdPoint& p : block) {
+      const SplitKey key = key_along(split.direction, p.position, p.id);
+      if (key < split.low) ++left;
+      if (in_window(key)) ++inside;
+    }
+  });
+  const std::uint64_t target = left_target(tree_, node_at(node));
+  if (target < left || target >= left + inside) {
+    split.low = SplitKey::lowest();
+    split.high = SplitKey::highest();
+    missed_ = true;
+    return {};
+  }
+  const KeySource keys = [&](const std::function<void(std::span<const SplitKey>)>& visit) {
+    std::vector<SplitKey> found;
+    for_each_block([&](std::span<const IdPoint> block) {
+      found.clear();
+      for (const IdPoint& p : block) {
+        const SplitKey key = key_along(split.direction, p.position, p.id);
+        if (in_window(key)) found.push_back(key);
+      }
+      visit(found);
+    });
+  };
+  const SplitPlane plane{split.direction, select(keys, inside, target - left, memory_bytes_)};
+  if (2 * node + 1 < left_counts_.size()) {
+    for_each_block([&](std::span<const IdPoint> block) {
+      for (const IdPoint& p : block) undecided_[2 * node + (plane.is_right(p.position, p.id) ? 2 : 1)].append(p);
+    });
+  }
+  return plane;
+}
+
+}  // namespace meshhier::partition

@@ -1,0 +1,149 @@
+#include "pipeline/build.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+
+#include "partition/top_tree.h"
+#include "pipeline/forest.h"
+#include "pipeline/memory_plan.h"
+#include "pipeline/outline_stage.h"
+#include "pipeline/partition_stage.h"
+#include "pipeline/publish_stage.h"
+#include "pipeline/simplify_stage.h"
+#include "pipeline/size_text.h"
+#include "pipeline/source_mesh.h"
+#include "storage/hash.h"
+#include "storage/work_directory.h"
+
+namespace meshhier::pipeline {
+namespace {
+
+constexpr std::uint32_t kLargestTile = 32768;  // tile indices are 16 bits, ghosts included
+
+Tree plan_tree(const Config& config, std::uint64_t vertex_count) {
+  if (vertex_count == 0) {
+    throw Error(ErrorCode::input, fmt::format("{} has no vertices: there is nothing to build", config.input.string()));
+  }
+  const std::uint64_t count = config.partition.count
+                                  ? *config.partition.count
+                                  : (vertex_count + config.partition.vertices - 1) / config.partition.vertices;
+  if (count > vertex_count) {
+    throw Error(ErrorCode::usage, fmt::format("partition.count is {}, but {} has only {} vertices", count,
+                                              config.input.string(), vertex_count));
+  }
+  if ((vertex_count + count - 1) / count > kLargestTile) {
+    throw Error(ErrorCode::usage,
+                fmt::format("partition.count is {}: partitions of {} vertices; a tile holds at most {}, so the count "
+                            "must be at least {}",
+                            count, (vertex_count + count - 1) / count, kLargestTile,
+                            (vertex_count + kLargestTile - 1) / kLargestTile));
+  }
+  return {vertex_count, static_cast<std::uint32_t>(count)};
+}
+
+std::uint32_t largest_partition(const Tree& tree) {
+  return static_cast<std::uint32_t>((tree.vertex_count() + tree.partition_count() - 1) / tree.partition_count());
+}
+
+std::uint32_t asked_vertices(const Config& config, const Tree& tree) {
+  if (config.simplify.vertices) return *config.simplify.vertices;
+  return config.partition.count ? std::max(4U, largest_partition(tree)) : config.partition.vertices;
+}
+
+JobSize job_size(const Config& config, const mesh_io::MeshDescription& mesh, const Tree& tree, std::size_t threads) {
+  JobSize job;
+  job.vertex_count = mesh.vertex_count;
+  job.face_count = mesh.face_count;
+  job.channels = mesh.attributes.channels();
+  job.vertices_in_place = mesh.vertices_in_place;
+  job.partition_count = tree.partition_count();
+  job.largest_tile = std::max(largest_partition(tree), asked_vertices(config, tree));
+  job.threads = threads;
+  return job;
+}
+
+void check_disk(const JobSize& job, const MemoryPlan& plan, const std::filesystem::path& directory,
+                storage::FileSystem& files) {
+  const DiskNeed need = predict_disk(job, plan);
+  const std::uint64_t free = files.free_bytes(directory);
+  if (free < need.temporary_bytes + need.output_bytes) {
+    throw Error(ErrorCode::budget,
+                fmt::format("{} has {} free; the hierarchy will take about {} and up to {} of temporary files",
+                            directory.string(), rounded_size_text(free), rounded_size_text(need.output_bytes),
+                            rounded_size_text(need.temporary_bytes)));
+  }
+}
+
+std::uint64_t checksum_of_file(storage::FileSystem& files, const std::filesystem::path& path, const CancelToken& cancel) {
+  const auto file = files.open(path);
+  storage::Checksum sum;
+  std::vector<std::byte> buffer(1 << 20);
+  for (std::uint64_t offset = 0;; offset += buffer.size()) {
+    cancel.check();
+    const std::size_t count = file->read_at(offset, buffer);
+    sum.add({buffer.data(), count});
+    if (count < buffer.size()) return sum.value();
+  }
+}
+
+std::string report_text(const SourceSummary& source, const Tree& tree, const PublishedSummary& published,
+                        const storage::IoCounters& io) {
+  std::string text = fmt::format("{} vertices, {} triangles -> {} partitions, {} levels, {} tiles, {}\n",
+                                 source.vertices, source.triangles, tree.partition_count(), raw(tree.depth()) + 1,
+                                 published.tiles, rounded_size_text(published.total_bytes));
+  if (source.degenerate_triangles > 0) {
+    text += fmt::format("dropped {} degenerate triangles\n", source.degenerate_triangles);
+  }
+  if (source.unreferenced_vertices > 0) {
+    text += fmt::format("kept {} vertices that no triangle uses\n", source.unreferenced_vertices);
+  }
+  text += fmt::format("read {}, wrote {}\n", rounded_size_text(io.bytes_read), rounded_size_text(io.bytes_written));
+  return text;
+}
+
+}  // namespace
+
+BuildReport build_hierarchy(const Config& config, bool force, BuildEnvironment environment) {
+  auto& [files, progress, cancel] = environment;
+  configure_allocator();
+  const std::size_t threads =
+      config.threads > 0 ? config.threads : static_cast<std::size_t>(tbb::info::default_concurrency());
+  const tbb::global_control thread_limit(tbb::global_control::max_allowed_parallelism, threads);
+
+  // Everything that can be refused is refused before anything is written.
+  std::unique_ptr<mesh_io::MeshSource> source = mesh_io::open_mesh(files, config.input);
+  const Tree tree = plan_tree(config, source->description().vertex_count);
+  const JobSize job = job_size(config, source->description(), tree, threads);
+  const MemoryPlan plan = plan_memory(config.memory_budget, job);
+  storage::WorkDirectory work(files, config.output, force);
+  check_disk(job, plan, work.path(), files);
+
+  storage::MemoryPool pool(plan.pool_bytes);
+  storage::ScratchFile tile_scratch(files, work.temporary() / "tiles", pool);
+  Forest forest(tree, partition::chunk_level(tree), job.channels, tile_scratch);
+
+  PublishInput result;
+  {
+    storage::ScratchFile mesh_scratch(files, work.temporary() / "mesh", pool);
+    SourceMesh mesh(std::move(source), config.input.filename().string(), mesh_scratch, progress, cancel);
+    Chunks chunks = distribute(mesh, tree, config.partition.axis, plan, mesh_scratch, progress, cancel);
+    result.source = mesh.summary();
+    result.source.checksum = checksum_of_file(files, config.input, cancel);
+    result.format = {mesh.summary().attributes, mesh.unit_normals(), mesh.origin()};
+    result.source.unreferenced_vertices = make_leaves(chunks, forest, config.partition.axis, plan, progress, cancel);
+  }
+  result.asked_vertices = asked_vertices(config, tree);
+  result.config = resolved_json(config);
+  simplify(forest, {result.asked_vertices, result.source.attributes, {config.simplify.method, config.simplify.representative}},
+           plan, progress, cancel);
+  result.outline = make_outline(forest, config.outline, length(result.source.bounds.max - result.source.bounds.min),
+                                progress, cancel);
+  const PublishedSummary published = publish(forest, result, work.path(), plan, files, progress, cancel);
+  work.publish();
+  return {report_text(result.source, tree, published, files.counters())};
+}
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,112 @@
+// What a build is asked to do: the config file as values.
+//
+// The keys, their ranges and what they mean are listed once, in config_schema.cpp;
+// configs/meshhier.schema.json says the same to editors.
+#pragma once
+
+#include "cluster_simplify/contraction.h"
+#include "partition/direction.h"
+#include "storage/file.h"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+namespace meshhier::pipeline {
+
+/// The name that an enumerator has in the config.
+template <class Enum>
+struct NamedValue {
+  std::string_view name;
+  Enum value;
+};
+
+/// How a node's split direction is chosen.
+using AxisRule = partition::Axis;
+inline constexpr std::array kAxisRules{NamedValue{"compactness", AxisRule::compactness},
+                                       NamedValue{"longest", AxisRule::longest}};
+
+struct PartitionConfig {
+  std::uint32_t vertices =
+      8192;  ///< upper bound per partition, 4 to 32768; without effect if `count` is set
+  std::optional<std::uint32_t> count;  ///< number of partitions, >= 1
+  AxisRule axis = AxisRule::compactness;
+  friend bool operator==(const PartitionConfig&, const PartitionConfig&) = default;
+};
+
+/// How a tile is contracted. A new method has its name here and in the JSON schema.
+using SimplifyMethod = cluster_simplify::Method;
+inline constexpr std::array kSimplifyMethods{NamedValue{"cluster", SimplifyMethod::cluster}};
+
+using Representative = cluster_simplify::Representative;
+inline constexpr std::array kRepresentatives{NamedValue{"mean", Representative::mean},
+                                             NamedValue{"quadric", Representative::quadric},
+                                             NamedValue{"vertex", Representative::vertex}};
+
+struct SimplifyConfig {
+  SimplifyMethod method = SimplifyMethod::cluster;
+  std::optional<std::uint32_t>
+      vertices;  ///< of a simplified tile, 4 to 32768; not set: as a partition has
+  Representative representative = Representative::quadric;
+  friend bool operator==(const SimplifyConfig&, const SimplifyConfig&) = default;
+};
+
+struct OutlineConfig {
+  std::uint32_t sectors = 128;  ///< about so many
+  double tolerance = 0.002;     ///< as a part of the bounding-box diagonal, above 0, at most 1
+  friend bool operator==(const OutlineConfig&, const OutlineConfig&) = default;
+};
+
+enum class Compression { none };
+inline constexpr std::array kCompressions{NamedValue{"none", Compression::none}};
+
+struct StorageConfig {
+  Compression compression = Compression::none;
+  friend bool operator==(const StorageConfig&, const StorageConfig&) = default;
+};
+
+struct Config {
+  std::filesystem::path input;   ///< a mesh file
+  std::filesystem::path output;  ///< a directory, without a slash at its end
+  std::uint64_t memory_budget = std::uint64_t{1} << 30;  ///< bytes, > 0
+  std::uint32_t threads = 0;                             ///< 0: all
+  PartitionConfig partition;
+  SimplifyConfig simplify;
+  OutlineConfig outline;
+  StorageConfig storage;
+  friend bool operator==(const Config&, const Config&) = default;
+};
+
+/// Where the text of a config comes from.
+struct ConfigOrigin {
+  std::string name;                 ///< for messages
+  std::filesystem::path directory;  ///< relative paths of the text start here; may be empty
+};
+
+/// Reads a config: JSON with // and /* */ comments, then `overrides` on top, in order.
+///
+/// An override is "key=value", the key dotted ("partition.vertices"), the value JSON, or else a
+/// plain string. A path given by an override is relative to the current directory, like any path on
+/// a command line. An override of partition.vertices or partition.count replaces whichever of the
+/// two the text has.
+///
+/// Throws Error(usage) naming origin, key, what was expected, what was found and the nearest known
+/// key.
+Config parse_config(std::string_view text, const ConfigOrigin& origin,
+                    std::span<const std::string> overrides);
+
+/// parse_config() of a file; its paths are relative to the file's directory. Throws also Error(io).
+Config load_config(storage::FileSystem& files, const std::filesystem::path& file,
+                   std::span<const std::string> overrides);
+
+/// What decides the result: partition, simplify, outline, storage; not paths, budget, threads. All
+/// defaults are filled in, except that simplify.vertices is absent if it follows partition.count.
+nlohmann::ordered_json resolved_json(const Config& config);
+
+}  // namespace meshhier::pipeline

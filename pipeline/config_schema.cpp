@@ -1,0 +1,254 @@
+#include "pipeline/config_schema.h"
+
+#include "pipeline/size_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace meshhier::pipeline {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Fewer than 4 vertices hold no solid; tile indices are 16 bits wide and half of them are kept for
+/// ghosts.
+constexpr double kFewestTileVertices = 4;
+constexpr double kMostTileVertices = 32768;
+/// 2^32 vertices at the fewest a partition.
+constexpr double kMostPartitions = 1073741824;
+/// A sector needs its own lines within the outline's 32 kB: beyond this no line would be left to
+/// draw.
+constexpr double kMostSectors = 65536;
+/// More than any machine has; catches a size that was meant for the budget.
+constexpr double kMostThreads = 4096;
+/// JSON numbers are exact up to here.
+constexpr double kMostBytes = 9007199254740991.0;  // 2^53 - 1
+
+struct Limits {
+  double minimum;
+  double maximum;
+};
+
+constexpr Limits kTileVertices{kFewestTileVertices, kMostTileVertices};
+
+template <class Field>
+struct Unwrapped {
+  using Type = Field;
+};
+template <class Field>
+struct Unwrapped<std::optional<Field>> {
+  using Type = Field;
+};
+
+template <class Value>
+Json shown(const Value& value) {
+  return value;
+}
+template <class Value>
+Json shown(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json();
+}
+
+// Each of these makes the row of one kind of key. `field` turns a Config& or a const Config& into a
+// reference to the member that holds the value.
+
+ConfigKey ignored_text(std::string path) {
+  ConfigKey key{.path = std::move(path), .kind = KeyKind::text};
+  key.assign = [](Config&, const Json&) {};
+  key.show = [](const Config&) { return Json(); };
+  return key;
+}
+
+template <class Field>
+ConfigKey required_path(std::string path, Field field) {
+  ConfigKey key{.path = std::move(path), .kind = KeyKind::path, .required = true};
+  key.assign = [field](Config& config, const Json& value) {
+    field(config) = value.get<std::string>();
+  };
+  key.show = [field](const Config& config) {
+    return field(config).empty() ? Json() : Json(field(config).string());
+  };
+  return key;
+}
+
+template <class Field>
+ConfigKey bytes(std::string path, Field field) {
+  ConfigKey key{
+      .path = std::move(path), .kind = KeyKind::size, .minimum = 1, .maximum = kMostBytes};
+  key.assign = [field](Config& config, const Json& value) {
+    field(config) = value.is_string() ? *parse_size(value.get_ref<const std::string&>())
+                                      : static_cast<std::uint64_t>(value.get<double>());
+  };
+  key.show = [field](const Config& config) { return Json(exact_size_text(field(config))); };
+  return key;
+}
+
+/// An integer or, for a field of floating point, a number.
+template <class Field>
+ConfigKey number(std::string path, Limits limits, Field field) {
+  using Member = std::remove_reference_t<decltype(field(std::declval<Config&>()))>;
+  using Value = typename Unwrapped<Member>::Type;
+  ConfigKey key{.path = std::move(path),
+                .kind = std::is_integral_v<Value> ? KeyKind::integer : KeyKind::number,
+                .minimum = limits.minimum,
+                .maximum = limits.maximum};
+  key.assign = [field](Config& config, const Json& value) {
+    field(config) = static_cast<Value>(value.get<double>());
+  };
+  key.show = [field](const Config& config) { return shown(field(config)); };
+  return key;
+}
+
+template <class Names, class Field>
+ConfigKey choice(std::string path, const Names& names, Field field) {
+  ConfigKey key{.path = std::move(path), .kind = KeyKind::choice};
+  for (const auto& named : names)
+    key.choices.emplace_back(named.name);
+  key.assign = [field, names](Config& config, const Json& value) {
+    for (const auto& named : names) {
+      if (named.name == value.get_ref<const std::string&>())
+        field(config) = named.value;
+    }
+  };
+  key.show = [field, names](const Config& config) {
+    for (const auto& named : names) {
+      if (named.value == field(config))
+        return Json(named.name);
+    }
+    return Json();
+  };
+  return key;
+}
+
+ConfigKey deciding(ConfigKey key) {
+  key.decides_result = true;
+  return key;
+}
+
+std::vector<ConfigKey> make_config_keys() {
+  return {
+      ignored_text("$schema"),  // lets editors find configs/meshhier.schema.json
+      required_path(
+          "input", [](auto& c) -> auto& { return c.input; }),
+      required_path(
+          "output", [](auto& c) -> auto& { return c.output; }),
+      bytes(
+          "memory_budget", [](auto& c) -> auto& { return c.memory_budget; }),
+      number(
+          "threads", {0, kMostThreads}, [](auto& c) -> auto& { return c.threads; }),
+      deciding(number(
+          "partition.vertices", kTileVertices,
+          [](auto& c) -> auto& { return c.partition.vertices; })),
+      deciding(number(
+          "partition.count", {1, kMostPartitions},
+          [](auto& c) -> auto& { return c.partition.count; })),
+      deciding(choice(
+          "partition.axis", kAxisRules, [](auto& c) -> auto& { return c.partition.axis; })),
+      deciding(choice(
+          "simplify.method", kSimplifyMethods, [](auto& c) -> auto& { return c.simplify.method; })),
+      deciding(number(
+          "simplify.vertices", kTileVertices,
+          [](auto& c) -> auto& { return c.simplify.vertices; })),
+      deciding(choice(
+          "simplify.representative", kRepresentatives,
+          [](auto& c) -> auto& { return c.simplify.representative; })),
+      deciding(number(
+          "outline.sectors", {1, kMostSectors},
+          [](auto& c) -> auto& { return c.outline.sectors; })),
+      deciding(number(
+          "outline.tolerance", {0, 1}, [](auto& c) -> auto& { return c.outline.tolerance; })),
+      deciding(choice(
+          "storage.compression", kCompressions,
+          [](auto& c) -> auto& { return c.storage.compression; })),
+  };
+}
+
+bool is_integer_within(const ConfigKey& key, const Json& value) {
+  if (!value.is_number())
+    return false;
+  const auto number = value.get<double>();
+  return std::trunc(number) == number && number >= key.minimum && number <= key.maximum;
+}
+
+bool is_size_within(const ConfigKey& key, const Json& value) {
+  if (!value.is_string())
+    return is_integer_within(key, value);
+  const std::optional<std::uint64_t> parsed = parse_size(value.get_ref<const std::string&>());
+  return parsed && static_cast<double>(*parsed) >= key.minimum;
+}
+
+bool is_usable_path(const Json& value) {
+  if (!value.is_string())
+    return false;
+  const auto& text = value.get_ref<const std::string&>();
+  return !text.empty() && text.find('\0') == std::string::npos;
+}
+
+}  // namespace
+
+const std::vector<ConfigKey>& config_keys() {
+  static const std::vector<ConfigKey> keys = make_config_keys();
+  return keys;
+}
+
+const ConfigKey* find_config_key(std::string_view path) {
+  const std::vector<ConfigKey>& keys = config_keys();
+  const auto found = std::find_if(keys.begin(), keys.end(),
+                                  [&](const ConfigKey& key) { return key.path == path; });
+  return found == keys.end() ? nullptr : &*found;
+}
+
+bool is_config_section(std::string_view path) {
+  const std::string prefix = std::string(path) + '.';
+  const std::vector<ConfigKey>& keys = config_keys();
+  return std::any_of(keys.begin(), keys.end(),
+                     [&](const ConfigKey& key) { return key.path.starts_with(prefix); });
+}
+
+bool accepts(const ConfigKey& key, const Json& value) {
+  switch (key.kind) {
+    case KeyKind::text:
+      return value.is_string();
+    case KeyKind::path:
+      return is_usable_path(value);
+    case KeyKind::integer:
+      return is_integer_within(key, value);
+    case KeyKind::number:
+      return value.is_number() && value.get<double>() > key.minimum &&
+             value.get<double>() <= key.maximum;
+    case KeyKind::size:
+      return is_size_within(key, value);
+    case KeyKind::choice:
+      return value.is_string() &&
+             std::find(key.choices.begin(), key.choices.end(),
+                       value.get_ref<const std::string&>()) != key.choices.end();
+  }
+  return false;
+}
+
+std::string expectation(const ConfigKey& key) {
+  switch (key.kind) {
+    case KeyKind::text:
+      return "a string";
+    case KeyKind::path:
+      return "a path";
+    case KeyKind::integer:
+      return fmt::format("an integer from {:.0f} to {:.0f}", key.minimum, key.maximum);
+    case KeyKind::number:
+      return fmt::format("a number above {} and at most {}", key.minimum, key.maximum);
+    case KeyKind::size:
+      return std::string(kSizeSyntax);
+    case KeyKind::choice:
+      break;
+  }
+  return fmt::format("{}\"{}\"", key.choices.size() > 1 ? "one of " : "",
+                     fmt::join(key.choices, "\", \""));
+}
+
+}  // namespace meshhier::pipeline

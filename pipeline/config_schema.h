@@ -1,0 +1,53 @@
+// Every key of the config, described once: for the parser, its messages, and resolved_json().
+#pragma once
+
+#include "pipeline/config.h"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace meshhier::pipeline {
+
+enum class KeyKind {
+  text,     ///< any string
+  path,     ///< a string that is not empty
+  integer,  ///< minimum to maximum
+  number,   ///< above minimum, up to maximum
+  size,     ///< bytes as a number, or a text for parse_size(); minimum to maximum
+  choice    ///< one of `choices`
+};
+
+struct ConfigKey {
+  std::string path;  ///< dotted
+  KeyKind kind{};
+  bool required = false;
+  bool decides_result = false;
+  double minimum = 0;
+  double maximum = 0;
+  std::vector<std::string> choices{};
+  /// Stores an acceptable value.
+  std::function<void(Config&, const nlohmann::ordered_json&)> assign{};
+  /// The config's value as it would be written; null if it is not set.
+  std::function<nlohmann::ordered_json(const Config&)> show{};
+};
+
+/// In the order in which they are listed to people. Thread-safe.
+const std::vector<ConfigKey>& config_keys();
+
+/// The key of that dotted path, or null.
+const ConfigKey* find_config_key(std::string_view path);
+
+/// True for an inner node of the keys' paths: "partition".
+bool is_config_section(std::string_view path);
+
+bool accepts(const ConfigKey& key, const nlohmann::ordered_json& value);
+
+/// What accepts() accepts, for messages: "an integer from 4 to 32768".
+std::string expectation(const ConfigKey& key);
+
+}  // namespace meshhier::pipeline

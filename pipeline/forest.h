@@ -1,0 +1,59 @@
+// The hierarchy under construction: every level's tiles, rims and parent maps, in scratch space.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "hierarchy/build_tile.h"
+#include "hierarchy/published.h"
+#include "hierarchy/tree.h"
+#include "partition/leaf_tiles.h"
+#include "storage/blob_store.h"
+
+namespace meshhier::pipeline {
+
+/// Tiles are put level by level, finest first. A level's tiles can be loaded once all tiles of that level are there (and,
+/// of a simplified level, all parent maps that lead to it). Loading and putting are thread-safe.
+///
+/// An early node has a tile here too: its partition's, kept as it is.
+class Forest {
+ public:
+  Forest(const Tree& tree, Level chunks, int channels, storage::ScratchFile& scratch);
+
+  const Tree& tree() const { return tree_; }
+
+  void put_places(std::uint32_t chunk, std::span<const partition::LeafPlace> places);
+  void put_tile(NodeId node, const WorkTile& tile, float error);
+  /// The map from `child` to its parent's tile.
+  void put_parent_map(NodeId child, std::span<const std::uint16_t> parent_map);
+
+  float error(NodeId node) const { return levels_[raw(node.level)].errors[node.index]; }
+  std::uint32_t own_count(NodeId node) const { return levels_[raw(node.level)].own_counts[node.index]; }
+
+  /// The tile with its ghosts at its own level, positions and all.
+  BuildTile load(NodeId node) const;
+  /// The map from `node` to the nearest ancestor that is published; empty for the root.
+  std::vector<std::uint16_t> published_parent_map(NodeId node) const;
+  /// Of each ghost of the node's tile.
+  std::vector<GhostChain> chains(NodeId node, std::span<const GhostRef> ghosts) const;
+
+ private:
+  struct LevelStore {
+    storage::BlobStore tiles, rims, parent_maps;
+    std::vector<float> errors;
+    std::vector<std::uint32_t> own_counts;
+  };
+  std::vector<GhostRef> mapped(NodeId node, std::span<const GhostRef> foreign) const;
+  std::vector<GhostRef> mapped_leaf(std::span<const GhostRef> foreign) const;
+  std::vector<std::uint16_t> parent_map(NodeId child, std::size_t count) const;
+
+  Tree tree_;
+  Level chunks_;
+  int channels_;
+  storage::BlobStore places_;
+  std::vector<LevelStore> levels_;
+};
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,46 @@
+// How a job lives within its memory budget, and how much disk it will take.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace meshhier::pipeline {
+
+/// What decides the needs of a build.
+struct JobSize {
+  std::uint64_t vertex_count = 0;
+  std::uint64_t face_count = 0;
+  int channels = 0;                  ///< attribute floats per vertex
+  bool vertices_in_place = true;     ///< else the vertices are spooled once more
+  std::uint32_t partition_count = 0;
+  std::uint32_t largest_tile = 0;    ///< vertices of the largest partition or simplified mesh
+  std::size_t threads = 1;
+};
+
+/// The budget's division. Every part is an upper bound.
+struct MemoryPlan {
+  std::uint64_t pool_bytes = 0;      ///< scratch data that may stay in memory
+  std::uint64_t work_bytes = 0;      ///< what a stage at work may hold
+  std::size_t blocks_in_flight = 1;  ///< blocks of input
+  std::size_t chunks_in_flight = 1;
+  std::size_t tiles_in_flight = 1;
+  std::size_t spool_block_bytes = 0; ///< of each of a stage's many spools
+  std::uint64_t table_bytes = 0;     ///< for renumbering the triangles
+};
+
+/// Divides `budget_bytes`. Throws Error(budget) naming the least that would do.
+MemoryPlan plan_memory(std::uint64_t budget_bytes, const JobSize& job);
+
+/// Temporary bytes and output bytes a build will write to disk at most.
+struct DiskNeed {
+  std::uint64_t temporary_bytes = 0;
+  std::uint64_t output_bytes = 0;
+};
+DiskNeed predict_disk(const JobSize& job, const MemoryPlan& plan);
+
+/// Sets the allocator up so that freed memory goes back to the system: the budget is about what is resident.
+void configure_allocator();
+/// Gives free memory back, between stages.
+void release_free_memory();
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,21 @@
+// The stage `outline`: the shape-outline out of the simplified tiles of one level.
+#pragma once
+
+#include "hierarchy/outline.h"
+#include "pipeline/cancel.h"
+#include "pipeline/config.h"
+#include "pipeline/forest.h"
+#include "pipeline/progress.h"
+
+namespace meshhier::pipeline {
+
+struct OutlineStageResult {
+  Outline outline;
+  OutlineReport report;
+};
+
+/// `diagonal`: of the model's bounding box.
+OutlineStageResult make_outline(const Forest& forest, const OutlineConfig& config, double diagonal, Progress& progress,
+                                const CancelToken& cancel);
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,127 @@
+#include "pipeline/publish_stage.h"
+
+#include <algorithm>
+#include <span>
+
+#include "hierarchy/bounds.h"
+#include "partition/compactness.h"
+#include "pipeline/parallel.h"
+#include "pipeline/summary.h"
+#include "storage/hash.h"
+#include "storage/index.h"
+#include "storage/layout.h"
+#include "storage/manifest.h"
+#include "storage/outline_glb.h"
+
+namespace meshhier::pipeline {
+namespace {
+
+std::vector<NodeId> published_nodes(const Tree& tree) {
+  std::vector<NodeId> nodes;
+  for (int l = 0; l <= raw(tree.depth()); ++l) {
+    const auto level = static_cast<Level>(l);
+    for (std::uint32_t i = 0; i < tree.node_count(level); ++i) {
+      if (!tree.is_early({level, i})) nodes.push_back({level, i});
+    }
+  }
+  return nodes;
+}
+
+/// Whether a tile draws a border triangle when its own level is shown: early neighbours show their partitions, which
+/// are finer and draw it; among equals the lowest index does.
+bool draws(const Tree& tree, NodeId node, const TileMesh& mesh, const Triangle& triangle) {
+  return std::all_of(triangle.begin(), triangle.end(), [&](TileVertex v) {
+    if (mesh.is_own(v)) return true;
+    const NodeId neighbour{node.level, mesh.ghost(v).tile};
+    return !tree.is_early(neighbour) && node.index < neighbour.index;
+  });
+}
+
+TileRecord describe(const Tree& tree, NodeId node, const BuildTile& tile, float error, std::uint32_t asked) {
+  const TileMesh& mesh = tile.mesh;
+  TileRecord record;
+  record.node = node;
+  record.own_count = mesh.own_count;
+  record.rim_count = mesh.rim_count;
+  record.ghost_count = static_cast<std::uint32_t>(mesh.ghosts.size());
+  record.interior_count = static_cast<std::uint32_t>(mesh.interior.size());
+  record.border_count = static_cast<std::uint32_t>(mesh.border.size());
+  record.drawn_border_count = static_cast<std::uint32_t>(std::count_if(
+      mesh.border.begin(), mesh.border.end(), [&](const Triangle& t) { return draws(tree, node, mesh, t); }));
+  record.target_count = tree.is_partition(node) ? mesh.own_count : asked;
+  record.bounds = bounds_of(mesh.vertices.positions);
+  record.error = error;
+  for (const float radius : tile.history.radii) record.bound = std::max(record.bound, radius);
+  if (tree.is_partition(node)) record.compactness = static_cast<float>(partition::compactness(mesh));
+  return record;
+}
+
+/// Writes one tile, returns its index entry.
+TileRecord write_tile(const Forest& forest, NodeId node, const PublishInput& input,
+                      const std::filesystem::path& directory, storage::FileSystem& files) {
+  BuildTile tile = forest.load(node);
+  TileRecord record = describe(forest.tree(), node, tile, forest.error(node), input.asked_vertices);
+  PublishedTile published;
+  published.node = node;
+  published.parent_map = forest.published_parent_map(node);
+  published.chains = forest.chains(node, tile.mesh.ghosts);
+  published.mesh = std::move(tile.mesh);
+  const std::vector<std::byte> bytes = storage::encode_tile(published, forest.tree(), input.format);
+  storage::write_file(files, storage::tile_path(directory, node), bytes);
+  record.file_bytes = bytes.size();
+  record.checksum = storage::checksum(bytes);
+  return record;
+}
+
+}  // namespace
+
+PublishedSummary publish(const Forest& forest, const PublishInput& input, const std::filesystem::path& directory,
+                         const MemoryPlan& plan, storage::FileSystem& files, Progress& progress,
+                         const CancelToken& cancel) {
+  const Tree& tree = forest.tree();
+  const std::vector<NodeId> nodes = published_nodes(tree);
+  for (int l = 0; l <= raw(tree.depth()); ++l) {
+    files.make_directories(storage::level_directory(directory, static_cast<Level>(l)));
+  }
+  progress.stage("publish", nodes.size(), "tiles");
+  std::vector<TileRecord> records;
+  records.reserve(nodes.size());
+  PublishedSummary summary;
+  ordered_for(
+      nodes.size(), plan.tiles_in_flight, cancel,
+      [&](std::size_t i) { return write_tile(forest, nodes[i], input, directory, files); },
+      [&](std::size_t, const TileRecord& record) {
+        records.push_back(record);
+        summary.total_bytes += record.file_bytes;
+        progress.advance(1);
+      });
+
+  const std::vector<std::byte> index = storage::encode_index(records);
+  storage::write_file(files, storage::index_path(directory), index);
+  const std::vector<std::byte> outline = storage::encode_outline(input.outline.outline, input.format.origin);
+  storage::write_file(files, storage::outline_path(directory), outline);
+
+  summary.tiles = records.size();
+  summary.outline_bytes = outline.size();
+  summary.total_bytes += index.size() + outline.size();
+  storage::Manifest manifest;
+  manifest.generator = "meshhier " MESHHIER_VERSION;
+  manifest.source = input.source;
+  manifest.origin = input.format.origin;
+  manifest.unit_normals = input.format.unit_normals;
+  manifest.partition_count = tree.partition_count();
+  manifest.config = input.config;
+  manifest.index_bytes = index.size();
+  manifest.index_checksum = storage::checksum(index);
+  manifest.outline_bytes = outline.size();
+  manifest.outline_checksum = storage::checksum(outline);
+  manifest.outline = input.outline.report;
+  manifest.levels = nlohmann::ordered_json::array();
+  for (const LevelSummary& level : summarize_levels(tree, records)) manifest.levels.push_back(to_json(level));
+  manifest.total_bytes = summary.total_bytes;
+  const std::string text = storage::to_json_text(manifest);
+  storage::write_file(files, storage::manifest_path(directory), std::as_bytes(std::span(text)));
+  return summary;
+}
+
+}  // namespace meshhier::pipeline

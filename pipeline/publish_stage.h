@@ -1,0 +1,39 @@
+// The stage `publish`: tiles as GLB, the index, the outline and the manifest.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "hierarchy/published.h"
+#include "pipeline/cancel.h"
+#include "pipeline/config.h"
+#include "pipeline/forest.h"
+#include "pipeline/memory_plan.h"
+#include "pipeline/outline_stage.h"
+#include "pipeline/progress.h"
+#include "storage/file.h"
+#include "storage/tile_glb.h"
+
+namespace meshhier::pipeline {
+
+/// What the manifest is made of, besides the files.
+struct PublishInput {
+  SourceSummary source;
+  storage::TileFormat format;
+  OutlineStageResult outline;
+  nlohmann::ordered_json config;
+  std::uint32_t asked_vertices = 0;  ///< of simplified tiles
+};
+
+struct PublishedSummary {
+  std::uint64_t tiles = 0;
+  std::uint64_t total_bytes = 0;
+  std::size_t outline_bytes = 0;
+};
+
+/// Writes the whole hierarchy into `directory`.
+PublishedSummary publish(const Forest& forest, const PublishInput& input, const std::filesystem::path& directory,
+                         const MemoryPlan& plan, storage::FileSystem& files, Progress& progress,
+                         const CancelToken& cancel);
+
+}  // namespace meshhier::pipeline

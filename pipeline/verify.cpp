@@ -1,0 +1,108 @@
+#include "pipeline/verify.h"
+
+#include <optional>
+#include <random>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "hierarchy/error.h"
+#include "pipeline/cut.h"
+#include "pipeline/verify_parts.h"
+#include "storage/layout.h"
+
+namespace meshhier::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Beside the hierarchy, and unlike that of another run of verify. Nothing else depends on chance.
+fs::path scratch_path(const fs::path& directory) {
+  std::random_device chance;
+  const fs::path whole = fs::absolute(directory).lexically_normal();
+  const fs::path named = whole.has_filename() ? whole : whole.parent_path();
+  return named.parent_path() /
+         fmt::format(".{}.meshhier-verify-{:08x}", named.filename().string(), chance());
+}
+
+/// Nothing if manifest or index are broken: no more can be said of the rest then.
+std::optional<storage::HierarchyReader> open_hierarchy(storage::FileSystem& files,
+                                                       const fs::path& directory,
+                                                       ProblemList& problems) {
+  try {
+    return std::optional<storage::HierarchyReader>(std::in_place, files, directory);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::corrupt && error.code() != ErrorCode::io) throw;
+    problems.add(error.what());
+    return std::nullopt;
+  }
+}
+
+void verify_all(const VerifyJob& job) {
+  verify_files(job);
+  verify_tiles(job);
+  if (job.tiles.unreadable_count() > 0) {
+    job.problems.add(fmt::format("{}: seams{} not looked at: {} tiles cannot be read",
+                                 job.reader.directory().string(),
+                                 job.options.input ? " and input" : "",
+                                 job.tiles.unreadable_count()));
+    return;
+  }
+  try {
+    verify_seams(job);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::corrupt) throw;
+    job.problems.add(error.what());
+  }
+  if (job.options.input) verify_input(job);
+}
+
+}  // namespace
+
+std::vector<std::string> ProblemList::take() {
+  std::vector<std::string> all = std::move(problems_);
+  if (count_ > all.size()) all.push_back(fmt::format("and {} more problems", count_ - all.size()));
+  return all;
+}
+
+TileStore::TileStore(const storage::HierarchyReader& reader, std::uint64_t cache_bytes,
+                     ProblemList& problems)
+    : tree_(reader.tree()),
+      problems_(problems),
+      cache_(
+          cache_bytes, [&reader](NodeId node) { return reader.read_tile(node); },
+          [](const PublishedTile& tile) { return memory_bytes(tile); }) {}
+
+std::shared_ptr<const PublishedTile> TileStore::find(NodeId node) {
+  node = tile_node(tree_, node);
+  if (unreadable_.contains(node)) return nullptr;
+  try {
+    return cache_.get(node);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::corrupt && error.code() != ErrorCode::io) throw;
+    unreadable_.insert(node);
+    problems_.add(error.what());
+    return nullptr;
+  }
+}
+
+VerifyReport verify_hierarchy(storage::FileSystem& files, const fs::path& directory,
+                              const VerifyOptions& options, Progress& progress,
+                              const CancelToken& cancel) {
+  if (!files.exists(storage::manifest_path(directory))) {
+    throw Error(ErrorCode::io, fmt::format("{}: not a hierarchy: there is no {}", directory.string(),
+                                           storage::manifest_path({}).string()));
+  }
+  VerifyReport report;
+  ProblemList problems;
+  if (const auto reader = open_hierarchy(files, directory, problems)) {
+    storage::MemoryPool pool(options.memory_budget / 8);
+    storage::ScratchFile scratch(files, scratch_path(directory), pool);
+    TileStore tiles(*reader, options.memory_budget / 4, problems);
+    verify_all({files, *reader, options, scratch, tiles, problems, report.checks, progress, cancel});
+  }
+  report.problems = problems.take();
+  return report;
+}
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,103 @@
+#include <charconv>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "hierarchy/error.h"
+#include "pipeline/cut.h"
+#include "pipeline/verify_parts.h"
+#include "storage/layout.h"
+
+namespace meshhier::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The number that a name starts with, if it has one.
+std::optional<std::uint32_t> leading_number(const std::string& name) {
+  std::uint32_t number = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+  if (error != std::errc{} || end == name.data()) return std::nullopt;
+  return number;
+}
+
+/// `relative` is the name that storage/layout.h gives to the file of one of the tree's tiles.
+bool is_tile_file(const Tree& tree, const fs::path& relative) {
+  const auto level = leading_number(relative.parent_path().filename().string());
+  const auto index = leading_number(relative.filename().string());
+  if (!level || !index || *level > raw(tree.depth())) return false;
+  const NodeId node{static_cast<Level>(*level), *index};
+  return tree.contains(node) && !tree.is_early(node) &&
+         storage::tile_path({}, node) == relative;
+}
+
+bool is_known(const Tree& tree, const fs::path& relative) {
+  return relative == storage::manifest_path({}) || relative == storage::index_path({}) ||
+         relative == storage::outline_path({}) || is_tile_file(tree, relative);
+}
+
+/// A missing file is found by whoever reads it; what is looked for here is what nobody reads.
+std::uint64_t find_extra_files(const VerifyJob& job) {
+  const fs::path& directory = job.reader.directory();
+  std::error_code error;
+  std::uint64_t count = 0;
+  fs::recursive_directory_iterator entry(directory, error);
+  for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
+    if (entry->is_directory(error)) continue;
+    ++count;
+    const fs::path relative = entry->path().lexically_relative(directory);
+    if (is_known(job.tree(), relative)) continue;
+    job.problems.add(fmt::format("{}: not a file of this hierarchy; remove it",
+                                 entry->path().string()));
+  }
+  if (error) {
+    throw Error(ErrorCode::io,
+                fmt::format("cannot list {}: {}", directory.string(), error.message()));
+  }
+  return count;
+}
+
+void check_outline(const VerifyJob& job) {
+  try {
+    const Outline outline = job.reader.read_outline();
+    job.checks.push_back(fmt::format("outline: {} bytes, {} lines",
+                                     job.reader.manifest().outline_bytes,
+                                     outline.polyline_count()));
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::corrupt && error.code() != ErrorCode::io) throw;
+    job.problems.add(error.what());
+  }
+}
+
+void check_totals(const VerifyJob& job) {
+  const storage::Manifest& manifest = job.reader.manifest();
+  std::uint64_t bytes = manifest.index_bytes + manifest.outline_bytes, triangles = 0;
+  for (const TileRecord& record : job.reader.records()) {
+    bytes += record.file_bytes;
+    if (!job.tree().is_partition(record.node)) continue;
+    triangles += std::uint64_t{record.interior_count} + record.drawn_border_count;
+  }
+  const std::string name = storage::manifest_path(job.reader.directory()).string();
+  const auto compare = [&](std::string_view what, std::uint64_t told, std::uint64_t found) {
+    if (told == found) return;
+    job.problems.add(
+        fmt::format("{}: {} is {}, but the index adds up to {}", name, what, told, found));
+  };
+  compare("total_bytes", manifest.total_bytes, bytes);
+  compare("the number of triangles of the source", manifest.source.triangles, triangles);
+}
+
+}  // namespace
+
+void verify_files(const VerifyJob& job) {
+  const std::uint64_t count = find_extra_files(job);
+  check_outline(job);
+  check_totals(job);
+  job.checks.push_back(fmt::format("files: {} found, {} tiles in the index", count,
+                                   job.reader.records().size()));
+}
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,45 @@
+// Numbered blobs of scratch data: in memory while the budget lasts, on disk from there on.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "storage/spool.h"
+
+namespace meshhier::storage {
+
+/// Each blob is put once and read any number of times. Threads may put and read different blobs at once; a blob may be
+/// read once its put() has returned.
+class BlobStore {
+ public:
+  BlobStore(ScratchFile& scratch, std::size_t count) : scratch_(&scratch), blobs_(count) {}
+  BlobStore(BlobStore&&) = default;
+  BlobStore& operator=(BlobStore&&) = delete;
+  ~BlobStore() { clear(); }
+
+  std::size_t count() const { return blobs_.size(); }
+  void put(std::size_t index, std::span<const std::byte> bytes);
+  std::uint64_t size(std::size_t index) const { return blobs_[index].size; }
+
+  /// Copies bytes.size() bytes from `offset`; requires them to be there.
+  void read(std::size_t index, std::uint64_t offset, std::span<std::byte> bytes) const;
+  std::vector<std::byte> get(std::size_t index) const;
+
+  /// Forgets everything and gives its memory back.
+  void clear();
+
+ private:
+  struct Blob {
+    std::unique_ptr<std::byte[]> memory;
+    std::uint64_t offset = 0;
+    std::uint64_t size = 0;
+  };
+
+  ScratchFile* scratch_;
+  std::vector<Blob> blobs_;
+};
+
+}  // namespace meshhier::storage

@@ -1,0 +1,229 @@
+#include "storage/glb.h"
+
+#include "hierarchy/error.h"
+
+#include <cassert>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace meshhier::storage {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// GLB container, little endian:
+//
+//   offset  bytes  what
+//        0      4  magic "glTF"
+//        4      4  container version, 2
+//        8      4  length of the file in bytes
+//       12      4  length of the JSON chunk's data, a multiple of 4
+//       16      4  "JSON"
+//       20      n  JSON text, padded with spaces
+//     20+n      4  length of the BIN chunk's data, a multiple of 4
+//     24+n      4  "BIN\0"
+//     28+n      m  binary data
+constexpr std::uint32_t kMagic = 0x46546C67;
+constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
+constexpr std::uint32_t kBinChunk = 0x004E4942;
+constexpr std::size_t kHeaderBytes = 12;
+constexpr std::size_t kChunkHeaderBytes = 8;
+
+/// A tile's JSON has about 3 kB, whatever the tile; 20 times that is surely not one of ours.
+constexpr std::size_t kMaxJsonBytes = 64 * 1024;
+
+/// The published files nest 8 levels; a config within the manifest some more.
+constexpr int kMaxJsonDepth = 32;
+
+[[noreturn]] void fail(const std::string& name, const std::string& what) {
+  throw Error(ErrorCode::corrupt, name + ": " + what);
+}
+
+/// JSON for a message, cut to a length that fits a line.
+std::string brief(const Json& value) {
+  constexpr std::size_t kLength = 40;
+  std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
+  if (text.size() > kLength)
+    text = text.substr(0, kLength) + "...";
+  return text;
+}
+
+/// Where and how `found` first differs; depth is bounded by that of `expected`.
+std::optional<std::string> first_difference(const Json& expected, const Json& found,
+                                            const std::string& path) {
+  if (expected.is_object() && found.is_object()) {
+    for (const auto& [key, value] : expected.items()) {
+      if (!found.contains(key))
+        return path + "/" + key + " is missing";
+      if (auto difference = first_difference(value, found[key], path + "/" + key))
+        return difference;
+    }
+    for (const auto& [key, value] : found.items()) {
+      if (!expected.contains(key))
+        return path + "/" + brief(key) + " is not expected";
+    }
+    return std::nullopt;
+  }
+  if (expected.is_array() && found.is_array() && expected.size() == found.size()) {
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      if (auto difference = first_difference(expected[i], found[i], path + "/" + std::to_string(i)))
+        return difference;
+    }
+    return std::nullopt;
+  }
+  if (expected == found)
+    return std::nullopt;
+  return fmt::format("{} is {}, expected {}", path, brief(found), brief(expected));
+}
+
+void append_chunk_header(std::vector<std::byte>& bytes, std::uint64_t length, std::uint32_t type) {
+  append_little(bytes, static_cast<std::uint32_t>(length));
+  append_little(bytes, type);
+}
+
+/// The data of the chunk whose header is at `offset`; it must end within the file.
+std::span<const std::byte> read_chunk(std::span<const std::byte> bytes, std::size_t offset,
+                                      std::uint32_t type, const std::string& name) {
+  const char* word = type == kJsonChunk ? "JSON" : "BIN";
+  if (bytes.size() - offset < kChunkHeaderBytes) {
+    fail(name, fmt::format("ends at byte {}, expected the {} chunk's header at byte {}",
+                           bytes.size(), word, offset));
+  }
+  const auto length = load_little<std::uint32_t>(bytes.data() + offset);
+  const auto found = load_little<std::uint32_t>(bytes.data() + offset + 4);
+  if (found != type) {
+    fail(name, fmt::format("chunk type at byte {} is {:#010x}, expected {:#010x} ({})", offset + 4,
+                           found, type, word));
+  }
+  const std::size_t left = bytes.size() - offset - kChunkHeaderBytes;
+  if (length % 4 != 0 || length > left) {
+    fail(name, fmt::format(
+                   "length of the {} chunk at byte {} is {}, expected a multiple of 4, at most {}",
+                   word, offset, length, left));
+  }
+  return bytes.subspan(offset + kChunkHeaderBytes, length);
+}
+
+void check_header(std::span<const std::byte> bytes, const std::string& name) {
+  if (bytes.size() < kHeaderBytes) {
+    fail(name, fmt::format("has {} bytes, expected at least {}", bytes.size(), kHeaderBytes));
+  }
+  const auto magic = load_little<std::uint32_t>(bytes.data());
+  const auto version = load_little<std::uint32_t>(bytes.data() + 4);
+  const auto length = load_little<std::uint32_t>(bytes.data() + 8);
+  if (magic != kMagic) {
+    fail(name, fmt::format("starts with {:#010x}, expected {:#010x} (glTF)", magic, kMagic));
+  }
+  if (version != kVersion) {
+    fail(name, fmt::format("GLB version at byte 4 is {}, expected {}", version, kVersion));
+  }
+  if (length != bytes.size()) {
+    fail(name,
+         fmt::format("length at byte 8 is {}, but the file has {} bytes", length, bytes.size()));
+  }
+}
+
+}  // namespace
+
+Json parse_json(std::string_view text, const std::string& name) {
+  const auto guard = [&](int depth, Json::parse_event_t, Json&) {
+    if (depth > kMaxJsonDepth) {
+      fail(name, fmt::format("JSON is nested deeper than {} levels", kMaxJsonDepth));
+    }
+    return true;
+  };
+  try {
+    return Json::parse(text.begin(), text.end(), guard);
+  } catch (const Json::exception& error) {
+    fail(name, fmt::format("is not valid JSON: {}", error.what()));
+  }
+}
+
+void require_same_json(const Json& expected, const Json& found, const std::string& name) {
+  if (const auto difference = first_difference(expected, found, "")) {
+    fail(name, "JSON: " + *difference);
+  }
+}
+
+std::uint64_t require_count(const Json& object, const char* key, std::uint64_t max,
+                            const std::string& name) {
+  const auto found = object.find(key);
+  if (found == object.end())
+    fail(name, fmt::format("JSON: \"{}\" is missing", key));
+  if (!found->is_number_unsigned() || found->get<std::uint64_t>() > max) {
+    fail(name, fmt::format("JSON: \"{}\" is {}, expected an integer from 0 to {}", key,
+                           brief(*found), max));
+  }
+  return found->get<std::uint64_t>();
+}
+
+const Json& require_extension(const Json& document, const char* extension, unsigned version,
+                              const std::string& name) {
+  const Json::json_pointer place{std::string("/extensions/") + extension};
+  if (!document.contains(place) || !document[place].is_object()) {
+    fail(name, fmt::format("JSON: the extension {} is missing", extension));
+  }
+  const Json& found = document[place];
+  const std::uint64_t found_version = require_count(found, "version", UINT32_MAX, name);
+  if (found_version != version) {
+    fail(name, fmt::format("version of {} is {}, expected {}{}", extension, found_version, version,
+                           found_version > version ? " (written by a newer meshhier)" : ""));
+  }
+  return found;
+}
+
+Json mesh_node(Vec3d origin) {
+  Json node = {{"mesh", 0}};
+  if (origin != Vec3d{})
+    node["translation"] = {origin.x, origin.y, origin.z};
+  return node;
+}
+
+std::vector<std::byte> join_glb(std::string_view json, std::span<const std::byte> bin,
+                                std::size_t json_bytes) {
+  assert(bin.size() % 4 == 0);
+  json_bytes = aligned4(std::max(json_bytes, json.size()));
+  const std::uint64_t length = glb_bytes(json_bytes, bin.size());
+  if (length > UINT32_MAX)
+    throw Error(ErrorCode::internal, "a GLB would exceed 4 GiB");
+
+  std::vector<std::byte> bytes;
+  bytes.reserve(length);
+  append_little(bytes, kMagic);
+  append_little(bytes, kVersion);
+  append_little(bytes, static_cast<std::uint32_t>(length));
+  append_chunk_header(bytes, json_bytes, kJsonChunk);
+  const auto text = std::as_bytes(std::span(json));
+  bytes.insert(bytes.end(), text.begin(), text.end());
+  bytes.insert(bytes.end(), json_bytes - json.size(), std::byte{' '});
+  if (!bin.empty()) {
+    append_chunk_header(bytes, bin.size(), kBinChunk);
+    bytes.insert(bytes.end(), bin.begin(), bin.end());
+  }
+  return bytes;
+}
+
+GlbView split_glb(std::span<const std::byte> bytes, const std::string& name) {
+  check_header(bytes, name);
+  const auto json = read_chunk(bytes, kHeaderBytes, kJsonChunk, name);
+  if (json.size() > kMaxJsonBytes) {
+    fail(name, fmt::format("the JSON chunk has {} bytes, expected at most {}", json.size(),
+                           kMaxJsonBytes));
+  }
+  GlbView view{{reinterpret_cast<const char*>(json.data()), json.size()}, {}};
+  std::size_t end = kHeaderBytes + kChunkHeaderBytes + json.size();
+  if (end < bytes.size()) {
+    view.bin = read_chunk(bytes, end, kBinChunk, name);
+    end += kChunkHeaderBytes + view.bin.size();
+  }
+  if (end != bytes.size()) {
+    fail(name,
+         fmt::format("expected the end at byte {}, found {} more bytes", end, bytes.size() - end));
+  }
+  return view;
+}
+
+}  // namespace meshhier::storage

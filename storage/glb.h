@@ -1,0 +1,104 @@
+// What the published files are made of: little endian numbers, bounded JSON, the GLB container
+// (Khronos, glTF 2.0 specification, section 4.4; docs/file_format.md).
+#pragma once
+
+#include "hierarchy/vec.h"
+
+#include <bit>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace meshhier::storage {
+
+/// The numbers that published files hold.
+template <class T>
+concept Scalar = std::unsigned_integral<T> || std::same_as<T, float>;
+
+/// Writes `value` little endian at `to`: sizeof(T) bytes, no alignment required.
+template <Scalar T>
+constexpr void store_little(T value, std::byte* to) {
+  if constexpr (std::same_as<T, float>) {
+    store_little(std::bit_cast<std::uint32_t>(value), to);
+  } else {
+    for (std::size_t i = 0; i < sizeof(T); ++i)
+      to[i] = static_cast<std::byte>(value >> (8 * i));
+  }
+}
+
+/// The inverse of store_little.
+template <Scalar T>
+constexpr T load_little(const std::byte* from) {
+  if constexpr (std::same_as<T, float>) {
+    return std::bit_cast<float>(load_little<std::uint32_t>(from));
+  } else {
+    T value = 0;
+    for (std::size_t i = 0; i < sizeof(T); ++i) {
+      value = static_cast<T>(value | static_cast<T>(static_cast<T>(from[i]) << (8 * i)));
+    }
+    return value;
+  }
+}
+
+template <Scalar T>
+void append_little(std::vector<std::byte>& bytes, T value) {
+  bytes.resize(bytes.size() + sizeof(T));
+  store_little(value, bytes.data() + bytes.size() - sizeof(T));
+}
+
+/// The next multiple of 4, the alignment of everything in a GLB.
+constexpr std::uint64_t aligned4(std::uint64_t bytes) {
+  return (bytes + 3) / 4 * 4;
+}
+
+/// JSON from bytes nobody vouches for. Throws Error(corrupt) that starts with `name` if it is not
+/// JSON or nested deeper than any published file is.
+nlohmann::ordered_json parse_json(std::string_view text, const std::string& name);
+
+/// Throws Error(corrupt) that starts with `name` and names the first place where `found` is not
+/// equal to `expected` as a JSON value; numbers are compared by value.
+void require_same_json(const nlohmann::ordered_json& expected, const nlohmann::ordered_json& found,
+                       const std::string& name);
+
+/// The unsigned integer `object[key]`. Throws Error(corrupt) if it is missing or not one of 0 ..
+/// max.
+std::uint64_t require_count(const nlohmann::ordered_json& object, const char* key,
+                            std::uint64_t max, const std::string& name);
+
+/// The document's extension of that name, its version checked. Throws Error(corrupt) if there is
+/// none, or its version is not `version`.
+const nlohmann::ordered_json& require_extension(const nlohmann::ordered_json& document,
+                                                const char* extension, unsigned version,
+                                                const std::string& name);
+
+/// `{"mesh": 0}`, with the translation `origin` if it is not zero.
+nlohmann::ordered_json mesh_node(Vec3d origin);
+
+/// The two chunks of a GLB, pointing into its bytes.
+struct GlbView {
+  std::string_view json;
+  std::span<const std::byte> bin;  ///< empty if there is no BIN chunk
+};
+
+/// A GLB of a JSON chunk, padded with spaces to at least `json_bytes`, and a BIN chunk, left out if
+/// `bin` is empty. Requires bin.size() to be a multiple of 4.
+std::vector<std::byte> join_glb(std::string_view json, std::span<const std::byte> bin,
+                                std::size_t json_bytes = 0);
+
+/// Bytes of the GLB that join_glb makes of chunks of these sizes.
+constexpr std::uint64_t glb_bytes(std::uint64_t json_bytes, std::uint64_t bin_bytes) {
+  return 12 + 8 + aligned4(json_bytes) + (bin_bytes > 0 ? 8 + aligned4(bin_bytes) : 0);
+}
+
+/// The inverse of join_glb, on bytes nobody vouches for; the JSON chunk may not exceed 64 KiB.
+/// Throws Error(corrupt) that starts with `name` and says at which byte what was expected.
+GlbView split_glb(std::span<const std::byte> bytes, const std::string& name);
+
+}  // namespace meshhier::storage

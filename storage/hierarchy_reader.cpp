@@ -1,0 +1,114 @@
+#include "storage/hierarchy_reader.h"
+
+#include "hierarchy/bounds.h"
+#include "hierarchy/error.h"
+#include "storage/hash.h"
+#include "storage/index.h"
+#include "storage/layout.h"
+#include "storage/outline_glb.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include <fmt/format.h>
+
+namespace meshhier::storage {
+namespace {
+
+/// parse_manifest refuses longer texts; here it guards the allocation.
+constexpr std::uint64_t kMaxManifestBytes = 1024 * 1024;
+
+/// The size and checksum that a file has according to another one.
+struct Seal {
+  std::uint64_t bytes = 0;
+  std::uint64_t checksum = 0;
+};
+
+std::vector<std::byte> read_sealed(FileSystem& files, const std::filesystem::path& path,
+                                   const Seal& seal) {
+  std::vector<std::byte> bytes = read_file(files, path, seal.bytes);
+  if (bytes.size() != seal.bytes) {
+    throw Error(ErrorCode::corrupt, fmt::format("{}: has {} bytes, expected {}: the file is cut",
+                                                path.string(), bytes.size(), seal.bytes));
+  }
+  const std::uint64_t found = checksum(bytes);
+  if (found != seal.checksum) {
+    throw Error(ErrorCode::corrupt,
+                fmt::format("{}: checksum is {:016x}, expected {:016x}: the file is damaged",
+                            path.string(), found, seal.checksum));
+  }
+  return bytes;
+}
+
+Manifest load_manifest(FileSystem& files, const std::filesystem::path& directory) {
+  const auto path = manifest_path(directory);
+  const std::vector<std::byte> bytes = read_file(files, path, kMaxManifestBytes);
+  const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  return parse_manifest(text, path.string());
+}
+
+std::vector<TileRecord> load_index(FileSystem& files, const std::filesystem::path& directory,
+                                   const Manifest& manifest, const Tree& tree) {
+  const auto path = index_path(directory);
+  const auto bytes = read_sealed(files, path, {manifest.index_bytes, manifest.index_checksum});
+  return decode_index(bytes, tree, path.string());
+}
+
+/// The name of the first count in which tile and record differ; null if they agree.
+const char* difference(const TileMesh& mesh, const TileRecord& record) {
+  if (mesh.own_count != record.own_count)
+    return "own vertices";
+  if (mesh.rim_count != record.rim_count)
+    return "rim vertices";
+  if (mesh.ghosts.size() != record.ghost_count)
+    return "ghosts";
+  if (mesh.interior.size() != record.interior_count)
+    return "interior triangles";
+  if (mesh.border.size() != record.border_count)
+    return "border triangles";
+  if (bounds_of(mesh.vertices.positions) != record.bounds)
+    return "bounds";
+  return nullptr;
+}
+
+}  // namespace
+
+HierarchyReader::HierarchyReader(FileSystem& files, std::filesystem::path directory)
+    : files_(files),
+      directory_(std::move(directory)),
+      manifest_(load_manifest(files_, directory_)),
+      tree_(manifest_.source.vertices, manifest_.partition_count),
+      format_{manifest_.source.attributes, manifest_.unit_normals, manifest_.origin},
+      records_(load_index(files_, directory_, manifest_, tree_)) {}
+
+const TileRecord& HierarchyReader::record(NodeId node) const {
+  assert(tree_.contains(node));
+  if (tree_.is_early(node))
+    node = tree_.children(node).nodes[0];
+  const auto found =
+      std::lower_bound(records_.begin(), records_.end(), node,
+                       [](const TileRecord& record, NodeId key) { return record.node < key; });
+  assert(found != records_.end() && found->node == node);
+  return *found;
+}
+
+PublishedTile HierarchyReader::read_tile(NodeId node) const {
+  const TileRecord& expected = record(node);
+  const auto path = tile_path(directory_, expected.node);
+  const auto bytes = read_sealed(files_, path, {expected.file_bytes, expected.checksum});
+  PublishedTile tile = decode_tile(bytes, expected.node, tree_, format_, path.string());
+  if (const char* what = difference(tile.mesh, expected)) {
+    throw Error(ErrorCode::corrupt,
+                fmt::format("{}: its {} are not those of the index", path.string(), what));
+  }
+  return tile;
+}
+
+Outline HierarchyReader::read_outline() const {
+  const auto path = outline_path(directory_);
+  const auto bytes =
+      read_sealed(files_, path, {manifest_.outline_bytes, manifest_.outline_checksum});
+  return decode_outline(bytes, path.string());
+}
+
+}  // namespace meshhier::storage

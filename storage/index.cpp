@@ -1,0 +1,220 @@
+#include "storage/index.h"
+
+#include "hierarchy/error.h"
+#include "storage/glb.h"
+#include "storage/hash.h"
+#include "storage/tile_glb.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace meshhier::storage {
+namespace {
+
+// tiles.bin, little endian: a header, then one record a tile, ascending by level, then index.
+//
+//   header                                     record
+//   offset  bytes  what                        offset  bytes  what
+//        0      8  magic "MHTILES\n"                0      4  level
+//        8      4  version, 1                       4      4  index
+//       12      4  bytes of a record, 88            8      4  own vertices
+//       16      8  number of records               12      4  rim vertices
+//       24      8  XXH3-64 of bytes 0 to 23        16      4  ghosts
+//                  and all records                 20      4  interior triangles
+//                                                  24      4  border triangles
+//                                                  28      4  border triangles drawn
+//                                                  32      4  vertices asked for
+//                                                  36      4  f32 error
+//                                                  40      4  f32 bound
+//                                                  44      4  f32 compactness
+//                                                  48     24  f32 min x y z, max x y z
+//                                                  72      8  bytes of the file
+//                                                  80      8  XXH3-64 of the file
+constexpr std::string_view kMagic = "MHTILES\n";
+constexpr std::uint32_t kVersion = 1;
+constexpr std::size_t kHeaderBytes = 32;
+constexpr std::size_t kCheckedHeaderBytes = 24;
+constexpr std::size_t kRecordBytes = 88;
+
+void append_record(std::vector<std::byte>& bytes, const TileRecord& record) {
+  for (const std::uint32_t value :
+       {std::uint32_t{raw(record.node.level)}, record.node.index, record.own_count,
+        record.rim_count, record.ghost_count, record.interior_count, record.border_count,
+        record.drawn_border_count, record.target_count}) {
+    append_little(bytes, value);
+  }
+  const Bounds& box = record.bounds;
+  for (const float value : {record.error, record.bound, record.compactness, box.min.x, box.min.y,
+                            box.min.z, box.max.x, box.max.y, box.max.z}) {
+    append_little(bytes, value);
+  }
+  append_little(bytes, record.file_bytes);
+  append_little(bytes, record.checksum);
+}
+
+std::uint64_t index_checksum(std::span<const std::byte> bytes) {
+  Checksum sum;
+  sum.add(bytes.first(kCheckedHeaderBytes));
+  sum.add(bytes.subspan(kHeaderBytes));
+  return sum.value();
+}
+
+/// `from`: kRecordBytes bytes whose level was checked to be below 256.
+TileRecord load_record(const std::byte* from) {
+  const auto count = [&](std::size_t offset) { return load_little<std::uint32_t>(from + offset); };
+  const auto real = [&](std::size_t offset) { return load_little<float>(from + offset); };
+  TileRecord record;
+  record.node = {static_cast<Level>(count(0)), count(4)};
+  record.own_count = count(8);
+  record.rim_count = count(12);
+  record.ghost_count = count(16);
+  record.interior_count = count(20);
+  record.border_count = count(24);
+  record.drawn_border_count = count(28);
+  record.target_count = count(32);
+  record.error = real(36);
+  record.bound = real(40);
+  record.compactness = real(44);
+  record.bounds = {{real(48), real(52), real(56)}, {real(60), real(64), real(68)}};
+  record.file_bytes = load_little<std::uint64_t>(from + 72);
+  record.checksum = load_little<std::uint64_t>(from + 80);
+  return record;
+}
+
+/// What is wrong with the values of a record; null if nothing is.
+const char* flaw_of(const TileRecord& record, const Tree& tree) {
+  const auto is_measure = [](float value) { return std::isfinite(value) && value >= 0; };
+  const Bounds& box = record.bounds;
+  const bool finite = std::isfinite(box.min.x) && std::isfinite(box.min.y) &&
+                      std::isfinite(box.min.z) && std::isfinite(box.max.x) &&
+                      std::isfinite(box.max.y) && std::isfinite(box.max.z);
+  if (record.own_count == 0 || record.own_count > kMaxOwnVertices)
+    return "own vertices";
+  if (tree.is_partition(record.node) && record.own_count != tree.ranks(record.node).size()) {
+    return "own vertices (not the partition's)";
+  }
+  if (record.rim_count > record.own_count)
+    return "rim vertices (more than own)";
+  if (record.drawn_border_count > record.border_count)
+    return "drawn border triangles";
+  if (!is_measure(record.error))
+    return "error";
+  if (!is_measure(record.bound))
+    return "bound";
+  if (!is_measure(record.compactness))
+    return "compactness";
+  if (!finite || box.min.x > box.max.x || box.min.y > box.max.y || box.min.z > box.max.z) {
+    return "bounds";
+  }
+  if (record.file_bytes == 0)
+    return "bytes of the file";
+  return nullptr;
+}
+
+class IndexReader {
+ public:
+  IndexReader(std::span<const std::byte> bytes, const Tree& tree, const std::string& name)
+      : bytes_(bytes), tree_(tree), name_(name) {}
+
+  std::vector<TileRecord> read() const {
+    check_header();
+    std::vector<TileRecord> records;
+    records.reserve(tile_count(tree_));
+    for (int level = 0; level <= raw(tree_.depth()); ++level) {
+      const auto count = tree_.node_count(static_cast<Level>(level));
+      for (std::uint32_t index = 0; index < count; ++index) {
+        const NodeId node{static_cast<Level>(level), index};
+        if (!tree_.is_early(node))
+          records.push_back(read_record(records.size(), node));
+      }
+    }
+    return records;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(ErrorCode::corrupt, name_ + ": " + what);
+  }
+
+  void check_header() const {
+    if (bytes_.size() < kHeaderBytes) {
+      fail(fmt::format("has {} bytes, expected at least {}", bytes_.size(), kHeaderBytes));
+    }
+    const auto magic = std::as_bytes(std::span(kMagic));
+    if (!std::equal(magic.begin(), magic.end(), bytes_.begin())) {
+      fail("does not start with MHTILES: not an index");
+    }
+    const auto version = load_little<std::uint32_t>(bytes_.data() + 8);
+    if (version != kVersion) {
+      fail(fmt::format("version is {}, expected {}{}", version, kVersion,
+                       version > kVersion ? " (written by a newer meshhier)" : ""));
+    }
+    const auto record_bytes = load_little<std::uint32_t>(bytes_.data() + 12);
+    if (record_bytes != kRecordBytes) {
+      fail(fmt::format("records of {} bytes, expected {}", record_bytes, kRecordBytes));
+    }
+    const auto count = load_little<std::uint64_t>(bytes_.data() + 16);
+    if (count != tile_count(tree_)) {
+      fail(fmt::format("{} records, expected {} for {} partitions", count, tile_count(tree_),
+                       tree_.partition_count()));
+    }
+    const std::uint64_t expected = kHeaderBytes + count * kRecordBytes;
+    if (bytes_.size() != expected) {
+      fail(fmt::format("has {} bytes, expected {}", bytes_.size(), expected));
+    }
+    const auto sum = load_little<std::uint64_t>(bytes_.data() + kCheckedHeaderBytes);
+    if (sum != index_checksum(bytes_)) {
+      fail(fmt::format("checksum is {:016x}, expected {:016x}: the file is damaged",
+                       index_checksum(bytes_), sum));
+    }
+  }
+
+  TileRecord read_record(std::size_t number, NodeId node) const {
+    const std::byte* from = bytes_.data() + kHeaderBytes + number * kRecordBytes;
+    const auto level = load_little<std::uint32_t>(from);
+    const auto index = load_little<std::uint32_t>(from + 4);
+    if (level != raw(node.level) || index != node.index) {
+      fail(fmt::format("record {} is of tile {}/{}, expected {}/{}", number, level, index,
+                       raw(node.level), node.index));
+    }
+    const TileRecord record = load_record(from);
+    if (const char* flaw = flaw_of(record, tree_)) {
+      fail(fmt::format("tile {}/{}: impossible {}", level, index, flaw));
+    }
+    return record;
+  }
+
+  std::span<const std::byte> bytes_;
+  const Tree& tree_;
+  const std::string& name_;
+};
+
+}  // namespace
+
+std::uint64_t tile_count(const Tree& tree) {
+  // Every inner tile replaces two by one: a binary tree with P leaves. Early nodes have no tile.
+  return 2 * std::uint64_t{tree.partition_count()} - 1;
+}
+
+std::vector<std::byte> encode_index(std::span<const TileRecord> records) {
+  std::vector<std::byte> bytes;
+  bytes.reserve(kHeaderBytes + records.size() * kRecordBytes);
+  const auto magic = std::as_bytes(std::span(kMagic));
+  bytes.insert(bytes.end(), magic.begin(), magic.end());
+  append_little(bytes, kVersion);
+  append_little(bytes, static_cast<std::uint32_t>(kRecordBytes));
+  append_little(bytes, std::uint64_t{records.size()});
+  append_little(bytes, std::uint64_t{0});
+  for (const TileRecord& record : records)
+    append_record(bytes, record);
+  store_little(index_checksum(bytes), bytes.data() + kCheckedHeaderBytes);
+  return bytes;
+}
+
+std::vector<TileRecord> decode_index(std::span<const std::byte> bytes, const Tree& tree,
+                                     const std::string& name) {
+  return IndexReader(bytes, tree, name).read();
+}
+
+}  // namespace meshhier::storage

@@ -1,0 +1,319 @@
+#include "storage/manifest.h"
+
+#include "hierarchy/error.h"
+#include "storage/glb.h"
+#include "storage/hash.h"
+#include "storage/layout.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <string_view>
+
+#include <fmt/format.h>
+
+namespace meshhier::storage {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kFormat = "meshhier";
+
+/// In the order of ColourType.
+constexpr std::array<std::string_view, 4> kColourTypes{"none", "u8", "u16", "f32"};
+
+// The text ends with these three pieces, the middle one being 16 hexadecimal digits: the XXH3-64 of
+// the whole text with zeros in their place.
+constexpr std::string_view kBeforeChecksum = ",\n  \"checksum\": \"";
+constexpr std::string_view kAfterChecksum = "\"\n}\n";
+constexpr std::size_t kDigits = 16;
+constexpr std::string_view kZeros = "0000000000000000";
+
+/// About 40 levels of 300 bytes, a config and 30 more lines make 20 kB.
+constexpr std::size_t kMaxTextBytes = 1024 * 1024;
+
+std::string hex(std::uint64_t value) {
+  return fmt::format("{:016x}", value);
+}
+
+std::uint64_t text_checksum(const std::string& text) {
+  return checksum(std::as_bytes(std::span(text)));
+}
+
+Json numbers(Vec3d v) {
+  return Json::array({v.x, v.y, v.z});
+}
+
+// ---- writing -------------------------------------------------------------------------------
+
+Json attributes_json(const AttributeLayout& attributes) {
+  return {{"normals", attributes.normals},
+          {"colours", kColourTypes[static_cast<std::size_t>(attributes.colour)]},
+          {"alpha", attributes.alpha},
+          {"texcoords", attributes.texcoords}};
+}
+
+Json source_json(const SourceSummary& source) {
+  return {{"file_name", source.file_name},
+          {"file_bytes", source.file_bytes},
+          {"checksum", hex(source.checksum)},
+          {"vertices", source.vertices},
+          {"triangles", source.triangles},
+          {"faces", source.faces},
+          {"degenerate_triangles", source.degenerate_triangles},
+          {"unreferenced_vertices", source.unreferenced_vertices},
+          {"bounds", {{"min", numbers(source.bounds.min)}, {"max", numbers(source.bounds.max)}}},
+          {"double_precision", source.double_precision},
+          {"attributes", attributes_json(source.attributes)}};
+}
+
+Json outline_json(const Manifest& manifest) {
+  const OutlineReport& outline = manifest.outline;
+  return {{"file", outline_path({}).string()},
+          {"bytes", manifest.outline_bytes},
+          {"checksum", hex(manifest.outline_checksum)},
+          {"sector_level", outline.sector_level},
+          {"sectors", outline.sector_count},
+          {"tolerance", outline.tolerance},
+          {"polylines_found", outline.polylines_found},
+          {"polylines_dropped", outline.polylines_dropped}};
+}
+
+Json manifest_json(const Manifest& manifest) {
+  Json document;
+  document["format"] = kFormat;
+  document["format_version"] = kFormatVersion;
+  document["generator"] = manifest.generator;
+  document["source"] = source_json(manifest.source);
+  document["origin"] = numbers(manifest.origin);
+  document["unit_normals"] = manifest.unit_normals;
+  document["partitions"] = manifest.partition_count;
+  document["config"] = manifest.config;
+  document["index"] = {{"file", index_path({}).string()},
+                       {"bytes", manifest.index_bytes},
+                       {"checksum", hex(manifest.index_checksum)}};
+  document["outline"] = outline_json(manifest);
+  document["levels"] = manifest.levels;
+  document["total_bytes"] = manifest.total_bytes;
+  document["checksum"] = kZeros;
+  return document;
+}
+
+// ---- reading -------------------------------------------------------------------------------
+
+/// An object of the document, and where it is.
+class Object {
+ public:
+  Object(const Json& json, std::string path, const std::string& name)
+      : json_(json), path_(std::move(path)), name_(name) {}
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(ErrorCode::corrupt, name_ + ": " + what);
+  }
+
+  const Json& at(const char* key) const {
+    const auto found = json_.find(key);
+    if (found == json_.end())
+      fail(fmt::format("\"{}{}\" is missing", path_, key));
+    return *found;
+  }
+
+  Object object(const char* key) const {
+    if (!at(key).is_object())
+      wrong(key, "an object");
+    return {at(key), path_ + key + ".", name_};
+  }
+
+  std::uint64_t count(const char* key, std::uint64_t max = UINT64_MAX) const {
+    const Json& value = at(key);
+    if (!value.is_number_unsigned() || value.get<std::uint64_t>() > max) {
+      wrong(key, fmt::format("an integer from 0 to {}", max));
+    }
+    return value.get<std::uint64_t>();
+  }
+
+  std::uint32_t short_count(const char* key) const {
+    return static_cast<std::uint32_t>(count(key, UINT32_MAX));
+  }
+
+  bool boolean(const char* key) const {
+    if (!at(key).is_boolean())
+      wrong(key, "true or false");
+    return at(key).get<bool>();
+  }
+
+  std::string text(const char* key) const {
+    if (!at(key).is_string())
+      wrong(key, "a text");
+    return at(key).get<std::string>();
+  }
+
+  double number(const char* key) const {
+    const auto value = finite(at(key));
+    if (!value)
+      wrong(key, "a number");
+    return *value;
+  }
+
+  Vec3d point(const char* key) const {
+    const Json& value = at(key);
+    if (!value.is_array() || value.size() != 3)
+      wrong(key, "three numbers");
+    const auto x = finite(value[0]);
+    const auto y = finite(value[1]);
+    const auto z = finite(value[2]);
+    if (!x || !y || !z)
+      wrong(key, "three numbers");
+    return {*x, *y, *z};
+  }
+
+  std::uint64_t hash(const char* key) const {
+    const std::string digits = text(key);
+    const bool fits = digits.size() == kDigits &&
+                      digits.find_first_not_of("0123456789abcdef") == std::string::npos;
+    if (!fits)
+      wrong(key, "16 hexadecimal digits");
+    return std::stoull(digits, nullptr, 16);
+  }
+
+  [[noreturn]] void wrong(const char* key, const std::string& expected) const {
+    fail(fmt::format("\"{}{}\" is wrong, expected {}", path_, key, expected));
+  }
+
+ private:
+  static std::optional<double> finite(const Json& value) {
+    if (!value.is_number() || !std::isfinite(value.get<double>()))
+      return std::nullopt;
+    return value.get<double>();
+  }
+
+  const Json& json_;
+  std::string path_;
+  const std::string& name_;
+};
+
+AttributeLayout read_attributes(const Object& object) {
+  AttributeLayout attributes;
+  attributes.normals = object.boolean("normals");
+  attributes.alpha = object.boolean("alpha");
+  attributes.texcoords = object.boolean("texcoords");
+  const std::string colours = object.text("colours");
+  for (std::size_t i = 0; i < kColourTypes.size(); ++i) {
+    if (colours != kColourTypes[i])
+      continue;
+    attributes.colour = static_cast<ColourType>(i);
+    return attributes;
+  }
+  object.wrong("colours", "none, u8, u16 or f32");
+}
+
+SourceSummary read_source(const Object& object) {
+  SourceSummary source;
+  source.file_name = object.text("file_name");
+  source.file_bytes = object.count("file_bytes");
+  source.checksum = object.hash("checksum");
+  source.vertices = object.count("vertices", UINT32_MAX);
+  if (source.vertices == 0)
+    object.wrong("vertices", "at least 1");
+  source.triangles = object.count("triangles");
+  source.faces = object.count("faces");
+  source.degenerate_triangles = object.count("degenerate_triangles");
+  source.unreferenced_vertices = object.count("unreferenced_vertices", source.vertices);
+  const Object bounds = object.object("bounds");
+  source.bounds = {bounds.point("min"), bounds.point("max")};
+  const Vec3d size = source.bounds.max - source.bounds.min;
+  if (!(size.x >= 0 && size.y >= 0 && size.z >= 0))
+    object.wrong("bounds", "min <= max");
+  source.double_precision = object.boolean("double_precision");
+  source.attributes = read_attributes(object.object("attributes"));
+  return source;
+}
+
+void read_outline(const Object& object, Manifest& manifest) {
+  manifest.outline_bytes = object.count("bytes");
+  manifest.outline_checksum = object.hash("checksum");
+  manifest.outline.sector_level = object.short_count("sector_level");
+  manifest.outline.sector_count = object.short_count("sectors");
+  manifest.outline.tolerance = object.number("tolerance");
+  manifest.outline.polylines_found = object.count("polylines_found");
+  manifest.outline.polylines_dropped = object.count("polylines_dropped");
+}
+
+/// Told before anything else is asked of the document: a newer format may differ in all the rest.
+void check_version(const Object& object) {
+  if (object.text("format") != kFormat)
+    object.wrong("format", fmt::format("\"{}\"", kFormat));
+  const std::uint64_t version = object.count("format_version");
+  if (version > kFormatVersion) {
+    object.fail(
+        fmt::format("format version {} is newer than {}, the newest known: use a newer "
+                    "meshhier",
+                    version, kFormatVersion));
+  }
+  if (version != kFormatVersion) {
+    object.fail(fmt::format("format version is {}, expected {}", version, kFormatVersion));
+  }
+}
+
+void check_text(const std::string& text, const Object& object) {
+  const std::size_t tail = kBeforeChecksum.size() + kDigits + kAfterChecksum.size();
+  const std::uint64_t expected = object.hash("checksum");
+  const bool ends = text.size() >= tail && text.ends_with(kAfterChecksum) &&
+                    text.compare(text.size() - tail, kBeforeChecksum.size(), kBeforeChecksum) == 0;
+  if (!ends)
+    object.fail("does not end with its checksum: the file was changed");
+  std::string zeroed = text;
+  zeroed.replace(text.size() - kAfterChecksum.size() - kDigits, kDigits, kZeros);
+  if (text_checksum(zeroed) != expected) {
+    object.fail(fmt::format("checksum is {}, expected {}: the file was changed",
+                            hex(text_checksum(zeroed)), hex(expected)));
+  }
+}
+
+}  // namespace
+
+std::string to_json_text(const Manifest& manifest) {
+  // A file name need not be UTF-8, JSON must be.
+  std::string text = manifest_json(manifest).dump(2, ' ', false, Json::error_handler_t::replace);
+  text += '\n';
+  const std::uint64_t sum = text_checksum(text);
+  text.replace(text.size() - kAfterChecksum.size() - kDigits, kDigits, hex(sum));
+  return text;
+}
+
+Manifest parse_manifest(const std::string& text, const std::string& name) {
+  if (text.size() > kMaxTextBytes) {
+    throw Error(ErrorCode::corrupt, fmt::format("{}: has {} bytes, expected at most {}", name,
+                                                text.size(), kMaxTextBytes));
+  }
+  const Json document = parse_json(text, name);
+  const Object object(document, "", name);
+  if (!document.is_object())
+    object.fail("is not a JSON object");
+  check_version(object);
+  check_text(text, object);
+
+  Manifest manifest;
+  manifest.generator = object.text("generator");
+  manifest.source = read_source(object.object("source"));
+  manifest.origin = object.point("origin");
+  manifest.unit_normals = object.boolean("unit_normals");
+  manifest.partition_count =
+      static_cast<std::uint32_t>(object.count("partitions", manifest.source.vertices));
+  if (manifest.partition_count == 0)
+    object.wrong("partitions", "at least 1");
+  manifest.config = object.at("config");
+  if (!manifest.config.is_object())
+    object.wrong("config", "an object");
+  manifest.index_bytes = object.object("index").count("bytes");
+  manifest.index_checksum = object.object("index").hash("checksum");
+  read_outline(object.object("outline"), manifest);
+  manifest.levels = object.at("levels");
+  if (!manifest.levels.is_array())
+    object.wrong("levels", "an array");
+  manifest.total_bytes = object.count("total_bytes");
+  return manifest;
+}
+
+}  // namespace meshhier::storage

@@ -1,0 +1,185 @@
+#include "storage/tile_plan.h"
+
+#include "storage/glb.h"
+
+#include <nlohmann/json.hpp>
+
+namespace meshhier::storage {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Numbers of the glTF 2.0 specification: buffer view targets, primitive modes.
+constexpr unsigned kVertexTarget = 34962;
+constexpr unsigned kIndexTarget = 34963;
+constexpr unsigned kPoints = 0;
+constexpr unsigned kTriangles = 4;
+
+/// Up to so many vertices indices take 16 bits: 65535 is no index, it restarts primitives.
+constexpr std::uint64_t kMaxShortVertices = 65535;
+
+constexpr std::array<const char*, kPartCount> kKeys{
+    "POSITION",   "NORMAL",     "COLOR_0",     "TEXCOORD_0",  "interior",
+    "border",     "parentMap",  "neighbours",  "ghostStarts", "ghostChains",
+    "rawNormals", "rawColours", "rawTexcoords"};
+
+std::uint64_t component_bytes(unsigned component) {
+  return component == kU8 ? 1 : component == kU16 ? 2 : 4;
+}
+
+Json view_json(const Section& section, Part part) {
+  Json view = {{"buffer", 0}, {"byteOffset", section.offset}, {"byteLength", section.bytes()}};
+  const bool padded = section.stride != component_bytes(section.component) * section.components;
+  if (padded)
+    view["byteStride"] = section.stride;
+  if (part <= Part::texcoord)
+    view["target"] = kVertexTarget;
+  if (part == Part::interior || part == Part::border)
+    view["target"] = kIndexTarget;
+  return view;
+}
+
+Json accessor_json(const Section& section, Part part, const Bounds& bounds) {
+  constexpr std::array<const char*, 5> kTypes{"", "SCALAR", "VEC2", "VEC3", "VEC4"};
+  Json accessor = {{"bufferView", section.view},
+                   {"componentType", section.component},
+                   {"count", section.count},
+                   {"type", kTypes[section.components]}};
+  if (part == Part::colour && section.component != kF32)
+    accessor["normalized"] = true;
+  if (part == Part::position) {
+    // As doubles: their shortest decimal form is read back as the same float.
+    const Vec3d min = to_double(bounds.min);
+    const Vec3d max = to_double(bounds.max);
+    accessor["min"] = Json::array({min.x, min.y, min.z});
+    accessor["max"] = Json::array({max.x, max.y, max.z});
+  }
+  return accessor;
+}
+
+/// Accessors have the numbers of their buffer views: the parts with an accessor come first.
+Json primitives_json(const TilePlan& plan) {
+  Json attributes = Json::object();
+  for (const Part part : {Part::position, Part::normal, Part::colour, Part::texcoord}) {
+    if (plan[part].view >= 0)
+      attributes[key_of(part)] = plan[part].view;
+  }
+  Json primitives = Json::array();
+  for (const Part part : {Part::interior, Part::border}) {
+    if (plan[part].view < 0)
+      continue;
+    primitives.push_back(Json::object(
+        {{"attributes", attributes}, {"indices", plan[part].view}, {"mode", kTriangles}}));
+  }
+  if (primitives.empty()) {
+    primitives.push_back(Json::object({{"attributes", attributes}, {"mode", kPoints}}));
+  }
+  return primitives;
+}
+
+Json extension_json(const TilePlan& plan) {
+  const TileShape& shape = plan.shape();
+  const bool interior = shape.interior > 0;
+  const bool border = shape.border > 0;
+  Json extension = {{"version", kTileExtensionVersion},
+                    {"level", raw(shape.node.level)},
+                    {"index", shape.node.index},
+                    {"ownCount", shape.own},
+                    {"rimCount", shape.rim},
+                    {"ghostCount", shape.ghosts},
+                    {"neighbourCount", shape.neighbours},
+                    {"chainEntryCount", shape.chain_entries},
+                    {"interiorCount", shape.interior},
+                    {"borderCount", shape.border},
+                    {"interiorPrimitive", interior ? 0 : -1},
+                    {"borderPrimitive", border ? (interior ? 1 : 0) : -1}};
+  for (std::size_t i = static_cast<std::size_t>(Part::parent_map); i < kPartCount; ++i) {
+    extension[kKeys[i]] = plan[static_cast<Part>(i)].view;
+  }
+  return extension;
+}
+
+}  // namespace
+
+const char* key_of(Part part) {
+  return kKeys[static_cast<std::size_t>(part)];
+}
+
+std::array<ChannelGroup, 3> groups_of(const AttributeLayout& layout) {
+  const auto size = [](int channels) { return static_cast<std::size_t>(channels); };
+  return {{{Part::normal, Part::raw_normals, size(layout.normal_offset()),
+            size(layout.normals ? 3 : 0)},
+           {Part::colour, Part::raw_colours, size(layout.colour_offset()),
+            size(layout.colour_channels())},
+           {Part::texcoord, Part::raw_texcoords, size(layout.texcoord_offset()),
+            size(layout.texcoords ? 2 : 0)}}};
+}
+
+TilePlan::TilePlan(const TileShape& shape, const AttributeLayout& layout)
+    : shape_(shape), layout_(layout) {
+  const auto groups = groups_of(layout);
+  const unsigned index = shape.vertices() <= kMaxShortVertices ? kU16 : kU32;
+  add(Part::position, kF32, 3, shape.vertices());
+  for (const ChannelGroup& group : groups) {
+    add(group.part, component_of(group), group.channels, shape.vertices());
+  }
+  add(Part::interior, index, 1, 3 * shape.interior);
+  add(Part::border, index, 1, 3 * shape.border);
+  add(Part::parent_map, kU16, 1, shape.node == NodeId{} ? 0 : shape.own);
+  add(Part::neighbours, kU32, 1, shape.neighbours);
+  add(Part::ghost_starts, kU32, 1, shape.neighbours > 0 ? shape.neighbours + 1 : 0);
+  add(Part::ghost_chains, kU16, 1, shape.chain_entries);
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    add(groups[i].raw, kF32, groups[i].channels, shape.raw[i] ? shape.vertices() : 0);
+  }
+}
+
+unsigned TilePlan::component_of(const ChannelGroup& group) const {
+  if (group.part != Part::colour || layout_.colour == ColourType::f32)
+    return kF32;
+  return layout_.colour == ColourType::u8 ? kU8 : kU16;
+}
+
+void TilePlan::add(Part part, unsigned component, std::size_t components, std::uint64_t count) {
+  if (components == 0 || count == 0)
+    return;
+  const std::uint64_t size = component_bytes(component) * components;
+  sections_[static_cast<std::size_t>(part)] = {.component = component,
+                                               .components = static_cast<unsigned>(components),
+                                               .count = count,
+                                               .stride = components > 1 ? aligned4(size) : size,
+                                               .offset = bytes_,
+                                               .view = views_++};
+  bytes_ = aligned4(bytes_ + count * sections_[static_cast<std::size_t>(part)].stride);
+}
+
+Json TilePlan::document(const Bounds& bounds, Vec3d origin) const {
+  Json views = Json::array();
+  Json accessors = Json::array();
+  for (std::size_t i = 0; i < kPartCount; ++i) {
+    const auto part = static_cast<Part>(i);
+    if (sections_[i].view < 0)
+      continue;
+    views.push_back(view_json(sections_[i], part));
+    if (part <= Part::border)
+      accessors.push_back(accessor_json(sections_[i], part, bounds));
+  }
+  const Json mesh = {{"primitives", primitives_json(*this)}};
+  const Json scene = {{"nodes", Json::array({0})}};
+  const Json buffer = {{"byteLength", bytes_}};
+
+  Json document;
+  document["asset"] = {{"version", "2.0"}, {"generator", "meshhier"}};
+  document["extensionsUsed"] = Json::array({kTileExtension});
+  document["scene"] = 0;
+  document["scenes"] = Json::array({scene});
+  document["nodes"] = Json::array({mesh_node(origin)});
+  document["meshes"] = Json::array({mesh});
+  document["accessors"] = std::move(accessors);
+  document["bufferViews"] = std::move(views);
+  document["buffers"] = Json::array({buffer});
+  document["extensions"][kTileExtension] = extension_json(*this);
+  return document;
+}
+
+}  // namespace meshhier::storage

@@ -1,0 +1,122 @@
+// Where everything lies in a tile's GLB: a function of a few counts, for the writer and the reader.
+#pragma once
+
+#include "hierarchy/attributes.h"
+#include "hierarchy/bounds.h"
+#include "hierarchy/ids.h"
+#include "hierarchy/vec.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace meshhier::storage {
+
+inline constexpr const char* kTileExtension = "MESHHIER_tile";
+inline constexpr unsigned kTileExtensionVersion = 1;
+
+// Component types of the glTF 2.0 specification.
+inline constexpr unsigned kU8 = 5121;
+inline constexpr unsigned kU16 = 5123;
+inline constexpr unsigned kU32 = 5125;
+inline constexpr unsigned kF32 = 5126;
+
+// The BIN chunk: one section, and one buffer view, for each of these that is not empty, in this
+// order, each starting at a multiple of 4. o, g, n = o + g: own, ghost, all vertices; m:
+// neighbours.
+//
+//   section        elements          of
+//   position       n                 3 f32
+//   normal         n                 3 f32
+//   colour         n                 3 or 4 u8, u16 or f32; the stride is rounded up to 4
+//   texcoord       n                 2 f32
+//   interior       3 a triangle      u16 if n <= 65535, else u32
+//   border         3 a triangle      the same
+//   parent_map     o, root: none     u16
+//   neighbours     m                 u32, ascending
+//   ghost_starts   m + 1, m = 0: 0   u32
+//   ghost_chains   a chain a ghost   u16, Tree::chain_length entries a chain
+//   raw_normals    n or none         3 f32
+//   raw_colours    n or none         3 or 4 f32
+//   raw_texcoords  n or none         2 f32
+enum class Part : std::size_t {
+  position,
+  normal,
+  colour,
+  texcoord,
+  interior,
+  border,
+  parent_map,
+  neighbours,
+  ghost_starts,
+  ghost_chains,
+  raw_normals,
+  raw_colours,
+  raw_texcoords
+};
+inline constexpr std::size_t kPartCount = 13;
+
+/// The key of a part in the extension (from parent_map on), or the name of its attribute (up to
+/// texcoord).
+const char* key_of(Part part);
+
+/// The channels of one attribute within a vertex, and where they are written.
+struct ChannelGroup {
+  Part part;
+  Part raw;
+  std::size_t offset;
+  std::size_t channels;
+};
+
+/// Normals, colours, texture coordinates; those the layout lacks have no channels.
+std::array<ChannelGroup, 3> groups_of(const AttributeLayout& layout);
+
+/// The numbers from which the place of everything in the file follows; each below 2^32, so that no
+/// size overflows 64 bits.
+struct TileShape {
+  NodeId node;
+  std::uint64_t own = 0, rim = 0, ghosts = 0, neighbours = 0, chain_entries = 0;
+  std::uint64_t interior = 0, border = 0;
+  std::array<bool, 3> raw{};  ///< per ChannelGroup: whether its raw part is there
+
+  std::uint64_t vertices() const { return own + ghosts; }
+};
+
+struct Section {
+  unsigned component = 0;   ///< glTF component type
+  unsigned components = 0;  ///< per element
+  std::uint64_t count = 0;  ///< elements
+  std::uint64_t stride = 0;
+  std::uint64_t offset = 0;
+  int view = -1;  ///< number of the buffer view; -1 if empty
+
+  std::uint64_t bytes() const { return count * stride; }
+};
+
+class TilePlan {
+ public:
+  TilePlan(const TileShape& shape, const AttributeLayout& layout);
+
+  const TileShape& shape() const { return shape_; }
+  const AttributeLayout& layout() const { return layout_; }
+  const Section& operator[](Part part) const { return sections_[static_cast<std::size_t>(part)]; }
+  /// Of the BIN chunk.
+  std::uint64_t bytes() const { return bytes_; }
+
+  /// The file's JSON. `bounds`: of the positions.
+  nlohmann::ordered_json document(const Bounds& bounds, Vec3d origin) const;
+
+ private:
+  unsigned component_of(const ChannelGroup& group) const;
+  void add(Part part, unsigned component, std::size_t components, std::uint64_t count);
+
+  TileShape shape_;
+  AttributeLayout layout_;
+  std::array<Section, kPartCount> sections_;
+  std::uint64_t bytes_ = 0;
+  int views_ = 0;
+};
+
+}  // namespace meshhier::storage

@@ -1,0 +1,60 @@
+#include "storage/work_directory.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "hierarchy/error.h"
+#include "storage/layout.h"
+
+namespace meshhier::storage {
+
+WorkDirectory::WorkDirectory(FileSystem& files, std::filesystem::path output, bool replace)
+    : files_(files),
+      output_(std::move(output)),
+      path_(work_path(output_)),
+      temporary_(temporary_path(path_)),
+      replace_(replace) {
+  if (files_.exists(output_)) {
+    if (!replace_) {
+      throw Error(ErrorCode::exists, fmt::format("{} is already there; --force replaces it", output_.string()));
+    }
+    if (!files_.exists(manifest_path(output_))) {
+      throw Error(ErrorCode::exists, fmt::format("{} is not a hierarchy (it has no {}), so --force does not replace it",
+                                                 output_.string(), manifest_path({}).string()));
+    }
+  }
+  files_.remove_all(path_);
+  files_.make_directories(temporary_);
+}
+
+WorkDirectory::~WorkDirectory() {
+  if (published_) return;
+  try {
+    files_.remove_all(path_);
+  } catch (const Error&) {  // the failure that brought us here is the one to report
+  }
+}
+
+void WorkDirectory::publish() {
+  files_.remove_all(temporary_);
+  files_.sync_tree(path_);
+  const std::filesystem::path old = replaced_path(output_);
+  files_.remove_all(old);
+  const bool replacing = files_.exists(output_);
+  if (replacing && !replace_) {
+    throw Error(ErrorCode::exists, fmt::format("{} appeared during the build", output_.string()));
+  }
+  if (replacing) files_.rename(output_, old);
+  try {
+    files_.rename(path_, output_);
+  } catch (const Error&) {
+    if (replacing) files_.rename(old, output_);
+    throw;
+  }
+  published_ = true;
+  files_.sync_tree(output_);
+  files_.remove_all(old);
+}
+
+}  // namespace meshhier::storage

@@ -1,0 +1,19 @@
+// Tiles under construction as bytes, for scratch space only: in this machine's byte order, unversioned.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "hierarchy/build_tile.h"
+
+namespace meshhier::storage {
+
+std::vector<std::byte> encode_work_tile(const WorkTile& tile);
+/// Requires bytes of encode_work_tile with the same `channels`; throws Error(internal) otherwise.
+WorkTile decode_work_tile(std::span<const std::byte> bytes, int channels);
+
+std::vector<std::byte> encode_rim(const WorkTile& tile);
+Rim decode_rim(std::span<const std::byte> bytes, int channels);
+
+}  // namespace meshhier::storage

@@ -1,0 +1,619 @@
+// The real program as a process: exit codes, messages, and what it leaves on disk.
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <set>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char** environ;
+
+namespace meshhier::app {
+namespace {
+
+using nlohmann::json;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::StartsWith;
+using Path = std::filesystem::path;
+using Arguments = std::vector<std::string>;
+
+constexpr int kUsage = 2;
+constexpr int kInput = 3;
+constexpr int kIo = 4;
+constexpr int kExists = 5;
+constexpr int kBudget = 6;
+constexpr int kCorrupt = 7;
+constexpr int kInterrupted = 130;
+
+std::string text_of(const Path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  EXPECT_TRUE(stream) << path;
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+void write_text(const Path& path, const std::string& text) {
+  std::ofstream stream(path, std::ios::binary);
+  stream << text;
+  ASSERT_TRUE(stream.flush()) << path;
+}
+
+pid_t spawn(const Arguments& arguments, posix_spawn_file_actions_t& actions) {
+  std::vector<char*> words{const_cast<char*>(MESHHIER_BINARY)};
+  for (const std::string& argument : arguments)
+    words.push_back(const_cast<char*>(argument.c_str()));
+  words.push_back(nullptr);
+  pid_t process = -1;
+  EXPECT_EQ(posix_spawn(&process, MESHHIER_BINARY, &actions, nullptr, words.data(), environ), 0);
+  return process;
+}
+
+/// The exit code; 1000 + n after death by signal n.
+int wait_for(pid_t process) {
+  int status = 0;
+  while (waitpid(process, &status, 0) == -1 && errno == EINTR) {
+  }
+  return WIFSIGNALED(status) ? 1000 + WTERMSIG(status) : WEXITSTATUS(status);
+}
+
+struct Outcome {
+  int code = -1;
+  std::string out;
+  std::string messages;
+};
+
+class CommandLine : public ::testing::Test {
+ protected:
+  CommandLine() {
+    std::string name = (std::filesystem::temp_directory_path() / "meshhier-cli-XXXXXX").string();
+    directory_ = ::mkdtemp(name.data());
+    std::filesystem::create_directory(work());
+  }
+  ~CommandLine() override { std::filesystem::remove_all(directory_); }
+
+  /// Where the tests' files are; what the program prints is kept elsewhere.
+  Path work() const { return directory_ / "work"; }
+
+  Outcome run(const Arguments& arguments, const std::string& out = "") const {
+    const std::string out_path = out.empty() ? (directory_ / "out").string() : out;
+    const std::string message_path = (directory_ / "messages").string();
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out_path.c_str(),
+                                     O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, message_path.c_str(),
+                                     O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    const int code = wait_for(spawn(arguments, actions));
+    posix_spawn_file_actions_destroy(&actions);
+    return {code, out.empty() ? text_of(out_path) : "", text_of(message_path)};
+  }
+
+  /// A bumpy square of 50 x 50 vertices. The last face's last corner is `last_corner`.
+  Path write_mesh(const std::string& name, std::size_t last_corner = 2499,
+                  double bump = 0.25) const {
+    constexpr std::size_t kSide = 50;
+    std::ostringstream ply;
+    ply << "ply\nformat ascii 1.0\nelement vertex " << kSide * kSide
+        << "\nproperty float x\nproperty float y\nproperty float z\nelement face "
+        << 2 * (kSide - 1) * (kSide - 1)
+        << "\nproperty list uchar int vertex_indices\nend_header\n";
+    for (std::size_t v = 0; v < kSide * kSide; ++v) {
+      ply << v % kSide << ' ' << v / kSide << ' ' << bump * static_cast<double>(v * 7919 % 64)
+          << '\n';
+    }
+    for (std::size_t y = 0; y + 1 < kSide; ++y) {
+      for (std::size_t x = 0; x + 1 < kSide; ++x) {
+        const std::size_t v = y * kSide + x;
+        const bool last = v + kSide + 2 == kSide * kSide;
+        ply << "3 " << v << ' ' << v + 1 << ' ' << v + kSide << '\n';
+        ply << "3 " << v + 1 << ' ' << v + kSide << ' ' << (last ? last_corner : v + kSide + 1)
+            << '\n';
+      }
+    }
+    write_text(work() / name, ply.str());
+    return work() / name;
+  }
+
+  /// A config for five partitions of 500 vertices; `more` adds keys.
+  std::string write_config(const std::string& more = "") const {
+    write_text(work() / "a.json",
+               "// a comment\n{\"input\": \"a.ply\", \"output\": \"a.hier\",\n"
+               " \"partition\": {\"vertices\": 500}" +
+                   more + "}\n");
+    return (work() / "a.json").string();
+  }
+
+  std::string hierarchy() const { return (work() / "a.hier").string(); }
+
+  /// Meshes and hierarchies are made once more by every test that needs one: each is small.
+  void build() const {
+    write_mesh("a.ply");
+    const Outcome outcome = run({"build", write_config()});
+    ASSERT_EQ(outcome.code, 0) << outcome.messages;
+  }
+
+  std::set<std::string> names() const {
+    std::set<std::string> found;
+    for (const auto& entry : std::filesystem::directory_iterator(work()))
+      found.insert(entry.path().filename());
+    return found;
+  }
+
+  std::map<std::string, std::string> contents(const Path& directory) const {
+    std::map<std::string, std::string> files;
+    if (!std::filesystem::exists(directory))
+      return files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(directory)) {
+      if (entry.is_regular_file())
+        files[entry.path().lexically_relative(directory)] = text_of(entry.path());
+    }
+    return files;
+  }
+
+ private:
+  Path directory_;
+};
+
+// ---- help
+
+TEST_F(CommandLine, HelpTeaches) {
+  const Outcome outcome = run({"--help"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.messages, IsEmpty());
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("Examples:"), HasSubstr("meshhier build"),
+                                 HasSubstr("Exit codes:"), HasSubstr("130  interrupted")));
+}
+
+TEST_F(CommandLine, EveryCommandHasHelpWithExamples) {
+  for (const char* command : {"build", "inspect", "verify", "export"}) {
+    const Outcome outcome = run({command, "--help"});
+    EXPECT_EQ(outcome.code, 0) << command;
+    EXPECT_THAT(outcome.out,
+                AllOf(HasSubstr("Examples:"), HasSubstr(std::string("meshhier ") + command)));
+  }
+}
+
+TEST_F(CommandLine, VersionIsPrinted) {
+  const Outcome outcome = run({"--version"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.out, ::testing::MatchesRegex("meshhier [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+}
+
+// ---- mistakes in the arguments
+
+TEST_F(CommandLine, MistakesExitWithUsageAndSayWhatIsWrong) {
+  const std::vector<std::pair<Arguments, std::string>> mistakes{
+      {{}, "subcommand is required"},
+      {{"biuld", "a.json"}, "unknown command \"biuld\"; did you mean \"build\"?"},
+      {{"build"}, "config"},
+      {{"build", "a.json", "--froce"}, "--froce"},
+      {{"build", "a.json", "--progress", "loud"}, "auto, bar, json or none"},
+      {{"inspect"}, "DIR is required"},
+      {{"inspect", "x", "y"}, "y"},
+      {{"inspect", "x", "--level", "-1"}, "--level"},
+      {{"inspect", "x", "--level", "33"}, "from 0 to 32"},
+      {{"inspect", "x", "--node", "3"}, "LEVEL/INDEX"},
+      {{"inspect", "x", "--node", "3/"}, "LEVEL/INDEX"},
+      {{"inspect", "x", "--node", "3/5x"}, "LEVEL/INDEX"},
+      {{"inspect", "x", "--node", "3/4294967296"}, "LEVEL/INDEX"},
+      {{"inspect", "x", "--node", "3/5", "--level", "3"}, "excludes"},
+      {{"verify", "x", "--cuts", "many"}, "--cuts"},
+      {{"verify", "x", "--cuts", "4294967296"}, "--cuts"},
+      {{"verify", "x", "--seed", "1.5"}, "--seed"},
+      {{"verify", "x", "--memory-budget", "lots"}, "512MiB"},
+      {{"verify", "x", "--memory-budget", "0"}, "512MiB"},
+      {{"export", "x", "--level", "1"}, "--output"},
+      {{"export", "x", "-o", "y.ply"}, "--outline"},
+      {{"export", "x", "--level", "1", "--outline", "-o", "y.ply"}, "--outline"},
+      {{"export", "x", "--cut", "", "-o", "y.ply"}, "--cut"},
+  };
+  for (const auto& [arguments, expected] : mistakes) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, kUsage) << expected;
+    EXPECT_THAT(outcome.messages, AllOf(StartsWith("meshhier: "), HasSubstr(expected)));
+    EXPECT_THAT(outcome.out, IsEmpty());
+  }
+}
+
+TEST_F(CommandLine, MistakesInTheConfigExitWithUsage) {
+  write_mesh("a.ply");
+  const Outcome misspelt = run({"build", write_config(R"(, "treads": 1)")});
+  EXPECT_EQ(misspelt.code, kUsage);
+  EXPECT_THAT(misspelt.messages,
+              HasSubstr("a.json: unknown key \"treads\"; did you mean \"threads\"?"));
+
+  const Outcome ill_typed = run({"build", write_config(), "--set", "partition.vertices=lots"});
+  EXPECT_EQ(ill_typed.code, kUsage);
+  EXPECT_THAT(ill_typed.messages,
+              HasSubstr("--set partition.vertices: expected an integer from 4 to 32768"));
+}
+
+TEST_F(CommandLine, MissingFilesExitWithIo) {
+  const std::string absent = (work() / "absent").string();
+  const std::vector<Arguments> commands{
+      {"build", absent},
+      {"build", write_config()},  // its input is not there
+      {"inspect", absent},
+      {"verify", absent},
+      {"export", absent, "--level", "0", "-o", (work() / "x.ply").string()}};
+  for (const Arguments& arguments : commands) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, kIo) << arguments[0] << ": " << outcome.messages;
+    EXPECT_THAT(outcome.messages, AllOf(StartsWith("meshhier: "), HasSubstr(work().string())));
+  }
+  EXPECT_EQ(names(), (std::set<std::string>{"a.json"}));
+}
+
+// ---- build
+
+TEST_F(CommandLine, BuildMakesAHierarchyAndNothingElse) {
+  build();
+  EXPECT_EQ(names(), (std::set<std::string>{"a.hier", "a.json", "a.ply"}));
+  EXPECT_TRUE(std::filesystem::exists(work() / "a.hier" / "hierarchy.json"));
+}
+
+TEST_F(CommandLine, BuildKeepsAnExistingOutputUnlessForced) {
+  build();
+  const auto before = contents(hierarchy());
+
+  write_mesh("a.ply", 2499, 0.5);
+  const Outcome refused = run({"build", write_config()});
+  EXPECT_EQ(refused.code, kExists);
+  EXPECT_THAT(refused.messages, AllOf(HasSubstr("a.hier"), HasSubstr("--force")));
+  EXPECT_EQ(contents(hierarchy()), before);
+
+  EXPECT_EQ(run({"build", write_config(), "--force"}).code, 0);
+  EXPECT_NE(contents(hierarchy()), before);
+  EXPECT_EQ(names(), (std::set<std::string>{"a.hier", "a.json", "a.ply"}));
+}
+
+TEST_F(CommandLine, BuildOfABrokenMeshNamesItAndLeavesNothing) {
+  write_mesh("a.ply", 9999);
+  const Outcome outcome = run({"build", write_config()});
+  EXPECT_EQ(outcome.code, kInput);
+  EXPECT_THAT(outcome.messages, AllOf(HasSubstr("a.ply"), HasSubstr("9999")));
+  EXPECT_EQ(names(), (std::set<std::string>{"a.json", "a.ply"}));
+}
+
+TEST_F(CommandLine, BuildThatFailsKeepsTheOutputItWasToReplace) {
+  build();
+  const auto before = contents(hierarchy());
+  write_mesh("a.ply", 9999);
+  EXPECT_EQ(run({"build", write_config(), "--force"}).code, kInput);
+  EXPECT_EQ(contents(hierarchy()), before);
+  EXPECT_EQ(names(), (std::set<std::string>{"a.hier", "a.json", "a.ply"}));
+}
+
+TEST_F(CommandLine, BuildRefusesABudgetThatCannotDo) {
+  write_mesh("a.ply");
+  const Outcome outcome = run({"build", write_config(), "--set", "memory_budget=1KiB"});
+  EXPECT_EQ(outcome.code, kBudget);
+  EXPECT_THAT(outcome.messages, HasSubstr("MiB")) << "names the least that would do";
+  EXPECT_EQ(names(), (std::set<std::string>{"a.json", "a.ply"}));
+}
+
+TEST_F(CommandLine, SetTakesSeveralSettingsInAnyPlace) {
+  write_mesh("a.ply");
+  const std::string config = write_config();
+  const std::string output = "output=" + (work() / "b.hier").string();
+  const std::vector<Arguments> forms{
+      {"build", config, "--set", "partition.count=3", output},
+      {"build", config, "--set", "partition.count=3", "--set", output},
+      {"build", "--set", "partition.count=3", output, config},
+      {"build", "--set", "partition.count=3", "--set", output, "--force", config}};
+  for (const Arguments& arguments : forms) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, 0) << outcome.messages;
+    const Outcome inspected = run({"inspect", (work() / "b.hier").string(), "--json"});
+    EXPECT_EQ(json::parse(inspected.out).at("partitions").at("count"), 3);
+    std::filesystem::remove_all(work() / "b.hier");
+  }
+}
+
+// ---- progress
+
+TEST_F(CommandLine, ProgressAsJsonLinesIsValidAndComplete) {
+  write_mesh("a.ply");
+  const Outcome outcome = run({"build", write_config(), "--progress", "json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.messages;
+  std::istringstream lines(outcome.messages);
+  std::string open_stage;
+  std::string last_event;
+  for (std::string line; std::getline(lines, line);) {
+    const json event = json::parse(line);
+    last_event = event.at("event");
+    if (last_event == "stage_start") {
+      EXPECT_EQ(open_stage, "");
+      open_stage = event.at("stage");
+    } else if (last_event != "finish") {
+      EXPECT_EQ(event.at("stage"), open_stage);
+      for (const char* key : {"done", "total", "unit", "rate", "seconds", "eta_seconds"}) {
+        EXPECT_TRUE(event.contains(key)) << line;
+      }
+    }
+    if (last_event == "stage_end")
+      open_stage = "";
+  }
+  EXPECT_EQ(last_event, "finish");
+  EXPECT_EQ(open_stage, "");
+}
+
+TEST_F(CommandLine, FailureIsAJsonLineTooIfProgressIs) {
+  write_mesh("a.ply", 9999);
+  const Outcome outcome = run({"build", write_config(), "--progress", "json"});
+  EXPECT_EQ(outcome.code, kInput);
+  std::istringstream lines(outcome.messages);
+  json last;
+  for (std::string line; std::getline(lines, line);)
+    last = json::parse(line);
+  EXPECT_EQ(last.at("event"), "error");
+  EXPECT_EQ(last.at("code"), kInput);
+  EXPECT_THAT(last.at("message").get<std::string>(), HasSubstr("a.ply"));
+}
+
+TEST_F(CommandLine, ProgressIsSilentWhereThereIsNoTerminal) {
+  write_mesh("a.ply");
+  EXPECT_THAT(run({"build", write_config()}).messages, IsEmpty());
+  EXPECT_THAT(run({"build", write_config(), "--force", "--progress", "none"}).messages, IsEmpty());
+  EXPECT_THAT(run({"build", write_config(), "--force", "--progress", "bar"}).messages,
+              HasSubstr("\r"));
+}
+
+// ---- inspect, verify, export
+
+TEST_F(CommandLine, InspectTellsWhatIsInIt) {
+  build();
+  const Outcome text = run({"inspect", hierarchy()});
+  EXPECT_EQ(text.code, 0) << text.messages;
+  EXPECT_THAT(text.out, AllOf(HasSubstr("partitions"), HasSubstr("level")));
+
+  const Outcome outcome = run({"inspect", hierarchy(), "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.messages;
+  const json object = json::parse(outcome.out);
+  EXPECT_EQ(object.at("source").at("vertices"), 2500);
+  EXPECT_EQ(object.at("source").at("triangles"), 4802);
+  EXPECT_EQ(object.at("partitions").at("count"), 5);
+  EXPECT_EQ(object.at("partitions").at("vertices_min"), 500);
+  EXPECT_EQ(object.at("partitions").at("vertices_max"), 500);
+  EXPECT_EQ(object.at("levels").size(), 4u);
+  EXPECT_LE(object.at("outline").at("bytes"), 32768);
+  EXPECT_GT(object.at("total_bytes"), 0);
+}
+
+TEST_F(CommandLine, InspectOfALevelThatIsNotThereIsAUsageError) {
+  build();
+  EXPECT_EQ(run({"inspect", hierarchy(), "--level", "3", "--json"}).code, 0);
+  EXPECT_EQ(run({"inspect", hierarchy(), "--node", "3/4"}).code, 0);
+  const Outcome outcome = run({"inspect", hierarchy(), "--level", "9", "--json"});
+  EXPECT_EQ(outcome.code, kUsage);
+  EXPECT_THAT(outcome.messages, StartsWith("meshhier: "));
+  EXPECT_EQ(run({"inspect", hierarchy(), "--node", "3/5", "--json"}).code, kUsage);
+}
+
+TEST_F(CommandLine, VerifyPassesWhatBuildMade) {
+  build();
+  const Outcome plain = run({"verify", hierarchy()});
+  EXPECT_EQ(plain.code, 0) << plain.out << plain.messages;
+  EXPECT_THAT(plain.out, HasSubstr("No problem found."));
+  const Outcome with_input =
+      run({"verify", hierarchy(), "--input", (work() / "a.ply").string(), "--cuts", "50", "--seed",
+           "18446744073709551615", "--memory-budget", "256MiB", "--json"});
+  EXPECT_EQ(with_input.code, 0) << with_input.out << with_input.messages;
+  const json report = json::parse(with_input.out);
+  EXPECT_EQ(report.at("ok"), true);
+  EXPECT_THAT(report.at("problems"), IsEmpty());
+  EXPECT_THAT(report.at("checks"), Not(IsEmpty()));
+}
+
+TEST_F(CommandLine, VerifyFindsAFlippedBit) {
+  build();
+  const Path tile = work() / "a.hier" / "tiles" / "00" / "000000.glb";
+  std::string bytes = text_of(tile);
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 4);
+  write_text(tile, bytes);
+
+  const Outcome outcome = run({"verify", hierarchy(), "--json"});
+  EXPECT_EQ(outcome.code, kCorrupt);
+  EXPECT_EQ(json::parse(outcome.out).at("ok"), false);
+  EXPECT_THAT(json::parse(outcome.out).at("problems").dump(), HasSubstr("000000.glb"));
+  const Outcome plain = run({"verify", hierarchy()});
+  EXPECT_EQ(plain.code, kCorrupt);
+  EXPECT_THAT(plain.out, AllOf(HasSubstr("PROBLEM: "), Not(HasSubstr("No problem found."))));
+}
+
+TEST_F(CommandLine, VerifyFindsThatTheInputIsAnother) {
+  build();
+  const Path other = write_mesh("other.ply", 2499, 0.5);
+  const Outcome outcome = run({"verify", hierarchy(), "--input", other.string()});
+  EXPECT_EQ(outcome.code, kCorrupt) << outcome.out << outcome.messages;
+  EXPECT_THAT(outcome.out, HasSubstr("PROBLEM: "));
+}
+
+TEST_F(CommandLine, ExportWritesPlyFiles) {
+  build();
+  write_text(work() / "cut.txt", "# the whole\n0/0\n");
+  const std::string ply = (work() / "x.ply").string();
+  const std::vector<Arguments> selections{{"--level", "0"},
+                                          {"--level", "3"},
+                                          {"--node", "2/1"},
+                                          {"--cut", (work() / "cut.txt").string()},
+                                          {"--outline"}};
+  for (const Arguments& selection : selections) {
+    Arguments arguments{"export", hierarchy(), "-o", ply, "--memory-budget", "256MiB"};
+    arguments.insert(arguments.end(), selection.begin(), selection.end());
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, 0) << selection[0] << ": " << outcome.messages;
+    EXPECT_THAT(text_of(ply), StartsWith("ply\n"));
+    EXPECT_EQ(text_of(ply).find("element edge") != std::string::npos, selection[0] == "--outline");
+    std::filesystem::remove(ply);
+  }
+}
+
+TEST_F(CommandLine, ExportRefusesWhatIsNoCut) {
+  build();
+  write_text(work() / "cut.txt", "1/0\n");
+  const auto before = names();
+  const Outcome outcome = run({"export", hierarchy(), "--cut", (work() / "cut.txt").string(), "-o",
+                               (work() / "x.ply").string()});
+  EXPECT_EQ(outcome.code, kUsage) << outcome.messages;
+  EXPECT_EQ(names(), before);
+}
+
+TEST_F(CommandLine, AResultThatCannotBeWrittenIsAFailure) {
+  if (!std::filesystem::exists("/dev/full"))
+    GTEST_SKIP() << "there is no /dev/full here";
+  build();
+  const Outcome outcome = run({"inspect", hierarchy()}, "/dev/full");
+  EXPECT_EQ(outcome.code, kIo);
+  EXPECT_THAT(outcome.messages, HasSubstr("standard output"));
+}
+
+// ---- interruption
+
+/// A pipe that is full: whoever writes to it waits until the test reads.
+class FullPipe {
+ public:
+  FullPipe() {
+    EXPECT_EQ(pipe2(ends_, O_CLOEXEC), 0);
+    const int flags = fcntl(ends_[1], F_GETFL);
+    fcntl(ends_[1], F_SETFL, flags | O_NONBLOCK);
+    const std::string filling(4096, '.');
+    while (write(ends_[1], filling.data(), filling.size()) > 0) {
+    }
+    while (write(ends_[1], filling.data(), 1) > 0) {
+    }
+    fcntl(ends_[1], F_SETFL, flags);
+  }
+  ~FullPipe() {
+    close_writer();
+    close(ends_[0]);
+  }
+  int writer() const { return ends_[1]; }
+  void close_writer() {
+    if (ends_[1] >= 0)
+      close(std::exchange(ends_[1], -1));
+  }
+  /// All that comes until every writer is gone.
+  std::string drain() {
+    close_writer();
+    std::string text;
+    char buffer[4096];
+    for (ssize_t count = 0; (count = read(ends_[0], buffer, sizeof buffer)) > 0;) {
+      text.append(buffer, static_cast<std::size_t>(count));
+    }
+    return text;
+  }
+
+ private:
+  int ends_[2] = {-1, -1};
+};
+
+/// True once the process has its own handler for the signal, as the kernel tells it.
+bool handles(pid_t process, int signal_number) {
+  std::ifstream status("/proc/" + std::to_string(process) + "/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with("SigCgt:"))
+      return (std::stoull(line.substr(7), nullptr, 16) >> (signal_number - 1) & 1) != 0;
+  }
+  return false;
+}
+
+bool has_ended(pid_t process) {
+  siginfo_t info{};
+  return waitid(P_PID, static_cast<id_t>(process), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
+         info.si_pid == process;
+}
+
+/// Waits until the process has, or has no longer, its own handler for the signal; false if it ends
+/// before that.
+bool wait_for_handler(pid_t process, int signal_number, bool wanted) {
+  while (handles(process, signal_number) != wanted) {
+    if (has_ended(process))
+      return false;
+    usleep(1000);
+  }
+  return true;
+}
+
+/// Starts a build that cannot get past its first line of progress, sends it the signal, then lets
+/// it go on. So the signal always comes in the middle, however fast or slow the machine is.
+class Interrupted : public CommandLine {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists("/proc/self/status"))
+      GTEST_SKIP() << "there is no /proc here";
+  }
+
+  pid_t start_build(const FullPipe& messages) const {
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_adddup2(&actions, messages.writer(), STDERR_FILENO);
+    const pid_t process =
+        spawn({"build", write_config(), "--force", "--progress", "json"}, actions);
+    posix_spawn_file_actions_destroy(&actions);
+    return process;
+  }
+
+  Outcome interrupt_build(int signal_number) const {
+    FullPipe messages;
+    const pid_t process = start_build(messages);
+    EXPECT_TRUE(wait_for_handler(process, signal_number, true));
+    kill(process, signal_number);
+    Outcome outcome;
+    outcome.messages = messages.drain();
+    outcome.code = wait_for(process);
+    return outcome;
+  }
+};
+
+TEST_F(Interrupted, BuildStopsWithItsCodeAndLeavesNothing) {
+  write_mesh("a.ply");
+  for (const int signal_number : {SIGINT, SIGTERM}) {
+    const Outcome outcome = interrupt_build(signal_number);
+    EXPECT_EQ(outcome.code, kInterrupted);
+    EXPECT_THAT(outcome.messages, HasSubstr(R"("code":130)"));
+    EXPECT_EQ(names(), (std::set<std::string>{"a.json", "a.ply"}));
+  }
+}
+
+TEST_F(Interrupted, BuildKeepsTheOutputItWasToReplace) {
+  build();
+  const auto before = contents(hierarchy());
+  write_mesh("a.ply", 2499, 0.5);
+  EXPECT_EQ(interrupt_build(SIGINT).code, kInterrupted);
+  EXPECT_EQ(contents(hierarchy()), before);
+  EXPECT_EQ(names(), (std::set<std::string>{"a.hier", "a.json", "a.ply"}));
+}
+
+TEST_F(Interrupted, ASecondSignalKillsAtOnce) {
+  write_mesh("a.ply");
+  const FullPipe messages;
+  const pid_t process = start_build(messages);
+  ASSERT_TRUE(wait_for_handler(process, SIGINT, true));
+  kill(process, SIGINT);
+  ASSERT_TRUE(wait_for_handler(process, SIGINT, false));  // it has run: it gives the signal back
+  kill(process, SIGINT);
+  EXPECT_EQ(wait_for(process), 1000 + SIGINT);  // while nobody reads its messages
+}
+
+}  // namespace
+}  // namespace meshhier::app

@@ -1,0 +1,37 @@
+// Whole hierarchies made in code, as the published form holds them: the tests' own, slow and plain
+// construction, independent of the stages.
+#pragma once
+
+#include "hierarchy/published.h"
+#include "hierarchy/tree.h"
+#include "storage/tile_glb.h"
+#include "support/meshes.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace meshhier::tests {
+
+struct SampleHierarchy {
+  Tree tree;
+  storage::TileFormat format;
+  std::vector<PublishedTile> tiles;  ///< ascending by node; none for early nodes
+
+  const PublishedTile& tile(NodeId node) const;
+};
+
+/// Ranks are the mesh's vertex numbers. A tile above the partitions contracts every two vertices of
+/// its children, in order, to their mean; nothing is dropped but degenerate triangles, so that any
+/// cut shows the image of the mesh under one map of vertices.
+SampleHierarchy make_sample(const TestMesh& mesh, std::uint32_t partitions,
+                            const storage::TileFormat& format = {});
+
+/// Attributes of a vertex as a real input has them: unit normals, whole numbers for u8 and u16
+/// colours, others in [0, 1].
+std::vector<float> sample_attributes(const AttributeLayout& layout, std::uint64_t vertex);
+
+/// Layouts of every kind of attribute, alone and together; the first has none.
+std::vector<AttributeLayout> sample_layouts();
+
+}  // namespace meshhier::tests

@@ -1,0 +1,150 @@
+#include "mesh_io/ply_header.h"
+
+#include "hierarchy/error.h"
+
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace meshhier::mesh_io {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string error_of(const std::string& text) {
+  try {
+    parse_ply_header(text, "h.ply");
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::input);
+    return error.what();
+  }
+  ADD_FAILURE() << "no error for " << text;
+  return {};
+}
+
+TEST(PlyHeader, ReadsElementsPropertiesAndLists) {
+  const std::string text =
+      "ply\nformat binary_big_endian 1.0\nelement vertex 12\nproperty float x\n"
+      "property uint16 quality\nproperty list int8 float64 weights\nelement face 7\n"
+      "property list uchar int vertex_indices\nend_header\n";
+  const PlyHeader header = parse_ply_header(text + "DATA", "h.ply");
+  EXPECT_EQ(header.encoding, PlyEncoding::big_endian);
+  EXPECT_EQ(header.data_offset, text.size());
+  EXPECT_EQ(header.data_line, 10U);
+  ASSERT_EQ(header.elements.size(), 2U);
+  EXPECT_EQ(header.elements[0].name, "vertex");
+  EXPECT_EQ(header.elements[0].count, 12U);
+  ASSERT_EQ(header.elements[0].properties.size(), 3U);
+  EXPECT_EQ(header.elements[0].properties[1].type, PlyType::u16);
+  EXPECT_FALSE(header.elements[0].properties[1].is_list());
+  EXPECT_EQ(header.elements[0].properties[2].type, PlyType::f64);
+  EXPECT_EQ(header.elements[0].properties[2].count_type, PlyType::i8);
+  EXPECT_EQ(header.elements[1].count, 7U);
+}
+
+TEST(PlyHeader, KnowsOldAndSizedTypeNames) {
+  const char* const names[] = {"char",   "int8",    "uchar",  "uint8",  "short", "int16",
+                               "ushort", "uint16",  "int",    "int32",  "uint",  "uint32",
+                               "float",  "float32", "double", "float64"};
+  for (std::size_t i = 0; i < std::size(names); ++i) {
+    const std::string text = std::string("ply\nformat ascii 1.0\nelement e 1\nproperty ") +
+                             names[i] + " p\nend_header\n";
+    const PlyHeader header = parse_ply_header(text, "h.ply");
+    EXPECT_EQ(header.elements[0].properties[0].type, static_cast<PlyType>(i / 2)) << names[i];
+  }
+}
+
+TEST(PlyHeader, CommentsBlanksAndEmptyLinesMayBeAnywhere) {
+  const PlyHeader header = parse_ply_header(
+      "ply \ncomment first\nformat  ascii\t1.0 \n\nobj_info num_cols 512\nelement vertex 1 \n"
+      "comment element vertex 9\n\tproperty float x\ncomment\nend_header  \n1\n",
+      "h.ply");
+  ASSERT_EQ(header.elements.size(), 1U);
+  EXPECT_EQ(header.elements[0].count, 1U);
+  EXPECT_EQ(header.data_line, 11U);
+}
+
+TEST(PlyHeader, NamesWithSpacesAreRead) {
+  const PlyHeader header = parse_ply_header(
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float scalar field 2\nend_header\n", "h");
+  EXPECT_EQ(header.elements[0].properties[0].name, "scalar field 2");
+}
+
+TEST(PlyHeader, DataStartsRightBehindTheLineEnd) {
+  // What follows looks like a line end in every case: it is data.
+  const std::string crlf = "ply\r\nformat binary_little_endian 1.0\r\nend_header\r\n";
+  EXPECT_EQ(parse_ply_header(crlf + "\n\n", "h").data_offset, crlf.size());
+  const std::string lf = "ply\nformat binary_little_endian 1.0\nend_header\n";
+  EXPECT_EQ(parse_ply_header(lf + "\n\r", "h").data_offset, lf.size());
+  const std::string cr = "ply\rformat binary_little_endian 1.0\rend_header\r";
+  EXPECT_EQ(parse_ply_header(cr + "\n\n", "h").data_offset, cr.size());
+  const std::string mixed = "ply\nformat binary_little_endian 1.0\nend_header\r\n";
+  EXPECT_EQ(parse_ply_header(mixed + "\n", "h").data_offset, mixed.size());
+}
+
+TEST(PlyHeader, MayEndTheFileWithoutALineEnd) {
+  const std::string text = "ply\nformat ascii 1.0\nend_header";
+  EXPECT_EQ(parse_ply_header(text, "h").data_offset, text.size());
+}
+
+TEST(PlyHeader, SaysWhatAForeignFileIs) {
+  EXPECT_EQ(error_of(""), "h.ply: expected a PLY file, found an empty file");
+  EXPECT_EQ(error_of("solid x\n"),
+            "h.ply: expected a PLY file, which starts with the line 'ply', found 'solid x'");
+  EXPECT_THAT(error_of("\x1f\x8b\x08rest"), HasSubstr("found gzip data (unpack it first)"));
+  EXPECT_THAT(error_of("plyx\nformat ascii 1.0\n"), HasSubstr("found 'plyx'"));
+}
+
+TEST(PlyHeader, EveryErrorNamesItsLine) {
+  const struct {
+    const char* text;
+    const char* message;
+  } cases[] = {
+      {"ply\nformat text 1.0\n",
+       "line 2: expected the format 'ascii', 'binary_little_endian' or "
+       "'binary_big_endian', found 'text'"},
+      {"ply\nformat ascii 2.0\n", "line 2: expected format version '1.0', found '2.0'"},
+      {"ply\nformat ascii\n", "line 2: expected format version '1.0', found ''"},
+      {"ply\nformat ascii 1.0\nformat ascii 1.0\n", "line 3: expected one 'format' line"},
+      {"ply\nend_header\n", "line 2: expected a 'format' line before 'end_header', found none"},
+      {"ply\nformat ascii 1.0\nelements vertex 3\n", "line 3: expected 'format', 'comment'"},
+      {"ply\nformat ascii 1.0\nproperty float x\n", "line 3: expected an 'element' before"},
+      {"ply\nformat ascii 1.0\nelement\n", "line 3: expected 'element NAME COUNT', found no name"},
+      {"ply\nformat ascii 1.0\nelement vertex\n", "line 3: expected the number of 'vertex' rows"},
+      {"ply\nformat ascii 1.0\nelement vertex -4\n", "found '-4'"},
+      {"ply\nformat ascii 1.0\nelement vertex 4 5\n", "found '4 5'"},
+      {"ply\nformat ascii 1.0\nelement vertex 1e3\n", "found '1e3'"},
+      {"ply\nformat ascii 1.0\nelement vertex 99999999999999999999\n", "integer below 2^64"},
+      {"ply\nformat ascii 1.0\nelement a 1\nelement a 1\n", "line 4: expected each element once"},
+      {"ply\nformat ascii 1.0\nelement a 1\nproperty real x\n", "line 4: expected a type (char"},
+      {"ply\nformat ascii 1.0\nelement a 1\nproperty float\n",
+       "line 4: expected a property's name"},
+      {"ply\nformat ascii 1.0\nelement a 1\nproperty list float int v\n",
+       "line 4: expected an integer type for a list's length, found 'float'"},
+      {"ply\nformat ascii 1.0\nelement a 1\nproperty list uchar v\n", "found 'v'"},
+      {"ply\nformat ascii 1.0\nend_header now\n", "line 3: expected a line end after 'end_header'"},
+      {"ply\nformat ascii 1.0\nelement a 1\n", "line 4: expected a header line, found the end"},
+      {"ply", "line 2: expected a header line, found the end of the file (is it truncated?)"},
+  };
+  for (const auto& c : cases)
+    EXPECT_THAT(error_of(c.text), HasSubstr(c.message)) << c.text;
+}
+
+TEST(PlyHeader, UnprintableTextIsShownSafely) {
+  EXPECT_THAT(error_of("ply\n\x01\xff" + std::string(100, 'a') + "\n"),
+              HasSubstr("found '??" + std::string(38, 'a') + "...'"));
+}
+
+TEST(PlyHeader, LengthIsLimited) {
+  std::string text = "ply\nformat ascii 1.0\n";
+  while (text.size() < kMaxHeaderBytes)
+    text += "comment " + std::string(1000, 'c') + "\n";
+  text.resize(kMaxHeaderBytes);
+  EXPECT_THAT(error_of(text), HasSubstr("expected 'end_header' within 262144 bytes, found none"));
+  const std::string long_line = "ply\ncomment " + std::string(kMaxHeaderLineBytes, 'c') + "\n";
+  EXPECT_THAT(error_of(long_line), HasSubstr("line 2: expected header lines of at most 65536"));
+}
+
+}  // namespace
+}  // namespace meshhier::mesh_io

@@ -1,0 +1,227 @@
+#include "ply_samples.h"
+
+#include "hierarchy/error.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+namespace meshhier::mesh_io::tests {
+namespace {
+
+class MemoryFile final : public storage::File {
+ public:
+  MemoryFile(const std::filesystem::path& path, std::shared_ptr<Bytes> content)
+      : File(path), content_(std::move(content)) {}
+
+  std::uint64_t size() const override { return content_->size(); }
+  void sync() override {}
+
+ protected:
+  std::size_t read_some(std::uint64_t offset, std::span<std::byte> bytes) const override {
+    if (offset >= content_->size())
+      return 0;
+    const std::size_t count = std::min<std::uint64_t>(bytes.size(), content_->size() - offset);
+    std::memcpy(bytes.data(), content_->data() + offset, count);
+    return count;
+  }
+  std::size_t write_some(std::uint64_t offset, std::span<const std::byte> bytes) override {
+    if (content_->size() < offset + bytes.size())
+      content_->resize(offset + bytes.size());
+    std::memcpy(content_->data() + offset, bytes.data(), bytes.size());
+    return bytes.size();
+  }
+
+ private:
+  std::shared_ptr<Bytes> content_;
+};
+
+}  // namespace
+
+std::unique_ptr<storage::File> MemoryFiles::open(const std::filesystem::path& path) {
+  const auto found = contents_.find(path.string());
+  if (found == contents_.end())
+    throw Error(ErrorCode::io, "no such file: " + path.string());
+  return std::make_unique<MemoryFile>(path, found->second);
+}
+
+std::unique_ptr<storage::File> MemoryFiles::create(const std::filesystem::path& path) {
+  put(path.string(), {});
+  return open(path);
+}
+
+bool MemoryFiles::exists(const std::filesystem::path& path) {
+  return contents_.contains(path.string());
+}
+
+void MemoryFiles::remove_all(const std::filesystem::path& path) {
+  contents_.erase(path.string());
+}
+
+void MemoryFiles::rename(const std::filesystem::path& from, const std::filesystem::path& to) {
+  contents_[to.string()] = contents_.at(from.string());
+  contents_.erase(from.string());
+}
+
+void MemoryFiles::put(const std::string& name, Bytes content) {
+  contents_[name] = std::make_shared<Bytes>(std::move(content));
+}
+
+namespace {
+
+void read_vertices(MeshSource& source, ReadMesh& mesh) {
+  const MeshDescription& about = source.description();
+  const auto channels = static_cast<std::size_t>(about.attributes.channels());
+  source.read_vertices([&](const VertexBlock& block) {
+    const std::size_t count = std::max(block.positions.size(), block.exact.size());
+    EXPECT_EQ(block.first, mesh.positions.size());
+    EXPECT_GT(count, 0U);
+    EXPECT_LE(count, MeshSource::kBlockSize);
+    EXPECT_TRUE(about.wide_coordinates ? block.positions.empty() : block.exact.empty());
+    EXPECT_EQ(block.attributes.size(), count * channels);
+    for (const Vec3f& p : block.positions)
+      mesh.positions.push_back(to_double(p));
+    mesh.positions.insert(mesh.positions.end(), block.exact.begin(), block.exact.end());
+    mesh.attributes.insert(mesh.attributes.end(), block.attributes.begin(), block.attributes.end());
+  });
+  EXPECT_EQ(mesh.positions.size(), about.vertex_count);
+}
+
+void read_triangles(MeshSource& source, ReadMesh& mesh) {
+  mesh.counts = source.read_triangles([&](std::span<const SourceTriangle> block) {
+    EXPECT_GT(block.size(), 0U);
+    EXPECT_LE(block.size(), MeshSource::kBlockSize);
+    for (const SourceTriangle& t : block) {
+      for (const VertexId corner : t)
+        EXPECT_LT(raw(corner), source.description().vertex_count);
+      mesh.triangles.push_back({raw(t[0]), raw(t[1]), raw(t[2])});
+    }
+  });
+  EXPECT_EQ(mesh.counts.triangles, mesh.triangles.size());
+  EXPECT_EQ(mesh.counts.faces, source.description().face_count);
+}
+
+}  // namespace
+
+ReadMesh read_mesh(MeshSource& source) {
+  ReadMesh mesh;
+  mesh.description = source.description();
+  read_vertices(source, mesh);
+  read_triangles(source, mesh);
+  ReadMesh again;
+  read_triangles(source, again);
+  read_vertices(source, again);
+  EXPECT_EQ(again.positions, mesh.positions);
+  EXPECT_EQ(again.attributes, mesh.attributes);
+  EXPECT_EQ(again.triangles, mesh.triangles);
+  return mesh;
+}
+
+ReadMesh read_bytes(const Bytes& bytes) {
+  MemoryFiles files;
+  files.put(std::string(kFileName), bytes);
+  return read_mesh(*open_mesh(files, kFileName));
+}
+
+std::string error_of(const Bytes& bytes) {
+  try {
+    read_bytes(bytes);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::input) << error.what();
+    EXPECT_TRUE(std::string(error.what()).starts_with(std::string(kFileName) + ": "))
+        << error.what();
+    return error.what();
+  }
+  ADD_FAILURE() << "expected an error, found none";
+  return {};
+}
+
+PlyText::PlyText(PlyEncoding encoding, std::string line_end)
+    : encoding_(encoding), line_end_(std::move(line_end)) {
+  constexpr std::string_view kNames[] = {"ascii", "binary_little_endian", "binary_big_endian"};
+  line("ply");
+  line(fmt::format("format {} 1.0", kNames[static_cast<std::size_t>(encoding)]));
+}
+
+PlyText& PlyText::line(const std::string& text) {
+  bytes_ += text + line_end_;
+  return *this;
+}
+
+PlyText& PlyText::end_header() {
+  return line("end_header");
+}
+
+namespace {
+
+template <class T>
+void append_raw(Bytes& bytes, double number, bool big) {
+  auto raw_bytes = std::bit_cast<std::array<char, sizeof(T)>>(static_cast<T>(number));
+  if (big != (std::endian::native == std::endian::big)) {
+    std::reverse(raw_bytes.begin(), raw_bytes.end());
+  }
+  bytes.append(raw_bytes.data(), raw_bytes.size());
+}
+
+}  // namespace
+
+PlyText& PlyText::value(PlyType type, double number) {
+  if (encoding_ == PlyEncoding::ascii) {
+    if (row_begun_)
+      bytes_ += ' ';
+    row_begun_ = true;
+    bytes_ += type == PlyType::f32 ? fmt::format("{}", static_cast<float>(number))
+                                   : fmt::format("{}", number);
+    return *this;
+  }
+  const bool big = encoding_ == PlyEncoding::big_endian;
+  using Append = void (*)(Bytes&, double, bool);
+  constexpr Append kAppend[] = {append_raw<std::int8_t>,  append_raw<std::uint8_t>,
+                                append_raw<std::int16_t>, append_raw<std::uint16_t>,
+                                append_raw<std::int32_t>, append_raw<std::uint32_t>,
+                                append_raw<float>,        append_raw<double>};
+  kAppend[static_cast<std::size_t>(type)](bytes_, number, big);
+  return *this;
+}
+
+PlyText& PlyText::end_row() {
+  if (encoding_ == PlyEncoding::ascii)
+    bytes_ += line_end_;
+  row_begun_ = false;
+  return *this;
+}
+
+PlyText& PlyText::row(PlyType type, std::initializer_list<double> numbers) {
+  for (const double number : numbers)
+    value(type, number);
+  return end_row();
+}
+
+PlyText& PlyText::list(PlyType count, PlyType item, std::initializer_list<double> numbers) {
+  value(count, static_cast<double>(numbers.size()));
+  for (const double number : numbers)
+    value(item, number);
+  return end_row();
+}
+
+Bytes tetrahedron(PlyEncoding encoding, PlyType coordinate, PlyType count, PlyType index) {
+  PlyText ply(encoding);
+  ply.line("element vertex 4");
+  for (const char axis : {'x', 'y', 'z'}) {
+    ply.line(fmt::format("property {} {}", name_of(coordinate), axis));
+  }
+  ply.line("element face 4");
+  ply.line(fmt::format("property list {} {} vertex_indices", name_of(count), name_of(index)));
+  ply.end_header();
+  ply.row(coordinate, {1, 2, 3}).row(coordinate, {10, 2, 3});
+  ply.row(coordinate, {1, 20, 3}).row(coordinate, {1, 2, 30});
+  ply.list(count, index, {0, 2, 1}).list(count, index, {0, 1, 3});
+  ply.list(count, index, {1, 2, 3}).list(count, index, {2, 0, 3});
+  return ply.bytes();
+}
+
+}  // namespace meshhier::mesh_io::tests

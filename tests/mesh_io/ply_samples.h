@@ -1,0 +1,93 @@
+// PLY files made in code, files that live in memory, and what a mesh source says of them.
+#pragma once
+
+#include "mesh_io/mesh_source.h"
+#include "mesh_io/ply_header.h"
+#include "storage/file.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace meshhier::mesh_io::tests {
+
+using Bytes = std::string;
+
+/// A file system whose files are strings. Only what readers and writers use is there.
+class MemoryFiles final : public storage::FileSystem {
+ public:
+  std::unique_ptr<storage::File> open(const std::filesystem::path& path) override;
+  std::unique_ptr<storage::File> create(const std::filesystem::path& path) override;
+  bool exists(const std::filesystem::path& path) override;
+  void make_directories(const std::filesystem::path&) override {}
+  void remove_all(const std::filesystem::path& path) override;
+  void rename(const std::filesystem::path& from, const std::filesystem::path& to) override;
+  void sync_tree(const std::filesystem::path&) override {}
+  std::uint64_t free_bytes(const std::filesystem::path&) override { return 0; }
+
+  void put(const std::string& name, Bytes content);
+  const Bytes& content(const std::string& name) const { return *contents_.at(name); }
+
+ private:
+  std::map<std::string, std::shared_ptr<Bytes>> contents_;
+};
+
+/// The name every file of read_bytes() has.
+inline constexpr std::string_view kFileName = "mesh.ply";
+
+/// Everything a source hands out.
+struct ReadMesh {
+  MeshDescription description;
+  std::vector<Vec3d> positions;  ///< floats widened
+  std::vector<float> attributes;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  FaceCounts counts;
+};
+
+/// Reads vertices, then triangles, then both again, and checks that both times agree, that blocks
+/// are within their size and consecutive, and that positions are in the right span.
+ReadMesh read_mesh(MeshSource& source);
+ReadMesh read_bytes(const Bytes& bytes);
+
+/// The message of the Error(input) that reading throws; fails the test if there is none.
+std::string error_of(const Bytes& bytes);
+
+/// Writes PLY data value by value in any encoding. In text every row ends with `line_end`.
+class PlyText {
+ public:
+  explicit PlyText(PlyEncoding encoding, std::string line_end = "\n");
+
+  PlyText& line(const std::string& text);  ///< of the header
+  PlyText& end_header();
+  PlyText& value(PlyType type, double number);
+  PlyText& end_row();
+  /// All values of one type in one row.
+  PlyText& row(PlyType type, std::initializer_list<double> numbers);
+  /// A row with one list.
+  PlyText& list(PlyType count, PlyType item, std::initializer_list<double> numbers);
+
+  const Bytes& bytes() const { return bytes_; }
+
+ private:
+  PlyEncoding encoding_;
+  std::string line_end_;
+  bool row_begun_ = false;
+  Bytes bytes_;
+};
+
+inline constexpr PlyEncoding kEncodings[] = {PlyEncoding::ascii, PlyEncoding::little_endian,
+                                             PlyEncoding::big_endian};
+inline constexpr PlyType kTypes[] = {PlyType::i8,  PlyType::u8,  PlyType::i16, PlyType::u16,
+                                     PlyType::i32, PlyType::u32, PlyType::f32, PlyType::f64};
+
+/// A tetrahedron: 4 vertices of small whole coordinates, 4 triangles.
+Bytes tetrahedron(PlyEncoding encoding, PlyType coordinate = PlyType::f32,
+                  PlyType count = PlyType::u8, PlyType index = PlyType::i32);
+
+}  // namespace meshhier::mesh_io::tests

@@ -1,0 +1,175 @@
+#include "mesh_io/ply_writer.h"
+
+#include "hierarchy/error.h"
+#include "ply_samples.h"
+
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace meshhier::mesh_io::tests {
+namespace {
+
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+/// `count` vertices with exactly representable numbers, and a strip-like chain of triangles.
+struct Sample {
+  explicit Sample(std::uint32_t count, const AttributeLayout& layout) {
+    const auto channels = static_cast<std::uint32_t>(layout.channels());
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const auto v = static_cast<float>(i);
+      positions.push_back({v * 0.25F, -v, 1e10F + v});
+      for (std::uint32_t c = 0; c < channels; ++c) {
+        attributes.push_back(static_cast<float>((i * 7 + c) % 256));
+      }
+      if (i >= 2)
+        triangles.push_back({i - 2, i - 1, i});
+    }
+  }
+  std::vector<Vec3f> positions;
+  std::vector<float> attributes;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+AttributeLayout everything(ColourType colour) {
+  AttributeLayout layout;
+  layout.normals = true;
+  layout.colour = colour;
+  layout.alpha = colour != ColourType::none;
+  layout.texcoords = true;
+  return layout;
+}
+
+TEST(PlyWriter, WhatIsWrittenIsReadBack) {
+  for (const ColourType colour :
+       {ColourType::none, ColourType::u8, ColourType::u16, ColourType::f32}) {
+    PlyContent content;
+    content.attributes = everything(colour);
+    const Sample sample(100'000, content.attributes);  // several buffers
+    content.vertex_count = sample.positions.size();
+    content.triangle_count = sample.triangles.size();
+    MemoryFiles files;
+    PlyWriter writer(files, "out.ply", content);
+    const auto channels = static_cast<std::size_t>(content.attributes.channels());
+    const std::span<const Vec3f> positions(sample.positions);
+    const std::span<const float> attributes(sample.attributes);
+    writer.write_vertices(positions.first(1), attributes.first(channels));
+    writer.write_vertices(positions.subspan(1), attributes.subspan(channels));
+    writer.write_triangles(sample.triangles);
+    writer.finish();
+    const ReadMesh mesh = read_mesh(*open_mesh(files, "out.ply"));
+    EXPECT_EQ(mesh.description.attributes, content.attributes);
+    EXPECT_EQ(mesh.description.format, "PLY binary little endian");
+    EXPECT_FALSE(mesh.description.wide_coordinates);
+    EXPECT_EQ(mesh.attributes, sample.attributes);
+    EXPECT_EQ(mesh.triangles, sample.triangles);
+    ASSERT_EQ(mesh.positions.size(), sample.positions.size());
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+      ASSERT_EQ(mesh.positions[i], to_double(sample.positions[i]));
+    }
+  }
+}
+
+TEST(PlyWriter, DoubleCoordinatesAreExact) {
+  PlyContent content;
+  content.vertex_count = 2;
+  content.double_coordinates = true;
+  MemoryFiles files;
+  PlyWriter writer(files, "out.ply", content);
+  const std::vector<Vec3d> exact{{1.0 / 3, 1e300, -4321987.123456789}};
+  const std::vector<Vec3f> single{{0.1F, 2, 3}};
+  writer.write_vertices(exact, {});
+  writer.write_vertices(single, {});
+  writer.finish();
+  const ReadMesh mesh = read_mesh(*open_mesh(files, "out.ply"));
+  EXPECT_TRUE(mesh.description.wide_coordinates);
+  EXPECT_EQ(mesh.positions, (std::vector<Vec3d>{exact[0], to_double(single[0])}));
+}
+
+TEST(PlyWriter, HeaderAndBytes) {
+  PlyContent content;
+  content.vertex_count = 1;
+  content.edge_count = 1;
+  content.comments = {"one", "two\nelement vertex 9\rx"};
+  content.attributes.colour = ColourType::u8;
+  MemoryFiles files;
+  PlyWriter writer(files, "out.ply", content);
+  const std::vector<Vec3f> positions{{1, 2, 3}};
+  const std::vector<float> colours{0, 127.5F, 300};
+  const std::vector<std::array<std::uint32_t, 2>> edges{{0, 258}};
+  writer.write_vertices(positions, colours);
+  writer.write_triangles({});
+  writer.write_edges(edges);
+  writer.finish();
+  const std::string header =
+      "ply\nformat binary_little_endian 1.0\ncomment one\ncomment two element vertex 9 x\n"
+      "element vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+      "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+      "element face 0\nproperty list uchar int vertex_indices\n"
+      "element edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n";
+  const std::string data("\0\0\x80\x3f\0\0\0\x40\0\0\x40\x40\0\x80\xff\0\0\0\0\x02\x01\0\0", 23);
+  EXPECT_EQ(files.content("out.ply"), header + data);
+}
+
+TEST(PlyWriter, ManyVerticesNeedUnsignedIndices) {
+  PlyContent content;
+  content.vertex_count = (std::uint64_t{1} << 31) - 1;
+  MemoryFiles files;
+  { PlyWriter writer(files, "int.ply", content); }
+  EXPECT_THAT(files.content("int.ply"), HasSubstr("property list uchar int vertex_indices"));
+  content.vertex_count += 1;
+  { PlyWriter writer(files, "uint.ply", content); }
+  EXPECT_THAT(files.content("uint.ply"), HasSubstr("property list uchar uint vertex_indices"));
+}
+
+TEST(PlyWriter, AFullDiskIsAnIoError) {
+  class FullFile final : public storage::File {
+   public:
+    FullFile() : File("full.ply") {}
+    std::uint64_t size() const override { return 0; }
+    void sync() override {}
+
+   protected:
+    std::size_t read_some(std::uint64_t, std::span<std::byte>) const override { return 0; }
+    std::size_t write_some(std::uint64_t offset, std::span<const std::byte> bytes) override {
+      if (offset + bytes.size() > 4096)
+        throw Error(ErrorCode::io, "disk full");
+      return bytes.size();
+    }
+  };
+  class FullFiles final : public storage::FileSystem {
+   public:
+    std::unique_ptr<storage::File> open(const std::filesystem::path&) override {
+      return create("");
+    }
+    std::unique_ptr<storage::File> create(const std::filesystem::path&) override {
+      return std::make_unique<FullFile>();
+    }
+    bool exists(const std::filesystem::path&) override { return false; }
+    void make_directories(const std::filesystem::path&) override {}
+    void remove_all(const std::filesystem::path&) override {}
+    void rename(const std::filesystem::path&, const std::filesystem::path&) override {}
+    void sync_tree(const std::filesystem::path&) override {}
+    std::uint64_t free_bytes(const std::filesystem::path&) override { return 0; }
+  };
+  PlyContent content;
+  content.vertex_count = 1000;
+  FullFiles files;
+  PlyWriter writer(files, "full.ply", content);
+  writer.write_vertices(std::vector<Vec3f>(1000), {});
+  writer.write_triangles({});
+  try {
+    writer.finish();
+    FAIL() << "expected an error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::io);
+  }
+}
+
+}  // namespace
+}  // namespace meshhier::mesh_io::tests
