@@ -9,9 +9,7 @@
 #include <functional>
 #include <iosfwd>
 
-namespace CLI {
-class App;
-}
+#include <CLI/CLI.hpp>
 
 namespace meshhier::app {
 

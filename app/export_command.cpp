@@ -47,8 +47,8 @@ int run_export(const ExportArguments& arguments, pipeline::ProgressMode mode,
 }
 
 constexpr const char* kFooter =
-    R"(A cut file lists nodes, one LEVEL/INDEX a line (# begins a comment), or as a JSON list; together they must cover
-every partition once. The pieces are joined without seams.
+    R"(A cut file lists nodes, one LEVEL/INDEX a line (# begins a comment), or as a JSON list; together
+they must cover every partition once. The pieces are joined without seams.
 
 Examples:
   meshhier export david.hier --level 0 -o whole.ply

@@ -24,14 +24,15 @@ namespace meshhier::app {
 namespace {
 
 constexpr const char* kDescription =
-    R"(meshhier makes a hierarchy from one huge triangle mesh: a directory of tiles of about equal size, from a coarse view
-of the whole model down to the original triangles, for viewers that load what the user looks at.)";
+    R"(meshhier makes a hierarchy from one huge triangle mesh: a directory of tiles of about equal
+size, from a coarse view of the whole model down to the original triangles, for viewers that load
+what the user looks at.)";
 
 constexpr const char* kFooter = R"(Examples:
-  meshhier build david.json                              make the hierarchy that david.json describes
-  meshhier inspect david.hier                            what is in it
-  meshhier verify david.hier --input david.ply           prove that it is sound and holds the input exactly
-  meshhier export david.hier --level 0 -o whole.ply      the coarse view of the whole model
+  meshhier build david.json                          make the hierarchy that david.json describes
+  meshhier inspect david.hier                        what is in it
+  meshhier verify david.hier --input david.ply       prove that it holds the input exactly
+  meshhier export david.hier --level 0 -o whole.ply  the coarse view of the whole model
 
 "meshhier COMMAND --help" tells more.
 

@@ -54,8 +54,9 @@ int run_verify(VerifyArguments arguments, pipeline::ProgressMode mode, Environme
 }
 
 constexpr const char* kFooter =
-    R"(Checks every file's checksum, the structure, and the seams of random cuts; with --input also that the
-partitions are that mesh, vertex by vertex and triangle by triangle. Exit code 7 if there is a problem.
+    R"(Checks every file's checksum, the structure, and the seams of random cuts; with --input also that
+the partitions are that mesh, vertex by vertex and triangle by triangle. Exit code 7 if there is a
+problem.
 
 Examples:
   meshhier verify david.hier

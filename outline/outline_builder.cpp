@@ -1,5 +1,6 @@
 #include "outline/outline_builder.h"
 
+#include "hierarchy/error.h"
 #include "outline/polyline.h"
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <cassert>
 #include <numeric>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -29,20 +31,12 @@ struct Corner {
 using CornerTriangle = std::array<Corner, 3>;
 using CornerEdge = std::array<Corner, 2>;
 
-/// A point of a line: a vertex (v, v, v), an edge's midpoint (a, b, b) or a triangle's centroid
-/// (a, b, c), corners ascending.
+/// A point of a sector line: an edge's midpoint (a, b, b) or a triangle's centroid (a, b, c),
+/// corners ascending.
 struct Point {
   std::array<VertexKey, 3> key;
   Vec3f position;
 };
-
-struct Segment {
-  Point a, b;
-};
-
-Point vertex_point(const Corner& v) {
-  return {{v.key, v.key, v.key}, v.position};
-}
 
 Point midpoint(const CornerEdge& e) {
   const Vec3d sum = to_double(e[0].position) + to_double(e[1].position);
@@ -122,29 +116,35 @@ std::vector<std::array<std::uint32_t, 2>> own_border_edges(const TileMesh& tile)
   return result;
 }
 
+/// A piece of a sector line.
+struct LinePiece {
+  Point a, b;
+};
+
 /// The line through one border triangle, which has two or three crossing edges.
-void add_sector_line(const CornerTriangle& triangle, std::vector<Segment>& segments) {
+void add_sector_line(const CornerTriangle& triangle, std::vector<LinePiece>& pieces) {
   std::vector<Point> crossings;
   for (const CornerEdge& edge : edges_of(triangle)) {
     if (is_crossing(edge))
       crossings.push_back(midpoint(edge));
   }
   if (crossings.size() == 2)
-    return segments.push_back({crossings[0], crossings[1]});
+    return pieces.push_back({crossings[0], crossings[1]});
   for (const Point& crossing : crossings)
-    segments.push_back({crossing, centroid(triangle)});
+    pieces.push_back({crossing, centroid(triangle)});
 }
 
 /// A triangle and its duplicates or mirror images make one line.
-void add_sector_lines(std::span<const CornerTriangle> sorted, std::vector<Segment>& segments) {
+std::vector<LinePiece> sector_lines(std::span<const CornerTriangle> sorted) {
+  std::vector<LinePiece> pieces;
   for_each_run(sorted,
-               [&](std::size_t first, std::size_t) { add_sector_line(sorted[first], segments); });
+               [&](std::size_t first, std::size_t) { add_sector_line(sorted[first], pieces); });
+  return pieces;
 }
 
-/// Crossing edges that exactly one triangle has.
-void add_crossing_borders(std::span<const CornerTriangle> triangles,
-                          std::vector<Segment>& segments) {
-  std::vector<CornerEdge> edges;
+/// Crossing edges that exactly one triangle has, ascending.
+std::vector<CornerEdge> crossing_borders(std::span<const CornerTriangle> triangles) {
+  std::vector<CornerEdge> edges, result;
   for (const CornerTriangle& t : triangles) {
     for (const CornerEdge& edge : edges_of(t)) {
       if (is_crossing(edge))
@@ -153,52 +153,126 @@ void add_crossing_borders(std::span<const CornerTriangle> triangles,
   }
   std::sort(edges.begin(), edges.end(), before<2>);
   for_each_run(std::span<const CornerEdge>(edges), [&](std::size_t first, std::size_t last) {
-    if (last - first > 1)
-      return;
-    segments.push_back({vertex_point(edges[first][0]), midpoint(edges[first])});
-    segments.push_back({midpoint(edges[first]), vertex_point(edges[first][1])});
+    if (last - first == 1)
+      result.push_back(edges[first]);
   });
+  return result;
 }
 
-/// Segments of numbered points; numbers ascend with the points' keys.
-struct Network {
+/// A sector's part of the mesh's own borders, small for soups that are nothing but borders: the rim
+/// (where crossing borders end), then the other vertices on own border edges, ascending.
+struct SectorBorder {
+  std::uint32_t sector = 0;
+  std::uint32_t rim_count = 0;
   std::vector<Vec3f> positions;
-  std::vector<std::array<std::uint32_t, 2>> segments;
+  std::vector<std::array<std::uint32_t, 2>> edges;  ///< of positions
+};
 
-  explicit Network(const std::vector<Segment>& loose) : segments(loose.size()) {
-    /// An end of a segment, to be numbered.
-    struct End {
-      const Point* point;
-      std::uint32_t* number;
-    };
-    std::vector<End> ends;
-    ends.reserve(2 * loose.size());
-    for (std::size_t s = 0; s < loose.size(); ++s) {
-      ends.push_back({&loose[s].a, &segments[s][0]});
-      ends.push_back({&loose[s].b, &segments[s][1]});
+SectorBorder border_of(std::uint32_t sector, const TileMesh& tile) {
+  SectorBorder border{sector, tile.rim_count, {}, own_border_edges(tile)};
+  std::vector<std::uint32_t> number(tile.own_count, 0);
+  for (const auto& edge : border.edges) {
+    for (const std::uint32_t vertex : edge)
+      number[vertex] = 1;
+  }
+  for (std::uint32_t vertex = 0; vertex < tile.own_count; ++vertex) {
+    if (number[vertex] == 0 && vertex >= tile.rim_count)
+      continue;
+    number[vertex] = static_cast<std::uint32_t>(border.positions.size());
+    border.positions.push_back(tile.vertices.positions[vertex]);
+  }
+  for (auto& [a, b] : border.edges) {
+    a = number[a];
+    b = number[b];
+  }
+  return border;
+}
+
+/// Segments of numbered points: first the vertices by sector and index, then the points of sector
+/// lines by key. Needs the vertices first, then the pieces of lines, then the crossing borders.
+class Network {
+ public:
+  /// `borders`: by ascending sector.
+  explicit Network(std::span<const SectorBorder* const> borders) {
+    for (const SectorBorder* border : borders) {
+      const std::uint32_t base = count();
+      sectors_.push_back({border->sector, border->rim_count, base});
+      positions_.insert(positions_.end(), border->positions.begin(), border->positions.end());
+      for (const auto& [a, b] : border->edges)
+        segments_.push_back({base + a, base + b});
     }
-    std::sort(ends.begin(), ends.end(),
-              [](const End& x, const End& y) { return x.point->key < y.point->key; });
-    for (std::size_t i = 0; i < ends.size(); ++i) {
-      if (i == 0 || ends[i].point->key != ends[i - 1].point->key) {
-        positions.push_back(ends[i].point->position);
-      }
-      *ends[i].number = static_cast<std::uint32_t>(positions.size() - 1);
+    vertex_count_ = count();
+  }
+
+  void add_lines(std::span<const LinePiece> pieces) {
+    std::vector<const Point*> points;
+    for (const LinePiece& piece : pieces)
+      points.insert(points.end(), {&piece.a, &piece.b});
+    std::sort(points.begin(), points.end(),
+              [](const Point* x, const Point* y) { return x->key < y->key; });
+    for (const Point* point : points) {
+      if (!keys_.empty() && keys_.back() == point->key)
+        continue;
+      keys_.push_back(point->key);
+      positions_.push_back(point->position);
+    }
+    for (const LinePiece& piece : pieces) {
+      segments_.push_back({number_of(piece.a), number_of(piece.b)});
     }
   }
+
+  void add_crossing_borders(std::span<const CornerEdge> edges) {
+    for (const CornerEdge& edge : edges) {
+      const std::uint32_t middle = number_of(midpoint(edge));
+      segments_.push_back({number_of(edge[0].key), middle});
+      segments_.push_back({number_of(edge[1].key), middle});
+    }
+  }
+
+  std::uint32_t count() const { return static_cast<std::uint32_t>(positions_.size()); }
+  std::span<const Vec3f> positions() const { return positions_; }
+  std::span<const std::array<std::uint32_t, 2>> segments() const { return segments_; }
+
+ private:
+  struct Sector {
+    std::uint32_t sector, rim_count, base;
+  };
+
+  std::uint32_t number_of(const Point& point) const {
+    const auto found = std::lower_bound(keys_.begin(), keys_.end(), point.key);
+    return vertex_count_ + static_cast<std::uint32_t>(found - keys_.begin());
+  }
+
+  /// Of a vertex that a border triangle uses: its sector's rim has it.
+  std::uint32_t number_of(VertexKey vertex) const {
+    const auto found =
+        std::lower_bound(sectors_.begin(), sectors_.end(), sector_of(vertex),
+                         [](const Sector& s, std::uint32_t sector) { return s.sector < sector; });
+    const auto index = static_cast<std::uint32_t>(vertex);
+    if (found != sectors_.end() && found->sector == sector_of(vertex) && index < found->rim_count) {
+      return found->base + index;
+    }
+    throw Error(ErrorCode::internal,
+                "outline: a border triangle uses vertex " + std::to_string(index) + " of sector " +
+                    std::to_string(sector_of(vertex)) + ", which is not in that sector's rim");
+  }
+
+  std::vector<Sector> sectors_;
+  std::vector<Vec3f> positions_;
+  std::vector<std::array<std::uint32_t, 2>> segments_;
+  std::uint32_t vertex_count_ = 0;
+  std::vector<std::array<VertexKey, 3>> keys_;  ///< of the points after the vertices
 };
 
 /// All chains with the significance of their points, to be cut to any tolerance.
 class Lines {
  public:
-  /// `least`: the smallest tolerance that will be asked for, input units.
+  /// `least`: the smallest tolerance that will be asked for, input units. `network` must outlive
+  /// it.
   Lines(const Network& network, double least)
-      : chains_(
-            trace_chains(static_cast<std::uint32_t>(network.positions.size()), network.segments)) {
-    points_.reserve(chains_.nodes.size());
+      : positions_(network.positions()),
+        chains_(trace_chains(network.count(), network.segments())) {
     significance_.reserve(chains_.nodes.size());
-    for (std::uint32_t node : chains_.nodes)
-      points_.push_back(network.positions[node]);
     for (std::size_t chain = 0; chain < chains_.size(); ++chain) {
       const std::span<const std::uint32_t> nodes = chains_[chain];
       const std::vector<double> values =
@@ -220,7 +294,7 @@ class Lines {
   void append_to(Outline& outline, std::size_t chain, double tolerance) const {
     for (std::uint32_t i = chains_.starts[chain]; i < chains_.starts[chain + 1]; ++i) {
       if (significance_[i] > tolerance)
-        outline.vertices.push_back(points_[i]);
+        outline.vertices.push_back(positions_[chains_.nodes[i]]);
     }
     outline.starts.push_back(static_cast<std::uint32_t>(outline.vertices.size()));
   }
@@ -238,14 +312,17 @@ class Lines {
   }
 
  private:
-  std::span<const Vec3f> points_of(std::size_t chain) const {
-    return std::span(points_).subspan(chains_.starts[chain],
-                                      chains_.starts[chain + 1] - chains_.starts[chain]);
+  std::vector<Vec3f> points_of(std::size_t chain) const {
+    std::vector<Vec3f> points;
+    points.reserve(chains_[chain].size());
+    for (const std::uint32_t node : chains_[chain])
+      points.push_back(positions_[node]);
+    return points;
   }
 
+  std::span<const Vec3f> positions_;
   Chains chains_;
-  std::vector<Vec3f> points_;         ///< of chains_.nodes
-  std::vector<double> significance_;  ///< likewise
+  std::vector<double> significance_;  ///< of chains_.nodes
 };
 
 /// Which chains an outline is made of, with which tolerance.
@@ -296,7 +373,7 @@ Selection select(const Lines& lines, const OutlineOptions& options) {
 
 struct OutlineBuilder::Parts {
   std::vector<CornerTriangle> triangles;  ///< border triangles, each once
-  std::vector<CornerEdge> border_edges;   ///< the mesh's own, within one sector
+  std::vector<SectorBorder> borders;
 };
 
 OutlineBuilder::OutlineBuilder() : parts_(std::make_unique<Parts>()) {}
@@ -321,23 +398,23 @@ void OutlineBuilder::add(std::uint32_t index, const TileMesh& tile) {
     if (sector_of(triangle[0].key) == index)
       parts_->triangles.push_back(triangle);
   }
-  for (const auto& [low, high] : own_border_edges(tile)) {
-    parts_->border_edges.push_back({corner(low), corner(high)});
-  }
+  parts_->borders.push_back(border_of(index, tile));
 }
 
 OutlineResult OutlineBuilder::finish(const OutlineOptions& options) const {
   assert(options.tolerance > 0 && options.diagonal >= 0);
   std::vector<CornerTriangle> triangles = parts_->triangles;
   std::sort(triangles.begin(), triangles.end(), before<3>);
-  std::vector<Segment> segments;
-  add_sector_lines(triangles, segments);
-  add_crossing_borders(triangles, segments);
-  for (const CornerEdge& e : parts_->border_edges) {
-    segments.push_back({vertex_point(e[0]), vertex_point(e[1])});
-  }
+  std::vector<const SectorBorder*> borders;
+  for (const SectorBorder& border : parts_->borders)
+    borders.push_back(&border);
+  std::sort(borders.begin(), borders.end(),
+            [](const auto* a, const auto* b) { return a->sector < b->sector; });
 
-  const Lines lines(Network(segments), options.tolerance * options.diagonal);
+  Network network(borders);
+  network.add_lines(sector_lines(triangles));
+  network.add_crossing_borders(crossing_borders(triangles));
+  const Lines lines(network, options.tolerance * options.diagonal);
   const Selection selection = select(lines, options);
   OutlineResult result;
   result.tolerance = selection.tolerance;

@@ -8,10 +8,10 @@
 namespace meshhier::partition {
 namespace {
 
-// A split is judged on at most so many points and triangles, a hashed choice of the node's. Enough for the
-// cut's length to within some percent, few enough that judging costs no more than the median itself.
-constexpr std::size_t kJudgedPoints = 4096;
-constexpr std::size_t kJudgedTriangles = 16384;
+// A split is judged on at most about so many points and triangles, a hashed choice of the node's. On the dragon's 128
+// partitions mean compactness is 3.93 with 4096 and 16384, 3.82 with these, 3.81 with all, which takes a quarter longer.
+constexpr std::size_t kJudgedPoints = 16384;
+constexpr std::size_t kJudgedTriangles = 65536;
 
 using LocalTriangle = std::array<std::uint32_t, 3>;
 

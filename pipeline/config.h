@@ -26,6 +26,8 @@ struct NamedValue {
   std::string_view name;
   Enum value;
 };
+template <class Enum>
+NamedValue(std::string_view, Enum) -> NamedValue<Enum>;
 
 /// How a node's split direction is chosen.
 using AxisRule = partition::Axis;

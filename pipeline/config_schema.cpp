@@ -94,10 +94,11 @@ template <class Field>
 ConfigKey number(std::string path, Limits limits, Field field) {
   using Member = std::remove_reference_t<decltype(field(std::declval<Config&>()))>;
   using Value = typename Unwrapped<Member>::Type;
-  ConfigKey key{.path = std::move(path),
-                .kind = std::is_integral_v<Value> ? KeyKind::integer : KeyKind::number,
-                .minimum = limits.minimum,
-                .maximum = limits.maximum};
+  ConfigKey key;
+  key.path = std::move(path);
+  key.kind = std::is_integral_v<Value> ? KeyKind::integer : KeyKind::number;
+  key.minimum = limits.minimum;
+  key.maximum = limits.maximum;
   key.assign = [field](Config& config, const Json& value) {
     field(config) = static_cast<Value>(value.get<double>());
   };

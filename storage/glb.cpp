@@ -32,7 +32,7 @@ constexpr std::uint32_t kBinChunk = 0x004E4942;
 constexpr std::size_t kHeaderBytes = 12;
 constexpr std::size_t kChunkHeaderBytes = 8;
 
-/// A tile's JSON has about 3 kB, whatever the tile; 20 times that is surely not one of ours.
+/// A tile's JSON has 1 to 2 kB, whatever the tile; 30 times that is surely not one of ours.
 constexpr std::size_t kMaxJsonBytes = 64 * 1024;
 
 /// The published files nest 8 levels; a config within the manifest some more.

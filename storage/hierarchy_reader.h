@@ -14,7 +14,8 @@
 namespace meshhier::storage {
 
 /// Every failure throws Error: io if a file is missing or unreadable, corrupt if its size, checksum
-/// or content is wrong; the message starts with the file's path. Thread-safe once constructed.
+/// or content is wrong; the message names the file. Thread-safe once constructed, as far as `files`
+/// is, which must outlive it.
 class HierarchyReader {
  public:
   /// Reads manifest and index.
@@ -32,6 +33,7 @@ class HierarchyReader {
 
   /// Reads one tile, checks its size and checksum, and that its counts are those of the index.
   PublishedTile read_tile(NodeId node) const;
+  /// Reads the outline, checks its size and checksum.
   Outline read_outline() const;
 
  private:

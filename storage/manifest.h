@@ -18,25 +18,28 @@ inline constexpr int kFormatVersion = 1;
 struct Manifest {
   std::string generator;  ///< "meshhier 0.1.0"
   SourceSummary source;
-  Vec3d origin;  ///< add to every stored position
-  bool unit_normals = true;
+  Vec3d origin;              ///< add to every stored position
+  bool unit_normals = true;  ///< all input normals are is_unit_normal() (tile_glb.h)
   std::uint32_t partition_count = 0;
-  nlohmann::ordered_json
-      config;  ///< resolved: what decides the result (not budget, threads, paths)
+  /// An object: the resolved config, what decides the result (not budget, threads, paths).
+  nlohmann::ordered_json config;
   std::uint64_t index_bytes = 0;
   std::uint64_t index_checksum = 0;  ///< XXH3-64 of tiles.bin
   std::uint64_t outline_bytes = 0;
   std::uint64_t outline_checksum = 0;  ///< XXH3-64 of outline.glb
   OutlineReport outline;
-  nlohmann::ordered_json
-      levels;  ///< the level table, for people and scripts; derived from tiles.bin
+  /// An array: the level table, for people and scripts; derived from tiles.bin.
+  nlohmann::ordered_json levels;
   std::uint64_t total_bytes = 0;  ///< of tiles, index and outline
 };
 
+/// Deterministic; ends with a checksum of the text. What is no UTF-8 in texts becomes U+FFFD.
+/// Requires finite numbers.
 std::string to_json_text(const Manifest& manifest);
 
-/// Throws Error(corrupt) that starts with `name`, and says which key is missing or wrong; a newer
-/// format version is refused by its number.
+/// The inverse of to_json_text, on text nobody vouches for. Throws Error(corrupt) that starts with
+/// `name`, and says which key is missing or wrong, or that the text was changed; a newer format
+/// version is refused by its number.
 Manifest parse_manifest(const std::string& text, const std::string& name);
 
 }  // namespace meshhier::storage

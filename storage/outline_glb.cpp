@@ -30,8 +30,9 @@ constexpr unsigned kLines = 1;
 /// Up to so many vertices indices take 16 bits: 65535 is no index, it restarts primitives.
 constexpr std::size_t kMaxShortVertices = 65535;
 
-/// Every outline's JSON is padded to this, so that the size follows from the counts. It has 711
-/// bytes besides 9 numbers of up to 24 characters (box, origin) and 9 counts of up to 10.
+/// Every outline's JSON is padded to this, so that the size follows from the counts. With the
+/// longest coordinates and origin it has 856 bytes plus what the 8 counts add to one digit each: at
+/// most 9 to 12, together 90.
 constexpr std::size_t kJsonBytes = 1024;
 
 // The BIN chunk, v vertices and s segments:

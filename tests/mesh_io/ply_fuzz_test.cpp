@@ -76,14 +76,10 @@ TEST(PlyFuzz, TruncatedAtEveryByte) {
   for (const PlyEncoding encoding : kEncodings) {
     for (const Bytes& seed : seeds(encoding)) {
       ASSERT_EQ(outcome_of(seed), Outcome::valid);
-      // Text may lose its last line end, and the last number digits, and still be a mesh.
-      const std::size_t tail = encoding == PlyEncoding::ascii ? 1 : 0;
-      for (std::size_t size = 0; size + tail < seed.size(); ++size) {
-        if (encoding == PlyEncoding::ascii && outcome_of(seed.substr(0, size)) == Outcome::valid) {
-          ADD_FAILURE() << "read although cut at byte " << size;
-        } else if (encoding != PlyEncoding::ascii) {
-          EXPECT_EQ(outcome_of(seed.substr(0, size)), Outcome::refused) << size;
-        }
+      // Only the last line end of a text may be missing.
+      const std::size_t spare = encoding == PlyEncoding::ascii ? 1 : 0;
+      for (std::size_t size = 0; size + spare < seed.size(); ++size) {
+        EXPECT_EQ(outcome_of(seed.substr(0, size)), Outcome::refused) << size;
       }
     }
   }
@@ -133,12 +129,9 @@ TEST(PlyFuzz, HostileCounts) {
   for (const PlyEncoding encoding : kEncodings) {
     for (const char* count : {"4294967295", "4294967296", "9223372036854775807",
                               "18446744073709551615", "1000000000"}) {
-      for (const std::string element : {"vertex 4", "face 4"}) {
+      for (const std::string element : {"element vertex ", "element face "}) {
         Bytes bytes = tetrahedron(encoding);
-        const std::size_t at = bytes.find("element " + element);
-        bytes.replace(
-            at, 8 + element.size(),
-            "element " + element.substr(0, 6).substr(0, element.size() - 2) + " " + count);
+        bytes.replace(bytes.find(element) + element.size(), 1, count);
         EXPECT_EQ(outcome_of(bytes), Outcome::refused) << element << count;
       }
     }

@@ -1,6 +1,7 @@
 #include "outline/outline_builder.h"
 
 #include "hierarchy/bounds.h"
+#include "hierarchy/error.h"
 #include "outline/polyline.h"
 #include "tests/support/meshes.h"
 
@@ -306,7 +307,7 @@ TEST(OutlineBuilder, RepeatedAndMirroredBorderTrianglesMakeOneLine) {
     if (points.front().x == 4.5f)
       longest = std::max(longest, length_of(points));
   }
-  EXPECT_GT(longest, 1.0);
+  EXPECT_DOUBLE_EQ(longest, 1);  // straight across
 }
 
 /// The largest distance from a point of `fine` to the polyline `coarse`.
@@ -396,6 +397,14 @@ TEST(OutlineBuilder, ThousandsOfLoopsFitTheBudgetAndTheLongestStay) {
   }
   EXPECT_DOUBLE_EQ(outer, 800);
   EXPECT_DOUBLE_EQ(hole, 80);
+}
+
+TEST(OutlineBuilder, AGhostOfAMissingSectorIsRefused) {
+  const TestMesh mesh = tests::open_grid(5, 5);
+  const auto tiles = cut(mesh, sectors_by(mesh, [](Vec3f p) { return p.x > 2.5f ? 1u : 0u; }));
+  OutlineBuilder builder;
+  builder.add(0, tiles[0]);
+  EXPECT_THROW(builder.finish(options_for(mesh, 0.001)), Error);
 }
 
 TEST(OutlineBuilder, ABudgetForNothingDropsAll) {
