@@ -44,6 +44,7 @@ int run_build(const BuildArguments& arguments, pipeline::ProgressMode mode,
       pipeline::make_progress(mode, environment.messages, environment.messages_on_terminal);
   const pipeline::BuildReport report = pipeline::build_hierarchy(
       config, arguments.force, {environment.files, *progress, environment.cancel});
+  progress->finish(config.output.string());
   environment.out << report.text;
   if (!report.text.empty() && report.text.back() != '\n')
     environment.out << '\n';

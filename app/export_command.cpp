@@ -40,9 +40,10 @@ int run_export(const ExportArguments& arguments, pipeline::ProgressMode mode,
       pipeline::make_progress(mode, environment.messages, environment.messages_on_terminal);
   const pipeline::ExportOptions options{selection(arguments), arguments.output,
                                         arguments.memory_budget};
-  environment.out << pipeline::export_mesh(environment.files, arguments.directory, options,
-                                           *progress, environment.cancel)
-                  << '\n';
+  const std::string line = pipeline::export_mesh(environment.files, arguments.directory, options,
+                                                 *progress, environment.cancel);
+  progress->finish(arguments.output);
+  environment.out << line << '\n';
   return 0;
 }
 

@@ -30,16 +30,20 @@ std::string json_text(const pipeline::VerifyReport& report) {
   return object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
 }
 
+std::string verdict(const pipeline::VerifyReport& report) {
+  const std::size_t count = report.problems.size();
+  if (count == 0)
+    return "No problem found";
+  return fmt::format("{} problem{} found", count, count == 1 ? "" : "s");
+}
+
 std::string plain_text(const pipeline::VerifyReport& report) {
   std::string text;
   for (const std::string& check : report.checks)
     text += fmt::format("checked: {}\n", check);
   for (const std::string& problem : report.problems)
     text += fmt::format("PROBLEM: {}\n", problem);
-  const std::size_t count = report.problems.size();
-  if (count == 0)
-    return text + "No problem found.\n";
-  return text + fmt::format("{} problem{} found.\n", count, count == 1 ? "" : "s");
+  return text + verdict(report) + ".\n";
 }
 
 int run_verify(VerifyArguments arguments, pipeline::ProgressMode mode, Environment& environment) {
@@ -49,6 +53,7 @@ int run_verify(VerifyArguments arguments, pipeline::ProgressMode mode, Environme
       pipeline::make_progress(mode, environment.messages, environment.messages_on_terminal);
   const pipeline::VerifyReport report = pipeline::verify_hierarchy(
       environment.files, arguments.directory, arguments.options, *progress, environment.cancel);
+  progress->finish(verdict(report));
   environment.out << (arguments.json ? json_text(report) : plain_text(report));
   return report.problems.empty() ? 0 : static_cast<int>(ErrorCode::corrupt);
 }

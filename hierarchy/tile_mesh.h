@@ -2,7 +2,8 @@
 //
 // Vertices [0, own_count) are the tile's own, the rest are ghosts: corners of border triangles that
 // belong to neighbouring tiles of the same level. The own vertices that border triangles use come
-// first: they are the rim, [0, rim_count).
+// first, within the rim, [0, rim_count). The rim may hold a few more: those of border triangles that a neighbour's
+// contraction made degenerate.
 #pragma once
 
 #include <array>

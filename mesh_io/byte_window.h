@@ -13,7 +13,7 @@ class ByteWindow {
  public:
   /// The unit of reading: large enough that a disk streams, small enough to stay in the L2 cache.
   /// Also above the largest row without lists a header of kMaxHeaderBytes can declare (150 KiB).
-  static constexpr std::size_t kCapacity = 1024 * 1024;
+  static constexpr std::size_t kCapacity = std::size_t{1} << 20;
 
   /// `file_bytes`: the file's size; nothing beyond is read.
   ByteWindow(const storage::File& file, std::uint64_t file_bytes)

@@ -53,6 +53,7 @@ using TriangleVisitor = std::function<void(std::span<const SourceTriangle>)>;
 /// Every failure throws Error(input) naming file, byte offset (binary) or line (text), what was
 /// expected and what was found; Error(io) if the file cannot be read. An exception of a visitor
 /// passes through.
+/// Peak memory does not depend on the file. One call at a time; calls may come in any order.
 class MeshSource {
  public:
   virtual ~MeshSource() = default;
@@ -71,7 +72,14 @@ class MeshSource {
       65536;  ///< 768 KiB of positions: in the L2 cache, large enough to amortise
 };
 
-/// Opens a mesh file; the format is known by its content. PLY: ASCII, binary little and big endian.
+/// Opens a mesh file; the format is known by its content. Reads the header and checks that what it
+/// declares can fit into the file; nothing is sized by a count before that.
+///
+/// PLY, ASCII and binary little and big endian: ply_header.h and ply_plan.h say what is read. In
+/// text a row is a line; in binary a line end may follow the data (ply_body.h). Coordinates and
+/// attributes that are not finite are errors, as no average or bound can be made of them; so are a
+/// negative list length, and an index that is no vertex's. read_triangles() also checks everything
+/// behind the faces, up to the end of the file.
 std::unique_ptr<MeshSource> open_mesh(storage::FileSystem& files,
                                       const std::filesystem::path& path);
 

@@ -53,10 +53,10 @@ struct PlyHeader {
 
 /// Real headers have less than 2 KiB, but some writers put metadata (cameras, JSON) into comments.
 /// 256 KiB leaves room for them and stops the search for end_header in a large file of other data.
-inline constexpr std::size_t kMaxHeaderBytes = 256 * 1024;
+inline constexpr std::size_t kMaxHeaderBytes = std::size_t{1} << 18;
 
 /// One line of a header: above any real comment, below the point where a message gets absurd.
-inline constexpr std::size_t kMaxHeaderLineBytes = 64 * 1024;
+inline constexpr std::size_t kMaxHeaderLineBytes = std::size_t{1} << 16;
 
 /// Parses the header at the start of a file. `start`: the first min(file size, kMaxHeaderBytes)
 /// bytes; `path` is for messages only. Lines end with LF, CRLF, or (if the first line does) CR

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -14,7 +15,7 @@ namespace meshhier::mesh_io {
 namespace {
 
 /// Written at once: large enough that a disk streams, as much as the contract allows.
-constexpr std::size_t kBufferBytes = 1024 * 1024;
+constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
 
 /// The largest row: three doubles and kMaxChannels floats.
 constexpr std::size_t kMaxRowBytes = 3 * sizeof(double) + kMaxChannels * sizeof(float);

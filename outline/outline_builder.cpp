@@ -275,8 +275,9 @@ class Lines {
     significance_.reserve(chains_.nodes.size());
     for (std::size_t chain = 0; chain < chains_.size(); ++chain) {
       const std::span<const std::uint32_t> nodes = chains_[chain];
-      const std::vector<double> values =
-          significance(points_of(chain), nodes.front() == nodes.back(), least);
+      const std::vector<Vec3f> points = points_of(chain);
+      const std::vector<double> values = significance(points, nodes.front() == nodes.back(), least);
+      lengths_.push_back(length_of(points));
       significance_.insert(significance_.end(), values.begin(), values.end());
     }
   }
@@ -299,15 +300,16 @@ class Lines {
     outline.starts.push_back(static_cast<std::uint32_t>(outline.vertices.size()));
   }
 
-  /// Chains by length in input units, the longest first, equal ones in order.
+  /// Before simplification, input units.
+  double length(std::size_t chain) const { return lengths_[chain]; }
+
+  /// Chains by length, the longest first, equal ones in order.
   std::vector<std::uint32_t> by_length() const {
-    std::vector<double> lengths(size());
-    for (std::size_t i = 0; i < size(); ++i)
-      lengths[i] = length_of(points_of(i));
     std::vector<std::uint32_t> order(size());
     std::iota(order.begin(), order.end(), 0u);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return lengths[a] > lengths[b]; });
+    std::stable_sort(order.begin(), order.end(), [this](std::uint32_t a, std::uint32_t b) {
+      return lengths_[a] > lengths_[b];
+    });
     return order;
   }
 
@@ -323,6 +325,7 @@ class Lines {
   std::span<const Vec3f> positions_;
   Chains chains_;
   std::vector<double> significance_;  ///< of chains_.nodes
+  std::vector<double> lengths_;       ///< of the chains
 };
 
 /// Which chains an outline is made of, with which tolerance.
@@ -336,37 +339,34 @@ bool fits(const OutlineOptions& options, std::size_t vertices, std::size_t polyl
          options.file_bytes(vertices, vertices - polylines) <= options.max_bytes;
 }
 
-/// The longest chains of `order`, as many as fit.
-std::vector<std::uint32_t> longest_that_fit(const Lines& lines, const OutlineOptions& options,
-                                            double tolerance) {
-  std::vector<std::uint32_t> chains = lines.by_length();
+/// How many of `order` fit with a tolerance in input units.
+std::size_t count_that_fit(const Lines& lines, std::span<const std::uint32_t> order,
+                           const OutlineOptions& options, double tolerance) {
   std::size_t vertices = 0, count = 0;
-  for (; count < chains.size(); ++count) {
-    vertices += lines.vertex_count(chains[count], tolerance * options.diagonal);
+  for (; count < order.size(); ++count) {
+    vertices += lines.vertex_count(order[count], tolerance);
     if (!fits(options, vertices, count + 1))
       break;
   }
-  chains.resize(count);
-  std::sort(chains.begin(), chains.end());
-  return chains;
+  return count;
 }
 
+/// The finest tolerance with which all but specks fit; then whatever fits, the longest first.
 Selection select(const Lines& lines, const OutlineOptions& options) {
-  Selection result{std::vector<std::uint32_t>(lines.size()), options.tolerance};
-  std::iota(result.chains.begin(), result.chains.end(), 0u);
-  while (true) {
-    std::size_t vertices = 0;
-    for (std::size_t chain = 0; chain < lines.size(); ++chain) {
-      vertices += lines.vertex_count(chain, result.tolerance * options.diagonal);
-    }
-    if (fits(options, vertices, lines.size()))
-      return result;
-    if (result.tolerance >= kCoarsestTolerance)
-      break;
-    result.tolerance = std::min(2 * result.tolerance, kCoarsestTolerance);
+  const std::vector<std::uint32_t> order = lines.by_length();
+  for (double tolerance = options.tolerance;;
+       tolerance = std::min(2 * tolerance, kCoarsestTolerance)) {
+    const double distance = tolerance * options.diagonal;
+    const std::size_t count = count_that_fit(lines, order, options, distance);
+    const bool only_specks_left =
+        count == order.size() || lines.length(order[count]) < kSpeckLength * distance;
+    if (!only_specks_left && tolerance < kCoarsestTolerance)
+      continue;
+    Selection result{{order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count)},
+                     tolerance};
+    std::sort(result.chains.begin(), result.chains.end());
+    return result;
   }
-  result.chains = longest_that_fit(lines, options, result.tolerance);
-  return result;
 }
 
 }  // namespace

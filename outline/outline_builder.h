@@ -30,12 +30,19 @@ struct OutlineOptions {
 
 struct OutlineResult {
   Outline outline;
-  double tolerance = 0;  ///< used, as a part of `diagonal`: options.tolerance, doubled while the
-                         ///< result does not fit, up to kCoarsestTolerance
+  /// Used, as a part of `diagonal`: options.tolerance, doubled until all but specks fit, up to
+  /// kCoarsestTolerance.
+  double tolerance = 0;
   std::uint64_t polylines_found = 0;
-  std::uint64_t polylines_dropped =
-      0;  ///< the shortest, if even the coarsest tolerance did not fit
+  std::uint64_t polylines_dropped = 0;  ///< the shortest, as many as did not fit
 };
+
+/// Lines shorter than so many tolerances are specks (no point of theirs is farther than two from
+/// the straight line): when there is no room, they go before the others are made coarser. A scan's
+/// many small holes would straighten all that matters otherwise: the dragon at 8192 vertices, 659
+/// lines, fits 32 kB with a tolerance of 0.002 and 337 lines dropped, without this rule with 0.0156
+/// and 26.
+inline constexpr double kSpeckLength = 4;
 
 /// Doubling ends at a 64th of the diagonal: lines between 128 sectors (a tenth to a fifth of it
 /// long) are little more than their ends there. What does not fit then has too many lines, not too

@@ -4,9 +4,8 @@
 // that fit half of the memory, and one sweep goes over the blocks in order. A triangle waits in the
 // bucket of the block that holds its least untranslated corner; when that block is loaded, all its
 // corners there are translated, and the triangle is finished or goes on to the bucket of a later
-// block
-// ("time-forward processing", Chiang et al. 1995). While the first block is loaded the source is
-// read, so what lies in it never waits at all.
+// block ("time-forward processing", Chiang et al. 1995). While the first block is loaded the source
+// is read, so what lies in it never waits at all.
 //
 // Passes: the source once, the table once, and each triangle through as many buckets as its corners
 // have blocks beyond the first of all: at most three, mostly one where ids are coherent. A triangle

@@ -132,7 +132,7 @@ BuildReport build_hierarchy(const Config& config, bool force, BuildEnvironment e
     Chunks chunks = distribute(mesh, tree, config.partition.axis, plan, mesh_scratch, progress, cancel);
     result.source = mesh.summary();
     result.source.checksum = checksum_of_file(files, config.input, cancel);
-    result.format = {mesh.summary().attributes, mesh.unit_normals(), mesh.origin()};
+    result.format = {mesh.summary().attributes, mesh.origin()};
     result.source.unreferenced_vertices = make_leaves(chunks, forest, config.partition.axis, plan, progress, cancel);
   }
   result.asked_vertices = asked_vertices(config, tree);

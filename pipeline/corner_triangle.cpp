@@ -8,8 +8,10 @@ namespace meshhier::pipeline {
 namespace {
 
 constexpr CornerTriangle turned(const CornerTriangle& t) {
-  if (t[1] < t[0] && t[1] < t[2]) return {t[1], t[2], t[0]};
-  if (t[2] < t[0] && t[2] < t[1]) return {t[2], t[0], t[1]};
+  if (t[1] < t[0] && t[1] < t[2])
+    return {t[1], t[2], t[0]};
+  if (t[2] < t[0] && t[2] < t[1])
+    return {t[2], t[0], t[1]};
   return t;
 }
 
@@ -19,9 +21,11 @@ void normalize(std::vector<CornerTriangle>& triangles, bool unique) {
   std::erase_if(triangles, [](const CornerTriangle& t) {
     return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
   });
-  for (CornerTriangle& t : triangles) t = turned(t);
+  for (CornerTriangle& t : triangles)
+    t = turned(t);
   std::sort(triangles.begin(), triangles.end());
-  if (unique) triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+  if (unique)
+    triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
 }
 
 std::vector<CornerTriangle> border_of(const PublishedTile& tile, const Tree& tree) {
@@ -46,7 +50,8 @@ std::vector<CornerTriangle> early_border_of(const PublishedTile& tile, const Tre
   const std::uint32_t own = tree.parent(tile.node).index;
   // No other partition is below the early node, so every chain has an entry for its level.
   const auto corner = [&](TileVertex v) {
-    if (mesh.is_own(v)) return make_corner(own, raw(v));
+    if (mesh.is_own(v))
+      return make_corner(own, raw(v));
     const NodeId neighbour{tile.node.level, mesh.ghost(v).tile};
     return make_corner(tree.ancestor(neighbour, above).index,
                        tile.chains[raw(v) - mesh.own_count].at(1));
@@ -63,11 +68,10 @@ std::vector<CornerTriangle> early_border_of(const PublishedTile& tile, const Tre
 std::vector<CornerTriangle> touching(const std::vector<CornerTriangle>& triangles,
                                      std::uint32_t tile) {
   std::vector<CornerTriangle> found;
-  std::copy_if(triangles.begin(), triangles.end(), std::back_inserter(found),
-               [&](const CornerTriangle& t) {
-                 return std::any_of(t.begin(), t.end(),
-                                    [&](Corner c) { return tile_index(c) == tile; });
-               });
+  std::copy_if(
+      triangles.begin(), triangles.end(), std::back_inserter(found), [&](const CornerTriangle& t) {
+        return std::any_of(t.begin(), t.end(), [&](Corner c) { return tile_index(c) == tile; });
+      });
   return found;
 }
 

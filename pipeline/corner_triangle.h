@@ -1,12 +1,12 @@
 // Triangles whose corners name their tile: comparable between the tiles of a level.
 #pragma once
 
+#include "hierarchy/published.h"
+#include "hierarchy/tree.h"
+
 #include <array>
 #include <cstdint>
 #include <vector>
-
-#include "hierarchy/published.h"
-#include "hierarchy/tree.h"
 
 namespace meshhier::pipeline {
 
@@ -25,8 +25,8 @@ constexpr std::uint32_t vertex_index(Corner corner) {
   return static_cast<std::uint32_t>(static_cast<std::uint64_t>(corner));
 }
 
-/// normalize_triangles() for corner triangles: drops degenerate ones, turns the smallest corner to the
-/// front, sorts; one of exact duplicates stays if `unique`.
+/// normalize_triangles() for corner triangles: drops degenerate ones, turns the smallest corner to
+/// the front, sorts; one of exact duplicates stays if `unique`.
 void normalize(std::vector<CornerTriangle>& triangles, bool unique);
 
 /// The tile's border triangles with ghosts as vertices of their own tiles, normalized.

@@ -1,5 +1,7 @@
 #include "pipeline/cut.h"
 
+#include "hierarchy/error.h"
+
 #include <algorithm>
 #include <cassert>
 #include <charconv>
@@ -11,13 +13,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "hierarchy/error.h"
-
 namespace meshhier::pipeline {
 namespace {
 
 std::string describe(PartitionRange range) {
-  if (range.size() == 1) return fmt::format("partition {}", range.begin);
+  if (range.size() == 1)
+    return fmt::format("partition {}", range.begin);
   return fmt::format("partitions {} to {}", range.begin, range.end - 1);
 }
 
@@ -28,16 +29,16 @@ void require_adjacent(NodeId before, std::uint32_t covered, NodeId next, Partiti
                                               describe(PartitionRange{covered, range.begin})));
   }
   if (range.begin < covered) {
-    throw Error(ErrorCode::usage,
-                fmt::format("not a cut: nodes {} and {} both cover partition {}", to_text(before),
-                            to_text(next), range.begin));
+    throw Error(ErrorCode::usage, fmt::format("not a cut: nodes {} and {} both cover partition {}",
+                                              to_text(before), to_text(next), range.begin));
   }
 }
 
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view kBlank = " \t\r";
   const std::size_t begin = text.find_first_not_of(kBlank);
-  if (begin == std::string_view::npos) return {};
+  if (begin == std::string_view::npos)
+    return {};
   return text.substr(begin, text.find_last_not_of(kBlank) - begin + 1);
 }
 
@@ -45,7 +46,8 @@ template <class Number>
 std::optional<Number> parse_number(std::string_view text) {
   Number number{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  if (error != std::errc{} || end != text.data() + text.size())
+    return std::nullopt;
   return number;
 }
 
@@ -54,7 +56,8 @@ NodeId parse_node(std::string_view text, const std::string& place) {
   if (slash != std::string_view::npos) {
     const auto level = parse_number<std::uint8_t>(trimmed(text.substr(0, slash)));
     const auto index = parse_number<std::uint32_t>(trimmed(text.substr(slash + 1)));
-    if (level && index) return {static_cast<Level>(*level), *index};
+    if (level && index)
+      return {static_cast<Level>(*level), *index};
   }
   constexpr std::size_t kShown = 40;  // enough to recognise the entry; the file may be binary
   throw Error(ErrorCode::usage,
@@ -91,21 +94,26 @@ void choose_nodes(const Tree& tree, NodeId node, std::uint64_t descend, std::mt1
     chosen.push_back(node);
     return;
   }
-  for (NodeId child : children.span()) choose_nodes(tree, child, descend, random, chosen);
+  for (NodeId child : children.span())
+    choose_nodes(tree, child, descend, random, chosen);
 }
 
 }  // namespace
 
-std::string to_text(NodeId node) { return fmt::format("{}/{}", raw(node.level), node.index); }
+std::string to_text(NodeId node) {
+  return fmt::format("{}/{}", raw(node.level), node.index);
+}
 
 void require_level(const Tree& tree, Level level) {
-  if (level <= tree.depth()) return;
+  if (level <= tree.depth())
+    return;
   throw Error(ErrorCode::usage, fmt::format("there is no level {}: the levels are 0 to {}",
                                             raw(level), raw(tree.depth())));
 }
 
 void require_node(const Tree& tree, NodeId node) {
-  if (tree.contains(node)) return;
+  if (tree.contains(node))
+    return;
   if (node.level > tree.depth()) {
     throw Error(ErrorCode::usage, fmt::format("there is no node {}: the levels are 0 to {}",
                                               to_text(node), raw(tree.depth())));
@@ -149,7 +157,8 @@ Cut::Cut(const Tree& tree, std::vector<NodeId> nodes) : nodes_(std::move(nodes))
 Cut Cut::of_level(const Tree& tree, Level level) {
   assert(level <= tree.depth());
   std::vector<NodeId> nodes(tree.node_count(level));
-  for (std::uint32_t i = 0; i < nodes.size(); ++i) nodes[i] = {level, i};
+  for (std::uint32_t i = 0; i < nodes.size(); ++i)
+    nodes[i] = {level, i};
   return {tree, std::move(nodes)};
 }
 
@@ -160,8 +169,10 @@ Cut Cut::random(const Tree& tree, std::uint64_t seed) {
   const std::uint64_t descend = random() | std::uint64_t{1} << 63;
   std::vector<NodeId> nodes;
   const Tree::Children children = tree.children(tree.root());
-  if (children.count == 0) nodes.push_back(tree.root());
-  for (NodeId child : children.span()) choose_nodes(tree, child, descend, random, nodes);
+  if (children.count == 0)
+    nodes.push_back(tree.root());
+  for (NodeId child : children.span())
+    choose_nodes(tree, child, descend, random, nodes);
   return {tree, std::move(nodes)};
 }
 
@@ -173,12 +184,14 @@ std::size_t Cut::position_of(PartitionId partition) const {
 
 std::vector<NodeId> parse_nodes(std::string_view text, const std::string& name) {
   const std::size_t start = text.find_first_not_of(" \t\r\n");
-  if (start != std::string_view::npos && text[start] == '[') return parse_json_nodes(text, name);
+  if (start != std::string_view::npos && text[start] == '[')
+    return parse_json_nodes(text, name);
   std::vector<NodeId> nodes;
   for (std::size_t line = 1; !text.empty(); ++line) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     const std::string_view content = trimmed(text.substr(0, std::min(end, text.find('#'))));
-    if (!content.empty()) nodes.push_back(parse_node(content, fmt::format("{}: line {}", name, line)));
+    if (!content.empty())
+      nodes.push_back(parse_node(content, fmt::format("{}: line {}", name, line)));
     text.remove_prefix(std::min(end + 1, text.size()));
   }
   return nodes;

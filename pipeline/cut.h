@@ -4,14 +4,14 @@
 // of the last level wherever levels are compared.
 #pragma once
 
+#include "hierarchy/ids.h"
+#include "hierarchy/tree.h"
+
 #include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include "hierarchy/ids.h"
-#include "hierarchy/tree.h"
 
 namespace meshhier::pipeline {
 
@@ -31,8 +31,9 @@ NodeId parent_tile(const Tree& tree, NodeId node);
 /// Nodes of which every partition has exactly one ancestor-or-self. Immutable.
 class Cut {
  public:
-  /// `nodes` in any order; early nodes are replaced with their partitions. Throws Error(usage) naming
-  /// a node that the tree has not, the first partition that no node holds, or two nodes that overlap.
+  /// `nodes` in any order; early nodes are replaced with their partitions. Throws Error(usage)
+  /// naming a node that the tree has not, the first partition that no node holds, or two nodes that
+  /// overlap.
   Cut(const Tree& tree, std::vector<NodeId> nodes);
 
   /// All nodes of a level. Requires level <= tree.depth().
@@ -54,8 +55,9 @@ class Cut {
   std::vector<std::uint32_t> first_partitions_;  ///< of every node; ascending
 };
 
-/// Reads a list of nodes: either lines "L/I" (blank lines and what follows a # are skipped), or a JSON
-/// array of such strings. `name` starts the messages. Throws Error(usage) naming the line or entry.
+/// Reads a list of nodes: either lines "L/I" (blank lines and what follows a # are skipped), or a
+/// JSON array of such strings. `name` starts the messages. Throws Error(usage) naming the line or
+/// entry.
 std::vector<NodeId> parse_nodes(std::string_view text, const std::string& name);
 
 }  // namespace meshhier::pipeline

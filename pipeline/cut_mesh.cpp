@@ -1,18 +1,20 @@
 #include "pipeline/cut_mesh.h"
 
+#include "hierarchy/error.h"
+
 #include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "hierarchy/error.h"
-
 namespace meshhier::pipeline {
 namespace {
 
 constexpr CutTriangle turned(const CutTriangle& t) {
-  if (t[1] < t[0] && t[1] < t[2]) return {t[1], t[2], t[0]};
-  if (t[2] < t[0] && t[2] < t[1]) return {t[2], t[0], t[1]};
+  if (t[1] < t[0] && t[1] < t[2])
+    return {t[1], t[2], t[0]};
+  if (t[2] < t[0] && t[2] < t[1])
+    return {t[2], t[0], t[1]};
   return t;
 }
 
@@ -23,7 +25,8 @@ struct BorderView {
   bool original = true;  ///< all corners are vertices of partitions
 };
 
-BorderView view_border(const TileMesh& mesh, NodeId node, std::uint32_t base, const Triangle& triangle,
+BorderView view_border(const TileMesh& mesh, NodeId node, std::uint32_t base,
+                       const Triangle& triangle,
                        const std::vector<std::optional<ShownGhost>>& ghosts, Level last) {
   BorderView view;
   view.original = node.level == last;
@@ -34,16 +37,18 @@ BorderView view_border(const TileMesh& mesh, NodeId node, std::uint32_t base, co
       continue;
     }
     const auto& ghost = ghosts[raw(v) - mesh.own_count];
-    const bool ours =
-        ghost && (ghost->level < node.level || node.index < mesh.ghost(v).tile);
-    if (!ours) return {.corners = {}, .drawn = false, .original = false};
+    const bool ours = ghost && (ghost->level < node.level || node.index < mesh.ghost(v).tile);
+    if (!ours)
+      return {.corners = {}, .drawn = false, .original = false};
     view.corners[corner] = ghost->number;
     view.original = view.original && ghost->level == last;
   }
   return view;
 }
 
-bool is_flat(const CutTriangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
+bool is_flat(const CutTriangle& t) {
+  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
 
 }  // namespace
 
@@ -54,7 +59,8 @@ std::size_t NumberedCut::position_of_vertex(std::uint32_t number) const {
 
 NumberedCut number_vertices(const storage::HierarchyReader& reader, Cut cut) {
   std::vector<std::uint64_t> bases{0};
-  for (NodeId node : cut.nodes()) bases.push_back(bases.back() + reader.record(node).own_count);
+  for (NodeId node : cut.nodes())
+    bases.push_back(bases.back() + reader.record(node).own_count);
   if (bases.back() > UINT32_MAX) {
     throw Error(ErrorCode::corrupt,
                 fmt::format("{}: the index gives a cut {} vertices, expected fewer than 2^32",
@@ -66,10 +72,11 @@ NumberedCut number_vertices(const storage::HierarchyReader& reader, Cut cut) {
 std::optional<ShownGhost> find_ghost(const Tree& tree, const NumberedCut& numbered,
                                      const PublishedTile& tile, std::size_t ghost) {
   const NodeId neighbour{tile.node.level, tile.mesh.ghosts[ghost].tile};
-  const std::size_t position = numbered.cut.position_of(
-      static_cast<PartitionId>(tree.partitions(neighbour).begin));
+  const std::size_t position =
+      numbered.cut.position_of(static_cast<PartitionId>(tree.partitions(neighbour).begin));
   const Level level = numbered.cut[position].level;
-  if (level > tile.node.level) return std::nullopt;
+  if (level > tile.node.level)
+    return std::nullopt;
   const GhostChain& chain = tile.chains[ghost];
   const std::size_t step = raw(tile.node.level) - raw(level);
   const std::uint64_t count = numbered.bases[position + 1] - numbered.bases[position];
@@ -86,7 +93,8 @@ DrawnTile draw_tile(const Tree& tree, const NumberedCut& numbered, std::size_t p
   const TileMesh& mesh = tile.mesh;
   const std::uint32_t base = numbered.base(position);
   std::vector<std::optional<ShownGhost>> ghosts(mesh.ghosts.size());
-  for (std::size_t i = 0; i < ghosts.size(); ++i) ghosts[i] = find_ghost(tree, numbered, tile, i);
+  for (std::size_t i = 0; i < ghosts.size(); ++i)
+    ghosts[i] = find_ghost(tree, numbered, tile, i);
 
   DrawnTile drawn;
   drawn.triangles.reserve(mesh.interior.size() + mesh.border.size());

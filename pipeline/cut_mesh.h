@@ -11,15 +11,15 @@
 //     tile by tile is dropping them all.
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <optional>
-#include <vector>
-
 #include "hierarchy/published.h"
 #include "hierarchy/tree.h"
 #include "pipeline/cut.h"
 #include "storage/hierarchy_reader.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
 
 namespace meshhier::pipeline {
 

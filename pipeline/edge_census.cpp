@@ -13,7 +13,8 @@ std::vector<std::uint64_t> shared_edges(const PublishedTile& tile, std::uint32_t
     const Triangle& t = tile.mesh.border[place];
     for (std::size_t i = 0; i < 3; ++i) {
       const TileVertex a = t[i], b = t[(i + 1) % 3];
-      if (!tile.mesh.is_own(a) || !tile.mesh.is_own(b)) continue;
+      if (!tile.mesh.is_own(a) || !tile.mesh.is_own(b))
+        continue;
       keys.push_back(
           CutEdge{base + std::min(raw(a), raw(b)), base + std::max(raw(a), raw(b))}.key());
     }
@@ -25,7 +26,8 @@ std::vector<std::uint64_t> shared_edges(const PublishedTile& tile, std::uint32_t
 }  // namespace
 
 EdgeCensus::Use EdgeCensus::use_of(std::uint32_t from, std::uint32_t to) {
-  if (from < to) return {{from, to}, 1};
+  if (from < to)
+    return {{from, to}, 1};
   return {{to, from}, -1};
 }
 
@@ -39,8 +41,8 @@ void EdgeCensus::add(const PublishedTile& tile, std::uint32_t base, const DrawnT
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t from = t[i], to = t[(i + 1) % 3];
       const Use use = use_of(from, to);
-      const bool whole = own(from) && own(to) &&
-                         !std::binary_search(shared.begin(), shared.end(), use.edge.key());
+      const bool whole =
+          own(from) && own(to) && !std::binary_search(shared.begin(), shared.end(), use.edge.key());
       if (whole) {
         uses.push_back(use);
       } else {
@@ -50,20 +52,23 @@ void EdgeCensus::add(const PublishedTile& tile, std::uint32_t base, const DrawnT
   }
   std::sort(uses.begin(), uses.end(),
             [](const Use& a, const Use& b) { return a.edge.key() < b.edge.key(); });
-  for (const Use& use : uses) count(use);
+  for (const Use& use : uses)
+    count(use);
   close();
 }
 
 void EdgeCensus::finish() {
   seams_.sort();
   seams_.for_each_block([this](std::span<const Use> uses) {
-    for (const Use& use : uses) count(use);
+    for (const Use& use : uses)
+      count(use);
   });
   close();
 }
 
 void EdgeCensus::count(const Use& use) {
-  if (use.edge != current_.edge) close();
+  if (use.edge != current_.edge)
+    close();
   current_.edge = use.edge;
   ++current_.triangles;
   current_.net += use.direction;

@@ -1,13 +1,13 @@
 // Counts the triangles at the edges of a cut's mesh, tile by tile, out of core.
 #pragma once
 
-#include <cstdint>
-#include <functional>
-#include <vector>
-
 #include "partition/external_sort.h"
 #include "pipeline/cut_mesh.h"
 #include "storage/spool.h"
+
+#include <cstdint>
+#include <functional>
+#include <vector>
 
 namespace meshhier::pipeline {
 

@@ -1,13 +1,5 @@
 #include "pipeline/export.h"
 
-#include <algorithm>
-#include <optional>
-#include <span>
-#include <utility>
-#include <vector>
-
-#include <fmt/format.h>
-
 #include "hierarchy/error.h"
 #include "mesh_io/ply_writer.h"
 #include "pipeline/cut.h"
@@ -15,6 +7,14 @@
 #include "storage/hierarchy_reader.h"
 #include "storage/layout.h"
 #include "storage/spool.h"
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
 
 namespace meshhier::pipeline {
 namespace {
@@ -34,8 +34,8 @@ constexpr std::size_t kScratchBlockBytes = std::size_t{1} << 20;
 struct Job {
   storage::FileSystem& files;
   const storage::HierarchyReader& reader;
-  fs::path work;       ///< directory of the unfinished output
-  fs::path file;       ///< the unfinished output
+  fs::path work;  ///< directory of the unfinished output
+  fs::path file;  ///< the unfinished output
   std::uint64_t memory_budget;
   Progress& progress;
   const CancelToken& cancel;
@@ -81,7 +81,8 @@ void write_vertices(mesh_io::PlyWriter& writer, const storage::HierarchyReader& 
   const auto positions = std::span(vertices.positions).first(count);
   const auto attributes =
       std::span(vertices.attributes).first(count * static_cast<std::size_t>(vertices.channels));
-  if (!has_origin(reader)) return writer.write_vertices(positions, attributes);
+  if (!has_origin(reader))
+    return writer.write_vertices(positions, attributes);
   std::vector<Vec3d> exact(count);
   std::transform(positions.begin(), positions.end(), exact.begin(),
                  [&](Vec3f p) { return to_double(p) + reader.manifest().origin; });
@@ -109,8 +110,7 @@ std::string export_cut(const Job& job, Cut cut, const std::string& what) {
   job.progress.stage("export", 2 * numbered.cut.size(), "tiles");
   for (std::size_t i = 0; i < numbered.cut.size(); ++i) {
     job.cancel.check();
-    triangles.append(
-        draw_tile(tree, numbered, i, job.reader.read_tile(numbered.cut[i])).triangles);
+    triangles.append(draw_tile(tree, numbered, i, job.reader.read_tile(numbered.cut[i])).triangles);
     job.progress.advance(1);
   }
   mesh_io::PlyContent content = content_for(job.reader, what);
@@ -142,7 +142,8 @@ std::string export_tile(const Job& job, NodeId node) {
   write_vertices(writer, job.reader, mesh.vertices, mesh.vertices.size());
   for (const auto* list : {&mesh.interior, &mesh.border}) {
     std::vector<CutTriangle> triangles;
-    for (const Triangle& t : *list) triangles.push_back({raw(t[0]), raw(t[1]), raw(t[2])});
+    for (const Triangle& t : *list)
+      triangles.push_back({raw(t[0]), raw(t[1]), raw(t[2])});
     writer.write_triangles(triangles);
   }
   writer.finish();
@@ -187,14 +188,16 @@ Cut cut_in_file(storage::FileSystem& files, const Tree& tree, const fs::path& pa
   }
 }
 
-/// Unlike the work directory, the directory of the output is not made: a mistyped path should be told.
+/// Unlike the work directory, the directory of the output is not made: a mistyped path should be
+/// told.
 void require_place(storage::FileSystem& files, const fs::path& output) {
   if (output.filename().empty() || output.filename() == "." || output.filename() == "..") {
     throw Error(ErrorCode::usage,
                 fmt::format("output \"{}\": expected the name of a file", output.string()));
   }
   const fs::path directory = output.parent_path();
-  if (directory.empty() || files.exists(directory)) return;
+  if (directory.empty() || files.exists(directory))
+    return;
   throw Error(ErrorCode::io, fmt::format("cannot write {}: there is no directory {}",
                                          output.string(), directory.string()));
 }
@@ -205,7 +208,8 @@ std::string export_selection(const Job& job, const ExportSelection& selection) {
     require_level(tree, *level);
     return export_cut(job, Cut::of_level(tree, *level), fmt::format("level {}", raw(*level)));
   }
-  if (const auto* node = std::get_if<NodeId>(&selection)) return export_tile(job, *node);
+  if (const auto* node = std::get_if<NodeId>(&selection))
+    return export_tile(job, *node);
   if (const auto* path = std::get_if<fs::path>(&selection)) {
     return export_cut(job, cut_in_file(job.files, tree, *path), "cut");
   }

@@ -1,15 +1,15 @@
 // Writes parts of a hierarchy as an ordinary PLY mesh.
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
-#include <string>
-#include <variant>
-
 #include "hierarchy/ids.h"
 #include "pipeline/cancel.h"
 #include "pipeline/progress.h"
 #include "storage/file.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <variant>
 
 namespace meshhier::pipeline {
 
@@ -26,11 +26,12 @@ struct ExportOptions {
   std::uint64_t memory_budget = 1U << 30;  ///< bytes
 };
 
-/// Assembles the selection seamlessly, tile by tile, into options.output. Vertices are shared between
-/// tiles; coordinates are doubles if the hierarchy has an origin. Triangles of the input come with
-/// all their copies, of coarser ones exact duplicates (same corners, same orientation) come once. The
-/// output appears complete or not at all. Returns a line for people. Deterministic. Throws
-/// Error(usage) if the selection is not in the tree or the cut file is no cut, Error(io | corrupt).
+/// Assembles the selection seamlessly, tile by tile, into options.output. Vertices are shared
+/// between tiles; coordinates are doubles if the hierarchy has an origin. Triangles of the input
+/// come with all their copies, of coarser ones exact duplicates (same corners, same orientation)
+/// come once. The output appears complete or not at all. Returns a line for people. Deterministic.
+/// Throws Error(usage) if the selection is not in the tree or the cut file is no cut, Error(io |
+/// corrupt).
 std::string export_mesh(storage::FileSystem& files, const std::filesystem::path& hierarchy,
                         const ExportOptions& options, Progress& progress,
                         const CancelToken& cancel);

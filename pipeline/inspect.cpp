@@ -1,18 +1,18 @@
 #include "pipeline/inspect.h"
 
-#include <algorithm>
-#include <array>
-#include <span>
-#include <vector>
-
-#include <fmt/format.h>
-
 #include "hierarchy/error.h"
 #include "pipeline/cut.h"
 #include "pipeline/size_text.h"
 #include "pipeline/summary.h"
 #include "storage/hierarchy_reader.h"
 #include "storage/layout.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <vector>
+
+#include <fmt/format.h>
 
 namespace meshhier::pipeline {
 namespace {
@@ -24,8 +24,10 @@ HierarchyReader open_checked(storage::FileSystem& files, const std::filesystem::
                              const InspectOptions& options) {
   HierarchyReader reader(files, directory);
   try {
-    if (options.level) require_level(reader.tree(), *options.level);
-    if (options.node) require_node(reader.tree(), *options.node);
+    if (options.level)
+      require_level(reader.tree(), *options.level);
+    if (options.node)
+      require_node(reader.tree(), *options.node);
   } catch (const Error& error) {
     throw error.within(directory.string());
   }
@@ -42,7 +44,8 @@ std::span<const TileRecord> records_of(const HierarchyReader& reader, Level leve
 
 std::uint64_t tile_bytes(std::span<const LevelSummary> levels) {
   std::uint64_t sum = 0;
-  for (const LevelSummary& level : levels) sum += level.bytes_total;
+  for (const LevelSummary& level : levels)
+    sum += level.bytes_total;
   return sum;
 }
 
@@ -61,14 +64,16 @@ std::uint64_t directory_bytes(storage::FileSystem& files, const HierarchyReader&
 /// "1,234,567"
 std::string grouped(std::uint64_t number) {
   std::string digits = std::to_string(number);
-  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, ",");
+  for (std::size_t i = digits.size(); i > 3; i -= 3)
+    digits.insert(i - 3, ",");
   return digits;
 }
 
 std::string attribute_names(const AttributeLayout& layout) {
   std::string names;
   const auto add = [&](bool present, std::string_view name) {
-    if (present) names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
+    if (present)
+      names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
   };
   add(layout.normals, "normals");
   constexpr std::array kTypes{"", "8-bit", "16-bit", "float"};
@@ -136,18 +141,20 @@ std::string level_table(std::span<const LevelSummary> levels, std::optional<Leve
                       "tiles", kRange, kRange, "     min     mean      max spread", "border",
                       "error", "bound", "target", "shown");
   for (const LevelSummary& s : levels) {
-    if (only && s.level != *only) continue;
+    if (only && s.level != *only)
+      continue;
     const std::string bytes =
         fmt::format("{:>8} {:>8.0f} {:>8} {:>6}", s.bytes.min, s.bytes.mean, s.bytes.max,
                     fmt::format("{:.0f}%", 100 * s.bytes.spread()));
-    text += fmt::format(
-        "{:>5} {:>7} |{} |{} |{} | {:>6} {:>10.4g} {:>10.4g} | {:>6} | {:>13}\n", raw(s.level),
-        s.tiles, range_text(s.vertices), range_text(s.triangles), bytes,
-        fmt::format("{:.1f}%", 100 * s.border_ratio), s.error_max, s.bound_max, s.off_target,
-        (s.shown_exact ? "" : "<=") + grouped(s.shown_triangles));
+    text +=
+        fmt::format("{:>5} {:>7} |{} |{} |{} | {:>6} {:>10.4g} {:>10.4g} | {:>6} | {:>13}\n",
+                    raw(s.level), s.tiles, range_text(s.vertices), range_text(s.triangles), bytes,
+                    fmt::format("{:.1f}%", 100 * s.border_ratio), s.error_max, s.bound_max,
+                    s.off_target, (s.shown_exact ? "" : "<=") + grouped(s.shown_triangles));
   }
-  return text + "spread: (max - min) / mean; border: share of border triangles; error, bound: the "
-                "largest, in input units\n";
+  return text +
+         "spread: (max - min) / mean; border: share of border triangles; error, bound: the "
+         "largest, in input units\n";
 }
 
 std::string outline_text(const storage::Manifest& manifest) {
@@ -219,9 +226,9 @@ Json partitions_json(const LevelSummary& last, const CompactnessSummary& compact
 
 Json outline_json(const storage::Manifest& manifest) {
   const OutlineReport& o = manifest.outline;
-  return {{"bytes", manifest.outline_bytes},       {"sector_level", o.sector_level},
-          {"sector_count", o.sector_count},        {"tolerance", o.tolerance},
-          {"polylines_found", o.polylines_found},  {"polylines_dropped", o.polylines_dropped}};
+  return {{"bytes", manifest.outline_bytes},      {"sector_level", o.sector_level},
+          {"sector_count", o.sector_count},       {"tolerance", o.tolerance},
+          {"polylines_found", o.polylines_found}, {"polylines_dropped", o.polylines_dropped}};
 }
 
 }  // namespace
@@ -229,11 +236,13 @@ Json outline_json(const storage::Manifest& manifest) {
 std::string inspect_text(storage::FileSystem& files, const std::filesystem::path& directory,
                          const InspectOptions& options) {
   const HierarchyReader reader = open_checked(files, directory, options);
-  if (options.node) return tile_text(reader.record(*options.node));
+  if (options.node)
+    return tile_text(reader.record(*options.node));
   const auto levels = summarize_levels(reader.tree(), reader.records());
   if (options.level) {
     std::string text = level_table(levels, options.level);
-    for (const TileRecord& record : records_of(reader, *options.level)) text += tile_text(record);
+    for (const TileRecord& record : records_of(reader, *options.level))
+      text += tile_text(record);
     return text;
   }
   const storage::Manifest& manifest = reader.manifest();
@@ -264,7 +273,8 @@ Json inspect_json(storage::FileSystem& files, const std::filesystem::path& direc
                {"tile_bytes", tile_bytes(levels)},
                {"total_bytes", directory_bytes(files, reader)}};
   for (const LevelSummary& s : levels) {
-    if (!options.level || s.level == *options.level) json["levels"].push_back(to_json(s));
+    if (!options.level || s.level == *options.level)
+      json["levels"].push_back(to_json(s));
   }
   if (options.level) {
     json["tiles"] = Json::array();
@@ -272,7 +282,8 @@ Json inspect_json(storage::FileSystem& files, const std::filesystem::path& direc
       json["tiles"].push_back(to_json(record));
     }
   }
-  if (options.node) json["tile"] = to_json(reader.record(*options.node));
+  if (options.node)
+    json["tile"] = to_json(reader.record(*options.node));
   return json;
 }
 

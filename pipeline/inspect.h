@@ -1,14 +1,14 @@
 // What a hierarchy is made of, told from its manifest and index alone.
 #pragma once
 
+#include "hierarchy/ids.h"
+#include "storage/file.h"
+
 #include <filesystem>
 #include <optional>
 #include <string>
 
 #include <nlohmann/json.hpp>
-
-#include "hierarchy/ids.h"
-#include "storage/file.h"
 
 namespace meshhier::pipeline {
 
@@ -18,9 +18,9 @@ struct InspectOptions {
   std::optional<NodeId> node;  ///< this node's tile; for an early node its partition's
 };
 
-/// For people: source, parameters, a table per level, compactness, outline, totals. Reads manifest and
-/// index, no tile; time and memory O(tiles). Deterministic. Throws Error(io | corrupt) if they cannot
-/// be read, Error(usage) if the tree has no such level or node.
+/// For people: source, parameters, a table per level, compactness, outline, totals. Reads manifest
+/// and index, no tile; time and memory O(tiles). Deterministic. Throws Error(io | corrupt) if they
+/// cannot be read, Error(usage) if the tree has no such level or node.
 std::string inspect_text(storage::FileSystem& files, const std::filesystem::path& directory,
                          const InspectOptions& options);
 

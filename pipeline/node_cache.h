@@ -1,15 +1,15 @@
 // What was last made of nodes' files, kept while a byte limit lasts.
 #pragma once
 
+#include "hierarchy/ids.h"
+#include "hierarchy/published.h"
+
 #include <cstdint>
 #include <functional>
 #include <list>
 #include <map>
 #include <memory>
 #include <utility>
-
-#include "hierarchy/ids.h"
-#include "hierarchy/published.h"
 
 namespace meshhier::pipeline {
 
@@ -46,7 +46,8 @@ class NodeCache {
     used_bytes_ += bytes;
     entries_.push_front({node, value, bytes});
     places_[node] = entries_.begin();
-    while (used_bytes_ > limit_bytes_ && entries_.size() > 1) drop_last();
+    while (used_bytes_ > limit_bytes_ && entries_.size() > 1)
+      drop_last();
     return value;
   }
 

@@ -25,8 +25,8 @@ class Progress {
   virtual void advance(std::uint64_t count) = 0;
 
   /// Ends the last stage and the job. `summary`: one line for people, may be empty. No advance()
-  /// may run at the same time. Not called for a job that failed: destroying the object tidies the
-  /// terminal.
+  /// may run at the same time. Called by who made the object, not by the job; not called if the job
+  /// failed: destroying the object tidies the terminal.
   virtual void finish(std::string_view summary) = 0;
 };
 

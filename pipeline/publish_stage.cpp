@@ -108,7 +108,6 @@ PublishedSummary publish(const Forest& forest, const PublishInput& input, const 
   manifest.generator = "meshhier " MESHHIER_VERSION;
   manifest.source = input.source;
   manifest.origin = input.format.origin;
-  manifest.unit_normals = input.format.unit_normals;
   manifest.partition_count = tree.partition_count();
   manifest.config = input.config;
   manifest.index_bytes = index.size();

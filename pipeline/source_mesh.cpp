@@ -13,9 +13,6 @@ namespace {
 
 constexpr std::size_t kBlock = mesh_io::MeshSource::kBlockSize;
 
-// Normals this close to unit length are unit normals: well within what glTF validation tolerates.
-constexpr double kUnitTolerance = 5e-4;
-
 bool fits_float(Vec3d p) {
   return to_double(to_float(p)) == p;
 }
@@ -64,13 +61,6 @@ void SourceMesh::scan_block(const mesh_io::VertexBlock& block) {
   const partition::SampleIds ids(summary_.vertices);
   while (sample_positions_.size() < ids.count() && ids[sample_positions_.size()] < block.first + count) {
     sample_positions_.push_back(at(ids[sample_positions_.size()] - block.first));
-  }
-  const AttributeLayout& layout = summary_.attributes;
-  if (layout.normals && unit_normals_) {
-    for (std::size_t i = 0; i < count; ++i) {
-      const float* n = block.attributes.data() + i * static_cast<std::size_t>(layout.channels());
-      if (!(std::abs(length(Vec3d{n[0], n[1], n[2]}) - 1) <= kUnitTolerance)) unit_normals_ = false;
-    }
   }
   if (!vertices_in_place()) {
     spooled_positions_.append(wide ? std::as_bytes(block.exact) : std::as_bytes(block.positions));

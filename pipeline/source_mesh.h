@@ -35,7 +35,6 @@ class SourceMesh {
 
   /// Add to positions to get input coordinates. 0 if all coordinates fit float exactly; else near the middle.
   Vec3d origin() const { return origin_; }
-  bool unit_normals() const { return unit_normals_; }
 
   /// The vertices that partition::SampleIds names.
   std::vector<partition::IdPoint> sample() const;
@@ -56,7 +55,6 @@ class SourceMesh {
   SourceSummary summary_;
   Vec3d origin_;
   bool float_exact_ = true;
-  bool unit_normals_ = true;
   std::vector<Vec3d> sample_positions_;
 };
 

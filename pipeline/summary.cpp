@@ -1,10 +1,10 @@
 #include "pipeline/summary.h"
 
+#include "pipeline/cut.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-
-#include "pipeline/cut.h"
 
 namespace meshhier::pipeline {
 namespace {
@@ -20,7 +20,8 @@ class Range {
   }
   std::uint64_t sum() const { return sum_; }
   CountRange range() const {
-    if (n_ == 0) return {};
+    if (n_ == 0)
+      return {};
     return {min_, max_, static_cast<double>(sum_) / static_cast<double>(n_)};
   }
 
@@ -50,7 +51,8 @@ LevelSummary summarize(Level level, Level last, std::span<const TileRecord> reco
     summary.triangles_total += drawn_count(record);
     summary.error_max = std::max(summary.error_max, record.error);
     summary.bound_max = std::max(summary.bound_max, record.bound);
-    if (level != last && record.own_count != record.target_count) ++summary.off_target;
+    if (level != last && record.own_count != record.target_count)
+      ++summary.off_target;
   }
   summary.vertices = vertices.range();
   summary.triangles = triangles.range();
@@ -68,10 +70,12 @@ LevelSummary summarize(Level level, Level last, std::span<const TileRecord> reco
 /// Partitions under early nodes are part of what the level above the last shows.
 void add_early(const Tree& tree, std::span<const TileRecord> partitions, LevelSummary& above) {
   for (const TileRecord& record : partitions) {
-    if (!tree.is_early(tree.parent(record.node))) continue;
+    if (!tree.is_early(tree.parent(record.node)))
+      continue;
     ++above.shown_tiles;
     above.shown_triangles += triangle_count(record);
-    if (record.border_count > 0) above.shown_exact = false;
+    if (record.border_count > 0)
+      above.shown_exact = false;
   }
 }
 
@@ -89,7 +93,8 @@ std::vector<LevelSummary> summarize_levels(const Tree& tree, std::span<const Til
   std::size_t begin = 0;
   for (int level = 0; level <= raw(tree.depth()); ++level) {
     std::size_t end = begin;
-    while (end < records.size() && raw(records[end].node.level) == level) ++end;
+    while (end < records.size() && raw(records[end].node.level) == level)
+      ++end;
     const auto of_level = records.subspan(begin, end - begin);
     levels.push_back(summarize(static_cast<Level>(level), tree.depth(), of_level));
     if (level > 0 && level == raw(tree.depth())) {
@@ -104,11 +109,13 @@ CompactnessSummary summarize_compactness(const Tree& tree, std::span<const TileR
   std::vector<float> values;
   double sum = 0;
   for (const TileRecord& record : records) {
-    if (!tree.is_partition(record.node) || !(record.compactness > 0)) continue;
+    if (!tree.is_partition(record.node) || !(record.compactness > 0))
+      continue;
     values.push_back(record.compactness);
     sum += double{record.compactness};
   }
-  if (values.empty()) return {};
+  if (values.empty())
+    return {};
   std::sort(values.begin(), values.end());
   return {static_cast<std::uint32_t>(values.size()), sum / static_cast<double>(values.size()),
           quantile(values, 0.5), quantile(values, 0.95)};

@@ -1,14 +1,14 @@
 // What the index says of a hierarchy as a whole: how uniform its levels are.
 #pragma once
 
+#include "hierarchy/published.h"
+#include "hierarchy/tree.h"
+
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include <nlohmann/json.hpp>
-
-#include "hierarchy/published.h"
-#include "hierarchy/tree.h"
 
 namespace meshhier::pipeline {
 
@@ -26,16 +26,16 @@ struct CountRange {
 struct LevelSummary {
   Level level{};
   std::uint32_t tiles = 0;
-  CountRange vertices;             ///< own
-  CountRange triangles;            ///< interior and border
-  CountRange bytes;                ///< of the files
+  CountRange vertices;   ///< own
+  CountRange triangles;  ///< interior and border
+  CountRange bytes;      ///< of the files
   std::uint64_t vertices_total = 0;
   std::uint64_t triangles_total = 0;  ///< each once: interior, and border ones where they are drawn
   std::uint64_t bytes_total = 0;
-  double border_ratio = 0;         ///< border triangles of all triangles, summed over the tiles
-  float error_max = 0;             ///< input units
-  float bound_max = 0;             ///< input units
-  std::uint32_t off_target = 0;    ///< simplified tiles whose vertex count is not the one asked for
+  double border_ratio = 0;       ///< border triangles of all triangles, summed over the tiles
+  float error_max = 0;           ///< input units
+  float bound_max = 0;           ///< input units
+  std::uint32_t off_target = 0;  ///< simplified tiles whose vertex count is not the one asked for
 
   // What the cut of this level shows, with partitions in the place of early nodes.
   std::uint32_t shown_tiles = 0;
@@ -44,7 +44,8 @@ struct LevelSummary {
   bool shown_exact = true;
 };
 
-/// One summary per level, from level 0 on. `records`: all tiles of `tree` (storage/index.h). O(tiles).
+/// One summary per level, from level 0 on. `records`: all tiles of `tree` (storage/index.h).
+/// O(tiles).
 std::vector<LevelSummary> summarize_levels(const Tree& tree, std::span<const TileRecord> records);
 
 /// How compact the partitions are: p^2 / (4 pi w), 1 for a flat disc, more for ragged borders.
@@ -52,7 +53,7 @@ struct CompactnessSummary {
   std::uint32_t count = 0;  ///< partitions that have an area; the others have no compactness
   double mean = 0;
   double median = 0;
-  double p95 = 0;           ///< 95 of 100 partitions have at most this
+  double p95 = 0;  ///< 95 of 100 partitions have at most this
 };
 
 CompactnessSummary summarize_compactness(const Tree& tree, std::span<const TileRecord> records);

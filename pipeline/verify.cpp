@@ -1,15 +1,15 @@
 #include "pipeline/verify.h"
 
+#include "hierarchy/error.h"
+#include "pipeline/cut.h"
+#include "pipeline/verify_parts.h"
+#include "storage/layout.h"
+
 #include <optional>
 #include <random>
 #include <utility>
 
 #include <fmt/format.h>
-
-#include "hierarchy/error.h"
-#include "pipeline/cut.h"
-#include "pipeline/verify_parts.h"
-#include "storage/layout.h"
 
 namespace meshhier::pipeline {
 namespace {
@@ -32,7 +32,8 @@ std::optional<storage::HierarchyReader> open_hierarchy(storage::FileSystem& file
   try {
     return std::optional<storage::HierarchyReader>(std::in_place, files, directory);
   } catch (const Error& error) {
-    if (error.code() != ErrorCode::corrupt && error.code() != ErrorCode::io) throw;
+    if (error.code() != ErrorCode::corrupt && error.code() != ErrorCode::io)
+      throw;
     problems.add(error.what());
     return std::nullopt;
   }
@@ -42,26 +43,28 @@ void verify_all(const VerifyJob& job) {
   verify_files(job);
   verify_tiles(job);
   if (job.tiles.unreadable_count() > 0) {
-    job.problems.add(fmt::format("{}: seams{} not looked at: {} tiles cannot be read",
-                                 job.reader.directory().string(),
-                                 job.options.input ? " and input" : "",
-                                 job.tiles.unreadable_count()));
+    job.problems.add(fmt::format(
+        "{}: seams{} not looked at: {} tiles cannot be read", job.reader.directory().string(),
+        job.options.input ? " and input" : "", job.tiles.unreadable_count()));
     return;
   }
   try {
     verify_seams(job);
   } catch (const Error& error) {
-    if (error.code() != ErrorCode::corrupt) throw;
+    if (error.code() != ErrorCode::corrupt)
+      throw;
     job.problems.add(error.what());
   }
-  if (job.options.input) verify_input(job);
+  if (job.options.input)
+    verify_input(job);
 }
 
 }  // namespace
 
 std::vector<std::string> ProblemList::take() {
   std::vector<std::string> all = std::move(problems_);
-  if (count_ > all.size()) all.push_back(fmt::format("and {} more problems", count_ - all.size()));
+  if (count_ > all.size())
+    all.push_back(fmt::format("and {} more problems", count_ - all.size()));
   return all;
 }
 
@@ -75,11 +78,13 @@ TileStore::TileStore(const storage::HierarchyReader& reader, std::uint64_t cache
 
 std::shared_ptr<const PublishedTile> TileStore::find(NodeId node) {
   node = tile_node(tree_, node);
-  if (unreadable_.contains(node)) return nullptr;
+  if (unreadable_.contains(node))
+    return nullptr;
   try {
     return cache_.get(node);
   } catch (const Error& error) {
-    if (error.code() != ErrorCode::corrupt && error.code() != ErrorCode::io) throw;
+    if (error.code() != ErrorCode::corrupt && error.code() != ErrorCode::io)
+      throw;
     unreadable_.insert(node);
     problems_.add(error.what());
     return nullptr;
@@ -90,8 +95,9 @@ VerifyReport verify_hierarchy(storage::FileSystem& files, const fs::path& direct
                               const VerifyOptions& options, Progress& progress,
                               const CancelToken& cancel) {
   if (!files.exists(storage::manifest_path(directory))) {
-    throw Error(ErrorCode::io, fmt::format("{}: not a hierarchy: there is no {}", directory.string(),
-                                           storage::manifest_path({}).string()));
+    throw Error(ErrorCode::io,
+                fmt::format("{}: not a hierarchy: there is no {}", directory.string(),
+                            storage::manifest_path({}).string()));
   }
   VerifyReport report;
   ProblemList problems;
@@ -99,7 +105,8 @@ VerifyReport verify_hierarchy(storage::FileSystem& files, const fs::path& direct
     storage::MemoryPool pool(options.memory_budget / 8);
     storage::ScratchFile scratch(files, scratch_path(directory), pool);
     TileStore tiles(*reader, options.memory_budget / 4, problems);
-    verify_all({files, *reader, options, scratch, tiles, problems, report.checks, progress, cancel});
+    verify_all(
+        {files, *reader, options, scratch, tiles, problems, report.checks, progress, cancel});
   }
   report.problems = problems.take();
   return report;

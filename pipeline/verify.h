@@ -1,15 +1,15 @@
 // Proves that a hierarchy on disk keeps its promises.
 #pragma once
 
+#include "pipeline/cancel.h"
+#include "pipeline/progress.h"
+#include "storage/file.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include "pipeline/cancel.h"
-#include "pipeline/progress.h"
-#include "storage/file.h"
 
 namespace meshhier::pipeline {
 
@@ -26,12 +26,12 @@ struct VerifyReport {
 };
 
 /// Checks, in this order: sizes and checksums of all files, none missing, none extra; the structure
-/// (counts, bounds, parent maps, ghosts, border lists, chains, errors); that every simplified tile is
-/// the image of its children, which proves every cut seamless; the seams of random cuts; and, given
-/// the input, that the partitions are exactly the input. Goes on after a problem and lists up to a
-/// hundred. Memory stays about `memory_budget`; temporary files lie beside the hierarchy and are
-/// removed. Throws Error(io) if there is no hierarchy, Error(input) if the input mesh is broken,
-/// Error(interrupted).
+/// (counts, bounds, parent maps, ghosts, border lists, chains, errors); that every simplified tile
+/// is the image of its children, which proves every cut seamless; the seams of random cuts; and,
+/// given the input, that the partitions are exactly the input. Goes on after a problem and lists up
+/// to a hundred. Memory stays about `memory_budget`; temporary files lie beside the hierarchy and
+/// are removed. Throws Error(io) if there is no hierarchy, Error(input) if the input mesh is
+/// broken, Error(interrupted).
 VerifyReport verify_hierarchy(storage::FileSystem& files, const std::filesystem::path& directory,
                               const VerifyOptions& options, Progress& progress,
                               const CancelToken& cancel);

@@ -1,3 +1,7 @@
+#include "pipeline/corner_triangle.h"
+#include "pipeline/cut.h"
+#include "pipeline/verify_parts.h"
+
 #include <algorithm>
 #include <cstring>
 #include <optional>
@@ -6,22 +10,22 @@
 
 #include <fmt/format.h>
 
-#include "pipeline/corner_triangle.h"
-#include "pipeline/cut.h"
-#include "pipeline/verify_parts.h"
-
 namespace meshhier::pipeline {
 namespace {
 
-/// Counts what is wrong with the ghosts in one neighbour, so that a broken pair of tiles is one line.
+/// Counts what is wrong with the ghosts in one neighbour, so that a broken pair of tiles is one
+/// line.
 class Tally {
  public:
   void require(bool holds, std::size_t ghost) {
-    if (holds) return;
-    if (count_++ == 0) first_ = ghost;
+    if (holds)
+      return;
+    if (count_++ == 0)
+      first_ = ghost;
   }
   void report(const VerifyJob& job, NodeId tile, NodeId neighbour, std::string_view what) const {
-    if (count_ == 0) return;
+    if (count_ == 0)
+      return;
     job.problems.add(fmt::format("tile {}: of its ghosts in tile {}, {} {} (the first: ghost {})",
                                  to_text(tile), to_text(neighbour), count_, what, first_));
   }
@@ -67,11 +71,13 @@ void check_ghosts(const VerifyJob& job, const PublishedTile& tile, const GhostGr
   for (std::size_t i = group.begin; i < group.end; ++i) {
     const std::size_t vertex = tile.mesh.ghosts[i].index;
     missing.require(vertex < neighbour.mesh.rim_count, i);
-    if (vertex >= neighbour.mesh.rim_count) continue;
+    if (vertex >= neighbour.mesh.rim_count)
+      continue;
     const std::size_t here = tile.mesh.own_count + i;
     const VertexArray &own = neighbour.mesh.vertices, &seen = tile.mesh.vertices;
     moved.require(same_position(seen, here, own, vertex), i);
-    if (same_kind) recoloured.require(same_attributes(seen, here, own, vertex), i);
+    if (same_kind)
+      recoloured.require(same_attributes(seen, here, own, vertex), i);
   }
   missing.report(job, tile.node, neighbour.node, "are not vertices of its rim");
   moved.report(job, tile.node, neighbour.node, "have not its position");
@@ -93,16 +99,19 @@ void check_chains(const VerifyJob& job, const PublishedTile& tile, const GhostGr
     const int level = raw(group.node.level) - step;
     if (tree.is_early(tree.ancestor(group.node, static_cast<Level>(level)))) {
       for (std::size_t i = group.begin; i < group.end; ++i) {
-        wrong.require(tile.chains[i][static_cast<std::size_t>(step)] == reached[i - group.begin], i);
+        wrong.require(tile.chains[i][static_cast<std::size_t>(step)] == reached[i - group.begin],
+                      i);
       }
       continue;
     }
     const auto below = job.tiles.find(tree.ancestor(group.node, static_cast<Level>(level + 1)));
-    if (!below) return;
+    if (!below)
+      return;
     for (std::size_t i = group.begin; i < group.end; ++i) {
       std::uint16_t& vertex = reached[i - group.begin];
       const bool known = vertex < below->parent_map.size();
-      if (known) vertex = below->parent_map[vertex];
+      if (known)
+        vertex = below->parent_map[vertex];
       wrong.require(known && tile.chains[i][static_cast<std::size_t>(step)] == vertex, i);
     }
   }
@@ -120,7 +129,8 @@ void check_lists(const VerifyJob& job, NodeId node, const std::vector<CornerTria
   std::vector<std::uint32_t> neighbours;
   for (const CornerTriangle& t : border) {
     for (Corner c : t) {
-      if (tile_index(c) != node.index) neighbours.push_back(tile_index(c));
+      if (tile_index(c) != node.index)
+        neighbours.push_back(tile_index(c));
     }
   }
   std::sort(neighbours.begin(), neighbours.end());
@@ -128,10 +138,12 @@ void check_lists(const VerifyJob& job, NodeId node, const std::vector<CornerTria
   for (std::uint32_t index : neighbours) {
     const NodeId neighbour{node.level, index};
     const auto other = job.tiles.find(neighbour);
-    if (!other) continue;
+    if (!other)
+      continue;
     const auto theirs = border_at(*other, node.level, tree);
     const auto shared = touching(border, index);
-    if (std::includes(theirs.begin(), theirs.end(), shared.begin(), shared.end())) continue;
+    if (std::includes(theirs.begin(), theirs.end(), shared.begin(), shared.end()))
+      continue;
     job.problems.add(
         fmt::format("tile {}: some of its {} border triangles with tile {} are not listed there",
                     to_text(node), shared.size(), to_text(neighbour)));
@@ -153,9 +165,11 @@ void verify_borders(const VerifyJob& job, const PublishedTile& tile) {
     check_chains(job, tile, group);
   }
   check_lists(job, tile.node, border_of(tile, tree));
-  if (tile.node.level == Level{}) return;
+  if (tile.node.level == Level{})
+    return;
   const NodeId above = tree.parent(tile.node);
-  if (tree.is_early(above)) check_lists(job, above, early_border_of(tile, tree));
+  if (tree.is_early(above))
+    check_lists(job, above, early_border_of(tile, tree));
 }
 
 }  // namespace meshhier::pipeline

@@ -1,3 +1,8 @@
+#include "hierarchy/error.h"
+#include "pipeline/cut.h"
+#include "pipeline/verify_parts.h"
+#include "storage/layout.h"
+
 #include <charconv>
 #include <filesystem>
 #include <optional>
@@ -5,11 +10,6 @@
 #include <system_error>
 
 #include <fmt/format.h>
-
-#include "hierarchy/error.h"
-#include "pipeline/cut.h"
-#include "pipeline/verify_parts.h"
-#include "storage/layout.h"
 
 namespace meshhier::pipeline {
 namespace {
@@ -20,7 +20,8 @@ namespace fs = std::filesystem;
 std::optional<std::uint32_t> leading_number(const std::string& name) {
   std::uint32_t number = 0;
   const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
-  if (error != std::errc{} || end == name.data()) return std::nullopt;
+  if (error != std::errc{} || end == name.data())
+    return std::nullopt;
   return number;
 }
 
@@ -28,10 +29,10 @@ std::optional<std::uint32_t> leading_number(const std::string& name) {
 bool is_tile_file(const Tree& tree, const fs::path& relative) {
   const auto level = leading_number(relative.parent_path().filename().string());
   const auto index = leading_number(relative.filename().string());
-  if (!level || !index || *level > raw(tree.depth())) return false;
+  if (!level || !index || *level > raw(tree.depth()))
+    return false;
   const NodeId node{static_cast<Level>(*level), *index};
-  return tree.contains(node) && !tree.is_early(node) &&
-         storage::tile_path({}, node) == relative;
+  return tree.contains(node) && !tree.is_early(node) && storage::tile_path({}, node) == relative;
 }
 
 bool is_known(const Tree& tree, const fs::path& relative) {
@@ -46,12 +47,14 @@ std::uint64_t find_extra_files(const VerifyJob& job) {
   std::uint64_t count = 0;
   fs::recursive_directory_iterator entry(directory, error);
   for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
-    if (entry->is_directory(error)) continue;
+    if (entry->is_directory(error))
+      continue;
     ++count;
     const fs::path relative = entry->path().lexically_relative(directory);
-    if (is_known(job.tree(), relative)) continue;
-    job.problems.add(fmt::format("{}: not a file of this hierarchy; remove it",
-                                 entry->path().string()));
+    if (is_known(job.tree(), relative))
+      continue;
+    job.problems.add(
+        fmt::format("{}: not a file of this hierarchy; remove it", entry->path().string()));
   }
   if (error) {
     throw Error(ErrorCode::io,
@@ -67,7 +70,8 @@ void check_outline(const VerifyJob& job) {
                                      job.reader.manifest().outline_bytes,
                                      outline.polyline_count()));
   } catch (const Error& error) {
-    if (error.code() != ErrorCode::corrupt && error.code() != ErrorCode::io) throw;
+    if (error.code() != ErrorCode::corrupt && error.code() != ErrorCode::io)
+      throw;
     job.problems.add(error.what());
   }
 }
@@ -77,12 +81,14 @@ void check_totals(const VerifyJob& job) {
   std::uint64_t bytes = manifest.index_bytes + manifest.outline_bytes, triangles = 0;
   for (const TileRecord& record : job.reader.records()) {
     bytes += record.file_bytes;
-    if (!job.tree().is_partition(record.node)) continue;
+    if (!job.tree().is_partition(record.node))
+      continue;
     triangles += std::uint64_t{record.interior_count} + record.drawn_border_count;
   }
   const std::string name = storage::manifest_path(job.reader.directory()).string();
   const auto compare = [&](std::string_view what, std::uint64_t told, std::uint64_t found) {
-    if (told == found) return;
+    if (told == found)
+      return;
     job.problems.add(
         fmt::format("{}: {} is {}, but the index adds up to {}", name, what, told, found));
   };
@@ -96,8 +102,8 @@ void verify_files(const VerifyJob& job) {
   const std::uint64_t count = find_extra_files(job);
   check_outline(job);
   check_totals(job);
-  job.checks.push_back(fmt::format("files: {} found, {} tiles in the index", count,
-                                   job.reader.records().size()));
+  job.checks.push_back(
+      fmt::format("files: {} found, {} tiles in the index", count, job.reader.records().size()));
 }
 
 }  // namespace meshhier::pipeline

@@ -5,6 +5,13 @@
 // stored) and attributes, a triangle from the hashes of its corners in their order around it. The
 // sums are of two independent 64-bit hashes: two different multisets have the same sums with a
 // chance of 2^-128. Nothing is kept but one 64-bit hash per input vertex, in a spool.
+#include "hierarchy/error.h"
+#include "mesh_io/mesh_source.h"
+#include "partition/renumber.h"
+#include "pipeline/cut.h"
+#include "pipeline/verify_parts.h"
+#include "storage/hash.h"
+
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -14,13 +21,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-
-#include "hierarchy/error.h"
-#include "mesh_io/mesh_source.h"
-#include "partition/renumber.h"
-#include "pipeline/cut.h"
-#include "pipeline/verify_parts.h"
-#include "storage/hash.h"
 
 namespace meshhier::pipeline {
 namespace {
@@ -52,7 +52,8 @@ enum Salt : std::uint32_t { kVertexTable = 1, kVertexA, kVertexB, kTriangleA, kT
 std::uint64_t hash_vertex(Salt salt, Vec3f position, std::span<const float> attributes) {
   SaltedHash hash(salt);
   hash.append(&position, sizeof position);
-  if (!attributes.empty()) hash.append(attributes.data(), attributes.size_bytes());
+  if (!attributes.empty())
+    hash.append(attributes.data(), attributes.size_bytes());
   return hash.value();
 }
 
@@ -94,7 +95,8 @@ void add_tile(const PublishedTile& tile, MeshSums& sums) {
   std::vector<std::uint64_t> hashes;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     const auto attributes = mesh.vertices.attributes_of(v);
-    if (v < mesh.own_count) sums.add_vertex(mesh.vertices.positions[v], attributes);
+    if (v < mesh.own_count)
+      sums.add_vertex(mesh.vertices.positions[v], attributes);
     hashes.push_back(hash_vertex(kVertexTable, mesh.vertices.positions[v], attributes));
   }
   const auto add = [&](const Triangle& t) {
@@ -105,7 +107,8 @@ void add_tile(const PublishedTile& tile, MeshSums& sums) {
   };
   std::for_each(mesh.interior.begin(), mesh.interior.end(), add);
   for (const Triangle& t : mesh.border) {
-    if (std::all_of(t.begin(), t.end(), ours)) add(t);
+    if (std::all_of(t.begin(), t.end(), ours))
+      add(t);
   }
 }
 
@@ -114,7 +117,8 @@ MeshSums sum_partitions(const VerifyJob& job) {
   MeshSums sums;
   for (std::uint32_t i = 0; i < tree.partition_count(); ++i) {
     job.cancel.check();
-    if (const auto tile = job.tiles.find({tree.depth(), i})) add_tile(*tile, sums);
+    if (const auto tile = job.tiles.find({tree.depth(), i}))
+      add_tile(*tile, sums);
     job.progress.advance(1);
   }
   return sums;
@@ -123,7 +127,8 @@ MeshSums sum_partitions(const VerifyJob& job) {
 /// Positions as the hierarchy stores them: float, relative to its origin.
 std::vector<Vec3f> stored_positions(const mesh_io::VertexBlock& block, Vec3d origin) {
   std::vector<Vec3f> positions;
-  for (const Vec3d& p : block.exact) positions.push_back(to_float(p - origin));
+  for (const Vec3d& p : block.exact)
+    positions.push_back(to_float(p - origin));
   for (const Vec3f& p : block.positions) {
     positions.push_back(origin == Vec3d{} ? p : to_float(to_double(p) - origin));
   }
@@ -155,7 +160,8 @@ MeshSums sum_input(const VerifyJob& job, mesh_io::MeshSource& source) {
       },
       table, job.options.memory_budget / 4, job.scratch,
       [&](std::span<const HashTriangle> triangles) {
-        for (const HashTriangle& t : triangles) sums.add_triangle(t);
+        for (const HashTriangle& t : triangles)
+          sums.add_triangle(t);
       });
   return sums;
 }
@@ -167,7 +173,8 @@ class InputProblems {
 
   template <class Value>
   void compare(std::string_view what, const Value& expected, const Value& found) const {
-    if (expected == found) return;
+    if (expected == found)
+      return;
     add(fmt::format("{} {}, but the hierarchy was made of {}", found, what, expected));
   }
   void add(const std::string& problem) const {
@@ -197,9 +204,11 @@ void compare_file(const VerifyJob& job, const InputProblems& problems) {
   }
 }
 
-void compare_sums(const MeshSums& input, const MeshSums& partitions, const InputProblems& problems) {
+void compare_sums(const MeshSums& input, const MeshSums& partitions,
+                  const InputProblems& problems) {
   const auto compare = [&](std::string_view what, const MultisetSum& in, const MultisetSum& out) {
-    if (in == out) return;
+    if (in == out)
+      return;
     const std::string how =
         in.count == out.count
             ? fmt::format("{} {}, but some are not the same", in.count, what)

@@ -1,19 +1,19 @@
 // The parts of verify and what they share. For pipeline/verify*.cpp only.
 #pragma once
 
-#include <cstdint>
-#include <memory>
-#include <set>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "pipeline/cancel.h"
 #include "pipeline/node_cache.h"
 #include "pipeline/progress.h"
 #include "pipeline/verify.h"
 #include "storage/hierarchy_reader.h"
 #include "storage/spool.h"
+
+#include <cstdint>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace meshhier::pipeline {
 
@@ -24,7 +24,8 @@ class ProblemList {
   static constexpr std::size_t kLimit = 100;
 
   void add(std::string problem) {
-    if (problems_.size() < kLimit) problems_.push_back(std::move(problem));
+    if (problems_.size() < kLimit)
+      problems_.push_back(std::move(problem));
     ++count_;
   }
   std::uint64_t count() const { return count_; }
@@ -54,8 +55,8 @@ class TileStore {
   std::set<NodeId> unreadable_;
 };
 
-/// What every part works with. The memory budget is shared out: a quarter to the tiles, an eighth to
-/// the pool of the scratch file, at most half to the sorts and tables of the part that runs.
+/// What every part works with. The memory budget is shared out: a quarter to the tiles, an eighth
+/// to the pool of the scratch file, at most half to the sorts and tables of the part that runs.
 struct VerifyJob {
   storage::FileSystem& files;
   const storage::HierarchyReader& reader;

@@ -1,23 +1,23 @@
 // Looks for cracks in random cuts.
 //
 // A cut shows the image of the original mesh under a map of vertices, one of exact duplicates kept.
-// Say that an edge is unbalanced if unequal numbers of triangles run along it in the two directions.
-// If an edge of the cut has a single triangle, all images of triangles there are copies of that
-// one, so they do not balance; the sum over the original edges that came there is not zero; so one
-// of these is unbalanced. Hence: every edge with a single triangle is the image of an unbalanced
-// original edge, and where there is none (closed, oriented input), no cut has a border.
+// Say that an edge is unbalanced if unequal numbers of triangles run along it in the two
+// directions. If an edge of the cut has a single triangle, all images of triangles there are copies
+// of that one, so they do not balance; the sum over the original edges that came there is not zero;
+// so one of these is unbalanced. Hence: every edge with a single triangle is the image of an
+// unbalanced original edge, and where there is none (closed, oriented input), no cut has a border.
+#include "hierarchy/error.h"
+#include "pipeline/cut.h"
+#include "pipeline/cut_mesh.h"
+#include "pipeline/edge_census.h"
+#include "pipeline/verify_parts.h"
+
 #include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
-
-#include "hierarchy/error.h"
-#include "pipeline/cut.h"
-#include "pipeline/cut_mesh.h"
-#include "pipeline/edge_census.h"
-#include "pipeline/verify_parts.h"
 
 namespace meshhier::pipeline {
 namespace {
@@ -45,7 +45,8 @@ void census(const VerifyJob& job, const NumberedCut& numbered, Visit visit) {
   for (std::size_t i = 0; i < numbered.cut.size(); ++i) {
     job.cancel.check();
     const auto tile = job.tiles.find(numbered.cut[i]);
-    if (!tile) throw Error(ErrorCode::corrupt, "tile " + to_text(numbered.cut[i]) + " has changed");
+    if (!tile)
+      throw Error(ErrorCode::corrupt, "tile " + to_text(numbered.cut[i]) + " has changed");
     edges.add(*tile, numbered.base(i), draw_tile(job.tree(), numbered, i, *tile));
   }
   edges.finish();
@@ -56,8 +57,10 @@ Original look_at_original(const VerifyJob& job) {
   Original original{number_vertices(job.reader, Cut::of_level(tree, tree.depth())),
                     EdgeSpool(job.scratch, kSpoolBlockBytes)};
   census(job, original.numbered, [&](const EdgeCount& edge) {
-    if (edge.is_unbalanced()) original.unbalanced.append(edge.edge);
-    if (edge.is_border()) ++original.border_count;
+    if (edge.is_unbalanced())
+      original.unbalanced.append(edge.edge);
+    if (edge.is_border())
+      ++original.border_count;
   });
   return original;
 }
@@ -73,8 +76,8 @@ std::uint32_t image_of(const VerifyJob& job, ParentMaps& maps, const Original& o
   while (node != shown.cut[position]) {
     const auto map = maps.get(node);
     if (vertex >= map->size()) {
-      throw Error(ErrorCode::corrupt, fmt::format("tile {}: its parent map has no vertex {}",
-                                                  to_text(node), vertex));
+      throw Error(ErrorCode::corrupt,
+                  fmt::format("tile {}: its parent map has no vertex {}", to_text(node), vertex));
     }
     vertex = (*map)[vertex];
     node = parent_tile(job.tree(), node);
@@ -88,7 +91,8 @@ void for_each_edge(const EdgeSpool& edges, Visit visit) {
   for (std::uint64_t first = 0; first < edges.size(); first += block.size()) {
     block.resize(std::min<std::uint64_t>(kEdgeBlock, edges.size() - first));
     edges.read(first, block);
-    for (const CutEdge& edge : block) visit(edge);
+    for (const CutEdge& edge : block)
+      visit(edge);
   }
 }
 
@@ -98,7 +102,8 @@ void add_images(const VerifyJob& job, ParentMaps& maps, const Original& original
   for_each_edge(original.unbalanced, [&](const CutEdge& edge) {
     const std::uint32_t a = image_of(job, maps, original, shown, edge.low);
     const std::uint32_t b = image_of(job, maps, original, shown, edge.high);
-    if (a != b) images.add(CutEdge{std::min(a, b), std::max(a, b)});
+    if (a != b)
+      images.add(CutEdge{std::min(a, b), std::max(a, b)});
   });
 }
 
@@ -112,7 +117,8 @@ class EdgeStream {
   const CutEdge* now() const { return block_.empty() ? nullptr : block_.data(); }
   void step() {
     block_ = block_.subspan(1);
-    if (block_.empty()) block_ = sort_.next_block();
+    if (block_.empty())
+      block_ = sort_.next_block();
   }
 
  private:
@@ -133,12 +139,16 @@ std::uint64_t find_cracks(const VerifyJob& job, const NumberedCut& shown, const 
   std::uint64_t cracks = 0;
   for (; borders.now() != nullptr; borders.step()) {
     const CutEdge edge = *borders.now();
-    while (originals.now() != nullptr && originals.now()->key() < edge.key()) originals.step();
-    if (originals.now() != nullptr && *originals.now() == edge) continue;
-    if (++cracks > kToldCracks) continue;
-    job.problems.add(fmt::format("{}: a crack from {} to {}: one triangle at the edge, and none of "
-                                 "the input's borders leads there",
-                                 name, vertex_text(shown, edge.low), vertex_text(shown, edge.high)));
+    while (originals.now() != nullptr && originals.now()->key() < edge.key())
+      originals.step();
+    if (originals.now() != nullptr && *originals.now() == edge)
+      continue;
+    if (++cracks > kToldCracks)
+      continue;
+    job.problems.add(
+        fmt::format("{}: a crack from {} to {}: one triangle at the edge, and none of "
+                    "the input's borders leads there",
+                    name, vertex_text(shown, edge.low), vertex_text(shown, edge.high)));
   }
   if (cracks > kToldCracks) {
     job.problems.add(fmt::format("{}: {} cracks in all", name, cracks));
@@ -152,9 +162,11 @@ std::uint64_t look_at_cut(const VerifyJob& job, ParentMaps& maps, const Original
   const NumberedCut shown = number_vertices(job.reader, Cut::random(job.tree(), seed));
   EdgeSort border(job.scratch, job.options.memory_budget / 16);
   census(job, shown, [&](const EdgeCount& edge) {
-    if (edge.is_border()) border.add(edge.edge);
+    if (edge.is_border())
+      border.add(edge.edge);
   });
-  if (border.size() == 0) return 0;
+  if (border.size() == 0)
+    return 0;
   EdgeSort images(job.scratch, job.options.memory_budget / 8);
   add_images(job, maps, original, shown, images);
   find_cracks(job, shown, fmt::format("random cut {} ({} tiles)", seed, shown.cut.size()), border,
@@ -180,10 +192,9 @@ void verify_seams(const VerifyJob& job) {
     most = std::max(most, look_at_cut(job, maps, original, job.options.seed + i));
     job.progress.advance(1);
   }
-  job.checks.push_back(
-      fmt::format("input surface: {} border edges, {} unbalanced edges{}", original.border_count,
-                  original.unbalanced.size(),
-                  original.unbalanced.size() == 0 ? ": closed and oriented" : ""));
+  job.checks.push_back(fmt::format("input surface: {} border edges, {} unbalanced edges{}",
+                                   original.border_count, original.unbalanced.size(),
+                                   original.unbalanced.size() == 0 ? ": closed and oriented" : ""));
   job.checks.push_back(
       fmt::format("seams: {} random cuts from seed {}; at most {} border edges in one, looked for "
                   "in the input's borders",

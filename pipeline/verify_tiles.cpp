@@ -1,12 +1,12 @@
+#include "pipeline/cut.h"
+#include "pipeline/verify_parts.h"
+#include "storage/layout.h"
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include <fmt/format.h>
-
-#include "pipeline/cut.h"
-#include "pipeline/verify_parts.h"
-#include "storage/layout.h"
 
 namespace meshhier::pipeline {
 namespace {
@@ -18,7 +18,8 @@ class TileProblems {
 
   template <class... Values>
   void require(bool holds, fmt::format_string<Values...> problem, Values&&... values) const {
-    if (holds) return;
+    if (holds)
+      return;
     job_.problems.add(fmt::format("{}: {}",
                                   storage::tile_path(job_.reader.directory(), node_).string(),
                                   fmt::format(problem, std::forward<Values>(values)...)));
@@ -31,21 +32,27 @@ class TileProblems {
 
 bool has_order(const std::vector<Triangle>& triangles, bool unique) {
   for (std::size_t i = 0; i < triangles.size(); ++i) {
-    if (is_degenerate(triangles[i]) || canonical(triangles[i]) != triangles[i]) return false;
-    if (i == 0) continue;
-    if (unique ? triangles[i] <= triangles[i - 1] : triangles[i] < triangles[i - 1]) return false;
+    if (is_degenerate(triangles[i]) || canonical(triangles[i]) != triangles[i])
+      return false;
+    if (i == 0)
+      continue;
+    if (unique ? triangles[i] <= triangles[i - 1] : triangles[i] < triangles[i - 1])
+      return false;
   }
   return true;
 }
 
-/// The rim is exactly the own vertices of border triangles; every ghost is in one of them.
-bool has_exact_rim(const TileMesh& mesh) {
+/// Own vertices of border triangles are on the rim (which may hold more: triangles that a neighbour's contraction
+/// made degenerate are gone); every ghost is in a border triangle.
+bool has_sound_rim(const TileMesh& mesh) {
   std::vector<bool> used(mesh.vertices.size());
   for (const Triangle& t : mesh.border) {
-    for (TileVertex v : t) used[raw(v)] = true;
+    for (TileVertex v : t)
+      used[raw(v)] = true;
   }
   for (std::size_t v = 0; v < used.size(); ++v) {
-    if (used[v] != (v < mesh.rim_count || v >= mesh.own_count)) return false;
+    if (used[v] ? v >= mesh.rim_count && v < mesh.own_count : v >= mesh.own_count)
+      return false;
   }
   return true;
 }
@@ -74,7 +81,8 @@ void check_errors(const VerifyJob& job, const TileRecord& record, const TileProb
                    record.bound);
   problems.require(!partition || (record.error == 0 && record.bound == 0),
                    "a partition has error {} and bound {}, expected 0", record.error, record.bound);
-  if (record.node.level == Level{}) return;
+  if (record.node.level == Level{})
+    return;
   const TileRecord& parent = job.reader.record(parent_tile(job.tree(), record.node));
   problems.require(record.error < parent.error,
                    "error {} is not below the error {} of its parent {}", record.error,
@@ -113,8 +121,8 @@ void verify_tile(const VerifyJob& job, const TileRecord& record, const Published
                    record.target_count);
   problems.require(has_order(mesh.interior, !partition) && has_order(mesh.border, !partition),
                    "triangles are not in order, degenerate or repeated");
-  problems.require(has_exact_rim(mesh),
-                   "rim and ghosts are not exactly the vertices of its border triangles");
+  problems.require(has_sound_rim(mesh),
+                   "a border triangle has an own corner off the rim, or a ghost has no border triangle");
   const std::uint32_t drawn = drawn_border_count(tree, tile);
   problems.require(drawn == record.drawn_border_count,
                    "draws {} border triangles in its level's cut, the index says {}", drawn,
@@ -133,16 +141,18 @@ void verify_tiles(const VerifyJob& job) {
     if (const auto tile = job.tiles.find(record.node)) {
       verify_tile(job, record, *tile);
       verify_borders(job, *tile);
-      if (!job.tree().is_partition(record.node)) verify_image(job, *tile);
+      if (!job.tree().is_partition(record.node))
+        verify_image(job, *tile);
       ghosts += record.ghost_count;
       border += record.border_count;
     }
-    if (record.own_count != record.target_count) ++off_target;
+    if (record.own_count != record.target_count)
+      ++off_target;
     job.progress.advance(1);
   }
-  job.checks.push_back(
-      fmt::format("tiles: sizes, checksums and structure of {}; {} below the vertex count asked for",
-                  records.size() - job.tiles.unreadable_count(), off_target));
+  job.checks.push_back(fmt::format(
+      "tiles: sizes, checksums and structure of {}; {} below the vertex count asked for",
+      records.size() - job.tiles.unreadable_count(), off_target));
   job.checks.push_back(
       fmt::format("borders: {} ghosts and {} border triangles compared with the neighbours' own",
                   ghosts, border));

@@ -87,7 +87,6 @@ Json manifest_json(const Manifest& manifest) {
   document["generator"] = manifest.generator;
   document["source"] = source_json(manifest.source);
   document["origin"] = numbers(manifest.origin);
-  document["unit_normals"] = manifest.unit_normals;
   document["partitions"] = manifest.partition_count;
   document["config"] = manifest.config;
   document["index"] = {{"file", index_path({}).string()},
@@ -298,7 +297,6 @@ Manifest parse_manifest(const std::string& text, const std::string& name) {
   manifest.generator = object.text("generator");
   manifest.source = read_source(object.object("source"));
   manifest.origin = object.point("origin");
-  manifest.unit_normals = object.boolean("unit_normals");
   manifest.partition_count =
       static_cast<std::uint32_t>(object.count("partitions", manifest.source.vertices));
   if (manifest.partition_count == 0)

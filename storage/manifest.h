@@ -19,7 +19,6 @@ struct Manifest {
   std::string generator;  ///< "meshhier 0.1.0"
   SourceSummary source;
   Vec3d origin;              ///< add to every stored position
-  bool unit_normals = true;  ///< all input normals are is_unit_normal() (tile_glb.h)
   std::uint32_t partition_count = 0;
   /// An object: the resolved config, what decides the result (not budget, threads, paths).
   nlohmann::ordered_json config;

@@ -20,8 +20,6 @@ inline constexpr std::uint32_t kMaxOwnVertices = 32768;
 /// What all tiles of a hierarchy share.
 struct TileFormat {
   AttributeLayout attributes;
-  bool unit_normals = true;  ///< all input normals are is_unit_normal(). Told to readers: each tile
-                             ///< file says itself whether it holds normals beyond those of glTF
   Vec3d origin;  ///< added to every position (the node's translation); 0 for float input
 };
 

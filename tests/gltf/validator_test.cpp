@@ -70,17 +70,17 @@ class GltfValidator : public testing::Test {
 TEST_F(GltfValidator, AcceptsTilesOfEveryLayout) {
   int number = 0;
   for (const AttributeLayout& layout : sample_layouts()) {
-    const storage::TileFormat format{layout, true, {}};
+    const storage::TileFormat format{layout, {}};
     write_tiles(fmt::format("layout{}", number++), make_sample(torus(300, 0.05F), 5, format));
   }
   expect_clean();
 }
 
 TEST_F(GltfValidator, AcceptsOriginsOpenMeshesAndTilesWithoutTriangles) {
-  const storage::TileFormat far{{}, true, {691234.56789012345, -5.4e6, 1e-300}};
+  const storage::TileFormat far{{}, {691234.56789012345, -5.4e6, 1e-300}};
   write_tiles("origin", make_sample(sphere(200), 4, far));
   write_tiles("open", make_sample(open_grid(9, 7), 3));
-  write_tiles("points", make_sample(points(50), 2, {{.normals = true}, true, {}}));
+  write_tiles("points", make_sample(points(50), 2, {{.normals = true}, {}}));
   write_tiles("one", make_sample(points(1), 1));
   expect_clean();
 }
@@ -89,7 +89,7 @@ TEST_F(GltfValidator, AcceptsAttributesThatGltfCannotSay) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float inf = std::numeric_limits<float>::infinity();
   const storage::TileFormat format{
-      {.normals = true, .colour = ColourType::f32, .alpha = true, .texcoords = true}, false, {}};
+      {.normals = true, .colour = ColourType::f32, .alpha = true, .texcoords = true}, {}};
   SampleHierarchy sample = make_sample(torus(200), 3, format);
   for (PublishedTile& tile : sample.tiles) {
     auto& attributes = tile.mesh.vertices.attributes;

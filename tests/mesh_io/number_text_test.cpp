@@ -1,5 +1,6 @@
 #include "mesh_io/number_text.h"
 
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <limits>

@@ -1,5 +1,11 @@
 #include "pipeline/cut.h"
 
+#include "hierarchy/error.h"
+#include "pipeline/cut_mesh.h"
+#include "pipeline/node_cache.h"
+#include "tests/pipeline/sample_hierarchy.h"
+#include "tests/support/meshes.h"
+
 #include <algorithm>
 #include <array>
 #include <set>
@@ -9,19 +15,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "hierarchy/error.h"
-#include "pipeline/cut_mesh.h"
-#include "pipeline/node_cache.h"
-#include "tests/pipeline/sample_hierarchy.h"
-#include "tests/support/meshes.h"
-
 namespace meshhier::pipeline {
 namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-NodeId node(int level, std::uint32_t index) { return {static_cast<Level>(level), index}; }
+NodeId node(int level, std::uint32_t index) {
+  return {static_cast<Level>(level), index};
+}
 
 template <class Action>
 std::string usage_error(Action action) {
@@ -58,16 +60,22 @@ TEST(Cut, NamesTheGap) {
               HasSubstr("no node covers partitions 3 to 5"));
   EXPECT_THAT(usage_error([&] { Cut(tree, {node(1, 1)}); }),
               HasSubstr("no node covers partitions 0 to 2"));
-  EXPECT_THAT(usage_error([&] { Cut(tree, {node(2, 0), node(1, 1)}); }),
+  EXPECT_THAT(usage_error([&] {
+                Cut(tree, {node(2, 0), node(1, 1)});
+              }),
               HasSubstr("no node covers partition 2"));
   EXPECT_THAT(usage_error([&] { Cut(tree, {}); }), HasSubstr("partitions 0 to 5"));
 }
 
 TEST(Cut, NamesTheOverlap) {
   const Tree tree(60, 6);
-  EXPECT_THAT(usage_error([&] { Cut(tree, {node(1, 0), node(1, 1), node(3, 4)}); }),
+  EXPECT_THAT(usage_error([&] {
+                Cut(tree, {node(1, 0), node(1, 1), node(3, 4)});
+              }),
               HasSubstr("nodes 1/1 and 3/4 both cover partition 4"));
-  EXPECT_THAT(usage_error([&] { Cut(tree, {node(0, 0), node(0, 0)}); }),
+  EXPECT_THAT(usage_error([&] {
+                Cut(tree, {node(0, 0), node(0, 0)});
+              }),
               HasSubstr("both cover partition 0"));
 }
 
@@ -142,7 +150,8 @@ TEST(NodeCache, KeepsTheLastUsedWithinItsLimit) {
         return static_cast<int>(n.index);
       },
       [](int) { return 10; });
-  for (std::uint32_t i : {1U, 2U, 3U, 1U, 4U, 1U, 3U, 2U}) EXPECT_EQ(*cache.get(node(0, i)), i);
+  for (std::uint32_t i : {1U, 2U, 3U, 1U, 4U, 1U, 3U, 2U})
+    EXPECT_EQ(*cache.get(node(0, i)), i);
   EXPECT_THAT(loaded, ElementsAre(1, 2, 3, 4, 2));
   EXPECT_EQ(cache.used_bytes(), 30U);
 }
@@ -151,7 +160,8 @@ TEST(NodeCache, HoldsOneValueLargerThanItsLimitAndSurvivesAFailedLoad) {
   NodeCache<int> cache(
       5,
       [](NodeId n) {
-        if (n.index == 9) throw Error(ErrorCode::corrupt, "broken");
+        if (n.index == 9)
+          throw Error(ErrorCode::corrupt, "broken");
         return static_cast<int>(n.index);
       },
       [](int) { return 10; });
@@ -182,7 +192,8 @@ struct Published {
     std::vector<CutTriangle> all;
     for (std::size_t i = 0; i < numbered.cut.size(); ++i) {
       const auto tile = draw_tile(reader.tree(), numbered, i, reader.read_tile(numbered.cut[i]));
-      for (const CutTriangle& t : tile.triangles) all.push_back(smallest_first(t));
+      for (const CutTriangle& t : tile.triangles)
+        all.push_back(smallest_first(t));
     }
     std::sort(all.begin(), all.end());
     return all;
@@ -201,11 +212,13 @@ struct Published {
     for (const auto& t : sample.ranked.triangles) {
       const CutTriangle corners = {image(numbered, t[0]), image(numbered, t[1]),
                                    image(numbered, t[2])};
-      if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
+      if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0])
+        continue;
       all.push_back(smallest_first(corners));
     }
     std::sort(all.begin(), all.end());
-    if (!copies) all.erase(std::unique(all.begin(), all.end()), all.end());
+    if (!copies)
+      all.erase(std::unique(all.begin(), all.end()), all.end());
     return all;
   }
 
@@ -222,10 +235,14 @@ struct Shape {
 };
 
 std::vector<Shape> shapes() {
-  return {{"sphere", tests::sphere(500)},        {"torus", tests::torus(500)},
-          {"shells", tests::nested_shells(500)}, {"grid", tests::open_grid(15, 12, 0.2F)},
-          {"moebius", tests::moebius(400)},      {"non-manifold", tests::non_manifold(300)},
-          {"soup", tests::soup(60)},             {"duplicates", tests::duplicates(300)}};
+  return {{"sphere", tests::sphere(500)},
+          {"torus", tests::torus(500)},
+          {"shells", tests::nested_shells(500)},
+          {"grid", tests::open_grid(15, 12, 0.2F)},
+          {"moebius", tests::moebius(400)},
+          {"non-manifold", tests::non_manifold(300)},
+          {"soup", tests::soup(60)},
+          {"duplicates", tests::duplicates(300)}};
 }
 
 TEST(CutMesh, EveryCutShowsTheImageOfTheOriginalEachTriangleOnce) {
@@ -252,7 +269,8 @@ TEST(CutMesh, EveryCutShowsTheImageOfTheOriginalEachTriangleOnce) {
 
 TEST(CutMesh, CutsOfAClosedSurfaceHaveNoBorder) {
   for (const Shape& shape : shapes()) {
-    if (!tests::is_closed(shape.mesh.triangles)) continue;
+    if (!tests::is_closed(shape.mesh.triangles))
+      continue;
     const Published hierarchy(shape.mesh, {11, 15, true});
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
       const Tree& tree = hierarchy.reader.tree();
@@ -286,7 +304,8 @@ TEST(CutMesh, FindsTheNodeOfAVertex) {
 TEST(CutMesh, AChainThatLeadsNowhereIsTold) {
   const Published hierarchy(tests::sphere(500), {4, 12, false});
   const Tree& tree = hierarchy.reader.tree();
-  const auto numbered = number_vertices(hierarchy.reader, Cut(tree, {node(1, 0), node(2, 2), node(2, 3)}));
+  const auto numbered =
+      number_vertices(hierarchy.reader, Cut(tree, {node(1, 0), node(2, 2), node(2, 3)}));
   PublishedTile tile = hierarchy.reader.read_tile(node(2, 2));
   const auto far = std::find_if(tile.chains.begin(), tile.chains.end(),
                                 [](const GhostChain& chain) { return chain.size() == 2; });

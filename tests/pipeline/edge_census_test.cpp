@@ -1,15 +1,15 @@
 #include "pipeline/edge_census.h"
 
+#include "pipeline/cut.h"
+#include "tests/pipeline/sample_hierarchy.h"
+#include "tests/support/meshes.h"
+
 #include <algorithm>
 #include <array>
 #include <memory>
 #include <vector>
 
 #include <gtest/gtest.h>
-
-#include "pipeline/cut.h"
-#include "tests/pipeline/sample_hierarchy.h"
-#include "tests/support/meshes.h"
 
 namespace meshhier::pipeline {
 namespace {
@@ -39,8 +39,10 @@ Comparison compare(const tests::TestMesh& mesh, const tests::SampleOptions& opti
   storage::ScratchFile scratch(*files, directory.path() / "scratch", pool);
   EdgeCensus census(scratch, memory_bytes, [&](const EdgeCount& count) {
     const tests::Edge edge{count.edge.low, count.edge.high};
-    if (count.is_border()) result.census.border.push_back(edge);
-    if (count.is_unbalanced()) result.census.unbalanced.push_back(edge);
+    if (count.is_border())
+      result.census.border.push_back(edge);
+    if (count.is_unbalanced())
+      result.census.unbalanced.push_back(edge);
   });
   std::vector<CutTriangle> triangles;
   for (std::size_t i = 0; i < numbered.cut.size(); ++i) {
@@ -55,7 +57,8 @@ Comparison compare(const tests::TestMesh& mesh, const tests::SampleOptions& opti
   for (tests::Edge edge : tests::unmatched_edges(triangles)) {
     result.direct.unbalanced.push_back({std::min(edge[0], edge[1]), std::max(edge[0], edge[1])});
   }
-  for (auto* edges : {&result.census.border, &result.census.unbalanced, &result.direct.unbalanced}) {
+  for (auto* edges :
+       {&result.census.border, &result.census.unbalanced, &result.direct.unbalanced}) {
     std::sort(edges->begin(), edges->end());
   }
   return result;
@@ -63,8 +66,8 @@ Comparison compare(const tests::TestMesh& mesh, const tests::SampleOptions& opti
 
 TEST(EdgeCensus, CountsEveryEdgeOfACutOnce) {
   const std::vector<tests::TestMesh> meshes = {
-      tests::sphere(1500),       tests::open_grid(30, 20, 0.2F), tests::moebius(900),
-      tests::non_manifold(700),  tests::duplicates(900),         tests::soup(200)};
+      tests::sphere(1500),      tests::open_grid(30, 20, 0.2F), tests::moebius(900),
+      tests::non_manifold(700), tests::duplicates(900),         tests::soup(200)};
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     for (std::uint64_t seed = 0; seed < 12; ++seed) {
       const Comparison found = compare(meshes[i], {13, 14, seed % 2 == 1}, seed, 1 << 16);

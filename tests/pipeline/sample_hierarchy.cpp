@@ -1,5 +1,12 @@
 #include "tests/pipeline/sample_hierarchy.h"
 
+#include "hierarchy/bounds.h"
+#include "pipeline/cut.h"
+#include "storage/hash.h"
+#include "storage/index.h"
+#include "storage/layout.h"
+#include "storage/outline_glb.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -9,13 +16,6 @@
 #include <set>
 #include <string>
 
-#include "hierarchy/bounds.h"
-#include "pipeline/cut.h"
-#include "storage/hash.h"
-#include "storage/index.h"
-#include "storage/layout.h"
-#include "storage/outline_glb.h"
-
 namespace meshhier::tests {
 namespace {
 
@@ -24,11 +24,11 @@ namespace fs = std::filesystem;
 /// One level of the whole mesh; vertices are numbered node by node.
 struct LevelMesh {
   VertexArray vertices;
-  std::vector<std::uint32_t> first;      ///< of every node; then the count
-  std::vector<MeshTriangle> triangles;   ///< smallest corner first
-  std::vector<std::uint32_t> of_rank;    ///< vertex that stands for a rank
-  std::vector<std::uint32_t> above;      ///< vertex of the level above that stands for a vertex
-  std::vector<std::uint32_t> local;      ///< number in its tile
+  std::vector<std::uint32_t> first;     ///< of every node; then the count
+  std::vector<MeshTriangle> triangles;  ///< smallest corner first
+  std::vector<std::uint32_t> of_rank;   ///< vertex that stands for a rank
+  std::vector<std::uint32_t> above;     ///< vertex of the level above that stands for a vertex
+  std::vector<std::uint32_t> local;     ///< number in its tile
 
   std::uint32_t node_of(std::uint32_t vertex) const {
     return static_cast<std::uint32_t>(std::upper_bound(first.begin(), first.end(), vertex) -
@@ -79,7 +79,13 @@ LevelMesh last_level(const Tree& tree, const TestMesh& ranked, std::vector<float
 /// Appends the vertices of one node of the level above `fine`, made of [begin, end) there.
 void contract(LevelMesh& fine, LevelMesh& coarse, std::uint32_t begin, std::uint32_t end,
               std::uint32_t target, bool scatter) {
-  const std::uint32_t count = end - begin, base = static_cast<std::uint32_t>(coarse.vertices.size());
+  const std::uint32_t count = end - begin;
+  const auto base = static_cast<std::uint32_t>(coarse.vertices.size());
+  if (target == count) {  // a copy, bit for bit
+    for (std::uint32_t k = 0; k < count; ++k)
+      fine.above[begin + k] = base + k;
+    return coarse.vertices.append(fine.vertices, begin, end);
+  }
   const auto channels = static_cast<std::size_t>(fine.vertices.channels);
   std::vector<Vec3d> sums(target);
   std::vector<double> attributes(target * channels), weights(target);
@@ -103,7 +109,8 @@ void contract(LevelMesh& fine, LevelMesh& coarse, std::uint32_t begin, std::uint
   }
 }
 
-LevelMesh level_above(const Tree& tree, Level level, LevelMesh& fine, const SampleOptions& options) {
+LevelMesh level_above(const Tree& tree, Level level, LevelMesh& fine,
+                      const SampleOptions& options) {
   LevelMesh coarse;
   coarse.vertices.channels = fine.vertices.channels;
   fine.above.resize(fine.vertices.size());
@@ -119,13 +126,15 @@ LevelMesh level_above(const Tree& tree, Level level, LevelMesh& fine, const Samp
   coarse.first.push_back(static_cast<std::uint32_t>(coarse.vertices.size()));
   for (const MeshTriangle& t : fine.triangles) {
     const MeshTriangle image = {fine.above[t[0]], fine.above[t[1]], fine.above[t[2]]};
-    if (image[0] == image[1] || image[1] == image[2] || image[2] == image[0]) continue;
+    if (image[0] == image[1] || image[1] == image[2] || image[2] == image[0])
+      continue;
     coarse.triangles.push_back(smallest_first(image));
   }
   std::sort(coarse.triangles.begin(), coarse.triangles.end());
   coarse.triangles.erase(std::unique(coarse.triangles.begin(), coarse.triangles.end()),
                          coarse.triangles.end());
-  for (std::uint32_t vertex : fine.of_rank) coarse.of_rank.push_back(fine.above[vertex]);
+  for (std::uint32_t vertex : fine.of_rank)
+    coarse.of_rank.push_back(fine.above[vertex]);
   return coarse;
 }
 
@@ -134,15 +143,18 @@ void number_locally(LevelMesh& level) {
   std::vector<bool> rim(level.vertices.size());
   for (const MeshTriangle& t : level.triangles) {
     const std::uint32_t a = level.node_of(t[0]), b = level.node_of(t[1]), c = level.node_of(t[2]);
-    if (a == b && b == c) continue;
-    for (std::uint32_t v : t) rim[v] = true;
+    if (a == b && b == c)
+      continue;
+    for (std::uint32_t v : t)
+      rim[v] = true;
   }
   level.local.resize(level.vertices.size());
   for (std::size_t node = 0; node + 1 < level.first.size(); ++node) {
     std::uint32_t next = 0;
     for (bool wanted : {true, false}) {
       for (std::uint32_t v = level.first[node]; v < level.first[node + 1]; ++v) {
-        if (rim[v] == wanted) level.local[v] = next++;
+        if (rim[v] == wanted)
+          level.local[v] = next++;
       }
     }
   }
@@ -152,7 +164,8 @@ void number_locally(LevelMesh& level) {
 void number_early(const Tree& tree, const LevelMesh& last, LevelMesh& above) {
   const Level level = coarser(tree.depth());
   for (std::uint32_t i = 0; i < tree.node_count(level); ++i) {
-    if (!tree.is_early({level, i})) continue;
+    if (!tree.is_early({level, i}))
+      continue;
     const std::uint32_t partition = tree.partitions({level, i}).begin;
     for (std::uint32_t v = above.first[i]; v < above.first[i + 1]; ++v) {
       above.local[v] = last.local[last.first[partition] + (v - above.first[i])];
@@ -163,7 +176,8 @@ void number_early(const Tree& tree, const LevelMesh& last, LevelMesh& above) {
 /// Makes tiles from all levels.
 class TileMaker {
  public:
-  TileMaker(const Tree& tree, const std::vector<LevelMesh>& levels) : tree_(tree), levels_(levels) {}
+  TileMaker(const Tree& tree, const std::vector<LevelMesh>& levels)
+      : tree_(tree), levels_(levels) {}
 
   PublishedTile make(NodeId node) const {
     const LevelMesh& level = levels_[raw(node.level)];
@@ -182,21 +196,23 @@ class TileMaker {
     return v >= level.first[node.index] && v < level.first[node.index + 1];
   }
   bool is_border(const LevelMesh& level, NodeId node, const MeshTriangle& t) const {
-    const auto own = std::count_if(t.begin(), t.end(),
-                                   [&](std::uint32_t v) { return is_own(level, node, v); });
+    const auto own =
+        std::count_if(t.begin(), t.end(), [&](std::uint32_t v) { return is_own(level, node, v); });
     return own == 1 || own == 2;
   }
 
   void add_own(const LevelMesh& level, PublishedTile& tile) const {
     std::vector<std::uint32_t> by_local(tile.mesh.own_count);
     const std::uint32_t first = level.first[tile.node.index];
-    for (std::uint32_t v = first; v < first + tile.mesh.own_count; ++v) by_local[level.local[v]] = v;
+    for (std::uint32_t v = first; v < first + tile.mesh.own_count; ++v)
+      by_local[level.local[v]] = v;
     for (std::uint32_t v : by_local) {
       tile.mesh.vertices.append(level.vertices, v, v + 1);
-      if (raw(tile.node.level) == 0) continue;
+      if (raw(tile.node.level) == 0)
+        continue;
       const bool early = tree_.is_early(tree_.parent(tile.node));
-      const std::uint32_t parent = early ? levels_[raw(tile.node.level) - 1U].above[level.above[v]]
-                                         : level.above[v];
+      const std::uint32_t parent =
+          early ? levels_[raw(tile.node.level) - 1U].above[level.above[v]] : level.above[v];
       const LevelMesh& above = levels_[raw(tile.node.level) - (early ? 2U : 1U)];
       tile.parent_map.push_back(static_cast<std::uint16_t>(above.local[parent]));
     }
@@ -207,7 +223,8 @@ class TileMaker {
     for (int step = 0; step < tree_.chain_length(node, neighbour); ++step) {
       const LevelMesh& level = levels_[static_cast<std::size_t>(raw(node.level) - step)];
       chain.push_back(static_cast<std::uint16_t>(level.local[vertex]));
-      if (raw(node.level) > step) vertex = level.above[vertex];
+      if (raw(node.level) > step)
+        vertex = level.above[vertex];
     }
     return chain;
   }
@@ -218,7 +235,8 @@ class TileMaker {
     std::set<std::pair<GhostRef, std::uint32_t>> ghosts;
     std::set<std::uint32_t> rim;
     for (const MeshTriangle& t : level.triangles) {
-      if (!is_border(level, tile.node, t)) continue;
+      if (!is_border(level, tile.node, t))
+        continue;
       for (std::uint32_t v : t) {
         if (is_own(level, tile.node, v)) {
           rim.insert(v);
@@ -240,7 +258,8 @@ class TileMaker {
                      const std::vector<std::pair<GhostRef, std::uint32_t>>& ghosts,
                      PublishedTile& tile) const {
     const auto number = [&](std::uint32_t v) {
-      if (is_own(level, tile.node, v)) return static_cast<TileVertex>(level.local[v]);
+      if (is_own(level, tile.node, v))
+        return static_cast<TileVertex>(level.local[v]);
       const std::pair<GhostRef, std::uint32_t> key{{level.node_of(v), level.local[v]}, v};
       const auto found = std::lower_bound(ghosts.begin(), ghosts.end(), key);
       return static_cast<TileVertex>(tile.mesh.own_count + (found - ghosts.begin()));
@@ -266,11 +285,13 @@ std::uint32_t drawn_count(const Tree& tree, const PublishedTile& tile) {
   for (const Triangle& t : tile.mesh.border) {
     bool ours = true;
     for (TileVertex v : t) {
-      if (tile.mesh.is_own(v)) continue;
+      if (tile.mesh.is_own(v))
+        continue;
       const NodeId other{tile.node.level, tile.mesh.ghost(v).tile};
       ours = ours && tile.node.index < other.index && !tree.is_early(other);
     }
-    if (ours) ++drawn;
+    if (ours)
+      ++drawn;
   }
   return drawn;
 }
@@ -290,7 +311,8 @@ TileRecord make_record(const Tree& tree, const PublishedTile& tile, const Sample
   const int height = raw(tree.depth()) - raw(tile.node.level);
   record.error = static_cast<float>(height) * 0.25F;
   record.bound = static_cast<float>(height) * 0.5F;
-  if (partition) record.compactness = 1.5F + 0.25F * static_cast<float>(tile.node.index);
+  if (partition)
+    record.compactness = 1.5F + 0.25F * static_cast<float>(tile.node.index);
   return record;
 }
 
@@ -322,7 +344,6 @@ storage::Manifest make_manifest(const Sample& sample, const fs::path& source) {
     manifest.source.bounds.add(to_double(p) + sample.format.origin);
   }
   manifest.origin = sample.format.origin;
-  manifest.unit_normals = sample.format.unit_normals;
   manifest.partition_count = sample.tree.partition_count();
   manifest.config = {{"partition", {{"count", sample.tree.partition_count()}}}};
   manifest.levels = nlohmann::ordered_json::array();
@@ -340,15 +361,25 @@ auto& at_node(Items& items, NodeId node) {
 
 }  // namespace
 
-PublishedTile& Sample::tile(NodeId node) { return at_node(tiles, node); }
-TileRecord& Sample::record(NodeId node) { return at_node(records, node); }
+PublishedTile& Sample::tile(NodeId node) {
+  return at_node(tiles, node);
+}
+TileRecord& Sample::record(NodeId node) {
+  return at_node(records, node);
+}
 
 Sample make_sample(const TestMesh& mesh, const SampleOptions& options, const fs::path& source) {
   std::vector<std::uint32_t> order;
   const TestMesh ranked = rank_along_x(mesh, order);
   const Tree tree(ranked.positions.size(), options.partitions);
-  Sample sample{.tree = tree, .format = {}, .tiles = {}, .records = {}, .manifest = {},
-                .ranked = ranked, .attributes = {}, .local = {}};
+  Sample sample{.tree = tree,
+                .format = {},
+                .tiles = {},
+                .records = {},
+                .manifest = {},
+                .ranked = ranked,
+                .attributes = {},
+                .local = {}};
   sample.format.origin = options.origin;
   if (options.colours) {
     sample.format.attributes.colour = ColourType::u8;
@@ -360,15 +391,19 @@ Sample make_sample(const TestMesh& mesh, const SampleOptions& options, const fs:
   for (std::size_t l = depth; l-- > 0;) {
     levels[l] = level_above(tree, static_cast<Level>(l), levels[l + 1], options);
   }
-  for (LevelMesh& level : levels) number_locally(level);
-  if (depth > 0) number_early(tree, levels[depth], levels[depth - 1]);
+  for (LevelMesh& level : levels)
+    number_locally(level);
+  if (depth > 0)
+    number_early(tree, levels[depth], levels[depth - 1]);
 
   for (std::size_t l = 0; l <= depth; ++l) {
     auto& local = sample.local.emplace_back();
-    for (std::uint32_t vertex : levels[l].of_rank) local.push_back(levels[l].local[vertex]);
+    for (std::uint32_t vertex : levels[l].of_rank)
+      local.push_back(levels[l].local[vertex]);
     for (std::uint32_t i = 0; i < tree.node_count(static_cast<Level>(l)); ++i) {
       const NodeId node{static_cast<Level>(l), i};
-      if (tree.is_early(node)) continue;
+      if (tree.is_early(node))
+        continue;
       sample.tiles.push_back(TileMaker(tree, levels).make(node));
       sample.records.push_back(make_record(tree, sample.tiles.back(), options));
     }

@@ -1,13 +1,9 @@
 // A hierarchy made in code, in memory, by the shortest way: what the published form means, written
 // down once more and independently of the stages that build real ones.
 //
-// Vertices are ranked along x, simplification merges runs of the children's vertices. That makes poor
-// meshes, but every promise about seams must hold for any merging.
+// Vertices are ranked along x, simplification merges runs of the children's vertices. That makes
+// poor meshes, but every promise about seams must hold for any merging.
 #pragma once
-
-#include <cstdint>
-#include <filesystem>
-#include <vector>
 
 #include "hierarchy/published.h"
 #include "hierarchy/tree.h"
@@ -15,6 +11,10 @@
 #include "storage/manifest.h"
 #include "storage/tile_glb.h"
 #include "tests/support/meshes.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
 
 namespace meshhier::tests {
 
@@ -29,11 +29,11 @@ struct SampleOptions {
 struct Sample {
   Tree tree;
   storage::TileFormat format;
-  std::vector<PublishedTile> tiles;   ///< ascending by node, like the records
-  std::vector<TileRecord> records;    ///< file sizes and checksums are filled in by write_sample()
-  storage::Manifest manifest;         ///< likewise
-  TestMesh ranked;                    ///< the input, vertices by rank
-  std::vector<float> attributes;      ///< the input's, by rank
+  std::vector<PublishedTile> tiles;  ///< ascending by node, like the records
+  std::vector<TileRecord> records;   ///< file sizes and checksums are filled in by write_sample()
+  storage::Manifest manifest;        ///< likewise
+  TestMesh ranked;                   ///< the input, vertices by rank
+  std::vector<float> attributes;     ///< the input's, by rank
   /// [level][rank]: vertex of the tile of the node of that level that holds the rank.
   std::vector<std::vector<std::uint32_t>> local;
 
@@ -41,12 +41,14 @@ struct Sample {
   TileRecord& record(NodeId node);
 };
 
-/// Requires at least options.partitions vertices. `source`: the mesh file that manifest.source names.
+/// Requires at least options.partitions vertices. `source`: the mesh file that manifest.source
+/// names.
 Sample make_sample(const TestMesh& mesh, const SampleOptions& options = {},
                    const std::filesystem::path& source = {});
 
 /// Publishes the sample in a directory that is not there yet.
-void write_sample(storage::FileSystem& files, const std::filesystem::path& directory, Sample& sample);
+void write_sample(storage::FileSystem& files, const std::filesystem::path& directory,
+                  Sample& sample);
 
 /// A directory of its own for each test; removed at the end.
 class TemporaryDirectory {

@@ -1,5 +1,11 @@
 #include "pipeline/verify.h"
 
+#include "hierarchy/bounds.h"
+#include "hierarchy/error.h"
+#include "storage/layout.h"
+#include "tests/pipeline/sample_hierarchy.h"
+#include "tests/support/meshes.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,12 +18,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include "hierarchy/bounds.h"
-#include "hierarchy/error.h"
-#include "storage/layout.h"
-#include "tests/pipeline/sample_hierarchy.h"
-#include "tests/support/meshes.h"
 
 namespace meshhier::pipeline {
 namespace {
@@ -33,14 +33,17 @@ using testing::SizeIs;
 void mirror_one(std::vector<Triangle>& triangles) {
   for (Triangle& t : triangles) {
     const Triangle mirrored = {t[0], t[2], t[1]};
-    if (std::find(triangles.begin(), triangles.end(), mirrored) != triangles.end()) continue;
+    if (std::find(triangles.begin(), triangles.end(), mirrored) != triangles.end())
+      continue;
     t = mirrored;
     return normalize_triangles(triangles, false);
   }
   FAIL() << "every triangle has its mirror image";
 }
 
-NodeId node(int level, std::uint32_t index) { return {static_cast<Level>(level), index}; }
+NodeId node(int level, std::uint32_t index) {
+  return {static_cast<Level>(level), index};
+}
 
 /// A directory with a mesh and a hierarchy of it.
 class VerifyTest : public testing::Test {
@@ -65,9 +68,9 @@ class VerifyTest : public testing::Test {
   }
 
   /// Problems after something was changed in a sound sample.
-  std::vector<std::string> problems_after(
-      const std::function<void(tests::Sample&)>& change,
-      const tests::SampleOptions& options = {6, 40, false, true, {}}) {
+  std::vector<std::string> problems_after(const std::function<void(tests::Sample&)>& change,
+                                          const tests::SampleOptions& options = {
+                                              6, 40, false, true, {}}) {
     tests::Sample sample = make(tests::sphere(2000), options);
     change(sample);
     return verify(sample).problems;
@@ -83,10 +86,14 @@ struct Shape {
 };
 
 std::vector<Shape> shapes() {
-  return {{"sphere", tests::sphere(1000)},        {"torus", tests::torus(1000)},
-          {"shells", tests::nested_shells(1000)}, {"grid", tests::open_grid(25, 22, 0.2F)},
-          {"moebius", tests::moebius(800)},       {"non-manifold", tests::non_manifold(600)},
-          {"soup", tests::soup(150)},             {"duplicates", tests::duplicates(700)},
+  return {{"sphere", tests::sphere(1000)},
+          {"torus", tests::torus(1000)},
+          {"shells", tests::nested_shells(1000)},
+          {"grid", tests::open_grid(25, 22, 0.2F)},
+          {"moebius", tests::moebius(800)},
+          {"non-manifold", tests::non_manifold(600)},
+          {"soup", tests::soup(150)},
+          {"duplicates", tests::duplicates(700)},
           {"points", tests::points(300)}};
 }
 
@@ -97,7 +104,8 @@ TEST_F(VerifyTest, SoundHierarchiesOfAllKindsPass) {
         tests::Sample sample = make(shape.mesh, {partitions, 20, scatter, scatter, {}});
         VerifyOptions options;
         options.cuts = 10;
-        if (!scatter) options.input = mesh_path();  // the mesh on disk has no colours
+        if (!scatter)
+          options.input = mesh_path();  // the mesh on disk has no colours
         EXPECT_THAT(verify(sample, options).problems, IsEmpty())
             << shape.name << ", " << partitions << " partitions";
       }
@@ -164,7 +172,8 @@ TEST_F(VerifyTest, AFlippedBitInAnyFileIsFound) {
   options.cuts = 0;
   std::vector<fs::path> paths;
   for (const auto& entry : fs::recursive_directory_iterator(hierarchy_path())) {
-    if (entry.is_regular_file()) paths.push_back(entry.path());
+    if (entry.is_regular_file())
+      paths.push_back(entry.path());
   }
   ASSERT_THAT(paths, SizeIs(8));
   for (const fs::path& path : paths) {
@@ -231,7 +240,8 @@ TEST_F(VerifyTest, WrongTotalsAreFound) {
 
 TEST_F(VerifyTest, ListsUpToAHundredProblems) {
   tests::Sample sample = make(tests::sphere(1000), {200, 4, false, false, {}});
-  for (TileRecord& record : sample.records) record.error = 1;
+  for (TileRecord& record : sample.records)
+    record.error = 1;
   const auto problems = verify(sample).problems;
   ASSERT_THAT(problems, SizeIs(101));
   EXPECT_THAT(problems.back(), HasSubstr("more problems"));
@@ -251,7 +261,8 @@ TEST_F(VerifyTest, APartitionWithAnErrorIsFound) {
 }
 
 TEST_F(VerifyTest, AWrongDrawnCountIsFound) {
-  const auto problems = problems_after([](auto& s) { s.record(node(2, 0)).drawn_border_count += 1; });
+  const auto problems =
+      problems_after([](auto& s) { s.record(node(2, 0)).drawn_border_count += 1; });
   EXPECT_THAT(problems, Contains(HasSubstr("tiles/02/000000.glb: draws")));
 }
 
@@ -282,9 +293,7 @@ TEST_F(VerifyTest, ARecolouredGhostIsFound) {
 
 TEST_F(VerifyTest, ABorderTriangleThatTheNeighbourDoesNotListIsFound) {
   for (NodeId where : {node(1, 0), node(2, 2), node(3, 2)}) {
-    const auto problems = problems_after([&](auto& s) {
-      mirror_one(s.tile(where).mesh.border);
-    });
+    const auto problems = problems_after([&](auto& s) { mirror_one(s.tile(where).mesh.border); });
     EXPECT_THAT(problems, Contains(HasSubstr("are not listed there")));
   }
 }
@@ -323,7 +332,8 @@ TEST_F(VerifyTest, AVertexThatStandsForNothingIsFound) {
   const auto problems = problems_after([](auto& s) {
     for (NodeId child : {node(2, 2), node(3, 5)}) {
       for (auto& v : s.tile(child).parent_map) {
-        if (v == 39) v = 38;
+        if (v == 39)
+          v = 38;
       }
     }
   });
@@ -343,8 +353,7 @@ TEST_F(VerifyTest, AHoleInASimplifiedTileIsFound) {
 
 TEST_F(VerifyTest, AMirroredTriangleIsFound) {
   for (NodeId where : {node(0, 0), node(1, 0), node(2, 2)}) {
-    const auto problems =
-        problems_after([&](auto& s) { mirror_one(s.tile(where).mesh.interior); });
+    const auto problems = problems_after([&](auto& s) { mirror_one(s.tile(where).mesh.interior); });
     EXPECT_THAT(problems, Contains(HasSubstr("not the image of its children: 1 triangles are "
                                              "missing, 1 are not theirs")));
   }
@@ -354,7 +363,8 @@ TEST_F(VerifyTest, AMirroredTriangleIsFound) {
 std::array<GhostRef, 3> corners(const PublishedTile& tile, const Triangle& t) {
   std::array<GhostRef, 3> corners;
   for (std::size_t i = 0; i < 3; ++i) {
-    corners[i] = tile.mesh.is_own(t[i]) ? GhostRef{tile.node.index, raw(t[i])} : tile.mesh.ghost(t[i]);
+    corners[i] =
+        tile.mesh.is_own(t[i]) ? GhostRef{tile.node.index, raw(t[i])} : tile.mesh.ghost(t[i]);
   }
   std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
   return corners;
@@ -372,12 +382,15 @@ TEST_F(VerifyTest, ACrackAlongASeamIsFoundByTheProofAndInCuts) {
         ASSERT_EQ(std::erase_if(right.mesh.border,
                                 [&](const Triangle& t) { return corners(right, t) == hole; }),
                   1U);
-        for (NodeId side : {node(1, 0), node(1, 1)}) --s.record(side).border_count;
+        for (NodeId side : {node(1, 0), node(1, 1)})
+          --s.record(side).border_count;
         --s.record(node(1, 0)).drawn_border_count;
       },
       unmerged);
-  EXPECT_THAT(problems, Contains(HasSubstr("tile 1/0: not the image of its children: 1 triangles")));
-  EXPECT_THAT(problems, Contains(HasSubstr("tile 1/1: not the image of its children: 1 triangles")));
+  EXPECT_THAT(problems,
+              Contains(HasSubstr("tile 1/0: not the image of its children: 1 triangles")));
+  EXPECT_THAT(problems,
+              Contains(HasSubstr("tile 1/1: not the image of its children: 1 triangles")));
   EXPECT_THAT(problems, Contains(HasSubstr("a crack from vertex")));
 }
 

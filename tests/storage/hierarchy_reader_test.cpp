@@ -112,7 +112,7 @@ class HierarchyReaderTest : public testing::Test {
 TEST_F(HierarchyReaderTest, GivesTheWholeHierarchyBack) {
   const AttributeLayout layout{.normals = true, .colour = ColourType::u8};
   for (const std::uint32_t partitions : {1U, 2U, 3U, 6U, 8U}) {
-    const SampleHierarchy sample = make_sample(torus(300), partitions, {layout, true, {1, 2, 3}});
+    const SampleHierarchy sample = make_sample(torus(300), partitions, {layout, {1, 2, 3}});
     write(sample);
     const HierarchyReader read = reader();
     EXPECT_EQ(read.tree().partition_count(), partitions);

@@ -37,7 +37,6 @@ Manifest make_manifest() {
   manifest.source.double_precision = true;
   manifest.source.attributes = {true, ColourType::u16, true, true};
   manifest.origin = {1234567.891, 0, -0.0};
-  manifest.unit_normals = false;
   manifest.partition_count = 7;
   manifest.config = {{"simplify", {{"method", "cluster"}, {"vertices", 100}}}};
   manifest.index_bytes = 1176;
@@ -64,7 +63,6 @@ void expect_same(const Manifest& a, const Manifest& b) {
   EXPECT_EQ(a.source.double_precision, b.source.double_precision);
   EXPECT_EQ(a.source.attributes, b.source.attributes);
   EXPECT_EQ(a.origin, b.origin);
-  EXPECT_EQ(a.unit_normals, b.unit_normals);
   EXPECT_EQ(a.partition_count, b.partition_count);
   EXPECT_EQ(a.config, b.config);
   EXPECT_EQ(a.index_bytes, b.index_bytes);
@@ -153,7 +151,6 @@ TEST(Manifest, EveryMissingKeyIsNamed) {
                                           "/source/bounds/max",
                                           "/source/attributes/alpha",
                                           "/origin",
-                                          "/unit_normals",
                                           "/partitions",
                                           "/config",
                                           "/index",

@@ -121,13 +121,13 @@ void expect_consistent(const PublishedTile& tile, const Tree& tree) {
 
 SampleHierarchy full_sample(std::uint32_t partitions = 5) {
   const AttributeLayout layout{.normals = true, .colour = ColourType::u8, .texcoords = true};
-  return make_sample(torus(200, 0.05F), partitions, {layout, true, {1.5, 0, -1e7}});
+  return make_sample(torus(200, 0.05F), partitions, {layout, {1.5, 0, -1e7}});
 }
 
 TEST(TileGlb, GivesEveryTileBackForAnyLayoutAndTree) {
   for (const AttributeLayout& layout : sample_layouts()) {
     for (const std::uint32_t partitions : {1U, 2U, 3U, 5U, 8U, 11U}) {
-      const SampleHierarchy sample = make_sample(torus(250, 0.05F), partitions, {layout, true, {}});
+      const SampleHierarchy sample = make_sample(torus(250, 0.05F), partitions, {layout, {}});
       for (const PublishedTile& tile : sample.tiles) {
         const Bytes bytes = encode_tile(tile, sample.tree, sample.format);
         const PublishedTile back = decode_tile(bytes, tile.node, sample.tree, sample.format, kName);
@@ -196,7 +196,7 @@ TEST(TileGlb, RawAttributesAreStoredOnlyWhereNeeded) {
 TEST(TileGlb, SimplifiedTilesKeepWhatGltfCanSay) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const auto root_back = [](const AttributeLayout& layout, const std::vector<float>& channels) {
-    SampleHierarchy sample = make_sample(torus(100), 2, {layout, true, {}});
+    SampleHierarchy sample = make_sample(torus(100), 2, {layout, {}});
     PublishedTile& root = sample.tiles[0];
     std::copy(channels.begin(), channels.end(), root.mesh.vertices.attributes.begin());
     const Bytes bytes = encode_tile(root, sample.tree, sample.format);
@@ -271,7 +271,7 @@ TEST(TileGlb, TheJsonIsThatOfTheDocument) {
   TestMesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0.1F}};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-  const SampleHierarchy sample = make_sample(mesh, 2, {{}, true, {0.5, 0, 0}});
+  const SampleHierarchy sample = make_sample(mesh, 2, {{}, {0.5, 0, 0}});
   OpenGlb glb(encode_tile(sample.tile({Level{1}, 0}), sample.tree, sample.format));
   EXPECT_EQ(glb.json["nodes"].dump(), R"([{"mesh":0,"translation":[0.5,0.0,0.0]}])");
   EXPECT_EQ(glb.json["accessors"][0].dump(),
@@ -291,7 +291,7 @@ TEST(TileGlb, TheJsonIsThatOfTheDocument) {
 // hierarchies no longer match. Raise the version (docs/file_format.md), then the number here.
 TEST(TileGlb, TheBytesOfVersion1StayTheSame) {
   const AttributeLayout layout{.normals = true, .colour = ColourType::u8, .texcoords = true};
-  const SampleHierarchy sample = make_sample(open_grid(7, 6), 3, {layout, true, {0.5, 0, 0}});
+  const SampleHierarchy sample = make_sample(open_grid(7, 6), 3, {layout, {0.5, 0, 0}});
   storage::Checksum sum;
   for (const PublishedTile& tile : sample.tiles) {
     sum.add(encode_tile(tile, sample.tree, sample.format));

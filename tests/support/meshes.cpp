@@ -16,7 +16,6 @@ namespace meshhier::tests {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-
 std::uint32_t u32(std::size_t value) {
   return static_cast<std::uint32_t>(value);
 }
@@ -347,11 +346,10 @@ TestMesh non_manifold(std::size_t triangles, float noise) {
 
 TestMesh soup(std::size_t triangles) {
   TestMesh mesh = points(3 * triangles);
-  for (std::size_t t = 0; t < triangles; ++t) {
-    const Vec3f center = mesh.positions[3 * t];
-    mesh.positions[3 * t + 1] = center + mesh.positions[3 * t + 1] * 0.05f;
-    mesh.positions[3 * t + 2] = center + mesh.positions[3 * t + 2] * 0.05f;
-    mesh.triangles.push_back({u32(3 * t), u32(3 * t + 1), u32(3 * t + 2)});
+  for (std::uint32_t v = 0; v < mesh.positions.size(); v += 3) {
+    for (std::uint32_t i = v + 1; i < v + 3; ++i)
+      mesh.positions[i] = mesh.positions[v] + mesh.positions[i] * 0.05f;
+    mesh.triangles.push_back({v, v + 1, v + 2});
   }
   return mesh;
 }
@@ -405,10 +403,8 @@ TestMesh shuffled(const TestMesh& mesh, std::uint64_t seed) {
 
 std::vector<Edge> directed_edges(std::span<const MeshTriangle> triangles) {
   std::vector<Edge> edges;
-  edges.reserve(3 * triangles.size());
   for (const MeshTriangle& t : triangles) {
-    for (std::size_t i = 0; i < 3; ++i)
-      edges.push_back({t[i], t[(i + 1) % 3]});
+    edges.insert(edges.end(), {{t[0], t[1]}, {t[1], t[2]}, {t[2], t[0]}});
   }
   std::sort(edges.begin(), edges.end());
   return edges;

@@ -1,0 +1,76 @@
+#include "hierarchy/attributes.h"
+
+#include "hierarchy/vec.h"
+
+#include <array>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+namespace meshhier::tests {
+namespace {
+
+TEST(Attributes, ChannelsOfEveryLayoutFollowEachOther) {
+  for (const bool normals : {false, true}) {
+    for (const ColourType colour :
+         {ColourType::none, ColourType::u8, ColourType::u16, ColourType::f32}) {
+      for (const bool alpha : {false, true}) {
+        for (const bool texcoords : {false, true}) {
+          const AttributeLayout layout{normals, colour, alpha, texcoords};
+          int channels = 0;
+          EXPECT_EQ(layout.normal_offset(), channels);
+          channels += normals ? 3 : 0;
+          EXPECT_EQ(layout.colour_offset(), channels);
+          channels += colour == ColourType::none ? 0 : alpha ? 4 : 3;
+          EXPECT_EQ(layout.texcoord_offset(), channels);
+          channels += texcoords ? 2 : 0;
+          EXPECT_EQ(layout.channels(), channels);
+          EXPECT_LE(layout.channels(), kMaxChannels);
+        }
+      }
+    }
+  }
+  EXPECT_EQ((AttributeLayout{true, ColourType::f32, true, true}.channels()), kMaxChannels);
+}
+
+TEST(Attributes, AlphaWithoutColoursHasNoChannel) {
+  EXPECT_EQ((AttributeLayout{false, ColourType::none, true, false}.channels()), 0);
+}
+
+TEST(Attributes, AnAveragedNormalGetsUnitLengthAndTheRestStays) {
+  const AttributeLayout layout{true, ColourType::u8, true, true};
+  std::array<float, 9> channels{0.3F, 0, -0.4F, 10.5F, 20, 30, 40, 0.25F, 7};
+  normalize_average(layout, channels);
+  EXPECT_FLOAT_EQ(channels[0], 0.6F);
+  EXPECT_EQ(channels[1], 0.0F);
+  EXPECT_FLOAT_EQ(channels[2], -0.8F);
+  const std::array<float, 6> rest{10.5F, 20, 30, 40, 0.25F, 7};
+  for (std::size_t i = 0; i < rest.size(); ++i)
+    EXPECT_EQ(channels[i + 3], rest[i]);
+}
+
+TEST(Attributes, AZeroNormalStaysZero) {
+  std::array<float, 3> channels{};
+  normalize_average({true, ColourType::none, false, false}, channels);
+  EXPECT_EQ(channels, (std::array<float, 3>{}));
+}
+
+TEST(Attributes, TinyAndHugeNormalsGetUnitLengthToo) {
+  for (const float size : {std::numeric_limits<float>::denorm_min(), 1e-30F, 1e30F,
+                           std::numeric_limits<float>::max()}) {
+    std::array<float, 3> channels{size, -size, size};
+    normalize_average({true, ColourType::none, false, false}, channels);
+    EXPECT_NEAR(length(Vec3d{channels[0], channels[1], channels[2]}), 1.0, 1e-6) << size;
+    EXPECT_LT(channels[1], 0.0F);
+  }
+}
+
+TEST(Attributes, WithoutNormalsNothingIsTouched) {
+  std::array<float, 3> channels{3, 4, 12};  // colours
+  normalize_average({false, ColourType::f32, false, false}, channels);
+  EXPECT_EQ(channels, (std::array<float, 3>{3, 4, 12}));
+  normalize_average({}, {});
+}
+
+}  // namespace
+}  // namespace meshhier::tests

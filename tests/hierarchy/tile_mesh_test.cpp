@@ -1,0 +1,164 @@
+#include "hierarchy/tile_mesh.h"
+
+#include <algorithm>
+#include <random>
+#include <set>
+
+#include <gtest/gtest.h>
+
+namespace meshhier::tests {
+namespace {
+
+Triangle triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  return {static_cast<TileVertex>(a), static_cast<TileVertex>(b), static_cast<TileVertex>(c)};
+}
+
+std::vector<Triangle> random_triangles(std::size_t count, std::uint32_t corners) {
+  std::mt19937 random(7);
+  std::vector<Triangle> triangles;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t a = static_cast<std::uint32_t>(random()) % corners;
+    const std::uint32_t b = static_cast<std::uint32_t>(random()) % corners;
+    triangles.push_back(triangle(a, b, static_cast<std::uint32_t>(random()) % corners));
+  }
+  return triangles;
+}
+
+/// The definition, without any cleverness.
+std::vector<Triangle> normalized(const std::vector<Triangle>& triangles, bool unique) {
+  std::vector<Triangle> result;
+  for (Triangle t : triangles) {
+    if (t[0] == t[1] || t[1] == t[2] || t[0] == t[2])
+      continue;
+    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    result.push_back(t);
+  }
+  std::sort(result.begin(), result.end());
+  if (unique) {
+    const std::set<Triangle> set(result.begin(), result.end());
+    result.assign(set.begin(), set.end());
+  }
+  return result;
+}
+
+TEST(TileMesh, CanonicalTurnsTheSmallestCornerToTheFrontAndKeepsOrientation) {
+  for (const Triangle& t : {triangle(1, 5, 9), triangle(5, 9, 1), triangle(9, 1, 5)}) {
+    EXPECT_EQ(canonical(t), triangle(1, 5, 9));
+  }
+  for (const Triangle& t : {triangle(1, 9, 5), triangle(9, 5, 1), triangle(5, 1, 9)}) {
+    EXPECT_EQ(canonical(t), triangle(1, 9, 5));
+  }
+}
+
+TEST(TileMesh, TwoEqualCornersAreDegenerate) {
+  EXPECT_TRUE(is_degenerate(triangle(3, 3, 4)));
+  EXPECT_TRUE(is_degenerate(triangle(4, 3, 3)));
+  EXPECT_TRUE(is_degenerate(triangle(3, 4, 3)));
+  EXPECT_TRUE(is_degenerate(triangle(3, 3, 3)));
+  EXPECT_FALSE(is_degenerate(triangle(3, 4, 5)));
+}
+
+TEST(TileMesh, NormalizingSortsAndDropsAsDefined) {
+  for (const std::uint32_t corners : {1U, 3U, 4U, 12U, 300U, 70000U}) {
+    for (const std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{5000}}) {
+      for (const bool unique : {false, true}) {
+        const std::vector<Triangle> input = random_triangles(count, corners);
+        std::vector<Triangle> triangles = input;
+        normalize_triangles(triangles, unique);
+        EXPECT_EQ(triangles, normalized(input, unique)) << corners << " " << count << " " << unique;
+      }
+    }
+  }
+}
+
+TEST(TileMesh, NormalizingDoesNotDependOnTheOrderGiven) {
+  std::vector<Triangle> triangles = random_triangles(2000, 50);
+  std::vector<Triangle> other(triangles.rbegin(), triangles.rend());
+  for (std::size_t i = 0; i < other.size(); ++i) {
+    std::rotate(other[i].begin(), other[i].begin() + static_cast<std::ptrdiff_t>(i % 3),
+                other[i].end());
+  }
+  normalize_triangles(triangles, false);
+  normalize_triangles(other, false);
+  EXPECT_EQ(triangles, other);
+}
+
+TEST(TileMesh, OfDuplicatesOneIsKeptAndTheMirrorImageStays) {
+  std::vector<Triangle> triangles{triangle(7, 2, 4), triangle(2, 4, 7), triangle(4, 2, 7),
+                                  triangle(4, 7, 2), triangle(7, 4, 2)};
+  normalize_triangles(triangles, true);
+  EXPECT_EQ(triangles, (std::vector<Triangle>{triangle(2, 4, 7), triangle(2, 7, 4)}));
+}
+
+TEST(TileMesh, DuplicatesStayUnlessTheyAreUnwanted) {
+  std::vector<Triangle> triangles{triangle(7, 2, 4), triangle(2, 4, 7)};
+  normalize_triangles(triangles, false);
+  EXPECT_EQ(triangles, (std::vector<Triangle>{triangle(2, 4, 7), triangle(2, 4, 7)}));
+}
+
+VertexArray numbered(std::size_t count, int channels, float first) {
+  VertexArray vertices;
+  vertices.channels = channels;
+  vertices.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const float value = first + static_cast<float>(i);
+    std::vector<float> attributes;
+    for (int k = 0; k < channels; ++k)
+      attributes.push_back(100 * value + static_cast<float>(k));
+    vertices.append({value, -value, 0.5F}, attributes);
+  }
+  return vertices;
+}
+
+TEST(TileMesh, VerticesKeepTheirAttributes) {
+  for (const int channels : {0, 1, 9}) {
+    const VertexArray vertices = numbered(5, channels, 10);
+    ASSERT_EQ(vertices.size(), 5U);
+    ASSERT_EQ(vertices.attributes.size(), 5U * static_cast<std::size_t>(channels));
+    EXPECT_EQ(vertices.positions[3], (Vec3f{13, -13, 0.5F}));
+    ASSERT_EQ(vertices.attributes_of(3).size(), static_cast<std::size_t>(channels));
+    for (int k = 0; k < channels; ++k) {
+      EXPECT_EQ(vertices.attributes_of(3)[static_cast<std::size_t>(k)],
+                1300 + static_cast<float>(k));
+    }
+  }
+}
+
+TEST(TileMesh, ARangeOfVerticesIsAppended) {
+  for (const int channels : {0, 4}) {
+    VertexArray vertices = numbered(3, channels, 0);
+    vertices.append(numbered(10, channels, 50), 4, 7);
+    vertices.append(numbered(10, channels, 80), 6, 6);
+    ASSERT_EQ(vertices.size(), 6U);
+    ASSERT_EQ(vertices.attributes.size(), 6U * static_cast<std::size_t>(channels));
+    EXPECT_EQ(vertices.positions[2].x, 2.0F);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const float value = 54 + static_cast<float>(i);
+      EXPECT_EQ(vertices.positions[3 + i].x, value);
+      for (int k = 0; k < channels; ++k) {
+        EXPECT_EQ(vertices.attributes_of(3 + i)[static_cast<std::size_t>(k)],
+                  100 * value + static_cast<float>(k));
+      }
+    }
+  }
+}
+
+TEST(TileMesh, KnowsItsOwnVerticesFromItsGhosts) {
+  TileMesh tile;
+  tile.vertices = numbered(5, 0, 0);
+  tile.own_count = 3;
+  tile.ghosts = {{4, 1}, {9, 0}};
+  EXPECT_TRUE(tile.is_own(TileVertex{0}));
+  EXPECT_TRUE(tile.is_own(TileVertex{2}));
+  EXPECT_FALSE(tile.is_own(TileVertex{3}));
+  EXPECT_EQ(tile.ghost(TileVertex{3}), (GhostRef{4, 1}));
+  EXPECT_EQ(tile.ghost(TileVertex{4}), (GhostRef{9, 0}));
+}
+
+TEST(TileMesh, GhostsAreOrderedByTileThenIndex) {
+  EXPECT_LT((GhostRef{1, 9}), (GhostRef{2, 0}));
+  EXPECT_LT((GhostRef{1, 3}), (GhostRef{1, 4}));
+}
+
+}  // namespace
+}  // namespace meshhier::tests

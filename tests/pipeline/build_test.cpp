@@ -1,0 +1,515 @@
+// Whole builds: inputs at the edge of what there is, and what is refused.
+#include "pipeline/build.h"
+
+#include "hierarchy/error.h"
+#include "pipeline/size_text.h"
+#include "pipeline/verify.h"
+#include "storage/hierarchy_reader.h"
+#include "storage/layout.h"
+#include "tests/pipeline/sample_hierarchy.h"
+#include "tests/support/faulty_file_system.h"
+#include "tests/support/meshes.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace meshhier::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using tests::TestMesh;
+
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+
+/// One mesh, one output.
+class BuildTest : public testing::Test {
+ protected:
+  fs::path mesh_path() const { return directory_.path() / "mesh.ply"; }
+  fs::path output_path() const { return directory_.path() / "mesh.hier"; }
+
+  Config config(std::uint32_t partition_vertices = 100) const {
+    Config config;
+    config.input = mesh_path();
+    config.output = output_path();
+    config.threads = 2;
+    config.partition.vertices = partition_vertices;
+    return config;
+  }
+
+  BuildReport build(const Config& config, bool force = false) {
+    NoProgress progress;
+    return build_hierarchy(config, force, {files_, progress, CancelToken()});
+  }
+
+  BuildReport build(const TestMesh& mesh, const Config& config) {
+    tests::write_ply(mesh, mesh_path());
+    return build(config);
+  }
+
+  /// The failure of a build that must fail; nothing may be left of it.
+  Error failure(const Config& config, bool force = false) {
+    const std::set<fs::path> before = listing();
+    try {
+      build(config, force);
+    } catch (const Error& error) {
+      EXPECT_EQ(listing(), before) << "something was left behind";
+      return error;
+    }
+    ADD_FAILURE() << "the build did not fail";
+    return {ErrorCode::internal, ""};
+  }
+
+  std::set<fs::path> listing() const {
+    std::set<fs::path> all;
+    for (const auto& entry : fs::recursive_directory_iterator(directory_.path()))
+      all.insert(entry.path());
+    return all;
+  }
+
+  std::vector<std::string> problems() {
+    NoProgress progress;
+    return verify_hierarchy(files_, output_path(), {.input = mesh_path(), .cuts = 30}, progress,
+                            CancelToken())
+        .problems;
+  }
+
+  /// Builds and proves it lossless and seamless, twice: with plenty of memory, and with the least.
+  void expect_builds(const TestMesh& mesh, Config config) {
+    build(mesh, config);
+    EXPECT_THAT(problems(), IsEmpty());
+    expect_level_table();
+    fs::remove_all(output_path());
+    config.memory_budget = least_budget(config);
+    config.threads = 1;
+    build(config);
+    EXPECT_THAT(problems(), IsEmpty());
+    fs::remove_all(output_path());
+  }
+
+  /// Partitions equal +-1; simplified tiles as asked or fewer; errors decreasing.
+  void expect_level_table() {
+    const storage::HierarchyReader reader(files_, output_path());
+    const Tree& tree = reader.tree();
+    for (const TileRecord& record : reader.records()) {
+      if (tree.is_partition(record.node)) {
+        EXPECT_EQ(record.own_count, tree.ranks(record.node).size());
+        EXPECT_EQ(record.error, 0);
+        EXPECT_EQ(record.bound, 0);
+      } else {
+        EXPECT_LE(record.own_count, record.target_count);
+        EXPECT_TRUE(std::isfinite(record.error));
+        EXPECT_TRUE(std::isfinite(record.bound));
+        for (const NodeId child : tree.children(record.node).span())
+          EXPECT_GT(record.error, reader.record(child).error);
+      }
+    }
+  }
+
+  std::uint64_t least_budget(Config config) {
+    config.memory_budget = 1;
+    const std::string message = failure(config).what();
+    const std::string before = "at least ";
+    const std::size_t at = message.find(before);
+    EXPECT_NE(at, std::string::npos) << message;
+    return parse_size(message.substr(at + before.size())).value_or(0);
+  }
+
+  tests::TemporaryDirectory directory_;
+  tests::FaultyFileSystem files_;
+};
+
+// ---- what must build -----------------------------------------------------------------------
+
+TEST_F(BuildTest, OneVertex) {
+  expect_builds({{{1, 2, 3}}, {}}, config());
+}
+
+TEST_F(BuildTest, OneFace) {
+  expect_builds({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, config());
+}
+
+TEST_F(BuildTest, OneFaceInThreePartitions) {
+  Config three = config();
+  three.partition.count = 3;
+  expect_builds({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, three);
+}
+
+TEST_F(BuildTest, NoFaces) {
+  expect_builds(tests::points(1000), config());
+}
+
+TEST_F(BuildTest, OnlyDegenerateFaces) {
+  TestMesh mesh = tests::points(300);
+  for (std::uint32_t i = 0; i < 300; ++i)
+    mesh.triangles.push_back({i, (i * 7) % 300, i});
+  expect_builds(mesh, config());
+  const std::string text = build(config()).text;
+  EXPECT_THAT(text, HasSubstr("dropped 300 degenerate triangles"));
+  EXPECT_THAT(text, HasSubstr("kept 300 vertices that no triangle uses"));
+}
+
+TEST_F(BuildTest, AllVerticesEqual) {
+  TestMesh mesh;
+  mesh.positions.assign(1000, Vec3f{3, -4, 5});
+  for (std::uint32_t i = 0; i + 2 < 1000; ++i)
+    mesh.triangles.push_back({i, i + 1, i + 2});
+  expect_builds(mesh, config());
+}
+
+TEST_F(BuildTest, AllVerticesOnALine) {
+  TestMesh mesh;
+  for (std::uint32_t i = 0; i < 1000; ++i) {
+    mesh.positions.push_back({static_cast<float>(i % 500), 0, 0});
+    if (i >= 2)
+      mesh.triangles.push_back({i - 2, i - 1, i});
+  }
+  expect_builds(mesh, config());
+}
+
+TEST_F(BuildTest, AsManyPartitionsAsVertices) {
+  Config each = config();
+  each.partition.count = 66;
+  expect_builds(tests::sphere(128), each);
+}
+
+TEST_F(BuildTest, TheSmallestTiles) {
+  expect_builds(tests::torus(3000, 0.01F), config(4));
+}
+
+TEST_F(BuildTest, TilesOfUnequalAsking) {
+  Config coarse = config(500);
+  coarse.simplify.vertices = 4;
+  expect_builds(tests::sphere(5000), coarse);
+  Config fine = config(20);
+  fine.simplify.vertices = 32768;
+  expect_builds(tests::sphere(5000), fine);
+}
+
+TEST_F(BuildTest, AMeshSmallerThanAPartition) {
+  build(tests::sphere(500), config(32768));
+  EXPECT_THAT(problems(), IsEmpty());
+  const storage::HierarchyReader reader(files_, output_path());
+  ASSERT_EQ(reader.records().size(), 1U);
+  EXPECT_EQ(reader.records()[0].border_count, 0U);
+}
+
+TEST_F(BuildTest, TwoVerticesInTwoPartitions) {
+  Config two = config();
+  two.partition.count = 2;
+  expect_builds({{{0, 0, 0}, {1, 0, 0}}, {}}, two);
+}
+
+TEST_F(BuildTest, AHundredThousandSeparateTriangles) {
+  expect_builds(tests::soup(100'000), config(8192));
+}
+
+TEST_F(BuildTest, AVertexOfAHundredThousandTriangles) {
+  TestMesh fan;
+  fan.positions.push_back({0, 0, 1});
+  for (std::uint32_t i = 0; i < 100'000; ++i) {
+    const double angle = 2 * 3.141592653589793 * i / 100'000;
+    fan.positions.push_back(
+        {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)), 0});
+    fan.triangles.push_back({0, 1 + i, 1 + (i + 1) % 100'000});
+  }
+  expect_builds(fan, config(4096));
+}
+
+TEST_F(BuildTest, HugeAndTinyCoordinates) {
+  for (const float unit : {1e30F, 1e-30F, 1e-40F}) {
+    SCOPED_TRACE(unit);
+    TestMesh mesh = tests::sphere(2000, 0.02F);
+    for (Vec3f& p : mesh.positions)
+      p = p * unit;
+    expect_builds(mesh, config());
+  }
+}
+
+TEST_F(BuildTest, CoordinatesOfAllMagnitudesAtOnce) {
+  TestMesh mesh = tests::points(2000);
+  for (std::uint32_t i = 0; i < 2000; ++i) {
+    Vec3f& p = mesh.positions[i];
+    p = p * std::pow(10.0F, 30 * tests::hash_noise(i, 99));
+    mesh.triangles.push_back({i, (i + 1) % 2000, (i + 7) % 2000});
+  }
+  expect_builds(mesh, config());
+}
+
+TEST_F(BuildTest, TheLargestCoordinates) {
+  TestMesh mesh = tests::sphere(2000, 0.02F);
+  for (Vec3f& p : mesh.positions)
+    p = p * 3e38F;
+  expect_builds(mesh, config());
+}
+
+TEST_F(BuildTest, ShapesOfAllKinds) {
+  const std::vector<std::pair<std::string, TestMesh>> meshes = {
+      {"sphere", tests::sphere(4000, 0.01F)},
+      {"genus 5", tests::genus_n(5, 4000, 0.01F)},
+      {"nested shells", tests::nested_shells(4000)},
+      {"open grid", tests::open_grid(40, 50, 0.2F)},
+      {"moebius", tests::moebius(3000)},
+      {"non-manifold", tests::non_manifold(3000, 0.01F)},
+      {"duplicates", tests::duplicates(3000)},
+      {"shuffled", tests::shuffled(tests::torus(4000, 0.01F), 5)}};
+  for (const auto& [name, mesh] : meshes) {
+    for (const Representative representative :
+         {Representative::mean, Representative::quadric, Representative::vertex}) {
+      SCOPED_TRACE(name);
+      Config with = config(150);
+      with.simplify.representative = representative;
+      with.partition.axis =
+          representative == Representative::mean ? AxisRule::longest : AxisRule::compactness;
+      expect_builds(mesh, with);
+    }
+  }
+}
+
+// ---- what a result is ----------------------------------------------------------------------
+
+TEST_F(BuildTest, PartitionSizesAreEqualForAnyCount) {
+  tests::write_ply(tests::torus(3000), mesh_path());
+  for (const std::uint32_t count : {1U, 2U, 3U, 5U, 7U, 100U, 128U, 1000U}) {
+    Config with = config();
+    with.partition.count = count;
+    build(with, true);
+    const storage::HierarchyReader reader(files_, output_path());
+    std::uint32_t least = std::numeric_limits<std::uint32_t>::max();
+    std::uint32_t most = 0;
+    std::uint32_t partitions = 0;
+    for (const TileRecord& record : reader.records()) {
+      if (!reader.tree().is_partition(record.node))
+        continue;
+      ++partitions;
+      least = std::min(least, record.own_count);
+      most = std::max(most, record.own_count);
+    }
+    EXPECT_EQ(partitions, count);
+    EXPECT_LE(most - least, 1U) << count << " partitions";
+  }
+}
+
+TEST_F(BuildTest, SimplifiedTilesHaveTheVertexCountAskedFor) {
+  build(tests::sphere(20'000, 0.01F), config(300));
+  const storage::HierarchyReader reader(files_, output_path());
+  for (const TileRecord& record : reader.records()) {
+    if (reader.tree().is_partition(record.node))
+      continue;
+    EXPECT_EQ(record.target_count, 300U);
+    EXPECT_EQ(record.own_count, 300U);
+  }
+}
+
+TEST_F(BuildTest, TheReportTellsWhatWasDone) {
+  const std::string text = build(tests::sphere(5000), config()).text;
+  EXPECT_THAT(text, HasSubstr("vertices"));
+  EXPECT_THAT(text, HasSubstr("partitions"));
+  EXPECT_THAT(text, HasSubstr("levels"));
+}
+
+TEST_F(BuildTest, NothingButTheOutputIsLeft) {
+  tests::write_ply(tests::sphere(5000), mesh_path());
+  build(config());
+  std::set<fs::path> names;
+  for (const auto& entry : fs::directory_iterator(directory_.path()))
+    names.insert(entry.path());
+  EXPECT_EQ(names, (std::set<fs::path>{mesh_path(), output_path()}));
+  EXPECT_FALSE(fs::exists(storage::temporary_path(output_path())));
+}
+
+// ---- what is refused -----------------------------------------------------------------------
+
+TEST_F(BuildTest, AMeshWithoutVerticesIsRefused) {
+  tests::write_ply({}, mesh_path());
+  const Error error = failure(config());
+  EXPECT_EQ(error.code(), ErrorCode::input);
+  EXPECT_THAT(error.what(), HasSubstr("no vertices"));
+}
+
+TEST_F(BuildTest, MorePartitionsThanVerticesAreRefused) {
+  tests::write_ply(tests::points(99), mesh_path());
+  Config with = config();
+  with.partition.count = 100;
+  const Error error = failure(with);
+  EXPECT_EQ(error.code(), ErrorCode::usage);
+  EXPECT_THAT(error.what(), HasSubstr("partition.count is 100"));
+  EXPECT_THAT(error.what(), HasSubstr("99 vertices"));
+}
+
+TEST_F(BuildTest, TooFewPartitionsAreRefusedNamingTheLeastCount) {
+  tests::write_ply(tests::points(70'000), mesh_path());
+  Config with = config();
+  with.partition.count = 2;
+  const Error error = failure(with);
+  EXPECT_EQ(error.code(), ErrorCode::usage);
+  EXPECT_THAT(error.what(), HasSubstr("at least 3"));
+  with.partition.count = 3;
+  EXPECT_NO_THROW(build(with));
+}
+
+TEST_F(BuildTest, ABudgetBelowTheLeastIsRefusedAndTheLeastWorks) {
+  tests::write_ply(tests::sphere(20'000), mesh_path());
+  Config with = config(1000);
+  const std::uint64_t least = least_budget(with);
+  with.memory_budget = least - kMiB;
+  EXPECT_EQ(failure(with).code(), ErrorCode::budget);
+  with.memory_budget = least;
+  EXPECT_NO_THROW(build(with));
+}
+
+TEST_F(BuildTest, AnExistingOutputIsRefusedUnlessForced) {
+  build(tests::sphere(1000), config());
+  const std::uintmax_t before = fs::file_size(storage::manifest_path(output_path()));
+  EXPECT_EQ(failure(config()).code(), ErrorCode::exists);
+  EXPECT_EQ(fs::file_size(storage::manifest_path(output_path())), before);
+  tests::write_ply(tests::torus(3000), mesh_path());
+  EXPECT_NO_THROW(build(config(), true));
+  EXPECT_THAT(problems(), IsEmpty());
+}
+
+TEST_F(BuildTest, ADirectoryThatIsNoHierarchyIsNeverReplaced) {
+  tests::write_ply(tests::sphere(1000), mesh_path());
+  fs::create_directory(output_path());
+  std::ofstream(output_path() / "diary.txt") << "precious";
+  EXPECT_EQ(failure(config(), true).code(), ErrorCode::exists);
+  EXPECT_TRUE(fs::exists(output_path() / "diary.txt"));
+}
+
+TEST_F(BuildTest, AMissingInputIsRefused) {
+  const Error error = failure(config());
+  EXPECT_EQ(error.code(), ErrorCode::io);
+  EXPECT_THAT(error.what(), HasSubstr("mesh.ply"));
+}
+
+TEST_F(BuildTest, ABrokenMeshLeavesNothing) {
+  std::ofstream(mesh_path()) << "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                                "property float y\nproperty float z\nelement face 1\n"
+                                "property list uchar int vertex_indices\nend_header\n"
+                                "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n";
+  const Error error = failure(config());
+  EXPECT_EQ(error.code(), ErrorCode::input);
+  EXPECT_THAT(error.what(), HasSubstr("line 13"));
+}
+
+TEST_F(BuildTest, AFailureLeavesNoParentDirectoryBehind) {
+  std::ofstream(mesh_path()) << "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
+                                "property float y\nproperty float z\nend_header\n0 0 nan\n";
+  Config with = config();
+  with.output = directory_.path() / "not" / "yet" / "there.hier";
+  EXPECT_EQ(failure(with).code(), ErrorCode::input);
+}
+
+// ---- the disk ------------------------------------------------------------------------------
+
+/// Watches how much lies in a directory while a build runs.
+class DiskWatch final : public Progress {
+ public:
+  explicit DiskWatch(fs::path directory) : directory_(std::move(directory)) {}
+  void stage(std::string_view, std::uint64_t, std::string_view) override { look(); }
+  void advance(std::uint64_t) override { look(); }
+  void finish(std::string_view) override {}
+  std::uint64_t most_bytes() const { return most_bytes_; }
+
+ private:
+  void look() {
+    const std::lock_guard lock(mutex_);
+    std::uint64_t bytes = 0;
+    std::error_code gone;  // files come and go meanwhile
+    for (fs::recursive_directory_iterator at(directory_, gone), end; at != end;
+         at.increment(gone)) {
+      const std::uintmax_t size = at->is_regular_file(gone) ? at->file_size(gone) : 0;
+      bytes += gone ? 0 : size;
+    }
+    most_bytes_ = std::max(most_bytes_, bytes);
+  }
+
+  fs::path directory_;
+  std::mutex mutex_;
+  std::uint64_t most_bytes_ = 0;
+};
+
+class DiskTest : public BuildTest {
+ protected:
+  /// Whether a disk with that much room is let through.
+  bool is_accepted(const Config& config, std::uint64_t room) {
+    CancelToken cancel;
+    cancel.cancel();  // the build ends as soon as it has begun
+    NoProgress progress;
+    tests::FaultyFileSystem files;
+    files.limit_room(room);
+    try {
+      build_hierarchy(config, false, {files, progress, cancel});
+    } catch (const Error& error) {
+      EXPECT_THAT(error.code(), testing::AnyOf(ErrorCode::budget, ErrorCode::interrupted));
+      return error.code() == ErrorCode::interrupted;
+    }
+    ADD_FAILURE() << "a cancelled build ran to its end";
+    return false;
+  }
+
+  std::uint64_t least_room(const Config& config) {
+    std::uint64_t refused = 0;
+    std::uint64_t accepted = std::uint64_t{1} << 34;
+    EXPECT_TRUE(is_accepted(config, accepted));
+    while (accepted - refused > 1024) {
+      const std::uint64_t middle = (refused + accepted) / 2;
+      (is_accepted(config, middle) ? accepted : refused) = middle;
+    }
+    return accepted;
+  }
+};
+
+TEST_F(DiskTest, TooLittleRoomIsRefusedBeforeAnythingIsRead) {
+  tests::write_ply(tests::sphere(20'000), mesh_path());
+  files_.limit_room(100'000);
+  const Error error = failure(config(1000));
+  EXPECT_EQ(error.code(), ErrorCode::budget);
+  EXPECT_THAT(error.what(), HasSubstr("free"));
+}
+
+TEST_F(DiskTest, AWholeBuildTakesNoMoreRoomThanPredicted) {
+  const std::vector<std::pair<std::string, TestMesh>> meshes = {
+      {"sphere", tests::sphere(60'000, 0.01F)},
+      {"scattered sphere", tests::shuffled(tests::sphere(60'000), 3)},
+      {"soup", tests::soup(20'000)},
+      {"points", tests::points(30'000)}};
+  for (const auto& [name, mesh] : meshes) {
+    tests::write_ply(mesh, mesh_path());
+    for (const std::uint32_t vertices : {20U, 300U, 8192U}) {
+      SCOPED_TRACE(name + ", partitions of " + std::to_string(vertices));
+      Config with = config(vertices);
+      with.memory_budget = least_budget(with);
+      const std::uint64_t before = fs::file_size(mesh_path());
+      DiskWatch watch(directory_.path());
+      build_hierarchy(with, false, {files_, watch, CancelToken()});
+      EXPECT_LE(watch.most_bytes() - before, least_room([&] {
+                  Config other = with;
+                  other.output += "2";
+                  return other;
+                }()));
+      fs::remove_all(output_path());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace meshhier::pipeline

@@ -1,0 +1,157 @@
+#include "pipeline/memory_plan.h"
+
+#include "hierarchy/error.h"
+#include "pipeline/size_text.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace meshhier::pipeline {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+constexpr std::uint64_t kGiB = std::uint64_t{1} << 30;
+
+JobSize job_of(std::uint64_t vertices, std::uint32_t tile, int channels, std::size_t threads) {
+  JobSize job;
+  job.vertex_count = vertices;
+  job.face_count = 2 * vertices;
+  job.channels = channels;
+  job.partition_count = static_cast<std::uint32_t>((vertices + tile - 1) / tile);
+  job.largest_tile = tile;
+  job.threads = threads;
+  return job;
+}
+
+std::vector<JobSize> jobs() {
+  std::vector<JobSize> result;
+  for (const std::uint64_t vertices :
+       {std::uint64_t{1}, std::uint64_t{1000}, std::uint64_t{1'000'000}, std::uint64_t{500'000'000},
+        std::uint64_t{4'294'967'295}}) {
+    for (const std::uint32_t tile : {4U, 8192U, 32768U}) {
+      for (const int channels : {0, 9}) {
+        for (const std::size_t threads : {1U, 2U, 64U})
+          result.push_back(job_of(vertices, tile, channels, threads));
+      }
+    }
+  }
+  return result;
+}
+
+std::string text_of(const JobSize& job) {
+  return std::to_string(job.vertex_count) + " vertices, tiles of " +
+         std::to_string(job.largest_tile) + ", " + std::to_string(job.channels) + " channels, " +
+         std::to_string(job.threads) + " threads";
+}
+
+/// What the refusal of a budget says, if it is refused.
+std::optional<std::string> refusal(std::uint64_t budget, const JobSize& job) {
+  try {
+    plan_memory(budget, job);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::budget);
+    return error.what();
+  }
+  return std::nullopt;
+}
+
+/// The least budget that a refusal names.
+std::uint64_t least_budget(const JobSize& job) {
+  const std::string message = refusal(1, job).value_or("");
+  const std::string before = "at least ";
+  const std::size_t at = message.find(before);
+  EXPECT_NE(at, std::string::npos) << message;
+  return parse_size(message.substr(at + before.size())).value_or(0);
+}
+
+TEST(MemoryPlanTest, ARefusalNamesBothTheBudgetAndTheLeast) {
+  const std::string message = refusal(kMiB, job_of(1'000'000, 8192, 0, 2)).value_or("");
+  EXPECT_THAT(message, HasSubstr("memory_budget 1MiB"));
+  EXPECT_THAT(message, HasSubstr("at least "));
+}
+
+TEST(MemoryPlanTest, TheLeastThatIsNamedIsEnoughAndHardlyMoreThanNeeded) {
+  for (const JobSize& job : jobs()) {
+    const std::uint64_t least = least_budget(job);
+    ASSERT_GT(least, 0U);
+    EXPECT_EQ(refusal(least, job), std::nullopt) << text_of(job);
+    EXPECT_NE(refusal(least - kMiB, job), std::nullopt) << text_of(job);
+  }
+}
+
+TEST(MemoryPlanTest, AMillionVerticesAreContentWith64MiB) {
+  EXPECT_LE(least_budget(job_of(1'000'000, 8192, 0, 1)), 64 * kMiB);
+  EXPECT_LE(least_budget(job_of(1'000'000'000, 8192, 0, 1)), kGiB);
+}
+
+TEST(MemoryPlanTest, TheLeastDoesNotDependOnThreads) {
+  EXPECT_EQ(least_budget(job_of(3'000'000, 8192, 4, 1)),
+            least_budget(job_of(3'000'000, 8192, 4, 128)));
+}
+
+TEST(MemoryPlanTest, ThePartsStayWithinTheBudget) {
+  for (const JobSize& job : jobs()) {
+    const std::uint64_t least = least_budget(job);
+    for (const std::uint64_t budget : {least, least + 7 * kMiB, 2 * least, least + 64 * kGiB}) {
+      SCOPED_TRACE(text_of(job) + ", budget " + exact_size_text(budget));
+      const MemoryPlan plan = plan_memory(budget, job);
+      EXPECT_LE(plan.pool_bytes + plan.work_bytes, budget);
+      EXPECT_GT(plan.work_bytes, 0U);
+      EXPECT_LE(plan.table_bytes, plan.work_bytes);
+      EXPECT_GE(plan.table_bytes, kMiB);
+      EXPECT_GE(plan.blocks_in_flight, 1U);
+      EXPECT_GE(plan.chunks_in_flight, 1U);
+      EXPECT_GE(plan.tiles_in_flight, 1U);
+      EXPECT_LE(plan.chunks_in_flight, job.threads + 1);
+      EXPECT_LE(plan.tiles_in_flight, 2 * job.threads);
+      EXPECT_GE(plan.spool_block_bytes, 4096U);
+    }
+  }
+}
+
+TEST(MemoryPlanTest, OpenSpoolsFitTheWorkOfTheLargestMesh) {
+  const JobSize job = job_of(4'294'967'295, 32768, 9, 2);
+  const MemoryPlan plan = plan_memory(least_budget(job), job);
+  const std::uint64_t spools = 2 * (job.vertex_count / 131072 + 1);  // a chunk's two, at least
+  EXPECT_LE(spools * plan.spool_block_bytes, plan.work_bytes);
+}
+
+TEST(MemoryPlanTest, MoreMemoryNeverGivesLess) {
+  const JobSize job = job_of(50'000'000, 8192, 4, 8);
+  MemoryPlan before = plan_memory(least_budget(job), job);
+  for (std::uint64_t budget = least_budget(job); budget < 16 * kGiB; budget += budget / 7) {
+    const MemoryPlan plan = plan_memory(budget, job);
+    EXPECT_GE(plan.pool_bytes, before.pool_bytes);
+    EXPECT_GE(plan.work_bytes, before.work_bytes);
+    EXPECT_GE(plan.tiles_in_flight, before.tiles_in_flight);
+    EXPECT_GE(plan.chunks_in_flight, before.chunks_in_flight);
+    EXPECT_GE(plan.blocks_in_flight, before.blocks_in_flight);
+    before = plan;
+  }
+}
+
+TEST(DiskNeedTest, WhatFitsInMemoryNeedsNoTemporaryFiles) {
+  const JobSize job = job_of(100'000, 8192, 0, 2);
+  EXPECT_EQ(predict_disk(job, plan_memory(4 * kGiB, job)).temporary_bytes, 0U);
+  EXPECT_GT(predict_disk(job, plan_memory(least_budget(job), job)).output_bytes,
+            job.vertex_count * 12 + job.face_count * 12);
+}
+
+TEST(DiskNeedTest, GrowsWithWhatAVertexHolds) {
+  const JobSize bare = job_of(10'000'000, 8192, 0, 2);
+  const JobSize full = job_of(10'000'000, 8192, 9, 2);
+  const MemoryPlan plan = plan_memory(kGiB, full);
+  EXPECT_GE(predict_disk(full, plan).output_bytes,
+            predict_disk(bare, plan).output_bytes + bare.vertex_count * 9 * 4);
+  EXPECT_GT(predict_disk(full, plan).temporary_bytes, predict_disk(bare, plan).temporary_bytes);
+}
+
+}  // namespace
+}  // namespace meshhier::pipeline

@@ -1,0 +1,270 @@
+#include "pipeline/source_mesh.h"
+
+#include "hierarchy/error.h"
+#include "mesh_io/ply_writer.h"
+#include "partition/top_tree.h"
+#include "storage/file.h"
+#include "tests/pipeline/sample_hierarchy.h"
+#include "tests/support/meshes.h"
+
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace meshhier::pipeline {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// Cancels when the given number of units is done.
+class CancellingProgress final : public Progress {
+ public:
+  CancellingProgress(CancelToken& token, std::uint64_t after) : token_(token), after_(after) {}
+  void stage(std::string_view, std::uint64_t, std::string_view) override {}
+  void advance(std::uint64_t count) override {
+    done_ += count;
+    if (done_ >= after_)
+      token_.cancel();
+  }
+  void finish(std::string_view) override {}
+
+ private:
+  CancelToken& token_;
+  std::uint64_t after_;
+  std::uint64_t done_ = 0;
+};
+
+class SourceMeshTest : public testing::Test {
+ protected:
+  std::filesystem::path path(const std::string& name = "mesh.ply") const {
+    return directory_.path() / name;
+  }
+
+  SourceMesh open(const std::filesystem::path& file) {
+    return SourceMesh(mesh_io::open_mesh(*files_, file), file.filename().string(), scratch_,
+                      progress_, cancel_);
+  }
+
+  /// A point cloud of double coordinates.
+  SourceMesh open_points(const std::vector<Vec3d>& points) {
+    mesh_io::PlyContent content;
+    content.vertex_count = points.size();
+    content.double_coordinates = true;
+    mesh_io::PlyWriter writer(*files_, path(), content);
+    writer.write_vertices(points, {});
+    writer.finish();
+    return open(path());
+  }
+
+  SourceMesh open_text(const std::string& text) {
+    std::ofstream(path(), std::ios::binary) << text;
+    return open(path());
+  }
+
+  tests::TemporaryDirectory directory_;
+  std::unique_ptr<storage::FileSystem> files_ = storage::make_posix_file_system();
+  storage::MemoryPool pool_{0};
+  storage::ScratchFile scratch_{*files_, directory_.path() / "scratch", pool_};
+  NoProgress progress_;
+  CancelToken cancel_;
+};
+
+struct Streamed {
+  std::vector<Vec3f> positions;
+  std::vector<float> attributes;
+};
+
+Streamed stream(const SourceMesh& mesh) {
+  Streamed all;
+  mesh.read_vertices([&](std::uint64_t first, std::span<const Vec3f> positions,
+                         std::span<const float> attributes) {
+    EXPECT_EQ(first, all.positions.size());
+    all.positions.insert(all.positions.end(), positions.begin(), positions.end());
+    all.attributes.insert(all.attributes.end(), attributes.begin(), attributes.end());
+  });
+  return all;
+}
+
+std::string text_header(
+    std::size_t vertices, std::size_t faces,
+    const std::string& properties = "property float x\nproperty float y\nproperty float z\n") {
+  std::ostringstream text;
+  text << "ply\nformat ascii 1.0\nelement vertex " << vertices << '\n'
+       << properties << "element face " << faces
+       << "\nproperty list uchar int vertex_indices\nend_header\n";
+  return text.str();
+}
+
+TEST_F(SourceMeshTest, FloatCoordinatesComeThroughAsTheyAre) {
+  const tests::TestMesh sphere = tests::sphere(200'000, 0.01F);  // more than one block
+  ASSERT_GT(sphere.positions.size(), mesh_io::MeshSource::kBlockSize);
+  tests::write_ply(sphere, path());
+  const SourceMesh mesh = open(path());
+  EXPECT_TRUE(mesh.vertices_in_place());
+  EXPECT_EQ(stream(mesh).positions, sphere.positions);
+  EXPECT_EQ(mesh.origin(), Vec3d{});
+  EXPECT_FALSE(mesh.summary().double_precision);
+  EXPECT_EQ(mesh.summary().file_name, "mesh.ply");
+  EXPECT_EQ(mesh.summary().file_bytes, std::filesystem::file_size(path()));
+  BoundsD bounds;
+  for (const Vec3f p : sphere.positions)
+    bounds.add(to_double(p));
+  EXPECT_EQ(mesh.summary().bounds, bounds);
+}
+
+TEST_F(SourceMeshTest, TextIsSpooledAndReadAgainFromThere) {
+  const tests::TestMesh grid = tests::open_grid(299, 299, 0.25F);
+  ASSERT_GT(grid.positions.size(), mesh_io::MeshSource::kBlockSize);
+  std::ostringstream text;
+  text.precision(9);
+  text << text_header(grid.positions.size(), 0,
+                      "property float x\nproperty float y\nproperty float z\n"
+                      "property uchar red\nproperty uchar green\nproperty uchar blue\n");
+  std::vector<float> colours;
+  for (std::size_t v = 0; v < grid.positions.size(); ++v) {
+    const Vec3f p = grid.positions[v];
+    text << p.x << ' ' << p.y << ' ' << p.z << ' ' << v % 256 << " 7 " << v / 256 % 256 << '\n';
+    colours.insert(colours.end(),
+                   {static_cast<float>(v % 256), 7, static_cast<float>(v / 256 % 256)});
+  }
+  const SourceMesh mesh = open_text(text.str());
+  EXPECT_FALSE(mesh.vertices_in_place());
+  std::filesystem::remove(path());  // nothing is read from there again
+  const Streamed all = stream(mesh);
+  EXPECT_EQ(all.positions, grid.positions);
+  EXPECT_EQ(all.attributes, colours);
+}
+
+TEST_F(SourceMeshTest, DoublesThatFitFloatNeedNoOrigin) {
+  const SourceMesh mesh = open_points({{1000000, 0.5, -0.25}, {3, 2, 1}});
+  EXPECT_FALSE(mesh.summary().double_precision);
+  EXPECT_EQ(mesh.origin(), Vec3d{});
+  EXPECT_THAT(stream(mesh).positions, ElementsAre(Vec3f{1000000, 0.5, -0.25}, Vec3f{3, 2, 1}));
+}
+
+TEST_F(SourceMeshTest, GeographicCoordinatesAreStoredRelativeToARoundOrigin) {
+  std::vector<Vec3d> points;
+  for (std::uint64_t i = 0; i < 1000; ++i) {
+    points.push_back({500123.4567 + 80 * double{tests::hash_noise(i, 1)},
+                      5812345.6789 + 60 * double{tests::hash_noise(i, 2)},
+                      112.3 + 10 * double{tests::hash_noise(i, 3)}});
+  }
+  const SourceMesh mesh = open_points(points);
+  EXPECT_TRUE(mesh.summary().double_precision);
+  const Vec3d origin = mesh.origin();
+  EXPECT_NEAR(origin.x, 500123, 10);
+  EXPECT_NEAR(origin.y, 5812345, 10);
+  EXPECT_EQ(origin.x * 1024, std::round(origin.x * 1024));  // few digits
+  const Streamed all = stream(mesh);
+  ASSERT_EQ(all.positions.size(), points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    ASSERT_EQ(all.positions[i], to_float(points[i] - origin));
+    // Within a few micrometres, where float alone would be off by a quarter of a metre.
+    EXPECT_LT(length(to_double(all.positions[i]) + origin - points[i]), 1e-5);
+  }
+}
+
+TEST_F(SourceMeshTest, TextDoublesEqualBinaryDoubles) {
+  const std::vector<Vec3d> points = {{500123.25, 5812345.125, 0.1}, {500200.7, 5812300.3, 9}};
+  const SourceMesh binary = open_points(points);
+  std::ostringstream text;
+  text.precision(17);
+  text << text_header(2, 0, "property double x\nproperty double y\nproperty double z\n");
+  for (const Vec3d p : points)
+    text << p.x << ' ' << p.y << ' ' << p.z << '\n';
+  std::ofstream(path("text.ply")) << text.str();
+  const SourceMesh spooled = open(path("text.ply"));
+  EXPECT_EQ(spooled.origin(), binary.origin());
+  EXPECT_EQ(stream(spooled).positions, stream(binary).positions);
+  EXPECT_EQ(spooled.summary().bounds, binary.summary().bounds);
+}
+
+TEST_F(SourceMeshTest, CoordinatesBeyondFloatAreRefused) {
+  try {
+    open_points({{1e39, 0, 0.1}, {-1e39, 1, 1}});
+    FAIL() << "1e39 was accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::input);
+    EXPECT_THAT(error.what(), HasSubstr("mesh.ply"));
+    EXPECT_THAT(error.what(), HasSubstr("single precision"));
+  }
+}
+
+TEST_F(SourceMeshTest, TheSampleIsWhatItsIdsName) {
+  const tests::TestMesh points = tests::points(3000);
+  tests::write_ply(points, path());
+  const std::vector<partition::IdPoint> sample = open(path()).sample();
+  const partition::SampleIds ids(3000);
+  ASSERT_EQ(sample.size(), ids.count());
+  for (std::size_t i = 0; i < sample.size(); ++i) {
+    ASSERT_EQ(sample[i].id, ids[i]);
+    ASSERT_EQ(sample[i].position, points.positions[sample[i].id]);
+  }
+}
+
+TEST_F(SourceMeshTest, ASampleOfManyVerticesIsSpreadOverAll) {
+  const std::size_t count = partition::kSampleVertices + 100'000;
+  const tests::TestMesh points = tests::points(count);
+  tests::write_ply(points, path());
+  const std::vector<partition::IdPoint> sample = open(path()).sample();
+  ASSERT_EQ(sample.size(), partition::kSampleVertices);
+  for (std::size_t i = 0; i < sample.size(); ++i) {
+    ASSERT_EQ(sample[i].position, points.positions[sample[i].id]);
+    ASSERT_LE(sample[i].id, (i + 1) * count / sample.size());
+    ASSERT_GE(sample[i].id, i * count / sample.size());
+  }
+}
+
+TEST_F(SourceMeshTest, ReadingTheTrianglesCompletesTheCounts) {
+  SourceMesh mesh = open_text(text_header(5, 4) +
+                              "0 0 0\n1 0 0\n1 1 0\n0 1 0\n9 9 9\n"
+                              "4 0 1 2 3\n3 0 0 1\n3 0 1 2\n2 0 1\n");
+  EXPECT_EQ(mesh.declared_faces(), 4U);
+  std::vector<mesh_io::SourceTriangle> triangles;
+  mesh.read_triangles([&](std::span<const mesh_io::SourceTriangle> block) {
+    triangles.insert(triangles.end(), block.begin(), block.end());
+  });
+  const auto triangle = [](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    return mesh_io::SourceTriangle{VertexId{a}, VertexId{b}, VertexId{c}};
+  };
+  EXPECT_THAT(triangles, ElementsAre(triangle(0, 1, 2), triangle(0, 2, 3), triangle(0, 1, 2)));
+  EXPECT_EQ(mesh.summary().faces, 4U);
+  EXPECT_EQ(mesh.summary().triangles, 3U);
+  EXPECT_EQ(mesh.summary().degenerate_triangles, 2U);
+}
+
+TEST_F(SourceMeshTest, ABrokenVertexIsNamed) {
+  try {
+    open_text(text_header(2, 0) + "0 0 0\n0 nan 0\n");
+    FAIL() << "a vertex that is not a number was accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::input);
+    EXPECT_THAT(error.what(), HasSubstr("mesh.ply"));
+    EXPECT_THAT(error.what(), HasSubstr("line 10"));
+  }
+}
+
+TEST_F(SourceMeshTest, ACancelledJobEndsWhileReading) {
+  tests::write_ply(tests::points(200'000), path());
+  CancellingProgress progress(cancel_, 1);
+  try {
+    SourceMesh(mesh_io::open_mesh(*files_, path()), "mesh.ply", scratch_, progress, cancel_);
+    FAIL() << "read to the end";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::interrupted);
+  }
+}
+
+}  // namespace
+}  // namespace meshhier::pipeline

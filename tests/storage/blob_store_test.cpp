@@ -1,0 +1,159 @@
+#include "storage/blob_store.h"
+
+#include "hierarchy/error.h"
+#include "tests/support/faulty_file_system.h"
+
+#include <algorithm>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+namespace meshhier::storage {
+namespace {
+
+using tests::Call;
+using tests::FaultyFileSystem;
+using Bytes = std::vector<std::byte>;
+
+Bytes pattern(std::size_t size, std::size_t seed) {
+  Bytes bytes(size);
+  for (std::size_t i = 0; i < size; ++i)
+    bytes[i] = static_cast<std::byte>(((i + seed) * 131) ^ (i >> 8));
+  return bytes;
+}
+
+class BlobStoreTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    const testing::TestInfo& info = *testing::UnitTest::GetInstance()->current_test_info();
+    path_ = std::filesystem::path(testing::TempDir()) / (std::string("blobs_") + info.name());
+    std::filesystem::remove(path_);
+  }
+
+  FaultyFileSystem files_;
+  std::filesystem::path path_;
+};
+
+TEST_F(BlobStoreTest, BlobsComeBackWhateverTheMemory) {
+  for (const std::uint64_t memory : {0U, 700U, 100000U}) {
+    MemoryPool pool(memory);
+    ScratchFile scratch(files_, path_, pool);
+    BlobStore store(scratch, 50);
+    EXPECT_EQ(store.count(), 50U);
+    for (std::size_t i = 50; i-- > 0;)
+      store.put(i, pattern(i * 3, i));
+    for (std::size_t i = 0; i < 50; ++i) {
+      EXPECT_EQ(store.size(i), i * 3);
+      EXPECT_EQ(store.get(i), pattern(i * 3, i)) << memory << " " << i;
+      EXPECT_EQ(store.get(i), pattern(i * 3, i)) << memory << " " << i;
+    }
+  }
+}
+
+TEST_F(BlobStoreTest, ABlobNeverPutIsEmpty) {
+  MemoryPool pool(10);
+  ScratchFile scratch(files_, path_, pool);
+  const BlobStore store(scratch, 3);
+  EXPECT_EQ(store.size(1), 0U);
+  EXPECT_TRUE(store.get(1).empty());
+}
+
+TEST_F(BlobStoreTest, PartsAreRead) {
+  for (const std::uint64_t memory : {0U, 1000U}) {
+    MemoryPool pool(memory);
+    ScratchFile scratch(files_, path_, pool);
+    BlobStore store(scratch, 2);
+    store.put(0, pattern(100, 0));
+    store.put(1, pattern(300, 1));
+    const Bytes whole = pattern(300, 1);
+    for (std::size_t offset = 0; offset <= 300; offset += 17) {
+      Bytes part(std::min<std::size_t>(40, 300 - offset));
+      store.read(1, offset, part);
+      EXPECT_TRUE(std::equal(part.begin(), part.end(),
+                             whole.begin() + static_cast<std::ptrdiff_t>(offset)));
+    }
+  }
+}
+
+TEST_F(BlobStoreTest, MemoryComesFirstAndTheDiskTakesTheRest) {
+  MemoryPool pool(250);
+  ScratchFile scratch(files_, path_, pool);
+  BlobStore store(scratch, 4);
+  store.put(0, pattern(200, 0));
+  EXPECT_EQ(files_.calls(Call::create), 0U);
+  store.put(1, pattern(100, 1));  // does not fit any more
+  EXPECT_EQ(scratch.size(), 100U);
+  store.put(2, pattern(50, 2));  // fits what is left
+  EXPECT_EQ(scratch.size(), 100U);
+  EXPECT_EQ(pool.free_bytes(), 0U);
+}
+
+TEST_F(BlobStoreTest, ClearingGivesTheMemoryBackAndTheBlobsCanBePutAgain) {
+  MemoryPool pool(250);
+  ScratchFile scratch(files_, path_, pool);
+  BlobStore store(scratch, 3);
+  for (std::size_t round = 0; round < 3; ++round) {
+    for (std::size_t i = 0; i < 3; ++i)
+      store.put(i, pattern(100, i + round));
+    EXPECT_EQ(pool.free_bytes(), 50U);
+    for (std::size_t i = 0; i < 3; ++i)
+      EXPECT_EQ(store.get(i), pattern(100, i + round));
+    store.clear();
+    EXPECT_EQ(pool.free_bytes(), 250U);
+    EXPECT_EQ(store.size(0), 0U);
+    EXPECT_EQ(store.count(), 3U);
+  }
+}
+
+TEST_F(BlobStoreTest, MovingMovesTheMemoryToo) {
+  MemoryPool pool(250);
+  ScratchFile scratch(files_, path_, pool);
+  {
+    BlobStore store(scratch, 1);
+    store.put(0, pattern(100, 0));
+    const BlobStore moved(std::move(store));
+    EXPECT_EQ(moved.get(0), pattern(100, 0));
+    EXPECT_EQ(pool.free_bytes(), 150U);
+  }
+  EXPECT_EQ(pool.free_bytes(), 250U);
+}
+
+TEST_F(BlobStoreTest, ThreadsPutAndReadDifferentBlobsAtOnce) {
+  MemoryPool pool(20000);
+  ScratchFile scratch(files_, path_, pool);
+  BlobStore store(scratch, 400);
+  std::atomic<int> wrong{0};
+  std::vector<std::thread> threads;
+  for (std::size_t t = 0; t < 4; ++t) {
+    threads.emplace_back([&, t] {
+      for (std::size_t i = t; i < 400; i += 4) {
+        store.put(i, pattern(i, i));
+        wrong += store.get(i) == pattern(i, i) ? 0 : 1;
+      }
+    });
+  }
+  for (std::thread& thread : threads)
+    thread.join();
+  EXPECT_EQ(wrong, 0);
+  for (std::size_t i = 0; i < 400; ++i)
+    EXPECT_EQ(store.get(i), pattern(i, i));
+}
+
+TEST_F(BlobStoreTest, FailuresReachTheCaller) {
+  MemoryPool pool(0);
+  ScratchFile scratch(files_, path_, pool);
+  BlobStore store(scratch, 3);
+  files_.fail(Call::create, 1);
+  EXPECT_THROW(store.put(0, pattern(10, 0)), Error);
+  files_.fail(Call::write, 1);
+  EXPECT_THROW(store.put(1, pattern(10, 1)), Error);
+  store.put(2, pattern(10, 2));
+  files_.fail(Call::read, 1);
+  EXPECT_THROW((void)store.get(2), Error);
+  EXPECT_EQ(store.get(2), pattern(10, 2));
+}
+
+}  // namespace
+}  // namespace meshhier::storage

@@ -1,0 +1,44 @@
+#include "storage/layout.h"
+
+#include <set>
+
+#include <gtest/gtest.h>
+
+namespace meshhier::storage {
+namespace {
+
+TEST(Layout, FilesOfAHierarchyHaveTheirDocumentedNames) {
+  const std::filesystem::path hierarchy = "some/where/david.hier";
+  EXPECT_EQ(manifest_path(hierarchy), "some/where/david.hier/hierarchy.json");
+  EXPECT_EQ(index_path(hierarchy), "some/where/david.hier/tiles.bin");
+  EXPECT_EQ(outline_path(hierarchy), "some/where/david.hier/outline.glb");
+  EXPECT_EQ(level_directory(hierarchy, Level{7}), "some/where/david.hier/tiles/07");
+  EXPECT_EQ(tile_path(hierarchy, {Level{7}, 42}), "some/where/david.hier/tiles/07/000042.glb");
+}
+
+TEST(Layout, NumbersGrowBeyondTheirLeastDigits) {
+  EXPECT_EQ(level_directory("h", Level{132}), "h/tiles/132");
+  EXPECT_EQ(tile_path("h", {Level{31}, 2147483647}), "h/tiles/31/2147483647.glb");
+}
+
+TEST(Layout, WorkGoesOnBesideTheOutputInHiddenDirectories) {
+  EXPECT_EQ(work_path("a/b.hier"), "a/.b.hier.meshhier-work");
+  EXPECT_EQ(replaced_path("a/b.hier"), "a/.b.hier.meshhier-old");
+  EXPECT_EQ(work_path("b.hier"), ".b.hier.meshhier-work");
+  EXPECT_EQ(work_path("/b.hier"), "/.b.hier.meshhier-work");
+  EXPECT_EQ(temporary_path("a/.b.hier.meshhier-work"), "a/.b.hier.meshhier-work/build.tmp");
+}
+
+TEST(Layout, NoTwoThingsShareAName) {
+  std::set<std::filesystem::path> names{manifest_path("h"), index_path("h"), outline_path("h"),
+                                        temporary_path("h")};
+  std::size_t count = 4;
+  for (int level = 0; level < 4; ++level) {
+    for (std::uint32_t i = 0; i < 4; ++i, ++count)
+      names.insert(tile_path("h", {static_cast<Level>(level), i}));
+  }
+  EXPECT_EQ(names.size(), count);
+}
+
+}  // namespace
+}  // namespace meshhier::storage

@@ -1,0 +1,164 @@
+#include "tests/support/faulty_file_system.h"
+
+#include "hierarchy/error.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace meshhier::tests {
+namespace {
+
+[[noreturn]] void fail_io(const char* action, const std::filesystem::path& path,
+                          const char* cause) {
+  throw Error(ErrorCode::io, std::string("cannot ") + action + " " + path.string() + ": " + cause);
+}
+
+const char* name_of(Call call) {
+  static constexpr std::array<const char*, kCallKinds> kNames{
+      "open",   "create",    "inspect", "read",   "write", "sync", "make the directory",
+      "remove", "rename to", "sync",    "inspect"};
+  return kNames[static_cast<std::size_t>(call)];
+}
+
+class FaultyFile final : public storage::File {
+ public:
+  FaultyFile(std::unique_ptr<storage::File> real, std::shared_ptr<FaultPlan> plan,
+             std::shared_ptr<storage::IoCounters> counters)
+      : File(real->path()),
+        real_(std::move(real)),
+        plan_(std::move(plan)),
+        counters_(std::move(counters)) {}
+
+  std::uint64_t size() const override {
+    strike(Call::size);
+    return real_->size();
+  }
+
+  void sync() override {
+    strike(Call::sync);
+    real_->sync();
+  }
+
+ protected:
+  std::size_t read_some(std::uint64_t offset, std::span<std::byte> bytes) const override {
+    strike(Call::read);
+    const std::size_t count = real_->read_at(offset, bytes.first(plan_->transfer(bytes.size())));
+    counters_->bytes_read += count;
+    return count;
+  }
+
+  std::size_t write_some(std::uint64_t offset, std::span<const std::byte> bytes) override {
+    strike(Call::write);
+    const std::size_t count = plan_->claim(plan_->transfer(bytes.size()));
+    if (count == 0)
+      fail_io("write", path(), "no space left on device");
+    real_->write_at(offset, bytes.first(count));
+    counters_->bytes_written += count;
+    return count;
+  }
+
+ private:
+  void strike(Call call) const {
+    if (plan_->strike(call))
+      fail_io(name_of(call), path(), "injected");
+  }
+
+  std::unique_ptr<storage::File> real_;
+  std::shared_ptr<FaultPlan> plan_;
+  std::shared_ptr<storage::IoCounters> counters_;
+};
+
+}  // namespace
+
+bool FaultPlan::strike(Call call) {
+  const std::lock_guard lock(mutex_);
+  Fault& fault = faults_[static_cast<std::size_t>(call)];
+  ++fault.calls;
+  return fault.first <= fault.calls && fault.calls <= fault.last;
+}
+
+std::size_t FaultPlan::transfer(std::size_t asked) const {
+  const std::lock_guard lock(mutex_);
+  return std::min(asked, most_moved_);
+}
+
+std::size_t FaultPlan::claim(std::size_t asked) {
+  const std::lock_guard lock(mutex_);
+  const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(asked, room_));
+  if (room_ != std::numeric_limits<std::uint64_t>::max())
+    room_ -= count;
+  return count;
+}
+
+FaultyFileSystem::FaultyFileSystem() = default;
+
+void FaultyFileSystem::fail(Call call, std::uint64_t n, std::uint64_t times) {
+  const std::lock_guard lock(plan_->mutex_);
+  FaultPlan::Fault& fault = plan_->faults_[static_cast<std::size_t>(call)];
+  fault.first = fault.calls + n;
+  fault.last = fault.first + times - 1;
+}
+
+void FaultyFileSystem::limit_transfers(std::size_t most_bytes) {
+  const std::lock_guard lock(plan_->mutex_);
+  plan_->most_moved_ = most_bytes;
+}
+
+void FaultyFileSystem::limit_room(std::uint64_t bytes) {
+  const std::lock_guard lock(plan_->mutex_);
+  plan_->room_ = bytes;
+}
+
+std::uint64_t FaultyFileSystem::calls(Call call) const {
+  const std::lock_guard lock(plan_->mutex_);
+  return plan_->faults_[static_cast<std::size_t>(call)].calls;
+}
+
+void FaultyFileSystem::strike(Call call, const std::filesystem::path& path) {
+  if (plan_->strike(call))
+    fail_io(name_of(call), path, "injected");
+}
+
+std::unique_ptr<storage::File> FaultyFileSystem::open(const std::filesystem::path& path) {
+  strike(Call::open, path);
+  return std::make_unique<FaultyFile>(real_->open(path), plan_, counters_);
+}
+
+std::unique_ptr<storage::File> FaultyFileSystem::create(const std::filesystem::path& path) {
+  strike(Call::create, path);
+  return std::make_unique<FaultyFile>(real_->create(path), plan_, counters_);
+}
+
+bool FaultyFileSystem::exists(const std::filesystem::path& path) {
+  return real_->exists(path);
+}
+
+void FaultyFileSystem::make_directories(const std::filesystem::path& path) {
+  strike(Call::make_directories, path);
+  real_->make_directories(path);
+}
+
+void FaultyFileSystem::remove_all(const std::filesystem::path& path) {
+  strike(Call::remove_all, path);
+  real_->remove_all(path);
+}
+
+void FaultyFileSystem::rename(const std::filesystem::path& from, const std::filesystem::path& to) {
+  strike(Call::rename, to);
+  real_->rename(from, to);
+}
+
+void FaultyFileSystem::sync_tree(const std::filesystem::path& directory) {
+  strike(Call::sync_tree, directory);
+  real_->sync_tree(directory);
+}
+
+std::uint64_t FaultyFileSystem::free_bytes(const std::filesystem::path& directory) {
+  strike(Call::free_bytes, directory);
+  const std::uint64_t free = real_->free_bytes(directory);
+  const std::lock_guard lock(plan_->mutex_);
+  return std::min(free, plan_->room_);
+}
+
+}  // namespace meshhier::tests

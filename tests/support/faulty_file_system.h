@@ -1,0 +1,89 @@
+// A file system that fails on demand: the real one, with chosen calls made to go wrong.
+#pragma once
+
+#include "storage/file.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <mutex>
+
+namespace meshhier::tests {
+
+/// The kinds of calls that can be told to fail.
+enum class Call : std::size_t {
+  open,
+  create,
+  size,
+  read,
+  write,
+  sync,
+  make_directories,
+  remove_all,
+  rename,
+  sync_tree,
+  free_bytes
+};
+inline constexpr std::size_t kCallKinds = 11;
+
+/// When calls go wrong. Shared by a file system and its open files; thread-safe.
+class FaultPlan {
+ public:
+  /// Counts one call; true if it is to fail.
+  bool strike(Call call);
+  /// Bytes that one read or write may move, of so many asked for.
+  std::size_t transfer(std::size_t asked) const;
+  /// Bytes of a write that still fit on the disk, of so many asked for; they are used up.
+  std::size_t claim(std::size_t asked);
+
+ private:
+  friend class FaultyFileSystem;
+  struct Fault {
+    std::uint64_t calls = 0;  ///< so far
+    std::uint64_t first = 0;  ///< number of the first call that fails, from 1
+    std::uint64_t last = 0;
+  };
+
+  mutable std::mutex mutex_;
+  std::array<Fault, kCallKinds> faults_;
+  std::size_t most_moved_ = std::numeric_limits<std::size_t>::max();
+  std::uint64_t room_ = std::numeric_limits<std::uint64_t>::max();
+};
+
+/// Thread-safe. A call that is told to fail throws Error(io), "injected", and does nothing; a full
+/// disk takes what fits and then throws, as the real one does.
+class FaultyFileSystem final : public storage::FileSystem {
+ public:
+  FaultyFileSystem();
+
+  /// From now on the n-th call of the kind (1: the next) and the `times` - 1 after it fail. `fail`
+  /// again to change it; times = 0: none does.
+  void fail(Call call, std::uint64_t n, std::uint64_t times = 1);
+  /// No read or write moves more than so many bytes at once; > 0.
+  void limit_transfers(std::size_t most_bytes);
+  /// The disk takes so many more bytes of writes. Removing files makes no room.
+  void limit_room(std::uint64_t bytes);
+  /// Calls of a kind so far, failed ones included.
+  std::uint64_t calls(Call call) const;
+
+  std::unique_ptr<storage::File> open(const std::filesystem::path& path) override;
+  std::unique_ptr<storage::File> create(const std::filesystem::path& path) override;
+  bool exists(const std::filesystem::path& path) override;
+  void make_directories(const std::filesystem::path& path) override;
+  void remove_all(const std::filesystem::path& path) override;
+  void rename(const std::filesystem::path& from, const std::filesystem::path& to) override;
+  void sync_tree(const std::filesystem::path& directory) override;
+  /// The real figure, or the room left if that is less.
+  std::uint64_t free_bytes(const std::filesystem::path& directory) override;
+
+ private:
+  void strike(Call call, const std::filesystem::path& path);
+
+  std::unique_ptr<storage::FileSystem> real_ = storage::make_posix_file_system();
+  std::shared_ptr<FaultPlan> plan_ = std::make_shared<FaultPlan>();
+};
+
+}  // namespace meshhier::tests
