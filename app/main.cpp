@@ -1,6 +1,6 @@
 // meshhier: the command line.
 #include "app/command.h"
-#include "app/signals.h"
+#include "app/process.h"
 #include "hierarchy/error.h"
 #include "pipeline/suggest.h"
 
@@ -17,7 +17,6 @@
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 namespace meshhier::app {
 
@@ -97,7 +96,7 @@ int execute(const Invocation& invocation) {
   static pipeline::CancelToken cancel;  // signal handlers reach it to the end of the process
   cancel_on_signals(cancel);
   const std::unique_ptr<storage::FileSystem> files = storage::make_posix_file_system();
-  Environment environment{*files, cancel, std::cout, std::cerr, isatty(STDERR_FILENO) == 1};
+  Environment environment{*files, cancel, std::cout, std::cerr, error_output_is_terminal()};
   const int code = invocation.run(environment);
   flush_results();
   return code;

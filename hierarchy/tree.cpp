@@ -7,7 +7,7 @@ namespace meshhier {
 namespace {
 
 constexpr std::uint32_t split_at(PartitionRange range) {
-  return range.begin + (range.size() + 1) / 2;
+  return range.begin + range.size() / 2 + range.size() % 2;  // ceil without overflow
 }
 
 }  // namespace

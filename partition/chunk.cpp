@@ -22,6 +22,12 @@ constexpr std::uint64_t mix(std::uint64_t x) {
 
 constexpr std::uint64_t hash(const LocalTriangle& t) { return mix(mix(mix(t[0] + 1) + t[1]) + t[2]); }
 
+/// The smallest corner first.
+LocalTriangle turned(const LocalTriangle& t) {
+  if (t[1] < t[0] && t[1] < t[2]) return {t[1], t[2], t[0]};
+  return t[2] < t[0] && t[2] < t[1] ? LocalTriangle{t[2], t[0], t[1]} : t;
+}
+
 class ChunkSplitter {
  public:
   ChunkSplitter(const ChunkMesh& chunk, const Tree& tree, Axis axis)
@@ -44,7 +50,7 @@ class ChunkSplitter {
     const auto count = static_cast<std::uint32_t>(chunk_.vertices.size());
     for (const RankTriangle& t : chunk_.triangles) {
       const LocalTriangle local{t[0] - first, t[1] - first, t[2] - first};  // wraps around below `first`
-      if (local[0] < count && local[1] < count && local[2] < count) inner.push_back(local);
+      if (local[0] < count && local[1] < count && local[2] < count) inner.push_back(turned(local));
     }
     return inner;
   }
@@ -75,16 +81,18 @@ class ChunkSplitter {
 
   Vec3d choose(std::span<const std::uint32_t> vertices, std::size_t left_count,
                std::span<const LocalTriangle> triangles) const {
-    std::vector<Vec3f> points;
+    std::vector<IdPoint> points;
     points.reserve(std::min(vertices.size(), 2 * kJudgedPoints));
     const std::size_t stride = axis_ == Axis::longest ? 1 : std::max<std::size_t>(1, vertices.size() / kJudgedPoints);
-    for (std::size_t i = 0; i < vertices.size(); i += stride) points.push_back(position(vertices[i]));
-    const std::vector<Vec3d> candidates = candidate_directions(points, axis_);
+    for (std::size_t i = 0; i < vertices.size(); i += stride) points.push_back(point(vertices[i]));
+    std::vector<Vec3f> positions(points.size());
+    std::transform(points.begin(), points.end(), positions.begin(), [](const IdPoint& p) { return p.position; });
+    const std::vector<Vec3d> candidates = candidate_directions(positions, axis_);
     if (candidates.size() == 1) return candidates[0];
     const double fraction = static_cast<double>(left_count) / static_cast<double>(vertices.size());
     const std::vector<Corners> judged = judged_triangles(triangles);
-    const double size = diagonal(bounds_of(points));
-    if (judged.empty() || !(size > 0)) return thinnest_direction(points, fraction, candidates);
+    const double size = diagonal(bounds_of(positions));
+    if (judged.empty() || !(size > 0)) return thinnest_direction(positions, fraction, candidates);
     return shortest_cut_direction(points, judged, fraction, size, candidates);
   }
 
@@ -93,7 +101,7 @@ class ChunkSplitter {
     std::vector<Corners> judged;
     judged.reserve(triangles.size() / share + 1024);
     for (const LocalTriangle& t : triangles) {
-      if (share == 1 || hash(t) % share == 0) judged.push_back({position(t[0]), position(t[1]), position(t[2])});
+      if (share == 1 || hash(t) % share == 0) judged.push_back({point(t[0]), point(t[1]), point(t[2])});
     }
     return judged;
   }
@@ -111,6 +119,7 @@ class ChunkSplitter {
   }
 
   Vec3f position(std::uint32_t vertex) const { return chunk_.vertices.positions[vertex]; }
+  IdPoint point(std::uint32_t vertex) const { return {position(vertex), vertex}; }
 
   const ChunkMesh& chunk_;
   const Tree& tree_;

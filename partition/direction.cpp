@@ -56,7 +56,8 @@ std::vector<double> projections(std::span<const Vec3f> points, Vec3d direction) 
   return values;
 }
 
-double quantile(std::vector<double>& values, double fraction) {
+template <class Value>
+Value quantile(std::vector<Value>& values, double fraction) {
   const auto last = static_cast<double>(values.size() - 1);
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::clamp(fraction, 0.0, 1.0) * last);
   std::nth_element(values.begin(), at, values.end());
@@ -69,19 +70,22 @@ double cut_length(Vec3d lone, Vec3d p, Vec3d q) {
   return (length(lone + p - q * 2.0) + length(lone + q - p * 2.0)) / 6;
 }
 
-double cut_length(const Corners& corners, Vec3d direction, double threshold) {
-  std::array<Vec3d, 3> p;
+double cut_length(const Corners& corners, const SplitPlane& plane) {
   std::array<bool, 3> right;
-  for (int k = 0; k < 3; ++k) {
-    p[k] = to_double(corners[k]);
-    right[k] = dot(direction, p[k]) >= threshold;
-  }
+  for (int k = 0; k < 3; ++k) right[k] = plane.is_right(corners[k].position, corners[k].id);
   for (int k = 0; k < 3; ++k) {
     const int a = (k + 1) % 3;
     const int b = (k + 2) % 3;
-    if (right[a] == right[b] && right[k] != right[a]) return cut_length(p[k], p[a], p[b]);
+    if (right[a] != right[b] || right[k] == right[a]) continue;
+    return cut_length(to_double(corners[k].position), to_double(corners[a].position), to_double(corners[b].position));
   }
   return 0;
+}
+
+SplitPlane plane_at(std::span<const IdPoint> points, Vec3d direction, double fraction) {
+  std::vector<SplitKey> keys(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) keys[i] = key_along(direction, points[i].position, points[i].id);
+  return {direction, quantile(keys, fraction)};
 }
 
 }  // namespace
@@ -116,7 +120,7 @@ Vec3d thinnest_direction(std::span<const Vec3f> points, double fraction, std::sp
   return best;
 }
 
-Vec3d shortest_cut_direction(std::span<const Vec3f> points, std::span<const Corners> triangles, double fraction,
+Vec3d shortest_cut_direction(std::span<const IdPoint> points, std::span<const Corners> triangles, double fraction,
                              double diagonal, std::span<const Vec3d> candidates) {
   if (candidates.size() == 1) return candidates[0];
   // 2^40 steps a diagonal: sums of a million cuts stay below 2^63, and any order gives the same sum.
@@ -124,10 +128,9 @@ Vec3d shortest_cut_direction(std::span<const Vec3f> points, std::span<const Corn
   Vec3d best = candidates[0];
   std::int64_t best_sum = std::numeric_limits<std::int64_t>::max();
   for (const Vec3d& direction : candidates) {
-    std::vector<double> values = projections(points, direction);
-    const double threshold = quantile(values, fraction);
+    const SplitPlane plane = plane_at(points, direction, fraction);
     std::int64_t sum = 0;
-    for (const Corners& corners : triangles) sum += std::llround(cut_length(corners, direction, threshold) * steps);
+    for (const Corners& corners : triangles) sum += std::llround(cut_length(corners, plane) * steps);
     if (sum < best_sum) {
       best_sum = sum;
       best = direction;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hierarchy/vec.h"
+#include "partition/split_plane.h"
 
 namespace meshhier::partition {
 
@@ -15,8 +16,8 @@ enum class Axis {
   compactness,  ///< of the axes, their diagonals and the principal axes: where the cut is shortest
 };
 
-/// A triangle by its corners' positions.
-using Corners = std::array<Vec3f, 3>;
+/// A triangle by its corners.
+using Corners = std::array<IdPoint, 3>;
 
 /// Candidate directions for these points: `longest` gives one; `compactness` the three axes, the six diagonals of two
 /// axes, and the three principal axes of the points. Unit length not required by callers. O(n), deterministic in the
@@ -28,9 +29,10 @@ std::vector<Vec3d> candidate_directions(std::span<const Vec3f> points, Axis axis
 Vec3d thinnest_direction(std::span<const Vec3f> points, double fraction, std::span<const Vec3d> candidates);
 
 /// The candidate whose cut at the quantile `fraction` of `points` is shortest over `triangles`: a cut runs through
-/// a triangle from the midpoints of the crossing edges to its centroid. Independent of the triangles' order: lengths
-/// are summed as integers. `diagonal` > 0: of the node's box. O(c (n + t)).
-Vec3d shortest_cut_direction(std::span<const Vec3f> points, std::span<const Corners> triangles, double fraction,
+/// a triangle from the midpoints of the crossing edges to its centroid. Sides are told as splits tell them, ties by id: a
+/// direction along which many points are equal is no short cut. Independent of the triangles' order: lengths are
+/// summed as integers. `diagonal` > 0: of the node's box. O(c (n + t)).
+Vec3d shortest_cut_direction(std::span<const IdPoint> points, std::span<const Corners> triangles, double fraction,
                              double diagonal, std::span<const Vec3d> candidates);
 
 }  // namespace meshhier::partition

@@ -72,9 +72,7 @@ class LeafBuilder {
       WorkTile& tile = result_.tiles[leaf];
       const bool rim = touched_[v] == kRim;
       index_of_[v] = rim ? next_rim[leaf]++ : tile.rim_count + next_inner[leaf]++;
-      if (rim) {
-        result_.places.push_back({v, static_cast<std::uint16_t>(leaf), static_cast<std::uint16_t>(index_of_[v])});
-      }
+      if (rim) result_.places.push_back({v, leaf, index_of_[v]});
       tile.vertices.positions[index_of_[v]] = chunk_.vertices.positions[v];
       const auto attributes = chunk_.vertices.attributes_of(v);
       std::copy(attributes.begin(), attributes.end(),

@@ -13,8 +13,8 @@ namespace meshhier::partition {
 /// Where a rim vertex of a chunk went: the bridge from provisional ranks to tile vertices.
 struct LeafPlace {
   std::uint32_t local = 0;      ///< provisional rank within the chunk
-  std::uint16_t partition = 0;  ///< counted from the chunk's first partition
-  std::uint16_t index = 0;      ///< in that partition's tile, in its rim
+  std::uint32_t partition = 0;  ///< counted from the chunk's first partition
+  std::uint32_t index = 0;      ///< in that partition's tile, in its rim
 };
 
 struct ChunkLeaves {

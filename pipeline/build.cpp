@@ -77,6 +77,16 @@ void check_disk(const JobSize& job, const MemoryPlan& plan, const std::filesyste
   }
 }
 
+/// A replaced output is removed, and the input must not go with it.
+void check_apart(const Config& config, storage::FileSystem& files) {
+  const std::filesystem::path input = files.canonical(config.input);
+  const std::filesystem::path output = files.canonical(config.output);
+  const auto [end, rest] = std::mismatch(output.begin(), output.end(), input.begin(), input.end());
+  if (end == output.end()) {
+    throw Error(ErrorCode::usage, fmt::format("the input {} lies in the output {}", input.string(), output.string()));
+  }
+}
+
 std::uint64_t checksum_of_file(storage::FileSystem& files, const std::filesystem::path& path, const CancelToken& cancel) {
   const auto file = files.open(path);
   storage::Checksum sum;
@@ -114,6 +124,7 @@ BuildReport build_hierarchy(const Config& config, bool force, BuildEnvironment e
   const tbb::global_control thread_limit(tbb::global_control::max_allowed_parallelism, threads);
 
   // Everything that can be refused is refused before anything is written.
+  check_apart(config, files);
   std::unique_ptr<mesh_io::MeshSource> source = mesh_io::open_mesh(files, config.input);
   const Tree tree = plan_tree(config, source->description().vertex_count);
   const JobSize job = job_size(config, source->description(), tree, threads);

@@ -17,12 +17,11 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Beside the hierarchy, and unlike that of another run of verify. Nothing else depends on chance.
-fs::path scratch_path(const fs::path& directory) {
+fs::path scratch_path(storage::FileSystem& files, const fs::path& directory) {
   std::random_device chance;
-  const fs::path whole = fs::absolute(directory).lexically_normal();
-  const fs::path named = whole.has_filename() ? whole : whole.parent_path();
-  return named.parent_path() /
-         fmt::format(".{}.meshhier-verify-{:08x}", named.filename().string(), chance());
+  const fs::path whole = files.canonical(directory);
+  return whole.parent_path() /
+         fmt::format(".{}.meshhier-verify-{:08x}", whole.filename().string(), chance());
 }
 
 /// Nothing if manifest or index are broken: no more can be said of the rest then.
@@ -103,7 +102,7 @@ VerifyReport verify_hierarchy(storage::FileSystem& files, const fs::path& direct
   ProblemList problems;
   if (const auto reader = open_hierarchy(files, directory, problems)) {
     storage::MemoryPool pool(options.memory_budget / 8);
-    storage::ScratchFile scratch(files, scratch_path(directory), pool);
+    storage::ScratchFile scratch(files, scratch_path(files, directory), pool);
     TileStore tiles(*reader, options.memory_budget / 4, problems);
     verify_all(
         {files, *reader, options, scratch, tiles, problems, report.checks, progress, cancel});

@@ -42,8 +42,8 @@ bool has_order(const std::vector<Triangle>& triangles, bool unique) {
   return true;
 }
 
-/// Own vertices of border triangles are on the rim (which may hold more: triangles that a neighbour's contraction
-/// made degenerate are gone); every ghost is in a border triangle.
+/// Own vertices of border triangles are on the rim (which may hold more: triangles that a
+/// neighbour's contraction made degenerate are gone); every ghost is in a border triangle.
 bool has_sound_rim(const TileMesh& mesh) {
   std::vector<bool> used(mesh.vertices.size());
   for (const Triangle& t : mesh.border) {
@@ -121,8 +121,9 @@ void verify_tile(const VerifyJob& job, const TileRecord& record, const Published
                    record.target_count);
   problems.require(has_order(mesh.interior, !partition) && has_order(mesh.border, !partition),
                    "triangles are not in order, degenerate or repeated");
-  problems.require(has_sound_rim(mesh),
-                   "a border triangle has an own corner off the rim, or a ghost has no border triangle");
+  problems.require(
+      has_sound_rim(mesh),
+      "a border triangle has an own corner off the rim, or a ghost has no border triangle");
   const std::uint32_t drawn = drawn_border_count(tree, tile);
   problems.require(drawn == record.drawn_border_count,
                    "draws {} border triangles in its level's cut, the index says {}", drawn,

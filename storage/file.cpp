@@ -84,7 +84,18 @@ class PosixFileSystem final : public FileSystem {
 
   bool exists(const std::filesystem::path& path) override {
     std::error_code error;
-    return std::filesystem::exists(std::filesystem::symlink_status(path, error));
+    const std::filesystem::file_status status = std::filesystem::symlink_status(path, error);
+    if (status.type() == std::filesystem::file_type::not_found) return false;
+    if (error) fail("look at", path, error.value());
+    return true;
+  }
+
+  std::filesystem::path canonical(const std::filesystem::path& path) override {
+    std::error_code error;
+    std::filesystem::path result = std::filesystem::absolute(path, error);
+    if (!error) result = std::filesystem::weakly_canonical(result, error);
+    if (error) fail("resolve", path, error.value());
+    return result;
   }
 
   void make_directories(const std::filesystem::path& path) override {

@@ -62,6 +62,8 @@ class FileSystem {
   virtual std::unique_ptr<File> create(const std::filesystem::path& path) = 0;
 
   virtual bool exists(const std::filesystem::path& path) = 0;
+  /// The absolute path without links and dots, as far as it exists.
+  virtual std::filesystem::path canonical(const std::filesystem::path& path) = 0;
   virtual void make_directories(const std::filesystem::path& path) = 0;
   /// Removes a file or a whole tree; nothing happens if it is not there.
   virtual void remove_all(const std::filesystem::path& path) = 0;

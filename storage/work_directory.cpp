@@ -15,17 +15,21 @@ WorkDirectory::WorkDirectory(FileSystem& files, std::filesystem::path output, bo
       path_(work_path(output_)),
       temporary_(temporary_path(path_)),
       replace_(replace) {
-  if (files_.exists(output_)) {
-    if (!replace_) {
-      throw Error(ErrorCode::exists, fmt::format("{} is already there; --force replaces it", output_.string()));
-    }
-    if (!files_.exists(manifest_path(output_))) {
-      throw Error(ErrorCode::exists, fmt::format("{} is not a hierarchy (it has no {}), so --force does not replace it",
-                                                 output_.string(), manifest_path({}).string()));
-    }
-  }
+  check_output("is already there");
   files_.remove_all(path_);
   files_.make_directories(temporary_);
+}
+
+bool WorkDirectory::check_output(const char* state) const {
+  if (!files_.exists(output_)) return false;
+  if (!replace_) {
+    throw Error(ErrorCode::exists, fmt::format("{} {}; --force replaces it", output_.string(), state));
+  }
+  if (!files_.exists(manifest_path(output_))) {
+    throw Error(ErrorCode::exists, fmt::format("{} is not a hierarchy (it has no {}), so --force does not replace it",
+                                               output_.string(), manifest_path({}).string()));
+  }
+  return true;
 }
 
 WorkDirectory::~WorkDirectory() {
@@ -40,20 +44,22 @@ void WorkDirectory::publish() {
   files_.remove_all(temporary_);
   files_.sync_tree(path_);
   const std::filesystem::path old = replaced_path(output_);
-  files_.remove_all(old);
-  const bool replacing = files_.exists(output_);
-  if (replacing && !replace_) {
-    throw Error(ErrorCode::exists, fmt::format("{} appeared during the build", output_.string()));
+  const bool replacing = check_output("appeared during the build");
+  if (replacing) {
+    files_.remove_all(old);
+    files_.rename(output_, old);
   }
-  if (replacing) files_.rename(output_, old);
+  bool renamed = false;
   try {
     files_.rename(path_, output_);
+    renamed = true;
+    files_.sync_tree(output_);
   } catch (const Error&) {
+    if (renamed) files_.rename(output_, path_);
     if (replacing) files_.rename(old, output_);
     throw;
   }
   published_ = true;
-  files_.sync_tree(output_);
   files_.remove_all(old);
 }
 

@@ -24,6 +24,10 @@ class WorkDirectory {
   void publish();
 
  private:
+  /// Whether there is an output; throws Error(exists) if it may not be replaced.
+  /// `state` says how it comes to be there.
+  bool check_output(const char* state) const;
+
   FileSystem& files_;
   std::filesystem::path output_;
   std::filesystem::path path_;

@@ -51,6 +51,9 @@ class Unpacker {
     bytes_ = bytes_.subspan(count * sizeof(T));
     return values;
   }
+  void finish() const {
+    if (!bytes_.empty()) throw Error(ErrorCode::internal, "a work tile has bytes too many");
+  }
 
  private:
   std::span<const std::byte> bytes_;
@@ -113,6 +116,7 @@ WorkTile decode_work_tile(std::span<const std::byte> bytes, int channels) {
                                  : get_triangles<std::uint32_t>(unpacker, counts.interior);
   tile.border = narrow(counts) ? get_triangles<std::uint16_t>(unpacker, counts.border)
                                : get_triangles<std::uint32_t>(unpacker, counts.border);
+  unpacker.finish();
   return tile;
 }
 
@@ -136,6 +140,7 @@ Rim decode_rim(std::span<const std::byte> bytes, int channels) {
   rim.vertices.positions = unpacker.get<Vec3f>(count);
   rim.vertices.attributes = unpacker.get<float>(count * static_cast<std::size_t>(channels));
   rim.radii = unpacker.get<float>(count);
+  unpacker.finish();
   return rim;
 }
 

@@ -25,6 +25,7 @@ class MemoryFiles final : public storage::FileSystem {
   std::unique_ptr<storage::File> open(const std::filesystem::path& path) override;
   std::unique_ptr<storage::File> create(const std::filesystem::path& path) override;
   bool exists(const std::filesystem::path& path) override;
+  std::filesystem::path canonical(const std::filesystem::path& path) override { return path; }
   void make_directories(const std::filesystem::path&) override {}
   void remove_all(const std::filesystem::path& path) override;
   void rename(const std::filesystem::path& from, const std::filesystem::path& to) override;

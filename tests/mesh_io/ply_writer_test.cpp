@@ -151,6 +151,7 @@ TEST(PlyWriter, AFullDiskIsAnIoError) {
       return std::make_unique<FullFile>();
     }
     bool exists(const std::filesystem::path&) override { return false; }
+    std::filesystem::path canonical(const std::filesystem::path& path) override { return path; }
     void make_directories(const std::filesystem::path&) override {}
     void remove_all(const std::filesystem::path&) override {}
     void rename(const std::filesystem::path&, const std::filesystem::path&) override {}

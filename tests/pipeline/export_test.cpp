@@ -5,6 +5,7 @@
 #include "pipeline/cut.h"
 #include "storage/layout.h"
 #include "tests/pipeline/sample_hierarchy.h"
+#include "tests/support/faulty_file_system.h"
 #include "tests/support/meshes.h"
 
 #include <algorithm>
@@ -74,52 +75,6 @@ std::vector<std::vector<double>> surface(const Loaded& mesh, std::size_t channel
   std::sort(triangles.begin(), triangles.end());
   return triangles;
 }
-
-/// A disk that takes so many bytes and no more.
-class FullDisk final : public storage::FileSystem {
- public:
-  explicit FullDisk(std::uint64_t room) : room_(room) {}
-  std::unique_ptr<storage::File> open(const fs::path& path) override { return real_->open(path); }
-  std::unique_ptr<storage::File> create(const fs::path& path) override {
-    return std::make_unique<Limited>(real_->create(path), room_);
-  }
-  bool exists(const fs::path& path) override { return real_->exists(path); }
-  void make_directories(const fs::path& path) override { real_->make_directories(path); }
-  void remove_all(const fs::path& path) override { real_->remove_all(path); }
-  void rename(const fs::path& from, const fs::path& to) override { real_->rename(from, to); }
-  void sync_tree(const fs::path& directory) override { real_->sync_tree(directory); }
-  std::uint64_t free_bytes(const fs::path& directory) override {
-    return real_->free_bytes(directory);
-  }
-
- private:
-  class Limited final : public storage::File {
-   public:
-    Limited(std::unique_ptr<storage::File> file, std::uint64_t& room)
-        : File(file->path()), file_(std::move(file)), room_(room) {}
-    std::uint64_t size() const override { return file_->size(); }
-    void sync() override { file_->sync(); }
-
-   protected:
-    std::size_t read_some(std::uint64_t offset, std::span<std::byte> bytes) const override {
-      return file_->read_at(offset, bytes);
-    }
-    std::size_t write_some(std::uint64_t offset, std::span<const std::byte> bytes) override {
-      if (bytes.size() > room_)
-        throw Error(ErrorCode::io, "no space left");
-      room_ -= bytes.size();
-      file_->write_at(offset, bytes);
-      return bytes.size();
-    }
-
-   private:
-    std::unique_ptr<storage::File> file_;
-    std::uint64_t& room_;
-  };
-
-  std::unique_ptr<storage::FileSystem> real_ = storage::make_posix_file_system();
-  std::uint64_t room_;
-};
 
 class ExportTest : public testing::Test {
  protected:
@@ -279,7 +234,8 @@ TEST_F(ExportTest, FailureLeavesTheOldOutputAndNothingElse) {
   const tests::Sample sample = publish(tests::sphere(30000), {6, 50, false, false, {}});
   std::ofstream(output()) << "old";
   for (std::uint64_t room : {0, 1000, 100000}) {
-    FullDisk files(room);
+    tests::FaultyFileSystem files;
+    files.limit_room(room);
     EXPECT_THROW(run_on(files, sample.tree.depth(), 0), Error) << room;
     EXPECT_THAT(names(), testing::ElementsAre("a.hier", "out.ply"));
     EXPECT_EQ(bytes_of(output()), "old");

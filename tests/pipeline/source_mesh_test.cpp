@@ -251,7 +251,7 @@ TEST_F(SourceMeshTest, ABrokenVertexIsNamed) {
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::input);
     EXPECT_THAT(error.what(), HasSubstr("mesh.ply"));
-    EXPECT_THAT(error.what(), HasSubstr("line 10"));
+    EXPECT_THAT(error.what(), HasSubstr("line 11"));
   }
 }
 

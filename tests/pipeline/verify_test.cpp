@@ -114,12 +114,14 @@ TEST_F(VerifyTest, SoundHierarchiesOfAllKindsPass) {
 }
 
 TEST_F(VerifyTest, ResultDoesNotDependOnTheBudget) {
-  tests::Sample sample = make(tests::open_grid(60, 50, 0.2F), {13, 60, true, false, {}});
+  tests::Sample sample = make(tests::open_grid(450, 400, 0.2F), {13, 2000, false, false, {}});
   VerifyOptions options;
   options.input = mesh_path();
   const VerifyReport large = verify(sample, options);
-  options.memory_budget = 1 << 16;  // a tile in the cache, all sorts and tables spilled
+  options.memory_budget = 1 << 16;  // one tile in the cache, the table of hashes spilled
+  const std::uint64_t written = files_->counters().bytes_written;
   const VerifyReport small = verify_again(options);
+  EXPECT_GT(files_->counters().bytes_written, written);
   EXPECT_THAT(small.problems, IsEmpty());
   EXPECT_EQ(small.checks, large.checks);
   for (const auto& entry : fs::directory_iterator(directory_.path())) {
@@ -269,6 +271,33 @@ TEST_F(VerifyTest, AWrongDrawnCountIsFound) {
 TEST_F(VerifyTest, MoreVerticesThanAskedForAreFound) {
   const auto problems = problems_after([](auto& s) { s.record(node(2, 0)).target_count = 39; });
   EXPECT_THAT(problems, Contains(HasSubstr("40 vertices, more than the 39 asked for")));
+}
+
+TEST_F(VerifyTest, ARimWithMoreThanItsBorderTrianglesUseIsSound) {
+  const auto problems = problems_after([](auto& s) {
+    for (NodeId where : {node(1, 0), node(3, 3)}) {
+      s.tile(where).mesh.rim_count = ++s.record(where).rim_count;
+    }
+  });
+  EXPECT_THAT(problems, IsEmpty());
+}
+
+TEST_F(VerifyTest, AGhostOfNoBorderTriangleIsFound) {
+  const auto problems = problems_after([](auto& s) {
+    PublishedTile& tile = s.tile(node(3, 3));
+    const auto ghost = static_cast<TileVertex>(tile.mesh.own_count);
+    const auto gone = std::erase_if(tile.mesh.border, [&](const Triangle& t) {
+      return std::find(t.begin(), t.end(), ghost) != t.end();
+    });
+    s.record(node(3, 3)).border_count -= static_cast<std::uint32_t>(gone);
+  });
+  EXPECT_THAT(problems, Contains(HasSubstr("or a ghost has no border triangle")));
+}
+
+TEST_F(VerifyTest, AnOwnCornerOffTheRimIsFound) {
+  const auto problems = problems_after(
+      [](auto& s) { s.tile(node(2, 2)).mesh.rim_count = --s.record(node(2, 2)).rim_count; });
+  EXPECT_THAT(problems, Contains(HasSubstr("tiles/02/000002.glb: ")));
 }
 
 TEST_F(VerifyTest, AMovedGhostIsFound) {

@@ -267,6 +267,26 @@ TEST_F(FileTest, APathThatCannotBeLookedAtIsAnErrorNotAbsent) {
   EXPECT_EQ(error.code(), ErrorCode::io);
 }
 
+TEST_F(FileTest, CanonicalPathsHaveNoLinksAndDotsAsFarAsTheyExist) {
+  files_->make_directories(directory_ / "real");
+  std::filesystem::create_symlink(directory_ / "real", directory_ / "link");
+  const std::filesystem::path real = std::filesystem::canonical(directory_) / "real";
+  EXPECT_EQ(files_->canonical(directory_ / "real"), real);
+  EXPECT_EQ(files_->canonical(directory_ / "link"), real);
+  EXPECT_EQ(files_->canonical(directory_ / "." / "link" / ".." / "real"), real);
+  EXPECT_EQ(files_->canonical(directory_ / "link" / "not" / "yet"), real / "not" / "yet");
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(directory_);
+  EXPECT_EQ(files_->canonical("link/new"), real / "new");
+  std::filesystem::current_path(before);
+}
+
+TEST_F(FileTest, APathThatCannotBeResolvedIsAnError) {
+  std::filesystem::create_symlink(path_, path_);  // a link to itself
+  for (const auto& path : {path_, path_ / "below", std::filesystem::path()})
+    EXPECT_EQ(error_of([&] { (void)files_->canonical(path); }).code(), ErrorCode::io) << path;
+}
+
 TEST_F(FileTest, FreeBytesAreThoseOfTheDisk) {
   EXPECT_GT(files_->free_bytes(directory_), 0U);
   EXPECT_LE(files_->free_bytes(directory_), std::filesystem::space(directory_).capacity);

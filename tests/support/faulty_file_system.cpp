@@ -134,6 +134,10 @@ bool FaultyFileSystem::exists(const std::filesystem::path& path) {
   return real_->exists(path);
 }
 
+std::filesystem::path FaultyFileSystem::canonical(const std::filesystem::path& path) {
+  return real_->canonical(path);
+}
+
 void FaultyFileSystem::make_directories(const std::filesystem::path& path) {
   strike(Call::make_directories, path);
   real_->make_directories(path);

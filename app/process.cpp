@@ -1,7 +1,9 @@
-#include "app/signals.h"
+#include "app/process.h"
 
 #include <atomic>
 #include <csignal>
+
+#include <unistd.h>
 
 namespace meshhier::app {
 
@@ -40,6 +42,10 @@ void cancel_on_signals(pipeline::CancelToken& token) {
   handle(SIGTERM);
   if (!is_ignored(SIGHUP))
     handle(SIGHUP);
+}
+
+bool error_output_is_terminal() {
+  return isatty(STDERR_FILENO) == 1;
 }
 
 }  // namespace meshhier::app

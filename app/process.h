@@ -1,4 +1,4 @@
-// Ctrl-C and its relatives, turned into a cancel token.
+// What the process is to the system: Ctrl-C and its relatives turned into a cancel token, and the terminal.
 #pragma once
 
 #include "pipeline/cancel.h"
@@ -9,5 +9,8 @@ namespace meshhier::app {
 /// cancels `token`, which must live to the end of the process; the second kills the process at
 /// once.
 void cancel_on_signals(pipeline::CancelToken& token);
+
+/// Whether standard error is a terminal.
+bool error_output_is_terminal();
 
 }  // namespace meshhier::app

@@ -1,0 +1,467 @@
+// Who may use whom: the rules of docs/architecture.md, checked on the #include lines of all
+// sources.
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace meshhier {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+/// Folders with code that ends in the program; tests are free to use anything.
+constexpr std::array kFolders = {"app",     "bench",     "cluster_simplify", "hierarchy", "mesh_io",
+                                 "outline", "partition", "pipeline",         "storage"};
+
+struct Include {
+  std::string name;
+  bool quoted = false;
+  std::size_t line = 0;
+};
+
+struct Source {
+  std::string path;  ///< "folder/file.h"
+  std::vector<std::string> lines;
+  std::vector<Include> includes;
+
+  std::string folder() const { return path.substr(0, path.find('/')); }
+};
+
+std::string at(const Source& source, std::size_t line) {
+  return source.path + ":" + std::to_string(line);
+}
+
+/// `#include "x"` and `#  include <x>`, with any spaces.
+bool parse_include(std::string_view line, Include& include) {
+  const auto skip = [&](std::size_t from) { return line.find_first_not_of(" \t", from); };
+  std::size_t place = skip(0);
+  if (place == std::string_view::npos || line[place] != '#')
+    return false;
+  place = skip(place + 1);
+  if (place == std::string_view::npos || !line.substr(place).starts_with("include"))
+    return false;
+  place = skip(place + std::string_view("include").size());
+  if (place == std::string_view::npos || (line[place] != '"' && line[place] != '<'))
+    return false;
+  include.quoted = line[place] == '"';
+  const std::size_t end = line.find(include.quoted ? '"' : '>', place + 1);
+  include.name = line.substr(place + 1, end - place - 1);
+  return end != std::string_view::npos;
+}
+
+Source make_source(std::string path, std::vector<std::string> lines) {
+  Source source{std::move(path), std::move(lines), {}};
+  for (std::size_t i = 0; i < source.lines.size(); ++i) {
+    Include include{{}, false, i + 1};
+    if (parse_include(source.lines[i], include))
+      source.includes.push_back(include);
+  }
+  return source;
+}
+
+std::vector<Source> read_sources() {
+  const fs::path root = MESHHIER_SOURCE_DIR;
+  std::vector<Source> sources;
+  for (const char* folder : kFolders) {
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+      const std::string extension = entry.path().extension().string();
+      if (extension != ".h" && extension != ".cpp")
+        continue;
+      std::ifstream stream(entry.path());
+      std::vector<std::string> lines;
+      for (std::string line; std::getline(stream, line);)
+        lines.push_back(line);
+      sources.push_back(
+          make_source(entry.path().lexically_relative(root).string(), std::move(lines)));
+    }
+  }
+  std::ranges::sort(sources, {}, &Source::path);
+  return sources;
+}
+
+const std::vector<Source>& sources() {
+  static const std::vector<Source> all = read_sources();
+  return all;
+}
+
+// ---- the rules -----------------------------------------------------------------------------
+
+/// The folders whose headers a folder may include, besides its own.
+const std::map<std::string, std::set<std::string>>& allowed_folders() {
+  static const std::set<std::string> below_pipeline = {"cluster_simplify", "hierarchy", "mesh_io",
+                                                       "outline",          "partition", "storage"};
+  static const std::map<std::string, std::set<std::string>> rules = {
+      {"hierarchy", {}},
+      {"storage", {"hierarchy"}},
+      {"mesh_io", {"hierarchy"}},
+      {"partition", {"hierarchy"}},
+      {"cluster_simplify", {"hierarchy"}},
+      {"outline", {"hierarchy"}},
+      {"pipeline", below_pipeline},
+      {"app", {"hierarchy", "pipeline", "storage"}},
+      {"bench",
+       {"cluster_simplify", "hierarchy", "mesh_io", "outline", "partition", "pipeline",
+        "storage"}}};
+  return rules;
+}
+
+/// What all folders but hierarchy/ may use of storage/: the I/O seam and what stands on it alone.
+bool is_seam(const std::string& header) {
+  static const std::set<std::string> seam = {"storage/file.h", "storage/spool.h", "storage/hash.h",
+                                             "storage/blob_store.h"};
+  return seam.contains(header);
+}
+
+using Complaints = std::vector<std::string>;
+using Rule = std::function<std::string(const Source&, const Include&)>;  ///< "" if all is well
+
+Complaints check(const std::vector<Source>& all, const Rule& rule) {
+  Complaints complaints;
+  for (const Source& source : all) {
+    for (const Include& include : source.includes) {
+      const std::string complaint = rule(source, include);
+      if (!complaint.empty())
+        complaints.push_back(at(source, include.line) + ": " + complaint);
+    }
+  }
+  return complaints;
+}
+
+std::string check_folder(const Source& source, const Include& include) {
+  if (!include.quoted)
+    return "";
+  const std::string from = source.folder();
+  const std::string to = include.name.substr(0, include.name.find('/'));
+  if (to == from || allowed_folders().at(from).contains(to))
+    return "";
+  if (from != "hierarchy" && is_seam(include.name))
+    return "";
+  return from + "/ may not include " + include.name;
+}
+
+std::string check_exists(const Source&, const Include& include) {
+  if (!include.quoted || fs::exists(fs::path(MESHHIER_SOURCE_DIR) / include.name))
+    return "";
+  return include.name + " is not a path from the project's root";
+}
+
+/// Headers of others, by how their names start, and who may include them.
+struct ThirdParty {
+  std::string prefix;
+  std::function<bool(const Source&)> may_use;
+};
+
+const std::vector<ThirdParty>& third_parties() {
+  const auto in = [](std::set<std::string> folders) {
+    return [folders](const Source& source) { return folders.contains(source.folder()); };
+  };
+  static const std::vector<ThirdParty> rules = {
+      {"tbb/",
+       [](const Source& s) {
+         return s.folder() == "pipeline" || s.path.starts_with("partition/external_sort") ||
+                s.path.starts_with("partition/renumber");
+       }},
+      {"oneapi/", [](const Source&) { return false; }},
+      {"nlohmann/", in({"pipeline", "storage", "app", "bench"})},
+      {"CLI/", in({"app", "bench"})},
+      {"CGAL/", in({"partition", "cluster_simplify", "bench"})},
+      {"benchmark/", in({"bench"})},
+      {"xxhash.h", [](const Source& s) { return s.path == "storage/hash.cpp"; }},
+      {"zlib.h", in({"storage"})},
+      {"fmt/", [](const Source& s) {
+         return s.folder() != "hierarchy" && s.folder() != "outline" &&
+                s.folder() != "cluster_simplify" && s.folder() != "partition";
+       }}};
+  return rules;
+}
+
+std::string check_third_party(const Source& source, const Include& include) {
+  for (const ThirdParty& party : third_parties()) {
+    if (!include.quoted && include.name.starts_with(party.prefix) && !party.may_use(source))
+      return "<" + include.name + "> is not for this file";
+  }
+  return "";
+}
+
+/// System calls have their one place; what else touches the system is listed here.
+std::string check_system(const Source& source, const Include& include) {
+  static const std::set<std::string> system = {"unistd.h",  "fcntl.h", "dirent.h",  "poll.h",
+                                               "pthread.h", "spawn.h", "termios.h", "signal.h",
+                                               "dlfcn.h",   "errno.h", "malloc.h"};
+  static const std::map<std::string, std::set<std::string>> exceptions = {
+      {"pipeline/memory_plan.cpp", {"malloc.h"}}, {"app/process.cpp", {"csignal", "signal.h", "unistd.h"}}};
+  const bool is_system =
+      !include.quoted && (system.contains(include.name) || include.name.starts_with("sys/") ||
+                          include.name == "csignal");
+  if (!is_system || source.path == "storage/file.cpp")
+    return "";
+  const auto exception = exceptions.find(source.path);
+  if (exception != exceptions.end() && exception->second.contains(include.name))
+    return "";
+  return "<" + include.name + "> belongs into storage/file.cpp";
+}
+
+/// The names of the standard library have no dot and no slash.
+std::string check_only_standard(const Source& source, const Include& include) {
+  if (source.folder() != "hierarchy" || include.quoted ||
+      include.name.find_first_of("./") == std::string::npos)
+    return "";
+  return "hierarchy/ may not include <" + include.name + ">";
+}
+
+/// Kernels have no threads and touch no files.
+std::string check_kernel(const Source& source, const Include& include) {
+  static const std::set<std::string> folders = {"hierarchy", "outline", "cluster_simplify"};
+  static const std::set<std::string> effects = {"thread",     "mutex",   "atomic",
+                                                "future",     "fstream", "iostream",
+                                                "filesystem", "random",  "chrono"};
+  if (!folders.contains(source.folder()) || include.quoted || !effects.contains(include.name))
+    return "";
+  return "<" + include.name + "> has no place in a kernel";
+}
+
+/// The line without its comment and without what stands in quotes, as far as one line tells.
+std::string code_of(const std::string& line) {
+  std::string code;
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '\\') {
+      ++i;
+    } else if (line[i] == '"') {
+      quoted = !quoted;
+    } else if (!quoted && line.compare(i, 2, "//") == 0) {
+      break;
+    } else if (!quoted) {
+      code += line[i];
+    }
+  }
+  return code;
+}
+
+bool is_word(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+}
+
+/// Whether `word` stands in `code` as a whole word, perhaps with a namespace before it.
+bool has_word(const std::string& code, const std::string& word) {
+  for (std::size_t i = code.find(word); i != std::string::npos; i = code.find(word, i + 1)) {
+    const bool starts = i == 0 || (!is_word(code[i - 1]) && code[i - 1] != '.' &&
+                                   (code[i - 1] != '>' || i < 2 || code[i - 2] != '-'));
+    const std::size_t end = i + word.size();
+    if (starts && (!is_word(word.back()) || end == code.size() || !is_word(code[end])))
+      return true;
+  }
+  return false;
+}
+
+/// Libraries throw; only programs print and exit.
+Complaints check_quiet(const std::vector<Source>& all) {
+  static const std::set<std::string> programs = {"app", "bench"};
+  Complaints complaints;
+  for (const Source& source : all) {
+    if (programs.contains(source.folder()))
+      continue;
+    for (std::size_t i = 0; i < source.lines.size(); ++i) {
+      const std::string code = code_of(source.lines[i]);
+      for (const char* word : {"cout", "cerr", "clog", "printf(", "fprintf(", "puts(", "fputs(",
+                               "perror(", "exit(", "_exit(", "quick_exit(", "abort("}) {
+        if (has_word(code, word))
+          complaints.push_back(at(source, i + 1) + ": a library does not use " + word);
+      }
+    }
+  }
+  return complaints;
+}
+
+/// Each circle of includes once, as the files it runs through.
+class Circles {
+ public:
+  explicit Circles(const std::vector<Source>& all) {
+    for (const Source& source : all) {
+      for (const Include& include : source.includes) {
+        if (include.quoted)
+          includes_[source.path].push_back(include);
+      }
+    }
+    for (const Source& source : all)
+      visit(source.path);
+  }
+  const Complaints& complaints() const { return complaints_; }
+
+ private:
+  void visit(const std::string& path) {
+    if (!finished_.contains(path)) {
+      way_.push_back(path);
+      for (const Include& include : includes_[path])
+        follow(include);
+      way_.pop_back();
+      finished_.insert(path);
+    }
+  }
+
+  void follow(const Include& include) {
+    const auto found = std::ranges::find(way_, include.name);
+    if (found == way_.end())
+      return visit(include.name);
+    std::string circle = way_.back() + ":" + std::to_string(include.line) + ": a circle: ";
+    for (auto file = found; file != way_.end(); ++file)
+      circle += *file + " -> ";
+    complaints_.push_back(circle + include.name);
+  }
+
+  std::map<std::string, std::vector<Include>> includes_;
+  std::set<std::string> finished_;
+  std::vector<std::string> way_;
+  Complaints complaints_;
+};
+
+// ---- the project keeps them ----------------------------------------------------------------
+
+TEST(ArchitectureTest, TheSourcesAreThere) {
+  EXPECT_GT(sources().size(), 50U) << "in " << MESHHIER_SOURCE_DIR;
+  for (const char* folder : kFolders) {
+    EXPECT_TRUE(std::ranges::any_of(sources(), [&](const Source& s) {
+      return s.folder() == folder;
+    })) << folder;
+  }
+}
+
+TEST(ArchitectureTest, EveryFolderWithSourcesHasItsRule) {
+  const std::set<std::string> known(kFolders.begin(), kFolders.end());
+  for (const auto& entry : fs::directory_iterator(MESHHIER_SOURCE_DIR)) {
+    const std::string name = entry.path().filename().string();
+    if (!entry.is_directory() || name == "tests" || name == "build" || name.starts_with('.'))
+      continue;
+    const bool has_sources = std::ranges::any_of(
+        fs::recursive_directory_iterator(entry.path()), [](const fs::directory_entry& file) {
+          return file.path().extension() == ".cpp" || file.path().extension() == ".h";
+        });
+    EXPECT_TRUE(!has_sources || known.contains(name)) << name << "/ has no rule in this test";
+  }
+}
+
+TEST(ArchitectureTest, FoldersUseOnlyWhatTheyMay) {
+  EXPECT_THAT(check(sources(), check_folder), IsEmpty());
+}
+
+TEST(ArchitectureTest, IncludesAreFromTheRoot) {
+  EXPECT_THAT(check(sources(), check_exists), IsEmpty());
+}
+
+TEST(ArchitectureTest, NoFileIncludesItselfInACircle) {
+  EXPECT_THAT(Circles(sources()).complaints(), IsEmpty());
+}
+
+TEST(ArchitectureTest, TheVocabularyNeedsTheStandardLibraryOnly) {
+  EXPECT_THAT(check(sources(), check_only_standard), IsEmpty());
+}
+
+TEST(ArchitectureTest, KernelsHaveNoSideEffects) {
+  EXPECT_THAT(check(sources(), check_kernel), IsEmpty());
+}
+
+TEST(ArchitectureTest, LibrariesOfOthersHaveTheirPlaces) {
+  EXPECT_THAT(check(sources(), check_third_party), IsEmpty());
+}
+
+TEST(ArchitectureTest, SystemCallsHaveOnePlace) {
+  EXPECT_THAT(check(sources(), check_system), IsEmpty());
+}
+
+TEST(ArchitectureTest, LibrariesNeitherPrintNorExit) {
+  EXPECT_THAT(check_quiet(sources()), IsEmpty());
+}
+
+TEST(ArchitectureTest, EverySourceIsOfALibraryOrProgram) {
+  for (const Source& source : sources()) {
+    if (!source.path.ends_with(".cpp"))
+      continue;
+    const fs::path list = fs::path(MESHHIER_SOURCE_DIR) / source.folder() / "CMakeLists.txt";
+    std::ifstream stream(list);
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    EXPECT_THAT(text, HasSubstr(source.path.substr(source.folder().size() + 1)))
+        << source.path << " is built by nobody";
+  }
+}
+
+// ---- the rules find what they are for ------------------------------------------------------
+
+Complaints complaints_about(const std::string& path, const std::string& line, const Rule& rule) {
+  return check({make_source(path, {"#pragma once", line})}, rule);
+}
+
+TEST(ArchitectureRuleTest, FolderRulesNameFileAndLine) {
+  EXPECT_THAT(complaints_about("outline/x.h", "#include \"partition/chunk.h\"", check_folder),
+              testing::ElementsAre("outline/x.h:2: outline/ may not include partition/chunk.h"));
+  EXPECT_THAT(complaints_about("hierarchy/x.h", "#include \"storage/file.h\"", check_folder),
+              SizeIs(1));
+  EXPECT_THAT(complaints_about("storage/x.h", "#include \"pipeline/build.h\"", check_folder),
+              SizeIs(1));
+  EXPECT_THAT(complaints_about("partition/x.h", "#include \"storage/layout.h\"", check_folder),
+              SizeIs(1));
+  EXPECT_THAT(complaints_about("pipeline/x.h", "#include \"app/process.h\"", check_folder),
+              SizeIs(1));
+  EXPECT_THAT(complaints_about("partition/x.h", " # include \"storage/spool.h\"", check_folder),
+              IsEmpty());
+}
+
+TEST(ArchitectureRuleTest, OtherRulesFindTheirOffenders) {
+  EXPECT_THAT(complaints_about("storage/x.cpp", "#include <tbb/task.h>", check_third_party),
+              SizeIs(1));
+  EXPECT_THAT(complaints_about("mesh_io/x.cpp", "#include <nlohmann/json.hpp>", check_third_party),
+              SizeIs(1));
+  EXPECT_THAT(complaints_about("pipeline/x.cpp", "#include <CLI/CLI.hpp>", check_third_party),
+              SizeIs(1));
+  EXPECT_THAT(complaints_about("mesh_io/x.cpp", "#include <sys/mman.h>", check_system), SizeIs(1));
+  EXPECT_THAT(complaints_about("pipeline/build.cpp", "#include <malloc.h>", check_system),
+              SizeIs(1));
+  EXPECT_THAT(complaints_about("hierarchy/x.h", "#include <fmt/format.h>", check_only_standard),
+              SizeIs(1));
+  EXPECT_THAT(complaints_about("outline/x.cpp", "#include <thread>", check_kernel), SizeIs(1));
+  EXPECT_THAT(complaints_about("storage/x.cpp", "#include \"file.h\"", check_exists), SizeIs(1));
+}
+
+TEST(ArchitectureRuleTest, PrintsAreFoundButNotInWordsOrStrings) {
+  const auto found = [](const std::string& line) {
+    return check_quiet({make_source("storage/x.cpp", {line})}).size();
+  };
+  EXPECT_EQ(found("  std::cout << 1;"), 1U);
+  EXPECT_EQ(found("  if (bad) exit(1);"), 1U);
+  EXPECT_EQ(found("  printf(\"x\");"), 1U);
+  EXPECT_EQ(found("  std::abort();"), 1U);
+  EXPECT_EQ(found("  const int account = on_exit(2);  // exit(1) is for programs"), 0U);
+  EXPECT_EQ(found("  fail(\"std::cout is full\");"), 0U);
+  EXPECT_EQ(found("  std::snprintf(text, 3, format);"), 0U);
+}
+
+TEST(ArchitectureRuleTest, CirclesAreFound) {
+  const std::vector<Source> ring = {make_source("a/a.h", {"#include \"a/b.h\""}),
+                                    make_source("a/b.h", {"", "#include \"a/c.h\""}),
+                                    make_source("a/c.h", {"#include \"a/a.h\""})};
+  EXPECT_THAT(Circles(ring).complaints(),
+              testing::ElementsAre("a/c.h:1: a circle: a/a.h -> a/b.h -> a/c.h -> a/a.h"));
+  const std::vector<Source> diamond = {
+      make_source("a/a.h", {"#include \"a/b.h\"", "#include \"a/c.h\""}),
+      make_source("a/b.h", {"#include \"a/d.h\""}), make_source("a/c.h", {"#include \"a/d.h\""})};
+  EXPECT_THAT(Circles(diamond).complaints(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace meshhier

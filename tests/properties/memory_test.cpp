@@ -1,0 +1,172 @@
+// Promise 5: peak resident memory stays under the budget. Measured on the real program, as the
+// system counts it.
+#include "bench/generator.h"
+#include "pipeline/size_text.h"
+#include "storage/file.h"
+#include "tests/pipeline/sample_hierarchy.h"
+
+#include <cerrno>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <spawn.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char** environ;
+
+namespace meshhier {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+constexpr int kBudgetExitCode = 6;
+
+std::uint64_t peak_bytes(const rusage& usage) {
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+struct Outcome {
+  int code = -1;  ///< 1000 + n after death by signal n
+  std::uint64_t peak_bytes = 0;
+  std::string messages;
+};
+
+class MemoryTest : public testing::Test {
+ protected:
+  void SetUp() override {
+#ifdef __SANITIZE_ADDRESS__
+    GTEST_SKIP() << "the sanitizer's own memory would be counted";
+#endif
+  }
+
+  fs::path path(const std::string& name) const {
+    return directory_.path() / name;
+  }
+
+  /// Writes a closed surface by stream: this process must stay small, because the system counts
+  /// what it holds at the start of a child as the child's.
+  void write_mesh(bench::SurfaceOptions options) {
+    const auto files = storage::make_posix_file_system();
+    bench::write_ply(*files, path("mesh.ply"), *bench::make_surface(options));
+  }
+
+  Outcome build(const std::string& budget, const std::vector<std::string>& settings = {}) {
+    std::ofstream(path("config.json")) << R"({"input": "mesh.ply", "output": "mesh.hier"})";
+    std::vector<std::string> words = {
+        MESHHIER_BINARY, "build", path("config.json").string(), "--force", "--progress",
+        "none",          "--set", "memory_budget=" + budget};
+    for (const std::string& setting : settings)
+      words.insert(words.end(), {"--set", setting});
+    return run(words);
+  }
+
+  Outcome run(std::vector<std::string>& words) {
+    std::vector<char*> arguments;
+    for (std::string& word : words)
+      arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, path("messages").c_str(),
+                                     O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    pid_t child = -1;
+    EXPECT_EQ(posix_spawn(&child, arguments[0], &actions, nullptr, arguments.data(), environ), 0);
+    posix_spawn_file_actions_destroy(&actions);
+    int status = 0;
+    rusage usage{};
+    while (wait4(child, &status, 0, &usage) == -1 && errno == EINTR) {
+    }
+    std::ifstream stream(path("messages"));
+    return {WIFSIGNALED(status) ? 1000 + WTERMSIG(status) : WEXITSTATUS(status),
+            peak_bytes(usage),
+            {std::istreambuf_iterator<char>(stream), {}}};
+  }
+
+  void expect_within(const std::string& budget, const std::vector<std::string>& settings = {}) {
+    rusage own{};
+    ASSERT_EQ(getrusage(RUSAGE_SELF, &own), 0);
+    const std::uint64_t limit = pipeline::parse_size(budget).value();
+    ASSERT_LT(peak_bytes(own), limit) << "this process is too large to measure another";
+    const Outcome outcome = build(budget, settings);
+    EXPECT_EQ(outcome.code, 0) << outcome.messages;
+    EXPECT_LT(outcome.peak_bytes, limit)
+        << "peak " << pipeline::rounded_size_text(outcome.peak_bytes) << " of " << budget;
+    RecordProperty("peak_bytes_of_" + budget, std::to_string(outcome.peak_bytes));
+  }
+
+  /// The least budget, as the refusal of a smaller one names it.
+  std::string least_budget() {
+    const Outcome outcome = build("1MiB");
+    EXPECT_EQ(outcome.code, kBudgetExitCode) << outcome.messages;
+    EXPECT_FALSE(fs::exists(path("mesh.hier")));
+    const std::string before = "at least ";
+    const std::size_t begin = outcome.messages.find(before);
+    if (begin == std::string::npos) {
+      ADD_FAILURE() << "no least budget in: " << outcome.messages;
+      return "64MiB";
+    }
+    const std::size_t start = begin + before.size();
+    return outcome.messages.substr(start, outcome.messages.find_first_of(" \n", start) - start);
+  }
+
+  tests::TemporaryDirectory directory_;
+};
+
+bench::SurfaceOptions million_vertices() {
+  bench::SurfaceOptions options;
+  options.triangles = 2'000'000;
+  return options;
+}
+
+TEST_F(MemoryTest, AMillionVerticesIn64MiB) {
+  write_mesh(million_vertices());
+  expect_within("64MiB");
+  expect_within("64MiB", {"threads=5"});
+  expect_within("64MiB", {"partition.vertices=500"});
+}
+
+TEST_F(MemoryTest, AMillionVerticesInMoreThanEnough) {
+  write_mesh(million_vertices());
+  expect_within("256MiB", {"threads=8"});
+}
+
+TEST_F(MemoryTest, AttributesAndDoubleCoordinatesInTheLeastBudget) {
+  bench::SurfaceOptions options = million_vertices();
+  options.normals = true;
+  options.colours = true;
+  options.alpha = true;
+  options.double_coordinates = true;
+  options.offset = {500123.25, 5812345.5, 100};
+  write_mesh(options);
+  expect_within(least_budget());
+}
+
+TEST_F(MemoryTest, TheLeastBudgetIsNamedAndWorks) {
+  write_mesh(million_vertices());
+  const std::string least = least_budget();
+  const std::uint64_t bytes = pipeline::parse_size(least).value_or(0);
+  ASSERT_GT(bytes, kMiB) << least;
+  const Outcome below = build(pipeline::exact_size_text(bytes - kMiB));
+  EXPECT_EQ(below.code, kBudgetExitCode);
+  EXPECT_THAT(below.messages, HasSubstr(least));
+  EXPECT_FALSE(fs::exists(path("mesh.hier")));
+  expect_within(least);
+}
+
+}  // namespace
+}  // namespace meshhier
