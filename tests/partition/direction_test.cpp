@@ -218,9 +218,9 @@ TEST(Direction, ShortestCutDoesNotDependOnTheLengthOfCandidates) {
 
 TEST(Direction, OfEqualCutsTheFirstCandidateIsTaken) {
   const tests::TestMesh mesh = tests::open_grid(30, 30);
-  EXPECT_EQ(shortest_cut(mesh, {{1, 0, 0}, {-1, 0, 0}, {1, 0, 0}}), (Vec3d{1, 0, 0}));
+  EXPECT_EQ(shortest_cut(mesh, {{1, 0, 0}, {2, 0, 0}, {1, 0, 0}}), (Vec3d{1, 0, 0}));
   const std::vector<Vec3f> points = box_points(10, {1, 1, 1});
-  EXPECT_EQ(shortest_cut_direction(with_ids(points), {}, 0.5, 1, kAxes), kAxes[0]);  // nothing is cut at all
+  EXPECT_EQ(shortest_cut_direction(with_ids(points), {}, 0.5, 1, kAxes), kAxes[0]);
 }
 
 TEST(Direction, ShortestCutHoldsAtAnyScale) {

@@ -117,8 +117,9 @@ TEST_F(VerifyTest, ResultDoesNotDependOnTheBudget) {
   tests::Sample sample = make(tests::open_grid(450, 400, 0.2F), {13, 2000, false, false, {}});
   VerifyOptions options;
   options.input = mesh_path();
+  options.cuts = 5;
   const VerifyReport large = verify(sample, options);
-  options.memory_budget = 1 << 16;  // one tile in the cache, the table of hashes spilled
+  options.memory_budget = 4 << 20;  // one tile in the cache, the table of hashes spilled
   const std::uint64_t written = files_->counters().bytes_written;
   const VerifyReport small = verify_again(options);
   EXPECT_GT(files_->counters().bytes_written, written);

@@ -306,6 +306,16 @@ TEST_P(EveryFault, LeavesNothingBesideItUnlessRemovingItselfFails) {
   }
 }
 
+TEST_P(EveryFault, ThatIsToldLeavesTheOutputAsItWas) {
+  const std::string before = GetParam() ? "old" : "";
+  for (const Call call : {Call::make_directories, Call::rename, Call::sync_tree}) {
+    for (std::uint64_t n = 1; build_with_fault(call, n); ++n) {
+      EXPECT_TRUE(threw_);
+      EXPECT_EQ(hierarchy_at(output_), before) << "kind " << static_cast<int>(call) << ", " << n;
+    }
+  }
+}
+
 TEST_P(EveryFault, IsForgottenByTheNextBuild) {
   for (const Call call :
        {Call::make_directories, Call::remove_all, Call::rename, Call::sync_tree}) {
