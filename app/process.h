@@ -1,4 +1,5 @@
-// What the process is to the system: Ctrl-C and its relatives turned into a cancel token, and the terminal.
+// What the process is to the system: Ctrl-C and its relatives turned into a cancel token, and the
+// terminal.
 #pragma once
 
 #include "pipeline/cancel.h"

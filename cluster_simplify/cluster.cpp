@@ -1,17 +1,17 @@
 #include "cluster_simplify/cluster.h"
 
+#include "cluster_simplify/kd_cells.h"
+#include "cluster_simplify/quadric.h"
+
 #include <algorithm>
 #include <limits>
 #include <vector>
 
-#include "cluster_simplify/kd_cells.h"
-#include "cluster_simplify/quadric.h"
-
 namespace meshhier::cluster_simplify {
 namespace {
 
-// Pull towards the mean as a part of the quadric's curvature: small enough to keep sharp features, large enough
-// that noise on flat ground does not throw points sideways (DESIGN: 10^-3 w).
+// Pull towards the mean as a part of the quadric's curvature: small enough to keep sharp features,
+// large enough that noise on flat ground does not throw points sideways (DESIGN: 10^-3 w).
 constexpr double kMeanPull = 1e-3;
 
 /// Weighted means of positions and attributes, one per cell, over the original vertices.
@@ -20,7 +20,8 @@ struct CellMeans {
   std::vector<double> attributes;
 };
 
-CellMeans means_of(const BuildTile& joined, const std::vector<std::uint32_t>& cell_of, std::uint32_t cell_count) {
+CellMeans means_of(const BuildTile& joined, const std::vector<std::uint32_t>& cell_of,
+                   std::uint32_t cell_count) {
   const auto channels = static_cast<std::size_t>(joined.mesh.vertices.channels);
   CellMeans means{std::vector<Vec3d>(cell_count), std::vector<double>(cell_count * channels)};
   std::vector<double> weights(cell_count);
@@ -28,13 +29,16 @@ CellMeans means_of(const BuildTile& joined, const std::vector<std::uint32_t>& ce
     const double weight = joined.history.weights[i];
     const std::uint32_t cell = cell_of[i];
     weights[cell] += weight;
-    means.positions[cell] = means.positions[cell] + to_double(joined.mesh.vertices.positions[i]) * weight;
+    means.positions[cell] =
+        means.positions[cell] + to_double(joined.mesh.vertices.positions[i]) * weight;
     const auto values = joined.mesh.vertices.attributes_of(i);
-    for (std::size_t k = 0; k < channels; ++k) means.attributes[cell * channels + k] += weight * double{values[k]};
+    for (std::size_t k = 0; k < channels; ++k)
+      means.attributes[cell * channels + k] += weight * double{values[k]};
   }
   for (std::uint32_t cell = 0; cell < cell_count; ++cell) {
     means.positions[cell] = means.positions[cell] * (1 / weights[cell]);
-    for (std::size_t k = 0; k < channels; ++k) means.attributes[cell * channels + k] /= weights[cell];
+    for (std::size_t k = 0; k < channels; ++k)
+      means.attributes[cell * channels + k] /= weights[cell];
   }
   return means;
 }
@@ -54,21 +58,26 @@ std::vector<Quadric> quadrics_of(const BuildTile& joined, const std::vector<std:
     }
     for (int k = 0; k < 3; ++k) {
       const bool repeated = (k > 0 && cell[k] == cell[0]) || (k > 1 && cell[k] == cell[1]);
-      if (cell[k] == kNoCell || repeated) continue;
+      if (cell[k] == kNoCell || repeated)
+        continue;
       const Vec3d mean = means[cell[k]];
       quadrics[cell[k]].add_triangle(p[0] - mean, p[1] - mean, p[2] - mean);
     }
   };
-  for (const Triangle& t : mesh.interior) add(t);
-  for (const Triangle& t : mesh.border) add(t);
+  for (const Triangle& t : mesh.interior)
+    add(t);
+  for (const Triangle& t : mesh.border)
+    add(t);
   return quadrics;
 }
 
-std::vector<Vec3d> least_error_points(const BuildTile& joined, const std::vector<std::uint32_t>& cell_of,
+std::vector<Vec3d> least_error_points(const BuildTile& joined,
+                                      const std::vector<std::uint32_t>& cell_of,
                                       const std::vector<Vec3d>& means) {
   std::vector<double> radii(means.size());
   for (std::size_t i = 0; i < cell_of.size(); ++i) {
-    const double distance = length(to_double(joined.mesh.vertices.positions[i]) - means[cell_of[i]]);
+    const double distance =
+        length(to_double(joined.mesh.vertices.positions[i]) - means[cell_of[i]]);
     radii[cell_of[i]] = std::max(radii[cell_of[i]], distance);
   }
   const std::vector<Quadric> quadrics = quadrics_of(joined, cell_of, means);
@@ -81,7 +90,8 @@ std::vector<Vec3d> least_error_points(const BuildTile& joined, const std::vector
   return points;
 }
 
-std::vector<Vec3d> least_error_vertices(const BuildTile& joined, const std::vector<std::uint32_t>& cell_of,
+std::vector<Vec3d> least_error_vertices(const BuildTile& joined,
+                                        const std::vector<std::uint32_t>& cell_of,
                                         const std::vector<Vec3d>& means) {
   const std::vector<Quadric> quadrics = quadrics_of(joined, cell_of, means);
   std::vector<double> best(means.size(), std::numeric_limits<double>::infinity());
@@ -90,10 +100,12 @@ std::vector<Vec3d> least_error_vertices(const BuildTile& joined, const std::vect
     const std::uint32_t cell = cell_of[i];
     const Vec3d position = to_double(joined.mesh.vertices.positions[i]);
     const Vec3d offset = position - means[cell];
-    // Where planes do not decide, the vertex nearest to the mean wins, as in the regularized minimum.
+    // Where planes do not decide, the vertex nearest to the mean wins, as in the regularized
+    // minimum.
     const Quadric& q = quadrics[cell];
     const double planes = q.xx + q.yy + q.zz;
-    const double error = planes > 0 ? q.at(offset) + kMeanPull * planes / 3 * dot(offset, offset) : dot(offset, offset);
+    const double error = planes > 0 ? q.at(offset) + kMeanPull * planes / 3 * dot(offset, offset)
+                                    : dot(offset, offset);
     if (error < best[cell]) {
       best[cell] = error;
       points[cell] = position;
@@ -107,7 +119,8 @@ std::vector<Vec3d> least_error_vertices(const BuildTile& joined, const std::vect
 Contraction cluster(const BuildTile& joined, std::uint32_t target, const AttributeLayout& layout,
                     Representative representative) {
   Contraction result;
-  result.parent_of = kd_cells({joined.mesh.vertices.positions.data(), joined.mesh.own_count}, target);
+  result.parent_of =
+      kd_cells({joined.mesh.vertices.positions.data(), joined.mesh.own_count}, target);
   const CellMeans means = means_of(joined, result.parent_of, target);
   std::vector<Vec3d> points;
   switch (representative) {
@@ -126,7 +139,8 @@ Contraction cluster(const BuildTile& joined, std::uint32_t target, const Attribu
   result.representatives.reserve(target);
   std::vector<float> attributes(channels);
   for (std::uint32_t cell = 0; cell < target; ++cell) {
-    for (std::size_t k = 0; k < channels; ++k) attributes[k] = static_cast<float>(means.attributes[cell * channels + k]);
+    for (std::size_t k = 0; k < channels; ++k)
+      attributes[k] = static_cast<float>(means.attributes[cell * channels + k]);
     normalize_average(layout, attributes);
     result.representatives.append(to_float(points[cell]), attributes);
   }

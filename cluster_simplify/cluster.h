@@ -1,16 +1,17 @@
 // The method `cluster`: kd cells of equal vertex count, one representative each.
 //
-// Kim & Lee, Interactive Rendering of Huge 3D Meshes in Cloud Computing; representative points after Lindstrom,
-// Out-of-Core Simplification of Large Polygonal Models, 2000.
+// Kim & Lee, Interactive Rendering of Huge 3D Meshes in Cloud Computing; representative points
+// after Lindstrom, Out-of-Core Simplification of Large Polygonal Models, 2000.
 #pragma once
-
-#include <cstdint>
 
 #include "cluster_simplify/contraction.h"
 
+#include <cstdint>
+
 namespace meshhier::cluster_simplify {
 
-/// See contract(). A `quadric` representative never leaves the sphere around the cell's mean that holds its vertices.
+/// See contract(). A `quadric` representative never leaves the sphere around the cell's mean that
+/// holds its vertices.
 Contraction cluster(const BuildTile& joined, std::uint32_t target, const AttributeLayout& layout,
                     Representative representative);
 

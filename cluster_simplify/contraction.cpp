@@ -1,9 +1,9 @@
 #include "cluster_simplify/contraction.h"
 
-#include <algorithm>
-
 #include "cluster_simplify/cluster.h"
 #include "hierarchy/error.h"
+
+#include <algorithm>
 
 namespace meshhier::cluster_simplify {
 
@@ -17,7 +17,8 @@ Contraction contract(const BuildTile& joined, std::uint32_t target, const Attrib
 }
 
 std::uint32_t contraction_target(std::uint32_t own_count, std::uint32_t asked) {
-  return std::max(1U, std::min(asked, static_cast<std::uint32_t>(std::uint64_t{own_count} * 3 / 4)));
+  return std::max(1U,
+                  std::min(asked, static_cast<std::uint32_t>(std::uint64_t{own_count} * 3 / 4)));
 }
 
 }  // namespace meshhier::cluster_simplify

@@ -1,12 +1,13 @@
 // Contraction methods: a joined tile and a vertex count in, a parent map and representatives out.
 //
-// This function is all that differs between methods; joining, seams, levels and errors are common to them.
+// This function is all that differs between methods; joining, seams, levels and errors are common
+// to them.
 #pragma once
-
-#include <cstdint>
 
 #include "cluster_simplify/seams.h"
 #include "hierarchy/attributes.h"
+
+#include <cstdint>
 
 namespace meshhier::cluster_simplify {
 
@@ -17,7 +18,8 @@ enum class Method {
 /// Where a cell's representative lies.
 enum class Representative {
   mean,     ///< mean of the original vertices it stands for
-  quadric,  ///< point of least squared distance to the planes of the cell's triangles (Lindstrom 2000)
+  quadric,  ///< point of least squared distance to the planes of the cell's triangles (Lindstrom
+            ///< 2000)
   vertex,   ///< the cell's vertex of least such distance
 };
 
@@ -26,15 +28,15 @@ struct ContractionOptions {
   Representative representative = Representative::quadric;
 };
 
-/// Contracts the own vertices of `joined` to `target` representatives, 1 <= target <= own_count <= 65536. Attributes
-/// are means over the original vertices a representative stands for, normals made unit length. Pure, deterministic;
-/// O(n log n).
+/// Contracts the own vertices of `joined` to `target` representatives, 1 <= target <= own_count <=
+/// 65536. Attributes are means over the original vertices a representative stands for, normals made
+/// unit length. Pure, deterministic; O(n log n).
 Contraction contract(const BuildTile& joined, std::uint32_t target, const AttributeLayout& layout,
                      const ContractionOptions& options);
 
-/// The vertex count a parent tile gets when `asked` vertices are asked for and its children have `own_count`
-/// together: `asked`, or three quarters of own_count if that is fewer, so that every level is coarser than the one below
-/// even where few vertices are left; at least 1.
+/// The vertex count a parent tile gets when `asked` vertices are asked for and its children have
+/// `own_count` together: `asked`, or three quarters of own_count if that is fewer, so that every
+/// level is coarser than the one below even where few vertices are left; at least 1.
 std::uint32_t contraction_target(std::uint32_t own_count, std::uint32_t asked);
 
 }  // namespace meshhier::cluster_simplify

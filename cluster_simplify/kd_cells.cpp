@@ -1,8 +1,8 @@
 #include "cluster_simplify/kd_cells.h"
 
-#include <algorithm>
-
 #include "hierarchy/bounds.h"
+
+#include <algorithm>
 
 namespace meshhier::cluster_simplify {
 namespace {
@@ -18,9 +18,11 @@ struct Cells {
 
 int longest_axis(std::span<const Point> points) {
   Bounds bounds;
-  for (const Point& p : points) bounds.add(p.position);
+  for (const Point& p : points)
+    bounds.add(p.position);
   const Vec3f size = bounds.max - bounds.min;
-  if (size.x >= size.y && size.x >= size.z) return 0;
+  if (size.x >= size.y && size.x >= size.z)
+    return 0;
   return size.y >= size.z ? 1 : 2;
 }
 
@@ -28,7 +30,8 @@ class Splitter {
  public:
   Splitter(std::span<const Vec3f> positions, std::uint32_t cell_count)
       : cell_count_(cell_count), points_(positions.size()), cell_of_(positions.size()) {
-    for (std::uint32_t i = 0; i < positions.size(); ++i) points_[i] = {positions[i], i};
+    for (std::uint32_t i = 0; i < positions.size(); ++i)
+      points_[i] = {positions[i], i};
   }
 
   std::vector<std::uint32_t> run() {
@@ -37,14 +40,17 @@ class Splitter {
   }
 
  private:
-  std::size_t first_point(std::uint32_t cell) const { return std::uint64_t{cell} * points_.size() / cell_count_; }
+  std::size_t first_point(std::uint32_t cell) const {
+    return std::uint64_t{cell} * points_.size() / cell_count_;
+  }
 
   void split(Cells cells) {
     const std::span<Point> all(points_);
     const std::size_t begin = first_point(cells.begin);
     const std::size_t end = first_point(cells.end);
     if (cells.end - cells.begin == 1) {
-      for (const Point& p : all.subspan(begin, end - begin)) cell_of_[p.index] = cells.begin;
+      for (const Point& p : all.subspan(begin, end - begin))
+        cell_of_[p.index] = cells.begin;
       return;
     }
     const std::uint32_t middle_cell = cells.begin + (cells.end - cells.begin + 1) / 2;

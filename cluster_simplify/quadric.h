@@ -6,7 +6,8 @@
 namespace meshhier::cluster_simplify {
 
 /// The sum of squared distances of a point x to planes, each weighted by an area:
-/// E(x) = x'Ax + 2 b'x + c, with x relative to an origin of the caller's choice. Input units to the fourth.
+/// E(x) = x'Ax + 2 b'x + c, with x relative to an origin of the caller's choice. Input units to the
+/// fourth.
 struct Quadric {
   double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;  ///< A
   Vec3d b;
@@ -16,8 +17,9 @@ struct Quadric {
   void add_triangle(Vec3d p0, Vec3d p1, Vec3d p2);
   double at(Vec3d x) const;
 
-  /// The point of least error, drawn towards `anchor` by `strength` times the mean curvature of E: where planes leave a
-  /// direction open, the point stays at the anchor's place in it. Returns the anchor if there are no planes.
+  /// The point of least error, drawn towards `anchor` by `strength` times the mean curvature of E:
+  /// where planes leave a direction open, the point stays at the anchor's place in it. Returns the
+  /// anchor if there are no planes.
   Vec3d minimum(Vec3d anchor, double strength) const;
 };
 

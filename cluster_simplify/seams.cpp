@@ -1,11 +1,11 @@
 #include "cluster_simplify/seams.h"
 
+#include "hierarchy/error.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
-
-#include "hierarchy/error.h"
 
 namespace meshhier::cluster_simplify {
 namespace {
@@ -19,7 +19,8 @@ std::vector<std::uint32_t> make_unique(std::vector<GhostRef>& refs) {
   sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
   std::vector<std::uint32_t> place(refs.size());
   for (std::size_t i = 0; i < refs.size(); ++i) {
-    place[i] = static_cast<std::uint32_t>(std::lower_bound(sorted.begin(), sorted.end(), refs[i]) - sorted.begin());
+    place[i] = static_cast<std::uint32_t>(std::lower_bound(sorted.begin(), sorted.end(), refs[i]) -
+                                          sorted.begin());
   }
   refs = std::move(sorted);
   return place;
@@ -31,23 +32,27 @@ Triangle mapped(const Triangle& t, const Map& map) {
 }
 
 /// Removes the references no triangle uses and renumbers the corners from `own_count` on.
-void drop_unused(std::vector<Triangle>& border, std::vector<GhostRef>& refs, std::uint32_t own_count) {
+void drop_unused(std::vector<Triangle>& border, std::vector<GhostRef>& refs,
+                 std::uint32_t own_count) {
   std::vector<std::uint32_t> place(refs.size(), kUnset);
   for (const Triangle& t : border) {
     for (const TileVertex corner : t) {
-      if (raw(corner) >= own_count) place[raw(corner) - own_count] = 0;
+      if (raw(corner) >= own_count)
+        place[raw(corner) - own_count] = 0;
     }
   }
   std::uint32_t kept = 0;
   for (std::size_t i = 0; i < refs.size(); ++i) {
-    if (place[i] == kUnset) continue;
+    if (place[i] == kUnset)
+      continue;
     place[i] = kept;
     refs[kept++] = refs[i];
   }
   refs.resize(kept);
   for (Triangle& t : border) {
     t = mapped(t, [&](TileVertex v) {
-      return raw(v) < own_count ? v : static_cast<TileVertex>(own_count + place[raw(v) - own_count]);
+      return raw(v) < own_count ? v
+                                : static_cast<TileVertex>(own_count + place[raw(v) - own_count]);
     });
   }
 }
@@ -55,7 +60,8 @@ void drop_unused(std::vector<Triangle>& border, std::vector<GhostRef>& refs, std
 /// A float that is certainly not below `value`.
 float round_up(double value) {
   const auto rounded = static_cast<float>(value);
-  return rounded < value ? std::nextafter(rounded, std::numeric_limits<float>::infinity()) : rounded;
+  return rounded < value ? std::nextafter(rounded, std::numeric_limits<float>::infinity())
+                         : rounded;
 }
 
 }  // namespace
@@ -67,7 +73,8 @@ BuildTile resolve(WorkTile tile, std::span<const GhostRef> mapped_refs, bool uni
   const std::vector<std::uint32_t> place = make_unique(ghosts);
   for (Triangle& t : tile.border) {
     t = mapped(t, [&](TileVertex v) {
-      return raw(v) < own_count ? v : static_cast<TileVertex>(own_count + place[raw(v) - own_count]);
+      return raw(v) < own_count ? v
+                                : static_cast<TileVertex>(own_count + place[raw(v) - own_count]);
     });
   }
   normalize_triangles(tile.border, unique);
@@ -88,13 +95,15 @@ void fill_ghosts(BuildTile& tile, std::uint32_t neighbour, const Rim& rim) {
   const auto& ghosts = tile.mesh.ghosts;
   auto ghost = std::lower_bound(ghosts.begin(), ghosts.end(), GhostRef{neighbour, 0});
   for (; ghost != ghosts.end() && ghost->tile == neighbour; ++ghost) {
-    if (ghost->index >= rim.vertices.size()) throw Error(ErrorCode::internal, "a ghost lies outside its tile's rim");
+    if (ghost->index >= rim.vertices.size())
+      throw Error(ErrorCode::internal, "a ghost lies outside its tile's rim");
     tile.mesh.vertices.append(rim.vertices, ghost->index, ghost->index + 1);
     tile.history.radii.push_back(rim.radii[ghost->index]);
   }
 }
 
-BuildTile join(const BuildTile& first, std::uint32_t first_index, const BuildTile& second, std::uint32_t second_index) {
+BuildTile join(const BuildTile& first, std::uint32_t first_index, const BuildTile& second,
+               std::uint32_t second_index) {
   const TileMesh& a = first.mesh;
   const TileMesh& b = second.mesh;
   const std::uint32_t own_count = a.own_count + b.own_count;
@@ -108,7 +117,8 @@ BuildTile join(const BuildTile& first, std::uint32_t first_index, const BuildTil
   joined.history.weights = first.history.weights;
   joined.history.weights.insert(joined.history.weights.end(), second.history.weights.begin(),
                                 second.history.weights.end());
-  joined.history.radii.assign(first.history.radii.begin(), first.history.radii.begin() + a.own_count);
+  joined.history.radii.assign(first.history.radii.begin(),
+                              first.history.radii.begin() + a.own_count);
   joined.history.radii.insert(joined.history.radii.end(), second.history.radii.begin(),
                               second.history.radii.begin() + b.own_count);
 
@@ -121,12 +131,14 @@ BuildTile join(const BuildTile& first, std::uint32_t first_index, const BuildTil
   std::vector<Outside> outside;
   const auto collect = [&](const BuildTile& tile, std::uint32_t sibling) {
     for (std::uint32_t i = 0; i < tile.mesh.ghosts.size(); ++i) {
-      if (tile.mesh.ghosts[i].tile != sibling) outside.push_back({tile.mesh.ghosts[i], &tile, tile.mesh.own_count + i});
+      if (tile.mesh.ghosts[i].tile != sibling)
+        outside.push_back({tile.mesh.ghosts[i], &tile, tile.mesh.own_count + i});
     }
   };
   collect(first, second_index);
   collect(second, first_index);
-  std::stable_sort(outside.begin(), outside.end(), [](const Outside& x, const Outside& y) { return x.ref < y.ref; });
+  std::stable_sort(outside.begin(), outside.end(),
+                   [](const Outside& x, const Outside& y) { return x.ref < y.ref; });
   outside.erase(std::unique(outside.begin(), outside.end(),
                             [](const Outside& x, const Outside& y) { return x.ref == y.ref; }),
                 outside.end());
@@ -139,13 +151,15 @@ BuildTile join(const BuildTile& first, std::uint32_t first_index, const BuildTil
   const auto place_of = [&](const TileMesh& tile, std::uint32_t offset, std::uint32_t sibling,
                             std::uint32_t sibling_offset) {
     std::vector<TileVertex> place(tile.vertices.size());
-    for (std::uint32_t i = 0; i < tile.own_count; ++i) place[i] = static_cast<TileVertex>(offset + i);
+    for (std::uint32_t i = 0; i < tile.own_count; ++i)
+      place[i] = static_cast<TileVertex>(offset + i);
     for (std::uint32_t i = 0; i < tile.ghosts.size(); ++i) {
       const GhostRef& ref = tile.ghosts[i];
       const auto found = std::lower_bound(mesh.ghosts.begin(), mesh.ghosts.end(), ref);
-      place[tile.own_count + i] =
-          static_cast<TileVertex>(ref.tile == sibling ? sibling_offset + ref.index
-                                                      : own_count + static_cast<std::uint32_t>(found - mesh.ghosts.begin()));
+      place[tile.own_count + i] = static_cast<TileVertex>(
+          ref.tile == sibling
+              ? sibling_offset + ref.index
+              : own_count + static_cast<std::uint32_t>(found - mesh.ghosts.begin()));
     }
     return place;
   };
@@ -153,17 +167,23 @@ BuildTile join(const BuildTile& first, std::uint32_t first_index, const BuildTil
   const std::vector<TileVertex> place_b = place_of(b, a.own_count, first_index, 0);
 
   mesh.interior.reserve(a.interior.size() + b.interior.size() + a.border.size());
-  for (const Triangle& t : a.interior) mesh.interior.push_back(t);
-  for (const Triangle& t : b.interior) mesh.interior.push_back(mapped(t, [&](TileVertex v) { return place_b[raw(v)]; }));
+  for (const Triangle& t : a.interior)
+    mesh.interior.push_back(t);
+  for (const Triangle& t : b.interior)
+    mesh.interior.push_back(mapped(t, [&](TileVertex v) { return place_b[raw(v)]; }));
   const auto add_border = [&](const Triangle& t) {
-    const bool inside = std::all_of(t.begin(), t.end(), [&](TileVertex v) { return raw(v) < own_count; });
+    const bool inside =
+        std::all_of(t.begin(), t.end(), [&](TileVertex v) { return raw(v) < own_count; });
     (inside ? mesh.interior : mesh.border).push_back(t);
   };
-  for (const Triangle& t : a.border) add_border(mapped(t, [&](TileVertex v) { return place_a[raw(v)]; }));
+  for (const Triangle& t : a.border)
+    add_border(mapped(t, [&](TileVertex v) { return place_a[raw(v)]; }));
   for (const Triangle& t : b.border) {
     const Triangle placed = mapped(t, [&](TileVertex v) { return place_b[raw(v)]; });
-    const bool known = std::any_of(placed.begin(), placed.end(), [&](TileVertex v) { return raw(v) < a.own_count; });
-    if (!known) add_border(placed);  // a triangle that touches the first tile came with it
+    const bool known = std::any_of(placed.begin(), placed.end(),
+                                   [&](TileVertex v) { return raw(v) < a.own_count; });
+    if (!known)
+      add_border(placed);  // a triangle that touches the first tile came with it
   }
   drop_unused(mesh.border, mesh.ghosts, own_count);
   return joined;
@@ -172,17 +192,20 @@ BuildTile join(const BuildTile& first, std::uint32_t first_index, const BuildTil
 namespace {
 
 /// New numbers for representatives: those of border triangles first, order kept otherwise.
-std::vector<std::uint32_t> rim_first(const std::vector<Triangle>& border, std::uint32_t count, std::uint32_t& rim_count) {
+std::vector<std::uint32_t> rim_first(const std::vector<Triangle>& border, std::uint32_t count,
+                                     std::uint32_t& rim_count) {
   std::vector<std::uint32_t> place(count, kUnset);
   for (const Triangle& t : border) {
     for (const TileVertex v : t) {
-      if (raw(v) < count) place[raw(v)] = 0;
+      if (raw(v) < count)
+        place[raw(v)] = 0;
     }
   }
   rim_count = static_cast<std::uint32_t>(std::count(place.begin(), place.end(), 0U));
   std::uint32_t rim = 0;
   std::uint32_t inner = rim_count;
-  for (std::uint32_t& entry : place) entry = entry == 0 ? rim++ : inner++;
+  for (std::uint32_t& entry : place)
+    entry = entry == 0 ? rim++ : inner++;
   return place;
 }
 
@@ -193,15 +216,19 @@ ContractedTile apply(const BuildTile& joined, Contraction contraction) {
   const auto count = static_cast<std::uint32_t>(contraction.representatives.size());
   assert(count <= 32768 && contraction.parent_of.size() == mesh.own_count);
 
-  // Border triangles in the new numbers; foreign corners keep theirs, moved from own_count to count.
+  // Border triangles in the new numbers; foreign corners keep theirs, moved from own_count to
+  // count.
   const auto shifted = [&](TileVertex v, const std::vector<std::uint32_t>& own) {
-    return static_cast<TileVertex>(raw(v) < mesh.own_count ? own[raw(v)] : raw(v) - mesh.own_count + count);
+    return static_cast<TileVertex>(raw(v) < mesh.own_count ? own[raw(v)]
+                                                           : raw(v) - mesh.own_count + count);
   };
   std::vector<Triangle> border;
   border.reserve(mesh.border.size());
   for (const Triangle& t : mesh.border) {
-    const Triangle image = mapped(t, [&](TileVertex v) { return shifted(v, contraction.parent_of); });
-    if (!is_degenerate(image)) border.push_back(image);
+    const Triangle image =
+        mapped(t, [&](TileVertex v) { return shifted(v, contraction.parent_of); });
+    if (!is_degenerate(image))
+      border.push_back(image);
   }
 
   ContractedTile result;
@@ -212,7 +239,9 @@ ContractedTile apply(const BuildTile& joined, Contraction contraction) {
     result.parent_map[i] = static_cast<std::uint16_t>(place[contraction.parent_of[i]]);
   }
   for (Triangle& t : border) {
-    t = mapped(t, [&](TileVertex v) { return raw(v) < count ? static_cast<TileVertex>(place[raw(v)]) : v; });
+    t = mapped(t, [&](TileVertex v) {
+      return raw(v) < count ? static_cast<TileVertex>(place[raw(v)]) : v;
+    });
   }
   tile.border = std::move(border);
   tile.foreign = mesh.ghosts;
@@ -223,28 +252,33 @@ ContractedTile apply(const BuildTile& joined, Contraction contraction) {
   for (const Triangle& t : mesh.interior) {
     const Triangle image =
         mapped(t, [&](TileVertex v) { return static_cast<TileVertex>(result.parent_map[raw(v)]); });
-    if (!is_degenerate(image)) tile.interior.push_back(image);
+    if (!is_degenerate(image))
+      tile.interior.push_back(image);
   }
   normalize_triangles(tile.interior, true);
 
   tile.vertices.channels = contraction.representatives.channels;
   tile.vertices.reserve(count);
   std::vector<std::uint32_t> old_of(count);
-  for (std::uint32_t i = 0; i < count; ++i) old_of[place[i]] = i;
-  for (const std::uint32_t old : old_of) tile.vertices.append(contraction.representatives, old, old + 1);
+  for (std::uint32_t i = 0; i < count; ++i)
+    old_of[place[i]] = i;
+  for (const std::uint32_t old : old_of)
+    tile.vertices.append(contraction.representatives, old, old + 1);
 
   tile.history.weights.assign(count, 0);
   tile.history.radii.assign(count, 0);
   double weight_sum = 0;
   for (std::uint32_t i = 0; i < mesh.own_count; ++i) {
     const std::uint32_t parent = result.parent_map[i];
-    const Vec3d moved = to_double(mesh.vertices.positions[i]) - to_double(tile.vertices.positions[parent]);
+    const Vec3d moved =
+        to_double(mesh.vertices.positions[i]) - to_double(tile.vertices.positions[parent]);
     const double weight = joined.history.weights[i];
     result.squared_motion += weight * dot(moved, moved);
     weight_sum += weight;
     tile.history.weights[parent] += joined.history.weights[i];
-    tile.history.radii[parent] = std::max(tile.history.radii[parent],
-                                          round_up((joined.history.radii[i] + length(moved)) * (1 + 1e-12)));
+    tile.history.radii[parent] =
+        std::max(tile.history.radii[parent],
+                 round_up((joined.history.radii[i] + length(moved)) * (1 + 1e-12)));
   }
   result.squared_motion /= std::max(weight_sum, 1.0);
   return result;
@@ -254,11 +288,13 @@ ContractedTile keep(const BuildTile& tile) {
   const TileMesh& mesh = tile.mesh;
   ContractedTile result;
   result.parent_map.resize(mesh.own_count);
-  for (std::uint32_t i = 0; i < mesh.own_count; ++i) result.parent_map[i] = static_cast<std::uint16_t>(i);
+  for (std::uint32_t i = 0; i < mesh.own_count; ++i)
+    result.parent_map[i] = static_cast<std::uint16_t>(i);
   result.tile.vertices.channels = mesh.vertices.channels;
   result.tile.vertices.append(mesh.vertices, 0, mesh.own_count);
   result.tile.history.weights = tile.history.weights;
-  result.tile.history.radii.assign(tile.history.radii.begin(), tile.history.radii.begin() + mesh.own_count);
+  result.tile.history.radii.assign(tile.history.radii.begin(),
+                                   tile.history.radii.begin() + mesh.own_count);
   result.tile.rim_count = mesh.rim_count;
   result.tile.interior = mesh.interior;
   result.tile.border = mesh.border;

@@ -1,35 +1,41 @@
-// Seams: how border triangles stay true while every tile contracts on its own (docs/architecture.md).
+// Seams: how border triangles stay true while every tile contracts on its own
+// (docs/architecture.md).
 //
-// A border triangle's foreign corner is whatever the neighbour's own chain of parent maps says it is. These kernels
-// carry foreign corners one level up, join two tiles, and carry a contraction out on a joined tile.
+// A border triangle's foreign corner is whatever the neighbour's own chain of parent maps says it
+// is. These kernels carry foreign corners one level up, join two tiles, and carry a contraction out
+// on a joined tile.
 #pragma once
+
+#include "hierarchy/build_tile.h"
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "hierarchy/build_tile.h"
-
 namespace meshhier::cluster_simplify {
 
 /// Rewrites a fresh tile's border with its foreign corners' places at the tile's own level.
 ///
-/// `mapped`: one entry per tile.foreign, at the tile's level. Corners that became one vertex become one ghost,
-/// triangles that became degenerate go; of exact duplicates one stays if `unique` (simplified tiles; partitions keep
-/// the input's duplicates). The ghosts' positions, attributes and radii are left for fill_ghosts(). O(n log n).
+/// `mapped`: one entry per tile.foreign, at the tile's level. Corners that became one vertex become
+/// one ghost, triangles that became degenerate go; of exact duplicates one stays if `unique`
+/// (simplified tiles; partitions keep the input's duplicates). The ghosts' positions, attributes
+/// and radii are left for fill_ghosts(). O(n log n).
 BuildTile resolve(WorkTile tile, std::span<const GhostRef> mapped, bool unique);
 
 /// Appends the ghosts of one neighbour to the tile's vertices and radii; call in ascending order of
 /// `neighbour`. Throws Error(internal) if a ghost lies outside the rim.
 void fill_ghosts(BuildTile& tile, std::uint32_t neighbour, const Rim& rim);
 
-/// Two neighbouring tiles of one level as one: first's own vertices, then second's; border triangles between
-/// them become interior; ghosts of one in the other become own vertices.
-BuildTile join(const BuildTile& first, std::uint32_t first_index, const BuildTile& second, std::uint32_t second_index);
+/// Two neighbouring tiles of one level as one: first's own vertices, then second's; border
+/// triangles between them become interior; ghosts of one in the other become own vertices.
+BuildTile join(const BuildTile& first, std::uint32_t first_index, const BuildTile& second,
+               std::uint32_t second_index);
 
-/// The outcome of a contraction method: which representative stands for each own vertex of a joined tile.
+/// The outcome of a contraction method: which representative stands for each own vertex of a joined
+/// tile.
 struct Contraction {
-  std::vector<std::uint32_t> parent_of;  ///< own vertex -> representative, < representatives.size(), onto
+  std::vector<std::uint32_t>
+      parent_of;  ///< own vertex -> representative, < representatives.size(), onto
   VertexArray representatives;
 };
 
@@ -40,11 +46,13 @@ struct ContractedTile {
   double squared_motion = 0;              ///< weighted mean of the squared distance vertices moved
 };
 
-/// Applies a contraction to a joined tile: maps its triangles, drops degenerate and repeated ones, puts the rim
-/// first, sums weights, and widens radii by how far each vertex moved (rounded up, so they stay bounds).
+/// Applies a contraction to a joined tile: maps its triangles, drops degenerate and repeated ones,
+/// puts the rim first, sums weights, and widens radii by how far each vertex moved (rounded up, so
+/// they stay bounds).
 ContractedTile apply(const BuildTile& joined, Contraction contraction);
 
-/// The contraction that changes nothing: for a node whose only child stands for it. The parent map is the identity.
+/// The contraction that changes nothing: for a node whose only child stands for it. The parent map
+/// is the identity.
 ContractedTile keep(const BuildTile& tile);
 
 }  // namespace meshhier::cluster_simplify

@@ -1,6 +1,7 @@
 // Which per-vertex attributes a mesh carries, and how they lie in memory.
 //
-// Inside meshhier every attribute is a float channel; a vertex has channels() floats, in this order:
+// Inside meshhier every attribute is a float channel; a vertex has channels() floats, in this
+// order:
 //
 //   normals     nx ny nz      as given (unit length or not)
 //   colours     r g b [a]     the stored number: 0..255 for u8, 0..65535 for u16, as given for f32

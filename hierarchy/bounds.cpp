@@ -4,7 +4,8 @@ namespace meshhier {
 
 Bounds bounds_of(std::span<const Vec3f> points) {
   Bounds bounds;
-  for (const Vec3f& p : points) bounds.add(p);
+  for (const Vec3f& p : points)
+    bounds.add(p);
   return bounds;
 }
 

@@ -1,10 +1,10 @@
 // Axis-aligned bounding boxes.
 #pragma once
 
+#include "hierarchy/vec.h"
+
 #include <limits>
 #include <span>
-
-#include "hierarchy/vec.h"
 
 namespace meshhier {
 

@@ -1,4 +1,5 @@
-// The one exception type. Its code is the exit code of the command line (docs/exit_codes in README).
+// The one exception type. Its code is the exit code of the command line (docs/exit_codes in
+// README).
 #pragma once
 
 #include <stdexcept>

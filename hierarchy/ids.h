@@ -23,13 +23,17 @@ enum class Level : std::uint8_t {};
 enum class TileVertex : std::uint32_t {};
 
 template <class Id>
-  requires std::is_enum_v<Id>
+requires std::is_enum_v<Id>
 constexpr std::underlying_type_t<Id> raw(Id id) {
   return static_cast<std::underlying_type_t<Id>>(id);
 }
 
-constexpr Level finer(Level level) { return static_cast<Level>(raw(level) + 1); }
-constexpr Level coarser(Level level) { return static_cast<Level>(raw(level) - 1); }
+constexpr Level finer(Level level) {
+  return static_cast<Level>(raw(level) + 1);
+}
+constexpr Level coarser(Level level) {
+  return static_cast<Level>(raw(level) - 1);
+}
 
 /// A node of the tree. Below the last level `index` counts the nodes of a level from left to right,
 /// 0 to 2^level - 1; on the last level it is the number of the partition.

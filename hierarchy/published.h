@@ -1,13 +1,13 @@
 // What a finished hierarchy says of itself and of each tile, as values.
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include "hierarchy/bounds.h"
 #include "hierarchy/tile_mesh.h"
 #include "hierarchy/tree.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
 
 namespace meshhier {
 
@@ -19,14 +19,16 @@ struct TileRecord {
   std::uint32_t ghost_count = 0;
   std::uint32_t interior_count = 0;  ///< triangles
   std::uint32_t border_count = 0;    ///< triangles, each also listed in the tiles of its ghosts
-  std::uint32_t drawn_border_count = 0;  ///< those of them that this tile draws in its own level's cut
-  std::uint32_t target_count = 0;    ///< vertices asked for; differs from own_count if not reached
-  Bounds bounds;                     ///< of all its vertices, relative to the origin
-  float error = 0;                   ///< estimated geometric error, input units; 0 for partitions
-  float bound = 0;                   ///< upper bound of the Hausdorff distance, input units; 0 for partitions
-  float compactness = 0;             ///< p^2 / (4 pi w) of a partition; 0 if it has no area, and for other tiles
+  std::uint32_t drawn_border_count =
+      0;                           ///< those of them that this tile draws in its own level's cut
+  std::uint32_t target_count = 0;  ///< vertices asked for; differs from own_count if not reached
+  Bounds bounds;                   ///< of all its vertices, relative to the origin
+  float error = 0;                 ///< estimated geometric error, input units; 0 for partitions
+  float bound = 0;  ///< upper bound of the Hausdorff distance, input units; 0 for partitions
+  float compactness =
+      0;  ///< p^2 / (4 pi w) of a partition; 0 if it has no area, and for other tiles
   std::uint64_t file_bytes = 0;
-  std::uint64_t checksum = 0;        ///< XXH3-64 of the tile's file
+  std::uint64_t checksum = 0;  ///< XXH3-64 of the tile's file
 };
 
 /// The indices of a ghost's vertex from its own tile upwards: level l, l-1, ... down to the level
@@ -37,22 +39,23 @@ using GhostChain = std::vector<std::uint16_t>;
 struct PublishedTile {
   NodeId node;
   TileMesh mesh;
-  std::vector<std::uint16_t> parent_map;  ///< own vertex -> vertex of the parent's tile; empty for the root
-  std::vector<GhostChain> chains;         ///< one per ghost
+  std::vector<std::uint16_t>
+      parent_map;  ///< own vertex -> vertex of the parent's tile; empty for the root
+  std::vector<GhostChain> chains;  ///< one per ghost
 };
 
 /// What the input was.
 struct SourceSummary {
   std::string file_name;
   std::uint64_t file_bytes = 0;
-  std::uint64_t checksum = 0;               ///< XXH3-64 of the whole file
+  std::uint64_t checksum = 0;  ///< XXH3-64 of the whole file
   std::uint64_t vertices = 0;
-  std::uint64_t triangles = 0;              ///< kept, after polygons became fans
-  std::uint64_t faces = 0;                  ///< as the file counts them
-  std::uint64_t degenerate_triangles = 0;   ///< dropped: two corners are the same vertex
+  std::uint64_t triangles = 0;             ///< kept, after polygons became fans
+  std::uint64_t faces = 0;                 ///< as the file counts them
+  std::uint64_t degenerate_triangles = 0;  ///< dropped: two corners are the same vertex
   std::uint64_t unreferenced_vertices = 0;
-  BoundsD bounds;                           ///< input coordinates
-  bool double_precision = false;            ///< coordinates do not fit float exactly
+  BoundsD bounds;                 ///< input coordinates
+  bool double_precision = false;  ///< coordinates do not fit float exactly
   AttributeLayout attributes;
 };
 

@@ -2,19 +2,19 @@
 //
 // Vertices [0, own_count) are the tile's own, the rest are ghosts: corners of border triangles that
 // belong to neighbouring tiles of the same level. The own vertices that border triangles use come
-// first, within the rim, [0, rim_count). The rim may hold a few more: those of border triangles that a neighbour's
-// contraction made degenerate.
+// first, within the rim, [0, rim_count). The rim may hold a few more: those of border triangles
+// that a neighbour's contraction made degenerate.
 #pragma once
+
+#include "hierarchy/attributes.h"
+#include "hierarchy/ids.h"
+#include "hierarchy/vec.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
-
-#include "hierarchy/attributes.h"
-#include "hierarchy/ids.h"
-#include "hierarchy/vec.h"
 
 namespace meshhier {
 
@@ -28,7 +28,8 @@ struct VertexArray {
 
   std::size_t size() const { return positions.size(); }
   std::span<const float> attributes_of(std::size_t vertex) const {
-    return {attributes.data() + vertex * static_cast<std::size_t>(channels), static_cast<std::size_t>(channels)};
+    return {attributes.data() + vertex * static_cast<std::size_t>(channels),
+            static_cast<std::size_t>(channels)};
   }
   void reserve(std::size_t count);
   void append(Vec3f position, std::span<const float> vertex_attributes);
@@ -43,7 +44,7 @@ struct GhostRef {
 };
 
 struct TileMesh {
-  VertexArray vertices;            ///< own, then ghosts
+  VertexArray vertices;  ///< own, then ghosts
   std::uint32_t own_count = 0;
   std::uint32_t rim_count = 0;     ///< <= own_count
   std::vector<GhostRef> ghosts;    ///< vertices.size() - own_count, ascending, without repeats
@@ -56,12 +57,16 @@ struct TileMesh {
 
 /// Turns the corners so that the smallest comes first; orientation is kept.
 constexpr Triangle canonical(Triangle t) {
-  if (t[1] < t[0] && t[1] < t[2]) return {t[1], t[2], t[0]};
-  if (t[2] < t[0] && t[2] < t[1]) return {t[2], t[0], t[1]};
+  if (t[1] < t[0] && t[1] < t[2])
+    return {t[1], t[2], t[0]};
+  if (t[2] < t[0] && t[2] < t[1])
+    return {t[2], t[0], t[1]};
   return t;
 }
 
-constexpr bool is_degenerate(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
+constexpr bool is_degenerate(const Triangle& t) {
+  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
 
 /// Drops degenerate triangles, turns the rest to canonical form and sorts them. Exact duplicates
 /// (same corners, same orientation) lose all but one copy if `unique`; mirror images always stay.

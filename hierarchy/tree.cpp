@@ -26,7 +26,8 @@ std::uint32_t Tree::node_count(Level level) const {
 
 PartitionRange Tree::partitions(NodeId node) const {
   assert(contains(node));
-  if (is_partition(node)) return {node.index, node.index + 1};
+  if (is_partition(node))
+    return {node.index, node.index + 1};
   PartitionRange range{0, partition_count_};
   for (int bit = raw(node.level) - 1; bit >= 0; --bit) {
     const std::uint32_t middle = split_at(range);
@@ -59,8 +60,10 @@ bool Tree::is_early(NodeId node) const {
 
 NodeId Tree::ancestor(NodeId node, Level level) const {
   assert(level <= node.level);
-  if (level == node.level) return node;
-  if (!is_partition(node)) return {level, node.index >> (raw(node.level) - raw(level))};
+  if (level == node.level)
+    return node;
+  if (!is_partition(node))
+    return {level, node.index >> (raw(node.level) - raw(level))};
   PartitionRange range{0, partition_count_};
   std::uint32_t index = 0;
   for (int depth = 0; depth < raw(level); ++depth) {
@@ -73,16 +76,20 @@ NodeId Tree::ancestor(NodeId node, Level level) const {
 }
 
 Tree::Children Tree::children(NodeId node) const {
-  if (is_partition(node)) return {};
+  if (is_partition(node))
+    return {};
   const Level below = finer(node.level);
-  if (below != depth_) return {{NodeId{below, 2 * node.index}, NodeId{below, 2 * node.index + 1}}, 2};
+  if (below != depth_)
+    return {{NodeId{below, 2 * node.index}, NodeId{below, 2 * node.index + 1}}, 2};
   const PartitionRange range = partitions(node);
-  return {{NodeId{below, range.begin}, NodeId{below, range.begin + 1}}, static_cast<int>(range.size())};
+  return {{NodeId{below, range.begin}, NodeId{below, range.begin + 1}},
+          static_cast<int>(range.size())};
 }
 
 Level Tree::common_level(NodeId a, NodeId b) const {
   assert(a.level == b.level);
-  if (a == b) return a.level;
+  if (a == b)
+    return a.level;
   if (is_partition(a)) {
     a = parent(a);
     b = parent(b);

@@ -1,17 +1,17 @@
 // The kd-tree's shape, by arithmetic alone: it follows from the vertex and partition counts.
 //
 // Partition p of P holds the ranks [floor(p N / P), floor((p + 1) N / P)): sizes equal +-1.
-// A node holds a run of partitions [p0, p1), split at p0 + ceil((p1 - p0) / 2); level 0 is the root.
-// Levels 0 .. depth-1 have exactly 2^level nodes. The last level, depth, has the P partitions, one
-// node each. A node of level depth-1 that holds a single partition is *early*: it has no tile of its
-// own, its partition stands for it.
+// A node holds a run of partitions [p0, p1), split at p0 + ceil((p1 - p0) / 2); level 0 is the
+// root. Levels 0 .. depth-1 have exactly 2^level nodes. The last level, depth, has the P
+// partitions, one node each. A node of level depth-1 that holds a single partition is *early*: it
+// has no tile of its own, its partition stands for it.
 #pragma once
+
+#include "hierarchy/ids.h"
 
 #include <array>
 #include <cstdint>
 #include <span>
-
-#include "hierarchy/ids.h"
 
 namespace meshhier {
 
@@ -46,7 +46,9 @@ class Tree {
 
   /// Nodes of a level: 2^level, P on the last.
   std::uint32_t node_count(Level level) const;
-  bool contains(NodeId node) const { return node.level <= depth_ && node.index < node_count(node.level); }
+  bool contains(NodeId node) const {
+    return node.level <= depth_ && node.index < node_count(node.level);
+  }
 
   PartitionRange partitions(NodeId node) const;
   RankRange ranks(PartitionRange partitions) const;
@@ -56,14 +58,18 @@ class Tree {
   /// True for a node of level depth-1 that holds a single partition and so has no tile of its own.
   bool is_early(NodeId node) const;
 
-  /// One level up / the node of `level` that holds `node`. Require node.level > 0 / level <= node.level.
+  /// One level up / the node of `level` that holds `node`. Require node.level > 0 / level <=
+  /// node.level.
   NodeId parent(NodeId node) const { return ancestor(node, coarser(node.level)); }
   NodeId ancestor(NodeId node, Level level) const;
 
   struct Children {
     std::array<NodeId, 2> nodes{};
     int count = 0;
-    std::span<const NodeId> span() const { return {nodes.data(), static_cast<std::size_t>(count)}; }
+    std::span<const NodeId> span() const& {
+      return {nodes.data(), static_cast<std::size_t>(count)};
+    }
+    void span() const&& = delete;  ///< it would outlive its array
   };
   /// The one (early) or two nodes below; none for a partition.
   Children children(NodeId node) const;

@@ -36,7 +36,9 @@ Scalar length(Vec3<Scalar> a) {
   return std::sqrt(dot(a, a));
 }
 
-constexpr Vec3d to_double(Vec3f a) { return {a.x, a.y, a.z}; }
+constexpr Vec3d to_double(Vec3f a) {
+  return {a.x, a.y, a.z};
+}
 constexpr Vec3f to_float(Vec3d a) {
   return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
 }

@@ -1,23 +1,25 @@
 // A chunk: a node of the tree small enough to be split in memory, with all its triangles.
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <vector>
-
 #include "hierarchy/tile_mesh.h"
 #include "hierarchy/tree.h"
 #include "partition/direction.h"
 
+#include <array>
+#include <cstdint>
+#include <vector>
+
 namespace meshhier::partition {
 
-/// Provisional ranks order the vertices by chunk, and by id within a chunk; the splits inside a chunk make them final.
+/// Provisional ranks order the vertices by chunk, and by id within a chunk; the splits inside a
+/// chunk make them final.
 using RankTriangle = std::array<std::uint32_t, 3>;
 
 struct ChunkMesh {
   NodeId node;
-  VertexArray vertices;                  ///< by id
-  std::vector<RankTriangle> triangles;   ///< every triangle with a corner in the chunk, provisional ranks, any order
+  VertexArray vertices;  ///< by id
+  std::vector<RankTriangle>
+      triangles;  ///< every triangle with a corner in the chunk, provisional ranks, any order
 };
 
 /// The chunk that holds a rank. O(1).
@@ -25,7 +27,9 @@ class ChunkMap {
  public:
   ChunkMap(const Tree& tree, Level chunks);
   std::uint32_t count() const { return static_cast<std::uint32_t>(starts_.size() - 1); }
-  std::uint32_t first_rank(std::uint32_t chunk) const { return static_cast<std::uint32_t>(starts_[chunk]); }
+  std::uint32_t first_rank(std::uint32_t chunk) const {
+    return static_cast<std::uint32_t>(starts_[chunk]);
+  }
   std::uint32_t size(std::uint32_t chunk) const {
     return static_cast<std::uint32_t>(starts_[chunk + 1] - starts_[chunk]);
   }
@@ -35,8 +39,8 @@ class ChunkMap {
   std::vector<std::uint64_t> starts_;
 };
 
-/// Splits a chunk down to partitions at exact medians. Returns each vertex's partition. Independent of the order of
-/// the triangles. O(n log n) in its vertices and triangles.
+/// Splits a chunk down to partitions at exact medians. Returns each vertex's partition. Independent
+/// of the order of the triangles. O(n log n) in its vertices and triangles.
 std::vector<PartitionId> split_chunk(const ChunkMesh& chunk, const Tree& tree, Axis axis);
 
 }  // namespace meshhier::partition

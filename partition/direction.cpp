@@ -1,33 +1,37 @@
 #include "partition/direction.h"
 
+#include "hierarchy/bounds.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include <CGAL/Default_diagonalize_traits.h>
 
-#include "hierarchy/bounds.h"
-
 namespace meshhier::partition {
 namespace {
 
-// The band around the median in which point density is measured, as a part of all points. Narrow enough to
-// see the cut, wide enough that 256 points hold a dozen of the 5 % band.
+// The band around the median in which point density is measured, as a part of all points. Narrow
+// enough to see the cut, wide enough that 256 points hold a dozen of the 5 % band.
 constexpr double kBand = 0.05;
 
-Vec3d unit_axis(int axis) { return {axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0}; }
+Vec3d unit_axis(int axis) {
+  return {axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0};
+}
 
 Vec3d longest_axis(std::span<const Vec3f> points) {
   const Bounds bounds = bounds_of(points);
   const Vec3d size = to_double(bounds.max) - to_double(bounds.min);
-  if (size.x >= size.y && size.x >= size.z) return unit_axis(0);
+  if (size.x >= size.y && size.x >= size.z)
+    return unit_axis(0);
   return unit_axis(size.y >= size.z ? 1 : 2);
 }
 
 /// Eigenvectors of the points' covariance.
 std::array<Vec3d, 3> principal_axes(std::span<const Vec3f> points) {
   Vec3d mean;
-  for (const Vec3f& p : points) mean = mean + to_double(p);
+  for (const Vec3f& p : points)
+    mean = mean + to_double(p);
   mean = mean * (1.0 / static_cast<double>(points.size()));
   std::array<double, 6> covariance{};
   for (const Vec3f& p : points) {
@@ -41,77 +45,92 @@ std::array<Vec3d, 3> principal_axes(std::span<const Vec3f> points) {
   }
   // Scaled to about one, so that very small and very large models keep their digits.
   const double scale = covariance[0] + covariance[3] + covariance[5];
-  if (!(scale > 0) || !std::isfinite(scale)) return {unit_axis(0), unit_axis(1), unit_axis(2)};
-  for (double& entry : covariance) entry /= scale;
+  if (!(scale > 0) || !std::isfinite(scale))
+    return {unit_axis(0), unit_axis(1), unit_axis(2)};
+  for (double& entry : covariance)
+    entry /= scale;
   std::array<double, 3> values{};
   std::array<double, 9> vectors{};
-  CGAL::Default_diagonalize_traits<double, 3>::diagonalize_selfadjoint_covariance_matrix(covariance, values, vectors);
+  CGAL::Default_diagonalize_traits<double, 3>::diagonalize_selfadjoint_covariance_matrix(
+      covariance, values, vectors);
   return {Vec3d{vectors[0], vectors[1], vectors[2]}, Vec3d{vectors[3], vectors[4], vectors[5]},
           Vec3d{vectors[6], vectors[7], vectors[8]}};
 }
 
 std::vector<double> projections(std::span<const Vec3f> points, Vec3d direction) {
   std::vector<double> values(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) values[i] = dot(direction, to_double(points[i]));
+  for (std::size_t i = 0; i < points.size(); ++i)
+    values[i] = dot(direction, to_double(points[i]));
   return values;
 }
 
 template <class Value>
 Value quantile(std::vector<Value>& values, double fraction) {
   const auto last = static_cast<double>(values.size() - 1);
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::clamp(fraction, 0.0, 1.0) * last);
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(std::clamp(fraction, 0.0, 1.0) * last);
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
 
-/// The line of a cut through a triangle with `lone` on one side, p and q on the other: from the midpoints of the
-/// edges lone-p and lone-q to the centroid.
+/// The line of a cut through a triangle with `lone` on one side, p and q on the other: from the
+/// midpoints of the edges lone-p and lone-q to the centroid.
 double cut_length(Vec3d lone, Vec3d p, Vec3d q) {
   return (length(lone + p - q * 2.0) + length(lone + q - p * 2.0)) / 6;
 }
 
 double cut_length(const Corners& corners, const SplitPlane& plane) {
   std::array<bool, 3> right;
-  for (int k = 0; k < 3; ++k) right[k] = plane.is_right(corners[k].position, corners[k].id);
+  for (int k = 0; k < 3; ++k)
+    right[k] = plane.is_right(corners[k].position, corners[k].id);
   for (int k = 0; k < 3; ++k) {
     const int a = (k + 1) % 3;
     const int b = (k + 2) % 3;
-    if (right[a] != right[b] || right[k] == right[a]) continue;
-    return cut_length(to_double(corners[k].position), to_double(corners[a].position), to_double(corners[b].position));
+    if (right[a] != right[b] || right[k] == right[a])
+      continue;
+    return cut_length(to_double(corners[k].position), to_double(corners[a].position),
+                      to_double(corners[b].position));
   }
   return 0;
 }
 
 SplitPlane plane_at(std::span<const IdPoint> points, Vec3d direction, double fraction) {
   std::vector<SplitKey> keys(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) keys[i] = key_along(direction, points[i].position, points[i].id);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    keys[i] = key_along(direction, points[i].position, points[i].id);
   return {direction, quantile(keys, fraction)};
 }
 
 }  // namespace
 
 std::vector<Vec3d> candidate_directions(std::span<const Vec3f> points, Axis axis) {
-  if (axis == Axis::longest || points.size() < 2) return {longest_axis(points)};
+  if (axis == Axis::longest || points.size() < 2)
+    return {longest_axis(points)};
   std::vector<Vec3d> candidates;
-  for (int k = 0; k < 3; ++k) candidates.push_back(unit_axis(k));
+  for (int k = 0; k < 3; ++k)
+    candidates.push_back(unit_axis(k));
   for (int k = 0; k < 3; ++k) {
     const Vec3d a = unit_axis(k) * std::sqrt(0.5);
     const Vec3d b = unit_axis((k + 1) % 3) * std::sqrt(0.5);
     candidates.push_back(a + b);
     candidates.push_back(a - b);
   }
-  for (const Vec3d& principal : principal_axes(points)) candidates.push_back(principal);
+  for (const Vec3d& principal : principal_axes(points))
+    candidates.push_back(principal);
   return candidates;
 }
 
-Vec3d thinnest_direction(std::span<const Vec3f> points, double fraction, std::span<const Vec3d> candidates) {
-  if (candidates.size() == 1) return candidates[0];
+Vec3d thinnest_direction(std::span<const Vec3f> points, double fraction,
+                         std::span<const Vec3d> candidates) {
+  if (candidates.size() == 1)
+    return candidates[0];
   Vec3d best = candidates[0];
   double best_width = -1;
   for (const Vec3d& direction : candidates) {
     std::vector<double> values = projections(points, direction);
-    const double width = (quantile(values, fraction + kBand / 2) - quantile(values, fraction - kBand / 2)) /
-                         std::max(length(direction), std::numeric_limits<double>::min());
+    const double width =
+        (quantile(values, fraction + kBand / 2) - quantile(values, fraction - kBand / 2)) /
+        std::max(length(direction), std::numeric_limits<double>::min());
     if (width > best_width) {
       best_width = width;
       best = direction;
@@ -120,17 +139,26 @@ Vec3d thinnest_direction(std::span<const Vec3f> points, double fraction, std::sp
   return best;
 }
 
-Vec3d shortest_cut_direction(std::span<const IdPoint> points, std::span<const Corners> triangles, double fraction,
-                             double diagonal, std::span<const Vec3d> candidates) {
-  if (candidates.size() == 1) return candidates[0];
-  // 2^40 steps a diagonal: sums of a million cuts stay below 2^63, and any order gives the same sum.
-  const double steps = std::ldexp(1.0, 40) / diagonal;
+Vec3d shortest_cut_direction(std::span<const IdPoint> points, std::span<const Corners> triangles,
+                             double fraction, std::span<const Vec3d> candidates) {
+  if (candidates.size() == 1)
+    return candidates[0];
+  // 2^40 steps a diagonal: sums of a million cuts stay below 2^63, and any order gives the same
+  // sum.
+  Bounds bounds;
+  for (const Corners& corners : triangles) {
+    for (const IdPoint& corner : corners)
+      bounds.add(corner.position);
+  }
+  const double size = diagonal(bounds);
+  const double steps = size > 0 ? std::ldexp(1.0, 40) / size : 0;
   Vec3d best = candidates[0];
   std::int64_t best_sum = std::numeric_limits<std::int64_t>::max();
   for (const Vec3d& direction : candidates) {
     const SplitPlane plane = plane_at(points, direction, fraction);
     std::int64_t sum = 0;
-    for (const Corners& corners : triangles) sum += std::llround(cut_length(corners, plane) * steps);
+    for (const Corners& corners : triangles)
+      sum += std::llround(cut_length(corners, plane) * steps);
     if (sum < best_sum) {
       best_sum = sum;
       best = direction;

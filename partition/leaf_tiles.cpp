@@ -1,8 +1,8 @@
 #include "partition/leaf_tiles.h"
 
-#include <algorithm>
-
 #include "hierarchy/error.h"
+
+#include <algorithm>
 
 namespace meshhier::partition {
 namespace {
@@ -20,15 +20,18 @@ class LeafBuilder {
         leaf_of_(partition_of.size()),
         index_of_(partition_of.size()),
         touched_(partition_of.size()) {
-    for (std::size_t i = 0; i < leaf_of_.size(); ++i) leaf_of_[i] = raw(partition_of[i]) - first_partition_;
+    for (std::size_t i = 0; i < leaf_of_.size(); ++i)
+      leaf_of_[i] = raw(partition_of[i]) - first_partition_;
     result_.tiles.resize(tree.partitions(chunk.node).size());
   }
 
   ChunkLeaves run() {
     mark_rim();
     place_vertices();
-    for (const RankTriangle& t : chunk_.triangles) place_triangle(t);
-    for (WorkTile& tile : result_.tiles) finish(tile);
+    for (const RankTriangle& t : chunk_.triangles)
+      place_triangle(t);
+    for (WorkTile& tile : result_.tiles)
+      finish(tile);
     return std::move(result_);
   }
 
@@ -45,7 +48,8 @@ class LeafBuilder {
     for (const RankTriangle& t : chunk_.triangles) {
       const bool interior = leaf(t[0]) == leaf(t[1]) && leaf(t[1]) == leaf(t[2]);
       for (const std::uint32_t rank : t) {
-        if (leaf(rank) != kOutside) touched_[local(rank)] = std::max(touched_[local(rank)], interior ? kInner : kRim);
+        if (leaf(rank) != kOutside)
+          touched_[local(rank)] = std::max(touched_[local(rank)], interior ? kInner : kRim);
       }
     }
   }
@@ -54,8 +58,10 @@ class LeafBuilder {
     std::vector<std::uint32_t> size(result_.tiles.size());
     for (std::size_t v = 0; v < leaf_of_.size(); ++v) {
       ++size[leaf_of_[v]];
-      if (touched_[v] == kRim) ++result_.tiles[leaf_of_[v]].rim_count;
-      if (touched_[v] == kUnreferenced) ++result_.unreferenced_count;
+      if (touched_[v] == kRim)
+        ++result_.tiles[leaf_of_[v]].rim_count;
+      if (touched_[v] == kUnreferenced)
+        ++result_.unreferenced_count;
     }
     for (std::size_t i = 0; i < size.size(); ++i) {
       WorkTile& tile = result_.tiles[i];
@@ -72,11 +78,13 @@ class LeafBuilder {
       WorkTile& tile = result_.tiles[leaf];
       const bool rim = touched_[v] == kRim;
       index_of_[v] = rim ? next_rim[leaf]++ : tile.rim_count + next_inner[leaf]++;
-      if (rim) result_.places.push_back({v, leaf, index_of_[v]});
+      if (rim)
+        result_.places.push_back({v, leaf, index_of_[v]});
       tile.vertices.positions[index_of_[v]] = chunk_.vertices.positions[v];
       const auto attributes = chunk_.vertices.attributes_of(v);
       std::copy(attributes.begin(), attributes.end(),
-                tile.vertices.attributes.begin() + static_cast<std::ptrdiff_t>(index_of_[v] * attributes.size()));
+                tile.vertices.attributes.begin() +
+                    static_cast<std::ptrdiff_t>(index_of_[v] * attributes.size()));
     }
   }
 
@@ -84,31 +92,36 @@ class LeafBuilder {
     const std::array<std::uint32_t, 3> leaves{leaf(t[0]), leaf(t[1]), leaf(t[2])};
     if (leaves[0] == leaves[1] && leaves[1] == leaves[2]) {
       Triangle interior;
-      for (int k = 0; k < 3; ++k) interior[k] = static_cast<TileVertex>(index_of_[local(t[k])]);
+      for (int k = 0; k < 3; ++k)
+        interior[k] = static_cast<TileVertex>(index_of_[local(t[k])]);
       result_.tiles[leaves[0]].interior.push_back(interior);
       return;
     }
     for (int k = 0; k < 3; ++k) {
       const bool repeated = (k > 0 && leaves[k] == leaves[0]) || (k > 1 && leaves[k] == leaves[1]);
-      if (leaves[k] != kOutside && !repeated) add_border(result_.tiles[leaves[k]], leaves[k], t, leaves);
+      if (leaves[k] != kOutside && !repeated)
+        add_border(result_.tiles[leaves[k]], leaves[k], t, leaves);
     }
   }
 
-  void add_border(WorkTile& tile, std::uint32_t own, const RankTriangle& t, const std::array<std::uint32_t, 3>& leaves) {
+  void add_border(WorkTile& tile, std::uint32_t own, const RankTriangle& t,
+                  const std::array<std::uint32_t, 3>& leaves) {
     Triangle border;
     for (int k = 0; k < 3; ++k) {
       if (leaves[k] == own) {
         border[k] = static_cast<TileVertex>(index_of_[local(t[k])]);
         continue;
       }
-      const std::uint32_t chunk = leaves[k] == kOutside ? chunks_.chunk_of(t[k]) : chunk_.node.index;
+      const std::uint32_t chunk =
+          leaves[k] == kOutside ? chunks_.chunk_of(t[k]) : chunk_.node.index;
       border[k] = static_cast<TileVertex>(tile.vertices.size() + tile.foreign.size());
       tile.foreign.push_back({chunk, t[k] - chunks_.first_rank(chunk)});
     }
     tile.border.push_back(border);
   }
 
-  /// Makes the foreign corners unique and brings everything into an order that the triangles' order does not show in.
+  /// Makes the foreign corners unique and brings everything into an order that the triangles' order
+  /// does not show in.
   static void finish(WorkTile& tile) {
     const auto own_count = static_cast<std::uint32_t>(tile.vertices.size());
     std::vector<GhostRef> unique = tile.foreign;
@@ -116,9 +129,12 @@ class LeafBuilder {
     unique.erase(std::unique(unique.begin(), unique.end()), unique.end());
     for (Triangle& t : tile.border) {
       for (TileVertex& corner : t) {
-        if (raw(corner) < own_count) continue;
-        const auto found = std::lower_bound(unique.begin(), unique.end(), tile.foreign[raw(corner) - own_count]);
-        corner = static_cast<TileVertex>(own_count + static_cast<std::uint32_t>(found - unique.begin()));
+        if (raw(corner) < own_count)
+          continue;
+        const auto found =
+            std::lower_bound(unique.begin(), unique.end(), tile.foreign[raw(corner) - own_count]);
+        corner =
+            static_cast<TileVertex>(own_count + static_cast<std::uint32_t>(found - unique.begin()));
       }
     }
     tile.foreign = std::move(unique);
@@ -138,14 +154,15 @@ class LeafBuilder {
 
 }  // namespace
 
-ChunkLeaves build_leaves(const ChunkMesh& chunk, std::span<const PartitionId> partition_of, const Tree& tree,
-                         const ChunkMap& chunks) {
+ChunkLeaves build_leaves(const ChunkMesh& chunk, std::span<const PartitionId> partition_of,
+                         const Tree& tree, const ChunkMap& chunks) {
   return LeafBuilder(chunk, partition_of, tree, chunks).run();
 }
 
 const LeafPlace& find_place(std::span<const LeafPlace> places, std::uint32_t local) {
-  const auto found = std::lower_bound(places.begin(), places.end(), local,
-                                      [](const LeafPlace& place, std::uint32_t value) { return place.local < value; });
+  const auto found = std::lower_bound(
+      places.begin(), places.end(), local,
+      [](const LeafPlace& place, std::uint32_t value) { return place.local < value; });
   if (found == places.end() || found->local != local) {
     throw Error(ErrorCode::internal, "a border triangle's corner is not in its chunk's rim");
   }

@@ -1,12 +1,12 @@
 // Partition tiles out of a split chunk.
 #pragma once
 
+#include "hierarchy/build_tile.h"
+#include "partition/chunk.h"
+
 #include <cstdint>
 #include <span>
 #include <vector>
-
-#include "hierarchy/build_tile.h"
-#include "partition/chunk.h"
 
 namespace meshhier::partition {
 
@@ -18,17 +18,19 @@ struct LeafPlace {
 };
 
 struct ChunkLeaves {
-  std::vector<WorkTile> tiles;          ///< of the chunk's partitions, in order
-  std::vector<LeafPlace> places;        ///< every rim vertex, ascending by `local`
-  std::uint64_t unreferenced_count = 0; ///< vertices without a triangle
+  std::vector<WorkTile> tiles;           ///< of the chunk's partitions, in order
+  std::vector<LeafPlace> places;         ///< every rim vertex, ascending by `local`
+  std::uint64_t unreferenced_count = 0;  ///< vertices without a triangle
 };
 
-/// Builds the partition tiles: vertices by id, rim first; a border triangle goes to each partition it touches; its
-/// foreign corners are named by chunk and provisional rank within it. Independent of the order of the triangles.
-ChunkLeaves build_leaves(const ChunkMesh& chunk, std::span<const PartitionId> partition_of, const Tree& tree,
-                         const ChunkMap& chunks);
+/// Builds the partition tiles: vertices by id, rim first; a border triangle goes to each partition
+/// it touches; its foreign corners are named by chunk and provisional rank within it. Independent
+/// of the order of the triangles.
+ChunkLeaves build_leaves(const ChunkMesh& chunk, std::span<const PartitionId> partition_of,
+                         const Tree& tree, const ChunkMap& chunks);
 
-/// Looks a foreign corner of a leaf up in its chunk's places. Throws Error(internal) if it is not there.
+/// Looks a foreign corner of a leaf up in its chunk's places. Throws Error(internal) if it is not
+/// there.
 const LeafPlace& find_place(std::span<const LeafPlace> places, std::uint32_t local);
 
 }  // namespace meshhier::partition

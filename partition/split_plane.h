@@ -1,16 +1,17 @@
 // An exact, total order of vertices along a direction, and a place in it.
 #pragma once
 
+#include "hierarchy/vec.h"
+
 #include <bit>
 #include <compare>
 #include <cstdint>
 #include <limits>
 
-#include "hierarchy/vec.h"
-
 namespace meshhier::partition {
 
-/// A vertex's place along a direction: the order-preserving bits of its projection; ties broken by vertex id.
+/// A vertex's place along a direction: the order-preserving bits of its projection; ties broken by
+/// vertex id.
 struct SplitKey {
   std::uint64_t projection = 0;
   std::uint32_t id = 0;
@@ -37,7 +38,9 @@ inline SplitKey key_along(Vec3d direction, Vec3f position, std::uint32_t id) {
 struct SplitPlane {
   Vec3d direction;
   SplitKey first_right;
-  bool is_right(Vec3f position, std::uint32_t id) const { return key_along(direction, position, id) >= first_right; }
+  bool is_right(Vec3f position, std::uint32_t id) const {
+    return key_along(direction, position, id) >= first_right;
+  }
 };
 
 /// A vertex position with its id.

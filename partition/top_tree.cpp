@@ -1,22 +1,25 @@
 #include "partition/top_tree.h"
 
+#include "partition/select.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
-#include "partition/select.h"
-
 namespace meshhier::partition {
 namespace {
 
-// Half the width of a window in standard deviations of the sample median's rank. At 4 one window in 16,000 misses;
-// each more half sigma keeps an eighth more vertices aside.
+// Half the width of a window in standard deviations of the sample median's rank. At 4 one window in
+// 16,000 misses; each more half sigma keeps an eighth more vertices aside.
 constexpr double kWindowSigmas = 4;
 
-// The variance of a median's rank in a sample of m is m / 4; the planes above, themselves estimates, shift the sample of a
-// node: half of their deviation arrives one level below, at worst (all splits in one direction).
+// The variance of a median's rank in a sample of m is m / 4; the planes above, themselves
+// estimates, shift the sample of a node: half of their deviation arrives one level below, at worst
+// (all splits in one direction).
 constexpr double kMedianVariance = 0.25;
-constexpr double variance_below(double variance) { return kMedianVariance + variance / 2; }
+constexpr double variance_below(double variance) {
+  return kMedianVariance + variance / 2;
+}
 
 // Undecided vertices are read back in blocks of this many.
 constexpr std::size_t kReadBlock = 4096;
@@ -33,16 +36,21 @@ NodeId node_at(std::uint32_t heap) {
   return {static_cast<Level>(level), heap + 1 - (1U << level)};
 }
 
-std::uint64_t left_target(const Tree& tree, NodeId node) { return tree.ranks(tree.children(node).nodes[0]).size(); }
+std::uint64_t left_target(const Tree& tree, NodeId node) {
+  return tree.ranks(tree.children(node).nodes[0]).size();
+}
 
 std::vector<Vec3f> positions_of(std::span<const IdPoint> points) {
   std::vector<Vec3f> positions(points.size());
-  std::transform(points.begin(), points.end(), positions.begin(), [](const IdPoint& p) { return p.position; });
+  std::transform(points.begin(), points.end(), positions.begin(),
+                 [](const IdPoint& p) { return p.position; });
   return positions;
 }
 
-/// The window around the sample's quantile. A sample that is the whole node still gets one: nothing depends on it.
-void set_window(PlannedSplit& split, std::span<const SplitKey> sorted, double fraction, double variance) {
+/// The window around the sample's quantile. A sample that is the whole node still gets one: nothing
+/// depends on it.
+void set_window(PlannedSplit& split, std::span<const SplitKey> sorted, double fraction,
+                double variance) {
   const auto count = static_cast<double>(sorted.size());
   const double reach = kWindowSigmas * std::sqrt(variance * count) + 2;
   const double low = fraction * count - reach;
@@ -51,51 +59,82 @@ void set_window(PlannedSplit& split, std::span<const SplitKey> sorted, double fr
   split.high = high >= count ? SplitKey::highest() : sorted[static_cast<std::size_t>(high)];
 }
 
-/// `variance`: of the median's rank, per vertex of the sample.
-void plan_node(TopPlan& plan, std::uint32_t heap, std::span<IdPoint> sample, double variance, const Tree& tree,
-               Axis axis) {
-  if (heap >= plan.splits.size()) return;
-  PlannedSplit& split = plan.splits[heap];
-  const double below = variance_below(variance);
-  if (sample.size() < 2) {  // nothing known: any direction, a window that holds everything
-    split = {{1, 0, 0}, SplitKey::lowest(), SplitKey::highest()};
-    plan_node(plan, 2 * heap + 1, sample, below, tree, axis);
-    plan_node(plan, 2 * heap + 2, {}, below, tree, axis);
-    return;
+class Planner {
+ public:
+  Planner(TopPlan& plan, const Tree& tree) : plan_(plan), tree_(tree) {}
+
+  /// Chooses directions and windows of all nodes.
+  void plan(Axis axis) { plan_node(0, plan_.sample, kMedianVariance, &axis); }
+  /// Chooses new windows of the nodes that are not settled.
+  void plan_again() { plan_node(0, plan_.sample, kMedianVariance, nullptr); }
+
+ private:
+  /// `variance`: of the median's rank, per vertex of the sample. `axis`: null to keep the
+  /// direction.
+  void plan_node(std::uint32_t heap, std::span<IdPoint> sample, double variance, const Axis* axis) {
+    if (heap >= plan_.splits.size())
+      return;
+    PlannedSplit& split = plan_.splits[heap];
+    const NodeId node = node_at(heap);
+    const double fraction = static_cast<double>(left_target(tree_, node)) /
+                            static_cast<double>(tree_.ranks(node).size());
+    if (axis != nullptr)
+      split.direction = direction_of(sample, fraction, *axis);
+    const auto key = [&](const IdPoint& p) { return key_along(split.direction, p.position, p.id); };
+    std::sort(sample.begin(), sample.end(),
+              [&](const IdPoint& a, const IdPoint& b) { return key(a) < key(b); });
+    auto left = static_cast<std::size_t>(fraction * static_cast<double>(sample.size()));
+    double below = variance_below(variance);
+    if (split.settled) {
+      const auto cut = std::partition_point(sample.begin(), sample.end(),
+                                            [&](const IdPoint& p) { return key(p) < split.low; });
+      left = static_cast<std::size_t>(cut - sample.begin());
+      below = kMedianVariance;
+    } else if (split.misses > 1 || sample.size() < 2) {
+      split.low = SplitKey::lowest();
+      split.high = SplitKey::highest();
+    } else {
+      std::vector<SplitKey> keys(sample.size());
+      std::transform(sample.begin(), sample.end(), keys.begin(), key);
+      set_window(split, keys, fraction, variance);
+    }
+    plan_node(2 * heap + 1, sample.first(left), below, axis);
+    plan_node(2 * heap + 2, sample.subspan(left), below, axis);
   }
-  const NodeId node = node_at(heap);
-  const double fraction =
-      static_cast<double>(left_target(tree, node)) / static_cast<double>(tree.ranks(node).size());
-  const std::vector<Vec3f> positions = positions_of(sample);
-  split.direction = thinnest_direction(positions, fraction, candidate_directions(positions, axis));
-  const auto key = [&](const IdPoint& p) { return key_along(split.direction, p.position, p.id); };
-  std::sort(sample.begin(), sample.end(), [&](const IdPoint& a, const IdPoint& b) { return key(a) < key(b); });
-  std::vector<SplitKey> keys(sample.size());
-  std::transform(sample.begin(), sample.end(), keys.begin(), key);
-  set_window(split, keys, fraction, variance);
-  const auto left = static_cast<std::size_t>(fraction * static_cast<double>(sample.size()));
-  plan_node(plan, 2 * heap + 1, sample.first(left), below, tree, axis);
-  plan_node(plan, 2 * heap + 2, sample.subspan(left), below, tree, axis);
-}
+
+  static Vec3d direction_of(std::span<const IdPoint> sample, double fraction, Axis axis) {
+    if (sample.size() < 2)
+      return {1, 0, 0};
+    const std::vector<Vec3f> positions = positions_of(sample);
+    return thinnest_direction(positions, fraction, candidate_directions(positions, axis));
+  }
+
+  TopPlan& plan_;
+  const Tree& tree_;
+};
 
 }  // namespace
 
 Level chunk_level(const Tree& tree) {
   Level level{0};
   while (level < tree.depth()) {
-    // The first node of a level is never smaller than another by more than one partition's rounding.
     std::uint64_t largest = 0;
-    for (std::uint32_t i = 0; i < tree.node_count(level); ++i) largest = std::max(largest, tree.ranks({level, i}).size());
-    if (largest <= kChunkVertices) break;
+    for (std::uint32_t i = 0; i < tree.node_count(level); ++i)
+      largest = std::max(largest, tree.ranks({level, i}).size());
+    if (largest <= kChunkVertices)
+      break;
     level = finer(level);
   }
   return level;
 }
 
-std::uint64_t SampleIds::count() const { return std::min(vertex_count_, kSampleVertices); }
+std::uint64_t SampleIds::count() const {
+  return std::min(vertex_count_, kSampleVertices);
+}
 
 std::uint64_t SampleIds::operator[](std::uint64_t i) const {
-  if (vertex_count_ <= kSampleVertices) return i;
+  if (vertex_count_ <= kSampleVertices)
+    return i;
   const std::uint64_t begin = i * vertex_count_ / kSampleVertices;  // < 2^51
   const std::uint64_t end = (i + 1) * vertex_count_ / kSampleVertices;
   return begin + hash(i) % (end - begin);
@@ -105,7 +144,8 @@ TopPlan plan_top(std::vector<IdPoint> sample, const Tree& tree, Axis axis) {
   TopPlan plan;
   plan.chunks = chunk_level(tree);
   plan.splits.resize((std::size_t{1} << raw(plan.chunks)) - 1);
-  plan_node(plan, 0, sample, kMedianVariance, tree, axis);
+  plan.sample = std::move(sample);
+  Planner(plan, tree).plan(axis);
   return plan;
 }
 
@@ -134,36 +174,57 @@ SweepBlock sweep(const TopPlan& plan, std::span<const Vec3f> positions, std::uin
 
 std::uint32_t TopTree::chunk_of(Vec3f position, std::uint32_t id) const {
   std::uint32_t node = 0;
-  while (node < planes_.size()) node = 2 * node + (planes_[node].is_right(position, id) ? 2 : 1);
+  while (node < planes_.size())
+    node = 2 * node + (planes_[node].is_right(position, id) ? 2 : 1);
   return node - static_cast<std::uint32_t>(planes_.size());
 }
 
 TopSelector::TopSelector(const TopPlan& plan, const Tree& tree, storage::ScratchFile& scratch,
                          std::uint64_t memory_bytes)
-    : tree_(tree), memory_bytes_(memory_bytes), chunks_(plan.chunks), left_counts_(plan.splits.size()) {
-  // Open blocks of all nodes together stay within 4 MiB; below 1 KiB a block is not worth its bookkeeping.
-  const std::size_t block =
-      std::clamp<std::size_t>((4U << 20) / std::max<std::size_t>(plan.splits.size(), 1), 1024, 65536);
+    : tree_(tree),
+      memory_bytes_(memory_bytes),
+      chunks_(plan.chunks),
+      left_counts_(plan.splits.size()) {
+  // Open blocks of all nodes together stay within 4 MiB; below 1 KiB a block is not worth its
+  // bookkeeping.
+  const std::size_t block = std::clamp<std::size_t>(
+      (4U << 20) / std::max<std::size_t>(plan.splits.size(), 1), 1024, 65536);
   undecided_.reserve(plan.splits.size());
-  for (std::size_t i = 0; i < plan.splits.size(); ++i) undecided_.emplace_back(scratch, block);
+  for (std::size_t i = 0; i < plan.splits.size(); ++i)
+    undecided_.emplace_back(scratch, block);
 }
 
 void TopSelector::add(const SweepBlock& block) {
-  for (std::size_t node = 0; node < left_counts_.size(); ++node) left_counts_[node] += block.left_counts[node];
-  for (const SweepBlock::Undecided& u : block.undecided) undecided_[u.node].append(u.point);
+  for (std::size_t node = 0; node < left_counts_.size(); ++node)
+    left_counts_[node] += block.left_counts[node];
+  for (const SweepBlock::Undecided& u : block.undecided)
+    undecided_[u.node].append(u.point);
 }
 
 std::vector<SplitPlane> TopSelector::settle(TopPlan& plan) {
-  std::vector<SplitPlane> planes;
+  // A node is settled only if those above it are: else its counts are of other vertices than it
+  // will have.
+  const auto ready = [&](std::uint32_t node) {
+    return node == 0 || plan.splits[(node - 1) / 2].settled;
+  };
+  bool all = true;
   for (std::uint32_t node = 0; node < left_counts_.size(); ++node) {
-    planes.push_back(settle_node(node, plan.splits[node]));
-    if (missed_) return {};
+    if (ready(node))
+      settle_node(node, plan.splits[node]);
+    all = all && plan.splits[node].settled;
     undecided_[node].clear();
   }
+  if (!all) {
+    Planner(plan, tree_).plan_again();
+    return {};
+  }
+  std::vector<SplitPlane> planes;
+  for (const PlannedSplit& split : plan.splits)
+    planes.push_back({split.direction, split.low});
   return planes;
 }
 
-SplitPlane TopSelector::settle_node(std::uint32_t node, PlannedSplit& split) {
+void TopSelector::settle_node(std::uint32_t node, PlannedSplit& split) {
   const auto& spool = undecided_[node];
   const auto for_each_block = [&](const auto& visit) {
     std::vector<IdPoint> block(std::min<std::uint64_t>(kReadBlock, spool.size()));
@@ -181,16 +242,17 @@ SplitPlane TopSelector::settle_node(std::uint32_t node, PlannedSplit& split) {
   for_each_block([&](std::span<const IdPoint> block) {
     for (const IdPoint& p : block) {
       const SplitKey key = key_along(split.direction, p.position, p.id);
-      if (key < split.low) ++left;
-      if (in_window(key)) ++inside;
+      if (key < split.low)
+        ++left;
+      if (in_window(key))
+        ++inside;
     }
   });
   const std::uint64_t target = left_target(tree_, node_at(node));
   if (target < left || target >= left + inside) {
-    split.low = SplitKey::lowest();
-    split.high = SplitKey::highest();
-    missed_ = true;
-    return {};
+    split.settled = false;
+    ++split.misses;
+    return;
   }
   const KeySource keys = [&](const std::function<void(std::span<const SplitKey>)>& visit) {
     std::vector<SplitKey> found;
@@ -198,18 +260,21 @@ SplitPlane TopSelector::settle_node(std::uint32_t node, PlannedSplit& split) {
       found.clear();
       for (const IdPoint& p : block) {
         const SplitKey key = key_along(split.direction, p.position, p.id);
-        if (in_window(key)) found.push_back(key);
+        if (in_window(key))
+          found.push_back(key);
       }
       visit(found);
     });
   };
   const SplitPlane plane{split.direction, select(keys, inside, target - left, memory_bytes_)};
+  split.low = split.high = plane.first_right;
+  split.settled = true;
   if (2 * node + 1 < left_counts_.size()) {
     for_each_block([&](std::span<const IdPoint> block) {
-      for (const IdPoint& p : block) undecided_[2 * node + (plane.is_right(p.position, p.id) ? 2 : 1)].append(p);
+      for (const IdPoint& p : block)
+        undecided_[2 * node + (plane.is_right(p.position, p.id) ? 2 : 1)].append(p);
     });
   }
-  return plane;
 }
 
 }  // namespace meshhier::partition

@@ -1,35 +1,38 @@
-// The upper part of the kd-tree: from the whole mesh down to chunks that fit in memory, with exact medians from one
-// streaming pass.
+// The upper part of the kd-tree: from the whole mesh down to chunks that fit in memory, with exact
+// medians from one streaming pass.
 //
-// A sample of fixed size plans everything that decides a split: its direction, and a window of keys that all but
-// surely holds the exact median. One sweep over all vertices then counts what lies left of each node's window on the
-// way down; the few vertices that fall into a window are kept aside, and settle the exact medians afterwards, node
-// by node from the root. If a median misses its window, the window is opened wide and the sweep repeated: slower,
-// never wrong. None of this depends on the memory at hand.
+// A sample of fixed size plans everything that decides a split: its direction, and a window of keys
+// that all but surely holds the exact median. One sweep over all vertices then counts what lies
+// left of each node's window on the way down; the few vertices that fall into a window are kept
+// aside, and settle the exact medians afterwards, node by node from the root. If a median misses
+// its window, the windows of its node and those below are planned again, now with the exact planes
+// above them, and the sweep repeated; a second miss opens the window wide: slower, never wrong.
+// None of this depends on the memory at hand.
 #pragma once
-
-#include <cstdint>
-#include <span>
-#include <vector>
 
 #include "hierarchy/tree.h"
 #include "partition/direction.h"
 #include "partition/split_plane.h"
 #include "storage/spool.h"
 
+#include <cstdint>
+#include <span>
+#include <vector>
+
 namespace meshhier::partition {
 
 /// Vertices a chunk has at most: its working set is then some 20 MB, which fits the least budget.
 inline constexpr std::uint64_t kChunkVertices = 131072;
 
-/// Vertices the splits above the chunks are planned with. 8 MiB; the deepest of 8 levels still sees 4096.
+/// Vertices the splits above the chunks are planned with. 8 MiB; the deepest of 8 levels still sees
+/// 4096.
 inline constexpr std::uint64_t kSampleVertices = 524288;
 
 /// The level whose nodes are the chunks: the first on which no node has more than kChunkVertices.
 Level chunk_level(const Tree& tree);
 
-/// Which vertices are sampled, ascending: one at a hashed place in each of kSampleVertices equal strides (all, if
-/// there are no more than that).
+/// Which vertices are sampled, ascending: one at a hashed place in each of kSampleVertices equal
+/// strides (all, if there are no more than that).
 class SampleIds {
  public:
   explicit SampleIds(std::uint64_t vertex_count) : vertex_count_(vertex_count) {}
@@ -41,14 +44,17 @@ class SampleIds {
 };
 
 struct PlannedSplit {
-  Vec3d direction;
-  SplitKey low, high;  ///< the window, both ends inclusive
+  Vec3d direction;       ///< planned once, from the sample; never changed
+  SplitKey low, high;    ///< the window, both ends inclusive
+  bool settled = false;  ///< the exact median is known: low == high
+  int misses = 0;        ///< sweeps in which the median was outside the window
 };
 
 /// Splits of all nodes above the chunks, in heap order: node (l, i) at 2^l - 1 + i.
 struct TopPlan {
   Level chunks{};
   std::vector<PlannedSplit> splits;
+  std::vector<IdPoint> sample;  ///< kept, in case windows must be planned again
 };
 
 TopPlan plan_top(std::vector<IdPoint> sample, const Tree& tree, Axis axis);
@@ -69,7 +75,8 @@ SweepBlock sweep(const TopPlan& plan, std::span<const Vec3f> positions, std::uin
 /// The exact splits: a vertex's chunk is a pure function of its position and id.
 class TopTree {
  public:
-  TopTree(Level chunks, std::vector<SplitPlane> planes) : chunks_(chunks), planes_(std::move(planes)) {}
+  TopTree(Level chunks, std::vector<SplitPlane> planes)
+      : chunks_(chunks), planes_(std::move(planes)) {}
   Level chunks() const { return chunks_; }
   /// NodeId::index on the chunk level.
   std::uint32_t chunk_of(Vec3f position, std::uint32_t id) const;
@@ -83,23 +90,24 @@ class TopTree {
 class TopSelector {
  public:
   /// `memory_bytes`: for the selection of one median.
-  TopSelector(const TopPlan& plan, const Tree& tree, storage::ScratchFile& scratch, std::uint64_t memory_bytes);
+  TopSelector(const TopPlan& plan, const Tree& tree, storage::ScratchFile& scratch,
+              std::uint64_t memory_bytes);
 
   void add(const SweepBlock& block);
 
-  /// The planes of all splits, or none if a median missed its window: `plan` then has that window opened wide, and
-  /// wants another sweep. Call once.
+  /// The planes of all splits, or none if a median missed its window: `plan` then has new windows,
+  /// and wants another sweep with a new selector. Call once.
   std::vector<SplitPlane> settle(TopPlan& plan);
 
  private:
-  SplitPlane settle_node(std::uint32_t node, PlannedSplit& split);
+  /// Finds the node's median and hands its kept-aside vertices down; or notes a miss.
+  void settle_node(std::uint32_t node, PlannedSplit& split);
 
   const Tree& tree_;
   std::uint64_t memory_bytes_;
   Level chunks_;
   std::vector<std::uint64_t> left_counts_;
   std::vector<storage::RecordSpool<IdPoint>> undecided_;
-  bool missed_ = false;
 };
 
 }  // namespace meshhier::partition

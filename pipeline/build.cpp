@@ -1,11 +1,5 @@
 #include "pipeline/build.h"
 
-#include <algorithm>
-
-#include <fmt/format.h>
-#include <tbb/global_control.h>
-#include <tbb/info.h>
-
 #include "partition/top_tree.h"
 #include "pipeline/forest.h"
 #include "pipeline/memory_plan.h"
@@ -18,6 +12,12 @@
 #include "storage/hash.h"
 #include "storage/work_directory.h"
 
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+
 namespace meshhier::pipeline {
 namespace {
 
@@ -25,18 +25,21 @@ constexpr std::uint32_t kLargestTile = 32768;  // tile indices are 16 bits, ghos
 
 Tree plan_tree(const Config& config, std::uint64_t vertex_count) {
   if (vertex_count == 0) {
-    throw Error(ErrorCode::input, fmt::format("{} has no vertices: there is nothing to build", config.input.string()));
+    throw Error(ErrorCode::input, fmt::format("{} has no vertices: there is nothing to build",
+                                              config.input.string()));
   }
-  const std::uint64_t count = config.partition.count
-                                  ? *config.partition.count
-                                  : (vertex_count + config.partition.vertices - 1) / config.partition.vertices;
+  const std::uint64_t count =
+      config.partition.count
+          ? *config.partition.count
+          : (vertex_count + config.partition.vertices - 1) / config.partition.vertices;
   if (count > vertex_count) {
-    throw Error(ErrorCode::usage, fmt::format("partition.count is {}, but {} has only {} vertices", count,
-                                              config.input.string(), vertex_count));
+    throw Error(ErrorCode::usage, fmt::format("partition.count is {}, but {} has only {} vertices",
+                                              count, config.input.string(), vertex_count));
   }
   if ((vertex_count + count - 1) / count > kLargestTile) {
     throw Error(ErrorCode::usage,
-                fmt::format("partition.count is {}: partitions of {} vertices; a tile holds at most {}, so the count "
+                fmt::format("partition.count is {}: partitions of {} vertices; a tile holds at "
+                            "most {}, so the count "
                             "must be at least {}",
                             count, (vertex_count + count - 1) / count, kLargestTile,
                             (vertex_count + kLargestTile - 1) / kLargestTile));
@@ -45,15 +48,18 @@ Tree plan_tree(const Config& config, std::uint64_t vertex_count) {
 }
 
 std::uint32_t largest_partition(const Tree& tree) {
-  return static_cast<std::uint32_t>((tree.vertex_count() + tree.partition_count() - 1) / tree.partition_count());
+  return static_cast<std::uint32_t>((tree.vertex_count() + tree.partition_count() - 1) /
+                                    tree.partition_count());
 }
 
 std::uint32_t asked_vertices(const Config& config, const Tree& tree) {
-  if (config.simplify.vertices) return *config.simplify.vertices;
+  if (config.simplify.vertices)
+    return *config.simplify.vertices;
   return config.partition.count ? std::max(4U, largest_partition(tree)) : config.partition.vertices;
 }
 
-JobSize job_size(const Config& config, const mesh_io::MeshDescription& mesh, const Tree& tree, std::size_t threads) {
+JobSize job_size(const Config& config, const mesh_io::MeshDescription& mesh, const Tree& tree,
+                 std::size_t threads) {
   JobSize job;
   job.vertex_count = mesh.vertex_count;
   job.face_count = mesh.face_count;
@@ -62,6 +68,7 @@ JobSize job_size(const Config& config, const mesh_io::MeshDescription& mesh, con
   job.partition_count = tree.partition_count();
   job.largest_tile = std::max(largest_partition(tree), asked_vertices(config, tree));
   job.threads = threads;
+  job.asked_vertices = asked_vertices(config, tree);
   return job;
 }
 
@@ -70,10 +77,12 @@ void check_disk(const JobSize& job, const MemoryPlan& plan, const std::filesyste
   const DiskNeed need = predict_disk(job, plan);
   const std::uint64_t free = files.free_bytes(directory);
   if (free < need.temporary_bytes + need.output_bytes) {
-    throw Error(ErrorCode::budget,
-                fmt::format("{} has {} free; the hierarchy will take about {} and up to {} of temporary files",
-                            directory.string(), rounded_size_text(free), rounded_size_text(need.output_bytes),
-                            rounded_size_text(need.temporary_bytes)));
+    throw Error(
+        ErrorCode::budget,
+        fmt::format(
+            "{} has {} free; the hierarchy will take about {} and up to {} of temporary files",
+            directory.string(), rounded_size_text(free), rounded_size_text(need.output_bytes),
+            rounded_size_text(need.temporary_bytes)));
   }
 }
 
@@ -83,11 +92,13 @@ void check_apart(const Config& config, storage::FileSystem& files) {
   const std::filesystem::path output = files.canonical(config.output);
   const auto [end, rest] = std::mismatch(output.begin(), output.end(), input.begin(), input.end());
   if (end == output.end()) {
-    throw Error(ErrorCode::usage, fmt::format("the input {} lies in the output {}", input.string(), output.string()));
+    throw Error(ErrorCode::usage,
+                fmt::format("the input {} lies in the output {}", input.string(), output.string()));
   }
 }
 
-std::uint64_t checksum_of_file(storage::FileSystem& files, const std::filesystem::path& path, const CancelToken& cancel) {
+std::uint64_t checksum_of_file(storage::FileSystem& files, const std::filesystem::path& path,
+                               const CancelToken& cancel) {
   const auto file = files.open(path);
   storage::Checksum sum;
   std::vector<std::byte> buffer(1 << 20);
@@ -95,22 +106,25 @@ std::uint64_t checksum_of_file(storage::FileSystem& files, const std::filesystem
     cancel.check();
     const std::size_t count = file->read_at(offset, buffer);
     sum.add({buffer.data(), count});
-    if (count < buffer.size()) return sum.value();
+    if (count < buffer.size())
+      return sum.value();
   }
 }
 
-std::string report_text(const SourceSummary& source, const Tree& tree, const PublishedSummary& published,
-                        const storage::IoCounters& io) {
-  std::string text = fmt::format("{} vertices, {} triangles -> {} partitions, {} levels, {} tiles, {}\n",
-                                 source.vertices, source.triangles, tree.partition_count(), raw(tree.depth()) + 1,
-                                 published.tiles, rounded_size_text(published.total_bytes));
+std::string report_text(const SourceSummary& source, const Tree& tree,
+                        const PublishedSummary& published, const storage::IoCounters& io) {
+  std::string text =
+      fmt::format("{} vertices, {} triangles -> {} partitions, {} levels, {} tiles, {}\n",
+                  source.vertices, source.triangles, tree.partition_count(), raw(tree.depth()) + 1,
+                  published.tiles, rounded_size_text(published.total_bytes));
   if (source.degenerate_triangles > 0) {
     text += fmt::format("dropped {} degenerate triangles\n", source.degenerate_triangles);
   }
   if (source.unreferenced_vertices > 0) {
     text += fmt::format("kept {} vertices that no triangle uses\n", source.unreferenced_vertices);
   }
-  text += fmt::format("read {}, wrote {}\n", rounded_size_text(io.bytes_read), rounded_size_text(io.bytes_written));
+  text += fmt::format("read {}, wrote {}\n", rounded_size_text(io.bytes_read),
+                      rounded_size_text(io.bytes_written));
   return text;
 }
 
@@ -119,8 +133,9 @@ std::string report_text(const SourceSummary& source, const Tree& tree, const Pub
 BuildReport build_hierarchy(const Config& config, bool force, BuildEnvironment environment) {
   auto& [files, progress, cancel] = environment;
   configure_allocator();
-  const std::size_t threads =
-      config.threads > 0 ? config.threads : static_cast<std::size_t>(tbb::info::default_concurrency());
+  const std::size_t threads = config.threads > 0
+                                  ? config.threads
+                                  : static_cast<std::size_t>(tbb::info::default_concurrency());
   const tbb::global_control thread_limit(tbb::global_control::max_allowed_parallelism, threads);
 
   // Everything that can be refused is refused before anything is written.
@@ -139,20 +154,28 @@ BuildReport build_hierarchy(const Config& config, bool force, BuildEnvironment e
   PublishInput result;
   {
     storage::ScratchFile mesh_scratch(files, work.temporary() / "mesh", pool);
-    SourceMesh mesh(std::move(source), config.input.filename().string(), mesh_scratch, progress, cancel);
-    Chunks chunks = distribute(mesh, tree, config.partition.axis, plan, mesh_scratch, progress, cancel);
+    SourceMesh mesh(std::move(source), config.input.filename().string(), mesh_scratch, progress,
+                    cancel);
+    Chunks chunks =
+        distribute(mesh, tree, config.partition.axis, plan, mesh_scratch, progress, cancel);
     result.source = mesh.summary();
     result.source.checksum = checksum_of_file(files, config.input, cancel);
     result.format = {mesh.summary().attributes, mesh.origin()};
-    result.source.unreferenced_vertices = make_leaves(chunks, forest, config.partition.axis, plan, progress, cancel);
+    result.source.unreferenced_vertices =
+        make_leaves(chunks, forest, config.partition.axis, plan, progress, cancel);
   }
   result.asked_vertices = asked_vertices(config, tree);
   result.config = resolved_json(config);
-  simplify(forest, {result.asked_vertices, result.source.attributes, {config.simplify.method, config.simplify.representative}},
+  simplify(forest,
+           {result.asked_vertices,
+            result.source.attributes,
+            {config.simplify.method, config.simplify.representative}},
            plan, progress, cancel);
-  result.outline = make_outline(forest, config.outline, length(result.source.bounds.max - result.source.bounds.min),
-                                progress, cancel);
-  const PublishedSummary published = publish(forest, result, work.path(), plan, files, progress, cancel);
+  result.outline =
+      make_outline(forest, config.outline,
+                   length(result.source.bounds.max - result.source.bounds.min), progress, cancel);
+  const PublishedSummary published =
+      publish(forest, result, work.path(), plan, files, progress, cancel);
   work.publish();
   return {report_text(result.source, tree, published, files.counters())};
 }

@@ -1,12 +1,12 @@
 // The main job: from a mesh file to a hierarchy on disk.
 #pragma once
 
-#include <string>
-
 #include "pipeline/cancel.h"
 #include "pipeline/config.h"
 #include "pipeline/progress.h"
 #include "storage/file.h"
+
+#include <string>
 
 namespace meshhier::pipeline {
 
@@ -21,8 +21,8 @@ struct BuildReport {
   std::string text;  ///< a few lines for people
 };
 
-/// Builds config.output from config.input. An existing output is Error(exists), or is replaced if `force`.
-/// On any failure nothing is left behind and an existing output is as it was.
+/// Builds config.output from config.input. An existing output is Error(exists), or is replaced if
+/// `force`. On any failure nothing is left behind and an existing output is as it was.
 BuildReport build_hierarchy(const Config& config, bool force, BuildEnvironment environment);
 
 }  // namespace meshhier::pipeline

@@ -1,10 +1,10 @@
 #include "pipeline/forest.h"
 
-#include <algorithm>
-#include <cstring>
-
 #include "cluster_simplify/seams.h"
 #include "storage/work_tile.h"
+
+#include <algorithm>
+#include <cstring>
 
 namespace meshhier::pipeline {
 namespace {
@@ -13,7 +13,8 @@ namespace {
 template <class Visit>
 void for_each_tile(std::span<const GhostRef> refs, const Visit& visit) {
   for (std::size_t begin = 0, end = 0; begin < refs.size(); begin = end) {
-    while (end < refs.size() && refs[end].tile == refs[begin].tile) ++end;
+    while (end < refs.size() && refs[end].tile == refs[begin].tile)
+      ++end;
     visit(begin, end);
   }
 }
@@ -24,7 +25,11 @@ Forest::Forest(const Tree& tree, Level chunks, int channels, storage::ScratchFil
     : tree_(tree), chunks_(chunks), channels_(channels), places_(scratch, tree.node_count(chunks)) {
   for (int level = 0; level <= raw(tree.depth()); ++level) {
     const std::uint32_t count = tree.node_count(static_cast<Level>(level));
-    levels_.push_back({{scratch, count}, {scratch, count}, {scratch, count}, std::vector<float>(count), std::vector<std::uint32_t>(count)});
+    levels_.push_back({{scratch, count},
+                       {scratch, count},
+                       {scratch, count},
+                       std::vector<float>(count),
+                       std::vector<std::uint32_t>(count)});
   }
 }
 
@@ -51,20 +56,23 @@ BuildTile Forest::load(NodeId node) const {
   BuildTile tile = cluster_simplify::resolve(std::move(work), ghosts, !tree_.is_partition(node));
   for_each_tile(tile.mesh.ghosts, [&](std::size_t begin, std::size_t) {
     const std::uint32_t neighbour = tile.mesh.ghosts[begin].tile;
-    cluster_simplify::fill_ghosts(tile, neighbour, storage::decode_rim(level.rims.get(neighbour), channels_));
+    cluster_simplify::fill_ghosts(tile, neighbour,
+                                  storage::decode_rim(level.rims.get(neighbour), channels_));
   });
   return tile;
 }
 
 std::vector<GhostRef> Forest::mapped(NodeId node, std::span<const GhostRef> foreign) const {
-  if (tree_.is_partition(node)) return mapped_leaf(foreign);
+  if (tree_.is_partition(node))
+    return mapped_leaf(foreign);
   std::vector<GhostRef> result;
   result.reserve(foreign.size());
   for_each_tile(foreign, [&](std::size_t begin, std::size_t end) {
     const NodeId child{finer(node.level), foreign[begin].tile};
     const std::uint32_t parent = tree_.parent(child).index;
     const std::vector<std::uint16_t> map = parent_map(child, foreign[end - 1].index + 1);
-    for (std::size_t i = begin; i < end; ++i) result.push_back({parent, map[foreign[i].index]});
+    for (std::size_t i = begin; i < end; ++i)
+      result.push_back({parent, map[foreign[i].index]});
   });
   return result;
 }
@@ -87,14 +95,17 @@ std::vector<GhostRef> Forest::mapped_leaf(std::span<const GhostRef> foreign) con
 
 std::vector<std::uint16_t> Forest::parent_map(NodeId child, std::size_t count) const {
   std::vector<std::uint16_t> map(count);
-  levels_[raw(child.level)].parent_maps.read(child.index, 0, std::as_writable_bytes(std::span(map)));
+  levels_[raw(child.level)].parent_maps.read(child.index, 0,
+                                             std::as_writable_bytes(std::span(map)));
   return map;
 }
 
 std::vector<std::uint16_t> Forest::published_parent_map(NodeId node) const {
-  if (node.level == Level{0}) return {};
+  if (node.level == Level{0})
+    return {};
   const auto whole = [&](NodeId child) {
-    return parent_map(child, levels_[raw(child.level)].parent_maps.size(child.index) / sizeof(std::uint16_t));
+    return parent_map(
+        child, levels_[raw(child.level)].parent_maps.size(child.index) / sizeof(std::uint16_t));
   };
   const NodeId parent = tree_.parent(node);
   // An early node keeps its partition as it is, so the map from it is the map from the partition.
@@ -106,12 +117,15 @@ std::vector<GhostChain> Forest::chains(NodeId node, std::span<const GhostRef> gh
   for_each_tile(ghosts, [&](std::size_t begin, std::size_t end) {
     NodeId tile{node.level, ghosts[begin].tile};
     const int length = tree_.chain_length(node, tile);
-    for (std::size_t i = begin; i < end; ++i) result[i].push_back(static_cast<std::uint16_t>(ghosts[i].index));
+    for (std::size_t i = begin; i < end; ++i)
+      result[i].push_back(static_cast<std::uint16_t>(ghosts[i].index));
     for (int step = 1; step < length; ++step, tile = tree_.parent(tile)) {
       std::uint32_t last = 0;
-      for (std::size_t i = begin; i < end; ++i) last = std::max<std::uint32_t>(last, result[i].back());
+      for (std::size_t i = begin; i < end; ++i)
+        last = std::max<std::uint32_t>(last, result[i].back());
       const std::vector<std::uint16_t> map = parent_map(tile, std::size_t{last} + 1);
-      for (std::size_t i = begin; i < end; ++i) result[i].push_back(map[result[i].back()]);
+      for (std::size_t i = begin; i < end; ++i)
+        result[i].push_back(map[result[i].back()]);
     }
   });
   return result;

@@ -1,21 +1,22 @@
 // The hierarchy under construction: every level's tiles, rims and parent maps, in scratch space.
 #pragma once
 
-#include <cstdint>
-#include <memory>
-#include <span>
-#include <vector>
-
 #include "hierarchy/build_tile.h"
 #include "hierarchy/published.h"
 #include "hierarchy/tree.h"
 #include "partition/leaf_tiles.h"
 #include "storage/blob_store.h"
 
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
 namespace meshhier::pipeline {
 
-/// Tiles are put level by level, finest first. A level's tiles can be loaded once all tiles of that level are there (and,
-/// of a simplified level, all parent maps that lead to it). Loading and putting are thread-safe.
+/// Tiles are put level by level, finest first. A level's tiles can be loaded once all tiles of that
+/// level are there (and, of a simplified level, all parent maps that lead to it). Loading and
+/// putting are thread-safe.
 ///
 /// An early node has a tile here too: its partition's, kept as it is.
 class Forest {
@@ -30,7 +31,9 @@ class Forest {
   void put_parent_map(NodeId child, std::span<const std::uint16_t> parent_map);
 
   float error(NodeId node) const { return levels_[raw(node.level)].errors[node.index]; }
-  std::uint32_t own_count(NodeId node) const { return levels_[raw(node.level)].own_counts[node.index]; }
+  std::uint32_t own_count(NodeId node) const {
+    return levels_[raw(node.level)].own_counts[node.index];
+  }
 
   /// The tile with its ghosts at its own level, positions and all.
   BuildTile load(NodeId node) const;

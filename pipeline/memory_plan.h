@@ -10,11 +10,12 @@ namespace meshhier::pipeline {
 struct JobSize {
   std::uint64_t vertex_count = 0;
   std::uint64_t face_count = 0;
-  int channels = 0;                  ///< attribute floats per vertex
-  bool vertices_in_place = true;     ///< else the vertices are spooled once more
+  int channels = 0;               ///< attribute floats per vertex
+  bool vertices_in_place = true;  ///< else the vertices are spooled once more
   std::uint32_t partition_count = 0;
-  std::uint32_t largest_tile = 0;    ///< vertices of the largest partition or simplified mesh
+  std::uint32_t largest_tile = 0;  ///< vertices of the largest partition or simplified mesh
   std::size_t threads = 1;
+  std::uint32_t asked_vertices = 0;  ///< of a simplified mesh; 0: as a partition has
 };
 
 /// The budget's division. Every part is an upper bound.
@@ -24,8 +25,8 @@ struct MemoryPlan {
   std::size_t blocks_in_flight = 1;  ///< blocks of input
   std::size_t chunks_in_flight = 1;
   std::size_t tiles_in_flight = 1;
-  std::size_t spool_block_bytes = 0; ///< of each of a stage's many spools
-  std::uint64_t table_bytes = 0;     ///< for renumbering the triangles
+  std::size_t spool_block_bytes = 0;  ///< of each of a stage's many spools
+  std::uint64_t table_bytes = 0;      ///< for renumbering the triangles
 };
 
 /// Divides `budget_bytes`. Throws Error(budget) naming the least that would do.
@@ -38,7 +39,8 @@ struct DiskNeed {
 };
 DiskNeed predict_disk(const JobSize& job, const MemoryPlan& plan);
 
-/// Sets the allocator up so that freed memory goes back to the system: the budget is about what is resident.
+/// Sets the allocator up so that freed memory goes back to the system: the budget is about what is
+/// resident.
 void configure_allocator();
 /// Gives free memory back, between stages.
 void release_free_memory();

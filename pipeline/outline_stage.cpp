@@ -1,9 +1,9 @@
 #include "pipeline/outline_stage.h"
 
-#include <algorithm>
-
 #include "outline/outline_builder.h"
 #include "storage/outline_glb.h"
+
+#include <algorithm>
 
 namespace meshhier::pipeline {
 namespace {
@@ -14,14 +14,15 @@ constexpr std::size_t kOutlineBytes = 32000;
 /// The finest level with no more than `sectors` nodes.
 Level sector_level(const Tree& tree, std::uint32_t sectors) {
   Level level{0};
-  while (level < tree.depth() && tree.node_count(finer(level)) <= sectors) level = finer(level);
+  while (level < tree.depth() && tree.node_count(finer(level)) <= sectors)
+    level = finer(level);
   return level;
 }
 
 }  // namespace
 
-OutlineStageResult make_outline(const Forest& forest, const OutlineConfig& config, double diagonal, Progress& progress,
-                                const CancelToken& cancel) {
+OutlineStageResult make_outline(const Forest& forest, const OutlineConfig& config, double diagonal,
+                                Progress& progress, const CancelToken& cancel) {
   const Level level = sector_level(forest.tree(), config.sectors);
   const std::uint32_t count = forest.tree().node_count(level);
   progress.stage("outline", count, "sectors");

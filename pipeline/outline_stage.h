@@ -15,7 +15,7 @@ struct OutlineStageResult {
 };
 
 /// `diagonal`: of the model's bounding box.
-OutlineStageResult make_outline(const Forest& forest, const OutlineConfig& config, double diagonal, Progress& progress,
-                                const CancelToken& cancel);
+OutlineStageResult make_outline(const Forest& forest, const OutlineConfig& config, double diagonal,
+                                Progress& progress, const CancelToken& cancel);
 
 }  // namespace meshhier::pipeline

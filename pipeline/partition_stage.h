@@ -1,8 +1,6 @@
 // The stage `partition`, upper part: vertices and triangles distributed to chunks.
 #pragma once
 
-#include <vector>
-
 #include "hierarchy/tree.h"
 #include "partition/chunk.h"
 #include "partition/direction.h"
@@ -11,6 +9,8 @@
 #include "pipeline/progress.h"
 #include "pipeline/source_mesh.h"
 #include "storage/spool.h"
+
+#include <vector>
 
 namespace meshhier::pipeline {
 
@@ -41,7 +41,8 @@ class Chunks {
   std::vector<storage::RecordSpool<partition::RankTriangle>> triangles_;
 };
 
-/// Finds the exact splits above the chunks, then distributes the vertices in one pass and the triangles in one.
+/// Finds the exact splits above the chunks, then distributes the vertices in one pass and the
+/// triangles in one.
 Chunks distribute(SourceMesh& mesh, const Tree& tree, partition::Axis axis, const MemoryPlan& plan,
                   storage::ScratchFile& scratch, Progress& progress, const CancelToken& cancel);
 

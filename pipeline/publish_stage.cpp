@@ -1,8 +1,5 @@
 #include "pipeline/publish_stage.h"
 
-#include <algorithm>
-#include <span>
-
 #include "hierarchy/bounds.h"
 #include "partition/compactness.h"
 #include "pipeline/parallel.h"
@@ -13,6 +10,9 @@
 #include "storage/manifest.h"
 #include "storage/outline_glb.h"
 
+#include <algorithm>
+#include <span>
+
 namespace meshhier::pipeline {
 namespace {
 
@@ -21,23 +21,26 @@ std::vector<NodeId> published_nodes(const Tree& tree) {
   for (int l = 0; l <= raw(tree.depth()); ++l) {
     const auto level = static_cast<Level>(l);
     for (std::uint32_t i = 0; i < tree.node_count(level); ++i) {
-      if (!tree.is_early({level, i})) nodes.push_back({level, i});
+      if (!tree.is_early({level, i}))
+        nodes.push_back({level, i});
     }
   }
   return nodes;
 }
 
-/// Whether a tile draws a border triangle when its own level is shown: early neighbours show their partitions, which
-/// are finer and draw it; among equals the lowest index does.
+/// Whether a tile draws a border triangle when its own level is shown: early neighbours show their
+/// partitions, which are finer and draw it; among equals the lowest index does.
 bool draws(const Tree& tree, NodeId node, const TileMesh& mesh, const Triangle& triangle) {
   return std::all_of(triangle.begin(), triangle.end(), [&](TileVertex v) {
-    if (mesh.is_own(v)) return true;
+    if (mesh.is_own(v))
+      return true;
     const NodeId neighbour{node.level, mesh.ghost(v).tile};
     return !tree.is_early(neighbour) && node.index < neighbour.index;
   });
 }
 
-TileRecord describe(const Tree& tree, NodeId node, const BuildTile& tile, float error, std::uint32_t asked) {
+TileRecord describe(const Tree& tree, NodeId node, const BuildTile& tile, float error,
+                    std::uint32_t asked) {
   const TileMesh& mesh = tile.mesh;
   TileRecord record;
   record.node = node;
@@ -46,13 +49,16 @@ TileRecord describe(const Tree& tree, NodeId node, const BuildTile& tile, float 
   record.ghost_count = static_cast<std::uint32_t>(mesh.ghosts.size());
   record.interior_count = static_cast<std::uint32_t>(mesh.interior.size());
   record.border_count = static_cast<std::uint32_t>(mesh.border.size());
-  record.drawn_border_count = static_cast<std::uint32_t>(std::count_if(
-      mesh.border.begin(), mesh.border.end(), [&](const Triangle& t) { return draws(tree, node, mesh, t); }));
+  record.drawn_border_count = static_cast<std::uint32_t>(
+      std::count_if(mesh.border.begin(), mesh.border.end(),
+                    [&](const Triangle& t) { return draws(tree, node, mesh, t); }));
   record.target_count = tree.is_partition(node) ? mesh.own_count : asked;
   record.bounds = bounds_of(mesh.vertices.positions);
   record.error = error;
-  for (const float radius : tile.history.radii) record.bound = std::max(record.bound, radius);
-  if (tree.is_partition(node)) record.compactness = static_cast<float>(partition::compactness(mesh));
+  for (const float radius : tile.history.radii)
+    record.bound = std::max(record.bound, radius);
+  if (tree.is_partition(node))
+    record.compactness = static_cast<float>(partition::compactness(mesh));
   return record;
 }
 
@@ -75,8 +81,9 @@ TileRecord write_tile(const Forest& forest, NodeId node, const PublishInput& inp
 
 }  // namespace
 
-PublishedSummary publish(const Forest& forest, const PublishInput& input, const std::filesystem::path& directory,
-                         const MemoryPlan& plan, storage::FileSystem& files, Progress& progress,
+PublishedSummary publish(const Forest& forest, const PublishInput& input,
+                         const std::filesystem::path& directory, const MemoryPlan& plan,
+                         storage::FileSystem& files, Progress& progress,
                          const CancelToken& cancel) {
   const Tree& tree = forest.tree();
   const std::vector<NodeId> nodes = published_nodes(tree);
@@ -98,7 +105,8 @@ PublishedSummary publish(const Forest& forest, const PublishInput& input, const 
 
   const std::vector<std::byte> index = storage::encode_index(records);
   storage::write_file(files, storage::index_path(directory), index);
-  const std::vector<std::byte> outline = storage::encode_outline(input.outline.outline, input.format.origin);
+  const std::vector<std::byte> outline =
+      storage::encode_outline(input.outline.outline, input.format.origin);
   storage::write_file(files, storage::outline_path(directory), outline);
 
   summary.tiles = records.size();
@@ -116,7 +124,8 @@ PublishedSummary publish(const Forest& forest, const PublishInput& input, const 
   manifest.outline_checksum = storage::checksum(outline);
   manifest.outline = input.outline.report;
   manifest.levels = nlohmann::ordered_json::array();
-  for (const LevelSummary& level : summarize_levels(tree, records)) manifest.levels.push_back(to_json(level));
+  for (const LevelSummary& level : summarize_levels(tree, records))
+    manifest.levels.push_back(to_json(level));
   manifest.total_bytes = summary.total_bytes;
   const std::string text = storage::to_json_text(manifest);
   storage::write_file(files, storage::manifest_path(directory), std::as_bytes(std::span(text)));

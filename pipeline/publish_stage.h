@@ -1,9 +1,6 @@
 // The stage `publish`: tiles as GLB, the index, the outline and the manifest.
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
 #include "hierarchy/published.h"
 #include "pipeline/cancel.h"
 #include "pipeline/config.h"
@@ -13,6 +10,9 @@
 #include "pipeline/progress.h"
 #include "storage/file.h"
 #include "storage/tile_glb.h"
+
+#include <cstdint>
+#include <vector>
 
 namespace meshhier::pipeline {
 
@@ -32,8 +32,8 @@ struct PublishedSummary {
 };
 
 /// Writes the whole hierarchy into `directory`.
-PublishedSummary publish(const Forest& forest, const PublishInput& input, const std::filesystem::path& directory,
-                         const MemoryPlan& plan, storage::FileSystem& files, Progress& progress,
-                         const CancelToken& cancel);
+PublishedSummary publish(const Forest& forest, const PublishInput& input,
+                         const std::filesystem::path& directory, const MemoryPlan& plan,
+                         storage::FileSystem& files, Progress& progress, const CancelToken& cancel);
 
 }  // namespace meshhier::pipeline

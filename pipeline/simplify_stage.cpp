@@ -1,27 +1,29 @@
 #include "pipeline/simplify_stage.h"
 
+#include "hierarchy/error.h"
+#include "pipeline/parallel.h"
+#include "pipeline/size_text.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
 
-#include "hierarchy/error.h"
-#include "pipeline/parallel.h"
-#include "pipeline/size_text.h"
-
 namespace meshhier::pipeline {
 namespace {
 
 using cluster_simplify::ContractedTile;
 
-/// A chunk whose triangles alone exceed what a stage may hold: a vertex with an absurd number of triangles.
+/// A chunk whose triangles alone exceed what a stage may hold: a vertex with an absurd number of
+/// triangles.
 void check_fits(const Chunks& chunks, std::uint32_t chunk, const MemoryPlan& plan) {
   const std::uint64_t needed = chunks.triangle_bytes(chunk) * 4;
   if (needed > plan.work_bytes + plan.pool_bytes / 2) {
-    throw Error(ErrorCode::budget,
-                fmt::format("a part of the mesh has {} triangles on {} vertices; it needs a memory_budget larger by {}",
-                            chunks.triangle_bytes(chunk) / 12, chunks.map().size(chunk), exact_size_text(needed)));
+    throw Error(ErrorCode::budget, fmt::format("a part of the mesh has {} triangles on {} "
+                                               "vertices; it needs a memory_budget larger by {}",
+                                               chunks.triangle_bytes(chunk) / 12,
+                                               chunks.map().size(chunk), exact_size_text(needed)));
   }
 }
 
@@ -35,32 +37,40 @@ ChunkReport put_leaves(Chunks& chunks, std::uint32_t index, partition::Axis axis
   const Tree& tree = forest.tree();
   const partition::ChunkMesh chunk = chunks.take(index);
   const std::vector<PartitionId> partition_of = partition::split_chunk(chunk, tree, axis);
-  const partition::ChunkLeaves leaves = partition::build_leaves(chunk, partition_of, tree, chunks.map());
+  const partition::ChunkLeaves leaves =
+      partition::build_leaves(chunk, partition_of, tree, chunks.map());
   forest.put_places(index, leaves.places);
   const std::uint32_t first = tree.partitions(chunk.node).begin;
-  for (std::uint32_t p = 0; p < leaves.tiles.size(); ++p) forest.put_tile({tree.depth(), first + p}, leaves.tiles[p], 0);
+  for (std::uint32_t p = 0; p < leaves.tiles.size(); ++p)
+    forest.put_tile({tree.depth(), first + p}, leaves.tiles[p], 0);
   return {leaves.tiles.size(), leaves.unreferenced_count};
 }
 
-/// The estimated error of a tile: the children's, and how far (in the root mean square) this contraction moved their
-/// vertices. Strictly more than the children's.
+/// The estimated error of a tile: the children's, and how far (in the root mean square) this
+/// contraction moved their vertices. Strictly more than the children's.
 float error_above(const Forest& forest, NodeId node, double squared_motion) {
   float below = 0;
-  for (const NodeId child : forest.tree().children(node).span()) below = std::max(below, forest.error(child));
-  if (forest.tree().is_early(node)) return below;
+  const Tree::Children children = forest.tree().children(node);
+  for (const NodeId child : children.span())
+    below = std::max(below, forest.error(child));
+  if (forest.tree().is_early(node))
+    return below;
   const auto sum = static_cast<float>(double{below} + std::sqrt(squared_motion));
   return std::max(sum, std::nextafter(below, std::numeric_limits<float>::infinity()));
 }
 
-ContractedTile contract_children(const Forest& forest, const Tree::Children& children, const SimplifyOptions& options) {
+ContractedTile contract_children(const Forest& forest, const Tree::Children& children,
+                                 const SimplifyOptions& options) {
   const BuildTile first = forest.load(children.nodes[0]);
-  if (children.count == 1) return cluster_simplify::keep(first);
+  if (children.count == 1)
+    return cluster_simplify::keep(first);
   const BuildTile second = forest.load(children.nodes[1]);
   const BuildTile joined =
       cluster_simplify::join(first, children.nodes[0].index, second, children.nodes[1].index);
-  const std::uint32_t target = cluster_simplify::contraction_target(joined.mesh.own_count, options.vertices);
-  return cluster_simplify::apply(joined,
-                                 cluster_simplify::contract(joined, target, options.attributes, options.contraction));
+  const std::uint32_t target =
+      cluster_simplify::contraction_target(joined.mesh.own_count, options.vertices);
+  return cluster_simplify::apply(
+      joined, cluster_simplify::contract(joined, target, options.attributes, options.contraction));
 }
 
 /// Makes a node's tile out of its children's, and their maps to it.
@@ -78,8 +88,8 @@ void make_tile(Forest& forest, NodeId node, const SimplifyOptions& options) {
 
 }  // namespace
 
-std::uint64_t make_leaves(Chunks& chunks, Forest& forest, partition::Axis axis, const MemoryPlan& plan,
-                          Progress& progress, const CancelToken& cancel) {
+std::uint64_t make_leaves(Chunks& chunks, Forest& forest, partition::Axis axis,
+                          const MemoryPlan& plan, Progress& progress, const CancelToken& cancel) {
   const Tree& tree = forest.tree();
   progress.stage("leaves", tree.partition_count(), "partitions");
   std::uint64_t unreferenced = 0;
@@ -97,11 +107,12 @@ std::uint64_t make_leaves(Chunks& chunks, Forest& forest, partition::Axis axis, 
   return unreferenced;
 }
 
-void simplify(Forest& forest, const SimplifyOptions& options, const MemoryPlan& plan, Progress& progress,
-              const CancelToken& cancel) {
+void simplify(Forest& forest, const SimplifyOptions& options, const MemoryPlan& plan,
+              Progress& progress, const CancelToken& cancel) {
   const Tree& tree = forest.tree();
   std::uint64_t total = 0;
-  for (int l = 0; l < raw(tree.depth()); ++l) total += tree.node_count(static_cast<Level>(l));
+  for (int l = 0; l < raw(tree.depth()); ++l)
+    total += tree.node_count(static_cast<Level>(l));
   progress.stage("simplify", total, "tiles");
   for (int l = raw(tree.depth()) - 1; l >= 0; --l) {
     const auto level = static_cast<Level>(l);

@@ -1,4 +1,5 @@
-// The stages `leaves` and `simplify`: partition tiles out of chunks, then level by level up to the root.
+// The stages `leaves` and `simplify`: partition tiles out of chunks, then level by level up to the
+// root.
 #pragma once
 
 #include "cluster_simplify/contraction.h"
@@ -11,9 +12,10 @@
 
 namespace meshhier::pipeline {
 
-/// Splits every chunk and puts its partition tiles into the forest. Returns how many vertices no triangle uses.
-std::uint64_t make_leaves(Chunks& chunks, Forest& forest, partition::Axis axis, const MemoryPlan& plan,
-                          Progress& progress, const CancelToken& cancel);
+/// Splits every chunk and puts its partition tiles into the forest. Returns how many vertices no
+/// triangle uses.
+std::uint64_t make_leaves(Chunks& chunks, Forest& forest, partition::Axis axis,
+                          const MemoryPlan& plan, Progress& progress, const CancelToken& cancel);
 
 struct SimplifyOptions {
   std::uint32_t vertices = 8192;  ///< asked of every simplified tile
@@ -22,7 +24,7 @@ struct SimplifyOptions {
 };
 
 /// Contracts all levels, from the partitions to one root tile.
-void simplify(Forest& forest, const SimplifyOptions& options, const MemoryPlan& plan, Progress& progress,
-              const CancelToken& cancel);
+void simplify(Forest& forest, const SimplifyOptions& options, const MemoryPlan& plan,
+              Progress& progress, const CancelToken& cancel);
 
 }  // namespace meshhier::pipeline

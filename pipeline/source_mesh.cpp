@@ -1,12 +1,12 @@
 #include "pipeline/source_mesh.h"
 
+#include "hierarchy/error.h"
+#include "partition/top_tree.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
-
-#include "hierarchy/error.h"
-#include "partition/top_tree.h"
 
 namespace meshhier::pipeline {
 namespace {
@@ -17,11 +17,12 @@ bool fits_float(Vec3d p) {
   return to_double(to_float(p)) == p;
 }
 
-/// The coordinate nearest to the middle that is a multiple of a power of two about a thousandth of the extent: it
-/// has few digits, and what is left of the coordinates is small.
+/// The coordinate nearest to the middle that is a multiple of a power of two about a thousandth of
+/// the extent: it has few digits, and what is left of the coordinates is small.
 double round_origin(double low, double high) {
   const double extent = std::max(high - low, std::abs(high) * 1e-6);
-  if (!(extent > 0) || !std::isfinite(extent)) return 0;
+  if (!(extent > 0) || !std::isfinite(extent))
+    return 0;
   const double grid = std::exp2(std::ceil(std::log2(extent)) - 10);
   const double origin = std::round((low / 2 + high / 2) / grid) * grid;
   return std::isfinite(origin) ? origin : 0;
@@ -31,7 +32,9 @@ double round_origin(double low, double high) {
 
 SourceMesh::SourceMesh(std::unique_ptr<mesh_io::MeshSource> source, std::string file_name,
                        storage::ScratchFile& scratch, Progress& progress, const CancelToken& cancel)
-    : source_(std::move(source)), spooled_positions_(scratch, 1 << 18), spooled_attributes_(scratch, 1 << 18) {
+    : source_(std::move(source)),
+      spooled_positions_(scratch, 1 << 18),
+      spooled_attributes_(scratch, 1 << 18) {
   const mesh_io::MeshDescription& description = source_->description();
   summary_.file_name = std::move(file_name);
   summary_.file_bytes = description.file_bytes;
@@ -54,12 +57,17 @@ void SourceMesh::scan(Progress& progress, const CancelToken& cancel) {
 void SourceMesh::scan_block(const mesh_io::VertexBlock& block) {
   const bool wide = !block.exact.empty();
   const std::size_t count = wide ? block.exact.size() : block.positions.size();
-  const auto at = [&](std::size_t i) { return wide ? block.exact[i] : to_double(block.positions[i]); };
-  for (std::size_t i = 0; i < count; ++i) summary_.bounds.add(at(i));
-  if (wide) float_exact_ = float_exact_ && std::all_of(block.exact.begin(), block.exact.end(), fits_float);
+  const auto at = [&](std::size_t i) {
+    return wide ? block.exact[i] : to_double(block.positions[i]);
+  };
+  for (std::size_t i = 0; i < count; ++i)
+    summary_.bounds.add(at(i));
+  if (wide)
+    float_exact_ = float_exact_ && std::all_of(block.exact.begin(), block.exact.end(), fits_float);
 
   const partition::SampleIds ids(summary_.vertices);
-  while (sample_positions_.size() < ids.count() && ids[sample_positions_.size()] < block.first + count) {
+  while (sample_positions_.size() < ids.count() &&
+         ids[sample_positions_.size()] < block.first + count) {
     sample_positions_.push_back(at(ids[sample_positions_.size()] - block.first));
   }
   if (!vertices_in_place()) {
@@ -70,14 +78,17 @@ void SourceMesh::scan_block(const mesh_io::VertexBlock& block) {
 
 void SourceMesh::choose_origin() {
   summary_.double_precision = !float_exact_;
-  if (float_exact_) return;
+  if (float_exact_)
+    return;
   const BoundsD& b = summary_.bounds;
-  origin_ = {round_origin(b.min.x, b.max.x), round_origin(b.min.y, b.max.y), round_origin(b.min.z, b.max.z)};
+  origin_ = {round_origin(b.min.x, b.max.x), round_origin(b.min.y, b.max.y),
+             round_origin(b.min.z, b.max.z)};
   for (const Vec3d corner : {b.min - origin_, b.max - origin_}) {
     const Vec3f stored = to_float(corner);
     if (!std::isfinite(stored.x) || !std::isfinite(stored.y) || !std::isfinite(stored.z)) {
-      throw Error(ErrorCode::input, fmt::format("{}: coordinates beyond the range of single precision (3.4e38)",
-                                                summary_.file_name));
+      throw Error(ErrorCode::input,
+                  fmt::format("{}: coordinates beyond the range of single precision (3.4e38)",
+                              summary_.file_name));
     }
   }
 }
@@ -96,7 +107,8 @@ void SourceMesh::read_vertices(const SourceBlockVisitor& visit) const {
   std::vector<Vec3f> positions;
   const auto relative = [&](std::span<const Vec3d> exact) {
     positions.resize(exact.size());
-    std::transform(exact.begin(), exact.end(), positions.begin(), [&](Vec3d p) { return to_float(p - origin_); });
+    std::transform(exact.begin(), exact.end(), positions.begin(),
+                   [&](Vec3d p) { return to_float(p - origin_); });
     return std::span<const Vec3f>(positions);
   };
   if (vertices_in_place()) {
@@ -111,7 +123,8 @@ void SourceMesh::read_vertices(const SourceBlockVisitor& visit) const {
   for (std::uint64_t first = 0; first < summary_.vertices; first += kBlock) {
     const std::size_t count = std::min<std::uint64_t>(kBlock, summary_.vertices - first);
     attributes.resize(count * channels);
-    spooled_attributes_.read(first * channels * sizeof(float), std::as_writable_bytes(std::span(attributes)));
+    spooled_attributes_.read(first * channels * sizeof(float),
+                             std::as_writable_bytes(std::span(attributes)));
     if (wide) {
       exact.resize(count);
       spooled_positions_.read(first * sizeof(Vec3d), std::as_writable_bytes(std::span(exact)));

@@ -19,9 +19,7 @@ namespace fs = std::filesystem;
 /// Beside the hierarchy, and unlike that of another run of verify. Nothing else depends on chance.
 fs::path scratch_path(storage::FileSystem& files, const fs::path& directory) {
   std::random_device chance;
-  const fs::path whole = files.canonical(directory);
-  return whole.parent_path() /
-         fmt::format(".{}.meshhier-verify-{:08x}", whole.filename().string(), chance());
+  return storage::verify_scratch_path(files.canonical(directory), chance());
 }
 
 /// Nothing if manifest or index are broken: no more can be said of the rest then.

@@ -43,24 +43,13 @@ bool is_known(const Tree& tree, const fs::path& relative) {
 /// A missing file is found by whoever reads it; what is looked for here is what nobody reads.
 std::uint64_t find_extra_files(const VerifyJob& job) {
   const fs::path& directory = job.reader.directory();
-  std::error_code error;
-  std::uint64_t count = 0;
-  fs::recursive_directory_iterator entry(directory, error);
-  for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
-    if (entry->is_directory(error))
+  const std::vector<fs::path> found = job.files.list(directory);
+  for (const fs::path& path : found) {
+    if (is_known(job.tree(), path.lexically_relative(directory)))
       continue;
-    ++count;
-    const fs::path relative = entry->path().lexically_relative(directory);
-    if (is_known(job.tree(), relative))
-      continue;
-    job.problems.add(
-        fmt::format("{}: not a file of this hierarchy; remove it", entry->path().string()));
+    job.problems.add(fmt::format("{}: not a file of this hierarchy; remove it", path.string()));
   }
-  if (error) {
-    throw Error(ErrorCode::io,
-                fmt::format("cannot list {}: {}", directory.string(), error.message()));
-  }
-  return count;
+  return found.size();
 }
 
 void check_outline(const VerifyJob& job) {

@@ -9,7 +9,8 @@ void BlobStore::put(std::size_t index, std::span<const std::byte> bytes) {
   Blob& blob = blobs_[index];
   assert(blob.size == 0);
   blob.size = bytes.size();
-  if (bytes.empty()) return;
+  if (bytes.empty())
+    return;
   if (scratch_->pool().try_take(bytes.size())) {
     blob.memory = std::make_unique_for_overwrite<std::byte[]>(bytes.size());
     std::memcpy(blob.memory.get(), bytes.data(), bytes.size());
@@ -21,7 +22,8 @@ void BlobStore::put(std::size_t index, std::span<const std::byte> bytes) {
 void BlobStore::read(std::size_t index, std::uint64_t offset, std::span<std::byte> bytes) const {
   const Blob& blob = blobs_[index];
   assert(offset + bytes.size() <= blob.size);
-  if (bytes.empty()) return;
+  if (bytes.empty())
+    return;
   if (blob.memory) {
     std::memcpy(bytes.data(), blob.memory.get() + offset, bytes.size());
   } else {
@@ -37,7 +39,8 @@ std::vector<std::byte> BlobStore::get(std::size_t index) const {
 
 void BlobStore::clear() {
   for (Blob& blob : blobs_) {
-    if (blob.memory) scratch_->pool().give_back(blob.size);
+    if (blob.memory)
+      scratch_->pool().give_back(blob.size);
     blob = {};
   }
 }

@@ -1,18 +1,18 @@
 // Numbered blobs of scratch data: in memory while the budget lasts, on disk from there on.
 #pragma once
 
+#include "storage/spool.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
-#include "storage/spool.h"
-
 namespace meshhier::storage {
 
-/// Each blob is put once and read any number of times. Threads may put and read different blobs at once; a blob may be
-/// read once its put() has returned.
+/// Each blob is put once and read any number of times. Threads may put and read different blobs at
+/// once; a blob may be read once its put() has returned.
 class BlobStore {
  public:
   BlobStore(ScratchFile& scratch, std::size_t count) : scratch_(&scratch), blobs_(count) {}

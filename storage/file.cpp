@@ -1,24 +1,25 @@
 #include "storage/file.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <sys/statvfs.h>
-#include <unistd.h>
+#include "hierarchy/error.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <system_error>
 
+#include <fcntl.h>
 #include <fmt/format.h>
-
-#include "hierarchy/error.h"
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
 
 namespace meshhier::storage {
 namespace {
 
 [[noreturn]] void fail(const char* action, const std::filesystem::path& path, int error) {
   const char* hint = error == ENOSPC || error == EDQUOT ? " (free some space and run again)" : "";
-  throw Error(ErrorCode::io, fmt::format("cannot {} {}: {}{}", action, path.string(), std::strerror(error), hint));
+  throw Error(ErrorCode::io,
+              fmt::format("cannot {} {}: {}{}", action, path.string(), std::strerror(error), hint));
 }
 
 class PosixFile final : public File {
@@ -29,12 +30,14 @@ class PosixFile final : public File {
 
   std::uint64_t size() const override {
     struct stat status {};
-    if (::fstat(descriptor_, &status) != 0) fail("inspect", path(), errno);
+    if (::fstat(descriptor_, &status) != 0)
+      fail("inspect", path(), errno);
     return static_cast<std::uint64_t>(status.st_size);
   }
 
   void sync() override {
-    if (::fsync(descriptor_) != 0) fail("sync", path(), errno);
+    if (::fsync(descriptor_) != 0)
+      fail("sync", path(), errno);
   }
 
  protected:
@@ -43,7 +46,8 @@ class PosixFile final : public File {
     do {
       count = ::pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
     } while (count < 0 && errno == EINTR);
-    if (count < 0) fail("read", path(), errno);
+    if (count < 0)
+      fail("read", path(), errno);
     counters_->bytes_read += static_cast<std::uint64_t>(count);
     return static_cast<std::size_t>(count);
   }
@@ -53,7 +57,8 @@ class PosixFile final : public File {
     do {
       count = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
     } while (count < 0 && errno == EINTR);
-    if (count < 0) fail("write", path(), errno);
+    if (count < 0)
+      fail("write", path(), errno);
     counters_->bytes_written += static_cast<std::uint64_t>(count);
     return static_cast<std::size_t>(count);
   }
@@ -66,68 +71,103 @@ class PosixFile final : public File {
 class PosixFileSystem final : public FileSystem {
  public:
   std::unique_ptr<File> open(const std::filesystem::path& path) override {
-    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    if (descriptor < 0) fail("open", path, errno);
+    // Without O_NONBLOCK a pipe that nobody writes to would hang here.
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (descriptor < 0)
+      fail("open", path, errno);
     struct stat status {};
-    if (::fstat(descriptor, &status) == 0 && S_ISDIR(status.st_mode)) {
+    if (::fstat(descriptor, &status) == 0 && !S_ISREG(status.st_mode)) {
       ::close(descriptor);
-      fail("open", path, EISDIR);
+      if (S_ISDIR(status.st_mode))
+        fail("open", path, EISDIR);
+      throw Error(ErrorCode::io,
+                  fmt::format("cannot open {}: it is not a regular file", path.string()));
     }
     return std::make_unique<PosixFile>(path, descriptor, counters_);
   }
 
   std::unique_ptr<File> create(const std::filesystem::path& path) override {
     const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (descriptor < 0) fail("create", path, errno);
+    if (descriptor < 0)
+      fail("create", path, errno);
     return std::make_unique<PosixFile>(path, descriptor, counters_);
   }
 
   bool exists(const std::filesystem::path& path) override {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::symlink_status(path, error);
-    if (status.type() == std::filesystem::file_type::not_found) return false;
-    if (error) fail("look at", path, error.value());
+    if (status.type() == std::filesystem::file_type::not_found)
+      return false;
+    if (error)
+      fail("look at", path, error.value());
     return true;
   }
 
   std::filesystem::path canonical(const std::filesystem::path& path) override {
     std::error_code error;
     std::filesystem::path result = std::filesystem::absolute(path, error);
-    if (!error) result = std::filesystem::weakly_canonical(result, error);
-    if (error) fail("resolve", path, error.value());
+    if (!error)
+      result = std::filesystem::weakly_canonical(result, error);
+    if (error)
+      fail("resolve", path, error.value());
     return result;
+  }
+
+  std::vector<std::filesystem::path> list(const std::filesystem::path& directory) override {
+    std::vector<std::filesystem::path> found;
+    std::error_code error;
+    std::filesystem::recursive_directory_iterator entry(directory, error);
+    for (; !error && entry != std::filesystem::recursive_directory_iterator();
+         entry.increment(error)) {
+      const bool directory_itself =
+          entry->symlink_status(error).type() == std::filesystem::file_type::directory;
+      if (error)
+        break;
+      if (!directory_itself)
+        found.push_back(entry->path());
+    }
+    if (error)
+      fail("list", directory, error.value());
+    std::sort(found.begin(), found.end());
+    return found;
   }
 
   void make_directories(const std::filesystem::path& path) override {
     std::error_code error;
     std::filesystem::create_directories(path, error);
-    if (error) fail("make the directory", path, error.value());
+    if (error)
+      fail("make the directory", path, error.value());
   }
 
   void remove_all(const std::filesystem::path& path) override {
     std::error_code error;
     std::filesystem::remove_all(path, error);
-    if (error) fail("remove", path, error.value());
+    if (error)
+      fail("remove", path, error.value());
   }
 
   void rename(const std::filesystem::path& from, const std::filesystem::path& to) override {
     std::error_code error;
     std::filesystem::rename(from, to, error);
-    if (error) fail("rename to", to, error.value());
+    if (error)
+      fail("rename to", to, error.value());
   }
 
   void sync_tree(const std::filesystem::path& directory) override {
     const int descriptor = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (descriptor < 0) fail("open", directory, errno);
+    if (descriptor < 0)
+      fail("open", directory, errno);
     const int result = ::syncfs(descriptor);
     const int error = errno;
     ::close(descriptor);
-    if (result != 0) fail("sync", directory, error);
+    if (result != 0)
+      fail("sync", directory, error);
   }
 
   std::uint64_t free_bytes(const std::filesystem::path& directory) override {
     struct statvfs status {};
-    if (::statvfs(directory.c_str(), &status) != 0) fail("inspect", directory, errno);
+    if (::statvfs(directory.c_str(), &status) != 0)
+      fail("inspect", directory, errno);
     return std::uint64_t{status.f_bavail} * status.f_frsize;
   }
 };
@@ -138,7 +178,8 @@ std::size_t File::read_at(std::uint64_t offset, std::span<std::byte> bytes) cons
   std::size_t done = 0;
   while (done < bytes.size()) {
     const std::size_t count = read_some(offset + done, bytes.subspan(done));
-    if (count == 0) break;
+    if (count == 0)
+      break;
     done += count;
   }
   return done;
@@ -147,35 +188,40 @@ std::size_t File::read_at(std::uint64_t offset, std::span<std::byte> bytes) cons
 void File::read_exact(std::uint64_t offset, std::span<std::byte> bytes) const {
   const std::size_t count = read_at(offset, bytes);
   if (count != bytes.size()) {
-    throw Error(ErrorCode::io, fmt::format("{} ends at byte {}, expected {} bytes from byte {}", path_.string(),
-                                           offset + count, bytes.size(), offset));
+    throw Error(ErrorCode::io, fmt::format("{} ends at byte {}, expected {} bytes from byte {}",
+                                           path_.string(), offset + count, bytes.size(), offset));
   }
 }
 
 void File::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
     const std::size_t count = write_some(offset, bytes);
-    if (count == 0) throw Error(ErrorCode::io, fmt::format("cannot write {}: no progress", path_.string()));
+    if (count == 0)
+      throw Error(ErrorCode::io, fmt::format("cannot write {}: no progress", path_.string()));
     offset += count;
     bytes = bytes.subspan(count);
   }
 }
 
-std::unique_ptr<FileSystem> make_posix_file_system() { return std::make_unique<PosixFileSystem>(); }
+std::unique_ptr<FileSystem> make_posix_file_system() {
+  return std::make_unique<PosixFileSystem>();
+}
 
-std::vector<std::byte> read_file(FileSystem& files, const std::filesystem::path& path, std::uint64_t limit_bytes) {
+std::vector<std::byte> read_file(FileSystem& files, const std::filesystem::path& path,
+                                 std::uint64_t limit_bytes) {
   const auto file = files.open(path);
   const std::uint64_t size = file->size();
   if (size > limit_bytes) {
-    throw Error(ErrorCode::corrupt,
-                fmt::format("{} has {} bytes, at most {} are expected", path.string(), size, limit_bytes));
+    throw Error(ErrorCode::corrupt, fmt::format("{} has {} bytes, at most {} are expected",
+                                                path.string(), size, limit_bytes));
   }
   std::vector<std::byte> bytes(size);
   file->read_exact(0, bytes);
   return bytes;
 }
 
-void write_file(FileSystem& files, const std::filesystem::path& path, std::span<const std::byte> bytes) {
+void write_file(FileSystem& files, const std::filesystem::path& path,
+                std::span<const std::byte> bytes) {
   files.create(path)->write_at(0, bytes);
 }
 

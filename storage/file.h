@@ -64,6 +64,8 @@ class FileSystem {
   virtual bool exists(const std::filesystem::path& path) = 0;
   /// The absolute path without links and dots, as far as it exists.
   virtual std::filesystem::path canonical(const std::filesystem::path& path) = 0;
+  /// Every file below `directory`, links as themselves; ascending.
+  virtual std::vector<std::filesystem::path> list(const std::filesystem::path& directory) = 0;
   virtual void make_directories(const std::filesystem::path& path) = 0;
   /// Removes a file or a whole tree; nothing happens if it is not there.
   virtual void remove_all(const std::filesystem::path& path) = 0;
@@ -83,9 +85,12 @@ class FileSystem {
 /// The real one.
 std::unique_ptr<FileSystem> make_posix_file_system();
 
-/// A whole file in memory. `limit_bytes` guards what is allocated: a larger file throws Error(corrupt).
-std::vector<std::byte> read_file(FileSystem& files, const std::filesystem::path& path, std::uint64_t limit_bytes);
+/// A whole file in memory. `limit_bytes` guards what is allocated: a larger file throws
+/// Error(corrupt).
+std::vector<std::byte> read_file(FileSystem& files, const std::filesystem::path& path,
+                                 std::uint64_t limit_bytes);
 /// Creates `path` with exactly `bytes`.
-void write_file(FileSystem& files, const std::filesystem::path& path, std::span<const std::byte> bytes);
+void write_file(FileSystem& files, const std::filesystem::path& path,
+                std::span<const std::byte> bytes);
 
 }  // namespace meshhier::storage

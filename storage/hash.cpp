@@ -11,16 +11,23 @@ struct Checksum::State {
   ~State() { XXH3_freeState(xxh); }
 };
 
-std::uint64_t checksum(std::span<const std::byte> bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
+std::uint64_t checksum(std::span<const std::byte> bytes) {
+  return XXH3_64bits(bytes.data(), bytes.size());
+}
 
 Checksum::Checksum() : state_(std::make_unique<State>()) {
-  if (state_->xxh == nullptr) throw std::bad_alloc();
+  if (state_->xxh == nullptr)
+    throw std::bad_alloc();
   XXH3_64bits_reset(state_->xxh);
 }
 Checksum::~Checksum() = default;
 
-void Checksum::add(std::span<const std::byte> bytes) { XXH3_64bits_update(state_->xxh, bytes.data(), bytes.size()); }
+void Checksum::add(std::span<const std::byte> bytes) {
+  XXH3_64bits_update(state_->xxh, bytes.data(), bytes.size());
+}
 
-std::uint64_t Checksum::value() const { return XXH3_64bits_digest(state_->xxh); }
+std::uint64_t Checksum::value() const {
+  return XXH3_64bits_digest(state_->xxh);
+}
 
 }  // namespace meshhier::storage

@@ -4,9 +4,15 @@
 
 namespace meshhier::storage {
 
-std::filesystem::path manifest_path(const std::filesystem::path& hierarchy) { return hierarchy / "hierarchy.json"; }
-std::filesystem::path index_path(const std::filesystem::path& hierarchy) { return hierarchy / "tiles.bin"; }
-std::filesystem::path outline_path(const std::filesystem::path& hierarchy) { return hierarchy / "outline.glb"; }
+std::filesystem::path manifest_path(const std::filesystem::path& hierarchy) {
+  return hierarchy / "hierarchy.json";
+}
+std::filesystem::path index_path(const std::filesystem::path& hierarchy) {
+  return hierarchy / "tiles.bin";
+}
+std::filesystem::path outline_path(const std::filesystem::path& hierarchy) {
+  return hierarchy / "outline.glb";
+}
 
 std::filesystem::path level_directory(const std::filesystem::path& hierarchy, Level level) {
   return hierarchy / "tiles" / fmt::format("{:02}", raw(level));
@@ -24,6 +30,14 @@ std::filesystem::path replaced_path(const std::filesystem::path& output) {
   return output.parent_path() / fmt::format(".{}.meshhier-old", output.filename().string());
 }
 
-std::filesystem::path temporary_path(const std::filesystem::path& work) { return work / "build.tmp"; }
+std::filesystem::path verify_scratch_path(const std::filesystem::path& hierarchy,
+                                          std::uint32_t run) {
+  return hierarchy.parent_path() /
+         fmt::format(".{}.meshhier-verify-{:08x}", hierarchy.filename().string(), run);
+}
+
+std::filesystem::path temporary_path(const std::filesystem::path& work) {
+  return work / "build.tmp";
+}
 
 }  // namespace meshhier::storage

@@ -3,15 +3,17 @@
 //   NAME.hier/hierarchy.json
 //   NAME.hier/tiles.bin
 //   NAME.hier/outline.glb
-//   NAME.hier/tiles/LL/NNNNNN.glb      level (two digits or more), index in the level (six digits or more)
-//   .NAME.hier.meshhier-work/          beside the output while a build runs; becomes NAME.hier when complete
-//   .NAME.hier.meshhier-old/           a replaced hierarchy, for the moment of the rename
+//   NAME.hier/tiles/LL/NNNNNN.glb      level (two digits or more), index in the level (six digits
+//   or more) .NAME.hier.meshhier-work/          beside the output while a build runs; becomes
+//   NAME.hier when complete .NAME.hier.meshhier-old/           a replaced hierarchy, for the moment
+//   of the rename .NAME.hier.meshhier-verify-XXXXXXXX  beside a hierarchy while `verify` needs room
 //   .NAME.hier.meshhier-work/build.tmp/    temporary files of the stages, gone before the rename
 #pragma once
 
-#include <filesystem>
-
 #include "hierarchy/ids.h"
+
+#include <cstdint>
+#include <filesystem>
 
 namespace meshhier::storage {
 
@@ -23,6 +25,9 @@ std::filesystem::path tile_path(const std::filesystem::path& hierarchy, NodeId n
 
 std::filesystem::path work_path(const std::filesystem::path& output);
 std::filesystem::path replaced_path(const std::filesystem::path& output);
+/// `run` tells several runs apart.
+std::filesystem::path verify_scratch_path(const std::filesystem::path& hierarchy,
+                                          std::uint32_t run);
 std::filesystem::path temporary_path(const std::filesystem::path& work);
 
 }  // namespace meshhier::storage

@@ -18,7 +18,7 @@ inline constexpr int kFormatVersion = 1;
 struct Manifest {
   std::string generator;  ///< "meshhier 0.1.0"
   SourceSummary source;
-  Vec3d origin;              ///< add to every stored position
+  Vec3d origin;  ///< add to every stored position
   std::uint32_t partition_count = 0;
   /// An object: the resolved config, what decides the result (not budget, threads, paths).
   nlohmann::ordered_json config;

@@ -1,18 +1,19 @@
 #include "storage/spool.h"
 
+#include "hierarchy/error.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cstring>
 #include <utility>
-
-#include "hierarchy/error.h"
 
 namespace meshhier::storage {
 
 bool MemoryPool::try_take(std::uint64_t bytes) {
   std::int64_t before = free_.load();
   do {
-    if (before < static_cast<std::int64_t>(bytes)) return false;
+    if (before < static_cast<std::int64_t>(bytes))
+      return false;
   } while (!free_.compare_exchange_weak(before, before - static_cast<std::int64_t>(bytes)));
   return true;
 }
@@ -21,7 +22,8 @@ ScratchFile::ScratchFile(FileSystem& files, std::filesystem::path path, MemoryPo
     : files_(files), path_(std::move(path)), pool_(pool) {}
 
 ScratchFile::~ScratchFile() {
-  if (!file_) return;
+  if (!file_)
+    return;
   file_.reset();
   try {
     files_.remove_all(path_);
@@ -33,7 +35,8 @@ std::uint64_t ScratchFile::append(std::span<const std::byte> bytes) {
   File* file = nullptr;
   {
     const std::lock_guard lock(mutex_);
-    if (!file_) file_ = files_.create(path_);
+    if (!file_)
+      file_ = files_.create(path_);
     file = file_.get();
   }
   const std::uint64_t offset = size_.fetch_add(bytes.size());
@@ -53,7 +56,8 @@ void Spool::append(std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
     const std::size_t used = size_ % block_bytes_;
     if (used == 0) {
-      if (size_ > 0) close_block();
+      if (size_ > 0)
+        close_block();
       Block block;
       block.memory = std::make_unique_for_overwrite<std::byte[]>(block_bytes_);
       blocks_.push_back(std::move(block));
@@ -68,7 +72,8 @@ void Spool::append(std::span<const std::byte> bytes) {
 void Spool::close_block() {
   Block& block = blocks_.back();
   block.pooled = scratch_->pool().try_take(block_bytes_);
-  if (block.pooled) return;
+  if (block.pooled)
+    return;
   block.offset = scratch_->append({block.memory.get(), block_bytes_});
   block.memory.reset();
 }
@@ -91,7 +96,8 @@ void Spool::read(std::uint64_t offset, std::span<std::byte> bytes) const {
 
 void Spool::clear() {
   for (const Block& block : blocks_) {
-    if (block.pooled) scratch_->pool().give_back(block_bytes_);
+    if (block.pooled)
+      scratch_->pool().give_back(block_bytes_);
   }
   blocks_.clear();
   size_ = 0;

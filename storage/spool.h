@@ -1,8 +1,11 @@
 // Append-only scratch bytes: in memory while the budget lasts, on disk from there on.
 //
-// This is what makes one algorithm serve meshes smaller and larger than memory: stages append to spools and read
-// them back, and only the memory pool decides what touches the disk. What is read never depends on it.
+// This is what makes one algorithm serve meshes smaller and larger than memory: stages append to
+// spools and read them back, and only the memory pool decides what touches the disk. What is read
+// never depends on it.
 #pragma once
+
+#include "storage/file.h"
 
 #include <atomic>
 #include <cstddef>
@@ -13,14 +16,13 @@
 #include <span>
 #include <vector>
 
-#include "storage/file.h"
-
 namespace meshhier::storage {
 
 /// Bytes that may be held in memory by all spools together. Thread-safe.
 class MemoryPool {
  public:
-  explicit MemoryPool(std::uint64_t capacity_bytes) : free_(static_cast<std::int64_t>(capacity_bytes)) {}
+  explicit MemoryPool(std::uint64_t capacity_bytes)
+      : free_(static_cast<std::int64_t>(capacity_bytes)) {}
   bool try_take(std::uint64_t bytes);
   void give_back(std::uint64_t bytes) { free_ += static_cast<std::int64_t>(bytes); }
   std::uint64_t free_bytes() const { return static_cast<std::uint64_t>(free_.load()); }
@@ -29,7 +31,8 @@ class MemoryPool {
   std::atomic<std::int64_t> free_;
 };
 
-/// One temporary file shared by many spools; made when the first block must leave memory, removed at the end.
+/// One temporary file shared by many spools; made when the first block must leave memory, removed
+/// at the end.
 class ScratchFile {
  public:
   ScratchFile(FileSystem& files, std::filesystem::path path, MemoryPool& pool);
@@ -43,7 +46,9 @@ class ScratchFile {
 
   /// Appends `bytes`, returns where. Thread-safe.
   std::uint64_t append(std::span<const std::byte> bytes);
-  void read(std::uint64_t offset, std::span<std::byte> bytes) const { file_->read_exact(offset, bytes); }
+  void read(std::uint64_t offset, std::span<std::byte> bytes) const {
+    file_->read_exact(offset, bytes);
+  }
 
  private:
   FileSystem& files_;
@@ -58,7 +63,8 @@ class ScratchFile {
 class Spool {
  public:
   /// `block_bytes`: held while writing, the grain of what moves to disk; > 0.
-  Spool(ScratchFile& scratch, std::size_t block_bytes) : scratch_(&scratch), block_bytes_(block_bytes) {}
+  Spool(ScratchFile& scratch, std::size_t block_bytes)
+      : scratch_(&scratch), block_bytes_(block_bytes) {}
   Spool(Spool&& other) noexcept;
   Spool& operator=(Spool&&) = delete;
   ~Spool() { clear(); }

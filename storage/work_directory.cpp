@@ -1,11 +1,11 @@
 #include "storage/work_directory.h"
 
+#include "hierarchy/error.h"
+#include "storage/layout.h"
+
 #include <utility>
 
 #include <fmt/format.h>
-
-#include "hierarchy/error.h"
-#include "storage/layout.h"
 
 namespace meshhier::storage {
 
@@ -16,26 +16,36 @@ WorkDirectory::WorkDirectory(FileSystem& files, std::filesystem::path output, bo
       temporary_(temporary_path(path_)),
       replace_(replace) {
   check_output("is already there");
+  for (auto parent = output_.parent_path(); !parent.empty() && !files_.exists(parent);
+       parent = parent.parent_path()) {
+    made_parent_ = parent;
+  }
   files_.remove_all(path_);
   files_.make_directories(temporary_);
 }
 
 bool WorkDirectory::check_output(const char* state) const {
-  if (!files_.exists(output_)) return false;
+  if (!files_.exists(output_))
+    return false;
   if (!replace_) {
-    throw Error(ErrorCode::exists, fmt::format("{} {}; --force replaces it", output_.string(), state));
+    throw Error(ErrorCode::exists,
+                fmt::format("{} {}; --force replaces it", output_.string(), state));
   }
   if (!files_.exists(manifest_path(output_))) {
-    throw Error(ErrorCode::exists, fmt::format("{} is not a hierarchy (it has no {}), so --force does not replace it",
-                                               output_.string(), manifest_path({}).string()));
+    throw Error(ErrorCode::exists,
+                fmt::format("{} is not a hierarchy (it has no {}), so --force does not replace it",
+                            output_.string(), manifest_path({}).string()));
   }
   return true;
 }
 
 WorkDirectory::~WorkDirectory() {
-  if (published_) return;
+  if (published_)
+    return;
   try {
     files_.remove_all(path_);
+    if (!made_parent_.empty() && files_.list(made_parent_).empty())
+      files_.remove_all(made_parent_);
   } catch (const Error&) {  // the failure that brought us here is the one to report
   }
 }
@@ -55,8 +65,10 @@ void WorkDirectory::publish() {
     renamed = true;
     files_.sync_tree(output_);
   } catch (const Error&) {
-    if (renamed) files_.rename(output_, path_);
-    if (replacing) files_.rename(old, output_);
+    if (renamed)
+      files_.rename(output_, path_);
+    if (replacing)
+      files_.rename(old, output_);
     throw;
   }
   published_ = true;

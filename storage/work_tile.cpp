@@ -1,9 +1,9 @@
 #include "storage/work_tile.h"
 
+#include "hierarchy/error.h"
+
 #include <cstring>
 #include <type_traits>
-
-#include "hierarchy/error.h"
 
 namespace meshhier::storage {
 namespace {
@@ -45,28 +45,34 @@ class Unpacker {
   explicit Unpacker(std::span<const std::byte> bytes) : bytes_(bytes) {}
   template <class T>
   std::vector<T> get(std::size_t count) {
-    if (count > bytes_.size() / sizeof(T)) throw Error(ErrorCode::internal, "a work tile is cut short");
+    if (count > bytes_.size() / sizeof(T))
+      throw Error(ErrorCode::internal, "a work tile is cut short");
     std::vector<T> values(count);
-    if (count > 0) std::memcpy(values.data(), bytes_.data(), count * sizeof(T));
+    if (count > 0)
+      std::memcpy(values.data(), bytes_.data(), count * sizeof(T));
     bytes_ = bytes_.subspan(count * sizeof(T));
     return values;
   }
   void finish() const {
-    if (!bytes_.empty()) throw Error(ErrorCode::internal, "a work tile has bytes too many");
+    if (!bytes_.empty())
+      throw Error(ErrorCode::internal, "a work tile has bytes too many");
   }
 
  private:
   std::span<const std::byte> bytes_;
 };
 
-bool narrow(const WorkTileCounts& counts) { return counts.own + counts.foreign <= 65536; }
+bool narrow(const WorkTileCounts& counts) {
+  return counts.own + counts.foreign <= 65536;
+}
 
 template <class Index>
 void put_triangles(Packer& packer, const std::vector<Triangle>& triangles) {
   std::vector<Index> corners;
   corners.reserve(triangles.size() * 3);
   for (const Triangle& t : triangles) {
-    for (const TileVertex v : t) corners.push_back(static_cast<Index>(raw(v)));
+    for (const TileVertex v : t)
+      corners.push_back(static_cast<Index>(raw(v)));
   }
   packer.put(std::span<const Index>(corners));
 }
@@ -75,7 +81,8 @@ template <class Index>
 std::vector<Triangle> get_triangles(Unpacker& unpacker, std::size_t count) {
   const std::vector<Index> corners = unpacker.get<Index>(count * 3);
   std::vector<Triangle> triangles(count);
-  for (std::size_t i = 0; i < corners.size(); ++i) triangles[i / 3][i % 3] = static_cast<TileVertex>(corners[i]);
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    triangles[i / 3][i % 3] = static_cast<TileVertex>(corners[i]);
   return triangles;
 }
 
@@ -86,8 +93,10 @@ std::vector<std::byte> encode_work_tile(const WorkTile& tile) {
                               static_cast<std::uint32_t>(tile.foreign.size()),
                               static_cast<std::uint32_t>(tile.interior.size()),
                               static_cast<std::uint32_t>(tile.border.size())};
-  Packer packer(sizeof counts + tile.vertices.size() * (20 + 4 * static_cast<std::size_t>(tile.vertices.channels)) +
-                tile.foreign.size() * 8 + (tile.interior.size() + tile.border.size()) * (narrow(counts) ? 6 : 12));
+  Packer packer(sizeof counts +
+                tile.vertices.size() * (20 + 4 * static_cast<std::size_t>(tile.vertices.channels)) +
+                tile.foreign.size() * 8 +
+                (tile.interior.size() + tile.border.size()) * (narrow(counts) ? 6 : 12));
   packer.put(std::span(&counts, 1));
   packer.put(std::span<const Vec3f>(tile.vertices.positions));
   packer.put(std::span<const float>(tile.vertices.attributes));

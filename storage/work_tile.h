@@ -1,11 +1,12 @@
-// Tiles under construction as bytes, for scratch space only: in this machine's byte order, unversioned.
+// Tiles under construction as bytes, for scratch space only: in this machine's byte order,
+// unversioned.
 #pragma once
+
+#include "hierarchy/build_tile.h"
 
 #include <cstddef>
 #include <span>
 #include <vector>
-
-#include "hierarchy/build_tile.h"
 
 namespace meshhier::storage {
 

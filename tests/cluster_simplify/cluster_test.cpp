@@ -136,6 +136,17 @@ TEST(ClusterTest, AQuadricPointStaysWithinItsCellsSphere) {
   }
 }
 
+TEST(ClusterTest, PlanesThatMeetFarAwayDoNotMakeASpike) {
+  // Two faces like a roof's whose ridge would be at x = 5.
+  const BuildTile tile = tile_of(
+      {{{0, 0, 0.5F}, {1, 0, 0.4F}, {0, 1, 0.5F}, {0, 0, -0.5F}, {1, 0, -0.4F}, {0, 1, -0.5F}},
+       {{0, 1, 2}, {3, 5, 4}}});
+  const Vec3f found = cluster(tile, 1, {}, Representative::quadric).representatives.positions[0];
+  const Vec3f mean = {1.0F / 3, 1.0F / 3, 0};
+  EXPECT_GT(found.x, mean.x);
+  EXPECT_NEAR(distance(found, mean), distance({0, 1, 0.5F}, mean), 1e-6);
+}
+
 TEST(ClusterTest, AVertexRepresentativeIsTheBestOfItsCell) {
   const BuildTile tile = tile_of(tests::torus(3000, 0.02F));
   const Contraction found = cluster(tile, 90, {}, Representative::vertex);

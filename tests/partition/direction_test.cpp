@@ -45,8 +45,7 @@ std::vector<Corners> corners_of(const tests::TestMesh& mesh) {
 
 Vec3d shortest_cut(const tests::TestMesh& mesh, const std::vector<Vec3d>& candidates,
                    double fraction = 0.5) {
-  return shortest_cut_direction(with_ids(mesh.positions), corners_of(mesh), fraction,
-                                diagonal(bounds_of(mesh.positions)), candidates);
+  return shortest_cut_direction(with_ids(mesh.positions), corners_of(mesh), fraction, candidates);
 }
 
 double cosine(Vec3d a, Vec3d b) {
@@ -197,16 +196,19 @@ TEST(Direction, ShortestCutDoesNotDependOnTheOrderOfTriangles) {
   const tests::TestMesh mesh = tests::sphere(5000, 0.01F);
   const auto candidates = candidate_directions(mesh.positions, Axis::compactness);
   std::vector<Corners> triangles = corners_of(mesh);
-  const double size = diagonal(bounds_of(mesh.positions));
-  const Vec3d expected = shortest_cut_direction(with_ids(mesh.positions), triangles, 0.5, size, candidates);
+  const Vec3d expected =
+      shortest_cut_direction(with_ids(mesh.positions), triangles, 0.5, candidates);
   for (std::size_t round = 0; round < 5; ++round) {
     std::sort(triangles.begin(), triangles.end(), [&](const Corners& a, const Corners& b) {
-      const auto order = [&](const Corners& c) { return c[round % 3].position.x + 2 * c[0].position.y; };
+      const auto order = [&](const Corners& c) {
+        return c[round % 3].position.x + 2 * c[0].position.y;
+      };
       return order(a) < order(b);
     });
     for (std::size_t i = round; i < triangles.size(); i += 2)
       std::rotate(triangles[i].begin(), triangles[i].begin() + 1, triangles[i].end());
-    EXPECT_EQ(shortest_cut_direction(with_ids(mesh.positions), triangles, 0.5, size, candidates), expected);
+    EXPECT_EQ(shortest_cut_direction(with_ids(mesh.positions), triangles, 0.5, candidates),
+              expected);
   }
 }
 
@@ -220,7 +222,7 @@ TEST(Direction, OfEqualCutsTheFirstCandidateIsTaken) {
   const tests::TestMesh mesh = tests::open_grid(30, 30);
   EXPECT_EQ(shortest_cut(mesh, {{1, 0, 0}, {2, 0, 0}, {1, 0, 0}}), (Vec3d{1, 0, 0}));
   const std::vector<Vec3f> points = box_points(10, {1, 1, 1});
-  EXPECT_EQ(shortest_cut_direction(with_ids(points), {}, 0.5, 1, kAxes), kAxes[0]);
+  EXPECT_EQ(shortest_cut_direction(with_ids(points), {}, 0.5, kAxes), kAxes[0]);
 }
 
 TEST(Direction, ShortestCutHoldsAtAnyScale) {

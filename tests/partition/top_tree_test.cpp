@@ -285,6 +285,29 @@ TEST_F(TopTreeTest, AMissedWindowIsOpenedWideAndTheOthersStay) {
             chunks_by_sorting(positions, tree, plan));
 }
 
+TEST_F(TopTreeTest, AWindowHoldsTheMedianOrIsMissedToTheVertex) {
+  constexpr std::uint32_t kTwoChunks = 150000;
+  const std::vector<Vec3f> positions = cloud(kTwoChunks);
+  const Tree tree = tree_of(kTwoChunks);
+  TopPlan plan = plan_top(sample_of(positions), tree, Axis::longest);
+  ASSERT_EQ(plan.splits.size(), 1U);
+  std::vector<SplitKey> keys;
+  for (std::uint32_t i = 0; i < kTwoChunks; ++i)
+    keys.push_back(key_along(plan.splits[0].direction, positions[i], i));
+  std::sort(keys.begin(), keys.end());
+  const std::size_t median = tree.ranks(NodeId{Level{1}, 0}).size();
+  const auto sweeps_with = [&](std::size_t low, std::size_t high) {
+    plan.splits[0].low = keys[low];
+    plan.splits[0].high = keys[high];
+    return settle(positions, tree, plan).sweeps;
+  };
+  EXPECT_EQ(sweeps_with(median, median), 1);
+  EXPECT_EQ(sweeps_with(median - 100, median), 1);
+  EXPECT_EQ(sweeps_with(median, median + 100), 1);
+  EXPECT_EQ(sweeps_with(median - 100, median - 1), 2);
+  EXPECT_EQ(sweeps_with(median + 1, median + 100), 2);
+}
+
 TEST_F(TopTreeTest, WithoutASampleEverythingIsDecidedAfterwards) {
   const std::vector<Vec3f> positions = cloud(kCount);
   const Tree tree = tree_of(kCount);

@@ -118,7 +118,8 @@ class BuildTest : public testing::Test {
         EXPECT_LE(record.own_count, record.target_count);
         EXPECT_TRUE(std::isfinite(record.error));
         EXPECT_TRUE(std::isfinite(record.bound));
-        for (const NodeId child : tree.children(record.node).span())
+        const Tree::Children children = tree.children(record.node);
+        for (const NodeId child : children.span())
           EXPECT_GT(record.error, reader.record(child).error);
       }
     }

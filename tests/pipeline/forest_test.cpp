@@ -299,7 +299,8 @@ TEST(ForestTest, ErrorsStrictlyDecreaseFromParentToChild) {
         tests::TestMesh{std::vector<Vec3f>(500, Vec3f{1, 2, 3}), {}}}) {
     const Grove grove(mesh, {8, 0, 0, 2});
     for_each_node(grove.tree(), [&](NodeId node) {
-      for (const NodeId child : grove.tree().children(node).span())
+      const Tree::Children children = grove.tree().children(node);
+      for (const NodeId child : children.span())
         EXPECT_GT(grove.forest().error(node), grove.forest().error(child));
       if (grove.tree().is_partition(node)) {
         EXPECT_EQ(grove.forest().error(node), 0);

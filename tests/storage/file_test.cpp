@@ -287,6 +287,24 @@ TEST_F(FileTest, APathThatCannotBeResolvedIsAnError) {
     EXPECT_EQ(error_of([&] { (void)files_->canonical(path); }).code(), ErrorCode::io) << path;
 }
 
+TEST_F(FileTest, EveryFileBelowADirectoryIsListedInOrder) {
+  const auto top = directory_ / "top";
+  files_->make_directories(top / "b" / "empty");
+  files_->make_directories(top / "a");
+  for (const auto& path : {top / "z", top / "b" / "y", top / "a" / "2", top / "a" / "10"})
+    write_file(*files_, path, pattern(1));
+  files_->make_directories(directory_ / "elsewhere");
+  write_file(*files_, directory_ / "elsewhere" / "hidden", pattern(1));
+  std::filesystem::create_symlink(directory_ / "elsewhere", top / "link");
+  std::filesystem::create_symlink(directory_ / "nowhere", top / "dangling");
+  const std::vector<std::filesystem::path> expected{top / "a" / "10", top / "a" / "2",
+                                                    top / "b" / "y",  top / "dangling",
+                                                    top / "link",     top / "z"};
+  EXPECT_EQ(files_->list(top), expected);
+  EXPECT_TRUE(files_->list(top / "b" / "empty").empty());
+  EXPECT_EQ(error_of([&] { (void)files_->list(top / "missing"); }).code(), ErrorCode::io);
+}
+
 TEST_F(FileTest, FreeBytesAreThoseOfTheDisk) {
   EXPECT_GT(files_->free_bytes(directory_), 0U);
   EXPECT_LE(files_->free_bytes(directory_), std::filesystem::space(directory_).capacity);

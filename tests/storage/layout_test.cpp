@@ -29,6 +29,12 @@ TEST(Layout, WorkGoesOnBesideTheOutputInHiddenDirectories) {
   EXPECT_EQ(temporary_path("a/.b.hier.meshhier-work"), "a/.b.hier.meshhier-work/build.tmp");
 }
 
+TEST(Layout, RunsOfVerifyWorkBesideTheHierarchyAndApart) {
+  const std::filesystem::path first = verify_scratch_path("a/b.hier", 0xab);
+  EXPECT_EQ(first, "a/.b.hier.meshhier-verify-000000ab");
+  EXPECT_NE(first, verify_scratch_path("a/b.hier", 0xac));
+}
+
 TEST(Layout, NoTwoThingsShareAName) {
   std::set<std::filesystem::path> names{manifest_path("h"), index_path("h"), outline_path("h"),
                                         temporary_path("h")};

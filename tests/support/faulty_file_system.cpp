@@ -138,6 +138,10 @@ std::filesystem::path FaultyFileSystem::canonical(const std::filesystem::path& p
   return real_->canonical(path);
 }
 
+std::vector<std::filesystem::path> FaultyFileSystem::list(const std::filesystem::path& directory) {
+  return real_->list(directory);
+}
+
 void FaultyFileSystem::make_directories(const std::filesystem::path& path) {
   strike(Call::make_directories, path);
   real_->make_directories(path);

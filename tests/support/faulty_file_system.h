@@ -73,6 +73,7 @@ class FaultyFileSystem final : public storage::FileSystem {
   std::unique_ptr<storage::File> create(const std::filesystem::path& path) override;
   bool exists(const std::filesystem::path& path) override;
   std::filesystem::path canonical(const std::filesystem::path& path) override;
+  std::vector<std::filesystem::path> list(const std::filesystem::path& directory) override;
   void make_directories(const std::filesystem::path& path) override;
   void remove_all(const std::filesystem::path& path) override;
   void rename(const std::filesystem::path& from, const std::filesystem::path& to) override;
