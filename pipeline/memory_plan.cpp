@@ -75,9 +75,17 @@ std::uint64_t chunk_count(const JobSize& job) {
   return job.vertex_count * 2 / partition::kChunkVertices + 1;
 }
 
-/// Open spools of which there are many: below a KiB a block is not worth its bookkeeping.
-constexpr std::uint64_t kLeastSpoolBlock = 1024;
+// A spool's block: open ones weigh against the index of all, and both are least together at about 5
+// KiB, whatever the size of the mesh.
+constexpr std::uint64_t kLeastSpoolBlock = 4096;
 constexpr std::uint64_t kMostSpoolBlock = 262144;
+
+/// What the spools of chunks hold while they are written: the open blocks, and 24 bytes for every
+/// block there is, in vectors that may be half empty.
+std::uint64_t spool_bytes(const JobSize& job, std::uint64_t block) {
+  const std::uint64_t spooled = job.vertex_count * vertex_bytes(job) + job.face_count * 13;
+  return 2 * chunk_count(job) * block + spooled / block * 48;
+}
 
 std::uint64_t bookkeeping_bytes(const JobSize& job) {
   return 2 * std::uint64_t{job.partition_count} * kTileEntryBytes;
@@ -88,8 +96,8 @@ std::uint64_t bookkeeping_bytes(const JobSize& job) {
 MemoryPlan plan_memory(std::uint64_t budget_bytes, const JobSize& job) {
   const std::uint64_t fixed = kBaseBytes + bookkeeping_bytes(job);
   const std::uint64_t least_work =
-      std::max({2 * block_bytes(job) + sample_bytes(job) + chunk_count(job) * kLeastSpoolBlock,
-                2 * block_bytes(job) + 12 * kMiB + 4 * chunk_count(job) * kLeastSpoolBlock,
+      std::max({2 * block_bytes(job) + sample_bytes(job) + chunk_count(job) * 1024,
+                2 * block_bytes(job) + 12 * kMiB + spool_bytes(job, kLeastSpoolBlock),
                 chunk_bytes(job), tile_bytes(job)});
   if (budget_bytes < fixed + least_work) {
     throw Error(ErrorCode::budget,
@@ -114,9 +122,9 @@ MemoryPlan plan_memory(std::uint64_t budget_bytes, const JobSize& job) {
   const std::uint64_t spools = 2 * chunk_count(job);  // vertices and triangles of each chunk
   plan.spool_block_bytes =
       std::clamp(plan.work_bytes / 8 / spools, kLeastSpoolBlock, kMostSpoolBlock);
-  plan.table_bytes = plan.work_bytes -
-                     std::min(plan.work_bytes - 4 * kMiB, plan.blocks_in_flight * block_bytes(job) +
-                                                              spools * plan.spool_block_bytes);
+  plan.table_bytes = plan.work_bytes - std::min(plan.work_bytes - 4 * kMiB,
+                                                plan.blocks_in_flight * block_bytes(job) +
+                                                    spool_bytes(job, plan.spool_block_bytes));
   return plan;
 }
 

@@ -111,7 +111,7 @@ TEST(MemoryPlanTest, ThePartsStayWithinTheBudget) {
       EXPECT_GE(plan.tiles_in_flight, 1U);
       EXPECT_LE(plan.chunks_in_flight, job.threads + 1);
       EXPECT_LE(plan.tiles_in_flight, 2 * job.threads);
-      EXPECT_GE(plan.spool_block_bytes, 4096U);
+      EXPECT_GE(plan.spool_block_bytes, 1024U);
     }
   }
 }
@@ -121,6 +121,18 @@ TEST(MemoryPlanTest, OpenSpoolsFitTheWorkOfTheLargestMesh) {
   const MemoryPlan plan = plan_memory(least_budget(job), job);
   const std::uint64_t spools = 2 * (job.vertex_count / 131072 + 1);  // a chunk's two, at least
   EXPECT_LE(spools * plan.spool_block_bytes, plan.work_bytes);
+}
+
+TEST(MemoryPlanTest, TheIndexOfTheSpoolsFitsTheWorkOfALargeMesh) {
+  // A spool keeps a pointer, an offset and a flag for every block, in memory or not.
+  constexpr std::uint64_t kIndexBytes = 24;
+  for (const std::uint64_t vertices : {std::uint64_t{10'000'000}, std::uint64_t{500'000'000}}) {
+    const JobSize job = job_of(vertices, 8192, 0, 1);
+    const MemoryPlan plan = plan_memory(least_budget(job), job);
+    const std::uint64_t spooled_bytes = job.vertex_count * 12 + job.face_count * 12;
+    EXPECT_LE(spooled_bytes / plan.spool_block_bytes * kIndexBytes, plan.work_bytes)
+        << vertices << " vertices in blocks of " << plan.spool_block_bytes << " bytes";
+  }
 }
 
 TEST(MemoryPlanTest, MoreMemoryNeverGivesLess) {
