@@ -42,6 +42,7 @@ void cancel_on_signals(pipeline::CancelToken& token) {
   handle(SIGTERM);
   if (!is_ignored(SIGHUP))
     handle(SIGHUP);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is then a failed write, told and cleaned up
 }
 
 bool error_output_is_terminal() {

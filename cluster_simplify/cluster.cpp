@@ -11,7 +11,7 @@ namespace meshhier::cluster_simplify {
 namespace {
 
 // Pull towards the mean as a part of the quadric's curvature: small enough to keep sharp features,
-// large enough that noise on flat ground does not throw points sideways (DESIGN: 10^-3 w).
+// large enough that noise on flat ground does not throw points sideways.
 constexpr double kMeanPull = 1e-3;
 
 /// Weighted means of positions and attributes, one per cell, over the original vertices.

@@ -24,7 +24,9 @@ struct TileRecord {
   std::uint32_t target_count = 0;  ///< vertices asked for; differs from own_count if not reached
   Bounds bounds;                   ///< of all its vertices, relative to the origin
   float error = 0;                 ///< estimated geometric error, input units; 0 for partitions
-  float bound = 0;  ///< upper bound of the Hausdorff distance, input units; 0 for partitions
+  float bound = 0;  ///< how far any original vertex under it is from its representative at most,
+                    ///< input units: bounds the Hausdorff distance of all that is still
+                    ///< drawn (not of components that collapsed to a point); 0 for partitions
   float compactness =
       0;  ///< p^2 / (4 pi w) of a partition; 0 if it has no area, and for other tiles
   std::uint64_t file_bytes = 0;

@@ -21,7 +21,7 @@
 namespace meshhier::pipeline {
 namespace {
 
-constexpr std::uint32_t kLargestTile = 32768;  // tile indices are 16 bits, ghosts included
+constexpr std::uint32_t kLargestTile = 32768;  // parent maps and ghost references hold 16 bits
 
 Tree plan_tree(const Config& config, std::uint64_t vertex_count) {
   if (vertex_count == 0) {
@@ -176,6 +176,7 @@ BuildReport build_hierarchy(const Config& config, bool force, BuildEnvironment e
                    length(result.source.bounds.max - result.source.bounds.min), progress, cancel);
   const PublishedSummary published =
       publish(forest, result, work.path(), plan, files, progress, cancel);
+  cancel.check();
   work.publish();
   return {report_text(result.source, tree, published, files.counters())};
 }

@@ -216,12 +216,24 @@ std::string export_selection(const Job& job, const ExportSelection& selection) {
   return export_outline(job);
 }
 
+/// An export into the hierarchy would overwrite or litter what it reads.
+void require_apart(storage::FileSystem& files, const fs::path& output, const fs::path& hierarchy) {
+  const fs::path file = files.canonical(output);
+  const fs::path directory = files.canonical(hierarchy);
+  if (std::mismatch(directory.begin(), directory.end(), file.begin(), file.end()).first !=
+      directory.end())
+    return;
+  throw Error(ErrorCode::usage, fmt::format("the output {} lies in the hierarchy {}",
+                                            output.string(), hierarchy.string()));
+}
+
 }  // namespace
 
 std::string export_mesh(storage::FileSystem& files, const fs::path& hierarchy,
                         const ExportOptions& options, Progress& progress,
                         const CancelToken& cancel) {
   require_place(files, options.output);
+  require_apart(files, options.output, hierarchy);
   const storage::HierarchyReader reader(files, hierarchy);
   const WorkDirectory work(files, storage::work_path(options.output));
   const fs::path file = work.path() / options.output.filename();

@@ -8,7 +8,7 @@
 namespace meshhier::pipeline {
 namespace {
 
-// DESIGN: at most 32 kB for any model.
+// At most 32 kB for any model (docs/architecture.md, Outline).
 constexpr std::size_t kOutlineBytes = 32000;
 
 /// The finest level with no more than `sectors` nodes.

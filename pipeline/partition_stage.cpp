@@ -137,9 +137,11 @@ void distribute_triangles(SourceMesh& mesh, const storage::RecordSpool<std::uint
       progress.advance(triangles.size());
     });
   };
-  partition::renumber(
-      read, rank_of, plan.table_bytes, scratch,
-      [&](std::span<const RankTriangle> triangles) { chunks.append_triangles(triangles); });
+  partition::renumber(read, rank_of, plan.table_bytes, scratch,
+                      [&](std::span<const RankTriangle> triangles) {
+                        cancel.check();
+                        chunks.append_triangles(triangles);
+                      });
 }
 
 }  // namespace

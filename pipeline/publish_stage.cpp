@@ -11,6 +11,7 @@
 #include "storage/outline_glb.h"
 
 #include <algorithm>
+#include <limits>
 #include <span>
 
 namespace meshhier::pipeline {
@@ -57,8 +58,10 @@ TileRecord describe(const Tree& tree, NodeId node, const BuildTile& tile, float 
   record.error = error;
   for (const float radius : tile.history.radii)
     record.bound = std::max(record.bound, radius);
-  if (tree.is_partition(node))
-    record.compactness = static_cast<float>(partition::compactness(mesh));
+  if (tree.is_partition(node)) {
+    constexpr double kMost = std::numeric_limits<float>::max();
+    record.compactness = static_cast<float>(std::min(partition::compactness(mesh), kMost));
+  }
   return record;
 }
 

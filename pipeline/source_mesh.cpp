@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -14,7 +15,9 @@ namespace {
 constexpr std::size_t kBlock = mesh_io::MeshSource::kBlockSize;
 
 bool fits_float(Vec3d p) {
-  return to_double(to_float(p)) == p;
+  constexpr double kMost = std::numeric_limits<float>::max();
+  const bool in_range = std::abs(p.x) <= kMost && std::abs(p.y) <= kMost && std::abs(p.z) <= kMost;
+  return in_range && to_double(to_float(p)) == p;
 }
 
 /// The coordinate nearest to the middle that is a multiple of a power of two about a thousandth of

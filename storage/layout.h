@@ -1,13 +1,15 @@
 // Every file name of a hierarchy, and of the work towards one, in one place.
 //
+// clang-format off
 //   NAME.hier/hierarchy.json
 //   NAME.hier/tiles.bin
 //   NAME.hier/outline.glb
-//   NAME.hier/tiles/LL/NNNNNN.glb      level (two digits or more), index in the level (six digits
-//   or more) .NAME.hier.meshhier-work/          beside the output while a build runs; becomes
-//   NAME.hier when complete .NAME.hier.meshhier-old/           a replaced hierarchy, for the moment
-//   of the rename .NAME.hier.meshhier-verify-XXXXXXXX  beside a hierarchy while `verify` needs room
-//   .NAME.hier.meshhier-work/build.tmp/    temporary files of the stages, gone before the rename
+//   NAME.hier/tiles/LL/NNNNNN.glb            level (two digits or more), index in it (six or more)
+//   .NAME.hier.meshhier-work/                beside the output while a build runs; becomes NAME.hier
+//   .NAME.hier.meshhier-work/build.tmp/      temporary files of the stages, gone before the rename
+//   .NAME.hier.meshhier-old/                 a replaced hierarchy, for the moment of the rename
+//   .NAME.hier.meshhier-verify-XXXXXXXX      beside a hierarchy while `verify` needs room
+// clang-format on
 #pragma once
 
 #include "hierarchy/ids.h"

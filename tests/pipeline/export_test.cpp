@@ -248,6 +248,20 @@ TEST_F(ExportTest, FailureLeavesTheOldOutputAndNothingElse) {
   EXPECT_THAT(names(), testing::ElementsAre("a.hier", "out.ply"));
 }
 
+TEST_F(ExportTest, AnOutputInsideTheHierarchyIsRefused) {
+  publish(tests::sphere(900));
+  const fs::path index = storage::index_path(hierarchy());
+  const std::string before = bytes_of(index);
+  NoProgress progress;
+  try {
+    export_mesh(*files_, hierarchy(), {Level{}, index}, progress, CancelToken());
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::usage);
+  }
+  EXPECT_EQ(bytes_of(index), before);
+}
+
 TEST_F(ExportTest, ABrokenTileIsToldAndNothingWritten) {
   publish(tests::sphere(900));
   const fs::path tile = storage::tile_path(hierarchy(), node(1, 1));
