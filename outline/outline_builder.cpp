@@ -374,6 +374,7 @@ Selection select(const Lines& lines, const OutlineOptions& options) {
 struct OutlineBuilder::Parts {
   std::vector<CornerTriangle> triangles;  ///< border triangles, each once
   std::vector<SectorBorder> borders;
+  std::size_t border_edges = 0;  ///< of all sectors
 };
 
 OutlineBuilder::OutlineBuilder() : parts_(std::make_unique<Parts>()) {}
@@ -399,6 +400,11 @@ void OutlineBuilder::add(std::uint32_t index, const TileMesh& tile) {
       parts_->triangles.push_back(triangle);
   }
   parts_->borders.push_back(border_of(index, tile));
+  parts_->border_edges += parts_->borders.back().edges.size();
+}
+
+std::size_t OutlineBuilder::edge_count() const {
+  return parts_->triangles.size() + parts_->border_edges;
 }
 
 OutlineResult OutlineBuilder::finish(const OutlineOptions& options) const {

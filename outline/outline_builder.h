@@ -62,6 +62,10 @@ class OutlineBuilder {
   /// All sectors must be of one level, each added once. Keeps only what makes lines. O(triangles).
   void add(std::uint32_t index, const TileMesh& tile);
 
+  /// What is held so far: border triangles, and the sectors' edges with one triangle; some 200
+  /// bytes each until finish() returns.
+  std::size_t edge_count() const;
+
   /// First come the polylines between junctions, then the closed ones without, both ordered by the
   /// sector and index of the vertices at their start. Closed ones keep at least a triangle, others
   /// their ends. O(s log s) in the number of line segments.

@@ -4,12 +4,18 @@
 #include "storage/outline_glb.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace meshhier::pipeline {
 namespace {
 
 // At most 32 kB for any model (docs/architecture.md, Outline).
 constexpr std::size_t kOutlineBytes = 32000;
+
+// Border triangles and border edges held at a time, some 200 bytes each: 25 MB, whatever the
+// budget, as the result may not depend on it. The file has room for 2000 points; a mesh with more
+// edges than this (open patches, soup) is outlined on a coarser level, where they are fewer.
+constexpr std::size_t kMostEdges = 131072;
 
 /// The finest level with no more than `sectors` nodes.
 Level sector_level(const Tree& tree, std::uint32_t sectors) {
@@ -19,27 +25,39 @@ Level sector_level(const Tree& tree, std::uint32_t sectors) {
   return level;
 }
 
+/// Adds all sectors of a level; false if their lines are too many and there is a coarser level.
+bool collect(const Forest& forest, Level level, outline::OutlineBuilder& builder,
+             Progress& progress, const CancelToken& cancel) {
+  const std::uint32_t count = forest.tree().node_count(level);
+  progress.stage("outline", count, "sectors");
+  for (std::uint32_t index = 0; index < count; ++index) {
+    cancel.check();
+    builder.add(index, forest.load({level, index}).mesh);
+    if (builder.edge_count() > kMostEdges && level > Level{0})
+      return false;
+    progress.advance(1);
+  }
+  return true;
+}
+
 }  // namespace
 
 OutlineStageResult make_outline(const Forest& forest, const OutlineConfig& config, double diagonal,
                                 Progress& progress, const CancelToken& cancel) {
-  const Level level = sector_level(forest.tree(), config.sectors);
-  const std::uint32_t count = forest.tree().node_count(level);
-  progress.stage("outline", count, "sectors");
-  outline::OutlineBuilder builder;
-  for (std::uint32_t index = 0; index < count; ++index) {
-    cancel.check();
-    builder.add(index, forest.load({level, index}).mesh);
-    progress.advance(1);
-  }
+  Level level = sector_level(forest.tree(), config.sectors);
+  std::optional<outline::OutlineBuilder> builder;
+  while (!collect(forest, level, builder.emplace(), progress, cancel))
+    level = coarser(level);
+
   outline::OutlineOptions options;
   options.tolerance = config.tolerance;
   options.diagonal = std::max(diagonal, 1e-30);
   options.max_bytes = kOutlineBytes;
   options.file_bytes = storage::outline_bytes;
-  outline::OutlineResult result = builder.finish(options);
+  outline::OutlineResult result = builder->finish(options);
   return {std::move(result.outline),
-          {raw(level), count, result.tolerance, result.polylines_found, result.polylines_dropped}};
+          {raw(level), forest.tree().node_count(level), result.tolerance, result.polylines_found,
+           result.polylines_dropped}};
 }
 
 }  // namespace meshhier::pipeline
