@@ -185,8 +185,7 @@ BuildTile join(const BuildTile& first, std::uint32_t first_index, const BuildTil
     if (!known)
       add_border(placed);  // a triangle that touches the first tile came with it
   }
-  drop_unused(mesh.border, mesh.ghosts, own_count);
-  return joined;
+  return joined;  // every outside ghost still has its border triangle
 }
 
 namespace {

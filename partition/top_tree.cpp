@@ -181,10 +181,7 @@ std::uint32_t TopTree::chunk_of(Vec3f position, std::uint32_t id) const {
 
 TopSelector::TopSelector(const TopPlan& plan, const Tree& tree, storage::ScratchFile& scratch,
                          std::uint64_t memory_bytes)
-    : tree_(tree),
-      memory_bytes_(memory_bytes),
-      chunks_(plan.chunks),
-      left_counts_(plan.splits.size()) {
+    : tree_(tree), memory_bytes_(memory_bytes), left_counts_(plan.splits.size()) {
   // Open blocks of all nodes together stay within 4 MiB; below 1 KiB a block is not worth its
   // bookkeeping.
   const std::size_t block = std::clamp<std::size_t>(

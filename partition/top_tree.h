@@ -105,7 +105,6 @@ class TopSelector {
 
   const Tree& tree_;
   std::uint64_t memory_bytes_;
-  Level chunks_;
   std::vector<std::uint64_t> left_counts_;
   std::vector<storage::RecordSpool<IdPoint>> undecided_;
 };

@@ -4,7 +4,6 @@
 #include "storage/work_tile.h"
 
 #include <algorithm>
-#include <cstring>
 
 namespace meshhier::pipeline {
 namespace {
@@ -109,7 +108,7 @@ std::vector<std::uint16_t> Forest::published_parent_map(NodeId node) const {
   };
   const NodeId parent = tree_.parent(node);
   // An early node keeps its partition as it is, so the map from it is the map from the partition.
-  return tree_.is_early(parent) && parent.level > Level{0} ? whole(parent) : whole(node);
+  return tree_.is_early(parent) ? whole(parent) : whole(node);
 }
 
 std::vector<GhostChain> Forest::chains(NodeId node, std::span<const GhostRef> ghosts) const {

@@ -8,7 +8,6 @@
 #include "storage/blob_store.h"
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
