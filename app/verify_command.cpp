@@ -2,11 +2,15 @@
 #include "app/options.h"
 #include "hierarchy/error.h"
 #include "pipeline/verify.h"
+#include "pipeline/verify_error.h"
 
+#include <charconv>
 #include <limits>
 #include <memory>
 #include <ostream>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -20,18 +24,23 @@ struct VerifyArguments {
   std::string directory;
   std::string input;
   pipeline::VerifyOptions options;
+  bool measures_error = false;
+  pipeline::ErrorOptions error;
   bool json = false;
 };
+
+std::string to_text(const nlohmann::ordered_json& object) {
+  return object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+}
 
 /// A file name on disk may hold any bytes; JSON may not.
 std::string json_text(const pipeline::VerifyReport& report) {
   const nlohmann::ordered_json object{
       {"ok", report.problems.empty()}, {"checks", report.checks}, {"problems", report.problems}};
-  return object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+  return to_text(object);
 }
 
-std::string verdict(const pipeline::VerifyReport& report) {
-  const std::size_t count = report.problems.size();
+std::string verdict(std::size_t count) {
   if (count == 0)
     return "No problem found";
   return fmt::format("{} problem{} found", count, count == 1 ? "" : "s");
@@ -43,7 +52,44 @@ std::string plain_text(const pipeline::VerifyReport& report) {
     text += fmt::format("checked: {}\n", check);
   for (const std::string& problem : report.problems)
     text += fmt::format("PROBLEM: {}\n", problem);
-  return text + verdict(report) + ".\n";
+  return text + verdict(report.problems.size()) + ".\n";
+}
+
+using Measurements = std::vector<pipeline::ErrorMeasurement>;
+
+/// One object, or with all levels an object with a list of them.
+std::string json_text(const Measurements& measurements, bool all_levels) {
+  if (!all_levels)
+    return to_text(pipeline::to_json(measurements.front()));
+  auto levels = nlohmann::ordered_json::array();
+  for (const pipeline::ErrorMeasurement& measurement : measurements)
+    levels.push_back(pipeline::to_json(measurement));
+  return to_text({{"levels", levels}});
+}
+
+std::string plain_text(const Measurements& measurements, std::size_t problems) {
+  std::string text;
+  for (const pipeline::ErrorMeasurement& measurement : measurements)
+    text += pipeline::to_text(measurement) + '\n';
+  return text + verdict(problems) + ".\n";
+}
+
+int exit_code(std::size_t problems) {
+  return problems == 0 ? 0 : static_cast<int>(ErrorCode::corrupt);
+}
+
+int run_error(VerifyArguments arguments, pipeline::Progress& progress, Environment& environment) {
+  arguments.error.memory_budget = arguments.options.memory_budget;
+  const Measurements measurements = pipeline::measure_errors(
+      environment.files, arguments.directory, arguments.error, progress, environment.cancel);
+  std::size_t problems = 0;
+  for (const pipeline::ErrorMeasurement& measurement : measurements)
+    problems += measurement.problems.size();
+  progress.finish(verdict(problems));
+  const bool all_levels = std::holds_alternative<pipeline::AllLevels>(arguments.error.selection);
+  environment.out << (arguments.json ? json_text(measurements, all_levels)
+                                     : plain_text(measurements, problems));
+  return exit_code(problems);
 }
 
 int run_verify(VerifyArguments arguments, pipeline::ProgressMode mode, Environment& environment) {
@@ -51,22 +97,74 @@ int run_verify(VerifyArguments arguments, pipeline::ProgressMode mode, Environme
     arguments.options.input = arguments.input;
   const auto progress =
       pipeline::make_progress(mode, environment.messages, environment.messages_on_terminal);
+  if (arguments.measures_error)
+    return run_error(arguments, *progress, environment);
   const pipeline::VerifyReport report = pipeline::verify_hierarchy(
       environment.files, arguments.directory, arguments.options, *progress, environment.cancel);
-  progress->finish(verdict(report));
+  progress->finish(verdict(report.problems.size()));
   environment.out << (arguments.json ? json_text(report) : plain_text(report));
-  return report.problems.empty() ? 0 : static_cast<int>(ErrorCode::corrupt);
+  return exit_code(report.problems.size());
 }
 
 constexpr const char* kFooter =
     R"(Checks every file's checksum, the structure, and the seams of random cuts; with --input also that
-the partitions are that mesh, vertex by vertex and triangle by triangle. Exit code 7 if there is a
-problem.
+the partitions are that mesh, vertex by vertex and triangle by triangle. With --error none of that
+is done; the distance between what is shown and the original partitions is measured instead, both
+ways, and held against the tiles' bounds. Exit code 7 if there is a problem.
 
 Examples:
   meshhier verify david.hier
   meshhier verify david.hier --input david.ply --cuts 200 --seed 7
+  meshhier verify david.hier --error --level 3
+  meshhier verify david.hier --error --level all --samples 1000000 --json
 )";
+
+/// Finer levels than any tree has are refused by the tree, which knows how deep it is.
+constexpr std::uint8_t kDeepestLevel = 32;
+
+/// --level L | all
+void store_level(const std::string& text, pipeline::ErrorOptions& error) {
+  if (text == "all") {
+    error.selection = pipeline::AllLevels{};
+    return;
+  }
+  std::uint8_t level = 0;
+  const char* const last = text.data() + text.size();
+  const auto [end, failure] = std::from_chars(text.data(), last, level);
+  if (failure != std::errc{} || end != last || level > kDeepestLevel) {
+    throw CLI::ValidationError(
+        "--level", fmt::format("expected an integer from 0 to {} or \"all\", found \"{}\"",
+                               kDeepestLevel, text));
+  }
+  error.selection = static_cast<Level>(level);
+}
+
+/// A thousand times what figures are compared with: hours, but no defect.
+constexpr std::uint64_t kMostSamples = 400'000'000;
+
+void add_error_options(CLI::App& command, VerifyArguments& arguments,
+                       const std::vector<CLI::Option*>& others) {
+  pipeline::ErrorOptions& error = arguments.error;
+  CLI::Option* mode =
+      command.add_flag("--error", arguments.measures_error,
+                       "Measure the distance to the original partitions, and do nothing else");
+  for (CLI::Option* other : others)
+    mode->excludes(other);
+  CLI::Option* samples = add_integer_option(
+      command, {"--samples", "With --error: samples in each direction [400000]", 1, kMostSamples},
+      [&error](std::uint64_t count) { error.samples = count; });
+  CLI::Option* level = command.add_option_function<std::string>(
+      "--level", [&error](const std::string& text) { store_level(text, error); },
+      "With --error: the level that is measured, or all simplified levels [0]");
+  CLI::Option* cut = command.add_option_function<std::string>(
+      "--cut", [&error](const std::string& file) { error.selection = std::filesystem::path(file); },
+      "With --error: measure the cut that this file lists, as export takes one");
+  cut->type_name("FILE")->check(
+      [](const std::string& text) { return text.empty() ? "expected a file, found nothing" : ""; });
+  level->type_name("L|all")->excludes(cut);
+  for (CLI::Option* option : {samples, level, cut})
+    option->needs(mode);
+}
 
 }  // namespace
 
@@ -75,16 +173,19 @@ void add_verify_command(CLI::App& parser, Invocation& invocation) {
   pipeline::VerifyOptions& options = arguments->options;
   CLI::App* command = parser.add_subcommand("verify", "Prove that a hierarchy is sound");
   command->add_option("DIR", arguments->directory, "The hierarchy")->required();
-  command->add_option("--input", arguments->input, "The mesh it was made from")->type_name("MESH");
-  add_integer_option(
+  CLI::Option* input_option =
+      command->add_option("--input", arguments->input, "The mesh it was made from");
+  input_option->type_name("MESH");
+  CLI::Option* cuts_option = add_integer_option(
       *command,
       {"--cuts", "Random cuts whose seams are checked [20]", 0,
        std::numeric_limits<std::uint32_t>::max()},
       [&options](std::uint64_t cuts) { options.cuts = static_cast<std::uint32_t>(cuts); });
-  add_integer_option(
+  CLI::Option* seed_option = add_integer_option(
       *command,
       {"--seed", "Which random cuts are taken [1]", 0, std::numeric_limits<std::uint64_t>::max()},
       [&options](std::uint64_t seed) { options.seed = seed; });
+  add_error_options(*command, *arguments, {input_option, cuts_option, seed_option});
   add_memory_budget_option(*command, options.memory_budget);
   command->add_flag("--json", arguments->json, "One JSON object, for programs");
   add_progress_option(*command, invocation.progress);

@@ -1,6 +1,8 @@
 #include "cluster_simplify/contraction.h"
 
 #include "cluster_simplify/cluster.h"
+#include "cluster_simplify/edge_collapse.h"
+#include "cluster_simplify/half_edge.h"
 #include "hierarchy/error.h"
 
 #include <algorithm>
@@ -12,6 +14,10 @@ Contraction contract(const BuildTile& joined, std::uint32_t target, const Attrib
   switch (options.method) {
     case Method::cluster:
       return cluster(joined, target, layout, options.representative);
+    case Method::edge_collapse:
+      return edge_collapse(joined, target, layout);
+    case Method::half_edge:
+      return half_edge(joined, target, options.cost);
   }
   throw Error(ErrorCode::internal, "unknown contraction method");
 }

@@ -12,7 +12,9 @@
 namespace meshhier::cluster_simplify {
 
 enum class Method {
-  cluster,  ///< kd cells of equal vertex count, one representative each (Kim & Lee)
+  cluster,        ///< kd cells of equal vertex count, one representative each (Kim & Lee)
+  edge_collapse,  ///< edges collapse to the point of least quadric error (Garland & Heckbert)
+  half_edge,      ///< vertices collapse onto others: coarse vertices are a subset of fine ones
 };
 
 /// Where a cell's representative lies.
@@ -23,14 +25,23 @@ enum class Representative {
   vertex,   ///< the cell's vertex of least such distance
 };
 
+/// What a half-edge collapse costs.
+enum class HalfEdgeCost {
+  quadric,  ///< squared distance to the planes of both vertices
+  melax,    ///< length times how far the surface bends (Melax 1998)
+};
+
+/// A choice that the method has no use for is ignored.
 struct ContractionOptions {
-  Method method = Method::cluster;
-  Representative representative = Representative::quadric;
+  Method method = Method::edge_collapse;
+  Representative representative = Representative::quadric;  ///< of `cluster`
+  HalfEdgeCost cost = HalfEdgeCost::quadric;                ///< of `half_edge`
 };
 
 /// Contracts the own vertices of `joined` to `target` representatives, 1 <= target <= own_count <=
-/// 65536. Attributes are means over the original vertices a representative stands for, normals made
-/// unit length. Pure, deterministic; O(n log n).
+/// 65536; never more or fewer. Attributes: `cluster` takes means over the original vertices a
+/// representative stands for, `edge_collapse` interpolates along the edges (normals made unit
+/// length by both), `half_edge` keeps them. Pure, deterministic; O(n log n).
 Contraction contract(const BuildTile& joined, std::uint32_t target, const AttributeLayout& layout,
                      const ContractionOptions& options);
 

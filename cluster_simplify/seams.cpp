@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <limits>
 
 namespace meshhier::cluster_simplify {
@@ -57,14 +56,15 @@ void drop_unused(std::vector<Triangle>& border, std::vector<GhostRef>& refs,
   }
 }
 
-/// A float that is certainly not below `value`.
-float round_up(double value) {
-  const auto rounded = static_cast<float>(value);
-  return rounded < value ? std::nextafter(rounded, std::numeric_limits<float>::infinity())
-                         : rounded;
-}
-
 }  // namespace
+
+FallbackCounts& FallbackCounts::operator+=(const FallbackCounts& other) {
+  torn += other.torn;
+  turned += other.turned;
+  forced += other.forced;
+  joined += other.joined;
+  return *this;
+}
 
 BuildTile resolve(WorkTile tile, std::span<const GhostRef> mapped_refs, bool unique) {
   assert(mapped_refs.size() == tile.foreign.size());
@@ -98,7 +98,6 @@ void fill_ghosts(BuildTile& tile, std::uint32_t neighbour, const Rim& rim) {
     if (ghost->index >= rim.vertices.size())
       throw Error(ErrorCode::internal, "a ghost lies outside its tile's rim");
     tile.mesh.vertices.append(rim.vertices, ghost->index, ghost->index + 1);
-    tile.history.radii.push_back(rim.radii[ghost->index]);
   }
 }
 
@@ -117,10 +116,6 @@ BuildTile join(const BuildTile& first, std::uint32_t first_index, const BuildTil
   joined.history.weights = first.history.weights;
   joined.history.weights.insert(joined.history.weights.end(), second.history.weights.begin(),
                                 second.history.weights.end());
-  joined.history.radii.assign(first.history.radii.begin(),
-                              first.history.radii.begin() + a.own_count);
-  joined.history.radii.insert(joined.history.radii.end(), second.history.radii.begin(),
-                              second.history.radii.begin() + b.own_count);
 
   // Outside ghosts of both, merged.
   struct Outside {
@@ -145,7 +140,6 @@ BuildTile join(const BuildTile& first, std::uint32_t first_index, const BuildTil
   for (const Outside& ghost : outside) {
     mesh.ghosts.push_back(ghost.ref);
     mesh.vertices.append(ghost.tile->mesh.vertices, ghost.vertex, ghost.vertex + 1);
-    joined.history.radii.push_back(ghost.tile->history.radii[ghost.vertex]);
   }
 
   const auto place_of = [&](const TileMesh& tile, std::uint32_t offset, std::uint32_t sibling,
@@ -265,21 +259,9 @@ ContractedTile apply(const BuildTile& joined, Contraction contraction) {
     tile.vertices.append(contraction.representatives, old, old + 1);
 
   tile.history.weights.assign(count, 0);
-  tile.history.radii.assign(count, 0);
-  double weight_sum = 0;
-  for (std::uint32_t i = 0; i < mesh.own_count; ++i) {
-    const std::uint32_t parent = result.parent_map[i];
-    const Vec3d moved =
-        to_double(mesh.vertices.positions[i]) - to_double(tile.vertices.positions[parent]);
-    const double weight = joined.history.weights[i];
-    result.squared_motion += weight * dot(moved, moved);
-    weight_sum += weight;
-    tile.history.weights[parent] += joined.history.weights[i];
-    tile.history.radii[parent] =
-        std::max(tile.history.radii[parent],
-                 round_up((joined.history.radii[i] + length(moved)) * (1 + 1e-12)));
-  }
-  result.squared_motion /= std::max(weight_sum, 1.0);
+  for (std::uint32_t i = 0; i < mesh.own_count; ++i)
+    tile.history.weights[result.parent_map[i]] += joined.history.weights[i];
+  result.fallbacks = contraction.fallbacks;
   return result;
 }
 
@@ -292,8 +274,6 @@ ContractedTile keep(const BuildTile& tile) {
   result.tile.vertices.channels = mesh.vertices.channels;
   result.tile.vertices.append(mesh.vertices, 0, mesh.own_count);
   result.tile.history.weights = tile.history.weights;
-  result.tile.history.radii.assign(tile.history.radii.begin(),
-                                   tile.history.radii.begin() + mesh.own_count);
   result.tile.rim_count = mesh.rim_count;
   result.tile.interior = mesh.interior;
   result.tile.border = mesh.border;

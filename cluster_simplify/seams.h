@@ -18,11 +18,11 @@ namespace meshhier::cluster_simplify {
 ///
 /// `mapped`: one entry per tile.foreign, at the tile's level. Corners that became one vertex become
 /// one ghost, triangles that became degenerate go; of exact duplicates one stays if `unique`
-/// (simplified tiles; partitions keep the input's duplicates). The ghosts' positions, attributes
-/// and radii are left for fill_ghosts(). O(n log n).
+/// (simplified tiles; partitions keep the input's duplicates). The ghosts' positions and
+/// attributes are left for fill_ghosts(). O(n log n).
 BuildTile resolve(WorkTile tile, std::span<const GhostRef> mapped, bool unique);
 
-/// Appends the ghosts of one neighbour to the tile's vertices and radii; call in ascending order of
+/// Appends the ghosts of one neighbour to the tile's vertices; call in ascending order of
 /// `neighbour`. Throws Error(internal) if a ghost lies outside the rim.
 void fill_ghosts(BuildTile& tile, std::uint32_t neighbour, const Rim& rim);
 
@@ -31,24 +31,36 @@ void fill_ghosts(BuildTile& tile, std::uint32_t neighbour, const Rim& rim);
 BuildTile join(const BuildTile& first, std::uint32_t first_index, const BuildTile& second,
                std::uint32_t second_index);
 
+/// Vertices that went in ways a method avoids while it can, in the order in which they are tried.
+struct FallbackCounts {
+  std::uint32_t torn = 0;    ///< changed topology, because anything else would have harmed more
+  std::uint32_t turned = 0;  ///< let triangles turn over, because nothing else was left
+  std::uint32_t forced = 0;  ///< whatever it did to the surface
+  std::uint32_t joined = 0;  ///< joined across gaps, no edge between them
+
+  FallbackCounts& operator+=(const FallbackCounts& other);
+  /// Those of a tile that could not reach its count with care.
+  std::uint32_t without_care() const { return turned + forced + joined; }
+};
+
 /// The outcome of a contraction method: which representative stands for each own vertex of a joined
 /// tile.
 struct Contraction {
   std::vector<std::uint32_t>
       parent_of;  ///< own vertex -> representative, < representatives.size(), onto
   VertexArray representatives;
+  FallbackCounts fallbacks;
 };
 
 /// A parent tile and the map that leads to it.
 struct ContractedTile {
   WorkTile tile;                          ///< foreign: the joined tile's ghosts, one level finer
   std::vector<std::uint16_t> parent_map;  ///< own vertex of the joined tile -> vertex of `tile`
-  double squared_motion = 0;              ///< weighted mean of the squared distance vertices moved
+  FallbackCounts fallbacks;
 };
 
 /// Applies a contraction to a joined tile: maps its triangles, drops degenerate and repeated ones,
-/// puts the rim first, sums weights, and widens radii by how far each vertex moved (rounded up, so
-/// they stay bounds).
+/// puts the rim first and sums weights.
 ContractedTile apply(const BuildTile& joined, Contraction contraction);
 
 /// The contraction that changes nothing: for a node whose only child stands for it. The parent map

@@ -11,8 +11,6 @@ namespace meshhier {
 /// What a build knows of a tile's own vertices beside their positions, one entry each.
 struct VertexHistory {
   std::vector<float> weights;  ///< how many original vertices it stands for, >= 1
-  std::vector<float> radii;  ///< upper bound of its distance to any of them, input units; also for
-                             ///< ghosts if resolved
 };
 
 /// A tile just made: its border triangles still name their foreign corners as they were one step
@@ -32,13 +30,20 @@ struct WorkTile {
 /// What a tile shows of itself to its neighbours: its rim vertices, [0, rim_count).
 struct Rim {
   VertexArray vertices;
-  std::vector<float> radii;
 };
 
 /// A tile whose ghosts are known at its own level, with what contraction needs of them.
 struct BuildTile {
   TileMesh mesh;
-  VertexHistory history;  ///< weights: own; radii: own, then ghosts
+  VertexHistory history;  ///< own
+};
+
+/// What a tile shows of itself to those who measure beside it: its border triangles and two rows of
+/// interior ones along them.
+struct Band {
+  std::vector<GhostRef> vertices;   ///< own ones, ascending, then ghosts, ascending
+  std::vector<Vec3f> positions;     ///< one per entry of `vertices`
+  std::vector<Triangle> triangles;  ///< corners are places in `vertices`
 };
 
 }  // namespace meshhier

@@ -23,10 +23,13 @@ struct TileRecord {
       0;                           ///< those of them that this tile draws in its own level's cut
   std::uint32_t target_count = 0;  ///< vertices asked for; differs from own_count if not reached
   Bounds bounds;                   ///< of all its vertices, relative to the origin
-  float error = 0;                 ///< estimated geometric error, input units; 0 for partitions
-  float bound = 0;  ///< how far any original vertex under it is from its representative at most,
-                    ///< input units: bounds the Hausdorff distance of all that is still
-                    ///< drawn (not of components that collapsed to a point); 0 for partitions
+  std::uint32_t torn_count = 0;    ///< vertices that went by changing the surface's topology
+  std::uint32_t forced_count = 0;  ///< vertices that went without care for the surface, to reach
+                                   ///< the count
+  float error = 0;  ///< estimated distance to the original surface, input units; grows from
+                    ///< children to parents; 0 for partitions
+  float bound = 0;  ///< certain upper bound of the Hausdorff distance to the original surface,
+                    ///< input units; grows likewise; 0 for partitions
   float compactness =
       0;  ///< p^2 / (4 pi w) of a partition; 0 if it has no area, and for other tiles
   std::uint64_t file_bytes = 0;

@@ -1,72 +1,36 @@
 #include "partition/chunk.h"
 
+#include "partition/graph_split.h"
 #include "partition/split_plane.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace meshhier::partition {
 namespace {
 
-// A split is judged on at most about so many points and triangles, a hashed choice of the node's.
-// On the dragon's 128 partitions mean compactness is 3.93 with 4096 and 16384, 3.82 with
-// these, 3.81 with all, which takes a quarter longer.
-constexpr std::size_t kJudgedPoints = 16384;
-constexpr std::size_t kJudgedTriangles = 65536;
+// A graph is split into the nodes so many levels below in one go, and these again; or one level
+// more if that is all.
+constexpr int kGraphLevels = 5;
 
-using LocalTriangle = std::array<std::uint32_t, 3>;
-
-constexpr std::uint64_t mix(std::uint64_t x) {
-  x = (x ^ (x >> 32)) * 0xd6e8feb86659fd93ULL;
-  return x ^ (x >> 32);
-}
-
-constexpr std::uint64_t hash(const LocalTriangle& t) {
-  return mix(mix(mix(t[0] + 1) + t[1]) + t[2]);
-}
-
-/// The smallest corner first.
-LocalTriangle turned(const LocalTriangle& t) {
-  if (t[1] < t[0] && t[1] < t[2])
-    return {t[1], t[2], t[0]};
-  return t[2] < t[0] && t[2] < t[1] ? LocalTriangle{t[2], t[0], t[1]} : t;
-}
-
-class ChunkSplitter {
+/// Splits by planes at exact medians.
+class PlaneSplitter {
  public:
-  ChunkSplitter(const ChunkMesh& chunk, const Tree& tree, Axis axis)
-      : chunk_(chunk),
+  PlaneSplitter(const ChunkMesh& chunk, const Tree& tree, Axis axis)
+      : positions_(chunk.vertices.positions),
         tree_(tree),
         axis_(axis),
-        partition_of_(chunk.vertices.size()),
-        right_(chunk.vertices.size()) {}
+        partition_of_(positions_.size()) {}
 
-  std::vector<PartitionId> run() {
-    std::vector<std::uint32_t> vertices(chunk_.vertices.size());
-    for (std::uint32_t i = 0; i < vertices.size(); ++i)
-      vertices[i] = i;
-    std::vector<LocalTriangle> triangles = inner_triangles();
-    split(chunk_.node, vertices, triangles);
+  std::vector<PartitionId> run(NodeId node) {
+    std::vector<std::uint32_t> vertices(positions_.size());
+    std::iota(vertices.begin(), vertices.end(), 0U);
+    split(node, vertices);
     return std::move(partition_of_);
   }
 
  private:
-  /// Triangles with all corners here, in local numbers, smallest first: equal whatever way the file
-  /// turned them.
-  std::vector<LocalTriangle> inner_triangles() const {
-    std::vector<LocalTriangle> inner;
-    inner.reserve(chunk_.triangles.size());
-    const auto first = static_cast<std::uint32_t>(tree_.ranks(chunk_.node).begin);
-    const auto count = static_cast<std::uint32_t>(chunk_.vertices.size());
-    for (const RankTriangle& t : chunk_.triangles) {
-      const LocalTriangle local{t[0] - first, t[1] - first,
-                                t[2] - first};  // wraps around below `first`
-      if (local[0] < count && local[1] < count && local[2] < count)
-        inner.push_back(turned(local));
-    }
-    return inner;
-  }
-
-  void split(NodeId node, std::span<std::uint32_t> vertices, std::span<LocalTriangle> triangles) {
+  void split(NodeId node, std::span<std::uint32_t> vertices) {
     if (tree_.is_partition(node)) {
       for (const std::uint32_t v : vertices)
         partition_of_[v] = static_cast<PartitionId>(node.index);
@@ -74,79 +38,99 @@ class ChunkSplitter {
     }
     const Tree::Children children = tree_.children(node);
     if (children.count == 1) {
-      split(children.nodes[0], vertices, triangles);
+      split(children.nodes[0], vertices);
       return;
     }
     const std::size_t left_count = tree_.ranks(children.nodes[0]).size();
-    split_vertices(vertices, left_count, choose(vertices, left_count, triangles));
-    // Triangles cut here matter to neither side any more.
-    const auto all_on = [&](bool side) {
-      return [this, side](const LocalTriangle& t) {
-        return right_[t[0]] == side && right_[t[1]] == side && right_[t[2]] == side;
-      };
-    };
-    const auto cut = std::partition(triangles.begin(), triangles.end(), all_on(false));
-    const auto end = std::partition(cut, triangles.end(), all_on(true));
-    split(children.nodes[0], vertices.first(left_count), {triangles.begin(), cut});
-    split(children.nodes[1], vertices.subspan(left_count), {cut, end});
+    split_vertices(vertices, left_count, choose(vertices, left_count));
+    split(children.nodes[0], vertices.first(left_count));
+    split(children.nodes[1], vertices.subspan(left_count));
   }
 
-  Vec3d choose(std::span<const std::uint32_t> vertices, std::size_t left_count,
-               std::span<const LocalTriangle> triangles) const {
-    std::vector<IdPoint> points;
-    points.reserve(std::min(vertices.size(), 2 * kJudgedPoints));
-    const std::size_t stride =
-        axis_ == Axis::longest ? 1 : std::max<std::size_t>(1, vertices.size() / kJudgedPoints);
-    for (std::size_t i = 0; i < vertices.size(); i += stride)
-      points.push_back(point(vertices[i]));
-    std::vector<Vec3f> positions(points.size());
-    std::transform(points.begin(), points.end(), positions.begin(),
-                   [](const IdPoint& p) { return p.position; });
-    const std::vector<Vec3d> candidates = candidate_directions(positions, axis_);
-    if (candidates.size() == 1)
-      return candidates[0];
+  Vec3d choose(std::span<const std::uint32_t> vertices, std::size_t left_count) const {
+    std::vector<Vec3f> points(vertices.size());
+    std::transform(vertices.begin(), vertices.end(), points.begin(),
+                   [this](std::uint32_t v) { return positions_[v]; });
     const double fraction = static_cast<double>(left_count) / static_cast<double>(vertices.size());
-    const std::vector<Corners> judged = judged_triangles(triangles);
-    if (judged.empty())
-      return thinnest_direction(positions, fraction, candidates);
-    return shortest_cut_direction(points, judged, fraction, candidates);
+    return thinnest_direction(points, fraction, candidate_directions(points, axis_));
   }
 
-  std::vector<Corners> judged_triangles(std::span<const LocalTriangle> triangles) const {
-    const std::uint64_t share = std::max<std::uint64_t>(1, triangles.size() / kJudgedTriangles);
-    std::vector<Corners> judged;
-    judged.reserve(triangles.size() / share + 1024);
-    for (const LocalTriangle& t : triangles) {
-      if (share == 1 || hash(t) % share == 0)
-        judged.push_back({point(t[0]), point(t[1]), point(t[2])});
-    }
-    return judged;
-  }
-
-  /// Puts the `left_count` lowest vertices first, each side ascending by number, and notes the
-  /// sides.
-  void split_vertices(std::span<std::uint32_t> vertices, std::size_t left_count, Vec3d direction) {
+  /// Puts the `left_count` lowest vertices first, each side ascending by number.
+  void split_vertices(std::span<std::uint32_t> vertices, std::size_t left_count,
+                      Vec3d direction) const {
+    const auto key = [&](std::uint32_t v) { return key_along(direction, positions_[v], v); };
     std::vector<SplitKey> keys(vertices.size());
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-      keys[i] = key_along(direction, position(vertices[i]), vertices[i]);
-    }
+    std::transform(vertices.begin(), vertices.end(), keys.begin(), key);
     std::nth_element(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(left_count),
                      keys.end());
     const SplitKey first_right = keys[left_count];
-    for (const std::uint32_t v : vertices)
-      right_[v] = key_along(direction, position(v), v) >= first_right;
     std::stable_partition(vertices.begin(), vertices.end(),
-                          [&](std::uint32_t v) { return !right_[v]; });
+                          [&](std::uint32_t v) { return key(v) < first_right; });
   }
 
-  Vec3f position(std::uint32_t vertex) const { return chunk_.vertices.positions[vertex]; }
-  IdPoint point(std::uint32_t vertex) const { return {position(vertex), vertex}; }
-
-  const ChunkMesh& chunk_;
+  std::span<const Vec3f> positions_;
   const Tree& tree_;
   Axis axis_;
   std::vector<PartitionId> partition_of_;
-  std::vector<char> right_;
+};
+
+/// Splits along the shortest lines on the surface.
+class SurfaceSplitter {
+ public:
+  SurfaceSplitter(const Tree& tree, std::size_t vertex_count)
+      : tree_(tree), partition_of_(vertex_count), place_(vertex_count) {}
+
+  std::vector<PartitionId> run(NodeId node, const Graph& graph) {
+    std::vector<std::uint32_t> vertices(partition_of_.size());
+    std::iota(vertices.begin(), vertices.end(), 0U);
+    split(node, graph, vertices);
+    return std::move(partition_of_);
+  }
+
+ private:
+  /// `vertices`: of the chunk, one per vertex of `graph`.
+  void split(NodeId node, const Graph& graph, std::span<const std::uint32_t> vertices) {
+    const std::vector<NodeId> nodes = nodes_below(node);
+    std::vector<std::uint32_t> sizes;
+    for (const NodeId& below : nodes)
+      sizes.push_back(static_cast<std::uint32_t>(tree_.ranks(below).size()));
+    const std::vector<std::uint32_t> part_of = split_graph(graph, sizes);
+    if (tree_.is_partition(nodes[0])) {
+      for (std::size_t i = 0; i < vertices.size(); ++i)
+        partition_of_[vertices[i]] = static_cast<PartitionId>(nodes[part_of[i]].index);
+      return;
+    }
+    std::vector<std::vector<std::uint32_t>> members(nodes.size());
+    for (std::uint32_t i = 0; i < vertices.size(); ++i)
+      members[part_of[i]].push_back(i);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const Graph part = subgraph(graph, members[i], place_);
+      for (std::uint32_t& v : members[i])
+        v = vertices[v];
+      split(nodes[i], part, members[i]);
+    }
+  }
+
+  /// The nodes a graph is split into at once.
+  std::vector<NodeId> nodes_below(NodeId node) const {
+    const int left = raw(tree_.depth()) - raw(node.level);
+    const int levels = left <= kGraphLevels + 1 ? left : kGraphLevels;
+    static_assert(1U << (kGraphLevels + 1) <= kMostParts);
+    std::vector<NodeId> nodes{node};
+    for (int i = 0; i < levels; ++i) {
+      std::vector<NodeId> children;
+      for (const NodeId& parent : nodes) {
+        const Tree::Children below = tree_.children(parent);
+        children.insert(children.end(), below.span().begin(), below.span().end());
+      }
+      nodes = std::move(children);
+    }
+    return nodes;
+  }
+
+  const Tree& tree_;
+  std::vector<PartitionId> partition_of_;
+  std::vector<std::uint32_t> place_;  ///< subgraph()'s workspace
 };
 
 }  // namespace
@@ -168,7 +152,14 @@ std::uint32_t ChunkMap::chunk_of(std::uint32_t rank) const {
 }
 
 std::vector<PartitionId> split_chunk(const ChunkMesh& chunk, const Tree& tree, Axis axis) {
-  return ChunkSplitter(chunk, tree, axis).run();
+  if (axis == Axis::compactness) {
+    const auto first = static_cast<std::uint32_t>(tree.ranks(chunk.node).begin);
+    // Triangles cut off by the chunk's own border matter to no split.
+    const Graph graph = surface_graph(chunk.vertices.positions, chunk.triangles, first);
+    if (!graph.arcs.empty())
+      return SurfaceSplitter(tree, graph.size()).run(chunk.node, graph);
+  }
+  return PlaneSplitter(chunk, tree, axis).run(chunk.node);
 }
 
 }  // namespace meshhier::partition

@@ -69,7 +69,6 @@ class LeafBuilder {
       tile.vertices.positions.resize(size[i]);
       tile.vertices.attributes.resize(size[i] * static_cast<std::size_t>(chunk_.vertices.channels));
       tile.history.weights.assign(size[i], 1.0F);
-      tile.history.radii.assign(size[i], 0.0F);
     }
     std::vector<std::uint32_t> next_rim(result_.tiles.size());
     std::vector<std::uint32_t> next_inner(result_.tiles.size());

@@ -2,6 +2,7 @@
 
 #include "partition/top_tree.h"
 #include "pipeline/forest.h"
+#include "pipeline/measure_stage.h"
 #include "pipeline/memory_plan.h"
 #include "pipeline/outline_stage.h"
 #include "pipeline/partition_stage.h"
@@ -169,8 +170,9 @@ BuildReport build_hierarchy(const Config& config, bool force, BuildEnvironment e
   simplify(forest,
            {result.asked_vertices,
             result.source.attributes,
-            {config.simplify.method, config.simplify.representative}},
+            {config.simplify.method, config.simplify.representative, config.simplify.cost}},
            plan, progress, cancel);
+  measure(forest, config.simplify.method, plan, progress, cancel);
   result.outline =
       make_outline(forest, config.outline,
                    length(result.source.bounds.max - result.source.bounds.min), progress, cancel);

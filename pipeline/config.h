@@ -44,18 +44,26 @@ struct PartitionConfig {
 
 /// How a tile is contracted. A new method has its name here and in the JSON schema.
 using SimplifyMethod = cluster_simplify::Method;
-inline constexpr std::array kSimplifyMethods{NamedValue{"cluster", SimplifyMethod::cluster}};
+inline constexpr std::array kSimplifyMethods{
+    NamedValue{"edge_collapse", SimplifyMethod::edge_collapse},
+    NamedValue{"half_edge", SimplifyMethod::half_edge},
+    NamedValue{"cluster", SimplifyMethod::cluster}};
 
 using Representative = cluster_simplify::Representative;
 inline constexpr std::array kRepresentatives{NamedValue{"mean", Representative::mean},
                                              NamedValue{"quadric", Representative::quadric},
                                              NamedValue{"vertex", Representative::vertex}};
 
+using HalfEdgeCost = cluster_simplify::HalfEdgeCost;
+inline constexpr std::array kHalfEdgeCosts{NamedValue{"quadric", HalfEdgeCost::quadric},
+                                           NamedValue{"melax", HalfEdgeCost::melax}};
+
 struct SimplifyConfig {
-  SimplifyMethod method = SimplifyMethod::cluster;
+  SimplifyMethod method = SimplifyMethod::edge_collapse;
   std::optional<std::uint32_t>
       vertices;  ///< of a simplified tile, 4 to 32768; not set: as a partition has
-  Representative representative = Representative::quadric;
+  Representative representative = Representative::quadric;  ///< used by `cluster`
+  HalfEdgeCost cost = HalfEdgeCost::quadric;                ///< used by `half_edge`
   friend bool operator==(const SimplifyConfig&, const SimplifyConfig&) = default;
 };
 

@@ -159,6 +159,8 @@ std::vector<ConfigKey> make_config_keys() {
       deciding(choice(
           "simplify.representative", kRepresentatives,
           [](auto& c) -> auto& { return c.simplify.representative; })),
+      deciding(choice(
+          "simplify.cost", kHalfEdgeCosts, [](auto& c) -> auto& { return c.simplify.cost; })),
       deciding(number(
           "outline.sectors", {1, kMostSectors},
           [](auto& c) -> auto& { return c.outline.sectors; })),

@@ -27,7 +27,8 @@ Forest::Forest(const Tree& tree, Level chunks, int channels, storage::ScratchFil
     levels_.push_back({{scratch, count},
                        {scratch, count},
                        {scratch, count},
-                       std::vector<float>(count),
+                       {scratch, count},
+                       std::vector<TileFacts>(count),
                        std::vector<std::uint32_t>(count)});
   }
 }
@@ -36,11 +37,10 @@ void Forest::put_places(std::uint32_t chunk, std::span<const partition::LeafPlac
   places_.put(chunk, std::as_bytes(places));
 }
 
-void Forest::put_tile(NodeId node, const WorkTile& tile, float error) {
+void Forest::put_tile(NodeId node, const WorkTile& tile) {
   LevelStore& level = levels_[raw(node.level)];
   level.tiles.put(node.index, storage::encode_work_tile(tile));
   level.rims.put(node.index, storage::encode_rim(tile));
-  level.errors[node.index] = error;
   level.own_counts[node.index] = static_cast<std::uint32_t>(tile.vertices.size());
 }
 
@@ -59,6 +59,14 @@ BuildTile Forest::load(NodeId node) const {
                                   storage::decode_rim(level.rims.get(neighbour), channels_));
   });
   return tile;
+}
+
+void Forest::put_band(NodeId node, const BuildTile& tile) {
+  levels_[raw(node.level)].bands.put(node.index, storage::encode_band(tile, node.index));
+}
+
+Band Forest::band(NodeId node) const {
+  return storage::decode_band(levels_[raw(node.level)].bands.get(node.index));
 }
 
 std::vector<GhostRef> Forest::mapped(NodeId node, std::span<const GhostRef> foreign) const {
@@ -99,16 +107,17 @@ std::vector<std::uint16_t> Forest::parent_map(NodeId child, std::size_t count) c
   return map;
 }
 
+std::vector<std::uint16_t> Forest::parent_map(NodeId child) const {
+  return parent_map(
+      child, levels_[raw(child.level)].parent_maps.size(child.index) / sizeof(std::uint16_t));
+}
+
 std::vector<std::uint16_t> Forest::published_parent_map(NodeId node) const {
   if (node.level == Level{0})
     return {};
-  const auto whole = [&](NodeId child) {
-    return parent_map(
-        child, levels_[raw(child.level)].parent_maps.size(child.index) / sizeof(std::uint16_t));
-  };
   const NodeId parent = tree_.parent(node);
   // An early node keeps its partition as it is, so the map from it is the map from the partition.
-  return tree_.is_early(parent) ? whole(parent) : whole(node);
+  return parent_map(tree_.is_early(parent) ? parent : node);
 }
 
 std::vector<GhostChain> Forest::chains(NodeId node, std::span<const GhostRef> ghosts) const {

@@ -13,6 +13,14 @@
 
 namespace meshhier::pipeline {
 
+/// What a build finds out about a tile beside its mesh. See TileRecord.
+struct TileFacts {
+  float error = 0;
+  float bound = 0;
+  std::uint32_t torn_count = 0;
+  std::uint32_t forced_count = 0;
+};
+
 /// Tiles are put level by level, finest first. A level's tiles can be loaded once all tiles of that
 /// level are there (and, of a simplified level, all parent maps that lead to it). Loading and
 /// putting are thread-safe.
@@ -25,17 +33,26 @@ class Forest {
   const Tree& tree() const { return tree_; }
 
   void put_places(std::uint32_t chunk, std::span<const partition::LeafPlace> places);
-  void put_tile(NodeId node, const WorkTile& tile, float error);
+  void put_tile(NodeId node, const WorkTile& tile);
+  /// What the neighbours of a loaded tile may see of it.
+  void put_band(NodeId node, const BuildTile& tile);
   /// The map from `child` to its parent's tile.
   void put_parent_map(NodeId child, std::span<const std::uint16_t> parent_map);
 
-  float error(NodeId node) const { return levels_[raw(node.level)].errors[node.index]; }
+  TileFacts& facts(NodeId node) { return levels_[raw(node.level)].facts[node.index]; }
+  const TileFacts& facts(NodeId node) const { return levels_[raw(node.level)].facts[node.index]; }
   std::uint32_t own_count(NodeId node) const {
     return levels_[raw(node.level)].own_counts[node.index];
   }
 
   /// The tile with its ghosts at its own level, positions and all.
   BuildTile load(NodeId node) const;
+  Band band(NodeId node) const;
+  /// What foreign corners of the node's tile as it was just made (WorkTile::foreign) are at its own
+  /// level.
+  std::vector<GhostRef> mapped(NodeId node, std::span<const GhostRef> foreign) const;
+  /// The map from `child` to its parent's tile.
+  std::vector<std::uint16_t> parent_map(NodeId child) const;
   /// The map from `node` to the nearest ancestor that is published; empty for the root.
   std::vector<std::uint16_t> published_parent_map(NodeId node) const;
   /// Of each ghost of the node's tile.
@@ -43,11 +60,10 @@ class Forest {
 
  private:
   struct LevelStore {
-    storage::BlobStore tiles, rims, parent_maps;
-    std::vector<float> errors;
+    storage::BlobStore tiles, rims, bands, parent_maps;
+    std::vector<TileFacts> facts;
     std::vector<std::uint32_t> own_counts;
   };
-  std::vector<GhostRef> mapped(NodeId node, std::span<const GhostRef> foreign) const;
   std::vector<GhostRef> mapped_leaf(std::span<const GhostRef> foreign) const;
   std::vector<std::uint16_t> parent_map(NodeId child, std::size_t count) const;
 

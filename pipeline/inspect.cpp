@@ -134,27 +134,30 @@ std::string range_text(const CountRange& range) {
 
 std::string level_table(std::span<const LevelSummary> levels, std::optional<Level> only) {
   std::string text = fmt::format(
-      "{:>5} {:>7} |{:^29} |{:^29} |{:^33} | {:>6} {:>10} {:>10} | {:>6} | {:>13}\n", "", "",
-      "vertices a tile", "triangles a tile", "bytes a file", "", "", "", "off", "triangles");
+      "{:>5} {:>7} |{:^29} |{:^29} |{:^33} | {:>6} {:>10} {:>10} | {:>6} {:>8} {:>8} | {:>13}\n",
+      "", "", "vertices a tile", "triangles a tile", "bytes a file", "", "", "", "off", "vertices",
+      "vertices", "triangles");
   constexpr std::string_view kRange = "   min     mean    max spread";
-  text += fmt::format("{:>5} {:>7} |{} |{} |{} | {:>6} {:>10} {:>10} | {:>6} | {:>13}\n", "level",
-                      "tiles", kRange, kRange, "     min     mean      max spread", "border",
-                      "error", "bound", "target", "shown");
+  text +=
+      fmt::format("{:>5} {:>7} |{} |{} |{} | {:>6} {:>10} {:>10} | {:>6} {:>8} {:>8} | {:>13}\n",
+                  "level", "tiles", kRange, kRange, "     min     mean      max spread", "border",
+                  "error", "bound", "target", "torn", "forced", "shown");
   for (const LevelSummary& s : levels) {
     if (only && s.level != *only)
       continue;
     const std::string bytes =
         fmt::format("{:>8} {:>8.0f} {:>8} {:>6}", s.bytes.min, s.bytes.mean, s.bytes.max,
                     fmt::format("{:.0f}%", 100 * s.bytes.spread()));
-    text +=
-        fmt::format("{:>5} {:>7} |{} |{} |{} | {:>6} {:>10.4g} {:>10.4g} | {:>6} | {:>13}\n",
-                    raw(s.level), s.tiles, range_text(s.vertices), range_text(s.triangles), bytes,
-                    fmt::format("{:.1f}%", 100 * s.border_ratio), s.error_max, s.bound_max,
-                    s.off_target, (s.shown_exact ? "" : "<=") + grouped(s.shown_triangles));
+    text += fmt::format(
+        "{:>5} {:>7} |{} |{} |{} | {:>6} {:>10.4g} {:>10.4g} | {:>6} {:>8} {:>8} | {:>13}\n",
+        raw(s.level), s.tiles, range_text(s.vertices), range_text(s.triangles), bytes,
+        fmt::format("{:.1f}%", 100 * s.border_ratio), s.error_max, s.bound_max, s.off_target,
+        s.torn_total, s.forced_total, (s.shown_exact ? "" : "<=") + grouped(s.shown_triangles));
   }
   return text +
          "spread: (max - min) / mean; border: share of border triangles; error, bound: the "
-         "largest, in input units\n";
+         "largest, in input units\ntorn: vertices that went by changing the surface's topology; "
+         "forced: without care for the surface, to reach the count\n";
 }
 
 std::string outline_text(const storage::Manifest& manifest) {

@@ -40,7 +40,7 @@ bool draws(const Tree& tree, NodeId node, const TileMesh& mesh, const Triangle& 
   });
 }
 
-TileRecord describe(const Tree& tree, NodeId node, const BuildTile& tile, float error,
+TileRecord describe(const Tree& tree, NodeId node, const BuildTile& tile, const TileFacts& facts,
                     std::uint32_t asked) {
   const TileMesh& mesh = tile.mesh;
   TileRecord record;
@@ -55,9 +55,10 @@ TileRecord describe(const Tree& tree, NodeId node, const BuildTile& tile, float 
                     [&](const Triangle& t) { return draws(tree, node, mesh, t); }));
   record.target_count = tree.is_partition(node) ? mesh.own_count : asked;
   record.bounds = bounds_of(mesh.vertices.positions);
-  record.error = error;
-  for (const float radius : tile.history.radii)
-    record.bound = std::max(record.bound, radius);
+  record.torn_count = facts.torn_count;
+  record.forced_count = facts.forced_count;
+  record.error = facts.error;
+  record.bound = facts.bound;
   if (tree.is_partition(node)) {
     constexpr double kMost = std::numeric_limits<float>::max();
     record.compactness = static_cast<float>(std::min(partition::compactness(mesh), kMost));
@@ -69,7 +70,7 @@ TileRecord describe(const Tree& tree, NodeId node, const BuildTile& tile, float 
 TileRecord write_tile(const Forest& forest, NodeId node, const PublishInput& input,
                       const std::filesystem::path& directory, storage::FileSystem& files) {
   BuildTile tile = forest.load(node);
-  TileRecord record = describe(forest.tree(), node, tile, forest.error(node), input.asked_vertices);
+  TileRecord record = describe(forest.tree(), node, tile, forest.facts(node), input.asked_vertices);
   PublishedTile published;
   published.node = node;
   published.parent_map = forest.published_parent_map(node);

@@ -4,10 +4,6 @@
 #include "pipeline/parallel.h"
 #include "pipeline/size_text.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include <fmt/format.h>
 
 namespace meshhier::pipeline {
@@ -42,29 +38,18 @@ ChunkReport put_leaves(Chunks& chunks, std::uint32_t index, partition::Axis axis
   forest.put_places(index, leaves.places);
   const std::uint32_t first = tree.partitions(chunk.node).begin;
   for (std::uint32_t p = 0; p < leaves.tiles.size(); ++p)
-    forest.put_tile({tree.depth(), first + p}, leaves.tiles[p], 0);
+    forest.put_tile({tree.depth(), first + p}, leaves.tiles[p]);
   return {leaves.tiles.size(), leaves.unreferenced_count};
 }
 
-/// The estimated error of a tile: the children's, and how far (in the root mean square) this
-/// contraction moved their vertices. Strictly more than the children's.
-float error_above(const Forest& forest, NodeId node, double squared_motion) {
-  float below = 0;
-  const Tree::Children children = forest.tree().children(node);
-  for (const NodeId child : children.span())
-    below = std::max(below, forest.error(child));
-  if (forest.tree().is_early(node))
-    return below;
-  const auto sum = static_cast<float>(double{below} + std::sqrt(squared_motion));
-  return std::max(sum, std::nextafter(below, std::numeric_limits<float>::infinity()));
-}
-
-ContractedTile contract_children(const Forest& forest, const Tree::Children& children,
+ContractedTile contract_children(Forest& forest, const Tree::Children& children,
                                  const SimplifyOptions& options) {
   const BuildTile first = forest.load(children.nodes[0]);
+  forest.put_band(children.nodes[0], first);
   if (children.count == 1)
     return cluster_simplify::keep(first);
   const BuildTile second = forest.load(children.nodes[1]);
+  forest.put_band(children.nodes[1], second);
   const BuildTile joined =
       cluster_simplify::join(first, children.nodes[0].index, second, children.nodes[1].index);
   const std::uint32_t target =
@@ -83,7 +68,9 @@ void make_tile(Forest& forest, NodeId node, const SimplifyOptions& options) {
     forest.put_parent_map(child, std::span(contracted.parent_map).subspan(begin, count));
     begin += count;
   }
-  forest.put_tile(node, contracted.tile, error_above(forest, node, contracted.squared_motion));
+  forest.put_tile(node, contracted.tile);
+  forest.facts(node).torn_count = contracted.fallbacks.torn;
+  forest.facts(node).forced_count = contracted.fallbacks.without_care();
 }
 
 }  // namespace

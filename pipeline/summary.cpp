@@ -51,6 +51,8 @@ LevelSummary summarize(Level level, Level last, std::span<const TileRecord> reco
     summary.triangles_total += drawn_count(record);
     summary.error_max = std::max(summary.error_max, record.error);
     summary.bound_max = std::max(summary.bound_max, record.bound);
+    summary.torn_total += record.torn_count;
+    summary.forced_total += record.forced_count;
     if (level != last && record.own_count != record.target_count)
       ++summary.off_target;
   }
@@ -139,6 +141,8 @@ nlohmann::ordered_json to_json(const LevelSummary& s) {
           {"border_ratio", s.border_ratio},
           {"error_max", s.error_max},
           {"bound_max", s.bound_max},
+          {"torn_vertices", s.torn_total},
+          {"forced_vertices", s.forced_total},
           {"off_target", s.off_target},
           {"shown_tiles", s.shown_tiles},
           {"shown_triangles", s.shown_triangles},
@@ -156,6 +160,8 @@ nlohmann::ordered_json to_json(const TileRecord& r) {
           {"border_triangles", r.border_count},
           {"drawn_border_triangles", r.drawn_border_count},
           {"bounds", {{"min", corner(r.bounds.min)}, {"max", corner(r.bounds.max)}}},
+          {"torn_vertices", r.torn_count},
+          {"forced_vertices", r.forced_count},
           {"error", r.error},
           {"bound", r.bound},
           {"compactness", r.compactness},

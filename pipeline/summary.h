@@ -32,10 +32,12 @@ struct LevelSummary {
   std::uint64_t vertices_total = 0;
   std::uint64_t triangles_total = 0;  ///< each once: interior, and border ones where they are drawn
   std::uint64_t bytes_total = 0;
-  double border_ratio = 0;       ///< border triangles of all triangles, summed over the tiles
-  float error_max = 0;           ///< input units
-  float bound_max = 0;           ///< input units
-  std::uint32_t off_target = 0;  ///< simplified tiles whose vertex count is not the one asked for
+  double border_ratio = 0;         ///< border triangles of all triangles, summed over the tiles
+  float error_max = 0;             ///< input units
+  float bound_max = 0;             ///< input units
+  std::uint64_t torn_total = 0;    ///< vertices that went by changing topology
+  std::uint64_t forced_total = 0;  ///< vertices that went without care for the surface
+  std::uint32_t off_target = 0;    ///< simplified tiles whose vertex count is not the one asked for
 
   // What the cut of this level shows, with partitions in the place of early nodes.
   std::uint32_t shown_tiles = 0;

@@ -17,31 +17,33 @@ namespace {
 //   header                                     record
 //   offset  bytes  what                        offset  bytes  what
 //        0      8  magic "MHTILES\n"                0      4  level
-//        8      4  version, 1                       4      4  index
-//       12      4  bytes of a record, 88            8      4  own vertices
+//        8      4  version, 2                       4      4  index
+//       12      4  bytes of a record, 96            8      4  own vertices
 //       16      8  number of records               12      4  rim vertices
 //       24      8  XXH3-64 of bytes 0 to 23        16      4  ghosts
 //                  and all records                 20      4  interior triangles
 //                                                  24      4  border triangles
 //                                                  28      4  border triangles drawn
 //                                                  32      4  vertices asked for
-//                                                  36      4  f32 error
-//                                                  40      4  f32 bound
-//                                                  44      4  f32 compactness
-//                                                  48     24  f32 min x y z, max x y z
-//                                                  72      8  bytes of the file
-//                                                  80      8  XXH3-64 of the file
+//                                                  36      4  vertices torn away
+//                                                  40      4  vertices forced away
+//                                                  44      4  f32 error
+//                                                  48      4  f32 bound
+//                                                  52      4  f32 compactness
+//                                                  56     24  f32 min x y z, max x y z
+//                                                  80      8  bytes of the file
+//                                                  88      8  XXH3-64 of the file
 constexpr std::string_view kMagic = "MHTILES\n";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::size_t kHeaderBytes = 32;
 constexpr std::size_t kCheckedHeaderBytes = 24;
-constexpr std::size_t kRecordBytes = 88;
+constexpr std::size_t kRecordBytes = 96;
 
 void append_record(std::vector<std::byte>& bytes, const TileRecord& record) {
   for (const std::uint32_t value :
        {std::uint32_t{raw(record.node.level)}, record.node.index, record.own_count,
         record.rim_count, record.ghost_count, record.interior_count, record.border_count,
-        record.drawn_border_count, record.target_count}) {
+        record.drawn_border_count, record.target_count, record.torn_count, record.forced_count}) {
     append_little(bytes, value);
   }
   const Bounds& box = record.bounds;
@@ -73,12 +75,14 @@ TileRecord load_record(const std::byte* from) {
   record.border_count = count(24);
   record.drawn_border_count = count(28);
   record.target_count = count(32);
-  record.error = real(36);
-  record.bound = real(40);
-  record.compactness = real(44);
-  record.bounds = {{real(48), real(52), real(56)}, {real(60), real(64), real(68)}};
-  record.file_bytes = load_little<std::uint64_t>(from + 72);
-  record.checksum = load_little<std::uint64_t>(from + 80);
+  record.torn_count = count(36);
+  record.forced_count = count(40);
+  record.error = real(44);
+  record.bound = real(48);
+  record.compactness = real(52);
+  record.bounds = {{real(56), real(60), real(64)}, {real(68), real(72), real(76)}};
+  record.file_bytes = load_little<std::uint64_t>(from + 80);
+  record.checksum = load_little<std::uint64_t>(from + 88);
   return record;
 }
 

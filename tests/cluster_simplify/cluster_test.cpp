@@ -31,7 +31,6 @@ BuildTile tile_of(const tests::TestMesh& mesh) {
   tile.mesh.vertices.positions = mesh.positions;
   tile.mesh.own_count = static_cast<std::uint32_t>(mesh.positions.size());
   tile.history.weights.assign(mesh.positions.size(), 1);
-  tile.history.radii.assign(mesh.positions.size(), 0);
   for (const tests::MeshTriangle& t : mesh.triangles)
     tile.mesh.interior.push_back(triangle(t[0], t[1], t[2]));
   return tile;
@@ -42,7 +41,6 @@ std::uint32_t add_ghost(BuildTile& tile, Vec3f position) {
   const auto vertex = static_cast<std::uint32_t>(tile.mesh.vertices.size());
   tile.mesh.ghosts.push_back({1, vertex - tile.mesh.own_count});
   tile.mesh.vertices.positions.push_back(position);
-  tile.history.radii.push_back(0);
   return vertex;
 }
 

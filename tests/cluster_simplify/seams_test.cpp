@@ -45,7 +45,6 @@ Triangles normalized(Triangles triangles, bool unique) {
 /// kept as global numbers.
 struct World {
   std::vector<Vec3f> positions;
-  std::vector<float> radii;
   std::vector<float> weights;
   Triangles triangles;
   std::vector<std::uint32_t> tile_of;
@@ -119,7 +118,6 @@ World make_world(const tests::TestMesh& mesh, std::uint32_t tile_count, bool sca
     const float where = scattered ? tests::hash_noise(v, 77) : mesh.positions[v].x / 1.5F;
     const float part = std::clamp((where + 1) / 2, 0.0F, 0.999F);
     world.tile_of.push_back(static_cast<std::uint32_t>(part * static_cast<float>(tile_count)));
-    world.radii.push_back(tests::hash_noise(v, 78) + 1);
     world.weights.push_back(std::floor(tests::hash_noise(v, 79) * 4) + 5);
   }
   world.number(tile_count);
@@ -132,7 +130,6 @@ WorkTile work_tile(const World& world, std::uint32_t tile) {
   for (const std::uint32_t v : world.own[tile]) {
     work.vertices.positions.push_back(world.positions[v]);
     work.history.weights.push_back(world.weights[v]);
-    work.history.radii.push_back(world.radii[v]);
   }
   work.rim_count = world.rim_counts[tile];
   const auto own_count = static_cast<std::uint32_t>(work.vertices.size());
@@ -163,7 +160,6 @@ Rim rim_of(const World& world, std::uint32_t tile) {
   Rim rim;
   for (std::uint32_t i = 0; i < world.rim_counts[tile]; ++i) {
     rim.vertices.positions.push_back(world.positions[world.own[tile][i]]);
-    rim.radii.push_back(world.radii[world.own[tile][i]]);
   }
   return rim;
 }
@@ -190,7 +186,6 @@ void expect_tile(const World& world, std::uint32_t tile, const BuildTile& built)
   ASSERT_EQ(mesh.own_count, world.own[tile].size());
   EXPECT_EQ(mesh.rim_count, world.rim_counts[tile]);
   ASSERT_EQ(mesh.vertices.size(), mesh.own_count + mesh.ghosts.size());
-  ASSERT_EQ(built.history.radii.size(), mesh.vertices.size());
   EXPECT_TRUE(std::ranges::is_sorted(mesh.ghosts));
   EXPECT_EQ(std::ranges::adjacent_find(mesh.ghosts), mesh.ghosts.end());
   EXPECT_TRUE(std::ranges::is_sorted(mesh.border));
@@ -205,7 +200,6 @@ void expect_tile(const World& world, std::uint32_t tile, const BuildTile& built)
   for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) {
     const std::uint32_t v = world.global(mesh, tile, TileVertex{i});
     ASSERT_EQ(mesh.vertices.positions[i], world.positions[v]) << "vertex " << i;
-    ASSERT_EQ(built.history.radii[i], world.radii[v]) << "vertex " << i;
     ASSERT_EQ(used[i], i < mesh.rim_count || i >= mesh.own_count) << "vertex " << i;
   }
 }
@@ -242,7 +236,7 @@ TEST(SeamsTest, AResolvedTileShowsItsNeighboursVertices) {
 WorkTile small_tile() {
   WorkTile tile;
   tile.vertices.positions = {{0, 0, 0}, {1, 0, 0}};
-  tile.history = {{1, 1}, {0, 0}};
+  tile.history = {{1, 1}};
   tile.rim_count = 2;
   tile.foreign = {{2, 0}, {2, 1}, {2, 2}, {5, 0}};
   return tile;
@@ -284,7 +278,6 @@ TEST(FillGhostsTest, AGhostOutsideTheRimIsADefect) {
   BuildTile tile = resolve(work, mapped, true);
   Rim rim;
   rim.vertices.positions = {{7, 7, 7}, {8, 8, 8}};  // the ghost is number 2
-  rim.radii = {0, 0};
   try {
     fill_ghosts(tile, 2, rim);
     FAIL() << "a ghost outside the rim was accepted";
@@ -352,13 +345,11 @@ TEST(JoinTest, CarriesPositionsRadiiAndWeights) {
   const TileMesh& mesh = tile.mesh;
   ASSERT_EQ(mesh.own_count, above.own[1].size());
   ASSERT_EQ(tile.history.weights.size(), mesh.own_count);
-  ASSERT_EQ(tile.history.radii.size(), mesh.vertices.size());
   ASSERT_EQ(mesh.vertices.size(), mesh.own_count + mesh.ghosts.size());
   EXPECT_TRUE(std::ranges::is_sorted(mesh.ghosts));
   for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) {
     const std::uint32_t v = global_of(world, above, 1, mesh, TileVertex{i});
     EXPECT_EQ(mesh.vertices.positions[i], world.positions[v]);
-    EXPECT_EQ(tile.history.radii[i], world.radii[v]);
     if (i < mesh.own_count) {
       EXPECT_EQ(tile.history.weights[i], world.weights[v]);
     }
@@ -410,7 +401,6 @@ Contracted contract_pairs(const World& world, std::uint32_t target) {
     const auto first = static_cast<std::uint32_t>(result.world.positions.size());
     for (std::uint32_t r = 0; r < count; ++r) {
       result.world.positions.push_back(tile.tile.vertices.positions[r]);
-      result.world.radii.push_back(tile.tile.history.radii[r]);
       result.world.weights.push_back(tile.tile.history.weights[r]);
       result.world.tile_of.push_back(pair);
     }
@@ -456,7 +446,6 @@ TEST(ApplyTest, TheTilesOfALevelShowTheImageOfTheMeshUnderOneMap) {
         for (std::uint32_t i = tile.mesh.own_count; i < tile.mesh.vertices.size(); ++i) {
           const std::uint32_t v = above.global(tile.mesh, pair, TileVertex{i});
           EXPECT_EQ(tile.mesh.vertices.positions[i], above.positions[v]);
-          EXPECT_EQ(tile.history.radii[i], above.radii[v]);
         }
       }
     }
@@ -480,47 +469,23 @@ TEST(ApplyTest, PutsTheRimFirst) {
     EXPECT_EQ(on_border[i], i < result.tile.rim_count) << i;
 }
 
-TEST(ApplyTest, RadiiBoundTheDistanceToEveryOriginalVertex) {
-  const World world = make_world(tests::sphere(1200), 4, false);
-  const BuildTile joined = join_pair(world, 0);
-  const ContractedTile result = apply(joined, wild_contraction(joined, 60, 5));
-  std::vector<double> least(60);
-  for (std::uint32_t i = 0; i < joined.mesh.own_count; ++i) {
-    const std::uint32_t parent = result.parent_map[i];
-    const double moved = length(to_double(joined.mesh.vertices.positions[i]) -
-                                to_double(result.tile.vertices.positions[parent]));
-    least[parent] = std::max(least[parent], double{joined.history.radii[i]} + moved);
-  }
-  for (std::size_t r = 0; r < 60; ++r) {
-    EXPECT_GE(double{result.tile.history.radii[r]}, least[r]) << r;
-    EXPECT_LE(double{result.tile.history.radii[r]}, least[r] * (1 + 1e-6)) << r;
-  }
-}
-
-TEST(ApplyTest, WeightsAndMotionAreThoseOfTheVerticesUnderIt) {
+TEST(ApplyTest, WeightsAreThoseOfTheVerticesUnderIt) {
   const World world = make_world(tests::torus(900), 4, true);
   const BuildTile joined = join_pair(world, 0);
   const ContractedTile result = apply(joined, wild_contraction(joined, 30, 5));
   std::vector<float> weights(30);
-  double motion = 0;
-  double sum = 0;
   for (std::uint32_t i = 0; i < joined.mesh.own_count; ++i) {
     const float weight = joined.history.weights[i];
     weights[result.parent_map[i]] += weight;
-    const Vec3d moved = to_double(joined.mesh.vertices.positions[i]) -
-                        to_double(result.tile.vertices.positions[result.parent_map[i]]);
-    motion += double{weight} * dot(moved, moved);
-    sum += double{weight};
   }
   EXPECT_EQ(result.tile.history.weights, weights);
-  EXPECT_NEAR(result.squared_motion, motion / sum, 1e-9);
 }
 
 TEST(ApplyTest, RepeatsGoMirrorImagesStay) {
   BuildTile tile;
   tile.mesh.vertices.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 1, 0.1F}};
   tile.mesh.own_count = 4;
-  tile.history = {{1, 1, 1, 1}, {0, 0, 0, 0}};
+  tile.history = {{1, 1, 1, 1}};
   tile.mesh.interior = {triangle(0, 1, 2), triangle(0, 1, 3), triangle(0, 3, 1), triangle(0, 2, 3)};
   Contraction contraction;
   contraction.parent_of = {0, 1, 2, 2};
@@ -558,10 +523,6 @@ TEST(KeepTest, ChangesNothing) {
   EXPECT_EQ(kept.tile.foreign, tile.mesh.ghosts);
   EXPECT_EQ(kept.tile.rim_count, tile.mesh.rim_count);
   EXPECT_EQ(kept.tile.history.weights, tile.history.weights);
-  EXPECT_EQ(kept.tile.history.radii,
-            std::vector<float>(tile.history.radii.begin(),
-                               tile.history.radii.begin() + tile.mesh.own_count));
-  EXPECT_EQ(kept.squared_motion, 0);
   for (std::uint32_t i = 0; i < tile.mesh.own_count; ++i)
     ASSERT_EQ(kept.parent_map[i], i);
 }

@@ -72,9 +72,27 @@ tests::TestMesh terrain() {
   return mesh;
 }
 
+SimplifyConfig with(SimplifyMethod method) {
+  SimplifyConfig config;
+  config.method = method;
+  return config;
+}
+
+SimplifyConfig half_edge(HalfEdgeCost cost) {
+  SimplifyConfig config = with(SimplifyMethod::half_edge);
+  config.cost = cost;
+  return config;
+}
+
+SimplifyConfig cluster(Representative representative) {
+  SimplifyConfig config = with(SimplifyMethod::cluster);
+  config.representative = representative;
+  return config;
+}
+
 struct Golden {
   const char* name;
-  Representative representative;
+  SimplifyConfig simplify;
   AxisRule axis;
   std::uint32_t partitions;
   std::uint64_t hash;
@@ -82,10 +100,18 @@ struct Golden {
 
 /// After a change that is meant to change results: see that the property tests pass, put the
 /// numbers of the failure's message here, and say in CHANGELOG.md what changed and why.
-constexpr Golden kGolden[] = {
-    {"quadric", Representative::quadric, AxisRule::compactness, 29, 0x054df2eb545d2e6d},
-    {"mean", Representative::mean, AxisRule::longest, 16, 0x0cd1b56f64b7475b},
-    {"vertex", Representative::vertex, AxisRule::compactness, 7, 0x5c3a03d708dbb47d},
+const Golden kGolden[] = {
+    {"edge_collapse", with(SimplifyMethod::edge_collapse), AxisRule::compactness, 29,
+     0xf94c92c567940642},
+    {"half_edge_quadric", half_edge(HalfEdgeCost::quadric), AxisRule::longest, 16,
+     0xd5361a54f9161598},
+    {"half_edge_melax", half_edge(HalfEdgeCost::melax), AxisRule::compactness, 7,
+     0xde02712450a8c389},
+    {"cluster_quadric", cluster(Representative::quadric), AxisRule::compactness, 29,
+     0x3aabdce5366d1f17},
+    {"cluster_mean", cluster(Representative::mean), AxisRule::longest, 16, 0x0cd1b56f64b7475b},
+    {"cluster_vertex", cluster(Representative::vertex), AxisRule::compactness, 7,
+     0xba167fed86e23313},
 };
 
 class GoldenTest : public testing::TestWithParam<Golden> {
@@ -99,7 +125,7 @@ class GoldenTest : public testing::TestWithParam<Golden> {
     config.memory_budget = budget;
     config.partition.count = golden.partitions;
     config.partition.axis = golden.axis;
-    config.simplify.representative = golden.representative;
+    config.simplify = golden.simplify;
     NoProgress progress;
     build_hierarchy(config, true, {*files_, progress, CancelToken()});
     const storage::HierarchyReader reader(*files_, config.output);

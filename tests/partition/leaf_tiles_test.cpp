@@ -148,7 +148,6 @@ void expect_tile(const Cut& mesh, const WorkTile& tile, const Expected& expected
   EXPECT_EQ(ranks_of(mesh, tile, tile.border), expected.border);
   EXPECT_EQ(tile.foreign, std::vector<GhostRef>(expected.foreign.begin(), expected.foreign.end()));
   EXPECT_EQ(tile.history.weights, std::vector<float>(ranks.size(), 1.0F));
-  EXPECT_EQ(tile.history.radii, std::vector<float>(ranks.size(), 0.0F));
   for (const auto* triangles : {&tile.interior, &tile.border}) {
     EXPECT_TRUE(std::is_sorted(triangles->begin(), triangles->end()));
     for (const Triangle& t : *triangles)

@@ -292,13 +292,12 @@ TEST_F(BuildTest, ShapesOfAllKinds) {
       {"duplicates", tests::duplicates(3000)},
       {"shuffled", tests::shuffled(tests::torus(4000, 0.01F), 5)}};
   for (const auto& [name, mesh] : meshes) {
-    for (const Representative representative :
-         {Representative::mean, Representative::quadric, Representative::vertex}) {
-      SCOPED_TRACE(name);
+    for (const auto& [method_name, method] : tests::all_simplify_methods()) {
+      SCOPED_TRACE(name + ", " + method_name);
       Config with = config(150);
-      with.simplify.representative = representative;
+      with.simplify = method;
       with.partition.axis =
-          representative == Representative::mean ? AxisRule::longest : AxisRule::compactness;
+          method.method == SimplifyMethod::half_edge ? AxisRule::longest : AxisRule::compactness;
       expect_builds(mesh, with);
     }
   }

@@ -66,7 +66,8 @@ TEST(Config, OnlyInputAndOutputAreRequired) {
 TEST(Config, EveryKeyIsRead) {
   const Config config = parse(with(R"("memory_budget": "64MiB", "threads": 3,
       "partition": {"count": 128, "axis": "longest"},
-      "simplify": {"method": "cluster", "vertices": 4096, "representative": "vertex"},
+      "simplify": {"method": "cluster", "vertices": 4096, "representative": "vertex",
+                   "cost": "melax"},
       "outline": {"sectors": 64, "tolerance": 0.01}, "storage": {"compression": "none"})"));
   EXPECT_EQ(config.memory_budget, 64u << 20);
   EXPECT_EQ(config.threads, 3u);
@@ -75,6 +76,7 @@ TEST(Config, EveryKeyIsRead) {
   EXPECT_EQ(config.simplify.method, SimplifyMethod::cluster);
   EXPECT_EQ(config.simplify.vertices, 4096u);
   EXPECT_EQ(config.simplify.representative, Representative::vertex);
+  EXPECT_EQ(config.simplify.cost, HalfEdgeCost::melax);
   EXPECT_EQ(config.outline.sectors, 64u);
   EXPECT_EQ(config.outline.tolerance, 0.01);
   EXPECT_EQ(config.storage.compression, Compression::none);
@@ -201,7 +203,8 @@ TEST(ConfigErrors, UnknownChoicesAreNamedWithTheNearest) {
       "config.json: partition.axis: expected one of \"compactness\", \"longest\", found the string "
       "\"compactnes\"; did you mean \"compactness\"?");
   EXPECT_EQ(refusal(with(R"("simplify": {"method": "nanite"})")),
-            "config.json: simplify.method: expected \"cluster\", found the string \"nanite\"");
+            "config.json: simplify.method: expected one of \"edge_collapse\", \"half_edge\", "
+            "\"cluster\", found the string \"nanite\"");
 }
 
 TEST(ConfigErrors, VerticesAndCountExcludeEachOther) {
@@ -388,12 +391,13 @@ TEST_F(ConfigFile, ThatIsHugeIsRefusedUnread) {
 TEST(ResolvedJson, HoldsWhatDecidesTheResultAndNothingElse) {
   EXPECT_EQ(resolved_json(parse(with(""))), Json::parse(R"({
       "partition": {"vertices": 8192, "axis": "compactness"},
-      "simplify": {"method": "cluster", "vertices": 8192, "representative": "quadric"},
+      "simplify": {"method": "edge_collapse", "vertices": 8192, "representative": "quadric",
+                   "cost": "quadric"},
       "outline": {"sectors": 128, "tolerance": 0.002},
       "storage": {"compression": "none"}})"));
   EXPECT_EQ(resolved_json(parse(with(R"("partition": {"count": 9})"))), Json::parse(R"({
       "partition": {"count": 9, "axis": "compactness"},
-      "simplify": {"method": "cluster", "representative": "quadric"},
+      "simplify": {"method": "edge_collapse", "representative": "quadric", "cost": "quadric"},
       "outline": {"sectors": 128, "tolerance": 0.002},
       "storage": {"compression": "none"}})"));
 }

@@ -4,6 +4,7 @@
 
 #include "partition/chunk.h"
 #include "partition/leaf_tiles.h"
+#include "pipeline/measure_stage.h"
 #include "pipeline/simplify_stage.h"
 #include "storage/spool.h"
 #include "tests/pipeline/sample_hierarchy.h"
@@ -90,6 +91,7 @@ class Grove {
     plan.tiles_in_flight = setting.in_flight;
     NoProgress progress;
     simplify(forest_, {60, numbering(), {}}, plan, progress, CancelToken());
+    measure(forest_, cluster_simplify::Method::edge_collapse, plan, progress, CancelToken());
     place_vertices();
   }
 
@@ -131,7 +133,7 @@ class Grove {
     forest_.put_places(index, leaves.places);
     const std::uint32_t first_leaf = tree_.partitions(chunk.node).begin;
     for (std::uint32_t p = 0; p < leaves.tiles.size(); ++p)
-      forest_.put_tile({tree_.depth(), first_leaf + p}, leaves.tiles[p], 0);
+      forest_.put_tile({tree_.depth(), first_leaf + p}, leaves.tiles[p]);
   }
 
   /// Follows the published maps from the partitions up.
@@ -206,7 +208,6 @@ void expect_true_image(const Grove& grove) {
       const std::uint32_t v = tile.mesh.own_count + g;
       ASSERT_LT(ref.index, neighbour.mesh.rim_count);
       ASSERT_EQ(tile.mesh.vertices.positions[v], neighbour.mesh.vertices.positions[ref.index]);
-      ASSERT_EQ(tile.history.radii[v], neighbour.history.radii[ref.index]);
     }
   });
 }
@@ -282,7 +283,8 @@ TEST(ForestTest, AnEarlyNodeShowsItsPartition) {
     const NodeId child = grove.tree().children(node).nodes[0];
     const BuildTile tile = grove.forest().load(node);
     const BuildTile partition = grove.forest().load(child);
-    EXPECT_EQ(grove.forest().error(node), 0);
+    EXPECT_EQ(grove.forest().facts(node).error, 0);
+    EXPECT_EQ(grove.forest().facts(node).bound, 0);
     EXPECT_EQ(tile.mesh.interior, partition.mesh.interior);
     EXPECT_TRUE(std::equal(tile.mesh.vertices.positions.begin(),
                            tile.mesh.vertices.positions.begin() + tile.mesh.own_count,
@@ -293,35 +295,23 @@ TEST(ForestTest, AnEarlyNodeShowsItsPartition) {
   EXPECT_EQ(early, 3);  // 5 partitions under 4 nodes
 }
 
-TEST(ForestTest, ErrorsStrictlyDecreaseFromParentToChild) {
+TEST(ForestTest, ErrorsAndBoundsStrictlyDecreaseFromParentToChild) {
   for (const tests::TestMesh& mesh :
        {tests::sphere(1000, 0.01F), tests::open_grid(25, 25),
         tests::TestMesh{std::vector<Vec3f>(500, Vec3f{1, 2, 3}), {}}}) {
     const Grove grove(mesh, {8, 0, 0, 2});
     for_each_node(grove.tree(), [&](NodeId node) {
       const Tree::Children children = grove.tree().children(node);
-      for (const NodeId child : children.span())
-        EXPECT_GT(grove.forest().error(node), grove.forest().error(child));
+      for (const NodeId child : children.span()) {
+        EXPECT_GT(grove.forest().facts(node).error, grove.forest().facts(child).error);
+        EXPECT_GT(grove.forest().facts(node).bound, grove.forest().facts(child).bound);
+      }
       if (grove.tree().is_partition(node)) {
-        EXPECT_EQ(grove.forest().error(node), 0);
+        EXPECT_EQ(grove.forest().facts(node).error, 0);
+        EXPECT_EQ(grove.forest().facts(node).bound, 0);
       }
     });
   }
-}
-
-TEST(ForestTest, RadiiReachEveryOriginalVertex) {
-  const Grove grove(tests::torus(1200, 0.02F), {11, 0, 0, 2});
-  for_each_node(grove.tree(), [&](NodeId node) {
-    const BuildTile tile = grove.forest().load(node);
-    for (std::size_t v = 0; v < grove.mesh().positions.size(); ++v) {
-      const Place place = grove.places()[raw(node.level)][v];
-      if (place.tile != node.index)
-        continue;
-      const double distance = length(to_double(grove.mesh().positions[v]) -
-                                     to_double(tile.mesh.vertices.positions[place.index]));
-      ASSERT_LE(distance, double{tile.history.radii[place.index]});
-    }
-  });
 }
 
 TEST(ForestTest, WeightsCountTheOriginalVertices) {
@@ -344,7 +334,6 @@ TEST(ForestTest, WhereItsBytesLieDoesNotMatter) {
     EXPECT_EQ(a.mesh.interior, b.mesh.interior);
     EXPECT_EQ(a.mesh.border, b.mesh.border);
     EXPECT_EQ(a.mesh.ghosts, b.mesh.ghosts);
-    EXPECT_EQ(a.history.radii, b.history.radii);
     EXPECT_EQ(on_disk.forest().published_parent_map(node),
               in_memory.forest().published_parent_map(node));
   });

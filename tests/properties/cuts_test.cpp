@@ -28,6 +28,7 @@ struct Case {
   std::uint32_t partitions = 1;
   std::uint32_t tile_vertices = 4;
   std::uint64_t cuts = 1;
+  SimplifyConfig simplify = {};  ///< its vertices are tile_vertices
 };
 
 CutTriangle smallest_first(CutTriangle t) {
@@ -48,6 +49,7 @@ class Built {
     config.input = directory_.path() / "mesh.ply";
     config.output = directory_.path() / "mesh.hier";
     config.partition.count = c.partitions;
+    config.simplify = c.simplify;
     config.simplify.vertices = c.tile_vertices;
     NoProgress progress;
     const CancelToken cancel;
@@ -186,6 +188,14 @@ TEST(Cuts, ClosedSurfacesHaveNoBorderInTwoHundredRandomCuts) {
   expect_seamless({"torus", tests::torus(100000, 0.01F), 197, 400, 200});
   expect_seamless({"genus 5", tests::genus_n(5, 100000, 0.005F), 128, 390, 200});
   expect_seamless({"nested shells", tests::nested_shells(100000, 0.01F), 101, 300, 200});
+}
+
+TEST(Cuts, ClosedSurfacesHaveNoBorderWhateverTheMethod) {
+  for (const auto& [name, method] : tests::all_simplify_methods()) {
+    SCOPED_TRACE(name);
+    expect_seamless({"torus", tests::torus(20000, 0.02F), 67, 150, 200, method});
+    expect_seamless({"nested shells", tests::nested_shells(10000, 0.01F), 33, 120, 200, method});
+  }
 }
 
 TEST(Cuts, SmallTilesAndAnyNumberOfPartitions) {

@@ -273,13 +273,13 @@ TEST_F(DeterminismTest, ThreadsAndMemoryDoNotMatterForAnyPartitionCount) {
 
 TEST_F(DeterminismTest, ThreadsAndMemoryDoNotMatterForAnyMethod) {
   write_binary(rich(tests::genus_n(3, 5000, 0.01F)));
-  for (const Representative representative :
-       {Representative::mean, Representative::quadric, Representative::vertex}) {
+  for (const auto& [name, method] : tests::all_simplify_methods()) {
+    SCOPED_TRACE(name);
     for (const AxisRule axis : {AxisRule::longest, AxisRule::compactness}) {
       Config with = config();
       with.partition.vertices = 150;
       with.partition.axis = axis;
-      with.simplify.representative = representative;
+      with.simplify = method;
       with.simplify.vertices = 90;
       expect_one_result(with, {5});
     }
@@ -328,9 +328,9 @@ TEST_F(DeterminismTest, AnotherConfigGivesAnotherResult) {
   Config with = config();
   with.partition.vertices = 200;
   const FileHashes expected = build(with, {});
-  with.simplify.representative = Representative::mean;
+  with.simplify.method = SimplifyMethod::half_edge;
   EXPECT_NE(build(with, {}), expected);
-  with.simplify.representative = Representative::quadric;
+  with.simplify.method = SimplifyMethod::edge_collapse;
   EXPECT_EQ(build(with, {}), expected);
   with.partition.axis = AxisRule::longest;
   EXPECT_NE(build(with, {}), expected);

@@ -134,10 +134,10 @@ class FaultsTest : public testing::Test {
 
   /// Puts a finished hierarchy of other content where the output goes, and keeps a copy.
   void place_old_output() {
-    config_.simplify.representative = Representative::mean;
+    config_.simplify.method = SimplifyMethod::cluster;
     FaultyFileSystem files;
     ASSERT_EQ(run(files), std::nullopt) << message_;
-    config_.simplify.representative = Representative::quadric;
+    config_.simplify.method = SimplifyMethod::edge_collapse;
     fs::copy(config_.output, kept_.path() / "old", fs::copy_options::recursive);
   }
 

@@ -22,7 +22,7 @@ using Bytes = std::vector<std::byte>;
 
 const char* const kName = "some/tiles.bin";
 constexpr std::size_t kHeaderBytes = 32;
-constexpr std::size_t kRecordBytes = 88;
+constexpr std::size_t kRecordBytes = 96;
 
 /// Every tile of the tree, with values that differ from field to field and from tile to tile.
 std::vector<TileRecord> make_records(const Tree& tree) {
@@ -44,6 +44,8 @@ std::vector<TileRecord> make_records(const Tree& tree) {
       record.border_count = 10 * k + 3;
       record.drawn_border_count = 10 * k;
       record.target_count = 10 * k + 4;
+      record.torn_count = 10 * k + 5;
+      record.forced_count = 10 * k + 6;
       record.error = real + 0.1F;
       record.bound = real + 0.2F;
       record.compactness = real + 0.3F;
@@ -65,6 +67,8 @@ void expect_same(const TileRecord& a, const TileRecord& b) {
   EXPECT_EQ(a.border_count, b.border_count);
   EXPECT_EQ(a.drawn_border_count, b.drawn_border_count);
   EXPECT_EQ(a.target_count, b.target_count);
+  EXPECT_EQ(a.torn_count, b.torn_count);
+  EXPECT_EQ(a.forced_count, b.forced_count);
   EXPECT_EQ(a.error, b.error);
   EXPECT_EQ(a.bound, b.bound);
   EXPECT_EQ(a.compactness, b.compactness);
@@ -119,15 +123,15 @@ TEST(Index, TheBytesAreThoseOfTheDocument) {
   const auto byte = [&](std::size_t offset) { return static_cast<int>(bytes.at(offset)); };
   EXPECT_EQ(byte(0), 'M');
   EXPECT_EQ(byte(7), '\n');
-  EXPECT_EQ(byte(8), 1);
-  EXPECT_EQ(byte(12), 88);
+  EXPECT_EQ(byte(8), 2);
+  EXPECT_EQ(byte(12), 96);
   EXPECT_EQ(byte(16), 1);
   EXPECT_EQ(byte(kHeaderBytes + 8), 7);
   EXPECT_EQ(byte(kHeaderBytes + 12), 5);
-  EXPECT_EQ(byte(kHeaderBytes + 39), 0x3F);  // 1.0F is 3F800000
-  EXPECT_EQ(byte(kHeaderBytes + 38), 0x80);
-  EXPECT_EQ(byte(kHeaderBytes + 72), 8);
-  EXPECT_EQ(byte(kHeaderBytes + 79), 1);
+  EXPECT_EQ(byte(kHeaderBytes + 47), 0x3F);  // 1.0F is 3F800000
+  EXPECT_EQ(byte(kHeaderBytes + 46), 0x80);
+  EXPECT_EQ(byte(kHeaderBytes + 80), 8);
+  EXPECT_EQ(byte(kHeaderBytes + 87), 1);
 }
 
 TEST(Index, TruncationAndExtraBytesAreRefused) {
@@ -138,7 +142,7 @@ TEST(Index, TruncationAndExtraBytesAreRefused) {
     EXPECT_NE(failure(cut, tree), "") << size;
   }
   bytes.push_back(std::byte{0});
-  EXPECT_THAT(failure(bytes, tree), HasSubstr("expected 824"));
+  EXPECT_THAT(failure(bytes, tree), HasSubstr("expected 896"));
 }
 
 TEST(Index, EveryFlippedBitIsFound) {
@@ -181,9 +185,9 @@ TEST(Index, ImpossibleValuesAreRefusedByName) {
         Damage{0, 256, "record 0 is of tile 256/0"}, Damage{4, 1, "record 0 is of tile 0/1"},
         Damage{8, 0, "impossible own vertices"}, Damage{8, 32769, "impossible own vertices"},
         Damage{12, 101, "impossible rim vertices"}, Damage{28, 4, "impossible drawn border"},
-        Damage{36, kNan, "impossible error"}, Damage{40, kMinusOne, "impossible bound"},
-        Damage{44, kNan, "impossible compactness"}, Damage{48, 0x7F800000, "impossible bounds"},
-        Damage{60, 0xC0000000, "impossible bounds"}}) {
+        Damage{44, kNan, "impossible error"}, Damage{48, kMinusOne, "impossible bound"},
+        Damage{52, kNan, "impossible compactness"}, Damage{56, 0x7F800000, "impossible bounds"},
+        Damage{68, 0xC0000000, "impossible bounds"}}) {
     Bytes bytes = good;
     storage::store_little(damage.value, bytes.data() + kHeaderBytes + damage.offset);
     EXPECT_THAT(failure(sealed(bytes), tree), HasSubstr(damage.message));
@@ -197,8 +201,8 @@ TEST(Index, OtherFilesAndVersionsAreRefused) {
   const Tree tree(50, 5);
   const Bytes good = encode_index(make_records(tree));
   Bytes bytes = good;
-  bytes[8] = std::byte{2};
-  EXPECT_THAT(failure(bytes, tree), HasSubstr("version is 2, expected 1 (written by a newer"));
+  bytes[8] = std::byte{3};
+  EXPECT_THAT(failure(bytes, tree), HasSubstr("version is 3, expected 2 (written by a newer"));
   bytes = good;
   bytes[0] = std::byte{'P'};
   EXPECT_THAT(failure(bytes, tree), HasSubstr("not an index"));

@@ -43,7 +43,6 @@ WorkTile make_tile(const Shape& shape) {
       attributes.push_back(number());
     tile.vertices.append({number(), number(), number()}, attributes);
     tile.history.weights.push_back(static_cast<float>(1 + random() % 1000));
-    tile.history.radii.push_back(number() + 1);
   }
   for (std::uint32_t i = 0; i < shape.foreign; ++i)
     tile.foreign.push_back({i / 3, static_cast<std::uint32_t>(random())});
@@ -57,7 +56,6 @@ void expect_same(const WorkTile& a, const WorkTile& b) {
   EXPECT_EQ(a.vertices.positions, b.vertices.positions);
   EXPECT_EQ(a.vertices.attributes, b.vertices.attributes);
   EXPECT_EQ(a.history.weights, b.history.weights);
-  EXPECT_EQ(a.history.radii, b.history.radii);
   EXPECT_EQ(a.rim_count, b.rim_count);
   EXPECT_EQ(a.interior, b.interior);
   EXPECT_EQ(a.border, b.border);
@@ -172,8 +170,6 @@ TEST(RimBytes, HoldTheFirstVerticesOfTheTile) {
       ASSERT_EQ(rim.vertices.attributes.size(), rim_count * static_cast<std::size_t>(channels));
       EXPECT_TRUE(std::equal(rim.vertices.attributes.begin(), rim.vertices.attributes.end(),
                              tile.vertices.attributes.begin()));
-      ASSERT_EQ(rim.radii.size(), rim_count);
-      EXPECT_TRUE(std::equal(rim.radii.begin(), rim.radii.end(), tile.history.radii.begin()));
     }
   }
 }

@@ -1,0 +1,93 @@
+// meshhier_compare: how kd-tree, octree and k-means divide real meshes, and what simplification
+// makes of their cells.
+#include "bench/comparison.h"
+#include "hierarchy/error.h"
+#include "mesh_io/mesh_source.h"
+
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+namespace {
+
+using namespace meshhier;
+
+struct Arguments {
+  std::vector<std::string> inputs;
+  bench::ComparisonOptions options;
+  bool json = false;
+};
+
+void add_options(CLI::App& app, Arguments& arguments) {
+  bench::ComparisonOptions& options = arguments.options;
+  app.add_option("inputs", arguments.inputs, "PLY files")->required();
+  app.add_option("--parts", options.parts, "How many partitions")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--cell-vertices", options.cell_vertices,
+                 "Vertices that become one in the simplified meshes, on average, 1 or more")
+      ->check(CLI::Range(1.0, static_cast<double>(UINT32_MAX)))
+      ->capture_default_str();
+  app.add_option("--iterations", options.kmeans_iterations, "Of k-means, at most")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--samples", options.samples, "Of a distance, in each direction")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_flag("--json", arguments.json, "One JSON array instead of tables");
+}
+
+std::string compare_one(const std::string& input, const Arguments& arguments,
+                        storage::FileSystem& files) {
+  const bench::PlainMesh mesh =
+      bench::plain_mesh(bench::load_mesh(*mesh_io::open_mesh(files, input)));
+  const std::string name = std::filesystem::path(input).stem().string();
+  try {
+    const bench::Comparison comparison = bench::compare(mesh, arguments.options, files);
+    return arguments.json ? bench::json(name, comparison) : bench::markdown(name, comparison);
+  } catch (const Error& error) {
+    throw error.within(input);
+  }
+}
+
+/// Prints each comparison as soon as it is there.
+void run(const Arguments& arguments) {
+  const auto files = storage::make_posix_file_system();
+  const char* before = arguments.json ? "[" : "";
+  for (const std::string& input : arguments.inputs) {
+    fmt::print("{}{}\n", before, compare_one(input, arguments, *files));
+    std::fflush(stdout);
+    before = arguments.json ? "," : "";
+  }
+  if (arguments.json)
+    fmt::print("]\n");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Compares kd-tree, octree and k-means: sizes, compactness and time of the partitions, and "
+      "the "
+      "distance to meshes in which every cell is one vertex");
+  Arguments arguments;
+  add_options(app, arguments);
+  try {
+    app.parse(argc, argv);
+    run(arguments);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : static_cast<int>(ErrorCode::usage);
+  } catch (const Error& error) {
+    fmt::print(stderr, "meshhier_compare: {}\n", error.what());
+    return static_cast<int>(error.code());
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "meshhier_compare: internal error: {}\n", error.what());
+    return static_cast<int>(ErrorCode::internal);
+  }
+  return 0;
+}

@@ -1,0 +1,171 @@
+// Kernels one by one, in triangles or vertices a second of CPU time: what a hierarchy's tiles cost.
+#include "bench/sample_tiles.h"
+#include "cluster_simplify/contraction.h"
+#include "cluster_simplify/quadric.h"
+#include "partition/top_tree.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+namespace meshhier::bench {
+namespace {
+
+using cluster_simplify::ContractionOptions;
+using cluster_simplify::Method;
+using cluster_simplify::Representative;
+
+/// The default of the config: two such partitions make the joined tile of 16,384 vertices.
+constexpr std::uint32_t kPartitionVertices = 8192;
+
+struct NamedContraction {
+  const char* name;
+  ContractionOptions options;
+};
+
+/// Every method is measured that stands here.
+constexpr std::array kContractions = {
+    NamedContraction{"contract/cluster/mean",
+                     {.method = Method::cluster, .representative = Representative::mean}},
+    NamedContraction{"contract/cluster/quadric",
+                     {.method = Method::cluster, .representative = Representative::quadric}},
+    NamedContraction{"contract/cluster/vertex",
+                     {.method = Method::cluster, .representative = Representative::vertex}},
+    NamedContraction{"contract/edge_collapse", {.method = Method::edge_collapse}},
+};
+
+/// A torus with relief and, as scans have it, noise. Its vertices are half as many as its
+/// triangles: just as many as a chunk may have, so that a split is measured at full size.
+std::unique_ptr<GeneratedMesh> noisy_torus() {
+  SurfaceOptions options;
+  options.shape = Shape::torus;
+  options.triangles = 2 * partition::kChunkVertices;
+  options.noise = 0.2;
+  return make_surface(options);
+}
+
+/// The chunk of 16 partitions whose tiles are used.
+const SampleChunk& sample_chunk() {
+  static const SampleChunk chunk(*noisy_torus(), kPartitionVertices);
+  return chunk;
+}
+
+const SampleTiles& sample_tiles() {
+  static const SampleTiles tiles(sample_chunk(), partition::Axis::compactness);
+  return tiles;
+}
+
+const BuildTile& joined_tile() {
+  static const BuildTile tile = joined_pair(sample_tiles(), 0);
+  return tile;
+}
+
+std::int64_t triangle_count(const BuildTile& tile) {
+  return static_cast<std::int64_t>(tile.mesh.interior.size() + tile.mesh.border.size());
+}
+
+void count_triangles(benchmark::State& state, std::int64_t triangles) {
+  state.SetItemsProcessed(state.iterations() * triangles);
+}
+
+void contract(benchmark::State& state, const ContractionOptions& options) {
+  const BuildTile& joined = joined_tile();
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(
+        cluster_simplify::contract(joined, joined.mesh.own_count / 2, {}, options));
+  }
+  count_triangles(state, triangle_count(joined));
+  state.counters["vertices"] = joined.mesh.own_count;
+}
+
+void apply(benchmark::State& state) {
+  const BuildTile& joined = joined_tile();
+  const cluster_simplify::Contraction contraction =
+      cluster_simplify::contract(joined, joined.mesh.own_count / 2, {}, {});
+  for (auto _ : state) {
+    state.PauseTiming();
+    cluster_simplify::Contraction copy = contraction;
+    state.ResumeTiming();
+    benchmark::DoNotOptimize(cluster_simplify::apply(joined, std::move(copy)));
+  }
+  count_triangles(state, triangle_count(joined));
+}
+BENCHMARK(apply);
+
+void join(benchmark::State& state) {
+  const BuildTile first = sample_tiles().resolved(0);
+  const BuildTile second = sample_tiles().resolved(1);
+  for (auto _ : state)
+    benchmark::DoNotOptimize(cluster_simplify::join(first, 0, second, 1));
+  count_triangles(state, triangle_count(first) + triangle_count(second));
+}
+BENCHMARK(join);
+
+void resolve(benchmark::State& state) {
+  const WorkTile& work = sample_tiles().work(0);
+  const std::vector<GhostRef> mapped = sample_tiles().mapped(0);
+  for (auto _ : state) {
+    state.PauseTiming();
+    WorkTile copy = work;
+    state.ResumeTiming();
+    benchmark::DoNotOptimize(cluster_simplify::resolve(std::move(copy), mapped, true));
+  }
+  count_triangles(state, static_cast<std::int64_t>(work.interior.size() + work.border.size()));
+}
+BENCHMARK(resolve);
+
+void split_chunk(benchmark::State& state, partition::Axis axis) {
+  const SampleChunk& sample = sample_chunk();
+  for (auto _ : state)
+    benchmark::DoNotOptimize(partition::split_chunk(sample.chunk, sample.tree, axis));
+  count_triangles(state, static_cast<std::int64_t>(sample.chunk.triangles.size()));
+  state.counters["vertices"] = static_cast<double>(sample.chunk.vertices.size());
+}
+BENCHMARK_CAPTURE(split_chunk, longest, partition::Axis::longest)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(split_chunk, compactness, partition::Axis::compactness)
+    ->Unit(benchmark::kMillisecond);
+
+/// One quadric a vertex, from all triangles around it.
+void build_quadrics(benchmark::State& state) {
+  const TileMesh& mesh = joined_tile().mesh;
+  std::vector<cluster_simplify::Quadric> quadrics;
+  for (auto _ : state) {
+    quadrics.assign(mesh.own_count, {});
+    for (const Triangle& t : mesh.interior) {
+      std::array<Vec3d, 3> corners;
+      for (std::size_t k = 0; k < 3; ++k)
+        corners[k] = to_double(mesh.vertices.positions[raw(t[k])]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3d origin = corners[k];
+        quadrics[raw(t[k])].add_triangle(corners[0] - origin, corners[1] - origin,
+                                         corners[2] - origin);
+      }
+    }
+    benchmark::DoNotOptimize(quadrics.data());
+    benchmark::ClobberMemory();
+  }
+  count_triangles(state, static_cast<std::int64_t>(mesh.interior.size()));
+}
+BENCHMARK(build_quadrics);
+
+void register_contractions() {
+  for (const NamedContraction& contraction : kContractions)
+    benchmark::RegisterBenchmark(contraction.name, contract, contraction.options);
+}
+
+}  // namespace
+}  // namespace meshhier::bench
+
+int main(int argc, char** argv) {
+  meshhier::bench::register_contractions();
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv))
+    return 2;
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  return 0;
+}

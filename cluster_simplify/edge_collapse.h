@@ -1,0 +1,19 @@
+// The method `edge_collapse`: quadric edge collapse with optimal placement.
+//
+// Garland & Heckbert, Surface Simplification Using Quadric Error Metrics, 1997.
+#pragma once
+
+#include "cluster_simplify/contraction.h"
+
+#include <cstdint>
+
+namespace meshhier::cluster_simplify {
+
+/// See contract(). Border vertices of the tile collapse like all others; ghosts stay where they
+/// are. Open borders of the surface are held by planes upright on them. A tile that cannot reach
+/// its count with all care (collapse_driver.h) gives it up step by step, and at last joins vertices
+/// across gaps; Contraction::fallbacks counts what each step took.
+Contraction edge_collapse(const BuildTile& joined, std::uint32_t target,
+                          const AttributeLayout& layout);
+
+}  // namespace meshhier::cluster_simplify

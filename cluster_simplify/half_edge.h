@@ -1,0 +1,17 @@
+// The method `half_edge`: vertices collapse onto existing vertices.
+//
+// Every representative is a vertex of the finer level, bit for bit: the vertices of a level are a
+// subset of those of the next finer one, which progressive streams are made of (Lin & Luo,
+// Progressive Display Method for Interactive Mobile 3D Graphics; Zunino et al.).
+#pragma once
+
+#include "cluster_simplify/contraction.h"
+
+#include <cstdint>
+
+namespace meshhier::cluster_simplify {
+
+/// See contract(), and edge_collapse() for what a tile does that cannot reach its count.
+Contraction half_edge(const BuildTile& joined, std::uint32_t target, HalfEdgeCost cost);
+
+}  // namespace meshhier::cluster_simplify

@@ -1,0 +1,39 @@
+#include "cluster_simplify/local_frame.h"
+
+#include "hierarchy/bounds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace meshhier::cluster_simplify {
+
+LocalFrame::LocalFrame(std::span<const Vec3f> positions) {
+  if (positions.empty())
+    return;
+  const Bounds bounds = bounds_of(positions);
+  middle_ = (to_double(bounds.min) + to_double(bounds.max)) * 0.5;
+  const Vec3d half = to_double(bounds.max) - middle_;
+  const double size = std::max({half.x, half.y, half.z});
+  int exponent = 0;
+  std::frexp(size, &exponent);  // size < 2^exponent
+  if (size > 0)
+    scale_ = std::ldexp(1.0, -exponent);
+}
+
+std::vector<Vec3f> LocalFrame::to_local(std::span<const Vec3f> positions) const {
+  std::vector<Vec3f> local(positions.size());
+  std::transform(positions.begin(), positions.end(), local.begin(),
+                 [&](Vec3f p) { return to_float((to_double(p) - middle_) * scale_); });
+  return local;
+}
+
+Vec3f LocalFrame::to_global(Vec3f local) const {
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  const Vec3d place = middle_ + to_double(local) * (1 / scale_);
+  return to_float(Vec3d{std::clamp(place.x, -kLargest, kLargest),
+                        std::clamp(place.y, -kLargest, kLargest),
+                        std::clamp(place.z, -kLargest, kLargest)});
+}
+
+}  // namespace meshhier::cluster_simplify

@@ -1,0 +1,21 @@
+// From collapsed edges to a contraction: what is left, and where the leftovers go.
+#pragma once
+
+#include "cluster_simplify/collapse_mesh.h"
+#include "cluster_simplify/contraction.h"
+
+#include <cstdint>
+
+namespace meshhier::cluster_simplify {
+
+/// Makes the contraction out of the collapses carried out in `mesh`.
+///
+/// `vertices`: own vertices, those that others were collapsed into at their new places.
+/// Vertices without triangles show nothing and would fill the coarse tiles: they go into the
+/// nearest vertex that has some, but for as many as it takes to have `target` representatives. If
+/// more than `target` vertices have triangles, and no edge between them is left, those nearest to
+/// each other are joined, at the vertex nearest to the middle of those that meet. O(n log n).
+Contraction choose_representatives(CollapseMesh& mesh, const VertexArray& vertices,
+                                   std::uint32_t target);
+
+}  // namespace meshhier::cluster_simplify

@@ -1,0 +1,19 @@
+// What it costs the surface to lose a small piece of itself.
+#pragma once
+
+#include "cluster_simplify/collapse_mesh.h"
+#include "hierarchy/vec.h"
+
+#include <span>
+#include <vector>
+
+namespace meshhier::cluster_simplify {
+
+/// For each vertex of a connected piece of at most 32 vertices, all of them own: the mean squared
+/// distance from the piece's vertices to the nearest vertex of a larger piece. That is how far the
+/// surface is off where the piece was, once it has collapsed to nothing. Infinite for the vertices
+/// of larger pieces: they do not vanish before they have become small. `positions`: one per vertex.
+/// O(n), and O(n log n) if there are small pieces.
+std::vector<float> vanishing_distances(const CollapseMesh& mesh, std::span<const Vec3f> positions);
+
+}  // namespace meshhier::cluster_simplify

@@ -1,0 +1,116 @@
+// Shorter lines between parts of a graph, without giving up their sizes.
+#pragma once
+
+#include "partition/graph.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace meshhier::partition {
+
+/// How far two parts that are refined may be from their sizes: |(size - target) of the one - of the
+/// other|.
+struct Slack {
+  std::int64_t kept = 0;  ///< in the result, unless it was more at the start
+  /// On the way to it. No more than a vertex's weight allows for one move either way is best: with
+  /// unit weights and exact sizes 2, a step of an exchange; with 16 lines are 4 % longer.
+  std::int64_t explored = 0;
+};
+
+/// Work that was done, for those who want to see that it is bounded.
+struct RefineCounts {
+  std::uint64_t pairs = 0;       ///< refinements of two parts
+  std::uint64_t moves = 0;       ///< of vertices, those taken back included
+  std::uint64_t kept_moves = 0;  ///< those that stayed
+  RefineCounts& operator+=(const RefineCounts& other);
+};
+
+/// Local search by moving single vertices between two parts, best gain first, worse ones too, and
+/// going back to the best state seen (Fiduccia & Mattheyses 1982); over all pairs of parts that
+/// touch, again where something changed (Sanders & Schulz, Engineering Multilevel Graph
+/// Partitioning Algorithms, 2011). Vertices of more than `kHubDegree` arcs stay where they are:
+/// so a round takes O(m), times the parts a vertex touches. Deterministic; ties by number.
+class Refiner {
+ public:
+  /// `part_of`: per vertex its part < targets.size() <= kMostParts; refined in place. `targets`:
+  /// the weight of each part. `look_at`: vertices (not 0) that may have neighbours in other parts;
+  /// others have none. All but the last must outlive the refiner.
+  Refiner(const Graph& graph, std::span<std::uint32_t> part_of,
+          std::span<const std::uint32_t> targets, std::span<const char> look_at);
+
+  /// Refines all pairs of parts that touch; in further rounds those that touch a part that changed.
+  void refine_all(int rounds, Slack slack);
+
+  /// Gives every part exactly its target. Requires unit weights. Splits the parts in two halves,
+  /// and those again; in each, the vertices that cost least go from the larger side to the other.
+  void balance_exactly();
+
+  /// What a part weighs more than its target.
+  std::int64_t excess(std::uint32_t part) const {
+    return static_cast<std::int64_t>(size_[part]) - targets_[part];
+  }
+  /// Per vertex: has a neighbour in another part.
+  std::vector<char> boundary() const;
+  const RefineCounts& counts() const { return counts_; }
+
+  static constexpr std::uint32_t kHubDegree = 1024;
+  static constexpr std::uint32_t kMostParts = 64;
+
+ private:
+  using Key = std::uint64_t;  ///< gain, then the lower number, as one: the larger the sooner
+  struct Side {
+    std::uint32_t part;
+    std::vector<Key> heap;
+  };
+  /// A vertex with neighbours in another part: the pair of parts as one number.
+  struct Touch {
+    std::uint32_t pair, vertex;
+    std::int32_t gain;
+  };
+
+  static Key key(std::int32_t gain, std::uint32_t v) {
+    return Key{static_cast<std::uint32_t>(gain) ^ 0x80000000U} << 32 | (0xffffffffU - v);
+  }
+  static std::uint32_t vertex(Key key) { return 0xffffffffU - static_cast<std::uint32_t>(key); }
+  static std::int32_t gain(Key key) {
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(key >> 32) ^ 0x80000000U);
+  }
+
+  bool is_seen(std::uint32_t v) const { return epoch_[v] >= now_; }
+  bool is_moved(std::uint32_t v) const { return epoch_[v] > now_; }
+  void look_around(std::uint32_t v);
+  void next_epoch();
+  std::int32_t gain_of(std::uint32_t v, std::uint32_t other) const;
+  void offer(std::uint32_t v, std::int32_t gain);
+  bool refine_pair(std::uint32_t a, std::uint32_t b, std::span<const Touch> seeds, Slack slack);
+  bool has_top(Side& side);
+  Side* choose_side(std::int64_t imbalance, std::int64_t explored);
+  void move(std::uint32_t v, std::uint32_t from, std::uint32_t to);
+  void update_neighbours(std::uint32_t v, std::uint32_t from, std::uint32_t to);
+
+  void add_touches(std::uint32_t v, std::vector<Touch>& touches);
+  std::vector<Touch> sorted_touches();
+
+  void balance(std::uint32_t begin, std::uint32_t end);
+  void shift(std::uint32_t begin, std::uint32_t end, std::uint32_t to_begin, std::uint32_t to_end,
+             std::int64_t weight);
+
+  const Graph& graph_;
+  std::span<std::uint32_t> part_of_;
+  std::span<const std::uint32_t> targets_;
+  std::vector<std::uint32_t> size_;
+  std::vector<std::uint32_t> candidates_;  ///< where the boundary is looked for
+  std::vector<std::int32_t> gain_;
+  std::vector<std::uint32_t> epoch_;  ///< now_: gain_ is known; now_ + 1: moved as well
+  std::uint32_t now_ = 1;
+  std::vector<std::uint32_t> by_part_, first_of_;  ///< candidates when balancing began
+  std::vector<char> is_candidate_;
+  std::vector<char> is_stale_;       ///< moved, or a neighbour was, since touches were gathered
+  std::vector<std::int32_t> links_;  ///< per part: workspace, all 0
+  Side left_{}, right_{};
+  std::vector<std::uint32_t> log_;  ///< moves of a pair
+  RefineCounts counts_;
+};
+
+}  // namespace meshhier::partition

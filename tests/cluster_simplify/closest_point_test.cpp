@@ -1,0 +1,139 @@
+#include "cluster_simplify/closest_point.h"
+
+#include "tests/support/meshes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+namespace meshhier::cluster_simplify {
+namespace {
+
+Vec3d random_point(std::uint64_t index) {
+  return {tests::hash_noise(index, 1), tests::hash_noise(index, 2), tests::hash_noise(index, 3)};
+}
+
+TriangleFrame random_triangle(std::uint64_t index) {
+  return {random_point(3 * index), random_point(3 * index + 1), random_point(3 * index + 2)};
+}
+
+/// The least distance to a fine grid of points of the triangle, and how coarse the grid is.
+struct GridDistance {
+  double distance = std::numeric_limits<double>::infinity();
+  double step = 0;
+};
+GridDistance grid_distance(Vec3d x, const TriangleFrame& t) {
+  constexpr int kSteps = 100;
+  GridDistance best;
+  for (int i = 0; i <= kSteps; ++i) {
+    for (int j = 0; i + j <= kSteps; ++j) {
+      const Vec3d p = t.a + t.ab * (i / 100.0) + t.ac * (j / 100.0);
+      best.distance = std::min(best.distance, length(x - p));
+    }
+  }
+  best.step = (length(t.ab) + length(t.ac)) / kSteps;
+  return best;
+}
+
+TEST(ClosestPointTest, IsAsNearAsTheNearestOfManyPointsOfTheTriangle) {
+  for (std::uint64_t i = 0; i < 300; ++i) {
+    const TriangleFrame t = random_triangle(i);
+    const Vec3d x = random_point(10000 + i);
+    const GridDistance grid = grid_distance(x, t);
+    const double distance = std::sqrt(squared_distance(x, t));
+    EXPECT_LE(distance, grid.distance + 1e-12);
+    EXPECT_GE(distance, grid.distance - grid.step);
+    const ClosestPoint closest = closest_point(x, t);
+    EXPECT_NEAR(std::sqrt(closest.squared_distance), distance, 1e-12);
+    EXPECT_NEAR(length(x - closest.point), distance, 1e-12);
+  }
+}
+
+TEST(ClosestPointTest, NamesTheFeature) {
+  const TriangleFrame t({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
+  EXPECT_EQ(closest_point({1, 1, 3}, t).feature, Feature::inside);
+  EXPECT_EQ(closest_point({2, -1, 3}, t).feature, Feature::edge_0);
+  EXPECT_EQ(closest_point({3, 3, 3}, t).feature, Feature::edge_1);
+  EXPECT_EQ(closest_point({-1, 2, 3}, t).feature, Feature::edge_2);
+  EXPECT_EQ(closest_point({-1, -1, 3}, t).feature, Feature::corner_0);
+  EXPECT_EQ(closest_point({6, -1, 3}, t).feature, Feature::corner_1);
+  EXPECT_EQ(closest_point({-1, 6, 3}, t).feature, Feature::corner_2);
+  EXPECT_EQ(closest_point({-1, -1, 0}, t).squared_distance, 2);
+}
+
+TEST(ClosestPointTest, TrianglesWithoutAreaAreSegmentsAndPoints) {
+  const TriangleFrame segment({0, 0, 0}, {1, 0, 0}, {3, 0, 0});
+  EXPECT_DOUBLE_EQ(squared_distance({2, 1, 0}, segment), 1);
+  EXPECT_DOUBLE_EQ(squared_distance({5, 0, 0}, segment), 4);
+  const TriangleFrame point({1, 1, 1}, {1, 1, 1}, {1, 1, 1});
+  EXPECT_DOUBLE_EQ(squared_distance({1, 1, 3}, point), 4);
+  EXPECT_EQ(closest_point({1, 1, 3}, point).point, (Vec3d{1, 1, 1}));
+}
+
+TEST(ClosestPointTest, NeedlesAreNotMissed) {
+  for (const double width : {1e-3, 1e-5, 1e-7, 1e-9, 1e-12}) {
+    const TriangleFrame needle({0, 0, 0}, {1, 0, 0}, {0.5, width, 0});
+    EXPECT_NEAR(std::sqrt(squared_distance({0.4, width / 4, 0.25}, needle)), 0.25, 1e-4);
+    EXPECT_NEAR(std::sqrt(closest_point({0.4, width / 4, 0}, needle).squared_distance), 0, 1e-4);
+  }
+}
+
+TEST(ClosestPointTest, WorksAtTheEndsOfFloat) {
+  for (const double scale : {3e38, 1e30, 1e-30, 1e-44}) {
+    const TriangleFrame t({0, 0, 0}, {scale, 0, 0}, {0, scale, 0});
+    EXPECT_DOUBLE_EQ(std::sqrt(squared_distance({scale / 4, scale / 4, scale / 2}, t)), scale / 2);
+    EXPECT_DOUBLE_EQ(std::sqrt(squared_distance({2 * scale, 0, 0}, t)), scale);
+    const PlaneFoot foot = plane_foot({scale / 4, scale / 4, scale / 2}, t);
+    EXPECT_TRUE(foot.inside);
+    EXPECT_DOUBLE_EQ(std::sqrt(foot.squared_distance), scale / 2);
+  }
+}
+
+TEST(PlaneFootTest, IsInsideOnlyAboveTheTriangle) {
+  const TriangleFrame t({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
+  EXPECT_TRUE(plane_foot({1, 1, -5}, t).inside);
+  EXPECT_DOUBLE_EQ(plane_foot({1, 1, -5}, t).squared_distance, 25);
+  EXPECT_FALSE(plane_foot({3, 3, 1}, t).inside);
+  EXPECT_FALSE(plane_foot({1, 1, 1}, {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}).inside);
+}
+
+TEST(SegmentsTest, ComeClosestWhereAGridOfPointsDoes) {
+  constexpr int kSteps = 200;
+  for (std::uint64_t i = 0; i < 300; ++i) {
+    const Segment first{random_point(4 * i), random_point(4 * i + 1)};
+    const Segment second{random_point(4 * i + 2), random_point(4 * i + 3)};
+    const Encounter meet = closest(first, second);
+    const Vec3d p = first.start + first.direction * meet.on_first;
+    const Vec3d q = second.start + second.direction * meet.on_second;
+    EXPECT_NEAR(dot(p - q, p - q), meet.squared_distance, 1e-12);
+    double least = std::numeric_limits<double>::infinity();
+    for (int a = 0; a <= kSteps; ++a) {
+      for (int b = 0; b <= kSteps; ++b) {
+        const Vec3d gap = first.start + first.direction * (a / 200.0) - second.start -
+                          second.direction * (b / 200.0);
+        least = std::min(least, length(gap));
+      }
+    }
+    const double step = (length(first.direction) + length(second.direction)) / kSteps;
+    EXPECT_LE(std::sqrt(meet.squared_distance), least + 1e-12);
+    EXPECT_GE(std::sqrt(meet.squared_distance), least - step);
+    EXPECT_TRUE(meet.on_first >= 0 && meet.on_first <= 1);
+    EXPECT_TRUE(meet.on_second >= 0 && meet.on_second <= 1);
+  }
+}
+
+TEST(SegmentsTest, ParallelOnesAndPointsAreServed) {
+  const Segment x{{0, 0, 0}, {4, 0, 0}};
+  EXPECT_DOUBLE_EQ(closest(x, {{1, 2, 0}, {4, 0, 0}}).squared_distance, 4);
+  EXPECT_DOUBLE_EQ(closest(x, {{7, 4, 0}, {-2, 0, 0}}).squared_distance, 17);
+  EXPECT_DOUBLE_EQ(closest(x, {{2, 3, 0}, {0, 0, 0}}).squared_distance, 9);
+  EXPECT_DOUBLE_EQ(closest({{2, 3, 0}, {0, 0, 0}}, x).squared_distance, 9);
+  EXPECT_DOUBLE_EQ(closest({{1, 1, 1}, {0, 0, 0}}, {{1, 1, 3}, {0, 0, 0}}).squared_distance, 4);
+}
+
+}  // namespace
+}  // namespace meshhier::cluster_simplify
