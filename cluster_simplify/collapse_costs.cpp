@@ -17,6 +17,10 @@ constexpr float kTearing = 0.1F;
 // share in the mean: a lost piece shows, and makes the largest distance.
 constexpr float kVanishing = 3;
 
+// However small a piece is, it counts for a hundredth of what a vertex stands for on average: a
+// stray triangle far away from everything is no area, but makes the largest distance there is.
+constexpr float kLeastShare = 0.01F;
+
 }  // namespace
 
 bool keeps_sides(std::span<const Vec3f> positions, std::uint32_t vertex, std::uint32_t other,
@@ -40,8 +44,10 @@ bool keeps_sides(std::span<const Vec3f> positions, std::uint32_t vertex, std::ui
   return true;
 }
 
-TopologyPrices::TopologyPrices(const CollapseMesh& mesh, std::span<const Vec3f> positions)
-    : vanishing_(vanishing_distances(mesh, positions)) {}
+TopologyPrices::TopologyPrices(const CollapseMesh& mesh, std::span<const Vec3f> positions,
+                               float area)
+    : least_area_(kLeastShare * area / static_cast<float>(std::max(1U, mesh.vertex_count()))),
+      vanishing_(vanishing_distances(mesh, positions)) {}
 
 float TopologyPrices::of(TopologyChange change, std::uint32_t vertex, Vec3f along,
                          float area) const {
@@ -54,7 +60,7 @@ float TopologyPrices::of(TopologyChange change, std::uint32_t vertex, Vec3f alon
       const float lost = vanishing_[vertex];
       if (lost == std::numeric_limits<float>::infinity())
         break;  // whatever its area, which may be zero
-      return area * (kTearing * dot(along, along) + kVanishing * lost);
+      return kTearing * area * dot(along, along) + kVanishing * std::max(area, least_area_) * lost;
     }
     case TopologyChange::pinches:
       break;

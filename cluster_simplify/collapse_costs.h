@@ -28,13 +28,15 @@ bool keeps_sides(std::span<const Vec3f> positions, std::uint32_t vertex, std::ui
 /// handles, and specks of it vanish, when that harms less than any other collapse.
 class TopologyPrices {
  public:
-  TopologyPrices(const CollapseMesh& mesh, std::span<const Vec3f> positions);
+  /// `area`: twice that of the whole tile.
+  TopologyPrices(const CollapseMesh& mesh, std::span<const Vec3f> positions, float area);
 
   /// In the units of quadric_cost. `vertex`: an end of the edge; `along`: the edge; `area`: twice
   /// that of the surface its ends stand for.
   float of(TopologyChange change, std::uint32_t vertex, Vec3f along, float area) const;
 
  private:
+  float least_area_;              ///< twice what a piece counts for at least
   std::vector<float> vanishing_;  ///< squared distance from a piece to the next larger one
 };
 

@@ -87,6 +87,8 @@ class CollapseDriver {
   float cost(std::uint32_t e, const Collapse& collapse) const {
     if (changes_[e] == TopologyChange::none)
       return collapse.cost;
+    if (changes_[e] == TopologyChange::vanishes)
+      return costs_.price(e, changes_[e]);  // no border is left to be held
     return std::max(collapse.cost, costs_.price(e, changes_[e]));
   }
 

@@ -26,7 +26,7 @@ class OptimalPlacement {
       : mesh_(mesh),
         positions_(std::move(positions)),
         quadrics_(vertex_quadrics(mesh, positions_)),
-        prices_(mesh, positions_),
+        prices_(mesh, positions_, total_area(quadrics_)),
         vertices_(vertices) {}
 
   std::span<const Vec3f> positions() const { return positions_; }

@@ -23,7 +23,7 @@ class QuadricCosts {
       : mesh_(mesh),
         positions_(std::move(positions)),
         quadrics_(vertex_quadrics(mesh, positions_)),
-        prices_(mesh, positions_) {}
+        prices_(mesh, positions_, total_area(quadrics_)) {}
 
   Collapse best(std::uint32_t e) const {
     const auto [a, b, count] = mesh_.edge(e);
@@ -64,7 +64,7 @@ class QuadricCosts {
 class MelaxCosts {
  public:
   MelaxCosts(CollapseMesh& mesh, std::vector<Vec3f> positions)
-      : mesh_(mesh), positions_(std::move(positions)), prices_(mesh, positions_) {}
+      : mesh_(mesh), positions_(std::move(positions)), prices_(mesh, positions_, 0) {}
 
   Collapse best(std::uint32_t e) {
     const auto [a, b, count] = mesh_.edge(e);

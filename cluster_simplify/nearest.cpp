@@ -1,6 +1,7 @@
 #include "cluster_simplify/nearest.h"
 
 #include <algorithm>
+#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -24,11 +25,36 @@ Kernel::Point_3 point(Vec3f p) {
   return {double{p.x}, double{p.y}, double{p.z}};
 }
 
+// Below so many distances looking at all of them takes less time than planting a tree.
+constexpr std::size_t kFewDistances = std::size_t{1} << 21;
+
+std::uint32_t nearest_of_all(std::span<const Vec3f> positions,
+                             std::span<const std::uint32_t> candidates, Vec3d asked) {
+  std::uint32_t best = candidates[0];
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t v : candidates) {
+    const Vec3d away = to_double(positions[v]) - asked;
+    const double squared = dot(away, away);
+    if (squared < least) {
+      least = squared;
+      best = v;
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> nearest_of(std::span<const Vec3f> positions,
                                       std::span<const std::uint32_t> candidates,
                                       std::span<const std::uint32_t> asked) {
+  std::vector<std::uint32_t> nearest;
+  nearest.reserve(asked.size());
+  if (asked.size() * candidates.size() <= kFewDistances) {
+    for (const std::uint32_t v : asked)
+      nearest.push_back(nearest_of_all(positions, candidates, to_double(positions[v])));
+    return nearest;
+  }
   // The tree takes quadratic time for equal points: one of them is enough.
   std::vector<std::uint32_t> sorted(candidates.begin(), candidates.end());
   const auto key = [&](std::uint32_t v) {
@@ -44,8 +70,6 @@ std::vector<std::uint32_t> nearest_of(std::span<const Vec3f> positions,
       points.emplace_back(point(positions[sorted[i]]), sorted[i]);
   }
   const Search::Tree tree(points.begin(), points.end());
-  std::vector<std::uint32_t> nearest;
-  nearest.reserve(asked.size());
   for (const std::uint32_t v : asked)
     nearest.push_back(Search(tree, point(positions[v]), 1).begin()->first.second);
   return nearest;

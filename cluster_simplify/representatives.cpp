@@ -72,10 +72,15 @@ Contraction choose_representatives(CollapseMesh& mesh, const VertexArray& vertic
     absorb(shown, shown);
   }
   const std::uint32_t room = target - std::min(target, static_cast<std::uint32_t>(shown.size()));
-  if (room > 0 && !isolated.empty())
-    absorb(isolated, join_neighbours(vertices, isolated, room));
-  else if (!isolated.empty())
-    absorb(isolated, nearest_of(vertices.positions, shown, isolated));
+  if (!isolated.empty()) {
+    std::vector<std::uint32_t> kept;
+    if (room > 0)
+      kept = join_neighbours(vertices, isolated, room);
+    std::vector<std::uint32_t> around = shown;
+    around.insert(around.end(), kept.begin(), kept.end());
+    absorb(isolated, nearest_of(vertices.positions, around, isolated));
+    absorb(kept, kept);  // whatever lies at the same point
+  }
 
   std::vector<std::uint32_t> number(mesh.own_count(), kNone);
   result.representatives.channels = vertices.channels;

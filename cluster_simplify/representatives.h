@@ -12,9 +12,10 @@ namespace meshhier::cluster_simplify {
 ///
 /// `vertices`: own vertices, those that others were collapsed into at their new places.
 /// Vertices without triangles show nothing and would fill the coarse tiles: they go into the
-/// nearest vertex that has some, but for as many as it takes to have `target` representatives. If
-/// more than `target` vertices have triangles, and no edge between them is left, those nearest to
-/// each other are joined, at the vertex nearest to the middle of those that meet. O(n log n).
+/// nearest vertex that has some, but for as many as it takes to have `target` representatives;
+/// those are spread evenly among them, and others may go into these. If more than `target` vertices
+/// have triangles, and no edge between them is left, those nearest to each other are joined, at the
+/// vertex nearest to the middle of those that meet. O(n log n).
 Contraction choose_representatives(CollapseMesh& mesh, const VertexArray& vertices,
                                    std::uint32_t target);
 

@@ -82,6 +82,9 @@ struct VertexQuadric {
   }
 };
 
+/// The sum of all areas.
+float total_area(std::span<const VertexQuadric> quadrics);
+
 /// The quadrics of all vertices: the planes of their triangles, each weighted with twice its area,
 /// and planes upright on open borders and on sharp folds. `positions`: one per vertex. O(t).
 std::vector<VertexQuadric> vertex_quadrics(const CollapseMesh& mesh,
