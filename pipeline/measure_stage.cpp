@@ -372,7 +372,7 @@ void measure(Forest& forest, cluster_simplify::Method method, const MemoryPlan& 
     const auto level = static_cast<Level>(l);
     std::vector<Step> steps(tree.node_count(level));
     ordered_for(
-        steps.size(), plan.tiles_in_flight, cancel,
+        steps.size(), plan.measures_in_flight, cancel,
         [&](std::size_t i) {
           return measure_step(forest, {level, static_cast<std::uint32_t>(i)}, method);
         },

@@ -25,8 +25,9 @@ struct MemoryPlan {
   std::size_t blocks_in_flight = 1;  ///< blocks of input
   std::size_t chunks_in_flight = 1;
   std::size_t tiles_in_flight = 1;
-  std::size_t spool_block_bytes = 0;  ///< of each of a stage's many spools
-  std::uint64_t table_bytes = 0;      ///< for renumbering the triangles
+  std::size_t measures_in_flight = 1;  ///< tiles measured against their children
+  std::size_t spool_block_bytes = 0;   ///< of each of a stage's many spools
+  std::uint64_t table_bytes = 0;       ///< for renumbering the triangles
 };
 
 /// Divides `budget_bytes`. Throws Error(budget) naming the least that would do.
