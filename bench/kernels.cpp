@@ -16,6 +16,7 @@ namespace meshhier::bench {
 namespace {
 
 using cluster_simplify::ContractionOptions;
+using cluster_simplify::HalfEdgeCost;
 using cluster_simplify::Method;
 using cluster_simplify::Representative;
 
@@ -36,6 +37,10 @@ constexpr std::array kContractions = {
     NamedContraction{"contract/cluster/vertex",
                      {.method = Method::cluster, .representative = Representative::vertex}},
     NamedContraction{"contract/edge_collapse", {.method = Method::edge_collapse}},
+    NamedContraction{"contract/half_edge/quadric",
+                     {.method = Method::half_edge, .cost = HalfEdgeCost::quadric}},
+    NamedContraction{"contract/half_edge/melax",
+                     {.method = Method::half_edge, .cost = HalfEdgeCost::melax}},
 };
 
 /// A torus with relief and, as scans have it, noise. Its vertices are half as many as its
