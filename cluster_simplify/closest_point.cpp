@@ -103,15 +103,8 @@ PlaneFoot plane_foot(Vec3d x, const TriangleFrame& t) {
   return {t.a + offset, squared_length(in.ax - offset), in.inside()};
 }
 
-Encounter closest_at_ends(const Segment& first, const Segment& second) {
-  const Vec3d& d = first.direction;
-  const Vec3d& e = second.direction;
-  const Vec3d r = first.start - second.start;
-  const double dd = dot(d, d);
-  const double ee = dot(e, e);
-  const double de = dot(d, e);
-  const double dr = dot(d, r);
-  const double er = dot(e, r);
+Encounter closest_at_ends(const SegmentPair& pair) {
+  const auto& [d, e, r, dd, ee, de, dr, er] = pair;
   double s = part(de * er - dr * ee, dd * ee - de * de);
   double t = 0;
   const double on_line = de * s + er;

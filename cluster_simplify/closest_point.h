@@ -50,17 +50,28 @@ struct Encounter {
   double on_first = 0, on_second = 0;  ///< parts of their directions, in [0, 1]
   double squared_distance = 0;         ///< between those two points
 };
-Encounter closest_at_ends(const Segment& first, const Segment& second);
+
+/// Two segments' directions, the way from one start to the other, and their products.
+struct SegmentPair {
+  Vec3d d, e, r;
+  double dd, ee, de, dr, er;
+
+  SegmentPair(const Segment& first, const Segment& second)
+      : d(first.direction),
+        e(second.direction),
+        r(first.start - second.start),
+        dd(dot(d, d)),
+        ee(dot(e, e)),
+        de(dot(d, e)),
+        dr(dot(d, r)),
+        er(dot(e, r)) {}
+};
+/// For segments that come closest at an end of one of them, or are parallel.
+Encounter closest_at_ends(const SegmentPair& pair);
 
 inline Encounter closest(const Segment& first, const Segment& second) {
-  const Vec3d& d = first.direction;
-  const Vec3d& e = second.direction;
-  const Vec3d r = first.start - second.start;
-  const double dd = dot(d, d);
-  const double ee = dot(e, e);
-  const double de = dot(d, e);
-  const double dr = dot(d, r);
-  const double er = dot(e, r);
+  const SegmentPair pair(first, second);
+  const auto& [d, e, r, dd, ee, de, dr, er] = pair;
   const double area = dd * ee - de * de;
   const double s = de * er - dr * ee;
   const double t = dd * er - de * dr;
@@ -68,7 +79,7 @@ inline Encounter closest(const Segment& first, const Segment& second) {
   // them).
   constexpr double kParallel = 1e-6;
   if (s <= 0 || t <= 0 || s >= area || t >= area || area <= kParallel * dd * ee)
-    return closest_at_ends(first, second);
+    return closest_at_ends(pair);
   const double scale = 1 / area;
   const Vec3d gap = r + d * (s * scale) - e * (t * scale);
   return {s * scale, t * scale, dot(gap, gap)};

@@ -67,9 +67,8 @@ class CollapseDriver {
     // What was impossible may have become possible by later collapses next to it: as long as a
     // round gets a fair part of the way, there is another.
     constexpr std::uint64_t kFairPart = 16;
-    std::uint32_t before = left_;
     while (left_ > target) {
-      before = left_;
+      const std::uint32_t before = left_;
       push_all(care);
       drain(target, care);
       if ((before - left_) * kFairPart < left_ - target)

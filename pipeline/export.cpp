@@ -3,6 +3,7 @@
 #include "hierarchy/error.h"
 #include "mesh_io/ply_writer.h"
 #include "pipeline/cut.h"
+#include "pipeline/cut_file.h"
 #include "pipeline/cut_mesh.h"
 #include "storage/hierarchy_reader.h"
 #include "storage/layout.h"
@@ -23,8 +24,6 @@ namespace fs = std::filesystem;
 
 using TriangleSpool = storage::RecordSpool<CutTriangle>;
 
-/// A list of all partitions of the largest hierarchy has fewer bytes; refuses a wrong file early.
-constexpr std::uint64_t kMaxCutFileBytes = std::uint64_t{64} << 20;
 /// Triangles on their way from the scratch to the writer: 768 KiB.
 constexpr std::size_t kTriangleBlock = 65536;
 /// Grain of the scratch: large writes, small beside any budget.
@@ -177,17 +176,6 @@ std::string export_outline(const Job& job) {
                      content.vertex_count, content.edge_count);
 }
 
-Cut cut_in_file(storage::FileSystem& files, const Tree& tree, const fs::path& path) {
-  const auto bytes = storage::read_file(files, path, kMaxCutFileBytes);
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  auto nodes = parse_nodes(text, path.string());
-  try {
-    return {tree, std::move(nodes)};
-  } catch (const Error& error) {
-    throw error.within(path.string());
-  }
-}
-
 /// Unlike the work directory, the directory of the output is not made: a mistyped path should be
 /// told.
 void require_place(storage::FileSystem& files, const fs::path& output) {
@@ -211,7 +199,7 @@ std::string export_selection(const Job& job, const ExportSelection& selection) {
   if (const auto* node = std::get_if<NodeId>(&selection))
     return export_tile(job, *node);
   if (const auto* path = std::get_if<fs::path>(&selection)) {
-    return export_cut(job, cut_in_file(job.files, tree, *path), "cut");
+    return export_cut(job, read_cut(job.files, tree, *path), "cut");
   }
   return export_outline(job);
 }

@@ -5,6 +5,7 @@
 #include "cluster_simplify/motion.h"
 #include "cluster_simplify/nearest.h"
 #include "cluster_simplify/seams.h"
+#include "cluster_simplify/target_surface.h"
 #include "pipeline/parallel.h"
 
 #include <algorithm>
@@ -12,7 +13,6 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -20,6 +20,7 @@ namespace meshhier::pipeline {
 namespace {
 
 using cluster_simplify::kNone;
+using cluster_simplify::TargetSurface;
 
 /// How far one contraction moved the surface: that of a tile, measured with what is around it.
 struct Step {
@@ -32,10 +33,6 @@ struct Step {
 struct Surroundings {
   TileMesh mesh;                     ///< border: also triangles of the neighbours' bands
   std::vector<GhostRef> references;  ///< of the vertices from own_count on, ascending
-
-  cluster_simplify::SurfacePatch patch() const {
-    return {mesh.vertices.positions, mesh.own_count, mesh.interior, mesh.border};
-  }
 };
 
 std::vector<Band> neighbours_bands(const Forest& forest, Level level,
@@ -145,39 +142,11 @@ Contracted load(const Forest& forest, NodeId node) {
   return result;
 }
 
-/// The triangles of a mesh, by corner.
-class Stars {
- public:
-  explicit Stars(const TileMesh& mesh) : starts_(mesh.vertices.positions.size() + 1) {
-    const auto for_each_corner = [&](const auto& visit) {
-      for (const auto* triangles : {&mesh.interior, &mesh.border}) {
-        for (const Triangle& t : *triangles) {
-          for (const TileVertex v : t)
-            visit(raw(v), t);
-        }
-      }
-    };
-    for_each_corner([&](std::uint32_t v, const Triangle&) { ++starts_[v + 1]; });
-    std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
-    triangles_.resize(starts_.back());
-    std::vector<std::uint32_t> next(starts_.begin(), starts_.end() - 1);
-    for_each_corner([&](std::uint32_t v, const Triangle& t) { triangles_[next[v]++] = t; });
-  }
-  std::span<const Triangle> around(std::uint32_t vertex) const {
-    return std::span(triangles_).subspan(starts_[vertex], starts_[vertex + 1] - starts_[vertex]);
-  }
-  bool is_drawn(std::uint32_t vertex) const { return starts_[vertex] != starts_[vertex + 1]; }
-
- private:
-  std::vector<std::uint32_t> starts_;
-  std::vector<Triangle> triangles_;
-};
-
 /// Own fine triangles of which nothing is drawn any more.
-std::vector<Triangle> lost_triangles(const Contracted& step, const Stars& drawn) {
+std::vector<Triangle> lost_triangles(const Contracted& step, const TargetSurface& drawn) {
   const auto is_lost = [&](TileVertex v) {
     const std::uint32_t image = step.coarse_of[raw(v)];
-    return image == kNone || !drawn.is_drawn(image);
+    return image == kNone || !drawn.is_used(image);
   };
   const auto is_own = [&](TileVertex v) { return step.fine.mesh.is_own(v); };
   std::vector<Triangle> lost;
@@ -190,20 +159,16 @@ std::vector<Triangle> lost_triangles(const Contracted& step, const Stars& drawn)
   return lost;
 }
 
-/// How far no point of triangle `lost` is from one of the triangles `drawn`: the distance to a
-/// triangle is convex, so it is largest at a corner.
-double distance_to_one_of(std::span<const Triangle> drawn,
-                          const std::vector<Vec3f>& drawn_positions, const Triangle& lost,
-                          const std::vector<Vec3f>& lost_positions) {
+/// How far no point of triangle `lost` is from one of the triangles around a drawn vertex: the
+/// distance to a triangle is convex, so it is largest at a corner.
+double distance_to_star(const TargetSurface& drawn, std::uint32_t vertex, const Triangle& lost,
+                        const std::vector<Vec3f>& lost_positions) {
   double least = std::numeric_limits<double>::infinity();
-  for (const Triangle& t : drawn) {
-    const cluster_simplify::TriangleFrame frame{to_double(drawn_positions[raw(t[0])]),
-                                                to_double(drawn_positions[raw(t[1])]),
-                                                to_double(drawn_positions[raw(t[2])])};
+  for (const std::uint32_t t : drawn.around(vertex)) {
     double farthest = 0;
     for (const TileVertex v : lost) {
-      farthest = std::max(
-          farthest, cluster_simplify::squared_distance(to_double(lost_positions[raw(v)]), frame));
+      farthest = std::max(farthest, cluster_simplify::squared_distance(
+                                        to_double(lost_positions[raw(v)]), drawn.frame(t)));
     }
     least = std::min(least, farthest);
   }
@@ -212,14 +177,16 @@ double distance_to_one_of(std::span<const Triangle> drawn,
 
 /// The distance of triangles of which nothing is drawn any more to what is.
 double lost_distance(const Contracted& step) {
-  const Stars stars(step.coarse.mesh);
   std::vector<Vec3f> positions = step.coarse.mesh.vertices.positions;
+  TargetSurface surface;
+  surface.assign(cluster_simplify::patch_of(step.coarse.mesh), {},
+                 static_cast<std::uint32_t>(positions.size()));
   std::vector<std::uint32_t> drawn;
   for (std::uint32_t v = 0; v < positions.size(); ++v) {
-    if (stars.is_drawn(v))
+    if (surface.is_used(v))
       drawn.push_back(v);
   }
-  const std::vector<Triangle> lost = lost_triangles(step, stars);
+  const std::vector<Triangle> lost = lost_triangles(step, surface);
   if (drawn.empty() || lost.empty())
     return 0;
   const std::vector<Vec3f>& fine = step.fine.mesh.vertices.positions;
@@ -231,8 +198,7 @@ double lost_distance(const Contracted& step) {
   const std::vector<std::uint32_t> nearest = cluster_simplify::nearest_of(positions, drawn, asked);
   double farthest = 0;
   for (std::size_t i = 0; i < lost.size(); ++i) {
-    farthest =
-        std::max(farthest, distance_to_one_of(stars.around(nearest[i]), positions, lost[i], fine));
+    farthest = std::max(farthest, distance_to_star(surface, nearest[i], lost[i], fine));
   }
   return farthest;
 }
@@ -246,10 +212,11 @@ Step measure_step(const Forest& forest, NodeId node, cluster_simplify::Method me
   if (forest.tree().children(node).count == 1)
     return {};
   const Contracted step = load(forest, node);
-  const cluster_simplify::DeviationInput input{.fine = step.fine.patch(),
-                                               .coarse = step.coarse.patch(),
-                                               .coarse_of = step.coarse_of,
-                                               .weights = step.weights};
+  const cluster_simplify::DeviationInput input{
+      .fine = cluster_simplify::patch_of(step.fine.mesh),
+      .coarse = cluster_simplify::patch_of(step.coarse.mesh),
+      .coarse_of = step.coarse_of,
+      .weights = step.weights};
   const cluster_simplify::Deviation found = method == cluster_simplify::Method::cluster
                                                 ? cluster_simplify::measure_motion(input)
                                                 : cluster_simplify::DeviationMeter().measure(input);

@@ -19,7 +19,7 @@ constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 // Program, libraries, stacks and allocator slack: 12 to 16 MiB were measured at rest.
 constexpr std::uint64_t kBaseBytes = 18 * kMiB;
 
-// Bookkeeping a tile: three blob entries, its record, its statistics.
+// Bookkeeping a tile: four blob entries, what is known of it, its record, its statistics.
 constexpr std::uint64_t kTileEntryBytes = 320;
 
 // Triangles a vertex: 2 on closed surfaces, less on open ones; half as much again for those that

@@ -2,6 +2,7 @@
 
 #include "hierarchy/error.h"
 #include "pipeline/cut.h"
+#include "pipeline/cut_file.h"
 #include "pipeline/cut_surface.h"
 #include "pipeline/parallel.h"
 #include "pipeline/surface_distance.h"
@@ -22,8 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A list of all partitions of the largest hierarchy has fewer bytes; refuses a wrong file early.
-constexpr std::uint64_t kMaxCutFileBytes = std::uint64_t{64} << 20;
 /// Samples drawn from a tile at a time, and looked up together: enough to make the trees of their
 /// surroundings worth building, 10 MiB in all.
 constexpr std::uint64_t kDrawnSamples = 65536;
@@ -284,17 +283,6 @@ ErrorMeasurement measure_level(const Job& job, Level level) {
                      fmt::format("level {}", raw(level)), level);
 }
 
-Cut cut_in_file(storage::FileSystem& files, const Tree& tree, const fs::path& path) {
-  const auto bytes = storage::read_file(files, path, kMaxCutFileBytes);
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  auto nodes = parse_nodes(text, path.string());
-  try {
-    return {tree, std::move(nodes)};
-  } catch (const Error& error) {
-    throw error.within(path.string());
-  }
-}
-
 }  // namespace
 
 std::vector<ErrorMeasurement> measure_errors(storage::FileSystem& files, const fs::path& directory,
@@ -306,7 +294,7 @@ std::vector<ErrorMeasurement> measure_errors(storage::FileSystem& files, const f
   if (const auto* level = std::get_if<Level>(&options.selection))
     require_level(tree, *level);
   if (const auto* path = std::get_if<fs::path>(&options.selection))
-    cut = cut_in_file(files, tree, *path);
+    cut = read_cut(files, tree, *path);
 
   progress.stage("original", tree.partition_count(), "partitions");
   const CutSurface original(reader, Cut::of_level(tree, tree.depth()), options.memory_budget / 16,

@@ -2,6 +2,7 @@
 
 #include "cluster_simplify/kd_cells.h"
 #include "cluster_simplify/quadric.h"
+#include "tests/cluster_simplify/test_tiles.h"
 #include "tests/support/meshes.h"
 
 #include <algorithm>
@@ -18,22 +19,12 @@ namespace meshhier::cluster_simplify {
 namespace {
 
 using testing::Each;
+using tests::tile_of;
 
 constexpr std::array kAll{Representative::mean, Representative::quadric, Representative::vertex};
 
 Triangle triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   return {TileVertex{a}, TileVertex{b}, TileVertex{c}};
-}
-
-/// A tile of own vertices only.
-BuildTile tile_of(const tests::TestMesh& mesh) {
-  BuildTile tile;
-  tile.mesh.vertices.positions = mesh.positions;
-  tile.mesh.own_count = static_cast<std::uint32_t>(mesh.positions.size());
-  tile.history.weights.assign(mesh.positions.size(), 1);
-  for (const tests::MeshTriangle& t : mesh.triangles)
-    tile.mesh.interior.push_back(triangle(t[0], t[1], t[2]));
-  return tile;
 }
 
 /// Appends a vertex that belongs to another tile.

@@ -3,6 +3,7 @@
 #include "cluster_simplify/contraction.h"
 #include "hierarchy/bounds.h"
 #include "hierarchy/error.h"
+#include "tests/cluster_simplify/test_tiles.h"
 #include "tests/support/meshes.h"
 
 #include <algorithm>
@@ -55,12 +56,7 @@ Deviation measure(const Pair& pair) {
 }
 
 Pair contracted(const tests::TestMesh& mesh, std::uint32_t target, Method method) {
-  BuildTile tile;
-  tile.mesh.vertices.positions = mesh.positions;
-  tile.mesh.own_count = static_cast<std::uint32_t>(mesh.positions.size());
-  tile.history.weights.assign(mesh.positions.size(), 1);
-  for (const tests::MeshTriangle& t : mesh.triangles)
-    tile.mesh.interior.push_back(triangle(t[0], t[1], t[2]));
+  BuildTile tile = tests::tile_of(mesh);
   normalize_triangles(tile.mesh.interior, true);
   ContractionOptions options;
   options.method = method;

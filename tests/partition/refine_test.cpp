@@ -1,5 +1,6 @@
 #include "partition/refine.h"
 
+#include "tests/partition/graph_cases.h"
 #include "tests/support/meshes.h"
 
 #include <algorithm>
@@ -11,28 +12,6 @@
 
 namespace meshhier::partition {
 namespace {
-
-using Numbers = std::vector<std::uint32_t>;
-
-Graph graph_of(const tests::TestMesh& mesh) {
-  return surface_graph(mesh.positions, {mesh.triangles.begin(), mesh.triangles.end()});
-}
-
-std::int64_t cut_of(const Graph& graph, const Numbers& part_of) {
-  std::int64_t cut = 0;
-  for (std::uint32_t v = 0; v < graph.size(); ++v) {
-    for (const Graph::Arc& arc : graph.arcs_of(v))
-      cut += part_of[v] != part_of[arc.to] ? arc.weight : 0;
-  }
-  return cut / 2;
-}
-
-Numbers sizes_of(const Numbers& part_of, std::size_t parts) {
-  Numbers sizes(parts);
-  for (const std::uint32_t part : part_of)
-    ++sizes.at(part);
-  return sizes;
-}
 
 std::vector<char> all(const Graph& graph) {
   return std::vector<char>(graph.size(), 1);
