@@ -1,11 +1,16 @@
 #include "app/command.h"
 #include "app/options.h"
+#include "hierarchy/error.h"
 #include "pipeline/build.h"
+#include "pipeline/build_stats.h"
 #include "pipeline/config.h"
+#include "storage/atomic_file.h"
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <ostream>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,6 +23,7 @@ namespace {
 struct BuildArguments {
   std::string config;
   std::vector<std::string> settings;
+  std::string stats;  ///< file for the account; empty: none
   bool force = false;
 };
 
@@ -36,15 +42,39 @@ void give_back_config(BuildArguments& arguments) {
   settings.erase(found);
 }
 
+/// The account must not take the place of what the build reads or makes.
+void check_stats_path(const std::string& path, const pipeline::Config& config,
+                      storage::FileSystem& files) {
+  const std::filesystem::path stats = files.canonical(path);
+  const std::filesystem::path output = files.canonical(config.output);
+  if (stats == files.canonical(config.input))
+    throw Error(ErrorCode::usage, "--stats " + path + " is the input");
+  if (std::mismatch(output.begin(), output.end(), stats.begin(), stats.end()).first == output.end())
+    throw Error(ErrorCode::usage, "--stats " + path + " lies in the output");
+}
+
+void write_stats(storage::AtomicFile& file, const pipeline::BuildStats& stats) {
+  const std::string text =
+      to_json(stats).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+  file.publish(std::as_bytes(std::span(text)));
+}
+
 int run_build(const BuildArguments& arguments, pipeline::ProgressMode mode,
               Environment& environment) {
   const pipeline::Config config =
       pipeline::load_config(environment.files, arguments.config, arguments.settings);
+  std::optional<storage::AtomicFile> stats;
+  if (!arguments.stats.empty()) {
+    check_stats_path(arguments.stats, config, environment.files);
+    stats.emplace(environment.files, arguments.stats);
+  }
   const auto progress =
       pipeline::make_progress(mode, environment.messages, environment.messages_on_terminal);
   const pipeline::BuildReport report = pipeline::build_hierarchy(
       config, arguments.force, {environment.files, *progress, environment.cancel});
   progress->finish(config.output.string());
+  if (stats)
+    write_stats(*stats, report.stats);
   environment.out << report.text;
   if (!report.text.empty() && report.text.back() != '\n')
     environment.out << '\n';
@@ -67,6 +97,7 @@ Examples:
   meshhier build david.json
   meshhier build david.json --set partition.count=128 --set memory_budget=256MiB
   meshhier build david.json --set input=other.ply output=other.hier --force
+  meshhier build david.json --stats david.stats.json
 )";
 
 }  // namespace
@@ -82,6 +113,10 @@ void add_build_command(CLI::App& parser, Invocation& invocation) {
                    "current directory")
       ->type_name("KEY=VALUE");
   command->add_flag("--force", arguments->force, "Replace an existing output");
+  command
+      ->add_option("--stats", arguments->stats,
+                   "Write what each stage took of time, memory and disk, as JSON")
+      ->type_name("FILE");
   add_progress_option(*command, invocation.progress);
   command->footer(kFooter);
   command->callback([arguments, &invocation] {

@@ -11,6 +11,7 @@
 #include "pipeline/size_text.h"
 #include "pipeline/source_mesh.h"
 #include "storage/hash.h"
+#include "storage/layout.h"
 #include "storage/work_directory.h"
 
 #include <algorithm>
@@ -73,9 +74,8 @@ JobSize job_size(const Config& config, const mesh_io::MeshDescription& mesh, con
   return job;
 }
 
-void check_disk(const JobSize& job, const MemoryPlan& plan, const std::filesystem::path& directory,
+void check_disk(const DiskNeed& need, const std::filesystem::path& directory,
                 storage::FileSystem& files) {
-  const DiskNeed need = predict_disk(job, plan);
   const std::uint64_t free = files.free_bytes(directory);
   if (free < need.temporary_bytes + need.output_bytes) {
     throw Error(
@@ -112,27 +112,52 @@ std::uint64_t checksum_of_file(storage::FileSystem& files, const std::filesystem
   }
 }
 
-std::string report_text(const SourceSummary& source, const Tree& tree,
-                        const PublishedSummary& published, const storage::IoCounters& io) {
+/// What `config` became, with what does not decide the result.
+nlohmann::ordered_json whole_config(const Config& config) {
+  nlohmann::ordered_json whole{{"input", config.input.string()},
+                               {"output", config.output.string()},
+                               {"memory_budget", exact_size_text(config.memory_budget)},
+                               {"threads", config.threads}};
+  whole.update(resolved_json(config));
+  return whole;
+}
+
+BuildStats make_stats(const Config& config, const SourceSummary& source, const Tree& tree,
+                      const PublishedSummary& published, const DiskNeed& predicted) {
+  BuildStats stats;
+  stats.config = whole_config(config);
+  stats.memory_budget_bytes = config.memory_budget;
+  stats.vertices = source.vertices;
+  stats.triangles = source.triangles;
+  stats.partitions = tree.partition_count();
+  stats.levels = raw(tree.depth()) + 1;
+  stats.tiles = published.tiles;
+  stats.input_bytes = source.file_bytes;
+  stats.output_bytes = published.total_bytes;
+  stats.predicted_output_bytes = predicted.output_bytes;
+  stats.predicted_temporary_bytes = predicted.temporary_bytes;
+  return stats;
+}
+
+std::string report_text(const SourceSummary& source, const BuildStats& stats) {
   std::string text =
       fmt::format("{} vertices, {} triangles -> {} partitions, {} levels, {} tiles, {}\n",
-                  source.vertices, source.triangles, tree.partition_count(), raw(tree.depth()) + 1,
-                  published.tiles, rounded_size_text(published.total_bytes));
+                  source.vertices, source.triangles, stats.partitions, stats.levels, stats.tiles,
+                  rounded_size_text(stats.output_bytes));
   if (source.degenerate_triangles > 0) {
     text += fmt::format("dropped {} degenerate triangles\n", source.degenerate_triangles);
   }
   if (source.unreferenced_vertices > 0) {
     text += fmt::format("kept {} vertices that no triangle uses\n", source.unreferenced_vertices);
   }
-  text += fmt::format("read {}, wrote {}\n", rounded_size_text(io.bytes_read),
-                      rounded_size_text(io.bytes_written));
-  return text;
+  return text + stats_text(stats);
 }
 
 }  // namespace
 
 BuildReport build_hierarchy(const Config& config, bool force, BuildEnvironment environment) {
-  auto& [files, progress, cancel] = environment;
+  storage::FileSystem& files = environment.files;
+  const CancelToken& cancel = environment.cancel;
   configure_allocator();
   const std::size_t threads = config.threads > 0
                                   ? config.threads
@@ -145,10 +170,12 @@ BuildReport build_hierarchy(const Config& config, bool force, BuildEnvironment e
   const Tree tree = plan_tree(config, source->description().vertex_count);
   const JobSize job = job_size(config, source->description(), tree, threads);
   const MemoryPlan plan = plan_memory(config.memory_budget, job);
-  storage::WorkDirectory work(files, config.output, force);
-  check_disk(job, plan, work.path(), files);
-
+  const DiskNeed need = predict_disk(job, plan);
   storage::MemoryPool pool(plan.pool_bytes);
+  StageMeter progress({environment.progress, files.counters(), pool.scratch_use()});
+  storage::WorkDirectory work(files, config.output, force);
+  check_disk(need, work.path(), files);
+
   storage::ScratchFile tile_scratch(files, work.temporary() / "tiles", pool);
   Forest forest(tree, partition::chunk_level(tree), job.channels, tile_scratch);
 
@@ -160,6 +187,7 @@ BuildReport build_hierarchy(const Config& config, bool force, BuildEnvironment e
     Chunks chunks =
         distribute(mesh, tree, config.partition.axis, plan, mesh_scratch, progress, cancel);
     result.source = mesh.summary();
+    progress.begin("checksum");
     result.source.checksum = checksum_of_file(files, config.input, cancel);
     result.format = {mesh.summary().attributes, mesh.origin()};
     result.source.unreferenced_vertices =
@@ -179,8 +207,19 @@ BuildReport build_hierarchy(const Config& config, bool force, BuildEnvironment e
   const PublishedSummary published =
       publish(forest, result, work.path(), plan, files, progress, cancel);
   cancel.check();
+  progress.begin("sync");
   work.publish();
-  return {report_text(result.source, tree, published, files.counters())};
+  progress.end();
+
+  BuildReport report;
+  report.stats = make_stats(config, result.source, tree, published, need);
+  report.stats.output_bytes += files.open(storage::manifest_path(config.output))->size();
+  report.stats.threads = threads;
+  report.stats.peak_temporary_bytes = pool.scratch_use().peak_bytes_on_disk();
+  report.stats.stages = progress.stages();
+  report.stats.total = progress.total();
+  report.text = report_text(result.source, report.stats);
+  return report;
 }
 
 }  // namespace meshhier::pipeline

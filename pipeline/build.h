@@ -1,6 +1,7 @@
 // The main job: from a mesh file to a hierarchy on disk.
 #pragma once
 
+#include "pipeline/build_stats.h"
 #include "pipeline/cancel.h"
 #include "pipeline/config.h"
 #include "pipeline/progress.h"
@@ -18,7 +19,8 @@ struct BuildEnvironment {
 };
 
 struct BuildReport {
-  std::string text;  ///< a few lines for people
+  std::string text;  ///< a few lines and a table for people
+  BuildStats stats;
 };
 
 /// Builds config.output from config.input. An existing output is Error(exists), or is replaced if

@@ -36,6 +36,10 @@ std::filesystem::path verify_scratch_path(const std::filesystem::path& hierarchy
          fmt::format(".{}.meshhier-verify-{:08x}", hierarchy.filename().string(), run);
 }
 
+std::filesystem::path unfinished_path(const std::filesystem::path& file) {
+  return file.parent_path() / fmt::format(".{}.meshhier-part", file.filename().string());
+}
+
 std::filesystem::path temporary_path(const std::filesystem::path& work) {
   return work / "build.tmp";
 }

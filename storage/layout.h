@@ -9,6 +9,7 @@
 //   .NAME.hier.meshhier-work/build.tmp/      temporary files of the stages, gone before the rename
 //   .NAME.hier.meshhier-old/                 a replaced hierarchy, for the moment of the rename
 //   .NAME.hier.meshhier-verify-XXXXXXXX      beside a hierarchy while `verify` needs room
+//   .NAME.meshhier-part                      beside any other file that is written, until it is whole
 // clang-format on
 #pragma once
 
@@ -30,6 +31,7 @@ std::filesystem::path replaced_path(const std::filesystem::path& output);
 /// `run` tells several runs apart.
 std::filesystem::path verify_scratch_path(const std::filesystem::path& hierarchy,
                                           std::uint32_t run);
+std::filesystem::path unfinished_path(const std::filesystem::path& file);
 std::filesystem::path temporary_path(const std::filesystem::path& work);
 
 }  // namespace meshhier::storage

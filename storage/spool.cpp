@@ -25,6 +25,7 @@ ScratchFile::~ScratchFile() {
   if (!file_)
     return;
   file_.reset();
+  pool_.scratch_use().add_removed(size_);
   try {
     files_.remove_all(path_);
   } catch (const Error&) {  // the whole work directory is removed at the end of a build in any case
@@ -41,6 +42,7 @@ std::uint64_t ScratchFile::append(std::span<const std::byte> bytes) {
   }
   const std::uint64_t offset = size_.fetch_add(bytes.size());
   file->write_at(offset, bytes);
+  pool_.scratch_use().add_written(bytes.size());
   return offset;
 }
 

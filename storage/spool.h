@@ -6,6 +6,7 @@
 #pragma once
 
 #include "storage/file.h"
+#include "storage/scratch_use.h"
 
 #include <atomic>
 #include <cstddef>
@@ -27,8 +28,13 @@ class MemoryPool {
   void give_back(std::uint64_t bytes) { free_ += static_cast<std::int64_t>(bytes); }
   std::uint64_t free_bytes() const { return static_cast<std::uint64_t>(free_.load()); }
 
+  /// Of all scratch files that take what the pool does not hold.
+  ScratchUse& scratch_use() { return scratch_use_; }
+  const ScratchUse& scratch_use() const { return scratch_use_; }
+
  private:
   std::atomic<std::int64_t> free_;
+  ScratchUse scratch_use_;
 };
 
 /// One temporary file shared by many spools; made when the first block must leave memory, removed
@@ -48,6 +54,7 @@ class ScratchFile {
   std::uint64_t append(std::span<const std::byte> bytes);
   void read(std::uint64_t offset, std::span<std::byte> bytes) const {
     file_->read_exact(offset, bytes);
+    pool_.scratch_use().add_read(bytes.size());
   }
 
  private:

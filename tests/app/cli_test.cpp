@@ -309,6 +309,44 @@ TEST_F(CommandLine, BuildRefusesABudgetThatCannotDo) {
   EXPECT_EQ(names(), (std::set<std::string>{"a.json", "a.ply"}));
 }
 
+TEST_F(CommandLine, BuildWritesItsAccountWhereItIsAskedTo) {
+  write_mesh("a.ply");
+  const Path stats = work() / "stats.json";
+  const Outcome outcome = run({"build", write_config(), "--stats", stats.string()});
+  ASSERT_EQ(outcome.code, 0) << outcome.messages;
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("stage"), HasSubstr("simplify"), HasSubstr("total")));
+  const json account = json::parse(text_of(stats));
+  EXPECT_EQ(account["vertices"], 2500);
+  EXPECT_EQ(account["partitions"], 5);
+  EXPECT_EQ(account["config"]["partition"]["vertices"], 500);
+  EXPECT_GT(account["total"]["peak_resident_bytes"], 0);
+  EXPECT_EQ(names(), (std::set<std::string>{"a.hier", "a.json", "a.ply", "stats.json"}));
+}
+
+TEST_F(CommandLine, AnAccountThatCannotBeWrittenIsRefusedBeforeTheBuild) {
+  const Path mesh = write_mesh("a.ply");
+  const std::string before = text_of(mesh);
+  const std::vector<std::pair<Path, int>> refused{{work() / "absent" / "s.json", kIo},
+                                                  {work(), kIo},
+                                                  {mesh, kUsage},
+                                                  {Path(hierarchy()) / "s.json", kUsage}};
+  for (const auto& [path, code] : refused) {
+    const Outcome outcome = run({"build", write_config(), "--stats", path.string()});
+    EXPECT_EQ(outcome.code, code) << path << ": " << outcome.messages;
+    EXPECT_THAT(outcome.messages, HasSubstr(path.filename().string()));
+    EXPECT_EQ(names(), (std::set<std::string>{"a.json", "a.ply"}));
+  }
+  EXPECT_EQ(text_of(mesh), before);
+}
+
+TEST_F(CommandLine, ABuildThatFailsLeavesNoAccount) {
+  write_mesh("a.ply", 2500);  // no such vertex
+  const Outcome outcome =
+      run({"build", write_config(), "--stats", (work() / "stats.json").string()});
+  EXPECT_EQ(outcome.code, kInput);
+  EXPECT_EQ(names(), (std::set<std::string>{"a.json", "a.ply"}));
+}
+
 TEST_F(CommandLine, SetTakesSeveralSettingsInAnyPlace) {
   write_mesh("a.ply");
   const std::string config = write_config();

@@ -211,7 +211,8 @@ std::string check_system(const Source& source, const Include& include) {
                                                "dlfcn.h",   "errno.h", "malloc.h"};
   static const std::map<std::string, std::set<std::string>> exceptions = {
       {"pipeline/memory_plan.cpp", {"malloc.h"}},
-      {"app/process.cpp", {"csignal", "signal.h", "unistd.h"}}};
+      {"app/process.cpp", {"csignal", "signal.h", "unistd.h"}},
+      {"storage/process.cpp", {"fcntl.h", "sys/resource.h", "unistd.h"}}};
   const bool is_system =
       !include.quoted && (system.contains(include.name) || include.name.starts_with("sys/") ||
                           include.name == "csignal");

@@ -345,6 +345,37 @@ TEST_F(BuildTest, TheReportTellsWhatWasDone) {
   EXPECT_THAT(text, HasSubstr("levels"));
 }
 
+TEST_F(BuildTest, TheAccountAddsUp) {
+  tests::write_ply(tests::sphere(60'000), mesh_path());
+  Config tight = config(500);
+  tight.memory_budget = tight_budget(tight);
+  const BuildStats stats = build(tight).stats;
+  EXPECT_EQ(stats.input_bytes, fs::file_size(mesh_path()));
+  std::uint64_t published = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(output_path()))
+    published += entry.is_regular_file() ? entry.file_size() : 0;
+  EXPECT_EQ(stats.output_bytes, published);
+  EXPECT_EQ(stats.total.bytes.output_written, published);
+  EXPECT_GE(stats.total.bytes.input_read, stats.input_bytes);
+  EXPECT_GT(stats.peak_temporary_bytes, 0U);
+  EXPECT_LE(stats.peak_temporary_bytes, stats.total.bytes.temporary_written);
+  Traffic sum;
+  for (const StageStats& stage : stats.stages) {
+    sum.temporary_written += stage.bytes.temporary_written;
+    sum.temporary_read += stage.bytes.temporary_read;
+    EXPECT_LE(stage.peak_resident_bytes, stats.total.peak_resident_bytes);
+  }
+  EXPECT_EQ(sum.temporary_written, stats.total.bytes.temporary_written);
+  EXPECT_EQ(sum.temporary_read, stats.total.bytes.temporary_read);
+  EXPECT_EQ(stats.config["partition"]["vertices"], 500);
+}
+
+TEST_F(BuildTest, AMeshInMemoryNeedsNoTemporaryBytes) {
+  const BuildStats stats = build(tests::sphere(5000), config()).stats;
+  EXPECT_EQ(stats.peak_temporary_bytes, 0U);
+  EXPECT_EQ(stats.total.bytes.temporary_written, 0U);
+}
+
 TEST_F(BuildTest, NothingButTheOutputIsLeft) {
   tests::write_ply(tests::sphere(5000), mesh_path());
   build(config());

@@ -26,6 +26,7 @@ TEST(Layout, WorkGoesOnBesideTheOutputInHiddenDirectories) {
   EXPECT_EQ(replaced_path("a/b.hier"), "a/.b.hier.meshhier-old");
   EXPECT_EQ(work_path("b.hier"), ".b.hier.meshhier-work");
   EXPECT_EQ(work_path("/b.hier"), "/.b.hier.meshhier-work");
+  EXPECT_EQ(unfinished_path("a/b.json"), "a/.b.json.meshhier-part");
   EXPECT_EQ(temporary_path("a/.b.hier.meshhier-work"), "a/.b.hier.meshhier-work/build.tmp");
 }
 

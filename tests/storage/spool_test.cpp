@@ -49,6 +49,29 @@ class SpoolTest : public testing::Test {
   std::filesystem::path path_;
 };
 
+TEST_F(SpoolTest, WhatIsOnDiskIsCountedUntilItsFileIsGone) {
+  MemoryPool pool(150);
+  const ScratchUse& use = pool.scratch_use();
+  {
+    ScratchFile scratch(files_, path_, pool);
+    Spool spool(scratch, 100);
+    spool.append(pattern(350));  // one block in memory, two on disk, one open
+    EXPECT_EQ(use.bytes_written(), 200U);
+    EXPECT_EQ(use.bytes_on_disk(), 200U);
+    EXPECT_EQ(use.bytes_read(), 0U);
+    EXPECT_EQ(content(spool), pattern(350));
+    EXPECT_EQ(use.bytes_read(), 200U);
+    spool.clear();
+    EXPECT_EQ(use.bytes_on_disk(), 200U) << "the file has not shrunk";
+  }
+  EXPECT_EQ(use.bytes_on_disk(), 0U);
+  ScratchFile again(files_, path_, pool);
+  again.append(pattern(120));
+  EXPECT_EQ(use.bytes_on_disk(), 120U);
+  EXPECT_EQ(use.peak_bytes_on_disk(), 200U);
+  EXPECT_EQ(use.bytes_written(), 320U);
+}
+
 TEST_F(SpoolTest, APoolGivesNoMoreThanItHas) {
   MemoryPool pool(100);
   EXPECT_TRUE(pool.try_take(60));

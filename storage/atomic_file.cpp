@@ -1,0 +1,34 @@
+#include "storage/atomic_file.h"
+
+#include "hierarchy/error.h"
+#include "storage/layout.h"
+
+#include <utility>
+
+namespace meshhier::storage {
+
+AtomicFile::AtomicFile(FileSystem& files, std::filesystem::path path)
+    : files_(files), path_(std::move(path)), temporary_(unfinished_path(path_)) {
+  if (files_.exists(path_))
+    files_.open(path_);  // a directory or a device cannot be replaced by a file
+  file_ = files_.create(temporary_);
+}
+
+AtomicFile::~AtomicFile() {
+  if (!file_)
+    return;
+  file_.reset();
+  try {
+    files_.remove_all(temporary_);
+  } catch (const Error&) {  // the failure that brought us here is the one to report
+  }
+}
+
+void AtomicFile::publish(std::span<const std::byte> bytes) {
+  file_->write_at(0, bytes);
+  file_->sync();
+  files_.rename(temporary_, path_);
+  file_.reset();
+}
+
+}  // namespace meshhier::storage

@@ -1,0 +1,33 @@
+// A small file that is there complete or not at all.
+#pragma once
+
+#include "storage/file.h"
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <span>
+
+namespace meshhier::storage {
+
+class AtomicFile {
+ public:
+  /// Finds out whether `path` can be written, by making the file under a temporary name beside it.
+  /// What is there under the name itself stays until publish(). Throws Error(io).
+  AtomicFile(FileSystem& files, std::filesystem::path path);
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+  /// Removes what was not published.
+  ~AtomicFile();
+
+  /// Writes `bytes`, forces them to the disk and gives the file its name. Throws Error(io).
+  void publish(std::span<const std::byte> bytes);
+
+ private:
+  FileSystem& files_;
+  std::filesystem::path path_;
+  std::filesystem::path temporary_;
+  std::unique_ptr<File> file_;
+};
+
+}  // namespace meshhier::storage

@@ -1,0 +1,19 @@
+// What this process has used of the machine so far.
+#pragma once
+
+#include <cstdint>
+
+namespace meshhier::storage {
+
+/// All threads together, since the process began.
+struct ProcessUsage {
+  double user_seconds = 0;
+  double system_seconds = 0;
+  std::uint64_t peak_resident_bytes = 0;  ///< the most memory that was resident at once,
+                                          ///< as exact as the system counts: some 100 KiB
+};
+
+/// Thread-safe; some 20 microseconds. A figure that the system does not tell is 0.
+ProcessUsage process_usage();
+
+}  // namespace meshhier::storage
