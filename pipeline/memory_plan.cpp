@@ -26,16 +26,6 @@ constexpr std::uint64_t kTileEntryBytes = 320;
 // several chunks share.
 constexpr std::uint64_t kTrianglesPerVertex = 3;
 
-// Triangles a vertex in clustered levels, over those of the input: 3.6 to 2 on the dragon's root.
-constexpr double kSimplifiedTriangles = 1.8;
-
-// The part of a tile that is border, times the square root of its vertices: 5 on smooth surfaces (6
-// % at 8192 vertices), twice that on rough ones and soup.
-constexpr double kBorderShare = 10;
-
-// JSON and headers of a tile, and what its last disk block leaves empty.
-constexpr double kTileOverhead = 3000;
-
 std::uint64_t vertex_bytes(const JobSize& job) {
   return 12 + 4 * static_cast<std::uint64_t>(job.channels);
 }
@@ -101,19 +91,31 @@ std::uint64_t bookkeeping_bytes(const JobSize& job) {
   return 2 * std::uint64_t{job.partition_count} * kTileEntryBytes;
 }
 
+/// What is held all the time.
+std::uint64_t fixed_bytes(const JobSize& job) {
+  return kBaseBytes + bookkeeping_bytes(job);
+}
+
+/// What the hungriest stage holds with one item in flight.
+std::uint64_t least_work_bytes(const JobSize& job) {
+  return std::max({2 * block_bytes(job) + sample_bytes(job) + chunk_count(job) * 1024,
+                   2 * block_bytes(job) + 12 * kMiB + spool_bytes(job, kLeastSpoolBlock),
+                   chunk_bytes(job), tile_bytes(job), measure_bytes(job)});
+}
+
 }  // namespace
 
+std::uint64_t least_budget(const JobSize& job) {
+  return (fixed_bytes(job) + least_work_bytes(job) + kMiB - 1) / kMiB * kMiB;
+}
+
 MemoryPlan plan_memory(std::uint64_t budget_bytes, const JobSize& job) {
-  const std::uint64_t fixed = kBaseBytes + bookkeeping_bytes(job);
-  const std::uint64_t least_work =
-      std::max({2 * block_bytes(job) + sample_bytes(job) + chunk_count(job) * 1024,
-                2 * block_bytes(job) + 12 * kMiB + spool_bytes(job, kLeastSpoolBlock),
-                chunk_bytes(job), tile_bytes(job), measure_bytes(job)});
+  const std::uint64_t fixed = fixed_bytes(job);
+  const std::uint64_t least_work = least_work_bytes(job);
   if (budget_bytes < fixed + least_work) {
     throw Error(ErrorCode::budget,
                 fmt::format("memory_budget {} is too small for this mesh; it needs at least {}",
-                            exact_size_text(budget_bytes),
-                            exact_size_text((fixed + least_work + kMiB - 1) / kMiB * kMiB)));
+                            exact_size_text(budget_bytes), exact_size_text(least_budget(job))));
   }
   const std::uint64_t spare = budget_bytes - fixed - least_work;
   const std::uint64_t threads = job.threads;
@@ -139,34 +141,6 @@ MemoryPlan plan_memory(std::uint64_t budget_bytes, const JobSize& job) {
                                                 plan.blocks_in_flight * block_bytes(job) +
                                                     spool_bytes(job, plan.spool_block_bytes));
   return plan;
-}
-
-DiskNeed predict_disk(const JobSize& job, const MemoryPlan& plan) {
-  const auto vertices = static_cast<double>(job.vertex_count);
-  const auto triangles = static_cast<double>(job.face_count);
-  const auto bytes = static_cast<double>(vertex_bytes(job));
-  const double partition = vertices / job.partition_count;
-  // Vertices of all levels: each has half of the level below, or three quarters until tiles are as
-  // large as asked for.
-  const double asked = job.asked_vertices > 0 ? job.asked_vertices : partition;
-  const double levels = asked > partition * 1.1 ? 4 : 1 + asked / partition;
-  const double all_vertices = vertices * levels;
-  const double all_triangles = triangles * (1 + kSimplifiedTriangles * (levels - 1));
-  const double border = std::min(1.0, kBorderShare / std::sqrt(std::min(asked, partition)));
-  const double tiles = 2.0 * job.partition_count;
-
-  const double chunks =
-      vertices * (bytes * (job.vertices_in_place ? 1 : 2) + 4) + triangles * 12 * (1 + border);
-  const double tile_work =
-      all_vertices * (bytes + 10 + border * (bytes + 24)) + all_triangles * 6 * (1 + 2 * border);
-  const double temporary = std::max(chunks + tile_work / levels, tile_work);
-  const double output = all_vertices * (bytes + 2 + border * (2 * bytes + 12)) +
-                        all_triangles * 6 * (1 + 2 * border) + tiles * kTileOverhead;
-  DiskNeed need;
-  need.temporary_bytes =
-      static_cast<std::uint64_t>(std::max(0.0, temporary - static_cast<double>(plan.pool_bytes)));
-  need.output_bytes = static_cast<std::uint64_t>(output);
-  return need;
 }
 
 void configure_allocator() {

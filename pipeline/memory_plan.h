@@ -1,4 +1,4 @@
-// How a job lives within its memory budget, and how much disk it will take.
+// How a job lives within its memory budget.
 #pragma once
 
 #include <cstddef>
@@ -12,10 +12,13 @@ struct JobSize {
   std::uint64_t face_count = 0;
   int channels = 0;               ///< attribute floats per vertex
   bool vertices_in_place = true;  ///< else the vertices are spooled once more
+  bool wide_coordinates = false;  ///< spooled as doubles
   std::uint32_t partition_count = 0;
   std::uint32_t largest_tile = 0;  ///< vertices of the largest partition or simplified mesh
   std::size_t threads = 1;
-  std::uint32_t asked_vertices = 0;  ///< of a simplified mesh; 0: as a partition has
+  std::uint32_t asked_vertices = 0;             ///< of a simplified mesh; 0: as a partition has
+  bool clustered = false;                       ///< simplified by the method `cluster`
+  std::uint64_t published_attribute_bytes = 0;  ///< of a vertex in a published tile
 };
 
 /// The budget's division. Every part is an upper bound.
@@ -30,15 +33,11 @@ struct MemoryPlan {
   std::uint64_t table_bytes = 0;       ///< for renumbering the triangles
 };
 
+/// The least budget that will do, in whole MiB; does not depend on threads.
+std::uint64_t least_budget(const JobSize& job);
+
 /// Divides `budget_bytes`. Throws Error(budget) naming the least that would do.
 MemoryPlan plan_memory(std::uint64_t budget_bytes, const JobSize& job);
-
-/// Temporary bytes and output bytes a build will write to disk at most.
-struct DiskNeed {
-  std::uint64_t temporary_bytes = 0;
-  std::uint64_t output_bytes = 0;
-};
-DiskNeed predict_disk(const JobSize& job, const MemoryPlan& plan);
 
 /// Sets the allocator up so that freed memory goes back to the system: the budget is about what is
 /// resident.

@@ -200,12 +200,16 @@ partition::ChunkMesh Chunks::take(std::uint32_t chunk) {
 
 Chunks distribute(SourceMesh& mesh, const Tree& tree, partition::Axis axis, const MemoryPlan& plan,
                   storage::ScratchFile& scratch, Progress& progress, const CancelToken& cancel) {
-  const TopTree top = find_splits(mesh, tree, axis, plan, scratch, progress, cancel);
+  const TopTree top = [&] {
+    storage::ScratchFile windows = scratch.beside("windows");
+    return find_splits(mesh, tree, axis, plan, windows, progress, cancel);
+  }();
   release_free_memory();
   Chunks chunks(tree, mesh.summary().attributes.channels(), scratch, plan.spool_block_bytes);
-  const auto rank_of = distribute_vertices(mesh, top, chunks, plan, scratch, progress, cancel);
+  storage::ScratchFile passing = scratch.beside("ranks");
+  const auto rank_of = distribute_vertices(mesh, top, chunks, plan, passing, progress, cancel);
   release_free_memory();
-  distribute_triangles(mesh, rank_of, chunks, plan, scratch, progress, cancel);
+  distribute_triangles(mesh, rank_of, chunks, plan, passing, progress, cancel);
   release_free_memory();
   return chunks;
 }

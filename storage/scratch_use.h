@@ -9,14 +9,16 @@ namespace meshhier::storage {
 /// Thread-safe. A byte is on disk from its write until its file is gone.
 class ScratchUse {
  public:
-  void add_written(std::uint64_t bytes) {
-    bytes_written_ += bytes;
+  void add_written(std::uint64_t bytes) { bytes_written_ += bytes; }
+  void add_read(std::uint64_t bytes) { bytes_read_ += bytes; }
+  /// A file has grown by so much.
+  void add_grown(std::uint64_t bytes) {
     const std::uint64_t now = bytes_on_disk_ += bytes;
     std::uint64_t peak = peak_bytes_on_disk_;
     while (peak < now && !peak_bytes_on_disk_.compare_exchange_weak(peak, now)) {
     }
   }
-  void add_read(std::uint64_t bytes) { bytes_read_ += bytes; }
+  /// A file of that size is gone.
   void add_removed(std::uint64_t bytes) { bytes_on_disk_ -= bytes; }
 
   std::uint64_t bytes_written() const { return bytes_written_; }

@@ -34,16 +34,32 @@ ScratchFile::~ScratchFile() {
 
 std::uint64_t ScratchFile::append(std::span<const std::byte> bytes) {
   File* file = nullptr;
+  std::uint64_t offset = 0;
+  bool grows = false;
   {
     const std::lock_guard lock(mutex_);
     if (!file_)
       file_ = files_.create(path_);
     file = file_.get();
+    const auto free = free_.find(bytes.size());
+    grows = free == free_.end() || free->second.empty();
+    if (grows) {
+      offset = size_.fetch_add(bytes.size());
+    } else {
+      offset = free->second.back();
+      free->second.pop_back();
+    }
   }
-  const std::uint64_t offset = size_.fetch_add(bytes.size());
   file->write_at(offset, bytes);
   pool_.scratch_use().add_written(bytes.size());
+  if (grows)
+    pool_.scratch_use().add_grown(bytes.size());
   return offset;
+}
+
+void ScratchFile::release(std::uint64_t offset, std::uint64_t bytes) {
+  const std::lock_guard lock(mutex_);
+  free_[bytes].push_back(offset);
 }
 
 Spool::Spool(Spool&& other) noexcept
@@ -100,6 +116,8 @@ void Spool::clear() {
   for (const Block& block : blocks_) {
     if (block.pooled)
       scratch_->pool().give_back(block_bytes_);
+    else if (!block.memory)
+      scratch_->release(block.offset, block_bytes_);
   }
   blocks_.clear();
   size_ = 0;

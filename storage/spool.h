@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -46,12 +47,19 @@ class ScratchFile {
   ScratchFile& operator=(const ScratchFile&) = delete;
   ~ScratchFile();
 
+  /// Another file, `name`, beside this one and of the same pool: for what is needed for a while
+  /// only, as disk space comes back with a whole file.
+  ScratchFile beside(const char* name) const { return {files_, path_.parent_path() / name, pool_}; }
+
   /// Bytes on disk.
   std::uint64_t size() const { return size_; }
   MemoryPool& pool() { return pool_; }
 
-  /// Appends `bytes`, returns where. Thread-safe.
+  /// Writes `bytes` to where as many were released, or else to the end; returns where.
+  /// Thread-safe.
   std::uint64_t append(std::span<const std::byte> bytes);
+  /// Bytes that were appended so are not needed any more. Thread-safe.
+  void release(std::uint64_t offset, std::uint64_t bytes);
   void read(std::uint64_t offset, std::span<std::byte> bytes) const {
     file_->read_exact(offset, bytes);
     pool_.scratch_use().add_read(bytes.size());
@@ -61,9 +69,10 @@ class ScratchFile {
   FileSystem& files_;
   std::filesystem::path path_;
   MemoryPool& pool_;
-  std::mutex mutex_;
+  std::mutex mutex_;  ///< guards file_, until it is made, and free_
   std::unique_ptr<File> file_;
   std::atomic<std::uint64_t> size_{0};
+  std::map<std::uint64_t, std::vector<std::uint64_t>> free_;  ///< offsets by size
 };
 
 /// A sequence of bytes. One writer; after the last append() any number of readers.

@@ -27,6 +27,7 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -125,7 +126,7 @@ class BuildTest : public testing::Test {
     }
   }
 
-  std::uint64_t least_budget(Config config) {
+  std::uint64_t named_budget(Config config) {
     config.memory_budget = 1;
     const std::string message = failure(config).what();
     const std::string before = "at least ";
@@ -136,7 +137,7 @@ class BuildTest : public testing::Test {
 
   /// The least budget to the byte: nothing is left for scratch data, all of it goes to the disk.
   std::uint64_t tight_budget(Config config) {
-    std::uint64_t accepted = least_budget(config);  // rounded up
+    std::uint64_t accepted = named_budget(config);  // rounded up
     std::uint64_t refused = accepted - kMiB;
     CancelToken cancel;
     cancel.cancel();  // a build that is let through ends at once
@@ -419,7 +420,7 @@ TEST_F(BuildTest, TooFewPartitionsAreRefusedNamingTheLeastCount) {
 TEST_F(BuildTest, ABudgetBelowTheLeastIsRefusedAndTheLeastWorks) {
   tests::write_ply(tests::sphere(20'000), mesh_path());
   Config with = config(1000);
-  const std::uint64_t least = least_budget(with);
+  const std::uint64_t least = named_budget(with);
   with.memory_budget = least - kMiB;
   EXPECT_EQ(failure(with).code(), ErrorCode::budget);
   with.memory_budget = least;
@@ -562,6 +563,33 @@ TEST_F(DiskTest, AWholeBuildTakesNoMoreRoomThanPredicted) {
       EXPECT_LE(watch.most_bytes() - before, predicted)
           << name << ", partitions of " << vertices << " vertices";
       fs::remove_all(output_path());
+    }
+  }
+}
+
+TEST_F(DiskTest, ThePredictionIsNearWhatASurfaceTakes) {
+  const std::vector<std::pair<std::string, TestMesh>> meshes = {
+      {"sphere", tests::sphere(60'000, 0.01F)},
+      {"torus", tests::torus(60'000)},
+      {"scattered sphere", tests::shuffled(tests::sphere(60'000), 3)}};
+  for (const auto& [name, mesh] : meshes) {
+    tests::write_ply(mesh, mesh_path());
+    for (const auto method : {SimplifyMethod::edge_collapse, SimplifyMethod::cluster}) {
+      for (const std::uint32_t vertices : {100U, 1000U}) {
+        Config with = config(vertices);
+        with.simplify.method = method;
+        with.memory_budget = tight_budget(with);
+        const BuildStats stats = build(with, true).stats;
+        SCOPED_TRACE(fmt::format("{}, method {}, partitions of {} vertices", name,
+                                 static_cast<int>(method), vertices));
+        const auto near = [](std::uint64_t predicted, std::uint64_t real) {
+          const double ratio = static_cast<double>(predicted) / static_cast<double>(real);
+          EXPECT_GT(ratio, 0.95);
+          EXPECT_LT(ratio, 1.2);
+        };
+        near(stats.predicted_temporary_bytes, stats.peak_temporary_bytes);
+        near(stats.predicted_output_bytes, stats.output_bytes);
+      }
     }
   }
 }

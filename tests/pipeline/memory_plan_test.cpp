@@ -63,7 +63,7 @@ std::optional<std::string> refusal(std::uint64_t budget, const JobSize& job) {
 }
 
 /// The least budget that a refusal names.
-std::uint64_t least_budget(const JobSize& job) {
+std::uint64_t named_budget(const JobSize& job) {
   const std::string message = refusal(1, job).value_or("");
   const std::string before = "at least ";
   const std::size_t at = message.find(before);
@@ -79,26 +79,31 @@ TEST(MemoryPlanTest, ARefusalNamesBothTheBudgetAndTheLeast) {
 
 TEST(MemoryPlanTest, TheLeastThatIsNamedIsEnoughAndHardlyMoreThanNeeded) {
   for (const JobSize& job : jobs()) {
-    const std::uint64_t least = least_budget(job);
+    const std::uint64_t least = named_budget(job);
     ASSERT_GT(least, 0U);
     EXPECT_EQ(refusal(least, job), std::nullopt) << text_of(job);
     EXPECT_NE(refusal(least - kMiB, job), std::nullopt) << text_of(job);
   }
 }
 
+TEST(MemoryPlanTest, TheLeastBudgetIsTheOneThatARefusalNames) {
+  for (const JobSize& job : jobs())
+    EXPECT_EQ(least_budget(job), named_budget(job)) << text_of(job);
+}
+
 TEST(MemoryPlanTest, AMillionVerticesAreContentWith64MiB) {
-  EXPECT_LE(least_budget(job_of(1'000'000, 8192, 0, 1)), 64 * kMiB);
-  EXPECT_LE(least_budget(job_of(1'000'000'000, 8192, 0, 1)), kGiB);
+  EXPECT_LE(named_budget(job_of(1'000'000, 8192, 0, 1)), 64 * kMiB);
+  EXPECT_LE(named_budget(job_of(1'000'000'000, 8192, 0, 1)), kGiB);
 }
 
 TEST(MemoryPlanTest, TheLeastDoesNotDependOnThreads) {
-  EXPECT_EQ(least_budget(job_of(3'000'000, 8192, 4, 1)),
-            least_budget(job_of(3'000'000, 8192, 4, 128)));
+  EXPECT_EQ(named_budget(job_of(3'000'000, 8192, 4, 1)),
+            named_budget(job_of(3'000'000, 8192, 4, 128)));
 }
 
 TEST(MemoryPlanTest, ThePartsStayWithinTheBudget) {
   for (const JobSize& job : jobs()) {
-    const std::uint64_t least = least_budget(job);
+    const std::uint64_t least = named_budget(job);
     for (const std::uint64_t budget : {least, least + 7 * kMiB, 2 * least, least + 64 * kGiB}) {
       SCOPED_TRACE(text_of(job) + ", budget " + exact_size_text(budget));
       const MemoryPlan plan = plan_memory(budget, job);
@@ -118,7 +123,7 @@ TEST(MemoryPlanTest, ThePartsStayWithinTheBudget) {
 
 TEST(MemoryPlanTest, OpenSpoolsFitTheWorkOfTheLargestMesh) {
   const JobSize job = job_of(4'294'967'295, 32768, 9, 2);
-  const MemoryPlan plan = plan_memory(least_budget(job), job);
+  const MemoryPlan plan = plan_memory(named_budget(job), job);
   const std::uint64_t spools = 2 * (job.vertex_count / 131072 + 1);  // a chunk's two, at least
   EXPECT_LE(spools * plan.spool_block_bytes, plan.work_bytes);
 }
@@ -128,7 +133,7 @@ TEST(MemoryPlanTest, TheIndexOfTheSpoolsFitsTheWorkOfALargeMesh) {
   constexpr std::uint64_t kIndexBytes = 24;
   for (const std::uint64_t vertices : {std::uint64_t{10'000'000}, std::uint64_t{500'000'000}}) {
     const JobSize job = job_of(vertices, 8192, 0, 1);
-    const MemoryPlan plan = plan_memory(least_budget(job), job);
+    const MemoryPlan plan = plan_memory(named_budget(job), job);
     const std::uint64_t spooled_bytes = job.vertex_count * 12 + job.face_count * 12;
     EXPECT_LE(spooled_bytes / plan.spool_block_bytes * kIndexBytes, plan.work_bytes)
         << vertices << " vertices in blocks of " << plan.spool_block_bytes << " bytes";
@@ -137,8 +142,8 @@ TEST(MemoryPlanTest, TheIndexOfTheSpoolsFitsTheWorkOfALargeMesh) {
 
 TEST(MemoryPlanTest, MoreMemoryNeverGivesLess) {
   const JobSize job = job_of(50'000'000, 8192, 4, 8);
-  MemoryPlan before = plan_memory(least_budget(job), job);
-  for (std::uint64_t budget = least_budget(job); budget < 16 * kGiB; budget += budget / 7) {
+  MemoryPlan before = plan_memory(named_budget(job), job);
+  for (std::uint64_t budget = named_budget(job); budget < 16 * kGiB; budget += budget / 7) {
     const MemoryPlan plan = plan_memory(budget, job);
     EXPECT_GE(plan.pool_bytes, before.pool_bytes);
     EXPECT_GE(plan.work_bytes, before.work_bytes);
@@ -147,22 +152,6 @@ TEST(MemoryPlanTest, MoreMemoryNeverGivesLess) {
     EXPECT_GE(plan.blocks_in_flight, before.blocks_in_flight);
     before = plan;
   }
-}
-
-TEST(DiskNeedTest, WhatFitsInMemoryNeedsNoTemporaryFiles) {
-  const JobSize job = job_of(100'000, 8192, 0, 2);
-  EXPECT_EQ(predict_disk(job, plan_memory(4 * kGiB, job)).temporary_bytes, 0U);
-  EXPECT_GT(predict_disk(job, plan_memory(least_budget(job), job)).output_bytes,
-            job.vertex_count * 12 + job.face_count * 12);
-}
-
-TEST(DiskNeedTest, GrowsWithWhatAVertexHolds) {
-  const JobSize bare = job_of(10'000'000, 8192, 0, 2);
-  const JobSize full = job_of(10'000'000, 8192, 9, 2);
-  const MemoryPlan plan = plan_memory(kGiB, full);
-  EXPECT_GE(predict_disk(full, plan).output_bytes,
-            predict_disk(bare, plan).output_bytes + bare.vertex_count * 9 * 4);
-  EXPECT_GT(predict_disk(full, plan).temporary_bytes, predict_disk(bare, plan).temporary_bytes);
 }
 
 }  // namespace

@@ -49,6 +49,38 @@ class SpoolTest : public testing::Test {
   std::filesystem::path path_;
 };
 
+TEST_F(SpoolTest, PlacesOfClearedSpoolsAreUsedAgain) {
+  MemoryPool pool(0);
+  ScratchFile scratch(files_, path_, pool);
+  Spool kept(scratch, 100), other(scratch, 70);
+  {
+    Spool cleared(scratch, 100);
+    for (std::size_t i = 0; i < 3; ++i) {
+      cleared.append(pattern(200));
+      kept.append(pattern(100, i));
+    }
+    other.append(pattern(141));
+  }
+  const std::uint64_t size = scratch.size();
+  Spool next(scratch, 100);
+  next.append(pattern(501, 9));
+  EXPECT_EQ(scratch.size(), size) << "five blocks were free";
+  next.append(pattern(200, 8));
+  EXPECT_EQ(scratch.size(), size + 200) << "two more were closed";
+  EXPECT_EQ(pool.scratch_use().peak_bytes_on_disk(), scratch.size());
+  Bytes expected = pattern(501, 9);
+  const Bytes more = pattern(200, 8);
+  expected.insert(expected.end(), more.begin(), more.end());
+  EXPECT_EQ(content(next), expected);
+  Bytes kept_bytes;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Bytes part = pattern(100, i);
+    kept_bytes.insert(kept_bytes.end(), part.begin(), part.end());
+  }
+  EXPECT_EQ(content(kept), kept_bytes);
+  EXPECT_EQ(content(other), pattern(141));
+}
+
 TEST_F(SpoolTest, WhatIsOnDiskIsCountedUntilItsFileIsGone) {
   MemoryPool pool(150);
   const ScratchUse& use = pool.scratch_use();

@@ -1,0 +1,112 @@
+#include "pipeline/build_plan.h"
+
+#include "hierarchy/error.h"
+#include "pipeline/size_text.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <tbb/info.h>
+
+namespace meshhier::pipeline {
+namespace {
+
+constexpr std::uint32_t kLargestTile = 32768;  // parent maps and ghost references hold 16 bits
+
+Tree plan_tree(const Config& config, std::uint64_t vertex_count) {
+  if (vertex_count == 0) {
+    throw Error(ErrorCode::input, fmt::format("{} has no vertices: there is nothing to build",
+                                              config.input.string()));
+  }
+  const std::uint64_t count =
+      config.partition.count
+          ? *config.partition.count
+          : (vertex_count + config.partition.vertices - 1) / config.partition.vertices;
+  if (count > vertex_count) {
+    throw Error(ErrorCode::usage, fmt::format("partition.count is {}, but {} has only {} vertices",
+                                              count, config.input.string(), vertex_count));
+  }
+  if ((vertex_count + count - 1) / count > kLargestTile) {
+    throw Error(ErrorCode::usage,
+                fmt::format("partition.count is {}: partitions of {} vertices; a tile holds at "
+                            "most {}, so the count "
+                            "must be at least {}",
+                            count, (vertex_count + count - 1) / count, kLargestTile,
+                            (vertex_count + kLargestTile - 1) / kLargestTile));
+  }
+  return {vertex_count, static_cast<std::uint32_t>(count)};
+}
+
+std::uint32_t largest_partition(const Tree& tree) {
+  return static_cast<std::uint32_t>((tree.vertex_count() + tree.partition_count() - 1) /
+                                    tree.partition_count());
+}
+
+std::uint32_t asked_vertices(const Config& config, const Tree& tree) {
+  if (config.simplify.vertices)
+    return *config.simplify.vertices;
+  return config.partition.count ? std::max(4U, largest_partition(tree)) : config.partition.vertices;
+}
+
+/// Of a vertex in a published tile (docs/file_format.md, 4.3).
+std::uint64_t published_bytes(const AttributeLayout& layout) {
+  const std::uint64_t component = layout.colour == ColourType::u8    ? 1
+                                  : layout.colour == ColourType::u16 ? 2
+                                                                     : 4;
+  const std::uint64_t colour = static_cast<std::uint64_t>(layout.colour_channels()) * component;
+  return (layout.normals ? 12 : 0) + (colour + 3) / 4 * 4 + (layout.texcoords ? 8 : 0);
+}
+
+JobSize job_size(const Config& config, const mesh_io::MeshDescription& mesh, const Tree& tree,
+                 std::size_t threads) {
+  JobSize job;
+  job.vertex_count = mesh.vertex_count;
+  job.face_count = mesh.face_count;
+  job.channels = mesh.attributes.channels();
+  job.vertices_in_place = mesh.vertices_in_place;
+  job.wide_coordinates = mesh.wide_coordinates;
+  job.partition_count = tree.partition_count();
+  job.largest_tile = std::max(largest_partition(tree), asked_vertices(config, tree));
+  job.threads = threads;
+  job.asked_vertices = asked_vertices(config, tree);
+  job.clustered = config.simplify.method == SimplifyMethod::cluster;
+  job.published_attribute_bytes = published_bytes(mesh.attributes);
+  return job;
+}
+
+}  // namespace
+
+BuildPlan plan_build(const Config& config, const mesh_io::MeshDescription& mesh) {
+  const Tree tree = plan_tree(config, mesh.vertex_count);
+  const std::size_t threads = config.threads > 0
+                                  ? config.threads
+                                  : static_cast<std::size_t>(tbb::info::default_concurrency());
+  const JobSize job = job_size(config, mesh, tree, threads);
+  const MemoryPlan memory = plan_memory(config.memory_budget, job);
+  return {tree, threads, job.asked_vertices, job, memory, predict_disk(job, memory)};
+}
+
+void check_disk(const DiskNeed& need, const std::filesystem::path& directory,
+                storage::FileSystem& files) {
+  const std::uint64_t free = files.free_bytes(directory);
+  if (free < need.room_bytes) {
+    throw Error(
+        ErrorCode::budget,
+        fmt::format(
+            "{} has {} free; the hierarchy will take about {} and up to {} of temporary files",
+            directory.string(), rounded_size_text(free), rounded_size_text(need.output_bytes),
+            rounded_size_text(need.temporary_bytes)));
+  }
+}
+
+void check_apart(const Config& config, storage::FileSystem& files) {
+  const std::filesystem::path input = files.canonical(config.input);
+  const std::filesystem::path output = files.canonical(config.output);
+  const auto [end, rest] = std::mismatch(output.begin(), output.end(), input.begin(), input.end());
+  if (end == output.end()) {
+    throw Error(ErrorCode::usage,
+                fmt::format("the input {} lies in the output {}", input.string(), output.string()));
+  }
+}
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,39 @@
+// What a build will do, decided before anything is written: the tree, who gets how much memory,
+// how much disk it will take.
+#pragma once
+
+#include "hierarchy/tree.h"
+#include "mesh_io/mesh_source.h"
+#include "pipeline/config.h"
+#include "pipeline/disk_need.h"
+#include "pipeline/memory_plan.h"
+#include "storage/file.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+
+namespace meshhier::pipeline {
+
+struct BuildPlan {
+  Tree tree;
+  std::size_t threads = 1;
+  std::uint32_t asked_vertices = 0;  ///< of simplified tiles
+  JobSize job;
+  MemoryPlan memory;
+  DiskNeed disk;
+};
+
+/// The plan for a mesh of which the header was read. Throws Error(usage | input) if the partitions
+/// asked for cannot be, Error(budget) if the memory budget is too small.
+BuildPlan plan_build(const Config& config, const mesh_io::MeshDescription& mesh);
+
+/// A replaced output is removed, and the input must not go with it: throws Error(usage) if it lies
+/// there.
+void check_apart(const Config& config, storage::FileSystem& files);
+
+/// Throws Error(budget) if the disk that holds `directory` has too little room.
+void check_disk(const DiskNeed& need, const std::filesystem::path& directory,
+                storage::FileSystem& files);
+
+}  // namespace meshhier::pipeline

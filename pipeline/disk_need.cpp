@@ -1,0 +1,279 @@
+#include "pipeline/disk_need.h"
+
+#include "cluster_simplify/contraction.h"
+#include "partition/renumber.h"
+#include "partition/top_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <vector>
+
+namespace meshhier::pipeline {
+namespace {
+
+// All of the following was measured on scans of one to eight hundred pieces, a terrain and open
+// patches, with tiles of 64 to 32768 vertices.
+
+// The part of a tile's vertices that is its rim, times the root of their number: 3.6 to 4.7, on
+// nested shells 4.2 to 6.9.
+constexpr double kRimShare = 5;
+// Per vertex of the rim: ghosts 1.0 to 1.2, triangles that a neighbour has as well 1.0 to 1.1,
+// foreign corners of a fresh simplified tile, which are one level finer, 1.8.
+constexpr double kGhosts = 1.1;
+constexpr double kSharedTriangles = 1.05;
+constexpr double kFreshForeign = 1.8;
+
+// Triangles a vertex after clustering, over those before: 1.1 to 1.8, more on coarser levels; the
+// other methods keep the input's ratio.
+constexpr double kClusteredTriangles = 1.35;
+
+// A published tile besides its sections: JSON and headers.
+constexpr double kTileOverhead = 1600;
+// Indices of a ghost's chain: two or three on average, 16 bits each.
+constexpr double kChainBytes = 6;
+// What the last disk block of each file leaves empty.
+constexpr double kFileSlack = 2048;
+
+// A vertex kept aside for a median: position and id.
+constexpr double kWindowBytes = sizeof(partition::IdPoint);
+// The part of a sample's vertices that a window holds, times the root of their number: four
+// standard deviations (half the root each) to either side.
+constexpr double kWindowShare = 4;
+
+/// Nodes of one level that stand over equally many partitions.
+struct Nodes {
+  double count = 0;
+  double vertices = 0;  ///< of each one's tile
+  bool early = false;   ///< has its partition's tile
+};
+using LevelNodes = std::map<std::uint32_t, Nodes>;  // by partitions: never more than two kinds
+
+double triangles_per_vertex(const JobSize& job) {
+  return static_cast<double>(job.face_count) / static_cast<double>(job.vertex_count);
+}
+
+/// Triangles a vertex on simplified levels, over those of the input.
+double simplified_ratio(const JobSize& job) {
+  return job.clustered ? kClusteredTriangles : 1;
+}
+
+double vertex_bytes(const JobSize& job) {
+  return 12 + 4.0 * job.channels;
+}
+
+/// From the root down to the partitions.
+std::vector<LevelNodes> count_nodes(const JobSize& job) {
+  std::vector<LevelNodes> levels(1);
+  levels[0][job.partition_count].count = 1;
+  while (levels.back().rbegin()->first > 1) {
+    LevelNodes finer;
+    for (auto& [size, nodes] : levels.back()) {
+      nodes.early = size == 1;
+      finer[size - size / 2].count += nodes.count;
+      if (size > 1)
+        finer[size / 2].count += nodes.count;
+    }
+    levels.push_back(std::move(finer));
+  }
+  return levels;
+}
+
+std::vector<LevelNodes> measure_nodes(const JobSize& job) {
+  std::vector<LevelNodes> levels = count_nodes(job);
+  const double partition = static_cast<double>(job.vertex_count) / job.partition_count;
+  const auto asked =
+      job.asked_vertices > 0 ? job.asked_vertices : static_cast<std::uint32_t>(partition);
+  levels.back().begin()->second.vertices = partition;
+  for (std::size_t l = levels.size() - 1; l-- > 0;) {
+    const LevelNodes& finer = levels[l + 1];
+    for (auto& [size, nodes] : levels[l]) {
+      double children = finer.at(size - size / 2).vertices;
+      if (size > 1)
+        children += finer.at(size / 2).vertices;
+      nodes.vertices = nodes.early ? children
+                                   : cluster_simplify::contraction_target(
+                                         static_cast<std::uint32_t>(children), asked);
+    }
+  }
+  return levels;
+}
+
+/// Sums over tiles.
+struct Tiles {
+  double count = 0;
+  double vertices = 0;
+  double rim = 0;
+  double triangles = 0;  ///< border ones in each tile they touch
+
+  Tiles& operator+=(const Tiles& other) {
+    count += other.count;
+    vertices += other.vertices;
+    rim += other.rim;
+    triangles += other.triangles;
+    return *this;
+  }
+};
+
+/// `ratio`: triangles per vertex, over those of the input. Near the root there is less around a
+/// tile.
+Tiles tiles_of(const JobSize& job, const Nodes& nodes, double ratio, std::size_t level) {
+  Tiles tiles;
+  tiles.count = nodes.count;
+  tiles.vertices = nodes.count * nodes.vertices;
+  const double around = job.face_count == 0 ? 0 : 1 - std::exp2(-static_cast<double>(level));
+  tiles.rim =
+      tiles.vertices * around * std::min(1.0, kRimShare / std::sqrt(std::max(1.0, nodes.vertices)));
+  tiles.triangles =
+      tiles.vertices * triangles_per_vertex(job) * ratio + tiles.rim * kSharedTriangles;
+  return tiles;
+}
+
+/// Tiles as the forest holds them: early ones among the simplified.
+struct Population {
+  Tiles partitions;
+  Tiles simplified;
+  Tiles early;  ///< of the simplified ones
+  int levels = 0;
+};
+
+Population population_of(const JobSize& job) {
+  const std::vector<LevelNodes> levels = measure_nodes(job);
+  Population all;
+  all.levels = static_cast<int>(levels.size());
+  for (std::size_t l = 0; l < levels.size(); ++l) {
+    for (const auto& [size, nodes] : levels[l]) {
+      if (l + 1 == levels.size()) {
+        all.partitions += tiles_of(job, nodes, 1, l);
+        continue;
+      }
+      const Tiles tiles = tiles_of(job, nodes, nodes.early ? 1 : simplified_ratio(job), l);
+      all.simplified += tiles;
+      if (nodes.early)
+        all.early += tiles;
+    }
+  }
+  return all;
+}
+
+// ---- what is written, in bytes -------------------------------------------------------------
+
+/// storage/work_tile.cpp, and the rim once more for its neighbours. `foreign`: foreign corners per
+/// vertex of the rim.
+double work_tile_bytes(const JobSize& job, const Tiles& tiles, double foreign) {
+  return tiles.count * 24 + tiles.vertices * (vertex_bytes(job) + 4) +
+         tiles.rim * (foreign * 8 + vertex_bytes(job)) + tiles.triangles * 6;
+}
+
+/// What neighbours see of a tile when it is measured: per vertex of the rim 147 to 167 bytes, 201
+/// after clustering, and no more than the whole tile. `ratio`: of the tiles' triangles to usual.
+double band_bytes(const Tiles& tiles, double ratio) {
+  return std::min(tiles.rim * (65 + 100 * ratio), tiles.vertices * 20 + tiles.triangles * 12);
+}
+
+/// Chunks share the triangles along their borders.
+double chunk_triangle_bytes(const JobSize& job) {
+  const double chunks = std::exp2(std::max(
+      0.0,
+      std::ceil(std::log2(static_cast<double>(job.vertex_count) / partition::kChunkVertices))));
+  const double share =
+      chunks > 1 ? kRimShare / std::sqrt(static_cast<double>(job.vertex_count) / chunks) : 0;
+  return static_cast<double>(job.face_count) * 12 * (1 + std::min(1.0, share));
+}
+
+/// The vertices within a window of some split above the chunks.
+double window_bytes(const JobSize& job) {
+  double outside = 1;
+  double sample = static_cast<double>(std::min(job.vertex_count, partition::kSampleVertices));
+  for (double size = static_cast<double>(job.vertex_count); size > partition::kChunkVertices;
+       size /= 2, sample /= 2) {
+    outside *= 1 - std::min(1.0, kWindowShare / std::sqrt(sample));
+  }
+  return static_cast<double>(job.vertex_count) * (1 - outside) * kWindowBytes;
+}
+
+/// Triangles that wait for blocks of the rank table: all but those within the first block, if they
+/// jump through it at random or if it has its vertices in several runs, as subdivided meshes do.
+/// Each waits in one place at a time, and places are used again. A group of blocks is kept until
+/// all of it is handed on.
+double waiting_bytes(const JobSize& job, const MemoryPlan& plan) {
+  const partition::RenumberPlan table =
+      partition::plan_renumbering(job.vertex_count, sizeof(std::uint32_t), plan.table_bytes);
+  if (table.blocks == 1)
+    return 0;
+  constexpr double kWaitingBytes = 16;
+  const double group = table.groups > 1 ? 1.0 / static_cast<double>(table.groups) : 0;
+  const double first = std::pow(static_cast<double>(table.blocks), -3);
+  return static_cast<double>(job.face_count) * kWaitingBytes * (1 - first + group);
+}
+
+double spooled_input_bytes(const JobSize& job) {
+  if (job.vertices_in_place)
+    return 0;
+  return static_cast<double>(job.vertex_count) *
+         ((job.wide_coordinates ? 24 : 12) + 4.0 * job.channels);
+}
+
+double published_bytes(const JobSize& job, const Tiles& tiles) {
+  const double vertex = 12 + static_cast<double>(job.published_attribute_bytes);
+  return tiles.vertices * (vertex + 2) + tiles.rim * kGhosts * (vertex + kChainBytes) +
+         tiles.triangles * 6 + tiles.count * kTileOverhead;
+}
+
+/// Volumes of the table in disk_need.h.
+struct Volumes {
+  double input, windows, ranks, waiting, chunk_vertices, chunk_triangles, leaves, simplified;
+};
+
+Volumes volumes_of(const JobSize& job, const MemoryPlan& plan, const Population& all) {
+  const auto vertices = static_cast<double>(job.vertex_count);
+  constexpr double kPlaceBytes = 12;  // where a vertex of a chunk's rim went
+  Volumes v{};
+  v.input = spooled_input_bytes(job);
+  v.windows = window_bytes(job);
+  v.ranks = vertices * 4;
+  v.waiting = waiting_bytes(job, plan);
+  v.chunk_vertices = vertices * vertex_bytes(job);
+  v.chunk_triangles = chunk_triangle_bytes(job);
+  v.leaves = work_tile_bytes(job, all.partitions, kGhosts) + all.partitions.rim * kPlaceBytes;
+  v.simplified = work_tile_bytes(job, all.simplified, kFreshForeign) +
+                 (all.partitions.vertices + all.simplified.vertices) * 2;
+  v.simplified += band_bytes(all.partitions, 1) + band_bytes(all.simplified, simplified_ratio(job));
+  return v;
+}
+
+std::uint64_t whole(double bytes) {
+  return static_cast<std::uint64_t>(std::max(0.0, bytes));
+}
+
+}  // namespace
+
+DiskNeed predict_disk(const JobSize& job, const MemoryPlan& plan) {
+  const Population all = population_of(job);
+  const Volumes v = volumes_of(job, plan, all);
+  const auto pool = static_cast<double>(plan.pool_bytes);
+  const auto beyond_pool = [&](double bytes) { return std::max(0.0, bytes - pool); };
+
+  // The pool takes what comes first and frees it with its spool; a file shrinks at its end only.
+  const double partition = beyond_pool(v.input + v.windows);
+  const double triangles =
+      beyond_pool(v.input + v.ranks + v.waiting + v.chunk_vertices + v.chunk_triangles);
+  // Partition tiles come before the memory of the chunks is free, if those lie badly.
+  const double leaves = beyond_pool(v.input + v.chunk_vertices + v.chunk_triangles + v.leaves);
+  const double simplify = beyond_pool(v.leaves + v.simplified);
+
+  const double output = published_bytes(job, all.partitions) +
+                        published_bytes(job, all.simplified) - published_bytes(job, all.early);
+  const double files = all.partitions.count + all.simplified.count + 3;
+  const double temporary = std::max({partition, triangles, leaves, simplify});
+  return {whole(temporary), whole(output),
+          whole(std::max(temporary, simplify + output + files * kFileSlack))};
+}
+
+TileCounts count_tiles(const JobSize& job) {
+  const Population all = population_of(job);
+  return {all.levels, job.partition_count,
+          static_cast<std::uint64_t>(all.simplified.count - all.early.count)};
+}
+
+}  // namespace meshhier::pipeline
