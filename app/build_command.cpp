@@ -4,6 +4,7 @@
 #include "pipeline/build.h"
 #include "pipeline/build_stats.h"
 #include "pipeline/config.h"
+#include "pipeline/estimate.h"
 #include "storage/atomic_file.h"
 
 #include <algorithm>
@@ -25,6 +26,8 @@ struct BuildArguments {
   std::vector<std::string> settings;
   std::string stats;  ///< file for the account; empty: none
   bool force = false;
+  bool dry_run = false;
+  bool json = false;  ///< the estimate as JSON
 };
 
 /// --set takes all that follows it, so it swallows a config that comes last: the one item without
@@ -59,10 +62,26 @@ void write_stats(storage::AtomicFile& file, const pipeline::BuildStats& stats) {
   file.publish(std::as_bytes(std::span(text)));
 }
 
+int run_estimate(const pipeline::Config& config, const BuildArguments& arguments,
+                 Environment& environment) {
+  const pipeline::BuildEstimate estimate =
+      pipeline::estimate_build(config, arguments.force, environment.files);
+  if (arguments.json) {
+    environment.out << to_json(estimate).dump(2, ' ', false,
+                                              nlohmann::ordered_json::error_handler_t::replace)
+                    << '\n';
+  } else {
+    environment.out << pipeline::estimate_text(estimate);
+  }
+  return 0;
+}
+
 int run_build(const BuildArguments& arguments, pipeline::ProgressMode mode,
               Environment& environment) {
   const pipeline::Config config =
       pipeline::load_config(environment.files, arguments.config, arguments.settings);
+  if (arguments.dry_run)
+    return run_estimate(config, arguments, environment);
   std::optional<storage::AtomicFile> stats;
   if (!arguments.stats.empty()) {
     check_stats_path(arguments.stats, config, environment.files);
@@ -97,6 +116,7 @@ Examples:
   meshhier build david.json
   meshhier build david.json --set partition.count=128 --set memory_budget=256MiB
   meshhier build david.json --set input=other.ply output=other.hier --force
+  meshhier build david.json --dry-run
   meshhier build david.json --stats david.stats.json
 )";
 
@@ -113,10 +133,16 @@ void add_build_command(CLI::App& parser, Invocation& invocation) {
                    "current directory")
       ->type_name("KEY=VALUE");
   command->add_flag("--force", arguments->force, "Replace an existing output");
+  CLI::Option* dry_run = command->add_flag("--dry-run", arguments->dry_run,
+                                           "Read only the mesh's header; tell what the build would "
+                                           "make and take, or why it would refuse");
+  command->add_flag("--json", arguments->json, "With --dry-run: one JSON object, for programs")
+      ->needs(dry_run);
   command
       ->add_option("--stats", arguments->stats,
                    "Write what each stage took of time, memory and disk, as JSON")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->excludes(dry_run);
   add_progress_option(*command, invocation.progress);
   command->footer(kFooter);
   command->callback([arguments, &invocation] {

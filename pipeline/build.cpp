@@ -94,8 +94,9 @@ BuildReport build_hierarchy(const Config& config, bool force, BuildEnvironment e
                                          build.threads);
   storage::MemoryPool pool(plan.pool_bytes);
   StageMeter progress({environment.progress, files.counters(), pool.scratch_use()});
+  storage::check_output(files, config.output, force);
+  check_disk(build.disk, config.output, files);
   storage::WorkDirectory work(files, config.output, force);
-  check_disk(build.disk, work.path(), files);
 
   storage::ScratchFile tile_scratch(files, work.temporary() / "tiles", pool);
   Forest forest(tree, partition::chunk_level(tree), build.job.channels, tile_scratch);

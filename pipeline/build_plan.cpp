@@ -86,8 +86,17 @@ BuildPlan plan_build(const Config& config, const mesh_io::MeshDescription& mesh)
   return {tree, threads, job.asked_vertices, job, memory, predict_disk(job, memory)};
 }
 
-void check_disk(const DiskNeed& need, const std::filesystem::path& directory,
+std::filesystem::path existing_directory(const std::filesystem::path& output,
+                                         storage::FileSystem& files) {
+  std::filesystem::path directory = output.parent_path();
+  while (!directory.empty() && !files.exists(directory))
+    directory = directory.parent_path();
+  return directory.empty() ? "." : directory;
+}
+
+void check_disk(const DiskNeed& need, const std::filesystem::path& output,
                 storage::FileSystem& files) {
+  const std::filesystem::path directory = existing_directory(output, files);
   const std::uint64_t free = files.free_bytes(directory);
   if (free < need.room_bytes) {
     throw Error(

@@ -32,8 +32,12 @@ BuildPlan plan_build(const Config& config, const mesh_io::MeshDescription& mesh)
 /// there.
 void check_apart(const Config& config, storage::FileSystem& files);
 
-/// Throws Error(budget) if the disk that holds `directory` has too little room.
-void check_disk(const DiskNeed& need, const std::filesystem::path& directory,
+/// The directory nearest above `output` that is there.
+std::filesystem::path existing_directory(const std::filesystem::path& output,
+                                         storage::FileSystem& files);
+
+/// Throws Error(budget) if the disk that will hold `output` has too little room.
+void check_disk(const DiskNeed& need, const std::filesystem::path& output,
                 storage::FileSystem& files);
 
 }  // namespace meshhier::pipeline

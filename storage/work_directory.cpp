@@ -9,34 +9,35 @@
 
 namespace meshhier::storage {
 
+bool check_output(FileSystem& files, const std::filesystem::path& output, bool replace,
+                  const char* state) {
+  if (!files.exists(output))
+    return false;
+  if (!replace) {
+    throw Error(ErrorCode::exists,
+                fmt::format("{} {}; --force replaces it", output.string(), state));
+  }
+  if (!files.exists(manifest_path(output))) {
+    throw Error(ErrorCode::exists,
+                fmt::format("{} is not a hierarchy (it has no {}), so --force does not replace it",
+                            output.string(), manifest_path({}).string()));
+  }
+  return true;
+}
+
 WorkDirectory::WorkDirectory(FileSystem& files, std::filesystem::path output, bool replace)
     : files_(files),
       output_(std::move(output)),
       path_(work_path(output_)),
       temporary_(temporary_path(path_)),
       replace_(replace) {
-  check_output("is already there");
+  check_output(files_, output_, replace_);
   for (auto parent = output_.parent_path(); !parent.empty() && !files_.exists(parent);
        parent = parent.parent_path()) {
     made_parent_ = parent;
   }
   files_.remove_all(path_);
   files_.make_directories(temporary_);
-}
-
-bool WorkDirectory::check_output(const char* state) const {
-  if (!files_.exists(output_))
-    return false;
-  if (!replace_) {
-    throw Error(ErrorCode::exists,
-                fmt::format("{} {}; --force replaces it", output_.string(), state));
-  }
-  if (!files_.exists(manifest_path(output_))) {
-    throw Error(ErrorCode::exists,
-                fmt::format("{} is not a hierarchy (it has no {}), so --force does not replace it",
-                            output_.string(), manifest_path({}).string()));
-  }
-  return true;
 }
 
 WorkDirectory::~WorkDirectory() {
@@ -54,7 +55,7 @@ void WorkDirectory::publish() {
   files_.remove_all(temporary_);
   files_.sync_tree(path_);
   const std::filesystem::path old = replaced_path(output_);
-  const bool replacing = check_output("appeared during the build");
+  const bool replacing = check_output(files_, output_, replace_, "appeared during the build");
   if (replacing) {
     files_.remove_all(old);
     files_.rename(output_, old);

@@ -8,6 +8,11 @@
 
 namespace meshhier::storage {
 
+/// Whether there is an output. Throws Error(exists) if there is and `replace` is false, or if it is
+/// no hierarchy; `state` says how it comes to be there.
+bool check_output(FileSystem& files, const std::filesystem::path& output, bool replace,
+                  const char* state = "is already there");
+
 class WorkDirectory {
  public:
   /// Makes the work directory, in place of one an earlier, killed build left. Throws Error(exists)
@@ -28,10 +33,6 @@ class WorkDirectory {
   void publish();
 
  private:
-  /// Whether there is an output; throws Error(exists) if it may not be replaced.
-  /// `state` says how it comes to be there.
-  bool check_output(const char* state) const;
-
   FileSystem& files_;
   std::filesystem::path output_;
   std::filesystem::path path_;

@@ -205,6 +205,8 @@ TEST_F(CommandLine, MistakesExitWithUsageAndSayWhatIsWrong) {
       {{"build"}, "config"},
       {{"build", "a.json", "--froce"}, "--froce"},
       {{"build", "a.json", "--progress", "loud"}, "auto, bar, json or none"},
+      {{"build", "a.json", "--json"}, "--dry-run"},
+      {{"build", "a.json", "--dry-run", "--stats", "s.json"}, "excludes"},
       {{"inspect"}, "DIR is required"},
       {{"inspect", "x", "y"}, "y"},
       {{"inspect", "x", "--level", "-1"}, "--level"},
@@ -307,6 +309,29 @@ TEST_F(CommandLine, BuildRefusesABudgetThatCannotDo) {
   EXPECT_EQ(outcome.code, kBudget);
   EXPECT_THAT(outcome.messages, HasSubstr("MiB")) << "names the least that would do";
   EXPECT_EQ(names(), (std::set<std::string>{"a.json", "a.ply"}));
+}
+
+TEST_F(CommandLine, ADryRunTellsAndLeavesNothing) {
+  write_mesh("a.ply");
+  const Outcome text = run({"build", write_config(), "--dry-run"});
+  EXPECT_EQ(text.code, 0) << text.messages;
+  EXPECT_THAT(text.out,
+              AllOf(HasSubstr("5 partitions"), HasSubstr("free in"), HasSubstr("memory")));
+  const Outcome outcome = run({"build", write_config(), "--dry-run", "--json"});
+  EXPECT_EQ(outcome.code, 0) << outcome.messages;
+  EXPECT_EQ(json::parse(outcome.out)["vertices"], 2500);
+  EXPECT_EQ(names(), (std::set<std::string>{"a.json", "a.ply"}));
+}
+
+TEST_F(CommandLine, ADryRunRefusesAsTheBuildDoes) {
+  build();
+  const Outcome exists = run({"build", write_config(), "--dry-run"});
+  EXPECT_EQ(exists.code, kExists);
+  EXPECT_EQ(exists.messages, run({"build", write_config()}).messages);
+  const Outcome budget =
+      run({"build", write_config(), "--dry-run", "--force", "--set", "memory_budget=1MiB"});
+  EXPECT_EQ(budget.code, kBudget);
+  EXPECT_THAT(budget.messages, HasSubstr("at least"));
 }
 
 TEST_F(CommandLine, BuildWritesItsAccountWhereItIsAskedTo) {

@@ -1,0 +1,51 @@
+// What a build will be like, told before it: from the config and the header of the input alone.
+#pragma once
+
+#include "pipeline/build_plan.h"
+#include "pipeline/config.h"
+#include "storage/file.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+namespace meshhier::pipeline {
+
+/// Time is the least certain of all: a rate for each method, measured on one kind of machine.
+struct TimeEstimate {
+  double cpu_seconds = 0;
+  double wall_seconds = 0;
+};
+
+TimeEstimate estimate_time(const BuildPlan& plan, SimplifyMethod method, std::uint64_t input_bytes);
+
+/// The machine the rates are of, for people.
+inline constexpr std::string_view kRateMachine =
+    "x86-64 server cores of about 3 GHz and a disk of 500 MB/s";
+
+struct BuildEstimate {
+  BuildPlan plan;
+  mesh_io::MeshDescription mesh;
+  TileCounts tiles;
+  TimeEstimate time;
+  std::uint64_t memory_budget_bytes = 0;
+  std::uint64_t least_budget_bytes = 0;
+  std::filesystem::path disk;  ///< a directory on the disk that would hold the output
+  std::uint64_t free_bytes = 0;
+  std::filesystem::path input, output;
+};
+
+/// Refuses what build_hierarchy() refuses before its work, with the same Error; writes nothing.
+/// Whether the output's directory can be written is found out by building only.
+BuildEstimate estimate_build(const Config& config, bool force, storage::FileSystem& files);
+
+/// For people, a few lines.
+std::string estimate_text(const BuildEstimate& estimate);
+
+/// One object; README.md lists its keys.
+nlohmann::ordered_json to_json(const BuildEstimate& estimate);
+
+}  // namespace meshhier::pipeline

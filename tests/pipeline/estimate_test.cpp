@@ -1,0 +1,156 @@
+#include "pipeline/estimate.h"
+
+#include "hierarchy/error.h"
+#include "pipeline/build.h"
+#include "tests/pipeline/sample_hierarchy.h"
+#include "tests/support/faulty_file_system.h"
+#include "tests/support/meshes.h"
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace meshhier::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class EstimateTest : public testing::Test {
+ protected:
+  Config config(std::uint32_t partition_vertices = 200) const {
+    Config config;
+    config.input = directory_.path() / "mesh.ply";
+    config.output = directory_.path() / "deep" / "mesh.hier";
+    config.threads = 2;
+    config.partition.vertices = partition_vertices;
+    return config;
+  }
+  void write_mesh(const tests::TestMesh& mesh) { tests::write_ply(mesh, config().input); }
+
+  BuildReport build(const Config& config, bool force = false) {
+    NoProgress progress;
+    return build_hierarchy(config, force, {files_, progress, CancelToken()});
+  }
+
+  std::set<fs::path> listing() const {
+    std::set<fs::path> all;
+    for (const auto& entry : fs::recursive_directory_iterator(directory_.path()))
+      all.insert(entry.path());
+    return all;
+  }
+
+  static std::pair<ErrorCode, std::string> failure(const std::function<void()>& action) {
+    try {
+      action();
+    } catch (const Error& error) {
+      return {error.code(), error.what()};
+    }
+    ADD_FAILURE() << "nothing was refused";
+    return {ErrorCode::internal, ""};
+  }
+
+  void expect_refused_alike(const Config& config, ErrorCode code) {
+    const auto from_build = failure([&] { build(config); });
+    const auto from_estimate = failure([&] { estimate_build(config, false, files_); });
+    EXPECT_EQ(from_estimate.first, code);
+    EXPECT_EQ(from_estimate, from_build);
+  }
+
+  tests::TemporaryDirectory directory_;
+  tests::FaultyFileSystem files_;
+};
+
+TEST_F(EstimateTest, TellsWhatABuildMakes) {
+  write_mesh(tests::sphere(20'000));
+  for (const std::uint32_t vertices : {60U, 1000U, 32768U}) {
+    const BuildEstimate estimate = estimate_build(config(vertices), true, files_);
+    const BuildStats stats = build(config(vertices), true).stats;
+    EXPECT_EQ(estimate.plan.tree.partition_count(), stats.partitions);
+    EXPECT_EQ(estimate.tiles.levels, stats.levels);
+    EXPECT_EQ(estimate.tiles.tiles(), stats.tiles);
+    EXPECT_EQ(estimate.mesh.vertex_count, stats.vertices);
+    EXPECT_EQ(estimate.plan.disk.output_bytes, stats.predicted_output_bytes);
+    EXPECT_EQ(estimate.plan.disk.temporary_bytes, stats.predicted_temporary_bytes);
+  }
+}
+
+TEST_F(EstimateTest, ReadsTheHeaderAndWritesNothing) {
+  write_mesh(tests::sphere(60'000));
+  const std::set<fs::path> before = listing();
+  estimate_build(config(), false, files_);
+  EXPECT_EQ(listing(), before);
+  EXPECT_LT(files_.counters().bytes_read, fs::file_size(config().input) / 2);
+  EXPECT_EQ(files_.counters().bytes_written, 0U);
+}
+
+TEST_F(EstimateTest, RefusesWhatABuildRefusesInTheSameWords) {
+  write_mesh({});
+  expect_refused_alike(config(), ErrorCode::input);
+  write_mesh(tests::sphere(20'000));
+  Config many = config();
+  many.partition.count = 1'000'000;
+  expect_refused_alike(many, ErrorCode::usage);
+  Config small = config();
+  small.memory_budget = 1 << 20;
+  expect_refused_alike(small, ErrorCode::budget);
+  Config inside = config();
+  inside.output = directory_.path();
+  expect_refused_alike(inside, ErrorCode::usage);
+  files_.limit_room(100'000);
+  expect_refused_alike(config(), ErrorCode::budget);
+}
+
+TEST_F(EstimateTest, AnOutputThatIsThereIsRefusedUnlessForced) {
+  write_mesh(tests::sphere(2000));
+  build(config());
+  expect_refused_alike(config(), ErrorCode::exists);
+  EXPECT_NO_THROW(estimate_build(config(), true, files_));
+}
+
+TEST_F(EstimateTest, TheBudgetIsDividedWholly) {
+  write_mesh(tests::sphere(20'000));
+  const BuildEstimate estimate = estimate_build(config(), false, files_);
+  const nlohmann::ordered_json memory = to_json(estimate)["memory"];
+  EXPECT_EQ(memory["fixed_bytes"].get<std::uint64_t>() + memory["work_bytes"].get<std::uint64_t>() +
+                memory["pool_bytes"].get<std::uint64_t>(),
+            config().memory_budget);
+  EXPECT_LE(estimate.least_budget_bytes, config().memory_budget);
+  Config least = config();
+  least.memory_budget = estimate.least_budget_bytes;
+  EXPECT_NO_THROW(estimate_build(least, false, files_));
+}
+
+TEST_F(EstimateTest, TimeFallsWithThreadsAndDependsOnTheMethod) {
+  write_mesh(tests::sphere(20'000));
+  Config one = config();
+  one.threads = 1;
+  const TimeEstimate alone = estimate_build(one, false, files_).time;
+  const TimeEstimate both = estimate_build(config(), false, files_).time;
+  EXPECT_LT(both.wall_seconds, alone.wall_seconds);
+  EXPECT_DOUBLE_EQ(both.cpu_seconds, alone.cpu_seconds);
+  Config clustered = config();
+  clustered.simplify.method = SimplifyMethod::cluster;
+  EXPECT_LT(estimate_build(clustered, false, files_).time.cpu_seconds, both.cpu_seconds);
+}
+
+TEST_F(EstimateTest, TheTextNamesTheLeastBudgetAndTheFreeDisk) {
+  write_mesh(tests::sphere(20'000));
+  const BuildEstimate estimate = estimate_build(config(), false, files_);
+  const std::string text = estimate_text(estimate);
+  EXPECT_THAT(text, HasSubstr("1GiB asked for"));
+  EXPECT_THAT(text, HasSubstr("free in " + directory_.path().string()));
+  EXPECT_THAT(text, HasSubstr("an estimate"));
+  EXPECT_THAT(text, HasSubstr("51 partitions of at most 197 vertices, 7 levels"));
+}
+
+}  // namespace
+}  // namespace meshhier::pipeline
