@@ -128,6 +128,7 @@ BuildReport build_hierarchy(const Config& config, bool force, BuildEnvironment e
                    length(result.source.bounds.max - result.source.bounds.min), progress, cancel);
   const PublishedSummary published =
       publish(forest, result, work.path(), plan, files, progress, cancel);
+  const std::uint64_t manifest_bytes = files.open(storage::manifest_path(work.path()))->size();
   cancel.check();
   progress.begin("sync");
   work.publish();
@@ -135,7 +136,7 @@ BuildReport build_hierarchy(const Config& config, bool force, BuildEnvironment e
 
   BuildReport report;
   report.stats = make_stats(config, result.source, published, build);
-  report.stats.output_bytes += files.open(storage::manifest_path(config.output))->size();
+  report.stats.output_bytes += manifest_bytes;
   report.stats.peak_temporary_bytes = pool.scratch_use().peak_bytes_on_disk();
   report.stats.stages = progress.stages();
   report.stats.total = progress.total();
