@@ -29,12 +29,15 @@ partition::TopTree top_tree(const PlainMesh& mesh, const Tree& tree, partition::
   partition::TopPlan plan = partition::plan_top(std::move(sample), tree, axis);
   if (plan.splits.empty())
     return {plan.chunks, {}};
+  partition::SweepBlock swept;
   for (;;) {
+    const partition::Sweep sweep(plan);
     partition::TopSelector selector(plan, tree, scratch, kSelectBytes);
     const std::span<const Vec3f> all(mesh.positions);
     for (std::size_t first = 0; first < all.size(); first += kSweepBlock) {
       const auto block = all.subspan(first, std::min(kSweepBlock, all.size() - first));
-      selector.add(partition::sweep(plan, block, static_cast<std::uint32_t>(first)));
+      sweep.count(block, static_cast<std::uint32_t>(first), swept);
+      selector.add(swept);
     }
     std::vector<partition::SplitPlane> planes = selector.settle(plan);
     if (!planes.empty())

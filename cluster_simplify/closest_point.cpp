@@ -47,27 +47,22 @@ struct InFrame {
 
 ClosestPoint closest_point(Vec3d x, const TriangleFrame& t) {
   const InFrame in(x, t);
-  ClosestPoint best{{}, std::numeric_limits<double>::infinity(), Feature::inside};
-  const auto offer = [&](double on_b, double on_c, Feature feature) {
+  ClosestPoint best{{}, std::numeric_limits<double>::infinity()};
+  const auto offer = [&](double on_b, double on_c) {
     const Vec3d offset = t.ab * on_b + t.ac * on_c;
     const double distance = squared_length(in.ax - offset);
     if (distance < best.squared_distance)
-      best = {t.a + offset, distance, feature};
+      best = {t.a + offset, distance};
   };
   if (in.inside()) {
-    offer(in.v / in.area, in.w / in.area, Feature::inside);
+    offer(in.v / in.area, in.w / in.area);
     if (!in.is_thin(t))
       return best;
   }
-  const auto on_edge = [](double part, Feature start, Feature edge, Feature end) {
-    return part <= 0 ? start : part >= 1 ? end : edge;
-  };
-  const double on_0 = in.on_0(t);
   const double on_1 = in.on_1(t);
-  const double on_2 = in.on_2(t);
-  offer(on_0, 0, on_edge(on_0, Feature::corner_0, Feature::edge_0, Feature::corner_1));
-  offer(1 - on_1, on_1, on_edge(on_1, Feature::corner_1, Feature::edge_1, Feature::corner_2));
-  offer(0, on_2, on_edge(on_2, Feature::corner_0, Feature::edge_2, Feature::corner_2));
+  offer(in.on_0(t), 0);
+  offer(1 - on_1, on_1);
+  offer(0, in.on_2(t));
   return best;
 }
 
@@ -93,30 +88,6 @@ double squared_distance(Vec3d x, const TriangleFrame& t) {
     least = std::min(least, to(1 - on_1, on_1));
   }
   return least;
-}
-
-PlaneFoot plane_foot(Vec3d x, const TriangleFrame& t) {
-  const InFrame in(x, t);
-  if (!(in.area > 0))
-    return {};
-  const Vec3d offset = t.ab * (in.v / in.area) + t.ac * (in.w / in.area);
-  return {t.a + offset, squared_length(in.ax - offset), in.inside()};
-}
-
-Encounter closest_at_ends(const SegmentPair& pair) {
-  const auto& [d, e, r, dd, ee, de, dr, er] = pair;
-  double s = part(de * er - dr * ee, dd * ee - de * de);
-  double t = 0;
-  const double on_line = de * s + er;
-  if (!(on_line > 0)) {
-    s = part(-dr, dd);
-  } else if (on_line >= ee) {
-    t = 1;
-    s = part(de - dr, dd);
-  } else {
-    t = on_line / ee;
-  }
-  return {s, t, squared_length(r + d * s - e * t)};
 }
 
 }  // namespace meshhier::cluster_simplify

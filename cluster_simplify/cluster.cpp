@@ -1,6 +1,7 @@
 #include "cluster_simplify/cluster.h"
 
 #include "cluster_simplify/kd_cells.h"
+#include "cluster_simplify/motion.h"
 #include "cluster_simplify/quadric.h"
 
 #include <algorithm>
@@ -56,12 +57,15 @@ std::vector<Quadric> quadrics_of(const BuildTile& joined, const std::vector<std:
       p[k] = to_double(mesh.vertices.positions[raw(t[k])]);
       cell[k] = mesh.is_own(t[k]) ? cell_of[raw(t[k])] : kNoCell;
     }
+    const Vec3d doubled = cross(p[1] - p[0], p[2] - p[0]);
+    const double doubled_area = length(doubled);
+    if (!(doubled_area > 0))
+      return;
+    const Vec3d normal = doubled * (1 / doubled_area);
     for (int k = 0; k < 3; ++k) {
       const bool repeated = (k > 0 && cell[k] == cell[0]) || (k > 1 && cell[k] == cell[1]);
-      if (cell[k] == kNoCell || repeated)
-        continue;
-      const Vec3d mean = means[cell[k]];
-      quadrics[cell[k]].add_triangle(p[0] - mean, p[1] - mean, p[2] - mean);
+      if (cell[k] != kNoCell && !repeated)
+        quadrics[cell[k]].add_plane(normal, doubled_area / 2, p[0] - means[cell[k]]);
     }
   };
   for (const Triangle& t : mesh.interior)
@@ -144,6 +148,7 @@ Contraction cluster(const BuildTile& joined, std::uint32_t target, const Attribu
     normalize_average(layout, attributes);
     result.representatives.append(to_float(points[cell]), attributes);
   }
+  result.drift = motion_of(joined, result);
   return result;
 }
 

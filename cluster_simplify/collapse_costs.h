@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cluster_simplify/collapse_driver.h"
+#include "cluster_simplify/meeting_point.h"
 #include "cluster_simplify/vertex_quadric.h"
 
 #include <algorithm>
@@ -15,8 +16,7 @@ namespace meshhier::cluster_simplify {
 /// vertices, and a little for the edge's length: on flat ground, where planes cost nothing, short
 /// edges go first.
 inline float quadric_cost(const VertexQuadric& sum, Vec3f x, float squared_edge) {
-  constexpr float kLength = 1e-6F;
-  return std::max(0.0F, sum.at(x)) + kLength * sum.area * squared_edge;
+  return std::max(0.0F, sum.at(x)) + kLengthCost * sum.area * squared_edge;
 }
 
 /// Whether no triangle around `vertex`, those at the edge to `other` aside, turns by more than

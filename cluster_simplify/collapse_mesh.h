@@ -21,9 +21,16 @@ class CollapseMesh {
  public:
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
+  /// A triangle and its edges, [k]: from corner k to the next. Dead ones have no first corner.
+  struct Face {
+    std::array<std::uint32_t, 3> corners, edges;
+    bool is_alive() const { return corners[0] != kNone; }
+  };
+
   /// A triangle seen from one of its corners.
   struct Fan {
     std::uint32_t triangle;
+    std::uint32_t slot;                      ///< which of its corners
     std::uint32_t next, previous;            ///< the other corners, in the triangle's order
     std::uint32_t next_edge, previous_edge;  ///< from the corner to them
   };
@@ -36,19 +43,19 @@ class CollapseMesh {
   /// O(t) for bounded valences, O(t log t) at worst.
   explicit CollapseMesh(const TileMesh& mesh);
 
-  std::uint32_t vertex_count() const { return static_cast<std::uint32_t>(first_.size()); }
+  std::uint32_t vertex_count() const { return static_cast<std::uint32_t>(stars_.size()); }
   std::uint32_t own_count() const { return own_count_; }
   std::span<const Edge> edges() const { return edges_; }
   const Edge& edge(std::uint32_t e) const { return edges_[e]; }
   bool is_own_edge(std::uint32_t e) const {
     return edges_[e].a < own_count_ && edges_[e].b < own_count_;
   }
-  std::span<const std::array<std::uint32_t, 3>> triangles() const { return triangles_; }
-  /// [t][k]: the edge of triangle t from its corner k to the next.
-  std::span<const std::array<std::uint32_t, 3>> triangle_edges() const { return triangle_edges_; }
+  std::span<const Face> faces() const { return faces_; }
 
+  /// No more triangles are left at the vertex; before the first collapse, just as many.
+  std::uint32_t most_triangles(std::uint32_t vertex) const { return stars_[vertex].count; }
   /// Whether any triangle is left at the vertex.
-  bool is_isolated(std::uint32_t vertex) { return first_live(vertex) == kNone; }
+  bool is_isolated(std::uint32_t vertex);
   /// What stands for the vertex now.
   std::uint32_t representative(std::uint32_t vertex);
 
@@ -62,18 +69,27 @@ class CollapseMesh {
                 std::span<const Fan> around_to, const Gone& gone);
 
  private:
-  std::uint32_t first_live(std::uint32_t vertex);
+  /// The corners, 4 t + k, at a vertex: a run of corners_, dead ones among them until next looked
+  /// at.
+  struct Star {
+    std::uint32_t begin = 0, count = 0;
+  };
+
+  void collect_stars();
   void collect_edges();
+  void join_stars(std::uint32_t from, std::uint32_t to, std::span<const Fan> around_from,
+                  std::span<const Fan> around_to);
 
   std::uint32_t own_count_;
-  std::vector<std::array<std::uint32_t, 3>> triangles_;       ///< dead: first corner kNone
-  std::vector<std::array<std::uint32_t, 3>> triangle_edges_;  ///< [k]: from corner k to k + 1
+  std::vector<Face> faces_;
   std::vector<Edge> edges_;
-  std::vector<std::uint32_t> next_;          ///< a list of corners 3 t + k per vertex
-  std::vector<std::uint32_t> first_, last_;  ///< its ends
-  std::vector<std::uint32_t> parents_;       ///< which vertex a vertex was collapsed into
-  std::vector<std::uint32_t> edge_to_;       ///< scratch: the edge from `to` to a vertex
+  std::vector<Star> stars_;
+  std::vector<std::uint32_t> corners_;  ///< grows by the joined stars
+  std::vector<std::uint32_t> parents_;  ///< which vertex a vertex was collapsed into
+  std::vector<std::uint32_t> edge_to_;  ///< scratch: the edge from `to` to a vertex
 };
+
+using Fans = std::span<const CollapseMesh::Fan>;
 
 template <class Gone>
 void CollapseMesh::collapse(std::uint32_t from, std::uint32_t to, std::span<const Fan> around_from,
@@ -106,29 +122,23 @@ void CollapseMesh::collapse(std::uint32_t from, std::uint32_t to, std::span<cons
   for (const Fan& fan : around_from) {
     if (dies(fan))
       continue;
-    auto& corners = triangles_[fan.triangle];
-    auto& sides = triangle_edges_[fan.triangle];
-    const int k = corners[0] == from ? 0 : corners[1] == from ? 1 : 2;
-    corners[k] = to;
-    sides[k] = moved(fan.next_edge, fan.next);
-    sides[(k + 2) % 3] = moved(fan.previous_edge, fan.previous);
+    Face& face = faces_[fan.triangle];
+    face.corners[fan.slot] = to;
+    face.edges[fan.slot] = moved(fan.next_edge, fan.next);
+    face.edges[fan.slot == 0 ? 2 : fan.slot - 1] = moved(fan.previous_edge, fan.previous);
   }
   for (const Fan& fan : around_from) {
     if (!dies(fan))
       continue;
-    triangles_[fan.triangle][0] = kNone;
-    for (const std::uint32_t e : triangle_edges_[fan.triangle])
+    faces_[fan.triangle].corners[0] = kNone;
+    for (const std::uint32_t e : faces_[fan.triangle].edges)
       release(e);
   }
   for (const auto fans : {around_from, around_to}) {
     for (const Fan& fan : fans)
       edge_to_[fan.next] = edge_to_[fan.previous] = kNone;
   }
-  if (first_[from] != kNone) {
-    (first_[to] == kNone ? first_[to] : next_[last_[to]]) = first_[from];
-    last_[to] = last_[from];
-    first_[from] = kNone;
-  }
+  join_stars(from, to, around_from, around_to);
   parents_[from] = to;
 }
 

@@ -25,9 +25,16 @@ class QuadricCosts {
         quadrics_(vertex_quadrics(mesh, positions_)),
         prices_(mesh, positions_, total_area(quadrics_)) {}
 
+  std::span<const Vec3f> positions() const { return positions_; }
+
   Collapse best(std::uint32_t e) const {
     const auto [a, b, count] = mesh_.edge(e);
     return cheaper(onto(b, a), onto(a, b));
+  }
+
+  void costs(std::uint32_t first, std::span<float> costs) const {
+    for (std::size_t i = 0; i < costs.size(); ++i)
+      costs[i] = best(first + static_cast<std::uint32_t>(i)).cost;
   }
 
   float price(std::uint32_t e, TopologyChange change) const {
@@ -66,9 +73,16 @@ class MelaxCosts {
   MelaxCosts(CollapseMesh& mesh, std::vector<Vec3f> positions)
       : mesh_(mesh), positions_(std::move(positions)), prices_(mesh, positions_, 0) {}
 
+  std::span<const Vec3f> positions() const { return positions_; }
+
   Collapse best(std::uint32_t e) {
     const auto [a, b, count] = mesh_.edge(e);
     return cheaper(onto(b, a), onto(a, b));
+  }
+
+  void costs(std::uint32_t first, std::span<float> costs) {
+    for (std::size_t i = 0; i < costs.size(); ++i)
+      costs[i] = best(first + static_cast<std::uint32_t>(i)).cost;
   }
 
   /// In Melax's unit, a length: the square root of what squared distances cost.
@@ -99,7 +113,7 @@ class MelaxCosts {
     normals_.clear();
     at_edge_.clear();
     for (const CollapseMesh::Fan& fan : around_) {
-      const auto& t = mesh_.triangles()[fan.triangle];
+      const auto& t = mesh_.faces()[fan.triangle].corners;
       const Vec3f n =
           cross(positions_[t[1]] - positions_[t[0]], positions_[t[2]] - positions_[t[0]]);
       const float size = length(n);
@@ -153,9 +167,12 @@ template <class Costs>
 Contraction contract_with(const BuildTile& joined, std::uint32_t target) {
   CollapseMesh mesh(joined.mesh);
   const VertexArray& vertices = joined.mesh.vertices;
-  Costs costs(mesh, LocalFrame(vertices.positions).to_local(vertices.positions));
-  const FallbackCounts fallbacks = collapse_edges(mesh, costs, target);
-  Contraction result = choose_representatives(mesh, vertices, target);
+  const LocalFrame frame(vertices.positions);
+  Costs costs(mesh, frame.to_local(vertices.positions));
+  DriftMeter drift(mesh, joined.history.weights);
+  const FallbackCounts fallbacks = collapse_edges(mesh, costs, drift, target);
+  Contraction result =
+      choose_representatives({mesh, vertices, costs.positions(), frame, drift}, target);
   result.fallbacks += fallbacks;
   return result;
 }

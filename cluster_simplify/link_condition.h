@@ -9,8 +9,6 @@
 
 namespace meshhier::cluster_simplify {
 
-using Fans = std::span<const CollapseMesh::Fan>;
-
 /// From harmless to harmful.
 enum class TopologyChange : std::uint8_t {
   none,      ///< the surface stays what it is, up to deformation

@@ -19,12 +19,21 @@ LocalFrame::LocalFrame(std::span<const Vec3f> positions) {
   std::frexp(size, &exponent);  // size < 2^exponent
   if (size > 0)
     scale_ = std::ldexp(1.0, -exponent);
+  // Half a unit in the last place, there and back, along three axes.
+  const Vec3d most = to_double(bounds.max);
+  const Vec3d least = to_double(bounds.min);
+  rounding_ = 0x1p-22 * std::max({std::abs(most.x), std::abs(most.y), std::abs(most.z),
+                                  std::abs(least.x), std::abs(least.y), std::abs(least.z)});
+}
+
+Vec3f LocalFrame::to_local(Vec3f position) const {
+  return to_float((to_double(position) - middle_) * scale_);
 }
 
 std::vector<Vec3f> LocalFrame::to_local(std::span<const Vec3f> positions) const {
   std::vector<Vec3f> local(positions.size());
   std::transform(positions.begin(), positions.end(), local.begin(),
-                 [&](Vec3f p) { return to_float((to_double(p) - middle_) * scale_); });
+                 [&](Vec3f p) { return to_local(p); });
   return local;
 }
 

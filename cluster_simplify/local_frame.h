@@ -15,13 +15,19 @@ class LocalFrame {
   /// `positions`: finite, may be empty.
   explicit LocalFrame(std::span<const Vec3f> positions);
 
+  Vec3f to_local(Vec3f position) const;
   std::vector<Vec3f> to_local(std::span<const Vec3f> positions) const;
   /// Places beyond the largest float come to lie on it.
   Vec3f to_global(Vec3f local) const;
+  /// A local length in the coordinates of the mesh.
+  double to_global(double local) const { return local / scale_; }
+  /// No position is moved farther by rounding on its way there and back.
+  double rounding() const { return rounding_; }
 
  private:
   Vec3d middle_;
   double scale_ = 1;
+  double rounding_ = 0;
 };
 
 }  // namespace meshhier::cluster_simplify

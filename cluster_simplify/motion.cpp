@@ -1,92 +1,209 @@
 #include "cluster_simplify/motion.h"
 
+#include "cluster_simplify/nearest.h"
+
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <span>
+#include <utility>
 #include <vector>
 
 namespace meshhier::cluster_simplify {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kRounding = 0x1p-22;  // of floats that hold what was summed up in double
 
-class MotionMeter {
+using Corners = std::array<std::uint32_t, 3>;
+
+/// Triangles by their edges: with each vertex those of higher number that it has an edge to.
+class EdgeSet {
  public:
-  explicit MotionMeter(const DeviationInput& input)
-      : input_(input), is_drawn_(input.coarse.positions.size()) {
-    for (const auto triangles : {input.coarse.interior, input.coarse.border}) {
-      for (const Triangle& t : triangles) {
-        for (const TileVertex v : t)
-          is_drawn_[raw(v)] = 1;
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+  EdgeSet(std::span<const Corners> triangles, std::size_t vertex_count)
+      : begins_(vertex_count + 1), at_(vertex_count, kNone) {
+    for_each_edge(triangles,
+                  [&](std::uint32_t low, std::uint32_t, std::uint32_t) { ++begins_[low + 1]; });
+    for (std::size_t v = 0; v < vertex_count; ++v)
+      begins_[v + 1] += begins_[v];
+    ends_.resize(begins_[vertex_count]);
+    std::vector<std::uint32_t> next(begins_.begin(), begins_.end() - 1);
+    for_each_edge(triangles, [&](std::uint32_t low, std::uint32_t high, std::uint32_t t) {
+      ends_[next[low]++] = {high, t};
+      at_[low] = std::min(at_[low], t);
+      at_[high] = std::min(at_[high], t);
+    });
+    for (std::size_t v = 0; v < vertex_count; ++v)
+      std::sort(ends_.begin() + begins_[v], ends_.begin() + begins_[v + 1]);
+  }
+
+  /// The first triangle at the edge, or at the vertex if they are one; kNone if there is none.
+  std::uint32_t triangle_at(std::uint32_t a, std::uint32_t b) const {
+    if (a == b)
+      return at_[a];
+    const auto [low, high] = std::minmax(a, b);
+    const auto end = ends_.begin() + begins_[low + 1];
+    const auto found = std::lower_bound(ends_.begin() + begins_[low], end, End{high, 0});
+    return found != end && found->vertex == high ? found->triangle : kNone;
+  }
+
+ private:
+  struct End {
+    std::uint32_t vertex, triangle;
+    friend constexpr auto operator<=>(const End&, const End&) = default;
+  };
+
+  template <class Visit>
+  static void for_each_edge(std::span<const Corners> triangles, const Visit& visit) {
+    for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto [low, high] = std::minmax(triangles[i][k], triangles[i][(k + 1) % 3]);
+        visit(low, high, i);
       }
     }
   }
 
-  Deviation measure() const {
-    Deviation result;
-    for (std::uint32_t v = 0; v < input_.fine.own_count; ++v) {
-      const double distance = distance_to_image(v, input_.coarse_of[v]);
-      result.squared_sum += input_.weights[v] * distance * distance;
-      result.weight_sum += input_.weights[v];
+  std::vector<std::uint32_t> begins_;
+  std::vector<End> ends_;
+  std::vector<std::uint32_t> at_;  ///< the first triangle at a vertex
+};
+
+class Motion {
+ public:
+  Motion(const BuildTile& joined, const Contraction& contraction)
+      : mesh_(joined.mesh),
+        contraction_(contraction),
+        moved_(joined.mesh.vertices.size()),
+        places_(contraction.representatives.positions),
+        drawn_(contraction.representatives.size() + joined.mesh.ghosts.size()) {
+    places_.insert(places_.end(), mesh_.vertices.positions.begin() + mesh_.own_count,
+                   mesh_.vertices.positions.end());
+    drift_.around.resize(contraction.representatives.size());
+    for (std::uint32_t v = 0; v < mesh_.own_count; ++v) {
+      moved_[v] = length(to_double(mesh_.vertices.positions[v]) -
+                         to_double(places_[contraction.parent_of[v]]));
+      drift_.squared_sum += double{joined.history.weights[v]} * moved_[v] * moved_[v];
     }
-    for (const auto triangles : {input_.fine.interior, input_.fine.border}) {
-      for (const Triangle& t : triangles)
-        add(t, result);
-    }
-    result.bound *= 1 + 0x1p-40;  // rounding
-    return result;
+    for (const Triangle& t : mesh_.interior)
+      drift_.interior = std::max(drift_.interior, add(t));
+    for (const Triangle& t : mesh_.border)
+      add(t);
+    drift_.lost = lost();
   }
+
+  Drift take() { return std::move(drift_); }
 
  private:
-  double distance_to_image(std::uint32_t fine, std::uint32_t coarse) const {
-    return length(to_double(input_.fine.positions[fine]) -
-                  to_double(input_.coarse.positions[coarse]));
+  /// Representatives, then ghosts.
+  std::uint32_t image(TileVertex v) const {
+    return mesh_.is_own(v) ? contraction_.parent_of[raw(v)]
+                           : raw(v) - mesh_.own_count +
+                                 static_cast<std::uint32_t>(contraction_.representatives.size());
   }
 
-  void add(const Triangle& t, Deviation& result) const {
-    const auto is_own = [&](TileVertex v) { return raw(v) < input_.fine.own_count; };
-    if (std::none_of(t.begin(), t.end(), is_own))
-      return;
-    const double distance = distance_of(t);
-    if (distance == kInfinite)
-      ++result.collapsed_triangles;
+  float drift_of(const Triangle& t) const {
+    const double farthest = std::max({moved_[raw(t[0])], moved_[raw(t[1])], moved_[raw(t[2])]});
+    return static_cast<float>(farthest * (1 + kRounding));
+  }
+
+  void raise(std::uint32_t image, float drift) {
+    if (image < drift_.around.size())
+      drift_.around[image] = std::max(drift_.around[image], drift);
+  }
+
+  float add(const Triangle& t) {
+    const float drift = drift_of(t);
+    const Corners images{image(t[0]), image(t[1]), image(t[2])};
+    const bool is_drawn =
+        images[0] != images[1] && images[1] != images[2] && images[2] != images[0];
+    if (is_drawn)
+      shown_.push_back(images);
     else
-      result.bound = std::max(result.bound, distance);
+      folded_.push_back(t);
+    for (const std::uint32_t v : images) {
+      raise(v, drift);
+      drawn_[v] = drawn_[v] || is_drawn;
+    }
+    return drift;
   }
 
-  /// Infinite if nothing of the triangle's image is drawn.
-  double distance_of(const Triangle& t) const {
-    std::array<std::uint32_t, 3> image;
-    for (std::size_t k = 0; k < 3; ++k)
-      image[k] = input_.coarse_of[raw(t[k])];
-    const bool known = image[0] != kNone && image[1] != kNone && image[2] != kNone;
-    const bool has_area = image[0] != image[1] && image[1] != image[2] && image[2] != image[0];
-    if (known && has_area) {
-      double farthest = 0;
-      for (std::size_t k = 0; k < 3; ++k)
-        farthest = std::max(farthest, distance_to_image(raw(t[k]), image[k]));
-      return farthest;
+  /// What a triangle became whose image has no area lies in the corner or edge of one that is drawn
+  /// and brings its drift along; false if there is none.
+  bool lands(const EdgeSet& edges, const Triangle& t) {
+    const std::uint32_t a = image(t[0]);
+    const std::uint32_t b = image(t[1]) != a ? image(t[1]) : image(t[2]);
+    const std::uint32_t onto = edges.triangle_at(a, b);
+    if (onto == EdgeSet::kNone)
+      return false;
+    const float drift = drift_of(t);
+    for (const std::uint32_t v : shown_[onto])
+      raise(v, drift);
+    return true;
+  }
+
+  double farthest_corner(const Triangle& t, std::uint32_t from) const {
+    double most = 0;
+    for (const TileVertex v : t) {
+      most = std::max(
+          most, length(to_double(mesh_.vertices.positions[raw(v)]) - to_double(places_[from])));
     }
-    double least = kInfinite;
-    for (const std::uint32_t corner : image) {
-      if (corner == kNone || !is_drawn_[corner])
+    return most;
+  }
+
+  /// Of triangles whose image is drawn nowhere, to a corner of it that is, or else to the drawn
+  /// vertex nearest to it; infinite if there is none.
+  float lost() {
+    const EdgeSet edges(shown_, drawn_.size());
+    std::vector<const Triangle*> stranded;
+    std::vector<std::uint32_t> asked;
+    double farthest = 0;
+    for (const Triangle& t : folded_) {
+      if (lands(edges, t))
         continue;
-      double farthest = 0;
-      for (const TileVertex v : t)
-        farthest = std::max(farthest, distance_to_image(raw(v), corner));
-      least = std::min(least, farthest);
+      double least = std::numeric_limits<double>::infinity();
+      for (const TileVertex v : t) {
+        if (drawn_[image(v)])
+          least = std::min(least, farthest_corner(t, image(v)));
+      }
+      if (std::isfinite(least)) {
+        farthest = std::max(farthest, least);
+      } else {
+        stranded.push_back(&t);
+        asked.push_back(image(t[0]));
+      }
     }
-    return least;
+    if (!stranded.empty()) {
+      std::vector<std::uint32_t> drawn;
+      for (std::uint32_t v = 0; v < drawn_.size(); ++v) {
+        if (drawn_[v])
+          drawn.push_back(v);
+      }
+      if (drawn.empty())
+        return std::numeric_limits<float>::infinity();
+      const std::vector<std::uint32_t> nearest = nearest_of(places_, drawn, asked);
+      for (std::size_t i = 0; i < stranded.size(); ++i)
+        farthest = std::max(farthest, farthest_corner(*stranded[i], nearest[i]));
+    }
+    return static_cast<float>(farthest * (1 + kRounding));
   }
 
-  const DeviationInput& input_;
-  std::vector<char> is_drawn_;
+  const TileMesh& mesh_;
+  const Contraction& contraction_;
+  std::vector<double> moved_;  ///< ghosts: 0
+  std::vector<Vec3f> places_;  ///< of images
+  std::vector<char> drawn_;    ///< image: has a triangle
+  std::vector<Corners> shown_;
+  std::vector<Triangle> folded_;  ///< whose images have no area
+  Drift drift_;
 };
 
 }  // namespace
 
-Deviation measure_motion(const DeviationInput& input) {
-  return MotionMeter(input).measure();
+Drift motion_of(const BuildTile& joined, const Contraction& contraction) {
+  return Motion(joined, contraction).take();
 }
 
 }  // namespace meshhier::cluster_simplify

@@ -1,15 +1,16 @@
-// How far a contraction moves the surface, judged by how far it moves vertices.
+// How far representatives are from the vertices they stand for, as a bound of how far the surface
+// moved.
 #pragma once
 
-#include "cluster_simplify/deviation.h"
+#include "cluster_simplify/drift.h"
+#include "cluster_simplify/seams.h"
+#include "hierarchy/build_tile.h"
 
 namespace meshhier::cluster_simplify {
 
-/// A bound and a mean like DeviationMeter::measure(), twenty times as fast and looser by what
-/// vertices move within the surface; Deviation::squared_sum is of vertices' motion. A fine triangle
-/// is drawn where the linear map of its corners takes it; one whose image has no area is compared
-/// with a corner of that which is drawn. For contractions that fold the surface, as cells do:
-/// distances to folds are no smaller, and take long to certify. O(n).
-Deviation measure_motion(const DeviationInput& input);
+/// The drift of a contraction about whose map nothing is known but where it takes vertices: each
+/// triangle's image is as near to it as its corners are to theirs. Counts motion within the
+/// surface. Requires parent_of and representatives. O(n).
+Drift motion_of(const BuildTile& joined, const Contraction& contraction);
 
 }  // namespace meshhier::cluster_simplify

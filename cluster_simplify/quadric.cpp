@@ -7,17 +7,20 @@ void Quadric::add_triangle(Vec3d p0, Vec3d p1, Vec3d p2) {
   const double area2 = length(normal2);
   if (!(area2 > 0))
     return;
-  const Vec3d n = normal2 * (1 / area2);
-  const double w = area2 / 2;
-  const double d = -dot(n, p0);
-  xx += w * n.x * n.x;
-  xy += w * n.x * n.y;
-  xz += w * n.x * n.z;
-  yy += w * n.y * n.y;
-  yz += w * n.y * n.z;
-  zz += w * n.z * n.z;
-  b = b + n * (w * d);
-  c += w * d * d;
+  add_plane(normal2 * (1 / area2), area2 / 2, p0);
+}
+
+void Quadric::add_plane(Vec3d unit_normal, double weight, Vec3d p) {
+  const Vec3d n = unit_normal * weight;
+  const double d = -dot(unit_normal, p);
+  xx += n.x * unit_normal.x;
+  xy += n.x * unit_normal.y;
+  xz += n.x * unit_normal.z;
+  yy += n.y * unit_normal.y;
+  yz += n.y * unit_normal.z;
+  zz += n.z * unit_normal.z;
+  b = b + n * d;
+  c += weight * d * d;
 }
 
 double Quadric::at(Vec3d x) const {

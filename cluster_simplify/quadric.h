@@ -15,6 +15,8 @@ struct Quadric {
 
   /// Adds the plane through p0, p1, p2 (relative to the origin), weighted with the triangle's area.
   void add_triangle(Vec3d p0, Vec3d p1, Vec3d p2);
+  /// Adds a plane through p (relative to the origin).
+  void add_plane(Vec3d unit_normal, double weight, Vec3d p);
   double at(Vec3d x) const;
 
   /// The point of least error, drawn towards `anchor` by `strength` times the mean curvature of E:

@@ -1,8 +1,12 @@
 #include "cluster_simplify/representatives.h"
 
+#include "cluster_simplify/closest_point.h"
 #include "cluster_simplify/kd_cells.h"
 #include "cluster_simplify/nearest.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -10,6 +14,10 @@ namespace meshhier::cluster_simplify {
 namespace {
 
 constexpr std::uint32_t kNone = CollapseMesh::kNone;
+
+// Larger stars are not looked through for every lost piece beside them, which would take quadratic
+// time; their middle is near enough.
+constexpr std::uint32_t kMostAround = 64;
 
 std::vector<Vec3f> positions_of(const VertexArray& vertices,
                                 const std::vector<std::uint32_t>& chosen) {
@@ -48,15 +56,155 @@ std::vector<std::uint32_t> join_neighbours(const VertexArray& vertices,
   return into;
 }
 
+/// Adds up what the collapses moved the surface, and what joining vertices across gaps adds.
+class DriftSum {
+ public:
+  DriftSum(const CollapsedTile& tile, const std::vector<std::uint32_t>& into)
+      : tile_(tile), into_(into), around_(tile.mesh.own_count()), drawn_(tile.places.size()) {
+    const auto vanished = tile.drift.vanished();
+    lost_.assign(vanished.begin(), vanished.end());
+    for (std::uint32_t t = 0; t < tile.mesh.faces().size(); ++t) {
+      if (tile.mesh.faces()[t].is_alive())
+        add(t);
+    }
+  }
+
+  /// `number`: of a representative, by its vertex.
+  Drift result(const std::vector<std::uint32_t>& number, std::size_t count) {
+    Drift drift;
+    drift.around.resize(count);
+    drift.interior = certain(interior_);
+    drift.lost = certain(lost());
+    drift.squared_sum =
+        tile_.drift.squared_sum() * tile_.frame.to_global(1.0) * tile_.frame.to_global(1.0);
+    for (std::uint32_t v = 0; v < around_.size(); ++v) {
+      if (number[v] != kNone)
+        drift.around[number[v]] = certain(around_[v]);
+    }
+    return drift;
+  }
+
+ private:
+  using Corners = std::array<std::uint32_t, 3>;
+
+  std::uint32_t root(std::uint32_t v) const { return v < into_.size() ? into_[v] : v; }
+  Corners roots(const Corners& corners) const {
+    return {root(corners[0]), root(corners[1]), root(corners[2])};
+  }
+  static bool is_drawn(const Corners& roots) {
+    return roots[0] != roots[1] && roots[1] != roots[2] && roots[2] != roots[0];
+  }
+
+  void add(std::uint32_t t) {
+    const Corners& corners = tile_.mesh.faces()[t].corners;
+    const Corners ends = roots(corners);
+    if (!is_drawn(ends)) {
+      lost_.push_back(
+          {{tile_.places[corners[0]], tile_.places[corners[1]], tile_.places[corners[2]]},
+           tile_.drift.of_triangle(t)});
+      return;
+    }
+    float joined = 0;  // squared: how far its corners went by joining
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (ends[k] != corners[k]) {
+        const Vec3f away = tile_.places[ends[k]] - tile_.places[corners[k]];
+        joined = std::max(joined, dot(away, away));
+      }
+    }
+    const float drift = tile_.drift.of_triangle(t) + std::sqrt(joined);
+    bool is_interior = true;
+    for (const std::uint32_t v : ends) {
+      is_interior = is_interior && v < around_.size();
+      drawn_[v] = 1;
+      if (v < around_.size())
+        around_[v] = std::max(around_[v], drift);
+    }
+    if (is_interior)
+      interior_ = std::max(interior_, drift);
+  }
+
+  /// From what is drawn no more to what is drawn around the vertex nearest to it; infinite if there
+  /// is none.
+  float lost() const {
+    if (lost_.empty())
+      return 0;
+    std::vector<std::uint32_t> drawn;
+    for (std::uint32_t v = 0; v < drawn_.size(); ++v) {
+      if (drawn_[v])
+        drawn.push_back(v);
+    }
+    if (drawn.empty())
+      return std::numeric_limits<float>::infinity();
+    std::vector<Vec3f> positions(tile_.places.begin(), tile_.places.end());
+    std::vector<std::uint32_t> asked;
+    for (const DriftMeter::Vanished& piece : lost_) {
+      asked.push_back(static_cast<std::uint32_t>(positions.size()));
+      positions.push_back(piece.corners[0]);
+    }
+    const std::vector<std::uint32_t> nearest = nearest_of(positions, drawn, asked);
+    double farthest = 0;
+    for (std::size_t i = 0; i < lost_.size(); ++i) {
+      farthest = std::max(farthest, std::sqrt(squared_distance_to_star(lost_[i], nearest[i])) +
+                                        double{lost_[i].drift});
+    }
+    return static_cast<float>(farthest);
+  }
+
+  /// From all of a triangle to the nearest of those that are drawn around a vertex.
+  double squared_distance_to_star(const DriftMeter::Vanished& piece, std::uint32_t vertex) const {
+    const auto at = [&](std::uint32_t v) { return to_double(tile_.places[v]); };
+    const auto farthest = [&](const TriangleFrame& frame) {
+      double most = 0;
+      for (const Vec3f corner : piece.corners)
+        most = std::max(most, squared_distance(to_double(corner), frame));
+      return most;
+    };
+    double least = farthest({at(vertex), at(vertex), at(vertex)});
+    if (tile_.mesh.most_triangles(vertex) > kMostAround)
+      return least;
+    std::vector<CollapseMesh::Fan> fans;
+    tile_.mesh.gather(vertex, fans);
+    for (const CollapseMesh::Fan& fan : fans) {
+      const Corners ends = roots({vertex, fan.next, fan.previous});
+      if (is_drawn(ends))
+        least = std::min(least, farthest({at(ends[0]), at(ends[1]), at(ends[2])}));
+    }
+    return least;
+  }
+
+  /// In the coordinates of the mesh, rounding counted.
+  float certain(float local) const {
+    if (!(local > 0))
+      return 0;
+    return static_cast<float>((tile_.frame.to_global(double{local}) + tile_.frame.rounding()) *
+                              (1 + 0x1p-20));
+  }
+
+  const CollapsedTile& tile_;
+  const std::vector<std::uint32_t>& into_;  ///< own vertex -> the one it was joined with, or itself
+  std::vector<float> around_;
+  std::vector<char> drawn_;
+  std::vector<DriftMeter::Vanished> lost_;
+  float interior_ = 0;
+};
+
 }  // namespace
 
-Contraction choose_representatives(CollapseMesh& mesh, const VertexArray& vertices,
-                                   std::uint32_t target) {
+Contraction choose_representatives(const CollapsedTile& tile, std::uint32_t target) {
+  CollapseMesh& mesh = tile.mesh;
+  const VertexArray& vertices = tile.vertices;
+  std::vector<char> has_triangle(mesh.vertex_count());
+  for (const CollapseMesh::Face& face : mesh.faces()) {
+    if (face.is_alive()) {
+      for (const std::uint32_t v : face.corners)
+        has_triangle[v] = 1;
+    }
+  }
   std::vector<std::uint32_t> shown;
   std::vector<std::uint32_t> isolated;
   for (std::uint32_t v = 0; v < mesh.own_count(); ++v) {
     if (mesh.representative(v) == v)
-      (mesh.is_isolated(v) ? isolated : shown).push_back(v);
+      (has_triangle[v] ? shown : isolated).push_back(v);
   }
   std::vector<std::uint32_t> into(mesh.own_count(), kNone);
   const auto absorb = [&](const std::vector<std::uint32_t>& group,
@@ -98,6 +246,7 @@ Contraction choose_representatives(CollapseMesh& mesh, const VertexArray& vertic
     root = into[root];
     result.parent_of[v] = number[root];
   }
+  result.drift = DriftSum(tile, into).result(number, result.representatives.size());
   return result;
 }
 

@@ -207,7 +207,8 @@ std::vector<std::uint32_t> rim_first(const std::vector<Triangle>& border, std::u
 ContractedTile apply(const BuildTile& joined, Contraction contraction) {
   const TileMesh& mesh = joined.mesh;
   const auto count = static_cast<std::uint32_t>(contraction.representatives.size());
-  assert(count <= 32768 && contraction.parent_of.size() == mesh.own_count);
+  assert(count <= 32768 && contraction.parent_of.size() == mesh.own_count &&
+         contraction.drift.around.size() == count);
 
   // Border triangles in the new numbers; foreign corners keep theirs, moved from own_count to
   // count.
@@ -261,6 +262,11 @@ ContractedTile apply(const BuildTile& joined, Contraction contraction) {
   tile.history.weights.assign(count, 0);
   for (std::uint32_t i = 0; i < mesh.own_count; ++i)
     tile.history.weights[result.parent_map[i]] += joined.history.weights[i];
+  result.drift = std::move(contraction.drift);
+  std::vector<float> around(count);
+  for (std::uint32_t i = 0; i < count; ++i)
+    around[place[i]] = result.drift.around[i];
+  result.drift.around = std::move(around);
   result.fallbacks = contraction.fallbacks;
   return result;
 }
@@ -280,6 +286,7 @@ ContractedTile keep(const BuildTile& tile) {
   result.tile.foreign = mesh.ghosts;
   normalize_triangles(result.tile.interior, true);
   normalize_triangles(result.tile.border, true);
+  result.drift.around.assign(mesh.own_count, 0);
   return result;
 }
 

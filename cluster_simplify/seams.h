@@ -6,6 +6,7 @@
 // on a joined tile.
 #pragma once
 
+#include "cluster_simplify/drift.h"
 #include "hierarchy/build_tile.h"
 
 #include <cstdint>
@@ -49,6 +50,7 @@ struct Contraction {
   std::vector<std::uint32_t>
       parent_of;  ///< own vertex -> representative, < representatives.size(), onto
   VertexArray representatives;
+  Drift drift;
   FallbackCounts fallbacks;
 };
 
@@ -56,6 +58,7 @@ struct Contraction {
 struct ContractedTile {
   WorkTile tile;                          ///< foreign: the joined tile's ghosts, one level finer
   std::vector<std::uint16_t> parent_map;  ///< own vertex of the joined tile -> vertex of `tile`
+  Drift drift;                            ///< around: per vertex of `tile`
   FallbackCounts fallbacks;
 };
 

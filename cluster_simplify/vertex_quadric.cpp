@@ -35,28 +35,30 @@ std::vector<VertexQuadric> vertex_quadrics(const CollapseMesh& mesh,
                                            std::span<const Vec3f> positions) {
   std::vector<VertexQuadric> quadrics(mesh.vertex_count());
   std::vector<Vec3f> normals(mesh.edges().size());  // of the triangle last met at an edge
-  for (std::uint32_t t = 0; t < mesh.triangles().size(); ++t) {
-    const auto& corners = mesh.triangles()[t];
+  for (const CollapseMesh::Face& face : mesh.faces()) {
+    const auto& corners = face.corners;
     const Vec3f p = positions[corners[0]];
     const Vec3f doubled = cross(positions[corners[1]] - p, positions[corners[2]] - p);
     const float doubled_area = length(doubled);
     if (!(doubled_area > 0))
       continue;
     const Vec3f normal = doubled * (1 / doubled_area);
+    VertexQuadric plane;
+    plane.add_plane(normal, doubled_area);
+    for (const std::uint32_t v : corners)
+      quadrics[v].add_plane_of(plane, doubled_area);
     for (int k = 0; k < 3; ++k) {
-      const std::uint32_t a = corners[k];
-      const std::uint32_t b = corners[k == 2 ? 0 : k + 1];
-      quadrics[a].add_plane(normal, doubled_area);
-      quadrics[a].area += doubled_area;
-      const std::uint32_t e = mesh.triangle_edges()[t][k];
-      const bool is_border = mesh.edge(e).triangle_count == 1;
+      const std::uint32_t e = face.edges[k];
+      const std::uint32_t count = mesh.edge(e).triangle_count;
+      const bool is_border = count == 1;
       // At the first triangle there is no normal yet. Where more than two meet nothing can slide.
-      const bool is_fold =
-          mesh.edge(e).triangle_count == 2 && dot(normals[e], normal) < kFoldCosine;
+      const bool is_fold = count == 2 && dot(normals[e], normal) < kFoldCosine;
       normals[e] = normal;
       if (!is_border && !is_fold)
         continue;
       const float weight = is_border ? kBorderWeight : kFoldWeight;
+      const std::uint32_t a = corners[k];
+      const std::uint32_t b = corners[k == 2 ? 0 : k + 1];
       const Vec3f along = positions[b] - positions[a];
       add_upright(quadrics[a], along, normal, weight);
       add_upright(quadrics[b], along, normal, weight);

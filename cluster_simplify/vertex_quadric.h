@@ -12,8 +12,8 @@ namespace meshhier::cluster_simplify {
 
 /// E(x) = x'Ax + 2 b'x + c with x relative to the vertex it belongs to; area-weighted planes
 /// (Garland & Heckbert 1997). Centred at its vertex, where all its planes pass nearby, single
-/// precision loses nothing that matters; three cache lines hold four of them.
-struct VertexQuadric {
+/// precision loses nothing that matters. Padded to three groups of four floats.
+struct alignas(16) VertexQuadric {
   float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;  ///< A
   Vec3f b;
   float c = 0;
@@ -28,6 +28,17 @@ struct VertexQuadric {
     yy += n.y * unit_normal.y;
     yz += n.y * unit_normal.z;
     zz += n.z * unit_normal.z;
+  }
+
+  /// The plane of a triangle, through the centre of this quadric and of `plane`.
+  void add_plane_of(const VertexQuadric& plane, float doubled_area) {
+    xx += plane.xx;
+    xy += plane.xy;
+    xz += plane.xz;
+    yy += plane.yy;
+    yz += plane.yz;
+    zz += plane.zz;
+    area += doubled_area;
   }
 
   Vec3f times(Vec3f x) const {
@@ -57,28 +68,6 @@ struct VertexQuadric {
     c += q.c;
     area += q.area;
     return *this;
-  }
-
-  /// The point of least E, drawn towards the centre by `strength` times E's mean curvature; the
-  /// centre where planes say nothing.
-  Vec3f minimum(float strength) const {
-    const float s = strength * (xx + yy + zz);
-    const float a = xx + s;
-    const float d = yy + s;
-    const float f = zz + s;
-    // Adjugate of the symmetric matrix (a xy xz; xy d yz; xz yz f).
-    const float m00 = d * f - yz * yz;
-    const float m01 = xz * yz - xy * f;
-    const float m02 = xy * yz - xz * d;
-    const float determinant = a * m00 + xy * m01 + xz * m02;
-    if (!(determinant > 0))
-      return {};
-    const float m11 = a * f - xz * xz;
-    const float m12 = xy * xz - a * yz;
-    const float m22 = a * d - xy * xy;
-    const float r = -1 / determinant;
-    return {r * (m00 * b.x + m01 * b.y + m02 * b.z), r * (m01 * b.x + m11 * b.y + m12 * b.z),
-            r * (m02 * b.x + m12 * b.y + m22 * b.z)};
   }
 };
 

@@ -38,12 +38,21 @@ struct BuildTile {
   VertexHistory history;  ///< own
 };
 
-/// What a tile shows of itself to those who measure beside it: its border triangles and two rows of
-/// interior ones along them.
+/// What a simplified tile shows of itself to those who measure beside it: its border triangles as
+/// they were when it was made, foreign corners where they had been one level finer, and the
+/// interior triangles at its rim.
 struct Band {
-  std::vector<GhostRef> vertices;   ///< own ones, ascending, then ghosts, ascending
-  std::vector<Vec3f> positions;     ///< one per entry of `vertices`
-  std::vector<Triangle> triangles;  ///< corners are places in `vertices`
+  std::uint32_t rim_count = 0;
+  std::uint32_t own_count = 0;     ///< own vertices in the band, rim first
+  std::vector<Vec3f> positions;    ///< own, then foreign
+  std::vector<float> drifts;       ///< of own ones: what the triangles around them may have moved
+  std::vector<GhostRef> foreign;   ///< as WorkTile::foreign
+  std::vector<Triangle> interior;  ///< with a corner in the rim
+  std::vector<Triangle> border;
+  float interior_drift = 0;  ///< the largest of all interior triangles of the tile
+  float lost = 0;            ///< see cluster_simplify::Drift
+  double squared_sum = 0;    ///< likewise
+  double weight_sum = 0;     ///< of own vertices
 };
 
 }  // namespace meshhier

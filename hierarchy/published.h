@@ -53,7 +53,7 @@ struct PublishedTile {
 struct SourceSummary {
   std::string file_name;
   std::uint64_t file_bytes = 0;
-  std::uint64_t checksum = 0;  ///< XXH3-64 of the whole file
+  std::uint64_t checksum = 0;  ///< storage::FileChecksum
   std::uint64_t vertices = 0;
   std::uint64_t triangles = 0;             ///< kept, after polygons became fans
   std::uint64_t faces = 0;                 ///< as the file counts them

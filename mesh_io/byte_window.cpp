@@ -18,16 +18,20 @@ void ByteWindow::seek(std::uint64_t offset) {
 
 bool ByteWindow::refill(std::size_t bytes) {
   const std::size_t kept = available();
-  const std::uint64_t behind = file_bytes_ - (base_ + end_);
+  const std::uint64_t behind = input_.bytes - (base_ + end_);
   if (behind == 0)
     return false;
   std::memmove(buffer_.get(), begin(), kept);
   base_ += begin_;
   begin_ = 0;
   end_ = kept;
-  const std::size_t wanted = std::min<std::uint64_t>(kCapacity - kept, behind);
-  // A file that shrinks while it is read is a failure of I/O, told as such by read_exact.
-  file_.read_exact(base_ + kept, std::span(buffer_.get() + kept, wanted));
+  std::size_t wanted = std::min<std::uint64_t>(kCapacity - kept, behind);
+  // Up to the end of a checksum's block, if that is enough: the next read then begins with one.
+  const std::size_t beyond = (base_ + kept + wanted) % storage::FileChecksum::kBlockBytes;
+  if (wanted < behind && beyond < wanted && kept + wanted - beyond >= bytes)
+    wanted -= beyond;
+  // A file that shrinks while it is read is a failure of I/O, told as such.
+  input_.read(base_ + kept, std::span(buffer_.get() + kept, wanted));
   end_ += wanted;
   return available() >= bytes;
 }

@@ -2,12 +2,28 @@
 #pragma once
 
 #include "storage/file.h"
+#include "storage/file_checksum.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 
 namespace meshhier::mesh_io {
+
+/// A file that is read for what it holds, and for its checksum on the way.
+struct InputFile {
+  const storage::File& file;
+  std::uint64_t bytes = 0;  ///< the file's size; nothing beyond is read
+  storage::FileChecksum* checksum = nullptr;
+
+  /// Throws Error(io), also if the file has become shorter. Thread-safe.
+  void read(std::uint64_t offset, std::span<std::byte> to) const {
+    file.read_exact(offset, to);
+    if (checksum != nullptr)
+      checksum->add(offset, to);
+  }
+};
 
 class ByteWindow {
  public:
@@ -15,16 +31,13 @@ class ByteWindow {
   /// Also above the largest row without lists a header of kMaxHeaderBytes can declare (150 KiB).
   static constexpr std::size_t kCapacity = std::size_t{1} << 20;
 
-  /// `file_bytes`: the file's size; nothing beyond is read.
-  ByteWindow(const storage::File& file, std::uint64_t file_bytes)
-      : file_(file),
-        file_bytes_(file_bytes),
-        buffer_(std::make_unique_for_overwrite<std::byte[]>(kCapacity)) {}
+  explicit ByteWindow(const InputFile& input)
+      : input_(input), buffer_(std::make_unique_for_overwrite<std::byte[]>(kCapacity)) {}
 
   /// Offset in the file of begin(), and what follows from there.
   std::uint64_t offset() const { return base_ + begin_; }
-  std::uint64_t remaining() const { return file_bytes_ - offset(); }
-  const storage::File& file() const { return file_; }
+  std::uint64_t remaining() const { return input_.bytes - offset(); }
+  const storage::File& file() const { return input_.file; }
 
   /// The bytes in memory.
   const std::byte* begin() const { return buffer_.get() + begin_; }
@@ -44,8 +57,7 @@ class ByteWindow {
  private:
   bool refill(std::size_t bytes);
 
-  const storage::File& file_;
-  std::uint64_t file_bytes_;
+  InputFile input_;
   std::unique_ptr<std::byte[]> buffer_;  ///< kCapacity
   std::uint64_t base_ = 0;               ///< offset in the file of buffer_[0]
   std::size_t begin_ = 0;

@@ -22,10 +22,14 @@ bool all_finite(const float* values, std::size_t count) {
   return bad == 0;
 }
 
-template <class Vec>
-bool all_finite(std::span<const Vec> points) {
+bool all_finite(std::span<const Vec3f> points) {
+  static_assert(sizeof(Vec3f) == 3 * sizeof(float));
+  return all_finite(reinterpret_cast<const float*>(points.data()), 3 * points.size());
+}
+
+bool all_finite(std::span<const Vec3d> points) {
   bool finite = true;
-  for (const Vec& p : points) {
+  for (const Vec3d& p : points) {
     finite = finite & std::isfinite(p.x) & std::isfinite(p.y) & std::isfinite(p.z);
   }
   return finite;
@@ -37,75 +41,56 @@ bool is_byte(double value) {
 
 }  // namespace
 
-VertexBlocks::VertexBlocks(const MeshDescription& mesh, const VertexVisitor& visit)
+VertexRows::VertexRows(const MeshDescription& mesh, std::size_t rows, BlockMemory& memory)
     : layout_(mesh.attributes),
-      capacity_(std::min<std::uint64_t>(mesh.vertex_count, MeshSource::kBlockSize)),
       channels_(static_cast<std::size_t>(mesh.attributes.channels())),
       wide_(mesh.wide_coordinates),
-      visit_(visit) {
+      memory_(memory) {
   if (wide_) {
-    exact_.resize(capacity_);
+    memory_.exact.resize(rows);
   } else {
-    positions_.resize(capacity_);
+    memory_.positions.resize(rows);
   }
-  attributes_.resize(capacity_ * channels_);
+  memory_.attributes.resize(rows * channels_);
 }
 
-VertexBlocks::Column VertexBlocks::column(int slot) {
+VertexRows::Column VertexRows::column(std::size_t row, int slot) {
   if (slot >= kFirstAttributeSlot) {
     const auto channel = static_cast<std::size_t>(slot - kFirstAttributeSlot);
-    float* first = attributes_.data() + filled_ * channels_ + channel;
+    float* first = memory_.attributes.data() + row * channels_ + channel;
     return {reinterpret_cast<std::byte*>(first), channels_ * sizeof(float), false};
   }
   const auto axis = static_cast<std::size_t>(slot);
   if (wide_) {
-    auto* first = reinterpret_cast<std::byte*>(exact_.data() + filled_);
+    auto* first = reinterpret_cast<std::byte*>(memory_.exact.data() + row);
     return {first + axis * sizeof(double), sizeof(Vec3d), true};
   }
-  auto* first = reinterpret_cast<std::byte*>(positions_.data() + filled_);
+  auto* first = reinterpret_cast<std::byte*>(memory_.positions.data() + row);
   return {first + axis * sizeof(float), sizeof(Vec3f), false};
 }
 
-void VertexBlocks::set(int slot, double value) {
-  const Column target = column(slot);
-  if (target.wide) {
-    std::memcpy(target.data, &value, sizeof(value));
-    return;
-  }
-  const auto narrow = static_cast<float>(value);
-  std::memcpy(target.data, &narrow, sizeof(narrow));
-}
-
-std::optional<VertexBlocks::Defect> VertexBlocks::commit(std::size_t rows, bool check_colours) {
-  const bool finite =
-      (wide_ ? all_finite(std::span<const Vec3d>(exact_).subspan(filled_, rows))
-             : all_finite(std::span<const Vec3f>(positions_).subspan(filled_, rows))) &&
-      all_finite(attributes_.data() + filled_ * channels_, rows * channels_);
-  if (!finite || check_colours) {
-    if (const auto defect = find_defect(rows, check_colours))
-      return defect;
-  }
-  filled_ += rows;
-  if (filled_ == MeshSource::kBlockSize)
-    flush();
-  return std::nullopt;
-}
-
-double VertexBlocks::value_of(std::size_t row, int slot) const {
+double VertexRows::value_of(std::size_t row, int slot) const {
   if (slot >= kFirstAttributeSlot) {
-    return attributes_[row * channels_ + static_cast<std::size_t>(slot - kFirstAttributeSlot)];
+    const auto channel = static_cast<std::size_t>(slot - kFirstAttributeSlot);
+    return memory_.attributes[row * channels_ + channel];
   }
-  return wide_ ? exact_[row][slot] : static_cast<double>(positions_[row][slot]);
+  return wide_ ? memory_.exact[row][slot] : static_cast<double>(memory_.positions[row][slot]);
 }
 
-std::optional<VertexBlocks::Defect> VertexBlocks::find_defect(std::size_t rows,
-                                                              bool check_colours) const {
+std::optional<VertexRows::Defect> VertexRows::find_defect(std::size_t first, std::size_t count,
+                                                          bool check_colours) const {
+  const bool finite =
+      (wide_ ? all_finite(std::span<const Vec3d>(memory_.exact).subspan(first, count))
+             : all_finite(std::span<const Vec3f>(memory_.positions).subspan(first, count))) &&
+      all_finite(memory_.attributes.data() + first * channels_, count * channels_);
+  if (finite && !check_colours)
+    return std::nullopt;
   const int slots = kFirstAttributeSlot + layout_.channels();
   const int first_colour = kFirstAttributeSlot + layout_.colour_offset();
   const int last_colour = first_colour + layout_.colour_channels();
-  for (std::size_t row = 0; row < rows; ++row) {
+  for (std::size_t row = 0; row < count; ++row) {
     for (int slot = 0; slot < slots; ++slot) {
-      const double value = value_of(filled_ + row, slot);
+      const double value = value_of(first + row, slot);
       const bool colour = check_colours && slot >= first_colour && slot < last_colour;
       if (!std::isfinite(value) || (colour && !is_byte(value)))
         return Defect{row, slot, value};
@@ -114,17 +99,44 @@ std::optional<VertexBlocks::Defect> VertexBlocks::find_defect(std::size_t rows,
   return std::nullopt;
 }
 
+VertexBlock VertexRows::block(std::uint64_t first_id, std::size_t rows) const {
+  VertexBlock block;
+  block.first = first_id;
+  if (wide_) {
+    block.exact = std::span<const Vec3d>(memory_.exact).first(rows);
+  } else {
+    block.positions = std::span<const Vec3f>(memory_.positions).first(rows);
+  }
+  block.attributes = std::span<const float>(memory_.attributes).first(rows * channels_);
+  return block;
+}
+
+VertexBlocks::VertexBlocks(const MeshDescription& mesh, const VertexVisitor& visit)
+    : visit_(visit),
+      rows_(mesh, std::min<std::uint64_t>(mesh.vertex_count, MeshSource::kBlockSize), memory_) {}
+
+void VertexBlocks::set(int slot, double value) {
+  const VertexRows::Column target = rows_.column(filled_, slot);
+  if (target.wide) {
+    std::memcpy(target.data, &value, sizeof(value));
+    return;
+  }
+  const auto narrow = static_cast<float>(value);
+  std::memcpy(target.data, &narrow, sizeof(narrow));
+}
+
+std::optional<VertexRows::Defect> VertexBlocks::commit(bool check_colours) {
+  if (const auto defect = rows_.find_defect(filled_, 1, check_colours))
+    return defect;
+  if (++filled_ == MeshSource::kBlockSize)
+    flush();
+  return std::nullopt;
+}
+
 void VertexBlocks::flush() {
   if (filled_ == 0)
     return;
-  VertexBlock block;
-  block.first = first_;
-  if (wide_) {
-    block.exact = std::span<const Vec3d>(exact_).first(filled_);
-  } else {
-    block.positions = std::span<const Vec3f>(positions_).first(filled_);
-  }
-  block.attributes = std::span<const float>(attributes_).first(filled_ * channels_);
+  const VertexBlock block = rows_.block(first_, filled_);
   first_ += filled_;
   filled_ = 0;
   visit_(block);

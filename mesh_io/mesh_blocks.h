@@ -11,50 +11,62 @@
 
 namespace meshhier::mesh_io {
 
-/// Vertices: a reader writes columns of the next rows, then commits the rows.
-class VertexBlocks {
+/// Rows of vertices in a memory, written slot by slot: slots 0 to 2 are coordinates, from 3 on
+/// attribute channels.
+class VertexRows {
  public:
-  /// What `mesh` says decides the columns; its vertex count is how many rows will come at most.
-  VertexBlocks(const MeshDescription& mesh, const VertexVisitor& visit);
+  /// What `mesh` says decides the slots. Makes room for `rows` rows in `memory`.
+  VertexRows(const MeshDescription& mesh, std::size_t rows, BlockMemory& memory);
 
-  /// Where slot (0 to 2: coordinate, from 3 on: attribute channel) of the next row goes, and the
-  /// distance to the same slot of the row after it. Doubles if wide, else floats.
+  /// Where a slot of a row goes, and the distance to the same slot of the row after it. Doubles if
+  /// wide, else floats.
   struct Column {
     std::byte* data = nullptr;
     std::size_t stride = 0;
     bool wide = false;
   };
-  Column column(int slot);
-  void set(int slot, double value);
-
-  /// How many rows fit before the block is handed out; > 0.
-  std::size_t room() const { return capacity_ - filled_; }
+  Column column(std::size_t row, int slot);
 
   struct Defect {
-    std::size_t row = 0;  ///< of the rows committed
+    std::size_t row = 0;  ///< from the first one looked at
     int slot = 0;
     double value = 0;
   };
-  /// Ends `rows` <= room() rows. Nothing is taken if one of them has a number that is not finite or
-  /// (if `check_colours`) a colour that is not one of the integers 0 to 255: the first is returned.
-  std::optional<Defect> commit(std::size_t rows, bool check_colours);
+  /// The first number of rows [first, first + count) that is not finite or (if `check_colours`) not
+  /// one of the integers 0 to 255 where a colour must be.
+  std::optional<Defect> find_defect(std::size_t first, std::size_t count, bool check_colours) const;
+
+  /// The first `rows` rows; `first_id`: VertexId of the first.
+  VertexBlock block(std::uint64_t first_id, std::size_t rows) const;
+
+ private:
+  double value_of(std::size_t row, int slot) const;
+
+  AttributeLayout layout_;
+  std::size_t channels_;
+  bool wide_;
+  BlockMemory& memory_;
+};
+
+/// Vertices one by one: a reader sets the slots of the next row, then commits it.
+class VertexBlocks {
+ public:
+  /// `mesh`: its vertex count is how many rows will come at most.
+  VertexBlocks(const MeshDescription& mesh, const VertexVisitor& visit);
+
+  void set(int slot, double value);
+  /// Ends the row, unless it has a defect.
+  std::optional<VertexRows::Defect> commit(bool check_colours);
 
   /// Hands out what is left.
   void finish() { flush(); }
 
  private:
   void flush();
-  std::optional<Defect> find_defect(std::size_t rows, bool check_colours) const;
-  double value_of(std::size_t row, int slot) const;
 
-  AttributeLayout layout_;
-  std::size_t capacity_;  ///< rows of a block
-  std::size_t channels_;
-  bool wide_;
   const VertexVisitor& visit_;
-  std::vector<Vec3f> positions_;
-  std::vector<Vec3d> exact_;
-  std::vector<float> attributes_;
+  BlockMemory memory_;
+  VertexRows rows_;
   std::size_t filled_ = 0;
   std::uint64_t first_ = 0;
 };

@@ -13,6 +13,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace meshhier::mesh_io {
 
@@ -47,13 +48,30 @@ struct FaceCounts {
       0;  ///< dropped: a vertex twice, or a polygon of fewer than three corners
 };
 
+/// Some triangles of consecutive faces. Valid as long as the memory it was read into is not used.
+struct TriangleBlock {
+  std::span<const SourceTriangle> triangles;
+  std::uint64_t faces = 0;  ///< taken; those without a triangle here were degenerate
+  bool whole = false;       ///< all faces of the block were taken
+};
+
+/// What a block is read into; used again for the next one.
+struct BlockMemory {
+  std::vector<std::byte> bytes;
+  std::vector<Vec3f> positions;
+  std::vector<Vec3d> exact;
+  std::vector<float> attributes;
+  std::vector<SourceTriangle> triangles;
+};
+
 using VertexVisitor = std::function<void(const VertexBlock&)>;
 using TriangleVisitor = std::function<void(std::span<const SourceTriangle>)>;
 
 /// Every failure throws Error(input) naming file, byte offset (binary) or line (text), what was
 /// expected and what was found; Error(io) if the file cannot be read. An exception of a visitor
 /// passes through.
-/// Peak memory does not depend on the file. One call at a time; calls may come in any order.
+/// Peak memory does not depend on the file but for 10 bytes each 256 KiB. One call at a time but
+/// for the two that read single blocks; calls may come in any order.
 class MeshSource {
  public:
   virtual ~MeshSource() = default;
@@ -67,6 +85,28 @@ class MeshSource {
   /// (0, i, i + 1), strips unrolled with alternating orientation; every index is < N; degenerate
   /// triangles dropped and counted.
   virtual FaceCounts read_triangles(const TriangleVisitor& visit) = 0;
+
+  /// Blocks of vertices that can be read one by one: 0 unless vertices_in_place.
+  virtual std::uint64_t vertex_blocks() const = 0;
+  /// Reads block `index` of vertex_blocks(); all together are the vertices in file order. Throws
+  /// for the first defect of the block. Thread-safe for different `memory`.
+  virtual VertexBlock read_vertex_block(std::uint64_t index, BlockMemory& memory) const = 0;
+
+  /// Blocks of faces that can be read one by one if all faces before them are triangles: 0 if the
+  /// rows of triangles have no known place.
+  virtual std::uint64_t triangle_blocks() const = 0;
+  /// Reads block `index` of triangle_blocks(), up to the first face that is not a sound triangle.
+  /// What it returns means nothing unless all blocks before are whole. If they are, and it is not
+  /// whole or the last one, read_triangles_from() goes on behind it. Thread-safe for different
+  /// `memory`. Throws Error(io) only.
+  virtual TriangleBlock read_triangle_block(std::uint64_t index, BlockMemory& memory) const = 0;
+  /// As read_triangles() without the first `face` faces, all of which blocks have shown to be
+  /// triangles; counts only what comes from there on.
+  virtual FaceCounts read_triangles_from(std::uint64_t face, const TriangleVisitor& visit) = 0;
+
+  /// The file's storage::FileChecksum: reads what of the file was not read so far. `check` is
+  /// called before each read and may throw.
+  virtual std::uint64_t checksum(const std::function<void()>& check) = 0;
 
   static constexpr std::size_t kBlockSize =
       65536;  ///< 768 KiB of positions: in the L2 cache, large enough to amortise

@@ -1,14 +1,11 @@
 #include "mesh_io/byte_window.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/ply_body.h"
+#include "mesh_io/ply_values.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <cstring>
+#include <optional>
 #include <string>
-#include <type_traits>
-#include <vector>
 
 #include <fmt/format.h>
 
@@ -17,46 +14,11 @@ namespace {
 
 using Role = PlyElementPlan::Role;
 
-/// The value at `bytes`; `Swap` if the file's byte order is not this machine's.
-template <class T, bool Swap>
-T load(const std::byte* bytes) {
-  std::array<std::byte, sizeof(T)> raw_bytes;
-  std::memcpy(raw_bytes.data(), bytes, sizeof(T));
-  if constexpr (Swap)
-    std::reverse(raw_bytes.begin(), raw_bytes.end());
-  return std::bit_cast<T>(raw_bytes);
-}
-
-/// Calls visit(T{}) with the C++ type of `type`.
-template <class Visit>
-auto with_type(PlyType type, Visit visit) {
-  switch (type) {
-    case PlyType::i8:
-      return visit(std::int8_t{});
-    case PlyType::u8:
-      return visit(std::uint8_t{});
-    case PlyType::i16:
-      return visit(std::int16_t{});
-    case PlyType::u16:
-      return visit(std::uint16_t{});
-    case PlyType::i32:
-      return visit(std::int32_t{});
-    case PlyType::u32:
-      return visit(std::uint32_t{});
-    case PlyType::f32:
-      return visit(float{});
-    case PlyType::f64:
-      break;
-  }
-  return visit(double{});
-}
-
 template <bool Swap>
 class BinaryBody final : public PlyBody {
  public:
-  BinaryBody(const storage::File& file, std::uint64_t file_bytes, const PlyPlan& plan,
-             PlyPosition start)
-      : window_(file, file_bytes), check_colours_(plan.check_colours) {
+  BinaryBody(const InputFile& input, const PlyPlan& plan, PlyPosition start)
+      : window_(input), check_colours_(plan.check_colours) {
     vertex_count_ = plan.elements[plan.vertex_element].element.count;
     window_.seek(start.offset);
   }
@@ -64,18 +26,13 @@ class BinaryBody final : public PlyBody {
   PlyPosition position() const override { return {window_.offset(), 0}; }
   void skip(const PlyElementPlan& plan) override;
   void read_vertices(const PlyElementPlan& plan, VertexBlocks& blocks) override;
-  void read_faces(const PlyElementPlan& plan, TriangleBlocks& blocks) override;
+  void read_faces(const PlyElementPlan& plan, std::uint64_t first, TriangleBlocks& blocks) override;
   void expect_end() override;
 
  private:
   struct Row {
     const PlyElementPlan& plan;
     std::uint64_t number;
-  };
-  struct Gathered {
-    int slot = 0;
-    PlyType type{};
-    std::size_t offset = 0;  ///< in the row
   };
 
   [[noreturn]] void fail(std::uint64_t offset, const std::string& message) const {
@@ -84,10 +41,9 @@ class BinaryBody final : public PlyBody {
   void require(const Row& row, const PlyProperty& property, std::uint64_t bytes);
   std::uint64_t take_count(const Row& row, const PlyProperty& property);
   void skip_property(const Row& row, const PlyProperty& property);
-  void read_fixed_vertices(const PlyElementPlan& plan, VertexBlocks& blocks);
   void read_vertex_row(const Row& row, VertexBlocks& blocks);
-  std::uint64_t read_triangle_rows(const PlyElementPlan& plan, std::uint64_t first,
-                                   TriangleBlocks& blocks);
+  std::uint64_t read_triangle_rows(const TriangleRows& rows, std::uint64_t first,
+                                   std::uint64_t count, TriangleBlocks& blocks);
   void read_face_row(const Row& row, TriangleBlocks& blocks);
   void take_corners(const Row& row, const PlyProperty& property, TriangleBlocks& blocks);
 
@@ -157,60 +113,8 @@ void BinaryBody<Swap>::skip(const PlyElementPlan& plan) {
 
 template <bool Swap>
 void BinaryBody<Swap>::read_vertices(const PlyElementPlan& plan, VertexBlocks& blocks) {
-  if (plan.stride) {
-    read_fixed_vertices(plan, blocks);
-    return;
-  }
   for (std::uint64_t i = 0; i < plan.element.count; ++i)
     read_vertex_row({plan, i}, blocks);
-}
-
-template <class T, bool Swap, class Out>
-void gather(const std::byte* from, std::size_t from_stride, VertexBlocks::Column to,
-            std::size_t rows) {
-  for (std::size_t i = 0; i < rows; ++i) {
-    const auto value = static_cast<Out>(load<T, Swap>(from + i * from_stride));
-    std::memcpy(to.data + i * to.stride, &value, sizeof(value));
-  }
-}
-
-/// All rows have one size: takes them batch by batch, each property as one column.
-template <bool Swap>
-void BinaryBody<Swap>::read_fixed_vertices(const PlyElementPlan& plan, VertexBlocks& blocks) {
-  std::vector<Gathered> fields;
-  std::size_t offset = 0;
-  for (std::size_t i = 0; i < plan.slots.size(); ++i) {
-    const PlyType type = plan.element.properties[i].type;
-    if (plan.slots[i] != kSkipped)
-      fields.push_back({plan.slots[i], type, offset});
-    offset += size_of(type);
-  }
-  const std::size_t stride = offset;
-  constexpr std::uint64_t kBatch =
-      2048;  // rows: source and result together stay in the L1/L2 cache
-  for (std::uint64_t done = 0; done < plan.element.count;) {
-    require({plan, done}, plan.element.properties[0], stride);
-    const auto rows = static_cast<std::size_t>(
-        std::min({std::uint64_t{window_.available() / stride}, std::uint64_t{blocks.room()},
-                  plan.element.count - done, kBatch}));
-    for (const Gathered& field : fields) {
-      const VertexBlocks::Column column = blocks.column(field.slot);
-      const std::byte* from = window_.begin() + field.offset;
-      with_type(field.type, [&](auto zero) {
-        using T = decltype(zero);
-        column.wide ? gather<T, Swap, double>(from, stride, column, rows)
-                    : gather<T, Swap, float>(from, stride, column, rows);
-      });
-    }
-    if (const auto bad = blocks.commit(rows, check_colours_)) {
-      const auto field = std::find_if(fields.begin(), fields.end(),
-                                      [&](const Gathered& f) { return f.slot == bad->slot; });
-      fail(window_.offset() + bad->row * stride + field->offset,
-           defect_text(plan, done + bad->row, bad->slot, bad->value));
-    }
-    window_.advance(rows * stride);
-    done += rows;
-  }
 }
 
 template <bool Swap>
@@ -228,56 +132,32 @@ void BinaryBody<Swap>::read_vertex_row(const Row& row, VertexBlocks& blocks) {
                }));
     window_.advance(size_of(property.type));
   }
-  if (const auto bad = blocks.commit(1, check_colours_)) {
+  if (const auto bad = blocks.commit(check_colours_)) {
     fail(start, defect_text(row.plan, row.number, bad->slot, bad->value));
   }
 }
 
-/// The usual faces, `list uchar int` and perhaps scalars around it: takes triangles as long as all
-/// is well, and leaves any other row, the last of the buffer and every error to read_face_row.
-/// Returns the number of the next row.
+/// Takes rows of usual triangles as long as all is well, and leaves any other row, the last of the
+/// buffer and every error to read_face_row. Returns the number of the next row.
 template <bool Swap>
-std::uint64_t BinaryBody<Swap>::read_triangle_rows(const PlyElementPlan& plan, std::uint64_t first,
-                                                   TriangleBlocks& blocks) {
-  std::size_t before = 0;
-  for (std::size_t i = 0; i < plan.corners; ++i)
-    before += size_of(plan.element.properties[i].type);
-  const std::size_t stride = plan.min_row_bytes + 3 * sizeof(std::uint32_t);
-  // A negative int is a uint of 2^31 or more.
-  const bool is_signed = plan.element.properties[plan.corners].type == PlyType::i32;
-  const std::uint64_t limit =
-      is_signed ? std::min(vertex_count_, std::uint64_t{1} << 31) : vertex_count_;
-  std::uint64_t row = first;
-  std::size_t left = window_.available() / stride;
-  const std::byte* at = window_.begin() + before;
-  for (; left > 0 && row < plan.element.count; --left, ++row, at += stride) {
-    if (at[0] != std::byte{3})
-      break;
-    const auto a = load<std::uint32_t, Swap>(at + 1);
-    const auto b = load<std::uint32_t, Swap>(at + 5);
-    const auto c = load<std::uint32_t, Swap>(at + 9);
-    if (std::max({a, b, c}) >= limit)
-      break;
-    blocks.add_triangle_face(a, b, c);
-  }
-  window_.advance((row - first) * stride);
-  return row;
-}
-
-bool has_usual_faces(const PlyElementPlan& plan) {
-  const PlyProperty& corners = plan.element.properties[plan.corners];
-  const auto lists = std::count_if(plan.element.properties.begin(), plan.element.properties.end(),
-                                   [](const PlyProperty& p) { return p.is_list(); });
-  return plan.role == Role::polygons && lists == 1 && corners.count_type == PlyType::u8 &&
-         (corners.type == PlyType::i32 || corners.type == PlyType::u32);
+std::uint64_t BinaryBody<Swap>::read_triangle_rows(const TriangleRows& rows, std::uint64_t first,
+                                                   std::uint64_t count, TriangleBlocks& blocks) {
+  const std::size_t most =
+      std::min<std::uint64_t>(window_.available() / rows.stride, count - first);
+  const std::size_t taken =
+      take_triangles<Swap>(rows, window_.begin(), most,
+                           [&](auto a, auto b, auto c) { blocks.add_triangle_face(a, b, c); });
+  window_.advance(taken * rows.stride);
+  return first + taken;
 }
 
 template <bool Swap>
-void BinaryBody<Swap>::read_faces(const PlyElementPlan& plan, TriangleBlocks& blocks) {
-  const bool usual = has_usual_faces(plan);
-  for (std::uint64_t row = 0; row < plan.element.count; ++row) {
+void BinaryBody<Swap>::read_faces(const PlyElementPlan& plan, std::uint64_t first,
+                                  TriangleBlocks& blocks) {
+  const std::optional<TriangleRows> usual = triangle_rows(plan, vertex_count_);
+  for (std::uint64_t row = first; row < plan.element.count; ++row) {
     if (usual)
-      row = read_triangle_rows(plan, row, blocks);
+      row = read_triangle_rows(*usual, row, plan.element.count, blocks);
     if (row < plan.element.count)
       read_face_row({plan, row}, blocks);
   }
@@ -342,13 +222,11 @@ void BinaryBody<Swap>::expect_end() {
 
 }  // namespace
 
-std::unique_ptr<PlyBody> make_binary_body(const storage::File& file, std::uint64_t file_bytes,
-                                          const PlyPlan& plan, PlyPosition start) {
-  const bool big = plan.encoding == PlyEncoding::big_endian;
-  if (big == (std::endian::native == std::endian::big)) {
-    return std::make_unique<BinaryBody<false>>(file, file_bytes, plan, start);
-  }
-  return std::make_unique<BinaryBody<true>>(file, file_bytes, plan, start);
+std::unique_ptr<PlyBody> make_binary_body(const InputFile& input, const PlyPlan& plan,
+                                          PlyPosition start) {
+  if (is_swapped(plan.encoding))
+    return std::make_unique<BinaryBody<true>>(input, plan, start);
+  return std::make_unique<BinaryBody<false>>(input, plan, start);
 }
 
 }  // namespace meshhier::mesh_io

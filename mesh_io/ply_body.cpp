@@ -1,6 +1,7 @@
 #include "mesh_io/ply_body.h"
 
 #include "mesh_io/input_error.h"
+#include "mesh_io/ply_values.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,6 +35,26 @@ std::string index_text(const PlyElementPlan& plan, std::uint64_t row, std::int64
                        std::uint64_t vertex_count) {
   return fmt::format("expected a vertex index below {}, the number of vertices, in {}, found {}",
                      vertex_count, row_name(plan, row), index);
+}
+
+std::optional<TriangleRows> triangle_rows(const PlyElementPlan& faces, std::uint64_t vertex_count) {
+  const std::vector<PlyProperty>& properties = faces.element.properties;
+  const PlyProperty& corners = properties[faces.corners];
+  const auto lists = std::count_if(properties.begin(), properties.end(),
+                                   [](const PlyProperty& p) { return p.is_list(); });
+  const bool usual = faces.role == PlyElementPlan::Role::polygons && lists == 1 &&
+                     corners.count_type == PlyType::u8 &&
+                     (corners.type == PlyType::i32 || corners.type == PlyType::u32);
+  if (!usual)
+    return std::nullopt;
+  TriangleRows rows;
+  for (std::size_t i = 0; i < faces.corners; ++i)
+    rows.before += size_of(properties[i].type);
+  rows.stride = faces.min_row_bytes + 3 * sizeof(std::uint32_t);
+  // A negative int is a uint of 2^31 or more.
+  rows.limit =
+      corners.type == PlyType::i32 ? std::min(vertex_count, std::uint64_t{1} << 31) : vertex_count;
+  return rows;
 }
 
 }  // namespace meshhier::mesh_io

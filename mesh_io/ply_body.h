@@ -1,9 +1,9 @@
 // The data behind a PLY header, element by element, in binary or in text.
 #pragma once
 
+#include "mesh_io/byte_window.h"
 #include "mesh_io/mesh_blocks.h"
 #include "mesh_io/ply_plan.h"
-#include "storage/file.h"
 
 #include <cstdint>
 #include <memory>
@@ -25,20 +25,23 @@ class PlyBody {
 
   virtual PlyPosition position() const = 0;
   virtual void skip(const PlyElementPlan& plan) = 0;
+  /// Rows without a fixed size; ply_fixed_rows.h reads the others.
   virtual void read_vertices(const PlyElementPlan& plan, VertexBlocks& blocks) = 0;
-  virtual void read_faces(const PlyElementPlan& plan, TriangleBlocks& blocks) = 0;
+  /// position() is that of row `first`.
+  virtual void read_faces(const PlyElementPlan& plan, std::uint64_t first,
+                          TriangleBlocks& blocks) = 0;
   /// Requires that nothing follows but one line end, perhaps behind up to two zeros (binary), or
   /// blanks and blank lines (text).
   virtual void expect_end() = 0;
 };
 
-/// Both refer to all their arguments. Memory: one ByteWindow.
-std::unique_ptr<PlyBody> make_binary_body(const storage::File& file, std::uint64_t file_bytes,
-                                          const PlyPlan& plan, PlyPosition start);
+/// Both refer to the file and the plan. Memory: one ByteWindow.
+std::unique_ptr<PlyBody> make_binary_body(const InputFile& input, const PlyPlan& plan,
+                                          PlyPosition start);
 /// One row is one line, as the format has it: rows that are longer or shorter than the header says
 /// are errors. Numbers that are not read are not looked at.
-std::unique_ptr<PlyBody> make_text_body(const storage::File& file, std::uint64_t file_bytes,
-                                        const PlyPlan& plan, PlyPosition start);
+std::unique_ptr<PlyBody> make_text_body(const InputFile& input, const PlyPlan& plan,
+                                        PlyPosition start);
 
 /// True if `index` restarts a strip: -1, which a uint holds as 2^32 - 1 (no vertex can have it).
 bool is_strip_restart(std::int64_t index, PlyType type);

@@ -31,16 +31,15 @@ IntegerRange range_of(PlyType type) {
 
 class TextBody final : public PlyBody {
  public:
-  TextBody(const storage::File& file, std::uint64_t file_bytes, const PlyPlan& plan,
-           PlyPosition start)
-      : cursor_(file, file_bytes, start.offset, start.line),
+  TextBody(const InputFile& input, const PlyPlan& plan, PlyPosition start)
+      : cursor_(input, start.offset, start.line),
         vertex_count_(plan.elements[plan.vertex_element].element.count),
         check_colours_(plan.check_colours) {}
 
   PlyPosition position() const override { return {cursor_.offset(), cursor_.line()}; }
   void skip(const PlyElementPlan& plan) override;
   void read_vertices(const PlyElementPlan& plan, VertexBlocks& blocks) override;
-  void read_faces(const PlyElementPlan& plan, TriangleBlocks& blocks) override;
+  void read_faces(const PlyElementPlan& plan, std::uint64_t first, TriangleBlocks& blocks) override;
   void expect_end() override;
 
  private:
@@ -177,14 +176,14 @@ void TextBody::read_vertices(const PlyElementPlan& plan, VertexBlocks& blocks) {
       }
     }
     end_row(row);
-    if (const auto bad = blocks.commit(1, check_colours_)) {
+    if (const auto bad = blocks.commit(check_colours_)) {
       fail(defect_text(plan, i, bad->slot, bad->value));
     }
   }
 }
 
-void TextBody::read_faces(const PlyElementPlan& plan, TriangleBlocks& blocks) {
-  for (std::uint64_t i = 0; i < plan.element.count; ++i) {
+void TextBody::read_faces(const PlyElementPlan& plan, std::uint64_t first, TriangleBlocks& blocks) {
+  for (std::uint64_t i = first; i < plan.element.count; ++i) {
     const Row row{plan, i};
     begin_row(row);
     for (std::size_t k = 0; k < plan.element.properties.size(); ++k) {
@@ -231,9 +230,9 @@ void TextBody::expect_end() {
 
 }  // namespace
 
-std::unique_ptr<PlyBody> make_text_body(const storage::File& file, std::uint64_t file_bytes,
-                                        const PlyPlan& plan, PlyPosition start) {
-  return std::make_unique<TextBody>(file, file_bytes, plan, start);
+std::unique_ptr<PlyBody> make_text_body(const InputFile& input, const PlyPlan& plan,
+                                        PlyPosition start) {
+  return std::make_unique<TextBody>(input, plan, start);
 }
 
 }  // namespace meshhier::mesh_io

@@ -17,9 +17,8 @@ class TextCursor {
   /// The longest word: a double written out in full has 1,077 characters.
   static constexpr std::size_t kMaxWordBytes = 4096;
 
-  TextCursor(const storage::File& file, std::uint64_t file_bytes, std::uint64_t offset,
-             std::uint64_t line)
-      : window_(file, file_bytes), line_(line) {
+  TextCursor(const InputFile& input, std::uint64_t offset, std::uint64_t line)
+      : window_(input), line_(line) {
     window_.seek(offset);
   }
 

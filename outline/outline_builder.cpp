@@ -78,6 +78,32 @@ void for_each_run(std::span<const Element> sorted, Visit&& visit) {
   }
 }
 
+// Up to so many numbers are compared with each other: quicker than sorting them.
+constexpr std::size_t kFew = 16;
+
+/// Appends the numbers that are there exactly once, ascending. `numbers`: may be reordered.
+void append_lonely(std::span<std::uint32_t> numbers, std::vector<std::uint32_t>& lonely) {
+  if (numbers.size() <= kFew) {
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      std::size_t same = 0;
+      for (const std::uint32_t other : numbers)
+        same += other == numbers[i] ? 1 : 0;
+      if (same == 1)
+        lonely.push_back(numbers[i]);
+    }
+    if (lonely.size() > 1)
+      std::sort(lonely.begin(), lonely.end());
+    return;
+  }
+  std::sort(numbers.begin(), numbers.end());
+  for (auto run = numbers.begin(); run != numbers.end();) {
+    const auto run_end = std::upper_bound(run, numbers.end(), *run);
+    if (run_end - run == 1)
+      lonely.push_back(*run);
+    run = run_end;
+  }
+}
+
 /// Edges (lower, higher) of two own vertices that exactly one triangle of the tile has. All their
 /// triangles are in the tile, as interior or border triangles. By counting sort: O(triangles) where
 /// vertices have bounded degree.
@@ -103,15 +129,12 @@ std::vector<std::array<std::uint32_t, 2>> own_border_edges(const TileMesh& tile)
   visit_edges([&](std::uint32_t low, std::uint32_t high) { ends[next[low]++] = high; });
 
   std::vector<std::array<std::uint32_t, 2>> result;
+  std::vector<std::uint32_t> lonely;
   for (std::uint32_t low = 0; low < tile.own_count; ++low) {
-    const auto begin = ends.begin() + first[low], end = ends.begin() + first[low + 1];
-    std::sort(begin, end);
-    for (auto run = begin; run != end;) {
-      const auto run_end = std::upper_bound(run, end, *run);
-      if (run_end - run == 1)
-        result.push_back({low, *run});
-      run = run_end;
-    }
+    lonely.clear();
+    append_lonely(std::span(ends).subspan(first[low], first[low + 1] - first[low]), lonely);
+    for (const std::uint32_t high : lonely)
+      result.push_back({low, high});
   }
   return result;
 }
@@ -205,20 +228,28 @@ class Network {
   }
 
   void add_lines(std::span<const LinePiece> pieces) {
-    std::vector<const Point*> points;
-    for (const LinePiece& piece : pieces)
-      points.insert(points.end(), {&piece.a, &piece.b});
-    std::sort(points.begin(), points.end(),
-              [](const Point* x, const Point* y) { return x->key < y->key; });
-    for (const Point* point : points) {
-      if (!keys_.empty() && keys_.back() == point->key)
-        continue;
-      keys_.push_back(point->key);
-      positions_.push_back(point->position);
-    }
+    struct End {
+      const Point* point;
+      std::uint32_t number;  ///< of the piece's two ends
+    };
+    std::vector<End> ends;
+    ends.reserve(2 * pieces.size());
     for (const LinePiece& piece : pieces) {
-      segments_.push_back({number_of(piece.a), number_of(piece.b)});
+      for (const Point* point : {&piece.a, &piece.b})
+        ends.push_back({point, static_cast<std::uint32_t>(ends.size())});
     }
+    std::sort(ends.begin(), ends.end(),
+              [](const End& x, const End& y) { return x.point->key < y.point->key; });
+    std::vector<std::uint32_t> node(ends.size());
+    for (const auto& [point, number] : ends) {
+      if (keys_.empty() || keys_.back() != point->key) {
+        keys_.push_back(point->key);
+        positions_.push_back(point->position);
+      }
+      node[number] = count() - 1;
+    }
+    for (std::size_t i = 0; i < node.size(); i += 2)
+      segments_.push_back({node[i], node[i + 1]});
   }
 
   void add_crossing_borders(std::span<const CornerEdge> edges) {
@@ -371,18 +402,13 @@ Selection select(const Lines& lines, const OutlineOptions& options) {
 
 }  // namespace
 
-struct OutlineBuilder::Parts {
-  std::vector<CornerTriangle> triangles;  ///< border triangles, each once
-  std::vector<SectorBorder> borders;
-  std::size_t border_edges = 0;  ///< of all sectors
+struct OutlineBuilder::Sector::Content {
+  std::vector<CornerTriangle> triangles;  ///< border triangles of which it is the first, sorted
+  SectorBorder border;
 };
 
-OutlineBuilder::OutlineBuilder() : parts_(std::make_unique<Parts>()) {}
-OutlineBuilder::OutlineBuilder(OutlineBuilder&&) noexcept = default;
-OutlineBuilder& OutlineBuilder::operator=(OutlineBuilder&&) noexcept = default;
-OutlineBuilder::~OutlineBuilder() = default;
-
-void OutlineBuilder::add(std::uint32_t index, const TileMesh& tile) {
+OutlineBuilder::Sector::Sector(std::uint32_t index, const TileMesh& tile)
+    : content_(new Content{{}, border_of(index, tile)}) {
   const auto corner = [&](std::uint32_t vertex) -> Corner {
     const TileVertex v{vertex};
     const std::uint32_t sector = tile.is_own(v) ? index : tile.ghost(v).tile;
@@ -397,25 +423,47 @@ void OutlineBuilder::add(std::uint32_t index, const TileMesh& tile) {
               [](const Corner& a, const Corner& b) { return a.key < b.key; });
     // Every tile it touches has it; the lowest brings it.
     if (sector_of(triangle[0].key) == index)
-      parts_->triangles.push_back(triangle);
+      content_->triangles.push_back(triangle);
   }
-  parts_->borders.push_back(border_of(index, tile));
-  parts_->border_edges += parts_->borders.back().edges.size();
+  std::sort(content_->triangles.begin(), content_->triangles.end(), before<3>);
+}
+
+OutlineBuilder::Sector::Sector(Sector&&) noexcept = default;
+OutlineBuilder::Sector& OutlineBuilder::Sector::operator=(Sector&&) noexcept = default;
+OutlineBuilder::Sector::~Sector() = default;
+
+struct OutlineBuilder::Parts {
+  std::vector<Sector::Content> sectors;
+  std::size_t edge_count = 0;
+};
+
+OutlineBuilder::OutlineBuilder() : parts_(std::make_unique<Parts>()) {}
+OutlineBuilder::OutlineBuilder(OutlineBuilder&&) noexcept = default;
+OutlineBuilder& OutlineBuilder::operator=(OutlineBuilder&&) noexcept = default;
+OutlineBuilder::~OutlineBuilder() = default;
+
+void OutlineBuilder::add(Sector sector) {
+  parts_->edge_count += sector.content_->triangles.size() + sector.content_->border.edges.size();
+  parts_->sectors.push_back(std::move(*sector.content_));
 }
 
 std::size_t OutlineBuilder::edge_count() const {
-  return parts_->triangles.size() + parts_->border_edges;
+  return parts_->edge_count;
 }
 
 OutlineResult OutlineBuilder::finish(const OutlineOptions& options) const {
   assert(options.tolerance > 0 && options.diagonal >= 0);
-  std::vector<CornerTriangle> triangles = parts_->triangles;
-  std::sort(triangles.begin(), triangles.end(), before<3>);
+  std::vector<const Sector::Content*> sectors;
+  for (const Sector::Content& sector : parts_->sectors)
+    sectors.push_back(&sector);
+  std::sort(sectors.begin(), sectors.end(),
+            [](const auto* a, const auto* b) { return a->border.sector < b->border.sector; });
   std::vector<const SectorBorder*> borders;
-  for (const SectorBorder& border : parts_->borders)
-    borders.push_back(&border);
-  std::sort(borders.begin(), borders.end(),
-            [](const auto* a, const auto* b) { return a->sector < b->sector; });
+  std::vector<CornerTriangle> triangles;  // sorted: those of a sector come before the next one's
+  for (const Sector::Content* sector : sectors) {
+    borders.push_back(&sector->border);
+    triangles.insert(triangles.end(), sector->triangles.begin(), sector->triangles.end());
+  }
 
   Network network(borders);
   network.add_lines(sector_lines(triangles));

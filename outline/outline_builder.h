@@ -53,14 +53,29 @@ inline constexpr double kCoarsestTolerance = 1.0 / 64;
 /// not depend on the order of add().
 class OutlineBuilder {
  public:
+  /// What makes lines of one sector.
+  class Sector {
+   public:
+    /// `index`: the NodeId::index of the sector's tile; ghosts refer to others by theirs. O(t log
+    /// b), t its triangles, b those on its border.
+    Sector(std::uint32_t index, const TileMesh& tile);
+    Sector(Sector&&) noexcept;
+    Sector& operator=(Sector&&) noexcept;
+    ~Sector();
+
+   private:
+    friend class OutlineBuilder;
+    struct Content;
+    std::unique_ptr<Content> content_;
+  };
+
   OutlineBuilder();
   OutlineBuilder(OutlineBuilder&&) noexcept;
   OutlineBuilder& operator=(OutlineBuilder&&) noexcept;
   ~OutlineBuilder();
 
-  /// Adds the tile of one sector; `index` is its NodeId::index, ghosts refer to others by theirs.
-  /// All sectors must be of one level, each added once. Keeps only what makes lines. O(triangles).
-  void add(std::uint32_t index, const TileMesh& tile);
+  /// All sectors must be of one level, each added once.
+  void add(Sector sector);
 
   /// What is held so far: border triangles, and the sectors' edges with one triangle; some 200
   /// bytes each until finish() returns.

@@ -9,7 +9,7 @@
 namespace meshhier::partition {
 namespace {
 
-// A graph is split into the nodes so many levels below in one go, and these again; or one level
+// A surface is split into the nodes so many levels below in one go, and these again; or one level
 // more if that is all.
 constexpr int kGraphLevels = 5;
 
@@ -78,23 +78,23 @@ class PlaneSplitter {
 class SurfaceSplitter {
  public:
   SurfaceSplitter(const Tree& tree, std::size_t vertex_count)
-      : tree_(tree), partition_of_(vertex_count), place_(vertex_count) {}
+      : tree_(tree), partition_of_(vertex_count) {}
 
-  std::vector<PartitionId> run(NodeId node, const Graph& graph) {
+  std::vector<PartitionId> run(NodeId node, const Surface& surface) {
     std::vector<std::uint32_t> vertices(partition_of_.size());
     std::iota(vertices.begin(), vertices.end(), 0U);
-    split(node, graph, vertices);
+    split(node, surface, vertices);
     return std::move(partition_of_);
   }
 
  private:
-  /// `vertices`: of the chunk, one per vertex of `graph`.
-  void split(NodeId node, const Graph& graph, std::span<const std::uint32_t> vertices) {
+  /// `vertices`: of the chunk, one per vertex of `surface`.
+  void split(NodeId node, const Surface& surface, std::span<const std::uint32_t> vertices) {
     const std::vector<NodeId> nodes = nodes_below(node);
     std::vector<std::uint32_t> sizes;
     for (const NodeId& below : nodes)
       sizes.push_back(static_cast<std::uint32_t>(tree_.ranks(below).size()));
-    const std::vector<std::uint32_t> part_of = split_graph(graph, sizes);
+    const std::vector<std::uint32_t> part_of = split_surface(surface, sizes);
     if (tree_.is_partition(nodes[0])) {
       for (std::size_t i = 0; i < vertices.size(); ++i)
         partition_of_[vertices[i]] = static_cast<PartitionId>(nodes[part_of[i]].index);
@@ -102,13 +102,11 @@ class SurfaceSplitter {
     }
     std::vector<std::vector<std::uint32_t>> members(nodes.size());
     for (std::uint32_t i = 0; i < vertices.size(); ++i)
-      members[part_of[i]].push_back(i);
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      const Graph part = subgraph(graph, members[i], place_);
-      for (std::uint32_t& v : members[i])
-        v = vertices[v];
-      split(nodes[i], part, members[i]);
-    }
+      members[part_of[i]].push_back(vertices[i]);
+    const std::vector<Surface> parts =
+        separate(surface, part_of, static_cast<std::uint32_t>(nodes.size()));
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      split(nodes[i], parts[i], members[i]);
   }
 
   /// The nodes a graph is split into at once.
@@ -130,7 +128,6 @@ class SurfaceSplitter {
 
   const Tree& tree_;
   std::vector<PartitionId> partition_of_;
-  std::vector<std::uint32_t> place_;  ///< subgraph()'s workspace
 };
 
 }  // namespace
@@ -155,9 +152,9 @@ std::vector<PartitionId> split_chunk(const ChunkMesh& chunk, const Tree& tree, A
   if (axis == Axis::compactness) {
     const auto first = static_cast<std::uint32_t>(tree.ranks(chunk.node).begin);
     // Triangles cut off by the chunk's own border matter to no split.
-    const Graph graph = surface_graph(chunk.vertices.positions, chunk.triangles, first);
-    if (!graph.arcs.empty())
-      return SurfaceSplitter(tree, graph.size()).run(chunk.node, graph);
+    const Surface surface = make_surface(chunk.vertices.positions, chunk.triangles, first);
+    if (!surface.triangles.empty())
+      return SurfaceSplitter(tree, surface.size()).run(chunk.node, surface);
   }
   return PlaneSplitter(chunk, tree, axis).run(chunk.node);
 }

@@ -42,7 +42,7 @@ class ChunkMap {
 /// Splits a chunk down to partitions of exact sizes. Returns each vertex's partition. `longest`
 /// splits at exact medians; `compactness` along short lines on the surface (graph_split.h), at
 /// medians if no triangle lies within the chunk. Independent of the order of the triangles.
-/// O(n log n) in its vertices and triangles. Holds up to 48 bytes a vertex and 48 a triangle
+/// O(n log n) in its vertices and triangles. Holds up to 40 bytes a vertex and 56 a triangle
 /// besides.
 std::vector<PartitionId> split_chunk(const ChunkMesh& chunk, const Tree& tree, Axis axis);
 

@@ -1,6 +1,8 @@
 #include "partition/coarsen.h"
 
 #include <algorithm>
+#include <memory>
+#include <numeric>
 
 namespace meshhier::partition {
 namespace {
@@ -11,7 +13,55 @@ constexpr std::uint32_t kNone = 0xffffffff;
 // no hub makes a cluster that could not be balanced.
 constexpr std::uint32_t kMostStar = 10;
 
+/// Each vertex's triangles: those of v are [first[v], first[v + 1]) of `triangles`, in any order.
+struct Incidence {
+  std::vector<std::uint32_t> first;
+  std::unique_ptr<std::uint32_t[]> triangles;
+
+  explicit Incidence(const Surface& surface)
+      : first(surface.size() + 2),
+        triangles(std::make_unique_for_overwrite<std::uint32_t[]>(3 * surface.triangles.size())) {
+    // Counted two places on, summed, and moved one place back while they are filled in.
+    for (const LocalTriangle& t : surface.triangles) {
+      for (const std::uint32_t v : t)
+        ++first[v + 2];
+    }
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    for (std::uint32_t i = 0; i < surface.triangles.size(); ++i) {
+      for (const std::uint32_t v : surface.triangles[i])
+        triangles[first[v + 1]++] = i;
+    }
+  }
+};
+
 }  // namespace
+
+Clusters star_clusters(const Surface& surface) {
+  const Incidence incidence(surface);
+  Clusters clusters{std::vector<std::uint32_t>(surface.size(), kNone), 0};
+  std::vector<std::uint32_t> star;
+  for (std::uint32_t v = 0; v < surface.size(); ++v) {
+    if (clusters.of[v] != kNone)
+      continue;
+    clusters.of[v] = clusters.count;
+    star.clear();
+    for (std::uint32_t i = incidence.first[v]; i < incidence.first[v + 1]; ++i) {
+      for (const std::uint32_t u : surface.triangles[incidence.triangles[i]]) {
+        if (clusters.of[u] != kNone)
+          continue;
+        clusters.of[u] = clusters.count;
+        star.push_back(u);
+      }
+    }
+    if (star.size() > kMostStar) {
+      std::nth_element(star.begin(), star.begin() + kMostStar, star.end());
+      for (std::size_t i = kMostStar; i < star.size(); ++i)
+        clusters.of[star[i]] = kNone;
+    }
+    ++clusters.count;
+  }
+  return clusters;
+}
 
 Clusters star_clusters(const Graph& graph) {
   Clusters clusters{std::vector<std::uint32_t>(graph.size(), kNone), 0};

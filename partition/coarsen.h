@@ -18,6 +18,9 @@ struct Clusters {
 /// sixth of a surface's vertices is left. What has no arc stays alone. O(n + m).
 Clusters star_clusters(const Graph& graph);
 
+/// The same on a surface's vertices and edges. O(n + t). Holds 12 bytes a vertex and a triangle.
+Clusters star_clusters(const Surface& surface);
+
 /// Pairs of neighbours, joined by the heaviest edges for their weight (Karypis & Kumar 1998; the
 /// rating of Holtgrewe, Sanders & Schulz 2010); vertices without a free neighbour are paired with
 /// each other if their heaviest neighbour is the same. No cluster weighs more than `most` unless

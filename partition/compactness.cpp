@@ -2,6 +2,7 @@
 
 #include <array>
 #include <numbers>
+#include <vector>
 
 namespace meshhier::partition {
 namespace {
@@ -19,27 +20,32 @@ double border_length(const std::array<Vec3d, 3>& corners, const std::array<bool,
   return sum;
 }
 
+double double_area_of(Vec3d a, Vec3d b, Vec3d c) {
+  return length(cross(b - a, c - a));
+}
+
 }  // namespace
 
 double compactness(const TileMesh& tile) {
+  const std::vector<Vec3f>& positions = tile.vertices.positions;
   double perimeter = 0;
-  double area = 0;
-  const auto add = [&](const Triangle& t) {
+  double double_area = 0;
+  for (const Triangle& t : tile.interior) {
+    double_area += double_area_of(to_double(positions[raw(t[0])]), to_double(positions[raw(t[1])]),
+                                  to_double(positions[raw(t[2])]));
+  }
+  for (const Triangle& t : tile.border) {
     std::array<Vec3d, 3> corners;
     std::array<bool, 3> own;
     for (int k = 0; k < 3; ++k) {
-      corners[k] = to_double(tile.vertices.positions[raw(t[k])]);
+      corners[k] = to_double(positions[raw(t[k])]);
       own[k] = tile.is_own(t[k]);
     }
-    area += length(cross(corners[1] - corners[0], corners[2] - corners[0])) / 2 *
-            (own[0] + own[1] + own[2]) / 3;
+    double_area +=
+        double_area_of(corners[0], corners[1], corners[2]) * (own[0] + own[1] + own[2]) / 3;
     perimeter += border_length(corners, own);
-  };
-  for (const Triangle& t : tile.interior)
-    add(t);
-  for (const Triangle& t : tile.border)
-    add(t);
-  return area > 0 ? perimeter * perimeter / (4 * std::numbers::pi * area) : 0;
+  }
+  return double_area > 0 ? perimeter * perimeter / (2 * std::numbers::pi * double_area) : 0;
 }
 
 }  // namespace meshhier::partition

@@ -1,10 +1,10 @@
 #include "partition/graph.h"
 
-#include "hierarchy/bounds.h"
-
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <memory>
 #include <numeric>
 
 namespace meshhier::partition {
@@ -18,88 +18,37 @@ constexpr double kMeanSteps = 512;
 // no length, and links, far below 2^30. Then twice any weight fits an int32.
 constexpr double kMostSteps = 536870912;
 
-// Lines are summed as integers, so that any order gives the same mean: parts of the diagonal.
-constexpr double kDiagonalParts = 1099511627776;  // 2^40; times 2^22 lines fits 2^63
+// Lines are summed as integers, so that any order gives the same mean: parts of a sixth of the
+// diagonal, at most two whole ones a line.
+constexpr double kDiagonalParts = 274877906944;  // 2^38; twice for 2^22 lines fits 2^63
 
-constexpr std::uint64_t mix(std::uint64_t x) {
-  x = (x ^ (x >> 32)) * 0xd6e8feb86659fd93ULL;
-  return x ^ (x >> 32);
-}
-
-constexpr std::uint64_t hash(const LocalTriangle& t) {
-  return mix(mix(mix(t[0] + 1) + t[1]) + t[2]);
-}
-
-/// The same corners from the smallest on.
-LocalTriangle turned(const LocalTriangle& t) {
-  if (t[1] < t[0] && t[1] < t[2])
-    return {t[1], t[2], t[0]};
-  return t[2] < t[0] && t[2] < t[1] ? LocalTriangle{t[2], t[0], t[1]} : t;
-}
-
-/// The triangles of a mesh whose vertices are called first, first + 1, ...
-struct TriangleView {
-  std::span<const LocalTriangle> triangles;
-  std::uint32_t first, vertex_count;
-
-  /// Those without other corners, numbered from 0.
-  template <class Visit>
-  void for_each(Visit&& visit) const {
-    for (const LocalTriangle& t : triangles) {
-      const LocalTriangle local{t[0] - first, t[1] - first, t[2] - first};  // wraps around below it
-      if (local[0] < vertex_count && local[1] < vertex_count && local[2] < vertex_count)
-        visit(local);
-    }
-  }
-};
-
-/// No more than `most` distinct ones of the `count` there are, chosen by their corners alone.
-std::vector<LocalTriangle> choice_of(const TriangleView& view, std::size_t count,
-                                     std::size_t most) {
-  std::vector<LocalTriangle> chosen;
-  chosen.reserve(count);
-  view.for_each([&](const LocalTriangle& t) { chosen.push_back(turned(t)); });
-  std::sort(chosen.begin(), chosen.end(), [](const LocalTriangle& a, const LocalTriangle& b) {
-    const std::uint64_t hash_a = hash(a), hash_b = hash(b);
-    return hash_a != hash_b ? hash_a < hash_b : a < b;
-  });
-  chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
-  chosen.resize(std::min(chosen.size(), most));
-  chosen.shrink_to_fit();
-  return chosen;
-}
-
-/// Positions in the unit cube, so that no length overflows or vanishes as a float.
-std::vector<Vec3f> in_unit_cube(std::span<const Vec3f> positions) {
-  const Bounds bounds = bounds_of(positions);
-  const double size = diagonal(bounds);
-  const double scale = size > 0 ? 1 / size : 0;
-  const Vec3d low = to_double(bounds.min);
-  std::vector<Vec3f> unit(positions.size());
-  std::transform(positions.begin(), positions.end(), unit.begin(),
-                 [&](const Vec3f& p) { return to_float((to_double(p) - low) * scale); });
-  return unit;
-}
-
-/// Builds the arcs of a surface's graph.
+/// Builds the arcs between groups of a surface's vertices.
 class ArcBuilder {
  public:
-  ArcBuilder(std::span<const Vec3f> unit, const TriangleView& view) : first_(unit.size() + 1) {
-    view.for_each([&](const LocalTriangle& t) {
-      for (int k = 0; k < 3; ++k)
-        ++first_[std::min(t[k], t[(k + 1) % 3]) + 1];
-    });
-    std::partial_sum(first_.begin(), first_.end(), first_.begin());
-    edges_.resize(first_.back());
+  ArcBuilder(const Surface& surface, std::span<const std::uint32_t> group_of, std::uint32_t count)
+      : surface_(surface), count_(count), first_(std::size_t{count} + 2) {
+    find_crossings(group_of);
+    // Edges within a group go to a row of their own behind the others, to spare branches.
+    for (const Crossing& crossing : crossings()) {
+      const auto [a, b, c] = crossing.group;
+      ++first_[row_of(a, b) + 1];
+      ++first_[row_of(b, c) + 1];
+      ++first_[row_of(c, a) + 1];
+    }
+    first_.back() = 0;
+    std::partial_sum(first_.begin(), first_.end() - 1, first_.begin());
+    edges_ = std::make_unique_for_overwrite<Graph::Arc[]>(std::size_t{first_[count]} + 1);
     end_.assign(first_.begin(), first_.end() - 1);
-    view.for_each([&](const LocalTriangle& t) { add_edges_of(t, unit); });
+    for (const Crossing& crossing : crossings())
+      add_edges(crossing);
+    end_.pop_back();
+    crossings_.reset();
   }
 
   void run(Graph& graph) {
     merge_rows();
-    const auto count = static_cast<std::uint32_t>(end_.size());
-    graph.first.assign(count + 1, 0);
-    for (std::uint32_t v = 0; v < count; ++v) {
+    graph.first.assign(count_ + 1, 0);
+    for (std::uint32_t v = 0; v < count_; ++v) {
       for (std::uint32_t i = first_[v]; i < end_[v]; ++i)
         ++graph.first[edges_[i].to + 1];
       graph.first[v + 1] += end_[v] - first_[v];
@@ -108,37 +57,68 @@ class ArcBuilder {
     graph.arcs.resize(graph.first.back());
     // Rows come out ascending: first all arcs to lower vertices, by vertex ...
     std::vector<std::uint32_t> next(graph.first.begin(), graph.first.end() - 1);
-    for (std::uint32_t v = 0; v < count; ++v) {
+    for (std::uint32_t v = 0; v < count_; ++v) {
       for (std::uint32_t i = first_[v]; i < end_[v]; ++i)
         graph.arcs[next[edges_[i].to]++] = {v, edges_[i].weight};
     }
     // ... then, from these, all arcs to higher ones. What is next in a row ends its lower part.
-    for (std::uint32_t v = 0; v < count; ++v) {
+    for (std::uint32_t v = 0; v < count_; ++v) {
       for (std::uint32_t i = graph.first[v], end = next[v]; i < end; ++i)
         graph.arcs[next[graph.arcs[i].to]++] = {v, graph.arcs[i].weight};
     }
   }
 
  private:
-  /// Puts each edge into the row of its lower end, with the bits of its line's length in parts of
-  /// the diagonal for a weight.
-  void add_edges_of(const LocalTriangle& t, std::span<const Vec3f> unit) {
-    const std::array<Vec3f, 3> p{unit[t[0]], unit[t[1]], unit[t[2]]};
-    for (int k = 0; k < 3; ++k) {
-      const int k1 = (k + 1) % 3, k2 = (k + 2) % 3;
-      // Midpoint less centroid: (a + b) / 2 - (a + b + c) / 3.
-      const float line = length(p[k] + p[k1] - p[k2] * 2.0F) / 6;
-      sum_ += static_cast<std::int64_t>(double{line} * kDiagonalParts);
-      edges_[end_[std::min(t[k], t[k1])]++] = {std::max(t[k], t[k1]),
-                                               std::bit_cast<std::uint32_t>(line)};
+  /// A triangle with corners in several groups.
+  struct Crossing {
+    std::uint32_t triangle;
+    std::array<std::uint32_t, 3> group;
+  };
+
+  std::span<const Crossing> crossings() const { return {crossings_.get(), crossing_count_}; }
+
+  void find_crossings(std::span<const std::uint32_t> group_of) {
+    crossings_ = std::make_unique_for_overwrite<Crossing[]>(surface_.triangles.size() + 1);
+    for (std::uint32_t i = 0; i < surface_.triangles.size(); ++i) {
+      const LocalTriangle& t = surface_.triangles[i];
+      const std::uint32_t a = group_of[t[0]], b = group_of[t[1]], c = group_of[t[2]];
+      crossings_[crossing_count_] = {i, {a, b, c}};
+      crossing_count_ += static_cast<std::uint32_t>(a != b) | static_cast<std::uint32_t>(b != c);
     }
+  }
+
+  /// Of an edge between two groups: the lower one; `count_` within a group.
+  std::uint32_t row_of(std::uint32_t a, std::uint32_t b) const {
+    return a == b ? count_ : std::min(a, b);
+  }
+
+  void add_edges(const Crossing& crossing) {
+    const LocalTriangle& t = surface_.triangles[crossing.triangle];
+    const Vec3f p = surface_.positions[t[0]], q = surface_.positions[t[1]],
+                r = surface_.positions[t[2]];
+    const auto [a, b, c] = crossing.group;
+    add_edge(a, b, p + q - r * 2.0F);
+    add_edge(b, c, q + r - p * 2.0F);
+    add_edge(c, a, r + p - q * 2.0F);
+  }
+
+  /// Puts an edge into the row of its lower end, with the bits of its line's length in sixths of
+  /// the diagonal for a weight. `line`: from centroid to midpoint, six times; (a + b) / 2
+  /// less (a + b + c) / 3 is (a + b - 2 c) / 6.
+  void add_edge(std::uint32_t a, std::uint32_t b, Vec3f line) {
+    const float size = std::sqrt(dot(line, line));
+    const std::uint32_t row = row_of(a, b);
+    const std::uint32_t counts = row != count_ ? 1 : 0;
+    sum_ += static_cast<std::int64_t>(double{size} * kDiagonalParts) & -std::int64_t{counts};
+    edges_[end_[row]] = {std::max(a, b), std::bit_cast<std::uint32_t>(size)};
+    end_[row] += counts;
   }
 
   /// Multiply a length with it to get steps.
   float steps() const {
     if (sum_ == 0)
       return 0;
-    const auto count = static_cast<double>(edges_.size());
+    const auto count = static_cast<double>(first_[count_]);
     const double mean = static_cast<double>(sum_) / kDiagonalParts / count;
     return static_cast<float>(std::min(kMeanSteps, kMostSteps / count) / mean);
   }
@@ -146,15 +126,13 @@ class ArcBuilder {
   /// Leaves one edge to each neighbour, weighing its lines' steps.
   void merge_rows() {
     const float scale = steps();
-    std::vector<std::uint32_t> place(end_.size());  // where a vertex is in the row, if it is
+    std::vector<std::uint32_t> place(end_.size());  // where a group is in the row, if it is
     for (std::uint32_t v = 0; v < end_.size(); ++v) {
       std::uint32_t end = first_[v];
       for (std::uint32_t i = first_[v]; i < end_[v]; ++i) {
         const auto [to, bits] = edges_[i];
         const std::uint32_t weight =
             std::max(1U, static_cast<std::uint32_t>(std::bit_cast<float>(bits) * scale));
-        if (to == v)  // a triangle with two equal corners
-          continue;
         const std::uint32_t at = place[to];
         if (at >= first_[v] && at < end && edges_[at].to == to) {
           edges_[at].weight += weight;
@@ -167,9 +145,13 @@ class ArcBuilder {
     }
   }
 
+  const Surface& surface_;
+  std::uint32_t count_;
+  std::unique_ptr<Crossing[]> crossings_;
+  std::size_t crossing_count_ = 0;
   std::vector<std::uint32_t> first_;  ///< rows of the lower ends
   std::vector<std::uint32_t> end_;
-  std::vector<Graph::Arc> edges_;
+  std::unique_ptr<Graph::Arc[]> edges_;
   std::int64_t sum_ = 0;
 };
 
@@ -237,23 +219,23 @@ void add_edges(Graph& graph, std::span<const std::array<std::uint32_t, 2>> edges
 
 }  // namespace
 
-Graph surface_graph(std::span<const Vec3f> positions, std::span<const LocalTriangle> triangles,
-                    std::uint32_t first) {
+Graph surface_graph(const Surface& surface, std::span<const std::uint32_t> group_of,
+                    std::uint32_t count) {
   Graph graph;
-  graph.center = in_unit_cube(positions);
-  graph.weight.assign(positions.size(), 1);
-  TriangleView view{triangles, first, graph.size()};
-  std::vector<LocalTriangle> chosen;
-  if (triangles.size() > kMostTriangles * positions.size()) {
-    std::size_t count = 0;
-    view.for_each([&](const LocalTriangle&) { ++count; });
-    if (count > kMostTriangles * positions.size()) {
-      chosen = choice_of(view, count, kMostTriangles * positions.size());
-      view = {chosen, 0, graph.size()};
-    }
+  graph.weight.assign(count, 0);
+  graph.center.resize(count);
+  for (std::uint32_t v = 0; v < surface.size(); ++v) {
+    ++graph.weight[group_of[v]];
+    graph.center[group_of[v]] = surface.positions[v];
   }
-  ArcBuilder(graph.center, view).run(graph);
+  ArcBuilder(surface, group_of, count).run(graph);
   return graph;
+}
+
+Graph surface_graph(const Surface& surface) {
+  std::vector<std::uint32_t> alone(surface.size());
+  std::iota(alone.begin(), alone.end(), 0U);
+  return surface_graph(surface, alone, surface.size());
 }
 
 Graph contract(const Graph& graph, std::span<const std::uint32_t> cluster_of, std::uint32_t count) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
 
 namespace meshhier::partition {
 namespace {
@@ -36,12 +37,15 @@ struct CoarseLevel {
   std::vector<std::uint32_t> cluster_of;  ///< of the next finer graph's vertices
 };
 
-std::vector<CoarseLevel> coarsen(const Graph& graph, std::uint32_t wanted) {
+/// `star_levels`: so many times stars are taken. `linked`: the graph has no components to link.
+std::vector<CoarseLevel> coarsen(const Graph& graph, std::uint32_t wanted, std::size_t star_levels,
+                                 bool linked) {
   std::vector<CoarseLevel> levels;
-  const std::uint32_t most = std::max(1U, graph.size() / wanted * 3 / 2);
-  bool linked = false;
+  const std::uint64_t weight =
+      std::accumulate(graph.weight.begin(), graph.weight.end(), std::uint64_t{0});
+  const auto most = static_cast<std::uint32_t>(std::max<std::uint64_t>(1, weight / wanted * 3 / 2));
   for (const Graph* finest = &graph; finest->size() > wanted;) {
-    Clusters clusters = levels.size() < kStarLevels && finest->size() / kStarShare > wanted
+    Clusters clusters = levels.size() < star_levels && finest->size() / kStarShare > wanted
                             ? star_clusters(*finest)
                             : matched_pairs(*finest, most);
     const bool stalled = finest->size() - clusters.count < finest->size() / kStalled;
@@ -75,6 +79,81 @@ Partition project(const Partition& coarse, std::span<const std::uint32_t> cluste
   return fine;
 }
 
+/// Refines parts of a coarse graph, whose vertices need not fit their sizes exactly.
+void refine_coarsely(const Graph& graph, std::span<const std::uint32_t> sizes, Partition& parts,
+                     RefineCounts& done) {
+  Refiner refiner(graph, parts.part_of, sizes, parts.boundary);
+  const std::int64_t heaviest = *std::max_element(graph.weight.begin(), graph.weight.end());
+  refiner.refine_all(kCoarseRounds, {2 * heaviest, 2 * heaviest});
+  done += refiner.counts();
+  parts.boundary = refiner.boundary();
+}
+
+/// Makes sizes exact, then refines; false if that takes vertices beyond `reach`.
+bool refine_exactly(const Graph& graph, std::span<const std::uint32_t> sizes, Reach reach,
+                    std::span<std::uint32_t> part_of, std::span<const char> look_at,
+                    RefineCounts& done) {
+  Refiner refiner(graph, part_of, sizes, look_at);
+  const bool exact = refiner.balance_exactly(reach);
+  if (exact)
+    refiner.refine_all(kRounds, {0, 2});  // one vertex ahead of its exchange
+  done += refiner.counts();
+  return exact;
+}
+
+/// Parts refined on graphs coarser than this one.
+Partition split_coarsely(const Graph& graph, std::span<const std::uint32_t> sizes,
+                         std::size_t star_levels, bool linked, RefineCounts& done) {
+  const std::size_t wanted = std::min<std::size_t>(kVerticesPerPart * sizes.size(), graph.size());
+  std::vector<CoarseLevel> levels =
+      coarsen(graph, static_cast<std::uint32_t>(wanted), star_levels, linked);
+  const Graph& coarsest = levels.empty() ? graph : levels.back().graph;
+  Partition parts{bisect_recursively(coarsest, sizes, done), std::vector<char>(coarsest.size(), 1)};
+  for (; !levels.empty(); levels.pop_back()) {
+    refine_coarsely(levels.back().graph, sizes, parts, done);
+    parts = project(parts, levels.back().cluster_of);
+  }
+  return parts;
+}
+
+/// Splits clusters of a surface's vertices: parts of the surface, near their sizes.
+Partition split_clusters(const Surface& surface, const Clusters& clusters,
+                         std::span<const std::uint32_t> sizes, RefineCounts& done) {
+  Graph graph = surface_graph(surface, clusters.of, clusters.count);
+  const bool linked = graph.size() < kLinked;
+  if (linked)
+    link_components(graph);
+  Partition parts = split_coarsely(graph, sizes, kStarLevels - 1, linked, done);
+  refine_coarsely(graph, sizes, parts, done);
+  return project(parts, clusters.of);
+}
+
+/// Refines parts of a surface in the graph of its boundary vertices. False if sizes cannot be made
+/// exact within `reach`.
+bool refine_boundary(const Surface& surface, std::span<const std::uint32_t> sizes, Reach reach,
+                     Partition& parts, RefineCounts& done) {
+  std::vector<std::uint32_t> group_of(surface.size()), part_of;
+  for (std::uint32_t v = 0; v < surface.size(); ++v) {
+    if (parts.boundary[v] == 0)
+      continue;
+    group_of[v] = static_cast<std::uint32_t>(part_of.size());
+    part_of.push_back(parts.part_of[v]);
+  }
+  const auto movable = static_cast<std::uint32_t>(part_of.size());
+  for (std::uint32_t v = 0; v < surface.size(); ++v) {
+    if (parts.boundary[v] == 0)
+      group_of[v] = movable + parts.part_of[v];
+  }
+  for (std::uint32_t part = 0; part < sizes.size(); ++part)
+    part_of.push_back(part);
+  const Graph graph = surface_graph(surface, group_of, static_cast<std::uint32_t>(part_of.size()));
+  if (!refine_exactly(graph, sizes, reach, part_of, std::vector<char>(movable, 1), done))
+    return false;
+  for (std::uint32_t v = 0; v < surface.size(); ++v)
+    parts.part_of[v] = part_of[group_of[v]];
+  return true;
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> split_graph(const Graph& graph, std::span<const std::uint32_t> sizes,
@@ -83,23 +162,26 @@ std::vector<std::uint32_t> split_graph(const Graph& graph, std::span<const std::
   if (sizes.size() == 1)
     return std::vector<std::uint32_t>(graph.size());
   RefineCounts done;
-  const std::size_t wanted = std::min<std::size_t>(kVerticesPerPart * sizes.size(), graph.size());
-  std::vector<CoarseLevel> levels = coarsen(graph, static_cast<std::uint32_t>(wanted));
-  const Graph& coarsest = levels.empty() ? graph : levels.back().graph;
-  Partition parts{bisect_recursively(coarsest, sizes, done), std::vector<char>(coarsest.size(), 1)};
-  for (; !levels.empty(); levels.pop_back()) {
-    const Graph& coarse = levels.back().graph;
-    Refiner refiner(coarse, parts.part_of, sizes, parts.boundary);
-    const std::int64_t heaviest = *std::max_element(coarse.weight.begin(), coarse.weight.end());
-    refiner.refine_all(kCoarseRounds, {2 * heaviest, 2 * heaviest});
-    done += refiner.counts();
-    parts.boundary = refiner.boundary();
-    parts = project(parts, levels.back().cluster_of);
+  Partition parts = split_coarsely(graph, sizes, kStarLevels, false, done);
+  refine_exactly(graph, sizes, Reach::anywhere, parts.part_of, parts.boundary, done);
+  if (counts != nullptr)
+    *counts += done;
+  return std::move(parts.part_of);
+}
+
+std::vector<std::uint32_t> split_surface(const Surface& surface,
+                                         std::span<const std::uint32_t> sizes,
+                                         RefineCounts* counts) {
+  if (sizes.size() == 1)
+    return std::vector<std::uint32_t>(surface.size());
+  if (surface.size() / kStarShare <= kVerticesPerPart * sizes.size())
+    return split_graph(surface_graph(surface), sizes, counts);
+  RefineCounts done;
+  Partition parts = split_clusters(surface, star_clusters(surface), sizes, done);
+  if (!refine_boundary(surface, sizes, Reach::neighbours, parts, done)) {
+    std::fill(parts.boundary.begin(), parts.boundary.end(), 1);
+    refine_boundary(surface, sizes, Reach::anywhere, parts, done);
   }
-  Refiner refiner(graph, parts.part_of, sizes, parts.boundary);
-  refiner.balance_exactly();
-  refiner.refine_all(kRounds, {0, 2});  // one vertex ahead of its exchange
-  done += refiner.counts();
   if (counts != nullptr)
     *counts += done;
   return std::move(parts.part_of);

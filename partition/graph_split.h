@@ -23,6 +23,13 @@ namespace meshhier::partition {
 std::vector<std::uint32_t> split_graph(const Graph& graph, std::span<const std::uint32_t> sizes,
                                        RefineCounts* counts = nullptr);
 
+/// The same for a surface whose graph is never made as a whole: stars of vertices are split first,
+/// then the lines between parts are refined in a graph of the stars along them, where one fixed
+/// vertex a part stands for everything else. Independent of the order of the triangles.
+std::vector<std::uint32_t> split_surface(const Surface& surface,
+                                         std::span<const std::uint32_t> sizes,
+                                         RefineCounts* counts = nullptr);
+
 /// With more parts than this a graph should be split in two rounds: the graph that is bisected has
 /// some vertices for every part, and bisecting is not O(m).
 inline constexpr std::uint32_t kMostParts = Refiner::kMostParts;

@@ -1,11 +1,17 @@
 #include "partition/leaf_tiles.h"
 
 #include "hierarchy/error.h"
+#include "partition/spatial_order.h"
 
 #include <algorithm>
+#include <cassert>
+#include <numeric>
 
 namespace meshhier::partition {
 namespace {
+
+// A corner of an interior triangle takes 16 bits while they are sorted.
+constexpr std::size_t kMostVertices = 65536;
 
 constexpr std::uint32_t kOutside = 0xffffffff;  // the leaf of a corner in another chunk
 
@@ -17,90 +23,156 @@ class LeafBuilder {
         chunks_(chunks),
         first_partition_(tree.partitions(chunk.node).begin),
         first_rank_(static_cast<std::uint32_t>(tree.ranks(chunk.node).begin)),
-        leaf_of_(partition_of.size()),
-        index_of_(partition_of.size()),
-        touched_(partition_of.size()) {
-    for (std::size_t i = 0; i < leaf_of_.size(); ++i)
-      leaf_of_[i] = raw(partition_of[i]) - first_partition_;
-    result_.tiles.resize(tree.partitions(chunk.node).size());
+        places_(partition_of.size()),
+        touched_(partition_of.size()),
+        first_vertex_(tree.partitions(chunk.node).size() + 1) {
+    for (std::size_t i = 0; i < places_.size(); ++i)
+      places_[i].leaf = raw(partition_of[i]) - first_partition_;
+    result_.tiles.resize(first_vertex_.size() - 1);
   }
 
   ChunkLeaves run() {
     mark_rim();
     place_vertices();
-    for (const RankTriangle& t : chunk_.triangles)
-      place_triangle(t);
-    for (WorkTile& tile : result_.tiles)
-      finish(tile);
+    divide_triangles();
+    place_interior();
+    place_borders();
     return std::move(result_);
   }
 
  private:
-  enum Touch : char { kUnreferenced = 0, kInner = 1, kRim = 2 };
+  // What kinds of triangles a vertex has: bits.
+  static constexpr std::uint8_t kInner = 1, kRim = 2;
 
+  struct Place {
+    std::uint32_t leaf = 0;
+    std::uint32_t index = 0;  ///< in the leaf's tile
+  };
+  /// An interior triangle, smallest corner first: that one's place among the vertices of all tiles,
+  /// tile by tile, and the other two as one number.
+  struct Interior {
+    std::uint32_t row, rest;
+  };
   std::uint32_t local(std::uint32_t rank) const { return rank - first_rank_; }
+  /// Wraps around below the chunk's first rank.
+  bool is_inside(std::uint32_t rank) const { return local(rank) < places_.size(); }
   std::uint32_t leaf(std::uint32_t rank) const {
-    const std::uint32_t vertex = local(rank);  // wraps around below the chunk's first rank
-    return vertex < leaf_of_.size() ? leaf_of_[vertex] : kOutside;
+    return is_inside(rank) ? places_[local(rank)].leaf : kOutside;
   }
 
   void mark_rim() {
     for (const RankTriangle& t : chunk_.triangles) {
-      const bool interior = leaf(t[0]) == leaf(t[1]) && leaf(t[1]) == leaf(t[2]);
+      const std::uint32_t a = leaf(t[0]), b = leaf(t[1]), c = leaf(t[2]);
+      if (a == b && b == c) {
+        for (const std::uint32_t rank : t)
+          touched_[local(rank)] |= kInner;
+        continue;
+      }
+      ++border_count_;
       for (const std::uint32_t rank : t) {
-        if (leaf(rank) != kOutside)
-          touched_[local(rank)] = std::max(touched_[local(rank)], interior ? kInner : kRim);
+        if (is_inside(rank))
+          touched_[local(rank)] |= kRim;
       }
     }
   }
 
   void place_vertices() {
-    std::vector<std::uint32_t> size(result_.tiles.size());
-    for (std::size_t v = 0; v < leaf_of_.size(); ++v) {
-      ++size[leaf_of_[v]];
-      if (touched_[v] == kRim)
-        ++result_.tiles[leaf_of_[v]].rim_count;
-      if (touched_[v] == kUnreferenced)
-        ++result_.unreferenced_count;
+    std::size_t rims = 0;
+    for (std::size_t v = 0; v < places_.size(); ++v) {
+      const bool is_rim = (touched_[v] & kRim) != 0;
+      ++first_vertex_[places_[v].leaf + 1];
+      result_.tiles[places_[v].leaf].rim_count += is_rim ? 1 : 0;
+      rims += is_rim ? 1 : 0;
+      result_.unreferenced_count += touched_[v] == 0 ? 1 : 0;
     }
-    for (std::size_t i = 0; i < size.size(); ++i) {
+    std::vector<std::uint32_t> next_rim(result_.tiles.size()), next_inner;
+    const auto channels = static_cast<std::size_t>(chunk_.vertices.channels);
+    for (std::size_t i = 0; i < result_.tiles.size(); ++i) {
       WorkTile& tile = result_.tiles[i];
+      const std::size_t size = first_vertex_[i + 1];
+      assert(size <= kMostVertices);
+      first_vertex_[i + 1] += first_vertex_[i];
+      next_inner.push_back(tile.rim_count);
       tile.vertices.channels = chunk_.vertices.channels;
-      tile.vertices.positions.resize(size[i]);
-      tile.vertices.attributes.resize(size[i] * static_cast<std::size_t>(chunk_.vertices.channels));
-      tile.history.weights.assign(size[i], 1.0F);
+      tile.vertices.positions.resize(size);
+      tile.vertices.attributes.resize(size * channels);
+      tile.history.weights.assign(size, 1.0F);
     }
-    std::vector<std::uint32_t> next_rim(result_.tiles.size());
-    std::vector<std::uint32_t> next_inner(result_.tiles.size());
-    for (std::uint32_t v = 0; v < leaf_of_.size(); ++v) {
-      const std::uint32_t leaf = leaf_of_[v];
-      WorkTile& tile = result_.tiles[leaf];
-      const bool rim = touched_[v] == kRim;
-      index_of_[v] = rim ? next_rim[leaf]++ : tile.rim_count + next_inner[leaf]++;
-      if (rim)
-        result_.places.push_back({v, leaf, index_of_[v]});
-      tile.vertices.positions[index_of_[v]] = chunk_.vertices.positions[v];
-      const auto attributes = chunk_.vertices.attributes_of(v);
-      std::copy(attributes.begin(), attributes.end(),
-                tile.vertices.attributes.begin() +
-                    static_cast<std::ptrdiff_t>(index_of_[v] * attributes.size()));
+    for (const std::uint32_t v : spatial_order(chunk_.vertices.positions)) {
+      auto& [leaf, index] = places_[v];
+      VertexArray& vertices = result_.tiles[leaf].vertices;
+      index = ((touched_[v] & kRim) != 0 ? next_rim : next_inner)[leaf]++;
+      vertices.positions[index] = chunk_.vertices.positions[v];
+      if (channels > 0) {
+        const auto attributes = chunk_.vertices.attributes_of(v);
+        std::copy(attributes.begin(), attributes.end(),
+                  vertices.attributes.begin() + static_cast<std::ptrdiff_t>(index * channels));
+      }
+    }
+    result_.places.reserve(rims);
+    for (std::uint32_t v = 0; v < places_.size(); ++v) {
+      if ((touched_[v] & kRim) != 0)
+        result_.places.push_back({v, places_[v].leaf, places_[v].index});
     }
   }
 
-  void place_triangle(const RankTriangle& t) {
-    const std::array<std::uint32_t, 3> leaves{leaf(t[0]), leaf(t[1]), leaf(t[2])};
-    if (leaves[0] == leaves[1] && leaves[1] == leaves[2]) {
-      Triangle interior;
-      for (int k = 0; k < 3; ++k)
-        interior[k] = static_cast<TileVertex>(index_of_[local(t[k])]);
-      result_.tiles[leaves[0]].interior.push_back(interior);
-      return;
+  /// Tells interior from border triangles, degenerate ones from both.
+  void divide_triangles() {
+    interior_.reserve(chunk_.triangles.size() - border_count_);
+    borders_.reserve(border_count_);
+    rows_.assign(places_.size() + 1, 0);
+    for (const RankTriangle& t : chunk_.triangles) {
+      const std::uint32_t a = local(t[0]), b = local(t[1]), c = local(t[2]);
+      if (a == b || b == c || c == a)
+        continue;
+      if (!is_inside(t[0]) || !is_inside(t[1]) || !is_inside(t[2]) ||
+          places_[a].leaf != places_[b].leaf || places_[b].leaf != places_[c].leaf) {
+        borders_.push_back(t);
+        continue;
+      }
+      const Triangle turned = canonical({TileVertex{places_[a].index}, TileVertex{places_[b].index},
+                                         TileVertex{places_[c].index}});
+      const std::uint32_t row = first_vertex_[places_[a].leaf] + raw(turned[0]);
+      interior_.push_back({row, raw(turned[1]) << 16 | raw(turned[2])});
+      ++rows_[row + 1];
     }
-    for (int k = 0; k < 3; ++k) {
-      const bool repeated = (k > 0 && leaves[k] == leaves[0]) || (k > 1 && leaves[k] == leaves[1]);
-      if (leaves[k] != kOutside && !repeated)
-        add_border(result_.tiles[leaves[k]], leaves[k], t, leaves);
+  }
+
+  /// Sorts interior triangles by all corners: into rows of their first, then within the rows.
+  void place_interior() {
+    std::partial_sum(rows_.begin(), rows_.end(), rows_.begin());
+    std::vector<std::uint32_t> sorted(interior_.size());
+    std::vector<std::uint32_t> next(rows_.begin(), rows_.end() - 1);
+    for (const Interior& triangle : interior_)
+      sorted[next[triangle.row]++] = triangle.rest;
+    for (std::size_t i = 0; i < result_.tiles.size(); ++i) {
+      std::vector<Triangle>& triangles = result_.tiles[i].interior;
+      const std::uint32_t first = first_vertex_[i], end = first_vertex_[i + 1];
+      triangles.reserve(rows_[end] - rows_[first]);
+      for (std::uint32_t row = first; row < end; ++row) {
+        const auto rest = std::span(sorted).subspan(rows_[row], rows_[row + 1] - rows_[row]);
+        if (rest.size() > 1)
+          std::sort(rest.begin(), rest.end());
+        for (const std::uint32_t two : rest)
+          triangles.push_back(
+              {TileVertex{row - first}, TileVertex{two >> 16}, TileVertex{two & 0xffff}});
+      }
     }
+  }
+
+  void place_borders() {
+    for (const RankTriangle& t : borders_) {
+      const std::array<std::uint32_t, 3> leaves{leaf(t[0]), leaf(t[1]), leaf(t[2])};
+      for (int k = 0; k < 3; ++k) {
+        const bool repeated =
+            (k > 0 && leaves[k] == leaves[0]) || (k > 1 && leaves[k] == leaves[1]);
+        if (leaves[k] != kOutside && !repeated)
+          add_border(result_.tiles[leaves[k]], leaves[k], t, leaves);
+      }
+    }
+    std::vector<std::uint32_t> number(places_.size());
+    for (WorkTile& tile : result_.tiles)
+      finish(tile, number);
   }
 
   void add_border(WorkTile& tile, std::uint32_t own, const RankTriangle& t,
@@ -108,7 +180,7 @@ class LeafBuilder {
     Triangle border;
     for (int k = 0; k < 3; ++k) {
       if (leaves[k] == own) {
-        border[k] = static_cast<TileVertex>(index_of_[local(t[k])]);
+        border[k] = TileVertex{places_[local(t[k])].index};
         continue;
       }
       const std::uint32_t chunk =
@@ -120,34 +192,61 @@ class LeafBuilder {
   }
 
   /// Makes the foreign corners unique and brings everything into an order that the triangles' order
-  /// does not show in.
-  static void finish(WorkTile& tile) {
+  /// does not show in. `number`: one entry a vertex of the chunk, any content.
+  void finish(WorkTile& tile, std::span<std::uint32_t> number) const {
     const auto own_count = static_cast<std::uint32_t>(tile.vertices.size());
-    std::vector<GhostRef> unique = tile.foreign;
-    std::sort(unique.begin(), unique.end());
-    unique.erase(std::unique(unique.begin(), unique.end()), unique.end());
+    std::vector<GhostRef> unique = sorted_unique(tile.foreign, number);
+    const auto near =
+        std::equal_range(unique.begin(), unique.end(), GhostRef{chunk_.node.index, 0},
+                         [](const GhostRef& a, const GhostRef& b) { return a.tile < b.tile; });
+    for (auto ref = near.first; ref != near.second; ++ref)
+      number[ref->index] = static_cast<std::uint32_t>(ref - unique.begin());
     for (Triangle& t : tile.border) {
       for (TileVertex& corner : t) {
         if (raw(corner) < own_count)
           continue;
-        const auto found =
-            std::lower_bound(unique.begin(), unique.end(), tile.foreign[raw(corner) - own_count]);
-        corner =
-            static_cast<TileVertex>(own_count + static_cast<std::uint32_t>(found - unique.begin()));
+        const GhostRef& ref = tile.foreign[raw(corner) - own_count];
+        const std::uint32_t place =
+            ref.tile == chunk_.node.index
+                ? number[ref.index]
+                : static_cast<std::uint32_t>(std::lower_bound(unique.begin(), unique.end(), ref) -
+                                             unique.begin());
+        corner = TileVertex{own_count + place};
       }
     }
     tile.foreign = std::move(unique);
-    normalize_triangles(tile.interior, false);
     normalize_triangles(tile.border, false);
+  }
+
+  /// `places`: as in finish().
+  std::vector<GhostRef> sorted_unique(std::span<const GhostRef> refs,
+                                      std::span<std::uint32_t> places) const {
+    std::vector<GhostRef> unique;
+    for (const GhostRef& ref : refs) {
+      if (ref.tile == chunk_.node.index) {
+        const std::uint32_t place = places[ref.index];
+        if (place < unique.size() && unique[place] == ref)
+          continue;
+        places[ref.index] = static_cast<std::uint32_t>(unique.size());
+      }
+      unique.push_back(ref);
+    }
+    std::sort(unique.begin(), unique.end());
+    unique.erase(std::unique(unique.begin(), unique.end()), unique.end());
+    return unique;
   }
 
   const ChunkMesh& chunk_;
   const ChunkMap& chunks_;
   std::uint32_t first_partition_;
   std::uint32_t first_rank_;
-  std::vector<std::uint32_t> leaf_of_;
-  std::vector<std::uint32_t> index_of_;
-  std::vector<Touch> touched_;
+  std::vector<Place> places_;
+  std::vector<std::uint8_t> touched_;
+  std::vector<std::uint32_t> first_vertex_;  ///< of each tile, among the vertices of all
+  std::size_t border_count_ = 0;
+  std::vector<RankTriangle> borders_;
+  std::vector<Interior> interior_;
+  std::vector<std::uint32_t> rows_;  ///< of interior triangles, by their first corner
   ChunkLeaves result_;
 };
 

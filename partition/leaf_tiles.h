@@ -23,9 +23,9 @@ struct ChunkLeaves {
   std::uint64_t unreferenced_count = 0;  ///< vertices without a triangle
 };
 
-/// Builds the partition tiles: vertices by id, rim first; a border triangle goes to each partition
-/// it touches; its foreign corners are named by chunk and provisional rank within it. Independent
-/// of the order of the triangles.
+/// Builds the partition tiles, of at most 65,536 vertices each: vertices by id, rim first; a border
+/// triangle goes to each partition it touches; its foreign corners are named by chunk and
+/// provisional rank within it. Independent of the order of the triangles.
 ChunkLeaves build_leaves(const ChunkMesh& chunk, std::span<const PartitionId> partition_of,
                          const Tree& tree, const ChunkMap& chunks);
 

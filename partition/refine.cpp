@@ -27,6 +27,7 @@ Refiner::Refiner(const Graph& graph, std::span<std::uint32_t> part_of,
     : graph_(graph),
       part_of_(part_of),
       targets_(targets),
+      movable_(static_cast<std::uint32_t>(look_at.size())),
       size_(targets.size()),
       gain_(graph.size()),
       epoch_(graph.size()),
@@ -34,6 +35,7 @@ Refiner::Refiner(const Graph& graph, std::span<std::uint32_t> part_of,
       is_stale_(graph.size()),
       links_(targets.size()) {
   assert(targets.size() <= kMostParts);
+  is_candidate_.resize(graph.size());
   for (std::uint32_t v = 0; v < graph.size(); ++v) {
     size_[part_of[v]] += graph.weight[v];
     if (is_candidate_[v] != 0)
@@ -136,7 +138,7 @@ void Refiner::update_neighbours(std::uint32_t v, std::uint32_t from, std::uint32
       continue;
     const auto change = static_cast<std::int32_t>(2 * arc.weight);
     if (!is_seen(u)) {
-      if (graph_.degree(u) <= kHubDegree)
+      if (!is_fixed(u))
         offer(u, gain_of(u, part == from ? to : from));
     } else if (part == from) {
       offer(u, gain_[u] + change);
@@ -227,7 +229,7 @@ std::vector<Refiner::Touch> Refiner::sorted_touches() {
   std::vector<Touch> touches;
   for (const std::uint32_t v : candidates_) {
     is_stale_[v] = 0;
-    if (graph_.degree(v) <= kHubDegree)
+    if (!is_fixed(v))
       add_touches(v, touches);
   }
   std::vector<std::uint32_t> next(targets_.size() * targets_.size() + 1);
@@ -262,7 +264,7 @@ void Refiner::refine_all(int rounds, Slack slack) {
   }
 }
 
-void Refiner::balance_exactly() {
+bool Refiner::balance_exactly(Reach reach) {
   first_of_.assign(targets_.size() + 1, 0);
   for (const std::uint32_t v : candidates_)
     ++first_of_[part_of_[v] + 1];
@@ -271,27 +273,27 @@ void Refiner::balance_exactly() {
   by_part_.resize(candidates_.size());
   for (const std::uint32_t v : candidates_)
     by_part_[next[part_of_[v]]++] = v;
-  balance(0, static_cast<std::uint32_t>(targets_.size()));
+  return balance(0, static_cast<std::uint32_t>(targets_.size()), reach);
 }
 
-void Refiner::balance(std::uint32_t begin, std::uint32_t end) {
+bool Refiner::balance(std::uint32_t begin, std::uint32_t end, Reach reach) {
   if (end - begin < 2)
-    return;
+    return true;
   const std::uint32_t middle = begin + (end - begin + 1) / 2;
   std::int64_t left = 0;
   for (std::uint32_t part = begin; part < middle; ++part)
     left += excess(part);
   if (left > 0)
-    shift(begin, middle, middle, end, left);
+    left = shift(begin, middle, middle, end, left, reach);
   if (left < 0)
-    shift(middle, end, begin, middle, -left);
-  balance(begin, middle);
-  balance(middle, end);
+    left = shift(middle, end, begin, middle, -left, reach);
+  return left == 0 && balance(begin, middle, reach) && balance(middle, end, reach);
 }
 
-/// Moves vertices of parts [begin, end) into parts [to_begin, to_end).
-void Refiner::shift(std::uint32_t begin, std::uint32_t end, std::uint32_t to_begin,
-                    std::uint32_t to_end, std::int64_t weight) {
+/// Moves so many vertices of parts [begin, end) into parts [to_begin, to_end); returns how many are
+/// missing.
+std::int64_t Refiner::shift(std::uint32_t begin, std::uint32_t end, std::uint32_t to_begin,
+                            std::uint32_t to_end, std::int64_t weight, Reach reach) {
   next_epoch();
   const auto inside = [&](std::uint32_t v) { return part_of_[v] >= begin && part_of_[v] < end; };
   // The part a vertex gains most by going to, if it has a neighbour there; `to_end` if it has none.
@@ -320,7 +322,7 @@ void Refiner::shift(std::uint32_t begin, std::uint32_t end, std::uint32_t to_beg
   };
   std::vector<Key>& heap = left_.heap;
   const auto offer_for_shift = [&](std::uint32_t v) {
-    if (!inside(v) || graph_.degree(v) > kHubDegree || best_target(v) == to_end)
+    if (!inside(v) || is_fixed(v) || best_target(v) == to_end)
       return;
     heap.push_back(key(gain_[v], v));
     std::push_heap(heap.begin(), heap.end());
@@ -342,14 +344,17 @@ void Refiner::shift(std::uint32_t begin, std::uint32_t end, std::uint32_t to_beg
       offer_for_shift(arc.to);
     look_around(v);
   }
+  if (reach == Reach::neighbours)
+    return weight;
   // What no edge leads to: the last vertices, wherever they are.
-  for (std::uint32_t v = graph_.size(); weight > 0 && v > 0; --v) {
+  for (std::uint32_t v = movable_; weight > 0 && v > 0; --v) {
     if (!inside(v - 1))
       continue;
     move(v - 1, part_of_[v - 1], to_begin);
     ++counts_.moves;
     --weight;
   }
+  return weight;
 }
 
 std::vector<char> Refiner::boundary() const {

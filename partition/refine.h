@@ -18,6 +18,12 @@ struct Slack {
   std::int64_t explored = 0;
 };
 
+/// Which vertices may leave their part for another's sake.
+enum class Reach {
+  neighbours,  ///< those with a neighbour in the other part
+  anywhere     ///< others, too, when these do not suffice
+};
+
 /// Work that was done, for those who want to see that it is bounded.
 struct RefineCounts {
   std::uint64_t pairs = 0;       ///< refinements of two parts
@@ -35,16 +41,19 @@ class Refiner {
  public:
   /// `part_of`: per vertex its part < targets.size() <= kMostParts; refined in place. `targets`:
   /// the weight of each part. `look_at`: vertices (not 0) that may have neighbours in other parts;
-  /// others have none. All but the last must outlive the refiner.
+  /// others have none; vertices beyond its end stay where they are. All but the last must outlive
+  /// the refiner.
   Refiner(const Graph& graph, std::span<std::uint32_t> part_of,
           std::span<const std::uint32_t> targets, std::span<const char> look_at);
 
   /// Refines all pairs of parts that touch; in further rounds those that touch a part that changed.
   void refine_all(int rounds, Slack slack);
 
-  /// Gives every part exactly its target. Requires unit weights. Splits the parts in two halves,
-  /// and those again; in each, the vertices that cost least go from the larger side to the other.
-  void balance_exactly();
+  /// Gives every part exactly its target. Requires unit weights of what may move. Splits the parts
+  /// in two halves, and those again; in each, the vertices that cost least go from the larger side
+  /// to the other. False, and sizes are not exact, if there are too few that edges lead to and it
+  /// may not take others.
+  bool balance_exactly(Reach reach);
 
   /// What a part weighs more than its target.
   std::int64_t excess(std::uint32_t part) const {
@@ -77,6 +86,7 @@ class Refiner {
     return static_cast<std::int32_t>(static_cast<std::uint32_t>(key >> 32) ^ 0x80000000U);
   }
 
+  bool is_fixed(std::uint32_t v) const { return v >= movable_ || graph_.degree(v) > kHubDegree; }
   bool is_seen(std::uint32_t v) const { return epoch_[v] >= now_; }
   bool is_moved(std::uint32_t v) const { return epoch_[v] > now_; }
   void look_around(std::uint32_t v);
@@ -92,13 +102,14 @@ class Refiner {
   void add_touches(std::uint32_t v, std::vector<Touch>& touches);
   std::vector<Touch> sorted_touches();
 
-  void balance(std::uint32_t begin, std::uint32_t end);
-  void shift(std::uint32_t begin, std::uint32_t end, std::uint32_t to_begin, std::uint32_t to_end,
-             std::int64_t weight);
+  bool balance(std::uint32_t begin, std::uint32_t end, Reach reach);
+  std::int64_t shift(std::uint32_t begin, std::uint32_t end, std::uint32_t to_begin,
+                     std::uint32_t to_end, std::int64_t weight, Reach reach);
 
   const Graph& graph_;
   std::span<std::uint32_t> part_of_;
   std::span<const std::uint32_t> targets_;
+  std::uint32_t movable_;  ///< lower vertices may move
   std::vector<std::uint32_t> size_;
   std::vector<std::uint32_t> candidates_;  ///< where the boundary is looked for
   std::vector<std::int32_t> gain_;

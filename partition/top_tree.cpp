@@ -6,6 +6,9 @@
 #include <bit>
 #include <cmath>
 
+#include <tbb/parallel_invoke.h>
+#include <tbb/parallel_sort.h>
+
 namespace meshhier::partition {
 namespace {
 
@@ -47,16 +50,54 @@ std::vector<Vec3f> positions_of(std::span<const IdPoint> points) {
   return positions;
 }
 
+/// A point of the sample on its way to its place.
+struct Keyed {
+  std::uint64_t projection;
+  std::uint32_t id;
+  std::uint32_t place;  ///< before
+  SplitKey key() const { return {projection, id}; }
+};
+
+/// Below so many points, sorting or planning in parallel does not pay its bookkeeping.
+constexpr std::size_t kParallelPoints = 8192;
+
+/// Sorts the sample along the direction; returns the keys in order.
+std::vector<Keyed> sort_along(Vec3d direction, std::span<IdPoint> sample) {
+  std::vector<Keyed> keyed(sample.size());
+  for (std::size_t i = 0; i < sample.size(); ++i) {
+    const SplitKey key = key_along(direction, sample[i].position, sample[i].id);
+    keyed[i] = {key.projection, key.id, static_cast<std::uint32_t>(i)};
+  }
+  const auto less = [](const Keyed& a, const Keyed& b) { return a.key() < b.key(); };
+  if (keyed.size() > kParallelPoints) {
+    tbb::parallel_sort(keyed.begin(), keyed.end(), less);
+  } else {
+    std::sort(keyed.begin(), keyed.end(), less);
+  }
+  const std::vector<IdPoint> unsorted(sample.begin(), sample.end());
+  for (std::size_t i = 0; i < sample.size(); ++i)
+    sample[i] = unsorted[keyed[i].place];
+  return keyed;
+}
+
 /// The window around the sample's quantile. A sample that is the whole node still gets one: nothing
 /// depends on it.
-void set_window(PlannedSplit& split, std::span<const SplitKey> sorted, double fraction,
+void set_window(PlannedSplit& split, std::span<const Keyed> sorted, double fraction,
                 double variance) {
   const auto count = static_cast<double>(sorted.size());
   const double reach = kWindowSigmas * std::sqrt(variance * count) + 2;
   const double low = fraction * count - reach;
   const double high = fraction * count + reach;
-  split.low = low < 0 ? SplitKey::lowest() : sorted[static_cast<std::size_t>(low)];
-  split.high = high >= count ? SplitKey::highest() : sorted[static_cast<std::size_t>(high)];
+  split.low = low < 0 ? SplitKey::lowest() : sorted[static_cast<std::size_t>(low)].key();
+  split.high = high >= count ? SplitKey::highest() : sorted[static_cast<std::size_t>(high)].key();
+}
+
+template <class Split, class Convert>
+std::vector<SplitCells::Split> cell_splits(const std::vector<Split>& splits,
+                                           const Convert& convert) {
+  std::vector<SplitCells::Split> converted(splits.size());
+  std::transform(splits.begin(), splits.end(), converted.begin(), convert);
+  return converted;
 }
 
 class Planner {
@@ -80,26 +121,42 @@ class Planner {
                             static_cast<double>(tree_.ranks(node).size());
     if (axis != nullptr)
       split.direction = direction_of(sample, fraction, *axis);
-    const auto key = [&](const IdPoint& p) { return key_along(split.direction, p.position, p.id); };
-    std::sort(sample.begin(), sample.end(),
-              [&](const IdPoint& a, const IdPoint& b) { return key(a) < key(b); });
-    auto left = static_cast<std::size_t>(fraction * static_cast<double>(sample.size()));
-    double below = variance_below(variance);
+    const Cut cut = cut_sample(split, sample, fraction, variance);
+    const auto plan_left = [&] {
+      plan_node(2 * heap + 1, sample.first(cut.left), cut.variance, axis);
+    };
+    const auto plan_right = [&] {
+      plan_node(2 * heap + 2, sample.subspan(cut.left), cut.variance, axis);
+    };
+    if (sample.size() > kParallelPoints) {
+      tbb::parallel_invoke(plan_left, plan_right);
+    } else {
+      plan_left();
+      plan_right();
+    }
+  }
+
+  struct Cut {
+    std::size_t left;  ///< points that go left
+    double variance;   ///< below
+  };
+  /// Sorts the sample, sets the node's window, and tells how the sample goes on.
+  static Cut cut_sample(PlannedSplit& split, std::span<IdPoint> sample, double fraction,
+                        double variance) {
+    const std::vector<Keyed> sorted = sort_along(split.direction, sample);
     if (split.settled) {
-      const auto cut = std::partition_point(sample.begin(), sample.end(),
-                                            [&](const IdPoint& p) { return key(p) < split.low; });
-      left = static_cast<std::size_t>(cut - sample.begin());
-      below = kMedianVariance;
-    } else if (split.misses > 1 || sample.size() < 2) {
+      const auto cut = std::partition_point(sorted.begin(), sorted.end(),
+                                            [&](const Keyed& k) { return k.key() < split.low; });
+      return {static_cast<std::size_t>(cut - sorted.begin()), kMedianVariance};
+    }
+    if (split.misses > 1 || sample.size() < 2) {
       split.low = SplitKey::lowest();
       split.high = SplitKey::highest();
     } else {
-      std::vector<SplitKey> keys(sample.size());
-      std::transform(sample.begin(), sample.end(), keys.begin(), key);
-      set_window(split, keys, fraction, variance);
+      set_window(split, sorted, fraction, variance);
     }
-    plan_node(2 * heap + 1, sample.first(left), below, axis);
-    plan_node(2 * heap + 2, sample.subspan(left), below, axis);
+    return {static_cast<std::size_t>(fraction * static_cast<double>(sample.size())),
+            variance_below(variance)};
   }
 
   static Vec3d direction_of(std::span<const IdPoint> sample, double fraction, Axis axis) {
@@ -140,43 +197,82 @@ std::uint64_t SampleIds::operator[](std::uint64_t i) const {
   return begin + hash(i) % (end - begin);
 }
 
+std::uint64_t SampleIds::first_from(std::uint64_t id) const {
+  if (id >= vertex_count_)
+    return count();
+  // The stride that holds `id`, or by rounding the one after it; what lies in it may be before
+  // `id`.
+  std::uint64_t i = id * count() / vertex_count_;
+  while (i > 0 && (*this)[i - 1] >= id)
+    --i;
+  while (i < count() && (*this)[i] < id)
+    ++i;
+  return i;
+}
+
 TopPlan plan_top(std::vector<IdPoint> sample, const Tree& tree, Axis axis) {
   TopPlan plan;
   plan.chunks = chunk_level(tree);
   plan.splits.resize((std::size_t{1} << raw(plan.chunks)) - 1);
   plan.sample = std::move(sample);
+  for (const IdPoint& p : plan.sample)
+    plan.box.add(p.position);
   Planner(plan, tree).plan(axis);
   return plan;
 }
 
-SweepBlock sweep(const TopPlan& plan, std::span<const Vec3f> positions, std::uint32_t first) {
-  SweepBlock block;
-  block.left_counts.resize(plan.splits.size());
+Sweep::Sweep(const TopPlan& plan)
+    : plan_(plan),
+      cells_(cell_splits(plan.splits,
+                         [](const PlannedSplit& split) {
+                           return SplitCells::Split{split.direction, split.low.projection,
+                                                    split.high.projection};
+                         }),
+             plan.box) {}
+
+void Sweep::count(std::span<const Vec3f> positions, std::uint32_t first, SweepBlock& block) const {
+  const std::vector<PlannedSplit>& splits = plan_.splits;
+  block.passed.assign(2 * splits.size() + 1, 0);
+  block.undecided.clear();
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const auto id = static_cast<std::uint32_t>(first + i);
-    std::uint32_t node = 0;
-    while (node < plan.splits.size()) {
-      const PlannedSplit& split = plan.splits[node];
-      const SplitKey key = key_along(split.direction, positions[i], id);
-      if (key < split.low) {
-        ++block.left_counts[node];
+    std::uint32_t node = cells_.start(positions[i]);
+    while (node < splits.size()) {
+      const SplitKey key = key_along(splits[node].direction, positions[i], id);
+      if (key < splits[node].low) {
         node = 2 * node + 1;
-      } else if (key > split.high) {
+      } else if (key > splits[node].high) {
         node = 2 * node + 2;
       } else {
         block.undecided.push_back({node, {positions[i], id}});
         break;
       }
     }
+    ++block.passed[node];
   }
-  return block;
+  // Counted where their way ends so far, they came through all nodes above.
+  block.left_counts.resize(splits.size());
+  for (std::size_t node = splits.size(); node-- > 0;) {
+    block.left_counts[node] = block.passed[2 * node + 1];
+    block.passed[node] += block.passed[2 * node + 1] + block.passed[2 * node + 2];
+  }
 }
 
-std::uint32_t TopTree::chunk_of(Vec3f position, std::uint32_t id) const {
-  std::uint32_t node = 0;
-  while (node < planes_.size())
-    node = 2 * node + (planes_[node].is_right(position, id) ? 2 : 1);
-  return node - static_cast<std::uint32_t>(planes_.size());
+ChunkSearch::ChunkSearch(const TopTree& top, const Bounds& box)
+    : top_(top),
+      cells_(cell_splits(top.planes_,
+                         [](const SplitPlane& plane) {
+                           const std::uint64_t at = plane.first_right.projection;
+                           return SplitCells::Split{plane.direction, at, at};
+                         }),
+             box) {}
+
+void ChunkSearch::find(std::span<const Vec3f> positions, std::uint32_t first,
+                       std::span<std::uint32_t> chunks) const {
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    chunks[i] = top_.chunk_below(cells_.start(positions[i]), positions[i],
+                                 static_cast<std::uint32_t>(first + i));
+  }
 }
 
 TopSelector::TopSelector(const TopPlan& plan, const Tree& tree, storage::ScratchFile& scratch,

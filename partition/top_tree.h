@@ -10,8 +10,10 @@
 // None of this depends on the memory at hand.
 #pragma once
 
+#include "hierarchy/bounds.h"
 #include "hierarchy/tree.h"
 #include "partition/direction.h"
+#include "partition/split_cells.h"
 #include "partition/split_plane.h"
 #include "storage/spool.h"
 
@@ -38,6 +40,8 @@ class SampleIds {
   explicit SampleIds(std::uint64_t vertex_count) : vertex_count_(vertex_count) {}
   std::uint64_t count() const;
   std::uint64_t operator[](std::uint64_t i) const;
+  /// The least i with (*this)[i] >= id; count() if there is none.
+  std::uint64_t first_from(std::uint64_t id) const;
 
  private:
   std::uint64_t vertex_count_;
@@ -55,6 +59,7 @@ struct TopPlan {
   Level chunks{};
   std::vector<PlannedSplit> splits;
   std::vector<IdPoint> sample;  ///< kept, in case windows must be planned again
+  Bounds box;                   ///< of the sample
 };
 
 TopPlan plan_top(std::vector<IdPoint> sample, const Tree& tree, Axis axis);
@@ -67,10 +72,21 @@ struct SweepBlock {
   };
   std::vector<std::uint32_t> left_counts;  ///< per node: vertices certainly left of it
   std::vector<Undecided> undecided;
+  std::vector<std::uint32_t> passed;  ///< per node, leaves included: vertices certainly in it
 };
 
-/// Pure and thread-safe. `first`: the id of the block's first vertex.
-SweepBlock sweep(const TopPlan& plan, std::span<const Vec3f> positions, std::uint32_t first);
+/// One sweep over the vertices, block by block. Thread-safe for different blocks.
+class Sweep {
+ public:
+  /// Refers to the plan, which must not change meanwhile.
+  explicit Sweep(const TopPlan& plan);
+  /// `first`: the id of the first vertex. `block`: overwritten; keeps its memory.
+  void count(std::span<const Vec3f> positions, std::uint32_t first, SweepBlock& block) const;
+
+ private:
+  const TopPlan& plan_;
+  SplitCells cells_;
+};
 
 /// The exact splits: a vertex's chunk is a pure function of its position and id.
 class TopTree {
@@ -79,11 +95,34 @@ class TopTree {
       : chunks_(chunks), planes_(std::move(planes)) {}
   Level chunks() const { return chunks_; }
   /// NodeId::index on the chunk level.
-  std::uint32_t chunk_of(Vec3f position, std::uint32_t id) const;
+  std::uint32_t chunk_of(Vec3f position, std::uint32_t id) const {
+    return chunk_below(0, position, id);
+  }
 
  private:
+  friend class ChunkSearch;
+  std::uint32_t chunk_below(std::uint32_t node, Vec3f position, std::uint32_t id) const {
+    while (node < planes_.size())
+      node = 2 * node + (planes_[node].is_right(position, id) ? 2 : 1);
+    return node - static_cast<std::uint32_t>(planes_.size());
+  }
+
   Level chunks_;
   std::vector<SplitPlane> planes_;
+};
+
+/// chunk_of() for many vertices. Thread-safe.
+class ChunkSearch {
+ public:
+  /// Refers to `top`. `box`: of about all vertices.
+  ChunkSearch(const TopTree& top, const Bounds& box);
+  /// The chunks of the vertices first, first + 1, ...; as many as positions.
+  void find(std::span<const Vec3f> positions, std::uint32_t first,
+            std::span<std::uint32_t> chunks) const;
+
+ private:
+  const TopTree& top_;
+  SplitCells cells_;
 };
 
 /// Gathers sweep blocks and settles the medians.

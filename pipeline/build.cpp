@@ -3,7 +3,6 @@
 #include "partition/top_tree.h"
 #include "pipeline/build_plan.h"
 #include "pipeline/forest.h"
-#include "pipeline/measure_stage.h"
 #include "pipeline/memory_plan.h"
 #include "pipeline/outline_stage.h"
 #include "pipeline/partition_stage.h"
@@ -11,7 +10,6 @@
 #include "pipeline/simplify_stage.h"
 #include "pipeline/size_text.h"
 #include "pipeline/source_mesh.h"
-#include "storage/hash.h"
 #include "storage/layout.h"
 #include "storage/work_directory.h"
 
@@ -20,20 +18,6 @@
 
 namespace meshhier::pipeline {
 namespace {
-
-std::uint64_t checksum_of_file(storage::FileSystem& files, const std::filesystem::path& path,
-                               const CancelToken& cancel) {
-  const auto file = files.open(path);
-  storage::Checksum sum;
-  std::vector<std::byte> buffer(1 << 20);
-  for (std::uint64_t offset = 0;; offset += buffer.size()) {
-    cancel.check();
-    const std::size_t count = file->read_at(offset, buffer);
-    sum.add({buffer.data(), count});
-    if (count < buffer.size())
-      return sum.value();
-  }
-}
 
 /// What `config` became, with what does not decide the result.
 nlohmann::ordered_json whole_config(const Config& config) {
@@ -82,7 +66,7 @@ std::string report_text(const SourceSummary& source, const BuildStats& stats) {
 BuildReport build_hierarchy(const Config& config, bool force, BuildEnvironment environment) {
   storage::FileSystem& files = environment.files;
   const CancelToken& cancel = environment.cancel;
-  configure_allocator();
+  configure_allocator(config.memory_budget);
 
   // Everything that can be refused is refused before anything is written.
   check_apart(config, files);
@@ -104,28 +88,26 @@ BuildReport build_hierarchy(const Config& config, bool force, BuildEnvironment e
   PublishInput result;
   {
     storage::ScratchFile mesh_scratch(files, work.temporary() / "mesh", pool);
-    SourceMesh mesh(std::move(source), config.input.filename().string(), mesh_scratch, progress,
-                    cancel);
+    SourceMesh mesh(std::move(source), config.input.filename().string(), mesh_scratch,
+                    plan.blocks_in_flight, progress, cancel);
     Chunks chunks =
         distribute(mesh, tree, config.partition.axis, plan, mesh_scratch, progress, cancel);
     result.source = mesh.summary();
-    progress.begin("checksum");
-    result.source.checksum = checksum_of_file(files, config.input, cancel);
+    result.source.checksum = mesh.checksum(cancel);
     result.format = {mesh.summary().attributes, mesh.origin()};
     result.source.unreferenced_vertices =
         make_leaves(chunks, forest, config.partition.axis, plan, progress, cancel);
   }
+  const double diagonal = length(result.source.bounds.max - result.source.bounds.min);
   result.asked_vertices = build.asked_vertices;
   result.config = resolved_json(config);
   simplify(forest,
            {result.asked_vertices,
             result.source.attributes,
-            {config.simplify.method, config.simplify.representative, config.simplify.cost}},
+            {config.simplify.method, config.simplify.representative, config.simplify.cost},
+            diagonal},
            plan, progress, cancel);
-  measure(forest, config.simplify.method, plan, progress, cancel);
-  result.outline =
-      make_outline(forest, config.outline,
-                   length(result.source.bounds.max - result.source.bounds.min), progress, cancel);
+  result.outline = make_outline(forest, config.outline, diagonal, plan, progress, cancel);
   const PublishedSummary published =
       publish(forest, result, work.path(), plan, files, progress, cancel);
   const std::uint64_t manifest_bytes = files.open(storage::manifest_path(work.path()))->size();

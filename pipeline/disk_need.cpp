@@ -165,10 +165,10 @@ double work_tile_bytes(const JobSize& job, const Tiles& tiles, double foreign) {
          tiles.rim * (foreign * 8 + vertex_bytes(job)) + tiles.triangles * 6;
 }
 
-/// What neighbours see of a tile when it is measured: per vertex of the rim 147 to 167 bytes, 201
-/// after clustering, and no more than the whole tile. `ratio`: of the tiles' triangles to usual.
-double band_bytes(const Tiles& tiles, double ratio) {
-  return std::min(tiles.rim * (65 + 100 * ratio), tiles.vertices * 20 + tiles.triangles * 12);
+/// What neighbours see of a simplified tile: per vertex of the rim 76 to 89 bytes, up to 130 after
+/// clustering where it leaves long rims; no more than the whole tile.
+double band_bytes(const Tiles& tiles) {
+  return std::min(tiles.rim * 90, tiles.vertices * 20 + tiles.triangles * 12);
 }
 
 /// Chunks share the triangles along their borders.
@@ -238,7 +238,7 @@ Volumes volumes_of(const JobSize& job, const MemoryPlan& plan, const Population&
   v.leaves = work_tile_bytes(job, all.partitions, kGhosts) + all.partitions.rim * kPlaceBytes;
   v.simplified = work_tile_bytes(job, all.simplified, kFreshForeign) +
                  (all.partitions.vertices + all.simplified.vertices) * 2;
-  v.simplified += band_bytes(all.partitions, 1) + band_bytes(all.simplified, simplified_ratio(job));
+  v.simplified += band_bytes(all.simplified);
   return v;
 }
 

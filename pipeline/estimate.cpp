@@ -15,9 +15,9 @@ using Json = nlohmann::ordered_json;
 // ---- rates, measured by `scripts/benchmark scale` (docs/performance.md) ----------------------
 
 // CPU microseconds per input triangle for a whole build, disk to disk, tiles of 8192 vertices.
-constexpr double kEdgeCollapseMicroseconds = 4.6;
-constexpr double kHalfEdgeMicroseconds = 4.6;
-constexpr double kClusterMicroseconds = 1.6;
+constexpr double kEdgeCollapseMicroseconds = 1.7;
+constexpr double kHalfEdgeMicroseconds = 1.7;
+constexpr double kClusterMicroseconds = 0.9;
 
 // The part of it that one thread does while the others wait.
 constexpr double kSerialShare = 0.12;
@@ -60,11 +60,11 @@ std::string memory_text(const BuildEstimate& e) {
   return fmt::format(
       "memory      {} asked for, {} would do\n"
       "            {} program and index, {} stages at work, {} data kept off the disk\n"
-      "            in flight: {} blocks, {} chunks, {} tiles, {} tiles measured; rank table {}\n",
+      "            in flight: {} blocks, {} chunks, {} tiles; rank table {}\n",
       exact_size_text(e.memory_budget_bytes), exact_size_text(e.least_budget_bytes),
       rounded_size_text(fixed_memory(e)), rounded_size_text(memory.work_bytes),
       rounded_size_text(memory.pool_bytes), memory.blocks_in_flight, memory.chunks_in_flight,
-      memory.tiles_in_flight, memory.measures_in_flight, rounded_size_text(memory.table_bytes));
+      memory.tiles_in_flight, rounded_size_text(memory.table_bytes));
 }
 
 Json memory_json(const BuildEstimate& e) {
@@ -77,8 +77,7 @@ Json memory_json(const BuildEstimate& e) {
           {"table_bytes", memory.table_bytes},
           {"blocks_in_flight", memory.blocks_in_flight},
           {"chunks_in_flight", memory.chunks_in_flight},
-          {"tiles_in_flight", memory.tiles_in_flight},
-          {"measures_in_flight", memory.measures_in_flight}};
+          {"tiles_in_flight", memory.tiles_in_flight}};
 }
 
 }  // namespace

@@ -61,8 +61,8 @@ BuildTile Forest::load(NodeId node) const {
   return tile;
 }
 
-void Forest::put_band(NodeId node, const BuildTile& tile) {
-  levels_[raw(node.level)].bands.put(node.index, storage::encode_band(tile, node.index));
+void Forest::put_band(NodeId node, const Band& band) {
+  levels_[raw(node.level)].bands.put(node.index, storage::encode_band(band));
 }
 
 Band Forest::band(NodeId node) const {
@@ -120,20 +120,25 @@ std::vector<std::uint16_t> Forest::published_parent_map(NodeId node) const {
   return parent_map(tree_.is_early(parent) ? parent : node);
 }
 
-std::vector<GhostChain> Forest::chains(NodeId node, std::span<const GhostRef> ghosts) const {
-  std::vector<GhostChain> result(ghosts.size());
+std::vector<std::uint16_t> Forest::chains(NodeId node, std::span<const GhostRef> ghosts) const {
+  std::vector<std::uint16_t> result;
   for_each_tile(ghosts, [&](std::size_t begin, std::size_t end) {
     NodeId tile{node.level, ghosts[begin].tile};
-    const int length = tree_.chain_length(node, tile);
-    for (std::size_t i = begin; i < end; ++i)
-      result[i].push_back(static_cast<std::uint16_t>(ghosts[i].index));
-    for (int step = 1; step < length; ++step, tile = tree_.parent(tile)) {
-      std::uint32_t last = 0;
-      for (std::size_t i = begin; i < end; ++i)
-        last = std::max<std::uint32_t>(last, result[i].back());
+    const auto length = static_cast<std::size_t>(tree_.chain_length(node, tile));
+    const std::size_t first = result.size();
+    result.resize(first + (end - begin) * length);
+    std::uint32_t last = 0;
+    for (std::size_t i = begin, at = first; i < end; ++i, at += length) {
+      result[at] = static_cast<std::uint16_t>(ghosts[i].index);
+      last = std::max(last, ghosts[i].index);
+    }
+    for (std::size_t step = 1; step < length; ++step, tile = tree_.parent(tile)) {
       const std::vector<std::uint16_t> map = parent_map(tile, std::size_t{last} + 1);
-      for (std::size_t i = begin; i < end; ++i)
-        result[i].push_back(map[result[i].back()]);
+      last = 0;
+      for (std::size_t at = first + step; at < result.size(); at += length) {
+        result[at] = map[result[at - 1]];
+        last = std::max<std::uint32_t>(last, result[at]);
+      }
     }
   });
   return result;

@@ -34,8 +34,8 @@ class Forest {
 
   void put_places(std::uint32_t chunk, std::span<const partition::LeafPlace> places);
   void put_tile(NodeId node, const WorkTile& tile);
-  /// What the neighbours of a loaded tile may see of it.
-  void put_band(NodeId node, const BuildTile& tile);
+  /// What the neighbours of a simplified tile may see of it.
+  void put_band(NodeId node, const Band& band);
   /// The map from `child` to its parent's tile.
   void put_parent_map(NodeId child, std::span<const std::uint16_t> parent_map);
 
@@ -55,8 +55,8 @@ class Forest {
   std::vector<std::uint16_t> parent_map(NodeId child) const;
   /// The map from `node` to the nearest ancestor that is published; empty for the root.
   std::vector<std::uint16_t> published_parent_map(NodeId node) const;
-  /// Of each ghost of the node's tile.
-  std::vector<GhostChain> chains(NodeId node, std::span<const GhostRef> ghosts) const;
+  /// Of each ghost of the node's tile its GhostChain, one after another.
+  std::vector<std::uint16_t> chains(NodeId node, std::span<const GhostRef> ghosts) const;
 
  private:
   struct LevelStore {

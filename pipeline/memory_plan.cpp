@@ -3,6 +3,7 @@
 #include "hierarchy/error.h"
 #include "mesh_io/mesh_source.h"
 #include "partition/top_tree.h"
+#include "pipeline/chunks.h"
 #include "pipeline/size_text.h"
 
 #include <algorithm>
@@ -18,6 +19,9 @@ constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 
 // Program, libraries, stacks and allocator slack: 12 to 16 MiB were measured at rest.
 constexpr std::uint64_t kBaseBytes = 18 * kMiB;
+
+// Of the budget, what the allocator keeps of memory that was given back.
+constexpr std::uint64_t kAllocatorParts = 12;
 
 // Bookkeeping a tile: four blob entries, what is known of it, its record, its statistics.
 constexpr std::uint64_t kTileEntryBytes = 320;
@@ -54,20 +58,13 @@ std::uint64_t chunk_bytes(const JobSize& job) {
 }
 
 /// Two children read, joined, contracted and encoded: 16 copies of a vertex's 20 bytes and 8 of a
-/// triangle's 12.
+/// triangle's 12; edges, queue and quadrics while they collapse.
 std::uint64_t tile_bytes(const JobSize& job) {
   const std::uint64_t vertices = 2 * std::uint64_t{job.largest_tile};
   const std::uint64_t triangles =
       vertices *
       std::max<std::uint64_t>(kTrianglesPerVertex, job.face_count * 3 / 2 / job.vertex_count + 1);
-  return vertices * (6 * (vertex_bytes(job) + 8) + 60) + triangles * 60;
-}
-
-/// A tile measured against its children: both surfaces with their edges, where each vertex and
-/// each crossing of edges comes to lie. 1.4 to 1.9 KiB a vertex of the children were measured on
-/// the head's many sheets, half of that on smooth surfaces.
-std::uint64_t measure_bytes(const JobSize& job) {
-  return 2 * std::uint64_t{job.largest_tile} * 2048;
+  return vertices * (6 * (vertex_bytes(job) + 8) + 260) + triangles * 80;
 }
 
 /// No more chunks than this: each has more than half of kChunkVertices.
@@ -75,16 +72,29 @@ std::uint64_t chunk_count(const JobSize& job) {
   return job.vertex_count * 2 / partition::kChunkVertices + 1;
 }
 
-// A spool's block: open ones weigh against the index of all, and both are least together at about 5
+// A spool's block: open ones weigh against the index of all, and both are least together at about 4
 // KiB, whatever the size of the mesh.
 constexpr std::uint64_t kLeastSpoolBlock = 4096;
 constexpr std::uint64_t kMostSpoolBlock = 262144;
 
-/// What the spools of chunks hold while they are written: the open blocks, and 24 bytes for every
-/// block there is, in vectors that may be half empty.
-std::uint64_t spool_bytes(const JobSize& job, std::uint64_t block) {
+/// The index of the spools of chunks: 8 bytes for every block there is, in vectors that may be half
+/// empty, and both halves held while they grow.
+std::uint64_t spool_index_bytes(const JobSize& job, std::uint64_t block) {
   const std::uint64_t spooled = job.vertex_count * vertex_bytes(job) + job.face_count * 13;
-  return 2 * chunk_count(job) * block + spooled / block * 48;
+  return spooled / block * 24;
+}
+
+/// What the spools of chunks hold while they are written: the open blocks, and their index.
+std::uint64_t spool_bytes(const JobSize& job, std::uint64_t block) {
+  return Chunks::kSpools * chunk_count(job) * block + spool_index_bytes(job, block);
+}
+
+/// With so much the table of ranks is in memory as a whole while the triangles are distributed,
+/// beside the spools of chunks, whose open blocks have an eighth.
+std::uint64_t table_work_bytes(const JobSize& job) {
+  const std::uint64_t beside =
+      2 * job.threads * block_bytes(job) + spool_index_bytes(job, 4 * kLeastSpoolBlock);
+  return (4 * job.vertex_count + beside) / 7 * 8 + 4 * kMiB;
 }
 
 std::uint64_t bookkeeping_bytes(const JobSize& job) {
@@ -100,7 +110,7 @@ std::uint64_t fixed_bytes(const JobSize& job) {
 std::uint64_t least_work_bytes(const JobSize& job) {
   return std::max({2 * block_bytes(job) + sample_bytes(job) + chunk_count(job) * 1024,
                    2 * block_bytes(job) + 12 * kMiB + spool_bytes(job, kLeastSpoolBlock),
-                   chunk_bytes(job), tile_bytes(job), measure_bytes(job)});
+                   chunk_bytes(job), tile_bytes(job)});
 }
 
 }  // namespace
@@ -121,20 +131,18 @@ MemoryPlan plan_memory(std::uint64_t budget_bytes, const JobSize& job) {
   const std::uint64_t threads = job.threads;
   const std::uint64_t wanted_work =
       std::max({least_work, (threads + 1) * chunk_bytes(job), 2 * threads * tile_bytes(job),
-                threads * measure_bytes(job),
-                4 * job.vertex_count + 2 * threads * block_bytes(job) + 16 * kMiB});
+                table_work_bytes(job)});
   MemoryPlan plan;
   plan.work_bytes = std::min(wanted_work, least_work + spare / 2);
-  plan.pool_bytes = budget_bytes - fixed - plan.work_bytes;
+  const std::uint64_t rest = budget_bytes - fixed - plan.work_bytes;
+  plan.pool_bytes = rest - std::min(rest, budget_bytes / kAllocatorParts);
   plan.blocks_in_flight =
       std::clamp<std::uint64_t>(plan.work_bytes / 4 / block_bytes(job), 1, 2 * threads);
   plan.chunks_in_flight =
       std::clamp<std::uint64_t>(plan.work_bytes / chunk_bytes(job), 1, threads + 1);
   plan.tiles_in_flight =
       std::clamp<std::uint64_t>(plan.work_bytes / tile_bytes(job), 1, 2 * threads);
-  plan.measures_in_flight =
-      std::clamp<std::uint64_t>(plan.work_bytes / measure_bytes(job), 1, threads);
-  const std::uint64_t spools = 2 * chunk_count(job);  // vertices and triangles of each chunk
+  const std::uint64_t spools = Chunks::kSpools * chunk_count(job);
   plan.spool_block_bytes =
       std::clamp(plan.work_bytes / 8 / spools, kLeastSpoolBlock, kMostSpoolBlock);
   plan.table_bytes = plan.work_bytes - std::min(plan.work_bytes - 4 * kMiB,
@@ -143,9 +151,13 @@ MemoryPlan plan_memory(std::uint64_t budget_bytes, const JobSize& job) {
   return plan;
 }
 
-void configure_allocator() {
-  mallopt(M_MMAP_THRESHOLD, 1 << 18);  // larger arrays are mapped alone and leave at once
-  mallopt(M_TRIM_THRESHOLD, 1 << 20);
+void configure_allocator(std::uint64_t budget_bytes) {
+  // Arrays mapped alone leave at once, but each of their pages is made anew.
+  const auto part = [&](std::uint64_t parts, std::uint64_t least, std::uint64_t most) {
+    return static_cast<int>(std::clamp(budget_bytes / parts, least, most));
+  };
+  mallopt(M_MMAP_THRESHOLD, part(256, kMiB / 4, 32 * kMiB));
+  mallopt(M_TRIM_THRESHOLD, part(64, kMiB, 64 * kMiB));
   mallopt(M_ARENA_MAX, 2);
 }
 

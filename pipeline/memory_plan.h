@@ -28,9 +28,8 @@ struct MemoryPlan {
   std::size_t blocks_in_flight = 1;  ///< blocks of input
   std::size_t chunks_in_flight = 1;
   std::size_t tiles_in_flight = 1;
-  std::size_t measures_in_flight = 1;  ///< tiles measured against their children
-  std::size_t spool_block_bytes = 0;   ///< of each of a stage's many spools
-  std::uint64_t table_bytes = 0;       ///< for renumbering the triangles
+  std::size_t spool_block_bytes = 0;  ///< of each of a stage's many spools
+  std::uint64_t table_bytes = 0;      ///< for renumbering the triangles
 };
 
 /// The least budget that will do, in whole MiB; does not depend on threads.
@@ -41,7 +40,7 @@ MemoryPlan plan_memory(std::uint64_t budget_bytes, const JobSize& job);
 
 /// Sets the allocator up so that freed memory goes back to the system: the budget is about what is
 /// resident.
-void configure_allocator();
+void configure_allocator(std::uint64_t budget_bytes);
 /// Gives free memory back, between stages.
 void release_free_memory();
 

@@ -1,9 +1,11 @@
 #include "pipeline/outline_stage.h"
 
 #include "outline/outline_builder.h"
+#include "pipeline/parallel.h"
 #include "storage/outline_glb.h"
 
 #include <algorithm>
+#include <atomic>
 #include <optional>
 
 namespace meshhier::pipeline {
@@ -27,26 +29,37 @@ Level sector_level(const Tree& tree, std::uint32_t sectors) {
 
 /// Adds all sectors of a level; false if their lines are too many and there is a coarser level.
 bool collect(const Forest& forest, Level level, outline::OutlineBuilder& builder,
-             Progress& progress, const CancelToken& cancel) {
+             const MemoryPlan& plan, Progress& progress, const CancelToken& cancel) {
+  using Sector = std::optional<outline::OutlineBuilder::Sector>;
   const std::uint32_t count = forest.tree().node_count(level);
   progress.stage("outline", count, "sectors");
-  for (std::uint32_t index = 0; index < count; ++index) {
-    cancel.check();
-    builder.add(index, forest.load({level, index}).mesh);
-    if (builder.edge_count() > kMostEdges && level > Level{0})
-      return false;
-    progress.advance(1);
-  }
-  return true;
+  std::atomic<bool> too_many{false};
+  ordered_for(
+      count, plan.tiles_in_flight, cancel,
+      [&](std::size_t i) -> Sector {
+        if (too_many)
+          return std::nullopt;
+        const auto index = static_cast<std::uint32_t>(i);
+        return Sector(std::in_place, index, forest.load({level, index}).mesh);
+      },
+      [&](std::size_t, Sector sector) {
+        if (too_many)
+          return;
+        builder.add(std::move(*sector));
+        too_many = builder.edge_count() > kMostEdges && level > Level{0};
+        progress.advance(1);
+      });
+  return !too_many;
 }
 
 }  // namespace
 
 OutlineStageResult make_outline(const Forest& forest, const OutlineConfig& config, double diagonal,
-                                Progress& progress, const CancelToken& cancel) {
+                                const MemoryPlan& plan, Progress& progress,
+                                const CancelToken& cancel) {
   Level level = sector_level(forest.tree(), config.sectors);
   std::optional<outline::OutlineBuilder> builder;
-  while (!collect(forest, level, builder.emplace(), progress, cancel))
+  while (!collect(forest, level, builder.emplace(), plan, progress, cancel))
     level = coarser(level);
 
   outline::OutlineOptions options;

@@ -5,6 +5,7 @@
 #include "pipeline/cancel.h"
 #include "pipeline/config.h"
 #include "pipeline/forest.h"
+#include "pipeline/memory_plan.h"
 #include "pipeline/progress.h"
 
 namespace meshhier::pipeline {
@@ -16,6 +17,7 @@ struct OutlineStageResult {
 
 /// `diagonal`: of the model's bounding box.
 OutlineStageResult make_outline(const Forest& forest, const OutlineConfig& config, double diagonal,
-                                Progress& progress, const CancelToken& cancel);
+                                const MemoryPlan& plan, Progress& progress,
+                                const CancelToken& cancel);
 
 }  // namespace meshhier::pipeline

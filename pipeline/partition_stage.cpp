@@ -1,43 +1,40 @@
 #include "pipeline/partition_stage.h"
 
-#include "hierarchy/error.h"
 #include "partition/renumber.h"
 #include "partition/top_tree.h"
 #include "pipeline/parallel.h"
 
-#include <algorithm>
-
-#include <fmt/format.h>
+#include <span>
+#include <utility>
+#include <vector>
 
 namespace meshhier::pipeline {
 namespace {
 
-using partition::RankTriangle;
 using partition::TopPlan;
 using partition::TopTree;
 
-/// A block of input vertices, kept while others are read.
-struct VertexCopy {
-  std::uint32_t first = 0;
-  std::vector<Vec3f> positions;
-  std::vector<float> attributes;
-};
-
-/// Streams the vertices through parallel work(block) and a serial sink in file order.
-template <class Result>
+/// Hands the vertices to parallel work(block, slot) and a serial sink(slot) in the order of ids.
+template <class Slot, class Work, class Sink>
 void for_each_block(const SourceMesh& mesh, const MemoryPlan& plan, const CancelToken& cancel,
-                    Progress& progress, std::function<Result(const VertexCopy&)> work,
-                    std::function<void(Result&)> sink) {
-  BatchedWork<VertexCopy, Result> blocks(plan.blocks_in_flight, std::move(work), std::move(sink));
-  mesh.read_vertices([&](std::uint64_t first, std::span<const Vec3f> positions,
-                         std::span<const float> attributes) {
-    cancel.check();
-    blocks.add({static_cast<std::uint32_t>(first),
-                {positions.begin(), positions.end()},
-                {attributes.begin(), attributes.end()}});
-    progress.advance(positions.size());
-  });
-  blocks.finish();
+                    Progress& progress, const Work& work, const Sink& sink) {
+  struct Read {
+    mesh_io::BlockMemory memory;
+    std::size_t count = 0;
+    Slot slot;
+  };
+  ordered_blocks<Read>(
+      mesh.vertex_blocks(), plan.blocks_in_flight, cancel,
+      [&](std::uint64_t i, Read& read) {
+        const SourceVertices block = mesh.read_vertex_block(i, read.memory);
+        read.count = block.positions.size();
+        work(block, read.slot);
+      },
+      [&](Read& read) {
+        sink(read.slot);
+        progress.advance(read.count);
+        return true;
+      });
 }
 
 TopTree find_splits(const SourceMesh& mesh, const Tree& tree, partition::Axis axis,
@@ -48,155 +45,117 @@ TopTree find_splits(const SourceMesh& mesh, const Tree& tree, partition::Axis ax
     return {plan.chunks, {}};
   for (;;) {
     progress.stage("partition", tree.vertex_count(), "vertices");
+    const partition::Sweep sweep(plan);
     partition::TopSelector selector(plan, tree, scratch, memory.work_bytes / 2);
     for_each_block<partition::SweepBlock>(
         mesh, memory, cancel, progress,
-        [&](const VertexCopy& block) {
-          return partition::sweep(plan, block.positions, block.first);
+        [&](const SourceVertices& block, partition::SweepBlock& swept) {
+          sweep.count(block.positions, static_cast<std::uint32_t>(block.first), swept);
         },
-        [&](partition::SweepBlock& block) { selector.add(block); });
+        [&](const partition::SweepBlock& swept) { selector.add(swept); });
     std::vector<partition::SplitPlane> planes = selector.settle(plan);
     if (!planes.empty())
       return {plan.chunks, std::move(planes)};
   }
 }
 
-/// A block's vertices sorted by chunk, in rows of position and attributes.
-struct ChunkedBlock {
-  std::vector<std::uint32_t> chunk_of;  ///< per vertex
-  std::vector<std::uint32_t> starts;    ///< per chunk: its first row; one entry more than chunks
-  std::vector<float> rows;
-};
-
-ChunkedBlock sort_by_chunk(const VertexCopy& block, const TopTree& top, std::uint32_t chunk_count,
-                           std::size_t channels) {
-  ChunkedBlock sorted;
-  const std::size_t count = block.positions.size();
-  sorted.chunk_of.resize(count);
-  sorted.starts.resize(chunk_count + 1);
-  for (std::size_t i = 0; i < count; ++i) {
-    sorted.chunk_of[i] =
-        top.chunk_of(block.positions[i], static_cast<std::uint32_t>(block.first + i));
-    ++sorted.starts[sorted.chunk_of[i] + 1];
-  }
-  for (std::size_t i = 1; i < sorted.starts.size(); ++i)
-    sorted.starts[i] += sorted.starts[i - 1];
-  std::vector<std::uint32_t> next(sorted.starts.begin(), sorted.starts.end() - 1);
-  const std::size_t width = 3 + channels;
-  sorted.rows.resize(count * width);
-  for (std::size_t i = 0; i < count; ++i) {
-    float* row = sorted.rows.data() + next[sorted.chunk_of[i]]++ * width;
-    row[0] = block.positions[i].x;
-    row[1] = block.positions[i].y;
-    row[2] = block.positions[i].z;
-    std::copy_n(block.attributes.data() + i * channels, channels, row + 3);
-  }
-  return sorted;
-}
-
-/// Distributes the vertices; returns the provisional rank of every id.
-storage::RecordSpool<std::uint32_t> distribute_vertices(const SourceMesh& mesh, const TopTree& top,
-                                                        Chunks& chunks, const MemoryPlan& plan,
-                                                        storage::ScratchFile& scratch,
-                                                        Progress& progress,
-                                                        const CancelToken& cancel) {
-  progress.stage("distribute", mesh.summary().vertices, "vertices");
-  storage::RecordSpool<std::uint32_t> rank_of(scratch, 1 << 18);
-  const auto channels = static_cast<std::size_t>(mesh.summary().attributes.channels());
+/// Distributes the vertices; calls take_ranks(ranks) for block after block: the provisional ranks
+/// of the ids in their order.
+template <class TakeRanks>
+void distribute_vertices(const SourceMesh& mesh, const TopTree& top, Chunks& chunks,
+                         const MemoryPlan& plan, Progress& progress, const CancelToken& cancel,
+                         const TakeRanks& take_ranks) {
   std::vector<std::uint32_t> next_rank(chunks.count());
   for (std::uint32_t c = 0; c < chunks.count(); ++c)
     next_rank[c] = chunks.map().first_rank(c);
+  const partition::ChunkSearch search(top, mesh.stored_bounds());
   std::vector<std::uint32_t> ranks;
-  for_each_block<ChunkedBlock>(
+  for_each_block<ChunkedVertices>(
       mesh, plan, cancel, progress,
-      [&](const VertexCopy& block) { return sort_by_chunk(block, top, chunks.count(), channels); },
-      [&](ChunkedBlock& block) {
-        ranks.resize(block.chunk_of.size());
+      [&](const SourceVertices& block, ChunkedVertices& sorted) {
+        sorted.chunk_of.resize(block.positions.size());
+        search.find(block.positions, static_cast<std::uint32_t>(block.first), sorted.chunk_of);
+        sorted.sort(chunks.count(), block.positions, block.attributes);
+      },
+      [&](const ChunkedVertices& sorted) {
+        ranks.resize(sorted.chunk_of.size());
         for (std::size_t i = 0; i < ranks.size(); ++i)
-          ranks[i] = next_rank[block.chunk_of[i]]++;
-        rank_of.append(ranks);
-        const std::size_t width = 3 + channels;
-        for (std::uint32_t c = 0; c < chunks.count(); ++c) {
-          const std::size_t rows = block.starts[c + 1] - block.starts[c];
-          if (rows > 0)
-            chunks.append_vertices(
-                c, std::span(block.rows).subspan(block.starts[c] * width, rows * width));
-        }
+          ranks[i] = next_rank[sorted.chunk_of[i]]++;
+        take_ranks(std::span<const std::uint32_t>(ranks));
+        chunks.append(sorted);
       });
-  return rank_of;
 }
 
-void distribute_triangles(SourceMesh& mesh, const storage::RecordSpool<std::uint32_t>& rank_of,
-                          Chunks& chunks, const MemoryPlan& plan, storage::ScratchFile& scratch,
-                          Progress& progress, const CancelToken& cancel) {
-  progress.stage("triangles", mesh.declared_faces(), "triangles");
-  const auto read = [&](const auto& visit) {
-    mesh.read_triangles([&](std::span<const mesh_io::SourceTriangle> triangles) {
-      cancel.check();
-      visit(triangles);
-      progress.advance(triangles.size());
+/// Distributes the vertices and makes what gives every id its provisional rank: in memory if that
+/// is granted.
+class RankTable {
+ public:
+  RankTable(const SourceMesh& mesh, const TopTree& top, Chunks& chunks, const MemoryPlan& plan,
+            storage::ScratchFile& scratch, Progress& progress, const CancelToken& cancel)
+      : scratch_(scratch), spooled_(scratch, 1 << 18) {
+    const std::uint64_t count = mesh.summary().vertices;
+    renumbering_ = partition::plan_renumbering(count, sizeof(std::uint32_t), plan.table_bytes);
+    progress.stage("distribute", count, "vertices");
+    const bool in_memory = renumbering_.blocks == 1;
+    if (in_memory)
+      table_.reserve(count);
+    distribute_vertices(mesh, top, chunks, plan, progress, cancel, [&](auto ranks) {
+      in_memory ? void(table_.insert(table_.end(), ranks.begin(), ranks.end()))
+                : spooled_.append(ranks);
     });
+  }
+
+  /// Call once.
+  partition::Renumberer<std::uint32_t> renumberer() {
+    if (renumbering_.blocks == 1)
+      return {std::move(table_), scratch_};
+    return {spooled_, renumbering_, scratch_};
+  }
+
+ private:
+  storage::ScratchFile& scratch_;
+  partition::RenumberPlan renumbering_;
+  std::vector<std::uint32_t> table_;
+  storage::RecordSpool<std::uint32_t> spooled_;
+};
+
+void distribute_triangles(SourceMesh& mesh, RankTable& ranks, Chunks& chunks,
+                          const MemoryPlan& plan, Progress& progress, const CancelToken& cancel) {
+  struct Slot {
+    std::size_t read = 0;
+    partition::Renumbered<std::uint32_t> renumbered;
+    ChunkedTriangles chunked;
   };
-  partition::renumber(read, rank_of, plan.table_bytes, scratch,
-                      [&](std::span<const RankTriangle> triangles) {
-                        cancel.check();
-                        chunks.append_triangles(triangles);
-                      });
+  progress.stage("triangles", mesh.declared_faces(), "triangles");
+  partition::Renumberer<std::uint32_t> renumberer = ranks.renumberer();
+  const auto keep = [&](const Slot& slot) {
+    renumberer.keep(slot.renumbered);
+    chunks.append(slot.chunked);
+    return true;
+  };
+  mesh.read_triangles<Slot>(
+      plan.blocks_in_flight, cancel,
+      [&](std::span<const mesh_io::SourceTriangle> triangles, Slot& slot) {
+        slot.read = triangles.size();
+        renumberer.translate(triangles, slot.renumbered);
+        slot.chunked.sort(slot.renumbered.finished, chunks.map());
+      },
+      [&](const Slot& slot) {
+        keep(slot);
+        progress.advance(slot.read);
+      });
+  while (renumberer.next_round()) {
+    ordered_blocks<Slot>(
+        renumberer.batches(), plan.blocks_in_flight, cancel,
+        [&](std::uint64_t batch, Slot& slot) {
+          renumberer.translate_batch(batch, slot.renumbered);
+          slot.chunked.sort(slot.renumbered.finished, chunks.map());
+        },
+        keep);
+  }
 }
 
 }  // namespace
-
-Chunks::Chunks(const Tree& tree, int channels, storage::ScratchFile& scratch,
-               std::size_t block_bytes)
-    : level_(partition::chunk_level(tree)), map_(tree, level_), channels_(channels) {
-  for (std::uint32_t i = 0; i < map_.count(); ++i) {
-    vertices_.emplace_back(scratch, block_bytes);
-    triangles_.emplace_back(scratch, block_bytes);
-  }
-}
-
-void Chunks::append_vertices(std::uint32_t chunk, std::span<const float> rows) {
-  vertices_[chunk].append(rows);
-}
-
-void Chunks::append_triangles(std::span<const RankTriangle> triangles) {
-  for (const RankTriangle& t : triangles) {
-    const std::uint32_t a = map_.chunk_of(t[0]);
-    const std::uint32_t b = map_.chunk_of(t[1]);
-    const std::uint32_t c = map_.chunk_of(t[2]);
-    triangles_[a].append(t);
-    if (b != a)
-      triangles_[b].append(t);
-    if (c != a && c != b)
-      triangles_[c].append(t);
-  }
-}
-
-std::uint64_t Chunks::triangle_bytes(std::uint32_t chunk) const {
-  return triangles_[chunk].size() * sizeof(RankTriangle);
-}
-
-partition::ChunkMesh Chunks::take(std::uint32_t chunk) {
-  partition::ChunkMesh mesh;
-  mesh.node = {level_, chunk};
-  mesh.vertices.channels = channels_;
-  mesh.vertices.reserve(map_.size(chunk));
-  const std::size_t width = 3 + static_cast<std::size_t>(channels_);
-  std::vector<float> rows;
-  constexpr std::uint64_t kRows = 16384;  // a block at a time: the rows are not held twice
-  for (std::uint64_t first = 0; first < map_.size(chunk); first += kRows) {
-    rows.resize(std::min<std::uint64_t>(kRows, map_.size(chunk) - first) * width);
-    vertices_[chunk].read(first * width, rows);
-    for (std::size_t at = 0; at < rows.size(); at += width) {
-      mesh.vertices.append({rows[at], rows[at + 1], rows[at + 2]},
-                           std::span(rows).subspan(at + 3, width - 3));
-    }
-  }
-  vertices_[chunk].clear();
-  mesh.triangles = triangles_[chunk].read_all();
-  triangles_[chunk].clear();
-  return mesh;
-}
 
 Chunks distribute(SourceMesh& mesh, const Tree& tree, partition::Axis axis, const MemoryPlan& plan,
                   storage::ScratchFile& scratch, Progress& progress, const CancelToken& cancel) {
@@ -207,9 +166,9 @@ Chunks distribute(SourceMesh& mesh, const Tree& tree, partition::Axis axis, cons
   release_free_memory();
   Chunks chunks(tree, mesh.summary().attributes.channels(), scratch, plan.spool_block_bytes);
   storage::ScratchFile passing = scratch.beside("ranks");
-  const auto rank_of = distribute_vertices(mesh, top, chunks, plan, passing, progress, cancel);
+  RankTable ranks(mesh, top, chunks, plan, passing, progress, cancel);
   release_free_memory();
-  distribute_triangles(mesh, rank_of, chunks, plan, passing, progress, cancel);
+  distribute_triangles(mesh, ranks, chunks, plan, progress, cancel);
   release_free_memory();
   return chunks;
 }

@@ -69,14 +69,12 @@ TileRecord describe(const Tree& tree, NodeId node, const BuildTile& tile, const 
 /// Writes one tile, returns its index entry.
 TileRecord write_tile(const Forest& forest, NodeId node, const PublishInput& input,
                       const std::filesystem::path& directory, storage::FileSystem& files) {
-  BuildTile tile = forest.load(node);
+  const BuildTile tile = forest.load(node);
   TileRecord record = describe(forest.tree(), node, tile, forest.facts(node), input.asked_vertices);
-  PublishedTile published;
-  published.node = node;
-  published.parent_map = forest.published_parent_map(node);
-  published.chains = forest.chains(node, tile.mesh.ghosts);
-  published.mesh = std::move(tile.mesh);
-  const std::vector<std::byte> bytes = storage::encode_tile(published, forest.tree(), input.format);
+  const std::vector<std::uint16_t> parent_map = forest.published_parent_map(node);
+  const std::vector<std::uint16_t> chains = forest.chains(node, tile.mesh.ghosts);
+  const std::vector<std::byte> bytes = storage::encode_tile(
+      {node, tile.mesh, record.bounds, parent_map, chains}, forest.tree(), input.format);
   storage::write_file(files, storage::tile_path(directory, node), bytes);
   record.file_bytes = bytes.size();
   record.checksum = storage::checksum(bytes);

@@ -1,8 +1,12 @@
 #include "pipeline/simplify_stage.h"
 
+#include "cluster_simplify/band.h"
 #include "hierarchy/error.h"
+#include "pipeline/bound_chain.h"
 #include "pipeline/parallel.h"
 #include "pipeline/size_text.h"
+
+#include <algorithm>
 
 #include <fmt/format.h>
 
@@ -42,36 +46,99 @@ ChunkReport put_leaves(Chunks& chunks, std::uint32_t index, partition::Axis axis
   return {leaves.tiles.size(), leaves.unreferenced_count};
 }
 
-ContractedTile contract_children(Forest& forest, const Tree::Children& children,
-                                 const SimplifyOptions& options) {
-  const BuildTile first = forest.load(children.nodes[0]);
-  forest.put_band(children.nodes[0], first);
-  if (children.count == 1)
-    return cluster_simplify::keep(first);
-  const BuildTile second = forest.load(children.nodes[1]);
-  forest.put_band(children.nodes[1], second);
-  const BuildTile joined =
-      cluster_simplify::join(first, children.nodes[0].index, second, children.nodes[1].index);
-  const std::uint32_t target =
-      cluster_simplify::contraction_target(joined.mesh.own_count, options.vertices);
-  return cluster_simplify::apply(
-      joined, cluster_simplify::contract(joined, target, options.attributes, options.contraction));
+/// How far a simplified tile's surface went when its level was made, now that the level is
+/// complete.
+Step measure_step(const Forest& forest, NodeId node, const BuildTile& tile) {
+  const cluster_simplify::BandOf own{node.index, forest.band(node)};
+  std::vector<cluster_simplify::BandOf> neighbours;
+  for (const GhostRef& ghost : tile.mesh.ghosts) {
+    if (neighbours.empty() || neighbours.back().tile != ghost.tile)
+      neighbours.push_back({ghost.tile, forest.band({node.level, ghost.tile})});
+  }
+  const std::vector<GhostRef> mapped = forest.mapped(node, own.band.foreign);
+  const double seam = cluster_simplify::seam_gap({tile.mesh, own, mapped, neighbours});
+  const Band& band = own.band;
+  Step step;
+  step.certain = std::max(double{band.interior_drift}, seam);
+  if (band.lost > 0)
+    step.certain = std::max(step.certain, double{band.lost} + seam);
+  step.mean_square = band.weight_sum > 0 ? band.squared_sum / band.weight_sum : 0;
+  const auto add_foreign = [&](const Band& of) {
+    for (const GhostRef& ref : of.foreign)
+      step.finer_neighbours.push_back(ref.tile);
+  };
+  add_foreign(band);
+  for (const cluster_simplify::BandOf& neighbour : neighbours) {
+    add_foreign(neighbour.band);
+    const Tree::Children children = forest.tree().children({node.level, neighbour.tile});
+    for (const NodeId child : children.span())
+      step.finer_neighbours.push_back(child.index);
+  }
+  make_unique(step.finer_neighbours);
+  return step;
 }
 
-/// Makes a node's tile out of its children's, and their maps to it.
-void make_tile(Forest& forest, NodeId node, const SimplifyOptions& options) {
-  const Tree::Children children = forest.tree().children(node);
-  const ContractedTile contracted = contract_children(forest, children, options);
-  std::size_t begin = 0;
-  for (const NodeId child : children.span()) {
-    const std::size_t count = forest.own_count(child);
-    forest.put_parent_map(child, std::span(contracted.parent_map).subspan(begin, count));
-    begin += count;
+/// Makes the levels one by one, finest first; a level's steps are measured while the next is made
+/// of it.
+class Simplifier {
+ public:
+  Simplifier(Forest& forest, const SimplifyOptions& options) : forest_(forest), options_(options) {}
+
+  void begin(Level level) {
+    steps_.clear();
+    steps_.resize(level < forest_.tree().depth() ? forest_.tree().node_count(level) : 0);
   }
-  forest.put_tile(node, contracted.tile);
-  forest.facts(node).torn_count = contracted.fallbacks.torn;
-  forest.facts(node).forced_count = contracted.fallbacks.without_care();
-}
+  /// Of the level that begin() named, once all tiles above it are made.
+  const std::vector<Step>& steps() const { return steps_; }
+
+  /// Loads a tile of the level that begin() named.
+  BuildTile load(NodeId node) {
+    BuildTile tile = forest_.load(node);
+    if (!forest_.tree().is_partition(node))
+      steps_[node.index] = measure_step(forest_, node, tile);
+    return tile;
+  }
+
+  /// Makes a node's tile out of its children's, and their maps to it.
+  void make_tile(NodeId node) {
+    const Tree::Children children = forest_.tree().children(node);
+    const BuildTile joined = load_joined(children);
+    const ContractedTile contracted = contract(joined, children);
+    std::size_t begin = 0;
+    for (const NodeId child : children.span()) {
+      const std::size_t count = forest_.own_count(child);
+      forest_.put_parent_map(child, std::span(contracted.parent_map).subspan(begin, count));
+      begin += count;
+    }
+    forest_.put_tile(node, contracted.tile);
+    forest_.put_band(node, cluster_simplify::make_band(joined, contracted));
+    forest_.facts(node).torn_count = contracted.fallbacks.torn;
+    forest_.facts(node).forced_count = contracted.fallbacks.without_care();
+  }
+
+ private:
+  BuildTile load_joined(const Tree::Children& children) {
+    BuildTile first = load(children.nodes[0]);
+    if (children.count == 1)
+      return first;
+    return cluster_simplify::join(first, children.nodes[0].index, load(children.nodes[1]),
+                                  children.nodes[1].index);
+  }
+
+  ContractedTile contract(const BuildTile& joined, const Tree::Children& children) const {
+    if (children.count == 1)
+      return cluster_simplify::keep(joined);
+    const std::uint32_t target =
+        cluster_simplify::contraction_target(joined.mesh.own_count, options_.vertices);
+    return cluster_simplify::apply(
+        joined,
+        cluster_simplify::contract(joined, target, options_.attributes, options_.contraction));
+  }
+
+  Forest& forest_;
+  const SimplifyOptions& options_;
+  std::vector<Step> steps_;
+};
 
 }  // namespace
 
@@ -101,15 +168,25 @@ void simplify(Forest& forest, const SimplifyOptions& options, const MemoryPlan& 
   for (int l = 0; l < raw(tree.depth()); ++l)
     total += tree.node_count(static_cast<Level>(l));
   progress.stage("simplify", total, "tiles");
+  Simplifier simplifier(forest, options);
+  BoundChain chain(forest, options.diagonal);
+  simplifier.begin(tree.depth());
   for (int l = raw(tree.depth()) - 1; l >= 0; --l) {
     const auto level = static_cast<Level>(l);
     ordered_for(
         tree.node_count(level), plan.tiles_in_flight, cancel,
         [&](std::size_t i) {
-          make_tile(forest, {level, static_cast<std::uint32_t>(i)}, options);
+          simplifier.make_tile({level, static_cast<std::uint32_t>(i)});
           return std::size_t{1};
         },
         [&](std::size_t, std::size_t tiles) { progress.advance(tiles); });
+    if (!simplifier.steps().empty())
+      chain.add(finer(level), simplifier.steps());
+    simplifier.begin(level);
+  }
+  if (tree.depth() > Level{0}) {
+    simplifier.load({Level{0}, 0});
+    chain.add(Level{0}, simplifier.steps());
   }
 }
 

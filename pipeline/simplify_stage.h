@@ -21,9 +21,16 @@ struct SimplifyOptions {
   std::uint32_t vertices = 8192;  ///< asked of every simplified tile
   AttributeLayout attributes;
   cluster_simplify::ContractionOptions contraction;
+  double diagonal = 0;  ///< of the whole model
 };
 
-/// Contracts all levels, from the partitions to one root tile.
+/// Contracts all levels, from the partitions to one root tile, and sets error and bound of every
+/// tile, from the partitions (0) to the root, each more than its children's.
+///
+/// How far a contraction moves the surface is measured while it is carried out (drift.h), and at
+/// the seams when its level is complete (band.h). `bound` sums the certain distances of the steps
+/// along every way a point may have taken, through the tile itself and its neighbours
+/// (bound_chain.h); `error` adds the steps' root mean squares up the tree.
 void simplify(Forest& forest, const SimplifyOptions& options, const MemoryPlan& plan,
               Progress& progress, const CancelToken& cancel);
 

@@ -31,10 +31,46 @@ double round_origin(double low, double high) {
   return std::isfinite(origin) ? origin : 0;
 }
 
+Vec3d widened(Vec3f p) {
+  return to_double(p);
+}
+Vec3d widened(Vec3d p) {
+  return p;
+}
+
+/// What is learnt of one block of vertices.
+struct BlockScan {
+  std::size_t count = 0;
+  BoundsD bounds;
+  bool float_exact = true;
+  std::vector<Vec3d> sample;  ///< those that `ids` name
+
+  void look_at(const mesh_io::VertexBlock& block, const partition::SampleIds& ids) {
+    float_exact = std::all_of(block.exact.begin(), block.exact.end(), fits_float);
+    block.exact.empty() ? look_at(block.first, block.positions, ids)
+                        : look_at(block.first, block.exact, ids);
+  }
+
+ private:
+  template <class Scalar>
+  void look_at(std::uint64_t first, std::span<const Vec3<Scalar>> positions,
+               const partition::SampleIds& ids) {
+    count = positions.size();
+    BoundsOf<Scalar> box;  // in a local, so that it stays in registers
+    for (const Vec3<Scalar>& p : positions)
+      box.add(p);
+    bounds = BoundsD{widened(box.min), widened(box.max)};
+    sample.clear();
+    for (std::uint64_t i = ids.first_from(first); i < ids.count() && ids[i] < first + count; ++i)
+      sample.push_back(widened(positions[ids[i] - first]));
+  }
+};
+
 }  // namespace
 
 SourceMesh::SourceMesh(std::unique_ptr<mesh_io::MeshSource> source, std::string file_name,
-                       storage::ScratchFile& scratch, Progress& progress, const CancelToken& cancel)
+                       storage::ScratchFile& scratch, std::size_t in_flight, Progress& progress,
+                       const CancelToken& cancel)
     : source_(std::move(source)),
       spooled_positions_(scratch, 1 << 18),
       spooled_attributes_(scratch, 1 << 18) {
@@ -43,40 +79,43 @@ SourceMesh::SourceMesh(std::unique_ptr<mesh_io::MeshSource> source, std::string 
   summary_.file_bytes = description.file_bytes;
   summary_.vertices = description.vertex_count;
   summary_.attributes = description.attributes;
-  scan(progress, cancel);
+  scan(in_flight, progress, cancel);
   choose_origin();
 }
 
-void SourceMesh::scan(Progress& progress, const CancelToken& cancel) {
+void SourceMesh::scan(std::size_t in_flight, Progress& progress, const CancelToken& cancel) {
   progress.stage("ingest", summary_.vertices, "vertices");
-  sample_positions_.reserve(partition::SampleIds(summary_.vertices).count());
+  const partition::SampleIds ids(summary_.vertices);
+  sample_positions_.reserve(ids.count());
+  const auto take = [&](const BlockScan& block) {
+    summary_.bounds.add(block.bounds);
+    float_exact_ = float_exact_ && block.float_exact;
+    sample_positions_.insert(sample_positions_.end(), block.sample.begin(), block.sample.end());
+    progress.advance(block.count);
+    return true;
+  };
+  if (vertices_in_place()) {
+    struct Slot {
+      mesh_io::BlockMemory memory;
+      BlockScan scan;
+    };
+    ordered_blocks<Slot>(
+        source_->vertex_blocks(), in_flight, cancel,
+        [&](std::uint64_t i, Slot& slot) {
+          slot.scan.look_at(source_->read_vertex_block(i, slot.memory), ids);
+        },
+        [&](const Slot& slot) { return take(slot.scan); });
+    return;
+  }
+  BlockScan scan;
   source_->read_vertices([&](const mesh_io::VertexBlock& block) {
     cancel.check();
-    scan_block(block);
-    progress.advance(std::max(block.positions.size(), block.exact.size()));
-  });
-}
-
-void SourceMesh::scan_block(const mesh_io::VertexBlock& block) {
-  const bool wide = !block.exact.empty();
-  const std::size_t count = wide ? block.exact.size() : block.positions.size();
-  const auto at = [&](std::size_t i) {
-    return wide ? block.exact[i] : to_double(block.positions[i]);
-  };
-  for (std::size_t i = 0; i < count; ++i)
-    summary_.bounds.add(at(i));
-  if (wide)
-    float_exact_ = float_exact_ && std::all_of(block.exact.begin(), block.exact.end(), fits_float);
-
-  const partition::SampleIds ids(summary_.vertices);
-  while (sample_positions_.size() < ids.count() &&
-         ids[sample_positions_.size()] < block.first + count) {
-    sample_positions_.push_back(at(ids[sample_positions_.size()] - block.first));
-  }
-  if (!vertices_in_place()) {
+    scan.look_at(block, ids);
+    take(scan);
+    const bool wide = !block.exact.empty();
     spooled_positions_.append(wide ? std::as_bytes(block.exact) : std::as_bytes(block.positions));
     spooled_attributes_.append(std::as_bytes(block.attributes));
-  }
+  });
 }
 
 void SourceMesh::choose_origin() {
@@ -105,46 +144,46 @@ std::vector<partition::IdPoint> SourceMesh::sample() const {
   return sample;
 }
 
-void SourceMesh::read_vertices(const SourceBlockVisitor& visit) const {
-  const bool wide = source_->description().wide_coordinates;
-  std::vector<Vec3f> positions;
-  const auto relative = [&](std::span<const Vec3d> exact) {
-    positions.resize(exact.size());
-    std::transform(exact.begin(), exact.end(), positions.begin(),
-                   [&](Vec3d p) { return to_float(p - origin_); });
-    return std::span<const Vec3f>(positions);
-  };
-  if (vertices_in_place()) {
-    source_->read_vertices([&](const mesh_io::VertexBlock& block) {
-      visit(block.first, wide ? relative(block.exact) : block.positions, block.attributes);
-    });
-    return;
-  }
-  std::vector<Vec3d> exact;
-  std::vector<float> attributes;
-  const auto channels = static_cast<std::size_t>(summary_.attributes.channels());
-  for (std::uint64_t first = 0; first < summary_.vertices; first += kBlock) {
-    const std::size_t count = std::min<std::uint64_t>(kBlock, summary_.vertices - first);
-    attributes.resize(count * channels);
-    spooled_attributes_.read(first * channels * sizeof(float),
-                             std::as_writable_bytes(std::span(attributes)));
-    if (wide) {
-      exact.resize(count);
-      spooled_positions_.read(first * sizeof(Vec3d), std::as_writable_bytes(std::span(exact)));
-      relative(exact);
-    } else {
-      positions.resize(count);
-      spooled_positions_.read(first * sizeof(Vec3f), std::as_writable_bytes(std::span(positions)));
-    }
-    visit(first, positions, attributes);
-  }
+std::uint64_t SourceMesh::vertex_blocks() const {
+  return vertices_in_place() ? source_->vertex_blocks() : (summary_.vertices + kBlock - 1) / kBlock;
 }
 
-void SourceMesh::read_triangles(const mesh_io::TriangleVisitor& visit) {
-  const mesh_io::FaceCounts counts = source_->read_triangles(visit);
-  summary_.faces = counts.faces;
-  summary_.triangles = counts.triangles;
-  summary_.degenerate_triangles = counts.degenerate_triangles;
+SourceVertices SourceMesh::read_vertex_block(std::uint64_t index,
+                                             mesh_io::BlockMemory& memory) const {
+  const bool wide = source_->description().wide_coordinates;
+  const auto make_relative = [&](std::span<const Vec3d> exact) {
+    memory.positions.resize(exact.size());
+    std::transform(exact.begin(), exact.end(), memory.positions.begin(),
+                   [&](Vec3d p) { return to_float(p - origin_); });
+  };
+  if (vertices_in_place()) {
+    const mesh_io::VertexBlock block = source_->read_vertex_block(index, memory);
+    if (wide)
+      make_relative(block.exact);
+    return {block.first, memory.positions, block.attributes};
+  }
+  const std::uint64_t first = index * kBlock;
+  const std::size_t count = std::min<std::uint64_t>(kBlock, summary_.vertices - first);
+  const auto channels = static_cast<std::size_t>(summary_.attributes.channels());
+  memory.attributes.resize(count * channels);
+  spooled_attributes_.read(first * channels * sizeof(float),
+                           std::as_writable_bytes(std::span(memory.attributes)));
+  if (wide) {
+    memory.exact.resize(count);
+    spooled_positions_.read(first * sizeof(Vec3d), std::as_writable_bytes(std::span(memory.exact)));
+    make_relative(memory.exact);
+  } else {
+    memory.positions.resize(count);
+    spooled_positions_.read(first * sizeof(Vec3f),
+                            std::as_writable_bytes(std::span(memory.positions)));
+  }
+  return {first, memory.positions, memory.attributes};
+}
+
+void SourceMesh::count(const mesh_io::FaceCounts& counts) {
+  summary_.faces += counts.faces;
+  summary_.triangles += counts.triangles;
+  summary_.degenerate_triangles += counts.degenerate_triangles;
 }
 
 }  // namespace meshhier::pipeline

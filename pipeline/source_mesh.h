@@ -1,15 +1,15 @@
-// The stage `ingest`: the input checked, bounded and sampled; its vertices ready to be streamed
-// again as floats.
+// The stage `ingest`: the input checked, bounded and sampled; its vertices ready to be read again
+// as floats.
 #pragma once
 
 #include "hierarchy/published.h"
 #include "mesh_io/mesh_source.h"
 #include "partition/split_plane.h"
 #include "pipeline/cancel.h"
+#include "pipeline/parallel.h"
 #include "pipeline/progress.h"
 #include "storage/spool.h"
 
-#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -17,18 +17,23 @@
 
 namespace meshhier::pipeline {
 
-/// Vertices first, first + 1, ... relative to the origin.
-using SourceBlockVisitor = std::function<void(std::uint64_t first, std::span<const Vec3f> positions,
-                                              std::span<const float> attributes)>;
+/// Vertices first, first + 1, ... relative to the origin. Valid as long as the memory they were
+/// read into is not used.
+struct SourceVertices {
+  std::uint64_t first = 0;
+  std::span<const Vec3f> positions;
+  std::span<const float> attributes;
+};
 
 /// A mesh that was read once: all vertices are sound.
 class SourceMesh {
  public:
   /// Reads all vertices: checks them, bounds them, picks the sample. A file whose vertices cannot
   /// be read again in place is spooled meanwhile. Throws as mesh_io::MeshSource does. `file_name`:
-  /// for the summary. Requires a vertex.
+  /// for the summary. `in_flight`: blocks read at a time. Requires a vertex.
   SourceMesh(std::unique_ptr<mesh_io::MeshSource> source, std::string file_name,
-             storage::ScratchFile& scratch, Progress& progress, const CancelToken& cancel);
+             storage::ScratchFile& scratch, std::size_t in_flight, Progress& progress,
+             const CancelToken& cancel);
 
   /// Counts of faces and triangles are 0 until read_triangles(); checksum and unreferenced_vertices
   /// are not known here.
@@ -40,18 +45,36 @@ class SourceMesh {
   /// the middle.
   Vec3d origin() const { return origin_; }
 
+  /// Of the positions, relative to the origin.
+  Bounds stored_bounds() const {
+    return {to_float(summary_.bounds.min - origin_), to_float(summary_.bounds.max - origin_)};
+  }
+
   /// The vertices that partition::SampleIds names.
   std::vector<partition::IdPoint> sample() const;
 
-  void read_vertices(const SourceBlockVisitor& visit) const;
+  /// All vertices in blocks of at most MeshSource::kBlockSize, in the order of ids.
+  std::uint64_t vertex_blocks() const;
+  /// Thread-safe for different `memory`.
+  SourceVertices read_vertex_block(std::uint64_t index, mesh_io::BlockMemory& memory) const;
 
-  /// Also completes the summary's face counts.
-  void read_triangles(const mesh_io::TriangleVisitor& visit);
+  /// Reads all triangles once, and completes the summary's face counts. work(triangles, slot) runs
+  /// in parallel, each with one of `in_flight` slots; sink(slot) follows in file order. What work()
+  /// is given may turn out to be none of the file's triangles: then no sink() follows. As
+  /// ordered_blocks.
+  template <class Slot, class Work, class Sink>
+  void read_triangles(std::size_t in_flight, const CancelToken& cancel, const Work& work,
+                      const Sink& sink);
+
+  /// The input's storage::FileChecksum; cheap when all has been read.
+  std::uint64_t checksum(const CancelToken& cancel) {
+    return source_->checksum([&] { cancel.check(); });
+  }
 
  private:
-  void scan(Progress& progress, const CancelToken& cancel);
-  void scan_block(const mesh_io::VertexBlock& block);
+  void scan(std::size_t in_flight, Progress& progress, const CancelToken& cancel);
   void choose_origin();
+  void count(const mesh_io::FaceCounts& counts);
 
   std::unique_ptr<mesh_io::MeshSource> source_;
   storage::Spool spooled_positions_;  ///< Vec3f or Vec3d
@@ -61,5 +84,45 @@ class SourceMesh {
   bool float_exact_ = true;
   std::vector<Vec3d> sample_positions_;
 };
+
+template <class Slot, class Work, class Sink>
+void SourceMesh::read_triangles(std::size_t in_flight, const CancelToken& cancel, const Work& work,
+                                const Sink& sink) {
+  struct Read {
+    mesh_io::BlockMemory memory;
+    mesh_io::TriangleBlock block;
+    Slot slot;
+  };
+  mesh_io::FaceCounts counts;
+  ordered_blocks<Read>(
+      source_->triangle_blocks(), in_flight, cancel,
+      [&](std::uint64_t i, Read& read) {
+        read.block = source_->read_triangle_block(i, read.memory);
+        work(read.block.triangles, read.slot);
+      },
+      [&](Read& read) {
+        sink(read.slot);
+        counts.faces += read.block.faces;
+        counts.triangles += read.block.triangles.size();
+        return read.block.whole;
+      });
+  counts.degenerate_triangles = counts.faces - counts.triangles;
+  count(counts);
+
+  struct Copied {
+    std::vector<mesh_io::SourceTriangle> triangles;
+    Slot slot;
+  };
+  BatchedWork<Copied> rest(
+      in_flight,
+      [&](Copied& copied) { work(std::span(std::as_const(copied.triangles)), copied.slot); },
+      [&](Copied& copied) { sink(copied.slot); });
+  count(source_->read_triangles_from(
+      counts.faces, [&](std::span<const mesh_io::SourceTriangle> triangles) {
+        cancel.check();
+        rest.next().triangles.assign(triangles.begin(), triangles.end());
+      }));
+  rest.finish();
+}
 
 }  // namespace meshhier::pipeline

@@ -10,6 +10,7 @@
 #include "partition/renumber.h"
 #include "pipeline/cut.h"
 #include "pipeline/verify_parts.h"
+#include "storage/file_checksum.h"
 #include "storage/hash.h"
 
 #include <algorithm>
@@ -28,8 +29,6 @@ namespace {
 using HashTriangle = std::array<std::uint64_t, 3>;
 
 constexpr std::size_t kSpoolBlockBytes = std::size_t{1} << 20;
-/// How much of the input file is hashed at a time.
-constexpr std::size_t kFileBlockBytes = std::size_t{1} << 20;
 
 /// XXH3 of a salt and some bytes: another salt is another, independent hash.
 class SaltedHash {
@@ -151,18 +150,29 @@ MeshSums sum_input(const VerifyJob& job, mesh_io::MeshSource& source) {
     }
     table.append(hashes);
   });
-  partition::renumber<std::uint64_t>(
-      [&](auto&& visit) {
-        source.read_triangles([&](std::span<const mesh_io::SourceTriangle> triangles) {
-          job.cancel.check();
-          visit(triangles);
-        });
-      },
-      table, job.options.memory_budget / 4, job.scratch,
-      [&](std::span<const HashTriangle> triangles) {
-        for (const HashTriangle& t : triangles)
-          sums.add_triangle(t);
-      });
+  partition::Renumberer<std::uint64_t> renumberer(
+      table,
+      partition::plan_renumbering(table.size(), sizeof(std::uint64_t),
+                                  job.options.memory_budget / 4),
+      job.scratch);
+  partition::Renumbered<std::uint64_t> renumbered;
+  const auto add = [&] {
+    for (const HashTriangle& t : renumbered.finished)
+      sums.add_triangle(t);
+    renumberer.keep(renumbered);
+  };
+  source.read_triangles([&](std::span<const mesh_io::SourceTriangle> triangles) {
+    job.cancel.check();
+    renumberer.translate(triangles, renumbered);
+    add();
+  });
+  while (renumberer.next_round()) {
+    for (std::uint64_t batch = 0; batch < renumberer.batches(); ++batch) {
+      job.cancel.check();
+      renumberer.translate_batch(batch, renumbered);
+      add();
+    }
+  }
   return sums;
 }
 
@@ -190,17 +200,11 @@ void compare_file(const VerifyJob& job, const InputProblems& problems) {
   const auto file = job.files.open(*job.options.input);
   const std::uint64_t size = file->size();
   problems.compare("bytes", expected.file_bytes, size);
-  storage::Checksum checksum;
-  std::vector<std::byte> block(kFileBlockBytes);
-  for (std::uint64_t at = 0; at < size; at += block.size()) {
-    job.cancel.check();
-    block.resize(std::min<std::uint64_t>(kFileBlockBytes, size - at));
-    file->read_exact(at, block);
-    checksum.add(block);
-  }
-  if (checksum.value() != expected.checksum) {
+  const std::uint64_t checksum =
+      storage::FileChecksum(size).complete(*file, [&] { job.cancel.check(); });
+  if (checksum != expected.checksum) {
     problems.add(fmt::format("checksum {:016x}, but the hierarchy was made of a file with {:016x}",
-                             checksum.value(), expected.checksum));
+                             checksum, expected.checksum));
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include "hierarchy/error.h"
 
+#include <algorithm>
 #include <cassert>
 #include <optional>
 
@@ -182,11 +183,11 @@ Json mesh_node(Vec3d origin) {
   return node;
 }
 
-std::vector<std::byte> join_glb(std::string_view json, std::span<const std::byte> bin,
-                                std::size_t json_bytes) {
-  assert(bin.size() % 4 == 0);
+std::vector<std::byte> begin_glb(std::string_view json, std::size_t bin_bytes,
+                                 std::size_t json_bytes) {
+  assert(bin_bytes % 4 == 0);
   json_bytes = aligned4(std::max(json_bytes, json.size()));
-  const std::uint64_t length = glb_bytes(json_bytes, bin.size());
+  const std::uint64_t length = glb_bytes(json_bytes, bin_bytes);
   if (length > UINT32_MAX)
     throw Error(ErrorCode::internal, "a GLB would exceed 4 GiB");
 
@@ -199,10 +200,16 @@ std::vector<std::byte> join_glb(std::string_view json, std::span<const std::byte
   const auto text = std::as_bytes(std::span(json));
   bytes.insert(bytes.end(), text.begin(), text.end());
   bytes.insert(bytes.end(), json_bytes - json.size(), std::byte{' '});
-  if (!bin.empty()) {
-    append_chunk_header(bytes, bin.size(), kBinChunk);
-    bytes.insert(bytes.end(), bin.begin(), bin.end());
-  }
+  if (bin_bytes > 0)
+    append_chunk_header(bytes, bin_bytes, kBinChunk);
+  bytes.resize(length);
+  return bytes;
+}
+
+std::vector<std::byte> join_glb(std::string_view json, std::span<const std::byte> bin,
+                                std::size_t json_bytes) {
+  std::vector<std::byte> bytes = begin_glb(json, bin.size(), json_bytes);
+  std::copy(bin.begin(), bin.end(), bytes.end() - static_cast<std::ptrdiff_t>(bin.size()));
   return bytes;
 }
 

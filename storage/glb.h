@@ -8,6 +8,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <string>
 #include <string_view>
@@ -44,6 +45,18 @@ constexpr T load_little(const std::byte* from) {
       value = static_cast<T>(value | static_cast<T>(static_cast<T>(from[i]) << (8 * i)));
     }
     return value;
+  }
+}
+
+/// Writes all `values` little endian at `to`, one after another.
+template <Scalar T>
+void store_all_little(std::span<const T> values, std::byte* to) {
+  if constexpr (std::endian::native == std::endian::little) {
+    if (!values.empty())
+      std::memcpy(to, values.data(), values.size_bytes());
+  } else {
+    for (std::size_t i = 0; i < values.size(); ++i)
+      store_little(values[i], to + i * sizeof(T));
   }
 }
 
@@ -91,6 +104,11 @@ struct GlbView {
 /// `bin` is empty. Requires bin.size() to be a multiple of 4.
 std::vector<std::byte> join_glb(std::string_view json, std::span<const std::byte> bin,
                                 std::size_t json_bytes = 0);
+
+/// The same with the BIN chunk's `bin_bytes` zeros at the end, to be filled in. Requires bin_bytes
+/// to be a multiple of 4.
+std::vector<std::byte> begin_glb(std::string_view json, std::size_t bin_bytes,
+                                 std::size_t json_bytes = 0);
 
 /// Bytes of the GLB that join_glb makes of chunks of these sizes.
 constexpr std::uint64_t glb_bytes(std::uint64_t json_bytes, std::uint64_t bin_bytes) {

@@ -13,7 +13,7 @@
 
 namespace meshhier::storage {
 
-inline constexpr int kFormatVersion = 2;
+inline constexpr int kFormatVersion = 3;
 
 struct Manifest {
   std::string generator;  ///< "meshhier 0.1.0"

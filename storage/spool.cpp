@@ -73,27 +73,27 @@ Spool::Spool(Spool&& other) noexcept
 void Spool::append(std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
     const std::size_t used = size_ % block_bytes_;
-    if (used == 0) {
-      if (size_ > 0)
-        close_block();
-      Block block;
-      block.memory = std::make_unique_for_overwrite<std::byte[]>(block_bytes_);
-      blocks_.push_back(std::move(block));
-    }
+    if (used == 0)
+      open_block();
     const std::size_t count = std::min(bytes.size(), block_bytes_ - used);
-    std::memcpy(blocks_.back().memory.get() + used, bytes.data(), count);
+    std::memcpy(blocks_.back().memory() + used, bytes.data(), count);
     size_ += count;
     bytes = bytes.subspan(count);
   }
 }
 
-void Spool::close_block() {
-  Block& block = blocks_.back();
-  block.pooled = scratch_->pool().try_take(block_bytes_);
-  if (block.pooled)
+/// Begins a block; the full one before goes into the pool, or to disk and leaves its memory.
+void Spool::open_block() {
+  if (size_ == 0 || scratch_->pool().try_take(block_bytes_)) {
+    auto memory = std::make_unique_for_overwrite<std::byte[]>(block_bytes_);
+    blocks_.push_back(Block::in_memory(memory.get()));
+    memory.release();
     return;
-  block.offset = scratch_->append({block.memory.get(), block_bytes_});
-  block.memory.reset();
+  }
+  std::byte* memory = blocks_.back().memory();
+  const std::uint64_t offset = scratch_->append({memory, block_bytes_});
+  blocks_.push_back(Block::in_memory(memory));
+  blocks_[blocks_.size() - 2] = Block::on_disk(offset);
 }
 
 void Spool::read(std::uint64_t offset, std::span<std::byte> bytes) const {
@@ -102,10 +102,10 @@ void Spool::read(std::uint64_t offset, std::span<std::byte> bytes) const {
     const Block& block = blocks_[offset / block_bytes_];
     const std::size_t start = offset % block_bytes_;
     const std::size_t count = std::min(bytes.size(), block_bytes_ - start);
-    if (block.memory) {
-      std::memcpy(bytes.data(), block.memory.get() + start, count);
+    if (block.is_on_disk()) {
+      scratch_->read(block.offset() + start, bytes.first(count));
     } else {
-      scratch_->read(block.offset + start, bytes.first(count));
+      std::memcpy(bytes.data(), block.memory() + start, count);
     }
     offset += count;
     bytes = bytes.subspan(count);
@@ -113,13 +113,16 @@ void Spool::read(std::uint64_t offset, std::span<std::byte> bytes) const {
 }
 
 void Spool::clear() {
-  for (const Block& block : blocks_) {
-    if (block.pooled)
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    if (blocks_[i].is_on_disk()) {
+      scratch_->release(blocks_[i].offset(), block_bytes_);
+      continue;
+    }
+    delete[] blocks_[i].memory();
+    if (i + 1 < blocks_.size())
       scratch_->pool().give_back(block_bytes_);
-    else if (!block.memory)
-      scratch_->release(block.offset, block_bytes_);
   }
-  blocks_.clear();
+  blocks_ = {};
   size_ = 0;
 }
 

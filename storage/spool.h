@@ -95,17 +95,28 @@ class Spool {
   void clear();
 
  private:
-  struct Block {
-    std::unique_ptr<std::byte[]> memory;  ///< null once on disk
-    std::uint64_t offset = 0;             ///< in the scratch file, if on disk
-    bool pooled = false;                  ///< counted in the memory pool
+  /// Where a block's bytes are, in 8 bytes, as large meshes have many blocks. Owns nothing.
+  class Block {
+   public:
+    static Block in_memory(std::byte* memory) {
+      return Block(reinterpret_cast<std::uintptr_t>(memory));
+    }
+    static Block on_disk(std::uint64_t offset) { return Block(offset << 1 | 1); }
+    bool is_on_disk() const { return (word_ & 1) != 0; }
+    std::byte* memory() const { return reinterpret_cast<std::byte*>(word_); }
+    std::uint64_t offset() const { return word_ >> 1; }
+
+   private:
+    static_assert(sizeof(std::uintptr_t) == sizeof(std::uint64_t));
+    explicit Block(std::uint64_t word) : word_(word) {}  // addresses of arrays are even
+    std::uint64_t word_;
   };
-  void close_block();
+  void open_block();
 
   ScratchFile* scratch_;
   std::size_t block_bytes_;
   std::uint64_t size_ = 0;
-  std::vector<Block> blocks_;
+  std::vector<Block> blocks_;  ///< in memory: counted in the pool, but for the last, open one
 };
 
 /// A spool of one kind of trivially copyable record.

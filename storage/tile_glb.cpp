@@ -9,6 +9,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -81,22 +82,21 @@ bool differs(std::span<const float> a, std::span<const float> b, const ChannelGr
 
 // ---- writing -------------------------------------------------------------------------------
 
+/// Writes a tile's sections into the BIN chunk of its file.
 class Writer {
  public:
-  explicit Writer(const TilePlan& plan) : plan_(plan), bytes_(plan.bytes()) {}
-
-  template <Scalar T>
-  void put(const Section& section, std::size_t element, std::size_t component, T value) {
-    store_little(value,
-                 bytes_.data() + section.offset + element * section.stride + component * sizeof(T));
-  }
+  Writer(const TilePlan& plan, std::span<std::byte> bin) : plan_(plan), bin_(bin) {}
 
   void put_positions(std::span<const Vec3f> positions) {
+    static_assert(sizeof(Vec3f) == 3 * sizeof(float));
     const Section& section = plan_[Part::position];
-    for (std::size_t v = 0; v < positions.size(); ++v) {
-      put(section, v, 0, positions[v].x);
-      put(section, v, 1, positions[v].y);
-      put(section, v, 2, positions[v].z);
+    if constexpr (std::endian::native == std::endian::little) {
+      std::memcpy(at(section), positions.data(), positions.size_bytes());
+    } else {
+      for (std::size_t v = 0; v < positions.size(); ++v) {
+        const std::array<float, 3> p{positions[v].x, positions[v].y, positions[v].z};
+        store_all_little(std::span<const float>(p), at(section) + v * section.stride);
+      }
     }
   }
 
@@ -119,24 +119,37 @@ class Writer {
 
   void put_triangles(Part part, std::span<const Triangle> triangles) {
     const Section& section = plan_[part];
-    const bool is_short = section.component == kU16;
-    for (std::size_t i = 0; i < 3 * triangles.size(); ++i) {
-      const std::uint32_t index = raw(triangles[i / 3][i % 3]);
-      is_short ? put(section, i, 0, static_cast<std::uint16_t>(index)) : put(section, i, 0, index);
-    }
+    section.component == kU16 ? put_corners<std::uint16_t>(section, triangles)
+                              : put_corners<std::uint32_t>(section, triangles);
   }
 
   template <Scalar T>
   void put_list(Part part, std::span<const T> values) {
-    for (std::size_t i = 0; i < values.size(); ++i)
-      put(plan_[part], i, 0, values[i]);
+    store_all_little(values, at(plan_[part]));
   }
 
-  std::vector<std::byte> take() { return std::move(bytes_); }
-
  private:
+  std::byte* at(const Section& section) { return bin_.data() + section.offset; }
+
+  template <Scalar T>
+  void put(const Section& section, std::size_t element, std::size_t component, T value) {
+    store_little(value, at(section) + element * section.stride + component * sizeof(T));
+  }
+
+  template <class Index>
+  void put_corners(const Section& section, std::span<const Triangle> triangles) {
+    std::byte* to = at(section);
+    for (const Triangle& t : triangles) {
+      for (const TileVertex corner : t) {
+        const auto index = static_cast<Index>(raw(corner));
+        store_all_little(std::span<const Index>(&index, 1), to);
+        to += sizeof index;
+      }
+    }
+  }
+
   const TilePlan& plan_;
-  std::vector<std::byte> bytes_;
+  std::span<std::byte> bin_;
 };
 
 /// The ghosts by neighbour: those of tiles[i] are [starts[i], starts[i + 1]).
@@ -379,17 +392,15 @@ bool is_unit_normal(Vec3f normal) {
   return std::abs(length(to_double(normal)) - 1) <= kTolerance;
 }
 
-std::vector<std::byte> encode_tile(const PublishedTile& tile, const Tree& tree,
+std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
                                    const TileFormat& format) {
   const TileMesh& mesh = tile.mesh;
   assert(mesh.own_count > 0 && mesh.own_count <= kMaxOwnVertices);
   assert(mesh.ghosts.size() == mesh.vertices.size() - mesh.own_count);
-  assert(tile.chains.size() == mesh.ghosts.size());
   assert(tile.parent_map.size() == (tile.node == tree.root() ? 0 : mesh.own_count));
   assert(mesh.vertices.channels == format.attributes.channels());
 
   const GhostGroups neighbours = group_ghosts(mesh.ghosts);
-  const std::vector<std::uint16_t> chains = join_chains(tile.chains);
   const std::vector<float> shown = showable_attributes(format.attributes, mesh.vertices);
   const auto groups = groups_of(format.attributes);
 
@@ -398,7 +409,7 @@ std::vector<std::byte> encode_tile(const PublishedTile& tile, const Tree& tree,
                   mesh.rim_count,
                   mesh.ghosts.size(),
                   neighbours.tiles.size(),
-                  chains.size(),
+                  tile.chains.size(),
                   mesh.interior.size(),
                   mesh.border.size(),
                   {}};
@@ -407,7 +418,9 @@ std::vector<std::byte> encode_tile(const PublishedTile& tile, const Tree& tree,
   }
   const TilePlan plan(shape, format.attributes);
 
-  Writer writer(plan);
+  std::vector<std::byte> bytes =
+      begin_glb(plan.document(tile.bounds, format.origin).dump(), plan.bytes());
+  Writer writer(plan, std::span(bytes).last(plan.bytes()));
   writer.put_positions(mesh.vertices.positions);
   for (std::size_t i = 0; i < groups.size(); ++i) {
     writer.put_group(groups[i].part, groups[i], shown);
@@ -418,9 +431,17 @@ std::vector<std::byte> encode_tile(const PublishedTile& tile, const Tree& tree,
   writer.put_list<std::uint16_t>(Part::parent_map, tile.parent_map);
   writer.put_list<std::uint32_t>(Part::neighbours, neighbours.tiles);
   writer.put_list<std::uint32_t>(Part::ghost_starts, neighbours.starts);
-  writer.put_list<std::uint16_t>(Part::ghost_chains, chains);
-  const Bounds bounds = bounds_of(mesh.vertices.positions);
-  return join_glb(plan.document(bounds, format.origin).dump(), writer.take());
+  writer.put_list<std::uint16_t>(Part::ghost_chains, tile.chains);
+  return bytes;
+}
+
+std::vector<std::byte> encode_tile(const PublishedTile& tile, const Tree& tree,
+                                   const TileFormat& format) {
+  assert(tile.chains.size() == tile.mesh.ghosts.size());
+  const std::vector<std::uint16_t> chains = join_chains(tile.chains);
+  return encode_tile(
+      {tile.node, tile.mesh, bounds_of(tile.mesh.vertices.positions), tile.parent_map, chains},
+      tree, format);
 }
 
 PublishedTile decode_tile(std::span<const std::byte> bytes, NodeId node, const Tree& tree,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "hierarchy/attributes.h"
+#include "hierarchy/bounds.h"
 #include "hierarchy/published.h"
 #include "hierarchy/tree.h"
 #include "hierarchy/vec.h"
@@ -27,12 +28,23 @@ struct TileFormat {
 /// Khronos validator allows 0.00674).
 bool is_unit_normal(Vec3f normal);
 
+/// What a tile's file is made of.
+struct TileView {
+  NodeId node;
+  const TileMesh& mesh;
+  Bounds bounds;                              ///< of the mesh's positions
+  std::span<const std::uint16_t> parent_map;  ///< as PublishedTile's
+  std::span<const std::uint16_t> chains;      ///< the ghosts' chains, one after another
+};
+
 /// Deterministic, O(size). Requires a consistent tile (see PublishedTile) with finite positions, at
 /// most kMaxOwnVertices own vertices and rim vertices below that.
 ///
 /// A partition keeps every attribute bit for bit, NaN included. Other tiles keep what glTF can say:
 /// u8 and u16 colours rounded to the nearest number of their type, float colours clamped to [0, 1],
 /// normals brought to unit length ((0, 0, 1) if they have none), NaN and infinities as 0.
+std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
+                                   const TileFormat& format);
 std::vector<std::byte> encode_tile(const PublishedTile& tile, const Tree& tree,
                                    const TileFormat& format);
 

@@ -82,8 +82,10 @@ template <class Index>
 std::vector<Triangle> get_triangles(Unpacker& unpacker, std::size_t count) {
   const std::vector<Index> corners = unpacker.get<Index>(count * 3);
   std::vector<Triangle> triangles(count);
-  for (std::size_t i = 0; i < corners.size(); ++i)
-    triangles[i / 3][i % 3] = static_cast<TileVertex>(corners[i]);
+  for (std::size_t t = 0; t < count; ++t) {
+    const Index* const of = corners.data() + 3 * t;
+    triangles[t] = {TileVertex{of[0]}, TileVertex{of[1]}, TileVertex{of[2]}};
+  }
   return triangles;
 }
 
@@ -150,66 +152,67 @@ Rim decode_rim(std::span<const std::byte> bytes, int channels) {
   return rim;
 }
 
+// A band:
+//   head        BandHead
+//   positions   (own + foreign) * 3 float
+//   drifts      own float
+//   foreign     foreign * 2 u32
+//   interior    interior * 3 corners   u16 if own + foreign <= 65536, else u32
+//   border      border * 3 corners     likewise
 namespace {
 
-/// Puts the mark `reached` + 1 on all corners of triangles with a corner marked `reached` or less.
-void grow(const std::vector<Triangle>& triangles, std::uint8_t reached,
-          std::vector<std::uint8_t>& marks) {
-  for (const Triangle& t : triangles) {
-    if (std::none_of(t.begin(), t.end(), [&](TileVertex v) { return marks[raw(v)] <= reached; }))
-      continue;
-    for (const TileVertex v : t)
-      marks[raw(v)] = std::min<std::uint8_t>(marks[raw(v)], reached + 1);
-  }
-}
+struct BandHead {
+  WorkTileCounts counts;
+  float interior_drift = 0;
+  float lost = 0;
+  std::uint32_t padding = 0;
+  double squared_sum = 0;
+  double weight_sum = 0;
+};
 
 }  // namespace
 
-// A band: u32 vertices, u32 triangles, vertices * 2 u32, positions, triangles * 3 u32.
-std::vector<std::byte> encode_band(const BuildTile& tile, std::uint32_t index) {
-  constexpr std::uint8_t kFar = 255;
-  const TileMesh& mesh = tile.mesh;
-  std::vector<std::uint8_t> marks(mesh.vertices.size(), 0);  // ghosts are on the border
-  std::fill(marks.begin() + mesh.rim_count, marks.begin() + mesh.own_count, kFar);
-  grow(mesh.interior, 0, marks);
-  grow(mesh.interior, 1, marks);
-  Band band;
-  std::vector<std::uint32_t> place(marks.size());
-  for (std::uint32_t v = 0; v < marks.size(); ++v) {
-    place[v] = static_cast<std::uint32_t>(band.vertices.size());
-    if (marks[v] == kFar)
-      continue;
-    const TileVertex vertex{v};
-    band.vertices.push_back(mesh.is_own(vertex) ? GhostRef{index, v} : mesh.ghost(vertex));
-    band.positions.push_back(mesh.vertices.positions[v]);
-  }
-  const auto add = [&](const Triangle& t) {
-    band.triangles.push_back(
-        {TileVertex{place[raw(t[0])]}, TileVertex{place[raw(t[1])]}, TileVertex{place[raw(t[2])]}});
-  };
-  for (const Triangle& t : mesh.interior) {
-    if (std::any_of(t.begin(), t.end(), [&](TileVertex v) { return marks[raw(v)] <= 1; }))
-      add(t);
-  }
-  for (const Triangle& t : mesh.border)
-    add(t);
-  const std::array counts{static_cast<std::uint32_t>(band.vertices.size()),
-                          static_cast<std::uint32_t>(band.triangles.size())};
-  Packer packer(8 + band.vertices.size() * 20 + band.triangles.size() * 12);
-  packer.put(std::span<const std::uint32_t>(counts));
-  packer.put(std::span<const GhostRef>(band.vertices));
+std::vector<std::byte> encode_band(const Band& band) {
+  BandHead head;
+  head.counts = {band.own_count, band.rim_count, static_cast<std::uint32_t>(band.foreign.size()),
+                 static_cast<std::uint32_t>(band.interior.size()),
+                 static_cast<std::uint32_t>(band.border.size())};
+  head.interior_drift = band.interior_drift;
+  head.lost = band.lost;
+  head.squared_sum = band.squared_sum;
+  head.weight_sum = band.weight_sum;
+  Packer packer(sizeof head + band.positions.size() * 12 + band.drifts.size() * 4 +
+                band.foreign.size() * 8 +
+                (band.interior.size() + band.border.size()) * (narrow(head.counts) ? 6 : 12));
+  packer.put(std::span<const BandHead>(&head, 1));
   packer.put(std::span<const Vec3f>(band.positions));
-  put_triangles<std::uint32_t>(packer, band.triangles);
+  packer.put(std::span<const float>(band.drifts));
+  packer.put(std::span<const GhostRef>(band.foreign));
+  for (const auto* triangles : {&band.interior, &band.border}) {
+    narrow(head.counts) ? put_triangles<std::uint16_t>(packer, *triangles)
+                        : put_triangles<std::uint32_t>(packer, *triangles);
+  }
   return packer.take();
 }
 
 Band decode_band(std::span<const std::byte> bytes) {
   Unpacker unpacker(bytes);
-  const std::vector<std::uint32_t> counts = unpacker.get<std::uint32_t>(2);
+  const BandHead head = unpacker.get<BandHead>(1)[0];
+  const WorkTileCounts& counts = head.counts;
   Band band;
-  band.vertices = unpacker.get<GhostRef>(counts[0]);
-  band.positions = unpacker.get<Vec3f>(counts[0]);
-  band.triangles = get_triangles<std::uint32_t>(unpacker, counts[1]);
+  band.rim_count = counts.rim;
+  band.own_count = counts.own;
+  band.positions = unpacker.get<Vec3f>(std::size_t{counts.own} + counts.foreign);
+  band.drifts = unpacker.get<float>(counts.own);
+  band.foreign = unpacker.get<GhostRef>(counts.foreign);
+  band.interior = narrow(counts) ? get_triangles<std::uint16_t>(unpacker, counts.interior)
+                                 : get_triangles<std::uint32_t>(unpacker, counts.interior);
+  band.border = narrow(counts) ? get_triangles<std::uint16_t>(unpacker, counts.border)
+                               : get_triangles<std::uint32_t>(unpacker, counts.border);
+  band.interior_drift = head.interior_drift;
+  band.lost = head.lost;
+  band.squared_sum = head.squared_sum;
+  band.weight_sum = head.weight_sum;
   unpacker.finish();
   return band;
 }

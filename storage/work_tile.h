@@ -17,8 +17,7 @@ WorkTile decode_work_tile(std::span<const std::byte> bytes, int channels);
 std::vector<std::byte> encode_rim(const WorkTile& tile);
 Rim decode_rim(std::span<const std::byte> bytes, int channels);
 
-/// `index`: of the tile in its level.
-std::vector<std::byte> encode_band(const BuildTile& tile, std::uint32_t index);
+std::vector<std::byte> encode_band(const Band& band);
 Band decode_band(std::span<const std::byte> bytes);
 
 }  // namespace meshhier::storage

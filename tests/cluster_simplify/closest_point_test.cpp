@@ -53,15 +53,15 @@ TEST(ClosestPointTest, IsAsNearAsTheNearestOfManyPointsOfTheTriangle) {
   }
 }
 
-TEST(ClosestPointTest, NamesTheFeature) {
+TEST(ClosestPointTest, IsInsideOnAnEdgeOrACorner) {
   const TriangleFrame t({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
-  EXPECT_EQ(closest_point({1, 1, 3}, t).feature, Feature::inside);
-  EXPECT_EQ(closest_point({2, -1, 3}, t).feature, Feature::edge_0);
-  EXPECT_EQ(closest_point({3, 3, 3}, t).feature, Feature::edge_1);
-  EXPECT_EQ(closest_point({-1, 2, 3}, t).feature, Feature::edge_2);
-  EXPECT_EQ(closest_point({-1, -1, 3}, t).feature, Feature::corner_0);
-  EXPECT_EQ(closest_point({6, -1, 3}, t).feature, Feature::corner_1);
-  EXPECT_EQ(closest_point({-1, 6, 3}, t).feature, Feature::corner_2);
+  EXPECT_EQ(closest_point({1, 1, 3}, t).point, (Vec3d{1, 1, 0}));
+  EXPECT_EQ(closest_point({2, -1, 3}, t).point, (Vec3d{2, 0, 0}));
+  EXPECT_EQ(closest_point({3, 3, 3}, t).point, (Vec3d{2, 2, 0}));
+  EXPECT_EQ(closest_point({-1, 2, 3}, t).point, (Vec3d{0, 2, 0}));
+  EXPECT_EQ(closest_point({-1, -1, 3}, t).point, (Vec3d{0, 0, 0}));
+  EXPECT_EQ(closest_point({6, -1, 3}, t).point, (Vec3d{4, 0, 0}));
+  EXPECT_EQ(closest_point({-1, 6, 3}, t).point, (Vec3d{0, 4, 0}));
   EXPECT_EQ(closest_point({-1, -1, 0}, t).squared_distance, 2);
 }
 
@@ -87,52 +87,7 @@ TEST(ClosestPointTest, WorksAtTheEndsOfFloat) {
     const TriangleFrame t({0, 0, 0}, {scale, 0, 0}, {0, scale, 0});
     EXPECT_DOUBLE_EQ(std::sqrt(squared_distance({scale / 4, scale / 4, scale / 2}, t)), scale / 2);
     EXPECT_DOUBLE_EQ(std::sqrt(squared_distance({2 * scale, 0, 0}, t)), scale);
-    const PlaneFoot foot = plane_foot({scale / 4, scale / 4, scale / 2}, t);
-    EXPECT_TRUE(foot.inside);
-    EXPECT_DOUBLE_EQ(std::sqrt(foot.squared_distance), scale / 2);
   }
-}
-
-TEST(PlaneFootTest, IsInsideOnlyAboveTheTriangle) {
-  const TriangleFrame t({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
-  EXPECT_TRUE(plane_foot({1, 1, -5}, t).inside);
-  EXPECT_DOUBLE_EQ(plane_foot({1, 1, -5}, t).squared_distance, 25);
-  EXPECT_FALSE(plane_foot({3, 3, 1}, t).inside);
-  EXPECT_FALSE(plane_foot({1, 1, 1}, {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}).inside);
-}
-
-TEST(SegmentsTest, ComeClosestWhereAGridOfPointsDoes) {
-  constexpr int kSteps = 200;
-  for (std::uint64_t i = 0; i < 300; ++i) {
-    const Segment first{random_point(4 * i), random_point(4 * i + 1)};
-    const Segment second{random_point(4 * i + 2), random_point(4 * i + 3)};
-    const Encounter meet = closest(first, second);
-    const Vec3d p = first.start + first.direction * meet.on_first;
-    const Vec3d q = second.start + second.direction * meet.on_second;
-    EXPECT_NEAR(dot(p - q, p - q), meet.squared_distance, 1e-12);
-    double least = std::numeric_limits<double>::infinity();
-    for (int a = 0; a <= kSteps; ++a) {
-      for (int b = 0; b <= kSteps; ++b) {
-        const Vec3d gap = first.start + first.direction * (a / 200.0) - second.start -
-                          second.direction * (b / 200.0);
-        least = std::min(least, length(gap));
-      }
-    }
-    const double step = (length(first.direction) + length(second.direction)) / kSteps;
-    EXPECT_LE(std::sqrt(meet.squared_distance), least + 1e-12);
-    EXPECT_GE(std::sqrt(meet.squared_distance), least - step);
-    EXPECT_TRUE(meet.on_first >= 0 && meet.on_first <= 1);
-    EXPECT_TRUE(meet.on_second >= 0 && meet.on_second <= 1);
-  }
-}
-
-TEST(SegmentsTest, ParallelOnesAndPointsAreServed) {
-  const Segment x{{0, 0, 0}, {4, 0, 0}};
-  EXPECT_DOUBLE_EQ(closest(x, {{1, 2, 0}, {4, 0, 0}}).squared_distance, 4);
-  EXPECT_DOUBLE_EQ(closest(x, {{7, 4, 0}, {-2, 0, 0}}).squared_distance, 17);
-  EXPECT_DOUBLE_EQ(closest(x, {{2, 3, 0}, {0, 0, 0}}).squared_distance, 9);
-  EXPECT_DOUBLE_EQ(closest({{2, 3, 0}, {0, 0, 0}}, x).squared_distance, 9);
-  EXPECT_DOUBLE_EQ(closest({{1, 1, 1}, {0, 0, 0}}, {{1, 1, 3}, {0, 0, 0}}).squared_distance, 4);
 }
 
 }  // namespace

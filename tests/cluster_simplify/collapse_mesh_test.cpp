@@ -162,12 +162,12 @@ void expect_fans_gathered(CollapseMesh& mesh, const Reference& reference) {
   }
 }
 
-/// Of a triangle left, the edge from corner k to the next is what triangle_edges() says.
+/// Of a triangle left, the edge from corner k to the next is what its face says.
 void expect_sides_named(const CollapseMesh& mesh) {
-  for (std::uint32_t t = 0; t < mesh.triangles().size(); ++t) {
-    const auto& corners = mesh.triangles()[t];
-    for (int k = 0; k < 3 && corners[0] != CollapseMesh::kNone; ++k) {
-      const auto& e = mesh.edge(mesh.triangle_edges()[t][k]);
+  for (std::uint32_t t = 0; t < mesh.faces().size(); ++t) {
+    const auto& [corners, edges] = mesh.faces()[t];
+    for (std::size_t k = 0; k < 3 && mesh.faces()[t].is_alive(); ++k) {
+      const auto& e = mesh.edge(edges[k]);
       ASSERT_EQ(ends_of(e.a, e.b), ends_of(corners[k], corners[(k + 1) % 3])) << "triangle " << t;
     }
   }
@@ -262,8 +262,9 @@ TEST(CollapseMeshTest, OnlyEdgesBetweenOwnVerticesAreOwn) {
 TEST(CollapseMeshTest, TrianglesAtTheEdgeDieAndOthersFollow) {
   CollapseMesh mesh(tests::tile_of({std::vector<Vec3f>(4), {{0, 1, 2}, {0, 2, 3}}}).mesh);
   const std::vector<std::uint32_t> gone = collapse(mesh, 1, 2);
-  EXPECT_EQ(mesh.triangles()[0][0], CollapseMesh::kNone);
-  EXPECT_THAT(mesh.triangles()[1], ElementsAre(0U, 2U, 3U));
+  EXPECT_FALSE(mesh.faces()[0].is_alive());
+  EXPECT_TRUE(mesh.faces()[1].is_alive());
+  EXPECT_THAT(mesh.faces()[1].corners, ElementsAre(0U, 2U, 3U));
   EXPECT_EQ(mesh.representative(1), 2U);
   EXPECT_TRUE(mesh.is_isolated(1));
   EXPECT_THAT(gone, testing::SizeIs(2));

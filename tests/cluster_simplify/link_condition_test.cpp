@@ -44,9 +44,9 @@ class Surface {
 
   std::vector<MeshTriangle> triangles() const {
     std::vector<MeshTriangle> live;
-    for (const auto& t : mesh_.triangles()) {
-      if (t[0] != kNone)
-        live.push_back(t);
+    for (const CollapseMesh::Face& face : mesh_.faces()) {
+      if (face.is_alive())
+        live.push_back(face.corners);
     }
     return live;
   }

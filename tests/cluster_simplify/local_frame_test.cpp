@@ -46,7 +46,7 @@ TEST(LocalFrameTest, LiesAboutTheMiddleOfTheBox) {
   EXPECT_EQ(local[0], (Vec3f{-0.75F, -0.25F, -0.125F}));
   EXPECT_EQ(local[1], (Vec3f{0.75F, 0.25F, 0.125F}));
   EXPECT_EQ(local[2], (Vec3f{-0.5F, 0, -0.125F}));
-  EXPECT_EQ(frame.to_global({}), (Vec3f{13, 21, 30.5F}));
+  EXPECT_EQ(frame.to_global(Vec3f{}), (Vec3f{13, 21, 30.5F}));
 }
 
 TEST(LocalFrameTest, ThereAndBackIsTheSamePlaceUpToALocalRounding) {
@@ -90,14 +90,14 @@ TEST(LocalFrameTest, OnePlaceIsItsOwnMiddle) {
     const std::vector<Vec3f> positions(5, p);
     const LocalFrame frame(positions);
     EXPECT_THAT(frame.to_local(positions), testing::Each(Vec3f{}));
-    EXPECT_EQ(frame.to_global({}), p);
+    EXPECT_EQ(frame.to_global(Vec3f{}), p);
   }
 }
 
 TEST(LocalFrameTest, NoPlacesNeedNoFrame) {
   const LocalFrame frame({});
-  EXPECT_TRUE(frame.to_local({}).empty());
-  EXPECT_EQ(frame.to_global({1, 2, 3}), (Vec3f{1, 2, 3}));
+  EXPECT_TRUE(frame.to_local(std::span<const Vec3f>{}).empty());
+  EXPECT_EQ(frame.to_global(Vec3f{1, 2, 3}), (Vec3f{1, 2, 3}));
 }
 
 TEST(LocalFrameTest, TheEndsOfFloatAreWithinReach) {
@@ -107,7 +107,7 @@ TEST(LocalFrameTest, TheEndsOfFloatAreWithinReach) {
   EXPECT_LE(largest(local), 1);
   EXPECT_EQ(frame.to_global(local[0]).x, -Limits::max());
   EXPECT_EQ(frame.to_global(local[1]).x, Limits::max());
-  EXPECT_EQ(frame.to_global({1.5F, -1.5F, 2}),
+  EXPECT_EQ(frame.to_global(Vec3f{1.5F, -1.5F, 2}),
             (Vec3f{Limits::max(), -Limits::max(), Limits::max()}));
 }
 

@@ -1,5 +1,6 @@
 #include "cluster_simplify/representatives.h"
 
+#include "tests/cluster_simplify/collapsing.h"
 #include "tests/cluster_simplify/test_tiles.h"
 #include "tests/support/meshes.h"
 
@@ -23,17 +24,8 @@ std::vector<std::uint32_t> identity(std::size_t count) {
   return result;
 }
 
-void collapse(CollapseMesh& mesh, std::uint32_t from, std::uint32_t to) {
-  std::vector<CollapseMesh::Fan> around_from;
-  std::vector<CollapseMesh::Fan> around_to;
-  mesh.gather(from, around_from);
-  mesh.gather(to, around_to);
-  mesh.collapse(from, to, around_from, around_to, [](std::uint32_t) {});
-}
-
 Contraction choose(const BuildTile& tile, std::uint32_t target) {
-  CollapseMesh mesh(tile.mesh);
-  return choose_representatives(mesh, tile.mesh.vertices, target);
+  return tests::Collapsing(tile).choose(target);
 }
 
 void expect_onto(const Contraction& found, std::uint32_t target) {
@@ -59,11 +51,11 @@ TEST(RepresentativesTest, WithoutCollapsesEveryVertexStandsForItself) {
 
 TEST(RepresentativesTest, CollapsedVerticesGoWhereTheyWent) {
   const BuildTile tile = tests::tile_of(tests::open_grid(3, 1));
-  CollapseMesh mesh(tile.mesh);
-  collapse(mesh, 0, 1);
-  collapse(mesh, 1, 2);
-  collapse(mesh, 4, 5);
-  const Contraction found = choose_representatives(mesh, tile.mesh.vertices, 5);
+  tests::Collapsing collapsing(tile);
+  collapsing.collapse(0, 1);
+  collapsing.collapse(1, 2);
+  collapsing.collapse(4, 5);
+  const Contraction found = collapsing.choose(5);
   EXPECT_THAT(found.parent_of, ElementsAre(0U, 0U, 0U, 1U, 2U, 2U, 3U, 4U));
   EXPECT_THAT(
       found.representatives.positions,
@@ -131,11 +123,9 @@ TEST(RepresentativesTest, ALoneVertexFollowsTheOneThatWasJoined) {
 
 TEST(RepresentativesTest, TakesTheVerticesAsTheyAreNow) {
   const BuildTile tile = tests::tile_of(tests::open_grid(1, 1));
-  CollapseMesh mesh(tile.mesh);
-  collapse(mesh, 1, 0);
-  VertexArray vertices = tile.mesh.vertices;
-  vertices.positions[0] = {0.5F, -7, 3};
-  const Contraction found = choose_representatives(mesh, vertices, 3);
+  tests::Collapsing collapsing(tile);
+  collapsing.collapse(1, 0, collapsing.frame().to_local(Vec3f{0.5F, -7, 3}));
+  const Contraction found = collapsing.choose(3);
   EXPECT_THAT(found.representatives.positions,
               ElementsAre(Vec3f{0.5F, -7, 3}, Vec3f{0, 1, 0}, Vec3f{1, 1, 0}));
   EXPECT_THAT(found.parent_of, ElementsAre(0U, 0U, 1U, 2U));

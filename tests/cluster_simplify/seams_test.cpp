@@ -378,6 +378,7 @@ Contraction wild_contraction(const BuildTile& joined, std::uint32_t target, std:
     contraction.representatives.positions.push_back({tests::hash_noise(r, seed + 1),
                                                      tests::hash_noise(r, seed + 2),
                                                      tests::hash_noise(r, seed + 3)});
+    contraction.drift.around.push_back(tests::hash_noise(r, seed + 4) + 1);
   }
   return contraction;
 }
@@ -490,8 +491,27 @@ TEST(ApplyTest, RepeatsGoMirrorImagesStay) {
   Contraction contraction;
   contraction.parent_of = {0, 1, 2, 2};
   contraction.representatives.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  contraction.drift.around = {0, 0, 0};
   EXPECT_THAT(apply(tile, contraction).tile.interior,
               ElementsAre(triangle(0, 1, 2), triangle(0, 2, 1)));
+}
+
+TEST(ApplyTest, DriftsFollowTheirRepresentatives) {
+  const World world = make_world(tests::sphere(1200), 4, false);
+  const BuildTile joined = join_pair(world, 0);
+  Contraction contraction = wild_contraction(joined, 80, 5);
+  contraction.drift.interior = 7;
+  contraction.drift.lost = 8;
+  contraction.drift.squared_sum = 9;
+  const ContractedTile result = apply(joined, contraction);
+  ASSERT_THAT(result.drift.around, SizeIs(80));
+  for (std::uint32_t i = 0; i < joined.mesh.own_count; ++i) {
+    EXPECT_EQ(result.drift.around[result.parent_map[i]],
+              contraction.drift.around[contraction.parent_of[i]]);
+  }
+  EXPECT_EQ(result.drift.interior, 7);
+  EXPECT_EQ(result.drift.lost, 8);
+  EXPECT_EQ(result.drift.squared_sum, 9);
 }
 
 TEST(ApplyTest, AttributesFollowTheirRepresentatives) {
@@ -523,6 +543,8 @@ TEST(KeepTest, ChangesNothing) {
   EXPECT_EQ(kept.tile.foreign, tile.mesh.ghosts);
   EXPECT_EQ(kept.tile.rim_count, tile.mesh.rim_count);
   EXPECT_EQ(kept.tile.history.weights, tile.history.weights);
+  EXPECT_EQ(kept.drift.around, std::vector<float>(tile.mesh.own_count));
+  EXPECT_EQ(kept.drift.interior, 0);
   for (std::uint32_t i = 0; i < tile.mesh.own_count; ++i)
     ASSERT_EQ(kept.parent_map[i], i);
 }

@@ -3,6 +3,7 @@
 #include "hierarchy/error.h"
 #include "ply_samples.h"
 
+#include <algorithm>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -27,7 +28,7 @@ TEST(ByteWindow, HandsOutEveryByteInStepsOfAnySize) {
   tests::MemoryFiles files;
   files.put("f", content(kSize));
   const auto file = files.open("f");
-  ByteWindow window(*file, kSize);
+  ByteWindow window({*file, kSize});
   std::size_t step = 1;
   while (window.remaining() > step) {
     ASSERT_TRUE(window.ensure(step));
@@ -46,7 +47,7 @@ TEST(ByteWindow, SeeksWithinAndBeyondTheBuffer) {
   tests::MemoryFiles files;
   files.put("f", content(kSize));
   const auto file = files.open("f");
-  ByteWindow window(*file, kSize);
+  ByteWindow window({*file, kSize});
   for (const std::uint64_t offset : {std::uint64_t{5}, std::uint64_t{kSize - 1}, std::uint64_t{0},
                                      std::uint64_t{ByteWindow::kCapacity}, std::uint64_t{700}}) {
     window.seek(offset);
@@ -60,11 +61,28 @@ TEST(ByteWindow, SeeksWithinAndBeyondTheBuffer) {
   EXPECT_EQ(static_cast<char>(*window.begin()), byte_at(700 + 3 * ByteWindow::kCapacity));
 }
 
+TEST(ByteWindow, ReadingForwardsGathersTheChecksum) {
+  constexpr std::size_t kSize = 5 * ByteWindow::kCapacity + 17;
+  tests::MemoryFiles files;
+  files.put("f", content(kSize));
+  const auto file = files.open("f");
+  for (const std::uint64_t start : {0U, 1000U}) {
+    storage::FileChecksum checksum(kSize);
+    ByteWindow window({*file, kSize, &checksum});
+    window.seek(start);
+    while (window.remaining() > 0) {
+      ASSERT_TRUE(window.ensure(std::min<std::uint64_t>(4099, window.remaining())));
+      window.advance(window.available() - window.available() / 3);
+    }
+    EXPECT_EQ(checksum.missing(), start == 0 ? 0U : 1U);
+  }
+}
+
 TEST(ByteWindow, NothingIsReadBeyondTheSizeGiven) {
   tests::MemoryFiles files;
   files.put("f", content(100));
   const auto file = files.open("f");
-  ByteWindow window(*file, 60);
+  ByteWindow window({*file, 60});
   EXPECT_FALSE(window.ensure(61));
   EXPECT_EQ(window.available(), 60U);
 }
@@ -73,7 +91,7 @@ TEST(ByteWindow, AFileThatShrinksMeanwhileIsAnIoError) {
   tests::MemoryFiles files;
   files.put("f", content(100));
   const auto file = files.open("f");
-  ByteWindow window(*file, 200);
+  ByteWindow window({*file, 200});
   try {
     window.ensure(150);
     FAIL() << "expected an error";

@@ -7,12 +7,40 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace meshhier::mesh_io::tests {
 namespace {
 
 enum class Outcome { valid, refused };
+
+/// The triangles, or what is wrong.
+template <class Read>
+std::string told(const Read& read) {
+  try {
+    std::string text;
+    for (const auto& t : read().triangles)
+      text += fmt::format("{} {} {},", t[0], t[1], t[2]);
+    return text;
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+/// However a file is damaged, blocks make of it what the stream makes of it.
+void expect_same_in_blocks(MeshSource& source, bool backwards) {
+  const std::string expected = told([&] {
+    ReadMesh mesh;
+    source.read_vertices([](const VertexBlock&) {});
+    source.read_triangles([&](std::span<const SourceTriangle> block) {
+      for (const SourceTriangle& t : block)
+        mesh.triangles.push_back({raw(t[0]), raw(t[1]), raw(t[2])});
+    });
+    return mesh;
+  });
+  EXPECT_EQ(told([&] { return read_in_blocks(source, backwards); }), expected);
+}
 
 /// Reads everything; fails the test on anything but success or Error(input) with a message that
 /// starts with the file's name.
@@ -24,6 +52,8 @@ Outcome outcome_of(const Bytes& bytes) {
   try {
     const auto source = open_mesh(files, kFileName);
     const std::uint64_t count = source->description().vertex_count;
+    for (const bool backwards : {false, true})
+      expect_same_in_blocks(*source, backwards);
     source->read_vertices(
         [&](const VertexBlock& block) { vertices += block.positions.size() + block.exact.size(); });
     source->read_triangles([&](std::span<const SourceTriangle> block) {

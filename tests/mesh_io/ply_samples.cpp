@@ -105,7 +105,71 @@ void read_triangles(MeshSource& source, ReadMesh& mesh) {
   EXPECT_EQ(mesh.counts.faces, source.description().face_count);
 }
 
+void append(const VertexBlock& block, ReadMesh& mesh) {
+  EXPECT_EQ(block.first, mesh.positions.size());
+  EXPECT_LE(block.positions.size() + block.exact.size(), MeshSource::kBlockSize);
+  for (const Vec3f& p : block.positions)
+    mesh.positions.push_back(to_double(p));
+  mesh.positions.insert(mesh.positions.end(), block.exact.begin(), block.exact.end());
+  mesh.attributes.insert(mesh.attributes.end(), block.attributes.begin(), block.attributes.end());
+}
+
+void append(std::span<const SourceTriangle> triangles, ReadMesh& mesh) {
+  EXPECT_LE(triangles.size(), MeshSource::kBlockSize);
+  for (const SourceTriangle& t : triangles)
+    mesh.triangles.push_back({raw(t[0]), raw(t[1]), raw(t[2])});
+}
+
+/// Calls read(i) for all i < count.
+template <class Read>
+void for_each_block(std::uint64_t count, bool backwards, const Read& read) {
+  for (std::uint64_t i = 0; i < count; ++i)
+    read(backwards ? count - 1 - i : i);
+}
+
+void read_vertex_blocks(MeshSource& source, bool backwards, ReadMesh& mesh) {
+  const std::uint64_t count = source.vertex_blocks();
+  EXPECT_EQ(count > 0, source.description().vertices_in_place && mesh.description.vertex_count > 0);
+  if (count == 0)
+    source.read_vertices([&](const VertexBlock& block) { append(block, mesh); });
+  std::vector<BlockMemory> memories(count);
+  std::vector<VertexBlock> blocks(count);
+  for_each_block(count, backwards,
+                 [&](std::uint64_t i) { blocks[i] = source.read_vertex_block(i, memories[i]); });
+  for (const VertexBlock& block : blocks)
+    append(block, mesh);
+}
+
+void read_triangle_blocks(MeshSource& source, bool backwards, ReadMesh& mesh) {
+  const std::uint64_t count = source.triangle_blocks();
+  std::vector<BlockMemory> memories(count);
+  std::vector<TriangleBlock> blocks(count);
+  for_each_block(count, backwards,
+                 [&](std::uint64_t i) { blocks[i] = source.read_triangle_block(i, memories[i]); });
+  std::uint64_t faces = 0;
+  for (const TriangleBlock& block : blocks) {
+    append(block.triangles, mesh);
+    faces += block.faces;
+    if (!block.whole)
+      break;
+  }
+  mesh.counts = {faces, mesh.triangles.size(), faces - mesh.triangles.size()};
+  const FaceCounts rest = source.read_triangles_from(
+      faces, [&](std::span<const SourceTriangle> block) { append(block, mesh); });
+  mesh.counts.faces += rest.faces;
+  mesh.counts.triangles += rest.triangles;
+  mesh.counts.degenerate_triangles += rest.degenerate_triangles;
+}
+
 }  // namespace
+
+ReadMesh read_in_blocks(MeshSource& source, bool backwards) {
+  ReadMesh mesh;
+  mesh.description = source.description();
+  read_vertex_blocks(source, backwards, mesh);
+  read_triangle_blocks(source, backwards, mesh);
+  return mesh;
+}
 
 ReadMesh read_mesh(MeshSource& source) {
   ReadMesh mesh;
@@ -115,9 +179,15 @@ ReadMesh read_mesh(MeshSource& source) {
   ReadMesh again;
   read_triangles(source, again);
   read_vertices(source, again);
-  EXPECT_EQ(again.positions, mesh.positions);
-  EXPECT_EQ(again.attributes, mesh.attributes);
-  EXPECT_EQ(again.triangles, mesh.triangles);
+  for (const ReadMesh& other :
+       {again, read_in_blocks(source, false), read_in_blocks(source, true)}) {
+    EXPECT_EQ(other.positions, mesh.positions);
+    EXPECT_EQ(other.attributes, mesh.attributes);
+    EXPECT_EQ(other.triangles, mesh.triangles);
+    EXPECT_EQ(other.counts.faces, mesh.counts.faces);
+    EXPECT_EQ(other.counts.triangles, mesh.counts.triangles);
+    EXPECT_EQ(other.counts.degenerate_triangles, mesh.counts.degenerate_triangles);
+  }
   return mesh;
 }
 
@@ -127,9 +197,14 @@ ReadMesh read_bytes(const Bytes& bytes) {
   return read_mesh(*open_mesh(files, kFileName));
 }
 
-std::string error_of(const Bytes& bytes) {
+namespace {
+
+template <class Read>
+std::string error_of_reading(const Bytes& bytes, const Read& read) {
+  MemoryFiles files;
+  files.put(std::string(kFileName), bytes);
   try {
-    read_bytes(bytes);
+    read(*open_mesh(files, kFileName));
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::input) << error.what();
     EXPECT_TRUE(std::string(error.what()).starts_with(std::string(kFileName) + ": "))
@@ -138,6 +213,15 @@ std::string error_of(const Bytes& bytes) {
   }
   ADD_FAILURE() << "expected an error, found none";
   return {};
+}
+
+}  // namespace
+
+std::string error_of(const Bytes& bytes) {
+  const std::string error = error_of_reading(bytes, [](MeshSource& source) { read_mesh(source); });
+  EXPECT_EQ(error_of_reading(bytes, [](MeshSource& source) { read_in_blocks(source, false); }),
+            error);
+  return error;
 }
 
 PlyText::PlyText(PlyEncoding encoding, std::string line_end)

@@ -52,12 +52,17 @@ struct ReadMesh {
   FaceCounts counts;
 };
 
-/// Reads vertices, then triangles, then both again, and checks that both times agree, that blocks
-/// are within their size and consecutive, and that positions are in the right span.
+/// Reads vertices, then triangles, then both again, then in blocks, and checks that all times
+/// agree, that blocks are within their size and consecutive, and that positions are in the right
+/// span.
 ReadMesh read_mesh(MeshSource& source);
+/// Reads vertices in blocks, if there are any, else as a stream; triangles in blocks as far as they
+/// are whole. Blocks are read last to first if `backwards`: any order is as good.
+ReadMesh read_in_blocks(MeshSource& source, bool backwards);
 ReadMesh read_bytes(const Bytes& bytes);
 
-/// The message of the Error(input) that reading throws; fails the test if there is none.
+/// The message of the Error(input) that reading throws, as a stream and in blocks alike; fails the
+/// test if there is none.
 std::string error_of(const Bytes& bytes);
 
 /// Writes PLY data value by value in any encoding. In text every row ends with `line_end`.

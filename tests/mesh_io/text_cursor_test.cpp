@@ -20,7 +20,7 @@ std::vector<std::vector<Word>> rows_of(const std::string& text) {
   tests::MemoryFiles files;
   files.put("t", text);
   const auto file = files.open("t");
-  TextCursor cursor(*file, text.size(), 0, 1);
+  TextCursor cursor({*file, text.size()}, 0, 1);
   std::vector<std::vector<Word>> rows;
   while (cursor.to_row()) {
     rows.emplace_back();
@@ -77,7 +77,7 @@ TEST(TextCursor, WordsAreLimited) {
   tests::MemoryFiles files;
   files.put("t", longest + "w x");
   const auto file = files.open("t");
-  TextCursor cursor(*file, longest.size() + 3, 0, 1);
+  TextCursor cursor({*file, longest.size() + 3}, 0, 1);
   ASSERT_TRUE(cursor.to_row());
   EXPECT_EQ(cursor.take_word(), "");
 }

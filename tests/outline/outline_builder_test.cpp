@@ -115,7 +115,7 @@ OutlineOptions unlimited(OutlineOptions options) {
 OutlineResult outline_of(const std::vector<TileMesh>& tiles, const OutlineOptions& options) {
   OutlineBuilder builder;
   for (std::size_t i = 0; i < tiles.size(); ++i) {
-    builder.add(static_cast<std::uint32_t>(i), tiles[i]);
+    builder.add({static_cast<std::uint32_t>(i), tiles[i]});
   }
   return builder.finish(options);
 }
@@ -279,7 +279,7 @@ TEST(OutlineBuilder, TheOrderOfSectorsDoesNotMatter) {
       for (std::size_t i = 0; i < 17; ++i) {
         const std::size_t index = (i + 1) * step % 17;
         if (index < tiles.size())
-          builder.add(static_cast<std::uint32_t>(index), tiles[index]);
+          builder.add({static_cast<std::uint32_t>(index), tiles[index]});
       }
       const OutlineResult other = builder.finish(options);
       EXPECT_EQ(other.outline.vertices, forward.outline.vertices);
@@ -404,7 +404,7 @@ TEST(OutlineBuilder, AGhostOfAMissingSectorIsRefused) {
   const TestMesh mesh = tests::open_grid(5, 5);
   const auto tiles = cut(mesh, sectors_by(mesh, [](Vec3f p) { return p.x > 2.5f ? 1u : 0u; }));
   OutlineBuilder builder;
-  builder.add(0, tiles[0]);
+  builder.add({0, tiles[0]});
   EXPECT_THROW(builder.finish(options_for(mesh, 0.001)), Error);
 }
 

@@ -11,7 +11,8 @@ namespace meshhier::partition {
 namespace {
 
 Graph graph_of(const tests::TestMesh& mesh) {
-  return surface_graph(mesh.positions, {mesh.triangles.begin(), mesh.triangles.end()});
+  return surface_graph(
+      make_surface(mesh.positions, {mesh.triangles.begin(), mesh.triangles.end()}));
 }
 
 /// A centre with so many leaves.
@@ -120,6 +121,24 @@ TEST(MatchedPairs, OfVerticesWithoutArcsThereAreNone) {
   const Graph graph = graph_of(tests::points(100));
   EXPECT_EQ(matched_pairs(graph, 10).count, 100U);
   EXPECT_EQ(star_clusters(graph).count, 100U);
+}
+
+TEST(StarClusters, OfASurfaceAreThoseOfItsGraph) {
+  tests::TestMesh fans = tests::points(4000);
+  for (std::uint32_t i = 1; i < 2000; ++i)
+    fans.triangles.push_back({i, 0, i + 1});
+  for (std::uint32_t i = 2001; i < 4000; ++i)
+    fans.triangles.push_back({i, i, 3999});
+  for (const tests::TestMesh& mesh :
+       {tests::shuffled(tests::sphere(4000, 0.01F), 2), tests::non_manifold(900), tests::soup(50),
+        tests::duplicates(900), fans}) {
+    const Surface surface =
+        make_surface(mesh.positions, {mesh.triangles.begin(), mesh.triangles.end()});
+    const Clusters found = star_clusters(surface);
+    const Clusters expected = star_clusters(surface_graph(surface));
+    EXPECT_EQ(found.of, expected.of);
+    EXPECT_EQ(found.count, expected.count);
+  }
 }
 
 }  // namespace

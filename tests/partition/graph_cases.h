@@ -11,8 +11,12 @@ namespace meshhier::partition {
 
 using Numbers = std::vector<std::uint32_t>;
 
+inline Surface surface_of(const tests::TestMesh& mesh) {
+  return make_surface(mesh.positions, {mesh.triangles.begin(), mesh.triangles.end()});
+}
+
 inline Graph graph_of(const tests::TestMesh& mesh) {
-  return surface_graph(mesh.positions, {mesh.triangles.begin(), mesh.triangles.end()});
+  return surface_graph(surface_of(mesh));
 }
 
 inline Numbers sizes_of(const Numbers& part_of, std::size_t parts) {

@@ -104,5 +104,39 @@ TEST(GraphSplit, HubsAndLonelyVerticesTakeNoMoreWorkThanOthers) {
   EXPECT_LT(counts.moves, 4 * std::uint64_t{graph.size()});
 }
 
+TEST(SurfaceSplit, SizesAreExactForAnyMeshAndAnyNumberOfParts) {
+  for (const tests::TestMesh& mesh :
+       {tests::sphere(20000, 0.01F), tests::shuffled(tests::torus(9000), 2), tests::soup(3000),
+        tests::nested_shells(9000), tests::non_manifold(5000), tests::duplicates(7000),
+        tests::open_grid(100, 3), tests::moebius(2000), tests::points(5000)}) {
+    const Surface surface = surface_of(mesh);
+    for (const std::uint32_t parts : {1U, 2U, 3U, 7U, 33U, 64U}) {
+      const Numbers sizes = even_sizes(surface.size(), parts);
+      EXPECT_EQ(sizes_of(split_surface(surface, sizes), parts), sizes) << parts;
+    }
+  }
+}
+
+TEST(SurfaceSplit, LinesAreAsShortAsInTheWholeGraph) {
+  for (const tests::TestMesh& mesh : {tests::shuffled(tests::sphere(60000, 0.002F), 2),
+                                      tests::shuffled(tests::torus(40000), 3)}) {
+    const Surface surface = surface_of(mesh);
+    const Graph graph = surface_graph(surface);
+    const Numbers sizes = even_sizes(surface.size(), 16);
+    EXPECT_LT(cut_of(graph, split_surface(surface, sizes)),
+              cut_of(graph, split_graph(graph, sizes)) * 106 / 100);
+  }
+}
+
+TEST(SurfaceSplit, DoesNotDependOnTheOrderOfTriangles) {
+  tests::TestMesh mesh = tests::shuffled(tests::torus(20000), 3);
+  const Numbers sizes = even_sizes(static_cast<std::uint32_t>(mesh.positions.size()), 8);
+  const Numbers expected = split_surface(surface_of(mesh), sizes);
+  std::reverse(mesh.triangles.begin(), mesh.triangles.end());
+  for (std::size_t i = 0; i < mesh.triangles.size(); i += 3)
+    std::rotate(mesh.triangles[i].begin(), mesh.triangles[i].begin() + 1, mesh.triangles[i].end());
+  EXPECT_EQ(split_surface(surface_of(mesh), sizes), expected);
+}
+
 }  // namespace
 }  // namespace meshhier::partition

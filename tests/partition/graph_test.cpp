@@ -20,7 +20,7 @@ std::vector<LocalTriangle> triangles_of(const tests::TestMesh& mesh) {
 }
 
 Graph graph_of(const tests::TestMesh& mesh) {
-  return surface_graph(mesh.positions, triangles_of(mesh));
+  return surface_graph(make_surface(mesh.positions, triangles_of(mesh)));
 }
 
 bool equal(const Graph& a, const Graph& b) {
@@ -159,12 +159,12 @@ TEST(SurfaceGraph, ACutWeighsThePerimeterOfCompactness) {
 TEST(SurfaceGraph, DoesNotDependOnTheOrderOfTrianglesNorOnTheirFirstCorner) {
   const tests::TestMesh mesh = tests::duplicates(3000, 0.02F);
   std::vector<LocalTriangle> triangles = triangles_of(mesh);
-  const Graph expected = surface_graph(mesh.positions, triangles);
+  const Graph expected = surface_graph(make_surface(mesh.positions, triangles));
   for (const unsigned seed : {1U, 2U}) {
     std::shuffle(triangles.begin(), triangles.end(), std::mt19937(seed));
     for (std::size_t i = 0; i < triangles.size(); i += seed)
       std::rotate(triangles[i].begin(), triangles[i].begin() + 1, triangles[i].end());
-    EXPECT_TRUE(equal(surface_graph(mesh.positions, triangles), expected));
+    EXPECT_TRUE(equal(surface_graph(make_surface(mesh.positions, triangles)), expected));
   }
 }
 
@@ -190,7 +190,8 @@ TEST(SurfaceGraph, LeavesOutTrianglesOfOtherVertices) {
       triangles.push_back({t[0] + first, first - 1, t[2] + first});
       triangles.push_back({first + count, t[1] + first, t[2] + first});
     }
-    EXPECT_TRUE(equal(surface_graph(mesh.positions, triangles, first), expected)) << first;
+    EXPECT_TRUE(equal(surface_graph(make_surface(mesh.positions, triangles, first)), expected))
+        << first;
   }
 }
 
@@ -206,7 +207,7 @@ TEST(SurfaceGraph, EdgesWithoutLengthWeighTheLeast) {
 TEST(SurfaceGraph, TrianglesThatTurnBackOnThemselvesHaveNoLoops) {
   const std::vector<Vec3f> positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   const std::vector<LocalTriangle> triangles{{0, 0, 1}, {1, 1, 1}, {2, 1, 2}};
-  const Graph graph = surface_graph(positions, triangles);
+  const Graph graph = surface_graph(make_surface(positions, triangles));
   expect_sound(graph);
   EXPECT_EQ(graph.arcs.size(), 4U);
 }
@@ -222,13 +223,13 @@ TEST(SurfaceGraph, ManyTrianglesAVertexAreAChoiceThatTheirOrderDoesNotChange) {
   }
   const std::vector<LocalTriangle> once = triangles;
   triangles.insert(triangles.end(), once.begin(), once.end());
-  const Graph graph = surface_graph(points.positions, triangles);
+  const Graph graph = surface_graph(make_surface(points.positions, triangles));
   expect_sound(graph);
   EXPECT_LE(graph.arcs.size(), 2 * 3 * kMostTriangles * 60);
   EXPECT_GT(graph.arcs.size(), kMostTriangles * 60);
   std::shuffle(triangles.begin(), triangles.end(), std::mt19937(3));
-  EXPECT_TRUE(equal(surface_graph(points.positions, triangles), graph));
-  EXPECT_TRUE(equal(surface_graph(points.positions, once), graph));
+  EXPECT_TRUE(equal(surface_graph(make_surface(points.positions, triangles)), graph));
+  EXPECT_TRUE(equal(surface_graph(make_surface(points.positions, once)), graph));
 }
 
 TEST(SurfaceGraph, WeightsLeaveRoomForSums) {
@@ -237,6 +238,29 @@ TEST(SurfaceGraph, WeightsLeaveRoomForSums) {
   mesh.positions[17] = mesh.positions[17] * 1e6F;
   const Graph graph = graph_of(mesh);
   EXPECT_LT(weight_sum(graph) / 2, std::uint64_t{1} << 30);
+}
+
+TEST(SurfaceGraph, OfGroupsIsTheContractedGraphOnAnotherScale) {
+  const tests::TestMesh mesh = tests::shuffled(tests::sphere(3000, 0.02F), 4);
+  const Surface surface = make_surface(mesh.positions, triangles_of(mesh));
+  std::vector<std::uint32_t> group_of(surface.size());
+  for (std::uint32_t v = 0; v < surface.size(); ++v)
+    group_of[v] = static_cast<std::uint32_t>(surface.positions[v].z * 20);
+  const Graph expected = contract(surface_graph(surface), group_of, 40);
+  const Graph found = surface_graph(surface, group_of, 40);
+  expect_sound(found);
+  EXPECT_EQ(found.weight, expected.weight);
+  EXPECT_EQ(found.first, expected.first);
+  const double scale =
+      static_cast<double>(weight_sum(found)) / static_cast<double>(weight_sum(expected));
+  for (std::uint32_t v = 0; v < found.size(); ++v) {
+    for (const Graph::Arc& arc : found.arcs_of(v)) {
+      for (const Graph::Arc& other : expected.arcs_of(v)) {
+        if (other.to == arc.to)
+          EXPECT_NEAR(arc.weight, other.weight * scale, 0.01 * arc.weight);
+      }
+    }
+  }
 }
 
 TEST(Contract, KeepsWeightsAndCutsBetweenClusters) {
@@ -304,7 +328,7 @@ TEST(LinkComponents, LinksWhatIsNear) {
   std::vector<Vec3f> positions;
   for (std::uint32_t i = 0; i < 50; ++i)
     positions.push_back({static_cast<float>(i * 37 % 50), 0, 0});
-  Graph graph = surface_graph(positions, {});
+  Graph graph = surface_graph(make_surface(positions, {}));
   link_components(graph);
   for (std::uint32_t v = 0; v < 50; ++v) {
     for (const Graph::Arc& arc : graph.arcs_of(v))

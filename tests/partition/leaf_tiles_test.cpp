@@ -1,6 +1,7 @@
 #include "partition/leaf_tiles.h"
 
 #include "hierarchy/error.h"
+#include "partition/spatial_order.h"
 #include "tests/support/meshes.h"
 
 #include <algorithm>
@@ -125,9 +126,12 @@ std::vector<Expected> expected_leaves(const Cut& mesh) {
       }
     }
   }
-  for (std::uint32_t rank = 0; rank < mesh.tree.vertex_count(); ++rank) {
-    Expected& leaf = leaves[mesh.partition_of(rank)];
-    (rim.contains(rank) ? leaf.rim : leaf.inner).push_back(rank);
+  for (std::uint32_t c = 0; c < mesh.map.count(); ++c) {
+    for (const std::uint32_t v : spatial_order(mesh.chunks[c].vertices.positions)) {
+      const std::uint32_t rank = mesh.map.first_rank(c) + v;
+      Expected& leaf = leaves[mesh.partition_of(rank)];
+      (rim.contains(rank) ? leaf.rim : leaf.inner).push_back(rank);
+    }
   }
   for (Expected& leaf : leaves) {
     std::sort(leaf.interior.begin(), leaf.interior.end());

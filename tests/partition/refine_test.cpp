@@ -112,7 +112,7 @@ TEST(Refiner, BalancesExactly) {
       for (std::uint32_t v = 0; v < graph.size(); ++v)
         ++targets[v * std::uint64_t{v} % parts];  // any that sum up, some 0
       Refiner refiner(graph, part_of, targets, all(graph));
-      refiner.balance_exactly();
+      refiner.balance_exactly(Reach::anywhere);
       EXPECT_EQ(sizes_of(part_of, parts), targets) << parts;
     }
   }
@@ -125,7 +125,7 @@ TEST(Refiner, BalancingCostsLittleWhereLittleIsOff) {
   targets[0] += 10;
   targets[7] -= 10;
   Refiner refiner(graph, part_of, targets, all(graph));
-  refiner.balance_exactly();
+  refiner.balance_exactly(Reach::anywhere);
   EXPECT_EQ(sizes_of(part_of, 8), targets);
   EXPECT_LE(refiner.counts().moves, 70U);  // ten across each of seven lines
 }
@@ -192,6 +192,31 @@ TEST(Refiner, HubsStayWhereTheyAre) {
   const Numbers sizes = sizes_of(part_of, 2);
   Refiner(graph, part_of, sizes, all(graph)).refine_all(4, {0, 2});
   EXPECT_EQ(part_of[0], 0U);
+  EXPECT_EQ(sizes_of(part_of, 2), sizes);
+}
+
+TEST(Refiner, LeavesVerticesBeyondThoseToLookAtWhereTheyAre) {
+  const Graph graph = graph_of(tests::shuffled(tests::sphere(8000, 0.01F), 1));
+  Numbers part_of = slabs(graph, 4, 0.05F);
+  const Numbers before = part_of, sizes = sizes_of(part_of, 4);
+  const std::size_t movable = graph.size() / 2;
+  Refiner refiner(graph, part_of, sizes, std::vector<char>(movable, 1));
+  EXPECT_TRUE(refiner.balance_exactly(Reach::neighbours));
+  refiner.refine_all(3, {0, 2});
+  EXPECT_GT(refiner.counts().kept_moves, 0U);
+  EXPECT_TRUE(std::equal(part_of.begin() + static_cast<std::ptrdiff_t>(movable), part_of.end(),
+                         before.begin() + static_cast<std::ptrdiff_t>(movable)));
+}
+
+TEST(Refiner, SaysWhenNeighboursDoNotSufficeForExactSizes) {
+  // Two components, each a part of its own, and one that should be larger.
+  const Graph graph = graph_of(tests::soup(2));
+  Numbers part_of{0, 0, 0, 1, 1, 1};
+  const Numbers sizes{4, 2};
+  Refiner near(graph, part_of, sizes, all(graph));
+  EXPECT_FALSE(near.balance_exactly(Reach::neighbours));
+  Refiner far(graph, part_of, sizes, all(graph));
+  EXPECT_TRUE(far.balance_exactly(Reach::anywhere));
   EXPECT_EQ(sizes_of(part_of, 2), sizes);
 }
 

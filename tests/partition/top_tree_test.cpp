@@ -38,6 +38,12 @@ std::vector<IdPoint> sample_of(const std::vector<Vec3f>& positions) {
   return sample;
 }
 
+SweepBlock swept(const TopPlan& plan, std::span<const Vec3f> positions, std::uint32_t first) {
+  SweepBlock block;
+  Sweep(plan).count(positions, first, block);
+  return block;
+}
+
 class TopTreeTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -59,7 +65,7 @@ class TopTreeTest : public testing::Test {
       for (const std::size_t at : starts) {
         const auto block =
             std::span(positions).subspan(at, std::min(way.block, positions.size() - at));
-        selector.add(sweep(plan, block, static_cast<std::uint32_t>(at)));
+        selector.add(swept(plan, block, static_cast<std::uint32_t>(at)));
       }
       std::vector<SplitPlane> planes = selector.settle(plan);
       if (!planes.empty())
@@ -77,6 +83,12 @@ std::vector<std::uint32_t> chunks_of(const TopTree& top, const std::vector<Vec3f
   std::vector<std::uint32_t> chunks(positions.size());
   for (std::size_t i = 0; i < chunks.size(); ++i)
     chunks[i] = top.chunk_of(positions[i], static_cast<std::uint32_t>(i));
+  std::vector<std::uint32_t> found(positions.size());
+  const Bounds half{{-1.5F, -1, -0.5F}, {1.5F, 1, 0.5F}};  // where the box ends does not matter
+  for (const Bounds& box : {bounds_of(positions), half}) {
+    ChunkSearch(top, box).find(positions, 0, found);
+    EXPECT_EQ(found, chunks);
+  }
   return chunks;
 }
 
@@ -119,6 +131,20 @@ std::vector<Vec3f> cloud(std::size_t count, Vec3f half = {3, 2, 1}) {
 
 Tree tree_of(std::size_t vertex_count) {
   return {vertex_count, static_cast<std::uint32_t>(vertex_count / 8192 + 1)};
+}
+
+TEST(SampleIdsTest, FirstFromFindsTheNextOne) {
+  for (const std::uint64_t count : {std::uint64_t{10}, kSampleVertices, kSampleVertices + 1,
+                                    std::uint64_t{600'000}, (std::uint64_t{1} << 32) - 1}) {
+    const SampleIds ids(count);
+    for (const std::uint64_t id : {std::uint64_t{0}, std::uint64_t{1}, std::uint64_t{5},
+                                   std::uint64_t{77'777}, count / 3, count - 2, count - 1}) {
+      const std::uint64_t i = ids.first_from(id);
+      EXPECT_TRUE(i == ids.count() || ids[i] >= id) << id << " of " << count;
+      EXPECT_TRUE(i == 0 || ids[i - 1] < id) << id << " of " << count;
+    }
+    EXPECT_EQ(ids.first_from(count), ids.count());
+  }
 }
 
 TEST_F(TopTreeTest, ChunksAreTheFirstLevelOfNodesThatAreSmallEnough) {
@@ -273,7 +299,7 @@ TEST_F(TopTreeTest, AMissedWindowIsPlannedAgainThenOpenedWide) {
     storage::MemoryPool pool(kPlenty);
     storage::ScratchFile scratch(*files_, path_, pool);
     TopSelector selector(plan, tree, scratch, 1 << 20);
-    selector.add(sweep(plan, positions, 0));
+    selector.add(swept(plan, positions, 0));
     EXPECT_TRUE(selector.settle(plan).empty());
     for (std::size_t i = 0; i < plan.splits.size(); ++i) {
       EXPECT_FALSE(plan.splits[i].settled);
@@ -329,7 +355,7 @@ TEST_F(TopTreeTest, FewVerticesOfALargeMeshAreKeptAside) {
   const std::vector<Vec3f> positions = cloud(kCount);
   const Tree tree = tree_of(kCount);
   const TopPlan plan = plan_top(sample_of(positions), tree, Axis::compactness);
-  EXPECT_LT(sweep(plan, positions, 0).undecided.size(), kCount / 20);
+  EXPECT_LT(swept(plan, positions, 0).undecided.size(), kCount / 20);
 }
 
 // Splits of a long thin model all run across it. Where the sample's plane above differs from the

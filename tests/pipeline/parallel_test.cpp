@@ -119,15 +119,97 @@ TEST(OrderedForTest, ACancelledJobStopsSoon) {
   EXPECT_LE(started, 10U + 2 * 4U);  // what was in flight, and what had been let in by then
 }
 
+struct Number {
+  std::size_t item = 0;
+  std::size_t result = 0;
+};
+
+TEST(OrderedBlocksTest, ResultsComeInOrderWhateverTheSlots) {
+  for (const std::size_t in_flight : {1U, 2U, 3U, 16U, 1000U}) {
+    std::vector<std::size_t> results;
+    ordered_blocks<Number>(
+        500, in_flight, CancelToken(),
+        [](std::uint64_t i, Number& slot) { slot.result = uneven_work(i); },
+        [&](const Number& slot) {
+          results.push_back(slot.result);
+          return true;
+        });
+    std::vector<std::size_t> expected;
+    for (std::size_t i = 0; i < 500; ++i)
+      expected.push_back(uneven_work(i));
+    EXPECT_EQ(results, expected) << in_flight << " in flight";
+  }
+}
+
+TEST(OrderedBlocksTest, SlotsAreUsedAgain) {
+  std::size_t uses = 0;
+  ordered_blocks<std::vector<int>>(
+      100, 3, CancelToken(), [](std::uint64_t, std::vector<int>& slot) { slot.push_back(1); },
+      [&](const std::vector<int>& slot) {
+        EXPECT_EQ(slot.size(), uses++ / 3 + 1);
+        return true;
+      });
+}
+
+TEST(OrderedBlocksTest, TheSinkEndsIt) {
+  std::size_t sunk = 0;
+  ordered_blocks<int>(
+      1000, 4, CancelToken(),
+      [](std::uint64_t i, int&) {
+        if (i > 20)
+          throw std::runtime_error("behind the end");
+      },
+      [&](int) { return ++sunk <= 20; });
+  EXPECT_EQ(sunk, 21U);
+}
+
+TEST(OrderedBlocksTest, OfSeveralFailuresTheFirstInOrderIsThrown) {
+  for (int round = 0; round < 20; ++round) {
+    std::size_t sunk = 0;
+    try {
+      ordered_blocks<int>(
+          200, 8, CancelToken(),
+          [](std::uint64_t i, int&) {
+            if (i == 50)
+              uneven_work(7);
+            if (i >= 50)
+              throw Error(ErrorCode::input, std::to_string(i));
+          },
+          [&](int) {
+            ++sunk;
+            return true;
+          });
+      FAIL() << "nothing was thrown";
+    } catch (const Error& error) {
+      EXPECT_STREQ(error.what(), "50");
+    }
+    EXPECT_EQ(sunk, 50U);
+  }
+}
+
+TEST(OrderedBlocksTest, ACancelledJobEnds) {
+  CancelToken cancel;
+  std::size_t sunk = 0;
+  EXPECT_THROW(ordered_blocks<int>(
+                   100'000, 4, cancel, [](std::uint64_t, int&) {},
+                   [&](int) {
+                     if (++sunk == 10)
+                       cancel.cancel();
+                     return true;
+                   }),
+               Error);
+  EXPECT_LT(sunk, 100U);
+}
+
 TEST(BatchedWorkTest, HandsEveryResultOnInOrder) {
   for (const std::size_t batch : {1U, 2U, 7U, 1000U}) {
     std::vector<std::size_t> results;
-    BatchedWork<std::size_t, std::size_t> work(
-        batch, [](const std::size_t& i) { return uneven_work(i); },
-        [&](std::size_t& result) { results.push_back(result); });
+    BatchedWork<Number> work(
+        batch, [](Number& slot) { slot.result = uneven_work(slot.item); },
+        [&](Number& slot) { results.push_back(slot.result); });
     std::vector<std::size_t> expected;
     for (std::size_t i = 0; i < 100; ++i) {
-      work.add(i);
+      work.next().item = i;
       expected.push_back(uneven_work(i));
     }
     work.finish();
@@ -137,26 +219,29 @@ TEST(BatchedWorkTest, HandsEveryResultOnInOrder) {
 
 TEST(BatchedWorkTest, GathersNoMoreThanABatch) {
   std::vector<int> results;
-  BatchedWork<int, int> work(
-      3, [](const int& i) { return i; }, [&](int& result) { results.push_back(result); });
-  work.add(1);
-  work.add(2);
+  BatchedWork<int> work(
+      3, [](int&) {}, [&](int& item) { results.push_back(item); });
+  for (const int i : {1, 2, 3})
+    work.next() = i;
   EXPECT_THAT(results, IsEmpty());
-  work.add(3);
+  work.next() = 4;
   EXPECT_THAT(results, ElementsAre(1, 2, 3));
-  work.add(4);
   work.finish();
   work.finish();
   EXPECT_THAT(results, ElementsAre(1, 2, 3, 4));
 }
 
 TEST(BatchedWorkTest, AFailureIsThrownAgain) {
-  BatchedWork<int, int> work(
-      4, [](const int& i) { return i == 2 ? throw Error(ErrorCode::input, "2") : i; },
+  BatchedWork<int> work(
+      4,
+      [](int& item) {
+        if (item == 2)
+          throw Error(ErrorCode::input, "2");
+      },
       [](int&) { ADD_FAILURE() << "a batch that failed was handed on"; });
-  for (const int i : {0, 1, 2})
-    work.add(i);
-  EXPECT_THROW(work.add(3), Error);
+  for (const int i : {0, 1, 2, 3})
+    work.next() = i;
+  EXPECT_THROW(work.next(), Error);
 }
 
 }  // namespace

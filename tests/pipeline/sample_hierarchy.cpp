@@ -2,6 +2,7 @@
 
 #include "hierarchy/bounds.h"
 #include "pipeline/cut.h"
+#include "storage/file_checksum.h"
 #include "storage/hash.h"
 #include "storage/index.h"
 #include "storage/layout.h"
@@ -334,7 +335,10 @@ storage::Manifest make_manifest(const Sample& sample, const fs::path& source) {
     std::ifstream in(source, std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(in), {}};
     manifest.source.file_bytes = bytes.size();
-    manifest.source.checksum = storage::checksum(std::as_bytes(std::span(bytes)));
+    storage::FileChecksum checksum(bytes.size());
+    checksum.add(0, std::as_bytes(std::span(bytes)));
+    const auto file = storage::make_posix_file_system()->open(source);
+    manifest.source.checksum = checksum.complete(*file, [] {});
   }
   manifest.source.vertices = sample.ranked.positions.size();
   manifest.source.triangles = sample.ranked.triangles.size();

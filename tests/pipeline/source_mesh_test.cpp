@@ -4,6 +4,7 @@
 #include "mesh_io/ply_writer.h"
 #include "partition/top_tree.h"
 #include "storage/file.h"
+#include "storage/file_checksum.h"
 #include "tests/pipeline/sample_hierarchy.h"
 #include "tests/support/meshes.h"
 
@@ -12,6 +13,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -26,6 +28,21 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+
+constexpr std::size_t kInFlight = 3;
+
+using Triangles = std::vector<mesh_io::SourceTriangle>;
+
+Triangles triangles_of(SourceMesh& mesh, std::size_t in_flight = kInFlight) {
+  Triangles triangles;
+  mesh.read_triangles<Triangles>(
+      in_flight, CancelToken(),
+      [](std::span<const mesh_io::SourceTriangle> block, Triangles& slot) {
+        slot.assign(block.begin(), block.end());
+      },
+      [&](const Triangles& slot) { triangles.insert(triangles.end(), slot.begin(), slot.end()); });
+  return triangles;
+}
 
 /// Cancels when the given number of units is done.
 class CancellingProgress final : public Progress {
@@ -53,7 +70,7 @@ class SourceMeshTest : public testing::Test {
 
   SourceMesh open(const std::filesystem::path& file) {
     return SourceMesh(mesh_io::open_mesh(*files_, file), file.filename().string(), scratch_,
-                      progress_, cancel_);
+                      kInFlight, progress_, cancel_);
   }
 
   /// A point cloud of double coordinates.
@@ -87,12 +104,14 @@ struct Streamed {
 
 Streamed stream(const SourceMesh& mesh) {
   Streamed all;
-  mesh.read_vertices([&](std::uint64_t first, std::span<const Vec3f> positions,
-                         std::span<const float> attributes) {
-    EXPECT_EQ(first, all.positions.size());
-    all.positions.insert(all.positions.end(), positions.begin(), positions.end());
-    all.attributes.insert(all.attributes.end(), attributes.begin(), attributes.end());
-  });
+  mesh_io::BlockMemory memory;
+  for (std::uint64_t i = 0; i < mesh.vertex_blocks(); ++i) {
+    const SourceVertices block = mesh.read_vertex_block(i, memory);
+    EXPECT_EQ(block.first, all.positions.size());
+    EXPECT_LE(block.positions.size(), mesh_io::MeshSource::kBlockSize);
+    all.positions.insert(all.positions.end(), block.positions.begin(), block.positions.end());
+    all.attributes.insert(all.attributes.end(), block.attributes.begin(), block.attributes.end());
+  }
   return all;
 }
 
@@ -231,10 +250,7 @@ TEST_F(SourceMeshTest, ReadingTheTrianglesCompletesTheCounts) {
                               "0 0 0\n1 0 0\n1 1 0\n0 1 0\n9 9 9\n"
                               "4 0 1 2 3\n3 0 0 1\n3 0 1 2\n2 0 1\n");
   EXPECT_EQ(mesh.declared_faces(), 4U);
-  std::vector<mesh_io::SourceTriangle> triangles;
-  mesh.read_triangles([&](std::span<const mesh_io::SourceTriangle> block) {
-    triangles.insert(triangles.end(), block.begin(), block.end());
-  });
+  const Triangles triangles = triangles_of(mesh);
   const auto triangle = [](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     return mesh_io::SourceTriangle{VertexId{a}, VertexId{b}, VertexId{c}};
   };
@@ -242,6 +258,97 @@ TEST_F(SourceMeshTest, ReadingTheTrianglesCompletesTheCounts) {
   EXPECT_EQ(mesh.summary().faces, 4U);
   EXPECT_EQ(mesh.summary().triangles, 3U);
   EXPECT_EQ(mesh.summary().degenerate_triangles, 2U);
+}
+
+TEST_F(SourceMeshTest, TrianglesComeInFileOrderWhereverBlocksEnd) {
+  const tests::TestMesh sphere = tests::sphere(300'000);  // several blocks of 40,000
+  tests::write_ply(sphere, path());
+  for (const std::size_t in_flight : {1U, 2U, 5U}) {
+    SourceMesh mesh = open(path());
+    const Triangles triangles = triangles_of(mesh, in_flight);
+    ASSERT_EQ(triangles.size(), sphere.triangles.size());
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      for (std::size_t corner = 0; corner < 3; ++corner)
+        ASSERT_EQ(raw(triangles[i][corner]), sphere.triangles[i][corner]);
+    }
+    EXPECT_EQ(mesh.summary().triangles, sphere.triangles.size());
+    EXPECT_EQ(mesh.summary().degenerate_triangles, 0U);
+  }
+}
+
+/// Little endian: three points, then faces (lists of indices).
+std::string binary_faces(const std::vector<std::vector<std::int32_t>>& faces) {
+  std::string bytes =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\n"
+      "property float y\nproperty float z\nelement face " +
+      std::to_string(faces.size()) + "\nproperty list uchar int vertex_indices\nend_header\n";
+  const auto put = [&](const void* data, std::size_t size) {
+    bytes.append(static_cast<const char*>(data), size);
+  };
+  for (const float coordinate : {0.F, 0.F, 0.F, 1.F, 0.F, 0.F, 0.F, 1.F, 0.F})
+    put(&coordinate, sizeof coordinate);
+  for (const auto& face : faces) {
+    bytes += static_cast<char>(face.size());
+    put(face.data(), face.size() * sizeof face[0]);
+  }
+  return bytes;
+}
+
+TEST_F(SourceMeshTest, APolygonAmongTrianglesEndsTheBlocksOnly) {
+  for (const std::size_t polygon : {0U, 1U, 100'000U, 199'999U}) {
+    std::vector<std::vector<std::int32_t>> faces(200'000, {0, 1, 2});
+    faces[polygon] = {0, 1, 2, 1};
+    faces[150'000] = {0, 0, 1};
+    SourceMesh mesh = open_text(binary_faces(faces));
+    EXPECT_EQ(triangles_of(mesh).size(), 200'000U) << polygon;
+    EXPECT_EQ(mesh.summary().faces, 200'000U);
+    EXPECT_EQ(mesh.summary().triangles, 200'000U);
+    EXPECT_EQ(mesh.summary().degenerate_triangles, 1U);
+  }
+}
+
+TEST_F(SourceMeshTest, OfSeveralBrokenFacesTheFirstIsNamed) {
+  std::vector<std::vector<std::int32_t>> faces(300'000, {0, 1, 2});
+  for (const std::size_t bad : {120'000U, 120'001U, 200'000U, 299'999U})
+    faces[bad] = {0, 1, 3};
+  const std::string bytes = binary_faces(faces);
+  for (int round = 0; round < 5; ++round) {
+    SourceMesh mesh = open_text(bytes);
+    try {
+      triangles_of(mesh, 8);
+      FAIL() << "a vertex that is not there was accepted";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::input);
+      EXPECT_THAT(error.what(), HasSubstr("row 120000 of 300000"));
+    }
+  }
+}
+
+TEST_F(SourceMeshTest, OfSeveralBrokenVerticesTheFirstIsNamed) {
+  tests::TestMesh points = tests::points(400'000);
+  for (const std::size_t bad : {150'000U, 150'001U, 250'000U, 399'999U})
+    points.positions[bad].y = std::numeric_limits<float>::quiet_NaN();
+  tests::write_ply(points, path());
+  for (int round = 0; round < 5; ++round) {
+    try {
+      SourceMesh(mesh_io::open_mesh(*files_, path()), "mesh.ply", scratch_, 8, progress_, cancel_);
+      FAIL() << "a vertex that is not a number was accepted";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::input);
+      EXPECT_THAT(error.what(), HasSubstr("row 150000 of 400000"));
+    }
+  }
+}
+
+TEST_F(SourceMeshTest, TheChecksumComesWithTheReading) {
+  tests::write_ply(tests::sphere(300'000), path());
+  const auto file = files_->open(path());
+  const std::uint64_t expected = storage::FileChecksum(file->size()).complete(*file, [] {});
+  SourceMesh mesh = open(path());
+  triangles_of(mesh);
+  const std::uint64_t before = files_->counters().bytes_read;
+  EXPECT_EQ(mesh.checksum(cancel_), expected);
+  EXPECT_EQ(files_->counters().bytes_read, before);  // nothing is read for its sake
 }
 
 TEST_F(SourceMeshTest, ABrokenVertexIsNamed) {
@@ -259,7 +366,8 @@ TEST_F(SourceMeshTest, ACancelledJobEndsWhileReading) {
   tests::write_ply(tests::points(200'000), path());
   CancellingProgress progress(cancel_, 1);
   try {
-    SourceMesh(mesh_io::open_mesh(*files_, path()), "mesh.ply", scratch_, progress, cancel_);
+    SourceMesh(mesh_io::open_mesh(*files_, path()), "mesh.ply", scratch_, kInFlight, progress,
+               cancel_);
     FAIL() << "read to the end";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::interrupted);

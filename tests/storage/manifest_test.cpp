@@ -112,7 +112,7 @@ TEST(Manifest, GivesEveryValueBack) {
 
 TEST(Manifest, IsReadable) {
   const std::string text = to_json_text(make_manifest());
-  EXPECT_THAT(text, StartsWith("{\n  \"format\": \"meshhier\",\n  \"format_version\": 2,\n"));
+  EXPECT_THAT(text, StartsWith("{\n  \"format\": \"meshhier\",\n  \"format_version\": 3,\n"));
   EXPECT_THAT(text, HasSubstr("\"checksum\": \"fedcba9876543210\""));
   EXPECT_THAT(text, HasSubstr("\"checksum\": \"00000000000000ab\""));
   EXPECT_THAT(text, HasSubstr("\"colours\": \"u16\""));
@@ -207,10 +207,10 @@ TEST(Manifest, EveryWrongValueIsNamed) {
 
 TEST(Manifest, OtherFormatsAndVersionsAreRefusedByTheirNumber) {
   Json document = Json::parse(to_json_text(make_manifest()));
-  document["format_version"] = 3;
-  EXPECT_THAT(failure(document.dump()), HasSubstr("format version 3 is newer than 2"));
+  document["format_version"] = 4;
+  EXPECT_THAT(failure(document.dump()), HasSubstr("format version 4 is newer than 3"));
   document["format_version"] = 0;
-  EXPECT_THAT(failure(document.dump()), HasSubstr("format version is 0, expected 2"));
+  EXPECT_THAT(failure(document.dump()), HasSubstr("format version is 0, expected 3"));
   document["format"] = "nexus";
   EXPECT_THAT(failure(document.dump()), HasSubstr("\"format\" is wrong"));
 }

@@ -186,5 +186,65 @@ TEST(RimBytes, CutShortOrOfOtherChannelsAreRefused) {
   }
 }
 
+Band make_band(const Shape& shape) {
+  std::mt19937 random(shape.own * 17 + shape.foreign);
+  const auto number = [&] { return static_cast<float>(random() % 65536) / 65536 - 0.5F; };
+  Band band;
+  band.rim_count = shape.rim;
+  band.own_count = shape.own;
+  for (std::uint32_t i = 0; i < shape.own + shape.foreign; ++i)
+    band.positions.push_back({number(), number(), number()});
+  for (std::uint32_t i = 0; i < shape.own; ++i)
+    band.drifts.push_back(number());
+  for (std::uint32_t i = 0; i < shape.foreign; ++i)
+    band.foreign.push_back({i / 3, static_cast<std::uint32_t>(random())});
+  band.interior = random_triangles(random, shape.interior, shape.own);
+  band.border = random_triangles(random, shape.border, shape.own + shape.foreign);
+  band.interior_drift = 0.125F;
+  band.lost = std::numeric_limits<float>::infinity();
+  band.squared_sum = 1e-300;
+  band.weight_sum = 12345678901.0;
+  return band;
+}
+
+void expect_same(const Band& a, const Band& b) {
+  EXPECT_EQ(a.rim_count, b.rim_count);
+  EXPECT_EQ(a.own_count, b.own_count);
+  EXPECT_EQ(a.positions, b.positions);
+  EXPECT_EQ(a.drifts, b.drifts);
+  EXPECT_EQ(a.foreign, b.foreign);
+  EXPECT_EQ(a.interior, b.interior);
+  EXPECT_EQ(a.border, b.border);
+  EXPECT_EQ(a.interior_drift, b.interior_drift);
+  EXPECT_EQ(a.lost, b.lost);
+  EXPECT_EQ(a.squared_sum, b.squared_sum);
+  EXPECT_EQ(a.weight_sum, b.weight_sum);
+}
+
+TEST(BandBytes, HoldEveryBand) {
+  for (const Shape& shape :
+       {Shape{}, Shape{1, 0, 0, 0, 0}, Shape{100, 30, 25, 150, 60}, Shape{7, 7, 80, 0, 90},
+        Shape{65000, 40000, 535, 100, 100}, Shape{65000, 40000, 536, 100, 100},
+        Shape{65000, 40000, 537, 100, 100}}) {
+    const Band band = make_band(shape);
+    expect_same(decode_band(encode_band(band)), band);
+  }
+}
+
+TEST(BandBytes, CutShortLongerOrImpossibleAreRefused) {
+  Bytes bytes = encode_band(make_band({10, 5, 4, 7, 6}));
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    expect_refused([&] { return decode_band(std::span(bytes).first(size)); },
+                   "cut to " + std::to_string(size));
+  }
+  for (const std::size_t field : {0U, 2U, 3U, 4U}) {  // all but the rim sizes something
+    Bytes broken = bytes;
+    std::fill_n(broken.begin() + static_cast<std::ptrdiff_t>(4 * field), 4, std::byte{0xff});
+    expect_refused([&] { return decode_band(broken); }, "field " + std::to_string(field));
+  }
+  bytes.push_back(std::byte{0});
+  expect_refused([&] { return decode_band(bytes); }, "one byte more");
+}
+
 }  // namespace
 }  // namespace meshhier::storage

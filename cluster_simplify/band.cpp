@@ -1,0 +1,316 @@
+#include "cluster_simplify/band.h"
+
+#include "cluster_simplify/cover_distance.h"
+#include "cluster_simplify/nearest.h"
+#include "hierarchy/error.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace meshhier::cluster_simplify {
+
+Band make_band(const BuildTile& joined, const ContractedTile& contracted) {
+  constexpr std::uint32_t kUnset = std::numeric_limits<std::uint32_t>::max();
+  const WorkTile& tile = contracted.tile;
+  const auto own_count = static_cast<std::uint32_t>(tile.vertices.size());
+  Band band;
+  band.rim_count = tile.rim_count;
+  std::vector<std::uint32_t> place(own_count, kUnset);
+  const auto add_own = [&](std::uint32_t v) {
+    place[v] = band.own_count++;
+    band.positions.push_back(tile.vertices.positions[v]);
+    band.drifts.push_back(contracted.drift.around[v]);
+  };
+  for (std::uint32_t v = 0; v < tile.rim_count; ++v)
+    add_own(v);
+  for (const Triangle& t : tile.interior) {
+    if (raw(t[0]) >= tile.rim_count)  // the smallest corner
+      break;                          // triangles ascend
+    for (const TileVertex v : t) {
+      if (place[raw(v)] == kUnset)
+        add_own(raw(v));
+    }
+    band.interior.push_back(
+        {TileVertex{place[raw(t[0])]}, TileVertex{place[raw(t[1])]}, TileVertex{place[raw(t[2])]}});
+  }
+  band.foreign = tile.foreign;
+  const std::vector<GhostRef>& ghosts = joined.mesh.ghosts;
+  for (const GhostRef& ref : tile.foreign) {
+    const auto found = std::lower_bound(ghosts.begin(), ghosts.end(), ref);
+    band.positions.push_back(
+        joined.mesh.vertices
+            .positions[joined.mesh.own_count + static_cast<std::size_t>(found - ghosts.begin())]);
+  }
+  for (const Triangle& t : tile.border) {
+    Triangle& copy = band.border.emplace_back(t);
+    for (TileVertex& v : copy)
+      v = TileVertex{raw(v) < own_count ? place[raw(v)] : raw(v) - own_count + band.own_count};
+  }
+  band.interior_drift = contracted.drift.interior;
+  band.lost = contracted.drift.lost;
+  band.squared_sum = contracted.drift.squared_sum;
+  band.weight_sum =
+      std::accumulate(joined.history.weights.begin(), joined.history.weights.end(), 0.0);
+  return band;
+}
+
+namespace {
+
+// No more triangles around a corner are asked about another: a vertex with thousands of them would
+// take their number squared. Those at its neighbours are near enough.
+constexpr std::uint32_t kMostAround = 64;
+
+enum class When : std::uint8_t {
+  then,  ///< a border triangle as it was when its tile was made
+  now,   ///< a border triangle as it is drawn
+  both,  ///< an interior triangle
+};
+
+/// A triangle at the seam.
+struct SeamTriangle {
+  CoverDistance::Corners corners;
+  double drift = 0;  ///< 0 if it is drawn now only
+  When when = When::both;
+  std::array<std::uint32_t, 3> vertices;  ///< kNowhere: of those that nobody asks about
+};
+
+/// Vertices here: the own rim, then the ghosts.
+class Seam {
+ public:
+  explicit Seam(const SeamInput& input) : input_(input), rim_count_(input.mesh.rim_count) {
+    add_own();
+    add_drawn();
+    for (const BandOf& neighbour : input.neighbours)
+      add(neighbour);
+    link();
+  }
+
+  double gap() {
+    double largest = 0;
+    for (const SeamTriangle& t : triangles_) {
+      if (!is_asked(t))
+        continue;
+      const double enough = std::max(largest, double{input_.own.band.interior_drift});
+      collect_covers(t);
+      if (covers_.empty()) {
+        stranded_.push_back(&t);
+        continue;
+      }
+      const double distance = cover_distance_(t.corners, covers_, enough - t.drift);
+      largest = std::max(largest, distance + t.drift);
+    }
+    return std::max(largest, farthest_stranded());
+  }
+
+ private:
+  struct Lists {
+    std::vector<std::uint32_t> first, next;
+  };
+
+  static constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
+
+  const std::vector<GhostRef>& ghosts() const { return input_.mesh.ghosts; }
+
+  std::uint32_t vertex_of(const GhostRef& ref) const {
+    const auto found = std::lower_bound(ghosts().begin(), ghosts().end(), ref);
+    return found != ghosts().end() && *found == ref
+               ? rim_count_ + static_cast<std::uint32_t>(found - ghosts().begin())
+               : kNowhere;
+  }
+
+  template <class VertexOf>
+  void add(const Triangle& t, const std::vector<Vec3f>& positions, double drift, When when,
+           const VertexOf& vertex) {
+    SeamTriangle added{{to_double(positions[raw(t[0])]), to_double(positions[raw(t[1])]),
+                        to_double(positions[raw(t[2])])},
+                       drift,
+                       when,
+                       {vertex(raw(t[0])), vertex(raw(t[1])), vertex(raw(t[2]))}};
+    if (std::any_of(added.vertices.begin(), added.vertices.end(),
+                    [](std::uint32_t v) { return v != kNowhere; }))
+      triangles_.push_back(added);
+  }
+
+  /// What the triangle may have drifted: no more than what is around any of its own corners.
+  static double drift_of(const Band& band, const Triangle& t) {
+    double drift = std::numeric_limits<double>::infinity();
+    for (const TileVertex v : t) {
+      if (raw(v) < band.own_count)
+        drift = std::min(drift, double{band.drifts[raw(v)]});
+    }
+    return drift;
+  }
+
+  template <class VertexOf>
+  void add_band(const Band& band, const VertexOf& vertex) {
+    for (const Triangle& t : band.interior)
+      add(t, band.positions, drift_of(band, t), When::both, vertex);
+    for (const Triangle& t : band.border)
+      add(t, band.positions, drift_of(band, t), When::then, vertex);
+  }
+
+  void add_own() {
+    const Band& band = input_.own.band;
+    std::vector<std::uint32_t> foreign;
+    for (const GhostRef& ref : input_.mapped)
+      foreign.push_back(vertex_of(ref));
+    add_band(band, [&](std::uint32_t v) {
+      return v < band.rim_count ? v : v < band.own_count ? kNowhere : foreign[v - band.own_count];
+    });
+    own_end_ = triangles_.size();
+  }
+
+  void add_drawn() {
+    const TileMesh& mesh = input_.mesh;
+    for (const Triangle& t : mesh.border) {
+      add(t, mesh.vertices.positions, 0, When::now, [&](std::uint32_t v) {
+        return v < mesh.own_count ? v : v - mesh.own_count + rim_count_;
+      });
+    }
+    drawn_end_ = triangles_.size();
+  }
+
+  void add(const BandOf& neighbour) {
+    std::vector<std::uint32_t> place(neighbour.band.rim_count, kNowhere);
+    auto ghost = std::lower_bound(ghosts().begin(), ghosts().end(), GhostRef{neighbour.tile, 0});
+    for (; ghost != ghosts().end() && ghost->tile == neighbour.tile; ++ghost) {
+      if (ghost->index >= place.size())
+        throw Error(ErrorCode::internal, "a ghost lies outside its tile's rim");
+      place[ghost->index] = rim_count_ + static_cast<std::uint32_t>(ghost - ghosts().begin());
+    }
+    add_band(neighbour.band,
+             [&](std::uint32_t v) { return v < place.size() ? place[v] : kNowhere; });
+  }
+
+  /// A list of corners 3 t + k per vertex and time.
+  void link() {
+    const std::array times{When::then, When::now};
+    for (std::size_t time = 0; time < times.size(); ++time) {
+      Lists& lists = at_[time];
+      lists.next.assign(triangles_.size() * 3, kNowhere);
+      lists.first.assign(rim_count_ + ghosts().size(), kNowhere);
+      for (std::uint32_t i = static_cast<std::uint32_t>(lists.next.size()); i-- > 0;) {
+        const SeamTriangle& t = triangles_[i / 3];
+        const std::uint32_t v = t.vertices[i % 3];
+        if (v == kNowhere || (t.when != times[time] && t.when != When::both))
+          continue;
+        lists.next[i] = lists.first[v];
+        lists.first[v] = i;
+      }
+    }
+    met_.assign(triangles_.size(), {});
+  }
+
+  /// Border triangles: the own ones as they were, and those drawn now that no tile before this one
+  /// asks about.
+  bool is_asked(const SeamTriangle& t) const {
+    const auto index = static_cast<std::size_t>(&t - triangles_.data());
+    if (index >= drawn_end_ || t.when == When::both)
+      return false;
+    return index < own_end_ ||
+           std::all_of(t.vertices.begin(), t.vertices.end(), [&](std::uint32_t v) {
+             return v < rim_count_ || ghosts()[v - rim_count_].tile > input_.own.tile;
+           });
+  }
+
+  /// What is around the triangle's corners at the other time. What shares more than one corner with
+  /// it comes first: it is mostly near enough.
+  void collect_covers(const SeamTriangle& t) {
+    covers_.clear();
+    front_ = 0;
+    const auto mark = static_cast<std::uint32_t>(&t - triangles_.data());
+    const Lists& lists = at_[t.when == When::then ? 1 : 0];
+    for (const std::uint32_t v : t.vertices) {
+      if (v == kNowhere)
+        continue;
+      std::uint32_t seen = 0;
+      for (std::uint32_t i = lists.first[v]; i != kNowhere && seen < kMostAround;
+           i = lists.next[i], ++seen)
+        add_cover(t, i / 3, mark);
+    }
+  }
+
+  void add_cover(const SeamTriangle& t, std::uint32_t index, std::uint32_t mark) {
+    const SeamTriangle& other = triangles_[index];
+    if (other.when == t.when)
+      return;
+    if (met_[index].by == mark) {
+      if (met_[index].place >= front_)
+        move_to_front(index);
+      return;
+    }
+    met_[index] = {mark, static_cast<std::uint32_t>(covers_.size())};
+    covers_.push_back({{other.corners[0], other.corners[1], other.corners[2]},
+                       t.when == When::now ? other.drift : 0});
+    of_covers_.resize(covers_.size());
+    of_covers_.back() = index;
+  }
+
+  void move_to_front(std::uint32_t index) {
+    const std::uint32_t from = met_[index].place;
+    std::swap(covers_[from], covers_[front_]);
+    std::swap(of_covers_[from], of_covers_[front_]);
+    met_[of_covers_[from]].place = from;
+    met_[of_covers_[front_]].place = front_;
+    ++front_;
+  }
+
+  /// Of border triangles around whose corners nothing is left, to the nearest vertex that is drawn.
+  double farthest_stranded() const {
+    if (stranded_.empty())
+      return 0;
+    std::vector<Vec3f> positions = input_.mesh.vertices.positions;
+    std::vector<std::uint32_t> drawn;
+    for (const auto* triangles : {&input_.mesh.interior, &input_.mesh.border}) {
+      for (const Triangle& t : *triangles)
+        drawn.insert(drawn.end(), {raw(t[0]), raw(t[1]), raw(t[2])});
+    }
+    if (drawn.empty())
+      return std::numeric_limits<double>::infinity();
+    std::sort(drawn.begin(), drawn.end());
+    drawn.erase(std::unique(drawn.begin(), drawn.end()), drawn.end());
+    std::vector<std::uint32_t> asked;
+    for (const SeamTriangle* t : stranded_) {
+      asked.push_back(static_cast<std::uint32_t>(positions.size()));
+      positions.push_back(to_float(t->corners[0]));
+    }
+    const std::vector<std::uint32_t> nearest = nearest_of(positions, drawn, asked);
+    double farthest = 0;
+    for (std::size_t i = 0; i < stranded_.size(); ++i) {
+      for (const Vec3d& corner : stranded_[i]->corners) {
+        farthest = std::max(
+            farthest, length(corner - to_double(positions[nearest[i]])) + stranded_[i]->drift);
+      }
+    }
+    return farthest * (1 + 0x1p-40);
+  }
+
+  const SeamInput& input_;
+  std::uint32_t rim_count_;
+  std::vector<SeamTriangle> triangles_;
+  std::size_t own_end_ = 0;    ///< the own band's come first,
+  std::size_t drawn_end_ = 0;  ///< then what is drawn now, then the neighbours' bands
+  std::array<Lists, 2> at_;    ///< then, now
+  struct Met {
+    std::uint32_t by = kNowhere;  ///< the last triangle it may cover
+    std::uint32_t place = 0;      ///< among that one's covers
+  };
+  std::vector<Met> met_;  ///< per triangle
+  std::vector<Cover> covers_;
+  std::vector<std::uint32_t> of_covers_;  ///< their triangles
+  std::uint32_t front_ = 0;               ///< so many share more than one corner
+  CoverDistance cover_distance_;
+  std::vector<const SeamTriangle*> stranded_;
+};
+
+}  // namespace
+
+double seam_gap(const SeamInput& input) {
+  return input.mesh.border.empty() && input.own.band.border.empty() ? 0 : Seam(input).gap();
+}
+
+}  // namespace meshhier::cluster_simplify

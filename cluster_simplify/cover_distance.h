@@ -1,0 +1,74 @@
+// How far a triangle is from a few others that cover it together: a certain upper bound.
+#pragma once
+
+#include "cluster_simplify/closest_point.h"
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace meshhier::cluster_simplify {
+
+/// A triangle that may cover another, and what counts in addition where it does.
+struct Cover {
+  TriangleFrame frame;
+  double extra = 0;  ///< >= 0
+};
+
+/// Finds d such that every point of a triangle is within d - extra of one of the covers.
+///
+/// The distance to one triangle is convex, so that of the farthest corner holds for a whole piece.
+/// A triangle that no single cover is near enough to is cut in two where one cover becomes nearer
+/// than another along an edge, and so on, until each piece's bound is within a quarter of what its
+/// corners need at least, or below `enough`, or kMostPieces are there. Keeps its memory from one
+/// triangle to the next.
+class CoverDistance {
+ public:
+  using Corners = std::array<Vec3d, 3>;
+
+  /// Infinite if there are no covers. Where the result is not above `enough` it may be any value up
+  /// to that, however near the covers are. O(pieces * covers).
+  double operator()(const Corners& triangle, std::span<const Cover> covers, double enough);
+
+  /// Many triangles with common corners and the same covers: first the covers and the points, then
+  /// triangles by the places of their corners among the points. `covers` must outlive the calls.
+  void begin(std::span<const Cover> covers, std::span<const Vec3d> points);
+  double triangle(const std::array<std::size_t, 3>& corners, double enough);
+  /// From one of the points to the nearest cover.
+  double nearest(std::size_t point) const {
+    return distance(points_[point], points_[point].nearest);
+  }
+
+  /// After a call: for each cover the largest distance of a piece that was said to be near it;
+  /// negative if none was. Valid until the next call.
+  std::span<const double> landings() const { return landings_; }
+
+  static constexpr int kMostPieces = 32;
+
+ private:
+  struct Point {
+    Vec3d position;
+    std::size_t row = 0;      ///< of distances_
+    std::size_t nearest = 0;  ///< cover
+  };
+  using Piece = std::array<Point, 3>;
+
+  Point measured(Vec3d position);
+  double whole(const Piece& triangle, double enough);
+  double cut_or_bound(Piece piece, double enough);
+  std::size_t edge_to_cut(const Piece& piece, double reach) const;
+  Vec3d crossing(const Point& a, const Point& b) const;
+  double distance(const Point& point, std::size_t cover) const {
+    return distances_[point.row + cover];
+  }
+
+  std::span<const Cover> covers_;
+  std::vector<double> distances_;  ///< a row per point: to each cover
+  std::vector<double> landings_;
+  std::vector<Point> points_;
+  std::vector<Piece> pieces_;
+  std::size_t most_rows_ = 0;  ///< of distances_
+};
+
+}  // namespace meshhier::cluster_simplify

@@ -1,0 +1,110 @@
+// How far an edge collapse moves the surface around its edge, where that surface is a plain disc.
+//
+// Before and after the collapse the same ring of vertices bounds the disc (Cohen, Manocha & Olano,
+// Simplifying Polygonal Models Using Successive Mappings, 1997). Seen along the ring's normal, both
+// are heights over one polygon, each linear on its triangles; their difference is linear on every
+// piece of the overlay and so is largest at a corner of one: at the ends of the edge, at the new
+// vertex, or where an old edge crosses a new one.
+#pragma once
+
+#include "cluster_simplify/collapse_mesh.h"
+#include "hierarchy/vec.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace meshhier::cluster_simplify {
+
+/// An edge about to collapse: `from` and `to` become one vertex at `place`.
+struct StarCollapse {
+  std::uint32_t from = 0, to = 0;
+  Vec3f place;
+  Fans around_from, around_to;
+};
+
+/// What became of a disc: its triangles after the collapse.
+struct DiscGap {
+  struct Link {
+    std::uint32_t triangle = 0;
+    float drift = 0;  ///< the most of those that it lies over, and how far it is from them
+  };
+  std::span<const Link> links;
+  float from = 0, to = 0;  ///< heights of the edge's ends over the new disc
+};
+
+/// Measures discs. Keeps its memory from one to the next.
+class DiscGapMeter {
+ public:
+  explicit DiscGapMeter(std::uint32_t vertex_count) : link_at_(vertex_count, kNone) {}
+
+  /// `drifts`: per triangle, before. Nothing if what is around the edge is no disc, has more than
+  /// kMostLinks edges around it, or does not show its front everywhere along the ring's normal.
+  /// Certain: rounding is counted. Drifts that are not above `enough` may be any up to that. The
+  /// links are valid until the next call. O(ring).
+  std::optional<DiscGap> measure(std::span<const Vec3f> positions, std::span<const float> drifts,
+                                 const StarCollapse& collapse, float enough);
+
+  static constexpr std::uint32_t kMostLinks = 32;
+  /// One number per ring vertex, the first once more, and room for groups of four.
+  using Row = std::array<float, kMostLinks + 6>;
+
+ private:
+  static constexpr std::uint8_t kNone = 255;
+
+  /// The ring's vertices in order, relative to the new vertex: x, y across the normal, z along it.
+  /// Link i is the edge from ring vertex i to the next.
+  struct Ring {
+    std::uint32_t size = 0;
+    std::uint32_t to_begin = 0;  ///< `from` has the links [0, to_begin), `to` the rest
+    std::array<std::uint32_t, kMostLinks> vertices;
+    Row x, y, z;                            ///< the first once more at the end
+    Row doubled;                            ///< area of link i's new triangle
+    std::array<float, kMostLinks> drift;    ///< of link i's old triangle
+    float first_drift = 0, turn_drift = 0;  ///< of the edge's triangles, at ring vertices 0 and
+                                            ///< to_begin
+    std::uint32_t next(std::uint32_t i) const { return i + 1 == size ? 0 : i + 1; }
+    std::uint32_t previous(std::uint32_t i) const { return (i == 0 ? size : i) - 1; }
+  };
+  /// An end of the edge.
+  struct End {
+    float x = 0, y = 0, z = 0;
+    int sector = -1;  ///< link whose new triangle it lies over; -1: none
+    Row beside;       ///< ring vertex i x end
+    float drift = 0;  ///< the most of the old triangles around it
+  };
+
+  /// An old edge on its way over the new disc.
+  struct Way {
+    float start = 0, rise = 0;  ///< height of its start, and what is added up to its end
+    float turned = 0;           ///< start x end
+    float drift = 0;            ///< of the triangles at it
+  };
+
+  bool trace(const StarCollapse& collapse);
+  void look_up(std::span<const float> drifts);
+  bool project(std::span<const Vec3f> positions, const StarCollapse& collapse);
+  bool faces_front() const;
+  float lay_over_new(End& end);
+  bool lay_middle();
+  void lay_edges();
+  bool is_thin(float enough);
+  void cross_rays(const End& end, std::uint32_t target, float drift);
+  void cross_rays();
+  void cross_ray(std::uint32_t ray, const Way& way, float beside, float behind);
+  void overlap(std::uint32_t link, float drift, float gap);
+  void overlap_all(float drift, float gap);
+
+  Ring ring_;
+  End from_, to_;
+  float cross_ = 0;                              ///< from_ x to_
+  float radius_ = 0;                             ///< no coordinate is larger
+  std::array<DiscGap::Link, kMostLinks> links_;  ///< drift: of what was there, so far
+  std::array<float, kMostLinks> gaps_;
+  std::array<std::uint32_t, 2> edge_triangles_;  ///< at ring vertices 0 and to_begin
+  std::vector<std::uint8_t> link_at_;            ///< scratch: the link that starts at a vertex
+};
+
+}  // namespace meshhier::cluster_simplify

@@ -1,0 +1,207 @@
+#include "cluster_simplify/drift_meter.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace meshhier::cluster_simplify {
+namespace {
+
+// Nothing is gained by knowing exactly what is small against the largest drift around, or very
+// small against the largest so far.
+constexpr double kSmallBeside = 0.5;
+constexpr double kSmallAnywhere = 0.1;
+
+// Likewise, of drifts on discs, so many that half of them are not worth an overlay.
+constexpr float kSmallDisc = 0.2F;
+
+// Of the largest drift so far: a fan's is believed up to here.
+constexpr float kLargeFan = 0.5F;
+
+float largest_drift(const DiscGap& disc) {
+  float largest = 0;
+  for (const DiscGap::Link& link : disc.links)
+    largest = std::max(largest, link.drift);
+  return largest;
+}
+
+// Stars of more triangles are not compared all with all, which takes their number squared in time
+// and memory: at this one half a millisecond.
+constexpr std::size_t kCrowd = 128;
+
+/// A float that is not below `value`.
+float rounded_up(double value) {
+  return static_cast<float>(value * (1 + 0x1p-22));
+}
+
+}  // namespace
+
+DriftMeter::DriftMeter(const CollapseMesh& mesh, std::span<const float> weights)
+    : discs_(mesh.vertex_count()),
+      drifts_(mesh.faces().size()),
+      weights_(weights.begin(), weights.end()) {}
+
+void DriftMeter::note(std::span<const Vec3f> positions, const StarCollapse& c) {
+  const auto dies = [](std::uint32_t other) {
+    return [other](const CollapseMesh::Fan& fan) {
+      return fan.next == other || fan.previous == other;
+    };
+  };
+  if (std::all_of(c.around_from.begin(), c.around_from.end(), dies(c.to)) &&
+      std::all_of(c.around_to.begin(), c.around_to.end(), dies(c.from))) {
+    note_vanished(positions, c);
+    return;
+  }
+  std::optional<DiscGap> disc = discs_.measure(positions, drifts_, c, kSmallDisc * largest_);
+  if (!disc) {
+    disc = fans_.measure(positions, drifts_, c);
+    if (disc && largest_drift(*disc) > kLargeFan * largest_)
+      disc.reset();  // unfolding makes long ways longer: these are worth a closer look
+  }
+  if (disc) {
+    for (const DiscGap::Link& link : disc->links) {
+      drifts_[link.triangle] = link.drift;
+      largest_ = std::max(largest_, link.drift);
+    }
+    add_square(c.from, disc->from);
+    add_square(c.to, disc->to);
+  } else if (c.around_from.size() + c.around_to.size() <= kCrowd) {
+    note_any(positions, c);
+  } else {
+    note_crowd(positions, c);
+  }
+  weights_[c.to] += weights_[c.from];
+}
+
+void DriftMeter::add_square(std::uint32_t vertex, float distance) {
+  squared_sum_ += double{weights_[vertex]} * double{distance} * double{distance};
+}
+
+/// All triangles around the edge are at the edge.
+void DriftMeter::note_vanished(std::span<const Vec3f> positions, const StarCollapse& c) {
+  for (const CollapseMesh::Fan& fan : c.around_from) {
+    vanished_.push_back(
+        {{positions[c.from], positions[fan.next], positions[fan.previous]}, drifts_[fan.triangle]});
+  }
+  weights_[c.to] += weights_[c.from];
+}
+
+/// Gives the triangles around the edge as places among points: 0 and 1 its ends, 2 the new vertex.
+void DriftMeter::collect(std::span<const Vec3f> positions, const StarCollapse& c) {
+  before_.clear();
+  after_.clear();
+  points_ = {to_double(positions[c.from]), to_double(positions[c.to]), to_double(c.place)};
+  ring_.clear();
+  const auto place = [&](std::uint32_t v) {
+    const auto found = std::find(ring_.begin(), ring_.end(), v);
+    if (found == ring_.end()) {
+      ring_.push_back(v);
+      points_.push_back(to_double(positions[v]));
+      return points_.size() - 1;
+    }
+    return static_cast<std::size_t>(found - ring_.begin()) + 3;
+  };
+  const auto add = [&](const CollapseMesh::Fan& fan, std::uint32_t other, std::size_t end) {
+    const bool next_is_end = fan.next == other;
+    const bool previous_is_end = fan.previous == other;
+    const std::size_t next = next_is_end ? 1 - end : place(fan.next);
+    const std::size_t previous = previous_is_end ? 1 - end : place(fan.previous);
+    before_.push_back({{end, next, previous}, fan.triangle});
+    if (!next_is_end && !previous_is_end)
+      after_.push_back({{2, next, previous}, fan.triangle});
+  };
+  for (const CollapseMesh::Fan& fan : c.around_from)
+    add(fan, c.to, 0);
+  for (const CollapseMesh::Fan& fan : c.around_to) {
+    if (fan.next != c.from && fan.previous != c.from)
+      add(fan, c.from, 1);
+  }
+}
+
+void DriftMeter::cover(std::span<const StarTriangle> triangles, bool with_drift) {
+  covers_.clear();
+  for (const auto& [corners, triangle] : triangles) {
+    covers_.push_back({{points_[corners[0]], points_[corners[1]], points_[corners[2]]},
+                       with_drift ? double{drifts_[triangle]} : 0});
+  }
+  cover_distance_.begin(covers_, points_);
+}
+
+/// Whatever there is around the edge: sheets that meet, folds.
+void DriftMeter::note_any(std::span<const Vec3f> positions, const StarCollapse& c) {
+  collect(positions, c);
+  const double small = kSmallAnywhere * double{largest_};
+  double enough = small;
+  fresh_.clear();
+  cover(before_, true);
+  for (const auto& [corners, triangle] : after_) {
+    fresh_.push_back(cover_distance_.triangle(corners, enough));
+    enough = std::max(enough, kSmallBeside * fresh_.back());
+  }
+  cover(after_, false);
+  for (const auto& [corners, triangle] : before_) {
+    const auto drift = double{drifts_[triangle]};
+    cover_distance_.triangle(corners, std::max(enough - drift, small));
+    for (std::size_t i = 0; i < after_.size(); ++i) {
+      const double landed = cover_distance_.landings()[i];
+      if (landed >= 0)
+        fresh_[i] = std::max(fresh_[i], drift + landed);
+    }
+  }
+  add_square(c.from, static_cast<float>(cover_distance_.nearest(0)));
+  add_square(c.to, static_cast<float>(cover_distance_.nearest(1)));
+  for (std::size_t i = 0; i < after_.size(); ++i) {
+    float& drift = drifts_[after_[i].triangle];
+    drift = rounded_up(fresh_[i]);
+    largest_ = std::max(largest_, drift);
+  }
+}
+
+/// A triangle that stays is as near to its image as its corner is. One at the edge shrinks to an
+/// edge of those that stay, or, if it hung on the edge alone, into the new vertex.
+void DriftMeter::note_crowd(std::span<const Vec3f> positions, const StarCollapse& c) {
+  constexpr int kMostAsked = 4;  // each looks through all others
+  const auto moved = [&](std::uint32_t v) {
+    return length(to_double(positions[v]) - to_double(c.place));
+  };
+  const auto staying = [&](Fans fans, std::uint32_t other, const auto& visit) {
+    for (const CollapseMesh::Fan& fan : fans) {
+      if (fan.next != other && fan.previous != other)
+        visit(fan);
+    }
+  };
+  const auto holds = [&](std::uint32_t apex) {
+    bool found = false;
+    const auto look = [&](const CollapseMesh::Fan& fan) {
+      found = found || fan.next == apex || fan.previous == apex;
+    };
+    staying(c.around_from, c.to, look);
+    staying(c.around_to, c.from, look);
+    return found;
+  };
+  const double from = moved(c.from);
+  const double to = moved(c.to);
+  double shrunk = 0;
+  int asked = 0;
+  for (const CollapseMesh::Fan& fan : c.around_from) {
+    if (fan.next != c.to && fan.previous != c.to)
+      continue;
+    const std::uint32_t apex = fan.next == c.to ? fan.previous : fan.next;
+    double farthest = std::max(from, to);
+    if (++asked > kMostAsked || !holds(apex))
+      farthest = std::max(farthest, moved(apex));
+    shrunk = std::max(shrunk, double{drifts_[fan.triangle]} + farthest);
+  }
+  const auto take = [&](double end) {
+    return [this, end, shrunk](const CollapseMesh::Fan& fan) {
+      float& drift = drifts_[fan.triangle];
+      drift = rounded_up(std::max(double{drift} + end, shrunk));
+      largest_ = std::max(largest_, drift);
+    };
+  };
+  staying(c.around_from, c.to, take(from));
+  staying(c.around_to, c.from, take(to));
+  add_square(c.from, static_cast<float>(from));
+  add_square(c.to, static_cast<float>(to));
+}
+
+}  // namespace meshhier::cluster_simplify

@@ -1,0 +1,67 @@
+// How far a contraction moves the surface: certain bounds, triangle by triangle, and a mean.
+#pragma once
+
+#include "cluster_simplify/collapse_mesh.h"
+#include "cluster_simplify/cover_distance.h"
+#include "cluster_simplify/disc_gap.h"
+#include "cluster_simplify/fan_gap.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace meshhier::cluster_simplify {
+
+/// Follows edge collapses. The bounds of successive collapses add up where they overlap.
+class DriftMeter {
+ public:
+  /// `weights`: one per own vertex. Coordinates as the collapses will have them.
+  DriftMeter(const CollapseMesh& mesh, std::span<const float> weights);
+
+  /// Takes note of a collapse that is about to happen; `positions` as they are before. O(triangles
+  /// around the edge).
+  void note(std::span<const Vec3f> positions, const StarCollapse& c);
+
+  /// A triangle around which nothing was left: what lay on it lies nowhere.
+  struct Vanished {
+    std::array<Vec3f, 3> corners;
+    float drift = 0;
+  };
+  std::span<const Vanished> vanished() const { return vanished_; }
+
+  float of_triangle(std::uint32_t triangle) const { return drifts_[triangle]; }
+  /// Weight times squared distance, summed up over all collapses.
+  double squared_sum() const { return squared_sum_; }
+
+ private:
+  /// A triangle around the edge, its corners as places in points_.
+  struct StarTriangle {
+    std::array<std::size_t, 3> corners;
+    std::uint32_t triangle;
+  };
+
+  void note_any(std::span<const Vec3f> positions, const StarCollapse& c);
+  void note_crowd(std::span<const Vec3f> positions, const StarCollapse& c);
+  void note_vanished(std::span<const Vec3f> positions, const StarCollapse& c);
+  void collect(std::span<const Vec3f> positions, const StarCollapse& c);
+  void cover(std::span<const StarTriangle> triangles, bool with_drift);
+  void add_square(std::uint32_t vertex, float distance);
+
+  DiscGapMeter discs_;
+  FanGapMeter fans_;
+  CoverDistance cover_distance_;
+  std::vector<float> drifts_;   ///< per triangle
+  std::vector<float> weights_;  ///< per own vertex
+  std::vector<Vanished> vanished_;
+  // Around one edge:
+  std::vector<StarTriangle> before_, after_;
+  std::vector<Vec3d> points_;
+  std::vector<std::uint32_t> ring_;
+  std::vector<Cover> covers_;
+  std::vector<double> fresh_;  ///< drifts of after_
+  double squared_sum_ = 0;
+  float largest_ = 0;  ///< drift of any triangle so far
+};
+
+}  // namespace meshhier::cluster_simplify

@@ -1,0 +1,440 @@
+#include "cluster_simplify/fan_gap.h"
+
+#include "cluster_simplify/closest_point.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace meshhier::cluster_simplify {
+namespace {
+
+// Below this part of the squared size a doubled area has no certain sign.
+constexpr double kLeastArea = 1e-9;
+
+// Of the largest coordinate: more than the rounding of all sums and quotients here, and of the
+// coordinates themselves.
+constexpr double kRounding = 1e-7;
+
+// An open fan is squeezed if it turns farther than this.
+constexpr double kWidest = 1.8 * std::numbers::pi;
+
+// How far along a border an end may be laid: at the next vertex its triangles would be flat.
+constexpr double kAlongBorder = 0.98;
+
+}  // namespace
+
+/// Collects the links, the edges opposite the two ends, and puts them in order along a closed or
+/// open ring. False if they make neither.
+bool FanGapMeter::order_links(const StarCollapse& c) {
+  struct Link {
+    std::uint32_t start, end, triangle;
+    std::uint8_t is_of_to;
+  };
+  std::array<Link, kMostLinks> found;
+  size_ = 0;
+  edge_triangle_count_ = 0;
+  if (c.around_from.size() + c.around_to.size() > kMostLinks)
+    return false;
+  bool twice[2] = {false, false};
+  for (const CollapseMesh::Fan& fan : c.around_from) {
+    if (fan.next != c.to && fan.previous != c.to) {
+      found[size_++] = {fan.next, fan.previous, fan.triangle, 0};
+      continue;
+    }
+    const std::size_t side = fan.next == c.to ? 0 : 1;
+    if (std::exchange(twice[side], true))
+      return false;
+    apexes_[side] = side == 0 ? fan.previous : fan.next;
+    edge_triangles_[side] = fan.triangle;
+    ++edge_triangle_count_;
+  }
+  for (const CollapseMesh::Fan& fan : c.around_to) {
+    if (fan.next != c.from && fan.previous != c.from)
+      found[size_++] = {fan.next, fan.previous, fan.triangle, 1};
+  }
+  if (edge_triangle_count_ == 1 && twice[1])
+    std::swap(apexes_[0], apexes_[1]), std::swap(edge_triangles_[0], edge_triangles_[1]);
+  if (size_ == 0 || edge_triangle_count_ == 0)
+    return false;
+
+  const auto starting_at = [&](std::uint32_t vertex) {
+    std::uint32_t at = kMostLinks;
+    for (std::uint32_t i = 0; i < size_; ++i) {
+      if (found[i].start == vertex)
+        at = at == kMostLinks ? i : kMostLinks + 1;
+    }
+    return at;
+  };
+  const auto is_end = [&](std::uint32_t vertex) {
+    return std::count_if(found.begin(), found.begin() + size_,
+                         [&](const Link& link) { return link.end == vertex; });
+  };
+  std::uint32_t at = 0;
+  bool open = false;
+  for (std::uint32_t i = 0; i < size_; ++i) {
+    const auto ends = is_end(found[i].start);
+    if (ends > 1 || (ends == 0 && open))
+      return false;
+    if (ends == 0) {
+      at = i;
+      open = true;
+    }
+  }
+  shape_ = open ? Shape::border_edge : Shape::closed;
+  for (std::uint32_t length = 0; length < size_; ++length) {
+    if (at >= size_)
+      return false;
+    vertices_[length] = found[at].start;
+    vertices_[length + 1] = found[at].end;
+    is_of_to_[length] = found[at].is_of_to;
+    links_[length].triangle = found[at].triangle;
+    at = starting_at(found[at].end);
+  }
+  return open ? at == kMostLinks : at < size_ && found[at].start == vertices_[0];
+}
+
+/// Which end has which links. False if they change otherwise than at the edge's triangles.
+bool FanGapMeter::find_shape(const StarCollapse& c) {
+  const auto turn_vertices = [&](std::uint32_t i) { return vertices_[i]; };
+  const auto run_end = [&](std::uint32_t i) {
+    std::uint32_t j = i;
+    while (j < size_ && is_of_to_[j] == is_of_to_[i])
+      ++j;
+    return j;
+  };
+  const auto take = [&](bool first_is_to) {
+    first_.vertex = first_is_to ? c.to : c.from;
+    second_.vertex = first_is_to ? c.from : c.to;
+    if (first_is_to && edge_triangle_count_ == 2) {
+      std::swap(apexes_[0], apexes_[1]);
+      std::swap(edge_triangles_[0], edge_triangles_[1]);
+    }
+  };
+  if (shape_ == Shape::closed) {
+    if (edge_triangle_count_ != 2)
+      return false;
+    // The ring from where the links of `from` begin.
+    std::uint32_t start = 0;
+    while (start < size_ && !(is_of_to_[start] == 0 && is_of_to_[(start + size_ - 1) % size_] == 1))
+      ++start;
+    if (start == size_)
+      return false;
+    std::rotate(vertices_.begin(), vertices_.begin() + start, vertices_.begin() + size_);
+    std::rotate(is_of_to_.begin(), is_of_to_.begin() + start, is_of_to_.begin() + size_);
+    std::rotate(links_.begin(), links_.begin() + start, links_.begin() + size_);
+    vertices_[size_] = vertices_[0];
+    turn_ = run_end(0);
+    head_ = 0;
+    take(false);
+    return run_end(turn_) == size_ && apexes_[0] == turn_vertices(0) &&
+           apexes_[1] == turn_vertices(turn_);
+  }
+  if (edge_triangle_count_ == 1) {
+    // An end may have no other triangle: then its border goes on along the edge's one.
+    shape_ = Shape::border_edge;
+    head_ = 0;
+    turn_ = apexes_[0] == vertices_[0] ? 0 : run_end(0);
+    take((is_of_to_[0] == 1) == (turn_ > 0));
+    return (turn_ == size_ || run_end(turn_) == size_) && apexes_[0] == turn_vertices(turn_);
+  }
+  shape_ = Shape::border_end;
+  for (const bool inner_is_to : {false, true}) {
+    std::uint32_t begin = 0;
+    while (begin < size_ && (is_of_to_[begin] == 1) != inner_is_to)
+      ++begin;
+    if (begin == size_)
+      continue;
+    const std::uint32_t end = run_end(begin);
+    const std::uint32_t rest = end == size_ ? size_ : run_end(end);
+    const std::size_t side = inner_is_to ? 1 : 0;
+    if (rest != size_ || apexes_[side] != turn_vertices(begin) ||
+        apexes_[1 - side] != turn_vertices(end))
+      continue;
+    head_ = begin;
+    turn_ = end;
+    take(inner_is_to);
+    return true;
+  }
+  return false;
+}
+
+bool FanGapMeter::unfold(std::span<const Vec3f> positions, const StarCollapse& c) {
+  const Vec3d middle = to_double(c.place);
+  std::array<double, kMostLinks + 1> lengths, angles;
+  radius_ = 0;
+  for (std::uint32_t i = 0; i <= size_; ++i) {
+    ring_[i] = to_double(positions[vertices_[i]]) - middle;
+    lengths[i] = length(ring_[i]);
+    radius_ = std::max(radius_, lengths[i]);
+  }
+  angles[0] = 0;
+  for (std::uint32_t i = 0; i < size_; ++i) {
+    const double angle =
+        std::atan2(length(cross(ring_[i], ring_[i + 1])), dot(ring_[i], ring_[i + 1]));
+    angles[i + 1] = angles[i] + angle;
+  }
+  const double total = angles[size_];
+  if (!(total > 0))
+    return false;
+  const double scale = is_open() ? std::min(1.0, kWidest / total) : 2 * std::numbers::pi / total;
+  for (std::uint32_t i = 0; i <= size_; ++i) {
+    flat_[i] = {lengths[i] * std::cos(angles[i] * scale), lengths[i] * std::sin(angles[i] * scale)};
+  }
+  if (!is_open())
+    flat_[size_] = flat_[0];
+  const double least = kLeastArea * radius_ * radius_;
+  for (std::uint32_t i = 0; i < size_; ++i) {
+    if (!(turn(flat_[i], flat_[i + 1]) > least))
+      return false;
+  }
+  return true;
+}
+
+/// Lays an end on the nearest point of the fan between two ring vertices.
+void FanGapMeter::lay_nearest(End& end, std::uint32_t begin, std::uint32_t until) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::uint32_t i = begin; i < until; ++i) {
+    const TriangleFrame frame({}, ring_[i], ring_[i + 1]);
+    const ClosestPoint nearest = closest_point(end.place, frame);
+    if (nearest.squared_distance >= least)
+      continue;
+    least = nearest.squared_distance;
+    const double xb = dot(nearest.point, frame.ab);
+    const double xc = dot(nearest.point, frame.ac);
+    const double area = frame.bb * frame.cc - frame.bc * frame.bc;
+    const double on_b = area > 0 ? std::clamp((frame.cc * xb - frame.bc * xc) / area, 0.0, 1.0) : 0;
+    const double on_c =
+        area > 0 ? std::clamp((frame.bb * xc - frame.bc * xb) / area, 0.0, 1.0 - on_b) : 0;
+    end.sector = i;
+    end.image = ring_[i] * on_b + ring_[i + 1] * on_c;
+    end.flat = {flat_[i].x * on_b + flat_[i + 1].x * on_c,
+                flat_[i].y * on_b + flat_[i + 1].y * on_c};
+  }
+}
+
+/// Lays an end on the new border.
+void FanGapMeter::lay_on_ray(End& end, std::uint32_t ray, std::uint32_t sector) {
+  const double squared = dot(ring_[ray], ring_[ray]);
+  const double part =
+      squared > 0 ? std::clamp(dot(end.place, ring_[ray]) / squared, 0.0, kAlongBorder) : 0;
+  end.sector = sector;
+  end.image = ring_[ray] * part;
+  end.flat = {flat_[ray].x * part, flat_[ray].y * part};
+}
+
+bool FanGapMeter::lay_ends(std::span<const Vec3f> positions, const StarCollapse& c) {
+  for (End* end : {&first_, &second_}) {
+    end->place = to_double(positions[end->vertex]) - to_double(c.place);
+    radius_ = std::max(radius_, length(end->place));
+  }
+  switch (shape_) {
+    case Shape::closed:
+      lay_nearest(first_, 0, size_);
+      lay_nearest(second_, 0, size_);
+      break;
+    case Shape::border_edge:
+      lay_on_ray(first_, 0, 0);
+      lay_on_ray(second_, size_, size_ - 1);
+      break;
+    case Shape::border_end:
+      lay_nearest(first_, head_, turn_);
+      second_.flat = {};
+      second_.image = {};
+      break;
+  }
+  return lies_flat();
+}
+
+bool FanGapMeter::run_lies_flat(const End& end, std::uint32_t begin, std::uint32_t until) const {
+  const double least = kLeastArea * radius_ * radius_;
+  for (std::uint32_t i = begin; i < until; ++i) {
+    if (!(turn(between(end.flat, flat_[i]), between(end.flat, flat_[i + 1])) > least))
+      return false;
+  }
+  return true;
+}
+
+/// Whether no old triangle is turned over.
+bool FanGapMeter::lies_flat() const {
+  const Flat a = first_.flat;
+  const Flat b = second_.flat;
+  const double least = kLeastArea * radius_ * radius_;
+  switch (shape_) {
+    case Shape::closed:
+      return run_lies_flat(first_, 0, turn_) && run_lies_flat(second_, turn_, size_) &&
+             turn(between(a, flat_[turn_]), between(a, b)) > least &&
+             turn(between(a, b), between(a, flat_[0])) > least;
+    case Shape::border_edge:  // the edge goes over the new vertex
+      return run_lies_flat(first_, 0, turn_) && run_lies_flat(second_, turn_, size_) &&
+             turn(a, flat_[turn_]) >= 0 && turn(flat_[turn_], b) >= 0;
+    case Shape::border_end:
+      break;
+  }
+  return run_lies_flat(first_, head_, turn_) && turn(flat_[head_], a) >= 0 &&
+         turn(a, flat_[turn_]) >= 0;
+}
+
+double FanGapMeter::run_drift(std::uint32_t begin, std::uint32_t until) const {
+  double most = 0;
+  for (std::uint32_t i = begin; i < until; ++i)
+    most = std::max(most, drift_[i]);
+  return most;
+}
+
+void FanGapMeter::look_up(std::span<const float> drifts) {
+  for (std::uint32_t i = 0; i < size_; ++i) {
+    drift_[i] = fresh_[i] = double{drifts[links_[i].triangle]};
+    gap_[i] = 0;
+  }
+  edge_drift_ = {0, 0};
+  for (std::size_t side = 0; side < edge_triangle_count_; ++side)
+    edge_drift_[side] = double{drifts[edge_triangles_[side]]};
+  const double at_edge = std::max(edge_drift_[0], edge_drift_[1]);
+  first_.drift = std::max(at_edge, run_drift(head_, turn_));
+  second_.drift = std::max({at_edge, run_drift(0, head_), run_drift(turn_, size_)});
+}
+
+void FanGapMeter::overlap(std::uint32_t link, double drift, double gap) {
+  fresh_[link] = std::max(fresh_[link], drift);
+  gap_[link] = std::max(gap_[link], gap);
+}
+
+void FanGapMeter::overlap_all(double drift, double gap) {
+  for (std::uint32_t i = 0; i < size_; ++i)
+    overlap(i, drift, gap);
+}
+
+/// Where an old edge from `end` crosses the new edge to a ring vertex.
+void FanGapMeter::cross_ray(std::uint32_t ray, const End& end, Flat to, Vec3d to_place,
+                            double drift) {
+  const double beside = turn(flat_[ray], end.flat);
+  const double behind = turn(flat_[ray], to);
+  const double divisor = beside - behind;
+  const double part = divisor != 0 ? std::clamp(beside / divisor, 0.0, 1.0) : 0;
+  const double along = divisor != 0 ? std::clamp(-turn(end.flat, to) / divisor, 0.0, 1.0) : 0;
+  const double gap = length(end.place + (to_place - end.place) * part - ring_[ray] * along);
+  if (is_open()) {
+    overlap(ray, drift, gap);  // inner rays only: there is a link on both sides
+    overlap(ray - 1, drift, gap);
+    return;
+  }
+  overlap(ray == size_ ? 0 : ray, drift, gap);
+  overlap((ray == 0 ? size_ : ray) - 1, drift, gap);
+}
+
+/// The old edge from an end to a ring vertex.
+void FanGapMeter::cross_rays(const End& end, std::uint32_t target, double drift) {
+  const bool forth = is_open() ? target > end.sector : turn(end.flat, flat_[target]) > 0;
+  std::uint32_t ray = forth ? ray_after(end.sector) : end.sector;
+  for (std::uint32_t steps = 0; ray != target && steps <= size_; ++steps) {
+    cross_ray(ray, end, flat_[target], ring_[target], drift);
+    ray = forth ? ray_after(ray) : (ray == 0 ? size_ : ray) - 1;
+  }
+}
+
+/// The collapsing edge, inside a closed ring.
+void FanGapMeter::cross_between_ends() {
+  const bool forth = turn(first_.flat, second_.flat) > 0;
+  const double drift = std::max(edge_drift_[0], edge_drift_[1]);
+  std::uint32_t ray = first_.sector;
+  for (std::uint32_t steps = 0; ray != second_.sector && steps <= size_; ++steps) {
+    if (forth)
+      ray = ray_after(ray);
+    cross_ray(ray, first_, second_.flat, second_.place, drift);
+    if (!forth)
+      ray = (ray == 0 ? size_ : ray) - 1;
+  }
+}
+
+/// Lays the new vertex over the old disc. False if rounding hides where.
+bool FanGapMeter::lay_middle() {
+  if (shape_ == Shape::border_end) {
+    const double gap = length(second_.place);
+    overlap_all(0, gap);
+    for (std::uint32_t i = head_; i < turn_; ++i)
+      overlap(i, std::max(edge_drift_[0], edge_drift_[1]), gap);
+    return true;
+  }
+  if (shape_ == Shape::border_edge) {
+    const Vec3d along = second_.place - first_.place;
+    const double squared = dot(along, along);
+    const double part = squared > 0 ? std::clamp(-dot(first_.place, along) / squared, 0.0, 1.0) : 0;
+    overlap_all(edge_drift_[0], length(first_.place + along * part));
+    return true;
+  }
+  const auto lay = [&](double drift, Flat a, Vec3d at_a, Flat b, Vec3d at_b, Flat c, Vec3d at_c) {
+    const double wa = turn(b, c);
+    const double wb = turn(c, a);
+    const double wc = turn(a, b);
+    const double sum = wa + wb + wc;
+    if (wa < 0 || wb < 0 || wc < 0 || !(sum > 0))
+      return false;
+    overlap_all(drift, length((at_a * wa + at_b * wb + at_c * wc) * (1 / sum)));
+    return true;
+  };
+  const End& a = first_;
+  const End& b = second_;
+  if (lay(edge_drift_[1], a.flat, a.place, flat_[turn_], ring_[turn_], b.flat, b.place) ||
+      lay(edge_drift_[0], a.flat, a.place, b.flat, b.place, flat_[0], ring_[0]))
+    return true;
+  for (std::uint32_t i = 0; i < size_; ++i) {
+    const End& end = i < turn_ ? a : b;
+    if (lay(drift_[i], end.flat, end.place, flat_[i], ring_[i], flat_[i + 1], ring_[i + 1]))
+      return true;
+  }
+  return false;
+}
+
+void FanGapMeter::lay_edges() {
+  const auto beside = [&](std::uint32_t i, std::uint32_t begin, std::uint32_t until,
+                          double at_begin, double at_end) {
+    return std::max(i == begin ? at_begin : drift_[i - 1], i == until ? at_end : drift_[i]);
+  };
+  const bool closed = shape_ == Shape::closed;
+  overlap(first_.sector, first_.drift, length(first_.place - first_.image));
+  const double first_edge = shape_ == Shape::border_edge ? 0 : edge_drift_[0];
+  const double last_edge = shape_ == Shape::border_edge ? edge_drift_[0] : edge_drift_[1];
+  const std::uint32_t begin = shape_ == Shape::border_edge ? 1 : head_;
+  for (std::uint32_t i = begin; i <= turn_; ++i)
+    cross_rays(first_, i, beside(i, head_, turn_, first_edge, last_edge));
+  if (shape_ == Shape::border_end)
+    return;
+  overlap(second_.sector, second_.drift, length(second_.place - second_.image));
+  for (std::uint32_t i = turn_; i < size_; ++i)
+    cross_rays(second_, i, beside(i, turn_, size_, last_edge, first_edge));
+  if (closed) {
+    cross_rays(second_, 0, std::max(drift_[size_ - 1], edge_drift_[0]));
+    cross_between_ends();
+  }
+}
+
+std::optional<DiscGap> FanGapMeter::measure(std::span<const Vec3f> positions,
+                                            std::span<const float> drifts,
+                                            const StarCollapse& collapse) {
+  if (!order_links(collapse) || !find_shape(collapse) || !unfold(positions, collapse) ||
+      !lay_ends(positions, collapse))
+    return std::nullopt;
+  look_up(drifts);
+  if (!lay_middle())
+    return std::nullopt;
+  lay_edges();
+  DiscGap result;
+  for (std::uint32_t i = 0; i < size_; ++i) {
+    const double drift = fresh_[i] + gap_[i] + kRounding * radius_;
+    links_[i].drift = static_cast<float>(drift * (1 + 0x1p-22));
+    if (!std::isfinite(links_[i].drift))
+      return std::nullopt;
+  }
+  const auto distance = [](const End& end) {
+    return static_cast<float>(length(end.place - end.image));
+  };
+  const bool first_is_from = first_.vertex == collapse.from;
+  result.from = distance(first_is_from ? first_ : second_);
+  result.to = distance(first_is_from ? second_ : first_);
+  result.links = {links_.data(), size_};
+  return result;
+}
+
+}  // namespace meshhier::cluster_simplify

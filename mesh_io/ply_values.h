@@ -1,0 +1,83 @@
+// Numbers and triangles in the bytes of a binary PLY file.
+#pragma once
+
+#include "mesh_io/ply_plan.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+
+namespace meshhier::mesh_io {
+
+/// True if the file's byte order is not this machine's. Of a binary encoding.
+constexpr bool is_swapped(PlyEncoding encoding) {
+  return (encoding == PlyEncoding::big_endian) != (std::endian::native == std::endian::big);
+}
+
+/// The value at `bytes`; `Swap` if the file's byte order is not this machine's.
+template <class T, bool Swap>
+T load(const std::byte* bytes) {
+  std::array<std::byte, sizeof(T)> raw_bytes;
+  std::memcpy(raw_bytes.data(), bytes, sizeof(T));
+  if constexpr (Swap)
+    std::reverse(raw_bytes.begin(), raw_bytes.end());
+  return std::bit_cast<T>(raw_bytes);
+}
+
+/// Calls visit(T{}) with the C++ type of `type`.
+template <class Visit>
+auto with_type(PlyType type, Visit visit) {
+  switch (type) {
+    case PlyType::i8:
+      return visit(std::int8_t{});
+    case PlyType::u8:
+      return visit(std::uint8_t{});
+    case PlyType::i16:
+      return visit(std::int16_t{});
+    case PlyType::u16:
+      return visit(std::uint16_t{});
+    case PlyType::i32:
+      return visit(std::int32_t{});
+    case PlyType::u32:
+      return visit(std::uint32_t{});
+    case PlyType::f32:
+      return visit(float{});
+    case PlyType::f64:
+      break;
+  }
+  return visit(double{});
+}
+
+/// The usual faces, `list uchar int` (or uint) and perhaps scalars around it: the rows of those
+/// that are triangles have one size.
+struct TriangleRows {
+  std::size_t before = 0;  ///< bytes of a row before the list
+  std::size_t stride = 0;
+  std::uint64_t limit = 0;  ///< corners are below
+};
+
+/// None if the faces are of another form. `faces`: binary.
+std::optional<TriangleRows> triangle_rows(const PlyElementPlan& faces, std::uint64_t vertex_count);
+
+/// Calls take(a, b, c) for each of `rows` rows at `bytes`, up to the first one that is not a
+/// triangle with all corners below the limit; returns how many were taken.
+template <bool Swap, class Take>
+std::size_t take_triangles(const TriangleRows& layout, const std::byte* bytes, std::size_t rows,
+                           const Take& take) {
+  const std::byte* at = bytes + layout.before;
+  for (std::size_t row = 0; row < rows; ++row, at += layout.stride) {
+    const auto a = load<std::uint32_t, Swap>(at + 1);
+    const auto b = load<std::uint32_t, Swap>(at + 5);
+    const auto c = load<std::uint32_t, Swap>(at + 9);
+    if (at[0] != std::byte{3} || std::max({a, b, c}) >= layout.limit)
+      return row;
+    take(a, b, c);
+  }
+  return rows;
+}
+
+}  // namespace meshhier::mesh_io

@@ -1,0 +1,266 @@
+// Drifts of whole contractions: of `cluster`, by motion, and of all other methods.
+#include "cluster_simplify/motion.h"
+
+#include "cluster_simplify/contraction.h"
+#include "tests/cluster_simplify/collapsing.h"
+#include "tests/cluster_simplify/sampling.h"
+#include "tests/cluster_simplify/test_tiles.h"
+#include "tests/support/meshes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace meshhier::cluster_simplify {
+namespace {
+
+using tests::Corners;
+using tests::distance_to_surface;
+using tests::samples_of;
+using tests::surface_of;
+
+constexpr int kSteps = 4;
+constexpr double kSlack = 1e-6;  // of single precision, of the size of the meshes
+
+/// What the triangles around each representative may have drifted, as neighbours will see it.
+double drift_of(const Contraction& contraction, const tests::MeshTriangle& t) {
+  double drift = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t v : t) {
+    if (v < contraction.drift.around.size())
+      drift = std::min(drift, double{contraction.drift.around[v]});
+  }
+  return drift;
+}
+
+double size_of(const BuildTile& tile) {
+  double size = 0;
+  for (const Vec3f p : tile.mesh.vertices.positions)
+    size = std::max(size, length(to_double(p) - to_double(tile.mesh.vertices.positions[0])));
+  return size;
+}
+
+/// Every point that is drawn is within its triangle's drift of the joined surface.
+void expect_drawn_near(const BuildTile& tile, const Contraction& found,
+                       const tests::TestMesh& image, double slack) {
+  const std::vector<Corners> before = surface_of(tile.mesh);
+  const auto own = static_cast<std::uint32_t>(found.representatives.size());
+  for (const tests::MeshTriangle& t : image.triangles) {
+    const bool is_interior = std::ranges::all_of(t, [&](std::uint32_t v) { return v < own; });
+    const double drift = is_interior ? std::min(drift_of(found, t), double{found.drift.interior})
+                                     : drift_of(found, t);
+    const Corners corners = surface_of(tests::TestMesh{image.positions, {t}})[0];
+    for (const Vec3d p : samples_of(corners, kSteps))
+      ASSERT_LE(distance_to_surface(p, before), drift + slack);
+  }
+}
+
+/// Every point of the joined surface is within the drift of a drawn triangle, or within `lost` of
+/// one.
+void expect_joined_near(const BuildTile& tile, const Contraction& found,
+                        const tests::TestMesh& image, double slack) {
+  if (image.triangles.empty()) {
+    EXPECT_TRUE(tile.mesh.interior.empty() || std::isinf(found.drift.lost));
+    return;
+  }
+  const std::vector<Corners> after = surface_of(image);
+  std::vector<double> drifts;
+  for (const tests::MeshTriangle& t : image.triangles)
+    drifts.push_back(std::max(drift_of(found, t), double{found.drift.lost}));
+  for (const Corners& corners : surface_of(tile.mesh)) {
+    for (const Vec3d p : samples_of(corners, kSteps)) {
+      double missing = std::numeric_limits<double>::infinity();
+      for (std::size_t t = 0; t < after.size(); ++t)
+        missing = std::min(missing, tests::distance_to_triangle(p, after[t]) - drifts[t]);
+      ASSERT_LE(missing, slack);
+    }
+  }
+}
+
+void expect_drift_holds(const BuildTile& tile, const Contraction& found) {
+  ASSERT_EQ(found.drift.around.size(), found.representatives.size());
+  EXPECT_GE(found.drift.squared_sum, 0);
+  const tests::TestMesh image = tests::image_of(tile, found);
+  const double slack = kSlack * size_of(tile);
+  expect_drawn_near(tile, found, image, slack);
+  expect_joined_near(tile, found, image, slack);
+}
+
+const std::vector<std::pair<std::string, ContractionOptions>>& all_methods() {
+  static const std::vector<std::pair<std::string, ContractionOptions>> all = {
+      {"cluster_mean", {Method::cluster, Representative::mean, {}}},
+      {"cluster_quadric", {Method::cluster, Representative::quadric, {}}},
+      {"cluster_vertex", {Method::cluster, Representative::vertex, {}}},
+      {"edge_collapse", {Method::edge_collapse, {}, {}}},
+      {"half_edge_quadric", {Method::half_edge, {}, HalfEdgeCost::quadric}},
+      {"half_edge_melax", {Method::half_edge, {}, HalfEdgeCost::melax}}};
+  return all;
+}
+
+/// As nasty_meshes(), but few enough triangles to compare all with all.
+std::vector<tests::NamedMesh> small_meshes() {
+  tests::TestMesh specks = tests::sphere(150, 0.02F);
+  tests::append(specks, tests::soup(20), {0.2F, 0, 0}, 1.5F);
+  tests::TestMesh line = tests::open_grid(8, 3);
+  for (Vec3f& p : line.positions)
+    p.y = p.z = 0;
+  return {{"sphere", tests::sphere(200, 0.03F)},
+          {"genus", tests::genus_n(2, 250)},
+          {"shells", tests::nested_shells(250)},
+          {"grid", tests::open_grid(9, 9, 0.2F)},
+          {"strip", tests::open_grid(40, 1)},
+          {"moebius", tests::moebius(150)},
+          {"non-manifold", tests::non_manifold(200, 0.01F)},
+          {"soup", tests::soup(50)},
+          {"duplicates", tests::duplicates(250, 0.02F)},
+          {"mirrored", tests::mirrored(tests::sphere(100))},
+          {"tangle", tests::tangle(40, 150, 1)},
+          {"specks", specks},
+          {"without area", line},
+          {"hub", tests::wheel(60, 0.3F)},
+          {"one triangle", tests::soup(1)}};
+}
+
+class ContractionDriftTest : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(ContractionDriftTest, HoldsBothWaysOnAnything) {
+  const auto& [method, options] = all_methods()[GetParam()];
+  for (const auto& [name, mesh] : small_meshes()) {
+    std::vector<BuildTile> tiles{tests::tile_of(mesh), tests::part_of(mesh, 0.3F)};
+    for (const BuildTile& tile : tiles) {
+      const std::uint32_t own = tile.mesh.own_count;
+      for (const std::uint32_t target : {own * 3 / 4, own / 2, own / 4, own / 16, 4U, 3U}) {
+        if (target < 1 || target > own)
+          continue;
+        SCOPED_TRACE(method + " of " + name + (tile.mesh.ghosts.empty() ? "" : ", a part") +
+                     " to " + std::to_string(target));
+        expect_drift_holds(tile, contract(tile, target, {}, options));
+        if (HasFailure())
+          return;
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, ContractionDriftTest,
+                         testing::Range(std::size_t{0}, std::size_t{6}),
+                         [](const auto& tested) { return all_methods()[tested.param].first; });
+
+// ---- pieces that are drawn no more ---------------------------------------------------------
+
+/// A square of two triangles, and a triangle that touches it in a corner alone.
+tests::TestMesh flag() {
+  return {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {3, 0, 0}, {3, 1, 0}},
+          {{0, 1, 2}, {0, 2, 3}, {1, 4, 5}}};
+}
+
+TEST(LostPiecesTest, ATriangleThatHungOnACornerIsLost) {
+  const BuildTile tile = tests::tile_of(flag());
+  tests::Collapsing collapsing(tile);
+  collapsing.collapse(5, 4);
+  const Contraction found = collapsing.choose(4);
+  EXPECT_GE(found.drift.lost, 2);
+  expect_drift_holds(tile, found);
+}
+
+TEST(LostPiecesTest, AFanThatHungOnACornerIsLost) {
+  tests::TestMesh mesh = flag();
+  mesh.positions.push_back({3, 2, 0});
+  mesh.triangles.push_back({1, 5, 6});
+  const BuildTile tile = tests::tile_of(mesh);
+  tests::Collapsing collapsing(tile);
+  collapsing.collapse(6, 5);
+  collapsing.collapse(5, 4);
+  const Contraction found = collapsing.choose(4);
+  EXPECT_GE(found.drift.lost, 2);
+  expect_drift_holds(tile, found);
+}
+
+TEST(LostPiecesTest, ALonePieceIsLost) {
+  tests::TestMesh mesh = tests::sphere(100);
+  tests::append(mesh, tests::soup(1), {5, 0, 0}, 0.1F);
+  const BuildTile tile = tests::tile_of(mesh);
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size() - 3);
+  tests::Collapsing collapsing(tile);
+  collapsing.collapse(first + 1, first);
+  const Contraction found = collapsing.choose(first);
+  EXPECT_GE(found.drift.lost, 3.5);
+  EXPECT_LE(found.drift.lost, 6.5);
+  expect_drift_holds(tile, found);
+}
+
+// ---- motion --------------------------------------------------------------------------------
+
+TEST(MotionTest, IsHowFarTheCornersWent) {
+  BuildTile tile = tests::tile_of(tests::open_grid(2, 1));
+  tile.history.weights = {1, 2, 3, 4, 5, 6};
+  Contraction contraction;
+  contraction.parent_of = {0, 1, 2, 3, 4, 5};
+  contraction.representatives.positions = tile.mesh.vertices.positions;
+  contraction.representatives.positions[5].z = 0.5F;  // the corner of one triangle, or of two
+  const Drift drift = motion_of(tile, contraction);
+  EXPECT_FLOAT_EQ(drift.interior, 0.5F);
+  EXPECT_FLOAT_EQ(drift.around[5], 0.5F);
+  EXPECT_EQ(drift.around[0], 0);
+  EXPECT_EQ(drift.lost, 0);
+  EXPECT_DOUBLE_EQ(drift.squared_sum, 6 * 0.25);
+}
+
+TEST(MotionTest, GhostsStayAndBorderTrianglesAreNotInterior) {
+  const BuildTile tile = tests::tile_of(tests::open_grid(2, 1), 1);
+  Contraction contraction;
+  contraction.parent_of = {0};
+  contraction.representatives.positions = {{0, 0, 2}};
+  const Drift drift = motion_of(tile, contraction);
+  EXPECT_EQ(drift.interior, 0);
+  EXPECT_FLOAT_EQ(drift.around[0], 2);
+  EXPECT_EQ(drift.lost, 0);
+}
+
+TEST(MotionTest, APieceInOnePlaceIsLost) {
+  tests::TestMesh mesh = flag();
+  mesh.triangles.back() = {4, 5, 4};
+  mesh.positions.push_back({4, 0, 0});
+  mesh.triangles.back() = {4, 6, 5};
+  const BuildTile tile = tests::tile_of(mesh);
+  Contraction contraction;
+  contraction.parent_of = {0, 1, 2, 3, 4, 4, 4};
+  contraction.representatives.positions.assign(mesh.positions.begin(), mesh.positions.begin() + 5);
+  const Drift drift = motion_of(tile, contraction);
+  EXPECT_FLOAT_EQ(drift.around[4], 1);
+  EXPECT_FLOAT_EQ(drift.lost, 3);  // to (1, 0, 0), and once more as far as its corners went
+  expect_drift_holds(tile, {contraction.parent_of, contraction.representatives, drift, {}});
+}
+
+TEST(MotionTest, NothingDrawnIsInfinitelyFar) {
+  const BuildTile tile = tests::tile_of(flag());
+  Contraction contraction;
+  contraction.parent_of = {0, 0, 0, 0, 0, 0};
+  contraction.representatives.positions = {{0, 0, 0}};
+  EXPECT_TRUE(std::isinf(motion_of(tile, contraction).lost));
+}
+
+TEST(MotionTest, ABridgeThatIsDrawnNoMoreIsAsFarAsItsMiddle) {
+  // Two squares far apart, and between them a strip whose vertices go half to one, half to the
+  // other.
+  tests::TestMesh mesh;
+  tests::append(mesh, tests::open_grid(1, 1));
+  tests::append(mesh, tests::open_grid(1, 1), {11, 0, 0});
+  mesh.triangles.push_back({1, 4, 3});
+  mesh.triangles.push_back({3, 4, 6});
+  const BuildTile tile = tests::tile_of(mesh);
+  Contraction contraction;
+  contraction.parent_of = {0, 1, 2, 1, 3, 4, 3, 5};
+  contraction.representatives.positions = {mesh.positions[0], mesh.positions[1], mesh.positions[2],
+                                           mesh.positions[4], mesh.positions[5], mesh.positions[7]};
+  const Drift drift = motion_of(tile, contraction);
+  expect_drift_holds(tile, {contraction.parent_of, contraction.representatives, drift, {}});
+}
+
+}  // namespace
+}  // namespace meshhier::cluster_simplify

@@ -1,0 +1,117 @@
+// Promise: no point of what a tile shows, and none of the original surface under it, is farther off
+// than the tile's bound; and bounds say something.
+#include "pipeline/build.h"
+#include "pipeline/config.h"
+#include "pipeline/verify_error.h"
+#include "tests/pipeline/sample_hierarchy.h"
+#include "tests/support/meshes.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace meshhier::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::IsEmpty;
+
+class ErrorBoundsTest : public testing::Test {
+ protected:
+  /// All levels of simplified tiles, measured.
+  std::vector<ErrorMeasurement> measure(const tests::TestMesh& mesh,
+                                        const SimplifyConfig& simplify) {
+    const fs::path input = directory_.path() / "mesh.ply";
+    tests::write_ply(mesh, input);
+    Config config;
+    config.input = input;
+    config.output = directory_.path() / "mesh.hier";
+    config.partition.vertices = 150;
+    config.simplify = simplify;
+    config.simplify.vertices = 100;
+    NoProgress progress;
+    const CancelToken cancel;
+    build_hierarchy(config, true, {*files_, progress, cancel});
+    return measure_errors(*files_, config.output, {AllLevels{}, 20'000, 1U << 30}, progress,
+                          cancel);
+  }
+
+  static void expect_bounds_hold(const std::vector<ErrorMeasurement>& levels) {
+    EXPECT_FALSE(levels.empty());
+    for (const ErrorMeasurement& level : levels) {
+      EXPECT_THAT(level.problems, IsEmpty()) << level.name;
+      EXPECT_LE(level.bound, level.diagonal * 1.001) << level.name;
+    }
+  }
+
+  tests::TemporaryDirectory directory_;
+  std::unique_ptr<storage::FileSystem> files_ = storage::make_posix_file_system();
+};
+
+void append(tests::TestMesh& mesh, const tests::TestMesh& other, Vec3f shift, float scale) {
+  const auto base = static_cast<std::uint32_t>(mesh.positions.size());
+  for (const Vec3f p : other.positions)
+    mesh.positions.push_back(p * scale + shift);
+  for (const tests::MeshTriangle& t : other.triangles)
+    mesh.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+}
+
+/// A bumpy sheet with triangles that hang on single corners of it.
+tests::TestMesh hung_on_corners() {
+  tests::TestMesh mesh = tests::open_grid(25, 25, 0.2F);
+  for (std::uint32_t v = 0; v < 600; v += 7) {
+    const Vec3f at = mesh.positions[v];
+    const auto next = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.push_back(at + Vec3f{0.3F, 0.1F, 2});
+    mesh.positions.push_back(at + Vec3f{-0.1F, 0.3F, 2});
+    mesh.triangles.push_back({v, next, next + 1});
+  }
+  return mesh;
+}
+
+std::vector<std::pair<std::string, tests::TestMesh>> meshes() {
+  tests::TestMesh specks = tests::sphere(1200, 0.01F);
+  append(specks, tests::soup(100), {0.5F, 0, 0}, 2);
+  tests::TestMesh line = tests::open_grid(60, 5);
+  for (Vec3f& p : line.positions)
+    p.y = p.z = 0;
+  return {{"torus", tests::torus(2400, 0.01F)},
+          {"nested shells", tests::nested_shells(2000, 0.01F)},
+          {"terrain", tests::open_grid(30, 30, 0.3F)},
+          {"moebius", tests::moebius(1200, 0.01F)},
+          {"soup", tests::soup(400)},
+          {"non-manifold", tests::non_manifold(1500, 0.02F)},
+          {"duplicates", tests::duplicates(1500, 0.01F)},
+          {"specks", specks},
+          {"hung on corners", hung_on_corners()},
+          {"without area", line}};
+}
+
+TEST_F(ErrorBoundsTest, NoSampleIsBeyondItsTilesBound) {
+  for (const auto& [method, simplify] : tests::all_simplify_methods()) {
+    for (const auto& [name, mesh] : meshes()) {
+      SCOPED_TRACE(method + " of " + name);
+      expect_bounds_hold(measure(mesh, simplify));
+    }
+  }
+}
+
+TEST_F(ErrorBoundsTest, BoundsOfASmoothTorusSaySomething) {
+  for (const auto& [method, simplify] : tests::all_simplify_methods()) {
+    SCOPED_TRACE(method);
+    const auto levels = measure(tests::torus(6000), simplify);
+    expect_bounds_hold(levels);
+    for (const ErrorMeasurement& level : levels) {
+      EXPECT_LE(level.bound, 20 * std::max(level.forward.max, level.backward.max)) << level.name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace meshhier::pipeline
