@@ -15,6 +15,9 @@ namespace {
 
 using cluster_simplify::ContractedTile;
 
+// What tiles leave behind between the blobs that stay adds up over thousands of them.
+constexpr std::size_t kTilesBetweenReleases = 64;
+
 /// A chunk whose triangles alone exceed what a stage may hold: a vertex with an absurd number of
 /// triangles.
 void check_fits(const Chunks& chunks, std::uint32_t chunk, const MemoryPlan& plan) {
@@ -179,7 +182,11 @@ void simplify(Forest& forest, const SimplifyOptions& options, const MemoryPlan& 
           simplifier.make_tile({level, static_cast<std::uint32_t>(i)});
           return std::size_t{1};
         },
-        [&](std::size_t, std::size_t tiles) { progress.advance(tiles); });
+        [&](std::size_t i, std::size_t tiles) {
+          progress.advance(tiles);
+          if (i % kTilesBetweenReleases == kTilesBetweenReleases - 1)
+            release_free_memory();
+        });
     if (!simplifier.steps().empty())
       chain.add(finer(level), simplifier.steps());
     simplifier.begin(level);
