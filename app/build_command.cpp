@@ -100,7 +100,7 @@ int run_build(const BuildArguments& arguments, pipeline::ProgressMode mode,
   return 0;
 }
 
-constexpr const char* kFooter =
+constexpr const char* kBuildFooter =
     R"(The config is JSON; // comments are allowed. "input" and "output" are required:
   {
     "input": "david.ply",                    // relative to this file
@@ -144,7 +144,7 @@ void add_build_command(CLI::App& parser, Invocation& invocation) {
       ->type_name("FILE")
       ->excludes(dry_run);
   add_progress_option(*command, invocation.progress);
-  command->footer(kFooter);
+  command->footer(kBuildFooter);
   command->callback([arguments, &invocation] {
     give_back_config(*arguments);
     invocation.run = [arguments, &invocation](Environment& environment) {

@@ -47,7 +47,7 @@ int run_export(const ExportArguments& arguments, pipeline::ProgressMode mode,
   return 0;
 }
 
-constexpr const char* kFooter =
+constexpr const char* kExportFooter =
     R"(A cut file lists nodes, one LEVEL/INDEX a line (# begins a comment), or as a JSON list; together
 they must cover every partition once. The pieces are joined without seams.
 
@@ -80,7 +80,7 @@ void add_export_command(CLI::App& parser, Invocation& invocation) {
       ->required();
   add_memory_budget_option(*command, arguments->memory_budget);
   add_progress_option(*command, invocation.progress);
-  command->footer(kFooter);
+  command->footer(kExportFooter);
   command->callback([arguments, &invocation] {
     invocation.run = [arguments, &invocation](Environment& environment) {
       return run_export(*arguments, invocation.progress, environment);

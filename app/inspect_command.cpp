@@ -30,7 +30,7 @@ int run_inspect(const InspectArguments& arguments, Environment& environment) {
   return 0;
 }
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kInspectFooter = R"(Examples:
   meshhier inspect david.hier
   meshhier inspect david.hier --level 3
   meshhier inspect david.hier --json | jq .partitions
@@ -44,7 +44,7 @@ void add_inspect_command(CLI::App& parser, Invocation& invocation) {
   command->add_option("DIR", arguments->directory, "The hierarchy")->required();
   command->add_flag("--json", arguments->json, "One JSON object, for programs");
   add_place_options(*command, arguments->options.level, arguments->options.node);
-  command->footer(kFooter);
+  command->footer(kInspectFooter);
   command->callback([arguments, &invocation] {
     invocation.run = [arguments](Environment& environment) {
       return run_inspect(*arguments, environment);

@@ -13,9 +13,6 @@ namespace meshhier::app {
 
 namespace {
 
-/// A tree over less than 2^32 partitions is at most so deep.
-constexpr std::uint64_t kDeepestLevel = 32;
-
 std::optional<std::uint64_t> parse_integer(std::string_view text, std::uint64_t maximum) {
   std::uint64_t value = 0;
   const char* const last = text.data() + text.size();

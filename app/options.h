@@ -15,6 +15,10 @@
 
 namespace meshhier::app {
 
+/// A tree over less than 2^32 partitions is at most so deep. Which levels a tree does have, it
+/// knows itself.
+inline constexpr std::uint8_t kDeepestLevel = 32;
+
 /// --progress auto|bar|json|none
 void add_progress_option(CLI::App& command, pipeline::ProgressMode& mode);
 

@@ -106,7 +106,7 @@ int run_verify(VerifyArguments arguments, pipeline::ProgressMode mode, Environme
   return exit_code(report.problems.size());
 }
 
-constexpr const char* kFooter =
+constexpr const char* kVerifyFooter =
     R"(Checks every file's checksum, the structure, and the seams of random cuts; with --input also that
 the partitions are that mesh, vertex by vertex and triangle by triangle. With --error none of that
 is done; the distance between what is shown and the original partitions is measured instead, both
@@ -118,9 +118,6 @@ Examples:
   meshhier verify david.hier --error --level 3
   meshhier verify david.hier --error --level all --samples 1000000 --json
 )";
-
-/// Finer levels than any tree has are refused by the tree, which knows how deep it is.
-constexpr std::uint8_t kDeepestLevel = 32;
 
 /// --level L | all
 void store_level(const std::string& text, pipeline::ErrorOptions& error) {
@@ -189,7 +186,7 @@ void add_verify_command(CLI::App& parser, Invocation& invocation) {
   add_memory_budget_option(*command, options.memory_budget);
   command->add_flag("--json", arguments->json, "One JSON object, for programs");
   add_progress_option(*command, invocation.progress);
-  command->footer(kFooter);
+  command->footer(kVerifyFooter);
   command->callback([arguments, &invocation] {
     invocation.run = [arguments, &invocation](Environment& environment) {
       return run_verify(*arguments, invocation.progress, environment);

@@ -1,11 +1,11 @@
 // meshhier_compare: how kd-tree, octree and k-means divide real meshes, and what simplification
 // makes of their cells.
 #include "bench/comparison.h"
+#include "bench/program.h"
 #include "hierarchy/error.h"
 #include "mesh_io/mesh_source.h"
 
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -77,17 +77,5 @@ int main(int argc, char** argv) {
       "distance to meshes in which every cell is one vertex");
   Arguments arguments;
   add_options(app, arguments);
-  try {
-    app.parse(argc, argv);
-    run(arguments);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : static_cast<int>(ErrorCode::usage);
-  } catch (const Error& error) {
-    fmt::print(stderr, "meshhier_compare: {}\n", error.what());
-    return static_cast<int>(error.code());
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "meshhier_compare: internal error: {}\n", error.what());
-    return static_cast<int>(ErrorCode::internal);
-  }
-  return 0;
+  return bench::run_program("meshhier_compare", app, argc, argv, [&] { run(arguments); });
 }

@@ -1,9 +1,7 @@
 // meshgen: makes meshes for tests and measurements.
 #include "bench/generator.h"
-#include "hierarchy/error.h"
+#include "bench/program.h"
 
-#include <cstdio>
-#include <exception>
 #include <map>
 #include <string>
 
@@ -115,17 +113,5 @@ int main(int argc, char** argv) {
         ->capture_default_str();
     command->add_option("-o,--output", arguments.output, "The PLY file to write")->required();
   }
-  try {
-    app.parse(argc, argv);
-    run(app, arguments);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : static_cast<int>(ErrorCode::usage);
-  } catch (const Error& error) {
-    fmt::print(stderr, "meshgen: {}\n", error.what());
-    return static_cast<int>(error.code());
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "meshgen: internal error: {}\n", error.what());
-    return static_cast<int>(ErrorCode::internal);
-  }
-  return 0;
+  return bench::run_program("meshgen", app, argc, argv, [&] { run(app, arguments); });
 }

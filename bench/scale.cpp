@@ -1,12 +1,12 @@
 // meshhier_scale: how time, memory and disk grow with the mesh, as markdown tables.
 #include "bench/child_process.h"
+#include "bench/program.h"
 #include "bench/scale_run.h"
 #include "hierarchy/error.h"
 #include "pipeline/size_text.h"
 
 #include <algorithm>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -98,17 +98,5 @@ int main(int argc, char** argv) {
   arguments.options.threads =
       cores > 1 ? std::vector<unsigned>{1, cores} : std::vector<unsigned>{1};
   add_options(app, arguments);
-  try {
-    app.parse(argc, argv);
-    run(arguments);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : static_cast<int>(ErrorCode::usage);
-  } catch (const Error& error) {
-    fmt::print(stderr, "meshhier_scale: {}\n", error.what());
-    return static_cast<int>(error.code());
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "meshhier_scale: internal error: {}\n", error.what());
-    return static_cast<int>(ErrorCode::internal);
-  }
-  return 0;
+  return bench::run_program("meshhier_scale", app, argc, argv, [&] { run(arguments); });
 }

@@ -124,7 +124,7 @@ class Runner {
 
   /// The base as it is, or a torus with as much detail as a scan.
   void make_base() {
-    base_ = options_.base;
+    base_ = options_.base.empty() ? fs::path() : fs::absolute(options_.base);
     if (base_.empty()) {
       base_ = place_ / "base.ply";
       const std::uint64_t wanted = std::min(kTorusTriangles, options_.smallest);

@@ -75,7 +75,7 @@ struct SeamTriangle {
   CoverDistance::Corners corners;
   double drift = 0;  ///< 0 if it is drawn now only
   When when = When::both;
-  std::array<std::uint32_t, 3> vertices;  ///< kNowhere: of those that nobody asks about
+  std::array<std::uint32_t, 3> vertices{};  ///< kNowhere: of those that nobody asks about
 };
 
 /// Vertices here: the own rim, then the ghosts.
@@ -94,21 +94,27 @@ class Seam {
     for (const SeamTriangle& t : triangles_) {
       if (!is_asked(t))
         continue;
-      const double enough = std::max(largest, double{input_.own.band.interior_drift});
       collect_covers(t);
-      if (covers_.empty()) {
+      if (of_covers_.empty()) {
         stranded_.push_back(&t);
         continue;
       }
-      const double distance = cover_distance_(t.corners, covers_, enough - t.drift);
-      largest = std::max(largest, distance + t.drift);
+      const double enough = std::max(largest, double{input_.own.band.interior_drift});
+      largest = std::max(largest, distance_to_covers(t, enough - t.drift) + t.drift);
     }
     return std::max(largest, farthest_stranded());
   }
 
  private:
+  using Vertices = std::array<std::uint32_t, 3>;
+
   struct Lists {
     std::vector<std::uint32_t> first, next;
+
+    void add(std::uint32_t corner, std::uint32_t vertex) {
+      next[corner] = first[vertex];
+      first[vertex] = corner;
+    }
   };
 
   static constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
@@ -123,16 +129,17 @@ class Seam {
   }
 
   template <class VertexOf>
-  void add(const Triangle& t, const std::vector<Vec3f>& positions, double drift, When when,
-           const VertexOf& vertex) {
-    SeamTriangle added{{to_double(positions[raw(t[0])]), to_double(positions[raw(t[1])]),
-                        to_double(positions[raw(t[2])])},
-                       drift,
-                       when,
-                       {vertex(raw(t[0])), vertex(raw(t[1])), vertex(raw(t[2]))}};
-    if (std::any_of(added.vertices.begin(), added.vertices.end(),
-                    [](std::uint32_t v) { return v != kNowhere; }))
-      triangles_.push_back(added);
+  static Vertices vertices_of(const Triangle& t, const VertexOf& vertex) {
+    return {vertex(raw(t[0])), vertex(raw(t[1])), vertex(raw(t[2]))};
+  }
+
+  static bool any_known(const Vertices& vertices) {
+    return vertices[0] != kNowhere || vertices[1] != kNowhere || vertices[2] != kNowhere;
+  }
+
+  static CoverDistance::Corners corners_of(const Triangle& t, const std::vector<Vec3f>& positions) {
+    return {to_double(positions[raw(t[0])]), to_double(positions[raw(t[1])]),
+            to_double(positions[raw(t[2])])};
   }
 
   /// What the triangle may have drifted: no more than what is around any of its own corners.
@@ -147,15 +154,21 @@ class Seam {
 
   template <class VertexOf>
   void add_band(const Band& band, const VertexOf& vertex) {
-    for (const Triangle& t : band.interior)
-      add(t, band.positions, drift_of(band, t), When::both, vertex);
-    for (const Triangle& t : band.border)
-      add(t, band.positions, drift_of(band, t), When::then, vertex);
+    const auto add = [&](const std::vector<Triangle>& triangles, When when) {
+      for (const Triangle& t : triangles) {
+        const Vertices vertices = vertices_of(t, vertex);
+        if (any_known(vertices))  // few of a neighbour's are
+          triangles_.push_back({corners_of(t, band.positions), drift_of(band, t), when, vertices});
+      }
+    };
+    add(band.interior, When::both);
+    add(band.border, When::then);
   }
 
   void add_own() {
     const Band& band = input_.own.band;
     std::vector<std::uint32_t> foreign;
+    foreign.reserve(input_.mapped.size());
     for (const GhostRef& ref : input_.mapped)
       foreign.push_back(vertex_of(ref));
     add_band(band, [&](std::uint32_t v) {
@@ -166,11 +179,12 @@ class Seam {
 
   void add_drawn() {
     const TileMesh& mesh = input_.mesh;
-    for (const Triangle& t : mesh.border) {
-      add(t, mesh.vertices.positions, 0, When::now, [&](std::uint32_t v) {
-        return v < mesh.own_count ? v : v - mesh.own_count + rim_count_;
-      });
-    }
+    const auto vertex = [&](std::uint32_t v) {
+      return v < mesh.own_count ? v : v - mesh.own_count + rim_count_;
+    };
+    for (const Triangle& t : mesh.border)
+      triangles_.push_back(
+          {corners_of(t, mesh.vertices.positions), 0, When::now, vertices_of(t, vertex)});
     drawn_end_ = triangles_.size();
   }
 
@@ -188,18 +202,20 @@ class Seam {
 
   /// A list of corners 3 t + k per vertex and time.
   void link() {
-    const std::array times{When::then, When::now};
-    for (std::size_t time = 0; time < times.size(); ++time) {
-      Lists& lists = at_[time];
+    for (Lists& lists : at_) {
       lists.next.assign(triangles_.size() * 3, kNowhere);
       lists.first.assign(rim_count_ + ghosts().size(), kNowhere);
-      for (std::uint32_t i = static_cast<std::uint32_t>(lists.next.size()); i-- > 0;) {
-        const SeamTriangle& t = triangles_[i / 3];
-        const std::uint32_t v = t.vertices[i % 3];
-        if (v == kNowhere || (t.when != times[time] && t.when != When::both))
+    }
+    for (std::size_t t = triangles_.size(); t-- > 0;) {
+      for (std::size_t k = 3; k-- > 0;) {
+        const std::uint32_t v = triangles_[t].vertices[k];
+        if (v == kNowhere)
           continue;
-        lists.next[i] = lists.first[v];
-        lists.first[v] = i;
+        const auto corner = static_cast<std::uint32_t>(3 * t + k);
+        if (triangles_[t].when != When::now)
+          at_[0].add(corner, v);
+        if (triangles_[t].when != When::then)
+          at_[1].add(corner, v);
       }
     }
     met_.assign(triangles_.size(), {});
@@ -220,7 +236,7 @@ class Seam {
   /// What is around the triangle's corners at the other time. What shares more than one corner with
   /// it comes first: it is mostly near enough.
   void collect_covers(const SeamTriangle& t) {
-    covers_.clear();
+    of_covers_.clear();
     front_ = 0;
     const auto mark = static_cast<std::uint32_t>(&t - triangles_.data());
     const Lists& lists = at_[t.when == When::then ? 1 : 0];
@@ -230,40 +246,53 @@ class Seam {
       std::uint32_t seen = 0;
       for (std::uint32_t i = lists.first[v]; i != kNowhere && seen < kMostAround;
            i = lists.next[i], ++seen)
-        add_cover(t, i / 3, mark);
+        add_cover(i / 3, mark);
     }
   }
 
-  void add_cover(const SeamTriangle& t, std::uint32_t index, std::uint32_t mark) {
-    const SeamTriangle& other = triangles_[index];
-    if (other.when == t.when)
-      return;
+  void add_cover(std::uint32_t index, std::uint32_t mark) {
     if (met_[index].by == mark) {
       if (met_[index].place >= front_)
         move_to_front(index);
       return;
     }
-    met_[index] = {mark, static_cast<std::uint32_t>(covers_.size())};
-    covers_.push_back({{other.corners[0], other.corners[1], other.corners[2]},
-                       t.when == When::now ? other.drift : 0});
-    of_covers_.resize(covers_.size());
-    of_covers_.back() = index;
+    met_[index] = {mark, static_cast<std::uint32_t>(of_covers_.size())};
+    of_covers_.push_back(index);
   }
 
   void move_to_front(std::uint32_t index) {
     const std::uint32_t from = met_[index].place;
-    std::swap(covers_[from], covers_[front_]);
     std::swap(of_covers_[from], of_covers_[front_]);
     met_[of_covers_[from]].place = from;
     met_[of_covers_[front_]].place = front_;
     ++front_;
   }
 
+  Cover cover(const SeamTriangle& t, std::uint32_t index) const {
+    const SeamTriangle& other = triangles_[index];
+    return {{other.corners[0], other.corners[1], other.corners[2]},
+            t.when == When::now ? other.drift : 0};
+  }
+
+  /// From the triangle to the covers just collected; see CoverDistance.
+  double distance_to_covers(const SeamTriangle& t, double enough) {
+    constexpr std::size_t kTried = 3;  // one of them is mostly near enough
+    covers_.clear();
+    for (const std::uint32_t index : of_covers_) {
+      covers_.push_back(cover(t, index));
+      if (covers_.size() > kTried)
+        continue;
+      const double distance = CoverDistance::near_one(t.corners, covers_.back(), enough);
+      if (distance >= 0)
+        return distance;
+    }
+    return cover_distance_(t.corners, covers_, enough);
+  }
+
   /// Of border triangles around whose corners nothing is left, to the nearest vertex that is drawn.
   double farthest_stranded() const {
     if (stranded_.empty())
       return 0;
-    std::vector<Vec3f> positions = input_.mesh.vertices.positions;
     std::vector<std::uint32_t> drawn;
     for (const auto* triangles : {&input_.mesh.interior, &input_.mesh.border}) {
       for (const Triangle& t : *triangles)
@@ -273,18 +302,13 @@ class Seam {
       return std::numeric_limits<double>::infinity();
     std::sort(drawn.begin(), drawn.end());
     drawn.erase(std::unique(drawn.begin(), drawn.end()), drawn.end());
-    std::vector<std::uint32_t> asked;
-    for (const SeamTriangle* t : stranded_) {
-      asked.push_back(static_cast<std::uint32_t>(positions.size()));
-      positions.push_back(to_float(t->corners[0]));
-    }
-    const std::vector<std::uint32_t> nearest = nearest_of(positions, drawn, asked);
+    const std::vector<Vec3f>& positions = input_.mesh.vertices.positions;
+    const NearestPoints points(positions, drawn);
     double farthest = 0;
-    for (std::size_t i = 0; i < stranded_.size(); ++i) {
-      for (const Vec3d& corner : stranded_[i]->corners) {
-        farthest = std::max(
-            farthest, length(corner - to_double(positions[nearest[i]])) + stranded_[i]->drift);
-      }
+    for (const SeamTriangle* t : stranded_) {
+      const Vec3d nearest = to_double(positions[points.nearest(to_float(t->corners[0]))]);
+      for (const Vec3d& corner : t->corners)
+        farthest = std::max(farthest, length(corner - nearest) + t->drift);
     }
     return farthest * (1 + 0x1p-40);
   }
@@ -300,9 +324,10 @@ class Seam {
     std::uint32_t place = 0;      ///< among that one's covers
   };
   std::vector<Met> met_;  ///< per triangle
+  // Around one triangle:
+  std::vector<std::uint32_t> of_covers_;  ///< the triangles that may cover it
+  std::uint32_t front_ = 0;               ///< so many of them share more than one corner with it
   std::vector<Cover> covers_;
-  std::vector<std::uint32_t> of_covers_;  ///< their triangles
-  std::uint32_t front_ = 0;               ///< so many share more than one corner
   CoverDistance cover_distance_;
   std::vector<const SeamTriangle*> stranded_;
 };

@@ -90,4 +90,36 @@ double squared_distance(Vec3d x, const TriangleFrame& t) {
   return least;
 }
 
+TrianglePair::Two squared_distances(Vec3d point, const TrianglePair& t) {
+  using Two = TrianglePair::Two;
+  const Two zero{};
+  const Two x = point.x - t.ax, y = point.y - t.ay, z = point.z - t.az;
+  const Two xb = x * t.bx + y * t.by + z * t.bz;
+  const Two xc = x * t.cx + y * t.cy + z * t.cz;
+  // Whatever parts of ab and ac come out, they lead to a point of the triangle.
+  const auto to = [&](Two on_b, Two on_c) {
+    const Two dx = x - t.bx * on_b - t.cx * on_c;
+    const Two dy = y - t.by * on_b - t.cy * on_c;
+    const Two dz = z - t.bz * on_b - t.cz * on_c;
+    return dx * dx + dy * dy + dz * dz;
+  };
+  const auto part = [&](Two numerator, Two denominator) {
+    const Two quotient = numerator > 0.0 ? numerator / denominator : zero;
+    return quotient < 1.0 ? quotient : zero + 1.0;
+  };
+  const Two v = t.cc * xb - t.bc * xc;
+  const Two w = t.bb * xc - t.bc * xb;
+  const Two area = t.bb * t.cc - t.bc * t.bc;
+  const auto inside = (v > 0.0) & (w > 0.0) & (v + w < area);
+  const Two scale = 1.0 / area;
+  const Two on_1 = part(xc - xb - t.bc + t.bb, t.bb - 2.0 * t.bc + t.cc);
+  const Two at_foot = to(inside ? v * scale : zero, inside ? w * scale : zero);
+  const Two at_0 = to(part(xb, t.bb), zero);
+  const Two at_1 = to(1.0 - on_1, on_1);
+  const Two at_2 = to(zero, part(xc, t.cc));
+  const Two least = at_foot < at_0 ? at_foot : at_0;
+  const Two other = at_1 < at_2 ? at_1 : at_2;
+  return least < other ? least : other;
+}
+
 }  // namespace meshhier::cluster_simplify

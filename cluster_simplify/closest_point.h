@@ -22,6 +22,30 @@ struct TriangleFrame {
 /// Squared distance from `x` to the triangle; degenerate triangles are segments or points.
 double squared_distance(Vec3d x, const TriangleFrame& triangle);
 
+/// Two triangles at a time.
+struct TrianglePair {
+  using Two = double __attribute__((vector_size(16)));
+  Two ax, ay, az, bx, by, bz, cx, cy, cz;  ///< a, ab, ac
+  Two bb, bc, cc;
+
+  TrianglePair(const TriangleFrame& s, const TriangleFrame& t)
+      : ax{s.a.x, t.a.x},
+        ay{s.a.y, t.a.y},
+        az{s.a.z, t.a.z},
+        bx{s.ab.x, t.ab.x},
+        by{s.ab.y, t.ab.y},
+        bz{s.ab.z, t.ab.z},
+        cx{s.ac.x, t.ac.x},
+        cy{s.ac.y, t.ac.y},
+        cz{s.ac.z, t.ac.z},
+        bb{s.bb, t.bb},
+        bc{s.bc, t.bc},
+        cc{s.cc, t.cc} {}
+};
+
+/// Squared distances from `x` to both, without a branch.
+TrianglePair::Two squared_distances(Vec3d x, const TrianglePair& pair);
+
 struct ClosestPoint {
   Vec3d point;
   double squared_distance = 0;

@@ -1,5 +1,6 @@
 #include "cluster_simplify/collapse_costs.h"
 
+#include "cluster_simplify/four_floats.h"
 #include "cluster_simplify/vanishing.h"
 
 #include <algorithm>
@@ -21,14 +22,14 @@ constexpr float kVanishing = 3;
 // stray triangle far away from everything is no area, but makes the largest distance there is.
 constexpr float kLeastShare = 0.01F;
 
-}  // namespace
+constexpr float kLeastCosine = 0.2F;
 
+/// Of the triangles around one end.
 bool keeps_sides(std::span<const Vec3f> positions, std::uint32_t vertex, std::uint32_t other,
                  Vec3f place, Fans fans) {
-  constexpr float kLeastCosine = 0.2F;
   const Vec3f old = positions[vertex];
   for (const CollapseMesh::Fan& fan : fans) {
-    if (fan.next == other || fan.previous == other)
+    if (fan.is_at(other))
       continue;
     const Vec3f p = positions[fan.next];
     const Vec3f side = positions[fan.previous] - p;
@@ -42,6 +43,44 @@ bool keeps_sides(std::span<const Vec3f> positions, std::uint32_t vertex, std::ui
       return false;
   }
   return true;
+}
+
+/// Of links [begin, end) of a disc, four at a time; `old`: their end of the edge as seen from its
+/// new place.
+bool links_keep_sides(const EdgeStar& star, Vec3f old, std::uint32_t begin, std::uint32_t end) {
+  FourInts turned{};
+  for (std::uint32_t i = begin; i < end; i += 4) {
+    const auto px = load_four(&star.x()[i]);
+    const auto py = load_four(&star.y()[i]);
+    const auto pz = load_four(&star.z()[i]);
+    const FourFloats sx = load_four(&star.x()[i + 1]) - px;
+    const FourFloats sy = load_four(&star.y()[i + 1]) - py;
+    const FourFloats sz = load_four(&star.z()[i + 1]) - pz;
+    const FourFloats ox = old.x - px, oy = old.y - py, oz = old.z - pz;
+    const FourFloats bx = sy * oz - sz * oy, by = sz * ox - sx * oz, bz = sx * oy - sy * ox;
+    const FourFloats ax = sz * py - sy * pz, ay = sx * pz - sz * px, az = sy * px - sx * py;
+    const FourFloats squared_before = bx * bx + by * by + bz * bz;
+    const FourFloats squared_after = ax * ax + ay * ay + az * az;
+    const FourFloats cosine = bx * ax + by * ay + bz * az;
+    const FourInts keeps =
+        (cosine > 0.0F) &
+        (cosine * cosine >= kLeastCosine * kLeastCosine * squared_before * squared_after);
+    turned |= ~keeps & (squared_before > 0.0F) & first_lanes(static_cast<std::int32_t>(end - i));
+  }
+  return !any_of(turned);
+}
+
+}  // namespace
+
+bool keeps_sides(std::span<const Vec3f> positions, const EdgeStar& star, Vec3f place) {
+  if (star.is_disc()) {
+    const Vec3f from = positions[star.from()] - place;
+    const Vec3f to = positions[star.to()] - place;
+    return links_keep_sides(star, from, 0, star.to_begin()) &&
+           links_keep_sides(star, to, star.to_begin(), star.size());
+  }
+  return keeps_sides(positions, star.from(), star.to(), place, star.around_from()) &&
+         keeps_sides(positions, star.to(), star.from(), place, star.around_to());
 }
 
 TopologyPrices::TopologyPrices(const CollapseMesh& mesh, std::span<const Vec3f> positions,

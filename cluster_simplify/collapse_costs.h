@@ -1,7 +1,8 @@
 // What the collapse methods have in common in judging a collapse.
 #pragma once
 
-#include "cluster_simplify/collapse_driver.h"
+#include "cluster_simplify/edge_star.h"
+#include "cluster_simplify/link_condition.h"
 #include "cluster_simplify/meeting_point.h"
 #include "cluster_simplify/vertex_quadric.h"
 
@@ -19,10 +20,9 @@ inline float quadric_cost(const VertexQuadric& sum, Vec3f x, float squared_edge)
   return std::max(0.0F, sum.at(x)) + kLengthCost * sum.area * squared_edge;
 }
 
-/// Whether no triangle around `vertex`, those at the edge to `other` aside, turns by more than
-/// about 78 degrees when the vertex moves to `place`. O(fans).
-bool keeps_sides(std::span<const Vec3f> positions, std::uint32_t vertex, std::uint32_t other,
-                 Vec3f place, Fans fans);
+/// Whether no triangle around an edge, those at the edge itself aside, turns by more than about 78
+/// degrees when its ends move to `place`. `star`: as seen from there if it is a disc. O(triangles).
+bool keeps_sides(std::span<const Vec3f> positions, const EdgeStar& star, Vec3f place);
 
 /// What a collapse costs that changes topology: quadrics do not see it. Noise closes its holes and
 /// handles, and specks of it vanish, when that harms less than any other collapse.

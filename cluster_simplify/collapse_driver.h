@@ -1,10 +1,12 @@
 // Collapses edges in order of cost until few enough vertices are left.
 #pragma once
 
+#include "cluster_simplify/collapse_costs.h"
 #include "cluster_simplify/collapse_mesh.h"
 #include "cluster_simplify/collapse_queue.h"
 #include "cluster_simplify/contraction.h"
 #include "cluster_simplify/drift_meter.h"
+#include "cluster_simplify/edge_star.h"
 #include "cluster_simplify/link_condition.h"
 
 #include <algorithm>
@@ -12,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace meshhier::cluster_simplify {
@@ -31,10 +34,9 @@ enum class Care {
 };
 
 /// `costs` says what edges cost and takes note of collapses:
-///   Collapse best(edge)                      the best way to collapse it, at today's cost
+///   best(edges, std::span<Collapse>)         the best ways to collapse some, at today's cost
 ///   costs(first, std::span<float>)           the costs of a run of edges
 ///   float price(edge, TopologyChange)        what it costs at least if it changes topology
-///   bool keeps_shape(Collapse, Fans around_from, Fans around_to)
 ///   void collapsed(Collapse)
 ///   std::span<const Vec3f> positions()
 /// An edge's cost is looked at again when its turn comes, not when a neighbour changes: collapses
@@ -94,22 +96,26 @@ class CollapseDriver {
       for (std::uint32_t i = 0; i < block.size(); ++i) {
         const std::uint32_t e = first + i;
         if (mesh_.edge(e).triangle_count > 0 && !queue_.contains(e) && mesh_.is_own_edge(e))
-          push(e, care, changes_[e] == TopologyChange::none ? block[i] : cost(e, costs_.best(e)));
+          push(e, care, cost(e, block[i]));
       }
     }
   }
 
-  float cost(std::uint32_t e, const Collapse& collapse) const {
+  /// `plain`: without what a change of topology costs.
+  float cost(std::uint32_t e, float plain) const {
     if (changes_[e] == TopologyChange::none)
-      return collapse.cost;
+      return plain;
     if (changes_[e] == TopologyChange::vanishes)
       return costs_.price(e, changes_[e]);  // no border is left to be held
-    return std::max(collapse.cost, costs_.price(e, changes_[e]));
+    return std::max(plain, costs_.price(e, changes_[e]));
   }
 
   void push(std::uint32_t e, Care care) {
-    if (!queue_.contains(e) && mesh_.is_own_edge(e))
-      push(e, care, cost(e, costs_.best(e)));
+    if (queue_.contains(e) || !mesh_.is_own_edge(e))
+      return;
+    Collapse collapse;
+    costs_.best({&e, 1}, {&collapse, 1});
+    push(e, care, cost(e, collapse.cost));
   }
 
   void push(std::uint32_t e, Care care, float today) {
@@ -124,26 +130,60 @@ class CollapseDriver {
     refused_[mesh_.edge(e).b] = 1;
   }
 
+  /// Edges are looked at a few at a time: the machine waits for the data of all of them at once.
   void drain(std::uint32_t target, Care care) {
-    for (std::uint32_t e = queue_.top(); left_ > target && e != CollapseQueue::kNone;
-         e = queue_.top()) {
-      const Collapse collapse = costs_.best(e);
-      const float today = cost(e, collapse);
-      const bool in_turn = CollapseQueue::bucket_of(today) <= queue_.bucket(e);
-      queue_.erase(e);
-      if (in_turn)
-        attempt(e, collapse, care);
-      else
-        queue_.push(e, today);
+    std::array<std::uint32_t, kAtOnce> room;
+    std::array<Collapse, kAtOnce> collapses;
+    for (auto edges = queue_.pop(room); !edges.empty(); edges = queue_.pop(room)) {
+      const std::uint32_t bucket = queue_.lowest();
+      costs_.best(edges, collapses);
+      fetch(std::span(collapses).first(edges.size()), bucket);
+      moved_.clear();
+      for (std::size_t i = 0; i < edges.size(); ++i) {
+        if (left_ <= target)
+          return;
+        take_turn(edges[i], collapses[i], bucket, care);
+      }
     }
   }
 
+  /// Asks for what those whose turn it is will need.
+  void fetch(std::span<const Collapse> collapses, std::uint32_t bucket) const {
+    for (const Collapse& collapse : collapses) {
+      mesh_.fetch_star(collapse.from);
+      mesh_.fetch_star(collapse.to);
+    }
+    for (const Collapse& collapse : collapses) {
+      if (CollapseQueue::bucket_of(collapse.cost) > bucket)
+        continue;
+      mesh_.fetch_faces(collapse.from);
+      mesh_.fetch_faces(collapse.to);
+    }
+  }
+
+  void take_turn(std::uint32_t e, const Collapse& collapse, std::uint32_t bucket, Care care) {
+    if (mesh_.edge(e).triangle_count == 0 || queue_.contains(e))
+      return;  // by what became of others looked at together with it
+    const float today = cost(e, collapse.cost);
+    if (CollapseQueue::bucket_of(today) > bucket || has_moved(mesh_.edge(e)))
+      queue_.push(e, today);
+    else
+      attempt(e, collapse, care);
+  }
+
+  bool has_moved(const CollapseMesh::Edge& edge) const {
+    return std::any_of(moved_.begin(), moved_.end(),
+                       [&](std::uint32_t v) { return v == edge.a || v == edge.b; });
+  }
+
   void attempt(std::uint32_t e, const Collapse& collapse, Care care) {
-    mesh_.gather(collapse.from, around_from_);
-    mesh_.gather(collapse.to, around_to_);
-    if (care != Care::none) {
+    star_.gather(mesh_, collapse.from, collapse.to);
+    if (star_.is_disc()) {
+      changes_[e] = TopologyChange::none;
+      star_.look_from(collapse.place, costs_.positions());
+    } else if (care != Care::none) {
       const TopologyChange change =
-          link_.change(mesh_, collapse.from, collapse.to, around_from_, around_to_);
+          link_.change(mesh_, star_.from(), star_.to(), star_.around_from(), star_.around_to());
       const bool known = change <= changes_[e];
       changes_[e] = change;
       if (!known) {
@@ -151,7 +191,7 @@ class CollapseDriver {
         return;
       }
     }
-    if (care == Care::all && !costs_.keeps_shape(collapse, around_from_, around_to_)) {
+    if (care == Care::all && !keeps_sides(costs_.positions(), star_, collapse.place)) {
       refuse(e);
       return;
     }
@@ -160,32 +200,39 @@ class CollapseDriver {
   }
 
   void carry_out(const Collapse& collapse, Care care) {
-    drift_.note(costs_.positions(),
-                {collapse.from, collapse.to, collapse.place, around_from_, around_to_});
-    mesh_.collapse(collapse.from, collapse.to, around_from_, around_to_, [&](std::uint32_t gone) {
-      if (queue_.contains(gone))
-        queue_.erase(gone);
-    });
+    drift_.note(costs_.positions(), star_, collapse.place);
+    if (star_.is_disc())
+      collapse_disc();
+    else
+      collapse_any();
     costs_.collapsed(collapse);
+    moved_.push_back(collapse.to);
     ++collapses_;
     discount(collapse.from);
-    if (mesh_.most_triangles(collapse.to) == 0)
-      discount_if_isolated(collapse.to);
-    for (const CollapseMesh::Fan& fan : around_from_) {  // the edge to a vertex cut off is gone
-      if (fan.next == collapse.to && mesh_.edge(fan.previous_edge).triangle_count == 0)
-        discount_if_isolated(fan.previous);
-      else if (fan.previous == collapse.to && mesh_.edge(fan.next_edge).triangle_count == 0)
-        discount_if_isolated(fan.next);
-    }
     if (refused_[collapse.from] != 0 || refused_[collapse.to] != 0)
       ask_again(collapse.to, care);
+  }
+
+  void collapse_disc() {
+    for (const std::uint32_t gone : mesh_.collapse_disc(star_))
+      queue_.erase(gone);
+  }
+
+  void collapse_any() {
+    mesh_.collapse(star_.from(), star_.to(), star_.around_from(), star_.around_to(),
+                   [&](std::uint32_t gone) { queue_.erase(gone); });
+    discount_if_isolated(star_.to());
+    for (const CollapseMesh::Fan& fan : star_.around_from()) {
+      if (fan.is_at(star_.to()))
+        discount_if_isolated(fan.next == star_.to() ? fan.previous : fan.next);
+    }
   }
 
   /// What was impossible may be possible now.
   void ask_again(std::uint32_t vertex, Care care) {
     refused_[vertex] = 0;
-    mesh_.gather(vertex, around_to_);
-    for (const CollapseMesh::Fan& fan : around_to_) {
+    mesh_.gather(vertex, around_);
+    for (const CollapseMesh::Fan& fan : around_) {
       push(fan.next_edge, care);
       push(fan.previous_edge, care);
     }
@@ -201,6 +248,7 @@ class CollapseDriver {
     counted_[vertex] = 0;
   }
 
+  static constexpr std::size_t kAtOnce = 16;     ///< edges looked at together
   static constexpr std::uint32_t kBlock = 1024;  ///< edges whose costs are computed at a time
 
   CollapseMesh& mesh_;
@@ -214,7 +262,9 @@ class CollapseDriver {
   std::uint32_t left_;
   std::uint32_t collapses_ = 0;
   std::uint32_t torn_ = 0;
-  std::vector<CollapseMesh::Fan> around_from_, around_to_;
+  EdgeStar star_;
+  std::vector<std::uint32_t> moved_;  ///< of those looked at together
+  std::vector<CollapseMesh::Fan> around_;
 };
 
 /// Collapses own edges of `mesh` while more than `target` own vertices have triangles, the cheapest

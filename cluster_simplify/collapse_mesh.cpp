@@ -1,5 +1,7 @@
 #include "cluster_simplify/collapse_mesh.h"
 
+#include "cluster_simplify/edge_star.h"
+
 #include <algorithm>
 #include <numeric>
 #include <utility>
@@ -45,33 +47,43 @@ void CollapseMesh::collect_stars() {
 }
 
 void CollapseMesh::collect_edges() {
-  edges_.reserve(faces_.size() * 3 / 2 + 64);
-  // Edges to vertices of higher number, vertex by vertex; edge_to_ tells those already met.
-  std::vector<std::uint32_t> met;
-  for (std::uint32_t v = 0; v < vertex_count(); ++v) {
-    const auto meet = [&](std::uint32_t other, std::uint32_t& place) {
-      if (other <= v)
-        return;
-      if (edge_to_[other] == kNone) {
-        edge_to_[other] = static_cast<std::uint32_t>(edges_.size());
-        edges_.push_back({v, other, 0});
-        met.push_back(other);
+  // The sides of all triangles, by the lower of their ends.
+  struct Side {
+    std::uint32_t low, high, corner;
+  };
+  std::vector<std::uint32_t> ends(vertex_count() + 1);  // of the sides at each vertex
+  const auto at_every_side = [&](const auto& visit) {
+    for (std::uint32_t t = 0; t < faces_.size(); ++t) {
+      const auto& corners = faces_[t].corners;
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const std::uint32_t a = corners[k];
+        const std::uint32_t b = corners[after(k)];
+        visit(Side{std::min(a, b), std::max(a, b), 4 * t + k});
       }
-      place = edge_to_[other];
-      ++edges_[place].triangle_count;
-    };
-    const Star& star = stars_[v];
-    for (std::uint32_t i = star.begin; i < star.begin + star.count; ++i) {
-      Face& face = faces_[corners_[i] / 4];
-      const std::uint32_t k = corners_[i] % 4;
-      const std::uint32_t before = k == 0 ? 2 : k - 1;
-      meet(face.corners[k == 2 ? 0 : k + 1], face.edges[k]);
-      meet(face.corners[before], face.edges[before]);
     }
-    for (const std::uint32_t other : met)
-      edge_to_[other] = kNone;
-    met.clear();
+  };
+  at_every_side([&](const Side& side) { ++ends[side.low + 1]; });
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  std::vector<Side> sides(3 * faces_.size());
+  at_every_side([&](const Side& side) { sides[ends[side.low]++] = side; });
+
+  // Nothing here can be guessed, so that nothing is asked: every side writes its edge.
+  struct Met {
+    std::uint32_t low, edge;
+  };
+  std::vector<Met> last_met(vertex_count(), {kNone, 0});  // by its higher end
+  edges_.resize(sides.size());
+  std::uint32_t count = 0;
+  for (const Side& side : sides) {
+    Met& met = last_met[side.high];
+    const bool is_new = met.low != side.low;
+    const std::uint32_t e = met.edge + (count - met.edge) * static_cast<std::uint32_t>(is_new);
+    count += static_cast<std::uint32_t>(is_new);
+    met = {side.low, e};
+    faces_[side.corner / 4].edges[side.corner % 4] = e;
+    edges_[e] = {side.low, side.high, edges_[e].triangle_count + 1};
   }
+  edges_.resize(count);
 }
 
 bool CollapseMesh::is_isolated(std::uint32_t vertex) {
@@ -97,17 +109,46 @@ void CollapseMesh::gather(std::uint32_t vertex, std::vector<Fan>& fans) {
   for (std::uint32_t i = 0; i < star.count; ++i) {
     const std::uint32_t corner = corners[i];
     const Face& face = faces_[corner / 4];
-    if (!face.is_alive())
-      continue;
-    corners[alive] = corner;
     const std::uint32_t k = corner % 4;
-    const std::uint32_t after = k == 2 ? 0 : k + 1;
-    const std::uint32_t before = k == 0 ? 2 : k - 1;
-    fans[alive++] = {corner / 4,        k, face.corners[after], face.corners[before], face.edges[k],
-                     face.edges[before]};
+    // Dead ones are overwritten by the next: there is no guessing which these are.
+    corners[alive] = corner;
+    fans[alive] = {
+        corner / 4,           k, face.corners[after(k)], face.corners[before(k)], face.edges[k],
+        face.edges[before(k)]};
+    alive += static_cast<std::uint32_t>(face.is_alive());
   }
   star.count = alive;
   fans.resize(alive);
+}
+
+std::array<std::uint32_t, 3> CollapseMesh::collapse_disc(const EdgeStar& star) {
+  const auto links = star.links();
+  const auto [first, last] = star.at_edge();
+  const std::uint32_t turn = star.to_begin();
+  for (const Fan* fan : star.at_edge())
+    faces_[fan->triangle].corners[0] = kNone;
+  for (std::uint32_t i = 0; i < turn; ++i) {
+    faces_[links[i]->triangle].corners[links[i]->slot] = star.to();
+    if (i == 0)
+      continue;
+    Edge& edge = edges_[links[i]->next_edge];
+    (edge.a == star.from() ? edge.a : edge.b) = star.to();
+  }
+  // At the first and the last ring vertex of `from` there is an edge to `to` already.
+  const Fan& begin = *links[0];
+  const Fan& end = *links[turn - 1];
+  faces_[begin.triangle].edges[begin.slot] = links[star.size() - 1]->previous_edge;
+  faces_[end.triangle].edges[before(end.slot)] = links[turn]->next_edge;
+  const std::array gone{first->next_edge, first->previous_edge, last->next_edge};
+  for (const std::uint32_t e : gone)
+    edges_[e].triangle_count = 0;
+
+  stars_[star.from()].count = 0;
+  stars_[star.to()] = {static_cast<std::uint32_t>(corners_.size()), star.size()};
+  for (const Fan* fan : links)
+    corners_.push_back(fan->corner());
+  parents_[star.from()] = star.to();
+  return gone;
 }
 
 /// Puts the triangles that live on at one vertex, in one run.
@@ -117,7 +158,7 @@ void CollapseMesh::join_stars(std::uint32_t from, std::uint32_t to,
   for (const auto fans : {around_to, around_from}) {
     for (const Fan& fan : fans) {
       if (faces_[fan.triangle].is_alive())
-        corners_.push_back(4 * fan.triangle + fan.slot);
+        corners_.push_back(fan.corner());
     }
   }
   stars_[to] = {begin, static_cast<std::uint32_t>(corners_.size()) - begin};

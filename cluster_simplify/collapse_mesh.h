@@ -3,6 +3,7 @@
 
 #include "hierarchy/tile_mesh.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -10,6 +11,8 @@
 #include <vector>
 
 namespace meshhier::cluster_simplify {
+
+class EdgeStar;
 
 /// Triangles, their edges, and the triangles around each vertex, of any mesh at all: edges may have
 /// one, two or many triangles, orientations may disagree. Ghosts are vertices like others here; the
@@ -20,6 +23,15 @@ namespace meshhier::cluster_simplify {
 class CollapseMesh {
  public:
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+  /// The next and the previous of a triangle's corners 0, 1, 2: two bits each, since asking which
+  /// is guessed wrong every third time.
+  static constexpr std::uint32_t after(std::uint32_t corner) {
+    return 0b00'10'01U >> 2 * corner & 3;
+  }
+  static constexpr std::uint32_t before(std::uint32_t corner) {
+    return 0b01'00'10U >> 2 * corner & 3;
+  }
 
   /// A triangle and its edges, [k]: from corner k to the next. Dead ones have no first corner.
   struct Face {
@@ -33,6 +45,9 @@ class CollapseMesh {
     std::uint32_t slot;                      ///< which of its corners
     std::uint32_t next, previous;            ///< the other corners, in the triangle's order
     std::uint32_t next_edge, previous_edge;  ///< from the corner to them
+
+    bool is_at(std::uint32_t vertex) const { return next == vertex || previous == vertex; }
+    std::uint32_t corner() const { return 4 * triangle + slot; }
   };
 
   struct Edge {
@@ -59,6 +74,17 @@ class CollapseMesh {
   /// What stands for the vertex now.
   std::uint32_t representative(std::uint32_t vertex);
 
+  /// Asks for the memory that gather() will look at: first the star, later its faces, or as many as
+  /// most vertices have.
+  void fetch_star(std::uint32_t vertex) const {
+    __builtin_prefetch(corners_.data() + stars_[vertex].begin);
+  }
+  void fetch_faces(std::uint32_t vertex) const {
+    const Star star = stars_[vertex];
+    for (std::uint32_t i = 0; i < std::min(star.count, kMostFetched); ++i)
+      __builtin_prefetch(&faces_[corners_[star.begin + i] / 4]);
+  }
+
   /// Collects the triangles around a vertex.
   void gather(std::uint32_t vertex, std::vector<Fan>& fans);
 
@@ -68,7 +94,12 @@ class CollapseMesh {
   void collapse(std::uint32_t from, std::uint32_t to, std::span<const Fan> around_from,
                 std::span<const Fan> around_to, const Gone& gone);
 
+  /// The same where the edge's star is a disc. Returns the edges that vanish.
+  std::array<std::uint32_t, 3> collapse_disc(const EdgeStar& star);
+
  private:
+  static constexpr std::uint32_t kMostFetched = 16;
+
   /// The corners, 4 t + k, at a vertex: a run of corners_, dead ones among them until next looked
   /// at.
   struct Star {
@@ -117,18 +148,17 @@ void CollapseMesh::collapse(std::uint32_t from, std::uint32_t to, std::span<cons
     }
     return known;
   };
-  const auto dies = [&](const Fan& fan) { return fan.next == to || fan.previous == to; };
   // What follows comes before what dies: an edge that loses its own triangle may get another.
   for (const Fan& fan : around_from) {
-    if (dies(fan))
+    if (fan.is_at(to))
       continue;
     Face& face = faces_[fan.triangle];
     face.corners[fan.slot] = to;
     face.edges[fan.slot] = moved(fan.next_edge, fan.next);
-    face.edges[fan.slot == 0 ? 2 : fan.slot - 1] = moved(fan.previous_edge, fan.previous);
+    face.edges[before(fan.slot)] = moved(fan.previous_edge, fan.previous);
   }
   for (const Fan& fan : around_from) {
-    if (!dies(fan))
+    if (!fan.is_at(to))
       continue;
     faces_[fan.triangle].corners[0] = kNone;
     for (const std::uint32_t e : faces_[fan.triangle].edges)

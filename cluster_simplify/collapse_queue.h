@@ -5,69 +5,100 @@
 #include <bit>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace meshhier::cluster_simplify {
 
 /// Holds each of n items at most once. Items whose costs differ by less than a sixteenth of a
-/// factor two share a bucket; the last one in is the first one out. An intrusive list: no
-/// allocation after construction; a collapse costs half of what a binary heap takes on 16,384
-/// vertices.
+/// factor two share a bucket; the last one in is the first one out.
+///
+/// A bucket is a stack of blocks as large as a cache line. What is erased stays there and is
+/// dropped when its turn comes: an item is in the queue if it knows its bucket.
 class CollapseQueue {
  public:
   explicit CollapseQueue(std::uint32_t item_count)
-      : first_(kBuckets, kNone), links_(item_count), lowest_(kBuckets) {}
+      : tops_(kBuckets, kNone), bucket_of_item_(item_count, kNowhere), lowest_(kBuckets) {}
 
   /// The bucket of a cost; costs are >= 0 and not NaN, infinity is the last.
   static std::uint32_t bucket_of(float cost) {
     return std::bit_cast<std::uint32_t>(cost) >> kShift;
   }
 
-  bool contains(std::uint32_t item) const { return links_[item].bucket != kNone; }
+  bool contains(std::uint32_t item) const { return bucket_of_item_[item] != kNowhere; }
 
   /// Requires !contains(item).
   void push(std::uint32_t item, float cost) {
     const std::uint32_t bucket = bucket_of(cost);
-    const std::uint32_t next = first_[bucket];
-    links_[item] = {bucket, kNone, next};
-    if (next != kNone)
-      links_[next].previous = item;
-    first_[bucket] = item;
+    bucket_of_item_[item] = static_cast<std::uint16_t>(bucket);
+    std::uint32_t& top = tops_[bucket];
+    top = top % kBlock == kBlock - 1 ? begin_block(top) : top + 1;
+    places_[top] = item;
     lowest_ = std::min(lowest_, bucket);
   }
 
-  /// Requires contains(item).
-  void erase(std::uint32_t item) {
-    const Link link = links_[item];
-    (link.previous == kNone ? first_[link.bucket] : links_[link.previous].next) = link.next;
-    if (link.next != kNone)
-      links_[link.next].previous = link.previous;
-    links_[item].bucket = kNone;
+  void erase(std::uint32_t item) { bucket_of_item_[item] = kNowhere; }
+
+  /// Takes up to items.size() items, one at least, of the lowest bucket in use; none if the queue
+  /// is empty.
+  std::span<std::uint32_t> pop(std::span<std::uint32_t> items) {
+    std::size_t count = 0;
+    for (; lowest_ < kBuckets; ++lowest_) {
+      while (count < items.size() && tops_[lowest_] != kNone) {
+        const std::uint32_t item = take_top();
+        if (bucket_of_item_[item] != lowest_)
+          continue;  // erased
+        erase(item);
+        items[count++] = item;
+      }
+      if (count > 0)
+        break;
+    }
+    return items.first(count);
   }
 
-  /// Where an item lies. Requires contains(item).
-  std::uint32_t bucket(std::uint32_t item) const { return links_[item].bucket; }
-
-  /// An item of the lowest bucket in use, not removed; kNone if the queue is empty.
-  std::uint32_t top() {
-    while (lowest_ < kBuckets && first_[lowest_] == kNone)
-      ++lowest_;
-    return lowest_ < kBuckets ? first_[lowest_] : kNone;
-  }
-
-  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  /// Where the items last taken lay.
+  std::uint32_t lowest() const { return lowest_; }
 
  private:
   // Sign (never set), eight bits of exponent, four of mantissa: 16 buckets a factor of two.
   static constexpr int kShift = 19;
   static constexpr std::uint32_t kBuckets = 1U << (31 - kShift);
-  struct Link {
-    std::uint32_t bucket = kNone;
-    std::uint32_t previous = kNone;
-    std::uint32_t next = kNone;
-  };
-  std::vector<std::uint32_t> first_;
-  std::vector<Link> links_;
+  static constexpr std::uint16_t kNowhere = std::numeric_limits<std::uint16_t>::max();
+  /// Places of a block; the first leads to the bucket's top before the block was begun.
+  static constexpr std::uint32_t kBlock = 16;
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  static_assert(kNone % kBlock == kBlock - 1, "an empty bucket begins a block, too");
+
+  std::uint32_t begin_block(std::uint32_t below) {
+    std::uint32_t block;
+    if (free_.empty()) {
+      block = static_cast<std::uint32_t>(places_.size());
+      places_.resize(places_.size() + kBlock);
+    } else {
+      block = free_.back();
+      free_.pop_back();
+    }
+    places_[block] = below;
+    return block + 1;
+  }
+
+  std::uint32_t take_top() {
+    std::uint32_t& top = tops_[lowest_];
+    const std::uint32_t item = places_[top];
+    if (top % kBlock == 1) {
+      free_.push_back(top - 1);
+      top = places_[top - 1];
+    } else {
+      --top;
+    }
+    return item;
+  }
+
+  std::vector<std::uint32_t> places_;
+  std::vector<std::uint32_t> free_;  ///< blocks no longer in use
+  std::vector<std::uint32_t> tops_;  ///< per bucket, the place of the last one in
+  std::vector<std::uint16_t> bucket_of_item_;
   std::uint32_t lowest_;
 };
 

@@ -16,7 +16,7 @@ constexpr double kRounding = 0x1p-40;
 // Cuts are kept this part of an edge away from its ends: a cut at an end would cut nothing off.
 constexpr double kMargin = 1.0 / 32;
 
-constexpr double kNone = -1;  // landings
+constexpr double kNone = -1;  // in place of a distance
 
 double distance_to(Vec3d position, const Cover& cover) {
   return std::sqrt(squared_distance(position, cover.frame)) + cover.extra;
@@ -24,17 +24,24 @@ double distance_to(Vec3d position, const Cover& cover) {
 
 }  // namespace
 
+void CoverDistance::set_covers(std::span<const Cover> covers) {
+  covers_ = covers;
+  pairs_.clear();
+  for (std::size_t i = 0; i < covers.size(); i += 2)
+    pairs_.emplace_back(covers[i].frame, covers[std::min(i + 1, covers.size() - 1)].frame);
+}
+
 CoverDistance::Point CoverDistance::measured(Vec3d position) {
   Point point{position, distances_.size(), 0};
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < covers_.size(); ++i) {
-    const double distance = distance_to(position, covers_[i]);
-    distances_.push_back(distance);
-    if (distance < least) {
-      least = distance;
-      point.nearest = i;
-    }
+  distances_.resize(point.row + row_size());
+  double* const row = &distances_[point.row];
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    const TrianglePair::Two squared = squared_distances(position, pairs_[i]);
+    row[2 * i] = std::sqrt(squared[0]) + covers_[2 * i].extra;
+    row[2 * i + 1] = 2 * i + 1 < covers_.size() ? std::sqrt(squared[1]) + covers_[2 * i + 1].extra
+                                                : std::numeric_limits<double>::infinity();
   }
+  point.nearest = static_cast<std::size_t>(std::min_element(row, row + covers_.size()) - row);
   return point;
 }
 
@@ -45,11 +52,11 @@ std::size_t CoverDistance::edge_to_cut(const Piece& piece, double reach) const {
   for (std::size_t k = 0; k < 3; ++k) {
     const Point& a = piece[k];
     const Point& b = piece[(k + 1) % 3];
-    bool shared = false;
-    for (std::size_t i = 0; i < covers_.size() && !shared; ++i)
-      shared = distance(a, i) <= reach && distance(b, i) <= reach;
+    double nearest = std::numeric_limits<double>::infinity();  // of the farther end
+    for (std::size_t i = 0; i < row_size(); ++i)
+      nearest = std::min(nearest, std::max(distance(a, i), distance(b, i)));
     const Vec3d along = b.position - a.position;
-    const double squared = dot(along, along) * (shared ? 0x1p-20 : 1);
+    const double squared = dot(along, along) * (nearest <= reach ? 0x1p-20 : 1);
     if (squared > longest) {
       longest = squared;
       best = k;
@@ -80,21 +87,21 @@ Vec3d CoverDistance::crossing(const Point& a, const Point& b) const {
 
 /// The bound of one piece; or cuts it, keeps its halves for later and returns 0.
 double CoverDistance::cut_or_bound(Piece piece, double enough) {
-  double least = std::numeric_limits<double>::infinity();
-  std::size_t best = 0;
   double needed = 0;
   for (const Point& corner : piece)
     needed = std::max(needed, distance(corner, corner.nearest));
-  for (std::size_t i = 0; i < covers_.size(); ++i) {
-    const double farthest =
-        std::max({distance(piece[0], i), distance(piece[1], i), distance(piece[2], i)});
-    if (farthest < least) {
-      least = farthest;
-      best = i;
-    }
-  }
+  const auto farthest = [&](std::size_t cover) {
+    return std::max(
+        {distance(piece[0], cover), distance(piece[1], cover), distance(piece[2], cover)});
+  };
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < row_size(); ++i)
+    least = std::min(least, farthest(i));
   const double reach = std::max(enough, kTight * needed);
-  if (least <= reach || distances_.size() >= most_rows_ * covers_.size()) {
+  if (least <= reach || distances_.size() >= most_rows_ * row_size()) {
+    std::size_t best = 0;
+    while (best + 1 < covers_.size() && farthest(best) != least)
+      ++best;
     landings_[best] = std::max(landings_[best], least);
     return least;
   }
@@ -112,29 +119,28 @@ double CoverDistance::cut_or_bound(Piece piece, double enough) {
   return 0;
 }
 
+double CoverDistance::near_one(const Corners& triangle, const Cover& cover, double enough) {
+  double farthest = 0;
+  for (const Vec3d& corner : triangle) {
+    farthest = std::max(farthest, distance_to(corner, cover));
+    if (!(farthest <= enough))
+      return kNone;
+  }
+  return farthest * (1 + kRounding);
+}
+
 double CoverDistance::operator()(const Corners& triangle, std::span<const Cover> covers,
                                  double enough) {
   if (covers.empty())
     return std::numeric_limits<double>::infinity();
-  covers_ = covers;
   landings_.assign(covers.size(), kNone);
-  // Most triangles are near enough to one of the first.
-  constexpr std::size_t kTried = 3;
-  for (std::size_t i = 0; enough > 0 && i < std::min(kTried, covers.size()); ++i) {
-    const double farthest =
-        std::max({distance_to(triangle[0], covers[i]), distance_to(triangle[1], covers[i]),
-                  distance_to(triangle[2], covers[i])});
-    if (farthest <= enough) {
-      landings_[i] = farthest;
-      return farthest * (1 + kRounding);
-    }
-  }
+  set_covers(covers);
   distances_.clear();
   return whole({measured(triangle[0]), measured(triangle[1]), measured(triangle[2])}, enough);
 }
 
 void CoverDistance::begin(std::span<const Cover> covers, std::span<const Vec3d> points) {
-  covers_ = covers;
+  set_covers(covers);
   distances_.clear();
   points_.clear();
   for (const Vec3d& point : points)
@@ -145,12 +151,12 @@ double CoverDistance::triangle(const std::array<std::size_t, 3>& corners, double
   if (covers_.empty())
     return std::numeric_limits<double>::infinity();
   landings_.assign(covers_.size(), kNone);
-  distances_.resize(points_.size() * covers_.size());
+  distances_.resize(points_.size() * row_size());
   return whole({points_[corners[0]], points_[corners[1]], points_[corners[2]]}, enough);
 }
 
 double CoverDistance::whole(const Piece& triangle, double enough) {
-  most_rows_ = distances_.size() / covers_.size() + kMostPieces;
+  most_rows_ = distances_.size() / row_size() + kMostPieces;
   pieces_.clear();
   pieces_.push_back(triangle);
   double largest = 0;

@@ -27,6 +27,10 @@ class CoverDistance {
  public:
   using Corners = std::array<Vec3d, 3>;
 
+  /// How far the triangle is from one cover, if that is no more than `enough`; else negative. Most
+  /// triangles are near enough to one of two or three covers that are well chosen.
+  static double near_one(const Corners& triangle, const Cover& cover, double enough);
+
   /// Infinite if there are no covers. Where the result is not above `enough` it may be any value up
   /// to that, however near the covers are. O(pieces * covers).
   double operator()(const Corners& triangle, std::span<const Cover> covers, double enough);
@@ -63,8 +67,12 @@ class CoverDistance {
     return distances_[point.row + cover];
   }
 
+  void set_covers(std::span<const Cover> covers);
+  std::size_t row_size() const { return 2 * pairs_.size(); }
+
   std::span<const Cover> covers_;
-  std::vector<double> distances_;  ///< a row per point: to each cover
+  std::vector<TrianglePair> pairs_;  ///< the same; an odd one is there twice
+  std::vector<double> distances_;    ///< a row per point: to each cover; infinite after an odd one
   std::vector<double> landings_;
   std::vector<Point> points_;
   std::vector<Piece> pieces_;

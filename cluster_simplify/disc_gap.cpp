@@ -1,14 +1,16 @@
 #include "cluster_simplify/disc_gap.h"
 
-#include "cluster_simplify/meeting_point.h"
+#include "cluster_simplify/four_floats.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <limits>
 #include <utility>
 
 namespace meshhier::cluster_simplify {
 namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // Below this part of the largest squared coordinate a doubled area has no certain sign.
 constexpr float kLeastArea = 1e-6F;
@@ -16,96 +18,26 @@ constexpr float kLeastArea = 1e-6F;
 // Of the largest coordinate: more than the rounding of all sums and quotients here.
 constexpr float kRounding = 4e-6F;
 
-FourFloats four_at(const DiscGapMeter::Row& row, std::uint32_t i) {
-  FourFloats four;
-  std::memcpy(&four, &row[i], sizeof four);
-  return four;
+FourFloats four_at(const EdgeStar::Row& row, std::uint32_t i) {
+  return load_four(&row[i]);
 }
 
-void put_four(DiscGapMeter::Row& row, std::uint32_t i, FourFloats four) {
-  std::memcpy(&row[i], &four, sizeof four);
-}
-
-float sum_of(FourFloats four) {
-  return (four[0] + four[1]) + (four[2] + four[3]);
+/// The lanes of i, i + 1, ... that are below `end`.
+FourInts lanes_below(std::uint32_t i, std::uint32_t end) {
+  return first_lanes(static_cast<std::int32_t>(end) - static_cast<std::int32_t>(i));
 }
 
 }  // namespace
 
-/// Puts the links (edges opposite the two vertices) in order, those of `from` first. False unless
-/// they make one ring that changes from one to the other at the two triangles of the edge.
-bool DiscGapMeter::trace(const StarCollapse& c) {
-  std::array<std::uint32_t, kMostLinks> starts, ends, triangles;
-  std::uint32_t count = 0;
-  std::uint32_t first = CollapseMesh::kNone;
-  std::uint32_t turn = CollapseMesh::kNone;
-  std::uint32_t dying = 0;
-  if (c.around_from.size() + c.around_to.size() > kMostLinks)
-    return false;
-  for (const CollapseMesh::Fan& fan : c.around_from) {
-    if (fan.next == c.to || fan.previous == c.to) {
-      (fan.next == c.to ? first : turn) = fan.next == c.to ? fan.previous : fan.next;
-      edge_triangles_[fan.next == c.to ? 0 : 1] = fan.triangle;
-      ++dying;
-      continue;
-    }
-    triangles[count] = fan.triangle;
-    starts[count] = fan.next;
-    ends[count++] = fan.previous;
-  }
-  const std::uint32_t own_links = count;
-  if (dying != 2 || first == CollapseMesh::kNone || turn == CollapseMesh::kNone || own_links == 0)
-    return false;
-  for (const CollapseMesh::Fan& fan : c.around_to) {
-    if (fan.next == c.from || fan.previous == c.from)
-      continue;
-    triangles[count] = fan.triangle;
-    starts[count] = fan.next;
-    ends[count++] = fan.previous;
-  }
-  if (own_links == count)
-    return false;
-
-  bool simple = true;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    simple = simple && link_at_[starts[i]] == kNone;
-    link_at_[starts[i]] = static_cast<std::uint8_t>(i);
-  }
-  std::uint32_t vertex = first;
-  std::uint32_t length = 0;
-  for (; simple && length < count; ++length) {
-    const std::uint8_t link = link_at_[vertex];
-    if (link == kNone || (link < own_links) != (length < own_links))
-      break;
-    ring_.vertices[length] = vertex;
-    links_[length].triangle = triangles[link];
-    link_at_[vertex] = kNone;
-    vertex = ends[link];
-  }
-  for (std::uint32_t i = 0; i < count; ++i)
-    link_at_[starts[i]] = kNone;
-  ring_.size = count;
-  ring_.to_begin = own_links;
-  return simple && length == count && vertex == first && ring_.vertices[own_links] == turn;
-}
-
 /// Turns everything so that the ring's normal points up. False if it has none.
-bool DiscGapMeter::project(std::span<const Vec3f> positions, const StarCollapse& c) {
-  const std::uint32_t size = ring_.size;
+bool DiscGapMeter::project(std::span<const Vec3f> positions, const EdgeStar& star, Vec3f place) {
+  const std::uint32_t size = star.size();
+  ring_.size = size;
+  ring_.to_begin = star.to_begin();
   const std::uint32_t end = (size + 4) / 4 * 4;  // whole groups that hold the first once more
-  alignas(16) Row x, y, z;
-  for (std::uint32_t i = 0; i < size; ++i) {
-    const Vec3f p = positions[ring_.vertices[i]] - c.place;
-    x[i] = p.x;
-    y[i] = p.y;
-    z[i] = p.z;
-  }
-  x[size] = x[0];
-  y[size] = y[0];
-  z[size] = z[0];
-  for (std::uint32_t i = size + 1; i <= end; ++i)
-    x[i] = y[i] = z[i] = 0;  // adds nothing to sums
-
+  const EdgeStar::Row& x = star.x();
+  const EdgeStar::Row& y = star.y();
+  const EdgeStar::Row& z = star.z();
   FourFloats nx{}, ny{}, nz{}, squared{};
   for (std::uint32_t i = 0; i < end; i += 4) {
     const FourFloats ax = four_at(x, i), ay = four_at(y, i), az = four_at(z, i);
@@ -114,7 +46,7 @@ bool DiscGapMeter::project(std::span<const Vec3f> positions, const StarCollapse&
     ny += az * bx - ax * bz;
     nz += ax * by - ay * bx;
     const FourFloats here = ax * ax + ay * ay + az * az;
-    squared = here > squared ? here : squared;
+    squared = larger_of(here, squared);
   }
   const Vec3f normal{sum_of(nx), sum_of(ny), sum_of(nz)};
   const float area = length(normal);
@@ -129,12 +61,12 @@ bool DiscGapMeter::project(std::span<const Vec3f> positions, const StarCollapse&
   const Vec3f u{1 + sign * n.x * n.x * a, sign * b, -sign * n.x};
   const Vec3f v{b, sign + n.y * n.y * a, -n.y};
 
-  radius_ = std::max({squared[0], squared[1], squared[2], squared[3]});
-  for (const auto& [place, vertex] : {std::pair(&from_, c.from), std::pair(&to_, c.to)}) {
-    const Vec3f p = positions[vertex] - c.place;
-    place->x = dot(p, u);
-    place->y = dot(p, v);
-    place->z = dot(p, n);
+  radius_ = largest_of(squared);
+  for (const auto& [laid, vertex] : {std::pair(&from_, star.from()), std::pair(&to_, star.to())}) {
+    const Vec3f p = positions[vertex] - place;
+    laid->x = dot(p, u);
+    laid->y = dot(p, v);
+    laid->z = dot(p, n);
     radius_ = std::max(radius_, dot(p, p));
   }
   radius_ = std::sqrt(radius_);
@@ -143,44 +75,50 @@ bool DiscGapMeter::project(std::span<const Vec3f> positions, const StarCollapse&
     const FourFloats ax = four_at(x, i), ay = four_at(y, i), az = four_at(z, i);
     const FourFloats flat_x = ax * u.x + ay * u.y + az * u.z;
     const FourFloats flat_y = ax * v.x + ay * v.y + az * v.z;
-    put_four(ring_.x, i, flat_x);
-    put_four(ring_.y, i, flat_y);
-    put_four(ring_.z, i, ax * n.x + ay * n.y + az * n.z);
-    put_four(from_.beside, i, flat_x * from_.y - flat_y * from_.x);
-    put_four(to_.beside, i, flat_x * to_.y - flat_y * to_.x);
+    store_four(&ring_.x[i], flat_x);
+    store_four(&ring_.y[i], flat_y);
+    store_four(&ring_.z[i], ax * n.x + ay * n.y + az * n.z);
+    store_four(&from_.beside[i], flat_x * from_.y - flat_y * from_.x);
+    store_four(&to_.beside[i], flat_x * to_.y - flat_y * to_.x);
   }
   for (std::uint32_t i = 0; i < size; i += 4) {
-    put_four(ring_.doubled, i,
-             four_at(ring_.x, i) * four_at(ring_.y, i + 1) -
-                 four_at(ring_.y, i) * four_at(ring_.x, i + 1));
+    store_four(&ring_.doubled[i], four_at(ring_.x, i) * four_at(ring_.y, i + 1) -
+                                      four_at(ring_.y, i) * four_at(ring_.x, i + 1));
   }
   return true;
 }
 
 /// Whether no triangle, old or new, shows its back, and the new ones go around once.
 bool DiscGapMeter::faces_front() const {
-  const float least = kLeastArea * radius_ * radius_;
   const std::uint32_t turn = ring_.to_begin;
-  float smallest = std::min(to_.beside[turn] - from_.beside[turn] - cross_,
-                            from_.beside[0] - to_.beside[0] + cross_);
-  int rounds = 0;
-  for (std::uint32_t i = 0; i < ring_.size; ++i) {
-    const End& end = i < turn ? from_ : to_;
-    smallest = std::min(
-        {smallest, ring_.doubled[i], ring_.doubled[i] - end.beside[i] + end.beside[i + 1]});
-    rounds += static_cast<int>(ring_.y[i] < 0 && ring_.y[i + 1] >= 0);
+  const float at_edge = std::min(to_.beside[turn] - from_.beside[turn] - cross_,
+                                 from_.beside[0] - to_.beside[0] + cross_);
+  FourFloats smallest = FourFloats{} + at_edge;
+  FourInts rounds{};  // minus one each
+  for (std::uint32_t i = 0; i < ring_.size; i += 4) {
+    const FourInts exist = lanes_below(i, ring_.size);
+    const FourInts of_from = lanes_below(i, turn);
+    const FourFloats fresh = four_at(ring_.doubled, i);
+    const FourFloats beside = of_from ? four_at(from_.beside, i) : four_at(to_.beside, i);
+    const FourFloats behind = of_from ? four_at(from_.beside, i + 1) : four_at(to_.beside, i + 1);
+    const FourFloats old = fresh - beside + behind;
+    const FourFloats least = fresh < old ? fresh : old;
+    smallest = exist & (least < smallest) ? least : smallest;
+    smallest = exist & (least != least) ? least : smallest;
+    rounds += exist & (four_at(ring_.y, i) < 0.0F) & (four_at(ring_.y, i + 1) >= 0.0F);
   }
-  return smallest > least && rounds == 1;
+  const FourInts large = smallest > kLeastArea * radius_ * radius_;
+  return !any_of(~large) && rounds[0] + rounds[1] + rounds[2] + rounds[3] == -1;
 }
 
 void DiscGapMeter::overlap(std::uint32_t link, float drift, float gap) {
-  links_[link].drift = std::max(links_[link].drift, drift);
+  drifts_[link] = std::max(drifts_[link], drift);
   gaps_[link] = std::max(gaps_[link], gap);
 }
 
 void DiscGapMeter::overlap_all(float drift, float gap) {
-  for (std::uint32_t i = 0; i < ring_.size; ++i)
-    overlap(i, drift, gap);
+  all_drift_ = std::max(all_drift_, drift);
+  all_gap_ = std::max(all_gap_, gap);
 }
 
 /// Lays an end over the new disc, and all old triangles around it over the new one there. Returns
@@ -189,15 +127,18 @@ float DiscGapMeter::lay_over_new(End& end) {
   end.sector = -1;
   if (end.x == 0 && end.y == 0 && end.z == 0)
     return 0;  // it is the new vertex
-  for (std::uint32_t i = 0; i < ring_.size; ++i) {
-    if (end.beside[i] >= 0 && end.beside[i + 1] < 0) {
-      end.sector = static_cast<int>(i);
-      const float height =
-          end.z -
-          (end.beside[i] * ring_.z[i + 1] - end.beside[i + 1] * ring_.z[i]) / ring_.doubled[i];
-      overlap(i, end.drift, std::abs(height));
-      return height;
-    }
+  for (std::uint32_t i = 0; i < ring_.size; i += 4) {
+    const FourInts over = lanes_below(i, ring_.size) & (four_at(end.beside, i) >= 0.0F) &
+                          (four_at(end.beside, i + 1) < 0.0F);
+    if (!any_of(over))
+      continue;
+    const std::uint32_t link = i + first_of(over);
+    end.sector = static_cast<int>(link);
+    const float height =
+        end.z - (end.beside[link] * ring_.z[link + 1] - end.beside[link + 1] * ring_.z[link]) /
+                    ring_.doubled[link];
+    overlap(link, end.drift, std::abs(height));
+    return height;
   }
   overlap_all(end.drift, std::abs(end.z));
   return end.z;
@@ -222,12 +163,17 @@ bool DiscGapMeter::lay_middle() {
     return lay(ring_.first_drift, -to_.beside[0], from_.z, from_.beside[0], to_.z, cross_,
                ring_.z[0]);
   }
-  for (std::uint32_t i = 0; i < ring_.size; ++i) {
-    const End& end = i < turn ? from_ : to_;
-    if (end.beside[i] <= 0 && end.beside[i + 1] >= 0) {
-      return lay(ring_.drift[i], ring_.doubled[i], end.z, end.beside[i + 1], ring_.z[i],
-                 -end.beside[i], ring_.z[i + 1]);
-    }
+  for (std::uint32_t i = 0; i < ring_.size; i += 4) {
+    const FourInts of_from = lanes_below(i, turn);
+    const FourFloats beside = of_from ? four_at(from_.beside, i) : four_at(to_.beside, i);
+    const FourFloats behind = of_from ? four_at(from_.beside, i + 1) : four_at(to_.beside, i + 1);
+    const FourInts holds = lanes_below(i, ring_.size) & (beside <= 0.0F) & (behind >= 0.0F);
+    if (!any_of(holds))
+      continue;
+    const std::uint32_t lane = first_of(holds);
+    const std::uint32_t link = i + lane;
+    return lay(ring_.drift[link], ring_.doubled[link], link < turn ? from_.z : to_.z, behind[lane],
+               ring_.z[link], -beside[lane], ring_.z[link + 1]);
   }
   return false;
 }
@@ -277,17 +223,27 @@ void DiscGapMeter::cross_rays() {
   }
 }
 
-void DiscGapMeter::look_up(std::span<const float> drifts) {
-  ring_.first_drift = drifts[edge_triangles_[0]];
-  ring_.turn_drift = drifts[edge_triangles_[1]];
-  from_.drift = to_.drift = std::max(ring_.first_drift, ring_.turn_drift);
+void DiscGapMeter::look_up(std::span<const float> drifts, const EdgeStar& star) {
+  ring_.first_drift = drifts[star.at_edge()[0]->triangle];
+  ring_.turn_drift = drifts[star.at_edge()[1]->triangle];
   for (std::uint32_t i = 0; i < ring_.size; ++i) {
-    ring_.drift[i] = drifts[links_[i].triangle];
-    links_[i].drift = ring_.drift[i];
-    gaps_[i] = 0;
-    End& end = i < ring_.to_begin ? from_ : to_;
-    end.drift = std::max(end.drift, ring_.drift[i]);
+    triangles_[i] = star.links()[i]->triangle;
+    ring_.drift[i] = drifts[triangles_[i]];
   }
+  FourFloats from = FourFloats{} + std::max(ring_.first_drift, ring_.turn_drift);
+  FourFloats to = from;
+  for (std::uint32_t i = 0; i < ring_.size; i += 4) {
+    const FourFloats drift = four_at(ring_.drift, i);
+    const FourInts of_from = lanes_below(i, ring_.to_begin);
+    const FourInts of_to = lanes_below(i, ring_.size) & ~of_from;
+    from = larger_of(of_from ? drift : from, from);
+    to = larger_of(of_to ? drift : to, to);
+    store_four(&drifts_[i], drift);
+    store_four(&gaps_[i], FourFloats{});
+  }
+  from_.drift = largest_of(from);
+  to_.drift = largest_of(to);
+  all_drift_ = all_gap_ = 0;
 }
 
 void DiscGapMeter::lay_edges() {
@@ -307,25 +263,41 @@ void DiscGapMeter::lay_edges() {
 /// Whether all drifts and heights together are no more than that; then they are what every link
 /// gets.
 bool DiscGapMeter::is_thin(float enough) {
-  float lowest = std::min({0.0F, from_.z, to_.z});
-  float highest = std::max({0.0F, from_.z, to_.z});
-  for (std::uint32_t i = 0; i < ring_.size; ++i) {
-    lowest = std::min(lowest, ring_.z[i]);
-    highest = std::max(highest, ring_.z[i]);
+  FourFloats lowest = FourFloats{} + std::min({0.0F, from_.z, to_.z});
+  FourFloats highest = FourFloats{} + std::max({0.0F, from_.z, to_.z});
+  for (std::uint32_t i = 0; i < ring_.size; i += 4) {
+    const FourFloats z = lanes_below(i, ring_.size) ? four_at(ring_.z, i) : FourFloats{};
+    lowest = z < lowest ? z : lowest;
+    highest = larger_of(z, highest);
   }
+  const float range = largest_of(highest) + largest_of(-lowest);
   const float drift = std::max(from_.drift, to_.drift);
-  if (!(drift + (highest - lowest) <= enough))
+  if (!(drift + range <= enough))
     return false;
-  overlap_all(drift, highest - lowest);
+  overlap_all(drift, range);
   return true;
 }
 
+/// Drift and gap of every link. False if they are beyond all numbers.
+bool DiscGapMeter::add_up() {
+  const float rounding = kRounding * radius_;
+  FourInts fails{};
+  for (std::uint32_t i = 0; i < ring_.size; i += 4) {
+    const FourFloats drift = larger_of(four_at(drifts_, i), FourFloats{} + all_drift_);
+    const FourFloats gap = larger_of(four_at(gaps_, i), FourFloats{} + all_gap_);
+    const FourFloats sum = (drift + gap + rounding) * (1 + 0x1p-22F);
+    store_four(&drifts_[i], sum);
+    fails |= lanes_below(i, ring_.size) & ~(sum < kInfinity);
+  }
+  return !any_of(fails);
+}
+
 std::optional<DiscGap> DiscGapMeter::measure(std::span<const Vec3f> positions,
-                                             std::span<const float> drifts,
-                                             const StarCollapse& collapse, float enough) {
-  if (!trace(collapse) || !project(positions, collapse) || !faces_front())
+                                             std::span<const float> drifts, const EdgeStar& star,
+                                             Vec3f place, float enough) {
+  if (!project(positions, star, place) || !faces_front())
     return std::nullopt;
-  look_up(drifts);
+  look_up(drifts, star);
   DiscGap result;
   result.from = lay_over_new(from_);
   result.to = lay_over_new(to_);
@@ -334,13 +306,10 @@ std::optional<DiscGap> DiscGapMeter::measure(std::span<const Vec3f> positions,
       return std::nullopt;
     lay_edges();
   }
-  const float rounding = kRounding * radius_;
-  for (std::uint32_t i = 0; i < ring_.size; ++i) {
-    links_[i].drift = (links_[i].drift + gaps_[i] + rounding) * (1 + 0x1p-22F);
-    if (!std::isfinite(links_[i].drift))
-      return std::nullopt;
-  }
-  result.links = {links_.data(), ring_.size};
+  if (!add_up())
+    return std::nullopt;
+  result.triangles = {triangles_.data(), ring_.size};
+  result.drifts = {drifts_.data(), ring_.size};
   return result;
 }
 

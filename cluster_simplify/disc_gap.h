@@ -7,62 +7,45 @@
 // vertex, or where an old edge crosses a new one.
 #pragma once
 
-#include "cluster_simplify/collapse_mesh.h"
+#include "cluster_simplify/edge_star.h"
 #include "hierarchy/vec.h"
 
 #include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <vector>
 
 namespace meshhier::cluster_simplify {
 
-/// An edge about to collapse: `from` and `to` become one vertex at `place`.
-struct StarCollapse {
-  std::uint32_t from = 0, to = 0;
-  Vec3f place;
-  Fans around_from, around_to;
-};
-
-/// What became of a disc: its triangles after the collapse.
+/// What became of a disc.
 struct DiscGap {
-  struct Link {
-    std::uint32_t triangle = 0;
-    float drift = 0;  ///< the most of those that it lies over, and how far it is from them
-  };
-  std::span<const Link> links;
-  float from = 0, to = 0;  ///< heights of the edge's ends over the new disc
+  std::span<const std::uint32_t> triangles;  ///< of the disc after the collapse
+  std::span<const float> drifts;  ///< of each, the most of those that it lies over, and how far it
+                                  ///< is from them
+  float from = 0, to = 0;         ///< heights of the edge's ends over the new disc
 };
 
 /// Measures discs. Keeps its memory from one to the next.
 class DiscGapMeter {
  public:
-  explicit DiscGapMeter(std::uint32_t vertex_count) : link_at_(vertex_count, kNone) {}
-
-  /// `drifts`: per triangle, before. Nothing if what is around the edge is no disc, has more than
-  /// kMostLinks edges around it, or does not show its front everywhere along the ring's normal.
-  /// Certain: rounding is counted. Drifts that are not above `enough` may be any up to that. The
-  /// links are valid until the next call. O(ring).
+  /// `drifts`: per triangle, before. `star`: a disc as seen from `place`. Nothing if it does not
+  /// show its front everywhere along the ring's normal. Certain: rounding is counted. Drifts that
+  /// are not above `enough` may be any up to that. The spans are valid until the next call.
+  /// O(ring).
   std::optional<DiscGap> measure(std::span<const Vec3f> positions, std::span<const float> drifts,
-                                 const StarCollapse& collapse, float enough);
-
-  static constexpr std::uint32_t kMostLinks = 32;
-  /// One number per ring vertex, the first once more, and room for groups of four.
-  using Row = std::array<float, kMostLinks + 6>;
+                                 const EdgeStar& star, Vec3f place, float enough);
 
  private:
-  static constexpr std::uint8_t kNone = 255;
+  static constexpr std::uint32_t kMostLinks = EdgeStar::kMostLinks;
+  using Row = EdgeStar::Row;
 
   /// The ring's vertices in order, relative to the new vertex: x, y across the normal, z along it.
-  /// Link i is the edge from ring vertex i to the next.
   struct Ring {
     std::uint32_t size = 0;
-    std::uint32_t to_begin = 0;  ///< `from` has the links [0, to_begin), `to` the rest
-    std::array<std::uint32_t, kMostLinks> vertices;
+    std::uint32_t to_begin = 0;             ///< `from` has the links [0, to_begin), `to` the rest
     Row x, y, z;                            ///< the first once more at the end
     Row doubled;                            ///< area of link i's new triangle
-    std::array<float, kMostLinks> drift;    ///< of link i's old triangle
+    Row drift;                              ///< of link i's old triangle
     float first_drift = 0, turn_drift = 0;  ///< of the edge's triangles, at ring vertices 0 and
                                             ///< to_begin
     std::uint32_t next(std::uint32_t i) const { return i + 1 == size ? 0 : i + 1; }
@@ -83,10 +66,9 @@ class DiscGapMeter {
     float drift = 0;            ///< of the triangles at it
   };
 
-  bool trace(const StarCollapse& collapse);
-  void look_up(std::span<const float> drifts);
-  bool project(std::span<const Vec3f> positions, const StarCollapse& collapse);
+  bool project(std::span<const Vec3f> positions, const EdgeStar& star, Vec3f place);
   bool faces_front() const;
+  void look_up(std::span<const float> drifts, const EdgeStar& star);
   float lay_over_new(End& end);
   bool lay_middle();
   void lay_edges();
@@ -96,15 +78,16 @@ class DiscGapMeter {
   void cross_ray(std::uint32_t ray, const Way& way, float beside, float behind);
   void overlap(std::uint32_t link, float drift, float gap);
   void overlap_all(float drift, float gap);
+  bool add_up();
 
   Ring ring_;
   End from_, to_;
-  float cross_ = 0;                              ///< from_ x to_
-  float radius_ = 0;                             ///< no coordinate is larger
-  std::array<DiscGap::Link, kMostLinks> links_;  ///< drift: of what was there, so far
-  std::array<float, kMostLinks> gaps_;
-  std::array<std::uint32_t, 2> edge_triangles_;  ///< at ring vertices 0 and to_begin
-  std::vector<std::uint8_t> link_at_;            ///< scratch: the link that starts at a vertex
+  float cross_ = 0;   ///< from_ x to_
+  float radius_ = 0;  ///< no coordinate is larger
+  // Of what each new triangle lies over, so far:
+  std::array<std::uint32_t, kMostLinks> triangles_;
+  Row drifts_, gaps_;
+  float all_drift_ = 0, all_gap_ = 0;  ///< what counts for every one
 };
 
 }  // namespace meshhier::cluster_simplify

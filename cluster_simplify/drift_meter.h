@@ -4,10 +4,12 @@
 #include "cluster_simplify/collapse_mesh.h"
 #include "cluster_simplify/cover_distance.h"
 #include "cluster_simplify/disc_gap.h"
+#include "cluster_simplify/edge_star.h"
 #include "cluster_simplify/fan_gap.h"
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,9 +21,9 @@ class DriftMeter {
   /// `weights`: one per own vertex. Coordinates as the collapses will have them.
   DriftMeter(const CollapseMesh& mesh, std::span<const float> weights);
 
-  /// Takes note of a collapse that is about to happen; `positions` as they are before. O(triangles
-  /// around the edge).
-  void note(std::span<const Vec3f> positions, const StarCollapse& c);
+  /// Takes note that an edge is about to collapse to `place`; `positions` as they are before,
+  /// `star` as seen from there if it is a disc. O(triangles around the edge).
+  void note(std::span<const Vec3f> positions, const EdgeStar& star, Vec3f place);
 
   /// A triangle around which nothing was left: what lay on it lies nowhere.
   struct Vanished {
@@ -41,11 +43,14 @@ class DriftMeter {
     std::uint32_t triangle;
   };
 
+  std::optional<DiscGap> measure(std::span<const Vec3f> positions, const EdgeStar& star,
+                                 const StarCollapse& c);
   void note_any(std::span<const Vec3f> positions, const StarCollapse& c);
   void note_crowd(std::span<const Vec3f> positions, const StarCollapse& c);
   void note_vanished(std::span<const Vec3f> positions, const StarCollapse& c);
   void collect(std::span<const Vec3f> positions, const StarCollapse& c);
   void cover(std::span<const StarTriangle> triangles, bool with_drift);
+  void set_drift(std::uint32_t triangle, float drift);
   void add_square(std::uint32_t vertex, float distance);
 
   DiscGapMeter discs_;

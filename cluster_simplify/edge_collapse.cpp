@@ -2,6 +2,7 @@
 
 #include "cluster_simplify/collapse_costs.h"
 #include "cluster_simplify/collapse_driver.h"
+#include "cluster_simplify/four_floats.h"
 #include "cluster_simplify/local_frame.h"
 #include "cluster_simplify/meeting_point.h"
 #include "cluster_simplify/representatives.h"
@@ -10,25 +11,23 @@
 #include <array>
 #include <cstddef>
 #include <cstring>
+#include <optional>
+#include <span>
+#include <vector>
 
 namespace meshhier::cluster_simplify {
 namespace {
 
-Planes<float> planes_of(const VertexQuadric& q) {
-  return {q.xx, q.xy, q.xz, q.yy, q.yz, q.zz, q.b.x, q.b.y, q.b.z, q.c, q.area};
-}
-
 /// Rows of a 4 x 4 matrix become its columns.
 void transpose(FourFloats& a, FourFloats& b, FourFloats& c, FourFloats& d) {
-  using Places = int __attribute__((vector_size(16)));
-  const FourFloats ab_low = __builtin_shuffle(a, b, Places{0, 4, 1, 5});
-  const FourFloats ab_high = __builtin_shuffle(a, b, Places{2, 6, 3, 7});
-  const FourFloats cd_low = __builtin_shuffle(c, d, Places{0, 4, 1, 5});
-  const FourFloats cd_high = __builtin_shuffle(c, d, Places{2, 6, 3, 7});
-  a = __builtin_shuffle(ab_low, cd_low, Places{0, 1, 4, 5});
-  b = __builtin_shuffle(ab_low, cd_low, Places{2, 3, 6, 7});
-  c = __builtin_shuffle(ab_high, cd_high, Places{0, 1, 4, 5});
-  d = __builtin_shuffle(ab_high, cd_high, Places{2, 3, 6, 7});
+  const FourFloats ab_low = __builtin_shuffle(a, b, FourInts{0, 4, 1, 5});
+  const FourFloats ab_high = __builtin_shuffle(a, b, FourInts{2, 6, 3, 7});
+  const FourFloats cd_low = __builtin_shuffle(c, d, FourInts{0, 4, 1, 5});
+  const FourFloats cd_high = __builtin_shuffle(c, d, FourInts{2, 6, 3, 7});
+  a = __builtin_shuffle(ab_low, cd_low, FourInts{0, 1, 4, 5});
+  b = __builtin_shuffle(ab_low, cd_low, FourInts{2, 3, 6, 7});
+  c = __builtin_shuffle(ab_high, cd_high, FourInts{0, 1, 4, 5});
+  d = __builtin_shuffle(ab_high, cd_high, FourInts{2, 3, 6, 7});
 }
 
 static_assert(sizeof(VertexQuadric) == 3 * sizeof(FourFloats));
@@ -38,11 +37,8 @@ Planes<FourFloats> four_planes(const std::array<const VertexQuadric*, 4>& quadri
   for (std::size_t group = 0; group < 3; ++group) {
     auto& [a, b, c, d] = groups[group];
     const auto load = [&](std::size_t lane) {
-      FourFloats values;
-      std::memcpy(&values,
-                  reinterpret_cast<const std::byte*>(quadrics[lane]) + group * sizeof values,
-                  sizeof values);
-      return values;
+      return load_four(reinterpret_cast<const std::byte*>(quadrics[lane]) +
+                       group * sizeof(FourFloats));
     };
     a = load(0);
     b = load(1);
@@ -54,68 +50,99 @@ Planes<FourFloats> four_planes(const std::array<const VertexQuadric*, 4>& quadri
           groups[1][2], groups[1][3], groups[2][0], groups[2][1], groups[2][2]};
 }
 
+/// All that an edge's cost needs of one of its ends, in a cache line.
+struct alignas(64) PlacedQuadric {
+  VertexQuadric quadric;
+  Vec3f position;
+};
+
+std::vector<PlacedQuadric> placed(std::span<const VertexQuadric> quadrics,
+                                  std::span<const Vec3f> positions) {
+  std::vector<PlacedQuadric> result;
+  result.reserve(quadrics.size());
+  for (std::size_t v = 0; v < quadrics.size(); ++v)
+    result.push_back({quadrics[v], positions[v]});
+  return result;
+}
+
 /// Vertices meet where the sum of their quadrics is least.
 class OptimalPlacement {
  public:
   OptimalPlacement(const CollapseMesh& mesh, std::vector<Vec3f> positions, VertexArray& vertices)
-      : mesh_(mesh),
-        positions_(std::move(positions)),
-        quadrics_(vertex_quadrics(mesh, positions_)),
-        prices_(mesh, positions_, total_area(quadrics_)),
-        vertices_(vertices) {}
+      : mesh_(mesh), positions_(std::move(positions)), vertices_(vertices) {
+    const std::vector<VertexQuadric> quadrics = vertex_quadrics(mesh, positions_);
+    prices_.emplace(mesh, positions_, total_area(quadrics));
+    placed_ = placed(quadrics, positions_);
+  }
 
   std::span<const Vec3f> positions() const { return positions_; }
 
-  Collapse best(std::uint32_t e) const {
-    const auto [a, b, count] = mesh_.edge(e);
-    const Vec3f half = (positions_[b] - positions_[a]) * 0.5F;
-    const auto [x, y, z, cost] =
-        meeting_point(planes_of(quadrics_[a]), planes_of(quadrics_[b]), half.x, half.y, half.z);
-    return {b, a, cost, positions_[a] + half + Vec3f{x, y, z}};
+  void best(std::span<const std::uint32_t> edges, std::span<Collapse> collapses) const {
+    for (std::size_t i = 0; i < edges.size(); i += 4) {
+      const auto some = edges.subspan(i, std::min<std::size_t>(4, edges.size() - i));
+      const FourEdges four = look_up([&](std::size_t lane) { return some[lane % some.size()]; });
+      const MeetingPoint<FourFloats> meeting = meet(four);
+      for (std::size_t lane = 0; lane < some.size(); ++lane) {
+        const Vec3f half{four.hx[lane], four.hy[lane], four.hz[lane]};
+        const Vec3f offset{meeting.x[lane], meeting.y[lane], meeting.z[lane]};
+        const CollapseMesh::Edge& edge = mesh_.edge(some[lane]);
+        collapses[i + lane] = {edge.b, edge.a, meeting.cost[lane],
+                               placed_[edge.a].position + half + offset};
+      }
+    }
   }
 
-  /// What best() says of edges [first, first + costs.size()), four at a time.
   void costs(std::uint32_t first, std::span<float> costs) const {
-    std::size_t i = 0;
-    for (; i + 4 <= costs.size(); i += 4) {
-      std::array<const VertexQuadric*, 4> p, q;
-      FourFloats hx, hy, hz;
-      for (std::size_t lane = 0; lane < 4; ++lane) {
-        const auto [a, b, count] = mesh_.edge(first + static_cast<std::uint32_t>(i + lane));
-        p[lane] = &quadrics_[a];
-        q[lane] = &quadrics_[b];
-        const Vec3f half = (positions_[b] - positions_[a]) * 0.5F;
-        hx[lane] = half.x;
-        hy[lane] = half.y;
-        hz[lane] = half.z;
-      }
-      const FourFloats cost = meeting_point(four_planes(p), four_planes(q), hx, hy, hz).cost;
-      std::memcpy(&costs[i], &cost, sizeof cost);
+    for (std::size_t i = 0; i < costs.size(); i += 4) {
+      const std::size_t count = std::min<std::size_t>(4, costs.size() - i);
+      const FourFloats cost = meet(look_up([&](std::size_t lane) {
+                                return first + static_cast<std::uint32_t>(i + lane % count);
+                              })).cost;
+      std::memcpy(&costs[i], &cost, count * sizeof(float));
     }
-    for (; i < costs.size(); ++i)
-      costs[i] = best(first + static_cast<std::uint32_t>(i)).cost;
   }
 
   float price(std::uint32_t e, TopologyChange change) const {
     const auto [a, b, count] = mesh_.edge(e);
-    return prices_.of(change, a, positions_[b] - positions_[a],
-                      quadrics_[a].area + quadrics_[b].area);
-  }
-
-  bool keeps_shape(const Collapse& c, Fans around_from, Fans around_to) const {
-    return keeps_sides(positions_, c.from, c.to, c.place, around_from) &&
-           keeps_sides(positions_, c.to, c.from, c.place, around_to);
+    return prices_->of(change, a, positions_[b] - positions_[a],
+                       placed_[a].quadric.area + placed_[b].quadric.area);
   }
 
   void collapsed(const Collapse& c) {
     interpolate_attributes(c);
-    VertexQuadric sum = quadrics_[c.to].about(c.place - positions_[c.to]);
-    sum += quadrics_[c.from].about(c.place - positions_[c.from]);
-    quadrics_[c.to] = sum;
+    VertexQuadric sum = placed_[c.to].quadric.about(c.place - positions_[c.to]);
+    sum += placed_[c.from].quadric.about(c.place - positions_[c.from]);
+    placed_[c.to] = {sum, c.place};
     positions_[c.to] = c.place;
   }
 
  private:
+  struct FourEdges {
+    std::array<const VertexQuadric*, 4> a, b;
+    FourFloats hx, hy, hz;  ///< from a half the way to b
+  };
+
+  template <class EdgeOf>
+  FourEdges look_up(const EdgeOf& edge_of) const {
+    FourEdges four;
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+      const CollapseMesh::Edge& edge = mesh_.edge(edge_of(lane));
+      const PlacedQuadric& a = placed_[edge.a];
+      const PlacedQuadric& b = placed_[edge.b];
+      four.a[lane] = &a.quadric;
+      four.b[lane] = &b.quadric;
+      const Vec3f half = (b.position - a.position) * 0.5F;
+      four.hx[lane] = half.x;
+      four.hy[lane] = half.y;
+      four.hz[lane] = half.z;
+    }
+    return four;
+  }
+
+  static MeetingPoint<FourFloats> meet(const FourEdges& four) {
+    return meeting_point(four_planes(four.a), four_planes(four.b), four.hx, four.hy, four.hz);
+  }
+
   /// Attributes at the point of the edge that is nearest to the new place.
   void interpolate_attributes(const Collapse& c) {
     if (vertices_.channels == 0)
@@ -134,8 +161,8 @@ class OptimalPlacement {
 
   const CollapseMesh& mesh_;
   std::vector<Vec3f> positions_;
-  std::vector<VertexQuadric> quadrics_;
-  TopologyPrices prices_;
+  std::vector<PlacedQuadric> placed_;
+  std::optional<TopologyPrices> prices_;
   VertexArray& vertices_;
 };
 

@@ -39,7 +39,7 @@ bool FanGapMeter::order_links(const StarCollapse& c) {
     return false;
   bool twice[2] = {false, false};
   for (const CollapseMesh::Fan& fan : c.around_from) {
-    if (fan.next != c.to && fan.previous != c.to) {
+    if (!fan.is_at(c.to)) {
       found[size_++] = {fan.next, fan.previous, fan.triangle, 0};
       continue;
     }
@@ -51,7 +51,7 @@ bool FanGapMeter::order_links(const StarCollapse& c) {
     ++edge_triangle_count_;
   }
   for (const CollapseMesh::Fan& fan : c.around_to) {
-    if (fan.next != c.from && fan.previous != c.from)
+    if (!fan.is_at(c.from))
       found[size_++] = {fan.next, fan.previous, fan.triangle, 1};
   }
   if (edge_triangle_count_ == 1 && twice[1])
@@ -89,7 +89,7 @@ bool FanGapMeter::order_links(const StarCollapse& c) {
     vertices_[length] = found[at].start;
     vertices_[length + 1] = found[at].end;
     is_of_to_[length] = found[at].is_of_to;
-    links_[length].triangle = found[at].triangle;
+    triangles_[length] = found[at].triangle;
     at = starting_at(found[at].end);
   }
   return open ? at == kMostLinks : at < size_ && found[at].start == vertices_[0];
@@ -123,7 +123,7 @@ bool FanGapMeter::find_shape(const StarCollapse& c) {
       return false;
     std::rotate(vertices_.begin(), vertices_.begin() + start, vertices_.begin() + size_);
     std::rotate(is_of_to_.begin(), is_of_to_.begin() + start, is_of_to_.begin() + size_);
-    std::rotate(links_.begin(), links_.begin() + start, links_.begin() + size_);
+    std::rotate(triangles_.begin(), triangles_.begin() + start, triangles_.begin() + size_);
     vertices_[size_] = vertices_[0];
     turn_ = run_end(0);
     head_ = 0;
@@ -285,7 +285,7 @@ double FanGapMeter::run_drift(std::uint32_t begin, std::uint32_t until) const {
 
 void FanGapMeter::look_up(std::span<const float> drifts) {
   for (std::uint32_t i = 0; i < size_; ++i) {
-    drift_[i] = fresh_[i] = double{drifts[links_[i].triangle]};
+    drift_[i] = fresh_[i] = double{drifts[triangles_[i]]};
     gap_[i] = 0;
   }
   edge_drift_ = {0, 0};
@@ -423,8 +423,8 @@ std::optional<DiscGap> FanGapMeter::measure(std::span<const Vec3f> positions,
   DiscGap result;
   for (std::uint32_t i = 0; i < size_; ++i) {
     const double drift = fresh_[i] + gap_[i] + kRounding * radius_;
-    links_[i].drift = static_cast<float>(drift * (1 + 0x1p-22));
-    if (!std::isfinite(links_[i].drift))
+    drifts_[i] = static_cast<float>(drift * (1 + 0x1p-22));
+    if (!std::isfinite(drifts_[i]))
       return std::nullopt;
   }
   const auto distance = [](const End& end) {
@@ -433,7 +433,8 @@ std::optional<DiscGap> FanGapMeter::measure(std::span<const Vec3f> positions,
   const bool first_is_from = first_.vertex == collapse.from;
   result.from = distance(first_is_from ? first_ : second_);
   result.to = distance(first_is_from ? second_ : first_);
-  result.links = {links_.data(), size_};
+  result.triangles = {triangles_.data(), size_};
+  result.drifts = {drifts_.data(), size_};
   return result;
 }
 

@@ -26,7 +26,7 @@ class FanGapMeter {
                                  const StarCollapse& collapse);
 
  private:
-  static constexpr std::uint32_t kMostLinks = DiscGapMeter::kMostLinks;
+  static constexpr std::uint32_t kMostLinks = EdgeStar::kMostLinks;
 
   struct Flat {
     double x = 0, y = 0;
@@ -85,7 +85,8 @@ class FanGapMeter {
   std::array<double, 2> edge_drift_{};
   End first_, second_;
   double radius_ = 0;
-  std::array<DiscGap::Link, kMostLinks> links_;
+  std::array<std::uint32_t, kMostLinks> triangles_;
+  std::array<float, kMostLinks> drifts_;
 };
 
 }  // namespace meshhier::cluster_simplify

@@ -27,9 +27,9 @@ class QuadricCosts {
 
   std::span<const Vec3f> positions() const { return positions_; }
 
-  Collapse best(std::uint32_t e) const {
-    const auto [a, b, count] = mesh_.edge(e);
-    return cheaper(onto(b, a), onto(a, b));
+  void best(std::span<const std::uint32_t> edges, std::span<Collapse> collapses) const {
+    std::transform(edges.begin(), edges.end(), collapses.begin(),
+                   [this](std::uint32_t e) { return best(e); });
   }
 
   void costs(std::uint32_t first, std::span<float> costs) const {
@@ -43,15 +43,16 @@ class QuadricCosts {
                       quadrics_[a].area + quadrics_[b].area);
   }
 
-  bool keeps_shape(const Collapse& c, Fans around_from, Fans) const {
-    return keeps_sides(positions_, c.from, c.to, c.place, around_from);
-  }
-
   void collapsed(const Collapse& c) {
     quadrics_[c.to] += quadrics_[c.from].about(c.place - positions_[c.from]);
   }
 
  private:
+  Collapse best(std::uint32_t e) const {
+    const auto [a, b, count] = mesh_.edge(e);
+    return cheaper(onto(b, a), onto(a, b));
+  }
+
   Collapse onto(std::uint32_t from, std::uint32_t to) const {
     const Vec3f along = positions_[to] - positions_[from];
     VertexQuadric sum = quadrics_[from].about(along);
@@ -75,9 +76,9 @@ class MelaxCosts {
 
   std::span<const Vec3f> positions() const { return positions_; }
 
-  Collapse best(std::uint32_t e) {
-    const auto [a, b, count] = mesh_.edge(e);
-    return cheaper(onto(b, a), onto(a, b));
+  void best(std::span<const std::uint32_t> edges, std::span<Collapse> collapses) {
+    std::transform(edges.begin(), edges.end(), collapses.begin(),
+                   [this](std::uint32_t e) { return best(e); });
   }
 
   void costs(std::uint32_t first, std::span<float> costs) {
@@ -91,13 +92,14 @@ class MelaxCosts {
     return std::sqrt(prices_.of(change, a, positions_[b] - positions_[a], 1));
   }
 
-  bool keeps_shape(const Collapse& c, Fans around_from, Fans) const {
-    return keeps_sides(positions_, c.from, c.to, c.place, around_from);
-  }
-
   void collapsed(const Collapse&) {}
 
  private:
+  Collapse best(std::uint32_t e) {
+    const auto [a, b, count] = mesh_.edge(e);
+    return cheaper(onto(b, a), onto(a, b));
+  }
+
   Collapse onto(std::uint32_t from, std::uint32_t to) {
     // On flat ground, where nothing bends, short edges go first.
     constexpr float kFlat = 1e-3F;
@@ -120,7 +122,7 @@ class MelaxCosts {
       if (!(size > 0))
         continue;
       normals_.push_back(n * (1 / size));
-      if (fan.next == to || fan.previous == to)
+      if (fan.is_at(to))
         at_edge_.push_back(normals_.back());
     }
     float bend = 0;

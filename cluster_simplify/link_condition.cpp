@@ -5,10 +5,6 @@
 namespace meshhier::cluster_simplify {
 namespace {
 
-bool is_at(const CollapseMesh::Fan& fan, std::uint32_t other) {
-  return fan.next == other || fan.previous == other;
-}
-
 bool is_border(const CollapseMesh& mesh, std::uint32_t e) {
   return mesh.edge(e).triangle_count == 1;
 }
@@ -21,14 +17,14 @@ bool touches_border(const CollapseMesh& mesh, Fans fans) {
 
 bool all_at(Fans fans, std::uint32_t other) {
   return std::all_of(fans.begin(), fans.end(),
-                     [&](const CollapseMesh::Fan& fan) { return is_at(fan, other); });
+                     [&](const CollapseMesh::Fan& fan) { return fan.is_at(other); });
 }
 
 /// A triangle at the edge that hangs on its corners only: it would be gone without a trace.
 bool loses_wing(const CollapseMesh& mesh, Fans around_a, Fans around_b, std::uint32_t a,
                 std::uint32_t b) {
   const auto is_free = [&](const CollapseMesh::Fan& fan, std::uint32_t other) {
-    return is_at(fan, other) &&
+    return fan.is_at(other) &&
            is_border(mesh, fan.next == other ? fan.previous_edge : fan.next_edge);
   };
   return std::any_of(around_a.begin(), around_a.end(), [&](const CollapseMesh::Fan& fan) {
@@ -53,7 +49,7 @@ void LinkCondition::mark_neighbours(std::uint32_t b, Fans around_a) {
   for (const CollapseMesh::Fan& fan : around_a) {
     for (const std::uint32_t other : {fan.next, fan.previous})
       marks_[other] = std::max(marks_[other], stamp_);
-    if (is_at(fan, b))
+    if (fan.is_at(b))
       marks_[fan.next == b ? fan.previous : fan.next] = opposite;
   }
 }
@@ -70,11 +66,11 @@ TopologyChange LinkCondition::change(const CollapseMesh& mesh, std::uint32_t a, 
   mark_neighbours(b, around_a);
   const std::uint32_t opposite = stamp_ + 1;
   const auto joins_opposites = [&](const CollapseMesh::Fan& fan, std::uint32_t other) {
-    return !is_at(fan, other) && marks_[fan.next] == opposite && marks_[fan.previous] == opposite;
+    return !fan.is_at(other) && marks_[fan.next] == opposite && marks_[fan.previous] == opposite;
   };
   bool folds = false;  // a triangle of b that would lie on one of a, or on its back
   for (const CollapseMesh::Fan& fan : around_b) {
-    if (is_at(fan, a))
+    if (fan.is_at(a))
       continue;
     if (marks_[fan.next] == stamp_ || marks_[fan.previous] == stamp_)
       return TopologyChange::tears;  // a neighbour of both that is not opposite the edge

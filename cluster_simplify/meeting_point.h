@@ -5,9 +5,6 @@
 
 namespace meshhier::cluster_simplify {
 
-/// Four floats, each with its own edge. Operations on them are those of single floats, bit for bit.
-using FourFloats = float __attribute__((vector_size(16)));
-
 /// The quadrics of vertices, T at a time.
 template <class T>
 struct Planes {

@@ -1,77 +1,115 @@
 #include "cluster_simplify/nearest.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
-#include <tuple>
 #include <utility>
-
-#include <CGAL/Orthogonal_k_neighbor_search.h>
-#include <CGAL/Search_traits_3.h>
-#include <CGAL/Search_traits_adapter.h>
-#include <CGAL/Simple_cartesian.h>
-#include <CGAL/property_map.h>
 
 namespace meshhier::cluster_simplify {
 namespace {
 
-using Kernel = CGAL::Simple_cartesian<double>;
-using IndexedPoint = std::pair<Kernel::Point_3, std::uint32_t>;
-using Traits =
-    CGAL::Search_traits_adapter<IndexedPoint, CGAL::First_of_pair_property_map<IndexedPoint>,
-                                CGAL::Search_traits_3<Kernel>>;
-using Search = CGAL::Orthogonal_k_neighbor_search<Traits>;
+// Points, or boxes, of one box: five levels for the 16,384 vertices of a joined tile.
+constexpr std::size_t kRun = 8;
 
-Kernel::Point_3 point(Vec3f p) {
-  return {double{p.x}, double{p.y}, double{p.z}};
+std::size_t run_count(std::size_t count) {
+  return (count + kRun - 1) / kRun;
 }
 
-// Below so many distances looking at all of them takes less time than planting a tree.
-constexpr std::size_t kFewDistances = std::size_t{1} << 21;
+double squared_distance(Vec3f point, Vec3d asked) {
+  const Vec3d away = to_double(point) - asked;
+  return dot(away, away);
+}
 
-std::uint32_t nearest_of_all(std::span<const Vec3f> positions,
-                             std::span<const std::uint32_t> candidates, Vec3d asked) {
-  std::uint32_t best = candidates[0];
-  double least = std::numeric_limits<double>::infinity();
-  for (const std::uint32_t v : candidates) {
-    const Vec3d away = to_double(positions[v]) - asked;
-    const double squared = dot(away, away);
-    if (squared < least) {
-      least = squared;
-      best = v;
-    }
-  }
-  return best;
+/// Never more than that of a point inside, rounding and all: it takes the same steps.
+double squared_distance_to_box(const Bounds& box, Vec3d asked) {
+  const Vec3d below = to_double(box.min) - asked;
+  const Vec3d above = asked - to_double(box.max);
+  const Vec3d away{std::max({below.x, above.x, 0.0}), std::max({below.y, above.y, 0.0}),
+                   std::max({below.z, above.z, 0.0})};
+  return dot(away, away);
 }
 
 }  // namespace
 
+struct NearestPoints::Search {
+  Vec3d asked;
+  double least;  ///< only what is nearer is of interest
+  std::size_t best = 0;
+};
+
+NearestPoints::NearestPoints(std::span<const Vec3f> positions,
+                             std::span<const std::uint32_t> candidates)
+    : candidates_(candidates.begin(), candidates.end()), points_(candidates.size()) {
+  std::transform(candidates.begin(), candidates.end(), points_.begin(),
+                 [&](std::uint32_t v) { return positions[v]; });
+  std::vector<Bounds>& finest = levels_.emplace_back(run_count(points_.size()));
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    finest[i / kRun].add(points_[i]);
+  while (levels_.back().size() > 1) {
+    const std::vector<Bounds>& finer = levels_.back();
+    std::vector<Bounds> coarser(run_count(finer.size()));
+    for (std::size_t i = 0; i < finer.size(); ++i)
+      coarser[i / kRun].add(finer[i]);
+    levels_.push_back(std::move(coarser));
+  }
+}
+
+/// Down to the nearest box of each level, and the nearest point in there.
+double NearestPoints::some_distance(Vec3d asked) const {
+  std::size_t best = 0;
+  for (std::size_t level = levels_.size() - 1; level-- > 0;) {
+    const std::vector<Bounds>& boxes = levels_[level];
+    const std::size_t begin = best * kRun;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = begin; i < std::min(begin + kRun, boxes.size()); ++i) {
+      const double distance = squared_distance_to_box(boxes[i], asked);
+      if (distance < least) {
+        least = distance;
+        best = i;
+      }
+    }
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = best * kRun; i < std::min((best + 1) * kRun, points_.size()); ++i)
+    least = std::min(least, squared_distance(points_[i], asked));
+  return least;
+}
+
+void NearestPoints::look_through(std::size_t level, std::size_t index, Search& search) const {
+  if (!(squared_distance_to_box(levels_[level][index], search.asked) < search.least))
+    return;
+  const std::size_t begin = index * kRun;
+  if (level > 0) {
+    const std::size_t end = std::min(begin + kRun, levels_[level - 1].size());
+    for (std::size_t i = begin; i < end; ++i)
+      look_through(level - 1, i, search);
+    return;
+  }
+  for (std::size_t i = begin; i < std::min(begin + kRun, points_.size()); ++i) {
+    const double distance = squared_distance(points_[i], search.asked);
+    if (distance < search.least) {
+      search.least = distance;
+      search.best = i;
+    }
+  }
+}
+
+std::uint32_t NearestPoints::nearest(Vec3f asked) const {
+  const Vec3d point = to_double(asked);
+  // As near as a point already known counts: there may be one before it in the order.
+  Search search{point,
+                std::nextafter(some_distance(point), std::numeric_limits<double>::infinity())};
+  look_through(levels_.size() - 1, 0, search);
+  return candidates_[search.best];
+}
+
 std::vector<std::uint32_t> nearest_of(std::span<const Vec3f> positions,
                                       std::span<const std::uint32_t> candidates,
                                       std::span<const std::uint32_t> asked) {
-  std::vector<std::uint32_t> nearest;
-  nearest.reserve(asked.size());
-  if (asked.size() * candidates.size() <= kFewDistances) {
-    for (const std::uint32_t v : asked)
-      nearest.push_back(nearest_of_all(positions, candidates, to_double(positions[v])));
-    return nearest;
-  }
-  // The tree takes quadratic time for equal points: one of them is enough.
-  std::vector<std::uint32_t> sorted(candidates.begin(), candidates.end());
-  const auto key = [&](std::uint32_t v) {
-    return std::tuple(positions[v].x, positions[v].y, positions[v].z);
-  };
-  std::sort(sorted.begin(), sorted.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return std::tuple(key(a), a) < std::tuple(key(b), b);
-  });
-  std::vector<IndexedPoint> points;
-  points.reserve(sorted.size());
-  for (std::size_t i = 0; i < sorted.size(); ++i) {
-    if (i == 0 || positions[sorted[i]] != positions[sorted[i - 1]])
-      points.emplace_back(point(positions[sorted[i]]), sorted[i]);
-  }
-  const Search::Tree tree(points.begin(), points.end());
-  for (const std::uint32_t v : asked)
-    nearest.push_back(Search(tree, point(positions[v]), 1).begin()->first.second);
+  const NearestPoints points(positions, candidates);
+  std::vector<std::uint32_t> nearest(asked.size());
+  std::transform(asked.begin(), asked.end(), nearest.begin(),
+                 [&](std::uint32_t v) { return points.nearest(positions[v]); });
   return nearest;
 }
 

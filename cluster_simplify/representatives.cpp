@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace meshhier::cluster_simplify {
@@ -56,36 +57,49 @@ std::vector<std::uint32_t> join_neighbours(const VertexArray& vertices,
   return into;
 }
 
+/// Those of [0, count) that `stays` says yes to. About half of all triangles and vertices are left,
+/// which ones no processor can predict: no branch.
+template <class Stays>
+std::vector<std::uint32_t> left_of(std::uint32_t count, const Stays& stays) {
+  std::vector<std::uint32_t> left(count);
+  std::size_t left_count = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    left[left_count] = i;
+    left_count += std::size_t{stays(i)};
+  }
+  left.resize(left_count);
+  return left;
+}
+
 /// Adds up what the collapses moved the surface, and what joining vertices across gaps adds.
 class DriftSum {
  public:
-  DriftSum(const CollapsedTile& tile, const std::vector<std::uint32_t>& into)
-      : tile_(tile), into_(into), around_(tile.mesh.own_count()), drawn_(tile.places.size()) {
+  DriftSum(const CollapsedTile& tile, const std::vector<std::uint32_t>& alive,
+           const std::vector<std::uint32_t>& into)
+      : tile_(tile), into_(into), around_(tile.places.size(), kNowhere) {
     const auto vanished = tile.drift.vanished();
     lost_.assign(vanished.begin(), vanished.end());
-    for (std::uint32_t t = 0; t < tile.mesh.faces().size(); ++t) {
-      if (tile.mesh.faces()[t].is_alive())
-        add(t);
-    }
+    for (const std::uint32_t t : alive)
+      add(t);
   }
 
-  /// `number`: of a representative, by its vertex.
-  Drift result(const std::vector<std::uint32_t>& number, std::size_t count) {
+  /// `chosen`: the vertices that are representatives.
+  Drift result(const std::vector<std::uint32_t>& chosen) const {
     Drift drift;
-    drift.around.resize(count);
+    drift.around.reserve(chosen.size());
     drift.interior = certain(interior_);
     drift.lost = certain(lost());
     drift.squared_sum =
         tile_.drift.squared_sum() * tile_.frame.to_global(1.0) * tile_.frame.to_global(1.0);
-    for (std::uint32_t v = 0; v < around_.size(); ++v) {
-      if (number[v] != kNone)
-        drift.around[number[v]] = certain(around_[v]);
-    }
+    for (const std::uint32_t v : chosen)
+      drift.around.push_back(certain(around_[v]));
     return drift;
   }
 
  private:
   using Corners = std::array<std::uint32_t, 3>;
+
+  static constexpr float kNowhere = -1;  // nothing is drawn at the vertex
 
   std::uint32_t root(std::uint32_t v) const { return v < into_.size() ? into_[v] : v; }
   Corners roots(const Corners& corners) const {
@@ -104,23 +118,26 @@ class DriftSum {
            tile_.drift.of_triangle(t)});
       return;
     }
-    float joined = 0;  // squared: how far its corners went by joining
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (ends[k] != corners[k]) {
-        const Vec3f away = tile_.places[ends[k]] - tile_.places[corners[k]];
-        joined = std::max(joined, dot(away, away));
-      }
-    }
-    const float drift = tile_.drift.of_triangle(t) + std::sqrt(joined);
+    float drift = tile_.drift.of_triangle(t);
+    if (ends != corners)
+      drift += farthest_join(corners, ends);
     bool is_interior = true;
     for (const std::uint32_t v : ends) {
-      is_interior = is_interior && v < around_.size();
-      drawn_[v] = 1;
-      if (v < around_.size())
-        around_[v] = std::max(around_[v], drift);
+      is_interior = is_interior && v < into_.size();
+      around_[v] = std::max(around_[v], drift);
     }
     if (is_interior)
       interior_ = std::max(interior_, drift);
+  }
+
+  /// How far a triangle's corners went by joining.
+  float farthest_join(const Corners& corners, const Corners& ends) const {
+    float squared = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3f away = tile_.places[ends[k]] - tile_.places[corners[k]];
+      squared = std::max(squared, dot(away, away));
+    }
+    return std::sqrt(squared);
   }
 
   /// From what is drawn no more to what is drawn around the vertex nearest to it; infinite if there
@@ -129,23 +146,17 @@ class DriftSum {
     if (lost_.empty())
       return 0;
     std::vector<std::uint32_t> drawn;
-    for (std::uint32_t v = 0; v < drawn_.size(); ++v) {
-      if (drawn_[v])
+    for (std::uint32_t v = 0; v < around_.size(); ++v) {
+      if (around_[v] != kNowhere)
         drawn.push_back(v);
     }
     if (drawn.empty())
       return std::numeric_limits<float>::infinity();
-    std::vector<Vec3f> positions(tile_.places.begin(), tile_.places.end());
-    std::vector<std::uint32_t> asked;
-    for (const DriftMeter::Vanished& piece : lost_) {
-      asked.push_back(static_cast<std::uint32_t>(positions.size()));
-      positions.push_back(piece.corners[0]);
-    }
-    const std::vector<std::uint32_t> nearest = nearest_of(positions, drawn, asked);
+    const NearestPoints points(tile_.places, drawn);
     double farthest = 0;
-    for (std::size_t i = 0; i < lost_.size(); ++i) {
-      farthest = std::max(farthest, std::sqrt(squared_distance_to_star(lost_[i], nearest[i])) +
-                                        double{lost_[i].drift});
+    for (const DriftMeter::Vanished& piece : lost_) {
+      const double away = squared_distance_to_star(piece, points.nearest(piece.corners[0]));
+      farthest = std::max(farthest, std::sqrt(away) + double{piece.drift});
     }
     return static_cast<float>(farthest);
   }
@@ -182,8 +193,7 @@ class DriftSum {
 
   const CollapsedTile& tile_;
   const std::vector<std::uint32_t>& into_;  ///< own vertex -> the one it was joined with, or itself
-  std::vector<float> around_;
-  std::vector<char> drawn_;
+  std::vector<float> around_;               ///< per vertex: the drift of what is drawn there
   std::vector<DriftMeter::Vanished> lost_;
   float interior_ = 0;
 };
@@ -193,19 +203,25 @@ class DriftSum {
 Contraction choose_representatives(const CollapsedTile& tile, std::uint32_t target) {
   CollapseMesh& mesh = tile.mesh;
   const VertexArray& vertices = tile.vertices;
+  const std::span<const CollapseMesh::Face> faces = mesh.faces();
+  const std::vector<std::uint32_t> alive =
+      left_of(static_cast<std::uint32_t>(faces.size()),
+              [&](std::uint32_t t) { return faces[t].is_alive(); });
   std::vector<char> has_triangle(mesh.vertex_count());
-  for (const CollapseMesh::Face& face : mesh.faces()) {
-    if (face.is_alive()) {
-      for (const std::uint32_t v : face.corners)
-        has_triangle[v] = 1;
-    }
+  for (const std::uint32_t t : alive) {
+    for (const std::uint32_t v : faces[t].corners)
+      has_triangle[v] = 1;
   }
+  std::vector<std::uint32_t> collapsed_into(mesh.own_count());
+  for (std::uint32_t v = 0; v < mesh.own_count(); ++v)
+    collapsed_into[v] = mesh.representative(v);
+  const std::vector<std::uint32_t> left =
+      left_of(mesh.own_count(), [&](std::uint32_t v) { return collapsed_into[v] == v; });
   std::vector<std::uint32_t> shown;
   std::vector<std::uint32_t> isolated;
-  for (std::uint32_t v = 0; v < mesh.own_count(); ++v) {
-    if (mesh.representative(v) == v)
-      (has_triangle[v] ? shown : isolated).push_back(v);
-  }
+  shown.reserve(left.size());
+  for (const std::uint32_t v : left)
+    (has_triangle[v] ? shown : isolated).push_back(v);
   std::vector<std::uint32_t> into(mesh.own_count(), kNone);
   const auto absorb = [&](const std::vector<std::uint32_t>& group,
                           const std::vector<std::uint32_t>& targets) {
@@ -231,22 +247,22 @@ Contraction choose_representatives(const CollapsedTile& tile, std::uint32_t targ
   }
 
   std::vector<std::uint32_t> number(mesh.own_count(), kNone);
-  result.representatives.channels = vertices.channels;
-  result.representatives.reserve(target);
-  for (std::uint32_t v = 0; v < mesh.own_count(); ++v) {
+  std::vector<std::uint32_t> chosen;
+  chosen.reserve(target);
+  for (const std::uint32_t v : left) {
     if (into[v] != v)
       continue;
-    number[v] = static_cast<std::uint32_t>(result.representatives.size());
-    result.representatives.append(vertices, v, v + 1);
+    number[v] = static_cast<std::uint32_t>(chosen.size());
+    chosen.push_back(v);
   }
+  result.representatives.channels = vertices.channels;
+  result.representatives.append(vertices, chosen);
   result.parent_of.resize(mesh.own_count());
   for (std::uint32_t v = 0; v < mesh.own_count(); ++v) {
     // An isolated vertex may have gone into a shown one that was then joined with another.
-    std::uint32_t root = into[mesh.representative(v)];
-    root = into[root];
-    result.parent_of[v] = number[root];
+    result.parent_of[v] = number[into[into[collapsed_into[v]]]];
   }
-  result.drift = DriftSum(tile, into).result(number, result.representatives.size());
+  result.drift = DriftSum(tile, alive, into).result(chosen);
   return result;
 }
 

@@ -30,6 +30,21 @@ Triangle mapped(const Triangle& t, const Map& map) {
   return {map(t[0]), map(t[1]), map(t[2])};
 }
 
+/// The images of triangles that keep an area. Half of them may go, which ones no processor can
+/// predict: no branch.
+template <class Map>
+std::vector<Triangle> images(const std::vector<Triangle>& triangles, const Map& map) {
+  std::vector<Triangle> kept(triangles.size());
+  std::size_t count = 0;
+  for (const Triangle& t : triangles) {
+    const Triangle image = mapped(t, map);
+    kept[count] = image;
+    count += std::size_t{!is_degenerate(image)};
+  }
+  kept.resize(count);
+  return kept;
+}
+
 /// Removes the references no triangle uses and renumbers the corners from `own_count` on.
 void drop_unused(std::vector<Triangle>& border, std::vector<GhostRef>& refs,
                  std::uint32_t own_count) {
@@ -94,11 +109,13 @@ BuildTile resolve(WorkTile tile, std::span<const GhostRef> mapped_refs, bool uni
 void fill_ghosts(BuildTile& tile, std::uint32_t neighbour, const Rim& rim) {
   const auto& ghosts = tile.mesh.ghosts;
   auto ghost = std::lower_bound(ghosts.begin(), ghosts.end(), GhostRef{neighbour, 0});
+  std::vector<std::uint32_t> named;
   for (; ghost != ghosts.end() && ghost->tile == neighbour; ++ghost) {
     if (ghost->index >= rim.vertices.size())
       throw Error(ErrorCode::internal, "a ghost lies outside its tile's rim");
-    tile.mesh.vertices.append(rim.vertices, ghost->index, ghost->index + 1);
+    named.push_back(ghost->index);
   }
+  tile.mesh.vertices.append(rim.vertices, named);
 }
 
 BuildTile join(const BuildTile& first, std::uint32_t first_index, const BuildTile& second,
@@ -161,10 +178,10 @@ BuildTile join(const BuildTile& first, std::uint32_t first_index, const BuildTil
   const std::vector<TileVertex> place_b = place_of(b, a.own_count, first_index, 0);
 
   mesh.interior.reserve(a.interior.size() + b.interior.size() + a.border.size());
-  for (const Triangle& t : a.interior)
-    mesh.interior.push_back(t);
-  for (const Triangle& t : b.interior)
-    mesh.interior.push_back(mapped(t, [&](TileVertex v) { return place_b[raw(v)]; }));
+  mesh.interior = a.interior;
+  for (const Triangle& t : b.interior)  // own corners move by as much as the first tile has
+    mesh.interior.push_back(
+        mapped(t, [&](TileVertex v) { return static_cast<TileVertex>(raw(v) + a.own_count); }));
   const auto add_border = [&](const Triangle& t) {
     const bool inside =
         std::all_of(t.begin(), t.end(), [&](TileVertex v) { return raw(v) < own_count; });
@@ -212,18 +229,10 @@ ContractedTile apply(const BuildTile& joined, Contraction contraction) {
 
   // Border triangles in the new numbers; foreign corners keep theirs, moved from own_count to
   // count.
-  const auto shifted = [&](TileVertex v, const std::vector<std::uint32_t>& own) {
-    return static_cast<TileVertex>(raw(v) < mesh.own_count ? own[raw(v)]
+  std::vector<Triangle> border = images(mesh.border, [&](TileVertex v) {
+    return static_cast<TileVertex>(raw(v) < mesh.own_count ? contraction.parent_of[raw(v)]
                                                            : raw(v) - mesh.own_count + count);
-  };
-  std::vector<Triangle> border;
-  border.reserve(mesh.border.size());
-  for (const Triangle& t : mesh.border) {
-    const Triangle image =
-        mapped(t, [&](TileVertex v) { return shifted(v, contraction.parent_of); });
-    if (!is_degenerate(image))
-      border.push_back(image);
-  }
+  });
 
   ContractedTile result;
   WorkTile& tile = result.tile;
@@ -242,22 +251,16 @@ ContractedTile apply(const BuildTile& joined, Contraction contraction) {
   normalize_triangles(tile.border, true);
   drop_unused(tile.border, tile.foreign, count);
 
-  tile.interior.reserve(mesh.interior.size());
-  for (const Triangle& t : mesh.interior) {
-    const Triangle image =
-        mapped(t, [&](TileVertex v) { return static_cast<TileVertex>(result.parent_map[raw(v)]); });
-    if (!is_degenerate(image))
-      tile.interior.push_back(image);
-  }
+  tile.interior = images(mesh.interior, [&](TileVertex v) {
+    return static_cast<TileVertex>(result.parent_map[raw(v)]);
+  });
   normalize_triangles(tile.interior, true);
 
   tile.vertices.channels = contraction.representatives.channels;
-  tile.vertices.reserve(count);
   std::vector<std::uint32_t> old_of(count);
   for (std::uint32_t i = 0; i < count; ++i)
     old_of[place[i]] = i;
-  for (const std::uint32_t old : old_of)
-    tile.vertices.append(contraction.representatives, old, old + 1);
+  tile.vertices.append(contraction.representatives, old_of);
 
   tile.history.weights.assign(count, 0);
   for (std::uint32_t i = 0; i < mesh.own_count; ++i)

@@ -25,9 +25,13 @@ std::vector<std::uint32_t> piece_of_vertices(const CollapseMesh& mesh) {
     }
     return v;
   };
-  for (const CollapseMesh::Edge& e : mesh.edges()) {
-    const std::uint32_t a = find(e.a);
-    const std::uint32_t b = find(e.b);
+  // From the last edge: edges come by their lower vertices, so most meet a piece that is known.
+  for (std::size_t e = mesh.edges().size(); e-- > 0;) {
+    const CollapseMesh::Edge& edge = mesh.edges()[e];
+    if (above[edge.a] == above[edge.b])
+      continue;
+    const std::uint32_t a = find(edge.a);
+    const std::uint32_t b = find(edge.b);
     above[std::min(a, b)] = std::max(a, b);
   }
   for (std::uint32_t v = mesh.vertex_count(); v-- > 0;)
@@ -42,17 +46,23 @@ std::vector<float> vanishing_distances(const CollapseMesh& mesh, std::span<const
   std::vector<std::uint32_t> sizes(mesh.vertex_count());
   for (const std::uint32_t piece : pieces)
     ++sizes[piece];
+  const auto is_large = [&](std::uint32_t v) {
+    return sizes[pieces[v]] > kSmallPiece || pieces[v] >= mesh.own_count();
+  };
   std::vector<std::uint32_t> small;
-  std::vector<std::uint32_t> large;
   for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
-    const std::uint32_t piece = pieces[v];
-    if (sizes[piece] > kSmallPiece || piece >= mesh.own_count())
-      large.push_back(v);
-    else if (sizes[piece] > 1)  // alone: shows nothing
+    if (!is_large(v) && sizes[pieces[v]] > 1)  // alone: shows nothing
       small.push_back(v);
   }
   std::vector<float> distances(mesh.vertex_count(), std::numeric_limits<float>::infinity());
-  if (small.empty() || large.empty())
+  if (small.empty())
+    return distances;
+  std::vector<std::uint32_t> large;
+  for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
+    if (is_large(v))
+      large.push_back(v);
+  }
+  if (large.empty())
     return distances;
   const std::vector<std::uint32_t> nearest = nearest_of(positions, large, small);
   for (const std::uint32_t v : small)

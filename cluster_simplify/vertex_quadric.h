@@ -30,17 +30,6 @@ struct alignas(16) VertexQuadric {
     zz += n.z * unit_normal.z;
   }
 
-  /// The plane of a triangle, through the centre of this quadric and of `plane`.
-  void add_plane_of(const VertexQuadric& plane, float doubled_area) {
-    xx += plane.xx;
-    xy += plane.xy;
-    xz += plane.xz;
-    yy += plane.yy;
-    yz += plane.yz;
-    zz += plane.zz;
-    area += doubled_area;
-  }
-
   Vec3f times(Vec3f x) const {
     return {xx * x.x + xy * x.y + xz * x.z, xy * x.x + yy * x.y + yz * x.z,
             xz * x.x + yz * x.y + zz * x.z};

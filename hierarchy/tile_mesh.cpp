@@ -24,7 +24,41 @@ void VertexArray::append(const VertexArray& other, std::size_t begin, std::size_
   attributes.insert(attributes.end(), offset(begin), offset(end));
 }
 
+void VertexArray::append(const VertexArray& other, std::span<const std::uint32_t> vertices) {
+  const std::size_t first = size();
+  positions.resize(first + vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    positions[first + i] = other.positions[vertices[i]];
+  if (channels == 0)
+    return;
+  const auto width = static_cast<std::size_t>(channels);
+  attributes.resize(positions.size() * width);
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    std::ranges::copy(other.attributes_of(vertices[i]),
+                      attributes.begin() + static_cast<std::ptrdiff_t>((first + i) * width));
+}
+
 namespace {
+
+// Above so many triangles with the same first corner, inserting one by one takes longer than
+// sorting.
+constexpr std::ptrdiff_t kFew = 16;
+
+/// Sorts triangles of the same first corner.
+void sort_group(Triangle* begin, Triangle* end) {
+  if (end - begin > kFew) {
+    std::sort(begin, end);
+    return;
+  }
+  const auto key = [](const Triangle& t) { return std::uint64_t{raw(t[1])} << 32 | raw(t[2]); };
+  for (Triangle* next = begin; next != end; ++next) {
+    const Triangle moved = *next;
+    Triangle* place = next;
+    for (; place != begin && key(moved) < key(place[-1]); --place)
+      *place = place[-1];
+    *place = moved;
+  }
+}
 
 /// Sorts canonical triangles by a counting sort on the first corner; a handful share it, so the
 /// rest is a sort of tiny groups. Four times faster than one comparison sort at 16 k triangles.
@@ -32,27 +66,31 @@ void sort_by_first_corner(std::vector<Triangle>& triangles) {
   std::uint32_t corner_count = 0;
   for (const Triangle& t : triangles)
     corner_count = std::max(corner_count, raw(t[0]) + 1);
-  std::vector<std::uint32_t> starts(std::size_t{corner_count} + 1);
+  // Where the group of corner c begins is at [c + 1] until the triangles are put, its end
+  // afterwards.
+  std::vector<std::uint32_t> ends(std::size_t{corner_count} + 2);
   for (const Triangle& t : triangles)
-    ++starts[raw(t[0]) + 1];
-  for (std::size_t i = 1; i < starts.size(); ++i)
-    starts[i] += starts[i - 1];
+    ++ends[raw(t[0]) + 2];
+  for (std::size_t i = 2; i < ends.size(); ++i)
+    ends[i] += ends[i - 1];
   std::vector<Triangle> sorted(triangles.size());
-  std::vector<std::uint32_t> next(starts.begin(), starts.end());
   for (const Triangle& t : triangles)
-    sorted[next[raw(t[0])]++] = t;
-  for (std::size_t i = 0; i + 1 < starts.size(); ++i) {
-    std::sort(sorted.begin() + starts[i], sorted.begin() + starts[i + 1]);
-  }
+    sorted[ends[raw(t[0]) + 1]++] = t;
+  for (std::size_t i = 0; i < corner_count; ++i)
+    sort_group(sorted.data() + ends[i], sorted.data() + ends[i + 1]);
   triangles = std::move(sorted);
 }
 
 }  // namespace
 
 void normalize_triangles(std::vector<Triangle>& triangles, bool unique) {
-  std::erase_if(triangles, is_degenerate);
-  for (Triangle& t : triangles)
-    t = canonical(t);
+  std::size_t count = 0;
+  for (const Triangle& t : triangles) {
+    const bool stays = !is_degenerate(t);
+    triangles[count] = canonical(t);
+    count += std::size_t{stays};
+  }
+  triangles.resize(count);
   sort_by_first_corner(triangles);
   if (unique)
     triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());

@@ -34,6 +34,8 @@ struct VertexArray {
   void reserve(std::size_t count);
   void append(Vec3f position, std::span<const float> vertex_attributes);
   void append(const VertexArray& other, std::size_t begin, std::size_t end);
+  /// Appends those of another array, with the same channels, in the order they are named.
+  void append(const VertexArray& other, std::span<const std::uint32_t> vertices);
 };
 
 /// A vertex of another tile of the same level.
@@ -55,17 +57,20 @@ struct TileMesh {
   const GhostRef& ghost(TileVertex v) const { return ghosts[raw(v) - own_count]; }
 };
 
+// Which corner is the smallest, and which triangle degenerate, no processor can predict: these two
+// do without branches.
+
 /// Turns the corners so that the smallest comes first; orientation is kept.
-constexpr Triangle canonical(Triangle t) {
-  if (t[1] < t[0] && t[1] < t[2])
-    return {t[1], t[2], t[0]};
-  if (t[2] < t[0] && t[2] < t[1])
-    return {t[2], t[0], t[1]};
-  return t;
+constexpr Triangle canonical(const Triangle& t) {
+  constexpr std::array<std::size_t, 5> kTurn{0, 1, 2, 0, 1};
+  const bool second = bool(int{t[1] < t[0]} & int{t[1] < t[2]});
+  const bool third = bool(int{t[2] < t[0]} & int{t[2] < t[1]});
+  const std::size_t first = std::size_t{second} + 2 * std::size_t{third};
+  return {t[first], t[kTurn[first + 1]], t[kTurn[first + 2]]};
 }
 
 constexpr bool is_degenerate(const Triangle& t) {
-  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+  return (int{t[0] == t[1]} | int{t[1] == t[2]} | int{t[2] == t[0]}) != 0;
 }
 
 /// Drops degenerate triangles, turns the rest to canonical form and sorts them. Exact duplicates

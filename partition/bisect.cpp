@@ -21,7 +21,7 @@ constexpr std::size_t kPlanes = 2;
 constexpr std::uint64_t kSeeds = 1;
 
 // Most rounds of refinement of a try: the first ones balance it.
-constexpr int kRounds = 3;
+constexpr int kRefineRounds = 3;
 
 class Bisector {
  public:
@@ -151,7 +151,7 @@ class Bisector {
              std::vector<std::uint32_t>& side) {
     Refiner refiner(node, side, targets, std::vector<char>(node.size(), 1));
     const Slack slack{2 * std::int64_t{heaviest_}, 2 * std::int64_t{heaviest_}};
-    refiner.refine_all(kRounds, slack);
+    refiner.refine_all(kRefineRounds, slack);
     counts_ += refiner.counts();
     const std::int64_t imbalance = std::abs(refiner.excess(0) - refiner.excess(1));
     return {std::max<std::int64_t>(0, imbalance - slack.kept), cut_weight(node, side)};

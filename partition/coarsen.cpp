@@ -22,14 +22,17 @@ struct Incidence {
       : first(surface.size() + 2),
         triangles(std::make_unique_for_overwrite<std::uint32_t[]>(3 * surface.triangles.size())) {
     // Counted two places on, summed, and moved one place back while they are filled in.
-    for (const LocalTriangle& t : surface.triangles) {
-      for (const std::uint32_t v : t)
-        ++first[v + 2];
+    for (const auto& [a, b, c] : surface.triangles) {
+      ++first[a + 2];
+      ++first[b + 2];
+      ++first[c + 2];
     }
     std::partial_sum(first.begin(), first.end(), first.begin());
     for (std::uint32_t i = 0; i < surface.triangles.size(); ++i) {
-      for (const std::uint32_t v : surface.triangles[i])
-        triangles[first[v + 1]++] = i;
+      const auto& [a, b, c] = surface.triangles[i];
+      triangles[first[a + 1]++] = i;
+      triangles[first[b + 1]++] = i;
+      triangles[first[c + 1]++] = i;
     }
   }
 };

@@ -10,7 +10,7 @@
 namespace meshhier::partition {
 namespace {
 
-constexpr std::uint32_t kNone = 0xffffffff;
+constexpr std::uint32_t kNoPlace = 0xffffffff;
 
 // The mean length in steps: rounding is nothing beside the measure's own choice of lines ...
 constexpr double kMeanSteps = 512;
@@ -254,7 +254,7 @@ Graph contract(const Graph& graph, std::span<const std::uint32_t> cluster_of, st
   coarse.weight.resize(count);
   coarse.center.resize(count);
   coarse.arcs.reserve(graph.arcs.size() / 2);
-  std::vector<std::uint32_t> place(count, kNone);  // of the arc to a cluster, if in this row
+  std::vector<std::uint32_t> place(count, kNoPlace);  // of the arc to a cluster, if in this row
   for (std::uint32_t c = 0; c < count; ++c) {
     const std::uint32_t row = coarse.first[c];
     std::uint32_t weight = 0;
@@ -267,7 +267,7 @@ Graph contract(const Graph& graph, std::span<const std::uint32_t> cluster_of, st
         const std::uint32_t to = cluster_of[arc.to];
         if (to == c)
           continue;
-        if (place[to] != kNone && place[to] >= row) {
+        if (place[to] != kNoPlace && place[to] >= row) {
           coarse.arcs[place[to]].weight += arc.weight;
         } else {
           place[to] = static_cast<std::uint32_t>(coarse.arcs.size());

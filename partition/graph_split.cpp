@@ -24,7 +24,7 @@ constexpr std::size_t kStarLevels = 2;
 // compactness of the dragon's 128 partitions is 2.45 instead of 2.51, and splitting takes an eighth
 // longer.
 constexpr int kCoarseRounds = 2;
-constexpr int kRounds = 1;
+constexpr int kExchangeRounds = 1;
 
 // Coarsening has stalled if less than this part of the vertices goes.
 constexpr std::uint32_t kStalled = 20;
@@ -96,7 +96,7 @@ bool refine_exactly(const Graph& graph, std::span<const std::uint32_t> sizes, Re
   Refiner refiner(graph, part_of, sizes, look_at);
   const bool exact = refiner.balance_exactly(reach);
   if (exact)
-    refiner.refine_all(kRounds, {0, 2});  // one vertex ahead of its exchange
+    refiner.refine_all(kExchangeRounds, {0, 2});  // one vertex ahead of its exchange
   done += refiner.counts();
   return exact;
 }

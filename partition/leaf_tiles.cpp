@@ -15,6 +15,23 @@ constexpr std::size_t kMostVertices = 65536;
 
 constexpr std::uint32_t kOutside = 0xffffffff;  // the leaf of a corner in another chunk
 
+/// Sorts by insertion: two or three numbers as a rule, for which std::sort takes three times as
+/// long; more than that are left to it.
+void sort_few(std::span<std::uint32_t> numbers) {
+  constexpr std::size_t kFew = 16;
+  if (numbers.size() > kFew) {
+    std::sort(numbers.begin(), numbers.end());
+    return;
+  }
+  for (std::size_t i = 1; i < numbers.size(); ++i) {
+    const std::uint32_t number = numbers[i];
+    std::size_t place = i;
+    for (; place > 0 && numbers[place - 1] > number; --place)
+      numbers[place] = numbers[place - 1];
+    numbers[place] = number;
+  }
+}
+
 class LeafBuilder {
  public:
   LeafBuilder(const ChunkMesh& chunk, std::span<const PartitionId> partition_of, const Tree& tree,
@@ -64,8 +81,9 @@ class LeafBuilder {
     for (const RankTriangle& t : chunk_.triangles) {
       const std::uint32_t a = leaf(t[0]), b = leaf(t[1]), c = leaf(t[2]);
       if (a == b && b == c) {
-        for (const std::uint32_t rank : t)
-          touched_[local(rank)] |= kInner;
+        touched_[local(t[0])] |= kInner;
+        touched_[local(t[1])] |= kInner;
+        touched_[local(t[2])] |= kInner;
         continue;
       }
       ++border_count_;
@@ -141,23 +159,29 @@ class LeafBuilder {
   /// Sorts interior triangles by all corners: into rows of their first, then within the rows.
   void place_interior() {
     std::partial_sum(rows_.begin(), rows_.end(), rows_.begin());
-    std::vector<std::uint32_t> sorted(interior_.size());
-    std::vector<std::uint32_t> next(rows_.begin(), rows_.end() - 1);
-    for (const Interior& triangle : interior_)
-      sorted[next[triangle.row]++] = triangle.rest;
+    std::vector<std::uint32_t> sorted = interior_by_row();
     for (std::size_t i = 0; i < result_.tiles.size(); ++i) {
       std::vector<Triangle>& triangles = result_.tiles[i].interior;
       const std::uint32_t first = first_vertex_[i], end = first_vertex_[i + 1];
       triangles.reserve(rows_[end] - rows_[first]);
       for (std::uint32_t row = first; row < end; ++row) {
         const auto rest = std::span(sorted).subspan(rows_[row], rows_[row + 1] - rows_[row]);
-        if (rest.size() > 1)
-          std::sort(rest.begin(), rest.end());
+        sort_few(rest);
         for (const std::uint32_t two : rest)
           triangles.push_back(
               {TileVertex{row - first}, TileVertex{two >> 16}, TileVertex{two & 0xffff}});
       }
     }
+  }
+
+  /// The other two corners of each interior triangle, row after row. Forgets `interior_`.
+  std::vector<std::uint32_t> interior_by_row() {
+    std::vector<std::uint32_t> rest(interior_.size());
+    std::vector<std::uint32_t> next(rows_.begin(), rows_.end() - 1);
+    for (const Interior& triangle : interior_)
+      rest[next[triangle.row]++] = triangle.rest;
+    interior_ = {};
+    return rest;
   }
 
   void place_borders() {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 
 namespace meshhier::partition {
 namespace {
@@ -18,7 +19,7 @@ std::uint32_t spread(std::uint32_t x) {
   return (x | x << 2) & 0x09249249;
 }
 
-struct Keyed {
+struct CellKey {
   std::uint32_t key, index;
 };
 
@@ -33,27 +34,30 @@ std::vector<std::uint32_t> spatial_order(std::span<const Vec3f> positions) {
     const double place = (double{x} - double{least}) * scale;
     return spread(place > 0 ? static_cast<std::uint32_t>(std::min(place, kCells - 1.0)) : 0);
   };
-  std::vector<Keyed> keyed(positions.size());
+  constexpr int kDigit = 10, kDigits = 3;
+  constexpr std::uint32_t kDigitMask = (1U << kDigit) - 1;
+  std::array<std::array<std::uint32_t, kDigitMask + 2>, kDigits> starts{};
+  std::vector<CellKey> keyed(positions.size());
   for (std::uint32_t i = 0; i < keyed.size(); ++i) {
     const Vec3f p = positions[i];
     keyed[i] = {
         cell(p.x, bounds.min.x) | cell(p.y, bounds.min.y) << 1 | cell(p.z, bounds.min.z) << 2, i};
+    const std::uint32_t key = keyed[i].key;
+    ++starts[0][(key & kDigitMask) + 1];
+    ++starts[1][(key >> kDigit & kDigitMask) + 1];
+    ++starts[2][(key >> 2 * kDigit) + 1];
   }
-  std::vector<Keyed> sorted(keyed.size());
-  constexpr int kDigit = 10;
-  for (int shift = 0; shift < 30; shift += kDigit) {
-    std::array<std::uint32_t, (1 << kDigit) + 1> starts{};
-    const auto digit = [&](const Keyed& k) { return k.key >> shift & ((1U << kDigit) - 1); };
-    for (const Keyed& k : keyed)
-      ++starts[digit(k) + 1];
-    for (std::size_t i = 1; i < starts.size(); ++i)
-      starts[i] += starts[i - 1];
-    for (const Keyed& k : keyed)
-      sorted[starts[digit(k)]++] = k;
+  std::vector<CellKey> sorted(keyed.size());
+  for (int digit = 0; digit < kDigits; ++digit) {
+    auto& next = starts[static_cast<std::size_t>(digit)];
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    for (const CellKey& k : keyed)
+      sorted[next[k.key >> digit * kDigit & kDigitMask]++] = k;
     keyed.swap(sorted);
   }
   std::vector<std::uint32_t> order(keyed.size());
-  std::transform(keyed.begin(), keyed.end(), order.begin(), [](const Keyed& k) { return k.index; });
+  std::transform(keyed.begin(), keyed.end(), order.begin(),
+                 [](const CellKey& k) { return k.index; });
   return order;
 }
 

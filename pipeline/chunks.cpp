@@ -127,16 +127,19 @@ partition::ChunkMesh Chunks::take(std::uint32_t chunk) {
   partition::ChunkMesh mesh;
   mesh.node = {level_, chunk};
   mesh.vertices.channels = channels_;
-  mesh.vertices.reserve(map_.size(chunk));
+  mesh.vertices.positions.resize(map_.size(chunk));
+  mesh.vertices.attributes.resize(map_.size(chunk) * static_cast<std::size_t>(channels_));
   constexpr std::uint64_t kBatch = 16384;  // records at a time: nothing is held twice
   const std::size_t width = 3 + static_cast<std::size_t>(channels_);
   std::vector<float> rows;
   for (std::uint64_t first = 0; first < map_.size(chunk); first += kBatch) {
     rows.resize(std::min<std::uint64_t>(kBatch, map_.size(chunk) - first) * width);
     vertices_[chunk].read(first * width, rows);
+    Vec3f* position = mesh.vertices.positions.data() + first;
+    float* attributes = mesh.vertices.attributes.data() + first * (width - 3);
     for (std::size_t at = 0; at < rows.size(); at += width) {
-      mesh.vertices.append({rows[at], rows[at + 1], rows[at + 2]},
-                           std::span(rows).subspan(at + 3, width - 3));
+      *position++ = {rows[at], rows[at + 1], rows[at + 2]};
+      attributes = std::copy_n(rows.data() + at + 3, width - 3, attributes);
     }
   }
   vertices_[chunk].clear();

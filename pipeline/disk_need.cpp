@@ -58,10 +58,6 @@ double simplified_ratio(const JobSize& job) {
   return job.clustered ? kClusteredTriangles : 1;
 }
 
-double vertex_bytes(const JobSize& job) {
-  return 12 + 4.0 * job.channels;
-}
-
 /// From the root down to the partitions.
 std::vector<LevelNodes> count_nodes(const JobSize& job) {
   std::vector<LevelNodes> levels(1);
@@ -161,8 +157,8 @@ Population population_of(const JobSize& job) {
 /// storage/work_tile.cpp, and the rim once more for its neighbours. `foreign`: foreign corners per
 /// vertex of the rim.
 double work_tile_bytes(const JobSize& job, const Tiles& tiles, double foreign) {
-  return tiles.count * 24 + tiles.vertices * (vertex_bytes(job) + 4) +
-         tiles.rim * (foreign * 8 + vertex_bytes(job)) + tiles.triangles * 6;
+  return tiles.count * 24 + tiles.vertices * (job.vertex_bytes() + 4) +
+         tiles.rim * (foreign * 8 + job.vertex_bytes()) + tiles.triangles * 6;
 }
 
 /// What neighbours see of a simplified tile: per vertex of the rim 76 to 89 bytes, up to 130 after
@@ -233,7 +229,7 @@ Volumes volumes_of(const JobSize& job, const MemoryPlan& plan, const Population&
   v.windows = window_bytes(job);
   v.ranks = vertices * 4;
   v.waiting = waiting_bytes(job, plan);
-  v.chunk_vertices = vertices * vertex_bytes(job);
+  v.chunk_vertices = vertices * job.vertex_bytes();
   v.chunk_triangles = chunk_triangle_bytes(job);
   v.leaves = work_tile_bytes(job, all.partitions, kGhosts) + all.partitions.rim * kPlaceBytes;
   v.simplified = work_tile_bytes(job, all.simplified, kFreshForeign) +

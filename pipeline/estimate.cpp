@@ -59,7 +59,8 @@ std::string memory_text(const BuildEstimate& e) {
   const MemoryPlan& memory = e.plan.memory;
   return fmt::format(
       "memory      {} asked for, {} would do\n"
-      "            {} program and index, {} stages at work, {} data kept off the disk\n"
+      "            {} program, index and allocator, {} stages at work, {} data kept off the "
+      "disk\n"
       "            in flight: {} blocks, {} chunks, {} tiles; rank table {}\n",
       exact_size_text(e.memory_budget_bytes), exact_size_text(e.least_budget_bytes),
       rounded_size_text(fixed_memory(e)), rounded_size_text(memory.work_bytes),

@@ -30,7 +30,7 @@ constexpr std::size_t kTriangleBlock = 65536;
 constexpr std::size_t kScratchBlockBytes = std::size_t{1} << 20;
 
 /// What the four kinds of export share.
-struct Job {
+struct ExportJob {
   storage::FileSystem& files;
   const storage::HierarchyReader& reader;
   fs::path work;  ///< directory of the unfinished output
@@ -99,7 +99,7 @@ void copy_triangles(const TriangleSpool& from, mesh_io::PlyWriter& to) {
 
 /// PLY names its counts first, so triangles wait in a scratch file until they are counted, and
 /// vertices are read in a second pass over the tiles.
-std::string export_cut(const Job& job, Cut cut, const std::string& what) {
+std::string export_cut(const ExportJob& job, Cut cut, const std::string& what) {
   const Tree& tree = job.reader.tree();
   const NumberedCut numbered = number_vertices(job.reader, std::move(cut));
   storage::MemoryPool pool(job.memory_budget / 2);  // the other half: a tile, the writer, the cut
@@ -128,7 +128,7 @@ std::string export_cut(const Job& job, Cut cut, const std::string& what) {
                      content.vertex_count, content.triangle_count);
 }
 
-std::string export_tile(const Job& job, NodeId node) {
+std::string export_tile(const ExportJob& job, NodeId node) {
   const Tree& tree = job.reader.tree();
   require_node(tree, node);
   job.progress.stage("export", 1, "tiles");
@@ -152,7 +152,7 @@ std::string export_tile(const Job& job, NodeId node) {
                      mesh.border.size());
 }
 
-std::string export_outline(const Job& job) {
+std::string export_outline(const ExportJob& job) {
   job.progress.stage("export", 1, "outlines");
   const Outline outline = job.reader.read_outline();
   std::vector<std::array<std::uint32_t, 2>> edges;
@@ -190,7 +190,7 @@ void require_place(storage::FileSystem& files, const fs::path& output) {
                                          output.string(), directory.string()));
 }
 
-std::string export_selection(const Job& job, const ExportSelection& selection) {
+std::string export_selection(const ExportJob& job, const ExportSelection& selection) {
   const Tree& tree = job.reader.tree();
   if (const auto* level = std::get_if<Level>(&selection)) {
     require_level(tree, *level);
@@ -225,7 +225,7 @@ std::string export_mesh(storage::FileSystem& files, const fs::path& hierarchy,
   const storage::HierarchyReader reader(files, hierarchy);
   const WorkDirectory work(files, storage::work_path(options.output));
   const fs::path file = work.path() / options.output.filename();
-  const Job job{files, reader, work.path(), file, options.memory_budget, progress, cancel};
+  const ExportJob job{files, reader, work.path(), file, options.memory_budget, progress, cancel};
   const std::string summary = export_selection(job, options.selection);
   files.open(file)->sync();
   files.rename(file, options.output);

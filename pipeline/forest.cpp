@@ -48,17 +48,20 @@ void Forest::put_parent_map(NodeId child, std::span<const std::uint16_t> parent_
   levels_[raw(child.level)].parent_maps.put(child.index, std::as_bytes(parent_map));
 }
 
-BuildTile Forest::load(NodeId node) const {
+LoadedTile Forest::load_with_mapped(NodeId node) const {
   const LevelStore& level = levels_[raw(node.level)];
-  WorkTile work = storage::decode_work_tile(level.tiles.get(node.index), channels_);
-  const std::vector<GhostRef> ghosts = mapped(node, work.foreign);
-  BuildTile tile = cluster_simplify::resolve(std::move(work), ghosts, !tree_.is_partition(node));
+  WorkTile work = storage::decode_work_tile(level.tiles.view(node.index).bytes(), channels_);
+  LoadedTile loaded;
+  loaded.mapped = mapped(node, work.foreign);
+  BuildTile& tile = loaded.tile;
+  tile = cluster_simplify::resolve(std::move(work), loaded.mapped, !tree_.is_partition(node));
+  tile.mesh.vertices.reserve(tile.mesh.own_count + tile.mesh.ghosts.size());
   for_each_tile(tile.mesh.ghosts, [&](std::size_t begin, std::size_t) {
     const std::uint32_t neighbour = tile.mesh.ghosts[begin].tile;
-    cluster_simplify::fill_ghosts(tile, neighbour,
-                                  storage::decode_rim(level.rims.get(neighbour), channels_));
+    cluster_simplify::fill_ghosts(
+        tile, neighbour, storage::decode_rim(level.rims.view(neighbour).bytes(), channels_));
   });
-  return tile;
+  return loaded;
 }
 
 void Forest::put_band(NodeId node, const Band& band) {
@@ -66,7 +69,7 @@ void Forest::put_band(NodeId node, const Band& band) {
 }
 
 Band Forest::band(NodeId node) const {
-  return storage::decode_band(levels_[raw(node.level)].bands.get(node.index));
+  return storage::decode_band(levels_[raw(node.level)].bands.view(node.index).bytes());
 }
 
 std::vector<GhostRef> Forest::mapped(NodeId node, std::span<const GhostRef> foreign) const {

@@ -21,6 +21,12 @@ struct TileFacts {
   std::uint32_t forced_count = 0;
 };
 
+struct LoadedTile {
+  BuildTile tile;  ///< with its ghosts at its own level, positions and all
+  /// What foreign corners of the tile as it was just made (WorkTile::foreign) are at its own level.
+  std::vector<GhostRef> mapped;
+};
+
 /// Tiles are put level by level, finest first. A level's tiles can be loaded once all tiles of that
 /// level are there (and, of a simplified level, all parent maps that lead to it). Loading and
 /// putting are thread-safe.
@@ -45,12 +51,9 @@ class Forest {
     return levels_[raw(node.level)].own_counts[node.index];
   }
 
-  /// The tile with its ghosts at its own level, positions and all.
-  BuildTile load(NodeId node) const;
+  LoadedTile load_with_mapped(NodeId node) const;
+  BuildTile load(NodeId node) const { return load_with_mapped(node).tile; }
   Band band(NodeId node) const;
-  /// What foreign corners of the node's tile as it was just made (WorkTile::foreign) are at its own
-  /// level.
-  std::vector<GhostRef> mapped(NodeId node, std::span<const GhostRef> foreign) const;
   /// The map from `child` to its parent's tile.
   std::vector<std::uint16_t> parent_map(NodeId child) const;
   /// The map from `node` to the nearest ancestor that is published; empty for the root.
@@ -64,6 +67,7 @@ class Forest {
     std::vector<TileFacts> facts;
     std::vector<std::uint32_t> own_counts;
   };
+  std::vector<GhostRef> mapped(NodeId node, std::span<const GhostRef> foreign) const;
   std::vector<GhostRef> mapped_leaf(std::span<const GhostRef> foreign) const;
   std::vector<std::uint16_t> parent_map(NodeId child, std::size_t count) const;
 

@@ -30,13 +30,9 @@ constexpr std::uint64_t kTileEntryBytes = 320;
 // several chunks share.
 constexpr std::uint64_t kTrianglesPerVertex = 3;
 
-std::uint64_t vertex_bytes(const JobSize& job) {
-  return 12 + 4 * static_cast<std::uint64_t>(job.channels);
-}
-
 /// A block of input with its copy, its sorted copy and its ranks.
 std::uint64_t block_bytes(const JobSize& job) {
-  return mesh_io::MeshSource::kBlockSize * (2 * vertex_bytes(job) + 32);
+  return mesh_io::MeshSource::kBlockSize * (2 * job.vertex_bytes() + 32);
 }
 
 /// The sample, its keys and its positions.
@@ -52,9 +48,9 @@ std::uint64_t chunk_bytes(const JobSize& job) {
   const std::uint64_t triangles =
       vertices *
       std::max<std::uint64_t>(kTrianglesPerVertex, job.face_count * 3 / 2 / job.vertex_count + 1);
-  const std::uint64_t usual = vertices * (3 * vertex_bytes(job) + 60) + triangles * 40;
+  const std::uint64_t usual = vertices * (3 * job.vertex_bytes() + 60) + triangles * 40;
   const bool is_dense = 2 * job.face_count > 5 * job.vertex_count;
-  return is_dense ? std::max(usual, vertices * (vertex_bytes(job) + 500) + triangles * 12) : usual;
+  return is_dense ? std::max(usual, vertices * (job.vertex_bytes() + 500) + triangles * 12) : usual;
 }
 
 /// Two children read, joined, contracted and encoded: 16 copies of a vertex's 20 bytes and 8 of a
@@ -64,7 +60,7 @@ std::uint64_t tile_bytes(const JobSize& job) {
   const std::uint64_t triangles =
       vertices *
       std::max<std::uint64_t>(kTrianglesPerVertex, job.face_count * 3 / 2 / job.vertex_count + 1);
-  return vertices * (6 * (vertex_bytes(job) + 8) + 260) + triangles * 80;
+  return vertices * (6 * (job.vertex_bytes() + 8) + 260) + triangles * 80;
 }
 
 /// No more chunks than this: each has more than half of kChunkVertices.
@@ -80,7 +76,7 @@ constexpr std::uint64_t kMostSpoolBlock = 262144;
 /// The index of the spools of chunks: 8 bytes for every block there is, in vectors that may be half
 /// empty, and both halves held while they grow.
 std::uint64_t spool_index_bytes(const JobSize& job, std::uint64_t block) {
-  const std::uint64_t spooled = job.vertex_count * vertex_bytes(job) + job.face_count * 13;
+  const std::uint64_t spooled = job.vertex_count * job.vertex_bytes() + job.face_count * 13;
   return spooled / block * 24;
 }
 
@@ -152,12 +148,15 @@ MemoryPlan plan_memory(std::uint64_t budget_bytes, const JobSize& job) {
 }
 
 void configure_allocator(std::uint64_t budget_bytes) {
-  // Arrays mapped alone leave at once, but each of their pages is made anew.
+  // Arrays mapped alone leave at once, but each of their pages is made anew, and so is the end of
+  // the heap after it was given back: the arrays of a chunk, up to 4 MiB each and some 20 MiB
+  // together, would spend a seventh of `leaves` there. What two arenas keep is less than
+  // kAllocatorParts allows for.
   const auto part = [&](std::uint64_t parts, std::uint64_t least, std::uint64_t most) {
     return static_cast<int>(std::clamp(budget_bytes / parts, least, most));
   };
-  mallopt(M_MMAP_THRESHOLD, part(256, kMiB / 4, 32 * kMiB));
-  mallopt(M_TRIM_THRESHOLD, part(64, kMiB, 64 * kMiB));
+  mallopt(M_MMAP_THRESHOLD, part(128, kMiB / 4, 32 * kMiB));
+  mallopt(M_TRIM_THRESHOLD, part(32, kMiB, 64 * kMiB));
   mallopt(M_ARENA_MAX, 2);
 }
 

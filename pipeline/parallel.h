@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <exception>
 #include <functional>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -24,24 +25,33 @@ template <class Work, class Sink>
 void ordered_for(std::size_t count, std::size_t in_flight, const CancelToken& cancel,
                  const Work& work, const Sink& sink) {
   using Result = decltype(work(std::size_t{}));
-  using Item = std::pair<std::size_t, Result>;
+  // Results wait here, not in TBB's tokens: TBB 2021.8 forgets to destroy some when an exception
+  // ends it. They leave in order, so that the place of i is free when i + in_flight is let in.
+  std::vector<std::optional<Result>> results(in_flight);
   std::size_t next = 0;
+  const auto start = [&](tbb::flow_control& control) {
+    if (next == count) {
+      control.stop();
+      return count;
+    }
+    cancel.check();
+    return next++;
+  };
+  const auto run = [&](std::size_t i) {
+    results[i % in_flight].emplace(work(i));
+    return i;
+  };
+  const auto end = [&](std::size_t i) {
+    std::optional<Result>& place = results[i % in_flight];
+    Result result = std::move(*place);
+    place.reset();
+    sink(i, std::move(result));
+  };
+  using tbb::filter_mode;
   tbb::parallel_pipeline(
-      in_flight,
-      tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order,
-                                          [&](tbb::flow_control& control) {
-                                            if (next == count) {
-                                              control.stop();
-                                              return count;
-                                            }
-                                            cancel.check();
-                                            return next++;
-                                          }) &
-          tbb::make_filter<std::size_t, Item>(tbb::filter_mode::parallel,
-                                              [&](std::size_t i) { return Item(i, work(i)); }) &
-          tbb::make_filter<Item, void>(tbb::filter_mode::serial_in_order, [&](Item item) {
-            sink(item.first, std::move(item.second));
-          }));
+      in_flight, tbb::make_filter<void, std::size_t>(filter_mode::serial_in_order, start) &
+                     tbb::make_filter<std::size_t, std::size_t>(filter_mode::parallel, run) &
+                     tbb::make_filter<std::size_t, void>(filter_mode::serial_in_order, end));
 }
 
 /// As ordered_for, for many small items: work(i, slot) leaves its result in one of `in_flight`

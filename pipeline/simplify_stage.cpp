@@ -7,6 +7,7 @@
 #include "pipeline/size_text.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -15,8 +16,10 @@ namespace {
 
 using cluster_simplify::ContractedTile;
 
-// What tiles leave behind between the blobs that stay adds up over thousands of them.
+// What tiles leave behind between the blobs that stay adds up over thousands of them, and so do the
+// places of spooled blocks, too small for the tiles they turn into: some 3 MiB a chunk.
 constexpr std::size_t kTilesBetweenReleases = 64;
+constexpr std::size_t kChunksBetweenReleases = 8;
 
 /// A chunk whose triangles alone exceed what a stage may hold: a vertex with an absurd number of
 /// triangles.
@@ -51,15 +54,15 @@ ChunkReport put_leaves(Chunks& chunks, std::uint32_t index, partition::Axis axis
 
 /// How far a simplified tile's surface went when its level was made, now that the level is
 /// complete.
-Step measure_step(const Forest& forest, NodeId node, const BuildTile& tile) {
+Step measure_step(const Forest& forest, NodeId node, const LoadedTile& loaded) {
+  const TileMesh& mesh = loaded.tile.mesh;
   const cluster_simplify::BandOf own{node.index, forest.band(node)};
   std::vector<cluster_simplify::BandOf> neighbours;
-  for (const GhostRef& ghost : tile.mesh.ghosts) {
+  for (const GhostRef& ghost : mesh.ghosts) {
     if (neighbours.empty() || neighbours.back().tile != ghost.tile)
       neighbours.push_back({ghost.tile, forest.band({node.level, ghost.tile})});
   }
-  const std::vector<GhostRef> mapped = forest.mapped(node, own.band.foreign);
-  const double seam = cluster_simplify::seam_gap({tile.mesh, own, mapped, neighbours});
+  const double seam = cluster_simplify::seam_gap({mesh, own, loaded.mapped, neighbours});
   const Band& band = own.band;
   Step step;
   step.certain = std::max(double{band.interior_drift}, seam);
@@ -96,10 +99,10 @@ class Simplifier {
 
   /// Loads a tile of the level that begin() named.
   BuildTile load(NodeId node) {
-    BuildTile tile = forest_.load(node);
+    LoadedTile loaded = forest_.load_with_mapped(node);
     if (!forest_.tree().is_partition(node))
-      steps_[node.index] = measure_step(forest_, node, tile);
-    return tile;
+      steps_[node.index] = measure_step(forest_, node, loaded);
+    return std::move(loaded.tile);
   }
 
   /// Makes a node's tile out of its children's, and their maps to it.
@@ -157,9 +160,11 @@ std::uint64_t make_leaves(Chunks& chunks, Forest& forest, partition::Axis axis,
         check_fits(chunks, index, plan);
         return put_leaves(chunks, index, axis, forest);
       },
-      [&](std::size_t, const ChunkReport& report) {
+      [&](std::size_t i, const ChunkReport& report) {
         unreferenced += report.unreferenced_vertices;
         progress.advance(report.partitions);
+        if (i % kChunksBetweenReleases == kChunksBetweenReleases - 1)
+          release_free_memory();
       });
   return unreferenced;
 }

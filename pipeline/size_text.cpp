@@ -43,7 +43,7 @@ bool is_space(char c) {
   return c == ' ' || c == '\t';
 }
 
-std::string_view trimmed(std::string_view text) {
+std::string_view without_spaces_around(std::string_view text) {
   while (!text.empty() && is_space(text.front()))
     text.remove_prefix(1);
   while (!text.empty() && is_space(text.back()))
@@ -63,7 +63,7 @@ const Unit* find_unit(std::string_view name) {
 }  // namespace
 
 std::optional<std::uint64_t> parse_size(std::string_view text) {
-  text = trimmed(text);
+  text = without_spaces_around(text);
   // from_chars() would also take a sign, "inf" and "nan".
   if (text.empty() || text.front() < '0' || text.front() > '9')
     return std::nullopt;
@@ -73,7 +73,7 @@ std::optional<std::uint64_t> parse_size(std::string_view text) {
   if (failure != std::errc{})
     return std::nullopt;
   text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-  const Unit* unit = find_unit(trimmed(text));
+  const Unit* unit = find_unit(without_spaces_around(text));
   if (unit == nullptr || number * unit->bytes >= kLimit)
     return std::nullopt;
   return static_cast<std::uint64_t>(number * unit->bytes);

@@ -15,7 +15,7 @@ namespace {
 
 /// Counts what is wrong with the ghosts in one neighbour, so that a broken pair of tiles is one
 /// line.
-class Tally {
+class GhostTally {
  public:
   void require(bool holds, std::size_t ghost) {
     if (holds)
@@ -67,7 +67,7 @@ void check_ghosts(const VerifyJob& job, const PublishedTile& tile, const GhostGr
   const Tree& tree = job.tree();
   // A simplified tile may store attributes more coarsely than the partition beside it does.
   const bool same_kind = tree.is_partition(tile.node) == tree.is_partition(neighbour.node);
-  Tally missing, moved, recoloured;
+  GhostTally missing, moved, recoloured;
   for (std::size_t i = group.begin; i < group.end; ++i) {
     const std::size_t vertex = tile.mesh.ghosts[i].index;
     missing.require(vertex < neighbour.mesh.rim_count, i);
@@ -88,7 +88,7 @@ void check_ghosts(const VerifyJob& job, const PublishedTile& tile, const GhostGr
 /// early node has no tile: its entry repeats the one below, and the partition's map leads past it.
 void check_chains(const VerifyJob& job, const PublishedTile& tile, const GhostGroup& group) {
   const Tree& tree = job.tree();
-  Tally wrong;
+  GhostTally wrong;
   std::vector<std::uint16_t> reached;
   for (std::size_t i = group.begin; i < group.end; ++i) {
     reached.push_back(static_cast<std::uint16_t>(tile.mesh.ghosts[i].index));

@@ -36,7 +36,7 @@ constexpr std::uint64_t kForwardStream = 1;
 constexpr std::uint64_t kBackwardStream = 2;
 
 /// What all measurements share.
-struct Job {
+struct MeasureJob {
   const storage::HierarchyReader& reader;
   const ErrorOptions& options;
   const CutSurface& original;
@@ -68,8 +68,8 @@ Samples along_curve(const Samples& samples) {
 }
 
 /// Sums up the distances in one direction.
-struct Tally {
-  explicit Tally(std::size_t tiles) : tile_max(tiles) {}
+struct DistanceTally {
+  explicit DistanceTally(std::size_t tiles) : tile_max(tiles) {}
 
   void add(double distance, std::uint32_t owner) {
     ++count;
@@ -105,7 +105,7 @@ struct Direction {
 /// Which tile answers for each triangle of a tile.
 class Owners {
  public:
-  Owners(const Job& job, const Cut& shown, const Direction& direction, std::size_t position,
+  Owners(const MeasureJob& job, const Cut& shown, const Direction& direction, std::size_t position,
          const TileSurface& tile)
       : reader_(job.reader), shown_(shown), direction_(direction), tile_(tile) {
     own_ = static_cast<std::uint32_t>(direction.shown_tile(static_cast<std::uint32_t>(position)));
@@ -149,7 +149,7 @@ std::vector<Portion> portions_of(const CutSurface& surface, const SurfaceSampler
   return portions;
 }
 
-Samples draw_samples(const Job& job, const Cut& shown, const Direction& direction,
+Samples draw_samples(const MeasureJob& job, const Cut& shown, const Direction& direction,
                      const SurfaceSampler& sampler, const Portion& portion) {
   const TileSurface tile = direction.sampled.load(portion.position);
   const Owners owners(job, shown, direction, portion.position, tile);
@@ -163,10 +163,10 @@ Samples draw_samples(const Job& job, const Cut& shown, const Direction& directio
   return samples;
 }
 
-Tally measure(const Job& job, const Cut& shown, const Direction& direction) {
+DistanceTally measure(const MeasureJob& job, const Cut& shown, const Direction& direction) {
   const SurfaceSampler sampler(direction.sampled, job.options.samples, direction.stream);
   const std::vector<Portion> portions = portions_of(direction.sampled, sampler);
-  Tally tally(shown.size());
+  DistanceTally tally(shown.size());
   Samples waiting;
   const auto look_up = [&] {
     const Samples sorted = along_curve(waiting);
@@ -198,8 +198,8 @@ double largest_coordinate(const Bounds& box) {
 }
 
 /// Holds the measured maxima of every tile against its bound.
-void check_bounds(const Job& job, const CutSurface& shown, const Tally& forward,
-                  const Tally& backward, ErrorMeasurement& result) {
+void check_bounds(const MeasureJob& job, const CutSurface& shown, const DistanceTally& forward,
+                  const DistanceTally& backward, ErrorMeasurement& result) {
   const double slack = kRounding * std::max(largest_coordinate(job.original.total().bounds),
                                             largest_coordinate(shown.total().bounds));
   std::vector<double> ratios;
@@ -235,23 +235,23 @@ double source_diagonal(const storage::HierarchyReader& reader) {
 }
 
 /// Samples both surfaces, which have triangles.
-void measure_both_ways(const Job& job, const CutSurface& shown, ErrorMeasurement& result) {
+void measure_both_ways(const MeasureJob& job, const CutSurface& shown, ErrorMeasurement& result) {
   SurfaceDistance to_shown(shown, job.options.memory_budget / 4);
   const auto shown_partition = [&](std::uint32_t partition) {
     return shown.cut().position_of(static_cast<PartitionId>(partition));
   };
   const auto itself = [](std::uint32_t position) { return position; };
   job.progress.stage("error", 2 * job.options.samples, "samples");
-  const Tally forward =
+  const DistanceTally forward =
       measure(job, shown.cut(), {job.original, to_shown, shown_partition, kForwardStream});
-  const Tally backward =
+  const DistanceTally backward =
       measure(job, shown.cut(), {shown, job.to_original, itself, kBackwardStream});
   result.forward = forward.summary();
   result.backward = backward.summary();
   check_bounds(job, shown, forward, backward, result);
 }
 
-ErrorMeasurement measure_cut(const Job& job, Cut cut, std::string name,
+ErrorMeasurement measure_cut(const MeasureJob& job, Cut cut, std::string name,
                              std::optional<Level> level) {
   job.progress.stage("read", cut.size(), "tiles");
   const CutSurface shown(job.reader, std::move(cut), job.options.memory_budget / 8, job.progress,
@@ -278,7 +278,7 @@ ErrorMeasurement measure_cut(const Job& job, Cut cut, std::string name,
   return result;
 }
 
-ErrorMeasurement measure_level(const Job& job, Level level) {
+ErrorMeasurement measure_level(const MeasureJob& job, Level level) {
   return measure_cut(job, Cut::of_level(job.reader.tree(), level),
                      fmt::format("level {}", raw(level)), level);
 }
@@ -300,7 +300,7 @@ std::vector<ErrorMeasurement> measure_errors(storage::FileSystem& files, const f
   const CutSurface original(reader, Cut::of_level(tree, tree.depth()), options.memory_budget / 16,
                             progress, cancel);
   SurfaceDistance to_original(original, options.memory_budget / 4);
-  const Job job{reader, options, original, to_original, progress, cancel};
+  const MeasureJob job{reader, options, original, to_original, progress, cancel};
 
   std::vector<ErrorMeasurement> results;
   if (cut) {

@@ -26,7 +26,7 @@ using EdgeSpool = storage::RecordSpool<CutEdge>;
 using EdgeSort = partition::ExternalSort<CutEdge, CutEdgeKey>;
 using ParentMaps = NodeCache<std::vector<std::uint16_t>>;
 
-constexpr std::size_t kSpoolBlockBytes = std::size_t{1} << 18;
+constexpr std::size_t kEdgeSpoolBlockBytes = std::size_t{1} << 18;
 /// Edges read from a spool at a time: 512 KiB.
 constexpr std::size_t kEdgeBlock = 65536;
 /// Cracks of one cut that are told one by one.
@@ -55,7 +55,7 @@ void census(const VerifyJob& job, const NumberedCut& numbered, Visit visit) {
 Original look_at_original(const VerifyJob& job) {
   const Tree& tree = job.tree();
   Original original{number_vertices(job.reader, Cut::of_level(tree, tree.depth())),
-                    EdgeSpool(job.scratch, kSpoolBlockBytes)};
+                    EdgeSpool(job.scratch, kEdgeSpoolBlockBytes)};
   census(job, original.numbered, [&](const EdgeCount& edge) {
     if (edge.is_unbalanced())
       original.unbalanced.append(edge.edge);

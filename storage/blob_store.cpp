@@ -31,10 +31,13 @@ void BlobStore::read(std::size_t index, std::uint64_t offset, std::span<std::byt
   }
 }
 
-std::vector<std::byte> BlobStore::get(std::size_t index) const {
-  std::vector<std::byte> bytes(blobs_[index].size);
-  read(index, 0, bytes);
-  return bytes;
+BlobView BlobStore::view(std::size_t index) const {
+  const Blob& blob = blobs_[index];
+  if (blob.memory || blob.size == 0)
+    return BlobView({blob.memory.get(), blob.size});
+  auto bytes = std::make_unique_for_overwrite<std::byte[]>(blob.size);
+  scratch_->read(blob.offset, {bytes.get(), blob.size});
+  return BlobView(std::move(bytes), blob.size);
 }
 
 void BlobStore::clear() {

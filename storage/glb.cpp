@@ -26,11 +26,11 @@ using Json = nlohmann::ordered_json;
 //     20+n      4  length of the BIN chunk's data, a multiple of 4
 //     24+n      4  "BIN\0"
 //     28+n      m  binary data
-constexpr std::uint32_t kMagic = 0x46546C67;
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kGlbMagic = 0x46546C67;
+constexpr std::uint32_t kGlbVersion = 2;
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
 constexpr std::uint32_t kBinChunk = 0x004E4942;
-constexpr std::size_t kHeaderBytes = 12;
+constexpr std::size_t kGlbHeaderBytes = 12;
 constexpr std::size_t kChunkHeaderBytes = 8;
 
 /// A tile's JSON has 1 to 2 kB, whatever the tile; 30 times that is surely not one of ours.
@@ -109,17 +109,17 @@ std::span<const std::byte> read_chunk(std::span<const std::byte> bytes, std::siz
 }
 
 void check_header(std::span<const std::byte> bytes, const std::string& name) {
-  if (bytes.size() < kHeaderBytes) {
-    fail(name, fmt::format("has {} bytes, expected at least {}", bytes.size(), kHeaderBytes));
+  if (bytes.size() < kGlbHeaderBytes) {
+    fail(name, fmt::format("has {} bytes, expected at least {}", bytes.size(), kGlbHeaderBytes));
   }
   const auto magic = load_little<std::uint32_t>(bytes.data());
   const auto version = load_little<std::uint32_t>(bytes.data() + 4);
   const auto length = load_little<std::uint32_t>(bytes.data() + 8);
-  if (magic != kMagic) {
-    fail(name, fmt::format("starts with {:#010x}, expected {:#010x} (glTF)", magic, kMagic));
+  if (magic != kGlbMagic) {
+    fail(name, fmt::format("starts with {:#010x}, expected {:#010x} (glTF)", magic, kGlbMagic));
   }
-  if (version != kVersion) {
-    fail(name, fmt::format("GLB version at byte 4 is {}, expected {}", version, kVersion));
+  if (version != kGlbVersion) {
+    fail(name, fmt::format("GLB version at byte 4 is {}, expected {}", version, kGlbVersion));
   }
   if (length != bytes.size()) {
     fail(name,
@@ -193,8 +193,8 @@ std::vector<std::byte> begin_glb(std::string_view json, std::size_t bin_bytes,
 
   std::vector<std::byte> bytes;
   bytes.reserve(length);
-  append_little(bytes, kMagic);
-  append_little(bytes, kVersion);
+  append_little(bytes, kGlbMagic);
+  append_little(bytes, kGlbVersion);
   append_little(bytes, static_cast<std::uint32_t>(length));
   append_chunk_header(bytes, json_bytes, kJsonChunk);
   const auto text = std::as_bytes(std::span(json));
@@ -215,13 +215,13 @@ std::vector<std::byte> join_glb(std::string_view json, std::span<const std::byte
 
 GlbView split_glb(std::span<const std::byte> bytes, const std::string& name) {
   check_header(bytes, name);
-  const auto json = read_chunk(bytes, kHeaderBytes, kJsonChunk, name);
+  const auto json = read_chunk(bytes, kGlbHeaderBytes, kJsonChunk, name);
   if (json.size() > kMaxJsonBytes) {
     fail(name, fmt::format("the JSON chunk has {} bytes, expected at most {}", json.size(),
                            kMaxJsonBytes));
   }
   GlbView view{{reinterpret_cast<const char*>(json.data()), json.size()}, {}};
-  std::size_t end = kHeaderBytes + kChunkHeaderBytes + json.size();
+  std::size_t end = kGlbHeaderBytes + kChunkHeaderBytes + json.size();
   if (end < bytes.size()) {
     view.bin = read_chunk(bytes, end, kBinChunk, name);
     end += kChunkHeaderBytes + view.bin.size();

@@ -19,6 +19,17 @@
 
 namespace meshhier::storage {
 
+// Component types and buffer view targets of the glTF 2.0 specification.
+inline constexpr unsigned kU8 = 5121;
+inline constexpr unsigned kU16 = 5123;
+inline constexpr unsigned kU32 = 5125;
+inline constexpr unsigned kF32 = 5126;
+inline constexpr unsigned kVertexTarget = 34962;
+inline constexpr unsigned kIndexTarget = 34963;
+
+/// Up to so many vertices indices take 16 bits: 65535 is no index, it restarts primitives.
+inline constexpr std::uint64_t kMaxShortVertices = 65535;
+
 /// The numbers that published files hold.
 template <class T>
 concept Scalar = std::unsigned_integral<T> || std::same_as<T, float>;

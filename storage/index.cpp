@@ -33,9 +33,9 @@ namespace {
 //                                                  56     24  f32 min x y z, max x y z
 //                                                  80      8  bytes of the file
 //                                                  88      8  XXH3-64 of the file
-constexpr std::string_view kMagic = "MHTILES\n";
-constexpr std::uint32_t kVersion = 2;
-constexpr std::size_t kHeaderBytes = 32;
+constexpr std::string_view kIndexMagic = "MHTILES\n";
+constexpr std::uint32_t kIndexVersion = 2;
+constexpr std::size_t kIndexHeaderBytes = 32;
 constexpr std::size_t kCheckedHeaderBytes = 24;
 constexpr std::size_t kRecordBytes = 96;
 
@@ -58,7 +58,7 @@ void append_record(std::vector<std::byte>& bytes, const TileRecord& record) {
 std::uint64_t index_checksum(std::span<const std::byte> bytes) {
   Checksum sum;
   sum.add(bytes.first(kCheckedHeaderBytes));
-  sum.add(bytes.subspan(kHeaderBytes));
+  sum.add(bytes.subspan(kIndexHeaderBytes));
   return sum.value();
 }
 
@@ -142,17 +142,17 @@ class IndexReader {
   }
 
   void check_header() const {
-    if (bytes_.size() < kHeaderBytes) {
-      fail(fmt::format("has {} bytes, expected at least {}", bytes_.size(), kHeaderBytes));
+    if (bytes_.size() < kIndexHeaderBytes) {
+      fail(fmt::format("has {} bytes, expected at least {}", bytes_.size(), kIndexHeaderBytes));
     }
-    const auto magic = std::as_bytes(std::span(kMagic));
+    const auto magic = std::as_bytes(std::span(kIndexMagic));
     if (!std::equal(magic.begin(), magic.end(), bytes_.begin())) {
       fail("does not start with MHTILES: not an index");
     }
     const auto version = load_little<std::uint32_t>(bytes_.data() + 8);
-    if (version != kVersion) {
-      fail(fmt::format("version is {}, expected {}{}", version, kVersion,
-                       version > kVersion ? " (written by a newer meshhier)" : ""));
+    if (version != kIndexVersion) {
+      fail(fmt::format("version is {}, expected {}{}", version, kIndexVersion,
+                       version > kIndexVersion ? " (written by a newer meshhier)" : ""));
     }
     const auto record_bytes = load_little<std::uint32_t>(bytes_.data() + 12);
     if (record_bytes != kRecordBytes) {
@@ -163,7 +163,7 @@ class IndexReader {
       fail(fmt::format("{} records, expected {} for {} partitions", count, tile_count(tree_),
                        tree_.partition_count()));
     }
-    const std::uint64_t expected = kHeaderBytes + count * kRecordBytes;
+    const std::uint64_t expected = kIndexHeaderBytes + count * kRecordBytes;
     if (bytes_.size() != expected) {
       fail(fmt::format("has {} bytes, expected {}", bytes_.size(), expected));
     }
@@ -175,7 +175,7 @@ class IndexReader {
   }
 
   TileRecord read_record(std::size_t number, NodeId node) const {
-    const std::byte* from = bytes_.data() + kHeaderBytes + number * kRecordBytes;
+    const std::byte* from = bytes_.data() + kIndexHeaderBytes + number * kRecordBytes;
     const auto level = load_little<std::uint32_t>(from);
     const auto index = load_little<std::uint32_t>(from + 4);
     if (level != raw(node.level) || index != node.index) {
@@ -203,10 +203,10 @@ std::uint64_t tile_count(const Tree& tree) {
 
 std::vector<std::byte> encode_index(std::span<const TileRecord> records) {
   std::vector<std::byte> bytes;
-  bytes.reserve(kHeaderBytes + records.size() * kRecordBytes);
-  const auto magic = std::as_bytes(std::span(kMagic));
+  bytes.reserve(kIndexHeaderBytes + records.size() * kRecordBytes);
+  const auto magic = std::as_bytes(std::span(kIndexMagic));
   bytes.insert(bytes.end(), magic.begin(), magic.end());
-  append_little(bytes, kVersion);
+  append_little(bytes, kIndexVersion);
   append_little(bytes, static_cast<std::uint32_t>(kRecordBytes));
   append_little(bytes, std::uint64_t{records.size()});
   append_little(bytes, std::uint64_t{0});

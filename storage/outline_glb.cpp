@@ -17,18 +17,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kExtension = "MESHHIER_outline";
-constexpr unsigned kVersion = 1;
+constexpr unsigned kOutlineVersion = 1;
 
-// Numbers of the glTF 2.0 specification.
-constexpr unsigned kU16 = 5123;
-constexpr unsigned kU32 = 5125;
-constexpr unsigned kF32 = 5126;
-constexpr unsigned kVertexTarget = 34962;
-constexpr unsigned kIndexTarget = 34963;
+// A primitive mode of the glTF 2.0 specification.
 constexpr unsigned kLines = 1;
-
-/// Up to so many vertices indices take 16 bits: 65535 is no index, it restarts primitives.
-constexpr std::size_t kMaxShortVertices = 65535;
 
 /// Every outline's JSON is padded to this, so that the size follows from the counts. With the
 /// longest coordinates and origin it has 856 bytes plus what the 8 counts add to one digit each: at
@@ -59,8 +51,9 @@ Json document_json(const Sizes& sizes, const Bounds& bounds, Vec3d origin) {
   document["extensionsUsed"] = Json::array({kExtension});
   document["scene"] = 0;
   document["scenes"] = Json::array({Json::object()});
-  document["extensions"][kExtension] = {
-      {"version", kVersion}, {"vertexCount", sizes.vertices}, {"segmentCount", sizes.segments}};
+  document["extensions"][kExtension] = {{"version", kOutlineVersion},
+                                        {"vertexCount", sizes.vertices},
+                                        {"segmentCount", sizes.segments}};
   if (sizes.segments == 0)
     return document;
 
@@ -199,7 +192,7 @@ std::vector<std::byte> encode_outline(const Outline& outline, Vec3d origin) {
 Outline decode_outline(std::span<const std::byte> bytes, const std::string& name) {
   const GlbView glb = split_glb(bytes, name);
   const Json document = parse_json(glb.json, name);
-  const Json& extension = require_extension(document, kExtension, kVersion, name);
+  const Json& extension = require_extension(document, kExtension, kOutlineVersion, name);
   const Sizes sizes{require_count(extension, "vertexCount", UINT32_MAX, name),
                     require_count(extension, "segmentCount", UINT32_MAX, name)};
   if (sizes.bin_bytes() != glb.bin.size()) {

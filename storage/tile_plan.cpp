@@ -9,14 +9,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Numbers of the glTF 2.0 specification: buffer view targets, primitive modes.
-constexpr unsigned kVertexTarget = 34962;
-constexpr unsigned kIndexTarget = 34963;
+// Primitive modes of the glTF 2.0 specification.
 constexpr unsigned kPoints = 0;
 constexpr unsigned kTriangles = 4;
-
-/// Up to so many vertices indices take 16 bits: 65535 is no index, it restarts primitives.
-constexpr std::uint64_t kMaxShortVertices = 65535;
 
 constexpr std::array<const char*, kPartCount> kKeys{
     "POSITION",   "NORMAL",     "COLOR_0",     "TEXCOORD_0",  "interior",

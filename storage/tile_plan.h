@@ -17,12 +17,6 @@ namespace meshhier::storage {
 inline constexpr const char* kTileExtension = "MESHHIER_tile";
 inline constexpr unsigned kTileExtensionVersion = 1;
 
-// Component types of the glTF 2.0 specification.
-inline constexpr unsigned kU8 = 5121;
-inline constexpr unsigned kU16 = 5123;
-inline constexpr unsigned kU32 = 5125;
-inline constexpr unsigned kF32 = 5126;
-
 // The BIN chunk: one section, and one buffer view, for each of these that is not empty, in this
 // order, each starting at a multiple of 4. o, g, n = o + g: own, ghost, all vertices; m:
 // neighbours.

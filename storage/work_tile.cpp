@@ -3,7 +3,6 @@
 #include "hierarchy/error.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <type_traits>
 
@@ -35,6 +34,13 @@ class Packer {
     const auto raw_bytes = std::as_bytes(values);
     bytes_.insert(bytes_.end(), raw_bytes.begin(), raw_bytes.end());
   }
+  /// Appends room for `count` values, one after another.
+  template <class T>
+  std::byte* make_room(std::size_t count) {
+    const std::size_t size = bytes_.size();
+    bytes_.resize(size + count * sizeof(T));
+    return bytes_.data() + size;
+  }
   std::vector<std::byte> take() { return std::move(bytes_); }
 
  private:
@@ -46,13 +52,20 @@ class Unpacker {
   explicit Unpacker(std::span<const std::byte> bytes) : bytes_(bytes) {}
   template <class T>
   std::vector<T> get(std::size_t count) {
-    if (count > bytes_.size() / sizeof(T))
-      throw Error(ErrorCode::internal, "a work tile is cut short");
+    const std::byte* const from = skip<T>(count);
     std::vector<T> values(count);
     if (count > 0)
-      std::memcpy(values.data(), bytes_.data(), count * sizeof(T));
-    bytes_ = bytes_.subspan(count * sizeof(T));
+      std::memcpy(values.data(), from, count * sizeof(T));
     return values;
+  }
+  /// Where the next `count` values lie, whatever their alignment.
+  template <class T>
+  const std::byte* skip(std::size_t count) {
+    if (count > bytes_.size() / sizeof(T))
+      throw Error(ErrorCode::internal, "a work tile is cut short");
+    const std::byte* const from = bytes_.data();
+    bytes_ = bytes_.subspan(count * sizeof(T));
+    return from;
   }
   void finish() const {
     if (!bytes_.empty())
@@ -68,25 +81,52 @@ bool narrow(const WorkTileCounts& counts) {
 }
 
 template <class Index>
-void put_triangles(Packer& packer, const std::vector<Triangle>& triangles) {
-  std::vector<Index> corners;
-  corners.reserve(triangles.size() * 3);
+void put_corners(Packer& packer, const std::vector<Triangle>& triangles) {
+  std::byte* to = packer.make_room<Index>(triangles.size() * 3);
   for (const Triangle& t : triangles) {
-    for (const TileVertex v : t)
-      corners.push_back(static_cast<Index>(raw(v)));
+    for (const TileVertex v : t) {
+      const auto corner = static_cast<Index>(raw(v));
+      std::memcpy(to, &corner, sizeof corner);
+      to += sizeof corner;
+    }
   }
-  packer.put(std::span<const Index>(corners));
 }
 
 template <class Index>
-std::vector<Triangle> get_triangles(Unpacker& unpacker, std::size_t count) {
-  const std::vector<Index> corners = unpacker.get<Index>(count * 3);
+std::vector<Triangle> get_corners(Unpacker& unpacker, std::size_t count) {
+  const std::byte* from = unpacker.skip<Index>(count * 3);
   std::vector<Triangle> triangles(count);
-  for (std::size_t t = 0; t < count; ++t) {
-    const Index* const of = corners.data() + 3 * t;
-    triangles[t] = {TileVertex{of[0]}, TileVertex{of[1]}, TileVertex{of[2]}};
-  }
+  const auto next = [&from] {
+    Index corner;
+    std::memcpy(&corner, from, sizeof corner);
+    from += sizeof corner;
+    return TileVertex{corner};
+  };
+  for (Triangle& t : triangles)
+    t = {next(), next(), next()};
   return triangles;
+}
+
+std::size_t triangle_bytes(const WorkTileCounts& counts) {
+  return (std::size_t{counts.interior} + counts.border) * (narrow(counts) ? 6 : 12);
+}
+
+void put_triangles(Packer& packer, const WorkTileCounts& counts,
+                   const std::vector<Triangle>& interior, const std::vector<Triangle>& border) {
+  for (const auto* triangles : {&interior, &border}) {
+    narrow(counts) ? put_corners<std::uint16_t>(packer, *triangles)
+                   : put_corners<std::uint32_t>(packer, *triangles);
+  }
+}
+
+void get_triangles(Unpacker& unpacker, const WorkTileCounts& counts,
+                   std::vector<Triangle>& interior, std::vector<Triangle>& border) {
+  const auto get = [&](std::size_t count) {
+    return narrow(counts) ? get_corners<std::uint16_t>(unpacker, count)
+                          : get_corners<std::uint32_t>(unpacker, count);
+  };
+  interior = get(counts.interior);
+  border = get(counts.border);
 }
 
 }  // namespace
@@ -98,17 +138,13 @@ std::vector<std::byte> encode_work_tile(const WorkTile& tile) {
                               static_cast<std::uint32_t>(tile.border.size())};
   Packer packer(sizeof counts +
                 tile.vertices.size() * (16 + 4 * static_cast<std::size_t>(tile.vertices.channels)) +
-                tile.foreign.size() * 8 +
-                (tile.interior.size() + tile.border.size()) * (narrow(counts) ? 6 : 12));
+                tile.foreign.size() * 8 + triangle_bytes(counts));
   packer.put(std::span(&counts, 1));
   packer.put(std::span<const Vec3f>(tile.vertices.positions));
   packer.put(std::span<const float>(tile.vertices.attributes));
   packer.put(std::span<const float>(tile.history.weights));
   packer.put(std::span<const GhostRef>(tile.foreign));
-  for (const auto* triangles : {&tile.interior, &tile.border}) {
-    narrow(counts) ? put_triangles<std::uint16_t>(packer, *triangles)
-                   : put_triangles<std::uint32_t>(packer, *triangles);
-  }
+  put_triangles(packer, counts, tile.interior, tile.border);
   return packer.take();
 }
 
@@ -122,10 +158,7 @@ WorkTile decode_work_tile(std::span<const std::byte> bytes, int channels) {
   tile.vertices.attributes = unpacker.get<float>(counts.own * static_cast<std::size_t>(channels));
   tile.history.weights = unpacker.get<float>(counts.own);
   tile.foreign = unpacker.get<GhostRef>(counts.foreign);
-  tile.interior = narrow(counts) ? get_triangles<std::uint16_t>(unpacker, counts.interior)
-                                 : get_triangles<std::uint32_t>(unpacker, counts.interior);
-  tile.border = narrow(counts) ? get_triangles<std::uint16_t>(unpacker, counts.border)
-                               : get_triangles<std::uint32_t>(unpacker, counts.border);
+  get_triangles(unpacker, counts, tile.interior, tile.border);
   unpacker.finish();
   return tile;
 }
@@ -182,16 +215,12 @@ std::vector<std::byte> encode_band(const Band& band) {
   head.squared_sum = band.squared_sum;
   head.weight_sum = band.weight_sum;
   Packer packer(sizeof head + band.positions.size() * 12 + band.drifts.size() * 4 +
-                band.foreign.size() * 8 +
-                (band.interior.size() + band.border.size()) * (narrow(head.counts) ? 6 : 12));
+                band.foreign.size() * 8 + triangle_bytes(head.counts));
   packer.put(std::span<const BandHead>(&head, 1));
   packer.put(std::span<const Vec3f>(band.positions));
   packer.put(std::span<const float>(band.drifts));
   packer.put(std::span<const GhostRef>(band.foreign));
-  for (const auto* triangles : {&band.interior, &band.border}) {
-    narrow(head.counts) ? put_triangles<std::uint16_t>(packer, *triangles)
-                        : put_triangles<std::uint32_t>(packer, *triangles);
-  }
+  put_triangles(packer, head.counts, band.interior, band.border);
   return packer.take();
 }
 
@@ -205,10 +234,7 @@ Band decode_band(std::span<const std::byte> bytes) {
   band.positions = unpacker.get<Vec3f>(std::size_t{counts.own} + counts.foreign);
   band.drifts = unpacker.get<float>(counts.own);
   band.foreign = unpacker.get<GhostRef>(counts.foreign);
-  band.interior = narrow(counts) ? get_triangles<std::uint16_t>(unpacker, counts.interior)
-                                 : get_triangles<std::uint32_t>(unpacker, counts.interior);
-  band.border = narrow(counts) ? get_triangles<std::uint16_t>(unpacker, counts.border)
-                               : get_triangles<std::uint32_t>(unpacker, counts.border);
+  get_triangles(unpacker, counts, band.interior, band.border);
   band.interior_drift = head.interior_drift;
   band.lost = head.lost;
   band.squared_sum = head.squared_sum;

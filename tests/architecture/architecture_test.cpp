@@ -184,8 +184,8 @@ const std::vector<ThirdParty>& third_parties() {
       {"CLI/", in({"app", "bench"})},
       {"CGAL/",
        [](const Source& s) {
-         return s.folder() == "partition" || s.folder() == "cluster_simplify" ||
-                s.folder() == "bench" || s.path == "pipeline/triangle_search.cpp";
+         return s.folder() == "partition" || s.folder() == "bench" ||
+                s.path == "pipeline/triangle_search.cpp";
        }},
       {"benchmark/", in({"bench"})},
       {"xxhash.h", [](const Source& s) { return s.path == "storage/hash.cpp"; }},

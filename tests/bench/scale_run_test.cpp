@@ -3,6 +3,7 @@
 #include "bench/child_process.h"
 #include "hierarchy/error.h"
 #include "tests/pipeline/sample_hierarchy.h"
+#include "tests/support/sizes.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -17,8 +18,7 @@ namespace {
 
 using testing::Contains;
 using testing::HasSubstr;
-
-constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+using tests::kMiB;
 
 class ScaleRunTest : public testing::Test {
  protected:

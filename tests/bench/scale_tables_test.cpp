@@ -1,6 +1,7 @@
 #include "bench/scale_tables.h"
 
 #include "hierarchy/error.h"
+#include "tests/support/sizes.h"
 
 #include <algorithm>
 #include <string>
@@ -15,8 +16,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
-
-constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+using tests::kMiB;
 
 constexpr const char* kStats = R"({
   "triangles": 1000000, "input_bytes": 20000000, "output_bytes": 30000000,

@@ -1,5 +1,7 @@
 #include "cluster_simplify/collapse_mesh.h"
 
+#include "cluster_simplify/edge_star.h"
+#include "tests/cluster_simplify/collapsing.h"
 #include "tests/cluster_simplify/test_tiles.h"
 #include "tests/support/meshes.h"
 
@@ -86,33 +88,6 @@ class Reference {
   std::vector<std::uint32_t> roots_;
 };
 
-/// Vertices with few triangles, with many, with none; every kind of edge.
-std::vector<tests::NamedMesh> meshes() {
-  tests::TestMesh specks = tests::open_grid(6, 5);
-  tests::append(specks, tests::soup(12));
-  tests::append(specks, tests::points(5));
-  return {{"closed", tests::sphere(200)},
-          {"torus", tests::torus(150)},
-          {"open", tests::open_grid(9, 7)},
-          {"moebius", tests::moebius(100)},
-          {"non-manifold", tests::non_manifold(100)},
-          {"duplicates", tests::duplicates(200)},
-          {"mirrored", tests::mirrored(tests::open_grid(5, 5))},
-          {"tangle", tests::tangle(40, 160, 3)},
-          {"dense tangle", tests::tangle(12, 200, 4)},
-          {"hub", tests::wheel(60, 0)},
-          {"specks", specks}};
-}
-
-std::vector<std::uint32_t> live_edges(const CollapseMesh& mesh) {
-  std::vector<std::uint32_t> live;
-  for (std::uint32_t e = 0; e < mesh.edges().size(); ++e) {
-    if (mesh.edge(e).triangle_count > 0 && mesh.is_own_edge(e))
-      live.push_back(e);
-  }
-  return live;
-}
-
 std::vector<std::uint32_t> counts_of(const CollapseMesh& mesh) {
   std::vector<std::uint32_t> counts;
   for (const CollapseMesh::Edge& e : mesh.edges())
@@ -120,14 +95,21 @@ std::vector<std::uint32_t> counts_of(const CollapseMesh& mesh) {
   return counts;
 }
 
+/// What a disc may collapse as.
+enum class Way { disc, anything };
+
 /// Collapses one edge; returns which were reported gone, in the order of the reports.
-std::vector<std::uint32_t> collapse(CollapseMesh& mesh, std::uint32_t from, std::uint32_t to) {
-  std::vector<Fan> around_from;
-  std::vector<Fan> around_to;
-  mesh.gather(from, around_from);
-  mesh.gather(to, around_to);
+std::vector<std::uint32_t> collapse(CollapseMesh& mesh, std::uint32_t from, std::uint32_t to,
+                                    Way way = Way::disc) {
+  EdgeStar star;
+  star.gather(mesh, from, to);
+  if (star.is_disc() && way == Way::disc) {
+    const auto gone = mesh.collapse_disc(star);
+    return {gone.begin(), gone.end()};
+  }
   std::vector<std::uint32_t> gone;
-  mesh.collapse(from, to, around_from, around_to, [&](std::uint32_t e) { gone.push_back(e); });
+  mesh.collapse(from, to, star.around_from(), star.around_to(),
+                [&](std::uint32_t e) { gone.push_back(e); });
   return gone;
 }
 
@@ -184,21 +166,23 @@ std::vector<std::uint32_t> vanished(const std::vector<std::uint32_t>& before,
   return result;
 }
 
-/// Collapses random own edges until none is left and compares with the reference after each.
+/// Collapses random own edges until none is left, discs either way, and compares with the reference
+/// after each.
 std::size_t collapse_all(const TileMesh& tile, std::uint64_t seed) {
   CollapseMesh mesh(tile);
   Reference reference(tile);
   expect_edges_recounted(mesh, reference);
   expect_fans_gathered(mesh, reference);
   std::size_t count = 0;
-  for (auto live = live_edges(mesh); !live.empty(); live = live_edges(mesh)) {
+  for (auto live = tests::live_edges(mesh); !live.empty(); live = tests::live_edges(mesh)) {
     const float pick = (tests::hash_noise(count, seed) + 1) / 2;
     auto [from, to, triangles] =
         mesh.edge(live[static_cast<std::size_t>(pick * static_cast<float>(live.size()))]);
     if (tests::hash_noise(count, seed + 1000) < 0)
       std::swap(from, to);
     const std::vector<std::uint32_t> before = counts_of(mesh);
-    std::vector<std::uint32_t> gone = collapse(mesh, from, to);
+    const Way way = tests::hash_noise(count, seed + 2000) < 0 ? Way::disc : Way::anything;
+    std::vector<std::uint32_t> gone = collapse(mesh, from, to, way);
     reference.collapse(from, to);
     ++count;
     std::ranges::sort(gone);
@@ -303,7 +287,7 @@ TEST(CollapseMeshTest, RepresentativesFollowChainsOfCollapses) {
 
 TEST(CollapseMeshTest, StaysConsistentThroughThousandsOfCollapses) {
   std::size_t count = 0;
-  for (const auto& [name, mesh] : meshes()) {
+  for (const auto& [name, mesh] : tests::small_meshes()) {
     SCOPED_TRACE(name);
     const BuildTile tile = tests::tile_of(mesh);
     for (std::uint64_t seed = 0; seed < 6 && !HasFailure(); ++seed)
@@ -313,7 +297,7 @@ TEST(CollapseMeshTest, StaysConsistentThroughThousandsOfCollapses) {
 }
 
 TEST(CollapseMeshTest, StaysConsistentNextToGhosts) {
-  for (const auto& [name, mesh] : meshes()) {
+  for (const auto& [name, mesh] : tests::small_meshes()) {
     SCOPED_TRACE(name);
     const BuildTile tile = tests::part_of(mesh, 0.2F);
     ASSERT_LT(tile.mesh.own_count, tile.mesh.vertices.size());

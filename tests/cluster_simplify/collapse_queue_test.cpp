@@ -10,11 +10,16 @@
 #include <map>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace meshhier::cluster_simplify {
 namespace {
 
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
 using Limits = std::numeric_limits<float>;
 
 /// Costs of all magnitudes from 0 to infinity, ascending.
@@ -43,13 +48,35 @@ class Reference {
       return;
     }
   }
-  std::uint32_t top() const {
-    return buckets_.empty() ? CollapseQueue::kNone : buckets_.begin()->second.back();
+  /// The lowest bucket in use. Requires some.
+  std::uint32_t lowest() const { return buckets_.begin()->first; }
+  std::vector<std::uint32_t> pop(std::size_t most) {
+    std::vector<std::uint32_t> items;
+    if (buckets_.empty())
+      return items;
+    std::vector<std::uint32_t>& stack = buckets_.begin()->second;
+    for (; items.size() < most && !stack.empty(); stack.pop_back())
+      items.push_back(stack.back());
+    if (stack.empty())
+      buckets_.erase(buckets_.begin());
+    return items;
+  }
+  std::size_t size() const {
+    std::size_t count = 0;
+    for (const auto& [bucket, stack] : buckets_)
+      count += stack.size();
+    return count;
   }
 
  private:
   std::map<std::uint32_t, std::vector<std::uint32_t>> buckets_;
 };
+
+std::vector<std::uint32_t> pop(CollapseQueue& queue, std::size_t most) {
+  std::vector<std::uint32_t> room(most);
+  const auto items = queue.pop(room);
+  return {items.begin(), items.end()};
+}
 
 std::uint32_t pick(std::uint64_t index, std::uint64_t stream, std::uint32_t count) {
   return std::min(count - 1, static_cast<std::uint32_t>((tests::hash_noise(index, stream) + 1) / 2 *
@@ -105,29 +132,30 @@ TEST(CollapseQueueTest, EveryCostHasItsPlace) {
     queue.push(static_cast<std::uint32_t>(i), costs[i]);
   std::uint32_t last = 0;
   for (std::size_t i = 0; i < costs.size(); ++i) {
-    const std::uint32_t item = queue.top();
-    ASSERT_NE(item, CollapseQueue::kNone);
-    ASSERT_EQ(queue.bucket(item), CollapseQueue::bucket_of(costs[item]));
-    ASSERT_GE(queue.bucket(item), last);
-    last = queue.bucket(item);
-    queue.erase(item);
+    const std::vector<std::uint32_t> items = pop(queue, 1);
+    ASSERT_THAT(items, SizeIs(1));
+    ASSERT_EQ(queue.lowest(), CollapseQueue::bucket_of(costs[items[0]]));
+    ASSERT_GE(queue.lowest(), last);
+    last = queue.lowest();
   }
-  EXPECT_EQ(queue.top(), CollapseQueue::kNone);
+  EXPECT_THAT(pop(queue, 1), IsEmpty());
 }
 
-TEST(CollapseQueueTest, AnEmptyQueueHasNoTop) {
+TEST(CollapseQueueTest, AnEmptyQueueHasNothingToTake) {
   CollapseQueue none(0);
-  EXPECT_EQ(none.top(), CollapseQueue::kNone);
+  EXPECT_THAT(pop(none, 8), IsEmpty());
   CollapseQueue queue(3);
-  EXPECT_EQ(queue.top(), CollapseQueue::kNone);
+  EXPECT_THAT(pop(queue, 8), IsEmpty());
   EXPECT_FALSE(queue.contains(0));
   queue.push(1, 5);
   EXPECT_TRUE(queue.contains(1));
   EXPECT_FALSE(queue.contains(0));
-  EXPECT_EQ(queue.top(), 1U);
-  EXPECT_EQ(queue.top(), 1U);  // not removed
+  EXPECT_THAT(pop(queue, 8), ElementsAre(1U));
+  EXPECT_FALSE(queue.contains(1));
+  EXPECT_THAT(pop(queue, 8), IsEmpty());
+  queue.push(1, 5);
   queue.erase(1);
-  EXPECT_EQ(queue.top(), CollapseQueue::kNone);
+  EXPECT_THAT(pop(queue, 8), IsEmpty());
 }
 
 TEST(CollapseQueueTest, LastInIsFirstOutAmongEquals) {
@@ -135,44 +163,114 @@ TEST(CollapseQueueTest, LastInIsFirstOutAmongEquals) {
   for (std::uint32_t item = 0; item < 5; ++item)
     queue.push(item, 1);
   queue.erase(3);  // from the middle
-  for (const std::uint32_t expected : {4U, 2U, 1U, 0U}) {
-    EXPECT_EQ(queue.top(), expected);
-    queue.erase(expected);
-  }
+  for (const std::uint32_t expected : {4U, 2U, 1U, 0U})
+    EXPECT_THAT(pop(queue, 1), ElementsAre(expected));
 }
 
 TEST(CollapseQueueTest, ACheaperItemComesFirstEvenAfterDearerOnesWereTaken) {
-  CollapseQueue queue(3);
+  CollapseQueue queue(4);
   queue.push(0, 100);
   queue.push(1, 1000);
-  EXPECT_EQ(queue.top(), 0U);
-  queue.erase(0);
-  EXPECT_EQ(queue.top(), 1U);
+  queue.push(3, 1000);
+  EXPECT_THAT(pop(queue, 1), ElementsAre(0U));
+  EXPECT_THAT(pop(queue, 1), ElementsAre(3U));
   queue.push(2, 1);
-  EXPECT_EQ(queue.top(), 2U);
+  EXPECT_THAT(pop(queue, 1), ElementsAre(2U));
+  EXPECT_THAT(pop(queue, 1), ElementsAre(1U));
 }
 
-TEST(CollapseQueueTest, DoesWhatAReferenceDoes) {
+TEST(CollapseQueueTest, ManyTakenAtOnceAreOfOneBucket) {
+  CollapseQueue queue(6);
+  for (const std::uint32_t item : {0U, 1U, 2U})
+    queue.push(item, 1);
+  for (const std::uint32_t item : {3U, 4U, 5U})
+    queue.push(item, 2);
+  EXPECT_THAT(pop(queue, 2), ElementsAre(2U, 1U));
+  EXPECT_EQ(queue.lowest(), CollapseQueue::bucket_of(1));
+  EXPECT_THAT(pop(queue, 2), ElementsAre(0U));  // not more of the next
+  EXPECT_EQ(queue.lowest(), CollapseQueue::bucket_of(1));
+  EXPECT_THAT(pop(queue, 8), ElementsAre(5U, 4U, 3U));
+  EXPECT_EQ(queue.lowest(), CollapseQueue::bucket_of(2));
+}
+
+TEST(CollapseQueueTest, WhatWasErasedAndPushedAgainComesOnceAndFirst) {
+  CollapseQueue queue(3);
+  for (int round = 0; round < 40; ++round) {
+    for (const std::uint32_t item : {0U, 1U, 2U})
+      queue.push(item, 1);
+    for (int again = 0; again < 20; ++again) {
+      queue.erase(0);
+      queue.push(0, again % 2 == 0 ? 1.0F : 7.0F);  // on what is left of it, or elsewhere
+    }
+    queue.erase(0);
+    queue.push(0, 1);
+    EXPECT_THAT(pop(queue, 1), ElementsAre(0U));
+    queue.erase(2);
+    EXPECT_THAT(pop(queue, 8), ElementsAre(1U));
+    EXPECT_THAT(pop(queue, 8), IsEmpty());
+  }
+}
+
+TEST(CollapseQueueTest, ABucketHoldsAnyNumber) {
+  constexpr std::uint32_t kItems = 1000;
+  CollapseQueue queue(kItems);
+  for (int round = 0; round < 3; ++round) {
+    for (std::uint32_t item = 0; item < kItems; ++item)
+      queue.push(item, item % 2 == 0 ? 1.0F : 2.0F);
+    std::vector<std::uint32_t> taken;
+    for (std::uint32_t most = 1; taken.size() < kItems; most = most % 40 + 1) {
+      const std::vector<std::uint32_t> items = pop(queue, most);
+      ASSERT_THAT(items, Not(IsEmpty()));
+      taken.insert(taken.end(), items.begin(), items.end());
+    }
+    for (std::uint32_t i = 0; i < kItems / 2; ++i) {
+      EXPECT_EQ(taken[i], kItems - 2 - 2 * i);
+      EXPECT_EQ(taken[kItems / 2 + i], kItems - 1 - 2 * i);
+    }
+  }
+}
+
+/// Pushes, erases and takes at random, up to `most` at once; compares with the reference.
+void do_what_a_reference_does(std::uint32_t most, const auto& cost_at) {
   constexpr std::uint32_t kItems = 300;
   CollapseQueue queue(kItems);
   Reference reference;
   std::vector<bool> in(kItems);
   for (std::uint64_t step = 0; step < 60'000; ++step) {
-    const bool take_top = pick(step, 1, 4) == 0 && reference.top() != CollapseQueue::kNone;
-    const std::uint32_t item = take_top ? reference.top() : pick(step, 2, kItems);
-    if (in[item]) {
-      queue.erase(item);
-      reference.erase(item);
+    if (pick(step, 1, 4 * most) == 0 && reference.size() > 0) {
+      const std::uint32_t lowest = reference.lowest();
+      const std::size_t count = 1 + pick(step, 6, most);
+      const std::vector<std::uint32_t> items = pop(queue, count);
+      ASSERT_EQ(items, reference.pop(count)) << "step " << step;
+      ASSERT_EQ(queue.lowest(), lowest);
+      for (const std::uint32_t item : items)
+        in[item] = false;
     } else {
-      const float cost = random_cost(step);
-      queue.push(item, cost);
-      reference.push(item, cost);
-      ASSERT_EQ(queue.bucket(item), CollapseQueue::bucket_of(cost));
+      const std::uint32_t item = pick(step, 2, kItems);
+      if (in[item]) {
+        queue.erase(item);
+        reference.erase(item);
+      } else {
+        const float cost = cost_at(step);
+        queue.push(item, cost);
+        reference.push(item, cost);
+      }
+      in[item] = !in[item];
     }
-    in[item] = !in[item];
-    ASSERT_EQ(queue.contains(item), in[item]);
-    ASSERT_EQ(queue.top(), reference.top()) << "step " << step;
+    for (std::uint32_t item = 0; item < kItems; ++item)
+      ASSERT_EQ(queue.contains(item), in[item]) << "step " << step;
   }
+}
+
+TEST(CollapseQueueTest, DoesWhatAReferenceDoes) {
+  for (const std::uint32_t most : {1U, 8U, 30U})
+    do_what_a_reference_does(most, random_cost);
+}
+
+TEST(CollapseQueueTest, DoesWhatAReferenceDoesInThreeBuckets) {
+  for (const std::uint32_t most : {1U, 8U, 30U})
+    do_what_a_reference_does(
+        most, [](std::uint64_t step) { return static_cast<float>(1U << pick(step, 7, 3)); });
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "cluster_simplify/collapse_mesh.h"
 #include "cluster_simplify/drift_meter.h"
+#include "cluster_simplify/edge_star.h"
 #include "cluster_simplify/local_frame.h"
 #include "cluster_simplify/representatives.h"
 #include "hierarchy/build_tile.h"
@@ -11,6 +12,16 @@
 #include <vector>
 
 namespace meshhier::tests {
+
+/// The edges between own vertices that have triangles.
+inline std::vector<std::uint32_t> live_edges(const cluster_simplify::CollapseMesh& mesh) {
+  std::vector<std::uint32_t> live;
+  for (std::uint32_t e = 0; e < mesh.edges().size(); ++e) {
+    if (mesh.edge(e).triangle_count > 0 && mesh.is_own_edge(e))
+      live.push_back(e);
+  }
+  return live;
+}
 
 class Collapsing {
  public:
@@ -28,10 +39,14 @@ class Collapsing {
 
   /// `place`: in frame().
   void collapse(std::uint32_t from, std::uint32_t to, Vec3f place) {
-    mesh_.gather(from, around_from_);
-    mesh_.gather(to, around_to_);
-    drift_.note(places_, {from, to, place, around_from_, around_to_});
-    mesh_.collapse(from, to, around_from_, around_to_, [](std::uint32_t) {});
+    star_.gather(mesh_, from, to);
+    if (star_.is_disc())
+      star_.look_from(place, places_);
+    drift_.note(places_, star_, place);
+    if (star_.is_disc())
+      mesh_.collapse_disc(star_);
+    else
+      mesh_.collapse(from, to, star_.around_from(), star_.around_to(), [](std::uint32_t) {});
     places_[to] = place;
     vertices_.positions[to] = frame_.to_global(place);
   }
@@ -53,7 +68,7 @@ class Collapsing {
   std::vector<Vec3f> places_;
   VertexArray vertices_;
   cluster_simplify::DriftMeter drift_;
-  std::vector<cluster_simplify::CollapseMesh::Fan> around_from_, around_to_;
+  cluster_simplify::EdgeStar star_;
 };
 
 }  // namespace meshhier::tests

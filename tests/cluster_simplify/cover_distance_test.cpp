@@ -181,6 +181,21 @@ TEST(CoverDistanceTest, TrianglesOfCommonPointsAreLikeSingleOnes) {
   }
 }
 
+TEST(CoverDistanceTest, OneCoverIsNearIfAllCornersAre) {
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    const Scene scene = wild_scene(seed);
+    const std::vector<Cover> covers = scene.covers();
+    for (std::size_t i = 0; i < covers.size(); ++i) {
+      double farthest = 0;
+      for (const Vec3d corner : scene.triangle)
+        farthest = std::max(farthest, scene.distance(corner, i));
+      ASSERT_NEAR(CoverDistance::near_one(scene.triangle, covers[i], farthest * 1.001), farthest,
+                  1e-11);
+      ASSERT_LT(CoverDistance::near_one(scene.triangle, covers[i], farthest * 0.999), 0);
+    }
+  }
+}
+
 TEST(CoverDistanceTest, TrianglesWithoutAreaAreServed) {
   CoverDistance distance;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {

@@ -15,11 +15,12 @@
 namespace meshhier::cluster_simplify {
 namespace {
 
+using tests::largest_drift;
 using tests::Star;
 using tests::StarMesh;
 using tests::StarShape;
 
-constexpr int kSeeds = 300;
+constexpr int kSeeds = 300;  // stars of a family
 
 struct Family {
   StarShape shape;
@@ -47,50 +48,24 @@ std::optional<DiscGap> measure(FanGapMeter& meter, const Star& star, const StarM
   return meter.measure(star.mesh.positions, star.drifts, mesh.collapse());
 }
 
-float largest_drift(const DiscGap& gap) {
-  float most = 0;
-  for (const DiscGap::Link& link : gap.links)
-    most = std::max(most, link.drift);
-  return most;
-}
-
 TEST(FanGapTest, NoSampleIsBeyondTheDrifts) {
   FanGapMeter meter;
   for (const auto& [shape, relief, least] : families()) {
-    SCOPED_TRACE(relief.name);
-    int measured = 0;
-    for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
-      SCOPED_TRACE(seed);
-      const Star star = make_star(shape, relief, seed % 2 == 0 ? 0 : 0.1, seed);
-      const StarMesh mesh(star);
-      const std::optional<DiscGap> gap = measure(meter, star, mesh);
-      if (!gap)
-        continue;
-      ++measured;
-      expect_covers(star, mesh, *gap);
-      if (testing::Test::HasFailure())
-        return;
-    }
-    EXPECT_GE(measured, least);
+    const int measured = expect_all_covered(
+        shape, relief, kSeeds,
+        [&](const Star& star, const StarMesh& mesh) { return measure(meter, star, mesh); });
+    ASSERT_GE(measured, least) << relief.name;
   }
 }
 
 TEST(FanGapTest, IsNotLooseOnBumps) {
   FanGapMeter meter;
   for (const StarShape shape : {StarShape::closed, StarShape::border_edge, StarShape::border_end}) {
-    double sum = 0;
-    int count = 0;
-    for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
-      const Star star = make_star(shape, {"bumpy", 0.2}, 0, seed);
-      const StarMesh mesh(star);
-      const std::optional<DiscGap> gap = measure(meter, star, mesh);
-      if (!gap)
-        continue;
-      sum += double{largest_drift(*gap)} / expect_covers(star, mesh, *gap);
-      ++count;
-    }
-    ASSERT_GT(count, 0);
-    EXPECT_LE(sum / count, 3) << static_cast<int>(shape);
+    const tests::Looseness looseness = looseness_of(
+        shape, {"bumpy", 0.2}, kSeeds,
+        [&](const Star& star, const StarMesh& mesh) { return measure(meter, star, mesh); });
+    EXPECT_GT(looseness.stars, 0);
+    EXPECT_LE(looseness.mean, 3) << static_cast<int>(shape);
   }
 }
 

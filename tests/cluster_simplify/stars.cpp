@@ -139,9 +139,36 @@ Star make_star(StarShape shape, const StarRelief& relief, double drift, std::uin
   return star;
 }
 
+Star round_star(RoundRing ring, const StarRelief& relief, std::uint64_t seed) {
+  Chance chance(seed);
+  Star star{{std::vector<Vec3f>(2), {}}, 0, 1, vec3f(0.1, 0.05, 0), {}};
+  TestMesh& mesh = star.mesh;
+  // The ends lie on the line between the first and the last ring vertex of vertex 0.
+  const double first = -std::numbers::pi * ring.from_links / ring.size;
+  set_end(mesh, 0, relief, 0.4, 0, chance);
+  set_end(mesh, 1, relief, -0.4, 0, chance);
+  for (std::uint32_t i = 0; i < ring.size; ++i) {
+    const double angle = first + 2 * std::numbers::pi * i / ring.size;
+    const double x = 2 * std::cos(angle);
+    const double y = 2 * std::sin(angle);
+    mesh.positions.push_back(vec3f(x, y, height(relief, x, y, chance)));
+  }
+  add_links(mesh, 0, 0, ring.from_links, ring.size);
+  add_links(mesh, 1, ring.from_links, ring.size, ring.size);
+  mesh.triangles.push_back({0, 1, 2});
+  mesh.triangles.push_back({1, 0, 2 + ring.from_links});
+  for (std::uint32_t i = count_of(mesh.triangles); i-- > 1;) {
+    std::swap(mesh.triangles[i], mesh.triangles[chance.below(i + 1)]);
+    std::ranges::rotate(mesh.triangles[i], mesh.triangles[i].begin() + chance.below(3));
+  }
+  star.drifts.resize(mesh.triangles.size());
+  return star;
+}
+
 StarMesh::StarMesh(const Star& star) : star_(star), mesh_(tile_of(star.mesh).mesh) {
-  mesh_.gather(star.from, around_from_);
-  mesh_.gather(star.to, around_to_);
+  edge_star_.gather(mesh_, star.from, star.to);
+  if (edge_star_.is_disc())
+    edge_star_.look_from(star.place, star.mesh.positions);
 }
 
 bool StarMesh::survives(std::uint32_t triangle) const {
@@ -166,8 +193,9 @@ double expect_covers(const Star& star, const StarMesh& mesh, const cluster_simpl
   const std::vector<Corners> before = mesh.before();
   const std::vector<Corners> after = mesh.after();
   std::vector<double> fresh(after.size(), -1);
-  for (const auto& link : gap.links)
-    fresh[link.triangle] = link.drift;
+  EXPECT_EQ(gap.triangles.size(), gap.drifts.size());
+  for (std::size_t i = 0; i < gap.triangles.size(); ++i)
+    fresh[gap.triangles[i]] = double{gap.drifts[i]};
   double farthest = 0;
   for (std::uint32_t t = 0; t < after.size(); ++t) {
     EXPECT_EQ(fresh[t] >= 0, mesh.survives(t)) << "triangle " << t;
@@ -196,6 +224,45 @@ double expect_covers(const Star& star, const StarMesh& mesh, const cluster_simpl
   EXPECT_GE(std::abs(gap.from) + 1e-5, distance_to_surface(at(star.from), after));
   EXPECT_GE(std::abs(gap.to) + 1e-5, distance_to_surface(at(star.to), after));
   return farthest;
+}
+
+float largest_drift(const cluster_simplify::DiscGap& gap) {
+  return std::ranges::max(gap.drifts);
+}
+
+int expect_all_covered(StarShape shape, const StarRelief& relief, std::uint64_t seeds,
+                       const MeasureStar& measure) {
+  SCOPED_TRACE(relief.name);
+  int measured = 0;
+  for (std::uint64_t seed = 0; seed < seeds && !testing::Test::HasFailure(); ++seed) {
+    SCOPED_TRACE(seed);
+    const Star star = make_star(shape, relief, seed % 2 == 0 ? 0 : 0.1, seed);
+    const StarMesh mesh(star);
+    if (const auto gap = measure(star, mesh)) {
+      ++measured;
+      expect_covers(star, mesh, *gap);
+    }
+  }
+  return measured;
+}
+
+Looseness looseness_of(StarShape shape, const StarRelief& relief, std::uint64_t seeds,
+                       const MeasureStar& measure) {
+  Looseness looseness;
+  double sum = 0;
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    const Star star = make_star(shape, relief, 0, seed);
+    const StarMesh mesh(star);
+    const auto gap = measure(star, mesh);
+    if (!gap)
+      continue;
+    const double ratio = double{largest_drift(*gap)} / expect_covers(star, mesh, *gap);
+    looseness.largest = std::max(looseness.largest, ratio);
+    sum += ratio;
+    ++looseness.stars;
+  }
+  looseness.mean = sum / looseness.stars;
+  return looseness;
 }
 
 }  // namespace meshhier::tests

@@ -3,9 +3,12 @@
 
 #include "cluster_simplify/collapse_mesh.h"
 #include "cluster_simplify/disc_gap.h"
+#include "cluster_simplify/edge_star.h"
 #include "tests/cluster_simplify/sampling.h"
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,12 +40,26 @@ struct Star {
 /// triangles of its own. Drifts are 0 or up to `drift`.
 Star make_star(StarShape shape, const StarRelief& relief, double drift, std::uint64_t seed);
 
+struct RoundRing {
+  std::uint32_t size = 4;
+  std::uint32_t from_links = 1;  ///< how many of its links are opposite vertex 0
+};
+
+/// A closed star, its ring a regular polygon of radius 2 and its place near the middle; triangles
+/// in any order. Drifts are 0.
+Star round_star(RoundRing ring, const StarRelief& relief, std::uint64_t seed);
+
 /// A star in a CollapseMesh.
 class StarMesh {
  public:
   explicit StarMesh(const Star& star);
+  StarMesh(const StarMesh&) = delete;
+  StarMesh& operator=(const StarMesh&) = delete;
+
+  /// As seen from the place if it is a disc.
+  const cluster_simplify::EdgeStar& edge_star() const { return edge_star_; }
   cluster_simplify::StarCollapse collapse() const {
-    return {star_.from, star_.to, star_.place, around_from_, around_to_};
+    return {star_.from, star_.to, star_.place, edge_star_.around_from(), edge_star_.around_to()};
   }
   std::vector<Corners> before() const { return surface_of(star_.mesh); }
   /// Triangle by triangle; those that are gone have no area and no place.
@@ -52,7 +69,7 @@ class StarMesh {
  private:
   const Star& star_;
   cluster_simplify::CollapseMesh mesh_;
-  std::vector<cluster_simplify::CollapseMesh::Fan> around_from_, around_to_;
+  cluster_simplify::EdgeStar edge_star_;
 };
 
 /// Holds what was measured against samples: every point of a new triangle is, with the drift of an
@@ -60,5 +77,26 @@ class StarMesh {
 /// drift of some new one, its own counted. Returns the largest sampled distance between the two
 /// surfaces.
 double expect_covers(const Star& star, const StarMesh& mesh, const cluster_simplify::DiscGap& gap);
+
+float largest_drift(const cluster_simplify::DiscGap& gap);
+
+using MeasureStar =
+    std::function<std::optional<cluster_simplify::DiscGap>(const Star&, const StarMesh&)>;
+
+/// Holds what is measured of the stars of seeds 0, 1, ... below `seeds`, every other one drifted,
+/// against samples, up to the first failure. Returns how many were measured: others are refused.
+int expect_all_covered(StarShape shape, const StarRelief& relief, std::uint64_t seeds,
+                       const MeasureStar& measure);
+
+/// The largest drift of a star over its largest sampled distance: at most, and on average.
+struct Looseness {
+  int stars = 0;  ///< that were measured
+  double largest = 0;
+  double mean = 0;
+};
+
+/// Of the stars of seeds 0, 1, ... below `seeds`, none of them drifted.
+Looseness looseness_of(StarShape shape, const StarRelief& relief, std::uint64_t seeds,
+                       const MeasureStar& measure);
 
 }  // namespace meshhier::tests

@@ -158,6 +158,23 @@ TestMesh mirrored(TestMesh mesh) {
   return mesh;
 }
 
+std::vector<NamedMesh> small_meshes() {
+  TestMesh specks = open_grid(6, 5);
+  append(specks, soup(12));
+  append(specks, points(5));
+  return {{"closed", sphere(200)},
+          {"torus", torus(150)},
+          {"open", open_grid(9, 7)},
+          {"moebius", moebius(100)},
+          {"non-manifold", non_manifold(100)},
+          {"duplicates", duplicates(200)},
+          {"mirrored", mirrored(open_grid(5, 5))},
+          {"tangle", tangle(40, 160, 3)},
+          {"dense tangle", tangle(12, 200, 4)},
+          {"hub", wheel(60, 0)},
+          {"specks", specks}};
+}
+
 TestMesh image_of(const BuildTile& tile, const cluster_simplify::Contraction& contraction) {
   const TileMesh& mesh = tile.mesh;
   TestMesh image{contraction.representatives.positions, {}};

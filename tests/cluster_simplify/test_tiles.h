@@ -63,6 +63,10 @@ struct NamedMesh {
 /// contraction must take.
 std::vector<NamedMesh> nasty_meshes();
 
+/// Vertices with few triangles, with many, with none; every kind of edge: small meshes to look at
+/// after each of many collapses.
+std::vector<NamedMesh> small_meshes();
+
 /// What a contraction makes of a tile: interior and border triangles, ghosts after the
 /// representatives; degenerate ones are gone, of equal ones one is left.
 TestMesh image_of(const BuildTile& tile, const cluster_simplify::Contraction& contraction);

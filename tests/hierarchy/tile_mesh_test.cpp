@@ -143,6 +143,33 @@ TEST(TileMesh, ARangeOfVerticesIsAppended) {
   }
 }
 
+TEST(TileMesh, NamedVerticesAreAppendedInTheirOrder) {
+  for (const int channels : {0, 1, 4}) {
+    VertexArray vertices = numbered(2, channels, 0);
+    const VertexArray more = numbered(6, channels, 100);
+    const std::vector<std::uint32_t> named = {5, 0, 3, 3};
+    vertices.append(more, named);
+    ASSERT_EQ(vertices.size(), 6U);
+    ASSERT_EQ(vertices.attributes.size(), 6U * static_cast<std::size_t>(channels));
+    for (std::size_t i = 0; i < named.size(); ++i) {
+      EXPECT_EQ(vertices.positions[2 + i], more.positions[named[i]]);
+      EXPECT_TRUE(std::ranges::equal(vertices.attributes_of(2 + i), more.attributes_of(named[i])));
+    }
+  }
+}
+
+TEST(TileMesh, ManyTrianglesOfOneFirstCornerAreSortedLikeFew) {
+  for (const std::uint32_t count : {2U, 16U, 17U, 300U}) {
+    std::vector<Triangle> triangles;
+    for (std::uint32_t i = count; i-- > 0;)
+      triangles.push_back({TileVertex{0}, TileVertex{1 + i * 7 % count}, TileVertex{1000 + i}});
+    std::vector<Triangle> sorted = triangles;
+    std::sort(sorted.begin(), sorted.end());
+    normalize_triangles(triangles, true);
+    EXPECT_EQ(triangles, sorted) << count;
+  }
+}
+
 TEST(TileMesh, KnowsItsOwnVerticesFromItsGhosts) {
   TileMesh tile;
   tile.vertices = numbered(5, 0, 0);

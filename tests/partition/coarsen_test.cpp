@@ -1,5 +1,6 @@
 #include "partition/coarsen.h"
 
+#include "tests/partition/graph_cases.h"
 #include "tests/support/meshes.h"
 
 #include <algorithm>
@@ -9,11 +10,6 @@
 
 namespace meshhier::partition {
 namespace {
-
-Graph graph_of(const tests::TestMesh& mesh) {
-  return surface_graph(
-      make_surface(mesh.positions, {mesh.triangles.begin(), mesh.triangles.end()}));
-}
 
 /// A centre with so many leaves.
 Graph star(std::uint32_t leaves) {

@@ -2,6 +2,7 @@
 
 #include "hierarchy/tile_mesh.h"
 #include "partition/compactness.h"
+#include "tests/partition/graph_cases.h"
 #include "tests/support/meshes.h"
 
 #include <algorithm>
@@ -17,10 +18,6 @@ namespace {
 
 std::vector<LocalTriangle> triangles_of(const tests::TestMesh& mesh) {
   return {mesh.triangles.begin(), mesh.triangles.end()};
-}
-
-Graph graph_of(const tests::TestMesh& mesh) {
-  return surface_graph(make_surface(mesh.positions, triangles_of(mesh)));
 }
 
 bool equal(const Graph& a, const Graph& b) {
@@ -256,8 +253,9 @@ TEST(SurfaceGraph, OfGroupsIsTheContractedGraphOnAnotherScale) {
   for (std::uint32_t v = 0; v < found.size(); ++v) {
     for (const Graph::Arc& arc : found.arcs_of(v)) {
       for (const Graph::Arc& other : expected.arcs_of(v)) {
-        if (other.to == arc.to)
+        if (other.to == arc.to) {
           EXPECT_NEAR(arc.weight, other.weight * scale, 0.01 * arc.weight);
+        }
       }
     }
   }

@@ -25,7 +25,7 @@ struct Way {
   std::uint64_t pool_bytes = kPlenty;
 };
 
-struct Split {
+struct SettledSplit {
   TopTree tree;
   int sweeps = 0;
 };
@@ -51,8 +51,8 @@ class TopTreeTest : public testing::Test {
     path_ = std::filesystem::path(testing::TempDir()) / (std::string("top_") + info.name());
   }
 
-  Split settle(const std::vector<Vec3f>& positions, const Tree& tree, TopPlan plan,
-               const Way& way = {}) {
+  SettledSplit settle(const std::vector<Vec3f>& positions, const Tree& tree, TopPlan plan,
+                      const Way& way = {}) {
     storage::MemoryPool pool(way.pool_bytes);
     storage::ScratchFile scratch(*files_, path_, pool);
     std::vector<std::size_t> starts;
@@ -207,7 +207,7 @@ TEST_F(TopTreeTest, EveryVertexGoesWhereSortingPutsIt) {
       const std::vector<Vec3f> positions = cloud(n);
       const Tree tree = tree_of(n);
       const TopPlan plan = plan_top(sample_of(positions), tree, axis);
-      const Split split = settle(positions, tree, plan);
+      const SettledSplit split = settle(positions, tree, plan);
       EXPECT_EQ(chunks_of(split.tree, positions), chunks_by_sorting(positions, tree, plan)) << n;
       EXPECT_EQ(split.tree.chunks(), chunk_level(tree));
       EXPECT_EQ(split.sweeps, 1) << n;
@@ -216,7 +216,8 @@ TEST_F(TopTreeTest, EveryVertexGoesWhereSortingPutsIt) {
 }
 
 /// Exactly equal parts, whatever the points.
-void expect_exact_sizes(const Split& split, const std::vector<Vec3f>& positions, const Tree& tree) {
+void expect_exact_sizes(const SettledSplit& split, const std::vector<Vec3f>& positions,
+                        const Tree& tree) {
   std::vector<std::uint64_t> sizes(tree.node_count(split.tree.chunks()));
   for (const std::uint32_t chunk : chunks_of(split.tree, positions))
     ++sizes[chunk];
@@ -248,7 +249,7 @@ TEST_F(TopTreeTest, PartsAreExactForEveryKindOfPoints) {
     SCOPED_TRACE(kind);
     for (const Axis axis : {Axis::longest, Axis::compactness}) {
       const TopPlan plan = plan_top(sample_of(kinds[kind]), tree, axis);
-      const Split split = settle(kinds[kind], tree, plan);
+      const SettledSplit split = settle(kinds[kind], tree, plan);
       expect_exact_sizes(split, kinds[kind], tree);
     }
   }
@@ -257,7 +258,7 @@ TEST_F(TopTreeTest, PartsAreExactForEveryKindOfPoints) {
 TEST_F(TopTreeTest, EqualPointsAreSplitById) {
   const std::vector<Vec3f> positions(kCount, Vec3f{0.1F, -0.2F, 0.3F});
   const Tree tree = tree_of(kCount);
-  const Split split =
+  const SettledSplit split =
       settle(positions, tree, plan_top(sample_of(positions), tree, Axis::compactness));
   const auto chunks = chunks_of(split.tree, positions);
   EXPECT_TRUE(std::is_sorted(chunks.begin(), chunks.end()));
@@ -283,7 +284,7 @@ TEST_F(TopTreeTest, ASampleThatMisleadsCostsSweepsButNothingElse) {
       corner.push_back({positions[i], i});
   }
   const TopPlan plan = plan_top(corner, tree, Axis::compactness);
-  const Split split = settle(positions, tree, plan);
+  const SettledSplit split = settle(positions, tree, plan);
   EXPECT_GT(split.sweeps, 1);
   EXPECT_LE(split.sweeps, 2 * raw(plan.chunks) + 1);  // a level misses twice at most
   EXPECT_EQ(chunks_of(split.tree, positions), chunks_by_sorting(positions, tree, plan));
@@ -346,7 +347,7 @@ TEST_F(TopTreeTest, WithoutASampleEverythingIsDecidedAfterwards) {
     std::vector<IdPoint> sample = sample_of(positions);
     sample.resize(size);
     const TopPlan plan = plan_top(sample, tree, Axis::compactness);
-    const Split split = settle(positions, tree, plan);
+    const SettledSplit split = settle(positions, tree, plan);
     EXPECT_EQ(chunks_of(split.tree, positions), chunks_by_sorting(positions, tree, plan)) << size;
   }
 }
@@ -367,7 +368,7 @@ TEST_F(TopTreeTest, ALongModelInRandomOrderSettlesInAFewSweeps) {
   const Tree tree = tree_of(kLong);
   ASSERT_EQ(raw(chunk_level(tree)), 7);
   const TopPlan plan = plan_top(sample_of(positions), tree, Axis::longest);
-  const Split split = settle(positions, tree, plan);
+  const SettledSplit split = settle(positions, tree, plan);
   EXPECT_LE(split.sweeps, 4);
   expect_exact_sizes(split, positions, tree);
 }

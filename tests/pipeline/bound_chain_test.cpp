@@ -18,12 +18,9 @@ namespace {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
+using tests::node;
 
 constexpr double kDiagonal = 1000;
-
-constexpr NodeId node(int level, std::uint32_t index) {
-  return {static_cast<Level>(level), index};
-}
 
 /// Facts of tiles without tiles.
 class BoundChainTest : public testing::Test {

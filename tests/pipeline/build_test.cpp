@@ -9,6 +9,7 @@
 #include "tests/pipeline/sample_hierarchy.h"
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/meshes.h"
+#include "tests/support/sizes.h"
 
 #include <algorithm>
 #include <atomic>
@@ -37,9 +38,8 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using tests::kMiB;
 using tests::TestMesh;
-
-constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 
 /// One mesh, one output.
 class BuildTest : public testing::Test {

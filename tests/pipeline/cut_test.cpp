@@ -20,10 +20,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-NodeId node(int level, std::uint32_t index) {
-  return {static_cast<Level>(level), index};
-}
+using tests::node;
 
 template <class Action>
 std::string usage_error(Action action) {
@@ -229,12 +226,12 @@ struct Published {
   }
 };
 
-struct Shape {
+struct CutShape {
   std::string name;
   tests::TestMesh mesh;
 };
 
-std::vector<Shape> shapes() {
+std::vector<CutShape> cut_shapes() {
   return {{"sphere", tests::sphere(500)},
           {"torus", tests::torus(500)},
           {"shells", tests::nested_shells(500)},
@@ -246,7 +243,7 @@ std::vector<Shape> shapes() {
 }
 
 TEST(CutMesh, EveryCutShowsTheImageOfTheOriginalEachTriangleOnce) {
-  for (const Shape& shape : shapes()) {
+  for (const CutShape& shape : cut_shapes()) {
     for (std::uint32_t partitions : {1U, 2U, 3U, 6U, 13U}) {
       for (bool scatter : {false, true}) {
         const Published hierarchy(shape.mesh, {partitions, 12, scatter});
@@ -268,7 +265,7 @@ TEST(CutMesh, EveryCutShowsTheImageOfTheOriginalEachTriangleOnce) {
 }
 
 TEST(CutMesh, CutsOfAClosedSurfaceHaveNoBorder) {
-  for (const Shape& shape : shapes()) {
+  for (const CutShape& shape : cut_shapes()) {
     if (!tests::is_closed(shape.mesh.triangles))
       continue;
     const Published hierarchy(shape.mesh, {11, 15, true});
@@ -282,7 +279,7 @@ TEST(CutMesh, CutsOfAClosedSurfaceHaveNoBorder) {
 }
 
 TEST(CutMesh, TheCutOfAllPartitionsIsTheInputWithAllItsCopies) {
-  for (const Shape& shape : shapes()) {
+  for (const CutShape& shape : cut_shapes()) {
     const Published hierarchy(shape.mesh, {7, 12, false});
     const Tree& tree = hierarchy.reader.tree();
     const auto numbered = number_vertices(hierarchy.reader, Cut::of_level(tree, tree.depth()));

@@ -2,6 +2,7 @@
 
 #include "hierarchy/tree.h"
 #include "partition/top_tree.h"
+#include "tests/support/sizes.h"
 
 #include <cstdint>
 
@@ -10,8 +11,8 @@
 namespace meshhier::pipeline {
 namespace {
 
-constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
-constexpr std::uint64_t kGiB = std::uint64_t{1} << 30;
+using tests::kGiB;
+using tests::kMiB;
 
 /// A closed surface.
 JobSize job_of(std::uint64_t vertices, std::uint32_t tile) {

@@ -25,10 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
-
-NodeId node(int level, std::uint32_t index) {
-  return {static_cast<Level>(level), index};
-}
+using tests::node;
 
 /// What a mesh file holds; coordinates as doubles, exact for both widths.
 struct Loaded {

@@ -68,7 +68,7 @@ AttributeLayout numbering() {
 }
 
 // That of no mesh here is larger.
-constexpr double kDiagonal = 100;
+constexpr double kForestDiagonal = 100;
 
 struct Setting {
   std::uint32_t partitions = 1;
@@ -92,7 +92,7 @@ class Grove {
     MemoryPlan plan;
     plan.tiles_in_flight = setting.in_flight;
     NoProgress progress;
-    simplify(forest_, {60, numbering(), {}, kDiagonal}, plan, progress, CancelToken());
+    simplify(forest_, {60, numbering(), {}, kForestDiagonal}, plan, progress, CancelToken());
     place_vertices();
   }
 

@@ -21,10 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::Not;
-
-NodeId node(int level, std::uint32_t index) {
-  return {static_cast<Level>(level), index};
-}
+using tests::node;
 
 class InspectTest : public testing::Test {
  protected:

@@ -2,6 +2,7 @@
 
 #include "hierarchy/error.h"
 #include "pipeline/size_text.h"
+#include "tests/support/sizes.h"
 
 #include <cstdint>
 #include <optional>
@@ -15,9 +16,8 @@ namespace meshhier::pipeline {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
-constexpr std::uint64_t kGiB = std::uint64_t{1} << 30;
+using tests::kGiB;
+using tests::kMiB;
 
 JobSize job_of(std::uint64_t vertices, std::uint32_t tile, int channels, std::size_t threads) {
   JobSize job;

@@ -65,6 +65,32 @@ TEST(OrderedForTest, KeepsNoMoreInFlightThanAllowed) {
   }
 }
 
+/// Counts how many there are.
+class Counted {
+ public:
+  explicit Counted(std::atomic<int>& alive) : alive_(&alive) { ++*alive_; }
+  Counted(Counted&& other) noexcept : alive_(other.alive_) { ++*alive_; }
+  Counted& operator=(Counted&&) = delete;
+  ~Counted() { --*alive_; }
+
+ private:
+  std::atomic<int>* alive_;
+};
+
+TEST(OrderedForTest, AFailureLeavesNoResultBehind) {
+  for (std::size_t round = 0; round < 1000; ++round) {
+    std::atomic<int> alive{0};
+    const auto work = [&](std::size_t i) {
+      if (i == round % 64)
+        throw std::runtime_error("stop");
+      return Counted(alive);
+    };
+    EXPECT_THROW(ordered_for(64, 8, CancelToken(), work, [](std::size_t, const Counted&) {}),
+                 std::runtime_error);
+    ASSERT_EQ(alive, 0) << round;
+  }
+}
+
 TEST(OrderedForTest, AFailureOfTheWorkEndsItAndIsThrownAgain) {
   std::vector<std::size_t> order;
   try {

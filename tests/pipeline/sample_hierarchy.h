@@ -5,6 +5,7 @@
 // poor meshes, but every promise about seams must hold for any merging.
 #pragma once
 
+#include "hierarchy/ids.h"
 #include "hierarchy/published.h"
 #include "hierarchy/tree.h"
 #include "pipeline/config.h"
@@ -20,6 +21,10 @@
 #include <vector>
 
 namespace meshhier::tests {
+
+constexpr NodeId node(int level, std::uint32_t index) {
+  return {static_cast<Level>(level), index};
+}
 
 struct SampleOptions {
   std::uint32_t partitions = 7;

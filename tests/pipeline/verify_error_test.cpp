@@ -29,10 +29,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
-
-constexpr NodeId node(int level, std::uint32_t index) {
-  return {static_cast<Level>(level), index};
-}
+using tests::node;
 
 /// A bound that holds: how far any vertex under a node is from where the node shows it.
 void set_true_bounds(tests::Sample& sample) {

@@ -28,6 +28,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 using testing::SizeIs;
+using tests::node;
 
 /// Mirrors the first triangle whose mirror image is not there yet.
 void mirror_one(std::vector<Triangle>& triangles) {
@@ -39,10 +40,6 @@ void mirror_one(std::vector<Triangle>& triangles) {
     return normalize_triangles(triangles, false);
   }
   FAIL() << "every triangle has its mirror image";
-}
-
-NodeId node(int level, std::uint32_t index) {
-  return {static_cast<Level>(level), index};
 }
 
 /// A directory with a mesh and a hierarchy of it.
@@ -80,12 +77,12 @@ class VerifyTest : public testing::Test {
   std::unique_ptr<storage::FileSystem> files_ = storage::make_posix_file_system();
 };
 
-struct Shape {
+struct VerifiedShape {
   std::string name;
   tests::TestMesh mesh;
 };
 
-std::vector<Shape> shapes() {
+std::vector<VerifiedShape> sound_shapes() {
   return {{"sphere", tests::sphere(1000)},
           {"torus", tests::torus(1000)},
           {"shells", tests::nested_shells(1000)},
@@ -98,7 +95,7 @@ std::vector<Shape> shapes() {
 }
 
 TEST_F(VerifyTest, SoundHierarchiesOfAllKindsPass) {
-  for (const Shape& shape : shapes()) {
+  for (const VerifiedShape& shape : sound_shapes()) {
     for (std::uint32_t partitions : {1U, 2U, 3U, 5U, 6U, 12U, 16U}) {
       for (bool scatter : {false, true}) {
         tests::Sample sample = make(shape.mesh, {partitions, 20, scatter, scatter, {}});

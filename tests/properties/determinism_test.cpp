@@ -9,6 +9,7 @@
 #include "storage/layout.h"
 #include "tests/pipeline/sample_hierarchy.h"
 #include "tests/support/meshes.h"
+#include "tests/support/sizes.h"
 
 #include <algorithm>
 #include <array>
@@ -34,10 +35,9 @@ namespace meshhier::pipeline {
 namespace {
 
 namespace fs = std::filesystem;
+using tests::kGiB;
+using tests::kMiB;
 using tests::TestMesh;
-
-constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
-constexpr std::uint64_t kGiB = std::uint64_t{1} << 30;
 
 /// A file's path in the hierarchy, and the hash of its content.
 using FileHashes = std::map<std::string, std::uint64_t>;

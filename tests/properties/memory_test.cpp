@@ -4,6 +4,7 @@
 #include "pipeline/size_text.h"
 #include "storage/file.h"
 #include "tests/pipeline/sample_hierarchy.h"
+#include "tests/support/sizes.h"
 
 #include <cerrno>
 #include <cstdint>
@@ -31,8 +32,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using tests::kMiB;
 
-constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 constexpr int kBudgetExitCode = 6;
 
 std::uint64_t peak_bytes(const rusage& usage) {

@@ -1,6 +1,7 @@
 #include "storage/blob_store.h"
 
 #include "hierarchy/error.h"
+#include "tests/storage/pattern.h"
 #include "tests/support/faulty_file_system.h"
 
 #include <algorithm>
@@ -15,13 +16,12 @@ namespace {
 
 using tests::Call;
 using tests::FaultyFileSystem;
+using tests::pattern;
 using Bytes = std::vector<std::byte>;
 
-Bytes pattern(std::size_t size, std::size_t seed) {
-  Bytes bytes(size);
-  for (std::size_t i = 0; i < size; ++i)
-    bytes[i] = static_cast<std::byte>(((i + seed) * 131) ^ (i >> 8));
-  return bytes;
+std::vector<std::byte> content(const BlobStore& store, std::size_t index) {
+  const BlobView view = store.view(index);
+  return {view.bytes().begin(), view.bytes().end()};
 }
 
 class BlobStoreTest : public testing::Test {
@@ -46,8 +46,8 @@ TEST_F(BlobStoreTest, BlobsComeBackWhateverTheMemory) {
       store.put(i, pattern(i * 3, i));
     for (std::size_t i = 0; i < 50; ++i) {
       EXPECT_EQ(store.size(i), i * 3);
-      EXPECT_EQ(store.get(i), pattern(i * 3, i)) << memory << " " << i;
-      EXPECT_EQ(store.get(i), pattern(i * 3, i)) << memory << " " << i;
+      EXPECT_EQ(content(store, i), pattern(i * 3, i)) << memory << " " << i;
+      EXPECT_EQ(content(store, i), pattern(i * 3, i)) << memory << " " << i;
     }
   }
 }
@@ -57,7 +57,7 @@ TEST_F(BlobStoreTest, ABlobNeverPutIsEmpty) {
   ScratchFile scratch(files_, path_, pool);
   const BlobStore store(scratch, 3);
   EXPECT_EQ(store.size(1), 0U);
-  EXPECT_TRUE(store.get(1).empty());
+  EXPECT_TRUE(store.view(1).bytes().empty());
 }
 
 TEST_F(BlobStoreTest, PartsAreRead) {
@@ -99,7 +99,7 @@ TEST_F(BlobStoreTest, ClearingGivesTheMemoryBackAndTheBlobsCanBePutAgain) {
       store.put(i, pattern(100, i + round));
     EXPECT_EQ(pool.free_bytes(), 50U);
     for (std::size_t i = 0; i < 3; ++i)
-      EXPECT_EQ(store.get(i), pattern(100, i + round));
+      EXPECT_EQ(content(store, i), pattern(100, i + round));
     store.clear();
     EXPECT_EQ(pool.free_bytes(), 250U);
     EXPECT_EQ(store.size(0), 0U);
@@ -114,7 +114,7 @@ TEST_F(BlobStoreTest, MovingMovesTheMemoryToo) {
     BlobStore store(scratch, 1);
     store.put(0, pattern(100, 0));
     const BlobStore moved(std::move(store));
-    EXPECT_EQ(moved.get(0), pattern(100, 0));
+    EXPECT_EQ(content(moved, 0), pattern(100, 0));
     EXPECT_EQ(pool.free_bytes(), 150U);
   }
   EXPECT_EQ(pool.free_bytes(), 250U);
@@ -130,7 +130,7 @@ TEST_F(BlobStoreTest, ThreadsPutAndReadDifferentBlobsAtOnce) {
     threads.emplace_back([&, t] {
       for (std::size_t i = t; i < 400; i += 4) {
         store.put(i, pattern(i, i));
-        wrong += store.get(i) == pattern(i, i) ? 0 : 1;
+        wrong += content(store, i) == pattern(i, i) ? 0 : 1;
       }
     });
   }
@@ -138,7 +138,7 @@ TEST_F(BlobStoreTest, ThreadsPutAndReadDifferentBlobsAtOnce) {
     thread.join();
   EXPECT_EQ(wrong, 0);
   for (std::size_t i = 0; i < 400; ++i)
-    EXPECT_EQ(store.get(i), pattern(i, i));
+    EXPECT_EQ(content(store, i), pattern(i, i));
 }
 
 TEST_F(BlobStoreTest, FailuresReachTheCaller) {
@@ -151,8 +151,8 @@ TEST_F(BlobStoreTest, FailuresReachTheCaller) {
   EXPECT_THROW(store.put(1, pattern(10, 1)), Error);
   store.put(2, pattern(10, 2));
   files_.fail(Call::read, 1);
-  EXPECT_THROW((void)store.get(2), Error);
-  EXPECT_EQ(store.get(2), pattern(10, 2));
+  EXPECT_THROW((void)store.view(2), Error);
+  EXPECT_EQ(content(store, 2), pattern(10, 2));
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kBlock = FileChecksum::kBlockBytes;
 
-std::vector<std::byte> pattern(std::size_t size) {
+std::vector<std::byte> distinct_blocks(std::size_t size) {
   std::vector<std::byte> bytes(size);
   for (std::size_t i = 0; i < size; ++i)
     bytes[i] = static_cast<std::byte>((i * 167) ^ (i >> 11));
@@ -56,13 +56,13 @@ class FileChecksumTest : public testing::Test {
 TEST_F(FileChecksumTest, IsThatOfTheBlocksChecksums) {
   for (const std::size_t size : {std::size_t{0}, std::size_t{1}, kBlock - 1, kBlock, kBlock + 1,
                                  3 * kBlock, 3 * kBlock + 5}) {
-    const auto bytes = pattern(size);
+    const auto bytes = distinct_blocks(size);
     EXPECT_EQ(FileChecksum(size).complete(*file_of(bytes), go_on), defined(bytes)) << size;
   }
 }
 
 TEST_F(FileChecksumTest, TakesWholeBlocksFromReadsOfAnyPlaceAndOrder) {
-  const auto bytes = pattern(5 * kBlock + 77);
+  const auto bytes = distinct_blocks(5 * kBlock + 77);
   const auto file = file_of(bytes);
   FileChecksum sum(bytes.size());
   const auto add = [&](std::size_t offset, std::size_t size) {
@@ -85,7 +85,7 @@ TEST_F(FileChecksumTest, TakesWholeBlocksFromReadsOfAnyPlaceAndOrder) {
 }
 
 TEST_F(FileChecksumTest, EveryBlockCountsInItsPlace) {
-  auto bytes = pattern(3 * kBlock);
+  auto bytes = distinct_blocks(3 * kBlock);
   const std::uint64_t sum = defined(bytes);
   for (const std::size_t at : {std::size_t{0}, kBlock + 9, 3 * kBlock - 1}) {
     bytes[at] ^= std::byte{1};
@@ -97,7 +97,7 @@ TEST_F(FileChecksumTest, EveryBlockCountsInItsPlace) {
 }
 
 TEST_F(FileChecksumTest, AFailureAndAnInterruptionPassThrough) {
-  const auto bytes = pattern(2 * kBlock);
+  const auto bytes = distinct_blocks(2 * kBlock);
   const auto file = file_of(bytes);
   EXPECT_THROW(FileChecksum(3 * kBlock).complete(*file, go_on), Error);  // it became shorter
   int calls = 0;

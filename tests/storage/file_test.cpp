@@ -1,6 +1,7 @@
 #include "storage/file.h"
 
 #include "hierarchy/error.h"
+#include "tests/storage/pattern.h"
 #include "tests/support/faulty_file_system.h"
 
 #include <algorithm>
@@ -18,14 +19,8 @@ using testing::AllOf;
 using testing::HasSubstr;
 using tests::Call;
 using tests::FaultyFileSystem;
+using tests::pattern;
 using Bytes = std::vector<std::byte>;
-
-Bytes pattern(std::size_t size) {
-  Bytes bytes(size);
-  for (std::size_t i = 0; i < size; ++i)
-    bytes[i] = static_cast<std::byte>((i * 31) ^ (i >> 8));
-  return bytes;
-}
 
 /// The error that `action` throws; the test fails if it throws none.
 template <class Action>

@@ -9,7 +9,7 @@
 namespace meshhier::storage {
 namespace {
 
-std::vector<std::byte> pattern(std::size_t size) {
+std::vector<std::byte> distinct_bytes(std::size_t size) {
   std::vector<std::byte> bytes(size);
   for (std::size_t i = 0; i < size; ++i)
     bytes[i] = static_cast<std::byte>((i * 167) ^ (i >> 7));
@@ -29,7 +29,7 @@ TEST(Hash, IsXxh3Of64Bits) {
 }
 
 TEST(Hash, OfBlocksIsThatOfTheWhole) {
-  const std::vector<std::byte> bytes = pattern(5000);
+  const std::vector<std::byte> bytes = distinct_bytes(5000);
   for (const std::size_t block : {1U, 7U, 64U, 240U, 256U, 1023U, 4999U, 5000U}) {
     Checksum sum;
     for (std::size_t at = 0; at < bytes.size(); at += block) {
@@ -45,7 +45,7 @@ TEST(Hash, OfNoBlocksIsThatOfNothing) {
 }
 
 TEST(Hash, CanBeAskedOnTheWay) {
-  const std::vector<std::byte> bytes = pattern(3000);
+  const std::vector<std::byte> bytes = distinct_bytes(3000);
   Checksum sum;
   sum.add(std::span(bytes).first(1000));
   EXPECT_EQ(sum.value(), checksum(std::span(bytes).first(1000)));
@@ -54,7 +54,7 @@ TEST(Hash, CanBeAskedOnTheWay) {
 }
 
 TEST(Hash, ChangesWithEveryBit) {
-  std::vector<std::byte> bytes = pattern(300);
+  std::vector<std::byte> bytes = distinct_bytes(300);
   std::set<std::uint64_t> sums{checksum(bytes)};
   for (std::size_t bit = 0; bit < bytes.size() * 8; ++bit) {
     bytes[bit / 8] ^= static_cast<std::byte>(1 << (bit % 8));

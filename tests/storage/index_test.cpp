@@ -20,7 +20,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 using Bytes = std::vector<std::byte>;
 
-const char* const kName = "some/tiles.bin";
+const char* const kIndexName = "some/tiles.bin";
 constexpr std::size_t kHeaderBytes = 32;
 constexpr std::size_t kRecordBytes = 96;
 
@@ -88,10 +88,10 @@ Bytes sealed(Bytes bytes) {
 
 std::string failure(const Bytes& bytes, const Tree& tree) {
   try {
-    decode_index(bytes, tree, kName);
+    decode_index(bytes, tree, kIndexName);
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::corrupt);
-    EXPECT_THAT(error.what(), StartsWith(kName));
+    EXPECT_THAT(error.what(), StartsWith(kIndexName));
     return error.what();
   }
   return {};
@@ -104,7 +104,7 @@ TEST(Index, GivesEveryRecordBack) {
     EXPECT_EQ(records.size(), tile_count(tree));
     const Bytes bytes = encode_index(records);
     EXPECT_EQ(bytes.size(), kHeaderBytes + kRecordBytes * records.size());
-    const auto back = decode_index(bytes, tree, kName);
+    const auto back = decode_index(bytes, tree, kIndexName);
     ASSERT_EQ(back.size(), records.size());
     for (std::size_t i = 0; i < back.size(); ++i)
       expect_same(records[i], back[i]);
@@ -164,12 +164,12 @@ TEST(Index, FlipsBehindAFittingChecksumNeverCrash) {
     bytes[random() % bytes.size()] ^= static_cast<std::byte>(1U << random() % 8);
     const Bytes again = sealed(bytes);
     if (failure(again, tree).empty()) {
-      EXPECT_EQ(encode_index(decode_index(again, tree, kName)), again);
+      EXPECT_EQ(encode_index(decode_index(again, tree, kIndexName)), again);
     }
   }
 }
 
-struct Damage {
+struct RecordDamage {
   std::size_t offset;  ///< in the first record
   std::uint32_t value;
   const char* message;
@@ -180,14 +180,18 @@ TEST(Index, ImpossibleValuesAreRefusedByName) {
   constexpr std::uint32_t kMinusOne = 0xBF800000;
   const Tree tree(50, 5);
   const Bytes good = encode_index(make_records(tree));
-  for (const Damage& damage :
-       {Damage{0, 3, "record 0 is of tile 3/0, expected 0/0"},
-        Damage{0, 256, "record 0 is of tile 256/0"}, Damage{4, 1, "record 0 is of tile 0/1"},
-        Damage{8, 0, "impossible own vertices"}, Damage{8, 32769, "impossible own vertices"},
-        Damage{12, 101, "impossible rim vertices"}, Damage{28, 4, "impossible drawn border"},
-        Damage{44, kNan, "impossible error"}, Damage{48, kMinusOne, "impossible bound"},
-        Damage{52, kNan, "impossible compactness"}, Damage{56, 0x7F800000, "impossible bounds"},
-        Damage{68, 0xC0000000, "impossible bounds"}}) {
+  for (const RecordDamage& damage :
+       {RecordDamage{0, 3, "record 0 is of tile 3/0, expected 0/0"},
+        RecordDamage{0, 256, "record 0 is of tile 256/0"},
+        RecordDamage{4, 1, "record 0 is of tile 0/1"},
+        RecordDamage{8, 0, "impossible own vertices"},
+        RecordDamage{8, 32769, "impossible own vertices"},
+        RecordDamage{12, 101, "impossible rim vertices"},
+        RecordDamage{28, 4, "impossible drawn border"}, RecordDamage{44, kNan, "impossible error"},
+        RecordDamage{48, kMinusOne, "impossible bound"},
+        RecordDamage{52, kNan, "impossible compactness"},
+        RecordDamage{56, 0x7F800000, "impossible bounds"},
+        RecordDamage{68, 0xC0000000, "impossible bounds"}}) {
     Bytes bytes = good;
     storage::store_little(damage.value, bytes.data() + kHeaderBytes + damage.offset);
     EXPECT_THAT(failure(sealed(bytes), tree), HasSubstr(damage.message));

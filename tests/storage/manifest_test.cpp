@@ -20,7 +20,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 using Json = nlohmann::ordered_json;
 
-const char* const kName = "some/hierarchy.json";
+const char* const kManifestName = "some/hierarchy.json";
 
 Manifest make_manifest() {
   Manifest manifest;
@@ -80,10 +80,10 @@ void expect_same(const Manifest& a, const Manifest& b) {
 
 std::string failure(const std::string& text) {
   try {
-    parse_manifest(text, kName);
+    parse_manifest(text, kManifestName);
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::corrupt);
-    EXPECT_THAT(error.what(), StartsWith(kName));
+    EXPECT_THAT(error.what(), StartsWith(kManifestName));
     return error.what();
   }
   return {};
@@ -101,12 +101,13 @@ std::string sealed(Json document) {
 
 TEST(Manifest, GivesEveryValueBack) {
   const Manifest manifest = make_manifest();
-  expect_same(manifest, parse_manifest(to_json_text(manifest), kName));
-  EXPECT_EQ(to_json_text(parse_manifest(to_json_text(manifest), kName)), to_json_text(manifest));
+  expect_same(manifest, parse_manifest(to_json_text(manifest), kManifestName));
+  EXPECT_EQ(to_json_text(parse_manifest(to_json_text(manifest), kManifestName)),
+            to_json_text(manifest));
   Manifest other = manifest;
   for (const ColourType type : {ColourType::none, ColourType::u8, ColourType::f32}) {
     other.source.attributes = {false, type, false, false};
-    expect_same(other, parse_manifest(to_json_text(other), kName));
+    expect_same(other, parse_manifest(to_json_text(other), kManifestName));
   }
 }
 
@@ -122,7 +123,7 @@ TEST(Manifest, IsReadable) {
 TEST(Manifest, AFileNameThatIsNotUtf8IsWrittenAsValidJson) {
   Manifest manifest = make_manifest();
   manifest.source.file_name = "scan\xFF.ply";
-  const Manifest back = parse_manifest(to_json_text(manifest), kName);
+  const Manifest back = parse_manifest(to_json_text(manifest), kManifestName);
   EXPECT_EQ(back.source.file_name, "scan\xEF\xBF\xBD.ply");
 }
 

@@ -19,7 +19,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 using Bytes = std::vector<std::byte>;
 
-const char* const kName = "some/outline.glb";
+const char* const kOutlineName = "some/outline.glb";
 
 /// Polylines of 2 to 9 vertices; every third is closed.
 Outline random_outline(std::size_t polylines, unsigned seed) {
@@ -46,17 +46,17 @@ std::size_t segment_count(const Outline& outline) {
 void expect_round_trip(const Outline& outline, Vec3d origin) {
   const Bytes bytes = encode_outline(outline, origin);
   EXPECT_EQ(bytes.size(), outline_bytes(outline.vertices.size(), segment_count(outline)));
-  const Outline back = decode_outline(bytes, kName);
+  const Outline back = decode_outline(bytes, kOutlineName);
   EXPECT_EQ(back.vertices, outline.vertices);
   EXPECT_EQ(back.starts, outline.starts);
 }
 
 std::string failure(const Bytes& bytes) {
   try {
-    decode_outline(bytes, kName);
+    decode_outline(bytes, kOutlineName);
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::corrupt);
-    EXPECT_THAT(error.what(), StartsWith(kName));
+    EXPECT_THAT(error.what(), StartsWith(kOutlineName));
     return error.what();
   }
   return {};
@@ -113,7 +113,7 @@ TEST(OutlineGlb, RandomFlipsAreRefusedOrHarmless) {
     Bytes bytes = good;
     bytes[random() % bytes.size()] ^= static_cast<std::byte>(1U << random() % 8);
     try {
-      const Outline back = decode_outline(bytes, kName);
+      const Outline back = decode_outline(bytes, kOutlineName);
       EXPECT_EQ(back.starts, outline.starts);
       EXPECT_EQ(back.vertices.size(), outline.vertices.size());
     } catch (const Error& error) {

@@ -1,5 +1,7 @@
 #include "storage/process.h"
 
+#include "tests/support/sizes.h"
+
 #include <cstddef>
 #include <vector>
 
@@ -9,8 +11,9 @@
 namespace meshhier::storage {
 namespace {
 
+using tests::kMiB;
+
 // The system's own counts are this exact at the worst.
-constexpr std::size_t kMiB = std::size_t{1} << 20;
 
 /// Keeps the compiler from leaving the work out.
 volatile unsigned sink = 0;

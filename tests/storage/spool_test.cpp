@@ -1,6 +1,7 @@
 #include "storage/spool.h"
 
 #include "hierarchy/error.h"
+#include "tests/storage/pattern.h"
 #include "tests/support/faulty_file_system.h"
 
 #include <algorithm>
@@ -16,14 +17,8 @@ namespace {
 
 using tests::Call;
 using tests::FaultyFileSystem;
+using tests::pattern;
 using Bytes = std::vector<std::byte>;
-
-Bytes pattern(std::size_t size, std::size_t seed = 0) {
-  Bytes bytes(size);
-  for (std::size_t i = 0; i < size; ++i)
-    bytes[i] = static_cast<std::byte>(((i + seed) * 31) ^ (i >> 8));
-  return bytes;
-}
 
 Bytes content(const Spool& spool) {
   Bytes bytes(spool.size());

@@ -28,7 +28,7 @@ using testing::StartsWith;
 using Bytes = std::vector<std::byte>;
 using Json = nlohmann::ordered_json;
 
-const char* const kName = "some/tile.glb";
+const char* const kTileName = "some/tile.glb";
 
 std::vector<std::uint32_t> bits_of(const std::vector<float>& values) {
   std::vector<std::uint32_t> bits;
@@ -61,7 +61,7 @@ void expect_same_mesh(const PublishedTile& a, const PublishedTile& b) {
 /// What the GLB says of itself, and its parts, to be changed and put together again.
 struct OpenGlb {
   explicit OpenGlb(const Bytes& bytes) {
-    const auto view = storage::split_glb(bytes, kName);
+    const auto view = storage::split_glb(bytes, kTileName);
     json = Json::parse(view.json);
     bin.assign(view.bin.begin(), view.bin.end());
   }
@@ -86,10 +86,10 @@ struct OpenGlb {
 /// The message with which decoding fails; empty if it does not.
 std::string failure(const Bytes& bytes, NodeId node, const SampleHierarchy& sample) {
   try {
-    decode_tile(bytes, node, sample.tree, sample.format, kName);
+    decode_tile(bytes, node, sample.tree, sample.format, kTileName);
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::corrupt);
-    EXPECT_THAT(error.what(), StartsWith(kName));
+    EXPECT_THAT(error.what(), StartsWith(kTileName));
     return error.what();
   }
   return {};
@@ -130,7 +130,8 @@ TEST(TileGlb, GivesEveryTileBackForAnyLayoutAndTree) {
       const SampleHierarchy sample = make_sample(torus(250, 0.05F), partitions, {layout, {}});
       for (const PublishedTile& tile : sample.tiles) {
         const Bytes bytes = encode_tile(tile, sample.tree, sample.format);
-        const PublishedTile back = decode_tile(bytes, tile.node, sample.tree, sample.format, kName);
+        const PublishedTile back =
+            decode_tile(bytes, tile.node, sample.tree, sample.format, kTileName);
         expect_same_mesh(tile, back);
         const bool exact = sample.tree.is_partition(tile.node) || layout.colour == ColourType::none;
         if (exact) {
@@ -149,7 +150,7 @@ TEST(TileGlb, GivesBackMeshesOfEveryKind) {
     const SampleHierarchy sample = make_sample(mesh, 3);
     for (const PublishedTile& tile : sample.tiles) {
       const Bytes bytes = encode_tile(tile, sample.tree, sample.format);
-      expect_same_mesh(tile, decode_tile(bytes, tile.node, sample.tree, sample.format, kName));
+      expect_same_mesh(tile, decode_tile(bytes, tile.node, sample.tree, sample.format, kTileName));
     }
   }
 }
@@ -174,7 +175,7 @@ TEST(TileGlb, PartitionsKeepEveryBitOfAwkwardAttributes) {
       value = values[random() % values.size()];
     tile.mesh.vertices.positions[0] = {-0.0F, std::numeric_limits<float>::denorm_min(), 3e38F};
     const Bytes bytes = encode_tile(tile, sample.tree, sample.format);
-    const PublishedTile back = decode_tile(bytes, tile.node, sample.tree, sample.format, kName);
+    const PublishedTile back = decode_tile(bytes, tile.node, sample.tree, sample.format, kTileName);
     EXPECT_EQ(bits_of(tile.mesh.vertices.attributes), bits_of(back.mesh.vertices.attributes));
     expect_same_mesh(tile, back);
     EXPECT_EQ(encode_tile(back, sample.tree, sample.format), bytes);
@@ -200,8 +201,8 @@ TEST(TileGlb, SimplifiedTilesKeepWhatGltfCanSay) {
     PublishedTile& root = sample.tiles[0];
     std::copy(channels.begin(), channels.end(), root.mesh.vertices.attributes.begin());
     const Bytes bytes = encode_tile(root, sample.tree, sample.format);
-    auto all =
-        decode_tile(bytes, root.node, sample.tree, sample.format, kName).mesh.vertices.attributes;
+    auto all = decode_tile(bytes, root.node, sample.tree, sample.format, kTileName)
+                   .mesh.vertices.attributes;
     all.resize(channels.size());
     return all;
   };
@@ -254,7 +255,7 @@ TEST(TileGlb, IndicesTake32BitsFrom65536VerticesOn) {
     const PublishedTile tile = wide_tile(ghosts);
     const Bytes bytes = encode_tile(tile, tree, format);
     EXPECT_EQ(OpenGlb(bytes).json["accessors"][1]["componentType"], type);
-    expect_same_mesh(tile, decode_tile(bytes, tile.node, tree, format, kName));
+    expect_same_mesh(tile, decode_tile(bytes, tile.node, tree, format, kTileName));
   }
 }
 
@@ -326,12 +327,12 @@ TEST(TileGlb, RandomFlipsAreRefusedOrHarmless) {
       bytes[random() % bytes.size()] ^= static_cast<std::byte>(1U << random() % 8);
     }
     try {
-      expect_consistent(decode_tile(bytes, tile.node, sample.tree, sample.format, kName),
+      expect_consistent(decode_tile(bytes, tile.node, sample.tree, sample.format, kTileName),
                         sample.tree);
     } catch (const Error& error) {
       ++refused;
       EXPECT_EQ(error.code(), ErrorCode::corrupt);
-      EXPECT_THAT(error.what(), StartsWith(kName));
+      EXPECT_THAT(error.what(), StartsWith(kTileName));
     }
   }
   EXPECT_GT(refused, 1000U);
@@ -355,17 +356,17 @@ TEST(TileGlb, RandomNumbersInTheJsonAreRefused) {
 }
 
 /// One change to a good file of the last tile of full_sample(), and what is said of it.
-struct Damage {
+struct TileDamage {
   const char* name;
   std::function<void(OpenGlb&)> apply;
   const char* message;
 };
 
-void PrintTo(const Damage& damage, std::ostream* out) {
+void PrintTo(const TileDamage& damage, std::ostream* out) {
   *out << damage.name;
 }
 
-class DamagedTile : public testing::TestWithParam<Damage> {};
+class DamagedTile : public testing::TestWithParam<TileDamage> {};
 
 TEST_P(DamagedTile, IsRefusedByName) {
   const SampleHierarchy sample = full_sample();
@@ -388,63 +389,65 @@ void store_nan(std::byte* at) {
 INSTANTIATE_TEST_SUITE_P(
     All, DamagedTile,
     testing::Values(
-        Damage{"no_extension", [](OpenGlb& g) { g.json.erase("extensions"); },
-               "extension MESHHIER_tile is missing"},
-        Damage{"newer", [](OpenGlb& g) { g.extension()["version"] = 2; }, "newer meshhier"},
-        Damage{"other_level", [](OpenGlb& g) { g.extension()["level"] = 1; }, "level is 1"},
-        Damage{"other_index", [](OpenGlb& g) { g.extension()["index"] = 3; }, "index is 3"},
-        Damage{"missing_count", [](OpenGlb& g) { g.extension().erase("ghostCount"); },
-               "\"ghostCount\" is missing"},
-        Damage{"negative_count", [](OpenGlb& g) { g.extension()["borderCount"] = -5; },
-               "\"borderCount\" is -5"},
-        Damage{"huge_count", [](OpenGlb& g) { g.extension()["interiorCount"] = 4294967295U; },
-               "the BIN chunk has"},
-        Damage{"too_many_own", [](OpenGlb& g) { g.extension()["ownCount"] = 32769; },
-               "expected an integer from 0 to 32768"},
-        Damage{"none_own",
-               [](OpenGlb& g) { g.extension()["ownCount"] = g.extension()["rimCount"] = 0; },
-               "without vertices"},
-        Damage{"unknown_key", [](OpenGlb& g) { g.json["extras"] = 1; }, "is not expected"},
-        Damage{"missing_key", [](OpenGlb& g) { g.json.erase("accessors"); }, "/accessors"},
-        Damage{"moved_view", [](OpenGlb& g) { g.json["bufferViews"][3]["byteOffset"] = 0; },
-               "/bufferViews/3/byteOffset"},
-        Damage{"wrong_max", [](OpenGlb& g) { g.json["accessors"][0]["max"][1] = 99; },
-               "/accessors/0/max/1"},
-        Damage{"wrong_origin", [](OpenGlb& g) { g.json["nodes"][0]["translation"][0] = 2; },
-               "/nodes/0/translation/0"},
-        Damage{"position", [](OpenGlb& g) { store_nan(g.attribute("POSITION")); },
-               "position of vertex 0 is not finite"},
-        Damage{"normal", [](OpenGlb& g) { store_nan(g.attribute("NORMAL")); },
-               "NORMAL of vertex 0 is not finite"},
-        Damage{"index", [](OpenGlb& g) { store_u16(g.indices(0), 60000); },
-               "index 60000 of interior triangle 0"},
-        Damage{"degenerate", [](OpenGlb& g) { std::copy_n(g.indices(0), 2, g.indices(0) + 2); },
-               "interior triangle 0"},
-        Damage{
+        TileDamage{"no_extension", [](OpenGlb& g) { g.json.erase("extensions"); },
+                   "extension MESHHIER_tile is missing"},
+        TileDamage{"newer", [](OpenGlb& g) { g.extension()["version"] = 2; }, "newer meshhier"},
+        TileDamage{"other_level", [](OpenGlb& g) { g.extension()["level"] = 1; }, "level is 1"},
+        TileDamage{"other_index", [](OpenGlb& g) { g.extension()["index"] = 3; }, "index is 3"},
+        TileDamage{"missing_count", [](OpenGlb& g) { g.extension().erase("ghostCount"); },
+                   "\"ghostCount\" is missing"},
+        TileDamage{"negative_count", [](OpenGlb& g) { g.extension()["borderCount"] = -5; },
+                   "\"borderCount\" is -5"},
+        TileDamage{"huge_count", [](OpenGlb& g) { g.extension()["interiorCount"] = 4294967295U; },
+                   "the BIN chunk has"},
+        TileDamage{"too_many_own", [](OpenGlb& g) { g.extension()["ownCount"] = 32769; },
+                   "expected an integer from 0 to 32768"},
+        TileDamage{"none_own",
+                   [](OpenGlb& g) { g.extension()["ownCount"] = g.extension()["rimCount"] = 0; },
+                   "without vertices"},
+        TileDamage{"unknown_key", [](OpenGlb& g) { g.json["extras"] = 1; }, "is not expected"},
+        TileDamage{"missing_key", [](OpenGlb& g) { g.json.erase("accessors"); }, "/accessors"},
+        TileDamage{"moved_view", [](OpenGlb& g) { g.json["bufferViews"][3]["byteOffset"] = 0; },
+                   "/bufferViews/3/byteOffset"},
+        TileDamage{"wrong_max", [](OpenGlb& g) { g.json["accessors"][0]["max"][1] = 99; },
+                   "/accessors/0/max/1"},
+        TileDamage{"wrong_origin", [](OpenGlb& g) { g.json["nodes"][0]["translation"][0] = 2; },
+                   "/nodes/0/translation/0"},
+        TileDamage{"position", [](OpenGlb& g) { store_nan(g.attribute("POSITION")); },
+                   "position of vertex 0 is not finite"},
+        TileDamage{"normal", [](OpenGlb& g) { store_nan(g.attribute("NORMAL")); },
+                   "NORMAL of vertex 0 is not finite"},
+        TileDamage{"index", [](OpenGlb& g) { store_u16(g.indices(0), 60000); },
+                   "index 60000 of interior triangle 0"},
+        TileDamage{"degenerate", [](OpenGlb& g) { std::copy_n(g.indices(0), 2, g.indices(0) + 2); },
+                   "interior triangle 0"},
+        TileDamage{
             "order",
             [](OpenGlb& g) { std::swap_ranges(g.indices(0), g.indices(0) + 6, g.indices(0) + 6); },
             "out of order"},
-        Damage{"no_ghost_corner",
-               [](OpenGlb& g) {
-                 for (unsigned c = 0; c < 3; ++c)
-                   store_u16(g.indices(1) + 2 * c, c);
-               },
-               "border triangle 0 has 3 own corners"},
-        Damage{"rim", [](OpenGlb& g) { g.extension()["rimCount"] = 0; }, "0 of them on the rim"},
-        Damage{"parent_map", [](OpenGlb& g) { store_u16(g.view("parentMap") + 2, 32768); },
-               "parent map entry 1 is 32768"},
-        Damage{"neighbour", [](OpenGlb& g) { store_u32(g.view("neighbours"), 77); },
-               "neighbour 0 is tile 77"},
-        Damage{"neighbour_of_itself", [](OpenGlb& g) { store_u32(g.view("neighbours"), 4); },
-               "neighbour 0 is tile 4"},
-        Damage{"ghost_start", [](OpenGlb& g) { store_u32(g.view("ghostStarts") + 4, 0); },
-               "of neighbour 0 are not a run"},
-        Damage{"ghost_end", [](OpenGlb& g) { store_u32(g.view("ghostStarts") + 4, 4000000000U); },
-               "of neighbour 0 are not a run"},
-        Damage{"chain", [](OpenGlb& g) { store_u16(g.view("ghostChains"), 40000); },
-               "ghost chain entry 0 is 40000"},
-        Damage{"ghost_order", [](OpenGlb& g) { store_u16(g.view("ghostChains"), 32767); },
-               "do not ascend"}),
+        TileDamage{"no_ghost_corner",
+                   [](OpenGlb& g) {
+                     for (unsigned c = 0; c < 3; ++c)
+                       store_u16(g.indices(1) + 2 * c, c);
+                   },
+                   "border triangle 0 has 3 own corners"},
+        TileDamage{"rim", [](OpenGlb& g) { g.extension()["rimCount"] = 0; },
+                   "0 of them on the rim"},
+        TileDamage{"parent_map", [](OpenGlb& g) { store_u16(g.view("parentMap") + 2, 32768); },
+                   "parent map entry 1 is 32768"},
+        TileDamage{"neighbour", [](OpenGlb& g) { store_u32(g.view("neighbours"), 77); },
+                   "neighbour 0 is tile 77"},
+        TileDamage{"neighbour_of_itself", [](OpenGlb& g) { store_u32(g.view("neighbours"), 4); },
+                   "neighbour 0 is tile 4"},
+        TileDamage{"ghost_start", [](OpenGlb& g) { store_u32(g.view("ghostStarts") + 4, 0); },
+                   "of neighbour 0 are not a run"},
+        TileDamage{"ghost_end",
+                   [](OpenGlb& g) { store_u32(g.view("ghostStarts") + 4, 4000000000U); },
+                   "of neighbour 0 are not a run"},
+        TileDamage{"chain", [](OpenGlb& g) { store_u16(g.view("ghostChains"), 40000); },
+                   "ghost chain entry 0 is 40000"},
+        TileDamage{"ghost_order", [](OpenGlb& g) { store_u16(g.view("ghostChains"), 32767); },
+                   "do not ascend"}),
     [](const auto& test) { return std::string(test.param.name); });
 
 TEST(TileGlb, AChainThroughAnEarlyNodeKeepsTheNumber) {

