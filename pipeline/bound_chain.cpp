@@ -21,6 +21,7 @@ float above(float below, double value) {
 void make_unique(std::vector<std::uint32_t>& tiles) {
   std::sort(tiles.begin(), tiles.end());
   tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
+  tiles.shrink_to_fit();
 }
 
 BoundChain::BoundChain(Forest& forest, double diagonal) : forest_(forest), diagonal_(diagonal) {

@@ -23,8 +23,9 @@ constexpr std::uint64_t kBaseBytes = 18 * kMiB;
 // Of the budget, what the allocator keeps of memory that was given back.
 constexpr std::uint64_t kAllocatorParts = 12;
 
-// Bookkeeping a tile: four blob entries, what is known of it, its record, its statistics.
-constexpr std::uint64_t kTileEntryBytes = 320;
+// Bookkeeping a tile: four blob entries, what is known of it, its record, its statistics, its step
+// and the sums of steps with some twenty neighbours each.
+constexpr std::uint64_t kTileEntryBytes = 480;
 
 // Triangles a vertex: 2 on closed surfaces, less on open ones; half as much again for those that
 // several chunks share.

@@ -70,8 +70,10 @@ Step measure_step(const Forest& forest, NodeId node, const LoadedTile& loaded) {
     step.certain = std::max(step.certain, double{band.lost} + seam);
   step.mean_square = band.weight_sum > 0 ? band.squared_sum / band.weight_sum : 0;
   const auto add_foreign = [&](const Band& of) {
-    for (const GhostRef& ref : of.foreign)
-      step.finer_neighbours.push_back(ref.tile);
+    for (const GhostRef& ref : of.foreign) {
+      if (step.finer_neighbours.empty() || step.finer_neighbours.back() != ref.tile)
+        step.finer_neighbours.push_back(ref.tile);
+    }
   };
   add_foreign(band);
   for (const cluster_simplify::BandOf& neighbour : neighbours) {
