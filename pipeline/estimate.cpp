@@ -15,12 +15,12 @@ using Json = nlohmann::ordered_json;
 // ---- rates, measured by `scripts/benchmark scale` (docs/performance.md) ----------------------
 
 // CPU microseconds per input triangle for a whole build, disk to disk, tiles of 8192 vertices.
-constexpr double kEdgeCollapseMicroseconds = 1.7;
-constexpr double kHalfEdgeMicroseconds = 1.7;
+constexpr double kEdgeCollapseMicroseconds = 1.4;
+constexpr double kHalfEdgeMicroseconds = 1.4;
 constexpr double kClusterMicroseconds = 0.9;
 
 // The part of it that one thread does while the others wait.
-constexpr double kSerialShare = 0.12;
+constexpr double kSerialShare = 0.06;
 
 // What a disk takes or gives on its own, a cloud volume or a laptop's SSD when its cache is full.
 constexpr double kDiskBytesPerSecond = 500e6;
