@@ -34,7 +34,7 @@ void CoverDistance::set_covers(std::span<const Cover> covers) {
 CoverDistance::Point CoverDistance::measured(Vec3d position) {
   Point point{position, distances_.size(), 0};
   distances_.resize(point.row + row_size());
-  double* const row = &distances_[point.row];
+  double* const row = distances_.data() + point.row;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     const TrianglePair::Two squared = squared_distances(position, pairs_[i]);
     row[2 * i] = std::sqrt(squared[0]) + covers_[2 * i].extra;
