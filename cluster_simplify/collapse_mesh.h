@@ -122,6 +122,12 @@ class CollapseMesh {
 
 using Fans = std::span<const CollapseMesh::Fan>;
 
+/// Whether every triangle has that corner, too.
+inline bool all_at(Fans fans, std::uint32_t vertex) {
+  return std::all_of(fans.begin(), fans.end(),
+                     [&](const CollapseMesh::Fan& fan) { return fan.is_at(vertex); });
+}
+
 template <class Gone>
 void CollapseMesh::collapse(std::uint32_t from, std::uint32_t to, std::span<const Fan> around_from,
                             std::span<const Fan> around_to, const Gone& gone) {

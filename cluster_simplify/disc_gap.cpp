@@ -1,7 +1,5 @@
 #include "cluster_simplify/disc_gap.h"
 
-#include "cluster_simplify/four_floats.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -88,6 +86,13 @@ bool DiscGapMeter::project(std::span<const Vec3f> positions, const EdgeStar& sta
   return true;
 }
 
+/// Of links i, i + 1, ...: both their vertices x the end that they are opposite of.
+std::array<FourFloats, 2> DiscGapMeter::beside_own_ends(std::uint32_t i) const {
+  const FourInts of_from = lanes_below(i, ring_.to_begin);
+  return {of_from ? four_at(from_.beside, i) : four_at(to_.beside, i),
+          of_from ? four_at(from_.beside, i + 1) : four_at(to_.beside, i + 1)};
+}
+
 /// Whether no triangle, old or new, shows its back, and the new ones go around once.
 bool DiscGapMeter::faces_front() const {
   const std::uint32_t turn = ring_.to_begin;
@@ -97,10 +102,8 @@ bool DiscGapMeter::faces_front() const {
   FourInts rounds{};  // minus one each
   for (std::uint32_t i = 0; i < ring_.size; i += 4) {
     const FourInts exist = lanes_below(i, ring_.size);
-    const FourInts of_from = lanes_below(i, turn);
     const FourFloats fresh = four_at(ring_.doubled, i);
-    const FourFloats beside = of_from ? four_at(from_.beside, i) : four_at(to_.beside, i);
-    const FourFloats behind = of_from ? four_at(from_.beside, i + 1) : four_at(to_.beside, i + 1);
+    const auto [beside, behind] = beside_own_ends(i);
     const FourFloats old = fresh - beside + behind;
     const FourFloats least = fresh < old ? fresh : old;
     smallest = exist & (least < smallest) ? least : smallest;
@@ -164,9 +167,7 @@ bool DiscGapMeter::lay_middle() {
                ring_.z[0]);
   }
   for (std::uint32_t i = 0; i < ring_.size; i += 4) {
-    const FourInts of_from = lanes_below(i, turn);
-    const FourFloats beside = of_from ? four_at(from_.beside, i) : four_at(to_.beside, i);
-    const FourFloats behind = of_from ? four_at(from_.beside, i + 1) : four_at(to_.beside, i + 1);
+    const auto [beside, behind] = beside_own_ends(i);
     const FourInts holds = lanes_below(i, ring_.size) & (beside <= 0.0F) & (behind >= 0.0F);
     if (!any_of(holds))
       continue;

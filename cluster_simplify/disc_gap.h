@@ -8,6 +8,7 @@
 #pragma once
 
 #include "cluster_simplify/edge_star.h"
+#include "cluster_simplify/four_floats.h"
 #include "hierarchy/vec.h"
 
 #include <array>
@@ -67,6 +68,7 @@ class DiscGapMeter {
   };
 
   bool project(std::span<const Vec3f> positions, const EdgeStar& star, Vec3f place);
+  std::array<FourFloats, 2> beside_own_ends(std::uint32_t i) const;
   bool faces_front() const;
   void look_up(std::span<const float> drifts, const EdgeStar& star);
   float lay_over_new(End& end);

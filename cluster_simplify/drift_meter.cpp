@@ -34,10 +34,6 @@ DriftMeter::DriftMeter(const CollapseMesh& mesh, std::span<const float> weights)
 
 void DriftMeter::note(std::span<const Vec3f> positions, const EdgeStar& star, Vec3f place) {
   const StarCollapse c{star.from(), star.to(), place, star.around_from(), star.around_to()};
-  const auto all_at = [](Fans fans, std::uint32_t other) {
-    return std::all_of(fans.begin(), fans.end(),
-                       [&](const CollapseMesh::Fan& fan) { return fan.is_at(other); });
-  };
   if (const std::optional<DiscGap> disc = measure(positions, star, c)) {
     for (std::size_t i = 0; i < disc->triangles.size(); ++i)
       set_drift(disc->triangles[i], disc->drifts[i]);
@@ -57,9 +53,8 @@ void DriftMeter::note(std::span<const Vec3f> positions, const EdgeStar& star, Ve
 std::optional<DiscGap> DriftMeter::measure(std::span<const Vec3f> positions, const EdgeStar& star,
                                            const StarCollapse& c) {
   if (star.is_disc()) {
-    std::optional<DiscGap> disc = discs_.measure(positions, drifts_, star, c.place,  //
-                                                 kSmallDisc * largest_);
-    if (disc)
+    const float enough = kSmallDisc * largest_;
+    if (const auto disc = discs_.measure(positions, drifts_, star, c.place, enough))
       return disc;
   }
   std::optional<DiscGap> fan = fans_.measure(positions, drifts_, c);

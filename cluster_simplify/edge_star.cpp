@@ -6,7 +6,6 @@
 #include <cstddef>
 
 namespace meshhier::cluster_simplify {
-
 namespace {
 
 /// Vertices, and where among them one is found: bit i for the i-th.
@@ -31,6 +30,11 @@ class Wanted {
   alignas(16) std::array<std::uint32_t, EdgeStar::kMostLinks + 4> vertices_;
   std::size_t count_;
 };
+
+/// Neither none nor several.
+bool is_one(std::uint32_t places) {
+  return places != 0 && (places & (places - 1)) == 0;
+}
 
 }  // namespace
 
@@ -63,7 +67,7 @@ bool EdgeStar::append_links(Fans fans, std::uint32_t other,
   std::uint32_t vertex = other;
   for (std::size_t k = 0; k < fans.size(); ++k) {
     const std::uint32_t places = next.places_of(vertex);
-    if (places == 0 || (places & (places - 1)) != 0)  // none or several
+    if (!is_one(places))
       return false;
     const CollapseMesh::Fan* fan = &fans[static_cast<std::size_t>(std::countr_zero(places))];
     if (k == 0)
@@ -78,24 +82,16 @@ bool EdgeStar::append_links(Fans fans, std::uint32_t other,
 
 /// Whether no vertex is on the ring twice.
 bool EdgeStar::meets_all_once() const {
-  alignas(16) std::array<std::uint32_t, kMostLinks + 4> vertices;
+  const Wanted ring(size_, [&](std::size_t i) { return links_[i]->next; });
+  bool once = true;
   for (std::uint32_t i = 0; i < size_; ++i)
-    vertices[i] = links_[i]->next;
-  for (std::uint32_t i = size_; i < size_ + 4; ++i)
-    vertices[i] = CollapseMesh::kNone;
-  FourInts meetings{};  // minus one each
-  for (std::uint32_t i = 0; i < size_; ++i) {
-    const auto vertex = static_cast<std::int32_t>(vertices[i]);
-    for (std::uint32_t group = 0; group < size_; group += 4)
-      meetings += load_four<FourInts>(&vertices[group]) == vertex;
-  }
-  const int all = -(meetings[0] + meetings[1] + meetings[2] + meetings[3]);
-  return all == static_cast<int>(size_);
+    once &= is_one(ring.places_of(vertex(i)));
+  return once;
 }
 
 void EdgeStar::look_from(Vec3f place, std::span<const Vec3f> positions) {
   for (std::uint32_t i = 0; i < size_; ++i) {
-    const Vec3f p = positions[links_[i]->next] - place;
+    const Vec3f p = positions[vertex(i)] - place;
     x_[i] = p.x;
     y_[i] = p.y;
     z_[i] = p.z;

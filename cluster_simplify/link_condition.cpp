@@ -15,11 +15,6 @@ bool touches_border(const CollapseMesh& mesh, Fans fans) {
   });
 }
 
-bool all_at(Fans fans, std::uint32_t other) {
-  return std::all_of(fans.begin(), fans.end(),
-                     [&](const CollapseMesh::Fan& fan) { return fan.is_at(other); });
-}
-
 /// A triangle at the edge that hangs on its corners only: it would be gone without a trace.
 bool loses_wing(const CollapseMesh& mesh, Fans around_a, Fans around_b, std::uint32_t a,
                 std::uint32_t b) {
