@@ -1,5 +1,7 @@
 #include "hierarchy/tile_mesh.h"
 
+#include "hierarchy/sort_few.h"
+
 #include <algorithm>
 
 namespace meshhier {
@@ -40,26 +42,6 @@ void VertexArray::append(const VertexArray& other, std::span<const std::uint32_t
 
 namespace {
 
-// Above so many triangles with the same first corner, inserting one by one takes longer than
-// sorting.
-constexpr std::ptrdiff_t kFew = 16;
-
-/// Sorts triangles of the same first corner.
-void sort_group(Triangle* begin, Triangle* end) {
-  if (end - begin > kFew) {
-    std::sort(begin, end);
-    return;
-  }
-  const auto key = [](const Triangle& t) { return std::uint64_t{raw(t[1])} << 32 | raw(t[2]); };
-  for (Triangle* next = begin; next != end; ++next) {
-    const Triangle moved = *next;
-    Triangle* place = next;
-    for (; place != begin && key(moved) < key(place[-1]); --place)
-      *place = place[-1];
-    *place = moved;
-  }
-}
-
 /// Sorts canonical triangles by a counting sort on the first corner; a handful share it, so the
 /// rest is a sort of tiny groups. Four times faster than one comparison sort at 16 k triangles.
 void sort_by_first_corner(std::vector<Triangle>& triangles) {
@@ -76,8 +58,9 @@ void sort_by_first_corner(std::vector<Triangle>& triangles) {
   std::vector<Triangle> sorted(triangles.size());
   for (const Triangle& t : triangles)
     sorted[ends[raw(t[0]) + 1]++] = t;
+  const auto rest = [](const Triangle& t) { return std::uint64_t{raw(t[1])} << 32 | raw(t[2]); };
   for (std::size_t i = 0; i < corner_count; ++i)
-    sort_group(sorted.data() + ends[i], sorted.data() + ends[i + 1]);
+    sort_few(std::span(sorted).subspan(ends[i], ends[i + 1] - ends[i]), rest);
   triangles = std::move(sorted);
 }
 

@@ -1,10 +1,12 @@
 #include "partition/leaf_tiles.h"
 
 #include "hierarchy/error.h"
+#include "hierarchy/sort_few.h"
 #include "partition/spatial_order.h"
 
 #include <algorithm>
 #include <cassert>
+#include <functional>
 #include <numeric>
 
 namespace meshhier::partition {
@@ -14,23 +16,6 @@ namespace {
 constexpr std::size_t kMostVertices = 65536;
 
 constexpr std::uint32_t kOutside = 0xffffffff;  // the leaf of a corner in another chunk
-
-/// Sorts by insertion: two or three numbers as a rule, for which std::sort takes three times as
-/// long; more than that are left to it.
-void sort_few(std::span<std::uint32_t> numbers) {
-  constexpr std::size_t kFew = 16;
-  if (numbers.size() > kFew) {
-    std::sort(numbers.begin(), numbers.end());
-    return;
-  }
-  for (std::size_t i = 1; i < numbers.size(); ++i) {
-    const std::uint32_t number = numbers[i];
-    std::size_t place = i;
-    for (; place > 0 && numbers[place - 1] > number; --place)
-      numbers[place] = numbers[place - 1];
-    numbers[place] = number;
-  }
-}
 
 class LeafBuilder {
  public:
@@ -166,7 +151,7 @@ class LeafBuilder {
       triangles.reserve(rows_[end] - rows_[first]);
       for (std::uint32_t row = first; row < end; ++row) {
         const auto rest = std::span(sorted).subspan(rows_[row], rows_[row + 1] - rows_[row]);
-        sort_few(rest);
+        sort_few(rest, std::identity{});
         for (const std::uint32_t two : rest)
           triangles.push_back(
               {TileVertex{row - first}, TileVertex{two >> 16}, TileVertex{two & 0xffff}});
