@@ -26,6 +26,7 @@ struct BuildArguments {
   std::vector<std::string> settings;
   std::string stats;  ///< file for the account; empty: none
   bool force = false;
+  bool restart = false;
   bool dry_run = false;
   bool json = false;  ///< the estimate as JSON
 };
@@ -89,8 +90,9 @@ int run_build(const BuildArguments& arguments, pipeline::ProgressMode mode,
   }
   const auto progress =
       pipeline::make_progress(mode, environment.messages, environment.messages_on_terminal);
-  const pipeline::BuildReport report = pipeline::build_hierarchy(
-      config, arguments.force, {environment.files, *progress, environment.cancel});
+  const pipeline::BuildReport report =
+      pipeline::build_hierarchy(config, {arguments.force, arguments.restart},
+                                {environment.files, *progress, environment.cancel});
   progress->finish(config.output.string());
   if (stats)
     write_stats(*stats, report.stats);
@@ -133,6 +135,8 @@ void add_build_command(CLI::App& parser, Invocation& invocation) {
                    "current directory")
       ->type_name("KEY=VALUE");
   command->add_flag("--force", arguments->force, "Replace an existing output");
+  command->add_flag("--restart", arguments->restart,
+                    "Throw away what an earlier build of this output, which was stopped, had done");
   CLI::Option* dry_run = command->add_flag("--dry-run", arguments->dry_run,
                                            "Read only the mesh's header; tell what the build would "
                                            "make and take, or why it would refuse");

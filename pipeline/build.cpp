@@ -1,8 +1,6 @@
 #include "pipeline/build.h"
 
-#include "partition/top_tree.h"
 #include "pipeline/build_plan.h"
-#include "pipeline/forest.h"
 #include "pipeline/memory_plan.h"
 #include "pipeline/outline_stage.h"
 #include "pipeline/partition_stage.h"
@@ -10,6 +8,7 @@
 #include "pipeline/simplify_stage.h"
 #include "pipeline/size_text.h"
 #include "pipeline/source_mesh.h"
+#include "pipeline/workshop.h"
 #include "storage/layout.h"
 #include "storage/work_directory.h"
 
@@ -47,11 +46,12 @@ BuildStats make_stats(const Config& config, const SourceSummary& source,
   return stats;
 }
 
-std::string report_text(const SourceSummary& source, const BuildStats& stats) {
-  std::string text =
-      fmt::format("{} vertices, {} triangles -> {} partitions, {} levels, {} tiles, {}\n",
-                  source.vertices, source.triangles, stats.partitions, stats.levels, stats.tiles,
-                  rounded_size_text(stats.output_bytes));
+std::string report_text(const SourceSummary& source, const std::string& found,
+                        const BuildStats& stats) {
+  std::string text = found.empty() ? "" : found + '\n';
+  text += fmt::format("{} vertices, {} triangles -> {} partitions, {} levels, {} tiles, {}\n",
+                      source.vertices, source.triangles, stats.partitions, stats.levels,
+                      stats.tiles, rounded_size_text(stats.output_bytes));
   if (source.degenerate_triangles > 0) {
     text += fmt::format("dropped {} degenerate triangles\n", source.degenerate_triangles);
   }
@@ -61,47 +61,63 @@ std::string report_text(const SourceSummary& source, const BuildStats& stats) {
   return text + stats_text(stats);
 }
 
-}  // namespace
+/// Checks, samples and distributes the input, and notes what was learnt of it.
+void read_input(std::unique_ptr<mesh_io::MeshSource> source, const Config& config,
+                const BuildPlan& build, Workshop& workshop, Progress& progress,
+                BuildEnvironment environment) {
+  const CancelToken& cancel = environment.cancel;
+  const storage::FileIdentity before = environment.files.identity(config.input);
+  storage::ScratchFile vertices = workshop.mesh_scratch.beside("vertices");
+  SourceMesh mesh(std::move(source), config.input.filename().string(), vertices,
+                  build.memory.blocks_in_flight, progress, cancel);
+  distribute(mesh, build.tree, config.partition.axis, workshop.chunks, build.memory,
+             workshop.mesh_scratch, progress, cancel);
+  SourceSummary summary = mesh.summary();
+  summary.checksum = mesh.checksum(cancel);
+  if (environment.files.identity(config.input) != before) {
+    throw Error(ErrorCode::input,
+                config.input.string() + " was changed while it was read; build it again");
+  }
+  workshop.journal.note_source(summary, mesh.origin());
+}
 
-BuildReport build_hierarchy(const Config& config, bool force, BuildEnvironment environment) {
+/// A failure that leaves work to go on with says so.
+Error told_how_to_go_on(const Error& error, const storage::WorkDirectory& work) {
+  return {error.code(),
+          fmt::format("{}\nWhat is done so far is kept in {}: the same build goes on with it "
+                      "(--restart begins anew, \"meshhier clean\" removes it)",
+                      error.what(), work.path().string())};
+}
+
+/// All from the input to the finished files in work.built().
+BuildReport build_in(storage::WorkDirectory& work, const Config& config, const BuildPlan& build,
+                     std::unique_ptr<mesh_io::MeshSource> source, BuildEnvironment environment) {
   storage::FileSystem& files = environment.files;
   const CancelToken& cancel = environment.cancel;
-  configure_allocator(config.memory_budget);
-
-  // Everything that can be refused is refused before anything is written.
-  check_apart(config, files);
-  std::unique_ptr<mesh_io::MeshSource> source = mesh_io::open_mesh(files, config.input);
-  const BuildPlan build = plan_build(config, source->description());
-  const Tree& tree = build.tree;
   const MemoryPlan& plan = build.memory;
-  const tbb::global_control thread_limit(tbb::global_control::max_allowed_parallelism,
-                                         build.threads);
   storage::MemoryPool pool(plan.pool_bytes);
   StageMeter progress({environment.progress, files.counters(), pool.scratch_use()});
-  storage::check_output(files, config.output, force);
-  check_disk(build.disk, config.output, files);
-  storage::WorkDirectory work(files, config.output, force);
 
-  storage::ScratchFile tile_scratch(files, work.temporary() / "tiles", pool);
-  Forest forest(tree, partition::chunk_level(tree), build.job.channels, tile_scratch);
-
+  if (files.exists(storage::journal_path(work.path())))
+    progress.stage("resume", 0, "entries");
+  const OpenWorkshop open = open_workshop(files, work, config, *source, build, pool, cancel);
+  auto& [mesh_scratch, tile_scratch, chunks, forest, journal] = *open.workshop;
+  if (!journal.source())
+    read_input(std::move(source), config, build, *open.workshop, progress, environment);
+  work.keep(true);
   PublishInput result;
-  {
-    storage::ScratchFile mesh_scratch(files, work.temporary() / "mesh", pool);
-    SourceMesh mesh(std::move(source), config.input.filename().string(), mesh_scratch,
-                    plan.blocks_in_flight, progress, cancel);
-    Chunks chunks =
-        distribute(mesh, tree, config.partition.axis, plan, mesh_scratch, progress, cancel);
-    result.source = mesh.summary();
-    result.source.checksum = mesh.checksum(cancel);
-    result.format = {mesh.summary().attributes, mesh.origin()};
-    result.source.unreferenced_vertices =
-        make_leaves(chunks, forest, config.partition.axis, plan, progress, cancel);
-  }
+  result.source = journal.source()->summary;
+  result.format = {result.source.attributes, journal.source()->origin};
+  result.source.unreferenced_vertices =
+      make_leaves(chunks, forest, journal, config.partition.axis, plan, progress, cancel);
+  tile_scratch.sync();  // what it holds cannot be made again without the chunks
+  journal.sync();
+  mesh_scratch.remove();
+
   const double diagonal = length(result.source.bounds.max - result.source.bounds.min);
   result.asked_vertices = build.asked_vertices;
   result.config = resolved_json(config);
-  simplify(forest,
+  simplify(forest, journal,
            {result.asked_vertices,
             result.source.attributes,
             {config.simplify.method, config.simplify.representative, config.simplify.cost},
@@ -109,8 +125,8 @@ BuildReport build_hierarchy(const Config& config, bool force, BuildEnvironment e
            plan, progress, cancel);
   result.outline = make_outline(forest, config.outline, diagonal, plan, progress, cancel);
   const PublishedSummary published =
-      publish(forest, result, work.path(), plan, files, progress, cancel);
-  const std::uint64_t manifest_bytes = files.open(storage::manifest_path(work.path()))->size();
+      publish(forest, journal, result, work.built(), plan, files, progress, cancel);
+  const std::uint64_t manifest_bytes = files.open(storage::manifest_path(work.built()))->size();
   cancel.check();
   progress.begin("sync");
   work.publish();
@@ -122,8 +138,36 @@ BuildReport build_hierarchy(const Config& config, bool force, BuildEnvironment e
   report.stats.peak_temporary_bytes = pool.scratch_use().peak_bytes_on_disk();
   report.stats.stages = progress.stages();
   report.stats.total = progress.total();
-  report.text = report_text(result.source, report.stats);
+  report.text = report_text(result.source, open.found, report.stats);
   return report;
+}
+
+}  // namespace
+
+BuildReport build_hierarchy(const Config& config, const BuildOptions& options,
+                            BuildEnvironment environment) {
+  storage::FileSystem& files = environment.files;
+  configure_allocator(config.memory_budget);
+
+  // Everything that can be refused is refused before anything is written.
+  check_apart(config, files);
+  std::unique_ptr<mesh_io::MeshSource> source = mesh_io::open_mesh(files, config.input);
+  const BuildPlan build = plan_build(config, source->description());
+  const tbb::global_control thread_limit(tbb::global_control::max_allowed_parallelism,
+                                         build.threads);
+  storage::check_output(files, config.output, options.force);
+  check_disk(build.disk, config.output, files);
+
+  storage::WorkDirectory work(files, config.output, options.force);
+  if (options.restart)
+    work.clear();
+  try {
+    return build_in(work, config, build, std::move(source), environment);
+  } catch (const Error& error) {
+    if (!work.is_kept() || error.code() == ErrorCode::exists)
+      throw;
+    throw told_how_to_go_on(error, work);
+  }
 }
 
 }  // namespace meshhier::pipeline

@@ -2,6 +2,7 @@
 
 #include "hierarchy/error.h"
 #include "pipeline/size_text.h"
+#include "storage/layout.h"
 
 #include <algorithm>
 
@@ -40,6 +41,17 @@ Tree plan_tree(const Config& config, std::uint64_t vertex_count) {
 std::uint32_t largest_partition(const Tree& tree) {
   return static_cast<std::uint32_t>((tree.vertex_count() + tree.partition_count() - 1) /
                                     tree.partition_count());
+}
+
+/// Of what an earlier build of the output left: it takes its place already.
+std::uint64_t bytes_left(const std::filesystem::path& output, storage::FileSystem& files) {
+  const std::filesystem::path work = storage::work_path(output);
+  std::uint64_t bytes = 0;
+  if (files.exists(work)) {
+    for (const std::filesystem::path& file : files.list(work))
+      bytes += files.identity(file).bytes;
+  }
+  return bytes;
 }
 
 std::uint32_t asked_vertices(const Config& config, const Tree& tree) {
@@ -98,7 +110,7 @@ void check_disk(const DiskNeed& need, const std::filesystem::path& output,
                 storage::FileSystem& files) {
   const std::filesystem::path directory = existing_directory(output, files);
   const std::uint64_t free = files.free_bytes(directory);
-  if (free < need.room_bytes) {
+  if (free + bytes_left(output, files) < need.room_bytes) {
     throw Error(
         ErrorCode::budget,
         fmt::format(

@@ -36,6 +36,17 @@ class ChunkFinder {
   std::uint32_t chunk_ = 0, first_ = 0, size_;
 };
 
+template <class Record>
+nlohmann::json store(storage::RecordSpool<Record>& spool) {
+  const storage::StoredSpool stored = spool.store();
+  return {stored.bytes, stored.checksum, stored.block_bytes, stored.blocks};
+}
+
+template <class Record>
+bool restore(storage::RecordSpool<Record>& spool, const nlohmann::json& stored) {
+  return spool.restore({stored.at(0), stored.at(1), stored.at(2), stored.at(3)});
+}
+
 }  // namespace
 
 void ChunkedVertices::sort(std::uint32_t chunk_count, std::span<const Vec3f> positions,
@@ -142,7 +153,6 @@ partition::ChunkMesh Chunks::take(std::uint32_t chunk) {
       attributes = std::copy_n(rows.data() + at + 3, width - 3, attributes);
     }
   }
-  vertices_[chunk].clear();
 
   const std::uint64_t inner_count = inner_[chunk].size();
   mesh.triangles.resize(inner_count + shared_[chunk].size());
@@ -154,9 +164,30 @@ partition::ChunkMesh Chunks::take(std::uint32_t chunk) {
       mesh.triangles[first + i] = packed[i].ranks(map_.first_rank(chunk));
   }
   shared_[chunk].read(0, std::span(mesh.triangles).subspan(inner_count));
+  drop(chunk);
+  return mesh;
+}
+
+void Chunks::drop(std::uint32_t chunk) {
+  vertices_[chunk].clear();
   inner_[chunk].clear();
   shared_[chunk].clear();
-  return mesh;
+}
+
+nlohmann::json Chunks::store(std::uint32_t chunk) {
+  return {pipeline::store(vertices_[chunk]), pipeline::store(inner_[chunk]),
+          pipeline::store(shared_[chunk])};
+}
+
+bool Chunks::restore(std::uint32_t chunk, const nlohmann::json& stored) {
+  return pipeline::restore(vertices_[chunk], stored.at(0)) &&
+         pipeline::restore(inner_[chunk], stored.at(1)) &&
+         pipeline::restore(shared_[chunk], stored.at(2));
+}
+
+bool Chunks::is_as_stored(std::uint32_t chunk) const {
+  return vertices_[chunk].is_as_stored() && inner_[chunk].is_as_stored() &&
+         shared_[chunk].is_as_stored();
 }
 
 }  // namespace meshhier::pipeline

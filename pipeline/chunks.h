@@ -10,6 +10,8 @@
 #include <span>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 namespace meshhier::pipeline {
 
 /// A triangle with all corners in one chunk: their places in it, 21 bits each, the first corner's
@@ -83,6 +85,17 @@ class Chunks {
 
   /// Reads a chunk and forgets it. Thread-safe for different chunks.
   partition::ChunkMesh take(std::uint32_t chunk);
+  /// For the journal, when all is appended: where the scratch file holds a chunk, which is then on
+  /// disk.
+  nlohmann::json store(std::uint32_t chunk);
+  /// False if the scratch file is too short. Throws nlohmann::json::exception if `stored` is
+  /// nothing of the kind.
+  bool restore(std::uint32_t chunk, const nlohmann::json& stored);
+  /// Whether the scratch file holds a restored chunk as it was; reads it all.
+  bool is_as_stored(std::uint32_t chunk) const;
+  /// Forgets a chunk that is not needed.
+  void drop(std::uint32_t chunk);
+
   /// Bytes a chunk's triangles take in memory.
   std::uint64_t triangle_bytes(std::uint32_t chunk) const;
 

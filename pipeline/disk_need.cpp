@@ -251,17 +251,17 @@ DiskNeed predict_disk(const JobSize& job, const MemoryPlan& plan) {
   const auto beyond_pool = [&](double bytes) { return std::max(0.0, bytes - pool); };
 
   // The pool takes what comes first and frees it with its spool; a file shrinks at its end only.
+  const double chunks = v.chunk_vertices + v.chunk_triangles;
   const double partition = beyond_pool(v.input + v.windows);
-  const double triangles =
-      beyond_pool(v.input + v.ranks + v.waiting + v.chunk_vertices + v.chunk_triangles);
-  // Partition tiles come before the memory of the chunks is free, if those lie badly.
-  const double leaves = beyond_pool(v.input + v.chunk_vertices + v.chunk_triangles + v.leaves);
-  const double simplify = beyond_pool(v.leaves + v.simplified);
+  const double triangles = beyond_pool(v.input + v.ranks + v.waiting + chunks);
+  const double stored = beyond_pool(v.input) + chunks;
+  const double leaves = chunks + v.leaves;
+  const double simplify = v.leaves + v.simplified;
 
   const double output = published_bytes(job, all.partitions) +
                         published_bytes(job, all.simplified) - published_bytes(job, all.early);
   const double files = all.partitions.count + all.simplified.count + 3;
-  const double temporary = std::max({partition, triangles, leaves, simplify});
+  const double temporary = std::max({partition, triangles, stored, leaves, simplify});
   return {whole(temporary), whole(output),
           whole(std::max(temporary, simplify + output + files * kFileSlack))};
 }

@@ -3,7 +3,7 @@
 // What is written when, and how long it stays:
 //
 //   data                    written in     stays until
-//   the input once more     ingest         leaves are done     only if it cannot be read in place
+//   the input once more     ingest         triangles are done  only if it cannot be read in place
 //   windows of the medians  partition      partition is done
 //   ranks, triangles that   distribute,    triangles are done
 //   wait for a rank         triangles
@@ -14,7 +14,8 @@
 //   bands                   simplify       the end
 //   published files         publish        for good
 //
-// Of all of it, what the memory pool holds is not on disk.
+// What the journal names, chunks and all that is made of them, is on disk whatever the budget. Of
+// the rest, what the memory pool holds is not.
 #pragma once
 
 #include "pipeline/memory_plan.h"

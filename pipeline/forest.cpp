@@ -18,6 +18,14 @@ void for_each_tile(std::span<const GhostRef> refs, const Visit& visit) {
   }
 }
 
+nlohmann::json to_json(const storage::StoredBlob& blob) {
+  return {blob.offset, blob.bytes, blob.checksum};
+}
+
+bool restore(storage::BlobStore& store, std::size_t index, const nlohmann::json& stored) {
+  return store.restore(index, {stored.at(0), stored.at(1), stored.at(2)});
+}
+
 }  // namespace
 
 Forest::Forest(const Tree& tree, Level chunks, int channels, storage::ScratchFile& scratch)
@@ -145,6 +153,63 @@ std::vector<std::uint16_t> Forest::chains(NodeId node, std::span<const GhostRef>
     }
   });
   return result;
+}
+
+nlohmann::json Forest::stored_chunk(std::uint32_t chunk) const {
+  const LevelStore& leaves = levels_[raw(tree_.depth())];
+  nlohmann::json partitions = nlohmann::json::array();
+  const PartitionRange range = tree_.partitions({chunks_, chunk});
+  for (std::uint32_t p = range.begin; p < range.end; ++p)
+    partitions.push_back(
+        {leaves.own_counts[p], to_json(leaves.tiles.stored(p)), to_json(leaves.rims.stored(p))});
+  return {{"places", to_json(places_.stored(chunk))}, {"partitions", std::move(partitions)}};
+}
+
+bool Forest::restore_chunk(std::uint32_t chunk, const nlohmann::json& stored) {
+  LevelStore& leaves = levels_[raw(tree_.depth())];
+  const PartitionRange range = tree_.partitions({chunks_, chunk});
+  const nlohmann::json& partitions = stored.at("partitions");
+  if (partitions.size() != range.end - range.begin || !restore(places_, chunk, stored.at("places")))
+    return false;
+  for (std::uint32_t p = range.begin; p < range.end; ++p) {
+    const nlohmann::json& partition = partitions.at(p - range.begin);
+    leaves.own_counts[p] = partition.at(0);
+    if (!restore(leaves.tiles, p, partition.at(1)) || !restore(leaves.rims, p, partition.at(2)))
+      return false;
+  }
+  return true;
+}
+
+nlohmann::json Forest::stored_tile(NodeId node) const {
+  const LevelStore& level = levels_[raw(node.level)];
+  nlohmann::json maps = nlohmann::json::array();
+  const Tree::Children children = tree_.children(node);
+  for (const NodeId child : children.span())
+    maps.push_back(to_json(levels_[raw(child.level)].parent_maps.stored(child.index)));
+  const TileFacts& facts = level.facts[node.index];
+  return {{"own", level.own_counts[node.index]},
+          {"torn", facts.torn_count},
+          {"forced", facts.forced_count},
+          {"tile", to_json(level.tiles.stored(node.index))},
+          {"rim", to_json(level.rims.stored(node.index))},
+          {"band", to_json(level.bands.stored(node.index))},
+          {"maps", std::move(maps)}};
+}
+
+bool Forest::restore_tile(NodeId node, const nlohmann::json& stored) {
+  LevelStore& level = levels_[raw(node.level)];
+  level.own_counts[node.index] = stored.at("own");
+  level.facts[node.index].torn_count = stored.at("torn");
+  level.facts[node.index].forced_count = stored.at("forced");
+  std::size_t map = 0;
+  const Tree::Children children = tree_.children(node);
+  for (const NodeId child : children.span()) {
+    if (!restore(levels_[raw(child.level)].parent_maps, child.index, stored.at("maps").at(map++)))
+      return false;
+  }
+  return restore(level.tiles, node.index, stored.at("tile")) &&
+         restore(level.rims, node.index, stored.at("rim")) &&
+         restore(level.bands, node.index, stored.at("band"));
 }
 
 }  // namespace meshhier::pipeline

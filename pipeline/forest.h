@@ -11,6 +11,8 @@
 #include <span>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 namespace meshhier::pipeline {
 
 /// What a build finds out about a tile beside its mesh. See TileRecord.
@@ -60,6 +62,17 @@ class Forest {
   std::vector<std::uint16_t> published_parent_map(NodeId node) const;
   /// Of each ghost of the node's tile its GhostChain, one after another.
   std::vector<std::uint16_t> chains(NodeId node, std::span<const GhostRef> ghosts) const;
+
+  // For the journal: where the scratch file holds what was put, to be restored in another process.
+
+  /// Of a chunk: its places, and all its partitions.
+  nlohmann::json stored_chunk(std::uint32_t chunk) const;
+  /// Of a simplified tile: all that was put when it was made, the maps to it included.
+  nlohmann::json stored_tile(NodeId node) const;
+  /// False if the scratch file does not hold it as it was. Throws nlohmann::json::exception if
+  /// `stored` is nothing of the kind.
+  bool restore_chunk(std::uint32_t chunk, const nlohmann::json& stored);
+  bool restore_tile(NodeId node, const nlohmann::json& stored);
 
  private:
   struct LevelStore {

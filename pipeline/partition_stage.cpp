@@ -157,20 +157,19 @@ void distribute_triangles(SourceMesh& mesh, RankTable& ranks, Chunks& chunks,
 
 }  // namespace
 
-Chunks distribute(SourceMesh& mesh, const Tree& tree, partition::Axis axis, const MemoryPlan& plan,
-                  storage::ScratchFile& scratch, Progress& progress, const CancelToken& cancel) {
+void distribute(SourceMesh& mesh, const Tree& tree, partition::Axis axis, Chunks& chunks,
+                const MemoryPlan& plan, storage::ScratchFile& scratch, Progress& progress,
+                const CancelToken& cancel) {
   const TopTree top = [&] {
     storage::ScratchFile windows = scratch.beside("windows");
     return find_splits(mesh, tree, axis, plan, windows, progress, cancel);
   }();
   release_free_memory();
-  Chunks chunks(tree, mesh.summary().attributes.channels(), scratch, plan.spool_block_bytes);
   storage::ScratchFile passing = scratch.beside("ranks");
   RankTable ranks(mesh, top, chunks, plan, passing, progress, cancel);
   release_free_memory();
   distribute_triangles(mesh, ranks, chunks, plan, progress, cancel);
   release_free_memory();
-  return chunks;
 }
 
 }  // namespace meshhier::pipeline

@@ -13,8 +13,9 @@
 namespace meshhier::pipeline {
 
 /// Finds the exact splits above the chunks, then distributes the vertices in one pass and the
-/// triangles in one.
-Chunks distribute(SourceMesh& mesh, const Tree& tree, partition::Axis axis, const MemoryPlan& plan,
-                  storage::ScratchFile& scratch, Progress& progress, const CancelToken& cancel);
+/// triangles in one. What is needed meanwhile only is beside `scratch`.
+void distribute(SourceMesh& mesh, const Tree& tree, partition::Axis axis, Chunks& chunks,
+                const MemoryPlan& plan, storage::ScratchFile& scratch, Progress& progress,
+                const CancelToken& cancel);
 
 }  // namespace meshhier::pipeline

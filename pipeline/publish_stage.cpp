@@ -83,7 +83,7 @@ TileRecord write_tile(const Forest& forest, NodeId node, const PublishInput& inp
 
 }  // namespace
 
-PublishedSummary publish(const Forest& forest, const PublishInput& input,
+PublishedSummary publish(const Forest& forest, BuildJournal& journal, const PublishInput& input,
                          const std::filesystem::path& directory, const MemoryPlan& plan,
                          storage::FileSystem& files, Progress& progress,
                          const CancelToken& cancel) {
@@ -92,18 +92,26 @@ PublishedSummary publish(const Forest& forest, const PublishInput& input,
   for (int l = 0; l <= raw(tree.depth()); ++l) {
     files.make_directories(storage::level_directory(directory, static_cast<Level>(l)));
   }
-  progress.stage("publish", nodes.size(), "tiles");
-  std::vector<TileRecord> records;
-  records.reserve(nodes.size());
-  PublishedSummary summary;
+  std::vector<TileRecord> records(nodes.size());
+  std::vector<std::size_t> left;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (const TileRecord* done = journal.published(nodes[i]))
+      records[i] = *done;
+    else
+      left.push_back(i);
+  }
+  progress.stage("publish", left.size(), "tiles");
   ordered_for(
-      nodes.size(), plan.tiles_in_flight, cancel,
-      [&](std::size_t i) { return write_tile(forest, nodes[i], input, directory, files); },
-      [&](std::size_t, const TileRecord& record) {
-        records.push_back(record);
-        summary.total_bytes += record.file_bytes;
+      left.size(), plan.tiles_in_flight, cancel,
+      [&](std::size_t i) { return write_tile(forest, nodes[left[i]], input, directory, files); },
+      [&](std::size_t i, const TileRecord& record) {
+        journal.note_published(record);
+        records[left[i]] = record;
         progress.advance(1);
       });
+  PublishedSummary summary;
+  for (const TileRecord& record : records)
+    summary.total_bytes += record.file_bytes;
 
   const std::vector<std::byte> index = storage::encode_index(records);
   storage::write_file(files, storage::index_path(directory), index);

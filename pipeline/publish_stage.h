@@ -2,6 +2,7 @@
 #pragma once
 
 #include "hierarchy/published.h"
+#include "pipeline/build_journal.h"
 #include "pipeline/cancel.h"
 #include "pipeline/config.h"
 #include "pipeline/forest.h"
@@ -31,8 +32,8 @@ struct PublishedSummary {
   std::size_t outline_bytes = 0;
 };
 
-/// Writes the whole hierarchy into `directory`.
-PublishedSummary publish(const Forest& forest, const PublishInput& input,
+/// Writes the whole hierarchy into `directory`, but for tiles that the journal has there.
+PublishedSummary publish(const Forest& forest, BuildJournal& journal, const PublishInput& input,
                          const std::filesystem::path& directory, const MemoryPlan& plan,
                          storage::FileSystem& files, Progress& progress, const CancelToken& cancel);
 

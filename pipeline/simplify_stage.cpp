@@ -92,12 +92,25 @@ class Simplifier {
  public:
   Simplifier(Forest& forest, const SimplifyOptions& options) : forest_(forest), options_(options) {}
 
-  void begin(Level level) {
+  /// `known`: steps of the level that need not be measured again.
+  void begin(Level level, std::vector<IndexedStep> known) {
     steps_.clear();
     steps_.resize(level < forest_.tree().depth() ? forest_.tree().node_count(level) : 0);
+    for (IndexedStep& step : known)
+      steps_.at(step.first) = std::move(step.second);
   }
   /// Of the level that begin() named, once all tiles above it are made.
   const std::vector<Step>& steps() const { return steps_; }
+  /// Of the node's children, as far as they are simplified tiles.
+  std::vector<IndexedStep> steps_below(NodeId node) const {
+    std::vector<IndexedStep> steps;
+    const Tree::Children children = forest_.tree().children(node);
+    for (const NodeId child : children.span()) {
+      if (!forest_.tree().is_partition(child))
+        steps.emplace_back(child.index, steps_[child.index]);
+    }
+    return steps;
+  }
 
   /// Loads a tile of the level that begin() named.
   BuildTile load(NodeId node) {
@@ -148,21 +161,38 @@ class Simplifier {
   std::vector<Step> steps_;
 };
 
+/// Those of [0, count) that are not done.
+template <class IsDone>
+std::vector<std::uint32_t> left_to_do(std::uint32_t count, const IsDone& is_done) {
+  std::vector<std::uint32_t> left;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (!is_done(i))
+      left.push_back(i);
+  }
+  return left;
+}
+
 }  // namespace
 
-std::uint64_t make_leaves(Chunks& chunks, Forest& forest, partition::Axis axis,
-                          const MemoryPlan& plan, Progress& progress, const CancelToken& cancel) {
+std::uint64_t make_leaves(Chunks& chunks, Forest& forest, BuildJournal& journal,
+                          partition::Axis axis, const MemoryPlan& plan, Progress& progress,
+                          const CancelToken& cancel) {
   const Tree& tree = forest.tree();
-  progress.stage("leaves", tree.partition_count(), "partitions");
-  std::uint64_t unreferenced = 0;
+  const std::vector<std::uint32_t> left =
+      left_to_do(chunks.count(), [&](std::uint32_t chunk) { return journal.has_leaves(chunk); });
+  std::uint64_t partitions = 0;
+  for (const std::uint32_t chunk : left)
+    partitions += tree.partitions({chunks.level(), chunk}).size();
+  progress.stage("leaves", partitions, "partitions");
+  std::uint64_t unreferenced = journal.unreferenced_vertices();
   ordered_for(
-      chunks.count(), plan.chunks_in_flight, cancel,
+      left.size(), plan.chunks_in_flight, cancel,
       [&](std::size_t i) {
-        const auto index = static_cast<std::uint32_t>(i);
-        check_fits(chunks, index, plan);
-        return put_leaves(chunks, index, axis, forest);
+        check_fits(chunks, left[i], plan);
+        return put_leaves(chunks, left[i], axis, forest);
       },
       [&](std::size_t i, const ChunkReport& report) {
+        journal.note_leaves(left[i], report.unreferenced_vertices);
         unreferenced += report.unreferenced_vertices;
         progress.advance(report.partitions);
         if (i % kChunksBetweenReleases == kChunksBetweenReleases - 1)
@@ -171,32 +201,40 @@ std::uint64_t make_leaves(Chunks& chunks, Forest& forest, partition::Axis axis,
   return unreferenced;
 }
 
-void simplify(Forest& forest, const SimplifyOptions& options, const MemoryPlan& plan,
-              Progress& progress, const CancelToken& cancel) {
+void simplify(Forest& forest, BuildJournal& journal, const SimplifyOptions& options,
+              const MemoryPlan& plan, Progress& progress, const CancelToken& cancel) {
   const Tree& tree = forest.tree();
+  std::vector<std::vector<std::uint32_t>> left;
   std::uint64_t total = 0;
-  for (int l = 0; l < raw(tree.depth()); ++l)
-    total += tree.node_count(static_cast<Level>(l));
+  for (int l = 0; l < raw(tree.depth()); ++l) {
+    const auto level = static_cast<Level>(l);
+    left.push_back(left_to_do(tree.node_count(level), [&](std::uint32_t index) {
+      return journal.has_tile({level, index});
+    }));
+    total += left.back().size();
+  }
   progress.stage("simplify", total, "tiles");
   Simplifier simplifier(forest, options);
   BoundChain chain(forest, options.diagonal);
-  simplifier.begin(tree.depth());
+  simplifier.begin(tree.depth(), {});
   for (int l = raw(tree.depth()) - 1; l >= 0; --l) {
     const auto level = static_cast<Level>(l);
     ordered_for(
-        tree.node_count(level), plan.tiles_in_flight, cancel,
+        left[l].size(), plan.tiles_in_flight, cancel,
         [&](std::size_t i) {
-          simplifier.make_tile({level, static_cast<std::uint32_t>(i)});
-          return std::size_t{1};
+          const NodeId node{level, left[l][i]};
+          simplifier.make_tile(node);
+          return node;
         },
-        [&](std::size_t i, std::size_t tiles) {
-          progress.advance(tiles);
+        [&](std::size_t i, NodeId node) {
+          journal.note_tile(node, simplifier.steps_below(node));
+          progress.advance(1);
           if (i % kTilesBetweenReleases == kTilesBetweenReleases - 1)
             release_free_memory();
         });
     if (!simplifier.steps().empty())
       chain.add(finer(level), simplifier.steps());
-    simplifier.begin(level);
+    simplifier.begin(level, journal.take_steps(level));
   }
   if (tree.depth() > Level{0}) {
     simplifier.load({Level{0}, 0});

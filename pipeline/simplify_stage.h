@@ -4,6 +4,7 @@
 
 #include "cluster_simplify/contraction.h"
 #include "partition/direction.h"
+#include "pipeline/build_journal.h"
 #include "pipeline/cancel.h"
 #include "pipeline/forest.h"
 #include "pipeline/memory_plan.h"
@@ -12,10 +13,11 @@
 
 namespace meshhier::pipeline {
 
-/// Splits every chunk and puts its partition tiles into the forest. Returns how many vertices no
-/// triangle uses.
-std::uint64_t make_leaves(Chunks& chunks, Forest& forest, partition::Axis axis,
-                          const MemoryPlan& plan, Progress& progress, const CancelToken& cancel);
+/// Splits every chunk and puts its partition tiles into the forest, but for those whose leaves the
+/// journal has. Returns how many vertices no triangle uses.
+std::uint64_t make_leaves(Chunks& chunks, Forest& forest, BuildJournal& journal,
+                          partition::Axis axis, const MemoryPlan& plan, Progress& progress,
+                          const CancelToken& cancel);
 
 struct SimplifyOptions {
   std::uint32_t vertices = 8192;  ///< asked of every simplified tile
@@ -25,13 +27,14 @@ struct SimplifyOptions {
 };
 
 /// Contracts all levels, from the partitions to one root tile, and sets error and bound of every
-/// tile, from the partitions (0) to the root, each more than its children's.
+/// tile, from the partitions (0) to the root, each more than its children's. Tiles that the journal
+/// has are not made again.
 ///
 /// How far a contraction moves the surface is measured while it is carried out (drift.h), and at
 /// the seams when its level is complete (band.h). `bound` sums the certain distances of the steps
 /// along every way a point may have taken, through the tile itself and its neighbours
 /// (bound_chain.h); `error` adds the steps' root mean squares up the tree.
-void simplify(Forest& forest, const SimplifyOptions& options, const MemoryPlan& plan,
-              Progress& progress, const CancelToken& cancel);
+void simplify(Forest& forest, BuildJournal& journal, const SimplifyOptions& options,
+              const MemoryPlan& plan, Progress& progress, const CancelToken& cancel);
 
 }  // namespace meshhier::pipeline

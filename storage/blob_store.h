@@ -1,4 +1,5 @@
-// Numbered blobs of scratch data: in memory while the budget lasts, on disk from there on.
+// Numbered blobs of scratch data that outlive the process: all on disk, and in memory too while the
+// budget lasts.
 #pragma once
 
 #include "storage/spool.h"
@@ -27,8 +28,15 @@ class BlobView {
   std::unique_ptr<std::byte[]> read_;
 };
 
-/// Each blob is put once and read any number of times. Threads may put and read different blobs at
-/// once; a blob may be read once its put() has returned.
+/// Where a scratch file holds a blob.
+struct StoredBlob {
+  std::uint64_t offset = 0;
+  std::uint64_t bytes = 0;
+  std::uint64_t checksum = 0;  ///< XXH3-64
+};
+
+/// Each blob is put once, or restored, and read any number of times. Threads may put and read
+/// different blobs at once; a blob may be read once its put() has returned.
 class BlobStore {
  public:
   BlobStore(ScratchFile& scratch, std::size_t count) : scratch_(&scratch), blobs_(count) {}
@@ -38,11 +46,17 @@ class BlobStore {
 
   std::size_t count() const { return blobs_.size(); }
   void put(std::size_t index, std::span<const std::byte> bytes);
-  std::uint64_t size(std::size_t index) const { return blobs_[index].size; }
+  std::uint64_t size(std::size_t index) const { return blobs_[index].stored.bytes; }
+
+  /// For restore(), in another process even.
+  const StoredBlob& stored(std::size_t index) const { return blobs_[index].stored; }
+  /// Takes a blob that is in the scratch file already; false, and nothing happens, if what is there
+  /// is not what was put.
+  bool restore(std::size_t index, const StoredBlob& stored);
 
   /// Copies bytes.size() bytes from `offset`; requires them to be there.
   void read(std::size_t index, std::uint64_t offset, std::span<std::byte> bytes) const;
-  /// A whole blob, without a copy if it is in memory.
+  /// A whole blob, without a copy if it is in memory. Throws Error(io) if the disk has changed it.
   BlobView view(std::size_t index) const;
 
   /// Forgets everything and gives its memory back.
@@ -50,10 +64,10 @@ class BlobStore {
 
  private:
   struct Blob {
+    StoredBlob stored;
     std::unique_ptr<std::byte[]> memory;
-    std::uint64_t offset = 0;
-    std::uint64_t size = 0;
   };
+  bool is_as_put(const StoredBlob& stored, std::span<std::byte> bytes) const;
 
   ScratchFile* scratch_;
   std::vector<Blob> blobs_;

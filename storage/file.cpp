@@ -9,6 +9,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
@@ -68,6 +69,28 @@ class PosixFile final : public File {
   std::shared_ptr<IoCounters> counters_;
 };
 
+bool is_same_file(int descriptor, const std::filesystem::path& path) {
+  struct stat held {};
+  struct stat named {};
+  return ::fstat(descriptor, &held) == 0 && ::stat(path.c_str(), &named) == 0 &&
+         held.st_dev == named.st_dev && held.st_ino == named.st_ino;
+}
+
+class PosixLock final : public FileLock {
+ public:
+  PosixLock(std::filesystem::path path, int descriptor)
+      : path_(std::move(path)), descriptor_(descriptor) {}
+  ~PosixLock() override {
+    if (is_same_file(descriptor_, path_))
+      ::unlink(path_.c_str());  // while it is locked: whoever waits finds another file, or none
+    ::close(descriptor_);
+  }
+
+ private:
+  std::filesystem::path path_;
+  int descriptor_;
+};
+
 class PosixFileSystem final : public FileSystem {
  public:
   std::unique_ptr<File> open(const std::filesystem::path& path) override {
@@ -91,6 +114,39 @@ class PosixFileSystem final : public FileSystem {
     if (descriptor < 0)
       fail("create", path, errno);
     return std::make_unique<PosixFile>(path, descriptor, counters_);
+  }
+
+  std::unique_ptr<File> reopen(const std::filesystem::path& path) override {
+    const int descriptor = ::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
+    if (descriptor < 0)
+      fail("open", path, errno);
+    return std::make_unique<PosixFile>(path, descriptor, counters_);
+  }
+
+  FileIdentity identity(const std::filesystem::path& path) override {
+    struct stat status {};
+    if (::stat(path.c_str(), &status) != 0)
+      fail("look at", path, errno);
+    return {static_cast<std::uint64_t>(status.st_size),
+            std::int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec};
+  }
+
+  std::unique_ptr<FileLock> try_lock(const std::filesystem::path& path) override {
+    for (;;) {
+      const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+      if (descriptor < 0)
+        fail("create", path, errno);
+      if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+        const int error = errno;
+        ::close(descriptor);
+        if (error == EWOULDBLOCK)
+          return nullptr;
+        fail("lock", path, error);
+      }
+      if (is_same_file(descriptor, path))
+        return std::make_unique<PosixLock>(path, descriptor);
+      ::close(descriptor);  // the one who held it has just removed it
+    }
   }
 
   bool exists(const std::filesystem::path& path) override {

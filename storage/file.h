@@ -46,6 +46,23 @@ class File {
   std::filesystem::path path_;
 };
 
+/// What tells a file from another version of it without reading it.
+struct FileIdentity {
+  std::uint64_t bytes = 0;
+  std::int64_t modified_ns = 0;  ///< since 1970
+  friend bool operator==(const FileIdentity&, const FileIdentity&) = default;
+};
+
+/// A lock is held as long as its object is there, and not beyond the end of the process, whatever
+/// ends it: there is no stale one. Its file goes with it unless the process is killed.
+class FileLock {
+ public:
+  FileLock() = default;
+  FileLock(const FileLock&) = delete;
+  FileLock& operator=(const FileLock&) = delete;
+  virtual ~FileLock() = default;
+};
+
 /// Bytes moved through a FileSystem since it was made.
 struct IoCounters {
   std::atomic<std::uint64_t> bytes_read{0};
@@ -60,6 +77,12 @@ class FileSystem {
   virtual std::unique_ptr<File> open(const std::filesystem::path& path) = 0;
   /// Makes or empties the file, for reading and writing.
   virtual std::unique_ptr<File> create(const std::filesystem::path& path) = 0;
+  /// Opens a file that is there for reading and writing, with all that is in it.
+  virtual std::unique_ptr<File> reopen(const std::filesystem::path& path) = 0;
+
+  virtual FileIdentity identity(const std::filesystem::path& path) = 0;
+  /// Makes the file if need be and locks it; null if it is locked already, here or elsewhere.
+  virtual std::unique_ptr<FileLock> try_lock(const std::filesystem::path& path) = 0;
 
   virtual bool exists(const std::filesystem::path& path) = 0;
   /// The absolute path without links and dots, as far as it exists.

@@ -15,6 +15,10 @@ std::uint64_t checksum(std::span<const std::byte> bytes) {
   return XXH3_64bits(bytes.data(), bytes.size());
 }
 
+std::uint64_t checksum(std::span<const std::byte> bytes, std::uint64_t before) {
+  return XXH3_64bits_withSeed(bytes.data(), bytes.size(), before);
+}
+
 Checksum::Checksum() : state_(std::make_unique<State>()) {
   if (state_->xxh == nullptr)
     throw std::bad_alloc();

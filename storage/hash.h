@@ -10,6 +10,9 @@ namespace meshhier::storage {
 
 /// XXH3-64 of `bytes`.
 std::uint64_t checksum(std::span<const std::byte> bytes);
+/// The same, of `bytes` behind something whose checksum is `before`: what a chain of them is made
+/// of.
+std::uint64_t checksum(std::span<const std::byte> bytes, std::uint64_t before);
 
 /// XXH3-64 of a sequence of blocks: equal to checksum() of them joined.
 class Checksum {

@@ -201,6 +201,19 @@ std::uint64_t tile_count(const Tree& tree) {
   return 2 * std::uint64_t{tree.partition_count()} - 1;
 }
 
+std::vector<std::byte> encode_record(const TileRecord& record) {
+  std::vector<std::byte> bytes;
+  bytes.reserve(kRecordBytes);
+  append_record(bytes, record);
+  return bytes;
+}
+
+TileRecord decode_record(std::span<const std::byte> bytes) {
+  if (bytes.size() != kRecordBytes || load_little<std::uint32_t>(bytes.data()) > 255)
+    throw Error(ErrorCode::corrupt, "no record of a tile");
+  return load_record(bytes.data());
+}
+
 std::vector<std::byte> encode_index(std::span<const TileRecord> records) {
   std::vector<std::byte> bytes;
   bytes.reserve(kIndexHeaderBytes + records.size() * kRecordBytes);

@@ -18,6 +18,11 @@ std::vector<std::byte> encode_index(std::span<const TileRecord> records);
 std::vector<TileRecord> decode_index(std::span<const std::byte> bytes, const Tree& tree,
                                      const std::string& name);
 
+/// One record as it is in the index: 96 bytes.
+std::vector<std::byte> encode_record(const TileRecord& record);
+/// The inverse. Throws Error(corrupt) if `bytes` has another size or names no level.
+TileRecord decode_record(std::span<const std::byte> bytes);
+
 /// How many tiles a hierarchy of this tree has: all nodes but the early ones.
 std::uint64_t tile_count(const Tree& tree);
 

@@ -40,8 +40,14 @@ std::filesystem::path unfinished_path(const std::filesystem::path& file) {
   return file.parent_path() / fmt::format(".{}.meshhier-part", file.filename().string());
 }
 
-std::filesystem::path temporary_path(const std::filesystem::path& work) {
-  return work / "build.tmp";
+std::filesystem::path lock_path(const std::filesystem::path& work) {
+  return work / "lock";
+}
+std::filesystem::path journal_path(const std::filesystem::path& work) {
+  return work / "journal";
+}
+std::filesystem::path built_path(const std::filesystem::path& work) {
+  return work / "hierarchy";
 }
 
 }  // namespace meshhier::storage

@@ -5,8 +5,11 @@
 //   NAME.hier/tiles.bin
 //   NAME.hier/outline.glb
 //   NAME.hier/tiles/LL/NNNNNN.glb            level (two digits or more), index in it (six or more)
-//   .NAME.hier.meshhier-work/                beside the output while a build runs; becomes NAME.hier
-//   .NAME.hier.meshhier-work/build.tmp/      temporary files of the stages, gone before the rename
+//   .NAME.hier.meshhier-work/                beside the output while a build runs, and after it was stopped
+//   .NAME.hier.meshhier-work/lock            held by the build at work
+//   .NAME.hier.meshhier-work/journal         what is done
+//   .NAME.hier.meshhier-work/*               scratch files of the stages
+//   .NAME.hier.meshhier-work/hierarchy/      becomes NAME.hier
 //   .NAME.hier.meshhier-old/                 a replaced hierarchy, for the moment of the rename
 //   .NAME.hier.meshhier-verify-XXXXXXXX      beside a hierarchy while `verify` needs room
 //   .NAME.meshhier-part                      beside any other file that is written, until it is whole
@@ -32,6 +35,8 @@ std::filesystem::path replaced_path(const std::filesystem::path& output);
 std::filesystem::path verify_scratch_path(const std::filesystem::path& hierarchy,
                                           std::uint32_t run);
 std::filesystem::path unfinished_path(const std::filesystem::path& file);
-std::filesystem::path temporary_path(const std::filesystem::path& work);
+std::filesystem::path lock_path(const std::filesystem::path& work);
+std::filesystem::path journal_path(const std::filesystem::path& work);
+std::filesystem::path built_path(const std::filesystem::path& work);
 
 }  // namespace meshhier::storage

@@ -42,7 +42,14 @@ class MemoryPool {
 /// at the end.
 class ScratchFile {
  public:
-  ScratchFile(FileSystem& files, std::filesystem::path path, MemoryPool& pool);
+  /// Whether the file is there when its object is gone.
+  enum class Stays {
+    no,
+    yes  ///< for a later process; one that an earlier process left is gone on with
+  };
+
+  ScratchFile(FileSystem& files, std::filesystem::path path, MemoryPool& pool,
+              Stays stays = Stays::no);
   ScratchFile(const ScratchFile&) = delete;
   ScratchFile& operator=(const ScratchFile&) = delete;
   ~ScratchFile();
@@ -50,6 +57,7 @@ class ScratchFile {
   /// Another file, `name`, beside this one and of the same pool: for what is needed for a while
   /// only, as disk space comes back with a whole file.
   ScratchFile beside(const char* name) const { return {files_, path_.parent_path() / name, pool_}; }
+  const std::filesystem::path& path() const { return path_; }
 
   /// Bytes on disk.
   std::uint64_t size() const { return size_; }
@@ -60,6 +68,13 @@ class ScratchFile {
   std::uint64_t append(std::span<const std::byte> bytes);
   /// Bytes that were appended so are not needed any more. Thread-safe.
   void release(std::uint64_t offset, std::uint64_t bytes);
+  /// Says that bytes an earlier process appended are still needed; false if there are not so many.
+  /// Before the first append().
+  bool claim(std::uint64_t offset, std::uint64_t bytes);
+  /// Forces what was appended to the disk.
+  void sync();
+  /// Removes the file; nothing is left of what was appended.
+  void remove();
   void read(std::uint64_t offset, std::span<std::byte> bytes) const {
     file_->read_exact(offset, bytes);
     pool_.scratch_use().add_read(bytes.size());
@@ -69,10 +84,19 @@ class ScratchFile {
   FileSystem& files_;
   std::filesystem::path path_;
   MemoryPool& pool_;
+  Stays stays_;
   std::mutex mutex_;  ///< guards file_, until it is made, and free_
   std::unique_ptr<File> file_;
   std::atomic<std::uint64_t> size_{0};
   std::map<std::uint64_t, std::vector<std::uint64_t>> free_;  ///< offsets by size
+};
+
+/// Where a scratch file holds a spool's bytes.
+struct StoredSpool {
+  std::uint64_t bytes = 0;
+  std::uint64_t checksum = 0;
+  std::uint64_t block_bytes = 0;
+  std::vector<std::uint64_t> blocks;  ///< their offsets
 };
 
 /// A sequence of bytes. One writer; after the last append() any number of readers.
@@ -94,6 +118,16 @@ class Spool {
   /// Forgets the content and gives its memory back.
   void clear();
 
+  /// Puts all that is in memory on disk: for restore(), in another process even. Nothing can be
+  /// appended any more.
+  StoredSpool store();
+  /// Takes what should be in the scratch file already; false if `stored` contradicts itself. On an
+  /// empty spool.
+  bool restore(const StoredSpool& stored);
+  /// Of a restored spool: whether the scratch file holds what was stored; reads it all. Before
+  /// anything is appended there.
+  bool is_as_stored() const;
+
  private:
   /// Where a block's bytes are, in 8 bytes, as large meshes have many blocks. Owns nothing.
   class Block {
@@ -112,11 +146,15 @@ class Spool {
     std::uint64_t word_;
   };
   void open_block();
+  /// Of a block, the last one included.
+  std::size_t used_bytes(std::size_t block) const;
 
   ScratchFile* scratch_;
   std::size_t block_bytes_;
   std::uint64_t size_ = 0;
-  std::vector<Block> blocks_;  ///< in memory: counted in the pool, but for the last, open one
+  std::uint64_t checksum_ = 0;  ///< of all blocks, each seeded with those before; without the last
+                                ///< one as long as it is open
+  std::vector<Block> blocks_;   ///< in memory: counted in the pool, but for the last, open one
 };
 
 /// A spool of one kind of trivially copyable record.
@@ -136,6 +174,9 @@ class RecordSpool {
     return records;
   }
   void clear() { spool_.clear(); }
+  StoredSpool store() { return spool_.store(); }
+  bool restore(const StoredSpool& stored) { return spool_.restore(stored); }
+  bool is_as_stored() const { return spool_.is_as_stored(); }
 
  private:
   static_assert(std::is_trivially_copyable_v<Record>);

@@ -26,33 +26,43 @@ bool check_output(FileSystem& files, const std::filesystem::path& output, bool r
 }
 
 WorkDirectory::WorkDirectory(FileSystem& files, std::filesystem::path output, bool replace)
-    : files_(files),
-      output_(std::move(output)),
-      path_(work_path(output_)),
-      temporary_(temporary_path(path_)),
-      replace_(replace) {
+    : files_(files), output_(std::move(output)), path_(work_path(output_)), replace_(replace) {
   check_output(files_, output_, replace_);
   for (auto parent = output_.parent_path(); !parent.empty() && !files_.exists(parent);
        parent = parent.parent_path()) {
     made_parent_ = parent;
   }
-  files_.remove_all(path_);
-  files_.make_directories(temporary_);
+  files_.make_directories(path_);
+  lock_ = files_.try_lock(lock_path(path_));
+  if (!lock_) {
+    throw Error(ErrorCode::exists, fmt::format("another build of {} is at work", output_.string()));
+  }
 }
 
 WorkDirectory::~WorkDirectory() {
-  if (published_)
+  if (published_ || kept_)
     return;
   try {
-    files_.remove_all(path_);
+    files_.remove_all(path_);  // while it is locked: who comes now finds no lock, and makes another
     if (!made_parent_.empty() && files_.list(made_parent_).empty())
       files_.remove_all(made_parent_);
   } catch (const Error&) {  // the failure that brought us here is the one to report
   }
 }
 
+std::filesystem::path WorkDirectory::built() const {
+  return built_path(path_);
+}
+
+void WorkDirectory::clear() {
+  for (const std::filesystem::path& file : files_.list(path_)) {
+    if (file != lock_path(path_))
+      files_.remove_all(file);
+  }
+  files_.remove_all(built());
+}
+
 void WorkDirectory::publish() {
-  files_.remove_all(temporary_);
   files_.sync_tree(path_);
   const std::filesystem::path old = replaced_path(output_);
   const bool replacing = check_output(files_, output_, replace_, "appeared during the build");
@@ -62,18 +72,19 @@ void WorkDirectory::publish() {
   }
   bool renamed = false;
   try {
-    files_.rename(path_, output_);
+    files_.rename(built(), output_);
     renamed = true;
     files_.sync_tree(output_);
   } catch (const Error&) {
     if (renamed)
-      files_.rename(output_, path_);
+      files_.rename(output_, built());
     if (replacing)
       files_.rename(old, output_);
     throw;
   }
   published_ = true;
   files_.remove_all(old);
+  files_.remove_all(path_);
 }
 
 }  // namespace meshhier::storage

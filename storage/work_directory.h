@@ -1,10 +1,11 @@
 // The directory a hierarchy is built in: beside the output, complete before it takes the output's
-// name.
+// name. It outlives a build that is stopped, so that the next one can go on.
 #pragma once
 
 #include "storage/file.h"
 
 #include <filesystem>
+#include <memory>
 
 namespace meshhier::storage {
 
@@ -15,31 +16,40 @@ bool check_output(FileSystem& files, const std::filesystem::path& output, bool r
 
 class WorkDirectory {
  public:
-  /// Makes the work directory, in place of one an earlier, killed build left. Throws Error(exists)
-  /// if `output` is there and `replace` is false, Error(io) if its parent cannot be written.
+  /// Takes the directory as an earlier build left it, or makes it. Throws Error(exists) if `output`
+  /// is there and `replace` is false or if another build is at work here, Error(io) if its parent
+  /// cannot be written.
   WorkDirectory(FileSystem& files, std::filesystem::path output, bool replace);
   WorkDirectory(const WorkDirectory&) = delete;
   WorkDirectory& operator=(const WorkDirectory&) = delete;
-  /// Removes the directory and all in it, and directories made above it, unless published.
+  /// Removes the directory and all in it, and directories made above it, unless it is kept or
+  /// published.
   ~WorkDirectory();
 
-  const std::filesystem::path& path() const { return path_; }  ///< of the hierarchy to be
-  const std::filesystem::path& temporary() const {
-    return temporary_;
-  }  ///< for scratch files, within path()
+  const std::filesystem::path& path() const {
+    return path_;
+  }                                     ///< for the journal and scratch files
+  std::filesystem::path built() const;  ///< the hierarchy to be, in path()
 
-  /// Removes the scratch files, syncs, and renames to the output; a hierarchy that is replaced
-  /// keeps its name until then.
+  /// Removes all that is in it.
+  void clear();
+  /// Whether what is in it stays, unless it is published.
+  void keep(bool kept) { kept_ = kept; }
+  bool is_kept() const { return kept_; }
+
+  /// Syncs, gives the hierarchy the output's name and removes the rest; a hierarchy that is
+  /// replaced keeps its name until then.
   void publish();
 
  private:
   FileSystem& files_;
   std::filesystem::path output_;
   std::filesystem::path path_;
-  std::filesystem::path temporary_;
   std::filesystem::path
       made_parent_;  ///< the topmost directory above the output that was not there before
+  std::unique_ptr<FileLock> lock_;
   bool replace_;
+  bool kept_ = false;
   bool published_ = false;
 };
 

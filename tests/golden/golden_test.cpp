@@ -127,7 +127,7 @@ class GoldenTest : public testing::TestWithParam<Golden> {
     config.partition.axis = golden.axis;
     config.simplify = golden.simplify;
     NoProgress progress;
-    build_hierarchy(config, true, {*files_, progress, CancelToken()});
+    build_hierarchy(config, {.force = true}, {*files_, progress, CancelToken()});
     const storage::HierarchyReader reader(*files_, config.output);
     ContentHash hash;
     for (const TileRecord& record : reader.records())

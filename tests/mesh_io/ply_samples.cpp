@@ -54,6 +54,14 @@ std::unique_ptr<storage::File> MemoryFiles::create(const std::filesystem::path& 
   return open(path);
 }
 
+std::unique_ptr<storage::File> MemoryFiles::reopen(const std::filesystem::path& path) {
+  return open(path);
+}
+
+storage::FileIdentity MemoryFiles::identity(const std::filesystem::path& path) {
+  return {open(path)->size(), 0};
+}
+
 bool MemoryFiles::exists(const std::filesystem::path& path) {
   return contents_.contains(path.string());
 }

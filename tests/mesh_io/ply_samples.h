@@ -24,6 +24,11 @@ class MemoryFiles final : public storage::FileSystem {
  public:
   std::unique_ptr<storage::File> open(const std::filesystem::path& path) override;
   std::unique_ptr<storage::File> create(const std::filesystem::path& path) override;
+  std::unique_ptr<storage::File> reopen(const std::filesystem::path& path) override;
+  storage::FileIdentity identity(const std::filesystem::path& path) override;
+  std::unique_ptr<storage::FileLock> try_lock(const std::filesystem::path&) override {
+    return std::make_unique<storage::FileLock>();
+  }
   bool exists(const std::filesystem::path& path) override;
   std::filesystem::path canonical(const std::filesystem::path& path) override { return path; }
   std::vector<std::filesystem::path> list(const std::filesystem::path&) override { return {}; }

@@ -150,6 +150,13 @@ TEST(PlyWriter, AFullDiskIsAnIoError) {
     std::unique_ptr<storage::File> create(const std::filesystem::path&) override {
       return std::make_unique<FullFile>();
     }
+    std::unique_ptr<storage::File> reopen(const std::filesystem::path&) override {
+      return create("");
+    }
+    storage::FileIdentity identity(const std::filesystem::path&) override { return {}; }
+    std::unique_ptr<storage::FileLock> try_lock(const std::filesystem::path&) override {
+      return std::make_unique<storage::FileLock>();
+    }
     bool exists(const std::filesystem::path&) override { return false; }
     std::filesystem::path canonical(const std::filesystem::path& path) override { return path; }
     std::vector<std::filesystem::path> list(const std::filesystem::path&) override { return {}; }

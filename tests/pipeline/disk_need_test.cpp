@@ -29,10 +29,11 @@ DiskNeed need_of(const JobSize& job, std::uint64_t budget) {
   return predict_disk(job, plan_memory(budget, job));
 }
 
-TEST(DiskNeedTest, WhatFitsInMemoryNeedsNoTemporaryFiles) {
+TEST(DiskNeedTest, WhatABuildGoesOnWithIsOnDiskWhateverTheMemory) {
   const JobSize job = job_of(100'000, 8192);
-  EXPECT_EQ(need_of(job, 4 * kGiB).temporary_bytes, 0U);
-  EXPECT_GT(need_of(job, least_budget(job)).temporary_bytes, 0U);
+  EXPECT_GT(need_of(job, 4 * kGiB).temporary_bytes, job.vertex_count * 12 + job.face_count * 6);
+  EXPECT_GE(need_of(job, least_budget(job)).temporary_bytes,
+            need_of(job, 4 * kGiB).temporary_bytes);
   EXPECT_GT(need_of(job, 4 * kGiB).output_bytes, job.vertex_count * 12 + job.face_count * 12);
 }
 
@@ -46,7 +47,7 @@ TEST(DiskNeedTest, GrowsWithWhatAVertexHolds) {
   EXPECT_GT(need_of(full, kGiB).temporary_bytes, need_of(bare, kGiB).temporary_bytes);
 }
 
-TEST(DiskNeedTest, MoreMemoryNeedsLessDisk) {
+TEST(DiskNeedTest, MoreMemoryNeedsNoMoreDisk) {
   const JobSize job = job_of(30'000'000, 8192);
   std::uint64_t before = ~std::uint64_t{0};
   for (std::uint64_t budget = 128 * kMiB; budget < 8 * kGiB; budget *= 2) {
@@ -54,7 +55,6 @@ TEST(DiskNeedTest, MoreMemoryNeedsLessDisk) {
     EXPECT_LE(need.temporary_bytes, before);
     before = need.temporary_bytes;
   }
-  EXPECT_EQ(before, 0U);
 }
 
 TEST(DiskNeedTest, TheRoomHoldsTheOutputAndEachStagesFiles) {

@@ -38,7 +38,7 @@ class EstimateTest : public testing::Test {
 
   BuildReport build(const Config& config, bool force = false) {
     NoProgress progress;
-    return build_hierarchy(config, force, {files_, progress, CancelToken()});
+    return build_hierarchy(config, {.force = force}, {files_, progress, CancelToken()});
   }
 
   std::set<fs::path> listing() const {

@@ -92,7 +92,8 @@ class Grove {
     MemoryPlan plan;
     plan.tiles_in_flight = setting.in_flight;
     NoProgress progress;
-    simplify(forest_, {60, numbering(), {}, kForestDiagonal}, plan, progress, CancelToken());
+    simplify(forest_, journal_, {60, numbering(), {}, kForestDiagonal}, plan, progress,
+             CancelToken());
     place_vertices();
   }
 
@@ -173,6 +174,8 @@ class Grove {
   storage::ScratchFile scratch_;
   Tree tree_;
   Forest forest_;
+  Chunks chunks_{tree_, numbering().channels(), scratch_, 4096};
+  BuildJournal journal_{*files_, directory_.path(), {}, pool_.scratch_use(), forest_, chunks_};
   std::vector<std::vector<Place>> places_;  ///< [level][vertex]
 };
 

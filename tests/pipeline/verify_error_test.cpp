@@ -380,7 +380,7 @@ TEST_P(VerifyErrorModelTest, BoundsHoldForEveryTileOfAScan) {
   config.simplify.vertices = 1024;
   NoProgress progress;
   const CancelToken cancel;
-  build_hierarchy(config, true, {*files_, progress, cancel});
+  build_hierarchy(config, {.force = true}, {*files_, progress, cancel});
   const auto results = measure_errors(*files_, path(), {AllLevels{}, 50'000}, progress, cancel);
   EXPECT_GE(results.size(), 3U);
   for (const ErrorMeasurement& m : results) {

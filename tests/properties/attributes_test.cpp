@@ -47,7 +47,7 @@ class AttributesTest : public testing::Test {
     writer.write_triangles(mesh.triangles);
     writer.finish();
     NoProgress progress;
-    build_hierarchy(config, true, {*files_, progress, CancelToken()});
+    build_hierarchy(config, {.force = true}, {*files_, progress, CancelToken()});
     reader_.emplace(*files_, config.output);
     read_tiles();
   }

@@ -53,7 +53,7 @@ class Built {
     config.simplify.vertices = c.tile_vertices;
     NoProgress progress;
     const CancelToken cancel;
-    build_hierarchy(config, false, {*files_, progress, cancel});
+    build_hierarchy(config, {}, {*files_, progress, cancel});
     reader_ = std::make_unique<storage::HierarchyReader>(*files_, config.output);
     for (const TileRecord& record : reader_->records()) {
       tiles_.emplace(record.node, reader_->read_tile(record.node));

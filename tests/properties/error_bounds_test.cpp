@@ -37,7 +37,7 @@ class ErrorBoundsTest : public testing::Test {
     config.simplify.vertices = 100;
     NoProgress progress;
     const CancelToken cancel;
-    build_hierarchy(config, true, {*files_, progress, cancel});
+    build_hierarchy(config, {.force = true}, {*files_, progress, cancel});
     return measure_errors(*files_, config.output, {AllLevels{}, 20'000, 1U << 30}, progress,
                           cancel);
   }

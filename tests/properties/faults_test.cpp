@@ -1,9 +1,10 @@
-// Promises 7 and 8: a build that fails leaves nothing of itself, and what was there before as it
-// was.
+// Promise 7: whatever fails, and whenever, an output is there complete or not at all, one that is
+// to be replaced stays until then, and the next build goes on and makes the same bytes.
 #include "hierarchy/error.h"
 #include "pipeline/build.h"
 #include "storage/file.h"
 #include "storage/hash.h"
+#include "storage/layout.h"
 #include "tests/pipeline/sample_hierarchy.h"
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/meshes.h"
@@ -29,7 +30,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
-using testing::IsEmpty;
 using tests::Call;
 using tests::FaultyFileSystem;
 
@@ -38,15 +38,19 @@ constexpr std::uint64_t kForever = std::numeric_limits<std::uint32_t>::max();
 /// Files by path, with the hashes of their content; directories with 0.
 using Snapshot = std::map<std::string, std::uint64_t>;
 
-/// Sets the token when so many units of work have been done in all.
+/// Sets the token when so many units of work have been done in all, but for those of `passed`.
 class Interrupter final : public Progress {
  public:
-  Interrupter(CancelToken& token, std::uint64_t after) : token_(token), after_(after) {}
+  Interrupter(CancelToken& token, std::uint64_t after, std::string passed = "")
+      : token_(token), after_(after), passed_(std::move(passed)) {}
   void stage(std::string_view name, std::uint64_t, std::string_view) override {
     const std::lock_guard lock(mutex_);
     stages_.insert(std::string(name));
+    is_passed_ = name == passed_;
   }
   void advance(std::uint64_t count) override {
+    if (is_passed_)
+      return;
     if (done_.fetch_add(count) + count >= after_)
       token_.cancel();
   }
@@ -57,6 +61,8 @@ class Interrupter final : public Progress {
  private:
   CancelToken& token_;
   std::uint64_t after_;
+  std::string passed_;
+  std::atomic<bool> is_passed_{false};
   std::atomic<std::uint64_t> done_{0};
   std::mutex mutex_;
   std::set<std::string> stages_;
@@ -82,11 +88,11 @@ class StageInterrupter final : public Progress {
 class FaultsTest : public testing::Test {
  protected:
   FaultsTest() {
-    tests::write_ply(tests::sphere(3000, 0.01F), directory_.path() / "mesh.ply");
+    tests::write_ply(tests::sphere(600, 0.01F), directory_.path() / "mesh.ply");
     config_.input = directory_.path() / "mesh.ply";
     config_.output = directory_.path() / "mesh.hier";
     config_.threads = 2;
-    config_.partition.vertices = 150;
+    config_.partition.vertices = 80;
     config_.memory_budget = tight_budget();
   }
 
@@ -124,7 +130,7 @@ class FaultsTest : public testing::Test {
   std::optional<ErrorCode> run(storage::FileSystem& files, Progress& progress,
                                const CancelToken& cancel, bool force = false) {
     try {
-      build_hierarchy(config_, force, {files, progress, cancel});
+      build_hierarchy(config_, {.force = force}, {files, progress, cancel});
     } catch (const Error& error) {
       message_ = error.what();
       return error.code();
@@ -132,56 +138,80 @@ class FaultsTest : public testing::Test {
     return std::nullopt;
   }
 
-  /// Puts a finished hierarchy of other content where the output goes, and keeps a copy.
-  void place_old_output() {
-    config_.simplify.method = SimplifyMethod::cluster;
+  /// What the output must be.
+  Snapshot expected() {
     FaultyFileSystem files;
-    ASSERT_EQ(run(files), std::nullopt) << message_;
-    config_.simplify.method = SimplifyMethod::edge_collapse;
-    fs::copy(config_.output, kept_.path() / "old", fs::copy_options::recursive);
-  }
-
-  /// Calls of a kind that a whole build makes; the output is as before then.
-  std::uint64_t calls(Call call, bool force) {
-    FaultyFileSystem files;
-    EXPECT_EQ(run(files, force), std::nullopt) << message_;
+    EXPECT_EQ(run(files), std::nullopt) << message_;
+    const Snapshot result = output();
     fs::remove_all(config_.output);
-    if (force)
-      fs::copy(kept_.path() / "old", config_.output, fs::copy_options::recursive);
-    return files.calls(call);
+    return result;
   }
 
-  /// Lets calls of a kind fail, the n-th and perhaps more after it: 1, 2, 3, 5, 8, ... and the last
-  /// few. Every time the build must fail and leave everything as it is now.
-  void expect_nothing_changed(Call call, std::uint64_t times, bool force) {
-    const std::uint64_t count = calls(call, force);
-    ASSERT_GT(count, 0U);
-    const Snapshot before = snapshot();
-    std::set<std::uint64_t> places;
-    for (std::uint64_t a = 1, b = 2; a <= count; b += a, a = b - a)
-      places.insert(a);
-    for (std::uint64_t last = 0; last < 4 && last < count; ++last)
-      places.insert(count - last);
-    for (const std::uint64_t n : places) {
-      SCOPED_TRACE("call " + std::to_string(n) + " of " + std::to_string(count));
+  /// Of the output's files, by their paths in it.
+  Snapshot output() {
+    Snapshot all;
+    if (!fs::exists(config_.output))
+      return all;
+    for (const fs::path& file : real_->list(config_.output)) {
+      all[fs::relative(file, config_.output).string()] =
+          storage::checksum(storage::read_file(*real_, file, 1U << 30));
+    }
+    return all;
+  }
+
+  /// Names beside the input.
+  std::set<std::string> names() const {
+    std::set<std::string> all;
+    for (const auto& entry : fs::directory_iterator(directory_.path()))
+      all.insert(entry.path().filename().string());
+    all.erase("mesh.ply");
+    return all;
+  }
+
+  /// Puts a finished hierarchy of other content where the output goes; returns its content.
+  Snapshot place_old_output() {
+    if (!fs::exists(kept_.path() / "old")) {
+      config_.simplify.method = SimplifyMethod::cluster;
       FaultyFileSystem files;
-      files.fail(call, n, times);
-      message_.clear();
-      EXPECT_EQ(run(files, force), ErrorCode::io) << message_;
-      ASSERT_EQ(snapshot(), before) << message_;
+      EXPECT_EQ(run(files, true), std::nullopt) << message_;
+      config_.simplify.method = SimplifyMethod::edge_collapse;
+      fs::rename(config_.output, kept_.path() / "old");
     }
+    fs::remove_all(config_.output);
+    fs::copy(kept_.path() / "old", config_.output, fs::copy_options::recursive);
+    return output();
   }
 
-  /// First without an output, then with one that is to be replaced.
-  void expect_nothing_changed(Call call, std::uint64_t times = 1) {
-    {
-      SCOPED_TRACE("new output");
-      expect_nothing_changed(call, times, false);
+  /// Lets the n-th call fail, and `times` - 1 after it, for all n that a build gets to. Every time
+  /// the output must be the old one or the new one, and the next build must make the new one and
+  /// leave nothing else. Returns how many builds failed.
+  int fail_every_call(std::uint64_t times, bool replaces) {
+    const Snapshot after = expected();
+    int failures = 0;
+    for (std::uint64_t n = 1;; ++n) {
+      SCOPED_TRACE("call " + std::to_string(n));
+      const Snapshot before = replaces ? place_old_output() : Snapshot();
+      FaultyFileSystem files;
+      files.fail(Call::any, n, times);
+      message_.clear();
+      const std::optional<ErrorCode> code = run(files, replaces);
+      if (code)
+        EXPECT_EQ(code, ErrorCode::io) << message_;
+      else
+        EXPECT_EQ(output(), after);
+      failures += code ? 1 : 0;
+      const Snapshot found = output();
+      const bool displaced = found.empty() && fs::exists(storage::replaced_path(config_.output));
+      EXPECT_TRUE(found == before || found == after || displaced) << message_;
+      const bool reached = files.calls(Call::any) >= n;
+      FaultyFileSystem sound;
+      EXPECT_EQ(run(sound, true), std::nullopt) << message_;
+      EXPECT_EQ(output(), after);
+      EXPECT_EQ(names(), std::set<std::string>{"mesh.hier"});
+      fs::remove_all(config_.output);
+      if (!reached || HasFailure())
+        return failures;
     }
-    SCOPED_TRACE("replaced output");
-    fs::remove_all(config_.output);
-    place_old_output();
-    expect_nothing_changed(call, times, true);
   }
 
   tests::TemporaryDirectory directory_;  ///< looked at as a whole
@@ -191,50 +221,21 @@ class FaultsTest : public testing::Test {
   std::string message_;
 };
 
-TEST_F(FaultsTest, ScratchDataGoesToTheDisk) {
-  // Else the faults below would only meet what is published.
-  FaultyFileSystem files;
-  ASSERT_EQ(run(files), std::nullopt) << message_;
-  std::uint64_t output_bytes = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(config_.output))
-    output_bytes += entry.is_regular_file() ? entry.file_size() : 0;
-  EXPECT_GT(files.counters().bytes_written, output_bytes * 5 / 4);
+TEST_F(FaultsTest, AnyCallMayFail) {
+  EXPECT_GT(fail_every_call(1, false), 200);
 }
 
-TEST_F(FaultsTest, AFailedWrite) {
-  expect_nothing_changed(Call::write);
+TEST_F(FaultsTest, AnyCallMayFailWhileAnOutputIsReplaced) {
+  EXPECT_GT(fail_every_call(1, true), 200);
 }
 
-TEST_F(FaultsTest, ADiskThatStaysFull) {
-  expect_nothing_changed(Call::write, kForever);
+// Nothing is tidied up then: it is as if the process had been killed.
+TEST_F(FaultsTest, AnyCallMayBeTheLast) {
+  EXPECT_GT(fail_every_call(kForever, false), 200);
 }
 
-TEST_F(FaultsTest, AFailedRead) {
-  expect_nothing_changed(Call::read);
-}
-
-TEST_F(FaultsTest, AFileThatCannotBeMade) {
-  expect_nothing_changed(Call::create);
-}
-
-TEST_F(FaultsTest, AFileThatCannotBeOpened) {
-  expect_nothing_changed(Call::open);
-}
-
-TEST_F(FaultsTest, ADirectoryThatCannotBeMade) {
-  expect_nothing_changed(Call::make_directories);
-}
-
-TEST_F(FaultsTest, AFailedSync) {
-  expect_nothing_changed(Call::sync_tree);
-}
-
-TEST_F(FaultsTest, AFailedRename) {
-  expect_nothing_changed(Call::rename);
-}
-
-TEST_F(FaultsTest, FreeSpaceThatCannotBeAskedFor) {
-  expect_nothing_changed(Call::free_bytes);
+TEST_F(FaultsTest, AnyCallMayBeTheLastWhileAnOutputIsReplaced) {
+  EXPECT_GT(fail_every_call(kForever, true), 200);
 }
 
 TEST_F(FaultsTest, TheMessageNamesTheFile) {
@@ -244,18 +245,44 @@ TEST_F(FaultsTest, TheMessageNamesTheFile) {
   EXPECT_THAT(message_, HasSubstr(directory_.path().string()));
 }
 
-TEST_F(FaultsTest, ADiskOfAnySizeIsRefusedOrFilledWithoutATrace) {
+TEST_F(FaultsTest, ADiskOfAnySizeIsRefusedOrFilledAndGoneOnWithWhenThereIsRoom) {
+  const Snapshot after = expected();
   FaultyFileSystem measuring;
   ASSERT_EQ(run(measuring), std::nullopt);
   fs::remove_all(config_.output);
   const std::uint64_t written = measuring.counters().bytes_written;
-  const Snapshot before = snapshot();
   for (std::uint64_t room = 1; room < written; room = room * 2 + 1000) {
+    SCOPED_TRACE(room);
     FaultyFileSystem files;
     files.limit_room(room);
     const std::optional<ErrorCode> code = run(files);
-    EXPECT_TRUE(code == ErrorCode::budget || code == ErrorCode::io) << room << " bytes";
-    ASSERT_EQ(snapshot(), before) << room << " bytes";
+    EXPECT_TRUE(code == ErrorCode::budget || code == ErrorCode::io);
+    EXPECT_FALSE(fs::exists(config_.output));
+  }
+  FaultyFileSystem sound;
+  ASSERT_EQ(run(sound), std::nullopt) << message_;
+  EXPECT_EQ(output(), after);
+}
+
+// The figure of free space is only a figure: here it lies, and the disk is full in the middle of a
+// write.
+TEST_F(FaultsTest, ADiskThatIsFullAtAnyByte) {
+  const Snapshot after = expected();
+  FaultyFileSystem measuring;
+  ASSERT_EQ(run(measuring), std::nullopt);
+  fs::remove_all(config_.output);
+  const std::uint64_t written = measuring.counters().bytes_written;
+  for (std::uint64_t room = 1; room < written; room += written / 60 + 7) {
+    SCOPED_TRACE(room);
+    FaultyFileSystem files;
+    files.limit_writes(room);
+    EXPECT_EQ(run(files), ErrorCode::io);
+    EXPECT_FALSE(fs::exists(config_.output));
+    FaultyFileSystem sound;
+    ASSERT_EQ(run(sound), std::nullopt) << message_;
+    EXPECT_EQ(output(), after);
+    EXPECT_EQ(names(), std::set<std::string>{"mesh.hier"});
+    fs::remove_all(config_.output);
   }
 }
 
@@ -268,31 +295,10 @@ TEST_F(FaultsTest, ShortTransfersChangeNothing) {
   EXPECT_EQ(snapshot(), expected);
 }
 
-TEST_F(FaultsTest, ABuildAfterAFailureIsAsIfNothingHadHappened) {
-  FaultyFileSystem files;
-  ASSERT_EQ(run(files), std::nullopt);
-  const Snapshot expected = snapshot();
-  fs::remove_all(config_.output);
-  files.fail(Call::write, 20, kForever);
-  ASSERT_EQ(run(files), ErrorCode::io);
-  files.fail(Call::write, 1, 0);
-  ASSERT_EQ(run(files), std::nullopt) << message_;
-  EXPECT_EQ(snapshot(), expected);
-}
-
-TEST_F(FaultsTest, WhatAKilledBuildLeftIsReplaced) {
-  FaultyFileSystem files;
-  ASSERT_EQ(run(files), std::nullopt);
-  const Snapshot expected = snapshot();
-  // As if killed: the work directory was never tidied up.
-  fs::rename(config_.output, directory_.path() / ".mesh.hier.meshhier-work");
-  ASSERT_EQ(run(files), std::nullopt) << message_;
-  EXPECT_EQ(snapshot(), expected);
-}
-
 // ---- interruption --------------------------------------------------------------------------
 
-TEST_F(FaultsTest, AnInterruptionAtAnyTimeLeavesNothing) {
+TEST_F(FaultsTest, AnInterruptionAtAnyTimeIsGoneOnFrom) {
+  const Snapshot after = expected();
   FaultyFileSystem files;
   CancelToken never;
   Interrupter measuring(never, kForever);
@@ -300,31 +306,54 @@ TEST_F(FaultsTest, AnInterruptionAtAnyTimeLeavesNothing) {
   fs::remove_all(config_.output);
   const std::uint64_t total = measuring.done();
   ASSERT_GT(total, 1000U);
-  const Snapshot before = snapshot();
-  int interrupted = 0;
-  for (int step = 0; step < 24; ++step) {
+  for (std::uint64_t step = 0; step < 24; ++step) {
+    SCOPED_TRACE(step);
     CancelToken cancel;
-    Interrupter progress(cancel, 1 + total * static_cast<std::uint64_t>(step) / 24);
-    const std::optional<ErrorCode> code = run(files, progress, cancel);
-    ASSERT_EQ(code, ErrorCode::interrupted) << "at " << step << "/24: " << message_;
-    ASSERT_EQ(snapshot(), before) << "at " << step << "/24";
-    ++interrupted;
+    Interrupter progress(cancel, 1 + total * step / 24);
+    ASSERT_EQ(run(files, progress, cancel), ErrorCode::interrupted) << message_;
+    EXPECT_FALSE(fs::exists(config_.output));
+    ASSERT_EQ(run(files), std::nullopt) << message_;
+    EXPECT_EQ(output(), after);
+    EXPECT_EQ(names(), std::set<std::string>{"mesh.hier"});
+    fs::remove_all(config_.output);
   }
-  EXPECT_EQ(interrupted, 24);
 }
 
-TEST_F(FaultsTest, AnInterruptionInAnyStageLeavesNothing) {
+// One build, interrupted again and again, always goes on where it was.
+TEST_F(FaultsTest, InterruptionsAddUp) {
+  config_.partition.vertices = 20;
+  config_.memory_budget = std::uint64_t{1} << 28;
+  const Snapshot after = expected();
+  FaultyFileSystem files;
+  {
+    CancelToken cancel;
+    StageInterrupter progress(cancel, "leaves");
+    ASSERT_EQ(run(files, progress, cancel), ErrorCode::interrupted);
+  }
+  int interruptions = 0;
+  for (std::optional<ErrorCode> code = ErrorCode::interrupted; code; ++interruptions) {
+    ASSERT_LT(interruptions, 200);
+    CancelToken cancel;
+    Interrupter progress(cancel, 3, "outline");  // that is made at one go
+    code = run(files, progress, cancel);
+    ASSERT_TRUE(!code || code == ErrorCode::interrupted) << message_;
+  }
+  EXPECT_GT(interruptions, 5);
+  EXPECT_EQ(output(), after);
+}
+
+TEST_F(FaultsTest, AnInterruptionInAnyStageLeavesTheOutput) {
   FaultyFileSystem files;
   CancelToken never;
   Interrupter measuring(never, kForever);
   ASSERT_EQ(run(files, measuring, CancelToken()), std::nullopt);
-  const Snapshot before = snapshot();  // with an output, which must stay as it is
+  const Snapshot before = output();
   ASSERT_GE(measuring.stages().size(), 6U);
   for (const std::string& stage : measuring.stages()) {
     CancelToken cancel;
     StageInterrupter progress(cancel, stage);
     EXPECT_EQ(run(files, progress, cancel, true), ErrorCode::interrupted) << stage;
-    ASSERT_EQ(snapshot(), before) << stage;
+    ASSERT_EQ(output(), before) << stage;
   }
 }
 

@@ -33,7 +33,7 @@ class LosslessTest : public testing::Test {
     config.simplify.vertices = tile_vertices;
     NoProgress progress;
     const CancelToken cancel;
-    build_hierarchy(config, true, {*files_, progress, cancel});
+    build_hierarchy(config, {.force = true}, {*files_, progress, cancel});
 
     VerifyOptions options;
     options.input = input;

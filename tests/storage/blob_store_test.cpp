@@ -77,17 +77,58 @@ TEST_F(BlobStoreTest, PartsAreRead) {
   }
 }
 
-TEST_F(BlobStoreTest, MemoryComesFirstAndTheDiskTakesTheRest) {
+TEST_F(BlobStoreTest, AllIsOnDiskAndWhatFitsInMemoryToo) {
   MemoryPool pool(250);
   ScratchFile scratch(files_, path_, pool);
   BlobStore store(scratch, 4);
   store.put(0, pattern(200, 0));
-  EXPECT_EQ(files_.calls(Call::create), 0U);
+  EXPECT_EQ(pool.free_bytes(), 50U);
   store.put(1, pattern(100, 1));  // does not fit any more
-  EXPECT_EQ(scratch.size(), 100U);
+  EXPECT_EQ(pool.free_bytes(), 50U);
   store.put(2, pattern(50, 2));  // fits what is left
-  EXPECT_EQ(scratch.size(), 100U);
   EXPECT_EQ(pool.free_bytes(), 0U);
+  EXPECT_EQ(scratch.size(), 350U);
+  const std::uint64_t reads = files_.calls(Call::read);
+  store.view(0);
+  store.view(2);
+  EXPECT_EQ(files_.calls(Call::read), reads);
+  store.view(1);
+  EXPECT_GT(files_.calls(Call::read), reads);
+}
+
+TEST_F(BlobStoreTest, AnotherProcessGoesOn) {
+  MemoryPool pool(0);
+  std::vector<StoredBlob> stored;
+  {
+    ScratchFile scratch(files_, path_, pool, ScratchFile::Stays::yes);
+    BlobStore store(scratch, 3);
+    store.put(2, pattern(100, 2));
+    store.put(0, pattern(50, 0));
+    for (std::size_t i = 0; i < 3; ++i)
+      stored.push_back(store.stored(i));
+  }
+  ScratchFile scratch(files_, path_, pool, ScratchFile::Stays::yes);
+  BlobStore store(scratch, 3);
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_TRUE(store.restore(i, stored[i])) << i;
+  store.put(1, pattern(70, 1));
+  for (const auto& [index, bytes] : {std::pair(0, 50), std::pair(1, 70), std::pair(2, 100)}) {
+    const BlobView view = store.view(index);
+    EXPECT_TRUE(std::ranges::equal(view.bytes(), pattern(bytes, index))) << index;
+  }
+}
+
+TEST_F(BlobStoreTest, WhatTheDiskChangedIsNotRestoredNorRead) {
+  MemoryPool pool(0);
+  ScratchFile scratch(files_, path_, pool, ScratchFile::Stays::yes);
+  BlobStore store(scratch, 2);
+  store.put(0, pattern(100, 0));
+  const StoredBlob stored = store.stored(0);
+  files_.reopen(path_)->write_at(40, pattern(1, 99));
+  EXPECT_FALSE(BlobStore(scratch, 2).restore(0, stored));
+  EXPECT_FALSE(BlobStore(scratch, 2).restore(0, {stored.offset + 1, stored.bytes, stored.checksum}))
+      << "beyond the end";
+  EXPECT_THROW(store.view(0), Error);
 }
 
 TEST_F(BlobStoreTest, ClearingGivesTheMemoryBackAndTheBlobsCanBePutAgain) {

@@ -27,7 +27,7 @@ TEST(Layout, WorkGoesOnBesideTheOutputInHiddenDirectories) {
   EXPECT_EQ(work_path("b.hier"), ".b.hier.meshhier-work");
   EXPECT_EQ(work_path("/b.hier"), "/.b.hier.meshhier-work");
   EXPECT_EQ(unfinished_path("a/b.json"), "a/.b.json.meshhier-part");
-  EXPECT_EQ(temporary_path("a/.b.hier.meshhier-work"), "a/.b.hier.meshhier-work/build.tmp");
+  EXPECT_EQ(built_path("a/.b.hier.meshhier-work"), "a/.b.hier.meshhier-work/hierarchy");
 }
 
 TEST(Layout, RunsOfVerifyWorkBesideTheHierarchyAndApart) {
@@ -37,9 +37,10 @@ TEST(Layout, RunsOfVerifyWorkBesideTheHierarchyAndApart) {
 }
 
 TEST(Layout, NoTwoThingsShareAName) {
-  std::set<std::filesystem::path> names{manifest_path("h"), index_path("h"), outline_path("h"),
-                                        temporary_path("h")};
-  std::size_t count = 4;
+  std::set<std::filesystem::path> names{manifest_path("h"), index_path("h"),   outline_path("h"),
+                                        lock_path("h"),     journal_path("h"), built_path("h")};
+  std::size_t count = names.size();
+  EXPECT_EQ(count, 6U);
   for (int level = 0; level < 4; ++level) {
     for (std::uint32_t i = 0; i < 4; ++i, ++count)
       names.insert(tile_path("h", {static_cast<Level>(level), i}));

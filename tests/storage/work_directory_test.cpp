@@ -84,20 +84,20 @@ class WorkDirectoryTest : public testing::Test {
 
 TEST_F(WorkDirectoryTest, PublishingGivesTheOutputItsNameAndLeavesNothingElse) {
   WorkDirectory work(*files_, output_, false);
-  EXPECT_TRUE(std::filesystem::is_directory(work.temporary()));
-  put_hierarchy(work.path(), "new");
-  write(work.temporary() / "scratch", "scratch");
+  EXPECT_TRUE(std::filesystem::is_directory(work.path()));
+  put_hierarchy(work.built(), "new");
+  write(work.path() / "scratch", "scratch");
   EXPECT_FALSE(std::filesystem::exists(output_));
   work.publish();
   EXPECT_EQ(hierarchy_at(output_), "new");
-  EXPECT_FALSE(std::filesystem::exists(temporary_path(output_)));
+  EXPECT_FALSE(std::filesystem::exists(output_ / "scratch"));
   EXPECT_THAT(names(), ElementsAre("x.hier"));
 }
 
 TEST_F(WorkDirectoryTest, WhatIsPublishedStaysWhenTheObjectGoes) {
   {
     WorkDirectory work(*files_, output_, false);
-    put_hierarchy(work.path(), "new");
+    put_hierarchy(work.built(), "new");
     work.publish();
   }
   EXPECT_EQ(hierarchy_at(output_), "new");
@@ -107,7 +107,7 @@ TEST_F(WorkDirectoryTest, WhatIsPublishedStaysWhenTheObjectGoes) {
 TEST_F(WorkDirectoryTest, UnpublishedWorkIsRemoved) {
   {
     WorkDirectory work(*files_, output_, false);
-    put_hierarchy(work.path(), "new");
+    put_hierarchy(work.built(), "new");
   }
   EXPECT_THAT(names(), IsEmpty());
 }
@@ -115,7 +115,7 @@ TEST_F(WorkDirectoryTest, UnpublishedWorkIsRemoved) {
 TEST_F(WorkDirectoryTest, MissingParentsAreMade) {
   output_ = parent_ / "a" / "b" / "x.hier";
   WorkDirectory work(*files_, output_, false);
-  put_hierarchy(work.path(), "new");
+  put_hierarchy(work.built(), "new");
   work.publish();
   EXPECT_EQ(hierarchy_at(output_), "new");
 }
@@ -125,7 +125,7 @@ TEST_F(WorkDirectoryTest, ARelativeOutputIsBesideTheCurrentDirectorysFiles) {
   std::filesystem::current_path(parent_);
   {
     WorkDirectory work(*files_, "x.hier", false);
-    put_hierarchy(work.path(), "new");
+    put_hierarchy(work.built(), "new");
     work.publish();
   }
   std::filesystem::current_path(before);
@@ -145,7 +145,7 @@ TEST_F(WorkDirectoryTest, ForceReplacesAHierarchyAndLeavesNothingOfIt) {
   write(output_ / "tiles" / "07" / "000042.glb", "only in the old one");
   WorkDirectory work(*files_, output_, true);
   EXPECT_EQ(hierarchy_at(output_), "old");
-  put_hierarchy(work.path(), "new");
+  put_hierarchy(work.built(), "new");
   EXPECT_EQ(hierarchy_at(output_), "old");
   work.publish();
   EXPECT_EQ(hierarchy_at(output_), "new");
@@ -155,7 +155,7 @@ TEST_F(WorkDirectoryTest, ForceReplacesAHierarchyAndLeavesNothingOfIt) {
 
 TEST_F(WorkDirectoryTest, ForceWithNothingThereIsNoError) {
   WorkDirectory work(*files_, output_, true);
-  put_hierarchy(work.path(), "new");
+  put_hierarchy(work.built(), "new");
   work.publish();
   EXPECT_EQ(hierarchy_at(output_), "new");
 }
@@ -164,7 +164,7 @@ TEST_F(WorkDirectoryTest, AFailedBuildLeavesTheOldHierarchy) {
   put_hierarchy(output_, "old");
   {
     WorkDirectory work(*files_, output_, true);
-    put_hierarchy(work.path(), "half of the new one");
+    put_hierarchy(work.built(), "half of the new one");
   }
   EXPECT_EQ(hierarchy_at(output_), "old");
   EXPECT_THAT(names(), ElementsAre("x.hier"));
@@ -187,7 +187,7 @@ TEST_F(WorkDirectoryTest, ForceNeverReplacesAFile) {
 TEST_F(WorkDirectoryTest, ForceNeverReplacesWhatAppearedDuringTheBuildAndIsNoHierarchy) {
   {
     WorkDirectory work(*files_, output_, true);
-    put_hierarchy(work.path(), "new");
+    put_hierarchy(work.built(), "new");
     write(output_ / "thesis.tex", "years of work");
     expect_error(ErrorCode::exists, output_.string(), [&] { work.publish(); });
   }
@@ -199,7 +199,7 @@ TEST_F(WorkDirectoryTest, ForceNeverReplacesWhatAppearedDuringTheBuildAndIsNoHie
 TEST_F(WorkDirectoryTest, WithoutForceWhatAppearedDuringTheBuildStays) {
   {
     WorkDirectory work(*files_, output_, false);
-    put_hierarchy(work.path(), "new");
+    put_hierarchy(work.built(), "new");
     put_hierarchy(output_, "another's");
     expect_error(ErrorCode::exists, "appeared", [&] { work.publish(); });
   }
@@ -207,21 +207,48 @@ TEST_F(WorkDirectoryTest, WithoutForceWhatAppearedDuringTheBuildStays) {
   EXPECT_THAT(names(), ElementsAre("x.hier"));
 }
 
-TEST_F(WorkDirectoryTest, WhatAKilledBuildLeftIsRemovedFirst) {
-  write(work_path(output_) / "tiles" / "00" / "000000.glb", "half");
-  write(temporary_path(work_path(output_)) / "scratch", "scratch");
-  WorkDirectory work(*files_, output_, false);
-  EXPECT_FALSE(std::filesystem::exists(work.path() / "tiles"));
-  EXPECT_TRUE(std::filesystem::is_empty(work.temporary()));
-  put_hierarchy(work.path(), "new");
-  work.publish();
+TEST_F(WorkDirectoryTest, WhatAKilledBuildLeftIsFound) {
+  write(tile_path(built_path(work_path(output_)), {}), "half");
+  write(work_path(output_) / "scratch", "scratch");
+  write(lock_path(work_path(output_)), "");
+  {
+    WorkDirectory work(*files_, output_, false);
+    EXPECT_EQ(text_of(tile_path(work.built(), {})), "half");
+    EXPECT_EQ(text_of(work.path() / "scratch"), "scratch");
+    work.clear();
+    EXPECT_FALSE(std::filesystem::exists(work.built()));
+    EXPECT_FALSE(std::filesystem::exists(work.path() / "scratch"));
+    put_hierarchy(work.built(), "new");
+    work.publish();
+  }
+  EXPECT_EQ(hierarchy_at(output_), "new");
   EXPECT_THAT(names(), ElementsAre("x.hier"));
+}
+
+TEST_F(WorkDirectoryTest, WhatIsKeptIsThereForTheNextOne) {
+  {
+    WorkDirectory work(*files_, output_, false);
+    write(work.path() / "scratch", "scratch");
+    work.keep(true);
+  }
+  WorkDirectory work(*files_, output_, false);
+  EXPECT_EQ(text_of(work.path() / "scratch"), "scratch");
+}
+
+TEST_F(WorkDirectoryTest, OneAtATime) {
+  WorkDirectory work(*files_, output_, false);
+  write(work.path() / "scratch", "scratch");
+  expect_error(ErrorCode::exists, "at work", [&] { WorkDirectory(*files_, output_, false); });
+  EXPECT_EQ(text_of(work.path() / "scratch"), "scratch");
+  put_hierarchy(work.built(), "new");
+  work.publish();
+  EXPECT_EQ(hierarchy_at(output_), "new");
 }
 
 TEST_F(WorkDirectoryTest, TheReplacedHierarchyOfAKilledBuildIsRemovedInTheEnd) {
   put_hierarchy(replaced_path(output_), "old");
   WorkDirectory work(*files_, output_, false);
-  put_hierarchy(work.path(), "new");
+  put_hierarchy(work.built(), "new");
   work.publish();
   EXPECT_EQ(hierarchy_at(output_), "new");
   EXPECT_THAT(names(), ElementsAre("x.hier"));
@@ -234,7 +261,7 @@ TEST_F(WorkDirectoryTest, TheReplacedHierarchyOfAKilledBuildOutlivesAFailedPubli
   put_hierarchy(replaced_path(output_), "old");
   {
     WorkDirectory work(files, output_, false);
-    put_hierarchy(work.path(), "new");
+    put_hierarchy(work.built(), "new");
     files.fail(Call::rename, 1);
     expect_error(ErrorCode::io, "injected", [&] { work.publish(); });
   }
@@ -270,7 +297,7 @@ class EveryFault : public WorkDirectoryTest, public testing::WithParamInterface<
     threw_ = false;
     try {
       WorkDirectory work(files, output_, GetParam());
-      put_hierarchy(work.path(), "new");
+      put_hierarchy(work.built(), "new");
       work.publish();
     } catch (const Error& error) {
       threw_ = true;
@@ -321,7 +348,7 @@ TEST_P(EveryFault, IsForgottenByTheNextBuild) {
        {Call::make_directories, Call::remove_all, Call::rename, Call::sync_tree}) {
     for (std::uint64_t n = 1; build_with_fault(call, n); ++n) {
       WorkDirectory work(*files_, output_, true);
-      put_hierarchy(work.path(), "newer");
+      put_hierarchy(work.built(), "newer");
       work.publish();
       EXPECT_EQ(hierarchy_at(output_), "newer");
       EXPECT_THAT(names(), ElementsAre("x.hier"));

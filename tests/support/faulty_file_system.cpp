@@ -16,8 +16,9 @@ namespace {
 
 const char* name_of(Call call) {
   static constexpr std::array<const char*, kCallKinds> kNames{
-      "open",   "create",    "inspect", "read",   "write", "sync", "make the directory",
-      "remove", "rename to", "sync",    "inspect"};
+      "open",    "create",    "inspect", "read",    "write", "sync",    "make the directory",
+      "remove",  "rename to", "sync",    "inspect", "open",  "look at", "lock",
+      "look at", "list",      "use"};
   return kNames[static_cast<std::size_t>(call)];
 }
 
@@ -37,7 +38,6 @@ class FaultyFile final : public storage::File {
 
   void sync() override {
     strike(Call::sync);
-    real_->sync();
   }
 
  protected:
@@ -73,9 +73,13 @@ class FaultyFile final : public storage::File {
 
 bool FaultPlan::strike(Call call) {
   const std::lock_guard lock(mutex_);
-  Fault& fault = faults_[static_cast<std::size_t>(call)];
-  ++fault.calls;
-  return fault.first <= fault.calls && fault.calls <= fault.last;
+  bool fails = false;
+  for (const Call counted : {call, Call::any}) {
+    Fault& fault = faults_[static_cast<std::size_t>(counted)];
+    ++fault.calls;
+    fails = fails || (fault.first <= fault.calls && fault.calls <= fault.last);
+  }
+  return fails;
 }
 
 std::size_t FaultPlan::transfer(std::size_t asked) const {
@@ -110,6 +114,12 @@ void FaultyFileSystem::limit_room(std::uint64_t bytes) {
   plan_->room_ = bytes;
 }
 
+void FaultyFileSystem::limit_writes(std::uint64_t bytes) {
+  const std::lock_guard lock(plan_->mutex_);
+  plan_->room_ = bytes;
+  plan_->room_is_told_ = false;
+}
+
 std::uint64_t FaultyFileSystem::calls(Call call) const {
   const std::lock_guard lock(plan_->mutex_);
   return plan_->faults_[static_cast<std::size_t>(call)].calls;
@@ -130,7 +140,23 @@ std::unique_ptr<storage::File> FaultyFileSystem::create(const std::filesystem::p
   return std::make_unique<FaultyFile>(real_->create(path), plan_, counters_);
 }
 
+std::unique_ptr<storage::File> FaultyFileSystem::reopen(const std::filesystem::path& path) {
+  strike(Call::reopen, path);
+  return std::make_unique<FaultyFile>(real_->reopen(path), plan_, counters_);
+}
+
+storage::FileIdentity FaultyFileSystem::identity(const std::filesystem::path& path) {
+  strike(Call::identity, path);
+  return real_->identity(path);
+}
+
+std::unique_ptr<storage::FileLock> FaultyFileSystem::try_lock(const std::filesystem::path& path) {
+  strike(Call::lock, path);
+  return real_->try_lock(path);
+}
+
 bool FaultyFileSystem::exists(const std::filesystem::path& path) {
+  strike(Call::exists, path);
   return real_->exists(path);
 }
 
@@ -139,6 +165,7 @@ std::filesystem::path FaultyFileSystem::canonical(const std::filesystem::path& p
 }
 
 std::vector<std::filesystem::path> FaultyFileSystem::list(const std::filesystem::path& directory) {
+  strike(Call::list, directory);
   return real_->list(directory);
 }
 
@@ -159,14 +186,13 @@ void FaultyFileSystem::rename(const std::filesystem::path& from, const std::file
 
 void FaultyFileSystem::sync_tree(const std::filesystem::path& directory) {
   strike(Call::sync_tree, directory);
-  real_->sync_tree(directory);
 }
 
 std::uint64_t FaultyFileSystem::free_bytes(const std::filesystem::path& directory) {
   strike(Call::free_bytes, directory);
   const std::uint64_t free = real_->free_bytes(directory);
   const std::lock_guard lock(plan_->mutex_);
-  return std::min(free, plan_->room_);
+  return plan_->room_is_told_ ? std::min(free, plan_->room_) : free;
 }
 
 }  // namespace meshhier::tests

@@ -25,9 +25,15 @@ enum class Call : std::size_t {
   remove_all,
   rename,
   sync_tree,
-  free_bytes
+  free_bytes,
+  reopen,
+  identity,
+  lock,
+  exists,
+  list,
+  any  ///< all of them, counted together
 };
-inline constexpr std::size_t kCallKinds = 11;
+inline constexpr std::size_t kCallKinds = 17;
 
 /// When calls go wrong. Shared by a file system and its open files; thread-safe.
 class FaultPlan {
@@ -51,9 +57,11 @@ class FaultPlan {
   std::array<Fault, kCallKinds> faults_;
   std::size_t most_moved_ = std::numeric_limits<std::size_t>::max();
   std::uint64_t room_ = std::numeric_limits<std::uint64_t>::max();
+  bool room_is_told_ = true;
 };
 
-/// Thread-safe. A call that is told to fail throws Error(io), "injected", and does nothing; a full
+/// Thread-safe. Forces nothing to the disk, which takes its time and changes nothing as long as the
+/// machine runs. A call that is told to fail throws Error(io), "injected", and does nothing; a full
 /// disk takes what fits and then throws, as the real one does.
 class FaultyFileSystem final : public storage::FileSystem {
  public:
@@ -66,11 +74,16 @@ class FaultyFileSystem final : public storage::FileSystem {
   void limit_transfers(std::size_t most_bytes);
   /// The disk takes so many more bytes of writes. Removing files makes no room.
   void limit_room(std::uint64_t bytes);
+  /// As limit_room(), but the disk does not say so.
+  void limit_writes(std::uint64_t bytes);
   /// Calls of a kind so far, failed ones included.
   std::uint64_t calls(Call call) const;
 
   std::unique_ptr<storage::File> open(const std::filesystem::path& path) override;
   std::unique_ptr<storage::File> create(const std::filesystem::path& path) override;
+  std::unique_ptr<storage::File> reopen(const std::filesystem::path& path) override;
+  storage::FileIdentity identity(const std::filesystem::path& path) override;
+  std::unique_ptr<storage::FileLock> try_lock(const std::filesystem::path& path) override;
   bool exists(const std::filesystem::path& path) override;
   std::filesystem::path canonical(const std::filesystem::path& path) override;
   std::vector<std::filesystem::path> list(const std::filesystem::path& directory) override;

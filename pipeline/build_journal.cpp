@@ -1,0 +1,271 @@
+#include "pipeline/build_journal.h"
+
+#include "hierarchy/error.h"
+#include "storage/hash.h"
+#include "storage/index.h"
+#include "storage/layout.h"
+
+#include <algorithm>
+#include <iterator>
+#include <memory>
+#include <set>
+#include <string>
+
+#include <fmt/format.h>
+
+namespace meshhier::pipeline {
+namespace {
+
+using Json = nlohmann::json;
+
+Json to_json(Vec3d v) {
+  return {v.x, v.y, v.z};
+}
+Vec3d point(const Json& json) {
+  return {json.at(0), json.at(1), json.at(2)};
+}
+
+Json to_json(const SourceSummary& source) {
+  return {{"file_name", source.file_name},
+          {"file_bytes", source.file_bytes},
+          {"checksum", source.checksum},
+          {"vertices", source.vertices},
+          {"triangles", source.triangles},
+          {"faces", source.faces},
+          {"degenerate", source.degenerate_triangles},
+          {"min", to_json(source.bounds.min)},
+          {"max", to_json(source.bounds.max)},
+          {"double", source.double_precision},
+          {"attributes",
+           {source.attributes.normals, static_cast<int>(source.attributes.colour),
+            source.attributes.alpha, source.attributes.texcoords}}};
+}
+
+SourceSummary summary(const Json& json) {
+  SourceSummary source;
+  source.file_name = json.at("file_name");
+  source.file_bytes = json.at("file_bytes");
+  source.checksum = json.at("checksum");
+  source.vertices = json.at("vertices");
+  source.triangles = json.at("triangles");
+  source.faces = json.at("faces");
+  source.degenerate_triangles = json.at("degenerate");
+  source.bounds = {point(json.at("min")), point(json.at("max"))};
+  source.double_precision = json.at("double");
+  const Json& attributes = json.at("attributes");
+  source.attributes.normals = attributes.at(0);
+  source.attributes.colour = static_cast<ColourType>(attributes.at(1).get<int>());
+  source.attributes.alpha = attributes.at(2);
+  source.attributes.texcoords = attributes.at(3);
+  return source;
+}
+
+Json to_json(const IndexedStep& indexed) {
+  const Step& step = indexed.second;
+  return {indexed.first, step.certain, step.mean_square, step.finer_neighbours};
+}
+
+IndexedStep indexed_step(const Json& json) {
+  return {json.at(0), {json.at(1), json.at(2), json.at(3)}};
+}
+
+/// "partition.vertices was 8192 and is 4096, ...".
+std::string differences(const Json& was, const Json& is) {
+  const Json before = was.flatten();
+  const Json now = is.flatten();
+  std::set<std::string> keys;
+  for (const Json* all : {&before, &now}) {
+    for (const auto& item : all->items())
+      keys.insert(item.key());
+  }
+  std::string text;
+  const auto value = [](const Json& of, const std::string& key) {
+    const auto found = of.find(key);
+    return found == of.end() ? std::string("not set")
+                             : found->dump(-1, ' ', false, Json::error_handler_t::replace);
+  };
+  for (const std::string& key : keys) {
+    if (value(before, key) == value(now, key))
+      continue;
+    std::string dotted = key.substr(1);
+    for (char& c : dotted) {
+      if (c == '/')
+        c = '.';
+    }
+    text += fmt::format("{}{} was {} and is {}", text.empty() ? "" : ", ", dotted,
+                        value(before, key), value(now, key));
+  }
+  return text;
+}
+
+}  // namespace
+
+BuildJournal::BuildJournal(storage::FileSystem& files, const std::filesystem::path& work,
+                           const BuildIdentity& identity, storage::ScratchUse& use, Forest& forest,
+                           Chunks& chunks)
+    : files_(files),
+      built_(storage::built_path(work)),
+      identity_(identity),
+      forest_(forest),
+      chunks_(chunks) {
+  const Tree& tree = forest.tree();
+  has_leaves_.resize(chunks.count());
+  steps_.resize(static_cast<std::size_t>(raw(tree.depth())) + 1);
+  for (int l = 0; l <= raw(tree.depth()); ++l)
+    has_tile_.emplace_back(tree.node_count(static_cast<Level>(l)));
+
+  std::optional<Json> build;  // whose journal is there
+  bool is_same = true;
+  bool has_other_work = false;
+  const auto read = [&](const Entry& entry) {
+    if (!build) {
+      build = entry.at("build");
+      is_same = *build == identity.decides_result;
+      input_was_touched_ = entry.at("modified") != identity.input_modified_ns;
+      return true;
+    }
+    has_other_work = has_other_work || entry.contains("source");
+    return !is_same || take(entry);
+  };
+  journal_.emplace(files, storage::journal_path(work), use, [&](const Entry& entry) {
+    try {
+      return read(entry);
+    } catch (const Json::exception&) {
+      return false;
+    }
+  });
+  if (!is_same && has_other_work) {
+    throw Error(ErrorCode::exists,
+                fmt::format("{} holds the work of a build that was stopped, but {}; --restart "
+                            "throws it away and begins anew",
+                            work.string(), differences(*build, identity.decides_result)));
+  }
+  is_sound_ = is_same && source_ && can_make_all_leaves();
+}
+
+bool BuildJournal::take(const Entry& entry) {
+  const auto first = entry.items().begin();
+  const std::string& kind = first.key();
+  const Entry& value = first.value();
+  if (kind == "chunk")
+    return value.at(0) < chunks_.count() && chunks_.restore(value.at(0), value.at(1));
+  if (kind == "source")
+    return take_source(value);
+  if (kind == "leaves")
+    return take_leaves(value);
+  if (kind == "tile")
+    return take_tile(value);
+  return kind == "published" && take_published(value);
+}
+
+bool BuildJournal::take_source(const Entry& source) {
+  source_ = DistributedSource{summary(source.at("summary")), point(source.at("origin"))};
+  return true;
+}
+
+bool BuildJournal::take_leaves(const Entry& leaves) {
+  const std::uint32_t chunk = leaves.at("chunk");
+  const std::uint64_t unreferenced = leaves.at("unreferenced");
+  if (chunk >= chunks_.count() || has_leaves_[chunk] != 0 ||
+      !forest_.restore_chunk(chunk, leaves.at("stored")))
+    return false;
+  chunks_.drop(chunk);
+  has_leaves_[chunk] = 1;
+  unreferenced_ += unreferenced;
+  ++found_;
+  return true;
+}
+
+bool BuildJournal::take_tile(const Entry& tile) {
+  const std::uint8_t level = tile.at("node").at(0);
+  const std::uint32_t index = tile.at("node").at(1);
+  if (level >= raw(forest_.tree().depth()) || index >= has_tile_[level].size() ||
+      has_tile_[level][index] != 0)
+    return false;
+  std::vector<IndexedStep> steps;
+  for (const Entry& step : tile.at("steps"))
+    steps.push_back(indexed_step(step));
+  if (!forest_.restore_tile({static_cast<Level>(level), index}, tile.at("stored")))
+    return false;
+  std::move(steps.begin(), steps.end(), std::back_inserter(steps_[level + std::size_t{1}]));
+  has_tile_[level][index] = 1;
+  ++found_;
+  return true;
+}
+
+bool BuildJournal::take_published(const Entry& published) {
+  const Json::binary_t& bytes = published.get_binary();
+  const TileRecord record = storage::decode_record(std::as_bytes(std::span(bytes)));
+  const std::filesystem::path path = storage::tile_path(built_, record.node);
+  if (!files_.exists(path))
+    return false;
+  const std::unique_ptr<storage::File> file = files_.open(path);
+  if (file->size() != record.file_bytes)
+    return false;
+  std::vector<std::byte> content(record.file_bytes);
+  file->read_exact(0, content);
+  if (storage::checksum(content) != record.checksum)
+    return false;
+  published_.emplace(std::pair(record.node.level, record.node.index), record);
+  ++found_;
+  return true;
+}
+
+/// Of chunks that are still needed, the disk must hold all that was put there.
+bool BuildJournal::can_make_all_leaves() const {
+  for (std::uint32_t chunk = 0; chunk < chunks_.count(); ++chunk) {
+    if (!has_leaves(chunk) && !chunks_.is_as_stored(chunk))
+      return false;
+  }
+  return true;
+}
+
+std::uint64_t BuildJournal::steps() const {
+  std::uint64_t tiles = 0;
+  for (int l = 0; l < raw(forest_.tree().depth()); ++l)
+    tiles += has_tile_[static_cast<std::size_t>(l)].size();
+  return chunks_.count() + tiles + storage::tile_count(forest_.tree());
+}
+
+std::vector<IndexedStep> BuildJournal::take_steps(Level level) {
+  return std::exchange(steps_[raw(level)], {});
+}
+
+const TileRecord* BuildJournal::published(NodeId node) const {
+  const auto found = published_.find({node.level, node.index});
+  return found == published_.end() ? nullptr : &found->second;
+}
+
+void BuildJournal::note_source(const SourceSummary& summary, Vec3d origin) {
+  journal_->append(
+      {{"build", identity_.decides_result}, {"modified", identity_.input_modified_ns}});
+  for (std::uint32_t chunk = 0; chunk < chunks_.count(); ++chunk)
+    journal_->append({{"chunk", {chunk, chunks_.store(chunk)}}});
+  journal_->append({{"source", {{"summary", to_json(summary)}, {"origin", to_json(origin)}}}});
+  source_ = DistributedSource{summary, origin};
+}
+
+void BuildJournal::note_leaves(std::uint32_t chunk, std::uint64_t unreferenced_vertices) {
+  journal_->append({{"leaves",
+                     {{"chunk", chunk},
+                      {"unreferenced", unreferenced_vertices},
+                      {"stored", forest_.stored_chunk(chunk)}}}});
+}
+
+void BuildJournal::note_tile(NodeId node, std::span<const IndexedStep> steps) {
+  Json all = Json::array();
+  for (const IndexedStep& step : steps)
+    all.push_back(to_json(step));
+  journal_->append({{"tile",
+                     {{"node", {raw(node.level), node.index}},
+                      {"steps", std::move(all)},
+                      {"stored", forest_.stored_tile(node)}}}});
+}
+
+void BuildJournal::note_published(const TileRecord& record) {
+  const std::vector<std::byte> bytes = storage::encode_record(record);
+  const auto* first = reinterpret_cast<const std::uint8_t*>(bytes.data());
+  journal_->append({{"published", Json::binary({first, first + bytes.size()})}});
+}
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,74 @@
+#include "pipeline/workshop.h"
+
+#include "storage/layout.h"
+
+#include <fmt/format.h>
+
+namespace meshhier::pipeline {
+namespace {
+
+BuildIdentity identity_of(const Config& config, const mesh_io::MeshDescription& mesh,
+                          const Tree& tree, storage::FileIdentity input) {
+  return {{{"program", "meshhier " MESHHIER_VERSION},
+           {"input", config.input.filename().string()},
+           {"input_bytes", input.bytes},
+           {"vertices", mesh.vertex_count},
+           {"faces", mesh.face_count},
+           {"partitions", tree.partition_count()},
+           {"config", resolved_json(config)}},
+          input.modified_ns};
+}
+
+}  // namespace
+
+Workshop::Workshop(storage::FileSystem& files, const std::filesystem::path& work,
+                   const BuildPlan& build, int channels, const BuildIdentity& identity,
+                   storage::MemoryPool& pool)
+    : mesh_scratch(files, work / "mesh", pool, storage::ScratchFile::Stays::yes),
+      tile_scratch(files, work / "tiles", pool, storage::ScratchFile::Stays::yes),
+      chunks(build.tree, channels, mesh_scratch, build.memory.spool_block_bytes),
+      forest(build.tree, chunks.level(), channels, tile_scratch),
+      journal(files, work, identity, pool.scratch_use(), forest, chunks) {}
+
+OpenWorkshop open_workshop(storage::FileSystem& files, storage::WorkDirectory& work,
+                           const Config& config, mesh_io::MeshSource& source,
+                           const BuildPlan& build, storage::MemoryPool& pool,
+                           const CancelToken& cancel) {
+  const mesh_io::MeshDescription& mesh = source.description();
+  const BuildIdentity identity =
+      identity_of(config, mesh, build.tree, files.identity(config.input));
+  OpenWorkshop open;
+  const auto make = [&] {
+    open.workshop = std::make_unique<Workshop>(files, work.path(), build,
+                                               mesh.attributes.channels(), identity, pool);
+  };
+  const auto begin_anew = [&](std::string why) {
+    open.workshop.reset();
+    work.clear();
+    make();
+    open.found = std::move(why);
+  };
+  const bool is_new = !files.exists(storage::journal_path(work.path()));
+  if (is_new)
+    work.clear();      // what was not noted is of no use
+  work.keep(!is_new);  // it may be of another build
+  make();
+  const BuildJournal& journal = open.workshop->journal;
+  work.keep(journal.source().has_value());
+  if (!journal.source()) {
+    if (!is_new)
+      begin_anew("");
+  } else if (!journal.is_sound()) {
+    begin_anew("what an earlier build left has been damaged: this one began anew");
+  } else if (journal.input_was_touched() &&
+             source.checksum([&] { cancel.check(); }) != journal.source()->summary.checksum) {
+    begin_anew("the input was changed since an earlier build was stopped: this one began anew");
+  } else {
+    open.found =
+        fmt::format("went on where an earlier build was stopped, {} of {} steps being done",
+                    journal.found(), journal.steps());
+  }
+  return open;
+}
+
+}  // namespace meshhier::pipeline
