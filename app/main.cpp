@@ -32,6 +32,7 @@ constexpr const char* kFooter = R"(Examples:
   meshhier inspect david.hier                        what is in it
   meshhier verify david.hier --input david.ply       prove that it holds the input exactly
   meshhier export david.hier --level 0 -o whole.ply  the coarse view of the whole model
+  meshhier clean                                     what builds that were stopped left here
 
 "meshhier COMMAND --help" tells more.
 
@@ -40,11 +41,12 @@ Exit codes:
   2    the command line or the config is wrong
   3    the input mesh is broken or not supported
   4    a file could not be read or written
-  5    the output is already there (see --force)
+  5    the output is already there (see --force), another build is at work on it, or what a stopped
+       one left belongs to another config (see build --restart)
   6    the memory budget or the free disk space is too small
   7    the hierarchy is damaged: verify found a problem
   70   a defect in meshhier
-  130  interrupted by Ctrl-C or SIGTERM
+  130  interrupted by Ctrl-C or SIGTERM; the same build goes on where it was
 )";
 
 int exit_code(ErrorCode code) {
@@ -135,6 +137,7 @@ int run(int argc, char** argv) {
   add_inspect_command(parser, invocation);
   add_verify_command(parser, invocation);
   add_export_command(parser, invocation);
+  add_clean_command(parser, invocation);
 
   const std::vector<std::string> names = command_names(parser);
   if (argc > 1 && is_unknown_command(argv[1], names))

@@ -188,6 +188,18 @@ class PosixFileSystem final : public FileSystem {
     return found;
   }
 
+  std::vector<std::filesystem::path> children(const std::filesystem::path& directory) override {
+    std::vector<std::filesystem::path> found;
+    std::error_code error;
+    std::filesystem::directory_iterator entry(directory, error);
+    for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error))
+      found.push_back(entry->path());
+    if (error)
+      fail("list", directory, error.value());
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+
   void make_directories(const std::filesystem::path& path) override {
     std::error_code error;
     std::filesystem::create_directories(path, error);

@@ -89,6 +89,8 @@ class FileSystem {
   virtual std::filesystem::path canonical(const std::filesystem::path& path) = 0;
   /// Every file below `directory`, links as themselves; ascending.
   virtual std::vector<std::filesystem::path> list(const std::filesystem::path& directory) = 0;
+  /// Files and directories directly in `directory`; ascending.
+  virtual std::vector<std::filesystem::path> children(const std::filesystem::path& directory) = 0;
   virtual void make_directories(const std::filesystem::path& path) = 0;
   /// Removes a file or a whole tree; nothing happens if it is not there.
   virtual void remove_all(const std::filesystem::path& path) = 0;

@@ -4,6 +4,13 @@
 
 namespace meshhier::storage {
 
+namespace {
+
+constexpr std::string_view kMark = ".meshhier-";
+constexpr std::string_view kVerify = "verify-";
+
+}  // namespace
+
 std::filesystem::path manifest_path(const std::filesystem::path& hierarchy) {
   return hierarchy / "hierarchy.json";
 }
@@ -48,6 +55,23 @@ std::filesystem::path journal_path(const std::filesystem::path& work) {
 }
 std::filesystem::path built_path(const std::filesystem::path& work) {
   return work / "hierarchy";
+}
+
+std::optional<LeftoverName> leftover_name(std::string_view name) {
+  const std::size_t mark = name.rfind(kMark);
+  if (!name.starts_with('.') || mark == std::string_view::npos || mark < 2)
+    return std::nullopt;
+  const std::string output(name.substr(1, mark - 1));
+  const std::string_view kind = name.substr(mark + kMark.size());
+  if (kind == "work")
+    return LeftoverName{Leftover::build, output};
+  if (kind == "old")
+    return LeftoverName{Leftover::replaced, output};
+  if (kind == "part")
+    return LeftoverName{Leftover::unfinished, output};
+  if (kind.size() == kVerify.size() + 8 && kind.starts_with(kVerify))
+    return LeftoverName{Leftover::verify, output};
+  return std::nullopt;
 }
 
 }  // namespace meshhier::storage

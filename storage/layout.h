@@ -20,6 +20,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
 
 namespace meshhier::storage {
 
@@ -38,5 +41,19 @@ std::filesystem::path unfinished_path(const std::filesystem::path& file);
 std::filesystem::path lock_path(const std::filesystem::path& work);
 std::filesystem::path journal_path(const std::filesystem::path& work);
 std::filesystem::path built_path(const std::filesystem::path& work);
+
+/// What the names above that begin with a dot stand for.
+enum class Leftover {
+  build,       ///< work_path: a build that was stopped, or an export
+  replaced,    ///< replaced_path
+  verify,      ///< verify_scratch_path
+  unfinished,  ///< unfinished_path
+};
+struct LeftoverName {
+  Leftover kind;
+  std::string output;  ///< the name of the file or hierarchy it belongs to
+};
+/// Nothing if `name`, that of a file or directory, is none of them.
+std::optional<LeftoverName> leftover_name(std::string_view name);
 
 }  // namespace meshhier::storage

@@ -160,6 +160,9 @@ TEST(PlyWriter, AFullDiskIsAnIoError) {
     bool exists(const std::filesystem::path&) override { return false; }
     std::filesystem::path canonical(const std::filesystem::path& path) override { return path; }
     std::vector<std::filesystem::path> list(const std::filesystem::path&) override { return {}; }
+    std::vector<std::filesystem::path> children(const std::filesystem::path&) override {
+      return {};
+    }
     void make_directories(const std::filesystem::path&) override {}
     void remove_all(const std::filesystem::path&) override {}
     void rename(const std::filesystem::path&, const std::filesystem::path&) override {}

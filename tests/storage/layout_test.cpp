@@ -1,6 +1,9 @@
 #include "storage/layout.h"
 
+#include <optional>
 #include <set>
+#include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -34,6 +37,23 @@ TEST(Layout, RunsOfVerifyWorkBesideTheHierarchyAndApart) {
   const std::filesystem::path first = verify_scratch_path("a/b.hier", 0xab);
   EXPECT_EQ(first, "a/.b.hier.meshhier-verify-000000ab");
   EXPECT_NE(first, verify_scratch_path("a/b.hier", 0xac));
+}
+
+TEST(Layout, NamesOfWhatWasLeftAreKnownAgain) {
+  const auto known = [](const std::filesystem::path& path) {
+    const std::optional<LeftoverName> name = leftover_name(path.filename().string());
+    return name ? std::optional(std::pair(name->kind, name->output)) : std::nullopt;
+  };
+  for (const std::string output : {"b.hier", "b", ".b", "x.meshhier-work"}) {
+    const std::filesystem::path path = std::filesystem::path("a") / output;
+    EXPECT_EQ(known(work_path(path)), std::pair(Leftover::build, output));
+    EXPECT_EQ(known(replaced_path(path)), std::pair(Leftover::replaced, output));
+    EXPECT_EQ(known(unfinished_path(path)), std::pair(Leftover::unfinished, output));
+    EXPECT_EQ(known(verify_scratch_path(path, 0xab)), std::pair(Leftover::verify, output));
+  }
+  for (const char* other : {"b.hier", ".b.hier", "", ".", ".meshhier-work", "b.meshhier-work",
+                            ".b.meshhier-", ".b.meshhier-works", ".b.meshhier-verify-1"})
+    EXPECT_EQ(known(other), std::nullopt) << other;
 }
 
 TEST(Layout, NoTwoThingsShareAName) {

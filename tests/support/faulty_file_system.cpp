@@ -36,9 +36,7 @@ class FaultyFile final : public storage::File {
     return real_->size();
   }
 
-  void sync() override {
-    strike(Call::sync);
-  }
+  void sync() override { strike(Call::sync); }
 
  protected:
   std::size_t read_some(std::uint64_t offset, std::span<std::byte> bytes) const override {
@@ -167,6 +165,12 @@ std::filesystem::path FaultyFileSystem::canonical(const std::filesystem::path& p
 std::vector<std::filesystem::path> FaultyFileSystem::list(const std::filesystem::path& directory) {
   strike(Call::list, directory);
   return real_->list(directory);
+}
+
+std::vector<std::filesystem::path> FaultyFileSystem::children(
+    const std::filesystem::path& directory) {
+  strike(Call::list, directory);
+  return real_->children(directory);
 }
 
 void FaultyFileSystem::make_directories(const std::filesystem::path& path) {

@@ -87,6 +87,7 @@ class FaultyFileSystem final : public storage::FileSystem {
   bool exists(const std::filesystem::path& path) override;
   std::filesystem::path canonical(const std::filesystem::path& path) override;
   std::vector<std::filesystem::path> list(const std::filesystem::path& directory) override;
+  std::vector<std::filesystem::path> children(const std::filesystem::path& directory) override;
   void make_directories(const std::filesystem::path& path) override;
   void remove_all(const std::filesystem::path& path) override;
   void rename(const std::filesystem::path& from, const std::filesystem::path& to) override;

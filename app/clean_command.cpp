@@ -1,0 +1,64 @@
+#include "app/command.h"
+#include "pipeline/clean.h"
+
+#include <memory>
+#include <ostream>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+namespace meshhier::app {
+
+namespace {
+
+struct CleanArguments {
+  std::string path = ".";
+  bool remove = false;
+  bool json = false;
+};
+
+int run_clean(const CleanArguments& arguments, Environment& environment) {
+  const auto found = pipeline::find_leftovers(environment.files, arguments.path);
+  if (arguments.remove)
+    pipeline::remove_leftovers(environment.files, found);
+  if (arguments.json) {
+    environment.out << pipeline::leftovers_json(found).dump(
+                           2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+                    << '\n';
+  } else {
+    environment.out << pipeline::leftovers_text(found, arguments.remove);
+  }
+  return 0;
+}
+
+constexpr const char* kCleanFooter =
+    R"(A build that was stopped keeps what it has done beside its output, so that the same build can go on.
+This lists such work, and what other commands left that were killed. Run --remove when no verify or
+export is at work there; builds at work are left alone.
+
+Examples:
+  meshhier clean                        what lies in this directory
+  meshhier clean models/david.hier      what belongs to this hierarchy
+  meshhier clean models --remove
+)";
+
+}  // namespace
+
+void add_clean_command(CLI::App& parser, Invocation& invocation) {
+  const auto arguments = std::make_shared<CleanArguments>();
+  CLI::App* command =
+      parser.add_subcommand("clean", "List or remove what builds that were stopped left");
+  command->add_option("PATH", arguments->path,
+                      "A directory, or a hierarchy, finished or not; default: this directory");
+  command->add_flag("--remove", arguments->remove, "Remove it");
+  command->add_flag("--json", arguments->json, "One JSON object, for programs");
+  command->footer(kCleanFooter);
+  command->callback([arguments, &invocation] {
+    invocation.run = [arguments](Environment& environment) {
+      return run_clean(*arguments, environment);
+    };
+  });
+}
+
+}  // namespace meshhier::app
