@@ -9,8 +9,12 @@
 #include "pipeline/size_text.h"
 #include "pipeline/source_mesh.h"
 #include "pipeline/workshop.h"
+#include "storage/hierarchy_reader.h"
 #include "storage/layout.h"
 #include "storage/work_directory.h"
+
+#include <future>
+#include <utility>
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -28,8 +32,9 @@ nlohmann::ordered_json whole_config(const Config& config) {
   return whole;
 }
 
-BuildStats make_stats(const Config& config, const SourceSummary& source,
-                      const PublishedSummary& published, const BuildPlan& plan) {
+BuildStats make_stats(const Config& config, const storage::HierarchyReader& made,
+                      const BuildPlan& plan) {
+  const SourceSummary& source = made.manifest().source;
   BuildStats stats;
   stats.config = whole_config(config);
   stats.threads = plan.threads;
@@ -38,9 +43,9 @@ BuildStats make_stats(const Config& config, const SourceSummary& source,
   stats.triangles = source.triangles;
   stats.partitions = plan.tree.partition_count();
   stats.levels = raw(plan.tree.depth()) + 1;
-  stats.tiles = published.tiles;
+  stats.tiles = made.records().size();
   stats.input_bytes = source.file_bytes;
-  stats.output_bytes = published.total_bytes;
+  stats.output_bytes = made.manifest().total_bytes;
   stats.predicted_output_bytes = plan.disk.output_bytes;
   stats.predicted_temporary_bytes = plan.disk.temporary_bytes;
   return stats;
@@ -89,30 +94,23 @@ Error told_how_to_go_on(const Error& error, const storage::WorkDirectory& work) 
                       error.what(), work.path().string())};
 }
 
-/// All from the input to the finished files in work.built().
-BuildReport build_in(storage::WorkDirectory& work, const Config& config, const BuildPlan& build,
-                     std::unique_ptr<mesh_io::MeshSource> source, BuildEnvironment environment) {
-  storage::FileSystem& files = environment.files;
+/// Makes all files of the hierarchy in `directory`, as far as the journal does not have them.
+void make_hierarchy(const Config& config, const BuildPlan& build, Workshop& workshop,
+                    const std::filesystem::path& directory, Progress& progress,
+                    BuildEnvironment environment) {
   const CancelToken& cancel = environment.cancel;
   const MemoryPlan& plan = build.memory;
-  storage::MemoryPool pool(plan.pool_bytes);
-  StageMeter progress({environment.progress, files.counters(), pool.scratch_use()});
-
-  if (files.exists(storage::journal_path(work.path())))
-    progress.stage("resume", 0, "entries");
-  const OpenWorkshop open = open_workshop(files, work, config, *source, build, pool, cancel);
-  auto& [mesh_scratch, tile_scratch, chunks, forest, journal] = *open.workshop;
-  if (!journal.source())
-    read_input(std::move(source), config, build, *open.workshop, progress, environment);
-  work.keep(true);
+  auto& [mesh_scratch, tile_scratch, chunks, forest, journal] = workshop;
   PublishInput result;
   result.source = journal.source()->summary;
   result.format = {result.source.attributes, journal.source()->origin};
   result.source.unreferenced_vertices =
       make_leaves(chunks, forest, journal, config.partition.axis, plan, progress, cancel);
-  tile_scratch.sync();  // what it holds cannot be made again without the chunks
-  journal.sync();
-  mesh_scratch.remove();
+  // Without the chunks leaves cannot be made again, so these reach the disk before those go.
+  std::future<void> settled = std::async(std::launch::async, [&workshop, &cancel] {
+    workshop.tile_scratch.sync([&] { cancel.check(); });
+    workshop.mesh_scratch.remove();
+  });
 
   const double diagonal = length(result.source.bounds.max - result.source.bounds.min);
   result.asked_vertices = build.asked_vertices;
@@ -123,22 +121,43 @@ BuildReport build_in(storage::WorkDirectory& work, const Config& config, const B
             {config.simplify.method, config.simplify.representative, config.simplify.cost},
             diagonal},
            plan, progress, cancel);
+  settled.get();
   result.outline = make_outline(forest, config.outline, diagonal, plan, progress, cancel);
-  const PublishedSummary published =
-      publish(forest, journal, result, work.built(), plan, files, progress, cancel);
+  publish(forest, journal, result, directory, plan, environment.files, progress, cancel);
+  journal.note_complete();
+}
+
+BuildReport build_in(storage::WorkDirectory& work, const Config& config, const BuildPlan& build,
+                     std::unique_ptr<mesh_io::MeshSource> source, BuildEnvironment environment) {
+  storage::FileSystem& files = environment.files;
+  storage::MemoryPool pool(build.memory.pool_bytes);
+  StageMeter progress({environment.progress, files.counters(), pool.scratch_use()});
+
+  if (files.exists(storage::journal_path(work.path())))
+    progress.stage("resume", 0, "entries");
+  const OpenWorkshop open =
+      open_workshop(files, work, config, *source, build, pool, environment.cancel);
+  Workshop& workshop = *open.workshop;
+  if (!workshop.journal.source())
+    read_input(std::move(source), config, build, workshop, progress, environment);
+  work.keep(true);
+  if (!workshop.journal.is_complete())
+    make_hierarchy(config, build, workshop, work.built(), progress, environment);
+  const storage::HierarchyReader made(files, work.built());
   const std::uint64_t manifest_bytes = files.open(storage::manifest_path(work.built()))->size();
-  cancel.check();
+  environment.cancel.check();
   progress.begin("sync");
+  workshop.tile_scratch.remove();  // the sync would take it along
   work.publish();
   progress.end();
 
   BuildReport report;
-  report.stats = make_stats(config, result.source, published, build);
+  report.stats = make_stats(config, made, build);
   report.stats.output_bytes += manifest_bytes;
   report.stats.peak_temporary_bytes = pool.scratch_use().peak_bytes_on_disk();
   report.stats.stages = progress.stages();
   report.stats.total = progress.total();
-  report.text = report_text(result.source, open.found, report.stats);
+  report.text = report_text(made.manifest().source, open.found, report.stats);
   return report;
 }
 

@@ -114,6 +114,7 @@ BuildJournal::BuildJournal(storage::FileSystem& files, const std::filesystem::pa
   for (int l = 0; l <= raw(tree.depth()); ++l)
     has_tile_.emplace_back(tree.node_count(static_cast<Level>(l)));
 
+  look_ahead(storage::journal_path(work), use);
   std::optional<Json> build;  // whose journal is there
   bool is_same = true;
   bool has_other_work = false;
@@ -140,13 +141,28 @@ BuildJournal::BuildJournal(storage::FileSystem& files, const std::filesystem::pa
                             "throws it away and begins anew",
                             work.string(), differences(*build, identity.decides_result)));
   }
-  is_sound_ = is_same && source_ && can_make_all_leaves();
+  if (is_complete_)
+    is_sound_ = is_same && published_.size() == storage::tile_count(tree);
+  else
+    is_sound_ = is_same && source_ && can_make_all_leaves();
+}
+
+/// Of a build that was complete the scratch files are gone: entries of what lay there say nothing.
+void BuildJournal::look_ahead(const std::filesystem::path& path, storage::ScratchUse& use) {
+  if (!files_.exists(path))
+    return;
+  const storage::Journal all(files_, path, use, [&](const Entry& entry) {
+    is_complete_ = entry.contains("complete");
+    return true;
+  });
 }
 
 bool BuildJournal::take(const Entry& entry) {
   const auto first = entry.items().begin();
   const std::string& kind = first.key();
   const Entry& value = first.value();
+  if (is_complete_ && kind != "source" && kind != "published")
+    return true;
   if (kind == "chunk")
     return value.at(0) < chunks_.count() && chunks_.restore(value.at(0), value.at(1));
   if (kind == "source")
@@ -266,6 +282,11 @@ void BuildJournal::note_published(const TileRecord& record) {
   const std::vector<std::byte> bytes = storage::encode_record(record);
   const auto* first = reinterpret_cast<const std::uint8_t*>(bytes.data());
   journal_->append({{"published", Json::binary({first, first + bytes.size()})}});
+}
+
+void BuildJournal::note_complete() {
+  journal_->append({{"complete", true}});
+  is_complete_ = true;
 }
 
 }  // namespace meshhier::pipeline

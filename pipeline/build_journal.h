@@ -8,6 +8,7 @@
 //   leaves     a chunk's partitions
 //   tile       a simplified tile, the maps to it, and how far its children had moved
 //   published  a tile's file
+//   complete   all files of the hierarchy; the scratch files are not needed any more
 //
 // Whatever an entry names is checked, by checksum, before it is believed. The stages before
 // `leaves` are one step: they take a twentieth of a build. `outline` takes no time.
@@ -75,16 +76,21 @@ class BuildJournal {
   /// The record of a published tile, null if it is not done.
   const TileRecord* published(NodeId node) const;
 
+  /// All that is left to do is to give the hierarchy its name.
+  bool is_complete() const { return is_complete_; }
+
   // Each notes what is done now; one call at a time. Throws Error(io).
   void note_source(const SourceSummary& summary, Vec3d origin);
   void note_leaves(std::uint32_t chunk, std::uint64_t unreferenced_vertices);
   /// `steps`: of the tile's children, if those are simplified tiles.
   void note_tile(NodeId node, std::span<const IndexedStep> steps);
   void note_published(const TileRecord& record);
+  void note_complete();
   void sync() { journal_->sync(); }
 
  private:
   using Entry = storage::Journal::Entry;
+  void look_ahead(const std::filesystem::path& path, storage::ScratchUse& use);
   bool take(const Entry& entry);
   bool take_source(const Entry& source);
   bool take_leaves(const Entry& leaves);
@@ -105,6 +111,7 @@ class BuildJournal {
   std::uint64_t unreferenced_ = 0;
   std::uint64_t found_ = 0;
   bool is_sound_ = false;
+  bool is_complete_ = false;
   bool input_was_touched_ = false;
   std::optional<storage::Journal> journal_;
 };

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <span>
 
 namespace meshhier::pipeline {
@@ -75,7 +76,9 @@ TileRecord write_tile(const Forest& forest, NodeId node, const PublishInput& inp
   const std::vector<std::uint16_t> chains = forest.chains(node, tile.mesh.ghosts);
   const std::vector<std::byte> bytes = storage::encode_tile(
       {node, tile.mesh, record.bounds, parent_map, chains}, forest.tree(), input.format);
-  storage::write_file(files, storage::tile_path(directory, node), bytes);
+  const auto file = files.create(storage::tile_path(directory, node));
+  file->write_at(0, bytes);
+  file->start_sync();
   record.file_bytes = bytes.size();
   record.checksum = storage::checksum(bytes);
   return record;
@@ -83,10 +86,9 @@ TileRecord write_tile(const Forest& forest, NodeId node, const PublishInput& inp
 
 }  // namespace
 
-PublishedSummary publish(const Forest& forest, BuildJournal& journal, const PublishInput& input,
-                         const std::filesystem::path& directory, const MemoryPlan& plan,
-                         storage::FileSystem& files, Progress& progress,
-                         const CancelToken& cancel) {
+void publish(const Forest& forest, BuildJournal& journal, const PublishInput& input,
+             const std::filesystem::path& directory, const MemoryPlan& plan,
+             storage::FileSystem& files, Progress& progress, const CancelToken& cancel) {
   const Tree& tree = forest.tree();
   const std::vector<NodeId> nodes = published_nodes(tree);
   for (int l = 0; l <= raw(tree.depth()); ++l) {
@@ -109,9 +111,6 @@ PublishedSummary publish(const Forest& forest, BuildJournal& journal, const Publ
         records[left[i]] = record;
         progress.advance(1);
       });
-  PublishedSummary summary;
-  for (const TileRecord& record : records)
-    summary.total_bytes += record.file_bytes;
 
   const std::vector<std::byte> index = storage::encode_index(records);
   storage::write_file(files, storage::index_path(directory), index);
@@ -119,9 +118,6 @@ PublishedSummary publish(const Forest& forest, BuildJournal& journal, const Publ
       storage::encode_outline(input.outline.outline, input.format.origin);
   storage::write_file(files, storage::outline_path(directory), outline);
 
-  summary.tiles = records.size();
-  summary.outline_bytes = outline.size();
-  summary.total_bytes += index.size() + outline.size();
   storage::Manifest manifest;
   manifest.generator = "meshhier " MESHHIER_VERSION;
   manifest.source = input.source;
@@ -136,10 +132,11 @@ PublishedSummary publish(const Forest& forest, BuildJournal& journal, const Publ
   manifest.levels = nlohmann::ordered_json::array();
   for (const LevelSummary& level : summarize_levels(tree, records))
     manifest.levels.push_back(to_json(level));
-  manifest.total_bytes = summary.total_bytes;
+  manifest.total_bytes = std::accumulate(
+      records.begin(), records.end(), std::uint64_t{index.size() + outline.size()},
+      [](std::uint64_t sum, const TileRecord& record) { return sum + record.file_bytes; });
   const std::string text = storage::to_json_text(manifest);
   storage::write_file(files, storage::manifest_path(directory), std::as_bytes(std::span(text)));
-  return summary;
 }
 
 }  // namespace meshhier::pipeline

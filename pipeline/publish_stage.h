@@ -26,15 +26,9 @@ struct PublishInput {
   std::uint32_t asked_vertices = 0;  ///< of simplified tiles
 };
 
-struct PublishedSummary {
-  std::uint64_t tiles = 0;
-  std::uint64_t total_bytes = 0;
-  std::size_t outline_bytes = 0;
-};
-
 /// Writes the whole hierarchy into `directory`, but for tiles that the journal has there.
-PublishedSummary publish(const Forest& forest, BuildJournal& journal, const PublishInput& input,
-                         const std::filesystem::path& directory, const MemoryPlan& plan,
-                         storage::FileSystem& files, Progress& progress, const CancelToken& cancel);
+void publish(const Forest& forest, BuildJournal& journal, const PublishInput& input,
+             const std::filesystem::path& directory, const MemoryPlan& plan,
+             storage::FileSystem& files, Progress& progress, const CancelToken& cancel);
 
 }  // namespace meshhier::pipeline

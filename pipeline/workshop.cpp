@@ -1,5 +1,7 @@
 #include "pipeline/workshop.h"
 
+#include "hierarchy/error.h"
+#include "storage/hierarchy_reader.h"
 #include "storage/layout.h"
 
 #include <fmt/format.h>
@@ -17,6 +19,16 @@ BuildIdentity identity_of(const Config& config, const mesh_io::MeshDescription& 
            {"partitions", tree.partition_count()},
            {"config", resolved_json(config)}},
           input.modified_ns};
+}
+
+/// But for the tiles.
+bool is_whole(storage::FileSystem& files, const std::filesystem::path& hierarchy) {
+  try {
+    storage::HierarchyReader(files, hierarchy).read_outline();
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 }  // namespace
@@ -58,7 +70,7 @@ OpenWorkshop open_workshop(storage::FileSystem& files, storage::WorkDirectory& w
   if (!journal.source()) {
     if (!is_new)
       begin_anew("");
-  } else if (!journal.is_sound()) {
+  } else if (!journal.is_sound() || (journal.is_complete() && !is_whole(files, work.built()))) {
     begin_anew("what an earlier build left has been damaged: this one began anew");
   } else if (journal.input_was_touched() &&
              source.checksum([&] { cancel.check(); }) != journal.source()->summary.checksum) {

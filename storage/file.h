@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -27,6 +28,11 @@ class File {
   virtual std::uint64_t size() const = 0;
   /// Forces the content to the disk. Throws Error(io).
   virtual void sync() = 0;
+  /// The same in steps of at most some tenths of a second, before each of which `check` is called;
+  /// it may throw. For large files.
+  void sync(const std::function<void()>& check);
+  /// Lets the disk begin with what was written, so that a later sync() has less to wait for.
+  void start_sync() { write_out(0, 0, Wait::no); }
 
   /// Reads up to bytes.size() at `offset`; returns how many, fewer only at the end of the file.
   std::size_t read_at(std::uint64_t offset, std::span<std::byte> bytes) const;
@@ -41,6 +47,10 @@ class File {
   /// One system call each: may transfer less than asked, 0 on end of file; throws Error(io).
   virtual std::size_t read_some(std::uint64_t offset, std::span<std::byte> bytes) const = 0;
   virtual std::size_t write_some(std::uint64_t offset, std::span<const std::byte> bytes) = 0;
+  /// Moves a range (0 bytes: up to the end) from the system's cache to the disk. A hint: failures
+  /// are sync()'s to tell.
+  enum class Wait { no, yes };
+  virtual void write_out(std::uint64_t /*offset*/, std::uint64_t /*bytes*/, Wait /*wait*/) {}
 
  private:
   std::filesystem::path path_;

@@ -44,9 +44,9 @@ void ScratchFile::remove() {
   files_.remove_all(path_);
 }
 
-void ScratchFile::sync() {
+void ScratchFile::sync(const std::function<void()>& check) {
   if (file_)
-    file_->sync();
+    file_->sync(check);
 }
 
 bool ScratchFile::claim(std::uint64_t offset, std::uint64_t bytes) {

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -71,8 +72,9 @@ class ScratchFile {
   /// Says that bytes an earlier process appended are still needed; false if there are not so many.
   /// Before the first append().
   bool claim(std::uint64_t offset, std::uint64_t bytes);
-  /// Forces what was appended to the disk.
-  void sync();
+  /// Forces what was appended to the disk; `check` as for File::sync(). While others append, what
+  /// was there before.
+  void sync(const std::function<void()>& check);
   /// Removes the file; nothing is left of what was appended.
   void remove();
   void read(std::uint64_t offset, std::span<std::byte> bytes) const {

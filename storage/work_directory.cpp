@@ -83,6 +83,7 @@ void WorkDirectory::publish() {
     throw;
   }
   published_ = true;
+  kept_ = false;
   files_.remove_all(old);
   files_.remove_all(path_);
 }

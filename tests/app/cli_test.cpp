@@ -648,14 +648,16 @@ class Interrupted : public CommandLine {
   }
 };
 
-TEST_F(Interrupted, BuildStopsWithItsCodeAndLeavesNothing) {
+TEST_F(Interrupted, BuildStopsWithItsCodeAndGoesOn) {
   write_mesh("a.ply");
   for (const int signal_number : {SIGINT, SIGTERM}) {
     const Outcome outcome = interrupt_build(signal_number);
     EXPECT_EQ(outcome.code, kInterrupted);
     EXPECT_THAT(outcome.messages, HasSubstr(R"("code":130)"));
-    EXPECT_EQ(names(), (std::set<std::string>{"a.json", "a.ply"}));
+    EXPECT_FALSE(std::filesystem::exists(hierarchy()));
   }
+  EXPECT_EQ(run({"build", (work() / "a.json").string()}).code, 0);
+  EXPECT_EQ(names(), (std::set<std::string>{"a.hier", "a.json", "a.ply"}));
 }
 
 TEST_F(Interrupted, BuildKeepsTheOutputItWasToReplace) {
@@ -664,7 +666,6 @@ TEST_F(Interrupted, BuildKeepsTheOutputItWasToReplace) {
   write_mesh("a.ply", 2499, 0.5);
   EXPECT_EQ(interrupt_build(SIGINT).code, kInterrupted);
   EXPECT_EQ(contents(hierarchy()), before);
-  EXPECT_EQ(names(), (std::set<std::string>{"a.hier", "a.json", "a.ply"}));
 }
 
 TEST_F(Interrupted, ASecondSignalKillsAtOnce) {
@@ -676,6 +677,142 @@ TEST_F(Interrupted, ASecondSignalKillsAtOnce) {
   ASSERT_TRUE(wait_for_handler(process, SIGINT, false));  // it has run: it gives the signal back
   kill(process, SIGINT);
   EXPECT_EQ(wait_for(process), 1000 + SIGINT);  // while nobody reads its messages
+}
+
+TEST_F(Interrupted, AnotherBuildOfTheOutputIsRefusedMeanwhile) {
+  write_mesh("a.ply");
+  FullPipe messages;
+  const pid_t process = start_build(messages);
+  ASSERT_TRUE(wait_for_handler(process, SIGINT, true));
+  // Its messages nobody reads, so it stays where it is; the directory is there before the first.
+  while (!std::filesystem::exists(work() / ".a.hier.meshhier-work" / "lock"))
+    usleep(1000);
+  const Outcome second = run({"build", (work() / "a.json").string()});
+  EXPECT_EQ(second.code, kExists);
+  EXPECT_THAT(second.messages, HasSubstr("at work"));
+  const Outcome cleaned = run({"clean", work().string(), "--remove"});
+  EXPECT_THAT(cleaned.out, HasSubstr("stays"));
+  EXPECT_TRUE(std::filesystem::exists(work() / ".a.hier.meshhier-work" / "lock"));
+  kill(process, SIGKILL);
+  EXPECT_EQ(wait_for(process), 1000 + SIGKILL);
+  EXPECT_EQ(run({"build", (work() / "a.json").string()}).code, 0) << "a dead one's lock is none";
+}
+
+/// Builds that are killed, for good.
+class Killed : public CommandLine {
+ protected:
+  /// Starts a build and kills it after so many microseconds; whether it was still at work.
+  bool kill_build(useconds_t after) const {
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    for (const int descriptor : {STDOUT_FILENO, STDERR_FILENO})
+      posix_spawn_file_actions_addopen(&actions, descriptor, "/dev/null", O_WRONLY, 0);
+    const pid_t process = spawn({"build", (work() / "a.json").string()}, actions);
+    posix_spawn_file_actions_destroy(&actions);
+    usleep(after);
+    kill(process, SIGKILL);
+    return wait_for(process) == 1000 + SIGKILL;
+  }
+
+  bool has_work() const {
+    return std::filesystem::exists(work() / ".a.hier.meshhier-work" / "journal") &&
+           !std::filesystem::is_empty(work() / ".a.hier.meshhier-work" / "journal");
+  }
+
+  /// Kills builds until one leaves work behind.
+  void leave_work() const {
+    for (useconds_t after = 5000; !has_work(); after = after % 400000 + 1000) {
+      kill_build(after);
+      std::filesystem::remove_all(hierarchy());
+    }
+  }
+};
+
+TEST_F(Killed, TheNextBuildMakesTheSame) {
+  build();
+  const auto expected = contents(hierarchy());
+  std::filesystem::remove_all(hierarchy());
+  int kills = 0;
+  for (useconds_t after = 0; after < 120000; after += 4000) {
+    kills += kill_build(after) ? 1 : 0;
+    const Outcome outcome = run({"build", (work() / "a.json").string(), "--force"});
+    ASSERT_EQ(outcome.code, 0) << outcome.messages;
+    EXPECT_EQ(contents(hierarchy()), expected) << after;
+    EXPECT_EQ(names(), (std::set<std::string>{"a.hier", "a.json", "a.ply"}));
+    std::filesystem::remove_all(hierarchy());
+  }
+  EXPECT_GT(kills, 0);
+}
+
+TEST_F(Killed, WorkTowardsAnotherResultIsKeptUnlessItIsToRestart) {
+  write_mesh("a.ply");
+  write_config();
+  leave_work();
+  const std::string config = (work() / "a.json").string();
+  const Outcome other = run({"build", config, "--set", "partition.vertices=400"});
+  EXPECT_EQ(other.code, kExists);
+  EXPECT_THAT(other.messages, AllOf(HasSubstr("config.partition.vertices was 500 and is 400"),
+                                    HasSubstr("--restart")));
+  EXPECT_TRUE(has_work());
+  const Outcome same = run({"build", config, "--set", "memory_budget=256MiB", "threads=1"});
+  EXPECT_EQ(same.code, 0) << same.messages;
+  EXPECT_THAT(same.out, HasSubstr("went on"));
+  std::filesystem::remove_all(hierarchy());
+  leave_work();
+  const Outcome anew = run({"build", config, "--set", "partition.vertices=400", "--restart"});
+  EXPECT_EQ(anew.code, 0) << anew.messages;
+  EXPECT_THAT(anew.out, Not(HasSubstr("went on")));
+}
+
+TEST_F(Killed, AnInputThatIsAnotherMeanwhileIsReadAgain) {
+  write_mesh("a.ply");
+  write_config();
+  leave_work();
+  write_mesh("a.ply", 2499, 0.5);
+  const Outcome outcome = run({"build", (work() / "a.json").string(), "--restart"});
+  ASSERT_EQ(outcome.code, 0) << outcome.messages;
+  const auto expected = contents(hierarchy());
+  std::filesystem::remove_all(hierarchy());
+  write_mesh("a.ply");
+  leave_work();
+  std::string changed = text_of(work() / "a.ply");
+  changed[changed.size() - 3] = changed[changed.size() - 3] == '7' ? '6' : '7';
+  write_text(work() / "a.ply", changed);
+  const Outcome again = run({"build", (work() / "a.json").string()});
+  EXPECT_EQ(again.code, 0) << again.messages;
+  EXPECT_THAT(again.out, HasSubstr("the input was changed"));
+}
+
+TEST_F(Killed, CleanListsAndRemovesWhatIsLeft) {
+  write_mesh("a.ply");
+  write_config();
+  const Outcome nothing = run({"clean", work().string()});
+  EXPECT_EQ(nothing.code, 0) << nothing.messages;
+  EXPECT_THAT(nothing.out, HasSubstr("nothing"));
+  leave_work();
+  for (const Path& path : {work(), Path(hierarchy())}) {
+    const Outcome listed = run({"clean", path.string()});
+    EXPECT_EQ(listed.code, 0) << listed.messages;
+    EXPECT_THAT(listed.out, HasSubstr(".a.hier.meshhier-work"));
+    EXPECT_TRUE(has_work());
+  }
+  const json object = json::parse(run({"clean", work().string(), "--json"}).out);
+  ASSERT_EQ(object.at("leftovers").size(), 1U);
+  EXPECT_GT(object.at("leftovers").at(0).at("bytes").get<int>(), 1000);
+  EXPECT_EQ(run({"clean", (work() / "b.hier").string(), "--remove"}).code, 0);
+  EXPECT_TRUE(has_work()) << "of another output";
+  EXPECT_EQ(run({"clean", work().string(), "--remove"}).code, 0);
+  EXPECT_EQ(names(), (std::set<std::string>{"a.json", "a.ply"}));
+}
+
+TEST_F(Killed, CleanGivesAReplacedHierarchyItsNameBack) {
+  build();
+  const auto expected = contents(hierarchy());
+  // As a kill between the two renames of a replacement leaves it.
+  std::filesystem::rename(hierarchy(), work() / ".a.hier.meshhier-old");
+  EXPECT_THAT(run({"clean", work().string()}).out, HasSubstr("only copy"));
+  EXPECT_EQ(run({"clean", work().string(), "--remove"}).code, 0);
+  EXPECT_EQ(contents(hierarchy()), expected);
 }
 
 }  // namespace

@@ -354,6 +354,7 @@ TEST_F(FaultsTest, AnInterruptionInAnyStageLeavesTheOutput) {
     StageInterrupter progress(cancel, stage);
     EXPECT_EQ(run(files, progress, cancel, true), ErrorCode::interrupted) << stage;
     ASSERT_EQ(output(), before) << stage;
+    fs::remove_all(storage::work_path(config_.output));
   }
 }
 
