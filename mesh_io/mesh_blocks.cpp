@@ -28,11 +28,11 @@ bool all_finite(std::span<const Vec3f> points) {
 }
 
 bool all_finite(std::span<const Vec3d> points) {
-  bool finite = true;
+  int finite = 1;  // not a bool: what has no branch is meant to have none
   for (const Vec3d& p : points) {
-    finite = finite & std::isfinite(p.x) & std::isfinite(p.y) & std::isfinite(p.z);
+    finite &= int{std::isfinite(p.x)} & int{std::isfinite(p.y)} & int{std::isfinite(p.z)};
   }
-  return finite;
+  return finite != 0;
 }
 
 bool is_byte(double value) {

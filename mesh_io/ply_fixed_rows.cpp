@@ -137,6 +137,8 @@ VertexBlock PlyVertexBlocks::read(const InputFile& input, std::uint64_t index,
   RowBlocks::Block block = blocks_[index];
   const std::size_t wanted = block.rows;
   const std::byte* bytes = blocks_.read(input, index, block, memory.bytes);
+  if (block.rows == 0)
+    fail_truncated(input, block.first);
   VertexRows rows(mesh_, block.rows, memory);
   decode(bytes, block.rows, rows);
   if (const auto bad = rows.find_defect(0, block.rows, plan_.check_colours)) {
@@ -169,6 +171,8 @@ TriangleBlock PlyTriangleBlocks::read(const InputFile& input, std::uint64_t inde
     out += static_cast<int>(a != b) & static_cast<int>(b != c) & static_cast<int>(c != a);
   };
   TriangleBlock result;
+  if (block.rows == 0)
+    return result;
   result.faces = swapped_ ? take_triangles<true>(rows_, bytes, block.rows, take)
                           : take_triangles<false>(rows_, bytes, block.rows, take);
   result.triangles =

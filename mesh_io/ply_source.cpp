@@ -140,12 +140,13 @@ void PlySource::read_vertices(const VertexVisitor& visit) {
   const std::size_t element = plan_.vertex_element;
   const auto body = body_at(element);
   if (const auto stride = plan_.elements[element].stride) {
-    starts_[element + 1] =
-        PlyPosition{body->position().offset + *stride * description_.vertex_count, 0};
-    const PlyVertexBlocks blocks(plan_, description_, body->position().offset);
+    const std::uint64_t offset = body->position().offset;
+    const PlyVertexBlocks blocks(plan_, description_, offset);
     BlockMemory memory;
     for (std::uint64_t i = 0; i < blocks.count(); ++i)
       visit(blocks.read(input(), i, memory));
+    // Only now: behind lists that are too long the rows may end beyond the file.
+    starts_[element + 1] = PlyPosition{offset + *stride * description_.vertex_count, 0};
     return;
   }
   VertexBlocks blocks(description_, visit);

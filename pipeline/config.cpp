@@ -1,6 +1,7 @@
 #include "pipeline/config.h"
 
 #include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
 #include "pipeline/config_schema.h"
 #include "pipeline/suggest.h"
 
@@ -23,15 +24,20 @@ using Json = nlohmann::ordered_json;
 constexpr std::uint64_t kLargestConfigBytes = std::uint64_t{1} << 20;
 /// Sections are one level deep; a little more lets the message be about the key instead.
 constexpr std::size_t kDeepestNesting = 8;
-/// A found value is quoted up to so many letters.
+/// There are 16 keys; looking for one goes through those before it, and a MiB of them would take a
+/// minute.
+constexpr std::size_t kMostKeys = 256;
+/// A found key or value is quoted up to so many bytes.
 constexpr std::size_t kLongestQuote = 60;
+/// The parser's messages begin with the place and the cause; what they quote may be the whole file.
+constexpr std::size_t kLongestParserMessage = 200;
 
 [[noreturn]] void refuse(const std::string& where, const std::string& what) {
   throw Error(ErrorCode::usage, where + ": " + what);
 }
 
 std::string joined(const std::vector<std::string>& names) {
-  return fmt::format("{}", fmt::join(names, "."));
+  return plain_text(fmt::format("{}", fmt::join(names, ".")), kLongestQuote);
 }
 
 std::string with_key(const std::string& section, const std::string& key) {
@@ -44,6 +50,10 @@ std::string leaf_of(std::string_view path) {
   return std::string(dot == std::string_view::npos ? path : path.substr(dot + 1));
 }
 
+std::string in_quotes(std::string_view text) {
+  return '"' + plain_text(text, kLongestQuote) + '"';
+}
+
 /// A value for a message: "the string "abc"", "an object".
 std::string described(const Json& value) {
   if (value.is_null())
@@ -52,9 +62,8 @@ std::string described(const Json& value) {
     return "an object";
   if (value.is_array())
     return "a list";
-  std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
-  if (text.size() > kLongestQuote)
-    text = text.substr(0, kLongestQuote) + "...";
+  const std::string text =
+      plain_text(value.dump(-1, ' ', false, Json::error_handler_t::replace), kLongestQuote);
   if (value.is_string())
     return "the string " + text;
   return value.is_number() ? "the number " + text : text;
@@ -82,8 +91,8 @@ std::optional<std::string> nearest_key(const std::string& path) {
                                         leaves.begin())];
 }
 
-/// Watches the parser: a key that is there twice and bottomless nesting are mistakes that JSON
-/// itself allows.
+/// Watches the parser: a key that is there twice, bottomless nesting and endless keys are mistakes
+/// that JSON itself allows.
 class ParseGuard {
  public:
   explicit ParseGuard(std::string name) : name_(std::move(name)) {}
@@ -110,12 +119,15 @@ class ParseGuard {
     path_.pop_back();
   }
   void add(const std::string& key) {
+    if (++count_ > kMostKeys)
+      refuse(name_, fmt::format("expected a config, found more than {} keys", kMostKeys));
     path_.back() = key;
     if (!keys_.back().insert(key).second)
       refuse(name_, joined(path_) + ": this key is there twice; remove one");
   }
 
   std::string name_;
+  std::size_t count_ = 0;                    ///< of all keys so far
   std::vector<std::set<std::string>> keys_;  ///< of each open object
   std::vector<std::string> path_;            ///< the current key of each
 };
@@ -132,16 +144,17 @@ std::string without_prefix(std::string message) {
   return message;
 }
 
+Json::parser_callback_t watched_by(ParseGuard& guard) {
+  return [&guard](int, Json::parse_event_t event, Json& parsed) { return guard(event, parsed); };
+}
+
 Json parse_text(std::string_view text, const std::string& name) {
   Json document;
+  ParseGuard guard(name);
   try {
-    ParseGuard guard(name);
-    const auto watch = [&](int, Json::parse_event_t event, Json& parsed) {
-      return guard(event, parsed);
-    };
-    document = Json::parse(text, watch, true, true);
+    document = Json::parse(text, watched_by(guard), true, true);
   } catch (const nlohmann::json::exception& failure) {
-    refuse(name, without_prefix(failure.what()) +
+    refuse(name, plain_text(without_prefix(failure.what()), kLongestParserMessage) +
                      " (expected JSON; // comments are allowed, trailing commas are not)");
   }
   if (!document.is_object())
@@ -158,7 +171,7 @@ Override split_override(const std::string& setting) {
   const std::size_t sign = setting.find('=');
   if (sign == std::string::npos || sign == 0) {
     refuse("--set",
-           fmt::format("expected key=value (\"partition.vertices=4096\"), found \"{}\"", setting));
+           "expected key=value (\"partition.vertices=4096\"), found " + in_quotes(setting));
   }
   return {setting.substr(0, sign), setting.substr(sign + 1)};
 }
@@ -169,7 +182,8 @@ Json override_value(const Override& setting) {
   const bool wants_text =
       key != nullptr &&
       (key->kind == KeyKind::path || key->kind == KeyKind::text || key->kind == KeyKind::choice);
-  Json value = Json::parse(setting.text, nullptr, false);
+  ParseGuard guard("--set " + plain_text(setting.path, kLongestQuote));
+  Json value = Json::parse(setting.text, watched_by(guard), false);
   if (value.is_discarded() || (wants_text && !value.is_string()))
     value = setting.text;
   return value;
@@ -226,7 +240,7 @@ class Draft {
   }
 
   [[noreturn]] static void refuse_unknown(const std::string& where, const std::string& path) {
-    refuse(where, fmt::format("unknown key \"{}\"{}", path, did_you_mean(nearest_key(path))));
+    refuse(where, "unknown key " + in_quotes(path) + did_you_mean(nearest_key(path)));
   }
 
   std::string source_of(const std::string& path) const {
@@ -293,15 +307,14 @@ void check_output(const Config& config, const Draft& draft) {
   const std::filesystem::path name = config.output.filename();
   if (name.empty() || name == "." || name == "..") {
     refuse(draft.origin_of("output"),
-           fmt::format("expected the path of a directory to make, found \"{}\"",
-                       config.output.string()));
+           "expected the path of a directory to make, found " + in_quotes(config.output.string()));
   }
   const auto [end, unused] = std::mismatch(config.output.begin(), config.output.end(),
                                            config.input.begin(), config.input.end());
   if (end == config.output.end()) {
     refuse(draft.origin_of("output"),
-           fmt::format("\"{}\" is or holds the input \"{}\"; choose another directory",
-                       config.output.string(), config.input.string()));
+           fmt::format("{} is or holds the input {}; choose another directory",
+                       in_quotes(config.output.string()), in_quotes(config.input.string())));
   }
 }
 

@@ -1,6 +1,7 @@
 #include "pipeline/cut.h"
 
 #include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
 
 #include <algorithm>
 #include <cassert>
@@ -62,7 +63,7 @@ NodeId parse_node(std::string_view text, const std::string& place) {
   constexpr std::size_t kShown = 40;  // enough to recognise the entry; the file may be binary
   throw Error(ErrorCode::usage,
               fmt::format("{}: expected a node as level/index, such as 3/5; found \"{}\"", place,
-                          text.substr(0, kShown)));
+                          plain_text(text, kShown)));
 }
 
 std::vector<NodeId> parse_json_nodes(std::string_view text, const std::string& name) {
@@ -189,7 +190,8 @@ std::vector<NodeId> parse_nodes(std::string_view text, const std::string& name) 
   std::vector<NodeId> nodes;
   for (std::size_t line = 1; !text.empty(); ++line) {
     const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::string_view content = trimmed(text.substr(0, std::min(end, text.find('#'))));
+    const std::string_view whole = text.substr(0, end);
+    const std::string_view content = trimmed(whole.substr(0, whole.find('#')));
     if (!content.empty())
       nodes.push_back(parse_node(content, fmt::format("{}: line {}", name, line)));
     text.remove_prefix(std::min(end + 1, text.size()));

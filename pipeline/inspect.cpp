@@ -1,6 +1,7 @@
 #include "pipeline/inspect.h"
 
 #include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
 #include "pipeline/cut.h"
 #include "pipeline/size_text.h"
 #include "pipeline/summary.h"
@@ -84,13 +85,19 @@ std::string attribute_names(const AttributeLayout& layout) {
   return names.empty() ? "none" : names;
 }
 
+/// A manifest's own words, which anyone may have written.
+std::string shown(const std::string& text) {
+  constexpr std::size_t kLongest = 255;  // as a file name
+  return plain_text(text, kLongest);
+}
+
 std::string source_text(const storage::Manifest& manifest) {
   const SourceSummary& s = manifest.source;
   const BoundsD& b = s.bounds;
   std::string text = fmt::format(
       "source       {}, {}: {} vertices ({} of no triangle), {} triangles of {} faces ({} "
       "degenerate dropped)\n",
-      s.file_name, rounded_size_text(s.file_bytes), grouped(s.vertices),
+      shown(s.file_name), rounded_size_text(s.file_bytes), grouped(s.vertices),
       grouped(s.unreferenced_vertices), grouped(s.triangles), grouped(s.faces),
       grouped(s.degenerate_triangles));
   text += fmt::format("bounds       {} {} {} to {} {} {}{}\n", b.min.x, b.min.y, b.min.z, b.max.x,
@@ -106,11 +113,11 @@ std::string source_text(const storage::Manifest& manifest) {
 void add_parameters(const std::string& prefix, const Json& value, std::string& text) {
   if (!value.is_object()) {
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", prefix,
-                        value.is_string() ? value.get<std::string>() : value.dump());
+                        shown(value.is_string() ? value.get<std::string>() : value.dump()));
     return;
   }
   for (const auto& [key, inner] : value.items()) {
-    add_parameters(prefix.empty() ? key : prefix + "." + key, inner, text);
+    add_parameters(prefix.empty() ? shown(key) : prefix + "." + shown(key), inner, text);
   }
 }
 
@@ -252,7 +259,7 @@ std::string inspect_text(storage::FileSystem& files, const std::filesystem::path
   std::string parameters;
   add_parameters("", manifest.config, parameters);
   std::string text = fmt::format("{} (format {}, by {})\n", directory.string(),
-                                 storage::kFormatVersion, manifest.generator);
+                                 storage::kFormatVersion, shown(manifest.generator));
   text += source_text(manifest);
   text += fmt::format("parameters   {}\n", parameters);
   text += partitions_text(levels.back(), summarize_compactness(reader.tree(), reader.records()));

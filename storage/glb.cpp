@@ -1,6 +1,7 @@
 #include "storage/glb.h"
 
 #include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
 
 #include <algorithm>
 #include <cassert>
@@ -38,6 +39,13 @@ constexpr std::size_t kMaxJsonBytes = 64 * 1024;
 
 /// The published files nest 8 levels; a config within the manifest some more.
 constexpr int kMaxJsonDepth = 32;
+
+/// A manifest of 33 levels has about 500 keys, a tile's JSON 100. Looking for a key goes through
+/// those before it: without a limit a MiB of keys would keep the parser busy for a minute.
+constexpr std::size_t kMaxJsonKeys = 4096;
+
+/// The parser's messages begin with the place and the cause; what they quote may be the whole file.
+constexpr std::size_t kMaxParserMessage = 200;
 
 [[noreturn]] void fail(const std::string& name, const std::string& what) {
   throw Error(ErrorCode::corrupt, name + ": " + what);
@@ -130,16 +138,20 @@ void check_header(std::span<const std::byte> bytes, const std::string& name) {
 }  // namespace
 
 Json parse_json(std::string_view text, const std::string& name) {
-  const auto guard = [&](int depth, Json::parse_event_t, Json&) {
+  std::size_t keys = 0;
+  const auto guard = [&](int depth, Json::parse_event_t event, Json&) {
     if (depth > kMaxJsonDepth) {
       fail(name, fmt::format("JSON is nested deeper than {} levels", kMaxJsonDepth));
+    }
+    if (event == Json::parse_event_t::key && ++keys > kMaxJsonKeys) {
+      fail(name, fmt::format("JSON has more than {} keys", kMaxJsonKeys));
     }
     return true;
   };
   try {
     return Json::parse(text.begin(), text.end(), guard);
   } catch (const Json::exception& error) {
-    fail(name, fmt::format("is not valid JSON: {}", error.what()));
+    fail(name, "is not valid JSON: " + plain_text(error.what(), kMaxParserMessage));
   }
 }
 

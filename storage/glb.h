@@ -83,7 +83,7 @@ constexpr std::uint64_t aligned4(std::uint64_t bytes) {
 }
 
 /// JSON from bytes nobody vouches for. Throws Error(corrupt) that starts with `name` if it is not
-/// JSON or nested deeper than any published file is.
+/// JSON, or is nested deeper or has more keys than any published file.
 nlohmann::ordered_json parse_json(std::string_view text, const std::string& name);
 
 /// Throws Error(corrupt) that starts with `name` and names the first place where `found` is not

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstdint>
 
 #include <fmt/format.h>
 
@@ -18,15 +19,19 @@ namespace {
 /// parse_manifest refuses longer texts; here it guards the allocation.
 constexpr std::uint64_t kMaxManifestBytes = 1024 * 1024;
 
+/// What a GLB can say of its length: a larger file is not worth the memory.
+constexpr std::uint64_t kMaxGlbBytes = UINT32_MAX;
+
 /// The size and checksum that a file has according to another one.
 struct Seal {
   std::uint64_t bytes = 0;
   std::uint64_t checksum = 0;
 };
 
+/// `limit_bytes`: more than any such file has; guards the allocation where the seal lies as well.
 std::vector<std::byte> read_sealed(FileSystem& files, const std::filesystem::path& path,
-                                   const Seal& seal) {
-  std::vector<std::byte> bytes = read_file(files, path, seal.bytes);
+                                   const Seal& seal, std::uint64_t limit_bytes = kMaxGlbBytes) {
+  std::vector<std::byte> bytes = read_file(files, path, std::min(seal.bytes, limit_bytes));
   if (bytes.size() != seal.bytes) {
     throw Error(ErrorCode::corrupt, fmt::format("{}: has {} bytes, expected {}: the file is cut",
                                                 path.string(), bytes.size(), seal.bytes));
@@ -50,7 +55,8 @@ Manifest load_manifest(FileSystem& files, const std::filesystem::path& directory
 std::vector<TileRecord> load_index(FileSystem& files, const std::filesystem::path& directory,
                                    const Manifest& manifest, const Tree& tree) {
   const auto path = index_path(directory);
-  const auto bytes = read_sealed(files, path, {manifest.index_bytes, manifest.index_checksum});
+  const auto bytes =
+      read_sealed(files, path, {manifest.index_bytes, manifest.index_checksum}, index_bytes(tree));
   return decode_index(bytes, tree, path.string());
 }
 

@@ -163,7 +163,7 @@ class IndexReader {
       fail(fmt::format("{} records, expected {} for {} partitions", count, tile_count(tree_),
                        tree_.partition_count()));
     }
-    const std::uint64_t expected = kIndexHeaderBytes + count * kRecordBytes;
+    const std::uint64_t expected = index_bytes(tree_);
     if (bytes_.size() != expected) {
       fail(fmt::format("has {} bytes, expected {}", bytes_.size(), expected));
     }
@@ -212,6 +212,10 @@ TileRecord decode_record(std::span<const std::byte> bytes) {
   if (bytes.size() != kRecordBytes || load_little<std::uint32_t>(bytes.data()) > 255)
     throw Error(ErrorCode::corrupt, "no record of a tile");
   return load_record(bytes.data());
+}
+
+std::uint64_t index_bytes(const Tree& tree) {
+  return kIndexHeaderBytes + tile_count(tree) * kRecordBytes;
 }
 
 std::vector<std::byte> encode_index(std::span<const TileRecord> records) {

@@ -26,4 +26,7 @@ TileRecord decode_record(std::span<const std::byte> bytes);
 /// How many tiles a hierarchy of this tree has: all nodes but the early ones.
 std::uint64_t tile_count(const Tree& tree);
 
+/// Bytes of its index.
+std::uint64_t index_bytes(const Tree& tree);
+
 }  // namespace meshhier::storage

@@ -361,7 +361,7 @@ class Reader {
 };
 
 /// Counts are bounded by 2^32, so that no product or sum of sizes overflows 64 bits.
-TileShape read_shape(const Json& extension, NodeId node, const TileFormat& format,
+TileShape read_shape(const Json& extension, NodeId node, const Tree& tree, const TileFormat& format,
                      const std::string& name) {
   const auto count = [&](const char* key, std::uint64_t max = UINT32_MAX) {
     return require_count(extension, key, max, name);
@@ -378,7 +378,7 @@ TileShape read_shape(const Json& extension, NodeId node, const TileFormat& forma
   if (shape.own == 0)
     throw Error(ErrorCode::corrupt, name + ": a tile without vertices");
   const auto groups = groups_of(format.attributes);
-  for (std::size_t i = 0; i < groups.size(); ++i) {
+  for (std::size_t i = 0; tree.is_partition(node) && i < groups.size(); ++i) {
     const char* key = key_of(groups[i].raw);
     shape.raw[i] = groups[i].channels > 0 && extension.contains(key) && extension[key] != -1;
   }
@@ -450,7 +450,7 @@ PublishedTile decode_tile(std::span<const std::byte> bytes, NodeId node, const T
   const GlbView glb = split_glb(bytes, name);
   const Json document = parse_json(glb.json, name);
   const Json& extension = require_extension(document, kTileExtension, kTileExtensionVersion, name);
-  const TilePlan plan(read_shape(extension, node, format, name), format.attributes);
+  const TilePlan plan(read_shape(extension, node, tree, format, name), format.attributes);
   if (plan.bytes() != glb.bin.size()) {
     throw Error(ErrorCode::corrupt, fmt::format("{}: the BIN chunk has {} bytes, expected {}", name,
                                                 glb.bin.size(), plan.bytes()));

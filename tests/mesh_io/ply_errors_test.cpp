@@ -224,6 +224,66 @@ TEST(PlyErrors, Truncated) {
                         whole.size() - 13));
 }
 
+TEST(PlyErrors, ATruncatedFileIsToldAsSuchHoweverOftenItIsRead) {
+  // Where the vertices begin is known only behind a list, and they do not end within the file.
+  for (const PlyEncoding encoding : {PlyEncoding::little_endian, PlyEncoding::big_endian}) {
+    PlyText ply(encoding);
+    ply.line("element other 1").line("property list uchar uchar tags").line("element vertex 2");
+    ply.line("property float x").line("property float y").line("property float z");
+    ply.line("element face 1").line("property list uchar int vertex_indices").end_header();
+    ply.list(PlyType::u8, PlyType::u8, {1, 2, 3, 4, 5, 6, 7, 8});
+    ply.row(PlyType::f32, {1, 2, 3}).row(PlyType::f32, {4, 5});
+    MemoryFiles files;
+    files.put("m", ply.bytes());
+    const auto source = open_mesh(files, "m");
+    const auto told = [](const auto& read) {
+      try {
+        read();
+      } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::input) << error.what();
+        return std::string(error.what());
+      }
+      return std::string("none");
+    };
+    const auto read_faces = [&] { source->read_triangles([](std::span<const SourceTriangle>) {}); };
+    const std::string first = told(read_faces);
+    EXPECT_THAT(first, HasSubstr("(truncated)"));
+    EXPECT_THAT(told([&] { source->read_vertices([](const VertexBlock&) {}); }),
+                HasSubstr("(truncated)"));
+    EXPECT_EQ(told(read_faces), first);
+  }
+}
+
+TEST(PlyErrors, NoWholeVertexBehindALongList) {
+  for (const PlyEncoding encoding : {PlyEncoding::little_endian, PlyEncoding::big_endian}) {
+    PlyText ply(encoding);
+    ply.line("element other 1").line("property list uchar uchar tags").line("element vertex 1");
+    ply.line("property double x").line("property double y").line("property double z").end_header();
+    ply.list(PlyType::u8, PlyType::u8, {1, 2, 3, 4, 5, 6, 7, 8}).row(PlyType::f64, {1, 2});
+    EXPECT_THAT(error_of(ply.bytes()), HasSubstr("found the end of the file after 16 (truncated)"));
+  }
+}
+
+TEST(PlyErrors, ABlockOfTrianglesThatWouldLieBehindTheFile) {
+  // Faces of no corners are shorter than triangles: blocks are laid out for more bytes than there
+  // are.
+  constexpr int kFaces = 200'000;
+  for (const PlyEncoding encoding : {PlyEncoding::little_endian, PlyEncoding::big_endian}) {
+    PlyText ply = vertices(encoding, "0", "float").line(fmt::format("element face {}", kFaces));
+    ply.line("property uchar flags").line("property list uchar int vertex_indices").end_header();
+    MemoryFiles files;
+    files.put("m", ply.bytes() + Bytes(2 * kFaces, '\0'));
+    const auto source = open_mesh(files, "m");
+    ASSERT_GT(source->triangle_blocks(), 1U);
+    BlockMemory memory;
+    const TriangleBlock block = source->read_triangle_block(source->triangle_blocks() - 1, memory);
+    EXPECT_EQ(block.faces, 0U);
+    EXPECT_FALSE(block.whole);
+    const FaceCounts counts = source->read_triangles([](std::span<const SourceTriangle>) {});
+    EXPECT_EQ(counts.degenerate_triangles, std::uint64_t{kFaces});
+  }
+}
+
 TEST(PlyErrors, Overlong) {
   EXPECT_EQ(error_of(tetrahedron(PlyEncoding::ascii) + "3 0 1 2\n"),
             "mesh.ply: line 18: expected the end of the file behind the last row the header "

@@ -1,15 +1,13 @@
-// PLY files made in code, files that live in memory, and what a mesh source says of them.
+// PLY files made in code, and what a mesh source says of them.
 #pragma once
 
 #include "mesh_io/mesh_source.h"
 #include "mesh_io/ply_header.h"
-#include "storage/file.h"
+#include "support/memory_files.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <map>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,32 +17,7 @@ namespace meshhier::mesh_io::tests {
 
 using Bytes = std::string;
 
-/// A file system whose files are strings. Only what readers and writers use is there.
-class MemoryFiles final : public storage::FileSystem {
- public:
-  std::unique_ptr<storage::File> open(const std::filesystem::path& path) override;
-  std::unique_ptr<storage::File> create(const std::filesystem::path& path) override;
-  std::unique_ptr<storage::File> reopen(const std::filesystem::path& path) override;
-  storage::FileIdentity identity(const std::filesystem::path& path) override;
-  std::unique_ptr<storage::FileLock> try_lock(const std::filesystem::path&) override {
-    return std::make_unique<storage::FileLock>();
-  }
-  bool exists(const std::filesystem::path& path) override;
-  std::filesystem::path canonical(const std::filesystem::path& path) override { return path; }
-  std::vector<std::filesystem::path> list(const std::filesystem::path&) override { return {}; }
-  std::vector<std::filesystem::path> children(const std::filesystem::path&) override { return {}; }
-  void make_directories(const std::filesystem::path&) override {}
-  void remove_all(const std::filesystem::path& path) override;
-  void rename(const std::filesystem::path& from, const std::filesystem::path& to) override;
-  void sync_tree(const std::filesystem::path&) override {}
-  std::uint64_t free_bytes(const std::filesystem::path&) override { return 0; }
-
-  void put(const std::string& name, Bytes content);
-  const Bytes& content(const std::string& name) const { return *contents_.at(name); }
-
- private:
-  std::map<std::string, std::shared_ptr<Bytes>> contents_;
-};
+using meshhier::tests::MemoryFiles;
 
 /// The name every file of read_bytes() has.
 inline constexpr std::string_view kFileName = "mesh.ply";

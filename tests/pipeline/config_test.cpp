@@ -246,6 +246,35 @@ TEST(ConfigErrors, DeepNestingIsRefusedWithoutRecursion) {
   EXPECT_THAT(refusal(objects), HasSubstr("nested too deeply"));
 }
 
+TEST(ConfigErrors, AMillionKeysAreRefusedAtOnce) {
+  std::string keys = "{\"input\": \"a\"";
+  for (int i = 0; i < 80'000; ++i)
+    keys += ",\"" + std::to_string(i) + "\":0";
+  EXPECT_THAT(refusal(keys + "}"), HasSubstr("found more than 256 keys"));
+}
+
+TEST(ConfigErrors, WhatIsQuotedIsShortAndPlain) {
+  const std::string escape = "\x1b[2J";
+  const std::string long_word(100'000, 'k');
+  const std::vector<std::string> messages = {
+      refusal("{\x7f"),
+      refusal('"' + escape),
+      refusal('"' + long_word),
+      refusal("{\"" + long_word + "\": 1}"),
+      refusal("{\"\\u001b[2J\": 1}"),
+      refusal("{\"\\u001b\": 1, \"\\u001b\": 2}"),
+      refusal("{\"" + long_word + "\": 1, \"" + long_word + "\": 2}"),
+      refusal(R"({"input": "a\u001b/b", "output": "a\u001b"})"),
+      refusal("{\"input\": \"a\", \"output\": \"" + long_word + "/..\"}"),
+      refusal(with(""), {escape + long_word}),
+      refusal(with(""), {escape + long_word + "=1"}),
+      refusal(with(""), {"threads=\"" + escape + long_word + '"'})};
+  for (const std::string& message : messages) {
+    EXPECT_LT(message.size(), 500U) << message.substr(0, 200);
+    EXPECT_EQ(message.find_first_of("\x1b\x7f"), std::string::npos) << message.substr(0, 200);
+  }
+}
+
 TEST(ConfigErrors, AnyDamageEndsInAUsageErrorOrAConfig) {
   const std::string whole =
       with(R"("memory_budget": "64MiB", "partition": {"count": 128, "axis": "longest"},
@@ -310,6 +339,10 @@ TEST(ConfigOverrides, VerticesAndCountReplaceEachOther) {
 }
 
 TEST(ConfigOverrides, MistakesAreBlamedOnTheOverride) {
+  EXPECT_EQ(refusal(with(""), {"partition={\"count\": 1, \"count\": 2}"}),
+            "--set partition: count: this key is there twice; remove one");
+  EXPECT_THAT(refusal(with(""), {"partition=" + std::string(1000, '[')}),
+              HasSubstr("--set partition: expected a config, found values nested too deeply"));
   EXPECT_EQ(
       refusal(with(""), {"partition.vertices=abc"}),
       "--set partition.vertices: expected an integer from 4 to 32768, found the string \"abc\"");

@@ -138,6 +138,26 @@ TEST(ParseNodes, NamesLineOrEntryOfAMistake) {
   EXPECT_THAT(error(std::string(100000, '[')), HasSubstr("expected a JSON array"));
 }
 
+TEST(ParseNodes, ALongListTakesNoLongerThanItsLines) {
+  constexpr std::size_t kLines =
+      400'000;  // searching the rest of the list from each takes a minute
+  std::string list;
+  for (std::size_t i = 0; i < kLines; ++i)
+    list += "17/123456\n";
+  EXPECT_EQ(parse_nodes(list, "cut").size(), kLines);
+}
+
+TEST(ParseNodes, QuotesWithoutControlCharacters) {
+  for (const std::string text : {"\x1b[2J", "[\"\\u001b[2J\"]"}) {
+    try {
+      parse_nodes(text, "cut");
+      ADD_FAILURE();
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("\"?[2J\""));
+    }
+  }
+}
+
 TEST(NodeCache, KeepsTheLastUsedWithinItsLimit) {
   std::vector<std::uint32_t> loaded;
   NodeCache<int> cache(

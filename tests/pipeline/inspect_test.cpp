@@ -139,6 +139,18 @@ TEST_F(InspectTest, TextShowsItAll) {
   EXPECT_EQ(text, this->text());
 }
 
+TEST_F(InspectTest, TextShowsNoControlCharactersOfAManifest) {
+  storage::Manifest manifest = sample_.manifest;
+  manifest.generator = manifest.source.file_name = std::string("\x1b[2J").append(1000, 'x');
+  manifest.config = {{"\x1b[2J", "\x1b[2J"}};
+  const std::string json = storage::to_json_text(manifest);
+  storage::write_file(*files_, storage::manifest_path(path()), std::as_bytes(std::span(json)));
+  const std::string shown = text();
+  EXPECT_EQ(shown.find('\x1b'), std::string::npos);
+  EXPECT_THAT(shown, HasSubstr("?[2J ?[2J"));
+  EXPECT_THAT(shown, Not(HasSubstr(std::string(300, 'x'))));
+}
+
 TEST_F(InspectTest, WhatIsNotThereIsAUsageError) {
   for (const InspectOptions& options : {InspectOptions{.level = static_cast<Level>(4), .node = {}},
                                         InspectOptions{.level = {}, .node = node(2, 4)},

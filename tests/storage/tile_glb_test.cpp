@@ -194,6 +194,17 @@ TEST(TileGlb, RawAttributesAreStoredOnlyWhereNeeded) {
   EXPECT_EQ(scaled.extension()["rawTexcoords"], -1);
 }
 
+TEST(TileGlb, RawAttributesAboveThePartitionsAreRefused) {
+  // With the same layout the partition's file is read; nothing would write back what it says.
+  SampleHierarchy sample = make_sample(torus(100), 1, {{.normals = true}, {}});
+  PublishedTile& tile = sample.tiles[0];
+  tile.mesh.vertices.attributes[0] *= 1.01F;
+  const Bytes bytes = encode_tile(tile, sample.tree, sample.format);
+  decode_tile(bytes, tile.node, sample.tree, sample.format, kTileName);
+  const SampleHierarchy deeper = make_sample(torus(100), 2, sample.format);
+  EXPECT_THAT(failure(bytes, tile.node, deeper), HasSubstr("the BIN chunk has"));
+}
+
 TEST(TileGlb, SimplifiedTilesKeepWhatGltfCanSay) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const auto root_back = [](const AttributeLayout& layout, const std::vector<float>& channels) {
@@ -469,6 +480,23 @@ TEST(TileGlb, DeepJsonIsRefused) {
   EXPECT_THAT(failure(storage::join_glb(open, {}), {}, sample), HasSubstr("not valid JSON"));
   const std::string large(70000, ' ');
   EXPECT_THAT(failure(storage::join_glb(large, {}), {}, sample), HasSubstr("JSON chunk has"));
+}
+
+TEST(TileGlb, JsonOfThousandsOfKeysIsRefused) {
+  const SampleHierarchy sample = make_sample(torus(100), 2);
+  std::string keys = "{\"a\":0";
+  for (int i = 0; i < 5000; ++i)
+    keys += ",\"" + std::to_string(i) + "\":0";
+  EXPECT_THAT(failure(storage::join_glb(keys + "}", {}), {}, sample), HasSubstr("more than 4096"));
+}
+
+TEST(TileGlb, WhatIsQuotedFromBrokenJsonIsShortAndPlain) {
+  const SampleHierarchy sample = make_sample(torus(100), 2);
+  for (const std::string& json : {std::string("{\x7f\x1b"), '"' + std::string(60000, 'x')}) {
+    const std::string message = failure(storage::join_glb(json, {}), {}, sample);
+    EXPECT_LT(message.size(), 300U);
+    EXPECT_EQ(message.find_first_of("\x1b\x7f"), std::string::npos) << message;
+  }
 }
 
 TEST(TileGlb, ForeignFilesAreRefused) {

@@ -1,0 +1,78 @@
+#include "pipeline/config.h"
+
+#include "fuzz/target.h"
+#include "fuzz/targets.h"
+#include "pipeline/config_schema.h"
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace meshhier::tests::fuzz {
+namespace {
+
+using pipeline::Config;
+
+struct CommandLine {
+  std::string text;
+  std::vector<std::string> overrides;
+};
+
+CommandLine split_lines(std::string_view input) {
+  constexpr std::string_view kSet = "--set ";
+  CommandLine line;
+  while (!input.empty()) {
+    const std::size_t end = std::min(input.find('\n'), input.size() - 1) + 1;
+    const std::string_view taken = input.substr(0, end);
+    input.remove_prefix(end);
+    if (taken.starts_with(kSet)) {
+      const std::string_view setting = taken.substr(kSet.size());
+      line.overrides.emplace_back(setting.substr(0, setting.find('\n')));
+    } else {
+      line.text += taken;
+    }
+  }
+  return line;
+}
+
+void check_config(const Config& config) {
+  const auto is_tile = [](std::uint32_t vertices) { return vertices >= 4 && vertices <= 32768; };
+  require(!config.input.empty() && !config.output.empty(), "paths are there");
+  require(config.output.has_filename(), "the output has a name");
+  require(config.memory_budget > 0 && config.threads <= 4096, "budget and threads are in range");
+  require(is_tile(config.partition.vertices), "partition.vertices is in range");
+  require(config.partition.count.value_or(1) >= 1, "partition.count is in range");
+  require(is_tile(config.simplify.vertices.value_or(4)), "simplify.vertices is in range");
+  require(config.outline.sectors >= 1 && config.outline.sectors <= 65536, "sectors are in range");
+  require(config.outline.tolerance > 0 && config.outline.tolerance <= 1, "tolerance is in range");
+}
+
+/// What decides the result, written as the manifest does and read again, decides the same result.
+void check_resolved(const Config& config) {
+  nlohmann::ordered_json resolved = pipeline::resolved_json(config);
+  nlohmann::ordered_json document = resolved;
+  document["input"] = "a.ply";
+  document["output"] = "b.hier";
+  const Config again = pipeline::parse_config(document.dump(), {"again", {}}, {});
+  require(pipeline::resolved_json(again) == resolved, "a resolved config resolves to itself");
+}
+
+}  // namespace
+
+void config(Bytes input) {
+  const CommandLine line = split_lines(text_of(input));
+  Config read;
+  const std::string refused = refusal({ErrorCode::usage}, "", [&] {
+    read = pipeline::parse_config(line.text, {"config.json", "folder"}, line.overrides);
+  });
+  if (!refused.empty()) {
+    require(refused.starts_with("config.json: ") || refused.starts_with("--set"),
+            "a message names its origin");
+    return;
+  }
+  check_config(read);
+  check_resolved(read);
+}
+
+}  // namespace meshhier::tests::fuzz

@@ -1,0 +1,59 @@
+#include "storage/index.h"
+
+#include "fuzz/target.h"
+#include "fuzz/targets.h"
+#include "storage/glb.h"
+#include "storage/hash.h"
+#include "storage/tile_glb.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+namespace meshhier::tests::fuzz {
+namespace {
+
+constexpr std::size_t kChecksumPlace = 24;
+constexpr std::size_t kRecordsPlace = 32;
+
+/// The bytes with the right checksum in their header.
+std::vector<std::byte> sealed(Bytes bytes) {
+  std::vector<std::byte> result(bytes.begin(), bytes.end());
+  if (result.size() < kRecordsPlace)
+    return result;
+  storage::Checksum sum;
+  sum.add(Bytes(result).first(kChecksumPlace));
+  sum.add(Bytes(result).subspan(kRecordsPlace));
+  storage::store_little(sum.value(), result.data() + kChecksumPlace);
+  return result;
+}
+
+void check_record(const TileRecord& record, const Tree& tree) {
+  require(tree.contains(record.node) && !tree.is_early(record.node), "a tile of the tree");
+  require(record.own_count >= 1 && record.own_count <= storage::kMaxOwnVertices, "own vertices");
+  require(record.rim_count <= record.own_count, "the rim is of the own");
+  require(record.drawn_border_count <= record.border_count, "what is drawn is there");
+  require(!record.bounds.empty(), "a box");
+}
+
+void decode(Bytes bytes, const Tree& tree) {
+  std::vector<TileRecord> records;
+  const auto read = [&] { records = storage::decode_index(bytes, tree, "tiles.bin"); };
+  if (!refusal({ErrorCode::corrupt}, "tiles.bin: ", read).empty())
+    return;
+  require(records.size() == storage::tile_count(tree), "every tile");
+  for (const TileRecord& record : records)
+    check_record(record, tree);
+  require(std::ranges::equal(storage::encode_index(records), bytes), "nothing is lost");
+}
+
+}  // namespace
+
+void index(Bytes input) {
+  Take take(input);
+  const Tree tree = take_tree(take);
+  decode(take.rest(), tree);
+  decode(sealed(take.rest()), tree);
+}
+
+}  // namespace meshhier::tests::fuzz

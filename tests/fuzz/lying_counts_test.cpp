@@ -1,0 +1,246 @@
+// Counts that lie: files of a kilobyte that declare 10^18 of something are refused before memory is
+// taken for it.
+#include "hierarchy/error.h"
+#include "mesh_io/mesh_source.h"
+#include "mesh_io/ply_samples.h"
+#include "storage/glb.h"
+#include "storage/hash.h"
+#include "storage/hierarchy_reader.h"
+#include "storage/index.h"
+#include "storage/manifest.h"
+#include "storage/outline_glb.h"
+#include "storage/tile_glb.h"
+#include "support/memory_files.h"
+#include "support/taken_memory.h"
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace meshhier::tests {
+namespace {
+
+using mesh_io::PlyEncoding;
+using Json = nlohmann::ordered_json;
+
+/// A reader's buffers: a window of 1 MiB and blocks of triangles, a few times over.
+constexpr std::size_t kBuffers = std::size_t{8} << 20;
+
+constexpr const char* kLies[] = {"1000000000000000000", "18446744073709551615",
+                                 "9223372036854775807", "4294967296",
+                                 "4294967295",          "100000000"};
+
+/// Runs `read`, which must end in an error of that code and may take kBuffers on the way.
+void expect_cheap_refusal(ErrorCode code, const std::string& what,
+                          const std::function<void()>& read) {
+  const std::size_t before = taken_bytes();
+  try {
+    read();
+    ADD_FAILURE() << what << ": accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), code) << what << ": " << error.what();
+  }
+  EXPECT_LT(taken_bytes() - before, kBuffers) << what;
+}
+
+void read_all(const std::string& file) {
+  MemoryFiles files;
+  files.put("mesh.ply", file);
+  const auto source = mesh_io::open_mesh(files, "mesh.ply");
+  source->read_vertices([](const mesh_io::VertexBlock&) {});
+  source->read_triangles([](std::span<const mesh_io::SourceTriangle>) {});
+}
+
+std::string with_number(std::string text, const std::string& before, const std::string& number) {
+  const std::size_t place = text.find(before) + before.size();
+  return text.replace(place, text.find_first_not_of("0123456789", place) - place, number);
+}
+
+/// The text with the checksum it ought to have.
+std::string sealed(std::string text) {
+  const std::size_t place = text.size() - std::string("\"\n}\n").size() - 16;
+  text.replace(place, 16, std::string(16, '0'));
+  const std::uint64_t sum = storage::checksum(std::as_bytes(std::span(text)));
+  constexpr const char* kDigits = "0123456789abcdef";
+  for (std::size_t i = 0; i < 16; ++i)
+    text[place + i] = kDigits[sum >> (60 - 4 * i) & 15];
+  return text;
+}
+
+storage::Manifest small_manifest() {
+  storage::Manifest manifest;
+  manifest.generator = "meshhier";
+  manifest.source.file_name = "a.ply";
+  manifest.source.vertices = 10;
+  manifest.source.bounds = {{0, 0, 0}, {1, 1, 1}};
+  manifest.partition_count = 1;
+  manifest.config = Json::object();
+  manifest.levels = Json::array();
+  return manifest;
+}
+
+/// A GLB whose JSON has nothing but an extension, and a kilobyte of zeros.
+std::vector<std::byte> glb_with(const char* name, const Json& extension) {
+  Json document;
+  document["extensions"][name] = extension;
+  return storage::join_glb(document.dump(), std::vector<std::byte>(1024));
+}
+
+TEST(LyingCounts, OfPlyElementsTakeNoMemory) {
+  for (const PlyEncoding encoding : mesh_io::tests::kEncodings) {
+    const std::string mesh = mesh_io::tests::tetrahedron(encoding);
+    for (const char* lie : kLies) {
+      for (const std::string element : {"element vertex ", "element face "}) {
+        expect_cheap_refusal(ErrorCode::input, element + lie,
+                             [&] { read_all(with_number(mesh, element, lie)); });
+      }
+      std::string other = mesh;
+      other.insert(other.find("element vertex"),
+                   std::string("element other ") + lie + "\nproperty list uchar int a\n");
+      expect_cheap_refusal(ErrorCode::input, "an element before the others",
+                           [&] { read_all(other); });
+    }
+  }
+}
+
+TEST(LyingCounts, OfPlyListsTakeNoMemory) {
+  using mesh_io::PlyType;
+  for (const PlyEncoding encoding : mesh_io::tests::kEncodings) {
+    for (const std::string element : {"face", "tristrips"}) {
+      for (const double lie : {2147483647.0, 100000000.0, -1.0}) {
+        mesh_io::tests::PlyText ply(encoding);
+        ply.line("element vertex 1").line("property float x").line("property float y");
+        ply.line("property float z").line("element " + element + " 1");
+        ply.line("property list int int vertex_indices").end_header();
+        ply.row(PlyType::f32, {0, 0, 0}).value(PlyType::i32, lie);
+        for (int i = 0; i < 200; ++i)
+          ply.value(PlyType::i32, 0);
+        expect_cheap_refusal(ErrorCode::input, element + " of " + std::to_string(lie),
+                             [&] { read_all(ply.end_row().bytes()); });
+      }
+    }
+  }
+}
+
+TEST(LyingCounts, OfAnIndexTakeNoMemory) {
+  constexpr std::uint32_t kMost = 0xFFFFFFFF;
+  std::vector<std::byte> bytes = storage::encode_index(std::vector<TileRecord>(10));
+  for (const std::uint64_t lie :
+       {std::uint64_t{1000000000000000000}, ~std::uint64_t{0}, 2 * std::uint64_t{kMost} - 1}) {
+    storage::store_little(lie, bytes.data() + 16);
+    for (const std::uint32_t partitions : {kMost, 1000000U, 1U}) {
+      expect_cheap_refusal(ErrorCode::corrupt, "an index", [&] {
+        storage::decode_index(bytes, {kMost, partitions}, "tiles.bin");
+      });
+    }
+  }
+}
+
+TEST(LyingCounts, OfAManifestTakeNoMemory) {
+  const std::string honest = storage::to_json_text(small_manifest());
+  const std::string index = "\"file\": \"tiles.bin\",\n    \"bytes\": ";
+  const std::string outline = "\"file\": \"outline.glb\",\n    \"bytes\": ";
+  for (const std::string lie : kLies) {
+    for (const std::string& key :
+         {std::string("\"vertices\": "), std::string("\"partitions\": "), index, outline}) {
+      // The most that is allowed everywhere, and the lie.
+      std::string text = with_number(honest, "\"vertices\": ", "4294967295");
+      text =
+          with_number(with_number(text, "\"partitions\": ", "4294967295"), index, "824633720736");
+      MemoryFiles files;
+      files.put("a.hier/hierarchy.json", sealed(with_number(text, key, lie)));
+      files.put("a.hier/tiles.bin", std::string(1024, '\0'));
+      expect_cheap_refusal(ErrorCode::corrupt, key + lie,
+                           [&] { storage::HierarchyReader(files, "a.hier"); });
+    }
+  }
+}
+
+/// Zeros without end, as a sparse file has them on a disk that has no room for one of them.
+class SparseFile final : public storage::File {
+ public:
+  explicit SparseFile(const std::filesystem::path& path) : File(path) {}
+  std::uint64_t size() const override { return 1000000000000000000; }
+  void sync() override {}
+
+ protected:
+  std::size_t read_some(std::uint64_t, std::span<std::byte> bytes) const override {
+    std::ranges::fill(bytes, std::byte{0});
+    return bytes.size();
+  }
+  std::size_t write_some(std::uint64_t, std::span<const std::byte>) override { return 0; }
+};
+
+class SparseIndex final : public MemoryFiles {
+ public:
+  std::unique_ptr<storage::File> open(const std::filesystem::path& path) override {
+    if (path.filename() == "tiles.bin")
+      return std::make_unique<SparseFile>(path);
+    return MemoryFiles::open(path);
+  }
+};
+
+TEST(LyingCounts, ThatAgreeWithASparseIndexTakeNoMemory) {
+  storage::Manifest manifest = small_manifest();
+  manifest.index_bytes = 1000000000000000000;
+  SparseIndex files;
+  files.put("a.hier/hierarchy.json", storage::to_json_text(manifest));
+  expect_cheap_refusal(ErrorCode::corrupt, "an index",
+                       [&] { storage::HierarchyReader(files, "a.hier"); });
+}
+
+TEST(LyingCounts, OfATileTakeNoMemory) {
+  const Tree tree(1000, 4);
+  for (const std::uint64_t lie : {std::uint64_t{1000000000000000000}, std::uint64_t{4294967295}}) {
+    for (const char* key : {"ghostCount", "neighbourCount", "chainEntryCount", "interiorCount",
+                            "borderCount", "ownCount"}) {
+      Json extension = {{"version", 1},       {"ownCount", 4},       {"rimCount", 2},
+                        {"ghostCount", 2},    {"neighbourCount", 1}, {"chainEntryCount", 4},
+                        {"interiorCount", 2}, {"borderCount", 2}};
+      extension[key] = lie;
+      if (key == std::string("neighbourCount"))
+        extension["ghostCount"] = lie;
+      const auto glb = glb_with("MESHHIER_tile", extension);
+      expect_cheap_refusal(ErrorCode::corrupt, key, [&] {
+        storage::decode_tile(glb, {Level{2}, 1}, tree, {}, "tile.glb");
+      });
+    }
+  }
+}
+
+TEST(LyingCounts, OfAnOutlineTakeNoMemory) {
+  for (const std::uint64_t lie : {std::uint64_t{1000000000000000000}, std::uint64_t{4294967295}}) {
+    for (const char* key : {"vertexCount", "segmentCount"}) {
+      Json extension = {{"version", 1}, {"vertexCount", 4}, {"segmentCount", 3}};
+      extension[key] = lie;
+      const auto glb = glb_with("MESHHIER_outline", extension);
+      expect_cheap_refusal(ErrorCode::corrupt, key,
+                           [&] { storage::decode_outline(glb, "outline.glb"); });
+    }
+  }
+}
+
+TEST(LyingCounts, OfAContainerTakeNoMemory) {
+  auto glb = storage::join_glb("{}", std::vector<std::byte>(1024));
+  for (const std::size_t place : {8, 12, 24}) {
+    auto lying = glb;
+    storage::store_little(std::uint32_t{0xFFFFFFFC}, lying.data() + place);
+    expect_cheap_refusal(ErrorCode::corrupt, "a GLB",
+                         [&] { storage::decode_outline(lying, "outline.glb"); });
+  }
+}
+
+/// What the others rely on.
+TEST(LyingCounts, MemoryThatIsTakenIsCounted) {
+  const std::size_t before = taken_bytes();
+  const std::vector<std::byte> bytes(kBuffers);
+  EXPECT_GE(taken_bytes() - before, kBuffers);
+}
+
+}  // namespace
+}  // namespace meshhier::tests

@@ -1,0 +1,74 @@
+#include "storage/manifest.h"
+
+#include "fuzz/target.h"
+#include "fuzz/targets.h"
+#include "hierarchy/tree.h"
+#include "storage/hash.h"
+#include "storage/hierarchy_reader.h"
+#include "storage/index.h"
+#include "support/memory_files.h"
+
+#include <string>
+
+#include <fmt/format.h>
+
+namespace meshhier::tests::fuzz {
+namespace {
+
+using storage::Manifest;
+
+/// The text with the right digits where its checksum should be: a damage that nobody tries to hide
+/// never gets beyond the first check.
+std::string sealed(std::string_view input) {
+  constexpr std::string_view kEnd = "\"\n}\n";
+  constexpr std::size_t kDigits = 16;
+  std::string text(input);
+  if (text.size() < kDigits + kEnd.size())
+    return text;
+  const std::size_t place = text.size() - kEnd.size() - kDigits;
+  text.replace(place, kDigits, std::string(kDigits, '0'));
+  text.replace(place, kDigits, fmt::format("{:016x}", storage::checksum(bytes_of(text))));
+  return text;
+}
+
+/// A reader of the directory gets by with the tree and refuses the index, which is not there or
+/// empty.
+void check_reader(const std::string& text) {
+  for (const bool has_index : {false, true}) {
+    MemoryFiles files;
+    files.put("a.hier/hierarchy.json", text);
+    if (has_index)
+      files.put("a.hier/tiles.bin", "");
+    const std::string refused = refusal({has_index ? ErrorCode::corrupt : ErrorCode::io}, "",
+                                        [&] { storage::HierarchyReader reader(files, "a.hier"); });
+    require(!refused.empty(), "no index, no hierarchy");
+  }
+}
+
+void check_manifest(const Manifest& manifest, const std::string& text) {
+  const std::string written = storage::to_json_text(manifest);
+  const Manifest again = storage::parse_manifest(written, "again");
+  require(storage::to_json_text(again) == written, "what is written is read again");
+  const Tree tree(manifest.source.vertices, manifest.partition_count);
+  require(storage::tile_count(tree) < std::uint64_t{1} << 33, "the counts make a tree");
+  check_reader(text);
+}
+
+void parse(const std::string& text) {
+  Manifest manifest;
+  const auto read = [&] { manifest = storage::parse_manifest(text, "hierarchy.json"); };
+  if (refusal({ErrorCode::corrupt}, "hierarchy.json: ", read).empty())
+    check_manifest(manifest, text);
+}
+
+}  // namespace
+
+void manifest(Bytes input) {
+  const std::string text(text_of(input));
+  const std::string repaired = sealed(text);
+  parse(repaired);
+  if (repaired != text)
+    parse(text);
+}
+
+}  // namespace meshhier::tests::fuzz

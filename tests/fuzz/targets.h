@@ -1,0 +1,49 @@
+// The fuzz targets: what reads bytes from outside, each as a function of the bytes.
+//
+// A body returns if the input is read or refused as the headers promise, and lets an exception
+// escape if not. libFuzzer drives one body a program (driver.cpp, scripts/fuzz); the test
+// fuzz_replay runs all of corpus/ through them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string_view>
+
+namespace meshhier::tests::fuzz {
+
+/// The input is a PLY file of which only the header is read.
+void ply_header(std::span<const std::byte> input);
+/// The input is a PLY file; binary files are passed over by the one, text by the other.
+void ply_text(std::span<const std::byte> input);
+void ply_binary(std::span<const std::byte> input);
+/// Lines that begin with "--set " are overrides, the others the config.
+void config(std::span<const std::byte> input);
+/// A tree (take_tree()), then a list of nodes.
+void cut(std::span<const std::byte> input);
+/// A hierarchy.json; also with the right checksum at its end.
+void manifest(std::span<const std::byte> input);
+/// A tree, then a tiles.bin; also with the right checksum.
+void index(std::span<const std::byte> input);
+/// A tree, a node and a format (see tile.cpp), then a GLB, or counts and a BIN chunk.
+void tile(std::span<const std::byte> input);
+/// An outline.glb, or counts and a BIN chunk.
+void outline(std::span<const std::byte> input);
+
+struct Target {
+  std::string_view name;
+  void (*run)(std::span<const std::byte> input) = nullptr;
+};
+
+/// Names are those of the folders in corpus/, the dictionaries, and the programs (fuzz_NAME).
+inline constexpr std::array<Target, 9> kTargets{{{"ply_header", ply_header},
+                                                 {"ply_text", ply_text},
+                                                 {"ply_binary", ply_binary},
+                                                 {"config", config},
+                                                 {"cut", cut},
+                                                 {"manifest", manifest},
+                                                 {"index", index},
+                                                 {"tile", tile},
+                                                 {"outline", outline}}};
+
+}  // namespace meshhier::tests::fuzz

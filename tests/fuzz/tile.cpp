@@ -1,0 +1,183 @@
+// The input of the target `tile`, little endian:
+//
+//   u32, u32              the tree, see take_tree()
+//   u8  level             of the node, modulo what there can be
+//   u32 index             likewise
+//   u8  format            1 normals, 2 alpha, 4 texcoords, 8 an origin; 16, 32: the colours' type
+//
+// and then a GLB, or, if it does not begin with "glTF", what makes one: counts whose JSON is
+// written as it must be, so that all the rest of the input lies behind the comparison of the JSON:
+//
+//   u16 own, rim, ghosts, neighbours, chain entries, interior, border
+//   u8  which attributes have raw values: 1, 2, 4
+//   the BIN chunk, cut or filled up with zeros to its size
+#include "fuzz/target.h"
+#include "fuzz/targets.h"
+#include "storage/glb.h"
+#include "storage/tile_glb.h"
+#include "storage/tile_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace meshhier::tests::fuzz {
+namespace {
+
+using storage::TileFormat;
+
+struct Place {
+  Tree tree;
+  NodeId node;
+  TileFormat format;
+};
+
+Place take_place(Take& take) {
+  Place place{take_tree(take), {}, {}};
+  place.node.level = static_cast<Level>(take.upto<std::uint8_t>(raw(place.tree.depth())));
+  place.node.index = take.upto<std::uint32_t>(place.tree.node_count(place.node.level) - 1);
+  const auto bits = take.number<std::uint8_t>();
+  place.format.attributes = {(bits & 1) != 0, static_cast<ColourType>(bits >> 4 & 3),
+                             (bits & 2) != 0, (bits & 4) != 0};
+  if ((bits & 8) != 0)
+    place.format.origin = {1e6, -0.1, 3};
+  return place;
+}
+
+/// Its positions as they stand in the BIN chunk; null if one is not finite: no box has a JSON.
+bool bounds_in(Bytes bin, std::size_t count, Bounds& bounds) {
+  for (std::size_t v = 0; v < count; ++v) {
+    Take take(bin.subspan(12 * v));
+    Vec3f position;
+    position.x = take.number<float>();
+    position.y = take.number<float>();
+    position.z = take.number<float>();
+    if (!std::isfinite(position.x) || !std::isfinite(position.y) || !std::isfinite(position.z))
+      return false;
+    bounds.add(position);
+  }
+  return true;
+}
+
+/// A GLB of the counts at the front; empty if they ask for more than an input can fill.
+std::vector<std::byte> make_glb(Take take, const Place& place) {
+  constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 17;
+  const auto count = [&] { return std::uint64_t{take.number<std::uint16_t>()}; };
+  storage::TileShape shape;
+  shape.node = place.node;
+  for (std::uint64_t* field : {&shape.own, &shape.rim, &shape.ghosts, &shape.neighbours,
+                               &shape.chain_entries, &shape.interior, &shape.border})
+    *field = count();
+  const auto raw_bits = take.number<std::uint8_t>();
+  const auto groups = storage::groups_of(place.format.attributes);
+  for (std::size_t i = 0; i < groups.size(); ++i)
+    shape.raw[i] = groups[i].channels > 0 && (raw_bits >> i & 1) != 0;
+  const storage::TilePlan plan(shape, place.format.attributes);
+  if (plan.bytes() > kMostBytes)
+    return {};
+  std::vector<std::byte> bin(plan.bytes());
+  std::copy_n(take.rest().begin(), std::min(bin.size(), take.rest().size()), bin.begin());
+  Bounds bounds;
+  if (!bounds_in(bin, shape.vertices(), bounds))
+    bounds = {{0, 0, 0}, {0, 0, 0}};
+  return storage::join_glb(plan.document(bounds, place.format.origin).dump(), bin);
+}
+
+bool same_but_attributes(const PublishedTile& a, const PublishedTile& b) {
+  return a.node == b.node && a.mesh.vertices.positions == b.mesh.vertices.positions &&
+         a.mesh.own_count == b.mesh.own_count && a.mesh.rim_count == b.mesh.rim_count &&
+         a.mesh.ghosts == b.mesh.ghosts && a.mesh.interior == b.mesh.interior &&
+         a.mesh.border == b.mesh.border && a.parent_map == b.parent_map && a.chains == b.chains;
+}
+
+bool same_attributes(const PublishedTile& a, const PublishedTile& b) {
+  const std::vector<float>& x = a.mesh.vertices.attributes;
+  const std::vector<float>& y = b.mesh.vertices.attributes;
+  return x.size() == y.size() &&
+         (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof(float)) == 0);
+}
+
+void check_triangles(const TileMesh& mesh) {
+  for (const auto* triangles : {&mesh.interior, &mesh.border}) {
+    for (const Triangle& t : *triangles) {
+      std::size_t own = 0;
+      for (const TileVertex corner : t) {
+        require(raw(corner) < mesh.vertices.size(), "corners are vertices");
+        own += mesh.is_own(corner) ? 1 : 0;
+      }
+      require((own == 3) == (triangles == &mesh.interior) && own > 0, "corners are where they may");
+    }
+    require(std::is_sorted(triangles->begin(), triangles->end()), "triangles ascend");
+  }
+}
+
+bool are_tile_vertices(const std::vector<std::uint16_t>& vertices) {
+  return std::all_of(vertices.begin(), vertices.end(),
+                     [](std::uint16_t v) { return v < storage::kMaxOwnVertices; });
+}
+
+void check_tile(const PublishedTile& tile, const Place& place) {
+  const TileMesh& mesh = tile.mesh;
+  require(mesh.own_count >= 1 && mesh.own_count <= storage::kMaxOwnVertices, "own vertices");
+  require(mesh.rim_count <= mesh.own_count, "the rim is of the own");
+  require(mesh.vertices.size() == mesh.own_count + mesh.ghosts.size(), "own, then ghosts");
+  require(mesh.vertices.attributes.size() ==
+              mesh.vertices.size() * static_cast<std::size_t>(mesh.vertices.channels),
+          "each vertex has its attributes");
+  require(are_tile_vertices(tile.parent_map), "parents are tiles' vertices");
+  require(tile.parent_map.size() == (tile.node == NodeId{} ? 0 : mesh.own_count), "a parent map");
+  const auto unsorted =
+      std::adjacent_find(mesh.ghosts.begin(), mesh.ghosts.end(), std::greater_equal{});
+  require(unsorted == mesh.ghosts.end(), "ghosts ascend, each once");
+  require(tile.chains.size() == mesh.ghosts.size(), "a chain a ghost");
+  for (std::size_t i = 0; i < mesh.ghosts.size(); ++i) {
+    const NodeId neighbour{tile.node.level, mesh.ghosts[i].tile};
+    require(place.tree.contains(neighbour) && neighbour != tile.node, "ghosts are of neighbours");
+    require(tile.chains[i].size() ==
+                static_cast<std::size_t>(place.tree.chain_length(tile.node, neighbour)),
+            "chains have their length");
+    require(tile.chains[i][0] == mesh.ghosts[i].index, "chains begin with the ghost");
+    require(are_tile_vertices(tile.chains[i]), "chains are of tiles' vertices");
+  }
+  check_triangles(mesh);
+}
+
+/// Nothing is lost but what glTF cannot say above the partitions; that goes the first time.
+void check_written(const PublishedTile& tile, const Place& place) {
+  const auto again = [&](const PublishedTile& from) {
+    return storage::decode_tile(storage::encode_tile(from, place.tree, place.format), place.node,
+                                place.tree, place.format, "again.glb");
+  };
+  const PublishedTile second = again(tile);
+  require(same_but_attributes(second, tile), "what is written is read again");
+  if (place.tree.is_partition(place.node)) {
+    require(same_attributes(second, tile), "attributes of partitions are kept bit for bit");
+  } else {
+    require(same_attributes(again(second), second), "what glTF can say is kept");
+  }
+}
+
+}  // namespace
+
+void tile(Bytes input) {
+  Take take(input);
+  const Place place = take_place(take);
+  const bool is_glb = text_of(take.rest()).starts_with("glTF");
+  const std::vector<std::byte> made = is_glb ? std::vector<std::byte>() : make_glb(take, place);
+  PublishedTile read;
+  const std::string refused = refusal({ErrorCode::corrupt}, "tile.glb: ", [&] {
+    read = storage::decode_tile(is_glb ? take.rest() : Bytes(made), place.node, place.tree,
+                                place.format, "tile.glb");
+  });
+  if (!refused.empty())
+    return;
+  check_tile(read, place);
+  check_written(read, place);
+}
+
+}  // namespace meshhier::tests::fuzz

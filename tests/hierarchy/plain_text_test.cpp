@@ -1,0 +1,25 @@
+#include "hierarchy/plain_text.h"
+
+#include <gtest/gtest.h>
+
+namespace meshhier::tests {
+namespace {
+
+TEST(PlainText, KeepsWhatATerminalShows) {
+  EXPECT_EQ(plain_text("", 10), "");
+  EXPECT_EQ(plain_text("na\xc3\xafve ~", 10), "na\xc3\xafve ~");
+}
+
+TEST(PlainText, ReplacesControlCharacters) {
+  EXPECT_EQ(plain_text(std::string_view("a\nb\x1b[2J\x7f\0c", 10), 20), "a?b?[2J??c");
+}
+
+TEST(PlainText, IsCutBetweenCharacters) {
+  EXPECT_EQ(plain_text("abcdef", 6), "abcdef");
+  EXPECT_EQ(plain_text("abcdefg", 6), "abcdef...");
+  EXPECT_EQ(plain_text("abcde\xc3\xaf", 6), "abcde...");
+  EXPECT_EQ(plain_text("\x80\x80\x80", 2), "...");
+}
+
+}  // namespace
+}  // namespace meshhier::tests
