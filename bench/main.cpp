@@ -1,9 +1,11 @@
 // meshgen: makes meshes for tests and measurements.
 #include "bench/generator.h"
+#include "bench/hell.h"
 #include "bench/program.h"
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -15,6 +17,8 @@ using namespace meshhier;
 struct Arguments {
   bench::SurfaceOptions surface;
   bench::AmplifyOptions amplify;
+  std::string hell_case;
+  std::uint64_t hell_size = 100'000;
   std::uint64_t seed = 1;
   std::string input;
   std::string output;
@@ -73,6 +77,22 @@ void add_shuffle(CLI::App& app, Arguments& arguments) {
   command->add_option("input", arguments.input, "A PLY file")->required();
 }
 
+void add_hell(CLI::App& app, Arguments& arguments) {
+  std::string cases = "The cases:";
+  std::vector<std::string> names;
+  for (const bench::HellCase& listed : bench::hell_cases()) {
+    cases += fmt::format("\n  {:<11} {}", listed.name, listed.what);
+    names.emplace_back(listed.name);
+  }
+  CLI::App* command = app.add_subcommand("hell", "Legal and unreasonable meshes");
+  command->add_option("--case", arguments.hell_case, "Which one")
+      ->check(CLI::IsMember(names))
+      ->required();
+  command->add_option("--size", arguments.hell_size, "About so many triangles, or else vertices")
+      ->capture_default_str();
+  command->footer(cases);
+}
+
 bench::LoadedMesh load(storage::FileSystem& files, const std::string& path) {
   return bench::load_mesh(*mesh_io::open_mesh(files, path));
 }
@@ -86,6 +106,10 @@ std::unique_ptr<bench::GeneratedMesh> generate(const CLI::App& app, Arguments& a
   if (app.got_subcommand("amplify")) {
     arguments.amplify.seed = arguments.seed;
     return bench::amplify(load(files, arguments.input), arguments.amplify);
+  }
+  if (app.got_subcommand("hell")) {
+    return bench::as_generated(
+        bench::make_hell(arguments.hell_case, arguments.hell_size, arguments.seed));
   }
   return bench::shuffle(load(files, arguments.input), arguments.seed);
 }
@@ -107,6 +131,7 @@ int main(int argc, char** argv) {
   add_surface(app, arguments);
   add_amplify(app, arguments);
   add_shuffle(app, arguments);
+  add_hell(app, arguments);
   app.require_subcommand(1);
   for (CLI::App* command : app.get_subcommands({})) {
     command->add_option("--seed", arguments.seed, "Another seed, another mesh")

@@ -82,10 +82,14 @@ struct SeamTriangle {
 class Seam {
  public:
   explicit Seam(const SeamInput& input) : input_(input), rim_count_(input.mesh.rim_count) {
+    for (std::vector<std::uint32_t>& counts : counts_)
+      counts.assign(rim_count_ + ghosts().size(), 0);
     add_own();
     add_drawn();
-    for (const BandOf& neighbour : input.neighbours)
-      add(neighbour);
+    for (std::size_t i = 0; i < ghosts().size(); ++i) {
+      if (i == 0 || ghosts()[i].tile != ghosts()[i - 1].tile)
+        add({ghosts()[i].tile, input.band_of_neighbour(ghosts()[i].tile)});
+    }
     link();
   }
 
@@ -152,12 +156,30 @@ class Seam {
     return drift;
   }
 
+  /// Takes note of a triangle at its corners. False if each of them has had as many before it as
+  /// are asked there.
+  bool count(const Vertices& vertices, When when) {
+    bool matters = false;
+    for (const std::uint32_t v : vertices) {
+      if (v == kNowhere)
+        continue;
+      if (when != When::now)
+        matters = counts_[0][v]++ < kMostAround || matters;
+      if (when != When::then)
+        matters = counts_[1][v]++ < kMostAround || matters;
+    }
+    return matters;
+  }
+
+  /// `all`: also those that nobody will ask about others.
   template <class VertexOf>
-  void add_band(const Band& band, const VertexOf& vertex) {
+  void add_band(const Band& band, bool all, const VertexOf& vertex) {
     const auto add = [&](const std::vector<Triangle>& triangles, When when) {
       for (const Triangle& t : triangles) {
         const Vertices vertices = vertices_of(t, vertex);
-        if (any_known(vertices))  // few of a neighbour's are
+        if (!any_known(vertices))  // few of a neighbour's are
+          continue;
+        if (count(vertices, when) || all)
           triangles_.push_back({corners_of(t, band.positions), drift_of(band, t), when, vertices});
       }
     };
@@ -171,7 +193,7 @@ class Seam {
     foreign.reserve(input_.mapped.size());
     for (const GhostRef& ref : input_.mapped)
       foreign.push_back(vertex_of(ref));
-    add_band(band, [&](std::uint32_t v) {
+    add_band(band, true, [&](std::uint32_t v) {
       return v < band.rim_count ? v : v < band.own_count ? kNowhere : foreign[v - band.own_count];
     });
     own_end_ = triangles_.size();
@@ -182,9 +204,11 @@ class Seam {
     const auto vertex = [&](std::uint32_t v) {
       return v < mesh.own_count ? v : v - mesh.own_count + rim_count_;
     };
-    for (const Triangle& t : mesh.border)
+    for (const Triangle& t : mesh.border) {
       triangles_.push_back(
           {corners_of(t, mesh.vertices.positions), 0, When::now, vertices_of(t, vertex)});
+      count(triangles_.back().vertices, When::now);
+    }
     drawn_end_ = triangles_.size();
   }
 
@@ -196,7 +220,7 @@ class Seam {
         throw Error(ErrorCode::internal, "a ghost lies outside its tile's rim");
       place[ghost->index] = rim_count_ + static_cast<std::uint32_t>(ghost - ghosts().begin());
     }
-    add_band(neighbour.band,
+    add_band(neighbour.band, false,
              [&](std::uint32_t v) { return v < place.size() ? place[v] : kNowhere; });
   }
 
@@ -316,7 +340,8 @@ class Seam {
   const SeamInput& input_;
   std::uint32_t rim_count_;
   std::vector<SeamTriangle> triangles_;
-  std::size_t own_end_ = 0;    ///< the own band's come first,
+  std::array<std::vector<std::uint32_t>, 2> counts_;  ///< of those lists, and what was left out
+  std::size_t own_end_ = 0;                           ///< the own band's come first,
   std::size_t drawn_end_ = 0;  ///< then what is drawn now, then the neighbours' bands
   std::array<Lists, 2> at_;    ///< then, now
   struct Met {

@@ -11,6 +11,7 @@
 #include "cluster_simplify/seams.h"
 
 #include <cstdint>
+#include <functional>
 #include <span>
 
 namespace meshhier::cluster_simplify {
@@ -27,8 +28,9 @@ struct BandOf {
 struct SeamInput {
   const TileMesh& mesh;  ///< as drawn now
   const BandOf& own;
-  std::span<const GhostRef> mapped;    ///< of own.band.foreign: at the tile's own level
-  std::span<const BandOf> neighbours;  ///< all that mesh.ghosts name, ascending
+  std::span<const GhostRef> mapped;  ///< of own.band.foreign: at the tile's own level
+  /// Asked once for each tile that mesh.ghosts name, ascending: one band at a time is held.
+  std::function<Band(std::uint32_t tile)> band_of_neighbour;
 };
 
 /// The largest distance along the seam that a step of one level took, the drifts of both sides

@@ -40,7 +40,7 @@ enum class Care {
 ///   void collapsed(Collapse)
 ///   std::span<const Vec3f> positions()
 /// An edge's cost is looked at again when its turn comes, not when a neighbour changes: collapses
-/// make costs grow, hardly ever shrink.
+/// make costs grow, hardly ever shrink. Crowded vertices stay what they are.
 template <class Costs>
 class CollapseDriver {
  public:
@@ -88,6 +88,7 @@ class CollapseDriver {
   }
 
   void push_all(Care care) {
+    recount_crowds();
     const auto count = static_cast<std::uint32_t>(mesh_.edges().size());
     std::array<float, kBlock> costs;
     for (std::uint32_t first = 0; first < count; first += kBlock) {
@@ -95,9 +96,22 @@ class CollapseDriver {
       costs_.costs(first, block);
       for (std::uint32_t i = 0; i < block.size(); ++i) {
         const std::uint32_t e = first + i;
-        if (mesh_.edge(e).triangle_count > 0 && !queue_.contains(e) && mesh_.is_own_edge(e))
+        if (mesh_.edge(e).triangle_count > 0 && !queue_.contains(e) && mesh_.is_own_edge(e) &&
+            !is_crowded(e))
           push(e, care, cost(e, block[i]));
       }
+    }
+  }
+
+  bool is_crowded(std::uint32_t e) const {
+    return mesh_.is_crowded(mesh_.edge(e).a) || mesh_.is_crowded(mesh_.edge(e).b);
+  }
+
+  /// Of what is left at crowded vertices the mesh knows an upper bound only.
+  void recount_crowds() {
+    for (std::uint32_t v = 0; v < mesh_.own_count(); ++v) {
+      if (mesh_.is_crowded(v))
+        mesh_.gather(v, around_);
     }
   }
 
@@ -111,7 +125,7 @@ class CollapseDriver {
   }
 
   void push(std::uint32_t e, Care care) {
-    if (queue_.contains(e) || !mesh_.is_own_edge(e))
+    if (queue_.contains(e) || !mesh_.is_own_edge(e) || is_crowded(e))
       return;
     Collapse collapse;
     costs_.best({&e, 1}, {&collapse, 1});
@@ -162,8 +176,8 @@ class CollapseDriver {
   }
 
   void take_turn(std::uint32_t e, const Collapse& collapse, std::uint32_t bucket, Care care) {
-    if (mesh_.edge(e).triangle_count == 0 || queue_.contains(e))
-      return;  // by what became of others looked at together with it
+    if (mesh_.edge(e).triangle_count == 0 || queue_.contains(e) || is_crowded(e))
+      return;  // by what became of others looked at together with it, or before
     const float today = cost(e, collapse.cost);
     if (CollapseQueue::bucket_of(today) > bucket || has_moved(mesh_.edge(e)))
       queue_.push(e, today);

@@ -144,6 +144,7 @@ std::array<std::uint32_t, 3> CollapseMesh::collapse_disc(const EdgeStar& star) {
     edges_[e].triangle_count = 0;
 
   stars_[star.from()].count = 0;
+  make_room(star.size());
   stars_[star.to()] = {static_cast<std::uint32_t>(corners_.size()), star.size()};
   for (const Fan* fan : links)
     corners_.push_back(fan->corner());
@@ -151,9 +152,26 @@ std::array<std::uint32_t, 3> CollapseMesh::collapse_disc(const EdgeStar& star) {
   return gone;
 }
 
+/// Stars that were joined leave their old runs behind. Once these are as much as all stars were at
+/// first, the runs in use are moved together: around a vertex of very many triangles each collapse
+/// would leave as many behind.
+void CollapseMesh::make_room(std::size_t count) {
+  if (corners_.size() + count <= 2 * 3 * faces_.size())
+    return;
+  std::vector<std::uint32_t> packed;
+  packed.reserve(corners_.size());
+  for (Star& star : stars_) {
+    const auto begin = corners_.begin() + star.begin;
+    star.begin = static_cast<std::uint32_t>(packed.size());
+    packed.insert(packed.end(), begin, begin + star.count);
+  }
+  corners_ = std::move(packed);
+}
+
 /// Puts the triangles that live on at one vertex, in one run.
 void CollapseMesh::join_stars(std::uint32_t from, std::uint32_t to,
                               std::span<const Fan> around_from, std::span<const Fan> around_to) {
+  make_room(around_from.size() + around_to.size());
   const auto begin = static_cast<std::uint32_t>(corners_.size());
   for (const auto fans : {around_to, around_from}) {
     for (const Fan& fan : fans) {

@@ -69,6 +69,9 @@ class CollapseMesh {
 
   /// No more triangles are left at the vertex; before the first collapse, just as many.
   std::uint32_t most_triangles(std::uint32_t vertex) const { return stars_[vertex].count; }
+  /// Whether there are too many triangles at the vertex to go through them for every collapse
+  /// beside it: n of them would take n squared. Scans stay below a tenth of the limit.
+  bool is_crowded(std::uint32_t vertex) const { return stars_[vertex].count > kCrowd; }
   /// Whether any triangle is left at the vertex.
   bool is_isolated(std::uint32_t vertex);
   /// What stands for the vertex now.
@@ -99,6 +102,7 @@ class CollapseMesh {
 
  private:
   static constexpr std::uint32_t kMostFetched = 16;
+  static constexpr std::uint32_t kCrowd = 1024;
 
   /// The corners, 4 t + k, at a vertex: a run of corners_, dead ones among them until next looked
   /// at.
@@ -108,6 +112,7 @@ class CollapseMesh {
 
   void collect_stars();
   void collect_edges();
+  void make_room(std::size_t count);
   void join_stars(std::uint32_t from, std::uint32_t to, std::span<const Fan> around_from,
                   std::span<const Fan> around_to);
 
@@ -115,7 +120,7 @@ class CollapseMesh {
   std::vector<Face> faces_;
   std::vector<Edge> edges_;
   std::vector<Star> stars_;
-  std::vector<std::uint32_t> corners_;  ///< grows by the joined stars
+  std::vector<std::uint32_t> corners_;  ///< grows by the joined stars, up to make_room()
   std::vector<std::uint32_t> parents_;  ///< which vertex a vertex was collapsed into
   std::vector<std::uint32_t> edge_to_;  ///< scratch: the edge from `to` to a vertex
 };

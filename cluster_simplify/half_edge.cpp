@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace meshhier::cluster_simplify {
 namespace {
@@ -104,6 +105,8 @@ class MelaxCosts {
     // On flat ground, where nothing bends, short edges go first.
     constexpr float kFlat = 1e-3F;
     const float size = length(positions_[to] - positions_[from]);
+    if (mesh_.is_crowded(from))  // it will not go; its triangles would be gone through for each
+      return {from, to, std::numeric_limits<float>::infinity(), positions_[to]};
     mesh_.gather(from, around_);
     const float bend = std::max(surface_bend(to), border_bend(from, to));
     return {from, to, size * (bend + kFlat), positions_[to]};

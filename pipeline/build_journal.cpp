@@ -62,11 +62,12 @@ SourceSummary summary(const Json& json) {
 
 Json to_json(const IndexedStep& indexed) {
   const Step& step = indexed.second;
-  return {indexed.first, step.certain, step.mean_square, step.finer_neighbours};
+  return {indexed.first, step.certain, step.mean_square, step.finer_neighbours.numbers()};
 }
 
 IndexedStep indexed_step(const Json& json) {
-  return {json.at(0), {json.at(1), json.at(2), json.at(3)}};
+  return {json.at(0),
+          {json.at(1), json.at(2), TileSet(json.at(3).get<std::vector<std::uint32_t>>())}};
 }
 
 /// "partition.vertices was 8192 and is 4096, ...".

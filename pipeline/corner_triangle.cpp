@@ -65,14 +65,4 @@ std::vector<CornerTriangle> early_border_of(const PublishedTile& tile, const Tre
   return triangles;
 }
 
-std::vector<CornerTriangle> touching(const std::vector<CornerTriangle>& triangles,
-                                     std::uint32_t tile) {
-  std::vector<CornerTriangle> found;
-  std::copy_if(
-      triangles.begin(), triangles.end(), std::back_inserter(found), [&](const CornerTriangle& t) {
-        return std::any_of(t.begin(), t.end(), [&](Corner c) { return tile_index(c) == tile; });
-      });
-  return found;
-}
-
 }  // namespace meshhier::pipeline

@@ -36,8 +36,4 @@ std::vector<CornerTriangle> border_of(const PublishedTile& tile, const Tree& tre
 /// tile.node is a partition whose parent is early.
 std::vector<CornerTriangle> early_border_of(const PublishedTile& tile, const Tree& tree);
 
-/// Of sorted triangles those with a corner in the tile of this index.
-std::vector<CornerTriangle> touching(const std::vector<CornerTriangle>& triangles,
-                                     std::uint32_t tile);
-
 }  // namespace meshhier::pipeline

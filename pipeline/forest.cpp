@@ -29,7 +29,11 @@ bool restore(storage::BlobStore& store, std::size_t index, const nlohmann::json&
 }  // namespace
 
 Forest::Forest(const Tree& tree, Level chunks, int channels, storage::ScratchFile& scratch)
-    : tree_(tree), chunks_(chunks), channels_(channels), places_(scratch, tree.node_count(chunks)) {
+    : tree_(tree),
+      chunks_(chunks),
+      channels_(channels),
+      pool_(scratch.pool()),
+      places_(scratch, tree.node_count(chunks)) {
   for (int level = 0; level <= raw(tree.depth()); ++level) {
     const std::uint32_t count = tree.node_count(static_cast<Level>(level));
     levels_.push_back({{scratch, count},
@@ -54,6 +58,11 @@ void Forest::put_tile(NodeId node, const WorkTile& tile) {
 
 void Forest::put_parent_map(NodeId child, std::span<const std::uint16_t> parent_map) {
   levels_[raw(child.level)].parent_maps.put(child.index, std::as_bytes(parent_map));
+}
+
+std::uint64_t Forest::stored_triangle_bytes(NodeId node) const {
+  return levels_[raw(node.level)].tiles.size(node.index) -
+         storage::work_vertex_bytes(own_count(node), channels_);
 }
 
 LoadedTile Forest::load_with_mapped(NodeId node) const {

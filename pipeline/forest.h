@@ -53,6 +53,11 @@ class Forest {
     return levels_[raw(node.level)].own_counts[node.index];
   }
 
+  /// Of a tile as it is kept: what its triangles and foreign corners take.
+  std::uint64_t stored_triangle_bytes(NodeId node) const;
+  /// What is kept in memory counts against it.
+  storage::MemoryPool& pool() const { return pool_; }
+
   LoadedTile load_with_mapped(NodeId node) const;
   BuildTile load(NodeId node) const { return load_with_mapped(node).tile; }
   Band band(NodeId node) const;
@@ -87,6 +92,7 @@ class Forest {
   Tree tree_;
   Level chunks_;
   int channels_;
+  storage::MemoryPool& pool_;
   storage::BlobStore places_;
   std::vector<LevelStore> levels_;
 };

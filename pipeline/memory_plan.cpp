@@ -57,7 +57,7 @@ std::uint64_t chunk_bytes(const JobSize& job) {
 /// Two children read, joined, contracted and encoded: 16 copies of a vertex's 20 bytes and 8 of a
 /// triangle's 12; edges, queue and quadrics while they collapse.
 std::uint64_t tile_bytes(const JobSize& job) {
-  const std::uint64_t vertices = 2 * std::uint64_t{job.largest_tile};
+  const std::uint64_t vertices = std::min(2 * std::uint64_t{job.largest_tile}, job.vertex_count);
   const std::uint64_t triangles =
       vertices *
       std::max<std::uint64_t>(kTrianglesPerVertex, job.face_count * 3 / 2 / job.vertex_count + 1);

@@ -2,6 +2,7 @@
 
 #include "outline/outline_builder.h"
 #include "pipeline/parallel.h"
+#include "pipeline/tile_room.h"
 #include "storage/outline_glb.h"
 
 #include <algorithm>
@@ -34,8 +35,9 @@ bool collect(const Forest& forest, Level level, outline::OutlineBuilder& builder
   const std::uint32_t count = forest.tree().node_count(level);
   progress.stage("outline", count, "sectors");
   std::atomic<bool> too_many{false};
+  const TileRoom room(plan, forest.pool(), heaviest_read(forest, level));
   ordered_for(
-      count, plan.tiles_in_flight, cancel,
+      count, room.in_flight(), cancel,
       [&](std::size_t i) -> Sector {
         if (too_many)
           return std::nullopt;

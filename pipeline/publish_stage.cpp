@@ -4,6 +4,7 @@
 #include "partition/compactness.h"
 #include "pipeline/parallel.h"
 #include "pipeline/summary.h"
+#include "pipeline/tile_room.h"
 #include "storage/hash.h"
 #include "storage/index.h"
 #include "storage/layout.h"
@@ -103,8 +104,12 @@ void publish(const Forest& forest, BuildJournal& journal, const PublishInput& in
       left.push_back(i);
   }
   progress.stage("publish", left.size(), "tiles");
+  std::uint64_t heaviest = 0;
+  for (int l = 0; l <= raw(tree.depth()); ++l)
+    heaviest = std::max(heaviest, heaviest_read(forest, static_cast<Level>(l)));
+  const TileRoom room(plan, forest.pool(), heaviest);
   ordered_for(
-      left.size(), plan.tiles_in_flight, cancel,
+      left.size(), room.in_flight(), cancel,
       [&](std::size_t i) { return write_tile(forest, nodes[left[i]], input, directory, files); },
       [&](std::size_t i, const TileRecord& record) {
         journal.note_published(record);

@@ -5,6 +5,7 @@
 #include "pipeline/bound_chain.h"
 #include "pipeline/parallel.h"
 #include "pipeline/size_text.h"
+#include "pipeline/tile_room.h"
 
 #include <algorithm>
 #include <utility>
@@ -57,32 +58,27 @@ ChunkReport put_leaves(Chunks& chunks, std::uint32_t index, partition::Axis axis
 Step measure_step(const Forest& forest, NodeId node, const LoadedTile& loaded) {
   const TileMesh& mesh = loaded.tile.mesh;
   const cluster_simplify::BandOf own{node.index, forest.band(node)};
-  std::vector<cluster_simplify::BandOf> neighbours;
-  for (const GhostRef& ghost : mesh.ghosts) {
-    if (neighbours.empty() || neighbours.back().tile != ghost.tile)
-      neighbours.push_back({ghost.tile, forest.band({node.level, ghost.tile})});
-  }
-  const double seam = cluster_simplify::seam_gap({mesh, own, loaded.mapped, neighbours});
-  const Band& band = own.band;
   Step step;
+  const auto add_foreign = [&](const Band& of) {
+    for (const GhostRef& ref : of.foreign)
+      step.finer_neighbours.add(ref.tile);
+  };
+  add_foreign(own.band);
+  const auto band_of_neighbour = [&](std::uint32_t tile) {
+    Band band = forest.band({node.level, tile});
+    add_foreign(band);
+    const Tree::Children children = forest.tree().children({node.level, tile});
+    for (const NodeId child : children.span())
+      step.finer_neighbours.add(child.index);
+    return band;
+  };
+  const double seam = cluster_simplify::seam_gap({mesh, own, loaded.mapped, band_of_neighbour});
+  step.finer_neighbours.settle();
+  const Band& band = own.band;
   step.certain = std::max(double{band.interior_drift}, seam);
   if (band.lost > 0)
     step.certain = std::max(step.certain, double{band.lost} + seam);
   step.mean_square = band.weight_sum > 0 ? band.squared_sum / band.weight_sum : 0;
-  const auto add_foreign = [&](const Band& of) {
-    for (const GhostRef& ref : of.foreign) {
-      if (step.finer_neighbours.empty() || step.finer_neighbours.back() != ref.tile)
-        step.finer_neighbours.push_back(ref.tile);
-    }
-  };
-  add_foreign(band);
-  for (const cluster_simplify::BandOf& neighbour : neighbours) {
-    add_foreign(neighbour.band);
-    const Tree::Children children = forest.tree().children({node.level, neighbour.tile});
-    for (const NodeId child : children.span())
-      step.finer_neighbours.push_back(child.index);
-  }
-  make_unique(step.finer_neighbours);
   return step;
 }
 
@@ -219,8 +215,9 @@ void simplify(Forest& forest, BuildJournal& journal, const SimplifyOptions& opti
   simplifier.begin(tree.depth(), {});
   for (int l = raw(tree.depth()) - 1; l >= 0; --l) {
     const auto level = static_cast<Level>(l);
+    const TileRoom room(plan, forest.pool(), heaviest_contracted(forest, level));
     ordered_for(
-        left[l].size(), plan.tiles_in_flight, cancel,
+        left[l].size(), room.in_flight(), cancel,
         [&](std::size_t i) {
           const NodeId node{level, left[l][i]};
           simplifier.make_tile(node);

@@ -1,11 +1,11 @@
-#include "pipeline/corner_triangle.h"
 #include "pipeline/cut.h"
 #include "pipeline/verify_parts.h"
 
 #include <algorithm>
+#include <compare>
 #include <cstring>
-#include <optional>
-#include <string>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -118,41 +118,74 @@ void check_chains(const VerifyJob& job, const PublishedTile& tile, const GhostGr
   wrong.report(job, tile.node, group.node, "have chains that are not its parent maps'");
 }
 
-/// The border triangles of a node of level `level` that `tile` stands for.
-std::vector<CornerTriangle> border_at(const PublishedTile& tile, Level level, const Tree& tree) {
-  return tile.node.level == level ? border_of(tile, tree) : early_border_of(tile, tree);
+/// A border triangle, once for each other tile that it touches.
+struct SharedTriangle {
+  std::uint32_t neighbour;
+  CornerTriangle triangle;
+  friend auto operator<=>(const SharedTriangle&, const SharedTriangle&) = default;
+};
+
+std::vector<SharedTriangle> shared_triangles(NodeId node,
+                                             const std::vector<CornerTriangle>& border) {
+  std::vector<SharedTriangle> shared;
+  for (const CornerTriangle& t : border) {
+    for (std::size_t k = 0; k < t.size(); ++k) {
+      const std::uint32_t tile = tile_index(t[k]);
+      const bool is_met = std::any_of(t.begin(), t.begin() + static_cast<std::ptrdiff_t>(k),
+                                      [&](Corner c) { return tile_index(c) == tile; });
+      if (tile != node.index && !is_met)
+        shared.push_back({tile, t});
+    }
+  }
+  std::sort(shared.begin(), shared.end());
+  return shared;
+}
+
+/// Whether all of one neighbour's shared triangles are among `theirs`, as often as here.
+bool are_listed(std::span<const SharedTriangle> shared, const std::vector<CornerTriangle>& theirs) {
+  for (std::size_t begin = 0, end = 0; begin < shared.size(); begin = end) {
+    while (end < shared.size() && shared[end] == shared[begin])
+      ++end;
+    const auto [low, high] = std::equal_range(theirs.begin(), theirs.end(), shared[begin].triangle);
+    if (static_cast<std::size_t>(high - low) < end - begin)
+      return false;
+  }
+  return true;
 }
 
 /// Every triangle of `border` (of `node`) is in the list of each other tile it touches.
-void check_lists(const VerifyJob& job, NodeId node, const std::vector<CornerTriangle>& border) {
-  const Tree& tree = job.tree();
-  std::vector<std::uint32_t> neighbours;
-  for (const CornerTriangle& t : border) {
-    for (Corner c : t) {
-      if (tile_index(c) != node.index)
-        neighbours.push_back(tile_index(c));
-    }
-  }
-  std::sort(neighbours.begin(), neighbours.end());
-  neighbours.erase(std::unique(neighbours.begin(), neighbours.end()), neighbours.end());
-  for (std::uint32_t index : neighbours) {
-    const NodeId neighbour{node.level, index};
-    const auto other = job.tiles.find(neighbour);
-    if (!other)
+void check_lists(const VerifyJob& job, BorderLists& lists, NodeId node,
+                 const std::vector<CornerTriangle>& border) {
+  const std::vector<SharedTriangle> all = shared_triangles(node, border);
+  for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
+    while (end < all.size() && all[end].neighbour == all[begin].neighbour)
+      ++end;
+    const NodeId neighbour{node.level, all[begin].neighbour};
+    if (!job.tiles.find(neighbour))
       continue;
-    const auto theirs = border_at(*other, node.level, tree);
-    const auto shared = touching(border, index);
-    if (std::includes(theirs.begin(), theirs.end(), shared.begin(), shared.end()))
+    if (are_listed(std::span(all).subspan(begin, end - begin), *lists.get(neighbour)))
       continue;
     job.problems.add(
         fmt::format("tile {}: some of its {} border triangles with tile {} are not listed there",
-                    to_text(node), shared.size(), to_text(neighbour)));
+                    to_text(node), end - begin, to_text(neighbour)));
   }
 }
 
 }  // namespace
 
-void verify_borders(const VerifyJob& job, const PublishedTile& tile) {
+BorderLists make_border_lists(const VerifyJob& job) {
+  return {job.options.memory_budget / 16,
+          [&job](NodeId node) {
+            const auto tile = job.tiles.find(node);
+            if (!tile)
+              return std::vector<CornerTriangle>{};
+            return tile->node.level == node.level ? border_of(*tile, job.tree())
+                                                  : early_border_of(*tile, job.tree());
+          },
+          [](const auto& list) { return list.size() * sizeof(list[0]) + sizeof(list); }};
+}
+
+void verify_borders(const VerifyJob& job, BorderLists& lists, const PublishedTile& tile) {
   const Tree& tree = job.tree();
   for (const GhostGroup& group : group_ghosts(tile)) {
     if (group.node == tile.node) {
@@ -164,12 +197,12 @@ void verify_borders(const VerifyJob& job, const PublishedTile& tile) {
     }
     check_chains(job, tile, group);
   }
-  check_lists(job, tile.node, border_of(tile, tree));
+  check_lists(job, lists, tile.node, *lists.get(tile.node));
   if (tile.node.level == Level{})
     return;
   const NodeId above = tree.parent(tile.node);
   if (tree.is_early(above))
-    check_lists(job, above, early_border_of(tile, tree));
+    check_lists(job, lists, above, *lists.get(above));
 }
 
 }  // namespace meshhier::pipeline

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pipeline/cancel.h"
+#include "pipeline/corner_triangle.h"
 #include "pipeline/node_cache.h"
 #include "pipeline/progress.h"
 #include "pipeline/verify.h"
@@ -80,8 +81,15 @@ void verify_tiles(const VerifyJob& job);
 /// Counts, bounds, errors, order, rim of one tile against its record and its parent's.
 void verify_tile(const VerifyJob& job, const TileRecord& record, const PublishedTile& tile);
 
+/// Border triangles by node, early ones too. Kept, because where all tiles are neighbours each
+/// would else be made as often as there are tiles.
+using BorderLists = NodeCache<std::vector<CornerTriangle>>;
+
+/// `job` must outlive it.
+BorderLists make_border_lists(const VerifyJob& job);
+
 /// Ghosts, chains and border lists of one tile against its neighbours.
-void verify_borders(const VerifyJob& job, const PublishedTile& tile);
+void verify_borders(const VerifyJob& job, BorderLists& lists, const PublishedTile& tile);
 
 /// That a simplified tile is exactly the image of its children under their parent maps.
 void verify_image(const VerifyJob& job, const PublishedTile& tile);

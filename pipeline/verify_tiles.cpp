@@ -136,12 +136,13 @@ void verify_tiles(const VerifyJob& job) {
   const auto& records = job.reader.records();
   std::uint64_t ghosts = 0, border = 0;
   std::size_t off_target = 0;
+  BorderLists lists = make_border_lists(job);
   job.progress.stage("verify", records.size(), "tiles");
   for (const TileRecord& record : records) {
     job.cancel.check();
     if (const auto tile = job.tiles.find(record.node)) {
       verify_tile(job, record, *tile);
-      verify_borders(job, *tile);
+      verify_borders(job, lists, *tile);
       if (!job.tree().is_partition(record.node))
         verify_image(job, *tile);
       ghosts += record.ghost_count;

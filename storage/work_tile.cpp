@@ -131,13 +131,16 @@ void get_triangles(Unpacker& unpacker, const WorkTileCounts& counts,
 
 }  // namespace
 
+std::size_t work_vertex_bytes(std::size_t own_count, int channels) {
+  return sizeof(WorkTileCounts) + own_count * (16 + 4 * static_cast<std::size_t>(channels));
+}
+
 std::vector<std::byte> encode_work_tile(const WorkTile& tile) {
   const WorkTileCounts counts{static_cast<std::uint32_t>(tile.vertices.size()), tile.rim_count,
                               static_cast<std::uint32_t>(tile.foreign.size()),
                               static_cast<std::uint32_t>(tile.interior.size()),
                               static_cast<std::uint32_t>(tile.border.size())};
-  Packer packer(sizeof counts +
-                tile.vertices.size() * (16 + 4 * static_cast<std::size_t>(tile.vertices.channels)) +
+  Packer packer(work_vertex_bytes(tile.vertices.size(), tile.vertices.channels) +
                 tile.foreign.size() * 8 + triangle_bytes(counts));
   packer.put(std::span(&counts, 1));
   packer.put(std::span<const Vec3f>(tile.vertices.positions));

@@ -10,6 +10,9 @@
 
 namespace meshhier::storage {
 
+/// Bytes of an encoded tile that its own vertices take, whatever its triangles.
+std::size_t work_vertex_bytes(std::size_t own_count, int channels);
+
 std::vector<std::byte> encode_work_tile(const WorkTile& tile);
 /// Requires bytes of encode_work_tile with the same `channels`; throws Error(internal) otherwise.
 WorkTile decode_work_tile(std::span<const std::byte> bytes, int channels);

@@ -59,13 +59,9 @@ class Level {
   }
 
   double seam(std::uint32_t tile) const {
-    std::vector<BandOf> neighbours;
-    for (const GhostRef& ghost : drawn_[tile].ghosts) {
-      if (neighbours.empty() || neighbours.back().tile != ghost.tile)
-        neighbours.push_back(bands_[ghost.tile]);
-    }
     const std::vector<GhostRef> foreign = mapped(band(tile).foreign);
-    return seam_gap({drawn_[tile], bands_[tile], foreign, neighbours});
+    return seam_gap({drawn_[tile], bands_[tile], foreign,
+                     [&](std::uint32_t neighbour) { return band(neighbour); }});
   }
 
   /// As the stage simplify sums it up.

@@ -47,13 +47,33 @@ class BoundChainTest : public testing::Test {
   std::unique_ptr<BoundChain> chain_;
 };
 
-TEST_F(BoundChainTest, MakeUniqueSortsAndDropsRepeats) {
-  std::vector<std::uint32_t> tiles{3, 1, 3, 2, 1};
-  make_unique(tiles);
-  EXPECT_THAT(tiles, ElementsAre(1U, 2U, 3U));
-  tiles.clear();
-  make_unique(tiles);
-  EXPECT_THAT(tiles, IsEmpty());
+TEST(TileSetTest, SortsAndDropsRepeats) {
+  TileSet tiles;
+  for (const std::uint32_t tile : {3U, 1U, 3U, 2U, 1U})
+    tiles.add(tile);
+  tiles.settle();
+  EXPECT_THAT(tiles.numbers(), ElementsAre(1U, 2U, 3U));
+  EXPECT_FALSE(tiles.is_all());
+  TileSet none;
+  none.settle();
+  EXPECT_THAT(none.numbers(), IsEmpty());
+}
+
+TEST(TileSetTest, MoreThanAFewAreAll) {
+  TileSet tiles;
+  for (int round = 0; round < 9; ++round) {
+    for (std::uint32_t tile = 0; tile < TileSet::kMost; ++tile)
+      tiles.add(tile);
+  }
+  tiles.settle();
+  EXPECT_FALSE(tiles.is_all());
+  EXPECT_EQ(tiles.numbers().size(), TileSet::kMost);
+  tiles.add(TileSet::kMost);
+  tiles.settle();
+  EXPECT_TRUE(tiles.is_all());
+  EXPECT_TRUE(TileSet(tiles.numbers()).is_all());
+  tiles.add(5);
+  EXPECT_TRUE(tiles.is_all());
 }
 
 TEST_F(BoundChainTest, StepsAddUpLevelByLevel) {
@@ -74,7 +94,7 @@ TEST_F(BoundChainTest, WhatATileWasHeldAgainstCountsOnTheWayBack) {
   // second step below is held against its neighbour's tile of the finer level.
   make(8);
   add(2, {{1, 0, {}}, {1, 0, {}}, {7, 0, {}}, {1, 0, {}}});
-  add(1, {{2, 0, {2}}, {3, 0, {}}});
+  add(1, {{2, 0, {{2}}}, {3, 0, {}}});
   EXPECT_FLOAT_EQ(bound(1, 0), 2 + 7);  // back through tile 2 of level 2
   EXPECT_FLOAT_EQ(bound(1, 1), 3 + 7);
 }
@@ -83,7 +103,7 @@ TEST_F(BoundChainTest, PointsThatMayLieInANeighbourTakeItsStep) {
   make(8);
   // Tile 0 of level 2 draws what was tile 2's partition (4): from under tile 0 a point may have
   // come to lie in what partition 4 belongs to.
-  add(2, {{1, 0, {4}}, {1, 0, {}}, {5, 0, {}}, {1, 0, {}}});
+  add(2, {{1, 0, {{4}}}, {1, 0, {}}, {5, 0, {}}, {1, 0, {}}});
   EXPECT_FLOAT_EQ(bound(2, 0), 1);  // what lay in it took its own step
   EXPECT_FLOAT_EQ(bound(2, 1), 1);
   // It may have ended in tile 2, whose parent is tile 1: that one takes the next.

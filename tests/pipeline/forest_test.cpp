@@ -90,6 +90,7 @@ class Grove {
     for (std::uint32_t c = 0; c < map.count(); ++c)
       put_chunk(c, chunks, map);
     MemoryPlan plan;
+    plan.work_bytes = 1 << 20;
     plan.tiles_in_flight = setting.in_flight;
     NoProgress progress;
     simplify(forest_, journal_, {60, numbering(), {}, kForestDiagonal}, plan, progress,

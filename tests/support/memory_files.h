@@ -1,42 +1,61 @@
-// Files that live in memory.
+// A file system in memory: fast enough to damage every byte of a hierarchy and look what happens,
+// and for hundreds of builds, of which each would wait for a disk.
 #pragma once
 
 #include "storage/file.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <mutex>
+#include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace meshhier::tests {
 
-/// A file system whose files are strings. Only what readers and writers use is there.
+/// Paths are taken as they are written, normalized; there are no links. Thread-safe.
 class MemoryFiles : public storage::FileSystem {
  public:
+  using Bytes = std::vector<std::byte>;
+
   std::unique_ptr<storage::File> open(const std::filesystem::path& path) override;
   std::unique_ptr<storage::File> create(const std::filesystem::path& path) override;
   std::unique_ptr<storage::File> reopen(const std::filesystem::path& path) override;
   storage::FileIdentity identity(const std::filesystem::path& path) override;
-  std::unique_ptr<storage::FileLock> try_lock(const std::filesystem::path&) override {
-    return std::make_unique<storage::FileLock>();
-  }
+  std::unique_ptr<storage::FileLock> try_lock(const std::filesystem::path& path) override;
   bool exists(const std::filesystem::path& path) override;
-  std::filesystem::path canonical(const std::filesystem::path& path) override { return path; }
-  std::vector<std::filesystem::path> list(const std::filesystem::path&) override { return {}; }
-  std::vector<std::filesystem::path> children(const std::filesystem::path&) override { return {}; }
-  void make_directories(const std::filesystem::path&) override {}
+  std::filesystem::path canonical(const std::filesystem::path& path) override;
+  std::vector<std::filesystem::path> list(const std::filesystem::path& directory) override;
+  std::vector<std::filesystem::path> children(const std::filesystem::path& directory) override;
+  void make_directories(const std::filesystem::path& path) override;
   void remove_all(const std::filesystem::path& path) override;
   void rename(const std::filesystem::path& from, const std::filesystem::path& to) override;
   void sync_tree(const std::filesystem::path&) override {}
-  std::uint64_t free_bytes(const std::filesystem::path&) override { return 0; }
+  std::uint64_t free_bytes(const std::filesystem::path&) override { return std::uint64_t{1} << 40; }
 
-  void put(const std::string& name, std::string content);
-  const std::string& content(const std::string& name) const { return *contents_.at(name); }
+  /// A file's content, to be looked at and changed while nobody else does. Requires the file to be
+  /// there.
+  Bytes& bytes(const std::filesystem::path& path);
+
+  /// The same as text.
+  void put(const std::filesystem::path& path, std::string_view content);
+  std::string content(const std::filesystem::path& path);
+
+  struct Content {
+    Bytes bytes;
+    std::mutex mutex;
+  };
 
  private:
-  std::map<std::string, std::shared_ptr<std::string>> contents_;
+  bool is_directory(const std::filesystem::path& path) const;
+
+  std::mutex mutex_;  ///< of what follows
+  std::map<std::filesystem::path, std::shared_ptr<Content>> files_;
+  std::set<std::filesystem::path> directories_;  ///< those made; others are there by their files
 };
 
 }  // namespace meshhier::tests

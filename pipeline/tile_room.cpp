@@ -1,0 +1,61 @@
+#include "pipeline/tile_room.h"
+
+#include "hierarchy/error.h"
+#include "pipeline/size_text.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace meshhier::pipeline {
+
+namespace {
+
+/// The pool of a larger budget would first take what has gone to the disk; and a part of the budget
+/// is the allocator's (memory_plan.cpp).
+[[noreturn]] void refuse(const storage::MemoryPool& pool, std::uint64_t needed_bytes,
+                         std::uint64_t lacking_bytes) {
+  constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+  const std::uint64_t more =
+      (lacking_bytes + pool.scratch_use().peak_bytes_on_disk()) / 11 * 12 / kMiB + 1;
+  throw Error(ErrorCode::budget,
+              fmt::format("a tile of the mesh has so many triangles at few vertices that it takes "
+                          "{}; it needs a memory_budget larger by {}",
+                          rounded_size_text(needed_bytes), exact_size_text(more * kMiB)));
+}
+
+}  // namespace
+
+TileRoom::TileRoom(const MemoryPlan& plan, storage::MemoryPool& pool, std::uint64_t heaviest_bytes)
+    : pool_(pool), in_flight_(plan.tiles_in_flight) {
+  if (heaviest_bytes * in_flight_ <= plan.work_bytes)
+    return;
+  if (heaviest_bytes > plan.work_bytes) {
+    const std::uint64_t lacking = heaviest_bytes - plan.work_bytes;
+    if (!pool.try_take(lacking))
+      refuse(pool, heaviest_bytes, lacking);
+    taken_ = lacking;
+  }
+  in_flight_ = std::clamp<std::uint64_t>(plan.work_bytes / heaviest_bytes, 1, in_flight_);
+}
+
+std::uint64_t heaviest_read(const Forest& forest, Level level) {
+  std::uint64_t most = 0;
+  for (std::uint32_t i = 0; i < forest.tree().node_count(level); ++i)
+    most = std::max(most, forest.stored_triangle_bytes({level, i}));
+  return most * TileRoom::kRead;
+}
+
+std::uint64_t heaviest_contracted(const Forest& forest, Level level) {
+  std::uint64_t most = 0;
+  for (std::uint32_t i = 0; i < forest.tree().node_count(level); ++i) {
+    std::uint64_t bytes = 0;
+    const Tree::Children children = forest.tree().children({level, i});
+    for (const NodeId child : children.span())
+      bytes += forest.stored_triangle_bytes(child);
+    most = std::max(most, bytes);
+  }
+  return most * TileRoom::kContracted;
+}
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,44 @@
+// Memory for tiles with far more triangles than vertices.
+#pragma once
+
+#include "pipeline/forest.h"
+#include "pipeline/memory_plan.h"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace meshhier::pipeline {
+
+/// The memory plan counts with the triangles that vertices of the mesh have on average. Around a
+/// vertex of a million triangles, or in a soup, a tile has many times as many: then fewer are at
+/// work at a time, and what one alone needs beyond the plan is taken from the pool, until this
+/// object goes.
+class TileRoom {
+ public:
+  /// How many bytes are at work for each that Forest::stored_triangle_bytes() tells. Measured with
+  /// fans, books and soups: 19 to 22, and half of it where tiles are only read.
+  static constexpr std::uint64_t kContracted = 24;
+  static constexpr std::uint64_t kRead = 12;
+
+  /// `heaviest_bytes`: what the largest of the items takes at work. Throws Error(budget) naming
+  /// what would do.
+  TileRoom(const MemoryPlan& plan, storage::MemoryPool& pool, std::uint64_t heaviest_bytes);
+  TileRoom(const TileRoom&) = delete;
+  TileRoom& operator=(const TileRoom&) = delete;
+  ~TileRoom() { pool_.give_back(taken_); }
+
+  /// Items at a time.
+  std::size_t in_flight() const { return in_flight_; }
+
+ private:
+  storage::MemoryPool& pool_;
+  std::uint64_t taken_ = 0;
+  std::size_t in_flight_;
+};
+
+/// Of the level's tiles, what the heaviest takes while it is read.
+std::uint64_t heaviest_read(const Forest& forest, Level level);
+/// Of the level's nodes, what the heaviest takes while its tile is made of its children's.
+std::uint64_t heaviest_contracted(const Forest& forest, Level level);
+
+}  // namespace meshhier::pipeline

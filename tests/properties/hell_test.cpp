@@ -1,0 +1,264 @@
+// Meshes that are legal and unreasonable: each is built by every method and keeps all promises, or
+// is refused with a reason.
+#include "bench/hell.h"
+
+#include "hierarchy/error.h"
+#include "pipeline/build.h"
+#include "pipeline/config.h"
+#include "pipeline/inspect.h"
+#include "pipeline/verify.h"
+#include "pipeline/verify_error.h"
+#include "storage/hierarchy_reader.h"
+#include "tests/pipeline/sample_hierarchy.h"
+#include "tests/support/memory_files.h"
+#include "tests/support/sizes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace meshhier::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class HellTest : public testing::Test {
+ protected:
+  HellTest() {
+    config_.input = "/models/mesh.ply";
+    config_.output = "/models/mesh.hier";
+    config_.threads = 2;
+  }
+
+  void write(bench::LoadedMesh mesh) {
+    bench::write_ply(files_, config_.input, *bench::as_generated(std::move(mesh)));
+  }
+
+  void use_tiles_of(std::uint32_t vertices) {
+    config_.partition.vertices = vertices;
+    config_.simplify.vertices = vertices;
+  }
+
+  void use_method(SimplifyConfig method) {
+    method.vertices = config_.simplify.vertices;
+    config_.simplify = method;
+  }
+
+  void build() { build_hierarchy(config_, {.force = true}, {files_, progress_, cancel_}); }
+
+  std::vector<std::string> problems() {
+    VerifyOptions options;
+    options.input = config_.input;
+    options.cuts = 5;
+    return verify_hierarchy(files_, config_.output, options, progress_, cancel_).problems;
+  }
+
+  void expect_sound() {
+    ASSERT_NO_THROW(build());
+    EXPECT_THAT(problems(), IsEmpty());
+    EXPECT_NO_THROW(inspect_text(files_, config_.output, {}));
+  }
+
+  /// The error that a build is refused with.
+  std::optional<Error> refusal() {
+    try {
+      build();
+    } catch (const Error& error) {
+      return error;
+    }
+    return std::nullopt;
+  }
+
+  tests::MemoryFiles files_;
+  NoProgress progress_;
+  CancelToken cancel_;
+  Config config_;
+};
+
+/// Every case there is.
+class HellCaseTest : public HellTest, public testing::WithParamInterface<bench::HellCase> {
+ protected:
+  bench::LoadedMesh mesh(std::uint64_t size) const {
+    return bench::make_hell(GetParam().name, size);
+  }
+};
+
+TEST_P(HellCaseTest, IsSoundWhateverTheMethod) {
+  write(mesh(2000));
+  use_tiles_of(120);
+  for (const auto& [name, method] : tests::all_simplify_methods()) {
+    SCOPED_TRACE(name);
+    use_method(method);
+    expect_sound();
+  }
+}
+
+TEST_P(HellCaseTest, IsSoundInPartitionsOfFourVertices) {
+  write(mesh(300));
+  use_tiles_of(4);
+  for (const auto& [name, method] : tests::all_simplify_methods()) {
+    SCOPED_TRACE(name);
+    use_method(method);
+    expect_sound();
+  }
+}
+
+TEST_P(HellCaseTest, IsSoundInOnePartitionLargerThanTheMesh) {
+  write(mesh(1000));
+  use_tiles_of(32768);
+  config_.memory_budget = 128 * tests::kMiB;  // tiles so large would take more
+  expect_sound();
+}
+
+TEST_P(HellCaseTest, IsSoundHoweverSmall) {
+  for (const std::uint64_t size : {0U, 1U, 2U, 3U, 5U, 8U}) {
+    SCOPED_TRACE("size " + std::to_string(size));
+    bench::LoadedMesh small = mesh(size);
+    if (small.positions.empty())
+      continue;
+    write(std::move(small));
+    use_tiles_of(4);
+    expect_sound();
+  }
+}
+
+TEST_P(HellCaseTest, IsWithinItsBounds) {
+  write(mesh(1000));
+  use_tiles_of(100);
+  for (const auto& [name, method] : tests::all_simplify_methods()) {
+    SCOPED_TRACE(name);
+    use_method(method);
+    ASSERT_NO_THROW(build());
+    const ErrorOptions options{AllLevels{}, 2000, config_.memory_budget};
+    for (const ErrorMeasurement& level :
+         measure_errors(files_, config_.output, options, progress_, cancel_)) {
+      if (level.triangles == 0)
+        continue;  // cells that hold the edge of the book close it
+      EXPECT_THAT(level.problems, IsEmpty()) << level.name;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, HellCaseTest, testing::ValuesIn(bench::hell_cases()),
+                         [](const auto& hell) {
+                           std::string name(hell.param.name);
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+bench::LoadedMesh loose_vertices(std::size_t count) {
+  bench::LoadedMesh mesh;
+  for (std::size_t i = 0; i < count; ++i)
+    mesh.positions.push_back({static_cast<double>(i), static_cast<double>(i * i), 1});
+  return mesh;
+}
+
+TEST_F(HellTest, NoVerticesAreRefusedAsAnInputError) {
+  write(loose_vertices(0));
+  const auto error = refusal();
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::input);
+  EXPECT_THAT(error->what(), HasSubstr("has no vertices"));
+  EXPECT_FALSE(files_.exists(config_.output));
+}
+
+TEST_F(HellTest, OneTwoAndThreeVerticesAreSound) {
+  for (const std::size_t count : {1U, 2U, 3U}) {
+    for (const std::uint32_t partitions : {1U, 2U, 3U}) {
+      if (partitions > count)
+        continue;
+      SCOPED_TRACE(std::to_string(count) + " vertices, " + std::to_string(partitions));
+      config_.partition.count = partitions;
+      bench::LoadedMesh mesh = loose_vertices(count);
+      write(mesh);
+      expect_sound();
+      const auto last = static_cast<std::uint32_t>(count - 1);
+      mesh.triangles = {{0, last / 2, last}};  // of one and two vertices degenerate
+      write(mesh);
+      expect_sound();
+    }
+  }
+}
+
+TEST_F(HellTest, MorePartitionsThanVerticesAreRefusedAsAUsageError) {
+  write(loose_vertices(3));
+  config_.partition.count = 4;
+  const auto error = refusal();
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::usage);
+  EXPECT_THAT(error->what(), HasSubstr("has only 3 vertices"));
+}
+
+TEST_F(HellTest, BoundsBeyondSinglePrecisionAreRefusedAsAnInputError) {
+  bench::LoadedMesh mesh = bench::make_hell("huge", 300);
+  for (Vec3d& p : mesh.positions)
+    p = p * 1.5e8;
+  write(mesh);
+  use_tiles_of(4);
+  const auto error = refusal();
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::input);
+  EXPECT_THAT(error->what(), HasSubstr("use a larger unit of length"));
+  EXPECT_FALSE(files_.exists(config_.output));
+  for (Vec3d& p : mesh.positions)
+    p = Vec3d{3e38, 3e38, 3e38};  // farther away, but small
+  write(mesh);
+  expect_sound();
+}
+
+TEST_F(HellTest, AnOutlierFarBeyondSinglePrecisionIsRefusedAsAnInputError) {
+  bench::LoadedMesh mesh = loose_vertices(20);
+  mesh.double_coordinates = true;
+  mesh.positions[7].y = -1e300;
+  write(mesh);
+  const auto error = refusal();
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::input);
+  EXPECT_THAT(error->what(), HasSubstr("beyond the range of single precision"));
+}
+
+/// All positions of all tiles, times a factor.
+std::vector<Vec3d> scaled_positions(storage::FileSystem& files, const fs::path& directory,
+                                    double factor) {
+  const storage::HierarchyReader reader(files, directory);
+  std::vector<Vec3d> positions;
+  for (const TileRecord& record : reader.records()) {
+    for (const Vec3f p : reader.read_tile(record.node).mesh.vertices.positions)
+      positions.push_back(to_double(p) * factor);
+  }
+  return positions;
+}
+
+TEST_F(HellTest, TheUnitOfLengthDoesNotMatter) {
+  const bench::LoadedMesh mesh = bench::make_hell("mirrored", 3000);
+  use_tiles_of(120);
+  for (const auto& [name, method] : tests::all_simplify_methods()) {
+    SCOPED_TRACE(name);
+    use_method(method);
+    write(mesh);
+    build();
+    const std::vector<Vec3d> expected = scaled_positions(files_, config_.output, 1);
+    for (const int exponent : {-99, 99}) {
+      SCOPED_TRACE("times 2^" + std::to_string(exponent));
+      bench::LoadedMesh scaled = mesh;
+      for (Vec3d& p : scaled.positions)
+        p = p * std::ldexp(1.0, exponent);
+      write(scaled);
+      build();
+      EXPECT_EQ(scaled_positions(files_, config_.output, std::ldexp(1.0, -exponent)), expected);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace meshhier::pipeline
