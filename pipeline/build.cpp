@@ -183,6 +183,8 @@ BuildReport build_hierarchy(const Config& config, const BuildOptions& options,
   try {
     return build_in(work, config, build, std::move(source), environment);
   } catch (const Error& error) {
+    if (error.code() == ErrorCode::input)
+      work.keep(false);  // nothing to go on with
     if (!work.is_kept() || error.code() == ErrorCode::exists)
       throw;
     throw told_how_to_go_on(error, work);

@@ -65,6 +65,17 @@ std::uint64_t Forest::stored_triangle_bytes(NodeId node) const {
          storage::work_vertex_bytes(own_count(node), channels_);
 }
 
+void Forest::drop_copies(std::uint64_t free_bytes) {
+  for (std::size_t level = levels_.size(); level-- > 0;) {
+    for (storage::BlobStore* store : {&levels_[level].tiles, &levels_[level].rims,
+                                      &levels_[level].bands, &levels_[level].parent_maps}) {
+      if (pool_.free_bytes() >= free_bytes)
+        return;
+      store->drop_copies();
+    }
+  }
+}
+
 LoadedTile Forest::load_with_mapped(NodeId node) const {
   const LevelStore& level = levels_[raw(node.level)];
   WorkTile work = storage::decode_work_tile(level.tiles.view(node.index).bytes(), channels_);

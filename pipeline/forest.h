@@ -58,6 +58,10 @@ class Forest {
   /// What is kept in memory counts against it.
   storage::MemoryPool& pool() const { return pool_; }
 
+  /// Takes tiles out of memory, which are on disk too, the finest first, until the pool has so much
+  /// free; while nothing is loaded.
+  void drop_copies(std::uint64_t free_bytes);
+
   LoadedTile load_with_mapped(NodeId node) const;
   BuildTile load(NodeId node) const { return load_with_mapped(node).tile; }
   Band band(NodeId node) const;

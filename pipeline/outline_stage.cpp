@@ -29,13 +29,13 @@ Level sector_level(const Tree& tree, std::uint32_t sectors) {
 }
 
 /// Adds all sectors of a level; false if their lines are too many and there is a coarser level.
-bool collect(const Forest& forest, Level level, outline::OutlineBuilder& builder,
-             const MemoryPlan& plan, Progress& progress, const CancelToken& cancel) {
+bool collect(Forest& forest, Level level, outline::OutlineBuilder& builder, const MemoryPlan& plan,
+             Progress& progress, const CancelToken& cancel) {
   using Sector = std::optional<outline::OutlineBuilder::Sector>;
   const std::uint32_t count = forest.tree().node_count(level);
   progress.stage("outline", count, "sectors");
   std::atomic<bool> too_many{false};
-  const TileRoom room(plan, forest.pool(), heaviest_read(forest, level));
+  const TileRoom room = room_for(forest, plan, heaviest_read(forest, level));
   ordered_for(
       count, room.in_flight(), cancel,
       [&](std::size_t i) -> Sector {
@@ -56,7 +56,7 @@ bool collect(const Forest& forest, Level level, outline::OutlineBuilder& builder
 
 }  // namespace
 
-OutlineStageResult make_outline(const Forest& forest, const OutlineConfig& config, double diagonal,
+OutlineStageResult make_outline(Forest& forest, const OutlineConfig& config, double diagonal,
                                 const MemoryPlan& plan, Progress& progress,
                                 const CancelToken& cancel) {
   Level level = sector_level(forest.tree(), config.sectors);

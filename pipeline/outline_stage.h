@@ -16,7 +16,7 @@ struct OutlineStageResult {
 };
 
 /// `diagonal`: of the model's bounding box.
-OutlineStageResult make_outline(const Forest& forest, const OutlineConfig& config, double diagonal,
+OutlineStageResult make_outline(Forest& forest, const OutlineConfig& config, double diagonal,
                                 const MemoryPlan& plan, Progress& progress,
                                 const CancelToken& cancel);
 

@@ -87,7 +87,7 @@ TileRecord write_tile(const Forest& forest, NodeId node, const PublishInput& inp
 
 }  // namespace
 
-void publish(const Forest& forest, BuildJournal& journal, const PublishInput& input,
+void publish(Forest& forest, BuildJournal& journal, const PublishInput& input,
              const std::filesystem::path& directory, const MemoryPlan& plan,
              storage::FileSystem& files, Progress& progress, const CancelToken& cancel) {
   const Tree& tree = forest.tree();
@@ -107,7 +107,7 @@ void publish(const Forest& forest, BuildJournal& journal, const PublishInput& in
   std::uint64_t heaviest = 0;
   for (int l = 0; l <= raw(tree.depth()); ++l)
     heaviest = std::max(heaviest, heaviest_read(forest, static_cast<Level>(l)));
-  const TileRoom room(plan, forest.pool(), heaviest);
+  const TileRoom room = room_for(forest, plan, heaviest);
   ordered_for(
       left.size(), room.in_flight(), cancel,
       [&](std::size_t i) { return write_tile(forest, nodes[left[i]], input, directory, files); },

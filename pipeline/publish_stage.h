@@ -27,7 +27,7 @@ struct PublishInput {
 };
 
 /// Writes the whole hierarchy into `directory`, but for tiles that the journal has there.
-void publish(const Forest& forest, BuildJournal& journal, const PublishInput& input,
+void publish(Forest& forest, BuildJournal& journal, const PublishInput& input,
              const std::filesystem::path& directory, const MemoryPlan& plan,
              storage::FileSystem& files, Progress& progress, const CancelToken& cancel);
 

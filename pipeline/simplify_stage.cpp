@@ -215,7 +215,7 @@ void simplify(Forest& forest, BuildJournal& journal, const SimplifyOptions& opti
   simplifier.begin(tree.depth(), {});
   for (int l = raw(tree.depth()) - 1; l >= 0; --l) {
     const auto level = static_cast<Level>(l);
-    const TileRoom room(plan, forest.pool(), heaviest_contracted(forest, level));
+    const TileRoom room = room_for(forest, plan, heaviest_contracted(forest, level));
     ordered_for(
         left[l].size(), room.in_flight(), cancel,
         [&](std::size_t i) {

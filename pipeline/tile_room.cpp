@@ -11,13 +11,11 @@ namespace meshhier::pipeline {
 
 namespace {
 
-/// The pool of a larger budget would first take what has gone to the disk; and a part of the budget
-/// is the allocator's (memory_plan.cpp).
+/// A part of the budget is the allocator's (memory_plan.cpp).
 [[noreturn]] void refuse(const storage::MemoryPool& pool, std::uint64_t needed_bytes,
                          std::uint64_t lacking_bytes) {
   constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
-  const std::uint64_t more =
-      (lacking_bytes + pool.scratch_use().peak_bytes_on_disk()) / 11 * 12 / kMiB + 1;
+  const std::uint64_t more = (lacking_bytes - pool.free_bytes()) / 11 * 12 / kMiB + 1;
   throw Error(ErrorCode::budget,
               fmt::format("a tile of the mesh has so many triangles at few vertices that it takes "
                           "{}; it needs a memory_budget larger by {}",
@@ -37,6 +35,12 @@ TileRoom::TileRoom(const MemoryPlan& plan, storage::MemoryPool& pool, std::uint6
     taken_ = lacking;
   }
   in_flight_ = std::clamp<std::uint64_t>(plan.work_bytes / heaviest_bytes, 1, in_flight_);
+}
+
+TileRoom room_for(Forest& forest, const MemoryPlan& plan, std::uint64_t heaviest_bytes) {
+  if (heaviest_bytes > plan.work_bytes)
+    forest.drop_copies(heaviest_bytes - plan.work_bytes);
+  return {plan, forest.pool(), heaviest_bytes};
 }
 
 std::uint64_t heaviest_read(const Forest& forest, Level level) {

@@ -36,6 +36,9 @@ class TileRoom {
   std::size_t in_flight_;
 };
 
+/// A TileRoom in the forest's pool, of which tiles kept in memory make way.
+TileRoom room_for(Forest& forest, const MemoryPlan& plan, std::uint64_t heaviest_bytes);
+
 /// Of the level's tiles, what the heaviest takes while it is read.
 std::uint64_t heaviest_read(const Forest& forest, Level level);
 /// Of the level's nodes, what the heaviest takes while its tile is made of its children's.

@@ -64,12 +64,18 @@ BlobView BlobStore::view(std::size_t index) const {
   return BlobView(std::move(bytes), size);
 }
 
-void BlobStore::clear() {
+void BlobStore::drop_copies() {
   for (Blob& blob : blobs_) {
     if (blob.memory)
       scratch_->pool().give_back(blob.stored.bytes);
-    blob = {};
+    blob.memory.reset();
   }
+}
+
+void BlobStore::clear() {
+  drop_copies();
+  for (Blob& blob : blobs_)
+    blob = {};
 }
 
 }  // namespace meshhier::storage

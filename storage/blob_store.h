@@ -59,6 +59,8 @@ class BlobStore {
   /// A whole blob, without a copy if it is in memory. Throws Error(io) if the disk has changed it.
   BlobView view(std::size_t index) const;
 
+  /// Gives the memory back; all stays on disk. While there is no view.
+  void drop_copies();
   /// Forgets everything and gives its memory back.
   void clear();
 

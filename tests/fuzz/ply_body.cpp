@@ -114,6 +114,9 @@ std::string moved_binary(std::string_view file, const PlyHeader& header, const M
   std::string result(text.substr(0, place));
   result += fmt::format(kForm, rows);
   result += text.substr(place);
+  // Another element may come before, behind blanks that the search does not know.
+  if (mesh_io::parse_ply_header(result, kMeshName).elements.front().name != "padding")
+    return {};
   result.append(rows, '\0');
   result += file.substr(header.data_offset);
   return result;

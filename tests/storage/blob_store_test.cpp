@@ -94,6 +94,9 @@ TEST_F(BlobStoreTest, AllIsOnDiskAndWhatFitsInMemoryToo) {
   EXPECT_EQ(files_.calls(Call::read), reads);
   store.view(1);
   EXPECT_GT(files_.calls(Call::read), reads);
+  store.drop_copies();
+  EXPECT_EQ(pool.free_bytes(), 250U);
+  EXPECT_EQ(content(store, 0), pattern(200, 0));
 }
 
 TEST_F(BlobStoreTest, AnotherProcessGoesOn) {
