@@ -130,6 +130,7 @@ MemoryPlan plan_memory(std::uint64_t budget_bytes, const JobSize& job) {
       std::max({least_work, (threads + 1) * chunk_bytes(job), 2 * threads * tile_bytes(job),
                 table_work_bytes(job)});
   MemoryPlan plan;
+  plan.budget_bytes = budget_bytes;
   plan.work_bytes = std::min(wanted_work, least_work + spare / 2);
   const std::uint64_t rest = budget_bytes - fixed - plan.work_bytes;
   plan.pool_bytes = rest - std::min(rest, budget_bytes / kAllocatorParts);

@@ -11,11 +11,13 @@ namespace meshhier::pipeline {
 
 namespace {
 
-/// A part of the budget is the allocator's (memory_plan.cpp).
-[[noreturn]] void refuse(const storage::MemoryPool& pool, std::uint64_t needed_bytes,
-                         std::uint64_t lacking_bytes) {
+/// Of more budget a twelfth is the allocator's, which may lack its part of this one
+/// (memory_plan.cpp).
+[[noreturn]] void refuse(const MemoryPlan& plan, const storage::MemoryPool& pool,
+                         std::uint64_t needed_bytes) {
   constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
-  const std::uint64_t more = (lacking_bytes - pool.free_bytes()) / 11 * 12 / kMiB + 1;
+  const std::uint64_t lacking = needed_bytes - plan.work_bytes - pool.free_bytes();
+  const std::uint64_t more = (lacking + plan.budget_bytes / 12) / 11 * 12 / kMiB + 1;
   throw Error(ErrorCode::budget,
               fmt::format("a tile of the mesh has so many triangles at few vertices that it takes "
                           "{}; it needs a memory_budget larger by {}",
@@ -31,7 +33,7 @@ TileRoom::TileRoom(const MemoryPlan& plan, storage::MemoryPool& pool, std::uint6
   if (heaviest_bytes > plan.work_bytes) {
     const std::uint64_t lacking = heaviest_bytes - plan.work_bytes;
     if (!pool.try_take(lacking))
-      refuse(pool, heaviest_bytes, lacking);
+      refuse(plan, pool, heaviest_bytes);
     taken_ = lacking;
   }
   in_flight_ = std::clamp<std::uint64_t>(plan.work_bytes / heaviest_bytes, 1, in_flight_);
