@@ -26,7 +26,7 @@ struct JobSize {
 
 /// The budget's division. Every part is an upper bound.
 struct MemoryPlan {
-  std::uint64_t budget_bytes = 0;     ///< what was divided
+  std::uint64_t budget_bytes = 0;    ///< what was divided
   std::uint64_t pool_bytes = 0;      ///< scratch data that may stay in memory
   std::uint64_t work_bytes = 0;      ///< what a stage at work may hold
   std::size_t blocks_in_flight = 1;  ///< blocks of input
