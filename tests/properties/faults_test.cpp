@@ -7,15 +7,14 @@
 #include "storage/layout.h"
 #include "tests/pipeline/sample_hierarchy.h"
 #include "tests/support/faulty_file_system.h"
+#include "tests/support/interrupter.h"
 #include "tests/support/meshes.h"
 
-#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <set>
 #include <string>
@@ -32,41 +31,12 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using tests::Call;
 using tests::FaultyFileSystem;
+using tests::Interrupter;
 
 constexpr std::uint64_t kForever = std::numeric_limits<std::uint32_t>::max();
 
 /// Files by path, with the hashes of their content; directories with 0.
 using Snapshot = std::map<std::string, std::uint64_t>;
-
-/// Sets the token when so many units of work have been done in all, but for those of `passed`.
-class Interrupter final : public Progress {
- public:
-  Interrupter(CancelToken& token, std::uint64_t after, std::string passed = "")
-      : token_(token), after_(after), passed_(std::move(passed)) {}
-  void stage(std::string_view name, std::uint64_t, std::string_view) override {
-    const std::lock_guard lock(mutex_);
-    stages_.insert(std::string(name));
-    is_passed_ = name == passed_;
-  }
-  void advance(std::uint64_t count) override {
-    if (is_passed_)
-      return;
-    if (done_.fetch_add(count) + count >= after_)
-      token_.cancel();
-  }
-  void finish(std::string_view) override {}
-  std::uint64_t done() const { return done_; }
-  const std::set<std::string>& stages() const { return stages_; }
-
- private:
-  CancelToken& token_;
-  std::uint64_t after_;
-  std::string passed_;
-  std::atomic<bool> is_passed_{false};
-  std::atomic<std::uint64_t> done_{0};
-  std::mutex mutex_;
-  std::set<std::string> stages_;
-};
 
 /// Sets the token at the beginning of the stage of that name.
 class StageInterrupter final : public Progress {

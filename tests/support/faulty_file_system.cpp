@@ -93,8 +93,6 @@ std::size_t FaultPlan::claim(std::size_t asked) {
   return count;
 }
 
-FaultyFileSystem::FaultyFileSystem() = default;
-
 void FaultyFileSystem::fail(Call call, std::uint64_t n, std::uint64_t times) {
   const std::lock_guard lock(plan_->mutex_);
   FaultPlan::Fault& fault = plan_->faults_[static_cast<std::size_t>(call)];

@@ -1,4 +1,4 @@
-// A file system that fails on demand: the real one, with chosen calls made to go wrong.
+// A file system that fails on demand: another one, with chosen calls made to go wrong.
 #pragma once
 
 #include "storage/file.h"
@@ -10,6 +10,7 @@
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <utility>
 
 namespace meshhier::tests {
 
@@ -65,7 +66,8 @@ class FaultPlan {
 /// disk takes what fits and then throws, as the real one does.
 class FaultyFileSystem final : public storage::FileSystem {
  public:
-  FaultyFileSystem();
+  FaultyFileSystem() : FaultyFileSystem(storage::make_posix_file_system()) {}
+  explicit FaultyFileSystem(std::shared_ptr<storage::FileSystem> real) : real_(std::move(real)) {}
 
   /// From now on the n-th call of the kind (1: the next) and the `times` - 1 after it fail. `fail`
   /// again to change it; times = 0: none does.
@@ -98,7 +100,7 @@ class FaultyFileSystem final : public storage::FileSystem {
  private:
   void strike(Call call, const std::filesystem::path& path);
 
-  std::unique_ptr<storage::FileSystem> real_ = storage::make_posix_file_system();
+  std::shared_ptr<storage::FileSystem> real_;
   std::shared_ptr<FaultPlan> plan_ = std::make_shared<FaultPlan>();
 };
 

@@ -1,0 +1,285 @@
+// Random meshes, random configs, random faults and kills: whatever happens to a build, the next one
+// makes the same bytes, and all promises hold.
+//
+//   MESHHIER_SOAK_ROUNDS   of each kind; 6 if it is not set
+//   MESHHIER_SOAK_SEED     of the first round, 1 if it is not set; each round has the next one and
+//                          tells it when it fails
+#include "bench/hell.h"
+#include "hierarchy/error.h"
+#include "pipeline/build.h"
+#include "pipeline/verify.h"
+#include "tests/pipeline/sample_hierarchy.h"
+#include "tests/support/faulty_file_system.h"
+#include "tests/support/interrupter.h"
+#include "tests/support/memory_files.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <spawn.h>
+#include <sys/wait.h>
+
+extern char** environ;
+
+namespace meshhier::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::IsEmpty;
+using tests::Call;
+using tests::FaultyFileSystem;
+using tests::Interrupter;
+using tests::MemoryFiles;
+
+std::uint64_t from_environment(const char* name, std::uint64_t otherwise) {
+  const char* text = std::getenv(name);
+  return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
+}
+
+/// What a seed decides.
+class Dice {
+ public:
+  explicit Dice(std::uint64_t seed) : engine_(seed) {}
+
+  /// Of [low, high].
+  std::uint64_t from(std::uint64_t low, std::uint64_t high) {
+    return low + engine_() % (high - low + 1);
+  }
+  /// Of [1, most], each order of magnitude as likely.
+  std::uint64_t of_any_size(std::uint64_t most) {
+    const double bits = std::log2(static_cast<double>(most) + 1);
+    const double drawn = bits * static_cast<double>(engine_() >> 11) * 0x1p-53;
+    return std::clamp<std::uint64_t>(static_cast<std::uint64_t>(std::exp2(drawn)), 1, most);
+  }
+  bool one_in(std::uint64_t n) { return engine_() % n == 0; }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+bench::LoadedMesh random_mesh(Dice& dice) {
+  const auto cases = bench::hell_cases();
+  const bench::HellCase& chosen = cases[dice.from(0, cases.size() - 1)];
+  return bench::make_hell(chosen.name, dice.of_any_size(4000), dice.from(1, 1000));
+}
+
+/// What may change from one build to the next that goes on with it.
+void draw_resources(Dice& dice, Config& config) {
+  config.threads = static_cast<std::uint32_t>(dice.from(1, 3));
+  config.memory_budget = (dice.one_in(2) ? std::uint64_t{1} << 30 : dice.from(64, 256) << 20);
+}
+
+Config random_config(Dice& dice) {
+  Config config;
+  const auto methods = tests::all_simplify_methods();
+  config.simplify = methods[dice.from(0, methods.size() - 1)].second;
+  if (dice.one_in(4))
+    config.partition.count = static_cast<std::uint32_t>(dice.of_any_size(40));
+  else
+    config.partition.vertices = 3 + static_cast<std::uint32_t>(dice.of_any_size(600));
+  if (dice.one_in(3))
+    config.simplify.vertices = 3 + static_cast<std::uint32_t>(dice.of_any_size(600));
+  config.partition.axis = dice.one_in(3) ? AxisRule::longest : AxisRule::compactness;
+  config.outline.sectors = static_cast<std::uint32_t>(dice.of_any_size(200));
+  draw_resources(dice, config);
+  return config;
+}
+
+using Files = std::map<std::string, std::string>;
+
+/// All files below `directory`, by their paths in it.
+Files content(storage::FileSystem& files, const fs::path& directory) {
+  Files all;
+  for (const fs::path& file : files.list(directory)) {
+    const std::vector<std::byte> bytes = storage::read_file(files, file, 1U << 30);
+    all[file.lexically_relative(directory).string()] = {reinterpret_cast<const char*>(bytes.data()),
+                                                        bytes.size()};
+  }
+  return all;
+}
+
+std::vector<std::string> problems(storage::FileSystem& files, const Config& config) {
+  VerifyOptions options;
+  options.input = config.input;
+  options.cuts = 3;
+  NoProgress progress;
+  return verify_hierarchy(files, config.output, options, progress, CancelToken()).problems;
+}
+
+/// One round in memory: a build that is disturbed up to a dozen times.
+class DisturbedBuild {
+ public:
+  explicit DisturbedBuild(std::uint64_t seed) : dice_(seed), config_(random_config(dice_)) {
+    config_.input = "/models/mesh.ply";
+    config_.output = "/models/mesh.hier";
+    bench::write_ply(*files_, config_.input, *bench::as_generated(random_mesh(dice_)));
+  }
+
+  void run() {
+    const std::optional<ErrorCode> refused = build(*files_);
+    if (refused) {  // a reason that the input or the config has, and nothing is left of it
+      EXPECT_TRUE(refused == ErrorCode::input || refused == ErrorCode::usage ||
+                  refused == ErrorCode::budget)
+          << message_;
+      return;
+    }
+    EXPECT_THAT(problems(*files_, config_), IsEmpty());
+    expected_ = content(*files_, config_.output);
+    files_->remove_all(config_.output);
+    for (std::uint64_t left = dice_.from(1, 12); left > 0 && !::testing::Test::HasFailure(); --left)
+      disturb();
+    draw_resources(dice_, config_);
+    config_.memory_budget = std::uint64_t{1} << 30;
+    EXPECT_EQ(build(*files_), std::nullopt) << message_;
+    EXPECT_EQ(content(*files_, config_.output), expected_);
+    EXPECT_EQ(files_->children("/models").size(), 2U) << "something else was left";
+  }
+
+ private:
+  std::optional<ErrorCode> build(storage::FileSystem& files, Progress& progress,
+                                 const CancelToken& cancel) {
+    try {
+      build_hierarchy(config_, {.force = true}, {files, progress, cancel});
+    } catch (const Error& error) {
+      message_ = error.what();
+      return error.code();
+    }
+    return std::nullopt;
+  }
+  std::optional<ErrorCode> build(storage::FileSystem& files) {
+    NoProgress progress;
+    return build(files, progress, CancelToken());
+  }
+
+  void disturb() {
+    constexpr std::uint64_t kForever = std::numeric_limits<std::uint32_t>::max();
+    draw_resources(dice_, config_);
+    FaultyFileSystem files(files_);
+    CancelToken cancel;
+    Interrupter progress(cancel, dice_.one_in(4) ? dice_.of_any_size(20000) : kForever);
+    if (dice_.one_in(2))
+      files.fail(Call::any, dice_.of_any_size(3000), dice_.one_in(2) ? 1 : kForever);
+    else
+      files.limit_writes(dice_.of_any_size(4 << 20));
+    const std::optional<ErrorCode> code = build(files, progress, cancel);
+    if (!code || files_->exists(config_.output))
+      EXPECT_EQ(content(*files_, config_.output), expected_);
+    else
+      EXPECT_TRUE(code == ErrorCode::io || code == ErrorCode::interrupted ||
+                  code == ErrorCode::budget)
+          << message_;
+    if (files_->exists(config_.output) && dice_.one_in(2))
+      files_->remove_all(config_.output);  // else it is replaced
+  }
+
+  std::shared_ptr<MemoryFiles> files_ = std::make_shared<MemoryFiles>();
+  Dice dice_;
+  Config config_;
+  Files expected_;
+  std::string message_;
+};
+
+TEST(Soak, DisturbedBuildsEndTheSame) {
+  const std::uint64_t seed = from_environment("MESHHIER_SOAK_SEED", 1);
+  const std::uint64_t rounds = from_environment("MESHHIER_SOAK_ROUNDS", 6);
+  for (std::uint64_t i = seed; i < seed + rounds; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(i));
+    DisturbedBuild(i).run();
+    ASSERT_FALSE(HasFailure()) << "seed " << i;
+  }
+}
+
+/// Runs the program; kills it after `microseconds` if that is not 0. Returns its wait status.
+int run_program(const std::vector<std::string>& arguments, std::uint64_t microseconds = 0) {
+  std::vector<char*> words{const_cast<char*>(MESHHIER_BINARY)};
+  for (const std::string& argument : arguments)
+    words.push_back(const_cast<char*>(argument.c_str()));
+  words.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  for (const int descriptor : {1, 2})
+    posix_spawn_file_actions_addopen(&actions, descriptor, "/dev/null", O_WRONLY, 0);
+  pid_t process = -1;
+  EXPECT_EQ(posix_spawn(&process, MESHHIER_BINARY, &actions, nullptr, words.data(), environ), 0);
+  posix_spawn_file_actions_destroy(&actions);
+  if (microseconds > 0) {
+    std::this_thread::sleep_for(std::chrono::microseconds(microseconds));
+    kill(process, SIGKILL);
+  }
+  int status = 0;
+  while (waitpid(process, &status, 0) == -1 && errno == EINTR) {
+  }
+  return status;
+}
+
+/// One round on the disk, with the real program and SIGKILL. When a kill strikes is the machine's
+/// to say; all else is the seed's.
+void kill_builds(std::uint64_t seed) {
+  Dice dice(seed);
+  const tests::TemporaryDirectory directory;
+  const auto files = storage::make_posix_file_system();
+  Config config = random_config(dice);
+  config.input = directory.path() / "mesh.ply";
+  config.output = directory.path() / "mesh.hier";
+  bench::write_ply(*files, config.input, *bench::as_generated(random_mesh(dice)));
+  nlohmann::ordered_json text = resolved_json(config);
+  text["input"] = "mesh.ply";
+  text["output"] = "mesh.hier";
+  const fs::path json = directory.path() / "config.json";
+  const std::string dumped = text.dump();
+  storage::write_file(*files, json, std::as_bytes(std::span(dumped)));
+
+  const auto begin = std::chrono::steady_clock::now();
+  const int status = run_program({"build", json});
+  const auto taken = std::chrono::duration_cast<std::chrono::microseconds>(
+      std::chrono::steady_clock::now() - begin);
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+    EXPECT_TRUE(WIFEXITED(status)) << "died of signal " << WTERMSIG(status);
+    EXPECT_THAT(WEXITSTATUS(status), testing::AnyOf(2, 3, 6));
+    return;
+  }
+  const Files expected = content(*files, config.output);
+  fs::remove_all(config.output);
+  for (std::uint64_t left = dice.from(1, 10); left > 0; --left) {
+    run_program({"build", json},
+                dice.of_any_size(static_cast<std::uint64_t>(taken.count()) * 3 / 2));
+    if (fs::exists(config.output)) {
+      EXPECT_EQ(content(*files, config.output), expected);
+      fs::remove_all(config.output);
+    }
+  }
+  EXPECT_EQ(run_program({"build", json}), 0);
+  EXPECT_EQ(content(*files, config.output), expected);
+  EXPECT_THAT(problems(*files, config), IsEmpty());
+  EXPECT_EQ(files->children(directory.path()).size(), 3U) << "something else was left";
+}
+
+TEST(Soak, KilledBuildsEndTheSame) {
+  const std::uint64_t seed = from_environment("MESHHIER_SOAK_SEED", 1);
+  const std::uint64_t rounds = from_environment("MESHHIER_SOAK_ROUNDS", 6);
+  for (std::uint64_t i = seed; i < seed + rounds; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(i));
+    kill_builds(i);
+    ASSERT_FALSE(HasFailure()) << "seed " << i;
+  }
+}
+
+}  // namespace
+}  // namespace meshhier::pipeline

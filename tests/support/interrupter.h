@@ -1,0 +1,47 @@
+// Progress that interrupts the job it is told of.
+#pragma once
+
+#include "pipeline/cancel.h"
+#include "pipeline/progress.h"
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace meshhier::tests {
+
+/// Sets the token when so many units of work have been done in all, but for those of `passed`.
+class Interrupter final : public pipeline::Progress {
+ public:
+  Interrupter(pipeline::CancelToken& token, std::uint64_t after, std::string passed = "")
+      : token_(token), after_(after), passed_(std::move(passed)) {}
+  void stage(std::string_view name, std::uint64_t, std::string_view) override {
+    const std::lock_guard lock(mutex_);
+    stages_.insert(std::string(name));
+    is_passed_ = name == passed_;
+  }
+  void advance(std::uint64_t count) override {
+    if (is_passed_)
+      return;
+    if (done_.fetch_add(count) + count >= after_)
+      token_.cancel();
+  }
+  void finish(std::string_view) override {}
+  std::uint64_t done() const { return done_; }
+  const std::set<std::string>& stages() const { return stages_; }
+
+ private:
+  pipeline::CancelToken& token_;
+  std::uint64_t after_;
+  std::string passed_;
+  std::atomic<bool> is_passed_{false};
+  std::atomic<std::uint64_t> done_{0};
+  std::mutex mutex_;
+  std::set<std::string> stages_;
+};
+
+}  // namespace meshhier::tests
