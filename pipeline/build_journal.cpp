@@ -16,16 +16,16 @@
 namespace meshhier::pipeline {
 namespace {
 
-using Json = nlohmann::json;
+using Value = nlohmann::json;
 
-Json to_json(Vec3d v) {
+Value to_json(Vec3d v) {
   return {v.x, v.y, v.z};
 }
-Vec3d point(const Json& json) {
+Vec3d point(const Value& json) {
   return {json.at(0), json.at(1), json.at(2)};
 }
 
-Json to_json(const SourceSummary& source) {
+Value to_json(const SourceSummary& source) {
   return {{"file_name", source.file_name},
           {"file_bytes", source.file_bytes},
           {"checksum", source.checksum},
@@ -41,7 +41,7 @@ Json to_json(const SourceSummary& source) {
             source.attributes.alpha, source.attributes.texcoords}}};
 }
 
-SourceSummary summary(const Json& json) {
+SourceSummary summary(const Value& json) {
   SourceSummary source;
   source.file_name = json.at("file_name");
   source.file_bytes = json.at("file_bytes");
@@ -52,7 +52,7 @@ SourceSummary summary(const Json& json) {
   source.degenerate_triangles = json.at("degenerate");
   source.bounds = {point(json.at("min")), point(json.at("max"))};
   source.double_precision = json.at("double");
-  const Json& attributes = json.at("attributes");
+  const Value& attributes = json.at("attributes");
   source.attributes.normals = attributes.at(0);
   source.attributes.colour = static_cast<ColourType>(attributes.at(1).get<int>());
   source.attributes.alpha = attributes.at(2);
@@ -60,30 +60,30 @@ SourceSummary summary(const Json& json) {
   return source;
 }
 
-Json to_json(const IndexedStep& indexed) {
+Value to_json(const IndexedStep& indexed) {
   const Step& step = indexed.second;
   return {indexed.first, step.certain, step.mean_square, step.finer_neighbours.numbers()};
 }
 
-IndexedStep indexed_step(const Json& json) {
+IndexedStep indexed_step(const Value& json) {
   return {json.at(0),
           {json.at(1), json.at(2), TileSet(json.at(3).get<std::vector<std::uint32_t>>())}};
 }
 
 /// "partition.vertices was 8192 and is 4096, ...".
-std::string differences(const Json& was, const Json& is) {
-  const Json before = was.flatten();
-  const Json now = is.flatten();
+std::string differences(const Value& was, const Value& is) {
+  const Value before = was.flatten();
+  const Value now = is.flatten();
   std::set<std::string> keys;
-  for (const Json* all : {&before, &now}) {
+  for (const Value* all : {&before, &now}) {
     for (const auto& item : all->items())
       keys.insert(item.key());
   }
   std::string text;
-  const auto value = [](const Json& of, const std::string& key) {
+  const auto value = [](const Value& of, const std::string& key) {
     const auto found = of.find(key);
     return found == of.end() ? std::string("not set")
-                             : found->dump(-1, ' ', false, Json::error_handler_t::replace);
+                             : found->dump(-1, ' ', false, Value::error_handler_t::replace);
   };
   for (const std::string& key : keys) {
     if (value(before, key) == value(now, key))
@@ -116,7 +116,7 @@ BuildJournal::BuildJournal(storage::FileSystem& files, const std::filesystem::pa
     has_tile_.emplace_back(tree.node_count(static_cast<Level>(l)));
 
   look_ahead(storage::journal_path(work), use);
-  std::optional<Json> build;  // whose journal is there
+  std::optional<Value> build;  // whose journal is there
   bool is_same = true;
   bool has_other_work = false;
   const auto read = [&](const Entry& entry) {
@@ -132,7 +132,7 @@ BuildJournal::BuildJournal(storage::FileSystem& files, const std::filesystem::pa
   journal_.emplace(files, storage::journal_path(work), use, [&](const Entry& entry) {
     try {
       return read(entry);
-    } catch (const Json::exception&) {
+    } catch (const Value::exception&) {
       return false;
     }
   });
@@ -211,7 +211,7 @@ bool BuildJournal::take_tile(const Entry& tile) {
 }
 
 bool BuildJournal::take_published(const Entry& published) {
-  const Json::binary_t& bytes = published.get_binary();
+  const Value::binary_t& bytes = published.get_binary();
   const TileRecord record = storage::decode_record(std::as_bytes(std::span(bytes)));
   const std::filesystem::path path = storage::tile_path(built_, record.node);
   if (!files_.exists(path))
@@ -270,7 +270,7 @@ void BuildJournal::note_leaves(std::uint32_t chunk, std::uint64_t unreferenced_v
 }
 
 void BuildJournal::note_tile(NodeId node, std::span<const IndexedStep> steps) {
-  Json all = Json::array();
+  Value all = Value::array();
   for (const IndexedStep& step : steps)
     all.push_back(to_json(step));
   journal_->append({{"tile",
@@ -282,7 +282,7 @@ void BuildJournal::note_tile(NodeId node, std::span<const IndexedStep> steps) {
 void BuildJournal::note_published(const TileRecord& record) {
   const std::vector<std::byte> bytes = storage::encode_record(record);
   const auto* first = reinterpret_cast<const std::uint8_t*>(bytes.data());
-  journal_->append({{"published", Json::binary({first, first + bytes.size()})}});
+  journal_->append({{"published", Value::binary({first, first + bytes.size()})}});
 }
 
 void BuildJournal::note_complete() {
