@@ -109,6 +109,7 @@ void make_hierarchy(const Config& config, const BuildPlan& build, Workshop& work
   // Without the chunks leaves cannot be made again, so these reach the disk before those go.
   std::future<void> settled = std::async(std::launch::async, [&workshop, &cancel] {
     workshop.tile_scratch.sync([&] { cancel.check(); });
+    workshop.journal.sync();
     workshop.mesh_scratch.remove();
   });
 

@@ -103,12 +103,13 @@ std::string differences(const Value& was, const Value& is) {
 
 BuildJournal::BuildJournal(storage::FileSystem& files, const std::filesystem::path& work,
                            const BuildIdentity& identity, storage::ScratchUse& use, Forest& forest,
-                           Chunks& chunks)
+                           Chunks& chunks, const CancelToken& cancel)
     : files_(files),
       built_(storage::built_path(work)),
       identity_(identity),
       forest_(forest),
-      chunks_(chunks) {
+      chunks_(chunks),
+      cancel_(cancel) {
   const Tree& tree = forest.tree();
   has_leaves_.resize(chunks.count());
   steps_.resize(static_cast<std::size_t>(raw(tree.depth())) + 1);
@@ -159,6 +160,7 @@ void BuildJournal::look_ahead(const std::filesystem::path& path, storage::Scratc
 }
 
 bool BuildJournal::take(const Entry& entry) {
+  cancel_.check();
   const auto first = entry.items().begin();
   const std::string& kind = first.key();
   const Entry& value = first.value();
@@ -231,6 +233,7 @@ bool BuildJournal::take_published(const Entry& published) {
 /// Of chunks that are still needed, the disk must hold all that was put there.
 bool BuildJournal::can_make_all_leaves() const {
   for (std::uint32_t chunk = 0; chunk < chunks_.count(); ++chunk) {
+    cancel_.check();
     if (!has_leaves(chunk) && !chunks_.is_as_stored(chunk))
       return false;
   }

@@ -16,6 +16,7 @@
 
 #include "hierarchy/published.h"
 #include "pipeline/bound_chain.h"
+#include "pipeline/cancel.h"
 #include "pipeline/chunks.h"
 #include "pipeline/forest.h"
 #include "storage/file.h"
@@ -55,7 +56,7 @@ class BuildJournal {
   /// Throws Error(exists) if something is done towards another result, telling what differs.
   BuildJournal(storage::FileSystem& files, const std::filesystem::path& work,
                const BuildIdentity& identity, storage::ScratchUse& use, Forest& forest,
-               Chunks& chunks);
+               Chunks& chunks, const CancelToken& cancel);
 
   /// Whether what is there can be gone on with: something is done, and the disk has kept it.
   bool is_sound() const { return is_sound_; }
@@ -103,6 +104,7 @@ class BuildJournal {
   BuildIdentity identity_;
   Forest& forest_;
   Chunks& chunks_;
+  const CancelToken& cancel_;
   std::optional<DistributedSource> source_;
   std::vector<char> has_leaves_;
   std::vector<std::vector<char>> has_tile_;

@@ -35,12 +35,12 @@ bool is_whole(storage::FileSystem& files, const std::filesystem::path& hierarchy
 
 Workshop::Workshop(storage::FileSystem& files, const std::filesystem::path& work,
                    const BuildPlan& build, int channels, const BuildIdentity& identity,
-                   storage::MemoryPool& pool)
+                   storage::MemoryPool& pool, const CancelToken& cancel)
     : mesh_scratch(files, work / "mesh", pool, storage::ScratchFile::Stays::yes),
       tile_scratch(files, work / "tiles", pool, storage::ScratchFile::Stays::yes),
       chunks(build.tree, channels, mesh_scratch, build.memory.spool_block_bytes),
       forest(build.tree, chunks.level(), channels, tile_scratch),
-      journal(files, work, identity, pool.scratch_use(), forest, chunks) {}
+      journal(files, work, identity, pool.scratch_use(), forest, chunks, cancel) {}
 
 OpenWorkshop open_workshop(storage::FileSystem& files, storage::WorkDirectory& work,
                            const Config& config, mesh_io::MeshSource& source,
@@ -52,7 +52,7 @@ OpenWorkshop open_workshop(storage::FileSystem& files, storage::WorkDirectory& w
   OpenWorkshop open;
   const auto make = [&] {
     open.workshop = std::make_unique<Workshop>(files, work.path(), build,
-                                               mesh.attributes.channels(), identity, pool);
+                                               mesh.attributes.channels(), identity, pool, cancel);
   };
   const auto begin_anew = [&](std::string why) {
     open.workshop.reset();

@@ -18,7 +18,8 @@ namespace meshhier::pipeline {
 
 struct Workshop {
   Workshop(storage::FileSystem& files, const std::filesystem::path& work, const BuildPlan& build,
-           int channels, const BuildIdentity& identity, storage::MemoryPool& pool);
+           int channels, const BuildIdentity& identity, storage::MemoryPool& pool,
+           const CancelToken& cancel);
 
   storage::ScratchFile mesh_scratch;  ///< what is needed until the leaves are done
   storage::ScratchFile tile_scratch;

@@ -176,7 +176,9 @@ class Grove {
   Tree tree_;
   Forest forest_;
   Chunks chunks_{tree_, numbering().channels(), scratch_, 4096};
-  BuildJournal journal_{*files_, directory_.path(), {}, pool_.scratch_use(), forest_, chunks_};
+  CancelToken never_;
+  BuildJournal journal_{*files_, directory_.path(), {},    pool_.scratch_use(),
+                        forest_, chunks_,           never_};
   std::vector<std::vector<Place>> places_;  ///< [level][vertex]
 };
 
