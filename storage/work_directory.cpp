@@ -3,6 +3,9 @@
 #include "hierarchy/error.h"
 #include "storage/layout.h"
 
+#include <chrono>
+#include <memory>
+#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -25,6 +28,22 @@ bool check_output(FileSystem& files, const std::filesystem::path& output, bool r
   return true;
 }
 
+namespace {
+
+/// A process that was killed holds its lock until the disk has done what it was asked for.
+std::unique_ptr<FileLock> lock_patiently(FileSystem& files, const std::filesystem::path& path) {
+  constexpr int kTries = 60;
+  constexpr std::chrono::milliseconds kPause(50);
+  std::unique_ptr<FileLock> lock = files.try_lock(path);
+  for (int i = 1; i < kTries && !lock; ++i) {
+    std::this_thread::sleep_for(kPause);
+    lock = files.try_lock(path);
+  }
+  return lock;
+}
+
+}  // namespace
+
 WorkDirectory::WorkDirectory(FileSystem& files, std::filesystem::path output, bool replace)
     : files_(files), output_(std::move(output)), path_(work_path(output_)), replace_(replace) {
   check_output(files_, output_, replace_);
@@ -33,7 +52,7 @@ WorkDirectory::WorkDirectory(FileSystem& files, std::filesystem::path output, bo
     made_parent_ = parent;
   }
   files_.make_directories(path_);
-  lock_ = files_.try_lock(lock_path(path_));
+  lock_ = lock_patiently(files_, lock_path(path_));
   if (!lock_) {
     throw Error(ErrorCode::exists, fmt::format("another build of {} is at work", output_.string()));
   }
