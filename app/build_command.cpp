@@ -58,8 +58,7 @@ void check_stats_path(const std::string& path, const pipeline::Config& config,
 }
 
 void write_stats(storage::AtomicFile& file, const pipeline::BuildStats& stats) {
-  const std::string text =
-      to_json(stats).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+  const std::string text = pretty_json(to_json(stats));
   file.publish(std::as_bytes(std::span(text)));
 }
 
@@ -68,9 +67,7 @@ int run_estimate(const pipeline::Config& config, const BuildArguments& arguments
   const pipeline::BuildEstimate estimate =
       pipeline::estimate_build(config, arguments.force, environment.files);
   if (arguments.json) {
-    environment.out << to_json(estimate).dump(2, ' ', false,
-                                              nlohmann::ordered_json::error_handler_t::replace)
-                    << '\n';
+    environment.out << pretty_json(to_json(estimate));
   } else {
     environment.out << pipeline::estimate_text(estimate);
   }

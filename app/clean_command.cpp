@@ -1,4 +1,5 @@
 #include "app/command.h"
+#include "app/options.h"
 #include "pipeline/clean.h"
 
 #include <memory>
@@ -6,7 +7,6 @@
 #include <string>
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
 namespace meshhier::app {
 
@@ -23,9 +23,7 @@ int run_clean(const CleanArguments& arguments, Environment& environment) {
   if (arguments.remove)
     pipeline::remove_leftovers(environment.files, found);
   if (arguments.json) {
-    environment.out << pipeline::leftovers_json(found).dump(
-                           2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
-                    << '\n';
+    environment.out << pretty_json(pipeline::leftovers_json(found));
   } else {
     environment.out << pipeline::leftovers_text(found, arguments.remove);
   }

@@ -29,6 +29,10 @@ std::optional<std::uint64_t> parse_integer(std::string_view text, std::uint64_t 
 
 }  // namespace
 
+std::string pretty_json(const nlohmann::ordered_json& object) {
+  return object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+}
+
 std::optional<NodeId> parse_node(std::string_view text) {
   const std::size_t slash = text.find('/');
   if (slash == std::string_view::npos)

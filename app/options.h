@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 namespace meshhier::app {
 
@@ -43,6 +44,10 @@ struct PlaceOptions {
 };
 PlaceOptions add_place_options(CLI::App& command, std::optional<Level>& level,
                                std::optional<NodeId>& node);
+
+/// A result as text, for programs. What is no UTF-8 becomes U+FFFD: a file name on disk may hold
+/// any bytes, JSON may not.
+std::string pretty_json(const nlohmann::ordered_json& object);
 
 /// "3/17" as level 3, index 17; nothing if the text is anything else.
 std::optional<NodeId> parse_node(std::string_view text);

@@ -29,15 +29,10 @@ struct VerifyArguments {
   bool json = false;
 };
 
-std::string to_text(const nlohmann::ordered_json& object) {
-  return object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
-}
-
-/// A file name on disk may hold any bytes; JSON may not.
 std::string json_text(const pipeline::VerifyReport& report) {
   const nlohmann::ordered_json object{
       {"ok", report.problems.empty()}, {"checks", report.checks}, {"problems", report.problems}};
-  return to_text(object);
+  return pretty_json(object);
 }
 
 std::string verdict(std::size_t count) {
@@ -60,11 +55,11 @@ using Measurements = std::vector<pipeline::ErrorMeasurement>;
 /// One object, or with all levels an object with a list of them.
 std::string json_text(const Measurements& measurements, bool all_levels) {
   if (!all_levels)
-    return to_text(pipeline::to_json(measurements.front()));
+    return pretty_json(pipeline::to_json(measurements.front()));
   auto levels = nlohmann::ordered_json::array();
   for (const pipeline::ErrorMeasurement& measurement : measurements)
     levels.push_back(pipeline::to_json(measurement));
-  return to_text({{"levels", levels}});
+  return pretty_json({{"levels", levels}});
 }
 
 std::string plain_text(const Measurements& measurements, std::size_t problems) {

@@ -4,6 +4,7 @@
 #include "storage/hash.h"
 #include "storage/index.h"
 #include "storage/layout.h"
+#include "storage/manifest.h"
 
 #include <algorithm>
 #include <iterator>
@@ -23,41 +24,6 @@ Value to_json(Vec3d v) {
 }
 Vec3d point(const Value& json) {
   return {json.at(0), json.at(1), json.at(2)};
-}
-
-Value to_json(const SourceSummary& source) {
-  return {{"file_name", source.file_name},
-          {"file_bytes", source.file_bytes},
-          {"checksum", source.checksum},
-          {"vertices", source.vertices},
-          {"triangles", source.triangles},
-          {"faces", source.faces},
-          {"degenerate", source.degenerate_triangles},
-          {"min", to_json(source.bounds.min)},
-          {"max", to_json(source.bounds.max)},
-          {"double", source.double_precision},
-          {"attributes",
-           {source.attributes.normals, static_cast<int>(source.attributes.colour),
-            source.attributes.alpha, source.attributes.texcoords}}};
-}
-
-SourceSummary summary(const Value& json) {
-  SourceSummary source;
-  source.file_name = json.at("file_name");
-  source.file_bytes = json.at("file_bytes");
-  source.checksum = json.at("checksum");
-  source.vertices = json.at("vertices");
-  source.triangles = json.at("triangles");
-  source.faces = json.at("faces");
-  source.degenerate_triangles = json.at("degenerate");
-  source.bounds = {point(json.at("min")), point(json.at("max"))};
-  source.double_precision = json.at("double");
-  const Value& attributes = json.at("attributes");
-  source.attributes.normals = attributes.at(0);
-  source.attributes.colour = static_cast<ColourType>(attributes.at(1).get<int>());
-  source.attributes.alpha = attributes.at(2);
-  source.attributes.texcoords = attributes.at(3);
-  return source;
 }
 
 Value to_json(const IndexedStep& indexed) {
@@ -135,6 +101,10 @@ BuildJournal::BuildJournal(storage::FileSystem& files, const std::filesystem::pa
       return read(entry);
     } catch (const Value::exception&) {
       return false;
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::corrupt)
+        throw;
+      return false;
     }
   });
   if (!is_same && has_other_work) {
@@ -178,7 +148,9 @@ bool BuildJournal::take(const Entry& entry) {
 }
 
 bool BuildJournal::take_source(const Entry& source) {
-  source_ = DistributedSource{summary(source.at("summary")), point(source.at("origin"))};
+  source_ = DistributedSource{
+      storage::parse_source(nlohmann::ordered_json(source.at("summary")), "journal"),
+      point(source.at("origin"))};
   return true;
 }
 
@@ -261,7 +233,9 @@ void BuildJournal::note_source(const SourceSummary& summary, Vec3d origin) {
       {{"build", identity_.decides_result}, {"modified", identity_.input_modified_ns}});
   for (std::uint32_t chunk = 0; chunk < chunks_.count(); ++chunk)
     journal_->append({{"chunk", {chunk, chunks_.store(chunk)}}});
-  journal_->append({{"source", {{"summary", to_json(summary)}, {"origin", to_json(origin)}}}});
+  journal_->append(
+      {{"source",
+        {{"summary", Value(storage::source_json(summary))}, {"origin", to_json(origin)}}}});
   source_ = DistributedSource{summary, origin};
 }
 

@@ -46,12 +46,7 @@ std::uint32_t largest_partition(const Tree& tree) {
 /// Of what an earlier build of the output left: it takes its place already.
 std::uint64_t bytes_left(const std::filesystem::path& output, storage::FileSystem& files) {
   const std::filesystem::path work = storage::work_path(output);
-  std::uint64_t bytes = 0;
-  if (files.exists(work)) {
-    for (const std::filesystem::path& file : files.list(work))
-      bytes += files.identity(file).bytes;
-  }
-  return bytes;
+  return files.exists(work) ? storage::bytes_below(files, work) : 0;
 }
 
 std::uint32_t asked_vertices(const Config& config, const Tree& tree) {

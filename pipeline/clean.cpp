@@ -33,10 +33,7 @@ bool is_in_use(storage::FileSystem& files, const FoundLeftover& leftover) {
 std::uint64_t bytes_of(storage::FileSystem& files, const FoundLeftover& leftover) {
   if (leftover.kind == Leftover::unfinished)
     return files.identity(leftover.path).bytes;
-  std::uint64_t bytes = 0;
-  for (const fs::path& file : files.list(leftover.path))
-    bytes += files.identity(file).bytes;
-  return bytes;
+  return storage::bytes_below(files, leftover.path);
 }
 
 }  // namespace

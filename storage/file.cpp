@@ -295,6 +295,13 @@ std::unique_ptr<FileSystem> make_posix_file_system() {
   return std::make_unique<PosixFileSystem>();
 }
 
+std::uint64_t bytes_below(FileSystem& files, const std::filesystem::path& directory) {
+  std::uint64_t bytes = 0;
+  for (const std::filesystem::path& file : files.list(directory))
+    bytes += files.identity(file).bytes;
+  return bytes;
+}
+
 std::vector<std::byte> read_file(FileSystem& files, const std::filesystem::path& path,
                                  std::uint64_t limit_bytes) {
   const auto file = files.open(path);

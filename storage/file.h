@@ -120,6 +120,9 @@ class FileSystem {
 /// The real one.
 std::unique_ptr<FileSystem> make_posix_file_system();
 
+/// Of all files below `directory`. Throws Error(io).
+std::uint64_t bytes_below(FileSystem& files, const std::filesystem::path& directory);
+
 /// A whole file in memory. `limit_bytes` guards what is allocated: a larger file throws
 /// Error(corrupt).
 std::vector<std::byte> read_file(FileSystem& files, const std::filesystem::path& path,

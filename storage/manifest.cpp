@@ -54,20 +54,6 @@ Json attributes_json(const AttributeLayout& attributes) {
           {"texcoords", attributes.texcoords}};
 }
 
-Json source_json(const SourceSummary& source) {
-  return {{"file_name", source.file_name},
-          {"file_bytes", source.file_bytes},
-          {"checksum", hex(source.checksum)},
-          {"vertices", source.vertices},
-          {"triangles", source.triangles},
-          {"faces", source.faces},
-          {"degenerate_triangles", source.degenerate_triangles},
-          {"unreferenced_vertices", source.unreferenced_vertices},
-          {"bounds", {{"min", numbers(source.bounds.min)}, {"max", numbers(source.bounds.max)}}},
-          {"double_precision", source.double_precision},
-          {"attributes", attributes_json(source.attributes)}};
-}
-
 Json outline_json(const Manifest& manifest) {
   const OutlineReport& outline = manifest.outline;
   return {{"file", outline_path({}).string()},
@@ -271,6 +257,24 @@ void check_text(const std::string& text, const Object& object) {
 }
 
 }  // namespace
+
+Json source_json(const SourceSummary& source) {
+  return {{"file_name", source.file_name},
+          {"file_bytes", source.file_bytes},
+          {"checksum", hex(source.checksum)},
+          {"vertices", source.vertices},
+          {"triangles", source.triangles},
+          {"faces", source.faces},
+          {"degenerate_triangles", source.degenerate_triangles},
+          {"unreferenced_vertices", source.unreferenced_vertices},
+          {"bounds", {{"min", numbers(source.bounds.min)}, {"max", numbers(source.bounds.max)}}},
+          {"double_precision", source.double_precision},
+          {"attributes", attributes_json(source.attributes)}};
+}
+
+SourceSummary parse_source(const Json& source, const std::string& name) {
+  return read_source(Object(source, "", name));
+}
 
 std::string to_json_text(const Manifest& manifest) {
   // A file name need not be UTF-8, JSON must be.

@@ -32,6 +32,12 @@ struct Manifest {
   std::uint64_t total_bytes = 0;  ///< of tiles, index and outline
 };
 
+/// What the manifest says of the input, on its own. File names keep their bytes, UTF-8 or not.
+nlohmann::ordered_json source_json(const SourceSummary& source);
+/// The inverse. Throws Error(corrupt) that starts with `name`, and says which key is missing or
+/// wrong.
+SourceSummary parse_source(const nlohmann::ordered_json& source, const std::string& name);
+
 /// Deterministic; ends with a checksum of the text. What is no UTF-8 in texts becomes U+FFFD.
 /// Requires finite numbers.
 std::string to_json_text(const Manifest& manifest);
