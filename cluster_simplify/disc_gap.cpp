@@ -106,8 +106,8 @@ bool DiscGapMeter::faces_front() const {
     const auto [beside, behind] = beside_own_ends(i);
     const FourFloats old = fresh - beside + behind;
     const FourFloats least = fresh < old ? fresh : old;
-    smallest = exist & (least < smallest) ? least : smallest;
-    smallest = exist & (least != least) ? least : smallest;
+    smallest = (exist & (least < smallest)) ? least : smallest;
+    smallest = (exist & (least != least)) ? least : smallest;
     rounds += exist & (four_at(ring_.y, i) < 0.0F) & (four_at(ring_.y, i + 1) >= 0.0F);
   }
   const FourInts large = smallest > kLeastArea * radius_ * radius_;

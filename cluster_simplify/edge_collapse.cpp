@@ -20,14 +20,14 @@ namespace {
 
 /// Rows of a 4 x 4 matrix become its columns.
 void transpose(FourFloats& a, FourFloats& b, FourFloats& c, FourFloats& d) {
-  const FourFloats ab_low = __builtin_shuffle(a, b, FourInts{0, 4, 1, 5});
-  const FourFloats ab_high = __builtin_shuffle(a, b, FourInts{2, 6, 3, 7});
-  const FourFloats cd_low = __builtin_shuffle(c, d, FourInts{0, 4, 1, 5});
-  const FourFloats cd_high = __builtin_shuffle(c, d, FourInts{2, 6, 3, 7});
-  a = __builtin_shuffle(ab_low, cd_low, FourInts{0, 1, 4, 5});
-  b = __builtin_shuffle(ab_low, cd_low, FourInts{2, 3, 6, 7});
-  c = __builtin_shuffle(ab_high, cd_high, FourInts{0, 1, 4, 5});
-  d = __builtin_shuffle(ab_high, cd_high, FourInts{2, 3, 6, 7});
+  const FourFloats ab_low = __builtin_shufflevector(a, b, 0, 4, 1, 5);
+  const FourFloats ab_high = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+  const FourFloats cd_low = __builtin_shufflevector(c, d, 0, 4, 1, 5);
+  const FourFloats cd_high = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+  a = __builtin_shufflevector(ab_low, cd_low, 0, 1, 4, 5);
+  b = __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7);
+  c = __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5);
+  d = __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7);
 }
 
 static_assert(sizeof(VertexQuadric) == 3 * sizeof(FourFloats));

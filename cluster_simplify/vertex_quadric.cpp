@@ -29,7 +29,6 @@ void add_upright(VertexQuadric& q, Vec3f along, Vec3f normal, float weight) {
 // Four floats at a time: sums and products are those of single floats, bit for bit, in a third of
 // the instructions.
 using FourFloats = float __attribute__((vector_size(16)));
-using Places = int __attribute__((vector_size(16)));
 
 FourFloats padded(Vec3f v) {
   return FourFloats{v.x, v.y, v.z, 0};
@@ -51,8 +50,8 @@ struct TrianglePlane {
     const FourFloats u = unit_normal;
     const FourFloats n = unit_normal * doubled_area;
     xx_xy_xz_yy =
-        __builtin_shuffle(n, Places{0, 0, 0, 1}) * __builtin_shuffle(u, Places{0, 1, 2, 1});
-    yz_zz = __builtin_shuffle(n, Places{1, 2, 3, 3}) * __builtin_shuffle(u, Places{2, 2, 3, 3});
+        __builtin_shufflevector(n, n, 0, 0, 0, 1) * __builtin_shufflevector(u, u, 0, 1, 2, 1);
+    yz_zz = __builtin_shufflevector(n, n, 1, 2, 3, 3) * __builtin_shufflevector(u, u, 2, 2, 3, 3);
     area = FourFloats{0, 0, doubled_area, 0};
   }
 

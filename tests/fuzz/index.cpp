@@ -1,9 +1,8 @@
 #include "storage/index.h"
 
+#include "fuzz/sealed.h"
 #include "fuzz/target.h"
 #include "fuzz/targets.h"
-#include "storage/glb.h"
-#include "storage/hash.h"
 #include "storage/tile_glb.h"
 
 #include <algorithm>
@@ -12,21 +11,6 @@
 
 namespace meshhier::tests::fuzz {
 namespace {
-
-constexpr std::size_t kChecksumPlace = 24;
-constexpr std::size_t kRecordsPlace = 32;
-
-/// The bytes with the right checksum in their header.
-std::vector<std::byte> sealed(Bytes bytes) {
-  std::vector<std::byte> result(bytes.begin(), bytes.end());
-  if (result.size() < kRecordsPlace)
-    return result;
-  storage::Checksum sum;
-  sum.add(Bytes(result).first(kChecksumPlace));
-  sum.add(Bytes(result).subspan(kRecordsPlace));
-  storage::store_little(sum.value(), result.data() + kChecksumPlace);
-  return result;
-}
 
 void check_record(const TileRecord& record, const Tree& tree) {
   require(tree.contains(record.node) && !tree.is_early(record.node), "a tile of the tree");
@@ -53,7 +37,7 @@ void index(Bytes input) {
   Take take(input);
   const Tree tree = take_tree(take);
   decode(take.rest(), tree);
-  decode(sealed(take.rest()), tree);
+  decode(sealed_index(take.rest()), tree);
 }
 
 }  // namespace meshhier::tests::fuzz

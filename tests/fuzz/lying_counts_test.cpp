@@ -1,10 +1,10 @@
 // Counts that lie: files of a kilobyte that declare 10^18 of something are refused before memory is
 // taken for it.
+#include "fuzz/sealed.h"
 #include "hierarchy/error.h"
 #include "mesh_io/mesh_source.h"
 #include "mesh_io/ply_samples.h"
 #include "storage/glb.h"
-#include "storage/hash.h"
 #include "storage/hierarchy_reader.h"
 #include "storage/index.h"
 #include "storage/manifest.h"
@@ -59,17 +59,6 @@ void read_all(const std::string& file) {
 std::string with_number(std::string text, const std::string& before, const std::string& number) {
   const std::size_t place = text.find(before) + before.size();
   return text.replace(place, text.find_first_not_of("0123456789", place) - place, number);
-}
-
-/// The text with the checksum it ought to have.
-std::string sealed(std::string text) {
-  const std::size_t place = text.size() - std::string("\"\n}\n").size() - 16;
-  text.replace(place, 16, std::string(16, '0'));
-  const std::uint64_t sum = storage::checksum(std::as_bytes(std::span(text)));
-  constexpr const char* kDigits = "0123456789abcdef";
-  for (std::size_t i = 0; i < 16; ++i)
-    text[place + i] = kDigits[sum >> (60 - 4 * i) & 15];
-  return text;
 }
 
 storage::Manifest small_manifest() {
@@ -153,7 +142,7 @@ TEST(LyingCounts, OfAManifestTakeNoMemory) {
       text =
           with_number(with_number(text, "\"partitions\": ", "4294967295"), index, "824633720736");
       MemoryFiles files;
-      files.put("a.hier/hierarchy.json", sealed(with_number(text, key, lie)));
+      files.put("a.hier/hierarchy.json", fuzz::sealed_manifest(with_number(text, key, lie)));
       files.put("a.hier/tiles.bin", std::string(1024, '\0'));
       expect_cheap_refusal(ErrorCode::corrupt, key + lie,
                            [&] { storage::HierarchyReader(files, "a.hier"); });

@@ -1,35 +1,19 @@
 #include "storage/manifest.h"
 
+#include "fuzz/sealed.h"
 #include "fuzz/target.h"
 #include "fuzz/targets.h"
 #include "hierarchy/tree.h"
-#include "storage/hash.h"
 #include "storage/hierarchy_reader.h"
 #include "storage/index.h"
 #include "support/memory_files.h"
 
 #include <string>
 
-#include <fmt/format.h>
-
 namespace meshhier::tests::fuzz {
 namespace {
 
 using storage::Manifest;
-
-/// The text with the right digits where its checksum should be: a damage that nobody tries to hide
-/// never gets beyond the first check.
-std::string sealed(std::string_view input) {
-  constexpr std::string_view kEnd = "\"\n}\n";
-  constexpr std::size_t kDigits = 16;
-  std::string text(input);
-  if (text.size() < kDigits + kEnd.size())
-    return text;
-  const std::size_t place = text.size() - kEnd.size() - kDigits;
-  text.replace(place, kDigits, std::string(kDigits, '0'));
-  text.replace(place, kDigits, fmt::format("{:016x}", storage::checksum(bytes_of(text))));
-  return text;
-}
 
 /// A reader of the directory gets by with the tree and refuses the index, which is not there or
 /// empty.
@@ -65,7 +49,7 @@ void parse(const std::string& text) {
 
 void manifest(Bytes input) {
   const std::string text(text_of(input));
-  const std::string repaired = sealed(text);
+  const std::string repaired = sealed_manifest(text);
   parse(repaired);
   if (repaired != text)
     parse(text);

@@ -29,6 +29,10 @@ void index(std::span<const std::byte> input);
 void tile(std::span<const std::byte> input);
 /// An outline.glb, or counts and a BIN chunk.
 void outline(std::span<const std::byte> input);
+/// Changes to the files of a whole hierarchy, whose checksums are then made right.
+void hierarchy(std::span<const std::byte> input);
+/// A small mesh of any shape and how it is to be built.
+void build(std::span<const std::byte> input);
 
 struct Target {
   std::string_view name;
@@ -36,14 +40,16 @@ struct Target {
 };
 
 /// Names are those of the folders in corpus/, the dictionaries, and the programs (fuzz_NAME).
-inline constexpr std::array<Target, 9> kTargets{{{"ply_header", ply_header},
-                                                 {"ply_text", ply_text},
-                                                 {"ply_binary", ply_binary},
-                                                 {"config", config},
-                                                 {"cut", cut},
-                                                 {"manifest", manifest},
-                                                 {"index", index},
-                                                 {"tile", tile},
-                                                 {"outline", outline}}};
+inline constexpr std::array<Target, 11> kTargets{{{"ply_header", ply_header},
+                                                  {"ply_text", ply_text},
+                                                  {"ply_binary", ply_binary},
+                                                  {"config", config},
+                                                  {"cut", cut},
+                                                  {"manifest", manifest},
+                                                  {"index", index},
+                                                  {"tile", tile},
+                                                  {"outline", outline},
+                                                  {"hierarchy", hierarchy},
+                                                  {"build", build}}};
 
 }  // namespace meshhier::tests::fuzz

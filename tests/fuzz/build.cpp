@@ -1,0 +1,126 @@
+// The input of the target `build`, little endian:
+//
+//   u8  method            of simplifying, modulo what there are
+//   u8  partitions        one less than there are, modulo the vertices
+//   u8  tile vertices     four less than a simplified tile has
+//   u8  form              0 to 15: positions are bytes times 10^(form - 8); above: floats
+//   u8  vertices          one less than there are
+//   a position (3 bytes or 3 floats) a vertex, then three u8 a triangle, modulo the vertices
+//
+// Whatever the mesh, its hierarchy is sound and within its bounds, or the mesh is refused with a
+// reason and leaves nothing behind.
+#include "pipeline/build.h"
+
+#include "bench/hell.h"
+#include "fuzz/target.h"
+#include "fuzz/targets.h"
+#include "pipeline/config.h"
+#include "pipeline/verify.h"
+#include "pipeline/verify_error.h"
+#include "support/memory_files.h"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include <tbb/global_control.h>
+
+namespace meshhier::tests::fuzz {
+namespace {
+
+using pipeline::HalfEdgeCost;
+using pipeline::Representative;
+using pipeline::SimplifyMethod;
+
+pipeline::SimplifyConfig take_method(Take& take) {
+  constexpr std::array kMethods = {
+      std::pair{SimplifyMethod::edge_collapse, 0}, std::pair{SimplifyMethod::half_edge, 0},
+      std::pair{SimplifyMethod::half_edge, 1},     std::pair{SimplifyMethod::cluster, 0},
+      std::pair{SimplifyMethod::cluster, 1},       std::pair{SimplifyMethod::cluster, 2}};
+  const auto [method, kind] = kMethods[take.upto<std::uint8_t>(kMethods.size() - 1)];
+  pipeline::SimplifyConfig config;
+  config.method = method;
+  config.cost = pipeline::kHalfEdgeCosts[static_cast<std::size_t>(kind) % 2].value;
+  config.representative = pipeline::kRepresentatives[static_cast<std::size_t>(kind)].value;
+  return config;
+}
+
+bench::LoadedMesh take_mesh(Take& take) {
+  constexpr std::uint8_t kFloats = 16;
+  const auto form = take.number<std::uint8_t>();
+  const double scale = std::pow(10.0, static_cast<double>(form) - 8);
+  const auto coordinate = [&]() -> double {
+    if (form >= kFloats)
+      return double{take.number<float>()};
+    const auto byte = static_cast<std::int8_t>(take.number<std::uint8_t>());
+    return double{static_cast<float>(byte * scale)};
+  };
+  bench::LoadedMesh mesh;
+  mesh.positions.resize(take.number<std::uint8_t>() + std::size_t{1});
+  for (Vec3d& position : mesh.positions) {
+    position.x = coordinate();
+    position.y = coordinate();
+    position.z = coordinate();
+  }
+  const auto last = static_cast<std::uint8_t>(mesh.positions.size() - 1);
+  while (!take.rest().empty()) {
+    bench::MeshTriangle& triangle = mesh.triangles.emplace_back();
+    for (std::uint32_t& corner : triangle)
+      corner = take.upto(last);
+  }
+  return mesh;
+}
+
+/// A mesh of which nothing can be measured has no errors.
+void check_bounds(MemoryFiles& files, const pipeline::Config& config) {
+  pipeline::NoProgress progress;
+  const pipeline::ErrorOptions options{Level{}, 300, config.memory_budget};
+  for (const auto& level : pipeline::measure_errors(files, config.output, options, progress, {})) {
+    if (level.triangles > 0 && !level.problems.empty())
+      throw Violation(level.name + ": " + level.problems.front());
+  }
+}
+
+void check_sound(MemoryFiles& files, const pipeline::Config& config) {
+  pipeline::NoProgress progress;
+  pipeline::VerifyOptions options;
+  options.input = config.input;
+  options.cuts = 4;
+  const auto report = pipeline::verify_hierarchy(files, config.output, options, progress, {});
+  if (!report.problems.empty())
+    throw Violation(report.problems.front());
+}
+
+}  // namespace
+
+void build(Bytes input) {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  Take take(input);
+  pipeline::Config config;
+  config.input = "a.ply";
+  config.output = "a.hier";
+  config.threads = 1;
+  config.simplify = take_method(take);
+  const auto partitions = take.number<std::uint8_t>();
+  config.simplify.vertices = 4U + take.number<std::uint8_t>();
+  bench::LoadedMesh mesh = take_mesh(take);
+  config.partition.count = 1 + partitions % static_cast<std::uint32_t>(mesh.positions.size());
+
+  MemoryFiles files;
+  bench::write_ply(files, config.input, *bench::as_generated(std::move(mesh)));
+  pipeline::NoProgress progress;
+  const std::string refused = refusal({ErrorCode::input}, "a.ply: ", [&] {
+    pipeline::build_hierarchy(config, {}, {files, progress, {}});
+  });
+  if (!refused.empty()) {
+    require(files.list(".").size() == 1, "nothing but the mesh is left");
+    return;
+  }
+  check_sound(files, config);
+  check_bounds(files, config);
+}
+
+}  // namespace meshhier::tests::fuzz

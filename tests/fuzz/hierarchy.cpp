@@ -1,0 +1,158 @@
+// The input of the target `hierarchy`: changes to the files of a sound one, little endian, until it
+// ends:
+//
+//   u8   file, modulo those there are, by name
+//   u16  place in it, modulo its size
+//   u8   bytes that are replaced, one less; modulo 16
+//   so many bytes
+//
+// The checksums of all files are then made right. Whoever reads it finds out what is wrong, or gets
+// what the hierarchy promises: if verify has nothing against it, all of it can be exported.
+#include "bench/generator.h"
+#include "fuzz/sealed.h"
+#include "fuzz/target.h"
+#include "fuzz/targets.h"
+#include "mesh_io/mesh_source.h"
+#include "pipeline/build.h"
+#include "pipeline/export.h"
+#include "pipeline/inspect.h"
+#include "pipeline/verify.h"
+#include "storage/glb.h"
+#include "storage/hash.h"
+#include "storage/layout.h"
+#include "storage/manifest.h"
+#include "support/memory_files.h"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <tbb/global_control.h>
+
+namespace meshhier::tests::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kHierarchy = "a.hier";
+constexpr const char* kExported = "out.ply";
+constexpr const char* kCut = "cut.txt";
+
+using Contents = std::vector<std::pair<fs::path, std::vector<std::byte>>>;
+
+/// A tree with early nodes, over a closed surface with colours and an origin.
+Contents make_sound() {
+  bench::SurfaceOptions surface;
+  surface.triangles = 100;
+  surface.noise = 0.5;
+  surface.colours = true;
+  surface.double_coordinates = true;
+  surface.offset = {500123.4567, 5812345.6789, 100.125};
+  pipeline::Config config;
+  config.input = "a.ply";
+  config.output = kHierarchy;
+  config.threads = 1;
+  config.partition.count = 5;
+  config.simplify.vertices = 12;
+  MemoryFiles files;
+  bench::write_ply(files, config.input, *bench::make_surface(surface));
+  pipeline::NoProgress progress;
+  pipeline::build_hierarchy(config, {}, {files, progress, {}});
+  Contents contents;
+  for (const fs::path& path : files.list(kHierarchy))
+    contents.emplace_back(path, files.bytes(path));
+  return contents;
+}
+
+void apply(Bytes changes, const Contents& sound, MemoryFiles& files) {
+  for (Take take(changes); !take.rest().empty();) {
+    auto& bytes = files.bytes(sound[take.upto(static_cast<std::uint8_t>(sound.size() - 1))].first);
+    std::size_t place = take.number<std::uint16_t>() % bytes.size();
+    for (int count = take.upto<std::uint8_t>(15); count >= 0 && place < bytes.size(); --count)
+      bytes[place++] = static_cast<std::byte>(take.number<std::uint8_t>());
+  }
+}
+
+/// Sizes never change: `apply` replaces.
+void seal(const Contents& sound, MemoryFiles& files) {
+  constexpr std::size_t kHeaderBytes = 32, kRecordBytes = 96, kChecksumPlace = 88;
+  std::vector<std::byte>& index = files.bytes(storage::index_path(kHierarchy));
+  std::size_t record = kHeaderBytes;
+  for (const auto& [path, unchanged] : sound) {
+    if (path.extension() != ".glb" || path == storage::outline_path(kHierarchy))
+      continue;
+    storage::store_little(storage::checksum(files.bytes(path)),
+                          index.data() + record + kChecksumPlace);
+    record += kRecordBytes;
+  }
+  index = sealed_index(index);
+
+  const fs::path path = storage::manifest_path(kHierarchy);
+  files.put(path, sealed_manifest(files.content(path)));
+  try {
+    storage::Manifest manifest = storage::parse_manifest(files.content(path), "hierarchy.json");
+    manifest.index_checksum = storage::checksum(index);
+    manifest.outline_checksum = storage::checksum(files.bytes(storage::outline_path(kHierarchy)));
+    files.put(path, storage::to_json_text(manifest));
+  } catch (const Error&) {
+    // So be it: a manifest that says nothing.
+  }
+}
+
+bool is_sound(MemoryFiles& files) {
+  pipeline::NoProgress progress;
+  pipeline::VerifyOptions options;
+  options.cuts = 3;
+  options.memory_budget = std::uint64_t{1} << 24;
+  const auto report = pipeline::verify_hierarchy(files, kHierarchy, options, progress, {});
+  for (const std::string& problem : report.problems)
+    require_message(problem, "");
+  return report.problems.empty();
+}
+
+/// Returns whether it was exported; a tree that has not what is asked for is a usage error.
+bool is_exported(MemoryFiles& files, const pipeline::ExportSelection& selection) {
+  pipeline::NoProgress progress;
+  files.remove_all(kExported);
+  const std::string refused = refusal({ErrorCode::corrupt, ErrorCode::usage}, "", [&] {
+    pipeline::export_mesh(files, kHierarchy, {selection, kExported, std::uint64_t{1} << 24},
+                          progress, {});
+  });
+  require(files.exists(kExported) == refused.empty(), "an export is whole, or not there");
+  if (refused.empty() && !std::holds_alternative<pipeline::OutlineSelection>(selection)) {
+    const auto mesh = mesh_io::open_mesh(files, kExported);
+    mesh->read_vertices([](const mesh_io::VertexBlock&) {});
+    mesh->read_triangles([](std::span<const mesh_io::SourceTriangle>) {});
+  }
+  return refused.empty();
+}
+
+bool is_inspected(MemoryFiles& files) {
+  return refusal({ErrorCode::corrupt}, "", [&] { pipeline::inspect_text(files, kHierarchy, {}); })
+      .empty();
+}
+
+}  // namespace
+
+void hierarchy(Bytes input) {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  static const Contents kSound = make_sound();
+  MemoryFiles files;
+  for (const auto& [path, bytes] : kSound)
+    storage::write_file(files, path, bytes);
+  apply(input, kSound, files);
+  seal(kSound, files);
+
+  const bool sound = is_sound(files);
+  require(is_inspected(files) || !sound, "what is sound can be inspected");
+  files.put(kCut, "1/0\n3/3\n3/4\n");
+  const std::array<pipeline::ExportSelection, 3> selections = {fs::path(kCut), NodeId{Level{2}, 1},
+                                                               pipeline::OutlineSelection{}};
+  for (const auto& selection : selections)
+    require(is_exported(files, selection) || !sound, "what is sound can be exported");
+}
+
+}  // namespace meshhier::tests::fuzz
