@@ -93,14 +93,14 @@ ConfigKey bytes(std::string path, Field field) {
 template <class Field>
 ConfigKey number(std::string path, Limits limits, Field field) {
   using Member = std::remove_reference_t<decltype(field(std::declval<Config&>()))>;
-  using Value = typename Unwrapped<Member>::Type;
+  using Number = typename Unwrapped<Member>::Type;
   ConfigKey key;
   key.path = std::move(path);
-  key.kind = std::is_integral_v<Value> ? KeyKind::integer : KeyKind::number;
+  key.kind = std::is_integral_v<Number> ? KeyKind::integer : KeyKind::number;
   key.minimum = limits.minimum;
   key.maximum = limits.maximum;
   key.assign = [field](Config& config, const Json& value) {
-    field(config) = static_cast<Value>(value.get<double>());
+    field(config) = static_cast<Number>(value.get<double>());
   };
   key.show = [field](const Config& config) { return shown(field(config)); };
   return key;
