@@ -100,8 +100,8 @@ void build(Bytes input) {
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   Take take(input);
   pipeline::Config config;
-  config.input = "a.ply";
-  config.output = "a.hier";
+  config.input = "models/a.ply";
+  config.output = "models/a.hier";
   config.threads = 1;
   config.simplify = take_method(take);
   const auto partitions = take.number<std::uint8_t>();
@@ -112,11 +112,12 @@ void build(Bytes input) {
   MemoryFiles files;
   bench::write_ply(files, config.input, *bench::as_generated(std::move(mesh)));
   pipeline::NoProgress progress;
-  const std::string refused = refusal({ErrorCode::input}, "a.ply: ", [&] {
+  const std::string refused = refusal({ErrorCode::input}, "models/a.ply: ", [&] {
     pipeline::build_hierarchy(config, {}, {files, progress, {}});
   });
   if (!refused.empty()) {
-    require(files.list(".").size() == 1, "nothing but the mesh is left");
+    for (const auto& path : files.list("models"))
+      require(path == config.input, "left behind after \"" + refused + "\": " + path.string());
     return;
   }
   check_sound(files, config);
