@@ -18,35 +18,17 @@
 #include "pipeline/verify.h"
 #include "pipeline/verify_error.h"
 #include "support/memory_files.h"
+#include "support/simplify_methods.h"
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <string>
 #include <utility>
-#include <variant>
 
 #include <tbb/global_control.h>
 
 namespace meshhier::tests::fuzz {
 namespace {
-
-using pipeline::HalfEdgeCost;
-using pipeline::Representative;
-using pipeline::SimplifyMethod;
-
-pipeline::SimplifyConfig take_method(Take& take) {
-  constexpr std::array kMethods = {
-      std::pair{SimplifyMethod::edge_collapse, 0}, std::pair{SimplifyMethod::half_edge, 0},
-      std::pair{SimplifyMethod::half_edge, 1},     std::pair{SimplifyMethod::cluster, 0},
-      std::pair{SimplifyMethod::cluster, 1},       std::pair{SimplifyMethod::cluster, 2}};
-  const auto [method, kind] = kMethods[take.upto<std::uint8_t>(kMethods.size() - 1)];
-  pipeline::SimplifyConfig config;
-  config.method = method;
-  config.cost = pipeline::kHalfEdgeCosts[static_cast<std::size_t>(kind) % 2].value;
-  config.representative = pipeline::kRepresentatives[static_cast<std::size_t>(kind)].value;
-  return config;
-}
 
 bench::LoadedMesh take_mesh(Take& take) {
   constexpr std::uint8_t kFloats = 16;
@@ -103,7 +85,8 @@ void build(Bytes input) {
   config.input = "models/a.ply";
   config.output = "models/a.hier";
   config.threads = 1;
-  config.simplify = take_method(take);
+  const auto methods = all_simplify_methods();
+  config.simplify = methods[take.upto(static_cast<std::uint8_t>(methods.size() - 1))].second;
   const auto partitions = take.number<std::uint8_t>();
   config.simplify.vertices = 4U + take.number<std::uint8_t>();
   bench::LoadedMesh mesh = take_mesh(take);

@@ -9,6 +9,7 @@
 #include "tests/pipeline/sample_hierarchy.h"
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/meshes.h"
+#include "tests/support/simplify_methods.h"
 #include "tests/support/sizes.h"
 
 #include <algorithm>

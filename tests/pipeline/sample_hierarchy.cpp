@@ -454,26 +454,4 @@ TemporaryDirectory::~TemporaryDirectory() {
   fs::remove_all(path_, ignored);
 }
 
-std::vector<std::pair<std::string, pipeline::SimplifyConfig>> all_simplify_methods() {
-  std::vector<std::pair<std::string, pipeline::SimplifyConfig>> all;
-  for (const auto& method : pipeline::kSimplifyMethods) {
-    pipeline::SimplifyConfig config;
-    config.method = method.value;
-    if (method.value == pipeline::SimplifyMethod::cluster) {
-      for (const auto& representative : pipeline::kRepresentatives) {
-        config.representative = representative.value;
-        all.emplace_back(std::string(method.name) + " " + std::string(representative.name), config);
-      }
-    } else if (method.value == pipeline::SimplifyMethod::half_edge) {
-      for (const auto& cost : pipeline::kHalfEdgeCosts) {
-        config.cost = cost.value;
-        all.emplace_back(std::string(method.name) + " " + std::string(cost.name), config);
-      }
-    } else {
-      all.emplace_back(method.name, config);
-    }
-  }
-  return all;
-}
-
 }  // namespace meshhier::tests

@@ -8,7 +8,6 @@
 #include "hierarchy/ids.h"
 #include "hierarchy/published.h"
 #include "hierarchy/tree.h"
-#include "pipeline/config.h"
 #include "storage/file.h"
 #include "storage/manifest.h"
 #include "storage/tile_glb.h"
@@ -57,9 +56,6 @@ Sample make_sample(const TestMesh& mesh, const SampleOptions& options = {},
 /// Publishes the sample in a directory that is not there yet.
 void write_sample(storage::FileSystem& files, const std::filesystem::path& directory,
                   Sample& sample);
-
-/// Every way there is to contract tiles, by name.
-std::vector<std::pair<std::string, pipeline::SimplifyConfig>> all_simplify_methods();
 
 /// A directory of its own for each test; removed at the end.
 class TemporaryDirectory {

@@ -6,6 +6,7 @@
 #include "storage/hierarchy_reader.h"
 #include "tests/pipeline/sample_hierarchy.h"
 #include "tests/support/meshes.h"
+#include "tests/support/simplify_methods.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -5,6 +5,7 @@
 #include "pipeline/verify_error.h"
 #include "tests/pipeline/sample_hierarchy.h"
 #include "tests/support/meshes.h"
+#include "tests/support/simplify_methods.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -9,6 +9,7 @@
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/interrupter.h"
 #include "tests/support/meshes.h"
+#include "tests/support/try_build.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -99,13 +100,7 @@ class FaultsTest : public testing::Test {
   }
   std::optional<ErrorCode> run(storage::FileSystem& files, Progress& progress,
                                const CancelToken& cancel, bool force = false) {
-    try {
-      build_hierarchy(config_, {.force = force}, {files, progress, cancel});
-    } catch (const Error& error) {
-      message_ = error.what();
-      return error.code();
-    }
-    return std::nullopt;
+    return tests::try_build(config_, force, {files, progress, cancel}, message_);
   }
 
   /// What the output must be.

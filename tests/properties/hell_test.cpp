@@ -11,6 +11,7 @@
 #include "storage/hierarchy_reader.h"
 #include "tests/pipeline/sample_hierarchy.h"
 #include "tests/support/memory_files.h"
+#include "tests/support/simplify_methods.h"
 #include "tests/support/sizes.h"
 
 #include <algorithm>

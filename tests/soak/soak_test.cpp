@@ -12,6 +12,8 @@
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/interrupter.h"
 #include "tests/support/memory_files.h"
+#include "tests/support/simplify_methods.h"
+#include "tests/support/try_build.h"
 
 #include <algorithm>
 #include <chrono>
@@ -155,13 +157,7 @@ class DisturbedBuild {
  private:
   std::optional<ErrorCode> build(storage::FileSystem& files, Progress& progress,
                                  const CancelToken& cancel) {
-    try {
-      build_hierarchy(config_, {.force = true}, {files, progress, cancel});
-    } catch (const Error& error) {
-      message_ = error.what();
-      return error.code();
-    }
-    return std::nullopt;
+    return tests::try_build(config_, true, {files, progress, cancel}, message_);
   }
   std::optional<ErrorCode> build(storage::FileSystem& files) {
     NoProgress progress;
