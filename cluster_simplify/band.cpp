@@ -64,18 +64,26 @@ namespace {
 // take their number squared. Those at its neighbours are near enough.
 constexpr std::uint32_t kMostAround = 64;
 
+// No more triangles of the neighbours are held than of this tile, and these: of scans there are
+// about three for four, but where all tiles are neighbours they would be all there are.
+constexpr std::size_t kMostFurther = 4096;
+
 enum class When : std::uint8_t {
   then,  ///< a border triangle as it was when its tile was made
   now,   ///< a border triangle as it is drawn
   both,  ///< an interior triangle
 };
 
-/// A triangle at the seam.
+/// A triangle at the seam. Small: around a vertex of a million triangles there are as many.
 struct SeamTriangle {
-  CoverDistance::Corners corners;
-  double drift = 0;  ///< 0 if it is drawn now only
+  std::array<Vec3f, 3> positions;
+  float drift = 0;  ///< 0 if it is drawn now only
   When when = When::both;
   std::array<std::uint32_t, 3> vertices{};  ///< kNowhere: of those that nobody asks about
+
+  CoverDistance::Corners corners() const {
+    return {to_double(positions[0]), to_double(positions[1]), to_double(positions[2])};
+  }
 };
 
 /// Vertices here: the own rim, then the ghosts.
@@ -84,6 +92,10 @@ class Seam {
   explicit Seam(const SeamInput& input) : input_(input), rim_count_(input.mesh.rim_count) {
     for (std::vector<std::uint32_t>& counts : counts_)
       counts.assign(rim_count_ + ghosts().size(), 0);
+    const Band& band = input.own.band;
+    most_triangles_ =
+        2 * (band.interior.size() + band.border.size() + input.mesh.border.size()) + kMostFurther;
+    triangles_.reserve(most_triangles_);  // no second copy while it grows
     add_own();
     add_drawn();
     for (std::size_t i = 0; i < ghosts().size(); ++i) {
@@ -141,17 +153,16 @@ class Seam {
     return vertices[0] != kNowhere || vertices[1] != kNowhere || vertices[2] != kNowhere;
   }
 
-  static CoverDistance::Corners corners_of(const Triangle& t, const std::vector<Vec3f>& positions) {
-    return {to_double(positions[raw(t[0])]), to_double(positions[raw(t[1])]),
-            to_double(positions[raw(t[2])])};
+  static std::array<Vec3f, 3> positions_of(const Triangle& t, const std::vector<Vec3f>& positions) {
+    return {positions[raw(t[0])], positions[raw(t[1])], positions[raw(t[2])]};
   }
 
   /// What the triangle may have drifted: no more than what is around any of its own corners.
-  static double drift_of(const Band& band, const Triangle& t) {
-    double drift = std::numeric_limits<double>::infinity();
+  static float drift_of(const Band& band, const Triangle& t) {
+    float drift = std::numeric_limits<float>::infinity();
     for (const TileVertex v : t) {
       if (raw(v) < band.own_count)
-        drift = std::min(drift, double{band.drifts[raw(v)]});
+        drift = std::min(drift, band.drifts[raw(v)]);
     }
     return drift;
   }
@@ -179,13 +190,16 @@ class Seam {
         const Vertices vertices = vertices_of(t, vertex);
         if (!any_known(vertices))  // few of a neighbour's are
           continue;
-        if (count(vertices, when) || all)
-          triangles_.push_back({corners_of(t, band.positions), drift_of(band, t), when, vertices});
+        if ((count(vertices, when) && has_room()) || all)
+          triangles_.push_back(
+              {positions_of(t, band.positions), drift_of(band, t), when, vertices});
       }
     };
     add(band.interior, When::both);
     add(band.border, When::then);
   }
+
+  bool has_room() const { return triangles_.size() < most_triangles_; }
 
   void add_own() {
     const Band& band = input_.own.band;
@@ -206,7 +220,7 @@ class Seam {
     };
     for (const Triangle& t : mesh.border) {
       triangles_.push_back(
-          {corners_of(t, mesh.vertices.positions), 0, When::now, vertices_of(t, vertex)});
+          {positions_of(t, mesh.vertices.positions), 0, When::now, vertices_of(t, vertex)});
       count(triangles_.back().vertices, When::now);
     }
     drawn_end_ = triangles_.size();
@@ -294,23 +308,24 @@ class Seam {
 
   Cover cover(const SeamTriangle& t, std::uint32_t index) const {
     const SeamTriangle& other = triangles_[index];
-    return {{other.corners[0], other.corners[1], other.corners[2]},
-            t.when == When::now ? other.drift : 0};
+    const CoverDistance::Corners corners = other.corners();
+    return {{corners[0], corners[1], corners[2]}, t.when == When::now ? double{other.drift} : 0};
   }
 
   /// From the triangle to the covers just collected; see CoverDistance.
   double distance_to_covers(const SeamTriangle& t, double enough) {
     constexpr std::size_t kTried = 3;  // one of them is mostly near enough
+    const CoverDistance::Corners corners = t.corners();
     covers_.clear();
     for (const std::uint32_t index : of_covers_) {
       covers_.push_back(cover(t, index));
       if (covers_.size() > kTried)
         continue;
-      const double distance = CoverDistance::near_one(t.corners, covers_.back(), enough);
+      const double distance = CoverDistance::near_one(corners, covers_.back(), enough);
       if (distance >= 0)
         return distance;
     }
-    return cover_distance_(t.corners, covers_, enough);
+    return cover_distance_(corners, covers_, enough);
   }
 
   /// Of border triangles around whose corners nothing is left, to the nearest vertex that is drawn.
@@ -330,8 +345,8 @@ class Seam {
     const NearestPoints points(positions, drawn);
     double farthest = 0;
     for (const SeamTriangle* t : stranded_) {
-      const Vec3d nearest = to_double(positions[points.nearest(to_float(t->corners[0]))]);
-      for (const Vec3d& corner : t->corners)
+      const Vec3d nearest = to_double(positions[points.nearest(t->positions[0])]);
+      for (const Vec3d& corner : t->corners())
         farthest = std::max(farthest, length(corner - nearest) + t->drift);
     }
     return farthest * (1 + 0x1p-40);
@@ -339,6 +354,7 @@ class Seam {
 
   const SeamInput& input_;
   std::uint32_t rim_count_;
+  std::size_t most_triangles_ = 0;
   std::vector<SeamTriangle> triangles_;
   std::array<std::vector<std::uint32_t>, 2> counts_;  ///< of those lists, and what was left out
   std::size_t own_end_ = 0;                           ///< the own band's come first,

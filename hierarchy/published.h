@@ -2,6 +2,7 @@
 #pragma once
 
 #include "hierarchy/bounds.h"
+#include "hierarchy/ghost_chains.h"
 #include "hierarchy/tile_mesh.h"
 #include "hierarchy/tree.h"
 
@@ -36,17 +37,13 @@ struct TileRecord {
   std::uint64_t checksum = 0;  ///< XXH3-64 of the tile's file
 };
 
-/// The indices of a ghost's vertex from its own tile upwards: level l, l-1, ... down to the level
-/// below the common ancestor (Tree::chain_length entries). [0] equals the ghost's GhostRef::index.
-using GhostChain = std::vector<std::uint16_t>;
-
 /// One tile file, decoded.
 struct PublishedTile {
   NodeId node;
   TileMesh mesh;
   std::vector<std::uint16_t>
-      parent_map;  ///< own vertex -> vertex of the parent's tile; empty for the root
-  std::vector<GhostChain> chains;  ///< one per ghost
+      parent_map;      ///< own vertex -> vertex of the parent's tile; empty for the root
+  GhostChains chains;  ///< one per ghost
 };
 
 /// What the input was.

@@ -29,53 +29,24 @@ struct Corner {
 
 /// Corners by ascending key: both sides of a line compute its points from the same order.
 using CornerTriangle = std::array<Corner, 3>;
-using CornerEdge = std::array<Corner, 2>;
 
-/// A point of a sector line: an edge's midpoint (a, b, b) or a triangle's centroid (a, b, c),
-/// corners ascending.
-struct Point {
-  std::array<VertexKey, 3> key;
-  Vec3f position;
-};
+/// Of a triangle's edges, which corners they join.
+constexpr std::array<std::array<std::size_t, 2>, 3> kEdges{{{0, 1}, {0, 2}, {1, 2}}};
 
-Point midpoint(const CornerEdge& e) {
-  const Vec3d sum = to_double(e[0].position) + to_double(e[1].position);
-  return {{e[0].key, e[1].key, e[1].key}, to_float(sum * 0.5)};
+bool is_crossing(const CornerTriangle& t, std::size_t edge) {
+  return sector_of(t[kEdges[edge][0]].key) != sector_of(t[kEdges[edge][1]].key);
 }
 
-Point centroid(const CornerTriangle& t) {
-  const Vec3d sum = to_double(t[0].position) + to_double(t[1].position) + to_double(t[2].position);
-  return {{t[0].key, t[1].key, t[2].key}, to_float(sum * (1.0 / 3))};
+bool touches_three(const CornerTriangle& t) {
+  return is_crossing(t, 0) && is_crossing(t, 2);  // corners ascend by sector
 }
 
-std::array<CornerEdge, 3> edges_of(const CornerTriangle& t) {
-  return {CornerEdge{t[0], t[1]}, CornerEdge{t[0], t[2]}, CornerEdge{t[1], t[2]}};
+std::array<VertexKey, 3> key_of(const CornerTriangle& t) {
+  return {t[0].key, t[1].key, t[2].key};
 }
 
-bool is_crossing(const CornerEdge& e) {
-  return sector_of(e[0].key) != sector_of(e[1].key);
-}
-
-template <std::size_t n>
-bool before(const std::array<Corner, n>& a, const std::array<Corner, n>& b) {
-  return std::lexicographical_compare(
-      a.begin(), a.end(), b.begin(), b.end(),
-      [](const Corner& x, const Corner& y) { return x.key < y.key; });
-}
-
-template <std::size_t n>
-bool same(const std::array<Corner, n>& a, const std::array<Corner, n>& b) {
-  return !before(a, b) && !before(b, a);
-}
-
-/// Calls visit(first, last) for every run of equal elements of a sorted range.
-template <class Element, class Visit>
-void for_each_run(std::span<const Element> sorted, Visit&& visit) {
-  for (std::size_t first = 0, last = 0; first < sorted.size(); first = last) {
-    while (last < sorted.size() && same(sorted[first], sorted[last]))
-      ++last;
-    visit(first, last);
-  }
+bool before(const CornerTriangle& a, const CornerTriangle& b) {
+  return key_of(a) < key_of(b);
 }
 
 // Up to so many numbers are compared with each other: quicker than sorting them.
@@ -139,49 +110,6 @@ std::vector<std::array<std::uint32_t, 2>> own_border_edges(const TileMesh& tile)
   return result;
 }
 
-/// A piece of a sector line.
-struct LinePiece {
-  Point a, b;
-};
-
-/// The line through one border triangle, which has two or three crossing edges.
-void add_sector_line(const CornerTriangle& triangle, std::vector<LinePiece>& pieces) {
-  std::vector<Point> crossings;
-  for (const CornerEdge& edge : edges_of(triangle)) {
-    if (is_crossing(edge))
-      crossings.push_back(midpoint(edge));
-  }
-  if (crossings.size() == 2)
-    return pieces.push_back({crossings[0], crossings[1]});
-  for (const Point& crossing : crossings)
-    pieces.push_back({crossing, centroid(triangle)});
-}
-
-/// A triangle and its duplicates or mirror images make one line.
-std::vector<LinePiece> sector_lines(std::span<const CornerTriangle> sorted) {
-  std::vector<LinePiece> pieces;
-  for_each_run(sorted,
-               [&](std::size_t first, std::size_t) { add_sector_line(sorted[first], pieces); });
-  return pieces;
-}
-
-/// Crossing edges that exactly one triangle has, ascending.
-std::vector<CornerEdge> crossing_borders(std::span<const CornerTriangle> triangles) {
-  std::vector<CornerEdge> edges, result;
-  for (const CornerTriangle& t : triangles) {
-    for (const CornerEdge& edge : edges_of(t)) {
-      if (is_crossing(edge))
-        edges.push_back(edge);
-    }
-  }
-  std::sort(edges.begin(), edges.end(), before<2>);
-  for_each_run(std::span<const CornerEdge>(edges), [&](std::size_t first, std::size_t last) {
-    if (last - first == 1)
-      result.push_back(edges[first]);
-  });
-  return result;
-}
-
 /// A sector's part of the mesh's own borders, small for soups that are nothing but borders: the rim
 /// (where crossing borders end), then the other vertices on own border edges, ascending.
 struct SectorBorder {
@@ -211,53 +139,57 @@ SectorBorder border_of(std::uint32_t sector, const TileMesh& tile) {
   return border;
 }
 
+struct SectorContent {
+  std::vector<CornerTriangle> triangles;  ///< border triangles of which it is the first, sorted
+  SectorBorder border;
+};
+
 /// Segments of numbered points: first the vertices by sector and index, then the points of sector
-/// lines by key. Needs the vertices first, then the pieces of lines, then the crossing borders.
+/// lines by the corners they lie between: an edge's midpoint (a, b, b), a triangle's centroid
+/// (a, b, c).
 class Network {
  public:
-  /// `borders`: by ascending sector.
-  explicit Network(std::span<const SectorBorder* const> borders) {
-    for (const SectorBorder* border : borders) {
-      const std::uint32_t base = count();
-      sectors_.push_back({border->sector, border->rim_count, base});
-      positions_.insert(positions_.end(), border->positions.begin(), border->positions.end());
-      for (const auto& [a, b] : border->edges)
-        segments_.push_back({base + a, base + b});
+  /// Takes what sectors hold, by ascending sector, and leaves nothing there. Without the segments.
+  explicit Network(std::span<SectorContent*> sectors) {
+    std::size_t triangle_count = 0, edge_count = 0;
+    for (const SectorContent* sector : sectors) {
+      triangle_count += sector->triangles.size();
+      edge_count += sector->border.edges.size();
+    }
+    triangles_.reserve(triangle_count);
+    segments_.reserve(edge_count);
+    for (SectorContent* sector : sectors) {
+      triangles_.insert(triangles_.end(), sector->triangles.begin(), sector->triangles.end());
+      add_border(sector->border);
+      *sector = {};
     }
     vertex_count_ = count();
+    number_points();
   }
 
-  void add_lines(std::span<const LinePiece> pieces) {
-    struct End {
-      const Point* point;
-      std::uint32_t number;  ///< of the piece's two ends
-    };
-    std::vector<End> ends;
-    ends.reserve(2 * pieces.size());
-    for (const LinePiece& piece : pieces) {
-      for (const Point* point : {&piece.a, &piece.b})
-        ends.push_back({point, static_cast<std::uint32_t>(ends.size())});
-    }
-    std::sort(ends.begin(), ends.end(),
-              [](const End& x, const End& y) { return x.point->key < y.point->key; });
-    std::vector<std::uint32_t> node(ends.size());
-    for (const auto& [point, number] : ends) {
-      if (keys_.empty() || keys_.back() != point->key) {
-        keys_.push_back(point->key);
-        positions_.push_back(point->position);
-      }
-      node[number] = count() - 1;
-    }
-    for (std::size_t i = 0; i < node.size(); i += 2)
-      segments_.push_back({node[i], node[i + 1]});
+  /// How many there will be.
+  std::size_t segment_count() const {
+    std::size_t count = segments_.size() + 2 * lonely_.size();
+    for (std::size_t t = 0; t < triangles_.size(); ++t)
+      count += is_repeated(t) ? 0U : touches_three(triangles_[t]) ? 3U : 1U;
+    return count;
   }
 
-  void add_crossing_borders(std::span<const CornerEdge> edges) {
-    for (const CornerEdge& edge : edges) {
-      const std::uint32_t middle = number_of(midpoint(edge));
-      segments_.push_back({number_of(edge[0].key), middle});
-      segments_.push_back({number_of(edge[1].key), middle});
+  void make_segments() {
+    segments_.reserve(segment_count());
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+      if (!is_repeated(t))
+        add_line(triangles_[t], points_[t]);
     }
+    // Crossing edges that exactly one triangle has.
+    for (const auto& [low, high, place] : lonely_) {
+      const std::uint32_t middle = points_[place / 3].middles[place % 3];
+      segments_.push_back({number_of(low), middle});
+      segments_.push_back({number_of(high), middle});
+    }
+    triangles_ = {};
+    points_ = {};
+    lonely_ = {};
   }
 
   std::uint32_t count() const { return static_cast<std::uint32_t>(positions_.size()); }
@@ -268,10 +200,93 @@ class Network {
   struct Sector {
     std::uint32_t sector, rim_count, base;
   };
+  /// Numbers of a triangle's points, as far as it has them.
+  struct Points {
+    std::array<std::uint32_t, 3> middles;
+    std::uint32_t centroid;
+  };
+  /// An edge between two sectors, as one triangle has it.
+  struct CrossingEdge {
+    VertexKey low, high;
+    std::uint32_t place;  ///< triangle * 3 + edge
+    friend constexpr auto operator<=>(const CrossingEdge&, const CrossingEdge&) = default;
+  };
 
-  std::uint32_t number_of(const Point& point) const {
-    const auto found = std::lower_bound(keys_.begin(), keys_.end(), point.key);
-    return vertex_count_ + static_cast<std::uint32_t>(found - keys_.begin());
+  void add_border(const SectorBorder& border) {
+    const std::uint32_t base = count();
+    sectors_.push_back({border.sector, border.rim_count, base});
+    positions_.insert(positions_.end(), border.positions.begin(), border.positions.end());
+    for (const auto& [a, b] : border.edges)
+      segments_.push_back({base + a, base + b});
+  }
+
+  std::vector<CrossingEdge> crossing_edges() const {
+    std::vector<CrossingEdge> edges;
+    edges.reserve(3 * triangles_.size());
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+      for (std::uint32_t e = 0; e < 3; ++e) {
+        const auto& [a, b] = kEdges[e];
+        if (is_crossing(triangles_[t], e))
+          edges.push_back({triangles_[t][a].key, triangles_[t][b].key, 3 * t + e});
+      }
+    }
+    std::sort(edges.begin(), edges.end());
+    return edges;
+  }
+
+  /// A triangle and its duplicates or mirror images make one line.
+  bool is_repeated(std::size_t t) const {
+    return t > 0 && key_of(triangles_[t - 1]) == key_of(triangles_[t]);
+  }
+
+  void number_points() {
+    points_.resize(triangles_.size());
+    const std::vector<CrossingEdge> edges = crossing_edges();
+    std::size_t t = 0;
+    const auto add_centroids_before = [&](const std::array<VertexKey, 3>& key) {
+      for (; t < triangles_.size() && key_of(triangles_[t]) < key; ++t) {
+        if (touches_three(triangles_[t]) && !is_repeated(t))
+          points_[t].centroid = add_centroid(triangles_[t]);
+      }
+    };
+    for (std::size_t first = 0, last = 0; first < edges.size(); first = last) {
+      const auto& [low, high, place] = edges[first];
+      add_centroids_before({low, high, high});
+      const std::uint32_t number = add_midpoint(triangles_[place / 3], place % 3);
+      for (; last < edges.size() && edges[last].low == low && edges[last].high == high; ++last)
+        points_[edges[last].place / 3].middles[edges[last].place % 3] = number;
+      if (last - first == 1)
+        lonely_.push_back({low, high, place});
+    }
+    add_centroids_before(kAfterAll);
+  }
+
+  std::uint32_t add_midpoint(const CornerTriangle& t, std::size_t edge) {
+    const auto& [a, b] = kEdges[edge];
+    const Vec3d sum = to_double(t[a].position) + to_double(t[b].position);
+    positions_.push_back(to_float(sum * 0.5));
+    return count() - 1;
+  }
+
+  std::uint32_t add_centroid(const CornerTriangle& t) {
+    const Vec3d sum =
+        to_double(t[0].position) + to_double(t[1].position) + to_double(t[2].position);
+    positions_.push_back(to_float(sum * (1.0 / 3)));
+    return count() - 1;
+  }
+
+  /// The line through one border triangle, which has two or three crossing edges.
+  void add_line(const CornerTriangle& triangle, const Points& points) {
+    std::array<std::uint32_t, 3> crossings{};
+    std::size_t count = 0;
+    for (std::size_t edge = 0; edge < 3; ++edge) {
+      if (is_crossing(triangle, edge))
+        crossings[count++] = points.middles[edge];
+    }
+    if (count == 2)
+      return segments_.push_back({crossings[0], crossings[1]});
+    for (const std::uint32_t crossing : crossings)
+      segments_.push_back({crossing, points.centroid});
   }
 
   /// Of a vertex that a border triangle uses: its sector's rim has it.
@@ -288,11 +303,16 @@ class Network {
                     std::to_string(sector_of(vertex)) + ", which is not in that sector's rim");
   }
 
+  static constexpr std::array<VertexKey, 3> kAfterAll{~VertexKey{0}, ~VertexKey{0}, ~VertexKey{0}};
+
   std::vector<Sector> sectors_;
   std::vector<Vec3f> positions_;
   std::vector<std::array<std::uint32_t, 2>> segments_;
   std::uint32_t vertex_count_ = 0;
-  std::vector<std::array<VertexKey, 3>> keys_;  ///< of the points after the vertices
+  // Until segments are made:
+  std::vector<CornerTriangle> triangles_;  ///< sorted: a sector's come before the next one's
+  std::vector<Points> points_;             ///< of each triangle
+  std::vector<CrossingEdge> lonely_;       ///< ascending
 };
 
 /// All chains with the significance of their points, to be cut to any tolerance.
@@ -402,13 +422,10 @@ Selection select(const Lines& lines, const OutlineOptions& options) {
 
 }  // namespace
 
-struct OutlineBuilder::Sector::Content {
-  std::vector<CornerTriangle> triangles;  ///< border triangles of which it is the first, sorted
-  SectorBorder border;
-};
+struct OutlineBuilder::Sector::Content : SectorContent {};
 
 OutlineBuilder::Sector::Sector(std::uint32_t index, const TileMesh& tile)
-    : content_(new Content{{}, border_of(index, tile)}) {
+    : content_(new Content{{{}, border_of(index, tile)}}) {
   const auto corner = [&](std::uint32_t vertex) -> Corner {
     const TileVertex v{vertex};
     const std::uint32_t sector = tile.is_own(v) ? index : tile.ghost(v).tile;
@@ -425,7 +442,7 @@ OutlineBuilder::Sector::Sector(std::uint32_t index, const TileMesh& tile)
     if (sector_of(triangle[0].key) == index)
       content_->triangles.push_back(triangle);
   }
-  std::sort(content_->triangles.begin(), content_->triangles.end(), before<3>);
+  std::sort(content_->triangles.begin(), content_->triangles.end(), before);
 }
 
 OutlineBuilder::Sector::Sector(Sector&&) noexcept = default;
@@ -451,23 +468,17 @@ std::size_t OutlineBuilder::edge_count() const {
   return parts_->edge_count;
 }
 
-OutlineResult OutlineBuilder::finish(const OutlineOptions& options) const {
+std::optional<OutlineResult> OutlineBuilder::finish(const OutlineOptions& options) {
   assert(options.tolerance > 0 && options.diagonal >= 0);
-  std::vector<const Sector::Content*> sectors;
-  for (const Sector::Content& sector : parts_->sectors)
+  std::vector<SectorContent*> sectors;
+  for (SectorContent& sector : parts_->sectors)
     sectors.push_back(&sector);
   std::sort(sectors.begin(), sectors.end(),
             [](const auto* a, const auto* b) { return a->border.sector < b->border.sector; });
-  std::vector<const SectorBorder*> borders;
-  std::vector<CornerTriangle> triangles;  // sorted: those of a sector come before the next one's
-  for (const Sector::Content* sector : sectors) {
-    borders.push_back(&sector->border);
-    triangles.insert(triangles.end(), sector->triangles.begin(), sector->triangles.end());
-  }
-
-  Network network(borders);
-  network.add_lines(sector_lines(triangles));
-  network.add_crossing_borders(crossing_borders(triangles));
+  Network network(sectors);
+  if (network.segment_count() > options.max_segments)
+    return std::nullopt;
+  network.make_segments();
   const Lines lines(network, options.tolerance * options.diagonal);
   const Selection selection = select(lines, options);
   OutlineResult result;

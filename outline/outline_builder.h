@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 
 namespace meshhier::outline {
 
@@ -23,6 +24,8 @@ struct OutlineOptions {
   double tolerance = 0.002;       ///< of Douglas-Peucker, as a part of `diagonal`; > 0
   double diagonal = 1;            ///< of the model's bounding box, input units; >= 0
   std::size_t max_bytes = 32768;  ///< the file may be so large
+  /// Some 100 bytes are held for each. An open mesh has up to nine for a border triangle.
+  std::size_t max_segments = SIZE_MAX;
   /// Size of the file for so many vertices (Outline::vertices.size()) and line segments, growing
   /// with both; unset: no limit.
   std::function<std::size_t(std::size_t vertices, std::size_t segments)> file_bytes;
@@ -77,15 +80,16 @@ class OutlineBuilder {
   /// All sectors must be of one level, each added once.
   void add(Sector sector);
 
-  /// What is held so far: border triangles, and the sectors' edges with one triangle; some 200
-  /// bytes each until finish() returns.
+  /// What is held so far: border triangles, and the sectors' edges with one triangle. Of a border
+  /// triangle finish() holds up to 220 bytes.
   std::size_t edge_count() const;
 
+  /// Nothing if there are more than options.max_segments. Leaves no sector here.
   /// First come the polylines between junctions, then the closed ones without, both ordered by the
   /// sector and index of the vertices at their start. Closed ones keep at least a triangle, others
   /// their ends. O(s log s) in the number of line segments.
   /// Throws Error(internal) if a border triangle's ghost is in no added sector's rim.
-  OutlineResult finish(const OutlineOptions& options) const;
+  std::optional<OutlineResult> finish(const OutlineOptions& options);
 
  private:
   struct Parts;

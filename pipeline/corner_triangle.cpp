@@ -54,7 +54,7 @@ std::vector<CornerTriangle> early_border_of(const PublishedTile& tile, const Tre
       return make_corner(own, raw(v));
     const NodeId neighbour{tile.node.level, mesh.ghost(v).tile};
     return make_corner(tree.ancestor(neighbour, above).index,
-                       tile.chains[raw(v) - mesh.own_count].at(1));
+                       tile.chains[raw(v) - mesh.own_count][1]);
   };
   std::vector<CornerTriangle> triangles;
   triangles.reserve(mesh.border.size());

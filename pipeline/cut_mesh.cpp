@@ -77,7 +77,7 @@ std::optional<ShownGhost> find_ghost(const Tree& tree, const NumberedCut& number
   const Level level = numbered.cut[position].level;
   if (level > tile.node.level)
     return std::nullopt;
-  const GhostChain& chain = tile.chains[ghost];
+  const GhostChain chain = tile.chains[ghost];
   const std::size_t step = raw(tile.node.level) - raw(level);
   const std::uint64_t count = numbered.bases[position + 1] - numbered.bases[position];
   if (step >= chain.size() || chain[step] >= count) {

@@ -4,6 +4,7 @@
 #include "storage/work_tile.h"
 
 #include <algorithm>
+#include <array>
 
 namespace meshhier::pipeline {
 namespace {
@@ -60,9 +61,10 @@ void Forest::put_parent_map(NodeId child, std::span<const std::uint16_t> parent_
   levels_[raw(child.level)].parent_maps.put(child.index, std::as_bytes(parent_map));
 }
 
-std::uint64_t Forest::stored_triangle_bytes(NodeId node) const {
-  return levels_[raw(node.level)].tiles.size(node.index) -
-         storage::work_vertex_bytes(own_count(node), channels_);
+std::uint64_t Forest::triangle_bytes(NodeId node) const {
+  std::array<std::byte, storage::kWorkTileHeadBytes> head;
+  levels_[raw(node.level)].tiles.read(node.index, 0, head);
+  return storage::work_triangle_bytes(head);
 }
 
 void Forest::drop_copies(std::uint64_t free_bytes) {

@@ -53,8 +53,8 @@ class Forest {
     return levels_[raw(node.level)].own_counts[node.index];
   }
 
-  /// Of a tile as it is kept: what its triangles and foreign corners take.
-  std::uint64_t stored_triangle_bytes(NodeId node) const;
+  /// What the triangles and foreign corners of a tile take.
+  std::uint64_t triangle_bytes(NodeId node) const;
   /// What is kept in memory counts against it.
   storage::MemoryPool& pool() const { return pool_; }
 

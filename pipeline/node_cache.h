@@ -15,12 +15,12 @@ namespace meshhier::pipeline {
 
 /// Bytes a tile holds in memory.
 inline std::uint64_t memory_bytes(const PublishedTile& tile) {
-  constexpr std::uint64_t kChainBytes = 24 + 32;  // a vector, and a small block of the heap
   const TileMesh& mesh = tile.mesh;
   return sizeof(PublishedTile) + mesh.vertices.positions.size() * sizeof(Vec3f) +
          mesh.vertices.attributes.size() * sizeof(float) + mesh.ghosts.size() * sizeof(GhostRef) +
          (mesh.interior.size() + mesh.border.size()) * sizeof(Triangle) +
-         tile.parent_map.size() * sizeof(std::uint16_t) + tile.chains.size() * kChainBytes;
+         tile.parent_map.size() * sizeof(std::uint16_t) +
+         tile.chains.size() * sizeof(std::uint32_t) + tile.chains.entries().size_bytes();
 }
 
 /// Values by node; the least recently used go first. What get() returns never depends on the limit,

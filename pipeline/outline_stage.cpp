@@ -15,10 +15,13 @@ namespace {
 // At most 32 kB for any model (docs/architecture.md, Outline).
 constexpr std::size_t kOutlineBytes = 32000;
 
-// Border triangles and border edges held at a time, some 200 bytes each: 25 MB, whatever the
-// budget, as the result may not depend on it. The file has room for 2000 points; a mesh with more
-// edges than this (open patches, soup) is outlined on a coarser level, where they are fewer.
+// Border triangles and border edges, then segments, held at a time: 25 MB, whatever the budget, as
+// the result may not depend on it. The file has room for 2000 points; a mesh with more edges than
+// this (open patches, soup) is outlined on a coarser level, where they are fewer.
 constexpr std::size_t kMostEdges = 131072;
+constexpr std::size_t kMostSegments = 2 * kMostEdges;
+// Level 0 is outlined anyhow.
+constexpr std::uint64_t kEdgeBytes = 100;
 
 /// The finest level with no more than `sectors` nodes.
 Level sector_level(const Tree& tree, std::uint32_t sectors) {
@@ -59,20 +62,23 @@ bool collect(Forest& forest, Level level, outline::OutlineBuilder& builder, cons
 OutlineStageResult make_outline(Forest& forest, const OutlineConfig& config, double diagonal,
                                 const MemoryPlan& plan, Progress& progress,
                                 const CancelToken& cancel) {
-  Level level = sector_level(forest.tree(), config.sectors);
-  std::optional<outline::OutlineBuilder> builder;
-  while (!collect(forest, level, builder.emplace(), plan, progress, cancel))
-    level = coarser(level);
-
   outline::OutlineOptions options;
   options.tolerance = config.tolerance;
   options.diagonal = std::max(diagonal, 1e-30);
   options.max_bytes = kOutlineBytes;
   options.file_bytes = storage::outline_bytes;
-  outline::OutlineResult result = builder->finish(options);
-  return {std::move(result.outline),
-          {raw(level), forest.tree().node_count(level), result.tolerance, result.polylines_found,
-           result.polylines_dropped}};
+  for (Level level = sector_level(forest.tree(), config.sectors);; level = coarser(level)) {
+    outline::OutlineBuilder builder;
+    if (!collect(forest, level, builder, plan, progress, cancel))
+      continue;
+    options.max_segments = level > Level{0} ? kMostSegments : SIZE_MAX;
+    const TileRoom room = room_for(forest, plan, builder.edge_count() * kEdgeBytes);
+    if (auto result = builder.finish(options)) {
+      return {std::move(result->outline),
+              {raw(level), forest.tree().node_count(level), result->tolerance,
+               result->polylines_found, result->polylines_dropped}};
+    }
+  }
 }
 
 }  // namespace meshhier::pipeline

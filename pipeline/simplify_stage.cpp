@@ -17,9 +17,8 @@ namespace {
 
 using cluster_simplify::ContractedTile;
 
-// What tiles leave behind between the blobs that stay adds up over thousands of them, and so do the
-// places of spooled blocks, too small for the tiles they turn into: some 3 MiB a chunk.
-constexpr std::size_t kTilesBetweenReleases = 64;
+// What chunks leave behind between the blobs that stay adds up over thousands of them, and so do
+// the places of spooled blocks, too small for the tiles they turn into: some 3 MiB a chunk.
 constexpr std::size_t kChunksBetweenReleases = 8;
 
 /// A chunk whose triangles alone exceed what a stage may hold: a vertex with an absurd number of
@@ -226,7 +225,7 @@ void simplify(Forest& forest, BuildJournal& journal, const SimplifyOptions& opti
         [&](std::size_t i, NodeId node) {
           journal.note_tile(node, simplifier.steps_below(node));
           progress.advance(1);
-          if (i % kTilesBetweenReleases == kTilesBetweenReleases - 1)
+          if ((i + 1) % room.items_between_releases() == 0)
             release_free_memory();
         });
     if (!simplifier.steps().empty())

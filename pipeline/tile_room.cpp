@@ -11,6 +11,10 @@ namespace meshhier::pipeline {
 
 namespace {
 
+// Some 3 MiB stay behind a usual tile, which has 10 MiB at work: every 64 tiles.
+constexpr std::uint64_t kBytesBetweenReleases = std::uint64_t{640} << 20;
+constexpr std::uint64_t kMostBetweenReleases = 64;
+
 /// Of more budget a twelfth is the allocator's, which may lack its part of this one
 /// (memory_plan.cpp).
 [[noreturn]] void refuse(const MemoryPlan& plan, const storage::MemoryPool& pool,
@@ -27,7 +31,11 @@ namespace {
 }  // namespace
 
 TileRoom::TileRoom(const MemoryPlan& plan, storage::MemoryPool& pool, std::uint64_t heaviest_bytes)
-    : pool_(pool), in_flight_(plan.tiles_in_flight) {
+    : pool_(pool),
+      in_flight_(plan.tiles_in_flight),
+      items_between_releases_(std::clamp<std::uint64_t>(
+          kBytesBetweenReleases / std::max<std::uint64_t>(heaviest_bytes, 1), 1,
+          kMostBetweenReleases)) {
   if (heaviest_bytes * in_flight_ <= plan.work_bytes)
     return;
   if (heaviest_bytes > plan.work_bytes) {
@@ -40,15 +48,17 @@ TileRoom::TileRoom(const MemoryPlan& plan, storage::MemoryPool& pool, std::uint6
 }
 
 TileRoom room_for(Forest& forest, const MemoryPlan& plan, std::uint64_t heaviest_bytes) {
-  if (heaviest_bytes > plan.work_bytes)
+  if (heaviest_bytes > plan.work_bytes) {
     forest.drop_copies(heaviest_bytes - plan.work_bytes);
+    release_free_memory();
+  }
   return {plan, forest.pool(), heaviest_bytes};
 }
 
 std::uint64_t heaviest_read(const Forest& forest, Level level) {
   std::uint64_t most = 0;
   for (std::uint32_t i = 0; i < forest.tree().node_count(level); ++i)
-    most = std::max(most, forest.stored_triangle_bytes({level, i}));
+    most = std::max(most, forest.triangle_bytes({level, i}));
   return most * TileRoom::kRead;
 }
 
@@ -58,7 +68,7 @@ std::uint64_t heaviest_contracted(const Forest& forest, Level level) {
     std::uint64_t bytes = 0;
     const Tree::Children children = forest.tree().children({level, i});
     for (const NodeId child : children.span())
-      bytes += forest.stored_triangle_bytes(child);
+      bytes += forest.triangle_bytes(child);
     most = std::max(most, bytes);
   }
   return most * TileRoom::kContracted;

@@ -15,7 +15,7 @@ namespace meshhier::pipeline {
 /// object goes.
 class TileRoom {
  public:
-  /// How many bytes are at work for each that Forest::stored_triangle_bytes() tells. Measured with
+  /// How many bytes are at work for each that Forest::triangle_bytes() tells. Measured with
   /// fans, books and soups: 19 to 22, and half of it where tiles are only read.
   static constexpr std::uint64_t kContracted = 24;
   static constexpr std::uint64_t kRead = 12;
@@ -29,14 +29,19 @@ class TileRoom {
 
   /// Items at a time.
   std::size_t in_flight() const { return in_flight_; }
+  /// After so many items free memory should go back to the system (release_free_memory()): what
+  /// they leave behind between the blobs that stay adds up.
+  std::size_t items_between_releases() const { return items_between_releases_; }
 
  private:
   storage::MemoryPool& pool_;
   std::uint64_t taken_ = 0;
   std::size_t in_flight_;
+  std::size_t items_between_releases_;
 };
 
-/// A TileRoom in the forest's pool, of which tiles kept in memory make way.
+/// A TileRoom in the forest's pool, of which tiles kept in memory make way; the memory they had
+/// goes back to the system.
 TileRoom room_for(Forest& forest, const MemoryPlan& plan, std::uint64_t heaviest_bytes);
 
 /// Of the level's tiles, what the heaviest takes while it is read.

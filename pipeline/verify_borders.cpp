@@ -1,10 +1,11 @@
+// What is wrong between two neighbours that do not agree (pipeline/border_pairs.h).
+#include "pipeline/corner_triangle.h"
 #include "pipeline/cut.h"
 #include "pipeline/verify_parts.h"
 
 #include <algorithm>
-#include <compare>
 #include <cstring>
-#include <span>
+#include <iterator>
 #include <string_view>
 #include <vector>
 
@@ -34,22 +35,19 @@ class GhostTally {
   std::size_t count_ = 0, first_ = 0;
 };
 
-/// The ghosts [begin, end) of `tile` are vertices of `neighbour`, whose node is `node`.
+/// The ghosts [begin, end) of a tile are vertices of the node.
 struct GhostGroup {
   NodeId node;
   std::size_t begin, end;
 };
 
-std::vector<GhostGroup> group_ghosts(const PublishedTile& tile) {
-  std::vector<GhostGroup> groups;
+GhostGroup ghosts_in(const PublishedTile& tile, NodeId neighbour) {
   const auto& ghosts = tile.mesh.ghosts;
-  for (std::size_t i = 0; i < ghosts.size(); ++i) {
-    if (i == 0 || ghosts[i].tile != ghosts[i - 1].tile) {
-      groups.push_back({{tile.node.level, ghosts[i].tile}, i, i});
-    }
-    groups.back().end = i + 1;
-  }
-  return groups;
+  const auto at = [&](std::uint32_t index) {
+    const auto found = std::lower_bound(ghosts.begin(), ghosts.end(), GhostRef{index, 0});
+    return static_cast<std::size_t>(found - ghosts.begin());
+  };
+  return {neighbour, at(neighbour.index), at(neighbour.index + 1)};
 }
 
 bool same_attributes(const VertexArray& a, std::size_t i, const VertexArray& b, std::size_t j) {
@@ -118,91 +116,60 @@ void check_chains(const VerifyJob& job, const PublishedTile& tile, const GhostGr
   wrong.report(job, tile.node, group.node, "have chains that are not its parent maps'");
 }
 
-/// A border triangle, once for each other tile that it touches.
-struct SharedTriangle {
-  std::uint32_t neighbour;
-  CornerTriangle triangle;
-  friend auto operator<=>(const SharedTriangle&, const SharedTriangle&) = default;
-};
-
-std::vector<SharedTriangle> shared_triangles(NodeId node,
-                                             const std::vector<CornerTriangle>& border) {
-  std::vector<SharedTriangle> shared;
-  for (const CornerTriangle& t : border) {
-    for (std::size_t k = 0; k < t.size(); ++k) {
-      const std::uint32_t tile = tile_index(t[k]);
-      const bool is_met = std::any_of(t.begin(), t.begin() + static_cast<std::ptrdiff_t>(k),
-                                      [&](Corner c) { return tile_index(c) == tile; });
-      if (tile != node.index && !is_met)
-        shared.push_back({tile, t});
-    }
-  }
-  std::sort(shared.begin(), shared.end());
-  return shared;
+std::vector<CornerTriangle> border_triangles(const VerifyJob& job, const PublishedTile& tile,
+                                             NodeId node) {
+  return tile.node == node ? border_of(tile, job.tree()) : early_border_of(tile, job.tree());
 }
 
-/// Whether all of one neighbour's shared triangles are among `theirs`, as often as here.
-bool are_listed(std::span<const SharedTriangle> shared, const std::vector<CornerTriangle>& theirs) {
-  for (std::size_t begin = 0, end = 0; begin < shared.size(); begin = end) {
-    while (end < shared.size() && shared[end] == shared[begin])
-      ++end;
-    const auto [low, high] = std::equal_range(theirs.begin(), theirs.end(), shared[begin].triangle);
-    if (static_cast<std::size_t>(high - low) < end - begin)
-      return false;
-  }
-  return true;
+/// Those of `border` that touch another tile.
+std::vector<CornerTriangle> touching(const std::vector<CornerTriangle>& border,
+                                     std::uint32_t other) {
+  std::vector<CornerTriangle> met;
+  std::copy_if(border.begin(), border.end(), std::back_inserter(met), [&](const auto& triangle) {
+    return std::any_of(triangle.begin(), triangle.end(),
+                       [&](Corner corner) { return tile_index(corner) == other; });
+  });
+  return met;
 }
 
-/// Every triangle of `border` (of `node`) is in the list of each other tile it touches.
-void check_lists(const VerifyJob& job, BorderLists& lists, NodeId node,
-                 const std::vector<CornerTriangle>& border) {
-  const std::vector<SharedTriangle> all = shared_triangles(node, border);
-  for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
-    while (end < all.size() && all[end].neighbour == all[begin].neighbour)
-      ++end;
-    const NodeId neighbour{node.level, all[begin].neighbour};
-    if (!job.tiles.find(neighbour))
-      continue;
-    if (are_listed(std::span(all).subspan(begin, end - begin), *lists.get(neighbour)))
-      continue;
+/// Every triangle of `tile` that touches the neighbour is in the neighbour's list, as often.
+void check_lists(const VerifyJob& job, NodeId node, const PublishedTile& tile, NodeId other,
+                 const PublishedTile& neighbour) {
+  const auto here = touching(border_triangles(job, tile, node), other.index);
+  const auto there = border_triangles(job, neighbour, other);
+  if (!std::includes(there.begin(), there.end(), here.begin(), here.end())) {
     job.problems.add(
         fmt::format("tile {}: some of its {} border triangles with tile {} are not listed there",
-                    to_text(node), end - begin, to_text(neighbour)));
+                    to_text(node), here.size(), to_text(other)));
   }
+}
+
+/// What the first of two neighbours says of the second. The tiles stand for the nodes.
+void check_side(const VerifyJob& job, NodeId node, const PublishedTile& tile, NodeId other,
+                const PublishedTile& neighbour) {
+  if (tile.node == node) {
+    const GhostGroup group = ghosts_in(tile, other);
+    check_ghosts(job, tile, group, neighbour);
+    check_chains(job, tile, group);
+  }
+  check_lists(job, node, tile, other, neighbour);
 }
 
 }  // namespace
 
-BorderLists make_border_lists(const VerifyJob& job) {
-  return {job.options.memory_budget / 16,
-          [&job](NodeId node) {
-            const auto tile = job.tiles.find(node);
-            if (!tile)
-              return std::vector<CornerTriangle>{};
-            return tile->node.level == node.level ? border_of(*tile, job.tree())
-                                                  : early_border_of(*tile, job.tree());
-          },
-          [](const auto& list) { return list.size() * sizeof(list[0]) + sizeof(list); }};
-}
-
-void verify_borders(const VerifyJob& job, BorderLists& lists, const PublishedTile& tile) {
-  const Tree& tree = job.tree();
-  for (const GhostGroup& group : group_ghosts(tile)) {
-    if (group.node == tile.node) {
-      job.problems.add(fmt::format("tile {}: has itself as a neighbour", to_text(tile.node)));
-      return;
-    }
-    if (const auto neighbour = job.tiles.find(group.node)) {
-      check_ghosts(job, tile, group, *neighbour);
-    }
-    check_chains(job, tile, group);
+void explain_difference(const VerifyJob& job, NodeId a, NodeId b) {
+  const std::uint64_t told = job.problems.count();
+  if (told < ProblemList::kLimit) {
+    const auto tile = job.tiles.find(a), neighbour = job.tiles.find(b);
+    if (!tile || !neighbour)
+      return;  // told already
+    check_side(job, a, *tile, b, *neighbour);
+    check_side(job, b, *neighbour, a, *tile);
   }
-  check_lists(job, lists, tile.node, *lists.get(tile.node));
-  if (tile.node.level == Level{})
-    return;
-  const NodeId above = tree.parent(tile.node);
-  if (tree.is_early(above))
-    check_lists(job, lists, above, *lists.get(above));
+  if (job.problems.count() == told) {
+    job.problems.add(fmt::format("tiles {} and {}: say different things of the border between them",
+                                 to_text(a), to_text(b)));
+  }
 }
 
 }  // namespace meshhier::pipeline

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -19,13 +20,24 @@
 namespace meshhier::pipeline {
 namespace {
 
-/// The image of ghost i of `child`, or nothing if its chain is wrong (told by verify_borders).
-std::optional<Corner> ghost_image(const VerifyJob& job, const PublishedTile& child, std::size_t i,
-                                  NodeId parent) {
-  const Tree& tree = job.tree();
+/// The tiles of a node's children, one or two.
+using ChildTiles = std::vector<std::shared_ptr<const PublishedTile>>;
+
+ChildTiles children_of(const VerifyJob& job, NodeId parent) {
+  ChildTiles tiles;
+  const Tree::Children children = job.tree().children(parent);
+  for (NodeId child : children.span())
+    tiles.push_back(job.tiles.find(child));
+  return tiles;
+}
+
+/// The image of ghost i of `child`, or nothing if its chain is wrong (told by explain_difference).
+/// `sibling`: the parent's other child.
+std::optional<Corner> ghost_image(const Tree& tree, const PublishedTile& child,
+                                  const PublishedTile& sibling, std::size_t i, NodeId parent) {
   const NodeId neighbour{child.node.level, child.mesh.ghosts[i].tile};
   const std::size_t up = raw(child.node.level) - raw(parent.level);
-  const GhostChain& chain = child.chains[i];
+  const GhostChain chain = child.chains[i];
   const NodeId above = tree.ancestor(neighbour, parent.level);
   if (above != parent) {
     if (up >= chain.size())
@@ -33,19 +45,15 @@ std::optional<Corner> ghost_image(const VerifyJob& job, const PublishedTile& chi
     return make_corner(above.index, chain[up]);
   }
   // A vertex of the other child: the chain ends there, its parent map leads on.
-  const auto sibling = job.tiles.find(tree.ancestor(neighbour, finer(parent.level)));
-  if (!sibling || up - 1 >= chain.size())
+  if (up - 1 >= chain.size() || chain[up - 1] >= sibling.parent_map.size())
     return std::nullopt;
-  const std::uint16_t vertex = chain[up - 1];
-  if (vertex >= sibling->parent_map.size())
-    return std::nullopt;
-  return make_corner(parent.index, sibling->parent_map[vertex]);
+  return make_corner(parent.index, sibling.parent_map[chain[up - 1]]);
 }
 
 /// The vertices of a child's tile as vertices of the parent's level; nothing if the child is
 /// broken.
-std::optional<std::vector<Corner>> image_of_vertices(const VerifyJob& job,
-                                                     const PublishedTile& child, NodeId parent) {
+std::optional<std::vector<Corner>> image_of_vertices(const Tree& tree, const PublishedTile& child,
+                                                     const PublishedTile& sibling, NodeId parent) {
   std::vector<Corner> images;
   images.reserve(child.mesh.vertices.size());
   if (child.parent_map.size() != child.mesh.own_count)
@@ -53,7 +61,7 @@ std::optional<std::vector<Corner>> image_of_vertices(const VerifyJob& job,
   for (std::uint16_t vertex : child.parent_map)
     images.push_back(make_corner(parent.index, vertex));
   for (std::size_t i = 0; i < child.mesh.ghosts.size(); ++i) {
-    const auto image = ghost_image(job, child, i, parent);
+    const auto image = ghost_image(tree, child, sibling, i, parent);
     if (!image)
       return std::nullopt;
     images.push_back(*image);
@@ -62,20 +70,17 @@ std::optional<std::vector<Corner>> image_of_vertices(const VerifyJob& job,
 }
 
 /// Adds the images of a child's triangles. False if the child is broken, which is told elsewhere.
-bool add_image(const VerifyJob& job, NodeId child, NodeId parent,
-               std::vector<CornerTriangle>& images, std::vector<bool>& reached) {
-  const auto tile = job.tiles.find(child);
-  if (!tile)
-    return false;
-  const auto corners = image_of_vertices(job, *tile, parent);
+bool add_image(const Tree& tree, const PublishedTile& child, const PublishedTile& sibling,
+               NodeId parent, std::vector<CornerTriangle>& images, std::vector<bool>& reached) {
+  const auto corners = image_of_vertices(tree, child, sibling, parent);
   if (!corners)
     return false;
-  for (const auto* list : {&tile->mesh.interior, &tile->mesh.border}) {
+  for (const auto* list : {&child.mesh.interior, &child.mesh.border}) {
     for (const Triangle& t : *list) {
       images.push_back({(*corners)[raw(t[0])], (*corners)[raw(t[1])], (*corners)[raw(t[2])]});
     }
   }
-  for (std::uint16_t vertex : tile->parent_map) {
+  for (std::uint16_t vertex : child.parent_map) {
     if (vertex < reached.size())
       reached[vertex] = true;
   }
@@ -106,9 +111,10 @@ void verify_image(const VerifyJob& job, const PublishedTile& tile) {
   const Tree& tree = job.tree();
   std::vector<CornerTriangle> images;
   std::vector<bool> reached(tile.mesh.own_count);
-  const Tree::Children children = tree.children(tile.node);
-  for (NodeId child : children.span()) {
-    if (!add_image(job, child, tile.node, images, reached))
+  const ChildTiles children = children_of(job, tile.node);
+  for (const auto& child : children) {
+    const auto& sibling = child == children.front() ? children.back() : children.front();
+    if (!child || !sibling || !add_image(tree, *child, *sibling, tile.node, images, reached))
       return;
   }
   normalize(images, true);

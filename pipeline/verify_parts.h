@@ -1,8 +1,8 @@
 // The parts of verify and what they share. For pipeline/verify*.cpp only.
 #pragma once
 
+#include "pipeline/border_pairs.h"
 #include "pipeline/cancel.h"
-#include "pipeline/corner_triangle.h"
 #include "pipeline/node_cache.h"
 #include "pipeline/progress.h"
 #include "pipeline/verify.h"
@@ -75,21 +75,18 @@ struct VerifyJob {
 /// No file missing, none extra; outline readable; the manifest's totals are the index's.
 void verify_files(const VerifyJob& job);
 
-/// Every tile by itself, with its neighbours, and with its children.
+/// Every tile by itself, with its children, and with its neighbours.
 void verify_tiles(const VerifyJob& job);
 
 /// Counts, bounds, errors, order, rim of one tile against its record and its parent's.
 void verify_tile(const VerifyJob& job, const TileRecord& record, const PublishedTile& tile);
 
-/// Border triangles by node, early ones too. Kept, because where all tiles are neighbours each
-/// would else be made as often as there are tiles.
-using BorderLists = NodeCache<std::vector<CornerTriangle>>;
-
 /// `job` must outlive it.
-BorderLists make_border_lists(const VerifyJob& job);
+ParentMaps make_parent_maps(const VerifyJob& job);
 
-/// Ghosts, chains and border lists of one tile against its neighbours.
-void verify_borders(const VerifyJob& job, BorderLists& lists, const PublishedTile& tile);
+/// Tells what two neighbouring nodes of a level, early ones too, say differently of each other:
+/// ghosts, chains, border lists.
+void explain_difference(const VerifyJob& job, NodeId a, NodeId b);
 
 /// That a simplified tile is exactly the image of its children under their parent maps.
 void verify_image(const VerifyJob& job, const PublishedTile& tile);

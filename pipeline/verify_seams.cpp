@@ -13,7 +13,7 @@
 #include "pipeline/verify_parts.h"
 
 #include <algorithm>
-#include <optional>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -24,7 +24,16 @@ namespace {
 
 using EdgeSpool = storage::RecordSpool<CutEdge>;
 using EdgeSort = partition::ExternalSort<CutEdge, CutEdgeKey>;
-using ParentMaps = NodeCache<std::vector<std::uint16_t>>;
+
+/// An original edge of which one end has become its image.
+struct HalfImage {
+  std::uint32_t vertex = 0;  ///< the other end, as the original numbers it
+  std::uint32_t image = 0;
+};
+struct HalfKey {
+  std::uint32_t operator()(const HalfImage& half) const { return half.vertex; }
+};
+using HalfSort = partition::ExternalSort<HalfImage, HalfKey>;
 
 constexpr std::size_t kEdgeSpoolBlockBytes = std::size_t{1} << 18;
 /// Edges read from a spool at a time: 512 KiB.
@@ -65,25 +74,53 @@ Original look_at_original(const VerifyJob& job) {
   return original;
 }
 
-/// The number that a cut gives to the image of an original vertex.
-std::uint32_t image_of(const VerifyJob& job, ParentMaps& maps, const Original& original,
-                       const NumberedCut& shown, std::uint32_t number) {
-  const std::size_t partition = original.numbered.position_of_vertex(number);
-  const std::size_t position =
-      shown.cut.position_of(static_cast<PartitionId>(static_cast<std::uint32_t>(partition)));
-  NodeId node = original.numbered.cut[partition];
-  std::uint64_t vertex = number - original.numbered.bases[partition];
-  while (node != shown.cut[position]) {
-    const auto map = maps.get(node);
-    if (vertex >= map->size()) {
-      throw Error(ErrorCode::corrupt,
-                  fmt::format("tile {}: its parent map has no vertex {}", to_text(node), vertex));
-    }
-    vertex = (*map)[vertex];
-    node = parent_tile(job.tree(), node);
+/// From the original vertices to their images in a cut, one partition at a time: asked in ascending
+/// order, it walks through the partitions once.
+class Images {
+ public:
+  Images(const VerifyJob& job, ParentMaps& maps, const NumberedCut& original,
+         const NumberedCut& shown)
+      : job_(job), maps_(maps), original_(original), shown_(shown) {}
+
+  /// The number that the cut gives to the image of an original vertex.
+  std::uint32_t operator()(std::uint32_t number) {
+    if (number < begin_ || number - begin_ >= images_.size())
+      enter(original_.position_of_vertex(number));
+    return images_[number - begin_];
   }
-  return static_cast<std::uint32_t>(shown.bases[position] + vertex);
-}
+
+ private:
+  void enter(std::size_t partition) {
+    const std::size_t position =
+        shown_.cut.position_of(static_cast<PartitionId>(static_cast<std::uint32_t>(partition)));
+    NodeId node = original_.cut[partition];
+    begin_ = original_.bases[partition];
+    images_.resize(original_.bases[partition + 1] - begin_);
+    std::iota(images_.begin(), images_.end(), 0U);
+    for (; node != shown_.cut[position]; node = parent_tile(job_.tree(), node)) {
+      const auto map = maps_.get(node);
+      for (std::uint32_t& vertex : images_)
+        vertex = step(node, *map, vertex);
+    }
+    for (std::uint32_t& vertex : images_)
+      vertex += shown_.base(position);
+  }
+
+  static std::uint32_t step(NodeId node, const std::vector<std::uint16_t>& map,
+                            std::uint32_t vertex) {
+    if (vertex < map.size())
+      return map[vertex];
+    throw Error(ErrorCode::corrupt,
+                fmt::format("tile {}: its parent map has no vertex {}", to_text(node), vertex));
+  }
+
+  const VerifyJob& job_;
+  ParentMaps& maps_;
+  const NumberedCut& original_;
+  const NumberedCut& shown_;
+  std::uint64_t begin_ = 0;
+  std::vector<std::uint32_t> images_;  ///< of the vertices of one partition, from begin_ on
+};
 
 template <class Visit>
 void for_each_edge(const EdgeSpool& edges, Visit visit) {
@@ -96,14 +133,22 @@ void for_each_edge(const EdgeSpool& edges, Visit visit) {
   }
 }
 
-/// Adds the images of the unbalanced original edges that are edges still.
+/// Adds the images of the unbalanced original edges that are edges still. The low ends are looked
+/// up in ascending order, then the high ends: an edge may lead from any partition to any other.
 void add_images(const VerifyJob& job, ParentMaps& maps, const Original& original,
                 const NumberedCut& shown, EdgeSort& images) {
+  HalfSort halves(job.scratch, job.options.memory_budget / 16);
+  Images image(job, maps, original.numbered, shown);
   for_each_edge(original.unbalanced, [&](const CutEdge& edge) {
-    const std::uint32_t a = image_of(job, maps, original, shown, edge.low);
-    const std::uint32_t b = image_of(job, maps, original, shown, edge.high);
-    if (a != b)
-      images.add(CutEdge{std::min(a, b), std::max(a, b)});
+    halves.add(HalfImage{edge.high, image(edge.low)});
+  });
+  halves.sort();
+  halves.for_each_block([&](std::span<const HalfImage> block) {
+    for (const HalfImage& half : block) {
+      const std::uint32_t a = half.image, b = image(half.vertex);
+      if (a != b)
+        images.add(CutEdge{std::min(a, b), std::max(a, b)});
+    }
   });
 }
 
@@ -180,13 +225,7 @@ void verify_seams(const VerifyJob& job) {
   job.progress.stage("seams", std::uint64_t{job.options.cuts} + 1, "cuts");
   const Original original = look_at_original(job);
   job.progress.advance(1);
-  ParentMaps maps(
-      job.options.memory_budget / 16,
-      [&](NodeId node) {
-        const auto tile = job.tiles.find(node);
-        return tile ? tile->parent_map : std::vector<std::uint16_t>{};
-      },
-      [](const auto& map) { return map.size() * sizeof(map[0]) + sizeof(map); });
+  ParentMaps maps = make_parent_maps(job);
   std::uint64_t most = 0;
   for (std::uint32_t i = 0; i < job.options.cuts; ++i) {
     most = std::max(most, look_at_cut(job, maps, original, job.options.seed + i));

@@ -108,6 +108,15 @@ void check_parent_map(const VerifyJob& job, const PublishedTile& tile,
 
 }  // namespace
 
+ParentMaps make_parent_maps(const VerifyJob& job) {
+  return {job.options.memory_budget / 16,
+          [&job](NodeId node) {
+            const auto tile = job.tiles.find(node);
+            return tile ? tile->parent_map : std::vector<std::uint16_t>{};
+          },
+          [](const auto& map) { return map.size() * sizeof(map[0]) + sizeof(map); }};
+}
+
 void verify_tile(const VerifyJob& job, const TileRecord& record, const PublishedTile& tile) {
   const Tree& tree = job.tree();
   const TileMesh& mesh = tile.mesh;
@@ -136,13 +145,14 @@ void verify_tiles(const VerifyJob& job) {
   const auto& records = job.reader.records();
   std::uint64_t ghosts = 0, border = 0;
   std::size_t off_target = 0;
-  BorderLists lists = make_border_lists(job);
+  ParentMaps maps = make_parent_maps(job);
+  BorderPairs pairs(job.tree(), maps, job.scratch, job.options.memory_budget / 8);
   job.progress.stage("verify", records.size(), "tiles");
   for (const TileRecord& record : records) {
     job.cancel.check();
     if (const auto tile = job.tiles.find(record.node)) {
       verify_tile(job, record, *tile);
-      verify_borders(job, lists, *tile);
+      pairs.add(*tile);
       if (!job.tree().is_partition(record.node))
         verify_image(job, *tile);
       ghosts += record.ghost_count;
@@ -152,6 +162,10 @@ void verify_tiles(const VerifyJob& job) {
       ++off_target;
     job.progress.advance(1);
   }
+  pairs.finish([&](const NodePair& pair) {
+    const auto level = static_cast<Level>(pair.level);
+    explain_difference(job, {level, pair.low}, {level, pair.high});
+  });
   job.checks.push_back(fmt::format(
       "tiles: sizes, checksums and structure of {}; {} below the vertex count asked for",
       records.size() - job.tiles.unreadable_count(), off_target));

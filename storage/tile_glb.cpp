@@ -171,13 +171,6 @@ GhostGroups group_ghosts(std::span<const GhostRef> ghosts) {
   return groups;
 }
 
-std::vector<std::uint16_t> join_chains(std::span<const GhostChain> chains) {
-  std::vector<std::uint16_t> joined;
-  for (const GhostChain& chain : chains)
-    joined.insert(joined.end(), chain.begin(), chain.end());
-  return joined;
-}
-
 // ---- reading -------------------------------------------------------------------------------
 
 /// Reads one tile's bytes whose extents were compared with the plan.
@@ -253,7 +246,7 @@ class Reader {
     const Section& starts = plan_[Part::ghost_starts];
     const std::vector<std::uint16_t> chains = short_list(Part::ghost_chains, "ghost chain");
     tile.mesh.ghosts.reserve(plan_.shape().ghosts);
-    tile.chains.reserve(plan_.shape().ghosts);
+    tile.chains.reserve(plan_.shape().ghosts, chains.size());
     std::span<const std::uint16_t> left = chains;
     for (std::size_t i = 0; i < neighbours.count; ++i) {
       const auto index = get<std::uint32_t>(neighbours, i);
@@ -300,7 +293,7 @@ class Reader {
                          chain[0], neighbour.index, chain[1]));
       }
       tile.mesh.ghosts.push_back({neighbour.index, chain[0]});
-      tile.chains.emplace_back(chain.begin(), chain.end());
+      tile.chains.add(chain);
     }
   }
 
@@ -438,10 +431,9 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
 std::vector<std::byte> encode_tile(const PublishedTile& tile, const Tree& tree,
                                    const TileFormat& format) {
   assert(tile.chains.size() == tile.mesh.ghosts.size());
-  const std::vector<std::uint16_t> chains = join_chains(tile.chains);
-  return encode_tile(
-      {tile.node, tile.mesh, bounds_of(tile.mesh.vertices.positions), tile.parent_map, chains},
-      tree, format);
+  return encode_tile({tile.node, tile.mesh, bounds_of(tile.mesh.vertices.positions),
+                      tile.parent_map, tile.chains.entries()},
+                     tree, format);
 }
 
 PublishedTile decode_tile(std::span<const std::byte> bytes, NodeId node, const Tree& tree,

@@ -131,8 +131,13 @@ void get_triangles(Unpacker& unpacker, const WorkTileCounts& counts,
 
 }  // namespace
 
-std::size_t work_vertex_bytes(std::size_t own_count, int channels) {
-  return sizeof(WorkTileCounts) + own_count * (16 + 4 * static_cast<std::size_t>(channels));
+static_assert(sizeof(WorkTileCounts) == kWorkTileHeadBytes);
+
+std::uint64_t work_triangle_bytes(std::span<const std::byte> head) {
+  WorkTileCounts counts;
+  std::memcpy(&counts, head.data(), sizeof counts);
+  return (std::uint64_t{counts.interior} + counts.border) * sizeof(Triangle) +
+         counts.foreign * sizeof(GhostRef);
 }
 
 std::vector<std::byte> encode_work_tile(const WorkTile& tile) {
@@ -140,7 +145,8 @@ std::vector<std::byte> encode_work_tile(const WorkTile& tile) {
                               static_cast<std::uint32_t>(tile.foreign.size()),
                               static_cast<std::uint32_t>(tile.interior.size()),
                               static_cast<std::uint32_t>(tile.border.size())};
-  Packer packer(work_vertex_bytes(tile.vertices.size(), tile.vertices.channels) +
+  const std::size_t channels = static_cast<std::size_t>(tile.vertices.channels);
+  Packer packer(sizeof counts + tile.vertices.size() * (16 + 4 * channels) +
                 tile.foreign.size() * 8 + triangle_bytes(counts));
   packer.put(std::span(&counts, 1));
   packer.put(std::span<const Vec3f>(tile.vertices.positions));

@@ -10,8 +10,11 @@
 
 namespace meshhier::storage {
 
-/// Bytes of an encoded tile that its own vertices take, whatever its triangles.
-std::size_t work_vertex_bytes(std::size_t own_count, int channels);
+/// The first bytes of an encoded tile: they tell what is in it.
+constexpr std::size_t kWorkTileHeadBytes = 20;
+/// What the triangles and foreign corners of a tile take once it is decoded. `head`: the first
+/// kWorkTileHeadBytes.
+std::uint64_t work_triangle_bytes(std::span<const std::byte> head);
 
 std::vector<std::byte> encode_work_tile(const WorkTile& tile);
 /// Requires bytes of encode_work_tile with the same `channels`; throws Error(internal) otherwise.

@@ -22,6 +22,7 @@
 #include <cstdint>
 #include <cstring>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -116,7 +117,7 @@ void check_triangles(const TileMesh& mesh) {
   }
 }
 
-bool are_tile_vertices(const std::vector<std::uint16_t>& vertices) {
+bool are_tile_vertices(std::span<const std::uint16_t> vertices) {
   return std::all_of(vertices.begin(), vertices.end(),
                      [](std::uint16_t v) { return v < storage::kMaxOwnVertices; });
 }

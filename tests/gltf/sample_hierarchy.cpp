@@ -129,13 +129,13 @@ class SampleBuilder {
     });
     for (const auto& [ref, rank] : ghosts) {
       tile.mesh.ghosts.push_back(ref);
-      GhostChain chain;
+      std::vector<std::uint16_t> chain;
       const int length = tree_.chain_length(tile.node, {tile.node.level, ref.tile});
       for (int k = 0; k < length; ++k) {
         const auto& map = levels_[static_cast<std::size_t>(raw(tile.node.level) - k)];
         chain.push_back(static_cast<std::uint16_t>(map.of_rank[rank].index));
       }
-      tile.chains.push_back(chain);
+      tile.chains.add(chain);
     }
   }
 

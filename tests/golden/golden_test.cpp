@@ -47,8 +47,8 @@ class ContentHash {
     add(mesh.interior);
     add(mesh.border);
     add(tile.parent_map);
-    for (const GhostChain& chain : tile.chains)
-      add(chain);
+    for (std::size_t i = 0; i < tile.chains.size(); ++i)
+      add(std::vector(tile.chains[i].begin(), tile.chains[i].end()));
   }
   std::uint64_t value() const { return sum_.value(); }
 

@@ -117,7 +117,7 @@ OutlineResult outline_of(const std::vector<TileMesh>& tiles, const OutlineOption
   for (std::size_t i = 0; i < tiles.size(); ++i) {
     builder.add({static_cast<std::uint32_t>(i), tiles[i]});
   }
-  return builder.finish(options);
+  return builder.finish(options).value();
 }
 
 std::span<const Vec3f> polyline(const Outline& outline, std::size_t i) {
@@ -281,7 +281,7 @@ TEST(OutlineBuilder, TheOrderOfSectorsDoesNotMatter) {
         if (index < tiles.size())
           builder.add({static_cast<std::uint32_t>(index), tiles[index]});
       }
-      const OutlineResult other = builder.finish(options);
+      const OutlineResult other = builder.finish(options).value();
       EXPECT_EQ(other.outline.vertices, forward.outline.vertices);
       EXPECT_EQ(other.outline.starts, forward.outline.starts);
     }

@@ -219,8 +219,8 @@ class TileMaker {
     }
   }
 
-  GhostChain chain(NodeId node, NodeId neighbour, std::uint32_t vertex) const {
-    GhostChain chain;
+  std::vector<std::uint16_t> chain(NodeId node, NodeId neighbour, std::uint32_t vertex) const {
+    std::vector<std::uint16_t> chain;
     for (int step = 0; step < tree_.chain_length(node, neighbour); ++step) {
       const LevelMesh& level = levels_[static_cast<std::size_t>(raw(node.level) - step)];
       chain.push_back(static_cast<std::uint16_t>(level.local[vertex]));
@@ -250,7 +250,7 @@ class TileMaker {
     for (const auto& [reference, vertex] : ghosts) {
       tile.mesh.ghosts.push_back(reference);
       tile.mesh.vertices.append(level.vertices, vertex, vertex + 1);
-      tile.chains.push_back(chain(tile.node, {tile.node.level, reference.tile}, vertex));
+      tile.chains.add(chain(tile.node, {tile.node.level, reference.tile}, vertex));
     }
     return {ghosts.begin(), ghosts.end()};
   }

@@ -1,6 +1,7 @@
 // Promise 5: peak resident memory stays under the budget. Measured on the real program, as the
 // system counts it.
 #include "bench/generator.h"
+#include "bench/hell.h"
 #include "pipeline/size_text.h"
 #include "storage/file.h"
 #include "tests/pipeline/sample_hierarchy.h"
@@ -63,6 +64,11 @@ class MemoryTest : public testing::Test {
   void write_mesh(bench::SurfaceOptions options) {
     const auto files = storage::make_posix_file_system();
     bench::write_ply(*files, path("mesh.ply"), *bench::make_surface(options));
+  }
+
+  void write_mesh(bench::LoadedMesh mesh) {
+    const auto files = storage::make_posix_file_system();
+    bench::write_ply(*files, path("mesh.ply"), *bench::as_generated(std::move(mesh)));
   }
 
   Outcome build(const std::string& budget, const std::vector<std::string>& settings = {}) {
@@ -155,6 +161,15 @@ TEST_F(MemoryTest, AttributesAndDoubleCoordinatesInTheLeastBudget) {
   options.offset = {500123.25, 5812345.5, 100};
   write_mesh(options);
   expect_within(least_budget());
+}
+
+// Every tile is the neighbour of all others; a tile has many more triangles than the plan counts
+// with.
+TEST_F(MemoryTest, TrianglesBetweenAnyVerticesIn64MiB) {
+  for (const char* name : {"soup", "tangle"}) {
+    write_mesh(bench::make_hell(name, 100'000));
+    expect_within("64MiB");
+  }
 }
 
 TEST_F(MemoryTest, TheLeastBudgetIsNamedAndWorks) {

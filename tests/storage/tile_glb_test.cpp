@@ -6,11 +6,13 @@
 #include "storage/hash.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <random>
+#include <span>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -248,9 +250,8 @@ PublishedTile wide_tile(std::uint32_t ghosts) {
   for (std::uint32_t g = 0; g < ghosts; ++g) {
     const GhostRef ref{1 + g / 32768, g % 32768};
     tile.mesh.ghosts.push_back(ref);
-    tile.chains.push_back({static_cast<std::uint16_t>(ref.index)});
-    if (ref.tile > 1)
-      tile.chains.back().push_back(7);
+    const std::array<std::uint16_t, 2> chain{static_cast<std::uint16_t>(ref.index), 7};
+    tile.chains.add(std::span(chain).first(ref.tile > 1 ? 2 : 1));
     tile.mesh.border.push_back(
         {TileVertex{0}, TileVertex{1}, static_cast<TileVertex>(tile.mesh.own_count + g)});
   }
