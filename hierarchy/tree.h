@@ -91,4 +91,15 @@ class Tree {
   Level depth_;
 };
 
+/// The node whose tile stands for `node`: itself, or the partition of an early node.
+inline NodeId tile_node(const Tree& tree, NodeId node) {
+  return tree.is_early(node) ? tree.children(node).nodes[0] : node;
+}
+
+/// The nearest node above `node` that has a tile. Requires node.level > 0.
+inline NodeId parent_tile(const Tree& tree, NodeId node) {
+  const NodeId parent = tree.parent(node);
+  return tree.is_early(parent) ? tree.parent(parent) : parent;
+}
+
 }  // namespace meshhier

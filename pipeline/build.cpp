@@ -11,6 +11,7 @@
 #include "pipeline/workshop.h"
 #include "storage/hierarchy_reader.h"
 #include "storage/layout.h"
+#include "storage/tileset.h"
 #include "storage/work_directory.h"
 
 #include <future>
@@ -86,6 +87,15 @@ void read_input(std::unique_ptr<mesh_io::MeshSource> source, const Config& confi
   workshop.journal.note_source(summary, mesh.origin());
 }
 
+std::optional<Transform> tileset_transform(const Config& config) {
+  const PlacementConfig& place = config.placement;
+  if (!place.longitude)
+    return place.transform;
+  const auto [x, y, z] = place.anchor.value_or(std::array<double, 3>{});
+  return storage::globe_transform(*place.longitude, *place.latitude, place.height.value_or(0),
+                                  {x, y, z}, config.up);
+}
+
 /// A failure that leaves work to go on with says so.
 Error told_how_to_go_on(const Error& error, const storage::WorkDirectory& work) {
   return {error.code(),
@@ -103,7 +113,9 @@ void make_hierarchy(const Config& config, const BuildPlan& build, Workshop& work
   auto& [mesh_scratch, tile_scratch, chunks, forest, journal] = workshop;
   PublishInput result;
   result.source = journal.source()->summary;
-  result.format = {result.source.attributes, journal.source()->origin};
+  result.format = {result.source.attributes, {journal.source()->origin, config.up}};
+  result.transform = tileset_transform(config);
+  result.licence = config.licence;
   result.source.unreferenced_vertices =
       make_leaves(chunks, forest, journal, config.partition.axis, plan, progress, cancel);
   // Without the chunks leaves cannot be made again, so these reach the disk before those go.

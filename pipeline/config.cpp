@@ -318,6 +318,18 @@ void check_output(const Config& config, const Draft& draft) {
   }
 }
 
+/// A place on the globe has longitude and latitude; a transform stands alone.
+void check_placement(const Config& config, const Draft& draft) {
+  const PlacementConfig& place = config.placement;
+  const bool on_globe = place.longitude || place.latitude || place.height || place.anchor;
+  if (place.transform && on_globe) {
+    refuse(draft.origin_of("placement"),
+           "expected either \"transform\", or \"longitude\" and \"latitude\", found both");
+  }
+  if (on_globe && !(place.longitude && place.latitude))
+    refuse(draft.origin_of("placement"), "expected both \"longitude\" and \"latitude\"");
+}
+
 std::string read_text(storage::FileSystem& files, const std::filesystem::path& path) {
   const std::unique_ptr<storage::File> file = files.open(path);
   const std::uint64_t size = file->size();
@@ -347,6 +359,7 @@ Config parse_config(std::string_view text, const ConfigOrigin& origin,
   config.input = resolved_path(draft, "input", config.input, origin.directory);
   config.output = resolved_path(draft, "output", config.output, origin.directory);
   check_output(config, draft);
+  check_placement(config, draft);
   return config;
 }
 
@@ -363,8 +376,11 @@ Json resolved_json(const Config& config) {
   Json result = Json::object();
   for (const ConfigKey& key : config_keys()) {
     Json value = key.decides_result ? key.show(resolved) : Json();
-    if (!value.is_null())
-      result[key.path.substr(0, key.path.find('.'))][leaf_of(key.path)] = std::move(value);
+    if (value.is_null())
+      continue;
+    const std::size_t dot = key.path.find('.');
+    Json& place = dot == std::string::npos ? result : result[key.path.substr(0, dot)];
+    place[leaf_of(key.path)] = std::move(value);
   }
   // "vertices" has a value even where "count" overrules it.
   if (resolved.partition.count)

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "cluster_simplify/contraction.h"
+#include "hierarchy/frame.h"
 #include "partition/direction.h"
 #include "storage/file.h"
 
@@ -81,6 +82,17 @@ struct StorageConfig {
   friend bool operator==(const StorageConfig&, const StorageConfig&) = default;
 };
 
+inline constexpr std::array kUpAxes{NamedValue{"y", UpAxis::y}, NamedValue{"z", UpAxis::z}};
+
+/// Where the model is for viewers of the tileset: on the globe, or anywhere, or nowhere in
+/// particular.
+struct PlacementConfig {
+  std::optional<double> longitude, latitude, height;  ///< degrees, degrees, metres
+  std::optional<std::array<double, 3>> anchor;  ///< which point is there, input coordinates; else 0
+  std::optional<Transform> transform;           ///< instead of all these
+  friend bool operator==(const PlacementConfig&, const PlacementConfig&) = default;
+};
+
 struct Config {
   std::filesystem::path input;   ///< a mesh file
   std::filesystem::path output;  ///< a directory, without a slash at its end
@@ -90,6 +102,9 @@ struct Config {
   SimplifyConfig simplify;
   OutlineConfig outline;
   StorageConfig storage;
+  UpAxis up = UpAxis::y;
+  PlacementConfig placement;
+  std::string licence;  ///< of the model; for the tileset; may be empty
   friend bool operator==(const Config&, const Config&) = default;
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -29,6 +30,11 @@ constexpr double kMostSectors = 65536;
 constexpr double kMostThreads = 4096;
 /// JSON numbers are exact up to here.
 constexpr double kMostBytes = 9007199254740991.0;  // 2^53 - 1
+
+/// Degrees.
+constexpr double kHalfTurn = 180;
+/// Beyond any orbit; what is meant is in other units.
+constexpr double kMostMetres = 1e9;
 
 struct Limits {
   double minimum;
@@ -106,6 +112,31 @@ ConfigKey number(std::string path, Limits limits, Field field) {
   return key;
 }
 
+template <class Field>
+ConfigKey text(std::string path, Field field) {
+  ConfigKey key{.path = std::move(path), .kind = KeyKind::text};
+  key.assign = [field](Config& config, const Json& value) {
+    field(config) = value.get<std::string>();
+  };
+  key.show = [field](const Config& config) {
+    return field(config).empty() ? Json() : Json(field(config));
+  };
+  return key;
+}
+
+/// Of an optional array.
+template <class Field>
+ConfigKey numbers(std::string path, Field field) {
+  using Array =
+      typename Unwrapped<std::remove_reference_t<decltype(field(std::declval<Config&>()))>>::Type;
+  ConfigKey key{.path = std::move(path),
+                .kind = KeyKind::numbers,
+                .maximum = static_cast<double>(std::tuple_size_v<Array>)};
+  key.assign = [field](Config& config, const Json& value) { field(config) = value.get<Array>(); };
+  key.show = [field](const Config& config) { return shown(field(config)); };
+  return key;
+}
+
 template <class Names, class Field>
 ConfigKey choice(std::string path, const Names& names, Field field) {
   ConfigKey key{.path = std::move(path), .kind = KeyKind::choice};
@@ -169,6 +200,23 @@ std::vector<ConfigKey> make_config_keys() {
       deciding(choice(
           "storage.compression", kCompressions,
           [](auto& c) -> auto& { return c.storage.compression; })),
+      deciding(choice(
+          "up", kUpAxes, [](auto& c) -> auto& { return c.up; })),
+      deciding(number(
+          "placement.longitude", {-kHalfTurn, kHalfTurn},
+          [](auto& c) -> auto& { return c.placement.longitude; })),
+      deciding(number(
+          "placement.latitude", {-kHalfTurn / 2, kHalfTurn / 2},
+          [](auto& c) -> auto& { return c.placement.latitude; })),
+      deciding(number(
+          "placement.height", {-kMostMetres, kMostMetres},
+          [](auto& c) -> auto& { return c.placement.height; })),
+      deciding(numbers(
+          "placement.anchor", [](auto& c) -> auto& { return c.placement.anchor; })),
+      deciding(numbers(
+          "placement.transform", [](auto& c) -> auto& { return c.placement.transform; })),
+      deciding(text(
+          "licence", [](auto& c) -> auto& { return c.licence; })),
   };
 }
 
@@ -184,6 +232,13 @@ bool is_size_within(const ConfigKey& key, const Json& value) {
     return is_integer_within(key, value);
   const std::optional<std::uint64_t> parsed = parse_size(value.get_ref<const std::string&>());
   return parsed && static_cast<double>(*parsed) >= key.minimum;
+}
+
+bool is_list_of_numbers(const ConfigKey& key, const Json& value) {
+  return value.is_array() && static_cast<double>(value.size()) == key.maximum &&
+         std::all_of(value.begin(), value.end(), [](const Json& number) {
+           return number.is_number() && std::isfinite(number.get<double>());
+         });
 }
 
 bool is_usable_path(const Json& value) {
@@ -225,6 +280,8 @@ bool accepts(const ConfigKey& key, const Json& value) {
     case KeyKind::number:
       return value.is_number() && value.get<double>() > key.minimum &&
              value.get<double>() <= key.maximum;
+    case KeyKind::numbers:
+      return is_list_of_numbers(key, value);
     case KeyKind::size:
       return is_size_within(key, value);
     case KeyKind::choice:
@@ -245,6 +302,8 @@ std::string expectation(const ConfigKey& key) {
       return fmt::format("an integer from {:.0f} to {:.0f}", key.minimum, key.maximum);
     case KeyKind::number:
       return fmt::format("a number above {} and at most {}", key.minimum, key.maximum);
+    case KeyKind::numbers:
+      return fmt::format("a list of {:.0f} numbers", key.maximum);
     case KeyKind::size:
       return std::string(kSizeSyntax);
     case KeyKind::choice:

@@ -18,6 +18,7 @@ enum class KeyKind {
   path,     ///< a string that is not empty
   integer,  ///< minimum to maximum
   number,   ///< above minimum, up to maximum
+  numbers,  ///< a list of so many finite numbers as `maximum` says
   size,     ///< bytes as a number, or a text for parse_size(); minimum to maximum
   choice    ///< one of `choices`
 };

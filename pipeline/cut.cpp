@@ -124,15 +124,6 @@ void require_node(const Tree& tree, NodeId node) {
                           raw(node.level), tree.node_count(node.level) - 1));
 }
 
-NodeId tile_node(const Tree& tree, NodeId node) {
-  return tree.is_early(node) ? tree.children(node).nodes[0] : node;
-}
-
-NodeId parent_tile(const Tree& tree, NodeId node) {
-  const NodeId parent = tree.parent(node);
-  return tree.is_early(parent) ? tree.parent(parent) : parent;
-}
-
 Cut::Cut(const Tree& tree, std::vector<NodeId> nodes) : nodes_(std::move(nodes)) {
   for (NodeId& node : nodes_) {
     require_node(tree, node);

@@ -22,12 +22,6 @@ std::string to_text(NodeId node);
 void require_level(const Tree& tree, Level level);
 void require_node(const Tree& tree, NodeId node);
 
-/// The node whose tile stands for `node`: itself, or the partition of an early node.
-NodeId tile_node(const Tree& tree, NodeId node);
-
-/// The nearest node above `node` that has a tile. Requires node.level > 0.
-NodeId parent_tile(const Tree& tree, NodeId node);
-
 /// Nodes of which every partition has exactly one ancestor-or-self. Immutable.
 class Cut {
  public:

@@ -176,6 +176,13 @@ std::string outline_text(const storage::Manifest& manifest) {
       grouped(o.polylines_found), grouped(o.polylines_dropped));
 }
 
+std::string tileset_text(const storage::Manifest& manifest) {
+  return fmt::format("tileset      {} bytes in {} files, {} up{}{}\n",
+                     grouped(manifest.tileset_bytes), grouped(manifest.tileset_files),
+                     manifest.up == UpAxis::z ? "z" : "y", manifest.transform ? ", placed" : "",
+                     manifest.licence.empty() ? "" : ", licence " + shown(manifest.licence));
+}
+
 std::string totals_text(const storage::Manifest& manifest, std::span<const LevelSummary> levels,
                         std::uint64_t total_bytes) {
   std::uint64_t tiles = 0, vertices = 0, triangles = 0;
@@ -241,6 +248,14 @@ Json outline_json(const storage::Manifest& manifest) {
           {"polylines_found", o.polylines_found}, {"polylines_dropped", o.polylines_dropped}};
 }
 
+Json tileset_json(const storage::Manifest& manifest) {
+  return {{"files", manifest.tileset_files},
+          {"bytes", manifest.tileset_bytes},
+          {"up", manifest.up == UpAxis::z ? "z" : "y"},
+          {"transform", manifest.transform ? Json(*manifest.transform) : Json()},
+          {"licence", manifest.licence}};
+}
+
 }  // namespace
 
 std::string inspect_text(storage::FileSystem& files, const std::filesystem::path& directory,
@@ -264,6 +279,7 @@ std::string inspect_text(storage::FileSystem& files, const std::filesystem::path
   text += fmt::format("parameters   {}\n", parameters);
   text += partitions_text(levels.back(), summarize_compactness(reader.tree(), reader.records()));
   text += outline_text(manifest);
+  text += tileset_text(manifest);
   text += totals_text(manifest, levels, directory_bytes(files, reader));
   return text + "\n" + level_table(levels, std::nullopt);
 }
@@ -280,6 +296,7 @@ Json inspect_json(storage::FileSystem& files, const std::filesystem::path& direc
                                                                  reader.tree(), reader.records()))},
                {"levels", Json::array()},
                {"outline", outline_json(manifest)},
+               {"tileset", tileset_json(manifest)},
                {"tile_bytes", tile_bytes(levels)},
                {"total_bytes", directory_bytes(files, reader)}};
   for (const LevelSummary& s : levels) {

@@ -10,6 +10,7 @@
 #include "storage/layout.h"
 #include "storage/manifest.h"
 #include "storage/outline_glb.h"
+#include "storage/tileset.h"
 
 #include <algorithm>
 #include <limits>
@@ -120,13 +121,16 @@ void publish(Forest& forest, BuildJournal& journal, const PublishInput& input,
   const std::vector<std::byte> index = storage::encode_index(records);
   storage::write_file(files, storage::index_path(directory), index);
   const std::vector<std::byte> outline =
-      storage::encode_outline(input.outline.outline, input.format.origin);
+      storage::encode_outline(input.outline.outline, input.format.frame);
   storage::write_file(files, storage::outline_path(directory), outline);
 
   storage::Manifest manifest;
   manifest.generator = "meshhier " MESHHIER_VERSION;
   manifest.source = input.source;
-  manifest.origin = input.format.origin;
+  manifest.origin = input.format.frame.origin;
+  manifest.up = input.format.frame.up;
+  manifest.transform = input.transform;
+  manifest.licence = input.licence;
   manifest.partition_count = tree.partition_count();
   manifest.config = input.config;
   manifest.index_bytes = index.size();
@@ -140,6 +144,7 @@ void publish(Forest& forest, BuildJournal& journal, const PublishInput& input,
   manifest.total_bytes = std::accumulate(
       records.begin(), records.end(), std::uint64_t{index.size() + outline.size()},
       [](std::uint64_t sum, const TileRecord& record) { return sum + record.file_bytes; });
+  storage::write_tilesets(files, directory, tree, records, manifest);
   const std::string text = storage::to_json_text(manifest);
   storage::write_file(files, storage::manifest_path(directory), std::as_bytes(std::span(text)));
 }

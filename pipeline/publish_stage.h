@@ -13,6 +13,8 @@
 #include "storage/tile_glb.h"
 
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace meshhier::pipeline {
@@ -23,6 +25,8 @@ struct PublishInput {
   storage::TileFormat format;
   OutlineStageResult outline;
   nlohmann::ordered_json config;
+  std::optional<Transform> transform;  ///< of the tileset
+  std::string licence;
   std::uint32_t asked_vertices = 0;  ///< of simplified tiles
 };
 

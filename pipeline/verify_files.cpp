@@ -1,13 +1,20 @@
 #include "hierarchy/error.h"
 #include "pipeline/cut.h"
 #include "pipeline/verify_parts.h"
+#include "storage/hash.h"
 #include "storage/layout.h"
+#include "storage/tileset.h"
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <memory>
 #include <optional>
+#include <set>
+#include <span>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -35,17 +42,18 @@ bool is_tile_file(const Tree& tree, const fs::path& relative) {
   return tree.contains(node) && !tree.is_early(node) && storage::tile_path({}, node) == relative;
 }
 
-bool is_known(const Tree& tree, const fs::path& relative) {
+bool is_known(const Tree& tree, const std::set<fs::path>& tilesets, const fs::path& relative) {
   return relative == storage::manifest_path({}) || relative == storage::index_path({}) ||
-         relative == storage::outline_path({}) || is_tile_file(tree, relative);
+         relative == storage::outline_path({}) || is_tile_file(tree, relative) ||
+         tilesets.contains(relative);
 }
 
 /// A missing file is found by whoever reads it; what is looked for here is what nobody reads.
-std::uint64_t find_extra_files(const VerifyJob& job) {
+std::uint64_t find_extra_files(const VerifyJob& job, const std::set<fs::path>& tilesets) {
   const fs::path& directory = job.reader.directory();
   const std::vector<fs::path> found = job.files.list(directory);
   for (const fs::path& path : found) {
-    if (is_known(job.tree(), path.lexically_relative(directory)))
+    if (is_known(job.tree(), tilesets, path.lexically_relative(directory)))
       continue;
     job.problems.add(fmt::format("{}: not a file of this hierarchy; remove it", path.string()));
   }
@@ -65,9 +73,54 @@ void check_outline(const VerifyJob& job) {
   }
 }
 
+/// Compares the files of the tileset with what follows from manifest and index. Returns their
+/// names.
+std::set<fs::path> check_tilesets(const VerifyJob& job) {
+  const storage::Manifest& manifest = job.reader.manifest();
+  std::set<fs::path> names;
+  std::uint64_t bytes = 0;
+  storage::Checksum sum;
+  const auto look_at = [&](const storage::TilesetFile& file) {
+    const auto expected = std::as_bytes(std::span(file.text));
+    bytes += expected.size();
+    sum.add(expected);
+    names.insert(file.path);
+    const fs::path path = job.reader.directory() / file.path;
+    if (!job.files.exists(path)) {
+      job.problems.add(fmt::format("{}: this file of the tileset is missing", path.string()));
+      return;
+    }
+    const std::unique_ptr<storage::File> found = job.files.open(path);
+    std::vector<std::byte> content(std::min<std::uint64_t>(found->size(), expected.size() + 1));
+    found->read_exact(0, content);
+    if (!std::equal(content.begin(), content.end(), expected.begin(), expected.end()))
+      job.problems.add(fmt::format("{}: not the tileset of this hierarchy", path.string()));
+  };
+  storage::for_each_tileset(manifest, job.tree(), job.reader.records(), [&](const auto& file) {
+    try {
+      look_at(file);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::io)
+        throw;
+      job.problems.add(error.what());
+    }
+  });
+  if (names.size() != manifest.tileset_files || bytes != manifest.tileset_bytes ||
+      sum.value() != manifest.tileset_checksum) {
+    job.problems.add(
+        fmt::format("{}: the tileset is said to have {} files and {} bytes; it should "
+                    "have {} and {}, and their checksum",
+                    storage::manifest_path(job.reader.directory()).string(), manifest.tileset_files,
+                    manifest.tileset_bytes, names.size(), bytes));
+  }
+  job.checks.push_back(fmt::format("tileset: {} files, {} bytes", names.size(), bytes));
+  return names;
+}
+
 void check_totals(const VerifyJob& job) {
   const storage::Manifest& manifest = job.reader.manifest();
-  std::uint64_t bytes = manifest.index_bytes + manifest.outline_bytes, triangles = 0;
+  std::uint64_t bytes = manifest.index_bytes + manifest.outline_bytes + manifest.tileset_bytes;
+  std::uint64_t triangles = 0;
   for (const TileRecord& record : job.reader.records()) {
     bytes += record.file_bytes;
     if (!job.tree().is_partition(record.node))
@@ -88,7 +141,7 @@ void check_totals(const VerifyJob& job) {
 }  // namespace
 
 void verify_files(const VerifyJob& job) {
-  const std::uint64_t count = find_extra_files(job);
+  const std::uint64_t count = find_extra_files(job, check_tilesets(job));
   check_outline(job);
   check_totals(job);
   job.checks.push_back(

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <optional>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -188,11 +190,38 @@ const Json& require_extension(const Json& document, const char* extension, unsig
   return found;
 }
 
-Json mesh_node(Vec3d origin) {
+Json mesh_node(const Frame& frame) {
+  const Vec3d& o = frame.origin;
   Json node = {{"mesh", 0}};
-  if (origin != Vec3d{})
-    node["translation"] = {origin.x, origin.y, origin.z};
+  if (frame.up == UpAxis::z)
+    node["matrix"] = {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, o.x, o.z, -o.y, 1};
+  else if (o != Vec3d{})
+    node["translation"] = {o.x, o.y, o.z};
   return node;
+}
+
+Frame read_frame(const Json& document, const std::string& name) {
+  const auto numbers = [&](const Json::json_pointer& place, std::size_t count) {
+    const Json& found = document[place];
+    const bool fits = found.is_array() && found.size() == count &&
+                      std::all_of(found.begin(), found.end(), [](const Json& number) {
+                        return number.is_number() && std::isfinite(number.get<double>());
+                      });
+    if (!fits) {
+      throw Error(ErrorCode::corrupt, fmt::format("{}: JSON: {} is not {} finite numbers", name,
+                                                  place.to_string(), count));
+    }
+    return found.get<std::vector<double>>();
+  };
+  const Json::json_pointer matrix("/nodes/0/matrix"), translation("/nodes/0/translation");
+  if (document.contains(matrix)) {
+    const std::vector<double> m = numbers(matrix, 16);
+    return {{m[12], -m[14], m[13]}, UpAxis::z};
+  }
+  if (!document.contains(translation))
+    return {};
+  const std::vector<double> t = numbers(translation, 3);
+  return {{t[0], t[1], t[2]}, UpAxis::y};
 }
 
 std::vector<std::byte> begin_glb(std::string_view json, std::size_t bin_bytes,

@@ -2,7 +2,7 @@
 // (Khronos, glTF 2.0 specification, section 4.4; docs/file_format.md).
 #pragma once
 
-#include "hierarchy/vec.h"
+#include "hierarchy/frame.h"
 
 #include <bit>
 #include <concepts>
@@ -102,8 +102,13 @@ const nlohmann::ordered_json& require_extension(const nlohmann::ordered_json& do
                                                 const char* extension, unsigned version,
                                                 const std::string& name);
 
-/// `{"mesh": 0}`, with the translation `origin` if it is not zero.
-nlohmann::ordered_json mesh_node(Vec3d origin);
+/// `{"mesh": 0}`, with a translation if the origin is not zero, or with the matrix that turns z-up
+/// positions.
+nlohmann::ordered_json mesh_node(const Frame& frame);
+
+/// The frame that node 0 of a document has; that of no node if there is none. Throws Error(corrupt)
+/// that starts with `name` if it has none that mesh_node() writes.
+Frame read_frame(const nlohmann::ordered_json& document, const std::string& name);
 
 /// The two chunks of a GLB, pointing into its bytes.
 struct GlbView {

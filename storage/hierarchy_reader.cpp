@@ -84,7 +84,7 @@ HierarchyReader::HierarchyReader(FileSystem& files, std::filesystem::path direct
       directory_(std::move(directory)),
       manifest_(load_manifest(files_, directory_)),
       tree_(manifest_.source.vertices, manifest_.partition_count),
-      format_{manifest_.source.attributes, manifest_.origin},
+      format_{manifest_.source.attributes, {manifest_.origin, manifest_.up}},
       records_(load_index(files_, directory_, manifest_, tree_)) {}
 
 const TileRecord& HierarchyReader::record(NodeId node) const {

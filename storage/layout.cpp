@@ -21,6 +21,15 @@ std::filesystem::path outline_path(const std::filesystem::path& hierarchy) {
   return hierarchy / "outline.glb";
 }
 
+std::filesystem::path tileset_path(const std::filesystem::path& hierarchy) {
+  return hierarchy / "tileset.json";
+}
+
+std::filesystem::path tileset_path(const std::filesystem::path& hierarchy, NodeId node) {
+  return hierarchy / "tilesets" / fmt::format("{:02}", raw(node.level)) /
+         fmt::format("{:06}.json", node.index);
+}
+
 std::filesystem::path level_directory(const std::filesystem::path& hierarchy, Level level) {
   return hierarchy / "tiles" / fmt::format("{:02}", raw(level));
 }

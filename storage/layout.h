@@ -4,6 +4,8 @@
 //   NAME.hier/hierarchy.json
 //   NAME.hier/tiles.bin
 //   NAME.hier/outline.glb
+//   NAME.hier/tileset.json
+//   NAME.hier/tilesets/LL/NNNNNN.json        of the nodes below that one, where the tree is too large for one file
 //   NAME.hier/tiles/LL/NNNNNN.glb            level (two digits or more), index in it (six or more)
 //   .NAME.hier.meshhier-work/                beside the output while a build runs, and after it was stopped
 //   .NAME.hier.meshhier-work/lock            held by the build at work
@@ -29,6 +31,9 @@ namespace meshhier::storage {
 std::filesystem::path manifest_path(const std::filesystem::path& hierarchy);
 std::filesystem::path index_path(const std::filesystem::path& hierarchy);
 std::filesystem::path outline_path(const std::filesystem::path& hierarchy);
+std::filesystem::path tileset_path(const std::filesystem::path& hierarchy);
+/// The file that tells of `node` and what is below it. Requires node.level > 0.
+std::filesystem::path tileset_path(const std::filesystem::path& hierarchy, NodeId node);
 std::filesystem::path level_directory(const std::filesystem::path& hierarchy, Level level);
 std::filesystem::path tile_path(const std::filesystem::path& hierarchy, NodeId node);
 

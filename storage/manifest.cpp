@@ -73,12 +73,19 @@ Json manifest_json(const Manifest& manifest) {
   document["generator"] = manifest.generator;
   document["source"] = source_json(manifest.source);
   document["origin"] = numbers(manifest.origin);
+  document["up"] = manifest.up == UpAxis::z ? "z" : "y";
+  document["transform"] = manifest.transform ? Json(*manifest.transform) : Json();
+  document["licence"] = manifest.licence;
   document["partitions"] = manifest.partition_count;
   document["config"] = manifest.config;
   document["index"] = {{"file", index_path({}).string()},
                        {"bytes", manifest.index_bytes},
                        {"checksum", hex(manifest.index_checksum)}};
   document["outline"] = outline_json(manifest);
+  document["tileset"] = {{"file", tileset_path({}).string()},
+                         {"files", manifest.tileset_files},
+                         {"bytes", manifest.tileset_bytes},
+                         {"checksum", hex(manifest.tileset_checksum)}};
   document["levels"] = manifest.levels;
   document["total_bytes"] = manifest.total_bytes;
   document["checksum"] = kZeros;
@@ -153,6 +160,22 @@ class Object {
     return {*x, *y, *z};
   }
 
+  std::optional<Transform> transform_or_null(const char* key) const {
+    const Json& value = at(key);
+    if (value.is_null())
+      return std::nullopt;
+    Transform transform{};
+    bool fits = value.is_array() && value.size() == transform.size();
+    for (std::size_t i = 0; fits && i < transform.size(); ++i) {
+      const auto number = finite(value[i]);
+      fits = number.has_value();
+      transform[i] = number.value_or(0);
+    }
+    if (!fits)
+      wrong(key, "null or 16 numbers");
+    return transform;
+  }
+
   std::uint64_t hash(const char* key) const {
     const std::string digits = text(key);
     const bool fits = digits.size() == kDigits &&
@@ -223,6 +246,13 @@ void read_outline(const Object& object, Manifest& manifest) {
   manifest.outline.tolerance = object.number("tolerance");
   manifest.outline.polylines_found = object.count("polylines_found");
   manifest.outline.polylines_dropped = object.count("polylines_dropped");
+}
+
+UpAxis read_up(const Object& object) {
+  const std::string up = object.text("up");
+  if (up != "y" && up != "z")
+    object.wrong("up", "\"y\" or \"z\"");
+  return up == "z" ? UpAxis::z : UpAxis::y;
 }
 
 /// Told before anything else is asked of the document: a newer format may differ in all the rest.
@@ -301,6 +331,9 @@ Manifest parse_manifest(const std::string& text, const std::string& name) {
   manifest.generator = object.text("generator");
   manifest.source = read_source(object.object("source"));
   manifest.origin = object.point("origin");
+  manifest.up = read_up(object);
+  manifest.transform = object.transform_or_null("transform");
+  manifest.licence = object.text("licence");
   manifest.partition_count =
       static_cast<std::uint32_t>(object.count("partitions", manifest.source.vertices));
   if (manifest.partition_count == 0)
@@ -311,6 +344,10 @@ Manifest parse_manifest(const std::string& text, const std::string& name) {
   manifest.index_bytes = object.object("index").count("bytes");
   manifest.index_checksum = object.object("index").hash("checksum");
   read_outline(object.object("outline"), manifest);
+  const Object tileset = object.object("tileset");
+  manifest.tileset_files = tileset.count("files");
+  manifest.tileset_bytes = tileset.count("bytes");
+  manifest.tileset_checksum = tileset.hash("checksum");
   manifest.levels = object.at("levels");
   if (!manifest.levels.is_array())
     object.wrong("levels", "an array");

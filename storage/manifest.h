@@ -1,11 +1,13 @@
 // hierarchy.json: what the hierarchy was made from, how, and what is in it (docs/file_format.md).
 #pragma once
 
+#include "hierarchy/frame.h"
 #include "hierarchy/outline.h"
 #include "hierarchy/published.h"
 #include "hierarchy/vec.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,12 +15,16 @@
 
 namespace meshhier::storage {
 
-inline constexpr int kFormatVersion = 3;
+inline constexpr int kFormatVersion = 4;
 
 struct Manifest {
   std::string generator;  ///< "meshhier 0.1.0"
   SourceSummary source;
-  Vec3d origin;  ///< add to every stored position
+  Vec3d origin;           ///< add to every stored position
+  UpAxis up = UpAxis::y;  ///< of the input
+  /// Of the tileset's root, for instance on the globe; from z-up coordinates, as 3D Tiles has them.
+  std::optional<Transform> transform;
+  std::string licence;  ///< may be empty
   std::uint32_t partition_count = 0;
   /// An object: the resolved config, what decides the result (not budget, threads, paths).
   nlohmann::ordered_json config;
@@ -29,7 +35,10 @@ struct Manifest {
   OutlineReport outline;
   /// An array: the level table, for people and scripts; derived from tiles.bin.
   nlohmann::ordered_json levels;
-  std::uint64_t total_bytes = 0;  ///< of tiles, index and outline
+  std::uint64_t tileset_files = 0;
+  std::uint64_t tileset_bytes = 0;     ///< of all of them
+  std::uint64_t tileset_checksum = 0;  ///< XXH3-64 of all, one after another, tileset.json first
+  std::uint64_t total_bytes = 0;       ///< of tiles, index, outline and tilesets
 };
 
 /// What the manifest says of the input, on its own. File names keep their bytes, UTF-8 or not.

@@ -45,7 +45,7 @@ struct Sizes {
   std::size_t bin_bytes() const { return position_bytes() + index_bytes(); }
 };
 
-Json document_json(const Sizes& sizes, const Bounds& bounds, Vec3d origin) {
+Json document_json(const Sizes& sizes, const Bounds& bounds, const Frame& frame) {
   Json document;
   document["asset"] = {{"version", "2.0"}, {"generator", "meshhier"}};
   document["extensionsUsed"] = Json::array({kExtension});
@@ -81,7 +81,7 @@ Json document_json(const Sizes& sizes, const Bounds& bounds, Vec3d origin) {
                         {"target", kIndexTarget}};
   const Json buffer = {{"byteLength", sizes.bin_bytes()}};
   document["scenes"][0]["nodes"] = Json::array({0});
-  document["nodes"] = Json::array({mesh_node(origin)});
+  document["nodes"] = Json::array({mesh_node(frame)});
   document["meshes"] = Json::array({mesh});
   document["accessors"] = Json::array({position, index});
   document["bufferViews"] = Json::array({positions, indices});
@@ -98,23 +98,6 @@ void append_segments(std::vector<std::byte>& bin, const Outline& outline, bool i
       }
     }
   }
-}
-
-/// The origin is the manifest's business: any translation of three finite numbers will do.
-Vec3d read_translation(const Json& document, const std::string& name) {
-  const Json::json_pointer place("/nodes/0/translation");
-  if (!document.contains(place))
-    return {};
-  const Json& found = document[place];
-  const bool fits = found.is_array() && found.size() == 3 &&
-                    std::all_of(found.begin(), found.end(), [](const Json& number) {
-                      return number.is_number() && std::isfinite(number.get<double>());
-                    });
-  if (!fits) {
-    throw Error(ErrorCode::corrupt,
-                name + ": JSON: /nodes/0/translation is not three finite numbers");
-  }
-  return {found[0].get<double>(), found[1].get<double>(), found[2].get<double>()};
 }
 
 std::vector<Vec3f> read_vertices(std::span<const std::byte> bin, std::size_t count,
@@ -168,7 +151,7 @@ std::size_t outline_bytes(std::size_t vertex_count, std::size_t segment_count) {
   return glb_bytes(kJsonBytes, Sizes{vertex_count, segment_count}.bin_bytes());
 }
 
-std::vector<std::byte> encode_outline(const Outline& outline, Vec3d origin) {
+std::vector<std::byte> encode_outline(const Outline& outline, const Frame& frame) {
   const Sizes sizes{outline.vertices.size(), outline.vertices.size() - outline.polyline_count()};
   const Bounds bounds = bounds_of(outline.vertices);
   std::vector<std::byte> bin;
@@ -182,7 +165,7 @@ std::vector<std::byte> encode_outline(const Outline& outline, Vec3d origin) {
   if (bin.size() != sizes.bin_bytes()) {
     throw Error(ErrorCode::internal, "an outline has a polyline of fewer than two vertices");
   }
-  const std::string json = document_json(sizes, bounds, origin).dump();
+  const std::string json = document_json(sizes, bounds, frame).dump();
   if (json.size() > kJsonBytes) {
     throw Error(ErrorCode::internal, "the outline's JSON is longer than its fixed size");
   }
@@ -202,8 +185,9 @@ Outline decode_outline(std::span<const std::byte> bytes, const std::string& name
   Outline outline;
   outline.vertices = read_vertices(glb.bin, sizes.vertices, name);
   outline.starts = read_starts(glb.bin, sizes, name);
-  const Vec3d origin = read_translation(document, name);
-  require_same_json(document_json(sizes, bounds_of(outline.vertices), origin), document, name);
+  // The frame is the manifest's business: any will do.
+  const Frame frame = read_frame(document, name);
+  require_same_json(document_json(sizes, bounds_of(outline.vertices), frame), document, name);
   return outline;
 }
 

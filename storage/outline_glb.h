@@ -1,8 +1,8 @@
 // The outline as a glTF 2.0 binary with one LINES primitive (docs/file_format.md).
 #pragma once
 
+#include "hierarchy/frame.h"
 #include "hierarchy/outline.h"
-#include "hierarchy/vec.h"
 
 #include <cstddef>
 #include <span>
@@ -16,7 +16,7 @@ namespace meshhier::storage {
 std::size_t outline_bytes(std::size_t vertex_count, std::size_t segment_count);
 
 /// Deterministic. An outline without polylines gives a valid file with an empty scene.
-std::vector<std::byte> encode_outline(const Outline& outline, Vec3d origin);
+std::vector<std::byte> encode_outline(const Outline& outline, const Frame& frame);
 
 /// Throws Error(corrupt) that starts with `name`.
 Outline decode_outline(std::span<const std::byte> bytes, const std::string& name);

@@ -412,7 +412,7 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
   const TilePlan plan(shape, format.attributes);
 
   std::vector<std::byte> bytes =
-      begin_glb(plan.document(tile.bounds, format.origin).dump(), plan.bytes());
+      begin_glb(plan.document(tile.bounds, format.frame).dump(), plan.bytes());
   Writer writer(plan, std::span(bytes).last(plan.bytes()));
   writer.put_positions(mesh.vertices.positions);
   for (std::size_t i = 0; i < groups.size(); ++i) {
@@ -453,7 +453,7 @@ PublishedTile decode_tile(std::span<const std::byte> bytes, NodeId node, const T
   tile.node = node;
   tile.mesh.vertices.positions = reader.positions();
   const Bounds bounds = bounds_of(tile.mesh.vertices.positions);
-  require_same_json(plan.document(bounds, format.origin), document, name);
+  require_same_json(plan.document(bounds, format.frame), document, name);
   tile.mesh.vertices.attributes = reader.attributes();
   tile.mesh.vertices.channels = format.attributes.channels();
   tile.mesh.own_count = static_cast<std::uint32_t>(plan.shape().own);

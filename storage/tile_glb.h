@@ -3,9 +3,9 @@
 
 #include "hierarchy/attributes.h"
 #include "hierarchy/bounds.h"
+#include "hierarchy/frame.h"
 #include "hierarchy/published.h"
 #include "hierarchy/tree.h"
-#include "hierarchy/vec.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -21,7 +21,7 @@ inline constexpr std::uint32_t kMaxOwnVertices = 32768;
 /// What all tiles of a hierarchy share.
 struct TileFormat {
   AttributeLayout attributes;
-  Vec3d origin;  ///< added to every position (the node's translation); 0 for float input
+  Frame frame;  ///< the node's; its origin is 0 for float input
 };
 
 /// True if glTF lets `normal` stand as it is: its length differs from 1 by 0.001 at most (the

@@ -63,13 +63,22 @@ Json primitives_json(const TilePlan& plan) {
   for (const Part part : {Part::interior, Part::border}) {
     if (plan[part].view < 0)
       continue;
-    primitives.push_back(Json::object(
-        {{"attributes", attributes}, {"indices", plan[part].view}, {"mode", kTriangles}}));
+    primitives.push_back(Json::object({{"attributes", attributes},
+                                       {"indices", plan[part].view},
+                                       {"material", 0},
+                                       {"mode", kTriangles}}));
   }
   if (primitives.empty()) {
-    primitives.push_back(Json::object({{"attributes", attributes}, {"mode", kPoints}}));
+    primitives.push_back(
+        Json::object({{"attributes", attributes}, {"material", 0}, {"mode", kPoints}}));
   }
   return primitives;
+}
+
+/// Neither metal, which is black without surroundings to mirror, nor one-sided, as scans are open.
+Json material_json() {
+  return {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 1}}},
+          {"doubleSided", true}};
 }
 
 Json extension_json(const TilePlan& plan) {
@@ -148,7 +157,7 @@ void TilePlan::add(Part part, unsigned component, std::size_t components, std::u
   bytes_ = aligned4(bytes_ + count * sections_[static_cast<std::size_t>(part)].stride);
 }
 
-Json TilePlan::document(const Bounds& bounds, Vec3d origin) const {
+Json TilePlan::document(const Bounds& bounds, const Frame& frame) const {
   Json views = Json::array();
   Json accessors = Json::array();
   for (std::size_t i = 0; i < kPartCount; ++i) {
@@ -168,8 +177,9 @@ Json TilePlan::document(const Bounds& bounds, Vec3d origin) const {
   document["extensionsUsed"] = Json::array({kTileExtension});
   document["scene"] = 0;
   document["scenes"] = Json::array({scene});
-  document["nodes"] = Json::array({mesh_node(origin)});
+  document["nodes"] = Json::array({mesh_node(frame)});
   document["meshes"] = Json::array({mesh});
+  document["materials"] = Json::array({material_json()});
   document["accessors"] = std::move(accessors);
   document["bufferViews"] = std::move(views);
   document["buffers"] = Json::array({buffer});

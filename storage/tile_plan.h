@@ -3,8 +3,8 @@
 
 #include "hierarchy/attributes.h"
 #include "hierarchy/bounds.h"
+#include "hierarchy/frame.h"
 #include "hierarchy/ids.h"
-#include "hierarchy/vec.h"
 
 #include <array>
 #include <cstddef>
@@ -100,7 +100,7 @@ class TilePlan {
   std::uint64_t bytes() const { return bytes_; }
 
   /// The file's JSON. `bounds`: of the positions.
-  nlohmann::ordered_json document(const Bounds& bounds, Vec3d origin) const;
+  nlohmann::ordered_json document(const Bounds& bounds, const Frame& frame) const;
 
  private:
   unsigned component_of(const ChannelGroup& group) const;

@@ -46,7 +46,7 @@ Place take_place(Take& take) {
   place.format.attributes = {(bits & 1) != 0, static_cast<ColourType>(bits >> 4 & 3),
                              (bits & 2) != 0, (bits & 4) != 0};
   if ((bits & 8) != 0)
-    place.format.origin = {1e6, -0.1, 3};
+    place.format.frame.origin = {1e6, -0.1, 3};
   return place;
 }
 
@@ -86,7 +86,7 @@ std::vector<std::byte> make_glb(Take take, const Place& place) {
   Bounds bounds;
   if (!bounds_in(bin, shape.vertices(), bounds))
     bounds = {{0, 0, 0}, {0, 0, 0}};
-  return storage::join_glb(plan.document(bounds, place.format.origin).dump(), bin);
+  return storage::join_glb(plan.document(bounds, place.format.frame).dump(), bin);
 }
 
 bool same_but_attributes(const PublishedTile& a, const PublishedTile& b) {

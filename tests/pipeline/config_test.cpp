@@ -213,6 +213,33 @@ TEST(ConfigErrors, VerticesAndCountExcludeEachOther) {
       "config.json: partition: expected either \"vertices\" or \"count\", found both; remove one");
 }
 
+TEST(Config, APlaceOrATransformPutsTheModelSomewhere) {
+  const PlacementConfig place =
+      parse(with(R"("placement": {"longitude": -7.5, "latitude": 90, "anchor": [1, 2, 3.5]})"))
+          .placement;
+  EXPECT_EQ(place.longitude, -7.5);
+  EXPECT_EQ(place.latitude, 90);
+  EXPECT_EQ(place.height, std::nullopt);
+  EXPECT_EQ(place.anchor, (std::array<double, 3>{1, 2, 3.5}));
+  const Config moved =
+      parse(with(R"("up": "z", "placement": {"transform": [1,0,0,0, 0,1,0,0, 0,0,1,0, 5,6,7,1]})"));
+  EXPECT_EQ(moved.up, UpAxis::z);
+  EXPECT_EQ(moved.placement.transform.value()[14], 7);
+}
+
+TEST(ConfigErrors, HalfAPlaceAndTwoPlacesAreRefused) {
+  EXPECT_THAT(refusal(with(R"("placement": {"longitude": 1})")),
+              HasSubstr("expected both \"longitude\" and \"latitude\""));
+  EXPECT_THAT(refusal(with(R"("placement": {"height": 1})")), HasSubstr("expected both"));
+  EXPECT_THAT(refusal(with(R"("placement": {"longitude": 1, "latitude": 2,
+                               "transform": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]})")),
+              HasSubstr("found both"));
+  EXPECT_THAT(refusal(with(R"("placement": {"transform": [1, 2]})")),
+              HasSubstr("expected a list of 16 numbers, found a list"));
+  EXPECT_THAT(refusal(with(R"("placement": {"longitude": 181, "latitude": 2})")),
+              HasSubstr("expected a number above -180 and at most 180"));
+}
+
 TEST(ConfigErrors, MissingKeysAreNamed) {
   EXPECT_EQ(refusal(R"({"output": "b"})"), "config.json: input is missing: expected a path");
   EXPECT_EQ(refusal(R"({"input": "b"})"), "config.json: output is missing: expected a path");
@@ -427,12 +454,12 @@ TEST(ResolvedJson, HoldsWhatDecidesTheResultAndNothingElse) {
       "simplify": {"method": "edge_collapse", "vertices": 8192, "representative": "quadric",
                    "cost": "quadric"},
       "outline": {"sectors": 128, "tolerance": 0.002},
-      "storage": {"compression": "none"}})"));
+      "storage": {"compression": "none"}, "up": "y"})"));
   EXPECT_EQ(resolved_json(parse(with(R"("partition": {"count": 9})"))), Json::parse(R"({
       "partition": {"count": 9, "axis": "compactness"},
       "simplify": {"method": "edge_collapse", "representative": "quadric", "cost": "quadric"},
       "outline": {"sectors": 128, "tolerance": 0.002},
-      "storage": {"compression": "none"}})"));
+      "storage": {"compression": "none"}, "up": "y"})"));
 }
 
 TEST(ResolvedJson, DoesNotDependOnPathsBudgetAndThreads) {
@@ -513,6 +540,12 @@ void expect_same_rule(const ConfigKey& key, const Json& schema) {
       EXPECT_EQ(schema.at("type"), "number");
       EXPECT_EQ(schema.at("exclusiveMinimum"), key.minimum);
       EXPECT_EQ(schema.at("maximum"), key.maximum);
+      break;
+    case KeyKind::numbers:
+      EXPECT_EQ(schema.at("type"), "array");
+      EXPECT_EQ(schema.at("items").at("type"), "number");
+      EXPECT_EQ(schema.at("minItems"), key.maximum);
+      EXPECT_EQ(schema.at("maxItems"), key.maximum);
       break;
     case KeyKind::size:
       EXPECT_EQ(schema.at("oneOf").at(0).at("minimum"), key.minimum);

@@ -96,7 +96,9 @@ TEST_F(InspectTest, JsonTellsBytes) {
     tiles += record.file_bytes;
   EXPECT_EQ(json["tile_bytes"], tiles);
   EXPECT_EQ(json["outline"]["bytes"], sample_.manifest.outline_bytes);
+  EXPECT_EQ(json["tileset"]["bytes"], sample_.manifest.tileset_bytes);
   EXPECT_EQ(json["total_bytes"], tiles + sample_.manifest.outline_bytes +
+                                     fs::file_size(storage::tileset_path(path())) +
                                      fs::file_size(storage::index_path(path())) +
                                      fs::file_size(storage::manifest_path(path())));
 }

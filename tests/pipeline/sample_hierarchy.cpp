@@ -7,6 +7,7 @@
 #include "storage/index.h"
 #include "storage/layout.h"
 #include "storage/outline_glb.h"
+#include "storage/tileset.h"
 
 #include <algorithm>
 #include <cmath>
@@ -345,9 +346,10 @@ storage::Manifest make_manifest(const Sample& sample, const fs::path& source) {
   manifest.source.faces = sample.ranked.triangles.size();
   manifest.source.attributes = sample.format.attributes;
   for (Vec3f p : sample.ranked.positions) {
-    manifest.source.bounds.add(to_double(p) + sample.format.origin);
+    manifest.source.bounds.add(to_double(p) + sample.format.frame.origin);
   }
-  manifest.origin = sample.format.origin;
+  manifest.origin = sample.format.frame.origin;
+  manifest.up = sample.format.frame.up;
   manifest.partition_count = sample.tree.partition_count();
   manifest.config = {{"partition", {{"count", sample.tree.partition_count()}}}};
   manifest.levels = nlohmann::ordered_json::array();
@@ -384,7 +386,7 @@ Sample make_sample(const TestMesh& mesh, const SampleOptions& options, const fs:
                 .ranked = ranked,
                 .attributes = {},
                 .local = {}};
-  sample.format.origin = options.origin;
+  sample.format.frame.origin = options.origin;
   if (options.colours) {
     sample.format.attributes.colour = ColourType::u8;
     sample.attributes = colours_of(order);
@@ -430,7 +432,7 @@ void write_sample(storage::FileSystem& files, const fs::path& directory, Sample&
   }
   const auto index = storage::encode_index(sample.records);
   storage::write_file(files, storage::index_path(directory), index);
-  const auto outline = storage::encode_outline(square(), sample.format.origin);
+  const auto outline = storage::encode_outline(square(), sample.format.frame);
   storage::write_file(files, storage::outline_path(directory), outline);
   manifest.index_bytes = index.size();
   manifest.index_checksum = storage::checksum(index);
@@ -438,6 +440,8 @@ void write_sample(storage::FileSystem& files, const fs::path& directory, Sample&
   manifest.outline_checksum = storage::checksum(outline);
   manifest.outline.polylines_found = 2;
   manifest.total_bytes += index.size() + outline.size();
+  manifest.tileset_files = manifest.tileset_bytes = 0;
+  storage::write_tilesets(files, directory, sample.tree, sample.records, manifest);
   const std::string text = storage::to_json_text(manifest);
   storage::write_file(files, storage::manifest_path(directory), std::as_bytes(std::span(text)));
 }

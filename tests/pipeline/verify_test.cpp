@@ -150,7 +150,7 @@ TEST_F(VerifyTest, ChecksSayWhatWasFound) {
   VerifyOptions options;
   options.input = mesh_path();
   const auto checks = verify(sample, options).checks;
-  EXPECT_THAT(checks, Contains(HasSubstr("files: 14 found, 11 tiles in the index")));
+  EXPECT_THAT(checks, Contains(HasSubstr("files: 15 found, 11 tiles in the index")));
   EXPECT_THAT(checks, Contains(HasSubstr("structure of 11")));
   EXPECT_THAT(checks, Contains(HasSubstr("closed and oriented")));
   EXPECT_THAT(checks, Contains(HasSubstr("20 random cuts from seed 1")));
@@ -193,7 +193,7 @@ TEST_F(VerifyTest, AFlippedBitInAnyFileIsFound) {
     if (entry.is_regular_file())
       paths.push_back(entry.path());
   }
-  ASSERT_THAT(paths, SizeIs(8));
+  ASSERT_THAT(paths, SizeIs(9));
   for (const fs::path& path : paths) {
     const auto size = fs::file_size(path);
     for (std::uintmax_t at = 0; at < size; at += std::max<std::uintmax_t>(size / 16, 1)) {
@@ -248,6 +248,18 @@ TEST_F(VerifyTest, ExtraFilesAreNamed) {
     std::ofstream(hierarchy_path() / name) << "x";
     EXPECT_THAT(verify_again().problems, Contains(HasSubstr(name))) << name;
   }
+}
+
+TEST_F(VerifyTest, FilesOfTheTilesetAreMadeAgainAndCompared) {
+  tests::Sample sample = make(tests::sphere(4000), {130, 20, false, false, {}});
+  ASSERT_THAT(verify(sample).problems, IsEmpty());
+  ASSERT_GT(sample.manifest.tileset_files, 1U);
+  const auto below = storage::tileset_path(hierarchy_path(), node(5, 3));
+  ASSERT_TRUE(fs::exists(below));
+  std::ofstream(below, std::ios::app) << " ";
+  EXPECT_THAT(verify_again().problems, ElementsAre(HasSubstr("000003.json: not the tileset")));
+  fs::remove(below);
+  EXPECT_THAT(verify_again().problems, ElementsAre(HasSubstr("000003.json: this file")));
 }
 
 TEST_F(VerifyTest, WrongTotalsAreFound) {

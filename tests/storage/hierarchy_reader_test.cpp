@@ -45,11 +45,11 @@ class HierarchyReaderTest : public testing::Test {
     for (const TileRecord& record : records)
       manifest.total_bytes += record.file_bytes;
     const Bytes index = storage::encode_index(records);
-    const Bytes outline = storage::encode_outline(outline_, sample.format.origin);
+    const Bytes outline = storage::encode_outline(outline_, sample.format.frame);
     manifest.source.vertices = sample.tree.vertex_count();
     manifest.source.bounds = {{0, 0, 0}, {1, 1, 1}};
     manifest.source.attributes = sample.format.attributes;
-    manifest.origin = sample.format.origin;
+    manifest.origin = sample.format.frame.origin;
     manifest.partition_count = sample.tree.partition_count();
     manifest.config = nlohmann::ordered_json::object();
     manifest.levels = nlohmann::ordered_json::array();
@@ -117,7 +117,7 @@ TEST_F(HierarchyReaderTest, GivesTheWholeHierarchyBack) {
     const HierarchyReader read = reader();
     EXPECT_EQ(read.tree().partition_count(), partitions);
     EXPECT_EQ(read.tile_format().attributes, layout);
-    EXPECT_EQ(read.tile_format().origin, (Vec3d{1, 2, 3}));
+    EXPECT_EQ(read.tile_format().frame.origin, (Vec3d{1, 2, 3}));
     ASSERT_EQ(read.records().size(), sample.tiles.size());
     for (const PublishedTile& tile : sample.tiles) {
       const PublishedTile back = read.read_tile(tile.node);

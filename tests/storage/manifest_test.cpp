@@ -37,6 +37,9 @@ Manifest make_manifest() {
   manifest.source.double_precision = true;
   manifest.source.attributes = {true, ColourType::u16, true, true};
   manifest.origin = {1234567.891, 0, -0.0};
+  manifest.up = UpAxis::z;
+  manifest.transform = Transform{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 0.1, 1e300, -5, 16};
+  manifest.licence = "CC \"BY\"";
   manifest.partition_count = 7;
   manifest.config = {{"simplify", {{"method", "cluster"}, {"vertices", 100}}}};
   manifest.index_bytes = 1176;
@@ -44,6 +47,9 @@ Manifest make_manifest() {
   manifest.outline_bytes = 2222;
   manifest.outline_checksum = 0x1;
   manifest.outline = {3, 7, 0.004, 55, 6};
+  manifest.tileset_files = 5;
+  manifest.tileset_bytes = 4321;
+  manifest.tileset_checksum = 0xFFFFFFFFFFFFFFFE;
   manifest.levels = Json::array({{{"level", 0}, {"tiles", 1}}});
   manifest.total_bytes = 987654321;
   return manifest;
@@ -63,6 +69,12 @@ void expect_same(const Manifest& a, const Manifest& b) {
   EXPECT_EQ(a.source.double_precision, b.source.double_precision);
   EXPECT_EQ(a.source.attributes, b.source.attributes);
   EXPECT_EQ(a.origin, b.origin);
+  EXPECT_EQ(a.up, b.up);
+  EXPECT_EQ(a.transform, b.transform);
+  EXPECT_EQ(a.licence, b.licence);
+  EXPECT_EQ(a.tileset_files, b.tileset_files);
+  EXPECT_EQ(a.tileset_bytes, b.tileset_bytes);
+  EXPECT_EQ(a.tileset_checksum, b.tileset_checksum);
   EXPECT_EQ(a.partition_count, b.partition_count);
   EXPECT_EQ(a.config, b.config);
   EXPECT_EQ(a.index_bytes, b.index_bytes);
@@ -113,7 +125,7 @@ TEST(Manifest, GivesEveryValueBack) {
 
 TEST(Manifest, IsReadable) {
   const std::string text = to_json_text(make_manifest());
-  EXPECT_THAT(text, StartsWith("{\n  \"format\": \"meshhier\",\n  \"format_version\": 3,\n"));
+  EXPECT_THAT(text, StartsWith("{\n  \"format\": \"meshhier\",\n  \"format_version\": 4,\n"));
   EXPECT_THAT(text, HasSubstr("\"checksum\": \"fedcba9876543210\""));
   EXPECT_THAT(text, HasSubstr("\"checksum\": \"00000000000000ab\""));
   EXPECT_THAT(text, HasSubstr("\"colours\": \"u16\""));
@@ -190,6 +202,11 @@ TEST(Manifest, EveryWrongValueIsNamed) {
       {"/source/attributes/colours", "u32", "none, u8, u16 or f32"},
       {"/source/double_precision", 1, "true or false"},
       {"/origin", Json::array({1, nullptr, 2}), "\"origin\" is wrong"},
+      {"/up", "x", "\"up\" is wrong"},
+      {"/transform", Json::array({1, 2}), "\"transform\" is wrong"},
+      {"/transform/3", "1", "\"transform\" is wrong"},
+      {"/licence", 3, "\"licence\" is wrong"},
+      {"/tileset/checksum", "x", "\"tileset.checksum\""},
       {"/partitions", 0, "\"partitions\""},
       {"/partitions", 1001, "\"partitions\""},
       {"/config", Json::array(), "\"config\" is wrong, expected an object"},
@@ -208,10 +225,10 @@ TEST(Manifest, EveryWrongValueIsNamed) {
 
 TEST(Manifest, OtherFormatsAndVersionsAreRefusedByTheirNumber) {
   Json document = Json::parse(to_json_text(make_manifest()));
-  document["format_version"] = 4;
-  EXPECT_THAT(failure(document.dump()), HasSubstr("format version 4 is newer than 3"));
+  document["format_version"] = 5;
+  EXPECT_THAT(failure(document.dump()), HasSubstr("format version 5 is newer than 4"));
   document["format_version"] = 0;
-  EXPECT_THAT(failure(document.dump()), HasSubstr("format version is 0, expected 3"));
+  EXPECT_THAT(failure(document.dump()), HasSubstr("format version is 0, expected 4"));
   document["format"] = "nexus";
   EXPECT_THAT(failure(document.dump()), HasSubstr("\"format\" is wrong"));
 }

@@ -44,11 +44,13 @@ std::size_t segment_count(const Outline& outline) {
 }
 
 void expect_round_trip(const Outline& outline, Vec3d origin) {
-  const Bytes bytes = encode_outline(outline, origin);
-  EXPECT_EQ(bytes.size(), outline_bytes(outline.vertices.size(), segment_count(outline)));
-  const Outline back = decode_outline(bytes, kOutlineName);
-  EXPECT_EQ(back.vertices, outline.vertices);
-  EXPECT_EQ(back.starts, outline.starts);
+  for (const UpAxis up : {UpAxis::y, UpAxis::z}) {
+    const Bytes bytes = encode_outline(outline, {origin, up});
+    EXPECT_EQ(bytes.size(), outline_bytes(outline.vertices.size(), segment_count(outline)));
+    const Outline back = decode_outline(bytes, kOutlineName);
+    EXPECT_EQ(back.vertices, outline.vertices);
+    EXPECT_EQ(back.starts, outline.starts);
+  }
 }
 
 std::string failure(const Bytes& bytes) {

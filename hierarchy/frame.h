@@ -1,0 +1,23 @@
+// How stored positions lie in space.
+#pragma once
+
+#include "hierarchy/vec.h"
+
+#include <array>
+
+namespace meshhier {
+
+/// Which axis of the input points up. glTF's is y; 3D Tiles' is z.
+enum class UpAxis { y, z };
+
+/// What the nodes of all files of a hierarchy share.
+struct Frame {
+  Vec3d origin;           ///< added to every position
+  UpAxis up = UpAxis::y;  ///< z: then turned, so that (x, y, z) becomes (x, z, -y)
+  friend bool operator==(const Frame&, const Frame&) = default;
+};
+
+/// A 4 x 4 matrix, column by column.
+using Transform = std::array<double, 16>;
+
+}  // namespace meshhier

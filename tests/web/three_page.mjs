@@ -1,0 +1,167 @@
+// Shows a tileset with 3d-tiles-renderer and compares it with the mesh it was made from.
+import * as THREE from 'three';
+import { PLYLoader } from 'three/addons/loaders/PLYLoader.js';
+import { MeshoptDecoder } from 'three/addons/libs/meshopt_decoder.module.js';
+import { TilesRenderer } from '3d-tiles-renderer/three';
+import { GLTFExtensionsPlugin } from '3d-tiles-renderer/three/plugins';
+
+const SIZE = 512;
+// Frames without anything under way before the picture counts as complete.
+const QUIET_FRAMES = 10;
+
+const renderer = new THREE.WebGLRenderer({ preserveDrawingBuffer: true });
+renderer.setSize(SIZE, SIZE);
+renderer.setClearColor(0xffffff);
+document.body.append(renderer.domElement);
+
+const camera = new THREE.PerspectiveCamera(40, 1, 1, 2);
+const shown = new THREE.Scene();
+const original = new THREE.Scene();
+for (const scene of [shown, original]) {
+  scene.add(new THREE.HemisphereLight(0xffffff, 0x404040, 3));
+}
+
+// Distance along the view axis of what is drawn, 0 where nothing is.
+const depthTarget = new THREE.WebGLRenderTarget(SIZE, SIZE, {
+  type: THREE.FloatType,
+  minFilter: THREE.NearestFilter,
+  magFilter: THREE.NearestFilter,
+});
+const depthMaterial = new THREE.ShaderMaterial({
+  side: THREE.DoubleSide,
+  vertexShader: `
+    varying float distance_;
+    void main() {
+      vec4 p = modelViewMatrix * vec4(position, 1.0);
+      distance_ = -p.z;
+      gl_Position = projectionMatrix * p;
+    }`,
+  fragmentShader: 'varying float distance_; void main() { gl_FragColor = vec4(distance_); }',
+});
+
+let tiles = null;
+let sphere = null;
+let failures = [];
+
+function depthOf(scene) {
+  scene.overrideMaterial = depthMaterial;
+  renderer.setClearColor(0x000000, 0);
+  renderer.setRenderTarget(depthTarget);
+  renderer.clear();
+  renderer.render(scene, camera);
+  const pixels = new Float32Array(SIZE * SIZE * 4);
+  renderer.readRenderTargetPixels(depthTarget, 0, 0, SIZE, SIZE, pixels);
+  renderer.setRenderTarget(null);
+  renderer.setClearColor(0xffffff, 1);
+  scene.overrideMaterial = null;
+  return Float32Array.from({ length: SIZE * SIZE }, (_, i) => pixels[4 * i]);
+}
+
+function frame() {
+  return new Promise((resolve) => requestAnimationFrame(resolve));
+}
+
+/// Loads the tileset, and the mesh as 3D Tiles turn it: `up` is the axis of the mesh that points
+/// up.
+async function load({ tileset, mesh, up }) {
+  failures = [];
+  tiles = new TilesRenderer(tileset);
+  tiles.registerPlugin(new GLTFExtensionsPlugin({ meshoptDecoder: MeshoptDecoder, autoDispose: false }));
+  tiles.addEventListener('load-error', (event) => failures.push(String(event.error ?? event.url)));
+  tiles.setCamera(camera);
+  tiles.setResolution(camera, SIZE, SIZE);
+  shown.add(tiles.group);
+
+  const geometry = await new PLYLoader().loadAsync(mesh);
+  geometry.computeBoundingSphere();
+  if (geometry.getAttribute('normal') === undefined) geometry.computeVertexNormals();
+  const material = new THREE.MeshStandardMaterial({
+    side: THREE.DoubleSide,
+    vertexColors: geometry.getAttribute('color') !== undefined,
+  });
+  const object = new THREE.Mesh(geometry, material);
+  if (up === 'y') object.rotation.x = Math.PI / 2;
+  original.add(object);
+  object.updateMatrixWorld(true);
+  sphere = geometry.boundingSphere.clone().applyMatrix4(object.matrixWorld);
+}
+
+/// Looks at the model from `direction`. `distance`: in radii of its sphere, from its middle or,
+/// if `close`, from the point of the mesh that is nearest to the eye that looks at the middle.
+function look({ direction, distance, close = false }) {
+  const from = new THREE.Vector3(...direction).normalize();
+  let target = sphere.center.clone();
+  if (close) {
+    const ray = new THREE.Raycaster(target.clone().addScaledVector(from, 4 * sphere.radius), from.clone().negate());
+    target = ray.intersectObjects(original.children, true)[0]?.point ?? target;
+  }
+  camera.position.copy(target).addScaledVector(from, distance * sphere.radius);
+  camera.near = (close ? 0.2 : 0.5) * distance * sphere.radius;
+  if (!close) camera.near = Math.max(camera.near, (distance - 1.2) * sphere.radius);
+  camera.far = (distance + 3) * sphere.radius;
+  camera.up.set(0, 0, 1);
+  camera.lookAt(target);
+  camera.updateProjectionMatrix();
+  camera.updateMatrixWorld(true);
+}
+
+/// Refines until nothing is left to do for `errorTarget` pixels.
+async function settle(errorTarget) {
+  tiles.errorTarget = errorTarget;
+  for (let quiet = 0; quiet < QUIET_FRAMES; ) {
+    await frame();
+    tiles.update();
+    renderer.render(shown, camera);
+    const { queued = 0, downloading, parsing } = tiles.stats;
+    quiet = queued + downloading + parsing === 0 ? quiet + 1 : 0;
+  }
+  const names = [];
+  tiles.forEachLoadedModel((scene, tile) => {
+    if (tiles.visibleTiles.has(tile)) names.push(new URL(tile.content.uri, location.href).pathname);
+  });
+  return { visible: names.sort(), failures };
+}
+
+/// Whether all pixels of `picture` within `reach` of (x, y) are covered.
+function coveredAround(picture, x, y, reach) {
+  for (let v = Math.max(0, y - reach); v <= Math.min(SIZE - 1, y + reach); ++v) {
+    for (let u = Math.max(0, x - reach); u <= Math.min(SIZE - 1, x + reach); ++u) {
+      if (!(picture[v * SIZE + u] > 0)) return false;
+    }
+  }
+  return true;
+}
+
+/// How the picture differs from that of the original mesh. A hole: a pixel without anything where
+/// the original is covered as far as the error reaches, and a pixel more.
+function compare(errorTarget) {
+  const reach = Math.ceil(errorTarget) + 1;
+  const ours = depthOf(shown);
+  const theirs = depthOf(original);
+  const differences = [];
+  let covered = 0, outline = 0, holes = 0;
+  for (let y = 1; y + 1 < SIZE; ++y) {
+    for (let x = 1; x + 1 < SIZE; ++x) {
+      const i = y * SIZE + x;
+      if (theirs[i] > 0) ++covered;
+      if (theirs[i] > 0 !== ours[i] > 0) ++outline;
+      if (theirs[i] > 0 && ours[i] > 0) differences.push(Math.abs(ours[i] - theirs[i]));
+      if (!(ours[i] > 0) && coveredAround(theirs, x, y, reach)) ++holes;
+    }
+  }
+  differences.sort((a, b) => a - b);
+  const at = (part) => differences[Math.floor(part * (differences.length - 1))] ?? Infinity;
+  return {
+    covered,
+    outline: outline / covered,
+    holes,
+    depth: { median: at(0.5) / sphere.radius, most: at(0.99) / sphere.radius },
+  };
+}
+
+/// The picture of the original mesh, instead of the tileset's.
+function showOriginal() {
+  renderer.render(original, camera);
+}
+
+window.view = { load, look, settle, compare, showOriginal };
