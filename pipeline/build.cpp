@@ -103,7 +103,9 @@ void make_hierarchy(const Config& config, const BuildPlan& build, Workshop& work
   auto& [mesh_scratch, tile_scratch, chunks, forest, journal] = workshop;
   PublishInput result;
   result.source = journal.source()->summary;
-  result.format = {result.source.attributes, journal.source()->origin};
+  result.format = {
+      result.source.attributes, journal.source()->origin, config.storage.compression, {}};
+  result.position_bits = config.storage.position_bits;
   result.source.unreferenced_vertices =
       make_leaves(chunks, forest, journal, config.partition.axis, plan, progress, cancel);
   // Without the chunks leaves cannot be made again, so these reach the disk before those go.

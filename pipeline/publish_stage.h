@@ -13,6 +13,7 @@
 #include "storage/tile_glb.h"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace meshhier::pipeline {
@@ -23,7 +24,8 @@ struct PublishInput {
   storage::TileFormat format;
   OutlineStageResult outline;
   nlohmann::ordered_json config;
-  std::uint32_t asked_vertices = 0;  ///< of simplified tiles
+  std::optional<std::uint32_t> position_bits;  ///< of the lattice; none: positions stay exact
+  std::uint32_t asked_vertices = 0;            ///< of simplified tiles
 };
 
 /// Writes the whole hierarchy into `directory`, but for tiles that the journal has there.

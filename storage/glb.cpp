@@ -188,10 +188,12 @@ const Json& require_extension(const Json& document, const char* extension, unsig
   return found;
 }
 
-Json mesh_node(Vec3d origin) {
+Json mesh_node(Vec3d origin, double scale) {
   Json node = {{"mesh", 0}};
   if (origin != Vec3d{})
     node["translation"] = {origin.x, origin.y, origin.z};
+  if (scale != 1)
+    node["scale"] = {scale, scale, scale};
   return node;
 }
 

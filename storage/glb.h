@@ -102,8 +102,9 @@ const nlohmann::ordered_json& require_extension(const nlohmann::ordered_json& do
                                                 const char* extension, unsigned version,
                                                 const std::string& name);
 
-/// `{"mesh": 0}`, with the translation `origin` if it is not zero.
-nlohmann::ordered_json mesh_node(Vec3d origin);
+/// `{"mesh": 0}`, with the translation `origin` if it is not zero, and a scale of all axes if it is
+/// not 1.
+nlohmann::ordered_json mesh_node(Vec3d origin, double scale = 1);
 
 /// The two chunks of a GLB, pointing into its bytes.
 struct GlbView {

@@ -5,6 +5,7 @@
 #include "storage/hash.h"
 #include "storage/layout.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -12,6 +13,7 @@
 #include <string_view>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace meshhier::storage {
 namespace {
@@ -54,6 +56,17 @@ Json attributes_json(const AttributeLayout& attributes) {
           {"texcoords", attributes.texcoords}};
 }
 
+Json storage_json(const Manifest& manifest) {
+  Json storage = {{"compression", name_of(manifest.compression)}, {"positions", nullptr}};
+  if (const auto& quantization = manifest.quantization) {
+    storage["positions"] = {{"bits", quantization->lattice.bits},
+                            {"step", quantization->lattice.step},
+                            {"corner", numbers(quantization->lattice.corner)},
+                            {"worst_rounding", quantization->worst_rounding}};
+  }
+  return storage;
+}
+
 Json outline_json(const Manifest& manifest) {
   const OutlineReport& outline = manifest.outline;
   return {{"file", outline_path({}).string()},
@@ -69,11 +82,13 @@ Json outline_json(const Manifest& manifest) {
 Json manifest_json(const Manifest& manifest) {
   Json document;
   document["format"] = kFormat;
-  document["format_version"] = kFormatVersion;
+  document["format_version"] = format_version(manifest);
   document["generator"] = manifest.generator;
   document["source"] = source_json(manifest.source);
   document["origin"] = numbers(manifest.origin);
   document["partitions"] = manifest.partition_count;
+  if (format_version(manifest) != kPlainFormatVersion)
+    document["storage"] = storage_json(manifest);
   document["config"] = manifest.config;
   document["index"] = {{"file", index_path({}).string()},
                        {"bytes", manifest.index_bytes},
@@ -178,6 +193,30 @@ class Object {
   const std::string& name_;
 };
 
+Compression read_compression(const Object& object) {
+  const std::string name = object.text("compression");
+  const auto found = std::find(kCompressionNames.begin(), kCompressionNames.end(), name);
+  if (found == kCompressionNames.end())
+    object.wrong("compression", fmt::format("one of {}", fmt::join(kCompressionNames, ", ")));
+  return static_cast<Compression>(found - kCompressionNames.begin());
+}
+
+std::optional<Quantization> read_quantization(const Object& object) {
+  if (object.at("positions").is_null())
+    return std::nullopt;
+  const Object positions = object.object("positions");
+  Quantization quantization;
+  quantization.lattice.bits = static_cast<int>(positions.count("bits", Lattice::kMostBits));
+  quantization.lattice.step = positions.number("step");
+  quantization.lattice.corner = positions.point("corner");
+  quantization.worst_rounding = positions.number("worst_rounding");
+  if (!quantization.lattice.is_sound())
+    object.wrong("positions", "a lattice of 8 to 24 bits, its step a power of two");
+  if (quantization.worst_rounding < 0)
+    positions.wrong("worst_rounding", "at least 0");
+  return quantization;
+}
+
 AttributeLayout read_attributes(const Object& object) {
   AttributeLayout attributes;
   attributes.normals = object.boolean("normals");
@@ -226,7 +265,7 @@ void read_outline(const Object& object, Manifest& manifest) {
 }
 
 /// Told before anything else is asked of the document: a newer format may differ in all the rest.
-void check_version(const Object& object) {
+std::uint64_t read_version(const Object& object) {
   if (object.text("format") != kFormat)
     object.wrong("format", fmt::format("\"{}\"", kFormat));
   const std::uint64_t version = object.count("format_version");
@@ -236,9 +275,11 @@ void check_version(const Object& object) {
                     "meshhier",
                     version, kFormatVersion));
   }
-  if (version != kFormatVersion) {
-    object.fail(fmt::format("format version is {}, expected {}", version, kFormatVersion));
+  if (version < kPlainFormatVersion) {
+    object.fail(fmt::format("format version is {}, expected {} or {}", version, kPlainFormatVersion,
+                            kFormatVersion));
   }
+  return version;
 }
 
 void check_text(const std::string& text, const Object& object) {
@@ -276,6 +317,11 @@ SourceSummary parse_source(const Json& source, const std::string& name) {
   return read_source(Object(source, "", name));
 }
 
+int format_version(const Manifest& manifest) {
+  const bool plain = manifest.compression == Compression::none && !manifest.quantization;
+  return plain ? kPlainFormatVersion : kFormatVersion;
+}
+
 std::string to_json_text(const Manifest& manifest) {
   // A file name need not be UTF-8, JSON must be.
   std::string text = manifest_json(manifest).dump(2, ' ', false, Json::error_handler_t::replace);
@@ -294,7 +340,7 @@ Manifest parse_manifest(const std::string& text, const std::string& name) {
   const Object object(document, "", name);
   if (!document.is_object())
     object.fail("is not a JSON object");
-  check_version(object);
+  const std::uint64_t version = read_version(object);
   check_text(text, object);
 
   Manifest manifest;
@@ -305,6 +351,10 @@ Manifest parse_manifest(const std::string& text, const std::string& name) {
       static_cast<std::uint32_t>(object.count("partitions", manifest.source.vertices));
   if (manifest.partition_count == 0)
     object.wrong("partitions", "at least 1");
+  if (version != kPlainFormatVersion) {
+    manifest.compression = read_compression(object.object("storage"));
+    manifest.quantization = read_quantization(object.object("storage"));
+  }
   manifest.config = object.at("config");
   if (!manifest.config.is_object())
     object.wrong("config", "an object");

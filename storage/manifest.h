@@ -4,8 +4,10 @@
 #include "hierarchy/outline.h"
 #include "hierarchy/published.h"
 #include "hierarchy/vec.h"
+#include "storage/tile_glb.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,13 +15,25 @@
 
 namespace meshhier::storage {
 
-inline constexpr int kFormatVersion = 3;
+/// The newest. A hierarchy that is neither compressed nor quantized is of the one before, which
+/// says nothing of that: what can read only that can read it.
+inline constexpr int kFormatVersion = 4;
+inline constexpr int kPlainFormatVersion = 3;
+
+/// What rounding to a lattice did.
+struct Quantization {
+  Lattice lattice;
+  double worst_rounding =
+      0;  ///< the largest distance that a position of any tile went, input units
+};
 
 struct Manifest {
   std::string generator;  ///< "meshhier 0.1.0"
   SourceSummary source;
   Vec3d origin;  ///< add to every stored position
   std::uint32_t partition_count = 0;
+  Compression compression = Compression::none;
+  std::optional<Quantization> quantization;  ///< none: positions are exact
   /// An object: the resolved config, what decides the result (not budget, threads, paths).
   nlohmann::ordered_json config;
   std::uint64_t index_bytes = 0;
@@ -31,6 +45,9 @@ struct Manifest {
   nlohmann::ordered_json levels;
   std::uint64_t total_bytes = 0;  ///< of tiles, index and outline
 };
+
+/// The number that the manifest has on disk.
+int format_version(const Manifest& manifest);
 
 /// What the manifest says of the input, on its own. File names keep their bytes, UTF-8 or not.
 nlohmann::ordered_json source_json(const SourceSummary& source);
