@@ -118,7 +118,7 @@ TEST(LatticeTest, FloatAboveIsTheLeastThatIsNotBelow) {
   EXPECT_EQ(float_above(0), 0);
   EXPECT_EQ(float_above(0.5), 0.5F);
   EXPECT_EQ(float_above(0.1), 0.1F);  // 0.1F is above 0.1
-  EXPECT_GT(float_above(0.3 + 1e-12), 0.3F);
+  EXPECT_GT(float_above(0.7), 0.7F);  // and 0.7F below 0.7
   EXPECT_EQ(float_above(1 + 1e-12), std::nextafter(1.0F, 2.0F));
 }
 
