@@ -64,19 +64,20 @@ std::uint64_t published_bytes(const AttributeLayout& layout) {
   return (layout.normals ? 12 : 0) + (colour + 3) / 4 * 4 + (layout.texcoords ? 8 : 0);
 }
 
-/// What tiles take of plain ones, about: the most that was seen with scans.
+/// What tiles take of plain ones, about: the most that was seen with exact scans of more than
+/// 20,000 vertices (docs/performance.md). Quantized ones take less.
 double published_ratio(const StorageConfig& storage) {
   switch (storage.compression) {
     case Compression::none:
       return 1;
     case Compression::zlib:
-      return 0.75;
+      return 0.79;
     case Compression::meshopt:
-      return 0.65;
+      return 0.66;
     case Compression::meshopt_zlib:
       break;
   }
-  return 0.6;
+  return 0.56;
 }
 
 JobSize job_size(const Config& config, const mesh_io::MeshDescription& mesh, const Tree& tree,
