@@ -39,7 +39,7 @@ std::uint64_t drawn_count(const TileRecord& record) {
 }
 
 /// 0 of nothing.
-double ratio(std::uint64_t a, std::uint64_t b) {
+double quotient(std::uint64_t a, std::uint64_t b) {
   return b == 0 ? 0 : static_cast<double>(a) / static_cast<double>(b);
 }
 
@@ -114,13 +114,13 @@ std::vector<LevelSummary> summarize_levels(const Tree& tree, std::span<const Til
 }
 
 double SizeSummary::bytes_per_vertex() const {
-  return ratio(bytes, vertices);
+  return quotient(bytes, vertices);
 }
 double SizeSummary::bytes_per_triangle() const {
-  return ratio(bytes, triangles);
+  return quotient(bytes, triangles);
 }
 double SizeSummary::raw_ratio() const {
-  return ratio(bytes, raw_bytes);
+  return quotient(bytes, raw_bytes);
 }
 
 SizeSummary summarize_sizes(std::span<const TileRecord> records, const AttributeLayout& layout) {

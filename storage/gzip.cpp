@@ -18,7 +18,7 @@ constexpr int kUnknownSystem = 255;
 /// A byte of deflate stands for at most 1032 (zlib's technical description).
 constexpr std::uint64_t kMostInflation = 1032;
 
-constexpr std::size_t kGlbHeaderBytes = 12;
+constexpr std::size_t kGlbHeadBytes = 12;
 
 const Bytef* input_of(std::span<const std::byte> bytes) {
   return reinterpret_cast<const Bytef*>(bytes.data());
@@ -112,7 +112,7 @@ std::vector<std::byte> gunzip_glb(std::span<const std::byte> bytes, const std::s
   if (bytes.size() > UINT32_MAX)
     throw Error(ErrorCode::corrupt, name + ": is too large for a tile");
   Inflater inflater(bytes, name);
-  std::array<std::byte, kGlbHeaderBytes> head;
+  std::array<std::byte, kGlbHeadBytes> head;
   inflater.read(head);
   const std::uint64_t size = load_little<std::uint32_t>(head.data() + 8);
   if (size < head.size() || size > kMostInflation * bytes.size()) {
