@@ -113,7 +113,11 @@ void make_hierarchy(const Config& config, const BuildPlan& build, Workshop& work
   auto& [mesh_scratch, tile_scratch, chunks, forest, journal] = workshop;
   PublishInput result;
   result.source = journal.source()->summary;
-  result.format = {result.source.attributes, {journal.source()->origin, config.up}};
+  result.format = {result.source.attributes,
+                   {journal.source()->origin, config.up},
+                   config.storage.compression,
+                   {}};
+  result.position_bits = config.storage.position_bits;
   result.transform = tileset_transform(config);
   result.licence = config.licence;
   result.source.unreferenced_vertices =

@@ -22,9 +22,9 @@ using Json = nlohmann::ordered_json;
 
 /// Configs have a few hundred bytes; more is some other file given by mistake.
 constexpr std::uint64_t kLargestConfigBytes = std::uint64_t{1} << 20;
-/// Sections are one level deep; a little more lets the message be about the key instead.
+/// Sections are two levels deep; a little more lets the message be about the key instead.
 constexpr std::size_t kDeepestNesting = 8;
-/// There are 16 keys; looking for one goes through those before it, and a MiB of them would take a
+/// There are 17 keys; looking for one goes through those before it, and a MiB of them would take a
 /// minute.
 constexpr std::size_t kMostKeys = 256;
 /// A found key or value is quoted up to so many bytes.
@@ -48,6 +48,12 @@ std::string with_key(const std::string& section, const std::string& key) {
 std::string leaf_of(std::string_view path) {
   const std::size_t dot = path.rfind('.');
   return std::string(dot == std::string_view::npos ? path : path.substr(dot + 1));
+}
+
+/// Where a dotted path leads in a document.
+Json::json_pointer pointer_to(std::string path) {
+  std::replace(path.begin(), path.end(), '.', '/');
+  return Json::json_pointer('/' + path);
 }
 
 std::string in_quotes(std::string_view text) {
@@ -204,12 +210,7 @@ class Draft {
       const std::string section = setting.path.substr(0, dot);
       if (!is_config_section(section))
         refuse_unknown("--set", setting.path);
-      Json& inner = document_[section];
-      if (inner.is_null())
-        inner = Json::object();
-      if (!inner.is_object())
-        refuse(origin_of(section), "expected an object, found " + described(inner));
-      inner[leaf_of(setting.path)] = override_value(setting);
+      open_section(section)[leaf_of(setting.path)] = override_value(setting);
     }
     overridden_.insert(setting.path);
   }
@@ -230,8 +231,12 @@ class Draft {
   }
 
   bool is_overridden(const std::string& path) const {
-    const std::string section = path.substr(0, path.find('.'));
-    return overridden_.contains(path) || overridden_.contains(section);
+    for (std::size_t end = path.find('.'); end != std::string::npos;
+         end = path.find('.', end + 1)) {
+      if (overridden_.contains(path.substr(0, end)))
+        return true;
+    }
+    return overridden_.contains(path);
   }
 
   /// For messages: "config.json: partition.vertices" or "--set partition.vertices".
@@ -248,6 +253,21 @@ class Draft {
   }
 
  private:
+  /// The object of that dotted path, made if it is not there.
+  Json& open_section(const std::string& path) {
+    Json* object = &document_;
+    for (std::size_t end = 0; end != std::string::npos;) {
+      const std::size_t begin = end == 0 ? 0 : end + 1;
+      end = path.find('.', begin);
+      object = &(*object)[path.substr(begin, end - begin)];
+      if (object->is_null())
+        *object = Json::object();
+      if (!object->is_object())
+        refuse(origin_of(path.substr(0, end)), "expected an object, found " + described(*object));
+    }
+    return *object;
+  }
+
   Json document_;
   std::string name_;
   std::set<std::string> overridden_;
@@ -376,11 +396,8 @@ Json resolved_json(const Config& config) {
   Json result = Json::object();
   for (const ConfigKey& key : config_keys()) {
     Json value = key.decides_result ? key.show(resolved) : Json();
-    if (value.is_null())
-      continue;
-    const std::size_t dot = key.path.find('.');
-    Json& place = dot == std::string::npos ? result : result[key.path.substr(0, dot)];
-    place[leaf_of(key.path)] = std::move(value);
+    if (!value.is_null())
+      result[pointer_to(key.path)] = std::move(value);
   }
   // "vertices" has a value even where "count" overrules it.
   if (resolved.partition.count)

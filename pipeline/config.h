@@ -8,6 +8,7 @@
 #include "hierarchy/frame.h"
 #include "partition/direction.h"
 #include "storage/file.h"
+#include "storage/tile_glb.h"
 
 #include <array>
 #include <cstdint>
@@ -74,11 +75,17 @@ struct OutlineConfig {
   friend bool operator==(const OutlineConfig&, const OutlineConfig&) = default;
 };
 
-enum class Compression { none };
-inline constexpr std::array kCompressions{NamedValue{"none", Compression::none}};
+using Compression = storage::Compression;
+inline constexpr std::array kCompressions{
+    NamedValue{storage::kCompressionNames[0], Compression::none},
+    NamedValue{storage::kCompressionNames[1], Compression::zlib},
+    NamedValue{storage::kCompressionNames[2], Compression::meshopt},
+    NamedValue{storage::kCompressionNames[3], Compression::meshopt_zlib}};
 
 struct StorageConfig {
   Compression compression = Compression::none;
+  std::optional<std::uint32_t>
+      position_bits;  ///< of the lattice that positions are rounded to, 8 to 24; not set: exact
   friend bool operator==(const StorageConfig&, const StorageConfig&) = default;
 };
 

@@ -200,6 +200,9 @@ std::vector<ConfigKey> make_config_keys() {
       deciding(choice(
           "storage.compression", kCompressions,
           [](auto& c) -> auto& { return c.storage.compression; })),
+      deciding(number(
+          "storage.positions.bits", {Lattice::kFewestBits, Lattice::kMostBits},
+          [](auto& c) -> auto& { return c.storage.position_bits; })),
       deciding(choice(
           "up", kUpAxes, [](auto& c) -> auto& { return c.up; })),
       deciding(number(

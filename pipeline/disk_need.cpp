@@ -262,7 +262,8 @@ DiskNeed predict_disk(const JobSize& job, const MemoryPlan& plan) {
                         published_bytes(job, all.simplified) - published_bytes(job, all.early);
   const double files = all.partitions.count + all.simplified.count + 3;
   const double temporary = std::max({partition, triangles, stored, leaves, simplify});
-  return {whole(temporary), whole(output),
+  // The room is for tiles that do not compress at all.
+  return {whole(temporary), whole(output * job.published_ratio),
           whole(std::max(temporary, simplify + output + files * kFileSlack))};
 }
 

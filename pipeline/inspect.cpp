@@ -43,6 +43,15 @@ std::span<const TileRecord> records_of(const HierarchyReader& reader, Level leve
   return {begin, end};
 }
 
+SizeSummary partition_sizes(const HierarchyReader& reader) {
+  return summarize_sizes(records_of(reader, reader.tree().depth()),
+                         reader.manifest().source.attributes);
+}
+
+SizeSummary all_sizes(const HierarchyReader& reader) {
+  return summarize_sizes(reader.records(), reader.manifest().source.attributes);
+}
+
 std::uint64_t tile_bytes(std::span<const LevelSummary> levels) {
   std::uint64_t sum = 0;
   for (const LevelSummary& level : levels)
@@ -167,6 +176,22 @@ std::string level_table(std::span<const LevelSummary> levels, std::optional<Leve
          "forced: without care for the surface, to reach the count\n";
 }
 
+std::string storage_text(const storage::Manifest& manifest) {
+  std::string text =
+      fmt::format("storage      {}, positions ", storage::name_of(manifest.compression));
+  if (!manifest.quantization)
+    return text + "exact\n";
+  const storage::Quantization& q = *manifest.quantization;
+  return text + fmt::format("on a lattice of {} bits, step {:.4g}, off by {:.4g} at most\n",
+                            q.lattice.bits, q.lattice.step, q.worst_rounding);
+}
+
+std::string sizes_text(std::string_view what, const SizeSummary& sizes) {
+  return fmt::format("{:.2f} bytes a vertex and {:.2f} a triangle in {}, {:.1f}% of raw",
+                     sizes.bytes_per_vertex(), sizes.bytes_per_triangle(), what,
+                     100 * sizes.raw_ratio());
+}
+
 std::string outline_text(const storage::Manifest& manifest) {
   const OutlineReport& o = manifest.outline;
   return fmt::format(
@@ -241,6 +266,16 @@ Json partitions_json(const LevelSummary& last, const CompactnessSummary& compact
           {"compactness_p95", compactness.p95}};
 }
 
+Json storage_json(const storage::Manifest& manifest) {
+  Json json = {{"compression", storage::name_of(manifest.compression)}, {"positions", nullptr}};
+  if (const auto& q = manifest.quantization) {
+    json["positions"] = {{"bits", q->lattice.bits},
+                         {"step", q->lattice.step},
+                         {"worst_rounding", q->worst_rounding}};
+  }
+  return json;
+}
+
 Json outline_json(const storage::Manifest& manifest) {
   const OutlineReport& o = manifest.outline;
   return {{"bytes", manifest.outline_bytes},      {"sector_level", o.sector_level},
@@ -277,6 +312,9 @@ std::string inspect_text(storage::FileSystem& files, const std::filesystem::path
                                  storage::kFormatVersion, shown(manifest.generator));
   text += source_text(manifest);
   text += fmt::format("parameters   {}\n", parameters);
+  text += storage_text(manifest);
+  text += fmt::format("sizes        {}; {}\n", sizes_text("partitions", partition_sizes(reader)),
+                      sizes_text("all tiles", all_sizes(reader)));
   text += partitions_text(levels.back(), summarize_compactness(reader.tree(), reader.records()));
   text += outline_text(manifest);
   text += tileset_text(manifest);
@@ -289,16 +327,20 @@ Json inspect_json(storage::FileSystem& files, const std::filesystem::path& direc
   const HierarchyReader reader = open_checked(files, directory, options);
   const storage::Manifest& manifest = reader.manifest();
   const auto levels = summarize_levels(reader.tree(), reader.records());
-  Json json = {{"generator", manifest.generator},
-               {"source", source_json(manifest)},
-               {"parameters", manifest.config},
-               {"partitions", partitions_json(levels.back(), summarize_compactness(
-                                                                 reader.tree(), reader.records()))},
-               {"levels", Json::array()},
-               {"outline", outline_json(manifest)},
-               {"tileset", tileset_json(manifest)},
-               {"tile_bytes", tile_bytes(levels)},
-               {"total_bytes", directory_bytes(files, reader)}};
+  Json json = {
+      {"generator", manifest.generator},
+      {"source", source_json(manifest)},
+      {"parameters", manifest.config},
+      {"partitions",
+       partitions_json(levels.back(), summarize_compactness(reader.tree(), reader.records()))},
+      {"levels", Json::array()},
+      {"storage", storage_json(manifest)},
+      {"sizes",
+       {{"partitions", to_json(partition_sizes(reader))}, {"all", to_json(all_sizes(reader))}}},
+      {"outline", outline_json(manifest)},
+      {"tileset", tileset_json(manifest)},
+      {"tile_bytes", tile_bytes(levels)},
+      {"total_bytes", directory_bytes(files, reader)}};
   for (const LevelSummary& s : levels) {
     if (!options.level || s.level == *options.level)
       json["levels"].push_back(to_json(s));

@@ -1,10 +1,12 @@
 #include "pipeline/publish_stage.h"
 
 #include "hierarchy/bounds.h"
+#include "hierarchy/lattice.h"
 #include "partition/compactness.h"
 #include "pipeline/parallel.h"
 #include "pipeline/summary.h"
 #include "pipeline/tile_room.h"
+#include "pipeline/vertex_order.h"
 #include "storage/hash.h"
 #include "storage/index.h"
 #include "storage/layout.h"
@@ -13,6 +15,7 @@
 #include "storage/tileset.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <span>
@@ -43,6 +46,47 @@ bool draws(const Tree& tree, NodeId node, const TileMesh& mesh, const Triangle& 
   });
 }
 
+/// The lattice over the input's bounds as they are stored, and how far positions go to it: all
+/// tiles are looked at, since simplified ones may have vertices beyond the input's bounds.
+storage::Quantization quantize(const Forest& forest, std::span<const NodeId> nodes,
+                               const PublishInput& input, std::size_t in_flight,
+                               const CancelToken& cancel) {
+  const BoundsD& bounds = input.source.bounds;
+  const Vec3d& origin = input.format.frame.origin;
+  storage::Quantization result;
+  result.lattice = make_lattice({to_float(bounds.min - origin), to_float(bounds.max - origin)},
+                                static_cast<int>(*input.position_bits));
+  ordered_for(
+      nodes.size(), in_flight, cancel,
+      [&](std::size_t i) {
+        BuildTile tile = forest.load(nodes[i]);
+        return round_to(result.lattice, tile.mesh.vertices.positions);
+      },
+      [&](std::size_t, double worst) {
+        result.worst_rounding = std::max(result.worst_rounding, worst);
+      });
+  return result;
+}
+
+/// A bound of exact positions as one of rounded ones. Where rounding is nearly all of it, the
+/// levels below still tell it from the children's.
+float with_rounding(float bound, double rounding, int levels_below) {
+  float sum = float_above(bound + rounding);
+  for (int i = 0; i < levels_below; ++i)
+    sum = std::nextafter(sum, std::numeric_limits<float>::infinity());
+  return sum;
+}
+
+/// What writes tiles.
+struct TileWriter {
+  const Forest& forest;
+  const PublishInput& input;
+  const storage::TileFormat format;
+  const std::optional<storage::Quantization> quantization;
+  const std::filesystem::path& directory;
+  storage::FileSystem& files;
+};
+
 TileRecord describe(const Tree& tree, NodeId node, const BuildTile& tile, const TileFacts& facts,
                     std::uint32_t asked) {
   const TileMesh& mesh = tile.mesh;
@@ -70,15 +114,24 @@ TileRecord describe(const Tree& tree, NodeId node, const BuildTile& tile, const 
 }
 
 /// Writes one tile, returns its index entry.
-TileRecord write_tile(const Forest& forest, NodeId node, const PublishInput& input,
-                      const std::filesystem::path& directory, storage::FileSystem& files) {
-  const BuildTile tile = forest.load(node);
-  TileRecord record = describe(forest.tree(), node, tile, forest.facts(node), input.asked_vertices);
-  const std::vector<std::uint16_t> parent_map = forest.published_parent_map(node);
+TileRecord write_tile(const TileWriter& to, NodeId node) {
+  const Forest& forest = to.forest;
+  const Tree& tree = forest.tree();
+  BuildTile tile = forest.load(node);
+  if (to.quantization)
+    round_to(to.quantization->lattice, tile.mesh.vertices.positions);
+  std::vector<std::uint16_t> parent_map = forest.published_parent_map(node);
+  if (tree.is_partition(node))
+    order_inner_vertices(tile.mesh, parent_map);
+  TileRecord record = describe(tree, node, tile, forest.facts(node), to.input.asked_vertices);
+  if (to.quantization) {
+    record.bound = with_rounding(record.bound, to.quantization->worst_rounding,
+                                 raw(tree.depth()) - raw(node.level));
+  }
   const std::vector<std::uint16_t> chains = forest.chains(node, tile.mesh.ghosts);
-  const std::vector<std::byte> bytes = storage::encode_tile(
-      {node, tile.mesh, record.bounds, parent_map, chains}, forest.tree(), input.format);
-  const auto file = files.create(storage::tile_path(directory, node));
+  const std::vector<std::byte> bytes =
+      storage::encode_tile({node, tile.mesh, record.bounds, parent_map, chains}, tree, to.format);
+  const auto file = to.files.create(storage::tile_path(to.directory, node));
   file->write_at(0, bytes);
   file->start_sync();
   record.file_bytes = bytes.size();
@@ -105,13 +158,22 @@ void publish(Forest& forest, BuildJournal& journal, const PublishInput& input,
       left.push_back(i);
   }
   progress.stage("publish", left.size(), "tiles");
+  const bool packed = input.format.compression != Compression::none;
   std::uint64_t heaviest = 0;
   for (int l = 0; l <= raw(tree.depth()); ++l)
-    heaviest = std::max(heaviest, heaviest_read(forest, static_cast<Level>(l)));
+    heaviest = std::max(heaviest, packed ? heaviest_packed(forest, static_cast<Level>(l))
+                                         : heaviest_read(forest, static_cast<Level>(l)));
   const TileRoom room = room_for(forest, plan, heaviest);
+  std::optional<storage::Quantization> quantization;
+  storage::TileFormat format = input.format;
+  if (input.position_bits) {
+    quantization = quantize(forest, nodes, input, room.in_flight(), cancel);
+    format.lattice = quantization->lattice;
+  }
+  const TileWriter writer{forest, input, format, quantization, directory, files};
   ordered_for(
       left.size(), room.in_flight(), cancel,
-      [&](std::size_t i) { return write_tile(forest, nodes[left[i]], input, directory, files); },
+      [&](std::size_t i) { return write_tile(writer, nodes[left[i]]); },
       [&](std::size_t i, const TileRecord& record) {
         journal.note_published(record);
         records[left[i]] = record;
@@ -132,6 +194,8 @@ void publish(Forest& forest, BuildJournal& journal, const PublishInput& input,
   manifest.transform = input.transform;
   manifest.licence = input.licence;
   manifest.partition_count = tree.partition_count();
+  manifest.compression = input.format.compression;
+  manifest.quantization = quantization;
   manifest.config = input.config;
   manifest.index_bytes = index.size();
   manifest.index_checksum = storage::checksum(index);

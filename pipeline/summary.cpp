@@ -1,6 +1,7 @@
 #include "pipeline/summary.h"
 
 #include "pipeline/cut.h"
+#include "storage/tile_plan.h"
 
 #include <algorithm>
 #include <cassert>
@@ -35,6 +36,11 @@ std::uint64_t triangle_count(const TileRecord& record) {
 
 std::uint64_t drawn_count(const TileRecord& record) {
   return std::uint64_t{record.interior_count} + record.drawn_border_count;
+}
+
+/// 0 of nothing.
+double quotient(std::uint64_t a, std::uint64_t b) {
+  return b == 0 ? 0 : static_cast<double>(a) / static_cast<double>(b);
 }
 
 LevelSummary summarize(Level level, Level last, std::span<const TileRecord> records) {
@@ -105,6 +111,44 @@ std::vector<LevelSummary> summarize_levels(const Tree& tree, std::span<const Til
     begin = end;
   }
   return levels;
+}
+
+double SizeSummary::bytes_per_vertex() const {
+  return quotient(bytes, vertices);
+}
+double SizeSummary::bytes_per_triangle() const {
+  return quotient(bytes, triangles);
+}
+double SizeSummary::raw_ratio() const {
+  return quotient(bytes, raw_bytes);
+}
+
+SizeSummary summarize_sizes(std::span<const TileRecord> records, const AttributeLayout& layout) {
+  using storage::Part;
+  SizeSummary sizes;
+  for (const TileRecord& record : records) {
+    storage::TileShape shape;
+    shape.own = record.own_count;
+    shape.ghosts = record.ghost_count;
+    shape.interior = record.interior_count;
+    shape.border = record.border_count;
+    const storage::TilePlan plan(shape, layout);
+    for (const Part part :
+         {Part::position, Part::normal, Part::colour, Part::texcoord, Part::interior, Part::border})
+      sizes.raw_bytes += plan[part].bytes();
+    sizes.bytes += record.file_bytes;
+    sizes.vertices += record.own_count;
+    sizes.triangles += drawn_count(record);
+  }
+  return sizes;
+}
+
+nlohmann::ordered_json to_json(const SizeSummary& s) {
+  return {{"bytes", s.bytes},
+          {"raw_bytes", s.raw_bytes},
+          {"bytes_per_vertex", s.bytes_per_vertex()},
+          {"bytes_per_triangle", s.bytes_per_triangle()},
+          {"raw_ratio", s.raw_ratio()}};
 }
 
 CompactnessSummary summarize_compactness(const Tree& tree, std::span<const TileRecord> records) {

@@ -50,6 +50,22 @@ struct LevelSummary {
 /// O(tiles).
 std::vector<LevelSummary> summarize_levels(const Tree& tree, std::span<const TileRecord> records);
 
+/// What tiles take, against floats and indices as they are.
+struct SizeSummary {
+  std::uint64_t bytes = 0;      ///< of the files
+  std::uint64_t raw_bytes = 0;  ///< positions as f32, attributes, indices of 16 or 32 bits, plain
+  std::uint64_t vertices = 0;   ///< own
+  std::uint64_t triangles = 0;  ///< each once
+
+  double bytes_per_vertex() const;
+  double bytes_per_triangle() const;
+  double raw_ratio() const;  ///< bytes / raw_bytes
+};
+
+/// Of these tiles together. Ghosts, and border triangles that other tiles draw, are in both numbers
+/// of bytes. O(tiles).
+SizeSummary summarize_sizes(std::span<const TileRecord> records, const AttributeLayout& layout);
+
 /// How compact the partitions are: p^2 / (4 pi w), 1 for a flat disc, more for ragged borders.
 struct CompactnessSummary {
   std::uint32_t count = 0;  ///< partitions that have an area; the others have no compactness
@@ -62,6 +78,8 @@ CompactnessSummary summarize_compactness(const Tree& tree, std::span<const TileR
 
 /// One object per level; the keys are those of `inspect --json` (README).
 nlohmann::ordered_json to_json(const LevelSummary& summary);
+
+nlohmann::ordered_json to_json(const SizeSummary& summary);
 
 /// One object per tile.
 nlohmann::ordered_json to_json(const TileRecord& record);

@@ -28,6 +28,13 @@ constexpr std::uint64_t kMostBetweenReleases = 64;
                           rounded_size_text(needed_bytes), exact_size_text(more * kMiB)));
 }
 
+std::uint64_t most_triangle_bytes(const Forest& forest, Level level) {
+  std::uint64_t most = 0;
+  for (std::uint32_t i = 0; i < forest.tree().node_count(level); ++i)
+    most = std::max(most, forest.triangle_bytes({level, i}));
+  return most;
+}
+
 }  // namespace
 
 TileRoom::TileRoom(const MemoryPlan& plan, storage::MemoryPool& pool, std::uint64_t heaviest_bytes)
@@ -56,10 +63,11 @@ TileRoom room_for(Forest& forest, const MemoryPlan& plan, std::uint64_t heaviest
 }
 
 std::uint64_t heaviest_read(const Forest& forest, Level level) {
-  std::uint64_t most = 0;
-  for (std::uint32_t i = 0; i < forest.tree().node_count(level); ++i)
-    most = std::max(most, forest.triangle_bytes({level, i}));
-  return most * TileRoom::kRead;
+  return most_triangle_bytes(forest, level) * TileRoom::kRead;
+}
+
+std::uint64_t heaviest_packed(const Forest& forest, Level level) {
+  return most_triangle_bytes(forest, level) * TileRoom::kPacked;
 }
 
 std::uint64_t heaviest_contracted(const Forest& forest, Level level) {

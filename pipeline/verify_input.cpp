@@ -6,6 +6,7 @@
 // sums are of two independent 64-bit hashes: two different multisets have the same sums with a
 // chance of 2^-128. Nothing is kept but one 64-bit hash per input vertex, in a spool.
 #include "hierarchy/error.h"
+#include "hierarchy/lattice.h"
 #include "mesh_io/mesh_source.h"
 #include "partition/renumber.h"
 #include "pipeline/cut.h"
@@ -123,7 +124,7 @@ MeshSums sum_partitions(const VerifyJob& job) {
   return sums;
 }
 
-/// Positions as the hierarchy stores them: float, relative to its origin.
+/// Positions as the hierarchy stores them but for rounding: float, relative to its origin.
 std::vector<Vec3f> stored_positions(const mesh_io::VertexBlock& block, Vec3d origin) {
   std::vector<Vec3f> positions;
   for (const Vec3d& p : block.exact)
@@ -134,14 +135,26 @@ std::vector<Vec3f> stored_positions(const mesh_io::VertexBlock& block, Vec3d ori
   return positions;
 }
 
-MeshSums sum_input(const VerifyJob& job, mesh_io::MeshSource& source) {
+/// What the input comes to.
+struct InputSums {
+  MeshSums mesh;
+  double worst_rounding = 0;  ///< to the hierarchy's lattice, if it has one
+};
+
+InputSums sum_input(const VerifyJob& job, mesh_io::MeshSource& source) {
   const auto channels = static_cast<std::size_t>(source.description().attributes.channels());
   const Vec3d origin = job.reader.manifest().origin;
-  MeshSums sums;
+  const auto& quantization = job.reader.manifest().quantization;
+  InputSums result;
+  MeshSums& sums = result.mesh;
   storage::RecordSpool<std::uint64_t> table(job.scratch, kSpoolBlockBytes);
   source.read_vertices([&](const mesh_io::VertexBlock& block) {
     job.cancel.check();
-    const std::vector<Vec3f> positions = stored_positions(block, origin);
+    std::vector<Vec3f> positions = stored_positions(block, origin);
+    if (quantization) {
+      const double worst = round_to(quantization->lattice, positions);
+      result.worst_rounding = std::max(result.worst_rounding, worst);
+    }
     std::vector<std::uint64_t> hashes;
     for (std::size_t i = 0; i < positions.size(); ++i) {
       const auto attributes = block.attributes.subspan(i * channels, channels);
@@ -173,7 +186,7 @@ MeshSums sum_input(const VerifyJob& job, mesh_io::MeshSource& source) {
       add();
     }
   }
-  return sums;
+  return result;
 }
 
 /// The input file's name starts the problem.
@@ -235,14 +248,21 @@ void verify_input(const VerifyJob& job) {
     problems.add("has other vertex attributes than the mesh the hierarchy was made of");
     return;
   }
-  const MeshSums input = sum_input(job, *source);
+  const InputSums sums = sum_input(job, *source);
+  const MeshSums& input = sums.mesh;
   problems.compare("vertices", expected.vertices, input.vertices.count);
   problems.compare("triangles", expected.triangles, input.triangles.count);
   const MeshSums partitions = sum_partitions(job);
   compare_sums(input, partitions, problems);
+  const auto& quantization = job.reader.manifest().quantization;
+  if (quantization && sums.worst_rounding > quantization->worst_rounding) {
+    problems.add(fmt::format("a vertex is {} from its place on the lattice, more than the {} told",
+                             sums.worst_rounding, quantization->worst_rounding));
+  }
   job.checks.push_back(fmt::format(
-      "input: {} vertices and {} triangles compared with those of the partitions, bit for bit",
-      input.vertices.count, input.triangles.count));
+      "input: {} vertices{} and {} triangles compared with those of the partitions, bit for bit",
+      input.vertices.count, quantization ? ", rounded to the lattice," : "",
+      input.triangles.count));
 }
 
 }  // namespace meshhier::pipeline

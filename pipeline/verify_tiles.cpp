@@ -1,3 +1,4 @@
+#include "hierarchy/lattice.h"
 #include "pipeline/cut.h"
 #include "pipeline/verify_parts.h"
 #include "storage/layout.h"
@@ -79,8 +80,11 @@ void check_errors(const VerifyJob& job, const TileRecord& record, const TileProb
   problems.require(proper(record.error) && proper(record.bound),
                    "error {} and bound {} must be finite and not negative", record.error,
                    record.bound);
-  problems.require(!partition || (record.error == 0 && record.bound == 0),
-                   "a partition has error {} and bound {}, expected 0", record.error, record.bound);
+  const auto& quantization = job.reader.manifest().quantization;
+  const float rounding = quantization ? float_above(quantization->worst_rounding) : 0;
+  problems.require(!partition || (record.error == 0 && record.bound == rounding),
+                   "a partition has error {} and bound {}, expected 0 and {}", record.error,
+                   record.bound, rounding);
   if (record.node.level == Level{})
     return;
   const TileRecord& parent = job.reader.record(parent_tile(job.tree(), record.node));

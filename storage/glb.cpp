@@ -190,13 +190,18 @@ const Json& require_extension(const Json& document, const char* extension, unsig
   return found;
 }
 
-Json mesh_node(const Frame& frame) {
+Json mesh_node(const Frame& frame, double scale) {
   const Vec3d& o = frame.origin;
+  const double s = scale;
   Json node = {{"mesh", 0}};
-  if (frame.up == UpAxis::z)
-    node["matrix"] = {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, o.x, o.z, -o.y, 1};
-  else if (o != Vec3d{})
+  if (frame.up == UpAxis::z) {
+    node["matrix"] = {s, 0, 0, 0, 0, 0, -s, 0, 0, s, 0, 0, o.x, o.z, -o.y, 1};
+    return node;
+  }
+  if (o != Vec3d{})
     node["translation"] = {o.x, o.y, o.z};
+  if (scale != 1)
+    node["scale"] = {scale, scale, scale};
   return node;
 }
 

@@ -102,9 +102,9 @@ const nlohmann::ordered_json& require_extension(const nlohmann::ordered_json& do
                                                 const char* extension, unsigned version,
                                                 const std::string& name);
 
-/// `{"mesh": 0}`, with a translation if the origin is not zero, or with the matrix that turns z-up
-/// positions.
-nlohmann::ordered_json mesh_node(const Frame& frame);
+/// `{"mesh": 0}`, with a translation if the origin is not zero and a scale of all axes if it is not
+/// 1; or with the matrix that also turns z-up positions.
+nlohmann::ordered_json mesh_node(const Frame& frame, double scale = 1);
 
 /// The frame that node 0 of a document has; that of no node if there is none. Throws Error(corrupt)
 /// that starts with `name` if it has none that mesh_node() writes.

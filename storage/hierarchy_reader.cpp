@@ -77,6 +77,14 @@ const char* difference(const TileMesh& mesh, const TileRecord& record) {
   return nullptr;
 }
 
+TileFormat format_of(const Manifest& manifest) {
+  TileFormat format{
+      manifest.source.attributes, {manifest.origin, manifest.up}, manifest.compression, {}};
+  if (manifest.quantization)
+    format.lattice = manifest.quantization->lattice;
+  return format;
+}
+
 }  // namespace
 
 HierarchyReader::HierarchyReader(FileSystem& files, std::filesystem::path directory)
@@ -84,7 +92,7 @@ HierarchyReader::HierarchyReader(FileSystem& files, std::filesystem::path direct
       directory_(std::move(directory)),
       manifest_(load_manifest(files_, directory_)),
       tree_(manifest_.source.vertices, manifest_.partition_count),
-      format_{manifest_.source.attributes, {manifest_.origin, manifest_.up}},
+      format_(format_of(manifest_)),
       records_(load_index(files_, directory_, manifest_, tree_)) {}
 
 const TileRecord& HierarchyReader::record(NodeId node) const {

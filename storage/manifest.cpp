@@ -5,6 +5,7 @@
 #include "storage/hash.h"
 #include "storage/layout.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -12,6 +13,7 @@
 #include <string_view>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace meshhier::storage {
 namespace {
@@ -54,6 +56,17 @@ Json attributes_json(const AttributeLayout& attributes) {
           {"texcoords", attributes.texcoords}};
 }
 
+Json storage_json(const Manifest& manifest) {
+  Json storage = {{"compression", name_of(manifest.compression)}, {"positions", nullptr}};
+  if (const auto& quantization = manifest.quantization) {
+    storage["positions"] = {{"bits", quantization->lattice.bits},
+                            {"step", quantization->lattice.step},
+                            {"corner", numbers(quantization->lattice.corner)},
+                            {"worst_rounding", quantization->worst_rounding}};
+  }
+  return storage;
+}
+
 Json outline_json(const Manifest& manifest) {
   const OutlineReport& outline = manifest.outline;
   return {{"file", outline_path({}).string()},
@@ -77,6 +90,7 @@ Json manifest_json(const Manifest& manifest) {
   document["transform"] = manifest.transform ? Json(*manifest.transform) : Json();
   document["licence"] = manifest.licence;
   document["partitions"] = manifest.partition_count;
+  document["storage"] = storage_json(manifest);
   document["config"] = manifest.config;
   document["index"] = {{"file", index_path({}).string()},
                        {"bytes", manifest.index_bytes},
@@ -200,6 +214,30 @@ class Object {
   std::string path_;
   const std::string& name_;
 };
+
+Compression read_compression(const Object& object) {
+  const std::string name = object.text("compression");
+  const auto found = std::find(kCompressionNames.begin(), kCompressionNames.end(), name);
+  if (found == kCompressionNames.end())
+    object.wrong("compression", fmt::format("one of {}", fmt::join(kCompressionNames, ", ")));
+  return static_cast<Compression>(found - kCompressionNames.begin());
+}
+
+std::optional<Quantization> read_quantization(const Object& object) {
+  if (object.at("positions").is_null())
+    return std::nullopt;
+  const Object positions = object.object("positions");
+  Quantization quantization;
+  quantization.lattice.bits = static_cast<int>(positions.count("bits", Lattice::kMostBits));
+  quantization.lattice.step = positions.number("step");
+  quantization.lattice.corner = positions.point("corner");
+  quantization.worst_rounding = positions.number("worst_rounding");
+  if (!quantization.lattice.is_sound())
+    object.wrong("positions", "a lattice of 8 to 24 bits, its step a power of two");
+  if (quantization.worst_rounding < 0)
+    positions.wrong("worst_rounding", "at least 0");
+  return quantization;
+}
 
 AttributeLayout read_attributes(const Object& object) {
   AttributeLayout attributes;
@@ -338,6 +376,8 @@ Manifest parse_manifest(const std::string& text, const std::string& name) {
       static_cast<std::uint32_t>(object.count("partitions", manifest.source.vertices));
   if (manifest.partition_count == 0)
     object.wrong("partitions", "at least 1");
+  manifest.compression = read_compression(object.object("storage"));
+  manifest.quantization = read_quantization(object.object("storage"));
   manifest.config = object.at("config");
   if (!manifest.config.is_object())
     object.wrong("config", "an object");

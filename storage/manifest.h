@@ -5,6 +5,7 @@
 #include "hierarchy/outline.h"
 #include "hierarchy/published.h"
 #include "hierarchy/vec.h"
+#include "storage/tile_glb.h"
 
 #include <cstdint>
 #include <optional>
@@ -17,6 +18,13 @@ namespace meshhier::storage {
 
 inline constexpr int kFormatVersion = 4;
 
+/// What rounding to a lattice did.
+struct Quantization {
+  Lattice lattice;
+  double worst_rounding =
+      0;  ///< the largest distance that a position of any tile went, input units
+};
+
 struct Manifest {
   std::string generator;  ///< "meshhier 0.1.0"
   SourceSummary source;
@@ -26,6 +34,8 @@ struct Manifest {
   std::optional<Transform> transform;
   std::string licence;  ///< may be empty
   std::uint32_t partition_count = 0;
+  Compression compression = Compression::none;
+  std::optional<Quantization> quantization;  ///< none: positions are exact
   /// An object: the resolved config, what decides the result (not budget, threads, paths).
   nlohmann::ordered_json config;
   std::uint64_t index_bytes = 0;

@@ -2,6 +2,8 @@
 
 #include "hierarchy/error.h"
 #include "storage/glb.h"
+#include "storage/gzip.h"
+#include "storage/tile_pack.h"
 #include "storage/tile_plan.h"
 
 #include <algorithm>
@@ -90,6 +92,8 @@ class Writer {
   void put_positions(std::span<const Vec3f> positions) {
     static_assert(sizeof(Vec3f) == 3 * sizeof(float));
     const Section& section = plan_[Part::position];
+    if (plan_.has_short_positions())
+      return put_numbers(section, positions);
     if constexpr (std::endian::native == std::endian::little) {
       std::memcpy(at(section), positions.data(), positions.size_bytes());
     } else {
@@ -134,6 +138,14 @@ class Writer {
   template <Scalar T>
   void put(const Section& section, std::size_t element, std::size_t component, T value) {
     store_little(value, at(section) + element * section.stride + component * sizeof(T));
+  }
+
+  void put_numbers(const Section& section, std::span<const Vec3f> positions) {
+    for (std::size_t v = 0; v < positions.size(); ++v) {
+      const Vec3<std::uint32_t> n = plan_.lattice()->numbers_of(positions[v]);
+      for (int axis = 0; axis < 3; ++axis)
+        put(section, v, static_cast<std::size_t>(axis), static_cast<std::uint16_t>(n[axis]));
+    }
   }
 
   template <class Index>
@@ -194,12 +206,13 @@ class Reader {
     const Section& section = plan_[Part::position];
     std::vector<Vec3f> positions(section.count);
     for (std::size_t v = 0; v < positions.size(); ++v) {
-      positions[v] = {get<float>(section, v, 0), get<float>(section, v, 1),
-                      get<float>(section, v, 2)};
+      positions[v] = position(section, v);
       if (!std::isfinite(positions[v].x) || !std::isfinite(positions[v].y) ||
           !std::isfinite(positions[v].z)) {
         fail(fmt::format("position of vertex {} is not finite", v));
       }
+      if (plan_.lattice() && plan_.lattice()->nearest(positions[v]) != positions[v])
+        fail(fmt::format("position of vertex {} is not on the lattice", v));
     }
     return positions;
   }
@@ -217,8 +230,9 @@ class Reader {
     return attributes;
   }
 
-  /// Canonical, ascending triangles of which every corner is a vertex.
-  std::vector<Triangle> triangles(Part part) const {
+  /// Canonical, ascending triangles of which every corner is a vertex. `is_packed`: as the codec
+  /// gave them, turned and in another order; else they must be so in the file.
+  std::vector<Triangle> triangles(Part part, bool is_packed) const {
     const Section& section = plan_[part];
     std::vector<Triangle> triangles(section.count / 3);
     for (std::size_t t = 0; t < triangles.size(); ++t) {
@@ -232,8 +246,13 @@ class Reader {
         }
         triangles[t][c] = static_cast<TileVertex>(index);
       }
-      check_triangle(part, t, triangles);
+      if (is_packed)
+        triangles[t] = canonical(triangles[t]);
     }
+    if (is_packed)
+      std::sort(triangles.begin(), triangles.end());
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+      check_triangle(part, t, triangles);
     return triangles;
   }
 
@@ -295,6 +314,15 @@ class Reader {
       tile.mesh.ghosts.push_back({neighbour.index, chain[0]});
       tile.chains.add(chain);
     }
+  }
+
+  Vec3f position(const Section& section, std::size_t v) const {
+    if (!plan_.has_short_positions()) {
+      return {get<float>(section, v, 0), get<float>(section, v, 1), get<float>(section, v, 2)};
+    }
+    return plan_.lattice()->point({get<std::uint16_t>(section, v, 0),
+                                   get<std::uint16_t>(section, v, 1),
+                                   get<std::uint16_t>(section, v, 2)});
   }
 
   /// `require_finite`: of what viewers read; raw values may be anything.
@@ -378,7 +406,48 @@ TileShape read_shape(const Json& extension, NodeId node, const Tree& tree, const
   return shape;
 }
 
+PublishedTile decode_glb(std::span<const std::byte> bytes, NodeId node, const Tree& tree,
+                         const TileFormat& format, const std::string& name) {
+  const GlbView glb = split_glb(bytes, name);
+  const Json document = parse_json(glb.json, name);
+  const Json& extension = require_extension(document, kTileExtension, kTileExtensionVersion, name);
+  const TilePlan plan(read_shape(extension, node, tree, format, name), format.attributes,
+                      format.lattice);
+  const bool is_packed = has_packed_sections(format.compression);
+  if (!is_packed && plan.bytes() != glb.bin.size()) {
+    throw Error(ErrorCode::corrupt, fmt::format("{}: the BIN chunk has {} bytes, expected {}", name,
+                                                glb.bin.size(), plan.bytes()));
+  }
+  Packing packing;
+  std::vector<std::byte> unpacked;
+  if (is_packed) {
+    packing = read_packing(document, plan, glb.bin, name);
+    unpacked = unpack_bin(plan, packing, glb.bin, name);
+  }
+
+  const Reader reader(plan, is_packed ? unpacked : glb.bin, tree, name);
+  PublishedTile tile;
+  tile.node = node;
+  tile.mesh.vertices.positions = reader.positions();
+  const Bounds bounds = bounds_of(tile.mesh.vertices.positions);
+  require_same_json(plan.document(bounds, format.frame, is_packed ? &packing : nullptr), document,
+                    name);
+  tile.mesh.vertices.attributes = reader.attributes();
+  tile.mesh.vertices.channels = format.attributes.channels();
+  tile.mesh.own_count = static_cast<std::uint32_t>(plan.shape().own);
+  tile.mesh.rim_count = static_cast<std::uint32_t>(plan.shape().rim);
+  tile.mesh.interior = reader.triangles(Part::interior, is_packed);
+  tile.mesh.border = reader.triangles(Part::border, is_packed);
+  tile.parent_map = reader.parent_map();
+  reader.read_ghosts(tile);
+  return tile;
+}
+
 }  // namespace
+
+std::string_view name_of(Compression compression) {
+  return kCompressionNames[static_cast<std::size_t>(compression)];
+}
 
 bool is_unit_normal(Vec3f normal) {
   constexpr double kTolerance = 0.001;  // the validator's is 0.00674, in single precision
@@ -409,10 +478,13 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
   for (std::size_t i = 0; tree.is_partition(tile.node) && i < groups.size(); ++i) {
     shape.raw[i] = differs(shown, mesh.vertices.attributes, groups[i], mesh.vertices.channels);
   }
-  const TilePlan plan(shape, format.attributes);
+  const TilePlan plan(shape, format.attributes, format.lattice);
 
+  // A GLB if it may stay as it is, else the BIN chunk alone.
+  const bool packed = has_packed_sections(format.compression);
   std::vector<std::byte> bytes =
-      begin_glb(plan.document(tile.bounds, format.frame).dump(), plan.bytes());
+      packed ? std::vector<std::byte>(plan.bytes())
+             : begin_glb(plan.document(tile.bounds, format.frame).dump(), plan.bytes());
   Writer writer(plan, std::span(bytes).last(plan.bytes()));
   writer.put_positions(mesh.vertices.positions);
   for (std::size_t i = 0; i < groups.size(); ++i) {
@@ -425,7 +497,11 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
   writer.put_list<std::uint32_t>(Part::neighbours, neighbours.tiles);
   writer.put_list<std::uint32_t>(Part::ghost_starts, neighbours.starts);
   writer.put_list<std::uint16_t>(Part::ghost_chains, tile.chains);
-  return bytes;
+  if (packed) {
+    const PackedBin bin = pack_bin(plan, bytes);
+    bytes = join_glb(plan.document(tile.bounds, format.frame, &bin.packing).dump(), bin.bin);
+  }
+  return is_gzipped(format.compression) ? gzip(bytes) : bytes;
 }
 
 std::vector<std::byte> encode_tile(const PublishedTile& tile, const Tree& tree,
@@ -439,30 +515,9 @@ std::vector<std::byte> encode_tile(const PublishedTile& tile, const Tree& tree,
 PublishedTile decode_tile(std::span<const std::byte> bytes, NodeId node, const Tree& tree,
                           const TileFormat& format, const std::string& name) {
   assert(tree.contains(node));
-  const GlbView glb = split_glb(bytes, name);
-  const Json document = parse_json(glb.json, name);
-  const Json& extension = require_extension(document, kTileExtension, kTileExtensionVersion, name);
-  const TilePlan plan(read_shape(extension, node, tree, format, name), format.attributes);
-  if (plan.bytes() != glb.bin.size()) {
-    throw Error(ErrorCode::corrupt, fmt::format("{}: the BIN chunk has {} bytes, expected {}", name,
-                                                glb.bin.size(), plan.bytes()));
-  }
-
-  const Reader reader(plan, glb.bin, tree, name);
-  PublishedTile tile;
-  tile.node = node;
-  tile.mesh.vertices.positions = reader.positions();
-  const Bounds bounds = bounds_of(tile.mesh.vertices.positions);
-  require_same_json(plan.document(bounds, format.frame), document, name);
-  tile.mesh.vertices.attributes = reader.attributes();
-  tile.mesh.vertices.channels = format.attributes.channels();
-  tile.mesh.own_count = static_cast<std::uint32_t>(plan.shape().own);
-  tile.mesh.rim_count = static_cast<std::uint32_t>(plan.shape().rim);
-  tile.mesh.interior = reader.triangles(Part::interior);
-  tile.mesh.border = reader.triangles(Part::border);
-  tile.parent_map = reader.parent_map();
-  reader.read_ghosts(tile);
-  return tile;
+  if (!is_gzipped(format.compression))
+    return decode_glb(bytes, node, tree, format, name);
+  return decode_glb(gunzip_glb(bytes, name), node, tree, format, name);
 }
 
 }  // namespace meshhier::storage

@@ -4,13 +4,17 @@
 #include "hierarchy/attributes.h"
 #include "hierarchy/bounds.h"
 #include "hierarchy/frame.h"
+#include "hierarchy/lattice.h"
 #include "hierarchy/published.h"
 #include "hierarchy/tree.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace meshhier::storage {
@@ -18,10 +22,32 @@ namespace meshhier::storage {
 /// Own vertices of a tile, at most: parent maps and ghost chains hold their numbers in 16 bits.
 inline constexpr std::uint32_t kMaxOwnVertices = 32768;
 
+/// How tiles are stored. None loses anything.
+enum class Compression {
+  none,
+  zlib,         ///< the file as a gzip stream
+  meshopt,      ///< the sections by EXT_meshopt_compression
+  meshopt_zlib  ///< both
+};
+/// In the order of Compression.
+inline constexpr std::array<std::string_view, 4> kCompressionNames{"none", "zlib", "meshopt",
+                                                                   "meshopt_zlib"};
+/// As in configs and manifests.
+std::string_view name_of(Compression compression);
+
+constexpr bool has_packed_sections(Compression compression) {
+  return compression == Compression::meshopt || compression == Compression::meshopt_zlib;
+}
+constexpr bool is_gzipped(Compression compression) {
+  return compression == Compression::zlib || compression == Compression::meshopt_zlib;
+}
+
 /// What all tiles of a hierarchy share.
 struct TileFormat {
   AttributeLayout attributes;
   Frame frame;  ///< the node's; its origin is 0 for float input
+  Compression compression = Compression::none;
+  std::optional<Lattice> lattice{};  ///< what all positions lie on, if they are quantized
 };
 
 /// True if glTF lets `normal` stand as it is: its length differs from 1 by 0.001 at most (the
@@ -37,8 +63,9 @@ struct TileView {
   std::span<const std::uint16_t> chains;      ///< the ghosts' chains, one after another
 };
 
-/// Deterministic, O(size). Requires a consistent tile (see PublishedTile) with finite positions, at
-/// most kMaxOwnVertices own vertices and rim vertices below that.
+/// Deterministic, O(size). Requires a consistent tile (see PublishedTile) with finite positions, on
+/// the lattice if there is one, at most kMaxOwnVertices own vertices and rim vertices below that.
+/// Compressed files depend on the versions of zlib and meshoptimizer.
 ///
 /// A partition keeps every attribute bit for bit, NaN included. Other tiles keep what glTF can say:
 /// u8 and u16 colours rounded to the nearest number of their type, float colours clamped to [0, 1],
@@ -49,8 +76,8 @@ std::vector<std::byte> encode_tile(const PublishedTile& tile, const Tree& tree,
                                    const TileFormat& format);
 
 /// The inverse of encode_tile, on bytes nobody vouches for: every count, offset and index is
-/// checked before it is used. Requires tree.contains(node). Throws Error(corrupt) that starts with
-/// `name` and says what was expected.
+/// checked before it is used, every size before memory is taken for it. Requires
+/// tree.contains(node). Throws Error(corrupt) that starts with `name` and says what was expected.
 PublishedTile decode_tile(std::span<const std::byte> bytes, NodeId node, const Tree& tree,
                           const TileFormat& format, const std::string& name);
 

@@ -5,10 +5,12 @@
 #include "hierarchy/bounds.h"
 #include "hierarchy/frame.h"
 #include "hierarchy/ids.h"
+#include "hierarchy/lattice.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -16,13 +18,15 @@ namespace meshhier::storage {
 
 inline constexpr const char* kTileExtension = "MESHHIER_tile";
 inline constexpr unsigned kTileExtensionVersion = 1;
+inline constexpr const char* kMeshoptExtension = "EXT_meshopt_compression";
+inline constexpr const char* kQuantizationExtension = "KHR_mesh_quantization";
 
 // The BIN chunk: one section, and one buffer view, for each of these that is not empty, in this
 // order, each starting at a multiple of 4. o, g, n = o + g: own, ghost, all vertices; m:
 // neighbours.
 //
 //   section        elements          of
-//   position       n                 3 f32
+//   position       n                 3 f32; 3 u16, stride 8, on a lattice of up to 16 bits
 //   normal         n                 3 f32
 //   colour         n                 3 or 4 u8, u16 or f32; the stride is rounded up to 4
 //   texcoord       n                 2 f32
@@ -64,6 +68,22 @@ struct ChannelGroup {
   std::size_t channels;
 };
 
+/// How a part is stored in a tile of compressed sections: as it is, or in a mode of
+/// EXT_meshopt_compression. The two raw ones have a few bytes.
+enum class ViewMode { raw, attributes, triangles, indices };
+ViewMode mode_of(Part part);
+
+/// The BIN chunk of a tile of compressed sections: these, each at the next multiple of 4, in the
+/// order of the parts.
+struct Packing {
+  std::array<std::uint64_t, kPartCount> bytes{};  ///< of each section in the file
+  bool exponential = false;                       ///< positions went through the filter EXPONENTIAL
+
+  std::uint64_t offset(Part part) const;
+  /// Of the BIN chunk.
+  std::uint64_t total() const;
+};
+
 /// Normals, colours, texture coordinates; those the layout lacks have no channels.
 std::array<ChannelGroup, 3> groups_of(const AttributeLayout& layout);
 
@@ -91,16 +111,22 @@ struct Section {
 
 class TilePlan {
  public:
-  TilePlan(const TileShape& shape, const AttributeLayout& layout);
+  /// `lattice`: what all positions lie on, if there is one.
+  TilePlan(const TileShape& shape, const AttributeLayout& layout,
+           const std::optional<Lattice>& lattice = std::nullopt);
 
   const TileShape& shape() const { return shape_; }
   const AttributeLayout& layout() const { return layout_; }
+  const std::optional<Lattice>& lattice() const { return lattice_; }
+  /// Whether positions are the lattice's numbers in 16 bits.
+  bool has_short_positions() const { return lattice_ && lattice_->is_short(); }
   const Section& operator[](Part part) const { return sections_[static_cast<std::size_t>(part)]; }
-  /// Of the BIN chunk.
+  /// Of the BIN chunk if nothing is compressed.
   std::uint64_t bytes() const { return bytes_; }
 
-  /// The file's JSON. `bounds`: of the positions.
-  nlohmann::ordered_json document(const Bounds& bounds, const Frame& frame) const;
+  /// The file's JSON. `bounds`: of the positions. `packing`: of compressed sections, else null.
+  nlohmann::ordered_json document(const Bounds& bounds, const Frame& frame,
+                                  const Packing* packing = nullptr) const;
 
  private:
   unsigned component_of(const ChannelGroup& group) const;
@@ -108,6 +134,7 @@ class TilePlan {
 
   TileShape shape_;
   AttributeLayout layout_;
+  std::optional<Lattice> lattice_;
   std::array<Section, kPartCount> sections_;
   std::uint64_t bytes_ = 0;
   int views_ = 0;

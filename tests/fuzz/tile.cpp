@@ -3,18 +3,22 @@
 //   u32, u32              the tree, see take_tree()
 //   u8  level             of the node, modulo what there can be
 //   u32 index             likewise
-//   u8  format            1 normals, 2 alpha, 4 texcoords, 8 an origin; 16, 32: the colours' type
+//   u8  format            1 normals, 2 alpha, 4 texcoords, 8 an origin; 16, 32: the colours' type;
+//                         64, 128: the compression; with 64 and 8, positions are on a lattice
 //
-// and then a GLB, or, if it does not begin with "glTF", what makes one: counts whose JSON is
-// written as it must be, so that all the rest of the input lies behind the comparison of the JSON:
+// and then a GLB (put into a gzip stream where one is wanted), or a gzip stream, or, if it begins
+// like neither, what makes a GLB: counts whose JSON is written as it must be, so that all the rest
+// of the input lies behind the comparison of the JSON:
 //
 //   u16 own, rim, ghosts, neighbours, chain entries, interior, border
 //   u8  which attributes have raw values: 1, 2, 4
-//   the BIN chunk, cut or filled up with zeros to its size
+//   the BIN chunk before it is compressed, cut or filled up with zeros to its size
 #include "fuzz/target.h"
 #include "fuzz/targets.h"
 #include "storage/glb.h"
+#include "storage/gzip.h"
 #include "storage/tile_glb.h"
+#include "storage/tile_pack.h"
 #include "storage/tile_plan.h"
 
 #include <algorithm>
@@ -47,12 +51,22 @@ Place take_place(Take& take) {
                              (bits & 2) != 0, (bits & 4) != 0};
   if ((bits & 8) != 0)
     place.format.frame.origin = {1e6, -0.1, 3};
+  place.format.compression = static_cast<storage::Compression>(bits >> 6);
+  if ((bits & 64) != 0 && (bits & 8) != 0)
+    place.format.lattice = Lattice{(bits & 128) != 0 ? 12 : 20, 0.25, {-8, 0, 100}};
   return place;
 }
 
-/// Its positions as they stand in the BIN chunk; null if one is not finite: no box has a JSON.
-bool bounds_in(Bytes bin, std::size_t count, Bounds& bounds) {
-  for (std::size_t v = 0; v < count; ++v) {
+/// The box of the positions in the BIN chunk; false if one is not finite: no box has a JSON.
+bool bounds_in(Bytes bin, const storage::TilePlan& plan, Bounds& bounds) {
+  for (std::size_t v = 0; v < plan.shape().vertices(); ++v) {
+    if (plan.has_short_positions()) {
+      Take numbers(bin.subspan(8 * v));
+      const auto x = numbers.number<std::uint16_t>();
+      const auto y = numbers.number<std::uint16_t>();
+      bounds.add(plan.lattice()->point({x, y, numbers.number<std::uint16_t>()}));
+      continue;
+    }
     Take take(bin.subspan(12 * v));
     Vec3f position;
     position.x = take.number<float>();
@@ -61,6 +75,21 @@ bool bounds_in(Bytes bin, std::size_t count, Bounds& bounds) {
     if (!std::isfinite(position.x) || !std::isfinite(position.y) || !std::isfinite(position.z))
       return false;
     bounds.add(position);
+  }
+  return true;
+}
+
+/// Whether all corners of triangles are vertices, as the encoder requires.
+bool has_vertices_below(const storage::TilePlan& plan, Bytes bin) {
+  for (const storage::Part part : {storage::Part::interior, storage::Part::border}) {
+    const storage::Section& section = plan[part];
+    Take take(bin.subspan(section.offset, section.bytes()));
+    for (std::uint64_t i = 0; i < section.count; ++i) {
+      const std::uint32_t corner =
+          section.stride == 2 ? take.number<std::uint16_t>() : take.number<std::uint32_t>();
+      if (corner >= plan.shape().vertices())
+        return false;
+    }
   }
   return true;
 }
@@ -78,15 +107,19 @@ std::vector<std::byte> make_glb(Take take, const Place& place) {
   const auto groups = storage::groups_of(place.format.attributes);
   for (std::size_t i = 0; i < groups.size(); ++i)
     shape.raw[i] = groups[i].channels > 0 && (raw_bits >> i & 1) != 0;
-  const storage::TilePlan plan(shape, place.format.attributes);
+  const storage::TilePlan plan(shape, place.format.attributes, place.format.lattice);
   if (plan.bytes() > kMostBytes)
     return {};
   std::vector<std::byte> bin(plan.bytes());
   std::copy_n(take.rest().begin(), std::min(bin.size(), take.rest().size()), bin.begin());
   Bounds bounds;
-  if (!bounds_in(bin, shape.vertices(), bounds))
+  if (!bounds_in(bin, plan, bounds))
     bounds = {{0, 0, 0}, {0, 0, 0}};
-  return storage::join_glb(plan.document(bounds, place.format.frame).dump(), bin);
+  if (!storage::has_packed_sections(place.format.compression) || !has_vertices_below(plan, bin))
+    return storage::join_glb(plan.document(bounds, place.format.frame).dump(), bin);
+  const storage::PackedBin packed = storage::pack_bin(plan, bin);
+  return storage::join_glb(plan.document(bounds, place.format.frame, &packed.packing).dump(),
+                           packed.bin);
 }
 
 bool same_but_attributes(const PublishedTile& a, const PublishedTile& b) {
@@ -168,12 +201,15 @@ void check_written(const PublishedTile& tile, const Place& place) {
 void tile(Bytes input) {
   Take take(input);
   const Place place = take_place(take);
-  const bool is_glb = text_of(take.rest()).starts_with("glTF");
-  const std::vector<std::byte> made = is_glb ? std::vector<std::byte>() : make_glb(take, place);
+  const bool is_gzip = text_of(take.rest()).starts_with("\x1f\x8b");
+  const bool is_glb = is_gzip || text_of(take.rest()).starts_with("glTF");
+  std::vector<std::byte> file =
+      is_glb ? std::vector(take.rest().begin(), take.rest().end()) : make_glb(take, place);
+  if (!is_gzip && storage::is_gzipped(place.format.compression))
+    file = storage::gzip(file);
   PublishedTile read;
   const std::string refused = refusal({ErrorCode::corrupt}, "tile.glb: ", [&] {
-    read = storage::decode_tile(is_glb ? take.rest() : Bytes(made), place.node, place.tree,
-                                place.format, "tile.glb");
+    read = storage::decode_tile(file, place.node, place.tree, place.format, "tile.glb");
   });
   if (!refused.empty())
     return;

@@ -1,5 +1,7 @@
 #include "gltf/sample_hierarchy.h"
 
+#include "hierarchy/bounds.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -216,6 +218,16 @@ SampleHierarchy make_sample(const TestMesh& mesh, std::uint32_t partitions,
                             const storage::TileFormat& format) {
   SampleHierarchy sample{Tree(mesh.positions.size(), partitions), format, {}};
   sample.tiles = SampleBuilder(mesh, sample.tree, sample.format).build();
+  return sample;
+}
+
+SampleHierarchy quantized(SampleHierarchy sample, int bits) {
+  Bounds bounds;
+  for (const PublishedTile& tile : sample.tiles)
+    bounds.add(bounds_of(tile.mesh.vertices.positions));
+  sample.format.lattice = make_lattice(bounds, bits);
+  for (PublishedTile& tile : sample.tiles)
+    round_to(*sample.format.lattice, tile.mesh.vertices.positions);
   return sample;
 }
 

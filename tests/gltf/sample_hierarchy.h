@@ -27,6 +27,9 @@ struct SampleHierarchy {
 SampleHierarchy make_sample(const TestMesh& mesh, std::uint32_t partitions,
                             const storage::TileFormat& format = {});
 
+/// The same with its positions rounded to a lattice of so many bits over all of them.
+SampleHierarchy quantized(SampleHierarchy sample, int bits);
+
 /// Attributes of a vertex as a real input has them: unit normals, whole numbers for u8 and u16
 /// colours, others in [0, 1].
 std::vector<float> sample_attributes(const AttributeLayout& layout, std::uint64_t vertex);

@@ -4,35 +4,15 @@
 //
 // Exit code 0: no error and no warning in any file; 1: there are some, or there is no file;
 // 2: wrong use; 77: the validator is not installed (run `npm ci` here).
-import { readdirSync, readFileSync } from 'node:fs';
 import path from 'node:path';
+import { glbFiles, readGlb, required } from './glb.mjs';
 
 const SEVERITIES = ['error', 'warning', 'information', 'hint'];
 const SHOWN_PER_FILE = 5;
 
-function glbFiles(directory) {
-  return readdirSync(directory, { withFileTypes: true })
-    .sort((a, b) => (a.name < b.name ? -1 : 1))
-    .flatMap((entry) => {
-      const file = path.join(directory, entry.name);
-      if (entry.isDirectory()) return glbFiles(file);
-      return entry.name.endsWith('.glb') ? [file] : [];
-    });
-}
-
-async function loadValidator() {
-  try {
-    return (await import('gltf-validator')).default;
-  } catch (error) {
-    if (error.code !== 'ERR_MODULE_NOT_FOUND') throw error;
-    console.log('gltf-validator is not installed: run `npm ci` in the directory of this script');
-    process.exit(77);
-  }
-}
-
 async function messagesOf(validator, file) {
   try {
-    const report = await validator.validateBytes(new Uint8Array(readFileSync(file)), {
+    const report = await validator.validateBytes(readGlb(file), {
       uri: path.basename(file),
       format: 'glb',
       maxIssues: 0,
@@ -48,7 +28,7 @@ async function main(directories) {
     console.error('use: node validate.mjs DIR...');
     return 2;
   }
-  const validator = await loadValidator();
+  const { default: validator } = await required('gltf-validator', () => import('gltf-validator'));
   const files = directories.flatMap(glbFiles);
   const counts = [0, 0, 0, 0];
   const codes = new Map();

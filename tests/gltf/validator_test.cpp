@@ -1,9 +1,12 @@
-// The Khronos glTF validator on every kind of file the published form knows. MESHHIER_GLTF_DIR is
-// the directory of validate.mjs; skipped where node or the validator is not installed.
+// The Khronos glTF validator on every kind of file the published form knows, and meshoptimizer's
+// decoder on compressed ones. MESHHIER_GLTF_DIR is the directory of their scripts; skipped where
+// node or the package is not installed.
 #include "gltf/sample_hierarchy.h"
 #include "storage/outline_glb.h"
 #include "storage/tile_glb.h"
 
+#include <array>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -24,7 +27,8 @@ namespace fs = std::filesystem;
 constexpr int kNotInstalled = 77;  // what validate.mjs exits with
 constexpr int kNoCommand = 127;    // what the shell exits with
 
-class GltfValidator : public testing::Test {
+/// A directory of files for the scripts.
+class GltfFiles : public testing::Test {
  protected:
   void SetUp() override {
     directory_ =
@@ -34,37 +38,48 @@ class GltfValidator : public testing::Test {
   void TearDown() override { fs::remove_all(directory_); }
 
   void write(const std::string& name, std::span<const std::byte> bytes) {
+    fs::create_directories((directory_ / name).parent_path());
     std::ofstream file(directory_ / name, std::ios::binary);
     file.write(reinterpret_cast<const char*>(bytes.data()),
                static_cast<std::streamsize>(bytes.size()));
     ASSERT_TRUE(file.good());
   }
 
-  void write_tiles(const std::string& name, const SampleHierarchy& sample) {
+  void write_tiles(const std::string& folder, const std::string& name,
+                   const SampleHierarchy& sample) {
     for (const PublishedTile& tile : sample.tiles) {
-      write(fmt::format("{}_{}_{}.glb", name, raw(tile.node.level), tile.node.index),
+      write(fmt::format("{}/{}_{}_{}.glb", folder, name, raw(tile.node.level), tile.node.index),
             storage::encode_tile(tile, sample.tree, sample.format));
     }
   }
 
-  int validate() const {
-    const std::string command =
-        fmt::format("node '{}/validate.mjs' '{}'", MESHHIER_GLTF_DIR, directory_.string());
-    const int status = std::system(command.c_str());
+  std::string path(const std::string& name) const { return (directory_ / name).string(); }
+
+  /// The exit code of a script. `quoted`: its name and arguments, but for the outer quotes.
+  static int run(const std::string& quoted) {
+    const int status = std::system(fmt::format("node '{}/{}'", MESHHIER_GLTF_DIR, quoted).c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
 
-  void expect_clean() const {
-    const int code = validate();
+  static void expect_code(int code, int expected) {
     if (code == kNoCommand)
       GTEST_SKIP() << "node is not installed";
     if (code == kNotInstalled)
-      GTEST_SKIP() << "gltf-validator is not installed: npm ci in " << MESHHIER_GLTF_DIR;
-    EXPECT_EQ(code, 0);
+      GTEST_SKIP() << "a package is not installed: npm ci in " << MESHHIER_GLTF_DIR;
+    EXPECT_EQ(code, expected);
   }
 
  private:
   fs::path directory_;
+};
+
+class GltfValidator : public GltfFiles {
+ protected:
+  void write_tiles(const std::string& name, const SampleHierarchy& sample) {
+    GltfFiles::write_tiles(".", name, sample);
+  }
+  int validate() const { return run(fmt::format("validate.mjs' '{}", path("."))); }
+  void expect_clean() const { expect_code(validate(), 0); }
 };
 
 TEST_F(GltfValidator, AcceptsTilesOfEveryLayout) {
@@ -102,6 +117,66 @@ TEST_F(GltfValidator, AcceptsAttributesThatGltfCannotSay) {
   expect_clean();
 }
 
+TEST_F(GltfValidator, AcceptsCompressedAndQuantizedTilesOfEveryLayout) {
+  int number = 0;
+  for (const AttributeLayout& layout : sample_layouts()) {
+    for (const auto compression : {storage::Compression::zlib, storage::Compression::meshopt,
+                                   storage::Compression::meshopt_zlib}) {
+      for (const int bits : {0, 12, 20}) {
+        SampleHierarchy sample = make_sample(torus(150, 0.05F), 3, {layout, {}});
+        if (bits > 0)
+          sample = quantized(sample, bits);
+        sample.format.compression = compression;
+        write_tiles(fmt::format("packed{}", number++), sample);
+      }
+    }
+  }
+  for (SampleHierarchy sample :
+       {make_sample(points(50), 2), quantized(make_sample(points(1), 1), 8)}) {
+    sample.format.compression = storage::Compression::meshopt;
+    write_tiles(fmt::format("points{}", number++), sample);
+  }
+  expect_clean();
+}
+
+/// meshoptimizer's own decoder on compressed tiles, against their plain twins.
+class MeshoptDecoder : public GltfFiles {
+ protected:
+  void write_twins(const std::string& name, SampleHierarchy sample, storage::Compression packed) {
+    write_tiles("plain", name, sample);
+    sample.format.compression = packed;
+    write_tiles("packed", name, sample);
+  }
+  int compare() const {
+    return run(fmt::format("compare.mjs' '{}' '{}", path("packed"), path("plain")));
+  }
+};
+
+TEST_F(MeshoptDecoder, GivesThePlainTilesBitForBit) {
+  int number = 0;
+  for (const auto packed : {storage::Compression::meshopt, storage::Compression::meshopt_zlib}) {
+    for (const AttributeLayout& layout : sample_layouts()) {
+      const SampleHierarchy sample = make_sample(torus(300, 0.05F), 5, {layout, {}});
+      write_twins(fmt::format("exact{}", number++), sample, packed);
+      for (const int bits : {8, 16, 17, 23})
+        write_twins(fmt::format("lattice{}", number++), quantized(sample, bits), packed);
+    }
+  }
+  write_twins("soup", make_sample(soup(60), 3), storage::Compression::meshopt);
+  write_twins("points", make_sample(points(50), 2), storage::Compression::meshopt);
+  expect_code(compare(), 0);
+}
+
+TEST_F(MeshoptDecoder, SeesOneChangedPosition) {
+  SampleHierarchy sample = make_sample(torus(300), 2);
+  write_tiles("plain", "a", sample);
+  float& x = sample.tiles.back().mesh.vertices.positions[7].x;
+  x = std::nextafter(x, 10.0F);
+  sample.format.compression = storage::Compression::meshopt;
+  write_tiles("packed", "a", sample);
+  expect_code(compare(), 1);
+}
+
 TEST_F(GltfValidator, AcceptsOutlines) {
   const double low = -std::numeric_limits<double>::max();
   write("empty.glb", storage::encode_outline({}, {}));
@@ -120,10 +195,7 @@ TEST_F(GltfValidator, RefusesABrokenFile) {
   std::vector<std::byte> bytes = storage::encode_tile(sample.tiles[0], sample.tree, sample.format);
   std::fill(bytes.end() - 64, bytes.end(), std::byte{0xFF});
   write("broken.glb", bytes);
-  const int code = validate();
-  if (code == kNoCommand || code == kNotInstalled)
-    GTEST_SKIP() << "the validator is not installed";
-  EXPECT_EQ(code, 1);
+  expect_code(validate(), 1);
 }
 
 }  // namespace

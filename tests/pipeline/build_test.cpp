@@ -2,6 +2,7 @@
 #include "pipeline/build.h"
 
 #include "hierarchy/error.h"
+#include "pipeline/cut.h"
 #include "pipeline/size_text.h"
 #include "pipeline/verify.h"
 #include "storage/hierarchy_reader.h"
@@ -37,6 +38,7 @@ namespace meshhier::pipeline {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using tests::kMiB;
@@ -326,6 +328,74 @@ TEST_F(BuildTest, ShapesOfAllKinds) {
 }
 
 // ---- what a result is ----------------------------------------------------------------------
+
+TEST_F(BuildTest, CompressionChangesNothingButTheFiles) {
+  build(tests::torus(3000, 0.1F), config());
+  std::vector<PublishedTile> plain;
+  {
+    const storage::HierarchyReader reader(files_, output_path());
+    for (const TileRecord& record : reader.records())
+      plain.push_back(reader.read_tile(record.node));
+  }
+  for (const auto& [name, compression] : kCompressions) {
+    Config packed = config();
+    packed.storage.compression = compression;
+    build(packed, true);
+    EXPECT_THAT(problems(), IsEmpty()) << name;
+    const storage::HierarchyReader reader(files_, output_path());
+    EXPECT_EQ(reader.manifest().compression, compression);
+    ASSERT_EQ(reader.records().size(), plain.size());
+    for (const PublishedTile& tile : plain) {
+      const PublishedTile back = reader.read_tile(tile.node);
+      EXPECT_EQ(back.mesh.vertices.positions, tile.mesh.vertices.positions);
+      EXPECT_EQ(back.mesh.interior, tile.mesh.interior);
+      EXPECT_EQ(back.mesh.border, tile.mesh.border);
+      EXPECT_EQ(back.parent_map, tile.parent_map);
+      EXPECT_EQ(back.chains, tile.chains);
+    }
+  }
+}
+
+TEST_F(BuildTest, QuantizedPositionsLieOnTheLatticeAndBoundsSaySo) {
+  build(tests::torus(3000, 0.1F), config());
+  const storage::HierarchyReader exact(files_, output_path());
+  const std::vector<TileRecord> before = exact.records();
+  for (const std::uint32_t bits : {8U, 16U, 20U}) {
+    for (const Compression compression : {Compression::none, Compression::meshopt}) {
+      Config coarse = config();
+      coarse.storage = {compression, bits};
+      build(coarse, true);
+      EXPECT_THAT(problems(), IsEmpty()) << bits;
+      const storage::HierarchyReader reader(files_, output_path());
+      ASSERT_TRUE(reader.manifest().quantization.has_value());
+      const auto& [lattice, worst] = *reader.manifest().quantization;
+      EXPECT_EQ(lattice.bits, static_cast<int>(bits));
+      EXPECT_GT(worst, 0);
+      EXPECT_LE(worst, lattice.step);  // the root of 3 halves, as far as nothing lies outside
+      for (std::size_t i = 0; i < before.size(); ++i) {
+        const TileRecord& record = reader.records()[i];
+        EXPECT_GE(record.bound, before[i].bound + worst);
+        EXPECT_EQ(record.error, before[i].error);
+        if (record.node == NodeId{})
+          continue;
+        EXPECT_LT(record.bound, reader.record(parent_tile(reader.tree(), record.node)).bound);
+        for (const Vec3f& p : reader.read_tile(record.node).mesh.vertices.positions)
+          ASSERT_EQ(lattice.nearest(p), p);
+      }
+    }
+  }
+}
+
+TEST_F(BuildTest, AQuantizedHierarchyIsHeldAgainstItsInput) {
+  Config coarse = config();
+  coarse.storage.position_bits = 10;
+  TestMesh mesh = tests::torus(1000, 0.1F);
+  build(mesh, coarse);
+  EXPECT_THAT(problems(), IsEmpty());
+  mesh.positions[17].x += 0.25F;
+  tests::write_ply(mesh, mesh_path());
+  EXPECT_THAT(problems(), Contains(HasSubstr("vertices, but some are not the same")));
+}
 
 TEST_F(BuildTest, PartitionSizesAreEqualForAnyCount) {
   tests::write_ply(tests::torus(3000), mesh_path());

@@ -68,7 +68,8 @@ TEST(Config, EveryKeyIsRead) {
       "partition": {"count": 128, "axis": "longest"},
       "simplify": {"method": "cluster", "vertices": 4096, "representative": "vertex",
                    "cost": "melax"},
-      "outline": {"sectors": 64, "tolerance": 0.01}, "storage": {"compression": "none"})"));
+      "outline": {"sectors": 64, "tolerance": 0.01},
+      "storage": {"compression": "meshopt", "positions": {"bits": 14}})"));
   EXPECT_EQ(config.memory_budget, 64u << 20);
   EXPECT_EQ(config.threads, 3u);
   EXPECT_EQ(config.partition.count, 128u);
@@ -79,9 +80,29 @@ TEST(Config, EveryKeyIsRead) {
   EXPECT_EQ(config.simplify.cost, HalfEdgeCost::melax);
   EXPECT_EQ(config.outline.sectors, 64u);
   EXPECT_EQ(config.outline.tolerance, 0.01);
-  EXPECT_EQ(config.storage.compression, Compression::none);
+  EXPECT_EQ(config.storage.compression, Compression::meshopt);
+  EXPECT_EQ(config.storage.position_bits, 14u);
   EXPECT_EQ(parse(with(R"("simplify": {"representative": "mean"})")).simplify.representative,
             Representative::mean);
+}
+
+TEST(Config, KeysTwoLevelsDeepAreOverriddenAndResolved) {
+  const std::vector<std::string> overrides{"storage.positions.bits=16", "storage.compression=zlib"};
+  const Config config =
+      parse_config(with(R"("storage": {"positions": {"bits": 12}})"), {"a.json", {}}, overrides);
+  EXPECT_EQ(config.storage.position_bits, 16u);
+  EXPECT_EQ(resolved_json(config)["storage"].dump(),
+            R"({"compression":"zlib","positions":{"bits":16}})");
+  EXPECT_EQ(parse_config(with(""), {"a.json", {}}, overrides), config);
+  const std::vector<std::string> whole{R"(storage={"positions": {"bits": 4}})"};
+  try {
+    parse_config(with(""), {"a.json", {}}, whole);
+    ADD_FAILURE() << "4 bits are accepted";
+  } catch (const Error& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "--set storage.positions.bits: expected an integer from 8 to 24, found the number 4");
+  }
 }
 
 TEST(Config, CommentsOfBothKindsAreSkipped) {

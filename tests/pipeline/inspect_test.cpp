@@ -103,6 +103,44 @@ TEST_F(InspectTest, JsonTellsBytes) {
                                      fs::file_size(storage::manifest_path(path())));
 }
 
+TEST_F(InspectTest, SizesAreToldAgainstRawFloatsAndIndices) {
+  std::uint64_t bytes = 0, raw_bytes = 0, vertices = 0, triangles = 0;
+  for (const TileRecord& r : sample_.records) {
+    if (raw(r.node.level) != 3)
+      continue;
+    bytes += r.file_bytes;
+    // Of 8-bit colours with a stride of 4; indices of 16 bits.
+    raw_bytes += (r.own_count + r.ghost_count) * (12 + 4) + (r.interior_count + r.border_count) * 6;
+    vertices += r.own_count;
+    triangles += r.interior_count + r.drawn_border_count;
+  }
+  const auto sizes = json()["sizes"]["partitions"];
+  EXPECT_EQ(sizes["bytes"], bytes);
+  EXPECT_EQ(sizes["raw_bytes"], raw_bytes);
+  const auto part = [&](std::uint64_t of) {
+    return static_cast<double>(bytes) / static_cast<double>(of);
+  };
+  EXPECT_DOUBLE_EQ(sizes["bytes_per_vertex"].get<double>(), part(vertices));
+  EXPECT_DOUBLE_EQ(sizes["bytes_per_triangle"].get<double>(), part(triangles));
+  EXPECT_DOUBLE_EQ(sizes["raw_ratio"].get<double>(), part(raw_bytes));
+  EXPECT_EQ(json()["sizes"]["all"]["bytes"], json()["tile_bytes"]);
+  EXPECT_THAT(text(), HasSubstr("bytes a vertex and"));
+}
+
+TEST_F(InspectTest, TheStorageIsTold) {
+  EXPECT_EQ(json()["storage"].dump(), R"({"compression":"none","positions":null})");
+  EXPECT_THAT(text(), HasSubstr("storage      none, positions exact"));
+  sample_.manifest.compression = storage::Compression::meshopt;
+  sample_.manifest.quantization =
+      storage::Quantization{make_lattice({{0, 0, 0}, {2, 2, 2}}, 8), 0.01};
+  const std::string manifest = storage::to_json_text(sample_.manifest);
+  storage::write_file(*files_, storage::manifest_path(path()), std::as_bytes(std::span(manifest)));
+  EXPECT_EQ(json()["storage"]["positions"].dump(),
+            R"({"bits":8,"step":0.015625,"worst_rounding":0.01})");
+  EXPECT_THAT(text(), HasSubstr("storage      meshopt, positions on a lattice of 8 bits, step "
+                                "0.01562, off by 0.01 at most"));
+}
+
 TEST_F(InspectTest, ALevelIsToldTileByTile) {
   const auto json = this->json({.level = static_cast<Level>(2), .node = {}});
   ASSERT_EQ(json["levels"].size(), 1U);

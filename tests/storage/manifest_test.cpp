@@ -56,6 +56,12 @@ Manifest make_manifest() {
 }
 
 void expect_same(const Manifest& a, const Manifest& b) {
+  EXPECT_EQ(a.compression, b.compression);
+  ASSERT_EQ(a.quantization.has_value(), b.quantization.has_value());
+  if (a.quantization) {
+    EXPECT_EQ(a.quantization->lattice, b.quantization->lattice);
+    EXPECT_EQ(a.quantization->worst_rounding, b.quantization->worst_rounding);
+  }
   EXPECT_EQ(a.generator, b.generator);
   EXPECT_EQ(a.source.file_name, b.source.file_name);
   EXPECT_EQ(a.source.file_bytes, b.source.file_bytes);
@@ -121,6 +127,43 @@ TEST(Manifest, GivesEveryValueBack) {
     other.source.attributes = {false, type, false, false};
     expect_same(other, parse_manifest(to_json_text(other), kManifestName));
   }
+}
+
+Manifest make_quantized() {
+  Manifest manifest = make_manifest();
+  manifest.compression = storage::Compression::meshopt_zlib;
+  manifest.quantization = storage::Quantization{make_lattice({{-1, 2, 3}, {4, 5, 6}}, 14), 1.0 / 3};
+  return manifest;
+}
+
+TEST(Manifest, TellsHowTilesAreStored) {
+  for (const auto compression : {storage::Compression::none, storage::Compression::zlib,
+                                 storage::Compression::meshopt_zlib}) {
+    Manifest manifest = make_quantized();
+    manifest.compression = compression;
+    expect_same(manifest, parse_manifest(to_json_text(manifest), kManifestName));
+    manifest.quantization.reset();
+    expect_same(manifest, parse_manifest(to_json_text(manifest), kManifestName));
+  }
+}
+
+TEST(Manifest, UnsoundStorageIsRefused) {
+  const Json good = Json::parse(to_json_text(make_quantized()));
+  const auto with = [&](const char* pointer, const Json& value) {
+    Json changed = good;
+    changed[Json::json_pointer(pointer)] = value;
+    return failure(sealed(changed));
+  };
+  EXPECT_EQ(with("/storage/compression", "zlib"), "");
+  EXPECT_THAT(with("/storage/compression", "brotli"), HasSubstr("\"storage.compression\""));
+  EXPECT_THAT(with("/storage", nullptr), HasSubstr("\"storage\" is wrong"));
+  EXPECT_THAT(with("/storage/positions", 3), HasSubstr("\"storage.positions\""));
+  EXPECT_THAT(with("/storage/positions/bits", 25), HasSubstr("\"storage.positions.bits\""));
+  EXPECT_THAT(with("/storage/positions/bits", 7), HasSubstr("a lattice of 8 to 24 bits"));
+  EXPECT_THAT(with("/storage/positions/step", 0.3), HasSubstr("a lattice of 8 to 24 bits"));
+  EXPECT_THAT(with("/storage/positions/corner", Json::array({0, 0, 1e-9})),
+              HasSubstr("a lattice of 8 to 24 bits"));
+  EXPECT_THAT(with("/storage/positions/worst_rounding", -1), HasSubstr("worst_rounding"));
 }
 
 TEST(Manifest, IsReadable) {

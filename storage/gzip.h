@@ -1,0 +1,20 @@
+// The gzip format (RFC 1952), for web hosts that send stored files with `Content-Encoding: gzip`.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace meshhier::storage {
+
+/// One gzip member. Deterministic for one zlib: no name, no time, operating system "unknown".
+std::vector<std::byte> gzip(std::span<const std::byte> bytes);
+
+/// What is in the one gzip member of a GLB, on bytes nobody vouches for: no more memory is taken
+/// than deflate can have made of so many bytes, nor than the GLB's header asks for. Throws
+/// Error(corrupt) that starts with `name`.
+std::vector<std::byte> gunzip_glb(std::span<const std::byte> bytes, const std::string& name);
+
+}  // namespace meshhier::storage
