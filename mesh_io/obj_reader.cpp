@@ -38,7 +38,7 @@ struct Kind {
 class ObjReader {
  public:
   ObjReader(InputStream& stream, const std::filesystem::path& path, ObjVisitor& visitor)
-      : words_(stream, path, true), path_(path), visitor_(visitor) {}
+      : words_(stream, path, {.joins_lines = true}), path_(path), visitor_(visitor) {}
 
   ObjCounts read() {
     while (words_.to_row())

@@ -47,7 +47,8 @@ bool is_byte_integer(std::string_view word) {
 
 class OffReader {
  public:
-  OffReader(InputStream& stream, const std::filesystem::path& path) : words_(stream, path, false) {}
+  OffReader(InputStream& stream, const std::filesystem::path& path)
+      : words_(stream, path, {.cuts_words = true}) {}
 
   OffCounts read(const OffVertexVisitor& visit_vertex, const TriangleVisitor& visit_triangles) {
     read_header();

@@ -87,7 +87,7 @@ class BinaryStl {
 
 class TextStl {
  public:
-  TextStl(InputStream& stream, const std::filesystem::path& path) : words_(stream, path, false) {}
+  TextStl(InputStream& stream, const std::filesystem::path& path) : words_(stream, path, {}) {}
 
   StlCounts read(const SoupVisitor& visit) {
     while (words_.to_row()) {

@@ -24,10 +24,10 @@ bool is_blank(char c) {
 
 }  // namespace
 
-WordStream::WordStream(InputStream& stream, std::filesystem::path path, bool joins_lines)
+WordStream::WordStream(InputStream& stream, std::filesystem::path path, Rules rules)
     : stream_(stream),
       path_(std::move(path)),
-      joins_lines_(joins_lines),
+      rules_(rules),
       buffer_(std::make_unique_for_overwrite<char[]>(kCapacity)) {}
 
 /// Makes `bytes` available, or all there is; false if there is nothing.
@@ -46,7 +46,7 @@ bool WordStream::look_ahead(std::size_t bytes) {
 
 /// The bytes of a backslash and the line end behind it; 0 if that is not what is there.
 std::size_t WordStream::joint_at(std::size_t place) {
-  if (!joins_lines_ || place + 1 >= end_ || buffer_[place] != '\\' ||
+  if (!rules_.joins_lines || place + 1 >= end_ || buffer_[place] != '\\' ||
       !is_line_end(buffer_[place + 1]))
     return 0;
   const bool two = buffer_[place + 1] == '\r' && place + 2 < end_ && buffer_[place + 2] == '\n';
@@ -92,7 +92,8 @@ bool WordStream::to_row() {
 std::string_view WordStream::take_word() {
   look_ahead(kMaxWordBytes + 3);
   std::size_t at = begin_;
-  while (at != end_ && !is_line_end(buffer_[at]) && !is_blank(buffer_[at]) && joint_at(at) == 0)
+  while (at != end_ && !is_line_end(buffer_[at]) && !is_blank(buffer_[at]) && joint_at(at) == 0 &&
+         !(rules_.cuts_words && buffer_[at] == '#'))
     ++at;
   const std::string_view word(buffer_.get() + begin_, at - begin_);
   if (word.size() > kMaxWordBytes)

@@ -14,15 +14,20 @@
 
 namespace meshhier::mesh_io {
 
-/// Lines end with LF, CRLF or CR; words are separated by blanks and tabs; a word that begins with
-/// '#' begins a comment, up to the end of the line; a backslash before a line's end joins it with
-/// the next one if `joins_lines`. Memory: one buffer, however long a line is.
+/// Lines end with LF, CRLF or CR; words are separated by blanks and tabs; '#' where a word could
+/// begin begins a comment, up to the end of the line. Memory: one buffer, however long a line is.
 class WordStream {
  public:
+  /// What differs from format to format.
+  struct Rules {
+    bool joins_lines = false;  ///< a backslash before a line's end joins it with the next one
+    bool cuts_words = false;   ///< '#' begins a comment within a word as well
+  };
+
   /// As TextCursor's.
   static constexpr std::size_t kMaxWordBytes = 4096;
 
-  WordStream(InputStream& stream, std::filesystem::path path, bool joins_lines);
+  WordStream(InputStream& stream, std::filesystem::path path, Rules rules);
 
   std::uint64_t line() const { return line_; }
   /// Goes on to the next word, over line ends; false at the end.
@@ -51,7 +56,7 @@ class WordStream {
 
   InputStream& stream_;
   std::filesystem::path path_;
-  bool joins_lines_;
+  Rules rules_;
   bool ended_ = false;
   std::unique_ptr<char[]> buffer_;
   std::size_t begin_ = 0;

@@ -83,6 +83,12 @@ TEST(OffReader, CountsColoursOfFacesAndDegenerateFaces) {
   EXPECT_EQ(taken.counts.faces.degenerate_triangles, 2U);
 }
 
+TEST(OffReader, ACommentMayFollowAWordAtOnce) {
+  const Taken taken("OFF#x\n3 1 0#y\n0 0 0#z\n1 0 0 # \n0 1 0\n3 0 1 2#3 0 1 2");
+  EXPECT_THAT(taken.triangles, ElementsAre("0 1 2"));
+  EXPECT_EQ(taken.counts.coloured_faces, 0U);
+}
+
 TEST(OffReader, RefusesWhatIsWrongAndNamesTheLine) {
   EXPECT_THAT(refusal("OF\n"), HasSubstr("line 1: expected 'OFF'"));
   EXPECT_THAT(refusal("4OFF\n1 0 0\n1 2 3 4\n"), HasSubstr("line 1: expected three coordinates"));
