@@ -75,7 +75,7 @@ struct SourceSummary {
   bool double_precision = false;  ///< coordinates do not fit float exactly
   AttributeLayout attributes;
   std::vector<SourceFile> files;    ///< in their order; empty: one PLY that was read in place
-  std::vector<SourceCount> counts;  ///< of an import, those that are not 0
+  std::vector<SourceCount> counts;  ///< of an import, those that are not 0; by name
 };
 
 }  // namespace meshhier

@@ -339,8 +339,10 @@ std::string read_text(storage::FileSystem& files, const std::filesystem::path& p
 
 std::string InputPaths::string() const {
   std::string text;
-  for (const std::filesystem::path& path : *this)
-    text += (text.empty() ? "" : ", ") + path.string();
+  for (const std::filesystem::path& path : *this) {
+    text += text.empty() ? "" : ", ";
+    text += path.string();
+  }
   return text;
 }
 

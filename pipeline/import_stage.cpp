@@ -47,6 +47,7 @@ class Import {
       write(input_.weld() ? weld() : mesh_, ply);
     }
     input_.check_unchanged();
+    std::ranges::sort(facts_.counts, {}, &SourceCount::name);
     return std::move(facts_);
   }
 

@@ -18,8 +18,10 @@ InputFiles::InputFiles(storage::FileSystem& files, const InputPaths& paths, bool
 
 std::string InputFiles::name() const {
   std::string name;
-  for (const InputFileFacts& file : all_)
-    name += (name.empty() ? "" : ", ") + file.path.filename().string();
+  for (const InputFileFacts& file : all_) {
+    name += name.empty() ? "" : ", ";
+    name += file.path.filename().string();
+  }
   return name;
 }
 

@@ -498,6 +498,8 @@ class ImportResumeTest : public ImportTest {
   void SetUp() override {
     put("a.stl", stl_bytes(tests::torus(5000, 0.01F)));
     expected_ = made(with_);
+    const fs::path manifest = storage::manifest_path(with_.output);
+    expected_[manifest] = files_.content(manifest);
     files_.remove_all(with_.output);
   }
   /// Stops a build in the stage after distributing.
