@@ -51,8 +51,10 @@ void check_stats_path(const std::string& path, const pipeline::Config& config,
                       storage::FileSystem& files) {
   const std::filesystem::path stats = files.canonical(path);
   const std::filesystem::path output = files.canonical(config.output);
-  if (stats == files.canonical(config.input))
-    throw Error(ErrorCode::usage, "--stats " + path + " is the input");
+  for (const std::filesystem::path& input : config.input) {
+    if (stats == files.canonical(input))
+      throw Error(ErrorCode::usage, "--stats " + path + " is the input");
+  }
   if (std::mismatch(output.begin(), output.end(), stats.begin(), stats.end()).first == output.end())
     throw Error(ErrorCode::usage, "--stats " + path + " lies in the output");
 }
@@ -65,7 +67,7 @@ void write_stats(storage::AtomicFile& file, const pipeline::BuildStats& stats) {
 int run_estimate(const pipeline::Config& config, const BuildArguments& arguments,
                  Environment& environment) {
   const pipeline::BuildEstimate estimate =
-      pipeline::estimate_build(config, arguments.force, environment.files);
+      pipeline::estimate_build(config, arguments.force, environment.files, environment.cancel);
   if (arguments.json) {
     environment.out << pretty_json(to_json(estimate));
   } else {
@@ -102,8 +104,10 @@ int run_build(const BuildArguments& arguments, pipeline::ProgressMode mode,
 constexpr const char* kBuildFooter =
     R"(The config is JSON; // comments are allowed. "input" and "output" are required:
   {
-    "input": "david.ply",                    // relative to this file
+    "input": "david.ply",                    // relative to this file; PLY, OBJ, STL or OFF, perhaps
+                                             // in gzip; or a list of files, which are joined
     "output": "david.hier",
+    "weld": false,                           // true: equal vertices become one
     "memory_budget": "1GiB",
     "threads": 0,                            // 0: all
     "partition": { "vertices": 8192, "axis": "compactness" },
@@ -115,6 +119,7 @@ Examples:
   meshhier build david.json
   meshhier build david.json --set partition.count=128 --set memory_budget=256MiB
   meshhier build david.json --set input=other.ply output=other.hier --force
+  meshhier build david.json --set 'input=["a.obj.gz", "b.obj.gz"]' weld=true
   meshhier build david.json --dry-run
   meshhier build david.json --stats david.stats.json
 )";
@@ -134,9 +139,11 @@ void add_build_command(CLI::App& parser, Invocation& invocation) {
   command->add_flag("--force", arguments->force, "Replace an existing output");
   command->add_flag("--restart", arguments->restart,
                     "Throw away what an earlier build of this output, which was stopped, had done");
-  CLI::Option* dry_run = command->add_flag("--dry-run", arguments->dry_run,
-                                           "Read only the mesh's header; tell what the build would "
-                                           "make and take, or why it would refuse");
+  CLI::Option* dry_run =
+      command->add_flag("--dry-run", arguments->dry_run,
+                        "Read only the mesh's header (or import it to count it); "
+                        "tell what the build would make and take, or why it "
+                        "would refuse");
   command->add_flag("--json", arguments->json, "With --dry-run: one JSON object, for programs")
       ->needs(dry_run);
   command

@@ -22,7 +22,7 @@ namespace {
 
 struct VerifyArguments {
   std::string directory;
-  std::string input;
+  std::vector<std::string> input;
   pipeline::VerifyOptions options;
   bool measures_error = false;
   pipeline::ErrorOptions error;
@@ -88,8 +88,7 @@ int run_error(VerifyArguments arguments, pipeline::Progress& progress, Environme
 }
 
 int run_verify(VerifyArguments arguments, pipeline::ProgressMode mode, Environment& environment) {
-  if (!arguments.input.empty())
-    arguments.options.input = arguments.input;
+  arguments.options.input.assign(arguments.input.begin(), arguments.input.end());
   const auto progress =
       pipeline::make_progress(mode, environment.messages, environment.messages_on_terminal);
   if (arguments.measures_error)
@@ -110,6 +109,7 @@ ways, and held against the tiles' bounds. Exit code 7 if there is a problem.
 Examples:
   meshhier verify david.hier
   meshhier verify david.hier --input david.ply --cuts 200 --seed 7
+  meshhier verify both.hier --input a.obj.gz --input b.stl
   meshhier verify david.hier --error --level 3
   meshhier verify david.hier --error --level all --samples 1000000 --json
 )";
@@ -165,9 +165,9 @@ void add_verify_command(CLI::App& parser, Invocation& invocation) {
   pipeline::VerifyOptions& options = arguments->options;
   CLI::App* command = parser.add_subcommand("verify", "Prove that a hierarchy is sound");
   command->add_option("DIR", arguments->directory, "The hierarchy")->required();
-  CLI::Option* input_option =
-      command->add_option("--input", arguments->input, "The mesh it was made from");
-  input_option->type_name("MESH");
+  CLI::Option* input_option = command->add_option(
+      "--input", arguments->input, "The mesh it was made from; several in the order of the config");
+  input_option->type_name("MESH")->take_all();
   CLI::Option* cuts_option = add_integer_option(
       *command,
       {"--cuts", "Random cuts whose seams are checked [20]", 0,

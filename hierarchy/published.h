@@ -46,11 +46,26 @@ struct PublishedTile {
   GhostChains chains;  ///< one per ghost
 };
 
+/// A file that was imported.
+struct SourceFile {
+  std::string name;
+  std::string format;  ///< for people: "OBJ (gzip)"
+  std::uint64_t bytes = 0;
+  std::uint64_t checksum = 0;  ///< storage::FileChecksum
+};
+
+/// What an import counted, by name.
+struct SourceCount {
+  std::string name;  ///< "split_vertices"
+  std::uint64_t count = 0;
+};
+
 /// What the input was.
 struct SourceSummary {
-  std::string file_name;
-  std::uint64_t file_bytes = 0;
-  std::uint64_t checksum = 0;  ///< storage::FileChecksum
+  std::string file_name;         ///< of several files, with ", " between them
+  std::uint64_t file_bytes = 0;  ///< of all files
+  std::uint64_t checksum = 0;    ///< storage::FileChecksum; of several files XXH3-64 over theirs, 8
+                                 ///< bytes each, little endian
   std::uint64_t vertices = 0;
   std::uint64_t triangles = 0;             ///< kept, after polygons became fans
   std::uint64_t faces = 0;                 ///< as the file counts them
@@ -59,6 +74,8 @@ struct SourceSummary {
   BoundsD bounds;                 ///< input coordinates
   bool double_precision = false;  ///< coordinates do not fit float exactly
   AttributeLayout attributes;
+  std::vector<SourceFile> files;    ///< in their order; empty: one PLY that was read in place
+  std::vector<SourceCount> counts;  ///< of an import, those that are not 0; by name
 };
 
 }  // namespace meshhier

@@ -1,8 +1,11 @@
 #include "mesh_io/number_text.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <cmath>
 #include <limits>
+#include <string>
 #include <system_error>
 
 namespace meshhier::mesh_io {
@@ -31,6 +34,37 @@ bool is_large(std::string_view word) {
     power += std::clamp<std::int64_t>(*value, -1'000'000, 1'000'000);
   }
   return power > 0;
+}
+
+/// The value of one in the last digit of a number: 0.001 of "2.500". 0 if it is out of all range.
+double unit_of_last_digit(std::string_view word) {
+  static constexpr std::array kUnits{1e0,   1e-1,  1e-2,  1e-3,  1e-4,  1e-5,  1e-6,
+                                     1e-7,  1e-8,  1e-9,  1e-10, 1e-11, 1e-12, 1e-13,
+                                     1e-14, 1e-15, 1e-16, 1e-17, 1e-18, 1e-19, 1e-20};
+  const std::size_t exponent_at = std::min(word.find_first_of("eE"), word.size());
+  const std::size_t point = std::min(word.find('.'), exponent_at);
+  const std::size_t decimals = exponent_at - std::min(point + 1, exponent_at);
+  if (exponent_at == word.size() && decimals < kUnits.size())
+    return kUnits[decimals];
+  const std::string_view exponent = word.substr(std::min(exponent_at + 1, word.size()));
+  const std::int64_t power =
+      parse_integer(exponent).value_or(0) - static_cast<std::int64_t>(decimals);
+  return parse_real<double>("1e" + std::to_string(power)).value_or(0);
+}
+
+/// For a value that is not a float.
+bool float_says_it(std::string_view word, double value) {
+  const auto narrow = static_cast<float>(value);
+  if (!std::isfinite(narrow))
+    return false;
+  // The float may lie in the middle between two texts, as -266108.4375 does beside -266108.438, and
+  // the double is off the text by half its own last bit.
+  const double size = std::abs(value);
+  const double last_bit = std::nextafter(size, std::numeric_limits<double>::infinity()) - size;
+  if (std::abs(value - static_cast<double>(narrow)) > (unit_of_last_digit(word) + last_bit) / 2)
+    return false;
+  // Rounded twice, by way of the double, the float may be another one.
+  return parse_real<float>(word) == narrow;
 }
 
 }  // namespace
@@ -70,6 +104,14 @@ std::optional<Scalar> parse_real(std::string_view word) {
       value = -value;
   }
   return value;
+}
+
+std::optional<DecimalNumber> parse_decimal(std::string_view word) {
+  const auto value = parse_real<double>(word);
+  if (!value)
+    return std::nullopt;
+  const bool is_float = static_cast<double>(static_cast<float>(*value)) == *value;
+  return DecimalNumber{*value, is_float || float_says_it(word, *value)};
 }
 
 template std::optional<float> parse_real<float>(std::string_view);

@@ -16,4 +16,15 @@ std::optional<std::int64_t> parse_integer(std::string_view word);
 template <class Scalar>
 std::optional<Scalar> parse_real(std::string_view word);
 
+/// A decimal number whose type nobody declared.
+struct DecimalNumber {
+  double value = 0;
+  /// A float says all that the text does: rounded to the text's last digit it is the text again.
+  /// That is so for what was written from a float, in whatever number of digits.
+  bool fits_float = true;
+};
+
+/// As parse_real<double>. float(value) is the correctly rounded float if `fits_float`.
+std::optional<DecimalNumber> parse_decimal(std::string_view word);
+
 }  // namespace meshhier::mesh_io

@@ -1,6 +1,11 @@
 #include "pipeline/build.h"
 
+#include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
+#include "pipeline/build_input.h"
 #include "pipeline/build_plan.h"
+#include "pipeline/config_schema.h"
+#include "pipeline/import_stage.h"
 #include "pipeline/memory_plan.h"
 #include "pipeline/outline_stage.h"
 #include "pipeline/partition_stage.h"
@@ -14,7 +19,9 @@
 #include "storage/tileset.h"
 #include "storage/work_directory.h"
 
+#include <algorithm>
 #include <future>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -23,9 +30,11 @@
 namespace meshhier::pipeline {
 namespace {
 
+constexpr std::size_t kLongestName = 255;
+
 /// What `config` became, with what does not decide the result.
 nlohmann::ordered_json whole_config(const Config& config) {
-  nlohmann::ordered_json whole{{"input", config.input.string()},
+  nlohmann::ordered_json whole{{"input", find_config_key("input")->show(config)},
                                {"output", config.output.string()},
                                {"memory_budget", exact_size_text(config.memory_budget)},
                                {"threads", config.threads}};
@@ -58,6 +67,12 @@ std::string report_text(const SourceSummary& source, const std::string& found,
   text += fmt::format("{} vertices, {} triangles -> {} partitions, {} levels, {} tiles, {}\n",
                       source.vertices, source.triangles, stats.partitions, stats.levels,
                       stats.tiles, rounded_size_text(stats.output_bytes));
+  for (const SourceFile& file : source.files) {
+    text += fmt::format("imported {}: {}, {}\n", plain_text(file.name, kLongestName), file.format,
+                        rounded_size_text(file.bytes));
+  }
+  if (!source.counts.empty())
+    text += "counted " + counts_text(source.counts) + '\n';
   if (source.degenerate_triangles > 0) {
     text += fmt::format("dropped {} degenerate triangles\n", source.degenerate_triangles);
   }
@@ -67,22 +82,32 @@ std::string report_text(const SourceSummary& source, const std::string& found,
   return text + stats_text(stats);
 }
 
+BuildInput::Place import_place(const storage::WorkDirectory& work, storage::MemoryPool& pool,
+                               std::uint64_t sort_bytes, Progress& progress,
+                               const CancelToken& cancel) {
+  return {storage::imported_path(work.path()),
+          work.path() / "import",
+          pool,
+          sort_bytes,
+          progress,
+          cancel};
+}
+
 /// Checks, samples and distributes the input, and notes what was learnt of it.
-void read_input(std::unique_ptr<mesh_io::MeshSource> source, const Config& config,
-                const BuildPlan& build, Workshop& workshop, Progress& progress,
-                BuildEnvironment environment) {
+void read_input(BuildInput& input, const Config& config, const BuildPlan& build, Workshop& workshop,
+                Progress& progress, BuildEnvironment environment) {
   const CancelToken& cancel = environment.cancel;
-  const storage::FileIdentity before = environment.files.identity(config.input);
   storage::ScratchFile vertices = workshop.mesh_scratch.beside("vertices");
-  SourceMesh mesh(std::move(source), config.input.filename().string(), vertices,
-                  build.memory.blocks_in_flight, progress, cancel);
+  SourceMesh mesh(input.open(), input.files().name(), vertices, build.memory.blocks_in_flight,
+                  progress, cancel);
   distribute(mesh, build.tree, config.partition.axis, workshop.chunks, build.memory,
              workshop.mesh_scratch, progress, cancel);
   SourceSummary summary = mesh.summary();
-  summary.checksum = mesh.checksum(cancel);
-  if (environment.files.identity(config.input) != before) {
-    throw Error(ErrorCode::input,
-                config.input.string() + " was changed while it was read; build it again");
+  if (input.needs_import()) {
+    input.complete(summary);
+  } else {
+    summary.checksum = mesh.checksum(cancel);
+    input.files().check_unchanged();
   }
   workshop.journal.note_source(summary, mesh.origin());
 }
@@ -94,6 +119,17 @@ std::optional<Transform> tileset_transform(const Config& config) {
   const auto [x, y, z] = place.anchor.value_or(std::array<double, 3>{});
   return storage::globe_transform(*place.longitude, *place.latitude, place.height.value_or(0),
                                   {x, y, z}, config.up);
+}
+
+/// What was recalled of an earlier build is of no use after all: the input is imported again.
+void import_again(BuildInput& input, const BuildInput::Place& place) {
+  const mesh_io::MeshDescription recalled = input.description();
+  input.import(place);
+  const mesh_io::MeshDescription& mesh = input.description();
+  if (mesh.vertex_count != recalled.vertex_count || mesh.face_count != recalled.face_count ||
+      mesh.attributes != recalled.attributes) {
+    throw Error(ErrorCode::input, input.files().name() + " was changed; build it again");
+  }
 }
 
 /// A failure that leaves work to go on with says so.
@@ -145,18 +181,24 @@ void make_hierarchy(const Config& config, const BuildPlan& build, Workshop& work
 }
 
 BuildReport build_in(storage::WorkDirectory& work, const Config& config, const BuildPlan& build,
-                     std::unique_ptr<mesh_io::MeshSource> source, BuildEnvironment environment) {
+                     BuildInput& input, storage::MemoryPool& pool, StageMeter& progress,
+                     BuildEnvironment environment) {
   storage::FileSystem& files = environment.files;
-  storage::MemoryPool pool(build.memory.pool_bytes);
-  StageMeter progress({environment.progress, files.counters(), pool.scratch_use()});
-
+  pool.set_capacity(build.memory.pool_bytes);
   if (files.exists(storage::journal_path(work.path())))
     progress.stage("resume", 0, "entries");
   const OpenWorkshop open =
-      open_workshop(files, work, config, *source, build, pool, environment.cancel);
+      open_workshop(files, work, config, input, build, pool, environment.cancel);
   Workshop& workshop = *open.workshop;
-  if (!workshop.journal.source())
-    read_input(std::move(source), config, build, workshop, progress, environment);
+  if (!workshop.journal.source()) {
+    if (!input.can_be_read()) {
+      const std::uint64_t sort_bytes =
+          std::min(plan_import(config.memory_budget).sort_bytes, build.memory.work_bytes / 4);
+      import_again(input, import_place(work, pool, sort_bytes, progress, environment.cancel));
+    }
+    read_input(input, config, build, workshop, progress, environment);
+  }
+  input.drop();
   work.keep(true);
   if (!workshop.journal.is_complete())
     make_hierarchy(config, build, workshop, work.built(), progress, environment);
@@ -178,6 +220,31 @@ BuildReport build_in(storage::WorkDirectory& work, const Config& config, const B
   return report;
 }
 
+/// What was imported goes while the work directory is locked.
+struct DropAtEnd {
+  BuildInput& input;
+  ~DropAtEnd() { input.drop(); }
+};
+
+/// Imports the input, unless an earlier build did; then it is known what there is to do.
+BuildPlan plan_imported(storage::WorkDirectory& work, const Config& config, BuildInput& input,
+                        storage::MemoryPool& pool, StageMeter& progress,
+                        BuildEnvironment environment) {
+  const auto earlier = find_earlier_build(environment.files, work.path());
+  work.keep(earlier.has_value());
+  if (!earlier || !input.recall(*earlier, environment.cancel)) {
+    const ImportMemory memory = plan_import(config.memory_budget);
+    pool.set_capacity(memory.pool_bytes);
+    input.import(import_place(work, pool, memory.sort_bytes, progress, environment.cancel));
+    release_free_memory();
+  }
+  BuildPlan build = plan_build(config, input.description(), input.imported_bytes());
+  build.disk.temporary_bytes = std::max(
+      build.disk.temporary_bytes, predict_import(input.files(), plan_import(config.memory_budget)));
+  check_disk(build.disk, config.output, environment.files);
+  return build;
+}
+
 }  // namespace
 
 BuildReport build_hierarchy(const Config& config, const BuildOptions& options,
@@ -187,18 +254,29 @@ BuildReport build_hierarchy(const Config& config, const BuildOptions& options,
 
   // Everything that can be refused is refused before anything is written.
   check_apart(config, files);
-  std::unique_ptr<mesh_io::MeshSource> source = mesh_io::open_mesh(files, config.input);
-  const BuildPlan build = plan_build(config, source->description());
+  storage::MemoryPool pool(0);
+  BuildInput input(config, files);
+  std::optional<BuildPlan> build;
+  if (!input.needs_import())
+    build = plan_build(config, input.description());
   const tbb::global_control thread_limit(tbb::global_control::max_allowed_parallelism,
-                                         build.threads);
+                                         thread_count(config));
   storage::check_output(files, config.output, options.force);
-  check_disk(build.disk, config.output, files);
+  if (build)
+    check_disk(build->disk, config.output, files);
+  else
+    check_import_disk(predict_import(input.files(), plan_import(config.memory_budget)),
+                      config.output, files);
 
   storage::WorkDirectory work(files, config.output, options.force);
   if (options.restart)
     work.clear();
+  const DropAtEnd drop{input};
+  StageMeter progress({environment.progress, files.counters(), pool.scratch_use()});
+  if (!build)
+    build = plan_imported(work, config, input, pool, progress, environment);
   try {
-    return build_in(work, config, build, std::move(source), environment);
+    return build_in(work, config, *build, input, pool, progress, environment);
   } catch (const Error& error) {
     if (error.code() == ErrorCode::input)
       work.keep(false);  // nothing to go on with

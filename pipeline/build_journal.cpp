@@ -67,6 +67,37 @@ std::string differences(const Value& was, const Value& is) {
 
 }  // namespace
 
+std::optional<EarlierBuild> find_earlier_build(storage::FileSystem& files,
+                                               const std::filesystem::path& work) {
+  if (!files.exists(storage::journal_path(work)))
+    return std::nullopt;
+  EarlierBuild earlier;
+  bool is_whole = false;
+  storage::ScratchUse uncounted;
+  const auto read = [&](const Value& entry) {
+    if (entry.contains("build")) {
+      earlier.decides_result = entry.at("build");
+      earlier.input_modified_ns = entry.at("modified");
+    } else if (entry.contains("source")) {
+      earlier.source = storage::parse_source(
+          nlohmann::ordered_json(entry.at("source").at("summary")), "journal");
+      is_whole = earlier.decides_result.is_object();
+    }
+  };
+  const storage::Journal journal(files, storage::journal_path(work), uncounted,
+                                 [&](const Value& entry) {
+                                   try {
+                                     read(entry);
+                                   } catch (const Value::exception&) {
+                                   } catch (const Error& error) {
+                                     if (error.code() != ErrorCode::corrupt)
+                                       throw;
+                                   }
+                                   return true;
+                                 });
+  return is_whole ? std::optional(std::move(earlier)) : std::nullopt;
+}
+
 BuildJournal::BuildJournal(storage::FileSystem& files, const std::filesystem::path& work,
                            const BuildIdentity& identity, storage::ScratchUse& use, Forest& forest,
                            Chunks& chunks, const CancelToken& cancel)

@@ -46,6 +46,17 @@ struct BuildIdentity {
   std::int64_t input_modified_ns = 0;  ///< the input may be the same after it was touched
 };
 
+/// What an earlier build says of itself.
+struct EarlierBuild {
+  nlohmann::json decides_result;
+  std::int64_t input_modified_ns = 0;
+  SourceSummary source;
+};
+/// Of the journal in the directory `work`, unless the input was not read as a whole. Whether all
+/// else is there is not looked at. Throws Error(io).
+std::optional<EarlierBuild> find_earlier_build(storage::FileSystem& files,
+                                               const std::filesystem::path& work);
+
 /// The step of a tile whose index on its level is known.
 using IndexedStep = std::pair<std::uint32_t, Step>;
 

@@ -100,12 +100,17 @@ JobSize job_size(const Config& config, const mesh_io::MeshDescription& mesh, con
 
 }  // namespace
 
-BuildPlan plan_build(const Config& config, const mesh_io::MeshDescription& mesh) {
+std::size_t thread_count(const Config& config) {
+  return config.threads > 0 ? config.threads
+                            : static_cast<std::size_t>(tbb::info::default_concurrency());
+}
+
+BuildPlan plan_build(const Config& config, const mesh_io::MeshDescription& mesh,
+                     std::uint64_t imported_bytes) {
   const Tree tree = plan_tree(config, mesh.vertex_count);
-  const std::size_t threads = config.threads > 0
-                                  ? config.threads
-                                  : static_cast<std::size_t>(tbb::info::default_concurrency());
-  const JobSize job = job_size(config, mesh, tree, threads);
+  const std::size_t threads = thread_count(config);
+  JobSize job = job_size(config, mesh, tree, threads);
+  job.imported_bytes = imported_bytes;
   const MemoryPlan memory = plan_memory(config.memory_budget, job);
   return {tree, threads, job.asked_vertices, job, memory, predict_disk(job, memory)};
 }
@@ -116,6 +121,18 @@ std::filesystem::path existing_directory(const std::filesystem::path& output,
   while (!directory.empty() && !files.exists(directory))
     directory = directory.parent_path();
   return directory.empty() ? "." : directory;
+}
+
+void check_import_disk(std::uint64_t bytes, const std::filesystem::path& output,
+                       storage::FileSystem& files) {
+  const std::filesystem::path directory = existing_directory(output, files);
+  const std::uint64_t free = files.free_bytes(directory);
+  if (free + bytes_left(output, files) < bytes) {
+    throw Error(ErrorCode::budget,
+                fmt::format("{} has {} free; to import the input takes up to about {} of temporary "
+                            "files",
+                            directory.string(), rounded_size_text(free), rounded_size_text(bytes)));
+  }
 }
 
 void check_disk(const DiskNeed& need, const std::filesystem::path& output,
@@ -133,12 +150,15 @@ void check_disk(const DiskNeed& need, const std::filesystem::path& output,
 }
 
 void check_apart(const Config& config, storage::FileSystem& files) {
-  const std::filesystem::path input = files.canonical(config.input);
   const std::filesystem::path output = files.canonical(config.output);
-  const auto [end, rest] = std::mismatch(output.begin(), output.end(), input.begin(), input.end());
-  if (end == output.end()) {
-    throw Error(ErrorCode::usage,
-                fmt::format("the input {} lies in the output {}", input.string(), output.string()));
+  for (const std::filesystem::path& path : config.input) {
+    const std::filesystem::path input = files.canonical(path);
+    const auto [end, rest] =
+        std::mismatch(output.begin(), output.end(), input.begin(), input.end());
+    if (end == output.end()) {
+      throw Error(ErrorCode::usage, fmt::format("the input {} lies in the output {}",
+                                                input.string(), output.string()));
+    }
   }
 }
 

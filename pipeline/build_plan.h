@@ -24,17 +24,26 @@ struct BuildPlan {
   DiskNeed disk;
 };
 
-/// The plan for a mesh of which the header was read. Throws Error(usage | input) if the partitions
-/// asked for cannot be, Error(budget) if the memory budget is too small.
-BuildPlan plan_build(const Config& config, const mesh_io::MeshDescription& mesh);
+/// The plan for a mesh of which the header was read; `imported_bytes`: of the PLY, if it is one
+/// that the input was imported to. Throws Error(usage | input) if the partitions asked for cannot
+/// be, Error(budget) if the memory budget is too small.
+BuildPlan plan_build(const Config& config, const mesh_io::MeshDescription& mesh,
+                     std::uint64_t imported_bytes = 0);
 
-/// A replaced output is removed, and the input must not go with it: throws Error(usage) if it lies
-/// there.
+/// Threads that a build of that config uses.
+std::size_t thread_count(const Config& config);
+
+/// A replaced output is removed, and the input must not go with it: throws Error(usage) if a file
+/// of it lies there.
 void check_apart(const Config& config, storage::FileSystem& files);
 
 /// The directory nearest above `output` that is there.
 std::filesystem::path existing_directory(const std::filesystem::path& output,
                                          storage::FileSystem& files);
+
+/// Throws Error(budget) if the disk that will hold `output` has less than `bytes` for an import.
+void check_import_disk(std::uint64_t bytes, const std::filesystem::path& output,
+                       storage::FileSystem& files);
 
 /// Throws Error(budget) if the disk that will hold `output` has too little room.
 void check_disk(const DiskNeed& need, const std::filesystem::path& output,

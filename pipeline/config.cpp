@@ -186,11 +186,12 @@ Override split_override(const std::string& setting) {
 Json override_value(const Override& setting) {
   const ConfigKey* key = find_config_key(setting.path);
   const bool wants_text =
-      key != nullptr &&
-      (key->kind == KeyKind::path || key->kind == KeyKind::text || key->kind == KeyKind::choice);
+      key != nullptr && (key->kind == KeyKind::path || key->kind == KeyKind::paths ||
+                         key->kind == KeyKind::text || key->kind == KeyKind::choice);
   ParseGuard guard("--set " + plain_text(setting.path, kLongestQuote));
   Json value = Json::parse(setting.text, watched_by(guard), false);
-  if (value.is_discarded() || (wants_text && !value.is_string()))
+  const bool is_list = value.is_array() && key != nullptr && key->kind == KeyKind::paths;
+  if (value.is_discarded() || (wants_text && !value.is_string() && !is_list))
     value = setting.text;
   return value;
 }
@@ -329,12 +330,14 @@ void check_output(const Config& config, const Draft& draft) {
     refuse(draft.origin_of("output"),
            "expected the path of a directory to make, found " + in_quotes(config.output.string()));
   }
-  const auto [end, unused] = std::mismatch(config.output.begin(), config.output.end(),
-                                           config.input.begin(), config.input.end());
-  if (end == config.output.end()) {
-    refuse(draft.origin_of("output"),
-           fmt::format("{} is or holds the input {}; choose another directory",
-                       in_quotes(config.output.string()), in_quotes(config.input.string())));
+  for (const std::filesystem::path& input : config.input) {
+    const auto [end, unused] =
+        std::mismatch(config.output.begin(), config.output.end(), input.begin(), input.end());
+    if (end == config.output.end()) {
+      refuse(draft.origin_of("output"),
+             fmt::format("{} is or holds the input {}; choose another directory",
+                         in_quotes(config.output.string()), in_quotes(input.string())));
+    }
   }
 }
 
@@ -366,6 +369,15 @@ std::string read_text(storage::FileSystem& files, const std::filesystem::path& p
 
 }  // namespace
 
+std::string InputPaths::string() const {
+  std::string text;
+  for (const std::filesystem::path& path : *this) {
+    text += text.empty() ? "" : ", ";
+    text += path.string();
+  }
+  return text;
+}
+
 Config parse_config(std::string_view text, const ConfigOrigin& origin,
                     std::span<const std::string> overrides) {
   Draft draft(parse_text(text, origin.name), origin.name);
@@ -376,7 +388,8 @@ Config parse_config(std::string_view text, const ConfigOrigin& origin,
   Config config;
   assign_all(config, draft, draft.document(), "");
   require_keys(config, origin.name);
-  config.input = resolved_path(draft, "input", config.input, origin.directory);
+  for (std::filesystem::path& input : config.input)
+    input = resolved_path(draft, "input", input, origin.directory);
   config.output = resolved_path(draft, "output", config.output, origin.directory);
   check_output(config, draft);
   check_placement(config, draft);

@@ -10,13 +10,16 @@
 #include "storage/file.h"
 #include "storage/tile_glb.h"
 
+#include <algorithm>
 #include <array>
+#include <concepts>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -100,8 +103,23 @@ struct PlacementConfig {
   friend bool operator==(const PlacementConfig&, const PlacementConfig&) = default;
 };
 
+/// Mesh files: one, or several that are joined in their order.
+struct InputPaths : std::vector<std::filesystem::path> {
+  InputPaths() = default;
+  template <class Path>
+  requires std::convertible_to<Path, std::filesystem::path> InputPaths(const Path& path)
+      : vector{std::filesystem::path(path)} {}
+
+  /// For messages: with ", " between them.
+  std::string string() const;
+  friend bool operator==(const InputPaths& a, const InputPaths& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end());
+  }
+};
+
 struct Config {
-  std::filesystem::path input;   ///< a mesh file
+  InputPaths input;              ///< not empty
+  bool weld = false;             ///< vertices of equal position and attributes become one
   std::filesystem::path output;  ///< a directory, without a slash at its end
   std::uint64_t memory_budget = std::uint64_t{1} << 30;  ///< bytes, > 0
   std::uint32_t threads = 0;                             ///< 0: all
@@ -137,8 +155,9 @@ Config parse_config(std::string_view text, const ConfigOrigin& origin,
 Config load_config(storage::FileSystem& files, const std::filesystem::path& file,
                    std::span<const std::string> overrides);
 
-/// What decides the result: partition, simplify, outline, storage; not paths, budget, threads. All
-/// defaults are filled in, except that simplify.vertices is absent if it follows partition.count.
+/// What decides the result: weld, partition, simplify, outline, storage; not paths, budget,
+/// threads. All defaults are filled in, except that simplify.vertices is absent if it follows
+/// partition.count.
 nlohmann::ordered_json resolved_json(const Config& config);
 
 }  // namespace meshhier::pipeline

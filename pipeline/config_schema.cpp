@@ -28,6 +28,8 @@ constexpr double kMostPartitions = 1073741824;
 constexpr double kMostSectors = 65536;
 /// More than any machine has; catches a size that was meant for the budget.
 constexpr double kMostThreads = 4096;
+/// Each is a line of the manifest and of the journal, which have a MiB.
+constexpr double kMostInputs = 1000;
 /// JSON numbers are exact up to here.
 constexpr double kMostBytes = 9007199254740991.0;  // 2^53 - 1
 
@@ -80,6 +82,31 @@ ConfigKey required_path(std::string path, Field field) {
   key.show = [field](const Config& config) {
     return field(config).empty() ? Json() : Json(field(config).string());
   };
+  return key;
+}
+
+template <class Field>
+ConfigKey required_paths(std::string path, double most, Field field) {
+  ConfigKey key{.path = std::move(path), .kind = KeyKind::paths, .required = true, .maximum = most};
+  key.assign = [field](Config& config, const Json& value) {
+    field(config).clear();
+    for (const Json& one : value.is_array() ? value : Json::array({value}))
+      field(config).emplace_back(one.get<std::string>());
+  };
+  key.show = [field](const Config& config) {
+    Json all = Json::array();
+    for (const std::filesystem::path& one : field(config))
+      all.push_back(one.string());
+    return all.empty() ? Json() : all.size() == 1 ? all[0] : all;
+  };
+  return key;
+}
+
+template <class Field>
+ConfigKey boolean(std::string path, Field field) {
+  ConfigKey key{.path = std::move(path), .kind = KeyKind::boolean};
+  key.assign = [field](Config& config, const Json& value) { field(config) = value.get<bool>(); };
+  key.show = [field](const Config& config) { return Json(field(config)); };
   return key;
 }
 
@@ -166,14 +193,16 @@ ConfigKey deciding(ConfigKey key) {
 std::vector<ConfigKey> make_config_keys() {
   return {
       ignored_text("$schema"),  // lets editors find configs/meshhier.schema.json
-      required_path(
-          "input", [](auto& c) -> auto& { return c.input; }),
+      required_paths(
+          "input", kMostInputs, [](auto& c) -> auto& { return c.input; }),
       required_path(
           "output", [](auto& c) -> auto& { return c.output; }),
       bytes(
           "memory_budget", [](auto& c) -> auto& { return c.memory_budget; }),
       number(
           "threads", {0, kMostThreads}, [](auto& c) -> auto& { return c.threads; }),
+      deciding(boolean(
+          "weld", [](auto& c) -> auto& { return c.weld; })),
       deciding(number(
           "partition.vertices", kTileVertices,
           [](auto& c) -> auto& { return c.partition.vertices; })),
@@ -278,6 +307,12 @@ bool accepts(const ConfigKey& key, const Json& value) {
       return value.is_string();
     case KeyKind::path:
       return is_usable_path(value);
+    case KeyKind::paths:
+      return is_usable_path(value) || (value.is_array() && !value.empty() &&
+                                       static_cast<double>(value.size()) <= key.maximum &&
+                                       std::all_of(value.begin(), value.end(), is_usable_path));
+    case KeyKind::boolean:
+      return value.is_boolean();
     case KeyKind::integer:
       return is_integer_within(key, value);
     case KeyKind::number:
@@ -301,6 +336,10 @@ std::string expectation(const ConfigKey& key) {
       return "a string";
     case KeyKind::path:
       return "a path";
+    case KeyKind::paths:
+      return fmt::format("a path or a list of 1 to {:.0f} paths", key.maximum);
+    case KeyKind::boolean:
+      return "true or false";
     case KeyKind::integer:
       return fmt::format("an integer from {:.0f} to {:.0f}", key.minimum, key.maximum);
     case KeyKind::number:

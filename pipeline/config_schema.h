@@ -16,6 +16,8 @@ namespace meshhier::pipeline {
 enum class KeyKind {
   text,     ///< any string
   path,     ///< a string that is not empty
+  paths,    ///< a path, or a list of 1 to `maximum` of them
+  boolean,  ///< true or false
   integer,  ///< minimum to maximum
   number,   ///< above minimum, up to maximum
   numbers,  ///< a list of so many finite numbers as `maximum` says

@@ -252,9 +252,10 @@ DiskNeed predict_disk(const JobSize& job, const MemoryPlan& plan) {
 
   // The pool takes what comes first and frees it with its spool; a file shrinks at its end only.
   const double chunks = v.chunk_vertices + v.chunk_triangles;
-  const double partition = beyond_pool(v.input + v.windows);
-  const double triangles = beyond_pool(v.input + v.ranks + v.waiting + chunks);
-  const double stored = beyond_pool(v.input) + chunks;
+  const auto imported = static_cast<double>(job.imported_bytes);  // on disk whatever the pool
+  const double partition = imported + beyond_pool(v.input + v.windows);
+  const double triangles = imported + beyond_pool(v.input + v.ranks + v.waiting + chunks);
+  const double stored = imported + beyond_pool(v.input) + chunks;
   const double leaves = chunks + v.leaves;
   const double simplify = v.leaves + v.simplified;
 

@@ -3,7 +3,8 @@
 // What is written when, and how long it stays:
 //
 //   data                    written in     stays until
-//   the input once more     ingest         triangles are done  only if it cannot be read in place
+//   the input as a PLY      import         triangles are done  if it is imported
+//   its vertices once more  ingest         triangles are done  only if they cannot be read in place
 //   windows of the medians  partition      partition is done
 //   ranks, triangles that   distribute,    triangles are done
 //   wait for a rank         triangles

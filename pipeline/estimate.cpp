@@ -1,11 +1,17 @@
 #include "pipeline/estimate.h"
 
+#include "pipeline/build_input.h"
+#include "pipeline/import_stage.h"
 #include "pipeline/size_text.h"
+#include "storage/layout.h"
 #include "storage/work_directory.h"
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 
 #include <fmt/format.h>
+#include <tbb/global_control.h>
 
 namespace meshhier::pipeline {
 namespace {
@@ -83,6 +89,38 @@ Json memory_json(const BuildEstimate& e) {
 
 }  // namespace
 
+namespace {
+
+/// What is in text or packed, or is to be welded, must be read to be counted: it is imported beside
+/// the output, which leaves nothing behind.
+void count_by_import(const Config& config, BuildInput& input, storage::FileSystem& files,
+                     storage::MemoryPool& pool, const CancelToken& cancel) {
+  const ImportMemory memory = plan_import(config.memory_budget);
+  check_import_disk(predict_import(input.files(), memory), config.output, files);
+  const std::filesystem::path beside =
+      existing_directory(config.output, files) / config.output.filename();
+  std::random_device chance;
+  const auto scratch = [&] { return storage::verify_scratch_path(beside, chance()); };
+  const tbb::global_control thread_limit(tbb::global_control::max_allowed_parallelism,
+                                         thread_count(config));
+  pool.set_capacity(memory.pool_bytes);
+  NoProgress silent;
+  const std::filesystem::path ply = scratch();
+  input.import({ply, scratch(), pool, memory.sort_bytes, silent, cancel});
+}
+
+void describe_import(const InputFiles& input, const ImportMemory& memory, BuildEstimate& estimate) {
+  estimate.mesh.format.clear();
+  for (const InputFileFacts& file : input.all())
+    estimate.mesh.format += (estimate.mesh.format.empty() ? "" : ", ") + name_of(file.format);
+  estimate.mesh.format += " (imported to count it)";
+  estimate.mesh.file_bytes = input.bytes();
+  std::uint64_t& temporary = estimate.plan.disk.temporary_bytes;
+  temporary = std::max(temporary, predict_import(input, memory));
+}
+
+}  // namespace
+
 TimeEstimate estimate_time(const BuildPlan& plan, SimplifyMethod method,
                            std::uint64_t input_bytes) {
   TimeEstimate time;
@@ -97,16 +135,25 @@ TimeEstimate estimate_time(const BuildPlan& plan, SimplifyMethod method,
   return time;
 }
 
-BuildEstimate estimate_build(const Config& config, bool force, storage::FileSystem& files) {
+BuildEstimate estimate_build(const Config& config, bool force, storage::FileSystem& files,
+                             const CancelToken& cancel) {
   check_apart(config, files);
-  const auto source = mesh_io::open_mesh(files, config.input);
-  BuildEstimate estimate{.plan = plan_build(config, source->description()),
-                         .mesh = source->description(),
+  storage::MemoryPool pool(0);
+  BuildInput input(config, files);
+  if (input.needs_import()) {
+    storage::check_output(files, config.output, force);
+    count_by_import(config, input, files, pool, cancel);
+  }
+  BuildEstimate estimate{.plan = plan_build(config, input.description(), input.imported_bytes()),
+                         .mesh = input.description(),
                          .tiles = {},
                          .time = {},
                          .disk = existing_directory(config.output, files),
                          .input = config.input,
                          .output = config.output};
+  if (input.needs_import())
+    describe_import(input.files(), plan_import(config.memory_budget), estimate);
+  input.drop();
   storage::check_output(files, config.output, force);
   check_disk(estimate.plan.disk, config.output, files);
   estimate.tiles = count_tiles(estimate.plan.job);
@@ -142,7 +189,10 @@ std::string estimate_text(const BuildEstimate& e) {
 }
 
 Json to_json(const BuildEstimate& e) {
-  return {{"input", e.input.string()},
+  Json paths = Json::array();
+  for (const std::filesystem::path& path : e.input)
+    paths.push_back(path.string());
+  return {{"input", paths.size() == 1 ? paths[0] : paths},
           {"output", e.output.string()},
           {"input_bytes", e.mesh.file_bytes},
           {"vertices", e.mesh.vertex_count},

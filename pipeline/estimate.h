@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pipeline/build_plan.h"
+#include "pipeline/cancel.h"
 #include "pipeline/config.h"
 #include "storage/file.h"
 
@@ -35,12 +36,16 @@ struct BuildEstimate {
   std::uint64_t least_budget_bytes = 0;
   std::filesystem::path disk;  ///< a directory on the disk that would hold the output
   std::uint64_t free_bytes = 0;
-  std::filesystem::path input, output;
+  InputPaths input;
+  std::filesystem::path output;
 };
 
-/// Refuses what build_hierarchy() refuses before its work, with the same Error; writes nothing.
+/// Refuses what build_hierarchy() refuses before its work, with the same Error; leaves nothing
+/// behind. Input that must be imported is imported to count it, into temporary files beside the
+/// output, which takes as long as in a build; of all else only the header is read.
 /// Whether the output's directory can be written is found out by building only.
-BuildEstimate estimate_build(const Config& config, bool force, storage::FileSystem& files);
+BuildEstimate estimate_build(const Config& config, bool force, storage::FileSystem& files,
+                             const CancelToken& cancel = CancelToken());
 
 /// For people, a few lines.
 std::string estimate_text(const BuildEstimate& estimate);

@@ -2,7 +2,9 @@
 
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
+#include "pipeline/attribute_names.h"
 #include "pipeline/cut.h"
+#include "pipeline/import_stage.h"
 #include "pipeline/size_text.h"
 #include "pipeline/summary.h"
 #include "storage/hierarchy_reader.h"
@@ -79,21 +81,6 @@ std::string grouped(std::uint64_t number) {
   return digits;
 }
 
-std::string attribute_names(const AttributeLayout& layout) {
-  std::string names;
-  const auto add = [&](bool present, std::string_view name) {
-    if (present)
-      names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
-  };
-  add(layout.normals, "normals");
-  constexpr std::array kTypes{"", "8-bit", "16-bit", "float"};
-  add(layout.colour != ColourType::none,
-      fmt::format("{} colours{}", kTypes[static_cast<std::size_t>(layout.colour)],
-                  layout.alpha ? " with alpha" : ""));
-  add(layout.texcoords, "texture coordinates");
-  return names.empty() ? "none" : names;
-}
-
 /// A manifest's own words, which anyone may have written.
 std::string shown(const std::string& text) {
   constexpr std::size_t kLongest = 255;  // as a file name
@@ -115,7 +102,14 @@ std::string source_text(const storage::Manifest& manifest) {
     const Vec3d& o = manifest.origin;
     text += fmt::format("origin       {} {} {}\n", o.x, o.y, o.z);
   }
-  return text + fmt::format("attributes   {}\n", attribute_names(s.attributes));
+  text += fmt::format("attributes   {}\n", attribute_names(s.attributes));
+  for (const SourceFile& file : s.files) {
+    text += fmt::format("imported     {}: {}, {}\n", shown(file.name), shown(file.format),
+                        rounded_size_text(file.bytes));
+  }
+  if (!s.counts.empty())
+    text += fmt::format("counted      {}\n", shown(counts_text(s.counts)));
+  return text;
 }
 
 /// {"a": {"b": 1}} as "a.b 1".
@@ -242,6 +236,12 @@ std::string tile_text(const TileRecord& r) {
 Json source_json(const storage::Manifest& manifest) {
   const SourceSummary& s = manifest.source;
   const auto corner = [](Vec3d p) { return Json::array({p.x, p.y, p.z}); };
+  Json files = Json::array();
+  for (const SourceFile& file : s.files)
+    files.push_back({{"name", file.name}, {"format", file.format}, {"bytes", file.bytes}});
+  Json counts = Json::object();
+  for (const SourceCount& count : s.counts)
+    counts[count.name] = count.count;
   return {{"file_name", s.file_name},
           {"file_bytes", s.file_bytes},
           {"vertices", s.vertices},
@@ -252,7 +252,9 @@ Json source_json(const storage::Manifest& manifest) {
           {"bounds", {{"min", corner(s.bounds.min)}, {"max", corner(s.bounds.max)}}},
           {"double_precision", s.double_precision},
           {"origin", corner(manifest.origin)},
-          {"attributes", attribute_names(s.attributes)}};
+          {"attributes", attribute_names(s.attributes)},
+          {"imported_files", files},
+          {"counts", counts}};
 }
 
 Json partitions_json(const LevelSummary& last, const CompactnessSummary& compactness) {

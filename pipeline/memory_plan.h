@@ -10,9 +10,10 @@ namespace meshhier::pipeline {
 struct JobSize {
   std::uint64_t vertex_count = 0;
   std::uint64_t face_count = 0;
-  int channels = 0;               ///< attribute floats per vertex
-  bool vertices_in_place = true;  ///< else the vertices are spooled once more
-  bool wide_coordinates = false;  ///< spooled as doubles
+  int channels = 0;                  ///< attribute floats per vertex
+  std::uint64_t imported_bytes = 0;  ///< of the PLY that the input was imported to, if it was
+  bool vertices_in_place = true;     ///< else the vertices are spooled once more
+  bool wide_coordinates = false;     ///< spooled as doubles
   std::uint32_t partition_count = 0;
   std::uint32_t largest_tile = 0;  ///< vertices of the largest partition or simplified mesh
   std::size_t threads = 1;

@@ -14,12 +14,6 @@ namespace {
 
 constexpr std::size_t kBlock = mesh_io::MeshSource::kBlockSize;
 
-bool fits_float(Vec3d p) {
-  constexpr double kMost = std::numeric_limits<float>::max();
-  const bool in_range = std::abs(p.x) <= kMost && std::abs(p.y) <= kMost && std::abs(p.z) <= kMost;
-  return in_range && to_double(to_float(p)) == p;
-}
-
 /// The coordinate nearest to the middle that is a multiple of a power of two about a thousandth of
 /// the extent: it has few digits, and what is left of the coordinates is small.
 double round_origin(double low, double high) {
@@ -67,6 +61,12 @@ struct BlockScan {
 };
 
 }  // namespace
+
+bool fits_float(Vec3d p) {
+  constexpr double kMost = std::numeric_limits<float>::max();
+  const bool in_range = std::abs(p.x) <= kMost && std::abs(p.y) <= kMost && std::abs(p.z) <= kMost;
+  return in_range && to_double(to_float(p)) == p;
+}
 
 SourceMesh::SourceMesh(std::unique_ptr<mesh_io::MeshSource> source, std::string file_name,
                        storage::ScratchFile& scratch, std::size_t in_flight, Progress& progress,

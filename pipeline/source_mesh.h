@@ -17,6 +17,9 @@
 
 namespace meshhier::pipeline {
 
+/// Whether all three coordinates are floats.
+bool fits_float(Vec3d p);
+
 /// Vertices first, first + 1, ... relative to the origin. Valid as long as the memory they were
 /// read into is not used.
 struct SourceVertices {

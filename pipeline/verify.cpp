@@ -42,7 +42,7 @@ void verify_all(const VerifyJob& job) {
   if (job.tiles.unreadable_count() > 0) {
     job.problems.add(fmt::format(
         "{}: seams{} not looked at: {} tiles cannot be read", job.reader.directory().string(),
-        job.options.input ? " and input" : "", job.tiles.unreadable_count()));
+        job.options.input.empty() ? "" : " and input", job.tiles.unreadable_count()));
     return;
   }
   try {
@@ -52,7 +52,7 @@ void verify_all(const VerifyJob& job) {
       throw;
     job.problems.add(error.what());
   }
-  if (job.options.input)
+  if (!job.options.input.empty())
     verify_input(job);
 }
 

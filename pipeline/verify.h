@@ -2,22 +2,22 @@
 #pragma once
 
 #include "pipeline/cancel.h"
+#include "pipeline/config.h"
 #include "pipeline/progress.h"
 #include "storage/file.h"
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace meshhier::pipeline {
 
 struct VerifyOptions {
-  std::optional<std::filesystem::path> input;  ///< the mesh it was made from: proves it lossless
-  std::uint32_t cuts = 20;                     ///< random cuts whose seams are looked at
-  std::uint64_t seed = 1;                      ///< of the random cuts
-  std::uint64_t memory_budget = 1U << 30;      ///< bytes
+  InputPaths input;         ///< the mesh it was made from, in the same order: proves it lossless
+  std::uint32_t cuts = 20;  ///< random cuts whose seams are looked at
+  std::uint64_t seed = 1;   ///< of the random cuts
+  std::uint64_t memory_budget = 1U << 30;  ///< bytes
 };
 
 struct VerifyReport {

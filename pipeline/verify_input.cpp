@@ -9,9 +9,9 @@
 #include "hierarchy/lattice.h"
 #include "mesh_io/mesh_source.h"
 #include "partition/renumber.h"
+#include "pipeline/build_input.h"
 #include "pipeline/cut.h"
 #include "pipeline/verify_parts.h"
-#include "storage/file_checksum.h"
 #include "storage/hash.h"
 
 #include <algorithm>
@@ -201,24 +201,28 @@ class InputProblems {
     add(fmt::format("{} {}, but the hierarchy was made of {}", found, what, expected));
   }
   void add(const std::string& problem) const {
-    job_.problems.add(job_.options.input->string() + ": " + problem);
+    job_.problems.add(job_.options.input.string() + ": " + problem);
   }
 
  private:
   const VerifyJob& job_;
 };
 
-void compare_file(const VerifyJob& job, const InputProblems& problems) {
+void compare_files(const VerifyJob& job, const InputFiles& input, const InputProblems& problems) {
   const SourceSummary& expected = job.reader.manifest().source;
-  const auto file = job.files.open(*job.options.input);
-  const std::uint64_t size = file->size();
-  problems.compare("bytes", expected.file_bytes, size);
-  const std::uint64_t checksum =
-      storage::FileChecksum(size).complete(*file, [&] { job.cancel.check(); });
+  problems.compare("bytes", expected.file_bytes, input.bytes());
+  const std::uint64_t checksum = input.checksum(job.cancel);
   if (checksum != expected.checksum) {
     problems.add(fmt::format("checksum {:016x}, but the hierarchy was made of a file with {:016x}",
                              checksum, expected.checksum));
   }
+}
+
+/// Whether vertices were welded, as the manifest's config says.
+bool was_welded(const VerifyJob& job) {
+  const nlohmann::ordered_json& config = job.reader.manifest().config;
+  const auto weld = config.find("weld");
+  return weld != config.end() && weld->is_boolean() && weld->get<bool>();
 }
 
 void compare_sums(const MeshSums& input, const MeshSums& partitions,
@@ -241,9 +245,17 @@ void compare_sums(const MeshSums& input, const MeshSums& partitions,
 void verify_input(const VerifyJob& job) {
   const InputProblems problems(job);
   const SourceSummary& expected = job.reader.manifest().source;
+  Config config;
+  config.input = job.options.input;
+  config.weld = was_welded(job);
+  BuildInput files(config, job.files);
+  if (files.needs_import()) {
+    files.import({job.scratch.path().string() + "-import", job.scratch.path().string() + "-sorts",
+                  job.scratch.pool(), job.options.memory_budget / 8, job.progress, job.cancel});
+  }
   job.progress.stage("input", job.tree().partition_count(), "partitions");
-  compare_file(job, problems);
-  const auto source = mesh_io::open_mesh(job.files, *job.options.input);
+  compare_files(job, files.files(), problems);
+  const auto source = files.open();
   if (source->description().attributes != expected.attributes) {
     problems.add("has other vertex attributes than the mesh the hierarchy was made of");
     return;

@@ -9,16 +9,16 @@
 namespace meshhier::pipeline {
 namespace {
 
-BuildIdentity identity_of(const Config& config, const mesh_io::MeshDescription& mesh,
-                          const Tree& tree, storage::FileIdentity input) {
+BuildIdentity identity_of(const Config& config, const BuildInput& input, const Tree& tree) {
+  const mesh_io::MeshDescription& mesh = input.description();
   return {{{"program", "meshhier " MESHHIER_VERSION},
-           {"input", config.input.filename().string()},
-           {"input_bytes", input.bytes},
+           {"input", input.files().name()},
+           {"input_bytes", input.files().bytes()},
            {"vertices", mesh.vertex_count},
            {"faces", mesh.face_count},
            {"partitions", tree.partition_count()},
            {"config", resolved_json(config)}},
-          input.modified_ns};
+          input.files().modified_ns()};
 }
 
 /// But for the tiles.
@@ -43,16 +43,14 @@ Workshop::Workshop(storage::FileSystem& files, const std::filesystem::path& work
       journal(files, work, identity, pool.scratch_use(), forest, chunks, cancel) {}
 
 OpenWorkshop open_workshop(storage::FileSystem& files, storage::WorkDirectory& work,
-                           const Config& config, mesh_io::MeshSource& source,
-                           const BuildPlan& build, storage::MemoryPool& pool,
-                           const CancelToken& cancel) {
-  const mesh_io::MeshDescription& mesh = source.description();
-  const BuildIdentity identity =
-      identity_of(config, mesh, build.tree, files.identity(config.input));
+                           const Config& config, BuildInput& input, const BuildPlan& build,
+                           storage::MemoryPool& pool, const CancelToken& cancel) {
+  const BuildIdentity identity = identity_of(config, input, build.tree);
   OpenWorkshop open;
   const auto make = [&] {
     open.workshop = std::make_unique<Workshop>(files, work.path(), build,
-                                               mesh.attributes.channels(), identity, pool, cancel);
+                                               input.description().attributes.channels(), identity,
+                                               pool, cancel);
   };
   const auto begin_anew = [&](std::string why) {
     open.workshop.reset();
@@ -73,7 +71,7 @@ OpenWorkshop open_workshop(storage::FileSystem& files, storage::WorkDirectory& w
   } else if (!journal.is_sound() || (journal.is_complete() && !is_whole(files, work.built()))) {
     begin_anew("what an earlier build left has been damaged: this one began anew");
   } else if (journal.input_was_touched() &&
-             source.checksum([&] { cancel.check(); }) != journal.source()->summary.checksum) {
+             input.checksum(cancel) != journal.source()->summary.checksum) {
     begin_anew("the input was changed since an earlier build was stopped: this one began anew");
   } else {
     open.found =

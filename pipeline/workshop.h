@@ -1,7 +1,7 @@
 // What a build works on: chunks, forest and their scratch files, with the journal of what is done.
 #pragma once
 
-#include "mesh_io/mesh_source.h"
+#include "pipeline/build_input.h"
 #include "pipeline/build_journal.h"
 #include "pipeline/build_plan.h"
 #include "pipeline/cancel.h"
@@ -34,11 +34,10 @@ struct OpenWorkshop {
 };
 
 /// Opens what an earlier build of the same result left in `work`, if it can be gone on with; else
-/// empties it. Reads all that was done, to check it, and all of `source` if the input was touched
-/// since. Throws Error(exists) as BuildJournal does, Error(io).
+/// empties it. Reads all that was done, to check it, and all of `input` if it was touched since.
+/// Throws Error(exists) as BuildJournal does, Error(io).
 OpenWorkshop open_workshop(storage::FileSystem& files, storage::WorkDirectory& work,
-                           const Config& config, mesh_io::MeshSource& source,
-                           const BuildPlan& build, storage::MemoryPool& pool,
-                           const CancelToken& cancel);
+                           const Config& config, BuildInput& input, const BuildPlan& build,
+                           storage::MemoryPool& pool, const CancelToken& cancel);
 
 }  // namespace meshhier::pipeline

@@ -66,6 +66,10 @@ std::filesystem::path built_path(const std::filesystem::path& work) {
   return work / "hierarchy";
 }
 
+std::filesystem::path imported_path(const std::filesystem::path& work) {
+  return work / "import.ply";
+}
+
 std::optional<LeftoverName> leftover_name(std::string_view name) {
   const std::size_t mark = name.rfind(kMark);
   if (!name.starts_with('.') || mark == std::string_view::npos || mark < 2)

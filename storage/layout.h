@@ -10,6 +10,7 @@
 //   .NAME.hier.meshhier-work/                beside the output while a build runs, and after it was stopped
 //   .NAME.hier.meshhier-work/lock            held by the build at work
 //   .NAME.hier.meshhier-work/journal         what is done
+//   .NAME.hier.meshhier-work/import.ply      the input, while it is read, if it is not read in place
 //   .NAME.hier.meshhier-work/*               scratch files of the stages
 //   .NAME.hier.meshhier-work/hierarchy/      becomes NAME.hier
 //   .NAME.hier.meshhier-old/                 a replaced hierarchy, for the moment of the rename
@@ -46,6 +47,7 @@ std::filesystem::path unfinished_path(const std::filesystem::path& file);
 std::filesystem::path lock_path(const std::filesystem::path& work);
 std::filesystem::path journal_path(const std::filesystem::path& work);
 std::filesystem::path built_path(const std::filesystem::path& work);
+std::filesystem::path imported_path(const std::filesystem::path& work);
 
 /// What the names above that begin with a dot stand for.
 enum class Leftover {

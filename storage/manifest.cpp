@@ -67,6 +67,20 @@ Json storage_json(const Manifest& manifest) {
   return storage;
 }
 
+Json import_json(const SourceSummary& source) {
+  Json files = Json::array();
+  for (const SourceFile& file : source.files) {
+    files.push_back({{"name", file.name},
+                     {"format", file.format},
+                     {"bytes", file.bytes},
+                     {"checksum", hex(file.checksum)}});
+  }
+  Json counts = Json::object();
+  for (const SourceCount& count : source.counts)
+    counts[count.name] = count.count;
+  return {{"files", std::move(files)}, {"counts", std::move(counts)}};
+}
+
 Json outline_json(const Manifest& manifest) {
   const OutlineReport& outline = manifest.outline;
   return {{"file", outline_path({}).string()},
@@ -129,6 +143,27 @@ class Object {
     if (!at(key).is_object())
       wrong(key, "an object");
     return {at(key), path_ + key + ".", name_};
+  }
+
+  bool has(const char* key) const { return json_.contains(key); }
+
+  std::vector<Object> objects(const char* key) const {
+    if (!at(key).is_array())
+      wrong(key, "an array");
+    std::vector<Object> all;
+    for (const Json& item : at(key)) {
+      if (!item.is_object())
+        wrong(key, "an array of objects");
+      all.emplace_back(item, path_ + key + ".", name_);
+    }
+    return all;
+  }
+
+  std::vector<std::string> keys() const {
+    std::vector<std::string> all;
+    for (const auto& item : json_.items())
+      all.push_back(item.key());
+    return all;
   }
 
   std::uint64_t count(const char* key, std::uint64_t max = UINT64_MAX) const {
@@ -254,6 +289,17 @@ AttributeLayout read_attributes(const Object& object) {
   object.wrong("colours", "none, u8, u16 or f32");
 }
 
+void read_import(const Object& object, SourceSummary& source) {
+  for (const Object& file : object.objects("files"))
+    source.files.push_back(
+        {file.text("name"), file.text("format"), file.count("bytes"), file.hash("checksum")});
+  if (source.files.empty())
+    object.wrong("files", "at least one");
+  const Object counts = object.object("counts");
+  for (const std::string& name : counts.keys())
+    source.counts.push_back({name, counts.count(name.c_str())});
+}
+
 SourceSummary read_source(const Object& object) {
   SourceSummary source;
   source.file_name = object.text("file_name");
@@ -273,6 +319,8 @@ SourceSummary read_source(const Object& object) {
     object.wrong("bounds", "min <= max");
   source.double_precision = object.boolean("double_precision");
   source.attributes = read_attributes(object.object("attributes"));
+  if (object.has("import"))
+    read_import(object.object("import"), source);
   return source;
 }
 
@@ -327,17 +375,20 @@ void check_text(const std::string& text, const Object& object) {
 }  // namespace
 
 Json source_json(const SourceSummary& source) {
-  return {{"file_name", source.file_name},
-          {"file_bytes", source.file_bytes},
-          {"checksum", hex(source.checksum)},
-          {"vertices", source.vertices},
-          {"triangles", source.triangles},
-          {"faces", source.faces},
-          {"degenerate_triangles", source.degenerate_triangles},
-          {"unreferenced_vertices", source.unreferenced_vertices},
-          {"bounds", {{"min", numbers(source.bounds.min)}, {"max", numbers(source.bounds.max)}}},
-          {"double_precision", source.double_precision},
-          {"attributes", attributes_json(source.attributes)}};
+  Json json{{"file_name", source.file_name},
+            {"file_bytes", source.file_bytes},
+            {"checksum", hex(source.checksum)},
+            {"vertices", source.vertices},
+            {"triangles", source.triangles},
+            {"faces", source.faces},
+            {"degenerate_triangles", source.degenerate_triangles},
+            {"unreferenced_vertices", source.unreferenced_vertices},
+            {"bounds", {{"min", numbers(source.bounds.min)}, {"max", numbers(source.bounds.max)}}},
+            {"double_precision", source.double_precision},
+            {"attributes", attributes_json(source.attributes)}};
+  if (!source.files.empty())
+    json["import"] = import_json(source);
+  return json;
 }
 
 SourceSummary parse_source(const Json& source, const std::string& name) {

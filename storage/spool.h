@@ -26,6 +26,10 @@ class MemoryPool {
  public:
   explicit MemoryPool(std::uint64_t capacity_bytes)
       : free_(static_cast<std::int64_t>(capacity_bytes)) {}
+  /// While nothing is taken.
+  void set_capacity(std::uint64_t capacity_bytes) {
+    free_ = static_cast<std::int64_t>(capacity_bytes);
+  }
   bool try_take(std::uint64_t bytes);
   void give_back(std::uint64_t bytes) { free_ += static_cast<std::int64_t>(bytes); }
   std::uint64_t free_bytes() const { return static_cast<std::uint64_t>(free_.load()); }

@@ -75,7 +75,7 @@ std::filesystem::path WorkDirectory::built() const {
 
 void WorkDirectory::clear() {
   for (const std::filesystem::path& file : files_.list(path_)) {
-    if (file != lock_path(path_))
+    if (file != lock_path(path_) && file != imported_path(path_))
       files_.remove_all(file);
   }
   files_.remove_all(built());

@@ -31,7 +31,7 @@ class WorkDirectory {
   }                                     ///< for the journal and scratch files
   std::filesystem::path built() const;  ///< the hierarchy to be, in path()
 
-  /// Removes all that is in it.
+  /// Removes all that is in it, but for an imported mesh.
   void clear();
   /// Whether what is in it stays, unless it is published.
   void keep(bool kept) { kept_ = kept; }

@@ -189,7 +189,10 @@ const std::vector<ThirdParty>& third_parties() {
        }},
       {"benchmark/", in({"bench"})},
       {"xxhash.h", [](const Source& s) { return s.path == "storage/hash.cpp"; }},
-      {"zlib.h", [](const Source& s) { return s.path == "storage/gzip.cpp"; }},
+      {"zlib.h",
+       [](const Source& s) {
+         return s.path == "storage/gzip.cpp" || s.path == "mesh_io/gzip_stream.cpp";
+       }},
       {"meshoptimizer.h", [](const Source& s) { return s.path == "storage/meshopt_codec.cpp"; }},
       {"fmt/", [](const Source& s) {
          return s.folder() != "hierarchy" && s.folder() != "outline" &&

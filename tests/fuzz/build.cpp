@@ -93,7 +93,7 @@ void build(Bytes input) {
   config.partition.count = 1 + partitions % static_cast<std::uint32_t>(mesh.positions.size());
 
   MemoryFiles files;
-  bench::write_ply(files, config.input, *bench::as_generated(std::move(mesh)));
+  bench::write_ply(files, config.input.front(), *bench::as_generated(std::move(mesh)));
   pipeline::NoProgress progress;
   const std::string refused = refusal({ErrorCode::input}, "models/a.ply: ", [&] {
     pipeline::build_hierarchy(config, {}, {files, progress, {}});

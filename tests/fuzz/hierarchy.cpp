@@ -58,7 +58,7 @@ Contents make_sound() {
   config.partition.count = 5;
   config.simplify.vertices = 12;
   MemoryFiles files;
-  bench::write_ply(files, config.input, *bench::make_surface(surface));
+  bench::write_ply(files, config.input.front(), *bench::make_surface(surface));
   pipeline::NoProgress progress;
   pipeline::build_hierarchy(config, {}, {files, progress, {}});
   Contents contents;

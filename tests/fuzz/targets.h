@@ -17,6 +17,8 @@ void ply_header(std::span<const std::byte> input);
 /// The input is a PLY file; binary files are passed over by the one, text by the other.
 void ply_text(std::span<const std::byte> input);
 void ply_binary(std::span<const std::byte> input);
+/// Whether vertices are welded, then a file of any format, packed or not, to be imported.
+void mesh(std::span<const std::byte> input);
 /// Lines that begin with "--set " are overrides, the others the config.
 void config(std::span<const std::byte> input);
 /// A tree (take_tree()), then a list of nodes.
@@ -40,9 +42,10 @@ struct Target {
 };
 
 /// Names are those of the folders in corpus/, the dictionaries, and the programs (fuzz_NAME).
-inline constexpr std::array<Target, 11> kTargets{{{"ply_header", ply_header},
+inline constexpr std::array<Target, 12> kTargets{{{"ply_header", ply_header},
                                                   {"ply_text", ply_text},
                                                   {"ply_binary", ply_binary},
+                                                  {"mesh", mesh},
                                                   {"config", config},
                                                   {"cut", cut},
                                                   {"manifest", manifest},

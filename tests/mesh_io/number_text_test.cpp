@@ -6,6 +6,7 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -81,6 +82,36 @@ TEST(NumberText, EveryShortestFloatComesBackBitForBit) {
     ASSERT_TRUE(parsed);
     EXPECT_EQ(std::bit_cast<std::uint32_t>(*parsed), bits) << value;
   }
+}
+
+TEST(NumberText, WhatWasWrittenFromAFloatFitsOne) {
+  std::mt19937 random(8);
+  for (int i = 0; i < 20000; ++i) {
+    const auto bits = static_cast<std::uint32_t>(random());
+    const float value = std::bit_cast<float>(bits);
+    if (!std::isfinite(value))
+      continue;
+    std::vector<std::string> texts{fmt::format("{:.9g}", value), fmt::format("{:.12e}", value)};
+    if (std::abs(value) < 0x1p24F)  // above, digits before the point are filled up with zeros
+      texts.push_back(fmt::format("{}", value));
+    for (const std::string& text : texts) {
+      const auto parsed = parse_decimal(text);
+      ASSERT_TRUE(parsed && parsed->fits_float) << text;
+      EXPECT_EQ(std::bit_cast<std::uint32_t>(static_cast<float>(parsed->value)), bits) << text;
+    }
+  }
+}
+
+TEST(NumberText, WhatAFloatRoundsFitsNone) {
+  for (const char* text : {"400123.123", "16777217", "0.12345678901", "1e39", "3.4028236e38",
+                           "1.00000000001", "123456789012", "0.1234567890123456789012345", "1e-60",
+                           "0.9999999999999999", "1.0000000000000002", "1.000000000000001"})
+    EXPECT_FALSE(parse_decimal(text)->fits_float) << text;
+  for (const char* text : {"0", "-0", "0.1", "-.5", "3.", "1e10", "1E-3", "16777216", "0.100000",
+                           "123.456", "-266108.438", "0e-60", "+7"})
+    EXPECT_TRUE(parse_decimal(text)->fits_float) << text;
+  EXPECT_EQ(parse_decimal("400123.123")->value, 400123.123);
+  EXPECT_FALSE(parse_decimal("1x"));
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <regex.h>
@@ -194,8 +195,8 @@ TEST(ConfigErrors, IllTypedValuesNameKeyExpectedAndFound) {
             "config.json: threads: expected an integer from 0 to 4096, found true");
   EXPECT_EQ(refusal(with(R"("partition": 7)")),
             "config.json: partition: expected an object, found the number 7");
-  EXPECT_EQ(refusal(R"({"input": ["a"], "output": {}})"),
-            "config.json: input: expected a path, found a list");
+  EXPECT_EQ(refusal(R"({"input": "a", "output": ["b"]})"),
+            "config.json: output: expected a path, found a list");
   EXPECT_EQ(refusal(with(R"("$schema": 1)")),
             "config.json: $schema: expected a string, found the number 1");
   EXPECT_THAT(refusal(with(R"("memory_budget": "512MiBs")")),
@@ -262,7 +263,8 @@ TEST(ConfigErrors, HalfAPlaceAndTwoPlacesAreRefused) {
 }
 
 TEST(ConfigErrors, MissingKeysAreNamed) {
-  EXPECT_EQ(refusal(R"({"output": "b"})"), "config.json: input is missing: expected a path");
+  EXPECT_EQ(refusal(R"({"output": "b"})"),
+            "config.json: input is missing: expected a path or a list of 1 to 1000 paths");
   EXPECT_EQ(refusal(R"({"input": "b"})"), "config.json: output is missing: expected a path");
 }
 
@@ -467,16 +469,54 @@ TEST_F(ConfigFile, ThatIsHugeIsRefusedUnread) {
   }
 }
 
+// ---- several inputs, welding
+
+TEST(ConfigInput, MayBeAListOfPaths) {
+  const Config config = parse(R"({"input": ["a.ply", "/x/b.obj"], "output": "c"})");
+  EXPECT_EQ(config.input.string(), "/data/scans/a.ply, /x/b.obj");
+  EXPECT_EQ(parse(R"({"input": ["a.ply"], "output": "c"})").input, "/data/scans/a.ply");
+}
+
+TEST(ConfigInput, AnOverrideMayBeAListOrText) {
+  const auto with_input = [](const std::string& setting) {
+    const std::vector<std::string> overrides{setting};
+    return parse_config(R"({"input": "a", "output": "c"})", {"config.json", "/data"}, overrides)
+        .input.string();
+  };
+  EXPECT_EQ(with_input(R"(input=["x.ply", "y.ply"])"), "x.ply, y.ply");
+  EXPECT_EQ(with_input("input=2024"), "2024");
+  EXPECT_EQ(with_input("input=x.ply"), "x.ply");
+}
+
+TEST(ConfigInput, IsRefusedIfItIsNoListOfPaths) {
+  for (const char* input : {"[]", R"([""])", R"(["a", 1])", R"({"a": 1})", "1", R"([["a"]])"}) {
+    EXPECT_THAT(refusal(fmt::format(R"({{"input": {}, "output": "c"}})", input)),
+                HasSubstr("input: expected a path or a list of 1 to 1000 paths"))
+        << input;
+  }
+  Json many{{"input", std::vector<std::string>(1001, "a")}, {"output", "c"}};
+  EXPECT_THAT(refusal(many.dump()), HasSubstr("found a list"));
+  EXPECT_THAT(refusal(R"({"input": ["a", "c/b"], "output": "c"})"), HasSubstr("holds the input"));
+}
+
+TEST(ConfigWeld, IsTrueOrFalse) {
+  EXPECT_FALSE(parse(with("")).weld);
+  EXPECT_TRUE(parse(with(R"("weld": true)")).weld);
+  EXPECT_THAT(refusal(with(R"("weld": 1)")), HasSubstr("weld: expected true or false"));
+}
+
 // ---- resolved
 
 TEST(ResolvedJson, HoldsWhatDecidesTheResultAndNothingElse) {
   EXPECT_EQ(resolved_json(parse(with(""))), Json::parse(R"({
+      "weld": false,
       "partition": {"vertices": 8192, "axis": "compactness"},
       "simplify": {"method": "edge_collapse", "vertices": 8192, "representative": "quadric",
                    "cost": "quadric"},
       "outline": {"sectors": 128, "tolerance": 0.002},
       "storage": {"compression": "none"}, "up": "y"})"));
   EXPECT_EQ(resolved_json(parse(with(R"("partition": {"count": 9})"))), Json::parse(R"({
+      "weld": false,
       "partition": {"count": 9, "axis": "compactness"},
       "simplify": {"method": "edge_collapse", "representative": "quadric", "cost": "quadric"},
       "outline": {"sectors": 128, "tolerance": 0.002},
@@ -551,6 +591,15 @@ void expect_same_rule(const ConfigKey& key, const Json& schema) {
     case KeyKind::path:
       EXPECT_EQ(schema.at("type"), "string");
       EXPECT_EQ(schema.at("minLength"), 1);
+      break;
+    case KeyKind::paths:
+      EXPECT_EQ(schema.at("oneOf").at(0), Json::parse(R"({"type": "string", "minLength": 1})"));
+      EXPECT_EQ(schema.at("oneOf").at(1).at("items"), schema.at("oneOf").at(0));
+      EXPECT_EQ(schema.at("oneOf").at(1).at("minItems"), 1);
+      EXPECT_EQ(schema.at("oneOf").at(1).at("maxItems"), key.maximum);
+      break;
+    case KeyKind::boolean:
+      EXPECT_EQ(schema.at("type"), "boolean");
       break;
     case KeyKind::integer:
       EXPECT_EQ(schema.at("type"), "integer");

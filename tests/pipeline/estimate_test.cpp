@@ -34,7 +34,7 @@ class EstimateTest : public testing::Test {
     config.partition.vertices = partition_vertices;
     return config;
   }
-  void write_mesh(const tests::TestMesh& mesh) { tests::write_ply(mesh, config().input); }
+  void write_mesh(const tests::TestMesh& mesh) { tests::write_ply(mesh, config().input.front()); }
 
   BuildReport build(const Config& config, bool force = false) {
     NoProgress progress;
@@ -88,7 +88,7 @@ TEST_F(EstimateTest, ReadsTheHeaderAndWritesNothing) {
   const std::set<fs::path> before = listing();
   estimate_build(config(), false, files_);
   EXPECT_EQ(listing(), before);
-  EXPECT_LT(files_.counters().bytes_read, fs::file_size(config().input) / 2);
+  EXPECT_LT(files_.counters().bytes_read, fs::file_size(config().input.front()) / 2);
   EXPECT_EQ(files_.counters().bytes_written, 0U);
 }
 

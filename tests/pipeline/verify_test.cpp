@@ -463,7 +463,7 @@ TEST_F(VerifyTest, ADifferentInputIsFound) {
   options.cuts = 0;
   options.input = directory_.path() / "other.ply";
   const auto problems_with = [&](const tests::TestMesh& other) {
-    tests::write_ply(other, *options.input);
+    tests::write_ply(other, options.input.front());
     return verify_again(options).problems;
   };
   EXPECT_THAT(problems_with(mesh), IsEmpty());
@@ -494,7 +494,7 @@ TEST_F(VerifyTest, CopiesOfTrianglesCount) {
   mesh.triangles[3] = mesh.triangles[4];  // one is lost, one is there twice
   VerifyOptions options;
   options.input = directory_.path() / "other.ply";
-  tests::write_ply(mesh, *options.input);
+  tests::write_ply(mesh, options.input.front());
   EXPECT_THAT(verify_again(options).problems,
               Contains(HasSubstr("triangles, but some are not the same")));
 }

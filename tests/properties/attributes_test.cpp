@@ -42,7 +42,7 @@ class AttributesTest : public testing::Test {
     config.partition.vertices = 150;
     config.simplify.method = SimplifyMethod::cluster;  // its attributes are means, exactly
     config.simplify.representative = kind;
-    mesh_io::PlyWriter writer(*files_, config.input, content);
+    mesh_io::PlyWriter writer(*files_, config.input.front(), content);
     writer.write_vertices(std::span(positions), attributes);
     writer.write_triangles(mesh.triangles);
     writer.finish();

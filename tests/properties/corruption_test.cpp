@@ -104,7 +104,7 @@ class CorruptionTest : public testing::TestWithParam<Victim> {
     config.threads = 1;
     config.partition.count = 5;  // with early nodes
     config.simplify.vertices = 12;
-    bench::write_ply(files_, config.input, *bench::make_surface(surface));
+    bench::write_ply(files_, config.input.front(), *bench::make_surface(surface));
     build_hierarchy(config, {}, {files_, progress_, cancel_});
   }
 

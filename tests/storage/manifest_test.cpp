@@ -166,6 +166,49 @@ TEST(Manifest, UnsoundStorageIsRefused) {
   EXPECT_THAT(with("/storage/positions/worst_rounding", -1), HasSubstr("worst_rounding"));
 }
 
+TEST(Manifest, GivesBackWhatWasImported) {
+  SourceSummary source = make_manifest().source;
+  EXPECT_FALSE(storage::source_json(source).contains("import"));
+  source.files = {{"a.obj", "OBJ (gzip)", 5, 0xFEDCBA9876543210}, {"b.stl", "binary STL", 84, 0}};
+  source.counts = {{"split_vertices", 3}, {"welded_corners", UINT64_MAX}};
+  const SourceSummary again = storage::parse_source(storage::source_json(source), kManifestName);
+  ASSERT_EQ(again.files.size(), 2U);
+  EXPECT_EQ(again.files[0].name, "a.obj");
+  EXPECT_EQ(again.files[0].format, "OBJ (gzip)");
+  EXPECT_EQ(again.files[0].bytes, 5U);
+  EXPECT_EQ(again.files[0].checksum, 0xFEDCBA9876543210);
+  ASSERT_EQ(again.counts.size(), 2U);
+  EXPECT_EQ(again.counts[1].name, "welded_corners");
+  EXPECT_EQ(again.counts[1].count, UINT64_MAX);
+}
+
+TEST(Manifest, WrongWordsOfAnImportAreNamed) {
+  SourceSummary source = make_manifest().source;
+  source.files = {{"a.obj", "OBJ", 5, 1}};
+  source.counts = {{"groups", 3}};
+  const Json good = storage::source_json(source);
+  const auto refused = [&](const char* pointer, const Json& value) -> std::string {
+    Json json = good;
+    json[Json::json_pointer(pointer)] = value;
+    try {
+      storage::parse_source(json, kManifestName);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::corrupt);
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(refused("/import", 1), testing::HasSubstr("\"import\" is wrong"));
+  EXPECT_THAT(refused("/import/files", 1), testing::HasSubstr("\"import.files\" is wrong"));
+  EXPECT_THAT(refused("/import/files", Json::array()), testing::HasSubstr("at least one"));
+  EXPECT_THAT(refused("/import/files/0", 1), testing::HasSubstr("\"import.files\" is wrong"));
+  EXPECT_THAT(refused("/import/files/0/bytes", -1), testing::HasSubstr("import.files.bytes"));
+  EXPECT_THAT(refused("/import/files/0/checksum", "x"),
+              testing::HasSubstr("import.files.checksum"));
+  EXPECT_THAT(refused("/import/counts", 1), testing::HasSubstr("\"import.counts\" is wrong"));
+  EXPECT_THAT(refused("/import/counts/groups", "x"), testing::HasSubstr("import.counts.groups"));
+}
+
 TEST(Manifest, IsReadable) {
   const std::string text = to_json_text(make_manifest());
   EXPECT_THAT(text, StartsWith("{\n  \"format\": \"meshhier\",\n  \"format_version\": 4,\n"));

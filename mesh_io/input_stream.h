@@ -1,0 +1,51 @@
+// The content of an input file from its start to its end, unpacked on the way if it is gzip.
+#pragma once
+
+#include "mesh_io/byte_window.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace meshhier::mesh_io {
+
+/// Told of each block of the file before it is read, with its bytes. May throw.
+using ReadWatch = std::function<void(std::uint64_t)>;
+
+class InputStream {
+ public:
+  virtual ~InputStream() = default;
+  /// Fills `to` as far as the content goes: fewer bytes only at its end. Throws Error(io), and
+  /// Error(input) naming the byte of the file if it is damaged gzip.
+  virtual std::size_t read(std::span<std::byte> to) = 0;
+};
+
+/// The file's bytes in consecutive blocks of the checksum's size.
+class FileBlocks {
+ public:
+  FileBlocks(const InputFile& input, ReadWatch watch);
+
+  /// The next block; empty at the end. Valid until the next call.
+  std::span<const std::byte> next();
+  /// Offset in the file behind the last block.
+  std::uint64_t offset() const { return offset_; }
+  const InputFile& input() const { return input_; }
+
+ private:
+  InputFile input_;
+  ReadWatch watch_;
+  std::vector<std::byte> buffer_;
+  std::uint64_t offset_ = 0;
+};
+
+/// Whether the file starts as gzip does (RFC 1952).
+bool is_gzip(const storage::File& file);
+
+/// The content of `input`, whose File must outlive the stream. All of the file is read, and added
+/// to its checksum, when read() has come to the end.
+std::unique_ptr<InputStream> open_stream(const InputFile& input, ReadWatch watch);
+
+}  // namespace meshhier::mesh_io

@@ -1,0 +1,111 @@
+#include "mesh_io/mesh_format.h"
+
+#include "mesh_io/input_error.h"
+#include "mesh_io/obj_reader.h"
+#include "mesh_io/off_reader.h"
+#include "mesh_io/stl_reader.h"
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include <fmt/format.h>
+
+namespace meshhier::mesh_io {
+namespace {
+
+/// Comments may come before the first word of an OBJ or OFF file: some have licences there.
+constexpr std::size_t kLookedAt = std::size_t{1} << 16;
+/// A name in the header of a binary STL has at most 80 bytes; the counts and numbers behind it are
+/// no text.
+constexpr std::size_t kTextProof = 1024;
+
+constexpr std::string_view kBlanks = " \t\v\f\r\n";
+
+/// The first word that is in no comment.
+std::string_view first_word(std::string_view text) {
+  for (;;) {
+    const std::size_t begin = text.find_first_not_of(kBlanks);
+    if (begin == std::string_view::npos)
+      return {};
+    text.remove_prefix(begin);
+    if (text[0] != '#')
+      return text.substr(0, text.find_first_of(kBlanks));
+    text.remove_prefix(std::min(text.find_first_of("\r\n"), text.size()));
+  }
+}
+
+bool is_text(std::string_view start) {
+  return std::ranges::all_of(start.substr(0, kTextProof), [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return byte >= ' ' || kBlanks.find(c) != std::string_view::npos;
+  });
+}
+
+/// The size that a binary STL of that start has.
+std::optional<std::uint64_t> stl_size(std::string_view start) {
+  if (start.size() < kStlHeaderBytes)
+    return std::nullopt;
+  std::uint32_t count = 0;
+  for (std::size_t i = 4; i-- > 0;)
+    count = count << 8 | static_cast<unsigned char>(start[kStlHeaderBytes - 4 + i]);
+  return kStlHeaderBytes + std::uint64_t{count} * kStlFacetBytes;
+}
+
+bool is_ply(std::string_view start) {
+  return start.starts_with("ply") && start.size() > 3 && kBlanks.find(start[3]) != kBlanks.npos;
+}
+
+std::optional<MeshKind> kind_of(std::string_view start, std::uint64_t file_bytes, bool is_gzip) {
+  if (is_ply(start))
+    return MeshKind::ply;
+  const auto size = stl_size(start);
+  if (!is_gzip && size == file_bytes)
+    return MeshKind::stl_binary;
+  const std::string_view word = first_word(start);
+  if (is_text(start)) {
+    if (is_stl_keyword(word, "solid"))
+      return MeshKind::stl_text;
+    if (is_off_keyword(word))
+      return MeshKind::off;
+    if (is_obj_statement(word))
+      return MeshKind::obj;
+    return std::nullopt;
+  }
+  if (is_off_keyword(word))
+    return MeshKind::off;  // a binary one, which its reader refuses by name
+  return is_gzip && size ? std::optional(MeshKind::stl_binary) : std::nullopt;
+}
+
+}  // namespace
+
+std::string name_of(const MeshFormat& format) {
+  static constexpr const char* kNames[] = {"PLY", "OBJ", "binary STL", "ASCII STL", "OFF"};
+  return std::string(kNames[static_cast<std::size_t>(format.kind)]) +
+         (format.is_gzip ? " (gzip)" : "");
+}
+
+MeshFormat detect_format(const storage::File& file) {
+  const InputFile input{file, file.size()};
+  std::string start(4, '\0');
+  start.resize(file.read_at(0, std::as_writable_bytes(std::span(start))));
+  if (is_ply(start))
+    return {MeshKind::ply, false};
+  const bool packed = is_gzip(file);
+  start.resize(kLookedAt);
+  start.resize(open_stream(input, {})->read(std::as_writable_bytes(std::span(start))));
+  if (const auto kind = kind_of(start, input.bytes, packed))
+    return {*kind, packed};
+  std::string hint;
+  if (const auto size = stl_size(start); size && !packed && !is_text(start)) {
+    hint = fmt::format("; as a binary STL it would have {} bytes, it has {} (truncated?)", *size,
+                       input.bytes);
+  }
+  fail_file(file.path(), fmt::format("expected a mesh (PLY, OBJ, STL or OFF, or one of them packed "
+                                     "by gzip), found {}{}",
+                                     start.empty() ? "an empty file" : in_quotes(start), hint));
+}
+
+}  // namespace meshhier::mesh_io

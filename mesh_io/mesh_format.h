@@ -1,0 +1,26 @@
+// Which kind of mesh a file holds, by its content.
+#pragma once
+
+#include "mesh_io/input_stream.h"
+
+#include <cstdint>
+#include <string>
+
+namespace meshhier::mesh_io {
+
+enum class MeshKind : std::uint8_t { ply, obj, stl_binary, stl_text, off };
+
+struct MeshFormat {
+  MeshKind kind{};
+  bool is_gzip = false;
+};
+
+/// For people: "OBJ", "binary STL (gzip)".
+std::string name_of(const MeshFormat& format);
+
+/// Looks at the first 64 KiB of the content, and of a binary STL at the file's size: one that
+/// begins with "solid", as texts do, is binary if its size says so or (where it is packed) if the
+/// first bytes are no text. Throws Error(input) if it is none of these, Error(io).
+MeshFormat detect_format(const storage::File& file);
+
+}  // namespace meshhier::mesh_io

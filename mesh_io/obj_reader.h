@@ -1,0 +1,71 @@
+// OBJ files (Wavefront, "Advanced Visualizer", appendix B1) as streams of what a mesh is made of.
+#pragma once
+
+#include "hierarchy/vec.h"
+#include "mesh_io/input_stream.h"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+
+namespace meshhier::mesh_io {
+
+/// What a corner of a face refers to; the first of each kind is 0.
+struct ObjCorner {
+  static constexpr std::uint32_t kNone = UINT32_MAX;
+  std::uint32_t position = 0;
+  std::uint32_t texcoord = kNone;
+  std::uint32_t normal = kNone;
+};
+using ObjTriangle = std::array<ObjCorner, 3>;
+using ObjColour = std::array<float, 3>;
+
+/// Takes what a file holds, in its order; calls may throw.
+class ObjVisitor {
+ public:
+  virtual ~ObjVisitor() = default;
+  virtual void add_position(Vec3d position, const std::optional<ObjColour>& colour) = 0;
+  virtual void add_texcoord(std::array<float, 2> texcoord) = 0;
+  virtual void add_normal(Vec3f normal) = 0;
+  /// Three different positions.
+  virtual void add_triangle(const ObjTriangle& triangle) = 0;
+};
+
+struct ObjCounts {
+  std::uint64_t positions = 0;
+  std::uint64_t coloured = 0;  ///< positions with a colour
+  std::uint64_t texcoords = 0;
+  std::uint64_t normals = 0;
+  std::uint64_t faces = 0;
+  std::uint64_t triangles = 0;
+  std::uint64_t degenerate_triangles = 0;  ///< dropped: a position twice, or fewer than 3 corners
+  std::uint64_t corners = 0;               ///< of the triangles
+  std::uint64_t textured_corners = 0;
+  std::uint64_t normal_corners = 0;
+  std::uint64_t groups = 0;            ///< statements g
+  std::uint64_t objects = 0;           ///< o
+  std::uint64_t materials = 0;         ///< usemtl
+  std::uint64_t libraries = 0;         ///< mtllib
+  std::uint64_t points_and_lines = 0;  ///< p, l: ignored
+  std::uint64_t others = 0;            ///< smoothing groups, curves, surfaces, ...: ignored
+  bool fits_float = true;              ///< all coordinates do (DecimalNumber)
+};
+
+/// Whether a line of an OBJ file can begin with that word.
+bool is_obj_statement(std::string_view word);
+
+/// Reads
+///
+///   v x y z [w] | v x y z r g b [a]      w and a are ignored
+///   vt u [v [w]]                         v is 0 if it is not there, w is ignored
+///   vn x y z
+///   f corner corner corner ...           corner: v | v/vt | v//vn | v/vt/vn, from 1 on, or from -1
+///                                        back; polygons become fans
+///
+/// and counts all other statements. Indices may be of what comes later; all are looked at. Numbers
+/// are finite. Less than 2^32 - 1 of each. Throws Error(input) naming the line, Error(io).
+ObjCounts read_obj(InputStream& stream, const std::filesystem::path& path, ObjVisitor& visitor);
+
+}  // namespace meshhier::mesh_io

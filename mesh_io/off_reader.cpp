@@ -1,0 +1,188 @@
+#include "mesh_io/off_reader.h"
+
+#include "mesh_io/input_error.h"
+#include "mesh_io/mesh_blocks.h"
+#include "mesh_io/number_text.h"
+#include "mesh_io/word_stream.h"
+
+#include <array>
+#include <cmath>
+#include <span>
+#include <string>
+
+#include <fmt/format.h>
+
+namespace meshhier::mesh_io {
+namespace {
+
+/// What the first word says of the vertices.
+struct Keyword {
+  bool is_off = false;
+  bool texcoords = false;
+  bool colours = false;
+  bool normals = false;
+  bool more_dimensions = false;  ///< 4 or n
+};
+
+Keyword parse_keyword(std::string_view word) {
+  Keyword keyword;
+  const auto take = [&](std::string_view prefix) {
+    const bool is_there = word.starts_with(prefix);
+    word.remove_prefix(is_there ? prefix.size() : 0);
+    return is_there;
+  };
+  keyword.texcoords = take("ST");
+  keyword.colours = take("C");
+  keyword.normals = take("N");
+  keyword.more_dimensions = take("4");
+  keyword.more_dimensions = take("n") || keyword.more_dimensions;
+  keyword.is_off = word == "OFF";
+  return keyword;
+}
+
+bool is_byte_integer(std::string_view word) {
+  const auto value = parse_integer(word);
+  return value && *value >= 0 && *value <= 255;
+}
+
+class OffReader {
+ public:
+  OffReader(InputStream& stream, const std::filesystem::path& path)
+      : words_(stream, path, {.cuts_words = true}) {}
+
+  OffCounts read(const OffVertexVisitor& visit_vertex, const TriangleVisitor& visit_triangles) {
+    read_header();
+    for (std::uint64_t i = 0; i < counts_.vertices; ++i)
+      read_vertex(i, visit_vertex);
+    if (counts_.attributes.colour != ColourType::none)
+      counts_.attributes.colour = byte_colours_ ? ColourType::u8 : ColourType::f32;
+    TriangleBlocks blocks(visit_triangles);
+    for (std::uint64_t i = 0; i < face_count_; ++i)
+      read_face(i, blocks);
+    if (words_.to_row()) {
+      words_.fail(fmt::format("expected the end of the file behind {} faces, found {}", face_count_,
+                              in_quotes(words_.take_word())));
+    }
+    counts_.faces = blocks.finish();
+    return counts_;
+  }
+
+ private:
+  void read_header() {
+    const Keyword keyword = words_.to_row() ? parse_keyword(words_.take_word()) : Keyword();
+    if (!keyword.is_off)
+      words_.fail("expected 'OFF', perhaps with ST, C or N before it");
+    if (keyword.more_dimensions)
+      words_.fail("expected three coordinates a vertex (OFF), found a file of four or more");
+    counts_.attributes.normals = keyword.normals;
+    counts_.attributes.colour = keyword.colours ? ColourType::f32 : ColourType::none;
+    counts_.attributes.texcoords = keyword.texcoords;
+    if (!words_.to_word() && !words_.to_row())
+      fail_truncated("the counts of vertices and faces");
+    counts_.vertices = take_count("vertices", UINT32_MAX);
+    face_count_ = take_count("faces", UINT64_MAX >> 2);
+    if (words_.to_word())
+      words_.take_word();  // edges, which nobody counts
+    words_.expect_line_end();
+  }
+
+  [[noreturn]] void fail_truncated(const std::string& what) const {
+    words_.fail(fmt::format("expected {}, found the end of the file (truncated)", what));
+  }
+
+  std::uint64_t take_count(const char* what, std::uint64_t most) {
+    const std::string_view word = words_.to_word() ? words_.take_word() : std::string_view();
+    const auto count = parse_integer(word);
+    if (!count || *count < 0 || static_cast<std::uint64_t>(*count) > most) {
+      words_.fail(fmt::format("expected the count of {} ({}), found {}", what,
+                              word == "BINARY" ? "binary OFF is not read" : "an integer",
+                              in_quotes(word)));
+    }
+    return static_cast<std::uint64_t>(*count);
+  }
+
+  void read_vertex(std::uint64_t number, const OffVertexVisitor& visit) {
+    if (!words_.to_row())
+      fail_truncated(fmt::format("vertex {} of {}", number, counts_.vertices));
+    const Vec3d position = words_.take_position(counts_.fits_float);
+    take_attributes(number == 0);
+    visit(position, std::span(channels_).first(channel_count_));
+  }
+
+  void take_attributes(bool is_first) {
+    AttributeLayout& layout = counts_.attributes;
+    std::array<bool, kMaxChannels> are_bytes{};
+    channel_count_ = 0;
+    while (channel_count_ < channels_.size() && words_.to_word()) {
+      const std::string_view word = words_.take_word();
+      const auto value = parse_real<float>(word);
+      if (!value || !std::isfinite(*value))
+        words_.fail("expected a finite number for an attribute, found " + in_quotes(word));
+      are_bytes[channel_count_] = is_byte_integer(word);
+      channels_[channel_count_++] = *value;
+    }
+    const auto expected = [&] { return static_cast<std::size_t>(layout.channels()); };
+    if (is_first && layout.colour != ColourType::none)
+      layout.alpha = channel_count_ == expected() + 1;
+    if (channel_count_ != expected() || words_.to_word()) {
+      words_.fail(
+          fmt::format("expected {} numbers behind the coordinates, as the first line and "
+                      "the first vertex say, found {}",
+                      expected(), channel_count_));
+    }
+    for (int i = 0; i < layout.colour_channels(); ++i) {
+      byte_colours_ =
+          byte_colours_ && are_bytes[static_cast<std::size_t>(layout.colour_offset() + i)];
+    }
+  }
+
+  void read_face(std::uint64_t number, TriangleBlocks& blocks) {
+    if (!words_.to_row())
+      fail_truncated(fmt::format("face {} of {}", number, face_count_));
+    const std::string_view length = words_.take_word();
+    const auto corners = parse_integer(length);
+    if (!corners || *corners < 0)
+      words_.fail("expected the number of a face's corners, found " + in_quotes(length));
+    blocks.begin_polygon();
+    for (std::int64_t i = 0; i < *corners; ++i)
+      blocks.add_polygon_corner(take_corner(number));
+    blocks.end_polygon();
+    if (words_.to_word()) {
+      ++counts_.coloured_faces;
+      words_.skip_line();
+    }
+  }
+
+  std::uint32_t take_corner(std::uint64_t face) {
+    if (!words_.to_word())
+      words_.fail(fmt::format("expected a corner of face {}, found the end of the line", face));
+    const std::string_view word = words_.take_word();
+    const auto corner = parse_integer(word);
+    if (!corner || *corner < 0 || static_cast<std::uint64_t>(*corner) >= counts_.vertices) {
+      words_.fail(fmt::format("expected a vertex from 0 to {} in face {}, found {}",
+                              static_cast<std::int64_t>(counts_.vertices) - 1, face,
+                              in_quotes(word)));
+    }
+    return static_cast<std::uint32_t>(*corner);
+  }
+
+  WordStream words_;
+  std::array<float, kMaxChannels> channels_{};
+  std::size_t channel_count_ = 0;
+  std::uint64_t face_count_ = 0;
+  bool byte_colours_ = true;
+  OffCounts counts_;
+};
+
+}  // namespace
+
+bool is_off_keyword(std::string_view word) {
+  return parse_keyword(word).is_off;
+}
+
+OffCounts read_off(InputStream& stream, const std::filesystem::path& path,
+                   const OffVertexVisitor& visit_vertex, const TriangleVisitor& visit_triangles) {
+  return OffReader(stream, path).read(visit_vertex, visit_triangles);
+}
+
+}  // namespace meshhier::mesh_io

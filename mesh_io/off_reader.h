@@ -1,0 +1,43 @@
+// OFF files (Geomview's object file format) in text.
+#pragma once
+
+#include "hierarchy/attributes.h"
+#include "hierarchy/vec.h"
+#include "mesh_io/input_stream.h"
+#include "mesh_io/mesh_source.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string_view>
+
+namespace meshhier::mesh_io {
+
+/// Whether a file that begins with that word is an OFF file: [ST][C][N][4][n]OFF.
+bool is_off_keyword(std::string_view word);
+
+struct OffCounts {
+  std::uint64_t vertices = 0;
+  FaceCounts faces;
+  std::uint64_t coloured_faces = 0;  ///< whose colours are ignored
+  AttributeLayout attributes;        ///< colours are u8 if all are integers from 0 to 255, else f32
+  bool fits_float = true;            ///< all coordinates do (DecimalNumber)
+};
+
+/// One vertex; `attributes`: its channels in the order of AttributeLayout.
+using OffVertexVisitor = std::function<void(Vec3d position, std::span<const float> attributes)>;
+
+/// Reads, with comments from # to the end of a line,
+///
+///   [ST][C][N]OFF
+///   vertices faces [edges]               also on the first line
+///   x y z [nx ny nz] [r g b [a]] [s t]   a line each; alpha if the first vertex has it
+///   n i1 ... in [colour]                 a line each; polygons become fans
+///
+/// Corners are below the count of vertices, numbers finite. Files of four dimensions or in binary
+/// are refused. Throws Error(input) naming the line, Error(io).
+OffCounts read_off(InputStream& stream, const std::filesystem::path& path,
+                   const OffVertexVisitor& visit_vertex, const TriangleVisitor& visit_triangles);
+
+}  // namespace meshhier::mesh_io

@@ -1,0 +1,172 @@
+#include "mesh_io/stl_reader.h"
+
+#include "mesh_io/input_error.h"
+#include "mesh_io/ply_values.h"
+#include "mesh_io/word_stream.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace meshhier::mesh_io {
+namespace {
+
+/// Facets handed out at once: 290 KiB.
+constexpr std::size_t kBlockFacets = 4096;
+
+constexpr bool kSwap = std::endian::native == std::endian::big;
+
+char lower(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+class BinaryStl {
+ public:
+  BinaryStl(InputStream& stream, const std::filesystem::path& path)
+      : stream_(stream), path_(path), bytes_(kBlockFacets * kStlFacetBytes) {}
+
+  StlCounts read(const SoupVisitor& visit) {
+    if (stream_.read(std::span(bytes_).first(kStlHeaderBytes)) < kStlHeaderBytes)
+      fail_file(path_, "expected the header of a binary STL, found the end of the data");
+    counts_.facets = load<std::uint32_t, kSwap>(bytes_.data() + kStlHeaderBytes - 4);
+    while (done_ < counts_.facets) {
+      read_block();
+      visit(block_);
+    }
+    if (stream_.read(std::span(bytes_).first(1)) > 0) {
+      fail_at_byte(
+          path_, offset(),
+          fmt::format("expected the end of the data behind {} facets, found more", counts_.facets));
+    }
+    return counts_;
+  }
+
+ private:
+  std::uint64_t offset() const { return kStlHeaderBytes + done_ * kStlFacetBytes; }
+
+  void read_block() {
+    const std::size_t wanted = std::min<std::uint64_t>(kBlockFacets, counts_.facets - done_);
+    const std::size_t size = stream_.read(std::span(bytes_).first(wanted * kStlFacetBytes));
+    block_.clear();
+    for (std::size_t i = 0; i < size / kStlFacetBytes; ++i, ++done_)
+      block_.push_back(facet(bytes_.data() + i * kStlFacetBytes));
+    if (block_.size() < wanted) {
+      fail_at_byte(path_, offset(),
+                   fmt::format("expected facet {} of {}, found the end of the data (truncated)",
+                               done_, counts_.facets));
+    }
+  }
+
+  SoupTriangle facet(const std::byte* bytes) {
+    std::array<double, 9> values{};
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const auto value = load<float, kSwap>(bytes + 12 + 4 * i);
+      if (!std::isfinite(value)) {
+        fail_at_byte(
+            path_, offset() + 12 + 4 * i,
+            fmt::format("expected a finite coordinate in facet {}, found {}", done_, value));
+      }
+      values[i] = static_cast<double>(value);
+    }
+    counts_.attributes += load<std::uint16_t, kSwap>(bytes + 48) != 0 ? 1 : 0;
+    return {Vec3d{values[0], values[1], values[2]}, Vec3d{values[3], values[4], values[5]},
+            Vec3d{values[6], values[7], values[8]}};
+  }
+
+  InputStream& stream_;
+  const std::filesystem::path& path_;
+  std::vector<std::byte> bytes_;
+  std::vector<SoupTriangle> block_;
+  std::uint64_t done_ = 0;
+  StlCounts counts_;
+};
+
+class TextStl {
+ public:
+  TextStl(InputStream& stream, const std::filesystem::path& path) : words_(stream, path, {}) {}
+
+  StlCounts read(const SoupVisitor& visit) {
+    while (words_.to_row()) {
+      expect("solid");
+      words_.skip_line();
+      ++counts_.solids;
+      while (read_facet()) {
+        if (block_.size() == kBlockFacets) {
+          visit(block_);
+          block_.clear();
+        }
+      }
+    }
+    visit(block_);
+    return counts_;
+  }
+
+ private:
+  /// False at the end of the solid.
+  bool read_facet() {
+    if (!words_.to_row())
+      words_.fail("expected 'facet' or 'endsolid', found the end of the file (truncated)");
+    const std::string_view word = words_.take_word();
+    if (is_stl_keyword(word, "endsolid")) {
+      words_.skip_line();
+      return false;
+    }
+    if (!is_stl_keyword(word, "facet"))
+      words_.fail("expected 'facet' or 'endsolid', found " + in_quotes(word));
+    words_.skip_line();  // the normal
+    expect_row("outer");
+    words_.skip_line();
+    block_.emplace_back();
+    for (Vec3d& corner : block_.back())
+      corner = read_vertex();
+    expect_row("endloop");
+    expect_row("endfacet");
+    ++counts_.facets;
+    return true;
+  }
+
+  Vec3d read_vertex() {
+    expect_row("vertex");
+    const Vec3d corner = words_.take_position(counts_.fits_float);
+    words_.expect_line_end();
+    return corner;
+  }
+
+  void expect_row(std::string_view keyword) {
+    if (!words_.to_row())
+      words_.fail(fmt::format("expected '{}', found the end of the file (truncated)", keyword));
+    expect(keyword);
+  }
+
+  void expect(std::string_view keyword) {
+    const std::string_view word = words_.take_word();
+    if (!is_stl_keyword(word, keyword))
+      words_.fail(fmt::format("expected '{}', found {}", keyword, in_quotes(word)));
+  }
+
+  WordStream words_;
+  std::vector<SoupTriangle> block_;
+  StlCounts counts_;
+};
+
+}  // namespace
+
+bool is_stl_keyword(std::string_view word, std::string_view keyword) {
+  return std::ranges::equal(word, keyword, {}, lower);
+}
+
+StlCounts read_binary_stl(InputStream& stream, const std::filesystem::path& path,
+                          const SoupVisitor& visit) {
+  return BinaryStl(stream, path).read(visit);
+}
+
+StlCounts read_text_stl(InputStream& stream, const std::filesystem::path& path,
+                        const SoupVisitor& visit) {
+  return TextStl(stream, path).read(visit);
+}
+
+}  // namespace meshhier::mesh_io

@@ -1,0 +1,44 @@
+// STL files (3D Systems, 1988) as soups of triangles.
+#pragma once
+
+#include "hierarchy/vec.h"
+#include "mesh_io/input_stream.h"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string_view>
+
+namespace meshhier::mesh_io {
+
+// A binary file: 80 bytes of any kind, the count of facets as u32, then facets of 12 float32 (the
+// normal, then three corners) and a u16 of no fixed meaning. Little endian.
+inline constexpr std::size_t kStlHeaderBytes = 84;
+inline constexpr std::size_t kStlFacetBytes = 50;
+
+using SoupTriangle = std::array<Vec3d, 3>;
+using SoupVisitor = std::function<void(std::span<const SoupTriangle>)>;
+
+struct StlCounts {
+  std::uint64_t facets = 0;
+  std::uint64_t solids = 0;  ///< of a text
+  std::uint64_t attributes =
+      0;                   ///< facets of a binary file whose last two bytes are not 0: ignored
+  bool fits_float = true;  ///< all coordinates do (DecimalNumber)
+};
+
+/// Words of an ASCII file are in any case.
+bool is_stl_keyword(std::string_view word, std::string_view keyword);
+
+/// Hands out all facets in order, in blocks; their normals, which follow from the corners, are
+/// ignored. Coordinates are finite. Throws Error(input) naming the byte of the content, Error(io).
+StlCounts read_binary_stl(InputStream& stream, const std::filesystem::path& path,
+                          const SoupVisitor& visit);
+
+/// The same of an ASCII file, of one solid or several; errors name the line.
+StlCounts read_text_stl(InputStream& stream, const std::filesystem::path& path,
+                        const SoupVisitor& visit);
+
+}  // namespace meshhier::mesh_io

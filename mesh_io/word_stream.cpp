@@ -1,0 +1,154 @@
+#include "mesh_io/word_stream.h"
+
+#include "mesh_io/input_error.h"
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace meshhier::mesh_io {
+namespace {
+
+constexpr std::size_t kCapacity = std::size_t{1} << 18;
+
+bool is_line_end(char c) {
+  return c == '\n' || c == '\r';
+}
+bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\v' || c == '\f';
+}
+
+}  // namespace
+
+WordStream::WordStream(InputStream& stream, std::filesystem::path path, Rules rules)
+    : stream_(stream),
+      path_(std::move(path)),
+      rules_(rules),
+      buffer_(std::make_unique_for_overwrite<char[]>(kCapacity)) {}
+
+/// Makes `bytes` available, or all there is; false if there is nothing.
+bool WordStream::look_ahead(std::size_t bytes) {
+  if (end_ - begin_ >= bytes || ended_)
+    return end_ > begin_;
+  std::memmove(buffer_.get(), buffer_.get() + begin_, end_ - begin_);
+  end_ -= begin_;
+  begin_ = 0;
+  const std::span<char> room(buffer_.get() + end_, kCapacity - end_);
+  const std::size_t count = stream_.read(std::as_writable_bytes(room));
+  ended_ = count < room.size();
+  end_ += count;
+  return end_ > begin_;
+}
+
+/// The bytes of a backslash and the line end behind it; 0 if that is not what is there.
+std::size_t WordStream::joint_at(std::size_t place) {
+  if (!rules_.joins_lines || place + 1 >= end_ || buffer_[place] != '\\' ||
+      !is_line_end(buffer_[place + 1]))
+    return 0;
+  const bool two = buffer_[place + 1] == '\r' && place + 2 < end_ && buffer_[place + 2] == '\n';
+  return two ? 3 : 2;
+}
+
+bool WordStream::skip_joint() {
+  if (buffer_[begin_] != '\\')
+    return false;
+  look_ahead(3);
+  const std::size_t bytes = joint_at(begin_);
+  begin_ += bytes;
+  line_ += bytes > 0 ? 1 : 0;
+  return bytes > 0;
+}
+
+bool WordStream::to_word() {
+  while (look_ahead(1)) {
+    const char c = buffer_[begin_];
+    if (is_blank(c)) {
+      ++begin_;
+    } else if (c == '#') {
+      skip_line();
+      return false;
+    } else if (!skip_joint()) {
+      return !is_line_end(c);
+    }
+  }
+  return false;
+}
+
+bool WordStream::to_row() {
+  while (!to_word()) {
+    if (!look_ahead(2))
+      return false;
+    const bool joined = buffer_[begin_] == '\r' && begin_ + 1 < end_ && buffer_[begin_ + 1] == '\n';
+    begin_ += joined ? 2 : 1;
+    ++line_;
+  }
+  return true;
+}
+
+std::string_view WordStream::take_word() {
+  look_ahead(kMaxWordBytes + 3);
+  std::size_t at = begin_;
+  while (at != end_ && !is_line_end(buffer_[at]) && !is_blank(buffer_[at]) && joint_at(at) == 0 &&
+         !(rules_.cuts_words && buffer_[at] == '#'))
+    ++at;
+  const std::string_view word(buffer_.get() + begin_, at - begin_);
+  if (word.size() > kMaxWordBytes)
+    fail(fmt::format("found a word of more than {} bytes", kMaxWordBytes));
+  begin_ = at;
+  return word;
+}
+
+void WordStream::skip_line() {
+  while (look_ahead(3)) {
+    while (begin_ != end_ && !is_line_end(buffer_[begin_]) && buffer_[begin_] != '\\')
+      ++begin_;
+    if (begin_ == end_)
+      continue;
+    if (is_line_end(buffer_[begin_]))
+      return;
+    if (!skip_joint())
+      ++begin_;
+  }
+}
+
+DecimalNumber WordStream::take_number(const char* what) {
+  if (!to_word())
+    fail(fmt::format("expected a number for {}, found the end of the line", what));
+  const std::string_view word = take_word();
+  const auto number = parse_decimal(word);
+  if (!number || !std::isfinite(number->value))
+    fail(fmt::format("expected a finite number for {}, found {}", what, in_quotes(word)));
+  return *number;
+}
+
+float WordStream::take_float(const char* what) {
+  const auto value = static_cast<float>(take_number(what).value);
+  if (!std::isfinite(value))
+    fail(fmt::format("expected a number within single precision for {}", what));
+  return value;
+}
+
+Vec3d WordStream::take_position(bool& fits_float) {
+  std::array<double, 3> position{};
+  for (double& coordinate : position) {
+    const DecimalNumber number = take_number("a coordinate");
+    coordinate = number.value;
+    fits_float = fits_float && number.fits_float;
+  }
+  return {position[0], position[1], position[2]};
+}
+
+void WordStream::expect_line_end() {
+  if (to_word())
+    fail("expected the end of the line, found " + in_quotes(take_word()));
+}
+
+void WordStream::fail(const std::string& message) const {
+  fail_at_line(path_, line_, message);
+}
+
+}  // namespace meshhier::mesh_io

@@ -1,0 +1,67 @@
+// A stream of text as lines of words, with line numbers.
+#pragma once
+
+#include "hierarchy/vec.h"
+#include "mesh_io/input_stream.h"
+#include "mesh_io/number_text.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace meshhier::mesh_io {
+
+/// Lines end with LF, CRLF or CR; words are separated by blanks and tabs; '#' where a word could
+/// begin begins a comment, up to the end of the line. Memory: one buffer, however long a line is.
+class WordStream {
+ public:
+  /// What differs from format to format.
+  struct Rules {
+    bool joins_lines = false;  ///< a backslash before a line's end joins it with the next one
+    bool cuts_words = false;   ///< '#' begins a comment within a word as well
+  };
+
+  /// As TextCursor's.
+  static constexpr std::size_t kMaxWordBytes = 4096;
+
+  WordStream(InputStream& stream, std::filesystem::path path, Rules rules);
+
+  std::uint64_t line() const { return line_; }
+  /// Goes on to the next word, over line ends; false at the end.
+  bool to_row();
+  /// Goes on to the next word of this line; false if there is none.
+  bool to_word();
+  /// The word here, valid until the next call. Requires that to_row() or to_word() was true just
+  /// before. A word that is too long is an error.
+  std::string_view take_word();
+  void skip_line();
+
+  /// The next word of this line as a finite number; `what`: it is for messages.
+  DecimalNumber take_number(const char* what);
+  float take_float(const char* what);
+  /// Three coordinates; clears `fits_float` if one of them does not.
+  Vec3d take_position(bool& fits_float);
+  void expect_line_end();
+
+  /// Throws Error(input) naming file and line.
+  [[noreturn]] void fail(const std::string& message) const;
+
+ private:
+  bool look_ahead(std::size_t bytes);
+  std::size_t joint_at(std::size_t place);
+  bool skip_joint();
+
+  InputStream& stream_;
+  std::filesystem::path path_;
+  Rules rules_;
+  bool ended_ = false;
+  std::unique_ptr<char[]> buffer_;
+  std::size_t begin_ = 0;
+  std::size_t end_ = 0;
+  std::uint64_t line_ = 1;
+};
+
+}  // namespace meshhier::mesh_io

@@ -1,0 +1,26 @@
+#include "pipeline/attribute_names.h"
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+#include <fmt/format.h>
+
+namespace meshhier::pipeline {
+
+std::string attribute_names(const AttributeLayout& layout) {
+  std::string names;
+  const auto add = [&](bool present, std::string_view name) {
+    if (present)
+      names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
+  };
+  add(layout.normals, "normals");
+  constexpr std::array kTypes{"", "8-bit", "16-bit", "float"};
+  add(layout.colour != ColourType::none,
+      fmt::format("{} colours{}", kTypes[static_cast<std::size_t>(layout.colour)],
+                  layout.alpha ? " with alpha" : ""));
+  add(layout.texcoords, "texture coordinates");
+  return names.empty() ? "none" : names;
+}
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,76 @@
+// A mesh in spools, on its way from the format of its file to a PLY.
+#pragma once
+
+#include "hierarchy/attributes.h"
+#include "hierarchy/vec.h"
+#include "pipeline/cancel.h"
+#include "storage/spool.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace meshhier::pipeline {
+
+/// Blocks of the import's spools: large writes, but small beside the least budget.
+inline constexpr std::size_t kImportSpoolBytes = std::size_t{1} << 18;
+
+using RawTriangle = std::array<std::uint32_t, 3>;
+
+struct RawMesh {
+  explicit RawMesh(storage::ScratchFile& scratch)
+      : positions(scratch, kImportSpoolBytes),
+        attributes(scratch, kImportSpoolBytes),
+        triangles(scratch, kImportSpoolBytes) {}
+
+  std::uint64_t vertex_count() const { return positions.size(); }
+  std::size_t channels() const { return static_cast<std::size_t>(layout.channels()); }
+
+  AttributeLayout layout;
+  bool fits_float = true;  ///< all coordinates do, or their texts (mesh_io::DecimalNumber)
+  storage::RecordSpool<Vec3d> positions;
+  storage::RecordSpool<float> attributes;  ///< channels() a vertex
+  storage::RecordSpool<RawTriangle> triangles;
+};
+
+/// Reads a spool forwards.
+template <class Record>
+class SpoolCursor {
+ public:
+  SpoolCursor(const storage::RecordSpool<Record>& spool, const CancelToken& cancel)
+      : spool_(spool), cancel_(cancel) {}
+
+  /// Record `index` < the spool's size; no call may ask for one before that of the call before.
+  const Record& at(std::uint64_t index) {
+    if (index >= first_ + buffer_.size())
+      load(index);
+    return buffer_[index - first_];
+  }
+  std::uint64_t size() const { return spool_.size(); }
+
+ private:
+  static constexpr std::size_t kBufferBytes = std::size_t{1} << 17;
+
+  void load(std::uint64_t index) {
+    cancel_.check();
+    first_ = index;
+    buffer_.resize(std::min<std::uint64_t>(kBufferBytes / sizeof(Record), spool_.size() - index));
+    spool_.read(index, buffer_);
+  }
+
+  const storage::RecordSpool<Record>& spool_;
+  const CancelToken& cancel_;
+  std::uint64_t first_ = 0;
+  std::vector<Record> buffer_;
+};
+
+/// What an import works with.
+struct ImportRoom {
+  storage::ScratchFile& scratch;
+  std::uint64_t sort_bytes = 0;  ///< of each of two sorts, or of a table
+  const CancelToken& cancel;
+};
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,81 @@
+// Which kind of mesh a file is, whatever its name.
+#include "mesh_io/mesh_format.h"
+
+#include "streams.h"
+#include "support/gzip.h"
+
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace meshhier::mesh_io::tests {
+namespace {
+
+using meshhier::tests::gzip;
+using ::testing::HasSubstr;
+
+std::string format_of(const std::string& content) {
+  return name_of(detect_format(Streamed(content).file()));
+}
+
+std::string refusal(const std::string& content) {
+  return input_error_of([&] { format_of(content); });
+}
+
+/// A binary STL whose header begins with `name` and whose count is `facets`.
+std::string binary_stl(std::string name, unsigned char facets, std::size_t bytes_of_facets) {
+  name.resize(80, '\0');
+  return name + std::string{static_cast<char>(facets), '\0', '\0', '\0'} +
+         std::string(bytes_of_facets, '\0');
+}
+
+TEST(MeshFormat, IsKnownByTheContent) {
+  EXPECT_EQ(format_of("ply\nformat ascii 1.0\n"), "PLY");
+  EXPECT_EQ(format_of("ply\r\nwhatever"), "PLY");
+  EXPECT_EQ(format_of("# a comment\n\n  # another\nv 1 2 3\n"), "OBJ");
+  EXPECT_EQ(format_of("mtllib a.mtl\r\n"), "OBJ");
+  EXPECT_EQ(format_of("# caf\xc3\xa9\no x"), "OBJ");
+  EXPECT_EQ(format_of("# a comment\nOFF\n0 0 0\n"), "OFF");
+  for (const char* keyword : {"OFF", "COFF", "NOFF", "CNOFF", "STOFF", "STCNOFF", "4OFF", "nOFF"})
+    EXPECT_EQ(format_of(std::string(keyword) + "\n0 0 0\n"), "OFF") << keyword;
+  EXPECT_EQ(format_of("solid part\nfacet normal 0 0 1\n"), "ASCII STL");
+  EXPECT_EQ(format_of("SOLID\n"), "ASCII STL");
+  EXPECT_EQ(format_of(binary_stl("a part", 2, 100)), "binary STL");
+  EXPECT_EQ(format_of(binary_stl("", 0, 0)), "binary STL");
+}
+
+TEST(MeshFormat, ABinaryStlMayBeginAsATextDoes) {
+  EXPECT_EQ(format_of(binary_stl("solid part", 2, 100)), "binary STL");
+  EXPECT_EQ(format_of(gzip(binary_stl("solid part", 2, 100))), "binary STL (gzip)");
+}
+
+TEST(MeshFormat, IsKnownInGzip) {
+  EXPECT_EQ(format_of(gzip("ply\nformat ascii 1.0\n")), "PLY (gzip)");
+  EXPECT_EQ(format_of(gzip("v 1 2 3\n")), "OBJ (gzip)");
+  EXPECT_EQ(format_of(gzip("solid part\nfacet normal 0 0 1\n")), "ASCII STL (gzip)");
+  EXPECT_EQ(format_of(gzip("OFF\n0 0 0\n")), "OFF (gzip)");
+}
+
+TEST(MeshFormat, WhatIsNoMeshIsRefused) {
+  EXPECT_EQ(refusal(""),
+            "mesh: expected a mesh (PLY, OBJ, STL or OFF, or one of them packed by gzip), found an "
+            "empty file");
+  EXPECT_THAT(refusal("hello world"), HasSubstr("found 'hello world'"));
+  EXPECT_THAT(refusal("plyx"), HasSubstr("found 'plyx'"));
+  EXPECT_THAT(refusal(gzip("hello world")), HasSubstr("found 'hello world'"));
+  EXPECT_THAT(refusal("\x7f"
+                      "ELF\1\2"),
+              HasSubstr("found '?ELF??'"));
+}
+
+TEST(MeshFormat, AnStlOfAnotherSizeIsToldWhatItShouldHave) {
+  for (const std::size_t bytes : {std::size_t{99}, std::size_t{101}}) {
+    EXPECT_THAT(
+        refusal(binary_stl("a part", 2, bytes)),
+        HasSubstr("as a binary STL it would have 184 bytes, it has " + std::to_string(84 + bytes)));
+  }
+}
+
+}  // namespace
+}  // namespace meshhier::mesh_io::tests

@@ -1,0 +1,177 @@
+// OBJ files: what is read, and what is refused.
+#include "mesh_io/obj_reader.h"
+
+#include "streams.h"
+#include "support/gzip.h"
+
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace meshhier::mesh_io::tests {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// What was taken, as short texts.
+class Taken final : public ObjVisitor {
+ public:
+  explicit Taken(const std::string& content) {
+    Streamed streamed(content);
+    counts = read_obj(streamed.stream(), "mesh", *this);
+  }
+  void add_position(Vec3d p, const std::optional<ObjColour>& colour) override {
+    positions.push_back(fmt::format("{} {} {}", p.x, p.y, p.z));
+    if (colour)
+      positions.back() += fmt::format(" / {} {} {}", (*colour)[0], (*colour)[1], (*colour)[2]);
+  }
+  void add_texcoord(std::array<float, 2> t) override {
+    texcoords.push_back(fmt::format("{} {}", t[0], t[1]));
+  }
+  void add_normal(Vec3f n) override { normals.push_back(fmt::format("{} {} {}", n.x, n.y, n.z)); }
+  void add_triangle(const ObjTriangle& t) override {
+    std::string text;
+    for (const ObjCorner& c : t) {
+      const auto index = [](std::uint32_t i) {
+        return i == ObjCorner::kNone ? std::string("-") : std::to_string(i);
+      };
+      text += fmt::format("{}{},{},{}", text.empty() ? "" : " ", c.position, index(c.texcoord),
+                          index(c.normal));
+    }
+    triangles.push_back(text);
+  }
+
+  std::vector<std::string> positions, texcoords, normals, triangles;
+  ObjCounts counts;
+};
+
+std::string refusal(const std::string& content) {
+  return input_error_of([&] { Taken{content}; });
+}
+
+constexpr const char* kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+TEST(ObjReader, ReadsVerticesOfAllKinds) {
+  const Taken taken(
+      "v 1 2 3\nv -1.5e2 +.25 3. 1\nv 1 2 3 0.5 0.25 1\nv 1 2 3 4 5 6 7\n"
+      "vt 0.5\nvt 0.5 0.25\nvt 1 2 3\nvn 0 0 1\n");
+  EXPECT_THAT(taken.positions,
+              ElementsAre("1 2 3", "-150 0.25 3", "1 2 3 / 0.5 0.25 1", "1 2 3 / 4 5 6"));
+  EXPECT_THAT(taken.texcoords, ElementsAre("0.5 0", "0.5 0.25", "1 2"));
+  EXPECT_THAT(taken.normals, ElementsAre("0 0 1"));
+  EXPECT_EQ(taken.counts.positions, 4U);
+  EXPECT_EQ(taken.counts.coloured, 2U);
+  EXPECT_TRUE(taken.counts.fits_float);
+}
+
+TEST(ObjReader, ReadsCornersOfAllForms) {
+  const Taken taken(std::string(kSquare) +
+                    "vt 0 0\nvt 1 0\nvn 0 0 1\n"
+                    "f 1 2 3\nf 1/1 2/2 3/1\nf 1//1 2//1 3//1\nf 1/1/1 2/2/1 4/1/1\nf 1/ 2// 3\n");
+  EXPECT_THAT(taken.triangles,
+              ElementsAre("0,-,- 1,-,- 2,-,-", "0,0,- 1,1,- 2,0,-", "0,-,0 1,-,0 2,-,0",
+                          "0,0,0 1,1,0 3,0,0", "0,-,- 1,-,- 2,-,-"));
+  EXPECT_EQ(taken.counts.corners, 15U);
+  EXPECT_EQ(taken.counts.textured_corners, 6U);
+  EXPECT_EQ(taken.counts.normal_corners, 6U);
+}
+
+TEST(ObjReader, CountsBackFromWhereItStands) {
+  const Taken taken("v 0 0 0\nv 1 0 0\nv 1 1 0\nf -3 -2 -1\nv 0 1 0\nf -4 -2 -1\n");
+  EXPECT_THAT(taken.triangles, ElementsAre("0,-,- 1,-,- 2,-,-", "0,-,- 2,-,- 3,-,-"));
+}
+
+TEST(ObjReader, FacesMayComeBeforeTheirVertices) {
+  EXPECT_THAT(Taken("f 1 2 3\n" + std::string(kSquare)).triangles,
+              ElementsAre("0,-,- 1,-,- 2,-,-"));
+}
+
+TEST(ObjReader, PolygonsBecomeFansAndDegenerateOnesAreCounted) {
+  const Taken taken(std::string(kSquare) + "f 1 2 3 4\nf 1 1 2\nf 1 2\nf\n");
+  EXPECT_THAT(taken.triangles, ElementsAre("0,-,- 1,-,- 2,-,-", "0,-,- 2,-,- 3,-,-"));
+  EXPECT_EQ(taken.counts.faces, 4U);
+  EXPECT_EQ(taken.counts.triangles, 2U);
+  EXPECT_EQ(taken.counts.degenerate_triangles, 3U);
+}
+
+TEST(ObjReader, LinesMayBeJoinedAndEndInAnyWay) {
+  const Taken taken(
+      "v 0 0 0\r\nv 1 \\\r\n 0 0\rv 1 1\\\n 0\n\n# v 9 9 9 \\\n 1\nf 1 \\\n2 \\\n\\\n3 # end");
+  EXPECT_THAT(taken.positions, ElementsAre("0 0 0", "1 0 0", "1 1 0"));
+  EXPECT_THAT(taken.triangles, ElementsAre("0,-,- 1,-,- 2,-,-"));
+}
+
+TEST(ObjReader, CountsWhatIsNoSurface) {
+  const Taken taken(std::string(kSquare) +
+                    "mtllib a.mtl b.mtl\no thing\ng\ng left right\nusemtl red\ns off\ns 1\n"
+                    "l 1 2\np 1\nf 1 2 3\n");
+  EXPECT_EQ(taken.counts.libraries, 1U);
+  EXPECT_EQ(taken.counts.objects, 1U);
+  EXPECT_EQ(taken.counts.groups, 2U);
+  EXPECT_EQ(taken.counts.materials, 1U);
+  EXPECT_EQ(taken.counts.points_and_lines, 2U);
+  EXPECT_EQ(taken.counts.others, 2U);
+}
+
+TEST(ObjReader, KnowsWhetherFloatsSayAllThatTheTextDoes) {
+  EXPECT_TRUE(Taken("v 0.1 123456.79 1e-30\n").counts.fits_float);
+  EXPECT_FALSE(Taken("v 0.1 0.1 400123.123\n").counts.fits_float);
+}
+
+TEST(ObjReader, ReadsTheSameOutOfGzip) {
+  const std::string text = std::string(kSquare) + "f 1 2 3 4\n";
+  EXPECT_EQ(Taken(meshhier::tests::gzip(text)).triangles, Taken(text).triangles);
+}
+
+TEST(ObjReader, LongLinesAndManyCornersTakeNoMemory) {
+  std::string text = kSquare;
+  text += "# " + std::string(3'000'000, 'x') + "\nf";
+  for (int i = 0; i < 100'000; ++i)
+    text += " 1 2 3 4";
+  const Taken taken(text);
+  EXPECT_EQ(taken.counts.faces, 1U);
+  EXPECT_EQ(taken.counts.triangles + taken.counts.degenerate_triangles, 399'998U);
+}
+
+TEST(ObjReader, RefusesWhatIsWrongAndNamesTheLine) {
+  const auto after = [](const std::string& line) { return refusal("v 0 0 0\nv 1 0 0\n" + line); };
+  EXPECT_EQ(after("v 1 2\n"),
+            "mesh: line 3: expected a number for a coordinate, found the end of the line");
+  EXPECT_EQ(after("v 1 2 x\n"),
+            "mesh: line 3: expected a finite number for a coordinate, found 'x'");
+  for (const char* bad : {"nan", "inf", "-inf", "1e999", "0x10", "1,5"})
+    EXPECT_THAT(after(fmt::format("v 1 2 {}\n", bad)), HasSubstr("expected a finite number"));
+  EXPECT_THAT(after("v 1 2 3 4 5\n"), HasSubstr("line 3: expected 3, 4, 6 or 7 numbers"));
+  EXPECT_THAT(after("v 1 2 3 4 5 6 7 8\n"), HasSubstr("line 3: expected 3, 4, 6 or 7 numbers"));
+  EXPECT_THAT(after("vn 1 2\n"), HasSubstr("line 3: expected a number for a normal"));
+  EXPECT_THAT(after("vn 1 2 1e39\n"), HasSubstr("within single precision"));
+  EXPECT_THAT(after("vt\n"), HasSubstr("line 3: expected a number for a texture coordinate"));
+  EXPECT_THAT(after("\n# x\nfoo 1 2 3\n"), HasSubstr("line 5: expected a statement"));
+  EXPECT_THAT(after("v " + std::string(5000, '1') + "\n"), HasSubstr("more than 4096 bytes"));
+}
+
+TEST(ObjReader, RefusesIndicesOfWhatIsNotThere) {
+  const auto after = [](const std::string& line) {
+    return refusal("v 0 0 0\nv 1 0 0\nv 0 1 0\n" + line + "\nvt 0 0\n");
+  };
+  EXPECT_THAT(after("f 1 2 4"), HasSubstr("line 4: expected the number of a vertex up to 3, as "
+                                          "many as the file has, found 4"));
+  for (const char* bad : {"0", "-4", "x", "1.5", "", "99999999999999999999", "4294967295"}) {
+    EXPECT_THAT(after(fmt::format("f 1 2 {}/1", bad)),
+                HasSubstr("line 4: expected the number of a vertex from 1 on"))
+        << bad;
+  }
+  EXPECT_THAT(after("f 1/1 2/1 3/2"), HasSubstr("line 4: expected the number of a texture "
+                                                "coordinate up to 1"));
+  EXPECT_THAT(after("f 1//1 2//1 3//1"), HasSubstr("expected the number of a normal up to 0"));
+  EXPECT_THAT(after("f 1/-1 2/1 3/1"), HasSubstr("line 4: expected the number of a texture"));
+  EXPECT_THAT(after("f 1/1/1/1 2 3"), HasSubstr("line 4: expected the number of a normal"));
+}
+
+}  // namespace
+}  // namespace meshhier::mesh_io::tests

@@ -1,0 +1,123 @@
+// OFF files: what is read, and what is refused.
+#include "mesh_io/off_reader.h"
+
+#include "streams.h"
+
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace meshhier::mesh_io::tests {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+struct Taken {
+  explicit Taken(const std::string& content) {
+    Streamed streamed(content);
+    counts = read_off(
+        streamed.stream(), "mesh",
+        [&](Vec3d p, std::span<const float> attributes) {
+          vertices.push_back(fmt::format("{} {} {}", p.x, p.y, p.z));
+          for (const float value : attributes)
+            vertices.back() += fmt::format(" {}", value);
+        },
+        [&](std::span<const SourceTriangle> all) {
+          for (const SourceTriangle& t : all)
+            triangles.push_back(fmt::format("{} {} {}", raw(t[0]), raw(t[1]), raw(t[2])));
+        });
+  }
+  std::vector<std::string> vertices, triangles;
+  OffCounts counts;
+};
+
+std::string refusal(const std::string& content) {
+  return input_error_of([&] { Taken{content}; });
+}
+
+constexpr const char* kSquare = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+
+TEST(OffReader, ReadsVerticesAndFaces) {
+  const Taken taken("# a\nOFF # b\n\n4 2 0\n" + std::string(kSquare) + "\n# c\n3 0 1 2\n4 0 1 2 3");
+  EXPECT_THAT(taken.vertices, ElementsAre("0 0 0", "1 0 0", "1 1 0", "0 1 0"));
+  EXPECT_THAT(taken.triangles, ElementsAre("0 1 2", "0 1 2", "0 2 3"));
+  EXPECT_EQ(taken.counts.faces.faces, 2U);
+  EXPECT_EQ(taken.counts.attributes, AttributeLayout());
+  EXPECT_TRUE(taken.counts.fits_float);
+}
+
+TEST(OffReader, CountsMayStandOnTheFirstLineOrWithoutEdges) {
+  for (const char* start : {"OFF 4 1 0\n", "OFF 4 1\n", "OFF\r\n4 1\r\n", "OFF\r4 1 5\r"}) {
+    const Taken taken(start + std::string(kSquare) + "3 0 1 2\n");
+    EXPECT_THAT(taken.triangles, ElementsAre("0 1 2")) << start;
+  }
+}
+
+TEST(OffReader, ReadsAttributesInTheirOrder) {
+  AttributeLayout all;
+  all.normals = all.texcoords = true;
+  all.colour = ColourType::u8;
+  const Taken bytes("STCNOFF\n1 0 0\n1 2 3 0 0 1 255 128 0 0.5 0.25\n");
+  EXPECT_THAT(bytes.vertices, ElementsAre("1 2 3 0 0 1 255 128 0 0.5 0.25"));
+  EXPECT_EQ(bytes.counts.attributes, all);
+
+  const Taken floats("COFF\n2 0 0\n1 2 3 1 0.5 0 1\n1 2 3 1 0 0 1\n");
+  EXPECT_THAT(floats.vertices, ElementsAre("1 2 3 1 0.5 0 1", "1 2 3 1 0 0 1"));
+  EXPECT_EQ(floats.counts.attributes.colour, ColourType::f32);
+  EXPECT_TRUE(floats.counts.attributes.alpha);
+
+  const Taken large("COFF\n1 0 0\n1 2 3 256 0 0\n");
+  EXPECT_EQ(large.counts.attributes.colour, ColourType::f32);
+  EXPECT_FALSE(large.counts.attributes.alpha);
+}
+
+TEST(OffReader, CountsColoursOfFacesAndDegenerateFaces) {
+  const Taken taken("OFF 4 4 0\n" + std::string(kSquare) +
+                    "3 0 1 2 255 0 0\n3 0 1 1\n2 0 1\n3 1 2 3 7\n");
+  EXPECT_THAT(taken.triangles, ElementsAre("0 1 2", "1 2 3"));
+  EXPECT_EQ(taken.counts.coloured_faces, 2U);
+  EXPECT_EQ(taken.counts.faces.degenerate_triangles, 2U);
+}
+
+TEST(OffReader, ACommentMayFollowAWordAtOnce) {
+  const Taken taken("OFF#x\n3 1 0#y\n0 0 0#z\n1 0 0 # \n0 1 0\n3 0 1 2#3 0 1 2");
+  EXPECT_THAT(taken.triangles, ElementsAre("0 1 2"));
+  EXPECT_EQ(taken.counts.coloured_faces, 0U);
+}
+
+TEST(OffReader, RefusesWhatIsWrongAndNamesTheLine) {
+  EXPECT_THAT(refusal("OF\n"), HasSubstr("line 1: expected 'OFF'"));
+  EXPECT_THAT(refusal("4OFF\n1 0 0\n1 2 3 4\n"), HasSubstr("line 1: expected three coordinates"));
+  EXPECT_THAT(refusal("OFF BINARY\n"), HasSubstr("binary OFF is not read"));
+  EXPECT_THAT(refusal("OFF\n"), HasSubstr("expected the counts of vertices and faces"));
+  EXPECT_THAT(refusal("OFF\n-1 0 0\n"), HasSubstr("line 2: expected the count of vertices"));
+  EXPECT_THAT(refusal("OFF\n1\n"), HasSubstr("line 2: expected the count of faces"));
+  EXPECT_THAT(refusal("OFF\n4294967296 0 0\n"), HasSubstr("expected the count of vertices"));
+  EXPECT_THAT(refusal("OFF\n1 0 0 0\n1 2 3\n"), HasSubstr("line 2: expected the end of the line"));
+  EXPECT_THAT(refusal("OFF\n4000000000 4000000000 0\n1 2 3\n"),
+              HasSubstr("expected vertex 1 of 4000000000, found the end of the file (truncated)"));
+  EXPECT_THAT(refusal("OFF\n1 0 0\n1 2\n"), HasSubstr("line 3: expected a number"));
+  EXPECT_THAT(refusal("OFF\n1 0 0\n1 2 3 4\n"), HasSubstr("line 3: expected 0 numbers behind"));
+  EXPECT_THAT(refusal("COFF\n2 0 0\n1 2 3 1 1 1\n1 2 3 1 1 1 1\n"),
+              HasSubstr("line 4: expected 3 numbers behind"));
+  EXPECT_THAT(refusal("NOFF\n1 0 0\n1 2 3 0 0 inf\n"), HasSubstr("line 3: expected a finite"));
+  EXPECT_THAT(refusal("OFF\n1 0 0\n1 2 nan\n"), HasSubstr("line 3: expected a finite number"));
+  const auto faces = [](const std::string& face) {
+    return refusal("OFF\n4 1 0\n" + std::string(kSquare) + face);
+  };
+  EXPECT_THAT(faces(""), HasSubstr("expected face 0 of 1, found the end of the file"));
+  EXPECT_THAT(faces("3 0 1\n"), HasSubstr("line 7: expected a corner of face 0"));
+  EXPECT_THAT(faces("3 0 1 4\n"), HasSubstr("expected a vertex from 0 to 3 in face 0, found '4'"));
+  EXPECT_THAT(faces("3 0 1 -1\n"), HasSubstr("found '-1'"));
+  EXPECT_THAT(faces("-3 0 1 2\n"), HasSubstr("expected the number of a face's corners"));
+  EXPECT_THAT(faces("99999999999 0 1 2\n"), HasSubstr("expected a corner of face 0"));
+  EXPECT_THAT(faces("3 0 1 2\n3 0 1 2\n"),
+              HasSubstr("line 8: expected the end of the file behind 1 faces, found '3'"));
+}
+
+}  // namespace
+}  // namespace meshhier::mesh_io::tests

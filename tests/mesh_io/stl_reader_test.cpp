@@ -1,0 +1,170 @@
+// STL files, binary and ASCII: what is read, and what is refused.
+#include "mesh_io/stl_reader.h"
+
+#include "streams.h"
+#include "support/gzip.h"
+
+#include <array>
+#include <bit>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace meshhier::mesh_io::tests {
+namespace {
+
+using ::testing::HasSubstr;
+
+using Facet = std::array<float, 9>;
+
+/// Normals are not finite: nobody looks at them.
+std::string binary_stl(const std::vector<Facet>& facets, std::uint16_t attribute = 0) {
+  std::string file(80, ' ');
+  const auto put = [&](auto value) {
+    std::array<char, sizeof value> bytes;
+    std::memcpy(bytes.data(), &value, sizeof value);
+    file.append(bytes.data(), bytes.size());
+  };
+  put(static_cast<std::uint32_t>(facets.size()));
+  for (const Facet& facet : facets) {
+    for (int i = 0; i < 3; ++i)
+      put(std::numeric_limits<float>::quiet_NaN());
+    for (const float coordinate : facet)
+      put(coordinate);
+    put(attribute);
+  }
+  return file;
+}
+
+std::vector<Facet> many_facets(std::size_t count) {
+  std::vector<Facet> facets(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t k = 0; k < 9; ++k)
+      facets[i][k] = static_cast<float>(i) + 0.125F * static_cast<float>(k);
+  }
+  return facets;
+}
+
+struct Taken {
+  std::vector<std::string> facets;
+  StlCounts counts;
+};
+
+template <class Read>
+Taken take(const std::string& content, const Read& read) {
+  Taken taken;
+  Streamed streamed(content);
+  taken.counts = read(streamed.stream(), "mesh", [&](std::span<const SoupTriangle> triangles) {
+    for (const SoupTriangle& t : triangles) {
+      taken.facets.push_back(fmt::format("{} {} {}, {} {} {}, {} {} {}", t[0].x, t[0].y, t[0].z,
+                                         t[1].x, t[1].y, t[1].z, t[2].x, t[2].y, t[2].z));
+    }
+  });
+  return taken;
+}
+Taken take_binary(const std::string& content) {
+  return take(content, read_binary_stl);
+}
+Taken take_text(const std::string& content) {
+  return take(content, read_text_stl);
+}
+
+std::string facet_text(const std::string& corner = "0 1 0") {
+  return "facet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 1 0 0\n  vertex " + corner +
+         "\n endloop\nendfacet\n";
+}
+
+TEST(StlReader, ReadsBinaryFilesOfAnySize) {
+  for (const std::size_t count : {0, 1, 4096, 4097, 9000}) {
+    const std::vector<Facet> facets = many_facets(count);
+    const Taken taken = take_binary(binary_stl(facets));
+    ASSERT_EQ(taken.facets.size(), count);
+    EXPECT_EQ(taken.counts.facets, count);
+    EXPECT_EQ(taken.counts.attributes, 0U);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Facet& f = facets[i];
+      ASSERT_EQ(taken.facets[i], fmt::format("{} {} {}, {} {} {}, {} {} {}", f[0], f[1], f[2], f[3],
+                                             f[4], f[5], f[6], f[7], f[8]));
+    }
+  }
+}
+
+TEST(StlReader, CountsAttributesOfBinaryFacets) {
+  EXPECT_EQ(take_binary(binary_stl(many_facets(3), 0x8000)).counts.attributes, 3U);
+}
+
+TEST(StlReader, ReadsTextOfSeveralSolidsInAnyCase) {
+  const Taken taken =
+      take_text("solid a b c\n" + facet_text() +
+                "endsolid a b c\nSOLID\nFACET NORMAL x y z\nOuter "
+                "Loop\nVERTEX 1 2 3\nVERTEX 4 5 6\nVERTEX 7 8 9\nENDLOOP\nENDFACET\nENDSOLID");
+  EXPECT_THAT(taken.facets, ::testing::ElementsAre("0 0 0, 1 0 0, 0 1 0", "1 2 3, 4 5 6, 7 8 9"));
+  EXPECT_EQ(taken.counts.solids, 2U);
+  EXPECT_EQ(taken.counts.facets, 2U);
+  EXPECT_TRUE(taken.counts.fits_float);
+}
+
+TEST(StlReader, HandsOutManyFacetsOfAText) {
+  std::string text = "solid\n";
+  for (int i = 0; i < 5000; ++i)
+    text += facet_text(fmt::format("0 1 {}", i));
+  const Taken taken = take_text(text + "endsolid\n");
+  ASSERT_EQ(taken.facets.size(), 5000U);
+  EXPECT_EQ(taken.facets[4999], "0 0 0, 1 0 0, 0 1 4999");
+}
+
+TEST(StlReader, KnowsWhetherFloatsSayAllThatTheTextDoes) {
+  EXPECT_TRUE(take_text("solid\n" + facet_text("0.1 0 0") + "endsolid").counts.fits_float);
+  EXPECT_FALSE(take_text("solid\n" + facet_text("400123.123 0 0") + "endsolid").counts.fits_float);
+}
+
+TEST(StlReader, RefusesBinaryFilesThatAreCutAnywhereOrTooLong) {
+  const std::string file = binary_stl(many_facets(2));
+  const auto refusal = [](const std::string& content) {
+    return input_error_of([&] { take_binary(content); });
+  };
+  for (std::size_t size = 0; size < file.size(); ++size)
+    EXPECT_NE(refusal(file.substr(0, size)), "") << size;
+  EXPECT_EQ(refusal(file.substr(0, 150)),
+            "mesh: byte 134: expected facet 1 of 2, found the end of the data (truncated)");
+  EXPECT_EQ(refusal(file + "x"),
+            "mesh: byte 184: expected the end of the data behind 2 facets, found more");
+  std::string lying = file;
+  lying[83] = '\x7f';  // two billion facets
+  EXPECT_THAT(refusal(lying), HasSubstr("mesh: byte 184: expected facet 2 of 213070"));
+}
+
+TEST(StlReader, RefusesCoordinatesThatAreNotFinite) {
+  std::vector<Facet> facets = many_facets(2);
+  facets[1][4] = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(input_error_of([&] { take_binary(binary_stl(facets)); }),
+            fmt::format("mesh: byte {}: expected a finite coordinate in facet 1, found inf",
+                        84 + 50 + 12 + 16));
+}
+
+TEST(StlReader, RefusesTextThatIsNoneAndNamesTheLine) {
+  const auto refusal = [](const std::string& content) {
+    return input_error_of([&] { take_text(content); });
+  };
+  EXPECT_EQ(refusal("solid\n"),
+            "mesh: line 2: expected 'facet' or 'endsolid', found the end of the file (truncated)");
+  EXPECT_EQ(refusal("solid\nfacets\n"),
+            "mesh: line 2: expected 'facet' or 'endsolid', found 'facets'");
+  EXPECT_EQ(refusal("solid\nendsolid\nmore\n"), "mesh: line 3: expected 'solid', found 'more'");
+  EXPECT_EQ(refusal("solid\nfacet\nouter loop\nvertex 1 2 3\nendloop\n"),
+            "mesh: line 5: expected 'vertex', found 'endloop'");
+  EXPECT_THAT(refusal("solid\n" + facet_text("1 2")), HasSubstr("line 6: expected a number"));
+  EXPECT_THAT(refusal("solid\n" + facet_text("1 2 3 4")), HasSubstr("line 6: expected the end of"));
+  EXPECT_THAT(refusal("solid\n" + facet_text("1 2 nan")), HasSubstr("expected a finite number"));
+  EXPECT_THAT(refusal("solid\nfacet\nouter loop\nvertex 1 2 3\nvertex 1 2 3\nvertex 1 2 3\nvertex "
+                      "1 2 3\n"),
+              HasSubstr("line 7: expected 'endloop', found 'vertex'"));
+}
+
+}  // namespace
+}  // namespace meshhier::mesh_io::tests
