@@ -28,7 +28,7 @@ struct PublishInput {
   std::optional<std::uint32_t> position_bits;  ///< of the lattice; none: positions stay exact
   std::optional<Transform> transform;          ///< of the tileset
   std::string licence;
-  std::uint32_t asked_vertices = 0;            ///< of simplified tiles
+  std::uint32_t asked_vertices = 0;  ///< of simplified tiles
 };
 
 /// Writes the whole hierarchy into `directory`, but for tiles that the journal has there.

@@ -165,8 +165,7 @@ class ImportTest : public testing::Test {
     return build_hierarchy(config, {.force = true}, {files_, progress, cancel});
   }
 
-  /// All files of the hierarchy but the manifest, which says what they were made of.
-  /// All files but those that name the source.
+  /// All files of the hierarchy but those that say what it was made of.
   std::map<fs::path, std::string> made(const Config& config) {
     build(config);
     std::map<fs::path, std::string> all;
