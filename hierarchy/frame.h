@@ -4,11 +4,17 @@
 #include "hierarchy/vec.h"
 
 #include <array>
+#include <string_view>
 
 namespace meshhier {
 
 /// Which axis of the input points up. glTF's is y; 3D Tiles' is z.
 enum class UpAxis { y, z };
+
+/// "y" or "z".
+constexpr std::string_view name_of(UpAxis up) {
+  return up == UpAxis::z ? "z" : "y";
+}
 
 /// What the nodes of all files of a hierarchy share.
 struct Frame {

@@ -92,7 +92,8 @@ struct StorageConfig {
   friend bool operator==(const StorageConfig&, const StorageConfig&) = default;
 };
 
-inline constexpr std::array kUpAxes{NamedValue{"y", UpAxis::y}, NamedValue{"z", UpAxis::z}};
+inline constexpr std::array kUpAxes{NamedValue{name_of(UpAxis::y), UpAxis::y},
+                                    NamedValue{name_of(UpAxis::z), UpAxis::z}};
 
 /// Where the model is for viewers of the tileset: on the globe, or anywhere, or nowhere in
 /// particular.

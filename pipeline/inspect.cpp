@@ -198,7 +198,7 @@ std::string outline_text(const storage::Manifest& manifest) {
 std::string tileset_text(const storage::Manifest& manifest) {
   return fmt::format("tileset      {} bytes in {} files, {} up{}{}\n",
                      grouped(manifest.tileset_bytes), grouped(manifest.tileset_files),
-                     manifest.up == UpAxis::z ? "z" : "y", manifest.transform ? ", placed" : "",
+                     name_of(manifest.up), manifest.transform ? ", placed" : "",
                      manifest.licence.empty() ? "" : ", licence " + shown(manifest.licence));
 }
 
@@ -288,7 +288,7 @@ Json outline_json(const storage::Manifest& manifest) {
 Json tileset_json(const storage::Manifest& manifest) {
   return {{"files", manifest.tileset_files},
           {"bytes", manifest.tileset_bytes},
-          {"up", manifest.up == UpAxis::z ? "z" : "y"},
+          {"up", name_of(manifest.up)},
           {"transform", manifest.transform ? Json(*manifest.transform) : Json()},
           {"licence", manifest.licence}};
 }

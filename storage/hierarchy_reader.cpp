@@ -97,13 +97,7 @@ HierarchyReader::HierarchyReader(FileSystem& files, std::filesystem::path direct
 
 const TileRecord& HierarchyReader::record(NodeId node) const {
   assert(tree_.contains(node));
-  if (tree_.is_early(node))
-    node = tree_.children(node).nodes[0];
-  const auto found =
-      std::lower_bound(records_.begin(), records_.end(), node,
-                       [](const TileRecord& record, NodeId key) { return record.node < key; });
-  assert(found != records_.end() && found->node == node);
-  return *found;
+  return record_of(records_, tile_node(tree_, node));
 }
 
 PublishedTile HierarchyReader::read_tile(NodeId node) const {

@@ -5,6 +5,8 @@
 #include "storage/hash.h"
 #include "storage/tile_glb.h"
 
+#include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -236,6 +238,14 @@ std::vector<std::byte> encode_index(std::span<const TileRecord> records) {
 std::vector<TileRecord> decode_index(std::span<const std::byte> bytes, const Tree& tree,
                                      const std::string& name) {
   return IndexReader(bytes, tree, name).read();
+}
+
+const TileRecord& record_of(std::span<const TileRecord> records, NodeId node) {
+  const auto found =
+      std::lower_bound(records.begin(), records.end(), node,
+                       [](const TileRecord& record, NodeId key) { return record.node < key; });
+  assert(found != records.end() && found->node == node);
+  return *found;
 }
 
 }  // namespace meshhier::storage

@@ -29,4 +29,7 @@ std::uint64_t tile_count(const Tree& tree);
 /// Bytes of its index.
 std::uint64_t index_bytes(const Tree& tree);
 
+/// The record of `node`, which has a tile, among all of a tree's, ascending by node. O(log n).
+const TileRecord& record_of(std::span<const TileRecord> records, NodeId node);
+
 }  // namespace meshhier::storage

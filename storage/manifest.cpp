@@ -100,7 +100,7 @@ Json manifest_json(const Manifest& manifest) {
   document["generator"] = manifest.generator;
   document["source"] = source_json(manifest.source);
   document["origin"] = numbers(manifest.origin);
-  document["up"] = manifest.up == UpAxis::z ? "z" : "y";
+  document["up"] = name_of(manifest.up);
   document["transform"] = manifest.transform ? Json(*manifest.transform) : Json();
   document["licence"] = manifest.licence;
   document["partitions"] = manifest.partition_count;

@@ -1,13 +1,12 @@
 #include "storage/tileset.h"
 
 #include "storage/hash.h"
+#include "storage/index.h"
 #include "storage/layout.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -79,13 +78,7 @@ class TilesetWriter {
            !tree_.is_early(node) && !tree_.is_partition(node);
   }
 
-  const TileRecord& record(NodeId node) const {
-    const auto found =
-        std::lower_bound(records_.begin(), records_.end(), node,
-                         [](const TileRecord& record, NodeId key) { return record.node < key; });
-    assert(found != records_.end() && found->node == node);
-    return *found;
-  }
+  const TileRecord& record(NodeId node) const { return record_of(records_, node); }
 
   std::string text_of(NodeId root) const {
     const bool is_first = root == tree_.root();

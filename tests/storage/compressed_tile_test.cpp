@@ -6,11 +6,11 @@
 #include "storage/meshopt_codec.h"
 #include "storage/tile_glb.h"
 #include "storage/tile_pack.h"
+#include "support/same_tile.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstring>
 #include <functional>
 #include <limits>
 #include <random>
@@ -36,23 +36,9 @@ constexpr std::array kCompressed{Compression::zlib, Compression::meshopt,
 
 const char* const kTileName = "some/tile.glb";
 
-template <class T>
-bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() &&
-         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
-}
-
 void expect_same(const PublishedTile& a, const PublishedTile& b) {
-  EXPECT_EQ(a.node, b.node);
-  EXPECT_TRUE(same_bits(a.mesh.vertices.positions, b.mesh.vertices.positions));
-  EXPECT_TRUE(same_bits(a.mesh.vertices.attributes, b.mesh.vertices.attributes));
-  EXPECT_EQ(a.mesh.own_count, b.mesh.own_count);
-  EXPECT_EQ(a.mesh.rim_count, b.mesh.rim_count);
-  EXPECT_EQ(a.mesh.ghosts, b.mesh.ghosts);
-  EXPECT_EQ(a.mesh.interior, b.mesh.interior);
-  EXPECT_EQ(a.mesh.border, b.mesh.border);
-  EXPECT_EQ(a.parent_map, b.parent_map);
-  EXPECT_EQ(a.chains, b.chains);
+  expect_same_mesh(a, b);
+  EXPECT_EQ(bits_of(a.mesh.vertices.attributes), bits_of(b.mesh.vertices.attributes));
 }
 
 /// Every tile, compressed in each way, is read as its plain twin is, and written again the same.

@@ -4,6 +4,7 @@
 #include "hierarchy/error.h"
 #include "storage/glb.h"
 #include "storage/hash.h"
+#include "support/same_tile.h"
 
 #include <algorithm>
 #include <array>
@@ -31,34 +32,6 @@ using Bytes = std::vector<std::byte>;
 using Json = nlohmann::ordered_json;
 
 const char* const kTileName = "some/tile.glb";
-
-std::vector<std::uint32_t> bits_of(const std::vector<float>& values) {
-  std::vector<std::uint32_t> bits;
-  for (const float value : values)
-    bits.push_back(std::bit_cast<std::uint32_t>(value));
-  return bits;
-}
-
-std::vector<std::uint32_t> bits_of(const std::vector<Vec3f>& points) {
-  std::vector<float> values;
-  for (const Vec3f& p : points)
-    values.insert(values.end(), {p.x, p.y, p.z});
-  return bits_of(values);
-}
-
-/// Everything but the attributes.
-void expect_same_mesh(const PublishedTile& a, const PublishedTile& b) {
-  EXPECT_EQ(a.node, b.node);
-  EXPECT_EQ(bits_of(a.mesh.vertices.positions), bits_of(b.mesh.vertices.positions));
-  EXPECT_EQ(a.mesh.vertices.channels, b.mesh.vertices.channels);
-  EXPECT_EQ(a.mesh.own_count, b.mesh.own_count);
-  EXPECT_EQ(a.mesh.rim_count, b.mesh.rim_count);
-  EXPECT_EQ(a.mesh.ghosts, b.mesh.ghosts);
-  EXPECT_EQ(a.mesh.interior, b.mesh.interior);
-  EXPECT_EQ(a.mesh.border, b.mesh.border);
-  EXPECT_EQ(a.parent_map, b.parent_map);
-  EXPECT_EQ(a.chains, b.chains);
-}
 
 /// What the GLB says of itself, and its parts, to be changed and put together again.
 struct OpenGlb {
