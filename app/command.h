@@ -34,6 +34,8 @@ void add_build_command(CLI::App& parser, Invocation& invocation);
 void add_inspect_command(CLI::App& parser, Invocation& invocation);
 void add_verify_command(CLI::App& parser, Invocation& invocation);
 void add_export_command(CLI::App& parser, Invocation& invocation);
+void add_progressive_command(CLI::App& parser, Invocation& invocation);
+void add_reconstruct_command(CLI::App& parser, Invocation& invocation);
 void add_clean_command(CLI::App& parser, Invocation& invocation);
 
 }  // namespace meshhier::app

@@ -137,6 +137,8 @@ int run(int argc, char** argv) {
   add_inspect_command(parser, invocation);
   add_verify_command(parser, invocation);
   add_export_command(parser, invocation);
+  add_progressive_command(parser, invocation);
+  add_reconstruct_command(parser, invocation);
   add_clean_command(parser, invocation);
 
   const std::vector<std::string> names = command_names(parser);

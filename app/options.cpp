@@ -93,6 +93,15 @@ CLI::Option* add_integer_option(CLI::App& command, const IntegerOption& option,
       ->type_name("N");
 }
 
+CLI::Option* add_node_option(CLI::App& command, const char* help, std::optional<NodeId>& node) {
+  const auto store = [&node](const std::string& text) {
+    node = parse_node(text);
+    if (!node)
+      refuse("--node", "a node as LEVEL/INDEX, for example 3/5", text);
+  };
+  return command.add_option_function<std::string>("--node", store, help)->type_name("L/I");
+}
+
 PlaceOptions add_place_options(CLI::App& command, std::optional<Level>& level,
                                std::optional<NodeId>& node) {
   PlaceOptions options;
@@ -100,14 +109,8 @@ PlaceOptions add_place_options(CLI::App& command, std::optional<Level>& level,
       add_integer_option(command, {"--level", "One level; 0 is the whole model", 0, kDeepestLevel},
                          [&level](std::uint64_t value) { level = static_cast<Level>(value); });
   options.level->type_name("L");
-  const auto store_node = [&node](const std::string& text) {
-    node = parse_node(text);
-    if (!node)
-      refuse("--node", "a node as LEVEL/INDEX, for example 3/5", text);
-  };
-  options.node = command.add_option_function<std::string>("--node", store_node,
-                                                          "One node: its level and index");
-  options.node->type_name("L/I")->excludes(options.level);
+  options.node = add_node_option(command, "One node: its level and index", node);
+  options.node->excludes(options.level);
   return options;
 }
 

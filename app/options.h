@@ -37,6 +37,9 @@ struct IntegerOption {
 CLI::Option* add_integer_option(CLI::App& command, const IntegerOption& option,
                                 const std::function<void(std::uint64_t)>& store);
 
+/// --node L/I
+CLI::Option* add_node_option(CLI::App& command, const char* help, std::optional<NodeId>& node);
+
 /// --level L and --node L/I, which exclude each other.
 struct PlaceOptions {
   CLI::Option* level = nullptr;

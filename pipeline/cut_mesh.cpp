@@ -10,14 +10,6 @@
 namespace meshhier::pipeline {
 namespace {
 
-constexpr CutTriangle turned(const CutTriangle& t) {
-  if (t[1] < t[0] && t[1] < t[2])
-    return {t[1], t[2], t[0]};
-  if (t[2] < t[0] && t[2] < t[1])
-    return {t[2], t[0], t[1]};
-  return t;
-}
-
 /// A border triangle as its tile sees it in the cut.
 struct BorderView {
   CutTriangle corners{};

@@ -26,6 +26,15 @@ namespace meshhier::pipeline {
 /// Corners as numbers of the cut's vertices.
 using CutTriangle = std::array<std::uint32_t, 3>;
 
+/// With its smallest corner first.
+constexpr CutTriangle turned(const CutTriangle& t) {
+  if (t[1] < t[0] && t[1] < t[2])
+    return {t[1], t[2], t[0]};
+  if (t[2] < t[0] && t[2] < t[1])
+    return {t[2], t[0], t[1]};
+  return t;
+}
+
 /// A cut whose vertices are numbered.
 struct NumberedCut {
   Cut cut;

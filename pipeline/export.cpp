@@ -109,7 +109,11 @@ std::string export_cut(const ExportJob& job, Cut cut, const std::string& what) {
   job.progress.stage("export", 2 * numbered.cut.size(), "tiles");
   for (std::size_t i = 0; i < numbered.cut.size(); ++i) {
     job.cancel.check();
-    triangles.append(draw_tile(tree, numbered, i, job.reader.read_tile(numbered.cut[i])).triangles);
+    DrawnTile drawn = draw_tile(tree, numbered, i, job.reader.read_tile(numbered.cut[i]));
+    for (CutTriangle& triangle : drawn.triangles)
+      triangle = turned(triangle);
+    std::sort(drawn.triangles.begin(), drawn.triangles.end());
+    triangles.append(drawn.triangles);
     job.progress.advance(1);
   }
   mesh_io::PlyContent content = content_for(job.reader, what);

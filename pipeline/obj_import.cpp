@@ -2,6 +2,7 @@
 
 #include "hierarchy/error.h"
 #include "partition/external_sort.h"
+#include "pipeline/spool_cursor.h"
 
 #include <utility>
 

@@ -3,6 +3,7 @@
 #include "hierarchy/error.h"
 #include "partition/external_sort.h"
 #include "partition/renumber.h"
+#include "pipeline/spool_cursor.h"
 
 #include <bit>
 #include <type_traits>

@@ -3,6 +3,7 @@
 #include "hierarchy/error.h"
 #include "storage/glb.h"
 
+#include <algorithm>
 #include <array>
 
 #include <fmt/format.h>
@@ -50,6 +51,12 @@ class Inflater {
     }
   }
 
+  /// Fills as much of `to` as there is; returns how much.
+  std::size_t read_up_to(std::span<std::byte> to) {
+    inflate_into(to);
+    return to.size() - stream_.avail_out;
+  }
+
   /// Checks the member's own checksum, and that nothing is left.
   void finish() {
     std::array<std::byte, 1> more;
@@ -86,13 +93,14 @@ class Inflater {
 
 }  // namespace
 
-std::vector<std::byte> gzip(std::span<const std::byte> bytes) {
+std::vector<std::byte> gzip(std::span<const std::byte> bytes, Repetitions repetitions) {
   z_stream stream{};
   gz_header header{};
   header.os = kUnknownSystem;
   const int level = Z_BEST_COMPRESSION;
-  if (bytes.size() > UINT32_MAX || deflateInit2(&stream, level, Z_DEFLATED, kGzipWindow,
-                                                kMemoryLevel, Z_DEFAULT_STRATEGY) != Z_OK)
+  const int strategy = repetitions == Repetitions::all ? Z_DEFAULT_STRATEGY : Z_RLE;
+  if (bytes.size() > UINT32_MAX ||
+      deflateInit2(&stream, level, Z_DEFLATED, kGzipWindow, kMemoryLevel, strategy) != Z_OK)
     throw Error(ErrorCode::internal, "zlib cannot begin");
   deflateSetHeader(&stream, &header);
   std::vector<std::byte> packed(deflateBound(&stream, static_cast<uLong>(bytes.size())));
@@ -106,6 +114,17 @@ std::vector<std::byte> gzip(std::span<const std::byte> bytes) {
   if (result != Z_STREAM_END)
     throw Error(ErrorCode::internal, "zlib cannot end");
   return packed;
+}
+
+std::vector<std::byte> gunzip(std::span<const std::byte> bytes, std::size_t most_bytes,
+                              const std::string& name) {
+  if (bytes.size() > UINT32_MAX)
+    throw Error(ErrorCode::corrupt, name + ": is too large for a gzip member");
+  Inflater inflater(bytes, name);
+  std::vector<std::byte> plain(std::min<std::uint64_t>(most_bytes, kMostInflation * bytes.size()));
+  plain.resize(inflater.read_up_to(plain));
+  inflater.finish();
+  return plain;
 }
 
 std::vector<std::byte> gunzip_glb(std::span<const std::byte> bytes, const std::string& name) {

@@ -2,10 +2,10 @@
 
 #include "hierarchy/bounds.h"
 #include "hierarchy/error.h"
-#include "storage/hash.h"
 #include "storage/index.h"
 #include "storage/layout.h"
 #include "storage/outline_glb.h"
+#include "storage/sealed_file.h"
 
 #include <algorithm>
 #include <cassert>
@@ -21,29 +21,6 @@ constexpr std::uint64_t kMaxManifestBytes = 1024 * 1024;
 
 /// What a GLB can say of its length: a larger file is not worth the memory.
 constexpr std::uint64_t kMaxGlbBytes = UINT32_MAX;
-
-/// The size and checksum that a file has according to another one.
-struct Seal {
-  std::uint64_t bytes = 0;
-  std::uint64_t checksum = 0;
-};
-
-/// `limit_bytes`: more than any such file has; guards the allocation where the seal lies as well.
-std::vector<std::byte> read_sealed(FileSystem& files, const std::filesystem::path& path,
-                                   const Seal& seal, std::uint64_t limit_bytes = kMaxGlbBytes) {
-  std::vector<std::byte> bytes = read_file(files, path, std::min(seal.bytes, limit_bytes));
-  if (bytes.size() != seal.bytes) {
-    throw Error(ErrorCode::corrupt, fmt::format("{}: has {} bytes, expected {}: the file is cut",
-                                                path.string(), bytes.size(), seal.bytes));
-  }
-  const std::uint64_t found = checksum(bytes);
-  if (found != seal.checksum) {
-    throw Error(ErrorCode::corrupt,
-                fmt::format("{}: checksum is {:016x}, expected {:016x}: the file is damaged",
-                            path.string(), found, seal.checksum));
-  }
-  return bytes;
-}
 
 Manifest load_manifest(FileSystem& files, const std::filesystem::path& directory) {
   const auto path = manifest_path(directory);
@@ -103,7 +80,8 @@ const TileRecord& HierarchyReader::record(NodeId node) const {
 PublishedTile HierarchyReader::read_tile(NodeId node) const {
   const TileRecord& expected = record(node);
   const auto path = tile_path(directory_, expected.node);
-  const auto bytes = read_sealed(files_, path, {expected.file_bytes, expected.checksum});
+  const auto bytes =
+      read_sealed(files_, path, {expected.file_bytes, expected.checksum}, kMaxGlbBytes);
   PublishedTile tile = decode_tile(bytes, expected.node, tree_, format_, path.string());
   if (const char* what = difference(tile.mesh, expected)) {
     throw Error(ErrorCode::corrupt,
@@ -114,8 +92,8 @@ PublishedTile HierarchyReader::read_tile(NodeId node) const {
 
 Outline HierarchyReader::read_outline() const {
   const auto path = outline_path(directory_);
-  const auto bytes =
-      read_sealed(files_, path, {manifest_.outline_bytes, manifest_.outline_checksum});
+  const auto bytes = read_sealed(
+      files_, path, {manifest_.outline_bytes, manifest_.outline_checksum}, kMaxGlbBytes);
   return decode_outline(bytes, path.string());
 }
 

@@ -38,6 +38,14 @@ std::filesystem::path tile_path(const std::filesystem::path& hierarchy, NodeId n
   return level_directory(hierarchy, node.level) / fmt::format("{:06}.glb", node.index);
 }
 
+std::filesystem::path progressive_index_path(const std::filesystem::path& stream) {
+  return stream / "progressive.json";
+}
+
+std::filesystem::path detail_path(const std::filesystem::path& stream, std::uint32_t step) {
+  return stream / (step == 0 ? std::string("base.bin") : fmt::format("detail_{:02}.bin", step));
+}
+
 std::filesystem::path work_path(const std::filesystem::path& output) {
   return output.parent_path() / fmt::format(".{}.meshhier-work", output.filename().string());
 }

@@ -7,6 +7,9 @@
 //   NAME.hier/tileset.json
 //   NAME.hier/tilesets/LL/NNNNNN.json        of the nodes below that one, where the tree is too large for one file
 //   NAME.hier/tiles/LL/NNNNNN.glb            level (two digits or more), index in it (six or more)
+//   NAME.prog/progressive.json
+//   NAME.prog/base.bin
+//   NAME.prog/detail_NN.bin                  in the order of their use, from 1 on
 //   .NAME.hier.meshhier-work/                beside the output while a build runs, and after it was stopped
 //   .NAME.hier.meshhier-work/lock            held by the build at work
 //   .NAME.hier.meshhier-work/journal         what is done
@@ -37,6 +40,10 @@ std::filesystem::path tileset_path(const std::filesystem::path& hierarchy);
 std::filesystem::path tileset_path(const std::filesystem::path& hierarchy, NodeId node);
 std::filesystem::path level_directory(const std::filesystem::path& hierarchy, Level level);
 std::filesystem::path tile_path(const std::filesystem::path& hierarchy, NodeId node);
+
+std::filesystem::path progressive_index_path(const std::filesystem::path& stream);
+/// Step 0 is the base.
+std::filesystem::path detail_path(const std::filesystem::path& stream, std::uint32_t step);
 
 std::filesystem::path work_path(const std::filesystem::path& output);
 std::filesystem::path replaced_path(const std::filesystem::path& output);

@@ -12,18 +12,26 @@
 
 namespace meshhier::storage {
 
+OutputKind hierarchy_output() {
+  return {"a hierarchy", manifest_path({})};
+}
+
+OutputKind progressive_output() {
+  return {"a progressive stream", progressive_index_path({})};
+}
+
 bool check_output(FileSystem& files, const std::filesystem::path& output, bool replace,
-                  const char* state) {
+                  const char* state, const OutputKind& kind) {
   if (!files.exists(output))
     return false;
   if (!replace) {
     throw Error(ErrorCode::exists,
                 fmt::format("{} {}; --force replaces it", output.string(), state));
   }
-  if (!files.exists(manifest_path(output))) {
+  if (!files.exists(output / kind.marker)) {
     throw Error(ErrorCode::exists,
-                fmt::format("{} is not a hierarchy (it has no {}), so --force does not replace it",
-                            output.string(), manifest_path({}).string()));
+                fmt::format("{} is not {} (it has no {}), so --force does not replace it",
+                            output.string(), kind.noun, kind.marker.string()));
   }
   return true;
 }
@@ -44,9 +52,14 @@ std::unique_ptr<FileLock> lock_patiently(FileSystem& files, const std::filesyste
 
 }  // namespace
 
-WorkDirectory::WorkDirectory(FileSystem& files, std::filesystem::path output, bool replace)
-    : files_(files), output_(std::move(output)), path_(work_path(output_)), replace_(replace) {
-  check_output(files_, output_, replace_);
+WorkDirectory::WorkDirectory(FileSystem& files, std::filesystem::path output, bool replace,
+                             OutputKind kind)
+    : files_(files),
+      output_(std::move(output)),
+      path_(work_path(output_)),
+      replace_(replace),
+      kind_(std::move(kind)) {
+  check_output(files_, output_, replace_, "is already there", kind_);
   for (auto parent = output_.parent_path(); !parent.empty() && !files_.exists(parent);
        parent = parent.parent_path()) {
     made_parent_ = parent;
@@ -84,7 +97,8 @@ void WorkDirectory::clear() {
 void WorkDirectory::publish() {
   files_.sync_tree(path_);
   const std::filesystem::path old = replaced_path(output_);
-  const bool replacing = check_output(files_, output_, replace_, "appeared during the build");
+  const bool replacing =
+      check_output(files_, output_, replace_, "appeared during the build", kind_);
   if (replacing) {
     files_.remove_all(old);
     files_.rename(output_, old);

@@ -9,17 +9,27 @@
 
 namespace meshhier::storage {
 
+/// What an output is: only its own kind is replaced.
+struct OutputKind {
+  const char* noun;              ///< "a hierarchy"
+  std::filesystem::path marker;  ///< a file that every one of them has
+};
+OutputKind hierarchy_output();
+OutputKind progressive_output();
+
 /// Whether there is an output. Throws Error(exists) if there is and `replace` is false, or if it is
-/// no hierarchy; `state` says how it comes to be there.
+/// of no such kind; `state` says how it comes to be there.
 bool check_output(FileSystem& files, const std::filesystem::path& output, bool replace,
-                  const char* state = "is already there");
+                  const char* state = "is already there",
+                  const OutputKind& kind = hierarchy_output());
 
 class WorkDirectory {
  public:
   /// Takes the directory as an earlier build left it, or makes it. Throws Error(exists) if `output`
   /// is there and `replace` is false or if another build is at work here, Error(io) if its parent
   /// cannot be written.
-  WorkDirectory(FileSystem& files, std::filesystem::path output, bool replace);
+  WorkDirectory(FileSystem& files, std::filesystem::path output, bool replace,
+                OutputKind kind = hierarchy_output());
   WorkDirectory(const WorkDirectory&) = delete;
   WorkDirectory& operator=(const WorkDirectory&) = delete;
   /// Removes the directory and all in it, and directories made above it, unless it is kept or
@@ -49,6 +59,7 @@ class WorkDirectory {
       made_parent_;  ///< the topmost directory above the output that was not there before
   std::unique_ptr<FileLock> lock_;
   bool replace_;
+  OutputKind kind_;
   bool kept_ = false;
   bool published_ = false;
 };

@@ -27,8 +27,9 @@ using testing::IsEmpty;
 using testing::SizeIs;
 
 /// Folders with code that ends in the program; tests are free to use anything.
-constexpr std::array kFolders = {"app",     "bench",     "cluster_simplify", "hierarchy", "mesh_io",
-                                 "outline", "partition", "pipeline",         "storage"};
+constexpr std::array kFolders = {"app",         "bench",   "cluster_simplify", "hierarchy",
+                                 "mesh_io",     "outline", "partition",        "pipeline",
+                                 "progressive", "storage"};
 
 struct Include {
   std::string name;
@@ -105,8 +106,8 @@ const std::vector<Source>& sources() {
 
 /// The folders whose headers a folder may include, besides its own.
 const std::map<std::string, std::set<std::string>>& allowed_folders() {
-  static const std::set<std::string> below_pipeline = {"cluster_simplify", "hierarchy", "mesh_io",
-                                                       "outline",          "partition", "storage"};
+  static const std::set<std::string> below_pipeline = {
+      "cluster_simplify", "hierarchy", "mesh_io", "outline", "partition", "progressive", "storage"};
   static const std::map<std::string, std::set<std::string>> rules = {
       {"hierarchy", {}},
       {"storage", {"hierarchy"}},
@@ -114,6 +115,7 @@ const std::map<std::string, std::set<std::string>>& allowed_folders() {
       {"partition", {"hierarchy"}},
       {"cluster_simplify", {"hierarchy"}},
       {"outline", {"hierarchy"}},
+      {"progressive", {"hierarchy"}},
       {"pipeline", below_pipeline},
       {"app", {"hierarchy", "pipeline", "storage"}},
       {"bench",
@@ -196,7 +198,8 @@ const std::vector<ThirdParty>& third_parties() {
       {"meshoptimizer.h", [](const Source& s) { return s.path == "storage/meshopt_codec.cpp"; }},
       {"fmt/", [](const Source& s) {
          return s.folder() != "hierarchy" && s.folder() != "outline" &&
-                s.folder() != "cluster_simplify" && s.folder() != "partition";
+                s.folder() != "cluster_simplify" && s.folder() != "partition" &&
+                s.folder() != "progressive";
        }}};
   return rules;
 }
@@ -241,7 +244,8 @@ std::string check_only_standard(const Source& source, const Include& include) {
 
 /// Kernels have no threads and touch no files.
 std::string check_kernel(const Source& source, const Include& include) {
-  static const std::set<std::string> folders = {"hierarchy", "outline", "cluster_simplify"};
+  static const std::set<std::string> folders = {"hierarchy", "outline", "cluster_simplify",
+                                                "progressive"};
   static const std::set<std::string> effects = {"thread",     "mutex",   "atomic",
                                                 "future",     "fstream", "iostream",
                                                 "filesystem", "random",  "chrono"};

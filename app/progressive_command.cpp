@@ -1,0 +1,72 @@
+#include "app/command.h"
+#include "app/options.h"
+#include "pipeline/progressive.h"
+
+#include <memory>
+#include <ostream>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+namespace meshhier::app {
+
+namespace {
+
+struct ProgressiveArguments {
+  std::string directory;
+  std::string output;
+  pipeline::ProgressiveOptions options;
+};
+
+int run_progressive(ProgressiveArguments& arguments, pipeline::ProgressMode mode,
+                    Environment& environment) {
+  const auto progress =
+      pipeline::make_progress(mode, environment.messages, environment.messages_on_terminal);
+  arguments.options.output = arguments.output;
+  const std::string line = pipeline::write_progressive(
+      environment.files, arguments.directory, arguments.options, *progress, environment.cancel);
+  progress->finish(arguments.output);
+  environment.out << line << '\n';
+  return 0;
+}
+
+constexpr const char* kProgressiveFooter =
+    R"(The hierarchy must have been built with "simplify": {"method": "half_edge"}. The base shows its
+coarsest level; with each detail a client shows the next finer one, with the last the original mesh
+bit for bit, and needs no more than an array of vertices and one of triangles for it
+("meshhier reconstruct"; docs/file_format.md).
+
+Examples:
+  meshhier progressive david.hier -o david.prog
+  meshhier progressive david.hier --steps 3 -o david.prog
+  meshhier progressive david.hier --node 3/5 -o sector.prog
+)";
+
+}  // namespace
+
+void add_progressive_command(CLI::App& parser, Invocation& invocation) {
+  const auto arguments = std::make_shared<ProgressiveArguments>();
+  CLI::App* command =
+      parser.add_subcommand("progressive", "Make a base and its details for weak clients");
+  command->add_option("DIR", arguments->directory, "The hierarchy")->required();
+  add_node_option(*command, "One sector on its own: its level and index", arguments->options.node);
+  add_integer_option(*command,
+                     {"--steps", "How many details; one a level if not given", 1, kDeepestLevel},
+                     [arguments](std::uint64_t steps) {
+                       arguments->options.steps = static_cast<std::uint32_t>(steps);
+                     });
+  command->add_option("-o,--output", arguments->output, "The directory to make")
+      ->type_name("DIR")
+      ->required();
+  command->add_flag("--force", arguments->options.replace, "Replace a stream that is there");
+  add_memory_budget_option(*command, arguments->options.memory_budget);
+  add_progress_option(*command, invocation.progress);
+  command->footer(kProgressiveFooter);
+  command->callback([arguments, &invocation] {
+    invocation.run = [arguments, &invocation](Environment& environment) {
+      return run_progressive(*arguments, invocation.progress, environment);
+    };
+  });
+}
+
+}  // namespace meshhier::app

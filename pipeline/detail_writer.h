@@ -1,0 +1,43 @@
+// One file of a progressive stream, from the lists of the levels it spans.
+#pragma once
+
+#include "pipeline/cancel.h"
+#include "pipeline/foreign_corners.h"
+#include "pipeline/level_lists.h"
+#include "pipeline/progress.h"
+#include "progressive/traced_tile.h"
+#include "storage/file.h"
+#include "storage/progressive_index.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+namespace meshhier::pipeline {
+
+/// What a file leads from and to.
+struct DetailSpan {
+  std::uint32_t step = 0;       ///< 0: the base
+  std::optional<Level> coarse;  ///< none: from nothing
+  Level fine{};
+};
+
+/// Vertices that the client knows of at a level: those of the level, and those that stand for
+/// others. What is in neither is first heard of with the next file.
+struct DetailSource {
+  const std::vector<LevelLists>& lists;  ///< by level
+  const progressive::Sector& sector;
+  const AttributeLayout& layout;
+  const ForeignCorners& all_foreign;     ///< of the last level: they number the foreign vertices
+  const ForeignCorners& coarse_foreign;  ///< empty for the base
+  const ForeignCorners& fine_foreign;
+};
+
+/// Writes the file; `shown_*` of the result are left 0. Lists of several levels are merged as they
+/// are read: memory for a few runs a thread. Deterministic. Throws Error(io).
+storage::ProgressiveFile write_detail(storage::FileSystem& files, const std::filesystem::path& path,
+                                      const DetailSpan& span, const DetailSource& source,
+                                      Progress& progress, const CancelToken& cancel);
+
+}  // namespace meshhier::pipeline

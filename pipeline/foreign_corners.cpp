@@ -1,0 +1,40 @@
+#include "pipeline/foreign_corners.h"
+
+#include "hierarchy/error.h"
+#include "pipeline/size_text.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include <fmt/format.h>
+
+namespace meshhier::pipeline {
+
+ForeignCorners::ForeignCorners(const LevelLists& level, std::size_t width,
+                               std::uint64_t memory_bytes)
+    : width_(width) {
+  // A rank as it came and as it stays, a place twice, the values.
+  const std::uint64_t needed = level.foreign_ranks.size() * (24 + width * sizeof(float));
+  if (needed > memory_bytes) {
+    throw Error(ErrorCode::budget,
+                fmt::format("the border of the sector needs {}, the budget leaves {}",
+                            rounded_size_text(needed), rounded_size_text(memory_bytes)));
+  }
+  const std::vector<std::uint32_t> ranks = level.foreign_ranks.read_all();
+  values_ = level.foreign_values.read_all();
+  places_.resize(ranks.size());
+  std::iota(places_.begin(), places_.end(), std::size_t{0});
+  std::ranges::stable_sort(places_, {}, [&](std::size_t place) { return ranks[place]; });
+  const auto same = [&](std::size_t a, std::size_t b) { return ranks[a] == ranks[b]; };
+  places_.erase(std::unique(places_.begin(), places_.end(), same), places_.end());
+  for (const std::size_t place : places_)
+    ranks_.push_back(ranks[place]);
+}
+
+std::size_t ForeignCorners::find(std::uint32_t rank) const {
+  const auto place = std::ranges::lower_bound(ranks_, rank);
+  const bool found = place != ranks_.end() && *place == rank;
+  return found ? static_cast<std::size_t>(place - ranks_.begin()) : size();
+}
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,241 @@
+#include "pipeline/progressive.h"
+
+#include "hierarchy/detail.h"
+#include "hierarchy/error.h"
+#include "pipeline/cut.h"
+#include "pipeline/detail_writer.h"
+#include "pipeline/foreign_corners.h"
+#include "pipeline/level_lists.h"
+#include "pipeline/size_text.h"
+#include "storage/hierarchy_reader.h"
+#include "storage/layout.h"
+#include "storage/progressive_index.h"
+#include "storage/work_directory.h"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace meshhier::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+using progressive::Sector;
+
+void require_half_edge(const storage::HierarchyReader& reader) {
+  const auto& config = reader.manifest().config;
+  const auto simplify = config.find("simplify");
+  const bool known = simplify != config.end() && simplify->is_object() &&
+                     simplify->contains("method") && (*simplify)["method"].is_string();
+  const std::string method = known ? (*simplify)["method"].get<std::string>() : "another method";
+  if (method == "half_edge")
+    return;
+  throw Error(
+      ErrorCode::usage,
+      fmt::format("{} was simplified by {}: a progressive stream needs vertices that stay "
+                  "where they are, so build it with \"simplify\": {{\"method\": \"half_edge\"}}",
+                  reader.directory().string(), method));
+}
+
+/// The levels that the stream shows, one a file, from the sector's own to the last.
+std::vector<Level> shown_levels(const Tree& tree, NodeId node,
+                                const std::optional<std::uint32_t>& steps) {
+  const int top = raw(node.level);
+  const int below = raw(tree.depth()) - top;
+  if (steps && (*steps < 1 || std::int64_t{*steps} > below)) {
+    throw Error(ErrorCode::usage,
+                below == 0 ? fmt::format("--steps {}: there is no level below {}/{}", *steps, top,
+                                         node.index)
+                           : fmt::format("--steps {}: expected 1 to {}, the levels below {}/{}",
+                                         *steps, below, top, node.index));
+  }
+  const int details = steps ? static_cast<int>(*steps) : below;
+  std::vector<Level> levels;
+  for (int i = 0; i <= details; ++i)
+    levels.push_back(static_cast<Level>(top + (details == 0 ? 0 : i * below / details)));
+  return levels;
+}
+
+/// Bytes for scratch files and output, at most.
+std::uint64_t disk_need(const storage::HierarchyReader& reader, const Sector& sector) {
+  const Tree& tree = reader.tree();
+  const auto width = static_cast<std::uint64_t>(vertex_values(reader.tile_format().attributes));
+  std::uint64_t bytes = 0;
+  for (const TileRecord& record : reader.records()) {
+    const bool inside = record.node.level >= sector.node.level &&
+                        tree.ancestor(record.node, sector.node.level) == sector.node;
+    if (!inside)
+      continue;
+    const std::uint64_t triangles = std::uint64_t{record.interior_count} + record.border_count;
+    // Three corners a triangle that something stands for; partitions hold what is lost at all, and
+    // what is in the files.
+    bytes += std::min(3 * triangles, tree.ranks(record.node).size() + record.ghost_count) *
+             (sizeof(StandIn) + 4 * width);
+    if (tree.is_partition(record.node))
+      bytes += 2 * (triangles * sizeof(LostTriangle) + record.own_count * (4 + 4 * width));
+  }
+  return bytes;
+}
+
+void require_disk(storage::FileSystem& files, const fs::path& directory, std::uint64_t needed) {
+  const std::uint64_t free = files.free_bytes(directory);
+  if (free < needed) {
+    throw Error(
+        ErrorCode::budget,
+        fmt::format("{} has {} free, the stream and its temporary files may take {}",
+                    directory.string(), rounded_size_text(free), rounded_size_text(needed)));
+  }
+}
+
+/// Makes the stream's files in `directory`.
+class StreamWriter {
+ public:
+  StreamWriter(storage::FileSystem& files, const storage::HierarchyReader& reader,
+               const Sector& sector, std::vector<Level> levels, std::uint64_t memory_budget)
+      : files_(files),
+        reader_(reader),
+        sector_(sector),
+        levels_(std::move(levels)),
+        memory_budget_(memory_budget) {}
+
+  storage::ProgressiveIndex write(const fs::path& scratch_file, const fs::path& directory,
+                                  Progress& progress, const CancelToken& cancel) {
+    // A quarter each: lists in memory, tiles at work, the sector's border; runs and the rest.
+    storage::MemoryPool pool(memory_budget_ / 4);
+    storage::ScratchFile scratch(files_, scratch_file, pool);
+    std::vector<LevelLists> lists;
+    for (int level = 0; level <= raw(reader_.tree().depth()); ++level)
+      lists.emplace_back(scratch);
+    trace(lists, progress, cancel);
+    return write_files(lists, directory, progress, cancel);
+  }
+
+ private:
+  void trace(std::vector<LevelLists>& lists, Progress& progress, const CancelToken& cancel) const {
+    TraceOptions options;
+    options.listed.resize(lists.size());
+    for (const Level level : levels_)
+      options.listed[raw(level)] = true;
+    options.memory_bytes = memory_budget_ / 4;
+    const std::uint64_t tiles = 2 * std::uint64_t{sector_.partitions.size()} - 1;
+    progress.stage("trace", tiles, "tiles");
+    trace_sector(reader_, sector_, options, lists, progress, cancel);
+  }
+
+  ForeignCorners foreign_of(const std::vector<LevelLists>& lists, Level level) const {
+    const auto width = static_cast<std::size_t>(vertex_values(reader_.tile_format().attributes));
+    return {lists[raw(level)], width, memory_budget_ / 12};
+  }
+
+  storage::ProgressiveIndex write_files(const std::vector<LevelLists>& lists,
+                                        const fs::path& directory, Progress& progress,
+                                        const CancelToken& cancel) const {
+    const ForeignCorners all = foreign_of(lists, reader_.tree().depth());
+    storage::ProgressiveIndex index = begin_index(lists, all);
+    progress.stage("write", entries_of(lists), "entries");
+    ForeignCorners coarse;
+    for (std::size_t i = 0; i < levels_.size(); ++i) {
+      ForeignCorners fine = foreign_of(lists, levels_[i]);
+      DetailSpan span{static_cast<std::uint32_t>(i), std::nullopt, levels_[i]};
+      if (i > 0)
+        span.coarse = levels_[i - 1];
+      const DetailSource source{lists, sector_, reader_.tile_format().attributes,
+                                all,   coarse,  fine};
+      storage::ProgressiveFile file = write_detail(
+          files_, storage::detail_path(directory, span.step), span, source, progress, cancel);
+      file.shown_vertices = own_vertices(levels_[i]) + fine.size();
+      file.shown_triangles =
+          file.triangles + (index.files.empty() ? 0 : index.files.back().shown_triangles);
+      index.files.push_back(file);
+      coarse = std::move(fine);
+    }
+    return index;
+  }
+
+  /// Stand-ins that do not change are no entries, so it is a little less in the end.
+  std::uint64_t entries_of(const std::vector<LevelLists>& lists) const {
+    std::uint64_t entries = 0;
+    for (const LevelLists& level : lists)
+      entries += level.lost_ranks.size() + level.lost_triangles.size() + level.stand_ins.size();
+    return entries;
+  }
+
+  storage::ProgressiveIndex begin_index(const std::vector<LevelLists>& lists,
+                                        const ForeignCorners& foreign) const {
+    const storage::Manifest& manifest = reader_.manifest();
+    storage::ProgressiveIndex index;
+    index.generator = manifest.generator;
+    index.source = manifest.source;
+    index.node = sector_.node;
+    index.own_vertices = sector_.ranks.size();
+    index.vertices = index.own_vertices + foreign.size();
+    for (const LevelLists& level : lists)
+      index.triangles += level.lost_triangles.size();
+    index.origin = manifest.origin;
+    index.up = manifest.up;
+    index.licence = manifest.licence;
+    return index;
+  }
+
+  /// Of the sector's tiles of a level; partitions stand for early nodes.
+  std::uint64_t own_vertices(Level level) const {
+    std::uint64_t vertices = 0;
+    const Tree& tree = reader_.tree();
+    for (std::uint32_t partition = sector_.partitions.begin; partition < sector_.partitions.end;) {
+      const NodeId node = tree.ancestor({tree.depth(), partition}, level);
+      vertices += reader_.record(node).own_count;
+      partition = tree.partitions(node).end;
+    }
+    return vertices;
+  }
+
+  storage::FileSystem& files_;
+  const storage::HierarchyReader& reader_;
+  const Sector& sector_;
+  std::vector<Level> levels_;
+  std::uint64_t memory_budget_;
+};
+
+std::string summary_of(const fs::path& output, const storage::ProgressiveIndex& index) {
+  std::uint64_t bytes = 0;
+  for (const storage::ProgressiveFile& file : index.files)
+    bytes += file.bytes;
+  return fmt::format(
+      "{}: {} vertices, {} triangles, in a base of {} and {} details, {} in all, "
+      "{:.2f} bytes a vertex",
+      output.string(), index.vertices, index.triangles,
+      rounded_size_text(index.files.front().bytes), index.files.size() - 1,
+      rounded_size_text(bytes), static_cast<double>(bytes) / static_cast<double>(index.vertices));
+}
+
+}  // namespace
+
+std::string write_progressive(storage::FileSystem& files, const fs::path& hierarchy,
+                              const ProgressiveOptions& options, Progress& progress,
+                              const CancelToken& cancel) {
+  const storage::HierarchyReader reader(files, hierarchy);
+  require_half_edge(reader);
+  const NodeId asked = options.node.value_or(NodeId{});
+  require_node(reader.tree(), asked);
+  const Sector sector(reader.tree(), tile_node(reader.tree(), asked));
+  std::vector<Level> levels = shown_levels(reader.tree(), sector.node, options.steps);
+
+  storage::WorkDirectory work(files, options.output, options.replace,
+                              storage::progressive_output());
+  require_disk(files, work.path(), disk_need(reader, sector));
+  work.clear();  // what a killed run may have left
+  files.make_directories(work.built());
+  StreamWriter writer(files, reader, sector, std::move(levels), options.memory_budget);
+  const storage::ProgressiveIndex index =
+      writer.write(work.path() / "lists", work.built(), progress, cancel);
+  const std::string text = storage::to_json_text(index);
+  storage::write_file(files, storage::progressive_index_path(work.built()),
+                      std::as_bytes(std::span(text)));
+  work.publish();
+  return summary_of(options.output, index);
+}
+
+}  // namespace meshhier::pipeline

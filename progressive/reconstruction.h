@@ -1,0 +1,71 @@
+// The client of a progressive stream: two arrays, and what each file's lists put into them.
+//
+// Lin & Luo, "Progressive Display Method for Interactive Mobile 3D Graphics": vertices and
+// triangles are put into their places; then each merge copies one vertex's slot to another's.
+// Nothing else is ever updated: O(1) for each entry of a file.
+#pragma once
+
+#include "hierarchy/detail.h"
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace meshhier::progressive {
+
+/// How large the original mesh is.
+struct StreamSize {
+  std::uint64_t vertices = 0;      ///< slots, < 2^32
+  std::uint64_t own_vertices = 0;  ///< <= vertices; the others may move from file to file
+  std::uint64_t triangles = 0;
+};
+
+class Reconstruction {
+ public:
+  Reconstruction(const StreamSize& size, const AttributeLayout& layout);
+
+  /// Bytes that both arrays take.
+  static std::uint64_t memory_bytes(const StreamSize& size, const AttributeLayout& layout);
+
+  /// The next run of the stream. Throws Error(corrupt) if it contradicts those before: an index
+  /// beyond the mesh, a vertex or triangle that is there already, a place that is not finite, a
+  /// merge with a vertex that is nowhere. Runs of a list share what they predict from: the first
+  /// vertex of a run has none before it.
+  void apply(const DetailRun& run);
+
+  std::uint64_t shown_vertices() const { return shown_vertices_; }
+  std::uint64_t shown_triangles() const { return shown_triangles_; }
+
+  /// The mesh as it is now: vertices that are there, in the order of their indices, each as its
+  /// values; then triangles, in theirs, as numbers of these vertices. Both are handed out in
+  /// blocks. Throws Error(corrupt) if a triangle's corner is nowhere. It can be done once, and ends
+  /// the reconstruction: the numbers take the vertices' place in memory.
+  void hand_out(
+      const std::function<void(std::span<const float> values)>& vertices,
+      const std::function<void(std::span<const std::array<std::uint32_t, 3>>)>& triangles) &&;
+
+ private:
+  using Corners = std::array<std::uint32_t, 3>;
+
+  void apply(const VertexRun& run);
+  void apply(const TriangleRun& run);
+  void apply(const MergeRun& run);
+  std::span<float> values_of(std::uint32_t vertex) {
+    return std::span(values_).subspan(vertex * width_, width_);
+  }
+  bool is_there(std::uint32_t vertex) const { return origins_[vertex] == vertex; }
+
+  StreamSize size_;
+  AttributeLayout layout_;
+  std::size_t width_;
+  // The vertex array, in two columns: a slot has the values of a vertex, and says which one's.
+  std::vector<float> values_;
+  std::vector<std::uint32_t> origins_;
+  std::vector<Corners> corners_;  ///< the triangle array
+  std::uint64_t shown_vertices_ = 0;
+  std::uint64_t shown_triangles_ = 0;
+};
+
+}  // namespace meshhier::progressive

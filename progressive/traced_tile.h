@@ -1,0 +1,126 @@
+// A tile of a half_edge hierarchy that knows of which vertices and triangles of the original mesh
+// its own are what is left.
+//
+// Where a contraction moves vertices onto others, every vertex of a tile is one of the original
+// mesh, and every triangle the image of one. Tiles are followed from the partitions up: two
+// children become their parent, and what is lost on the way is a part of that level's detail.
+// All that a step needs is in the three tiles: memory follows the size of tiles.
+#pragma once
+
+#include "hierarchy/published.h"
+#include "hierarchy/tree.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace meshhier::progressive {
+
+/// Vertices of the original mesh are ranks; triangles are numbered in the order of sorted_corners()
+/// below, partition by partition, a triangle in the first partition that it touches.
+using Corners = std::array<std::uint32_t, 3>;
+
+/// Of a triangle that a tile before counts.
+inline constexpr std::uint64_t kCountedElsewhere = UINT64_MAX;
+
+/// The part of the hierarchy that is followed: a node, as if it were alone.
+struct Sector {
+  NodeId node;
+  RankRange ranks;
+  PartitionRange partitions;
+
+  Sector(const Tree& tree, NodeId of)
+      : node(of), ranks(tree.ranks(of)), partitions(tree.partitions(of)) {}
+  bool has_rank(std::uint32_t rank) const { return rank >= ranks.begin && rank < ranks.end; }
+  bool has_partition(std::uint32_t partition) const {
+    return partition >= partitions.begin && partition < partitions.end;
+  }
+};
+
+/// Own vertices of the sector first, then those of others, each in the order of ranks.
+inline std::uint64_t order_of(const Sector& sector, std::uint32_t rank) {
+  return sector.has_rank(rank) ? rank : std::uint64_t{rank} + (std::uint64_t{1} << 32);
+}
+
+/// Turned so that the first in order_of() comes first.
+Corners sorted_corners(const Sector& sector, const Corners& corners);
+
+struct TracedTriangle {
+  Corners corners;          ///< of the original triangle, sorted_corners()
+  Triangle image;           ///< the tile's vertices that stand for them, one for each
+  std::uint64_t index = 0;  ///< in the original mesh, or kCountedElsewhere
+};
+
+/// Vertices of an array of values: x, y, z, attributes.
+struct Values {
+  std::vector<float> values;  ///< width each
+  std::size_t width = 3;
+
+  std::span<const float> operator[](std::size_t vertex) const {
+    return std::span(values).subspan(vertex * width, width);
+  }
+  void append(std::span<const float> vertex) {
+    values.insert(values.end(), vertex.begin(), vertex.end());
+  }
+};
+
+struct TracedTile {
+  NodeId node;
+  std::vector<std::uint32_t> ranks;       ///< which vertex of the original each own vertex is
+  Values values;                          ///< theirs
+  std::vector<GhostRef> ghosts;           ///< ascending; tile vertices from ranks.size() on
+  GhostChains chains;                     ///< of each ghost, from this tile's level up
+  std::vector<std::uint16_t> parent_map;  ///< empty for the root
+  std::vector<TracedTriangle> triangles;  ///< all that touch the tile
+  std::uint64_t end_index = 0;            ///< behind the last triangle that its partitions count
+};
+
+/// What of a level the next coarser one has no more, in ascending order.
+struct Losses {
+  std::vector<std::uint32_t> ranks;
+  Values values;
+  std::vector<std::uint64_t> triangles;  ///< indices; those counted elsewhere are not there
+  std::vector<Corners> corners;
+};
+
+/// A partition; its triangles are counted from `first_index` on. Throws Error(corrupt) if it
+/// contradicts itself.
+TracedTile trace_partition(const Tree& tree, const Sector& sector, const PublishedTile& tile,
+                           std::uint64_t first_index);
+
+/// What both steps up lead to.
+struct Lifted {
+  TracedTile tile;
+  Losses losses;
+};
+
+/// An early node from its partition: the same vertices, neighbours one level coarser.
+Lifted lift_early(const Tree& tree, const Sector& sector, TracedTile partition);
+
+/// A tile from its children, left and right. Throws Error(corrupt) if `parent` is not made of
+/// `left` and `right` by moving vertices onto others. O(t log t).
+Lifted lift(const Tree& tree, const Sector& sector, TracedTile left, TracedTile right,
+            const PublishedTile& parent);
+
+/// All that is left in the tile, as if the next coarser level had nothing.
+Losses all_of(const TracedTile& tile);
+
+/// The vertices of the original mesh that the tile's triangles have for corners, and that are no
+/// vertices of the tile themselves: which tile vertex stands for each. Both lists ascend.
+struct StandIns {
+  struct Own {
+    std::uint32_t rank = 0;
+    std::uint32_t vertex = 0;  ///< < ranks.size()
+    friend auto operator<=>(const Own&, const Own&) = default;
+  };
+  struct Foreign {
+    std::uint32_t rank = 0;   ///< not of the sector
+    std::uint32_t ghost = 0;  ///< < ghosts.size()
+    friend auto operator<=>(const Foreign&, const Foreign&) = default;
+  };
+  std::vector<Own> own;
+  std::vector<Foreign> foreign;  ///< also where a ghost stands for itself
+};
+StandIns find_stand_ins(const Sector& sector, const TracedTile& tile);
+
+}  // namespace meshhier::progressive

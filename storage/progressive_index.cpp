@@ -1,0 +1,108 @@
+#include "storage/progressive_index.h"
+
+#include "hierarchy/error.h"
+#include "storage/layout.h"
+#include "storage/manifest.h"
+#include "storage/sealed_file.h"
+#include "storage/sealed_json.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace meshhier::storage {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr SealedFormat kFormat{"meshhier-progressive", 1};
+
+/// parse_sealed() refuses longer texts; here it guards the allocation.
+constexpr std::uint64_t kMaxTextBytes = 1024 * 1024;
+
+/// A tree over less than 2^32 partitions has no more levels.
+constexpr std::uint64_t kDeepestLevel = 32;
+
+Json file_json(const ProgressiveFile& file, std::uint32_t step) {
+  return {{"file", detail_path({}, step).string()},
+          {"level", raw(file.level)},
+          {"vertices", file.vertices},
+          {"triangles", file.triangles},
+          {"merges", file.merges},
+          {"shown_vertices", file.shown_vertices},
+          {"shown_triangles", file.shown_triangles},
+          {"bytes", file.bytes},
+          {"checksum", hex_digits(file.checksum)}};
+}
+
+ProgressiveFile read_entry(const JsonObject& object) {
+  ProgressiveFile file;
+  file.level = static_cast<Level>(object.count("level", kDeepestLevel));
+  file.vertices = object.count("vertices");
+  file.triangles = object.count("triangles");
+  file.merges = object.count("merges");
+  file.shown_vertices = object.count("shown_vertices");
+  file.shown_triangles = object.count("shown_triangles");
+  file.bytes = object.count("bytes");
+  file.checksum = object.hash("checksum");
+  return file;
+}
+
+}  // namespace
+
+std::string to_json_text(const ProgressiveIndex& index) {
+  Json document;
+  document["generator"] = index.generator;
+  document["source"] = source_json(index.source);
+  document["level"] = raw(index.node.level);
+  document["index"] = index.node.index;
+  document["vertices"] = index.vertices;
+  document["own_vertices"] = index.own_vertices;
+  document["triangles"] = index.triangles;
+  document["origin"] = point_json(index.origin);
+  document["up"] = name_of(index.up);
+  document["licence"] = index.licence;
+  Json files = Json::array();
+  for (const ProgressiveFile& file : index.files)
+    files.push_back(file_json(file, static_cast<std::uint32_t>(files.size())));
+  document["files"] = std::move(files);
+  return sealed_text(kFormat, document);
+}
+
+ProgressiveIndex parse_progressive_index(const std::string& text, const std::string& name) {
+  const Json document = parse_sealed(text, kFormat, name);
+  const JsonObject object(document, "", name);
+  ProgressiveIndex index;
+  index.generator = object.text("generator");
+  index.source = parse_source(object.at("source"), name);
+  index.node.level = static_cast<Level>(object.count("level", kDeepestLevel));
+  index.node.index = object.short_count("index");
+  index.vertices = object.count("vertices", UINT32_MAX);
+  if (index.vertices == 0)
+    object.wrong("vertices", "at least 1");
+  index.own_vertices = object.count("own_vertices", index.vertices);
+  index.triangles = object.count("triangles", INT64_MAX);
+  index.origin = object.point("origin");
+  index.up = object.up("up");
+  index.licence = object.text("licence");
+  for (const JsonObject& file : object.objects("files"))
+    index.files.push_back(read_entry(file));
+  if (index.files.empty())
+    object.wrong("files", "at least one");
+  return index;
+}
+
+ProgressiveIndex read_progressive_index(FileSystem& files, const std::filesystem::path& directory) {
+  const auto path = progressive_index_path(directory);
+  const std::vector<std::byte> bytes = read_file(files, path, kMaxTextBytes);
+  const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  return parse_progressive_index(text, path.string());
+}
+
+std::vector<std::byte> read_detail_file(FileSystem& files, const std::filesystem::path& directory,
+                                        const ProgressiveIndex& index, std::uint32_t step) {
+  const ProgressiveFile& file = index.files.at(step);
+  return read_sealed(files, detail_path(directory, step), {file.bytes, file.checksum}, UINT64_MAX);
+}
+
+}  // namespace meshhier::storage
