@@ -12,8 +12,6 @@
 #include <span>
 #include <utility>
 
-#include <tbb/task_arena.h>
-
 namespace meshhier::pipeline {
 namespace {
 
@@ -27,16 +25,16 @@ struct RunSlot {
 /// Packs runs in parallel and writes them in order.
 class RunWriter {
  public:
-  RunWriter(storage::FileSystem& files, const std::filesystem::path& path, std::uint32_t step,
-            const AttributeLayout& layout)
+  RunWriter(storage::FileSystem& files, const std::filesystem::path& path, const DetailSpan& span,
+            const DetailSource& source)
       : file_(files.create(path)),
         packing_(
-            2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()),
-            [layout](RunSlot& slot) {
+            source.runs_in_flight,
+            [layout = source.layout](RunSlot& slot) {
               slot.bytes = storage::encode_run(slot.run, layout, slot.first);
             },
             [this](RunSlot& slot) { write(slot.bytes); }) {
-    write(storage::detail_head(step));
+    write(storage::detail_head(span.step));
   }
 
   void put(DetailRun run, std::uint64_t first) {
@@ -304,7 +302,7 @@ class DetailWriter {
 storage::ProgressiveFile write_detail(storage::FileSystem& files, const std::filesystem::path& path,
                                       const DetailSpan& span, const DetailSource& source,
                                       Progress& progress, const CancelToken& cancel) {
-  RunWriter runs(files, path, span.step, source.layout);
+  RunWriter runs(files, path, span, source);
   DetailWriter writer(span, source, runs, progress, cancel);
   const std::uint64_t vertices = writer.write_vertices();
   const std::uint64_t triangles = writer.write_triangles();

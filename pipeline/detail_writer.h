@@ -32,6 +32,7 @@ struct DetailSource {
   const ForeignCorners& all_foreign;     ///< of the last level: they number the foreign vertices
   const ForeignCorners& coarse_foreign;  ///< empty for the base
   const ForeignCorners& fine_foreign;
+  std::size_t runs_in_flight = 1;
 };
 
 /// Writes the file; `shown_*` of the result are left 0. Lists of several levels are merged as they

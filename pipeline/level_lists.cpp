@@ -1,9 +1,8 @@
 #include "pipeline/level_lists.h"
 
-#include "hierarchy/detail.h"
 #include "hierarchy/error.h"
 #include "pipeline/parallel.h"
-#include "pipeline/size_text.h"
+#include "pipeline/progressive_plan.h"
 
 #include <algorithm>
 #include <optional>
@@ -20,12 +19,6 @@ using progressive::Losses;
 using progressive::Sector;
 using progressive::TracedTile;
 using progressive::Values;
-
-/// Small beside any budget, with seven lists a level.
-constexpr std::size_t kListBlockBytes = std::size_t{1} << 16;
-
-/// A subtree of so many levels of partitions is one item of work: eight partitions.
-constexpr int kSubtreeLevels = 3;
 
 /// What a subtree leaves of one level.
 struct LevelPart {
@@ -248,33 +241,6 @@ class TopOfTree {
   std::uint64_t end_index_ = 0;
 };
 
-/// Bytes that a tile and its lists take at most while it is at work.
-std::uint64_t work_bytes(const TileRecord& record, std::uint64_t width) {
-  // Of a triangle: as it is, sorted with its keys, lost, and three corners that something stands
-  // for. Of a vertex: in the file, traced, lost.
-  const std::uint64_t stand_in = 16 + 4 * width;
-  return (std::uint64_t{record.interior_count} + record.border_count) * (200 + 3 * stand_in) +
-         (std::uint64_t{record.own_count} + record.ghost_count) * (32 + 12 * width);
-}
-
-std::uint64_t subtree_bytes(const storage::HierarchyReader& reader, NodeId root,
-                            std::uint64_t width) {
-  const Tree& tree = reader.tree();
-  std::uint64_t bytes = work_bytes(reader.record(root), width);
-  const Tree::Children children = tree.children(root);
-  for (const NodeId child : children.span())
-    bytes += subtree_bytes(reader, child, width);
-  return bytes;
-}
-
-std::uint64_t largest_subtree(const storage::HierarchyReader& reader, NodeId first,
-                              std::uint32_t count, std::uint64_t width) {
-  std::uint64_t largest = 0;
-  for (std::uint32_t i = 0; i < count; ++i)
-    largest = std::max(largest, subtree_bytes(reader, {first.level, first.index + i}, width));
-  return largest;
-}
-
 }  // namespace
 
 LevelLists::LevelLists(storage::ScratchFile& scratch)
@@ -290,24 +256,13 @@ void trace_sector(const storage::HierarchyReader& reader, const Sector& sector,
                   const TraceOptions& options, std::vector<LevelLists>& lists, Progress& progress,
                   const CancelToken& cancel) {
   const Tree& tree = reader.tree();
-  const int level = std::max<int>(raw(sector.node.level), raw(tree.depth()) - kSubtreeLevels);
-  const auto width = static_cast<std::uint64_t>(vertex_values(reader.tile_format().attributes));
-  const int below = level - raw(sector.node.level);
-  const NodeId first{static_cast<Level>(level), sector.node.index << below};
+  const int below = raw(options.subtrees) - raw(sector.node.level);
+  const NodeId first{options.subtrees, sector.node.index << below};
   const std::uint32_t count = std::uint32_t{1} << below;
-  const std::uint64_t largest = largest_subtree(reader, first, count, width);
-  if (largest > options.memory_bytes) {
-    throw Error(ErrorCode::budget,
-                fmt::format("the tiles of this hierarchy need {} at work, the budget leaves {}",
-                            rounded_size_text(largest), rounded_size_text(options.memory_bytes)));
-  }
-  const std::uint64_t in_flight =
-      std::clamp<std::uint64_t>(options.memory_bytes / largest, 1, count);
-
   const Tracer tracer(reader, sector, options, progress, cancel);
   TopOfTree top(tree, sector, tracer, lists);
   ordered_for(
-      count, static_cast<std::size_t>(std::min<std::uint64_t>(in_flight, 64)), cancel,
+      count, options.in_flight, cancel,
       [&](std::size_t i) {
         Subtree subtree;
         subtree.levels.resize(lists.size());

@@ -46,13 +46,13 @@ struct LevelLists {
 
 struct TraceOptions {
   std::vector<bool> listed;  ///< by level: whether its stand-ins and foreign corners are wanted
-  std::uint64_t memory_bytes = 0;  ///< for tiles at work
+  Level subtrees{};          ///< whose nodes are worked on in parallel; complete
+  std::size_t in_flight = 1;
 };
 
 /// Follows all tiles of `sector` up (progressive/traced_tile.h), and fills `lists`, one for each
 /// level of the tree. Each tile is read once, in parallel. Deterministic. Throws Error(corrupt) if
-/// the hierarchy was not made by half_edge, Error(budget) if a tile with its neighbours in the tree
-/// does not fit the memory.
+/// the hierarchy was not made by half_edge.
 void trace_sector(const storage::HierarchyReader& reader, const progressive::Sector& sector,
                   const TraceOptions& options, std::vector<LevelLists>& lists, Progress& progress,
                   const CancelToken& cancel);

@@ -6,6 +6,8 @@
 #include "pipeline/detail_writer.h"
 #include "pipeline/foreign_corners.h"
 #include "pipeline/level_lists.h"
+#include "pipeline/memory_plan.h"
+#include "pipeline/progressive_plan.h"
 #include "pipeline/size_text.h"
 #include "storage/hierarchy_reader.h"
 #include "storage/layout.h"
@@ -18,6 +20,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <tbb/task_arena.h>
 
 namespace meshhier::pipeline {
 namespace {
@@ -94,17 +97,12 @@ void require_disk(storage::FileSystem& files, const fs::path& directory, std::ui
 class StreamWriter {
  public:
   StreamWriter(storage::FileSystem& files, const storage::HierarchyReader& reader,
-               const Sector& sector, std::vector<Level> levels, std::uint64_t memory_budget)
-      : files_(files),
-        reader_(reader),
-        sector_(sector),
-        levels_(std::move(levels)),
-        memory_budget_(memory_budget) {}
+               const Sector& sector, std::vector<Level> levels, const ProgressivePlan& plan)
+      : files_(files), reader_(reader), sector_(sector), levels_(std::move(levels)), plan_(plan) {}
 
   storage::ProgressiveIndex write(const fs::path& scratch_file, const fs::path& directory,
                                   Progress& progress, const CancelToken& cancel) {
-    // A quarter each: lists in memory, tiles at work, the sector's border; runs and the rest.
-    storage::MemoryPool pool(memory_budget_ / 4);
+    storage::MemoryPool pool(plan_.pool_bytes);
     storage::ScratchFile scratch(files_, scratch_file, pool);
     std::vector<LevelLists> lists;
     for (int level = 0; level <= raw(reader_.tree().depth()); ++level)
@@ -119,7 +117,8 @@ class StreamWriter {
     options.listed.resize(lists.size());
     for (const Level level : levels_)
       options.listed[raw(level)] = true;
-    options.memory_bytes = memory_budget_ / 4;
+    options.subtrees = plan_.subtrees;
+    options.in_flight = plan_.subtrees_in_flight;
     const std::uint64_t tiles = 2 * std::uint64_t{sector_.partitions.size()} - 1;
     progress.stage("trace", tiles, "tiles");
     trace_sector(reader_, sector_, options, lists, progress, cancel);
@@ -127,7 +126,7 @@ class StreamWriter {
 
   ForeignCorners foreign_of(const std::vector<LevelLists>& lists, Level level) const {
     const auto width = static_cast<std::size_t>(vertex_values(reader_.tile_format().attributes));
-    return {lists[raw(level)], width, memory_budget_ / 12};
+    return {lists[raw(level)], width, plan_.foreign_bytes};
   }
 
   storage::ProgressiveIndex write_files(const std::vector<LevelLists>& lists,
@@ -196,7 +195,7 @@ class StreamWriter {
   const storage::HierarchyReader& reader_;
   const Sector& sector_;
   std::vector<Level> levels_;
-  std::uint64_t memory_budget_;
+  ProgressivePlan plan_;
 };
 
 std::string summary_of(const fs::path& output, const storage::ProgressiveIndex& index) {
@@ -216,6 +215,7 @@ std::string summary_of(const fs::path& output, const storage::ProgressiveIndex& 
 std::string write_progressive(storage::FileSystem& files, const fs::path& hierarchy,
                               const ProgressiveOptions& options, Progress& progress,
                               const CancelToken& cancel) {
+  configure_allocator(options.memory_budget);
   const storage::HierarchyReader reader(files, hierarchy);
   require_half_edge(reader);
   const NodeId asked = options.node.value_or(NodeId{});
@@ -223,12 +223,15 @@ std::string write_progressive(storage::FileSystem& files, const fs::path& hierar
   const Sector sector(reader.tree(), tile_node(reader.tree(), asked));
   std::vector<Level> levels = shown_levels(reader.tree(), sector.node, options.steps);
 
+  const ProgressivePlan plan =
+      plan_progressive(reader, sector, options.memory_budget,
+                       static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
   storage::WorkDirectory work(files, options.output, options.replace,
                               storage::progressive_output());
   require_disk(files, work.path(), disk_need(reader, sector));
   work.clear();  // what a killed run may have left
   files.make_directories(work.built());
-  StreamWriter writer(files, reader, sector, std::move(levels), options.memory_budget);
+  StreamWriter writer(files, reader, sector, std::move(levels), plan);
   const storage::ProgressiveIndex index =
       writer.write(work.path() / "lists", work.built(), progress, cancel);
   const std::string text = storage::to_json_text(index);

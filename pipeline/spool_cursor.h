@@ -15,6 +15,8 @@ namespace meshhier::pipeline {
 template <class Record>
 class SpoolCursor {
  public:
+  static constexpr std::size_t kBufferBytes = std::size_t{1} << 17;
+
   SpoolCursor(const storage::RecordSpool<Record>& spool, const CancelToken& cancel)
       : spool_(spool), cancel_(cancel) {}
 
@@ -27,8 +29,6 @@ class SpoolCursor {
   std::uint64_t size() const { return spool_.size(); }
 
  private:
-  static constexpr std::size_t kBufferBytes = std::size_t{1} << 17;
-
   void load(std::uint64_t index) {
     cancel_.check();
     first_ = index;
