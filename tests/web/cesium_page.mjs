@@ -1,81 +1,90 @@
 // Shows a tileset with CesiumJS, and how its outline differs from that of the partitions.
-const Cesium = window.Cesium;
+import { coveredAround, pixelsOf, standing } from './pixels.mjs';
 
+const Cesium = window.Cesium;
+// Frames with all tiles there before the picture counts as complete.
+const QUIET_FRAMES = 10;
+
+// Frames are drawn when they are asked for: in software those of a large model take seconds.
 const widget = new Cesium.CesiumWidget('scene', {
   baseLayer: false,
-  globe: false,
   skyBox: false,
   skyAtmosphere: false,
+  useDefaultRenderLoop: false,
   contextOptions: { webgl: { preserveDrawingBuffer: true } },
 });
 const { scene } = widget;
-scene.backgroundColor = Cesium.Color.BLACK;  // without normals it draws plain white
-scene.light = new Cesium.DirectionalLight({ direction: new Cesium.Cartesian3(0.3, 1, -0.4) });
+scene.backgroundColor = Cesium.Color.BLACK;
+scene.globe.show = false;
 
 let tileset = null;
+let frame = null;  // axes of the views' directions: the model's, or east, north and up where it is placed
 let failures = [];
 const outlines = [];
 
-async function load({ tileset: url }) {
+/// Loads a tileset. `placed`: it is on the globe.
+async function load({ tileset: url, placed = false }) {
   failures = [];
   tileset = await Cesium.Cesium3DTileset.fromUrl(url, { backFaceCulling: false });
   tileset.tileFailed.addEventListener(({ url: failed, message }) => failures.push(`${failed}: ${message}`));
   scene.primitives.add(tileset);
+  const { center } = tileset.boundingSphere;
+  frame = placed ? Cesium.Transforms.eastNorthUpToFixedFrame(center) : Cesium.Matrix4.fromTranslation(center);
 }
 
 function look({ direction, distance }) {
-  const { center, radius } = tileset.boundingSphere;
+  const { radius } = tileset.boundingSphere;
   const from = Cesium.Cartesian3.normalize(new Cesium.Cartesian3(...direction), new Cesium.Cartesian3());
   const offset = Cesium.Cartesian3.multiplyByScalar(from, distance * radius, new Cesium.Cartesian3());
   scene.camera.frustum.near = 0.001 * radius;
   scene.camera.frustum.far = 100 * radius;
-  scene.camera.lookAtTransform(Cesium.Matrix4.fromTranslation(center), offset);
+  scene.camera.lookAtTransform(frame, offset);
+  // Light from over the viewer's right shoulder.
+  const { directionWC, rightWC, upWC } = scene.camera;
+  const light = Cesium.Cartesian3.clone(directionWC);
+  for (const side of [rightWC, upWC]) {
+    Cesium.Cartesian3.subtract(light, Cesium.Cartesian3.multiplyByScalar(side, 0.4, new Cesium.Cartesian3()), light);
+  }
+  scene.light = new Cesium.DirectionalLight({ direction: light });
+}
+
+function draw() {
+  widget.resize();
+  widget.render();
 }
 
 /// Refines until nothing is left to do for `errorTarget` pixels.
 async function settle(errorTarget) {
   tileset.maximumScreenSpaceError = errorTarget;
+  for (let quiet = 0; quiet < QUIET_FRAMES; ) {
+    await new Promise((resolve) => requestAnimationFrame(resolve));
+    draw();
+    quiet = tileset.tilesLoaded ? quiet + 1 : 0;
+  }
   const names = new Set();
   const note = (tile) => names.add(new URL(tile.content.url, location.href).pathname);
-  await new Promise((resolve) => {
-    let frames = 0;
-    const stop = scene.postRender.addEventListener(() => {
-      frames = tileset.tilesLoaded ? frames + 1 : 0;
-      if (frames < 10) return;
-      stop();
-      resolve();
-    });
-  });
   tileset.tileVisible.addEventListener(note);
-  scene.render();
+  draw();
   tileset.tileVisible.removeEventListener(note);
   return { visible: [...names].sort(), failures };
 }
 
-/// Keeps what is covered now.
-function keepOutline() {
+/// What is covered now, and its pixels.
+function picture() {
+  draw();
   const { canvas } = scene;
-  const gl = canvas.getContext('webgl2') ?? canvas.getContext('webgl');
-  const pixels = new Uint8Array(canvas.width * canvas.height * 4);
-  scene.render();
-  gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+  const pixels = pixelsOf(canvas);
   const covered = new Uint8Array(canvas.width * canvas.height);
   for (let i = 0; i < covered.length; ++i) {
     covered[i] = pixels[4 * i] > 5 || pixels[4 * i + 1] > 5 || pixels[4 * i + 2] > 5 ? 1 : 0;
   }
-  outlines.push({ covered, width: canvas.width });
+  return { covered, width: canvas.width, pixels };
 }
 
-/// Whether all pixels within `reach` of pixel `i` are covered.
-function coveredAround({ covered, width }, i, reach) {
-  const height = covered.length / width;
-  const [x, y] = [i % width, Math.floor(i / width)];
-  for (let v = Math.max(0, y - reach); v <= Math.min(height - 1, y + reach); ++v) {
-    for (let u = Math.max(0, x - reach); u <= Math.min(width - 1, x + reach); ++u) {
-      if (!covered[v * width + u]) return false;
-    }
-  }
-  return true;
+/// Keeps what is covered now.
+function keepOutline() {
+  const { covered, width } = picture();
+  outlines.push({ covered, width });
 }
 
 /// How the outline kept first differs from that kept last; holes as three_page.mjs has them.
@@ -92,4 +101,32 @@ function compare(errorTarget) {
   return { covered, outline: outline / covered, holes };
 }
 
-window.view = { load, look, settle, keepOutline, compare };
+/// What stands in the picture (pixels.mjs).
+function stand() {
+  const { covered, width, pixels } = picture();
+  return standing({ covered, width }, pixels);
+}
+
+/// Where the model's middle is on the globe, in degrees and metres.
+function place() {
+  const { center, radius } = tileset.boundingSphere;
+  const { longitude, latitude, height } = Cesium.Cartographic.fromCartesian(center);
+  return {
+    longitude: Cesium.Math.toDegrees(longitude),
+    latitude: Cesium.Math.toDegrees(latitude),
+    height,
+    radius,
+  };
+}
+
+/// Shows or hides the globe: an ellipsoid of one colour.
+async function showGlobe(show) {
+  scene.globe.show = show;
+  scene.globe.baseColor = Cesium.Color.DARKSLATEGRAY;
+  do {
+    await new Promise((resolve) => requestAnimationFrame(resolve));
+    draw();
+  } while (show && !scene.globe.tilesLoaded);
+}
+
+window.view = { load, look, settle, keepOutline, compare, stand, place, showGlobe };

@@ -4,6 +4,7 @@ import { PLYLoader } from 'three/addons/loaders/PLYLoader.js';
 import { MeshoptDecoder } from 'three/addons/libs/meshopt_decoder.module.js';
 import { TilesRenderer } from '3d-tiles-renderer/three';
 import { GLTFExtensionsPlugin } from '3d-tiles-renderer/three/plugins';
+import { coveredAround, pixelsOf, standing } from './pixels.mjs';
 
 const SIZE = 512;
 // Frames without anything under way before the picture counts as complete.
@@ -61,17 +62,8 @@ function frame() {
   return new Promise((resolve) => requestAnimationFrame(resolve));
 }
 
-/// Loads the tileset, and the mesh as 3D Tiles turn it: `up` is the axis of the mesh that points
-/// up.
-async function load({ tileset, mesh, up }) {
-  failures = [];
-  tiles = new TilesRenderer(tileset);
-  tiles.registerPlugin(new GLTFExtensionsPlugin({ meshoptDecoder: MeshoptDecoder, autoDispose: false }));
-  tiles.addEventListener('load-error', (event) => failures.push(String(event.error ?? event.url)));
-  tiles.setCamera(camera);
-  tiles.setResolution(camera, SIZE, SIZE);
-  shown.add(tiles.group);
-
+/// Loads the mesh as 3D Tiles turn it: `up` is the axis of the mesh that points up.
+async function loadOriginal(mesh, up) {
   const geometry = await new PLYLoader().loadAsync(mesh);
   geometry.computeBoundingSphere();
   if (geometry.getAttribute('normal') === undefined) geometry.computeVertexNormals();
@@ -84,6 +76,26 @@ async function load({ tileset, mesh, up }) {
   original.add(object);
   object.updateMatrixWorld(true);
   sphere = geometry.boundingSphere.clone().applyMatrix4(object.matrixWorld);
+}
+
+/// Loads the tileset, and its `mesh`, if one is given to compare with.
+async function load({ tileset, mesh, up }) {
+  failures = [];
+  tiles = new TilesRenderer(tileset);
+  tiles.registerPlugin(new GLTFExtensionsPlugin({ meshoptDecoder: MeshoptDecoder, autoDispose: false }));
+  tiles.addEventListener('load-error', (event) => failures.push(String(event.error ?? event.url)));
+  tiles.setCamera(camera);
+  tiles.setResolution(camera, SIZE, SIZE);
+  shown.add(tiles.group);
+  if (mesh !== undefined) {
+    await loadOriginal(mesh, up);
+    return;
+  }
+  sphere = new THREE.Sphere();
+  while (!tiles.getBoundingSphere(sphere)) {
+    await frame();
+    tiles.update();
+  }
 }
 
 /// Looks at the model from `direction`. `distance`: in radii of its sphere, from its middle or,
@@ -122,22 +134,13 @@ async function settle(errorTarget) {
   return { visible: names.sort(), failures };
 }
 
-/// Whether all pixels of `picture` within `reach` of (x, y) are covered.
-function coveredAround(picture, x, y, reach) {
-  for (let v = Math.max(0, y - reach); v <= Math.min(SIZE - 1, y + reach); ++v) {
-    for (let u = Math.max(0, x - reach); u <= Math.min(SIZE - 1, x + reach); ++u) {
-      if (!(picture[v * SIZE + u] > 0)) return false;
-    }
-  }
-  return true;
-}
-
 /// How the picture differs from that of the original mesh. A hole: a pixel without anything where
 /// the original is covered as far as the error reaches, and a pixel more.
 function compare(errorTarget) {
   const reach = Math.ceil(errorTarget) + 1;
   const ours = depthOf(shown);
   const theirs = depthOf(original);
+  const drawn = { covered: theirs, width: SIZE };
   const differences = [];
   let covered = 0, outline = 0, holes = 0;
   for (let y = 1; y + 1 < SIZE; ++y) {
@@ -146,7 +149,7 @@ function compare(errorTarget) {
       if (theirs[i] > 0) ++covered;
       if (theirs[i] > 0 !== ours[i] > 0) ++outline;
       if (theirs[i] > 0 && ours[i] > 0) differences.push(Math.abs(ours[i] - theirs[i]));
-      if (!(ours[i] > 0) && coveredAround(theirs, x, y, reach)) ++holes;
+      if (!(ours[i] > 0) && coveredAround(drawn, i, reach)) ++holes;
     }
   }
   differences.sort((a, b) => a - b);
@@ -164,4 +167,11 @@ function showOriginal() {
   renderer.render(original, camera);
 }
 
-window.view = { load, look, settle, compare, showOriginal };
+/// What stands in the tileset's picture (pixels.mjs).
+function stand() {
+  const covered = depthOf(shown);
+  renderer.render(shown, camera);
+  return standing({ covered, width: SIZE }, pixelsOf(renderer.domElement));
+}
+
+window.view = { load, look, settle, compare, showOriginal, stand };

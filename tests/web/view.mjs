@@ -3,16 +3,9 @@
 //   node view.mjs PICTURES HIERARCHY=MESH...
 //
 // MESH: the PLY file that the hierarchy was made from. Pictures go to the directory PICTURES.
-// Exit code 0: all is as it should be; 1: something is not; 2: wrong use; 77: the viewers or
-// Chromium are not installed.
-import { existsSync, mkdirSync, readFileSync } from 'node:fs';
+// Exit code 2: wrong use; else see browser.mjs.
 import path from 'node:path';
-import { fileURLToPath } from 'node:url';
-import { serve } from './server.mjs';
-
-const HERE = path.dirname(fileURLToPath(import.meta.url));
-const CHROMIUM = ['/usr/bin/chromium', '/usr/bin/chromium-browser'].find((file) => existsSync(file));
-const SIZE = 512;
+import { call, inChromium, readHierarchy, SIZE, withPage } from './browser.mjs';
 
 // Pixels that an error of a tile may have; and what the pictures may then differ by: of the outline,
 // pixels in parts of what is covered; of depth, in parts of the model's radius, the 99th percentile.
@@ -29,35 +22,6 @@ const CESIUM_VIEWS = [
   { name: 'whole', pose: { direction: [1, -2, 1], distance: 3 }, limits: COARSE },
   { name: 'close', pose: { direction: [1, -2, 1], distance: 1.2 }, limits: EXACT, partitions: true },
 ];
-
-async function loadPlaywright() {
-  try {
-    return (await import('playwright-core')).chromium;
-  } catch (error) {
-    if (error.code !== 'ERR_MODULE_NOT_FOUND') throw error;
-    return null;
-  }
-}
-
-function readHierarchy(argument) {
-  const [directory, mesh] = argument.split('=');
-  const manifest = JSON.parse(readFileSync(path.join(directory, 'hierarchy.json'), 'utf8'));
-  return {
-    directory: path.resolve(directory),
-    mesh: path.resolve(mesh),
-    name: path.basename(directory).replace(/\.[^.]*$/, ''),
-    up: manifest.up,
-    lastLevel: manifest.levels.length - 1,
-  };
-}
-
-class Report {
-  problems = 0;
-  line(what, good, text) {
-    if (!good) ++this.problems;
-    console.log(`${good ? 'ok' : 'NOT OK'}  ${what}: ${text}`);
-  }
-}
 
 /// Levels of tiles by their paths.
 function levelsOf(visible) {
@@ -85,88 +49,51 @@ function judge(report, what, view, state, difference, lastLevel) {
   );
 }
 
-async function openPage(browser, url, errors) {
-  const page = await browser.newPage({ viewport: { width: SIZE, height: SIZE } });
-  page.on('console', (message) => {
-    if (message.type() === 'error') errors.push(message.text());
-  });
-  page.on('pageerror', (error) => errors.push(String(error)));
-  page.on('requestfailed', (request) => errors.push(`${request.url()}: ${request.failure()?.errorText}`));
-  await page.goto(url);
-  await page.waitForFunction(() => window.view !== undefined, null, { timeout: 120_000 }).catch((error) => {
-    throw new Error(`${url} does not start: ${errors.join('; ') || error.message}`);
-  });
-  return page;
-}
-
 async function showInThree(page, hierarchy, pictures, report) {
-  await page.evaluate((job) => window.view.load(job), {
-    tileset: '/hierarchy/tileset.json',
-    mesh: `/mesh/${path.basename(hierarchy.mesh)}`,
-    up: hierarchy.up,
-  });
+  const mesh = `/mesh/${path.basename(hierarchy.mesh)}`;
+  await call(page, 'load', { tileset: '/hierarchy/tileset.json', mesh, up: hierarchy.up });
   for (const view of THREE_VIEWS) {
-    await page.evaluate((pose) => window.view.look(pose), view.pose);
-    const state = await page.evaluate((pixels) => window.view.settle(pixels), view.limits.errorTarget);
-    const difference = await page.evaluate((pixels) => window.view.compare(pixels), view.limits.errorTarget);
+    const pixels = view.limits.errorTarget;
+    await call(page, 'look', view.pose);
+    const state = await call(page, 'settle', pixels);
+    const difference = await call(page, 'compare', pixels);
     judge(report, `${hierarchy.name} three ${view.name}`, view, state, difference, hierarchy.lastLevel);
     const name = path.join(pictures, `${hierarchy.name}-three-${view.name}`);
-    await page.evaluate((pixels) => window.view.settle(pixels), view.limits.errorTarget);
+    await call(page, 'settle', pixels);
     await page.screenshot({ path: `${name}.png` });
-    await page.evaluate(() => window.view.showOriginal());
+    await call(page, 'showOriginal');
     await page.screenshot({ path: `${name}-original.png` });
   }
 }
 
 async function showInCesium(page, hierarchy, pictures, report) {
-  await page.evaluate((job) => window.view.load(job), { tileset: '/hierarchy/tileset.json' });
+  await call(page, 'load', { tileset: '/hierarchy/tileset.json' });
   for (const view of CESIUM_VIEWS) {
-    await page.evaluate((pose) => window.view.look(pose), view.pose);
-    const state = await page.evaluate((pixels) => window.view.settle(pixels), view.limits.errorTarget);
-    await page.evaluate(() => window.view.keepOutline());
+    await call(page, 'look', view.pose);
+    const state = await call(page, 'settle', view.limits.errorTarget);
+    await call(page, 'keepOutline');
     await page.screenshot({ path: path.join(pictures, `${hierarchy.name}-cesium-${view.name}.png`) });
-    await page.evaluate((pixels) => window.view.settle(pixels), EXACT.errorTarget);
-    await page.evaluate(() => window.view.keepOutline());
-    const difference = await page.evaluate((pixels) => window.view.compare(pixels), view.limits.errorTarget);
+    await call(page, 'settle', EXACT.errorTarget);
+    await call(page, 'keepOutline');
+    const difference = await call(page, 'compare', view.limits.errorTarget);
     judge(report, `${hierarchy.name} cesium ${view.name}`, view, state, difference, hierarchy.lastLevel);
   }
 }
 
-async function main(pictures, hierarchies) {
-  if (pictures === undefined || hierarchies.length === 0 || hierarchies.some((h) => !h.includes('='))) {
-    console.log('usage: node view.mjs PICTURES HIERARCHY=MESH...');
-    return 2;
-  }
-  const chromium = await loadPlaywright();
-  if (chromium === null || CHROMIUM === undefined) {
-    console.log('the viewers or Chromium are not installed: run scripts/install_dependencies web');
-    return 77;
-  }
-  mkdirSync(pictures, { recursive: true });
-  const browser = await chromium.launch({
-    executablePath: CHROMIUM,
-    args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
-  });
-  const report = new Report();
-  for (const hierarchy of hierarchies.map(readHierarchy)) {
-    const server = await serve({
-      '/pages': HERE,
-      '/modules': path.join(HERE, 'node_modules'),
-      '/hierarchy': hierarchy.directory,
-      '/mesh': path.dirname(hierarchy.mesh),
-    });
+async function showAll(browser, report, pictures, pairs) {
+  for (const [directory, mesh] of pairs) {
+    const hierarchy = { ...readHierarchy(directory), mesh: path.resolve(mesh) };
+    const directories = { '/hierarchy': hierarchy.directory, '/mesh': path.dirname(hierarchy.mesh) };
     for (const [viewer, show] of [['three', showInThree], ['cesium', showInCesium]]) {
-      const errors = [];
-      const page = await openPage(browser, `${server.origin}/pages/${viewer}.html`, errors);
-      await show(page, hierarchy, pictures, report);
-      report.line(`${hierarchy.name} ${viewer} console`, errors.length === 0, errors.join('; ') || 'no errors');
-      await page.close();
+      await withPage(browser, report, { viewer, name: hierarchy.name, directories }, (page) =>
+        show(page, hierarchy, pictures, report));
     }
-    server.close();
   }
-  await browser.close();
-  return report.problems === 0 ? 0 : 1;
 }
 
-const [pictures, ...hierarchies] = process.argv.slice(2);
-process.exit(await main(pictures, hierarchies));
+const [pictures, ...pairs] = process.argv.slice(2).map((argument, i) => (i > 0 ? argument.split('=') : argument));
+if (pairs.length === 0 || pairs.some(({ length }) => length !== 2)) {
+  console.log('usage: node view.mjs PICTURES HIERARCHY=MESH...');
+  process.exit(2);
+}
+process.exit(await inChromium(pictures, (browser, report) => showAll(browser, report, pictures, pairs)));

@@ -1,0 +1,96 @@
+// What the scripts that show hierarchies share: Chromium, its pages, and the account of the checks.
+import { existsSync, mkdirSync, readFileSync } from 'node:fs';
+import path from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { serve } from './server.mjs';
+
+export const SIZE = 512;
+
+const HERE = path.dirname(fileURLToPath(import.meta.url));
+const CHROMIUM = ['/usr/bin/chromium', '/usr/bin/chromium-browser'].find((file) => existsSync(file));
+
+async function loadPlaywright() {
+  try {
+    return (await import('playwright-core')).chromium;
+  } catch (error) {
+    if (error.code !== 'ERR_MODULE_NOT_FOUND') throw error;
+    return null;
+  }
+}
+
+class Report {
+  problems = 0;
+  line(what, good, text) {
+    if (!good) ++this.problems;
+    console.log(`${good ? 'ok' : 'NOT OK'}  ${what}: ${text}`);
+  }
+}
+
+export function readHierarchy(directory) {
+  const manifest = JSON.parse(readFileSync(path.join(directory, 'hierarchy.json'), 'utf8'));
+  return {
+    directory: path.resolve(directory),
+    name: path.basename(directory).replace(/\.[^.]*$/, ''),
+    up: manifest.up,
+    lastLevel: manifest.levels.length - 1,
+  };
+}
+
+async function openPage(browser, url, errors) {
+  const page = await browser.newPage({ viewport: { width: SIZE, height: SIZE } });
+  page.on('console', (message) => {
+    if (message.type() === 'error') errors.push(message.text());
+  });
+  page.on('pageerror', (error) => errors.push(String(error)));
+  const { origin } = new URL(url);
+  page.on('request', (request) => {
+    const asked = new URL(request.url());
+    if (asked.protocol.startsWith('http') && asked.origin !== origin) errors.push(`${asked} is not on this machine`);
+  });
+  page.on('requestfailed', (request) => errors.push(`${request.url()}: ${request.failure()?.errorText}`));
+  await page.goto(url);
+  await page.waitForFunction(() => window.view !== undefined, null, { timeout: 120_000 }).catch((error) => {
+    throw new Error(`${url} does not start: ${errors.join('; ') || error.message}`);
+  });
+  return page;
+}
+
+/// Calls window.view's function `name` in the page.
+export function call(page, name, argument) {
+  return page.evaluate(([f, x]) => window.view[f](x), [name, argument]);
+}
+
+/// One page of a viewer: `show(page)` works with it, with `directories` below its server; an error on
+/// its console is a problem.
+export async function withPage(browser, report, { viewer, name, directories }, show) {
+  const server = await serve({
+    '/pages': HERE,
+    '/modules': path.join(HERE, 'node_modules'),
+    ...directories,
+  });
+  const errors = [];
+  const page = await openPage(browser, `${server.origin}/pages/${viewer}.html`, errors);
+  await show(page);
+  report.line(`${name} ${viewer} console`, errors.length === 0, errors.join('; ') || 'no errors');
+  await page.close();
+  server.close();
+}
+
+/// Runs `checks(browser, report)`. The exit code: 0: all is as it should be; 1: something is not;
+/// 77: the viewers or Chromium are not installed.
+export async function inChromium(pictures, checks) {
+  const chromium = await loadPlaywright();
+  if (chromium === null || CHROMIUM === undefined) {
+    console.log('the viewers or Chromium are not installed: run scripts/install_dependencies web');
+    return 77;
+  }
+  mkdirSync(pictures, { recursive: true });
+  const browser = await chromium.launch({
+    executablePath: CHROMIUM,
+    args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
+  });
+  const report = new Report();
+  await checks(browser, report);
+  await browser.close();
+  return report.problems === 0 ? 0 : 1;
+}
