@@ -4,17 +4,18 @@
 //   node progressive.mjs MESHHIER PICTURES STREAM...
 //
 // Pictures go to the directory PICTURES. Exit code 0: all is as it should be; 1: something is not;
-// 2: wrong use.
+// 2: wrong use; 77: Chromium is not installed.
 import { execFileSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
-import { mkdirSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { launch, openPage } from './browser.mjs';
-import { serve } from './server.mjs';
+import { call, inChromium, withPage } from './browser.mjs';
 
 const HERE = path.dirname(fileURLToPath(import.meta.url));
+/// Of 512 x 512: the model fills about a tenth of the picture.
+const LEAST_PIXELS = 5000;
 
 /// The corners' places of a binary PLY of floats, triangle by triangle, in SHA-256.
 function digestOf(ply) {
@@ -36,59 +37,39 @@ function digestOf(ply) {
   return createHash('sha256').update(places).digest('hex');
 }
 
-async function check(page, stream, meshhier, pictures, work) {
+async function check(page, stream, meshhier, pictures, report) {
   const name = path.basename(stream).replace(/\.[^.]*$/, '');
-  const files = await page.evaluate((url) => window.stream.open(url), '/stream');
-  let problems = 0;
+  const work = mkdtempSync(path.join(tmpdir(), 'meshhier-'));
+  const ply = path.join(work, 'step.ply');
+  const files = await call(page, 'open', '/stream');
   for (let step = 0; step < files; ++step) {
-    const state = await page.evaluate(() => window.stream.next());
-    const ply = path.join(work, 'step.ply');
+    const state = await call(page, 'next');
     execFileSync(meshhier, ['reconstruct', stream, '--details', String(step), '-o', ply, '--progress', 'none']);
-    const same = (await page.evaluate(() => window.stream.digest())) === digestOf(ply);
-    const covered = await page.evaluate(() => window.stream.covered());
-    const good = same && covered > 1000;
-    problems += good ? 0 : 1;
+    const same = (await call(page, 'digest')) === digestOf(ply);
+    const covered = await call(page, 'covered');
     await page.screenshot({ path: path.join(pictures, `${name}-progressive-${step}.png`) });
-    console.log(
-      `${good ? 'ok' : 'NOT OK'}  ${name} ${state.file}: level ${state.level}, ${state.entries} entries, ` +
-        `${same ? 'the same mesh' : 'ANOTHER MESH'} as reconstruct's, ${covered} pixels; ` +
-        `${state.milliseconds.toFixed(1)} ms, ${((1e6 * state.milliseconds) / state.entries).toFixed(0)} ns an entry, ` +
-        `shown after ${state.shownAfter.toFixed(1)} ms`,
+    report.line(
+      `${name} ${state.file}`,
+      same && covered > LEAST_PIXELS,
+      `level ${state.level}, ${state.entries} entries, ${same ? 'the same mesh' : 'ANOTHER MESH'} as reconstruct's, ` +
+        `${covered} pixels, ${state.milliseconds.toFixed(1)} ms, ` +
+        `${((1e6 * state.milliseconds) / state.entries).toFixed(0)} ns an entry, shown after ${state.shownAfter.toFixed(1)} ms`,
     );
   }
-  return problems;
+  rmSync(work, { recursive: true });
 }
 
-async function main([meshhier, pictures, ...streams]) {
-  if (streams.length === 0) {
-    console.error('usage: node progressive.mjs MESHHIER PICTURES STREAM...');
-    return 2;
-  }
-  mkdirSync(pictures, { recursive: true });
-  const work = mkdtempSync(path.join(tmpdir(), 'meshhier-'));
-  const browser = await launch();
-  let problems = 0;
-  try {
+const [meshhier, pictures, ...streams] = process.argv.slice(2);
+if (streams.length === 0) {
+  console.log('usage: node progressive.mjs MESHHIER PICTURES STREAM...');
+  process.exit(2);
+}
+process.exit(
+  await inChromium(pictures, async (browser, report) => {
     for (const stream of streams) {
-      const server = await serve({
-        '/page': HERE,
-        '/modules': path.join(HERE, 'node_modules'),
-        '/viewer': path.join(HERE, '../../viewer/dist'),
-        '/stream': path.resolve(stream),
-      });
-      const errors = [];
-      const page = await openPage(browser, `${server.origin}/page/progressive.html`, 'stream', errors);
-      problems += await check(page, path.resolve(stream), meshhier, pictures, work);
-      for (const error of errors) console.log(`NOT OK  ${stream}: ${error}`);
-      problems += errors.length;
-      await page.close();
-      server.close();
+      const directories = { '/viewer': path.join(HERE, '../../viewer/dist'), '/stream': path.resolve(stream) };
+      const job = { viewer: 'progressive', name: path.basename(stream), directories };
+      await withPage(browser, report, job, (page) => check(page, stream, meshhier, pictures, report));
     }
-  } finally {
-    await browser.close();
-    rmSync(work, { recursive: true });
-  }
-  return problems === 0 ? 0 : 1;
-}
-
-process.exitCode = await main(process.argv.slice(2));
+  }),
+);

@@ -1,6 +1,7 @@
 // Shows a progressive stream as it arrives, and tells what is in the client's two arrays.
 import * as THREE from 'three';
 import { ProgressiveMesh } from 'meshhier/progressive';
+import { pixelsOf } from './pixels.mjs';
 
 const SIZE = 512;
 
@@ -52,7 +53,7 @@ async function digest() {
   return Array.from(new Uint8Array(sum), (byte) => byte.toString(16).padStart(2, '0')).join('');
 }
 
-window.stream = {
+window.view = {
   async open(at) {
     url = at;
     mesh = await ProgressiveMesh.open(url);
@@ -70,10 +71,9 @@ window.stream = {
     return { ...step, shownAfter: performance.now() - start };
   },
   digest,
+  /// How many pixels are drawn.
   covered() {
-    const gl = renderer.getContext();
-    const pixels = new Uint8Array(4 * SIZE * SIZE);
-    gl.readPixels(0, 0, SIZE, SIZE, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    const pixels = pixelsOf(renderer.domElement);
     let count = 0;
     for (let i = 0; i < pixels.length; i += 4) count += pixels[i] < 250 ? 1 : 0;
     return count;
