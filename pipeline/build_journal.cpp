@@ -8,8 +8,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <memory>
-#include <set>
 #include <string>
 
 #include <fmt/format.h>
@@ -36,31 +36,35 @@ IndexedStep indexed_step(const Value& json) {
           {json.at(1), json.at(2), TileSet(json.at(3).get<std::vector<std::uint32_t>>())}};
 }
 
+/// What is no object, lists as a whole, by its dotted path.
+using Leaves = std::map<std::string, std::string>;
+
+void add_leaves(const Value& value, const std::string& path, Leaves& leaves) {
+  if (!value.is_object()) {
+    leaves[path] = value.dump(-1, ' ', false, Value::error_handler_t::replace);
+    return;
+  }
+  for (const auto& [key, inner] : value.items())
+    add_leaves(inner, path.empty() ? key : path + '.' + key, leaves);
+}
+
 /// "partition.vertices was 8192 and is 4096, ...".
 std::string differences(const Value& was, const Value& is) {
-  const Value before = was.flatten();
-  const Value now = is.flatten();
-  std::set<std::string> keys;
-  for (const Value* all : {&before, &now}) {
-    for (const auto& item : all->items())
-      keys.insert(item.key());
-  }
+  Leaves before, now;
+  add_leaves(was, "", before);
+  add_leaves(is, "", now);
+  Leaves all = before;
+  all.insert(now.begin(), now.end());
   std::string text;
-  const auto value = [](const Value& of, const std::string& key) {
+  const auto value = [](const Leaves& of, const std::string& key) {
     const auto found = of.find(key);
-    return found == of.end() ? std::string("not set")
-                             : found->dump(-1, ' ', false, Value::error_handler_t::replace);
+    return found == of.end() ? "not set" : found->second;
   };
-  for (const std::string& key : keys) {
+  for (const auto& [key, either] : all) {
     if (value(before, key) == value(now, key))
       continue;
-    std::string dotted = key.substr(1);
-    for (char& c : dotted) {
-      if (c == '/')
-        c = '.';
-    }
-    text += fmt::format("{}{} was {} and is {}", text.empty() ? "" : ", ", dotted,
-                        value(before, key), value(now, key));
+    text += fmt::format("{}{} was {} and is {}", text.empty() ? "" : ", ", key, value(before, key),
+                        value(now, key));
   }
   return text;
 }

@@ -49,7 +49,7 @@ std::uint64_t bytes_left(const std::filesystem::path& output, storage::FileSyste
   return files.exists(work) ? storage::bytes_below(files, work) : 0;
 }
 
-std::uint32_t asked_vertices(const Config& config, const Tree& tree) {
+AskedVertices asked_vertices(const Config& config, const Tree& tree) {
   if (config.simplify.vertices)
     return *config.simplify.vertices;
   return config.partition.count ? std::max(4U, largest_partition(tree)) : config.partition.vertices;
@@ -89,9 +89,10 @@ JobSize job_size(const Config& config, const mesh_io::MeshDescription& mesh, con
   job.vertices_in_place = mesh.vertices_in_place;
   job.wide_coordinates = mesh.wide_coordinates;
   job.partition_count = tree.partition_count();
-  job.largest_tile = std::max(largest_partition(tree), asked_vertices(config, tree));
   job.threads = threads;
   job.asked_vertices = asked_vertices(config, tree);
+  job.largest_tile =
+      std::max(largest_partition(tree), job.asked_vertices.largest_above(tree.depth()));
   job.clustered = config.simplify.method == SimplifyMethod::cluster;
   job.published_attribute_bytes = published_bytes(mesh.attributes);
   job.published_ratio = published_ratio(config.storage);

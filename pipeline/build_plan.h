@@ -2,6 +2,7 @@
 // how much disk it will take.
 #pragma once
 
+#include "hierarchy/asked_vertices.h"
 #include "hierarchy/tree.h"
 #include "mesh_io/mesh_source.h"
 #include "pipeline/config.h"
@@ -18,7 +19,7 @@ namespace meshhier::pipeline {
 struct BuildPlan {
   Tree tree;
   std::size_t threads = 1;
-  std::uint32_t asked_vertices = 0;  ///< of simplified tiles
+  AskedVertices asked_vertices = 8192;  ///< of simplified tiles
   JobSize job;
   MemoryPlan memory;
   DiskNeed disk;

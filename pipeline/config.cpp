@@ -274,8 +274,24 @@ class Draft {
   std::set<std::string> overridden_;
 };
 
+/// A wrong list for KeyKind::levels: an entry is told by its level, else it is the length.
+[[noreturn]] void refuse_levels(const std::string& where, const ConfigKey& key, const Json& list) {
+  const ConfigKey entry = level_entry(key);
+  for (std::size_t level = 0; level < list.size(); ++level) {
+    if (!accepts(entry, list[level])) {
+      refuse(fmt::format("{}[{}]", where, level),
+             fmt::format("expected {}, found {}", expectation(entry), described(list[level])));
+    }
+  }
+  refuse(where,
+         fmt::format("expected {}, found {}", expectation(key),
+                     list.empty() ? "an empty list" : fmt::format("a list of {}", list.size())));
+}
+
 void assign_value(Config& config, const Draft& draft, const ConfigKey& key, const Json& value) {
   if (!accepts(key, value)) {
+    if (key.kind == KeyKind::levels && value.is_array())
+      refuse_levels(draft.origin_of(key.path), key, value);
     const std::optional<std::string> near =
         value.is_string() ? nearest_word(value.get_ref<const std::string&>(), key.choices)
                           : std::nullopt;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "cluster_simplify/contraction.h"
+#include "hierarchy/asked_vertices.h"
 #include "hierarchy/frame.h"
 #include "partition/direction.h"
 #include "storage/file.h"
@@ -65,8 +66,8 @@ inline constexpr std::array kHalfEdgeCosts{NamedValue{"quadric", HalfEdgeCost::q
 
 struct SimplifyConfig {
   SimplifyMethod method = SimplifyMethod::edge_collapse;
-  std::optional<std::uint32_t>
-      vertices;  ///< of a simplified tile, 4 to 32768; not set: as a partition has
+  std::optional<AskedVertices>
+      vertices;  ///< of a simplified tile, 4 to 32768 each; not set: as a partition has
   Representative representative = Representative::quadric;  ///< used by `cluster`
   HalfEdgeCost cost = HalfEdgeCost::quadric;                ///< used by `half_edge`
   friend bool operator==(const SimplifyConfig&, const SimplifyConfig&) = default;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -164,6 +165,29 @@ ConfigKey numbers(std::string path, Field field) {
   return key;
 }
 
+/// Of optional AskedVertices. A list of one is the number: it means the same.
+template <class Field>
+ConfigKey levels(std::string path, Limits limits, Field field) {
+  ConfigKey key{.path = std::move(path),
+                .kind = KeyKind::levels,
+                .minimum = limits.minimum,
+                .maximum = limits.maximum,
+                .most_levels = AskedVertices::kMostLevels};
+  key.assign = [field](Config& config, const Json& value) {
+    std::vector<std::uint32_t> by_level;
+    for (const Json& one : value.is_array() ? value : Json::array({value}))
+      by_level.push_back(static_cast<std::uint32_t>(one.get<double>()));
+    field(config) = AskedVertices(std::move(by_level));
+  };
+  key.show = [field](const Config& config) {
+    if (!field(config))
+      return Json();
+    const std::span<const std::uint32_t> by_level = field(config)->by_level();
+    return by_level.size() == 1 ? Json(by_level[0]) : Json(by_level);
+  };
+  return key;
+}
+
 template <class Names, class Field>
 ConfigKey choice(std::string path, const Names& names, Field field) {
   ConfigKey key{.path = std::move(path), .kind = KeyKind::choice};
@@ -213,7 +237,7 @@ std::vector<ConfigKey> make_config_keys() {
           "partition.axis", kAxisRules, [](auto& c) -> auto& { return c.partition.axis; })),
       deciding(choice(
           "simplify.method", kSimplifyMethods, [](auto& c) -> auto& { return c.simplify.method; })),
-      deciding(number(
+      deciding(levels(
           "simplify.vertices", kTileVertices,
           [](auto& c) -> auto& { return c.simplify.vertices; })),
       deciding(choice(
@@ -273,6 +297,13 @@ bool is_list_of_numbers(const ConfigKey& key, const Json& value) {
          });
 }
 
+bool is_list_of_levels(const ConfigKey& key, const Json& value) {
+  const ConfigKey entry = level_entry(key);
+  return value.is_array() && !value.empty() && value.size() <= key.most_levels &&
+         std::all_of(value.begin(), value.end(),
+                     [&](const Json& one) { return accepts(entry, one); });
+}
+
 bool is_usable_path(const Json& value) {
   if (!value.is_string())
     return false;
@@ -320,6 +351,8 @@ bool accepts(const ConfigKey& key, const Json& value) {
              value.get<double>() <= key.maximum;
     case KeyKind::numbers:
       return is_list_of_numbers(key, value);
+    case KeyKind::levels:
+      return is_integer_within(key, value) || is_list_of_levels(key, value);
     case KeyKind::size:
       return is_size_within(key, value);
     case KeyKind::choice:
@@ -328,6 +361,11 @@ bool accepts(const ConfigKey& key, const Json& value) {
                        value.get_ref<const std::string&>()) != key.choices.end();
   }
   return false;
+}
+
+ConfigKey level_entry(const ConfigKey& key) {
+  return {
+      .path = key.path, .kind = KeyKind::integer, .minimum = key.minimum, .maximum = key.maximum};
 }
 
 std::string expectation(const ConfigKey& key) {
@@ -346,6 +384,9 @@ std::string expectation(const ConfigKey& key) {
       return fmt::format("a number above {} and at most {}", key.minimum, key.maximum);
     case KeyKind::numbers:
       return fmt::format("a list of {:.0f} numbers", key.maximum);
+    case KeyKind::levels:
+      return fmt::format("{} or a list of 1 to {} of them", expectation(level_entry(key)),
+                         key.most_levels);
     case KeyKind::size:
       return std::string(kSizeSyntax);
     case KeyKind::choice:

@@ -3,6 +3,7 @@
 
 #include "pipeline/config.h"
 
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
@@ -21,6 +22,7 @@ enum class KeyKind {
   integer,  ///< minimum to maximum
   number,   ///< above minimum, up to maximum
   numbers,  ///< a list of so many finite numbers as `maximum` says
+  levels,   ///< an integer, or a list of 1 to `most_levels` of them; each minimum to maximum
   size,     ///< bytes as a number, or a text for parse_size(); minimum to maximum
   choice    ///< one of `choices`
 };
@@ -32,6 +34,7 @@ struct ConfigKey {
   bool decides_result = false;
   double minimum = 0;
   double maximum = 0;
+  std::size_t most_levels = 0;
   std::vector<std::string> choices{};
   /// Stores an acceptable value.
   std::function<void(Config&, const nlohmann::ordered_json&)> assign{};
@@ -49,6 +52,9 @@ const ConfigKey* find_config_key(std::string_view path);
 bool is_config_section(std::string_view path);
 
 bool accepts(const ConfigKey& key, const nlohmann::ordered_json& value);
+
+/// What an entry of a list for KeyKind::levels must be, as a key of kind integer.
+ConfigKey level_entry(const ConfigKey& key);
 
 /// What accepts() accepts, for messages: "an integer from 4 to 32768".
 std::string expectation(const ConfigKey& key);

@@ -1,6 +1,8 @@
 // How a job lives within its memory budget.
 #pragma once
 
+#include "hierarchy/asked_vertices.h"
+
 #include <cstddef>
 #include <cstdint>
 
@@ -17,7 +19,7 @@ struct JobSize {
   std::uint32_t partition_count = 0;
   std::uint32_t largest_tile = 0;  ///< vertices of the largest partition or simplified mesh
   std::size_t threads = 1;
-  std::uint32_t asked_vertices = 0;             ///< of a simplified mesh; 0: as a partition has
+  AskedVertices asked_vertices = 8192;          ///< of a simplified mesh
   bool clustered = false;                       ///< simplified by the method `cluster`
   std::uint64_t published_attribute_bytes = 0;  ///< of a vertex in a published tile
   double published_ratio = 1;                   ///< of a published tile, about, to a plain one

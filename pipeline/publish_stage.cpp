@@ -88,7 +88,7 @@ struct TileWriter {
 };
 
 TileRecord describe(const Tree& tree, NodeId node, const BuildTile& tile, const TileFacts& facts,
-                    std::uint32_t asked) {
+                    const AskedVertices& asked) {
   const TileMesh& mesh = tile.mesh;
   TileRecord record;
   record.node = node;
@@ -100,7 +100,7 @@ TileRecord describe(const Tree& tree, NodeId node, const BuildTile& tile, const 
   record.drawn_border_count = static_cast<std::uint32_t>(
       std::count_if(mesh.border.begin(), mesh.border.end(),
                     [&](const Triangle& t) { return draws(tree, node, mesh, t); }));
-  record.target_count = tree.is_partition(node) ? mesh.own_count : asked;
+  record.target_count = tree.is_partition(node) ? mesh.own_count : asked.of(node.level);
   record.bounds = bounds_of(mesh.vertices.positions);
   record.torn_count = facts.torn_count;
   record.forced_count = facts.forced_count;

@@ -1,6 +1,7 @@
 // The stage `publish`: tiles as GLB, the index, the outline and the manifest.
 #pragma once
 
+#include "hierarchy/asked_vertices.h"
 #include "hierarchy/published.h"
 #include "pipeline/build_journal.h"
 #include "pipeline/cancel.h"
@@ -28,7 +29,7 @@ struct PublishInput {
   std::optional<std::uint32_t> position_bits;  ///< of the lattice; none: positions stay exact
   std::optional<Transform> transform;          ///< of the tileset
   std::string licence;
-  std::uint32_t asked_vertices = 0;  ///< of simplified tiles
+  AskedVertices asked_vertices = 8192;  ///< of simplified tiles
 };
 
 /// Writes the whole hierarchy into `directory`, but for tiles that the journal has there.

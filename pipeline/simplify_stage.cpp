@@ -119,7 +119,7 @@ class Simplifier {
   void make_tile(NodeId node) {
     const Tree::Children children = forest_.tree().children(node);
     const BuildTile joined = load_joined(children);
-    const ContractedTile contracted = contract(joined, children);
+    const ContractedTile contracted = contract(joined, node);
     std::size_t begin = 0;
     for (const NodeId child : children.span()) {
       const std::size_t count = forest_.own_count(child);
@@ -141,11 +141,11 @@ class Simplifier {
                                   children.nodes[1].index);
   }
 
-  ContractedTile contract(const BuildTile& joined, const Tree::Children& children) const {
-    if (children.count == 1)
+  ContractedTile contract(const BuildTile& joined, NodeId node) const {
+    if (forest_.tree().is_early(node))
       return cluster_simplify::keep(joined);
-    const std::uint32_t target =
-        cluster_simplify::contraction_target(joined.mesh.own_count, options_.vertices);
+    const std::uint32_t target = cluster_simplify::contraction_target(
+        joined.mesh.own_count, options_.vertices.of(node.level));
     return cluster_simplify::apply(
         joined,
         cluster_simplify::contract(joined, target, options_.attributes, options_.contraction));

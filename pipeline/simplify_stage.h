@@ -3,6 +3,7 @@
 #pragma once
 
 #include "cluster_simplify/contraction.h"
+#include "hierarchy/asked_vertices.h"
 #include "partition/direction.h"
 #include "pipeline/build_journal.h"
 #include "pipeline/cancel.h"
@@ -20,7 +21,7 @@ std::uint64_t make_leaves(Chunks& chunks, Forest& forest, BuildJournal& journal,
                           const CancelToken& cancel);
 
 struct SimplifyOptions {
-  std::uint32_t vertices = 8192;  ///< asked of every simplified tile
+  AskedVertices vertices = 8192;
   AttributeLayout attributes;
   cluster_simplify::ContractionOptions contraction;
   double diagonal = 0;  ///< of the whole model

@@ -754,6 +754,10 @@ TEST_F(Killed, WorkTowardsAnotherResultIsKeptUnlessItIsToRestart) {
   EXPECT_EQ(other.code, kExists);
   EXPECT_THAT(other.messages, AllOf(HasSubstr("config.partition.vertices was 500 and is 400"),
                                     HasSubstr("--restart")));
+  const Outcome by_level = run({"build", config, "--set", "simplify.vertices=[300, 400]"});
+  EXPECT_EQ(by_level.code, kExists);
+  EXPECT_THAT(by_level.messages,
+              HasSubstr("but config.simplify.vertices was 500 and is [300,400]; --restart"));
   EXPECT_TRUE(has_work());
   const Outcome same = run({"build", config, "--set", "memory_budget=256MiB", "threads=1"});
   EXPECT_EQ(same.code, 0) << same.messages;

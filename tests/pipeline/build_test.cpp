@@ -31,6 +31,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -226,6 +227,9 @@ TEST_F(BuildTest, TilesOfUnequalAsking) {
   Config fine = config(20);
   fine.simplify.vertices = 32768;
   expect_builds(tests::sphere(5000), fine);
+  Config uneven = config(200);
+  uneven.simplify.vertices = AskedVertices({32768, 4, 300, 20});
+  expect_builds(tests::sphere(5000), uneven);
 }
 
 TEST_F(BuildTest, AMeshSmallerThanAPartition) {
@@ -428,6 +432,48 @@ TEST_F(BuildTest, SimplifiedTilesHaveTheVertexCountAskedFor) {
     EXPECT_EQ(record.target_count, 300U);
     EXPECT_EQ(record.own_count, 300U);
   }
+}
+
+TEST_F(BuildTest, SimplifiedTilesHaveTheVertexCountsAskedForByLevel) {
+  // Half a tile's children, more, fewer; the last one holds for all deeper levels.
+  const AskedVertices asked({250, 330, 120, 230, 200});
+  tests::write_ply(tests::sphere(20'000, 0.01F), mesh_path());
+  for (const auto& [name, method] : tests::all_simplify_methods()) {
+    SCOPED_TRACE(name);
+    Config with = config(150);
+    with.simplify = method;
+    with.simplify.vertices = asked;
+    build(with, true);
+    EXPECT_THAT(problems(), IsEmpty());
+    const storage::HierarchyReader reader(files_, output_path());
+    ASSERT_EQ(reader.tree().depth(), Level{7});
+    EXPECT_EQ(reader.manifest().config["simplify"]["vertices"].dump(), "[250,330,120,230,200]");
+    for (const TileRecord& record : reader.records()) {
+      if (reader.tree().is_partition(record.node))
+        continue;
+      // Level 1 is made of two tiles of 120 vertices: three quarters of them.
+      const bool is_short = record.node.level == Level{1};
+      EXPECT_EQ(record.target_count, asked.of(record.node.level));
+      EXPECT_EQ(record.own_count, is_short ? 180U : asked.of(record.node.level))
+          << to_text(record.node);
+    }
+  }
+}
+
+TEST_F(BuildTest, LevelsThatAreNotThereAreAskedInVain) {
+  tests::write_ply(tests::sphere(5000), mesh_path());
+  const auto hashes = [&](const AskedVertices& vertices) {
+    Config with = config(300);  // levels 0 to 3 are simplified
+    with.simplify.vertices = vertices;
+    build(with, true);
+    const storage::HierarchyReader reader(files_, output_path());
+    EXPECT_EQ(reader.tree().depth(), Level{4});
+    return reader.manifest().index_checksum;
+  };
+  const std::uint64_t expected = hashes(AskedVertices({200, 210, 220, 230}));
+  EXPECT_EQ(hashes(AskedVertices({200, 210, 220, 230, 4, 32768})), expected);
+  EXPECT_NE(hashes(AskedVertices({200, 210, 220})), expected);
+  EXPECT_EQ(hashes(AskedVertices({200, 200})), hashes(200));
 }
 
 TEST_F(BuildTest, TheReportTellsWhatWasDone) {
@@ -638,6 +684,32 @@ TEST_F(DiskTest, TooLittleRoomIsRefusedBeforeAnythingIsRead) {
   EXPECT_THAT(error.what(), HasSubstr("free"));
 }
 
+void expect_near(std::uint64_t predicted, std::uint64_t real) {
+  const double ratio = static_cast<double>(predicted) / static_cast<double>(real);
+  EXPECT_GT(ratio, 0.95);
+  EXPECT_LT(ratio, 1.2);
+}
+
+TEST_F(DiskTest, ThePredictionKnowsWhatIsAskedOfEachLevel) {
+  tests::write_ply(tests::sphere(60'000, 0.01F), mesh_path());
+  const std::vector<std::vector<std::uint32_t>> lists = {{937, 573, 364, 260, 198},
+                                                         {50, 100, 200, 400, 800},
+                                                         {4000, 2000, 1000, 500, 250},
+                                                         {1000, 100, 1000, 100, 1000, 100},
+                                                         {4, 4, 4, 4, 4, 2000}};
+  for (const std::vector<std::uint32_t>& list : lists) {
+    for (const std::uint32_t vertices : {150U, 1000U}) {
+      Config with = config(vertices);
+      with.simplify.vertices = AskedVertices(list);
+      with.memory_budget = tight_budget(with);
+      const BuildStats stats = build(with, true).stats;
+      SCOPED_TRACE(fmt::format("{}, partitions of {}", fmt::join(list, ", "), vertices));
+      expect_near(stats.predicted_temporary_bytes, stats.peak_temporary_bytes);
+      expect_near(stats.predicted_output_bytes, stats.output_bytes);
+    }
+  }
+}
+
 TEST_F(DiskTest, AWholeBuildTakesNoMoreRoomThanPredicted) {
   const std::vector<std::pair<std::string, TestMesh>> meshes = {
       {"sphere", tests::sphere(60'000, 0.01F)},
@@ -675,13 +747,8 @@ TEST_F(DiskTest, ThePredictionIsNearWhatASurfaceTakes) {
         const BuildStats stats = build(with, true).stats;
         SCOPED_TRACE(fmt::format("{}, method {}, partitions of {} vertices", name,
                                  static_cast<int>(method), vertices));
-        const auto near = [](std::uint64_t predicted, std::uint64_t real) {
-          const double ratio = static_cast<double>(predicted) / static_cast<double>(real);
-          EXPECT_GT(ratio, 0.95);
-          EXPECT_LT(ratio, 1.2);
-        };
-        near(stats.predicted_temporary_bytes, stats.peak_temporary_bytes);
-        near(stats.predicted_output_bytes, stats.output_bytes);
+        expect_near(stats.predicted_temporary_bytes, stats.peak_temporary_bytes);
+        expect_near(stats.predicted_output_bytes, stats.output_bytes);
       }
     }
   }

@@ -129,6 +129,65 @@ TEST(Config, LimitsAreInclusive) {
   EXPECT_EQ(parse(with(R"("outline": {"tolerance": 1})")).outline.tolerance, 1.0);
 }
 
+// ---- vertices by level
+
+Config with_tile_vertices(const std::string& vertices) {
+  return parse(with(R"("simplify": {"vertices": )" + vertices + "}"));
+}
+
+std::string tile_vertices_refusal(const std::string& vertices) {
+  return refusal(with(R"("simplify": {"vertices": )" + vertices + "}"));
+}
+
+TEST(ConfigLevels, AreANumberOrAListFromTheRootDown) {
+  EXPECT_EQ(with_tile_vertices("300").simplify.vertices, 300U);
+  EXPECT_EQ(with_tile_vertices("[937, 5.73e2, 4, 32768]").simplify.vertices,
+            AskedVertices({937, 573, 4, 32768}));
+  EXPECT_EQ(parse(with(""), {"simplify.vertices=[100,200]"}).simplify.vertices,
+            AskedVertices({100, 200}));
+  EXPECT_EQ(with_tile_vertices(Json(std::vector<int>(32, 50)).dump()).simplify.vertices,
+            AskedVertices(std::vector<std::uint32_t>(32, 50)));
+}
+
+TEST(ConfigLevels, AListOfOneIsTheNumber) {
+  EXPECT_EQ(with_tile_vertices("[300]"), with_tile_vertices("300"));
+}
+
+TEST(ConfigLevels, ALengthThatCannotBeIsNamed) {
+  const std::string expected =
+      "config.json: simplify.vertices: expected an integer from 4 to 32768 or a list of 1 to 32 of "
+      "them, found ";
+  EXPECT_EQ(tile_vertices_refusal("[]"), expected + "an empty list");
+  EXPECT_EQ(tile_vertices_refusal(Json(std::vector<int>(33, 50)).dump()),
+            expected + "a list of 33");
+  EXPECT_EQ(tile_vertices_refusal("3"), expected + "the number 3");
+  EXPECT_EQ(tile_vertices_refusal("32769"), expected + "the number 32769");
+  EXPECT_EQ(tile_vertices_refusal("\"100, 200\""), expected + "the string \"100, 200\"");
+  EXPECT_EQ(tile_vertices_refusal("{\"0\": 100}"), expected + "an object");
+  EXPECT_EQ(tile_vertices_refusal("null"), expected + "null");
+  EXPECT_EQ(tile_vertices_refusal("true"), expected + "true");
+}
+
+TEST(ConfigLevels, AWrongEntryIsNamedByItsLevel) {
+  const std::string expected = "]: expected an integer from 4 to 32768, found ";
+  const std::string key = "config.json: simplify.vertices[";
+  EXPECT_EQ(tile_vertices_refusal("[3]"), key + "0" + expected + "the number 3");
+  EXPECT_EQ(tile_vertices_refusal("[100, 50, 32769, 2]"),
+            key + "2" + expected + "the number 32769");
+  EXPECT_EQ(tile_vertices_refusal("[100, -50]"), key + "1" + expected + "the number -50");
+  EXPECT_EQ(tile_vertices_refusal("[100.5]"), key + "0" + expected + "the number 100.5");
+  EXPECT_EQ(tile_vertices_refusal("[100, \"50\"]"), key + "1" + expected + "the string \"50\"");
+  EXPECT_EQ(tile_vertices_refusal("[100, null]"), key + "1" + expected + "null");
+  EXPECT_EQ(tile_vertices_refusal("[[100, 50]]"), key + "0" + expected + "a list");
+  EXPECT_EQ(refusal(with(""), {"simplify.vertices=[100,2]"}),
+            "--set simplify.vertices[1]" + expected.substr(1) + "the number 2");
+}
+
+TEST(ConfigLevels, PartitionsHaveNone) {
+  EXPECT_EQ(refusal(with(R"("partition": {"vertices": [100, 200]})")),
+            "config.json: partition.vertices: expected an integer from 4 to 32768, found a list");
+}
+
 // ---- paths
 
 TEST(ConfigPaths, AreRelativeToTheConfig) {
@@ -539,9 +598,19 @@ TEST(ResolvedJson, SimplifiedTilesFollowThePartitionsUnlessTold) {
             9);
 }
 
+TEST(ResolvedJson, ShowsVerticesByLevelAsTheyWereGiven) {
+  const auto shown = [](const std::string& vertices) {
+    return resolved_json(with_tile_vertices(vertices))["simplify"]["vertices"].dump();
+  };
+  EXPECT_EQ(shown("300"), "300");
+  EXPECT_EQ(shown("[300]"), "300");
+  EXPECT_EQ(shown("[300, 200, 200]"), "[300,200,200]");
+}
+
 TEST(ResolvedJson, ReadsBackToItself) {
   for (const char* keys :
-       {"", R"("partition": {"count": 77, "axis": "longest"})",
+       {"", R"("simplify": {"vertices": [700, 600, 4]})",
+        R"("partition": {"count": 77, "axis": "longest"})",
         R"("partition": {"vertices": 500}, "outline": {"tolerance": 0.1, "sectors": 3},
                               "simplify": {"representative": "vertex", "vertices": 700})"}) {
     const Json resolved = resolved_json(parse(with(keys)));
@@ -616,6 +685,13 @@ void expect_same_rule(const ConfigKey& key, const Json& schema) {
       EXPECT_EQ(schema.at("items").at("type"), "number");
       EXPECT_EQ(schema.at("minItems"), key.maximum);
       EXPECT_EQ(schema.at("maxItems"), key.maximum);
+      break;
+    case KeyKind::levels:
+      expect_same_rule(level_entry(key), schema.at("oneOf").at(0));
+      EXPECT_EQ(schema.at("oneOf").at(1).at("type"), "array");
+      EXPECT_EQ(schema.at("oneOf").at(1).at("items"), schema.at("oneOf").at(0));
+      EXPECT_EQ(schema.at("oneOf").at(1).at("minItems"), 1);
+      EXPECT_EQ(schema.at("oneOf").at(1).at("maxItems"), key.most_levels);
       break;
     case KeyKind::size:
       EXPECT_EQ(schema.at("oneOf").at(0).at("minimum"), key.minimum);
@@ -698,7 +774,7 @@ TEST(ExampleConfigs, AreAllAccepted) {
     names.push_back(name);
   }
   EXPECT_THAT(names, IsSupersetOf({"minimal.json", "defaults.json", "huge_scan.json", "mobile.json",
-                                   "paper.json"}));
+                                   "paper.json", "progressive.json"}));
 }
 
 TEST(ExampleConfigs, TheOneOfDefaultsHoldsThem) {

@@ -27,7 +27,7 @@ struct Case {
   std::string name;
   TestMesh mesh;
   std::uint32_t partitions = 1;
-  std::uint32_t tile_vertices = 4;
+  AskedVertices tile_vertices = 4;
   std::uint64_t cuts = 1;
   SimplifyConfig simplify = {};  ///< its vertices are tile_vertices
 };
@@ -202,6 +202,16 @@ TEST(Cuts, ClosedSurfacesHaveNoBorderWhateverTheMethod) {
 TEST(Cuts, SmallTilesAndAnyNumberOfPartitions) {
   for (std::uint32_t partitions : {1U, 2U, 3U, 5U, 6U, 7U, 12U, 33U}) {
     for (std::uint32_t tile_vertices : {4U, 20U, 200U}) {
+      expect_seamless({"torus", tests::torus(3000, 0.02F), partitions, tile_vertices, 40});
+      expect_seamless({"shells", tests::nested_shells(3000), partitions, tile_vertices, 40});
+    }
+  }
+}
+
+TEST(Cuts, TilesOfOtherSizesOnEachLevel) {
+  for (const std::uint32_t partitions : {5U, 33U}) {
+    for (const AskedVertices& tile_vertices :
+         {AskedVertices({300, 20, 200, 30}), AskedVertices({4, 4, 4, 100})}) {
       expect_seamless({"torus", tests::torus(3000, 0.02F), partitions, tile_vertices, 40});
       expect_seamless({"shells", tests::nested_shells(3000), partitions, tile_vertices, 40});
     }

@@ -96,8 +96,12 @@ Config random_config(Dice& dice) {
     config.partition.count = static_cast<std::uint32_t>(dice.of_any_size(40));
   else
     config.partition.vertices = 3 + static_cast<std::uint32_t>(dice.of_any_size(600));
-  if (dice.one_in(3))
-    config.simplify.vertices = 3 + static_cast<std::uint32_t>(dice.of_any_size(600));
+  if (dice.one_in(3)) {
+    std::vector<std::uint32_t> vertices(dice.one_in(2) ? 1 : dice.from(1, 8));
+    for (std::uint32_t& of_level : vertices)
+      of_level = 3 + static_cast<std::uint32_t>(dice.of_any_size(600));
+    config.simplify.vertices = AskedVertices(std::move(vertices));
+  }
   config.partition.axis = dice.one_in(3) ? AxisRule::longest : AxisRule::compactness;
   config.outline.sectors = static_cast<std::uint32_t>(dice.of_any_size(200));
   draw_resources(dice, config);

@@ -1,0 +1,46 @@
+// How many vertices simplified tiles are asked to have: the same on all levels, or level by level.
+#pragma once
+
+#include "hierarchy/ids.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace meshhier {
+
+class AskedVertices {
+ public:
+  /// More than there are levels above the partitions, which are fewer than 2^32.
+  static constexpr std::size_t kMostLevels = 32;
+
+  /// So many on all levels. Implicit: one number is what it is in most places.
+  AskedVertices(std::uint32_t everywhere) : by_level_{everywhere} {}
+  /// From level 0, the root, down; the last one holds for all deeper levels too. Requires one at
+  /// least.
+  explicit AskedVertices(std::vector<std::uint32_t> by_level) : by_level_(std::move(by_level)) {
+    assert(!by_level_.empty());
+  }
+
+  std::uint32_t of(Level level) const {
+    return by_level_[std::min<std::size_t>(raw(level), by_level_.size() - 1)];
+  }
+  /// Of the levels coarser than `end`; 0 if there are none.
+  std::uint32_t largest_above(Level end) const {
+    const std::size_t levels = std::min<std::size_t>(raw(end), by_level_.size());
+    return levels == 0 ? 0 : *std::max_element(by_level_.begin(), by_level_.begin() + levels);
+  }
+  /// As given; a single one for all levels.
+  std::span<const std::uint32_t> by_level() const { return by_level_; }
+
+  friend bool operator==(const AskedVertices&, const AskedVertices&) = default;
+
+ private:
+  std::vector<std::uint32_t> by_level_;
+};
+
+}  // namespace meshhier
