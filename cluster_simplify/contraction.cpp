@@ -22,9 +22,4 @@ Contraction contract(const BuildTile& joined, std::uint32_t target, const Attrib
   throw Error(ErrorCode::internal, "unknown contraction method");
 }
 
-std::uint32_t contraction_target(std::uint32_t own_count, std::uint32_t asked) {
-  return std::max(1U,
-                  std::min(asked, static_cast<std::uint32_t>(std::uint64_t{own_count} * 3 / 4)));
-}
-
 }  // namespace meshhier::cluster_simplify

@@ -45,9 +45,4 @@ struct ContractionOptions {
 Contraction contract(const BuildTile& joined, std::uint32_t target, const AttributeLayout& layout,
                      const ContractionOptions& options);
 
-/// The vertex count a parent tile gets when `asked` vertices are asked for and its children have
-/// `own_count` together: `asked`, or three quarters of own_count if that is fewer, so that every
-/// level is coarser than the one below even where few vertices are left; at least 1.
-std::uint32_t contraction_target(std::uint32_t own_count, std::uint32_t asked);
-
 }  // namespace meshhier::cluster_simplify

@@ -1,6 +1,5 @@
 #include "pipeline/disk_need.h"
 
-#include "cluster_simplify/contraction.h"
 #include "partition/renumber.h"
 #include "partition/top_tree.h"
 
@@ -89,15 +88,15 @@ std::vector<LevelNodes> measure_nodes(const JobSize& job) {
   levels.back().begin()->second.vertices = partition;
   for (std::size_t l = levels.size() - 1; l-- > 0;) {
     const LevelNodes& finer = levels[l + 1];
-    const std::uint32_t asked = job.asked_vertices.of(static_cast<Level>(l));
     for (auto& [size, nodes] : levels[l]) {
       double children = finer.at(size - size / 2).vertices;
       if (size > 1)
         children += finer.at(size / 2).vertices;
       nodes.joined = children;
-      nodes.vertices = nodes.early ? children
-                                   : cluster_simplify::contraction_target(
-                                         static_cast<std::uint32_t>(children), asked);
+      nodes.vertices = nodes.early
+                           ? children
+                           : job.asked_vertices.target(static_cast<Level>(l),
+                                                       static_cast<std::uint32_t>(children));
     }
   }
   return levels;

@@ -144,8 +144,7 @@ class Simplifier {
   ContractedTile contract(const BuildTile& joined, NodeId node) const {
     if (forest_.tree().is_early(node))
       return cluster_simplify::keep(joined);
-    const std::uint32_t target = cluster_simplify::contraction_target(
-        joined.mesh.own_count, options_.vertices.of(node.level));
+    const std::uint32_t target = options_.vertices.target(node.level, joined.mesh.own_count);
     return cluster_simplify::apply(
         joined,
         cluster_simplify::contract(joined, target, options_.attributes, options_.contraction));

@@ -112,26 +112,6 @@ void expect_equal(const Contraction& a, const Contraction& b) {
   EXPECT_EQ(a.fallbacks.joined, b.fallbacks.joined);
 }
 
-TEST(ContractionTargetTest, IsWhatWasAskedWhereThereAreEnoughVertices) {
-  EXPECT_EQ(contraction_target(16384, 8192), 8192U);
-  EXPECT_EQ(contraction_target(65536, 32768), 32768U);
-  EXPECT_EQ(contraction_target(8, 6), 6U);
-}
-
-TEST(ContractionTargetTest, IsAlwaysCoarserThanBelow) {
-  EXPECT_EQ(contraction_target(40, 50), 30U);
-  EXPECT_EQ(contraction_target(50, 50), 37U);
-  for (std::uint32_t count = 2; count < 100; ++count) {
-    for (const std::uint32_t asked : {4U, 5U, 50U, 32768U})
-      EXPECT_LT(contraction_target(count, asked), count);
-  }
-}
-
-TEST(ContractionTargetTest, IsAtLeastOne) {
-  EXPECT_EQ(contraction_target(1, 4), 1U);
-  EXPECT_EQ(contraction_target(2, 4), 1U);
-}
-
 TEST(ContractTest, TheDefaultIsEdgeCollapse) {
   EXPECT_EQ(ContractionOptions{}.method, Method::edge_collapse);
 }

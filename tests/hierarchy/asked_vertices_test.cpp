@@ -40,5 +40,36 @@ TEST(AskedVerticesTest, AListOfOneIsTheNumber) {
   EXPECT_NE(AskedVertices({7, 8}), AskedVertices(7));
 }
 
+TEST(AskedVerticesTest, TheTargetIsWhatWasAskedWhereThereAreEnoughVertices) {
+  EXPECT_EQ(AskedVertices(8192).target(Level{3}, 16384), 8192U);
+  EXPECT_EQ(AskedVertices(32768).target(Level{3}, 65536), 32768U);
+  EXPECT_EQ(AskedVertices(6).target(Level{3}, 8), 6U);
+}
+
+TEST(AskedVerticesTest, TheTargetIsAlwaysCoarserThanBelow) {
+  EXPECT_EQ(AskedVertices(50).target(Level{3}, 40), 30U);
+  EXPECT_EQ(AskedVertices(50).target(Level{3}, 50), 37U);
+  for (std::uint32_t count = 2; count < 100; ++count) {
+    for (const std::uint32_t asked : {4U, 5U, 50U, 32768U})
+      EXPECT_LT(AskedVertices(asked).target(Level{3}, count), count);
+  }
+}
+
+TEST(AskedVerticesTest, TheTargetIsAtLeastOne) {
+  EXPECT_EQ(AskedVertices(4).target(Level{3}, 1), 1U);
+  EXPECT_EQ(AskedVertices(4).target(Level{3}, 2), 1U);
+}
+
+TEST(AskedVerticesTest, LevelsOfAListAreCoarserByASixteenthAtLeast) {
+  const AskedVertices asked({937, 573, 4});
+  EXPECT_EQ(asked.target(Level{0}, 2 * 573), 937U);
+  EXPECT_EQ(asked.target(Level{0}, 960), 900U);
+  for (std::uint32_t count = 2; count < 2000; ++count) {
+    EXPECT_LT(asked.target(Level{0}, count), count);
+    EXPECT_LT(asked.target(Level{5}, count), count);
+  }
+  EXPECT_EQ(asked.target(Level{5}, 1), 1U);
+}
+
 }  // namespace
 }  // namespace meshhier

@@ -451,10 +451,10 @@ TEST_F(BuildTest, SimplifiedTilesHaveTheVertexCountsAskedForByLevel) {
     for (const TileRecord& record : reader.records()) {
       if (reader.tree().is_partition(record.node))
         continue;
-      // Level 1 is made of two tiles of 120 vertices: three quarters of them.
+      // Level 1 is made of two tiles of 120 vertices: a sixteenth fewer.
       const bool is_short = record.node.level == Level{1};
       EXPECT_EQ(record.target_count, asked.of(record.node.level));
-      EXPECT_EQ(record.own_count, is_short ? 180U : asked.of(record.node.level))
+      EXPECT_EQ(record.own_count, is_short ? 225U : asked.of(record.node.level))
           << to_text(record.node);
     }
   }
