@@ -29,6 +29,7 @@ struct PublishInput {
   std::optional<Transform> transform;          ///< of the tileset
   std::string licence;
   std::uint32_t asked_vertices = 0;  ///< of simplified tiles
+  bool is_temporary = false;         ///< the files become an archive: they need not reach the disk
 };
 
 /// Writes the whole hierarchy into `directory`, but for tiles that the journal has there.

@@ -9,6 +9,9 @@
 
 namespace meshhier::storage {
 
+/// The CRC-32 of gzip and zip, of `bytes` behind something whose CRC-32 is `before`.
+std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t before = 0);
+
 /// One gzip member. Deterministic for one zlib: no name, no time, operating system "unknown".
 std::vector<std::byte> gzip(std::span<const std::byte> bytes);
 
