@@ -61,7 +61,7 @@ bool begins_with(std::span<const std::byte> bytes, std::uint32_t mark) {
   return bytes.size() >= 4 && load_little<std::uint32_t>(bytes.data()) == mark;
 }
 
-[[noreturn]] void refuse(const std::string& name, const std::string& what) {
+[[noreturn]] void refuse_archive(const std::string& name, const std::string& what) {
   throw Error(ErrorCode::corrupt, fmt::format("{}: {}", name, what));
 }
 
@@ -149,10 +149,11 @@ void append_central_header(std::vector<std::byte>& bytes, const ArchiveEntry& en
 ArchiveEntry parse_local_header(std::span<const std::byte> bytes, std::uint64_t offset,
                                 const std::string& name) {
   if (bytes.size() < kLocalHeaderBytes || !begins_with(bytes, kLocalMark))
-    refuse(name, fmt::format("expected a file's header at byte {}", offset));
+    refuse_archive(name, fmt::format("expected a file's header at byte {}", offset));
   const std::size_t name_bytes = load_little<std::uint16_t>(bytes.data() + 26);
   if (bytes.size() - kLocalHeaderBytes < name_bytes)
-    refuse(name, fmt::format("the file's name at byte {} is cut", offset + kLocalHeaderBytes));
+    refuse_archive(name,
+                   fmt::format("the file's name at byte {} is cut", offset + kLocalHeaderBytes));
   return {std::string(text_at(bytes, kLocalHeaderBytes, name_bytes)), offset,
           load_little<std::uint32_t>(bytes.data() + 18),
           load_little<std::uint32_t>(bytes.data() + 14)};
@@ -161,23 +162,24 @@ ArchiveEntry parse_local_header(std::span<const std::byte> bytes, std::uint64_t 
 CentralHeader parse_central_header(std::span<const std::byte> bytes, std::uint64_t offset,
                                    const std::string& name) {
   if (bytes.size() < kCentralHeaderBytes || !begins_with(bytes, kCentralMark))
-    refuse(name, "the list of its files is broken or shorter than said");
+    refuse_archive(name, "the list of its files is broken or shorter than said");
   const std::byte* at = bytes.data();
   const std::size_t name_bytes = load_little<std::uint16_t>(at + 28);
   if (bytes.size() - kCentralHeaderBytes < name_bytes)
-    refuse(name, "the list of its files ends within a name");
+    refuse_archive(name, "the list of its files ends within a name");
   const ArchiveEntry entry{std::string(text_at(bytes, kCentralHeaderBytes, name_bytes)), offset,
                            load_little<std::uint32_t>(at + 24),
                            load_little<std::uint32_t>(at + 16)};
   const std::string shown = plain_text(entry.name, kLongestArchiveName);
   if (!is_archive_name(entry.name))
-    refuse(name, fmt::format("\"{}\" is no name of a file in a hierarchy", shown));
+    refuse_archive(name, fmt::format("\"{}\" is no name of a file in a hierarchy", shown));
   std::vector<std::byte> expected;
   append_central_header(expected, entry);
   if (bytes.size() < expected.size() || !std::equal(expected.begin(), expected.end(), at)) {
-    refuse(name, fmt::format("{}: its place in the list of files is not that of a stored file at "
-                             "byte {}",
-                             shown, offset));
+    refuse_archive(name,
+                   fmt::format("{}: its place in the list of files is not that of a stored file at "
+                               "byte {}",
+                               shown, offset));
   }
   return {entry, expected.size()};
 }
@@ -201,17 +203,18 @@ ArchiveEnd parse_archive_end(std::span<const std::byte> last, std::uint64_t file
                              const std::string& name) {
   const char* const cut = "does not end as an archive does: the file is cut or damaged";
   if (last.size() < kEndBytes || !begins_with(last.last(kEndBytes), kEndMark))
-    refuse(name, cut);
+    refuse_archive(name, cut);
   const ArchiveEnd end = load_end(last);
   const std::vector<std::byte> expected = encode_archive_end(end);
   if (expected.size() > last.size() ||
       !std::equal(expected.begin(), expected.end(), last.last(expected.size()).begin()))
-    refuse(name, cut);
+    refuse_archive(name, cut);
   const std::uint64_t before = file_bytes - expected.size();
   if (end.directory_bytes > before || end.directory != before - end.directory_bytes) {
-    refuse(name, fmt::format("has {} bytes, and the list of its files should be {} bytes from byte "
-                             "{} on: the file is cut or damaged",
-                             file_bytes, end.directory_bytes, end.directory));
+    refuse_archive(
+        name, fmt::format("has {} bytes, and the list of its files should be {} bytes from byte "
+                          "{} on: the file is cut or damaged",
+                          file_bytes, end.directory_bytes, end.directory));
   }
   return end;
 }

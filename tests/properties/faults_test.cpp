@@ -307,7 +307,7 @@ TEST_P(FaultsTest, InterruptionsAddUp) {
   for (std::optional<ErrorCode> code = ErrorCode::interrupted; code; ++interruptions) {
     ASSERT_LT(interruptions, 200);
     CancelToken cancel;
-    Interrupter progress(cancel, 3, "outline");  // that is made at one go
+    Interrupter progress(cancel, 3, {"outline", "pack"});  // they are made at one go
     code = run(files, progress, cancel);
     ASSERT_TRUE(!code || code == ErrorCode::interrupted) << message_;
   }

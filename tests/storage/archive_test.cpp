@@ -7,8 +7,8 @@
 #include "storage/glb.h"
 #include "storage/gzip.h"
 #include "storage/hash.h"
+#include "tests/support/hollow_file.h"
 #include "tests/support/memory_files.h"
-#include "tests/support/sparse_file.h"
 
 #include <algorithm>
 #include <functional>
@@ -340,9 +340,9 @@ TEST_F(ArchiveTest, MoreFilesThanOldZipCountsAreThere) {
 }
 
 TEST_F(ArchiveTest, OffsetsBeyondFourGigabytesAreFound) {
-  auto archive = std::make_unique<tests::SparseFile>();
+  auto archive = std::make_unique<tests::HollowFile>();
   ArchiveWriter writer(*archive, [] {});
-  const tests::SparseFile large((std::uint64_t{3} << 30) + 1);
+  const tests::HollowFile large((std::uint64_t{3} << 30) + 1);
   files_.put("/m/small", "small");
   writer.add("a/large", large);
   writer.add("b/large", large);
@@ -363,10 +363,10 @@ TEST_F(ArchiveTest, OffsetsBeyondFourGigabytesAreFound) {
 }
 
 TEST_F(ArchiveTest, AFileOfFourGigabytesDoesNotFit) {
-  tests::SparseFile archive;
+  tests::HollowFile archive;
   ArchiveWriter writer(archive, [] {});
   try {
-    writer.add("a", tests::SparseFile(std::uint64_t{0xffffffff}));
+    writer.add("a", tests::HollowFile(std::uint64_t{0xffffffff}));
     ADD_FAILURE();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::usage);

@@ -12,9 +12,9 @@
 
 namespace meshhier::tests {
 
-class SparseFile final : public storage::File {
+class HollowFile final : public storage::File {
  public:
-  explicit SparseFile(std::uint64_t size = 0) : File("sparse"), size_(size) {}
+  explicit HollowFile(std::uint64_t size = 0) : File("hollow"), size_(size) {}
 
   std::uint64_t size() const override { return size_; }
   void sync() override {}
