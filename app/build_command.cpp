@@ -112,7 +112,8 @@ constexpr const char* kBuildFooter =
     "threads": 0,                            // 0: all
     "partition": { "vertices": 8192, "axis": "compactness" },
     "simplify": { "method": "cluster", "representative": "quadric" },
-    "outline": { "sectors": 128, "tolerance": 0.002 }
+    "outline": { "sectors": 128, "tolerance": 0.002 },
+    "storage": { "container": "files" }      // or "3tz": one file instead of a directory
   }
 
 Examples:
@@ -120,6 +121,7 @@ Examples:
   meshhier build david.json --set partition.count=128 --set memory_budget=256MiB
   meshhier build david.json --set input=other.ply output=other.hier --force
   meshhier build david.json --set 'input=["a.obj.gz", "b.obj.gz"]' weld=true
+  meshhier build david.json --set storage.container=3tz output=david.3tz
   meshhier build david.json --dry-run
   meshhier build david.json --stats david.stats.json
 )";

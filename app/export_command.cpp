@@ -63,7 +63,8 @@ Examples:
 void add_export_command(CLI::App& parser, Invocation& invocation) {
   const auto arguments = std::make_shared<ExportArguments>();
   CLI::App* command = parser.add_subcommand("export", "Write part of a hierarchy as a PLY file");
-  command->add_option("DIR", arguments->directory, "The hierarchy")->required();
+  command->add_option("HIERARCHY", arguments->directory, "A directory or a 3tz archive")
+      ->required();
 
   CLI::App* what = command->add_option_group("What", "Exactly one of these");
   add_place_options(*what, arguments->level, arguments->node);

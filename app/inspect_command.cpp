@@ -41,7 +41,8 @@ constexpr const char* kInspectFooter = R"(Examples:
 void add_inspect_command(CLI::App& parser, Invocation& invocation) {
   const auto arguments = std::make_shared<InspectArguments>();
   CLI::App* command = parser.add_subcommand("inspect", "Tell what a hierarchy holds");
-  command->add_option("DIR", arguments->directory, "The hierarchy")->required();
+  command->add_option("HIERARCHY", arguments->directory, "A directory or a 3tz archive")
+      ->required();
   command->add_flag("--json", arguments->json, "One JSON object, for programs");
   add_place_options(*command, arguments->options.level, arguments->options.node);
   command->footer(kInspectFooter);

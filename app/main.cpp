@@ -23,8 +23,8 @@ namespace meshhier::app {
 namespace {
 
 constexpr const char* kDescription =
-    R"(meshhier makes a hierarchy from one huge triangle mesh: a directory of tiles of about equal
-size, from a coarse view of the whole model down to the original triangles, for viewers that load
+    R"(meshhier makes a hierarchy from one huge triangle mesh: a directory, or one file, of tiles of
+about equal size, from a coarse view of the whole model down to the original triangles, for viewers that load
 what the user looks at.)";
 
 constexpr const char* kFooter = R"(Examples:

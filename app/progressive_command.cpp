@@ -48,7 +48,8 @@ void add_progressive_command(CLI::App& parser, Invocation& invocation) {
   const auto arguments = std::make_shared<ProgressiveArguments>();
   CLI::App* command =
       parser.add_subcommand("progressive", "Make a base and its details for weak clients");
-  command->add_option("DIR", arguments->directory, "The hierarchy")->required();
+  command->add_option("HIERARCHY", arguments->directory, "A directory or a 3tz archive")
+      ->required();
   add_node_option(*command, "One sector on its own: its level and index", arguments->options.node);
   add_integer_option(*command,
                      {"--steps", "How many details; one a level if not given", 1, kDeepestLevel},

@@ -63,7 +63,7 @@ void add_reconstruct_command(CLI::App& parser, Invocation& invocation) {
   const auto arguments = std::make_shared<ReconstructArguments>();
   CLI::App* command =
       parser.add_subcommand("reconstruct", "Rebuild a mesh from a base and its details");
-  command->add_option("DIR", arguments->directory, "What \"meshhier progressive\" made")
+  command->add_option("STREAM", arguments->directory, "What \"meshhier progressive\" made")
       ->required();
   add_integer_option(*command,
                      {"--details", "How many, in their order; all if not given", 0, kDeepestLevel},

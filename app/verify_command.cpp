@@ -109,6 +109,7 @@ ways, and held against the tiles' bounds. Exit code 7 if there is a problem.
 Examples:
   meshhier verify david.hier
   meshhier verify david.hier --input david.ply --cuts 200 --seed 7
+  meshhier verify david.3tz
   meshhier verify both.hier --input a.obj.gz --input b.stl
   meshhier verify david.hier --error --level 3
   meshhier verify david.hier --error --level all --samples 1000000 --json
@@ -164,7 +165,8 @@ void add_verify_command(CLI::App& parser, Invocation& invocation) {
   const auto arguments = std::make_shared<VerifyArguments>();
   pipeline::VerifyOptions& options = arguments->options;
   CLI::App* command = parser.add_subcommand("verify", "Prove that a hierarchy is sound");
-  command->add_option("DIR", arguments->directory, "The hierarchy")->required();
+  command->add_option("HIERARCHY", arguments->directory, "A directory or a 3tz archive")
+      ->required();
   CLI::Option* input_option = command->add_option(
       "--input", arguments->input, "The mesh it was made from; several in the order of the config");
   input_option->type_name("MESH")->take_all();

@@ -8,6 +8,7 @@
 #include "pipeline/import_stage.h"
 #include "pipeline/memory_plan.h"
 #include "pipeline/outline_stage.h"
+#include "pipeline/pack_stage.h"
 #include "pipeline/partition_stage.h"
 #include "pipeline/publish_stage.h"
 #include "pipeline/simplify_stage.h"
@@ -39,6 +40,7 @@ nlohmann::ordered_json whole_config(const Config& config) {
                                {"memory_budget", exact_size_text(config.memory_budget)},
                                {"threads", config.threads}};
   whole.update(resolved_json(config));
+  whole["storage"]["container"] = find_config_key("storage.container")->show(config);
   return whole;
 }
 
@@ -55,7 +57,6 @@ BuildStats make_stats(const Config& config, const storage::HierarchyReader& made
   stats.levels = raw(plan.tree.depth()) + 1;
   stats.tiles = made.records().size();
   stats.input_bytes = source.file_bytes;
-  stats.output_bytes = made.manifest().total_bytes;
   stats.predicted_output_bytes = plan.disk.output_bytes;
   stats.predicted_temporary_bytes = plan.disk.temporary_bytes;
   return stats;
@@ -156,6 +157,7 @@ void make_hierarchy(const Config& config, const BuildPlan& build, Workshop& work
   result.position_bits = config.storage.position_bits;
   result.transform = tileset_transform(config);
   result.licence = config.licence;
+  result.is_temporary = config.storage.container == Container::archive;
   result.source.unreferenced_vertices =
       make_leaves(chunks, forest, journal, config.partition.axis, plan, progress, cancel);
   // Without the chunks leaves cannot be made again, so these reach the disk before those go.
@@ -180,6 +182,11 @@ void make_hierarchy(const Config& config, const BuildPlan& build, Workshop& work
   journal.note_complete();
 }
 
+/// Bytes that went to files which are not temporary.
+std::uint64_t written_for_good(storage::FileSystem& files, const storage::ScratchUse& use) {
+  return files.counters().bytes_written - use.bytes_written();
+}
+
 BuildReport build_in(storage::WorkDirectory& work, const Config& config, const BuildPlan& build,
                      BuildInput& input, storage::MemoryPool& pool, StageMeter& progress,
                      BuildEnvironment environment) {
@@ -200,11 +207,20 @@ BuildReport build_in(storage::WorkDirectory& work, const Config& config, const B
   }
   input.drop();
   work.keep(true);
+  const std::uint64_t before = written_for_good(files, pool.scratch_use());
   if (!workshop.journal.is_complete())
     make_hierarchy(config, build, workshop, work.built(), progress, environment);
   const storage::HierarchyReader made(files, work.built());
-  const std::uint64_t manifest_bytes = files.open(storage::manifest_path(work.built()))->size();
+  std::uint64_t output_bytes =
+      made.manifest().total_bytes + files.open(storage::manifest_path(work.built()))->size();
   environment.cancel.check();
+  if (config.storage.container == Container::archive) {
+    storage::ScratchUse& use = pool.scratch_use();
+    use.add_written(written_for_good(files, use) - before);
+    const TemporaryFiles unpacked(use, output_bytes);
+    workshop.tile_scratch.remove();  // the archive needs its room
+    output_bytes = pack(made, work.packed(), files, use, progress, environment.cancel);
+  }
   progress.begin("sync");
   workshop.tile_scratch.remove();  // the sync would take it along
   work.publish();
@@ -212,7 +228,7 @@ BuildReport build_in(storage::WorkDirectory& work, const Config& config, const B
 
   BuildReport report;
   report.stats = make_stats(config, made, build);
-  report.stats.output_bytes += manifest_bytes;
+  report.stats.output_bytes = output_bytes;
   report.stats.peak_temporary_bytes = pool.scratch_use().peak_bytes_on_disk();
   report.stats.stages = progress.stages();
   report.stats.total = progress.total();
@@ -261,14 +277,15 @@ BuildReport build_hierarchy(const Config& config, const BuildOptions& options,
     build = plan_build(config, input.description());
   const tbb::global_control thread_limit(tbb::global_control::max_allowed_parallelism,
                                          thread_count(config));
-  storage::check_output(files, config.output, options.force);
+  const storage::Output output(config.output, config.storage.container);
+  storage::check_output(files, output, options.force);
   if (build)
     check_disk(build->disk, config.output, files);
   else
     check_import_disk(predict_import(input.files(), plan_import(config.memory_budget)),
                       config.output, files);
 
-  storage::WorkDirectory work(files, config.output, options.force);
+  storage::WorkDirectory work(files, output, options.force);
   if (options.restart)
     work.clear();
   const DropAtEnd drop{input};

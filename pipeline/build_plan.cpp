@@ -96,6 +96,7 @@ JobSize job_size(const Config& config, const mesh_io::MeshDescription& mesh, con
   job.clustered = config.simplify.method == SimplifyMethod::cluster;
   job.published_attribute_bytes = published_bytes(mesh.attributes);
   job.published_ratio = published_ratio(config.storage);
+  job.packed = config.storage.container == Container::archive;
   return job;
 }
 

@@ -31,7 +31,7 @@ bool is_in_use(storage::FileSystem& files, const FoundLeftover& leftover) {
 }
 
 std::uint64_t bytes_of(storage::FileSystem& files, const FoundLeftover& leftover) {
-  if (leftover.kind == Leftover::unfinished)
+  if (!files.is_directory(leftover.path))
     return files.identity(leftover.path).bytes;
   return storage::bytes_below(files, leftover.path);
 }
@@ -41,7 +41,7 @@ std::uint64_t bytes_of(storage::FileSystem& files, const FoundLeftover& leftover
 std::vector<FoundLeftover> find_leftovers(storage::FileSystem& files,
                                           const fs::path& directory_or_output) {
   const fs::path path = files.canonical(directory_or_output);
-  const bool is_output = !files.exists(path) || files.exists(storage::manifest_path(path)) ||
+  const bool is_output = !files.is_directory(path) || files.exists(storage::manifest_path(path)) ||
                          files.exists(storage::work_path(path));
   const fs::path directory = is_output ? path.parent_path() : path;
   std::vector<FoundLeftover> found;

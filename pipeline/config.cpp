@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::uint64_t kLargestConfigBytes = std::uint64_t{1} << 20;
 /// Sections are two levels deep; a little more lets the message be about the key instead.
 constexpr std::size_t kDeepestNesting = 8;
-/// There are 17 keys; looking for one goes through those before it, and a MiB of them would take a
+/// There are 25 keys; looking for one goes through those before it, and a MiB of them would take a
 /// minute.
 constexpr std::size_t kMostKeys = 256;
 /// A found key or value is quoted up to so many bytes.

@@ -10,6 +10,7 @@
 #include "partition/direction.h"
 #include "storage/file.h"
 #include "storage/tile_glb.h"
+#include "storage/work_directory.h"
 
 #include <algorithm>
 #include <array>
@@ -86,7 +87,12 @@ inline constexpr std::array kCompressions{
     NamedValue{storage::kCompressionNames[2], Compression::meshopt},
     NamedValue{storage::kCompressionNames[3], Compression::meshopt_zlib}};
 
+using Container = storage::Container;
+inline constexpr std::array kContainers{NamedValue{"files", Container::files},
+                                        NamedValue{"3tz", Container::archive}};
+
 struct StorageConfig {
+  Container container = Container::files;  ///< decides nothing of the files themselves
   Compression compression = Compression::none;
   std::optional<std::uint32_t>
       position_bits;  ///< of the lattice that positions are rounded to, 8 to 24; not set: exact
@@ -122,7 +128,7 @@ struct InputPaths : std::vector<std::filesystem::path> {
 struct Config {
   InputPaths input;              ///< not empty
   bool weld = false;             ///< vertices of equal position and attributes become one
-  std::filesystem::path output;  ///< a directory, without a slash at its end
+  std::filesystem::path output;  ///< a directory or file, without a slash at its end
   std::uint64_t memory_budget = std::uint64_t{1} << 30;  ///< bytes, > 0
   std::uint32_t threads = 0;                             ///< 0: all
   PartitionConfig partition;
@@ -158,8 +164,8 @@ Config load_config(storage::FileSystem& files, const std::filesystem::path& file
                    std::span<const std::string> overrides);
 
 /// What decides the result: weld, partition, simplify, outline, storage; not paths, budget,
-/// threads. All defaults are filled in, except that simplify.vertices is absent if it follows
-/// partition.count.
+/// threads, container. All defaults are filled in, except that simplify.vertices is absent if it
+/// follows partition.count.
 nlohmann::ordered_json resolved_json(const Config& config);
 
 }  // namespace meshhier::pipeline

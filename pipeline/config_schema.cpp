@@ -250,6 +250,8 @@ std::vector<ConfigKey> make_config_keys() {
           [](auto& c) -> auto& { return c.outline.sectors; })),
       deciding(number(
           "outline.tolerance", {0, 1}, [](auto& c) -> auto& { return c.outline.tolerance; })),
+      choice(
+          "storage.container", kContainers, [](auto& c) -> auto& { return c.storage.container; }),
       deciding(choice(
           "storage.compression", kCompressions,
           [](auto& c) -> auto& { return c.storage.compression; })),

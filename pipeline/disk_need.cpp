@@ -38,6 +38,8 @@ constexpr double kClusteredTriangles = 1.35;
 constexpr double kTileOverhead = 1600;
 // Indices of a ghost's chain: two or three on average, 16 bits each.
 constexpr double kChainBytes = 6;
+// A file in an archive besides its content: two headers with its name, and its place in the index.
+constexpr double kPackedOverhead = 138;
 // What the last disk block of each file leaves empty.
 constexpr double kFileSlack = 2048;
 
@@ -278,9 +280,14 @@ DiskNeed predict_disk(const JobSize& job, const MemoryPlan& plan) {
                         published_bytes(job, all.simplified) - published_bytes(job, all.early);
   const double files = all.partitions.count + all.simplified.count + 3;
   const double temporary = std::max({partition, triangles, stored, leaves, simplify});
+  const double published = output * job.published_ratio;
   // The room is for tiles that do not compress at all.
-  return {whole(temporary), whole(output * job.published_ratio),
-          whole(std::max(temporary, simplify + output + files * kFileSlack))};
+  const double room = std::max(temporary, simplify + output + files * kFileSlack);
+  if (!job.packed)
+    return {whole(temporary), whole(published), whole(room)};
+  const double overhead = files * kPackedOverhead;
+  return {whole(std::max(temporary, simplify + published)), whole(published + overhead),
+          whole(std::max(room, 2 * output + files * kFileSlack + overhead))};
 }
 
 TileCounts count_tiles(const JobSize& job) {

@@ -13,7 +13,10 @@
 //   partition tiles         leaves         the end
 //   simplified tiles, maps  simplify       the end
 //   bands                   simplify       the end
-//   published files         publish        for good
+//   published files         publish        for good            if they are the output
+//                                          the end             if they are packed, the data above
+//                                          being gone
+//   the archive             pack           for good
 //
 // What the journal names, chunks and all that is made of them, is on disk whatever the budget. Of
 // the rest, what the memory pool holds is not.

@@ -141,7 +141,7 @@ BuildEstimate estimate_build(const Config& config, bool force, storage::FileSyst
   storage::MemoryPool pool(0);
   BuildInput input(config, files);
   if (input.needs_import()) {
-    storage::check_output(files, config.output, force);
+    storage::check_output(files, {config.output, config.storage.container}, force);
     count_by_import(config, input, files, pool, cancel);
   }
   BuildEstimate estimate{.plan = plan_build(config, input.description(), input.imported_bytes()),
@@ -154,7 +154,7 @@ BuildEstimate estimate_build(const Config& config, bool force, storage::FileSyst
   if (input.needs_import())
     describe_import(input.files(), plan_import(config.memory_budget), estimate);
   input.drop();
-  storage::check_output(files, config.output, force);
+  storage::check_output(files, {config.output, config.storage.container}, force);
   check_disk(estimate.plan.disk, config.output, files);
   estimate.tiles = count_tiles(estimate.plan.job);
   estimate.time = estimate_time(estimate.plan, config.simplify.method, estimate.mesh.file_bytes);

@@ -5,6 +5,7 @@
 #include "pipeline/cut.h"
 #include "pipeline/cut_file.h"
 #include "pipeline/cut_mesh.h"
+#include "storage/archive_files.h"
 #include "storage/hierarchy_reader.h"
 #include "storage/layout.h"
 #include "storage/spool.h"
@@ -226,7 +227,8 @@ std::string export_mesh(storage::FileSystem& files, const fs::path& hierarchy,
                         const CancelToken& cancel) {
   require_place(files, options.output);
   require_apart(files, options.output, hierarchy);
-  const storage::HierarchyReader reader(files, hierarchy);
+  const storage::HierarchyFiles place(files, hierarchy);
+  const storage::HierarchyReader reader(place.files(), hierarchy);
   const WorkDirectory work(files, storage::work_path(options.output));
   const fs::path file = work.path() / options.output.filename();
   const ExportJob job{files, reader, work.path(), file, options.memory_budget, progress, cancel};

@@ -7,6 +7,7 @@
 #include "pipeline/import_stage.h"
 #include "pipeline/size_text.h"
 #include "pipeline/summary.h"
+#include "storage/archive_files.h"
 #include "storage/hierarchy_reader.h"
 #include "storage/layout.h"
 
@@ -65,9 +66,11 @@ double ratio(std::uint64_t a, std::uint64_t b) {
   return b == 0 ? 0 : static_cast<double>(a) / static_cast<double>(b);
 }
 
-/// Bytes of the whole directory: what the manifest counts, and itself.
-std::uint64_t directory_bytes(storage::FileSystem& files, const HierarchyReader& reader) {
-  const auto manifest = files.open(storage::manifest_path(reader.directory()));
+/// Bytes of the archive, or of the whole directory: what the manifest counts, and itself.
+std::uint64_t bytes_on_disk(const storage::HierarchyFiles& place, const HierarchyReader& reader) {
+  if (place.archive() != nullptr)
+    return place.archive()->file().size();
+  const auto manifest = place.files().open(storage::manifest_path(reader.directory()));
   return reader.manifest().total_bytes + manifest->size();
 }
 
@@ -297,7 +300,8 @@ Json tileset_json(const storage::Manifest& manifest) {
 
 std::string inspect_text(storage::FileSystem& files, const std::filesystem::path& directory,
                          const InspectOptions& options) {
-  const HierarchyReader reader = open_checked(files, directory, options);
+  const storage::HierarchyFiles place(files, directory);
+  const HierarchyReader reader = open_checked(place.files(), directory, options);
   if (options.node)
     return tile_text(reader.record(*options.node));
   const auto levels = summarize_levels(reader.tree(), reader.records());
@@ -320,13 +324,14 @@ std::string inspect_text(storage::FileSystem& files, const std::filesystem::path
   text += partitions_text(levels.back(), summarize_compactness(reader.tree(), reader.records()));
   text += outline_text(manifest);
   text += tileset_text(manifest);
-  text += totals_text(manifest, levels, directory_bytes(files, reader));
+  text += totals_text(manifest, levels, bytes_on_disk(place, reader));
   return text + "\n" + level_table(levels, std::nullopt);
 }
 
 Json inspect_json(storage::FileSystem& files, const std::filesystem::path& directory,
                   const InspectOptions& options) {
-  const HierarchyReader reader = open_checked(files, directory, options);
+  const storage::HierarchyFiles place(files, directory);
+  const HierarchyReader reader = open_checked(place.files(), directory, options);
   const storage::Manifest& manifest = reader.manifest();
   const auto levels = summarize_levels(reader.tree(), reader.records());
   Json json = {
@@ -342,7 +347,7 @@ Json inspect_json(storage::FileSystem& files, const std::filesystem::path& direc
       {"outline", outline_json(manifest)},
       {"tileset", tileset_json(manifest)},
       {"tile_bytes", tile_bytes(levels)},
-      {"total_bytes", directory_bytes(files, reader)}};
+      {"total_bytes", bytes_on_disk(place, reader)}};
   for (const LevelSummary& s : levels) {
     if (!options.level || s.level == *options.level)
       json["levels"].push_back(to_json(s));

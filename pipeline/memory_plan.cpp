@@ -27,6 +27,9 @@ constexpr std::uint64_t kAllocatorParts = 12;
 // and the sums of steps with some twenty neighbours each.
 constexpr std::uint64_t kTileEntryBytes = 480;
 
+// A file's place in the index of an archive, twice while the list grows.
+constexpr std::uint64_t kPackedFileBytes = 48;
+
 // Triangles a vertex: 2 on closed surfaces, less on open ones; half as much again for those that
 // several chunks share.
 constexpr std::uint64_t kTrianglesPerVertex = 3;
@@ -95,7 +98,8 @@ std::uint64_t table_work_bytes(const JobSize& job) {
 }
 
 std::uint64_t bookkeeping_bytes(const JobSize& job) {
-  return 2 * std::uint64_t{job.partition_count} * kTileEntryBytes;
+  return 2 * std::uint64_t{job.partition_count} *
+         (kTileEntryBytes + (job.packed ? kPackedFileBytes : 0));
 }
 
 /// What is held all the time.

@@ -23,6 +23,7 @@ struct JobSize {
   bool clustered = false;                       ///< simplified by the method `cluster`
   std::uint64_t published_attribute_bytes = 0;  ///< of a vertex in a published tile
   double published_ratio = 1;                   ///< of a published tile, about, to a plain one
+  bool packed = false;                          ///< published files become one archive
 
   /// Of a vertex at work: its position and its attributes, as floats.
   std::uint32_t vertex_bytes() const { return 12 + 4 * static_cast<std::uint32_t>(channels); }

@@ -9,6 +9,7 @@
 #include "pipeline/memory_plan.h"
 #include "pipeline/progressive_plan.h"
 #include "pipeline/size_text.h"
+#include "storage/archive_files.h"
 #include "storage/hierarchy_reader.h"
 #include "storage/layout.h"
 #include "storage/progressive_index.h"
@@ -216,7 +217,8 @@ std::string write_progressive(storage::FileSystem& files, const fs::path& hierar
                               const ProgressiveOptions& options, Progress& progress,
                               const CancelToken& cancel) {
   configure_allocator(options.memory_budget);
-  const storage::HierarchyReader reader(files, hierarchy);
+  const storage::HierarchyFiles place(files, hierarchy);
+  const storage::HierarchyReader reader(place.files(), hierarchy);
   require_half_edge(reader);
   const NodeId asked = options.node.value_or(NodeId{});
   require_node(reader.tree(), asked);
@@ -226,8 +228,9 @@ std::string write_progressive(storage::FileSystem& files, const fs::path& hierar
   const ProgressivePlan plan =
       plan_progressive(reader, sector, options.memory_budget,
                        static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
-  storage::WorkDirectory work(files, options.output, options.replace,
-                              storage::progressive_output());
+  storage::WorkDirectory work(
+      files, {options.output, storage::Container::files, storage::Content::progressive_stream},
+      options.replace);
   require_disk(files, work.path(), disk_need(reader, sector));
   work.clear();  // what a killed run may have left
   files.make_directories(work.built());

@@ -133,7 +133,8 @@ TileRecord write_tile(const TileWriter& to, NodeId node) {
       storage::encode_tile({node, tile.mesh, record.bounds, parent_map, chains}, tree, to.format);
   const auto file = to.files.create(storage::tile_path(to.directory, node));
   file->write_at(0, bytes);
-  file->start_sync();
+  if (!to.input.is_temporary)
+    file->start_sync();
   record.file_bytes = bytes.size();
   record.checksum = storage::checksum(bytes);
   return record;

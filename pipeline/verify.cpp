@@ -3,6 +3,8 @@
 #include "hierarchy/error.h"
 #include "pipeline/cut.h"
 #include "pipeline/verify_parts.h"
+#include "storage/archive_check.h"
+#include "storage/archive_files.h"
 #include "storage/layout.h"
 
 #include <optional>
@@ -20,6 +22,36 @@ namespace fs = std::filesystem;
 fs::path scratch_path(storage::FileSystem& files, const fs::path& directory) {
   std::random_device chance;
   return storage::verify_scratch_path(files.canonical(directory), chance());
+}
+
+/// Nothing if it is an archive of which the list of files is broken.
+std::optional<storage::HierarchyFiles> open_place(storage::FileSystem& files,
+                                                  const fs::path& directory,
+                                                  ProblemList& problems) {
+  try {
+    return std::optional<storage::HierarchyFiles>(std::in_place, files, directory);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::corrupt)
+      throw;
+    problems.add(error.what());
+    return std::nullopt;
+  }
+}
+
+void require_manifest(const storage::HierarchyFiles& place, const fs::path& hierarchy) {
+  if (place.files().exists(storage::manifest_path(hierarchy)))
+    return;
+  throw Error(ErrorCode::io, fmt::format("{}: not a hierarchy: there is no {}", hierarchy.string(),
+                                         storage::manifest_path({}).string()));
+}
+
+/// All that is not content, and contents against their CRC-32.
+void verify_archive(const storage::Archive& archive, ProblemList& problems,
+                    std::vector<std::string>& checks, const CancelToken& cancel) {
+  storage::check_archive(
+      archive, [&] { cancel.check(); }, [&](const std::string& problem) { problems.add(problem); });
+  checks.push_back(fmt::format("archive: {} bytes, {} files with the index", archive.file().size(),
+                               archive.entry_count()));
 }
 
 /// Nothing if manifest or index are broken: no more can be said of the rest then.
@@ -91,19 +123,20 @@ std::shared_ptr<const PublishedTile> TileStore::find(NodeId node) {
 VerifyReport verify_hierarchy(storage::FileSystem& files, const fs::path& directory,
                               const VerifyOptions& options, Progress& progress,
                               const CancelToken& cancel) {
-  if (!files.exists(storage::manifest_path(directory))) {
-    throw Error(ErrorCode::io,
-                fmt::format("{}: not a hierarchy: there is no {}", directory.string(),
-                            storage::manifest_path({}).string()));
-  }
   VerifyReport report;
   ProblemList problems;
-  if (const auto reader = open_hierarchy(files, directory, problems)) {
-    storage::MemoryPool pool(options.memory_budget / 8);
-    storage::ScratchFile scratch(files, scratch_path(files, directory), pool);
-    TileStore tiles(*reader, options.memory_budget / 4, problems);
-    verify_all(
-        {files, *reader, options, scratch, tiles, problems, report.checks, progress, cancel});
+  if (const auto place = open_place(files, directory, problems)) {
+    if (place->archive() != nullptr)
+      verify_archive(*place->archive(), problems, report.checks, cancel);
+    if (problems.count() == 0)
+      require_manifest(*place, directory);
+    if (const auto reader = open_hierarchy(place->files(), directory, problems)) {
+      storage::MemoryPool pool(options.memory_budget / 8);
+      storage::ScratchFile scratch(files, scratch_path(files, directory), pool);
+      TileStore tiles(*reader, options.memory_budget / 4, problems);
+      verify_all({place->files(), *reader, options, scratch, tiles, problems, report.checks,
+                  progress, cancel});
+    }
   }
   report.problems = problems.take();
   return report;

@@ -8,6 +8,7 @@
 #include "pipeline/surface_distance.h"
 #include "pipeline/surface_samples.h"
 #include "pipeline/verify_parts.h"
+#include "storage/archive_files.h"
 #include "storage/hierarchy_reader.h"
 #include "storage/layout.h"
 
@@ -291,7 +292,8 @@ ErrorMeasurement measure_level(const MeasureJob& job, Level level) {
 std::vector<ErrorMeasurement> measure_errors(storage::FileSystem& files, const fs::path& directory,
                                              const ErrorOptions& options, Progress& progress,
                                              const CancelToken& cancel) {
-  const storage::HierarchyReader reader(files, directory);
+  const storage::HierarchyFiles place(files, directory);
+  const storage::HierarchyReader reader(place.files(), directory);
   const Tree& tree = reader.tree();
   std::optional<Cut> cut;  // what is wrong with the selection is told before the work begins
   if (const auto* level = std::get_if<Level>(&options.selection))

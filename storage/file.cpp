@@ -167,6 +167,11 @@ class PosixFileSystem final : public FileSystem {
     return true;
   }
 
+  bool is_directory(const std::filesystem::path& path) override {
+    std::error_code error;  // that of a file which is not there, or cannot be looked at: none
+    return std::filesystem::is_directory(path, error);
+  }
+
   std::filesystem::path canonical(const std::filesystem::path& path) override {
     std::error_code error;
     std::filesystem::path result = std::filesystem::absolute(path, error);

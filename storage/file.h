@@ -95,6 +95,8 @@ class FileSystem {
   virtual std::unique_ptr<FileLock> try_lock(const std::filesystem::path& path) = 0;
 
   virtual bool exists(const std::filesystem::path& path) = 0;
+  /// Follows links; false if nothing is there.
+  virtual bool is_directory(const std::filesystem::path& path) = 0;
   /// The absolute path without links and dots, as far as it exists.
   virtual std::filesystem::path canonical(const std::filesystem::path& path) = 0;
   /// Every file below `directory`, links as themselves; ascending.

@@ -93,6 +93,10 @@ class Inflater {
 
 }  // namespace
 
+std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t before) {
+  return static_cast<std::uint32_t>(::crc32_z(before, input_of(bytes), bytes.size()));
+}
+
 std::vector<std::byte> gzip(std::span<const std::byte> bytes, Repetitions repetitions) {
   z_stream stream{};
   gz_header header{};

@@ -9,6 +9,9 @@
 
 namespace meshhier::storage {
 
+/// The CRC-32 of gzip and zip, of `bytes` behind something whose CRC-32 is `before`.
+std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t before = 0);
+
 /// Which repetitions are looked for. Numbers that hardly repeat are smaller, and five times as
 /// fast, without any but runs of one byte: matches by chance spoil the statistics of what is left
 /// (docs/performance.md, progressive streams).

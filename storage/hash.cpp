@@ -2,6 +2,7 @@
 
 #include <new>
 
+#include <md5.h>
 #include <xxhash.h>
 
 namespace meshhier::storage {
@@ -32,6 +33,15 @@ void Checksum::add(std::span<const std::byte> bytes) {
 
 std::uint64_t Checksum::value() const {
   return XXH3_64bits_digest(state_->xxh);
+}
+
+std::array<std::byte, 16> md5(std::string_view text) {
+  MD5_CTX state;
+  MD5Init(&state);
+  MD5Update(&state, reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+  std::array<std::byte, 16> digest{};
+  MD5Final(reinterpret_cast<std::uint8_t*>(digest.data()), &state);
+  return digest;
 }
 
 }  // namespace meshhier::storage

@@ -1,10 +1,12 @@
-// Checksums and content hashes: XXH3.
+// Checksums and content hashes: XXH3; and MD5, where a format of others wants it.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string_view>
 
 namespace meshhier::storage {
 
@@ -26,5 +28,8 @@ class Checksum {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// MD5 (RFC 1321) of `text`.
+std::array<std::byte, 16> md5(std::string_view text);
 
 }  // namespace meshhier::storage

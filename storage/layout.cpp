@@ -73,6 +73,9 @@ std::filesystem::path journal_path(const std::filesystem::path& work) {
 std::filesystem::path built_path(const std::filesystem::path& work) {
   return work / "hierarchy";
 }
+std::filesystem::path packed_path(const std::filesystem::path& work) {
+  return work / "archive";
+}
 
 std::filesystem::path imported_path(const std::filesystem::path& work) {
   return work / "import.ply";

@@ -1,4 +1,5 @@
-// Every file name of a hierarchy, and of the work towards one, in one place.
+// Every file name of a hierarchy, and of the work towards one, in one place. A hierarchy may also
+// be one file: an archive in which files have the same names.
 //
 // clang-format off
 //   NAME.hier/hierarchy.json
@@ -16,6 +17,7 @@
 //   .NAME.hier.meshhier-work/import.ply      the input, while it is read, if it is not read in place
 //   .NAME.hier.meshhier-work/*               scratch files of the stages
 //   .NAME.hier.meshhier-work/hierarchy/      becomes NAME.hier
+//   .NAME.3tz.meshhier-work/archive          becomes NAME.3tz, of what is in hierarchy/
 //   .NAME.hier.meshhier-old/                 a replaced hierarchy, for the moment of the rename
 //   .NAME.hier.meshhier-verify-XXXXXXXX      beside a hierarchy while `verify` needs room
 //   .NAME.meshhier-part                      beside any other file that is written, until it is whole
@@ -54,6 +56,7 @@ std::filesystem::path unfinished_path(const std::filesystem::path& file);
 std::filesystem::path lock_path(const std::filesystem::path& work);
 std::filesystem::path journal_path(const std::filesystem::path& work);
 std::filesystem::path built_path(const std::filesystem::path& work);
+std::filesystem::path packed_path(const std::filesystem::path& work);
 std::filesystem::path imported_path(const std::filesystem::path& work);
 
 /// What the names above that begin with a dot stand for.

@@ -1,10 +1,12 @@
 #include "storage/work_directory.h"
 
 #include "hierarchy/error.h"
+#include "storage/archive.h"
 #include "storage/layout.h"
 
 #include <chrono>
 #include <memory>
+#include <string>
 #include <thread>
 #include <utility>
 
@@ -12,26 +14,40 @@
 
 namespace meshhier::storage {
 
-OutputKind hierarchy_output() {
-  return {"a hierarchy", manifest_path({})};
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Why what lies there is not replaced; empty if it is.
+std::string objection(FileSystem& files, const Output& output) {
+  const bool is_directory = files.is_directory(output.path);
+  if (output.container == Container::archive) {
+    if (is_directory)
+      return "is a directory, and one file is to be made (\"container\": \"3tz\")";
+    return is_hierarchy_archive(files, output.path) ? "" : "is not the archive of a hierarchy";
+  }
+  if (!is_directory)
+    return "is a file, and a directory is to be made (\"container\": \"files\")";
+  const bool is_stream = output.content == Content::progressive_stream;
+  const fs::path mark = is_stream ? progressive_index_path({}) : manifest_path({});
+  if (files.exists(output.path / mark))
+    return "";
+  return fmt::format("is not a {} (it has no {})", is_stream ? "progressive stream" : "hierarchy",
+                     mark.string());
 }
 
-OutputKind progressive_output() {
-  return {"a progressive stream", progressive_index_path({})};
-}
+}  // namespace
 
-bool check_output(FileSystem& files, const std::filesystem::path& output, bool replace,
-                  const char* state, const OutputKind& kind) {
-  if (!files.exists(output))
+bool check_output(FileSystem& files, const Output& output, bool replace, const char* state) {
+  if (!files.exists(output.path))
     return false;
   if (!replace) {
     throw Error(ErrorCode::exists,
-                fmt::format("{} {}; --force replaces it", output.string(), state));
+                fmt::format("{} {}; --force replaces it", output.path.string(), state));
   }
-  if (!files.exists(output / kind.marker)) {
+  if (const std::string why = objection(files, output); !why.empty()) {
     throw Error(ErrorCode::exists,
-                fmt::format("{} is not {} (it has no {}), so --force does not replace it",
-                            output.string(), kind.noun, kind.marker.string()));
+                fmt::format("{} {}, so --force does not replace it", output.path.string(), why));
   }
   return true;
 }
@@ -52,22 +68,18 @@ std::unique_ptr<FileLock> lock_patiently(FileSystem& files, const std::filesyste
 
 }  // namespace
 
-WorkDirectory::WorkDirectory(FileSystem& files, std::filesystem::path output, bool replace,
-                             OutputKind kind)
-    : files_(files),
-      output_(std::move(output)),
-      path_(work_path(output_)),
-      replace_(replace),
-      kind_(std::move(kind)) {
-  check_output(files_, output_, replace_, "is already there", kind_);
-  for (auto parent = output_.parent_path(); !parent.empty() && !files_.exists(parent);
+WorkDirectory::WorkDirectory(FileSystem& files, Output output, bool replace)
+    : files_(files), output_(std::move(output)), path_(work_path(output_.path)), replace_(replace) {
+  check_output(files_, output_, replace_);
+  for (auto parent = output_.path.parent_path(); !parent.empty() && !files_.exists(parent);
        parent = parent.parent_path()) {
     made_parent_ = parent;
   }
   files_.make_directories(path_);
   lock_ = lock_patiently(files_, lock_path(path_));
   if (!lock_) {
-    throw Error(ErrorCode::exists, fmt::format("another build of {} is at work", output_.string()));
+    throw Error(ErrorCode::exists,
+                fmt::format("another build of {} is at work", output_.path.string()));
   }
 }
 
@@ -86,6 +98,10 @@ std::filesystem::path WorkDirectory::built() const {
   return built_path(path_);
 }
 
+std::filesystem::path WorkDirectory::packed() const {
+  return packed_path(path_);
+}
+
 void WorkDirectory::clear() {
   for (const std::filesystem::path& file : files_.list(path_)) {
     if (file != lock_path(path_) && file != imported_path(path_))
@@ -94,25 +110,36 @@ void WorkDirectory::clear() {
   files_.remove_all(built());
 }
 
+/// Of an archive, without the files that were packed into it.
+void WorkDirectory::sync_result() {
+  if (output_.container == Container::archive)
+    files_.open(packed())->sync();
+  else
+    files_.sync_tree(path_);
+}
+
 void WorkDirectory::publish() {
-  files_.sync_tree(path_);
-  const std::filesystem::path old = replaced_path(output_);
-  const bool replacing =
-      check_output(files_, output_, replace_, "appeared during the build", kind_);
+  sync_result();
+  const std::filesystem::path& to = output_.path;
+  const std::filesystem::path from = output_.container == Container::files ? built() : packed();
+  const std::filesystem::path old = replaced_path(to);
+  const bool replacing = check_output(files_, output_, replace_, "appeared during the build");
   if (replacing) {
     files_.remove_all(old);
-    files_.rename(output_, old);
+    files_.rename(to, old);
   }
   bool renamed = false;
   try {
-    files_.rename(built(), output_);
+    files_.rename(from, to);
     renamed = true;
-    files_.sync_tree(output_);
+    if (output_.container == Container::archive)
+      files_.remove_all(built());  // or the disk takes them too, for nothing
+    files_.sync_tree(path_);       // which is beside the output
   } catch (const Error&) {
     if (renamed)
-      files_.rename(output_, built());
+      files_.rename(to, from);
     if (replacing)
-      files_.rename(old, output_);
+      files_.rename(old, to);
     throw;
   }
   published_ = true;

@@ -207,7 +207,7 @@ TEST_F(CommandLine, MistakesExitWithUsageAndSayWhatIsWrong) {
       {{"build", "a.json", "--progress", "loud"}, "auto, bar, json or none"},
       {{"build", "a.json", "--json"}, "--dry-run"},
       {{"build", "a.json", "--dry-run", "--stats", "s.json"}, "excludes"},
-      {{"inspect"}, "DIR is required"},
+      {{"inspect"}, "HIERARCHY is required"},
       {{"inspect", "x", "y"}, "y"},
       {{"inspect", "x", "--level", "-1"}, "--level"},
       {{"inspect", "x", "--level", "33"}, "from 0 to 32"},
@@ -539,6 +539,36 @@ TEST_F(CommandLine, ExportRefusesWhatIsNoCut) {
   EXPECT_EQ(names(), before);
 }
 
+TEST_F(CommandLine, AnArchiveIsAHierarchyForEveryCommand) {
+  build();
+  const Path archive = work() / "a.3tz";
+  const Arguments pack{"build", (work() / "a.json").string(), "--set", "storage.container=3tz",
+                       "output=" + archive.string()};
+  const Outcome built = run(pack);
+  ASSERT_EQ(built.code, 0) << built.messages;
+  EXPECT_THAT(built.out, HasSubstr("pack"));
+  EXPECT_EQ(names(), (std::set<std::string>{"a.3tz", "a.hier", "a.json", "a.ply"}));
+  EXPECT_EQ(run(pack).code, kExists);
+  EXPECT_THAT(run({"inspect", archive.string()}).out, HasSubstr("a.3tz (format"));
+  const std::string mesh = (work() / "a.ply").string();
+  EXPECT_EQ(run({"verify", archive.string(), "--input", mesh}).code, 0);
+  EXPECT_EQ(run({"verify", archive.string(), "--error", "--samples", "1000"}).code, 0);
+  for (const Path& from : {archive, Path(hierarchy())})
+    EXPECT_EQ(run({"export", from.string(), "--level", "1", "-o", from.string() + ".ply"}).code, 0);
+  EXPECT_EQ(text_of(archive.string() + ".ply"), text_of(hierarchy() + ".ply"));
+
+  std::string bytes = text_of(archive);
+  bytes[bytes.size() / 2] ^= 4;
+  write_text(archive, bytes);
+  EXPECT_EQ(run({"verify", archive.string()}).code, kCorrupt);
+  write_text(archive, bytes.substr(0, bytes.size() - 9));
+  for (const char* command : {"inspect", "verify"})
+    EXPECT_EQ(run({command, archive.string()}).code, kCorrupt) << command;
+  const Outcome mistaken = run({"inspect", mesh});
+  EXPECT_EQ(mistaken.code, kIo);
+  EXPECT_THAT(mistaken.messages, HasSubstr("neither a directory nor a 3tz archive"));
+}
+
 TEST_F(CommandLine, AResultThatCannotBeWrittenIsAFailure) {
   if (!std::filesystem::exists("/dev/full"))
     GTEST_SKIP() << "there is no /dev/full here";
@@ -745,6 +775,22 @@ TEST_F(Killed, TheNextBuildMakesTheSame) {
   EXPECT_GT(kills, 0);
 }
 
+TEST_F(Killed, TheNextBuildMakesTheSameArchive) {
+  write_mesh("a.ply");
+  const Path archive = work() / "a.hier";
+  const std::string config = write_config(R"(, "storage": {"container": "3tz"})");
+  ASSERT_EQ(run({"build", config}).code, 0);
+  const std::string expected = text_of(archive);
+  for (useconds_t after = 10000; after < 120000; after += 11000) {
+    std::filesystem::remove(archive);
+    kill_build(after);
+    const Outcome outcome = run({"build", config, "--force"});
+    ASSERT_EQ(outcome.code, 0) << outcome.messages;
+    EXPECT_EQ(text_of(archive), expected) << after;
+    EXPECT_EQ(names(), (std::set<std::string>{"a.hier", "a.json", "a.ply"}));
+  }
+}
+
 TEST_F(Killed, WorkTowardsAnotherResultIsKeptUnlessItIsToRestart) {
   write_mesh("a.ply");
   write_config();
@@ -818,6 +864,18 @@ TEST_F(Killed, CleanGivesAReplacedHierarchyItsNameBack) {
   EXPECT_THAT(run({"clean", work().string()}).out, HasSubstr("only copy"));
   EXPECT_EQ(run({"clean", work().string(), "--remove"}).code, 0);
   EXPECT_EQ(contents(hierarchy()), expected);
+}
+
+TEST_F(Killed, CleanGivesAReplacedArchiveItsNameBack) {
+  write_mesh("a.ply");
+  ASSERT_EQ(run({"build", write_config(R"(, "storage": {"container": "3tz"})")}).code, 0);
+  const std::string expected = text_of(hierarchy());
+  std::filesystem::rename(hierarchy(), work() / ".a.hier.meshhier-old");
+  const json object = json::parse(run({"clean", hierarchy(), "--json"}).out);
+  ASSERT_EQ(object.at("leftovers").size(), 1U);
+  EXPECT_EQ(object.at("leftovers").at(0).at("bytes").get<std::size_t>(), expected.size());
+  EXPECT_EQ(run({"clean", work().string(), "--remove"}).code, 0);
+  EXPECT_EQ(text_of(hierarchy()), expected);
 }
 
 }  // namespace

@@ -190,6 +190,7 @@ const std::vector<ThirdParty>& third_parties() {
                 s.path == "pipeline/triangle_search.cpp";
        }},
       {"benchmark/", in({"bench"})},
+      {"md5.h", [](const Source& s) { return s.path == "storage/hash.cpp"; }},
       {"xxhash.h", [](const Source& s) { return s.path == "storage/hash.cpp"; }},
       {"zlib.h",
        [](const Source& s) {

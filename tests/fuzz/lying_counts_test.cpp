@@ -4,12 +4,14 @@
 #include "hierarchy/error.h"
 #include "mesh_io/mesh_source.h"
 #include "mesh_io/ply_samples.h"
+#include "storage/archive.h"
 #include "storage/glb.h"
 #include "storage/hierarchy_reader.h"
 #include "storage/index.h"
 #include "storage/manifest.h"
 #include "storage/outline_glb.h"
 #include "storage/tile_glb.h"
+#include "support/hollow_file.h"
 #include "support/memory_files.h"
 #include "support/taken_memory.h"
 
@@ -17,6 +19,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -221,6 +224,20 @@ TEST(LyingCounts, OfAContainerTakeNoMemory) {
     storage::store_little(std::uint32_t{0xFFFFFFFC}, lying.data() + place);
     expect_cheap_refusal(ErrorCode::corrupt, "a GLB",
                          [&] { storage::decode_outline(lying, "outline.glb"); });
+  }
+}
+
+/// An archive of a TiB, of which nothing is there but an end that promises a file for each byte.
+TEST(LyingCounts, OfAnArchiveTakeNoMemory) {
+  constexpr std::uint64_t kSize = std::uint64_t{1} << 40;
+  for (const std::uint64_t entries : {std::uint64_t{1} << 62, kSize / 46, std::uint64_t{65536}}) {
+    const auto end = storage::encode_archive_end(
+        {entries, 1 << 20, kSize - storage::kLongestArchiveEnd - (1 << 20)});
+    expect_cheap_refusal(ErrorCode::corrupt, "an archive", [&] {
+      auto file = std::make_unique<tests::HollowFile>();
+      file->write_at(kSize - end.size(), end);
+      storage::Archive archive(std::move(file));
+    });
   }
 }
 

@@ -158,6 +158,7 @@ TEST(PlyWriter, AFullDiskIsAnIoError) {
       return std::make_unique<storage::FileLock>();
     }
     bool exists(const std::filesystem::path&) override { return false; }
+    bool is_directory(const std::filesystem::path&) override { return false; }
     std::filesystem::path canonical(const std::filesystem::path& path) override { return path; }
     std::vector<std::filesystem::path> list(const std::filesystem::path&) override { return {}; }
     std::vector<std::filesystem::path> children(const std::filesystem::path&) override {

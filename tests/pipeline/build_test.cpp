@@ -367,7 +367,7 @@ TEST_F(BuildTest, QuantizedPositionsLieOnTheLatticeAndBoundsSaySo) {
   for (const std::uint32_t bits : {8U, 16U, 20U}) {
     for (const Compression compression : {Compression::none, Compression::meshopt}) {
       Config coarse = config();
-      coarse.storage = {compression, bits};
+      coarse.storage = {Container::files, compression, bits};
       build(coarse, true);
       EXPECT_THAT(problems(), IsEmpty()) << bits;
       const storage::HierarchyReader reader(files_, output_path());
@@ -719,14 +719,20 @@ TEST_F(DiskTest, AWholeBuildTakesNoMoreRoomThanPredicted) {
   for (const auto& [name, mesh] : meshes) {
     tests::write_ply(mesh, mesh_path());
     const std::uint64_t before = fs::file_size(mesh_path());
-    for (const std::uint32_t vertices : {50U, 300U, 8192U}) {
+    for (const auto& [vertices, container] : {std::pair{50U, Container::files},
+                                              {50U, Container::archive},
+                                              {300U, Container::files},
+                                              {300U, Container::archive},
+                                              {8192U, Container::files}}) {
       Config with = config(vertices);
+      with.storage.container = container;
       with.memory_budget = tight_budget(with);
       const std::uint64_t predicted = least_room(with);
       DiskWatch watch(directory_.path());
       build_hierarchy(with, {}, {files_, watch, CancelToken()});
       EXPECT_LE(watch.most_bytes() - before, predicted)
-          << name << ", partitions of " << vertices << " vertices";
+          << name << ", partitions of " << vertices << " vertices, container "
+          << static_cast<int>(container);
       fs::remove_all(output_path());
     }
   }
@@ -743,7 +749,9 @@ TEST_F(DiskTest, ThePredictionIsNearWhatASurfaceTakes) {
       for (const std::uint32_t vertices : {100U, 1000U}) {
         Config with = config(vertices);
         with.simplify.method = method;
+        with.storage.container = vertices == 100 ? Container::archive : Container::files;
         with.memory_budget = tight_budget(with);
+        fs::remove_all(output_path());
         const BuildStats stats = build(with, true).stats;
         SCOPED_TRACE(fmt::format("{}, method {}, partitions of {} vertices", name,
                                  static_cast<int>(method), vertices));

@@ -87,6 +87,13 @@ TEST(Config, EveryKeyIsRead) {
             Representative::mean);
 }
 
+TEST(Config, TheContainerIsReadAndDecidesNothingOfTheFiles) {
+  const Config config = parse(with(R"("storage": {"container": "3tz"})"));
+  EXPECT_EQ(config.storage.container, Container::archive);
+  EXPECT_EQ(parse(with(R"("storage": {"container": "files"})")), parse(with("")));
+  EXPECT_EQ(resolved_json(config), resolved_json(parse(with(""))));
+}
+
 TEST(Config, KeysTwoLevelsDeepAreOverriddenAndResolved) {
   const std::vector<std::string> overrides{"storage.positions.bits=16", "storage.compression=zlib"};
   const Config config =

@@ -70,6 +70,19 @@ TEST(DiskNeedTest, TheRoomHoldsTheOutputAndEachStagesFiles) {
   }
 }
 
+TEST(DiskNeedTest, AnArchiveIsThereBesideWhatItIsMadeOf) {
+  for (const std::uint32_t tile : {16U, 512U, 8192U}) {
+    JobSize job = job_of(3'000'000, tile);
+    const DiskNeed files = need_of(job, kGiB);
+    job.packed = true;
+    const DiskNeed packed = need_of(job, kGiB);
+    EXPECT_GT(packed.output_bytes, files.output_bytes);
+    EXPECT_GE(packed.temporary_bytes, files.output_bytes);
+    EXPECT_GE(packed.room_bytes, files.output_bytes + packed.output_bytes);
+    EXPECT_GE(packed.room_bytes, files.room_bytes);
+  }
+}
+
 TEST(DiskNeedTest, TemporaryFilesStayBelowOneAndAHalfTimesInputAndOutput) {
   // What the input takes: 12 bytes a vertex and 13 a triangle.
   for (const std::uint64_t vertices : {7'000'000U, 28'000'000U, 250'000'000U}) {

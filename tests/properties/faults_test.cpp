@@ -56,12 +56,15 @@ class StageInterrupter final : public Progress {
   std::string stage_;
 };
 
-class FaultsTest : public testing::Test {
+/// Of builds that make a directory, and of such that make an archive.
+class FaultsTest : public testing::TestWithParam<Container> {
  protected:
   FaultsTest() {
     tests::write_ply(tests::sphere(600, 0.01F), directory_.path() / "mesh.ply");
     config_.input = directory_.path() / "mesh.ply";
-    config_.output = directory_.path() / "mesh.hier";
+    config_.output =
+        directory_.path() / (GetParam() == Container::files ? "mesh.hier" : "mesh.3tz");
+    config_.storage.container = GetParam();
     config_.threads = 2;
     config_.partition.vertices = 80;
     config_.memory_budget = tight_budget();
@@ -117,7 +120,10 @@ class FaultsTest : public testing::Test {
     Snapshot all;
     if (!fs::exists(config_.output))
       return all;
-    for (const fs::path& file : real_->list(config_.output)) {
+    std::vector<fs::path> files{config_.output};
+    if (fs::is_directory(config_.output))
+      files = real_->list(config_.output);
+    for (const fs::path& file : files) {
       all[fs::relative(file, config_.output).string()] =
           storage::checksum(storage::read_file(*real_, file, 1U << 30));
     }
@@ -132,6 +138,8 @@ class FaultsTest : public testing::Test {
     all.erase("mesh.ply");
     return all;
   }
+
+  std::set<std::string> only_output() const { return {config_.output.filename().string()}; }
 
   /// Puts a finished hierarchy of other content where the output goes; returns its content.
   Snapshot place_old_output() {
@@ -172,7 +180,7 @@ class FaultsTest : public testing::Test {
       FaultyFileSystem sound;
       EXPECT_EQ(run(sound, true), std::nullopt) << message_;
       EXPECT_EQ(output(), after);
-      EXPECT_EQ(names(), std::set<std::string>{"mesh.hier"});
+      EXPECT_EQ(names(), only_output());
       fs::remove_all(config_.output);
       if (!reached || HasFailure())
         return failures;
@@ -186,31 +194,31 @@ class FaultsTest : public testing::Test {
   std::string message_;
 };
 
-TEST_F(FaultsTest, AnyCallMayFail) {
+TEST_P(FaultsTest, AnyCallMayFail) {
   EXPECT_GT(fail_every_call(1, false), 200);
 }
 
-TEST_F(FaultsTest, AnyCallMayFailWhileAnOutputIsReplaced) {
+TEST_P(FaultsTest, AnyCallMayFailWhileAnOutputIsReplaced) {
   EXPECT_GT(fail_every_call(1, true), 200);
 }
 
 // Nothing is tidied up then: it is as if the process had been killed.
-TEST_F(FaultsTest, AnyCallMayBeTheLast) {
+TEST_P(FaultsTest, AnyCallMayBeTheLast) {
   EXPECT_GT(fail_every_call(kForever, false), 200);
 }
 
-TEST_F(FaultsTest, AnyCallMayBeTheLastWhileAnOutputIsReplaced) {
+TEST_P(FaultsTest, AnyCallMayBeTheLastWhileAnOutputIsReplaced) {
   EXPECT_GT(fail_every_call(kForever, true), 200);
 }
 
-TEST_F(FaultsTest, TheMessageNamesTheFile) {
+TEST_P(FaultsTest, TheMessageNamesTheFile) {
   FaultyFileSystem files;
   files.fail(Call::write, 3, kForever);
   EXPECT_EQ(run(files), ErrorCode::io);
   EXPECT_THAT(message_, HasSubstr(directory_.path().string()));
 }
 
-TEST_F(FaultsTest, ADiskOfAnySizeIsRefusedOrFilledAndGoneOnWithWhenThereIsRoom) {
+TEST_P(FaultsTest, ADiskOfAnySizeIsRefusedOrFilledAndGoneOnWithWhenThereIsRoom) {
   const Snapshot after = expected();
   FaultyFileSystem measuring;
   ASSERT_EQ(run(measuring), std::nullopt);
@@ -231,7 +239,7 @@ TEST_F(FaultsTest, ADiskOfAnySizeIsRefusedOrFilledAndGoneOnWithWhenThereIsRoom) 
 
 // The figure of free space is only a figure: here it lies, and the disk is full in the middle of a
 // write.
-TEST_F(FaultsTest, ADiskThatIsFullAtAnyByte) {
+TEST_P(FaultsTest, ADiskThatIsFullAtAnyByte) {
   const Snapshot after = expected();
   FaultyFileSystem measuring;
   ASSERT_EQ(run(measuring), std::nullopt);
@@ -246,12 +254,12 @@ TEST_F(FaultsTest, ADiskThatIsFullAtAnyByte) {
     FaultyFileSystem sound;
     ASSERT_EQ(run(sound), std::nullopt) << message_;
     EXPECT_EQ(output(), after);
-    EXPECT_EQ(names(), std::set<std::string>{"mesh.hier"});
+    EXPECT_EQ(names(), only_output());
     fs::remove_all(config_.output);
   }
 }
 
-TEST_F(FaultsTest, ShortTransfersChangeNothing) {
+TEST_P(FaultsTest, ShortTransfersChangeNothing) {
   FaultyFileSystem files;
   ASSERT_EQ(run(files), std::nullopt);
   const Snapshot expected = snapshot();
@@ -262,7 +270,7 @@ TEST_F(FaultsTest, ShortTransfersChangeNothing) {
 
 // ---- interruption --------------------------------------------------------------------------
 
-TEST_F(FaultsTest, AnInterruptionAtAnyTimeIsGoneOnFrom) {
+TEST_P(FaultsTest, AnInterruptionAtAnyTimeIsGoneOnFrom) {
   const Snapshot after = expected();
   FaultyFileSystem files;
   CancelToken never;
@@ -279,13 +287,13 @@ TEST_F(FaultsTest, AnInterruptionAtAnyTimeIsGoneOnFrom) {
     EXPECT_FALSE(fs::exists(config_.output));
     ASSERT_EQ(run(files), std::nullopt) << message_;
     EXPECT_EQ(output(), after);
-    EXPECT_EQ(names(), std::set<std::string>{"mesh.hier"});
+    EXPECT_EQ(names(), only_output());
     fs::remove_all(config_.output);
   }
 }
 
 // One build, interrupted again and again, always goes on where it was.
-TEST_F(FaultsTest, InterruptionsAddUp) {
+TEST_P(FaultsTest, InterruptionsAddUp) {
   config_.partition.vertices = 20;
   config_.memory_budget = std::uint64_t{1} << 28;
   const Snapshot after = expected();
@@ -299,7 +307,7 @@ TEST_F(FaultsTest, InterruptionsAddUp) {
   for (std::optional<ErrorCode> code = ErrorCode::interrupted; code; ++interruptions) {
     ASSERT_LT(interruptions, 200);
     CancelToken cancel;
-    Interrupter progress(cancel, 3, "outline");  // that is made at one go
+    Interrupter progress(cancel, 3, {"outline", "pack"});  // they are made at one go
     code = run(files, progress, cancel);
     ASSERT_TRUE(!code || code == ErrorCode::interrupted) << message_;
   }
@@ -307,7 +315,7 @@ TEST_F(FaultsTest, InterruptionsAddUp) {
   EXPECT_EQ(output(), after);
 }
 
-TEST_F(FaultsTest, AnInterruptionInAnyStageLeavesTheOutput) {
+TEST_P(FaultsTest, AnInterruptionInAnyStageLeavesTheOutput) {
   FaultyFileSystem files;
   CancelToken never;
   Interrupter measuring(never, kForever);
@@ -323,7 +331,7 @@ TEST_F(FaultsTest, AnInterruptionInAnyStageLeavesTheOutput) {
   }
 }
 
-TEST_F(FaultsTest, ABuildThatWasInterruptedBeforeItBeganDoesNothing) {
+TEST_P(FaultsTest, ABuildThatWasInterruptedBeforeItBeganDoesNothing) {
   FaultyFileSystem files;
   CancelToken cancel;
   cancel.cancel();
@@ -332,6 +340,12 @@ TEST_F(FaultsTest, ABuildThatWasInterruptedBeforeItBeganDoesNothing) {
   EXPECT_EQ(run(files, progress, cancel), ErrorCode::interrupted);
   EXPECT_EQ(snapshot(), before);
 }
+
+INSTANTIATE_TEST_SUITE_P(Containers, FaultsTest,
+                         testing::Values(Container::files, Container::archive),
+                         [](const auto& test) {
+                           return test.param == Container::files ? "Files" : "Archive";
+                         });
 
 }  // namespace
 }  // namespace meshhier::pipeline

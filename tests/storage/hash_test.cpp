@@ -1,6 +1,7 @@
 #include "storage/hash.h"
 
 #include <set>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -26,6 +27,21 @@ TEST(Hash, IsXxh3Of64Bits) {
   EXPECT_EQ(checksum({}), 0x2d06800538d394c2u);
   EXPECT_EQ(checksum_of("a"), 0xe6c632b61e964e1fu);
   EXPECT_EQ(checksum_of("abc"), 0x78af5f94892f3950u);
+}
+
+// RFC 1321, A.5.
+TEST(Hash, KnowsMd5) {
+  const auto hex = [](std::string_view text) {
+    std::string digits;
+    for (const std::byte byte : md5(text)) {
+      digits += "0123456789abcdef"[static_cast<unsigned>(byte) >> 4];
+      digits += "0123456789abcdef"[static_cast<unsigned>(byte) & 15];
+    }
+    return digits;
+  };
+  EXPECT_EQ(hex(""), "d41d8cd98f00b204e9800998ecf8427e");
+  EXPECT_EQ(hex("abc"), "900150983cd24fb0d6963f7d28e17f72");
+  EXPECT_EQ(hex("abcdefghijklmnopqrstuvwxyz"), "c3fcd3d76192e4007dfb496cca67e13b");
 }
 
 TEST(Hash, OfBlocksIsThatOfTheWhole) {

@@ -124,7 +124,7 @@ TEST_F(WorkDirectoryTest, ARelativeOutputIsBesideTheCurrentDirectorysFiles) {
   const std::filesystem::path before = std::filesystem::current_path();
   std::filesystem::current_path(parent_);
   {
-    WorkDirectory work(*files_, "x.hier", false);
+    WorkDirectory work(*files_, std::filesystem::path("x.hier"), false);
     put_hierarchy(work.built(), "new");
     work.publish();
   }
@@ -182,6 +182,34 @@ TEST_F(WorkDirectoryTest, ForceNeverReplacesAFile) {
   write(output_, "a file");
   expect_error(ErrorCode::exists, output_.string(), [&] { WorkDirectory(*files_, output_, true); });
   EXPECT_EQ(text_of(output_), "a file");
+}
+
+TEST_F(WorkDirectoryTest, AnArchiveIsPublishedAsOneFile) {
+  const Output output(parent_ / "x.3tz", Container::archive);
+  for (const char* content : {"one", "two"}) {
+    if (std::filesystem::exists(output.path))
+      std::filesystem::remove(output.path);
+    WorkDirectory work(*files_, output, false);
+    put_hierarchy(work.built(), "packed already");
+    write(work.packed(), content);
+    work.publish();
+    EXPECT_EQ(text_of(output.path), content);
+    EXPECT_THAT(names(), ElementsAre("x.3tz"));
+  }
+}
+
+TEST_F(WorkDirectoryTest, ForceReplacesLikeByLikeOnly) {
+  const auto refused = [&](const Output& output, const char* why) {
+    expect_error(ErrorCode::exists, why, [&] { WorkDirectory(*files_, output, true); });
+  };
+  put_hierarchy(output_, "old");
+  refused({output_, Container::archive}, "is a directory, and one file is to be made");
+  const std::filesystem::path file = parent_ / "x.3tz";
+  write(file, "a text");
+  refused(file, "is a file, and a directory is to be made");
+  refused({file, Container::archive}, "is not the archive of a hierarchy");
+  EXPECT_EQ(text_of(file), "a text");
+  EXPECT_EQ(hierarchy_at(output_), "old");
 }
 
 TEST_F(WorkDirectoryTest, ForceNeverReplacesWhatAppearedDuringTheBuildAndIsNoHierarchy) {

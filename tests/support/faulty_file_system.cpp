@@ -156,6 +156,10 @@ bool FaultyFileSystem::exists(const std::filesystem::path& path) {
   return real_->exists(path);
 }
 
+bool FaultyFileSystem::is_directory(const std::filesystem::path& path) {
+  return real_->is_directory(path);
+}
+
 std::filesystem::path FaultyFileSystem::canonical(const std::filesystem::path& path) {
   return real_->canonical(path);
 }

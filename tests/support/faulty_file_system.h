@@ -87,6 +87,7 @@ class FaultyFileSystem final : public storage::FileSystem {
   storage::FileIdentity identity(const std::filesystem::path& path) override;
   std::unique_ptr<storage::FileLock> try_lock(const std::filesystem::path& path) override;
   bool exists(const std::filesystem::path& path) override;
+  bool is_directory(const std::filesystem::path& path) override;  ///< never fails
   std::filesystem::path canonical(const std::filesystem::path& path) override;
   std::vector<std::filesystem::path> list(const std::filesystem::path& directory) override;
   std::vector<std::filesystem::path> children(const std::filesystem::path& directory) override;

@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <set>
 #include <string>
@@ -17,12 +18,13 @@ namespace meshhier::tests {
 /// Sets the token when so many units of work have been done in all, but for those of `passed`.
 class Interrupter final : public pipeline::Progress {
  public:
-  Interrupter(pipeline::CancelToken& token, std::uint64_t after, std::string passed = "")
+  Interrupter(pipeline::CancelToken& token, std::uint64_t after,
+              std::set<std::string, std::less<>> passed = {})
       : token_(token), after_(after), passed_(std::move(passed)) {}
   void stage(std::string_view name, std::uint64_t, std::string_view) override {
     const std::lock_guard lock(mutex_);
     stages_.insert(std::string(name));
-    is_passed_ = name == passed_;
+    is_passed_ = passed_.contains(name);
   }
   void advance(std::uint64_t count) override {
     if (is_passed_)
@@ -37,7 +39,7 @@ class Interrupter final : public pipeline::Progress {
  private:
   pipeline::CancelToken& token_;
   std::uint64_t after_;
-  std::string passed_;
+  std::set<std::string, std::less<>> passed_;
   std::atomic<bool> is_passed_{false};
   std::atomic<std::uint64_t> done_{0};
   std::mutex mutex_;

@@ -67,13 +67,13 @@ std::unique_ptr<storage::File> MemoryFiles::open(const fs::path& path) {
   const std::lock_guard lock(mutex_);
   const auto found = files_.find(path.lexically_normal());
   if (found == files_.end())
-    fail("open", path, is_directory(path) ? "Is a directory" : "No such file or directory");
+    fail("open", path, has_directory(path) ? "Is a directory" : "No such file or directory");
   return std::make_unique<MemoryFile>(path, found->second);
 }
 
 std::unique_ptr<storage::File> MemoryFiles::create(const fs::path& path) {
   const std::lock_guard lock(mutex_);
-  if (is_directory(path))
+  if (has_directory(path))
     fail("create", path, "Is a directory");
   const auto content = std::make_shared<Content>();
   files_[path.lexically_normal()] = content;
@@ -96,7 +96,12 @@ std::unique_ptr<storage::FileLock> MemoryFiles::try_lock(const fs::path& path) {
 
 bool MemoryFiles::exists(const fs::path& path) {
   const std::lock_guard lock(mutex_);
-  return files_.contains(path.lexically_normal()) || is_directory(path);
+  return files_.contains(path.lexically_normal()) || has_directory(path);
+}
+
+bool MemoryFiles::is_directory(const fs::path& path) {
+  const std::lock_guard lock(mutex_);
+  return has_directory(path);
 }
 
 fs::path MemoryFiles::canonical(const fs::path& path) {
@@ -140,7 +145,7 @@ void MemoryFiles::remove_all(const fs::path& path) {
 void MemoryFiles::rename(const fs::path& from, const fs::path& to) {
   const std::lock_guard lock(mutex_);
   const fs::path old_name = from.lexically_normal(), new_name = to.lexically_normal();
-  if (!files_.contains(old_name) && !is_directory(old_name))
+  if (!files_.contains(old_name) && !has_directory(old_name))
     fail("rename to", to, "No such file or directory");
   const auto is_moved = [&](const fs::path& path) {
     return path == old_name || is_below(path, old_name);
@@ -171,7 +176,7 @@ std::string MemoryFiles::content(const fs::path& path) {
   return {reinterpret_cast<const char*>(all.data()), all.size()};
 }
 
-bool MemoryFiles::is_directory(const fs::path& path) const {
+bool MemoryFiles::has_directory(const fs::path& path) const {
   const fs::path normal = path.lexically_normal();
   return directories_.contains(normal) ||
          std::any_of(files_.begin(), files_.end(),

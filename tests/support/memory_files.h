@@ -28,6 +28,7 @@ class MemoryFiles : public storage::FileSystem {
   storage::FileIdentity identity(const std::filesystem::path& path) override;
   std::unique_ptr<storage::FileLock> try_lock(const std::filesystem::path& path) override;
   bool exists(const std::filesystem::path& path) override;
+  bool is_directory(const std::filesystem::path& path) override;
   std::filesystem::path canonical(const std::filesystem::path& path) override;
   std::vector<std::filesystem::path> list(const std::filesystem::path& directory) override;
   std::vector<std::filesystem::path> children(const std::filesystem::path& directory) override;
@@ -51,7 +52,7 @@ class MemoryFiles : public storage::FileSystem {
   };
 
  private:
-  bool is_directory(const std::filesystem::path& path) const;
+  bool has_directory(const std::filesystem::path& path) const;
 
   std::mutex mutex_;  ///< of what follows
   std::map<std::filesystem::path, std::shared_ptr<Content>> files_;

@@ -1,0 +1,47 @@
+#include "pipeline/pack_stage.h"
+
+#include "storage/archive_writer.h"
+#include "storage/layout.h"
+#include "storage/tileset.h"
+
+#include <functional>
+
+namespace meshhier::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Names relative to the hierarchy, in the archive's order: what a reader opens first comes first.
+void for_each_name(const storage::HierarchyReader& made,
+                   const std::function<void(const fs::path&)>& visit) {
+  visit(storage::manifest_path({}));
+  visit(storage::index_path({}));
+  visit(storage::outline_path({}));
+  storage::for_each_tileset(made.manifest(), made.tree(), made.records(),
+                            [&](const storage::TilesetFile& file) { visit(file.path); });
+  for (const TileRecord& record : made.records())
+    visit(storage::tile_path({}, record.node));
+}
+
+}  // namespace
+
+std::uint64_t pack(const storage::HierarchyReader& made, const fs::path& file,
+                   storage::FileSystem& files, storage::ScratchUse& use, Progress& progress,
+                   const CancelToken& cancel) {
+  constexpr std::uint64_t kOtherFiles = 3;  // manifest, index, outline
+  progress.stage("pack", kOtherFiles + made.manifest().tileset_files + made.records().size(),
+                 "files");
+  const std::unique_ptr<storage::File> archive = files.create(file);
+  storage::ArchiveWriter writer(*archive, [&] { cancel.check(); });
+  for_each_name(made, [&](const fs::path& name) {
+    const std::unique_ptr<storage::File> content = files.open(made.directory() / name);
+    writer.add(name.generic_string(), *content);
+    use.add_read(content->size());
+    progress.advance(1);
+  });
+  writer.finish();
+  archive->sync([&] { cancel.check(); });
+  return writer.bytes();
+}
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,38 @@
+// The stage `pack`: the published files as one archive.
+#pragma once
+
+#include "pipeline/cancel.h"
+#include "pipeline/progress.h"
+#include "storage/file.h"
+#include "storage/hierarchy_reader.h"
+#include "storage/scratch_use.h"
+
+#include <cstdint>
+#include <filesystem>
+
+namespace meshhier::pipeline {
+
+/// Counts files that are there for a while, but are no scratch files, as long as it is there.
+class TemporaryFiles {
+ public:
+  TemporaryFiles(storage::ScratchUse& use, std::uint64_t bytes) : use_(use), bytes_(bytes) {
+    use_.add_grown(bytes_);
+  }
+  TemporaryFiles(const TemporaryFiles&) = delete;
+  TemporaryFiles& operator=(const TemporaryFiles&) = delete;
+  ~TemporaryFiles() { use_.add_removed(bytes_); }
+
+ private:
+  storage::ScratchUse& use_;
+  std::uint64_t bytes_;
+};
+
+/// Makes the archive `file` of all files of the hierarchy `made`: manifest, index, outline,
+/// tilesets, then tiles level by level; forces it to the disk. What is read counts in `use`.
+/// Returns the archive's size. Throws Error(io | interrupted), Error(usage) if a file is too
+/// large for an archive.
+std::uint64_t pack(const storage::HierarchyReader& made, const std::filesystem::path& file,
+                   storage::FileSystem& files, storage::ScratchUse& use, Progress& progress,
+                   const CancelToken& cancel);
+
+}  // namespace meshhier::pipeline
