@@ -30,7 +30,7 @@ struct PublishInput {
   std::optional<Transform> transform;          ///< of the tileset
   std::string licence;
   AskedVertices asked_vertices = 8192;  ///< of simplified tiles
-  bool is_temporary = false;         ///< the files become an archive: they need not reach the disk
+  bool is_temporary = false;  ///< the files become an archive: they need not reach the disk
 };
 
 /// Writes the whole hierarchy into `directory`, but for tiles that the journal has there.

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -54,13 +55,15 @@ void write_text(const Path& path, const std::string& text) {
   ASSERT_TRUE(stream.flush()) << path;
 }
 
+/// Throws if it does not start: a signal to "process -1" would reach every process there is.
 pid_t spawn(const Arguments& arguments, posix_spawn_file_actions_t& actions) {
   std::vector<char*> words{const_cast<char*>(MESHHIER_BINARY)};
   for (const std::string& argument : arguments)
     words.push_back(const_cast<char*>(argument.c_str()));
   words.push_back(nullptr);
   pid_t process = -1;
-  EXPECT_EQ(posix_spawn(&process, MESHHIER_BINARY, &actions, nullptr, words.data(), environ), 0);
+  if (posix_spawn(&process, MESHHIER_BINARY, &actions, nullptr, words.data(), environ) != 0)
+    throw std::runtime_error("cannot start " MESHHIER_BINARY);
   return process;
 }
 

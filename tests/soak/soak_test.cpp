@@ -27,6 +27,7 @@
 #include <memory>
 #include <optional>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -217,8 +218,11 @@ int run_program(const std::vector<std::string>& arguments, std::uint64_t microse
   for (const int descriptor : {1, 2})
     posix_spawn_file_actions_addopen(&actions, descriptor, "/dev/null", O_WRONLY, 0);
   pid_t process = -1;
-  EXPECT_EQ(posix_spawn(&process, MESHHIER_BINARY, &actions, nullptr, words.data(), environ), 0);
+  const int error =
+      posix_spawn(&process, MESHHIER_BINARY, &actions, nullptr, words.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
+  if (error != 0)  // a signal to "process -1" would reach every process there is
+    throw std::runtime_error("cannot start " MESHHIER_BINARY);
   if (microseconds > 0) {
     std::this_thread::sleep_for(std::chrono::microseconds(microseconds));
     kill(process, SIGKILL);
