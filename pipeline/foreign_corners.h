@@ -3,6 +3,7 @@
 
 #include "pipeline/cancel.h"
 #include "pipeline/level_lists.h"
+#include "pipeline/memory_share.h"
 
 #include <cstdint>
 #include <span>
@@ -14,8 +15,8 @@ namespace meshhier::pipeline {
 class ForeignCorners {
  public:
   ForeignCorners() = default;
-  /// `width`: values of each. Throws Error(budget) if they need more than `memory_bytes`.
-  ForeignCorners(const LevelLists& level, std::size_t width, std::uint64_t memory_bytes);
+  /// `width`: values of each. Throws Error(budget) if they need more than the share.
+  ForeignCorners(const LevelLists& level, std::size_t width, const MemoryShare& memory);
 
   std::size_t size() const { return ranks_.size(); }
   std::uint32_t rank(std::size_t number) const { return ranks_[number]; }  ///< ascending

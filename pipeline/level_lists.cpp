@@ -3,7 +3,6 @@
 #include "hierarchy/detail.h"
 #include "hierarchy/error.h"
 #include "pipeline/parallel.h"
-#include "pipeline/size_text.h"
 
 #include <algorithm>
 #include <optional>
@@ -296,13 +295,9 @@ void trace_sector(const storage::HierarchyReader& reader, const Sector& sector,
   const NodeId first{static_cast<Level>(level), sector.node.index << below};
   const std::uint32_t count = std::uint32_t{1} << below;
   const std::uint64_t largest = largest_subtree(reader, first, count, width);
-  if (largest > options.memory_bytes) {
-    throw Error(ErrorCode::budget,
-                fmt::format("the tiles of this hierarchy need {} at work, the budget leaves {}",
-                            rounded_size_text(largest), rounded_size_text(options.memory_bytes)));
-  }
+  options.memory.require("the tiles of this hierarchy need", largest);
   const std::uint64_t in_flight =
-      std::clamp<std::uint64_t>(options.memory_bytes / largest, 1, count);
+      std::clamp<std::uint64_t>(options.memory.bytes() / largest, 1, count);
 
   const Tracer tracer(reader, sector, options, progress, cancel);
   TopOfTree top(tree, sector, tracer, lists);

@@ -4,6 +4,7 @@
 
 #include "hierarchy/tree.h"
 #include "pipeline/cancel.h"
+#include "pipeline/memory_share.h"
 #include "pipeline/progress.h"
 #include "progressive/traced_tile.h"
 #include "storage/hierarchy_reader.h"
@@ -46,7 +47,7 @@ struct LevelLists {
 
 struct TraceOptions {
   std::vector<bool> listed;  ///< by level: whether its stand-ins and foreign corners are wanted
-  std::uint64_t memory_bytes = 0;  ///< for tiles at work
+  MemoryShare memory;        ///< for tiles at work
 };
 
 /// Follows all tiles of `sector` up (progressive/traced_tile.h), and fills `lists`, one for each

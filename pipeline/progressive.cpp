@@ -6,6 +6,7 @@
 #include "pipeline/detail_writer.h"
 #include "pipeline/foreign_corners.h"
 #include "pipeline/level_lists.h"
+#include "pipeline/output_file.h"
 #include "pipeline/size_text.h"
 #include "storage/hierarchy_reader.h"
 #include "storage/layout.h"
@@ -119,7 +120,7 @@ class StreamWriter {
     options.listed.resize(lists.size());
     for (const Level level : levels_)
       options.listed[raw(level)] = true;
-    options.memory_bytes = memory_budget_ / 4;
+    options.memory = {memory_budget_, 4};
     const std::uint64_t tiles = 2 * std::uint64_t{sector_.partitions.size()} - 1;
     progress.stage("trace", tiles, "tiles");
     trace_sector(reader_, sector_, options, lists, progress, cancel);
@@ -127,7 +128,7 @@ class StreamWriter {
 
   ForeignCorners foreign_of(const std::vector<LevelLists>& lists, Level level) const {
     const auto width = static_cast<std::size_t>(vertex_values(reader_.tile_format().attributes));
-    return {lists[raw(level)], width, memory_budget_ / 12};
+    return {lists[raw(level)], width, {memory_budget_, 12}};
   }
 
   storage::ProgressiveIndex write_files(const std::vector<LevelLists>& lists,
@@ -216,6 +217,9 @@ std::string summary_of(const fs::path& output, const storage::ProgressiveIndex& 
 std::string write_progressive(storage::FileSystem& files, const fs::path& hierarchy,
                               const ProgressiveOptions& options, Progress& progress,
                               const CancelToken& cancel) {
+  storage::check_output(files, options.output, options.replace, "is already there",
+                        storage::progressive_output());
+  require_apart(files, options.output, hierarchy, "the hierarchy");
   const storage::HierarchyReader reader(files, hierarchy);
   require_half_edge(reader);
   const NodeId asked = options.node.value_or(NodeId{});
