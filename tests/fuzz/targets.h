@@ -31,6 +31,10 @@ void index(std::span<const std::byte> input);
 void tile(std::span<const std::byte> input);
 /// An outline.glb, or counts and a BIN chunk.
 void outline(std::span<const std::byte> input);
+/// A layout and runs of lists, packed here or whole as a file, for a mesh of a few thousand slots.
+void detail(std::span<const std::byte> input);
+/// A progressive.json; also with the right checksum at its end.
+void stream_index(std::span<const std::byte> input);
 /// Changes to the files of a whole hierarchy, whose checksums are then made right.
 void hierarchy(std::span<const std::byte> input);
 /// A small mesh of any shape and how it is to be built.
@@ -42,7 +46,7 @@ struct Target {
 };
 
 /// Names are those of the folders in corpus/, the dictionaries, and the programs (fuzz_NAME).
-inline constexpr std::array<Target, 12> kTargets{{{"ply_header", ply_header},
+inline constexpr std::array<Target, 14> kTargets{{{"ply_header", ply_header},
                                                   {"ply_text", ply_text},
                                                   {"ply_binary", ply_binary},
                                                   {"mesh", mesh},
@@ -52,6 +56,8 @@ inline constexpr std::array<Target, 12> kTargets{{{"ply_header", ply_header},
                                                   {"index", index},
                                                   {"tile", tile},
                                                   {"outline", outline},
+                                                  {"detail", detail},
+                                                  {"stream_index", stream_index},
                                                   {"hierarchy", hierarchy},
                                                   {"build", build}}};
 
