@@ -37,6 +37,8 @@ void detail(std::span<const std::byte> input);
 void stream_index(std::span<const std::byte> input);
 /// Changes to the files of a whole hierarchy, whose checksums are then made right.
 void hierarchy(std::span<const std::byte> input);
+/// The same, of one that was made by half_edge; it is streamed.
+void stream(std::span<const std::byte> input);
 /// A small mesh of any shape and how it is to be built.
 void build(std::span<const std::byte> input);
 
@@ -46,7 +48,7 @@ struct Target {
 };
 
 /// Names are those of the folders in corpus/, the dictionaries, and the programs (fuzz_NAME).
-inline constexpr std::array<Target, 14> kTargets{{{"ply_header", ply_header},
+inline constexpr std::array<Target, 15> kTargets{{{"ply_header", ply_header},
                                                   {"ply_text", ply_text},
                                                   {"ply_binary", ply_binary},
                                                   {"mesh", mesh},
@@ -58,6 +60,7 @@ inline constexpr std::array<Target, 14> kTargets{{{"ply_header", ply_header},
                                                   {"outline", outline},
                                                   {"detail", detail},
                                                   {"stream_index", stream_index},
+                                                  {"stream", stream},
                                                   {"hierarchy", hierarchy},
                                                   {"build", build}}};
 
