@@ -5,6 +5,7 @@
 #include "pipeline/cut.h"
 #include "pipeline/cut_file.h"
 #include "pipeline/cut_mesh.h"
+#include "pipeline/output_file.h"
 #include "storage/archive_files.h"
 #include "storage/hierarchy_reader.h"
 #include "storage/layout.h"
@@ -181,20 +182,6 @@ std::string export_outline(const ExportJob& job) {
                      content.vertex_count, content.edge_count);
 }
 
-/// Unlike the work directory, the directory of the output is not made: a mistyped path should be
-/// told.
-void require_place(storage::FileSystem& files, const fs::path& output) {
-  if (output.filename().empty() || output.filename() == "." || output.filename() == "..") {
-    throw Error(ErrorCode::usage,
-                fmt::format("output \"{}\": expected the name of a file", output.string()));
-  }
-  const fs::path directory = output.parent_path();
-  if (directory.empty() || files.exists(directory))
-    return;
-  throw Error(ErrorCode::io, fmt::format("cannot write {}: there is no directory {}",
-                                         output.string(), directory.string()));
-}
-
 std::string export_selection(const ExportJob& job, const ExportSelection& selection) {
   const Tree& tree = job.reader.tree();
   if (const auto* level = std::get_if<Level>(&selection)) {
@@ -209,24 +196,13 @@ std::string export_selection(const ExportJob& job, const ExportSelection& select
   return export_outline(job);
 }
 
-/// An export into the hierarchy would overwrite or litter what it reads.
-void require_apart(storage::FileSystem& files, const fs::path& output, const fs::path& hierarchy) {
-  const fs::path file = files.canonical(output);
-  const fs::path directory = files.canonical(hierarchy);
-  if (std::mismatch(directory.begin(), directory.end(), file.begin(), file.end()).first !=
-      directory.end())
-    return;
-  throw Error(ErrorCode::usage, fmt::format("the output {} lies in the hierarchy {}",
-                                            output.string(), hierarchy.string()));
-}
-
 }  // namespace
 
 std::string export_mesh(storage::FileSystem& files, const fs::path& hierarchy,
                         const ExportOptions& options, Progress& progress,
                         const CancelToken& cancel) {
   require_place(files, options.output);
-  require_apart(files, options.output, hierarchy);
+  require_apart(files, options.output, hierarchy, "the hierarchy");
   const storage::HierarchyFiles place(files, hierarchy);
   const storage::HierarchyReader reader(place.files(), hierarchy);
   const WorkDirectory work(files, storage::work_path(options.output));

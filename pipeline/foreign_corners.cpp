@@ -1,25 +1,16 @@
 #include "pipeline/foreign_corners.h"
 
-#include "hierarchy/error.h"
-#include "pipeline/size_text.h"
-
 #include <algorithm>
 #include <numeric>
 
-#include <fmt/format.h>
-
 namespace meshhier::pipeline {
 
-ForeignCorners::ForeignCorners(const LevelLists& level, std::size_t width,
-                               std::uint64_t memory_bytes)
-    : width_(width) {
+std::uint64_t ForeignCorners::memory_bytes(const LevelLists& level, std::size_t width) {
   // A rank as it came and as it stays, a place twice, the values.
-  const std::uint64_t needed = level.foreign_ranks.size() * (24 + width * sizeof(float));
-  if (needed > memory_bytes) {
-    throw Error(ErrorCode::budget,
-                fmt::format("the border of the sector needs {}, the budget leaves {}",
-                            rounded_size_text(needed), rounded_size_text(memory_bytes)));
-  }
+  return level.foreign_ranks.size() * (24 + width * sizeof(float));
+}
+
+ForeignCorners::ForeignCorners(const LevelLists& level, std::size_t width) : width_(width) {
   const std::vector<std::uint32_t> ranks = level.foreign_ranks.read_all();
   values_ = level.foreign_values.read_all();
   places_.resize(ranks.size());

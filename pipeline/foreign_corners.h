@@ -14,8 +14,10 @@ namespace meshhier::pipeline {
 class ForeignCorners {
  public:
   ForeignCorners() = default;
-  /// `width`: values of each. Throws Error(budget) if they need more than `memory_bytes`.
-  ForeignCorners(const LevelLists& level, std::size_t width, std::uint64_t memory_bytes);
+  /// `width`: values of each.
+  ForeignCorners(const LevelLists& level, std::size_t width);
+  /// What that takes, at most.
+  static std::uint64_t memory_bytes(const LevelLists& level, std::size_t width);
 
   std::size_t size() const { return ranks_.size(); }
   std::uint32_t rank(std::size_t number) const { return ranks_[number]; }  ///< ascending

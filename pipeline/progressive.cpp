@@ -7,6 +7,7 @@
 #include "pipeline/foreign_corners.h"
 #include "pipeline/level_lists.h"
 #include "pipeline/memory_plan.h"
+#include "pipeline/output_file.h"
 #include "pipeline/progressive_plan.h"
 #include "pipeline/size_text.h"
 #include "storage/archive_files.h"
@@ -127,7 +128,20 @@ class StreamWriter {
 
   ForeignCorners foreign_of(const std::vector<LevelLists>& lists, Level level) const {
     const auto width = static_cast<std::size_t>(vertex_values(reader_.tile_format().attributes));
-    return {lists[raw(level)], width, plan_.foreign_bytes};
+    const std::uint64_t needed = ForeignCorners::memory_bytes(lists[raw(level)], width);
+    if (needed > plan_.foreign_bytes)
+      refuse_border(needed);
+    return {lists[raw(level)], width};
+  }
+
+  [[noreturn]] void refuse_border(std::uint64_t needed) const {
+    const std::uint64_t more = (needed - plan_.foreign_bytes) * ProgressivePlan::kForeignParts;
+    constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+    throw Error(ErrorCode::budget,
+                fmt::format("a memory budget of {} is too small for the border of this sector: "
+                            "--memory-budget {} would do",
+                            exact_size_text(plan_.budget_bytes),
+                            exact_size_text((plan_.budget_bytes + more) / kMiB * kMiB + kMiB)));
   }
 
   storage::ProgressiveIndex write_files(const std::vector<LevelLists>& lists,
@@ -216,6 +230,10 @@ std::string summary_of(const fs::path& output, const storage::ProgressiveIndex& 
 std::string write_progressive(storage::FileSystem& files, const fs::path& hierarchy,
                               const ProgressiveOptions& options, Progress& progress,
                               const CancelToken& cancel) {
+  const storage::Output output{options.output, storage::Container::files,
+                               storage::Content::progressive_stream};
+  storage::check_output(files, output, options.replace);
+  require_apart(files, options.output, hierarchy, "the hierarchy");
   configure_allocator(options.memory_budget);
   const storage::HierarchyFiles place(files, hierarchy);
   const storage::HierarchyReader reader(place.files(), hierarchy);

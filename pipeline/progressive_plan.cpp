@@ -168,11 +168,12 @@ ProgressivePlan plan_progressive(const storage::HierarchyReader& reader,
                    bytes / std::max<std::uint64_t>(each, 1), kItemsAThread * threads - 1));
   };
   ProgressivePlan plan;
+  plan.budget_bytes = budget_bytes;
   plan.pool_bytes = rest / 2;
   plan.subtrees = choice.level;
   plan.subtrees_in_flight = more(rest / 2, choice.subtree);
   plan.runs_in_flight = more(rest / 4, needs.run());
-  plan.foreign_bytes = rest / 12;
+  plan.foreign_bytes = rest / ProgressivePlan::kForeignParts;
   return plan;
 }
 

@@ -11,11 +11,16 @@ namespace meshhier::pipeline {
 
 /// The budget's division. Every part is an upper bound.
 struct ProgressivePlan {
-  std::uint64_t pool_bytes = 0;  ///< lists that may stay in memory
-  Level subtrees{};              ///< whose nodes are items of work, with all below them
+  /// Of what is left beyond the least budget the foreign corners of a level get the 12th part:
+  /// those of three levels are there at a time, beside runs and lists.
+  static constexpr std::uint64_t kForeignParts = 12;
+
+  std::uint64_t budget_bytes = 0;  ///< what was divided
+  std::uint64_t pool_bytes = 0;    ///< lists that may stay in memory
+  Level subtrees{};                ///< whose nodes are items of work, with all below them
   std::size_t subtrees_in_flight = 1;
   std::size_t runs_in_flight = 1;
-  std::uint64_t foreign_bytes = 0;  ///< for the foreign corners of one level; three are there
+  std::uint64_t foreign_bytes = 0;  ///< for the foreign corners of one level
 };
 
 /// Blocks of the lists' spools, of which each level has seven.

@@ -3,6 +3,7 @@
 #include "hierarchy/detail.h"
 #include "hierarchy/error.h"
 #include "mesh_io/ply_writer.h"
+#include "pipeline/output_file.h"
 #include "pipeline/size_text.h"
 #include "progressive/reconstruction.h"
 #include "storage/detail_file.h"
@@ -206,6 +207,8 @@ class UnfinishedFile {
 ReconstructReport reconstruct(storage::FileSystem& files, const fs::path& stream,
                               const ReconstructOptions& options, Progress& progress,
                               const CancelToken& cancel) {
+  require_place(files, options.output);
+  require_apart(files, options.output, stream, "the stream");
   const ProgressiveIndex index = storage::read_progressive_index(files, stream);
   const std::uint32_t details = details_wanted(index, options);
   const StreamSize size{index.vertices, index.own_vertices, index.triangles};
@@ -224,7 +227,13 @@ ReconstructReport reconstruct(storage::FileSystem& files, const fs::path& stream
       fmt::format("base and {} of {} details", details, index.files.size() - 1);
   const ReconstructedStep shown = report.steps.back();
   progress.stage("write", 1, "files");
-  write_mesh(files, output.path(), index, client.mesh(), what, cancel);
+  try {
+    write_mesh(files, output.path(), index, client.mesh(), what, cancel);
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::corrupt)
+      throw error.within(stream.string());
+    throw;
+  }
   output.finish();
   progress.advance(1);
   report.summary =

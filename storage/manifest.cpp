@@ -178,7 +178,7 @@ Json source_json(const SourceSummary& source) {
 SourceSummary parse_source(const Json& source, const std::string& name) {
   if (!source.is_object())
     throw Error(ErrorCode::corrupt, name + ": \"source\" is wrong, expected an object");
-  return read_source(JsonObject(source, "", name));
+  return read_source(JsonObject(source, "source.", name));
 }
 
 std::string to_json_text(const Manifest& manifest) {

@@ -20,6 +20,12 @@ constexpr SealedFormat kFormat{"meshhier-progressive", 1};
 /// parse_sealed() refuses longer texts; here it guards the allocation.
 constexpr std::uint64_t kMaxTextBytes = 1024 * 1024;
 
+/// Their array's bytes are countable; no disk holds so many.
+constexpr std::uint64_t kMostTriangles = std::uint64_t{1} << 56;
+
+/// Of an entry that is alone in its run: the run's head, gzip's frame, all values of a vertex.
+constexpr std::uint64_t kMostEntryBytes = 128;
+
 /// A tree over less than 2^32 partitions has no more levels.
 constexpr std::uint64_t kDeepestLevel = 32;
 
@@ -35,15 +41,16 @@ Json file_json(const ProgressiveFile& file, std::uint32_t step) {
           {"checksum", hex_digits(file.checksum)}};
 }
 
-ProgressiveFile read_entry(const JsonObject& object) {
+ProgressiveFile read_entry(const JsonObject& object, const ProgressiveIndex& index) {
   ProgressiveFile file;
   file.level = static_cast<Level>(object.count("level", kDeepestLevel));
-  file.vertices = object.count("vertices");
-  file.triangles = object.count("triangles");
-  file.merges = object.count("merges");
-  file.shown_vertices = object.count("shown_vertices");
-  file.shown_triangles = object.count("shown_triangles");
-  file.bytes = object.count("bytes");
+  file.vertices = object.count("vertices", index.vertices);
+  file.triangles = object.count("triangles", index.triangles);
+  file.merges = object.count("merges", index.vertices);
+  file.shown_vertices = object.count("shown_vertices", index.vertices);
+  file.shown_triangles = object.count("shown_triangles", index.triangles);
+  const std::uint64_t entries = file.vertices + file.triangles + file.merges;
+  file.bytes = object.count("bytes", (entries + 1) * kMostEntryBytes);
   file.checksum = object.hash("checksum");
   return file;
 }
@@ -81,12 +88,12 @@ ProgressiveIndex parse_progressive_index(const std::string& text, const std::str
   if (index.vertices == 0)
     object.wrong("vertices", "at least 1");
   index.own_vertices = object.count("own_vertices", index.vertices);
-  index.triangles = object.count("triangles", INT64_MAX);
+  index.triangles = object.count("triangles", kMostTriangles);
   index.origin = object.point("origin");
   index.up = object.up("up");
   index.licence = object.text("licence");
   for (const JsonObject& file : object.objects("files"))
-    index.files.push_back(read_entry(file));
+    index.files.push_back(read_entry(file, index));
   if (index.files.empty())
     object.wrong("files", "at least one");
   return index;

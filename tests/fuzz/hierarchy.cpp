@@ -1,5 +1,5 @@
-// The input of the target `hierarchy`: changes to the files of a sound one, little endian, until it
-// ends:
+// The input of the targets `hierarchy` and `stream`: changes to the files of a sound one, little
+// endian, until it ends:
 //
 //   u8   file, modulo those there are, by name
 //   u16  place in it, modulo its size
@@ -7,7 +7,8 @@
 //   so many bytes
 //
 // The checksums of all files are then made right. Whoever reads it finds out what is wrong, or gets
-// what the hierarchy promises: if verify has nothing against it, all of it can be exported.
+// what the hierarchy promises: if verify has nothing against it, all of it can be exported. A
+// progressive stream that is made of it is sound, whatever it shows.
 #include "bench/generator.h"
 #include "fuzz/sealed.h"
 #include "fuzz/target.h"
@@ -16,16 +17,20 @@
 #include "pipeline/build.h"
 #include "pipeline/export.h"
 #include "pipeline/inspect.h"
+#include "pipeline/progressive.h"
+#include "pipeline/reconstruct.h"
 #include "pipeline/verify.h"
 #include "storage/glb.h"
 #include "storage/hash.h"
 #include "storage/layout.h"
 #include "storage/manifest.h"
+#include "storage/progressive_index.h"
 #include "support/memory_files.h"
 
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,11 +45,12 @@ namespace fs = std::filesystem;
 constexpr const char* kHierarchy = "a.hier";
 constexpr const char* kExported = "out.ply";
 constexpr const char* kCut = "cut.txt";
+constexpr const char* kStream = "a.prog";
 
 using Contents = std::vector<std::pair<fs::path, std::vector<std::byte>>>;
 
 /// A tree with early nodes, over a closed surface with colours and an origin.
-Contents make_sound() {
+Contents make_sound(pipeline::SimplifyMethod method) {
   bench::SurfaceOptions surface;
   surface.triangles = 100;
   surface.noise = 0.5;
@@ -56,6 +62,7 @@ Contents make_sound() {
   config.output = kHierarchy;
   config.threads = 1;
   config.partition.count = 5;
+  config.simplify.method = method;
   config.simplify.vertices = 12;
   MemoryFiles files;
   bench::write_ply(files, config.input.front(), *bench::make_surface(surface));
@@ -135,16 +142,51 @@ bool is_inspected(MemoryFiles& files) {
       .empty();
 }
 
+/// The sound hierarchy with the changes of `input`.
+void put_changed(Bytes input, const Contents& sound, MemoryFiles& files) {
+  for (const auto& [path, bytes] : sound)
+    storage::write_file(files, path, bytes);
+  apply(input, sound, files);
+  seal(sound, files);
+}
+
+/// Streams the part, and puts together what was streamed.
+void check_streamed(MemoryFiles& files, std::optional<NodeId> part) {
+  pipeline::NoProgress progress;
+  files.remove_all(kStream);
+  const std::string refused =
+      refusal({ErrorCode::corrupt, ErrorCode::usage, ErrorCode::budget}, "", [&] {
+        pipeline::write_progressive(
+            files, kHierarchy, {part, {}, kStream, false, std::uint64_t{1} << 24}, progress, {});
+      });
+  require(files.exists(kStream) == refused.empty(), "a stream is whole, or not there");
+  if (!refused.empty())
+    return;
+  const std::size_t steps = storage::read_progressive_index(files, kStream).files.size();
+  for (std::uint32_t details = 0; details < steps; ++details) {
+    files.remove_all(kExported);
+    pipeline::reconstruct(files, kStream, {details, kExported, std::uint64_t{1} << 24}, progress,
+                          {});
+    require(files.exists(kExported), "what is streamed can be put together");
+  }
+}
+
 }  // namespace
+
+void stream(Bytes input) {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  static const Contents kSound = make_sound(pipeline::SimplifyMethod::half_edge);
+  MemoryFiles files;
+  put_changed(input, kSound, files);
+  check_streamed(files, std::nullopt);
+  check_streamed(files, NodeId{Level{1}, 1});
+}
 
 void hierarchy(Bytes input) {
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  static const Contents kSound = make_sound();
+  static const Contents kSound = make_sound(pipeline::SimplifyMethod::edge_collapse);
   MemoryFiles files;
-  for (const auto& [path, bytes] : kSound)
-    storage::write_file(files, path, bytes);
-  apply(input, kSound, files);
-  seal(kSound, files);
+  put_changed(input, kSound, files);
 
   const bool sound = is_sound(files);
   require(is_inspected(files) || !sound, "what is sound can be inspected");

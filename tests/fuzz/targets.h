@@ -33,8 +33,14 @@ void tile(std::span<const std::byte> input);
 void outline(std::span<const std::byte> input);
 /// A 3tz archive, and what one is made of (see archive.cpp).
 void archive(std::span<const std::byte> input);
+/// A layout and runs of lists, packed here or whole as a file, for a mesh of a few thousand slots.
+void detail(std::span<const std::byte> input);
+/// A progressive.json; also with the right checksum at its end.
+void stream_index(std::span<const std::byte> input);
 /// Changes to the files of a whole hierarchy, whose checksums are then made right.
 void hierarchy(std::span<const std::byte> input);
+/// The same, of one that was made by half_edge; it is streamed.
+void stream(std::span<const std::byte> input);
 /// A small mesh of any shape and how it is to be built.
 void build(std::span<const std::byte> input);
 
@@ -44,7 +50,7 @@ struct Target {
 };
 
 /// Names are those of the folders in corpus/, the dictionaries, and the programs (fuzz_NAME).
-inline constexpr std::array<Target, 13> kTargets{{{"ply_header", ply_header},
+inline constexpr std::array<Target, 16> kTargets{{{"ply_header", ply_header},
                                                   {"ply_text", ply_text},
                                                   {"ply_binary", ply_binary},
                                                   {"mesh", mesh},
@@ -55,6 +61,9 @@ inline constexpr std::array<Target, 13> kTargets{{{"ply_header", ply_header},
                                                   {"tile", tile},
                                                   {"outline", outline},
                                                   {"archive", archive},
+                                                  {"detail", detail},
+                                                  {"stream_index", stream_index},
+                                                  {"stream", stream},
                                                   {"hierarchy", hierarchy},
                                                   {"build", build}}};
 

@@ -198,14 +198,16 @@ TEST(Manifest, WrongWordsOfAnImportAreNamed) {
     }
     return "";
   };
-  EXPECT_THAT(refused("/import", 1), testing::HasSubstr("\"import\" is wrong"));
-  EXPECT_THAT(refused("/import/files", 1), testing::HasSubstr("\"import.files\" is wrong"));
+  EXPECT_THAT(refused("/import", 1), testing::HasSubstr("\"source.import\" is wrong"));
+  EXPECT_THAT(refused("/import/files", 1), testing::HasSubstr("\"source.import.files\" is wrong"));
   EXPECT_THAT(refused("/import/files", Json::array()), testing::HasSubstr("at least one"));
-  EXPECT_THAT(refused("/import/files/0", 1), testing::HasSubstr("\"import.files\" is wrong"));
+  EXPECT_THAT(refused("/import/files/0", 1),
+              testing::HasSubstr("\"source.import.files\" is wrong"));
   EXPECT_THAT(refused("/import/files/0/bytes", -1), testing::HasSubstr("import.files.bytes"));
   EXPECT_THAT(refused("/import/files/0/checksum", "x"),
               testing::HasSubstr("import.files.checksum"));
-  EXPECT_THAT(refused("/import/counts", 1), testing::HasSubstr("\"import.counts\" is wrong"));
+  EXPECT_THAT(refused("/import/counts", 1),
+              testing::HasSubstr("\"source.import.counts\" is wrong"));
   EXPECT_THAT(refused("/import/counts/groups", "x"), testing::HasSubstr("import.counts.groups"));
 }
 
