@@ -229,7 +229,7 @@ TEST_F(CommandLine, MistakesExitWithUsageAndSayWhatIsWrong) {
       {{"export", "x", "-o", "y.ply"}, "--outline"},
       {{"export", "x", "--level", "1", "--outline", "-o", "y.ply"}, "--outline"},
       {{"export", "x", "--cut", "", "-o", "y.ply"}, "--cut"},
-      {{"progressive"}, "DIR is required"},
+      {{"progressive"}, "HIERARCHY is required"},
       {{"progressive", "x"}, "--output"},
       {{"progressive", "x", "-o", "y", "--steps", "0"}, "--steps"},
       {{"progressive", "x", "-o", "y", "--steps", "33"}, "from 1 to 32"},
