@@ -24,14 +24,23 @@ struct RunSlot {
   std::vector<std::byte> bytes;
 };
 
+/// How many runs are at work at a time: enough for all threads, if there is memory for them.
+std::size_t runs_at_work(const AttributeLayout& layout, std::uint64_t memory_bytes) {
+  // Lists that double, the bytes to be packed, and packed.
+  const auto entry_bytes = 4 + 4 * static_cast<std::uint64_t>(vertex_values(layout));
+  const std::uint64_t run_bytes = 3 * kRunEntries * entry_bytes;
+  const auto threads = static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency());
+  return std::clamp<std::uint64_t>(memory_bytes / run_bytes, 1, 2 * threads);
+}
+
 /// Packs runs in parallel and writes them in order.
 class RunWriter {
  public:
   RunWriter(storage::FileSystem& files, const std::filesystem::path& path, std::uint32_t step,
-            const AttributeLayout& layout)
+            const AttributeLayout& layout, std::uint64_t memory_bytes)
       : file_(files.create(path)),
         packing_(
-            2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()),
+            runs_at_work(layout, memory_bytes),
             [layout](RunSlot& slot) {
               slot.bytes = storage::encode_run(slot.run, layout, slot.first);
             },
@@ -304,7 +313,7 @@ class DetailWriter {
 storage::ProgressiveFile write_detail(storage::FileSystem& files, const std::filesystem::path& path,
                                       const DetailSpan& span, const DetailSource& source,
                                       Progress& progress, const CancelToken& cancel) {
-  RunWriter runs(files, path, span.step, source.layout);
+  RunWriter runs(files, path, span.step, source.layout, source.memory_bytes);
   DetailWriter writer(span, source, runs, progress, cancel);
   const std::uint64_t vertices = writer.write_vertices();
   const std::uint64_t triangles = writer.write_triangles();

@@ -32,10 +32,11 @@ struct DetailSource {
   const ForeignCorners& all_foreign;     ///< of the last level: they number the foreign vertices
   const ForeignCorners& coarse_foreign;  ///< empty for the base
   const ForeignCorners& fine_foreign;
+  std::uint64_t memory_bytes = 0;  ///< for runs at work; one is always
 };
 
 /// Writes the file; `shown_*` of the result are left 0. Lists of several levels are merged as they
-/// are read: memory for a few runs a thread. Deterministic. Throws Error(io).
+/// are read: memory for two runs a thread, or what is given. Deterministic. Throws Error(io).
 storage::ProgressiveFile write_detail(storage::FileSystem& files, const std::filesystem::path& path,
                                       const DetailSpan& span, const DetailSource& source,
                                       Progress& progress, const CancelToken& cancel);

@@ -23,7 +23,7 @@ using progressive::Values;
 /// Small beside any budget, with seven lists a level.
 constexpr std::size_t kListBlockBytes = std::size_t{1} << 16;
 
-/// A subtree of so many levels of partitions is one item of work: eight partitions.
+/// A subtree of so many levels, if there is memory for it, is one item of work: eight partitions.
 constexpr int kSubtreeLevels = 3;
 
 /// What a subtree leaves of one level.
@@ -247,23 +247,48 @@ class TopOfTree {
   std::uint64_t end_index_ = 0;
 };
 
-/// Bytes that a tile and its lists take at most while it is at work.
+/// Bytes that a tile takes at most while it is at work.
 std::uint64_t work_bytes(const TileRecord& record, std::uint64_t width) {
-  // Of a triangle: as it is, sorted with its keys, lost, and three corners that something stands
-  // for. Of a vertex: in the file, traced, lost.
-  const std::uint64_t stand_in = 16 + 4 * width;
-  return (std::uint64_t{record.interior_count} + record.border_count) * (200 + 3 * stand_in) +
+  // Of a triangle: as it is, sorted with its keys, lost. Of a vertex: in the file, traced, lost.
+  return (std::uint64_t{record.interior_count} + record.border_count) * 200 +
          (std::uint64_t{record.own_count} + record.ghost_count) * (32 + 12 * width);
 }
 
-std::uint64_t subtree_bytes(const storage::HierarchyReader& reader, NodeId root,
-                            std::uint64_t width) {
+/// Bytes that a tile adds at most to the lists of its subtree, in vectors that double.
+std::uint64_t list_bytes(const Tree& tree, const TileRecord& record, std::uint64_t width) {
+  const std::uint64_t triangles = std::uint64_t{record.interior_count} + record.border_count;
+  const std::uint64_t corners = std::min(
+      3 * triangles, tree.ranks(record.node).size() + 2 * std::uint64_t{record.border_count});
+  const std::uint64_t lost = tree.is_partition(record.node) ? triangles * sizeof(LostTriangle) +
+                                                                  record.own_count * 4 * (width + 1)
+                                                            : 0;
+  return 2 * (corners * (sizeof(StandIn) + 4 * width) + lost);
+}
+
+/// What a subtree takes.
+struct SubtreeNeed {
+  std::uint64_t lists = 0;         ///< of all its tiles
+  std::uint64_t largest_tile = 0;  ///< at work
+};
+
+void add_need(const storage::HierarchyReader& reader, NodeId root, std::uint64_t width,
+              SubtreeNeed& need) {
   const Tree& tree = reader.tree();
-  std::uint64_t bytes = work_bytes(reader.record(root), width);
+  const TileRecord& record = reader.record(root);
+  need.lists += list_bytes(tree, record, width);
+  need.largest_tile = std::max(need.largest_tile, work_bytes(record, width));
   const Tree::Children children = tree.children(root);
   for (const NodeId child : children.span())
-    bytes += subtree_bytes(reader, child, width);
-  return bytes;
+    add_need(reader, child, width, need);
+}
+
+/// Two tiles become one; on each level another may wait, of which less is left.
+std::uint64_t subtree_bytes(const storage::HierarchyReader& reader, NodeId root,
+                            std::uint64_t width) {
+  SubtreeNeed need;
+  add_need(reader, root, width, need);
+  const auto levels = static_cast<std::uint64_t>(raw(reader.tree().depth()) - raw(root.level));
+  return need.lists + need.largest_tile * (levels == 0 ? 1 : 3) + need.largest_tile * levels / 4;
 }
 
 std::uint64_t largest_subtree(const storage::HierarchyReader& reader, NodeId first,
@@ -272,6 +297,30 @@ std::uint64_t largest_subtree(const storage::HierarchyReader& reader, NodeId fir
   for (std::uint32_t i = 0; i < count; ++i)
     largest = std::max(largest, subtree_bytes(reader, {first.level, first.index + i}, width));
   return largest;
+}
+
+/// The items of work: all nodes of one level that are the sector's.
+struct Subtrees {
+  NodeId first;
+  std::uint32_t count = 1;
+  std::uint64_t largest = 0;  ///< bytes
+};
+
+/// Of the sizes that fit into memory the largest. Those of one level at least: an early node is
+/// followed with its partition.
+Subtrees choose_subtrees(const storage::HierarchyReader& reader, const Sector& sector,
+                         std::uint64_t memory_bytes, std::uint64_t width) {
+  const int all = raw(reader.tree().depth()) - raw(sector.node.level);
+  for (int levels = std::min(kSubtreeLevels, all);; --levels) {
+    const int below = all - levels;
+    Subtrees subtrees;
+    subtrees.first = {static_cast<Level>(raw(sector.node.level) + below),
+                      sector.node.index << below};
+    subtrees.count = std::uint32_t{1} << below;
+    subtrees.largest = largest_subtree(reader, subtrees.first, subtrees.count, width);
+    if (subtrees.largest <= memory_bytes || levels <= 1)
+      return subtrees;
+  }
 }
 
 }  // namespace
@@ -289,12 +338,11 @@ void trace_sector(const storage::HierarchyReader& reader, const Sector& sector,
                   const TraceOptions& options, std::vector<LevelLists>& lists, Progress& progress,
                   const CancelToken& cancel) {
   const Tree& tree = reader.tree();
-  const int level = std::max<int>(raw(sector.node.level), raw(tree.depth()) - kSubtreeLevels);
   const auto width = static_cast<std::uint64_t>(vertex_values(reader.tile_format().attributes));
-  const int below = level - raw(sector.node.level);
-  const NodeId first{static_cast<Level>(level), sector.node.index << below};
-  const std::uint32_t count = std::uint32_t{1} << below;
-  const std::uint64_t largest = largest_subtree(reader, first, count, width);
+  const Subtrees subtrees = choose_subtrees(reader, sector, options.memory.bytes(), width);
+  const NodeId first = subtrees.first;
+  const std::uint32_t count = subtrees.count;
+  const std::uint64_t largest = subtrees.largest;
   options.memory.require("the tiles of this hierarchy need", largest);
   const std::uint64_t in_flight =
       std::clamp<std::uint64_t>(options.memory.bytes() / largest, 1, count);

@@ -104,7 +104,8 @@ class StreamWriter {
 
   storage::ProgressiveIndex write(const fs::path& scratch_file, const fs::path& directory,
                                   Progress& progress, const CancelToken& cancel) {
-    // A quarter each: lists in memory, tiles at work, the sector's border; runs and the rest.
+    // A quarter: lists in memory; half: tiles at work, and when these are gone the sector's border;
+    // a quarter: runs and the rest.
     storage::MemoryPool pool(memory_budget_ / 4);
     storage::ScratchFile scratch(files_, scratch_file, pool);
     std::vector<LevelLists> lists;
@@ -120,7 +121,7 @@ class StreamWriter {
     options.listed.resize(lists.size());
     for (const Level level : levels_)
       options.listed[raw(level)] = true;
-    options.memory = {memory_budget_, 4};
+    options.memory = {memory_budget_, 2};
     const std::uint64_t tiles = 2 * std::uint64_t{sector_.partitions.size()} - 1;
     progress.stage("trace", tiles, "tiles");
     trace_sector(reader_, sector_, options, lists, progress, cancel);
@@ -128,7 +129,7 @@ class StreamWriter {
 
   ForeignCorners foreign_of(const std::vector<LevelLists>& lists, Level level) const {
     const auto width = static_cast<std::size_t>(vertex_values(reader_.tile_format().attributes));
-    return {lists[raw(level)], width, {memory_budget_, 12}};
+    return {lists[raw(level)], width, {memory_budget_, 6}};
   }
 
   storage::ProgressiveIndex write_files(const std::vector<LevelLists>& lists,
@@ -143,8 +144,8 @@ class StreamWriter {
       DetailSpan span{static_cast<std::uint32_t>(i), std::nullopt, levels_[i]};
       if (i > 0)
         span.coarse = levels_[i - 1];
-      const DetailSource source{lists, sector_, reader_.tile_format().attributes,
-                                all,   coarse,  fine};
+      const DetailSource source{
+          lists, sector_, reader_.tile_format().attributes, all, coarse, fine, memory_budget_ / 4};
       storage::ProgressiveFile file = write_detail(
           files_, storage::detail_path(directory, span.step), span, source, progress, cancel);
       file.shown_vertices = own_vertices(levels_[i]) + fine.size();
