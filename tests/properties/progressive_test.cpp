@@ -30,6 +30,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 namespace meshhier::pipeline {
@@ -449,6 +450,8 @@ TEST_F(ProgressiveTest, ThreadsAndMemoryDoNotMatter) {
     const std::vector<std::string> expected = contents();
     for (const std::uint64_t budget : {accepted, 64 * kMiB, kGiB}) {
       for (const int threads : {1, 4}) {
+        const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism,
+                                          static_cast<std::size_t>(threads));
         tbb::task_arena arena(threads);
         arena.execute([&] { stream(part, {}, budget); });
         EXPECT_TRUE(contents() == expected) << budget << " bytes, " << threads << " threads";
