@@ -230,6 +230,13 @@ std::string write_progressive(storage::FileSystem& files, const fs::path& hierar
 
   storage::WorkDirectory work(files, options.output, options.replace,
                               storage::progressive_output());
+  if (files.exists(storage::journal_path(work.path()))) {
+    work.keep(true);
+    throw Error(ErrorCode::exists,
+                fmt::format("{} holds what a stopped build has done; go on with it, or remove it "
+                            "(meshhier clean)",
+                            work.path().string()));
+  }
   require_disk(files, work.path(), disk_need(reader, sector));
   work.clear();  // what a killed run may have left
   files.make_directories(work.built());
