@@ -2,6 +2,7 @@
 // the last one the original mesh, bit for bit.
 #include "pipeline/progressive.h"
 
+#include "hierarchy/detail.h"
 #include "hierarchy/error.h"
 #include "mesh_io/mesh_source.h"
 #include "pipeline/export.h"
@@ -344,6 +345,16 @@ TEST_F(ProgressiveTest, APartitionAloneIsABaseWithoutDetails) {
   expect_original();
   build(plain({{{1, 2, 3}}, {}}), 1, 4);
   EXPECT_EQ(stream().vertices, 1U);
+  expect_original();
+}
+
+TEST_F(ProgressiveTest, ListsOfSeveralRunsAreStreamed) {
+  build(tests::attributed(tests::sphere(300'000, 0.001F), {false, ColourType::u8, false, false}), 8,
+        10'000);
+  const ProgressiveIndex index = stream({}, 1);
+  EXPECT_GT(index.files[1].vertices, 2 * kRunEntries);
+  EXPECT_GT(index.files[1].triangles, 4 * kRunEntries);
+  EXPECT_EQ(shown(0).set(), exported(Level{0}).set());
   expect_original();
 }
 
