@@ -156,8 +156,8 @@ class StreamWriter {
       DetailSpan span{static_cast<std::uint32_t>(i), std::nullopt, levels_[i]};
       if (i > 0)
         span.coarse = levels_[i - 1];
-      const DetailSource source{lists, sector_, reader_.tile_format().attributes,
-                                all,   coarse,  fine};
+      const DetailSource source{
+          lists, sector_, reader_.tile_format().attributes, all, coarse, fine, memory_budget_ / 4};
       storage::ProgressiveFile file = write_detail(
           files_, storage::detail_path(directory, span.step), span, source, progress, cancel);
       file.shown_vertices = own_vertices(levels_[i]) + fine.size();
@@ -246,9 +246,14 @@ std::string write_progressive(storage::FileSystem& files, const fs::path& hierar
   const ProgressivePlan plan =
       plan_progressive(reader, sector, options.memory_budget,
                        static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
-  storage::WorkDirectory work(
-      files, {options.output, storage::Container::files, storage::Content::progressive_stream},
-      options.replace);
+  storage::WorkDirectory work(files, output, options.replace);
+  if (files.exists(storage::journal_path(work.path()))) {
+    work.keep(true);
+    throw Error(ErrorCode::exists,
+                fmt::format("{} holds what a stopped build has done; go on with it, or remove it "
+                            "(meshhier clean)",
+                            work.path().string()));
+  }
   require_disk(files, work.path(), disk_need(reader, sector));
   work.clear();  // what a killed run may have left
   files.make_directories(work.built());

@@ -4,12 +4,16 @@
 #include "hierarchy/error.h"
 #include "mesh_io/mesh_source.h"
 #include "mesh_io/ply_samples.h"
+#include "pipeline/reconstruct.h"
 #include "storage/archive.h"
+#include "storage/detail_file.h"
 #include "storage/glb.h"
+#include "storage/gzip.h"
 #include "storage/hierarchy_reader.h"
 #include "storage/index.h"
 #include "storage/manifest.h"
 #include "storage/outline_glb.h"
+#include "storage/progressive_index.h"
 #include "storage/tile_glb.h"
 #include "support/hollow_file.h"
 #include "support/memory_files.h"
@@ -213,6 +217,57 @@ TEST(LyingCounts, OfAnOutlineTakeNoMemory) {
       const auto glb = glb_with("MESHHIER_outline", extension);
       expect_cheap_refusal(ErrorCode::corrupt, key,
                            [&] { storage::decode_outline(glb, "outline.glb"); });
+    }
+  }
+}
+
+TEST(LyingCounts, OfADetailFileTakeNoMemory) {
+  constexpr AttributeLayout kWidest{true, ColourType::f32, true, true};
+  // A gigabyte of zeros in a megabyte, and nothing.
+  std::vector<std::byte> bomb = storage::gzip(std::vector<std::byte>(std::size_t{1} << 28));
+  for (const std::vector<std::byte>& packed : {bomb, storage::gzip({}), std::vector<std::byte>()}) {
+    for (const std::uint32_t list : {1U, 2U, 3U}) {
+      for (const std::uint32_t entries : {1U, 65536U, 65537U, UINT32_MAX}) {
+        for (const std::uint32_t size : {static_cast<std::uint32_t>(packed.size()), UINT32_MAX}) {
+          std::vector<std::byte> file = storage::detail_head(1);
+          for (const std::uint32_t number : {list, entries, size})
+            storage::append_little(file, number);
+          file.insert(file.end(), packed.begin(), packed.end());
+          expect_cheap_refusal(ErrorCode::corrupt, "a detail file", [&] {
+            storage::DetailFileReader(file, 1, kWidest, "detail_01.bin").next();
+          });
+        }
+      }
+    }
+  }
+}
+
+TEST(LyingCounts, OfAProgressiveIndexTakeNoMemory) {
+  storage::ProgressiveIndex index;
+  index.source = small_manifest().source;
+  index.vertices = index.own_vertices = 10;
+  index.triangles = 12;
+  index.files = {{Level{0}, 10, 12, 0, 10, 12, 1000, 0}};
+  const std::string honest = storage::to_json_text(index);
+  const auto refuse = [](const std::string& text) {
+    MemoryFiles files;
+    files.put("a.prog/progressive.json", fuzz::sealed_manifest(text));
+    files.put("a.prog/base.bin", std::string(1000, '\0'));
+    pipeline::NoProgress progress;
+    pipeline::reconstruct(files, "a.prog", {{}, "a.ply", std::uint64_t{1} << 20}, progress,
+                          pipeline::CancelToken());
+  };
+  expect_cheap_refusal(ErrorCode::corrupt, "zeros", [&] { refuse(honest); });
+  for (const std::string lie : kLies) {
+    for (const std::string key :
+         {"own_vertices", "shown_vertices", "shown_triangles", "merges", "bytes"}) {
+      expect_cheap_refusal(ErrorCode::corrupt, key + lie,
+                           [&] { refuse(with_number(honest, "\"" + key + "\": ", lie)); });
+    }
+    for (const std::string key : {"\n  \"vertices\": ", "\n  \"triangles\": "}) {
+      const std::size_t before = taken_bytes();
+      EXPECT_THROW(refuse(with_number(honest, key, lie)), Error) << key << lie;
+      EXPECT_LT(taken_bytes() - before, kBuffers) << key << lie;
     }
   }
 }

@@ -7,6 +7,7 @@
 #include "tests/pipeline/sample_hierarchy.h"
 #include "tests/support/sizes.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <cstdlib>
@@ -182,6 +183,45 @@ TEST_F(MemoryTest, TheLeastBudgetIsNamedAndWorks) {
   EXPECT_THAT(below.messages, HasSubstr(least));
   EXPECT_FALSE(fs::exists(path("mesh.hier")));
   expect_within(least);
+}
+
+// ---- progressive streams
+
+TEST_F(MemoryTest, AStreamIsMadeInTheBudgetAndPutTogetherInItsArrays) {
+  bench::SurfaceOptions options;
+  options.triangles = 500'000;
+  options.colours = true;
+  write_mesh(options);
+  const Outcome built = build("256MiB", {"simplify.method=half_edge"});
+  ASSERT_EQ(built.code, 0) << built.messages;
+  for (const char* node : {"0/0", "1/1"}) {
+    std::vector<std::string> words = {MESHHIER_BINARY,
+                                      "progressive",
+                                      path("mesh.hier").string(),
+                                      "-o",
+                                      path("mesh.prog").string(),
+                                      "--force",
+                                      "--memory-budget",
+                                      "64MiB",
+                                      "--node",
+                                      node};
+    const Outcome made = run(words);
+    ASSERT_EQ(made.code, 0) << made.messages;
+    EXPECT_LT(made.peak_bytes, 64 * kMiB) << node;
+    RecordProperty("peak_bytes_of_progressive", std::to_string(made.peak_bytes));
+
+    words = {MESHHIER_BINARY, "reconstruct", path("mesh.prog").string(), "-o",
+             path("out.ply").string()};
+    const Outcome rebuilt = run(words);
+    ASSERT_EQ(rebuilt.code, 0) << rebuilt.messages;
+    std::uint64_t largest = 0;
+    for (const auto& file : fs::directory_iterator(path("mesh.prog")))
+      largest = std::max(largest, file.file_size());
+    // Of 260,000 vertices and 520,000 triangles; the program, and a few runs.
+    const std::uint64_t arrays = 260'000 * (16 + 3 * 4) + 520'000 * 12;
+    EXPECT_LT(rebuilt.peak_bytes, arrays + largest + 24 * kMiB) << node;
+    RecordProperty("peak_bytes_of_reconstruct", std::to_string(rebuilt.peak_bytes));
+  }
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // the last one the original mesh, bit for bit.
 #include "pipeline/progressive.h"
 
+#include "hierarchy/detail.h"
 #include "hierarchy/error.h"
 #include "mesh_io/mesh_source.h"
 #include "pipeline/export.h"
@@ -30,6 +31,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 namespace meshhier::pipeline {
@@ -346,6 +348,16 @@ TEST_F(ProgressiveTest, APartitionAloneIsABaseWithoutDetails) {
   expect_original();
 }
 
+TEST_F(ProgressiveTest, ListsOfSeveralRunsAreStreamed) {
+  build(tests::attributed(tests::sphere(300'000, 0.001F), {false, ColourType::u8, false, false}), 8,
+        10'000);
+  const ProgressiveIndex index = stream({}, 1);
+  EXPECT_GT(index.files[1].vertices, 2 * kRunEntries);
+  EXPECT_GT(index.files[1].triangles, 4 * kRunEntries);
+  EXPECT_EQ(shown(0).set(), exported(Level{0}).set());
+  expect_original();
+}
+
 TEST_F(ProgressiveTest, BothCostsMakeStreams) {
   for (const auto& cost : kHalfEdgeCosts) {
     SCOPED_TRACE(cost.name);
@@ -449,6 +461,8 @@ TEST_F(ProgressiveTest, ThreadsAndMemoryDoNotMatter) {
     const std::vector<std::string> expected = contents();
     for (const std::uint64_t budget : {accepted, 64 * kMiB, kGiB}) {
       for (const int threads : {1, 4}) {
+        const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism,
+                                          static_cast<std::size_t>(threads));
         tbb::task_arena arena(threads);
         arena.execute([&] { stream(part, {}, budget); });
         EXPECT_TRUE(contents() == expected) << budget << " bytes, " << threads << " threads";

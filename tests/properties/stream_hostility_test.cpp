@@ -437,6 +437,34 @@ TEST_F(StreamTest, AMistypedDirectoryOfTheMeshIsNotMade) {
   EXPECT_THAT(litter(), IsEmpty());
 }
 
+TEST_F(StreamTest, ADamagedTileIsNamedAndNoStreamMade) {
+  files_.remove_all(kStream);
+  for (const fs::path& path : files_.list(fs::path(kHierarchy) / "tiles")) {
+    SCOPED_TRACE(path);
+    const StreamBytes whole = files_.bytes(path);
+    files_.bytes(path).back() ^= std::byte{1};
+    const std::optional<Error> error = write_error(options());
+    ASSERT_TRUE(error);
+    EXPECT_EQ(error->code(), ErrorCode::corrupt);
+    EXPECT_THAT(error->what(), HasSubstr(path.filename().string()));
+    EXPECT_FALSE(files_.exists(kStream));
+    EXPECT_THAT(litter(), IsEmpty());
+    files_.bytes(path) = whole;
+  }
+}
+
+TEST_F(StreamTest, WhatAStoppedBuildHasDoneStays) {
+  const fs::path journal = storage::journal_path(storage::work_path("/models/other.hier"));
+  files_.put(journal, "done");
+  ProgressiveOptions there = options();
+  there.output = "/models/other.hier";
+  const std::optional<Error> error = write_error(there);
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::exists);
+  EXPECT_THAT(error->what(), HasSubstr("stopped build"));
+  EXPECT_EQ(files_.content(journal), "done");
+}
+
 // ---- faults ----------------------------------------------------------------------------------
 
 class StreamFaultsTest : public StreamTest {
