@@ -26,9 +26,11 @@ std::string objection(FileSystem& files, const Output& output) {
       return "is a directory, and one file is to be made (\"container\": \"3tz\")";
     return is_hierarchy_archive(files, output.path) ? "" : "is not the archive of a hierarchy";
   }
+  const bool is_stream = output.content == Content::progressive_stream;
+  if (!is_directory && is_stream)
+    return "is not a progressive stream but a file";
   if (!is_directory)
     return "is a file, and a directory is to be made (\"container\": \"files\")";
-  const bool is_stream = output.content == Content::progressive_stream;
   const fs::path mark = is_stream ? progressive_index_path({}) : manifest_path({});
   if (files.exists(output.path / mark))
     return "";

@@ -446,10 +446,22 @@ void write_sample(storage::FileSystem& files, const fs::path& directory, Sample&
   storage::write_file(files, storage::manifest_path(directory), std::as_bytes(std::span(text)));
 }
 
-TemporaryDirectory::TemporaryDirectory() {
+namespace {
+
+/// A file system in memory, where there is one: thousands of small files wait for no disk.
+fs::path memory_directory() {
+  const fs::path memory = "/dev/shm";
+  std::error_code ignored;
+  return fs::is_directory(memory, ignored) ? memory : fs::temp_directory_path();
+}
+
+}  // namespace
+
+TemporaryDirectory::TemporaryDirectory(Place place) {
+  const fs::path parent = place == Place::memory ? memory_directory() : fs::temp_directory_path();
   std::random_device chance;
   do {
-    path_ = fs::temp_directory_path() / ("meshhier-test-" + std::to_string(chance()));
+    path_ = parent / ("meshhier-test-" + std::to_string(chance()));
   } while (!fs::create_directory(path_));
 }
 

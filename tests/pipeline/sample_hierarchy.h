@@ -60,7 +60,8 @@ void write_sample(storage::FileSystem& files, const std::filesystem::path& direc
 /// A directory of its own for each test; removed at the end.
 class TemporaryDirectory {
  public:
-  TemporaryDirectory();
+  enum class Place { disk, memory };
+  explicit TemporaryDirectory(Place place = Place::disk);
   TemporaryDirectory(const TemporaryDirectory&) = delete;
   TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
   ~TemporaryDirectory();

@@ -386,7 +386,7 @@ TEST_F(StreamTest, ABudgetThatIsTooSmallNamesOneThatWouldDo) {
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code(), ErrorCode::budget);
   EXPECT_EQ(contents(kStream), before);
-  small.memory_budget = named_budget(error->what(), "must be at least ");
+  small.memory_budget = named_budget(error->what(), "--memory-budget ");
   EXPECT_FALSE(write_error(small));
   EXPECT_EQ(contents(kStream), before);
 
