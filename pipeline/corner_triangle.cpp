@@ -7,7 +7,7 @@
 namespace meshhier::pipeline {
 namespace {
 
-constexpr CornerTriangle turned(const CornerTriangle& t) {
+constexpr CornerTriangle turned_corners(const CornerTriangle& t) {
   if (t[1] < t[0] && t[1] < t[2])
     return {t[1], t[2], t[0]};
   if (t[2] < t[0] && t[2] < t[1])
@@ -22,7 +22,7 @@ void normalize(std::vector<CornerTriangle>& triangles, bool unique) {
     return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
   });
   for (CornerTriangle& t : triangles)
-    t = turned(t);
+    t = turned_corners(t);
   std::sort(triangles.begin(), triangles.end());
   if (unique)
     triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());

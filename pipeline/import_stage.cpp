@@ -25,7 +25,7 @@ namespace {
 using mesh_io::InputStream;
 using mesh_io::MeshKind;
 
-constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+constexpr std::uint64_t kImportMiB = std::uint64_t{1} << 20;
 
 /// One build's import.
 class Import {
@@ -97,7 +97,7 @@ class Import {
   void unpack(const InputFileFacts& facts, TemporaryFile& to) {
     read_stream(facts, [&](InputStream& stream) {
       const auto file = env_.files.create(to.path());
-      std::vector<std::byte> buffer(kMiB);
+      std::vector<std::byte> buffer(kImportMiB);
       std::uint64_t offset = 0;
       for (std::size_t count = buffer.size(); count == buffer.size(); offset += count) {
         count = stream.read(buffer);
@@ -349,11 +349,11 @@ std::string counts_text(const std::vector<SourceCount>& counts) {
 ImportMemory plan_import(std::uint64_t memory_budget) {
   // The program and its allocator, as memory_plan.cpp measured them; blocks and buffers of readers
   // and writers, 12 MiB.
-  constexpr std::uint64_t kFixed = 30 * kMiB;
+  constexpr std::uint64_t kFixed = 30 * kImportMiB;
   constexpr std::uint64_t kAllocatorParts = 12;
   const std::uint64_t taken = kFixed + memory_budget / kAllocatorParts;
   // What cannot be is refused when the mesh is known.
-  const std::uint64_t rest = std::max(memory_budget, taken + 4 * kMiB) - taken;
+  const std::uint64_t rest = std::max(memory_budget, taken + 4 * kImportMiB) - taken;
   return {rest / 4, rest / 4};
 }
 

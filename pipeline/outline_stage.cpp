@@ -34,20 +34,20 @@ Level sector_level(const Tree& tree, std::uint32_t sectors) {
 /// Adds all sectors of a level; false if their lines are too many and there is a coarser level.
 bool collect(Forest& forest, Level level, outline::OutlineBuilder& builder, const MemoryPlan& plan,
              Progress& progress, const CancelToken& cancel) {
-  using Sector = std::optional<outline::OutlineBuilder::Sector>;
+  using Collected = std::optional<outline::OutlineBuilder::Sector>;
   const std::uint32_t count = forest.tree().node_count(level);
   progress.stage("outline", count, "sectors");
   std::atomic<bool> too_many{false};
   const TileRoom room = room_for(forest, plan, heaviest_read(forest, level));
   ordered_for(
       count, room.in_flight(), cancel,
-      [&](std::size_t i) -> Sector {
+      [&](std::size_t i) -> Collected {
         if (too_many)
           return std::nullopt;
         const auto index = static_cast<std::uint32_t>(i);
-        return Sector(std::in_place, index, forest.load({level, index}).mesh);
+        return Collected(std::in_place, index, forest.load({level, index}).mesh);
       },
-      [&](std::size_t, Sector sector) {
+      [&](std::size_t, Collected sector) {
         if (too_many)
           return;
         builder.add(std::move(*sector));

@@ -31,9 +31,9 @@ namespace {
 //   3           n varints: target - vertex, folded
 //
 // Folded: 0, -1, 1, -2, ... are 0, 1, 2, 3, ...
-constexpr std::string_view kMagic = "MHDETAIL";
-constexpr std::uint32_t kVersion = 1;
-constexpr std::size_t kHeadBytes = 16;
+constexpr std::string_view kDetailMagic = "MHDETAIL";
+constexpr std::uint32_t kDetailVersion = 1;
+constexpr std::size_t kDetailHeadBytes = 16;
 constexpr std::size_t kRunHeadBytes = 12;
 
 /// Of 32 bits and a sign, and of 63 bits.
@@ -219,9 +219,9 @@ class Unpacker {
 }  // namespace
 
 std::vector<std::byte> detail_head(std::uint32_t step) {
-  const auto magic = std::as_bytes(std::span(kMagic));
+  const auto magic = std::as_bytes(std::span(kDetailMagic));
   std::vector<std::byte> head(magic.begin(), magic.end());
-  append_little(head, kVersion);
+  append_little(head, kDetailVersion);
   append_little(head, step);
   return head;
 }
@@ -243,7 +243,7 @@ std::vector<std::byte> encode_run(const DetailRun& run, const AttributeLayout& l
 
 DetailFileReader::DetailFileReader(std::span<const std::byte> bytes, std::uint32_t step,
                                    const AttributeLayout& layout, std::string name)
-    : bytes_(bytes), layout_(layout), name_(std::move(name)), place_(kHeadBytes) {
+    : bytes_(bytes), layout_(layout), name_(std::move(name)), place_(kDetailHeadBytes) {
   const std::vector<std::byte> head = detail_head(step);
   if (bytes.size() < head.size() || !std::equal(head.begin(), head.end(), bytes.begin())) {
     throw Error(ErrorCode::corrupt,

@@ -15,10 +15,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr SealedFormat kFormat{"meshhier-progressive", 1};
+constexpr SealedFormat kStreamFormat{"meshhier-progressive", 1};
 
 /// parse_sealed() refuses longer texts; here it guards the allocation.
-constexpr std::uint64_t kMaxTextBytes = 1024 * 1024;
+constexpr std::uint64_t kMaxIndexBytes = 1024 * 1024;
 
 /// Their array's bytes are countable; no disk holds so many.
 constexpr std::uint64_t kMostTriangles = std::uint64_t{1} << 56;
@@ -73,11 +73,11 @@ std::string to_json_text(const ProgressiveIndex& index) {
   for (const ProgressiveFile& file : index.files)
     files.push_back(file_json(file, static_cast<std::uint32_t>(files.size())));
   document["files"] = std::move(files);
-  return sealed_text(kFormat, document);
+  return sealed_text(kStreamFormat, document);
 }
 
 ProgressiveIndex parse_progressive_index(const std::string& text, const std::string& name) {
-  const Json document = parse_sealed(text, kFormat, name);
+  const Json document = parse_sealed(text, kStreamFormat, name);
   const JsonObject object(document, "", name);
   ProgressiveIndex index;
   index.generator = object.text("generator");
@@ -101,7 +101,7 @@ ProgressiveIndex parse_progressive_index(const std::string& text, const std::str
 
 ProgressiveIndex read_progressive_index(FileSystem& files, const std::filesystem::path& directory) {
   const auto path = progressive_index_path(directory);
-  const std::vector<std::byte> bytes = read_file(files, path, kMaxTextBytes);
+  const std::vector<std::byte> bytes = read_file(files, path, kMaxIndexBytes);
   const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   return parse_progressive_index(text, path.string());
 }

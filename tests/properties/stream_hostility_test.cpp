@@ -532,6 +532,38 @@ class StreamFaultsTest : public StreamTest {
   int leftovers_ = 0;  ///< how often there was more than before
 };
 
+/// So large that lists go to the disk where memory is short.
+TEST_F(StreamFaultsTest, ListsOnTheDiskMayFailToo) {
+  tests::build_half_edge(files_, {tests::sphere(40000, 0.002F), {}, {}, {}},
+                         tests::half_edge_config("/models", 300, 60));
+  ProgressiveOptions tight = options();
+  tight.memory_budget = std::uint64_t{400} << 10;
+  const Job job = [&](storage::FileSystem& files, Progress& progress, const CancelToken& cancel) {
+    write(files, tight, progress, cancel);
+  };
+  write(files_, options(), progress_, cancel_);
+  const Contents expected = contents(kStream);
+  FaultyFileSystem measuring(borrowed());
+  job(measuring, progress_, cancel_);
+  EXPECT_TRUE(contents(kStream) == expected);
+  std::uint64_t stream_bytes = 0;
+  for (const auto& [path, content] : expected)
+    stream_bytes += content.size();
+  EXPECT_GT(measuring.counters().bytes_written, 2 * stream_bytes) << "the disk was not used";
+  for (const Call call : {Call::read, Call::write}) {
+    const std::uint64_t calls = measuring.calls(call);
+    for (std::uint64_t n = 1; n <= calls; n += 1 + calls / 12) {
+      FaultyFileSystem faulty(borrowed());
+      faulty.fail(call, n);
+      const std::optional<Error> error = error_of([&] { job(faulty, progress_, cancel_); });
+      ASSERT_TRUE(error) << n;
+      EXPECT_EQ(error->code(), ErrorCode::io);
+      EXPECT_TRUE(contents(kStream) == expected);
+      EXPECT_THAT(litter(), IsEmpty());
+    }
+  }
+}
+
 TEST_F(StreamFaultsTest, AnyCallMayFailWhileAStreamIsMade) {
   EXPECT_GT(fail_every_call(
                 writing, [this] { without_stream(); }, 1),
