@@ -156,8 +156,13 @@ class StreamWriter {
       DetailSpan span{static_cast<std::uint32_t>(i), std::nullopt, levels_[i]};
       if (i > 0)
         span.coarse = levels_[i - 1];
-      const DetailSource source{
-          lists, sector_, reader_.tile_format().attributes, all, coarse, fine, memory_budget_ / 4};
+      const DetailSource source{lists,
+                                sector_,
+                                reader_.tile_format().attributes,
+                                all,
+                                coarse,
+                                fine,
+                                plan_.runs_in_flight};
       storage::ProgressiveFile file = write_detail(
           files_, storage::detail_path(directory, span.step), span, source, progress, cancel);
       file.shown_vertices = own_vertices(levels_[i]) + fine.size();
