@@ -34,7 +34,8 @@ std::vector<std::byte> packed_file(Take& take) {
   while (!take.rest().empty()) {
     const auto list = std::uint32_t{take.number<std::uint8_t>()};
     const auto entries = std::uint32_t{take.number<std::uint16_t>()};
-    const auto size = std::min<std::size_t>(take.number<std::uint16_t>(), take.rest().size());
+    const auto asked = std::size_t{take.number<std::uint16_t>()};
+    const std::size_t size = std::min(asked, take.rest().size());
     const std::vector<std::byte> packed = storage::gzip(take.rest().first(size));
     take = Take(take.rest().subspan(size));
     storage::append_little(file, list);
