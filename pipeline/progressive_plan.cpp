@@ -13,11 +13,11 @@
 namespace meshhier::pipeline {
 namespace {
 
-constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+constexpr std::uint64_t kMebibyte = std::uint64_t{1} << 20;
 
 /// The program itself, its libraries, threads and the allocator's holes: 13 MiB and what a tile's
 /// decoding leaves behind.
-constexpr std::uint64_t kBaseBytes = 18 * kMiB;
+constexpr std::uint64_t kProgramBytes = 18 * kMebibyte;
 
 /// A subtree has at most eight partitions: the more, the less is lifted by one thread alone.
 constexpr int kMostSubtreeLevels = 3;
@@ -39,7 +39,7 @@ class Needs {
   /// Whatever is in flight.
   std::uint64_t fixed() const {
     const std::uint64_t levels = raw(tree_.depth()) + std::uint64_t{1};
-    return kBaseBytes + reader_.records().size() * sizeof(TileRecord) +
+    return kProgramBytes + reader_.records().size() * sizeof(TileRecord) +
            levels * kListsOfALevel * kListBlockBytes;
   }
 
@@ -156,11 +156,12 @@ ProgressivePlan plan_progressive(const storage::HierarchyReader& reader,
   const Needs needs(reader, sector);
   const Choice choice = choose_level(reader.tree(), sector, needs, budget_bytes, threads);
   if (budget_bytes < choice.least) {
-    throw Error(ErrorCode::budget,
-                fmt::format("a memory budget of {} is too small for this hierarchy: "
-                            "--memory-budget {} would do",
-                            exact_size_text(budget_bytes),
-                            exact_size_text((choice.least + kMiB - 1) / kMiB * kMiB)));
+    throw Error(
+        ErrorCode::budget,
+        fmt::format("a memory budget of {} is too small for this hierarchy: "
+                    "--memory-budget {} would do",
+                    exact_size_text(budget_bytes),
+                    exact_size_text((choice.least + kMebibyte - 1) / kMebibyte * kMebibyte)));
   }
   const std::uint64_t rest = budget_bytes - choice.least;
   const auto more = [&](std::uint64_t bytes, std::uint64_t each) {

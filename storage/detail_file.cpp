@@ -245,7 +245,19 @@ DetailFileReader::DetailFileReader(std::span<const std::byte> bytes, std::uint32
                                    const AttributeLayout& layout, std::string name)
     : bytes_(bytes), layout_(layout), name_(std::move(name)), place_(kDetailHeadBytes) {
   const std::vector<std::byte> head = detail_head(step);
-  if (bytes.size() < head.size() || !std::equal(head.begin(), head.end(), bytes.begin())) {
+  const auto starts_with = [&](std::size_t count) {
+    return bytes.size() >= head.size() &&
+           std::equal(head.begin(), head.begin() + count, bytes.begin());
+  };
+  if (!starts_with(kDetailMagic.size()))
+    throw Error(ErrorCode::corrupt, name_ + ": is no file of a progressive stream");
+  const auto version = load_little<std::uint32_t>(bytes.data() + kDetailMagic.size());
+  if (version != kDetailVersion) {
+    throw Error(ErrorCode::corrupt,
+                fmt::format("{}: version is {}, expected {}{}", name_, version, kDetailVersion,
+                            version > kDetailVersion ? " (written by a newer meshhier)" : ""));
+  }
+  if (!starts_with(head.size())) {
     throw Error(ErrorCode::corrupt,
                 fmt::format("{}: does not start as the file of step {}", name_, step));
   }

@@ -243,9 +243,17 @@ TEST(DetailFile, AnotherStepOrFormatIsRefused) {
   for (std::size_t i = 0; i < kHeadSize; ++i) {
     DetailBytes bytes = good;
     bytes[i] ^= std::byte{1};
-    EXPECT_THAT(refused(bytes), HasSubstr("does not start as the file of step 3"));
+    EXPECT_THAT(refused(bytes), HasSubstr(i < 8    ? "is no file of a progressive stream"
+                                          : i < 12 ? "expected 1"
+                                                   : "does not start as the file of step 3"));
   }
-  EXPECT_THAT(refused({}), HasSubstr("does not start"));
+  EXPECT_THAT(refused({}), HasSubstr("is no file of a progressive stream"));
+}
+
+TEST(DetailFile, ANewerVersionIsRefusedByItsNumber) {
+  DetailBytes bytes = encode({}, {});
+  bytes[8] = std::byte{2};
+  EXPECT_THAT(refused(bytes), HasSubstr("version is 2, expected 1 (written by a newer meshhier)"));
 }
 
 TEST(DetailFile, WrongRunHeadsAreNamed) {
