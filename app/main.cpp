@@ -32,6 +32,7 @@ constexpr const char* kFooter = R"(Examples:
   meshhier inspect david.hier                        what is in it
   meshhier verify david.hier --input david.ply       prove that it holds the input exactly
   meshhier export david.hier --level 0 -o whole.ply  the coarse view of the whole model
+  meshhier progressive david.hier -o david.prog      a base and details, for weak clients
   meshhier clean                                     what builds that were stopped left here
 
 "meshhier COMMAND --help" tells more.
