@@ -537,7 +537,10 @@ TEST_F(StreamFaultsTest, ListsOnTheDiskMayFailToo) {
   tests::build_half_edge(files_, {tests::sphere(40000, 0.002F), {}, {}, {}},
                          tests::half_edge_config("/models", 300, 60));
   ProgressiveOptions tight = options();
-  tight.memory_budget = std::uint64_t{400} << 10;
+  tight.memory_budget = 1;
+  const std::optional<Error> refused = error_of([&] { write(files_, tight, progress_, cancel_); });
+  ASSERT_TRUE(refused);
+  tight.memory_budget = named_budget(refused->what(), "--memory-budget ");
   const Job job = [&](storage::FileSystem& files, Progress& progress, const CancelToken& cancel) {
     write(files, tight, progress, cancel);
   };
