@@ -198,9 +198,7 @@ class DetailWriter {
       lost.add(source_.lists[level].lost_ranks, cancel_);
       values.emplace_back(source_.lists[level].lost_values, width_, cancel_);
     }
-    std::optional<StandInCursor> known;
-    if (span_.coarse)
-      known.emplace(source_.lists[raw(*span_.coarse)], width_, cancel_);
+    std::optional<StandInCursor> known = known_before();
     while (const auto level = lost.least(std::identity{})) {
       const std::uint32_t rank = lost.peek(*level);
       const bool is_known = known && known->find(rank);
@@ -231,9 +229,7 @@ class DetailWriter {
   std::uint64_t write_merges() {
     ListWriter<MergeRun> list(writer_, progress_);
     SpoolCursor<StandIn> now(source_.lists[raw(span_.fine)].stand_ins, cancel_);
-    std::optional<StandInCursor> known;
-    if (span_.coarse)
-      known.emplace(source_.lists[raw(*span_.coarse)], width_, cancel_);
+    std::optional<StandInCursor> known = known_before();
     for (std::uint64_t i = 0; i < now.size(); ++i) {
       const StandIn entry = now.at(i);
       if (known && known->find(entry.rank) == entry.stands)
@@ -247,6 +243,14 @@ class DetailWriter {
  private:
   std::size_t first_level() const {
     return span_.coarse ? raw(*span_.coarse) + std::size_t{1} : raw(span_.fine);
+  }
+
+  /// What stands for corners with the files before this one; none: it is the base.
+  std::optional<StandInCursor> known_before() const {
+    if (!span_.coarse)
+      return std::nullopt;
+    return std::optional<StandInCursor>(std::in_place, source_.lists[raw(*span_.coarse)], width_,
+                                        cancel_);
   }
 
   /// In the stream: own vertices by rank, then foreign ones.

@@ -1,6 +1,7 @@
 #include "pipeline/level_lists.h"
 
 #include "hierarchy/error.h"
+#include "pipeline/cut.h"
 #include "pipeline/parallel.h"
 #include "pipeline/progressive_plan.h"
 
@@ -148,9 +149,9 @@ class Tracer {
       const std::vector<GhostRef>& ghosts = published.mesh.ghosts;
       const auto place = std::ranges::lower_bound(ghosts, tile.ghosts[foreign.ghost]);
       if (place == ghosts.end() || *place != tile.ghosts[foreign.ghost])
-        throw Error(ErrorCode::corrupt, fmt::format("tile {}/{}: a corner of its triangles is no "
+        throw Error(ErrorCode::corrupt, fmt::format("tile {}: a corner of its triangles is no "
                                                     "ghost of it",
-                                                    raw(tile.node.level), tile.node.index));
+                                                    to_text(tile.node)));
       list_foreign(foreign.rank, published.mesh.vertices,
                    published.mesh.own_count + static_cast<std::size_t>(place - ghosts.begin()),
                    part);
@@ -171,9 +172,9 @@ class Tracer {
       if (!neighbour || neighbour->node != node)
         neighbour = reader_.read_tile(node);
       if (ghost.index >= neighbour->mesh.own_count)
-        throw Error(ErrorCode::corrupt,
-                    fmt::format("tile {}/{}: a ghost is none of its tile's vertices",
-                                raw(tile.node.level), tile.node.index));
+        throw Error(
+            ErrorCode::corrupt,
+            fmt::format("tile {}: a ghost is none of its tile's vertices", to_text(tile.node)));
       list_foreign(corner.rank, neighbour->mesh.vertices, ghost.index, part);
     }
   }

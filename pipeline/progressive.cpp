@@ -52,10 +52,10 @@ std::vector<Level> shown_levels(const Tree& tree, NodeId node,
   const int below = raw(tree.depth()) - top;
   if (steps && (*steps < 1 || std::int64_t{*steps} > below)) {
     throw Error(ErrorCode::usage,
-                below == 0 ? fmt::format("--steps {}: there is no level below {}/{}", *steps, top,
-                                         node.index)
-                           : fmt::format("--steps {}: expected 1 to {}, the levels below {}/{}",
-                                         *steps, below, top, node.index));
+                below == 0
+                    ? fmt::format("--steps {}: there is no level below {}", *steps, to_text(node))
+                    : fmt::format("--steps {}: expected 1 to {}, the levels below {}", *steps,
+                                  below, to_text(node)));
   }
   const int details = steps ? static_cast<int>(*steps) : below;
   std::vector<Level> levels;
