@@ -6,6 +6,7 @@
 #include "pipeline/output_file.h"
 #include "pipeline/size_text.h"
 #include "progressive/reconstruction.h"
+#include "storage/atomic_file.h"
 #include "storage/detail_file.h"
 #include "storage/layout.h"
 #include "storage/progressive_index.h"
@@ -173,35 +174,6 @@ void write_mesh(storage::FileSystem& files, const fs::path& path, const Progress
   writer.finish();
 }
 
-/// Removes what was not finished.
-class UnfinishedFile {
- public:
-  UnfinishedFile(storage::FileSystem& files, fs::path output)
-      : files_(files), output_(std::move(output)), path_(storage::unfinished_path(output_)) {}
-  UnfinishedFile(const UnfinishedFile&) = delete;
-  UnfinishedFile& operator=(const UnfinishedFile&) = delete;
-  ~UnfinishedFile() {
-    if (finished_)
-      return;
-    try {
-      files_.remove_all(path_);
-    } catch (const Error&) {  // the failure that led here is told
-    }
-  }
-  const fs::path& path() const { return path_; }
-  void finish() {
-    files_.open(path_)->sync();
-    files_.rename(path_, output_);
-    finished_ = true;
-  }
-
- private:
-  storage::FileSystem& files_;
-  fs::path output_;
-  fs::path path_;
-  bool finished_ = false;
-};
-
 }  // namespace
 
 ReconstructReport reconstruct(storage::FileSystem& files, const fs::path& stream,
@@ -213,7 +185,7 @@ ReconstructReport reconstruct(storage::FileSystem& files, const fs::path& stream
   const std::uint32_t details = details_wanted(index, options);
   const StreamSize size{index.vertices, index.own_vertices, index.triangles};
   require_memory(size, index.source.attributes, options.memory_budget);
-  UnfinishedFile output(files, options.output);
+  storage::AtomicFile output(files, options.output);
 
   ReconstructReport report;
   report.array_bytes = Reconstruction::memory_bytes(size, index.source.attributes);
@@ -228,13 +200,13 @@ ReconstructReport reconstruct(storage::FileSystem& files, const fs::path& stream
   const ReconstructedStep shown = report.steps.back();
   progress.stage("write", 1, "files");
   try {
-    write_mesh(files, output.path(), index, client.mesh(), what, cancel);
+    write_mesh(files, output.unfinished(), index, client.mesh(), what, cancel);
   } catch (const Error& error) {
     if (error.code() == ErrorCode::corrupt)
       throw error.within(stream.string());
     throw;
   }
-  output.finish();
+  output.publish();
   progress.advance(1);
   report.summary =
       fmt::format("{}: {}, level {}: {} vertices, {} triangles", options.output.string(), what,

@@ -26,6 +26,10 @@ AtomicFile::~AtomicFile() {
 
 void AtomicFile::publish(std::span<const std::byte> bytes) {
   file_->write_at(0, bytes);
+  publish();
+}
+
+void AtomicFile::publish() {
   file_->sync();
   files_.rename(temporary_, path_);
   file_.reset();

@@ -1,4 +1,4 @@
-// A small file that is there complete or not at all.
+// A file that is there complete or not at all.
 #pragma once
 
 #include "storage/file.h"
@@ -22,6 +22,11 @@ class AtomicFile {
 
   /// Writes `bytes`, forces them to the disk and gives the file its name. Throws Error(io).
   void publish(std::span<const std::byte> bytes);
+
+  /// For who writes the file piece by piece: where, until publish() forces it to the disk and gives
+  /// it its name.
+  const std::filesystem::path& unfinished() const { return temporary_; }
+  void publish();
 
  private:
   FileSystem& files_;
