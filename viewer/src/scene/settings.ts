@@ -1,0 +1,65 @@
+// What a user of the library may set, and what it tells.
+
+/// Tiles' colours: one for all; those of the vertices; one for each tile; by the error on screen.
+export type Colours = 'plain' | 'vertex' | 'partition' | 'error';
+
+export interface Look {
+  /// `vertex` where the mesh has no colours is `plain`.
+  colours: Colours;
+  /// `flat`: each triangle its own normal.
+  shading: 'smooth' | 'flat';
+  wires: boolean;
+  points: boolean;
+  /// The shape-outline over the mesh; fetched when first asked for.
+  outline: boolean;
+}
+
+export interface Settings {
+  /// Frames per second to hold while the camera moves, 1 … 240.
+  framesPerSecond: number;
+  /// Largest error on screen of a settled view, in pixels (of the viewport given to `update`).
+  threshold: number;
+  /// Bytes of all tiles in memory, those in GPU buffers included, never exceeded.
+  memoryBudget: number;
+}
+
+/// Kim & Lee's names: coarse whole view (all of the model is in view), zoomed sector view, deep zoom
+/// of the mesh (all that is in view are original triangles).
+export type Mode = 'CWV' | 'ZSV' | 'DZM';
+
+export interface Stats {
+  mode: Mode;
+  /// Measured while the camera moves; of the last movement when it stands still.
+  framesPerSecond: number;
+  moving: boolean;
+  /// The view stands still, and nothing is left to fetch or refine.
+  settled: boolean;
+  /// Tiles of the cut that are in the frustum, and what they hold.
+  tiles: number;
+  triangles: number;
+  vertices: number;
+  finestLevel: number;
+  coarsestLevel: number;
+  /// The most vertices that the rate asked for allows.
+  vertexBudget: number;
+  /// Largest error of what is shown, in pixels.
+  worstError: number;
+  residentTiles: number;
+  residentBytes: number;
+  /// The most that residentBytes ever was.
+  peakBytes: number;
+  memoryBudget: number;
+  /// Of files with tiles: as sent where the browser tells, else as unpacked.
+  fetchedBytes: number;
+  fetchedFiles: number;
+  /// What sending each settled view whole would have taken, and what of that was not sent.
+  wholeViewBytes: number;
+  savedBytes: number;
+  /// Tiles of settled views that were there already.
+  hits: number;
+  pending: number;
+  aborted: number;
+  failed: number;
+  evicted: number;
+  decodeMilliseconds: number;
+}
