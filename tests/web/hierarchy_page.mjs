@@ -78,13 +78,13 @@ async function settle() {
 /// A target of floats, and what is drawn into it of a scene with one material.
 const measured = new THREE.WebGLRenderTarget(1, 1, { type: THREE.FloatType, minFilter: THREE.NearestFilter, magFilter: THREE.NearestFilter });
 
-function measure(scene, material) {
+function measure(scene, material, from = camera) {
   const { width, height } = viewport;
   measured.setSize(width, height);
   renderer.setRenderTarget(measured);
   scene.overrideMaterial = material;
   renderer.clear();
-  renderer.render(scene, camera);
+  renderer.render(scene, from);
   scene.overrideMaterial = null;
   const pixels = new Float32Array(4 * width * height);
   renderer.readRenderTargetPixels(measured, 0, 0, width, height, pixels);
@@ -118,12 +118,24 @@ const crossingMaterial = new THREE.ShaderMaterial({
   fragmentShader: 'void main() { gl_FragColor = vec4(gl_FrontFacing ? 1.0 : -1.0, 0.0, 0.0, 1.0); }',
 });
 
-/// Rasterizers cut triangles off where the picture ends: the original's pixels there do not add up either.
-const CLIPPED = 4;
+/// Looks at the whole of the model from the side where the other camera is. Rasterizers that cut a triangle off at the end of
+/// the picture move its edges a little: here nothing is cut off.
+const judge = new THREE.PerspectiveCamera(40, 1, 1, 2);
 
-/// Pixels where a ray enters the surface more or less often than it leaves: there is a crack. Not one of a closed mesh.
+function placeJudge() {
+  const { center, radius } = sphere;
+  judge.position.copy(camera.position).sub(center).setLength(3.2 * radius).add(center);
+  judge.near = 2 * radius;
+  judge.far = 5 * radius;
+  judge.lookAt(center);
+  judge.updateProjectionMatrix();
+}
+
+/// Pixels where a ray enters the surface, anywhere in the cut, more or less often than it leaves: there is a crack. Not one of
+/// a closed mesh.
 function cracks() {
-  return measure(shown, crossingMaterial).reduce((sum, count, i) => sum + (count !== 1 && isInside(i, CLIPPED) ? 1 : 0), 0);
+  placeJudge();
+  return measure(shown, crossingMaterial, judge).reduce((sum, count) => sum + (count === 1 ? 0 : 1), 0);
 }
 
 /// Where one part of the surface ends before another: neighbours further from each other than a surface as steep as this.
