@@ -1,5 +1,6 @@
 // progressive.json: what a progressive stream is made from, and its files (docs/file_format.md,
 // section 7).
+import { JsonValue, type Fail } from '../json_value.js';
 
 export interface StreamFile {
   file: string;
@@ -38,34 +39,51 @@ const VERSION = 1;
 /// What does not belong to the stream, or is damaged. The message names the file.
 export class StreamError extends Error {}
 
-function isCount(value: unknown, most = Number.MAX_SAFE_INTEGER): value is number {
-  return typeof value === 'number' && Number.isInteger(value) && value >= 0 && value <= most;
+function readFile(file: JsonValue): StreamFile {
+  return {
+    file: file.at('file').fileName(),
+    level: file.at('level').count(),
+    vertices: file.at('vertices').count(),
+    triangles: file.at('triangles').count(),
+    merges: file.at('merges').count(),
+    shown_vertices: file.at('shown_vertices').count(),
+    shown_triangles: file.at('shown_triangles').count(),
+    bytes: file.at('bytes').count(),
+  };
 }
 
-const COUNTS = ['level', 'vertices', 'triangles', 'merges', 'shown_vertices', 'shown_triangles', 'bytes'] as const;
+function readAttributes(attributes: JsonValue): Attributes {
+  return {
+    normals: attributes.at('normals').flag(),
+    colours: attributes.at('colours').oneOf('none', 'u8', 'u16', 'f32'),
+    alpha: attributes.at('alpha').flag(),
+    texcoords: attributes.at('texcoords').flag(),
+  };
+}
 
 /// The index of a text. Throws StreamError.
 export function parseStreamIndex(text: string, name: string): StreamIndex {
-  let document: any;
-  try {
-    document = JSON.parse(text);
-  } catch {
-    throw new StreamError(`${name}: is not JSON`);
-  }
-  if (document?.format !== FORMAT) throw new StreamError(`${name}: is no index of a progressive stream`);
-  if (document.format_version !== VERSION)
-    throw new StreamError(`${name}: format version is ${document.format_version}, expected ${VERSION}`);
-  const sound =
-    isCount(document.vertices, 2 ** 32 - 1) &&
-    isCount(document.own_vertices, document.vertices) &&
-    isCount(document.triangles, 2 ** 32 - 1) &&
-    Array.isArray(document.origin) &&
-    Array.isArray(document.files) &&
-    document.files.length > 0 &&
-    document.files.every((file: any) => typeof file?.file === 'string' && COUNTS.every((key) => isCount(file[key]))) &&
-    ['none', 'u8', 'u16', 'f32'].includes(document.source?.attributes?.colours);
-  if (!sound) throw new StreamError(`${name}: a count, the origin, the attributes or the files are wrong`);
-  return document as StreamIndex;
+  const refuse: Fail = (what) => {
+    throw new StreamError(`${name}: ${what}`);
+  };
+  const root = JsonValue.parse(text, refuse);
+  root.at('format').oneOf(FORMAT);
+  const version = root.at('format_version').number();
+  if (version !== VERSION) refuse(`format version is ${version}, expected ${VERSION}`);
+  const files = root.at('files').items().map(readFile);
+  if (files.length === 0) refuse('it has no files');
+  const vertices = root.at('vertices').count(1, 2 ** 32 - 1);
+  const source = root.at('source');
+  return {
+    vertices,
+    own_vertices: root.at('own_vertices').count(0, vertices),
+    triangles: root.at('triangles').count(0, 2 ** 32 - 1),
+    origin: root.at('origin').triple(),
+    up: root.at('up').oneOf('y', 'z'),
+    licence: root.at('licence').text(),
+    source: { file_name: source.at('file_name').text(), attributes: readAttributes(source.at('attributes')) },
+    files,
+  };
 }
 
 /// Bytes that each value of a vertex is kept in: x, y, z, then the attributes.

@@ -1,0 +1,111 @@
+// From a viewpoint to the tiles that are drawn, and those that are asked for.
+import type { TileIndex, TileRecord } from '../hierarchy/tile_index.js';
+import { keyOf, type Node, type Tree } from '../hierarchy/tree.js';
+import { chooseCut, type Choice, type ChosenNode, type Sources } from './choose_cut.js';
+import type { TileStore, Wanted } from './tile_store.js';
+import { looksAway, type Vector, type Viewpoint } from './viewpoint.js';
+import { windingNumber } from './winding.js';
+
+export interface RefinementLimits {
+  readonly threshold: number;
+  readonly vertices: number;
+}
+
+export interface Refined {
+  /// A cut of tiles that are all there: as the view asks for, or coarser.
+  readonly drawn: readonly ChosenNode[];
+  /// Tiles of the cut asked for, or above it, that will come.
+  readonly missing: number;
+  /// More would be drawn if more vertices were allowed.
+  readonly limited: boolean;
+  /// Nothing is missing that the view asks for.
+  readonly isComplete: boolean;
+}
+
+/// Bytes that a tile may take, by its record.
+export type MostMemory = (record: TileRecord, node: Node) => number;
+
+const ROOT = keyOf(0, 0);
+/// Finer tiles have normals that their parents have not: so much more must a tile look away. Once refined, more still.
+const HIDDEN_MARGIN = 0.1;
+const HYSTERESIS_MARGIN = 0.2;
+/// A point is outside of a closed surface if less of it goes around.
+const OUTSIDE = 0.25;
+
+export class Refinement {
+  private refined = new Set<number>();
+  private largest = 0;
+
+  constructor(
+    private readonly tree: Tree,
+    private readonly index: TileIndex,
+    private readonly store: TileStore,
+    private readonly mostMemory: MostMemory,
+  ) {}
+
+  /// Throws HierarchyProblem if the index is damaged. Touches what must stay at the time `now`.
+  refine(view: Viewpoint, limits: RefinementLimits, now: number): Refined | null {
+    const room = this.store.budget - 2 * this.largest;
+    const choice = chooseCut(this.sources(view), view, { ...limits, bytes: room });
+    if (choice.root === null) return null;
+    this.refined = new Set(choice.refined.map(({ key }) => key));
+    this.touch(choice, now);
+    const missing = this.store.want(this.wanted(choice), now);
+    const drawn: ChosenNode[] = [];
+    this.collect(choice.root, drawn);
+    const { limited, incomplete } = choice;
+    return { drawn, missing, limited: limited.vertices, isComplete: missing === 0 && !incomplete };
+  }
+
+  private sources(view: Viewpoint): Sources {
+    const culls = this.isOutside(view.eye);
+    return {
+      tree: this.tree,
+      record: (node) => this.index.record(node),
+      bytesOf: (record, node) => {
+        const bytes = this.mostMemory(record, node);
+        this.largest = Math.max(this.largest, bytes);
+        return bytes;
+      },
+      isHidden: (key, record) => culls && this.isHidden(view, key, record),
+      wasRefined: (key) => this.refined.has(key),
+    };
+  }
+
+  /// From outside of a closed surface none of its back is seen.
+  private isOutside(eye: Vector): boolean {
+    const root = this.store.get(ROOT)?.tile;
+    if (!root?.closed) return false;
+    const inBox = eye.every((value, axis) => value >= root.box[axis] && value <= root.box[axis + 3]);
+    return !inBox || Math.abs(windingNumber(root, eye)) < OUTSIDE;
+  }
+
+  private isHidden(view: Viewpoint, key: number, record: TileRecord): boolean {
+    const cone = this.store.get(key)?.tile.cone;
+    const margin = HIDDEN_MARGIN + (this.refined.has(key) ? HYSTERESIS_MARGIN : 0);
+    return cone !== undefined && looksAway(view, record, cone, margin);
+  }
+
+  private touch({ root, refined }: Choice, now: number): void {
+    this.store.touch(root!.key, now);
+    for (const { children } of refined) for (const { key } of children) this.store.touch(key, now);
+  }
+
+  private wanted({ refined }: Choice): Wanted[] {
+    return refined.flatMap(({ children }) =>
+      children.map(({ node, record }) => {
+        const bytes = this.mostMemory(record, node);
+        // Its file, packed and unpacked, is in memory as well until it is decoded.
+        return { node, bytes, loadingBytes: 2 * bytes };
+      }),
+    );
+  }
+
+  private collect(chosen: ChosenNode, drawn: ChosenNode[]): void {
+    const { children } = chosen;
+    if (children.length > 0 && children.every(({ key }) => this.store.has(key)))
+      for (const child of children) this.collect(child, drawn);
+    else drawn.push(chosen);
+  }
+}
+

@@ -1,0 +1,146 @@
+// What a tile draws along its seams in a cut (docs/file_format.md, sections 4.5 and 4.6).
+import { HierarchyProblem } from '../hierarchy/problem.js';
+import type { Tile } from '../hierarchy/tile.js';
+import { keyOf, tilePath, type Tree } from '../hierarchy/tree.js';
+
+/// The tiles of a cut, by key.
+export type ShownTiles = ReadonlyMap<number, Tile>;
+
+/// Where a neighbour is shown: 0 at the tile's own level, n as its ancestor n levels up.
+const FINER = -1;
+const UNKNOWN = -2;
+
+export class Seam {
+  /// Of neighbour i: keys of it and its ancestors up to below the common one, at `keyStarts[i]` and after.
+  private readonly keys: Float64Array;
+  private readonly keyStarts: Uint32Array;
+  private readonly chainStarts: Uint32Array;
+  private readonly neighbourOf: Uint32Array;
+  private readonly coarser: Int8Array;
+  private readonly shown: (Tile | null)[];
+  /// Of each ghost: the vertex of `shown` that it is.
+  private readonly vertices: Uint16Array;
+
+  /// Throws if the tile's ghosts have not the chains that the tree asks for.
+  constructor(
+    private readonly tile: Tile,
+    tree: Tree,
+  ) {
+    const count = tile.neighbours.length;
+    this.keyStarts = new Uint32Array(count + 1);
+    this.chainStarts = new Uint32Array(count + 1);
+    this.neighbourOf = new Uint32Array(tile.ghosts);
+    this.coarser = new Int8Array(count).fill(UNKNOWN);
+    this.shown = new Array<Tile | null>(count).fill(null);
+    this.vertices = new Uint16Array(tile.ghosts);
+    this.keys = this.placeChains(tree);
+    if (this.chainStarts[count] !== tile.chains.length) this.fail('its chains are not all there');
+  }
+
+  /// Bytes that this holds besides the tile.
+  get bytes(): number {
+    return this.keys.byteLength + 9 * this.coarser.length + 6 * this.vertices.length;
+  }
+
+  private fail(what: string): never {
+    throw new HierarchyProblem(tilePath(this.tile), what);
+  }
+
+  private placeChains(tree: Tree): Float64Array {
+    const { level, index, neighbours, ghostStarts } = this.tile;
+    const keys: number[] = [];
+    neighbours.forEach((neighbour, i) => {
+      if (neighbour === index || neighbour >= this.nodesOn(level, tree)) this.fail('a neighbour that is no node');
+      const common = tree.commonLevel(level, index, neighbour);
+      for (let l = level; l > common; --l) keys.push(keyOf(l, tree.ancestor(level, neighbour, l)));
+      this.keyStarts[i + 1] = keys.length;
+      const ghosts = ghostStarts[i + 1] - ghostStarts[i];
+      this.chainStarts[i + 1] = this.chainStarts[i] + ghosts * (level - common);
+      this.neighbourOf.fill(i, ghostStarts[i], ghostStarts[i + 1]);
+    });
+    return Float64Array.from(keys);
+  }
+
+  private nodesOn(level: number, tree: Tree): number {
+    return level === tree.lastLevel ? tree.partitions : 2 ** level;
+  }
+
+  /// Looks up where the neighbours are shown; true if that differs from last time.
+  look(cut: ShownTiles): boolean {
+    let changed = false;
+    for (let i = 0; i < this.coarser.length; ++i) {
+      const coarser = this.find(cut, i);
+      changed ||= coarser !== this.coarser[i];
+      this.coarser[i] = coarser;
+      this.shown[i] = coarser === FINER ? null : cut.get(this.keys[this.keyStarts[i] + coarser])!;
+    }
+    return changed;
+  }
+
+  private find(cut: ShownTiles, neighbour: number): number {
+    const start = this.keyStarts[neighbour];
+    const levels = this.keyStarts[neighbour + 1] - start;
+    for (let up = 0; up < levels; ++up) if (cut.has(this.keys[start + up])) return up;
+    return FINER;
+  }
+
+  /// Holds no other tile any longer; the next look is a change.
+  forget(): void {
+    this.coarser.fill(UNKNOWN);
+    this.shown.fill(null);
+  }
+
+  /// Gives the ghosts the places and attributes of the vertices that they are in the cut last looked at, and puts the
+  /// border triangles to draw behind the interior ones. Returns their number.
+  resolve(): number {
+    for (let i = 0; i < this.shown.length; ++i) this.resolveGhosts(i);
+    const { border, indices, interiorCount } = this.tile;
+    let end = 3 * interiorCount;
+    for (let t = 0; t < border.length; t += 3) {
+      if (!this.isDrawn(border[t], border[t + 1], border[t + 2])) continue;
+      for (let corner = 0; corner < 3; ++corner) indices[end++] = border[t + corner];
+    }
+    return end / 3 - interiorCount;
+  }
+
+  private resolveGhosts(neighbour: number): void {
+    const from = this.shown[neighbour];
+    if (from === null) return;
+    const { ghostStarts, chains } = this.tile;
+    const levels = this.keyStarts[neighbour + 1] - this.keyStarts[neighbour];
+    let entry = this.chainStarts[neighbour] + this.coarser[neighbour];
+    for (let ghost = ghostStarts[neighbour]; ghost < ghostStarts[neighbour + 1]; ++ghost, entry += levels) {
+      const vertex = chains[entry];
+      if (vertex >= from.own) this.fail('a ghost that is no vertex of its tile');
+      this.vertices[ghost] = vertex;
+      this.copyVertex(from, vertex, this.tile.own + ghost);
+    }
+  }
+
+  private copyVertex(from: Tile, source: number, target: number): void {
+    const { positions, normals, colours } = this.tile;
+    for (let k = 0; k < 3; ++k) positions[3 * target + k] = from.positions[3 * source + k];
+    for (let k = 0; k < 4; ++k) normals[4 * target + k] = from.normals[4 * source + k];
+    if (colours && from.colours) for (let k = 0; k < 4; ++k) colours[4 * target + k] = from.colours[4 * source + k];
+  }
+
+  private isDrawn(a: number, b: number, c: number): boolean {
+    return this.leavesItToUs(a) && this.leavesItToUs(b) && this.leavesItToUs(c) &&
+      !this.isSame(a, b) && !this.isSame(b, c) && !this.isSame(c, a);
+  }
+
+  /// Whether the tile of a corner is shown coarser, or at the same level with a larger number; ours does.
+  private leavesItToUs(corner: number): boolean {
+    if (corner < this.tile.own) return true;
+    const neighbour = this.neighbourOf[corner - this.tile.own];
+    const coarser = this.coarser[neighbour];
+    return coarser > 0 || (coarser === 0 && this.tile.neighbours[neighbour] > this.tile.index);
+  }
+
+  private isSame(one: number, other: number): boolean {
+    const { own } = this.tile;
+    if (one < own || other < own) return one === other;
+    if (this.vertices[one - own] !== this.vertices[other - own]) return false;
+    return this.shown[this.neighbourOf[one - own]] === this.shown[this.neighbourOf[other - own]];
+  }
+}

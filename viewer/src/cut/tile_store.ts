@@ -1,0 +1,266 @@
+// The tiles in memory and on their way: a tree from the root down, within a budget of bytes.
+import { Seam } from './seam.js';
+import type { Tile } from '../hierarchy/tile.js';
+import { keyOf, type Node, type Tree } from '../hierarchy/tree.js';
+
+export interface ResidentTile {
+  readonly node: Node;
+  readonly key: number;
+  readonly tile: Tile;
+  readonly seam: Seam;
+  /// Of the tile in memory and in GPU buffers.
+  bytes: number;
+}
+
+export interface Wanted {
+  readonly node: Node;
+  /// What the tile takes in memory, at most, and more while it is on its way.
+  readonly bytes: number;
+  readonly loadingBytes: number;
+}
+
+/// How tiles come, and what is told of them.
+export interface StoreHost {
+  load(node: Node, signal: AbortSignal): Promise<Tile>;
+  bytesOf(tile: Tile, seam: Seam): number;
+  came(tile: ResidentTile): void;
+  gone(tile: ResidentTile): void;
+  failed(node: Node, problem: unknown): void;
+}
+
+interface Entry {
+  readonly node: Node;
+  readonly key: number;
+  readonly parent: number | null;
+  /// What is counted for it.
+  bytes: number;
+  resident: ResidentTile | null;
+  readonly abort: AbortController;
+  /// Children that are there or on their way.
+  below: number;
+  /// Of the last request that named it, or drawn it.
+  useful: number;
+}
+
+/// A request that no view asks for any more goes on for a while: views come back.
+const PATIENCE_MS = 300;
+/// A file that failed is asked for again after this time, longer each time.
+const RETRY_MS = 2000;
+const MOST_TRIES = 4;
+
+interface Failure {
+  tries: number;
+  again: number;
+}
+
+export class TileStore {
+  fetched = 0;
+  aborted = 0;
+  evicted = 0;
+  peakBytes = 0;
+  usedBytes = 0;
+  private readonly entries = new Map<number, Entry>();
+  private readonly failures = new Map<number, Failure>();
+  private loading = 0;
+  private isOver = false;
+
+  constructor(
+    private readonly host: StoreHost,
+    private readonly tree: () => Tree,
+    public budget: number,
+    private readonly requests: number,
+  ) {}
+
+  /// Puts the root there: it never goes.
+  addRoot(tile: Tile, tree: Tree): ResidentTile {
+    const entry = this.enter({ level: 0, index: 0 }, 0, 0);
+    return this.arrive(entry, tile, tree);
+  }
+
+  get(key: number): ResidentTile | undefined {
+    return this.entries.get(key)?.resident ?? undefined;
+  }
+
+  has(key: number): boolean {
+    return this.get(key) !== undefined;
+  }
+
+  get pending(): number {
+    return this.loading;
+  }
+
+  *residents(): Iterable<ResidentTile> {
+    for (const { resident } of this.entries.values()) if (resident) yield resident;
+  }
+
+  get residentCount(): number {
+    return this.entries.size - this.loading;
+  }
+
+  /// Marks a tile as of use at the time `now`.
+  touch(key: number, now: number): void {
+    const entry = this.entries.get(key);
+    if (entry) entry.useful = now;
+  }
+
+  /// Asks for tiles, most urgent first, each after those above it; aborts what was asked for and is no longer
+  /// wanted. What must stay has been touched at `now`. Returns the number of those not there yet that will come.
+  want(wanted: readonly Wanted[], now: number): number {
+    for (const { node } of wanted) this.touch(keyOf(node.level, node.index), now);
+    this.abortStale(now);
+    let missing = 0;
+    let isFull = false;
+    for (const each of wanted) {
+      const key = keyOf(each.node.level, each.node.index);
+      if (this.has(key) || this.isGivenUp(key)) continue;
+      ++missing;
+      if (this.entries.has(key) || isFull || this.loading >= this.requests || this.mustWait(key, now)) continue;
+      isFull = !this.start(each, key, now);
+    }
+    return missing;
+  }
+
+  /// Counts all tiles anew: what a tile takes has changed.
+  recount(): void {
+    for (const entry of this.entries.values()) {
+      if (!entry.resident) continue;
+      const bytes = this.host.bytesOf(entry.resident.tile, entry.resident.seam);
+      this.count(bytes - entry.bytes);
+      entry.bytes = bytes;
+      entry.resident.bytes = bytes;
+    }
+  }
+
+  /// Drops least recently useful tiles until `bytes` more fit; false if what is left is useful at `now`.
+  makeRoom(bytes: number, now: number): boolean {
+    if (this.usedBytes + bytes <= this.budget) return true;
+    const candidates = [...this.entries.values()].filter((entry) => this.canGo(entry, now));
+    candidates.sort((a, b) => a.useful - b.useful || b.key - a.key);
+    for (const entry of candidates) {
+      this.evict(entry);
+      if (this.usedBytes + bytes <= this.budget) return true;
+    }
+    // Parents whose children went may go now.
+    return candidates.length > 0 && this.makeRoom(bytes, now);
+  }
+
+  dispose(): void {
+    this.isOver = true;
+    for (const entry of this.entries.values()) entry.abort.abort();
+    for (const resident of this.residents()) this.host.gone(resident);
+    this.entries.clear();
+  }
+
+  private canGo(entry: Entry, now: number): boolean {
+    return entry.resident !== null && entry.below === 0 && entry.useful < now && entry.parent !== null;
+  }
+
+  private count(bytes: number): void {
+    this.usedBytes += bytes;
+    this.peakBytes = Math.max(this.peakBytes, this.usedBytes);
+  }
+
+  private enter(node: Node, bytes: number, now: number): Entry {
+    const key = keyOf(node.level, node.index);
+    const above = node.level === 0 ? null : this.tree().parent(node);
+    const parent = above ? keyOf(above.level, above.index) : null;
+    const entry: Entry = { node, key, parent, bytes, resident: null, abort: new AbortController(), below: 0, useful: now };
+    this.entries.set(key, entry);
+    this.count(bytes);
+    if (parent !== null) ++this.entries.get(parent)!.below;
+    return entry;
+  }
+
+  private remove(entry: Entry): void {
+    this.entries.delete(entry.key);
+    this.count(-entry.bytes);
+    const above = entry.parent === null ? undefined : this.entries.get(entry.parent);
+    if (above) --above.below;
+  }
+
+  private evict(entry: Entry): void {
+    this.remove(entry);
+    ++this.evicted;
+    if (entry.resident) this.host.gone(entry.resident);
+  }
+
+  private start({ node, loadingBytes }: Wanted, key: number, now: number): boolean {
+    const above = this.tree().parent(node);
+    if (above && !this.entries.has(keyOf(above.level, above.index))) return true; // after the one above it
+    if (!this.makeRoom(loadingBytes, now)) return false;
+    const entry = this.enter(node, loadingBytes, now);
+    ++this.loading;
+    this.host.load(node, entry.abort.signal).then(
+      (tile) => {
+        this.finish(entry, tile);
+      },
+      (problem: unknown) => {
+        this.fail(entry, key, problem);
+      },
+    );
+    return true;
+  }
+
+  private finish(entry: Entry, tile: Tile): void {
+    if (this.isOver || entry.abort.signal.aborted) return;
+    --this.loading;
+    try {
+      this.arrive(entry, tile, this.tree());
+      this.failures.delete(entry.key);
+    } catch (problem) {
+      ++this.loading;
+      this.fail(entry, entry.key, problem);
+    }
+  }
+
+  private arrive(entry: Entry, tile: Tile, tree: Tree): ResidentTile {
+    const seam = new Seam(tile, tree);
+    const bytes = this.host.bytesOf(tile, seam);
+    const resident: ResidentTile = { node: entry.node, key: entry.key, tile, seam, bytes };
+    this.count(bytes - entry.bytes);
+    entry.bytes = bytes;
+    entry.resident = resident;
+    ++this.fetched;
+    this.host.came(resident);
+    return resident;
+  }
+
+  private fail(entry: Entry, key: number, problem: unknown): void {
+    if (this.isOver || entry.abort.signal.aborted) return;
+    const tries = (this.failures.get(key)?.tries ?? 0) + 1;
+    this.failures.set(key, { tries, again: entry.useful + RETRY_MS * 2 ** (tries - 1) });
+    this.drop(entry);
+    this.host.failed(entry.node, problem);
+  }
+
+  /// Removes an entry and all below it.
+  private drop(entry: Entry): void {
+    for (const below of [...this.entries.values()].filter(({ parent }) => parent === entry.key)) this.cancel(below);
+    if (entry.resident) {
+      this.evict(entry);
+      return;
+    }
+    --this.loading;
+    this.remove(entry);
+  }
+
+  private cancel(entry: Entry): void {
+    if (!entry.resident) ++this.aborted;
+    entry.abort.abort();
+    this.drop(entry);
+  }
+
+  private abortStale(now: number): void {
+    for (const entry of [...this.entries.values()])
+      if (!entry.resident && this.entries.has(entry.key) && entry.useful < now - PATIENCE_MS) this.cancel(entry);
+  }
+
+  private isGivenUp(key: number): boolean {
+    return (this.failures.get(key)?.tries ?? 0) >= MOST_TRIES;
+  }
+
+  private mustWait(key: number, now: number): boolean {
+    return now < (this.failures.get(key)?.again ?? 0);
+  }
+}
+

@@ -1,0 +1,67 @@
+// Where a mesh is looked at from: what of a tile is in view, and how large its error is there.
+import type { Cone } from '../hierarchy/normals.js';
+
+export type Vector = readonly [number, number, number];
+
+export interface Viewpoint {
+  readonly eye: Vector;
+  /// Inside is where x * a + y * b + z * c + d >= 0, of each plane; (a, b, c) of unit length.
+  readonly planes: readonly (readonly [number, number, number, number])[];
+  /// Pixels that one unit takes at distance 1.
+  readonly pixels: number;
+  /// Nothing closer is drawn; above 0.
+  readonly near: number;
+}
+
+export interface Box {
+  readonly min: Vector;
+  readonly max: Vector;
+}
+
+/// Whether a part of the box may be in view.
+export function isInView({ planes }: Viewpoint, { min, max }: Box): boolean {
+  return planes.every(([a, b, c, d]) => {
+    const x = a > 0 ? max[0] : min[0];
+    const y = b > 0 ? max[1] : min[1];
+    const z = c > 0 ? max[2] : min[2];
+    return a * x + b * y + c * z + d >= 0;
+  });
+}
+
+/// Whether all of the box is in view.
+export function isWhollyInView({ planes }: Viewpoint, { min, max }: Box): boolean {
+  return planes.every(([a, b, c, d]) => {
+    const x = a > 0 ? min[0] : max[0];
+    const y = b > 0 ? min[1] : max[1];
+    const z = c > 0 ? min[2] : max[2];
+    return a * x + b * y + c * z + d >= 0;
+  });
+}
+
+function distance({ eye }: Viewpoint, { min, max }: Box): number {
+  let squared = 0;
+  for (let axis = 0; axis < 3; ++axis) {
+    const outside = Math.max(min[axis] - eye[axis], 0, eye[axis] - max[axis]);
+    squared += outside * outside;
+  }
+  return Math.sqrt(squared);
+}
+
+/// Pixels that a length in the box takes, at most.
+export function pixelsOf(view: Viewpoint, box: Box, length: number): number {
+  return (length * view.pixels) / Math.max(distance(view, box), view.near);
+}
+
+/// Whether all directions of the cone look away from the eye, from anywhere in the box, by `margin` radians more
+/// than they must.
+export function looksAway({ eye }: Viewpoint, { min, max }: Box, { axis, cosine }: Cone, margin: number): boolean {
+  if (cosine <= 0) return false;
+  const to = [0, 1, 2].map((k) => eye[k] - (min[k] + max[k]) / 2);
+  const radius = Math.hypot(max[0] - min[0], max[1] - min[1], max[2] - min[2]) / 2;
+  const far = Math.hypot(to[0], to[1], to[2]);
+  if (far <= radius) return false;
+  const slack = Math.acos(cosine) + Math.asin(radius / far) + margin;
+  if (slack >= Math.PI / 2) return false;
+  const towards = (axis[0] * to[0] + axis[1] * to[1] + axis[2] * to[2]) / far;
+  return towards < -Math.sin(slack);
+}

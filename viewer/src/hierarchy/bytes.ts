@@ -1,0 +1,80 @@
+// Files over HTTP, or over whatever `fetch` is given.
+import { HierarchyProblem } from './problem.js';
+
+export type Fetch = (url: string, init?: RequestInit) => Promise<Response>;
+
+function isGzip(bytes: Uint8Array): boolean {
+  return bytes[0] === 0x1f && bytes[1] === 0x8b;
+}
+
+/// At most `most` bytes of a stream; more is a problem of `name`.
+async function drain(stream: ReadableStream<Uint8Array>, most: number, name: string): Promise<Uint8Array<ArrayBuffer>> {
+  const pieces: Uint8Array[] = [];
+  let length = 0;
+  const reader = stream.getReader();
+  for (;;) {
+    const { done, value } = await reader.read();
+    if (done) break;
+    length += value.length;
+    if (length > most) {
+      await reader.cancel();
+      throw new HierarchyProblem(name, `larger than ${most} bytes`);
+    }
+    pieces.push(value);
+  }
+  const all = new Uint8Array(length);
+  let at = 0;
+  for (const piece of pieces) {
+    all.set(piece, at);
+    at += piece.length;
+  }
+  return all;
+}
+
+/// A host that does not send Content-Encoding with a file in gzip leaves it to us.
+async function unpacked(bytes: Uint8Array<ArrayBuffer>, most: number, name: string): Promise<Uint8Array<ArrayBuffer>> {
+  if (!isGzip(bytes)) return bytes;
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'));
+  try {
+    return await drain(stream, most, name);
+  } catch (problem) {
+    if (problem instanceof HierarchyProblem) throw problem;
+    throw new HierarchyProblem(name, 'its gzip is damaged');
+  }
+}
+
+async function respond(fetch: Fetch, url: string, name: string, init: RequestInit): Promise<Response> {
+  let response: Response;
+  try {
+    response = await fetch(url, init);
+  } catch (problem) {
+    if (init.signal?.aborted) throw problem;
+    throw new HierarchyProblem(name, `could not be fetched (${String(problem)}); is the host up, and does it allow this page?`);
+  }
+  if (!response.ok) throw new HierarchyProblem(name, `the host answered ${response.status}`);
+  return response;
+}
+
+/// The content of a file of at most `most` bytes, out of its gzip.
+export async function fetchBytes(
+  fetch: Fetch,
+  url: string,
+  name: string,
+  most: number,
+  init: RequestInit = {},
+): Promise<Uint8Array<ArrayBuffer>> {
+  const response = await respond(fetch, url, name, init);
+  if (response.body === null) throw new HierarchyProblem(name, 'is empty');
+  return unpacked(await drain(response.body, most, name), most, name);
+}
+
+/// Bytes [first, end) of a file, or all of it (at most `most`) where the host knows no ranges.
+export async function fetchRange(
+  fetch: Fetch,
+  url: string,
+  name: string,
+  [first, end]: [number, number],
+  most: number,
+): Promise<Uint8Array<ArrayBuffer>> {
+  return fetchBytes(fetch, url, name, most, { headers: { Range: `bytes=${first}-${end - 1}` } });
+}

@@ -1,0 +1,23 @@
+import type { Indices } from './tile.js';
+
+const SPAN = 65536; // above any vertex's number here
+
+/// Whether each edge of the triangles is used as often in one direction as in the other. O(n log n).
+export function isClosed(triangles: Indices): boolean {
+  const edges = new Float64Array(triangles.length);
+  for (let t = 0; t < triangles.length; t += 3)
+    for (let corner = 0; corner < 3; ++corner) {
+      const from = triangles[t + corner];
+      const to = triangles[t + ((corner + 1) % 3)];
+      // The direction is the lowest bit: both ways lie side by side when sorted.
+      edges[t + corner] = 2 * (Math.min(from, to) * SPAN + Math.max(from, to)) + (from < to ? 0 : 1);
+    }
+  edges.sort();
+  let balance = 0;
+  for (let i = 0; i < edges.length; ++i) {
+    balance += edges[i] % 2 === 0 ? 1 : -1;
+    const ends = i + 1 === edges.length || Math.floor(edges[i] / 2) !== Math.floor(edges[i + 1] / 2);
+    if (ends && balance !== 0) return false;
+  }
+  return triangles.length > 0;
+}

@@ -1,0 +1,94 @@
+// glTF binaries as meshhier writes them (docs/file_format.md, sections 4.2 to 4.4 and 4.8): the container, and
+// the sections of its BIN chunk, out of their compression.
+import { MeshoptDecoder } from 'meshoptimizer/decoder';
+import { HierarchyProblem } from './problem.js';
+
+interface Compressed {
+  byteOffset?: number;
+  byteLength: number;
+  byteStride: number;
+  count: number;
+  mode: string;
+  filter?: string;
+}
+
+interface BufferView {
+  byteOffset?: number;
+  byteLength: number;
+  extensions?: { EXT_meshopt_compression?: Compressed };
+}
+
+export interface Gltf {
+  nodes: { matrix?: number[]; translation?: number[]; scale?: number[] }[];
+  meshes: { primitives: { attributes: Record<string, number>; indices?: number; mode: number }[] }[];
+  accessors: { bufferView: number; componentType: number; count: number; type: string; min?: number[]; max?: number[] }[];
+  bufferViews: BufferView[];
+  extensions: Record<string, Record<string, number>>;
+}
+
+const MAGIC = 0x46546c67; // "glTF"
+const JSON_CHUNK = 0x4e4f534a;
+const BIN_CHUNK = 0x004e4942;
+const MOST_JSON = 65536;
+
+export class Glb {
+  private constructor(
+    readonly gltf: Gltf,
+    private readonly bin: Uint8Array,
+    private readonly name: string,
+  ) {}
+
+  static read(bytes: Uint8Array, name: string): Glb {
+    const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+    const u32 = (at: number): number => (at + 4 <= bytes.length ? view.getUint32(at, true) : 0);
+    if (u32(0) !== MAGIC || u32(4) !== 2) throw new HierarchyProblem(name, 'not a glTF binary');
+    const jsonBytes = u32(12);
+    if (u32(8) !== bytes.length || u32(16) !== JSON_CHUNK || jsonBytes > MOST_JSON || 20 + jsonBytes > bytes.length)
+      throw new HierarchyProblem(name, 'its length is not what it says');
+    const begin = 28 + jsonBytes;
+    const hasBin = bytes.length > 20 + jsonBytes;
+    if (hasBin && (u32(begin - 4) !== BIN_CHUNK || begin + u32(begin - 8) !== bytes.length))
+      throw new HierarchyProblem(name, 'its chunks are not what it says');
+    return new Glb(Glb.parse(bytes.subarray(20, 20 + jsonBytes), name), bytes.subarray(hasBin ? begin : bytes.length), name);
+  }
+
+  private static parse(text: Uint8Array, name: string): Gltf {
+    try {
+      return JSON.parse(new TextDecoder().decode(text)) as Gltf;
+    } catch {
+      throw new HierarchyProblem(name, 'its JSON is damaged');
+    }
+  }
+
+  /// The bytes of a section that must have `length`; those of number -1 are none.
+  section(number: number, length: number): Uint8Array {
+    if (number === -1 && length === 0) return new Uint8Array(0);
+    const view = this.gltf.bufferViews?.[number];
+    if (view?.byteLength !== length) this.fail(`section ${number} has not the ${length} bytes that its counts say`);
+    const compressed = view.extensions?.EXT_meshopt_compression;
+    return compressed ? this.decompress(compressed, length) : this.slice(view.byteOffset ?? 0, length);
+  }
+
+  private decompress(of: Compressed, length: number): Uint8Array {
+    if (of.count * of.byteStride !== length) this.fail('a compressed section of another size');
+    const target = new Uint8Array(length);
+    try {
+      const source = this.slice(of.byteOffset ?? 0, of.byteLength);
+      MeshoptDecoder.decodeGltfBuffer(target, of.count, of.byteStride, source, of.mode, of.filter);
+    } catch (problem) {
+      if (problem instanceof HierarchyProblem) throw problem;
+      this.fail('a compressed section is damaged');
+    }
+    return target;
+  }
+
+  private slice(offset: number, length: number): Uint8Array {
+    const inside = Number.isInteger(offset) && Number.isInteger(length) && offset >= 0 && length >= 0;
+    if (!inside || offset + length > this.bin.length) this.fail('a section lies outside the file');
+    return this.bin.subarray(offset, offset + length);
+  }
+
+  fail(what: string): never {
+    throw new HierarchyProblem(this.name, what);
+  }
+}

@@ -1,0 +1,74 @@
+// The manifest, hierarchy.json (docs/file_format.md, section 2): what a viewer needs of it, checked.
+import { JsonValue, type Fail } from '../json_value.js';
+import { HierarchyProblem } from './problem.js';
+
+export interface Manifest {
+  readonly source: {
+    readonly fileName: string;
+    readonly fileBytes: number;
+    readonly vertices: number;
+    readonly triangles: number;
+    readonly hasColours: boolean;
+    readonly hasNormals: boolean;
+  };
+  /// Add to stored positions for input coordinates.
+  readonly origin: readonly [number, number, number];
+  /// What decoded tiles' positions are relative to, itself relative to the origin: not 0 on a lattice of 16-bit numbers.
+  readonly place: readonly [number, number, number];
+  readonly up: 'y' | 'z';
+  readonly licence: string;
+  readonly partitions: number;
+  readonly totalBytes: number;
+  readonly index: { readonly file: string; readonly bytes: number };
+  readonly outline: { readonly file: string; readonly bytes: number };
+}
+
+const FILE = 'hierarchy.json';
+const FORMAT_VERSION = 4;
+const LEAST_INDEX = 128; // a header and a record
+const MOST_OUTLINE = 2 ** 20;
+
+const MOST_SHORT_BITS = 16;
+
+function readPlace(positions: JsonValue): [number, number, number] {
+  if (positions.isNull() || positions.at('bits').count(8, 24) > MOST_SHORT_BITS) return [0, 0, 0];
+  return positions.at('corner').triple();
+}
+
+function readSource(source: JsonValue): Manifest['source'] {
+  const attributes = source.at('attributes');
+  return {
+    fileName: source.at('file_name').text(),
+    fileBytes: source.at('file_bytes').number(),
+    vertices: source.at('vertices').count(1, 2 ** 32 - 1),
+    triangles: source.at('triangles').count(),
+    hasColours: attributes.at('colours').oneOf('none', 'u8', 'u16', 'f32') !== 'none',
+    hasNormals: attributes.at('normals').flag(),
+  };
+}
+
+function readFile(file: JsonValue, leastBytes: number, mostBytes?: number): { file: string; bytes: number } {
+  return { file: file.at('file').fileName(), bytes: file.at('bytes').count(leastBytes, mostBytes) };
+}
+
+/// Throws HierarchyProblem.
+export function readManifest(text: string): Manifest {
+  const refuse: Fail = (what) => {
+    throw new HierarchyProblem(FILE, what);
+  };
+  const root = JsonValue.parse(text, refuse);
+  root.at('format').oneOf('meshhier');
+  const version = root.at('format_version').number();
+  if (version !== FORMAT_VERSION) refuse(`format version ${version}; this viewer knows ${FORMAT_VERSION}`);
+  return {
+    source: readSource(root.at('source')),
+    origin: root.at('origin').triple(),
+    place: readPlace(root.at('storage').at('positions')),
+    up: root.at('up').oneOf('y', 'z'),
+    licence: root.at('licence').text(),
+    partitions: root.at('partitions').count(1, 2 ** 32 - 1),
+    totalBytes: root.at('total_bytes').count(),
+    index: readFile(root.at('index'), LEAST_INDEX),
+    outline: readFile(root.at('outline'), 1, MOST_OUTLINE),
+  };
+}

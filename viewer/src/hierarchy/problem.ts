@@ -1,0 +1,8 @@
+/// What is wrong with a file, and which one it is. Everything in this library throws these for bad
+/// input; anything else is a defect.
+export class HierarchyProblem extends Error {
+  override readonly name = 'HierarchyProblem';
+  constructor(file: string, what: string) {
+    super(`${file}: ${what}`);
+  }
+}

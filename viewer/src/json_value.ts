@@ -1,0 +1,73 @@
+// JSON of strangers: each value is asked for as the type that it must have.
+
+/// What is wrong; must throw.
+export type Fail = (what: string) => never;
+
+export class JsonValue {
+  private constructor(
+    private readonly value: unknown,
+    private readonly path: string,
+    private readonly refuse: Fail,
+  ) {}
+
+  static parse(text: string, refuse: Fail): JsonValue {
+    let value: unknown;
+    try {
+      value = JSON.parse(text);
+    } catch {
+      refuse('not JSON');
+    }
+    return new JsonValue(value, '', refuse);
+  }
+
+  private fail(expected: string): never {
+    return this.refuse(this.path === '' ? `not ${expected}` : `"${this.path}" is not ${expected}`);
+  }
+
+  at(key: string | number): JsonValue {
+    if (typeof this.value !== 'object' || this.value === null) this.fail('an object');
+    const below = Object.hasOwn(this.value, key) ? (this.value as Record<string | number, unknown>)[key] : undefined;
+    return new JsonValue(below, this.path === '' ? String(key) : `${this.path}.${key}`, this.refuse);
+  }
+
+  items(): JsonValue[] {
+    if (!Array.isArray(this.value)) this.fail('an array');
+    return this.value.map((_, i) => this.at(i));
+  }
+
+  isNull(): boolean {
+    return this.value === null;
+  }
+
+  flag(): boolean {
+    return typeof this.value === 'boolean' ? this.value : this.fail('true or false');
+  }
+
+  text(): string {
+    return typeof this.value === 'string' ? this.value : this.fail('a text');
+  }
+
+  oneOf<Text extends string>(...texts: readonly Text[]): Text {
+    return texts.find((text) => text === this.value) ?? this.fail(`one of ${texts.join(', ')}`);
+  }
+
+  number(): number {
+    return typeof this.value === 'number' && Number.isFinite(this.value) ? this.value : this.fail('a number');
+  }
+
+  /// An integer from `least` to `most`.
+  count(least = 0, most = Number.MAX_SAFE_INTEGER): number {
+    const value = this.number();
+    return Number.isInteger(value) && value >= least && value <= most ? value : this.fail(`from ${least} to ${most}`);
+  }
+
+  triple(): [number, number, number] {
+    return [this.at(0).number(), this.at(1).number(), this.at(2).number()];
+  }
+
+  /// Of a file that lies beside the one that names it.
+  fileName(): string {
+    const name = this.text();
+    return /^[A-Za-z0-9_]+\.[a-z0-9]+$/.test(name) ? name : this.fail('a file name');
+  }
+}

@@ -1,0 +1,301 @@
+// A hierarchy as an object of a three scene: loads what the view needs, draws one cut without cracks.
+import { Box3, Group, Matrix4, Vector3, type Object3DEventMap, type PerspectiveCamera } from 'three';
+import type { ChosenNode } from '../cut/choose_cut.js';
+import { FrameRate } from '../cut/frame_rate.js';
+import { Refinement, type Refined } from '../cut/refinement.js';
+import { TileStore, type ResidentTile } from '../cut/tile_store.js';
+import { isWhollyInView, type Viewpoint } from '../cut/viewpoint.js';
+import type { Fetch } from '../hierarchy/bytes.js';
+import type { Manifest } from '../hierarchy/manifest.js';
+import { RemoteHierarchy, type Directory } from '../hierarchy/remote_hierarchy.js';
+import type { Tile } from '../hierarchy/tile.js';
+import { TileDecoder } from '../hierarchy/tile_decoder.js';
+import { Tree, keyOf, type Node } from '../hierarchy/tree.js';
+import { Account } from './account.js';
+import { Motion, REST_MS, viewpointOf, type Viewport } from './motion.js';
+import type { Look, Mode, Settings, Stats } from './settings.js';
+import { memoryOf, mostMemory } from './tile_object.js';
+import { TileScene } from './tile_scene.js';
+
+export interface ViewOptions {
+  settings?: Partial<Settings>;
+  look?: Partial<Look>;
+  /// Makes a worker of the module `tile_worker`; without it tiles are decoded where the view is.
+  createWorker?: () => Worker;
+  workers?: number;
+  /// Instead of the global one.
+  fetch?: Fetch;
+  /// Most tiles on their way at once.
+  requests?: number;
+}
+
+export interface ViewEvents extends Object3DEventMap {
+  /// There is something new to draw: call `update` before the next frame.
+  change: object;
+  /// A file failed; the view goes on with what it has.
+  problem: { message: string };
+}
+
+const SETTINGS: Settings = { framesPerSecond: 30, threshold: 1, memoryBudget: 256e6 };
+const LOOK: Look = { colours: 'vertex', shading: 'smooth', wires: false, points: false, outline: false };
+const WORKERS = 2;
+const REQUESTS = 6; // what browsers open to a host at once
+const LONGEST_FRAME_MS = 1000; // a longer one was no frame: the page slept
+const RETRY_MS = 1000;
+const ROOT: Node = { level: 0, index: 0 };
+const ROOT_KEY = keyOf(0, 0);
+/// (x, y, z) to (x, z, -y).
+const UPRIGHT = new Matrix4().set(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
+
+export class HierarchyView extends Group<ViewEvents> {
+  /// Resolves when the root can be drawn: after one request. Rejects with an Error that names the file.
+  readonly opened: Promise<void>;
+  /// Of the model, upright, in the coordinates of this group.
+  readonly box = new Box3();
+  manifest: Manifest | null = null;
+
+  private currentSettings: Settings;
+  private currentLook: Look;
+  private readonly decoder: TileDecoder;
+  private readonly remote: RemoteHierarchy;
+  private readonly store: TileStore;
+  private readonly tiles = new TileScene();
+  private readonly account = new Account();
+  private readonly rate: FrameRate;
+  private readonly motion = new Motion();
+  private readonly epochs = new Map<number, number>();
+  private directory: Directory | null = null;
+  private refinement: Refinement | null = null;
+  private drawn: readonly ChosenNode[] = [];
+  private viewpoint: Viewpoint | null = null;
+  private state: Refined | null = null;
+  private isDirty = false;
+  private wasMoving = false;
+  private lastFrame = 0;
+  private failed = 0;
+  private timer: ReturnType<typeof setTimeout> | null = null;
+  private isOver = false;
+
+  /// `url`: of the hierarchy's directory.
+  constructor(url: string, options: ViewOptions = {}) {
+    super();
+    this.currentSettings = { ...SETTINGS, ...options.settings };
+    this.currentLook = { ...LOOK, ...options.look };
+    this.decoder = new TileDecoder(options.createWorker, options.workers ?? WORKERS);
+    const fetch: Fetch = options.fetch ?? ((input, init) => globalThis.fetch(input, init));
+    this.remote = new RemoteHierarchy(url, fetch, this.decoder);
+    this.rate = new FrameRate(this.settings.framesPerSecond);
+    this.store = this.makeStore(options.requests ?? REQUESTS);
+    this.add(this.tiles);
+    this.opened = this.open();
+    this.opened.catch(() => undefined); // whoever waits is told; nobody must
+  }
+
+  get settings(): Readonly<Settings> {
+    return this.currentSettings;
+  }
+
+  get look(): Readonly<Look> {
+    return this.currentLook;
+  }
+
+  setSettings(change: Partial<Settings>): void {
+    this.currentSettings = { ...this.currentSettings, ...change };
+    this.rate.target = this.settings.framesPerSecond;
+    this.store.budget = this.settings.memoryBudget;
+    this.changed();
+  }
+
+  setLook(change: Partial<Look>): void {
+    this.currentLook = { ...this.currentLook, ...change };
+    this.store.recount();
+    this.tiles.setLook(this.look);
+    this.tiles.paint(this.drawn, this.look, this.settings.threshold);
+    this.changed();
+  }
+
+  // ---- opening
+
+  private makeStore(requests: number): TileStore {
+    const host = {
+      load: (node: Node, signal: AbortSignal): Promise<Tile> => this.remote.tile(node, { signal }),
+      bytesOf: (tile: Tile, seam: ResidentTile['seam']): number => memoryOf(tile, seam, this.look.wires),
+      came: (tile: ResidentTile): void => { this.came(tile); },
+      gone: (tile: ResidentTile): void => { this.tiles.drop(tile); },
+      failed: (_node: Node, problem: unknown): void => { this.tell(problem); },
+    };
+    return new TileStore(host, () => this.directory!.tree, this.settings.memoryBudget, requests);
+  }
+
+  private async open(): Promise<void> {
+    const root = await this.remote.tile(ROOT, { priority: 'high' });
+    if (this.isOver) return;
+    if (root.zUp) this.tiles.applyMatrix4(UPRIGHT);
+    const [a, b, c, d, e, f] = root.box;
+    this.box.set(new Vector3(a, b, c), new Vector3(d, e, f)).applyMatrix4(this.tiles.matrix);
+    this.tiles.show([this.store.addRoot(root, new Tree(1))], this.look);
+    this.changed();
+    void this.openDirectory();
+  }
+
+  private async openDirectory(): Promise<void> {
+    try {
+      const directory = await this.remote.directory(() => { this.changed(); }, (problem) => { this.tell(problem); });
+      if (this.isOver) return;
+      this.directory = directory;
+      this.manifest = directory.manifest;
+      const { hasColours } = directory.manifest.source;
+      this.refinement = new Refinement(directory.tree, directory.index, this.store, (record, node) =>
+        mostMemory(record, node.level, hasColours, this.look.wires));
+      this.account.fetched(directory.index.record(ROOT)!.bytes);
+      this.changed();
+    } catch (problem) {
+      this.tell(problem);
+    }
+  }
+
+  private came({ key, node }: ResidentTile): void {
+    this.epochs.set(key, this.account.epoch);
+    const record = this.directory?.index.record(node);
+    if (record) this.account.fetched(record.bytes);
+    this.changed();
+  }
+
+  private tell(problem: unknown): void {
+    if (this.isOver) return;
+    ++this.failed;
+    this.dispatchEvent({ type: 'problem', message: problem instanceof Error ? problem.message : String(problem) });
+    this.later(RETRY_MS);
+  }
+
+  private changed(): void {
+    this.isDirty = true;
+    if (!this.isOver) this.dispatchEvent({ type: 'change' });
+  }
+
+  private later(milliseconds: number): void {
+    if (this.timer !== null) clearTimeout(this.timer);
+    this.timer = setTimeout(() => { this.changed(); }, milliseconds);
+  }
+
+  // ---- each frame
+
+  /// Call before each frame; `now` as given to callbacks of requestAnimationFrame. Returns whether the picture is
+  /// another one than that of the last frame.
+  update(camera: PerspectiveCamera, viewport: Viewport, now: number): boolean {
+    if (!this.store.has(ROOT_KEY)) return false;
+    camera.updateWorldMatrix(true, false);
+    this.updateWorldMatrix(true, true);
+    const seesElse = this.motion.see(camera, this.tiles, viewport, now);
+    this.measure(now);
+    const isDue = seesElse || this.isDirty || this.motion.isMoving !== this.wasMoving;
+    this.wasMoving = this.motion.isMoving;
+    if (!isDue) return false;
+    const isDirty = this.isDirty;
+    this.isDirty = false;
+    this.viewpoint = viewpointOf(camera, this.tiles, viewport);
+    this.refine(now);
+    if (this.motion.isMoving) this.later(REST_MS);
+    return seesElse || isDirty;
+  }
+
+  private measure(now: number): void {
+    const { isMoving } = this.motion;
+    const interval = now - this.lastFrame;
+    this.lastFrame = now;
+    if (!isMoving) return;
+    if (!this.wasMoving) {
+      ++this.account.epoch;
+      this.rate.restart();
+    } else if (interval < LONGEST_FRAME_MS) {
+      this.rate.frame(interval, this.shownVertices(), this.state?.limited ?? false);
+    }
+  }
+
+  private refine(now: number): void {
+    if (this.refinement === null) return;
+    const vertices = this.motion.isMoving ? this.rate.budget : Infinity;
+    try {
+      this.store.makeRoom(0, now);
+      this.state = this.refinement.refine(this.viewpoint!, { threshold: this.settings.threshold, vertices }, now);
+      if (this.state === null) return;
+      this.drawn = this.state.drawn;
+      this.tiles.show(this.drawn.map(({ key }) => this.store.get(key)!), this.look);
+      this.tiles.paint(this.drawn, this.look, this.settings.threshold);
+      if (this.isSettled()) this.settle();
+    } catch (problem) {
+      this.refinement = null;
+      this.tell(problem);
+    }
+  }
+
+  private isSettled(): boolean {
+    return !this.motion.isMoving && (this.state?.isComplete ?? false);
+  }
+
+  private settle(): void {
+    this.account.settled(this.inView().map(({ key, record }) => ({ bytes: record.bytes, epoch: this.epochs.get(key) ?? 0 })));
+  }
+
+  private inView(): ChosenNode[] {
+    return this.drawn.filter(({ inView }) => inView);
+  }
+
+  private shownVertices(): number {
+    return this.inView().reduce((sum, { record }) => sum + record.own, 0);
+  }
+
+  // ---- what it tells
+
+  private mode(shown: readonly ChosenNode[]): Mode {
+    const root = this.drawn[0]?.record;
+    if (root === undefined || this.directory === null) return 'CWV';
+    const whole = this.directory.index.record(ROOT);
+    if (whole && this.viewpoint && isWhollyInView(this.viewpoint, whole)) return 'CWV';
+    const { lastLevel } = this.directory.tree;
+    return shown.length > 0 && shown.every(({ node }) => node.level === lastLevel) ? 'DZM' : 'ZSV';
+  }
+
+  stats(): Stats {
+    const shown = this.inView();
+    const levels = shown.map(({ node }) => node.level);
+    return {
+      mode: this.mode(shown),
+      framesPerSecond: this.rate.framesPerSecond,
+      moving: this.motion.isMoving,
+      settled: this.isSettled(),
+      tiles: shown.length,
+      triangles: shown.reduce((sum, { key }) => sum + this.tiles.trianglesOf(key), 0),
+      vertices: this.shownVertices(),
+      finestLevel: Math.max(0, ...levels),
+      coarsestLevel: levels.length > 0 ? Math.min(...levels) : 0,
+      vertexBudget: this.rate.budget,
+      worstError: shown.reduce((worst, { pixels }) => Math.max(worst, pixels), 0),
+      residentTiles: this.store.residentCount,
+      residentBytes: this.store.usedBytes,
+      peakBytes: this.store.peakBytes,
+      memoryBudget: this.settings.memoryBudget,
+      fetchedBytes: this.account.fetchedBytes,
+      fetchedFiles: this.account.fetchedFiles,
+      wholeViewBytes: this.account.wholeViewBytes,
+      savedBytes: this.account.savedBytes,
+      hits: this.account.hits,
+      pending: this.store.pending,
+      aborted: this.store.aborted,
+      failed: this.failed,
+      evicted: this.store.evicted,
+      decodeMilliseconds: this.decoder.milliseconds,
+    };
+  }
+
+  /// Frees everything, also on the GPU; the view is of no use afterwards.
+  dispose(): void {
+    this.isOver = true;
+    if (this.timer !== null) clearTimeout(this.timer);
+    this.store.dispose();
+    this.decoder.dispose();
+    this.tiles.dispose();
+    this.removeFromParent();
+  }
+}
+

@@ -1,0 +1,50 @@
+// Whether the camera moves, and what a mesh looks like from where it is.
+import { Frustum, Matrix4, Plane, Vector3, type Object3D, type PerspectiveCamera } from 'three';
+import type { Viewpoint } from '../cut/viewpoint.js';
+
+export interface Viewport {
+  readonly width: number;
+  readonly height: number;
+}
+
+/// A camera that has not changed for this long stands still.
+export const REST_MS = 200;
+
+export class Motion {
+  isMoving = false;
+  private last = '';
+  private changedAt = -Infinity;
+
+  /// true if the picture of an unchanged scene is another one than last time.
+  see(camera: PerspectiveCamera, object: Object3D, { width, height }: Viewport, now: number): boolean {
+    const state = [...camera.matrixWorld.elements, ...camera.projectionMatrix.elements, ...object.matrixWorld.elements, width, height];
+    const text = state.join();
+    const changed = text !== this.last;
+    // The first look is no movement.
+    if (changed && this.last !== '') this.changedAt = now;
+    this.last = text;
+    this.isMoving = now - this.changedAt < REST_MS;
+    return changed;
+  }
+}
+
+function planeIn(local: Matrix4, plane: Plane): readonly [number, number, number, number] {
+  const { normal, constant } = plane.clone().applyMatrix4(local);
+  return [normal.x, normal.y, normal.z, constant];
+}
+
+/// `object`: what holds the tiles; its matrices and the camera's are up to date. Scaled alike in all directions.
+export function viewpointOf(camera: PerspectiveCamera, object: Object3D, { height }: Viewport): Viewpoint {
+  const toLocal = object.matrixWorld.clone().invert();
+  const frustum = new Frustum().setFromProjectionMatrix(
+    new Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse),
+  );
+  const eye = new Vector3().setFromMatrixPosition(camera.matrixWorld).applyMatrix4(toLocal);
+  const scale = toLocal.getMaxScaleOnAxis();
+  return {
+    eye: [eye.x, eye.y, eye.z],
+    planes: frustum.planes.map((plane) => planeIn(toLocal, plane)),
+    pixels: (height * camera.projectionMatrix.elements[5]) / 2,
+    near: camera.near * scale,
+  };
+}

@@ -1,0 +1,169 @@
+// A tile in a three scene: its triangles, and on request its edges and vertices.
+import { Box3, BufferAttribute, BufferGeometry, Color, DynamicDrawUsage, LineSegments, Mesh, Points, Sphere, Vector3 } from 'three';
+import type { MeshStandardMaterial, Material } from 'three';
+import type { ResidentTile } from '../cut/tile_store.js';
+import type { Indices, Tile } from '../hierarchy/tile.js';
+import type { Seam } from '../cut/seam.js';
+import { surfaceMaterial } from './materials.js';
+import type { Look } from './settings.js';
+
+export interface SharedMaterials {
+  readonly wires: Material;
+  readonly points: Material;
+}
+
+/// Bytes of a tile with what draws it: each array here and on the GPU, but for what only seams need.
+export function memoryOf(tile: Tile, seam: Seam, wires: boolean): number {
+  const { positions, normals, colours, indices, border, neighbours, ghostStarts, chains } = tile;
+  const drawn = positions.byteLength + normals.byteLength + (colours?.byteLength ?? 0) + indices.byteLength;
+  const seams = border.byteLength + neighbours.byteLength + ghostStarts.byteLength + chains.byteLength + seam.bytes;
+  return 2 * (drawn + (wires ? 2 * indices.byteLength : 0)) + seams;
+}
+
+/// The same from counts alone; not less.
+export function mostMemory(
+  { own, ghosts, interior, border }: { own: number; ghosts: number; interior: number; border: number },
+  level: number,
+  hasColours: boolean,
+  wires: boolean,
+): number {
+  const vertices = own + ghosts;
+  const width = vertices > 65535 ? 4 : 2;
+  const indices = 3 * (interior + border) * width;
+  const drawn = vertices * (hasColours ? 24 : 20) + indices;
+  // Of a ghost: its chain, its neighbour's number, start and keys, and what the seam keeps of it.
+  const seams = 3 * border * width + ghosts * (10 * level + 40) + 64;
+  return 2 * (drawn + (wires ? 2 * indices : 0)) + seams;
+}
+
+function edgesOf(triangles: Indices, corners: number): Indices {
+  const edges = triangles instanceof Uint32Array ? new Uint32Array(2 * triangles.length) : new Uint16Array(2 * triangles.length);
+  for (let t = 0, e = 0; t < corners; t += 3)
+    for (let k = 0; k < 3; ++k) {
+      edges[e++] = triangles[t + k];
+      edges[e++] = triangles[t + ((k + 1) % 3)];
+    }
+  return edges;
+}
+
+export class TileObject extends Mesh<BufferGeometry, MeshStandardMaterial> {
+  triangles: number;
+  private wires: LineSegments | null = null;
+  private points: Points | null = null;
+
+  constructor(
+    private readonly resident: ResidentTile,
+    look: Look,
+    private readonly shared: SharedMaterials,
+  ) {
+    super(new BufferGeometry(), surfaceMaterial(look, resident.tile.colours !== null));
+    const { tile } = resident;
+    this.geometry.setAttribute('position', new BufferAttribute(tile.positions, 3));
+    this.geometry.setAttribute('normal', new BufferAttribute(tile.normals, 4, true));
+    if (tile.colours) this.geometry.setAttribute('color', new BufferAttribute(tile.colours, 4, true));
+    this.geometry.setIndex(new BufferAttribute(tile.indices, 1));
+    for (const attribute of this.attributes()) attribute.setUsage(DynamicDrawUsage);
+    this.triangles = tile.interiorCount;
+    this.setBounds();
+    this.matrixAutoUpdate = false;
+    this.setLook(look);
+  }
+
+  private *attributes(): Iterable<BufferAttribute> {
+    const { position, normal, color } = this.geometry.attributes as Record<string, BufferAttribute>;
+    yield* [position, normal, ...(color ? [color] : [])];
+    yield this.geometry.index!;
+  }
+
+  /// Ghosts may lie elsewhere than in the file.
+  private setBounds(): void {
+    const { tile } = this.resident;
+    const [a, b, c, d, e, f] = tile.box;
+    const box = new Box3(new Vector3(a, b, c), new Vector3(d, e, f));
+    const ghost = new Vector3();
+    for (let v = tile.own; v < tile.own + tile.ghosts; ++v) box.expandByPoint(ghost.fromArray(tile.positions, 3 * v));
+    this.geometry.boundingSphere = box.getBoundingSphere(new Sphere());
+  }
+
+  hide(): void {
+    this.visible = false;
+    this.resident.seam.forget();
+  }
+
+  /// Takes the seam over as it is in the cut last looked at.
+  resolve(): void {
+    const { tile, seam } = this.resident;
+    this.triangles = tile.interiorCount + seam.resolve();
+    this.geometry.setDrawRange(0, 3 * this.triangles);
+    if (tile.ghosts > 0) this.uploadGhosts();
+    this.setBounds();
+    if (this.wires) this.setWires(true);
+  }
+
+  private uploadGhosts(): void {
+    const { tile } = this.resident;
+    for (const attribute of this.attributes()) {
+      const isIndex = attribute === this.geometry.index;
+      const first = isIndex ? 3 * tile.interiorCount : tile.own * attribute.itemSize;
+      attribute.clearUpdateRanges();
+      attribute.addUpdateRange(first, attribute.array.length - first);
+      attribute.needsUpdate = true;
+    }
+  }
+
+  setLook(look: Look): void {
+    this.material.dispose();
+    this.material = surfaceMaterial(look, this.resident.tile.colours !== null);
+    this.setWires(look.wires);
+    this.setPoints(look.points);
+  }
+
+  /// Of the whole tile; null: that of the look.
+  paint(colour: Color): void {
+    this.material.color.copy(colour);
+  }
+
+  private setWires(on: boolean): void {
+    this.wires = this.discard(this.wires);
+    if (!on) return;
+    const geometry = new BufferGeometry();
+    geometry.setAttribute('position', this.geometry.attributes.position);
+    geometry.setIndex(new BufferAttribute(edgesOf(this.resident.tile.indices, 3 * this.triangles), 1));
+    geometry.setDrawRange(0, 6 * this.triangles);
+    geometry.boundingSphere = this.geometry.boundingSphere;
+    this.wires = this.place(new LineSegments(geometry, this.shared.wires));
+  }
+
+  private setPoints(on: boolean): void {
+    this.points = this.discard(this.points);
+    if (!on) return;
+    const geometry = new BufferGeometry();
+    geometry.setAttribute('position', this.geometry.attributes.position);
+    geometry.setDrawRange(0, this.resident.tile.own);
+    geometry.boundingSphere = this.geometry.boundingSphere;
+    this.points = this.place(new Points(geometry, this.shared.points));
+  }
+
+  private place<Part extends LineSegments | Points>(part: Part): Part {
+    part.matrixAutoUpdate = false;
+    part.raycast = () => undefined; // the triangles are hit
+    this.add(part);
+    return part;
+  }
+
+  /// Positions are the triangles': they stay.
+  private discard(part: LineSegments | Points | null): null {
+    part?.geometry.deleteAttribute('position');
+    part?.geometry.dispose();
+    part?.removeFromParent();
+    return null;
+  }
+
+  dispose(): void {
+    this.setWires(false);
+    this.setPoints(false);
+    this.geometry.dispose();
+    this.material.dispose();
+    this.removeFromParent();
+  }
+}

@@ -1,0 +1,74 @@
+// The tiles of a cut in a three scene, joined along their seams.
+import { Group } from 'three';
+import type { ChosenNode } from '../cut/choose_cut.js';
+import type { ResidentTile } from '../cut/tile_store.js';
+import type { Tile } from '../hierarchy/tile.js';
+import { errorColour, partitionColour, pointMaterial, wireMaterial } from './materials.js';
+import type { Look } from './settings.js';
+import { TileObject } from './tile_object.js';
+
+export class TileScene extends Group {
+  private readonly objects = new Map<number, TileObject>();
+  private cut: ReadonlyMap<number, Tile> = new Map();
+  private readonly materials = { wires: wireMaterial(), points: pointMaterial() };
+
+  /// Shows a cut instead of the one before; true if that changes the picture. Throws HierarchyProblem if seams are
+  /// damaged.
+  show(residents: readonly ResidentTile[], look: Look): boolean {
+    const cut = new Map(residents.map(({ key, tile }) => [key, tile]));
+    if (cut.size === this.cut.size && residents.every(({ key, tile }) => this.cut.get(key) === tile)) return false;
+    for (const key of this.objects.keys()) if (!cut.has(key)) this.hide(key);
+    this.cut = cut;
+    for (const resident of residents) this.join(resident, look);
+    return true;
+  }
+
+  private hide(key: number): void {
+    const object = this.objects.get(key);
+    if (object?.visible) object.hide();
+  }
+
+  private join(resident: ResidentTile, look: Look): void {
+    let object = this.objects.get(resident.key);
+    const changed = resident.seam.look(this.cut);
+    if (!object) {
+      object = new TileObject(resident, look, this.materials);
+      this.objects.set(resident.key, object);
+      this.add(object);
+      object.resolve();
+    } else if (changed) {
+      object.resolve();
+    }
+    object.visible = true;
+  }
+
+  /// The tile is no longer in memory.
+  drop({ key }: ResidentTile): void {
+    this.objects.get(key)?.dispose();
+    this.objects.delete(key);
+  }
+
+  setLook(look: Look): void {
+    for (const object of this.objects.values()) object.setLook(look);
+  }
+
+  /// Colours whole tiles, where the look says so.
+  paint(drawn: readonly ChosenNode[], look: Look, threshold: number): void {
+    for (const { key, node, pixels } of drawn) {
+      const object = this.objects.get(key);
+      if (look.colours === 'partition') object?.paint(partitionColour(node.level, node.index));
+      if (look.colours === 'error') object?.paint(errorColour(pixels, threshold));
+    }
+  }
+
+  trianglesOf(key: number): number {
+    return this.objects.get(key)?.triangles ?? 0;
+  }
+
+  dispose(): void {
+    for (const object of this.objects.values()) object.dispose();
+    this.objects.clear();
+    this.materials.wires.dispose();
+    this.materials.points.dispose();
+  }
+}
