@@ -10,6 +10,7 @@ import { themeButton } from './parts/theme_button.js';
 import { loadPreferences, savePreferences, type Theme } from './preferences.js';
 import { Problems } from './problems.js';
 import { readQuery } from './query.js';
+import { watchInput } from './parts/input.js';
 import { applyTheme, watchSystemTheme } from './theme.js';
 import type { ModelView } from './view/model_view.js';
 
@@ -43,6 +44,7 @@ export class App {
     root.append(this.problems.root);
     applyTheme(this.preferences.theme);
     watchSystemTheme(() => { this.setTheme(this.preferences.theme); });
+    watchInput();
     window.addEventListener('hashchange', () => { this.route(); });
     if (this.query.problem !== null) this.problems.tell(this.query.problem);
   }

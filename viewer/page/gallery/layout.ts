@@ -32,7 +32,7 @@ export type Matrix = readonly number[];
 
 const MOST_PITCH = 1.4;
 const FOCUS = 3.2; // cotangent of half the angle of view
-const MARGIN = 1.06;
+const MARGIN = 0.98;
 
 /// The cell's place on a canvas at the given rectangle, both in CSS pixels. Null if none of it is to be seen.
 export function portOf(cell: Rectangle, canvas: Rectangle, ratio: number): Port | null {
@@ -44,7 +44,14 @@ export function portOf(cell: Rectangle, canvas: Rectangle, ratio: number): Port 
   return { x: round(left), y: round(below), width: round(cell.width), height: round(cell.height) };
 }
 
-/// The ball around the box of the positions.
+function reachOf(positions: Float32Array, [x, y, z]: readonly [number, number, number]): number {
+  let most = 0;
+  for (let i = 0; i < positions.length; i += 3)
+    most = Math.max(most, Math.hypot(positions[i] - x, positions[i + 1] - y, positions[i + 2] - z));
+  return most;
+}
+
+/// Around the middle of the positions' box.
 export function ballOf(positions: Float32Array): Ball {
   const least = [Infinity, Infinity, Infinity];
   const most = [-Infinity, -Infinity, -Infinity];
@@ -54,8 +61,8 @@ export function ballOf(positions: Float32Array): Ball {
   }
   if (positions.length === 0) return { centre: [0, 0, 0], radius: 1 };
   const middle = (axis: number): number => least[axis] / 2 + most[axis] / 2;
-  const half = (axis: number): number => most[axis] / 2 - least[axis] / 2;
-  return { centre: [middle(0), middle(1), middle(2)], radius: Math.hypot(half(0), half(1), half(2)) || 1 };
+  const centre = [middle(0), middle(1), middle(2)] as const;
+  return { centre, radius: reachOf(positions, centre) || 1 };
 }
 
 /// `turn` after a drag by (x, y), a whole turn for two widths of the cell.
@@ -87,7 +94,7 @@ function turned({ yaw, pitch }: Turn): Matrix {
   return multiply([1, 0, 0, 0, 0, d, t, 0, 0, -t, d, 0, 0, 0, 0, 1], [c, 0, -s, 0, 0, 1, 0, 0, s, 0, c, 0, 0, 0, 0, 1]);
 }
 
-/// Sees the unit ball whole, from as far as that takes; depth from -1 at its near end to 1 at its far end.
+/// Sees the unit ball, but for a rim that outlines seldom reach; depth from -1 at its near end to 1 at its far end.
 function projection(aspect: number): Matrix {
   const narrow = Math.min(aspect, 1);
   const distance = MARGIN * Math.hypot(FOCUS, 1);

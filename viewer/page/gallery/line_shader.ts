@@ -22,7 +22,7 @@ void main() {
 }`;
 
 const FRAGMENT = `#version 300 es
-precision mediump float;
+precision highp float;
 in float across;
 in float depth;
 uniform vec3 colour;
@@ -54,6 +54,8 @@ function link(gl: WebGL2RenderingContext): WebGLProgram {
   gl.bindAttribLocation(program, 0, 'start');
   gl.bindAttribLocation(program, 1, 'end');
   gl.linkProgram(program);
+  if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost())
+    throw new Error(gl.getProgramInfoLog(program) ?? 'the shaders do not link');
   return program;
 }
 

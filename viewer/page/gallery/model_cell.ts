@@ -8,12 +8,13 @@ import type { Turn } from './layout.js';
 import { shapeOf, type Shape } from './shape.js';
 import { Turning } from './turning.js';
 
-/// `48.5 k vertices · 97.0 k triangles`, of what is known.
-function countsText({ vertices, triangles }: Model): string {
+/// What is known of it, as people read it.
+function sizes({ vertices, triangles, bytes }: Model): string[] {
   const parts = [];
   if (vertices !== null) parts.push(`${formatRough(vertices)} vertices`);
   if (triangles !== null) parts.push(`${formatRough(triangles)} triangles`);
-  return parts.join(' · ');
+  if (bytes !== null) parts.push(formatBytes(bytes));
+  return parts;
 }
 
 function exactText({ name, vertices, triangles, bytes, source }: Model): string {
@@ -45,8 +46,7 @@ export class ModelCell {
       { class: 'cell', href: formatAddress({ path: model.path, pose: null }), title: exactText(model), draggable: 'false' },
       this.stage,
       element('span', { class: 'cell-name' }, model.name),
-      element('span', { class: 'cell-size' }, countsText(model)),
-      element('span', { class: 'cell-size' }, model.bytes === null ? '' : formatBytes(model.bytes)),
+      element('span', { class: 'cell-size' }, ...sizes(model).flatMap((text) => [element('span', {}, text), ' '])),
     );
     this.root = element('li', {}, link);
     this.turning = new Turning(link, this.stage, changed);

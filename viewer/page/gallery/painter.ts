@@ -13,7 +13,7 @@ export interface Picture {
   lively: boolean;
 }
 
-const LINE_WIDTH = 1.35;
+const LINE_WIDTH = 1.3;
 const MOST_RATIO = 2;
 
 export class Painter {

@@ -62,9 +62,10 @@ export class Chrome {
 
   private topBar(name: string, { back, home }: Orders, buttons: readonly HTMLElement[]): HTMLElement {
     const leave = back === null ? null : iconButton('Back', ICONS.back, back);
-    const title = element('div', { class: 'title' }, element('h1', {}, name), this.badge.root);
+    const title = element('h1', { title: name }, name);
     const whole = iconButton('Whole model', ICONS.home, home);
-    return element('header', { class: 'top-bar' }, leave, title, element('div', { class: 'bar' }, whole, ...buttons));
+    const bar = element('div', { class: 'bar' }, whole, ...buttons);
+    return element('header', { class: 'top-bar' }, element('div', { class: 'top-row' }, leave, title, bar), this.badge.root);
   }
 
   private zoomBar({ zoom }: Orders): HTMLElement {

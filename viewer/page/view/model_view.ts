@@ -12,6 +12,7 @@ import { FrameLoop, type Pace } from './frame_loop.js';
 import { Gestures } from './gestures.js';
 import { listenToKeys, type Commands } from './keys.js';
 import { Navigation } from './navigation.js';
+import { Sharpness } from './sharpness.js';
 import { Stage } from './stage.js';
 import '../style/view.css';
 
@@ -43,6 +44,7 @@ export class ModelView {
   private readonly loop = new FrameLoop((now) => this.frame(now));
   private readonly chrome: Chrome;
   private readonly ending = new AbortController();
+  private readonly sharpness = new Sharpness();
   private readonly sizes = new ResizeObserver(() => { this.loop.wake(); });
   private dirty = true;
   private opened = false;
@@ -92,7 +94,7 @@ export class ModelView {
   }
 
   settled(): boolean {
-    return this.opened && !this.dirty && !this.navigation.busy && this.view.stats().settled;
+    return this.opened && !this.dirty && !this.navigation.busy && !this.sharpness.blurred && this.view.stats().settled;
   }
 
   themeChanged(): void {
@@ -144,15 +146,16 @@ export class ModelView {
   }
 
   private frame(now: number): Pace {
-    const resized = this.stage.fit();
-    if (resized && this.opened) this.navigation.frame(this.view.box, this.stage.aspect);
     const moved = this.navigation.step(now);
     if (moved) this.startRest();
+    const { framesPerSecond } = this.view.settings;
+    const resized = this.stage.fit(this.sharpness.at(now, moved, framesPerSecond));
+    if (resized && this.opened) this.navigation.frame(this.view.box, this.stage.aspect);
     this.stage.aim(this.navigation.pose, this.opened ? this.view.box : UNKNOWN);
     const news = this.view.update(this.stage.camera, this.stage.size, now);
     if (moved || news || resized || this.dirty) this.stage.draw();
     this.dirty = false;
-    return this.pace(now, moved || news || this.navigation.busy);
+    return this.pace(now, moved || news || this.navigation.busy || this.sharpness.blurred);
   }
 
   private pace(now: number, busy: boolean): Pace {

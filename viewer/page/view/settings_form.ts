@@ -27,7 +27,7 @@ export class SettingsForm {
       wires: checkbox('Wires', 'W', (wires) => { look({ wires }); }),
       points: checkbox('Points', 'P', (points) => { look({ points }); }),
       outline: checkbox('Outline', 'O', (outline) => { look({ outline }); }),
-      flat: checkbox('Flat shading', 'F', (flat) => { look({ shading: flat ? 'flat' : 'smooth' }); }),
+      flat: checkbox('Flat', 'F', (flat) => { look({ shading: flat ? 'flat' : 'smooth' }); }),
     };
     this.sliders = {
       framesPerSecond: slider('Frame rate to hold', 'fps', RANGES.framesPerSecond, (framesPerSecond) => { settings({ framesPerSecond }); }),

@@ -1,5 +1,5 @@
 // What draws: canvas, scene, camera and light.
-import { Box3, DirectionalLight, HemisphereLight, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from 'three';
+import { Box3, DirectionalLight, HemisphereLight, NeutralToneMapping, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from 'three';
 import type { HierarchyView } from '../../src/index.js';
 import { depthRange, VIEW_ANGLE, type CameraPose } from './camera_pose.js';
 
@@ -7,12 +7,12 @@ const MOST_RATIO = 2;
 
 /// From above, and from a lamp that goes with the camera.
 function lights(camera: PerspectiveCamera): HemisphereLight {
-  const key = new DirectionalLight(0xfff6ea, 2.1);
+  const key = new DirectionalLight(0xfff6ea, 2.3);
   key.position.set(-0.6, 0.9, 1);
-  const rim = new DirectionalLight(0xcfe0ff, 0.7);
+  const rim = new DirectionalLight(0xcfe0ff, 0.9);
   rim.position.set(1, 0.1, -0.6);
   for (const light of [key, rim]) camera.add(light, light.target);
-  return new HemisphereLight(0xeaf1ff, 0x6a5f55, 1.15);
+  return new HemisphereLight(0xeaf1ff, 0x5d554d, 1);
 }
 
 export class Stage {
@@ -21,11 +21,14 @@ export class Stage {
   private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
   private readonly raycaster = new Raycaster();
+  private nominal = new Vector2();
+  private sharpness = 1;
 
   /// Throws Error where there is no WebGL 2.
   constructor(readonly view: HierarchyView) {
     this.renderer = new WebGLRenderer({ antialias: true, alpha: true, powerPreference: 'high-performance' });
     this.renderer.setClearAlpha(0);
+    this.renderer.toneMapping = NeutralToneMapping;
     this.canvas = this.renderer.domElement;
     this.scene.add(this.camera, view, lights(this.camera));
   }
@@ -34,22 +37,23 @@ export class Stage {
     return this.camera.aspect;
   }
 
-  /// Pixels that are drawn.
+  /// Pixels of a picture of full sharpness.
   get size(): { width: number; height: number } {
-    return { width: this.canvas.width, height: this.canvas.height };
+    return { width: this.nominal.x, height: this.nominal.y };
   }
 
-  /// Takes over the size that the canvas has on the page. False: it has not changed.
-  fit(): boolean {
+  /// Takes over the size that the canvas has on the page, with a part of the pixels on each axis. False: nothing has changed.
+  fit(sharpness: number): boolean {
     const { clientWidth, clientHeight } = this.canvas;
     if (clientWidth === 0 || clientHeight === 0) return false;
     const ratio = Math.min(devicePixelRatio, MOST_RATIO);
-    const size = new Vector2(clientWidth, clientHeight);
-    if (this.renderer.getPixelRatio() === ratio && this.renderer.getSize(new Vector2()).equals(size)) return false;
-    this.renderer.setPixelRatio(ratio);
+    const nominal = new Vector2(clientWidth, clientHeight).multiplyScalar(ratio).floor();
+    if (this.nominal.equals(nominal) && this.sharpness === sharpness) return false;
+    this.nominal = nominal;
+    this.sharpness = sharpness;
+    this.renderer.setPixelRatio(ratio * sharpness);
     this.renderer.setSize(clientWidth, clientHeight, false);
     this.camera.aspect = clientWidth / clientHeight;
-    this.camera.updateProjectionMatrix();
     return true;
   }
 
