@@ -14,10 +14,15 @@ export interface Address {
   pose: Pose | null;
 }
 
-const DIGITS = 10;
+const DIGITS = 12;
 
-function formatNumber(value: number): string {
-  return String(Number(value.toPrecision(DIGITS)));
+function rounded(value: number): number {
+  return Number(value.toPrecision(DIGITS));
+}
+
+/// What a link keeps of a pose: what is drawn from it is drawn again, to the pixel.
+export function roundedPose({ position: [a, b, c], target: [d, e, f] }: Pose): Pose {
+  return { position: [rounded(a), rounded(b), rounded(c)], target: [rounded(d), rounded(e), rounded(f)] };
 }
 
 function formatPath(path: string): string {
@@ -55,8 +60,9 @@ export function parseAddress(hash: string): Address | null {
   return path === null ? null : { path, pose: end < 0 ? null : parsePose(text.slice(end + 1)) };
 }
 
-/// What `parseAddress` reads again, with ten digits a number.
+/// What `parseAddress` reads again, with twelve digits a number.
 export function formatAddress({ path, pose }: Address): string {
-  const numbers = pose === null ? [] : [...pose.position, ...pose.target];
-  return `#${formatPath(path)}${pose === null ? '' : `&${numbers.map(formatNumber).join(',')}`}`;
+  if (pose === null) return `#${formatPath(path)}`;
+  const { position, target } = roundedPose(pose);
+  return `#${formatPath(path)}&${[...position, ...target].join(',')}`;
 }

@@ -145,13 +145,13 @@ export class App {
       setTheme: (theme) => { this.setTheme(theme); },
       leave: this.query.only === null ? () => { this.close(); } : null,
       rested: (rest) => { this.remember(model, rest); },
-      failed: (message) => { this.problems.tell(message); },
+      failed: (message) => this.problems.tell(message),
     });
     this.root.prepend(this.view.root);
     this.view.start();
   }
 
-  private remember(model: Model, pose: Pose): void {
+  private remember(model: Model, pose: Pose | null): void {
     const path = this.query.only === null ? model.path : '';
     history.replaceState(history.state, '', formatAddress({ path, pose }));
   }

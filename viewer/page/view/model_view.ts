@@ -2,7 +2,7 @@
 import { Box3, Vector3 } from 'three';
 import { HierarchyView, type Look, type Settings, type Stats, type ViewOptions } from '../../src/index.js';
 import TileWorker from '../../src/hierarchy/tile_worker.js?worker';
-import type { Pose } from '../address.js';
+import { roundedPose, type Pose } from '../address.js';
 import type { Model } from '../listing.js';
 import { element } from '../parts/element.js';
 import { COLOURS, type Preferences, type Theme } from '../preferences.js';
@@ -25,9 +25,10 @@ export interface Surroundings {
   setTheme(theme: Theme): void;
   /// To the gallery; null: there is none.
   leave: (() => void) | null;
-  /// The camera stands still, elsewhere than before.
-  rested(pose: Pose): void;
-  failed(message: string): void;
+  /// The camera stands still, elsewhere than before; null: it sees all of the model, whatever the window's size.
+  rested(pose: Pose | null): void;
+  /// What it returns takes the message away.
+  failed(message: string): () => void;
 }
 
 const REST = 300; // milliseconds without movement
@@ -48,6 +49,7 @@ export class ModelView {
   private readonly sizes = new ResizeObserver(() => { this.loop.wake(); });
   private dirty = true;
   private opened = false;
+  private lost: (() => void) | null = null;
   private restTimer = 0;
   private reportedAt = -Infinity;
 
@@ -59,7 +61,7 @@ export class ModelView {
     const { fetch, preferences: { settings, look } } = around;
     this.view = new HierarchyView(model.url, { fetch, settings, look, createWorker: () => new TileWorker() });
     this.stage = new Stage(this.view);
-    this.navigation = new Navigation((right, up) => this.stage.pick(right, up), this.loop.wake);
+    this.navigation = new Navigation((right, up) => this.stage.pick(right, up), () => { this.redraw(); });
     const surface = this.makeSurface();
     this.chrome = new Chrome(model.name, surface, this.orders(), this.ending.signal);
     this.root = this.chrome.root;
@@ -80,7 +82,7 @@ export class ModelView {
   }
 
   pose(): Pose {
-    return this.navigation.pose.toPose();
+    return roundedPose(this.navigation.pose.toPose());
   }
 
   /// Null: all of the model.
@@ -94,7 +96,7 @@ export class ModelView {
   }
 
   settled(): boolean {
-    return this.opened && !this.dirty && !this.navigation.busy && !this.sharpness.blurred && this.view.stats().settled;
+    return this.opened && !this.dirty && this.lost === null && !this.navigation.busy && !this.sharpness.blurred && this.view.stats().settled;
   }
 
   themeChanged(): void {
@@ -124,9 +126,15 @@ export class ModelView {
     const { canvas } = this.stage;
     this.view.addEventListener('change', this.loop.wake);
     this.view.addEventListener('problem', ({ message }) => { this.around.failed(`${this.model.name}: ${message}. The view goes on with what it has.`); });
-    canvas.addEventListener('webglcontextlost', () => { this.around.failed(LOST); }, { signal });
-    canvas.addEventListener('webglcontextrestored', () => { this.redraw(); }, { signal });
+    canvas.addEventListener('webglcontextlost', () => { this.lost = this.around.failed(LOST); }, { signal });
+    canvas.addEventListener('webglcontextrestored', () => { this.restored(); }, { signal });
     document.addEventListener('visibilitychange', () => { this.redraw(); }, { signal });
+  }
+
+  private restored(): void {
+    this.lost?.();
+    this.lost = null;
+    this.redraw();
   }
 
   private begin(): void {
@@ -146,12 +154,13 @@ export class ModelView {
   }
 
   private frame(now: number): Pace {
+    if (this.lost !== null) return 'rest';
     const moved = this.navigation.step(now);
     if (moved) this.startRest();
     const { framesPerSecond } = this.view.settings;
     const resized = this.stage.fit(this.sharpness.at(now, moved, framesPerSecond));
     if (resized && this.opened) this.navigation.frame(this.view.box, this.stage.aspect);
-    this.stage.aim(this.navigation.pose, this.opened ? this.view.box : UNKNOWN);
+    this.stage.aim(CameraPose.from(this.pose()), this.opened ? this.view.box : UNKNOWN);
     const news = this.view.update(this.stage.camera, this.stage.size, now);
     if (moved || news || resized || this.dirty) this.stage.draw();
     this.dirty = false;
@@ -172,7 +181,7 @@ export class ModelView {
   /// Links tell of the camera when it has come to rest.
   private startRest(): void {
     window.clearTimeout(this.restTimer);
-    this.restTimer = window.setTimeout(() => { this.around.rested(this.pose()); }, REST);
+    this.restTimer = window.setTimeout(() => { this.around.rested(this.navigation.atHome ? null : this.pose()); }, REST);
   }
 
   private setLook(change: Partial<Look>): void {

@@ -20,6 +20,7 @@ export class Navigation {
   private flight: Flight | null = null;
   private grabbed: Vector3 | null = null;
   private before = 0;
+  private seen: CameraPose | null = null;
   private home: CameraPose;
   private aspect = 1;
   private box = new Box3(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
@@ -100,10 +101,11 @@ export class Navigation {
   step(now: number): boolean {
     const passed = Math.min(now - this.before, LONGEST_FRAME);
     this.before = now;
-    const last = this.pose;
     if (this.flight !== null) this.follow(this.flight, now);
     else if (this.glide.busy) this.apply(this.glide.take(passed, still.matches));
-    return !last.equals(this.pose);
+    const moved = this.seen?.equals(this.pose) !== true;
+    this.seen = this.pose;
+    return moved;
   }
 
   private stop(): void {
