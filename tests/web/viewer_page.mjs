@@ -1,0 +1,330 @@
+// Checks the page of viewer/ in headless Chromium, from a plain static server: gallery, modes, links,
+// keyboard, narrow screens, and what it says when something is missing.
+//
+//   node viewer_page.mjs PICTURES PAGE HIERARCHY...
+//
+// PAGE: the directory that `npm run build` of viewer/ makes, dist/page. The first hierarchy should have some
+// partitions. Pictures go to the directory PICTURES. Exit code 2: wrong use; else see browser.mjs.
+import { cpSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import path from 'node:path';
+import { inChromium, readHierarchy } from './browser.mjs';
+import { serve } from './server.mjs';
+
+const WIDE = { viewport: { width: 1280, height: 800 } };
+const NARROW = { viewport: { width: 360, height: 640 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true };
+const LEAST_TARGET = 40; // CSS pixels
+const PATIENCE = 120_000; // milliseconds
+
+/// The page with models.json beside it, in a directory that is removed in the end.
+function makeSite(page, hierarchies) {
+  const site = mkdtempSync(path.join(tmpdir(), 'meshhier-page-'));
+  cpSync(page, site, { recursive: true });
+  const models = hierarchies.map(({ name }) => ({ name, path: `models/${name}.hier` }));
+  writeFileSync(path.join(site, 'models.json'), JSON.stringify({ models }));
+  return site;
+}
+
+class Visitor {
+  constructor(browser, origin, report) {
+    Object.assign(this, { browser, origin, report });
+  }
+
+  /// A page at `link`, with what it asked for and what its console complained of.
+  async open(link, options = WIDE) {
+    const page = await this.browser.newPage({ reducedMotion: 'reduce', ...options });
+    page.asked = [];
+    page.complaints = [];
+    page.on('request', (request) => page.asked.push(request.url().replace(`${this.origin}/`, '')));
+    page.on('console', (message) => {
+      if (['error', 'warning'].includes(message.type())) page.complaints.push(message.text());
+    });
+    page.on('pageerror', (error) => page.complaints.push(String(error)));
+    await page.goto(`${this.origin}/index.html${link}`);
+    return page;
+  }
+
+  async close(page, what) {
+    this.report.line(`${what} console`, page.complaints.length === 0, page.complaints.join('; ') || 'no complaints');
+    await page.close();
+  }
+
+  check(what, good, text = '') {
+    this.report.line(what, good, text);
+  }
+}
+
+function settle(page) {
+  return page.waitForFunction(() => window.meshhier.settled(), null, { timeout: PATIENCE });
+}
+
+function badge(page) {
+  return page.locator('.badge:visible').innerText();
+}
+
+async function press(page, ...keys) {
+  for (const key of keys) await page.keyboard.press(key);
+  await settle(page);
+}
+
+/// Controls that can be seen.
+function targets(page) {
+  return page.evaluate(() =>
+    [...document.querySelectorAll('button, a, input:not([type=radio]):not([type=checkbox]), label:has(input)')]
+      .filter((one) => one.checkVisibility({ visibilityProperty: true }))
+      .map((one) => {
+        const { left, top, right, bottom } = one.getBoundingClientRect();
+        const name = one.getAttribute('aria-label') ?? one.textContent;
+        return { name, left, top, right, bottom, inSheet: one.closest('.sheet') !== null };
+      }));
+}
+
+function overlap(a, b) {
+  return Math.min(a.right, b.right) - Math.max(a.left, b.left) > 0.5 && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 0.5;
+}
+
+// ---- the gallery
+
+async function paintedCells(page, names) {
+  await page.waitForFunction((count) => document.querySelectorAll('a.cell').length === count, names.length);
+  await page.waitForFunction(() => document.querySelector('.cell-stage.waiting') === null);
+  return page.locator('a.cell').evaluateAll((cells) => cells.map((cell) => cell.querySelector('.cell-name').textContent));
+}
+
+async function checkGallery(visitor, names, pictures) {
+  const page = await visitor.open('');
+  const shown = await paintedCells(page, names);
+  visitor.check('gallery cells', shown.join() === names.join(), shown.join(' '));
+  visitor.check('gallery mode', (await badge(page)).startsWith('TP'), await badge(page));
+  const expected = ['models.json', ...names.map((name) => `models/${name}.hier/outline.glb`)];
+  const asked = page.asked.filter((file) => !/^(index\.html|assets\/index-[^/]+)$/.test(file));
+  visitor.check('gallery requests', asked.sort().join() === expected.sort().join(), asked.join(' '));
+  await checkTurning(visitor, page);
+  await page.screenshot({ path: path.join(pictures, 'page-gallery.png') });
+  await visitor.close(page, 'gallery');
+}
+
+async function checkTurning(visitor, page) {
+  const stage = page.locator('.cell-stage').first();
+  const { x, y, width, height } = await stage.boundingBox();
+  const [middleX, middleY] = [x + width / 2, y + height / 2];
+  await page.mouse.move(middleX, middleY);
+  const still = await stage.screenshot();
+  await page.waitForTimeout(300);
+  visitor.check('gallery reduced motion', still.equals(await stage.screenshot()), 'outlines stand still');
+  await page.mouse.down();
+  await page.mouse.move(middleX + 60, middleY, { steps: 4 });
+  await page.mouse.up();
+  const dragged = await stage.screenshot();
+  visitor.check('gallery drag', !dragged.equals(still) && !page.url().includes('#'), `turned, and ${page.url()} stays`);
+  await page.locator('a.cell').first().focus();
+  await page.keyboard.press('ArrowRight');
+  await page.waitForTimeout(100);
+  visitor.check('gallery arrow keys', !dragged.equals(await stage.screenshot()), 'turned');
+}
+
+async function checkMotion(visitor, names) {
+  const page = await visitor.open('', { ...WIDE, reducedMotion: 'no-preference' });
+  await paintedCells(page, names);
+  const first = await page.locator('.cell-stage').first().screenshot();
+  await page.waitForTimeout(500);
+  visitor.check('gallery motion', !first.equals(await page.locator('.cell-stage').first().screenshot()), 'outlines turn');
+  await visitor.close(page, 'gallery motion');
+}
+
+// ---- a model
+
+function anchor(name) {
+  return `#models/${name}.hier`;
+}
+
+async function checkModes(visitor, name, pictures) {
+  const page = await visitor.open('');
+  await page.locator('a.cell', { hasText: name }).first().click();
+  await settle(page);
+  const tiles = page.asked.filter((file) => file.includes('/tiles/'));
+  visitor.check('view first tile', tiles[0]?.endsWith('tiles/00/000000.glb'), tiles[0]);
+  visitor.check('view mode', (await badge(page)).startsWith('CWV'), await badge(page));
+  await page.screenshot({ path: path.join(pictures, 'page-whole.png') });
+  await checkDepth(visitor, page, pictures);
+  await checkWayBack(visitor, page);
+  await visitor.close(page, 'view');
+}
+
+async function checkDepth(visitor, page, pictures) {
+  await press(page, ...Array(8).fill('+'), 'ArrowLeft', 'Shift+ArrowUp');
+  const zoomed = await badge(page);
+  visitor.check('view zoomed', /^(ZSV|DZM)/.test(zoomed), zoomed);
+  await page.waitForFunction(() => location.hash.includes('&'));
+  await press(page, 'w', 'p', '3', 's');
+  const figures = await page.getByRole('region', { name: 'Figures' }).innerText();
+  visitor.check('view figures', /Triangles\s+[1-9]/.test(figures), figures.replace(/\s+/g, ' '));
+  const look = await page.evaluate(() => window.meshhier.view.look);
+  visitor.check('view look keys', look.wires && look.points && look.colours === 'partition', JSON.stringify(look));
+  await page.screenshot({ path: path.join(pictures, 'page-zoomed.png') });
+  await press(page, 'w', 'p', '2', 's');
+}
+
+async function checkWayBack(visitor, page) {
+  await press(page, 'Escape');
+  visitor.check('back to the whole', (await badge(page)).startsWith('CWV'), await badge(page));
+  await page.keyboard.press('Escape');
+  await page.waitForFunction(() => location.hash === '');
+  visitor.check('back to the gallery', (await badge(page)).startsWith('TP'), page.url());
+  await page.goForward();
+  await settle(page);
+  visitor.check('forward to the model', page.url().includes('#models/'), page.url());
+  await page.getByRole('button', { name: 'Back' }).click();
+  await page.waitForFunction(() => location.hash === '');
+  visitor.check('back button', (await badge(page)).startsWith('TP'), page.url());
+}
+
+/// Without the ring that keys make.
+async function picture(page) {
+  await page.evaluate(() => { document.documentElement.dataset.input = 'pointer'; });
+  return page.locator('canvas:visible').screenshot();
+}
+
+async function checkLinks(visitor, name) {
+  const page = await visitor.open(anchor(name));
+  await settle(page);
+  const root = page.asked.findIndex((file) => file.endsWith('tiles/00/000000.glb'));
+  visitor.check('link root early', root >= 0 && !page.asked.slice(0, root).some((file) => file.includes('models.json')), page.asked.slice(0, root + 1).join(' '));
+  await press(page, '+', '+', '+', 'ArrowLeft', 'ArrowUp');
+  await page.waitForFunction(() => location.hash.includes('&'));
+  await page.waitForTimeout(500);
+  const [link, before] = [new URL(page.url()).hash, await picture(page)];
+  const again = await visitor.open(link);
+  await settle(again);
+  visitor.check('link restores the picture', before.equals(await picture(again)), link);
+  visitor.check('link stays', new URL(again.url()).hash === link, new URL(again.url()).hash);
+  await visitor.close(again, 'link again');
+  await visitor.close(page, 'link');
+}
+
+async function checkRest(visitor, name) {
+  const page = await visitor.open(anchor(name));
+  await settle(page);
+  await page.waitForTimeout(600);
+  const frames = await page.evaluate(async () => {
+    let count = 0;
+    const request = window.requestAnimationFrame;
+    window.requestAnimationFrame = (draw) => (++count, request(draw));
+    await new Promise((done) => setTimeout(done, 1000));
+    window.requestAnimationFrame = request;
+    return count;
+  });
+  visitor.check('rest', frames === 0, `${frames} frames in a second`);
+  const before = await picture(page);
+  await page.evaluate(async () => {
+    const context = document.querySelector('.surface canvas').getContext('webgl2');
+    const loss = context.getExtension('WEBGL_lose_context');
+    loss.loseContext();
+    await new Promise((done) => setTimeout(done, 300));
+    loss.restoreContext();
+    await new Promise((done) => setTimeout(done, 700));
+  });
+  await settle(page);
+  await page.waitForTimeout(300);
+  page.complaints = page.complaints.filter((text) => !text.includes('Context'));
+  visitor.check('context restored', before.equals(await picture(page)), 'the same picture');
+  await visitor.close(page, 'rest');
+}
+
+// ---- narrow screens, and what can be heard
+
+async function checkNarrow(visitor, name, pictures, colorScheme) {
+  const page = await visitor.open(anchor(name), { ...NARROW, colorScheme });
+  await settle(page);
+  for (const sheet of ['', 'Look and settings', 'Figures', 'Help']) {
+    if (sheet !== '') await page.getByRole('button', { name: sheet, exact: true }).tap();
+    await page.waitForTimeout(300);
+    const all = (await targets(page)).filter(({ inSheet }) => !inSheet);
+    const out = all.filter(({ left, top, right, bottom }) => left < 0 || top < 0 || right > 360 || bottom > 640);
+    const small = all.filter(({ left, top, right, bottom }) => right - left < LEAST_TARGET || bottom - top < LEAST_TARGET);
+    const over = all.filter((a, i) => all.slice(i + 1).some((b) => overlap(a, b)));
+    const bad = [...out, ...small, ...over].map((one) => one.name);
+    visitor.check(`360 x 640 ${colorScheme} ${sheet || 'view'}`, bad.length === 0, bad.join(', ') || `${all.length} controls in their places`);
+    await page.screenshot({ path: path.join(pictures, `page-narrow-${colorScheme}-${sheet.split(' ')[0] || 'view'}.png`) });
+  }
+  await visitor.close(page, `narrow ${colorScheme}`);
+}
+
+async function checkNarrowGallery(visitor, names, pictures) {
+  const page = await visitor.open('', { ...NARROW, colorScheme: 'dark' });
+  await paintedCells(page, names);
+  const width = await page.evaluate(() => document.documentElement.scrollWidth);
+  visitor.check('360 x 640 gallery', width === 360, `${width} pixels wide`);
+  await page.screenshot({ path: path.join(pictures, 'page-narrow-gallery.png') });
+  await visitor.close(page, 'narrow gallery');
+}
+
+async function checkNames(visitor, name) {
+  const page = await visitor.open(anchor(name));
+  await settle(page);
+  for (const control of ['Back', 'Whole model', 'Look and settings', 'Figures', 'Help', 'Closer', 'Farther'])
+    visitor.check(`button ${control}`, await page.getByRole('button', { name: control, exact: true }).isVisible(), 'has its name');
+  await page.getByRole('button', { name: 'Look and settings', exact: true }).press('Enter');
+  for (const [role, control] of [['radio', 'Partitions'], ['checkbox', 'Wires'], ['slider', 'Frame rate to hold'], ['slider', 'Memory'], ['spinbutton', 'Error allowed (px)'], ['radio', 'Dark']])
+    visitor.check(`${role} ${control}`, (await page.getByRole(role, { name: control }).count()) === 1, 'has its name');
+  await page.getByRole('radio', { name: 'Dark' }).check();
+  visitor.check('theme', (await page.evaluate(() => document.documentElement.dataset.theme)) === 'dark', 'dark');
+  await page.reload();
+  await settle(page);
+  visitor.check('theme kept', (await page.evaluate(() => document.documentElement.dataset.theme)) === 'dark', 'dark');
+  await visitor.close(page, 'names');
+}
+
+// ---- what is missing
+
+async function checkMissing(visitor, name) {
+  const lost = await visitor.open('#models/nothing.hier');
+  const alert = lost.getByRole('alert').locator('.problem').first();
+  await alert.waitFor();
+  visitor.check('missing model', (await alert.innerText()).includes('nothing cannot be opened'), await alert.innerText());
+  await lost.getByRole('button', { name: 'Dismiss' }).click();
+  visitor.check('missing model dismissed', (await lost.locator('.problem').count()) === 0, 'gone');
+  await lost.close();
+  const empty = await visitor.open('?models=nothing.json');
+  await empty.locator('.gallery-note', { hasText: 'models.json' }).waitFor();
+  visitor.check('missing listing', true, await empty.locator('.gallery-note').innerText());
+  await empty.close();
+  const alone = await visitor.open(`?model=models/${name}.hier`);
+  await settle(alone);
+  visitor.check('one model', !alone.asked.includes('models.json') && (await alone.getByRole('button', { name: 'Back' }).count()) === 0, 'without a listing');
+  await visitor.close(alone, 'one model');
+}
+
+async function checkAll(browser, report, pictures, hierarchies, origin) {
+  const names = hierarchies.map(({ name }) => name);
+  const visitor = new Visitor(browser, origin, report);
+  await checkGallery(visitor, names, pictures);
+  await checkMotion(visitor, names);
+  await checkModes(visitor, names[0], pictures);
+  await checkLinks(visitor, names[0]);
+  await checkRest(visitor, names[0]);
+  await checkNames(visitor, names[0]);
+  await checkNarrowGallery(visitor, names, pictures);
+  for (const scheme of ['light', 'dark']) await checkNarrow(visitor, names[0], pictures, scheme);
+  await checkMissing(visitor, names[0]);
+}
+
+async function serveAndCheck(browser, report, [pictures, page, ...directories]) {
+  const hierarchies = directories.map(readHierarchy);
+  const site = makeSite(page, hierarchies);
+  const below = Object.fromEntries(hierarchies.map(({ name, directory }) => [`/models/${name}.hier`, directory]));
+  const server = await serve({ ...below, '': site });
+  try {
+    await checkAll(browser, report, pictures, hierarchies, server.origin);
+  } finally {
+    server.close();
+    rmSync(site, { recursive: true });
+  }
+}
+
+const [pictures, ...others] = process.argv.slice(2);
+if (others.length < 2) {
+  console.log('usage: node viewer_page.mjs PICTURES PAGE HIERARCHY...');
+  process.exit(2);
+}
+process.exit(await inChromium(pictures, (browser, report) => serveAndCheck(browser, report, [pictures, ...others])));

@@ -1,0 +1,166 @@
+// Shows what the address says: the gallery, or a model.
+import { formatAddress, parseAddress, type Pose } from './address.js';
+import { fetchRootEarly } from './early_fetch.js';
+import { Gallery } from './gallery/gallery.js';
+import { ListingWatch } from './listing_watch.js';
+import { modelOfPath, type Listing, type Model } from './listing.js';
+import { element } from './parts/element.js';
+import { ModeBadge } from './parts/mode_badge.js';
+import { themeButton } from './parts/theme_button.js';
+import { loadPreferences, savePreferences, type Theme } from './preferences.js';
+import { Problems } from './problems.js';
+import { readQuery } from './query.js';
+import { watchInput } from './parts/input.js';
+import { applyTheme, watchSystemTheme } from './theme.js';
+import type { ModelView } from './view/model_view.js';
+
+const HOW_TO = 'Put a file models.json beside this page, {"models": [{"path": "NAME.hier"}]}, or let "meshhier serve" do it, ' +
+  'or name a hierarchy in the address: ?model=NAME.hier';
+const NO_WEBGL = 'This browser shows no WebGL 2, which the page draws with. Another browser may, or this one with its graphics acceleration on.';
+
+/// Of a history entry that was reached from the gallery: going back leads there.
+const FROM_GALLERY = { fromGallery: true };
+
+function messageOf(error: unknown): string {
+  return error instanceof Error ? error.message : String(error);
+}
+
+export class App {
+  readonly preferences = loadPreferences();
+  readonly problems = new Problems();
+  view: ModelView | null = null;
+  private readonly query = readQuery(location.search, document.baseURI);
+  private readonly watch: ListingWatch;
+  private gallery: Gallery | null = null;
+  private opening: Model | null = null;
+  private left: string | null = null;
+
+  constructor(private readonly root: HTMLElement) {
+    this.watch = new ListingWatch(
+      this.query.listing,
+      (listing) => { this.listed(listing); },
+      (message) => { this.gallery?.tell(`There are no models to show: ${message}. ${HOW_TO}`); },
+    );
+    root.append(this.problems.root);
+    applyTheme(this.preferences.theme);
+    watchSystemTheme(() => { this.setTheme(this.preferences.theme); });
+    watchInput();
+    window.addEventListener('hashchange', () => { this.route(); });
+    if (this.query.problem !== null) this.problems.tell(this.query.problem);
+  }
+
+  get models(): readonly Model[] {
+    return this.query.only === null ? (this.watch.listing?.models ?? []) : [this.query.only];
+  }
+
+  /// Shows what the address says.
+  route(): void {
+    const address = parseAddress(location.hash);
+    const model = this.query.only ?? (address === null ? null : this.modelAt(address.path));
+    if (model === null) this.showGallery();
+    else this.showModel(model, address?.pose ?? null);
+  }
+
+  /// Opens a model of the listing by its name or path. False if there is none.
+  open(name: string): boolean {
+    const model = this.models.find((one) => one.name === name || one.path === name);
+    if (model !== undefined) location.hash = formatAddress({ path: model.path, pose: null });
+    return model !== undefined;
+  }
+
+  /// From a model to the gallery.
+  close(): void {
+    if (this.query.only !== null || this.opening === null) return;
+    if ((history.state as typeof FROM_GALLERY | null)?.fromGallery) {
+      history.back();
+      return;
+    }
+    history.pushState(null, '', location.pathname + location.search);
+    this.route();
+  }
+
+  setTheme(theme: Theme): void {
+    this.preferences.theme = theme;
+    savePreferences(this.preferences);
+    applyTheme(theme);
+    this.gallery?.themeChanged();
+    this.view?.themeChanged();
+  }
+
+  /// Null, with a message, of a path that cannot be fetched.
+  private modelAt(path: string): Model | null {
+    const model = this.models.find((one) => one.path === path) ?? modelOfPath(path, this.query.listing);
+    if (model === null) this.problems.tell(`The link names "${path}", which cannot be fetched.`);
+    return model;
+  }
+
+  private listed(listing: Listing): void {
+    if (listing.models.length + (listing.jobs?.length ?? 0) > 0) this.gallery?.update(listing);
+    else this.gallery?.tell(`The listing ${this.query.listing} is empty. ${HOW_TO}`);
+  }
+
+  private showGallery(): void {
+    this.closeView();
+    this.gallery ??= this.makeGallery();
+    document.title = 'meshhier';
+    this.gallery.show();
+    this.watch.start();
+    if (this.left !== null) this.gallery.focus(this.left);
+  }
+
+  private makeGallery(): Gallery {
+    const badge = new ModeBadge();
+    badge.show('TP');
+    const theme = themeButton(() => this.preferences.theme, (chosen) => { this.setTheme(chosen); });
+    const gallery = new Gallery(element('header', { class: 'gallery-header' }, element('h1', {}, 'meshhier'), badge.root, theme));
+    this.root.prepend(gallery.root);
+    if (!gallery.works) this.problems.tell(NO_WEBGL);
+    return gallery;
+  }
+
+  private showModel(model: Model, pose: Pose | null): void {
+    if (this.opening?.url === model.url) {
+      this.view?.setPose(pose);
+      return;
+    }
+    if (this.gallery?.shown) history.replaceState(FROM_GALLERY, '');
+    this.closeView();
+    this.opening = model;
+    this.gallery?.hide();
+    this.watch.stop();
+    document.title = `${model.name} – meshhier`;
+    this.load(model, pose).catch((error: unknown) => { this.problems.tell(`${model.name} cannot be shown: ${messageOf(error)}`); });
+  }
+
+  /// The view's code comes with the first model.
+  private async load(model: Model, pose: Pose | null): Promise<void> {
+    const fetch = fetchRootEarly(model.url);
+    const { ModelView } = await import('./view/model_view.js');
+    if (this.opening !== model) return;
+    this.view = new ModelView(model, {
+      fetch,
+      pose,
+      preferences: this.preferences,
+      chosen: () => { savePreferences(this.preferences); },
+      setTheme: (theme) => { this.setTheme(theme); },
+      leave: this.query.only === null ? () => { this.close(); } : null,
+      rested: (rest) => { this.remember(model, rest); },
+      failed: (message) => this.problems.tell(message),
+    });
+    this.root.prepend(this.view.root);
+    this.view.start();
+  }
+
+  private remember(model: Model, pose: Pose | null): void {
+    const path = this.query.only === null ? model.path : '';
+    history.replaceState(history.state, '', formatAddress({ path, pose }));
+  }
+
+  private closeView(): void {
+    this.left = this.opening?.path ?? null;
+    this.opening = null;
+    this.view?.close();
+    this.view = null;
+    this.problems.clear();
+  }
+}

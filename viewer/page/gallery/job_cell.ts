@@ -1,0 +1,40 @@
+// A mesh that is being made into a hierarchy: how far it is, or why it failed.
+import type { Job } from '../listing.js';
+import { formatDuration } from '../numbers.js';
+import { element } from '../parts/element.js';
+
+function stateText({ state, stage, progress, secondsLeft, message }: Job): string {
+  if (state === 'failed') return message || 'failed, without saying why';
+  if (state === 'waiting') return message || 'waiting for its turn';
+  const part = progress === null ? '' : ` ${Math.round(100 * progress)} %`;
+  const left = secondsLeft === null ? '' : `, ${formatDuration(secondsLeft)} left`;
+  return `${stage || 'building'}${part}${left}`;
+}
+
+function bar({ name, state, progress }: Job): HTMLElement | null {
+  if (state === 'failed') return null;
+  const value = state === 'building' && progress !== null ? String(progress) : null;
+  return element('progress', { max: '1', value, 'aria-label': `${name}: progress` });
+}
+
+export class JobCell {
+  readonly root: HTMLLIElement;
+  private readonly body = element('div', { class: 'cell job' });
+  private shown = '';
+
+  constructor(readonly name: string) {
+    this.root = element('li', {}, this.body);
+  }
+
+  update(job: Job): void {
+    const text = JSON.stringify(job);
+    if (text === this.shown) return;
+    this.shown = text;
+    this.body.classList.toggle('job-failed', job.state === 'failed');
+    this.body.replaceChildren(
+      element('span', { class: 'cell-stage' }, bar(job)),
+      element('span', { class: 'cell-name' }, job.name),
+      element('span', { class: `cell-size${job.state === 'failed' ? ' cell-problem' : ''}` }, stateText(job)),
+    );
+  }
+}

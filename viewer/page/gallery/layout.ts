@@ -1,0 +1,110 @@
+// Where a cell's outline goes on the canvas that all of them share, and how it is turned.
+
+export interface Rectangle {
+  left: number;
+  top: number;
+  width: number;
+  height: number;
+}
+
+/// Pixels of the canvas, from its lower left corner, as WebGL counts them.
+export interface Port {
+  x: number;
+  y: number;
+  width: number;
+  height: number;
+}
+
+/// Radians: about the upright axis, then towards the viewer.
+export interface Turn {
+  yaw: number;
+  pitch: number;
+}
+
+/// A ball around the lines, in stored positions.
+export interface Ball {
+  centre: readonly [number, number, number];
+  radius: number;
+}
+
+/// 16 numbers, column by column.
+export type Matrix = readonly number[];
+
+const MOST_PITCH = 1.4;
+const FOCUS = 3.2; // cotangent of half the angle of view
+const MARGIN = 0.98;
+
+/// The cell's place on a canvas at the given rectangle, both in CSS pixels. Null if none of it is to be seen.
+export function portOf(cell: Rectangle, canvas: Rectangle, ratio: number): Port | null {
+  const left = cell.left - canvas.left;
+  const below = canvas.top + canvas.height - cell.top - cell.height;
+  const seen = left < canvas.width && left + cell.width > 0 && below < canvas.height && below + cell.height > 0;
+  if (!seen || cell.width <= 0 || cell.height <= 0) return null;
+  const round = (value: number): number => Math.round(value * ratio);
+  return { x: round(left), y: round(below), width: round(cell.width), height: round(cell.height) };
+}
+
+function reachOf(positions: Float32Array, [x, y, z]: readonly [number, number, number]): number {
+  let most = 0;
+  for (let i = 0; i < positions.length; i += 3)
+    most = Math.max(most, Math.hypot(positions[i] - x, positions[i + 1] - y, positions[i + 2] - z));
+  return most;
+}
+
+/// Around the middle of the positions' box.
+export function ballOf(positions: Float32Array): Ball {
+  const least = [Infinity, Infinity, Infinity];
+  const most = [-Infinity, -Infinity, -Infinity];
+  for (let i = 0; i < positions.length; ++i) {
+    least[i % 3] = Math.min(least[i % 3], positions[i]);
+    most[i % 3] = Math.max(most[i % 3], positions[i]);
+  }
+  if (positions.length === 0) return { centre: [0, 0, 0], radius: 1 };
+  const middle = (axis: number): number => least[axis] / 2 + most[axis] / 2;
+  const centre = [middle(0), middle(1), middle(2)] as const;
+  return { centre, radius: reachOf(positions, centre) || 1 };
+}
+
+/// `turn` after a drag by (x, y), a whole turn for two widths of the cell.
+export function dragged(turn: Turn, x: number, y: number, width: number): Turn {
+  const scale = Math.PI / Math.max(width, 1);
+  const pitch = Math.min(Math.max(turn.pitch + y * scale, -MOST_PITCH), MOST_PITCH);
+  return { yaw: (turn.yaw + x * scale) % (2 * Math.PI), pitch };
+}
+
+export function multiply(a: Matrix, b: Matrix): number[] {
+  const product = new Array<number>(16).fill(0);
+  for (let column = 0; column < 4; ++column)
+    for (let row = 0; row < 4; ++row)
+      for (let k = 0; k < 4; ++k) product[4 * column + row] += a[4 * k + row] * b[4 * column + k];
+  return product;
+}
+
+/// The ball becomes that of radius 1 around 0, upright.
+function uprightUnit({ centre, radius }: Ball, up: 'y' | 'z'): Matrix {
+  const s = 1 / radius;
+  const [x, y, z] = centre.map((value) => -value * s);
+  if (up === 'y') return [s, 0, 0, 0, 0, s, 0, 0, 0, 0, s, 0, x, y, z, 1];
+  return [s, 0, 0, 0, 0, 0, -s, 0, 0, s, 0, 0, x, z, -y, 1];
+}
+
+function turned({ yaw, pitch }: Turn): Matrix {
+  const [c, s] = [Math.cos(yaw), Math.sin(yaw)];
+  const [d, t] = [Math.cos(pitch), Math.sin(pitch)];
+  return multiply([1, 0, 0, 0, 0, d, t, 0, 0, -t, d, 0, 0, 0, 0, 1], [c, 0, -s, 0, 0, 1, 0, 0, s, 0, c, 0, 0, 0, 0, 1]);
+}
+
+/// Sees the unit ball, but for a rim that outlines seldom reach; depth from -1 at its near end to 1 at its far end.
+function projection(aspect: number): Matrix {
+  const narrow = Math.min(aspect, 1);
+  const distance = MARGIN * Math.hypot(FOCUS, 1);
+  const [near, far] = [distance - 1, distance + 1];
+  const [a, b] = [(far + near) / (near - far), (2 * far * near) / (near - far)];
+  const focus = FOCUS * narrow;
+  return [focus / aspect, 0, 0, 0, 0, focus, 0, 0, 0, 0, a, -1, 0, 0, b - a * distance, distance];
+}
+
+/// From stored positions to the clip space of a cell of that width by height.
+export function cellMatrix(ball: Ball, up: 'y' | 'z', turn: Turn, aspect: number): number[] {
+  return multiply(projection(aspect), multiply(turned(turn), uprightUnit(ball, up)));
+}

@@ -1,0 +1,20 @@
+// A model's outline as the gallery turns it.
+import type { Outline } from '../../src/hierarchy/outline.js';
+import { ballOf, type Ball } from './layout.js';
+
+export interface Shape {
+  /// Six numbers a segment.
+  ends: Float32Array;
+  ball: Ball;
+  up: 'y' | 'z';
+}
+
+function endsOf({ positions, segments }: Outline): Float32Array {
+  const ends = new Float32Array(3 * segments.length);
+  segments.forEach((vertex, i) => { ends.set(positions.subarray(3 * vertex, 3 * vertex + 3), 3 * i); });
+  return ends;
+}
+
+export function shapeOf(outline: Outline): Shape {
+  return { ends: endsOf(outline), ball: ballOf(outline.positions), up: outline.up };
+}

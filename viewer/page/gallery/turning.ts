@@ -1,0 +1,75 @@
+// Turns an outline: by itself, by a drag across it, and by the arrow keys.
+import { dragged, type Turn } from './layout.js';
+
+const FIRST: Turn = { yaw: -0.6, pitch: 0.25 };
+const CLICK_REACH = 6; // pixels that a click may move
+const KEY_STEP = 0.2;
+const KEYS: Record<string, [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+
+export class Turning {
+  turn: Turn = FIRST;
+  private held: { pointer: number; x: number; y: number } | null = null;
+  private distance = 0; // of the last drag, in pixels
+  private over = false;
+
+  /// A drag on `link` is no click.
+  constructor(link: HTMLElement, private readonly stage: HTMLElement, private readonly changed: () => void) {
+    link.addEventListener('pointerdown', (event) => { this.grab(event, link); });
+    link.addEventListener('pointermove', (event) => { this.drag(event, link); });
+    for (const type of ['pointerup', 'pointercancel'] as const) link.addEventListener(type, () => { this.release(); });
+    link.addEventListener('click', (event) => { this.click(event); });
+    link.addEventListener('dragstart', (event) => { event.preventDefault(); });
+    link.addEventListener('keydown', (event) => { this.key(event); });
+    for (const type of ['pointerenter', 'focus'] as const) link.addEventListener(type, () => { this.enliven(true); });
+    for (const type of ['pointerleave', 'blur'] as const) link.addEventListener(type, () => { this.enliven(false); });
+  }
+
+  /// Pointed at, or focused.
+  get lively(): boolean {
+    return this.over;
+  }
+
+  advance(angle: number): void {
+    if (this.held === null) this.turn = { ...this.turn, yaw: this.turn.yaw + angle };
+  }
+
+  private enliven(over: boolean): void {
+    this.over = over;
+    this.changed();
+  }
+
+  private grab(event: PointerEvent, link: HTMLElement): void {
+    if (!event.isPrimary || event.button !== 0) return;
+    this.distance = 0;
+    this.held = { pointer: event.pointerId, x: event.clientX, y: event.clientY };
+    if (event.pointerType !== 'touch') link.focus({ preventScroll: true });
+  }
+
+  private drag(event: PointerEvent, link: HTMLElement): void {
+    const { held } = this;
+    if (held?.pointer !== event.pointerId) return;
+    const [x, y] = [event.clientX - held.x, event.clientY - held.y];
+    this.held = { ...held, x: event.clientX, y: event.clientY };
+    this.distance += Math.hypot(x, y);
+    if (this.distance > CLICK_REACH) link.setPointerCapture(event.pointerId);
+    this.turn = dragged(this.turn, x, y, this.stage.clientWidth);
+    this.changed();
+  }
+
+  private release(): void {
+    this.held = null;
+  }
+
+  private click(event: MouseEvent): void {
+    if (event.detail > 0 && this.distance > CLICK_REACH) event.preventDefault();
+    this.distance = 0;
+  }
+
+  private key(event: KeyboardEvent): void {
+    const step = KEYS[event.key];
+    if (step === undefined || event.ctrlKey || event.altKey || event.metaKey) return;
+    event.preventDefault();
+    this.turn = dragged(this.turn, step[0] * KEY_STEP, step[1] * KEY_STEP, Math.PI);
+    this.changed();
+  }
+}

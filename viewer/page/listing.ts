@@ -1,0 +1,123 @@
+// models.json: what there is to show, and what is being made. Whatever it holds, what comes out of
+// here is as the types say.
+
+export interface Model {
+  name: string;
+  /// Of the hierarchy, relative to the listing.
+  path: string;
+  url: string;
+  vertices: number | null;
+  triangles: number | null;
+  bytes: number | null;
+  source: string | null;
+}
+
+export interface Job {
+  name: string;
+  state: 'waiting' | 'building' | 'failed';
+  stage: string;
+  /// 0 … 1, if it is known.
+  progress: number | null;
+  secondsLeft: number | null;
+  message: string;
+}
+
+export interface Listing {
+  models: Model[];
+  /// Null: the listing has none and never will.
+  jobs: Job[] | null;
+}
+
+export class ListingError extends Error {}
+
+const MOST_ENTRIES = 10_000;
+const MOST_TEXT = 1000;
+
+type Json = Record<string, unknown>;
+
+function isObject(value: unknown): value is Json {
+  return typeof value === 'object' && value !== null && !Array.isArray(value);
+}
+
+function textOf(value: unknown): string {
+  return typeof value === 'string' ? value.slice(0, MOST_TEXT) : '';
+}
+
+function countOf(value: unknown): number | null {
+  return typeof value === 'number' && Number.isFinite(value) && value >= 0 ? value : null;
+}
+
+/// `models/sub/david.hier` to `david`.
+export function nameOfPath(path: string): string {
+  const file = path.replace(/[?#].*$/, '').replace(/\/+$/, '').replace(/^.*\//, '');
+  return file.replace(/(.)\.[^.]*$/, '$1') || path;
+}
+
+/// Null of what cannot be fetched. A slash at its end is taken off.
+export function resolveUrl(path: string, base: string): string | null {
+  try {
+    const url = new URL(path, base);
+    return ['http:', 'https:'].includes(url.protocol) ? url.href.replace(/\/+$/, '') : null;
+  } catch {
+    return null;
+  }
+}
+
+/// A model of which nothing but the path is known. Null if it cannot be fetched.
+export function modelOfPath(path: string, base: string): Model | null {
+  const url = path === '' ? null : resolveUrl(path, base);
+  if (url === null) return null;
+  return { name: nameOfPath(path), path, url, vertices: null, triangles: null, bytes: null, source: null };
+}
+
+function readModel(value: unknown, base: string): Model | null {
+  if (!isObject(value) || typeof value.path !== 'string') return null;
+  const model = modelOfPath(value.path, base);
+  if (model === null) return null;
+  model.name = textOf(value.name).trim() || model.name;
+  model.vertices = countOf(value.vertices);
+  model.triangles = countOf(value.triangles);
+  model.bytes = countOf(value.bytes);
+  model.source = textOf(value.source) || null;
+  return model;
+}
+
+function readJob(value: unknown): Job | null {
+  if (!isObject(value)) return null;
+  const { state } = value;
+  if (state !== 'waiting' && state !== 'building' && state !== 'failed') return null;
+  const progress = countOf(value.progress);
+  return {
+    name: textOf(value.name) || 'a mesh without a name',
+    state,
+    stage: textOf(value.stage),
+    progress: progress === null ? null : Math.min(progress, 1),
+    secondsLeft: countOf(value.seconds_left),
+    message: textOf(value.message),
+  };
+}
+
+/// What `read` makes of the entries, without what it refuses; of several with one key the first.
+function readAll<T>(values: unknown[], read: (value: unknown) => T | null, key: (item: T) => string): T[] {
+  const found = new Map<string, T>();
+  for (const value of values.slice(0, MOST_ENTRIES)) {
+    const item = read(value);
+    if (item !== null && !found.has(key(item))) found.set(key(item), item);
+  }
+  return [...found.values()];
+}
+
+/// The listing that was fetched from `url`. Entries that are not as they should be are left out.
+/// Throws ListingError if all of it is something else.
+export function parseListing(text: string, url: string): Listing {
+  let document: unknown;
+  try {
+    document = JSON.parse(text);
+  } catch {
+    throw new ListingError(`${url} is not JSON`);
+  }
+  if (!isObject(document) || !Array.isArray(document.models)) throw new ListingError(`${url} has no list "models"`);
+  const models = readAll(document.models, (value) => readModel(value, url), (model) => model.path);
+  const jobs = Array.isArray(document.jobs) ? readAll(document.jobs, readJob, (job) => job.name) : null;
+  return { models, jobs };
+}

@@ -1,0 +1,52 @@
+// Controls of forms: each has a name that can be seen and heard, and tells what was chosen.
+import type { Range } from '../preferences.js';
+import { element } from './element.js';
+
+let made = 0;
+
+export interface Control<Value> {
+  root: HTMLElement;
+  /// Shows a value that was chosen elsewhere; tells nobody.
+  show(value: Value): void;
+}
+
+export function checkbox(name: string, key: string | null, chosen: (on: boolean) => void): Control<boolean> {
+  const input = element('input', { type: 'checkbox', 'aria-keyshortcuts': key });
+  input.addEventListener('change', () => { chosen(input.checked); });
+  const label = element('label', { class: 'check' }, input, element('span', {}, name), key === null ? null : element('kbd', { 'aria-hidden': 'true' }, key));
+  return { root: label, show: (on) => { input.checked = on; } };
+}
+
+/// `choices`: values, and what they are called.
+export function choice<Value extends string>(
+  name: string,
+  choices: readonly (readonly [Value, string])[],
+  chosen: (value: Value) => void,
+): Control<Value> {
+  const group = `choice-${++made}`;
+  const inputs = choices.map(([value]) => element('input', { type: 'radio', name: group, value }));
+  const labels = choices.map(([, text], i) => element('label', {}, inputs[i], element('span', {}, text)));
+  inputs.forEach((input, i) => { input.addEventListener('change', () => { chosen(choices[i][0]); }); });
+  const root = element('fieldset', { class: 'choice' }, element('legend', {}, name), element('div', { class: 'segments' }, ...labels));
+  return { root, show: (value) => { inputs.forEach((input) => { input.checked = input.value === value; }); } };
+}
+
+/// A slider and a number that say the same.
+export function slider(name: string, unit: string, { least, most, step }: Range, chosen: (value: number) => void): Control<number> {
+  const bounds = { min: String(least), max: String(most), step: String(step) };
+  const id = `slider-${++made}`;
+  const range = element('input', { type: 'range', id, ...bounds });
+  const number = element('input', { type: 'number', 'aria-label': `${name} (${unit})`, ...bounds, step: 'any', inputmode: 'decimal' });
+  const show = (value: number): void => { range.value = number.value = String(value); };
+  range.addEventListener('input', () => {
+    number.value = range.value;
+    chosen(Number(range.value));
+  });
+  number.addEventListener('change', () => {
+    const value = Math.min(Math.max(Number(number.value) || least, least), most);
+    show(value);
+    chosen(value);
+  });
+  const head = element('div', { class: 'slider-head' }, element('label', { for: id }, name), element('span', {}, number, ` ${unit}`));
+  return { root: element('div', { class: 'slider' }, head, range), show };
+}

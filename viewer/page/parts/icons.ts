@@ -1,0 +1,15 @@
+// Strokes of the drawings on buttons, on a grid of 24.
+
+export const ICONS = {
+  back: 'M15 5l-7 7 7 7',
+  home: 'M4 9V4h5M15 4h5v5M20 15v5h-5M9 20H4v-5',
+  plus: 'M12 5v14M5 12h14',
+  minus: 'M5 12h14',
+  sliders: 'M4 7h9M17 7h3M4 17h3M11 17h9M15 4.5v5M9 14.5v5',
+  chart: 'M5 20V11M12 20V4M19 20v-6',
+  help: 'M9 9a3 3 0 1 1 4.2 2.7c-.8.4-1.2 1-1.2 1.9v.4M12 17.5v.1',
+  close: 'M6 6l12 12M18 6L6 18',
+  auto: 'M12 4a8 8 0 1 0 0 16zM12 4a8 8 0 0 1 0 16',
+  light: 'M12 8a4 4 0 1 0 0 8a4 4 0 1 0 0-8M12 2.5v2M12 19.5v2M2.5 12h2M19.5 12h2M5.3 5.3l1.4 1.4M17.3 17.3l1.4 1.4M5.3 18.7l1.4-1.4M17.3 6.7l1.4-1.4',
+  dark: 'M19.5 14.5A8 8 0 0 1 9.5 4.5a8 8 0 1 0 10 10z',
+} as const;

@@ -1,0 +1,97 @@
+// What the user chose, kept in the browser. Whatever is stored there, what comes out is sound.
+import type { Colours, Look, Settings } from '../src/scene/settings.js';
+
+export type Theme = 'auto' | 'light' | 'dark';
+
+export interface Preferences {
+  theme: Theme;
+  panel: boolean;
+  settings: Settings;
+  look: Look;
+}
+
+export const THEMES: readonly Theme[] = ['auto', 'light', 'dark'];
+export const COLOURS: readonly Colours[] = ['plain', 'vertex', 'partition', 'error'];
+
+/// Bytes of a MB, as the memory budget is counted.
+export const MEGABYTE = 1e6;
+
+export interface Range {
+  least: number;
+  most: number;
+  step: number;
+}
+
+/// What may be chosen; the memory budget in MB.
+export const RANGES = {
+  framesPerSecond: { least: 5, most: 120, step: 5 },
+  threshold: { least: 0.5, most: 16, step: 0.5 },
+  memoryBudget: { least: 32, most: 4096, step: 32 },
+} as const satisfies Record<string, Range>;
+
+const KEY = 'meshhier';
+
+type Json = Record<string, unknown>;
+
+function asObject(value: unknown): Json {
+  return typeof value === 'object' && value !== null ? (value as Json) : {};
+}
+
+function oneOf<T>(value: unknown, choices: readonly T[], otherwise: T): T {
+  return choices.find((choice) => choice === value) ?? otherwise;
+}
+
+function within(value: unknown, { least, most }: Range, otherwise: number): number {
+  return typeof value === 'number' && value >= least && value <= most ? value : otherwise;
+}
+
+function readSettings(stored: Json): Settings {
+  const budget = typeof stored.memoryBudget === 'number' ? stored.memoryBudget / MEGABYTE : null;
+  return {
+    framesPerSecond: within(stored.framesPerSecond, RANGES.framesPerSecond, 30),
+    threshold: within(stored.threshold, RANGES.threshold, 1),
+    memoryBudget: within(budget, RANGES.memoryBudget, 256) * MEGABYTE,
+  };
+}
+
+function readLook(stored: Json): Look {
+  return {
+    colours: oneOf(stored.colours, COLOURS, 'vertex'),
+    shading: oneOf(stored.shading, ['smooth', 'flat'], 'smooth'),
+    wires: stored.wires === true,
+    points: stored.points === true,
+    outline: stored.outline === true,
+  };
+}
+
+/// The preferences in a stored text, with defaults for whatever is missing or unsound.
+export function parsePreferences(text: string | null): Preferences {
+  let stored: Json = {};
+  try {
+    stored = asObject(JSON.parse(text ?? '{}'));
+  } catch {
+    // what cannot be read is as good as nothing
+  }
+  return {
+    theme: oneOf(stored.theme, THEMES, 'auto'),
+    panel: stored.panel === true,
+    settings: readSettings(asObject(stored.settings)),
+    look: readLook(asObject(stored.look)),
+  };
+}
+
+export function loadPreferences(): Preferences {
+  try {
+    return parsePreferences(localStorage.getItem(KEY));
+  } catch {
+    return parsePreferences(null); // the browser keeps nothing
+  }
+}
+
+export function savePreferences(preferences: Preferences): void {
+  try {
+    localStorage.setItem(KEY, JSON.stringify(preferences));
+  } catch {
+    // the browser keeps nothing: they hold until the page is left
+  }
+}

@@ -1,0 +1,30 @@
+// What the page's address says beside the link to a view: `?models=URL` another listing, `?model=URL` one
+// hierarchy without a listing.
+import { modelOfPath, resolveUrl, type Model } from './listing.js';
+
+export interface Query {
+  listing: string;
+  /// The one model; then there is no listing.
+  only: Model | null;
+  /// Why what it says cannot be shown.
+  problem: string | null;
+}
+
+const LISTING = 'models.json';
+
+function unusable(key: string, value: string): string {
+  return `?${key}=${value} is no address that can be fetched. It must be relative to this page, or start with http or https.`;
+}
+
+/// `base`: the page's own address.
+export function readQuery(search: string, base: string): Query {
+  const parameters = new URLSearchParams(search);
+  const [model, models] = [parameters.get('model'), parameters.get('models')];
+  const listing = new URL(LISTING, base).href;
+  if (model !== null) {
+    const only = modelOfPath(model, base);
+    return { listing, only, problem: only === null ? unusable('model', model) : null };
+  }
+  const other = models === null ? listing : resolveUrl(models, base);
+  return { listing: other ?? listing, only: null, problem: other === null ? unusable('models', models ?? '') : null };
+}

@@ -1,0 +1,124 @@
+// Moves a camera that looks at a target, upright. Nothing here keeps what it is given.
+import { Vector3, type Box3 } from 'three';
+import type { Pose } from '../address.js';
+
+/// Radians, from the lower to the upper edge of the picture.
+export const VIEW_ANGLE = Math.PI / 4;
+
+const STEEPEST = 0.01; // radians from straight up or down
+const FIRST_DIRECTION = new Vector3(0.5, 0.3, 1).normalize();
+const MARGIN = 1.08;
+const UP = new Vector3(0, 1, 0);
+
+export class CameraPose {
+  constructor(
+    readonly position: Vector3,
+    readonly target: Vector3,
+  ) {}
+
+  static from({ position, target }: Pose): CameraPose {
+    return new CameraPose(new Vector3(...position), new Vector3(...target));
+  }
+
+  toPose(): Pose {
+    const { position: p, target: t } = this;
+    return { position: [p.x, p.y, p.z], target: [t.x, t.y, t.z] };
+  }
+
+  get distance(): number {
+    return this.position.distanceTo(this.target);
+  }
+
+  /// Of length 1.
+  get forward(): Vector3 {
+    return this.target.clone().sub(this.position).normalize();
+  }
+
+  equals(other: CameraPose): boolean {
+    return this.position.equals(other.position) && this.target.equals(other.target);
+  }
+}
+
+interface Axes {
+  right: Vector3;
+  up: Vector3;
+  forward: Vector3;
+}
+
+function axesOf(forward: Vector3): Axes {
+  const right = forward.clone().cross(UP);
+  if (right.lengthSq() < 1e-12) right.set(1, 0, 0);
+  right.normalize();
+  return { right, up: right.clone().cross(forward), forward };
+}
+
+/// Around the target; radians to the right and up.
+export function turn(pose: CameraPose, right: number, up: number): CameraPose {
+  const offset = pose.position.clone().sub(pose.target);
+  const length = offset.length();
+  const steepness = Math.acos(Math.min(Math.max(offset.y / length, -1), 1));
+  const wanted = Math.min(Math.max(steepness - up, STEEPEST), Math.PI - STEEPEST);
+  const around = Math.atan2(offset.x, offset.z) + right;
+  offset.set(Math.sin(wanted) * Math.sin(around), Math.cos(wanted), Math.sin(wanted) * Math.cos(around));
+  return new CameraPose(offset.multiplyScalar(length).add(pose.target), pose.target.clone());
+}
+
+/// Moves along the picture, by parts of its height of what lies at `depth` in front of the camera.
+export function pan(pose: CameraPose, right: number, up: number, depth: number): CameraPose {
+  const axes = axesOf(pose.forward);
+  const height = 2 * depth * Math.tan(VIEW_ANGLE / 2);
+  const move = axes.right.multiplyScalar(right * height).addScaledVector(axes.up, up * height);
+  return new CameraPose(pose.position.clone().add(move), pose.target.clone().add(move));
+}
+
+/// Scales all distances to `point`, which stays where it is in the picture.
+export function zoom(pose: CameraPose, point: Vector3, factor: number): CameraPose {
+  const scaled = (from: Vector3): Vector3 => from.clone().sub(point).multiplyScalar(factor).add(point);
+  return new CameraPose(scaled(pose.position), scaled(pose.target));
+}
+
+/// The same picture, to be turned around what lies at `depth`.
+export function retarget(pose: CameraPose, depth: number): CameraPose {
+  return new CameraPose(pose.position.clone(), pose.forward.multiplyScalar(depth).add(pose.position));
+}
+
+export function depthOf(pose: CameraPose, point: Vector3): number {
+  return point.clone().sub(pose.position).dot(pose.forward);
+}
+
+function cornersOf({ min, max }: Box3): Vector3[] {
+  return [0, 1, 2, 3, 4, 5, 6, 7].map(
+    (bits) => new Vector3((bits & 1 ? max : min).x, (bits & 2 ? max : min).y, (bits & 4 ? max : min).z),
+  );
+}
+
+/// All of the box in a picture of that aspect.
+export function wholeView(box: Box3, aspect: number): CameraPose {
+  const centre = box.getCenter(new Vector3());
+  const { right, up, forward } = axesOf(FIRST_DIRECTION.clone().negate());
+  const slope = Math.tan(VIEW_ANGLE / 2);
+  let distance = 0;
+  for (const corner of cornersOf(box)) {
+    corner.sub(centre);
+    const across = Math.max(Math.abs(corner.dot(right)) / aspect, Math.abs(corner.dot(up)));
+    distance = Math.max(distance, across / slope - corner.dot(forward));
+  }
+  return new CameraPose(FIRST_DIRECTION.clone().multiplyScalar((distance || 1) * MARGIN).add(centre), centre);
+}
+
+/// Near and far plane that hold the box, and whatever is near the target.
+export function depthRange(pose: CameraPose, box: Box3): { near: number; far: number } {
+  const radius = box.getSize(new Vector3()).length() * 0.52;
+  const away = pose.position.distanceTo(box.getCenter(new Vector3()));
+  const near = Math.max(away - radius, pose.distance * 0.02);
+  return { near, far: Math.max(away + radius, near * 2) };
+}
+
+/// Part `t` of the way from `a` to `b`: distances grow by equal factors in equal times.
+export function between(a: CameraPose, b: CameraPose, t: number): CameraPose {
+  const target = a.target.clone().lerp(b.target, t);
+  const distance = a.distance * (b.distance / a.distance) ** t;
+  const direction = a.forward.lerp(b.forward, t);
+  if (direction.lengthSq() < 1e-6) direction.copy(b.forward);
+  return new CameraPose(target.clone().addScaledVector(direction.normalize(), -distance), target);
+}

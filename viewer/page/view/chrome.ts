@@ -1,0 +1,81 @@
+// Everything around the picture: bars, badge, sheets.
+import type { Stats } from '../../src/scene/settings.js';
+import { element, iconButton } from '../parts/element.js';
+import { ICONS } from '../parts/icons.js';
+import { ModeBadge } from '../parts/mode_badge.js';
+import type { Preferences } from '../preferences.js';
+import { help } from './help.js';
+import { Panel } from './panel.js';
+import { SettingsForm, type Choices } from './settings_form.js';
+import { Sheet, Sheets } from './sheets.js';
+
+const ZOOM_STEP = 0.45;
+
+export interface Orders extends Choices {
+  /// Null: back leads nowhere but to the whole model.
+  back: (() => void) | null;
+  home: () => void;
+  zoom: (logarithm: number) => void;
+  panelShown: (open: boolean) => void;
+}
+
+export class Chrome {
+  readonly root: HTMLElement;
+  readonly sheets: Sheets;
+  readonly settings: Sheet;
+  readonly help: Sheet;
+  readonly panel: Sheet;
+  private readonly badge = new ModeBadge();
+  private readonly busy = element('div', { class: 'busy', 'aria-hidden': 'true' });
+  private readonly form: SettingsForm;
+  private readonly figures = new Panel();
+
+  /// `surface`: what the picture is drawn on.
+  constructor(name: string, surface: HTMLElement, orders: Orders, signal: AbortSignal) {
+    this.form = new SettingsForm(orders);
+    this.settings = new Sheet('Look and settings', ICONS.sliders, [this.form.root]);
+    this.panel = new Sheet('Figures', ICONS.chart, [this.figures.root]);
+    this.help = new Sheet('Help', ICONS.help, [help()]);
+    const all = [this.settings, this.panel, this.help];
+    this.sheets = new Sheets(all, [this.settings, this.help], (sheet, open) => { this.sheetChanged(sheet, open, orders); }, signal);
+    this.root = element(
+      'main',
+      { class: 'view' },
+      surface,
+      this.busy,
+      this.topBar(name, orders, all.map(({ button }) => button)),
+      this.zoomBar(orders),
+      ...all.map(({ root }) => root),
+    );
+  }
+
+  show(preferences: Preferences): void {
+    this.form.show(preferences);
+  }
+
+  /// `working`: something is on its way.
+  report(stats: Stats, wanted: number, working: boolean): void {
+    this.badge.show(stats.mode);
+    this.busy.classList.toggle('working', working);
+    if (this.panel.isOpen) this.figures.show(stats, wanted);
+  }
+
+  private topBar(name: string, { back, home }: Orders, buttons: readonly HTMLElement[]): HTMLElement {
+    const leave = back === null ? null : iconButton('Back', ICONS.back, back);
+    const title = element('h1', { title: name }, name);
+    const whole = iconButton('Whole model', ICONS.home, home);
+    const bar = element('div', { class: 'bar' }, whole, ...buttons);
+    return element('header', { class: 'top-bar' }, element('div', { class: 'top-row' }, leave, title, bar), this.badge.root);
+  }
+
+  private zoomBar({ zoom }: Orders): HTMLElement {
+    const closer = iconButton('Closer', ICONS.plus, () => { zoom(-ZOOM_STEP); });
+    const farther = iconButton('Farther', ICONS.minus, () => { zoom(ZOOM_STEP); });
+    return element('div', { class: 'bar zoom-bar' }, closer, farther);
+  }
+
+  private sheetChanged(sheet: Sheet, open: boolean, orders: Orders): void {
+    this.root.classList.toggle('with-sheet', this.sheets.anyOpen);
+    if (sheet === this.panel) orders.panelShown(open);
+  }
+}

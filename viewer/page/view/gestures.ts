@@ -1,0 +1,102 @@
+// Mouse, pen, touch and wheel, as movements of the camera.
+import type { Navigation } from './navigation.js';
+
+const TURN = Math.PI; // radians for a drag along the picture's height
+const WHEEL = 0.0016; // of a factor's logarithm, a pixel of the wheel
+const MOST_WHEEL = 200;
+const LINE = 32; // pixels, where wheels count lines
+const NEW_GRAB = 250; // milliseconds without a turn of the wheel
+const TAP = { reach: 24, pause: 350, moved: 8 };
+
+interface Finger {
+  x: number;
+  y: number;
+}
+
+export class Gestures {
+  private readonly fingers = new Map<number, Finger>();
+  private panning = false;
+  private wheeled = { at: -Infinity, x: 0, y: 0 };
+  private tap = { at: -Infinity, x: 0, y: 0 };
+  private travelled = 0;
+
+  constructor(
+    private readonly surface: HTMLElement,
+    private readonly navigation: Navigation,
+  ) {
+    surface.addEventListener('pointerdown', (event) => { this.down(event); });
+    surface.addEventListener('pointermove', (event) => { this.drag(event); });
+    surface.addEventListener('pointerup', (event) => { this.lift(event); });
+    surface.addEventListener('pointercancel', (event) => { this.fingers.delete(event.pointerId); });
+    surface.addEventListener('wheel', (event) => { this.wheel(event); }, { passive: false });
+    surface.addEventListener('contextmenu', (event) => { event.preventDefault(); });
+  }
+
+  private grab({ x, y }: Finger): void {
+    const { left, top, width, height } = this.surface.getBoundingClientRect();
+    this.navigation.grab(((x - left) / width) * 2 - 1, 1 - ((y - top) / height) * 2);
+  }
+
+  private middle(): Finger {
+    const all = [...this.fingers.values()];
+    const sum = all.reduce((a, b) => ({ x: a.x + b.x, y: a.y + b.y }));
+    return { x: sum.x / all.length, y: sum.y / all.length };
+  }
+
+  /// Of the fingers from their middle.
+  private spread(): number {
+    const { x, y } = this.middle();
+    return [...this.fingers.values()].reduce((sum, finger) => sum + Math.hypot(finger.x - x, finger.y - y), 0);
+  }
+
+  private down(event: PointerEvent): void {
+    if (this.fingers.size >= 2) return;
+    this.surface.focus({ preventScroll: true });
+    this.surface.setPointerCapture(event.pointerId);
+    this.fingers.set(event.pointerId, { x: event.clientX, y: event.clientY });
+    this.travelled = this.fingers.size === 1 ? 0 : Infinity;
+    this.panning = this.fingers.size > 1 || event.button !== 0 || event.shiftKey;
+    if (this.panning) this.grab(this.middle());
+    else this.navigation.grabMiddle();
+  }
+
+  private drag(event: PointerEvent): void {
+    const finger = this.fingers.get(event.pointerId);
+    if (finger === undefined) return;
+    const [middle, spread] = [this.middle(), this.spread()];
+    this.travelled += Math.hypot(event.clientX - finger.x, event.clientY - finger.y);
+    this.fingers.set(event.pointerId, { x: event.clientX, y: event.clientY });
+    const now = this.middle();
+    const height = this.surface.clientHeight;
+    const [right, up] = [(now.x - middle.x) / height, (middle.y - now.y) / height];
+    if (!this.panning) this.navigation.move({ turnRight: -right * TURN, turnUp: -up * TURN });
+    else this.navigation.move({ panRight: -right, panUp: -up, zoom: spread > 0 ? Math.log(spread / this.spread()) : 0 });
+  }
+
+  private lift(event: PointerEvent): void {
+    if (!this.fingers.delete(event.pointerId)) return;
+    if (this.fingers.size > 0) {
+      this.panning = false;
+      this.navigation.grabMiddle();
+    } else if (this.travelled < TAP.moved && event.button === 0) this.tapped(event);
+  }
+
+  /// The second one at a place flies there.
+  private tapped({ timeStamp, clientX: x, clientY: y }: PointerEvent): void {
+    const again = timeStamp - this.tap.at < TAP.pause && Math.hypot(x - this.tap.x, y - this.tap.y) < TAP.reach;
+    this.tap = { at: again ? -Infinity : timeStamp, x, y };
+    if (!again) return;
+    const { left, top, width, height } = this.surface.getBoundingClientRect();
+    this.navigation.approach(((x - left) / width) * 2 - 1, 1 - ((y - top) / height) * 2);
+  }
+
+  private wheel(event: WheelEvent): void {
+    event.preventDefault();
+    const { clientX: x, clientY: y, timeStamp: at } = event;
+    const elsewhere = Math.hypot(x - this.wheeled.x, y - this.wheeled.y) > TAP.moved;
+    if (elsewhere || at - this.wheeled.at > NEW_GRAB) this.grab({ x, y });
+    this.wheeled = { at, x, y };
+    const pixels = event.deltaY * (event.deltaMode === WheelEvent.DOM_DELTA_LINE ? LINE : 1) * (event.ctrlKey ? 5 : 1);
+    this.navigation.move({ zoom: Math.min(Math.max(pixels, -MOST_WHEEL), MOST_WHEEL) * WHEEL });
+  }
+}

@@ -1,0 +1,71 @@
+// The keyboard, as movements and commands.
+import type { Moves } from './glide.js';
+
+export interface Commands {
+  move(moves: Partial<Moves>): void;
+  home(): void;
+  back(): void;
+  colours(number: number): void;
+  toggle(what: 'wires' | 'points' | 'outline' | 'flat' | 'panel' | 'settings' | 'help'): void;
+}
+
+const TURN = 0.16; // radians
+const PAN = 0.08; // of the picture's height
+const ZOOM = 0.22; // of a factor's logarithm
+
+type Act = (commands: Commands, shift: boolean) => void;
+
+function arrow(right: number, up: number): Act {
+  return (commands, shift) => {
+    commands.move(shift ? { panRight: right * PAN, panUp: up * PAN } : { turnRight: right * TURN, turnUp: up * TURN });
+  };
+}
+
+const closer: Act = (commands) => { commands.move({ zoom: -ZOOM }); };
+const farther: Act = (commands) => { commands.move({ zoom: ZOOM }); };
+const home: Act = (commands) => { commands.home(); };
+const back: Act = (commands) => { commands.back(); };
+const colours = (number: number): Act => (commands) => { commands.colours(number); };
+const toggle = (what: Parameters<Commands['toggle']>[0]): Act => (commands) => { commands.toggle(what); };
+
+const ACTS: Record<string, Act> = {
+  ArrowLeft: arrow(-1, 0), ArrowRight: arrow(1, 0), ArrowUp: arrow(0, 1), ArrowDown: arrow(0, -1),
+  '+': closer, '=': closer, '-': farther, _: farther,
+  Home: home, '0': home, Escape: back, Backspace: back,
+  '1': colours(0), '2': colours(1), '3': colours(2), '4': colours(3),
+  w: toggle('wires'), p: toggle('points'), o: toggle('outline'), f: toggle('flat'),
+  s: toggle('panel'), l: toggle('settings'), '?': toggle('help'), h: toggle('help'),
+};
+
+/// What people are told: keys, and what they do.
+export const KEY_HELP: readonly (readonly [string, string])[] = [
+  ['Arrows', 'turn'],
+  ['Shift + arrows', 'move'],
+  ['+ −', 'closer, farther'],
+  ['Home, 0', 'the whole model'],
+  ['Esc, Backspace', 'back'],
+  ['1 2 3 4', 'colours: plain, vertices, partitions, error'],
+  ['W P O F', 'wires, points, outline, flat shading'],
+  ['L', 'look and settings'],
+  ['S', 'figures'],
+  ['?', 'this help'],
+];
+
+/// Keys that an element under the focus needs for itself.
+function isTaken(event: KeyboardEvent): boolean {
+  const { target, key } = event;
+  if (key === 'Escape') return false;
+  if (target instanceof HTMLInputElement) return !['checkbox', 'button'].includes(target.type) || key === ' ';
+  return target instanceof HTMLSelectElement || target instanceof HTMLTextAreaElement;
+}
+
+/// Until `signal` aborts.
+export function listenToKeys(commands: Commands, signal: AbortSignal): void {
+  window.addEventListener('keydown', (event) => {
+    if (event.ctrlKey || event.altKey || event.metaKey || isTaken(event)) return;
+    const act = ACTS[event.key] ?? ACTS[event.key.toLowerCase()];
+    if (act === undefined) return;
+    event.preventDefault();
+    act(commands, event.shiftKey);
+  }, { signal });
+}

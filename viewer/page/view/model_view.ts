@@ -1,0 +1,254 @@
+// A model, as large as the window, and all that can be done with it.
+import { Box3, Vector3 } from 'three';
+import { HierarchyView, type Look, type Settings, type Stats, type ViewOptions } from '../../src/index.js';
+import TileWorker from '../../src/hierarchy/tile_worker.js?worker';
+import { roundedPose, type Pose } from '../address.js';
+import type { Model } from '../listing.js';
+import { element } from '../parts/element.js';
+import { COLOURS, type Preferences, type Theme } from '../preferences.js';
+import { CameraPose } from './camera_pose.js';
+import { Chrome } from './chrome.js';
+import { FrameLoop, type Pace } from './frame_loop.js';
+import { Gestures } from './gestures.js';
+import { listenToKeys, type Commands } from './keys.js';
+import { Navigation } from './navigation.js';
+import { Sharpness } from './sharpness.js';
+import { Stage } from './stage.js';
+import '../style/view.css';
+
+export interface Surroundings {
+  fetch: ViewOptions['fetch'];
+  pose: Pose | null;
+  preferences: Preferences;
+  /// Preferences have changed.
+  chosen(): void;
+  setTheme(theme: Theme): void;
+  /// To the gallery; null: there is none.
+  leave: (() => void) | null;
+  /// The camera stands still, elsewhere than before; null: it sees all of the model, whatever the window's size.
+  rested(pose: Pose | null): void;
+  /// What it returns takes the message away.
+  failed(message: string): () => void;
+}
+
+const REST = 300; // milliseconds without movement
+const REPORT = 250; // milliseconds between two reports
+const UNKNOWN = new Box3(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
+
+const LOST = 'The graphics card gave the picture up. It comes back as soon as the browser allows; else load the page again.';
+
+export class ModelView {
+  readonly root: HTMLElement;
+  readonly view: HierarchyView;
+  private readonly stage: Stage;
+  private readonly navigation: Navigation;
+  private readonly loop = new FrameLoop((now) => this.frame(now));
+  private readonly chrome: Chrome;
+  private readonly ending = new AbortController();
+  private readonly sharpness = new Sharpness();
+  private readonly sizes = new ResizeObserver(() => { this.loop.wake(); });
+  private dirty = true;
+  private opened = false;
+  private lost: (() => void) | null = null;
+  private restTimer = 0;
+  private reportedAt = -Infinity;
+
+  /// Throws Error where there is no WebGL 2.
+  constructor(
+    readonly model: Model,
+    private readonly around: Surroundings,
+  ) {
+    const { fetch, preferences: { settings, look } } = around;
+    this.view = new HierarchyView(model.url, { fetch, settings, look, createWorker: () => new TileWorker() });
+    this.stage = new Stage(this.view);
+    this.navigation = new Navigation((right, up) => this.stage.pick(right, up), () => { this.redraw(); });
+    const surface = this.makeSurface();
+    this.chrome = new Chrome(model.name, surface, this.orders(), this.ending.signal);
+    this.root = this.chrome.root;
+    new Gestures(surface, this.navigation);
+    listenToKeys(this.commands(), this.ending.signal);
+    this.listen();
+  }
+
+  /// Once it is on the page.
+  start(): void {
+    this.chrome.show(this.around.preferences);
+    if (this.around.preferences.panel) this.chrome.panel.open();
+    if (this.around.pose !== null) this.setPose(this.around.pose);
+    this.sizes.observe(this.stage.canvas);
+    this.stage.canvas.parentElement?.focus({ preventScroll: true });
+    this.view.opened.then(() => { this.begin(); }, (error: unknown) => { this.refuse(error); });
+    this.loop.wake();
+  }
+
+  pose(): Pose {
+    return roundedPose(this.navigation.pose.toPose());
+  }
+
+  /// Null: all of the model.
+  setPose(pose: Pose | null): void {
+    if (pose === null) this.navigation.goHome();
+    else this.navigation.jump(CameraPose.from(pose));
+  }
+
+  stats(): Stats {
+    return this.view.stats();
+  }
+
+  settled(): boolean {
+    return this.opened && !this.dirty && this.lost === null && !this.navigation.busy && !this.sharpness.blurred && this.view.stats().settled;
+  }
+
+  themeChanged(): void {
+    this.chrome.show(this.around.preferences);
+    this.redraw();
+  }
+
+  close(): void {
+    this.ending.abort();
+    this.loop.stop();
+    this.sizes.disconnect();
+    window.clearTimeout(this.restTimer);
+    this.view.dispose();
+    this.stage.dispose();
+    this.root.remove();
+  }
+
+  private makeSurface(): HTMLElement {
+    const name = `${this.model.name} in three dimensions. Arrows turn, plus and minus zoom, question mark helps.`;
+    const surface = element('div', { class: 'surface', tabindex: '0', role: 'application', 'aria-label': name });
+    surface.append(this.stage.canvas);
+    return surface;
+  }
+
+  private listen(): void {
+    const { signal } = this.ending;
+    const { canvas } = this.stage;
+    this.view.addEventListener('change', this.loop.wake);
+    this.view.addEventListener('problem', ({ message }) => { this.around.failed(`${this.model.name}: ${message}. The view goes on with what it has.`); });
+    canvas.addEventListener('webglcontextlost', () => { this.lost = this.around.failed(LOST); }, { signal });
+    canvas.addEventListener('webglcontextrestored', () => { this.restored(); }, { signal });
+    document.addEventListener('visibilitychange', () => { this.redraw(); }, { signal });
+  }
+
+  private restored(): void {
+    this.lost?.();
+    this.lost = null;
+    this.redraw();
+  }
+
+  private begin(): void {
+    this.opened = true;
+    this.navigation.frame(this.view.box, this.stage.aspect);
+    this.redraw();
+  }
+
+  private refuse(error: unknown): void {
+    const why = error instanceof Error ? error.message : String(error);
+    this.around.failed(`${this.model.name} cannot be opened: ${why}. Is ${this.model.url} a hierarchy made by "meshhier build", and may this page fetch from there (CORS)?`);
+  }
+
+  private redraw(): void {
+    this.dirty = true;
+    this.loop.wake();
+  }
+
+  private frame(now: number): Pace {
+    if (this.lost !== null) return 'rest';
+    const moved = this.navigation.step(now);
+    if (moved) this.startRest();
+    const { framesPerSecond } = this.view.settings;
+    const resized = this.stage.fit(this.sharpness.at(now, moved, framesPerSecond));
+    if (resized && this.opened) this.navigation.frame(this.view.box, this.stage.aspect);
+    this.stage.aim(CameraPose.from(this.pose()), this.opened ? this.view.box : UNKNOWN);
+    const news = this.view.update(this.stage.camera, this.stage.size, now);
+    if (moved || news || resized || this.dirty) this.stage.draw();
+    this.dirty = false;
+    return this.pace(now, moved || news || this.navigation.busy || this.sharpness.blurred);
+  }
+
+  private pace(now: number, busy: boolean): Pace {
+    const due = now - this.reportedAt >= REPORT;
+    if (busy && !due) return 'busy';
+    const stats = this.view.stats();
+    const working = !stats.settled || !this.opened;
+    this.reportedAt = now;
+    this.chrome.report(stats, this.view.settings.framesPerSecond, working);
+    if (busy) return 'busy';
+    return working ? 'waiting' : 'rest';
+  }
+
+  /// Links tell of the camera when it has come to rest.
+  private startRest(): void {
+    window.clearTimeout(this.restTimer);
+    this.restTimer = window.setTimeout(() => { this.around.rested(this.navigation.atHome ? null : this.pose()); }, REST);
+  }
+
+  private setLook(change: Partial<Look>): void {
+    this.view.setLook(change);
+    Object.assign(this.around.preferences.look, change);
+    this.around.chosen();
+    this.chrome.show(this.around.preferences);
+    this.redraw();
+  }
+
+  private setSettings(change: Partial<Settings>): void {
+    this.view.setSettings(change);
+    Object.assign(this.around.preferences.settings, change);
+    this.around.chosen();
+    this.redraw();
+  }
+
+  private panelShown(open: boolean): void {
+    this.around.preferences.panel = open;
+    this.around.chosen();
+    this.reportedAt = -Infinity;
+    this.loop.wake();
+  }
+
+  /// Out of the depth first, then to the gallery.
+  private readonly back = (): void => {
+    if (this.opened && this.view.stats().mode !== 'CWV') this.navigation.goHome();
+    else this.around.leave?.();
+  };
+
+  private orders(): ConstructorParameters<typeof Chrome>[2] {
+    return {
+      back: this.around.leave === null ? null : this.back,
+      home: () => { this.navigation.goHome(); },
+      zoom: (logarithm) => { this.zoomMiddle(logarithm); },
+      panelShown: (open) => { this.panelShown(open); },
+      look: (change) => { this.setLook(change); },
+      settings: (change) => { this.setSettings(change); },
+      theme: (theme) => { this.around.setTheme(theme); },
+    };
+  }
+
+  private zoomMiddle(logarithm: number): void {
+    this.navigation.grab(0, 0);
+    this.navigation.move({ zoom: logarithm });
+  }
+
+  private commands(): Commands {
+    return {
+      move: (moves) => { this.moveByKey(moves); },
+      home: () => { this.navigation.goHome(); },
+      back: () => { if (!this.chrome.sheets.closeAside()) this.back(); },
+      colours: (number) => { this.setLook({ colours: COLOURS[number] }); },
+      toggle: (what) => { this.toggle(what); },
+    };
+  }
+
+  private moveByKey(moves: Parameters<Commands['move']>[0]): void {
+    if (moves.turnRight !== undefined) this.navigation.grabMiddle();
+    else this.navigation.grab(0, 0);
+    this.navigation.move(moves);
+  }
+
+  private toggle(what: Parameters<Commands['toggle']>[0]): void {
+    const { look } = this.view;
+    if (what === 'flat') this.setLook({ shading: look.shading === 'flat' ? 'smooth' : 'flat' });
+    else if (what === 'wires' || what === 'points' || what === 'outline') this.setLook({ [what]: !look[what] });
+    else this.chrome[what].toggle();
+  }
+}

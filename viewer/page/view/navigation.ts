@@ -1,0 +1,144 @@
+// Where the camera is, and all that moves it: gestures, keys and flights.
+import { Box3, Vector3 } from 'three';
+import { depthOf, pan, retarget, turn, wholeView, zoom, CameraPose } from './camera_pose.js';
+import { Flight } from './flight.js';
+import { Glide, type Moves } from './glide.js';
+
+/// The point of the drawn surface at a place of the picture, from -1 to 1 to the right and up. Null: there is none.
+export type Pick = (right: number, up: number) => Vector3 | null;
+
+const FARTHEST = 12; // whole views
+const NEAREST = 1e-6; // of a whole view
+const CLOSER = 0.3; // of the distance, after a double click
+const LONGEST_FRAME = 100; // milliseconds
+
+const still = matchMedia('(prefers-reduced-motion: reduce)');
+
+export class Navigation {
+  pose: CameraPose;
+  private readonly glide = new Glide();
+  private flight: Flight | null = null;
+  private grabbed: Vector3 | null = null;
+  private before = 0;
+  private seen: CameraPose | null = null;
+  private home: CameraPose;
+  private aspect = 1;
+  private box = new Box3(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
+
+  /// `wake`: a frame is wanted.
+  constructor(
+    private readonly pick: Pick,
+    private readonly wake: () => void,
+  ) {
+    this.home = wholeView(this.box, 1);
+    this.pose = this.home;
+  }
+
+  get atHome(): boolean {
+    return this.pose.equals(this.home);
+  }
+
+  get busy(): boolean {
+    return this.flight !== null || this.glide.busy;
+  }
+
+  /// The model's box and the picture's aspect; what shows the whole goes on showing the whole.
+  frame(box: Box3, aspect: number): void {
+    const follow = this.atHome;
+    this.box = box.clone();
+    this.aspect = aspect;
+    this.home = wholeView(this.box, aspect);
+    if (follow) this.jump(this.home);
+  }
+
+  jump(pose: CameraPose): void {
+    this.stop();
+    this.pose = pose;
+    this.wake();
+  }
+
+  fly(pose: CameraPose): void {
+    this.stop();
+    if (still.matches) this.pose = pose;
+    else this.flight = new Flight(this.pose, pose);
+    this.wake();
+  }
+
+  goHome(): void {
+    this.fly(this.home);
+  }
+
+  /// Flies to the surface there. False: nothing is there.
+  approach(right: number, up: number): boolean {
+    const point = this.pick(right, up);
+    if (point === null) return false;
+    const distance = point.distanceTo(this.pose.position) * CLOSER;
+    this.fly(new CameraPose(this.pose.forward.multiplyScalar(-distance).add(point), point));
+    return true;
+  }
+
+  /// A gesture begins at a place of the picture: what lies there stays under the pointer.
+  grab(right: number, up: number): void {
+    this.flight = null;
+    this.grabbed = this.pick(right, up) ?? this.pointAt(right, up);
+  }
+
+  /// A turn begins: close to the surface, around what is in the middle of the picture.
+  grabMiddle(): void {
+    this.flight = null;
+    if (this.pose.distance > this.home.distance * 0.5) return;
+    const point = this.pick(0, 0);
+    if (point !== null) this.pose = retarget(this.pose, Math.max(depthOf(this.pose, point), this.home.distance * NEAREST));
+  }
+
+  move(moves: Partial<Moves>): void {
+    this.flight = null;
+    this.glide.add(moves);
+    this.wake();
+  }
+
+  /// True if the pose is another one than in the frame before.
+  step(now: number): boolean {
+    const passed = Math.min(now - this.before, LONGEST_FRAME);
+    this.before = now;
+    if (this.flight !== null) this.follow(this.flight, now);
+    else if (this.glide.busy) this.apply(this.glide.take(passed, still.matches));
+    const moved = this.seen?.equals(this.pose) !== true;
+    this.seen = this.pose;
+    return moved;
+  }
+
+  private stop(): void {
+    this.flight = null;
+    this.glide.clear();
+  }
+
+  private follow(flight: Flight, now: number): void {
+    const { pose, done } = flight.at(now);
+    this.pose = pose;
+    if (done) this.flight = null;
+  }
+
+  private apply({ turnRight, turnUp, panRight, panUp, zoom: logarithm }: Moves): void {
+    const held = this.grabbed ?? this.pose.target;
+    if (turnRight !== 0 || turnUp !== 0) this.pose = turn(this.pose, turnRight, turnUp);
+    if (panRight !== 0 || panUp !== 0) this.pose = pan(this.pose, panRight, panUp, this.depthFor(held));
+    if (logarithm !== 0) this.pose = zoom(this.pose, held, this.allowed(Math.exp(logarithm)));
+  }
+
+  private depthFor(point: Vector3): number {
+    const depth = depthOf(this.pose, point);
+    return depth > 0 ? depth : this.pose.distance;
+  }
+
+  private allowed(factor: number): number {
+    const { distance } = this.pose;
+    const [least, most] = [this.home.distance * NEAREST, this.home.distance * FARTHEST];
+    return Math.min(Math.max(distance * factor, Math.min(least, distance)), Math.max(most, distance)) / distance;
+  }
+
+  /// As far away as the target.
+  private pointAt(right: number, up: number): Vector3 {
+    return pan(this.pose, (right * this.aspect) / 2, up / 2, this.pose.distance).target;
+  }
+}

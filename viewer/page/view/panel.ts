@@ -1,0 +1,64 @@
+// The figures of a view.
+import type { Stats } from '../../src/scene/settings.js';
+import { formatBytes, formatCount, formatDecimal, formatMilliseconds } from '../numbers.js';
+import { element } from '../parts/element.js';
+
+function levels({ tiles, coarsestLevel, finestLevel }: Stats): string {
+  if (tiles === 0) return '0';
+  const range = coarsestLevel === finestLevel ? `level ${finestLevel}` : `levels ${coarsestLevel} to ${finestLevel}`;
+  return `${formatCount(tiles)}, ${range}`;
+}
+
+function saved({ savedBytes, wholeViewBytes }: Stats): string {
+  const part = wholeViewBytes > 0 ? ` (${Math.round((100 * savedBytes) / wholeViewBytes)} %)` : '';
+  return `${formatBytes(savedBytes)}${part}`;
+}
+
+/// What was never measured is no figure.
+function rate({ framesPerSecond }: Stats, wanted: number): string {
+  return framesPerSecond > 0 ? `${formatDecimal(framesPerSecond)} of ${wanted}` : `– of ${wanted}`;
+}
+
+function fetched({ fetchedBytes, fetchedFiles }: Stats): string {
+  return `${formatBytes(fetchedBytes)}, ${formatCount(fetchedFiles)} ${fetchedFiles === 1 ? 'file' : 'files'}`;
+}
+
+interface Row {
+  name: string;
+  tip: string;
+  text: (stats: Stats, wanted: number) => string;
+}
+
+const ROWS: readonly Row[] = [
+  { name: 'Frames per second', tip: 'while the camera moves, and the goal', text: rate },
+  { name: 'Triangles', tip: 'in view', text: ({ triangles }) => formatCount(triangles) },
+  { name: 'Vertices', tip: 'in view, and the most that the frame rate allows', text: ({ vertices, vertexBudget }) => `${formatCount(vertices)} of ${formatCount(vertexBudget)}` },
+  { name: 'Tiles', tip: 'in view', text: levels },
+  { name: 'Largest error', tip: 'on screen, of what is shown', text: ({ worstError }) => `${formatDecimal(worstError)} px` },
+  { name: 'Fetched', tip: 'bytes of tiles, and files', text: fetched },
+  { name: 'Saved', tip: 'against sending each view whole', text: saved },
+  { name: 'Hits', tip: 'tiles of views that were there already', text: ({ hits }) => formatCount(hits) },
+  { name: 'Decoding', tip: 'of all tiles together', text: ({ decodeMilliseconds }) => formatMilliseconds(decodeMilliseconds) },
+  { name: 'Memory', tip: 'of tiles, and the budget', text: ({ residentBytes, memoryBudget }) => `${formatBytes(residentBytes)} of ${formatBytes(memoryBudget)}` },
+  { name: 'Most memory', tip: 'of tiles so far', text: ({ peakBytes }) => formatBytes(peakBytes) },
+  { name: 'In memory', tip: 'tiles, and those that made room for others', text: ({ residentTiles, evicted }) => `${formatCount(residentTiles)}, ${formatCount(evicted)} dropped` },
+  { name: 'On their way', tip: 'files asked for; given up because the view went elsewhere; failed', text: ({ pending, aborted, failed }) => `${pending}, ${aborted} given up, ${failed} failed` },
+];
+
+export class Panel {
+  readonly root: HTMLElement;
+  private readonly values = ROWS.map(() => element('dd', {}));
+
+  constructor() {
+    const rows = ROWS.map(({ name, tip }, i) => element('div', { title: tip }, element('dt', {}, name), this.values[i]));
+    this.root = element('dl', { class: 'figures' }, ...rows);
+  }
+
+  /// `wanted`: frames per second.
+  show(stats: Stats, wanted: number): void {
+    ROWS.forEach(({ text }, i) => {
+      const value = text(stats, wanted);
+      if (this.values[i].textContent !== value) this.values[i].textContent = value;
+    });
+  }
+}

@@ -1,0 +1,83 @@
+// What draws: canvas, scene, camera and light.
+import { Box3, DirectionalLight, HemisphereLight, NeutralToneMapping, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from 'three';
+import type { HierarchyView } from '../../src/index.js';
+import { depthRange, VIEW_ANGLE, type CameraPose } from './camera_pose.js';
+
+const MOST_RATIO = 2;
+
+/// From above, and from a lamp that goes with the camera.
+function lights(camera: PerspectiveCamera): HemisphereLight {
+  const key = new DirectionalLight(0xfff6ea, 2.3);
+  key.position.set(-0.6, 0.9, 1);
+  const rim = new DirectionalLight(0xcfe0ff, 0.9);
+  rim.position.set(1, 0.1, -0.6);
+  for (const light of [key, rim]) camera.add(light, light.target);
+  return new HemisphereLight(0xeaf1ff, 0x5d554d, 1);
+}
+
+export class Stage {
+  readonly camera = new PerspectiveCamera((VIEW_ANGLE * 180) / Math.PI, 1);
+  readonly canvas: HTMLCanvasElement;
+  private readonly renderer: WebGLRenderer;
+  private readonly scene = new Scene();
+  private readonly raycaster = new Raycaster();
+  private nominal = new Vector2();
+  private sharpness = 1;
+
+  /// Throws Error where there is no WebGL 2.
+  constructor(readonly view: HierarchyView) {
+    this.renderer = new WebGLRenderer({ antialias: true, alpha: true, powerPreference: 'high-performance' });
+    this.renderer.setClearAlpha(0);
+    this.renderer.toneMapping = NeutralToneMapping;
+    this.canvas = this.renderer.domElement;
+    this.scene.add(this.camera, view, lights(this.camera));
+  }
+
+  get aspect(): number {
+    return this.camera.aspect;
+  }
+
+  /// Pixels of a picture of full sharpness.
+  get size(): { width: number; height: number } {
+    return { width: this.nominal.x, height: this.nominal.y };
+  }
+
+  /// Takes over the size that the canvas has on the page, with a part of the pixels on each axis. False: nothing has changed.
+  fit(sharpness: number): boolean {
+    const { clientWidth, clientHeight } = this.canvas;
+    if (clientWidth === 0 || clientHeight === 0) return false;
+    const ratio = Math.min(devicePixelRatio, MOST_RATIO);
+    const nominal = new Vector2(clientWidth, clientHeight).multiplyScalar(ratio).floor();
+    if (this.nominal.equals(nominal) && this.sharpness === sharpness) return false;
+    this.nominal = nominal;
+    this.sharpness = sharpness;
+    this.renderer.setPixelRatio(ratio * sharpness);
+    this.renderer.setSize(clientWidth, clientHeight, false);
+    this.camera.aspect = clientWidth / clientHeight;
+    return true;
+  }
+
+  aim(pose: CameraPose, box: Box3): void {
+    this.camera.position.copy(pose.position);
+    this.camera.lookAt(pose.target);
+    Object.assign(this.camera, depthRange(pose, box));
+    this.camera.updateProjectionMatrix();
+    this.camera.updateMatrixWorld();
+  }
+
+  draw(): void {
+    this.renderer.render(this.scene, this.camera);
+  }
+
+  /// The point of the drawn triangles at a place of the picture, from -1 to 1.
+  pick(right: number, up: number): Vector3 | null {
+    this.raycaster.setFromCamera(new Vector2(right, up), this.camera);
+    return this.raycaster.intersectObject(this.view, true)[0]?.point ?? null;
+  }
+
+  dispose(): void {
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
+    this.canvas.remove();
+  }
+}

@@ -1,0 +1,80 @@
+import { describe, expect, it } from 'vitest';
+import { ballOf, cellMatrix, dragged, multiply, portOf, type Matrix } from '../../page/gallery/layout.js';
+
+const CANVAS = { left: 0, top: 100, width: 400, height: 300 };
+
+function project(matrix: Matrix, [x, y, z]: number[]): number[] {
+  const at = (row: number): number => matrix[row] * x + matrix[4 + row] * y + matrix[8 + row] * z + matrix[12 + row];
+  return [at(0) / at(3), at(1) / at(3), at(2) / at(3)];
+}
+
+describe('a cell', () => {
+  it('has its place from the lower left corner of the canvas', () => {
+    expect(portOf({ left: 10, top: 120, width: 50, height: 60 }, CANVAS, 2)).toEqual({ x: 20, y: 440, width: 100, height: 120 });
+  });
+
+  it('may lie half outside', () => {
+    expect(portOf({ left: -10, top: 60, width: 50, height: 60 }, CANVAS, 1)).toEqual({ x: -10, y: 280, width: 50, height: 60 });
+  });
+
+  it.each([
+    { left: 0, top: 40, width: 50, height: 60 },
+    { left: 0, top: 400, width: 50, height: 60 },
+    { left: 400, top: 200, width: 50, height: 60 },
+    { left: -50, top: 200, width: 50, height: 60 },
+    { left: 0, top: 200, width: 0, height: 0 },
+  ])('is not drawn at $left, $top', (cell) => { expect(portOf(cell, CANVAS, 1)).toBeNull(); });
+});
+
+describe('a ball', () => {
+  it('holds the box', () => {
+    expect(ballOf(new Float32Array([1, 2, 3, 3, 5, 9]))).toEqual({ centre: [2, 3.5, 6], radius: 3.5 });
+  });
+
+  it('is never flat nor infinite', () => {
+    expect(ballOf(new Float32Array()).radius).toBe(1);
+    expect(ballOf(new Float32Array([5, 5, 5])).radius).toBe(1);
+    expect(ballOf(new Float32Array([-3e38, 0, 0, 3e38, 0, 0])).radius).toBeLessThan(Infinity);
+  });
+});
+
+describe('a turned outline', () => {
+  const ball = { centre: [5, 6, 7], radius: 2 } as const;
+
+  it.each([0.5, 1, 2])('stays within its cell of aspect %d', (aspect) => {
+    for (let yaw = 0; yaw < 7; yaw += 0.3) {
+      const matrix = cellMatrix(ball, 'y', { yaw, pitch: yaw / 7 }, aspect);
+      for (const corner of [[7, 6, 7], [5, 8, 7], [5, 6, 9], [3, 6, 7]])
+        for (const value of project(matrix, corner)) expect(Math.abs(value)).toBeLessThanOrEqual(1.03);
+    }
+  });
+
+  it('stands upright', () => {
+    const top = project(cellMatrix(ball, 'z', { yaw: 1, pitch: 0 }, 1), [5, 6, 9]);
+    expect(top[1]).toBeGreaterThan(0.8);
+    expect(top[0]).toBeCloseTo(0);
+  });
+
+  it('shows its front in front', () => {
+    const matrix = cellMatrix(ball, 'y', { yaw: 0, pitch: 0 }, 1);
+    expect(project(matrix, [5, 6, 9])[2]).toBeLessThan(project(matrix, [5, 6, 5])[2]);
+  });
+
+  it('follows the pointer', () => {
+    const before = project(cellMatrix(ball, 'y', { yaw: 0, pitch: 0 }, 1), [5, 6, 9]);
+    const after = project(cellMatrix(ball, 'y', dragged({ yaw: 0, pitch: 0 }, 20, 10, 200), 1), [5, 6, 9]);
+    expect(after[0]).toBeGreaterThan(before[0]);
+    expect(after[1]).toBeLessThan(before[1]);
+  });
+
+  it('never turns upside down', () => {
+    expect(dragged({ yaw: 0, pitch: 0 }, 0, 1e6, 200).pitch).toBeLessThan(Math.PI / 2);
+    expect(dragged({ yaw: 0, pitch: 0 }, 0, -1e6, 200).pitch).toBeGreaterThan(-Math.PI / 2);
+  });
+});
+
+it('matrices are multiplied', () => {
+  const move = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1];
+  const scale = [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1];
+  expect(multiply(scale, move).slice(12)).toEqual([2, 4, 6, 1]);
+});

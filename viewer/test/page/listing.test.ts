@@ -1,0 +1,66 @@
+import { describe, expect, it } from 'vitest';
+import { ListingError, modelOfPath, nameOfPath, parseListing } from '../../page/listing.js';
+
+const URL_ = 'http://host/dir/models.json';
+
+function parse(document: unknown) {
+  return parseListing(JSON.stringify(document), URL_);
+}
+
+describe('a listing', () => {
+  it('gives its models and jobs', () => {
+    const david = { name: 'david', path: 'models/sub/david.hier', vertices: 5, triangles: 8, bytes: 900, source: 'david.ply' };
+    const job = { name: 'x.ply', state: 'building', stage: 'partition', progress: 0.42, seconds_left: 12 };
+    const { models, jobs } = parse({ models: [david], jobs: [job] });
+    expect(models).toEqual([{ ...david, url: 'http://host/dir/models/sub/david.hier' }]);
+    expect(jobs).toEqual([{ name: 'x.ply', state: 'building', stage: 'partition', progress: 0.42, secondsLeft: 12, message: '' }]);
+  });
+
+  it('needs no more than paths', () => {
+    const [model] = parse({ models: [{ path: 'a b/c.d.hier/' }] }).models;
+    expect(model).toMatchObject({ name: 'c.d', url: 'http://host/dir/a%20b/c.d.hier', vertices: null, bytes: null });
+  });
+
+  it('has jobs only if it says so', () => {
+    expect(parse({ models: [] }).jobs).toBeNull();
+    expect(parse({ models: [], jobs: [] }).jobs).toEqual([]);
+  });
+
+  it.each(['', '{', 'null', '[]', '5', '{}', '{"models":{}}', '{"models":"x"}'])('is refused as %s', (text) => {
+    expect(() => parseListing(text, URL_)).toThrow(ListingError);
+  });
+
+  it('leaves out entries that are none', () => {
+    const bad = [null, 5, 'x', [], {}, { path: 5 }, { path: '' }, { path: 'javascript:alert(1)' }, { path: 'http://[' },
+      { path: 'data:text/html,x' }, { path: { toString: 'x' } }];
+    expect(parse({ models: bad, jobs: [null, {}, { state: 'done' }, 7] })).toEqual({ models: [], jobs: [] });
+  });
+
+  it('leaves out values that are none', () => {
+    const [model] = parse({ models: [{ path: 'a', name: { x: 1 }, vertices: '7', triangles: -3, bytes: null, source: 4 }] }).models;
+    expect(model).toMatchObject({ name: 'a', vertices: null, triangles: null, bytes: null, source: null });
+    const [job] = parse({ models: [], jobs: [{ state: 'failed', progress: 7, stage: [], seconds_left: 'soon', message: {} }] }).jobs!;
+    expect(job).toEqual({ name: 'a mesh without a name', state: 'failed', stage: '', progress: 1, secondsLeft: null, message: '' });
+  });
+
+  it('is kept within bounds', () => {
+    const path = 'a'.repeat(10);
+    expect(parse({ models: [{ path, name: 'n'.repeat(1e6) }] }).models[0].name).toHaveLength(1000);
+    expect(parse({ models: Array.from({ length: 20_000 }, (_, i) => ({ path: String(i) })) }).models).toHaveLength(10_000);
+  });
+
+  it('has a path once', () => {
+    expect(parse({ models: [{ path: 'a', name: 'one' }, { path: 'a', name: 'two' }] }).models.map(({ name }) => name)).toEqual(['one']);
+  });
+});
+
+describe('a path', () => {
+  it.each([['a.hier', 'a'], ['x/y.z.hier/', 'y.z'], ['http://h/q.hier?x=/y', 'q'], ['.hier', '.hier'], ['/', '/']])('%s is named %s', (path, name) => {
+    expect(nameOfPath(path)).toBe(name);
+  });
+
+  it('may lead to another host, and nowhere but to hosts', () => {
+    expect(modelOfPath('https://other/a.hier', URL_)?.url).toBe('https://other/a.hier');
+    expect(modelOfPath('blob:http://host/1', URL_)).toBeNull();
+  });
+});

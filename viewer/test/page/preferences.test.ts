@@ -1,0 +1,26 @@
+import { describe, expect, it } from 'vitest';
+import { parsePreferences } from '../../page/preferences.js';
+
+const DEFAULTS = parsePreferences(null);
+
+describe('preferences', () => {
+  it('have defaults', () => {
+    expect(DEFAULTS.settings).toEqual({ framesPerSecond: 30, threshold: 1, memoryBudget: 256e6 });
+    expect(DEFAULTS.theme).toBe('auto');
+  });
+
+  it('come back as they were stored', () => {
+    const chosen = {
+      theme: 'dark',
+      panel: true,
+      settings: { framesPerSecond: 60, threshold: 2.5, memoryBudget: 512e6 },
+      look: { colours: 'error', shading: 'flat', wires: true, points: true, outline: true },
+    };
+    expect(parsePreferences(JSON.stringify(chosen))).toEqual(chosen);
+  });
+
+  it.each(['', 'x', 'null', '[]', '7', '{"settings":null,"look":[]}', '{"theme":"pink","settings":{"framesPerSecond":-1,"threshold":"1","memoryBudget":1e99},"look":{"colours":7,"wires":"yes"}}'])(
+    'are the defaults where %s is stored',
+    (text) => { expect(parsePreferences(text)).toEqual(DEFAULTS); },
+  );
+});

@@ -1,0 +1,22 @@
+import { describe, expect, it } from 'vitest';
+import { readQuery } from '../../page/query.js';
+
+const BASE = 'http://host/dir/index.html';
+
+describe('the query', () => {
+  it('may say nothing', () => {
+    expect(readQuery('', BASE)).toEqual({ listing: 'http://host/dir/models.json', only: null, problem: null });
+  });
+
+  it('may name another listing', () => {
+    expect(readQuery('?models=/x/list.json', BASE).listing).toBe('http://host/x/list.json');
+  });
+
+  it('may name one model', () => {
+    expect(readQuery('?model=https://other/a/horse.hier', BASE).only).toMatchObject({ name: 'horse', url: 'https://other/a/horse.hier' });
+  });
+
+  it.each(['?model=', '?model=javascript:1', '?models=file:///etc/x', '?models=http://['])('is told off for %s', (search) => {
+    expect(readQuery(search, BASE).problem).toContain(search.split('=')[0]);
+  });
+});
