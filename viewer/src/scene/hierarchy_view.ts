@@ -7,11 +7,14 @@ import { TileStore, type ResidentTile } from '../cut/tile_store.js';
 import { isWhollyInView, type Viewpoint } from '../cut/viewpoint.js';
 import type { Fetch } from '../hierarchy/bytes.js';
 import type { Manifest } from '../hierarchy/manifest.js';
+import { OutlineError } from '../hierarchy/outline.js';
+import { HierarchyProblem } from '../hierarchy/problem.js';
 import { RemoteHierarchy, type Directory } from '../hierarchy/remote_hierarchy.js';
 import type { Tile } from '../hierarchy/tile.js';
 import { TileDecoder } from '../hierarchy/tile_decoder.js';
 import { Tree, keyOf, type Node } from '../hierarchy/tree.js';
 import { Account } from './account.js';
+import { OutlineObject } from './outline_object.js';
 import { Motion, REST_MS, viewpointOf, type Viewport } from './motion.js';
 import type { Look, Mode, Settings, Stats } from './settings.js';
 import { memoryOf, mostMemory } from './tile_object.js';
@@ -75,6 +78,7 @@ export class HierarchyView extends Group<ViewEvents> {
   private failed = 0;
   private timer: ReturnType<typeof setTimeout> | null = null;
   private isOver = false;
+  private outline: Promise<OutlineObject | null> | null = null;
 
   /// `url`: of the hierarchy's directory.
   constructor(url: string, options: ViewOptions = {}) {
@@ -111,7 +115,28 @@ export class HierarchyView extends Group<ViewEvents> {
     this.store.recount();
     this.tiles.setLook(this.look);
     this.tiles.paint(this.drawn, this.look, this.settings.threshold);
+    this.showOutline();
     this.changed();
+  }
+
+  /// Fetched when it is first asked for, and where it belongs is known.
+  private showOutline(): void {
+    if (this.outline === null && this.look.outline && this.manifest !== null) this.outline = this.loadOutline(this.manifest);
+    void this.outline?.then((object) => {
+      if (object !== null) object.visible = this.look.outline;
+      this.changed();
+    });
+  }
+
+  private async loadOutline({ place }: Manifest): Promise<OutlineObject | null> {
+    try {
+      const object = new OutlineObject(await this.remote.outline(), place);
+      this.tiles.add(object);
+      return object;
+    } catch (problem) {
+      this.tell(problem instanceof OutlineError ? new HierarchyProblem('outline.glb', problem.message) : problem);
+      return null;
+    }
   }
 
   // ---- opening
@@ -150,6 +175,7 @@ export class HierarchyView extends Group<ViewEvents> {
       this.refinement = new Refinement(directory.tree, directory.index, this.store, (record, node) =>
         mostMemory(record, node.level, hasColours, this.look.wires));
       this.account.fetched(directory.index.record(ROOT)!.bytes);
+      this.showOutline();
       this.changed();
     } catch (problem) {
       this.tell(problem);
@@ -297,6 +323,7 @@ export class HierarchyView extends Group<ViewEvents> {
     this.store.dispose();
     this.decoder.dispose();
     this.tiles.dispose();
+    void this.outline?.then((object) => object?.dispose());
     this.removeFromParent();
   }
 }
