@@ -4,7 +4,7 @@ import type { ChosenNode } from '../cut/choose_cut.js';
 import { FrameRate } from '../cut/frame_rate.js';
 import { Refinement, type Refined } from '../cut/refinement.js';
 import { TileStore, type ResidentTile } from '../cut/tile_store.js';
-import { isWhollyInView, type Viewpoint } from '../cut/viewpoint.js';
+import type { Viewpoint } from '../cut/viewpoint.js';
 import type { Fetch } from '../hierarchy/bytes.js';
 import type { Manifest } from '../hierarchy/manifest.js';
 import { OutlineError } from '../hierarchy/outline.js';
@@ -14,6 +14,7 @@ import type { Tile } from '../hierarchy/tile.js';
 import { TileDecoder } from '../hierarchy/tile_decoder.js';
 import { Tree, keyOf, type Node } from '../hierarchy/tree.js';
 import { Account } from './account.js';
+import { modeOf } from './mode.js';
 import { OutlineObject } from './outline_object.js';
 import { Motion, REST_MS, viewpointOf, type Viewport } from './motion.js';
 import type { Look, Mode, Settings, Stats } from './settings.js';
@@ -71,6 +72,7 @@ export class HierarchyView extends Group<ViewEvents> {
   private refinement: Refinement | null = null;
   private drawn: readonly ChosenNode[] = [];
   private viewpoint: Viewpoint | null = null;
+  private pixels = 1;
   private state: Refined | null = null;
   private isDirty = false;
   private wasMoving = false;
@@ -222,6 +224,7 @@ export class HierarchyView extends Group<ViewEvents> {
     const isDirty = this.isDirty;
     this.isDirty = false;
     this.viewpoint = viewpointOf(camera, this.tiles, viewport);
+    this.pixels = viewport.width * viewport.height;
     this.refine(now);
     if (this.motion.isMoving) this.later(REST_MS);
     return seesElse || isDirty;
@@ -276,12 +279,9 @@ export class HierarchyView extends Group<ViewEvents> {
   // ---- what it tells
 
   private mode(shown: readonly ChosenNode[]): Mode {
-    const root = this.drawn[0]?.record;
-    if (root === undefined || this.directory === null) return 'CWV';
-    const whole = this.directory.index.record(ROOT);
-    if (whole && this.viewpoint && isWhollyInView(this.viewpoint, whole)) return 'CWV';
-    const { lastLevel } = this.directory.tree;
-    return shown.length > 0 && shown.every(({ node }) => node.level === lastLevel) ? 'DZM' : 'ZSV';
+    const whole = this.directory?.index.record(ROOT);
+    if (!whole || this.viewpoint === null) return 'CWV';
+    return modeOf(shown, whole, this.directory!.tree.lastLevel, this.viewpoint, this.pixels);
   }
 
   stats(): Stats {
