@@ -47,7 +47,10 @@ async function openPage(browser, url, errors) {
     const asked = new URL(request.url());
     if (asked.protocol.startsWith('http') && asked.origin !== origin) errors.push(`${asked} is not on this machine`);
   });
-  page.on('requestfailed', (request) => errors.push(`${request.url()}: ${request.failure()?.errorText}`));
+  page.on('requestfailed', (request) => {
+    const reason = request.failure()?.errorText;
+    if (reason !== 'net::ERR_ABORTED') errors.push(`${request.url()}: ${reason}`); // that is the page's own wish
+  });
   await page.goto(url);
   await page.waitForFunction(() => window.view !== undefined, null, { timeout: 120_000 }).catch((error) => {
     throw new Error(`${url} does not start: ${errors.join('; ') || error.message}`);
@@ -87,7 +90,7 @@ export async function inChromium(pictures, checks) {
   mkdirSync(pictures, { recursive: true });
   const browser = await chromium.launch({
     executablePath: CHROMIUM,
-    args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
+    args: ['--no-sandbox', '--js-flags=--expose-gc', '--enable-precise-memory-info', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
   });
   const report = new Report();
   await checks(browser, report);

@@ -1,24 +1,14 @@
 // Any cut that the viewer assembles is the one that the program assembles, triangle by triangle.
 import { readFileSync } from 'node:fs';
 import path from 'node:path';
+import { gunzipSync } from 'node:zlib';
 import { afterAll, describe, expect, it } from 'vitest';
 import { Seam } from '../src/cut/seam.js';
 import { isClosed } from '../src/hierarchy/closed.js';
 import { readTile, type Tile } from '../src/hierarchy/tile.js';
 import { Tree, keyOf, tilePath, type Node } from '../src/hierarchy/tree.js';
 import { hasProgram, Workshop } from './support/meshhier.js';
-import { gunzipSync } from 'node:zlib';
-
-/// Numbers from 0 to 1, the same each time (mulberry32).
-function random(seed: number): () => number {
-  let state = seed;
-  return () => {
-    state = (state + 0x6d2b79f5) | 0;
-    let mixed = Math.imul(state ^ (state >>> 15), state | 1);
-    mixed ^= mixed + Math.imul(mixed ^ (mixed >>> 7), mixed | 61);
-    return ((mixed ^ (mixed >>> 14)) >>> 0) / 2 ** 32;
-  };
-}
+import { random } from './support/random.js';
 
 function randomCut(tree: Tree, next: () => number): Node[] {
   const cut: Node[] = [];

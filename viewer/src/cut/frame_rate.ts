@@ -55,8 +55,8 @@ export class FrameRate {
     this.elapsed = 0;
     this.frames = 0;
     if (ratio > 1 + TOLERANCE) this.shrink(vertices, ratio);
-    else if (ratio < 1 - TOLERANCE) this.grow(vertices, limited, Math.min(MOST_GROWTH, 1 / ratio));
-    else this.probe(vertices, limited);
+    else if (ratio < 1 - TOLERANCE) this.grow(limited, Math.min(MOST_GROWTH, 1 / ratio));
+    else this.probe(limited);
   }
 
   private shrink(vertices: number, ratio: number): void {
@@ -64,13 +64,14 @@ export class FrameRate {
     this.change(Math.min(this.budget, vertices) / ratio);
   }
 
-  private grow(vertices: number, limited: boolean, factor: number): void {
-    if (limited) this.change(Math.max(this.budget, vertices * factor));
+  /// What is shown comes in tiles: only the budget itself grows by little.
+  private grow(limited: boolean, factor: number): void {
+    if (limited) this.change(this.budget * factor);
   }
 
-  private probe(vertices: number, limited: boolean): void {
+  private probe(limited: boolean): void {
     if (!limited || this.sinceChange < this.probeAfter) return;
-    this.change(Math.max(this.budget, vertices * PROBE_GROWTH));
+    this.change(this.budget * PROBE_GROWTH);
     this.isProbing = true;
   }
 

@@ -38,15 +38,22 @@ export class RemoteHierarchy {
     return fetchBytes(this.fetch, `${this.base}outline.glb`, 'outline.glb', MOST_OUTLINE);
   }
 
-  /// Manifest, and the beginning of the index.
-  async directory(onPage: () => void, onProblem: (problem: unknown) => void): Promise<Directory> {
+  async manifest(): Promise<Manifest> {
     const text = await fetchBytes(this.fetch, `${this.base}hierarchy.json`, 'hierarchy.json', MOST_MANIFEST);
-    const manifest = readManifest(new TextDecoder().decode(text));
+    return readManifest(new TextDecoder().decode(text));
+  }
+
+  /// With the beginning of the index; `onPage` and `onProblem` tell of the rest, which comes as it is looked into.
+  async directory(manifest: Manifest, onPage: () => void, onProblem: (problem: unknown) => void): Promise<Directory> {
     const tree = new Tree(manifest.partitions);
-    const read = (first: number, end: number): Promise<Uint8Array> =>
-      fetchRange(this.fetch, this.base + manifest.index.file, manifest.index.file, [first, end], manifest.index.bytes);
+    const read = (first: number, end: number): Promise<Uint8Array> => this.indexBytes(manifest, first, end);
     const index = new TileIndex(tree, manifest.place, read, onPage, onProblem);
     await index.open();
     return { manifest, tree, index };
+  }
+
+  private async indexBytes({ index: { file, bytes } }: Manifest, first: number, end: number): Promise<Uint8Array> {
+    if (first === 0 && end === bytes) return fetchBytes(this.fetch, this.base + file, file, bytes);
+    return fetchRange(this.fetch, this.base + file, file, [first, end], bytes);
   }
 }

@@ -128,6 +128,8 @@ export class HierarchyView extends Group<ViewEvents> {
   }
 
   private async open(): Promise<void> {
+    const manifest = this.remote.manifest();
+    manifest.catch(() => undefined); // told when it is needed
     const root = await this.remote.tile(ROOT, { priority: 'high' });
     if (this.isOver) return;
     if (root.zUp) this.tiles.applyMatrix4(UPRIGHT);
@@ -135,12 +137,12 @@ export class HierarchyView extends Group<ViewEvents> {
     this.box.set(new Vector3(a, b, c), new Vector3(d, e, f)).applyMatrix4(this.tiles.matrix);
     this.tiles.show([this.store.addRoot(root, new Tree(1))], this.look);
     this.changed();
-    void this.openDirectory();
+    void this.openDirectory(manifest);
   }
 
-  private async openDirectory(): Promise<void> {
+  private async openDirectory(manifest: Promise<Manifest>): Promise<void> {
     try {
-      const directory = await this.remote.directory(() => { this.changed(); }, (problem) => { this.tell(problem); });
+      const directory = await this.remote.directory(await manifest, () => { this.changed(); }, (problem) => { this.tell(problem); });
       if (this.isOver) return;
       this.directory = directory;
       this.manifest = directory.manifest;

@@ -22,11 +22,12 @@ if (!hasProgram) console.warn(`tests of real hierarchies are skipped: ${MESHHIER
 export class Workshop {
   readonly directory = mkdtempSync(path.join(tmpdir(), 'meshhier-viewer-'));
 
-  /// The hierarchy of a mesh that `meshgen` makes.
+  /// The hierarchy of a mesh that `meshgen` makes; the one of that name if it was made already.
   build(name: string, meshgen: readonly string[], config: object): string {
     const mesh = path.join(this.directory, `${name}.ply`);
     const output = path.join(this.directory, `${name}.hier`);
     const json = path.join(this.directory, `${name}.json`);
+    if (existsSync(output)) return output;
     execFileSync(MESHGEN, [...meshgen, '-o', mesh]);
     writeFileSync(json, JSON.stringify({ input: mesh, output, ...config }));
     execFileSync(MESHHIER, ['build', json, '--progress', 'none']);

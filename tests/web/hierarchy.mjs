@@ -1,0 +1,185 @@
+// The viewer's library over hierarchies, in headless Chromium, from a plain static server: no hole while levels mix,
+// bytes of differences, the frame rate asked for, memory.
+//
+//   node hierarchy.mjs PICTURES HIERARCHY=MESH...
+//
+// MESH: the closed mesh, a PLY file, that the hierarchy was made from. Pictures go to the directory PICTURES. Exit code 2:
+// wrong use; else see browser.mjs.
+import path from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { call, inChromium, readHierarchy, withPage } from './browser.mjs';
+
+const VIEWER = path.join(path.dirname(fileURLToPath(import.meta.url)), '../../viewer');
+
+/// Numbers from 0 to 1, the same each time (mulberry32).
+function random(seed) {
+  let state = seed;
+  return () => {
+    state = (state + 0x6d2b79f5) | 0;
+    let mixed = Math.imul(state ^ (state >>> 15), state | 1);
+    mixed ^= mixed + Math.imul(mixed ^ (mixed >>> 7), mixed | 61);
+    return ((mixed ^ (mixed >>> 14)) >>> 0) / 2 ** 32;
+  };
+}
+
+const SEAM_FRAMES = 300;
+const SEAM_SIZE = 384;
+const FRAMES_A_PATH = 20;
+/// Pixels that a surface may have moved: more than its error, which is an estimate.
+const REACH = (error) => Math.ceil(3 * error) + 2;
+/// A silhouette that may be further off than this says nothing.
+const MOST_REACH = 24;
+
+/// Outside of the sphere around the model, looking at something in it.
+function randomPose(next) {
+  const around = () => 2 * next() - 1;
+  const target = [around() / 4, around() / 4, around() / 4];
+  return { direction: [around(), around(), around()], distance: 1.35 + 1.5 * next() ** 2, target };
+}
+
+function between(one, other, part) {
+  const mix = (a, b) => a + (b - a) * part;
+  const mixAll = (a, b) => a.map((each, k) => mix(each, b[k]));
+  return {
+    direction: mixAll(one.direction, other.direction),
+    distance: mix(one.distance, other.distance),
+    target: mixAll(one.target, other.target),
+  };
+}
+
+async function checkSeams(page, name, pictures, report) {
+  const next = random(11);
+  let told = 0;
+  let holes = 0;
+  let cracks = 0;
+  let covered = 0;
+  let mixed = 0;
+  for (let i = 0; told < SEAM_FRAMES && i < 2 * SEAM_FRAMES; i += FRAMES_A_PATH) {
+    const [from, to] = [randomPose(next), randomPose(next)];
+    await call(page, 'set', { threshold: [0.25, 0.5, 1, 2][(i / FRAMES_A_PATH) % 4] });
+    for (let step = 0; step < FRAMES_A_PATH && told < SEAM_FRAMES; ++step) {
+      await call(page, 'pose', between(from, to, step / FRAMES_A_PATH));
+      const { worstError, finestLevel, coarsestLevel } = await call(page, 'frame');
+      const reach = REACH(worstError);
+      if (reach > MOST_REACH) continue;
+      const found = await call(page, 'holes', reach);
+      holes += found.holes;
+      cracks += found.cracks;
+      covered += found.covered;
+      ++told;
+      if (finestLevel > coarsestLevel) ++mixed;
+      if (found.holes + found.cracks > 0) await page.screenshot({ path: path.join(pictures, `${name}-hole-${told}.png`) });
+    }
+  }
+  report.line(`${name} seams`, holes + cracks === 0 && told === SEAM_FRAMES && mixed > SEAM_FRAMES / 4,
+    `${told} frames, ${mixed} of them of several levels: ${holes} pixels of the background where the mesh covers ${covered}, ` +
+      `${cracks} where a ray enters more or less often than it leaves`);
+}
+
+const STOPS = 60;
+
+/// Around the model; down to it; along it.
+const PATHS = {
+  around: (part) => ({ direction: [Math.cos(6.28 * part), 0.4, Math.sin(6.28 * part)], distance: 1.8 }),
+  down: (part) => ({ direction: [0.6, 0.5, 1], distance: 3 * 0.05 ** part, target: [0.3 * part, 0.25 * part, 0.5 * part] }),
+  along: (part) => ({ direction: [Math.cos(2 * part), 0.2, Math.sin(2 * part)], distance: 0.9, target: [0, 0.3 - 0.6 * part, 0] }),
+};
+
+async function checkDifferences(page, name, report) {
+  for (const [way, at] of Object.entries(PATHS)) {
+    await call(page, 'reopen');
+    let last;
+    for (let stop = 0; stop < STOPS; ++stop) {
+      await call(page, 'pose', at(stop / STOPS));
+      last = await call(page, 'settle');
+    }
+    const ratio = last.wholeViewBytes / last.fetchedBytes;
+    report.line(`${name} differences ${way}`, ratio >= 5,
+      `${STOPS} views whole ${last.wholeViewBytes} bytes, sent ${last.fetchedBytes}: ${ratio.toFixed(1)} times fewer; ${last.hits} hits`);
+  }
+}
+
+const RATE = 30;
+const SETTLE_SECONDS = 2;
+
+/// A device that shows half of what the view asks for at the rate asked for.
+async function checkFrameRate(page, name, report) {
+  await call(page, 'reopen');
+  await call(page, 'set', { framesPerSecond: RATE, threshold: 0.25 });
+  await call(page, 'pose', { direction: [1, 0.3, 0], distance: 1.6 });
+  const full = await call(page, 'settle');
+  const base = 4;
+  const perTriangle = (1000 / RATE - base) / (0.5 * full.triangles);
+  const frames = await call(page, 'circle', { seconds: 8, base, perTriangle, distance: 1.6 });
+  const settled = frames.filter(({ at }) => at >= 1000 * SETTLE_SECONDS);
+  const rates = windows(settled.map(({ took }) => took), 10).map((mean) => 1000 / mean);
+  const turns = turnsOf(settled.map(({ vertexBudget }) => vertexBudget));
+  const good = rates.every((rate) => Math.abs(rate / RATE - 1) <= 0.15);
+  const rest = await call(page, 'settle');
+  const isFull = rest.worstError <= 0.25 * 1.3;
+  report.line(`${name} frame rate`, good && isFull && turns <= 6,
+    `from ${(1000 / frames[1].took).toFixed(1)} a second to ${Math.min(...rates).toFixed(1)} … ${Math.max(...rates).toFixed(1)} after ` +
+      `${SETTLE_SECONDS} s (asked for: ${RATE}), ${settled.at(-1).triangles} of ${full.triangles} triangles, budget turned ${turns} times; at rest error ${rest.worstError.toFixed(2)}`);
+}
+
+function windows(values, length) {
+  const means = [];
+  for (let i = 0; i + length <= values.length; i += length)
+    means.push(values.slice(i, i + length).reduce((sum, value) => sum + value, 0) / length);
+  return means;
+}
+
+/// How often a series turns from growing to shrinking or back.
+function turnsOf(values) {
+  const steps = values.slice(1).map((value, i) => Math.sign(value - values[i])).filter((step) => step !== 0);
+  return steps.slice(1).filter((step, i) => step !== steps[i]).length;
+}
+
+const HOUR_STEPS = 1800;
+
+/// An hour, a look each two seconds, with a budget that holds a part of the model.
+async function checkMemory(page, name, report) {
+  const memoryBudget = 6e6;
+  await call(page, 'reopen', { settings: { memoryBudget }, size: 96 });
+  const early = await call(page, 'wander', { steps: HOUR_STEPS / 6, milliseconds: 2000, seed: 1 });
+  const heapEarly = await call(page, 'heap');
+  const late = await call(page, 'wander', { steps: HOUR_STEPS, milliseconds: 2000, seed: 2 });
+  const heapLate = await call(page, 'heap');
+  const left = await call(page, 'close');
+  const good = late.peakBytes <= memoryBudget && late.evicted > 100 && late.problems.length === 0 &&
+    late.geometries <= 2 * early.geometries && left.geometries === 0 && heapLate <= heapEarly + 8e6;
+  report.line(`${name} memory`, good,
+    `peak ${late.peakBytes} of ${memoryBudget} bytes, ${late.fetchedFiles} files fetched, ${late.evicted} tiles dropped; at most ${late.geometries} geometries, ` +
+      `${left.geometries} left in the end; heap ${(heapEarly / 1e6).toFixed(1)} MB after ten minutes, ${(heapLate / 1e6).toFixed(1)} in the end${late.problems.join('; ')}`);
+}
+
+async function check(page, { name, mesh }, pictures, report) {
+  const original = `/mesh/${path.basename(mesh)}`;
+  await call(page, 'open', { url: '/hierarchy', size: SEAM_SIZE, original });
+  await checkSeams(page, name, pictures, report);
+  await checkDifferences(page, name, report);
+  await checkFrameRate(page, name, report);
+  await checkMemory(page, name, report);
+}
+
+const [pictures, ...pairs] = process.argv.slice(2);
+if (pairs.length === 0) {
+  console.log('usage: node hierarchy.mjs PICTURES HIERARCHY=MESH...');
+  process.exit(2);
+}
+process.exit(
+  await inChromium(pictures, async (browser, report) => {
+    for (const pair of pairs) {
+      const [directory, mesh] = pair.split('=');
+      const hierarchy = { ...readHierarchy(directory), mesh };
+      const directories = {
+        '/viewer': path.join(VIEWER, 'dist'),
+        '/packages': path.join(VIEWER, 'node_modules'),
+        '/hierarchy': hierarchy.directory,
+        '/mesh': path.dirname(path.resolve(mesh)),
+      };
+      await withPage(browser, report, { viewer: 'hierarchy', name: hierarchy.name, directories }, (page) =>
+        check(page, hierarchy, pictures, report));
+    }
+  }),
+);

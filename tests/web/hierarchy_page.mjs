@@ -1,0 +1,262 @@
+// The viewer's library in a three scene that is not its own: what is drawn, fetched and held, frame by frame.
+import * as THREE from 'three';
+import { PLYLoader } from 'three/addons/loaders/PLYLoader.js';
+import { HierarchyView } from 'meshhier-viewer';
+import { coveredAround } from './pixels.mjs';
+
+const renderer = new THREE.WebGLRenderer({ antialias: false });
+renderer.setClearColor(0xffffff, 1);
+document.body.append(renderer.domElement);
+const camera = new THREE.PerspectiveCamera(40, 1, 1, 2);
+const shown = new THREE.Scene();
+const original = new THREE.Scene();
+for (const scene of [shown, original]) scene.add(new THREE.HemisphereLight(0xffffff, 0x404040, 3));
+
+const viewport = { width: 0, height: 0 };
+let view = null;
+let sphere = null;
+let mesh = null;
+let problems = [];
+/// Milliseconds of a clock that tests can turn.
+let clock = 0;
+
+function setSize(size) {
+  Object.assign(viewport, { width: size, height: size });
+  renderer.setPixelRatio(1);
+  renderer.setSize(size, size);
+}
+
+/// Turns (x, y, z) to (x, z, -y) for meshes that stand so.
+async function loadOriginal(url, up) {
+  const geometry = await new PLYLoader().loadAsync(url);
+  geometry.deleteAttribute('color');
+  mesh = new THREE.Mesh(geometry, new THREE.MeshStandardMaterial({ side: THREE.DoubleSide, flatShading: true }));
+  if (up === 'z') mesh.rotation.x = -Math.PI / 2;
+  original.add(mesh);
+}
+
+function render(scene) {
+  renderer.render(scene, camera);
+}
+
+/// One frame: true if there was something new to draw.
+function frame(now) {
+  const isNew = view.update(camera, viewport, now);
+  render(shown);
+  return isNew;
+}
+
+function nextFrame() {
+  return new Promise((resolve) => requestAnimationFrame(resolve));
+}
+
+function pose({ direction, distance, target = [0, 0, 0] }) {
+  const at = new THREE.Vector3(...target).multiplyScalar(sphere.radius).add(sphere.center);
+  const away = distance * sphere.radius;
+  camera.position.copy(at).add(new THREE.Vector3(...direction).setLength(away));
+  camera.up.set(0, 1, 0.0001).normalize();
+  camera.lookAt(at);
+  const far = camera.position.distanceTo(sphere.center) + 1.1 * sphere.radius;
+  camera.near = Math.max(far / 10_000, away - 2.2 * sphere.radius);
+  camera.far = far;
+  camera.updateProjectionMatrix();
+}
+
+/// Goes on until nothing is left to refine. The clock of the view jumps over the time in which it waits whether the camera
+/// moves on.
+async function settle() {
+  const began = performance.now();
+  for (;;) {
+    frame((clock += 50));
+    if (view.stats().settled) break;
+    if (performance.now() - began > 240_000) throw new Error(`does not settle: ${JSON.stringify(view.stats())}`);
+    await new Promise((resolve) => setTimeout(resolve, view.stats().moving ? 0 : 4));
+  }
+  return { ...view.stats(), took: performance.now() - began };
+}
+
+/// A target of floats, and what is drawn into it of a scene with one material.
+const measured = new THREE.WebGLRenderTarget(1, 1, { type: THREE.FloatType, minFilter: THREE.NearestFilter, magFilter: THREE.NearestFilter });
+
+function measure(scene, material, from = camera) {
+  const { width, height } = viewport;
+  measured.setSize(width, height);
+  renderer.setRenderTarget(measured);
+  scene.overrideMaterial = material;
+  renderer.clear();
+  renderer.render(scene, from);
+  scene.overrideMaterial = null;
+  const pixels = new Float32Array(4 * width * height);
+  renderer.readRenderTargetPixels(measured, 0, 0, width, height, pixels);
+  renderer.setRenderTarget(null);
+  return Float32Array.from({ length: width * height }, (_, i) => pixels[4 * i]);
+}
+
+const VERTEX = `varying float depth;
+  void main() {
+    vec4 p = modelViewMatrix * vec4(position, 1.0);
+    depth = -p.z;
+    gl_Position = projectionMatrix * p;
+  }`;
+
+/// Distance along the view's axis; 1 where nothing is, and the clear colour is white.
+const depthMaterial = new THREE.ShaderMaterial({
+  side: THREE.DoubleSide,
+  vertexShader: VERTEX,
+  fragmentShader: 'varying float depth; void main() { gl_FragColor = vec4(-depth, 0.0, 0.0, 1.0); }',
+});
+
+/// All triangles at a pixel: how many more show their front than their back, beside the clear colour's 1.
+const crossingMaterial = new THREE.ShaderMaterial({
+  side: THREE.DoubleSide,
+  depthTest: false,
+  depthWrite: false,
+  blending: THREE.CustomBlending,
+  blendSrc: THREE.OneFactor,
+  blendDst: THREE.OneFactor,
+  vertexShader: VERTEX,
+  fragmentShader: 'void main() { gl_FragColor = vec4(gl_FrontFacing ? 1.0 : -1.0, 0.0, 0.0, 1.0); }',
+});
+
+/// Looks at the whole of the model from the side where the other camera is. Rasterizers that cut a triangle off at the end of
+/// the picture move its edges a little: here nothing is cut off.
+const judge = new THREE.PerspectiveCamera(40, 1, 1, 2);
+
+function placeJudge() {
+  const { center, radius } = sphere;
+  judge.position.copy(camera.position).sub(center).setLength(3.2 * radius).add(center);
+  judge.near = 2 * radius;
+  judge.far = 5 * radius;
+  judge.lookAt(center);
+  judge.updateProjectionMatrix();
+}
+
+/// Pixels where a ray enters the surface, anywhere in the cut, more or less often than it leaves: there is a crack. Not one of
+/// a closed mesh.
+function cracks() {
+  placeJudge();
+  return measure(shown, crossingMaterial, judge).reduce((sum, count) => sum + (count === 1 ? 0 : 1), 0);
+}
+
+/// Where one part of the surface ends before another: neighbours further from each other than a surface as steep as this.
+const STEEPEST = 8;
+
+/// What the original certainly covers: not next to where its silhouette, or that of one of its parts, runs.
+function innerPart() {
+  const { width, height } = viewport;
+  const depth = measure(original, depthMaterial);
+  const step = (STEEPEST * 2 * Math.tan((camera.fov * Math.PI) / 360)) / height;
+  const continues = (i, j) => depth[j] <= 0 && Math.abs(depth[i] - depth[j]) <= -step * depth[i];
+  const covered = Uint8Array.from(depth, (value, i) =>
+    value <= 0 && (i % width === 0 || continues(i, i - 1)) && (i < width || continues(i, i - width)) ? 1 : 0);
+  return { width, covered };
+}
+
+function isInside(i, reach) {
+  const { width, height } = viewport;
+  const [x, y] = [i % width, Math.floor(i / width)];
+  return x >= reach && y >= reach && x < width - reach && y < height - reach;
+}
+
+/// Pixels of the background although the original covers all within `reach` of them. Closer to the picture's end nobody
+/// knows.
+function holes(reach) {
+  const whole = innerPart();
+  const ours = measure(shown, depthMaterial);
+  const found = [];
+  for (let i = 0; i < ours.length; ++i) if (ours[i] > 0 && isInside(i, reach) && coveredAround(whole, i, reach)) found.push(i);
+  return { holes: found.length, cracks: cracks(), covered: whole.covered.reduce((sum, each) => sum + each, 0) };
+}
+
+let opened = null;
+
+async function openView({ url, size, settings = {}, look = {} }) {
+  setSize(size);
+  problems = [];
+  view = new HierarchyView(url, { settings, look });
+  view.addEventListener('problem', ({ message }) => problems.push(message));
+  shown.add(view);
+  await view.opened;
+  sphere = view.box.getBoundingSphere(new THREE.Sphere());
+}
+
+window.view = {
+  async open(what) {
+    opened = what;
+    await openView(what);
+    const manifest = await (await fetch(`${what.url}/hierarchy.json`)).json();
+    if (what.original) await loadOriginal(what.original, manifest.up);
+  },
+  /// The same hierarchy again, with nothing fetched yet.
+  async reopen(changes = {}) {
+    view.dispose();
+    await openView({ ...opened, ...changes });
+  },
+  /// Bytes of the script's heap, after what is of no use was collected.
+  heap() {
+    globalThis.gc?.();
+    return performance.memory.usedJSHeapSize;
+  },
+  pose,
+  settle,
+  set: (settings) => view.setSettings(settings),
+  look: (look) => view.setLook(look),
+  /// Goes on by a frame, whatever is there by now.
+  async frame() {
+    await nextFrame();
+    frame((clock += 16));
+    return view.stats();
+  },
+  holes,
+  stats: () => ({ ...view.stats(), problems }),
+  /// Circles for so many `seconds` of a clock that stands for a slow GPU: each frame takes `base` milliseconds, and
+  /// `perTriangle` more for each triangle. What each frame took and showed.
+  async circle({ seconds, base, perTriangle, distance }) {
+    const frames = [];
+    let took = base;
+    for (let at = 0; at < 1000 * seconds; at += took) {
+      await nextFrame();
+      pose({ direction: [Math.cos(at / 4000), 0.3, Math.sin(at / 4000)], distance });
+      frame((clock += took));
+      const { triangles, vertexBudget } = view.stats();
+      took = base + triangles * perTriangle;
+      frames.push({ at, took, triangles, vertexBudget });
+    }
+    return frames;
+  },
+  /// `steps` looks from anywhere at anything, `milliseconds` of the view's time apart: what is held at the most.
+  async wander({ steps, milliseconds, seed }) {
+    const next = random(seed);
+    let geometries = 0;
+    for (let step = 0; step < steps; ++step) {
+      const around = () => 2 * next() - 1;
+      pose({ direction: [around(), around(), around()], distance: 0.05 + 2.5 * next() ** 2, target: [around() / 2, around() / 2, around() / 2] });
+      for (let rest = 0; rest < 3; ++rest) {
+        clock += milliseconds / 3;
+        await new Promise((resolve) => setTimeout(resolve, 0));
+        frame(clock);
+      }
+      geometries = Math.max(geometries, renderer.info.memory.geometries);
+    }
+    return { ...view.stats(), geometries, problems };
+  },
+  close() {
+    view.dispose();
+    mesh?.removeFromParent();
+    mesh?.geometry.dispose();
+    mesh = null;
+    render(shown);
+    return { ...renderer.info.memory };
+  },
+};
+
+/// Numbers from 0 to 1, the same each time (mulberry32).
+function random(seed) {
+  let state = seed;
+  return () => {
+    state = (state + 0x6d2b79f5) | 0;
+    let mixed = Math.imul(state ^ (state >>> 15), state | 1);
+    mixed ^= mixed + Math.imul(mixed ^ (mixed >>> 7), mixed | 61);
+    return ((mixed ^ (mixed >>> 14)) >>> 0) / 2 ** 32;
+  };
+}

@@ -1,0 +1,89 @@
+import { describe, expect, it } from 'vitest';
+import { chooseCut, type ChosenNode, type Limits, type Sources } from '../src/cut/choose_cut.js';
+import type { Viewpoint } from '../src/cut/viewpoint.js';
+import type { TileRecord } from '../src/hierarchy/tile_index.js';
+import { Tree, type Node } from '../src/hierarchy/tree.js';
+
+const OWN = 100;
+const BYTES = 1000;
+const tree = new Tree(64);
+
+/// A strip from x = 0 to 64, a partition for each 1.
+function record({ level, index }: Node): TileRecord {
+  const width = 64 / 2 ** level;
+  const error = level === tree.lastLevel ? 0 : width / 100;
+  return { own: OWN, ghosts: 0, interior: 0, border: 0, error, min: [index * width, 0, 0], max: [(index + 1) * width, 1, 1], bytes: 1 };
+}
+
+/// Sees the strip's x from `from` to `to`, from 10 before its middle.
+function look(from: number, to: number): Viewpoint {
+  return { eye: [(from + to) / 2, 0.5, 10], planes: [[1, 0, 0, -from], [-1, 0, 0, to]], pixels: 1000, near: 0.1 };
+}
+
+const sources: Sources = {
+  tree,
+  record,
+  bytesOf: () => BYTES,
+  isHidden: () => false,
+  wasRefined: () => false,
+};
+
+const ALL: Limits = { threshold: 1, vertices: Infinity, bytes: Infinity };
+
+function leaves(chosen: ChosenNode): ChosenNode[] {
+  return chosen.children.length === 0 ? [chosen] : chosen.children.flatMap(leaves);
+}
+
+function cutOf(view: Viewpoint, limits: Limits, given = sources): ChosenNode[] {
+  return leaves(chooseCut(given, view, limits).root!);
+}
+
+describe('chooseCut', () => {
+  it('refines what is in view to the threshold, and covers all else coarsely', () => {
+    const cut = cutOf(look(20, 22), ALL);
+    expect(cut.reduce((sum, { node }) => sum + 64 / 2 ** node.level, 0)).toBe(64);
+    for (const { pixels } of cut) expect(pixels).toBeLessThanOrEqual(1);
+    expect(cut.filter(({ inView }) => inView).length).toBeGreaterThan(1);
+    expect(cut.length).toBeLessThan(16);
+  });
+
+  it('spends vertices where the error is largest', () => {
+    const few = { ...ALL, vertices: 10 * OWN };
+    const choice = chooseCut(sources, look(0, 64), few);
+    const cut = leaves(choice.root!);
+    expect(choice.limited.vertices).toBe(true);
+    expect(cut.filter(({ inView }) => inView).length).toBeLessThanOrEqual(10);
+    const least = Math.min(...choice.refined.map(({ pixels }) => pixels));
+    for (const { pixels } of cut) expect(pixels).toBeLessThanOrEqual(least);
+  });
+
+  it('holds no more than the memory allows', () => {
+    const choice = chooseCut(sources, look(0, 64), { ...ALL, bytes: 21 * BYTES });
+    expect(choice.limited.bytes).toBe(true);
+    expect(1 + 2 * choice.refined.length).toBeLessThanOrEqual(21);
+  });
+
+  it('keeps what was refined a little longer', () => {
+    const view = look(0, 64);
+    const threshold = 0.99 * Math.min(...chooseCut(sources, view, ALL).refined.map(({ pixels }) => pixels));
+    const before = chooseCut(sources, view, { ...ALL, threshold });
+    const looser = { ...ALL, threshold: 1.2 * threshold };
+    expect(cutOf(view, looser).length).toBeLessThan(leaves(before.root!).length);
+    const remembered = { ...sources, wasRefined: (key: number) => before.refined.some((each) => each.key === key) };
+    expect(cutOf(view, looser, remembered).length).toBe(leaves(before.root!).length);
+    expect(cutOf(view, { ...ALL, threshold: 2 * threshold }, remembered).length).toBeLessThan(leaves(before.root!).length);
+  });
+
+  it('leaves alone what cannot be seen', () => {
+    const cut = cutOf(look(0, 64), ALL, { ...sources, isHidden: (_key, { min }) => min[0] >= 32 });
+    expect(cut.filter(({ record: { min } }) => min[0] >= 32)).toHaveLength(1);
+  });
+
+  it('waits for records that have not come', () => {
+    const partly = { ...sources, record: (node: Node) => (node.level > 2 ? null : record(node)) };
+    const choice = chooseCut(partly, look(0, 64), ALL);
+    expect(choice.incomplete).toBe(true);
+    expect(leaves(choice.root!)).toHaveLength(4);
+    expect(chooseCut({ ...sources, record: () => null }, look(0, 64), ALL).root).toBeNull();
+  });
+});
