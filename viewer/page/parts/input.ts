@@ -1,7 +1,7 @@
-// Whether keys or a pointer were used last, for what only those who work with keys need.
+// Whether the focus is moved by keys, for what only those who do so need.
 
 export function watchInput(): void {
-  const note = (input: 'keys' | 'pointer') => (): void => { document.documentElement.dataset.input = input; };
-  window.addEventListener('keydown', note('keys'), { capture: true });
-  window.addEventListener('pointerdown', note('pointer'), { capture: true });
+  const note = (input: 'keys' | 'pointer'): void => { document.documentElement.dataset.input = input; };
+  window.addEventListener('keydown', ({ key }) => { if (key === 'Tab') note('keys'); }, { capture: true });
+  window.addEventListener('pointerdown', () => { note('pointer'); }, { capture: true });
 }

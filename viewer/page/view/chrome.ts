@@ -1,5 +1,5 @@
 // Everything around the picture: bars, badge, sheets.
-import type { Stats } from '../../src/scene/settings.js';
+import type { Manifest, Stats } from '../../src/index.js';
 import { element, iconButton } from '../parts/element.js';
 import { ICONS } from '../parts/icons.js';
 import { ModeBadge } from '../parts/mode_badge.js';
@@ -58,6 +58,10 @@ export class Chrome {
     this.badge.show(stats.mode);
     this.busy.classList.toggle('working', working);
     if (this.panel.isOpen) this.figures.show(stats, wanted);
+  }
+
+  tellSource(manifest: Manifest): void {
+    this.figures.tellSource(manifest);
   }
 
   private topBar(name: string, { back, home }: Orders, buttons: readonly HTMLElement[]): HTMLElement {

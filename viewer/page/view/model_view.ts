@@ -52,6 +52,7 @@ export class ModelView {
   private dirty = true;
   private opened = false;
   private shown = false;
+  private refused = false;
   private lost: (() => void) | null = null;
   private restTimer = 0;
   private reportedAt = -Infinity;
@@ -147,6 +148,8 @@ export class ModelView {
   }
 
   private refuse(error: unknown): void {
+    this.refused = true;
+    this.redraw();
     const why = error instanceof Error ? error.message : String(error);
     this.around.failed(`${this.model.name} cannot be opened: ${why}. Is ${this.model.url} a hierarchy made by "meshhier build", and may this page fetch from there (CORS)?`);
   }
@@ -180,7 +183,8 @@ export class ModelView {
     const due = now - this.reportedAt >= REPORT;
     if (busy && !due) return 'busy';
     const stats = this.view.stats();
-    const working = !stats.settled || !this.opened;
+    const working = !this.refused && !(stats.settled && this.opened);
+    if (this.view.manifest !== null) this.chrome.tellSource(this.view.manifest);
     this.reportedAt = now;
     this.chrome.report(stats, this.view.settings.framesPerSecond, working);
     if (busy) return 'busy';

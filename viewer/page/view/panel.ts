@@ -1,5 +1,5 @@
 // The figures of a view.
-import type { Stats } from '../../src/scene/settings.js';
+import type { Manifest, Stats } from '../../src/index.js';
 import { formatBytes, formatCount, formatDecimal, formatMilliseconds } from '../numbers.js';
 import { element } from '../parts/element.js';
 
@@ -32,7 +32,8 @@ interface Row {
 const ROWS: readonly Row[] = [
   { name: 'Frames per second', tip: 'while the camera moves, and the goal', text: rate },
   { name: 'Triangles', tip: 'in view', text: ({ triangles }) => formatCount(triangles) },
-  { name: 'Vertices', tip: 'in view, and the most that the frame rate allows', text: ({ vertices, vertexBudget }) => `${formatCount(vertices)} of ${formatCount(vertexBudget)}` },
+  { name: 'Vertices', tip: 'in view', text: ({ vertices }) => formatCount(vertices) },
+  { name: 'Vertices in motion', tip: 'the most that the frame rate allows', text: ({ vertexBudget }) => `at most ${formatCount(vertexBudget)}` },
   { name: 'Tiles', tip: 'in view', text: levels },
   { name: 'Largest error', tip: 'on screen, of what is shown', text: ({ worstError }) => `${formatDecimal(worstError)} px` },
   { name: 'Fetched', tip: 'bytes of tiles, and files', text: fetched },
@@ -47,11 +48,18 @@ const ROWS: readonly Row[] = [
 
 export class Panel {
   readonly root: HTMLElement;
+  private readonly source = element('p', { class: 'source' });
   private readonly values = ROWS.map(() => element('dd', {}));
 
   constructor() {
     const rows = ROWS.map(({ name, tip }, i) => element('div', { title: tip }, element('dt', {}, name), this.values[i]));
-    this.root = element('dl', { class: 'figures' }, ...rows);
+    this.root = element('div', {}, this.source, element('dl', { class: 'figures' }, ...rows));
+  }
+
+  /// What the model was made from, and its licence.
+  tellSource({ source, licence }: Manifest): void {
+    const counts = `${formatCount(source.vertices)} vertices and ${formatCount(source.triangles)} triangles`;
+    this.source.textContent = `${source.fileName}: ${counts}.${licence === '' ? '' : ` ${licence}`}`;
   }
 
   /// `wanted`: frames per second.

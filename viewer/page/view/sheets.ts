@@ -2,7 +2,7 @@
 import { element, iconButton } from '../parts/element.js';
 import { ICONS } from '../parts/icons.js';
 
-const narrow = matchMedia('(max-width: 719px), (max-height: 479px)');
+const narrow = matchMedia('(max-width: 719px)');
 
 export class Sheet {
   readonly root: HTMLElement;

@@ -7,12 +7,12 @@ const MOST_RATIO = 2;
 
 /// From above, and from a lamp that goes with the camera.
 function lights(camera: PerspectiveCamera): HemisphereLight {
-  const key = new DirectionalLight(0xfff6ea, 2.3);
+  const key = new DirectionalLight(0xfff6ea, 2.9);
   key.position.set(-0.6, 0.9, 1);
   const rim = new DirectionalLight(0xcfe0ff, 0.9);
   rim.position.set(1, 0.1, -0.6);
   for (const light of [key, rim]) camera.add(light, light.target);
-  return new HemisphereLight(0xeaf1ff, 0x5d554d, 1);
+  return new HemisphereLight(0xeaf1ff, 0x5d554d, 1.15);
 }
 
 export class Stage {

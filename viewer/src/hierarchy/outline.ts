@@ -1,4 +1,5 @@
 // The shape-outline, outline.glb (docs/file_format.md, sections 4.2 and 5).
+import { HierarchyProblem } from './problem.js';
 
 export interface Outline {
   /// Three numbers a vertex, relative to the hierarchy's origin.
@@ -11,9 +12,7 @@ export interface Outline {
   matrix: readonly number[];
 }
 
-/// Bytes that are no outline. The message says what is wrong, not in which file.
-export class OutlineError extends Error {}
-
+const FILE = 'outline.glb';
 const MAGIC = 0x46546c67; // "glTF"
 const JSON_CHUNK = 0x4e4f534a;
 const BIN_CHUNK = 0x004e4942;
@@ -30,7 +29,7 @@ interface Counts {
 type Json = Record<string, unknown>;
 
 function need(good: boolean, problem: string): asserts good {
-  if (!good) throw new OutlineError(problem);
+  if (!good) throw new HierarchyProblem(FILE, problem);
 }
 
 function viewOf(bytes: Uint8Array): DataView {
@@ -53,7 +52,7 @@ function parseJson(bytes: Uint8Array): unknown {
   try {
     return JSON.parse(new TextDecoder('utf-8', { fatal: true }).decode(bytes));
   } catch {
-    throw new OutlineError('its JSON chunk is not JSON');
+    throw new HierarchyProblem(FILE, 'its JSON chunk is not JSON');
   }
 }
 
@@ -117,7 +116,7 @@ function readLines(bytes: Uint8Array, start: number, { vertices, segments }: Cou
   return { positions, segments: corners };
 }
 
-/// The outline in a file's bytes. Throws OutlineError.
+/// The outline in a file's bytes. Throws HierarchyProblem.
 export function readOutline(bytes: Uint8Array): Outline {
   const length = jsonLength(bytes);
   const document = asObject(parseJson(bytes.subarray(HEAD_BYTES, HEAD_BYTES + length)));

@@ -7,8 +7,6 @@ import { TileStore, type ResidentTile } from '../cut/tile_store.js';
 import type { Viewpoint } from '../cut/viewpoint.js';
 import type { Fetch } from '../hierarchy/bytes.js';
 import type { Manifest } from '../hierarchy/manifest.js';
-import { OutlineError } from '../hierarchy/outline.js';
-import { HierarchyProblem } from '../hierarchy/problem.js';
 import { RemoteHierarchy, type Directory } from '../hierarchy/remote_hierarchy.js';
 import type { Tile } from '../hierarchy/tile.js';
 import { TileDecoder } from '../hierarchy/tile_decoder.js';
@@ -136,7 +134,7 @@ export class HierarchyView extends Group<ViewEvents> {
       this.tiles.add(object);
       return object;
     } catch (problem) {
-      this.tell(problem instanceof OutlineError ? new HierarchyProblem('outline.glb', problem.message) : problem);
+      this.tell(problem);
       return null;
     }
   }

@@ -6,7 +6,7 @@ const COLOUR = 0x2f7de1;
 
 /// `place`: what the tiles' positions are relative to, itself relative to the origin.
 export class OutlineObject extends LineSegments<BufferGeometry, LineBasicMaterial> {
-  /// Throws OutlineError.
+  /// Throws HierarchyProblem.
   constructor(bytes: Uint8Array, place: readonly [number, number, number]) {
     const { positions, segments } = readOutline(bytes);
     const geometry = new BufferGeometry();

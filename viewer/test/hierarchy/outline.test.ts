@@ -1,5 +1,6 @@
 import { describe, expect, it } from 'vitest';
-import { OutlineError, readOutline } from '../../src/hierarchy/outline.js';
+import { readOutline } from '../../src/hierarchy/outline.js';
+import { HierarchyProblem } from '../../src/hierarchy/problem.js';
 import { outlineBytes, type OutlineParts } from './outline_bytes.js';
 
 const CORNER: OutlineParts = { positions: [0, 0, 0, 1, 0, 0, 1, 2, 0], segments: [0, 1, 1, 2] };
@@ -60,13 +61,13 @@ describe('bytes that are no outline', () => {
     ['bytes after no lines', { ...CORNER, vertexCount: 0, segmentCount: 0 }],
   ];
   it.each(hostile)('%s is refused', (_, parts) => {
-    expect(() => readOutline(outlineBytes(parts))).toThrow(OutlineError);
+    expect(() => readOutline(outlineBytes(parts))).toThrow(HierarchyProblem);
   });
 
   it('are refused wherever the file is cut', () => {
     const bytes = outlineBytes(CORNER);
     for (let length = 0; length < bytes.byteLength; ++length)
-      expect(() => readOutline(bytes.subarray(0, length))).toThrow(OutlineError);
+      expect(() => readOutline(bytes.subarray(0, length))).toThrow(HierarchyProblem);
   });
 
   it('never do anything but be refused or read, whichever byte is wrong', () => {
@@ -77,7 +78,7 @@ describe('bytes that are no outline', () => {
       try {
         readOutline(broken);
       } catch (error) {
-        expect(error).toBeInstanceOf(OutlineError);
+        expect(error).toBeInstanceOf(HierarchyProblem);
       }
     }
   });
