@@ -50,7 +50,7 @@ function seconds(frames: readonly Shown[]): number[] {
 
 const slow: Record<string, Device> = {
   'slow': { base: 2, perVertex: 1e-4 },
-  'very slow': { base: 5, perVertex: 1e-3 },
+  'very slow': { base: 5, perVertex: 3e-4 },
   'slow by itself': { base: 20, perVertex: 5e-5 },
   'uneven': { base: 3, perVertex: 2e-4, jitter: (frame) => 1 + 0.08 * Math.sin(1.7 * frame) },
 };
@@ -82,6 +82,17 @@ describe('FrameRate', () => {
     run(rate, { base: 2, perVertex: 1e-3 }, 2e6, 3);
     const frames = run(rate, { base: 2, perVertex: 1e-5 }, 2e6, 3);
     expect(frames.at(-1)!.vertices).toBe(2e6);
+  });
+
+  it('does not take vertices away where they are not what takes the time', () => {
+    const frames = run(new FrameRate(30), { base: 80, perVertex: 2e-6 }, 1e6, 10);
+    expect(after(frames, 3000).every(({ vertices }) => vertices > 900_000)).toBe(true);
+  });
+
+  it('is not put out by a frame that takes long now and then', () => {
+    const device: Device = { base: 2, perVertex: 1e-5, jitter: (frame) => (frame % 10 === 9 ? 20 : 1) };
+    const frames = run(new FrameRate(30), device, 1e6, 10);
+    expect(frames.every(({ vertices }) => vertices > 900_000)).toBe(true);
   });
 
   it("finds at the display's own rate what it can show", () => {

@@ -1,32 +1,49 @@
 // How many vertices the frame rate asked for allows (Zunino et al.: the detail follows the measured rate).
 
-/// Intervals are averaged over as long as this, and over two frames at least.
+/// Intervals are averaged over as long as this, and over three frames at least; very slow ones over two. The longest
+/// is left out: a frame in which tiles arrive is no measure of the next. One that is slower still is acted on at once, but
+/// with care.
 const WINDOW_MS = 120;
+const LEAST_FRAMES = 3;
+const TOO_SLOW = 4; // frames of the rate asked for
+const FAR_TOO_SLOW = 12;
+const MOST_SHRINK = 4;
 /// Frames after a change of the budget that may still show what was before.
 const SETTLE_FRAMES = 1;
 /// No change while the rate is as close as this to the one asked for: no oscillation.
 const TOLERANCE = 0.06;
-/// A single step's largest growth, and how far over the time asked for one frame is enough to act.
+/// A single step's largest growth.
 const MOST_GROWTH = 1.6;
-const TOO_SLOW = 2;
 const LEAST_BUDGET = 4096;
 const MOST_BUDGET = 50_000_000;
+/// If vertices take less than this part of a frame, less of them is no help: the pixels are what takes the time.
+const LEAST_PART = 0.15;
+/// It is another situation if a frame takes this much longer than it did then.
+const CHANGED = 1.4;
 /// At the display's own rate a faster device looks like one that is just fast enough: so now and then a little more is tried,
 /// less often each time it was too much.
 const PROBE_GROWTH = 1.15;
 const FIRST_PROBE_MS = 1000;
 const LAST_PROBE_MS = 60_000;
 
+interface Measured {
+  readonly vertices: number;
+  readonly milliseconds: number;
+}
+
 export class FrameRate {
   budget = 2_000_000;
   /// Of the last window; 0: nothing measured yet.
   framesPerSecond = 0;
+  private intervals: number[] = [];
   private elapsed = 0;
-  private frames = 0;
   private skip = 0;
   private sinceChange = 0;
   private probeAfter = FIRST_PROBE_MS;
   private isProbing = false;
+  /// What a frame took before the last step down, and where a step down turned out to be of no use.
+  private before: Measured | null = null;
+  private floor: Measured | null = null;
 
   constructor(public target: number) {}
 
@@ -41,31 +58,46 @@ export class FrameRate {
       --this.skip;
       return;
     }
+    this.intervals.push(interval);
     this.elapsed += interval;
     this.sinceChange += interval;
-    ++this.frames;
-    const enough = this.frames >= 2 && this.elapsed >= WINDOW_MS;
-    if (enough || interval > (TOO_SLOW * 1000) / this.target) this.judge(vertices, limited);
+    const count = this.intervals.length;
+    const enough = count >= LEAST_FRAMES && this.elapsed >= WINDOW_MS;
+    const frames = (this.elapsed * this.target) / 1000;
+    if (enough || (count === 2 && frames > 2 * TOO_SLOW)) this.judge(vertices, limited);
+    else if (count === 1 && frames > FAR_TOO_SLOW) this.change(Math.min(this.budget, vertices) / MOST_SHRINK);
   }
 
   private judge(vertices: number, limited: boolean): void {
-    const mean = this.elapsed / this.frames;
-    const ratio = (mean * this.target) / 1000;
-    this.framesPerSecond = 1000 / mean;
+    const count = this.intervals.length;
+    const milliseconds = (this.elapsed - Math.max(...this.intervals)) / (count - 1);
+    const ratio = (milliseconds * this.target) / 1000;
+    this.framesPerSecond = 1000 / milliseconds;
+    this.intervals = [];
     this.elapsed = 0;
-    this.frames = 0;
-    if (ratio > 1 + TOLERANCE) this.shrink(vertices, ratio);
+    if (ratio > 1 + TOLERANCE) this.shrink({ vertices, milliseconds }, ratio);
     else if (ratio < 1 - TOLERANCE) this.grow(limited, Math.min(MOST_GROWTH, 1 / ratio));
     else this.probe(limited);
   }
 
-  private shrink(vertices: number, ratio: number): void {
+  private shrink(now: Measured, ratio: number): void {
     if (this.isProbing) this.probeAfter = Math.min(2 * this.probeAfter, LAST_PROBE_MS);
-    this.change(Math.min(this.budget, vertices) / ratio);
+    if (this.wasOfNoUse(now)) this.floor = this.before;
+    else if (this.floor !== null && now.milliseconds > CHANGED * this.floor.milliseconds) this.floor = null;
+    this.before = now;
+    this.change(Math.max(this.floor?.vertices ?? 0, Math.min(this.budget, now.vertices) / ratio));
+  }
+
+  /// Whether the last step down saved hardly anything.
+  private wasOfNoUse({ vertices, milliseconds }: Measured): boolean {
+    if (this.before === null || vertices > 0.9 * this.before.vertices) return false;
+    const perVertex = (this.before.milliseconds - milliseconds) / (this.before.vertices - vertices);
+    return perVertex * this.before.vertices < LEAST_PART * this.before.milliseconds;
   }
 
   /// What is shown comes in tiles: only the budget itself grows by little.
   private grow(limited: boolean, factor: number): void {
+    this.before = null;
     if (limited) this.change(this.budget * factor);
   }
 
@@ -82,8 +114,8 @@ export class FrameRate {
   }
 
   private clear(): void {
+    this.intervals = [];
     this.elapsed = 0;
-    this.frames = 0;
     this.sinceChange = 0;
     this.isProbing = false;
   }
