@@ -43,6 +43,7 @@ async function goDown(page, keep) {
 
 async function visit(browser, report, { origin, pictures, screen, index, name, strip }) {
   const page = await browser.newPage({ reducedMotion: 'reduce', ...SCREENS[screen] });
+  page.setDefaultTimeout(PATIENCE);
   const complaints = [];
   page.on('console', (message) => ['error', 'warning'].includes(message.type()) && complaints.push(message.text()));
   page.on('pageerror', (error) => complaints.push(String(error)));
