@@ -22,7 +22,7 @@ function random(seed) {
   };
 }
 
-const SEAM_FRAMES = 300;
+const SEAM_FRAMES = 300; // of all models together
 const SEAM_SIZE = 384;
 const FRAMES_A_PATH = 20;
 /// Pixels that a surface may have moved: more than its error, which is an estimate.
@@ -47,17 +47,17 @@ function between(one, other, part) {
   };
 }
 
-async function checkSeams(page, name, pictures, report) {
+async function checkSeams(page, { name, frames }, pictures, report) {
   const next = random(11);
   let told = 0;
   let holes = 0;
   let cracks = 0;
   let covered = 0;
   let mixed = 0;
-  for (let i = 0; told < SEAM_FRAMES && i < 2 * SEAM_FRAMES; i += FRAMES_A_PATH) {
+  for (let i = 0; told < frames && i < 2 * frames; i += FRAMES_A_PATH) {
     const [from, to] = [randomPose(next), randomPose(next)];
     await call(page, 'set', { threshold: [0.25, 0.5, 1, 2][(i / FRAMES_A_PATH) % 4] });
-    for (let step = 0; step < FRAMES_A_PATH && told < SEAM_FRAMES; ++step) {
+    for (let step = 0; step < FRAMES_A_PATH && told < frames; ++step) {
       await call(page, 'pose', between(from, to, step / FRAMES_A_PATH));
       const { worstError, finestLevel, coarsestLevel } = await call(page, 'frame');
       const reach = REACH(worstError);
@@ -71,7 +71,7 @@ async function checkSeams(page, name, pictures, report) {
       if (found.holes + found.cracks > 0) await page.screenshot({ path: path.join(pictures, `${name}-hole-${told}.png`) });
     }
   }
-  report.line(`${name} seams`, holes + cracks === 0 && told === SEAM_FRAMES && mixed > SEAM_FRAMES / 4,
+  report.line(`${name} seams`, holes + cracks === 0 && told === frames && mixed > frames / 4,
     `${told} frames, ${mixed} of them of several levels: ${holes} pixels of the background where the mesh covers ${covered}, ` +
       `${cracks} where a ray enters more or less often than it leaves`);
 }
@@ -153,10 +153,11 @@ async function checkMemory(page, name, report) {
       `${left.geometries} left in the end; heap ${(heapEarly / 1e6).toFixed(1)} MB after ten minutes, ${(heapLate / 1e6).toFixed(1)} in the end${late.problems.join('; ')}`);
 }
 
-async function check(page, { name, mesh }, pictures, report) {
+async function check(page, hierarchy, pictures, report) {
+  const { name, mesh } = hierarchy;
   const original = `/mesh/${path.basename(mesh)}`;
   await call(page, 'open', { url: '/hierarchy', size: SEAM_SIZE, original });
-  await checkSeams(page, name, pictures, report);
+  await checkSeams(page, hierarchy, pictures, report);
   await checkDifferences(page, name, report);
   await checkFrameRate(page, name, report);
   await checkMemory(page, name, report);
@@ -171,7 +172,7 @@ process.exit(
   await inChromium(pictures, async (browser, report) => {
     for (const pair of pairs) {
       const [directory, mesh] = pair.split('=');
-      const hierarchy = { ...readHierarchy(directory), mesh };
+      const hierarchy = { ...readHierarchy(directory), mesh, frames: Math.ceil(SEAM_FRAMES / pairs.length) };
       const directories = {
         '/viewer': path.join(VIEWER, 'dist'),
         '/packages': path.join(VIEWER, 'node_modules'),

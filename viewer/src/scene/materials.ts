@@ -5,6 +5,8 @@ import type { Look } from './settings.js';
 const PLAIN = 0xb9b4ab;
 const WIRES = 0x101418;
 const POINTS = 0xd04a1e;
+/// How far the surface stands back behind its own wires and points: more than programs differ by rounding.
+const BEHIND = { slopes: 2, units: 16 };
 const GOLDEN = 0.618034; // colours of neighbours in a list lie far apart
 
 /// The input's colours are those of a screen; three adds in linear light.
@@ -23,8 +25,8 @@ export function surfaceMaterial(look: Look, hasColours: boolean): MeshStandardMa
     flatShading: look.shading === 'flat',
     vertexColors: look.colours === 'vertex' && hasColours,
     polygonOffset: look.wires || look.points,
-    polygonOffsetFactor: 1,
-    polygonOffsetUnits: 1,
+    polygonOffsetFactor: BEHIND.slopes,
+    polygonOffsetUnits: BEHIND.units,
   });
   if (!material.vertexColors) return material;
   material.color.set(0xffffff);
@@ -50,5 +52,5 @@ export function wireMaterial(): Material {
 }
 
 export function pointMaterial(): Material {
-  return new PointsMaterial({ color: POINTS, size: 3, sizeAttenuation: false });
+  return new PointsMaterial({ color: POINTS, size: 5, sizeAttenuation: false });
 }
