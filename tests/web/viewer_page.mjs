@@ -31,8 +31,9 @@ class Visitor {
   }
 
   /// A page at `link`, with what it asked for and what its console complained of.
-  async open(link, options = WIDE) {
+  async open(link, { prepare = null, ...options } = WIDE) {
     const page = await this.browser.newPage({ reducedMotion: 'reduce', ...options });
+    if (prepare !== null) await page.addInitScript(prepare);
     page.asked = [];
     page.complaints = [];
     page.on('request', (request) => page.asked.push(request.url().replace(`${this.origin}/`, '')));
@@ -97,7 +98,7 @@ async function checkGallery(visitor, names, pictures) {
   visitor.check('gallery cells', shown.join() === names.join(), shown.join(' '));
   visitor.check('gallery mode', (await badge(page)).startsWith('TP'), await badge(page));
   const expected = ['models.json', ...names.map((name) => `models/${name}.hier/outline.glb`)];
-  const asked = page.asked.filter((file) => !/^(index\.html|assets\/index-[^/]+)$/.test(file));
+  const asked = page.asked.filter((file) => file !== 'index.html' && !file.startsWith('assets/'));
   visitor.check('gallery requests', asked.sort().join() === expected.sort().join(), asked.join(' '));
   await checkTurning(visitor, page);
   await page.screenshot({ path: path.join(pictures, 'page-gallery.png') });
@@ -295,6 +296,24 @@ async function checkMissing(visitor, name) {
   await visitor.close(alone, 'one model');
 }
 
+function withoutWebGl() {
+  const get = HTMLCanvasElement.prototype.getContext;
+  HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+    return kind === 'webgl2' ? null : get.call(this, kind, ...rest);
+  };
+}
+
+async function checkWithoutWebGl(visitor, name) {
+  for (const link of ['', anchor(name)]) {
+    const page = await visitor.open(link, { ...WIDE, prepare: withoutWebGl });
+    const alert = page.getByRole('alert').locator('.problem');
+    await alert.waitFor();
+    const text = await alert.innerText();
+    visitor.check(`no WebGL 2 ${link}`, text.includes('no WebGL 2'), text);
+    await page.close();
+  }
+}
+
 async function checkAll(browser, report, pictures, hierarchies, origin) {
   const names = hierarchies.map(({ name }) => name);
   const visitor = new Visitor(browser, origin, report);
@@ -307,6 +326,7 @@ async function checkAll(browser, report, pictures, hierarchies, origin) {
   await checkNarrowGallery(visitor, names, pictures);
   for (const scheme of ['light', 'dark']) await checkNarrow(visitor, names[0], pictures, scheme);
   await checkMissing(visitor, names[0]);
+  await checkWithoutWebGl(visitor, names[0]);
 }
 
 async function serveAndCheck(browser, report, [pictures, page, ...directories]) {
