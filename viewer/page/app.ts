@@ -120,7 +120,7 @@ export class App {
     const gallery = new Gallery(element('header', { class: 'gallery-header' }, element('h1', {}, 'meshhier'), badge.root, theme));
     this.root.prepend(gallery.root);
     for (const sign of ['pointerdown', 'pointerover', 'focusin'] as const)
-      gallery.root.addEventListener(sign, () => { void loadView(); }, { once: true });
+      gallery.root.addEventListener(sign, () => { loadView().catch(() => undefined); }, { once: true });
     if (!gallery.works) this.problems.tell(NO_WEBGL);
     return gallery;
   }
