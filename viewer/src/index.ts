@@ -2,3 +2,4 @@ export { HierarchyView, type ViewEvents, type ViewOptions } from './scene/hierar
 export type { Colours, Look, Mode, Settings, Stats } from './scene/settings.js';
 export type { Manifest } from './hierarchy/manifest.js';
 export { HierarchyProblem } from './hierarchy/problem.js';
+export { readOutline, type Outline } from './hierarchy/outline.js';

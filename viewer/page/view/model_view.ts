@@ -29,6 +29,8 @@ export interface Surroundings extends Pick<ViewOptions, 'fetch' | 'createWorker'
   failed(message: string): () => void;
 }
 
+/// In the browser's own account of the page's times.
+const FIRST_PICTURE = 'meshhier: first picture';
 const REST = 300; // milliseconds without movement
 const REPORT = 250; // milliseconds between two reports
 const UNKNOWN = new Box3(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
@@ -47,6 +49,7 @@ export class ModelView {
   private readonly sizes = new ResizeObserver(() => { this.loop.wake(); });
   private dirty = true;
   private opened = false;
+  private shown = false;
   private refused = false;
   private lost: (() => void) | null = null;
   private restTimer = 0;
@@ -164,9 +167,15 @@ export class ModelView {
     if (resized && this.opened) this.navigation.frame(this.view.box, this.stage.aspect);
     this.stage.aim(CameraPose.from(this.pose()), this.opened ? this.view.box : UNKNOWN);
     const news = this.view.update(this.stage.camera, this.stage.size, now);
-    if (moved || news || resized || this.dirty) this.stage.draw();
+    if (moved || news || resized || this.dirty) this.draw();
     this.dirty = false;
     return this.pace(now, moved || news || this.navigation.busy || this.sharpness.blurred);
+  }
+
+  private draw(): void {
+    this.stage.draw();
+    if (this.opened && !this.shown) performance.mark(FIRST_PICTURE);
+    this.shown = this.opened;
   }
 
   private pace(now: number, busy: boolean): Pace {

@@ -8,7 +8,7 @@ import { Glide, type Moves } from './glide.js';
 export type Pick = (right: number, up: number) => Vector3 | null;
 
 const FARTHEST = 12; // whole views
-const NEAREST = 1e-6; // of a whole view
+const NEAREST = 1e-5; // of a whole view: closer, single precision shows
 const CLOSER = 0.3; // of the distance, after a double click
 const LONGEST_FRAME = 100; // milliseconds
 
@@ -72,7 +72,7 @@ export class Navigation {
   approach(right: number, up: number): boolean {
     const point = this.pick(right, up);
     if (point === null) return false;
-    const distance = point.distanceTo(this.pose.position) * CLOSER;
+    const distance = Math.max(point.distanceTo(this.pose.position) * CLOSER, this.home.distance * NEAREST);
     this.fly(new CameraPose(this.pose.forward.multiplyScalar(-distance).add(point), point));
     return true;
   }

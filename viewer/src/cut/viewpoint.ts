@@ -38,7 +38,8 @@ export function isWhollyInView({ planes }: Viewpoint, { min, max }: Box): boolea
   });
 }
 
-function distance({ eye }: Viewpoint, { min, max }: Box): number {
+/// From the eye to the box; 0 inside.
+export function distance({ eye }: Viewpoint, { min, max }: Box): number {
   let squared = 0;
   for (let axis = 0; axis < 3; ++axis) {
     const outside = Math.max(min[axis] - eye[axis], 0, eye[axis] - max[axis]);

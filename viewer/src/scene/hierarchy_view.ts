@@ -4,7 +4,7 @@ import type { ChosenNode } from '../cut/choose_cut.js';
 import { FrameRate } from '../cut/frame_rate.js';
 import { Refinement, type Refined } from '../cut/refinement.js';
 import { TileStore, type ResidentTile } from '../cut/tile_store.js';
-import { isWhollyInView, type Viewpoint } from '../cut/viewpoint.js';
+import type { Viewpoint } from '../cut/viewpoint.js';
 import type { Fetch } from '../hierarchy/bytes.js';
 import type { Manifest } from '../hierarchy/manifest.js';
 import { RemoteHierarchy, type Directory } from '../hierarchy/remote_hierarchy.js';
@@ -12,6 +12,8 @@ import type { Tile } from '../hierarchy/tile.js';
 import { TileDecoder } from '../hierarchy/tile_decoder.js';
 import { Tree, keyOf, type Node } from '../hierarchy/tree.js';
 import { Account } from './account.js';
+import { modeOf } from './mode.js';
+import { OutlineObject } from './outline_object.js';
 import { Motion, REST_MS, viewpointOf, type Viewport } from './motion.js';
 import type { Look, Mode, Settings, Stats } from './settings.js';
 import { memoryOf, mostMemory } from './tile_object.js';
@@ -68,6 +70,7 @@ export class HierarchyView extends Group<ViewEvents> {
   private refinement: Refinement | null = null;
   private drawn: readonly ChosenNode[] = [];
   private viewpoint: Viewpoint | null = null;
+  private pixels = 1;
   private state: Refined | null = null;
   private isDirty = false;
   private wasMoving = false;
@@ -75,6 +78,7 @@ export class HierarchyView extends Group<ViewEvents> {
   private failed = 0;
   private timer: ReturnType<typeof setTimeout> | null = null;
   private isOver = false;
+  private outline: Promise<OutlineObject | null> | null = null;
 
   /// `url`: of the hierarchy's directory.
   constructor(url: string, options: ViewOptions = {}) {
@@ -111,7 +115,28 @@ export class HierarchyView extends Group<ViewEvents> {
     this.store.recount();
     this.tiles.setLook(this.look);
     this.tiles.paint(this.drawn, this.look, this.settings.threshold);
+    this.showOutline();
     this.changed();
+  }
+
+  /// Fetched when it is first asked for, and where it belongs is known.
+  private showOutline(): void {
+    if (this.outline === null && this.look.outline && this.manifest !== null) this.outline = this.loadOutline(this.manifest);
+    void this.outline?.then((object) => {
+      if (object !== null) object.visible = this.look.outline;
+      this.changed();
+    });
+  }
+
+  private async loadOutline({ place }: Manifest): Promise<OutlineObject | null> {
+    try {
+      const object = new OutlineObject(await this.remote.outline(), place);
+      this.tiles.add(object);
+      return object;
+    } catch (problem) {
+      this.tell(problem);
+      return null;
+    }
   }
 
   // ---- opening
@@ -150,6 +175,7 @@ export class HierarchyView extends Group<ViewEvents> {
       this.refinement = new Refinement(directory.tree, directory.index, this.store, (record, node) =>
         mostMemory(record, node.level, hasColours, this.look.wires));
       this.account.fetched(directory.index.record(ROOT)!.bytes);
+      this.showOutline();
       this.changed();
     } catch (problem) {
       this.tell(problem);
@@ -196,6 +222,7 @@ export class HierarchyView extends Group<ViewEvents> {
     const isDirty = this.isDirty;
     this.isDirty = false;
     this.viewpoint = viewpointOf(camera, this.tiles, viewport);
+    this.pixels = viewport.width * viewport.height;
     this.refine(now);
     if (this.motion.isMoving) this.later(REST_MS);
     return seesElse || isDirty;
@@ -250,12 +277,9 @@ export class HierarchyView extends Group<ViewEvents> {
   // ---- what it tells
 
   private mode(shown: readonly ChosenNode[]): Mode {
-    const root = this.drawn[0]?.record;
-    if (root === undefined || this.directory === null) return 'CWV';
-    const whole = this.directory.index.record(ROOT);
-    if (whole && this.viewpoint && isWhollyInView(this.viewpoint, whole)) return 'CWV';
-    const { lastLevel } = this.directory.tree;
-    return shown.length > 0 && shown.every(({ node }) => node.level === lastLevel) ? 'DZM' : 'ZSV';
+    const whole = this.directory?.index.record(ROOT);
+    if (!whole || this.viewpoint === null) return 'CWV';
+    return modeOf(shown, whole, this.directory!.tree.lastLevel, this.viewpoint, this.pixels);
   }
 
   stats(): Stats {
@@ -297,6 +321,7 @@ export class HierarchyView extends Group<ViewEvents> {
     this.store.dispose();
     this.decoder.dispose();
     this.tiles.dispose();
+    void this.outline?.then((object) => object?.dispose());
     this.removeFromParent();
   }
 }

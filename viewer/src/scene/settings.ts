@@ -24,7 +24,7 @@ export interface Settings {
 }
 
 /// Kim & Lee's names: coarse whole view (all of the model is in view), zoomed sector view, deep zoom
-/// of the mesh (all that is in view are original triangles).
+/// of the mesh (what fills the picture are original triangles).
 export type Mode = 'CWV' | 'ZSV' | 'DZM';
 
 export interface Stats {

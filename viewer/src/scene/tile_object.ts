@@ -1,6 +1,6 @@
 // A tile in a three scene: its triangles, and on request its edges and vertices.
 import { Box3, BufferAttribute, BufferGeometry, Color, DynamicDrawUsage, LineSegments, Mesh, Points, Sphere, Vector3 } from 'three';
-import type { MeshStandardMaterial, Material } from 'three';
+import type { Intersection, Material, MeshStandardMaterial, Raycaster } from 'three';
 import type { ResidentTile } from '../cut/tile_store.js';
 import type { Indices, Tile } from '../hierarchy/tile.js';
 import type { Seam } from '../cut/seam.js';
@@ -83,6 +83,10 @@ export class TileObject extends Mesh<BufferGeometry, MeshStandardMaterial> {
     const ghost = new Vector3();
     for (let v = tile.own; v < tile.own + tile.ghosts; ++v) box.expandByPoint(ghost.fromArray(tile.positions, 3 * v));
     this.geometry.boundingSphere = box.getBoundingSphere(new Sphere());
+  }
+
+  override raycast(raycaster: Raycaster, hits: Intersection[]): void {
+    if (this.visible) super.raycast(raycaster, hits);
   }
 
   hide(): void {

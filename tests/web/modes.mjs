@@ -1,0 +1,94 @@
+// The four modes of the page of viewer/ on several models, on a desktop and on a phone, from the gallery down to the
+// original triangles: pictures, without a complaint on the console.
+//
+//   node modes.mjs PICTURES PAGE HIERARCHY...
+//
+// PAGE: the directory that `npm run build` of viewer/ makes. The way down through the first model is kept as a strip of pictures.
+// Exit code 2: wrong use; else see browser.mjs.
+import { cpSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import path from 'node:path';
+import { inChromium, readHierarchy } from './browser.mjs';
+import { serve } from './server.mjs';
+
+const SCREENS = {
+  desktop: { viewport: { width: 1280, height: 800 } },
+  phone: { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true },
+};
+const PATIENCE = 240_000; // milliseconds
+const MOST_STEPS = 30;
+
+function settle(page) {
+  return page.waitForFunction(() => window.meshhier.settled(), null, { timeout: PATIENCE });
+}
+
+function modeOf(page) {
+  return page.evaluate(() => window.meshhier.stats()?.mode ?? 'TP');
+}
+
+/// Down to the surface in the middle of the picture, as a double click does; each mode's first settled picture is kept.
+async function goDown(page, keep) {
+  const { width, height } = page.viewportSize();
+  const seen = new Set();
+  for (let step = 0; step < MOST_STEPS && !seen.has('DZM'); ++step) {
+    await settle(page);
+    const mode = await modeOf(page);
+    await keep(mode, step, !seen.has(mode));
+    seen.add(mode);
+    await page.mouse.dblclick(width / 2, height / 2);
+    await page.waitForFunction(() => !window.meshhier.settled(), null, { timeout: 5000 }).catch(() => undefined);
+  }
+  return seen;
+}
+
+async function visit(browser, report, { origin, pictures, screen, index, name, strip }) {
+  const page = await browser.newPage({ reducedMotion: 'reduce', ...SCREENS[screen] });
+  const complaints = [];
+  page.on('console', (message) => ['error', 'warning'].includes(message.type()) && complaints.push(message.text()));
+  page.on('pageerror', (error) => complaints.push(String(error)));
+  const shoot = (what) => page.screenshot({ path: path.join(pictures, `${what}.png`) });
+  await page.goto(`${origin}/index.html`);
+  await page.waitForFunction(() => document.querySelector('a.cell') !== null && document.querySelector('.cell-stage.waiting') === null, null, { timeout: PATIENCE });
+  if (index === 0) await shoot(`modes-${screen}-TP`);
+  if (strip) await shoot('strip-00-TP');
+  await page.locator('a.cell').nth(index).click();
+  const seen = await goDown(page, async (mode, step, isFirst) => {
+    if (isFirst) await shoot(`modes-${screen}-${name}-${mode}`);
+    if (strip) await shoot(`strip-${String(step + 1).padStart(2, '0')}-${mode}`);
+  });
+  const stats = await page.evaluate(() => window.meshhier.stats());
+  await page.keyboard.press('w');
+  await page.keyboard.press('p');
+  await settle(page);
+  await shoot(`modes-${screen}-${name}-DZM-wires`);
+  const good = ['CWV', 'ZSV', 'DZM'].every((mode) => seen.has(mode)) && complaints.length === 0;
+  report.line(`modes ${screen} ${name}`, good,
+    `${['TP', ...seen].join(' ')}; ${stats.fetchedFiles} tiles, ${stats.fetchedBytes} bytes, ${stats.savedBytes} saved; ${complaints.join('; ') || 'no complaints'}`);
+  await page.close();
+}
+
+/// The page with a listing beside it, in a directory that is removed in the end.
+async function serveAndVisit(browser, report, [pictures, page, ...directories]) {
+  const hierarchies = directories.map(readHierarchy);
+  const site = mkdtempSync(path.join(tmpdir(), 'meshhier-page-'));
+  cpSync(page, site, { recursive: true });
+  const models = hierarchies.map(({ name }) => ({ name, path: `models/${name}.hier` }));
+  writeFileSync(path.join(site, 'models.json'), JSON.stringify({ models }));
+  const below = Object.fromEntries(hierarchies.map(({ name, directory }) => [`/models/${name}.hier`, directory]));
+  const server = await serve({ ...below, '': site });
+  try {
+    for (const screen of Object.keys(SCREENS))
+      for (const [index, { name }] of hierarchies.entries())
+        await visit(browser, report, { origin: server.origin, pictures, screen, index, name, strip: screen === 'desktop' && index === 0 });
+  } finally {
+    server.close();
+    rmSync(site, { recursive: true });
+  }
+}
+
+const [pictures, ...others] = process.argv.slice(2);
+if (others.length < 2) {
+  console.log('usage: node modes.mjs PICTURES PAGE HIERARCHY...');
+  process.exit(2);
+}
+process.exit(await inChromium(pictures, (browser, report) => serveAndVisit(browser, report, [pictures, ...others])));

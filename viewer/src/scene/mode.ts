@@ -1,0 +1,29 @@
+// What a view is called (Kim & Lee).
+import type { ChosenNode } from '../cut/choose_cut.js';
+import { distance, isWhollyInView, type Box, type Viewpoint } from '../cut/viewpoint.js';
+import type { Mode } from './settings.js';
+
+/// Part of the picture that a tile covers, at most.
+function share({ record }: ChosenNode, view: Viewpoint, pixels: number): number {
+  const size = Math.hypot(...record.max.map((max, axis) => max - record.min[axis]));
+  const across = (size * view.pixels) / Math.max(distance(view, record), view.near);
+  return Math.min(1, across ** 2 / pixels);
+}
+
+/// The closest of the tiles in view that together can fill the picture: others are hardly seen behind them.
+function foremost(shown: readonly ChosenNode[], view: Viewpoint, pixels: number): ChosenNode[] {
+  const sorted = [...shown].sort((a, b) => distance(view, a.record) - distance(view, b.record));
+  let filled = 0;
+  return sorted.filter((each) => {
+    const isFree = filled < 1;
+    filled += share(each, view, pixels);
+    return isFree;
+  });
+}
+
+/// `shown`: the tiles in view, `whole`: the model, `pixels`: of the picture.
+export function modeOf(shown: readonly ChosenNode[], whole: Box, lastLevel: number, view: Viewpoint, pixels: number): Mode {
+  if (isWhollyInView(view, whole)) return 'CWV';
+  const front = foremost(shown, view, pixels);
+  return front.length > 0 && front.every(({ node }) => node.level === lastLevel) ? 'DZM' : 'ZSV';
+}
