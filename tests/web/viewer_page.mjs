@@ -14,6 +14,11 @@ import { serve } from './server.mjs';
 const WIDE = { viewport: { width: 1280, height: 800 } };
 const NARROW = { viewport: { width: 360, height: 640 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true };
 const LEAST_TARGET = 40; // CSS pixels
+const MANY = 40; // models in a long listing
+const JOBS = [
+  { name: 'half.ply', state: 'building', stage: 'simplify', progress: 0.5, seconds_left: 90 },
+  { name: '<b>bad</b>.ply', state: 'failed', message: 'byte 7: <i>nothing</i>' },
+];
 const PATIENCE = 120_000; // milliseconds
 
 /// The page with models.json beside it, in a directory that is removed in the end.
@@ -22,6 +27,8 @@ function makeSite(page, hierarchies) {
   cpSync(page, site, { recursive: true });
   const models = hierarchies.map(({ name }) => ({ name, path: `models/${name}.hier` }));
   writeFileSync(path.join(site, 'models.json'), JSON.stringify({ models }));
+  const many = Array.from({ length: MANY }, (_, i) => ({ name: `model ${i}`, path: `${models[0].path}${'/'.repeat(i)}` }));
+  writeFileSync(path.join(site, 'many.json'), JSON.stringify({ models: many, jobs: JOBS }));
   return site;
 }
 
@@ -133,6 +140,38 @@ async function checkMotion(visitor, names) {
   await visitor.close(page, 'gallery motion');
 }
 
+/// A long listing on a narrow screen: what is far below is not fetched; a finger scrolls, or turns.
+async function checkLongGallery(visitor) {
+  const page = await visitor.open('?models=many.json', NARROW);
+  await page.waitForFunction((count) => document.querySelectorAll('a.cell').length === count, MANY);
+  await page.waitForTimeout(1000);
+  const fetched = page.asked.filter((file) => file.endsWith('outline.glb')).length;
+  visitor.check('gallery fetches what is near', fetched > 0 && fetched < MANY / 2, `${fetched} outlines of ${MANY}`);
+  visitor.check('gallery progress', (await page.getByRole('progressbar', { name: 'half.ply: progress' }).getAttribute('value')) === '0.5', '0.5');
+  const failed = await page.locator('.job-failed').innerText();
+  visitor.check('gallery failure', failed.includes('<b>bad</b>.ply') && failed.includes('byte 7: <i>nothing</i>'), failed);
+  const box = await page.locator('a.cell').first().boundingBox();
+  const place = [box.x + box.width / 2, box.y + box.height / 2];
+  await swipe(page, place, [60, 4]);
+  visitor.check('gallery swipe across', (await page.evaluate(() => scrollY)) === 0 && !page.url().includes('#'), 'turns');
+  await swipe(page, place, [0, -120]);
+  visitor.check('gallery swipe up', (await page.evaluate(() => scrollY)) > 50 && !page.url().includes('#'), 'scrolls');
+  await visitor.close(page, 'long gallery');
+}
+
+/// One finger from a place by a way.
+async function swipe(page, [x, y], [right, down]) {
+  const client = await page.context().newCDPSession(page);
+  const touch = (type, touchPoints) => client.send('Input.dispatchTouchEvent', { type, touchPoints });
+  await touch('touchStart', [{ x, y }]);
+  for (let step = 1; step <= 8; ++step) {
+    await touch('touchMove', [{ x: x + (right * step) / 8, y: y + (down * step) / 8 }]);
+    await page.waitForTimeout(30);
+  }
+  await touch('touchEnd', []);
+  await page.waitForTimeout(500);
+}
+
 // ---- a model
 
 function anchor(name) {
@@ -170,14 +209,14 @@ async function checkWayBack(visitor, page) {
   await press(page, 'Escape');
   visitor.check('back to the whole', (await badge(page)).startsWith('CWV'), await badge(page));
   await page.keyboard.press('Escape');
-  await page.waitForFunction(() => location.hash === '');
-  visitor.check('back to the gallery', (await badge(page)).startsWith('TP'), page.url());
+  await page.locator('.gallery .badge').waitFor();
+  visitor.check('back to the gallery', !page.url().includes('#') && (await badge(page)).startsWith('TP'), page.url());
   await page.goForward();
   await settle(page);
   visitor.check('forward to the model', page.url().includes('#models/'), page.url());
   await page.getByRole('button', { name: 'Back' }).click();
-  await page.waitForFunction(() => location.hash === '');
-  visitor.check('back button', (await badge(page)).startsWith('TP'), page.url());
+  await page.locator('.gallery .badge').waitFor();
+  visitor.check('back button', !page.url().includes('#') && (await badge(page)).startsWith('TP'), page.url());
 }
 
 /// Without the ring that keys make.
@@ -319,6 +358,7 @@ async function checkAll(browser, report, pictures, hierarchies, origin) {
   const visitor = new Visitor(browser, origin, report);
   await checkGallery(visitor, names, pictures);
   await checkMotion(visitor, names);
+  await checkLongGallery(visitor);
   await checkModes(visitor, names[0], pictures);
   await checkLinks(visitor, names[0]);
   await checkRest(visitor, names[0]);
