@@ -14,6 +14,11 @@ import { serve } from './server.mjs';
 const WIDE = { viewport: { width: 1280, height: 800 } };
 const NARROW = { viewport: { width: 360, height: 640 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true };
 const LEAST_TARGET = 40; // CSS pixels
+const MANY = 40; // models in a long listing
+const JOBS = [
+  { name: 'half.ply', state: 'building', stage: 'simplify', progress: 0.5, seconds_left: 90 },
+  { name: '<b>bad</b>.ply', state: 'failed', message: 'byte 7: <i>nothing</i>' },
+];
 const PATIENCE = 120_000; // milliseconds
 
 /// The page with models.json beside it, in a directory that is removed in the end.
@@ -22,6 +27,8 @@ function makeSite(page, hierarchies) {
   cpSync(page, site, { recursive: true });
   const models = hierarchies.map(({ name }) => ({ name, path: `models/${name}.hier` }));
   writeFileSync(path.join(site, 'models.json'), JSON.stringify({ models }));
+  const many = Array.from({ length: MANY }, (_, i) => ({ name: `model ${i}`, path: `${models[0].path}${'/'.repeat(i)}` }));
+  writeFileSync(path.join(site, 'many.json'), JSON.stringify({ models: many, jobs: JOBS }));
   return site;
 }
 
@@ -31,8 +38,9 @@ class Visitor {
   }
 
   /// A page at `link`, with what it asked for and what its console complained of.
-  async open(link, options = WIDE) {
+  async open(link, { prepare = null, ...options } = WIDE) {
     const page = await this.browser.newPage({ reducedMotion: 'reduce', ...options });
+    if (prepare !== null) await page.addInitScript(prepare);
     page.asked = [];
     page.complaints = [];
     page.on('request', (request) => page.asked.push(request.url().replace(`${this.origin}/`, '')));
@@ -97,7 +105,7 @@ async function checkGallery(visitor, names, pictures) {
   visitor.check('gallery cells', shown.join() === names.join(), shown.join(' '));
   visitor.check('gallery mode', (await badge(page)).startsWith('TP'), await badge(page));
   const expected = ['models.json', ...names.map((name) => `models/${name}.hier/outline.glb`)];
-  const asked = page.asked.filter((file) => !/^(index\.html|assets\/index-[^/]+)$/.test(file));
+  const asked = page.asked.filter((file) => file !== 'index.html' && !file.startsWith('assets/'));
   visitor.check('gallery requests', asked.sort().join() === expected.sort().join(), asked.join(' '));
   await checkTurning(visitor, page);
   await page.screenshot({ path: path.join(pictures, 'page-gallery.png') });
@@ -130,6 +138,38 @@ async function checkMotion(visitor, names) {
   await page.waitForTimeout(500);
   visitor.check('gallery motion', !first.equals(await page.locator('.cell-stage').first().screenshot()), 'outlines turn');
   await visitor.close(page, 'gallery motion');
+}
+
+/// A long listing on a narrow screen: what is far below is not fetched; a finger scrolls, or turns.
+async function checkLongGallery(visitor) {
+  const page = await visitor.open('?models=many.json', NARROW);
+  await page.waitForFunction((count) => document.querySelectorAll('a.cell').length === count, MANY);
+  await page.waitForTimeout(1000);
+  const fetched = page.asked.filter((file) => file.endsWith('outline.glb')).length;
+  visitor.check('gallery fetches what is near', fetched > 0 && fetched < MANY / 2, `${fetched} outlines of ${MANY}`);
+  visitor.check('gallery progress', (await page.getByRole('progressbar', { name: 'half.ply: progress' }).getAttribute('value')) === '0.5', '0.5');
+  const failed = await page.locator('.job-failed').innerText();
+  visitor.check('gallery failure', failed.includes('<b>bad</b>.ply') && failed.includes('byte 7: <i>nothing</i>'), failed);
+  const box = await page.locator('a.cell').first().boundingBox();
+  const place = [box.x + box.width / 2, box.y + box.height / 2];
+  await swipe(page, place, [60, 4]);
+  visitor.check('gallery swipe across', (await page.evaluate(() => scrollY)) === 0 && !page.url().includes('#'), 'turns');
+  await swipe(page, place, [0, -120]);
+  visitor.check('gallery swipe up', (await page.evaluate(() => scrollY)) > 50 && !page.url().includes('#'), 'scrolls');
+  await visitor.close(page, 'long gallery');
+}
+
+/// One finger from a place by a way.
+async function swipe(page, [x, y], [right, down]) {
+  const client = await page.context().newCDPSession(page);
+  const touch = (type, touchPoints) => client.send('Input.dispatchTouchEvent', { type, touchPoints });
+  await touch('touchStart', [{ x, y }]);
+  for (let step = 1; step <= 8; ++step) {
+    await touch('touchMove', [{ x: x + (right * step) / 8, y: y + (down * step) / 8 }]);
+    await page.waitForTimeout(30);
+  }
+  await touch('touchEnd', []);
+  await page.waitForTimeout(500);
 }
 
 // ---- a model
@@ -169,14 +209,14 @@ async function checkWayBack(visitor, page) {
   await press(page, 'Escape');
   visitor.check('back to the whole', (await badge(page)).startsWith('CWV'), await badge(page));
   await page.keyboard.press('Escape');
-  await page.waitForFunction(() => location.hash === '');
-  visitor.check('back to the gallery', (await badge(page)).startsWith('TP'), page.url());
+  await page.locator('.gallery .badge').waitFor();
+  visitor.check('back to the gallery', !page.url().includes('#') && (await badge(page)).startsWith('TP'), page.url());
   await page.goForward();
   await settle(page);
   visitor.check('forward to the model', page.url().includes('#models/'), page.url());
   await page.getByRole('button', { name: 'Back' }).click();
-  await page.waitForFunction(() => location.hash === '');
-  visitor.check('back button', (await badge(page)).startsWith('TP'), page.url());
+  await page.locator('.gallery .badge').waitFor();
+  visitor.check('back button', !page.url().includes('#') && (await badge(page)).startsWith('TP'), page.url());
 }
 
 /// Without the ring that keys make.
@@ -295,11 +335,30 @@ async function checkMissing(visitor, name) {
   await visitor.close(alone, 'one model');
 }
 
+function withoutWebGl() {
+  const get = HTMLCanvasElement.prototype.getContext;
+  HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+    return kind === 'webgl2' ? null : get.call(this, kind, ...rest);
+  };
+}
+
+async function checkWithoutWebGl(visitor, name) {
+  for (const link of ['', anchor(name)]) {
+    const page = await visitor.open(link, { ...WIDE, prepare: withoutWebGl });
+    const alert = page.getByRole('alert').locator('.problem');
+    await alert.waitFor();
+    const text = await alert.innerText();
+    visitor.check(`no WebGL 2 ${link}`, text.includes('no WebGL 2'), text);
+    await page.close();
+  }
+}
+
 async function checkAll(browser, report, pictures, hierarchies, origin) {
   const names = hierarchies.map(({ name }) => name);
   const visitor = new Visitor(browser, origin, report);
   await checkGallery(visitor, names, pictures);
   await checkMotion(visitor, names);
+  await checkLongGallery(visitor);
   await checkModes(visitor, names[0], pictures);
   await checkLinks(visitor, names[0]);
   await checkRest(visitor, names[0]);
@@ -307,6 +366,7 @@ async function checkAll(browser, report, pictures, hierarchies, origin) {
   await checkNarrowGallery(visitor, names, pictures);
   for (const scheme of ['light', 'dark']) await checkNarrow(visitor, names[0], pictures, scheme);
   await checkMissing(visitor, names[0]);
+  await checkWithoutWebGl(visitor, names[0]);
 }
 
 async function serveAndCheck(browser, report, [pictures, page, ...directories]) {

@@ -1,6 +1,6 @@
 // Shows what the address says: the gallery, or a model.
 import { formatAddress, parseAddress, type Pose } from './address.js';
-import { fetchRootEarly } from './early_fetch.js';
+import { EarlyStart } from './early_start.js';
 import { Gallery } from './gallery/gallery.js';
 import { ListingWatch } from './listing_watch.js';
 import { modelOfPath, type Listing, type Model } from './listing.js';
@@ -8,21 +8,26 @@ import { element } from './parts/element.js';
 import { ModeBadge } from './parts/mode_badge.js';
 import { themeButton } from './parts/theme_button.js';
 import { loadPreferences, savePreferences, type Theme } from './preferences.js';
+import { NO_WEBGL } from './parts/no_webgl.js';
 import { Problems } from './problems.js';
 import { readQuery } from './query.js';
 import { watchInput } from './parts/input.js';
 import { applyTheme, watchSystemTheme } from './theme.js';
-import type { ModelView } from './view/model_view.js';
+import type { ModelView, Surroundings } from './view/model_view.js';
 
 const HOW_TO = 'Put a file models.json beside this page, {"models": [{"path": "NAME.hier"}]}, or let "meshhier serve" do it, ' +
   'or name a hierarchy in the address: ?model=NAME.hier';
-const NO_WEBGL = 'This browser shows no WebGL 2, which the page draws with. Another browser may, or this one with its graphics acceleration on.';
 
 /// Of a history entry that was reached from the gallery: going back leads there.
 const FROM_GALLERY = { fromGallery: true };
 
 function messageOf(error: unknown): string {
   return error instanceof Error ? error.message : String(error);
+}
+
+/// The view's code: once, when it is likely to be wanted.
+function loadView(): Promise<typeof import('./view/model_view.js')> {
+  return import('./view/model_view.js');
 }
 
 export class App {
@@ -114,6 +119,8 @@ export class App {
     const theme = themeButton(() => this.preferences.theme, (chosen) => { this.setTheme(chosen); });
     const gallery = new Gallery(element('header', { class: 'gallery-header' }, element('h1', {}, 'meshhier'), badge.root, theme));
     this.root.prepend(gallery.root);
+    for (const sign of ['pointerdown', 'pointerover', 'focusin'] as const)
+      gallery.root.addEventListener(sign, () => { loadView().catch(() => undefined); }, { once: true });
     if (!gallery.works) this.problems.tell(NO_WEBGL);
     return gallery;
   }
@@ -132,13 +139,23 @@ export class App {
     this.load(model, pose).catch((error: unknown) => { this.problems.tell(`${model.name} cannot be shown: ${messageOf(error)}`); });
   }
 
-  /// The view's code comes with the first model.
   private async load(model: Model, pose: Pose | null): Promise<void> {
-    const fetch = fetchRootEarly(model.url);
-    const { ModelView } = await import('./view/model_view.js');
-    if (this.opening !== model) return;
-    this.view = new ModelView(model, {
+    const early = new EarlyStart(model.url);
+    try {
+      const { ModelView } = await loadView();
+      if (this.opening !== model) return;
+      this.view = new ModelView(model, this.surroundings(model, pose, early));
+    } finally {
+      early.close();
+    }
+    this.root.prepend(this.view.root);
+    this.view.start();
+  }
+
+  private surroundings(model: Model, pose: Pose | null, { fetch, createWorker }: EarlyStart): Surroundings {
+    return {
       fetch,
+      createWorker,
       pose,
       preferences: this.preferences,
       chosen: () => { savePreferences(this.preferences); },
@@ -146,9 +163,7 @@ export class App {
       leave: this.query.only === null ? () => { this.close(); } : null,
       rested: (rest) => { this.remember(model, rest); },
       failed: (message) => this.problems.tell(message),
-    });
-    this.root.prepend(this.view.root);
-    this.view.start();
+    };
   }
 
   private remember(model: Model, pose: Pose | null): void {

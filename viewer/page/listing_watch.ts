@@ -15,6 +15,7 @@ export class ListingWatch {
   listing: Listing | null = null;
   private text: string | null = null;
   private timer = 0;
+  private turn = 0;
 
   /// `changed`: the listing is another one. `failed`: with a message, while there is none at all.
   constructor(
@@ -25,20 +26,22 @@ export class ListingWatch {
 
   start(): void {
     this.stop();
-    void this.look();
+    void this.look(this.turn);
   }
 
   stop(): void {
+    ++this.turn;
     window.clearTimeout(this.timer);
   }
 
-  private async look(): Promise<void> {
+  /// `turn`: that of the start which this look belongs to.
+  private async look(turn: number): Promise<void> {
     try {
-      if (!document.hidden) this.take(await fetchText(this.url));
+      if (this.listing === null || !document.hidden) this.take(await fetchText(this.url));
     } catch (error) {
       if (this.listing === null) this.failed(error instanceof ListingError ? error.message : String(error));
     }
-    if (this.listing?.jobs) this.timer = window.setTimeout(() => void this.look(), PAUSE);
+    if (turn === this.turn && this.listing?.jobs) this.timer = window.setTimeout(() => void this.look(turn), PAUSE);
   }
 
   private take(text: string): void {

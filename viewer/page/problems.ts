@@ -7,18 +7,25 @@ const MOST_SHOWN = 3;
 export class Problems {
   readonly root = element('div', { class: 'problems', role: 'alert' });
 
-  /// The same message is shown once. What it returns takes the message away.
+  private readonly dismissed = new Set<string>();
+
+  /// The same message is shown once, and not again when it was dismissed. What it returns takes the message away.
   tell(message: string): () => void {
+    if (this.dismissed.has(message)) return () => undefined;
     const shown = [...this.root.children].find((child) => child.firstChild?.textContent === message);
     if (shown !== undefined) return () => { shown.remove(); };
     const problem = element('div', { class: 'problem' }, element('p', {}, message));
-    problem.append(iconButton('Dismiss', ICONS.close, () => { problem.remove(); }));
+    problem.append(iconButton('Dismiss', ICONS.close, () => {
+      this.dismissed.add(message);
+      problem.remove();
+    }));
     this.root.append(problem);
     if (this.root.children.length > MOST_SHOWN) this.root.firstElementChild?.remove();
     return () => { problem.remove(); };
   }
 
   clear(): void {
+    this.dismissed.clear();
     this.root.replaceChildren();
   }
 }

@@ -6,7 +6,7 @@ const WHEEL = 0.0016; // of a factor's logarithm, a pixel of the wheel
 const MOST_WHEEL = 200;
 const LINE = 32; // pixels, where wheels count lines
 const NEW_GRAB = 250; // milliseconds without a turn of the wheel
-const TAP = { reach: 24, pause: 350, moved: 8 };
+const TAP = { reach: 24, pause: 400, moved: 8 };
 
 interface Finger {
   x: number;

@@ -1,7 +1,6 @@
 // A model, as large as the window, and all that can be done with it.
 import { Box3, Vector3 } from 'three';
 import { HierarchyView, type Look, type Settings, type Stats, type ViewOptions } from '../../src/index.js';
-import TileWorker from '../../src/hierarchy/tile_worker.js?worker';
 import { roundedPose, type Pose } from '../address.js';
 import type { Model } from '../listing.js';
 import { element } from '../parts/element.js';
@@ -16,8 +15,7 @@ import { Sharpness } from './sharpness.js';
 import { Stage } from './stage.js';
 import '../style/view.css';
 
-export interface Surroundings {
-  fetch: ViewOptions['fetch'];
+export interface Surroundings extends Pick<ViewOptions, 'fetch' | 'createWorker'> {
   pose: Pose | null;
   preferences: Preferences;
   /// Preferences have changed.
@@ -62,9 +60,10 @@ export class ModelView {
     readonly model: Model,
     private readonly around: Surroundings,
   ) {
-    const { fetch, preferences: { settings, look } } = around;
-    this.view = new HierarchyView(model.url, { fetch, settings, look, createWorker: () => new TileWorker() });
-    this.stage = new Stage(this.view);
+    const { fetch, createWorker, preferences: { settings, look } } = around;
+    this.stage = new Stage();
+    this.view = new HierarchyView(model.url, { fetch, createWorker, settings, look });
+    this.stage.show(this.view);
     this.navigation = new Navigation((right, up) => this.stage.pick(right, up), () => { this.redraw(); });
     const surface = this.makeSurface();
     this.chrome = new Chrome(model.name, surface, this.orders(), this.ending.signal);
@@ -194,7 +193,12 @@ export class ModelView {
   /// Links tell of the camera when it has come to rest.
   private startRest(): void {
     window.clearTimeout(this.restTimer);
-    this.restTimer = window.setTimeout(() => { this.around.rested(this.navigation.atHome ? null : this.pose()); }, REST);
+    this.restTimer = window.setTimeout(() => { this.rest(); }, REST);
+  }
+
+  private rest(): void {
+    window.clearTimeout(this.restTimer);
+    this.around.rested(this.navigation.atHome ? null : this.pose());
   }
 
   private setLook(change: Partial<Look>): void {
@@ -222,8 +226,13 @@ export class ModelView {
   /// Out of the depth first, then to the gallery.
   private readonly back = (): void => {
     if (this.opened && this.view.stats().mode !== 'CWV') this.navigation.goHome();
-    else this.around.leave?.();
+    else this.leave();
   };
+
+  private leave(): void {
+    this.rest();
+    this.around.leave?.();
+  }
 
   private orders(): ConstructorParameters<typeof Chrome>[2] {
     return {

@@ -1,6 +1,6 @@
 // What draws: canvas, scene, camera and light.
-import { Box3, DirectionalLight, HemisphereLight, NeutralToneMapping, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from 'three';
-import type { HierarchyView } from '../../src/index.js';
+import { Box3, DirectionalLight, Group, HemisphereLight, NeutralToneMapping, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer, type Object3D } from 'three';
+import { NO_WEBGL } from '../parts/no_webgl.js';
 import { depthRange, VIEW_ANGLE, type CameraPose } from './camera_pose.js';
 
 const MOST_RATIO = 2;
@@ -12,7 +12,15 @@ function lights(camera: PerspectiveCamera): HemisphereLight {
   const rim = new DirectionalLight(0xcfe0ff, 0.9);
   rim.position.set(1, 0.1, -0.6);
   for (const light of [key, rim]) camera.add(light, light.target);
-  return new HemisphereLight(0xeaf1ff, 0x5d554d, 1.15);
+  return new HemisphereLight(0xeaf1ff, 0x857d74, 1.15);
+}
+
+function makeRenderer(): WebGLRenderer {
+  try {
+    return new WebGLRenderer({ antialias: true, alpha: true, powerPreference: 'high-performance' });
+  } catch {
+    throw new Error(NO_WEBGL);
+  }
 }
 
 export class Stage {
@@ -20,17 +28,22 @@ export class Stage {
   readonly canvas: HTMLCanvasElement;
   private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
+  private readonly shown = new Group();
   private readonly raycaster = new Raycaster();
   private nominal = new Vector2();
   private sharpness = 1;
 
   /// Throws Error where there is no WebGL 2.
-  constructor(readonly view: HierarchyView) {
-    this.renderer = new WebGLRenderer({ antialias: true, alpha: true, powerPreference: 'high-performance' });
+  constructor() {
+    this.renderer = makeRenderer();
     this.renderer.setClearAlpha(0);
     this.renderer.toneMapping = NeutralToneMapping;
     this.canvas = this.renderer.domElement;
-    this.scene.add(this.camera, view, lights(this.camera));
+    this.scene.add(this.camera, this.shown, lights(this.camera));
+  }
+
+  show(object: Object3D): void {
+    this.shown.add(object);
   }
 
   get aspect(): number {
@@ -72,7 +85,7 @@ export class Stage {
   /// The point of the drawn triangles at a place of the picture, from -1 to 1.
   pick(right: number, up: number): Vector3 | null {
     this.raycaster.setFromCamera(new Vector2(right, up), this.camera);
-    return this.raycaster.intersectObject(this.view, true)[0]?.point ?? null;
+    return this.raycaster.intersectObject(this.shown, true)[0]?.point ?? null;
   }
 
   dispose(): void {

@@ -1,0 +1,40 @@
+// What the first picture needs is asked for before the code that draws it is there: the root tile, and a worker
+// that decodes it.
+import TileWorker from '../src/hierarchy/tile_worker.js?worker';
+
+const ROOT = 'tiles/00/000000.glb';
+
+export class EarlyStart {
+  private readonly url: string;
+  private root: Promise<Response> | null;
+  private worker: Worker | null;
+
+  /// `url`: of the hierarchy.
+  constructor(url: string) {
+    this.url = `${url}/${ROOT}`;
+    this.root = fetch(this.url, { priority: 'high' });
+    this.root.catch(() => undefined); // whoever asks for it is told
+    this.worker = new TileWorker();
+  }
+
+  /// As the global one; the root was asked for already.
+  readonly fetch = (url: string, init?: RequestInit): Promise<Response> => {
+    const early = url === this.url ? this.root : null;
+    if (early === null) return fetch(url, init);
+    this.root = null;
+    return early;
+  };
+
+  /// The first one is there already.
+  readonly createWorker = (): Worker => {
+    const early = this.worker ?? new TileWorker();
+    this.worker = null;
+    return early;
+  };
+
+  /// Ends what nobody took.
+  close(): void {
+    this.worker?.terminate();
+    this.worker = null;
+  }
+}
