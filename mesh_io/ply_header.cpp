@@ -13,7 +13,7 @@
 namespace meshhier::mesh_io {
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r\n\v\f";
+constexpr std::string_view kHeaderBlanks = " \t\r\n\v\f";
 
 struct TypeName {
   std::string_view name;
@@ -39,16 +39,16 @@ constexpr std::array<TypeName, 16> kTypeNames{{{"char", PlyType::i8},
                                                {"float64", PlyType::f64}}};
 
 std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(kBlanks);
+  const std::size_t first = text.find_first_not_of(kHeaderBlanks);
   if (first == std::string_view::npos)
     return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+  return text.substr(first, text.find_last_not_of(kHeaderBlanks) - first + 1);
 }
 
 /// Takes the first word off `text`; empty if there is none.
 std::string_view take_word(std::string_view& text) {
   text = trimmed(text);
-  const std::string_view word = text.substr(0, text.find_first_of(kBlanks));
+  const std::string_view word = text.substr(0, text.find_first_of(kHeaderBlanks));
   text = trimmed(text.substr(word.size()));
   return word;
 }

@@ -136,12 +136,13 @@ class StreamWriter {
 
   [[noreturn]] void refuse_border(std::uint64_t needed) const {
     const std::uint64_t more = (needed - plan_.foreign_bytes) * ProgressivePlan::kForeignParts;
-    constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+    constexpr std::uint64_t kMebibyte = std::uint64_t{1} << 20;
     throw Error(ErrorCode::budget,
                 fmt::format("a memory budget of {} is too small for the border of this sector: "
                             "--memory-budget {} would do",
                             exact_size_text(plan_.budget_bytes),
-                            exact_size_text((plan_.budget_bytes + more) / kMiB * kMiB + kMiB)));
+                            exact_size_text((plan_.budget_bytes + more) / kMebibyte * kMebibyte +
+                                            kMebibyte)));
   }
 
   storage::ProgressiveIndex write_files(const std::vector<LevelLists>& lists,

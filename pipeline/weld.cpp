@@ -183,10 +183,10 @@ class TriangleWelder {
         cancel_(room.cancel) {}
 
   std::uint64_t weld(const storage::RecordSpool<RawTriangle>& triangles) {
-    constexpr std::uint64_t kBlock = 16384;
+    constexpr std::uint64_t kBlockTriangles = 16384;
     std::vector<RawTriangle> block;
     for (std::uint64_t i = 0; i < triangles.size(); i += block.size()) {
-      block.resize(std::min(kBlock, triangles.size() - i));
+      block.resize(std::min(kBlockTriangles, triangles.size() - i));
       triangles.read(i, block);
       renumberer_.translate(std::span<const RawTriangle>(block), renumbered_);
       keep();

@@ -350,6 +350,190 @@ class Circles {
   Complaints complaints_;
 };
 
+/// The names that stand after `std::` in a line.
+std::vector<std::string> standard_names(const std::string& line) {
+  const std::string code = code_of(line);
+  const std::string_view prefix = "std::";
+  std::vector<std::string> names;
+  for (std::size_t i = code.find(prefix); i != std::string::npos; i = code.find(prefix, i + 1)) {
+    const auto begin = code.begin() + static_cast<std::ptrdiff_t>(i + prefix.size());
+    names.emplace_back(begin, std::find_if_not(begin, code.end(), is_word));
+  }
+  return names;
+}
+
+/// Where names of the standard library come from. Every header has std::move and std::size_t.
+const std::map<std::string, std::string>& standard_headers() {
+  static const std::map<std::string, std::string> headers = [] {
+    const std::map<std::string, std::vector<std::string>> names = {
+        {"algorithm",
+         {"clamp", "find", "find_if", "lower_bound", "max", "max_element", "min", "min_element",
+          "nth_element", "remove_if", "reverse", "rotate", "sort", "unique", "upper_bound"}},
+        {"array", {"array"}},
+        {"atomic", {"atomic"}},
+        {"bit", {"bit_cast", "bit_ceil", "bit_width", "countl_zero", "countr_zero", "popcount"}},
+        {"charconv", {"from_chars", "to_chars"}},
+        {"chrono", {"chrono"}},
+        {"cmath",
+         {"abs", "ceil", "cos", "fabs", "floor", "isfinite", "isnan", "pow", "round", "sin",
+          "sqrt"}},
+        {"condition_variable", {"condition_variable"}},
+        {"cstddef", {"byte"}},
+        {"cstdint", {"int64_t", "uint16_t", "uint32_t", "uint64_t", "uint8_t"}},
+        {"cstdlib", {"getenv"}},
+        {"cstring", {"memcmp", "memcpy", "memmove", "memset", "strerror"}},
+        {"deque", {"deque"}},
+        {"exception", {"current_exception", "exception", "exception_ptr", "rethrow_exception"}},
+        {"filesystem", {"filesystem"}},
+        {"fstream", {"ifstream", "ofstream"}},
+        {"functional", {"function", "reference_wrapper"}},
+        {"limits", {"numeric_limits"}},
+        {"map", {"map"}},
+        {"memory", {"make_shared", "make_unique", "shared_ptr", "unique_ptr"}},
+        {"mutex", {"lock_guard", "mutex", "scoped_lock", "unique_lock"}},
+        {"numeric", {"accumulate", "inner_product", "iota", "partial_sum"}},
+        {"optional", {"nullopt", "optional"}},
+        {"queue", {"priority_queue", "queue"}},
+        {"random", {"mt19937_64", "random_device"}},
+        {"set", {"set"}},
+        {"span", {"as_bytes", "as_writable_bytes", "span"}},
+        {"sstream", {"istringstream", "ostringstream"}},
+        {"stdexcept", {"invalid_argument", "logic_error", "runtime_error"}},
+        {"string", {"getline", "string", "to_string"}},
+        {"string_view", {"string_view"}},
+        {"system_error", {"error_code", "system_error"}},
+        {"thread", {"this_thread", "thread"}},
+        {"tuple", {"tie", "tuple"}},
+        {"unordered_map", {"unordered_map"}},
+        {"utility", {"exchange", "pair", "swap"}},
+        {"variant", {"variant"}},
+        {"vector", {"vector"}}};
+    std::map<std::string, std::string> all;
+    for (const auto& [header, of_header] : names) {
+      for (const std::string& name : of_header)
+        all[name] = header;
+    }
+    return all;
+  }();
+  return headers;
+}
+
+/// What a file includes, and what the files do that it includes, by name.
+class Reach {
+ public:
+  explicit Reach(const std::vector<Source>& all) {
+    for (const Source& source : all)
+      sources_[source.path] = &source;
+  }
+
+  std::set<std::string> of(const std::string& path) const {
+    std::set<std::string> reached = {path};
+    for (std::vector<std::string> open = {path}; !open.empty();) {
+      const auto source = sources_.find(open.back());
+      open.pop_back();
+      if (source == sources_.end())
+        continue;
+      for (const Include& include : source->second->includes) {
+        if (reached.insert(include.name).second)
+          open.push_back(include.name);
+      }
+    }
+    return reached;
+  }
+
+ private:
+  std::map<std::string, const Source*> sources_;
+};
+
+/// A file included where others have been, which is what its name says.
+bool stands_alone(const Source& source) {
+  return !source.path.ends_with("_impl.h");
+}
+
+/// Where all files of a folder are compiled as one, no compiler misses an include.
+Complaints check_standard_names(const std::vector<Source>& all) {
+  const Reach reach(all);
+  Complaints complaints;
+  for (const Source& source : all) {
+    const std::set<std::string> reached = reach.of(source.path);
+    for (std::size_t i = 0; i < source.lines.size() && stands_alone(source); ++i) {
+      for (const std::string& name : standard_names(source.lines[i])) {
+        const auto header = standard_headers().find(name);
+        if (header != standard_headers().end() && !reached.contains(header->second))
+          complaints.push_back(at(source, i + 1) + ": std::" + name + " without <" +
+                               header->second + ">");
+      }
+    }
+  }
+  return complaints;
+}
+
+/// The type that a line declares at its beginning, so not within another type; "" if none.
+std::string declared_type(const std::string& line) {
+  for (const std::string word : {"class ", "struct ", "enum class ", "using "}) {
+    if (line.starts_with(word)) {
+      const auto begin = line.begin() + static_cast<std::ptrdiff_t>(word.size());
+      return {begin, std::find_if_not(begin, line.end(), is_word)};
+    }
+  }
+  return "";
+}
+
+std::vector<std::string> words_of(const std::string& line) {
+  const std::string code = code_of(line);
+  std::vector<std::string> words;
+  for (auto at = code.begin(); at != code.end();) {
+    const auto begin = std::find_if(at, code.end(), is_word);
+    at = std::find_if_not(begin, code.end(), is_word);
+    if (begin != at)
+      words.emplace_back(begin, at);
+  }
+  return words;
+}
+
+/// What a file declares itself: types, also within others, and parameters of templates.
+std::set<std::string> types_declared_in(const Source& source) {
+  std::set<std::string> types;
+  for (const std::string& line : source.lines) {
+    bool declares = false;
+    for (const std::string& word : words_of(line)) {
+      if (declares)
+        types.insert(word);
+      declares = declares || word == "class" || word == "struct" || word == "using" ||
+                 word == "enum" || word == "typename";
+    }
+  }
+  return types;
+}
+
+/// The same for the project's types, as far as their names tell: those that one header declares,
+/// and no other file.
+Complaints check_own_types(const std::vector<Source>& all) {
+  std::map<std::string, std::set<std::string>> declared;
+  for (const Source& source : all) {
+    for (const std::string& line : source.lines)
+      declared[declared_type(line)].insert(source.path);
+  }
+  const Reach reach(all);
+  Complaints complaints;
+  for (const Source& source : all) {
+    const std::set<std::string> reached = reach.of(source.path);
+    const std::set<std::string> own = types_declared_in(source);
+    for (std::size_t i = 0; i < source.lines.size() && stands_alone(source); ++i) {
+      for (const std::string& word : words_of(source.lines[i])) {
+        const auto files = declared.find(word);
+        if (files == declared.end() || files->second.size() != 1 || own.contains(word))
+          continue;
+        const std::string& header = *files->second.begin();
+        if (header.ends_with(".h") && !reached.contains(header) &&
+            check_folder(source, {header, true, i + 1}).empty())
+          complaints.push_back(at(source, i + 1) + ": " + word + " without \"" + header + "\"");
+      }
+    }
+  }
+  return complaints;
+}
+
 // ---- the project keeps them ----------------------------------------------------------------
 
 TEST(ArchitectureTest, TheSourcesAreThere) {
@@ -405,6 +589,11 @@ TEST(ArchitectureTest, SystemCallsHaveOnePlace) {
 
 TEST(ArchitectureTest, LibrariesNeitherPrintNorExit) {
   EXPECT_THAT(check_quiet(sources()), IsEmpty());
+}
+
+TEST(ArchitectureTest, FilesIncludeWhatTheyUse) {
+  EXPECT_THAT(check_standard_names(sources()), IsEmpty());
+  EXPECT_THAT(check_own_types(sources()), IsEmpty());
 }
 
 TEST(ArchitectureTest, EverySourceIsOfALibraryOrProgram) {
@@ -467,6 +656,22 @@ TEST(ArchitectureRuleTest, PrintsAreFoundButNotInWordsOrStrings) {
   EXPECT_EQ(found("  const int account = on_exit(2);  // exit(1) is for programs"), 0U);
   EXPECT_EQ(found("  fail(\"std::cout is full\");"), 0U);
   EXPECT_EQ(found("  std::snprintf(text, 3, format);"), 0U);
+}
+
+TEST(ArchitectureRuleTest, MissingIncludesAreFound) {
+  const Source header = make_source(
+      "hierarchy/shape.h", {"#include <vector>", "struct Shape {", "  std::vector<int> n;", "};"});
+  const auto complaints = [&](const std::vector<std::string>& lines) {
+    const std::vector<Source> all = {header, make_source("outline/x.cpp", lines)};
+    Complaints found = check_standard_names(all);
+    std::ranges::copy(check_own_types(all), std::back_inserter(found));
+    return found;
+  };
+  EXPECT_THAT(complaints({"std::vector<Shape> all;  // std::map"}),
+              testing::ElementsAre("outline/x.cpp:1: std::vector without <vector>",
+                                   "outline/x.cpp:1: Shape without \"hierarchy/shape.h\""));
+  EXPECT_THAT(complaints({"#include \"hierarchy/shape.h\"", "std::vector<Shape> all;"}), IsEmpty());
+  EXPECT_THAT(complaints({"struct Shape;", "void draw(const Shape&);"}), IsEmpty());
 }
 
 TEST(ArchitectureRuleTest, CirclesAreFound) {

@@ -81,7 +81,7 @@ class Built {
         all.push_back(smallest_first(t));
       }
     }
-    std::sort(all.begin(), all.end());
+    tests::sort_triangles(all);
     return all;
   }
 
@@ -116,7 +116,7 @@ std::vector<CutTriangle> image(const std::vector<CutTriangle>& triangles,
     if (!is_flat(corners))
       images.push_back(smallest_first(corners));
   }
-  std::sort(images.begin(), images.end());
+  tests::sort_triangles(images);
   return images;
 }
 

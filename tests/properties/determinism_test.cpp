@@ -205,23 +205,27 @@ class DeterminismTest : public testing::Test {
     return accepted;
   }
 
-  std::uint64_t read_by(const Config& config, std::uint64_t budget) {
+  /// Bytes that a build of two threads reads; its result must be as expected.
+  std::uint64_t read_by(const Config& config, std::uint64_t budget, const FileHashes& expected) {
     const std::uint64_t before = files_->counters().bytes_read;
-    build(config, {2, budget});
+    EXPECT_EQ(build(config, {2, budget}), expected) << "2 threads, " << exact_size_text(budget);
     return files_->counters().bytes_read - before;
   }
 
-  /// Builds under all conditions and expects one result.
+  /// Builds under all conditions, each once, and expects one result.
   void expect_one_result(const Config& config,
                          const std::vector<std::uint32_t>& threads = {1, 2, 5}) {
     const std::uint64_t tight = tight_budget(config);
     const FileHashes expected = build(config, {1, 4 * kGiB});
     EXPECT_GE(expected.size(), 4U);
-    const std::uint64_t in_memory = read_by(config, 4 * kGiB);
-    const std::uint64_t on_disk = read_by(config, tight);
+    const std::uint64_t in_memory = read_by(config, 4 * kGiB, expected);
+    const std::uint64_t on_disk = read_by(config, tight, expected);
     EXPECT_GT(on_disk, in_memory * 5 / 4) << "the least budget did not use the disk";
     for (const std::uint64_t budget : {4 * kGiB, 64 * kMiB, tight}) {
       for (const std::uint32_t count : threads) {
+        const bool is_done = budget != 64 * kMiB && (count == 2 || (count == 1 && budget != tight));
+        if (is_done)
+          continue;
         EXPECT_EQ(build(config, {count, budget}), expected)
             << count << " threads, " << exact_size_text(budget);
       }

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <map>
 #include <span>
 
@@ -27,16 +28,15 @@ class HollowFile final : public storage::File {
     const std::size_t count = part(offset, std::min<std::uint64_t>(bytes.size(), size_ - offset));
     const auto page = pages_.find(offset / kPage);
     if (page == pages_.end())
-      std::fill_n(bytes.begin(), count, std::byte{0});
+      std::memset(bytes.data(), 0, count);
     else
       std::copy_n(page->second.begin() + offset % kPage, count, bytes.begin());
     return count;
   }
   std::size_t write_some(std::uint64_t offset, std::span<const std::byte> bytes) override {
     const std::size_t count = part(offset, bytes.size());
-    const auto zero = [](std::byte byte) { return byte == std::byte{0}; };
-    if (!std::all_of(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(count), zero) ||
-        pages_.contains(offset / kPage))
+    static constexpr std::array<std::byte, kPage> kZeros{};
+    if (std::memcmp(bytes.data(), kZeros.data(), count) != 0 || pages_.contains(offset / kPage))
       std::copy_n(bytes.begin(), count, pages_[offset / kPage].begin() + offset % kPage);
     size_ = std::max(size_, offset + count);
     return count;

@@ -403,6 +403,29 @@ TestMesh shuffled(const TestMesh& mesh, std::uint64_t seed) {
 
 namespace {
 
+/// Sorts ascending what begins with a number up to about as many as there are items: by counting
+/// those of each beginning, several times as fast as std::sort.
+template <class Item, class Beginning>
+void sort_by_beginning(std::vector<Item>& items, const Beginning& beginning) {
+  std::uint32_t last = 0;
+  for (const Item& item : items)
+    last = std::max(last, beginning(item));
+  std::vector<std::size_t> places(std::size_t{last} + 2);
+  for (const Item& item : items)
+    ++places[std::size_t{beginning(item)} + 1];
+  std::partial_sum(places.begin(), places.end(), places.begin());
+  std::vector<Item> sorted(items.size());
+  for (const Item& item : items)
+    sorted[places[beginning(item)]++] = item;
+  auto from = sorted.begin();
+  for (const std::size_t end : places) {  // by now, where each beginning's items end
+    const auto to = sorted.begin() + static_cast<std::ptrdiff_t>(end);
+    std::sort(from, to);
+    from = to;
+  }
+  items.swap(sorted);
+}
+
 /// Edges as single numbers: they sort three times as fast as pairs, and in the same order.
 using EdgeKey = std::uint64_t;
 
@@ -418,7 +441,7 @@ std::vector<EdgeKey> sorted_keys(std::span<const MeshTriangle> triangles,
     for (std::size_t k = 0; k < 3; ++k)
       keys.push_back(key(t[k], t[(k + 1) % 3]));
   }
-  std::sort(keys.begin(), keys.end());
+  sort_by_beginning(keys, [](EdgeKey edge) { return static_cast<std::uint32_t>(edge >> 32); });
   return keys;
 }
 
@@ -437,6 +460,10 @@ std::vector<Edge> edges_of(const std::vector<EdgeKey>& keys) {
 }
 
 }  // namespace
+
+void sort_triangles(std::vector<MeshTriangle>& triangles) {
+  sort_by_beginning(triangles, [](const MeshTriangle& t) { return t[0]; });
+}
 
 std::vector<Edge> directed_edges(std::span<const MeshTriangle> triangles) {
   return edges_of(sorted_keys(triangles, edge_key));

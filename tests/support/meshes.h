@@ -69,6 +69,10 @@ float hash_noise(std::uint64_t index, std::uint64_t stream);
 
 // What is counted. Triangles with two equal corners are not expected.
 
+/// Ascending. Corners are vertices of a mesh that is not much larger: their numbers are counted
+/// over.
+void sort_triangles(std::vector<MeshTriangle>& triangles);
+
 using Edge = std::array<std::uint32_t, 2>;
 
 /// The three directed edges (from, to) of every triangle, ascending, with repeats.
