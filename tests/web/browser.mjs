@@ -32,6 +32,7 @@ export function readHierarchy(directory) {
     directory: path.resolve(directory),
     name: path.basename(directory).replace(/\.[^.]*$/, ''),
     up: manifest.up,
+    vertices: manifest.source.vertices,
     lastLevel: manifest.levels.length - 1,
   };
 }

@@ -138,6 +138,9 @@ function cracks() {
   return measure(shown, crossingMaterial, judge).reduce((sum, count) => sum + (count === 1 ? 0 : 1), 0);
 }
 
+/// Pixels from an edge that are not compared.
+const EDGE = 3;
+
 /// Where one part of the surface ends before another: neighbours further from each other than a surface as steep as this.
 const STEEPEST = 8;
 
@@ -166,6 +169,19 @@ function holes(reach) {
   const found = [];
   for (let i = 0; i < ours.length; ++i) if (ours[i] > 0 && isInside(i, reach) && coveredAround(whole, i, reach)) found.push(i);
   return { holes: found.length, cracks: cracks(), covered: whole.covered.reduce((sum, each) => sum + each, 0) };
+}
+
+/// How far the picture's surface is from the original's, in pixels, where both have one: the 99th percentile.
+function deviation() {
+  const { height } = viewport;
+  const pixel = (2 * Math.tan((camera.fov * Math.PI) / 360)) / height;
+  const whole = innerPart();
+  const [ours, theirs] = [measure(shown, depthMaterial), measure(original, depthMaterial)];
+  const apart = [];
+  for (let i = 0; i < ours.length; ++i)
+    if (isInside(i, EDGE) && coveredAround(whole, i, EDGE) && ours[i] <= 0) apart.push(Math.abs(ours[i] - theirs[i]) / (-theirs[i] * pixel));
+  apart.sort((a, b) => a - b);
+  return { compared: apart.length, pixels: apart[Math.floor(0.99 * apart.length)] ?? Infinity };
 }
 
 let opened = null;
@@ -208,6 +224,7 @@ window.view = {
     return view.stats();
   },
   holes,
+  deviation,
   stats: () => ({ ...view.stats(), problems }),
   /// Circles for so many `seconds` of a clock that stands for a slow GPU: each frame takes `base` milliseconds, and
   /// `perTriangle` more for each triangle. What each frame took and showed.

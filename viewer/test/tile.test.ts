@@ -2,6 +2,7 @@ import { readFileSync, readdirSync } from 'node:fs';
 import path from 'node:path';
 import { gunzipSync } from 'node:zlib';
 import { afterAll, describe, expect, it } from 'vitest';
+import { isInsideOut } from '../src/hierarchy/closed.js';
 import { HierarchyProblem } from '../src/hierarchy/problem.js';
 import { readTile, type Tile } from '../src/hierarchy/tile.js';
 import { windingNumber } from '../src/cut/winding.js';
@@ -73,6 +74,9 @@ describe.skipIf(!hasProgram)('readTile', () => {
     const closed = workshop.build('closed', ['surface', '--triangles', '1000', '--shape', 'torus'], config('none'));
     const root = await readTile(bytesOf(path.join(closed, 'tiles/00/000000.glb')), 'root');
     expect(root.closed).toBe(true);
+    expect(root.insideOut).toBe(false);
+    const turned = root.indices.slice().reverse();
+    expect(isInsideOut(root.positions, turned)).toBe(true);
     const [minX, minY, minZ, maxX, maxY, maxZ] = root.box;
     const middle = [(minX + maxX) / 2, (minY + maxY) / 2, (minZ + maxZ) / 2] as const;
     expect(Math.abs(windingNumber(root, middle))).toBeLessThan(0.01); // the hole of the ring

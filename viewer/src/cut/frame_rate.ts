@@ -14,7 +14,7 @@ const SETTLE_FRAMES = 1;
 const TOLERANCE = 0.06;
 /// A single step's largest growth.
 const MOST_GROWTH = 1.6;
-const LEAST_BUDGET = 4096;
+const LEAST_BUDGET = 256;
 const MOST_BUDGET = 50_000_000;
 /// If vertices take less than this part of a frame, less of them is no help: the pixels are what takes the time.
 const LEAST_PART = 0.15;

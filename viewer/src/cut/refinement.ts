@@ -1,4 +1,5 @@
 // From a viewpoint to the tiles that are drawn, and those that are asked for.
+import type { Cone } from '../hierarchy/normals.js';
 import type { TileIndex, TileRecord } from '../hierarchy/tile_index.js';
 import { keyOf, type Node, type Tree } from '../hierarchy/tree.js';
 import { chooseCut, type Choice, type ChosenNode, type Sources } from './choose_cut.js';
@@ -24,6 +25,10 @@ export interface Refined {
 
 /// Bytes that a tile may take, by its record.
 export type MostMemory = (record: TileRecord, node: Node) => number;
+
+function opposite({ axis: [x, y, z], cosine }: Cone): Cone {
+  return { axis: [-x, -y, -z], cosine };
+}
 
 const ROOT = keyOf(0, 0);
 /// Finer tiles have normals that their parents have not: so much more must a tile look away. Once refined, more still.
@@ -82,8 +87,9 @@ export class Refinement {
 
   private isHidden(view: Viewpoint, key: number, record: TileRecord): boolean {
     const cone = this.store.get(key)?.tile.cone;
+    if (cone === undefined) return false;
     const margin = HIDDEN_MARGIN + (this.refined.has(key) ? HYSTERESIS_MARGIN : 0);
-    return cone !== undefined && looksAway(view, record, cone, margin);
+    return looksAway(view, record, this.store.get(ROOT)!.tile.insideOut ? opposite(cone) : cone, margin);
   }
 
   private touch({ root, refined }: Choice, now: number): void {

@@ -21,3 +21,16 @@ export function isClosed(triangles: Indices): boolean {
   }
   return triangles.length > 0;
 }
+
+/// Whether the triangles of a closed surface show their backs to the outside.
+export function isInsideOut(positions: Float32Array, triangles: Indices): boolean {
+  let volume = 0;
+  for (let t = 0; t < triangles.length; t += 3) {
+    const [a, b, c] = [3 * triangles[t], 3 * triangles[t + 1], 3 * triangles[t + 2]];
+    const x = positions[b + 1] * positions[c + 2] - positions[b + 2] * positions[c + 1];
+    const y = positions[b + 2] * positions[c] - positions[b] * positions[c + 2];
+    const z = positions[b] * positions[c + 1] - positions[b + 1] * positions[c];
+    volume += positions[a] * x + positions[a + 1] * y + positions[a + 2] * z;
+  }
+  return volume < 0;
+}

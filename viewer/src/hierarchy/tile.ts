@@ -2,7 +2,7 @@
 import { Glb, type Gltf } from './glb.js';
 import { MeshoptDecoder } from 'meshoptimizer/decoder';
 import { normalCone, vertexNormals, type Cone } from './normals.js';
-import { isClosed } from './closed.js';
+import { isClosed, isInsideOut } from './closed.js';
 
 export type Indices = Uint16Array | Uint32Array;
 
@@ -29,8 +29,9 @@ export interface Tile {
   readonly ghostStarts: Uint32Array;
   readonly chains: Uint16Array;
   readonly cone: Cone;
-  /// Of the root: whether it has no open border.
+  /// Of the root: whether it has no open border; and if so, whether its triangles show their backs.
   readonly closed: boolean;
+  readonly insideOut: boolean;
   /// x, y, z smallest, then largest, of all vertices.
   readonly box: readonly number[];
   /// The mesh lies with its z axis up.
@@ -184,6 +185,7 @@ function decode(glb: Glb): Tile {
   const colours = attribute('COLOR_0');
   const starts = new Uint32Array(copyOf(glb.section(values.ghostStarts, counts.neighbours === 0 ? 0 : 4 * (counts.neighbours + 1))));
   checkStarts(glb, starts, counts);
+  const closed = counts.level === 0 && isClosed(interior);
   return {
     level: counts.level,
     index: counts.index,
@@ -199,7 +201,8 @@ function decode(glb: Glb): Tile {
     ghostStarts: starts,
     chains: new Uint16Array(copyOf(glb.section(values.ghostChains, 2 * counts.chains))),
     cone: normalCone(positions, interior, border),
-    closed: counts.level === 0 && isClosed(interior),
+    closed,
+    insideOut: closed && isInsideOut(positions, interior),
     box: boxOf(glb, positions),
     zUp: gltf.nodes[0].matrix !== undefined,
   };
