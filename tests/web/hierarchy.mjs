@@ -115,6 +115,30 @@ async function checkDifferences(page, name, report) {
   }
 }
 
+const LINE = { offline: false, latency: 150, downloadThroughput: 1.6e6 / 8, uploadThroughput: 0.75e6 / 8 };
+const LATENCY_STOPS = 12;
+
+/// How long a view takes behind a slow line, and how long to fetch it whole; told, no more.
+async function tellLatency(page, name, report) {
+  const session = await page.context().newCDPSession(page);
+  await session.send('Network.enable');
+  await call(page, 'reopen');
+  await session.send('Network.emulateNetworkConditions', LINE);
+  for (const [way, at] of Object.entries(PATHS)) {
+    const took = { differences: 0, whole: 0 };
+    for (let stop = 0; stop < LATENCY_STOPS; ++stop) {
+      await call(page, 'pose', at(stop / LATENCY_STOPS));
+      const settled = await call(page, 'settle');
+      if (stop === 0) continue; // from elsewhere
+      took.differences += settled.took;
+      took.whole += await call(page, 'fetchWhole');
+    }
+    const [mean, whole] = [took.differences, took.whole].map((sum) => sum / (LATENCY_STOPS - 1));
+    report.line(`${name} latency ${way}`, true, `${mean.toFixed(0)} ms a view, ${whole.toFixed(0)} to fetch it whole: ${(whole / mean).toFixed(1)} times`);
+  }
+  await session.detach();
+}
+
 const RATE = 30;
 const SETTLE_SECONDS = 2;
 
@@ -179,6 +203,7 @@ async function check(page, hierarchy, pictures, report) {
   await checkSeams(page, hierarchy, pictures, report);
   await checkFaithful(page, name, report);
   await checkDifferences(page, name, report);
+  await tellLatency(page, name, report);
   await checkFrameRate(page, name, report);
   await checkMemory(page, hierarchy, report);
 }

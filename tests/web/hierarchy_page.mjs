@@ -1,7 +1,7 @@
 // The viewer's library in a three scene that is not its own: what is drawn, fetched and held, frame by frame.
 import * as THREE from 'three';
 import { PLYLoader } from 'three/addons/loaders/PLYLoader.js';
-import { HierarchyView } from 'meshhier-viewer';
+import { HierarchyView, tilePath } from 'meshhier-viewer';
 import { coveredAround } from './pixels.mjs';
 
 const renderer = new THREE.WebGLRenderer({ antialias: false });
@@ -225,6 +225,16 @@ window.view = {
   },
   holes,
   deviation,
+  /// Fetches what is in view as a client does that keeps nothing; how long that takes.
+  async fetchWhole() {
+    const files = view.shown.map((node) => `${opened.url}/${tilePath(node)}`);
+    const began = performance.now();
+    const next = async () => {
+      for (let file = files.pop(); file !== undefined; file = files.pop()) await (await fetch(file, { cache: 'no-store' })).arrayBuffer();
+    };
+    await Promise.all(Array.from({ length: 6 }, next));
+    return performance.now() - began;
+  },
   stats: () => ({ ...view.stats(), problems }),
   /// Circles for so many `seconds` of a clock that stands for a slow GPU: each frame takes `base` milliseconds, and
   /// `perTriangle` more for each triangle. What each frame took and showed.

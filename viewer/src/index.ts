@@ -3,3 +3,4 @@ export type { Colours, Look, Mode, Settings, Stats } from './scene/settings.js';
 export type { Manifest } from './hierarchy/manifest.js';
 export { HierarchyProblem } from './hierarchy/problem.js';
 export { readOutline, type Outline } from './hierarchy/outline.js';
+export { tilePath, type Node } from './hierarchy/tree.js';

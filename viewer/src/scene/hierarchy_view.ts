@@ -276,6 +276,11 @@ export class HierarchyView extends Group<ViewEvents> {
 
   // ---- what it tells
 
+  /// The tiles of the cut that are in view.
+  get shown(): Node[] {
+    return this.inView().map(({ node }) => node);
+  }
+
   private mode(shown: readonly ChosenNode[]): Mode {
     const whole = this.directory?.index.record(ROOT);
     if (!whole || this.viewpoint === null) return 'CWV';
