@@ -1,0 +1,49 @@
+#include "app/viewer_place.h"
+
+#include "hierarchy/error.h"
+#include "storage/child_process.h"
+
+#include <array>
+
+#include <fmt/format.h>
+
+namespace meshhier::app {
+
+namespace {
+
+// From the directory of the program: installed, and built in build/PRESET.
+constexpr std::array kPlaces{"../share/meshhier/viewer", "../../viewer/dist/page"};
+
+bool has_page(storage::FileSystem& files, const std::filesystem::path& directory) {
+  return files.exists(directory / "index.html");
+}
+
+}  // namespace
+
+ViewerPlace find_viewer(storage::FileSystem& files, const std::filesystem::path& asked) {
+  if (!asked.empty()) {
+    if (!has_page(files, asked)) {
+      throw Error(ErrorCode::io,
+                  fmt::format("--viewer {}: it has no index.html; \"npm ci && npm run "
+                              "build\" in viewer/ makes viewer/dist/page",
+                              asked.string()));
+    }
+    return {storage::open_folder(asked), {}};
+  }
+  const std::filesystem::path program = storage::own_directory();
+  for (const char* place : kPlaces) {
+    const std::filesystem::path directory = (program / place).lexically_normal();
+    if (has_page(files, directory))
+      return {storage::open_folder(directory), {}};
+  }
+  const std::string installed = (program / kPlaces[0]).lexically_normal().string();
+  return {nullptr,
+          fmt::format(
+              "The viewer's page is missing: there is no index.html in {}. In the source tree, "
+              "\"npm ci && npm run build\" in viewer/ makes it, and scripts/install puts it there; "
+              "or name its folder with --viewer. models.json and the models' files are served "
+              "without it.",
+              installed)};
+}
+
+}  // namespace meshhier::app
