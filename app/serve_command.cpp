@@ -141,11 +141,14 @@ class Service {
     ViewerPlace viewer = find_viewer(environment.files, arguments.viewer);
     if (!viewer.folder)
       console_.print(viewer.missing);
-    if (!arguments.inbox.empty())
-      watch_.emplace(watch_options(arguments, environment), environment.files, hierarchies_, tell_);
+    if (!arguments.inbox.empty()) {
+      server::WatchOptions options = watch_options(arguments, environment);
+      options.on_new = [this] { site_->refresh(); };
+      watch_.emplace(std::move(options), environment.files, hierarchies_, tell_);
+    }
     site_.emplace(
         server::SiteOptions{storage::open_folder(arguments.folder), std::move(viewer.folder),
-                            viewer.missing, server::is_loopback_host(arguments.server.host),
+                            page_without_viewer(), server::is_loopback_host(arguments.server.host),
                             arguments.cors},
         watch_ ? [this] { return watch_->jobs(); } : server::Site::Jobs(), tell_);
     const auto log = [this](const server::Served& served) { console_.print(log_line(served)); };

@@ -4,6 +4,7 @@
 #include "storage/child_process.h"
 
 #include <array>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -14,11 +15,20 @@ namespace {
 // From the directory of the program: installed, and built in build/PRESET.
 constexpr std::array kPlaces{"../share/meshhier/viewer", "../../viewer/dist/page"};
 
+constexpr const char* kRemedy =
+    "In the source tree, \"npm ci && npm run build\" in viewer/ makes it, and scripts/install puts "
+    "it in place; or "
+    "name its folder with --viewer. models.json and the models' files are served without it.";
+
 bool has_page(storage::FileSystem& files, const std::filesystem::path& directory) {
   return files.exists(directory / "index.html");
 }
 
 }  // namespace
+
+std::string page_without_viewer() {
+  return std::string("The viewer's page is missing. ") + kRemedy;
+}
 
 ViewerPlace find_viewer(storage::FileSystem& files, const std::filesystem::path& asked) {
   if (!asked.empty()) {
@@ -31,19 +41,16 @@ ViewerPlace find_viewer(storage::FileSystem& files, const std::filesystem::path&
     return {storage::open_folder(asked), {}};
   }
   const std::filesystem::path program = storage::own_directory();
+  std::vector<std::string> looked_in;
   for (const char* place : kPlaces) {
     const std::filesystem::path directory = (program / place).lexically_normal();
     if (has_page(files, directory))
       return {storage::open_folder(directory), {}};
+    looked_in.push_back(directory.string());
   }
-  const std::string installed = (program / kPlaces[0]).lexically_normal().string();
   return {nullptr,
-          fmt::format(
-              "The viewer's page is missing: there is no index.html in {}. In the source tree, "
-              "\"npm ci && npm run build\" in viewer/ makes it, and scripts/install puts it there; "
-              "or name its folder with --viewer. models.json and the models' files are served "
-              "without it.",
-              installed)};
+          fmt::format("The viewer's page is missing: there is no index.html in {} or {}. {}",
+                      looked_in[0], looked_in[1], kRemedy)};
 }
 
 }  // namespace meshhier::app

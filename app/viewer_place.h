@@ -18,4 +18,7 @@ struct ViewerPlace {
 /// this program has it. Throws Error(io) if `asked` has no page.
 ViewerPlace find_viewer(storage::FileSystem& files, const std::filesystem::path& asked);
 
+/// The same for who asks for the page: not where things lie on this machine.
+std::string page_without_viewer();
+
 }  // namespace meshhier::app

@@ -36,6 +36,11 @@ std::string gallery_json(const std::vector<Model>& models,
 Gallery::Gallery(Hierarchies& hierarchies, Clock clock)
     : hierarchies_(hierarchies), clock_(std::move(clock)) {}
 
+void Gallery::refresh() {
+  const std::lock_guard lock(mutex_);
+  looked_.reset();
+}
+
 std::vector<Model> Gallery::models() {
   const std::lock_guard lock(mutex_);
   if (!looked_ || clock_() - *looked_ >= kFreshFor) {

@@ -28,6 +28,8 @@ class Gallery {
 
   /// The models as they were at most a second ago. Throws Error(io).
   std::vector<Model> models();
+  /// There is news: the next one who asks gets it.
+  void refresh();
 
  private:
   Hierarchies& hierarchies_;

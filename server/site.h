@@ -35,6 +35,9 @@ class Site {
   /// Never throws: what fails is a reply, too.
   Reply answer(const Request& request);
 
+  /// A hierarchy has appeared: from now on it is listed.
+  void refresh() { gallery_.refresh(); }
+
  private:
   Reply route(const Request& request);
   Reply models_json(const Request& request);

@@ -26,6 +26,14 @@ constexpr std::size_t kLongestLine = 64 * 1024;
 
 constexpr int kExists = static_cast<int>(ErrorCode::exists);
 
+/// Where things lie on this machine is nobody's business on the network.
+std::string without(std::string text, const std::string& directory) {
+  const std::string start = directory + '/';
+  for (std::size_t at = text.find(start); at != std::string::npos; at = text.find(start))
+    text.erase(at, start.size());
+  return text;
+}
+
 constexpr const char* kGrowing = "waits until the file no longer changes";
 
 }  // namespace
@@ -270,6 +278,8 @@ void Watch::settle(const std::string& name, const storage::FileVersion& version,
                    const Outcome& outcome) {
   if (is_stopping())
     return;
+  if (outcome.code == 0)
+    options_.on_new();
   bool has_changed = true;
   bool is_new = true;
   {
@@ -291,6 +301,10 @@ void Watch::settle(const std::string& name, const storage::FileVersion& version,
     set_state(name, outcome.code == kExists ? State::waiting : State::failed, outcome.message);
 }
 
+std::string Watch::shown_text(const std::string& message) const {
+  return without(without(message, options_.inbox.string()), options_.folder.string());
+}
+
 void Watch::set_state(const std::string& name, State state, const std::string& message) {
   const std::lock_guard lock(mutex_);
   const auto found = entries_.find(name);
@@ -298,7 +312,7 @@ void Watch::set_state(const std::string& name, State state, const std::string& m
     return;
   found->second.state = state;
   const JobState shown = state == State::failed ? JobState::failed : JobState::waiting;
-  found->second.job = {.name = name, .state = shown, .message = message};
+  found->second.job = {.name = name, .state = shown, .message = shown_text(message)};
 }
 
 }  // namespace meshhier::server

@@ -34,6 +34,8 @@ struct WatchOptions {
   std::string program;           ///< meshhier
   std::chrono::milliseconds settle{2000};
   std::chrono::milliseconds look_every{1000};
+  std::function<void()> on_new = [] {
+  };  ///< called when a hierarchy has appeared, before its job goes
 };
 
 /// Each build is a process of its own: whatever ends it, this goes on. A file whose build failed is
@@ -87,6 +89,7 @@ class Watch {
   void hear(storage::ChildProcess& child, const std::string& name);
   void settle(const std::string& name, const storage::FileVersion& version, const Outcome& outcome);
   void set_state(const std::string& name, State state, const std::string& message);
+  std::string shown_text(const std::string& message) const;
   std::vector<std::string> words(const std::string& name, const BuildTarget& target,
                                  bool restart) const;
   void sleep();

@@ -367,6 +367,9 @@ TEST(GalleryTest, TheDiskIsAskedOnceASecond) {
   EXPECT_THAT(gallery.models(), SizeIs(3));
   now += std::chrono::milliseconds(1);
   EXPECT_THAT(gallery.models(), SizeIs(2));
+  fs::remove_all(folder.models() / "packed.3tz");
+  gallery.refresh();
+  EXPECT_THAT(gallery.models(), SizeIs(1));
 }
 
 }  // namespace
