@@ -20,7 +20,7 @@ constexpr std::string_view kHeadEnd = "\r\n\r\n";
 constexpr std::chrono::milliseconds kSlice{100};
 
 /// What finish() drops at the most, and for how long.
-constexpr std::size_t kMostDropped = 64 * 1024;
+constexpr std::size_t kMostDropped = 256 * 1024;
 constexpr std::chrono::milliseconds kDropTime{200};
 
 /// "127.0.0.1"; empty if it is not known.
@@ -76,31 +76,41 @@ bool Connection::receive() {
   return count > 0 || (count < 0 && (errno == EAGAIN || errno == EINTR));
 }
 
-Connection::Next Connection::next_request() {
+std::size_t Connection::receive_head() {
+  const Clock::time_point end = Clock::now() + limits_.head;
+  for (;;) {
+    const std::size_t found = received_.find(kHeadEnd);
+    if (found != std::string::npos)
+      return found + kHeadEnd.size();
+    if (received_.size() > kMostHeadBytes || Clock::now() >= end ||
+        !wait(POLLIN, end, is_stopping_) || !receive())
+      return 0;
+  }
+}
+
+void Connection::begin_reply() {
   reply_start_ = Clock::now();
   reply_bytes_ = 0;
+}
+
+Connection::Next Connection::next_request() {
+  begin_reply();  // which may be that there is no request
+  has_unread_ = false;
   if (received_.empty() && !wait_for_first_byte())
     return Next::end;
-  const Clock::time_point end = Clock::now() + limits_.head;
-  std::size_t head_end = received_.find(kHeadEnd);
-  while (head_end == std::string::npos) {
-    if (received_.size() > kMostHeadBytes)
-      return Next::too_large;
-    if (!wait(POLLIN, end, is_stopping_) || !receive() || Clock::now() >= end)
-      return Next::end;
-    head_end = received_.find(kHeadEnd);
-  }
-  if (head_end > kMostHeadBytes)
-    return Next::too_large;
-  auto head = parse_head(std::string_view(received_).substr(0, head_end + kHeadEnd.size()));
+  has_unread_ = true;
+  const std::size_t bytes = receive_head();
+  if (bytes == 0 || bytes > kMostHeadBytes)
+    return received_.size() > kMostHeadBytes ? Next::too_large : Next::end;
+  auto head = parse_head(std::string_view(received_).substr(0, bytes));
   if (!head)
     return Next::malformed;
+  has_unread_ = head->has_body;
   head_ = std::move(*head);
-  received_.erase(0, head_end + kHeadEnd.size());
+  received_.erase(0, bytes);
   place_ = 0;
   ++requests_;
-  reply_start_ = Clock::now();
-  reply_bytes_ = 0;
+  begin_reply();
   return Next::request;
 }
 
@@ -152,7 +162,8 @@ void Connection::get_local_ip_and_port(std::string& ip, int&) const {
 }
 
 void Connection::close() {
-  finish();
+  if (has_unread_)
+    finish();
   ::close(socket_);
 }
 

@@ -33,8 +33,8 @@ class Connection final : public httplib::Stream {
   Next next_request();
   const RequestHead& head() const { return head_; }
 
-  /// Says no more, drops what the client still says, for a moment (it could not read the reply
-  /// otherwise), and closes the socket.
+  /// Closes the socket. If the client may still be speaking, what it says is dropped for a moment:
+  /// it could not read the reply otherwise.
   void close();
 
   bool is_readable() const override { return place_ < head_.text.size(); }
@@ -53,6 +53,9 @@ class Connection final : public httplib::Stream {
   /// Whether the socket is ready for `event` before `end`; false, too, if `is_over` says so.
   bool wait(short event, Clock::time_point end, const std::function<bool()>& is_over) const;
   bool wait_for_first_byte();
+  /// Bytes of the head that received_ begins with; 0 if it is too large, or does not come.
+  std::size_t receive_head();
+  void begin_reply();
   /// Appends what has come to received_; false at the end of it.
   bool receive();
   bool is_too_slow() const;
@@ -68,6 +71,7 @@ class Connection final : public httplib::Stream {
   Clock::time_point reply_start_;
   std::size_t reply_bytes_ = 0;
   bool is_broken_ = false;
+  bool has_unread_ = false;  ///< what was not taken as a request
 };
 
 }  // namespace meshhier::server

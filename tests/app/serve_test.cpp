@@ -182,8 +182,11 @@ TEST_F(ServeTest, WhatIsWrongIsToldBeforeAnythingBegins) {
 }
 
 TEST_F(ServeTest, ABrowserThatIsMissingDoesNotStopIt) {
+  const char* const before = std::getenv("PATH");
+  const std::string path = before == nullptr ? "" : before;
   ::setenv("PATH", folder_.path().c_str(), 1);
   ServeProcess& process = serve({"--open", "--viewer", folder_.viewer().string()});
+  ::setenv("PATH", path.c_str(), 1);
   EXPECT_EQ(tests::RawClient(process.port()).get("/models.json").status, 200);
   EXPECT_EQ(process.end(SIGTERM), 0);
   EXPECT_THAT(process.messages(), HasSubstr("no xdg-open"));
