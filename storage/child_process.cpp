@@ -117,7 +117,10 @@ int ChildProcess::wait() {
 }
 
 std::string own_program() {
-  return kOwnProgram;
+  std::error_code error;
+  const std::filesystem::path path = std::filesystem::read_symlink(kOwnProgram, error);
+  // That of a file which was replaced ends with a remark that it was.
+  return !error && std::filesystem::exists(path, error) ? path.string() : kOwnProgram;
 }
 
 std::string own_directory() {
