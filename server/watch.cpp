@@ -3,6 +3,7 @@
 #include "hierarchy/error.h"
 #include "pipeline/input_files.h"
 #include "server/url_path.h"
+#include "storage/layout.h"
 
 #include <algorithm>
 #include <exception>
@@ -17,9 +18,6 @@ using Clock = std::chrono::steady_clock;
 
 /// How soon a build's words are shown, and a request to stop is heard.
 constexpr std::chrono::milliseconds kHearFor{50};
-
-/// Until a build is tried again that another process has in hand.
-constexpr std::chrono::seconds kTryAgain{5};
 
 /// A build's lines have some hundred bytes; what is longer is no line of its.
 constexpr std::size_t kLongestLine = 64 * 1024;
@@ -165,12 +163,12 @@ void Watch::handle(const std::string& name) {
     const BuildTarget target = target_of(name, [&] {
       return pipeline::InputFiles(files_, options_.inbox / name, false).checksum(cancel_);
     });
-    if (target.kind == BuildTarget::Kind::done) {
-      set_state(name, State::done, "");
-    } else {
-      check_target(name, target);
-      build(name, target);
-    }
+    if (target.kind == BuildTarget::Kind::done)
+      return set_state(name, State::done, "");
+    check_target(name, target);
+    if (is_in_hand(target))
+      return put_off(name, "waits for another build that is at work on " + target.name);
+    build(name, target);
   } catch (const std::exception& error) {
     if (is_stopping())
       return;
@@ -203,19 +201,30 @@ void Watch::check_target(const std::string& name, const BuildTarget& target) con
   }
 }
 
+/// A build would wait for it as well, but not as long.
+bool Watch::is_in_hand(const BuildTarget& target) {
+  const std::filesystem::path work = storage::work_path(options_.folder / target.name);
+  return files_.exists(work) && files_.try_lock(storage::lock_path(work)) == nullptr;
+}
+
+void Watch::put_off(const std::string& name, const std::string& message) {
+  set_state(name, State::waiting, message);
+  const std::lock_guard lock(mutex_);
+  const auto found = entries_.find(name);
+  if (found != entries_.end())
+    found->second.not_before = Clock::now() + options_.try_again;
+}
+
 void Watch::build(const std::string& name, const BuildTarget& target) {
   storage::FileVersion version;
-  bool is_new = false;
   {
     const std::lock_guard lock(mutex_);
     Entry& entry = entries_[name];
     version = entry.version;
-    is_new = entry.not_before == Time{};
     entry.state = State::building;
     entry.job = {.name = name, .state = JobState::building};
   }
-  if (is_new)
-    tell_(fmt::format("{}: building {}", name, target.name));
+  tell_(fmt::format("{}: building {}", name, target.name));
   Outcome outcome = run_build(name, target, false);
   // What was begun with another config, or from another version of the file, is no use any more.
   if (outcome.code == kExists && !is_stopping())
@@ -280,25 +289,21 @@ void Watch::settle(const std::string& name, const storage::FileVersion& version,
     return;
   if (outcome.code == 0)
     options_.on_new();
-  bool has_changed = true;
-  bool is_new = true;
-  {
-    const std::lock_guard lock(mutex_);
-    const auto found = entries_.find(name);
-    if (found != entries_.end()) {
-      has_changed = found->second.version != version;
-      is_new = found->second.not_before == Time{};
-      found->second.not_before = outcome.code == kExists ? Clock::now() + kTryAgain : Time{};
-    }
-  }
-  if (is_new || outcome.code != kExists)
-    tell_(fmt::format("{}: {}", name, outcome.code == 0 ? "done" : outcome.message));
-  if (has_changed)
+  tell_(fmt::format("{}: {}", name, outcome.code == 0 ? "done" : outcome.message));
+  if (!has_version(name, version))
     set_state(name, State::growing, kGrowing);
   else if (outcome.code == 0)
     set_state(name, State::done, "");
+  else if (outcome.code == kExists)
+    put_off(name, outcome.message);
   else
-    set_state(name, outcome.code == kExists ? State::waiting : State::failed, outcome.message);
+    set_state(name, State::failed, outcome.message);
+}
+
+bool Watch::has_version(const std::string& name, const storage::FileVersion& version) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = entries_.find(name);
+  return found != entries_.end() && found->second.version == version;
 }
 
 std::string Watch::shown_text(const std::string& message) const {

@@ -34,6 +34,8 @@ struct WatchOptions {
   std::string program;           ///< meshhier
   std::chrono::milliseconds settle{2000};
   std::chrono::milliseconds look_every{1000};
+  /// Until a build is tried again that another process has in hand.
+  std::chrono::milliseconds try_again{5000};
   std::function<void()> on_new = [] {
   };  ///< called when a hierarchy has appeared, before its job goes
 };
@@ -84,10 +86,13 @@ class Watch {
   std::vector<std::string> names_in(std::optional<State> state) const;
   BuildTarget target_of(const std::string& name, const std::function<std::uint64_t()>& checksum);
   void check_target(const std::string& name, const BuildTarget& target) const;
+  bool is_in_hand(const BuildTarget& target);
+  void put_off(const std::string& name, const std::string& message);
   void build(const std::string& name, const BuildTarget& target);
   Outcome run_build(const std::string& name, const BuildTarget& target, bool restart);
   void hear(storage::ChildProcess& child, const std::string& name);
   void settle(const std::string& name, const storage::FileVersion& version, const Outcome& outcome);
+  bool has_version(const std::string& name, const storage::FileVersion& version) const;
   void set_state(const std::string& name, State state, const std::string& message);
   std::string shown_text(const std::string& message) const;
   std::vector<std::string> words(const std::string& name, const BuildTarget& target,

@@ -50,6 +50,7 @@ class WatchTest : public testing::Test {
     options.program = MESHHIER_BINARY;
     options.settle = std::chrono::milliseconds(100);
     options.look_every = std::chrono::milliseconds(50);
+    options.try_again = std::chrono::milliseconds(100);
     folder_ = storage::open_folder(models());
     hierarchies_ = std::make_unique<Hierarchies>(folder_, [](const std::string&) {});
     watch_ = std::make_unique<Watch>(options, *files_, *hierarchies_,
