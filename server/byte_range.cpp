@@ -1,5 +1,7 @@
 #include "server/byte_range.h"
 
+#include "server/text.h"
+
 #include <algorithm>
 #include <charconv>
 #include <system_error>
@@ -18,13 +20,6 @@ std::optional<std::uint64_t> parse_number(std::string_view text) {
   return failure == std::errc::result_out_of_range ? UINT64_MAX : number;
 }
 
-std::string_view without_blanks(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos)
-    return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
 RangeAnswer last_bytes(std::uint64_t count, std::uint64_t file_bytes) {
   const std::uint64_t bytes = std::min(count, file_bytes);
   if (bytes == 0)
@@ -37,7 +32,7 @@ RangeAnswer last_bytes(std::uint64_t count, std::uint64_t file_bytes) {
 RangeAnswer find_range(std::string_view header, std::uint64_t file_bytes) {
   if (!header.starts_with(kUnit))
     return {};
-  const std::string_view text = without_blanks(header.substr(kUnit.size()));
+  const std::string_view text = trimmed(header.substr(kUnit.size()));
   const std::size_t dash = text.find('-');
   if (dash == std::string_view::npos)
     return {};

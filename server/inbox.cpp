@@ -1,17 +1,11 @@
 #include "server/inbox.h"
 
-#include <cctype>
+#include "server/text.h"
+
 #include <utility>
 
 namespace meshhier::server {
 namespace {
-
-std::string lower_case(std::string_view text) {
-  std::string result(text);
-  for (char& c : result)
-    c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return result;
-}
 
 /// 0 if it is no mesh's name.
 std::size_t stem_length(std::string_view name) {

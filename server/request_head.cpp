@@ -1,26 +1,13 @@
 #include "server/request_head.h"
 
+#include "server/text.h"
+
 #include <algorithm>
-#include <cctype>
 
 namespace meshhier::server {
 namespace {
 
 constexpr std::string_view kLineEnd = "\r\n";
-
-bool equals_ignoring_case(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) {
-    return std::tolower(static_cast<unsigned char>(x)) ==
-           std::tolower(static_cast<unsigned char>(y));
-  });
-}
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos)
-    return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
 
 bool has_only_whole_lines(std::string_view raw) {
   for (std::size_t i = 0; i < raw.size(); ++i) {
@@ -45,14 +32,13 @@ std::optional<RequestHead> parse_head(std::string_view raw) {
     const std::string_view line = raw.substr(0, end);
     raw.remove_prefix(end);
     const std::size_t colon = std::min(line.find(':'), line.size());
-    const std::string_view name = line.substr(0, colon);
-    if (equals_ignoring_case(name, "Range")) {
+    const std::string name = lower_case(line.substr(0, colon));
+    if (name == "range") {
       head.range = trimmed(line.substr(colon + 1, line.size() - colon - 1 - kLineEnd.size()));
       ++ranges;
       continue;
     }
-    if (equals_ignoring_case(name, "Content-Length") ||
-        equals_ignoring_case(name, "Transfer-Encoding"))
+    if (name == "content-length" || name == "transfer-encoding")
       head.has_body = true;
     head.text += line;
   }
