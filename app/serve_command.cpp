@@ -124,9 +124,9 @@ std::unique_ptr<storage::ChildProcess> open_browser(const std::string& url, Cons
   return nullptr;
 }
 
-void wait_for_signal(const pipeline::CancelToken& cancel) {
+void wait_for_end(const pipeline::CancelToken& cancel, const server::HttpServer& http) {
   constexpr std::chrono::milliseconds kLook{50};
-  while (!cancel.cancelled())
+  while (!cancel.cancelled() && !http.is_lost())
     std::this_thread::sleep_for(kLook);
 }
 
@@ -164,11 +164,13 @@ class Service {
     if (watch_)
       watch_->start();
     const auto browser = arguments.open ? open_browser(url, console_, environment_.files) : nullptr;
-    wait_for_signal(environment_.cancel);
+    wait_for_end(environment_.cancel, *http_);
     console_.tell("stopping");
     http_->stop();
     if (watch_)
       watch_->stop();
+    if (http_->is_lost())
+      throw Error(ErrorCode::io, "the system took the port away; start this again");
   }
 
  private:

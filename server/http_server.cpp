@@ -114,23 +114,51 @@ class HttpServer::Library final : public httplib::Server {
   ~Library() override { end(); }
 
   std::uint16_t port() const { return port_; }
+  bool is_lost() const { return is_lost_; }
 
   void begin() {
-    thread_ = std::thread([this] { listen_after_bind(); });
+    thread_ = std::thread([this] { run(); });
     while (!is_running())
       std::this_thread::yield();
   }
 
   void end() {
     is_stopping_ = true;
-    if (!is_running() && svr_sock_ != INVALID_SOCKET)
-      ::close(svr_sock_.exchange(INVALID_SOCKET));  // it was never started
+    if (!is_running())
+      close_socket();
     stop();
     if (thread_.joinable())
       thread_.join();
   }
 
  private:
+  /// The library gives its socket up for good if accept() tells of trouble in the network.
+  void run() {
+    listen_after_bind();
+    while (!is_stopping_ && bind_again())
+      listen_after_bind();
+  }
+
+  /// False if it is to end, or the port is lost.
+  bool bind_again() {
+    try {
+      options_.port = port_;
+      bind();
+    } catch (const Error&) {
+      is_lost_ = true;
+      return false;
+    }
+    if (is_stopping_)  // end() may have come too early to see the socket
+      close_socket();
+    return !is_stopping_;
+  }
+
+  void close_socket() {
+    const socket_t socket = svr_sock_.exchange(INVALID_SOCKET);
+    if (socket != INVALID_SOCKET)
+      ::close(socket);
+  }
+
   void set_up() {
     new_task_queue = [this] {
       return new WorkerPool(options_.threads, options_.most_waiting, waiting_);
@@ -218,6 +246,7 @@ class HttpServer::Library final : public httplib::Server {
   std::uint16_t port_ = 0;
   std::atomic<std::size_t> waiting_{0};
   std::atomic<bool> is_stopping_{false};
+  std::atomic<bool> is_lost_{false};
   std::thread thread_;
 };
 
@@ -228,6 +257,10 @@ HttpServer::~HttpServer() = default;
 
 std::uint16_t HttpServer::port() const {
   return library_->port();
+}
+
+bool HttpServer::is_lost() const {
+  return library_->is_lost();
 }
 
 void HttpServer::start() {

@@ -47,6 +47,9 @@ class HttpServer {
 
   std::uint16_t port() const;
   void start();
+  /// Whether the system has taken the port away, and it could not be had again. Nothing is served
+  /// then.
+  bool is_lost() const;
   /// Replies under way are cut off. May be called more than once.
   void stop();
 

@@ -7,6 +7,7 @@
 #include "tests/server/path_tricks.h"
 #include "tests/server/raw_client.h"
 #include "tests/server/served_folder.h"
+#include "tests/server/wait_until.h"
 #include "tests/support/sizes.h"
 
 #include <algorithm>
@@ -17,13 +18,16 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 
 namespace meshhier::server {
 namespace {
@@ -334,6 +338,36 @@ TEST_F(HttpServerTest, StoppingEndsWhatIsUnderWay) {
   EXPECT_TRUE(silent.is_closed());
   server_->stop();
   EXPECT_THROW(RawClient{port()}, std::runtime_error);
+}
+
+/// Ends listening at that port, as if the network had failed.
+void break_listening(std::uint16_t port) {
+  for (int socket = 3; socket < 1024; ++socket) {
+    int listens = 0;
+    socklen_t bytes = sizeof(listens);
+    sockaddr_in address{};
+    socklen_t address_bytes = sizeof(address);
+    if (::getsockopt(socket, SOL_SOCKET, SO_ACCEPTCONN, &listens, &bytes) == 0 && listens != 0 &&
+        ::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &address_bytes) == 0 &&
+        address.sin_port == htons(port))
+      ::shutdown(socket, SHUT_RDWR);
+  }
+}
+
+TEST_F(HttpServerTest, TroubleInTheNetworkDoesNotEndIt) {
+  start();
+  EXPECT_EQ(RawClient(port()).get("/models.json").status, 200);
+  break_listening(port());
+  int status = 0;
+  tests::wait_until([&] {
+    try {
+      status = RawClient(port()).get("/models.json").status;
+    } catch (const std::runtime_error&) {  // nobody listens at this moment
+    }
+    return status == 200;
+  });
+  EXPECT_FALSE(server_->is_lost());
+  server_->stop();
 }
 
 TEST_F(HttpServerTest, ABusyPortIsTold) {
