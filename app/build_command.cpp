@@ -32,7 +32,7 @@ struct BuildArguments {
 };
 
 /// --set takes all that follows it, so it swallows a config that comes last: the one item without
-/// "=" is given back.
+/// "=" is given back. Without one, what is set must do.
 void give_back_config(BuildArguments& arguments) {
   if (!arguments.config.empty())
     return;
@@ -40,8 +40,10 @@ void give_back_config(BuildArguments& arguments) {
   const auto found = std::find_if(settings.begin(), settings.end(), [](const std::string& item) {
     return item.find('=') == std::string::npos;
   });
-  if (found == settings.end())
+  if (found == settings.end() && settings.empty())
     throw CLI::RequiredError("CONFIG, a config file,");
+  if (found == settings.end())
+    return;
   arguments.config = *found;
   settings.erase(found);
 }
@@ -79,7 +81,9 @@ int run_estimate(const pipeline::Config& config, const BuildArguments& arguments
 int run_build(const BuildArguments& arguments, pipeline::ProgressMode mode,
               Environment& environment) {
   const pipeline::Config config =
-      pipeline::load_config(environment.files, arguments.config, arguments.settings);
+      arguments.config.empty()
+          ? pipeline::parse_config("{}", {"--set", {}}, arguments.settings)
+          : pipeline::load_config(environment.files, arguments.config, arguments.settings);
   if (arguments.dry_run)
     return run_estimate(config, arguments, environment);
   std::optional<storage::AtomicFile> stats;
@@ -120,6 +124,7 @@ Examples:
   meshhier build david.json
   meshhier build david.json --set partition.count=128 --set memory_budget=256MiB
   meshhier build david.json --set input=other.ply output=other.hier --force
+  meshhier build --set input=david.ply output=david.hier
   meshhier build david.json --set 'input=["a.obj.gz", "b.obj.gz"]' weld=true
   meshhier build david.json --set storage.container=3tz output=david.3tz
   meshhier build david.json --dry-run
@@ -131,7 +136,8 @@ Examples:
 void add_build_command(CLI::App& parser, Invocation& invocation) {
   const auto arguments = std::make_shared<BuildArguments>();
   CLI::App* command = parser.add_subcommand("build", "Make a hierarchy from a mesh");
-  command->add_option("CONFIG", arguments->config, "The config file");
+  command->add_option("CONFIG", arguments->config,
+                      "The config file; without it --set gives input and output");
   command
       ->add_option("--set", arguments->settings,
                    "Override keys of the config, dotted: partition.vertices=4096. Paths given here "

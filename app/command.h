@@ -36,6 +36,7 @@ void add_verify_command(CLI::App& parser, Invocation& invocation);
 void add_export_command(CLI::App& parser, Invocation& invocation);
 void add_progressive_command(CLI::App& parser, Invocation& invocation);
 void add_reconstruct_command(CLI::App& parser, Invocation& invocation);
+void add_serve_command(CLI::App& parser, Invocation& invocation);
 void add_clean_command(CLI::App& parser, Invocation& invocation);
 
 }  // namespace meshhier::app

@@ -33,6 +33,7 @@ constexpr const char* kFooter = R"(Examples:
   meshhier verify david.hier --input david.ply       prove that it holds the input exactly
   meshhier export david.hier --level 0 -o whole.ply  the coarse view of the whole model
   meshhier progressive david.hier -o david.prog      a base and details, for weak clients
+  meshhier serve models --open                       show all hierarchies of a folder in the browser
   meshhier clean                                     what builds that were stopped left here
 
 "meshhier COMMAND --help" tells more.
@@ -47,7 +48,7 @@ Exit codes:
   6    the memory budget or the free disk space is too small
   7    the hierarchy is damaged: verify found a problem
   70   a defect in meshhier
-  130  interrupted by Ctrl-C or SIGTERM; the same build goes on where it was
+  130  interrupted by Ctrl-C or SIGTERM; the same build goes on where it was (serve: 0)
 )";
 
 int exit_code(ErrorCode code) {
@@ -140,6 +141,7 @@ int run(int argc, char** argv) {
   add_export_command(parser, invocation);
   add_progressive_command(parser, invocation);
   add_reconstruct_command(parser, invocation);
+  add_serve_command(parser, invocation);
   add_clean_command(parser, invocation);
 
   const std::vector<std::string> names = command_names(parser);

@@ -18,6 +18,11 @@ class ArchivedFile final : public File {
       : File(std::move(path)), archive_(std::move(archive)), place_(place) {}
 
   std::uint64_t size() const override { return place_.bytes; }
+  FileVersion version() const override {
+    FileVersion version = archive_->version();
+    version.bytes = place_.bytes;
+    return version;
+  }
   void sync() override {}
   using File::sync;
 
@@ -40,6 +45,11 @@ class ArchivedFile final : public File {
 
 }  // namespace
 
+std::unique_ptr<File> open_archived(std::filesystem::path path, std::shared_ptr<const File> archive,
+                                    Archive::Place place) {
+  return std::make_unique<ArchivedFile>(std::move(path), std::move(archive), place);
+}
+
 ArchiveFiles::ArchiveFiles(FileSystem& others, const std::filesystem::path& archive)
     : others_(others), archive_(others.open(archive)), root_(archive.string() + '/') {}
 
@@ -59,7 +69,7 @@ std::unique_ptr<File> ArchiveFiles::open(const std::filesystem::path& path) {
     throw Error(ErrorCode::io,
                 fmt::format("cannot open {}: the archive has no such file", path.string()));
   }
-  return std::make_unique<ArchivedFile>(path, archive_.shared_file(), *place);
+  return open_archived(path, archive_.shared_file(), *place);
 }
 
 FileIdentity ArchiveFiles::identity(const std::filesystem::path& path) {

@@ -12,6 +12,11 @@
 
 namespace meshhier::storage {
 
+/// A file of an archive, as a file of its own; its version is the archive's. `path`: for messages.
+/// Requires that `place` lies in the archive, as Archive::find() tells it.
+std::unique_ptr<File> open_archived(std::filesystem::path path, std::shared_ptr<const File> archive,
+                                    Archive::Place place);
+
 /// Another file system, in which an archive is a directory as well: what is in it can be opened,
 /// looked at and listed. All else is done by the other one, which refuses to change what is below a
 /// file. Thread-safe as far as the other one is.

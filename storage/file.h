@@ -11,9 +11,21 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace meshhier::storage {
+
+/// What tells a file from any other, and from what it was before. Where a file system does not
+/// tell, numbers are 0.
+struct FileVersion {
+  std::uint64_t device = 0;
+  std::uint64_t inode = 0;
+  std::uint64_t bytes = 0;
+  std::int64_t modified_ns = 0;  ///< since 1970
+  std::int64_t changed_ns = 0;   ///< likewise: when content, name or rights last changed
+  friend bool operator==(const FileVersion&, const FileVersion&) = default;
+};
 
 /// An open file, read and written at explicit offsets. Thread-safe for disjoint ranges.
 class File {
@@ -26,6 +38,8 @@ class File {
 
   /// Bytes in the file now. Throws Error(io).
   virtual std::uint64_t size() const = 0;
+  /// Throws Error(io).
+  virtual FileVersion version() const { return {.bytes = size()}; }
   /// Forces the content to the disk. Throws Error(io).
   virtual void sync() = 0;
   /// The same in steps of at most some tenths of a second, before each of which `check` is called;
@@ -121,6 +135,41 @@ class FileSystem {
 
 /// The real one.
 std::unique_ptr<FileSystem> make_posix_file_system();
+
+/// A file or directory in a folder.
+struct FolderEntry {
+  std::string name;
+  bool is_directory = false;
+  FileVersion version;
+};
+
+/// A directory that is held open, and what is below it, for reading. No link is followed below it,
+/// whoever makes one at whatever moment: nothing outside can be reached. Names are relative, with
+/// '/' between their parts, of which none may be empty, "." or "..". Thread-safe.
+class Folder {
+ public:
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  virtual ~Folder() = default;
+
+  const std::filesystem::path& path() const { return path_; }
+
+  /// Null if there is no regular file of that name. Throws Error(io).
+  virtual std::unique_ptr<File> open(std::string_view name) const = 0;
+  /// Regular files and directories directly in the directory of that name ("": this one),
+  /// ascending; all else, links too, is left out. None if there is no such directory. Throws
+  /// Error(io).
+  virtual std::vector<FolderEntry> entries(std::string_view name) const = 0;
+
+ protected:
+  explicit Folder(std::filesystem::path path) : path_(std::move(path)) {}
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// `path` itself may be a link. Throws Error(io) if it is no directory.
+std::unique_ptr<Folder> open_folder(const std::filesystem::path& path);
 
 /// Of all files below `directory`. Throws Error(io).
 std::uint64_t bytes_below(FileSystem& files, const std::filesystem::path& directory);

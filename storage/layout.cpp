@@ -1,5 +1,7 @@
 #include "storage/layout.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 namespace meshhier::storage {
@@ -7,7 +9,30 @@ namespace meshhier::storage {
 namespace {
 
 constexpr std::string_view kMark = ".meshhier-";
+constexpr std::size_t kMostDigits = 10;  // of an index below 2^32
 constexpr std::string_view kVerify = "verify-";
+
+/// Takes `least` digits or more off the front; false if there are not so many. Further ones do not
+/// begin with 0.
+bool take_digits(std::string_view& text, std::size_t least) {
+  std::size_t count = std::min(text.find_first_not_of("0123456789"), text.size());
+  const bool is_padded = count > least && text.front() == '0';
+  const bool is_there = count >= least && count <= kMostDigits && !is_padded;
+  text.remove_prefix(count);
+  return is_there;
+}
+
+bool take(std::string_view& text, std::string_view start) {
+  const bool is_there = text.starts_with(start);
+  text.remove_prefix(is_there ? start.size() : 0);
+  return is_there;
+}
+
+/// "LL/NNNNNN" and the extension.
+bool is_node_file(std::string_view name, std::string_view directory, std::string_view extension) {
+  return take(name, directory) && take_digits(name, 2) && take(name, "/") && take_digits(name, 6) &&
+         name == extension;
+}
 
 }  // namespace
 
@@ -44,6 +69,21 @@ std::filesystem::path progressive_index_path(const std::filesystem::path& stream
 
 std::filesystem::path detail_path(const std::filesystem::path& stream, std::uint32_t step) {
   return stream / (step == 0 ? std::string("base.bin") : fmt::format("detail_{:02}.bin", step));
+}
+
+bool is_tile_file(std::string_view name) {
+  return is_node_file(name, "tiles/", ".glb");
+}
+
+bool is_hierarchy_file(std::string_view name) {
+  return name == manifest_path({}) || name == index_path({}) || name == outline_path({}) ||
+         name == tileset_path({}) || is_tile_file(name) || is_node_file(name, "tilesets/", ".json");
+}
+
+bool is_stream_file(std::string_view name) {
+  if (name == progressive_index_path({}) || name == detail_path({}, 0))
+    return true;
+  return take(name, "detail_") && take_digits(name, 2) && name == ".bin";
 }
 
 std::filesystem::path work_path(const std::filesystem::path& output) {

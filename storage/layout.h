@@ -47,6 +47,13 @@ std::filesystem::path progressive_index_path(const std::filesystem::path& stream
 /// Step 0 is the base.
 std::filesystem::path detail_path(const std::filesystem::path& stream, std::uint32_t step);
 
+/// Whether a published hierarchy, or a stream, may have a file of that relative name: "tiles.bin",
+/// "tiles/00/000000.glb".
+bool is_hierarchy_file(std::string_view name);
+bool is_stream_file(std::string_view name);
+/// Whether it is one of a hierarchy's tiles.
+bool is_tile_file(std::string_view name);
+
 std::filesystem::path work_path(const std::filesystem::path& output);
 std::filesystem::path replaced_path(const std::filesystem::path& output);
 /// `run` tells several runs apart.

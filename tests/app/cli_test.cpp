@@ -186,12 +186,25 @@ TEST_F(CommandLine, HelpTeaches) {
 
 TEST_F(CommandLine, EveryCommandHasHelpWithExamples) {
   for (const char* command :
-       {"build", "inspect", "verify", "export", "progressive", "reconstruct"}) {
+       {"build", "inspect", "verify", "export", "progressive", "reconstruct", "serve"}) {
     const Outcome outcome = run({command, "--help"});
     EXPECT_EQ(outcome.code, 0) << command;
     EXPECT_THAT(outcome.out,
                 AllOf(HasSubstr("Examples:"), HasSubstr(std::string("meshhier ") + command)));
   }
+}
+
+TEST_F(CommandLine, ABuildNeedsNoConfigIfAllIsSet) {
+  const std::string input = "input=" + write_mesh("a.ply").string();
+  const std::string output = "output=" + hierarchy();
+  const Outcome outcome = run({"build", "--set", input, output, "partition.vertices=500"});
+  EXPECT_EQ(outcome.code, 0) << outcome.messages;
+  const auto without = contents(hierarchy());
+  EXPECT_EQ(run({"build", write_config(), "--force"}).code, 0);
+  EXPECT_EQ(contents(hierarchy()), without);
+  const Outcome half = run({"build", "--set", input});
+  EXPECT_EQ(half.code, kUsage);
+  EXPECT_THAT(half.messages, HasSubstr("output is missing"));
 }
 
 TEST_F(CommandLine, VersionIsPrinted) {

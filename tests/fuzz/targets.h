@@ -41,6 +41,8 @@ void stream_index(std::span<const std::byte> input);
 void hierarchy(std::span<const std::byte> input);
 /// The same, of one that was made by half_edge; it is streamed.
 void stream(std::span<const std::byte> input);
+/// The head of an HTTP request.
+void request(std::span<const std::byte> input);
 /// A small mesh of any shape and how it is to be built.
 void build(std::span<const std::byte> input);
 
@@ -50,7 +52,7 @@ struct Target {
 };
 
 /// Names are those of the folders in corpus/, the dictionaries, and the programs (fuzz_NAME).
-inline constexpr std::array<Target, 16> kTargets{{{"ply_header", ply_header},
+inline constexpr std::array<Target, 17> kTargets{{{"ply_header", ply_header},
                                                   {"ply_text", ply_text},
                                                   {"ply_binary", ply_binary},
                                                   {"mesh", mesh},
@@ -65,6 +67,7 @@ inline constexpr std::array<Target, 16> kTargets{{{"ply_header", ply_header},
                                                   {"stream_index", stream_index},
                                                   {"stream", stream},
                                                   {"hierarchy", hierarchy},
+                                                  {"request", request},
                                                   {"build", build}}};
 
 }  // namespace meshhier::tests::fuzz

@@ -56,6 +56,55 @@ TEST(Layout, NamesOfWhatWasLeftAreKnownAgain) {
     EXPECT_EQ(known(other), std::nullopt) << other;
 }
 
+TEST(Layout, FilesOfAHierarchyAreKnownByTheirNames) {
+  for (const auto& path :
+       {manifest_path({}), index_path({}), outline_path({}), tileset_path({}),
+        tileset_path({}, {static_cast<Level>(7), 3}), tile_path({}, {static_cast<Level>(0), 0}),
+        tile_path({}, {static_cast<Level>(32), 4294967295U})}) {
+    EXPECT_TRUE(is_hierarchy_file(path.string())) << path;
+    EXPECT_FALSE(is_stream_file(path.string())) << path;
+  }
+  for (const auto& path :
+       {progressive_index_path({}), detail_path({}, 0), detail_path({}, 7), detail_path({}, 100)}) {
+    EXPECT_TRUE(is_stream_file(path.string())) << path;
+    EXPECT_FALSE(is_hierarchy_file(path.string())) << path;
+  }
+  EXPECT_TRUE(is_tile_file("tiles/00/000000.glb"));
+  EXPECT_FALSE(is_tile_file("outline.glb"));
+}
+
+TEST(Layout, NoOtherNameIsAFileOfAHierarchy) {
+  for (const char* name : {"",
+                           "tiles",
+                           "tiles/",
+                           "tiles/00",
+                           "tiles/00/",
+                           "tiles/0/000000.glb",
+                           "tiles/00/00000.glb",
+                           "tiles/000/000000.glb",
+                           "tiles/00/0000000.glb",
+                           "tiles/00/000000.glb.gz",
+                           "tiles/00/000000.json",
+                           "tiles/aa/000000.glb",
+                           "tiles/00/00000a.glb",
+                           "tiles/00//000000.glb",
+                           "/tiles/00/000000.glb",
+                           "tiles/../tiles.bin",
+                           "tiles/00/99999999999.glb",
+                           "tilesets/00/000000.glb",
+                           "Tiles.bin",
+                           "tiles.bin/",
+                           "hierarchy.json ",
+                           "detail_1.bin",
+                           "detail_001.bin",
+                           "detail_.bin",
+                           "detail_01.bin2",
+                           "base.bin/x"}) {
+    EXPECT_FALSE(is_hierarchy_file(name)) << name;
+    EXPECT_FALSE(is_stream_file(name)) << name;
+  }
+}
+
 TEST(Layout, NoTwoThingsShareAName) {
   std::set<std::filesystem::path> names{manifest_path("h"), index_path("h"),   outline_path("h"),
                                         lock_path("h"),     journal_path("h"), built_path("h")};

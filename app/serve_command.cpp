@@ -1,0 +1,284 @@
+#include "app/command.h"
+#include "app/options.h"
+#include "app/viewer_place.h"
+#include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
+#include "pipeline/config.h"
+#include "server/http_server.h"
+#include "server/site.h"
+#include "server/watch.h"
+#include "storage/child_process.h"
+
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+namespace meshhier::app {
+
+namespace {
+
+struct ServeArguments {
+  std::string folder;
+  server::ServerOptions server;
+  bool open = false;
+  std::string viewer;
+  std::string cors;
+  std::string inbox;
+  std::string config;
+  double settle_seconds = 2;
+  bool verbose = false;
+  bool quiet = false;
+};
+
+/// Lines on standard error, whole ones from any thread.
+class Console {
+ public:
+  Console(std::ostream& out, bool quiet) : out_(out), quiet_(quiet) {}
+
+  void tell(const std::string& message) {
+    if (!quiet_)
+      print(message);
+  }
+  void print(const std::string& message) {
+    const std::lock_guard lock(mutex_);
+    out_ << "meshhier: " << message << std::endl;
+  }
+
+ private:
+  std::ostream& out_;
+  bool quiet_;
+  std::mutex mutex_;
+};
+
+/// However soon files count as whole.
+constexpr std::chrono::milliseconds kShortestLook{50};
+
+/// What a client sent is cut and cleaned before a terminal shows it.
+constexpr std::size_t kLongestTarget = 200;
+
+std::string log_line(const server::Served& served) {
+  return fmt::format("{} {} {} {} {}", served.client, plain_text(served.method, kLongestTarget),
+                     plain_text(served.target, kLongestTarget), served.status, served.bytes);
+}
+
+void check_folder(const std::string& option, const std::string& folder, Environment& environment) {
+  if (environment.files.is_directory(folder))
+    return;
+  if (environment.files.exists(folder)) {
+    throw Error(ErrorCode::usage,
+                fmt::format("{} {}: it is no directory; name the one it lies in", option, folder));
+  }
+  throw Error(ErrorCode::io, fmt::format("{} {}: there is no such directory", option, folder));
+}
+
+/// The config of all builds to come, which is to be told wrong now, not with the first of them.
+/// Returns what hierarchies are called behind the dot.
+std::string suffix_of(const std::string& config, Environment& environment) {
+  const std::vector<std::string> settings{"input=mesh.ply", "output=mesh.hier"};
+  const pipeline::Config checked = config.empty()
+                                       ? pipeline::parse_config("{}", {"--set", {}}, settings)
+                                       : pipeline::load_config(environment.files, config, settings);
+  return checked.storage.container == pipeline::Container::archive ? ".3tz" : ".hier";
+}
+
+server::WatchOptions watch_options(const ServeArguments& arguments, Environment& environment) {
+  storage::FileSystem& files = environment.files;
+  server::WatchOptions options;
+  options.inbox = files.canonical(arguments.inbox);
+  options.folder = files.canonical(arguments.folder);
+  options.config =
+      arguments.config.empty() ? std::filesystem::path() : files.canonical(arguments.config);
+  options.suffix = suffix_of(arguments.config, environment);
+  options.program = storage::own_program();
+  options.settle = std::chrono::milliseconds(std::llround(arguments.settle_seconds * 1000));
+  options.look_every = std::min(options.look_every, std::max(options.settle, kShortestLook));
+  return options;
+}
+
+/// Opens the browser; the process is held until this one ends.
+std::unique_ptr<storage::ChildProcess> open_browser(const std::string& url, Console& console,
+                                                    storage::FileSystem& files) {
+  const char* const path = std::getenv("PATH");
+  std::string_view rest = path == nullptr ? "" : path;
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find(':'), rest.size());
+    const std::filesystem::path program = std::filesystem::path(rest.substr(0, end)) / "xdg-open";
+    if (files.exists(program))
+      return std::make_unique<storage::ChildProcess>(
+          std::vector<std::string>{program.string(), url});
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  console.print("--open: there is no xdg-open here (package xdg-utils); open the URL by hand");
+  return nullptr;
+}
+
+void wait_for_end(const pipeline::CancelToken& cancel, const server::HttpServer& http) {
+  constexpr std::chrono::milliseconds kLook{50};
+  while (!cancel.cancelled() && !http.is_lost())
+    std::this_thread::sleep_for(kLook);
+}
+
+/// All that runs, in the order in which it ends last.
+class Service {
+ public:
+  Service(const ServeArguments& arguments, Environment& environment)
+      : environment_(environment),
+        console_(environment.messages, arguments.quiet),
+        tell_([this](const std::string& message) { console_.tell(message); }),
+        hierarchies_(storage::open_folder(arguments.folder), tell_) {
+    ViewerPlace viewer = find_viewer(environment.files, arguments.viewer);
+    if (!viewer.folder)
+      console_.print(viewer.missing);
+    if (!arguments.inbox.empty()) {
+      server::WatchOptions options = watch_options(arguments, environment);
+      options.on_new = [this] { site_->refresh(); };
+      watch_.emplace(std::move(options), environment.files, hierarchies_, tell_);
+    }
+    site_.emplace(
+        server::SiteOptions{storage::open_folder(arguments.folder), std::move(viewer.folder),
+                            page_without_viewer(), server::is_loopback_host(arguments.server.host),
+                            arguments.cors},
+        watch_ ? [this] { return watch_->jobs(); } : server::Site::Jobs(), tell_);
+    const auto log = [this](const server::Served& served) { console_.print(log_line(served)); };
+    http_.emplace(
+        arguments.server, [this](const server::Request& request) { return site_->answer(request); },
+        arguments.verbose ? log : server::HttpServer::Log());
+  }
+
+  void run(const ServeArguments& arguments) {
+    http_->start();
+    const std::string url = server::url_of(arguments.server.host, http_->port());
+    environment_.out << url << std::endl;
+    if (watch_)
+      watch_->start();
+    const auto browser = arguments.open ? open_browser(url, console_, environment_.files) : nullptr;
+    wait_for_end(environment_.cancel, *http_);
+    console_.tell("stopping");
+    http_->stop();
+    if (watch_)
+      watch_->stop();
+    if (http_->is_lost())
+      throw Error(ErrorCode::io, "the system took the port away; start this again");
+  }
+
+ private:
+  Environment& environment_;
+  Console console_;
+  server::Hierarchies::Tell tell_;
+  server::Hierarchies hierarchies_;
+  std::optional<server::Watch> watch_;
+  std::optional<server::Site> site_;
+  std::optional<server::HttpServer> http_;
+};
+
+int run_serve(const ServeArguments& arguments, Environment& environment) {
+  check_folder("FOLDER", arguments.folder, environment);
+  if (!arguments.inbox.empty())
+    check_folder("--watch", arguments.inbox, environment);
+  Service service(arguments, environment);
+  service.run(arguments);
+  return 0;
+}
+
+constexpr const char* kServeFooter =
+    R"(Shows every hierarchy below FOLDER, directories and 3tz archives, in a page for browsers, and hands out their
+files and those of progressive streams; nothing else, nothing through links, and it changes nothing.
+New ones appear without a restart. Only this machine reaches it, unless --host is given: then everybody who
+reaches that address may read the models. It prints its URL and runs until Ctrl-C or SIGTERM, which is
+its normal end: exit code 0.
+
+With --watch, a mesh file that is put into INBOX becomes FOLDER/NAME.hier as soon as it has stopped changing, and
+is in the gallery with its progress until then. One at a time is built, by the config if one is given (its
+"input" and "output" do not count), in a process of its own. A file that cannot be built is told in the gallery, and
+tried again when it changes. Files in INBOX are never changed, moved or removed. A server that was stopped, or
+killed, goes on where it was when it is started again.
+
+  GET /                            the page
+  GET /models.json                 what there is
+  GET /models/NAME.hier/FILE       hierarchy.json, tiles.bin, outline.glb, tileset.json, tiles/LL/NNNNNN.glb, ...
+
+Examples:
+  meshhier serve models
+  meshhier serve models --port 0 --open
+  meshhier serve models --watch inbox --config scans.json
+  meshhier serve models --host 0.0.0.0 --cors '*'
+)";
+
+std::string check_cors(const std::string& text) {
+  const std::size_t scheme = text.find("://");
+  const bool is_origin = scheme != std::string::npos && scheme > 0 &&
+                         text.find('/', scheme + 3) == std::string::npos &&
+                         text.size() > scheme + 3;
+  const bool is_plain = text.find_first_of(" \t\r\n,") == std::string::npos;
+  if (text == "*" || (is_origin && is_plain))
+    return "";
+  return "expected an origin (\"https://example.org\") or \"*\", found \"" + text + "\"";
+}
+
+void add_network_options(CLI::App& command, ServeArguments& arguments) {
+  command
+      .add_option("--host", arguments.server.host,
+                  "The address of this machine to listen on; 0.0.0.0: all [127.0.0.1]")
+      ->type_name("ADDRESS");
+  add_integer_option(command, {"--port", "0: any that is free [8080]", 0, 65535},
+                     [&arguments](std::uint64_t port) {
+                       arguments.server.port = static_cast<std::uint16_t>(port);
+                     });
+  command.add_option("--cors", arguments.cors, "Whose pages may read the models, too")
+      ->type_name("ORIGIN|*")
+      ->check(check_cors);
+}
+
+void add_watch_options(CLI::App& command, ServeArguments& arguments) {
+  CLI::Option* watch =
+      command.add_option("--watch", arguments.inbox, "Build what is put into this directory")
+          ->type_name("INBOX");
+  command.add_option("--config", arguments.config, "With --watch: how; default: all defaults")
+      ->type_name("CONFIG")
+      ->needs(watch);
+  command
+      .add_option("--settle", arguments.settle_seconds,
+                  "With --watch: a file that has not changed for so long is whole [2]")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(0.0, 86400.0))
+      ->needs(watch);
+}
+
+}  // namespace
+
+void add_serve_command(CLI::App& parser, Invocation& invocation) {
+  const auto arguments = std::make_shared<ServeArguments>();
+  CLI::App* command =
+      parser.add_subcommand("serve", "Show the hierarchies of a folder in the browser");
+  command->add_option("FOLDER", arguments->folder, "Where hierarchies lie, at any depth")
+      ->required();
+  add_network_options(*command, *arguments);
+  command->add_flag("--open", arguments->open, "Open the page in the browser");
+  command->add_option("--viewer", arguments->viewer, "Where the page lies, if not as installed")
+      ->type_name("DIR");
+  add_watch_options(*command, *arguments);
+  CLI::Option* verbose =
+      command->add_flag("--verbose", arguments->verbose, "Print a line for each request");
+  command->add_flag("--quiet", arguments->quiet, "Print nothing but the URL and what is missing")
+      ->excludes(verbose);
+  command->footer(kServeFooter);
+  command->callback([arguments, &invocation] {
+    invocation.run = [arguments](Environment& environment) {
+      return run_serve(*arguments, environment);
+    };
+  });
+}
+
+}  // namespace meshhier::app

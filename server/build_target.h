@@ -1,0 +1,40 @@
+// Where the hierarchy of a dropped file goes, and whether it is there already.
+#pragma once
+
+#include "server/hierarchies.h"
+#include "storage/file.h"
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace meshhier::server {
+
+struct BuildTarget {
+  enum class Kind {
+    build,    ///< there is nothing of that name
+    replace,  ///< there is the hierarchy of an earlier version of the file
+    done,     ///< it is made of this very file
+    nowhere   ///< both names are taken by something else
+  };
+  Kind kind = Kind::nowhere;
+  std::string name;  ///< in the folder; of `nowhere`: the last one looked at
+};
+
+struct TargetFolder {
+  Hierarchies& hierarchies;
+  const storage::Folder& folder;
+  std::string suffix;  ///< ".hier"
+};
+
+/// For the file `name` of that version, among all `inbox` files. "a.ply" goes to "a.hier"; to
+/// "a.ply.hier" if a.hier was made from something else, or an inbox file earlier in the alphabet
+/// has the same stem. A hierarchy that was written after the file was last touched, from a file of
+/// its name and size, is made of it; otherwise `checksum` tells, which reads the file; if it is
+/// empty, another version is supposed. Throws Error(io).
+BuildTarget find_target(TargetFolder target, const std::string& name,
+                        const storage::FileVersion& version, const std::vector<std::string>& inbox,
+                        const std::function<std::uint64_t()>& checksum);
+
+}  // namespace meshhier::server

@@ -1,0 +1,170 @@
+#include "server/connection.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include <netdb.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace meshhier::server {
+namespace {
+
+constexpr std::string_view kHeadEnd = "\r\n\r\n";
+
+/// How long a thread may not notice that the server stops, or that others wait.
+constexpr std::chrono::milliseconds kSlice{100};
+
+/// What finish() drops at the most, and for how long.
+constexpr std::size_t kMostDropped = 256 * 1024;
+constexpr std::chrono::milliseconds kDropTime{200};
+
+/// "127.0.0.1"; empty if it is not known.
+template <class Ask>
+std::string address_of(socket_t socket, const Ask& ask) {
+  sockaddr_storage address{};
+  socklen_t bytes = sizeof(address);
+  std::array<char, NI_MAXHOST> text{};
+  auto* const place = reinterpret_cast<sockaddr*>(&address);
+  if (ask(socket, place, &bytes) != 0 ||
+      ::getnameinfo(place, bytes, text.data(), text.size(), nullptr, 0, NI_NUMERICHOST) != 0)
+    return {};
+  return text.data();
+}
+
+}  // namespace
+
+Connection::Connection(socket_t socket, const ConnectionLimits& limits,
+                       std::function<bool()> is_crowded, std::function<bool()> is_stopping)
+    : socket_(socket),
+      limits_(limits),
+      is_crowded_(std::move(is_crowded)),
+      is_stopping_(std::move(is_stopping)) {}
+
+bool Connection::wait(short event, Clock::time_point end,
+                      const std::function<bool()>& is_over) const {
+  for (;;) {
+    pollfd ready{socket_, event, 0};
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now());
+    const auto slice = std::clamp(left, std::chrono::milliseconds{0}, kSlice);
+    const int count = ::poll(&ready, 1, static_cast<int>(slice.count()));
+    if (count > 0)
+      return true;
+    if ((count < 0 && errno != EINTR) || Clock::now() >= end || is_over())
+      return false;
+  }
+}
+
+/// A new client is given time to speak; one that was served lets others pass.
+bool Connection::wait_for_first_byte() {
+  const Clock::time_point start = Clock::now();
+  const auto patience = requests_ == 0 ? limits_.patience : std::chrono::milliseconds{0};
+  return wait(POLLIN, start + limits_.idle, [&] {
+    return is_stopping_() || (is_crowded_() && Clock::now() - start >= patience);
+  });
+}
+
+bool Connection::receive() {
+  std::array<char, 4096> buffer;
+  const ssize_t count = ::recv(socket_, buffer.data(), buffer.size(), MSG_DONTWAIT);
+  if (count > 0)
+    received_.append(buffer.data(), static_cast<std::size_t>(count));
+  return count > 0 || (count < 0 && (errno == EAGAIN || errno == EINTR));
+}
+
+std::size_t Connection::receive_head() {
+  const Clock::time_point end = Clock::now() + limits_.head;
+  for (;;) {
+    const std::size_t found = received_.find(kHeadEnd);
+    if (found != std::string::npos)
+      return found + kHeadEnd.size();
+    if (received_.size() > kMostHeadBytes || Clock::now() >= end ||
+        !wait(POLLIN, end, is_stopping_) || !receive())
+      return 0;
+  }
+}
+
+void Connection::begin_reply() {
+  reply_start_ = Clock::now();
+  reply_bytes_ = 0;
+}
+
+Connection::Next Connection::next_request() {
+  begin_reply();  // which may be that there is no request
+  has_unread_ = false;
+  if (received_.empty() && !wait_for_first_byte())
+    return Next::end;
+  has_unread_ = true;
+  const std::size_t bytes = receive_head();
+  if (bytes == 0 || bytes > kMostHeadBytes)
+    return received_.size() > kMostHeadBytes ? Next::too_large : Next::end;
+  auto head = parse_head(std::string_view(received_).substr(0, bytes));
+  if (!head)
+    return Next::malformed;
+  has_unread_ = head->has_body;
+  head_ = std::move(*head);
+  received_.erase(0, bytes);
+  place_ = 0;
+  ++requests_;
+  begin_reply();
+  return Next::request;
+}
+
+ssize_t Connection::read(char* bytes, std::size_t count) {
+  const std::size_t taken = std::min(count, head_.text.size() - place_);
+  std::memcpy(bytes, head_.text.data() + place_, taken);
+  place_ += taken;
+  return static_cast<ssize_t>(taken);
+}
+
+bool Connection::is_too_slow() const {
+  const auto time = Clock::now() - reply_start_;
+  const double seconds = std::chrono::duration<double>(time).count();
+  return time > limits_.grace &&
+         static_cast<double>(reply_bytes_) < seconds * static_cast<double>(limits_.least_rate);
+}
+
+ssize_t Connection::write(const char* bytes, std::size_t count) {
+  if (is_broken_ || is_too_slow() || !wait(POLLOUT, Clock::now() + limits_.stall, is_stopping_)) {
+    is_broken_ = true;
+    return -1;
+  }
+  const ssize_t sent = ::send(socket_, bytes, count, MSG_NOSIGNAL | MSG_DONTWAIT);
+  if (sent < 0 && (errno == EAGAIN || errno == EINTR))
+    return 0;
+  is_broken_ = sent < 0;
+  reply_bytes_ += is_broken_ ? 0 : static_cast<std::size_t>(sent);
+  return sent;
+}
+
+void Connection::finish() {
+  ::shutdown(socket_, SHUT_WR);
+  const Clock::time_point end = Clock::now() + kDropTime;
+  std::size_t dropped = 0;
+  while (dropped < kMostDropped && wait(POLLIN, end, is_stopping_)) {
+    received_.clear();
+    if (!receive())
+      break;
+    dropped += received_.size();
+  }
+}
+
+void Connection::get_remote_ip_and_port(std::string& ip, int&) const {
+  ip = address_of(socket_, ::getpeername);
+}
+
+void Connection::get_local_ip_and_port(std::string& ip, int&) const {
+  ip = address_of(socket_, ::getsockname);
+}
+
+void Connection::close() {
+  if (has_unread_)
+    finish();
+  ::close(socket_);
+}
+
+}  // namespace meshhier::server

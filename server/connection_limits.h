@@ -1,0 +1,19 @@
+// How slow a client may be.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+
+namespace meshhier::server {
+
+struct ConnectionLimits {
+  using Milliseconds = std::chrono::milliseconds;
+  Milliseconds idle{15'000};           ///< between two requests
+  Milliseconds patience{2'000};        ///< for the first byte, while others wait for a thread
+  Milliseconds head{10'000};           ///< from the first byte of a request to the end of its head
+  Milliseconds stall{10'000};          ///< without a byte taken
+  Milliseconds grace{30'000};          ///< after which a reply is taken at
+  std::size_t least_rate = 16 * 1024;  ///< bytes a second, on average
+};
+
+}  // namespace meshhier::server

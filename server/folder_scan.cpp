@@ -1,0 +1,67 @@
+#include "server/folder_scan.h"
+
+#include "server/url_path.h"
+#include "storage/layout.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace meshhier::server {
+namespace {
+
+// Beyond any collection of models, and still looked through within a second.
+constexpr std::size_t kMostDirectories = 10'000;
+
+class Scanner {
+ public:
+  explicit Scanner(const storage::Folder& folder) : folder_(folder) {}
+
+  FolderScan run() {
+    waiting_.emplace_back();
+    for (std::size_t count = 0; !waiting_.empty() && count < kMostDirectories; ++count) {
+      const std::string directory = std::move(waiting_.back());
+      waiting_.pop_back();
+      look_into(directory);
+    }
+    scan_.is_complete = waiting_.empty();
+    return std::move(scan_);
+  }
+
+ private:
+  void look_into(const std::string& directory) {
+    const std::vector<storage::FolderEntry> entries = folder_.entries(directory);
+    if (std::any_of(entries.begin(), entries.end(), is_manifest))
+      return scan_.hierarchies.push_back(directory);
+    for (const storage::FolderEntry& entry : entries) {
+      const std::string path = directory.empty() ? entry.name : directory + '/' + entry.name;
+      if (decode_path('/' + encode_path(path)) != path)
+        continue;
+      if (entry.is_directory) {
+        waiting_.push_back(path);
+      } else if (is_archive_name(entry.name)) {
+        scan_.hierarchies.push_back(path);
+      }
+    }
+  }
+
+  static bool is_manifest(const storage::FolderEntry& entry) {
+    return !entry.is_directory && entry.name == storage::manifest_path({});
+  }
+
+  const storage::Folder& folder_;
+  FolderScan scan_;
+  std::vector<std::string> waiting_;
+};
+
+}  // namespace
+
+FolderScan scan_folder(const storage::Folder& folder) {
+  return Scanner(folder).run();
+}
+
+bool is_archive_name(std::string_view path) {
+  return path.ends_with(".3tz");
+}
+
+}  // namespace meshhier::server

@@ -1,0 +1,24 @@
+// Where hierarchies lie below a folder.
+#pragma once
+
+#include "storage/file.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace meshhier::server {
+
+struct FolderScan {
+  std::vector<std::string> hierarchies;  ///< paths that look like one; "": the folder itself
+  bool is_complete = true;               ///< false: there is too much to look at it all
+};
+
+/// Directories with a manifest, in which nothing else is looked for, and archives. Names that no
+/// URL of ours can have, those that begin with a dot among them, are left out. Throws Error(io).
+FolderScan scan_folder(const storage::Folder& folder);
+
+/// Whether a file of that name is taken for an archive.
+bool is_archive_name(std::string_view path);
+
+}  // namespace meshhier::server

@@ -1,0 +1,53 @@
+#include "server/gallery.h"
+
+#include "server/url_path.h"
+
+#include <utility>
+
+namespace meshhier::server {
+namespace {
+
+/// Pages ask every few seconds, each of them: the disk is asked once for all.
+constexpr std::chrono::seconds kFreshFor{1};
+
+std::string url_of(const Model& model) {
+  return model.path.empty() ? "models" : "models/" + encode_path(model.path);
+}
+
+}  // namespace
+
+std::string gallery_json(const std::vector<Model>& models,
+                         const std::optional<nlohmann::ordered_json>& jobs) {
+  nlohmann::ordered_json document{{"models", nlohmann::ordered_json::array()}};
+  for (const Model& model : models) {
+    document["models"].push_back({{"name", model.name},
+                                  {"path", url_of(model)},
+                                  {"vertices", model.vertices},
+                                  {"triangles", model.triangles},
+                                  {"bytes", model.bytes},
+                                  {"source", model.source}});
+  }
+  if (jobs)
+    document["jobs"] = *jobs;
+  // Names of files may hold any bytes, JSON may not.
+  return document.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+}
+
+Gallery::Gallery(Hierarchies& hierarchies, Clock clock)
+    : hierarchies_(hierarchies), clock_(std::move(clock)) {}
+
+void Gallery::refresh() {
+  const std::lock_guard lock(mutex_);
+  looked_.reset();
+}
+
+std::vector<Model> Gallery::models() {
+  const std::lock_guard lock(mutex_);
+  if (!looked_ || clock_() - *looked_ >= kFreshFor) {
+    models_ = hierarchies_.list();
+    looked_ = clock_();
+  }
+  return models_;
+}
+
+}  // namespace meshhier::server

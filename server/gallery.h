@@ -1,0 +1,42 @@
+// models.json: what the page shows first.
+#pragma once
+
+#include "server/hierarchies.h"
+
+#include <chrono>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace meshhier::server {
+
+/// `jobs`: of a watched folder; none if none is watched. Paths are relative to the document, as a
+/// URL has them.
+std::string gallery_json(const std::vector<Model>& models,
+                         const std::optional<nlohmann::ordered_json>& jobs);
+
+/// Thread-safe.
+class Gallery {
+ public:
+  using Clock = std::function<std::chrono::steady_clock::time_point()>;
+
+  explicit Gallery(Hierarchies& hierarchies, Clock clock = std::chrono::steady_clock::now);
+
+  /// The models as they were at most a second ago. Throws Error(io).
+  std::vector<Model> models();
+  /// There is news: the next one who asks gets it.
+  void refresh();
+
+ private:
+  Hierarchies& hierarchies_;
+  Clock clock_;
+  std::mutex mutex_;  ///< guards all below; whoever waits gets what the one before found
+  std::vector<Model> models_;
+  std::optional<std::chrono::steady_clock::time_point> looked_;
+};
+
+}  // namespace meshhier::server

@@ -1,0 +1,233 @@
+#include "server/hierarchies.h"
+
+#include "hierarchy/error.h"
+#include "server/folder_scan.h"
+#include "storage/archive_files.h"
+#include "storage/layout.h"
+#include "storage/manifest.h"
+#include "storage/progressive_index.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace meshhier::server {
+namespace {
+
+/// What the format allows.
+constexpr std::uint64_t kMostManifestBytes = std::uint64_t{1} << 20;
+
+/// Each holds 32 bytes a file of its own and an open file: a screenful of models.
+constexpr std::size_t kMostOpenArchives = 16;
+
+std::string joined(const std::string& directory, const std::string& name) {
+  return directory.empty() ? name : directory + '/' + name;
+}
+
+std::string text_of(const storage::File& file) {
+  const std::uint64_t bytes = file.size();
+  if (bytes > kMostManifestBytes) {
+    throw Error(ErrorCode::corrupt, fmt::format("{} has {} bytes, at most {} are expected",
+                                                file.path().string(), bytes, kMostManifestBytes));
+  }
+  std::string text(bytes, '\0');
+  file.read_exact(0, std::as_writable_bytes(std::span(text)));
+  return text;
+}
+
+std::string name_of(const std::filesystem::path& path) {
+  const bool is_usual = path.extension() == ".hier" || path.extension() == ".3tz";
+  return (is_usual ? path.stem() : path.filename()).string();
+}
+
+/// The parts of a URL's path: the hierarchy and the name of a file in it.
+struct Split {
+  std::string hierarchy;
+  std::string name;
+};
+
+/// `parts`: of the file's name.
+std::optional<Split> split_behind(std::string_view path, std::size_t parts) {
+  std::size_t begin = path.size();
+  for (std::size_t part = 0; part < parts; ++part) {
+    if (begin == 0)
+      return std::nullopt;
+    const std::size_t slash = path.rfind('/', begin - 1);
+    begin = slash == std::string_view::npos ? 0 : slash;
+  }
+  const bool is_whole = begin == 0;
+  return Split{std::string(path.substr(0, begin)),
+               std::string(path.substr(is_whole ? 0 : begin + 1))};
+}
+
+/// Names of files have one part or three.
+std::optional<Split> split(std::string_view path) {
+  for (const std::size_t parts : {1U, 3U}) {
+    std::optional<Split> found = split_behind(path, parts);
+    if (found && (storage::is_hierarchy_file(found->name) || storage::is_stream_file(found->name)))
+      return found;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Hierarchies::Hierarchies(std::shared_ptr<const storage::Folder> folder, Tell tell)
+    : folder_(std::move(folder)), tell_(std::move(tell)) {}
+
+std::vector<Model> Hierarchies::list() {
+  const FolderScan scan = scan_folder(*folder_);
+  if (!scan.is_complete)
+    tell_once(
+        fmt::format("{}: too many directories; not all are listed", folder_->path().string()));
+  std::vector<Model> models;
+  for (const std::string& path : scan.hierarchies) {
+    if (std::optional<Model> model = look(path))
+      models.push_back(std::move(*model));
+  }
+  std::sort(models.begin(), models.end(),
+            [](const Model& a, const Model& b) { return a.path < b.path; });
+  return models;
+}
+
+std::optional<PublishedFile> Hierarchies::open(std::string_view path) {
+  const std::optional<Split> found = split(path);
+  if (!found)
+    return std::nullopt;
+  const bool is_sound = storage::is_hierarchy_file(found->name) ? look(found->hierarchy).has_value()
+                                                                : is_stream(found->hierarchy);
+  return is_sound ? open_in(found->hierarchy, found->name) : std::nullopt;
+}
+
+std::optional<PublishedFile> Hierarchies::open_in(const std::string& hierarchy,
+                                                  const std::string& name) {
+  const bool is_tile = storage::is_tile_file(name);
+  if (is_archive_name(hierarchy)) {
+    if (std::unique_ptr<storage::File> file = folder_->open(hierarchy)) {
+      const auto opened = archive(hierarchy, std::move(file));
+      const auto place = opened->find(name);
+      if (!place)
+        return std::nullopt;
+      const std::filesystem::path path = opened->file().path() / name;
+      return PublishedFile{storage::open_archived(path, opened->shared_file(), *place),
+                           place->offset, is_tile};
+    }
+  }
+  std::shared_ptr<const storage::File> file = folder_->open(joined(hierarchy, name));
+  if (!file)
+    return std::nullopt;
+  return PublishedFile{std::move(file), 0, is_tile};
+}
+
+std::optional<Model> Hierarchies::look(const std::string& path) {
+  std::optional<Model> model = look_at_directory(path);
+  if (!model && is_archive_name(path))
+    model = look_at_archive(path);
+  return model;
+}
+
+std::optional<Model> Hierarchies::look_at_directory(const std::string& path) {
+  const auto manifest = folder_->open(joined(path, storage::manifest_path({}).string()));
+  if (!manifest)
+    return std::nullopt;
+  return remember(path, manifest->version(), [&] { return model_of(path, *manifest); });
+}
+
+std::optional<Model> Hierarchies::look_at_archive(const std::string& path) {
+  auto file = folder_->open(path);
+  if (!file)
+    return std::nullopt;
+  const storage::FileVersion version = file->version();
+  return remember(path, version, [&] {
+    const auto opened = archive(path, std::move(file));
+    const std::string name = storage::manifest_path({}).string();
+    const auto place = opened->find(name);
+    if (!place) {
+      throw Error(ErrorCode::corrupt, fmt::format("{}: it holds no {}: it is no hierarchy",
+                                                  opened->file().path().string(), name));
+    }
+    const auto manifest =
+        storage::open_archived(opened->file().path() / name, opened->shared_file(), *place);
+    return model_of(path, *manifest);
+  });
+}
+
+bool Hierarchies::is_stream(const std::string& path) {
+  const auto index = folder_->open(joined(path, storage::progressive_index_path({}).string()));
+  if (!index)
+    return false;
+  const auto read = [&] {
+    storage::parse_progressive_index(text_of(*index), index->path().string());
+    return Model{.path = path};
+  };
+  return remember(joined(path, storage::progressive_index_path({}).string()), index->version(),
+                  read)
+      .has_value();
+}
+
+std::optional<Model> Hierarchies::remember(const std::string& path,
+                                           const storage::FileVersion& version, const Read& read) {
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = known_.find(path);
+    if (found != known_.end() && found->second.version == version)
+      return found->second.model;
+  }
+  Known known{version, std::nullopt};
+  try {
+    known.model = read();
+  } catch (const Error& error) {
+    tell_once(fmt::format("not shown: {}", error.what()));
+  }
+  const std::lock_guard lock(mutex_);
+  known_[path] = known;
+  return known.model;
+}
+
+std::shared_ptr<const storage::Archive> Hierarchies::archive(const std::string& path,
+                                                             std::unique_ptr<storage::File> file) {
+  const storage::FileVersion version = file->version();
+  const auto is_this = [&](const OpenArchive& open) { return open.path == path; };
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = std::find_if(archives_.begin(), archives_.end(), is_this);
+    if (found != archives_.end() && found->version == version) {
+      archives_.splice(archives_.begin(), archives_, found);
+      return found->archive;
+    }
+  }
+  auto opened = std::make_shared<const storage::Archive>(std::move(file));
+  const std::lock_guard lock(mutex_);
+  archives_.remove_if(is_this);
+  archives_.push_front({path, version, opened});
+  if (archives_.size() > kMostOpenArchives)
+    archives_.pop_back();
+  return opened;
+}
+
+Model Hierarchies::model_of(const std::string& path, const storage::File& file) const {
+  const storage::Manifest manifest = storage::parse_manifest(text_of(file), file.path().string());
+  return {path,
+          name_of(path.empty() ? folder_->path() : std::filesystem::path(path)),
+          manifest.source.file_name,
+          manifest.source.vertices,
+          manifest.source.triangles,
+          manifest.total_bytes,
+          manifest.source.file_bytes,
+          manifest.source.checksum,
+          file.version().modified_ns};
+}
+
+void Hierarchies::tell_once(const std::string& message) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!told_.insert(message).second)
+      return;
+  }
+  tell_(message);
+}
+
+}  // namespace meshhier::server

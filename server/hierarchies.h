@@ -1,0 +1,82 @@
+// The hierarchies below a folder: which there are, and their files.
+#pragma once
+
+#include "server/model.h"
+#include "storage/archive.h"
+#include "storage/file.h"
+
+#include <cstdint>
+#include <functional>
+#include <list>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace meshhier::server {
+
+/// A file of a hierarchy or a stream.
+struct PublishedFile {
+  std::shared_ptr<const storage::File> file;
+  std::uint64_t archive_offset = 0;  ///< of its content; 0 if it lies in a directory
+  bool is_tile = false;
+};
+
+/// Looks at what is there whenever it is asked, and remembers manifests as long as their files stay
+/// the same. Thread-safe.
+class Hierarchies {
+ public:
+  /// Hears of hierarchies that cannot be read, each once; may be called by several threads.
+  using Tell = std::function<void(const std::string& message)>;
+
+  Hierarchies(std::shared_ptr<const storage::Folder> folder, Tell tell);
+
+  /// All that can be read, by path: directories, and archives whose names end in ".3tz".
+  /// Directories whose names begin with a dot are work in progress and left out. Throws Error(io).
+  std::vector<Model> list();
+
+  /// The hierarchy of that path; nothing if there is none that can be read. Throws Error(io).
+  std::optional<Model> look(const std::string& path);
+
+  /// The file of that path, as a URL has it: "sub/david.hier/tiles/00/000000.glb". Nothing if it is
+  /// no file of a hierarchy or stream that can be read, whatever else lies in the folder. Throws
+  /// Error(io).
+  std::optional<PublishedFile> open(std::string_view path);
+
+ private:
+  /// What a manifest, an archive or a stream's index says, as long as its file is this one.
+  struct Known {
+    storage::FileVersion version;
+    std::optional<Model> model;  ///< none: it cannot be read
+  };
+  struct OpenArchive {
+    std::string path;
+    storage::FileVersion version;
+    std::shared_ptr<const storage::Archive> archive;
+  };
+  using Read = std::function<Model()>;
+
+  std::optional<Model> look_at_directory(const std::string& path);
+  std::optional<Model> look_at_archive(const std::string& path);
+  bool is_stream(const std::string& path);
+  std::optional<Model> remember(const std::string& path, const storage::FileVersion& version,
+                                const Read& read);
+  std::shared_ptr<const storage::Archive> archive(const std::string& path,
+                                                  std::unique_ptr<storage::File> file);
+  std::optional<PublishedFile> open_in(const std::string& hierarchy, const std::string& name);
+  void tell_once(const std::string& message);
+  Model model_of(const std::string& path, const storage::File& manifest) const;
+
+  std::shared_ptr<const storage::Folder> folder_;
+  Tell tell_;
+  std::mutex mutex_;  ///< guards all below
+  std::map<std::string, Known> known_;
+  std::list<OpenArchive> archives_;  ///< the one used last first
+  std::set<std::string> told_;
+};
+
+}  // namespace meshhier::server

@@ -1,0 +1,285 @@
+#include "server/http_server.h"
+
+#include "hierarchy/error.h"
+#include "server/connection.h"
+#include "server/worker_pool.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <exception>
+#include <optional>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <httplib.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace meshhier::server {
+namespace {
+
+/// What a thread holds of a file.
+constexpr std::size_t kPieceBytes = 64 * 1024;
+
+/// Connections that the system keeps until we take them; the library asks for 5, and more than a
+/// handful of clients at once would wait a second for their next try. Linux grants 4096 at most.
+constexpr int kBacklog = 4096;
+
+/// Then a connection is closed; more would only keep a thread from others.
+constexpr std::size_t kMostRequests = 10'000;
+
+std::optional<std::string> header(const httplib::Request& request, const char* name) {
+  if (request.get_header_value_count(name) != 1)
+    return std::nullopt;
+  return request.get_header_value(name);
+}
+
+Request request_of(const httplib::Request& request) {
+  return {request.method,
+          request.target,
+          header(request, "Host"),
+          header(request, "Accept-Encoding"),
+          header(request, "If-None-Match"),
+          header(request, "If-Range"),
+          header(request, "Range")};
+}
+
+/// Sends a file piece by piece. The library has no place for exceptions here: a file that cannot be
+/// read any more ends the connection, and the client misses bytes.
+httplib::ContentProvider sender_of(const FilePart& part) {
+  const auto buffer = std::make_shared<std::vector<std::byte>>();
+  return [part, buffer](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+    try {
+      buffer->resize(std::min(length, kPieceBytes));
+      part.file->read_exact(part.offset + offset, *buffer);
+      return sink.write(reinterpret_cast<const char*>(buffer->data()), buffer->size());
+    } catch (const std::exception&) {
+      return false;
+    }
+  };
+}
+
+httplib::ContentProvider sender_of(const std::string& text) {
+  return [text](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+    return sink.write(text.data() + offset, length);
+  };
+}
+
+/// Bodies are always given as providers: others the library would compress at will.
+void put(const Reply& reply, httplib::Response& response) {
+  response.status = reply.status;
+  std::string type;
+  for (const auto& [name, value] : reply.headers) {
+    if (name == "Content-Type")
+      type = value;
+    else
+      response.set_header(name, value);
+  }
+  if (reply.body_bytes() > 0) {
+    response.set_content_provider(reply.body_bytes(), type,
+                                  reply.file ? sender_of(*reply.file) : sender_of(reply.text));
+  } else if (!type.empty()) {
+    response.set_header("Content-Type", type);
+  }
+}
+
+[[noreturn]] void refuse_port(const ServerOptions& options, int error) {
+  const std::string place = fmt::format("port {} of {}", options.port, options.host);
+  if (error == EADDRINUSE) {
+    throw Error(ErrorCode::io, fmt::format("{} is in use: choose another one with --port, or any "
+                                           "that is free with --port 0",
+                                           place));
+  }
+  throw Error(ErrorCode::io,
+              fmt::format("cannot listen on {}: {}; --host must be an address of this machine, and "
+                          "ports below 1024 are the system's",
+                          place, error == 0 ? "no such host" : std::strerror(error)));
+}
+
+}  // namespace
+
+/// The library's server, with connections of ours: as its own server for TLS, it takes over from
+/// where a connection is accepted.
+class HttpServer::Library final : public httplib::Server {
+ public:
+  Library(const ServerOptions& options, Answer answer, Log log)
+      : options_(options), answer_(std::move(answer)), log_(std::move(log)) {
+    set_up();
+    bind();
+  }
+  ~Library() override { end(); }
+
+  std::uint16_t port() const { return port_; }
+  bool is_lost() const { return is_lost_; }
+
+  void begin() {
+    thread_ = std::thread([this] { run(); });
+    while (!is_running())
+      std::this_thread::yield();
+  }
+
+  void end() {
+    is_stopping_ = true;
+    if (!is_running())
+      close_socket();
+    stop();
+    if (thread_.joinable())
+      thread_.join();
+  }
+
+ private:
+  /// The library gives its socket up for good if accept() tells of trouble in the network.
+  void run() {
+    listen_after_bind();
+    while (!is_stopping_ && bind_again())
+      listen_after_bind();
+  }
+
+  /// False if it is to end, or the port is lost.
+  bool bind_again() {
+    try {
+      options_.port = port_;
+      bind();
+    } catch (const Error&) {
+      is_lost_ = true;
+      return false;
+    }
+    if (is_stopping_)  // end() may have come too early to see the socket
+      close_socket();
+    return !is_stopping_;
+  }
+
+  void close_socket() {
+    const socket_t socket = svr_sock_.exchange(INVALID_SOCKET);
+    if (socket != INVALID_SOCKET)
+      ::close(socket);
+  }
+
+  void set_up() {
+    new_task_queue = [this] {
+      return new WorkerPool(options_.threads, options_.most_waiting, waiting_);
+    };
+    set_tcp_nodelay(true);
+    // Without this the library's default, by which two servers share a port without knowing.
+    set_socket_options([](socket_t socket) {
+      const int yes = 1;
+      ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
+    });
+    set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
+      put(answer_(request_of(request)), response);
+      return HandlerResponse::Handled;
+    });
+    set_post_routing_handler([](const httplib::Request&, httplib::Response& response) {
+      response.headers.erase("Keep-Alive");
+      if (response.status == 304 || response.status == 204)
+        response.headers.erase("Content-Length");
+    });
+    if (log_)
+      set_logger([this](const auto& request, const auto& response) { log(request, response); });
+  }
+
+  void bind() {
+    errno = 0;
+    const int port = options_.port == 0                           ? bind_to_any_port(options_.host)
+                     : bind_to_port(options_.host, options_.port) ? options_.port
+                                                                  : -1;
+    if (port < 0)
+      refuse_port(options_, errno);
+    port_ = static_cast<std::uint16_t>(port);
+    ::listen(svr_sock_, kBacklog);
+  }
+
+  void log(const httplib::Request& request, const httplib::Response& response) {
+    log_({request.remote_addr, request.method, request.target, response.status,
+          response.content_length_});
+  }
+
+  bool process_and_close_socket(socket_t socket) override {
+    Connection connection(
+        socket, options_.limits, [this] { return waiting_ > 0; },
+        [this] { return is_stopping_.load(); });
+    for (std::size_t count = 1; converse(connection, count == kMostRequests); ++count) {
+    }
+    connection.close();
+    return true;
+  }
+
+  /// One request and its reply; false if it was the last one.
+  bool converse(Connection& connection, bool is_last) {
+    if (is_stopping_)
+      return false;
+    switch (connection.next_request()) {
+      case Connection::Next::request:
+        break;
+      case Connection::Next::malformed:
+        return refuse(connection, "400 Bad Request");
+      case Connection::Next::too_large:
+        return refuse(connection, "431 Request Header Fields Too Large");
+      case Connection::Next::end:
+        return false;
+    }
+    const RequestHead& head = connection.head();
+    const bool closes = is_last || head.has_body || waiting_ > 0;
+    bool client_closes = false;
+    const auto add_range = [&](httplib::Request& request) {
+      if (head.range)
+        request.set_header("Range", *head.range);
+    };
+    const bool is_sent = process_request(connection, closes, client_closes, add_range);
+    return is_sent && !closes && !client_closes && !is_stopping_;
+  }
+
+  static bool refuse(Connection& connection, const char* status) {
+    const std::string reply =
+        fmt::format("HTTP/1.1 {}\r\nConnection: close\r\nContent-Length: 0\r\n\r\n", status);
+    connection.write(reply.data(), reply.size());
+    return false;
+  }
+
+  ServerOptions options_;
+  Answer answer_;
+  Log log_;
+  std::uint16_t port_ = 0;
+  std::atomic<std::size_t> waiting_{0};
+  std::atomic<bool> is_stopping_{false};
+  std::atomic<bool> is_lost_{false};
+  std::thread thread_;
+};
+
+HttpServer::HttpServer(const ServerOptions& options, Answer answer, Log log)
+    : library_(std::make_unique<Library>(options, std::move(answer), std::move(log))) {}
+
+HttpServer::~HttpServer() = default;
+
+std::uint16_t HttpServer::port() const {
+  return library_->port();
+}
+
+bool HttpServer::is_lost() const {
+  return library_->is_lost();
+}
+
+void HttpServer::start() {
+  library_->begin();
+}
+
+void HttpServer::stop() {
+  library_->end();
+}
+
+std::string url_of(const std::string& host, std::uint16_t port) {
+  if (host == "0.0.0.0" || host == "::")
+    return url_of("127.0.0.1", port);
+  const bool is_v6 = host.find(':') != std::string::npos;
+  return fmt::format("http://{}{}{}:{}/", is_v6 ? "[" : "", host, is_v6 ? "]" : "", port);
+}
+
+bool is_loopback_host(const std::string& host) {
+  return host == "localhost" || host == "::1" || host.starts_with("127.");
+}
+
+}  // namespace meshhier::server

@@ -1,0 +1,66 @@
+// The server: sockets and threads around a function from requests to replies.
+#pragma once
+
+#include "server/connection_limits.h"
+#include "server/http.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace meshhier::server {
+
+struct ServerOptions {
+  std::string host = "127.0.0.1";  ///< an address of this machine
+  std::uint16_t port = 8080;       ///< 0: any that is free
+  // A thread waits for the disk or the network most of its time. Each takes some 100 KiB; with
+  // those that wait there are at most 320 connections, below the 1024 open files of a process.
+  std::size_t threads = 64;
+  std::size_t most_waiting = 256;
+  ConnectionLimits limits{};
+};
+
+/// A request that was answered, for a log.
+struct Served {
+  std::string client;  ///< its address
+  std::string method;
+  std::string target;  ///< as sent; nobody vouches for it
+  int status = 0;
+  std::uint64_t bytes = 0;  ///< of the body, as announced
+};
+
+class HttpServer {
+ public:
+  using Answer = std::function<Reply(const Request&)>;
+  using Log = std::function<void(const Served&)>;
+
+  /// Binds the port; connections are taken from start() on. `answer` and `log`, which may be empty,
+  /// are called by many threads. Throws Error(io) that says what to do if the port is not to be
+  /// had.
+  HttpServer(const ServerOptions& options, Answer answer, Log log);
+  HttpServer(const HttpServer&) = delete;
+  HttpServer& operator=(const HttpServer&) = delete;
+  /// Stops.
+  ~HttpServer();
+
+  std::uint16_t port() const;
+  void start();
+  /// Whether the system has taken the port away, and it could not be had again. Nothing is served
+  /// then.
+  bool is_lost() const;
+  /// Replies under way are cut off. May be called more than once.
+  void stop();
+
+ private:
+  class Library;
+  std::unique_ptr<Library> library_;
+};
+
+/// "http://127.0.0.1:8080/"; for a host that stands for all addresses that of the loopback.
+std::string url_of(const std::string& host, std::uint16_t port);
+/// Whether only this machine reaches a server on `host`.
+bool is_loopback_host(const std::string& host);
+
+}  // namespace meshhier::server

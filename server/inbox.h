@@ -1,0 +1,55 @@
+// A folder into which mesh files are dropped: which there are, and which are whole.
+#pragma once
+
+#include "storage/file.h"
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace meshhier::server {
+
+/// Whether a file of that name is taken for a mesh: ".ply", ".obj", ".stl", ".off", perhaps with
+/// ".gz" behind it, upper or lower case; not if it begins with a dot.
+bool is_mesh_name(std::string_view name);
+
+/// The name without these endings: "david" of "david.ply.gz".
+std::string mesh_stem(std::string_view name);
+
+struct InboxFile {
+  std::string name;
+  storage::FileVersion version;
+  bool is_whole = false;
+};
+
+/// Of one thread. Files are looked at, never changed.
+class Inbox {
+ public:
+  using Clock = std::function<std::chrono::steady_clock::time_point()>;
+
+  /// `settle`: a file that was as it is for so long is whole. Copies of others often say so by
+  /// their names as well: with the endings that browsers and programs give unfinished ones, they
+  /// are no meshes' names.
+  Inbox(std::filesystem::path directory, std::chrono::milliseconds settle,
+        Clock clock = std::chrono::steady_clock::now);
+
+  /// The mesh files that are there now, by name. Links are left out. Throws Error(io).
+  std::vector<InboxFile> look();
+
+ private:
+  struct Seen {
+    storage::FileVersion version;
+    std::chrono::steady_clock::time_point since;
+  };
+
+  std::filesystem::path directory_;  ///< opened anew each time: it may be another one by then
+  std::chrono::milliseconds settle_;
+  Clock clock_;
+  std::map<std::string, Seen> seen_;
+};
+
+}  // namespace meshhier::server

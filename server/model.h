@@ -1,0 +1,23 @@
+// What the page lists of a hierarchy.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace meshhier::server {
+
+struct Model {
+  std::string path;      ///< relative to the folder that is served; "" if it is that folder
+  std::string name{};    ///< for people
+  std::string source{};  ///< the name of the mesh file
+  std::uint64_t vertices = 0;
+  std::uint64_t triangles = 0;
+  std::uint64_t bytes = 0;  ///< of its files
+  std::uint64_t source_bytes = 0;
+  std::uint64_t source_checksum = 0;  ///< as in the manifest
+  std::int64_t built_ns = 0;          ///< when its manifest was written, since 1970
+
+  friend bool operator==(const Model&, const Model&) = default;
+};
+
+}  // namespace meshhier::server

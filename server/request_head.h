@@ -1,0 +1,29 @@
+// The first lines of a request as they came off the wire, before the HTTP library reads them.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace meshhier::server {
+
+/// Larger heads are refused: browsers send less than 2 KiB, with a good many cookies.
+inline constexpr std::size_t kMostHeadBytes = 16 * 1024;
+
+struct RequestHead {
+  /// For the library, without the header Range: it would match its value against a regular
+  /// expression, recursing with each byte (2.2 MB of stack for 8 KB), and hold several ranges for
+  /// as many copies of the file.
+  std::string text;
+  std::optional<std::string> range;  ///< the value, if there is one such header and no more
+  bool has_body = false;
+
+  friend bool operator==(const RequestHead&, const RequestHead&) = default;
+};
+
+/// `raw`: up to and with the empty line. Nothing if a line ends otherwise than with CR LF, or holds
+/// a NUL: the library and this would not see the same lines.
+std::optional<RequestHead> parse_head(std::string_view raw);
+
+}  // namespace meshhier::server

@@ -1,0 +1,140 @@
+#include "server/site.h"
+
+#include "hierarchy/error.h"
+#include "server/conditions.h"
+#include "server/content_type.h"
+#include "server/file_reply.h"
+#include "server/url_path.h"
+
+#include <exception>
+#include <utility>
+
+namespace meshhier::server {
+namespace {
+
+constexpr std::string_view kModels = "models/";
+constexpr std::string_view kAssets = "assets/";
+constexpr const char* kMethods = "GET, HEAD, OPTIONS";
+
+// A hierarchy is never changed, but `build --force` puts another one in its place, under the same
+// names: a client that mixed tiles of the two would show cracks. So it asks each time, and is told
+// within a millisecond that it has the file already.
+constexpr const char* kRevalidate = "no-cache";
+// The viewer's build names these after their content.
+constexpr const char* kForever = "public, max-age=31536000, immutable";
+
+Reply text_reply(int status, const std::string& text) {
+  return {status, {{"Content-Type", "text/plain; charset=utf-8"}}, text + '\n', {}};
+}
+
+Reply not_found() {
+  return text_reply(404, "There is no such file.");
+}
+
+/// Host is there once, in HTTP/1.1; what names another host was meant for that.
+bool is_for_this_host(const Request& request) {
+  return request.host && is_loopback_name(*request.host);
+}
+
+}  // namespace
+
+Site::Site(SiteOptions options, Jobs jobs, Hierarchies::Tell tell)
+    : options_(std::move(options)),
+      jobs_(std::move(jobs)),
+      tell_(tell),
+      hierarchies_(options_.models, std::move(tell)),
+      gallery_(hierarchies_) {}
+
+Reply Site::answer(const Request& request) {
+  Reply reply;
+  try {
+    reply = route(request);
+  } catch (const std::exception& failure) {
+    tell_(failure.what());
+    reply = text_reply(500, "The server could not read this; its terminal says why.");
+  }
+  add_common_headers(reply);
+  return reply;
+}
+
+Reply Site::route(const Request& request) {
+  if (options_.is_loopback && !is_for_this_host(request)) {
+    return text_reply(421,
+                      "This server answers to localhost, 127.0.0.1 and [::1] only; start it with "
+                      "--host to be reached by other names.");
+  }
+  if (request.method == "OPTIONS") {
+    return {.status = 204, .headers = {{"Allow", kMethods}}};
+  }
+  if (request.method != "GET" && request.method != "HEAD") {
+    Reply reply = text_reply(405, "Files are read here, nothing else.");
+    reply.headers.emplace_back("Allow", kMethods);
+    return reply;
+  }
+  const std::optional<std::string> path = decode_path(request.target);
+  if (!path)
+    return not_found();
+  if (*path == "models.json")
+    return models_json(request);
+  if (path->starts_with(kModels))
+    return model_file(request, std::string_view(*path).substr(kModels.size()));
+  return viewer_file(request, *path);
+}
+
+Reply Site::models_json(const Request& request) {
+  const auto jobs = jobs_ ? std::optional(jobs_()) : std::nullopt;
+  const std::string text = gallery_json(gallery_.models(), jobs);
+  const std::string tag = text_tag(text);
+  const bool is_known = request.if_none_match && names_tag(*request.if_none_match, tag);
+  Reply reply{.headers = {{"ETag", tag}, {"Cache-Control", kRevalidate}}, .text = text};
+  if (is_known) {
+    reply.status = 304;
+    reply.text.clear();
+  } else {
+    reply.headers.emplace_back("Content-Type", content_type(".json"));
+  }
+  return reply;
+}
+
+Reply Site::model_file(const Request& request, std::string_view path) {
+  const std::optional<PublishedFile> found = hierarchies_.open(path);
+  if (!found)
+    return not_found();
+  return file_reply(request, {.file = found->file,
+                              .tag = file_tag(found->file->version(), found->archive_offset),
+                              .type = content_type(path),
+                              .cache = kRevalidate,
+                              .may_be_gzip = found->is_tile});
+}
+
+Reply Site::viewer_file(const Request& request, const std::string& path) {
+  const std::string name = path.empty() ? "index.html" : path;
+  std::shared_ptr<const storage::File> file;
+  if (options_.viewer)
+    file = options_.viewer->open(name);
+  if (!file && path.empty())
+    return text_reply(503, options_.missing_viewer);
+  if (!file)
+    return not_found();
+  return file_reply(request, {.file = file,
+                              .tag = file_tag(file->version(), 0),
+                              .type = content_type(name),
+                              .cache = name.starts_with(kAssets) ? kForever : kRevalidate});
+}
+
+void Site::add_common_headers(Reply& reply) const {
+  reply.headers.emplace_back("X-Content-Type-Options", "nosniff");
+  if (options_.cors.empty())
+    return;
+  reply.headers.emplace_back("Access-Control-Allow-Origin", options_.cors);
+  reply.headers.emplace_back(
+      "Access-Control-Expose-Headers",
+      "Accept-Ranges, Content-Encoding, Content-Length, Content-Range, ETag");
+  if (reply.status == 204) {
+    reply.headers.emplace_back("Access-Control-Allow-Methods", kMethods);
+    reply.headers.emplace_back("Access-Control-Allow-Headers", "If-None-Match, If-Range, Range");
+    reply.headers.emplace_back("Access-Control-Max-Age", "86400");
+  }
+}
+
+}  // namespace meshhier::server

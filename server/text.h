@@ -1,0 +1,25 @@
+// What headers and file names are looked at with.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace meshhier::server {
+
+/// Without the blanks and tabs around it.
+inline std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos)
+    return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+/// Letters of ASCII only, whatever the locale.
+inline std::string lower_case(std::string_view text) {
+  std::string result(text);
+  for (char& c : result)
+    c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return result;
+}
+
+}  // namespace meshhier::server

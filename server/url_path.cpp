@@ -1,0 +1,92 @@
+#include "server/url_path.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace meshhier::server {
+namespace {
+
+// What Linux allows: NAME_MAX and PATH_MAX.
+constexpr std::size_t kLongestPart = 255;
+constexpr std::size_t kLongestPath = 4095;
+
+constexpr std::string_view kHexDigits = "0123456789ABCDEF";
+
+/// -1 if it is none.
+int hex_value(char c) {
+  if (c >= 'a' && c <= 'f')
+    c = static_cast<char>(c - 'a' + 'A');
+  const std::size_t value = kHexDigits.find(c);
+  return value == std::string_view::npos ? -1 : static_cast<int>(value);
+}
+
+bool is_plain(char c) {
+  return static_cast<unsigned char>(c) >= ' ' && c != '\x7f' && c != '/' && c != '\\';
+}
+
+/// One part between slashes.
+std::optional<std::string> decode_part(std::string_view part) {
+  std::string name;
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    char c = part[i];
+    if (c == '%') {
+      const int high = i + 2 < part.size() ? hex_value(part[i + 1]) : -1;
+      const int low = i + 2 < part.size() ? hex_value(part[i + 2]) : -1;
+      if (high < 0 || low < 0)
+        return std::nullopt;
+      c = static_cast<char>(high * 16 + low);
+      i += 2;
+    }
+    if (!is_plain(c))
+      return std::nullopt;
+    name += c;
+  }
+  if (name.empty() || name.front() == '.' || name.size() > kLongestPart)
+    return std::nullopt;
+  return name;
+}
+
+bool is_unreserved(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+         std::string_view("-._~/").find(c) != std::string_view::npos;
+}
+
+}  // namespace
+
+std::optional<std::string> decode_path(std::string_view target) {
+  target = target.substr(0, target.find('?'));
+  if (!target.starts_with('/'))
+    return std::nullopt;
+  std::string path;
+  if (target == "/")
+    return path;
+  while (!target.empty()) {
+    target.remove_prefix(1);
+    const std::size_t end = std::min(target.find('/'), target.size());
+    const std::optional<std::string> part = decode_part(target.substr(0, end));
+    if (!part)
+      return std::nullopt;
+    path += path.empty() ? *part : '/' + *part;
+    if (path.size() > kLongestPath)
+      return std::nullopt;
+    target.remove_prefix(end);
+  }
+  return path;
+}
+
+std::string encode_path(std::string_view path) {
+  std::string text;
+  for (const char c : path) {
+    if (is_unreserved(c)) {
+      text += c;
+    } else {
+      const auto byte = static_cast<unsigned char>(c);
+      text += '%';
+      text += kHexDigits[byte / 16];
+      text += kHexDigits[byte % 16];
+    }
+  }
+  return text;
+}
+
+}  // namespace meshhier::server

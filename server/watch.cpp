@@ -1,0 +1,323 @@
+#include "server/watch.h"
+
+#include "hierarchy/error.h"
+#include "pipeline/input_files.h"
+#include "server/url_path.h"
+#include "storage/layout.h"
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace meshhier::server {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// How soon a build's words are shown, and a request to stop is heard.
+constexpr std::chrono::milliseconds kHearFor{50};
+
+/// A build's lines have some hundred bytes; what is longer is no line of its.
+constexpr std::size_t kLongestLine = 64 * 1024;
+
+constexpr int kExists = static_cast<int>(ErrorCode::exists);
+
+/// Where things lie on this machine is nobody's business on the network.
+std::string without(std::string text, const std::string& directory) {
+  const std::string start = directory + '/';
+  for (std::size_t at = text.find(start); at != std::string::npos; at = text.find(start))
+    text.erase(at, start.size());
+  return text;
+}
+
+constexpr const char* kGrowing = "waits until the file no longer changes";
+
+}  // namespace
+
+Watch::Watch(WatchOptions options, storage::FileSystem& files, Hierarchies& hierarchies,
+             Hierarchies::Tell tell)
+    : options_(std::move(options)),
+      files_(files),
+      hierarchies_(hierarchies),
+      tell_(std::move(tell)),
+      folder_(storage::open_folder(options_.folder)),
+      inbox_(options_.inbox, options_.settle) {}
+
+Watch::~Watch() {
+  stop();
+}
+
+void Watch::start() {
+  thread_ = std::thread([this] { run(); });
+}
+
+void Watch::stop() {
+  {
+    const std::lock_guard lock(mutex_);
+    cancel_.cancel();
+  }
+  stopped_.notify_all();
+  if (thread_.joinable())
+    thread_.join();
+}
+
+nlohmann::ordered_json Watch::jobs() const {
+  auto list = nlohmann::ordered_json::array();
+  const std::lock_guard lock(mutex_);
+  for (const auto& [name, entry] : entries_) {
+    if (entry.state != State::done)
+      list.push_back(to_json(entry.job));
+  }
+  return list;
+}
+
+void Watch::run() {
+  while (!is_stopping()) {
+    look();
+    const std::string name = next_waiting();
+    if (name.empty()) {
+      sleep();
+    } else {
+      handle(name);
+    }
+  }
+}
+
+void Watch::sleep() {
+  std::unique_lock lock(mutex_);
+  stopped_.wait_for(lock, options_.look_every, [this] { return is_stopping(); });
+}
+
+/// A folder that is away for a while (a network's) comes back.
+void Watch::look() {
+  last_look_ = Clock::now();
+  try {
+    const std::vector<InboxFile> files = inbox_.look();
+    {
+      const std::lock_guard lock(mutex_);
+      std::erase_if(entries_, [&](const auto& entry) {
+        return std::none_of(files.begin(), files.end(),
+                            [&](const InboxFile& file) { return file.name == entry.first; });
+      });
+    }
+    for (const InboxFile& file : files)
+      note(file);
+    drop_what_is_done();
+    trouble_.clear();
+  } catch (const std::exception& error) {
+    if (std::exchange(trouble_, error.what()) != error.what())
+      tell_(error.what());
+  }
+}
+
+/// After a start most files have their hierarchies, and are not to be shown as if they had not.
+void Watch::drop_what_is_done() {
+  for (const std::string& name : names_in(State::fresh)) {
+    const BuildTarget target = target_of(name, nullptr);
+    const std::lock_guard lock(mutex_);
+    Entry& entry = entries_[name];
+    entry.state = target.kind == BuildTarget::Kind::done ? State::done : State::growing;
+  }
+}
+
+std::vector<std::string> Watch::names_in(std::optional<State> state) const {
+  std::vector<std::string> names;
+  const std::lock_guard lock(mutex_);
+  for (const auto& [name, entry] : entries_) {
+    if (!state || entry.state == *state)
+      names.push_back(name);
+  }
+  return names;
+}
+
+/// Takes in what the inbox says of a file.
+void Watch::note(const InboxFile& file) {
+  const std::lock_guard lock(mutex_);
+  Entry& entry = entries_[file.name];
+  const bool is_building = entry.state == State::building;
+  if (entry.version != file.version) {
+    entry.version = file.version;
+    if (!is_building)
+      entry = {file.version, State::fresh, {.name = file.name, .message = kGrowing}, {}};
+  }
+  if (entry.state == State::growing && file.is_whole) {
+    entry.state = State::waiting;
+    entry.job.message.clear();
+  }
+}
+
+std::string Watch::next_waiting() const {
+  const std::lock_guard lock(mutex_);
+  for (const auto& [name, entry] : entries_) {
+    if (entry.state == State::waiting && entry.not_before <= Clock::now())
+      return name;
+  }
+  return {};
+}
+
+/// Nothing that goes wrong with one file keeps the others waiting.
+void Watch::handle(const std::string& name) {
+  try {
+    const BuildTarget target = target_of(name, [&] {
+      return pipeline::InputFiles(files_, options_.inbox / name, false).checksum(cancel_);
+    });
+    if (target.kind == BuildTarget::Kind::done)
+      return set_state(name, State::done, "");
+    check_target(name, target);
+    if (is_in_hand(target))
+      return put_off(name, "waits for another build that is at work on " + target.name);
+    build(name, target);
+  } catch (const std::exception& error) {
+    if (is_stopping())
+      return;
+    tell_(fmt::format("{}: {}", name, error.what()));
+    set_state(name, State::failed, error.what());
+  }
+}
+
+BuildTarget Watch::target_of(const std::string& name,
+                             const std::function<std::uint64_t()>& checksum) {
+  const std::vector<std::string> inbox = names_in(std::nullopt);
+  storage::FileVersion version;
+  {
+    const std::lock_guard lock(mutex_);
+    version = entries_[name].version;
+  }
+  return find_target({hierarchies_, *folder_, options_.suffix}, name, version, inbox, checksum);
+}
+
+void Watch::check_target(const std::string& name, const BuildTarget& target) const {
+  if (decode_path('/' + encode_path(name)) != name) {
+    throw Error(ErrorCode::usage,
+                "the name of this file cannot be part of a URL: rename it, without control "
+                "characters and backslashes");
+  }
+  if (target.kind == BuildTarget::Kind::nowhere) {
+    throw Error(ErrorCode::exists,
+                fmt::format("{} holds something else of that name: rename this file, or that",
+                            (options_.folder / target.name).string()));
+  }
+}
+
+/// A build would wait for it as well, but not as long.
+bool Watch::is_in_hand(const BuildTarget& target) {
+  const std::filesystem::path work = storage::work_path(options_.folder / target.name);
+  return files_.exists(work) && files_.try_lock(storage::lock_path(work)) == nullptr;
+}
+
+void Watch::put_off(const std::string& name, const std::string& message) {
+  set_state(name, State::waiting, message);
+  const std::lock_guard lock(mutex_);
+  const auto found = entries_.find(name);
+  if (found != entries_.end())
+    found->second.not_before = Clock::now() + options_.try_again;
+}
+
+void Watch::build(const std::string& name, const BuildTarget& target) {
+  storage::FileVersion version;
+  {
+    const std::lock_guard lock(mutex_);
+    Entry& entry = entries_[name];
+    version = entry.version;
+    entry.state = State::building;
+    entry.job = {.name = name, .state = JobState::building};
+  }
+  tell_(fmt::format("{}: building {}", name, target.name));
+  Outcome outcome = run_build(name, target, false);
+  // What was begun with another config, or from another version of the file, is no use any more.
+  if (outcome.code == kExists && !is_stopping())
+    outcome = run_build(name, target, true);
+  settle(name, version, outcome);
+}
+
+Watch::Outcome Watch::run_build(const std::string& name, const BuildTarget& target, bool restart) {
+  storage::ChildProcess child(words(name, target, restart));
+  hear(child, name);
+  Outcome outcome{child.wait(), {}};
+  const std::lock_guard lock(mutex_);
+  const auto found = entries_.find(name);
+  if (found != entries_.end())
+    outcome.message = std::exchange(found->second.job.message, "");
+  if (outcome.message.empty() && outcome.code > 128)
+    outcome.message = fmt::format("the build was ended by signal {}", outcome.code - 128);
+  else if (outcome.message.empty())
+    outcome.message = fmt::format("the build ended with exit code {}", outcome.code);
+  return outcome;
+}
+
+std::vector<std::string> Watch::words(const std::string& name, const BuildTarget& target,
+                                      bool restart) const {
+  std::vector<std::string> list{options_.program, "build"};
+  if (!options_.config.empty())
+    list.push_back(options_.config.string());
+  list.insert(list.end(), {"--progress", "json"});
+  if (target.kind == BuildTarget::Kind::replace)
+    list.emplace_back("--force");
+  if (restart)
+    list.emplace_back("--restart");
+  list.insert(list.end(), {"--set", "input=" + (options_.inbox / name).string(),
+                           "output=" + (options_.folder / target.name).string()});
+  return list;
+}
+
+/// Until the build has ended; meanwhile the inbox is looked at as ever.
+void Watch::hear(storage::ChildProcess& child, const std::string& name) {
+  std::string text;
+  bool is_asked = false;
+  while (child.hear(text, kHearFor)) {
+    if (is_stopping() && !std::exchange(is_asked, true))
+      child.ask_to_stop();
+    for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n')) {
+      const std::lock_guard lock(mutex_);
+      const auto found = entries_.find(name);
+      if (found != entries_.end())
+        take_line(found->second.job, std::string_view(text).substr(0, end));
+      text.erase(0, end + 1);
+    }
+    if (text.size() > kLongestLine)
+      text.clear();
+    if (Clock::now() - last_look_ >= options_.look_every)
+      look();
+  }
+}
+
+void Watch::settle(const std::string& name, const storage::FileVersion& version,
+                   const Outcome& outcome) {
+  if (is_stopping())
+    return;
+  if (outcome.code == 0)
+    options_.on_new();
+  tell_(fmt::format("{}: {}", name, outcome.code == 0 ? "done" : outcome.message));
+  if (!has_version(name, version))
+    set_state(name, State::growing, kGrowing);
+  else if (outcome.code == 0)
+    set_state(name, State::done, "");
+  else if (outcome.code == kExists)
+    put_off(name, outcome.message);
+  else
+    set_state(name, State::failed, outcome.message);
+}
+
+bool Watch::has_version(const std::string& name, const storage::FileVersion& version) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = entries_.find(name);
+  return found != entries_.end() && found->second.version == version;
+}
+
+std::string Watch::shown_text(const std::string& message) const {
+  return without(without(message, options_.inbox.string()), options_.folder.string());
+}
+
+void Watch::set_state(const std::string& name, State state, const std::string& message) {
+  const std::lock_guard lock(mutex_);
+  const auto found = entries_.find(name);
+  if (found == entries_.end())
+    return;
+  found->second.state = state;
+  const JobState shown = state == State::failed ? JobState::failed : JobState::waiting;
+  found->second.job = {.name = name, .state = shown, .message = shown_text(message)};
+}
+
+}  // namespace meshhier::server

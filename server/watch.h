@@ -1,0 +1,119 @@
+// Mesh files that are dropped into a folder become hierarchies in another one, one after the other.
+#pragma once
+
+#include "pipeline/cancel.h"
+#include "server/build_target.h"
+#include "server/hierarchies.h"
+#include "server/inbox.h"
+#include "server/job.h"
+#include "storage/child_process.h"
+#include "storage/file.h"
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace meshhier::server {
+
+struct WatchOptions {
+  std::filesystem::path inbox;   ///< absolute
+  std::filesystem::path folder;  ///< absolute; for the hierarchies
+  std::filesystem::path config;  ///< absolute; empty: all defaults
+  std::string suffix = ".hier";  ///< of the hierarchies' names
+  std::string program;           ///< meshhier
+  std::chrono::milliseconds settle{2000};
+  std::chrono::milliseconds look_every{1000};
+  /// Until a build is tried again that another process has in hand.
+  std::chrono::milliseconds try_again{5000};
+  std::function<void()> on_new = [] {
+  };  ///< called when a hierarchy has appeared, before its job goes
+};
+
+/// Each build is a process of its own: whatever ends it, this goes on. A file whose build failed is
+/// tried again when it has changed. What was going on when this process ended, however it ended, is
+/// gone on with by the next one.
+class Watch {
+ public:
+  /// `tell` hears how it goes. `files` and `hierarchies`, of the same folder, must outlive this.
+  /// Throws Error(io) if a folder cannot be opened.
+  Watch(WatchOptions options, storage::FileSystem& files, Hierarchies& hierarchies,
+        Hierarchies::Tell tell);
+  Watch(const Watch&) = delete;
+  Watch& operator=(const Watch&) = delete;
+  /// Stops.
+  ~Watch();
+
+  void start();
+  /// Asks the build at work to stop, which keeps what it has done, and waits for it.
+  void stop();
+
+  /// Of all files that are no hierarchies yet, by name. Thread-safe.
+  nlohmann::ordered_json jobs() const;
+
+ private:
+  using Time = std::chrono::steady_clock::time_point;
+  /// fresh: not yet looked for in the folder.
+  enum class State { fresh, growing, waiting, building, failed, done };
+  struct Entry {
+    storage::FileVersion version;
+    State state = State::fresh;
+    Job job;
+    Time not_before;  ///< another process was at work on the output
+  };
+  /// What a build ended with.
+  struct Outcome {
+    int code = 0;
+    std::string message;
+  };
+
+  void run();
+  void look();
+  void note(const InboxFile& file);
+  std::string next_waiting() const;
+  void handle(const std::string& name);
+  void drop_what_is_done();
+  std::vector<std::string> names_in(std::optional<State> state) const;
+  BuildTarget target_of(const std::string& name, const std::function<std::uint64_t()>& checksum);
+  void check_target(const std::string& name, const BuildTarget& target) const;
+  bool is_in_hand(const BuildTarget& target);
+  void put_off(const std::string& name, const std::string& message);
+  void build(const std::string& name, const BuildTarget& target);
+  Outcome run_build(const std::string& name, const BuildTarget& target, bool restart);
+  void hear(storage::ChildProcess& child, const std::string& name);
+  void settle(const std::string& name, const storage::FileVersion& version, const Outcome& outcome);
+  bool has_version(const std::string& name, const storage::FileVersion& version) const;
+  void set_state(const std::string& name, State state, const std::string& message);
+  std::string shown_text(const std::string& message) const;
+  std::vector<std::string> words(const std::string& name, const BuildTarget& target,
+                                 bool restart) const;
+  void sleep();
+  bool is_stopping() const { return cancel_.cancelled(); }
+
+  WatchOptions options_;
+  storage::FileSystem& files_;
+  Hierarchies& hierarchies_;
+  Hierarchies::Tell tell_;
+  std::shared_ptr<const storage::Folder> folder_;
+  Inbox inbox_;
+  Time last_look_;
+  std::string trouble_;  ///< the failure of the last look, told once
+
+  pipeline::CancelToken cancel_;
+  mutable std::mutex mutex_;  ///< guards entries_
+  std::map<std::string, Entry> entries_;
+  std::condition_variable stopped_;
+  std::thread thread_;
+};
+
+}  // namespace meshhier::server

@@ -1,0 +1,247 @@
+// `meshhier serve` as a process: what it says, how it ends, and that nothing is lost when it is
+// killed.
+#include "storage/file.h"
+#include "tests/server/raw_client.h"
+#include "tests/server/served_folder.h"
+#include "tests/server/wait_until.h"
+#include "tests/support/meshes.h"
+
+#include <array>
+#include <csignal>
+#include <cstdint>
+#include <cstdlib>
+#include <map>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char** environ;
+
+namespace meshhier::app {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::MatchesRegex;
+using tests::text_of;
+using tests::wait_until;
+
+/// A server at work.
+class ServeProcess {
+ public:
+  /// Its output goes to files in `directory`.
+  ServeProcess(const fs::path& directory, const std::vector<std::string>& arguments)
+      : out_(directory / "serve.out"), messages_(directory / "serve.messages") {
+    std::vector<std::string> words{MESHHIER_BINARY, "serve"};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char*> pointers;
+    for (std::string& word : words)
+      pointers.push_back(word.data());
+    pointers.push_back(nullptr);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out_.c_str(),
+                                     O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, messages_.c_str(),
+                                     O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    const int error =
+        posix_spawn(&process_, MESHHIER_BINARY, &actions, nullptr, pointers.data(), environ);
+    posix_spawn_file_actions_destroy(&actions);
+    if (error != 0)
+      throw std::runtime_error("cannot start " MESHHIER_BINARY);
+  }
+  ServeProcess(const ServeProcess&) = delete;
+  ServeProcess& operator=(const ServeProcess&) = delete;
+  ~ServeProcess() {
+    if (process_ > 0)
+      end(SIGKILL);
+  }
+
+  /// Once it listens.
+  std::uint16_t port() {
+    const auto url = [&] { return text_of(out_); };
+    wait_until([&] { return url().find('\n') != std::string::npos || has_ended(); });
+    const std::string text = url();
+    return static_cast<std::uint16_t>(std::atoi(text.c_str() + text.rfind(':') + 1));
+  }
+  /// Its exit code; 1000 + n after death by signal n.
+  int end(int signal) {
+    if (process_ > 0)
+      ::kill(process_, signal);
+    return wait();
+  }
+  int wait() {
+    int status = 0;
+    while (::waitpid(process_, &status, 0) == -1 && errno == EINTR) {
+    }
+    process_ = -1;
+    return WIFSIGNALED(status) ? 1000 + WTERMSIG(status) : WEXITSTATUS(status);
+  }
+  std::string out() const { return text_of(out_); }
+  std::string messages() const { return text_of(messages_); }
+
+ private:
+  bool has_ended() const {
+    siginfo_t info{};
+    return ::waitid(P_PID, static_cast<id_t>(process_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+           info.si_pid != 0;
+  }
+
+  fs::path out_, messages_;
+  pid_t process_ = -1;
+};
+
+class ServeTest : public testing::Test {
+ protected:
+  ServeProcess& serve(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {models().string(), "--port", "0"});
+    process_ = std::make_unique<ServeProcess>(folder_.path(), arguments);
+    return *process_;
+  }
+  fs::path models() const { return folder_.models(); }
+  fs::path inbox() const { return folder_.path() / "inbox"; }
+
+  void drop(const std::string& name, std::size_t triangles) const {
+    fs::create_directories(inbox());
+    tests::write_ply(tests::sphere(triangles), folder_.path() / "made.ply");
+    fs::rename(folder_.path() / "made.ply", inbox() / name);
+  }
+  json list() { return json::parse(tests::RawClient(process_->port()).get("/models.json").body); }
+  /// The stage that the first job is in.
+  std::string stage() {
+    const json jobs = list()["jobs"];
+    return jobs.empty() ? "" : jobs[0].value("stage", "");
+  }
+
+  tests::ServedFolder folder_;
+  std::unique_ptr<ServeProcess> process_;
+};
+
+TEST_F(ServeTest, ItSaysItsUrlServesAndEndsWithoutAnError) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    ServeProcess& process = serve({"--viewer", folder_.viewer().string()});
+    tests::RawClient client(process.port());
+    EXPECT_EQ(client.get("/").body, text_of(folder_.viewer() / "index.html"));
+    EXPECT_EQ(list()["models"].size(), 3U);
+    EXPECT_EQ(process.end(signal), 0);
+    EXPECT_THAT(process.out(), MatchesRegex("http://127.0.0.1:[0-9]+/\n"));
+    EXPECT_THAT(process.messages(), HasSubstr("broken.hier"));
+  }
+}
+
+TEST_F(ServeTest, RequestsAreToldOnlyWhereThatIsAskedFor) {
+  ServeProcess& quiet = serve({"--viewer", folder_.viewer().string(), "--quiet"});
+  tests::RawClient(quiet.port()).get("/models.json");
+  quiet.end(SIGTERM);
+  EXPECT_THAT(quiet.messages(), IsEmpty());
+  ServeProcess& verbose = serve({"--viewer", folder_.viewer().string(), "--verbose"});
+  tests::RawClient(verbose.port()).get("/nothing?\x1b[31m");
+  verbose.end(SIGTERM);
+  EXPECT_THAT(verbose.messages(), HasSubstr("127.0.0.1 GET /nothing??[31m 404"));
+}
+
+TEST_F(ServeTest, APortThatIsTakenIsAnError) {
+  ServeProcess& first = serve({});
+  const std::string port = std::to_string(first.port());
+  ServeProcess second(folder_.path() / "viewer", {models().string(), "--port", port});
+  EXPECT_EQ(second.wait(), 4);
+  EXPECT_THAT(second.messages(), AllOf(HasSubstr("port " + port), HasSubstr("--port 0")));
+}
+
+TEST_F(ServeTest, WhatIsWrongIsToldBeforeAnythingBegins) {
+  const auto fails = [&](const std::vector<std::string>& arguments, int code, const char* message) {
+    ServeProcess process(folder_.path(), arguments);
+    EXPECT_EQ(process.wait(), code) << message;
+    EXPECT_THAT(process.messages(), HasSubstr(message));
+    EXPECT_THAT(process.out(), IsEmpty());
+  };
+  const std::string folder = models().string();
+  fails({"nowhere"}, 4, "there is no such directory");
+  fails({folder + "/packed.3tz"}, 2, "name the one it lies in");
+  fails({folder, "--viewer", folder}, 4, "npm run build");
+  fails({folder, "--watch", "nowhere"}, 4, "--watch nowhere");
+  fails({folder, "--port", "65536"}, 2, "0 to 65535");
+  fails({folder, "--cors", "example.org"}, 2, "expected an origin");
+  fails({folder, "--config", "x.json"}, 2, "--watch");
+  tests::write_text(folder_.path() / "wrong.json", R"({"partition": {"vertces": 5}})");
+  fails({folder, "--watch", folder, "--config", (folder_.path() / "wrong.json").string()}, 2,
+        "did you mean");
+}
+
+TEST_F(ServeTest, ABrowserThatIsMissingDoesNotStopIt) {
+  const char* const before = std::getenv("PATH");
+  const std::string path = before == nullptr ? "" : before;
+  ::setenv("PATH", folder_.path().c_str(), 1);
+  ServeProcess& process = serve({"--open", "--viewer", folder_.viewer().string()});
+  ::setenv("PATH", path.c_str(), 1);
+  EXPECT_EQ(tests::RawClient(process.port()).get("/models.json").status, 200);
+  EXPECT_EQ(process.end(SIGTERM), 0);
+  EXPECT_THAT(process.messages(), HasSubstr("no xdg-open"));
+}
+
+TEST_F(ServeTest, WhatIsDroppedAppearsWithItsProgressThenAsAModel) {
+  drop("new.ply", 20'000);
+  tests::write_text(inbox() / "broken.ply", "ply\n");
+  serve({"--watch", inbox().string(), "--settle", "0.1"});
+  wait_until([&] { return list()["models"].size() == 4; });
+  wait_until([&] { return list()["jobs"].size() == 1; });
+  const json job = list()["jobs"][0];
+  EXPECT_EQ(job["name"], "broken.ply");
+  EXPECT_EQ(job["state"], "failed");
+  EXPECT_EQ(tests::RawClient(process_->port()).get("/models/new.hier/tiles/00/000000.glb").status,
+            200);
+  EXPECT_EQ(process_->end(SIGTERM), 0);
+}
+
+TEST_F(ServeTest, KilledInTheMiddleOfABuildItGoesOnWhenItIsStartedAgain) {
+  const std::vector<std::string> arguments{"--watch", inbox().string(), "--settle", "0.05"};
+  const fs::path output = models() / "new.hier";
+  const fs::path work = models() / ".new.hier.meshhier-work";
+  // A machine that is quicker than this test gets a larger mesh.
+  for (std::size_t triangles = 100'000; !fs::exists(work); triangles *= 2) {
+    fs::remove_all(output);
+    drop("new.ply", triangles);
+    serve(arguments);
+    wait_until([&] { return stage() == "leaves" || stage() == "simplify" || fs::exists(output); });
+    EXPECT_EQ(process_->end(SIGKILL), 1000 + SIGKILL);
+    // The build is gone with it: its lock is free.
+    const auto files = storage::make_posix_file_system();
+    wait_until([&] { return !fs::exists(work) || files->try_lock(work / "lock") != nullptr; });
+  }
+  EXPECT_FALSE(fs::exists(output));
+  EXPECT_TRUE(fs::exists(work / "journal"));
+  serve(arguments);
+  wait_until([&] { return fs::exists(output) && list()["jobs"].empty(); });
+  EXPECT_EQ(process_->end(SIGINT), 0);
+  EXPECT_FALSE(fs::exists(work));
+
+  const std::string build = std::string(MESHHIER_BINARY) +
+                            " build --set input=" + (inbox() / "new.ply").string() +
+                            " output=" + (folder_.path() / "direct.hier").string() + " >/dev/null";
+  ASSERT_EQ(std::system(build.c_str()), 0);
+  std::size_t files = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder_.path() / "direct.hier")) {
+    if (!entry.is_regular_file())
+      continue;
+    const fs::path name = entry.path().lexically_relative(folder_.path() / "direct.hier");
+    EXPECT_EQ(text_of(output / name), text_of(entry.path())) << name;
+    ++files;
+  }
+  EXPECT_GT(files, 10U);
+}
+
+}  // namespace
+}  // namespace meshhier::app

@@ -1,0 +1,421 @@
+// The real server, through real sockets.
+#include "server/http_server.h"
+
+#include "hierarchy/error.h"
+#include "server/site.h"
+#include "storage/process.h"
+#include "tests/server/path_tricks.h"
+#include "tests/server/raw_client.h"
+#include "tests/server/served_folder.h"
+#include "tests/server/wait_until.h"
+#include "tests/support/sizes.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <latch>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+
+namespace meshhier::server {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using std::string_literals::operator""s;
+using testing::Not;
+using tests::RawClient;
+using tests::RawReply;
+using tests::text_of;
+
+class HttpServerTest : public testing::Test {
+ protected:
+  void start(ServerOptions options = {}) {
+    options.port = 0;
+    site_.emplace(SiteOptions{.models = storage::open_folder(folder_.models()),
+                              .viewer = storage::open_folder(folder_.viewer())},
+                  Site::Jobs(), [](const std::string&) {});
+    server_.emplace(
+        options, [this](const Request& request) { return site_->answer(request); },
+        [this](const Served& served) {
+          const std::lock_guard lock(mutex_);
+          log_.push_back(served);
+        });
+    server_->start();
+  }
+  std::uint16_t port() const { return server_->port(); }
+
+  tests::ServedFolder folder_;
+  std::optional<Site> site_;
+  std::mutex mutex_;
+  std::vector<Served> log_;
+  std::optional<HttpServer> server_;
+};
+
+TEST_F(HttpServerTest, AConnectionServesManyRequests) {
+  start();
+  RawClient client(port());
+  const std::string tile = text_of(folder_.models() / "plain.hier/tiles/00/000000.glb");
+  for (int i = 0; i < 3; ++i) {
+    const RawReply reply = client.get("/models/plain.hier/tiles/00/000000.glb");
+    EXPECT_EQ(reply.status, 200);
+    EXPECT_EQ(reply.body, tile);
+    EXPECT_EQ(reply.headers.at("content-type"), "model/gltf-binary");
+  }
+  EXPECT_EQ(client.get("/models.json").status, 200);
+}
+
+TEST_F(HttpServerTest, RequestsMayBeSentAhead) {
+  start();
+  RawClient client(port());
+  const std::string request =
+      "GET /models/plain.hier/tiles.bin HTTP/1.1\r\nHost: localhost\r\n\r\n";
+  client.send(request + request + request);
+  for (int i = 0; i < 3; ++i)
+    EXPECT_EQ(client.receive().body, text_of(folder_.models() / "plain.hier/tiles.bin"));
+}
+
+TEST_F(HttpServerTest, HeadIsTheHeadOfGet) {
+  start();
+  RawClient client(port());
+  RawReply whole = client.get("/models/plain.hier/tiles.bin");
+  client.send("HEAD /models/plain.hier/tiles.bin HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  const RawReply head = client.receive(true);
+  EXPECT_EQ(head.status, 200);
+  EXPECT_EQ(head.headers, whole.headers);
+  EXPECT_EQ(client.get("/models.json").status, 200) << "no body came behind the head";
+}
+
+TEST_F(HttpServerTest, PartsAndWhatIsKnownGoThroughTheWire) {
+  start();
+  RawClient client(port());
+  const std::string target = "/models/plain.hier/tiles.bin";
+  const std::string whole = text_of(folder_.models() / "plain.hier/tiles.bin");
+  RawReply reply = client.get(target, "Range: bytes=5-9\r\n");
+  EXPECT_EQ(reply.status, 206);
+  EXPECT_EQ(reply.body, whole.substr(5, 5));
+  EXPECT_EQ(reply.headers.at("content-range"), "bytes 5-9/" + std::to_string(whole.size()));
+  EXPECT_EQ(reply.headers.at("content-length"), "5");
+  EXPECT_EQ(client.get(target, "Range: bytes=999999-\r\n").status, 416);
+  reply = client.get(target, "If-None-Match: " + reply.headers.at("etag") + "\r\n");
+  EXPECT_EQ(reply.status, 304);
+  EXPECT_FALSE(reply.headers.contains("content-length"));
+  EXPECT_EQ(client.get(target).body, whole);
+}
+
+TEST_F(HttpServerTest, ALongRangeHeaderCostsNothing) {
+  start();
+  RawClient client(port());
+  std::string ranges = "bytes=0-";
+  while (ranges.size() < 8000)
+    ranges += ",0-";
+  const RawReply reply = client.get("/models/plain.hier/tiles.bin", "Range: " + ranges + "\r\n");
+  EXPECT_EQ(reply.status, 200);
+  EXPECT_EQ(reply.body, text_of(folder_.models() / "plain.hier/tiles.bin"));
+}
+
+TEST_F(HttpServerTest, GzipTilesGoOutAsTheyLie) {
+  start();
+  RawClient client(port());
+  const RawReply reply = client.get("/models/sub%20dir/zipped.hier/tiles/00/000000.glb",
+                                    "Accept-Encoding: gzip, br\r\n");
+  EXPECT_EQ(reply.status, 200);
+  EXPECT_EQ(reply.headers.at("content-encoding"), "gzip");
+  EXPECT_EQ(reply.body, text_of(folder_.models() / "sub dir/zipped.hier/tiles/00/000000.glb"));
+  const RawReply list = client.get("/models.json", "Accept-Encoding: gzip, br\r\n");
+  EXPECT_FALSE(list.headers.contains("content-encoding"));
+}
+
+TEST_F(HttpServerTest, NoTrickLeadsAnywhere) {
+  start();
+  for (const std::string& trick : tests::kPathTricks) {
+    RawClient client(port());
+    const RawReply reply = client.get(trick);
+    EXPECT_TRUE(reply.status == 404 || reply.status == 400) << trick << " gave " << reply.status;
+    EXPECT_THAT(reply.body, Not(HasSubstr("not for you"))) << trick;
+  }
+}
+
+TEST_F(HttpServerTest, WhatIsNoRequestIsRefused) {
+  start();
+  for (const std::string& bytes :
+       {"GET\r\n\r\n"s, "GET /models.json\r\n\r\n"s, "GET /models.json HTTP/9.9\r\n\r\n"s,
+        "BREW / HTTP/1.1\r\nHost: localhost\r\n\r\n"s,
+        "GET /\0 HTTP/1.1\r\nHost: localhost\r\n\r\n"s, "\x16\x03\x01\x02\r\n\r\n"s,
+        "GET / HTTP/1.1\nHost: localhost\n\n\r\n\r\n"s,
+        "GET /models.json HTTP/1.1\r\nHost: localhost\nRange: bytes=0-\r\n\r\n"s}) {
+    RawClient client(port());
+    client.send(bytes);
+    EXPECT_EQ(client.receive().status, 400) << bytes;
+  }
+}
+
+TEST_F(HttpServerTest, HostsOfOthersAreRefused) {
+  start();
+  for (const char* lines :
+       {"Host: evil.example\r\n", "", "Host: localhost\r\nHost: localhost\r\n"}) {
+    RawClient client(port());
+    client.send("GET /models.json HTTP/1.1\r\n" + std::string(lines) + "\r\n");
+    EXPECT_EQ(client.receive().status, 421) << lines;
+  }
+}
+
+TEST_F(HttpServerTest, AHeadWithoutEndIsRefused) {
+  start();
+  for (const std::string& begin : {"GET /"s, "GET / HTTP/1.1\r\nX: "s}) {
+    RawClient client(port());
+    client.send(begin + std::string(20'000, 'a'));
+    EXPECT_EQ(client.receive().status, 431);
+    EXPECT_TRUE(client.is_closed());
+  }
+  std::string many = "GET /models.json HTTP/1.1\r\nHost: localhost\r\n";
+  while (many.size() < 20'000)
+    many += "a: b\r\n";
+  RawClient client(port());
+  client.send(many);
+  EXPECT_EQ(client.receive().status, 431);
+}
+
+TEST_F(HttpServerTest, BodiesAreNotRead) {
+  start();
+  for (const char* method : {"POST", "PUT", "GET"}) {
+    RawClient client(port());
+    client.send(std::string(method) +
+                " /models.json HTTP/1.1\r\nHost: localhost\r\nContent-Length: 44\r\n\r\n"
+                "GET /models.json HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    const RawReply reply = client.receive();
+    EXPECT_EQ(reply.status, std::string(method) == "GET" ? 200 : 405);
+    EXPECT_EQ(reply.headers.at("connection"), "close");
+    EXPECT_TRUE(client.is_closed()) << "the body was taken for a request";
+  }
+}
+
+/// Clients and server are one process here.
+void allow_open_files(rlim_t count) {
+  rlimit limit{};
+  ::getrlimit(RLIMIT_NOFILE, &limit);
+  limit.rlim_cur = std::max(limit.rlim_cur, std::min(limit.rlim_max, count));
+  ::setrlimit(RLIMIT_NOFILE, &limit);
+}
+
+TEST_F(HttpServerTest, AThousandRequestsAtOnceAreAllAnswered) {
+  allow_open_files(2048);
+  ServerOptions options;  // the clients wait for each other
+  options.limits.idle = options.limits.patience = options.limits.head = std::chrono::minutes(10);
+  start(options);
+  const std::vector<std::string> names{"tiles.bin", "hierarchy.json", "outline.glb",
+                                       "tiles/00/000000.glb", "tiles/01/000000.glb"};
+  std::vector<std::string> contents;
+  for (const std::string& name : names)
+    contents.push_back(text_of(folder_.models() / "plain.hier" / name));
+  constexpr std::size_t kClients = 1000;
+  std::atomic<std::size_t> right{0};
+  std::latch connected(kClients);
+  const std::uint64_t before = storage::process_usage().peak_resident_bytes;
+  std::vector<std::thread> threads;
+  for (std::size_t i = 0; i < kClients; ++i) {
+    threads.emplace_back([&, i] {
+      const std::size_t which = i % names.size();
+      std::optional<RawClient> client;
+      try {
+        client.emplace(port());
+      } catch (const std::exception&) {  // is missed below
+      }
+      connected.arrive_and_wait();
+      const RawReply reply =
+          client ? client->get("/models/plain.hier/" + names[which]) : RawReply();
+      right += reply.status == 200 && reply.body == contents[which] ? 1 : 0;
+    });
+  }
+  for (std::thread& thread : threads)
+    thread.join();
+  EXPECT_EQ(right, kClients);
+  // 64 threads with 64 KiB each, and the 1000 of this test.
+  EXPECT_LT(storage::process_usage().peak_resident_bytes - before, 150 * tests::kMiB);
+}
+
+TEST_F(HttpServerTest, AFileOfAnySizeTakesLittleMemory) {
+  const fs::path large = folder_.viewer() / "assets/large.bin";
+  tests::write_text(large, "");
+  fs::resize_file(large, 256 * tests::kMiB);
+  start();
+  const std::uint64_t before = storage::process_usage().peak_resident_bytes;
+  RawClient client(port(), 4096);  // takes it slowly enough to see it held
+  client.send("GET /assets/large.bin HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  RawClient other(port());
+  EXPECT_EQ(other.get("/assets/large.bin", "Range: bytes=268435455-\r\n").body,
+            std::string(1, '\0'));
+  std::vector<std::unique_ptr<RawClient>> many;
+  for (int i = 0; i < 32; ++i) {
+    many.push_back(std::make_unique<RawClient>(port(), 4096));
+    many.back()->send("GET /assets/large.bin HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  }
+  EXPECT_EQ(other.get("/models.json").status, 200);
+  EXPECT_LT(storage::process_usage().peak_resident_bytes - before, 64 * tests::kMiB);
+}
+
+TEST_F(HttpServerTest, SlowClientsDoNotHoldUpOthers) {
+  ServerOptions options;
+  options.threads = 4;
+  options.limits.patience = std::chrono::milliseconds(50);
+  options.limits.head = std::chrono::milliseconds(300);
+  start(options);
+  std::vector<std::unique_ptr<RawClient>> slow;
+  for (int i = 0; i < 16; ++i) {
+    slow.push_back(std::make_unique<RawClient>(port()));
+    if (i % 2 == 0)
+      slow.back()->send("GET /models.json HT");  // and no more
+  }
+  RawClient quick(port());
+  EXPECT_EQ(quick.get("/models.json").status, 200);
+}
+
+TEST_F(HttpServerTest, ClientsThatTakeNothingAreLeft) {
+  const fs::path large = folder_.viewer() / "assets/large.bin";
+  tests::write_text(large, "");
+  fs::resize_file(large, 64 * tests::kMiB);
+  ServerOptions options;
+  options.threads = 2;
+  options.limits.stall = std::chrono::milliseconds(300);
+  start(options);
+  std::vector<std::unique_ptr<RawClient>> slow;
+  for (int i = 0; i < 4; ++i) {
+    slow.push_back(std::make_unique<RawClient>(port(), 4096));
+    slow.back()->send("GET /assets/large.bin HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  }
+  RawClient quick(port());
+  EXPECT_EQ(quick.get("/models.json").status, 200);
+}
+
+TEST_F(HttpServerTest, ClientsThatTakeTooLittleAreLeft) {
+  const fs::path large = folder_.viewer() / "assets/large.bin";
+  tests::write_text(large, "");
+  fs::resize_file(large, 256 * tests::kMiB);
+  ServerOptions options;
+  options.limits.grace = std::chrono::milliseconds(0);
+  options.limits.least_rate = std::size_t{1} << 60;
+  start(options);
+  RawClient client(port());
+  EXPECT_LT(client.get("/assets/large.bin").body.size(), 256 * tests::kMiB);
+}
+
+TEST_F(HttpServerTest, AnIdleConnectionMakesRoomForOthers) {
+  ServerOptions options;
+  options.threads = 1;
+  options.limits.idle = std::chrono::minutes(10);
+  start(options);
+  RawClient first(port());
+  EXPECT_EQ(first.get("/models.json").status, 200);
+  RawClient second(port());
+  EXPECT_EQ(second.get("/models.json").status, 200);
+  EXPECT_TRUE(first.is_closed());
+}
+
+TEST_F(HttpServerTest, StoppingEndsWhatIsUnderWay) {
+  const fs::path large = folder_.viewer() / "assets/large.bin";
+  tests::write_text(large, "");
+  fs::resize_file(large, 256 * tests::kMiB);
+  start();
+  RawClient idle(port());
+  EXPECT_EQ(idle.get("/models.json").status, 200);
+  RawClient silent(port());
+  RawClient busy(port(), 4096);
+  busy.send("GET /assets/large.bin HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  server_->stop();
+  EXPECT_TRUE(idle.is_closed());
+  EXPECT_TRUE(silent.is_closed());
+  server_->stop();
+  EXPECT_THROW(RawClient{port()}, std::runtime_error);
+}
+
+/// Ends listening at that port, as if the network had failed.
+void break_listening(std::uint16_t port) {
+  for (int socket = 3; socket < 1024; ++socket) {
+    int listens = 0;
+    socklen_t bytes = sizeof(listens);
+    sockaddr_in address{};
+    socklen_t address_bytes = sizeof(address);
+    if (::getsockopt(socket, SOL_SOCKET, SO_ACCEPTCONN, &listens, &bytes) == 0 && listens != 0 &&
+        ::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &address_bytes) == 0 &&
+        address.sin_port == htons(port))
+      ::shutdown(socket, SHUT_RDWR);
+  }
+}
+
+TEST_F(HttpServerTest, TroubleInTheNetworkDoesNotEndIt) {
+  start();
+  EXPECT_EQ(RawClient(port()).get("/models.json").status, 200);
+  break_listening(port());
+  int status = 0;
+  tests::wait_until([&] {
+    try {
+      status = RawClient(port()).get("/models.json").status;
+    } catch (const std::runtime_error&) {  // nobody listens at this moment
+    }
+    return status == 200;
+  });
+  EXPECT_FALSE(server_->is_lost());
+  server_->stop();
+}
+
+TEST_F(HttpServerTest, ABusyPortIsTold) {
+  start();
+  try {
+    HttpServer({.host = "127.0.0.1", .port = port()}, {}, {});
+    FAIL() << "two servers share a port";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::io);
+    EXPECT_THAT(error.what(), HasSubstr("is in use"));
+    EXPECT_THAT(error.what(), HasSubstr("--port 0"));
+  }
+}
+
+TEST_F(HttpServerTest, AHostThatIsNotHereIsTold) {
+  try {
+    HttpServer({.host = "192.0.2.1", .port = 0}, {}, {});
+    FAIL() << "this machine has an address that nobody has";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("--host must be an address of this machine"));
+  }
+}
+
+TEST_F(HttpServerTest, EachRequestIsLogged) {
+  start();
+  {
+    RawClient client(port());
+    client.get("/models/plain.hier/tiles.bin?x=%41");
+    client.get("/nothing");
+  }
+  server_->stop();
+  ASSERT_EQ(log_.size(), 2U);
+  EXPECT_EQ(log_[0].client, "127.0.0.1");
+  EXPECT_EQ(log_[0].target, "/models/plain.hier/tiles.bin?x=%41");
+  EXPECT_EQ(log_[0].status, 200);
+  EXPECT_EQ(log_[0].bytes, fs::file_size(folder_.models() / "plain.hier/tiles.bin"));
+  EXPECT_EQ(log_[1].status, 404);
+}
+
+TEST(ServerUrlTest, UrlsAreThoseABrowserTakes) {
+  EXPECT_EQ(url_of("127.0.0.1", 8080), "http://127.0.0.1:8080/");
+  EXPECT_EQ(url_of("::1", 1), "http://[::1]:1/");
+  EXPECT_EQ(url_of("0.0.0.0", 80), "http://127.0.0.1:80/");
+  EXPECT_TRUE(is_loopback_host("127.0.0.1") && is_loopback_host("localhost") &&
+              is_loopback_host("::1"));
+  EXPECT_FALSE(is_loopback_host("0.0.0.0") || is_loopback_host("::") ||
+               is_loopback_host("10.0.0.1"));
+}
+
+}  // namespace
+}  // namespace meshhier::server

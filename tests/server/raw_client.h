@@ -1,0 +1,40 @@
+// A client that sends what it is told, byte by byte if need be, and checks nothing.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+
+namespace meshhier::tests {
+
+struct RawReply {
+  int status = 0;                              ///< 0: the connection was closed without a reply
+  std::map<std::string, std::string> headers;  ///< names in lower case
+  std::string body;
+};
+
+/// One connection. Throws std::runtime_error if it cannot be made, or is silent for a minute.
+class RawClient {
+ public:
+  explicit RawClient(std::uint16_t port, int receive_buffer_bytes = 0);
+  RawClient(const RawClient&) = delete;
+  RawClient& operator=(const RawClient&) = delete;
+  ~RawClient();
+
+  /// As much as the server takes; it may have closed the connection.
+  void send(std::string_view bytes) const;
+  /// The next reply, whose body ends as its head says. `is_head`: it has no body.
+  RawReply receive(bool is_head = false);
+  RawReply get(const std::string& target, const std::string& more_headers = "");
+  /// Whether the server closes the connection before it says anything more.
+  bool is_closed();
+
+ private:
+  bool fill();
+
+  int socket_;
+  std::string received_;
+};
+
+}  // namespace meshhier::tests

@@ -1,0 +1,376 @@
+#include "server/site.h"
+
+#include "server/conditions.h"
+#include "storage/gzip.h"
+#include "tests/server/path_tricks.h"
+#include "tests/server/served_folder.h"
+
+#include <cstring>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace meshhier::server {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+using tests::text_of;
+
+std::string body_of(const Reply& reply) {
+  if (!reply.file)
+    return reply.text;
+  std::string text(reply.file->bytes, '\0');
+  reply.file->file->read_exact(reply.file->offset, std::as_writable_bytes(std::span(text)));
+  return text;
+}
+
+class SiteTest : public testing::Test {
+ protected:
+  SiteTest() { open({}); }
+
+  void open(SiteOptions options, const Site::Jobs& jobs = {}) {
+    options.models = storage::open_folder(folder_.models());
+    options.viewer = storage::open_folder(folder_.viewer());
+    open_as(std::move(options), jobs);
+  }
+  void open_as(SiteOptions options, const Site::Jobs& jobs = {}) {
+    site_ = std::make_unique<Site>(
+        std::move(options), jobs, [this](const std::string& message) { told_.push_back(message); });
+  }
+
+  static Request request(const std::string& target) {
+    return {.target = target, .host = "localhost:8080"};
+  }
+  Reply get(const std::string& target) { return site_->answer(request(target)); }
+
+  tests::ServedFolder folder_;
+  std::vector<std::string> told_;
+  std::unique_ptr<Site> site_;
+};
+
+TEST_F(SiteTest, TheListHasAllHierarchiesByPath) {
+  const Reply reply = get("/models.json");
+  EXPECT_EQ(reply.status, 200);
+  EXPECT_EQ(reply.header("Content-Type"), "application/json");
+  EXPECT_EQ(reply.header("Cache-Control"), "no-cache");
+  const json document = json::parse(reply.text);
+  EXPECT_FALSE(document.contains("jobs"));
+  std::vector<std::string> paths;
+  for (const json& model : document["models"])
+    paths.push_back(model["path"]);
+  EXPECT_THAT(
+      paths, ElementsAre("models/packed.3tz", "models/plain.hier", "models/sub%20dir/zipped.hier"));
+  const json model = document["models"][1];
+  EXPECT_EQ(model["name"], "plain");
+  EXPECT_EQ(model["source"], "plain.ply");
+  const json manifest = json::parse(text_of(folder_.models() / "plain.hier/hierarchy.json"));
+  EXPECT_EQ(model["vertices"], manifest["source"]["vertices"]);
+  EXPECT_EQ(model["triangles"], manifest["source"]["triangles"]);
+  EXPECT_EQ(model["bytes"], manifest["total_bytes"]);
+}
+
+TEST_F(SiteTest, AHierarchyThatCannotBeReadIsToldOnce) {
+  get("/models.json");
+  open({});
+  told_.clear();
+  get("/models.json");
+  get("/models/broken.hier/tiles.bin");
+  get("/models/broken.hier/hierarchy.json");
+  EXPECT_THAT(told_, ElementsAre(HasSubstr("broken.hier/hierarchy.json")));
+}
+
+TEST_F(SiteTest, TheListIsKnownByItsTag) {
+  Request again = request("/models.json");
+  again.if_none_match = std::string(get("/models.json").header("ETag"));
+  const Reply reply = site_->answer(again);
+  EXPECT_EQ(reply.status, 304);
+  EXPECT_THAT(body_of(reply), IsEmpty());
+  again.if_none_match = "\"another\"";
+  EXPECT_EQ(site_->answer(again).status, 200);
+}
+
+TEST_F(SiteTest, JobsAreListedWhereAFolderIsWatched) {
+  open({}, [] {
+    return nlohmann::ordered_json::array({{{"name", "x.ply"}, {"state", "waiting"}}});
+  });
+  const json document = json::parse(get("/models.json").text);
+  ASSERT_THAT(document["jobs"], SizeIs(1));
+  EXPECT_EQ(document["jobs"][0]["name"], "x.ply");
+}
+
+TEST_F(SiteTest, EveryFileOfEveryHierarchyIsServedAsItIs) {
+  for (const char* name : {"plain.hier", "sub dir/zipped.hier", "stream.prog"}) {
+    const fs::path hierarchy = folder_.models() / name;
+    std::size_t files = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(hierarchy)) {
+      if (!entry.is_regular_file())
+        continue;
+      std::string path = "/models/" + (name / entry.path().lexically_relative(hierarchy)).string();
+      if (const std::size_t blank = path.find(' '); blank != std::string::npos)
+        path.replace(blank, 1, "%20");
+      const Reply reply = get(path);
+      EXPECT_EQ(reply.status, 200) << path;
+      EXPECT_EQ(body_of(reply), text_of(entry.path())) << path;
+      ++files;
+    }
+    EXPECT_GT(files, 2U) << name;
+  }
+  for (const char* name : {"hierarchy.json", "tiles.bin", "outline.glb", "tileset.json",
+                           "tiles/00/000000.glb", "tiles/01/000001.glb"}) {
+    const Reply reply = get("/models/packed.3tz/" + std::string(name));
+    EXPECT_EQ(reply.status, 200) << name;
+    EXPECT_EQ(body_of(reply), tests::text_in_archive(folder_.models() / "packed.3tz", name))
+        << name;
+  }
+}
+
+TEST_F(SiteTest, FilesHaveTheirTypes) {
+  const auto type = [&](const char* path) { return std::string(get(path).header("Content-Type")); };
+  EXPECT_EQ(type("/models/plain.hier/hierarchy.json"), "application/json");
+  EXPECT_EQ(type("/models/plain.hier/tiles.bin"), "application/octet-stream");
+  EXPECT_EQ(type("/models/plain.hier/outline.glb"), "model/gltf-binary");
+  EXPECT_EQ(type("/models/packed.3tz/tiles/00/000000.glb"), "model/gltf-binary");
+  EXPECT_EQ(type("/"), "text/html; charset=utf-8");
+  EXPECT_EQ(type("/assets/page-1a2b.js"), "text/javascript; charset=utf-8");
+}
+
+TEST_F(SiteTest, NamesOfContentAreKeptForeverAllElseIsAskedForAgain) {
+  const auto cache = [&](const char* path) {
+    return std::string(get(path).header("Cache-Control"));
+  };
+  EXPECT_EQ(cache("/assets/page-1a2b.js"), "public, max-age=31536000, immutable");
+  EXPECT_EQ(cache("/"), "no-cache");
+  EXPECT_EQ(cache("/models/plain.hier/tiles/00/000000.glb"), "no-cache");
+}
+
+TEST_F(SiteTest, GzipTilesAreSentWithTheirEncoding) {
+  for (const char* path : {"/models/sub%20dir/zipped.hier/tiles/00/000000.glb",
+                           "/models/packed.3tz/tiles/00/000000.glb"}) {
+    Request tile = request(path);
+    tile.accept_encoding = "gzip, deflate, br";
+    const Reply reply = site_->answer(tile);
+    EXPECT_EQ(reply.status, 200);
+    EXPECT_EQ(reply.header("Content-Encoding"), "gzip");
+    EXPECT_EQ(reply.header("Vary"), "Accept-Encoding");
+    const std::string body = body_of(reply);
+    const auto glb = storage::gunzip_glb(std::as_bytes(std::span(body)), "tile");
+    EXPECT_EQ(std::memcmp(glb.data(), "glTF", 4), 0);
+  }
+  EXPECT_EQ(get("/models/plain.hier/tiles/00/000000.glb").header("Content-Encoding"), "");
+  EXPECT_EQ(get("/models/packed.3tz/outline.glb").header("Content-Encoding"), "");
+}
+
+TEST_F(SiteTest, AClientWithoutGzipIsToldWhatToDo) {
+  Request tile = request("/models/sub%20dir/zipped.hier/tiles/00/000000.glb");
+  EXPECT_EQ(site_->answer(tile).status, 200) << "who says nothing takes anything";
+  tile.accept_encoding = "identity";
+  EXPECT_EQ(site_->answer(tile).status, 406);
+  EXPECT_THAT(site_->answer(tile).text, HasSubstr("Accept-Encoding: gzip"));
+  tile.target = "/models/plain.hier/tiles/00/000000.glb";
+  EXPECT_EQ(site_->answer(tile).status, 200);
+}
+
+TEST_F(SiteTest, PartsAreServed) {
+  const std::string whole = text_of(folder_.models() / "plain.hier/tiles.bin");
+  Request part = request("/models/plain.hier/tiles.bin");
+  part.range = "bytes=10-19";
+  Reply reply = site_->answer(part);
+  EXPECT_EQ(reply.status, 206);
+  EXPECT_EQ(body_of(reply), whole.substr(10, 10));
+  EXPECT_EQ(reply.header("Content-Range"), "bytes 10-19/" + std::to_string(whole.size()));
+  part.range = "bytes=-7";
+  EXPECT_EQ(body_of(site_->answer(part)), whole.substr(whole.size() - 7));
+  part.range = "bytes=" + std::to_string(whole.size()) + "-";
+  reply = site_->answer(part);
+  EXPECT_EQ(reply.status, 416);
+  EXPECT_EQ(reply.header("Content-Range"), "bytes */" + std::to_string(whole.size()));
+  part.range = "bytes=0-1,3-4";
+  EXPECT_EQ(body_of(site_->answer(part)), whole);
+}
+
+TEST_F(SiteTest, APartInAnArchiveIsOfTheFileInIt) {
+  Request part = request("/models/packed.3tz/tiles.bin");
+  part.range = "bytes=0-7";
+  const Reply reply = site_->answer(part);
+  EXPECT_EQ(reply.status, 206);
+  EXPECT_EQ(body_of(reply), "MHTILES\n");
+}
+
+TEST_F(SiteTest, APartOfAnotherVersionIsTheWholeFile) {
+  Request part = request("/models/plain.hier/tiles.bin");
+  part.range = "bytes=0-0";
+  part.if_range = std::string(get(part.target).header("ETag"));
+  EXPECT_EQ(site_->answer(part).status, 206);
+  for (const char* other : {"\"another\"", "Sat, 01 Jan 2022 00:00:00 GMT", ""}) {
+    part.if_range = other;
+    EXPECT_EQ(site_->answer(part).status, 200) << other;
+  }
+}
+
+TEST_F(SiteTest, HeadHasNoParts) {
+  Request head = request("/models/plain.hier/tiles.bin");
+  head.method = "HEAD";
+  head.range = "bytes=0-0";
+  const Reply reply = site_->answer(head);
+  EXPECT_EQ(reply.status, 200);
+  EXPECT_EQ(reply.body_bytes(), fs::file_size(folder_.models() / "plain.hier/tiles.bin"));
+}
+
+TEST_F(SiteTest, AFileThatIsReplacedHasAnotherTag) {
+  const std::string target = "/models/plain.hier/tiles/00/000000.glb";
+  Request again = request(target);
+  again.if_none_match = std::string(get(target).header("ETag"));
+  EXPECT_EQ(site_->answer(again).status, 304);
+  tests::build_small(folder_.path() / "meshes/plain.ply", folder_.models() / "plain.hier",
+                     storage::Compression::none, 700);
+  const Reply reply = site_->answer(again);
+  EXPECT_EQ(reply.status, 200);
+  EXPECT_EQ(body_of(reply), text_of(folder_.models() / "plain.hier/tiles/00/000000.glb"));
+}
+
+TEST_F(SiteTest, TilesOfOneArchiveHaveTagsOfTheirOwn) {
+  EXPECT_NE(get("/models/packed.3tz/tiles/01/000000.glb").header("ETag"),
+            get("/models/packed.3tz/tiles/01/000001.glb").header("ETag"));
+}
+
+TEST_F(SiteTest, NoTrickLeadsAnywhere) {
+  for (const std::string& trick : tests::kPathTricks) {
+    const Reply reply = get(trick);
+    EXPECT_EQ(reply.status, 404) << trick;
+    EXPECT_THAT(body_of(reply), testing::Not(HasSubstr("not for you"))) << trick;
+  }
+}
+
+TEST_F(SiteTest, LinksLeadNowhere) {
+  const fs::path models = folder_.models();
+  fs::rename(models / "plain.hier", folder_.path() / "outside.hier");
+  fs::create_directory_symlink(folder_.path() / "outside.hier", models / "plain.hier");
+  fs::create_directory_symlink("sub dir/zipped.hier", models / "inside.hier");
+  fs::create_directory_symlink("/", models / "sub dir/root");
+  fs::remove(models / "sub dir/zipped.hier/tiles.bin");
+  fs::create_symlink(folder_.path() / "secret.txt", models / "sub dir/zipped.hier/tiles.bin");
+  fs::rename(models / "packed.3tz", folder_.path() / "packed.3tz");
+  fs::create_symlink(folder_.path() / "packed.3tz", models / "packed.3tz");
+  fs::remove(folder_.viewer() / "assets/page-1a2b.js");
+  fs::create_symlink(folder_.path() / "secret.txt", folder_.viewer() / "assets/page-1a2b.js");
+  for (const char* target :
+       {"/models/plain.hier/hierarchy.json", "/models/inside.hier/hierarchy.json",
+        "/models/sub%20dir/zipped.hier/tiles.bin", "/models/packed.3tz/hierarchy.json",
+        "/models/sub%20dir/root/hierarchy.json", "/assets/page-1a2b.js"})
+    EXPECT_EQ(get(target).status, 404) << target;
+  EXPECT_EQ(get("/models/sub%20dir/zipped.hier/hierarchy.json").status, 200);
+  EXPECT_THAT(json::parse(get("/models.json").text)["models"], SizeIs(1));
+}
+
+TEST_F(SiteTest, WorkInProgressIsNotServed) {
+  const fs::path work = folder_.models() / ".new.hier.meshhier-work";
+  fs::create_directory(work);
+  fs::rename(folder_.models() / "plain.hier", work / "hierarchy");
+  EXPECT_EQ(get("/models/.new.hier.meshhier-work/hierarchy/hierarchy.json").status, 404);
+  EXPECT_THAT(json::parse(get("/models.json").text)["models"], SizeIs(2));
+}
+
+TEST_F(SiteTest, TheFolderMayBeAHierarchyItself) {
+  SiteOptions options;
+  options.models = storage::open_folder(folder_.models() / "plain.hier");
+  open_as(std::move(options));
+  const json models = json::parse(get("/models.json").text)["models"];
+  ASSERT_THAT(models, SizeIs(1));
+  EXPECT_EQ(models[0]["path"], "models");
+  EXPECT_EQ(models[0]["name"], "plain");
+  EXPECT_EQ(get("/models/hierarchy.json").status, 200);
+  EXPECT_EQ(get("/models/tiles/00/000000.glb").status, 200);
+}
+
+TEST_F(SiteTest, OtherMethodsAreRefused) {
+  for (const char* method : {"POST", "PUT", "DELETE", "PATCH", "TRACE", "CONNECT", "PRI"}) {
+    Request other = request("/models/plain.hier/tiles.bin");
+    other.method = method;
+    const Reply reply = site_->answer(other);
+    EXPECT_EQ(reply.status, 405) << method;
+    EXPECT_EQ(reply.header("Allow"), "GET, HEAD, OPTIONS") << method;
+  }
+}
+
+TEST_F(SiteTest, NamesOfOthersAreNotAnsweredOnTheLoopback) {
+  Request other = request("/models.json");
+  for (const char* host : {"evil.example", "evil.example:8080", ""}) {
+    other.host = host;
+    EXPECT_EQ(site_->answer(other).status, 421) << host;
+  }
+  other.host.reset();
+  EXPECT_EQ(site_->answer(other).status, 421);
+  open({.is_loopback = false});
+  other.host = "models.example";
+  EXPECT_EQ(site_->answer(other).status, 200);
+}
+
+TEST_F(SiteTest, PagesOfOthersMayReadWhereThatIsAskedFor) {
+  EXPECT_EQ(get("/models.json").header("Access-Control-Allow-Origin"), "");
+  open({.cors = "https://a.example"});
+  for (const char* target : {"/models.json", "/models/plain.hier/tiles.bin", "/nothing"})
+    EXPECT_EQ(get(target).header("Access-Control-Allow-Origin"), "https://a.example") << target;
+  EXPECT_THAT(std::string(get("/models.json").header("Access-Control-Expose-Headers")),
+              HasSubstr("Content-Range"));
+  Request preflight = request("/models/plain.hier/tiles.bin");
+  preflight.method = "OPTIONS";
+  const Reply reply = site_->answer(preflight);
+  EXPECT_EQ(reply.status, 204);
+  EXPECT_THAT(std::string(reply.header("Access-Control-Allow-Headers")), HasSubstr("Range"));
+}
+
+TEST_F(SiteTest, NothingIsGuessedFromContent) {
+  for (const char* target : {"/", "/models.json", "/nothing", "/models/plain.hier/tiles.bin"})
+    EXPECT_EQ(get(target).header("X-Content-Type-Options"), "nosniff") << target;
+}
+
+TEST_F(SiteTest, WithoutThePageAllElseIsServed) {
+  SiteOptions options;
+  options.models = storage::open_folder(folder_.models());
+  options.missing_viewer = "run npm";
+  open_as(std::move(options));
+  EXPECT_EQ(get("/").status, 503);
+  EXPECT_EQ(get("/").text, "run npm\n");
+  EXPECT_EQ(get("/assets/page-1a2b.js").status, 404);
+  EXPECT_EQ(get("/models.json").status, 200);
+  EXPECT_EQ(get("/models/plain.hier/tiles.bin").status, 200);
+}
+
+TEST_F(SiteTest, ADamagedArchiveIsLeftOutAndToldOnce) {
+  const fs::path archive = folder_.models() / "packed.3tz";
+  fs::resize_file(archive, fs::file_size(archive) - 1);
+  EXPECT_EQ(get("/models/packed.3tz/hierarchy.json").status, 404);
+  EXPECT_THAT(json::parse(get("/models.json").text)["models"], SizeIs(2));
+  EXPECT_EQ(get("/models/packed.3tz/hierarchy.json").status, 404);
+  EXPECT_THAT(told_,
+              testing::UnorderedElementsAre(HasSubstr("packed.3tz"), HasSubstr("broken.hier")));
+}
+
+TEST(GalleryTest, TheDiskIsAskedOnceASecond) {
+  const tests::ServedFolder folder;
+  Hierarchies hierarchies(storage::open_folder(folder.models()), [](const std::string&) {});
+  auto now = std::chrono::steady_clock::time_point();
+  Gallery gallery(hierarchies, [&] { return now; });
+  EXPECT_THAT(gallery.models(), SizeIs(3));
+  fs::remove_all(folder.models() / "plain.hier");
+  now += std::chrono::milliseconds(999);
+  EXPECT_THAT(gallery.models(), SizeIs(3));
+  now += std::chrono::milliseconds(1);
+  EXPECT_THAT(gallery.models(), SizeIs(2));
+  fs::remove_all(folder.models() / "packed.3tz");
+  gallery.refresh();
+  EXPECT_THAT(gallery.models(), SizeIs(1));
+}
+
+}  // namespace
+}  // namespace meshhier::server

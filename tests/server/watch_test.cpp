@@ -1,0 +1,256 @@
+// A watched folder with the real program.
+#include "server/watch.h"
+
+#include "tests/server/served_folder.h"
+#include "tests/server/wait_until.h"
+#include "tests/support/meshes.h"
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace meshhier::server {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::StartsWith;
+using tests::text_of;
+using tests::wait_until;
+
+class WatchTest : public testing::Test {
+ protected:
+  WatchTest() {
+    fs::create_directories(inbox());
+    fs::create_directories(models());
+  }
+
+  fs::path inbox() const { return directory_.path() / "inbox"; }
+  fs::path models() const { return directory_.path() / "models"; }
+
+  void start() {
+    watch_.reset();
+    WatchOptions options;
+    options.inbox = inbox();
+    options.folder = models();
+    options.config = config_;
+    options.program = MESHHIER_BINARY;
+    options.settle = std::chrono::milliseconds(100);
+    options.look_every = std::chrono::milliseconds(50);
+    options.try_again = std::chrono::milliseconds(100);
+    folder_ = storage::open_folder(models());
+    hierarchies_ = std::make_unique<Hierarchies>(folder_, [](const std::string&) {});
+    watch_ = std::make_unique<Watch>(options, *files_, *hierarchies_,
+                                     [this](const std::string& message) {
+                                       const std::lock_guard lock(mutex_);
+                                       told_.push_back(message);
+                                     });
+    watch_->start();
+  }
+
+  void drop(const std::string& name, std::size_t triangles = 600) {
+    tests::write_ply(tests::sphere(triangles), directory_.path() / "made.ply");
+    fs::rename(directory_.path() / "made.ply", inbox() / name);
+  }
+  bool is_there(const std::string& name) const {
+    return fs::exists(models() / name / "hierarchy.json");
+  }
+
+  /// The job's value, "" if there is no such job.
+  std::string job(const std::string& name, const char* key) const {
+    for (const auto& one : watch_->jobs()) {
+      if (one["name"] == name)
+        return one.value(key, "");
+    }
+    return "";
+  }
+  bool is_idle() const { return watch_->jobs().empty(); }
+
+  /// Stops the build of a.ply when its journal has begun, and checks that it was not done by then:
+  /// if it was, with a larger mesh.
+  void stop_in_the_middle() {
+    for (std::size_t triangles = 100'000; !fs::exists(models() / ".a.hier.meshhier-work");
+         triangles *= 2) {
+      fs::remove_all(models() / "a.hier");
+      start();
+      drop("a.ply", triangles);
+      wait_until([&] { return job("a.ply", "stage") == "leaves" || is_there("a.hier"); });
+      watch_->stop();
+    }
+    ASSERT_FALSE(is_there("a.hier"));
+  }
+
+  std::vector<std::string> told() {
+    const std::lock_guard lock(mutex_);
+    return told_;
+  }
+
+  tests::TemporaryDirectory directory_;
+  std::unique_ptr<storage::FileSystem> files_ = storage::make_posix_file_system();
+  fs::path config_;
+  std::shared_ptr<const storage::Folder> folder_;
+  std::unique_ptr<Hierarchies> hierarchies_;
+  std::mutex mutex_;
+  std::vector<std::string> told_;
+  std::unique_ptr<Watch> watch_;
+};
+
+/// Name and content of each file below.
+std::map<std::string, std::string> contents(const fs::path& directory) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(directory)) {
+    if (entry.is_regular_file())
+      files[entry.path().lexically_relative(directory)] = text_of(entry.path());
+  }
+  return files;
+}
+
+TEST_F(WatchTest, WhatIsDroppedIsBuiltBrokenOnesAreTold) {
+  start();
+  tests::write_text(inbox() / "broken.ply", "ply\nformat ascii 1.0\nelement vertex 3\n");
+  tests::write_text(inbox() / "notes.txt", "no mesh");
+  tests::write_text(inbox() / ".hidden.ply", "ply");
+  tests::write_text(inbox() / "unfinished.ply.part", "ply");
+  drop("a.ply");
+  drop("z.ply");
+  wait_until([&] { return is_there("a.hier") && is_there("z.hier"); });
+  wait_until([&] { return job("broken.ply", "state") == "failed"; });
+  wait_until([&] { return watch_->jobs().size() == 1; });
+  EXPECT_THAT(job("broken.ply", "message"), StartsWith("broken.ply: "))
+      << "no path of this machine";
+  EXPECT_FALSE(fs::exists(models() / "broken.hier"));
+  EXPECT_THAT(told(), AllOf(Contains("a.ply: done"), Contains("z.ply: done"),
+                            Contains(StartsWith("broken.ply: "))));
+  EXPECT_EQ(text_of(inbox() / "notes.txt"), "no mesh");
+}
+
+TEST_F(WatchTest, ABrokenFileIsTriedAgainWhenItIsAnother) {
+  start();
+  tests::write_text(inbox() / "a.ply", "ply\n");
+  wait_until([&] { return job("a.ply", "state") == "failed"; });
+  drop("b.ply");  // a round goes by
+  wait_until([&] { return is_there("b.hier"); });
+  const std::vector<std::string> words = told();
+  EXPECT_EQ(std::count(words.begin(), words.end(), "a.ply: building a.hier"), 1);
+  drop("a.ply");
+  wait_until([&] { return is_there("a.hier") && is_idle(); });
+}
+
+TEST_F(WatchTest, AGrowingFileWaits) {
+  tests::write_ply(tests::sphere(600), directory_.path() / "whole.ply");
+  const std::string bytes = text_of(directory_.path() / "whole.ply");
+  start();
+  // As long as it grows it is no other than waiting, however long that takes.
+  for (std::size_t part = 1; part <= 10; ++part) {
+    tests::write_text(inbox() / "a.ply", bytes.substr(0, bytes.size() * part / 10));
+    EXPECT_NE(job("a.ply", "state"), "failed");
+  }
+  wait_until([&] { return is_there("a.hier") && is_idle(); });
+  EXPECT_EQ(job("a.ply", "state"), "");
+}
+
+TEST_F(WatchTest, TheResultIsThatOfABuildByHand) {
+  config_ = directory_.path() / "config.json";
+  tests::write_text(config_, R"({"input": "x", "output": "y", "partition": {"vertices": 100},
+                                 "simplify": {"method": "half_edge"}, "storage": {"compression": "zlib"}})");
+  start();
+  drop("a.ply");
+  wait_until([&] { return is_there("a.hier"); });
+  tests::build_small(directory_.path() / "a.ply", directory_.path() / "by_hand.hier",
+                     storage::Compression::zlib);
+  EXPECT_EQ(contents(models() / "a.hier"), contents(directory_.path() / "by_hand.hier"));
+}
+
+TEST_F(WatchTest, AFileThatChangesReplacesItsHierarchy) {
+  start();
+  drop("a.ply", 600);
+  wait_until([&] { return is_there("a.hier") && is_idle(); });
+  const std::string before = text_of(models() / "a.hier/hierarchy.json");
+  drop("a.ply", 900);
+  wait_until(
+      [&] { return is_there("a.hier") && text_of(models() / "a.hier/hierarchy.json") != before; });
+}
+
+TEST_F(WatchTest, TwoOfOneStemHaveHierarchiesOfTheirOwn) {
+  start();
+  drop("a.ply");
+  wait_until([&] { return is_there("a.hier") && is_idle(); });
+  tests::write_text(inbox() / "a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  wait_until([&] { return is_there("a.off.hier") && is_idle(); });
+  EXPECT_EQ(hierarchies_->look("a.hier")->source, "a.ply");
+  EXPECT_EQ(hierarchies_->look("a.off.hier")->source, "a.off");
+}
+
+TEST_F(WatchTest, ARestartBuildsNothingAgain) {
+  start();
+  drop("a.ply");
+  wait_until([&] { return is_there("a.hier") && is_idle(); });
+  const auto manifest = folder_->open("a.hier/hierarchy.json")->version();
+  told_.clear();
+  start();
+  drop("b.ply");
+  wait_until([&] { return is_there("b.hier") && is_idle(); });
+  EXPECT_EQ(folder_->open("a.hier/hierarchy.json")->version(), manifest);
+  EXPECT_THAT(told(), Not(Contains(HasSubstr("a.ply"))));
+}
+
+TEST_F(WatchTest, StoppingStopsTheBuildAndTheNextOneGoesOn) {
+  stop_in_the_middle();
+  start();
+  wait_until([&] { return is_there("a.hier") && is_idle(); });
+  EXPECT_FALSE(fs::exists(models() / ".a.hier.meshhier-work"));
+}
+
+TEST_F(WatchTest, WorkOfAnotherConfigIsBegunAnew) {
+  config_ = directory_.path() / "config.json";
+  tests::write_text(config_, "{}");
+  stop_in_the_middle();
+  tests::write_text(config_, R"({"partition": {"vertices": 4000}})");
+  start();
+  wait_until([&] { return is_there("a.hier") && is_idle(); });
+  EXPECT_FALSE(fs::exists(models() / ".a.hier.meshhier-work"));
+  EXPECT_THAT(text_of(models() / "a.hier/hierarchy.json"), HasSubstr("4000"));
+}
+
+TEST_F(WatchTest, WhatAnotherBuildHasInHandWaits) {
+  fs::create_directories(models() / ".a.hier.meshhier-work");
+  auto lock = files_->try_lock(models() / ".a.hier.meshhier-work/lock");
+  start();
+  drop("a.ply");
+  wait_until([&] {
+    return job("a.ply", "state") == "waiting" &&
+           job("a.ply", "message").find("another") != std::string::npos;
+  });
+  drop("b.ply");
+  wait_until([&] { return is_there("b.hier"); });
+  lock.reset();
+  wait_until([&] { return is_there("a.hier") && is_idle(); });
+}
+
+TEST_F(WatchTest, AnInboxThatGoesAwayIsToldOnceAndComesBack) {
+  start();
+  fs::remove_all(inbox());
+  wait_until([&] { return !told().empty(); });
+  EXPECT_THAT(told(), ElementsAre(AllOf(HasSubstr("inbox"), HasSubstr("No such file"))));
+  fs::create_directories(inbox());
+  drop("a.ply");
+  wait_until([&] { return is_there("a.hier"); });
+  EXPECT_THAT(told().front(), HasSubstr("inbox"));
+  EXPECT_THAT(told()[1], StartsWith("a.ply: building"));
+}
+
+}  // namespace
+}  // namespace meshhier::server
