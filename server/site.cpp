@@ -109,17 +109,25 @@ Reply Site::model_file(const Request& request, std::string_view path) {
 
 Reply Site::viewer_file(const Request& request, const std::string& path) {
   const std::string name = path.empty() ? "index.html" : path;
+  const bool takes_gzip = request.accept_encoding && allows_gzip(*request.accept_encoding);
   std::shared_ptr<const storage::File> file;
-  if (options_.viewer)
+  if (options_.viewer && takes_gzip)
+    file = options_.viewer->open(name + ".gz");
+  const bool is_packed = file != nullptr;
+  if (options_.viewer && !file)
     file = options_.viewer->open(name);
   if (!file && path.empty())
     return text_reply(503, options_.missing_viewer);
   if (!file)
     return not_found();
-  return file_reply(request, {.file = file,
-                              .tag = file_tag(file->version(), 0),
-                              .type = content_type(name),
-                              .cache = name.starts_with(kAssets) ? kForever : kRevalidate});
+  Reply reply = file_reply(request, {.file = file,
+                                     .tag = file_tag(file->version(), 0),
+                                     .type = content_type(name),
+                                     .cache = name.starts_with(kAssets) ? kForever : kRevalidate,
+                                     .may_be_gzip = is_packed});
+  if (!is_packed)
+    reply.headers.emplace_back("Vary", "Accept-Encoding");
+  return reply;
 }
 
 void Site::add_common_headers(Reply& reply) const {

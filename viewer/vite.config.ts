@@ -1,8 +1,26 @@
+import { readFileSync, writeFileSync } from 'node:fs';
+import path from 'node:path';
+import { gzipSync } from 'node:zlib';
+import type { Plugin } from 'vite';
 import { defineConfig } from 'vitest/config';
+
+/// Beside each script and style a copy in gzip, for hosts that send those.
+function packedCopies(): Plugin {
+  return {
+    name: 'packed-copies',
+    writeBundle({ dir }, bundle) {
+      for (const name of Object.keys(bundle).filter((each) => /\.(js|css)$/.test(each))) {
+        const file = path.join(dir ?? '', name);
+        writeFileSync(`${file}.gz`, gzipSync(readFileSync(file), { level: 9 }));
+      }
+    },
+  };
+}
 
 export default defineConfig({
   root: 'page',
   base: './',
+  plugins: [packedCopies()],
   build: { outDir: '../dist/page', emptyOutDir: true, target: 'es2022', chunkSizeWarningLimit: 1000 },
   worker: { format: 'es' },
   test: { root: '.', include: ['test/**/*.test.ts'] },

@@ -6,6 +6,8 @@
 #include "tests/server/served_folder.h"
 
 #include <cstring>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <span>
 #include <string>
@@ -168,6 +170,23 @@ TEST_F(SiteTest, GzipTilesAreSentWithTheirEncoding) {
   }
   EXPECT_EQ(get("/models/plain.hier/tiles/00/000000.glb").header("Content-Encoding"), "");
   EXPECT_EQ(get("/models/packed.3tz/outline.glb").header("Content-Encoding"), "");
+}
+
+TEST_F(SiteTest, ScriptsArePackedForThoseWhoTakeThat) {
+  const std::string text = body_of(get("/assets/page-1a2b.js"));
+  const auto packed = storage::gzip(std::as_bytes(std::span(text)));
+  std::ofstream(folder_.viewer() / "assets/page-1a2b.js.gz", std::ios::binary)
+      .write(reinterpret_cast<const char*>(packed.data()), std::ssize(packed));
+  Request script = request("/assets/page-1a2b.js");
+  EXPECT_EQ(site_->answer(script).header("Content-Encoding"), "");
+  EXPECT_EQ(site_->answer(script).header("Vary"), "Accept-Encoding");
+  script.accept_encoding = "gzip";
+  const Reply reply = site_->answer(script);
+  EXPECT_EQ(reply.header("Content-Encoding"), "gzip");
+  EXPECT_EQ(reply.header("Vary"), "Accept-Encoding");
+  EXPECT_EQ(reply.header("Content-Type"), "text/javascript; charset=utf-8");
+  EXPECT_EQ(body_of(reply).size(), packed.size());
+  EXPECT_NE(reply.header("ETag"), get("/assets/page-1a2b.js").header("ETag"));
 }
 
 TEST_F(SiteTest, AClientWithoutGzipIsToldWhatToDo) {
