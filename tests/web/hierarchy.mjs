@@ -8,19 +8,9 @@
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { call, inChromium, readHierarchy, withPage } from './browser.mjs';
+import { random } from './random.mjs';
 
 const VIEWER = path.join(path.dirname(fileURLToPath(import.meta.url)), '../../viewer');
-
-/// Numbers from 0 to 1, the same each time (mulberry32).
-function random(seed) {
-  let state = seed;
-  return () => {
-    state = (state + 0x6d2b79f5) | 0;
-    let mixed = Math.imul(state ^ (state >>> 15), state | 1);
-    mixed ^= mixed + Math.imul(mixed ^ (mixed >>> 7), mixed | 61);
-    return ((mixed ^ (mixed >>> 14)) >>> 0) / 2 ** 32;
-  };
-}
 
 const SEAM_FRAMES = 300; // of all models together
 const SEAM_SIZE = 384;

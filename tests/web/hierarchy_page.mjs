@@ -3,6 +3,7 @@ import * as THREE from 'three';
 import { PLYLoader } from 'three/addons/loaders/PLYLoader.js';
 import { HierarchyView, tilePath } from 'meshhier-viewer';
 import { coveredAround } from './pixels.mjs';
+import { random } from './random.mjs';
 
 const renderer = new THREE.WebGLRenderer({ antialias: false });
 renderer.setClearColor(0xffffff, 1);
@@ -276,14 +277,3 @@ window.view = {
     return { ...renderer.info.memory };
   },
 };
-
-/// Numbers from 0 to 1, the same each time (mulberry32).
-function random(seed) {
-  let state = seed;
-  return () => {
-    state = (state + 0x6d2b79f5) | 0;
-    let mixed = Math.imul(state ^ (state >>> 15), state | 1);
-    mixed ^= mixed + Math.imul(mixed ^ (mixed >>> 7), mixed | 61);
-    return ((mixed ^ (mixed >>> 14)) >>> 0) / 2 ** 32;
-  };
-}

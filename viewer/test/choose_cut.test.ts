@@ -25,6 +25,7 @@ const sources: Sources = {
   record,
   bytesOf: () => BYTES,
   isHidden: () => false,
+  isLost: () => false,
   wasRefined: () => false,
 };
 
@@ -77,6 +78,12 @@ describe('chooseCut', () => {
   it('leaves alone what cannot be seen', () => {
     const cut = cutOf(look(0, 64), ALL, { ...sources, isHidden: (_key, { min }) => min[0] >= 32 });
     expect(cut.filter(({ record: { min } }) => min[0] >= 32)).toHaveLength(1);
+  });
+
+  it('lets the tile above stand for what could not be had, and for all below it', () => {
+    const cut = cutOf(look(0, 64), ALL, { ...sources, isLost: ({ level, index }) => level === 2 && index === 1 });
+    expect(cut.filter(({ node }) => node.level === 1 && node.index === 0)).toHaveLength(1);
+    expect(chooseCut({ ...sources, isLost: ({ level }) => level === 1 }, look(0, 64), ALL).incomplete).toBe(false);
   });
 
   it('waits for records that have not come', () => {

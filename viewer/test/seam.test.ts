@@ -23,7 +23,7 @@ function randomCut(tree: Tree, next: () => number): Node[] {
 
 async function load(hierarchy: string, node: Node): Promise<Tile> {
   const bytes = readFileSync(path.join(hierarchy, tilePath(node)));
-  return readTile(new Uint8Array(bytes[0] === 0x1f ? gunzipSync(bytes) : bytes), tilePath(node));
+  return readTile(new Uint8Array(bytes[0] === 0x1f ? gunzipSync(bytes) : bytes), tilePath(node), null);
 }
 
 type Point = readonly [number, number, number];

@@ -40,7 +40,7 @@ describe.skipIf(!hasProgram)('readTile', () => {
     const packed = workshop.build(compression, mesh, config(compression));
     for (const file of filesBelow(plain)) {
       const name = path.relative(plain, file);
-      const [one, other] = [await readTile(bytesOf(file), name), await readTile(bytesOf(path.join(packed, name)), name)];
+      const [one, other] = [await readTile(bytesOf(file), name, null), await readTile(bytesOf(path.join(packed, name)), name, null)];
       expect(other.positions).toEqual(one.positions);
       expect(other.colours).toEqual(one.colours);
       expect(other.chains).toEqual(one.chains);
@@ -59,7 +59,7 @@ describe.skipIf(!hasProgram)('readTile', () => {
         const hurt = round % 5 === 0 ? bytes.slice(0, Math.floor(next() * bytes.length)) : bytes.slice();
         for (let flips = 0; flips < 1 + round % 3; ++flips) hurt[Math.floor(next() * Math.min(hurt.length, round % 2 === 0 ? 4000 : Infinity))] ^= 1 << Math.floor(8 * next());
         try {
-          expect(isSound(await readTile(hurt, 'hurt.glb'))).toBe(true);
+          expect(isSound(await readTile(hurt, 'hurt.glb', null))).toBe(true);
         } catch (problem) {
           if (!(problem instanceof HierarchyProblem)) throw problem;
           expect(problem.message).toMatch(/^hurt\.glb: /);
@@ -72,7 +72,7 @@ describe.skipIf(!hasProgram)('readTile', () => {
 
   it('knows a closed mesh, its inside and its outside', async () => {
     const closed = workshop.build('closed', ['surface', '--triangles', '1000', '--shape', 'torus'], config('none'));
-    const root = await readTile(bytesOf(path.join(closed, 'tiles/00/000000.glb')), 'root');
+    const root = await readTile(bytesOf(path.join(closed, 'tiles/00/000000.glb')), 'root', null);
     expect(root.closed).toBe(true);
     expect(root.insideOut).toBe(false);
     const turned = root.indices.slice().reverse();

@@ -1,6 +1,6 @@
 import { readFileSync } from 'node:fs';
 import path from 'node:path';
-import { afterAll, describe, expect, it } from 'vitest';
+import { afterAll, describe, expect, it, vi } from 'vitest';
 import { readManifest } from '../src/hierarchy/manifest.js';
 import { HierarchyProblem } from '../src/hierarchy/problem.js';
 import { RemoteHierarchy } from '../src/hierarchy/remote_hierarchy.js';
@@ -12,7 +12,7 @@ import type { Fetch } from '../src/hierarchy/bytes.js';
 const ROOT = { level: 0, index: 0 };
 
 function remote(fetch: Fetch): RemoteHierarchy {
-  return new RemoteHierarchy('', fetch, new TileDecoder(undefined, 0));
+  return new RemoteHierarchy('', fetch, new TileDecoder(undefined, 0), new AbortController().signal);
 }
 
 function whenCome(): { promise: Promise<void>; come: () => void } {
@@ -37,7 +37,7 @@ describe.skipIf(!hasProgram)('TileIndex', () => {
     const from = remote(fetchFrom(hierarchy, asked));
     const manifest = await from.manifest();
     const { promise, come } = whenCome();
-    const { index, tree } = await from.directory(manifest, come, come);
+    const { index, tree } = await from.directory(manifest, await from.root(), come, come);
     const last = { level: tree.lastLevel, index: tree.partitions - 1 };
     expect(index.record(ROOT)!.error).toBeGreaterThan(0);
     expect(index.record(last)).toBeNull();
@@ -54,21 +54,66 @@ describe.skipIf(!hasProgram)('TileIndex', () => {
       asked.push(url);
       return known(url);
     });
-    const { index, tree } = await from.directory(await from.manifest(), () => undefined, () => undefined);
+    const { index, tree } = await from.directory(await from.manifest(), await from.root(), () => undefined, () => undefined);
     expect(index.record({ level: tree.lastLevel, index: tree.partitions - 1 })!.error).toBe(0);
-    expect(asked).toHaveLength(2);
+    expect(asked).toHaveLength(3);
+  });
+
+  it('asks again for a page that did not come', async () => {
+    const hierarchy = large();
+    const known = fetchFrom(hierarchy);
+    let isDown = false;
+    const from = remote((url, init) => (isDown ? Promise.reject(new TypeError('down')) : known(url, init)));
+    const problems: unknown[] = [];
+    const { promise, come } = whenCome();
+    const { index, tree } = await from.directory(await from.manifest(), await from.root(), come, (problem) => problems.push(problem));
+    const last = { level: tree.lastLevel, index: tree.partitions - 1 };
+    const clock = vi.spyOn(performance, 'now');
+    isDown = true;
+    expect(index.record(last)).toBeNull();
+    await vi.waitFor(() => {
+      expect(problems).toHaveLength(1);
+    });
+    isDown = false;
+    const now = performance.now();
+    expect(index.record(last)).toBeNull();
+    clock.mockReturnValue(now + 10_000);
+    expect(index.record(last)).toBeNull();
+    await promise;
+    clock.mockRestore();
+    expect(index.record(last)!.error).toBe(0);
+  });
+
+  it('tells of a damaged record, and goes on with the others', async () => {
+    const hierarchy = large();
+    const known = fetchFrom(hierarchy);
+    const from = remote(async (url, init) => {
+      const response = await known(url, init);
+      if (!url.endsWith('tiles.bin')) return response;
+      const bytes = new Uint8Array(await response.arrayBuffer());
+      new DataView(bytes.buffer).setFloat32(32 + 2 * 96 + 44, NaN, true);
+      return new Response(bytes, { status: response.status });
+    });
+    const problems: unknown[] = [];
+    const { index } = await from.directory(await from.manifest(), await from.root(), () => undefined, (problem) => problems.push(problem));
+    const hurt = { level: 1, index: 1 };
+    for (let times = 0; times < 3; ++times) expect(index.record(hurt)).toBeNull();
+    expect(index.isDamaged(hurt)).toBe(true);
+    expect(index.record({ level: 1, index: 0 })).not.toBeNull();
+    expect(problems).toHaveLength(1);
   });
 
   it('refuses an index of another hierarchy, and a short one', async () => {
     const hierarchy = large();
     const bytes = new Uint8Array(readFileSync(path.join(hierarchy, 'tiles.bin')));
     const manifest = readManifest(readFileSync(path.join(hierarchy, 'hierarchy.json'), 'utf8'));
+    const root = await remote(fetchFrom(hierarchy)).root();
     for (const wrong of [bytes.subarray(0, 100), new Uint8Array(70_000)]) {
       const from = remote(() => Promise.resolve(new Response(new Uint8Array(wrong))));
-      await expect(from.directory(manifest, () => undefined, () => undefined)).rejects.toBeInstanceOf(HierarchyProblem);
+      await expect(from.directory(manifest, root, () => undefined, () => undefined)).rejects.toBeInstanceOf(HierarchyProblem);
     }
     const less = { ...manifest, partitions: manifest.partitions - 1 };
-    await expect(remote(fetchFrom(hierarchy)).directory(less, () => undefined, () => undefined)).rejects.toBeInstanceOf(HierarchyProblem);
+    await expect(remote(fetchFrom(hierarchy)).directory(less, root, () => undefined, () => undefined)).rejects.toBeInstanceOf(HierarchyProblem);
     expect(new Tree(less.partitions).tileCount).toBe(manifest.partitions * 2 - 3);
   });
 });

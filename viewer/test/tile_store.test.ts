@@ -1,11 +1,13 @@
 import { describe, expect, it } from 'vitest';
 import { TileStore, type ResidentTile, type StoreHost, type Wanted } from '../src/cut/tile_store.js';
 import type { Tile } from '../src/hierarchy/tile.js';
+import type { TileRecord } from '../src/hierarchy/tile_index.js';
 import { Tree, keyOf, type Node } from '../src/hierarchy/tree.js';
 import { random } from './support/random.js';
 
 const tree = new Tree(32);
 const BYTES = 100;
+const RECORD: TileRecord = { own: 1, ghosts: 0, interior: 0, border: 0, error: 0, min: [0, 0, 0], max: [0, 0, 0], bytes: 1 };
 
 function tile({ level, index }: Node): Tile {
   const empty = { positions: new Float32Array(3), normals: new Int16Array(4), colours: null, indices: new Uint16Array(0) };
@@ -25,7 +27,7 @@ class SlowHost implements StoreHost {
   calls: Call[] = [];
   readonly held = new Set<number>();
   problems = 0;
-  async load(node: Node, signal: AbortSignal): Promise<Tile> {
+  async load(node: Node, _record: TileRecord, signal: AbortSignal): Promise<Tile> {
     return new Promise((resolve, reject) => {
       this.calls.push({ node, signal, resolve, reject });
     });
@@ -55,7 +57,7 @@ function store(host: SlowHost, budget: number, requests = 4): TileStore {
 }
 
 function wanted(...nodes: Node[]): Wanted[] {
-  return nodes.map((node) => ({ node, bytes: BYTES, loadingBytes: 2 * BYTES }));
+  return nodes.map((node) => ({ node, record: RECORD, loadingBytes: 2 * BYTES }));
 }
 
 function key({ level, index }: Node): number {
@@ -139,19 +141,23 @@ describe('TileStore', () => {
     expect(host.problems).toBeGreaterThan(0);
   });
 
-  it('tries a file that failed again, later, and gives up in the end', async () => {
+  it('tries a file that failed again, later, gives up, and forgets that after a while', async () => {
     const host = new SlowHost();
     const tiles = store(host, 1e6);
     let asked = 0;
-    for (let now = 1; now < 200_000; now += 1000) {
+    for (let now = 1; now < 40_000; now += 1000) {
       tiles.want(wanted(LEFT), now);
       asked += host.calls.length;
       for (const { reject } of host.calls.splice(0)) reject(new Error('gone'));
       await new Promise((resolve) => setTimeout(resolve));
     }
     expect(asked).toBe(4);
-    expect(tiles.want(wanted(LEFT), 300_000)).toBe(0);
-    expect(tiles.usedBytes).toBe(BYTES);
+    expect(tiles.isGivenUp(key(LEFT), 40_000)).toBe(true);
+    expect(tiles.want(wanted(LEFT), 40_000)).toBe(0);
+    expect(tiles.nextTry).toBeLessThan(100_000);
+    expect(tiles.want(wanted(LEFT), 300_000)).toBe(1);
+    expect(host.calls).toHaveLength(1);
+    expect(tiles.usedBytes).toBe(3 * BYTES);
   });
 
   it('holds nothing after its end', async () => {

@@ -21,6 +21,8 @@ export interface Sources {
   readonly bytesOf: (record: TileRecord, node: Node) => number;
   /// Whether nothing of the node can be seen although it is in view.
   readonly isHidden: (key: number, record: TileRecord) => boolean;
+  /// Whether a tile, or its record, could not be had: the one above stands for it.
+  readonly isLost: (node: Node) => boolean;
   /// Whether the node was refined in the last cut.
   readonly wasRefined: (key: number) => boolean;
 }
@@ -83,7 +85,9 @@ class Chooser {
   }
 
   private refine(chosen: ChosenNode): void {
-    const children = this.sources.tree.children(chosen.node).map((child) => this.see(child));
+    const nodes = this.sources.tree.children(chosen.node);
+    const children = nodes.map((child) => this.see(child));
+    if (nodes.some((child) => this.sources.isLost(child))) return;
     if (!children.every((child) => child !== null)) {
       this.incomplete = true;
       return;

@@ -47,7 +47,7 @@ export class FrameRate {
 
   constructor(public target: number) {}
 
-  /// The camera began to move: nothing that was measured before counts.
+  /// The camera began to move: the frames since it last did say nothing.
   restart(): void {
     this.clear();
   }
@@ -72,7 +72,7 @@ export class FrameRate {
     const count = this.intervals.length;
     const milliseconds = (this.elapsed - Math.max(...this.intervals)) / (count - 1);
     const ratio = (milliseconds * this.target) / 1000;
-    this.framesPerSecond = 1000 / milliseconds;
+    this.framesPerSecond = 1000 / Math.max(milliseconds, 0.1);
     this.intervals = [];
     this.elapsed = 0;
     if (ratio > 1 + TOLERANCE) this.shrink({ vertices, milliseconds }, ratio);

@@ -48,10 +48,10 @@ export class Refinement {
     private readonly mostMemory: MostMemory,
   ) {}
 
-  /// Throws HierarchyProblem if the index is damaged. Touches what must stay at the time `now`.
+  /// null: not even the root is known. Touches what must stay at the time `now`.
   refine(view: Viewpoint, limits: RefinementLimits, now: number): Refined | null {
     const room = this.store.budget - 2 * this.largest;
-    const choice = chooseCut(this.sources(view), view, { ...limits, bytes: room });
+    const choice = chooseCut(this.sources(view, now), view, { ...limits, bytes: room });
     if (choice.root === null) return null;
     this.refined = new Set(choice.refined.map(({ key }) => key));
     this.touch(choice, now);
@@ -62,7 +62,7 @@ export class Refinement {
     return { drawn, missing, limited: limited.vertices, isComplete: missing === 0 && !incomplete };
   }
 
-  private sources(view: Viewpoint): Sources {
+  private sources(view: Viewpoint, now: number): Sources {
     const culls = this.isOutside(view.eye);
     return {
       tree: this.tree,
@@ -72,6 +72,7 @@ export class Refinement {
         this.largest = Math.max(this.largest, bytes);
         return bytes;
       },
+      isLost: (node) => this.index.isDamaged(node) || this.store.isGivenUp(keyOf(node.level, node.index), now),
       isHidden: (key, record) => culls && this.isHidden(view, key, record),
       wasRefined: (key) => this.refined.has(key),
     };
@@ -100,9 +101,8 @@ export class Refinement {
   private wanted({ refined }: Choice): Wanted[] {
     return refined.flatMap(({ children }) =>
       children.map(({ node, record }) => {
-        const bytes = this.mostMemory(record, node);
         // Its file, packed and unpacked, is in memory as well until it is decoded.
-        return { node, bytes, loadingBytes: 2 * bytes };
+        return { node, record, loadingBytes: 2 * this.mostMemory(record, node) };
       }),
     );
   }

@@ -1,6 +1,7 @@
 // The tiles in memory and on their way: a tree from the root down, within a budget of bytes.
 import { Seam } from './seam.js';
 import type { Tile } from '../hierarchy/tile.js';
+import type { TileRecord } from '../hierarchy/tile_index.js';
 import { keyOf, type Node, type Tree } from '../hierarchy/tree.js';
 
 export interface ResidentTile {
@@ -8,20 +9,18 @@ export interface ResidentTile {
   readonly key: number;
   readonly tile: Tile;
   readonly seam: Seam;
-  /// Of the tile in memory and in GPU buffers.
-  bytes: number;
 }
 
 export interface Wanted {
   readonly node: Node;
-  /// What the tile takes in memory, at most, and more while it is on its way.
-  readonly bytes: number;
+  readonly record: TileRecord;
+  /// What the tile takes in memory while it is on its way, at the most: more than when it is there.
   readonly loadingBytes: number;
 }
 
 /// How tiles come, and what is told of them.
 export interface StoreHost {
-  load(node: Node, signal: AbortSignal): Promise<Tile>;
+  load(node: Node, record: TileRecord, signal: AbortSignal): Promise<Tile>;
   bytesOf(tile: Tile, seam: Seam): number;
   came(tile: ResidentTile): void;
   gone(tile: ResidentTile): void;
@@ -46,7 +45,9 @@ interface Entry {
 const PATIENCE_MS = 300;
 /// A file that failed is asked for again after this time, longer each time.
 const RETRY_MS = 2000;
+/// After so many times it is given up, for as long as this.
 const MOST_TRIES = 4;
+const FORGET_MS = 60_000;
 
 interface Failure {
   tries: number;
@@ -54,7 +55,6 @@ interface Failure {
 }
 
 export class TileStore {
-  fetched = 0;
   aborted = 0;
   evicted = 0;
   peakBytes = 0;
@@ -74,7 +74,9 @@ export class TileStore {
   /// Puts the root there: it never goes.
   addRoot(tile: Tile, tree: Tree): ResidentTile {
     const entry = this.enter({ level: 0, index: 0 }, 0, 0);
-    return this.arrive(entry, tile, tree);
+    const resident = this.arrive(entry, tile, tree);
+    this.host.came(resident);
+    return resident;
   }
 
   get(key: number): ResidentTile | undefined {
@@ -112,23 +114,36 @@ export class TileStore {
     let isFull = false;
     for (const each of wanted) {
       const key = keyOf(each.node.level, each.node.index);
-      if (this.has(key) || this.isGivenUp(key)) continue;
+      if (this.has(key) || this.isGivenUp(key, now)) continue;
       ++missing;
       if (this.entries.has(key) || isFull || this.loading >= this.requests || this.mustWait(key, now)) continue;
-      isFull = !this.start(each, key, now);
+      isFull = !this.start(each, now);
     }
     return missing;
   }
 
-  /// Counts all tiles anew: what a tile takes has changed.
+  /// Counts all tiles anew: what a tile takes will be another number as soon as room has been made.
   recount(): void {
     for (const entry of this.entries.values()) {
       if (!entry.resident) continue;
       const bytes = this.host.bytesOf(entry.resident.tile, entry.resident.seam);
-      this.count(bytes - entry.bytes);
+      this.usedBytes += bytes - entry.bytes;
       entry.bytes = bytes;
-      entry.resident.bytes = bytes;
     }
+  }
+
+  /// When a file that failed may be asked for again; Infinity: none did.
+  get nextTry(): number {
+    return Math.min(Infinity, ...[...this.failures.values()].map(({ again }) => again));
+  }
+
+  /// A file that failed too often, not long ago.
+  isGivenUp(key: number, now: number): boolean {
+    const failure = this.failures.get(key);
+    if (failure === undefined || failure.tries < MOST_TRIES) return false;
+    if (now < failure.again) return true;
+    this.failures.delete(key);
+    return false;
   }
 
   /// Drops least recently useful tiles until `bytes` more fit; false if what is left is useful at `now`.
@@ -184,18 +199,18 @@ export class TileStore {
     if (entry.resident) this.host.gone(entry.resident);
   }
 
-  private start({ node, loadingBytes }: Wanted, key: number, now: number): boolean {
+  private start({ node, record, loadingBytes }: Wanted, now: number): boolean {
     const above = this.tree().parent(node);
     if (above && !this.entries.has(keyOf(above.level, above.index))) return true; // after the one above it
     if (!this.makeRoom(loadingBytes, now)) return false;
     const entry = this.enter(node, loadingBytes, now);
     ++this.loading;
-    this.host.load(node, entry.abort.signal).then(
+    this.host.load(node, record, entry.abort.signal).then(
       (tile) => {
         this.finish(entry, tile);
       },
       (problem: unknown) => {
-        this.fail(entry, key, problem);
+        this.fail(entry, problem);
       },
     );
     return true;
@@ -203,32 +218,32 @@ export class TileStore {
 
   private finish(entry: Entry, tile: Tile): void {
     if (this.isOver || entry.abort.signal.aborted) return;
-    --this.loading;
+    let resident: ResidentTile;
     try {
-      this.arrive(entry, tile, this.tree());
-      this.failures.delete(entry.key);
+      resident = this.arrive(entry, tile, this.tree());
     } catch (problem) {
-      ++this.loading;
-      this.fail(entry, entry.key, problem);
+      this.fail(entry, problem);
+      return;
     }
+    --this.loading;
+    this.failures.delete(entry.key);
+    this.host.came(resident);
   }
 
   private arrive(entry: Entry, tile: Tile, tree: Tree): ResidentTile {
     const seam = new Seam(tile, tree);
     const bytes = this.host.bytesOf(tile, seam);
-    const resident: ResidentTile = { node: entry.node, key: entry.key, tile, seam, bytes };
+    entry.resident = { node: entry.node, key: entry.key, tile, seam };
     this.count(bytes - entry.bytes);
     entry.bytes = bytes;
-    entry.resident = resident;
-    ++this.fetched;
-    this.host.came(resident);
-    return resident;
+    return entry.resident;
   }
 
-  private fail(entry: Entry, key: number, problem: unknown): void {
+  private fail(entry: Entry, problem: unknown): void {
     if (this.isOver || entry.abort.signal.aborted) return;
-    const tries = (this.failures.get(key)?.tries ?? 0) + 1;
-    this.failures.set(key, { tries, again: entry.useful + RETRY_MS * 2 ** (tries - 1) });
+    const tries = (this.failures.get(entry.key)?.tries ?? 0) + 1;
+    const wait = tries < MOST_TRIES ? RETRY_MS * 2 ** (tries - 1) : FORGET_MS;
+    this.failures.set(entry.key, { tries, again: entry.useful + wait });
     this.drop(entry);
     this.host.failed(entry.node, problem);
   }
@@ -253,10 +268,6 @@ export class TileStore {
   private abortStale(now: number): void {
     for (const entry of [...this.entries.values()])
       if (!entry.resident && this.entries.has(entry.key) && entry.useful < now - PATIENCE_MS) this.cancel(entry);
-  }
-
-  private isGivenUp(key: number): boolean {
-    return (this.failures.get(key)?.tries ?? 0) >= MOST_TRIES;
   }
 
   private mustWait(key: number, now: number): boolean {

@@ -55,6 +55,20 @@ async function respond(fetch: Fetch, url: string, name: string, init: RequestIni
   return response;
 }
 
+async function receive(
+  body: ReadableStream<Uint8Array>,
+  most: number,
+  name: string,
+  signal: AbortSignal | null | undefined,
+): Promise<Uint8Array<ArrayBuffer>> {
+  try {
+    return await drain(body, most, name);
+  } catch (problem) {
+    if (signal?.aborted || problem instanceof HierarchyProblem) throw problem;
+    throw new HierarchyProblem(name, `broke off (${String(problem)})`);
+  }
+}
+
 /// The content of a file of at most `most` bytes, out of its gzip.
 export async function fetchBytes(
   fetch: Fetch,
@@ -65,7 +79,7 @@ export async function fetchBytes(
 ): Promise<Uint8Array<ArrayBuffer>> {
   const response = await respond(fetch, url, name, init);
   if (response.body === null) throw new HierarchyProblem(name, 'is empty');
-  return unpacked(await drain(response.body, most, name), most, name);
+  return unpacked(await receive(response.body, most, name, init.signal), most, name);
 }
 
 /// Bytes [first, end) of a file, or all of it (at most `most`) where the host knows no ranges.
@@ -75,6 +89,7 @@ export async function fetchRange(
   name: string,
   [first, end]: [number, number],
   most: number,
+  signal: AbortSignal,
 ): Promise<Uint8Array<ArrayBuffer>> {
-  return fetchBytes(fetch, url, name, most, { headers: { Range: `bytes=${first}-${end - 1}` } });
+  return fetchBytes(fetch, url, name, most, { signal, headers: { Range: `bytes=${first}-${end - 1}` } });
 }

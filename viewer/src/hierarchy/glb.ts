@@ -30,6 +30,8 @@ const MAGIC = 0x46546c67; // "glTF"
 const JSON_CHUNK = 0x4e4f534a;
 const BIN_CHUNK = 0x004e4942;
 const MOST_JSON = 65536;
+/// No codec of meshoptimizer makes more of a byte: a vertex's byte takes a quarter of a bit at least, with headers.
+const MOST_EXPANSION = 256;
 
 export class Glb {
   private constructor(
@@ -70,7 +72,7 @@ export class Glb {
   }
 
   private decompress(of: Compressed, length: number): Uint8Array {
-    if (of.count * of.byteStride !== length) this.fail('a compressed section of another size');
+    if (of.count * of.byteStride !== length || length > MOST_EXPANSION * of.byteLength) this.fail('a compressed section of another size');
     const target = new Uint8Array(length);
     try {
       const source = this.slice(of.byteOffset ?? 0, of.byteLength);

@@ -1,6 +1,7 @@
 // The manifest, hierarchy.json (docs/file_format.md, section 2): what a viewer needs of it, checked.
 import { JsonValue, type Fail } from '../json_value.js';
 import { HierarchyProblem } from './problem.js';
+import { indexSize } from './tile_index.js';
 
 export interface Manifest {
   readonly source: {
@@ -10,6 +11,9 @@ export interface Manifest {
     readonly triangles: number;
     readonly hasColours: boolean;
     readonly hasNormals: boolean;
+    /// In input coordinates.
+    readonly min: readonly [number, number, number];
+    readonly max: readonly [number, number, number];
   };
   /// Add to stored positions for input coordinates.
   readonly origin: readonly [number, number, number];
@@ -20,13 +24,10 @@ export interface Manifest {
   readonly partitions: number;
   readonly totalBytes: number;
   readonly index: { readonly file: string; readonly bytes: number };
-  readonly outline: { readonly file: string; readonly bytes: number };
 }
 
 const FILE = 'hierarchy.json';
 const FORMAT_VERSION = 4;
-const LEAST_INDEX = 128; // a header and a record
-const MOST_OUTLINE = 2 ** 20;
 
 const MOST_SHORT_BITS = 16;
 
@@ -44,10 +45,12 @@ function readSource(source: JsonValue): Manifest['source'] {
     triangles: source.at('triangles').count(),
     hasColours: attributes.at('colours').oneOf('none', 'u8', 'u16', 'f32') !== 'none',
     hasNormals: attributes.at('normals').flag(),
+    min: source.at('bounds').at('min').triple(),
+    max: source.at('bounds').at('max').triple(),
   };
 }
 
-function readFile(file: JsonValue, leastBytes: number, mostBytes?: number): { file: string; bytes: number } {
+function readFile(file: JsonValue, leastBytes: number, mostBytes: number): { file: string; bytes: number } {
   return { file: file.at('file').fileName(), bytes: file.at('bytes').count(leastBytes, mostBytes) };
 }
 
@@ -60,15 +63,16 @@ export function readManifest(text: string): Manifest {
   root.at('format').oneOf('meshhier');
   const version = root.at('format_version').number();
   if (version !== FORMAT_VERSION) refuse(`format version ${version}; this viewer knows ${FORMAT_VERSION}`);
+  const partitions = root.at('partitions').count(1, 2 ** 32 - 1);
+  const indexBytes = indexSize(2 * partitions - 1);
   return {
     source: readSource(root.at('source')),
     origin: root.at('origin').triple(),
     place: readPlace(root.at('storage').at('positions')),
     up: root.at('up').oneOf('y', 'z'),
     licence: root.at('licence').text(),
-    partitions: root.at('partitions').count(1, 2 ** 32 - 1),
+    partitions,
     totalBytes: root.at('total_bytes').count(),
-    index: readFile(root.at('index'), LEAST_INDEX),
-    outline: readFile(root.at('outline'), 1, MOST_OUTLINE),
+    index: readFile(root.at('index'), indexBytes, indexBytes),
   };
 }

@@ -1,14 +1,17 @@
 // A hierarchy at a URL: its root first, then what tells of the rest.
 import { fetchBytes, fetchRange, type Fetch } from './bytes.js';
 import { readManifest, type Manifest } from './manifest.js';
-import type { Tile } from './tile.js';
+import { HierarchyProblem } from './problem.js';
+import type { ExpectedCounts, Tile } from './tile.js';
 import type { TileDecoder } from './tile_decoder.js';
-import { TileIndex } from './tile_index.js';
+import { TileIndex, type TileRecord } from './tile_index.js';
 import { Tree, tilePath, type Node } from './tree.js';
 
 const MOST_MANIFEST = 2 ** 20;
-const MOST_TILE = 2 ** 28;
 const MOST_OUTLINE = 2 ** 20;
+/// A root has 32,768 vertices at the most, and seldom more than twice as many triangles.
+const MOST_ROOT = 2 ** 25;
+const ROOT: Node = { level: 0, index: 0 };
 
 /// What all tiles but the root need.
 export interface Directory {
@@ -17,43 +20,77 @@ export interface Directory {
   readonly index: TileIndex;
 }
 
+/// Bytes of a tile's file, out of its gzip, at the most: with all attributes, raw ones too, and the widest indices.
+function mostBytes({ own, ghosts, interior, border }: TileRecord, level: number): number {
+  const perVertex = 2 * (12 + 16 + 8) + 12;
+  const perGhost = 2 * level + 8;
+  return perVertex * (own + ghosts) + 12 * (interior + border) + 2 * own + perGhost * ghosts + 2 * 65536;
+}
+
+function expectedOf({ level, index }: Node, { own, ghosts, interior, border }: TileRecord): ExpectedCounts {
+  return { level, index, own, ghosts, interior, border };
+}
+
+function withoutSlashes(url: string): string {
+  let end = url.length;
+  while (end > 0 && url[end - 1] === '/') --end;
+  return url.slice(0, end);
+}
+
 export class RemoteHierarchy {
   private readonly base: string;
 
+  /// `signal`: ends all that is under way.
   constructor(
     url: string,
     private readonly fetch: Fetch,
     private readonly decoder: TileDecoder,
+    private readonly signal: AbortSignal,
   ) {
-    this.base = url.replace(/\/*$/, '/');
+    this.base = `${withoutSlashes(url)}/`;
   }
 
-  async tile(node: Node, init: RequestInit = {}): Promise<Tile> {
+  async root(): Promise<Tile> {
+    const path = tilePath(ROOT);
+    const bytes = await fetchBytes(this.fetch, this.base + path, path, MOST_ROOT, { priority: 'high', signal: this.signal });
+    const tile = await this.decoder.decode(bytes, path, null);
+    if (tile.level !== 0 || tile.index !== 0 || tile.ghosts !== 0) throw new HierarchyProblem(path, 'not a root');
+    return tile;
+  }
+
+  /// `record`: what the index says of it; a tile that is another one is refused.
+  async tile(node: Node, record: TileRecord, signal: AbortSignal): Promise<Tile> {
     const path = tilePath(node);
-    const bytes = await fetchBytes(this.fetch, this.base + path, path, MOST_TILE, init);
-    return this.decoder.decode(bytes, path);
+    const bytes = await fetchBytes(this.fetch, this.base + path, path, mostBytes(record, node.level), { signal });
+    return this.decoder.decode(bytes, path, expectedOf(node, record));
   }
 
   async outline(): Promise<Uint8Array> {
-    return fetchBytes(this.fetch, `${this.base}outline.glb`, 'outline.glb', MOST_OUTLINE);
+    return fetchBytes(this.fetch, `${this.base}outline.glb`, 'outline.glb', MOST_OUTLINE, { signal: this.signal });
   }
 
   async manifest(): Promise<Manifest> {
-    const text = await fetchBytes(this.fetch, `${this.base}hierarchy.json`, 'hierarchy.json', MOST_MANIFEST);
+    const name = 'hierarchy.json';
+    const text = await fetchBytes(this.fetch, this.base + name, name, MOST_MANIFEST, { signal: this.signal });
     return readManifest(new TextDecoder().decode(text));
   }
 
-  /// With the beginning of the index; `onPage` and `onProblem` tell of the rest, which comes as it is looked into.
-  async directory(manifest: Manifest, onPage: () => void, onProblem: (problem: unknown) => void): Promise<Directory> {
+  /// With the beginning of the index; `onPage` and `onProblem` tell of the rest, which comes as it is looked into. `root`
+  /// must be the tile that the index has for it.
+  async directory(manifest: Manifest, root: Tile, onPage: () => void, onProblem: (problem: unknown) => void): Promise<Directory> {
     const tree = new Tree(manifest.partitions);
     const read = (first: number, end: number): Promise<Uint8Array> => this.indexBytes(manifest, first, end);
     const index = new TileIndex(tree, manifest.place, read, onPage, onProblem);
     await index.open();
+    const record = index.record(ROOT);
+    if (record?.own !== root.own || record.interior !== root.interiorCount)
+      throw new HierarchyProblem(tilePath(ROOT), 'not the tile that the index tells of');
     return { manifest, tree, index };
   }
 
   private async indexBytes({ index: { file, bytes } }: Manifest, first: number, end: number): Promise<Uint8Array> {
-    if (first === 0 && end === bytes) return fetchBytes(this.fetch, this.base + file, file, bytes);
-    return fetchRange(this.fetch, this.base + file, file, [first, end], bytes);
+    const url = this.base + file;
+    if (first === 0 && end === bytes) return fetchBytes(this.fetch, url, file, bytes, { signal: this.signal });
+    return fetchRange(this.fetch, url, file, [first, end], bytes, this.signal);
   }
 }

@@ -41,15 +41,26 @@ export interface Tile {
 const MOST_OWN = 32768;
 const MOST_ELEMENTS = 2 ** 26;
 
-interface Counts {
-  level: number;
-  index: number;
-  own: number;
-  ghosts: number;
-  neighbours: number;
-  chains: number;
-  interior: number;
-  border: number;
+/// What the index says of a tile.
+export interface ExpectedCounts {
+  readonly level: number;
+  readonly index: number;
+  readonly own: number;
+  readonly ghosts: number;
+  readonly interior: number;
+  readonly border: number;
+}
+
+interface Counts extends ExpectedCounts {
+  readonly neighbours: number;
+  readonly chains: number;
+}
+
+/// Before anything is sized by them.
+function checkCounts(glb: Glb, counts: Counts, expected: ExpectedCounts | null): void {
+  const keys = ['level', 'index', 'own', 'ghosts', 'interior', 'border'] as const;
+  if (expected !== null && keys.some((key) => counts[key] !== expected[key])) glb.fail('not the tile that the index tells of');
+  if (counts.neighbours > counts.ghosts || counts.chains > counts.ghosts * counts.level) glb.fail('more neighbours or chains than ghosts allow');
 }
 
 function count(glb: Glb, values: Record<string, number>, key: string, least: number, most: number): number {
@@ -110,10 +121,10 @@ function readColours(glb: Glb, accessor: Gltf['accessors'][number], vertices: nu
   const stride = Math.ceil((width * type.bytes) / 4) * 4;
   const bytes = copyOf(glb.section(accessor.bufferView, stride * vertices));
   const values = type.bytes === 1 ? new Uint8Array(bytes) : type.bytes === 2 ? new Uint16Array(bytes) : new Float32Array(bytes);
-  const colours = new Uint8Array(4 * vertices).fill(255);
+  const colours = new Uint8ClampedArray(4 * vertices).fill(255);
   for (let v = 0; v < vertices; ++v)
-    for (let c = 0; c < width; ++c) colours[4 * v + c] = Math.round((255 * values[(v * stride) / type.bytes + c]) / type.most);
-  return colours;
+    for (let c = 0; c < width; ++c) colours[4 * v + c] = (255 * values[(v * stride) / type.bytes + c]) / type.most;
+  return new Uint8Array(colours.buffer);
 }
 
 /// The file's own normals, in parts of 32767.
@@ -122,7 +133,7 @@ function readNormals(glb: Glb, accessor: Gltf['accessors'][number], vertices: nu
   const given = floats(glb.section(accessor.bufferView, 12 * vertices));
   const normals = new Int16Array(4 * vertices);
   for (let v = 0; v < vertices; ++v)
-    for (let axis = 0; axis < 3; ++axis) normals[4 * v + axis] = Math.round(32767 * given[3 * v + axis]);
+    for (let axis = 0; axis < 3; ++axis) normals[4 * v + axis] = Math.max(-32767, Math.min(32767, Math.round(32767 * given[3 * v + axis])));
   return normals;
 }
 
@@ -168,12 +179,13 @@ function boxOf(glb: Glb, positions: Float32Array): number[] {
   return box;
 }
 
-function decode(glb: Glb): Tile {
+function decode(glb: Glb, expected: ExpectedCounts | null): Tile {
   const { gltf } = glb;
   const values = gltf.extensions?.MESHHIER_tile;
   const primitive = gltf.meshes?.[0]?.primitives?.[0];
   if (values === undefined || primitive === undefined || gltf.nodes?.[0] === undefined) glb.fail('not a tile of meshhier');
   const counts = readCounts(glb, values);
+  checkCounts(glb, counts, expected);
   const { own, ghosts, interior: interiorCount } = counts;
   const vertices = own + ghosts;
   const attribute = (name: string): Gltf['accessors'][number] | undefined => gltf.accessors?.[primitive.attributes?.[name]];
@@ -208,12 +220,12 @@ function decode(glb: Glb): Tile {
   };
 }
 
-/// A tile's file, out of its gzip. Everything in it is checked, so that what is made of it can be used without.
-export async function readTile(bytes: Uint8Array, name: string): Promise<Tile> {
+/// A tile's file, out of its gzip; `expected`: null of a root of which nothing is known yet. Everything in it is checked, so that what is made of it can be used without.
+export async function readTile(bytes: Uint8Array, name: string, expected: ExpectedCounts | null): Promise<Tile> {
   await MeshoptDecoder.ready;
   const glb = Glb.read(bytes, name);
   try {
-    return decode(glb);
+    return decode(glb, expected);
   } catch (problem) {
     // JSON of another shape than a tile's, which no check above knows.
     if (problem instanceof TypeError || problem instanceof RangeError) glb.fail('its JSON is not that of a tile');

@@ -1,5 +1,5 @@
 // Tiles out of their files, in workers if there are any, else where it is called.
-import { readTile, type Tile } from './tile.js';
+import { readTile, type ExpectedCounts, type Tile } from './tile.js';
 
 interface Answer {
   id: number;
@@ -8,61 +8,82 @@ interface Answer {
   milliseconds?: number;
 }
 
-interface Waiting {
-  resolve: (tile: Tile) => void;
-  reject: (problem: Error) => void;
+interface Task {
+  readonly worker: Worker;
+  readonly bytes: Uint8Array;
+  readonly name: string;
+  readonly expected: ExpectedCounts | null;
+  readonly resolve: (tile: Tile) => void;
+  readonly reject: (problem: Error) => void;
 }
 
 export class TileDecoder {
   /// Time spent in decoding, all workers together.
   milliseconds = 0;
   private readonly workers: Worker[] = [];
-  private readonly waiting = new Map<number, Waiting>();
+  private readonly tasks = new Map<number, Task>();
   private next = 0;
+  private isOver = false;
 
   constructor(createWorker: (() => Worker) | undefined, count: number) {
     if (createWorker === undefined) return;
     for (let i = 0; i < count; ++i) this.workers.push(this.listen(createWorker()));
   }
 
-  /// Takes `bytes` over: they are gone afterwards.
-  async decode(bytes: Uint8Array, name: string): Promise<Tile> {
-    if (this.workers.length === 0) {
-      const began = performance.now();
-      const tile = await readTile(bytes, name);
-      this.milliseconds += performance.now() - began;
-      return tile;
-    }
+  /// `expected`: what the index says of the tile; null: nobody knows.
+  async decode(bytes: Uint8Array, name: string, expected: ExpectedCounts | null): Promise<Tile> {
+    if (this.isOver) throw new Error('the view was closed');
+    if (this.workers.length === 0) return this.decodeHere(bytes, name, expected);
     const id = this.next++;
+    const worker = this.workers[id % this.workers.length];
     return new Promise((resolve, reject) => {
-      this.waiting.set(id, { resolve, reject });
-      this.workers[id % this.workers.length].postMessage({ id, bytes, name }, [bytes.buffer]);
+      this.tasks.set(id, { worker, bytes, name, expected, resolve, reject });
+      worker.postMessage({ id, bytes, name, expected });
     });
   }
 
   dispose(): void {
+    this.isOver = true;
     for (const worker of this.workers) worker.terminate();
-    for (const { reject } of this.waiting.values()) reject(new Error('the view was closed'));
-    this.waiting.clear();
+    for (const { reject } of this.tasks.values()) reject(new Error('the view was closed'));
+    this.tasks.clear();
+  }
+
+  private async decodeHere(bytes: Uint8Array, name: string, expected: ExpectedCounts | null): Promise<Tile> {
+    const began = performance.now();
+    const tile = await readTile(bytes, name, expected);
+    this.milliseconds += performance.now() - began;
+    return tile;
   }
 
   private listen(worker: Worker): Worker {
     worker.addEventListener('message', (event: MessageEvent<Answer>) => {
       this.settle(event.data);
     });
-    worker.addEventListener('error', (event) => {
-      const problem = new Error(`a decoder stopped: ${event.message}`);
-      for (const { reject } of this.waiting.values()) reject(problem);
-      this.waiting.clear();
-    });
+    for (const failure of ['error', 'messageerror'])
+      worker.addEventListener(failure, () => {
+        this.doWithout(worker);
+      });
     return worker;
   }
 
+  /// A worker that did not come up, or broke down: what it had to do is done here.
+  private doWithout(broken: Worker): void {
+    const at = this.workers.indexOf(broken);
+    if (at >= 0) this.workers.splice(at, 1);
+    broken.terminate();
+    for (const [id, { worker, bytes, name, expected, resolve, reject }] of this.tasks) {
+      if (worker !== broken) continue;
+      this.tasks.delete(id);
+      this.decodeHere(bytes, name, expected).then(resolve, reject);
+    }
+  }
+
   private settle({ id, tile, problem, milliseconds }: Answer): void {
-    const waiting = this.waiting.get(id);
-    this.waiting.delete(id);
+    const task = this.tasks.get(id);
+    this.tasks.delete(id);
     this.milliseconds += milliseconds ?? 0;
-    if (tile) waiting?.resolve(tile);
-    else waiting?.reject(new Error(problem));
+    if (tile) task?.resolve(tile);
+    else task?.reject(new Error(problem));
   }
 }

@@ -1,7 +1,9 @@
 // The index, tiles.bin (docs/file_format.md, section 3), in pages: of a large one only those that are looked
 // into are fetched.
 import { HierarchyProblem } from './problem.js';
-import type { Tree, Node } from './tree.js';
+import { keyOf, type Node, type Tree } from './tree.js';
+
+type Triple = readonly [number, number, number];
 
 export interface TileRecord {
   readonly own: number;
@@ -10,9 +12,10 @@ export interface TileRecord {
   readonly border: number;
   /// Estimated distance to the input, in its units; 0 of partitions.
   readonly error: number;
-  /// Box of the vertices, in the coordinates of decoded tiles.
-  readonly min: readonly [number, number, number];
-  readonly max: readonly [number, number, number];
+  /// Box of all of the input that the tile stands for, in the coordinates of decoded tiles: that of its vertices, larger by
+  /// its bound.
+  readonly min: Triple;
+  readonly max: Triple;
   /// Of the tile's file.
   readonly bytes: number;
 }
@@ -27,39 +30,53 @@ const HEADER_BYTES = 32;
 const RECORD_BYTES = 96;
 const PAGE_RECORDS = 682; // a page is just below 64 KiB
 const MOST_OWN = 32768;
+const MOST_ELEMENTS = 2 ** 26;
+/// A page that failed is asked for again after this time.
+const RETRY_MS = 2000;
 
-function readRecord(view: DataView, at: number, place: readonly number[]): TileRecord {
+/// Bytes of the index of so many tiles.
+export function indexSize(tiles: number): number {
+  return HEADER_BYTES + tiles * RECORD_BYTES;
+}
+
+function readRecord(view: DataView, at: number, place: Triple): TileRecord {
   const u32 = (offset: number): number => view.getUint32(at + offset, true);
   const f32 = (offset: number): number => view.getFloat32(at + offset, true);
+  const bound = f32(48);
+  const corner = (offset: number, more: number): Triple =>
+    [0, 1, 2].map((axis) => f32(offset + 4 * axis) - place[axis] + more) as unknown as Triple;
   return {
     own: u32(8),
     ghosts: u32(16),
     interior: u32(20),
     border: u32(24),
     error: f32(44),
-    min: [f32(56) - place[0], f32(60) - place[1], f32(64) - place[2]],
-    max: [f32(68) - place[0], f32(72) - place[1], f32(76) - place[2]],
+    min: corner(56, -bound),
+    max: corner(68, bound),
     bytes: Number(view.getBigUint64(at + 80, true)),
   };
 }
 
 /// No more than the format allows: sizes are computed from these.
-function check(record: TileRecord, level: number, index: number): void {
-  const counts = record.own >= 1 && record.own <= MOST_OWN && record.ghosts < 2 ** 26;
-  const triangles = record.interior < 2 ** 26 && record.border < 2 ** 26;
-  const box = [...record.min, ...record.max, record.error].every(Number.isFinite);
-  if (!counts || !triangles || !box || record.error < 0)
-    throw new HierarchyProblem(FILE, `the record of tile ${level}/${index} is damaged`);
+function isSound({ own, ghosts, interior, border, min, max, error }: TileRecord): boolean {
+  const counts = own >= 1 && own <= MOST_OWN && [ghosts, interior, border].every((count) => count < MOST_ELEMENTS);
+  return counts && error >= 0 && [...min, ...max, error].every(Number.isFinite);
+}
+
+/// Of a page that is not there: on its way, or when to ask for it again.
+interface Absent {
+  readonly again: number;
 }
 
 export class TileIndex {
-  private readonly pages = new Map<number, DataView | 'coming'>();
+  private readonly pages = new Map<number, DataView | Absent>();
+  private readonly damaged = new Set<number>();
 
   /// `place`: what decoded tiles' positions are relative to, itself relative to the origin. `onPage` is called when a
-  /// page has come, `onProblem` when one did not.
+  /// page has come, `onProblem` when one did not, or a record is damaged.
   constructor(
     private readonly tree: Tree,
-    private readonly place: readonly number[],
+    private readonly place: Triple,
     private readonly read: ReadRange,
     private readonly onPage: () => void,
     private readonly onProblem: (problem: unknown) => void,
@@ -72,19 +89,30 @@ export class TileIndex {
     this.keep(0, bytes);
   }
 
-  /// The record of a tile, null while its page is not there: it is then on its way.
+  /// The record of a tile; null while its page is not there (it is then on its way), and of a damaged one.
   record(node: Node): TileRecord | null {
     const number = this.tree.record(node);
     const page = Math.floor(number / PAGE_RECORDS);
     const view = this.pages.get(page);
-    if (view === undefined) void this.fetch(page);
-    if (!(view instanceof DataView)) return null;
-    const at = (number - page * PAGE_RECORDS) * RECORD_BYTES;
-    if (view.getUint32(at, true) !== node.level || view.getUint32(at + 4, true) !== node.index)
-      throw new HierarchyProblem(FILE, `no record of tile ${node.level}/${node.index} in its place`);
+    if (view instanceof DataView) return this.recordAt(view, (number - page * PAGE_RECORDS) * RECORD_BYTES, node);
+    if (view === undefined || performance.now() >= view.again) void this.fetch(page);
+    return null;
+  }
+
+  /// Whether there will never be a record of a tile.
+  isDamaged({ level, index }: Node): boolean {
+    return this.damaged.has(keyOf(level, index));
+  }
+
+  private recordAt(view: DataView, at: number, node: Node): TileRecord | null {
+    const isIts = view.getUint32(at, true) === node.level && view.getUint32(at + 4, true) === node.index;
     const record = readRecord(view, at, this.place);
-    check(record, node.level, node.index);
-    return record;
+    if (isIts && isSound(record)) return record;
+    if (!this.isDamaged(node)) {
+      this.damaged.add(keyOf(node.level, node.index));
+      this.onProblem(new HierarchyProblem(FILE, `the record of tile ${node.level}/${node.index} is damaged`));
+    }
+    return null;
   }
 
   private begin(page: number): number {
@@ -92,15 +120,16 @@ export class TileIndex {
   }
 
   private end(page: number): number {
-    return Math.min(this.begin(page + 1), HEADER_BYTES + this.tree.tileCount * RECORD_BYTES);
+    return Math.min(this.begin(page + 1), indexSize(this.tree.tileCount));
   }
 
   private async fetch(page: number): Promise<void> {
-    this.pages.set(page, 'coming');
+    this.pages.set(page, { again: Infinity });
     try {
       this.keep(page, await this.read(this.begin(page), this.end(page)));
       this.onPage();
     } catch (problem) {
+      this.pages.set(page, { again: performance.now() + RETRY_MS });
       this.onProblem(problem);
     }
   }
@@ -116,8 +145,7 @@ export class TileIndex {
 
   /// `bytes`: of the page (the first one's with the header), or the whole file.
   private keep(page: number, bytes: Uint8Array): void {
-    const whole = bytes.length === HEADER_BYTES + this.tree.tileCount * RECORD_BYTES;
-    if (whole) {
+    if (bytes.length === indexSize(this.tree.tileCount)) {
       for (let each = 0; this.begin(each) < bytes.length; ++each)
         this.put(each, bytes.subarray(this.begin(each), this.end(each)));
       return;

@@ -1,16 +1,17 @@
-// Decodes tiles beside the page: {id, bytes, name} in, {id, tile} or {id, problem} out.
-import { buffersOf, readTile } from './tile.js';
+// Decodes tiles beside the page: {id, bytes, name, expected} in, {id, tile} or {id, problem} out.
+import { buffersOf, readTile, type ExpectedCounts } from './tile.js';
 
 interface Task {
   id: number;
   bytes: Uint8Array;
   name: string;
+  expected: ExpectedCounts | null;
 }
 
 addEventListener('message', (event: MessageEvent<Task>) => {
-  const { id, bytes, name } = event.data;
+  const { id, bytes, name, expected } = event.data;
   const began = performance.now();
-  readTile(bytes, name).then(
+  readTile(bytes, name, expected).then(
     (tile) => {
       postMessage({ id, tile, milliseconds: performance.now() - began }, { transfer: buffersOf(tile) });
     },

@@ -11,11 +11,6 @@ export function keyOf(level: number, index: number): number {
   return level * 2 ** 32 + index;
 }
 
-export function nodeOf(key: number): Node {
-  const level = Math.floor(key / 2 ** 32);
-  return { level, index: key - level * 2 ** 32 };
-}
-
 export class Tree {
   /// D: where the partitions are.
   readonly lastLevel: number;

@@ -7,15 +7,18 @@ import { TileStore, type ResidentTile } from '../cut/tile_store.js';
 import type { Viewpoint } from '../cut/viewpoint.js';
 import type { Fetch } from '../hierarchy/bytes.js';
 import type { Manifest } from '../hierarchy/manifest.js';
+import { HierarchyProblem } from '../hierarchy/problem.js';
 import { RemoteHierarchy, type Directory } from '../hierarchy/remote_hierarchy.js';
 import type { Tile } from '../hierarchy/tile.js';
 import { TileDecoder } from '../hierarchy/tile_decoder.js';
-import { Tree, keyOf, type Node } from '../hierarchy/tree.js';
+import type { TileRecord } from '../hierarchy/tile_index.js';
+import { Tree, keyOf, tilePath, type Node } from '../hierarchy/tree.js';
 import { Account } from './account.js';
+import { Alarm } from './alarm.js';
 import { modeOf } from './mode.js';
 import { OutlineObject } from './outline_object.js';
 import { Motion, REST_MS, viewpointOf, type Viewport } from './motion.js';
-import type { Look, Mode, Settings, Stats } from './settings.js';
+import { changedSettings, type Look, type Mode, type Settings, type Stats } from './settings.js';
 import { memoryOf, mostMemory } from './tile_object.js';
 import { TileScene } from './tile_scene.js';
 
@@ -38,12 +41,12 @@ export interface ViewEvents extends Object3DEventMap {
   problem: { message: string };
 }
 
-const SETTINGS: Settings = { framesPerSecond: 30, threshold: 1, memoryBudget: 256e6 };
 const LOOK: Look = { colours: 'vertex', shading: 'smooth', wires: false, points: false, outline: false };
 const WORKERS = 2;
 const REQUESTS = 6; // what browsers open to a host at once
 const LONGEST_FRAME_MS = 5000; // a longer one was no frame: the page slept
-const RETRY_MS = 1000;
+const RETRY_MS = 1000; // of what all tiles need; twice as long each time
+const MOST_TRIES = 5;
 const ROOT: Node = { level: 0, index: 0 };
 const ROOT_KEY = keyOf(0, 0);
 /// (x, y, z) to (x, z, -y).
@@ -76,18 +79,20 @@ export class HierarchyView extends Group<ViewEvents> {
   private wasMoving = false;
   private lastFrame = 0;
   private failed = 0;
-  private timer: ReturnType<typeof setTimeout> | null = null;
+  private readonly alarm = new Alarm(() => { this.changed(); });
+  private readonly ending = new AbortController();
+  private root: Tile | null = null;
   private isOver = false;
   private outline: Promise<OutlineObject | null> | null = null;
 
   /// `url`: of the hierarchy's directory.
   constructor(url: string, options: ViewOptions = {}) {
     super();
-    this.currentSettings = { ...SETTINGS, ...options.settings };
+    this.currentSettings = changedSettings(options.settings ?? {});
     this.currentLook = { ...LOOK, ...options.look };
     this.decoder = new TileDecoder(options.createWorker, options.workers ?? WORKERS);
     const fetch: Fetch = options.fetch ?? ((input, init) => globalThis.fetch(input, init));
-    this.remote = new RemoteHierarchy(url, fetch, this.decoder);
+    this.remote = new RemoteHierarchy(url, fetch, this.decoder, this.ending.signal);
     this.rate = new FrameRate(this.settings.framesPerSecond);
     this.store = this.makeStore(options.requests ?? REQUESTS);
     this.add(this.tiles);
@@ -104,7 +109,7 @@ export class HierarchyView extends Group<ViewEvents> {
   }
 
   setSettings(change: Partial<Settings>): void {
-    this.currentSettings = { ...this.currentSettings, ...change };
+    this.currentSettings = changedSettings(change, this.currentSettings);
     this.rate.target = this.settings.framesPerSecond;
     this.store.budget = this.settings.memoryBudget;
     this.changed();
@@ -113,8 +118,6 @@ export class HierarchyView extends Group<ViewEvents> {
   setLook(change: Partial<Look>): void {
     this.currentLook = { ...this.currentLook, ...change };
     this.store.recount();
-    this.tiles.setLook(this.look);
-    this.tiles.paint(this.drawn, this.look, this.settings.threshold);
     this.showOutline();
     this.changed();
   }
@@ -143,10 +146,13 @@ export class HierarchyView extends Group<ViewEvents> {
 
   private makeStore(requests: number): TileStore {
     const host = {
-      load: (node: Node, signal: AbortSignal): Promise<Tile> => this.remote.tile(node, { signal }),
+      load: (node: Node, record: TileRecord, signal: AbortSignal): Promise<Tile> => this.remote.tile(node, record, signal),
       bytesOf: (tile: Tile, seam: ResidentTile['seam']): number => memoryOf(tile, seam, this.look.wires),
       came: (tile: ResidentTile): void => { this.came(tile); },
-      gone: (tile: ResidentTile): void => { this.tiles.drop(tile); },
+      gone: (tile: ResidentTile): void => {
+        this.tiles.drop(tile);
+        this.epochs.delete(tile.key);
+      },
       failed: (_node: Node, problem: unknown): void => { this.tell(problem); },
     };
     return new TileStore(host, () => this.directory!.tree, this.settings.memoryBudget, requests);
@@ -155,31 +161,47 @@ export class HierarchyView extends Group<ViewEvents> {
   private async open(): Promise<void> {
     const manifest = this.remote.manifest();
     manifest.catch(() => undefined); // told when it is needed
-    const root = await this.remote.tile(ROOT, { priority: 'high' });
-    if (this.isOver) return;
+    const root = await this.remote.root();
+    this.ending.signal.throwIfAborted();
+    this.root = root;
     if (root.zUp) this.tiles.applyMatrix4(UPRIGHT);
-    const [a, b, c, d, e, f] = root.box;
-    this.box.set(new Vector3(a, b, c), new Vector3(d, e, f)).applyMatrix4(this.tiles.matrix);
+    this.setBox(root.box);
     this.tiles.show([this.store.addRoot(root, new Tree(1))], this.look);
     this.changed();
-    void this.openDirectory(manifest);
+    void this.openDirectory(root, manifest);
   }
 
-  private async openDirectory(manifest: Promise<Manifest>): Promise<void> {
-    try {
-      const directory = await this.remote.directory(await manifest, () => { this.changed(); }, (problem) => { this.tell(problem); });
-      if (this.isOver) return;
-      this.directory = directory;
-      this.manifest = directory.manifest;
-      const { hasColours } = directory.manifest.source;
-      this.refinement = new Refinement(directory.tree, directory.index, this.store, (record, node) =>
-        mostMemory(record, node.level, hasColours, this.look.wires));
-      this.account.fetched(directory.index.record(ROOT)!.bytes);
-      this.showOutline();
-      this.changed();
-    } catch (problem) {
-      this.tell(problem);
+  private setBox([a, b, c, d, e, f]: readonly number[]): void {
+    this.box.set(new Vector3(a, b, c), new Vector3(d, e, f)).applyMatrix4(this.tiles.matrix);
+  }
+
+  /// Without it there is the root and no more: so it is tried again, for a while.
+  private async openDirectory(root: Tile, manifest: Promise<Manifest>): Promise<void> {
+    for (let tries = 1; !this.isOver; ++tries) {
+      try {
+        this.begin(await this.remote.directory(await manifest, root, () => { this.changed(); }, (problem) => { this.tell(problem); }));
+        return;
+      } catch (problem) {
+        this.tell(problem);
+        if (tries === MOST_TRIES) return;
+      }
+      await new Promise((resolve) => setTimeout(resolve, RETRY_MS * 2 ** (tries - 1)));
+      manifest = this.remote.manifest();
     }
+  }
+
+  private begin(directory: Directory): void {
+    if (this.isOver) return;
+    const { manifest, tree, index } = directory;
+    this.directory = directory;
+    this.manifest = manifest;
+    const corner = (from: readonly number[]): number[] => from.map((x, axis) => x - manifest.origin[axis] - manifest.place[axis]);
+    this.setBox([...corner(manifest.source.min), ...corner(manifest.source.max)]);
+    this.refinement = new Refinement(tree, index, this.store, (record, node) =>
+      mostMemory(record, node.level, manifest.source.hasColours, this.look.wires));
+    this.account.fetched(index.record(ROOT)!.bytes);
+    this.showOutline();
+    this.changed();
   }
 
   private came({ key, node }: ResidentTile): void {
@@ -193,17 +215,12 @@ export class HierarchyView extends Group<ViewEvents> {
     if (this.isOver) return;
     ++this.failed;
     this.dispatchEvent({ type: 'problem', message: problem instanceof Error ? problem.message : String(problem) });
-    this.later(RETRY_MS);
+    this.changed();
   }
 
   private changed(): void {
     this.isDirty = true;
     if (!this.isOver) this.dispatchEvent({ type: 'change' });
-  }
-
-  private later(milliseconds: number): void {
-    if (this.timer !== null) clearTimeout(this.timer);
-    this.timer = setTimeout(() => { this.changed(); }, milliseconds);
   }
 
   // ---- each frame
@@ -223,9 +240,15 @@ export class HierarchyView extends Group<ViewEvents> {
     this.isDirty = false;
     this.viewpoint = viewpointOf(camera, this.tiles, viewport);
     this.pixels = viewport.width * viewport.height;
-    this.refine(now);
-    if (this.motion.isMoving) this.later(REST_MS);
-    return seesElse || isDirty;
+    const isElse = this.refine(this.viewpoint, now);
+    this.setAlarm(now);
+    return seesElse || isDirty || isElse;
+  }
+
+  /// Something may be due although nothing happens.
+  private setAlarm(now: number): void {
+    if (this.motion.isMoving) this.alarm.in(REST_MS);
+    if (this.state?.isComplete === false) this.alarm.in(Math.max(RETRY_MS, this.store.nextTry - now));
   }
 
   private measure(now: number): void {
@@ -241,21 +264,18 @@ export class HierarchyView extends Group<ViewEvents> {
     }
   }
 
-  private refine(now: number): void {
-    if (this.refinement === null) return;
+  /// Returns whether other tiles are drawn, or otherwise, than before.
+  private refine(viewpoint: Viewpoint, now: number): boolean {
     const vertices = this.motion.isMoving ? this.rate.budget : Infinity;
-    try {
-      this.store.makeRoom(0, now);
-      this.state = this.refinement.refine(this.viewpoint!, { threshold: this.settings.threshold, vertices }, now);
-      if (this.state === null) return;
-      this.drawn = this.state.drawn;
-      this.tiles.show(this.drawn.map(({ key }) => this.store.get(key)!), this.look);
-      this.tiles.paint(this.drawn, this.look, this.settings.threshold);
-      if (this.isSettled()) this.settle();
-    } catch (problem) {
-      this.refinement = null;
-      this.tell(problem);
-    }
+    this.state = this.refinement?.refine(viewpoint, { threshold: this.settings.threshold, vertices }, now) ?? null;
+    this.drawn = this.state?.drawn ?? [];
+    this.store.makeRoom(0, now);
+    const keys = this.state === null ? [ROOT_KEY] : this.drawn.map(({ key }) => key);
+    const isElse = this.tiles.show(keys.map((key) => this.store.get(key)!), this.look);
+    this.tiles.paint(this.drawn, this.look, this.settings.threshold);
+    for (const node of this.tiles.takeDamaged()) this.tell(new HierarchyProblem(tilePath(node), 'a ghost is no vertex of its tile'));
+    if (this.isSettled()) this.settle();
+    return isElse;
   }
 
   private isSettled(): boolean {
@@ -282,22 +302,23 @@ export class HierarchyView extends Group<ViewEvents> {
   }
 
   private mode(shown: readonly ChosenNode[]): Mode {
-    const whole = this.directory?.index.record(ROOT);
-    if (!whole || this.viewpoint === null) return 'CWV';
-    return modeOf(shown, whole, this.directory!.tree.lastLevel, this.viewpoint, this.pixels);
+    if (this.viewpoint === null || this.directory === null) return 'CWV';
+    const { min, max } = this.box.clone().applyMatrix4(this.tiles.matrix.clone().invert());
+    return modeOf(shown, { min: min.toArray(), max: max.toArray() }, this.directory.tree.lastLevel, this.viewpoint, this.pixels);
   }
 
   stats(): Stats {
     const shown = this.inView();
     const levels = shown.map(({ node }) => node.level);
+    const isRootAlone = this.state === null && this.root !== null;
     return {
       mode: this.mode(shown),
       framesPerSecond: this.rate.framesPerSecond,
       moving: this.motion.isMoving,
       settled: this.isSettled(),
-      tiles: shown.length,
-      triangles: shown.reduce((sum, { key }) => sum + this.tiles.trianglesOf(key), 0),
-      vertices: this.shownVertices(),
+      tiles: isRootAlone ? 1 : shown.length,
+      triangles: isRootAlone ? this.root!.interiorCount : shown.reduce((sum, { key }) => sum + this.tiles.trianglesOf(key), 0),
+      vertices: isRootAlone ? this.root!.own : this.shownVertices(),
       finestLevel: Math.max(0, ...levels),
       coarsestLevel: levels.length > 0 ? Math.min(...levels) : 0,
       vertexBudget: this.rate.budget,
@@ -322,7 +343,8 @@ export class HierarchyView extends Group<ViewEvents> {
   /// Frees everything, also on the GPU; the view is of no use afterwards.
   dispose(): void {
     this.isOver = true;
-    if (this.timer !== null) clearTimeout(this.timer);
+    this.ending.abort(new Error('the view was closed'));
+    this.alarm.stop();
     this.store.dispose();
     this.decoder.dispose();
     this.tiles.dispose();

@@ -15,6 +15,11 @@ const TO_LINEAR = `#include <color_vertex>
   vColor.rgb = mix(vColor.rgb / 12.92, pow((vColor.rgb + 0.055) / 1.055, vec3(2.4)), step(0.04045, vColor.rgb));
 #endif`;
 
+/// Looks of one key have the same surfaces.
+export function surfaceKey({ colours, shading, wires, points }: Look): string {
+  return [colours, shading, wires || points].join();
+}
+
 /// One tile's: programs are shared by all of a look.
 export function surfaceMaterial(look: Look, hasColours: boolean): MeshStandardMaterial {
   const material = new MeshStandardMaterial({

@@ -19,8 +19,27 @@ export interface Settings {
   framesPerSecond: number;
   /// Largest error on screen of a settled view, in pixels (of the viewport given to `update`).
   threshold: number;
-  /// Bytes of all tiles in memory, those in GPU buffers included, never exceeded.
+  /// Bytes of all tiles in memory, those in GPU buffers included: never exceeded, but that the root stays.
   memoryBudget: number;
+}
+
+const DEFAULTS: Settings = { framesPerSecond: 30, threshold: 1, memoryBudget: 256e6 };
+const RANGES: Record<keyof Settings, readonly [number, number]> = {
+  framesPerSecond: [1, 240],
+  threshold: [0.01, 1000],
+  memoryBudget: [1e6, 2 ** 40],
+};
+
+/// `current` with a change; what is undefined in it stays. Throws RangeError for what is out of its range.
+export function changedSettings(change: Partial<Settings>, current = DEFAULTS): Settings {
+  const settings = { ...current };
+  for (const key of Object.keys(RANGES) as (keyof Settings)[]) {
+    const value = change[key] ?? current[key];
+    const [least, most] = RANGES[key];
+    if (!(value >= least && value <= most)) throw new RangeError(`${key} is ${value}, not from ${least} to ${most}`);
+    settings[key] = value;
+  }
+  return settings;
 }
 
 /// Kim & Lee's names: coarse whole view (all of the model is in view), zoomed sector view, deep zoom
@@ -49,7 +68,7 @@ export interface Stats {
   /// The most that residentBytes ever was.
   peakBytes: number;
   memoryBudget: number;
-  /// Of files with tiles: as sent where the browser tells, else as unpacked.
+  /// Of files with tiles, as stored.
   fetchedBytes: number;
   fetchedFiles: number;
   /// What sending each settled view whole would have taken, and what of that was not sent.

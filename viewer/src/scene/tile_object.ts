@@ -4,7 +4,7 @@ import type { Intersection, Material, MeshStandardMaterial, Raycaster } from 'th
 import type { ResidentTile } from '../cut/tile_store.js';
 import type { Indices, Tile } from '../hierarchy/tile.js';
 import type { Seam } from '../cut/seam.js';
-import { surfaceMaterial } from './materials.js';
+import { surfaceKey, surfaceMaterial } from './materials.js';
 import type { Look } from './settings.js';
 
 export interface SharedMaterials {
@@ -53,7 +53,7 @@ export class TileObject extends Mesh<BufferGeometry, MeshStandardMaterial> {
 
   constructor(
     private readonly resident: ResidentTile,
-    look: Look,
+    private look: Look,
     private readonly shared: SharedMaterials,
   ) {
     super(new BufferGeometry(), surfaceMaterial(look, resident.tile.colours !== null));
@@ -66,7 +66,8 @@ export class TileObject extends Mesh<BufferGeometry, MeshStandardMaterial> {
     this.triangles = tile.interiorCount;
     this.setBounds();
     this.matrixAutoUpdate = false;
-    this.setLook(look);
+    this.setWires(look.wires);
+    this.setPoints(look.points);
   }
 
   private *attributes(): Iterable<BufferAttribute> {
@@ -115,14 +116,20 @@ export class TileObject extends Mesh<BufferGeometry, MeshStandardMaterial> {
     }
   }
 
+  /// Makes anew only what differs.
   setLook(look: Look): void {
-    this.material.dispose();
-    this.material = surfaceMaterial(look, this.resident.tile.colours !== null);
-    this.setWires(look.wires);
-    this.setPoints(look.points);
+    const before = this.look;
+    this.look = look;
+    if (before === look) return;
+    if (surfaceKey(before) !== surfaceKey(look)) {
+      this.material.dispose();
+      this.material = surfaceMaterial(look, this.resident.tile.colours !== null);
+    }
+    if (before.wires !== look.wires) this.setWires(look.wires);
+    if (before.points !== look.points) this.setPoints(look.points);
   }
 
-  /// Of the whole tile; null: that of the look.
+  /// Of the whole tile.
   paint(colour: Color): void {
     this.material.color.copy(colour);
   }

@@ -3,6 +3,7 @@ import { Group } from 'three';
 import type { ChosenNode } from '../cut/choose_cut.js';
 import type { ResidentTile } from '../cut/tile_store.js';
 import type { Tile } from '../hierarchy/tile.js';
+import { keyOf, type Node } from '../hierarchy/tree.js';
 import { errorColour, partitionColour, pointMaterial, wireMaterial } from './materials.js';
 import type { Look } from './settings.js';
 import { TileObject } from './tile_object.js';
@@ -10,15 +11,18 @@ import { TileObject } from './tile_object.js';
 export class TileScene extends Group {
   private readonly objects = new Map<number, TileObject>();
   private cut: ReadonlyMap<number, Tile> = new Map();
+  private look: Look | null = null;
+  private readonly damaged: Node[] = [];
+  private readonly told = new Set<number>();
   private readonly materials = { wires: wireMaterial(), points: pointMaterial() };
 
-  /// Shows a cut instead of the one before; true if that changes the picture. Throws HierarchyProblem if seams are
-  /// damaged.
+  /// Shows a cut instead of the one before; true if that changes the picture.
   show(residents: readonly ResidentTile[], look: Look): boolean {
-    const cut = new Map(residents.map(({ key, tile }) => [key, tile]));
-    if (cut.size === this.cut.size && residents.every(({ key, tile }) => this.cut.get(key) === tile)) return false;
-    for (const key of this.objects.keys()) if (!cut.has(key)) this.hide(key);
-    this.cut = cut;
+    const isSameCut = residents.length === this.cut.size && residents.every(({ key, tile }) => this.cut.get(key) === tile);
+    if (isSameCut && look === this.look) return false;
+    this.cut = new Map(residents.map(({ key, tile }) => [key, tile]));
+    this.look = look;
+    for (const key of this.objects.keys()) if (!this.cut.has(key)) this.hide(key);
     for (const resident of residents) this.join(resident, look);
     return true;
   }
@@ -36,9 +40,11 @@ export class TileScene extends Group {
       this.objects.set(resident.key, object);
       this.add(object);
       object.resolve();
-    } else if (changed) {
-      object.resolve();
+    } else {
+      object.setLook(look);
+      if (changed) object.resolve();
     }
+    if (resident.seam.isDamaged) this.tellDamaged(resident.node);
     object.visible = true;
   }
 
@@ -48,8 +54,16 @@ export class TileScene extends Group {
     this.objects.delete(key);
   }
 
-  setLook(look: Look): void {
-    for (const object of this.objects.values()) object.setLook(look);
+  private tellDamaged(node: Node): void {
+    const key = keyOf(node.level, node.index);
+    if (this.told.has(key)) return;
+    this.told.add(key);
+    this.damaged.push(node);
+  }
+
+  /// Tiles whose seams turned out to be damaged since last asked; each once.
+  takeDamaged(): Node[] {
+    return this.damaged.splice(0);
   }
 
   /// Colours whole tiles, where the look says so.

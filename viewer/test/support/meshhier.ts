@@ -25,10 +25,14 @@ export class Workshop {
   /// The hierarchy of a mesh that `meshgen` makes; the one of that name if it was made already.
   build(name: string, meshgen: readonly string[], config: object): string {
     const mesh = path.join(this.directory, `${name}.ply`);
+    if (!existsSync(mesh)) execFileSync(MESHGEN, [...meshgen, '-o', mesh]);
+    return this.buildMesh(name, mesh, config);
+  }
+
+  buildMesh(name: string, mesh: string, config: object): string {
     const output = path.join(this.directory, `${name}.hier`);
-    const json = path.join(this.directory, `${name}.json`);
     if (existsSync(output)) return output;
-    execFileSync(MESHGEN, [...meshgen, '-o', mesh]);
+    const json = path.join(this.directory, `${name}.json`);
     writeFileSync(json, JSON.stringify({ input: mesh, output, ...config }));
     execFileSync(MESHHIER, ['build', json, '--progress', 'none']);
     return output;

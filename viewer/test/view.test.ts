@@ -1,0 +1,241 @@
+// The whole library on real hierarchies, from files instead of a host, without a GPU.
+import { writeFileSync } from 'node:fs';
+import path from 'node:path';
+import { PerspectiveCamera, Vector3, type Mesh } from 'three';
+import { afterAll, afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
+import type { Fetch } from '../src/hierarchy/bytes.js';
+import { HierarchyView, type ViewOptions } from '../src/index.js';
+import { fetchFrom, hasProgram, Workshop } from './support/meshhier.js';
+
+const VIEWPORT = { width: 800, height: 600 };
+const FRAME = 50;
+
+/// A view with a clock of its own.
+class Session {
+  readonly camera = new PerspectiveCamera(45, VIEWPORT.width / VIEWPORT.height, 1e-3, 100);
+  readonly problems: string[] = [];
+  readonly view: HierarchyView;
+  private now = 0;
+
+  constructor(fetch: Fetch, options: ViewOptions = {}) {
+    this.view = new HierarchyView('', { fetch, ...options });
+    this.view.addEventListener('problem', ({ message }) => this.problems.push(message));
+  }
+
+  look(from: readonly [number, number, number], at: readonly [number, number, number]): void {
+    this.camera.position.set(...from);
+    this.camera.lookAt(new Vector3(...at));
+  }
+
+  async frame(): Promise<boolean> {
+    this.now += FRAME;
+    vi.advanceTimersByTime(FRAME);
+    const news = this.view.update(this.camera, VIEWPORT, this.now);
+    await new Promise((resolve) => setImmediate(resolve));
+    return news;
+  }
+
+  /// Frames until all is there, or so many seconds are over.
+  async settle(seconds = 30): Promise<boolean> {
+    for (const end = this.now + 1000 * seconds; this.now < end; ) {
+      await this.frame();
+      if (this.view.stats().settled) return true;
+    }
+    return false;
+  }
+
+  /// Those that would be drawn.
+  meshes(): Mesh[] {
+    const found: Mesh[] = [];
+    this.view.traverseVisible((object) => {
+      if ('isMesh' in object) found.push(object as Mesh);
+    });
+    return found;
+  }
+}
+
+/// A host of which some answers are others; `hurt` is asked for each file, with how often it was asked for before.
+function troubled(known: Fetch, hurt: (url: string, times: number) => Promise<Response> | null): Fetch {
+  const asked = new Map<string, number>();
+  return (url, init) => {
+    const times = asked.get(url) ?? 0;
+    asked.set(url, times + 1);
+    return hurt(url, times) ?? known(url, init);
+  };
+}
+
+function down(): Promise<Response> {
+  return Promise.resolve(new Response(null, { status: 503 }));
+}
+
+describe.skipIf(!hasProgram)('HierarchyView', () => {
+  const workshop = new Workshop();
+  const sessions: Session[] = [];
+  beforeEach(() => {
+    vi.useFakeTimers({ toFake: ['setTimeout', 'clearTimeout', 'performance'] });
+  });
+  afterEach(() => {
+    for (const { view } of sessions.splice(0)) view.dispose();
+    vi.useRealTimers();
+  });
+  afterAll(() => {
+    workshop.remove();
+  });
+
+  function begin(fetch: Fetch, options?: ViewOptions): Session {
+    const session = new Session(fetch, options);
+    sessions.push(session);
+    return session;
+  }
+  const torus = (): string =>
+    workshop.build('torus', ['surface', '--triangles', '6000', '--shape', 'torus'], { partition: { vertices: 100 } });
+  const closeUp = (session: Session): void => {
+    session.look([1.6, 0.4, 0.6], [0.9, 0.1, 0]);
+  };
+
+  it('settles within the error, and draws one cut', async () => {
+    const session = begin(fetchFrom(torus()));
+    await session.view.opened;
+    closeUp(session);
+    expect(await session.settle()).toBe(true);
+    const { worstError, tiles, failed } = session.view.stats();
+    expect(worstError).toBeLessThan(1.3);
+    expect(tiles).toBeGreaterThan(4);
+    expect(failed).toBe(0);
+  });
+
+  it('tries again, by itself, what failed once', async () => {
+    const once = troubled(fetchFrom(torus()), (url, times) => (times === 0 && !url.includes('tiles/00/') ? down() : null));
+    const session = begin(once);
+    await session.view.opened;
+    closeUp(session);
+    expect(await session.settle(60)).toBe(true);
+    expect(session.view.stats().worstError).toBeLessThan(1.3);
+    expect(session.problems.length).toBeGreaterThan(2);
+  });
+
+  it('settles without a tile that never comes', async () => {
+    const never = troubled(fetchFrom(torus()), (url) => (url.includes('tiles/01/000000') ? down() : null));
+    const session = begin(never);
+    await session.view.opened;
+    closeUp(session);
+    expect(await session.settle(50)).toBe(true);
+    expect(session.view.stats().failed).toBe(4);
+    expect(session.view.stats().tiles).toBe(1);
+  });
+
+  it('draws a whole cut whatever a ghost says, and tells', async () => {
+    const hierarchy = torus();
+    const known = fetchFrom(hierarchy);
+    const damaged = troubled(known, (url) => {
+      if (!/tiles\/0[45]/.test(url)) return null;
+      return known(url).then(async (response) => {
+        const bytes = new Uint8Array(await response.arrayBuffer());
+        const view = new DataView(bytes.buffer);
+        view.setUint16(bytes.length - 4, 32767, true); // in the chains, which come last
+        view.setUint16(bytes.length - 2, 32767, true);
+        return new Response(bytes);
+      });
+    });
+    const session = begin(damaged, { settings: { threshold: 0.5 } });
+    await session.view.opened;
+    closeUp(session);
+    expect(await session.settle()).toBe(true);
+    expect(session.problems.some((text) => text.includes('ghost'))).toBe(true);
+    for (const mesh of session.meshes()) expect(mesh.geometry.drawRange.count).toBeLessThan(Infinity);
+    expect(session.meshes().length).toBeGreaterThanOrEqual(session.view.stats().tiles);
+  });
+
+  it('refuses a tile that is another one', async () => {
+    const hierarchy = torus();
+    const known = fetchFrom(hierarchy);
+    const mixed = troubled(known, (url) => (url.includes('tiles/01/000000') ? known(url.replace('000000', '000001')) : null));
+    const session = begin(mixed);
+    await session.view.opened;
+    closeUp(session);
+    await session.settle(50);
+    expect(session.problems[0]).toContain('tiles/01/000000.glb');
+  });
+
+  it('says that there is something new when it refines at rest', async () => {
+    const session = begin(fetchFrom(torus()));
+    await session.view.opened;
+    closeUp(session);
+    await session.settle();
+    let before = session.view.stats().tiles;
+    for (let step = 0; step < 40; ++step) {
+      if (step < 10) session.look([1.6, 0.4 - step / 40, 0.6], [0.9, 0.1, 0]);
+      const news = await session.frame();
+      const { tiles } = session.view.stats();
+      if (tiles !== before) expect(news).toBe(true);
+      before = tiles;
+    }
+  });
+
+  it('keeps to the memory it may take, whatever is to be seen of it', async () => {
+    const memoryBudget = 1_000_000;
+    const session = begin(fetchFrom(torus()), { settings: { memoryBudget, threshold: 0.05 } });
+    await session.view.opened;
+    closeUp(session);
+    await session.settle();
+    expect(session.view.stats().residentBytes).toBeGreaterThan(memoryBudget / 2);
+    session.view.setLook({ wires: true, points: true });
+    await session.settle();
+    session.look([-1.6, 0.4, 0.6], [-0.9, 0.1, 0]);
+    await session.settle();
+    expect(session.view.stats().residentBytes).toBeLessThanOrEqual(memoryBudget);
+    expect(session.view.stats().peakBytes).toBeLessThanOrEqual(memoryBudget);
+  });
+
+  it('finds what sticks out of the coarse shape', async () => {
+    const mesh = path.join(workshop.directory, 'antenna.ply');
+    writeFileSync(mesh, antenna());
+    const hierarchy = workshop.buildMesh('antenna', mesh, { partition: { vertices: 64 } });
+    const session = begin(fetchFrom(hierarchy));
+    await session.view.opened;
+    await session.settle(5);
+    session.camera.far = 1000;
+    session.camera.updateProjectionMatrix();
+    session.look([0.5, 58.6, 0.5], [0.5, 70, 0.5001]);
+    await session.settle();
+    expect(session.view.stats().finestLevel).toBeGreaterThan(3);
+  });
+
+  it('ends what is under way', async () => {
+    const session = begin((_url, init) => new Promise((_resolve, reject) => {
+      init?.signal?.addEventListener('abort', () => { reject(new DOMException('ended', 'AbortError')); });
+    }));
+    const ended = expect(session.view.opened).rejects.toThrow('ended');
+    session.view.dispose();
+    await ended;
+    expect(session.problems).toEqual([]);
+  });
+
+  it('refuses settings that make no sense', () => {
+    const session = begin(fetchFrom(torus()), { settings: { memoryBudget: undefined } });
+    expect(session.view.settings.memoryBudget).toBe(256e6);
+    expect(() => { session.view.setSettings({ threshold: NaN }); }).toThrow(RangeError);
+    expect(() => { session.view.setSettings({ framesPerSecond: 0 }); }).toThrow(RangeError);
+  });
+});
+
+/// A rough square of 40 x 40 around a thin pole, 60 high.
+function antenna(): string {
+  const size = 40;
+  const vertices: string[] = [];
+  const faces: string[] = [];
+  for (let z = 0; z <= size; ++z) for (let x = 0; x <= size; ++x) vertices.push(`${x - size / 2} ${((x * 7 + z * 13) % 5) / 5} ${z - size / 2}`);
+  for (let z = 0; z < size; ++z)
+    for (let x = 0; x < size; ++x) {
+      const a = z * (size + 1) + x;
+      faces.push(`3 ${a} ${a + size + 1} ${a + 1}`, `3 ${a + 1} ${a + size + 1} ${a + size + 2}`);
+    }
+  const first = vertices.length;
+  for (let i = 0; i <= 60; ++i) for (const [x, z] of [[0.49, 0.49], [0.51, 0.49], [0.5, 0.51]]) vertices.push(`${x} ${i} ${z}`);
+  for (let i = 0; i < 60; ++i)
+    for (let k = 0; k < 3; ++k) {
+      const [a, b] = [first + 3 * i + k, first + 3 * i + ((k + 1) % 3)];
+      faces.push(`3 ${a} ${b} ${a + 3}`, `3 ${b} ${b + 3} ${a + 3}`);
+    }
+  return `ply\nformat ascii 1.0\nelement vertex ${vertices.length}\nproperty float x\nproperty float y\nproperty float z\nelement face ${faces.length}\nproperty list uchar int vertex_indices\nend_header\n${vertices.join('\n')}\n${faces.join('\n')}\n`;
+}
