@@ -18,10 +18,10 @@ interface Shown {
 const TILE = 8192; // what is shown comes in tiles
 
 /// Runs a controller on a device that would show `wanted` vertices, for so many seconds.
-function run(rate: FrameRate, device: Device, wanted: number, seconds: number): Shown[] {
+function run(rate: FrameRate, device: Device, wanted: number, seconds: number, tile = TILE): Shown[] {
   const frames: Shown[] = [];
   for (let at = 0; at < 1000 * seconds; ) {
-    const allowed = Math.max(TILE, Math.floor(rate.budget / TILE) * TILE);
+    const allowed = Math.max(tile, Math.floor(rate.budget / tile) * tile);
     const vertices = Math.min(wanted, allowed);
     const work = (device.base + vertices * device.perVertex) * (device.jitter?.(frames.length) ?? 1);
     const took = device.display ? Math.ceil(work / device.display) * device.display : work;
@@ -82,6 +82,12 @@ describe('FrameRate', () => {
     run(rate, { base: 2, perVertex: 1e-3 }, 2e6, 3);
     const frames = run(rate, { base: 2, perVertex: 1e-5 }, 2e6, 3);
     expect(frames.at(-1)!.vertices).toBe(2e6);
+  });
+
+  it.each([500, 8192, 40_000, 90_000])('stays with what it shows in tiles of %i vertices', (tile) => {
+    const late = after(run(new FrameRate(30), { base: 4, perVertex: 1.5e-4 }, 5e6, 30, tile), 2000);
+    const turns = late.filter(({ vertices }, i) => i > 0 && vertices !== late[i - 1].vertices).length;
+    expect(turns).toBeLessThan(14);
   });
 
   it('does not take vertices away where they are not what takes the time', () => {

@@ -10,8 +10,11 @@ const FAR_TOO_SLOW = 12;
 const MOST_SHRINK = 4;
 /// Frames after a change of the budget that may still show what was before.
 const SETTLE_FRAMES = 1;
-/// No change while the rate is as close as this to the one asked for: no oscillation.
+/// No change while a frame takes as little more, and as little less, than it may: no oscillation.
 const TOLERANCE = 0.06;
+const SPARE = 0.12;
+/// So much to spare is another situation.
+const MUCH_SPARE = 0.5;
 /// A single step's largest growth.
 const MOST_GROWTH = 1.6;
 const LEAST_BUDGET = 256;
@@ -20,11 +23,11 @@ const MOST_BUDGET = 50_000_000;
 const LEAST_PART = 0.15;
 /// It is another situation if a frame takes this much longer than it did then.
 const CHANGED = 1.4;
-/// At the display's own rate a faster device looks like one that is just fast enough: so now and then a little more is tried,
-/// less often each time it was too much.
+/// At the display's own rate a faster device looks like one that is just fast enough: so now and then a little more is tried.
 const PROBE_GROWTH = 1.15;
-const FIRST_PROBE_MS = 1000;
-const LAST_PROBE_MS = 60_000;
+/// A step up that was too much (one tile may be) is not tried again for a while, longer each time.
+const FIRST_WAIT_MS = 1000;
+const LAST_WAIT_MS = 60_000;
 
 interface Measured {
   readonly vertices: number;
@@ -39,8 +42,8 @@ export class FrameRate {
   private elapsed = 0;
   private skip = 0;
   private sinceChange = 0;
-  private probeAfter = FIRST_PROBE_MS;
-  private isProbing = false;
+  private wait = 0;
+  private wentUp = false;
   /// What a frame took before the last step down, and where a step down turned out to be of no use.
   private before: Measured | null = null;
   private floor: Measured | null = null;
@@ -65,7 +68,7 @@ export class FrameRate {
     const enough = count >= LEAST_FRAMES && this.elapsed >= WINDOW_MS;
     const frames = (this.elapsed * this.target) / 1000;
     if (enough || (count === 2 && frames > 2 * TOO_SLOW)) this.judge(vertices, limited);
-    else if (count === 1 && frames > FAR_TOO_SLOW) this.change(Math.min(this.budget, vertices) / MOST_SHRINK);
+    else if (count === 1 && frames > FAR_TOO_SLOW) this.change(Math.min(this.budget, vertices) / MOST_SHRINK, false);
   }
 
   private judge(vertices: number, limited: boolean): void {
@@ -76,16 +79,15 @@ export class FrameRate {
     this.intervals = [];
     this.elapsed = 0;
     if (ratio > 1 + TOLERANCE) this.shrink({ vertices, milliseconds }, ratio);
-    else if (ratio < 1 - TOLERANCE) this.grow(limited, Math.min(MOST_GROWTH, 1 / ratio));
-    else this.probe(limited);
+    else if (limited) this.grow(ratio);
   }
 
   private shrink(now: Measured, ratio: number): void {
-    if (this.isProbing) this.probeAfter = Math.min(2 * this.probeAfter, LAST_PROBE_MS);
+    if (this.wentUp) this.wait = Math.min(Math.max(2 * this.wait, FIRST_WAIT_MS), LAST_WAIT_MS);
     if (this.wasOfNoUse(now)) this.floor = this.before;
     else if (this.floor !== null && now.milliseconds > CHANGED * this.floor.milliseconds) this.floor = null;
     this.before = now;
-    this.change(Math.max(this.floor?.vertices ?? 0, Math.min(this.budget, now.vertices) / ratio));
+    this.change(Math.max(this.floor?.vertices ?? 0, Math.min(this.budget, now.vertices) / ratio), false);
   }
 
   /// Whether the last step down saved hardly anything.
@@ -96,20 +98,18 @@ export class FrameRate {
   }
 
   /// What is shown comes in tiles: only the budget itself grows by little.
-  private grow(limited: boolean, factor: number): void {
+  private grow(ratio: number): void {
     this.before = null;
-    if (limited) this.change(this.budget * factor);
+    if (ratio < MUCH_SPARE) this.wait = 0;
+    const isSpare = ratio < 1 - SPARE;
+    if (this.sinceChange < Math.max(this.wait, isSpare ? 0 : FIRST_WAIT_MS)) return;
+    this.change(this.budget * (isSpare ? Math.min(MOST_GROWTH, 1 / ratio) : PROBE_GROWTH), true);
   }
 
-  private probe(limited: boolean): void {
-    if (!limited || this.sinceChange < this.probeAfter) return;
-    this.change(this.budget * PROBE_GROWTH);
-    this.isProbing = true;
-  }
-
-  private change(budget: number): void {
+  private change(budget: number, wentUp: boolean): void {
     this.budget = Math.round(Math.min(MOST_BUDGET, Math.max(LEAST_BUDGET, budget)));
     this.clear();
+    this.wentUp = wentUp;
     this.skip = SETTLE_FRAMES;
   }
 
@@ -117,6 +117,5 @@ export class FrameRate {
     this.intervals = [];
     this.elapsed = 0;
     this.sinceChange = 0;
-    this.isProbing = false;
   }
 }
