@@ -389,6 +389,9 @@ async function checkNames(visitor, name) {
   for (const [role, control] of [['radio', 'Partitions'], ['checkbox', 'Wires'], ['slider', 'Frame rate to hold'], ['slider', 'Memory'], ['spinbutton', 'Error allowed (px)'], ['radio', 'Dark']])
     visitor.check(`${role} ${control}`, (await page.getByRole(role, { name: control }).count()) === 1, 'has its name');
   await page.getByRole('radio', { name: 'Dark' }).check();
+  await page.keyboard.press('w');
+  visitor.check('keys beside a choice', await page.evaluate(() => window.meshhier.view.look.wires), 'W shows the wires');
+  await page.keyboard.press('w');
   visitor.check('theme', (await page.evaluate(() => document.documentElement.dataset.theme)) === 'dark', 'dark');
   await page.reload();
   await settle(page);
