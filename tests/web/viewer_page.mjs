@@ -17,7 +17,7 @@ const LEAST_TARGET = 40; // CSS pixels
 const MANY = 40; // models in a long listing
 const JOBS = [
   { name: 'half.ply', state: 'building', stage: 'simplify', progress: 0.5, seconds_left: 90 },
-  { name: '<b>bad</b>.ply', state: 'failed', message: 'byte 7: <i>nothing</i>' },
+  { name: '<b>bad</b>.ply', state: 'failed', message: '<b>bad</b>.ply: byte 7: <i>nothing</i>' },
 ];
 const PATIENCE = 120_000; // milliseconds
 
@@ -27,6 +27,7 @@ function makeSite(page, hierarchies) {
   cpSync(page, site, { recursive: true });
   const models = hierarchies.map(({ name }) => ({ name, path: `models/${name}.hier` }));
   writeFileSync(path.join(site, 'models.json'), JSON.stringify({ models }));
+  writeFileSync(path.join(site, 'one.json'), JSON.stringify({ models: models.slice(0, 1) }));
   const many = Array.from({ length: MANY }, (_, i) => ({ name: `model ${i}`, path: `${models[0].path}${'/'.repeat(i)}` }));
   writeFileSync(path.join(site, 'many.json'), JSON.stringify({ models: many, jobs: JOBS }));
   return site;
@@ -38,9 +39,10 @@ class Visitor {
   }
 
   /// A page at `link`, with what it asked for and what its console complained of.
-  async open(link, { prepare = null, ...options } = WIDE) {
+  async open(link, { prepare = null, routes = null, ...options } = WIDE) {
     const page = await this.browser.newPage({ reducedMotion: 'reduce', ...options });
     if (prepare !== null) await page.addInitScript(prepare);
+    await routes?.(page);
     page.asked = [];
     page.complaints = [];
     page.on('request', (request) => page.asked.push(request.url().replace(`${this.origin}/`, '')));
@@ -149,7 +151,7 @@ async function checkLongGallery(visitor) {
   visitor.check('gallery fetches what is near', fetched > 0 && fetched < MANY / 2, `${fetched} outlines of ${MANY}`);
   visitor.check('gallery progress', (await page.getByRole('progressbar', { name: 'half.ply: progress' }).getAttribute('value')) === '0.5', '0.5');
   const failed = await page.locator('.job-failed').innerText();
-  visitor.check('gallery failure', failed.includes('<b>bad</b>.ply') && failed.includes('byte 7: <i>nothing</i>'), failed);
+  visitor.check('gallery failure', failed.split('<b>bad</b>.ply').length === 2 && failed.includes('byte 7: <i>nothing</i>'), failed);
   const box = await page.locator('a.cell').first().boundingBox();
   const place = [box.x + box.width / 2, box.y + box.height / 2];
   await swipe(page, place, [60, 4]);
@@ -170,6 +172,21 @@ async function swipe(page, [x, y], [right, down]) {
   }
   await touch('touchEnd', []);
   await page.waitForTimeout(500);
+}
+
+/// An outline that fails is asked for once more when its cell is seen again.
+async function checkOutlineAgain(visitor, name) {
+  let refused = 0;
+  const prepare = (page) => page.route('**/outline.glb', (route) => (++refused === 1 ? route.fulfill({ status: 503 }) : route.continue()));
+  const page = await visitor.open('?models=one.json', { ...WIDE, routes: prepare });
+  await page.locator('.cell-problem').waitFor();
+  visitor.check('outline failed', (await page.locator('.cell-problem').innerText()).includes('503'), await page.locator('.cell-problem').innerText());
+  await page.evaluate((one) => window.meshhier.open(one), name);
+  await settle(page);
+  await page.evaluate(() => window.meshhier.close());
+  await page.waitForFunction(() => document.querySelector('.cell-stage')?.matches(':not(.waiting):empty'));
+  visitor.check('outline again', refused === 2, `${refused} requests`);
+  await page.close();
 }
 
 // ---- a model
@@ -271,6 +288,70 @@ async function checkRest(visitor, name) {
   await visitor.close(page, 'rest');
 }
 
+// ---- code that is late, or never comes
+
+const CODE = '**/assets/model_view-*.js';
+const WORKER = '**/assets/tile_worker-*.js';
+
+/// To a model, back, and to it again, before there is the code that draws it.
+async function checkLateCode(visitor, name) {
+  let release;
+  const late = new Promise((done) => { release = done; });
+  const page = await visitor.open('', { ...WIDE, routes: (one) => one.route(CODE, (route) => late.then(() => route.continue())) });
+  const cell = page.locator('a.cell', { hasText: name }).first();
+  await cell.click();
+  await page.goBack();
+  await cell.click();
+  release();
+  await settle(page);
+  const views = await page.evaluate(() => document.querySelectorAll('main.view, canvas:not(.gallery-canvas)').length);
+  visitor.check('late code', views === 2, 'one view, with one canvas');
+  await visitor.close(page, 'late code');
+}
+
+async function checkLostCode(visitor, name) {
+  const page = await visitor.open('', { ...WIDE, routes: (one) => one.route(CODE, (route) => route.abort()) });
+  await page.locator('a.cell', { hasText: name }).first().click();
+  const told = page.getByRole('alert').locator('.problem');
+  await told.waitFor();
+  visitor.check('lost code', (await told.innerText()).includes(`${name} cannot be shown`), await told.innerText());
+  await page.unroute(CODE);
+  await page.locator('a.cell', { hasText: name }).first().click();
+  await settle(page);
+  visitor.check('lost code again', (await page.locator('.problem').count()) === 0, 'the model is shown');
+  await page.close();
+}
+
+/// A worker whose script could not be had before anyone listened is not used.
+async function checkLostWorker(visitor, name) {
+  let asked = 0;
+  const routes = async (page) => {
+    await page.route(WORKER, (route) => (++asked === 1 ? route.abort() : route.continue()));
+    await page.route(CODE, async (route) => {
+      await new Promise((done) => setTimeout(done, 1000));
+      await route.continue();
+    });
+  };
+  const page = await visitor.open(anchor(name), { ...WIDE, routes });
+  await settle(page);
+  visitor.check('lost worker', asked > 1 && (await page.locator('.problem').count()) === 0, `${asked} requests, and the model is shown`);
+  await page.close();
+}
+
+async function checkCamera(visitor, name) {
+  const page = await visitor.open(anchor(name));
+  await settle(page);
+  const refusals = await page.evaluate(() => [NaN, 0].map((x) => {
+    try {
+      return window.meshhier.setCamera({ position: [x, 0, 0], target: [0, 0, 0] });
+    } catch (error) {
+      return `${error}`;
+    }
+  }));
+  visitor.check('camera refused', refusals.every((text) => text?.startsWith('RangeError')), refusals.join('; '));
+  await visitor.close(page, 'camera');
+}
+
 // ---- narrow screens, and what can be heard
 
 async function checkNarrow(visitor, name, pictures, colorScheme) {
@@ -308,6 +389,9 @@ async function checkNames(visitor, name) {
   for (const [role, control] of [['radio', 'Partitions'], ['checkbox', 'Wires'], ['slider', 'Frame rate to hold'], ['slider', 'Memory'], ['spinbutton', 'Error allowed (px)'], ['radio', 'Dark']])
     visitor.check(`${role} ${control}`, (await page.getByRole(role, { name: control }).count()) === 1, 'has its name');
   await page.getByRole('radio', { name: 'Dark' }).check();
+  await page.keyboard.press('w');
+  visitor.check('keys beside a choice', await page.evaluate(() => window.meshhier.view.look.wires), 'W shows the wires');
+  await page.keyboard.press('w');
   visitor.check('theme', (await page.evaluate(() => document.documentElement.dataset.theme)) === 'dark', 'dark');
   await page.reload();
   await settle(page);
@@ -335,6 +419,25 @@ async function checkMissing(visitor, name) {
   await visitor.close(alone, 'one model');
 }
 
+/// Addresses that no one can fetch, at first and after a model.
+async function checkUnreachable(visitor, name) {
+  for (const link of ['?model=ftp://x', '?models=ftp://x', '#ftp://x']) {
+    const page = await visitor.open(link);
+    const alert = page.getByRole('alert').locator('.problem');
+    await alert.waitFor();
+    visitor.check(`unreachable ${link}`, (await alert.innerText()).includes('ftp://x') && (await page.locator('.gallery').isVisible()), await alert.innerText());
+    await visitor.close(page, `unreachable ${link}`);
+  }
+  const page = await visitor.open(anchor(name));
+  await settle(page);
+  await page.evaluate(() => { location.hash = '#ftp://x'; });
+  await page.getByRole('alert').locator('.problem', { hasText: 'ftp://x' }).waitFor();
+  await page.locator('a.cell', { hasText: name }).first().click();
+  await settle(page);
+  visitor.check('unreachable after a model', (await page.locator('.problem').count()) === 0, 'told, and gone with the next model');
+  await visitor.close(page, 'unreachable after a model');
+}
+
 function withoutWebGl() {
   const get = HTMLCanvasElement.prototype.getContext;
   HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
@@ -348,7 +451,7 @@ async function checkWithoutWebGl(visitor, name) {
     const alert = page.getByRole('alert').locator('.problem');
     await alert.waitFor();
     const text = await alert.innerText();
-    visitor.check(`no WebGL 2 ${link}`, text.includes('no WebGL 2'), text);
+    visitor.check(`no WebGL 2 ${link}`, text.includes('no WebGL 2') && (await page.locator('.gallery').isVisible()), text);
     await page.close();
   }
 }
@@ -359,13 +462,19 @@ async function checkAll(browser, report, pictures, hierarchies, origin) {
   await checkGallery(visitor, names, pictures);
   await checkMotion(visitor, names);
   await checkLongGallery(visitor);
+  await checkOutlineAgain(visitor, names[0]);
   await checkModes(visitor, names[0], pictures);
   await checkLinks(visitor, names[0]);
   await checkRest(visitor, names[0]);
+  await checkCamera(visitor, names[0]);
+  await checkLateCode(visitor, names[0]);
+  await checkLostCode(visitor, names[0]);
+  await checkLostWorker(visitor, names[0]);
   await checkNames(visitor, names[0]);
   await checkNarrowGallery(visitor, names, pictures);
   for (const scheme of ['light', 'dark']) await checkNarrow(visitor, names[0], pictures, scheme);
   await checkMissing(visitor, names[0]);
+  await checkUnreachable(visitor, names[0]);
   await checkWithoutWebGl(visitor, names[0]);
 }
 

@@ -42,13 +42,21 @@ function parseTriple(values: readonly number[]): Triple {
   return [values[0], values[1], values[2]];
 }
 
-/// Null of what is no pose, or of one that looks from where it looks at.
+/// Why a camera cannot stand so, in the digits that links keep; null if it can.
+export function problemOfPose(position: readonly unknown[], target: readonly unknown[]): string | null {
+  const isTriple = (values: readonly unknown[]): values is Triple => values.length === 3 && values.every(Number.isFinite);
+  if (!isTriple(position) || !isTriple(target)) return 'position and target are three finite numbers each';
+  const way = position.reduce((sum, value, axis) => sum + (rounded(value) - rounded(target[axis])) ** 2, 0);
+  if (way === 0) return 'position and target are the same point';
+  return Number.isFinite(way) ? null : 'position and target are too far from each other';
+}
+
+/// Null of what is no pose.
 function parsePose(text: string): Pose | null {
   const parts = text.split(',');
   const values = parts.map((part) => (part.trim() === '' ? NaN : Number(part)));
-  if (values.length !== 6 || !values.every(Number.isFinite)) return null;
-  const pose = { position: parseTriple(values), target: parseTriple(values.slice(3)) };
-  return pose.position.every((value, axis) => value === pose.target[axis]) ? null : pose;
+  const [position, target] = [values.slice(0, 3), values.slice(3)];
+  return problemOfPose(position, target) === null ? { position: parseTriple(position), target: parseTriple(target) } : null;
 }
 
 /// `hash` as `location.hash` has it. Null if it names no model.

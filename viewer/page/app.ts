@@ -10,7 +10,7 @@ import { themeButton } from './parts/theme_button.js';
 import { loadPreferences, savePreferences, type Theme } from './preferences.js';
 import { NO_WEBGL } from './parts/no_webgl.js';
 import { Problems } from './problems.js';
-import { readQuery } from './query.js';
+import { readQuery, shortened } from './query.js';
 import { watchInput } from './parts/input.js';
 import { applyTheme, watchSystemTheme } from './theme.js';
 import type { ModelView, Surroundings } from './view/model_view.js';
@@ -30,6 +30,10 @@ function loadView(): Promise<typeof import('./view/model_view.js')> {
   return import('./view/model_view.js');
 }
 
+function unreachable(path: string): string {
+  return `The link names "${shortened(path)}", which cannot be fetched.`;
+}
+
 export class App {
   readonly preferences = loadPreferences();
   readonly problems = new Problems();
@@ -38,6 +42,7 @@ export class App {
   private readonly watch: ListingWatch;
   private gallery: Gallery | null = null;
   private opening: Model | null = null;
+  private turn = 0; // of what is shown: what was loaded for an earlier one is of no use
   private left: string | null = null;
 
   constructor(private readonly root: HTMLElement) {
@@ -62,8 +67,12 @@ export class App {
   route(): void {
     const address = parseAddress(location.hash);
     const model = this.query.only ?? (address === null ? null : this.modelAt(address.path));
-    if (model === null) this.showGallery();
-    else this.showModel(model, address?.pose ?? null);
+    if (model !== null) {
+      this.showModel(model, address?.pose ?? null);
+      return;
+    }
+    this.showGallery();
+    if (address !== null) this.problems.tell(unreachable(address.path));
   }
 
   /// Opens a model of the listing by its name or path. False if there is none.
@@ -80,7 +89,7 @@ export class App {
       history.back();
       return;
     }
-    history.pushState(null, '', location.pathname + location.search);
+    history.pushState(null, '', this.galleryAddress);
     this.route();
   }
 
@@ -92,11 +101,13 @@ export class App {
     this.view?.themeChanged();
   }
 
-  /// Null, with a message, of a path that cannot be fetched.
+  private get galleryAddress(): string {
+    return location.pathname + location.search;
+  }
+
+  /// Null of a path that cannot be fetched.
   private modelAt(path: string): Model | null {
-    const model = this.models.find((one) => one.path === path) ?? modelOfPath(path, this.query.listing);
-    if (model === null) this.problems.tell(`The link names "${path}", which cannot be fetched.`);
-    return model;
+    return this.models.find((one) => one.path === path) ?? modelOfPath(path, this.query.listing);
   }
 
   private listed(listing: Listing): void {
@@ -109,7 +120,7 @@ export class App {
     this.gallery ??= this.makeGallery();
     document.title = 'meshhier';
     this.gallery.show();
-    this.watch.start();
+    if (this.query.only === null) this.watch.start();
     if (this.left !== null) this.gallery.focus(this.left);
   }
 
@@ -136,20 +147,28 @@ export class App {
     this.gallery?.hide();
     this.watch.stop();
     document.title = `${model.name} – meshhier`;
-    this.load(model, pose).catch((error: unknown) => { this.problems.tell(`${model.name} cannot be shown: ${messageOf(error)}`); });
+    const { turn } = this;
+    this.load(model, pose, turn).catch((error: unknown) => { if (turn === this.turn) this.refuse(model, messageOf(error)); });
   }
 
-  private async load(model: Model, pose: Pose | null): Promise<void> {
+  private async load(model: Model, pose: Pose | null, turn: number): Promise<void> {
     const early = new EarlyStart(model.url);
     try {
       const { ModelView } = await loadView();
-      if (this.opening !== model) return;
+      if (turn !== this.turn) return;
       this.view = new ModelView(model, this.surroundings(model, pose, early));
     } finally {
       early.close();
     }
     this.root.prepend(this.view.root);
     this.view.start();
+  }
+
+  /// Back to the gallery, where the model's link can be followed again.
+  private refuse(model: Model, why: string): void {
+    history.replaceState(null, '', this.galleryAddress);
+    this.showGallery();
+    this.problems.tell(why === NO_WEBGL ? why : `${model.name} cannot be shown: ${why}. Load the page again to try once more.`);
   }
 
   private surroundings(model: Model, pose: Pose | null, { fetch, createWorker }: EarlyStart): Surroundings {
@@ -171,11 +190,13 @@ export class App {
     history.replaceState(history.state, '', formatAddress({ path, pose }));
   }
 
+  /// Makes room for something else. What was told before anything was shown stays.
   private closeView(): void {
+    if (this.opening !== null || this.gallery?.shown) this.problems.clear();
+    ++this.turn;
     this.left = this.opening?.path ?? null;
     this.opening = null;
     this.view?.close();
     this.view = null;
-    this.problems.clear();
   }
 }

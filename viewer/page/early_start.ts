@@ -6,15 +6,17 @@ const ROOT = 'tiles/00/000000.glb';
 
 export class EarlyStart {
   private readonly url: string;
+  private readonly ending = new AbortController();
   private root: Promise<Response> | null;
   private worker: Worker | null;
 
   /// `url`: of the hierarchy.
   constructor(url: string) {
     this.url = `${url}/${ROOT}`;
-    this.root = fetch(this.url, { priority: 'high' });
+    this.root = fetch(this.url, { priority: 'high', signal: this.ending.signal });
     this.root.catch(() => undefined); // whoever asks for it is told
     this.worker = new TileWorker();
+    this.worker.addEventListener('error', () => { this.worker = null; }); // whoever has it by then is told
   }
 
   /// As the global one; the root was asked for already.
@@ -25,7 +27,7 @@ export class EarlyStart {
     return early;
   };
 
-  /// The first one is there already.
+  /// The first one is there already, unless its script could not be had.
   readonly createWorker = (): Worker => {
     const early = this.worker ?? new TileWorker();
     this.worker = null;
@@ -34,6 +36,8 @@ export class EarlyStart {
 
   /// Ends what nobody took.
   close(): void {
+    if (this.root !== null) this.ending.abort();
+    this.root = null;
     this.worker?.terminate();
     this.worker = null;
   }

@@ -1,6 +1,6 @@
 // `window.meshhier`: the page for scripts and tests.
 import type { Stats } from '../src/scene/settings.js';
-import type { Pose } from './address.js';
+import { problemOfPose, type Pose } from './address.js';
 import type { App } from './app.js';
 import type { Model } from './listing.js';
 import type { HierarchyView } from '../src/index.js';
@@ -9,7 +9,7 @@ export interface Hook {
   /// Of the open model; null in the gallery and before the model's code is there.
   stats(): Stats | null;
   camera(): Pose | null;
-  /// At once, without a flight.
+  /// At once, without a flight. Throws RangeError if no camera can stand so.
   setCamera(pose: Pose): void;
   /// The view stands still, is drawn, and nothing is left to fetch or refine.
   settled(): boolean;
@@ -28,11 +28,26 @@ declare global {
   }
 }
 
+function isList(value: unknown): value is readonly unknown[] {
+  return Array.isArray(value);
+}
+
+/// What scripts give is whatever they give.
+export function checkedPose(given: unknown): Pose {
+  const { position, target } = (given ?? {}) as Partial<Record<keyof Pose, unknown>>;
+  const problem = problemOfPose(isList(position) ? position : [], isList(target) ? target : []);
+  if (problem !== null) throw new RangeError(`setCamera: ${problem}`);
+  return given as Pose;
+}
+
 export function installHook(app: App): void {
   window.meshhier = {
     stats: () => app.view?.stats() ?? null,
     camera: () => app.view?.pose() ?? null,
-    setCamera: (pose) => { app.view?.setPose(pose); },
+    setCamera: (pose) => {
+      const checked = checkedPose(pose);
+      app.view?.setPose(checked);
+    },
     settled: () => app.view?.settled() ?? false,
     get view() { return app.view?.view ?? null; },
     get models() { return app.models; },

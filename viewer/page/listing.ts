@@ -47,25 +47,32 @@ function countOf(value: unknown): number | null {
   return typeof value === 'number' && Number.isFinite(value) && value >= 0 ? value : null;
 }
 
+/// In time that grows with the text alone; `/\/+$/` looks at each run of slashes again from each of them.
+function withoutLastSlashes(text: string): string {
+  let end = text.length;
+  while (text[end - 1] === '/') --end;
+  return text.slice(0, end);
+}
+
 /// `models/sub/david.hier` to `david`.
 export function nameOfPath(path: string): string {
-  const file = path.replace(/[?#].*$/, '').replace(/\/+$/, '').replace(/^.*\//, '');
+  const file = withoutLastSlashes(path.replace(/[?#].*$/, '')).replace(/^.*\//, '');
   return file.replace(/(.)\.[^.]*$/, '$1') || path;
 }
 
-/// Null of what cannot be fetched. A slash at its end is taken off.
+/// Null of what cannot be fetched. Slashes at its end are taken off.
 export function resolveUrl(path: string, base: string): string | null {
   try {
     const url = new URL(path, base);
-    return ['http:', 'https:'].includes(url.protocol) ? url.href.replace(/\/+$/, '') : null;
+    return ['http:', 'https:'].includes(url.protocol) ? withoutLastSlashes(url.href) : null;
   } catch {
     return null;
   }
 }
 
-/// A model of which nothing but the path is known. Null if it cannot be fetched.
+/// A model of which nothing but the path is known. Null if it cannot be fetched, or is longer than a path may be.
 export function modelOfPath(path: string, base: string): Model | null {
-  const url = path === '' ? null : resolveUrl(path, base);
+  const url = path === '' || path.length > MOST_TEXT ? null : resolveUrl(path, base);
   if (url === null) return null;
   return { name: nameOfPath(path), path, url, vertices: null, triangles: null, bytes: null, source: null };
 }

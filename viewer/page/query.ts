@@ -11,9 +11,15 @@ export interface Query {
 }
 
 const LISTING = 'models.json';
+const MOST_SHOWN = 200; // characters in a message
+
+/// For a message: somebody else may have written it, at any length.
+export function shortened(text: string): string {
+  return text.length > MOST_SHOWN ? `${text.slice(0, MOST_SHOWN)}…` : text;
+}
 
 function unusable(key: string, value: string): string {
-  return `?${key}=${value} is no address that can be fetched. It must be relative to this page, or start with http or https.`;
+  return `?${key}=${shortened(value)} is no address that can be fetched. It must be relative to this page, or start with http or https.`;
 }
 
 /// `base`: the page's own address.

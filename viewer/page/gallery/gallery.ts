@@ -111,7 +111,7 @@ export class Gallery {
   private drop(cell: ModelCell): void {
     this.near.unobserve(cell.root);
     this.visible.delete(cell);
-    cell.root.remove();
+    cell.close();
     this.cells.delete(cell.model.path);
   }
 

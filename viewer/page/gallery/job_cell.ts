@@ -3,9 +3,16 @@ import type { Job } from '../listing.js';
 import { formatDuration } from '../numbers.js';
 import { element } from '../parts/element.js';
 
-function stateText({ state, stage, progress, secondsLeft, message }: Job): string {
-  if (state === 'failed') return message || 'failed, without saying why';
-  if (state === 'waiting') return message || 'waiting for its turn';
+/// Without the name where it begins with that: it stands above.
+function messageOf({ name, message }: Job): string {
+  const start = `${name}:`;
+  return message.startsWith(start) ? message.slice(start.length).trim() : message;
+}
+
+export function stateText(job: Job): string {
+  const { state, stage, progress, secondsLeft } = job;
+  if (state === 'failed') return messageOf(job) || 'failed, without saying why';
+  if (state === 'waiting') return messageOf(job) || 'waiting for its turn';
   const part = progress === null ? '' : ` ${Math.round(100 * progress)} %`;
   const left = secondsLeft === null ? '' : `, ${formatDuration(secondsLeft)} left`;
   return `${stage || 'building'}${part}${left}`;

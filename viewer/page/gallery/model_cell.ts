@@ -1,11 +1,11 @@
 // A model in the gallery: a link with its outline, its name and its size.
-import { readOutline } from '../../src/hierarchy/outline.js';
 import { formatAddress } from '../address.js';
 import type { Model } from '../listing.js';
 import { formatBytes, formatCount, formatRough } from '../numbers.js';
 import { element } from '../parts/element.js';
 import type { Turn } from './layout.js';
-import { shapeOf, type Shape } from './shape.js';
+import { OutlineSource } from './outline_source.js';
+import type { Shape } from './shape.js';
 import { Turning } from './turning.js';
 
 /// What is known of it, as people read it.
@@ -25,21 +25,16 @@ function exactText({ name, vertices, triangles, bytes, source }: Model): string 
   return parts.join('\n');
 }
 
-async function fetchOutline(url: string): Promise<Shape> {
-  const response = await fetch(`${url}/outline.glb`);
-  if (!response.ok) throw new Error(`outline.glb: ${response.status} ${response.statusText}`.trim());
-  return shapeOf(readOutline(new Uint8Array(await response.arrayBuffer())));
-}
-
 export class ModelCell {
   readonly root: HTMLLIElement;
   readonly stage: HTMLSpanElement;
   shape: Shape | null = null;
   private readonly turning: Turning;
-  private asked = false;
+  private readonly outline: OutlineSource;
 
   /// `changed`: there is something new to draw.
   constructor(readonly model: Model, private readonly changed: () => void) {
+    this.outline = new OutlineSource(model.url);
     this.stage = element('span', { class: 'cell-stage' });
     const link = element(
       'a',
@@ -65,14 +60,21 @@ export class ModelCell {
     this.turning.advance(angle);
   }
 
-  /// Fetches the outline, once.
+  /// Fetches the outline; again, once, if that failed and the cell comes into view again.
   load(): void {
-    if (this.asked) return;
-    this.asked = true;
+    const asked = this.outline.ask();
+    if (asked === null) return;
+    this.stage.replaceChildren();
     this.stage.classList.add('waiting');
-    fetchOutline(this.model.url)
+    asked
       .then((shape) => { this.show(shape); })
       .catch((error: unknown) => { this.tell(error instanceof Error ? error.message : String(error)); });
+  }
+
+  /// It is gone from the gallery for good.
+  close(): void {
+    this.outline.close();
+    this.root.remove();
   }
 
   private show(shape: Shape): void {
@@ -83,6 +85,7 @@ export class ModelCell {
   }
 
   private tell(problem: string): void {
+    if (this.outline.ended) return;
     this.stage.classList.remove('waiting');
     this.stage.append(element('span', { class: 'cell-note cell-problem' }, `No outline: ${problem}`));
   }

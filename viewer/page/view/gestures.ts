@@ -13,6 +13,11 @@ interface Finger {
   y: number;
 }
 
+/// The logarithm of a factor, of fingers whose spread changes; none where they meet, or are one finger.
+export function zoomOfSpread(before: number, now: number): number {
+  return before > 0 && now > 0 ? Math.log(before / now) : 0;
+}
+
 export class Gestures {
   private readonly fingers = new Map<number, Finger>();
   private panning = false;
@@ -70,7 +75,7 @@ export class Gestures {
     const height = this.surface.clientHeight;
     const [right, up] = [(now.x - middle.x) / height, (middle.y - now.y) / height];
     if (!this.panning) this.navigation.move({ turnRight: -right * TURN, turnUp: -up * TURN });
-    else this.navigation.move({ panRight: -right, panUp: -up, zoom: spread > 0 ? Math.log(spread / this.spread()) : 0 });
+    else this.navigation.move({ panRight: -right, panUp: -up, zoom: zoomOfSpread(spread, this.spread()) });
   }
 
   private lift(event: PointerEvent): void {

@@ -25,8 +25,12 @@ export class Glide {
     return KEYS.some((key) => this.left[key] !== 0);
   }
 
+  /// What is not finite is no movement.
   add(moves: Partial<Moves>): void {
-    for (const key of KEYS) this.left[key] += moves[key] ?? 0;
+    for (const key of KEYS) {
+      const move = moves[key] ?? 0;
+      if (Number.isFinite(move)) this.left[key] += move;
+    }
   }
 
   clear(): void {

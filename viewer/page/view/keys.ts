@@ -51,11 +51,18 @@ export const KEY_HELP: readonly (readonly [string, string])[] = [
   ['?', 'this help'],
 ];
 
+/// Whether an input of that type needs the key for itself; what is written in needs them all.
+export function needsKey(type: string, key: string): boolean {
+  if (type === 'checkbox' || type === 'button') return key === ' ';
+  if (type === 'radio' || type === 'range') return /^(Arrow|Page|Home$|End$| $)/.test(key);
+  return true;
+}
+
 /// Keys that an element under the focus needs for itself.
 function isTaken(event: KeyboardEvent): boolean {
   const { target, key } = event;
   if (key === 'Escape') return false;
-  if (target instanceof HTMLInputElement) return !['checkbox', 'button'].includes(target.type) || key === ' ';
+  if (target instanceof HTMLInputElement) return needsKey(target.type, key);
   return target instanceof HTMLSelectElement || target instanceof HTMLTextAreaElement;
 }
 

@@ -1,4 +1,5 @@
 import { describe, expect, it } from 'vitest';
+import { zoomOfSpread } from '../../page/view/gestures.js';
 import { Glide } from '../../page/view/glide.js';
 
 describe('a glide', () => {
@@ -25,10 +26,28 @@ describe('a glide', () => {
     expect(glide.busy).toBe(false);
   });
 
+  it.each([NaN, Infinity, -Infinity])('takes no part of %d', (zoom) => {
+    const glide = new Glide();
+    glide.add({ zoom: 0.25, panUp: 1 });
+    glide.add({ zoom, panUp: zoom });
+    glide.add({ zoom: -zoom });
+    expect(glide.take(16, true)).toMatchObject({ zoom: 0.25, panUp: 1 });
+    expect(glide.busy).toBe(false);
+  });
+
   it('can be stopped', () => {
     const glide = new Glide();
     glide.add({ panUp: 0.3 });
     glide.clear();
     expect(glide.busy).toBe(false);
+  });
+});
+
+describe('a pinch', () => {
+  it('is a factor, and none where the fingers meet or part', () => {
+    expect(zoomOfSpread(100, 200)).toBeCloseTo(-Math.log(2), 12);
+    expect(zoomOfSpread(100, 0)).toBe(0);
+    expect(zoomOfSpread(0, 100)).toBe(0);
+    expect(zoomOfSpread(0, 0)).toBe(0);
   });
 });

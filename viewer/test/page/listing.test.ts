@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { ListingError, modelOfPath, nameOfPath, parseListing } from '../../page/listing.js';
+import { ListingError, modelOfPath, nameOfPath, parseListing, resolveUrl } from '../../page/listing.js';
 
 const URL_ = 'http://host/dir/models.json';
 
@@ -62,5 +62,20 @@ describe('a path', () => {
   it('may lead to another host, and nowhere but to hosts', () => {
     expect(modelOfPath('https://other/a.hier', URL_)?.url).toBe('https://other/a.hier');
     expect(modelOfPath('blob:http://host/1', URL_)).toBeNull();
+  });
+
+  it('may have slashes at its end, and a thousand characters', () => {
+    expect(modelOfPath('a.hier///', URL_)?.url).toBe('http://host/dir/a.hier');
+    expect(modelOfPath('a'.repeat(1000), URL_)).not.toBeNull();
+    expect(modelOfPath('a'.repeat(1001), URL_)).toBeNull();
+  });
+
+  it('is read in a moment, whatever slashes it has', () => {
+    const slashes = `a${'/'.repeat(100_000)}x`;
+    const began = performance.now();
+    expect(nameOfPath(slashes)).toBe('x');
+    expect(resolveUrl(slashes, URL_)).toHaveLength('http://host/dir/'.length + slashes.length);
+    expect(parse({ models: [{ path: slashes }] }).models).toEqual([]);
+    expect(performance.now() - began).toBeLessThan(1000);
   });
 });

@@ -19,4 +19,8 @@ describe('the query', () => {
   it.each(['?model=', '?model=javascript:1', '?models=file:///etc/x', '?models=http://['])('is told off for %s', (search) => {
     expect(readQuery(search, BASE).problem).toContain(search.split('=')[0]);
   });
+
+  it('is told off in few words', () => {
+    expect(readQuery(`?model=ftp://${'x'.repeat(1e5)}`, BASE).problem!.length).toBeLessThan(400);
+  });
 });

@@ -1,0 +1,47 @@
+// The outline of a model, fetched when it is asked for.
+import { fetchBytes, type Fetch } from '../../src/hierarchy/bytes.js';
+import { readOutline } from '../../src/hierarchy/outline.js';
+import { shapeOf, type Shape } from './shape.js';
+
+const MOST_BYTES = 2 ** 20;
+const MOST_TRIES = 2;
+
+export class OutlineSource {
+  private readonly ending = new AbortController();
+  private tries = MOST_TRIES; // that are left
+  private waits = false;
+
+  /// `url`: of the hierarchy.
+  constructor(
+    private readonly url: string,
+    private readonly fetch: Fetch = (url, init) => globalThis.fetch(url, init),
+  ) {}
+
+  /// Null: it is on its way or was given already, or failed too often. Rejects with an Error that names the file.
+  ask(): Promise<Shape> | null {
+    if (this.waits || this.tries === 0 || this.ended) return null;
+    --this.tries;
+    this.waits = true;
+    return this.read();
+  }
+
+  get ended(): boolean {
+    return this.ending.signal.aborted;
+  }
+
+  /// What is on its way is given up.
+  close(): void {
+    this.ending.abort();
+  }
+
+  private async read(): Promise<Shape> {
+    try {
+      const bytes = await fetchBytes(this.fetch, `${this.url}/outline.glb`, 'outline.glb', MOST_BYTES, { signal: this.ending.signal });
+      const shape = shapeOf(readOutline(bytes));
+      this.tries = 0;
+      return shape;
+    } finally {
+      this.waits = false;
+    }
+  }
+}
