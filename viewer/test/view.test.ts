@@ -114,6 +114,17 @@ describe.skipIf(!hasProgram)('HierarchyView', () => {
     expect(session.problems.length).toBeGreaterThan(2);
   });
 
+  it('stays with the root, and says so once, where the manifest is of no use', async () => {
+    const odd = troubled(fetchFrom(torus()), (url) =>
+      url.endsWith('hierarchy.json') ? Promise.resolve(new Response('{"format":"meshhier","format_version":3}')) : null);
+    const session = begin(odd);
+    await session.view.opened;
+    closeUp(session);
+    expect(await session.settle()).toBe(true);
+    expect(session.problems).toHaveLength(1);
+    expect(session.view.stats().tiles).toBe(1);
+  });
+
   it('settles without a tile that never comes', async () => {
     const never = troubled(fetchFrom(torus()), (url) => (url.includes('tiles/01/000000') ? down() : null));
     const session = begin(never);

@@ -49,6 +49,7 @@ export class ModelView {
   private readonly sizes = new ResizeObserver(() => { this.loop.wake(); });
   private dirty = true;
   private opened = false;
+  private readonly framed = new Box3();
   private shown = false;
   private refused = false;
   private lost: (() => void) | null = null;
@@ -142,8 +143,13 @@ export class ModelView {
 
   private begin(): void {
     this.opened = true;
-    this.navigation.frame(this.view.box, this.stage.aspect);
+    this.reframe();
     this.redraw();
+  }
+
+  private reframe(): void {
+    this.framed.copy(this.view.box);
+    this.navigation.frame(this.framed, this.stage.aspect);
   }
 
   private refuse(error: unknown): void {
@@ -164,7 +170,8 @@ export class ModelView {
     if (moved) this.startRest();
     const { framesPerSecond } = this.view.settings;
     const resized = this.stage.fit(this.sharpness.at(now, moved, framesPerSecond));
-    if (resized && this.opened) this.navigation.frame(this.view.box, this.stage.aspect);
+    // The manifest knows the box better than the root.
+    if (this.opened && (resized || !this.framed.equals(this.view.box))) this.reframe();
     this.stage.aim(CameraPose.from(this.pose()), this.opened ? this.view.box : UNKNOWN);
     const news = this.view.update(this.stage.camera, this.stage.size, now);
     if (moved || news || resized || this.dirty) this.draw();

@@ -49,9 +49,9 @@ async function respond(fetch: Fetch, url: string, name: string, init: RequestIni
     response = await fetch(url, init);
   } catch (problem) {
     if (init.signal?.aborted) throw problem;
-    throw new HierarchyProblem(name, `could not be fetched (${String(problem)}); is the host up, and does it allow this page?`);
+    throw new HierarchyProblem(name, `could not be fetched (${String(problem)}); is the host up, and does it allow this page?`, true);
   }
-  if (!response.ok) throw new HierarchyProblem(name, `the host answered ${response.status}`);
+  if (!response.ok) throw new HierarchyProblem(name, `the host answered ${response.status}`, response.status >= 429);
   return response;
 }
 
@@ -65,7 +65,7 @@ async function receive(
     return await drain(body, most, name);
   } catch (problem) {
     if (signal?.aborted || problem instanceof HierarchyProblem) throw problem;
-    throw new HierarchyProblem(name, `broke off (${String(problem)})`);
+    throw new HierarchyProblem(name, `broke off (${String(problem)})`, true);
   }
 }
 

@@ -2,7 +2,12 @@
 /// input; anything else is a defect.
 export class HierarchyProblem extends Error {
   override readonly name = 'HierarchyProblem';
-  constructor(file: string, what: string) {
+  /// `mayPass`: it is the host or the line; the same may succeed later.
+  constructor(
+    file: string,
+    what: string,
+    readonly mayPass = false,
+  ) {
     super(`${file}: ${what}`);
   }
 }

@@ -83,6 +83,8 @@ export class HierarchyView extends Group<ViewEvents> {
   private readonly ending = new AbortController();
   private root: Tile | null = null;
   private isOver = false;
+  /// Nothing else will come.
+  private isRootAll = false;
   private outline: Promise<OutlineObject | null> | null = null;
 
   /// `url`: of the hierarchy's directory.
@@ -183,11 +185,20 @@ export class HierarchyView extends Group<ViewEvents> {
         return;
       } catch (problem) {
         this.tell(problem);
-        if (tries === MOST_TRIES) return;
+        const mayPass = problem instanceof HierarchyProblem && problem.mayPass;
+        if (tries === MOST_TRIES || !mayPass) {
+          this.stayWithRoot();
+          return;
+        }
       }
       await new Promise((resolve) => setTimeout(resolve, RETRY_MS * 2 ** (tries - 1)));
       manifest = this.remote.manifest();
     }
+  }
+
+  private stayWithRoot(): void {
+    this.isRootAll = true;
+    this.changed();
   }
 
   private begin(directory: Directory): void {
@@ -279,7 +290,7 @@ export class HierarchyView extends Group<ViewEvents> {
   }
 
   private isSettled(): boolean {
-    return !this.motion.isMoving && (this.state?.isComplete ?? false);
+    return !this.motion.isMoving && (this.state?.isComplete ?? this.isRootAll);
   }
 
   private settle(): void {
