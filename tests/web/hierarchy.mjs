@@ -165,18 +165,18 @@ function turnsOf(values) {
   return steps.slice(1).filter((step, i) => step !== steps[i]).length;
 }
 
-const HOUR_STEPS = 1800;
+const HOUR_STEPS = 900;
 
 /// Bytes a vertex of the input: less than half of what all tiles take.
 const MEMORY_PART = 64;
 
-/// An hour, a look each two seconds, with a budget that holds a part of the model.
+/// An hour, a look each four seconds, with a budget that holds a part of the model.
 async function checkMemory(page, { name, vertices }, report) {
   const memoryBudget = Math.round(MEMORY_PART * vertices);
   await call(page, 'reopen', { settings: { memoryBudget }, size: 96 });
-  const early = await call(page, 'wander', { steps: HOUR_STEPS / 6, milliseconds: 2000, seed: 1 });
+  const early = await call(page, 'wander', { steps: HOUR_STEPS / 6, milliseconds: 4000, seed: 1 });
   const heapEarly = await call(page, 'heap');
-  const late = await call(page, 'wander', { steps: HOUR_STEPS, milliseconds: 2000, seed: 2 });
+  const late = await call(page, 'wander', { steps: HOUR_STEPS, milliseconds: 4000, seed: 2 });
   const heapLate = await call(page, 'heap');
   const left = await call(page, 'close');
   const good = late.peakBytes <= memoryBudget && late.evicted > 100 && late.problems.length === 0 &&

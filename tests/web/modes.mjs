@@ -26,17 +26,30 @@ function modeOf(page) {
   return page.evaluate(() => window.meshhier.stats()?.mode ?? 'TP');
 }
 
+/// Parts of the picture's width and height where the model may be hit: first the middle.
+const PLACES = [[0.5, 0.5], [0.5, 0.6], [0.56, 0.5], [0.44, 0.5], [0.5, 0.42], [0.6, 0.58], [0.4, 0.58], [0.5, 0.66]];
+
+/// A double click where the model is.
+async function closer(page) {
+  const { width, height } = page.viewportSize();
+  const camera = () => page.evaluate(() => JSON.stringify(window.meshhier.camera()));
+  const before = await camera();
+  for (const [x, y] of PLACES) {
+    await page.mouse.dblclick(x * width, y * height);
+    await page.waitForTimeout(200);
+    if ((await camera()) !== before) return;
+  }
+}
+
 /// Down to the surface in the middle of the picture, as a double click does; each mode's first settled picture is kept.
 async function goDown(page, keep) {
-  const { width, height } = page.viewportSize();
   const seen = new Set();
   for (let step = 0; step < MOST_STEPS && !seen.has('DZM'); ++step) {
     await settle(page);
     const mode = await modeOf(page);
     await keep(mode, step, !seen.has(mode));
     seen.add(mode);
-    await page.mouse.dblclick(width / 2, height / 2);
-    await page.waitForFunction(() => !window.meshhier.settled(), null, { timeout: 5000 }).catch(() => undefined);
+    await closer(page);
   }
   return seen;
 }

@@ -22,6 +22,11 @@ export interface Attributes {
   texcoords: boolean;
 }
 
+export interface Bounds {
+  min: [number, number, number];
+  max: [number, number, number];
+}
+
 export interface StreamIndex {
   vertices: number;
   own_vertices: number;
@@ -29,7 +34,8 @@ export interface StreamIndex {
   origin: [number, number, number];
   up: 'y' | 'z';
   licence: string;
-  source: { file_name: string; attributes: Attributes };
+  /// Bounds in input coordinates.
+  source: { file_name: string; attributes: Attributes; bounds: Bounds };
   files: StreamFile[];
 }
 
@@ -81,7 +87,11 @@ export function parseStreamIndex(text: string, name: string): StreamIndex {
     origin: root.at('origin').triple(),
     up: root.at('up').oneOf('y', 'z'),
     licence: root.at('licence').text(),
-    source: { file_name: source.at('file_name').text(), attributes: readAttributes(source.at('attributes')) },
+    source: {
+      file_name: source.at('file_name').text(),
+      attributes: readAttributes(source.at('attributes')),
+      bounds: { min: source.at('bounds').at('min').triple(), max: source.at('bounds').at('max').triple() },
+    },
     files,
   };
 }
