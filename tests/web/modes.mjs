@@ -63,6 +63,8 @@ async function visit(browser, report, { origin, pictures, screen, index, name, s
   const shoot = (what) => page.screenshot({ path: path.join(pictures, `${what}.png`) });
   await page.goto(`${origin}/index.html`);
   await page.waitForFunction(() => document.querySelector('a.cell') !== null && document.querySelector('.cell-stage.waiting') === null, null, { timeout: PATIENCE });
+  await page.waitForLoadState('networkidle');
+  await page.waitForFunction(() => document.querySelector('.cell-stage.waiting') === null);
   if (index === 0) await shoot(`modes-${screen}-TP`);
   if (strip) await shoot('strip-00-TP');
   await page.locator('a.cell').nth(index).click();
