@@ -95,8 +95,14 @@ function overlap(a, b) {
 
 // ---- the gallery
 
+/// How many outlines were asked for.
+function outlinesOf(page) {
+  return page.asked.filter((file) => file.endsWith('/outline.glb')).length;
+}
+
 async function paintedCells(page, names) {
   await page.waitForFunction((count) => document.querySelectorAll('a.cell').length === count, names.length);
+  for (const began = Date.now(); outlinesOf(page) < names.length && Date.now() - began < PATIENCE; ) await page.waitForTimeout(20);
   await page.waitForFunction(() => document.querySelector('.cell-stage.waiting') === null);
   return page.locator('a.cell').evaluateAll((cells) => cells.map((cell) => cell.querySelector('.cell-name').textContent));
 }
