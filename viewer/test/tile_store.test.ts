@@ -102,7 +102,6 @@ describe('TileStore', () => {
     tiles.want(wanted(LEFT, RIGHT, ...old), 2);
     await host.answerAll();
     for (let round = 3; round < 6; ++round) {
-      tiles.touch(key({ level: 0, index: 0 }), round);
       tiles.want(wanted(LEFT, RIGHT, ...young), round);
       await host.answerAll();
     }

@@ -48,13 +48,12 @@ export class Refinement {
     private readonly mostMemory: MostMemory,
   ) {}
 
-  /// null: not even the root is known. Touches what must stay at the time `now`.
+  /// null: not even the root is known.
   refine(view: Viewpoint, limits: RefinementLimits, now: number): Refined | null {
     const room = this.store.budget - 2 * this.largest;
     const choice = chooseCut(this.sources(view, now), view, { ...limits, bytes: room });
     if (choice.root === null) return null;
     this.refined = new Set(choice.refined.map(({ key }) => key));
-    this.touch(choice, now);
     const missing = this.store.want(this.wanted(choice), now);
     const drawn: ChosenNode[] = [];
     this.collect(choice.root, drawn);
@@ -91,11 +90,6 @@ export class Refinement {
     if (cone === undefined) return false;
     const margin = HIDDEN_MARGIN + (this.refined.has(key) ? HYSTERESIS_MARGIN : 0);
     return looksAway(view, record, this.store.get(ROOT)!.tile.insideOut ? opposite(cone) : cone, margin);
-  }
-
-  private touch({ root, refined }: Choice, now: number): void {
-    this.store.touch(root!.key, now);
-    for (const { children } of refined) for (const { key } of children) this.store.touch(key, now);
   }
 
   private wanted({ refined }: Choice): Wanted[] {

@@ -99,16 +99,10 @@ export class TileStore {
     return this.entries.size - this.loading;
   }
 
-  /// Marks a tile as of use at the time `now`.
-  touch(key: number, now: number): void {
-    const entry = this.entries.get(key);
-    if (entry) entry.useful = now;
-  }
-
   /// Asks for tiles, most urgent first, each after those above it; aborts what was asked for and is no longer
-  /// wanted. What must stay has been touched at `now`. Returns the number of those not there yet that will come.
+  /// wanted. They are what must stay, and the root. Returns the number of those not there yet that will come.
   want(wanted: readonly Wanted[], now: number): number {
-    for (const { node } of wanted) this.touch(keyOf(node.level, node.index), now);
+    for (const { node } of wanted) this.touch(node, now);
     this.abortStale(now);
     let missing = 0;
     let isFull = false;
@@ -164,6 +158,12 @@ export class TileStore {
     for (const entry of this.entries.values()) entry.abort.abort();
     for (const resident of this.residents()) this.host.gone(resident);
     this.entries.clear();
+  }
+
+  /// Of use at the time `now`.
+  private touch({ level, index }: Node, now: number): void {
+    const entry = this.entries.get(keyOf(level, index));
+    if (entry) entry.useful = now;
   }
 
   private canGo(entry: Entry, now: number): boolean {

@@ -82,7 +82,6 @@ export class HierarchyView extends Group<ViewEvents> {
   private readonly alarm = new Alarm(() => { this.changed(); });
   private readonly ending = new AbortController();
   private root: Tile | null = null;
-  private isOver = false;
   /// Nothing else will come.
   private isRootAll = false;
   private outline: Promise<OutlineObject | null> | null = null;
@@ -179,7 +178,7 @@ export class HierarchyView extends Group<ViewEvents> {
 
   /// Without it there is the root and no more: so it is tried again, for a while.
   private async openDirectory(root: Tile, manifest: Promise<Manifest>): Promise<void> {
-    for (let tries = 1; !this.isOver; ++tries) {
+    for (let tries = 1; !this.ending.signal.aborted; ++tries) {
       try {
         this.begin(await this.remote.directory(await manifest, root, () => { this.changed(); }, (problem) => { this.tell(problem); }));
         return;
@@ -202,7 +201,7 @@ export class HierarchyView extends Group<ViewEvents> {
   }
 
   private begin(directory: Directory): void {
-    if (this.isOver) return;
+    if (this.ending.signal.aborted) return;
     const { manifest, tree, index } = directory;
     this.directory = directory;
     this.manifest = manifest;
@@ -223,7 +222,7 @@ export class HierarchyView extends Group<ViewEvents> {
   }
 
   private tell(problem: unknown): void {
-    if (this.isOver) return;
+    if (this.ending.signal.aborted) return;
     ++this.failed;
     this.dispatchEvent({ type: 'problem', message: problem instanceof Error ? problem.message : String(problem) });
     this.changed();
@@ -231,7 +230,7 @@ export class HierarchyView extends Group<ViewEvents> {
 
   private changed(): void {
     this.isDirty = true;
-    if (!this.isOver) this.dispatchEvent({ type: 'change' });
+    if (!this.ending.signal.aborted) this.dispatchEvent({ type: 'change' });
   }
 
   // ---- each frame
@@ -241,7 +240,7 @@ export class HierarchyView extends Group<ViewEvents> {
   update(camera: PerspectiveCamera, viewport: Viewport, now: number): boolean {
     if (!this.store.has(ROOT_KEY)) return false;
     camera.updateWorldMatrix(true, false);
-    this.updateWorldMatrix(true, true);
+    this.tiles.updateWorldMatrix(true, false);
     const seesElse = this.motion.see(camera, this.tiles, viewport, now);
     this.measure(now);
     const isDue = seesElse || this.isDirty || this.motion.isMoving !== this.wasMoving;
@@ -353,7 +352,6 @@ export class HierarchyView extends Group<ViewEvents> {
 
   /// Frees everything, also on the GPU; the view is of no use afterwards.
   dispose(): void {
-    this.isOver = true;
     this.ending.abort(new Error('the view was closed'));
     this.alarm.stop();
     this.store.dispose();
