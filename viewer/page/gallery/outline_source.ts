@@ -1,9 +1,8 @@
 // The outline of a model, fetched when it is asked for.
-import { fetchBytes, type Fetch } from '../../src/hierarchy/bytes.js';
-import { readOutline } from '../../src/hierarchy/outline.js';
+import type { Fetch } from '../../src/hierarchy/bytes.js';
+import { fetchOutline } from '../../src/hierarchy/outline.js';
 import { shapeOf, type Shape } from './shape.js';
 
-const MOST_BYTES = 2 ** 20;
 const MOST_TRIES = 2;
 
 export class OutlineSource {
@@ -36,8 +35,7 @@ export class OutlineSource {
 
   private async read(): Promise<Shape> {
     try {
-      const bytes = await fetchBytes(this.fetch, `${this.url}/outline.glb`, 'outline.glb', MOST_BYTES, { signal: this.ending.signal });
-      const shape = shapeOf(readOutline(bytes));
+      const shape = shapeOf(await fetchOutline(this.fetch, `${this.url}/`, this.ending.signal));
       this.tries = 0;
       return shape;
     } finally {

@@ -1,6 +1,7 @@
-// glTF binaries as meshhier writes them (docs/file_format.md, sections 4.2 to 4.4 and 4.8): the container, and
-// the sections of its BIN chunk, out of their compression.
+// Tiles as glTF binaries (docs/file_format.md, sections 4.3, 4.4 and 4.8): the sections of the BIN chunk, out of their
+// compression.
 import { MeshoptDecoder } from 'meshoptimizer/decoder';
+import { readContainer } from './glb_container.js';
 import { HierarchyProblem } from './problem.js';
 
 interface Compressed {
@@ -26,10 +27,6 @@ export interface Gltf {
   extensions: Record<string, Record<string, number>>;
 }
 
-const MAGIC = 0x46546c67; // "glTF"
-const JSON_CHUNK = 0x4e4f534a;
-const BIN_CHUNK = 0x004e4942;
-const MOST_JSON = 65536;
 /// No codec of meshoptimizer makes more of a byte: a vertex's byte takes a quarter of a bit at least, with headers.
 const MOST_EXPANSION = 256;
 
@@ -41,25 +38,8 @@ export class Glb {
   ) {}
 
   static read(bytes: Uint8Array, name: string): Glb {
-    const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-    const u32 = (at: number): number => (at + 4 <= bytes.length ? view.getUint32(at, true) : 0);
-    if (u32(0) !== MAGIC || u32(4) !== 2) throw new HierarchyProblem(name, 'not a glTF binary');
-    const jsonBytes = u32(12);
-    if (u32(8) !== bytes.length || u32(16) !== JSON_CHUNK || jsonBytes > MOST_JSON || 20 + jsonBytes > bytes.length)
-      throw new HierarchyProblem(name, 'its length is not what it says');
-    const begin = 28 + jsonBytes;
-    const hasBin = bytes.length > 20 + jsonBytes;
-    if (hasBin && (u32(begin - 4) !== BIN_CHUNK || begin + u32(begin - 8) !== bytes.length))
-      throw new HierarchyProblem(name, 'its chunks are not what it says');
-    return new Glb(Glb.parse(bytes.subarray(20, 20 + jsonBytes), name), bytes.subarray(hasBin ? begin : bytes.length), name);
-  }
-
-  private static parse(text: Uint8Array, name: string): Gltf {
-    try {
-      return JSON.parse(new TextDecoder().decode(text)) as Gltf;
-    } catch {
-      throw new HierarchyProblem(name, 'its JSON is damaged');
-    }
+    const { document, bin } = readContainer(bytes, name);
+    return new Glb(document as Gltf, bin ?? new Uint8Array(0), name);
   }
 
   /// The bytes of a section that must have `length`; those of number -1 are none.

@@ -1,4 +1,6 @@
 // The shape-outline, outline.glb (docs/file_format.md, sections 4.2 and 5).
+import { fetchBytes, type Fetch } from './bytes.js';
+import { readContainer } from './glb_container.js';
 import { HierarchyProblem } from './problem.js';
 
 export interface Outline {
@@ -13,11 +15,7 @@ export interface Outline {
 }
 
 const FILE = 'outline.glb';
-const MAGIC = 0x46546c67; // "glTF"
-const JSON_CHUNK = 0x4e4f534a;
-const BIN_CHUNK = 0x004e4942;
-const HEAD_BYTES = 20;
-const MOST_JSON_BYTES = 65536;
+const MOST_BYTES = 2 ** 20;
 const MOST_SHORT_VERTICES = 65535;
 const IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 
@@ -30,30 +28,6 @@ type Json = Record<string, unknown>;
 
 function need(good: boolean, problem: string): asserts good {
   if (!good) throw new HierarchyProblem(FILE, problem);
-}
-
-function viewOf(bytes: Uint8Array): DataView {
-  return new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-}
-
-/// Bytes of the JSON chunk's data.
-function jsonLength(bytes: Uint8Array): number {
-  need(bytes.byteLength >= HEAD_BYTES, 'is shorter than the head of a glTF binary');
-  const view = viewOf(bytes);
-  need(view.getUint32(0, true) === MAGIC && view.getUint32(4, true) === 2, 'is no glTF 2.0 binary');
-  need(view.getUint32(8, true) === bytes.byteLength, 'has another length than it says');
-  const length = view.getUint32(12, true);
-  const fits = length % 4 === 0 && length <= MOST_JSON_BYTES && length <= bytes.byteLength - HEAD_BYTES;
-  need(fits && view.getUint32(16, true) === JSON_CHUNK, 'has no JSON chunk that fits');
-  return length;
-}
-
-function parseJson(bytes: Uint8Array): unknown {
-  try {
-    return JSON.parse(new TextDecoder('utf-8', { fatal: true }).decode(bytes));
-  } catch {
-    throw new HierarchyProblem(FILE, 'its JSON chunk is not JSON');
-  }
 }
 
 function asObject(value: unknown): Json {
@@ -97,18 +71,10 @@ function upOf(matrix: readonly number[]): 'y' | 'z' {
   return matrix[6] === -1 && matrix[9] === 1 ? 'z' : 'y';
 }
 
-/// The BIN chunk's data, of exactly the length that the counts ask for, at the start of its own buffer.
-function readBin(bytes: Uint8Array, start: number, length: number): ArrayBuffer {
-  need(bytes.byteLength === start + 8 + length, 'has another length than its counts ask for');
-  const view = viewOf(bytes);
-  const good = view.getUint32(start, true) === length && view.getUint32(start + 4, true) === BIN_CHUNK;
-  need(good, 'has no BIN chunk that fits');
-  return bytes.slice(start + 8).buffer;
-}
-
-function readLines(bytes: Uint8Array, start: number, { vertices, segments }: Counts): Pick<Outline, 'positions' | 'segments'> {
+function readLines(bin: Uint8Array | null, { vertices, segments }: Counts): Pick<Outline, 'positions' | 'segments'> {
   const short = vertices <= MOST_SHORT_VERTICES;
-  const buffer = readBin(bytes, start, 12 * vertices + (short ? 4 : 8) * segments);
+  need(bin?.byteLength === 12 * vertices + (short ? 4 : 8) * segments, 'has another length than its counts ask for');
+  const buffer = bin.slice().buffer;
   const positions = new Float32Array(buffer, 0, 3 * vertices);
   const corners = new (short ? Uint16Array : Uint32Array)(buffer, 12 * vertices, 2 * segments);
   need(positions.every(Number.isFinite), 'has a position that is not finite');
@@ -118,13 +84,17 @@ function readLines(bytes: Uint8Array, start: number, { vertices, segments }: Cou
 
 /// The outline in a file's bytes. Throws HierarchyProblem.
 export function readOutline(bytes: Uint8Array): Outline {
-  const length = jsonLength(bytes);
-  const document = asObject(parseJson(bytes.subarray(HEAD_BYTES, HEAD_BYTES + length)));
-  const counts = readCounts(document);
-  const start = HEAD_BYTES + length;
-  const matrix = readMatrix(document);
+  const { document, bin } = readContainer(bytes, FILE);
+  const root = asObject(document);
+  const counts = readCounts(root);
+  const matrix = readMatrix(root);
   const up = upOf(matrix);
-  if (counts.segments > 0) return { ...readLines(bytes, start, counts), up, matrix };
-  need(bytes.byteLength === start, 'has bytes after an outline without lines');
+  if (counts.segments > 0) return { ...readLines(bin, counts), up, matrix };
+  need(bin === null, 'has bytes after an outline without lines');
   return { positions: new Float32Array(), segments: new Uint16Array(), up, matrix };
+}
+
+/// The outline of the hierarchy at `base`, which ends with a slash. Throws HierarchyProblem, and what ends `signal`.
+export async function fetchOutline(fetch: Fetch, base: string, signal: AbortSignal): Promise<Outline> {
+  return readOutline(await fetchBytes(fetch, base + FILE, FILE, MOST_BYTES, { signal }));
 }

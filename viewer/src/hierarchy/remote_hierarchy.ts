@@ -1,6 +1,7 @@
 // A hierarchy at a URL: its root first, then what tells of the rest.
 import { fetchBytes, fetchRange, type Fetch } from './bytes.js';
 import { readManifest, type Manifest } from './manifest.js';
+import { fetchOutline, type Outline } from './outline.js';
 import { HierarchyProblem } from './problem.js';
 import type { ExpectedCounts, Tile } from './tile.js';
 import type { TileDecoder } from './tile_decoder.js';
@@ -8,7 +9,6 @@ import { TileIndex, type TileRecord } from './tile_index.js';
 import { Tree, tilePath, type Node } from './tree.js';
 
 const MOST_MANIFEST = 2 ** 20;
-const MOST_OUTLINE = 2 ** 20;
 /// A root has 32,768 vertices at the most, and seldom more than twice as many triangles.
 const MOST_ROOT = 2 ** 25;
 const ROOT: Node = { level: 0, index: 0 };
@@ -65,8 +65,8 @@ export class RemoteHierarchy {
     return this.decoder.decode(bytes, path, expectedOf(node, record));
   }
 
-  async outline(): Promise<Uint8Array> {
-    return fetchBytes(this.fetch, `${this.base}outline.glb`, 'outline.glb', MOST_OUTLINE, { signal: this.signal });
+  async outline(): Promise<Outline> {
+    return fetchOutline(this.fetch, this.base, this.signal);
   }
 
   async manifest(): Promise<Manifest> {

@@ -1,14 +1,12 @@
 // The shape-outline over a mesh.
 import { BufferAttribute, BufferGeometry, LineBasicMaterial, LineSegments } from 'three';
-import { readOutline } from '../hierarchy/outline.js';
+import type { Outline } from '../hierarchy/outline.js';
 
 const COLOUR = 0x2f7de1;
 
 /// `place`: what the tiles' positions are relative to, itself relative to the origin.
 export class OutlineObject extends LineSegments<BufferGeometry, LineBasicMaterial> {
-  /// Throws HierarchyProblem.
-  constructor(bytes: Uint8Array, place: readonly [number, number, number]) {
-    const { positions, segments } = readOutline(bytes);
+  constructor({ positions, segments }: Outline, place: readonly [number, number, number]) {
     const geometry = new BufferGeometry();
     geometry.setAttribute('position', new BufferAttribute(positions, 3));
     geometry.setIndex(new BufferAttribute(segments, 1));
