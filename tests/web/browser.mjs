@@ -6,6 +6,9 @@ import { serve } from './server.mjs';
 
 export const SIZE = 512;
 
+/// 1.6 Mbit/s with 150 ms, as Network.emulateNetworkConditions takes it.
+export const SLOW_LINE = { offline: false, latency: 150, downloadThroughput: 1.6e6 / 8, uploadThroughput: 0.75e6 / 8 };
+
 const HERE = path.dirname(fileURLToPath(import.meta.url));
 const CHROMIUM = ['/usr/bin/chromium', '/usr/bin/chromium-browser'].find((file) => existsSync(file));
 

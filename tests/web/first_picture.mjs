@@ -6,10 +6,9 @@
 // PAGE: the directory that `npm run build` of viewer/ makes. Times are told and decide nothing; requests do. Exit code 2: wrong
 // use; else see browser.mjs.
 import path from 'node:path';
-import { inChromium, readHierarchy } from './browser.mjs';
+import { inChromium, readHierarchy, SLOW_LINE } from './browser.mjs';
 import { serve } from './server.mjs';
 
-const LINE = { offline: false, latency: 150, downloadThroughput: 1.6e6 / 8, uploadThroughput: 0.75e6 / 8 };
 const SLOWDOWN = 4;
 const PHONE = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true };
 const PATIENCE = 600_000; // milliseconds
@@ -20,7 +19,7 @@ async function openSlowly(browser, url) {
   const page = await browser.newPage({ reducedMotion: 'reduce', ...PHONE });
   const session = await page.context().newCDPSession(page);
   await session.send('Network.enable');
-  await session.send('Network.emulateNetworkConditions', LINE);
+  await session.send('Network.emulateNetworkConditions', SLOW_LINE);
   await session.send('Emulation.setCPUThrottlingRate', { rate: SLOWDOWN });
   const tiles = [];
   let bytes = 0;

@@ -7,7 +7,7 @@
 // wrong use; else see browser.mjs.
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { call, inChromium, readHierarchy, withPage } from './browser.mjs';
+import { call, inChromium, readHierarchy, SLOW_LINE, withPage } from './browser.mjs';
 import { random } from './random.mjs';
 
 const VIEWER = path.join(path.dirname(fileURLToPath(import.meta.url)), '../../viewer');
@@ -105,7 +105,6 @@ async function checkDifferences(page, name, report) {
   }
 }
 
-const LINE = { offline: false, latency: 150, downloadThroughput: 1.6e6 / 8, uploadThroughput: 0.75e6 / 8 };
 const LATENCY_STOPS = 12;
 
 /// How long a view takes behind a slow line, and how long to fetch it whole; told, no more.
@@ -113,7 +112,7 @@ async function tellLatency(page, name, report) {
   const session = await page.context().newCDPSession(page);
   await session.send('Network.enable');
   await call(page, 'reopen');
-  await session.send('Network.emulateNetworkConditions', LINE);
+  await session.send('Network.emulateNetworkConditions', SLOW_LINE);
   for (const [way, at] of Object.entries(PATHS)) {
     const took = { differences: 0, whole: 0 };
     for (let stop = 0; stop < LATENCY_STOPS; ++stop) {

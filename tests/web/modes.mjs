@@ -5,11 +5,9 @@
 //
 // PAGE: the directory that `npm run build` of viewer/ makes. The way down through the first model is kept as a strip of pictures.
 // Exit code 2: wrong use; else see browser.mjs.
-import { cpSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { inChromium, readHierarchy } from './browser.mjs';
-import { serve } from './server.mjs';
+import { withSite } from './site.mjs';
 
 const SCREENS = {
   desktop: { viewport: { width: 1280, height: 800 } },
@@ -83,23 +81,13 @@ async function visit(browser, report, { origin, pictures, screen, index, name, s
   await page.close();
 }
 
-/// The page with a listing beside it, in a directory that is removed in the end.
-async function serveAndVisit(browser, report, [pictures, page, ...directories]) {
+async function visitAll(browser, report, [pictures, page, ...directories]) {
   const hierarchies = directories.map(readHierarchy);
-  const site = mkdtempSync(path.join(tmpdir(), 'meshhier-page-'));
-  cpSync(page, site, { recursive: true });
-  const models = hierarchies.map(({ name }) => ({ name, path: `models/${name}.hier` }));
-  writeFileSync(path.join(site, 'models.json'), JSON.stringify({ models }));
-  const below = Object.fromEntries(hierarchies.map(({ name, directory }) => [`/models/${name}.hier`, directory]));
-  const server = await serve({ ...below, '': site });
-  try {
+  await withSite(page, hierarchies, async (origin) => {
     for (const screen of Object.keys(SCREENS))
       for (const [index, { name }] of hierarchies.entries())
-        await visit(browser, report, { origin: server.origin, pictures, screen, index, name, strip: screen === 'desktop' && index === 0 });
-  } finally {
-    server.close();
-    rmSync(site, { recursive: true });
-  }
+        await visit(browser, report, { origin, pictures, screen, index, name, strip: screen === 'desktop' && index === 0 });
+  });
 }
 
 const [pictures, ...others] = process.argv.slice(2);
@@ -107,4 +95,4 @@ if (others.length < 2) {
   console.log('usage: node modes.mjs PICTURES PAGE HIERARCHY...');
   process.exit(2);
 }
-process.exit(await inChromium(pictures, (browser, report) => serveAndVisit(browser, report, [pictures, ...others])));
+process.exit(await inChromium(pictures, (browser, report) => visitAll(browser, report, [pictures, ...others])));

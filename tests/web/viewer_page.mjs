@@ -5,11 +5,9 @@
 //
 // PAGE: the directory that `npm run build` of viewer/ makes, dist/page. The first hierarchy should have some
 // partitions. Pictures go to the directory PICTURES. Exit code 2: wrong use; else see browser.mjs.
-import { cpSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { inChromium, readHierarchy } from './browser.mjs';
-import { serve } from './server.mjs';
+import { withSite } from './site.mjs';
 
 const WIDE = { viewport: { width: 1280, height: 800 } };
 const NARROW = { viewport: { width: 360, height: 640 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true };
@@ -21,16 +19,10 @@ const JOBS = [
 ];
 const PATIENCE = 120_000; // milliseconds
 
-/// The page with models.json beside it, in a directory that is removed in the end.
-function makeSite(page, hierarchies) {
-  const site = mkdtempSync(path.join(tmpdir(), 'meshhier-page-'));
-  cpSync(page, site, { recursive: true });
-  const models = hierarchies.map(({ name }) => ({ name, path: `models/${name}.hier` }));
-  writeFileSync(path.join(site, 'models.json'), JSON.stringify({ models }));
-  writeFileSync(path.join(site, 'one.json'), JSON.stringify({ models: models.slice(0, 1) }));
+/// Listings beside the usual one: of one model, and of many and two jobs.
+function moreListings(models) {
   const many = Array.from({ length: MANY }, (_, i) => ({ name: `model ${i}`, path: `${models[0].path}${'/'.repeat(i)}` }));
-  writeFileSync(path.join(site, 'many.json'), JSON.stringify({ models: many, jobs: JOBS }));
-  return site;
+  return { 'one.json': { models: models.slice(0, 1) }, 'many.json': { models: many, jobs: JOBS } };
 }
 
 class Visitor {
@@ -486,15 +478,7 @@ async function checkAll(browser, report, pictures, hierarchies, origin) {
 
 async function serveAndCheck(browser, report, [pictures, page, ...directories]) {
   const hierarchies = directories.map(readHierarchy);
-  const site = makeSite(page, hierarchies);
-  const below = Object.fromEntries(hierarchies.map(({ name, directory }) => [`/models/${name}.hier`, directory]));
-  const server = await serve({ ...below, '': site });
-  try {
-    await checkAll(browser, report, pictures, hierarchies, server.origin);
-  } finally {
-    server.close();
-    rmSync(site, { recursive: true });
-  }
+  await withSite(page, hierarchies, (origin) => checkAll(browser, report, pictures, hierarchies, origin), moreListings);
 }
 
 const [pictures, ...others] = process.argv.slice(2);
