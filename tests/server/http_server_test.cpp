@@ -57,6 +57,13 @@ class HttpServerTest : public testing::Test {
   }
   std::uint16_t port() const { return server_->port(); }
 
+  /// assets/large.bin, of zeros.
+  void make_large(std::uint64_t bytes) const {
+    const fs::path large = folder_.viewer() / "assets/large.bin";
+    tests::write_text(large, "");
+    fs::resize_file(large, bytes);
+  }
+
   tests::ServedFolder folder_;
   std::optional<Site> site_;
   std::mutex mutex_;
@@ -247,9 +254,7 @@ TEST_F(HttpServerTest, AThousandRequestsAtOnceAreAllAnswered) {
 }
 
 TEST_F(HttpServerTest, AFileOfAnySizeTakesLittleMemory) {
-  const fs::path large = folder_.viewer() / "assets/large.bin";
-  tests::write_text(large, "");
-  fs::resize_file(large, 256 * tests::kMiB);
+  make_large(256 * tests::kMiB);
   start();
   const std::uint64_t before = storage::process_usage().peak_resident_bytes;
   RawClient client(port(), 4096);  // takes it slowly enough to see it held
@@ -283,9 +288,7 @@ TEST_F(HttpServerTest, SlowClientsDoNotHoldUpOthers) {
 }
 
 TEST_F(HttpServerTest, ClientsThatTakeNothingAreLeft) {
-  const fs::path large = folder_.viewer() / "assets/large.bin";
-  tests::write_text(large, "");
-  fs::resize_file(large, 64 * tests::kMiB);
+  make_large(64 * tests::kMiB);
   ServerOptions options;
   options.threads = 2;
   options.limits.stall = std::chrono::milliseconds(300);
@@ -300,9 +303,7 @@ TEST_F(HttpServerTest, ClientsThatTakeNothingAreLeft) {
 }
 
 TEST_F(HttpServerTest, ClientsThatTakeTooLittleAreLeft) {
-  const fs::path large = folder_.viewer() / "assets/large.bin";
-  tests::write_text(large, "");
-  fs::resize_file(large, 256 * tests::kMiB);
+  make_large(256 * tests::kMiB);
   ServerOptions options;
   options.limits.grace = std::chrono::milliseconds(0);
   options.limits.least_rate = std::size_t{1} << 60;
@@ -324,9 +325,7 @@ TEST_F(HttpServerTest, AnIdleConnectionMakesRoomForOthers) {
 }
 
 TEST_F(HttpServerTest, StoppingEndsWhatIsUnderWay) {
-  const fs::path large = folder_.viewer() / "assets/large.bin";
-  tests::write_text(large, "");
-  fs::resize_file(large, 256 * tests::kMiB);
+  make_large(256 * tests::kMiB);
   start();
   RawClient idle(port());
   EXPECT_EQ(idle.get("/models.json").status, 200);
