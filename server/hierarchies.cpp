@@ -6,10 +6,10 @@
 #include "storage/layout.h"
 #include "storage/manifest.h"
 #include "storage/progressive_index.h"
+#include "storage/sealed_json.h"
 
 #include <algorithm>
 #include <filesystem>
-#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -17,25 +17,11 @@
 namespace meshhier::server {
 namespace {
 
-/// What the format allows.
-constexpr std::uint64_t kMostManifestBytes = std::uint64_t{1} << 20;
-
 /// Each holds 32 bytes a file of its own and an open file: a screenful of models.
 constexpr std::size_t kMostOpenArchives = 16;
 
 std::string joined(const std::string& directory, const std::string& name) {
   return directory.empty() ? name : directory + '/' + name;
-}
-
-std::string text_of(const storage::File& file) {
-  const std::uint64_t bytes = file.size();
-  if (bytes > kMostManifestBytes) {
-    throw Error(ErrorCode::corrupt, fmt::format("{} has {} bytes, at most {} are expected",
-                                                file.path().string(), bytes, kMostManifestBytes));
-  }
-  std::string text(bytes, '\0');
-  file.read_exact(0, std::as_writable_bytes(std::span(text)));
-  return text;
 }
 
 std::string name_of(const std::filesystem::path& path) {
@@ -160,7 +146,7 @@ bool Hierarchies::is_stream(const std::string& path) {
   if (!index)
     return false;
   const auto read = [&] {
-    storage::parse_progressive_index(text_of(*index), index->path().string());
+    storage::parse_progressive_index(storage::read_sealed_text(*index), index->path().string());
     return Model{.path = path};
   };
   return remember(joined(path, storage::progressive_index_path({}).string()), index->version(),
@@ -209,7 +195,8 @@ std::shared_ptr<const storage::Archive> Hierarchies::archive(const std::string& 
 }
 
 Model Hierarchies::model_of(const std::string& path, const storage::File& file) const {
-  const storage::Manifest manifest = storage::parse_manifest(text_of(file), file.path().string());
+  const storage::Manifest manifest =
+      storage::parse_manifest(storage::read_sealed_text(file), file.path().string());
   return {path,
           name_of(path.empty() ? folder_->path() : std::filesystem::path(path)),
           manifest.source.file_name,

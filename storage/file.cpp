@@ -444,17 +444,20 @@ std::uint64_t bytes_below(FileSystem& files, const std::filesystem::path& direct
   return bytes;
 }
 
-std::vector<std::byte> read_file(FileSystem& files, const std::filesystem::path& path,
-                                 std::uint64_t limit_bytes) {
-  const auto file = files.open(path);
-  const std::uint64_t size = file->size();
+std::vector<std::byte> read_file(const File& file, std::uint64_t limit_bytes) {
+  const std::uint64_t size = file.size();
   if (size > limit_bytes) {
     throw Error(ErrorCode::corrupt, fmt::format("{} has {} bytes, at most {} are expected",
-                                                path.string(), size, limit_bytes));
+                                                file.path().string(), size, limit_bytes));
   }
   std::vector<std::byte> bytes(size);
-  file->read_exact(0, bytes);
+  file.read_exact(0, bytes);
   return bytes;
+}
+
+std::vector<std::byte> read_file(FileSystem& files, const std::filesystem::path& path,
+                                 std::uint64_t limit_bytes) {
+  return read_file(*files.open(path), limit_bytes);
 }
 
 void write_file(FileSystem& files, const std::filesystem::path& path,

@@ -176,6 +176,7 @@ std::uint64_t bytes_below(FileSystem& files, const std::filesystem::path& direct
 
 /// A whole file in memory. `limit_bytes` guards what is allocated: a larger file throws
 /// Error(corrupt).
+std::vector<std::byte> read_file(const File& file, std::uint64_t limit_bytes);
 std::vector<std::byte> read_file(FileSystem& files, const std::filesystem::path& path,
                                  std::uint64_t limit_bytes);
 /// Creates `path` with exactly `bytes`.

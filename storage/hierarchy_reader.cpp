@@ -6,6 +6,7 @@
 #include "storage/layout.h"
 #include "storage/outline_glb.h"
 #include "storage/sealed_file.h"
+#include "storage/sealed_json.h"
 
 #include <algorithm>
 #include <cassert>
@@ -16,17 +17,12 @@
 namespace meshhier::storage {
 namespace {
 
-/// parse_manifest refuses longer texts; here it guards the allocation.
-constexpr std::uint64_t kMaxManifestBytes = 1024 * 1024;
-
 /// What a GLB can say of its length: a larger file is not worth the memory.
 constexpr std::uint64_t kMaxGlbBytes = UINT32_MAX;
 
 Manifest load_manifest(FileSystem& files, const std::filesystem::path& directory) {
   const auto path = manifest_path(directory);
-  const std::vector<std::byte> bytes = read_file(files, path, kMaxManifestBytes);
-  const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  return parse_manifest(text, path.string());
+  return parse_manifest(read_sealed_text(*files.open(path)), path.string());
 }
 
 std::vector<TileRecord> load_index(FileSystem& files, const std::filesystem::path& directory,

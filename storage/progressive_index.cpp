@@ -17,9 +17,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr SealedFormat kStreamFormat{"meshhier-progressive", 1};
 
-/// parse_sealed() refuses longer texts; here it guards the allocation.
-constexpr std::uint64_t kMaxIndexBytes = 1024 * 1024;
-
 /// Their array's bytes are countable; no disk holds so many.
 constexpr std::uint64_t kMostTriangles = std::uint64_t{1} << 56;
 
@@ -101,9 +98,7 @@ ProgressiveIndex parse_progressive_index(const std::string& text, const std::str
 
 ProgressiveIndex read_progressive_index(FileSystem& files, const std::filesystem::path& directory) {
   const auto path = progressive_index_path(directory);
-  const std::vector<std::byte> bytes = read_file(files, path, kMaxIndexBytes);
-  const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  return parse_progressive_index(text, path.string());
+  return parse_progressive_index(read_sealed_text(*files.open(path)), path.string());
 }
 
 std::vector<std::byte> read_detail_file(FileSystem& files, const std::filesystem::path& directory,

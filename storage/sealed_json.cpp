@@ -1,11 +1,13 @@
 #include "storage/sealed_json.h"
 
 #include "hierarchy/error.h"
+#include "storage/file.h"
 #include "storage/glb.h"
 #include "storage/hash.h"
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <span>
 
 #include <fmt/format.h>
@@ -80,6 +82,11 @@ std::string sealed_text(const SealedFormat& format, const Json& document) {
   const std::uint64_t sum = text_checksum(text);
   text.replace(text.size() - kAfterSeal.size() - kDigits, kDigits, hex_digits(sum));
   return text;
+}
+
+std::string read_sealed_text(const File& file) {
+  const std::vector<std::byte> bytes = read_file(file, kMaxTextBytes);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 Json parse_sealed(const std::string& text, const SealedFormat& format, const std::string& name) {

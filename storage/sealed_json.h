@@ -18,6 +18,8 @@
 
 namespace meshhier::storage {
 
+class File;
+
 /// What a file says that it is.
 struct SealedFormat {
   std::string_view name;  ///< `format`
@@ -27,6 +29,10 @@ struct SealedFormat {
 /// `document`, an object without these keys, between `format` and `checksum`. Deterministic; what
 /// is no UTF-8 in texts becomes U+FFFD. Requires finite numbers.
 std::string sealed_text(const SealedFormat& format, const nlohmann::ordered_json& document);
+
+/// All of such a file. Throws Error(io), or Error(corrupt) if it is longer than parse_sealed()
+/// takes.
+std::string read_sealed_text(const File& file);
 
 /// The document of a text nobody vouches for. Throws Error(corrupt) that starts with `name`: it is
 /// too long, no JSON, of another format or version (a newer one is refused by its number), or was
