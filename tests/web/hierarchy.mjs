@@ -74,12 +74,15 @@ const MOST_DEVIATION = 6;
 async function checkFaithful(page, name, report) {
   await call(page, 'reopen');
   let worst = 0;
+  let backs = 0;
   for (const direction of SIDES) {
     await call(page, 'pose', { direction, distance: 1.6 });
     await call(page, 'settle');
     worst = Math.max(worst, (await call(page, 'deviation')).pixels);
+    backs += await call(page, 'backs');
   }
   report.line(`${name} faithful`, worst <= MOST_DEVIATION, `at rest ${worst.toFixed(2)} pixels from the original at the most, at 99 of 100 places, from ${SIDES.length} sides`);
+  report.line(`${name} silhouettes`, backs <= SIDES.length, `${backs} pixels where backs shine through`);
 }
 
 const STOPS = 60;

@@ -11,7 +11,11 @@ document.body.append(renderer.domElement);
 const camera = new THREE.PerspectiveCamera(40, 1, 1, 2);
 const shown = new THREE.Scene();
 const original = new THREE.Scene();
-for (const scene of [shown, original]) scene.add(new THREE.HemisphereLight(0xffffff, 0x404040, 3));
+for (const scene of [shown, original]) {
+  const light = new THREE.HemisphereLight(0xffffff, 0x202020, 3);
+  light.position.set(1, 1, 0.5);
+  scene.add(light);
+}
 
 const viewport = { width: 0, height: 0 };
 let view = null;
@@ -185,6 +189,33 @@ function deviation() {
   return { compared: apart.length, pixels: apart[Math.floor(0.99 * apart.length)] ?? Infinity };
 }
 
+/// The picture in grey, with several samples a pixel, of both sides of triangles or of one.
+function shade(side) {
+  const { width, height } = viewport;
+  const target = new THREE.WebGLRenderTarget(width, height, { samples: 4 });
+  shown.traverse((object) => {
+    if (object.isMesh) Object.assign(object.material, { side, needsUpdate: true });
+  });
+  renderer.setRenderTarget(target);
+  render(shown);
+  const pixels = new Uint8Array(4 * width * height);
+  renderer.readRenderTargetPixels(target, 0, 0, width, height, pixels);
+  renderer.setRenderTarget(null);
+  target.dispose();
+  return Uint8Array.from({ length: width * height }, (_, i) => pixels[4 * i + 1]);
+}
+
+/// Levels of grey, out of 256, that nobody sees along an edge.
+const UNSEEN = 48;
+
+/// Pixels of the finished picture that backs of a closed mesh change although its front hides them.
+function backs() {
+  const [both, front, back] = [THREE.DoubleSide, THREE.FrontSide, THREE.BackSide].map(shade);
+  shade(THREE.DoubleSide);
+  const differing = (one) => both.reduce((sum, grey, i) => sum + (Math.abs(grey - one[i]) > UNSEEN ? 1 : 0), 0);
+  return Math.min(differing(front), differing(back));
+}
+
 let opened = null;
 
 async function openView({ url, size, settings = {}, look = {} }) {
@@ -226,6 +257,7 @@ window.view = {
   },
   holes,
   deviation,
+  backs,
   /// Fetches what is in view as a client does that keeps nothing; how long that takes.
   async fetchWhole() {
     const files = view.shown.map((node) => `${opened.url}/${tilePath(node)}`);

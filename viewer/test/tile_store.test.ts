@@ -27,13 +27,14 @@ class SlowHost implements StoreHost {
   calls: Call[] = [];
   readonly held = new Set<number>();
   problems = 0;
+  bytes = BYTES;
   async load(node: Node, _record: TileRecord, signal: AbortSignal): Promise<Tile> {
     return new Promise((resolve, reject) => {
       this.calls.push({ node, signal, resolve, reject });
     });
   }
   bytesOf(): number {
-    return BYTES;
+    return this.bytes;
   }
   came({ key }: ResidentTile): void {
     this.held.add(key);
@@ -157,6 +158,21 @@ describe('TileStore', () => {
     expect(tiles.want(wanted(LEFT), 300_000)).toBe(1);
     expect(host.calls).toHaveLength(1);
     expect(tiles.usedBytes).toBe(3 * BYTES);
+  });
+
+  it('makes room when tiles take more than before, and counts what is left', async () => {
+    const host = new SlowHost();
+    const tiles = store(host, 6 * BYTES);
+    tiles.want(wanted(LEFT, RIGHT), 1);
+    await host.answerAll();
+    tiles.want(wanted(LEFT, RIGHT), 2);
+    host.bytes = 2.75 * BYTES;
+    tiles.recount();
+    tiles.want(wanted(RIGHT), 3);
+    tiles.keepWithin(3);
+    expect([...host.held].sort((a, b) => a - b)).toEqual([keyOf(0, 0), key(RIGHT)]);
+    expect(tiles.usedBytes).toBe(5.5 * BYTES);
+    expect(tiles.peakBytes).toBe(5.5 * BYTES);
   });
 
   it('holds nothing after its end', async () => {

@@ -116,7 +116,7 @@ export class TileStore {
     return missing;
   }
 
-  /// Counts all tiles anew: what a tile takes will be another number as soon as room has been made.
+  /// Counts all tiles anew: what a tile takes will be another number as soon as keepWithin() has made room.
   recount(): void {
     for (const entry of this.entries.values()) {
       if (!entry.resident) continue;
@@ -140,8 +140,14 @@ export class TileStore {
     return false;
   }
 
+  /// Ends a change of what is wanted, or of what tiles take: what is left is within the budget if the wanted is.
+  keepWithin(now: number): void {
+    this.makeRoom(0, now);
+    this.count(0);
+  }
+
   /// Drops least recently useful tiles until `bytes` more fit; false if what is left is useful at `now`.
-  makeRoom(bytes: number, now: number): boolean {
+  private makeRoom(bytes: number, now: number): boolean {
     if (this.usedBytes + bytes <= this.budget) return true;
     const candidates = [...this.entries.values()].filter((entry) => this.canGo(entry, now));
     candidates.sort((a, b) => a.useful - b.useful || b.key - a.key);

@@ -166,6 +166,7 @@ export class HierarchyView extends Group<ViewEvents> {
     this.ending.signal.throwIfAborted();
     this.root = root;
     if (root.zUp) this.tiles.applyMatrix4(UPRIGHT);
+    this.tiles.insideOut = root.insideOut;
     this.setBox(root.box);
     this.tiles.show([this.store.addRoot(root, new Tree(1))], this.look);
     this.changed();
@@ -279,7 +280,7 @@ export class HierarchyView extends Group<ViewEvents> {
     const vertices = this.motion.isMoving ? this.rate.budget : Infinity;
     this.state = this.refinement?.refine(viewpoint, { threshold: this.settings.threshold, vertices }, now) ?? null;
     this.drawn = this.state?.drawn ?? [];
-    this.store.makeRoom(0, now);
+    this.store.keepWithin(now);
     const keys = this.state === null ? [ROOT_KEY] : this.drawn.map(({ key }) => key);
     const isElse = this.tiles.show(keys.map((key) => this.store.get(key)!), this.look);
     this.tiles.paint(this.drawn, this.look, this.settings.threshold);

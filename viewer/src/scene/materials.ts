@@ -5,9 +5,24 @@ import type { Look } from './settings.js';
 const PLAIN = 0xb9b4ab;
 const WIRES = 0x101418;
 const POINTS = 0xd04a1e;
+const POINT_SIZE = 7; // pixels of the page
+const ROUND = `#include <clipping_planes_fragment>
+if (distance(gl_PointCoord, vec2(0.5)) > 0.5) discard;`;
 /// How far the surface stands back behind its own wires and points: more than programs differ by rounding.
 const BEHIND = { slopes: 2, units: 16 };
 const GOLDEN = 0.618034; // colours of neighbours in a list lie far apart
+
+/// Backs shine through beside silhouettes, where the front's edge takes but a part of a pixel: there they are lit as that front, and
+/// turned to the eye only where they face it. `outwards`: 1 or, for a mesh that is inside out, -1.
+const BACKS = `#include <normal_fragment_begin>
+#ifdef DOUBLE_SIDED
+if (outwards * faceDirection < 0.0) {
+  vec3 eye = isOrthographic ? vec3(0.0, 0.0, 1.0) : normalize(vViewPosition);
+  float facing = dot(normal, eye);
+  vec3 aside = normal - facing * eye;
+  normal = normalize(mix(-aside, aside, smoothstep(0.25, 0.75, facing)) + max(facing, 0.001) * eye);
+}
+#endif`;
 
 /// The input's colours are those of a screen; three adds in linear light.
 const TO_LINEAR = `#include <color_vertex>
@@ -20,8 +35,16 @@ export function surfaceKey({ colours, shading, wires, points }: Look): string {
   return [colours, shading, wires || points].join();
 }
 
+/// What the materials of a model's tiles have in common.
+export interface SharedMaterials {
+  readonly wires: Material;
+  readonly points: Material;
+  /// Which side of triangles is outside: 1: the front, -1: the back.
+  readonly outwards: { value: number };
+}
+
 /// One tile's: programs are shared by all of a look.
-export function surfaceMaterial(look: Look, hasColours: boolean): MeshStandardMaterial {
+export function surfaceMaterial(look: Look, hasColours: boolean, { outwards }: SharedMaterials): MeshStandardMaterial {
   const material = new MeshStandardMaterial({
     color: PLAIN,
     roughness: 0.75,
@@ -33,12 +56,13 @@ export function surfaceMaterial(look: Look, hasColours: boolean): MeshStandardMa
     polygonOffsetFactor: BEHIND.slopes,
     polygonOffsetUnits: BEHIND.units,
   });
-  if (!material.vertexColors) return material;
-  material.color.set(0xffffff);
+  if (material.vertexColors) material.color.set(0xffffff);
   material.onBeforeCompile = (shader) => {
-    shader.vertexShader = shader.vertexShader.replace('#include <color_vertex>', TO_LINEAR);
+    shader.uniforms.outwards = outwards;
+    shader.fragmentShader = `uniform float outwards;\n${shader.fragmentShader.replace('#include <normal_fragment_begin>', BACKS)}`;
+    if (material.vertexColors) shader.vertexShader = shader.vertexShader.replace('#include <color_vertex>', TO_LINEAR);
   };
-  material.customProgramCacheKey = () => 'meshhier-colours';
+  material.customProgramCacheKey = () => `meshhier-${material.vertexColors ? 'coloured' : 'plain'}`;
   return material;
 }
 
@@ -52,10 +76,20 @@ export function errorColour(pixels: number, threshold: number): Color {
   return new Color().setHSL(0.36 * (1 - Math.min(1, heat)), 0.7, 0.5);
 }
 
-export function wireMaterial(): Material {
-  return new LineBasicMaterial({ color: WIRES, transparent: true, opacity: 0.45 });
+function wireMaterial(): Material {
+  return new LineBasicMaterial({ color: WIRES, transparent: true, opacity: 0.45, depthWrite: false });
 }
 
-export function pointMaterial(): Material {
-  return new PointsMaterial({ color: POINTS, size: 5, sizeAttenuation: false });
+/// Round, and over the wires.
+function pointMaterial(): Material {
+  const material = new PointsMaterial({ color: POINTS, size: POINT_SIZE, sizeAttenuation: false, transparent: true });
+  material.onBeforeCompile = (shader) => {
+    shader.fragmentShader = shader.fragmentShader.replace('#include <clipping_planes_fragment>', ROUND);
+  };
+  material.customProgramCacheKey = () => 'meshhier-round';
+  return material;
+}
+
+export function sharedMaterials(): SharedMaterials {
+  return { wires: wireMaterial(), points: pointMaterial(), outwards: { value: 1 } };
 }

@@ -1,16 +1,11 @@
 // A tile in a three scene: its triangles, and on request its edges and vertices.
 import { Box3, BufferAttribute, BufferGeometry, Color, DynamicDrawUsage, LineSegments, Mesh, Points, Sphere, Vector3 } from 'three';
-import type { Intersection, Material, MeshStandardMaterial, Raycaster } from 'three';
+import type { Intersection, MeshStandardMaterial, Raycaster } from 'three';
 import type { ResidentTile } from '../cut/tile_store.js';
 import type { Indices, Tile } from '../hierarchy/tile.js';
 import type { Seam } from '../cut/seam.js';
-import { surfaceKey, surfaceMaterial } from './materials.js';
+import { surfaceKey, surfaceMaterial, type SharedMaterials } from './materials.js';
 import type { Look } from './settings.js';
-
-export interface SharedMaterials {
-  readonly wires: Material;
-  readonly points: Material;
-}
 
 /// Bytes of a tile with what draws it: each array here and on the GPU, but for what only seams need.
 export function memoryOf(tile: Tile, seam: Seam, wires: boolean): number {
@@ -56,7 +51,7 @@ export class TileObject extends Mesh<BufferGeometry, MeshStandardMaterial> {
     private look: Look,
     private readonly shared: SharedMaterials,
   ) {
-    super(new BufferGeometry(), surfaceMaterial(look, resident.tile.colours !== null));
+    super(new BufferGeometry(), surfaceMaterial(look, resident.tile.colours !== null, shared));
     const { tile } = resident;
     this.geometry.setAttribute('position', new BufferAttribute(tile.positions, 3));
     this.geometry.setAttribute('normal', new BufferAttribute(tile.normals, 4, true));
@@ -123,7 +118,7 @@ export class TileObject extends Mesh<BufferGeometry, MeshStandardMaterial> {
     if (before === look) return;
     if (surfaceKey(before) !== surfaceKey(look)) {
       this.material.dispose();
-      this.material = surfaceMaterial(look, this.resident.tile.colours !== null);
+      this.material = surfaceMaterial(look, this.resident.tile.colours !== null, this.shared);
     }
     if (before.wires !== look.wires) this.setWires(look.wires);
     if (before.points !== look.points) this.setPoints(look.points);
@@ -153,6 +148,7 @@ export class TileObject extends Mesh<BufferGeometry, MeshStandardMaterial> {
     geometry.setDrawRange(0, this.resident.tile.own);
     geometry.boundingSphere = this.geometry.boundingSphere;
     this.points = this.place(new Points(geometry, this.shared.points));
+    this.points.renderOrder = 1; // after the wires
   }
 
   private place<Part extends LineSegments | Points>(part: Part): Part {

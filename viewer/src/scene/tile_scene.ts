@@ -4,7 +4,7 @@ import type { ChosenNode } from '../cut/choose_cut.js';
 import type { ResidentTile } from '../cut/tile_store.js';
 import type { Tile } from '../hierarchy/tile.js';
 import { keyOf, type Node } from '../hierarchy/tree.js';
-import { errorColour, partitionColour, pointMaterial, wireMaterial } from './materials.js';
+import { errorColour, partitionColour, sharedMaterials } from './materials.js';
 import type { Look } from './settings.js';
 import { TileObject } from './tile_object.js';
 
@@ -14,7 +14,12 @@ export class TileScene extends Group {
   private look: Look | null = null;
   private readonly damaged: Node[] = [];
   private readonly told = new Set<number>();
-  private readonly materials = { wires: wireMaterial(), points: pointMaterial() };
+  private readonly materials = sharedMaterials();
+
+  /// Of the whole model: its triangles show their backs to the outside.
+  set insideOut(is: boolean) {
+    this.materials.outwards.value = is ? -1 : 1;
+  }
 
   /// Shows a cut instead of the one before; true if that changes the picture.
   show(residents: readonly ResidentTile[], look: Look): boolean {
