@@ -36,6 +36,8 @@ export function readHierarchy(directory) {
     name: path.basename(directory).replace(/\.[^.]*$/, ''),
     up: manifest.up,
     vertices: manifest.source.vertices,
+    triangles: manifest.source.triangles,
+    bytes: manifest.total_bytes,
     lastLevel: manifest.levels.length - 1,
   };
 }

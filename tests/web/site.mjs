@@ -4,11 +4,16 @@ import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { serve } from './server.mjs';
 
+/// What a listing says of a hierarchy.
+function entryOf({ name, vertices, triangles, bytes }) {
+  return { name, path: `models/${name}.hier`, vertices, triangles, bytes };
+}
+
 /// The page with models.json beside it, in a directory of its own; `more(models)`: other listings, by their files' names.
 function makeSite(page, hierarchies, more) {
   const site = mkdtempSync(path.join(tmpdir(), 'meshhier-page-'));
   cpSync(page, site, { recursive: true });
-  const models = hierarchies.map(({ name }) => ({ name, path: `models/${name}.hier` }));
+  const models = hierarchies.map(entryOf);
   const listings = { 'models.json': { models }, ...more(models) };
   for (const [file, listing] of Object.entries(listings)) writeFileSync(path.join(site, file), JSON.stringify(listing));
   return site;

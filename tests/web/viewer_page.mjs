@@ -19,10 +19,10 @@ const JOBS = [
 ];
 const PATIENCE = 120_000; // milliseconds
 
-/// Listings beside the usual one: of one model, and of many and two jobs.
+/// Listings beside the usual one: of one model, written by hand, and of many and two jobs.
 function moreListings(models) {
   const many = Array.from({ length: MANY }, (_, i) => ({ name: `model ${i}`, path: `${models[0].path}${'/'.repeat(i)}` }));
-  return { 'one.json': { models: models.slice(0, 1) }, 'many.json': { models: many, jobs: JOBS } };
+  return { 'one.json': { models: [{ path: models[0].path }] }, 'many.json': { models: many, jobs: JOBS } };
 }
 
 class Visitor {
@@ -99,6 +99,10 @@ async function paintedCells(page, names) {
   return page.locator('a.cell').evaluateAll((cells) => cells.map((cell) => cell.querySelector('.cell-name').textContent));
 }
 
+function hasSizes(text) {
+  return /vertices.*triangles.*B/s.test(text);
+}
+
 async function checkGallery(visitor, names, pictures) {
   const page = await visitor.open('');
   const shown = await paintedCells(page, names);
@@ -106,6 +110,8 @@ async function checkGallery(visitor, names, pictures) {
   visitor.check('gallery mode', (await badge(page)).startsWith('TP'), await badge(page));
   const expected = ['models.json', ...names.map((name) => `models/${name}.hier/outline.glb`)];
   const asked = page.asked.filter((file) => file !== 'index.html' && !file.startsWith('assets/'));
+  const sizes = await page.locator('.cell-size').allInnerTexts();
+  visitor.check('gallery sizes', sizes.length === names.length && sizes.every(hasSizes), sizes.join(', '));
   visitor.check('gallery requests', asked.sort().join() === expected.sort().join(), asked.join(' '));
   await checkTurning(visitor, page);
   await page.screenshot({ path: path.join(pictures, 'page-gallery.png') });
@@ -178,12 +184,16 @@ async function checkOutlineAgain(visitor, name) {
   const prepare = (page) => page.route('**/outline.glb', (route) => (++refused === 1 ? route.fulfill({ status: 503 }) : route.continue()));
   const page = await visitor.open('?models=one.json', { ...WIDE, routes: prepare });
   await page.locator('.cell-problem').waitFor();
+  visitor.check('sizes after the outline', !page.asked.some((file) => file.endsWith('hierarchy.json')), 'not asked for while it fails');
   visitor.check('outline failed', (await page.locator('.cell-problem').innerText()).includes('503'), await page.locator('.cell-problem').innerText());
   await page.evaluate((one) => window.meshhier.open(one), name);
   await settle(page);
   await page.evaluate(() => window.meshhier.close());
   await page.waitForFunction(() => document.querySelector('.cell-stage')?.matches(':not(.waiting):empty'));
   visitor.check('outline again', refused === 2, `${refused} requests`);
+  await page.locator('.cell-size', { hasText: 'triangles' }).waitFor();
+  const text = await page.locator('.cell-size').innerText();
+  visitor.check('sizes of a model without', hasSizes(text), text);
   await page.close();
 }
 

@@ -4,12 +4,12 @@ import type { Model } from '../listing.js';
 import { formatBytes, formatCount, formatRough } from '../numbers.js';
 import { element } from '../parts/element.js';
 import type { Turn } from './layout.js';
-import { OutlineSource } from './outline_source.js';
+import { ModelSource, type Sizes } from './model_source.js';
 import type { Shape } from './shape.js';
 import { Turning } from './turning.js';
 
-/// What is known of it, as people read it.
-function sizes({ vertices, triangles, bytes }: Model): string[] {
+/// As people read them.
+function roughSizes({ vertices, triangles, bytes }: Sizes): string[] {
   const parts = [];
   if (vertices !== null) parts.push(`${formatRough(vertices)} vertices`);
   if (triangles !== null) parts.push(`${formatRough(triangles)} triangles`);
@@ -17,7 +17,7 @@ function sizes({ vertices, triangles, bytes }: Model): string[] {
   return parts;
 }
 
-function exactText({ name, vertices, triangles, bytes, source }: Model): string {
+function exactText({ name, source }: Model, { vertices, triangles, bytes }: Sizes): string {
   const parts = [source ?? name];
   if (vertices !== null) parts.push(`${formatCount(vertices)} vertices`);
   if (triangles !== null) parts.push(`${formatCount(triangles)} triangles`);
@@ -30,21 +30,29 @@ export class ModelCell {
   readonly stage: HTMLSpanElement;
   shape: Shape | null = null;
   private readonly turning: Turning;
-  private readonly outline: OutlineSource;
+  private readonly source: ModelSource;
+  private readonly link: HTMLAnchorElement;
+  private readonly sizes = element('span', { class: 'cell-size' });
 
   /// `changed`: there is something new to draw.
   constructor(readonly model: Model, private readonly changed: () => void) {
-    this.outline = new OutlineSource(model.url);
+    this.source = new ModelSource(model.url);
     this.stage = element('span', { class: 'cell-stage' });
-    const link = element(
+    this.link = element(
       'a',
-      { class: 'cell', href: formatAddress({ path: model.path, pose: null }), title: exactText(model), draggable: 'false' },
+      { class: 'cell', href: formatAddress({ path: model.path, pose: null }), draggable: 'false' },
       this.stage,
       element('span', { class: 'cell-name' }, model.name),
-      element('span', { class: 'cell-size' }, ...sizes(model).flatMap((text) => [element('span', {}, text), ' '])),
+      this.sizes,
     );
-    this.root = element('li', {}, link);
-    this.turning = new Turning(link, this.stage, changed);
+    this.showSizes(model);
+    this.root = element('li', {}, this.link);
+    this.turning = new Turning(this.link, this.stage, changed);
+  }
+
+  private showSizes(sizes: Sizes): void {
+    this.link.title = exactText(this.model, sizes);
+    this.sizes.replaceChildren(...roughSizes(sizes).flatMap((text) => [element('span', {}, text), ' ']));
   }
 
   get turn(): Turn {
@@ -60,20 +68,30 @@ export class ModelCell {
     this.turning.advance(angle);
   }
 
-  /// Fetches the outline; again, once, if that failed and the cell comes into view again.
+  /// Fetches the outline, and the sizes if the listing has none; again, once, if that failed and the cell comes into view again.
   load(): void {
-    const asked = this.outline.ask();
+    const asked = this.source.outline();
     if (asked === null) return;
     this.stage.replaceChildren();
     this.stage.classList.add('waiting');
     asked
-      .then((shape) => { this.show(shape); })
+      .then((shape) => {
+        this.show(shape);
+        return this.loadSizes();
+      })
       .catch((error: unknown) => { this.tell(error instanceof Error ? error.message : String(error)); });
+  }
+
+  /// Without them the cell is as good.
+  private async loadSizes(): Promise<void> {
+    if (this.model.vertices !== null) return;
+    const sizes = await this.source.sizes().catch(() => null);
+    if (sizes !== null && !this.source.ended) this.showSizes(sizes);
   }
 
   /// It is gone from the gallery for good.
   close(): void {
-    this.outline.close();
+    this.source.close();
     this.root.remove();
   }
 
@@ -85,7 +103,7 @@ export class ModelCell {
   }
 
   private tell(problem: string): void {
-    if (this.outline.ended) return;
+    if (this.source.ended) return;
     this.stage.classList.remove('waiting');
     this.stage.append(element('span', { class: 'cell-note cell-problem' }, `No outline: ${problem}`));
   }

@@ -1,5 +1,6 @@
 // The manifest, hierarchy.json (docs/file_format.md, section 2): what a viewer needs of it, checked.
 import { JsonValue, type Fail } from '../json_value.js';
+import { fetchBytes, type Fetch } from './bytes.js';
 import { HierarchyProblem } from './problem.js';
 import { indexSize } from './tile_index.js';
 
@@ -28,6 +29,7 @@ export interface Manifest {
 
 const FILE = 'hierarchy.json';
 const FORMAT_VERSION = 4;
+const MOST_BYTES = 2 ** 20;
 
 const MOST_SHORT_BITS = 16;
 
@@ -75,4 +77,10 @@ export function readManifest(text: string): Manifest {
     totalBytes: root.at('total_bytes').count(),
     index: readFile(root.at('index'), indexBytes, indexBytes),
   };
+}
+
+/// Of the hierarchy at `base`, which ends with a slash. Throws HierarchyProblem.
+export async function fetchManifest(fetch: Fetch, base: string, signal: AbortSignal): Promise<Manifest> {
+  const text = await fetchBytes(fetch, base + FILE, FILE, MOST_BYTES, { signal });
+  return readManifest(new TextDecoder().decode(text));
 }

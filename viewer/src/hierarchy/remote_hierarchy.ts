@@ -1,6 +1,6 @@
 // A hierarchy at a URL: its root first, then what tells of the rest.
 import { fetchBytes, fetchRange, type Fetch } from './bytes.js';
-import { readManifest, type Manifest } from './manifest.js';
+import { fetchManifest, type Manifest } from './manifest.js';
 import { fetchOutline, type Outline } from './outline.js';
 import { HierarchyProblem } from './problem.js';
 import type { ExpectedCounts, Tile } from './tile.js';
@@ -8,7 +8,6 @@ import type { TileDecoder } from './tile_decoder.js';
 import { TileIndex, type TileRecord } from './tile_index.js';
 import { Tree, tilePath, type Node } from './tree.js';
 
-const MOST_MANIFEST = 2 ** 20;
 /// A root has 32,768 vertices at the most, and seldom more than twice as many triangles.
 const MOST_ROOT = 2 ** 25;
 const ROOT: Node = { level: 0, index: 0 };
@@ -70,9 +69,7 @@ export class RemoteHierarchy {
   }
 
   async manifest(): Promise<Manifest> {
-    const name = 'hierarchy.json';
-    const text = await fetchBytes(this.fetch, this.base + name, name, MOST_MANIFEST, { signal: this.signal });
-    return readManifest(new TextDecoder().decode(text));
+    return fetchManifest(this.fetch, this.base, this.signal);
   }
 
   /// With the beginning of the index; `onPage` and `onProblem` tell of the rest, which comes as it is looked into. `root`

@@ -1,11 +1,19 @@
-// The outline of a model, fetched when it is asked for.
+// What a cell shows of a model, fetched when it is asked for.
 import type { Fetch } from '../../src/hierarchy/bytes.js';
+import { fetchManifest } from '../../src/hierarchy/manifest.js';
 import { fetchOutline } from '../../src/hierarchy/outline.js';
 import { shapeOf, type Shape } from './shape.js';
 
 const MOST_TRIES = 2;
 
-export class OutlineSource {
+export interface Sizes {
+  readonly vertices: number | null;
+  readonly triangles: number | null;
+  /// Of all files of the hierarchy.
+  readonly bytes: number | null;
+}
+
+export class ModelSource {
   private readonly ending = new AbortController();
   private tries = MOST_TRIES; // that are left
   private waits = false;
@@ -17,11 +25,17 @@ export class OutlineSource {
   ) {}
 
   /// Null: it is on its way or was given already, or failed too often. Rejects with an Error that names the file.
-  ask(): Promise<Shape> | null {
+  outline(): Promise<Shape> | null {
     if (this.waits || this.tries === 0 || this.ended) return null;
     --this.tries;
     this.waits = true;
-    return this.read();
+    return this.readOutline();
+  }
+
+  /// From the manifest. Rejects with an Error that names the file.
+  async sizes(): Promise<Sizes> {
+    const { source, totalBytes } = await fetchManifest(this.fetch, `${this.url}/`, this.ending.signal);
+    return { vertices: source.vertices, triangles: source.triangles, bytes: totalBytes };
   }
 
   get ended(): boolean {
@@ -33,7 +47,7 @@ export class OutlineSource {
     this.ending.abort();
   }
 
-  private async read(): Promise<Shape> {
+  private async readOutline(): Promise<Shape> {
     try {
       const shape = shapeOf(await fetchOutline(this.fetch, `${this.url}/`, this.ending.signal));
       this.tries = 0;
