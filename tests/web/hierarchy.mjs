@@ -3,8 +3,8 @@
 //
 //   node hierarchy.mjs PICTURES HIERARCHY=MESH...
 //
-// MESH: the closed mesh, a PLY file, that the hierarchy was made from. Pictures go to the directory PICTURES. Exit code 2:
-// wrong use; else see browser.mjs.
+// All are looked at; bytes, rate and memory are told of the last. MESH: the closed mesh, a PLY file, that the hierarchy was made from.
+// Pictures go to the directory PICTURES. Exit code 2: wrong use; else see browser.mjs.
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { call, inChromium, readHierarchy, SLOW_LINE, withPage } from './browser.mjs';
@@ -188,16 +188,25 @@ async function checkMemory(page, { name, vertices }, report) {
       `${left.geometries} left in the end; heap ${(heapEarly / 1e6).toFixed(1)} MB after ten minutes, ${(heapLate / 1e6).toFixed(1)} in the end${late.problems.join('; ')}`);
 }
 
-async function check(page, hierarchy, pictures, report) {
+async function checkPicture(page, hierarchy, pictures, report) {
   const { name, mesh } = hierarchy;
   const original = `/mesh/${path.basename(mesh)}`;
   await call(page, 'open', { url: '/hierarchy', size: SEAM_SIZE, original });
   await checkSeams(page, hierarchy, pictures, report);
   await checkFaithful(page, name, report);
+}
+
+async function checkTraffic(page, hierarchy, report) {
+  const { name } = hierarchy;
   await checkDifferences(page, name, report);
   await tellLatency(page, name, report);
   await checkFrameRate(page, name, report);
   await checkMemory(page, hierarchy, report);
+}
+
+async function check(page, hierarchy, isLast, pictures, report) {
+  await checkPicture(page, hierarchy, pictures, report);
+  if (isLast) await checkTraffic(page, hierarchy, report);
 }
 
 const [pictures, ...pairs] = process.argv.slice(2);
@@ -217,7 +226,7 @@ process.exit(
         '/mesh': path.dirname(path.resolve(mesh)),
       };
       await withPage(browser, report, { viewer: 'hierarchy', name: hierarchy.name, directories }, (page) =>
-        check(page, hierarchy, pictures, report));
+        check(page, hierarchy, pair === pairs.at(-1), pictures, report));
     }
   }),
 );
