@@ -5,6 +5,7 @@
 //
 // All are looked at; bytes, rate and memory are told of the last. MESH: the closed mesh, a PLY file, that the hierarchy was made from.
 // Pictures go to the directory PICTURES. Exit code 2: wrong use; else see browser.mjs.
+import { readFileSync } from 'node:fs';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { call, inChromium, readHierarchy, SLOW_LINE, withPage } from './browser.mjs';
@@ -85,30 +86,29 @@ async function checkFaithful(page, name, report) {
   report.line(`${name} silhouettes`, backs <= SIDES.length, `${backs} pixels where backs shine through`);
 }
 
-const STOPS = 60;
-
-/// Around the model; down to it; along it.
-const PATHS = {
-  around: (part) => ({ direction: [Math.cos(6.28 * part), 0.4, Math.sin(6.28 * part)], distance: 1.8 }),
-  down: (part) => ({ direction: [0.6, 0.5, 1], distance: 3 * 0.05 ** part, target: [0.3 * part, 0.25 * part, 0.5 * part] }),
-  along: (part) => ({ direction: [Math.cos(2 * part), 0.2, Math.sin(2 * part)], distance: 0.9, target: [0, 0.3 - 0.6 * part, 0] }),
-};
+/// Recorded in the page of viewer/ each half a second, over the dragon: drags, wheel and glides; around the model, down to it, along
+/// it. A line: the direction from the target to the camera; their distance; the target, from the middle of the model's bounding
+/// sphere; both in its radii.
+const PATHS = Object.entries(JSON.parse(readFileSync(new URL('camera_paths.json', import.meta.url), 'utf8'))).map(([way, lines]) => {
+  const stops = lines.map(([x, y, z, distance, ...target]) => ({ direction: [x, y, z], distance, target }));
+  return { way, stops };
+});
 
 async function checkDifferences(page, name, report) {
-  for (const [way, at] of Object.entries(PATHS)) {
+  for (const { way, stops } of PATHS) {
     await call(page, 'reopen');
     let last;
-    for (let stop = 0; stop < STOPS; ++stop) {
-      await call(page, 'pose', at(stop / STOPS));
+    for (const stop of stops) {
+      await call(page, 'pose', stop);
       last = await call(page, 'settle');
     }
     const ratio = last.wholeViewBytes / last.fetchedBytes;
     report.line(`${name} differences ${way}`, ratio >= 5,
-      `${STOPS} views whole ${last.wholeViewBytes} bytes, sent ${last.fetchedBytes}: ${ratio.toFixed(1)} times fewer; ${last.hits} hits`);
+      `${stops.length} views whole ${last.wholeViewBytes} bytes, sent ${last.fetchedBytes}: ${ratio.toFixed(1)} times fewer; ${last.hits} hits`);
   }
 }
 
-const LATENCY_STOPS = 12;
+const LATENCY_STEP = 5; // each fifth stop
 
 /// How long a view takes behind a slow line, and how long to fetch it whole; told, no more.
 async function tellLatency(page, name, report) {
@@ -116,16 +116,18 @@ async function tellLatency(page, name, report) {
   await session.send('Network.enable');
   await call(page, 'reopen');
   await session.send('Network.emulateNetworkConditions', SLOW_LINE);
-  for (const [way, at] of Object.entries(PATHS)) {
+  for (const { way, stops } of PATHS) {
     const took = { differences: 0, whole: 0 };
-    for (let stop = 0; stop < LATENCY_STOPS; ++stop) {
-      await call(page, 'pose', at(stop / LATENCY_STOPS));
+    const [start, ...others] = stops.filter((_, i) => i % LATENCY_STEP === 0);
+    await call(page, 'pose', start); // from elsewhere: not counted
+    await call(page, 'settle');
+    for (const stop of others) {
+      await call(page, 'pose', stop);
       const settled = await call(page, 'settle');
-      if (stop === 0) continue; // from elsewhere
       took.differences += settled.took;
       took.whole += await call(page, 'fetchWhole');
     }
-    const [mean, whole] = [took.differences, took.whole].map((sum) => sum / (LATENCY_STOPS - 1));
+    const [mean, whole] = [took.differences, took.whole].map((sum) => sum / others.length);
     report.line(`${name} latency ${way}`, true, `${mean.toFixed(0)} ms a view, ${whole.toFixed(0)} to fetch it whole: ${(whole / mean).toFixed(1)} times`);
   }
   await session.detach();
