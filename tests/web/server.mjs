@@ -1,5 +1,6 @@
 // A plain static server on the loopback: directories under URL prefixes, nothing else. A .glb file
-// that is a gzip stream is sent with Content-Encoding: gzip, as a static host is set up to do.
+// that is a gzip stream is sent with Content-Encoding: gzip, and of a file with a copy FILE.gz beside it that copy, as a
+// static host is set up to do.
 import { createReadStream, openSync, readSync, closeSync, statSync } from 'node:fs';
 import { createServer } from 'node:http';
 import path from 'node:path';
@@ -13,6 +14,10 @@ const TYPES = {
   '.mjs': 'text/javascript',
   '.wasm': 'application/wasm',
 };
+
+function isFile(file) {
+  return statSync(file, { throwIfNoEntry: false })?.isFile() ?? false;
+}
 
 function isGzip(file) {
   const start = Buffer.alloc(2);
@@ -28,7 +33,7 @@ function fileOf(url, directories) {
   for (const [prefix, directory] of Object.entries(directories)) {
     if (!name.startsWith(`${prefix}/`)) continue;
     const file = path.join(directory, path.normalize(name.slice(prefix.length)));
-    if (statSync(file, { throwIfNoEntry: false })?.isFile()) return file;
+    if (isFile(file)) return file;
   }
   return null;
 }
@@ -42,10 +47,11 @@ export function serve(directories) {
       return;
     }
     const type = path.extname(file);
+    const sent = isFile(`${file}.gz`) ? `${file}.gz` : file;
     const headers = { 'Content-Type': TYPES[type] ?? 'application/octet-stream' };
-    if (type === '.glb' && isGzip(file)) headers['Content-Encoding'] = 'gzip';
+    if (sent !== file || (type === '.glb' && isGzip(file))) headers['Content-Encoding'] = 'gzip';
     response.writeHead(200, headers);
-    createReadStream(file).pipe(response);
+    createReadStream(sent).pipe(response);
   });
   return new Promise((resolve) => {
     server.listen(0, '127.0.0.1', () => {

@@ -104,6 +104,20 @@ describe.skipIf(!hasProgram)('HierarchyView', () => {
     expect(failed).toBe(0);
   });
 
+  it('draws the root before it asks for more of the mesh', async () => {
+    const asked: string[] = [];
+    const session = begin(fetchFrom(torus(), asked), { settings: { threshold: 0.05 } });
+    await session.view.opened;
+    while (session.view.manifest === null) await new Promise((resolve) => setImmediate(resolve)); // and the index: only a frame is missing
+    closeUp(session);
+    const tiles = (): string[] => asked.filter((url) => url.includes('tiles/'));
+    await session.frame();
+    expect(tiles()).toHaveLength(1);
+    expect(session.view.stats()).toMatchObject({ tiles: 1, settled: false });
+    await session.frame();
+    expect(tiles().length).toBeGreaterThan(1);
+  });
+
   it('tries again, by itself, what failed once', async () => {
     const once = troubled(fetchFrom(torus()), (url, times) => (times === 0 && !url.includes('tiles/00/') ? down() : null));
     const session = begin(once);

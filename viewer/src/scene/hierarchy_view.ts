@@ -84,6 +84,7 @@ export class HierarchyView extends Group<ViewEvents> {
   private root: Tile | null = null;
   /// Nothing else will come.
   private isRootAll = false;
+  private isFirstFrame = true;
   private outline: Promise<OutlineObject | null> | null = null;
 
   /// `url`: of the hierarchy's directory.
@@ -275,10 +276,11 @@ export class HierarchyView extends Group<ViewEvents> {
     }
   }
 
-  /// Returns whether other tiles are drawn, or otherwise, than before.
+  /// Returns whether other tiles are drawn, or otherwise, than before. The root is drawn before anything else is asked for.
   private refine(viewpoint: Viewpoint, now: number): boolean {
     const vertices = this.motion.isMoving ? this.rate.budget : Infinity;
-    this.state = this.refinement?.refine(viewpoint, { threshold: this.settings.threshold, vertices }, now) ?? null;
+    const refinement = this.isFirstFrame ? null : this.refinement;
+    this.state = refinement?.refine(viewpoint, { threshold: this.settings.threshold, vertices }, now) ?? null;
     this.drawn = this.state?.drawn ?? [];
     this.store.keepWithin(now);
     const keys = this.state === null ? [ROOT_KEY] : this.drawn.map(({ key }) => key);
@@ -286,6 +288,8 @@ export class HierarchyView extends Group<ViewEvents> {
     this.tiles.paint(this.drawn, this.look, this.settings.threshold);
     for (const node of this.tiles.takeDamaged()) this.tell(new HierarchyProblem(tilePath(node), 'a ghost is no vertex of its tile'));
     if (this.isSettled()) this.settle();
+    if (this.isFirstFrame) this.changed();
+    this.isFirstFrame = false;
     return isElse;
   }
 
