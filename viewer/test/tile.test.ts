@@ -19,6 +19,26 @@ function bytesOf(file: string): Uint8Array {
   return new Uint8Array(bytes[0] === 0x1f ? gunzipSync(bytes) : bytes);
 }
 
+/// A glTF binary with another JSON.
+function withJson(bytes: Uint8Array, change: (text: string) => string): Uint8Array {
+  const view = new DataView(bytes.buffer, bytes.byteOffset);
+  const length = view.getUint32(12, true);
+  const text = change(new TextDecoder().decode(bytes.subarray(20, 20 + length)).trimEnd());
+  const json = new TextEncoder().encode(text.padEnd(Math.ceil(text.length / 4) * 4));
+  const made = new Uint8Array(bytes.length - length + json.length);
+  made.set(bytes.subarray(0, 20));
+  made.set(json, 20);
+  made.set(bytes.subarray(20 + length), 20 + json.length);
+  const sizes = new DataView(made.buffer);
+  sizes.setUint32(8, made.length, true);
+  sizes.setUint32(12, json.length, true);
+  return made;
+}
+
+function withCount(bytes: Uint8Array, key: string, count: number): Uint8Array {
+  return withJson(bytes, (text) => text.replace(new RegExp(`"${key}":\\d+`), `"${key}":${count}`));
+}
+
 /// What a tile may never be, whatever its bytes are: what is drawn of it would read outside of it.
 function isSound({ own, ghosts, positions, indices, border, ghostStarts, interiorCount, normals }: Tile): boolean {
   const vertices = own + ghosts;
@@ -68,6 +88,23 @@ describe.skipIf(!hasProgram)('readTile', () => {
       }
     }
     expect(refused).toBeGreaterThan(100);
+  });
+
+  it.each([
+    ['ghostCount', 'not a root'],
+    ['borderCount', 'not a root'],
+    ['interiorCount', 'not a root'],
+  ])('refuses a root of too large a %s before anything is sized by it', async (key, problem) => {
+    const hierarchy = workshop.build('plain', ['surface', '--triangles', '1500', '--colours'], config('none'));
+    const bytes = bytesOf(path.join(hierarchy, 'tiles/00/000000.glb'));
+    await expect(readTile(withCount(bytes, key, 60_000_000), 'root', null)).rejects.toThrow(problem);
+  });
+
+  it('refuses a compressed section that is not there before anything is sized by it', async () => {
+    const hierarchy = workshop.build('packed', ['surface', '--triangles', '1500', '--colours'], config('meshopt'));
+    const bytes = bytesOf(path.join(hierarchy, 'tiles/00/000000.glb'));
+    const hurt = withJson(bytes, (text) => text.replace(/("EXT_meshopt_compression":\{[^}]*"byteLength":)\d+/, '$11e300'));
+    await expect(readTile(hurt, 'root', null)).rejects.toThrow('outside the file');
   });
 
   it('knows a closed mesh, its inside and its outside', async () => {

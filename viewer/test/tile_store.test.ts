@@ -132,9 +132,10 @@ describe('TileStore', () => {
       await new Promise((resolve) => setTimeout(resolve));
       expect(tiles.usedBytes).toBeLessThanOrEqual(budget);
       expect([...tiles.residents()].map((each) => each.key).sort()).toEqual([...host.held].sort());
+      const isComing = (node: Node): boolean => host.calls.some((call) => key(call.node) === key(node) && !call.signal.aborted);
       for (const { node } of tiles.residents()) {
         const above = tree.parent(node);
-        if (above !== null) expect(tiles.has(key(above)) || tiles.pending > 0).toBe(true);
+        if (above !== null) expect(tiles.has(key(above)) || isComing(above)).toBe(true);
       }
     }
     expect(tiles.peakBytes).toBeLessThanOrEqual(budget);
@@ -154,7 +155,6 @@ describe('TileStore', () => {
     expect(asked).toBe(4);
     expect(tiles.isGivenUp(key(LEFT), 40_000)).toBe(true);
     expect(tiles.want(wanted(LEFT), 40_000)).toBe(0);
-    expect(tiles.nextTry).toBeLessThan(100_000);
     expect(tiles.want(wanted(LEFT), 300_000)).toBe(1);
     expect(host.calls).toHaveLength(1);
     expect(tiles.usedBytes).toBe(3 * BYTES);

@@ -128,6 +128,44 @@ describe.skipIf(!hasProgram)('HierarchyView', () => {
     expect(session.problems.length).toBeGreaterThan(2);
   });
 
+  it('opens though the root failed at first', async () => {
+    const session = begin(troubled(fetchFrom(torus()), (url, times) => (times < 2 && url.includes('tiles/00/') ? down() : null)));
+    closeUp(session);
+    expect(await session.settle()).toBe(true);
+    await session.view.opened;
+    expect(session.problems.filter((text) => text.includes('tiles/00/'))).toHaveLength(2);
+  });
+
+  it('asks again for a page of the index that failed, though nothing moves', async () => {
+    const hierarchy = workshop.build('paged', ['surface', '--triangles', '5600', '--shape', 'torus'], { partition: { vertices: 8 } });
+    const session = begin(troubled(fetchFrom(hierarchy), (url, times) => (times === 1 && url.endsWith('tiles.bin') ? down() : null)), { settings: { threshold: 0.05 } });
+    await session.view.opened;
+    closeUp(session);
+    expect(await session.settle()).toBe(true);
+    expect(session.problems.filter((text) => text.includes('tiles.bin'))).toHaveLength(1);
+    expect(session.view.stats().worstError).toBeLessThan(0.07);
+  });
+
+  it('holds no wires of what is not drawn', async () => {
+    const session = begin(fetchFrom(torus()), { settings: { threshold: 0.05 }, look: { wires: true, points: true } });
+    await session.view.opened;
+    const lines = (): number => {
+      let count = 0;
+      session.view.traverse((object) => { count += 'isLineSegments' in object || 'isPoints' in object ? 1 : 0; });
+      return count;
+    };
+    closeUp(session);
+    await session.settle();
+    session.look([-1.6, 0.4, 0.6], [-0.9, 0.1, 0]);
+    await session.settle();
+    expect(session.view.stats().residentTiles).toBeGreaterThan(session.meshes().length);
+    expect(lines()).toBe(2 * session.meshes().length);
+    session.view.setLook({ wires: false, points: false });
+    await session.settle();
+    await session.frame();
+    expect(lines()).toBe(0);
+  });
+
   it('stays with the root, and says so once, where the manifest is of no use', async () => {
     const odd = troubled(fetchFrom(torus()), (url) =>
       url.endsWith('hierarchy.json') ? Promise.resolve(new Response('{"format":"meshhier","format_version":3}')) : null);
@@ -167,8 +205,10 @@ describe.skipIf(!hasProgram)('HierarchyView', () => {
     closeUp(session);
     expect(await session.settle()).toBe(true);
     expect(session.problems.some((text) => text.includes('ghost'))).toBe(true);
-    for (const mesh of session.meshes()) expect(mesh.geometry.drawRange.count).toBeLessThan(Infinity);
-    expect(session.meshes().length).toBeGreaterThanOrEqual(session.view.stats().tiles);
+    for (const { geometry } of session.meshes()) {
+      const drawn = [...geometry.index!.array].slice(0, geometry.drawRange.count);
+      expect(Math.max(...drawn)).toBeLessThan(geometry.attributes.position.count);
+    }
   });
 
   it('refuses a tile that is another one', async () => {
@@ -186,15 +226,17 @@ describe.skipIf(!hasProgram)('HierarchyView', () => {
     const session = begin(fetchFrom(torus()));
     await session.view.opened;
     closeUp(session);
-    await session.settle();
+    await session.frame();
     let before = session.view.stats().tiles;
-    for (let step = 0; step < 40; ++step) {
-      if (step < 10) session.look([1.6, 0.4 - step / 40, 0.6], [0.9, 0.1, 0]);
+    let changes = 0;
+    for (let step = 0; step < 60; ++step) {
       const news = await session.frame();
       const { tiles } = session.view.stats();
       if (tiles !== before) expect(news).toBe(true);
+      changes += tiles !== before ? 1 : 0;
       before = tiles;
     }
+    expect(changes).toBeGreaterThan(1);
   });
 
   it('keeps to the memory it may take, whatever is to be seen of it', async () => {

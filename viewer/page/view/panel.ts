@@ -20,7 +20,7 @@ function rate({ framesPerSecond }: Stats, wanted: number): string {
 }
 
 function fetched({ fetchedBytes, fetchedFiles }: Stats): string {
-  return `${formatBytes(fetchedBytes)}, ${formatCount(fetchedFiles)} ${fetchedFiles === 1 ? 'file' : 'files'}`;
+  return `${formatBytes(fetchedBytes)}, ${formatCount(fetchedFiles)} ${fetchedFiles === 1 ? 'tile' : 'tiles'}`;
 }
 
 interface Row {
@@ -35,8 +35,8 @@ const ROWS: readonly Row[] = [
   { name: 'Vertices', tip: 'in view', text: ({ vertices }) => formatCount(vertices) },
   { name: 'Vertices in motion', tip: 'the most that the frame rate allows', text: ({ vertexBudget }) => `at most ${formatCount(vertexBudget)}` },
   { name: 'Tiles', tip: 'in view', text: levels },
-  { name: 'Largest error', tip: 'on screen, of what is shown', text: ({ worstError }) => `${formatDecimal(worstError)} px` },
-  { name: 'Fetched', tip: 'bytes of tiles, and files', text: fetched },
+  { name: 'Largest error', tip: 'on screen, of what is shown', text: ({ worstError }) => (Number.isFinite(worstError) ? `${formatDecimal(worstError)} px` : '–') },
+  { name: 'Fetched', tip: 'bytes of tiles, and their number', text: fetched },
   { name: 'Saved', tip: 'against sending each view whole', text: saved },
   { name: 'Hits', tip: 'tiles of views that were there already', text: ({ hits }) => formatCount(hits) },
   { name: 'Decoding', tip: 'of all tiles together', text: ({ decodeMilliseconds }) => formatMilliseconds(decodeMilliseconds) },

@@ -10,6 +10,8 @@ import { windingNumber } from './winding.js';
 export interface RefinementLimits {
   readonly threshold: number;
   readonly vertices: number;
+  /// The camera stands still.
+  readonly atRest: boolean;
 }
 
 export interface Refined {
@@ -33,6 +35,8 @@ function opposite({ axis: [x, y, z], cosine }: Cone): Cone {
 const ROOT = keyOf(0, 0);
 /// Finer tiles have normals that their parents have not: so much more must a tile look away. Once refined, more still.
 const HIDDEN_MARGIN = 0.1;
+/// At rest, when there is time for what hardly ever shows.
+const HIDDEN_MARGIN_AT_REST = 0.35;
 const HYSTERESIS_MARGIN = 0.2;
 /// A point is outside of a closed surface if less of it goes around.
 const OUTSIDE = 0.25;
@@ -51,7 +55,7 @@ export class Refinement {
   /// null: not even the root is known.
   refine(view: Viewpoint, limits: RefinementLimits, now: number): Refined | null {
     const room = this.store.budget - 2 * this.largest;
-    const choice = chooseCut(this.sources(view, now), view, { ...limits, bytes: room });
+    const choice = chooseCut(this.sources(view, limits.atRest, now), view, { ...limits, bytes: room });
     if (choice.root === null) return null;
     this.refined = new Set(choice.refined.map(({ key }) => key));
     const missing = this.store.want(this.wanted(choice), now);
@@ -61,8 +65,9 @@ export class Refinement {
     return { drawn, missing, limited: limited.vertices, isComplete: missing === 0 && !incomplete };
   }
 
-  private sources(view: Viewpoint, now: number): Sources {
+  private sources(view: Viewpoint, atRest: boolean, now: number): Sources {
     const culls = this.isOutside(view.eye);
+    const margin = atRest ? HIDDEN_MARGIN_AT_REST : HIDDEN_MARGIN;
     return {
       tree: this.tree,
       record: (node) => this.index.record(node),
@@ -72,7 +77,7 @@ export class Refinement {
         return bytes;
       },
       isLost: (node) => this.index.isDamaged(node) || this.store.isGivenUp(keyOf(node.level, node.index), now),
-      isHidden: (key, record) => culls && this.isHidden(view, key, record),
+      isHidden: (key, record) => culls && this.isHidden(view, key, record, margin),
       wasRefined: (key) => this.refined.has(key),
     };
   }
@@ -85,10 +90,10 @@ export class Refinement {
     return !inBox || Math.abs(windingNumber(root, eye)) < OUTSIDE;
   }
 
-  private isHidden(view: Viewpoint, key: number, record: TileRecord): boolean {
+  private isHidden(view: Viewpoint, key: number, record: TileRecord, least: number): boolean {
     const cone = this.store.get(key)?.tile.cone;
     if (cone === undefined) return false;
-    const margin = HIDDEN_MARGIN + (this.refined.has(key) ? HYSTERESIS_MARGIN : 0);
+    const margin = least + (this.refined.has(key) ? HYSTERESIS_MARGIN : 0);
     return looksAway(view, record, this.store.get(ROOT)!.tile.insideOut ? opposite(cone) : cone, margin);
   }
 

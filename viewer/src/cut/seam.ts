@@ -41,7 +41,8 @@ export class Seam {
 
   /// Bytes that this holds besides the tile.
   get bytes(): number {
-    return this.keys.byteLength + 9 * this.coarser.length + 6 * this.vertices.length;
+    const starts = this.keyStarts.byteLength + this.chainStarts.byteLength;
+    return this.keys.byteLength + starts + 9 * this.coarser.length + 6 * this.vertices.length;
   }
 
   private fail(what: string): never {

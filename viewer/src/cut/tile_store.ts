@@ -126,11 +126,6 @@ export class TileStore {
     }
   }
 
-  /// When a file that failed may be asked for again; Infinity: none did.
-  get nextTry(): number {
-    return Math.min(Infinity, ...[...this.failures.values()].map(({ again }) => again));
-  }
-
   /// A file that failed too often, not long ago.
   isGivenUp(key: number, now: number): boolean {
     const failure = this.failures.get(key);

@@ -51,8 +51,9 @@ async function respond(fetch: Fetch, url: string, name: string, init: RequestIni
     if (init.signal?.aborted) throw problem;
     throw new HierarchyProblem(name, `could not be fetched (${String(problem)}); is the host up, and does it allow this page?`, true);
   }
-  if (!response.ok) throw new HierarchyProblem(name, `the host answered ${response.status}`, response.status >= 429);
-  return response;
+  if (response.ok) return response;
+  void response.body?.cancel();
+  throw new HierarchyProblem(name, `the host answered ${response.status}`, response.status >= 429);
 }
 
 async function receive(
@@ -82,14 +83,17 @@ export async function fetchBytes(
   return unpacked(await receive(response.body, most, name, init.signal), most, name);
 }
 
-/// Bytes [first, end) of a file, or all of it (at most `most`) where the host knows no ranges.
+/// More than this is not fetched whole for a part of it.
+const MOST_WHOLE = 2 ** 26;
+
+/// Bytes [first, end) of a file of `length`, or all of it where the host knows no ranges.
 export async function fetchRange(
   fetch: Fetch,
   url: string,
   name: string,
   [first, end]: [number, number],
-  most: number,
+  length: number,
   signal: AbortSignal,
 ): Promise<Uint8Array<ArrayBuffer>> {
-  return fetchBytes(fetch, url, name, most, { signal, headers: { Range: `bytes=${first}-${end - 1}` } });
+  return fetchBytes(fetch, url, name, Math.min(length, MOST_WHOLE), { signal, headers: { Range: `bytes=${first}-${end - 1}` } });
 }

@@ -27,8 +27,9 @@ export interface Gltf {
   extensions: Record<string, Record<string, number>>;
 }
 
-/// No codec of meshoptimizer makes more of a byte: a vertex's byte takes a quarter of a bit at least, with headers.
-const MOST_EXPANSION = 256;
+/// No codec of meshoptimizer makes more of a byte: a vertex's byte takes a quarter of a bit at least, with headers; three indices
+/// take a byte, an index of a sequence too.
+const MOST_EXPANSION: Readonly<Record<string, number>> = { ATTRIBUTES: 256, TRIANGLES: 12, INDICES: 4 };
 
 export class Glb {
   private constructor(
@@ -52,13 +53,13 @@ export class Glb {
   }
 
   private decompress(of: Compressed, length: number): Uint8Array {
-    if (of.count * of.byteStride !== length || length > MOST_EXPANSION * of.byteLength) this.fail('a compressed section of another size');
+    const source = this.slice(of.byteOffset ?? 0, of.byteLength);
+    const most = (MOST_EXPANSION[of.mode] ?? 0) * source.length;
+    if (of.count * of.byteStride !== length || length > most) this.fail('a compressed section of another size');
     const target = new Uint8Array(length);
     try {
-      const source = this.slice(of.byteOffset ?? 0, of.byteLength);
       MeshoptDecoder.decodeGltfBuffer(target, of.count, of.byteStride, source, of.mode, of.filter);
-    } catch (problem) {
-      if (problem instanceof HierarchyProblem) throw problem;
+    } catch {
       this.fail('a compressed section is damaged');
     }
     return target;

@@ -5,7 +5,7 @@ export class HierarchyProblem extends Error {
   /// `mayPass`: it is the host or the line; the same may succeed later.
   constructor(
     file: string,
-    what: string,
+    readonly what: string,
     readonly mayPass = false,
   ) {
     super(`${file}: ${what}`);

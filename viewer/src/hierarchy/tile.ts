@@ -1,6 +1,7 @@
 // A tile as it is drawn: what its file (docs/file_format.md, section 4) holds for that, in arrays of its own.
 import { Glb, type Gltf } from './glb.js';
 import { MeshoptDecoder } from 'meshoptimizer/decoder';
+import { MOST_ELEMENTS, MOST_OWN, MOST_ROOT_TRIANGLES } from './limits.js';
 import { normalCone, vertexNormals, type Cone } from './normals.js';
 import { isClosed, isInsideOut } from './closed.js';
 
@@ -38,9 +39,6 @@ export interface Tile {
   readonly zUp: boolean;
 }
 
-const MOST_OWN = 32768;
-const MOST_ELEMENTS = 2 ** 26;
-
 /// What the index says of a tile.
 export interface ExpectedCounts {
   readonly level: number;
@@ -60,6 +58,7 @@ interface Counts extends ExpectedCounts {
 function checkCounts(glb: Glb, counts: Counts, expected: ExpectedCounts | null): void {
   const keys = ['level', 'index', 'own', 'ghosts', 'interior', 'border'] as const;
   if (expected !== null && keys.some((key) => counts[key] !== expected[key])) glb.fail('not the tile that the index tells of');
+  if (counts.level === 0 && (counts.ghosts > 0 || counts.border > 0 || counts.interior > MOST_ROOT_TRIANGLES)) glb.fail('not a root');
   if (counts.neighbours > counts.ghosts || counts.chains > counts.ghosts * counts.level) glb.fail('more neighbours or chains than ghosts allow');
 }
 
@@ -93,8 +92,7 @@ function floats(bytes: Uint8Array): Float32Array {
 }
 
 function stepOf(node: Gltf['nodes'][number]): number {
-  const step = node.matrix ? Math.hypot(node.matrix[0], node.matrix[1], node.matrix[2]) : (node.scale?.[0] ?? 1);
-  return step;
+  return node.matrix ? Math.hypot(node.matrix[0], node.matrix[1], node.matrix[2]) : (node.scale?.[0] ?? 1);
 }
 
 function readPositions(glb: Glb, accessor: Gltf['accessors'][number], vertices: number): Float32Array {

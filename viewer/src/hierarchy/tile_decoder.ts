@@ -1,10 +1,14 @@
 // Tiles out of their files, in workers if there are any, else where it is called.
+import { HierarchyProblem } from './problem.js';
 import { readTile, type ExpectedCounts, type Tile } from './tile.js';
 
 interface Answer {
   id: number;
   tile?: Tile;
-  problem?: string;
+  /// What is wrong with the file.
+  what?: string;
+  /// What went wrong otherwise.
+  defect?: string;
   milliseconds?: number;
 }
 
@@ -79,11 +83,11 @@ export class TileDecoder {
     }
   }
 
-  private settle({ id, tile, problem, milliseconds }: Answer): void {
+  private settle({ id, tile, what, defect, milliseconds }: Answer): void {
     const task = this.tasks.get(id);
     this.tasks.delete(id);
     this.milliseconds += milliseconds ?? 0;
     if (tile) task?.resolve(tile);
-    else task?.reject(new Error(problem));
+    else task?.reject(what === undefined ? new Error(defect) : new HierarchyProblem(task.name, what));
   }
 }

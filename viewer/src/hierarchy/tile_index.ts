@@ -1,5 +1,6 @@
 // The index, tiles.bin (docs/file_format.md, section 3), in pages: of a large one only those that are looked
 // into are fetched.
+import { MOST_ELEMENTS, MOST_OWN } from './limits.js';
 import { HierarchyProblem } from './problem.js';
 import { keyOf, type Node, type Tree } from './tree.js';
 
@@ -29,8 +30,6 @@ const VERSION = 2;
 const HEADER_BYTES = 32;
 const RECORD_BYTES = 96;
 const PAGE_RECORDS = 682; // a page is just below 64 KiB
-const MOST_OWN = 32768;
-const MOST_ELEMENTS = 2 ** 26;
 /// A page that failed is asked for again after this time.
 const RETRY_MS = 2000;
 
@@ -59,7 +58,7 @@ function readRecord(view: DataView, at: number, place: Triple): TileRecord {
 
 /// No more than the format allows: sizes are computed from these.
 function isSound({ own, ghosts, interior, border, min, max, error }: TileRecord): boolean {
-  const counts = own >= 1 && own <= MOST_OWN && [ghosts, interior, border].every((count) => count < MOST_ELEMENTS);
+  const counts = own >= 1 && own <= MOST_OWN && [ghosts, interior, border].every((count) => count <= MOST_ELEMENTS);
   return counts && error >= 0 && [...min, ...max, error].every(Number.isFinite);
 }
 

@@ -1,4 +1,5 @@
-// Decodes tiles beside the page: {id, bytes, name, expected} in, {id, tile} or {id, problem} out.
+// Decodes tiles beside the page: {id, bytes, name, expected} in, {id, tile} or {id, what} out, `what`: is wrong with the file; {id, defect} of anything else.
+import { HierarchyProblem } from './problem.js';
 import { buffersOf, readTile, type ExpectedCounts } from './tile.js';
 
 interface Task {
@@ -16,7 +17,7 @@ addEventListener('message', (event: MessageEvent<Task>) => {
       postMessage({ id, tile, milliseconds: performance.now() - began }, { transfer: buffersOf(tile) });
     },
     (problem: unknown) => {
-      postMessage({ id, problem: problem instanceof Error ? problem.message : String(problem) });
+      postMessage(problem instanceof HierarchyProblem ? { id, what: problem.what } : { id, defect: String(problem) });
     },
   );
 });

@@ -140,6 +140,7 @@ export class HierarchyView extends Group<ViewEvents> {
       return object;
     } catch (problem) {
       this.tell(problem);
+      if (problem instanceof HierarchyProblem && problem.mayPass) this.outline = null; // asked for again when it is switched on again
       return null;
     }
   }
@@ -163,7 +164,7 @@ export class HierarchyView extends Group<ViewEvents> {
   private async open(): Promise<void> {
     const manifest = this.remote.manifest();
     manifest.catch(() => undefined); // told when it is needed
-    const root = await this.remote.root();
+    const root = await this.persist(() => this.remote.root());
     this.ending.signal.throwIfAborted();
     this.root = root;
     if (root.zUp) this.tiles.applyMatrix4(UPRIGHT);
@@ -174,32 +175,37 @@ export class HierarchyView extends Group<ViewEvents> {
     void this.openDirectory(root, manifest);
   }
 
+  /// Tries again, for a while, what failed by the host or the line; tells of each failure but the last.
+  private async persist<T>(ask: (tries: number) => Promise<T>): Promise<T> {
+    for (let tries = 1; ; ++tries) {
+      try {
+        return await ask(tries);
+      } catch (problem) {
+        const mayPass = problem instanceof HierarchyProblem && problem.mayPass;
+        if (tries === MOST_TRIES || !mayPass) throw problem;
+        this.tell(problem);
+      }
+      await new Promise((resolve) => setTimeout(resolve, RETRY_MS * 2 ** (tries - 1)));
+      this.ending.signal.throwIfAborted();
+    }
+  }
+
   private setBox([a, b, c, d, e, f]: readonly number[]): void {
     this.box.set(new Vector3(a, b, c), new Vector3(d, e, f)).applyMatrix4(this.tiles.matrix);
   }
 
-  /// Without it there is the root and no more: so it is tried again, for a while.
-  private async openDirectory(root: Tile, manifest: Promise<Manifest>): Promise<void> {
-    for (let tries = 1; !this.ending.signal.aborted; ++tries) {
-      try {
-        this.begin(await this.remote.directory(await manifest, root, () => { this.changed(); }, (problem) => { this.tell(problem); }));
-        return;
-      } catch (problem) {
-        this.tell(problem);
-        const mayPass = problem instanceof HierarchyProblem && problem.mayPass;
-        if (tries === MOST_TRIES || !mayPass) {
-          this.stayWithRoot();
-          return;
-        }
-      }
-      await new Promise((resolve) => setTimeout(resolve, RETRY_MS * 2 ** (tries - 1)));
-      manifest = this.remote.manifest();
+  /// Without it there is the root and no more. `early`: the manifest was asked for already.
+  private async openDirectory(root: Tile, early: Promise<Manifest>): Promise<void> {
+    try {
+      this.begin(await this.persist(async (tries) => {
+        const manifest = await (tries === 1 ? early : this.remote.manifest());
+        return this.remote.directory(manifest, root, () => { this.changed(); }, (problem) => { this.tell(problem); });
+      }));
+    } catch (problem) {
+      this.tell(problem);
+      this.isRootAll = true;
+      this.changed();
     }
-  }
-
-  private stayWithRoot(): void {
-    this.isRootAll = true;
-    this.changed();
   }
 
   private begin(directory: Directory): void {
@@ -253,14 +259,14 @@ export class HierarchyView extends Group<ViewEvents> {
     this.viewpoint = viewpointOf(camera, this.tiles, viewport);
     this.pixels = viewport.width * viewport.height;
     const isElse = this.refine(this.viewpoint, now);
-    this.setAlarm(now);
+    this.setAlarm();
     return seesElse || isDirty || isElse;
   }
 
   /// Something may be due although nothing happens.
-  private setAlarm(now: number): void {
+  private setAlarm(): void {
     if (this.motion.isMoving) this.alarm.in(REST_MS);
-    if (this.state?.isComplete === false) this.alarm.in(Math.max(RETRY_MS, this.store.nextTry - now));
+    if (this.state?.isComplete === false) this.alarm.in(RETRY_MS);
   }
 
   private measure(now: number): void {
@@ -280,7 +286,7 @@ export class HierarchyView extends Group<ViewEvents> {
   private refine(viewpoint: Viewpoint, now: number): boolean {
     const vertices = this.motion.isMoving ? this.rate.budget : Infinity;
     const refinement = this.isFirstFrame ? null : this.refinement;
-    this.state = refinement?.refine(viewpoint, { threshold: this.settings.threshold, vertices }, now) ?? null;
+    this.state = refinement?.refine(viewpoint, { threshold: this.settings.threshold, vertices, atRest: !this.motion.isMoving }, now) ?? null;
     this.drawn = this.state?.drawn ?? [];
     this.store.keepWithin(now);
     const keys = this.state === null ? [ROOT_KEY] : this.drawn.map(({ key }) => key);
@@ -337,7 +343,7 @@ export class HierarchyView extends Group<ViewEvents> {
       finestLevel: Math.max(0, ...levels),
       coarsestLevel: levels.length > 0 ? Math.min(...levels) : 0,
       vertexBudget: this.rate.budget,
-      worstError: shown.reduce((worst, { pixels }) => Math.max(worst, pixels), 0),
+      worstError: isRootAlone ? Infinity : shown.reduce((worst, { pixels }) => Math.max(worst, pixels), 0),
       residentTiles: this.store.residentCount,
       residentBytes: this.store.usedBytes,
       peakBytes: this.store.peakBytes,

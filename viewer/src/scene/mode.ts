@@ -1,13 +1,12 @@
 // What a view is called (Kim & Lee).
 import type { ChosenNode } from '../cut/choose_cut.js';
-import { distance, isWhollyInView, type Box, type Viewpoint } from '../cut/viewpoint.js';
+import { distance, isWhollyInView, pixelsOf, type Box, type Viewpoint } from '../cut/viewpoint.js';
 import type { Mode } from './settings.js';
 
 /// Part of the picture that a tile covers, at most.
 function share({ record }: ChosenNode, view: Viewpoint, pixels: number): number {
   const size = Math.hypot(...record.max.map((max, axis) => max - record.min[axis]));
-  const across = (size * view.pixels) / Math.max(distance(view, record), view.near);
-  return Math.min(1, across ** 2 / pixels);
+  return Math.min(1, pixelsOf(view, record, size) ** 2 / pixels);
 }
 
 /// The closest of the tiles in view that together can fill the picture: others are hardly seen behind them.

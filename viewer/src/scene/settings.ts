@@ -61,7 +61,7 @@ export interface Stats {
   coarsestLevel: number;
   /// The most vertices that the rate asked for allows.
   vertexBudget: number;
-  /// Largest error of what is shown, in pixels.
+  /// Largest error of what is shown, in pixels; Infinity while it is not known.
   worstError: number;
   residentTiles: number;
   residentBytes: number;

@@ -85,8 +85,11 @@ export class TileObject extends Mesh<BufferGeometry, MeshStandardMaterial> {
     if (this.visible) super.raycast(raycaster, hits);
   }
 
+  /// Holds no more than its triangles until it is shown again.
   hide(): void {
     this.visible = false;
+    this.setWires(false);
+    this.setPoints(false);
     this.resident.seam.forget();
   }
 
@@ -115,13 +118,12 @@ export class TileObject extends Mesh<BufferGeometry, MeshStandardMaterial> {
   setLook(look: Look): void {
     const before = this.look;
     this.look = look;
-    if (before === look) return;
     if (surfaceKey(before) !== surfaceKey(look)) {
       this.material.dispose();
       this.material = surfaceMaterial(look, this.resident.tile.colours !== null, this.shared);
     }
-    if (before.wires !== look.wires) this.setWires(look.wires);
-    if (before.points !== look.points) this.setPoints(look.points);
+    if (look.wires !== (this.wires !== null)) this.setWires(look.wires);
+    if (look.points !== (this.points !== null)) this.setPoints(look.points);
   }
 
   /// Of the whole tile.

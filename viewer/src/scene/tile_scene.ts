@@ -46,8 +46,8 @@ export class TileScene extends Group {
       this.add(object);
       object.resolve();
     } else {
-      object.setLook(look);
       if (changed) object.resolve();
+      object.setLook(look);
     }
     if (resident.seam.isDamaged) this.tellDamaged(resident.node);
     object.visible = true;
