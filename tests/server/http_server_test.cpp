@@ -302,14 +302,44 @@ TEST_F(HttpServerTest, ClientsThatTakeNothingAreLeft) {
   EXPECT_EQ(quick.get("/models.json").status, 200);
 }
 
-TEST_F(HttpServerTest, ClientsThatTakeTooLittleAreLeft) {
-  make_large(256 * tests::kMiB);
+TEST_F(HttpServerTest, AClientThatTakesNothingIsLeftEvenIfNobodyWaits) {
+  make_large(64 * tests::kMiB);
   ServerOptions options;
-  options.limits.grace = std::chrono::milliseconds(0);
-  options.limits.least_rate = std::size_t{1} << 60;
+  options.limits.stall = std::chrono::milliseconds(100);
   start(options);
+  RawClient slow(port(), 4096);
+  slow.send("GET /assets/large.bin HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  tests::wait_until([&] {
+    const std::lock_guard lock(mutex_);
+    return log_.size() == 1;
+  });
+  EXPECT_LT(slow.receive().body.size(), 64 * tests::kMiB);
+}
+
+/// Limits by which every client takes too little.
+ConnectionLimits impatient() {
+  ConnectionLimits limits;
+  limits.grace = std::chrono::milliseconds(0);
+  limits.least_rate = std::size_t{1} << 60;
+  return limits;
+}
+
+TEST_F(HttpServerTest, ASlowLineIsServedWhileNobodyWaits) {
+  make_large(16 * tests::kMiB);
+  start({.limits = impatient()});
   RawClient client(port());
-  EXPECT_LT(client.get("/assets/large.bin").body.size(), 256 * tests::kMiB);
+  EXPECT_EQ(client.get("/assets/large.bin").body.size(), 16 * tests::kMiB);
+}
+
+TEST_F(HttpServerTest, ClientsThatTakeTooLittleMakeRoomForOthers) {
+  make_large(256 * tests::kMiB);
+  start({.threads = 1, .limits = impatient()});
+  RawClient slow(port(), 4096);
+  slow.send("GET /assets/large.bin HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  RawClient other(port());
+  other.send("GET /models.json HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  EXPECT_LT(slow.receive().body.size(), 256 * tests::kMiB);
+  EXPECT_EQ(other.receive().status, 200);
 }
 
 TEST_F(HttpServerTest, AnIdleConnectionMakesRoomForOthers) {
