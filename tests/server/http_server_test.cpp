@@ -2,6 +2,7 @@
 #include "server/http_server.h"
 
 #include "hierarchy/error.h"
+#include "server/conditions.h"
 #include "server/site.h"
 #include "storage/process.h"
 #include "tests/server/path_tricks.h"
@@ -440,10 +441,19 @@ TEST(ServerUrlTest, UrlsAreThoseABrowserTakes) {
   EXPECT_EQ(url_of("127.0.0.1", 8080), "http://127.0.0.1:8080/");
   EXPECT_EQ(url_of("::1", 1), "http://[::1]:1/");
   EXPECT_EQ(url_of("0.0.0.0", 80), "http://127.0.0.1:80/");
-  EXPECT_TRUE(is_loopback_host("127.0.0.1") && is_loopback_host("localhost") &&
-              is_loopback_host("::1"));
-  EXPECT_FALSE(is_loopback_host("0.0.0.0") || is_loopback_host("::") ||
-               is_loopback_host("10.0.0.1"));
+}
+
+TEST(ServerUrlTest, OnTheLoopbackTheUrlNamesTheLoopback) {
+  for (const std::string& host :
+       {"127.0.0.1"s, "127.0.0.2"s, "127.1"s, "localhost"s, "LOCALHOST"s, "::1"s}) {
+    EXPECT_TRUE(is_loopback_host(host)) << host;
+    const std::string url = url_of(host, 8080);
+    const std::string sent = url.substr(7, url.size() - 8);  // without "http://" and "/"
+    EXPECT_TRUE(is_loopback_name(sent)) << sent;
+  }
+  for (const std::string& host :
+       {"0.0.0.0"s, "::"s, "10.0.0.1"s, "127.evil.example"s, "::127.0.0.1"s, ""s})
+    EXPECT_FALSE(is_loopback_host(host)) << host;
 }
 
 }  // namespace

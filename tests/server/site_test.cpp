@@ -430,6 +430,14 @@ TEST_F(SiteTest, NamesOfOthersAreNotAnsweredOnTheLoopback) {
   EXPECT_EQ(site_->answer(other).status, 200);
 }
 
+TEST_F(SiteTest, AllNamesOfTheLoopbackAreAnswered) {
+  Request other = request("/models.json");
+  for (const char* host : {"localhost", "127.0.0.1:8080", "127.0.0.2:8080", "[::1]:8080"}) {
+    other.host = host;
+    EXPECT_EQ(site_->answer(other).status, 200) << host;
+  }
+}
+
 TEST_F(SiteTest, PagesOfOthersMayReadWhereThatIsAskedFor) {
   EXPECT_EQ(get("/models.json").header("Access-Control-Allow-Origin"), "");
   open({.cors = "https://a.example"});
