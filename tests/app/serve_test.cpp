@@ -202,6 +202,14 @@ TEST_F(ServeTest, ABrowserThatIsMissingDoesNotStopIt) {
   EXPECT_THAT(process.messages(), HasSubstr("no xdg-open"));
 }
 
+TEST_F(ServeTest, WhatIsMissingIsToldToTheQuiet) {
+  ServeProcess& process =
+      serve_with_path(folder_.path(), {"--open", "--quiet", "--viewer", folder_.viewer().string()});
+  tests::RawClient(process.port()).get("/models.json");
+  EXPECT_EQ(process.end(SIGTERM), 0);
+  EXPECT_THAT(process.messages(), MatchesRegex("meshhier: --open: there is no xdg-open[^\n]*\n"));
+}
+
 TEST_F(ServeTest, ABrowserThatHasMuchToSayIsNotHeldUp) {
   const fs::path opener = folder_.path() / "programs/xdg-open";
   const fs::path opened = folder_.path() / "programs/opened";
