@@ -107,7 +107,8 @@ server::WatchOptions watch_options(const ServeArguments& arguments, Environment&
   return options;
 }
 
-/// Opens the browser; the process is held until this one ends.
+/// Opens the browser; the process is held until this one ends. It may be the browser itself, which
+/// logs without end.
 std::unique_ptr<storage::ChildProcess> open_browser(const std::string& url, Console& console,
                                                     storage::FileSystem& files) {
   const char* const path = std::getenv("PATH");
@@ -117,7 +118,7 @@ std::unique_ptr<storage::ChildProcess> open_browser(const std::string& url, Cons
     const std::filesystem::path program = std::filesystem::path(rest.substr(0, end)) / "xdg-open";
     if (files.exists(program))
       return std::make_unique<storage::ChildProcess>(
-          std::vector<std::string>{program.string(), url});
+          std::vector<std::string>{program.string(), url}, storage::ChildProcess::Errors::dropped);
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
   console.print("--open: there is no xdg-open here (package xdg-utils); open the URL by hand");

@@ -24,6 +24,17 @@ bool is_zero_weight(const std::string& parameter) {
   return parameter.starts_with("q=0") && parameter.find_first_not_of("0.", 2) == std::string::npos;
 }
 
+/// Or nothing.
+bool is_port(std::string_view text) {
+  return text.size() <= 5 && text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+/// "127.0.0.1", "127.1": what ends with a digit and is no address is no name either, to no browser.
+bool is_loopback_address(std::string_view text) {
+  return text.starts_with("127.") && !text.ends_with('.') &&
+         text.find_first_not_of("0123456789.") == std::string_view::npos;
+}
+
 }  // namespace
 
 std::string file_tag(const storage::FileVersion& version, std::uint64_t offset) {
@@ -63,14 +74,10 @@ bool allows_gzip(std::string_view accept_encoding) {
 }
 
 bool is_loopback_name(std::string_view host) {
-  for (const std::string_view name : {"localhost", "127.0.0.1", "[::1]"}) {
-    if (lower_case(host.substr(0, name.size())) != name)
-      continue;
-    const std::string_view port = host.substr(name.size());
-    return port.empty() || (port.front() == ':' && port.size() <= 6 &&
-                            port.find_first_not_of("0123456789", 1) == std::string_view::npos);
-  }
-  return false;
+  const std::size_t colon = host.ends_with(']') ? host.size() : host.rfind(':');
+  const std::string name = lower_case(host.substr(0, colon));
+  const std::string_view port = host.substr(std::min(name.size() + 1, host.size()));
+  return is_port(port) && (name == "localhost" || name == "[::1]" || is_loopback_address(name));
 }
 
 }  // namespace meshhier::server

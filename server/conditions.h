@@ -21,8 +21,9 @@ bool names_tag(std::string_view if_none_match, std::string_view tag);
 /// Whether Accept-Encoding allows gzip.
 bool allows_gzip(std::string_view accept_encoding);
 
-/// Whether a Host header names this machine by its loopback: "localhost", "127.0.0.1" or "[::1]",
-/// of any port. A page that had its own name point here (DNS rebinding) sends that name.
+/// Whether a Host header names this machine by its loopback: "localhost", "[::1]" or an address
+/// that begins with "127.", of any port. A page that had its own name point here (DNS rebinding)
+/// sends that name.
 bool is_loopback_name(std::string_view host);
 
 }  // namespace meshhier::server

@@ -122,6 +122,8 @@ ssize_t Connection::read(char* bytes, std::size_t count) {
 }
 
 bool Connection::is_too_slow() const {
+  if (!is_crowded_())
+    return false;
   const auto time = Clock::now() - reply_start_;
   const double seconds = std::chrono::duration<double>(time).count();
   return time > limits_.grace &&

@@ -58,6 +58,7 @@ class Connection final : public httplib::Stream {
   void begin_reply();
   /// Appends what has come to received_; false at the end of it.
   bool receive();
+  /// As others wait; while nobody does, it may take its time.
   bool is_too_slow() const;
   void finish();
 

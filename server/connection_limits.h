@@ -6,6 +6,8 @@
 
 namespace meshhier::server {
 
+/// The least rate counts while others wait for a thread: the six connections of a phone's browser
+/// at 400 kbit/s get 8 kB/s each, and are welcome as long as there is room.
 struct ConnectionLimits {
   using Milliseconds = std::chrono::milliseconds;
   Milliseconds idle{15'000};           ///< between two requests

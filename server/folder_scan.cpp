@@ -1,5 +1,6 @@
 #include "server/folder_scan.h"
 
+#include "hierarchy/error.h"
 #include "server/url_path.h"
 #include "storage/layout.h"
 
@@ -30,7 +31,7 @@ class Scanner {
 
  private:
   void look_into(const std::string& directory) {
-    const std::vector<storage::FolderEntry> entries = folder_.entries(directory);
+    const std::vector<storage::FolderEntry> entries = entries_of(directory);
     if (std::any_of(entries.begin(), entries.end(), is_manifest))
       return scan_.hierarchies.push_back(directory);
     for (const storage::FolderEntry& entry : entries) {
@@ -42,6 +43,18 @@ class Scanner {
       } else if (is_archive_name(entry.name)) {
         scan_.hierarchies.push_back(path);
       }
+    }
+  }
+
+  /// What others may not read (lost+found) or a disk has lost must not hide the rest.
+  std::vector<storage::FolderEntry> entries_of(const std::string& directory) {
+    try {
+      return folder_.entries(directory);
+    } catch (const Error& error) {
+      if (directory.empty())
+        throw;
+      scan_.failures.emplace_back(error.what());
+      return {};
     }
   }
 

@@ -11,11 +11,13 @@ namespace meshhier::server {
 
 struct FolderScan {
   std::vector<std::string> hierarchies;  ///< paths that look like one; "": the folder itself
+  std::vector<std::string> failures;     ///< why directories could not be looked into
   bool is_complete = true;               ///< false: there is too much to look at it all
 };
 
 /// Directories with a manifest, in which nothing else is looked for, and archives. Names that no
-/// URL of ours can have, those that begin with a dot among them, are left out. Throws Error(io).
+/// URL of ours can have, those that begin with a dot among them, are left out. Throws Error(io) if
+/// the folder itself cannot be listed.
 FolderScan scan_folder(const storage::Folder& folder);
 
 /// Whether a file of that name is taken for an archive.

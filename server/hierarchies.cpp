@@ -20,6 +20,9 @@ namespace {
 /// Each holds 32 bytes a file of its own and an open file: a screenful of models.
 constexpr std::size_t kMostOpenArchives = 16;
 
+/// Clients may ask for names without end in a directory that cannot be read: each is a message.
+constexpr std::size_t kMostTold = 1000;
+
 std::string joined(const std::string& directory, const std::string& name) {
   return directory.empty() ? name : directory + '/' + name;
 }
@@ -69,9 +72,11 @@ std::vector<Model> Hierarchies::list() {
   if (!scan.is_complete)
     tell_once(
         fmt::format("{}: too many directories; not all are listed", folder_->path().string()));
+  for (const std::string& failure : scan.failures)
+    tell_left_out(failure);
   std::vector<Model> models;
   for (const std::string& path : scan.hierarchies) {
-    if (std::optional<Model> model = look(path))
+    if (std::optional<Model> model = look_if_readable(path))
       models.push_back(std::move(*model));
   }
   std::sort(models.begin(), models.end(),
@@ -81,11 +86,20 @@ std::vector<Model> Hierarchies::list() {
 
 std::optional<PublishedFile> Hierarchies::open(std::string_view path) {
   const std::optional<Split> found = split(path);
-  if (!found)
+  if (!found || !is_published(found->hierarchy, found->name))
     return std::nullopt;
-  const bool is_sound = storage::is_hierarchy_file(found->name) ? look(found->hierarchy).has_value()
-                                                                : is_stream(found->hierarchy);
-  return is_sound ? open_in(found->hierarchy, found->name) : std::nullopt;
+  return open_in(found->hierarchy, found->name);
+}
+
+bool Hierarchies::is_published(const std::string& hierarchy, const std::string& name) {
+  if (storage::is_hierarchy_file(name))
+    return look_if_readable(hierarchy).has_value();
+  try {
+    return is_stream(hierarchy);
+  } catch (const Error& error) {
+    tell_left_out(error.what());
+    return false;
+  }
 }
 
 std::optional<PublishedFile> Hierarchies::open_in(const std::string& hierarchy,
@@ -113,6 +127,15 @@ std::optional<Model> Hierarchies::look(const std::string& path) {
   if (!model && is_archive_name(path))
     model = look_at_archive(path);
   return model;
+}
+
+std::optional<Model> Hierarchies::look_if_readable(const std::string& path) {
+  try {
+    return look(path);
+  } catch (const Error& error) {
+    tell_left_out(error.what());
+    return std::nullopt;
+  }
 }
 
 std::optional<Model> Hierarchies::look_at_directory(const std::string& path) {
@@ -166,7 +189,7 @@ std::optional<Model> Hierarchies::remember(const std::string& path,
   try {
     known.model = read();
   } catch (const Error& error) {
-    tell_once(fmt::format("not shown: {}", error.what()));
+    tell_left_out(error.what());
   }
   const std::lock_guard lock(mutex_);
   known_[path] = known;
@@ -208,10 +231,14 @@ Model Hierarchies::model_of(const std::string& path, const storage::File& file) 
           file.version().modified_ns};
 }
 
+void Hierarchies::tell_left_out(const std::string& cause) {
+  tell_once("not shown: " + cause);
+}
+
 void Hierarchies::tell_once(const std::string& message) {
   {
     const std::lock_guard lock(mutex_);
-    if (!told_.insert(message).second)
+    if (told_.size() >= kMostTold || !told_.insert(message).second)
       return;
   }
   tell_(message);

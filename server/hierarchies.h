@@ -30,21 +30,24 @@ struct PublishedFile {
 /// the same. Thread-safe.
 class Hierarchies {
  public:
-  /// Hears of hierarchies that cannot be read, each once; may be called by several threads.
+  /// Hears of hierarchies and directories that cannot be read, each once, the first thousand; may
+  /// be called by several threads.
   using Tell = std::function<void(const std::string& message)>;
 
   Hierarchies(std::shared_ptr<const storage::Folder> folder, Tell tell);
 
   /// All that can be read, by path: directories, and archives whose names end in ".3tz".
-  /// Directories whose names begin with a dot are work in progress and left out. Throws Error(io).
+  /// Directories whose names begin with a dot are work in progress and left out. Throws Error(io)
+  /// if the folder itself cannot be listed.
   std::vector<Model> list();
 
-  /// The hierarchy of that path; nothing if there is none that can be read. Throws Error(io).
+  /// The hierarchy of that path; nothing if there is none, or it is damaged. Throws Error(io) if
+  /// its file cannot be opened: there may be one.
   std::optional<Model> look(const std::string& path);
 
   /// The file of that path, as a URL has it: "sub/david.hier/tiles/00/000000.glb". Nothing if it is
   /// no file of a hierarchy or stream that can be read, whatever else lies in the folder. Throws
-  /// Error(io).
+  /// Error(io) if that file, of a hierarchy that can be read, cannot be opened.
   std::optional<PublishedFile> open(std::string_view path);
 
  private:
@@ -60,6 +63,8 @@ class Hierarchies {
   };
   using Read = std::function<Model()>;
 
+  std::optional<Model> look_if_readable(const std::string& path);
+  bool is_published(const std::string& hierarchy, const std::string& name);
   std::optional<Model> look_at_directory(const std::string& path);
   std::optional<Model> look_at_archive(const std::string& path);
   bool is_stream(const std::string& path);
@@ -68,6 +73,7 @@ class Hierarchies {
   std::shared_ptr<const storage::Archive> archive(const std::string& path,
                                                   std::unique_ptr<storage::File> file);
   std::optional<PublishedFile> open_in(const std::string& hierarchy, const std::string& name);
+  void tell_left_out(const std::string& cause);
   void tell_once(const std::string& message);
   Model model_of(const std::string& path, const storage::File& manifest) const;
 

@@ -1,6 +1,7 @@
 #include "server/http_server.h"
 
 #include "hierarchy/error.h"
+#include "server/conditions.h"
 #include "server/connection.h"
 #include "server/worker_pool.h"
 
@@ -98,6 +99,11 @@ void put(const Reply& reply, httplib::Response& response) {
               fmt::format("cannot listen on {}: {}; --host must be an address of this machine, and "
                           "ports below 1024 are the system's",
                           place, error == 0 ? "no such host" : std::strerror(error)));
+}
+
+/// A host as URLs have it: IPv6 addresses in brackets.
+std::string in_url(const std::string& host) {
+  return host.find(':') == std::string::npos ? host : '[' + host + ']';
 }
 
 }  // namespace
@@ -274,12 +280,11 @@ void HttpServer::stop() {
 std::string url_of(const std::string& host, std::uint16_t port) {
   if (host == "0.0.0.0" || host == "::")
     return url_of("127.0.0.1", port);
-  const bool is_v6 = host.find(':') != std::string::npos;
-  return fmt::format("http://{}{}{}:{}/", is_v6 ? "[" : "", host, is_v6 ? "]" : "", port);
+  return fmt::format("http://{}:{}/", in_url(host), port);
 }
 
 bool is_loopback_host(const std::string& host) {
-  return host == "localhost" || host == "::1" || host.starts_with("127.");
+  return is_loopback_name(in_url(host));
 }
 
 }  // namespace meshhier::server

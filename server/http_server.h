@@ -60,7 +60,8 @@ class HttpServer {
 
 /// "http://127.0.0.1:8080/"; for a host that stands for all addresses that of the loopback.
 std::string url_of(const std::string& host, std::uint16_t port);
-/// Whether only this machine reaches a server on `host`.
+/// Whether `host` is the loopback, so that only this machine reaches a server there: if so, its URL
+/// has one of the names that is_loopback_name() knows.
 bool is_loopback_host(const std::string& host);
 
 }  // namespace meshhier::server

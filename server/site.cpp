@@ -60,7 +60,7 @@ Reply Site::answer(const Request& request) {
 Reply Site::route(const Request& request) {
   if (options_.is_loopback && !is_for_this_host(request)) {
     return text_reply(421,
-                      "This server answers to localhost, 127.0.0.1 and [::1] only; start it with "
+                      "This server answers to localhost, 127.x.x.x and [::1] only; start it with "
                       "--host to be reached by other names.");
   }
   if (request.method == "OPTIONS") {

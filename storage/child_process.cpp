@@ -38,14 +38,21 @@ Pipe make_pipe() {
   return {ends[0], ends[1]};
 }
 
-/// Between fork and exec: only what may be called there. Ends the process if it fails.
+void close_end(int end) {
+  if (end >= 0)
+    ::close(end);
+}
+
+/// Between fork and exec: only what may be called there. Ends the process if it fails. `errors`: -1
+/// if they are dropped.
 [[noreturn]] void become(char* const* words, int errors, pid_t parent) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   const int nothing = ::open("/dev/null", O_RDWR);
+  const int said = errors < 0 ? nothing : errors;
   const bool is_ready = ::getppid() == parent && nothing >= 0 &&
                         ::dup2(nothing, STDIN_FILENO) >= 0 && ::dup2(nothing, STDOUT_FILENO) >= 0 &&
-                        ::dup2(errors, STDERR_FILENO) >= 0 &&
+                        ::dup2(said, STDERR_FILENO) >= 0 &&
                         ::close_range(STDERR_FILENO + 1, ~0U, 0) == 0;
   if (is_ready)
     ::execv(words[0], words);
@@ -58,21 +65,21 @@ int exit_code(int status) {
 
 }  // namespace
 
-ChildProcess::ChildProcess(const std::vector<std::string>& words) {
+ChildProcess::ChildProcess(const std::vector<std::string>& words, Errors errors) {
   std::vector<char*> arguments;
   for (const std::string& word : words)
     arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
-  const Pipe pipe = make_pipe();
+  const Pipe pipe = errors == Errors::heard ? make_pipe() : Pipe();
   const pid_t parent = ::getpid();
   process_ = ::fork();
   const int error = errno;
   if (process_ == 0)
     become(arguments.data(), pipe.writer, parent);
-  ::close(pipe.writer);
+  close_end(pipe.writer);
   errors_ = pipe.reader;
   if (process_ < 0) {
-    ::close(errors_);
+    close_end(errors_);
     fail("cannot start " + words[0], error);
   }
 }
@@ -82,10 +89,12 @@ ChildProcess::~ChildProcess() {
     ::kill(process_, SIGKILL);
     wait();
   }
-  ::close(errors_);
+  close_end(errors_);
 }
 
 bool ChildProcess::hear(std::string& text, std::chrono::milliseconds longest) {
+  if (errors_ < 0)
+    return false;
   pollfd ready{errors_, POLLIN, 0};
   const int count = ::poll(&ready, 1, static_cast<int>(longest.count()));
   if (count < 0 && errno != EINTR)

@@ -13,16 +13,22 @@ namespace meshhier::storage {
 /// use it.
 class ChildProcess {
  public:
+  /// What becomes of what it says on its standard error.
+  enum class Errors {
+    heard,   ///< by hear(), to be called as long as it runs: it waits once 64 KiB are not heard
+    dropped  ///< as its results
+  };
+
   /// `words`: the program's path, then its arguments. It inherits no open file. Throws Error(io) if
   /// it cannot be started.
-  explicit ChildProcess(const std::vector<std::string>& words);
+  explicit ChildProcess(const std::vector<std::string>& words, Errors errors = Errors::heard);
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
   /// Kills it if it still runs.
   ~ChildProcess();
 
   /// Appends what it has said since to `text`, a few kilobytes at most, waiting up to `longest` for
-  /// it. False once it has said all: it has ended, or is about to.
+  /// it. False once it has said all: it has ended, or is about to, or nobody hears it.
   bool hear(std::string& text, std::chrono::milliseconds longest);
   /// Asks it to stop, by SIGTERM.
   void ask_to_stop();
@@ -31,7 +37,7 @@ class ChildProcess {
 
  private:
   int process_ = -1;
-  int errors_ = -1;  ///< its standard error, read here
+  int errors_ = -1;  ///< its standard error, read here; -1: dropped
 };
 
 /// The program that runs, as a path that starts it again, even if its file is not there any more.

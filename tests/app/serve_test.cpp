@@ -111,6 +111,19 @@ class ServeTest : public testing::Test {
     process_ = std::make_unique<ServeProcess>(folder_.path(), arguments);
     return *process_;
   }
+  /// Programs are looked for in `path`, as PATH has it.
+  ServeProcess& serve_with_path(const std::string& path,
+                                const std::vector<std::string>& arguments) {
+    const std::string before = path_of_programs();
+    ::setenv("PATH", path.c_str(), 1);
+    ServeProcess& process = serve(arguments);
+    ::setenv("PATH", before.c_str(), 1);
+    return process;
+  }
+  static std::string path_of_programs() {
+    const char* const path = std::getenv("PATH");
+    return path == nullptr ? "" : path;
+  }
   fs::path models() const { return folder_.models(); }
   fs::path inbox() const { return folder_.path() / "inbox"; }
 
@@ -182,14 +195,36 @@ TEST_F(ServeTest, WhatIsWrongIsToldBeforeAnythingBegins) {
 }
 
 TEST_F(ServeTest, ABrowserThatIsMissingDoesNotStopIt) {
-  const char* const before = std::getenv("PATH");
-  const std::string path = before == nullptr ? "" : before;
-  ::setenv("PATH", folder_.path().c_str(), 1);
-  ServeProcess& process = serve({"--open", "--viewer", folder_.viewer().string()});
-  ::setenv("PATH", path.c_str(), 1);
+  ServeProcess& process =
+      serve_with_path(folder_.path(), {"--open", "--viewer", folder_.viewer().string()});
   EXPECT_EQ(tests::RawClient(process.port()).get("/models.json").status, 200);
   EXPECT_EQ(process.end(SIGTERM), 0);
   EXPECT_THAT(process.messages(), HasSubstr("no xdg-open"));
+}
+
+TEST_F(ServeTest, WhatIsMissingIsToldToTheQuiet) {
+  ServeProcess& process =
+      serve_with_path(folder_.path(), {"--open", "--quiet", "--viewer", folder_.viewer().string()});
+  tests::RawClient(process.port()).get("/models.json");
+  EXPECT_EQ(process.end(SIGTERM), 0);
+  EXPECT_THAT(process.messages(), MatchesRegex("meshhier: --open: there is no xdg-open[^\n]*\n"));
+}
+
+TEST_F(ServeTest, ABrowserThatHasMuchToSayIsNotHeldUp) {
+  const fs::path opener = folder_.path() / "programs/xdg-open";
+  const fs::path opened = folder_.path() / "programs/opened";
+  fs::create_directory(opener.parent_path());
+  tests::write_text(
+      opener,
+      "#!/bin/sh\nhead -c 200000 /dev/zero >&2 && echo \"$1\" >\"$0.new\" && mv \"$0.new\" '" +
+          opened.string() + "'\n");
+  fs::permissions(opener, fs::perms::owner_all);
+  ServeProcess& process = serve_with_path(opener.parent_path().string() + ':' + path_of_programs(),
+                                          {"--open", "--viewer", folder_.viewer().string()});
+  wait_until([&] { return fs::exists(opened); });
+  EXPECT_EQ(text_of(opened), process.out());
+  EXPECT_EQ(process.end(SIGTERM), 0);
+  EXPECT_LT(process.messages().size(), 1000U) << "what it said is its own business";
 }
 
 TEST_F(ServeTest, WhatIsDroppedAppearsWithItsProgressThenAsAModel) {

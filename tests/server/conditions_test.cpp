@@ -39,12 +39,31 @@ TEST(ConditionsTest, EncodingsAreWeighed) {
 }
 
 TEST(ConditionsTest, OnlyTheLoopbacksOwnNamesAreItsNames) {
-  for (const char* host :
-       {"localhost", "LocalHost:8080", "127.0.0.1", "127.0.0.1:1", "[::1]", "[::1]:65535"})
+  for (const char* host : {"localhost", "LocalHost:8080", "127.0.0.1", "127.0.0.1:1", "[::1]",
+                           "[::1]:65535", "127.0.0.2", "127.255.255.254:8080", "127.1"})
     EXPECT_TRUE(is_loopback_name(host)) << host;
-  for (const char* host : {"", "evil.example", "localhost.evil.example", "127.0.0.1.evil.example",
-                           "evil.example:8080", "localhost:80a", "localhost:999999", "127.0.0.2",
-                           "::1", "[::1", "[::1]evil", "localhost@evil", "0.0.0.0", "2130706433"})
+  for (const char* host : {"",
+                           "evil.example",
+                           "localhost.evil.example",
+                           "127.0.0.1.evil.example",
+                           "evil.example:8080",
+                           "localhost:80a",
+                           "localhost:999999",
+                           "127.evil.example",
+                           "127.",
+                           "127.0.0.1a",
+                           "1127.0.0.1",
+                           "128.0.0.1",
+                           "[127.0.0.1]",
+                           "[localhost]",
+                           ":8080",
+                           "127.0.0.1:80:80",
+                           "::1",
+                           "[::1",
+                           "[::1]evil",
+                           "localhost@evil",
+                           "0.0.0.0",
+                           "2130706433"})
     EXPECT_FALSE(is_loopback_name(host)) << host;
 }
 

@@ -2,6 +2,7 @@
 #include "server/http_server.h"
 
 #include "hierarchy/error.h"
+#include "server/conditions.h"
 #include "server/site.h"
 #include "storage/process.h"
 #include "tests/server/path_tricks.h"
@@ -302,14 +303,44 @@ TEST_F(HttpServerTest, ClientsThatTakeNothingAreLeft) {
   EXPECT_EQ(quick.get("/models.json").status, 200);
 }
 
-TEST_F(HttpServerTest, ClientsThatTakeTooLittleAreLeft) {
-  make_large(256 * tests::kMiB);
+TEST_F(HttpServerTest, AClientThatTakesNothingIsLeftEvenIfNobodyWaits) {
+  make_large(64 * tests::kMiB);
   ServerOptions options;
-  options.limits.grace = std::chrono::milliseconds(0);
-  options.limits.least_rate = std::size_t{1} << 60;
+  options.limits.stall = std::chrono::milliseconds(100);
   start(options);
+  RawClient slow(port(), 4096);
+  slow.send("GET /assets/large.bin HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  tests::wait_until([&] {
+    const std::lock_guard lock(mutex_);
+    return log_.size() == 1;
+  });
+  EXPECT_LT(slow.receive().body.size(), 64 * tests::kMiB);
+}
+
+/// Limits by which every client takes too little.
+ConnectionLimits impatient() {
+  ConnectionLimits limits;
+  limits.grace = std::chrono::milliseconds(0);
+  limits.least_rate = std::size_t{1} << 60;
+  return limits;
+}
+
+TEST_F(HttpServerTest, ASlowLineIsServedWhileNobodyWaits) {
+  make_large(16 * tests::kMiB);
+  start({.limits = impatient()});
   RawClient client(port());
-  EXPECT_LT(client.get("/assets/large.bin").body.size(), 256 * tests::kMiB);
+  EXPECT_EQ(client.get("/assets/large.bin").body.size(), 16 * tests::kMiB);
+}
+
+TEST_F(HttpServerTest, ClientsThatTakeTooLittleMakeRoomForOthers) {
+  make_large(256 * tests::kMiB);
+  start({.threads = 1, .limits = impatient()});
+  RawClient slow(port(), 4096);
+  slow.send("GET /assets/large.bin HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  RawClient other(port());
+  other.send("GET /models.json HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  EXPECT_LT(slow.receive().body.size(), 256 * tests::kMiB);
+  EXPECT_EQ(other.receive().status, 200);
 }
 
 TEST_F(HttpServerTest, AnIdleConnectionMakesRoomForOthers) {
@@ -410,10 +441,19 @@ TEST(ServerUrlTest, UrlsAreThoseABrowserTakes) {
   EXPECT_EQ(url_of("127.0.0.1", 8080), "http://127.0.0.1:8080/");
   EXPECT_EQ(url_of("::1", 1), "http://[::1]:1/");
   EXPECT_EQ(url_of("0.0.0.0", 80), "http://127.0.0.1:80/");
-  EXPECT_TRUE(is_loopback_host("127.0.0.1") && is_loopback_host("localhost") &&
-              is_loopback_host("::1"));
-  EXPECT_FALSE(is_loopback_host("0.0.0.0") || is_loopback_host("::") ||
-               is_loopback_host("10.0.0.1"));
+}
+
+TEST(ServerUrlTest, OnTheLoopbackTheUrlNamesTheLoopback) {
+  for (const std::string& host :
+       {"127.0.0.1"s, "127.0.0.2"s, "127.1"s, "localhost"s, "LOCALHOST"s, "::1"s}) {
+    EXPECT_TRUE(is_loopback_host(host)) << host;
+    const std::string url = url_of(host, 8080);
+    const std::string sent = url.substr(7, url.size() - 8);  // without "http://" and "/"
+    EXPECT_TRUE(is_loopback_name(sent)) << sent;
+  }
+  for (const std::string& host :
+       {"0.0.0.0"s, "::"s, "10.0.0.1"s, "127.evil.example"s, "::127.0.0.1"s, ""s})
+    EXPECT_FALSE(is_loopback_host(host)) << host;
 }
 
 }  // namespace

@@ -1,16 +1,21 @@
 #include "server/site.h"
 
+#include "hierarchy/error.h"
 #include "server/conditions.h"
 #include "storage/gzip.h"
 #include "tests/server/path_tricks.h"
 #include "tests/server/served_folder.h"
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -36,6 +41,35 @@ std::string body_of(const Reply& reply) {
   return text;
 }
 
+/// Another folder of which some files, and directories ("name/") with all below them, cannot be
+/// read: as permissions have it for everybody but root.
+class RefusingFolder final : public storage::Folder {
+ public:
+  RefusingFolder(std::shared_ptr<const storage::Folder> real, std::set<std::string> refused)
+      : Folder(real->path()), real_(std::move(real)), refused_(std::move(refused)) {}
+
+  std::unique_ptr<storage::File> open(std::string_view name) const override {
+    check(name);
+    return real_->open(name);
+  }
+  std::vector<storage::FolderEntry> entries(std::string_view name) const override {
+    check(name);
+    return real_->entries(name);
+  }
+
+ private:
+  void check(std::string_view name) const {
+    for (const std::string& refused : refused_) {
+      const bool is_directory = refused.ends_with('/');
+      if (is_directory ? (std::string(name) + '/').starts_with(refused) : name == refused)
+        throw Error(ErrorCode::io, "cannot open " + std::string(name) + ": refused");
+    }
+  }
+
+  std::shared_ptr<const storage::Folder> real_;
+  std::set<std::string> refused_;
+};
+
 class SiteTest : public testing::Test {
  protected:
   SiteTest() { open({}); }
@@ -44,6 +78,13 @@ class SiteTest : public testing::Test {
     options.models = storage::open_folder(folder_.models());
     options.viewer = storage::open_folder(folder_.viewer());
     open_as(std::move(options), jobs);
+  }
+  /// These names in the folder of models cannot be read.
+  void open_refusing(std::set<std::string> refused) {
+    SiteOptions options;
+    options.models = std::make_shared<RefusingFolder>(storage::open_folder(folder_.models()),
+                                                      std::move(refused));
+    open_as(std::move(options));
   }
   void open_as(SiteOptions options, const Site::Jobs& jobs = {}) {
     site_ = std::make_unique<Site>(
@@ -54,6 +95,17 @@ class SiteTest : public testing::Test {
     return {.target = target, .host = "localhost:8080"};
   }
   Reply get(const std::string& target) { return site_->answer(request(target)); }
+  /// The paths in a list that is made anew.
+  std::vector<std::string> listed() {
+    site_->refresh();
+    const Reply reply = get("/models.json");
+    EXPECT_EQ(reply.status, 200) << reply.text;
+    std::vector<std::string> paths;
+    const json document = json::parse(reply.text);
+    for (const json& model : document["models"])
+      paths.push_back(model["path"]);
+    return paths;
+  }
 
   tests::ServedFolder folder_;
   std::vector<std::string> told_;
@@ -67,11 +119,8 @@ TEST_F(SiteTest, TheListHasAllHierarchiesByPath) {
   EXPECT_EQ(reply.header("Cache-Control"), "no-cache");
   const json document = json::parse(reply.text);
   EXPECT_FALSE(document.contains("jobs"));
-  std::vector<std::string> paths;
-  for (const json& model : document["models"])
-    paths.push_back(model["path"]);
-  EXPECT_THAT(
-      paths, ElementsAre("models/packed.3tz", "models/plain.hier", "models/sub%20dir/zipped.hier"));
+  EXPECT_THAT(listed(), ElementsAre("models/packed.3tz", "models/plain.hier",
+                                    "models/sub%20dir/zipped.hier"));
   const json model = document["models"][1];
   EXPECT_EQ(model["name"], "plain");
   EXPECT_EQ(model["source"], "plain.ply");
@@ -89,6 +138,53 @@ TEST_F(SiteTest, AHierarchyThatCannotBeReadIsToldOnce) {
   get("/models/broken.hier/tiles.bin");
   get("/models/broken.hier/hierarchy.json");
   EXPECT_THAT(told_, ElementsAre(HasSubstr("broken.hier/hierarchy.json")));
+}
+
+TEST_F(SiteTest, AManifestThatMayNotBeReadHidesNoOther) {
+  open_refusing({"plain.hier/hierarchy.json", "broken.hier/"});
+  for (int i = 0; i < 2; ++i)
+    EXPECT_THAT(listed(), ElementsAre("models/packed.3tz", "models/sub%20dir/zipped.hier"));
+  EXPECT_EQ(get("/models/plain.hier/tiles.bin").status, 404);
+  EXPECT_EQ(get("/models/packed.3tz/tiles.bin").status, 200);
+  EXPECT_THAT(told_, testing::UnorderedElementsAre(
+                         "not shown: cannot open plain.hier/hierarchy.json: refused",
+                         "not shown: cannot open broken.hier: refused"));
+}
+
+TEST_F(SiteTest, ADirectoryThatMayNotBeReadHidesNoOther) {
+  open_refusing({"sub dir/", "broken.hier/"});
+  for (int i = 0; i < 2; ++i)
+    EXPECT_THAT(listed(), ElementsAre("models/packed.3tz", "models/plain.hier"));
+  EXPECT_THAT(told_, testing::UnorderedElementsAre("not shown: cannot open sub dir: refused",
+                                                   "not shown: cannot open broken.hier: refused"));
+}
+
+TEST_F(SiteTest, ArchivesAndStreamsThatMayNotBeReadHideNoOther) {
+  open_refusing({"packed.3tz", "stream.prog/", "broken.hier/"});
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_THAT(listed(), ElementsAre("models/plain.hier", "models/sub%20dir/zipped.hier"));
+    EXPECT_EQ(get("/models/packed.3tz/tiles.bin").status, 404);
+    EXPECT_EQ(get("/models/stream.prog/progressive.json").status, 404);
+  }
+  const auto count = [&](const char* text) {
+    return std::count_if(told_.begin(), told_.end(), [&](const std::string& message) {
+      return message.find(text) != std::string::npos;
+    });
+  };
+  EXPECT_EQ(count("packed.3tz"), 1);
+  EXPECT_EQ(count("stream.prog/"), 1);
+}
+
+TEST_F(SiteTest, AFolderThatMayNotBeReadIsAnError) {
+  open_refusing({""});
+  EXPECT_EQ(get("/models.json").status, 500);
+}
+
+TEST_F(SiteTest, NamesWithoutEndAreNotToldWithoutEnd) {
+  open_refusing({"sub dir/"});
+  for (int i = 0; i < 1100; ++i)
+    get("/models/sub%20dir/" + std::to_string(i) + "/tiles.bin");
+  EXPECT_THAT(told_, SizeIs(1000));
 }
 
 TEST_F(SiteTest, TheListIsKnownByItsTag) {
@@ -332,6 +428,14 @@ TEST_F(SiteTest, NamesOfOthersAreNotAnsweredOnTheLoopback) {
   open({.is_loopback = false});
   other.host = "models.example";
   EXPECT_EQ(site_->answer(other).status, 200);
+}
+
+TEST_F(SiteTest, AllNamesOfTheLoopbackAreAnswered) {
+  Request other = request("/models.json");
+  for (const char* host : {"localhost", "127.0.0.1:8080", "127.0.0.2:8080", "[::1]:8080"}) {
+    other.host = host;
+    EXPECT_EQ(site_->answer(other).status, 200) << host;
+  }
 }
 
 TEST_F(SiteTest, PagesOfOthersMayReadWhereThatIsAskedFor) {

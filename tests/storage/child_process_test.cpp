@@ -33,6 +33,12 @@ TEST(ChildProcessTest, ItsWordsAndItsCodeAreHeard) {
   EXPECT_EQ(child.wait(), 7);
 }
 
+TEST(ChildProcessTest, WhatNobodyHearsHoldsNothingUp) {
+  ChildProcess child(shell("head -c 200000 /dev/zero >&2; exit 7"), ChildProcess::Errors::dropped);
+  EXPECT_EQ(child.wait(), 7);
+  EXPECT_EQ(all_of(child), "");
+}
+
 TEST(ChildProcessTest, DeathBySignalIsACode) {
   ChildProcess child(shell("kill -ABRT $$"));
   EXPECT_EQ(all_of(child), "");
