@@ -1,5 +1,6 @@
 // What the first picture needs is asked for before the code that draws it is there: the root tile, and a worker
 // that decodes it.
+import { follow } from './signals.js';
 import TileWorker from '../src/hierarchy/tile_worker.js?worker';
 
 const ROOT = 'tiles/00/000000.glb';
@@ -19,11 +20,12 @@ export class EarlyStart {
     this.worker.addEventListener('error', () => { this.worker = null; }); // whoever has it by then is told
   }
 
-  /// As the global one; the root was asked for already.
+  /// As the global one; the root was asked for already, and ends with the signal of whoever takes it.
   readonly fetch = (url: string, init?: RequestInit): Promise<Response> => {
     const early = url === this.url ? this.root : null;
     if (early === null) return fetch(url, init);
     this.root = null;
+    if (init?.signal) follow(this.ending, init.signal);
     return early;
   };
 
