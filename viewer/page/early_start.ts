@@ -1,9 +1,10 @@
 // What the first picture needs is asked for before the code that draws it is there: the root tile, and a worker
 // that decodes it.
-import { follow } from './signals.js';
 import TileWorker from '../src/hierarchy/tile_worker.js?worker';
+import { tilePath } from '../src/hierarchy/tree.js';
+import { follow } from './signals.js';
 
-const ROOT = 'tiles/00/000000.glb';
+const ROOT = tilePath({ level: 0, index: 0 });
 
 export class EarlyStart {
   private readonly url: string;
