@@ -111,8 +111,9 @@ export class App {
   }
 
   private listed(listing: Listing): void {
-    if (listing.models.length + (listing.jobs?.length ?? 0) > 0) this.gallery?.update(listing);
-    else this.gallery?.tell(`The listing ${this.query.listing} is empty. ${HOW_TO}`);
+    this.gallery?.update(listing);
+    const isEmpty = listing.models.length + (listing.jobs?.length ?? 0) === 0;
+    if (isEmpty) this.gallery?.tell(`The listing ${this.query.listing} is empty. ${HOW_TO}`);
   }
 
   private showGallery(): void {

@@ -1,8 +1,10 @@
 // What the first picture needs is asked for before the code that draws it is there: the root tile, and a worker
 // that decodes it.
 import TileWorker from '../src/hierarchy/tile_worker.js?worker';
+import { tilePath } from '../src/hierarchy/tree.js';
+import { follow } from './signals.js';
 
-const ROOT = 'tiles/00/000000.glb';
+const ROOT = tilePath({ level: 0, index: 0 });
 
 export class EarlyStart {
   private readonly url: string;
@@ -19,11 +21,12 @@ export class EarlyStart {
     this.worker.addEventListener('error', () => { this.worker = null; }); // whoever has it by then is told
   }
 
-  /// As the global one; the root was asked for already.
+  /// As the global one; the root was asked for already, and ends with the signal of whoever takes it.
   readonly fetch = (url: string, init?: RequestInit): Promise<Response> => {
     const early = url === this.url ? this.root : null;
     if (early === null) return fetch(url, init);
     this.root = null;
+    if (init?.signal) follow(this.ending, init.signal);
     return early;
   };
 

@@ -56,23 +56,29 @@ function withoutLastSlashes(text: string): string {
 
 /// `models/sub/david.hier` to `david`.
 export function nameOfPath(path: string): string {
-  const file = withoutLastSlashes(path.replace(/[?#].*$/, '')).replace(/^.*\//, '');
+  const file = withoutLastSlashes(path).replace(/^.*\//, '');
   return file.replace(/(.)\.[^.]*$/, '$1') || path;
 }
 
-/// Null of what cannot be fetched. Slashes at its end are taken off.
+/// Null of what cannot be fetched.
 export function resolveUrl(path: string, base: string): string | null {
   try {
     const url = new URL(path, base);
-    return ['http:', 'https:'].includes(url.protocol) ? withoutLastSlashes(url.href) : null;
+    return ['http:', 'https:'].includes(url.protocol) ? url.href : null;
   } catch {
     return null;
   }
 }
 
+/// Of the directory of a hierarchy, without slashes at its end. Null of one that its files' names cannot follow.
+function resolveDirectory(path: string, base: string): string | null {
+  const url = resolveUrl(path, base);
+  return url === null || /[?#]/.test(url) ? null : withoutLastSlashes(url);
+}
+
 /// A model of which nothing but the path is known. Null if it cannot be fetched, or is longer than a path may be.
 export function modelOfPath(path: string, base: string): Model | null {
-  const url = path === '' || path.length > MOST_TEXT ? null : resolveUrl(path, base);
+  const url = path === '' || path.length > MOST_TEXT ? null : resolveDirectory(path, base);
   if (url === null) return null;
   return { name: nameOfPath(path), path, url, vertices: null, triangles: null, bytes: null, source: null };
 }

@@ -1,23 +1,42 @@
-// Fetches the listing, and again and again while it tells of jobs.
+// Fetches the listing, and again and again until there is one and while it tells of jobs.
+import { drain } from '../src/hierarchy/bytes.js';
+import { HierarchyProblem } from '../src/hierarchy/problem.js';
 import { ListingError, parseListing, type Listing } from './listing.js';
+import { follow } from './signals.js';
 
 const PAUSE = 2000; // milliseconds
+const PATIENCE = 30_000; // milliseconds, with a host that says nothing or little
+const MOST_BYTES = 2 ** 24; // room for the 10,000 entries that are read, of 1600 bytes each
+
+async function receive(url: string, signal: AbortSignal): Promise<string> {
+  const response = await fetch(url, { cache: 'no-cache', signal });
+  if (!response.ok) throw new ListingError(`${url}: ${`${response.status} ${response.statusText}`.trim()}`);
+  return response.body === null ? '' : new TextDecoder().decode(await drain(response.body, MOST_BYTES, url));
+}
 
 /// Its text, unchanged files from the browser's cache. Throws ListingError.
-async function fetchText(url: string): Promise<string> {
-  const response = await fetch(url, { cache: 'no-cache' }).catch(() => null);
-  if (response === null) throw new ListingError(`${url} cannot be reached`);
-  if (!response.ok) throw new ListingError(`${url}: ${`${response.status} ${response.statusText}`.trim()}`);
-  return response.text();
+async function fetchText(url: string, ended: AbortSignal): Promise<string> {
+  const ending = new AbortController();
+  const timer = window.setTimeout(() => { ending.abort(); }, PATIENCE);
+  follow(ending, ended);
+  try {
+    return await receive(url, ending.signal);
+  } catch (problem) {
+    if (problem instanceof ListingError) throw problem;
+    throw new ListingError(problem instanceof HierarchyProblem ? problem.message : `${url} cannot be reached`);
+  } finally {
+    window.clearTimeout(timer);
+    ending.abort(); // what is left of it is not read
+  }
 }
 
 export class ListingWatch {
   listing: Listing | null = null;
   private text: string | null = null;
   private timer = 0;
-  private turn = 0;
+  private ending = new AbortController(); // of the last start
 
-  /// `changed`: the listing is another one. `failed`: with a message, while there is none at all.
+  /// `changed`: the listing is another one. `failed`: with a message, each time while there is none at all.
   constructor(
     private readonly url: string,
     private readonly changed: (listing: Listing) => void,
@@ -26,22 +45,33 @@ export class ListingWatch {
 
   start(): void {
     this.stop();
-    void this.look(this.turn);
+    this.ending = new AbortController();
+    void this.look(this.ending.signal);
   }
 
   stop(): void {
-    ++this.turn;
+    this.ending.abort();
     window.clearTimeout(this.timer);
   }
 
-  /// `turn`: that of the start which this look belongs to.
-  private async look(turn: number): Promise<void> {
+  /// `ended`: the start which this look belongs to.
+  private async look(ended: AbortSignal): Promise<void> {
     try {
-      if (this.listing === null || !document.hidden) this.take(await fetchText(this.url));
+      const text = await fetchText(this.url, ended);
+      if (!ended.aborted) this.take(text);
     } catch (error) {
-      if (this.listing === null) this.failed(error instanceof ListingError ? error.message : String(error));
+      if (!ended.aborted && this.listing === null) this.failed(error instanceof ListingError ? error.message : String(error));
     }
-    if (turn === this.turn && this.listing?.jobs) this.timer = window.setTimeout(() => void this.look(turn), PAUSE);
+    if (!ended.aborted) this.wait(ended);
+  }
+
+  /// For the next look, if there is to be one.
+  private wait(ended: AbortSignal): void {
+    if (this.listing !== null && this.listing.jobs === null) return;
+    this.timer = window.setTimeout(() => {
+      if (document.hidden) this.wait(ended);
+      else void this.look(ended);
+    }, PAUSE);
   }
 
   private take(text: string): void {

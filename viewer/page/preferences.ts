@@ -1,5 +1,5 @@
 // What the user chose, kept in the browser. Whatever is stored there, what comes out is sound.
-import type { Colours, Look, Settings } from '../src/scene/settings.js';
+import { changedSettings, type Colours, type Look, type Settings } from '../src/scene/settings.js';
 
 export type Theme = 'auto' | 'light' | 'dark';
 
@@ -46,14 +46,16 @@ function within(value: unknown, { least, most }: Range, otherwise: number): numb
 }
 
 function readSettings(stored: Json): Settings {
+  const defaults = changedSettings({});
   const budget = typeof stored.memoryBudget === 'number' ? stored.memoryBudget / MEGABYTE : null;
   return {
-    framesPerSecond: within(stored.framesPerSecond, RANGES.framesPerSecond, 30),
-    threshold: within(stored.threshold, RANGES.threshold, 1),
-    memoryBudget: within(budget, RANGES.memoryBudget, 256) * MEGABYTE,
+    framesPerSecond: within(stored.framesPerSecond, RANGES.framesPerSecond, defaults.framesPerSecond),
+    threshold: within(stored.threshold, RANGES.threshold, defaults.threshold),
+    memoryBudget: within(budget, RANGES.memoryBudget, defaults.memoryBudget / MEGABYTE) * MEGABYTE,
   };
 }
 
+/// Defaults as the library's own, which is not there before the first model.
 function readLook(stored: Json): Look {
   return {
     colours: oneOf(stored.colours, COLOURS, 'vertex'),

@@ -18,8 +18,8 @@ export function shortened(text: string): string {
   return text.length > MOST_SHOWN ? `${text.slice(0, MOST_SHOWN)}…` : text;
 }
 
-function unusable(key: string, value: string): string {
-  return `?${key}=${shortened(value)} is no address that can be fetched. It must be relative to this page, or start with http or https.`;
+function unusable(key: string, value: string, more = ''): string {
+  return `?${key}=${shortened(value)} is no address that can be fetched. It must be relative to this page, or start with http or https${more}.`;
 }
 
 /// `base`: the page's own address.
@@ -29,7 +29,7 @@ export function readQuery(search: string, base: string): Query {
   const listing = new URL(LISTING, base).href;
   if (model !== null) {
     const only = modelOfPath(model, base);
-    return { listing, only, problem: only === null ? unusable('model', model) : null };
+    return { listing, only, problem: only === null ? unusable('model', model, ', and have no query or fragment') : null };
   }
   const other = models === null ? listing : resolveUrl(models, base);
   return { listing: other ?? listing, only: null, problem: other === null ? unusable('models', models ?? '') : null };

@@ -76,9 +76,9 @@ export class Gallery {
     this.ask();
   }
 
-  /// A text in the place of the models, or above them.
+  /// A text in the place of the models, or above them. The same one again is not read out again.
   tell(text: string): void {
-    this.note.textContent = text;
+    if (this.note.textContent !== text) this.note.textContent = text;
   }
 
   /// Shows what the listing has; cells of models that stay keep their outlines.

@@ -32,14 +32,19 @@ export class Gestures {
     surface.addEventListener('pointerdown', (event) => { this.down(event); });
     surface.addEventListener('pointermove', (event) => { this.drag(event); });
     surface.addEventListener('pointerup', (event) => { this.lift(event); });
-    surface.addEventListener('pointercancel', (event) => { this.fingers.delete(event.pointerId); });
+    surface.addEventListener('pointercancel', (event) => { this.release(event); });
     surface.addEventListener('wheel', (event) => { this.wheel(event); }, { passive: false });
     surface.addEventListener('contextmenu', (event) => { event.preventDefault(); });
   }
 
-  private grab({ x, y }: Finger): void {
+  /// To the right and up, from -1 to 1.
+  private placeOf({ x, y }: Finger): [number, number] {
     const { left, top, width, height } = this.surface.getBoundingClientRect();
-    this.navigation.grab(((x - left) / width) * 2 - 1, 1 - ((y - top) / height) * 2);
+    return [((x - left) / width) * 2 - 1, 1 - ((y - top) / height) * 2];
+  }
+
+  private grab(finger: Finger): void {
+    this.navigation.grab(...this.placeOf(finger));
   }
 
   private middle(): Finger {
@@ -78,21 +83,26 @@ export class Gestures {
     else this.navigation.move({ panRight: -right, panUp: -up, zoom: zoomOfSpread(spread, this.spread()) });
   }
 
-  private lift(event: PointerEvent): void {
-    if (!this.fingers.delete(event.pointerId)) return;
+  /// A finger that stays turns. False: it was none.
+  private release({ pointerId }: PointerEvent): boolean {
+    if (!this.fingers.delete(pointerId)) return false;
     if (this.fingers.size > 0) {
       this.panning = false;
       this.navigation.grabMiddle();
-    } else if (this.travelled < TAP.moved && event.button === 0) this.tapped(event);
+    }
+    return true;
+  }
+
+  private lift(event: PointerEvent): void {
+    const wasLast = this.release(event) && this.fingers.size === 0;
+    if (wasLast && this.travelled < TAP.moved && event.button === 0) this.tapped(event);
   }
 
   /// The second one at a place flies there.
   private tapped({ timeStamp, clientX: x, clientY: y }: PointerEvent): void {
     const again = timeStamp - this.tap.at < TAP.pause && Math.hypot(x - this.tap.x, y - this.tap.y) < TAP.reach;
     this.tap = { at: again ? -Infinity : timeStamp, x, y };
-    if (!again) return;
-    const { left, top, width, height } = this.surface.getBoundingClientRect();
-    this.navigation.approach(((x - left) / width) * 2 - 1, 1 - ((y - top) / height) * 2);
+    if (again) this.navigation.approach(...this.placeOf({ x, y }));
   }
 
   private wheel(event: WheelEvent): void {

@@ -14,7 +14,7 @@ export interface Moves {
 
 const KEYS = ['turnRight', 'turnUp', 'panRight', 'panUp', 'zoom'] as const;
 
-export function noMoves(): Moves {
+function noMoves(): Moves {
   return { turnRight: 0, turnUp: 0, panRight: 0, panUp: 0, zoom: 0 };
 }
 

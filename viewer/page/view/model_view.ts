@@ -118,6 +118,10 @@ export class ModelView {
     this.root.remove();
   }
 
+  private get closed(): boolean {
+    return this.ending.signal.aborted;
+  }
+
   private makeSurface(): HTMLElement {
     const name = `${this.model.name} in three dimensions. Arrows turn, plus and minus zoom, question mark helps.`;
     const surface = element('div', { class: 'surface', tabindex: '0', role: 'application', 'aria-label': name });
@@ -142,6 +146,7 @@ export class ModelView {
   }
 
   private begin(): void {
+    if (this.closed) return;
     this.opened = true;
     this.reframe();
     this.redraw();
@@ -153,6 +158,7 @@ export class ModelView {
   }
 
   private refuse(error: unknown): void {
+    if (this.closed) return;
     this.refused = true;
     this.redraw();
     const why = error instanceof Error ? error.message : String(error);

@@ -68,13 +68,12 @@ export class Navigation {
     this.fly(this.home);
   }
 
-  /// Flies to the surface there. False: nothing is there.
-  approach(right: number, up: number): boolean {
+  /// Flies to the surface at a place of the picture, if there is any.
+  approach(right: number, up: number): void {
     const point = this.pick(right, up);
-    if (point === null) return false;
+    if (point === null) return;
     const distance = Math.max(point.distanceTo(this.pose.position) * CLOSER, this.home.distance * NEAREST);
     this.fly(new CameraPose(this.pose.forward.multiplyScalar(-distance).add(point), point));
-    return true;
   }
 
   /// A gesture begins at a place of the picture: what lies there stays under the pointer.

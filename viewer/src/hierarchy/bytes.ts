@@ -8,7 +8,7 @@ function isGzip(bytes: Uint8Array): boolean {
 }
 
 /// At most `most` bytes of a stream; more is a problem of `name`.
-async function drain(stream: ReadableStream<Uint8Array>, most: number, name: string): Promise<Uint8Array<ArrayBuffer>> {
+export async function drain(stream: ReadableStream<Uint8Array>, most: number, name: string): Promise<Uint8Array<ArrayBuffer>> {
   const pieces: Uint8Array[] = [];
   let length = 0;
   const reader = stream.getReader();

@@ -1,4 +1,5 @@
 // The files of a progressive stream, run by run (docs/file_format.md, section 7).
+import { drain } from '../hierarchy/bytes.js';
 import { StreamError } from './stream_index.js';
 
 export interface Run {
@@ -14,11 +15,18 @@ const HEAD_BYTES = 16;
 const RUN_HEAD_BYTES = 12;
 const MOST_ENTRIES = 65536;
 const BEYOND = 2 ** 32;
+const MOST_VARINT = 7; // bytes: see varint()
 
-async function gunzip(bytes: Uint8Array<ArrayBuffer>, name: string): Promise<Uint8Array> {
+/// Bytes of an entry of a list, unpacked, at the most. `bytes`: of each value of a vertex.
+function mostBytes(list: number, bytes: readonly number[]): number {
+  if (list === 1) return MOST_VARINT + bytes.reduce((sum, more) => sum + more, 0);
+  return MOST_VARINT * (list === 2 ? 4 : 2);
+}
+
+/// At most `most` bytes out of a gzip member.
+async function gunzip(bytes: Uint8Array<ArrayBuffer>, most: number, name: string): Promise<Uint8Array> {
   try {
-    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'));
-    return new Uint8Array(await new Response(stream).arrayBuffer());
+    return await drain(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip')), most, name);
   } catch {
     throw new StreamError(`${name}: a run is damaged`);
   }
@@ -121,7 +129,8 @@ export async function* readRuns(
     place += RUN_HEAD_BYTES;
     const sound = list >= last && list <= 3 && count >= 1 && count <= MOST_ENTRIES && packed <= file.byteLength - place;
     if (!sound) throw new StreamError(`${name}: byte ${place - RUN_HEAD_BYTES}: no run begins there`);
-    const unpacker = new Unpacker(await gunzip(file.subarray(place, place + packed), name), count, name);
+    const content = await gunzip(file.subarray(place, place + packed), count * mostBytes(list, bytes), name);
+    const unpacker = new Unpacker(content, count, name);
     place += packed;
     const indices = new Uint32Array(count);
     first = unpacker.indices(indices, list === last ? first : 0);

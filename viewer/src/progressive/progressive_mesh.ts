@@ -3,10 +3,31 @@
 // Lin & Luo, "Progressive Display Method for Interactive Mobile 3D Graphics": vertices and triangles
 // are put into their places; then each merge copies one vertex's slot to another's. Nothing else is
 // ever updated: O(1) for each entry of a file.
+import { fetchBytes } from '../hierarchy/bytes.js';
+import { HierarchyProblem } from '../hierarchy/problem.js';
 import { readRuns, type Run } from './detail_file.js';
 import { parseStreamIndex, StreamError, valueBytes, type StreamIndex } from './stream_index.js';
 
 const SIGN = 0x80000000;
+const MOST_INDEX = 2 ** 20; // bytes
+
+/// A file of at most `most` bytes. Throws StreamError.
+async function fetchFile(url: string, most: number): Promise<Uint8Array<ArrayBuffer>> {
+  try {
+    return await fetchBytes((one, init) => fetch(one, init), url, url, most);
+  } catch (problem) {
+    throw problem instanceof HierarchyProblem ? new StreamError(problem.message) : problem;
+  }
+}
+
+/// What `make` makes. Throws StreamError where there is no memory for it.
+function allocated<T>(make: () => T, name: string): T {
+  try {
+    return make();
+  } catch (problem) {
+    throw problem instanceof RangeError ? new StreamError(`${name}: there is no memory for it`) : problem;
+  }
+}
 
 /// Ascends with the float that has these bits, by one from each to the next; and back.
 function ordered(bits: number): number {
@@ -43,31 +64,30 @@ export class ProgressiveMesh {
   private readonly bytes: readonly number[];
   private readonly bits: Uint32Array;
 
+  /// Throws StreamError where there is no memory for the arrays.
   constructor(index: StreamIndex) {
     this.index = index;
     this.bytes = valueBytes(index.source.attributes);
     this.width = this.bytes.length;
-    this.values = new Float32Array(index.vertices * this.width).fill(NaN);
+    const name = index.source.file_name;
+    this.values = allocated(() => new Float32Array(index.vertices * this.width), name).fill(NaN);
     this.bits = new Uint32Array(this.values.buffer);
-    this.triangles = new Uint32Array(3 * index.triangles);
+    this.triangles = allocated(() => new Uint32Array(3 * index.triangles), name);
   }
 
   /// The index of the stream at `url`, a directory without a slash at its end. Throws StreamError.
   static async open(url: string): Promise<ProgressiveMesh> {
     const name = `${url}/progressive.json`;
-    const response = await fetch(name);
-    if (!response.ok) throw new StreamError(`${name}: ${response.status} ${response.statusText}`);
-    return new ProgressiveMesh(parseStreamIndex(await response.text(), name));
+    return new ProgressiveMesh(parseStreamIndex(new TextDecoder().decode(await fetchFile(name, MOST_INDEX)), name));
   }
 
   /// Fetches the next file and puts it in: the base first. Null if there is none. Throws StreamError;
   /// the arrays are good for nothing then.
   async next(url: string): Promise<Step | null> {
     if (this.taken === this.index.files.length) return null;
-    const name = `${url}/${this.index.files[this.taken].file}`;
-    const response = await fetch(name);
-    if (!response.ok) throw new StreamError(`${name}: ${response.status} ${response.statusText}`);
-    return this.take(new Uint8Array(await response.arrayBuffer()), name);
+    const { file, bytes } = this.index.files[this.taken];
+    const name = `${url}/${file}`;
+    return this.take(await fetchFile(name, bytes), name);
   }
 
   /// Puts the next file in.

@@ -41,6 +41,8 @@ export interface StreamIndex {
 
 const FORMAT = 'meshhier-progressive';
 const VERSION = 1;
+/// Bytes of each of the client's arrays, and of a file: 2 GiB, which some browsers do not exceed.
+const MOST_BYTES = 2 ** 31 - 1;
 
 /// What does not belong to the stream, or is damaged. The message names the file.
 export class StreamError extends Error {}
@@ -54,7 +56,7 @@ function readFile(file: JsonValue): StreamFile {
     merges: file.at('merges').count(),
     shown_vertices: file.at('shown_vertices').count(),
     shown_triangles: file.at('shown_triangles').count(),
-    bytes: file.at('bytes').count(),
+    bytes: file.at('bytes').count(0, MOST_BYTES),
   };
 }
 
@@ -78,18 +80,19 @@ export function parseStreamIndex(text: string, name: string): StreamIndex {
   if (version !== VERSION) refuse(`format version is ${version}, expected ${VERSION}`);
   const files = root.at('files').items().map(readFile);
   if (files.length === 0) refuse('it has no files');
-  const vertices = root.at('vertices').count(1, 2 ** 32 - 1);
   const source = root.at('source');
+  const attributes = readAttributes(source.at('attributes'));
+  const vertices = root.at('vertices').count(1, Math.floor(MOST_BYTES / (4 * valueBytes(attributes).length)));
   return {
     vertices,
     own_vertices: root.at('own_vertices').count(0, vertices),
-    triangles: root.at('triangles').count(0, 2 ** 32 - 1),
+    triangles: root.at('triangles').count(0, Math.floor(MOST_BYTES / 12)),
     origin: root.at('origin').triple(),
     up: root.at('up').oneOf('y', 'z'),
     licence: root.at('licence').text(),
     source: {
       file_name: source.at('file_name').text(),
-      attributes: readAttributes(source.at('attributes')),
+      attributes,
       bounds: { min: source.at('bounds').at('min').triple(), max: source.at('bounds').at('max').triple() },
     },
     files,

@@ -35,6 +35,22 @@ describe('an early start', () => {
     expect(asked[0].signal?.aborted).toBe(false);
   });
 
+  it('ends the root with whoever took it', async () => {
+    const early = new EarlyStart('http://host/a.hier');
+    const taker = new AbortController();
+    await early.fetch(ROOT, { signal: taker.signal });
+    early.close();
+    expect(asked[0].signal?.aborted).toBe(false);
+    taker.abort();
+    expect(asked[0].signal?.aborted).toBe(true);
+  });
+
+  it('ends the root if whoever took it was at its end', async () => {
+    const early = new EarlyStart('http://host/a.hier');
+    await early.fetch(ROOT, { signal: AbortSignal.abort() });
+    expect(asked[0].signal?.aborted).toBe(true);
+  });
+
   it('ends what nobody took', async () => {
     const early = new EarlyStart('http://host/a.hier');
     early.close();

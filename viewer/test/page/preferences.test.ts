@@ -1,4 +1,5 @@
 import { describe, expect, it } from 'vitest';
+import { HierarchyView } from '../../src/index.js';
 import { parsePreferences } from '../../page/preferences.js';
 
 const DEFAULTS = parsePreferences(null);
@@ -7,6 +8,12 @@ describe('preferences', () => {
   it('have defaults', () => {
     expect(DEFAULTS.settings).toEqual({ framesPerSecond: 30, threshold: 1, memoryBudget: 256e6 });
     expect(DEFAULTS.theme).toBe('auto');
+  });
+
+  it("have the library's defaults", () => {
+    const view = new HierarchyView('http://host/a.hier', { fetch: () => Promise.reject(new Error('no host')) });
+    expect(DEFAULTS).toMatchObject({ settings: view.settings, look: view.look });
+    view.dispose();
   });
 
   it('come back as they were stored', () => {

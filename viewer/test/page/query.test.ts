@@ -12,11 +12,15 @@ describe('the query', () => {
     expect(readQuery('?models=/x/list.json', BASE).listing).toBe('http://host/x/list.json');
   });
 
+  it.each(['http://host/lists/', 'http://host/list?of=/x/'])('may name a listing at %s', (url) => {
+    expect(readQuery(`?models=${encodeURIComponent(url)}`, BASE).listing).toBe(url);
+  });
+
   it('may name one model', () => {
     expect(readQuery('?model=https://other/a/horse.hier', BASE).only).toMatchObject({ name: 'horse', url: 'https://other/a/horse.hier' });
   });
 
-  it.each(['?model=', '?model=javascript:1', '?models=file:///etc/x', '?models=http://['])('is told off for %s', (search) => {
+  it.each(['?model=', '?model=javascript:1', '?model=a.hier%3Fx', '?models=file:///etc/x', '?models=http://['])('is told off for %s', (search) => {
     expect(readQuery(search, BASE).problem).toContain(search.split('=')[0]);
   });
 

@@ -12,7 +12,7 @@ function program(variable: string, name: string): string {
   return process.env[variable] ?? path.join(ROOT, 'build/release', name);
 }
 
-const MESHHIER = program('MESHHIER', 'meshhier');
+export const MESHHIER = program('MESHHIER', 'meshhier');
 const MESHGEN = program('MESHGEN', 'meshgen');
 
 export const hasProgram = existsSync(MESHHIER) && existsSync(MESHGEN);
