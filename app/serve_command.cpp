@@ -131,7 +131,7 @@ void wait_for_end(const pipeline::CancelToken& cancel, const server::HttpServer&
     std::this_thread::sleep_for(kLook);
 }
 
-/// All that runs, in the order in which it ends last.
+/// All that runs. What others use comes before them: it ends after them.
 class Service {
  public:
   Service(const ServeArguments& arguments, Environment& environment)
@@ -179,8 +179,8 @@ class Service {
   Console console_;
   server::Hierarchies::Tell tell_;
   server::Hierarchies hierarchies_;
+  std::optional<server::Site> site_;  ///< asks watch_ for jobs, but only for http_
   std::optional<server::Watch> watch_;
-  std::optional<server::Site> site_;
   std::optional<server::HttpServer> http_;
 };
 

@@ -190,6 +190,8 @@ std::optional<Model> Hierarchies::remember(const std::string& path,
     known.model = read();
   } catch (const Error& error) {
     tell_left_out(error.what());
+    if (error.code() == ErrorCode::io)
+      return std::nullopt;  // a disk may come back
   }
   const std::lock_guard lock(mutex_);
   known_[path] = known;
