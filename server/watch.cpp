@@ -112,14 +112,36 @@ void Watch::look() {
   }
 }
 
-/// After a start most files have their hierarchies, and are not to be shown as if they had not.
+/// After a start most files have their hierarchies, and are not to be shown as if they had not. A
+/// file whose hierarchy cannot be looked at stays fresh, to be looked at again, and the others go
+/// on.
 void Watch::drop_what_is_done() {
   for (const std::string& name : names_in(State::fresh)) {
-    const BuildTarget target = target_of(name, nullptr);
-    const std::lock_guard lock(mutex_);
-    Entry& entry = entries_[name];
-    entry.state = target.kind == BuildTarget::Kind::done ? State::done : State::growing;
+    try {
+      const BuildTarget target = target_of(name, nullptr);
+      const bool is_done = target.kind == BuildTarget::Kind::done;
+      leave_fresh(name, is_done ? State::done : State::growing);
+    } catch (const std::exception& error) {
+      keep_fresh(name, error.what());
+    }
   }
+}
+
+void Watch::leave_fresh(const std::string& name, State state) {
+  const std::lock_guard lock(mutex_);
+  Entry& entry = entries_[name];
+  entry.state = state;
+  entry.job.message = kGrowing;
+}
+
+void Watch::keep_fresh(const std::string& name, const std::string& cause) {
+  const std::string shown = shown_text(cause);
+  {
+    const std::lock_guard lock(mutex_);
+    if (std::exchange(entries_[name].job.message, shown) == shown)
+      return;
+  }
+  tell_(fmt::format("{}: {}", name, cause));
 }
 
 std::vector<std::string> Watch::names_in(std::optional<State> state) const {

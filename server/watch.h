@@ -63,7 +63,7 @@ class Watch {
 
  private:
   using Time = std::chrono::steady_clock::time_point;
-  /// fresh: not yet looked for in the folder.
+  /// fresh: not yet looked for in the folder, or what is there cannot be read.
   enum class State { fresh, growing, waiting, building, failed, done };
   struct Entry {
     storage::FileVersion version;
@@ -83,6 +83,8 @@ class Watch {
   std::string next_waiting() const;
   void handle(const std::string& name);
   void drop_what_is_done();
+  void leave_fresh(const std::string& name, State state);
+  void keep_fresh(const std::string& name, const std::string& cause);
   std::vector<std::string> names_in(std::optional<State> state) const;
   BuildTarget target_of(const std::string& name, const std::function<std::uint64_t()>& checksum);
   void check_target(const std::string& name, const BuildTarget& target) const;

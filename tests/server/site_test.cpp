@@ -1,9 +1,9 @@
 #include "server/site.h"
 
-#include "hierarchy/error.h"
 #include "server/conditions.h"
 #include "storage/gzip.h"
 #include "tests/server/path_tricks.h"
+#include "tests/server/refusing_folder.h"
 #include "tests/server/served_folder.h"
 
 #include <algorithm>
@@ -14,7 +14,6 @@
 #include <set>
 #include <span>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -41,35 +40,6 @@ std::string body_of(const Reply& reply) {
   return text;
 }
 
-/// Another folder of which some files, and directories ("name/") with all below them, cannot be
-/// read: as permissions have it for everybody but root.
-class RefusingFolder final : public storage::Folder {
- public:
-  RefusingFolder(std::shared_ptr<const storage::Folder> real, std::set<std::string> refused)
-      : Folder(real->path()), real_(std::move(real)), refused_(std::move(refused)) {}
-
-  std::unique_ptr<storage::File> open(std::string_view name) const override {
-    check(name);
-    return real_->open(name);
-  }
-  std::vector<storage::FolderEntry> entries(std::string_view name) const override {
-    check(name);
-    return real_->entries(name);
-  }
-
- private:
-  void check(std::string_view name) const {
-    for (const std::string& refused : refused_) {
-      const bool is_directory = refused.ends_with('/');
-      if (is_directory ? (std::string(name) + '/').starts_with(refused) : name == refused)
-        throw Error(ErrorCode::io, "cannot open " + std::string(name) + ": refused");
-    }
-  }
-
-  std::shared_ptr<const storage::Folder> real_;
-  std::set<std::string> refused_;
-};
-
 class SiteTest : public testing::Test {
  protected:
   SiteTest() { open({}); }
@@ -82,8 +52,8 @@ class SiteTest : public testing::Test {
   /// These names in the folder of models cannot be read.
   void open_refusing(std::set<std::string> refused) {
     SiteOptions options;
-    options.models = std::make_shared<RefusingFolder>(storage::open_folder(folder_.models()),
-                                                      std::move(refused));
+    options.models = std::make_shared<tests::RefusingFolder>(storage::open_folder(folder_.models()),
+                                                             std::move(refused));
     open_as(std::move(options));
   }
   void open_as(SiteOptions options, const Site::Jobs& jobs = {}) {

@@ -1,6 +1,7 @@
 // A watched folder with the real program.
 #include "server/watch.h"
 
+#include "tests/server/refusing_folder.h"
 #include "tests/server/served_folder.h"
 #include "tests/server/wait_until.h"
 #include "tests/support/meshes.h"
@@ -10,6 +11,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -52,7 +54,8 @@ class WatchTest : public testing::Test {
     options.look_every = std::chrono::milliseconds(50);
     options.try_again = std::chrono::milliseconds(100);
     folder_ = storage::open_folder(models());
-    hierarchies_ = std::make_unique<Hierarchies>(folder_, [](const std::string&) {});
+    hierarchies_ = std::make_unique<Hierarchies>(
+        std::make_shared<tests::RefusingFolder>(folder_, refused_), [](const std::string&) {});
     watch_ = std::make_unique<Watch>(options, *files_, *hierarchies_,
                                      [this](const std::string& message) {
                                        const std::lock_guard lock(mutex_);
@@ -101,6 +104,7 @@ class WatchTest : public testing::Test {
   tests::TemporaryDirectory directory_;
   std::unique_ptr<storage::FileSystem> files_ = storage::make_posix_file_system();
   fs::path config_;
+  std::set<std::string> refused_;  ///< among the models
   std::shared_ptr<const storage::Folder> folder_;
   std::unique_ptr<Hierarchies> hierarchies_;
   std::mutex mutex_;
@@ -116,6 +120,22 @@ std::map<std::string, std::string> contents(const fs::path& directory) {
       files[entry.path().lexically_relative(directory)] = text_of(entry.path());
   }
   return files;
+}
+
+TEST_F(WatchTest, AHierarchyThatMayNotBeReadHoldsUpNoOther) {
+  refused_ = {"a.hier/hierarchy.json"};
+  drop("a.ply");
+  drop("b.ply");
+  start();
+  wait_until([&] { return is_there("b.hier"); });
+  wait_until([&] { return job("b.ply", "state").empty(); });
+  EXPECT_EQ(job("a.ply", "state"), "waiting");
+  EXPECT_THAT(job("a.ply", "message"), HasSubstr("cannot open a.hier/hierarchy.json"));
+  const std::vector<std::string> all = told();
+  EXPECT_EQ(std::count_if(all.begin(), all.end(),
+                          [](const std::string& text) { return text.starts_with("a.ply: "); }),
+            1);
+  EXPECT_FALSE(fs::exists(models() / "a.hier"));
 }
 
 TEST_F(WatchTest, WhatIsDroppedIsBuiltBrokenOnesAreTold) {

@@ -1,0 +1,45 @@
+// A folder in which permissions are missing; tests run as root, who has them all.
+#pragma once
+
+#include "hierarchy/error.h"
+#include "storage/file.h"
+
+#include <memory>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace meshhier::tests {
+
+/// Another folder of which some files, and directories ("name/") with all below them, cannot be
+/// read.
+class RefusingFolder final : public storage::Folder {
+ public:
+  RefusingFolder(std::shared_ptr<const storage::Folder> real, std::set<std::string> refused)
+      : Folder(real->path()), real_(std::move(real)), refused_(std::move(refused)) {}
+
+  std::unique_ptr<storage::File> open(std::string_view name) const override {
+    check(name);
+    return real_->open(name);
+  }
+  std::vector<storage::FolderEntry> entries(std::string_view name) const override {
+    check(name);
+    return real_->entries(name);
+  }
+
+ private:
+  void check(std::string_view name) const {
+    for (const std::string& refused : refused_) {
+      const bool is_directory = refused.ends_with('/');
+      if (is_directory ? (std::string(name) + '/').starts_with(refused) : name == refused)
+        throw Error(ErrorCode::io, "cannot open " + std::string(name) + ": refused");
+    }
+  }
+
+  std::shared_ptr<const storage::Folder> real_;
+  std::set<std::string> refused_;
+};
+
+}  // namespace meshhier::tests
