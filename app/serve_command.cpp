@@ -148,10 +148,9 @@ class Service {
       watch_.emplace(std::move(options), environment.files, hierarchies_, tell_);
     }
     site_.emplace(
-        server::SiteOptions{storage::open_folder(arguments.folder), std::move(viewer.folder),
-                            page_without_viewer(), server::is_loopback_host(arguments.server.host),
-                            arguments.cors},
-        watch_ ? [this] { return watch_->jobs(); } : server::Site::Jobs(), tell_);
+        server::SiteOptions{std::move(viewer.folder), page_without_viewer(),
+                            server::is_loopback_host(arguments.server.host), arguments.cors},
+        hierarchies_, watch_ ? [this] { return watch_->jobs(); } : server::Site::Jobs(), tell_);
     const auto log = [this](const server::Served& served) { console_.print(log_line(served)); };
     http_.emplace(
         arguments.server, [this](const server::Request& request) { return site_->answer(request); },

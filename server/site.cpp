@@ -38,11 +38,11 @@ bool is_for_this_host(const Request& request) {
 
 }  // namespace
 
-Site::Site(SiteOptions options, Jobs jobs, Hierarchies::Tell tell)
+Site::Site(SiteOptions options, Hierarchies& hierarchies, Jobs jobs, Hierarchies::Tell tell)
     : options_(std::move(options)),
       jobs_(std::move(jobs)),
-      tell_(tell),
-      hierarchies_(options_.models, std::move(tell)),
+      tell_(std::move(tell)),
+      hierarchies_(hierarchies),
       gallery_(hierarchies_) {}
 
 Reply Site::answer(const Request& request) {

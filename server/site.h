@@ -16,7 +16,6 @@
 namespace meshhier::server {
 
 struct SiteOptions {
-  std::shared_ptr<const storage::Folder> models{};
   std::shared_ptr<const storage::Folder> viewer{};  ///< the page's files; null: they are not there
   std::string missing_viewer{};                     ///< what "/" says then
   bool is_loopback = true;  ///< requests must name this machine by its loopback
@@ -29,8 +28,9 @@ class Site {
   /// The jobs of a watched folder, as in models.json.
   using Jobs = std::function<nlohmann::ordered_json()>;
 
-  /// `jobs` may be empty; `tell` hears what people at the terminal are to know.
-  Site(SiteOptions options, Jobs jobs, Hierarchies::Tell tell);
+  /// `hierarchies` must outlive this; `jobs` may be empty; `tell` hears what people at the terminal
+  /// are to know.
+  Site(SiteOptions options, Hierarchies& hierarchies, Jobs jobs, Hierarchies::Tell tell);
 
   /// Never throws: what fails is a reply, too.
   Reply answer(const Request& request);
@@ -48,7 +48,7 @@ class Site {
   SiteOptions options_;
   Jobs jobs_;
   Hierarchies::Tell tell_;
-  Hierarchies hierarchies_;
+  Hierarchies& hierarchies_;
   Gallery gallery_;
 };
 

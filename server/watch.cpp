@@ -67,8 +67,11 @@ nlohmann::ordered_json Watch::jobs() const {
   auto list = nlohmann::ordered_json::array();
   const std::lock_guard lock(mutex_);
   for (const auto& [name, entry] : entries_) {
-    if (entry.state != State::done)
-      list.push_back(to_json(entry.job));
+    if (entry.state == State::done)
+      continue;
+    Job shown = entry.job;
+    shown.message = shown_text(shown.message);
+    list.push_back(to_json(shown));
   }
   return list;
 }
@@ -135,10 +138,9 @@ void Watch::leave_fresh(const std::string& name, State state) {
 }
 
 void Watch::keep_fresh(const std::string& name, const std::string& cause) {
-  const std::string shown = shown_text(cause);
   {
     const std::lock_guard lock(mutex_);
-    if (std::exchange(entries_[name].job.message, shown) == shown)
+    if (std::exchange(entries_[name].job.message, cause) == cause)
       return;
   }
   tell_(fmt::format("{}: {}", name, cause));
@@ -329,7 +331,8 @@ bool Watch::has_version(const std::string& name, const storage::FileVersion& ver
 }
 
 std::string Watch::shown_text(const std::string& message) const {
-  return without(without(message, options_.inbox.string()), options_.folder.string());
+  std::string shown = without(without(message, options_.inbox.string()), options_.folder.string());
+  return options_.config.empty() ? shown : without(shown, options_.config.parent_path().string());
 }
 
 void Watch::set_state(const std::string& name, State state, const std::string& message) {
@@ -339,7 +342,7 @@ void Watch::set_state(const std::string& name, State state, const std::string& m
     return;
   found->second.state = state;
   const JobState shown = state == State::failed ? JobState::failed : JobState::waiting;
-  found->second.job = {.name = name, .state = shown, .message = shown_text(message)};
+  found->second.job = {.name = name, .state = shown, .message = message};
 }
 
 }  // namespace meshhier::server

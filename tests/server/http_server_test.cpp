@@ -45,9 +45,10 @@ class HttpServerTest : public testing::Test {
  protected:
   void start(ServerOptions options = {}) {
     options.port = 0;
-    site_.emplace(SiteOptions{.models = storage::open_folder(folder_.models()),
-                              .viewer = storage::open_folder(folder_.viewer())},
-                  Site::Jobs(), [](const std::string&) {});
+    const auto unheard = [](const std::string&) {};
+    hierarchies_.emplace(storage::open_folder(folder_.models()), unheard);
+    site_.emplace(SiteOptions{.viewer = storage::open_folder(folder_.viewer())}, *hierarchies_,
+                  Site::Jobs(), unheard);
     server_.emplace(
         options, [this](const Request& request) { return site_->answer(request); },
         [this](const Served& served) {
@@ -66,6 +67,7 @@ class HttpServerTest : public testing::Test {
   }
 
   tests::ServedFolder folder_;
+  std::optional<Hierarchies> hierarchies_;
   std::optional<Site> site_;
   std::mutex mutex_;
   std::vector<Served> log_;

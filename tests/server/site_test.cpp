@@ -45,20 +45,22 @@ class SiteTest : public testing::Test {
   SiteTest() { open({}); }
 
   void open(SiteOptions options, const Site::Jobs& jobs = {}) {
-    options.models = storage::open_folder(folder_.models());
     options.viewer = storage::open_folder(folder_.viewer());
-    open_as(std::move(options), jobs);
+    open_as(std::move(options), storage::open_folder(folder_.models()), jobs);
   }
   /// These names in the folder of models cannot be read.
   void open_refusing(std::set<std::string> refused) {
-    SiteOptions options;
-    options.models = std::make_shared<tests::RefusingFolder>(storage::open_folder(folder_.models()),
-                                                             std::move(refused));
-    open_as(std::move(options));
+    open_as({},
+            std::make_shared<tests::RefusingFolder>(storage::open_folder(folder_.models()),
+                                                    std::move(refused)),
+            {});
   }
-  void open_as(SiteOptions options, const Site::Jobs& jobs = {}) {
-    site_ = std::make_unique<Site>(
-        std::move(options), jobs, [this](const std::string& message) { told_.push_back(message); });
+  void open_as(SiteOptions options, std::shared_ptr<const storage::Folder> models,
+               const Site::Jobs& jobs) {
+    const auto tell = [this](const std::string& message) { told_.push_back(message); };
+    site_.reset();
+    hierarchies_ = std::make_unique<Hierarchies>(std::move(models), tell);
+    site_ = std::make_unique<Site>(std::move(options), *hierarchies_, jobs, tell);
   }
 
   static Request request(const std::string& target) {
@@ -79,6 +81,7 @@ class SiteTest : public testing::Test {
 
   tests::ServedFolder folder_;
   std::vector<std::string> told_;
+  std::unique_ptr<Hierarchies> hierarchies_;
   std::unique_ptr<Site> site_;
 };
 
@@ -366,9 +369,7 @@ TEST_F(SiteTest, WorkInProgressIsNotServed) {
 }
 
 TEST_F(SiteTest, TheFolderMayBeAHierarchyItself) {
-  SiteOptions options;
-  options.models = storage::open_folder(folder_.models() / "plain.hier");
-  open_as(std::move(options));
+  open_as({}, storage::open_folder(folder_.models() / "plain.hier"), {});
   const json models = json::parse(get("/models.json").text)["models"];
   ASSERT_THAT(models, SizeIs(1));
   EXPECT_EQ(models[0]["path"], "models");
@@ -428,10 +429,7 @@ TEST_F(SiteTest, NothingIsGuessedFromContent) {
 }
 
 TEST_F(SiteTest, WithoutThePageAllElseIsServed) {
-  SiteOptions options;
-  options.models = storage::open_folder(folder_.models());
-  options.missing_viewer = "run npm";
-  open_as(std::move(options));
+  open_as({.missing_viewer = "run npm"}, storage::open_folder(folder_.models()), {});
   EXPECT_EQ(get("/").status, 503);
   EXPECT_EQ(get("/").text, "run npm\n");
   EXPECT_EQ(get("/assets/page-1a2b.js").status, 404);

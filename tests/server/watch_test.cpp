@@ -49,7 +49,7 @@ class WatchTest : public testing::Test {
     options.inbox = inbox();
     options.folder = models();
     options.config = config_;
-    options.program = MESHHIER_BINARY;
+    options.program = program_.string();
     options.settle = std::chrono::milliseconds(100);
     options.look_every = std::chrono::milliseconds(50);
     options.try_again = std::chrono::milliseconds(100);
@@ -104,6 +104,7 @@ class WatchTest : public testing::Test {
   tests::TemporaryDirectory directory_;
   std::unique_ptr<storage::FileSystem> files_ = storage::make_posix_file_system();
   fs::path config_;
+  fs::path program_ = MESHHIER_BINARY;
   std::set<std::string> refused_;  ///< among the models
   std::shared_ptr<const storage::Folder> folder_;
   std::unique_ptr<Hierarchies> hierarchies_;
@@ -155,6 +156,21 @@ TEST_F(WatchTest, WhatIsDroppedIsBuiltBrokenOnesAreTold) {
   EXPECT_THAT(told(), AllOf(Contains("a.ply: done"), Contains("z.ply: done"),
                             Contains(StartsWith("broken.ply: "))));
   EXPECT_EQ(text_of(inbox() / "notes.txt"), "no mesh");
+}
+
+TEST_F(WatchTest, WhatABuildSaysOfPlacesStaysHere) {
+  program_ = directory_.path() / "build.sh";
+  config_ = directory_.path() / "all.json";
+  tests::write_text(config_, "{}");
+  tests::write_text(program_, "#!/bin/sh\necho \"$@\" >&2\nexec sleep 600\n");
+  fs::permissions(program_, fs::perms::owner_all);
+  start();
+  drop("a.ply");
+  wait_until(
+      [&] { return !job("a.ply", "message").empty() && job("a.ply", "state") == "building"; });
+  EXPECT_THAT(job("a.ply", "message"),
+              AllOf(HasSubstr("input=a.ply output=a.hier"), HasSubstr("build all.json"),
+                    Not(HasSubstr(directory_.path().string()))));
 }
 
 TEST_F(WatchTest, ABrokenFileIsTriedAgainWhenItIsAnother) {
