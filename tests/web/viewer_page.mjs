@@ -204,6 +204,21 @@ async function swipe(page, [x, y], [right, down]) {
   await page.waitForTimeout(500);
 }
 
+/// A listing that cannot be had at first, and whose only job ends and leaves nothing.
+async function checkChangingListing(visitor) {
+  const answers = [{ status: 503 }, { json: { models: [], jobs: [JOBS[0]] } }, { json: { models: [], jobs: [] } }];
+  let looks = 0;
+  const routes = (page) => page.route('**/changing.json', (route) => route.fulfill(answers[Math.min(looks++, answers.length - 1)]));
+  const page = await visitor.open('?models=changing.json', { ...WIDE, routes });
+  const note = page.locator('.gallery-note');
+  await note.filter({ hasText: '503' }).waitFor();
+  await page.locator('.job').waitFor();
+  visitor.check('listing asked for again', looks >= 2, 'after 503');
+  await note.filter({ hasText: 'is empty' }).waitFor();
+  visitor.check('listing without entries', (await page.locator('.cell').count()) === 0, 'leaves no cells');
+  await page.close();
+}
+
 /// An outline that fails is asked for once more when its cell is seen again.
 async function checkOutlineAgain(visitor, name) {
   let refused = 0;
@@ -328,6 +343,7 @@ async function checkRest(visitor, name) {
 // ---- code that is late, or never comes
 
 const CODE = '**/assets/model_view-*.js';
+const ROOT = '**/tiles/00/000000.glb';
 const WORKER = '**/assets/tile_worker-*.js';
 
 /// To a model, back, and to it again, before there is the code that draws it.
@@ -344,6 +360,27 @@ async function checkLateCode(visitor, name) {
   const views = await page.evaluate(() => document.querySelectorAll('main.view, canvas:not(.gallery-canvas)').length);
   visitor.check('late code', views === 2, 'one view, with one canvas');
   await visitor.close(page, 'late code');
+}
+
+/// To a model and back before its root is there: that is given up, and no failure.
+async function checkLateRoot(visitor, name) {
+  let release;
+  const late = new Promise((done) => { release = done; });
+  const forward = (route) => late.then(() => route.continue()).catch(() => undefined); // it was given up
+  const page = await visitor.open('', { ...WIDE, routes: (one) => one.route(ROOT, forward) });
+  let givenUp = false;
+  page.on('requestfailed', (request) => { givenUp ||= request.url().endsWith('tiles/00/000000.glb'); });
+  await page.locator('a.cell', { hasText: name }).first().click();
+  await page.waitForFunction(() => window.meshhier.view !== null);
+  await page.goBack();
+  await page.locator('.gallery .badge').waitFor();
+  visitor.check('late root given up', await until(page, () => givenUp), 'with its model');
+  release();
+  await page.waitForTimeout(300); // for what should not be told
+  visitor.check('late root', (await page.locator('.problem').count()) === 0, 'nothing is told');
+  await page.locator('a.cell', { hasText: name }).first().click();
+  await settle(page);
+  await visitor.close(page, 'late root');
 }
 
 async function checkLostCode(visitor, name) {
@@ -499,12 +536,14 @@ async function checkAll(browser, report, pictures, hierarchies, origin) {
   await checkGallery(visitor, names, pictures);
   await checkMotion(visitor, names);
   await checkLongGallery(visitor);
+  await checkChangingListing(visitor);
   await checkOutlineAgain(visitor, names[0]);
   await checkModes(visitor, names[0], pictures);
   await checkLinks(visitor, names[0]);
   await checkRest(visitor, names[0]);
   await checkCamera(visitor, names[0]);
   await checkLateCode(visitor, names[0]);
+  await checkLateRoot(visitor, names[0]);
   await checkLostCode(visitor, names[0]);
   await checkLostWorker(visitor, names[0]);
   await checkNames(visitor, names[0]);
