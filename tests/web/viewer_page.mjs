@@ -56,6 +56,31 @@ class Visitor {
   }
 }
 
+/// Whether it comes to that.
+async function until(page, holds) {
+  for (const began = Date.now(); !(await holds()); ) {
+    if (Date.now() - began > PATIENCE) return false;
+    await page.waitForTimeout(20);
+  }
+  return true;
+}
+
+/// Whether the picture of a part of the page becomes another one.
+function changes(part, before) {
+  return until(part.page(), async () => !before.equals(await part.screenshot()));
+}
+
+/// The picture of a part of the page, as soon as it is twice the same.
+async function steady(part) {
+  let last = await part.screenshot();
+  await until(part.page(), async () => {
+    const before = last;
+    last = await part.screenshot();
+    return before.equals(last);
+  });
+  return last;
+}
+
 function settle(page) {
   return page.waitForFunction(() => window.meshhier.settled(), null, { timeout: PATIENCE });
 }
@@ -94,7 +119,7 @@ function outlinesOf(page) {
 
 async function paintedCells(page, names) {
   await page.waitForFunction((count) => document.querySelectorAll('a.cell').length === count, names.length);
-  for (const began = Date.now(); outlinesOf(page) < names.length && Date.now() - began < PATIENCE; ) await page.waitForTimeout(20);
+  await until(page, () => outlinesOf(page) >= names.length);
   await page.waitForFunction(() => document.querySelector('.cell-stage.waiting') === null);
   return page.locator('a.cell').evaluateAll((cells) => cells.map((cell) => cell.querySelector('.cell-name').textContent));
 }
@@ -123,26 +148,24 @@ async function checkTurning(visitor, page) {
   const { x, y, width, height } = await stage.boundingBox();
   const [middleX, middleY] = [x + width / 2, y + height / 2];
   await page.mouse.move(middleX, middleY);
-  const still = await stage.screenshot();
+  const still = await steady(stage);
   await page.waitForTimeout(300);
   visitor.check('gallery reduced motion', still.equals(await stage.screenshot()), 'outlines stand still');
   await page.mouse.down();
   await page.mouse.move(middleX + 60, middleY, { steps: 4 });
   await page.mouse.up();
-  const dragged = await stage.screenshot();
-  visitor.check('gallery drag', !dragged.equals(still) && !page.url().includes('#'), `turned, and ${page.url()} stays`);
+  visitor.check('gallery drag', (await changes(stage, still)) && !page.url().includes('#'), `turned, and ${page.url()} stays`);
   await page.locator('a.cell').first().focus();
+  const dragged = await steady(stage);
   await page.keyboard.press('ArrowRight');
-  await page.waitForTimeout(100);
-  visitor.check('gallery arrow keys', !dragged.equals(await stage.screenshot()), 'turned');
+  visitor.check('gallery arrow keys', await changes(stage, dragged), 'turned');
 }
 
 async function checkMotion(visitor, names) {
   const page = await visitor.open('', { ...WIDE, reducedMotion: 'no-preference' });
   await paintedCells(page, names);
-  const first = await page.locator('.cell-stage').first().screenshot();
-  await page.waitForTimeout(500);
-  visitor.check('gallery motion', !first.equals(await page.locator('.cell-stage').first().screenshot()), 'outlines turn');
+  const stage = page.locator('.cell-stage').first();
+  visitor.check('gallery motion', await changes(stage, await stage.screenshot()), 'outlines turn');
   await visitor.close(page, 'gallery motion');
 }
 
@@ -150,8 +173,10 @@ async function checkMotion(visitor, names) {
 async function checkLongGallery(visitor) {
   const page = await visitor.open('?models=many.json', NARROW);
   await page.waitForFunction((count) => document.querySelectorAll('a.cell').length === count, MANY);
-  await page.waitForTimeout(1000);
-  const fetched = page.asked.filter((file) => file.endsWith('outline.glb')).length;
+  await until(page, () => outlinesOf(page) > 0);
+  await page.waitForFunction(() => document.querySelector('.cell-stage.waiting') === null);
+  await page.waitForTimeout(300); // for those that should not be asked for
+  const fetched = outlinesOf(page);
   visitor.check('gallery fetches what is near', fetched > 0 && fetched < MANY / 2, `${fetched} outlines of ${MANY}`);
   visitor.check('gallery progress', (await page.getByRole('progressbar', { name: 'half.ply: progress' }).getAttribute('value')) === '0.5', '0.5');
   const failed = await page.locator('.job-failed').innerText();
@@ -161,7 +186,8 @@ async function checkLongGallery(visitor) {
   await swipe(page, place, [60, 4]);
   visitor.check('gallery swipe across', (await page.evaluate(() => scrollY)) === 0 && !page.url().includes('#'), 'turns');
   await swipe(page, place, [0, -120]);
-  visitor.check('gallery swipe up', (await page.evaluate(() => scrollY)) > 50 && !page.url().includes('#'), 'scrolls');
+  const scrolls = await until(page, () => page.evaluate(() => scrollY > 50));
+  visitor.check('gallery swipe up', scrolls && !page.url().includes('#'), 'scrolls');
   await visitor.close(page, 'long gallery');
 }
 
@@ -176,6 +202,21 @@ async function swipe(page, [x, y], [right, down]) {
   }
   await touch('touchEnd', []);
   await page.waitForTimeout(500);
+}
+
+/// A listing that cannot be had at first, and whose only job ends and leaves nothing.
+async function checkChangingListing(visitor) {
+  const answers = [{ status: 503 }, { json: { models: [], jobs: [JOBS[0]] } }, { json: { models: [], jobs: [] } }];
+  let looks = 0;
+  const routes = (page) => page.route('**/changing.json', (route) => route.fulfill(answers[Math.min(looks++, answers.length - 1)]));
+  const page = await visitor.open('?models=changing.json', { ...WIDE, routes });
+  const note = page.locator('.gallery-note');
+  await note.filter({ hasText: '503' }).waitFor();
+  await page.locator('.job').waitFor();
+  visitor.check('listing asked for again', looks >= 2, 'after 503');
+  await note.filter({ hasText: 'is empty' }).waitFor();
+  visitor.check('listing without entries', (await page.locator('.cell').count()) === 0, 'leaves no cells');
+  await page.close();
 }
 
 /// An outline that fails is asked for once more when its cell is seen again.
@@ -256,8 +297,10 @@ async function checkLinks(visitor, name) {
   const root = page.asked.findIndex((file) => file.endsWith('tiles/00/000000.glb'));
   visitor.check('link root early', root >= 0 && !page.asked.slice(0, root).some((file) => file.includes('models.json')), page.asked.slice(0, root + 1).join(' '));
   await press(page, '+', '+', '+', 'ArrowLeft', 'ArrowUp');
-  await page.waitForFunction(() => location.hash.includes('&'));
-  await page.waitForTimeout(500);
+  await page.waitForFunction(() => {
+    const { position, target } = window.meshhier.camera();
+    return location.hash.endsWith(`&${[...position, ...target].join(',')}`);
+  });
   const [link, before] = [new URL(page.url()).hash, await picture(page)];
   const again = await visitor.open(link);
   await settle(again);
@@ -282,15 +325,16 @@ async function checkRest(visitor, name) {
   visitor.check('rest', frames === 0, `${frames} frames in a second`);
   const before = await picture(page);
   await page.evaluate(async () => {
-    const context = document.querySelector('.surface canvas').getContext('webgl2');
-    const loss = context.getExtension('WEBGL_lose_context');
+    const canvas = document.querySelector('.surface canvas');
+    const loss = canvas.getContext('webgl2').getExtension('WEBGL_lose_context');
+    const told = (what) => new Promise((done) => { canvas.addEventListener(what, () => setTimeout(done), { once: true }); });
+    const [lost, restored] = [told('webglcontextlost'), told('webglcontextrestored')];
     loss.loseContext();
-    await new Promise((done) => setTimeout(done, 300));
+    await lost;
     loss.restoreContext();
-    await new Promise((done) => setTimeout(done, 700));
+    await restored;
   });
   await settle(page);
-  await page.waitForTimeout(300);
   page.complaints = page.complaints.filter((text) => !text.includes('Context'));
   visitor.check('context restored', before.equals(await picture(page)), 'the same picture');
   await visitor.close(page, 'rest');
@@ -299,6 +343,7 @@ async function checkRest(visitor, name) {
 // ---- code that is late, or never comes
 
 const CODE = '**/assets/model_view-*.js';
+const ROOT = '**/tiles/00/000000.glb';
 const WORKER = '**/assets/tile_worker-*.js';
 
 /// To a model, back, and to it again, before there is the code that draws it.
@@ -315,6 +360,27 @@ async function checkLateCode(visitor, name) {
   const views = await page.evaluate(() => document.querySelectorAll('main.view, canvas:not(.gallery-canvas)').length);
   visitor.check('late code', views === 2, 'one view, with one canvas');
   await visitor.close(page, 'late code');
+}
+
+/// To a model and back before its root is there: that is given up, and no failure.
+async function checkLateRoot(visitor, name) {
+  let release;
+  const late = new Promise((done) => { release = done; });
+  const forward = (route) => late.then(() => route.continue()).catch(() => undefined); // it was given up
+  const page = await visitor.open('', { ...WIDE, routes: (one) => one.route(ROOT, forward) });
+  let givenUp = false;
+  page.on('requestfailed', (request) => { givenUp ||= request.url().endsWith('tiles/00/000000.glb'); });
+  await page.locator('a.cell', { hasText: name }).first().click();
+  await page.waitForFunction(() => window.meshhier.view !== null);
+  await page.goBack();
+  await page.locator('.gallery .badge').waitFor();
+  visitor.check('late root given up', await until(page, () => givenUp), 'with its model');
+  release();
+  await page.waitForTimeout(300); // for what should not be told
+  visitor.check('late root', (await page.locator('.problem').count()) === 0, 'nothing is told');
+  await page.locator('a.cell', { hasText: name }).first().click();
+  await settle(page);
+  await visitor.close(page, 'late root');
 }
 
 async function checkLostCode(visitor, name) {
@@ -470,12 +536,14 @@ async function checkAll(browser, report, pictures, hierarchies, origin) {
   await checkGallery(visitor, names, pictures);
   await checkMotion(visitor, names);
   await checkLongGallery(visitor);
+  await checkChangingListing(visitor);
   await checkOutlineAgain(visitor, names[0]);
   await checkModes(visitor, names[0], pictures);
   await checkLinks(visitor, names[0]);
   await checkRest(visitor, names[0]);
   await checkCamera(visitor, names[0]);
   await checkLateCode(visitor, names[0]);
+  await checkLateRoot(visitor, names[0]);
   await checkLostCode(visitor, names[0]);
   await checkLostWorker(visitor, names[0]);
   await checkNames(visitor, names[0]);
