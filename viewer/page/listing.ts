@@ -1,5 +1,6 @@
 // models.json: what there is to show, and what is being made. Whatever it holds, what comes out of
 // here is as the types say.
+import { withoutLastSlashes } from '../src/hierarchy/bytes.js';
 
 export interface Model {
   name: string;
@@ -45,13 +46,6 @@ function textOf(value: unknown): string {
 
 function countOf(value: unknown): number | null {
   return typeof value === 'number' && Number.isFinite(value) && value >= 0 ? value : null;
-}
-
-/// In time that grows with the text alone; `/\/+$/` looks at each run of slashes again from each of them.
-function withoutLastSlashes(text: string): string {
-  let end = text.length;
-  while (text[end - 1] === '/') --end;
-  return text.slice(0, end);
 }
 
 /// `models/sub/david.hier` to `david`.

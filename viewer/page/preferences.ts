@@ -1,5 +1,5 @@
 // What the user chose, kept in the browser. Whatever is stored there, what comes out is sound.
-import { changedSettings, type Colours, type Look, type Settings } from '../src/scene/settings.js';
+import { changedSettings, DEFAULT_LOOK, type Colours, type Look, type Settings } from '../src/scene/settings.js';
 
 export type Theme = 'auto' | 'light' | 'dark';
 
@@ -55,11 +55,10 @@ function readSettings(stored: Json): Settings {
   };
 }
 
-/// Defaults as the library's own, which is not there before the first model.
 function readLook(stored: Json): Look {
   return {
-    colours: oneOf(stored.colours, COLOURS, 'vertex'),
-    shading: oneOf(stored.shading, ['smooth', 'flat'], 'smooth'),
+    colours: oneOf(stored.colours, COLOURS, DEFAULT_LOOK.colours),
+    shading: oneOf(stored.shading, ['smooth', 'flat'], DEFAULT_LOOK.shading),
     wires: stored.wires === true,
     points: stored.points === true,
     outline: stored.outline === true,

@@ -3,6 +3,13 @@ import { HierarchyProblem } from './problem.js';
 
 export type Fetch = (url: string, init?: RequestInit) => Promise<Response>;
 
+/// In time that grows with the text alone; `/\/+$/` looks at each run of slashes again from each of them.
+export function withoutLastSlashes(text: string): string {
+  let end = text.length;
+  while (text[end - 1] === '/') --end;
+  return text.slice(0, end);
+}
+
 function isGzip(bytes: Uint8Array): boolean {
   return bytes[0] === 0x1f && bytes[1] === 0x8b;
 }

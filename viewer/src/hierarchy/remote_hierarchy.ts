@@ -1,5 +1,5 @@
 // A hierarchy at a URL: its root first, then what tells of the rest.
-import { fetchBytes, fetchRange, type Fetch } from './bytes.js';
+import { fetchBytes, fetchRange, withoutLastSlashes, type Fetch } from './bytes.js';
 import { fetchManifest, type Manifest } from './manifest.js';
 import { fetchOutline, type Outline } from './outline.js';
 import { HierarchyProblem } from './problem.js';
@@ -30,12 +30,6 @@ function expectedOf({ level, index }: Node, { own, ghosts, interior, border }: T
   return { level, index, own, ghosts, interior, border };
 }
 
-function withoutSlashes(url: string): string {
-  let end = url.length;
-  while (end > 0 && url[end - 1] === '/') --end;
-  return url.slice(0, end);
-}
-
 export class RemoteHierarchy {
   private readonly base: string;
 
@@ -46,7 +40,7 @@ export class RemoteHierarchy {
     private readonly decoder: TileDecoder,
     private readonly signal: AbortSignal,
   ) {
-    this.base = `${withoutSlashes(url)}/`;
+    this.base = `${withoutLastSlashes(url)}/`;
   }
 
   async root(): Promise<Tile> {

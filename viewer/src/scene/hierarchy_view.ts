@@ -18,7 +18,7 @@ import { Alarm } from './alarm.js';
 import { modeOf } from './mode.js';
 import { OutlineObject } from './outline_object.js';
 import { Motion, REST_MS, viewpointOf, type Viewport } from './motion.js';
-import { changedSettings, type Look, type Mode, type Settings, type Stats } from './settings.js';
+import { changedSettings, DEFAULT_LOOK, type Look, type Mode, type Settings, type Stats } from './settings.js';
 import { memoryOf, mostMemory } from './tile_object.js';
 import { TileScene } from './tile_scene.js';
 
@@ -41,7 +41,6 @@ export interface ViewEvents extends Object3DEventMap {
   problem: { message: string };
 }
 
-const LOOK: Look = { colours: 'vertex', shading: 'smooth', wires: false, points: false, outline: false };
 const WORKERS = 2;
 const REQUESTS = 6; // what browsers open to a host at once
 const LONGEST_FRAME_MS = 5000; // a longer one was no frame: the page slept
@@ -91,7 +90,7 @@ export class HierarchyView extends Group<ViewEvents> {
   constructor(url: string, options: ViewOptions = {}) {
     super();
     this.currentSettings = changedSettings(options.settings ?? {});
-    this.currentLook = { ...LOOK, ...options.look };
+    this.currentLook = { ...DEFAULT_LOOK, ...options.look };
     this.decoder = new TileDecoder(options.createWorker, options.workers ?? WORKERS);
     const fetch: Fetch = options.fetch ?? ((input, init) => globalThis.fetch(input, init));
     this.remote = new RemoteHierarchy(url, fetch, this.decoder, this.ending.signal);

@@ -23,6 +23,9 @@ export interface Settings {
   memoryBudget: number;
 }
 
+/// What a view looks like if nothing is said.
+export const DEFAULT_LOOK: Look = { colours: 'vertex', shading: 'smooth', wires: false, points: false, outline: false };
+
 const DEFAULTS: Settings = { framesPerSecond: 30, threshold: 1, memoryBudget: 256e6 };
 const RANGES: Record<keyof Settings, readonly [number, number]> = {
   framesPerSecond: [1, 240],
