@@ -301,6 +301,7 @@ async function checkLinks(visitor, name) {
     const { position, target } = window.meshhier.camera();
     return location.hash.endsWith(`&${[...position, ...target].join(',')}`);
   });
+  await settle(page);
   const [link, before] = [new URL(page.url()).hash, await picture(page)];
   const again = await visitor.open(link);
   await settle(again);

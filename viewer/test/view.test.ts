@@ -239,6 +239,17 @@ describe.skipIf(!hasProgram)('HierarchyView', () => {
     expect(changes).toBeGreaterThan(1);
   });
 
+  it('asks for no frame once all is there', async () => {
+    const session = begin(fetchFrom(torus()));
+    await session.view.opened;
+    closeUp(session);
+    await session.settle();
+    let changes = 0;
+    session.view.addEventListener('change', () => { ++changes; });
+    vi.advanceTimersByTime(10_000);
+    expect(changes).toBe(0);
+  });
+
   it('keeps to the memory it may take, whatever is to be seen of it', async () => {
     const memoryBudget = 1_000_000;
     const session = begin(fetchFrom(torus()), { settings: { memoryBudget, threshold: 0.05 } });

@@ -265,7 +265,8 @@ export class HierarchyView extends Group<ViewEvents> {
   /// Something may be due although nothing happens.
   private setAlarm(): void {
     if (this.motion.isMoving) this.alarm.in(REST_MS);
-    if (this.state?.isComplete === false) this.alarm.in(RETRY_MS);
+    else if (this.state?.isComplete === false) this.alarm.in(RETRY_MS);
+    else this.alarm.stop();
   }
 
   private measure(now: number): void {

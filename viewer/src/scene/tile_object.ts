@@ -46,6 +46,7 @@ export class TileObject extends Mesh<BufferGeometry, MeshStandardMaterial> {
   private wires: LineSegments | null = null;
   private points: Points | null = null;
 
+  /// To be drawn once it is resolved; wires and points come with setLook().
   constructor(
     private readonly resident: ResidentTile,
     private look: Look,
@@ -59,10 +60,7 @@ export class TileObject extends Mesh<BufferGeometry, MeshStandardMaterial> {
     this.geometry.setIndex(new BufferAttribute(tile.indices, 1));
     for (const attribute of this.attributes()) attribute.setUsage(DynamicDrawUsage);
     this.triangles = tile.interiorCount;
-    this.setBounds();
     this.matrixAutoUpdate = false;
-    this.setWires(look.wires);
-    this.setPoints(look.points);
   }
 
   private *attributes(): Iterable<BufferAttribute> {

@@ -38,19 +38,20 @@ export class TileScene extends Group {
   }
 
   private join(resident: ResidentTile, look: Look): void {
-    let object = this.objects.get(resident.key);
+    const known = this.objects.get(resident.key);
+    const object = known ?? this.make(resident, look);
     const changed = resident.seam.look(this.cut);
-    if (!object) {
-      object = new TileObject(resident, look, this.materials);
-      this.objects.set(resident.key, object);
-      this.add(object);
-      object.resolve();
-    } else {
-      if (changed) object.resolve();
-      object.setLook(look);
-    }
+    if (changed || !known) object.resolve();
+    object.setLook(look);
     if (resident.seam.isDamaged) this.tellDamaged(resident.node);
     object.visible = true;
+  }
+
+  private make(resident: ResidentTile, look: Look): TileObject {
+    const object = new TileObject(resident, look, this.materials);
+    this.objects.set(resident.key, object);
+    this.add(object);
+    return object;
   }
 
   /// The tile is no longer in memory.
