@@ -1,11 +1,11 @@
 #include "app/command.h"
 #include "app/options.h"
+#include "config/config.h"
 #include "hierarchy/error.h"
 #include "pipeline/build.h"
-#include "pipeline/build_stats.h"
-#include "pipeline/config.h"
-#include "pipeline/estimate.h"
-#include "storage/atomic_file.h"
+#include "pipeline/plan/build_stats.h"
+#include "pipeline/plan/estimate.h"
+#include "storage/io/atomic_file.h"
 
 #include <algorithm>
 #include <memory>
@@ -49,7 +49,7 @@ void give_back_config(BuildArguments& arguments) {
 }
 
 /// The account must not take the place of what the build reads or makes.
-void check_stats_path(const std::string& path, const pipeline::Config& config,
+void check_stats_path(const std::string& path, const config::Config& config,
                       storage::FileSystem& files) {
   const std::filesystem::path stats = files.canonical(path);
   const std::filesystem::path output = files.canonical(config.output);
@@ -66,7 +66,7 @@ void write_stats(storage::AtomicFile& file, const pipeline::BuildStats& stats) {
   file.publish(std::as_bytes(std::span(text)));
 }
 
-int run_estimate(const pipeline::Config& config, const BuildArguments& arguments,
+int run_estimate(const config::Config& config, const BuildArguments& arguments,
                  Environment& environment) {
   const pipeline::BuildEstimate estimate =
       pipeline::estimate_build(config, arguments.force, environment.files, environment.cancel);
@@ -78,12 +78,12 @@ int run_estimate(const pipeline::Config& config, const BuildArguments& arguments
   return 0;
 }
 
-int run_build(const BuildArguments& arguments, pipeline::ProgressMode mode,
+int run_build(const BuildArguments& arguments, execution::ProgressMode mode,
               Environment& environment) {
-  const pipeline::Config config =
+  const config::Config config =
       arguments.config.empty()
-          ? pipeline::parse_config("{}", {"--set", {}}, arguments.settings)
-          : pipeline::load_config(environment.files, arguments.config, arguments.settings);
+          ? config::parse_config("{}", {"--set", {}}, arguments.settings)
+          : config::load_config(environment.files, arguments.config, arguments.settings);
   if (arguments.dry_run)
     return run_estimate(config, arguments, environment);
   std::optional<storage::AtomicFile> stats;
@@ -92,7 +92,7 @@ int run_build(const BuildArguments& arguments, pipeline::ProgressMode mode,
     stats.emplace(environment.files, arguments.stats);
   }
   const auto progress =
-      pipeline::make_progress(mode, environment.messages, environment.messages_on_terminal);
+      execution::make_progress(mode, environment.messages, environment.messages_on_terminal);
   const pipeline::BuildReport report =
       pipeline::build_hierarchy(config, {arguments.force, arguments.restart},
                                 {environment.files, *progress, environment.cancel});

@@ -1,6 +1,6 @@
 #include "app/command.h"
 #include "app/options.h"
-#include "pipeline/clean.h"
+#include "pipeline/journal/clean.h"
 
 #include <memory>
 #include <ostream>

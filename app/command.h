@@ -2,9 +2,9 @@
 // to be run.
 #pragma once
 
-#include "pipeline/cancel.h"
-#include "pipeline/progress.h"
-#include "storage/file.h"
+#include "execution/cancel.h"
+#include "execution/progress.h"
+#include "storage/io/file.h"
 
 #include <functional>
 #include <iosfwd>
@@ -16,7 +16,7 @@ namespace meshhier::app {
 /// What a command runs in.
 struct Environment {
   storage::FileSystem& files;
-  const pipeline::CancelToken& cancel;
+  const execution::CancelToken& cancel;
   std::ostream& out;       ///< results
   std::ostream& messages;  ///< progress and errors
   bool messages_on_terminal = false;
@@ -25,7 +25,7 @@ struct Environment {
 /// What the arguments ask for.
 struct Invocation {
   std::function<int(Environment&)> run;  ///< returns the exit code; throws Error
-  pipeline::ProgressMode progress = pipeline::ProgressMode::automatic;
+  execution::ProgressMode progress = execution::ProgressMode::automatic;
 };
 
 /// Each registers one subcommand of `parser`. When arguments choose it, `invocation` is filled;

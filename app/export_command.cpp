@@ -1,6 +1,6 @@
 #include "app/command.h"
 #include "app/options.h"
-#include "pipeline/export.h"
+#include "inspection/export.h"
 
 #include <memory>
 #include <optional>
@@ -20,28 +20,28 @@ struct ExportArguments {
   std::string cut;
   bool outline = false;
   std::string output;
-  std::uint64_t memory_budget = pipeline::ExportOptions{}.memory_budget;
+  std::uint64_t memory_budget = inspection::ExportOptions{}.memory_budget;
 };
 
 /// Requires that exactly one of the four was given.
-pipeline::ExportSelection selection(const ExportArguments& arguments) {
+inspection::ExportSelection selection(const ExportArguments& arguments) {
   if (arguments.level)
     return *arguments.level;
   if (arguments.node)
     return *arguments.node;
   if (!arguments.cut.empty())
     return std::filesystem::path(arguments.cut);
-  return pipeline::OutlineSelection{};
+  return inspection::OutlineSelection{};
 }
 
-int run_export(const ExportArguments& arguments, pipeline::ProgressMode mode,
+int run_export(const ExportArguments& arguments, execution::ProgressMode mode,
                Environment& environment) {
   const auto progress =
-      pipeline::make_progress(mode, environment.messages, environment.messages_on_terminal);
-  const pipeline::ExportOptions options{selection(arguments), arguments.output,
-                                        arguments.memory_budget};
-  const std::string line = pipeline::export_mesh(environment.files, arguments.directory, options,
-                                                 *progress, environment.cancel);
+      execution::make_progress(mode, environment.messages, environment.messages_on_terminal);
+  const inspection::ExportOptions options{selection(arguments), arguments.output,
+                                          arguments.memory_budget};
+  const std::string line = inspection::export_mesh(environment.files, arguments.directory, options,
+                                                   *progress, environment.cancel);
   progress->finish(arguments.output);
   environment.out << line << '\n';
   return 0;

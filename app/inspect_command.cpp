@@ -1,6 +1,6 @@
 #include "app/command.h"
 #include "app/options.h"
-#include "pipeline/inspect.h"
+#include "inspection/inspect.h"
 
 #include <memory>
 #include <ostream>
@@ -14,18 +14,19 @@ namespace {
 
 struct InspectArguments {
   std::string directory;
-  pipeline::InspectOptions options;
+  inspection::InspectOptions options;
   bool json = false;
 };
 
 int run_inspect(const InspectArguments& arguments, Environment& environment) {
   if (arguments.json) {
-    environment.out
-        << pipeline::inspect_json(environment.files, arguments.directory, arguments.options).dump(2)
-        << '\n';
+    environment.out << inspection::inspect_json(environment.files, arguments.directory,
+                                                arguments.options)
+                           .dump(2)
+                    << '\n';
   } else {
-    environment.out << pipeline::inspect_text(environment.files, arguments.directory,
-                                              arguments.options);
+    environment.out << inspection::inspect_text(environment.files, arguments.directory,
+                                                arguments.options);
   }
   return 0;
 }

@@ -1,8 +1,8 @@
 // meshhier: the command line.
 #include "app/command.h"
 #include "app/process.h"
+#include "config/suggest.h"
 #include "hierarchy/error.h"
-#include "pipeline/suggest.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -69,7 +69,7 @@ bool is_unknown_command(const std::string& word, const std::vector<std::string>&
 }
 
 int report_unknown_command(const std::string& word, const std::vector<std::string>& names) {
-  const std::optional<std::string> near = pipeline::nearest_word(word, names);
+  const std::optional<std::string> near = config::nearest_word(word, names);
   std::cerr << "meshhier: unknown command \"" << word << '"';
   if (near)
     std::cerr << "; did you mean \"" << *near << "\"?";
@@ -78,8 +78,8 @@ int report_unknown_command(const std::string& word, const std::vector<std::strin
 }
 
 /// Programs that read the progress get the end of it in the same form.
-int report_failure(ErrorCode code, const std::string& message, pipeline::ProgressMode mode) {
-  if (mode == pipeline::ProgressMode::json) {
+int report_failure(ErrorCode code, const std::string& message, execution::ProgressMode mode) {
+  if (mode == execution::ProgressMode::json) {
     const nlohmann::ordered_json event{
         {"event", "error"}, {"code", exit_code(code)}, {"message", message}};
     std::cerr << event.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
@@ -97,7 +97,7 @@ void flush_results() {
 }
 
 int execute(const Invocation& invocation) {
-  static pipeline::CancelToken cancel;  // signal handlers reach it to the end of the process
+  static execution::CancelToken cancel;  // signal handlers reach it to the end of the process
   cancel_on_signals(cancel);
   const std::unique_ptr<storage::FileSystem> files = storage::make_posix_file_system();
   Environment environment{*files, cancel, std::cout, std::cerr, error_output_is_terminal()};

@@ -1,6 +1,6 @@
 #include "app/options.h"
 
-#include "pipeline/size_text.h"
+#include "execution/size_text.h"
 
 #include <charconv>
 #include <limits>
@@ -45,8 +45,8 @@ std::optional<NodeId> parse_node(std::string_view text) {
   return NodeId{static_cast<Level>(*level), static_cast<std::uint32_t>(*index)};
 }
 
-void add_progress_option(CLI::App& command, pipeline::ProgressMode& mode) {
-  using pipeline::ProgressMode;
+void add_progress_option(CLI::App& command, execution::ProgressMode& mode) {
+  using execution::ProgressMode;
   const std::map<std::string, ProgressMode> modes{{"auto", ProgressMode::automatic},
                                                   {"bar", ProgressMode::bar},
                                                   {"json", ProgressMode::json},
@@ -67,15 +67,15 @@ void add_progress_option(CLI::App& command, pipeline::ProgressMode& mode) {
 
 void add_memory_budget_option(CLI::App& command, std::uint64_t& bytes) {
   const auto store = [&bytes](const std::string& text) {
-    const std::optional<std::uint64_t> parsed = pipeline::parse_size(text);
+    const std::optional<std::uint64_t> parsed = execution::parse_size(text);
     if (!parsed || *parsed == 0)
-      refuse("--memory-budget", pipeline::kSizeSyntax, text);
+      refuse("--memory-budget", execution::kSizeSyntax, text);
     bytes = *parsed;
   };
   command
       .add_option_function<std::string>(
           "--memory-budget", store,
-          fmt::format("Memory it may use [{}]", pipeline::exact_size_text(bytes)))
+          fmt::format("Memory it may use [{}]", execution::exact_size_text(bytes)))
       ->type_name("SIZE");
 }
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "app/command.h"
+#include "execution/progress.h"
 #include "hierarchy/ids.h"
-#include "pipeline/progress.h"
 
 #include <cstdint>
 #include <functional>
@@ -21,7 +21,7 @@ namespace meshhier::app {
 inline constexpr std::uint8_t kDeepestLevel = 32;
 
 /// --progress auto|bar|json|none
-void add_progress_option(CLI::App& command, pipeline::ProgressMode& mode);
+void add_progress_option(CLI::App& command, execution::ProgressMode& mode);
 
 /// --memory-budget SIZE
 void add_memory_budget_option(CLI::App& command, std::uint64_t& bytes);

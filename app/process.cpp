@@ -10,11 +10,11 @@ namespace meshhier::app {
 namespace {
 
 /// What a signal handler can reach: it gets no argument of ours.
-std::atomic<pipeline::CancelToken*> token_to_cancel{nullptr};
+std::atomic<execution::CancelToken*> token_to_cancel{nullptr};
 
 /// Only what POSIX allows in a handler: lock-free atomics and signal().
 extern "C" void on_signal(int) {
-  if (pipeline::CancelToken* token = token_to_cancel.load())
+  if (execution::CancelToken* token = token_to_cancel.load())
     token->cancel();
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
@@ -36,7 +36,7 @@ bool is_ignored(int signal_number) {
 
 }  // namespace
 
-void cancel_on_signals(pipeline::CancelToken& token) {
+void cancel_on_signals(execution::CancelToken& token) {
   token_to_cancel = &token;
   handle(SIGINT);
   handle(SIGTERM);

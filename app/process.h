@@ -2,14 +2,14 @@
 // terminal.
 #pragma once
 
-#include "pipeline/cancel.h"
+#include "execution/cancel.h"
 
 namespace meshhier::app {
 
 /// From now on the first SIGINT or SIGTERM (SIGHUP too, unless it is ignored, as nohup does)
 /// cancels `token`, which must live to the end of the process; the second kills the process at
 /// once.
-void cancel_on_signals(pipeline::CancelToken& token);
+void cancel_on_signals(execution::CancelToken& token);
 
 /// Whether standard error is a terminal.
 bool error_output_is_terminal();

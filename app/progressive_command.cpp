@@ -1,6 +1,6 @@
 #include "app/command.h"
 #include "app/options.h"
-#include "pipeline/progressive.h"
+#include "progressive/stream.h"
 
 #include <memory>
 #include <ostream>
@@ -15,15 +15,15 @@ namespace {
 struct ProgressiveArguments {
   std::string directory;
   std::string output;
-  pipeline::ProgressiveOptions options;
+  progressive::ProgressiveOptions options;
 };
 
-int run_progressive(ProgressiveArguments& arguments, pipeline::ProgressMode mode,
+int run_progressive(ProgressiveArguments& arguments, execution::ProgressMode mode,
                     Environment& environment) {
   const auto progress =
-      pipeline::make_progress(mode, environment.messages, environment.messages_on_terminal);
+      execution::make_progress(mode, environment.messages, environment.messages_on_terminal);
   arguments.options.output = arguments.output;
-  const std::string line = pipeline::write_progressive(
+  const std::string line = progressive::write_progressive(
       environment.files, arguments.directory, arguments.options, *progress, environment.cancel);
   progress->finish(arguments.output);
   environment.out << line << '\n';

@@ -1,7 +1,7 @@
 #include "app/command.h"
 #include "app/options.h"
-#include "pipeline/reconstruct.h"
-#include "pipeline/size_text.h"
+#include "execution/size_text.h"
+#include "progressive/reconstruct.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -19,30 +19,30 @@ namespace {
 struct ReconstructArguments {
   std::string directory;
   std::string output;
-  pipeline::ReconstructOptions options;
+  progressive::ReconstructOptions options;
   bool stats = false;
 };
 
 /// Seconds that computing takes follow what a file has, its entries.
-void print_stats(std::ostream& out, const pipeline::ReconstructReport& report) {
+void print_stats(std::ostream& out, const progressive::ReconstructReport& report) {
   out << fmt::format("{:<14} {:>12} {:>12} {:>12} {:>12} {:>10} {:>9}\n", "file", "bytes",
                      "entries", "vertices", "triangles", "ms", "ns/entry");
-  for (const pipeline::ReconstructedStep& step : report.steps) {
+  for (const progressive::ReconstructedStep& step : report.steps) {
     const auto entries = static_cast<double>(std::max<std::uint64_t>(step.entries, 1));
     out << fmt::format("{:<14} {:>12} {:>12} {:>12} {:>12} {:>10.2f} {:>9.1f}\n",
                        std::filesystem::path(step.file).filename().string(), step.bytes,
                        step.entries, step.vertices, step.triangles, step.seconds * 1e3,
                        step.seconds * 1e9 / entries);
   }
-  out << fmt::format("the two arrays: {}\n", pipeline::rounded_size_text(report.array_bytes));
+  out << fmt::format("the two arrays: {}\n", execution::rounded_size_text(report.array_bytes));
 }
 
-int run_reconstruct(ReconstructArguments& arguments, pipeline::ProgressMode mode,
+int run_reconstruct(ReconstructArguments& arguments, execution::ProgressMode mode,
                     Environment& environment) {
   const auto progress =
-      pipeline::make_progress(mode, environment.messages, environment.messages_on_terminal);
+      execution::make_progress(mode, environment.messages, environment.messages_on_terminal);
   arguments.options.output = arguments.output;
-  const pipeline::ReconstructReport report = pipeline::reconstruct(
+  const progressive::ReconstructReport report = progressive::reconstruct(
       environment.files, arguments.directory, arguments.options, *progress, environment.cancel);
   progress->finish(arguments.output);
   if (arguments.stats)

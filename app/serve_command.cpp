@@ -1,13 +1,13 @@
 #include "app/command.h"
 #include "app/options.h"
 #include "app/viewer_place.h"
+#include "config/config.h"
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
-#include "pipeline/config.h"
 #include "server/http_server.h"
 #include "server/site.h"
 #include "server/watch.h"
-#include "storage/child_process.h"
+#include "storage/io/child_process.h"
 
 #include <chrono>
 #include <cmath>
@@ -87,10 +87,10 @@ void check_folder(const std::string& option, const std::string& folder, Environm
 /// Returns what hierarchies are called behind the dot.
 std::string suffix_of(const std::string& config, Environment& environment) {
   const std::vector<std::string> settings{"input=mesh.ply", "output=mesh.hier"};
-  const pipeline::Config checked = config.empty()
-                                       ? pipeline::parse_config("{}", {"--set", {}}, settings)
-                                       : pipeline::load_config(environment.files, config, settings);
-  return checked.storage.container == pipeline::Container::archive ? ".3tz" : ".hier";
+  const config::Config checked = config.empty()
+                                     ? config::parse_config("{}", {"--set", {}}, settings)
+                                     : config::load_config(environment.files, config, settings);
+  return checked.storage.container == config::Container::archive ? ".3tz" : ".hier";
 }
 
 server::WatchOptions watch_options(const ServeArguments& arguments, Environment& environment) {
@@ -125,7 +125,7 @@ std::unique_ptr<storage::ChildProcess> open_browser(const std::string& url, Cons
   return nullptr;
 }
 
-void wait_for_end(const pipeline::CancelToken& cancel, const server::HttpServer& http) {
+void wait_for_end(const execution::CancelToken& cancel, const server::HttpServer& http) {
   constexpr std::chrono::milliseconds kLook{50};
   while (!cancel.cancelled() && !http.is_lost())
     std::this_thread::sleep_for(kLook);

@@ -1,8 +1,8 @@
 #include "app/command.h"
 #include "app/options.h"
 #include "hierarchy/error.h"
-#include "pipeline/verify.h"
-#include "pipeline/verify_error.h"
+#include "inspection/verify.h"
+#include "inspection/verify_error.h"
 
 #include <charconv>
 #include <limits>
@@ -23,13 +23,13 @@ namespace {
 struct VerifyArguments {
   std::string directory;
   std::vector<std::string> input;
-  pipeline::VerifyOptions options;
+  inspection::VerifyOptions options;
   bool measures_error = false;
-  pipeline::ErrorOptions error;
+  inspection::ErrorOptions error;
   bool json = false;
 };
 
-std::string json_text(const pipeline::VerifyReport& report) {
+std::string json_text(const inspection::VerifyReport& report) {
   const nlohmann::ordered_json object{
       {"ok", report.problems.empty()}, {"checks", report.checks}, {"problems", report.problems}};
   return pretty_json(object);
@@ -41,7 +41,7 @@ std::string verdict(std::size_t count) {
   return fmt::format("{} problem{} found", count, count == 1 ? "" : "s");
 }
 
-std::string plain_text(const pipeline::VerifyReport& report) {
+std::string plain_text(const inspection::VerifyReport& report) {
   std::string text;
   for (const std::string& check : report.checks)
     text += fmt::format("checked: {}\n", check);
@@ -50,22 +50,22 @@ std::string plain_text(const pipeline::VerifyReport& report) {
   return text + verdict(report.problems.size()) + ".\n";
 }
 
-using Measurements = std::vector<pipeline::ErrorMeasurement>;
+using Measurements = std::vector<inspection::ErrorMeasurement>;
 
 /// One object, or with all levels an object with a list of them.
 std::string json_text(const Measurements& measurements, bool all_levels) {
   if (!all_levels)
-    return pretty_json(pipeline::to_json(measurements.front()));
+    return pretty_json(inspection::to_json(measurements.front()));
   auto levels = nlohmann::ordered_json::array();
-  for (const pipeline::ErrorMeasurement& measurement : measurements)
-    levels.push_back(pipeline::to_json(measurement));
+  for (const inspection::ErrorMeasurement& measurement : measurements)
+    levels.push_back(inspection::to_json(measurement));
   return pretty_json({{"levels", levels}});
 }
 
 std::string plain_text(const Measurements& measurements, std::size_t problems) {
   std::string text;
-  for (const pipeline::ErrorMeasurement& measurement : measurements)
-    text += pipeline::to_text(measurement) + '\n';
+  for (const inspection::ErrorMeasurement& measurement : measurements)
+    text += to_text(measurement) + '\n';
   return text + verdict(problems) + ".\n";
 }
 
@@ -73,27 +73,27 @@ int exit_code(std::size_t problems) {
   return problems == 0 ? 0 : static_cast<int>(ErrorCode::corrupt);
 }
 
-int run_error(VerifyArguments arguments, pipeline::Progress& progress, Environment& environment) {
+int run_error(VerifyArguments arguments, execution::Progress& progress, Environment& environment) {
   arguments.error.memory_budget = arguments.options.memory_budget;
-  const Measurements measurements = pipeline::measure_errors(
+  const Measurements measurements = inspection::measure_errors(
       environment.files, arguments.directory, arguments.error, progress, environment.cancel);
   std::size_t problems = 0;
-  for (const pipeline::ErrorMeasurement& measurement : measurements)
+  for (const inspection::ErrorMeasurement& measurement : measurements)
     problems += measurement.problems.size();
   progress.finish(verdict(problems));
-  const bool all_levels = std::holds_alternative<pipeline::AllLevels>(arguments.error.selection);
+  const bool all_levels = std::holds_alternative<inspection::AllLevels>(arguments.error.selection);
   environment.out << (arguments.json ? json_text(measurements, all_levels)
                                      : plain_text(measurements, problems));
   return exit_code(problems);
 }
 
-int run_verify(VerifyArguments arguments, pipeline::ProgressMode mode, Environment& environment) {
+int run_verify(VerifyArguments arguments, execution::ProgressMode mode, Environment& environment) {
   arguments.options.input.assign(arguments.input.begin(), arguments.input.end());
   const auto progress =
-      pipeline::make_progress(mode, environment.messages, environment.messages_on_terminal);
+      execution::make_progress(mode, environment.messages, environment.messages_on_terminal);
   if (arguments.measures_error)
     return run_error(arguments, *progress, environment);
-  const pipeline::VerifyReport report = pipeline::verify_hierarchy(
+  const inspection::VerifyReport report = inspection::verify_hierarchy(
       environment.files, arguments.directory, arguments.options, *progress, environment.cancel);
   progress->finish(verdict(report.problems.size()));
   environment.out << (arguments.json ? json_text(report) : plain_text(report));
@@ -116,9 +116,9 @@ Examples:
 )";
 
 /// --level L | all
-void store_level(const std::string& text, pipeline::ErrorOptions& error) {
+void store_level(const std::string& text, inspection::ErrorOptions& error) {
   if (text == "all") {
-    error.selection = pipeline::AllLevels{};
+    error.selection = inspection::AllLevels{};
     return;
   }
   std::uint8_t level = 0;
@@ -137,7 +137,7 @@ constexpr std::uint64_t kMostSamples = 400'000'000;
 
 void add_error_options(CLI::App& command, VerifyArguments& arguments,
                        const std::vector<CLI::Option*>& others) {
-  pipeline::ErrorOptions& error = arguments.error;
+  inspection::ErrorOptions& error = arguments.error;
   CLI::Option* mode =
       command.add_flag("--error", arguments.measures_error,
                        "Measure the distance to the original partitions, and do nothing else");
@@ -163,7 +163,7 @@ void add_error_options(CLI::App& command, VerifyArguments& arguments,
 
 void add_verify_command(CLI::App& parser, Invocation& invocation) {
   const auto arguments = std::make_shared<VerifyArguments>();
-  pipeline::VerifyOptions& options = arguments->options;
+  inspection::VerifyOptions& options = arguments->options;
   CLI::App* command = parser.add_subcommand("verify", "Prove that a hierarchy is sound");
   command->add_option("HIERARCHY", arguments->directory, "A directory or a 3tz archive")
       ->required();

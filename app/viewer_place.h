@@ -1,7 +1,7 @@
 // Where the viewer's page lies.
 #pragma once
 
-#include "storage/file.h"
+#include "storage/io/file.h"
 
 #include <filesystem>
 #include <memory>

@@ -6,7 +6,7 @@
 #include "hierarchy/vec.h"
 #include "mesh_io/mesh_source.h"
 #include "mesh_io/ply_writer.h"
-#include "storage/file.h"
+#include "storage/io/file.h"
 
 #include <array>
 #include <cstdint>

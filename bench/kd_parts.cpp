@@ -3,7 +3,7 @@
 #include "hierarchy/tree.h"
 #include "partition/chunk.h"
 #include "partition/top_tree.h"
-#include "storage/spool.h"
+#include "storage/io/spool.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -4,7 +4,7 @@
 #include "bench/parts.h"
 #include "hierarchy/vec.h"
 #include "partition/direction.h"
-#include "storage/file.h"
+#include "storage/io/file.h"
 
 #include <cstdint>
 #include <span>

@@ -11,7 +11,7 @@
 namespace meshhier::bench {
 namespace {
 
-using pipeline::SurfaceTriangle;
+using inspection::SurfaceTriangle;
 
 /// Random sequences of the samples: where in its share, and where in the triangle.
 constexpr std::uint64_t kPlaceSeed = 1;
@@ -28,7 +28,7 @@ SurfaceTriangle corners_of(const PlainMesh& mesh, const MeshTriangle& t) {
 }
 
 double area_of(const SurfaceTriangle& corners) {
-  return length(pipeline::area_vector(corners)) / 2;
+  return length(inspection::area_vector(corners)) / 2;
 }
 
 std::vector<SurfaceTriangle> triangles_of(const PlainMesh& mesh) {

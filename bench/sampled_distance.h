@@ -3,7 +3,7 @@
 #pragma once
 
 #include "bench/parts.h"
-#include "pipeline/triangle_search.h"
+#include "inspection/triangle_search.h"
 
 #include <cstdint>
 
@@ -28,7 +28,7 @@ class SearchableSurface {
   Distances distances_from(const PlainMesh& from, std::uint64_t samples) const;
 
  private:
-  pipeline::TriangleSearch search_;
+  inspection::TriangleSearch search_;
 };
 
 }  // namespace meshhier::bench

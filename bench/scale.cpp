@@ -2,8 +2,8 @@
 #include "bench/child_process.h"
 #include "bench/program.h"
 #include "bench/scale_run.h"
+#include "execution/size_text.h"
 #include "hierarchy/error.h"
-#include "pipeline/size_text.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -68,10 +68,10 @@ void add_options(CLI::App& app, Arguments& arguments) {
 
 void set_budgets(Arguments& arguments) {
   for (const std::string& text : arguments.budgets) {
-    const std::optional<std::uint64_t> bytes = pipeline::parse_size(text);
+    const std::optional<std::uint64_t> bytes = execution::parse_size(text);
     if (!bytes || *bytes == 0) {
-      throw Error(ErrorCode::usage,
-                  fmt::format("--budgets: expected {}, found \"{}\"", pipeline::kSizeSyntax, text));
+      throw Error(ErrorCode::usage, fmt::format("--budgets: expected {}, found \"{}\"",
+                                                execution::kSizeSyntax, text));
     }
     arguments.options.budgets.push_back(*bytes);
   }

@@ -1,8 +1,8 @@
 #include "bench/scale_run.h"
 
 #include "bench/child_process.h"
+#include "execution/size_text.h"
 #include "hierarchy/error.h"
-#include "pipeline/size_text.h"
 
 #include <algorithm>
 #include <chrono>
@@ -156,7 +156,7 @@ class Runner {
     const std::uint64_t free = files_.free_bytes(options_.work);
     if (free < room) {
       tell_(fmt::format("{} triangles: skipped, {} free, about {} needed", triangles,
-                        pipeline::rounded_size_text(free), pipeline::rounded_size_text(room)));
+                        execution::rounded_size_text(free), execution::rounded_size_text(room)));
       return;
     }
     tell_(fmt::format("{} triangles: making the mesh", triangles));
@@ -197,7 +197,7 @@ class Runner {
       return;
     tell_(fmt::format("{} triangles{}, {}, threads {}, {}", setting.triangles,
                       setting.shuffled ? " in random order" : "", setting.method, setting.threads,
-                      pipeline::exact_size_text(setting.budget_bytes)));
+                      execution::exact_size_text(setting.budget_bytes)));
     std::optional<ScaleMeasurement> best;
     for (unsigned i = 0; i < options_.repeat; ++i) {
       std::optional<ScaleMeasurement> next = build(setting);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bench/scale_tables.h"
-#include "storage/file.h"
+#include "storage/io/file.h"
 
 #include <cstdint>
 #include <filesystem>

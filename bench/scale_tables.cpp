@@ -1,7 +1,7 @@
 #include "bench/scale_tables.h"
 
+#include "execution/size_text.h"
 #include "hierarchy/error.h"
-#include "pipeline/size_text.h"
 
 #include <algorithm>
 #include <functional>
@@ -13,8 +13,8 @@
 namespace meshhier::bench {
 namespace {
 
-using pipeline::exact_size_text;
-using pipeline::rounded_size_text;
+using execution::exact_size_text;
+using execution::rounded_size_text;
 using Rows = std::vector<const ScaleMeasurement*>;
 
 double ratio(double a, double b) {

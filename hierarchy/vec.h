@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace meshhier {
 
@@ -41,6 +42,13 @@ constexpr Vec3d to_double(Vec3f a) {
 }
 constexpr Vec3f to_float(Vec3d a) {
   return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
+}
+
+/// Whether all three coordinates are floats.
+inline bool fits_float(Vec3d p) {
+  constexpr double kMost = std::numeric_limits<float>::max();
+  const bool in_range = std::abs(p.x) <= kMost && std::abs(p.y) <= kMost && std::abs(p.z) <= kMost;
+  return in_range && to_double(to_float(p)) == p;
 }
 
 }  // namespace meshhier

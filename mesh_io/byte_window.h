@@ -1,8 +1,8 @@
 // A file read forwards through one buffer of fixed size.
 #pragma once
 
-#include "storage/file.h"
-#include "storage/file_checksum.h"
+#include "storage/io/file.h"
+#include "storage/io/file_checksum.h"
 
 #include <cstddef>
 #include <cstdint>

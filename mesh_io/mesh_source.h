@@ -4,7 +4,7 @@
 #include "hierarchy/attributes.h"
 #include "hierarchy/ids.h"
 #include "hierarchy/vec.h"
-#include "storage/file.h"
+#include "storage/io/file.h"
 
 #include <array>
 #include <cstdint>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "mesh_io/mesh_source.h"
-#include "storage/file.h"
+#include "storage/io/file.h"
 
 #include <cstdint>
 #include <memory>

@@ -3,7 +3,7 @@
 
 #include "hierarchy/attributes.h"
 #include "hierarchy/vec.h"
-#include "storage/file.h"
+#include "storage/io/file.h"
 
 #include <array>
 #include <cstdint>

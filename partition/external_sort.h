@@ -6,7 +6,7 @@
 // MiB); what is beyond that goes through one merge more, and only the excess does.
 #pragma once
 
-#include "storage/spool.h"
+#include "storage/io/spool.h"
 
 #include <algorithm>
 #include <cassert>

@@ -14,7 +14,7 @@
 // fashion), and a triangle passes at most one group more for each of its buckets.
 #pragma once
 
-#include "storage/spool.h"
+#include "storage/io/spool.h"
 
 #include <array>
 #include <cstdint>

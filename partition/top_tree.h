@@ -15,7 +15,7 @@
 #include "partition/direction.h"
 #include "partition/split_cells.h"
 #include "partition/split_plane.h"
-#include "storage/spool.h"
+#include "storage/io/spool.h"
 
 #include <cstdint>
 #include <span>

@@ -1,24 +1,25 @@
 #include "pipeline/build.h"
 
+#include "config/config_schema.h"
+#include "execution/allocator.h"
+#include "execution/size_text.h"
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
-#include "pipeline/build_input.h"
-#include "pipeline/build_plan.h"
-#include "pipeline/config_schema.h"
-#include "pipeline/import_stage.h"
-#include "pipeline/memory_plan.h"
+#include "import/import_input.h"
+#include "import/mesh_input.h"
+#include "pipeline/journal/workshop.h"
 #include "pipeline/outline_stage.h"
 #include "pipeline/pack_stage.h"
 #include "pipeline/partition_stage.h"
+#include "pipeline/plan/build_plan.h"
+#include "pipeline/plan/memory_plan.h"
 #include "pipeline/publish_stage.h"
 #include "pipeline/simplify_stage.h"
-#include "pipeline/size_text.h"
 #include "pipeline/source_mesh.h"
-#include "pipeline/workshop.h"
-#include "storage/hierarchy_reader.h"
-#include "storage/layout.h"
-#include "storage/tileset.h"
-#include "storage/work_directory.h"
+#include "storage/format/hierarchy_reader.h"
+#include "storage/format/layout.h"
+#include "storage/format/tileset.h"
+#include "storage/format/work_directory.h"
 
 #include <algorithm>
 #include <future>
@@ -34,17 +35,17 @@ namespace {
 constexpr std::size_t kLongestName = 255;
 
 /// What `config` became, with what does not decide the result.
-nlohmann::ordered_json whole_config(const Config& config) {
-  nlohmann::ordered_json whole{{"input", find_config_key("input")->show(config)},
+nlohmann::ordered_json whole_config(const config::Config& config) {
+  nlohmann::ordered_json whole{{"input", config::find_config_key("input")->show(config)},
                                {"output", config.output.string()},
-                               {"memory_budget", exact_size_text(config.memory_budget)},
+                               {"memory_budget", execution::exact_size_text(config.memory_budget)},
                                {"threads", config.threads}};
-  whole.update(resolved_json(config));
-  whole["storage"]["container"] = find_config_key("storage.container")->show(config);
+  whole.update(config::resolved_json(config));
+  whole["storage"]["container"] = config::find_config_key("storage.container")->show(config);
   return whole;
 }
 
-BuildStats make_stats(const Config& config, const storage::HierarchyReader& made,
+BuildStats make_stats(const config::Config& config, const storage::HierarchyReader& made,
                       const BuildPlan& plan) {
   const SourceSummary& source = made.manifest().source;
   BuildStats stats;
@@ -67,13 +68,13 @@ std::string report_text(const SourceSummary& source, const std::string& found,
   std::string text = found.empty() ? "" : found + '\n';
   text += fmt::format("{} vertices, {} triangles -> {} partitions, {} levels, {} tiles, {}\n",
                       source.vertices, source.triangles, stats.partitions, stats.levels,
-                      stats.tiles, rounded_size_text(stats.output_bytes));
+                      stats.tiles, execution::rounded_size_text(stats.output_bytes));
   for (const SourceFile& file : source.files) {
     text += fmt::format("imported {}: {}, {}\n", plain_text(file.name, kLongestName), file.format,
-                        rounded_size_text(file.bytes));
+                        execution::rounded_size_text(file.bytes));
   }
   if (!source.counts.empty())
-    text += "counted " + counts_text(source.counts) + '\n';
+    text += "counted " + importing::counts_text(source.counts) + '\n';
   if (source.degenerate_triangles > 0) {
     text += fmt::format("dropped {} degenerate triangles\n", source.degenerate_triangles);
   }
@@ -83,9 +84,10 @@ std::string report_text(const SourceSummary& source, const std::string& found,
   return text + stats_text(stats);
 }
 
-BuildInput::Place import_place(const storage::WorkDirectory& work, storage::MemoryPool& pool,
-                               std::uint64_t sort_bytes, Progress& progress,
-                               const CancelToken& cancel) {
+importing::MeshInput::Place import_place(const storage::WorkDirectory& work,
+                                         storage::MemoryPool& pool, std::uint64_t sort_bytes,
+                                         execution::Progress& progress,
+                                         const execution::CancelToken& cancel) {
   return {storage::imported_path(work.path()),
           work.path() / "import",
           pool,
@@ -95,9 +97,9 @@ BuildInput::Place import_place(const storage::WorkDirectory& work, storage::Memo
 }
 
 /// Checks, samples and distributes the input, and notes what was learnt of it.
-void read_input(BuildInput& input, const Config& config, const BuildPlan& build, Workshop& workshop,
-                Progress& progress, BuildEnvironment environment) {
-  const CancelToken& cancel = environment.cancel;
+void read_input(importing::MeshInput& input, const config::Config& config, const BuildPlan& build,
+                Workshop& workshop, execution::Progress& progress, BuildEnvironment environment) {
+  const execution::CancelToken& cancel = environment.cancel;
   storage::ScratchFile vertices = workshop.mesh_scratch.beside("vertices");
   SourceMesh mesh(input.open(), input.files().name(), vertices, build.memory.blocks_in_flight,
                   progress, cancel);
@@ -113,8 +115,8 @@ void read_input(BuildInput& input, const Config& config, const BuildPlan& build,
   workshop.journal.note_source(summary, mesh.origin());
 }
 
-std::optional<Transform> tileset_transform(const Config& config) {
-  const PlacementConfig& place = config.placement;
+std::optional<Transform> tileset_transform(const config::Config& config) {
+  const config::PlacementConfig& place = config.placement;
   if (!place.longitude)
     return place.transform;
   const auto [x, y, z] = place.anchor.value_or(std::array<double, 3>{});
@@ -123,7 +125,7 @@ std::optional<Transform> tileset_transform(const Config& config) {
 }
 
 /// What was recalled of an earlier build is of no use after all: the input is imported again.
-void import_again(BuildInput& input, const BuildInput::Place& place) {
+void import_again(importing::MeshInput& input, const importing::MeshInput::Place& place) {
   const mesh_io::MeshDescription recalled = input.description();
   input.import(place);
   const mesh_io::MeshDescription& mesh = input.description();
@@ -142,10 +144,10 @@ Error told_how_to_go_on(const Error& error, const storage::WorkDirectory& work) 
 }
 
 /// Makes all files of the hierarchy in `directory`, as far as the journal does not have them.
-void make_hierarchy(const Config& config, const BuildPlan& build, Workshop& workshop,
-                    const std::filesystem::path& directory, Progress& progress,
+void make_hierarchy(const config::Config& config, const BuildPlan& build, Workshop& workshop,
+                    const std::filesystem::path& directory, execution::Progress& progress,
                     BuildEnvironment environment) {
-  const CancelToken& cancel = environment.cancel;
+  const execution::CancelToken& cancel = environment.cancel;
   const MemoryPlan& plan = build.memory;
   auto& [mesh_scratch, tile_scratch, chunks, forest, journal] = workshop;
   PublishInput result;
@@ -157,7 +159,7 @@ void make_hierarchy(const Config& config, const BuildPlan& build, Workshop& work
   result.position_bits = config.storage.position_bits;
   result.transform = tileset_transform(config);
   result.licence = config.licence;
-  result.is_temporary = config.storage.container == Container::archive;
+  result.is_temporary = config.storage.container == storage::Container::archive;
   result.source.unreferenced_vertices =
       make_leaves(chunks, forest, journal, config.partition.axis, plan, progress, cancel);
   // Without the chunks leaves cannot be made again, so these reach the disk before those go.
@@ -169,7 +171,7 @@ void make_hierarchy(const Config& config, const BuildPlan& build, Workshop& work
 
   const double diagonal = length(result.source.bounds.max - result.source.bounds.min);
   result.asked_vertices = build.asked_vertices;
-  result.config = resolved_json(config);
+  result.config = config::resolved_json(config);
   simplify(forest, journal,
            {result.asked_vertices,
             result.source.attributes,
@@ -187,9 +189,9 @@ std::uint64_t written_for_good(storage::FileSystem& files, const storage::Scratc
   return files.counters().bytes_written - use.bytes_written();
 }
 
-BuildReport build_in(storage::WorkDirectory& work, const Config& config, const BuildPlan& build,
-                     BuildInput& input, storage::MemoryPool& pool, StageMeter& progress,
-                     BuildEnvironment environment) {
+BuildReport build_in(storage::WorkDirectory& work, const config::Config& config,
+                     const BuildPlan& build, importing::MeshInput& input, storage::MemoryPool& pool,
+                     StageMeter& progress, BuildEnvironment environment) {
   storage::FileSystem& files = environment.files;
   pool.set_capacity(build.memory.pool_bytes);
   if (files.exists(storage::journal_path(work.path())))
@@ -199,8 +201,8 @@ BuildReport build_in(storage::WorkDirectory& work, const Config& config, const B
   Workshop& workshop = *open.workshop;
   if (!workshop.journal.source()) {
     if (!input.can_be_read()) {
-      const std::uint64_t sort_bytes =
-          std::min(plan_import(config.memory_budget).sort_bytes, build.memory.work_bytes / 4);
+      const std::uint64_t sort_bytes = std::min(
+          importing::plan_import(config.memory_budget).sort_bytes, build.memory.work_bytes / 4);
       import_again(input, import_place(work, pool, sort_bytes, progress, environment.cancel));
     }
     read_input(input, config, build, workshop, progress, environment);
@@ -214,7 +216,7 @@ BuildReport build_in(storage::WorkDirectory& work, const Config& config, const B
   std::uint64_t output_bytes =
       made.manifest().total_bytes + files.open(storage::manifest_path(work.built()))->size();
   environment.cancel.check();
-  if (config.storage.container == Container::archive) {
+  if (config.storage.container == storage::Container::archive) {
     storage::ScratchUse& use = pool.scratch_use();
     use.add_written(written_for_good(files, use) - before);
     const TemporaryFiles unpacked(use, output_bytes);
@@ -238,40 +240,44 @@ BuildReport build_in(storage::WorkDirectory& work, const Config& config, const B
 
 /// What was imported goes while the work directory is locked.
 struct DropAtEnd {
-  BuildInput& input;
+  importing::MeshInput& input;
   ~DropAtEnd() { input.drop(); }
 };
 
 /// Imports the input, unless an earlier build did; then it is known what there is to do.
-BuildPlan plan_imported(storage::WorkDirectory& work, const Config& config, BuildInput& input,
-                        storage::MemoryPool& pool, StageMeter& progress,
-                        BuildEnvironment environment) {
+BuildPlan plan_imported(storage::WorkDirectory& work, const config::Config& config,
+                        importing::MeshInput& input, storage::MemoryPool& pool,
+                        StageMeter& progress, BuildEnvironment environment) {
   const auto earlier = find_earlier_build(environment.files, work.path());
   work.keep(earlier.has_value());
-  if (!earlier || !input.recall(*earlier, environment.cancel)) {
-    const ImportMemory memory = plan_import(config.memory_budget);
+  const auto recalled = earlier ? recall_import(*earlier, input, environment.cancel) : std::nullopt;
+  if (recalled) {
+    input.recall(*recalled);
+  } else {
+    const importing::ImportMemory memory = importing::plan_import(config.memory_budget);
     pool.set_capacity(memory.pool_bytes);
     input.import(import_place(work, pool, memory.sort_bytes, progress, environment.cancel));
-    release_free_memory();
+    execution::release_free_memory();
   }
   BuildPlan build = plan_build(config, input.description(), input.imported_bytes());
   build.disk.temporary_bytes = std::max(
-      build.disk.temporary_bytes, predict_import(input.files(), plan_import(config.memory_budget)));
+      build.disk.temporary_bytes,
+      importing::predict_import(input.files(), importing::plan_import(config.memory_budget)));
   check_disk(build.disk, config.output, environment.files);
   return build;
 }
 
 }  // namespace
 
-BuildReport build_hierarchy(const Config& config, const BuildOptions& options,
+BuildReport build_hierarchy(const config::Config& config, const BuildOptions& options,
                             BuildEnvironment environment) {
   storage::FileSystem& files = environment.files;
-  configure_allocator(config.memory_budget);
+  execution::configure_allocator(config.memory_budget);
 
   // Everything that can be refused is refused before anything is written.
   check_apart(config, files);
   storage::MemoryPool pool(0);
-  BuildInput input(config, files);
+  importing::MeshInput input(config.input, config.weld, files);
   std::optional<BuildPlan> build;
   if (!input.needs_import())
     build = plan_build(config, input.description());
@@ -282,8 +288,9 @@ BuildReport build_hierarchy(const Config& config, const BuildOptions& options,
   if (build)
     check_disk(build->disk, config.output, files);
   else
-    check_import_disk(predict_import(input.files(), plan_import(config.memory_budget)),
-                      config.output, files);
+    check_import_disk(
+        importing::predict_import(input.files(), importing::plan_import(config.memory_budget)),
+        config.output, files);
 
   storage::WorkDirectory work(files, output, options.force);
   if (options.restart)

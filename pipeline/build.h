@@ -1,11 +1,11 @@
 // The main job: from a mesh file to a hierarchy on disk.
 #pragma once
 
-#include "pipeline/build_stats.h"
-#include "pipeline/cancel.h"
-#include "pipeline/config.h"
-#include "pipeline/progress.h"
-#include "storage/file.h"
+#include "config/config.h"
+#include "execution/cancel.h"
+#include "execution/progress.h"
+#include "pipeline/plan/build_stats.h"
+#include "storage/io/file.h"
 
 #include <string>
 
@@ -14,8 +14,8 @@ namespace meshhier::pipeline {
 /// What a build works with, besides its config.
 struct BuildEnvironment {
   storage::FileSystem& files;
-  Progress& progress;
-  const CancelToken& cancel;
+  execution::Progress& progress;
+  const execution::CancelToken& cancel;
 };
 
 struct BuildOptions {
@@ -35,7 +35,7 @@ struct BuildReport {
 /// build is stopped after that, by Error(interrupted), Error(io) or a kill, it stays there, and the
 /// next build of the same input with a config of the same result goes on with it; with another
 /// result it is refused with Error(exists). Else nothing is left behind.
-BuildReport build_hierarchy(const Config& config, const BuildOptions& options,
+BuildReport build_hierarchy(const config::Config& config, const BuildOptions& options,
                             BuildEnvironment environment);
 
 }  // namespace meshhier::pipeline

@@ -1,9 +1,9 @@
 #include "pipeline/outline_stage.h"
 
+#include "execution/parallel.h"
 #include "outline/outline_builder.h"
-#include "pipeline/parallel.h"
-#include "pipeline/tile_room.h"
-#include "storage/outline_glb.h"
+#include "pipeline/plan/tile_room.h"
+#include "storage/format/outline_glb.h"
 
 #include <algorithm>
 #include <atomic>
@@ -33,13 +33,13 @@ Level sector_level(const Tree& tree, std::uint32_t sectors) {
 
 /// Adds all sectors of a level; false if their lines are too many and there is a coarser level.
 bool collect(Forest& forest, Level level, outline::OutlineBuilder& builder, const MemoryPlan& plan,
-             Progress& progress, const CancelToken& cancel) {
+             execution::Progress& progress, const execution::CancelToken& cancel) {
   using Collected = std::optional<outline::OutlineBuilder::Sector>;
   const std::uint32_t count = forest.tree().node_count(level);
   progress.stage("outline", count, "sectors");
   std::atomic<bool> too_many{false};
   const TileRoom room = room_for(forest, plan, heaviest_read(forest, level));
-  ordered_for(
+  execution::ordered_for(
       count, room.in_flight(), cancel,
       [&](std::size_t i) -> Collected {
         if (too_many)
@@ -59,9 +59,10 @@ bool collect(Forest& forest, Level level, outline::OutlineBuilder& builder, cons
 
 }  // namespace
 
-OutlineStageResult make_outline(Forest& forest, const OutlineConfig& config, double diagonal,
-                                const MemoryPlan& plan, Progress& progress,
-                                const CancelToken& cancel) {
+OutlineStageResult make_outline(Forest& forest, const config::OutlineConfig& config,
+                                double diagonal, const MemoryPlan& plan,
+                                execution::Progress& progress,
+                                const execution::CancelToken& cancel) {
   outline::OutlineOptions options;
   options.tolerance = config.tolerance;
   options.diagonal = std::max(diagonal, 1e-30);

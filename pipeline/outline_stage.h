@@ -1,12 +1,12 @@
 // The stage `outline`: the shape-outline out of the simplified tiles of one level.
 #pragma once
 
+#include "config/config.h"
+#include "execution/cancel.h"
+#include "execution/progress.h"
 #include "hierarchy/outline.h"
-#include "pipeline/cancel.h"
-#include "pipeline/config.h"
-#include "pipeline/forest.h"
-#include "pipeline/memory_plan.h"
-#include "pipeline/progress.h"
+#include "pipeline/plan/memory_plan.h"
+#include "pipeline/tiles/forest.h"
 
 namespace meshhier::pipeline {
 
@@ -16,8 +16,9 @@ struct OutlineStageResult {
 };
 
 /// `diagonal`: of the model's bounding box.
-OutlineStageResult make_outline(Forest& forest, const OutlineConfig& config, double diagonal,
-                                const MemoryPlan& plan, Progress& progress,
-                                const CancelToken& cancel);
+OutlineStageResult make_outline(Forest& forest, const config::OutlineConfig& config,
+                                double diagonal, const MemoryPlan& plan,
+                                execution::Progress& progress,
+                                const execution::CancelToken& cancel);
 
 }  // namespace meshhier::pipeline

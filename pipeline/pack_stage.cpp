@@ -1,8 +1,8 @@
 #include "pipeline/pack_stage.h"
 
-#include "storage/archive_writer.h"
-#include "storage/layout.h"
-#include "storage/tileset.h"
+#include "storage/format/archive_writer.h"
+#include "storage/format/layout.h"
+#include "storage/format/tileset.h"
 
 #include <functional>
 
@@ -26,8 +26,8 @@ void for_each_name(const storage::HierarchyReader& made,
 }  // namespace
 
 std::uint64_t pack(const storage::HierarchyReader& made, const fs::path& file,
-                   storage::FileSystem& files, storage::ScratchUse& use, Progress& progress,
-                   const CancelToken& cancel) {
+                   storage::FileSystem& files, storage::ScratchUse& use,
+                   execution::Progress& progress, const execution::CancelToken& cancel) {
   constexpr std::uint64_t kOtherFiles = 3;  // manifest, index, outline
   progress.stage("pack", kOtherFiles + made.manifest().tileset_files + made.records().size(),
                  "files");

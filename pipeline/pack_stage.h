@@ -1,11 +1,11 @@
 // The stage `pack`: the published files as one archive.
 #pragma once
 
-#include "pipeline/cancel.h"
-#include "pipeline/progress.h"
-#include "storage/file.h"
-#include "storage/hierarchy_reader.h"
-#include "storage/scratch_use.h"
+#include "execution/cancel.h"
+#include "execution/progress.h"
+#include "storage/format/hierarchy_reader.h"
+#include "storage/io/file.h"
+#include "storage/io/scratch_use.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -32,7 +32,7 @@ class TemporaryFiles {
 /// Returns the archive's size. Throws Error(io | interrupted), Error(usage) if a file is too
 /// large for an archive.
 std::uint64_t pack(const storage::HierarchyReader& made, const std::filesystem::path& file,
-                   storage::FileSystem& files, storage::ScratchUse& use, Progress& progress,
-                   const CancelToken& cancel);
+                   storage::FileSystem& files, storage::ScratchUse& use,
+                   execution::Progress& progress, const execution::CancelToken& cancel);
 
 }  // namespace meshhier::pipeline

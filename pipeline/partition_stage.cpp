@@ -1,8 +1,9 @@
 #include "pipeline/partition_stage.h"
 
+#include "execution/allocator.h"
+#include "execution/parallel.h"
 #include "partition/renumber.h"
 #include "partition/top_tree.h"
-#include "pipeline/parallel.h"
 
 #include <span>
 #include <utility>
@@ -16,14 +17,15 @@ using partition::TopTree;
 
 /// Hands the vertices to parallel work(block, slot) and a serial sink(slot) in the order of ids.
 template <class Slot, class Work, class Sink>
-void for_each_block(const SourceMesh& mesh, const MemoryPlan& plan, const CancelToken& cancel,
-                    Progress& progress, const Work& work, const Sink& sink) {
+void for_each_block(const SourceMesh& mesh, const MemoryPlan& plan,
+                    const execution::CancelToken& cancel, execution::Progress& progress,
+                    const Work& work, const Sink& sink) {
   struct Read {
     mesh_io::BlockMemory memory;
     std::size_t count = 0;
     Slot slot;
   };
-  ordered_blocks<Read>(
+  execution::ordered_blocks<Read>(
       mesh.vertex_blocks(), plan.blocks_in_flight, cancel,
       [&](std::uint64_t i, Read& read) {
         const SourceVertices block = mesh.read_vertex_block(i, read.memory);
@@ -38,8 +40,8 @@ void for_each_block(const SourceMesh& mesh, const MemoryPlan& plan, const Cancel
 }
 
 TopTree find_splits(const SourceMesh& mesh, const Tree& tree, partition::Axis axis,
-                    const MemoryPlan& memory, storage::ScratchFile& scratch, Progress& progress,
-                    const CancelToken& cancel) {
+                    const MemoryPlan& memory, storage::ScratchFile& scratch,
+                    execution::Progress& progress, const execution::CancelToken& cancel) {
   TopPlan plan = partition::plan_top(mesh.sample(), tree, axis);
   if (plan.splits.empty())
     return {plan.chunks, {}};
@@ -63,8 +65,8 @@ TopTree find_splits(const SourceMesh& mesh, const Tree& tree, partition::Axis ax
 /// of the ids in their order.
 template <class TakeRanks>
 void distribute_vertices(const SourceMesh& mesh, const TopTree& top, Chunks& chunks,
-                         const MemoryPlan& plan, Progress& progress, const CancelToken& cancel,
-                         const TakeRanks& take_ranks) {
+                         const MemoryPlan& plan, execution::Progress& progress,
+                         const execution::CancelToken& cancel, const TakeRanks& take_ranks) {
   std::vector<std::uint32_t> next_rank(chunks.count());
   for (std::uint32_t c = 0; c < chunks.count(); ++c)
     next_rank[c] = chunks.map().first_rank(c);
@@ -91,7 +93,8 @@ void distribute_vertices(const SourceMesh& mesh, const TopTree& top, Chunks& chu
 class RankTable {
  public:
   RankTable(const SourceMesh& mesh, const TopTree& top, Chunks& chunks, const MemoryPlan& plan,
-            storage::ScratchFile& scratch, Progress& progress, const CancelToken& cancel)
+            storage::ScratchFile& scratch, execution::Progress& progress,
+            const execution::CancelToken& cancel)
       : scratch_(scratch), spooled_(scratch, 1 << 18) {
     const std::uint64_t count = mesh.summary().vertices;
     renumbering_ = partition::plan_renumbering(count, sizeof(std::uint32_t), plan.table_bytes);
@@ -120,7 +123,8 @@ class RankTable {
 };
 
 void distribute_triangles(SourceMesh& mesh, RankTable& ranks, Chunks& chunks,
-                          const MemoryPlan& plan, Progress& progress, const CancelToken& cancel) {
+                          const MemoryPlan& plan, execution::Progress& progress,
+                          const execution::CancelToken& cancel) {
   struct Slot {
     std::size_t read = 0;
     partition::Renumbered<std::uint32_t> renumbered;
@@ -145,7 +149,7 @@ void distribute_triangles(SourceMesh& mesh, RankTable& ranks, Chunks& chunks,
         progress.advance(slot.read);
       });
   while (renumberer.next_round()) {
-    ordered_blocks<Slot>(
+    execution::ordered_blocks<Slot>(
         renumberer.batches(), plan.blocks_in_flight, cancel,
         [&](std::uint64_t batch, Slot& slot) {
           renumberer.translate_batch(batch, slot.renumbered);
@@ -158,18 +162,18 @@ void distribute_triangles(SourceMesh& mesh, RankTable& ranks, Chunks& chunks,
 }  // namespace
 
 void distribute(SourceMesh& mesh, const Tree& tree, partition::Axis axis, Chunks& chunks,
-                const MemoryPlan& plan, storage::ScratchFile& scratch, Progress& progress,
-                const CancelToken& cancel) {
+                const MemoryPlan& plan, storage::ScratchFile& scratch,
+                execution::Progress& progress, const execution::CancelToken& cancel) {
   const TopTree top = [&] {
     storage::ScratchFile windows = scratch.beside("windows");
     return find_splits(mesh, tree, axis, plan, windows, progress, cancel);
   }();
-  release_free_memory();
+  execution::release_free_memory();
   storage::ScratchFile passing = scratch.beside("ranks");
   RankTable ranks(mesh, top, chunks, plan, passing, progress, cancel);
-  release_free_memory();
+  execution::release_free_memory();
   distribute_triangles(mesh, ranks, chunks, plan, progress, cancel);
-  release_free_memory();
+  execution::release_free_memory();
 }
 
 }  // namespace meshhier::pipeline

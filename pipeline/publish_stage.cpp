@@ -1,18 +1,18 @@
 #include "pipeline/publish_stage.h"
 
+#include "execution/parallel.h"
 #include "hierarchy/bounds.h"
 #include "hierarchy/lattice.h"
 #include "partition/compactness.h"
-#include "pipeline/parallel.h"
-#include "pipeline/summary.h"
-#include "pipeline/tile_room.h"
-#include "pipeline/vertex_order.h"
-#include "storage/hash.h"
-#include "storage/index.h"
-#include "storage/layout.h"
-#include "storage/manifest.h"
-#include "storage/outline_glb.h"
-#include "storage/tileset.h"
+#include "pipeline/plan/tile_room.h"
+#include "pipeline/tiles/vertex_order.h"
+#include "storage/format/index.h"
+#include "storage/format/layout.h"
+#include "storage/format/level_summary.h"
+#include "storage/format/manifest.h"
+#include "storage/format/outline_glb.h"
+#include "storage/format/tileset.h"
+#include "storage/io/hash.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,13 +50,13 @@ bool draws(const Tree& tree, NodeId node, const TileMesh& mesh, const Triangle& 
 /// tiles are looked at, since simplified ones may have vertices beyond the input's bounds.
 storage::Quantization quantize(const Forest& forest, std::span<const NodeId> nodes,
                                const PublishInput& input, std::size_t in_flight,
-                               const CancelToken& cancel) {
+                               const execution::CancelToken& cancel) {
   const BoundsD& bounds = input.source.bounds;
   const Vec3d& origin = input.format.frame.origin;
   storage::Quantization result;
   result.lattice = make_lattice({to_float(bounds.min - origin), to_float(bounds.max - origin)},
                                 static_cast<int>(*input.position_bits));
-  ordered_for(
+  execution::ordered_for(
       nodes.size(), in_flight, cancel,
       [&](std::size_t i) {
         BuildTile tile = forest.load(nodes[i]);
@@ -144,7 +144,8 @@ TileRecord write_tile(const TileWriter& to, NodeId node) {
 
 void publish(Forest& forest, BuildJournal& journal, const PublishInput& input,
              const std::filesystem::path& directory, const MemoryPlan& plan,
-             storage::FileSystem& files, Progress& progress, const CancelToken& cancel) {
+             storage::FileSystem& files, execution::Progress& progress,
+             const execution::CancelToken& cancel) {
   const Tree& tree = forest.tree();
   const std::vector<NodeId> nodes = published_nodes(tree);
   for (int l = 0; l <= raw(tree.depth()); ++l) {
@@ -159,7 +160,7 @@ void publish(Forest& forest, BuildJournal& journal, const PublishInput& input,
       left.push_back(i);
   }
   progress.stage("publish", left.size(), "tiles");
-  const bool packed = input.format.compression != Compression::none;
+  const bool packed = input.format.compression != storage::Compression::none;
   std::uint64_t heaviest = 0;
   for (int l = 0; l <= raw(tree.depth()); ++l)
     heaviest = std::max(heaviest, packed ? heaviest_packed(forest, static_cast<Level>(l))
@@ -172,7 +173,7 @@ void publish(Forest& forest, BuildJournal& journal, const PublishInput& input,
     format.lattice = quantization->lattice;
   }
   const TileWriter writer{forest, input, format, quantization, directory, files};
-  ordered_for(
+  execution::ordered_for(
       left.size(), room.in_flight(), cancel,
       [&](std::size_t i) { return write_tile(writer, nodes[left[i]]); },
       [&](std::size_t i, const TileRecord& record) {
@@ -204,8 +205,8 @@ void publish(Forest& forest, BuildJournal& journal, const PublishInput& input,
   manifest.outline_checksum = storage::checksum(outline);
   manifest.outline = input.outline.report;
   manifest.levels = nlohmann::ordered_json::array();
-  for (const LevelSummary& level : summarize_levels(tree, records))
-    manifest.levels.push_back(to_json(level));
+  for (const storage::LevelSummary& level : storage::summarize_levels(tree, records))
+    manifest.levels.push_back(storage::to_json(level));
   manifest.total_bytes = std::accumulate(
       records.begin(), records.end(), std::uint64_t{index.size() + outline.size()},
       [](std::uint64_t sum, const TileRecord& record) { return sum + record.file_bytes; });

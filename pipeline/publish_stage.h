@@ -1,17 +1,17 @@
 // The stage `publish`: tiles as GLB, the index, the outline and the manifest.
 #pragma once
 
+#include "config/config.h"
+#include "execution/cancel.h"
+#include "execution/progress.h"
 #include "hierarchy/asked_vertices.h"
 #include "hierarchy/published.h"
-#include "pipeline/build_journal.h"
-#include "pipeline/cancel.h"
-#include "pipeline/config.h"
-#include "pipeline/forest.h"
-#include "pipeline/memory_plan.h"
+#include "pipeline/journal/build_journal.h"
 #include "pipeline/outline_stage.h"
-#include "pipeline/progress.h"
-#include "storage/file.h"
-#include "storage/tile_glb.h"
+#include "pipeline/plan/memory_plan.h"
+#include "pipeline/tiles/forest.h"
+#include "storage/format/tile_glb.h"
+#include "storage/io/file.h"
 
 #include <cstdint>
 #include <optional>
@@ -36,6 +36,7 @@ struct PublishInput {
 /// Writes the whole hierarchy into `directory`, but for tiles that the journal has there.
 void publish(Forest& forest, BuildJournal& journal, const PublishInput& input,
              const std::filesystem::path& directory, const MemoryPlan& plan,
-             storage::FileSystem& files, Progress& progress, const CancelToken& cancel);
+             storage::FileSystem& files, execution::Progress& progress,
+             const execution::CancelToken& cancel);
 
 }  // namespace meshhier::pipeline

@@ -1,11 +1,12 @@
 #include "pipeline/simplify_stage.h"
 
 #include "cluster_simplify/band.h"
+#include "execution/allocator.h"
+#include "execution/parallel.h"
+#include "execution/size_text.h"
 #include "hierarchy/error.h"
-#include "pipeline/bound_chain.h"
-#include "pipeline/parallel.h"
-#include "pipeline/size_text.h"
-#include "pipeline/tile_room.h"
+#include "pipeline/plan/tile_room.h"
+#include "pipeline/tiles/bound_chain.h"
 
 #include <algorithm>
 #include <utility>
@@ -26,10 +27,11 @@ constexpr std::size_t kChunksBetweenReleases = 8;
 void check_fits(const Chunks& chunks, std::uint32_t chunk, const MemoryPlan& plan) {
   const std::uint64_t needed = chunks.triangle_bytes(chunk) * 4;
   if (needed > plan.work_bytes + plan.pool_bytes / 2) {
-    throw Error(ErrorCode::budget, fmt::format("a part of the mesh has {} triangles on {} "
-                                               "vertices; it needs a memory_budget larger by {}",
-                                               chunks.triangle_bytes(chunk) / 12,
-                                               chunks.map().size(chunk), exact_size_text(needed)));
+    throw Error(ErrorCode::budget,
+                fmt::format("a part of the mesh has {} triangles on {} "
+                            "vertices; it needs a memory_budget larger by {}",
+                            chunks.triangle_bytes(chunk) / 12, chunks.map().size(chunk),
+                            execution::exact_size_text(needed)));
   }
 }
 
@@ -169,8 +171,8 @@ std::vector<std::uint32_t> left_to_do(std::uint32_t count, const IsDone& is_done
 }  // namespace
 
 std::uint64_t make_leaves(Chunks& chunks, Forest& forest, BuildJournal& journal,
-                          partition::Axis axis, const MemoryPlan& plan, Progress& progress,
-                          const CancelToken& cancel) {
+                          partition::Axis axis, const MemoryPlan& plan,
+                          execution::Progress& progress, const execution::CancelToken& cancel) {
   const Tree& tree = forest.tree();
   const std::vector<std::uint32_t> left =
       left_to_do(chunks.count(), [&](std::uint32_t chunk) { return journal.has_leaves(chunk); });
@@ -179,7 +181,7 @@ std::uint64_t make_leaves(Chunks& chunks, Forest& forest, BuildJournal& journal,
     partitions += tree.partitions({chunks.level(), chunk}).size();
   progress.stage("leaves", partitions, "partitions");
   std::uint64_t unreferenced = journal.unreferenced_vertices();
-  ordered_for(
+  execution::ordered_for(
       left.size(), plan.chunks_in_flight, cancel,
       [&](std::size_t i) {
         check_fits(chunks, left[i], plan);
@@ -190,13 +192,14 @@ std::uint64_t make_leaves(Chunks& chunks, Forest& forest, BuildJournal& journal,
         unreferenced += report.unreferenced_vertices;
         progress.advance(report.partitions);
         if (i % kChunksBetweenReleases == kChunksBetweenReleases - 1)
-          release_free_memory();
+          execution::release_free_memory();
       });
   return unreferenced;
 }
 
 void simplify(Forest& forest, BuildJournal& journal, const SimplifyOptions& options,
-              const MemoryPlan& plan, Progress& progress, const CancelToken& cancel) {
+              const MemoryPlan& plan, execution::Progress& progress,
+              const execution::CancelToken& cancel) {
   const Tree& tree = forest.tree();
   std::vector<std::vector<std::uint32_t>> left;
   std::uint64_t total = 0;
@@ -214,7 +217,7 @@ void simplify(Forest& forest, BuildJournal& journal, const SimplifyOptions& opti
   for (int l = raw(tree.depth()) - 1; l >= 0; --l) {
     const auto level = static_cast<Level>(l);
     const TileRoom room = room_for(forest, plan, heaviest_contracted(forest, level));
-    ordered_for(
+    execution::ordered_for(
         left[l].size(), room.in_flight(), cancel,
         [&](std::size_t i) {
           const NodeId node{level, left[l][i]};
@@ -225,7 +228,7 @@ void simplify(Forest& forest, BuildJournal& journal, const SimplifyOptions& opti
           journal.note_tile(node, simplifier.steps_below(node));
           progress.advance(1);
           if ((i + 1) % room.items_between_releases() == 0)
-            release_free_memory();
+            execution::release_free_memory();
         });
     if (!simplifier.steps().empty())
       chain.add(finer(level), simplifier.steps());

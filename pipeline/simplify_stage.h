@@ -3,22 +3,22 @@
 #pragma once
 
 #include "cluster_simplify/contraction.h"
+#include "execution/cancel.h"
+#include "execution/progress.h"
 #include "hierarchy/asked_vertices.h"
 #include "partition/direction.h"
-#include "pipeline/build_journal.h"
-#include "pipeline/cancel.h"
-#include "pipeline/forest.h"
-#include "pipeline/memory_plan.h"
+#include "pipeline/journal/build_journal.h"
 #include "pipeline/partition_stage.h"
-#include "pipeline/progress.h"
+#include "pipeline/plan/memory_plan.h"
+#include "pipeline/tiles/forest.h"
 
 namespace meshhier::pipeline {
 
 /// Splits every chunk and puts its partition tiles into the forest, but for those whose leaves the
 /// journal has. Returns how many vertices no triangle uses.
 std::uint64_t make_leaves(Chunks& chunks, Forest& forest, BuildJournal& journal,
-                          partition::Axis axis, const MemoryPlan& plan, Progress& progress,
-                          const CancelToken& cancel);
+                          partition::Axis axis, const MemoryPlan& plan,
+                          execution::Progress& progress, const execution::CancelToken& cancel);
 
 struct SimplifyOptions {
   AskedVertices vertices = 8192;
@@ -36,6 +36,7 @@ struct SimplifyOptions {
 /// along every way a point may have taken, through the tile itself and its neighbours
 /// (bound_chain.h); `error` adds the steps' root mean squares up the tree.
 void simplify(Forest& forest, BuildJournal& journal, const SimplifyOptions& options,
-              const MemoryPlan& plan, Progress& progress, const CancelToken& cancel);
+              const MemoryPlan& plan, execution::Progress& progress,
+              const execution::CancelToken& cancel);
 
 }  // namespace meshhier::pipeline

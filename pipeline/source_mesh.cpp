@@ -62,15 +62,9 @@ struct BlockScan {
 
 }  // namespace
 
-bool fits_float(Vec3d p) {
-  constexpr double kMost = std::numeric_limits<float>::max();
-  const bool in_range = std::abs(p.x) <= kMost && std::abs(p.y) <= kMost && std::abs(p.z) <= kMost;
-  return in_range && to_double(to_float(p)) == p;
-}
-
 SourceMesh::SourceMesh(std::unique_ptr<mesh_io::MeshSource> source, std::string file_name,
-                       storage::ScratchFile& scratch, std::size_t in_flight, Progress& progress,
-                       const CancelToken& cancel)
+                       storage::ScratchFile& scratch, std::size_t in_flight,
+                       execution::Progress& progress, const execution::CancelToken& cancel)
     : source_(std::move(source)),
       spooled_positions_(scratch, 1 << 18),
       spooled_attributes_(scratch, 1 << 18) {
@@ -83,7 +77,8 @@ SourceMesh::SourceMesh(std::unique_ptr<mesh_io::MeshSource> source, std::string 
   choose_origin();
 }
 
-void SourceMesh::scan(std::size_t in_flight, Progress& progress, const CancelToken& cancel) {
+void SourceMesh::scan(std::size_t in_flight, execution::Progress& progress,
+                      const execution::CancelToken& cancel) {
   progress.stage("ingest", summary_.vertices, "vertices");
   const partition::SampleIds ids(summary_.vertices);
   sample_positions_.reserve(ids.count());
@@ -99,7 +94,7 @@ void SourceMesh::scan(std::size_t in_flight, Progress& progress, const CancelTok
       mesh_io::BlockMemory memory;
       BlockScan scan;
     };
-    ordered_blocks<Slot>(
+    execution::ordered_blocks<Slot>(
         source_->vertex_blocks(), in_flight, cancel,
         [&](std::uint64_t i, Slot& slot) {
           slot.scan.look_at(source_->read_vertex_block(i, slot.memory), ids);

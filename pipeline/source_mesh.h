@@ -2,13 +2,13 @@
 // as floats.
 #pragma once
 
+#include "execution/cancel.h"
+#include "execution/parallel.h"
+#include "execution/progress.h"
 #include "hierarchy/published.h"
 #include "mesh_io/mesh_source.h"
 #include "partition/split_plane.h"
-#include "pipeline/cancel.h"
-#include "pipeline/parallel.h"
-#include "pipeline/progress.h"
-#include "storage/spool.h"
+#include "storage/io/spool.h"
 
 #include <memory>
 #include <span>
@@ -16,9 +16,6 @@
 #include <vector>
 
 namespace meshhier::pipeline {
-
-/// Whether all three coordinates are floats.
-bool fits_float(Vec3d p);
 
 /// Vertices first, first + 1, ... relative to the origin. Valid as long as the memory they were
 /// read into is not used.
@@ -35,8 +32,8 @@ class SourceMesh {
   /// be read again in place is spooled meanwhile. Throws as mesh_io::MeshSource does. `file_name`:
   /// for the summary. `in_flight`: blocks read at a time. Requires a vertex.
   SourceMesh(std::unique_ptr<mesh_io::MeshSource> source, std::string file_name,
-             storage::ScratchFile& scratch, std::size_t in_flight, Progress& progress,
-             const CancelToken& cancel);
+             storage::ScratchFile& scratch, std::size_t in_flight, execution::Progress& progress,
+             const execution::CancelToken& cancel);
 
   /// Counts of faces and triangles are 0 until read_triangles(); checksum and unreferenced_vertices
   /// are not known here.
@@ -66,16 +63,17 @@ class SourceMesh {
   /// is given may turn out to be none of the file's triangles: then no sink() follows. As
   /// ordered_blocks.
   template <class Slot, class Work, class Sink>
-  void read_triangles(std::size_t in_flight, const CancelToken& cancel, const Work& work,
+  void read_triangles(std::size_t in_flight, const execution::CancelToken& cancel, const Work& work,
                       const Sink& sink);
 
   /// The input's storage::FileChecksum; cheap when all has been read.
-  std::uint64_t checksum(const CancelToken& cancel) {
+  std::uint64_t checksum(const execution::CancelToken& cancel) {
     return source_->checksum([&] { cancel.check(); });
   }
 
  private:
-  void scan(std::size_t in_flight, Progress& progress, const CancelToken& cancel);
+  void scan(std::size_t in_flight, execution::Progress& progress,
+            const execution::CancelToken& cancel);
   void choose_origin();
   void count(const mesh_io::FaceCounts& counts);
 
@@ -89,15 +87,15 @@ class SourceMesh {
 };
 
 template <class Slot, class Work, class Sink>
-void SourceMesh::read_triangles(std::size_t in_flight, const CancelToken& cancel, const Work& work,
-                                const Sink& sink) {
+void SourceMesh::read_triangles(std::size_t in_flight, const execution::CancelToken& cancel,
+                                const Work& work, const Sink& sink) {
   struct Read {
     mesh_io::BlockMemory memory;
     mesh_io::TriangleBlock block;
     Slot slot;
   };
   mesh_io::FaceCounts counts;
-  ordered_blocks<Read>(
+  execution::ordered_blocks<Read>(
       source_->triangle_blocks(), in_flight, cancel,
       [&](std::uint64_t i, Read& read) {
         read.block = source_->read_triangle_block(i, read.memory);
@@ -116,7 +114,7 @@ void SourceMesh::read_triangles(std::size_t in_flight, const CancelToken& cancel
     std::vector<mesh_io::SourceTriangle> triangles;
     Slot slot;
   };
-  BatchedWork<Copied> rest(
+  execution::BatchedWork<Copied> rest(
       in_flight,
       [&](Copied& copied) { work(std::span(std::as_const(copied.triangles)), copied.slot); },
       [&](Copied& copied) { sink(copied.slot); });

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "server/hierarchies.h"
-#include "storage/file.h"
+#include "storage/io/file.h"
 
 #include <cstdint>
 #include <functional>

@@ -1,7 +1,7 @@
 #include "server/conditions.h"
 
 #include "server/text.h"
-#include "storage/hash.h"
+#include "storage/io/hash.h"
 
 #include <algorithm>
 #include <span>

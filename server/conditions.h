@@ -1,7 +1,7 @@
 // Headers by which a client says what it has and what it takes (RFC 9110, sections 12 and 13).
 #pragma once
 
-#include "storage/file.h"
+#include "storage/io/file.h"
 
 #include <cstdint>
 #include <string>

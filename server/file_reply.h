@@ -2,7 +2,7 @@
 #pragma once
 
 #include "server/http.h"
-#include "storage/file.h"
+#include "storage/io/file.h"
 
 #include <memory>
 #include <string>

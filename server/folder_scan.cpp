@@ -2,7 +2,7 @@
 
 #include "hierarchy/error.h"
 #include "server/url_path.h"
-#include "storage/layout.h"
+#include "storage/format/layout.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,7 +1,7 @@
 // Where hierarchies lie below a folder.
 #pragma once
 
-#include "storage/file.h"
+#include "storage/io/file.h"
 
 #include <string>
 #include <string_view>

@@ -1,12 +1,12 @@
 #include "server/hierarchies.h"
 
 #include "hierarchy/error.h"
+#include "progressive/stream_index.h"
 #include "server/folder_scan.h"
-#include "storage/archive_files.h"
-#include "storage/layout.h"
-#include "storage/manifest.h"
-#include "storage/progressive_index.h"
-#include "storage/sealed_json.h"
+#include "storage/format/archive_files.h"
+#include "storage/format/layout.h"
+#include "storage/format/manifest.h"
+#include "storage/format/sealed_json.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -169,7 +169,7 @@ bool Hierarchies::is_stream(const std::string& path) {
   if (!index)
     return false;
   const auto read = [&] {
-    storage::parse_progressive_index(storage::read_sealed_text(*index), index->path().string());
+    progressive::parse_progressive_index(storage::read_sealed_text(*index), index->path().string());
     return Model{.path = path};
   };
   return remember(joined(path, storage::progressive_index_path({}).string()), index->version(),

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "server/model.h"
-#include "storage/archive.h"
-#include "storage/file.h"
+#include "storage/format/archive.h"
+#include "storage/io/file.h"
 
 #include <cstdint>
 #include <functional>

@@ -1,7 +1,7 @@
 // A request and its reply as values: what is answered is decided without a socket.
 #pragma once
 
-#include "storage/file.h"
+#include "storage/io/file.h"
 
 #include <cstdint>
 #include <memory>

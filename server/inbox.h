@@ -1,7 +1,7 @@
 // A folder into which mesh files are dropped: which there are, and which are whole.
 #pragma once
 
-#include "storage/file.h"
+#include "storage/io/file.h"
 
 #include <chrono>
 #include <filesystem>

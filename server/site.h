@@ -4,7 +4,7 @@
 #include "server/gallery.h"
 #include "server/hierarchies.h"
 #include "server/http.h"
-#include "storage/file.h"
+#include "storage/io/file.h"
 
 #include <functional>
 #include <memory>

@@ -1,9 +1,9 @@
 #include "server/watch.h"
 
 #include "hierarchy/error.h"
-#include "pipeline/input_files.h"
+#include "import/input_files.h"
 #include "server/url_path.h"
-#include "storage/layout.h"
+#include "storage/format/layout.h"
 
 #include <algorithm>
 #include <exception>
@@ -185,7 +185,7 @@ std::string Watch::next_waiting() const {
 void Watch::handle(const std::string& name) {
   try {
     const BuildTarget target = target_of(name, [&] {
-      return pipeline::InputFiles(files_, options_.inbox / name, false).checksum(cancel_);
+      return importing::InputFiles(files_, options_.inbox / name, false).checksum(cancel_);
     });
     if (target.kind == BuildTarget::Kind::done)
       return set_state(name, State::done, "");

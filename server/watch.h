@@ -1,13 +1,13 @@
 // Mesh files that are dropped into a folder become hierarchies in another one, one after the other.
 #pragma once
 
-#include "pipeline/cancel.h"
+#include "execution/cancel.h"
 #include "server/build_target.h"
 #include "server/hierarchies.h"
 #include "server/inbox.h"
 #include "server/job.h"
-#include "storage/child_process.h"
-#include "storage/file.h"
+#include "storage/io/child_process.h"
+#include "storage/io/file.h"
 
 #include <chrono>
 #include <condition_variable>
@@ -111,7 +111,7 @@ class Watch {
   Time last_look_;
   std::string trouble_;  ///< the failure of the last look, told once
 
-  pipeline::CancelToken cancel_;
+  execution::CancelToken cancel_;
   mutable std::mutex mutex_;  ///< guards entries_
   std::map<std::string, Entry> entries_;
   std::condition_variable stopped_;

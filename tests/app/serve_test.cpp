@@ -1,6 +1,6 @@
 // `meshhier serve` as a process: what it says, how it ends, and that nothing is lost when it is
 // killed.
-#include "storage/file.h"
+#include "storage/io/file.h"
 #include "tests/server/raw_client.h"
 #include "tests/server/served_folder.h"
 #include "tests/server/wait_until.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bench/generator.h"
-#include "storage/hash.h"
+#include "storage/io/hash.h"
 #include "tests/support/meshes.h"
 
 #include <algorithm>

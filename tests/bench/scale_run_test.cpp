@@ -2,7 +2,7 @@
 
 #include "bench/child_process.h"
 #include "hierarchy/error.h"
-#include "tests/pipeline/sample_hierarchy.h"
+#include "tests/support/sample_hierarchy.h"
 #include "tests/support/sizes.h"
 
 #include <algorithm>

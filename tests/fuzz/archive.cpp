@@ -6,13 +6,13 @@
 //   then changes until the input ends: u16 place from the end on, modulo the size; u8 value
 //
 // What is accepted is what the writer makes of the same files, to the byte.
-#include "storage/archive.h"
+#include "storage/format/archive.h"
 
 #include "fuzz/target.h"
 #include "fuzz/targets.h"
-#include "storage/archive_check.h"
-#include "storage/archive_files.h"
-#include "storage/archive_writer.h"
+#include "storage/format/archive_check.h"
+#include "storage/format/archive_files.h"
+#include "storage/format/archive_writer.h"
 #include "support/memory_files.h"
 
 #include <algorithm>

@@ -12,11 +12,11 @@
 #include "pipeline/build.h"
 
 #include "bench/hell.h"
+#include "config/config.h"
 #include "fuzz/target.h"
 #include "fuzz/targets.h"
-#include "pipeline/config.h"
-#include "pipeline/verify.h"
-#include "pipeline/verify_error.h"
+#include "inspection/verify.h"
+#include "inspection/verify_error.h"
 #include "support/memory_files.h"
 #include "support/simplify_methods.h"
 
@@ -57,21 +57,22 @@ bench::LoadedMesh take_mesh(Take& take) {
 }
 
 /// A mesh of which nothing can be measured has no errors.
-void check_bounds(MemoryFiles& files, const pipeline::Config& config) {
-  pipeline::NoProgress progress;
-  const pipeline::ErrorOptions options{Level{}, 300, config.memory_budget};
-  for (const auto& level : pipeline::measure_errors(files, config.output, options, progress, {})) {
+void check_bounds(MemoryFiles& files, const config::Config& config) {
+  execution::NoProgress progress;
+  const inspection::ErrorOptions options{Level{}, 300, config.memory_budget};
+  for (const auto& level :
+       inspection::measure_errors(files, config.output, options, progress, {})) {
     if (level.triangles > 0 && !level.problems.empty())
       throw Violation(level.name + ": " + level.problems.front());
   }
 }
 
-void check_sound(MemoryFiles& files, const pipeline::Config& config) {
-  pipeline::NoProgress progress;
-  pipeline::VerifyOptions options;
+void check_sound(MemoryFiles& files, const config::Config& config) {
+  execution::NoProgress progress;
+  inspection::VerifyOptions options;
   options.input = config.input;
   options.cuts = 4;
-  const auto report = pipeline::verify_hierarchy(files, config.output, options, progress, {});
+  const auto report = inspection::verify_hierarchy(files, config.output, options, progress, {});
   if (!report.problems.empty())
     throw Violation(report.problems.front());
 }
@@ -81,7 +82,7 @@ void check_sound(MemoryFiles& files, const pipeline::Config& config) {
 void build(Bytes input) {
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   Take take(input);
-  pipeline::Config config;
+  config::Config config;
   config.input = "models/a.ply";
   config.output = "models/a.hier";
   config.threads = 1;
@@ -94,7 +95,7 @@ void build(Bytes input) {
 
   MemoryFiles files;
   bench::write_ply(files, config.input.front(), *bench::as_generated(std::move(mesh)));
-  pipeline::NoProgress progress;
+  execution::NoProgress progress;
   const std::string refused = refusal({ErrorCode::input}, "models/a.ply: ", [&] {
     pipeline::build_hierarchy(config, {}, {files, progress, {}});
   });

@@ -1,8 +1,8 @@
-#include "pipeline/config.h"
+#include "config/config.h"
 
+#include "config/config_schema.h"
 #include "fuzz/target.h"
 #include "fuzz/targets.h"
-#include "pipeline/config_schema.h"
 
 #include <algorithm>
 #include <string>
@@ -13,7 +13,7 @@
 namespace meshhier::tests::fuzz {
 namespace {
 
-using pipeline::Config;
+using config::Config;
 
 struct CommandLine {
   std::string text;
@@ -54,12 +54,12 @@ void check_config(const Config& config) {
 
 /// What decides the result, written as the manifest does and read again, decides the same result.
 void check_resolved(const Config& config) {
-  nlohmann::ordered_json resolved = pipeline::resolved_json(config);
+  nlohmann::ordered_json resolved = config::resolved_json(config);
   nlohmann::ordered_json document = resolved;
   document["input"] = "a.ply";
   document["output"] = "b.hier";
-  const Config again = pipeline::parse_config(document.dump(), {"again", {}}, {});
-  require(pipeline::resolved_json(again) == resolved, "a resolved config resolves to itself");
+  const Config again = config::parse_config(document.dump(), {"again", {}}, {});
+  require(config::resolved_json(again) == resolved, "a resolved config resolves to itself");
 }
 
 }  // namespace
@@ -68,7 +68,7 @@ void config(Bytes input) {
   const CommandLine line = split_lines(text_of(input));
   Config read;
   const std::string refused = refusal({ErrorCode::usage}, "", [&] {
-    read = pipeline::parse_config(line.text, {"config.json", "folder"}, line.overrides);
+    read = config::parse_config(line.text, {"config.json", "folder"}, line.overrides);
   });
   if (!refused.empty()) {
     require(refused.starts_with("config.json: ") || refused.starts_with("--set"),

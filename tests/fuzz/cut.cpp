@@ -1,8 +1,8 @@
-#include "pipeline/cut.h"
+#include "hierarchy/cut.h"
 
 #include "fuzz/target.h"
 #include "fuzz/targets.h"
-#include "pipeline/cut_file.h"
+#include "inspection/cut_file.h"
 #include "support/memory_files.h"
 
 #include <string>
@@ -11,7 +11,7 @@
 namespace meshhier::tests::fuzz {
 namespace {
 
-void check_cut(const Tree& tree, const pipeline::Cut& cut) {
+void check_cut(const Tree& tree, const Cut& cut) {
   std::uint32_t covered = 0;
   for (const NodeId node : cut.nodes()) {
     require(tree.contains(node) && !tree.is_early(node), "nodes have tiles");
@@ -24,8 +24,8 @@ void check_cut(const Tree& tree, const pipeline::Cut& cut) {
 void check_nodes(const std::vector<NodeId>& nodes) {
   std::string lines;
   for (const NodeId node : nodes)
-    lines += pipeline::to_text(node) + '\n';
-  require(pipeline::parse_nodes(lines, "again") == nodes, "what is written is read again");
+    lines += to_text(node) + '\n';
+  require(inspection::parse_nodes(lines, "again") == nodes, "what is written is read again");
 }
 
 }  // namespace
@@ -35,13 +35,13 @@ void cut(Bytes input) {
   const Tree tree = take_tree(take);
   const std::string text(text_of(take.rest()));
   std::vector<NodeId> nodes;
-  const auto parse = [&] { nodes = pipeline::parse_nodes(text, "nodes.txt"); };
+  const auto parse = [&] { nodes = inspection::parse_nodes(text, "nodes.txt"); };
   if (refusal({ErrorCode::usage}, "nodes.txt: ", parse).empty())
     check_nodes(nodes);
   MemoryFiles files;
   files.put("nodes.txt", text);
   refusal({ErrorCode::usage},
-          "nodes.txt: ", [&] { check_cut(tree, pipeline::read_cut(files, tree, "nodes.txt")); });
+          "nodes.txt: ", [&] { check_cut(tree, inspection::read_cut(files, tree, "nodes.txt")); });
 }
 
 }  // namespace meshhier::tests::fuzz

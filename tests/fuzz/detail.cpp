@@ -1,8 +1,8 @@
 #include "fuzz/target.h"
 #include "fuzz/targets.h"
+#include "progressive/detail_file.h"
 #include "progressive/reconstruction.h"
-#include "storage/detail_file.h"
-#include "storage/gzip.h"
+#include "storage/format/gzip.h"
 
 #include <algorithm>
 #include <array>
@@ -30,7 +30,7 @@ AttributeLayout take_layout(Take& take) {
 
 /// A file of runs, each told by its list, its entries and the bytes that are to be packed.
 std::vector<std::byte> packed_file(Take& take) {
-  std::vector<std::byte> file = storage::detail_head(kStep);
+  std::vector<std::byte> file = progressive::detail_head(kStep);
   while (!take.rest().empty()) {
     const auto list = std::uint32_t{take.number<std::uint8_t>()};
     const auto entries = std::uint32_t{take.number<std::uint16_t>()};
@@ -70,10 +70,10 @@ void check_run(const DetailRun& run, const AttributeLayout& layout, std::uint64_
         require(list.indices.front() >= first, "behind the run before");
       },
       run);
-  std::vector<std::byte> file = storage::detail_head(kStep);
-  const std::vector<std::byte> bytes = storage::encode_run(run, layout, 0);
+  std::vector<std::byte> file = progressive::detail_head(kStep);
+  const std::vector<std::byte> bytes = progressive::encode_run(run, layout, 0);
   file.insert(file.end(), bytes.begin(), bytes.end());
-  storage::DetailFileReader reader(file, kStep, layout, "again.bin");
+  progressive::DetailFileReader reader(file, kStep, layout, "again.bin");
   const std::optional<DetailRun> again = reader.next();
   require(again && same(run, *again), "what is written is read again");
   require(!reader.next(), "and nothing else");
@@ -103,7 +103,7 @@ void read_file(Bytes bytes, const AttributeLayout& layout) {
   std::array<std::uint64_t, 3> first{};
   bool applied = true;
   refusal({ErrorCode::corrupt}, "detail_01.bin: ", [&] {
-    storage::DetailFileReader reader(bytes, kStep, layout, "detail_01.bin");
+    progressive::DetailFileReader reader(bytes, kStep, layout, "detail_01.bin");
     while (const std::optional<DetailRun> run = reader.next()) {
       check_run(*run, layout, first[run->index()]);
       first[run->index()] =

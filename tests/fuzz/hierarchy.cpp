@@ -13,18 +13,18 @@
 #include "fuzz/sealed.h"
 #include "fuzz/target.h"
 #include "fuzz/targets.h"
+#include "inspection/export.h"
+#include "inspection/inspect.h"
+#include "inspection/verify.h"
 #include "mesh_io/mesh_source.h"
 #include "pipeline/build.h"
-#include "pipeline/export.h"
-#include "pipeline/inspect.h"
-#include "pipeline/progressive.h"
-#include "pipeline/reconstruct.h"
-#include "pipeline/verify.h"
-#include "storage/glb.h"
-#include "storage/hash.h"
-#include "storage/layout.h"
-#include "storage/manifest.h"
-#include "storage/progressive_index.h"
+#include "progressive/reconstruct.h"
+#include "progressive/stream.h"
+#include "progressive/stream_index.h"
+#include "storage/format/glb.h"
+#include "storage/format/layout.h"
+#include "storage/format/manifest.h"
+#include "storage/io/hash.h"
 #include "support/memory_files.h"
 
 #include <array>
@@ -50,14 +50,14 @@ constexpr const char* kStream = "a.prog";
 using Contents = std::vector<std::pair<fs::path, std::vector<std::byte>>>;
 
 /// A tree with early nodes, over a closed surface with colours and an origin.
-Contents make_sound(pipeline::SimplifyMethod method) {
+Contents make_sound(config::SimplifyMethod method) {
   bench::SurfaceOptions surface;
   surface.triangles = 100;
   surface.noise = 0.5;
   surface.colours = true;
   surface.double_coordinates = true;
   surface.offset = {500123.4567, 5812345.6789, 100.125};
-  pipeline::Config config;
+  config::Config config;
   config.input = "a.ply";
   config.output = kHierarchy;
   config.threads = 1;
@@ -66,7 +66,7 @@ Contents make_sound(pipeline::SimplifyMethod method) {
   config.simplify.vertices = 12;
   MemoryFiles files;
   bench::write_ply(files, config.input.front(), *bench::make_surface(surface));
-  pipeline::NoProgress progress;
+  execution::NoProgress progress;
   pipeline::build_hierarchy(config, {}, {files, progress, {}});
   Contents contents;
   for (const fs::path& path : files.list(kHierarchy))
@@ -110,26 +110,26 @@ void seal(const Contents& sound, MemoryFiles& files) {
 }
 
 bool is_sound(MemoryFiles& files) {
-  pipeline::NoProgress progress;
-  pipeline::VerifyOptions options;
+  execution::NoProgress progress;
+  inspection::VerifyOptions options;
   options.cuts = 3;
   options.memory_budget = std::uint64_t{1} << 24;
-  const auto report = pipeline::verify_hierarchy(files, kHierarchy, options, progress, {});
+  const auto report = inspection::verify_hierarchy(files, kHierarchy, options, progress, {});
   for (const std::string& problem : report.problems)
     require_message(problem, "");
   return report.problems.empty();
 }
 
 /// Returns whether it was exported; a tree that has not what is asked for is a usage error.
-bool is_exported(MemoryFiles& files, const pipeline::ExportSelection& selection) {
-  pipeline::NoProgress progress;
+bool is_exported(MemoryFiles& files, const inspection::ExportSelection& selection) {
+  execution::NoProgress progress;
   files.remove_all(kExported);
   const std::string refused = refusal({ErrorCode::corrupt, ErrorCode::usage}, "", [&] {
-    pipeline::export_mesh(files, kHierarchy, {selection, kExported, std::uint64_t{1} << 24},
-                          progress, {});
+    inspection::export_mesh(files, kHierarchy, {selection, kExported, std::uint64_t{1} << 24},
+                            progress, {});
   });
   require(files.exists(kExported) == refused.empty(), "an export is whole, or not there");
-  if (refused.empty() && !std::holds_alternative<pipeline::OutlineSelection>(selection)) {
+  if (refused.empty() && !std::holds_alternative<inspection::OutlineSelection>(selection)) {
     const auto mesh = mesh_io::open_mesh(files, kExported);
     mesh->read_vertices([](const mesh_io::VertexBlock&) {});
     mesh->read_triangles([](std::span<const mesh_io::SourceTriangle>) {});
@@ -138,7 +138,7 @@ bool is_exported(MemoryFiles& files, const pipeline::ExportSelection& selection)
 }
 
 bool is_inspected(MemoryFiles& files) {
-  return refusal({ErrorCode::corrupt}, "", [&] { pipeline::inspect_text(files, kHierarchy, {}); })
+  return refusal({ErrorCode::corrupt}, "", [&] { inspection::inspect_text(files, kHierarchy, {}); })
       .empty();
 }
 
@@ -152,21 +152,21 @@ void put_changed(Bytes input, const Contents& sound, MemoryFiles& files) {
 
 /// Streams the part, and puts together what was streamed.
 void check_streamed(MemoryFiles& files, std::optional<NodeId> part) {
-  pipeline::NoProgress progress;
+  execution::NoProgress progress;
   files.remove_all(kStream);
   const std::string refused =
       refusal({ErrorCode::corrupt, ErrorCode::usage, ErrorCode::budget}, "", [&] {
-        pipeline::write_progressive(
+        progressive::write_progressive(
             files, kHierarchy, {part, {}, kStream, false, std::uint64_t{1} << 24}, progress, {});
       });
   require(files.exists(kStream) == refused.empty(), "a stream is whole, or not there");
   if (!refused.empty())
     return;
-  const std::size_t steps = storage::read_progressive_index(files, kStream).files.size();
+  const std::size_t steps = progressive::read_progressive_index(files, kStream).files.size();
   for (std::uint32_t details = 0; details < steps; ++details) {
     files.remove_all(kExported);
-    pipeline::reconstruct(files, kStream, {details, kExported, std::uint64_t{1} << 24}, progress,
-                          {});
+    progressive::reconstruct(files, kStream, {details, kExported, std::uint64_t{1} << 24}, progress,
+                             {});
     require(files.exists(kExported), "what is streamed can be put together");
   }
 }
@@ -175,7 +175,7 @@ void check_streamed(MemoryFiles& files, std::optional<NodeId> part) {
 
 void stream(Bytes input) {
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  static const Contents kSound = make_sound(pipeline::SimplifyMethod::half_edge);
+  static const Contents kSound = make_sound(config::SimplifyMethod::half_edge);
   MemoryFiles files;
   put_changed(input, kSound, files);
   check_streamed(files, std::nullopt);
@@ -184,15 +184,15 @@ void stream(Bytes input) {
 
 void hierarchy(Bytes input) {
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  static const Contents kSound = make_sound(pipeline::SimplifyMethod::edge_collapse);
+  static const Contents kSound = make_sound(config::SimplifyMethod::edge_collapse);
   MemoryFiles files;
   put_changed(input, kSound, files);
 
   const bool sound = is_sound(files);
   require(is_inspected(files) || !sound, "what is sound can be inspected");
   files.put(kCut, "1/0\n3/3\n3/4\n");
-  const std::array<pipeline::ExportSelection, 3> selections = {fs::path(kCut), NodeId{Level{2}, 1},
-                                                               pipeline::OutlineSelection{}};
+  const std::array<inspection::ExportSelection, 3> selections = {
+      fs::path(kCut), NodeId{Level{2}, 1}, inspection::OutlineSelection{}};
   for (const auto& selection : selections)
     require(is_exported(files, selection) || !sound, "what is sound can be exported");
 }

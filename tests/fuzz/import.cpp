@@ -4,7 +4,7 @@
 // build; what it becomes is read again.
 #include "fuzz/target.h"
 #include "fuzz/targets.h"
-#include "pipeline/import_stage.h"
+#include "import/import_input.h"
 #include "support/memory_files.h"
 
 #include <string>
@@ -16,12 +16,12 @@ namespace {
 std::string imported(MemoryFiles& files, bool weld) {
   storage::MemoryPool pool(0);
   storage::ScratchFile scratch(files, "scratch", pool);
-  pipeline::TemporaryFile ply(files, "imported.ply", pool.scratch_use());
-  pipeline::NoProgress progress;
-  const pipeline::CancelToken cancel;
-  const pipeline::InputFiles input(files, std::filesystem::path("mesh"), weld);
-  const pipeline::ImportFacts facts =
-      pipeline::import_input(input, ply, {files, scratch, 1, progress, cancel});
+  importing::TemporaryFile ply(files, "imported.ply", pool.scratch_use());
+  execution::NoProgress progress;
+  const execution::CancelToken cancel;
+  const importing::InputFiles input(files, std::filesystem::path("mesh"), weld);
+  const importing::ImportFacts facts =
+      importing::import_input(input, ply, {files, scratch, 1, progress, cancel});
   require(facts.files.size() == 1 && facts.files[0].bytes == files.bytes("mesh").size(),
           "the file is noted");
   if (!facts.faces)

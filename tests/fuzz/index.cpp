@@ -1,9 +1,9 @@
-#include "storage/index.h"
+#include "storage/format/index.h"
 
 #include "fuzz/sealed.h"
 #include "fuzz/target.h"
 #include "fuzz/targets.h"
-#include "storage/tile_glb.h"
+#include "storage/format/tile_glb.h"
 
 #include <algorithm>
 #include <cstdint>

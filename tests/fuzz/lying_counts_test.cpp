@@ -4,17 +4,17 @@
 #include "hierarchy/error.h"
 #include "mesh_io/mesh_source.h"
 #include "mesh_io/ply_samples.h"
-#include "pipeline/reconstruct.h"
-#include "storage/archive.h"
-#include "storage/detail_file.h"
-#include "storage/glb.h"
-#include "storage/gzip.h"
-#include "storage/hierarchy_reader.h"
-#include "storage/index.h"
-#include "storage/manifest.h"
-#include "storage/outline_glb.h"
-#include "storage/progressive_index.h"
-#include "storage/tile_glb.h"
+#include "progressive/detail_file.h"
+#include "progressive/reconstruct.h"
+#include "progressive/stream_index.h"
+#include "storage/format/archive.h"
+#include "storage/format/glb.h"
+#include "storage/format/gzip.h"
+#include "storage/format/hierarchy_reader.h"
+#include "storage/format/index.h"
+#include "storage/format/manifest.h"
+#include "storage/format/outline_glb.h"
+#include "storage/format/tile_glb.h"
 #include "support/hollow_file.h"
 #include "support/memory_files.h"
 #include "support/taken_memory.h"
@@ -229,12 +229,12 @@ TEST(LyingCounts, OfADetailFileTakeNoMemory) {
     for (const std::uint32_t list : {1U, 2U, 3U}) {
       for (const std::uint32_t entries : {1U, 65536U, 65537U, UINT32_MAX}) {
         for (const std::uint32_t size : {static_cast<std::uint32_t>(packed.size()), UINT32_MAX}) {
-          std::vector<std::byte> file = storage::detail_head(1);
+          std::vector<std::byte> file = progressive::detail_head(1);
           for (const std::uint32_t number : {list, entries, size})
             storage::append_little(file, number);
           file.insert(file.end(), packed.begin(), packed.end());
           expect_cheap_refusal(ErrorCode::corrupt, "a detail file", [&] {
-            storage::DetailFileReader(file, 1, kWidest, "detail_01.bin").next();
+            progressive::DetailFileReader(file, 1, kWidest, "detail_01.bin").next();
           });
         }
       }
@@ -243,19 +243,19 @@ TEST(LyingCounts, OfADetailFileTakeNoMemory) {
 }
 
 TEST(LyingCounts, OfAProgressiveIndexTakeNoMemory) {
-  storage::ProgressiveIndex index;
+  progressive::ProgressiveIndex index;
   index.source = small_manifest().source;
   index.vertices = index.own_vertices = 10;
   index.triangles = 12;
   index.files = {{Level{0}, 10, 12, 0, 10, 12, 1000, 0}};
-  const std::string honest = storage::to_json_text(index);
+  const std::string honest = progressive::to_json_text(index);
   const auto refuse = [](const std::string& text) {
     MemoryFiles files;
     files.put("a.prog/progressive.json", fuzz::sealed_manifest(text));
     files.put("a.prog/base.bin", std::string(1000, '\0'));
-    pipeline::NoProgress progress;
-    pipeline::reconstruct(files, "a.prog", {{}, "a.ply", std::uint64_t{1} << 20}, progress,
-                          pipeline::CancelToken());
+    execution::NoProgress progress;
+    progressive::reconstruct(files, "a.prog", {{}, "a.ply", std::uint64_t{1} << 20}, progress,
+                             execution::CancelToken());
   };
   expect_cheap_refusal(ErrorCode::corrupt, "zeros", [&] { refuse(honest); });
   for (const std::string lie : kLies) {

@@ -1,11 +1,11 @@
-#include "storage/manifest.h"
+#include "storage/format/manifest.h"
 
 #include "fuzz/sealed.h"
 #include "fuzz/target.h"
 #include "fuzz/targets.h"
 #include "hierarchy/tree.h"
-#include "storage/hierarchy_reader.h"
-#include "storage/index.h"
+#include "storage/format/hierarchy_reader.h"
+#include "storage/format/index.h"
 #include "support/memory_files.h"
 
 #include <string>

@@ -8,7 +8,7 @@
 
 #include "fuzz/target.h"
 #include "fuzz/targets.h"
-#include "storage/outline_glb.h"
+#include "storage/format/outline_glb.h"
 
 #include <algorithm>
 #include <cmath>

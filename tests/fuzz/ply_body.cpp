@@ -4,8 +4,8 @@
 #include "mesh_io/mesh_source.h"
 #include "mesh_io/ply_header.h"
 #include "mesh_io/ply_writer.h"
-#include "storage/file_checksum.h"
-#include "storage/hash.h"
+#include "storage/io/file_checksum.h"
+#include "storage/io/hash.h"
 #include "support/memory_files.h"
 
 #include <memory>

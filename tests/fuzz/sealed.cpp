@@ -1,8 +1,8 @@
 #include "fuzz/sealed.h"
 
 #include "fuzz/target.h"
-#include "storage/glb.h"
-#include "storage/hash.h"
+#include "storage/format/glb.h"
+#include "storage/io/hash.h"
 
 #include <fmt/format.h>
 

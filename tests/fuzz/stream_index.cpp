@@ -1,9 +1,10 @@
+#include "progressive/stream_index.h"
+
 #include "fuzz/sealed.h"
 #include "fuzz/target.h"
 #include "fuzz/targets.h"
-#include "pipeline/reconstruct.h"
+#include "progressive/reconstruct.h"
 #include "progressive/reconstruction.h"
-#include "storage/progressive_index.h"
 #include "support/memory_files.h"
 
 #include <string>
@@ -11,16 +12,16 @@
 namespace meshhier::tests::fuzz {
 namespace {
 
-using storage::ProgressiveIndex;
+using progressive::ProgressiveIndex;
 
 /// A stream of which nothing else is there.
 void check_stream(const std::string& text) {
   MemoryFiles files;
   files.put("a.prog/progressive.json", text);
-  pipeline::NoProgress progress;
+  execution::NoProgress progress;
   const std::string refused = refusal({ErrorCode::io, ErrorCode::budget}, "", [&] {
-    pipeline::reconstruct(files, "a.prog", {{}, "a.ply", std::uint64_t{1} << 20}, progress,
-                          pipeline::CancelToken());
+    progressive::reconstruct(files, "a.prog", {{}, "a.ply", std::uint64_t{1} << 20}, progress,
+                             execution::CancelToken());
   });
   require(!refused.empty(), "no base, no mesh");
   require(!files.exists("a.ply"), "nothing is written");
@@ -28,7 +29,7 @@ void check_stream(const std::string& text) {
 
 void check_stream_index(const ProgressiveIndex& index, const std::string& text) {
   const std::string written = to_json_text(index);
-  const ProgressiveIndex again = storage::parse_progressive_index(written, "again");
+  const ProgressiveIndex again = progressive::parse_progressive_index(written, "again");
   require(to_json_text(again) == written, "what is written is read again");
   require(!index.files.empty(), "a base");
   require(index.own_vertices <= index.vertices, "own vertices are some of all");
@@ -40,7 +41,7 @@ void check_stream_index(const ProgressiveIndex& index, const std::string& text) 
 
 void parse_stream_index(const std::string& text) {
   ProgressiveIndex index;
-  const auto read = [&] { index = storage::parse_progressive_index(text, "progressive.json"); };
+  const auto read = [&] { index = progressive::parse_progressive_index(text, "progressive.json"); };
   if (refusal({ErrorCode::corrupt}, "progressive.json: ", read).empty())
     check_stream_index(index, text);
 }

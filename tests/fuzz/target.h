@@ -3,7 +3,7 @@
 
 #include "hierarchy/error.h"
 #include "hierarchy/tree.h"
-#include "storage/glb.h"
+#include "storage/format/glb.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -15,11 +15,11 @@
 //   the BIN chunk before it is compressed, cut or filled up with zeros to its size
 #include "fuzz/target.h"
 #include "fuzz/targets.h"
-#include "storage/glb.h"
-#include "storage/gzip.h"
-#include "storage/tile_glb.h"
-#include "storage/tile_pack.h"
-#include "storage/tile_plan.h"
+#include "storage/format/glb.h"
+#include "storage/format/gzip.h"
+#include "storage/format/tile_glb.h"
+#include "storage/format/tile_pack.h"
+#include "storage/format/tile_plan.h"
 
 #include <algorithm>
 #include <cmath>

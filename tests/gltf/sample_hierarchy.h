@@ -4,7 +4,7 @@
 
 #include "hierarchy/published.h"
 #include "hierarchy/tree.h"
-#include "storage/tile_glb.h"
+#include "storage/format/tile_glb.h"
 #include "support/meshes.h"
 
 #include <cstdint>

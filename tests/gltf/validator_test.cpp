@@ -2,8 +2,8 @@
 // decoder on compressed ones. MESHHIER_GLTF_DIR is the directory of their scripts; skipped where
 // node or the package is not installed.
 #include "gltf/sample_hierarchy.h"
-#include "storage/outline_glb.h"
-#include "storage/tile_glb.h"
+#include "storage/format/outline_glb.h"
+#include "storage/format/tile_glb.h"
 
 #include <array>
 #include <cmath>

@@ -1,11 +1,11 @@
 // The result of small builds, as one number each: says that something changed, not what is right.
 #include "mesh_io/ply_writer.h"
 #include "pipeline/build.h"
-#include "storage/file.h"
-#include "storage/hash.h"
-#include "storage/hierarchy_reader.h"
-#include "tests/pipeline/sample_hierarchy.h"
+#include "storage/format/hierarchy_reader.h"
+#include "storage/io/file.h"
+#include "storage/io/hash.h"
 #include "tests/support/meshes.h"
+#include "tests/support/sample_hierarchy.h"
 #include "tests/support/sizes.h"
 
 #include <cstdint>
@@ -72,28 +72,28 @@ tests::TestMesh terrain() {
   return mesh;
 }
 
-SimplifyConfig with(SimplifyMethod method) {
-  SimplifyConfig config;
+config::SimplifyConfig with(config::SimplifyMethod method) {
+  config::SimplifyConfig config;
   config.method = method;
   return config;
 }
 
-SimplifyConfig half_edge(HalfEdgeCost cost) {
-  SimplifyConfig config = with(SimplifyMethod::half_edge);
+config::SimplifyConfig half_edge(config::HalfEdgeCost cost) {
+  config::SimplifyConfig config = with(config::SimplifyMethod::half_edge);
   config.cost = cost;
   return config;
 }
 
-SimplifyConfig cluster(Representative representative) {
-  SimplifyConfig config = with(SimplifyMethod::cluster);
+config::SimplifyConfig cluster(config::Representative representative) {
+  config::SimplifyConfig config = with(config::SimplifyMethod::cluster);
   config.representative = representative;
   return config;
 }
 
 struct Golden {
   const char* name;
-  SimplifyConfig simplify;
-  AxisRule axis;
+  config::SimplifyConfig simplify;
+  config::AxisRule axis;
   std::uint32_t partitions;
   std::uint64_t hash;
 };
@@ -101,16 +101,17 @@ struct Golden {
 /// After a change that is meant to change results: see that the property tests pass, put the
 /// numbers of the failure's message here, and say in CHANGELOG.md what changed and why.
 const Golden kGolden[] = {
-    {"edge_collapse", with(SimplifyMethod::edge_collapse), AxisRule::compactness, 29,
-     0x1028858f2da0bbce},
-    {"half_edge_quadric", half_edge(HalfEdgeCost::quadric), AxisRule::longest, 16,
+    {"edge_collapse", with(config::SimplifyMethod::edge_collapse), config::AxisRule::compactness,
+     29, 0x1028858f2da0bbce},
+    {"half_edge_quadric", half_edge(config::HalfEdgeCost::quadric), config::AxisRule::longest, 16,
      0x6908d5f6bc71890f},
-    {"half_edge_melax", half_edge(HalfEdgeCost::melax), AxisRule::compactness, 7,
+    {"half_edge_melax", half_edge(config::HalfEdgeCost::melax), config::AxisRule::compactness, 7,
      0x9010bb7095a751c1},
-    {"cluster_quadric", cluster(Representative::quadric), AxisRule::compactness, 29,
+    {"cluster_quadric", cluster(config::Representative::quadric), config::AxisRule::compactness, 29,
      0xc730f029c3414573},
-    {"cluster_mean", cluster(Representative::mean), AxisRule::longest, 16, 0x97d3a13f92cb3b44},
-    {"cluster_vertex", cluster(Representative::vertex), AxisRule::compactness, 7,
+    {"cluster_mean", cluster(config::Representative::mean), config::AxisRule::longest, 16,
+     0x97d3a13f92cb3b44},
+    {"cluster_vertex", cluster(config::Representative::vertex), config::AxisRule::compactness, 7,
      0x8fd99fb8e23e0d11},
 };
 
@@ -118,7 +119,7 @@ class GoldenTest : public testing::TestWithParam<Golden> {
  protected:
   std::uint64_t build(std::uint32_t threads, std::uint64_t budget) {
     const Golden& golden = GetParam();
-    Config config;
+    config::Config config;
     config.input = directory_.path() / "terrain.ply";
     config.output = directory_.path() / "terrain.hier";
     config.threads = threads;
@@ -126,8 +127,9 @@ class GoldenTest : public testing::TestWithParam<Golden> {
     config.partition.count = golden.partitions;
     config.partition.axis = golden.axis;
     config.simplify = golden.simplify;
-    NoProgress progress;
-    build_hierarchy(config, {.force = true}, {*files_, progress, CancelToken()});
+    execution::NoProgress progress;
+    pipeline::build_hierarchy(config, {.force = true},
+                              {*files_, progress, execution::CancelToken()});
     const storage::HierarchyReader reader(*files_, config.output);
     ContentHash hash;
     for (const TileRecord& record : reader.records())

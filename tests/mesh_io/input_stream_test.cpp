@@ -1,7 +1,7 @@
 // Packed and plain files as streams.
 #include "mesh_io/input_stream.h"
 
-#include "storage/file_checksum.h"
+#include "storage/io/file_checksum.h"
 #include "streams.h"
 #include "support/gzip.h"
 

@@ -1,6 +1,6 @@
 #include "partition/external_sort.h"
 
-#include "storage/file.h"
+#include "storage/io/file.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include "partition/renumber.h"
 
-#include "storage/file.h"
+#include "storage/io/file.h"
 #include "tests/support/meshes.h"
 
 #include <algorithm>

@@ -1,15 +1,15 @@
 // Whole builds: inputs at the edge of what there is, and what is refused.
 #include "pipeline/build.h"
 
+#include "execution/size_text.h"
+#include "hierarchy/cut.h"
 #include "hierarchy/error.h"
-#include "pipeline/cut.h"
-#include "pipeline/size_text.h"
-#include "pipeline/verify.h"
-#include "storage/hierarchy_reader.h"
-#include "storage/layout.h"
-#include "tests/pipeline/sample_hierarchy.h"
+#include "inspection/verify.h"
+#include "storage/format/hierarchy_reader.h"
+#include "storage/format/layout.h"
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/meshes.h"
+#include "tests/support/sample_hierarchy.h"
 #include "tests/support/simplify_methods.h"
 #include "tests/support/sizes.h"
 
@@ -51,8 +51,8 @@ class BuildTest : public testing::Test {
   fs::path mesh_path() const { return directory_.path() / "mesh.ply"; }
   fs::path output_path() const { return directory_.path() / "mesh.hier"; }
 
-  Config config(std::uint32_t partition_vertices = 100) const {
-    Config config;
+  config::Config config(std::uint32_t partition_vertices = 100) const {
+    config::Config config;
     config.input = mesh_path();
     config.output = output_path();
     config.threads = 2;
@@ -60,18 +60,19 @@ class BuildTest : public testing::Test {
     return config;
   }
 
-  BuildReport build(const Config& config, bool force = false) {
-    NoProgress progress;
-    return build_hierarchy(config, {.force = force}, {files_, progress, CancelToken()});
+  pipeline::BuildReport build(const config::Config& config, bool force = false) {
+    execution::NoProgress progress;
+    return pipeline::build_hierarchy(config, {.force = force},
+                                     {files_, progress, execution::CancelToken()});
   }
 
-  BuildReport build(const TestMesh& mesh, const Config& config) {
+  pipeline::BuildReport build(const TestMesh& mesh, const config::Config& config) {
     tests::write_ply(mesh, mesh_path());
     return build(config);
   }
 
   /// The failure of a build that must fail; nothing may be left of it.
-  Error failure(const Config& config, bool force = false) {
+  Error failure(const config::Config& config, bool force = false) {
     const std::set<fs::path> before = listing();
     try {
       build(config, force);
@@ -91,14 +92,14 @@ class BuildTest : public testing::Test {
   }
 
   std::vector<std::string> problems() {
-    NoProgress progress;
-    return verify_hierarchy(files_, output_path(), {.input = mesh_path(), .cuts = 30}, progress,
-                            CancelToken())
+    execution::NoProgress progress;
+    return inspection::verify_hierarchy(files_, output_path(), {.input = mesh_path(), .cuts = 30},
+                                        progress, execution::CancelToken())
         .problems;
   }
 
   /// Builds and proves it lossless and seamless, twice: in memory, and on disk.
-  void expect_builds(const TestMesh& mesh, Config config) {
+  void expect_builds(const TestMesh& mesh, config::Config config) {
     build(mesh, config);
     EXPECT_THAT(problems(), IsEmpty());
     expect_level_table();
@@ -130,26 +131,26 @@ class BuildTest : public testing::Test {
     }
   }
 
-  std::uint64_t named_budget(Config config) {
+  std::uint64_t named_budget(config::Config config) {
     config.memory_budget = 1;
     const std::string message = failure(config).what();
     const std::string before = "at least ";
     const std::size_t at = message.find(before);
     EXPECT_NE(at, std::string::npos) << message;
-    return parse_size(message.substr(at + before.size())).value_or(0);
+    return execution::parse_size(message.substr(at + before.size())).value_or(0);
   }
 
   /// The least budget to the byte: nothing is left for scratch data, all of it goes to the disk.
-  std::uint64_t tight_budget(Config config) {
+  std::uint64_t tight_budget(config::Config config) {
     std::uint64_t accepted = named_budget(config);  // rounded up
     std::uint64_t refused = accepted - kMiB;
-    CancelToken cancel;
+    execution::CancelToken cancel;
     cancel.cancel();  // a build that is let through ends at once
-    NoProgress progress;
+    execution::NoProgress progress;
     while (accepted - refused > 1) {
       config.memory_budget = (refused + accepted) / 2;
       try {
-        build_hierarchy(config, {.force = true}, {files_, progress, cancel});
+        pipeline::build_hierarchy(config, {.force = true}, {files_, progress, cancel});
       } catch (const Error& error) {
         const bool is_refused = error.code() == ErrorCode::budget;
         (is_refused ? refused : accepted) = config.memory_budget;
@@ -173,7 +174,7 @@ TEST_F(BuildTest, OneFace) {
 }
 
 TEST_F(BuildTest, OneFaceInThreePartitions) {
-  Config three = config();
+  config::Config three = config();
   three.partition.count = 3;
   expect_builds({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, three);
 }
@@ -211,7 +212,7 @@ TEST_F(BuildTest, AllVerticesOnALine) {
 }
 
 TEST_F(BuildTest, AsManyPartitionsAsVertices) {
-  Config each = config();
+  config::Config each = config();
   each.partition.count = 66;
   expect_builds(tests::sphere(128), each);
 }
@@ -221,13 +222,13 @@ TEST_F(BuildTest, TheSmallestTiles) {
 }
 
 TEST_F(BuildTest, TilesOfUnequalAsking) {
-  Config coarse = config(500);
+  config::Config coarse = config(500);
   coarse.simplify.vertices = 4;
   expect_builds(tests::sphere(5000), coarse);
-  Config fine = config(20);
+  config::Config fine = config(20);
   fine.simplify.vertices = 32768;
   expect_builds(tests::sphere(5000), fine);
-  Config uneven = config(200);
+  config::Config uneven = config(200);
   uneven.simplify.vertices = AskedVertices({32768, 4, 300, 20});
   expect_builds(tests::sphere(5000), uneven);
 }
@@ -241,7 +242,7 @@ TEST_F(BuildTest, AMeshSmallerThanAPartition) {
 }
 
 TEST_F(BuildTest, TwoVerticesInTwoPartitions) {
-  Config two = config();
+  config::Config two = config();
   two.partition.count = 2;
   expect_builds({{{0, 0, 0}, {1, 0, 0}}, {}}, two);
 }
@@ -263,7 +264,7 @@ TEST_F(BuildTest, AVertexOfAHundredThousandTriangles) {
   EXPECT_THAT(problems(), IsEmpty());
   fs::remove_all(output_path());
   // No plan knows from the header that one tile has all triangles: what would do is told then.
-  Config tight = config(4096);
+  config::Config tight = config(4096);
   tight.memory_budget = tight_budget(tight);
   tight.threads = 1;
   std::string message;
@@ -322,10 +323,11 @@ TEST_F(BuildTest, ShapesOfAllKinds) {
   for (const auto& [name, mesh] : meshes) {
     for (const auto& [method_name, method] : tests::all_simplify_methods()) {
       SCOPED_TRACE(name + ", " + method_name);
-      Config with = config(150);
+      config::Config with = config(150);
       with.simplify = method;
-      with.partition.axis =
-          method.method == SimplifyMethod::half_edge ? AxisRule::longest : AxisRule::compactness;
+      with.partition.axis = method.method == config::SimplifyMethod::half_edge
+                                ? config::AxisRule::longest
+                                : config::AxisRule::compactness;
       expect_builds(mesh, with);
     }
   }
@@ -341,8 +343,8 @@ TEST_F(BuildTest, CompressionChangesNothingButTheFiles) {
     for (const TileRecord& record : reader.records())
       plain.push_back(reader.read_tile(record.node));
   }
-  for (const auto& [name, compression] : kCompressions) {
-    Config packed = config();
+  for (const auto& [name, compression] : config::kCompressions) {
+    config::Config packed = config();
     packed.storage.compression = compression;
     build(packed, true);
     EXPECT_THAT(problems(), IsEmpty()) << name;
@@ -365,9 +367,10 @@ TEST_F(BuildTest, QuantizedPositionsLieOnTheLatticeAndBoundsSaySo) {
   const storage::HierarchyReader exact(files_, output_path());
   const std::vector<TileRecord> before = exact.records();
   for (const std::uint32_t bits : {8U, 16U, 20U}) {
-    for (const Compression compression : {Compression::none, Compression::meshopt}) {
-      Config coarse = config();
-      coarse.storage = {Container::files, compression, bits};
+    for (const config::Compression compression :
+         {storage::Compression::none, storage::Compression::meshopt}) {
+      config::Config coarse = config();
+      coarse.storage = {storage::Container::files, compression, bits};
       build(coarse, true);
       EXPECT_THAT(problems(), IsEmpty()) << bits;
       const storage::HierarchyReader reader(files_, output_path());
@@ -391,7 +394,7 @@ TEST_F(BuildTest, QuantizedPositionsLieOnTheLatticeAndBoundsSaySo) {
 }
 
 TEST_F(BuildTest, AQuantizedHierarchyIsHeldAgainstItsInput) {
-  Config coarse = config();
+  config::Config coarse = config();
   coarse.storage.position_bits = 10;
   TestMesh mesh = tests::torus(1000, 0.1F);
   build(mesh, coarse);
@@ -404,7 +407,7 @@ TEST_F(BuildTest, AQuantizedHierarchyIsHeldAgainstItsInput) {
 TEST_F(BuildTest, PartitionSizesAreEqualForAnyCount) {
   tests::write_ply(tests::torus(3000), mesh_path());
   for (const std::uint32_t count : {1U, 2U, 3U, 5U, 7U, 100U, 128U, 1000U}) {
-    Config with = config();
+    config::Config with = config();
     with.partition.count = count;
     build(with, true);
     const storage::HierarchyReader reader(files_, output_path());
@@ -440,7 +443,7 @@ TEST_F(BuildTest, SimplifiedTilesHaveTheVertexCountsAskedForByLevel) {
   tests::write_ply(tests::sphere(20'000, 0.01F), mesh_path());
   for (const auto& [name, method] : tests::all_simplify_methods()) {
     SCOPED_TRACE(name);
-    Config with = config(150);
+    config::Config with = config(150);
     with.simplify = method;
     with.simplify.vertices = asked;
     build(with, true);
@@ -463,7 +466,7 @@ TEST_F(BuildTest, SimplifiedTilesHaveTheVertexCountsAskedForByLevel) {
 TEST_F(BuildTest, LevelsThatAreNotThereAreAskedInVain) {
   tests::write_ply(tests::sphere(5000), mesh_path());
   const auto hashes = [&](const AskedVertices& vertices) {
-    Config with = config(300);  // levels 0 to 3 are simplified
+    config::Config with = config(300);  // levels 0 to 3 are simplified
     with.simplify.vertices = vertices;
     build(with, true);
     const storage::HierarchyReader reader(files_, output_path());
@@ -485,9 +488,9 @@ TEST_F(BuildTest, TheReportTellsWhatWasDone) {
 
 TEST_F(BuildTest, TheAccountAddsUp) {
   tests::write_ply(tests::sphere(60'000), mesh_path());
-  Config tight = config(500);
+  config::Config tight = config(500);
   tight.memory_budget = tight_budget(tight);
-  const BuildStats stats = build(tight).stats;
+  const pipeline::BuildStats stats = build(tight).stats;
   EXPECT_EQ(stats.input_bytes, fs::file_size(mesh_path()));
   std::uint64_t published = 0;
   for (const auto& entry : fs::recursive_directory_iterator(output_path()))
@@ -509,7 +512,7 @@ TEST_F(BuildTest, TheAccountAddsUp) {
 }
 
 TEST_F(BuildTest, WhatIsInMemoryIsReadFromThere) {
-  const BuildStats stats = build(tests::sphere(5000), config()).stats;
+  const pipeline::BuildStats stats = build(tests::sphere(5000), config()).stats;
   const auto chunks = std::ranges::find(stats.stages, "leaves", &StageStats::name);
   ASSERT_NE(chunks, stats.stages.end());
   EXPECT_GT(stats.total.bytes.temporary_written, 0U);
@@ -537,7 +540,7 @@ TEST_F(BuildTest, AMeshWithoutVerticesIsRefused) {
 
 TEST_F(BuildTest, MorePartitionsThanVerticesAreRefused) {
   tests::write_ply(tests::points(99), mesh_path());
-  Config with = config();
+  config::Config with = config();
   with.partition.count = 100;
   const Error error = failure(with);
   EXPECT_EQ(error.code(), ErrorCode::usage);
@@ -547,7 +550,7 @@ TEST_F(BuildTest, MorePartitionsThanVerticesAreRefused) {
 
 TEST_F(BuildTest, TooFewPartitionsAreRefusedNamingTheLeastCount) {
   tests::write_ply(tests::points(70'000), mesh_path());
-  Config with = config();
+  config::Config with = config();
   with.partition.count = 2;
   const Error error = failure(with);
   EXPECT_EQ(error.code(), ErrorCode::usage);
@@ -558,7 +561,7 @@ TEST_F(BuildTest, TooFewPartitionsAreRefusedNamingTheLeastCount) {
 
 TEST_F(BuildTest, ABudgetBelowTheLeastIsRefusedAndTheLeastWorks) {
   tests::write_ply(tests::sphere(20'000), mesh_path());
-  Config with = config(1000);
+  config::Config with = config(1000);
   const std::uint64_t least = named_budget(with);
   with.memory_budget = least - kMiB;
   EXPECT_EQ(failure(with).code(), ErrorCode::budget);
@@ -603,7 +606,7 @@ TEST_F(BuildTest, ABrokenMeshLeavesNothing) {
 TEST_F(BuildTest, AFailureLeavesNoParentDirectoryBehind) {
   std::ofstream(mesh_path()) << "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
                                 "property float y\nproperty float z\nend_header\n0 0 nan\n";
-  Config with = config();
+  config::Config with = config();
   with.output = directory_.path() / "not" / "yet" / "there.hier";
   EXPECT_EQ(failure(with).code(), ErrorCode::input);
 }
@@ -611,7 +614,7 @@ TEST_F(BuildTest, AFailureLeavesNoParentDirectoryBehind) {
 // ---- the disk ------------------------------------------------------------------------------
 
 /// Watches how much lies in a directory while a build runs.
-class DiskWatch final : public Progress {
+class DiskWatch final : public execution::Progress {
  public:
   explicit DiskWatch(fs::path directory) : directory_(std::move(directory)) {}
   void stage(std::string_view, std::uint64_t, std::string_view) override { look(); }
@@ -648,14 +651,14 @@ class DiskWatch final : public Progress {
 class DiskTest : public BuildTest {
  protected:
   /// Whether a disk with that much room is let through.
-  bool is_accepted(const Config& config, std::uint64_t room) {
-    CancelToken cancel;
+  bool is_accepted(const config::Config& config, std::uint64_t room) {
+    execution::CancelToken cancel;
     cancel.cancel();  // the build ends as soon as it has begun
-    NoProgress progress;
+    execution::NoProgress progress;
     tests::FaultyFileSystem files;
     files.limit_room(room);
     try {
-      build_hierarchy(config, {}, {files, progress, cancel});
+      pipeline::build_hierarchy(config, {}, {files, progress, cancel});
     } catch (const Error& error) {
       EXPECT_THAT(error.code(), testing::AnyOf(ErrorCode::budget, ErrorCode::interrupted));
       return error.code() == ErrorCode::interrupted;
@@ -664,7 +667,7 @@ class DiskTest : public BuildTest {
     return false;
   }
 
-  std::uint64_t least_room(const Config& config) {
+  std::uint64_t least_room(const config::Config& config) {
     std::uint64_t refused = 0;
     std::uint64_t accepted = std::uint64_t{1} << 34;
     EXPECT_TRUE(is_accepted(config, accepted));
@@ -699,10 +702,10 @@ TEST_F(DiskTest, ThePredictionKnowsWhatIsAskedOfEachLevel) {
                                                          {4, 4, 4, 4, 4, 2000}};
   for (const std::vector<std::uint32_t>& list : lists) {
     for (const std::uint32_t vertices : {150U, 1000U}) {
-      Config with = config(vertices);
+      config::Config with = config(vertices);
       with.simplify.vertices = AskedVertices(list);
       with.memory_budget = tight_budget(with);
-      const BuildStats stats = build(with, true).stats;
+      const pipeline::BuildStats stats = build(with, true).stats;
       SCOPED_TRACE(fmt::format("{}, partitions of {}", fmt::join(list, ", "), vertices));
       expect_near(stats.predicted_temporary_bytes, stats.peak_temporary_bytes);
       expect_near(stats.predicted_output_bytes, stats.output_bytes);
@@ -719,17 +722,17 @@ TEST_F(DiskTest, AWholeBuildTakesNoMoreRoomThanPredicted) {
   for (const auto& [name, mesh] : meshes) {
     tests::write_ply(mesh, mesh_path());
     const std::uint64_t before = fs::file_size(mesh_path());
-    for (const auto& [vertices, container] : {std::pair{50U, Container::files},
-                                              {50U, Container::archive},
-                                              {300U, Container::files},
-                                              {300U, Container::archive},
-                                              {8192U, Container::files}}) {
-      Config with = config(vertices);
+    for (const auto& [vertices, container] : {std::pair{50U, storage::Container::files},
+                                              {50U, storage::Container::archive},
+                                              {300U, storage::Container::files},
+                                              {300U, storage::Container::archive},
+                                              {8192U, storage::Container::files}}) {
+      config::Config with = config(vertices);
       with.storage.container = container;
       with.memory_budget = tight_budget(with);
       const std::uint64_t predicted = least_room(with);
       DiskWatch watch(directory_.path());
-      build_hierarchy(with, {}, {files_, watch, CancelToken()});
+      pipeline::build_hierarchy(with, {}, {files_, watch, execution::CancelToken()});
       EXPECT_LE(watch.most_bytes() - before, predicted)
           << name << ", partitions of " << vertices << " vertices, container "
           << static_cast<int>(container);
@@ -745,14 +748,16 @@ TEST_F(DiskTest, ThePredictionIsNearWhatASurfaceTakes) {
       {"scattered sphere", tests::shuffled(tests::sphere(60'000), 3)}};
   for (const auto& [name, mesh] : meshes) {
     tests::write_ply(mesh, mesh_path());
-    for (const auto method : {SimplifyMethod::edge_collapse, SimplifyMethod::cluster}) {
+    for (const auto method :
+         {config::SimplifyMethod::edge_collapse, config::SimplifyMethod::cluster}) {
       for (const std::uint32_t vertices : {100U, 1000U}) {
-        Config with = config(vertices);
+        config::Config with = config(vertices);
         with.simplify.method = method;
-        with.storage.container = vertices == 100 ? Container::archive : Container::files;
+        with.storage.container =
+            vertices == 100 ? storage::Container::archive : storage::Container::files;
         with.memory_budget = tight_budget(with);
         fs::remove_all(output_path());
-        const BuildStats stats = build(with, true).stats;
+        const pipeline::BuildStats stats = build(with, true).stats;
         SCOPED_TRACE(fmt::format("{}, method {}, partitions of {} vertices", name,
                                  static_cast<int>(method), vertices));
         expect_near(stats.predicted_temporary_bytes, stats.peak_temporary_bytes);

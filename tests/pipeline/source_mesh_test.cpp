@@ -3,10 +3,10 @@
 #include "hierarchy/error.h"
 #include "mesh_io/ply_writer.h"
 #include "partition/top_tree.h"
-#include "storage/file.h"
-#include "storage/file_checksum.h"
-#include "tests/pipeline/sample_hierarchy.h"
+#include "storage/io/file.h"
+#include "storage/io/file_checksum.h"
 #include "tests/support/meshes.h"
+#include "tests/support/sample_hierarchy.h"
 
 #include <cmath>
 #include <cstdint>
@@ -36,7 +36,7 @@ using Triangles = std::vector<mesh_io::SourceTriangle>;
 Triangles triangles_of(SourceMesh& mesh, std::size_t in_flight = kInFlight) {
   Triangles triangles;
   mesh.read_triangles<Triangles>(
-      in_flight, CancelToken(),
+      in_flight, execution::CancelToken(),
       [](std::span<const mesh_io::SourceTriangle> block, Triangles& slot) {
         slot.assign(block.begin(), block.end());
       },
@@ -45,9 +45,10 @@ Triangles triangles_of(SourceMesh& mesh, std::size_t in_flight = kInFlight) {
 }
 
 /// Cancels when the given number of units is done.
-class CancellingProgress final : public Progress {
+class CancellingProgress final : public execution::Progress {
  public:
-  CancellingProgress(CancelToken& token, std::uint64_t after) : token_(token), after_(after) {}
+  CancellingProgress(execution::CancelToken& token, std::uint64_t after)
+      : token_(token), after_(after) {}
   void stage(std::string_view, std::uint64_t, std::string_view) override {}
   void advance(std::uint64_t count) override {
     done_ += count;
@@ -57,7 +58,7 @@ class CancellingProgress final : public Progress {
   void finish(std::string_view) override {}
 
  private:
-  CancelToken& token_;
+  execution::CancelToken& token_;
   std::uint64_t after_;
   std::uint64_t done_ = 0;
 };
@@ -93,8 +94,8 @@ class SourceMeshTest : public testing::Test {
   std::unique_ptr<storage::FileSystem> files_ = storage::make_posix_file_system();
   storage::MemoryPool pool_{0};
   storage::ScratchFile scratch_{*files_, directory_.path() / "scratch", pool_};
-  NoProgress progress_;
-  CancelToken cancel_;
+  execution::NoProgress progress_;
+  execution::CancelToken cancel_;
 };
 
 struct Streamed {

@@ -1,10 +1,10 @@
 #include "progressive/traced_tile.h"
 
 #include "hierarchy/error.h"
-#include "storage/hierarchy_reader.h"
-#include "tests/pipeline/sample_hierarchy.h"
+#include "storage/format/hierarchy_reader.h"
 #include "tests/support/half_edge_hierarchy.h"
 #include "tests/support/memory_files.h"
+#include "tests/support/sample_hierarchy.h"
 
 #include <algorithm>
 #include <cstdint>

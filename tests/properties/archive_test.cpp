@@ -1,13 +1,13 @@
 // A hierarchy in one file: the same files, to the byte, and the same promises.
 #include "bench/generator.h"
 #include "hierarchy/error.h"
+#include "inspection/export.h"
+#include "inspection/inspect.h"
+#include "inspection/verify.h"
+#include "inspection/verify_error.h"
 #include "pipeline/build.h"
-#include "pipeline/export.h"
-#include "pipeline/inspect.h"
-#include "pipeline/verify.h"
-#include "pipeline/verify_error.h"
-#include "storage/archive_files.h"
-#include "storage/hash.h"
+#include "storage/format/archive_files.h"
+#include "storage/io/hash.h"
 #include "tests/support/memory_files.h"
 
 #include <cstddef>
@@ -43,18 +43,19 @@ class PackedTest : public testing::Test {
     config_.simplify.vertices = 12;
   }
 
-  BuildReport build(const fs::path& output, Container container, bool force = false) {
+  pipeline::BuildReport build(const fs::path& output, config::Container container,
+                              bool force = false) {
     config_.output = output;
     config_.storage.container = container;
-    return build_hierarchy(config_, {.force = force}, {files_, progress_, cancel_});
+    return pipeline::build_hierarchy(config_, {.force = force}, {files_, progress_, cancel_});
   }
 
   /// What verify has against the archive; empty if nothing.
-  std::string complaint(VerifyOptions options = {}) {
+  std::string complaint(inspection::VerifyOptions options = {}) {
     std::string all;
     try {
       for (const auto& problem :
-           verify_hierarchy(files_, kArchive, options, progress_, cancel_).problems)
+           inspection::verify_hierarchy(files_, kArchive, options, progress_, cancel_).problems)
         all += problem + '\n';
     } catch (const Error& error) {
       all += error.what();
@@ -76,17 +77,18 @@ class PackedTest : public testing::Test {
   }
 
   tests::MemoryFiles files_;
-  NoProgress progress_;
-  CancelToken cancel_;
-  Config config_;
+  execution::NoProgress progress_;
+  execution::CancelToken cancel_;
+  config::Config config_;
 };
 
 TEST_F(PackedTest, HasTheFilesOfTheDirectory) {
-  for (const Compression compression :
-       {Compression::none, Compression::zlib, Compression::meshopt, Compression::meshopt_zlib}) {
+  for (const config::Compression compression :
+       {storage::Compression::none, storage::Compression::zlib, storage::Compression::meshopt,
+        storage::Compression::meshopt_zlib}) {
     config_.storage.compression = compression;
-    build(kDirectory, Container::files, true);
-    const BuildReport report = build(kArchive, Container::archive, true);
+    build(kDirectory, storage::Container::files, true);
+    const pipeline::BuildReport report = build(kArchive, storage::Container::archive, true);
     EXPECT_EQ(report.stats.output_bytes, files_.bytes(kArchive).size());
     storage::ArchiveFiles inside(files_, kArchive);
     const auto found = inside.list(kArchive);
@@ -96,7 +98,7 @@ TEST_F(PackedTest, HasTheFilesOfTheDirectory) {
       EXPECT_EQ(found[i].lexically_relative(kArchive), expected[i].lexically_relative(kDirectory));
       EXPECT_EQ(storage::read_file(inside, found[i], 1U << 20), files_.bytes(expected[i]));
     }
-    VerifyOptions options;
+    inspection::VerifyOptions options;
     options.input = config_.input;
     EXPECT_EQ(complaint(options), "");
   }
@@ -104,56 +106,57 @@ TEST_F(PackedTest, HasTheFilesOfTheDirectory) {
 
 TEST_F(PackedTest, IsTheSameForAnyThreadsAndBudget) {
   config_.partition.count = 20;
-  build(kArchive, Container::archive);
+  build(kArchive, storage::Container::archive);
   const Bytes expected = files_.bytes(kArchive);
   for (const std::uint32_t threads : {1U, 3U}) {
     for (const std::uint64_t budget : {std::uint64_t{64} << 20, std::uint64_t{1} << 30}) {
       config_.threads = threads;
       config_.memory_budget = budget;
-      build(kArchive, Container::archive, true);
+      build(kArchive, storage::Container::archive, true);
       EXPECT_EQ(files_.bytes(kArchive), expected) << threads << ", " << budget;
     }
   }
 }
 
 TEST_F(PackedTest, LeavesNothingBesideIt) {
-  build(kArchive, Container::archive);
+  build(kArchive, storage::Container::archive);
   EXPECT_THAT(files_.list("/models"),
               testing::UnorderedElementsAre("/models/mesh.3tz", "/models/mesh.ply"));
 }
 
 TEST_F(PackedTest, IsReadByEveryCommandAsADirectoryIs) {
-  build(kDirectory, Container::files);
-  build(kArchive, Container::archive);
-  const auto exported = [&](const fs::path& from, const ExportSelection& selection) {
-    export_mesh(files_, from, {selection, "/models/out.ply"}, progress_, cancel_);
+  build(kDirectory, storage::Container::files);
+  build(kArchive, storage::Container::archive);
+  const auto exported = [&](const fs::path& from, const inspection::ExportSelection& selection) {
+    inspection::export_mesh(files_, from, {selection, "/models/out.ply"}, progress_, cancel_);
     return files_.content("/models/out.ply");
   };
   files_.put("/models/cut.txt", "1/0\n3/3\n3/4\n");
-  for (const ExportSelection& selection :
-       {ExportSelection(Level{1}), ExportSelection(NodeId{Level{2}, 1}),
-        ExportSelection(fs::path("/models/cut.txt")), ExportSelection(OutlineSelection{})})
+  for (const inspection::ExportSelection& selection :
+       {inspection::ExportSelection(Level{1}), inspection::ExportSelection(NodeId{Level{2}, 1}),
+        inspection::ExportSelection(fs::path("/models/cut.txt")),
+        inspection::ExportSelection(inspection::OutlineSelection{})})
     EXPECT_EQ(exported(kArchive, selection), exported(kDirectory, selection));
 
-  auto inside = inspect_json(files_, kArchive, {});
-  auto outside = inspect_json(files_, kDirectory, {});
+  auto inside = inspection::inspect_json(files_, kArchive, {});
+  auto outside = inspection::inspect_json(files_, kDirectory, {});
   EXPECT_EQ(inside["total_bytes"], files_.bytes(kArchive).size());
   inside["total_bytes"] = outside["total_bytes"] = 0;
   EXPECT_EQ(inside, outside);
-  EXPECT_THAT(inspect_text(files_, kArchive, {}), HasSubstr("mesh.3tz"));
+  EXPECT_THAT(inspection::inspect_text(files_, kArchive, {}), HasSubstr("mesh.3tz"));
 
-  ErrorOptions options;
+  inspection::ErrorOptions options;
   options.samples = 1000;
-  const auto a = measure_errors(files_, kArchive, options, progress_, cancel_);
-  const auto b = measure_errors(files_, kDirectory, options, progress_, cancel_);
+  const auto a = inspection::measure_errors(files_, kArchive, options, progress_, cancel_);
+  const auto b = inspection::measure_errors(files_, kDirectory, options, progress_, cancel_);
   EXPECT_EQ(to_json(a.front()), to_json(b.front()));
 }
 
 TEST_F(PackedTest, AFlippedBitAtAnyByteIsFoundByVerify) {
   config_.partition.count = 2;
-  build(kArchive, Container::archive);
+  build(kArchive, storage::Container::archive);
   Bytes& bytes = files_.bytes(kArchive);
-  VerifyOptions options;
+  inspection::VerifyOptions options;
   options.cuts = 0;
   ASSERT_EQ(complaint(options), "");
   for (std::size_t at = 0; at < bytes.size(); ++at) {
@@ -165,14 +168,14 @@ TEST_F(PackedTest, AFlippedBitAtAnyByteIsFoundByVerify) {
 }
 
 TEST_F(PackedTest, ATruncatedOneIsOneErrorForEveryCommand) {
-  build(kArchive, Container::archive);
+  build(kArchive, storage::Container::archive);
   const Bytes whole = files_.bytes(kArchive);
   for (std::size_t size = 4; size < whole.size(); size += 97) {
     files_.bytes(kArchive).resize(size);
     EXPECT_THAT(complaint(), HasSubstr("the file is cut or damaged")) << size;
-    refusal(ErrorCode::corrupt, [&] { inspect_text(files_, kArchive, {}); });
+    refusal(ErrorCode::corrupt, [&] { inspection::inspect_text(files_, kArchive, {}); });
     refusal(ErrorCode::corrupt, [&] {
-      export_mesh(files_, kArchive, {Level{0}, "/models/out.ply"}, progress_, cancel_);
+      inspection::export_mesh(files_, kArchive, {Level{0}, "/models/out.ply"}, progress_, cancel_);
     });
     EXPECT_FALSE(files_.exists("/models/out.ply"));
     files_.bytes(kArchive) = whole;
@@ -181,32 +184,36 @@ TEST_F(PackedTest, ATruncatedOneIsOneErrorForEveryCommand) {
 
 TEST_F(PackedTest, AFileThatIsNoArchiveIsNoHierarchy) {
   const char* const said = "/models/mesh.ply: not a hierarchy: neither a directory nor a 3tz";
-  EXPECT_THAT(refusal(ErrorCode::io, [&] { inspect_text(files_, "/models/mesh.ply", {}); }),
-              HasSubstr(said));
   EXPECT_THAT(
-      refusal(ErrorCode::io,
-              [&] { verify_hierarchy(files_, "/models/mesh.ply", {}, progress_, cancel_); }),
+      refusal(ErrorCode::io, [&] { inspection::inspect_text(files_, "/models/mesh.ply", {}); }),
       HasSubstr(said));
+  EXPECT_THAT(refusal(ErrorCode::io,
+                      [&] {
+                        inspection::verify_hierarchy(files_, "/models/mesh.ply", {}, progress_,
+                                                     cancel_);
+                      }),
+              HasSubstr(said));
 }
 
 TEST_F(PackedTest, ReplacesAnArchiveOfAHierarchyAndNothingElse) {
-  build(kArchive, Container::archive);
+  build(kArchive, storage::Container::archive);
   const Bytes first = files_.bytes(kArchive);
-  EXPECT_THAT(refusal(ErrorCode::exists, [&] { build(kArchive, Container::archive); }),
+  EXPECT_THAT(refusal(ErrorCode::exists, [&] { build(kArchive, storage::Container::archive); }),
               HasSubstr("is already there; --force replaces it"));
-  EXPECT_THAT(refusal(ErrorCode::exists, [&] { build(kArchive, Container::files, true); }),
+  EXPECT_THAT(refusal(ErrorCode::exists, [&] { build(kArchive, storage::Container::files, true); }),
               HasSubstr("is a file, and a directory is to be made"));
   config_.simplify.vertices = 10;
-  build(kArchive, Container::archive, true);
+  build(kArchive, storage::Container::archive, true);
   EXPECT_NE(files_.bytes(kArchive), first);
 
-  build(kDirectory, Container::files);
-  EXPECT_THAT(refusal(ErrorCode::exists, [&] { build(kDirectory, Container::archive, true); }),
-              HasSubstr("is a directory, and one file is to be made"));
-  files_.put("/models/notes.txt", "mine");
+  build(kDirectory, storage::Container::files);
   EXPECT_THAT(
-      refusal(ErrorCode::exists, [&] { build("/models/notes.txt", Container::archive, true); }),
-      HasSubstr("is not the archive of a hierarchy, so --force does not replace it"));
+      refusal(ErrorCode::exists, [&] { build(kDirectory, storage::Container::archive, true); }),
+      HasSubstr("is a directory, and one file is to be made"));
+  files_.put("/models/notes.txt", "mine");
+  EXPECT_THAT(refusal(ErrorCode::exists,
+                      [&] { build("/models/notes.txt", storage::Container::archive, true); }),
+              HasSubstr("is not the archive of a hierarchy, so --force does not replace it"));
   EXPECT_EQ(files_.content("/models/notes.txt"), "mine");
 }
 

@@ -3,9 +3,9 @@
 
 #include "mesh_io/ply_writer.h"
 #include "pipeline/build.h"
-#include "storage/hierarchy_reader.h"
-#include "tests/pipeline/sample_hierarchy.h"
+#include "storage/format/hierarchy_reader.h"
 #include "tests/support/meshes.h"
+#include "tests/support/sample_hierarchy.h"
 
 #include <algorithm>
 #include <array>
@@ -34,26 +34,28 @@ using Row = std::vector<float>;
 class AttributesTest : public testing::Test {
  protected:
   void build(const mesh_io::PlyContent& content, const auto& positions,
-             const std::vector<float>& attributes, const TestMesh& mesh, Representative kind) {
-    Config config;
+             const std::vector<float>& attributes, const TestMesh& mesh,
+             config::Representative kind) {
+    config::Config config;
     config.input = directory_.path() / "mesh.ply";
     config.output = directory_.path() / "mesh.hier";
     config.threads = 2;
     config.partition.vertices = 150;
-    config.simplify.method = SimplifyMethod::cluster;  // its attributes are means, exactly
+    config.simplify.method = config::SimplifyMethod::cluster;  // its attributes are means, exactly
     config.simplify.representative = kind;
     mesh_io::PlyWriter writer(*files_, config.input.front(), content);
     writer.write_vertices(std::span(positions), attributes);
     writer.write_triangles(mesh.triangles);
     writer.finish();
-    NoProgress progress;
-    build_hierarchy(config, {.force = true}, {*files_, progress, CancelToken()});
+    execution::NoProgress progress;
+    pipeline::build_hierarchy(config, {.force = true},
+                              {*files_, progress, execution::CancelToken()});
     reader_.emplace(*files_, config.output);
     read_tiles();
   }
 
   void build(const TestMesh& mesh, const AttributeLayout& layout,
-             const std::vector<float>& attributes, Representative kind) {
+             const std::vector<float>& attributes, config::Representative kind) {
     mesh_io::PlyContent content;
     content.vertex_count = mesh.positions.size();
     content.triangle_count = mesh.triangles.size();
@@ -133,7 +135,8 @@ class AttributesTest : public testing::Test {
   std::map<NodeId, std::vector<double>> weights_;
 };
 
-constexpr std::array kAll{Representative::mean, Representative::quadric, Representative::vertex};
+constexpr std::array kAll{config::Representative::mean, config::Representative::quadric,
+                          config::Representative::vertex};
 
 AttributeLayout rich_layout() {
   AttributeLayout layout;
@@ -172,7 +175,7 @@ TEST_F(AttributesTest, PartitionsKeepEveryBit) {
   std::vector<float> attributes = rich_attributes(mesh, true);
   for (std::size_t v = 0; v < mesh.positions.size(); v += 17)
     attributes[9 * v] *= 3;  // a normal that is not of unit length
-  build(mesh, rich_layout(), attributes, Representative::quadric);
+  build(mesh, rich_layout(), attributes, config::Representative::quadric);
   std::vector<Row> expected;
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     const Vec3f p = mesh.positions[v];
@@ -187,7 +190,7 @@ TEST_F(AttributesTest, PartitionsKeepEveryBit) {
 
 TEST_F(AttributesTest, ARampStaysARampAtEveryLevel) {
   const TestMesh mesh = tests::sphere(6000, 0.01F);
-  build(mesh, rich_layout(), rich_attributes(mesh, true), Representative::mean);
+  build(mesh, rich_layout(), rich_attributes(mesh, true), config::Representative::mean);
   std::size_t simplified = 0;
   for (const auto& [node, tile] : tiles_) {
     if (tree().is_partition(node))
@@ -208,7 +211,7 @@ TEST_F(AttributesTest, ARampStaysARampAtEveryLevel) {
 TEST_F(AttributesTest, EveryLevelHasTheMeanOfTheInput) {
   const TestMesh mesh = tests::torus(6000, 0.01F);
   const std::vector<float> attributes = rich_attributes(mesh, true);
-  for (const Representative kind : kAll) {
+  for (const config::Representative kind : kAll) {
     build(mesh, rich_layout(), attributes, kind);
     for (std::size_t channel = 3; channel < 9; ++channel) {
       double mean = 0;
@@ -233,7 +236,7 @@ TEST_F(AttributesTest, EqualValuesStayEqual) {
   std::vector<float> attributes;
   for (std::size_t v = 0; v < mesh.positions.size(); ++v)
     attributes.insert(attributes.end(), {255, 0, 17, 128});
-  for (const Representative kind : kAll) {
+  for (const config::Representative kind : kAll) {
     build(mesh, layout, attributes, kind);
     for (const auto& [node, tile] : tiles_) {
       for (std::size_t i = 0; i < tile.mesh.vertices.size(); ++i) {
@@ -247,7 +250,7 @@ TEST_F(AttributesTest, EqualValuesStayEqual) {
 
 TEST_F(AttributesTest, NormalsOfRepresentativesHaveUnitLengthAndPointOutwards) {
   const TestMesh mesh = tests::sphere(6000, 0.005F);
-  build(mesh, rich_layout(), rich_attributes(mesh, true), Representative::quadric);
+  build(mesh, rich_layout(), rich_attributes(mesh, true), config::Representative::quadric);
   for (const auto& [node, tile] : tiles_) {
     for (std::size_t i = 0; i < tile.mesh.vertices.size(); ++i) {
       const auto values = tile.mesh.vertices.attributes_of(i);
@@ -266,7 +269,7 @@ TEST_F(AttributesTest, NormalsThatCancelOutAreStillUnitNormalsInTheFiles) {
   std::vector<float> attributes;
   for (std::size_t v = 0; v < mesh.positions.size(); ++v)
     attributes.insert(attributes.end(), {0, 0, 0});
-  build(mesh, layout, attributes, Representative::mean);
+  build(mesh, layout, attributes, config::Representative::mean);
   for (const auto& [node, tile] : tiles_) {
     for (std::size_t i = 0; i < tile.mesh.own_count; ++i) {
       const auto n = tile.mesh.vertices.attributes_of(i);
@@ -278,7 +281,7 @@ TEST_F(AttributesTest, NormalsThatCancelOutAreStillUnitNormalsInTheFiles) {
 
 TEST_F(AttributesTest, AGhostCarriesWhatItsVertexCarries) {
   const TestMesh mesh = tests::sphere(4000, 0.01F);
-  build(mesh, rich_layout(), rich_attributes(mesh, true), Representative::quadric);
+  build(mesh, rich_layout(), rich_attributes(mesh, true), config::Representative::quadric);
   std::size_t ghosts = 0;
   for (const auto& [node, tile] : tiles_) {
     for (std::size_t g = 0; g < tile.mesh.ghosts.size(); ++g) {
@@ -313,7 +316,7 @@ TEST_F(AttributesTest, GeographicCoordinatesAreKeptRelativeToTheOrigin) {
   content.vertex_count = points.size();
   content.triangle_count = mesh.triangles.size();
   content.double_coordinates = true;
-  build(content, points, {}, mesh, Representative::quadric);
+  build(content, points, {}, mesh, config::Representative::quadric);
 
   const Vec3d origin = reader_->manifest().origin;
   EXPECT_TRUE(reader_->manifest().source.double_precision);
@@ -333,7 +336,7 @@ TEST_F(AttributesTest, GeographicCoordinatesAreKeptRelativeToTheOrigin) {
 
 TEST_F(AttributesTest, FloatCoordinatesHaveNoOrigin) {
   const TestMesh mesh = tests::sphere(3000, 0.01F);
-  build(mesh, {}, {}, Representative::quadric);
+  build(mesh, {}, {}, config::Representative::quadric);
   EXPECT_EQ(reader_->manifest().origin, Vec3d{});
   std::vector<Row> expected;
   for (const Vec3f p : mesh.positions)

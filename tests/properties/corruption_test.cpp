@@ -2,15 +2,15 @@
 // file; inspect and export tell an error or, where they do not read what is damaged, what they
 // always tell.
 #include "bench/generator.h"
+#include "config/config.h"
 #include "hierarchy/error.h"
+#include "inspection/export.h"
+#include "inspection/inspect.h"
+#include "inspection/verify.h"
 #include "pipeline/build.h"
-#include "pipeline/config.h"
-#include "pipeline/export.h"
-#include "pipeline/inspect.h"
-#include "pipeline/verify.h"
-#include "storage/layout.h"
-#include "tests/pipeline/sample_hierarchy.h"
+#include "storage/format/layout.h"
 #include "tests/support/memory_files.h"
+#include "tests/support/sample_hierarchy.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -98,33 +98,33 @@ class CorruptionTest : public testing::TestWithParam<Victim> {
   void TearDown() override { RecordProperty("damages", std::to_string(damages_)); }
 
   void build(const bench::SurfaceOptions& surface, const fs::path& to) {
-    Config config;
+    config::Config config;
     config.input = "/models/mesh.ply";
     config.output = to;
     config.threads = 1;
     config.partition.count = 5;  // with early nodes
     config.simplify.vertices = 12;
     bench::write_ply(files_, config.input.front(), *bench::make_surface(surface));
-    build_hierarchy(config, {}, {files_, progress_, cancel_});
+    pipeline::build_hierarchy(config, {}, {files_, progress_, cancel_});
   }
 
   /// What verify has against the hierarchy; empty if nothing.
   std::string complaint() {
-    VerifyOptions options;
+    inspection::VerifyOptions options;
     options.cuts = 0;
     std::string all;
     const Outcome outcome = outcome_of([&] {
       for (const std::string& problem :
-           verify_hierarchy(files_, kDirectory, options, progress_, cancel_).problems)
+           inspection::verify_hierarchy(files_, kDirectory, options, progress_, cancel_).problems)
         all += problem + "\n";
       return all;
     });
     return outcome.text;
   }
 
-  std::string export_of(const ExportSelection& selection) {
+  std::string export_of(const inspection::ExportSelection& selection) {
     const std::string summary =
-        export_mesh(files_, kDirectory, {selection, kExported}, progress_, cancel_);
+        inspection::export_mesh(files_, kDirectory, {selection, kExported}, progress_, cancel_);
     const Bytes& bytes = files_.bytes(kExported);
     return summary + std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   }
@@ -190,22 +190,23 @@ class CorruptionTest : public testing::TestWithParam<Victim> {
   }
 
   tests::MemoryFiles files_;
-  NoProgress progress_;
-  CancelToken cancel_;
+  execution::NoProgress progress_;
+  execution::CancelToken cancel_;
   std::vector<fs::path> paths_;
   std::map<std::string, std::function<std::string()>> commands_ = {
-      {"inspect", [this] { return inspect_text(files_, kDirectory, {}); }},
-      {"inspect --json", [this] { return inspect_json(files_, kDirectory, {}).dump(); }},
+      {"inspect", [this] { return inspection::inspect_text(files_, kDirectory, {}); }},
+      {"inspect --json",
+       [this] { return inspection::inspect_json(files_, kDirectory, {}).dump(); }},
       {"inspect --level 3",
        [this] {
-         return inspect_text(files_, kDirectory, {static_cast<Level>(3), std::nullopt});
+         return inspection::inspect_text(files_, kDirectory, {static_cast<Level>(3), std::nullopt});
        }},
       {"export --level 0", [this] { return export_of(static_cast<Level>(0)); }},
       {"export --level 1", [this] { return export_of(static_cast<Level>(1)); }},
       {"export --level 2", [this] { return export_of(static_cast<Level>(2)); }},
       {"export --level 3", [this] { return export_of(static_cast<Level>(3)); }},
       {"export --node 2/1", [this] { return export_of(tests::node(2, 1)); }},
-      {"export --outline", [this] { return export_of(OutlineSelection{}); }}};
+      {"export --outline", [this] { return export_of(inspection::OutlineSelection{}); }}};
   std::map<std::string, std::string> expected_;
   std::uint64_t damages_ = 0;
 };

@@ -1,11 +1,12 @@
 // Promise 3 on built hierarchies: every cut shows the image of the input under one map of vertices.
+#include "config/config.h"
+#include "hierarchy/cut.h"
+#include "inspection/cut_mesh.h"
+#include "inspection/random_cut.h"
 #include "pipeline/build.h"
-#include "pipeline/config.h"
-#include "pipeline/cut.h"
-#include "pipeline/cut_mesh.h"
-#include "storage/hierarchy_reader.h"
-#include "tests/pipeline/sample_hierarchy.h"
+#include "storage/format/hierarchy_reader.h"
 #include "tests/support/meshes.h"
+#include "tests/support/sample_hierarchy.h"
 #include "tests/support/simplify_methods.h"
 
 #include <algorithm>
@@ -29,15 +30,15 @@ struct Case {
   std::uint32_t partitions = 1;
   AskedVertices tile_vertices = 4;
   std::uint64_t cuts = 1;
-  SimplifyConfig simplify = {};  ///< its vertices are tile_vertices
+  config::SimplifyConfig simplify = {};  ///< its vertices are tile_vertices
 };
 
-CutTriangle smallest_first(CutTriangle t) {
+inspection::CutTriangle smallest_first(inspection::CutTriangle t) {
   std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
   return t;
 }
 
-bool is_flat(const CutTriangle& t) {
+bool is_flat(const inspection::CutTriangle& t) {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
@@ -46,20 +47,21 @@ class Built {
  public:
   explicit Built(const Case& c) {
     tests::write_ply(c.mesh, directory_.path() / "mesh.ply");
-    Config config;
+    config::Config config;
     config.input = directory_.path() / "mesh.ply";
     config.output = directory_.path() / "mesh.hier";
     config.partition.count = c.partitions;
     config.simplify = c.simplify;
     config.simplify.vertices = c.tile_vertices;
-    NoProgress progress;
-    const CancelToken cancel;
-    build_hierarchy(config, {}, {*files_, progress, cancel});
+    execution::NoProgress progress;
+    const execution::CancelToken cancel;
+    pipeline::build_hierarchy(config, {}, {*files_, progress, cancel});
     reader_ = std::make_unique<storage::HierarchyReader>(*files_, config.output);
     for (const TileRecord& record : reader_->records()) {
       tiles_.emplace(record.node, reader_->read_tile(record.node));
     }
-    const NumberedCut last = number_vertices(*reader_, Cut::of_level(tree(), tree().depth()));
+    const inspection::NumberedCut last =
+        inspection::number_vertices(*reader_, Cut::of_level(tree(), tree().depth()));
     for (NodeId node : last.cut.nodes()) {
       for (std::uint32_t v = 0; v < tiles_.at(node).mesh.own_count; ++v)
         owners_.push_back({node, v});
@@ -68,16 +70,19 @@ class Built {
   }
 
   const Tree& tree() const { return reader_->tree(); }
-  NumberedCut numbered(Cut cut) const { return number_vertices(*reader_, std::move(cut)); }
+  inspection::NumberedCut numbered(Cut cut) const {
+    return inspection::number_vertices(*reader_, std::move(cut));
+  }
 
   /// The input's triangles, corners as numbers of the cut of all partitions.
-  const std::vector<CutTriangle>& originals() const { return originals_; }
+  const std::vector<inspection::CutTriangle>& originals() const { return originals_; }
 
   /// What the tiles of a cut draw.
-  std::vector<CutTriangle> drawn(const NumberedCut& shown) const {
-    std::vector<CutTriangle> all;
+  std::vector<inspection::CutTriangle> drawn(const inspection::NumberedCut& shown) const {
+    std::vector<inspection::CutTriangle> all;
     for (std::size_t i = 0; i < shown.cut.size(); ++i) {
-      for (const CutTriangle& t : draw_tile(tree(), shown, i, tiles_.at(shown.cut[i])).triangles) {
+      for (const inspection::CutTriangle& t :
+           inspection::draw_tile(tree(), shown, i, tiles_.at(shown.cut[i])).triangles) {
         all.push_back(smallest_first(t));
       }
     }
@@ -86,7 +91,7 @@ class Built {
   }
 
   /// Where a cut shows each original vertex: up through the parent maps, without any ghost.
-  std::vector<std::uint32_t> vertex_images(const NumberedCut& shown) const {
+  std::vector<std::uint32_t> vertex_images(const inspection::NumberedCut& shown) const {
     std::vector<std::uint32_t> images;
     for (auto [node, vertex] : owners_) {
       const auto position = shown.cut.position_of(static_cast<PartitionId>(node.index));
@@ -105,14 +110,14 @@ class Built {
   std::unique_ptr<storage::HierarchyReader> reader_;
   std::map<NodeId, PublishedTile> tiles_;
   std::vector<std::pair<NodeId, std::uint32_t>> owners_;  ///< of the original vertices
-  std::vector<CutTriangle> originals_;
+  std::vector<inspection::CutTriangle> originals_;
 };
 
-std::vector<CutTriangle> image(const std::vector<CutTriangle>& triangles,
-                               const std::vector<std::uint32_t>& map) {
-  std::vector<CutTriangle> images;
-  for (const CutTriangle& t : triangles) {
-    const CutTriangle corners = {map[t[0]], map[t[1]], map[t[2]]};
+std::vector<inspection::CutTriangle> image(const std::vector<inspection::CutTriangle>& triangles,
+                                           const std::vector<std::uint32_t>& map) {
+  std::vector<inspection::CutTriangle> images;
+  for (const inspection::CutTriangle& t : triangles) {
+    const inspection::CutTriangle corners = {map[t[0]], map[t[1]], map[t[2]]};
     if (!is_flat(corners))
       images.push_back(smallest_first(corners));
   }
@@ -121,7 +126,7 @@ std::vector<CutTriangle> image(const std::vector<CutTriangle>& triangles,
 }
 
 /// Triangles along an edge from its lower vertex, less those that run back, where that is not zero.
-std::map<tests::Edge, std::int64_t> border(const std::vector<CutTriangle>& triangles) {
+std::map<tests::Edge, std::int64_t> border(const std::vector<inspection::CutTriangle>& triangles) {
   std::map<tests::Edge, std::int64_t> net;
   for (const tests::Edge& edge : tests::unmatched_edges(triangles))
     net[edge] = 0;
@@ -164,7 +169,8 @@ void expect_seamless(const Case& c) {
             tests::is_closed(c.mesh.triangles) || c.mesh.triangles.empty());
   for (std::uint64_t seed = 0; seed < c.cuts; ++seed) {
     SCOPED_TRACE("cut " + std::to_string(seed));
-    const NumberedCut shown = built.numbered(Cut::random(built.tree(), seed));
+    const inspection::NumberedCut shown =
+        built.numbered(inspection::random_cut(built.tree(), seed));
     const auto map = built.vertex_images(shown);
     auto images = image(built.originals(), map);
 

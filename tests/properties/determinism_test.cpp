@@ -1,14 +1,14 @@
 // Promise 6: the output is byte-identical for any thread count, any memory budget, and any form of
 // the same input.
+#include "execution/size_text.h"
 #include "hierarchy/error.h"
 #include "mesh_io/ply_writer.h"
 #include "partition/top_tree.h"
 #include "pipeline/build.h"
-#include "pipeline/size_text.h"
-#include "storage/hash.h"
-#include "storage/layout.h"
-#include "tests/pipeline/sample_hierarchy.h"
+#include "storage/format/layout.h"
+#include "storage/io/hash.h"
 #include "tests/support/meshes.h"
+#include "tests/support/sample_hierarchy.h"
 #include "tests/support/simplify_methods.h"
 #include "tests/support/sizes.h"
 
@@ -158,18 +158,19 @@ class DeterminismTest : public testing::Test {
     return text.str();
   }
 
-  Config config() const {
-    Config config;
+  config::Config config() const {
+    config::Config config;
     config.input = mesh_path();
     config.output = directory_.path() / "mesh.hier";
     return config;
   }
 
-  FileHashes build(Config config, const Conditions& conditions) {
+  FileHashes build(config::Config config, const Conditions& conditions) {
     config.threads = conditions.threads;
     config.memory_budget = conditions.budget;
-    NoProgress progress;
-    build_hierarchy(config, {.force = true}, {*files_, progress, CancelToken()});
+    execution::NoProgress progress;
+    pipeline::build_hierarchy(config, {.force = true},
+                              {*files_, progress, execution::CancelToken()});
     FileHashes hashes;
     for (const auto& entry : fs::recursive_directory_iterator(config.output)) {
       if (entry.is_regular_file()) {
@@ -181,13 +182,13 @@ class DeterminismTest : public testing::Test {
   }
 
   /// Whether a budget is let through.
-  bool is_enough(Config config, std::uint64_t budget) {
+  bool is_enough(config::Config config, std::uint64_t budget) {
     config.memory_budget = budget;
-    CancelToken cancel;
+    execution::CancelToken cancel;
     cancel.cancel();  // a build that is let through ends at once
-    NoProgress progress;
+    execution::NoProgress progress;
     try {
-      build_hierarchy(config, {.force = true}, {*files_, progress, cancel});
+      pipeline::build_hierarchy(config, {.force = true}, {*files_, progress, cancel});
     } catch (const Error& error) {
       return error.code() != ErrorCode::budget;
     }
@@ -195,7 +196,7 @@ class DeterminismTest : public testing::Test {
   }
 
   /// The least budget to the byte: nothing is left for scratch data, all of it goes to the disk.
-  std::uint64_t tight_budget(const Config& config) {
+  std::uint64_t tight_budget(const config::Config& config) {
     std::uint64_t refused = 0;
     std::uint64_t accepted = kGiB;
     while (accepted - refused > 1) {
@@ -206,14 +207,16 @@ class DeterminismTest : public testing::Test {
   }
 
   /// Bytes that a build of two threads reads; its result must be as expected.
-  std::uint64_t read_by(const Config& config, std::uint64_t budget, const FileHashes& expected) {
+  std::uint64_t read_by(const config::Config& config, std::uint64_t budget,
+                        const FileHashes& expected) {
     const std::uint64_t before = files_->counters().bytes_read;
-    EXPECT_EQ(build(config, {2, budget}), expected) << "2 threads, " << exact_size_text(budget);
+    EXPECT_EQ(build(config, {2, budget}), expected)
+        << "2 threads, " << execution::exact_size_text(budget);
     return files_->counters().bytes_read - before;
   }
 
   /// Builds under all conditions, each once, and expects one result.
-  void expect_one_result(const Config& config,
+  void expect_one_result(const config::Config& config,
                          const std::vector<std::uint32_t>& threads = {1, 2, 5}) {
     const std::uint64_t tight = tight_budget(config);
     const FileHashes expected = build(config, {1, 4 * kGiB});
@@ -227,7 +230,7 @@ class DeterminismTest : public testing::Test {
         if (is_done)
           continue;
         EXPECT_EQ(build(config, {count, budget}), expected)
-            << count << " threads, " << exact_size_text(budget);
+            << count << " threads, " << execution::exact_size_text(budget);
       }
     }
   }
@@ -260,7 +263,7 @@ TEST_F(DeterminismTest, ThreadsAndMemoryDoNotMatter) {
   for (const Case& c : cases()) {
     SCOPED_TRACE(c.name);
     write_binary(c.make());
-    Config with = config();
+    config::Config with = config();
     with.partition.vertices = 200;
     expect_one_result(with);
   }
@@ -270,7 +273,7 @@ TEST_F(DeterminismTest, ThreadsAndMemoryDoNotMatterForAnyPartitionCount) {
   write_binary(rich(tests::torus(5000, 0.01F)));
   for (const std::uint32_t count : {1U, 2U, 3U, 5U, 100U, 128U}) {
     SCOPED_TRACE(count);
-    Config with = config();
+    config::Config with = config();
     with.partition.count = count;
     expect_one_result(with, {1, 5});
   }
@@ -280,8 +283,8 @@ TEST_F(DeterminismTest, ThreadsAndMemoryDoNotMatterForAnyMethod) {
   write_binary(rich(tests::genus_n(3, 5000, 0.01F)));
   for (const auto& [name, method] : tests::all_simplify_methods()) {
     SCOPED_TRACE(name);
-    for (const AxisRule axis : {AxisRule::longest, AxisRule::compactness}) {
-      Config with = config();
+    for (const config::AxisRule axis : {config::AxisRule::longest, config::AxisRule::compactness}) {
+      config::Config with = config();
       with.partition.vertices = 150;
       with.partition.axis = axis;
       with.simplify = method;
@@ -294,7 +297,7 @@ TEST_F(DeterminismTest, ThreadsAndMemoryDoNotMatterForAnyMethod) {
 TEST_F(DeterminismTest, TheFormOfTheFileDoesNotMatter) {
   for (const RichMesh& mesh :
        {plain(tests::sphere(5000, 0.01F)), rich(tests::torus(5000, 0.01F))}) {
-    Config with = config();
+    config::Config with = config();
     with.partition.vertices = 200;
     write_binary(mesh);
     FileHashes expected = build(with, {});
@@ -313,7 +316,7 @@ TEST_F(DeterminismTest, TheFormOfTheFileDoesNotMatter) {
 
 TEST_F(DeterminismTest, TheOrderOfTheTrianglesDoesNotMatter) {
   RichMesh mesh = plain(tests::sphere(6000, 0.01F));
-  Config with = config();
+  config::Config with = config();
   with.partition.vertices = 200;
   write_binary(mesh);
   FileHashes expected = build(with, {});
@@ -330,14 +333,14 @@ TEST_F(DeterminismTest, TheOrderOfTheTrianglesDoesNotMatter) {
 TEST_F(DeterminismTest, AnotherConfigGivesAnotherResult) {
   // Else the comparisons above would prove nothing.
   write_binary(plain(tests::sphere(5000, 0.01F)));
-  Config with = config();
+  config::Config with = config();
   with.partition.vertices = 200;
   const FileHashes expected = build(with, {});
-  with.simplify.method = SimplifyMethod::half_edge;
+  with.simplify.method = config::SimplifyMethod::half_edge;
   EXPECT_NE(build(with, {}), expected);
-  with.simplify.method = SimplifyMethod::edge_collapse;
+  with.simplify.method = config::SimplifyMethod::edge_collapse;
   EXPECT_EQ(build(with, {}), expected);
-  with.partition.axis = AxisRule::longest;
+  with.partition.axis = config::AxisRule::longest;
   EXPECT_NE(build(with, {}), expected);
 }
 
@@ -355,8 +358,8 @@ TEST_F(LargeDeterminismTest, AMeshOfManyEqualCoordinates) {
   const TestMesh grid = tests::open_grid(500, 500);  // every median falls into a tie
   ASSERT_GT(grid.positions.size(), partition::kChunkVertices);
   write_binary(plain(grid));
-  Config with = config();
-  with.partition.axis = AxisRule::longest;
+  config::Config with = config();
+  with.partition.axis = config::AxisRule::longest;
   expect_one_result(with, {2});
 }
 

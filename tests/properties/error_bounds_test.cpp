@@ -1,10 +1,10 @@
 // Promise: no point of what a tile shows, and none of the original surface under it, is farther off
 // than the tile's bound; and bounds say something.
+#include "config/config.h"
+#include "inspection/verify_error.h"
 #include "pipeline/build.h"
-#include "pipeline/config.h"
-#include "pipeline/verify_error.h"
-#include "tests/pipeline/sample_hierarchy.h"
 #include "tests/support/meshes.h"
+#include "tests/support/sample_hierarchy.h"
 #include "tests/support/simplify_methods.h"
 
 #include <algorithm>
@@ -26,26 +26,26 @@ using testing::IsEmpty;
 class ErrorBoundsTest : public testing::Test {
  protected:
   /// All levels of simplified tiles, measured.
-  std::vector<ErrorMeasurement> measure(const tests::TestMesh& mesh,
-                                        const SimplifyConfig& simplify) {
+  std::vector<inspection::ErrorMeasurement> measure(const tests::TestMesh& mesh,
+                                                    const config::SimplifyConfig& simplify) {
     const fs::path input = directory_.path() / "mesh.ply";
     tests::write_ply(mesh, input);
-    Config config;
+    config::Config config;
     config.input = input;
     config.output = directory_.path() / "mesh.hier";
     config.partition.vertices = 150;
     config.simplify = simplify;
     config.simplify.vertices = 100;
-    NoProgress progress;
-    const CancelToken cancel;
-    build_hierarchy(config, {.force = true}, {*files_, progress, cancel});
-    return measure_errors(*files_, config.output, {AllLevels{}, 20'000, 1U << 30}, progress,
-                          cancel);
+    execution::NoProgress progress;
+    const execution::CancelToken cancel;
+    pipeline::build_hierarchy(config, {.force = true}, {*files_, progress, cancel});
+    return inspection::measure_errors(
+        *files_, config.output, {inspection::AllLevels{}, 20'000, 1U << 30}, progress, cancel);
   }
 
-  static void expect_bounds_hold(const std::vector<ErrorMeasurement>& levels) {
+  static void expect_bounds_hold(const std::vector<inspection::ErrorMeasurement>& levels) {
     EXPECT_FALSE(levels.empty());
-    for (const ErrorMeasurement& level : levels) {
+    for (const inspection::ErrorMeasurement& level : levels) {
       EXPECT_THAT(level.problems, IsEmpty()) << level.name;
       EXPECT_LE(level.bound, level.diagonal * 1.001) << level.name;
     }
@@ -108,7 +108,7 @@ TEST_F(ErrorBoundsTest, BoundsOfASmoothTorusSaySomething) {
     SCOPED_TRACE(method);
     const auto levels = measure(tests::torus(6000), simplify);
     expect_bounds_hold(levels);
-    for (const ErrorMeasurement& level : levels) {
+    for (const inspection::ErrorMeasurement& level : levels) {
       EXPECT_LE(level.bound, 20 * std::max(level.forward.max, level.backward.max)) << level.name;
     }
   }

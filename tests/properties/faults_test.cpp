@@ -2,13 +2,13 @@
 // to be replaced stays until then, and the next build goes on and makes the same bytes.
 #include "hierarchy/error.h"
 #include "pipeline/build.h"
-#include "storage/file.h"
-#include "storage/hash.h"
-#include "storage/layout.h"
-#include "tests/pipeline/sample_hierarchy.h"
+#include "storage/format/layout.h"
+#include "storage/io/file.h"
+#include "storage/io/hash.h"
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/interrupter.h"
 #include "tests/support/meshes.h"
+#include "tests/support/sample_hierarchy.h"
 #include "tests/support/try_build.h"
 
 #include <cstdint>
@@ -40,9 +40,9 @@ constexpr std::uint64_t kForever = std::numeric_limits<std::uint32_t>::max();
 using Snapshot = std::map<std::string, std::uint64_t>;
 
 /// Sets the token at the beginning of the stage of that name.
-class StageInterrupter final : public Progress {
+class StageInterrupter final : public execution::Progress {
  public:
-  StageInterrupter(CancelToken& token, std::string stage)
+  StageInterrupter(execution::CancelToken& token, std::string stage)
       : token_(token), stage_(std::move(stage)) {}
   void stage(std::string_view name, std::uint64_t, std::string_view) override {
     if (name == stage_)
@@ -52,20 +52,20 @@ class StageInterrupter final : public Progress {
   void finish(std::string_view) override {}
 
  private:
-  CancelToken& token_;
+  execution::CancelToken& token_;
   std::string stage_;
 };
 
 constexpr auto kInMemory = tests::TemporaryDirectory::Place::memory;
 
 /// Of builds that make a directory, and of such that make an archive.
-class FaultsTest : public testing::TestWithParam<Container> {
+class FaultsTest : public testing::TestWithParam<config::Container> {
  protected:
   FaultsTest() {
     tests::write_ply(tests::sphere(600, 0.01F), directory_.path() / "mesh.ply");
     config_.input = directory_.path() / "mesh.ply";
     config_.output =
-        directory_.path() / (GetParam() == Container::files ? "mesh.hier" : "mesh.3tz");
+        directory_.path() / (GetParam() == storage::Container::files ? "mesh.hier" : "mesh.3tz");
     config_.storage.container = GetParam();
     config_.threads = 2;
     config_.partition.vertices = 80;
@@ -76,9 +76,9 @@ class FaultsTest : public testing::TestWithParam<Container> {
   std::uint64_t tight_budget() {
     std::uint64_t refused = 0;
     std::uint64_t accepted = std::uint64_t{1} << 30;
-    CancelToken cancel;
+    execution::CancelToken cancel;
     cancel.cancel();  // a build that is let through ends at once
-    NoProgress progress;
+    execution::NoProgress progress;
     while (accepted - refused > 1) {
       config_.memory_budget = (refused + accepted) / 2;
       const std::optional<ErrorCode> code = run(*real_, progress, cancel);
@@ -100,11 +100,11 @@ class FaultsTest : public testing::TestWithParam<Container> {
 
   /// The code a build fails with; none if it succeeds.
   std::optional<ErrorCode> run(storage::FileSystem& files, bool force = false) {
-    NoProgress progress;
-    return run(files, progress, CancelToken(), force);
+    execution::NoProgress progress;
+    return run(files, progress, execution::CancelToken(), force);
   }
-  std::optional<ErrorCode> run(storage::FileSystem& files, Progress& progress,
-                               const CancelToken& cancel, bool force = false) {
+  std::optional<ErrorCode> run(storage::FileSystem& files, execution::Progress& progress,
+                               const execution::CancelToken& cancel, bool force = false) {
     return tests::try_build(config_, force, {files, progress, cancel}, message_);
   }
 
@@ -146,10 +146,10 @@ class FaultsTest : public testing::TestWithParam<Container> {
   /// Puts a finished hierarchy of other content where the output goes; returns its content.
   Snapshot place_old_output() {
     if (!fs::exists(kept_.path() / "old")) {
-      config_.simplify.method = SimplifyMethod::cluster;
+      config_.simplify.method = config::SimplifyMethod::cluster;
       FaultyFileSystem files;
       EXPECT_EQ(run(files, true), std::nullopt) << message_;
-      config_.simplify.method = SimplifyMethod::edge_collapse;
+      config_.simplify.method = config::SimplifyMethod::edge_collapse;
       fs::rename(config_.output, kept_.path() / "old");
     }
     fs::remove_all(config_.output);
@@ -190,12 +190,12 @@ class FaultsTest : public testing::TestWithParam<Container> {
     }
   }
 
-  static int stride() { return GetParam() == Container::files ? 1 : 4; }
+  static int stride() { return GetParam() == storage::Container::files ? 1 : 4; }
 
   tests::TemporaryDirectory directory_{kInMemory};  ///< looked at as a whole
   tests::TemporaryDirectory kept_{kInMemory};
   std::unique_ptr<storage::FileSystem> real_ = storage::make_posix_file_system();
-  Config config_;
+  config::Config config_;
   std::string message_;
 };
 
@@ -278,15 +278,15 @@ TEST_P(FaultsTest, ShortTransfersChangeNothing) {
 TEST_P(FaultsTest, AnInterruptionAtAnyTimeIsGoneOnFrom) {
   const Snapshot after = expected();
   FaultyFileSystem files;
-  CancelToken never;
+  execution::CancelToken never;
   Interrupter measuring(never, kForever);
-  ASSERT_EQ(run(files, measuring, CancelToken()), std::nullopt);
+  ASSERT_EQ(run(files, measuring, execution::CancelToken()), std::nullopt);
   fs::remove_all(config_.output);
   const std::uint64_t total = measuring.done();
   ASSERT_GT(total, 1000U);
   for (std::uint64_t step = 0; step < 24; ++step) {
     SCOPED_TRACE(step);
-    CancelToken cancel;
+    execution::CancelToken cancel;
     Interrupter progress(cancel, 1 + total * step / 24);
     ASSERT_EQ(run(files, progress, cancel), ErrorCode::interrupted) << message_;
     EXPECT_FALSE(fs::exists(config_.output));
@@ -304,14 +304,14 @@ TEST_P(FaultsTest, InterruptionsAddUp) {
   const Snapshot after = expected();
   FaultyFileSystem files;
   {
-    CancelToken cancel;
+    execution::CancelToken cancel;
     StageInterrupter progress(cancel, "leaves");
     ASSERT_EQ(run(files, progress, cancel), ErrorCode::interrupted);
   }
   int interruptions = 0;
   for (std::optional<ErrorCode> code = ErrorCode::interrupted; code; ++interruptions) {
     ASSERT_LT(interruptions, 200);
-    CancelToken cancel;
+    execution::CancelToken cancel;
     Interrupter progress(cancel, 3, {"outline", "pack"});  // they are made at one go
     code = run(files, progress, cancel);
     ASSERT_TRUE(!code || code == ErrorCode::interrupted) << message_;
@@ -322,13 +322,13 @@ TEST_P(FaultsTest, InterruptionsAddUp) {
 
 TEST_P(FaultsTest, AnInterruptionInAnyStageLeavesTheOutput) {
   FaultyFileSystem files;
-  CancelToken never;
+  execution::CancelToken never;
   Interrupter measuring(never, kForever);
-  ASSERT_EQ(run(files, measuring, CancelToken()), std::nullopt);
+  ASSERT_EQ(run(files, measuring, execution::CancelToken()), std::nullopt);
   const Snapshot before = output();
   ASSERT_GE(measuring.stages().size(), 6U);
   for (const std::string& stage : measuring.stages()) {
-    CancelToken cancel;
+    execution::CancelToken cancel;
     StageInterrupter progress(cancel, stage);
     EXPECT_EQ(run(files, progress, cancel, true), ErrorCode::interrupted) << stage;
     ASSERT_EQ(output(), before) << stage;
@@ -338,18 +338,18 @@ TEST_P(FaultsTest, AnInterruptionInAnyStageLeavesTheOutput) {
 
 TEST_P(FaultsTest, ABuildThatWasInterruptedBeforeItBeganDoesNothing) {
   FaultyFileSystem files;
-  CancelToken cancel;
+  execution::CancelToken cancel;
   cancel.cancel();
-  NoProgress progress;
+  execution::NoProgress progress;
   const Snapshot before = snapshot();
   EXPECT_EQ(run(files, progress, cancel), ErrorCode::interrupted);
   EXPECT_EQ(snapshot(), before);
 }
 
 INSTANTIATE_TEST_SUITE_P(Containers, FaultsTest,
-                         testing::Values(Container::files, Container::archive),
+                         testing::Values(storage::Container::files, storage::Container::archive),
                          [](const auto& test) {
-                           return test.param == Container::files ? "Files" : "Archive";
+                           return test.param == storage::Container::files ? "Files" : "Archive";
                          });
 
 }  // namespace

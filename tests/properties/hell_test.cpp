@@ -2,15 +2,15 @@
 // is refused with a reason.
 #include "bench/hell.h"
 
+#include "config/config.h"
 #include "hierarchy/error.h"
+#include "inspection/inspect.h"
+#include "inspection/verify.h"
+#include "inspection/verify_error.h"
 #include "pipeline/build.h"
-#include "pipeline/config.h"
-#include "pipeline/inspect.h"
-#include "pipeline/verify.h"
-#include "pipeline/verify_error.h"
-#include "storage/hierarchy_reader.h"
-#include "tests/pipeline/sample_hierarchy.h"
+#include "storage/format/hierarchy_reader.h"
 #include "tests/support/memory_files.h"
+#include "tests/support/sample_hierarchy.h"
 #include "tests/support/simplify_methods.h"
 #include "tests/support/sizes.h"
 
@@ -50,24 +50,27 @@ class HellTest : public testing::Test {
     config_.simplify.vertices = vertices;
   }
 
-  void use_method(SimplifyConfig method) {
+  void use_method(config::SimplifyConfig method) {
     method.vertices = config_.simplify.vertices;
     config_.simplify = method;
   }
 
-  void build() { build_hierarchy(config_, {.force = true}, {files_, progress_, cancel_}); }
+  void build() {
+    pipeline::build_hierarchy(config_, {.force = true}, {files_, progress_, cancel_});
+  }
 
   std::vector<std::string> problems() {
-    VerifyOptions options;
+    inspection::VerifyOptions options;
     options.input = config_.input;
     options.cuts = 5;
-    return verify_hierarchy(files_, config_.output, options, progress_, cancel_).problems;
+    return inspection::verify_hierarchy(files_, config_.output, options, progress_, cancel_)
+        .problems;
   }
 
   void expect_sound() {
     ASSERT_NO_THROW(build());
     EXPECT_THAT(problems(), IsEmpty());
-    EXPECT_NO_THROW(inspect_text(files_, config_.output, {}));
+    EXPECT_NO_THROW(inspection::inspect_text(files_, config_.output, {}));
   }
 
   /// The error that a build is refused with.
@@ -81,9 +84,9 @@ class HellTest : public testing::Test {
   }
 
   tests::MemoryFiles files_;
-  NoProgress progress_;
-  CancelToken cancel_;
-  Config config_;
+  execution::NoProgress progress_;
+  execution::CancelToken cancel_;
+  config::Config config_;
 };
 
 /// Every case there is.
@@ -140,9 +143,9 @@ TEST_P(HellCaseTest, IsWithinItsBounds) {
     SCOPED_TRACE(name);
     use_method(method);
     ASSERT_NO_THROW(build());
-    const ErrorOptions options{AllLevels{}, 2000, config_.memory_budget};
-    for (const ErrorMeasurement& level :
-         measure_errors(files_, config_.output, options, progress_, cancel_)) {
+    const inspection::ErrorOptions options{inspection::AllLevels{}, 2000, config_.memory_budget};
+    for (const inspection::ErrorMeasurement& level :
+         inspection::measure_errors(files_, config_.output, options, progress_, cancel_)) {
       if (level.triangles == 0)
         continue;  // cells that hold the edge of the book close it
       EXPECT_THAT(level.problems, IsEmpty()) << level.name;

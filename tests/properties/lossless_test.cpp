@@ -1,11 +1,11 @@
 // Promises 1 and 2 on built hierarchies: equal sizes, and the partitions are exactly the input.
+#include "config/config.h"
+#include "inspection/export.h"
+#include "inspection/inspect.h"
+#include "inspection/verify.h"
 #include "pipeline/build.h"
-#include "pipeline/config.h"
-#include "pipeline/export.h"
-#include "pipeline/inspect.h"
-#include "pipeline/verify.h"
-#include "tests/pipeline/sample_hierarchy.h"
 #include "tests/support/meshes.h"
+#include "tests/support/sample_hierarchy.h"
 
 #include <filesystem>
 #include <memory>
@@ -24,23 +24,24 @@ using testing::IsEmpty;
 class LosslessTest : public testing::Test {
  protected:
   /// Builds and expects what every hierarchy must keep.
-  void expect_promises(const fs::path& input, const PartitionConfig& partition,
+  void expect_promises(const fs::path& input, const config::PartitionConfig& partition,
                        std::uint32_t tile_vertices) {
-    Config config;
+    config::Config config;
     config.input = input;
     config.output = directory_.path() / "mesh.hier";
     config.partition = partition;
     config.simplify.vertices = tile_vertices;
-    NoProgress progress;
-    const CancelToken cancel;
-    build_hierarchy(config, {.force = true}, {*files_, progress, cancel});
+    execution::NoProgress progress;
+    const execution::CancelToken cancel;
+    pipeline::build_hierarchy(config, {.force = true}, {*files_, progress, cancel});
 
-    VerifyOptions options;
+    inspection::VerifyOptions options;
     options.input = input;
     options.cuts = 5;
-    EXPECT_THAT(verify_hierarchy(*files_, config.output, options, progress, cancel).problems,
-                IsEmpty());
-    const auto told = inspect_json(*files_, config.output, {});
+    EXPECT_THAT(
+        inspection::verify_hierarchy(*files_, config.output, options, progress, cancel).problems,
+        IsEmpty());
+    const auto told = inspection::inspect_json(*files_, config.output, {});
     const auto& partitions = told["partitions"];
     EXPECT_LE(partitions["vertices_max"].get<int>() - partitions["vertices_min"].get<int>(), 1);
     if (partition.count) {
@@ -53,7 +54,7 @@ class LosslessTest : public testing::Test {
   }
 
   void expect_promises(const std::string& name, const tests::TestMesh& mesh,
-                       const PartitionConfig& partition, std::uint32_t tile_vertices) {
+                       const config::PartitionConfig& partition, std::uint32_t tile_vertices) {
     SCOPED_TRACE(name);
     const fs::path path = directory_.path() / (name + ".ply");
     tests::write_ply(mesh, path);
@@ -62,14 +63,17 @@ class LosslessTest : public testing::Test {
 
   /// The last level as a mesh is the input again, and so makes a hierarchy of the same partitions.
   fs::path export_last_level(Level level) {
-    NoProgress progress;
+    execution::NoProgress progress;
     const fs::path output = directory_.path() / "last.ply";
-    export_mesh(*files_, directory_.path() / "mesh.hier", {level, output}, progress, CancelToken());
+    inspection::export_mesh(*files_, directory_.path() / "mesh.hier", {level, output}, progress,
+                            execution::CancelToken());
     return output;
   }
 
-  static PartitionConfig vertices(std::uint32_t most) { return {.vertices = most, .count = {}}; }
-  static PartitionConfig count(std::uint32_t partitions) {
+  static config::PartitionConfig vertices(std::uint32_t most) {
+    return {.vertices = most, .count = {}};
+  }
+  static config::PartitionConfig count(std::uint32_t partitions) {
     return {.vertices = 8192, .count = partitions};
   }
 
@@ -78,7 +82,7 @@ class LosslessTest : public testing::Test {
 };
 
 TEST_F(LosslessTest, MeshesOfAllKinds) {
-  for (const PartitionConfig& partition :
+  for (const config::PartitionConfig& partition :
        {vertices(100), vertices(4), count(1), count(7), count(64)}) {
     expect_promises("sphere", tests::sphere(3000, 0.02F), partition, 60);
     expect_promises("grid", tests::open_grid(40, 30, 0.2F), partition, 60);

@@ -2,9 +2,9 @@
 // system counts it.
 #include "bench/generator.h"
 #include "bench/hell.h"
-#include "pipeline/size_text.h"
-#include "storage/file.h"
-#include "tests/pipeline/sample_hierarchy.h"
+#include "execution/size_text.h"
+#include "storage/io/file.h"
+#include "tests/support/sample_hierarchy.h"
 #include "tests/support/sizes.h"
 
 #include <algorithm>
@@ -108,12 +108,12 @@ class MemoryTest : public testing::Test {
   void expect_within(const std::string& budget, const std::vector<std::string>& settings = {}) {
     rusage own{};
     ASSERT_EQ(getrusage(RUSAGE_SELF, &own), 0);
-    const std::uint64_t limit = pipeline::parse_size(budget).value();
+    const std::uint64_t limit = execution::parse_size(budget).value();
     ASSERT_LT(peak_bytes(own), limit) << "this process is too large to measure another";
     const Outcome outcome = build(budget, settings);
     EXPECT_EQ(outcome.code, 0) << outcome.messages;
     EXPECT_LT(outcome.peak_bytes, limit)
-        << "peak " << pipeline::rounded_size_text(outcome.peak_bytes) << " of " << budget;
+        << "peak " << execution::rounded_size_text(outcome.peak_bytes) << " of " << budget;
     RecordProperty("peak_bytes_of_" + budget, std::to_string(outcome.peak_bytes));
   }
 
@@ -176,9 +176,9 @@ TEST_F(MemoryTest, TrianglesBetweenAnyVerticesIn64MiB) {
 TEST_F(MemoryTest, TheLeastBudgetIsNamedAndWorks) {
   write_mesh(million_vertices());
   const std::string least = least_budget();
-  const std::uint64_t bytes = pipeline::parse_size(least).value_or(0);
+  const std::uint64_t bytes = execution::parse_size(least).value_or(0);
   ASSERT_GT(bytes, kMiB) << least;
-  const Outcome below = build(pipeline::exact_size_text(bytes - kMiB));
+  const Outcome below = build(execution::exact_size_text(bytes - kMiB));
   EXPECT_EQ(below.code, kBudgetExitCode);
   EXPECT_THAT(below.messages, HasSubstr(least));
   EXPECT_FALSE(fs::exists(path("mesh.hier")));

@@ -4,7 +4,7 @@
 #include "hierarchy/error.h"
 #include "server/conditions.h"
 #include "server/site.h"
-#include "storage/process.h"
+#include "storage/io/process.h"
 #include "tests/server/path_tricks.h"
 #include "tests/server/raw_client.h"
 #include "tests/server/served_folder.h"

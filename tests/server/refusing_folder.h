@@ -2,7 +2,7 @@
 #pragma once
 
 #include "hierarchy/error.h"
-#include "storage/file.h"
+#include "storage/io/file.h"
 
 #include <memory>
 #include <set>

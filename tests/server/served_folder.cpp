@@ -1,8 +1,8 @@
 #include "tests/server/served_folder.h"
 
 #include "pipeline/build.h"
-#include "pipeline/progressive.h"
-#include "storage/archive.h"
+#include "progressive/stream.h"
+#include "storage/format/archive.h"
 #include "tests/support/meshes.h"
 
 #include <fstream>
@@ -19,17 +19,17 @@ void build(const fs::path& mesh, const fs::path& output, storage::Compression co
            std::size_t triangles) {
   write_ply(sphere(triangles), mesh);
   const auto files = storage::make_posix_file_system();
-  pipeline::Config config;
+  config::Config config;
   config.input = mesh;
   config.output = output;
   config.threads = 1;
   config.partition.vertices = 100;
-  config.simplify.method = pipeline::SimplifyMethod::half_edge;
+  config.simplify.method = config::SimplifyMethod::half_edge;
   config.storage.compression = compression;
   if (output.extension() == ".3tz")
     config.storage.container = storage::Container::archive;
-  pipeline::NoProgress progress;
-  const pipeline::CancelToken cancel;
+  execution::NoProgress progress;
+  const execution::CancelToken cancel;
   pipeline::build_hierarchy(config, {.force = true}, {*files, progress, cancel});
 }
 
@@ -43,11 +43,11 @@ void fill(const fs::path& root) {
   build_small(root / "meshes/packed.ply", models / "packed.3tz",
               storage::Compression::meshopt_zlib);
   const auto files = storage::make_posix_file_system();
-  pipeline::NoProgress progress;
-  pipeline::ProgressiveOptions options;
+  execution::NoProgress progress;
+  progressive::ProgressiveOptions options;
   options.output = models / "stream.prog";
-  pipeline::write_progressive(*files, models / "plain.hier", options, progress,
-                              pipeline::CancelToken());
+  progressive::write_progressive(*files, models / "plain.hier", options, progress,
+                                 execution::CancelToken());
   fs::create_directories(models / "broken.hier");
   write_text(models / "broken.hier/hierarchy.json", "{}\n");
   write_text(models / "broken.hier/tiles.bin", "not for you");

@@ -1,9 +1,9 @@
 // A folder as it may be served: hierarchies of all kinds, a stream, and what is nobody's business.
 #pragma once
 
-#include "pipeline/config.h"
-#include "storage/file.h"
-#include "tests/pipeline/sample_hierarchy.h"
+#include "config/config.h"
+#include "storage/io/file.h"
+#include "tests/support/sample_hierarchy.h"
 
 #include <filesystem>
 #include <string>

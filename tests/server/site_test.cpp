@@ -1,7 +1,7 @@
 #include "server/site.h"
 
 #include "server/conditions.h"
-#include "storage/gzip.h"
+#include "storage/format/gzip.h"
 #include "tests/server/path_tricks.h"
 #include "tests/server/refusing_folder.h"
 #include "tests/server/served_folder.h"

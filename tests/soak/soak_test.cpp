@@ -6,12 +6,12 @@
 //                          tells it when it fails
 #include "bench/hell.h"
 #include "hierarchy/error.h"
+#include "inspection/verify.h"
 #include "pipeline/build.h"
-#include "pipeline/verify.h"
-#include "tests/pipeline/sample_hierarchy.h"
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/interrupter.h"
 #include "tests/support/memory_files.h"
+#include "tests/support/sample_hierarchy.h"
 #include "tests/support/simplify_methods.h"
 #include "tests/support/try_build.h"
 
@@ -84,13 +84,13 @@ bench::LoadedMesh random_mesh(Dice& dice) {
 }
 
 /// What may change from one build to the next that goes on with it.
-void draw_resources(Dice& dice, Config& config) {
+void draw_resources(Dice& dice, config::Config& config) {
   config.threads = static_cast<std::uint32_t>(dice.from(1, 3));
   config.memory_budget = (dice.one_in(2) ? std::uint64_t{1} << 30 : dice.from(64, 256) << 20);
 }
 
-Config random_config(Dice& dice) {
-  Config config;
+config::Config random_config(Dice& dice) {
+  config::Config config;
   const auto methods = tests::all_simplify_methods();
   config.simplify = methods[dice.from(0, methods.size() - 1)].second;
   if (dice.one_in(4))
@@ -103,7 +103,8 @@ Config random_config(Dice& dice) {
       of_level = 3 + static_cast<std::uint32_t>(dice.of_any_size(600));
     config.simplify.vertices = AskedVertices(std::move(vertices));
   }
-  config.partition.axis = dice.one_in(3) ? AxisRule::longest : AxisRule::compactness;
+  config.partition.axis =
+      dice.one_in(3) ? config::AxisRule::longest : config::AxisRule::compactness;
   config.outline.sectors = static_cast<std::uint32_t>(dice.of_any_size(200));
   draw_resources(dice, config);
   return config;
@@ -122,12 +123,14 @@ Files content(storage::FileSystem& files, const fs::path& directory) {
   return all;
 }
 
-std::vector<std::string> problems(storage::FileSystem& files, const Config& config) {
-  VerifyOptions options;
+std::vector<std::string> problems(storage::FileSystem& files, const config::Config& config) {
+  inspection::VerifyOptions options;
   options.input = config.input;
   options.cuts = 3;
-  NoProgress progress;
-  return verify_hierarchy(files, config.output, options, progress, CancelToken()).problems;
+  execution::NoProgress progress;
+  return inspection::verify_hierarchy(files, config.output, options, progress,
+                                      execution::CancelToken())
+      .problems;
 }
 
 /// One round in memory: a build that is disturbed up to a dozen times.
@@ -160,20 +163,20 @@ class DisturbedBuild {
   }
 
  private:
-  std::optional<ErrorCode> build(storage::FileSystem& files, Progress& progress,
-                                 const CancelToken& cancel) {
+  std::optional<ErrorCode> build(storage::FileSystem& files, execution::Progress& progress,
+                                 const execution::CancelToken& cancel) {
     return tests::try_build(config_, true, {files, progress, cancel}, message_);
   }
   std::optional<ErrorCode> build(storage::FileSystem& files) {
-    NoProgress progress;
-    return build(files, progress, CancelToken());
+    execution::NoProgress progress;
+    return build(files, progress, execution::CancelToken());
   }
 
   void disturb() {
     constexpr std::uint64_t kForever = std::numeric_limits<std::uint32_t>::max();
     draw_resources(dice_, config_);
     FaultyFileSystem files(files_);
-    CancelToken cancel;
+    execution::CancelToken cancel;
     Interrupter progress(cancel, dice_.one_in(4) ? dice_.of_any_size(20000) : kForever);
     if (dice_.one_in(2))
       files.fail(Call::any, dice_.of_any_size(3000), dice_.one_in(2) ? 1 : kForever);
@@ -192,7 +195,7 @@ class DisturbedBuild {
 
   std::shared_ptr<MemoryFiles> files_ = std::make_shared<MemoryFiles>();
   Dice dice_;
-  Config config_;
+  config::Config config_;
   Files expected_;
   std::string message_;
 };
@@ -239,11 +242,11 @@ void kill_builds(std::uint64_t seed) {
   Dice dice(seed);
   const tests::TemporaryDirectory directory;
   const auto files = storage::make_posix_file_system();
-  Config config = random_config(dice);
+  config::Config config = random_config(dice);
   config.input = directory.path() / "mesh.ply";
   config.output = directory.path() / "mesh.hier";
   bench::write_ply(*files, config.input.front(), *bench::as_generated(random_mesh(dice)));
-  nlohmann::ordered_json text = resolved_json(config);
+  nlohmann::ordered_json text = config::resolved_json(config);
   text["input"] = "mesh.ply";
   text["output"] = "mesh.hier";
   const fs::path json = directory.path() / "config.json";

@@ -1,7 +1,7 @@
 // A file system that fails on demand: another one, with chosen calls made to go wrong.
 #pragma once
 
-#include "storage/file.h"
+#include "storage/io/file.h"
 
 #include <array>
 #include <cstddef>

@@ -41,20 +41,20 @@ AttributedMesh far_away(TestMesh shape) {
   return mesh;
 }
 
-pipeline::Config half_edge_config(const std::filesystem::path& directory, std::uint32_t partitions,
-                                  std::uint32_t tile_vertices) {
-  pipeline::Config config;
+config::Config half_edge_config(const std::filesystem::path& directory, std::uint32_t partitions,
+                                std::uint32_t tile_vertices) {
+  config::Config config;
   config.input = directory / "mesh.ply";
   config.output = directory / "mesh.hier";
   config.threads = 1;
   config.partition.count = partitions;
-  config.simplify.method = pipeline::SimplifyMethod::half_edge;
+  config.simplify.method = config::SimplifyMethod::half_edge;
   config.simplify.vertices = tile_vertices;
   return config;
 }
 
 void build_half_edge(storage::FileSystem& files, const AttributedMesh& mesh,
-                     const pipeline::Config& config) {
+                     const config::Config& config) {
   mesh_io::PlyContent content;
   content.vertex_count = mesh.shape.positions.size();
   content.triangle_count = mesh.shape.triangles.size();
@@ -67,8 +67,8 @@ void build_half_edge(storage::FileSystem& files, const AttributedMesh& mesh,
     writer.write_vertices(std::span<const Vec3d>(mesh.exact), mesh.attributes);
   writer.write_triangles(mesh.shape.triangles);
   writer.finish();
-  pipeline::NoProgress progress;
-  const pipeline::CancelToken cancel;
+  execution::NoProgress progress;
+  const execution::CancelToken cancel;
   pipeline::build_hierarchy(config, {.force = true}, {files, progress, cancel});
 }
 

@@ -1,10 +1,10 @@
 // Small hierarchies that progressive streams can be made of, in memory or on a disk.
 #pragma once
 
+#include "config/config.h"
 #include "hierarchy/attributes.h"
-#include "pipeline/config.h"
-#include "pipeline/progressive.h"
-#include "storage/file.h"
+#include "progressive/stream.h"
+#include "storage/io/file.h"
 #include "tests/support/meshes.h"
 
 #include <cstdint>
@@ -28,11 +28,11 @@ AttributedMesh attributed(TestMesh shape, const AttributeLayout& layout);
 AttributedMesh far_away(TestMesh shape);
 
 /// Contracted by half_edge, to `tile_vertices` a tile.
-pipeline::Config half_edge_config(const std::filesystem::path& directory, std::uint32_t partitions,
-                                  std::uint32_t tile_vertices);
+config::Config half_edge_config(const std::filesystem::path& directory, std::uint32_t partitions,
+                                std::uint32_t tile_vertices);
 
 /// Writes config.input and builds config.output, which it replaces. Throws what the build throws.
 void build_half_edge(storage::FileSystem& files, const AttributedMesh& mesh,
-                     const pipeline::Config& config);
+                     const config::Config& config);
 
 }  // namespace meshhier::tests

@@ -1,7 +1,7 @@
 // A file of any size in memory, of which only what is not zero is kept: for offsets beyond 4 GiB.
 #pragma once
 
-#include "storage/file.h"
+#include "storage/io/file.h"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 // Progress that interrupts the job it is told of.
 #pragma once
 
-#include "pipeline/cancel.h"
-#include "pipeline/progress.h"
+#include "execution/cancel.h"
+#include "execution/progress.h"
 
 #include <atomic>
 #include <cstdint>
@@ -16,9 +16,9 @@
 namespace meshhier::tests {
 
 /// Sets the token when so many units of work have been done in all, but for those of `passed`.
-class Interrupter final : public pipeline::Progress {
+class Interrupter final : public execution::Progress {
  public:
-  Interrupter(pipeline::CancelToken& token, std::uint64_t after,
+  Interrupter(execution::CancelToken& token, std::uint64_t after,
               std::set<std::string, std::less<>> passed = {})
       : token_(token), after_(after), passed_(std::move(passed)) {}
   void stage(std::string_view name, std::uint64_t, std::string_view) override {
@@ -37,7 +37,7 @@ class Interrupter final : public pipeline::Progress {
   const std::set<std::string>& stages() const { return stages_; }
 
  private:
-  pipeline::CancelToken& token_;
+  execution::CancelToken& token_;
   std::uint64_t after_;
   std::set<std::string, std::less<>> passed_;
   std::atomic<bool> is_passed_{false};

@@ -2,7 +2,7 @@
 // and for hundreds of builds, of which each would wait for a disk.
 #pragma once
 
-#include "storage/file.h"
+#include "storage/io/file.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -10,7 +10,7 @@
 namespace meshhier::tests {
 
 /// The code that a build fails with, and its message; none if it succeeds.
-inline std::optional<ErrorCode> try_build(const pipeline::Config& config, bool force,
+inline std::optional<ErrorCode> try_build(const config::Config& config, bool force,
                                           pipeline::BuildEnvironment environment,
                                           std::string& message) {
   try {

@@ -1,0 +1,428 @@
+#include "config/config.h"
+
+#include "config/config_schema.h"
+#include "config/suggest.h"
+#include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace meshhier::config {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Configs have a few hundred bytes; more is some other file given by mistake.
+constexpr std::uint64_t kLargestConfigBytes = std::uint64_t{1} << 20;
+/// Sections are two levels deep; a little more lets the message be about the key instead.
+constexpr std::size_t kDeepestNesting = 8;
+/// There are 25 keys; looking for one goes through those before it, and a MiB of them would take a
+/// minute.
+constexpr std::size_t kMostKeys = 256;
+/// A found key or value is quoted up to so many bytes.
+constexpr std::size_t kLongestQuote = 60;
+/// The parser's messages begin with the place and the cause; what they quote may be the whole file.
+constexpr std::size_t kLongestParserMessage = 200;
+
+[[noreturn]] void refuse(const std::string& where, const std::string& what) {
+  throw Error(ErrorCode::usage, where + ": " + what);
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  return plain_text(fmt::format("{}", fmt::join(names, ".")), kLongestQuote);
+}
+
+std::string with_key(const std::string& section, const std::string& key) {
+  return section.empty() ? key : section + '.' + key;
+}
+
+/// The last name of a dotted path.
+std::string leaf_of(std::string_view path) {
+  const std::size_t dot = path.rfind('.');
+  return std::string(dot == std::string_view::npos ? path : path.substr(dot + 1));
+}
+
+/// Where a dotted path leads in a document.
+Json::json_pointer pointer_to(std::string path) {
+  std::replace(path.begin(), path.end(), '.', '/');
+  return Json::json_pointer('/' + path);
+}
+
+std::string in_quotes(std::string_view text) {
+  return '"' + plain_text(text, kLongestQuote) + '"';
+}
+
+/// A value for a message: "the string "abc"", "an object".
+std::string described(const Json& value) {
+  if (value.is_null())
+    return "null";
+  if (value.is_object())
+    return "an object";
+  if (value.is_array())
+    return "a list";
+  const std::string text =
+      plain_text(value.dump(-1, ' ', false, Json::error_handler_t::replace), kLongestQuote);
+  if (value.is_string())
+    return "the string " + text;
+  return value.is_number() ? "the number " + text : text;
+}
+
+std::string did_you_mean(const std::optional<std::string>& word) {
+  return word ? fmt::format("; did you mean \"{}\"?", *word) : std::string();
+}
+
+/// The known key nearest to an unknown one: by its whole path, or else by its last name, which
+/// finds keys that were written in the wrong section.
+std::optional<std::string> nearest_key(const std::string& path) {
+  std::vector<std::string> paths;
+  std::vector<std::string> leaves;
+  for (const ConfigKey& key : config_keys()) {
+    paths.push_back(key.path);
+    leaves.push_back(leaf_of(key.path));
+  }
+  if (std::optional<std::string> near = nearest_word(path, paths))
+    return near;
+  const std::optional<std::string> leaf = nearest_word(leaf_of(path), leaves);
+  if (!leaf)
+    return std::nullopt;
+  return paths[static_cast<std::size_t>(std::find(leaves.begin(), leaves.end(), *leaf) -
+                                        leaves.begin())];
+}
+
+/// Watches the parser: a key that is there twice, bottomless nesting and endless keys are mistakes
+/// that JSON itself allows.
+class ParseGuard {
+ public:
+  explicit ParseGuard(std::string name) : name_(std::move(name)) {}
+
+  bool operator()(Json::parse_event_t event, Json& parsed) {
+    if (event == Json::parse_event_t::object_start || event == Json::parse_event_t::array_start)
+      enter();
+    if (event == Json::parse_event_t::object_end || event == Json::parse_event_t::array_end)
+      leave();
+    if (event == Json::parse_event_t::key)
+      add(parsed.get<std::string>());
+    return true;
+  }
+
+ private:
+  void enter() {
+    keys_.emplace_back();
+    path_.emplace_back();
+    if (keys_.size() > kDeepestNesting)
+      refuse(name_, "expected a config, found values nested too deeply");
+  }
+  void leave() {
+    keys_.pop_back();
+    path_.pop_back();
+  }
+  void add(const std::string& key) {
+    if (++count_ > kMostKeys)
+      refuse(name_, fmt::format("expected a config, found more than {} keys", kMostKeys));
+    path_.back() = key;
+    if (!keys_.back().insert(key).second)
+      refuse(name_, joined(path_) + ": this key is there twice; remove one");
+  }
+
+  std::string name_;
+  std::size_t count_ = 0;                    ///< of all keys so far
+  std::vector<std::set<std::string>> keys_;  ///< of each open object
+  std::vector<std::string> path_;            ///< the current key of each
+};
+
+/// nlohmann's "[json.exception.parse_error.101] parse error at line 3, column 5: ..." without its
+/// first part.
+std::string without_prefix(std::string message) {
+  for (const std::string_view prefix : {"] ", "parse error at ", "parse error: "}) {
+    const std::size_t found = message.find(prefix);
+    if (found != std::string::npos && (prefix != "] " || message.front() == '[')) {
+      message.erase(0, found + prefix.size());
+    }
+  }
+  return message;
+}
+
+Json::parser_callback_t watched_by(ParseGuard& guard) {
+  return [&guard](int, Json::parse_event_t event, Json& parsed) { return guard(event, parsed); };
+}
+
+Json parse_text(std::string_view text, const std::string& name) {
+  Json document;
+  ParseGuard guard(name);
+  try {
+    document = Json::parse(text, watched_by(guard), true, true);
+  } catch (const nlohmann::json::exception& failure) {
+    refuse(name, plain_text(without_prefix(failure.what()), kLongestParserMessage) +
+                     " (expected JSON; // comments are allowed, trailing commas are not)");
+  }
+  if (!document.is_object())
+    refuse(name, "expected an object with the keys of a config, found " + described(document));
+  return document;
+}
+
+struct Override {
+  std::string path;
+  std::string text;
+};
+
+Override split_override(const std::string& setting) {
+  const std::size_t sign = setting.find('=');
+  if (sign == std::string::npos || sign == 0) {
+    refuse("--set",
+           "expected key=value (\"partition.vertices=4096\"), found " + in_quotes(setting));
+  }
+  return {setting.substr(0, sign), setting.substr(sign + 1)};
+}
+
+/// A key that wants text takes it as it stands: --set output=2024 is a directory, not a number.
+Json override_value(const Override& setting) {
+  const ConfigKey* key = find_config_key(setting.path);
+  const bool wants_text =
+      key != nullptr && (key->kind == KeyKind::path || key->kind == KeyKind::paths ||
+                         key->kind == KeyKind::text || key->kind == KeyKind::choice);
+  ParseGuard guard("--set " + plain_text(setting.path, kLongestQuote));
+  Json value = Json::parse(setting.text, watched_by(guard), false);
+  const bool is_list = value.is_array() && key != nullptr && key->kind == KeyKind::paths;
+  if (value.is_discarded() || (wants_text && !value.is_string() && !is_list))
+    value = setting.text;
+  return value;
+}
+
+/// The document with its overrides, and where each value comes from.
+class Draft {
+ public:
+  Draft(Json document, std::string name) : document_(std::move(document)), name_(std::move(name)) {}
+
+  const Json& document() const { return document_; }
+
+  void apply(const Override& setting) {
+    const std::size_t dot = setting.path.rfind('.');
+    if (dot == std::string::npos) {
+      document_[setting.path] = override_value(setting);
+    } else {
+      const std::string section = setting.path.substr(0, dot);
+      if (!is_config_section(section))
+        refuse_unknown("--set", setting.path);
+      open_section(section)[leaf_of(setting.path)] = override_value(setting);
+    }
+    overridden_.insert(setting.path);
+  }
+
+  /// Of two keys that exclude each other, one that was overridden replaces one that was not.
+  void settle(const std::string& section, const std::string& one, const std::string& other) {
+    if (!document_.contains(section) || !document_[section].is_object())
+      return;
+    Json& inner = document_[section];
+    if (!inner.contains(one) || !inner.contains(other))
+      return;
+    const bool one_is_newer = overridden_.contains(with_key(section, one));
+    if (one_is_newer == overridden_.contains(with_key(section, other))) {
+      refuse(origin_of(section),
+             fmt::format("expected either \"{}\" or \"{}\", found both; remove one", one, other));
+    }
+    inner.erase(one_is_newer ? other : one);
+  }
+
+  bool is_overridden(const std::string& path) const {
+    for (std::size_t end = path.find('.'); end != std::string::npos;
+         end = path.find('.', end + 1)) {
+      if (overridden_.contains(path.substr(0, end)))
+        return true;
+    }
+    return overridden_.contains(path);
+  }
+
+  /// For messages: "config.json: partition.vertices" or "--set partition.vertices".
+  std::string origin_of(const std::string& path) const {
+    return is_overridden(path) ? "--set " + path : name_ + ": " + path;
+  }
+
+  [[noreturn]] static void refuse_unknown(const std::string& where, const std::string& path) {
+    refuse(where, "unknown key " + in_quotes(path) + did_you_mean(nearest_key(path)));
+  }
+
+  std::string source_of(const std::string& path) const {
+    return is_overridden(path) ? "--set" : name_;
+  }
+
+ private:
+  /// The object of that dotted path, made if it is not there.
+  Json& open_section(const std::string& path) {
+    Json* object = &document_;
+    for (std::size_t end = 0; end != std::string::npos;) {
+      const std::size_t begin = end == 0 ? 0 : end + 1;
+      end = path.find('.', begin);
+      object = &(*object)[path.substr(begin, end - begin)];
+      if (object->is_null())
+        *object = Json::object();
+      if (!object->is_object())
+        refuse(origin_of(path.substr(0, end)), "expected an object, found " + described(*object));
+    }
+    return *object;
+  }
+
+  Json document_;
+  std::string name_;
+  std::set<std::string> overridden_;
+};
+
+/// A wrong list for KeyKind::levels: an entry is told by its level, else it is the length.
+[[noreturn]] void refuse_levels(const std::string& where, const ConfigKey& key, const Json& list) {
+  const ConfigKey entry = level_entry(key);
+  for (std::size_t level = 0; level < list.size(); ++level) {
+    if (!accepts(entry, list[level])) {
+      refuse(fmt::format("{}[{}]", where, level),
+             fmt::format("expected {}, found {}", expectation(entry), described(list[level])));
+    }
+  }
+  refuse(where,
+         fmt::format("expected {}, found {}", expectation(key),
+                     list.empty() ? "an empty list" : fmt::format("a list of {}", list.size())));
+}
+
+void assign_value(Config& config, const Draft& draft, const ConfigKey& key, const Json& value) {
+  if (!accepts(key, value)) {
+    if (key.kind == KeyKind::levels && value.is_array())
+      refuse_levels(draft.origin_of(key.path), key, value);
+    const std::optional<std::string> near =
+        value.is_string() ? nearest_word(value.get_ref<const std::string&>(), key.choices)
+                          : std::nullopt;
+    refuse(draft.origin_of(key.path), fmt::format("expected {}, found {}{}", expectation(key),
+                                                  described(value), did_you_mean(near)));
+  }
+  key.assign(config, value);
+}
+
+void assign_all(Config& config, const Draft& draft, const Json& object,
+                const std::string& section) {
+  for (const auto& [name, value] : object.items()) {
+    const std::string path = with_key(section, name);
+    const bool dotted = name.find('.') != std::string::npos;
+    const ConfigKey* key = dotted ? nullptr : find_config_key(path);
+    if (key != nullptr) {
+      assign_value(config, draft, *key, value);
+    } else if (dotted && find_config_key(path) != nullptr) {
+      refuse(draft.source_of(path),
+             fmt::format("\"{}\" is a path of keys: write \"{}\": {{ \"{}\": ... }}", path,
+                         path.substr(0, path.rfind('.')), leaf_of(path)));
+    } else if (dotted || !is_config_section(path)) {
+      Draft::refuse_unknown(draft.source_of(path), path);
+    } else if (!value.is_object()) {
+      refuse(draft.origin_of(path), "expected an object, found " + described(value));
+    } else {
+      assign_all(config, draft, value, path);
+    }
+  }
+}
+
+void require_keys(const Config& config, const std::string& name) {
+  for (const ConfigKey& key : config_keys()) {
+    if (key.required && key.show(config).is_null()) {
+      refuse(name, fmt::format("{} is missing: expected {}", key.path, expectation(key)));
+    }
+  }
+}
+
+std::filesystem::path resolved_path(const Draft& draft, const std::string& key,
+                                    const std::filesystem::path& path,
+                                    const std::filesystem::path& directory) {
+  const std::filesystem::path whole = draft.is_overridden(key) ? path : directory / path;
+  const std::filesystem::path normal = whole.lexically_normal();
+  return normal.has_filename() ? normal : normal.parent_path();
+}
+
+/// Replacing the output would destroy an input that is, or lies in, that directory.
+void check_output(const Config& config, const Draft& draft) {
+  const std::filesystem::path name = config.output.filename();
+  if (name.empty() || name == "." || name == "..") {
+    refuse(draft.origin_of("output"),
+           "expected the path of a directory to make, found " + in_quotes(config.output.string()));
+  }
+  for (const std::filesystem::path& input : config.input) {
+    const auto [end, unused] =
+        std::mismatch(config.output.begin(), config.output.end(), input.begin(), input.end());
+    if (end == config.output.end()) {
+      refuse(draft.origin_of("output"),
+             fmt::format("{} is or holds the input {}; choose another directory",
+                         in_quotes(config.output.string()), in_quotes(input.string())));
+    }
+  }
+}
+
+/// A place on the globe has longitude and latitude; a transform stands alone.
+void check_placement(const Config& config, const Draft& draft) {
+  const PlacementConfig& place = config.placement;
+  const bool on_globe = place.longitude || place.latitude || place.height || place.anchor;
+  if (place.transform && on_globe) {
+    refuse(draft.origin_of("placement"),
+           "expected either \"transform\", or \"longitude\" and \"latitude\", found both");
+  }
+  if (on_globe && !(place.longitude && place.latitude))
+    refuse(draft.origin_of("placement"), "expected both \"longitude\" and \"latitude\"");
+}
+
+std::string read_text(storage::FileSystem& files, const std::filesystem::path& path) {
+  const std::unique_ptr<storage::File> file = files.open(path);
+  const std::uint64_t size = file->size();
+  if (size > kLargestConfigBytes) {
+    refuse(
+        path.string(),
+        fmt::format("expected a config of at most {} bytes, found {}: is it another kind of file?",
+                    kLargestConfigBytes, size));
+  }
+  std::string text(size, '\0');
+  file->read_exact(0, std::as_writable_bytes(std::span(text)));
+  return text;
+}
+
+}  // namespace
+
+Config parse_config(std::string_view text, const ConfigOrigin& origin,
+                    std::span<const std::string> overrides) {
+  Draft draft(parse_text(text, origin.name), origin.name);
+  for (const std::string& setting : overrides)
+    draft.apply(split_override(setting));
+  draft.settle("partition", "vertices", "count");
+
+  Config config;
+  assign_all(config, draft, draft.document(), "");
+  require_keys(config, origin.name);
+  for (std::filesystem::path& input : config.input)
+    input = resolved_path(draft, "input", input, origin.directory);
+  config.output = resolved_path(draft, "output", config.output, origin.directory);
+  check_output(config, draft);
+  check_placement(config, draft);
+  return config;
+}
+
+Config load_config(storage::FileSystem& files, const std::filesystem::path& file,
+                   std::span<const std::string> overrides) {
+  return parse_config(read_text(files, file), {file.string(), file.parent_path()}, overrides);
+}
+
+Json resolved_json(const Config& config) {
+  Config resolved = config;
+  if (!resolved.simplify.vertices && !resolved.partition.count) {
+    resolved.simplify.vertices = resolved.partition.vertices;
+  }
+  Json result = Json::object();
+  for (const ConfigKey& key : config_keys()) {
+    Json value = key.decides_result ? key.show(resolved) : Json();
+    if (!value.is_null())
+      result[pointer_to(key.path)] = std::move(value);
+  }
+  // "vertices" has a value even where "count" overrules it.
+  if (resolved.partition.count)
+    result["partition"].erase("vertices");
+  return result;
+}
+
+}  // namespace meshhier::config

@@ -1,0 +1,158 @@
+// What a build is asked to do: the config file as values.
+//
+// The keys, their ranges and what they mean are listed once, in config_schema.cpp;
+// configs/meshhier.schema.json says the same to editors.
+#pragma once
+
+#include "cluster_simplify/contraction.h"
+#include "hierarchy/asked_vertices.h"
+#include "hierarchy/frame.h"
+#include "mesh_io/input_paths.h"
+#include "partition/direction.h"
+#include "storage/format/tile_glb.h"
+#include "storage/format/work_directory.h"
+#include "storage/io/file.h"
+
+#include <algorithm>
+#include <array>
+#include <concepts>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace meshhier::config {
+
+/// The name that an enumerator has in the config.
+template <class Enum>
+struct NamedValue {
+  std::string_view name;
+  Enum value;
+};
+template <class Enum>
+NamedValue(std::string_view, Enum) -> NamedValue<Enum>;
+
+/// How a node's split direction is chosen.
+using AxisRule = partition::Axis;
+inline constexpr std::array kAxisRules{NamedValue{"compactness", AxisRule::compactness},
+                                       NamedValue{"longest", AxisRule::longest}};
+
+struct PartitionConfig {
+  std::uint32_t vertices =
+      8192;  ///< upper bound per partition, 4 to 32768; without effect if `count` is set
+  std::optional<std::uint32_t> count;  ///< number of partitions, >= 1
+  AxisRule axis = AxisRule::compactness;
+  friend bool operator==(const PartitionConfig&, const PartitionConfig&) = default;
+};
+
+/// How a tile is contracted. A new method has its name here and in the JSON schema.
+using SimplifyMethod = cluster_simplify::Method;
+inline constexpr std::array kSimplifyMethods{
+    NamedValue{"edge_collapse", SimplifyMethod::edge_collapse},
+    NamedValue{"half_edge", SimplifyMethod::half_edge},
+    NamedValue{"cluster", SimplifyMethod::cluster}};
+
+using Representative = cluster_simplify::Representative;
+inline constexpr std::array kRepresentatives{NamedValue{"mean", Representative::mean},
+                                             NamedValue{"quadric", Representative::quadric},
+                                             NamedValue{"vertex", Representative::vertex}};
+
+using HalfEdgeCost = cluster_simplify::HalfEdgeCost;
+inline constexpr std::array kHalfEdgeCosts{NamedValue{"quadric", HalfEdgeCost::quadric},
+                                           NamedValue{"melax", HalfEdgeCost::melax}};
+
+struct SimplifyConfig {
+  SimplifyMethod method = SimplifyMethod::edge_collapse;
+  std::optional<AskedVertices>
+      vertices;  ///< of a simplified tile, 4 to 32768 each; not set: as a partition has
+  Representative representative = Representative::quadric;  ///< used by `cluster`
+  HalfEdgeCost cost = HalfEdgeCost::quadric;                ///< used by `half_edge`
+  friend bool operator==(const SimplifyConfig&, const SimplifyConfig&) = default;
+};
+
+struct OutlineConfig {
+  std::uint32_t sectors = 128;  ///< about so many
+  double tolerance = 0.002;     ///< as a part of the bounding-box diagonal, above 0, at most 1
+  friend bool operator==(const OutlineConfig&, const OutlineConfig&) = default;
+};
+
+using Compression = storage::Compression;
+inline constexpr std::array kCompressions{
+    NamedValue{storage::kCompressionNames[0], Compression::none},
+    NamedValue{storage::kCompressionNames[1], Compression::zlib},
+    NamedValue{storage::kCompressionNames[2], Compression::meshopt},
+    NamedValue{storage::kCompressionNames[3], Compression::meshopt_zlib}};
+
+using Container = storage::Container;
+inline constexpr std::array kContainers{NamedValue{"files", Container::files},
+                                        NamedValue{"3tz", Container::archive}};
+
+struct StorageConfig {
+  Container container = Container::files;  ///< decides nothing of the files themselves
+  Compression compression = Compression::none;
+  std::optional<std::uint32_t>
+      position_bits;  ///< of the lattice that positions are rounded to, 8 to 24; not set: exact
+  friend bool operator==(const StorageConfig&, const StorageConfig&) = default;
+};
+
+inline constexpr std::array kUpAxes{NamedValue{name_of(UpAxis::y), UpAxis::y},
+                                    NamedValue{name_of(UpAxis::z), UpAxis::z}};
+
+/// Where the model is for viewers of the tileset: on the globe, or anywhere, or nowhere in
+/// particular.
+struct PlacementConfig {
+  std::optional<double> longitude, latitude, height;  ///< degrees, degrees, metres
+  std::optional<std::array<double, 3>> anchor;  ///< which point is there, input coordinates; else 0
+  std::optional<Transform> transform;           ///< instead of all these
+  friend bool operator==(const PlacementConfig&, const PlacementConfig&) = default;
+};
+
+struct Config {
+  mesh_io::InputPaths input;     ///< not empty
+  bool weld = false;             ///< vertices of equal position and attributes become one
+  std::filesystem::path output;  ///< a directory or file, without a slash at its end
+  std::uint64_t memory_budget = std::uint64_t{1} << 30;  ///< bytes, > 0
+  std::uint32_t threads = 0;                             ///< 0: all
+  PartitionConfig partition;
+  SimplifyConfig simplify;
+  OutlineConfig outline;
+  StorageConfig storage;
+  UpAxis up = UpAxis::y;
+  PlacementConfig placement;
+  std::string licence;  ///< of the model; for the tileset; may be empty
+  friend bool operator==(const Config&, const Config&) = default;
+};
+
+/// Where the text of a config comes from.
+struct ConfigOrigin {
+  std::string name;                 ///< for messages
+  std::filesystem::path directory;  ///< relative paths of the text start here; may be empty
+};
+
+/// Reads a config: JSON with // and /* */ comments, then `overrides` on top, in order.
+///
+/// An override is "key=value", the key dotted ("partition.vertices"), the value JSON, or else a
+/// plain string. A path given by an override is relative to the current directory, like any path on
+/// a command line. An override of partition.vertices or partition.count replaces whichever of the
+/// two the text has.
+///
+/// Throws Error(usage) naming origin, key, what was expected, what was found and the nearest known
+/// key.
+Config parse_config(std::string_view text, const ConfigOrigin& origin,
+                    std::span<const std::string> overrides);
+
+/// parse_config() of a file; its paths are relative to the file's directory. Throws also Error(io).
+Config load_config(storage::FileSystem& files, const std::filesystem::path& file,
+                   std::span<const std::string> overrides);
+
+/// What decides the result: weld, partition, simplify, outline, storage; not paths, budget,
+/// threads, container. All defaults are filled in, except that simplify.vertices is absent if it
+/// follows partition.count.
+nlohmann::ordered_json resolved_json(const Config& config);
+
+}  // namespace meshhier::config

@@ -1,0 +1,62 @@
+// Every key of the config, described once: for the parser, its messages, and resolved_json().
+#pragma once
+
+#include "config/config.h"
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace meshhier::config {
+
+enum class KeyKind {
+  text,     ///< any string
+  path,     ///< a string that is not empty
+  paths,    ///< a path, or a list of 1 to `maximum` of them
+  boolean,  ///< true or false
+  integer,  ///< minimum to maximum
+  number,   ///< above minimum, up to maximum
+  numbers,  ///< a list of so many finite numbers as `maximum` says
+  levels,   ///< an integer, or a list of 1 to `most_levels` of them; each minimum to maximum
+  size,     ///< bytes as a number, or a text for parse_size(); minimum to maximum
+  choice    ///< one of `choices`
+};
+
+struct ConfigKey {
+  std::string path;  ///< dotted
+  KeyKind kind{};
+  bool required = false;
+  bool decides_result = false;
+  double minimum = 0;
+  double maximum = 0;
+  std::size_t most_levels = 0;
+  std::vector<std::string> choices{};
+  /// Stores an acceptable value.
+  std::function<void(Config&, const nlohmann::ordered_json&)> assign{};
+  /// The config's value as it would be written; null if it is not set.
+  std::function<nlohmann::ordered_json(const Config&)> show{};
+};
+
+/// In the order in which they are listed to people. Thread-safe.
+const std::vector<ConfigKey>& config_keys();
+
+/// The key of that dotted path, or null.
+const ConfigKey* find_config_key(std::string_view path);
+
+/// True for an inner node of the keys' paths: "partition".
+bool is_config_section(std::string_view path);
+
+bool accepts(const ConfigKey& key, const nlohmann::ordered_json& value);
+
+/// What an entry of a list for KeyKind::levels must be, as a key of kind integer.
+ConfigKey level_entry(const ConfigKey& key);
+
+/// What accepts() accepts, for messages: "an integer from 4 to 32768".
+std::string expectation(const ConfigKey& key);
+
+}  // namespace meshhier::config

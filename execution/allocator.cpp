@@ -1,0 +1,31 @@
+#include "execution/allocator.h"
+
+#include <algorithm>
+
+#include <malloc.h>
+
+namespace meshhier::execution {
+namespace {
+
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+
+}  // namespace
+
+void configure_allocator(std::uint64_t budget_bytes) {
+  // Arrays mapped alone leave at once, but each of their pages is made anew, and so is the end of
+  // the heap after it was given back: the arrays of a chunk, up to 4 MiB each and some 20 MiB
+  // together, would spend a seventh of `leaves` there. What two arenas keep is less than
+  // the memory plan allows for.
+  const auto part = [&](std::uint64_t parts, std::uint64_t least, std::uint64_t most) {
+    return static_cast<int>(std::clamp(budget_bytes / parts, least, most));
+  };
+  mallopt(M_MMAP_THRESHOLD, part(128, kMiB / 4, 32 * kMiB));
+  mallopt(M_TRIM_THRESHOLD, part(32, kMiB, 64 * kMiB));
+  mallopt(M_ARENA_MAX, 2);
+}
+
+void release_free_memory() {
+  malloc_trim(0);
+}
+
+}  // namespace meshhier::execution

@@ -1,0 +1,63 @@
+// How far a job is, told while it runs: to people as a bar, to programs as JSON lines.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <iosfwd>
+#include <memory>
+#include <string_view>
+
+namespace meshhier::execution {
+
+/// Hears of a job's stages, one after the other. Never affects the job: output that cannot be
+/// written is lost silently, nothing is thrown.
+class Progress {
+ public:
+  virtual ~Progress() = default;
+
+  /// Ends the stage before and begins the next. `name`: one word ("simplify"); `total`: units of
+  /// work in it, 0 if unknown; `unit`: what is counted, plural ("tiles"). No advance() may run at
+  /// the same time.
+  virtual void stage(std::string_view name, std::uint64_t total, std::string_view unit) = 0;
+
+  /// So many more units of the current stage are done. Thread-safe and cheap, but meant for tiles
+  /// and blocks, not for single vertices. Does nothing before the first stage().
+  virtual void advance(std::uint64_t count) = 0;
+
+  /// Ends the last stage and the job. `summary`: one line for people, may be empty. No advance()
+  /// may run at the same time. Called by who made the object, not by the job; not called if the job
+  /// failed: destroying the object tidies the terminal.
+  virtual void finish(std::string_view summary) = 0;
+};
+
+/// Shows nothing.
+class NoProgress final : public Progress {
+ public:
+  void stage(std::string_view, std::uint64_t, std::string_view) override {}
+  void advance(std::uint64_t) override {}
+  void finish(std::string_view) override {}
+};
+
+enum class ProgressMode {
+  automatic,  ///< bar on a terminal, none elsewhere
+  bar,   ///< one line, redrawn at most 10 times a second, and one line that stays for each finished
+         ///< stage
+  json,  ///< one JSON object a line, at most 2 a second besides the start and the end of each stage
+  none
+};
+
+/// Seconds since some moment; never decreases.
+using Clock = std::function<double()>;
+Clock steady_clock();
+
+/// `out` (usually standard error) must outlive the result; `is_terminal` decides what `automatic`
+/// means.
+///
+/// The JSON objects have "event": "stage_start" | "progress" | "stage_end", each with "stage",
+/// "done", "total" (null if unknown), "unit", "rate" (units a second since the start of the stage),
+/// "seconds" (likewise) and "eta_seconds" (null if unknown); at the end "event": "finish" with
+/// "seconds" (of the whole job) and "summary".
+std::unique_ptr<Progress> make_progress(ProgressMode mode, std::ostream& out, bool is_terminal,
+                                        Clock clock = steady_clock());
+
+}  // namespace meshhier::execution

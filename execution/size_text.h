@@ -1,0 +1,27 @@
+// Sizes as people write them: "512MiB", "1.5 GiB".
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace meshhier::execution {
+
+/// Bytes of a text: a decimal number, perhaps with a fraction, and a unit or none (bytes). Units:
+/// B; KiB MiB GiB TiB and K M G T, powers of 1024; kB MB GB TB, powers of 1000; case does not
+/// matter, spaces may stand between. A fraction of a byte is cut off. Nothing if the text is
+/// anything else, negative, or 2^53 bytes (8 PiB) and more.
+std::optional<std::uint64_t> parse_size(std::string_view text);
+
+/// What parse_size() takes, for error messages.
+inline constexpr std::string_view kSizeSyntax =
+    R"(a size such as "512MiB" or "2GiB", or a number of bytes)";
+
+/// The shortest text that parse_size() reads back exactly: "1GiB", "1536MiB", "1000".
+std::string exact_size_text(std::uint64_t bytes);
+
+/// For people, three digits: "1.46 GiB", "980 B".
+std::string rounded_size_text(std::uint64_t bytes);
+
+}  // namespace meshhier::execution

@@ -1,0 +1,24 @@
+#include "hierarchy/attribute_names.h"
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+namespace meshhier {
+
+std::string attribute_names(const AttributeLayout& layout) {
+  std::string names;
+  const auto add = [&](bool present, std::string_view name) {
+    if (present)
+      names.append(names.empty() ? "" : ", ").append(name);
+  };
+  add(layout.normals, "normals");
+  constexpr std::array kTypes{"", "8-bit", "16-bit", "float"};
+  add(layout.colour != ColourType::none,
+      std::string(kTypes[static_cast<std::size_t>(layout.colour)]) + " colours" +
+          (layout.alpha ? " with alpha" : ""));
+  add(layout.texcoords, "texture coordinates");
+  return names.empty() ? "none" : names;
+}
+
+}  // namespace meshhier

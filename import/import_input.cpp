@@ -1,0 +1,380 @@
+#include "import/import_input.h"
+
+#include "hierarchy/attribute_names.h"
+#include "hierarchy/error.h"
+#include "import/obj_import.h"
+#include "import/raw_mesh.h"
+#include "import/weld.h"
+#include "mesh_io/input_error.h"
+#include "mesh_io/off_reader.h"
+#include "mesh_io/ply_source.h"
+#include "mesh_io/ply_writer.h"
+#include "mesh_io/stl_reader.h"
+#include "storage/io/file_checksum.h"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace meshhier::importing {
+namespace {
+
+using mesh_io::InputStream;
+using mesh_io::MeshKind;
+
+constexpr std::uint64_t kImportMiB = std::uint64_t{1} << 20;
+
+/// One build's import.
+class Import {
+ public:
+  Import(const InputFiles& input, const ImportEnvironment& environment)
+      : input_(input),
+        env_(environment),
+        room_{environment.scratch, environment.sort_bytes, environment.cancel},
+        mesh_(environment.scratch) {}
+
+  ImportFacts run(TemporaryFile& ply) {
+    env_.progress.stage("import", input_.bytes(), "bytes");
+    if (is_packed_ply(input_.all()[0]) && input_.all().size() == 1 && !input_.weld()) {
+      unpack(input_.all()[0], ply);
+    } else {
+      for (const InputFileFacts& file : input_.all())
+        add(file, ply);
+      facts_.faces = faces_;
+      write(input_.weld() ? weld() : mesh_, ply);
+    }
+    input_.check_unchanged();
+    std::ranges::sort(facts_.counts, {}, &SourceCount::name);
+    return std::move(facts_);
+  }
+
+ private:
+  static bool is_packed_ply(const InputFileFacts& file) {
+    return file.format.kind == MeshKind::ply && file.format.is_gzip;
+  }
+
+  /// What a file adds to the mesh besides vertices and triangles.
+  struct Added {
+    AttributeLayout layout;
+    bool fits_float = true;
+    std::uint64_t faces = 0;
+    std::uint64_t degenerate_triangles = 0;
+  };
+
+  void count(std::string_view name, std::uint64_t count) {
+    if (count == 0)
+      return;
+    const auto found = std::ranges::find(facts_.counts, name, &SourceCount::name);
+    if (found == facts_.counts.end())
+      facts_.counts.push_back({std::string(name), count});
+    else
+      found->count += count;
+  }
+
+  /// Reads the file's content by `read(stream)`, and its checksum on the way.
+  template <class Read>
+  void read_stream(const InputFileFacts& facts, const Read& read) {
+    const auto file = env_.files.open(facts.path);
+    const std::uint64_t bytes = file->size();
+    storage::FileChecksum checksum(bytes);
+    const auto stream =
+        mesh_io::open_stream({*file, bytes, &checksum}, [this](std::uint64_t count) {
+          env_.cancel.check();
+          env_.progress.advance(count);
+        });
+    read(*stream);
+    note(facts, bytes, checksum.complete(*file, [this] { env_.cancel.check(); }));
+  }
+
+  void note(const InputFileFacts& facts, std::uint64_t bytes, std::uint64_t checksum) {
+    facts_.files.push_back(
+        {facts.path.filename().string(), name_of(facts.format), bytes, checksum});
+  }
+
+  void unpack(const InputFileFacts& facts, TemporaryFile& to) {
+    read_stream(facts, [&](InputStream& stream) {
+      const auto file = env_.files.create(to.path());
+      std::vector<std::byte> buffer(kImportMiB);
+      std::uint64_t offset = 0;
+      for (std::size_t count = buffer.size(); count == buffer.size(); offset += count) {
+        count = stream.read(buffer);
+        file->write_at(offset, std::span(buffer).first(count));
+      }
+    });
+    to.counted();
+  }
+
+  void add(const InputFileFacts& facts, TemporaryFile& ply) {
+    const bool is_first = facts_.files.empty();
+    Added added;
+    switch (facts.format.kind) {
+      case MeshKind::ply:
+        added = add_ply(facts, ply.path());
+        break;
+      case MeshKind::obj:
+        read_stream(facts, [&](InputStream& stream) { added = add_obj(stream, facts.path); });
+        break;
+      case MeshKind::stl_binary:
+        read_stream(facts,
+                    [&](InputStream& stream) { added = add_stl<Vec3f>(stream, facts.path); });
+        break;
+      case MeshKind::stl_text:
+        read_stream(facts,
+                    [&](InputStream& stream) { added = add_stl<Vec3d>(stream, facts.path); });
+        break;
+      case MeshKind::off:
+        read_stream(facts, [&](InputStream& stream) { added = add_off(stream, facts.path); });
+        break;
+    }
+    if (is_first)
+      mesh_.layout = added.layout;
+    if (added.layout != mesh_.layout) {
+      mesh_io::fail_file(
+          facts.path,
+          fmt::format("has attributes: {}; {} has: {}. Files that are joined must have the same",
+                      attribute_names(added.layout), input_.all()[0].path.string(),
+                      attribute_names(mesh_.layout)));
+    }
+    mesh_.fits_float = mesh_.fits_float && added.fits_float;
+    faces_ += added.faces;
+    facts_.degenerate_triangles += added.degenerate_triangles;
+  }
+
+  std::uint32_t checked_base(const std::filesystem::path& path, std::uint64_t more) const {
+    const std::uint64_t base = mesh_.vertex_count();
+    if (base + more >= UINT32_MAX)
+      mesh_io::fail_file(path, "with it the input has 2^32 vertices or more");
+    return static_cast<std::uint32_t>(base);
+  }
+
+  void append(std::span<const mesh_io::SourceTriangle> triangles, std::uint32_t base) {
+    env_.cancel.check();
+    for (const mesh_io::SourceTriangle& t : triangles)
+      mesh_.triangles.append(RawTriangle{base + raw(t[0]), base + raw(t[1]), base + raw(t[2])});
+  }
+
+  Added add_ply(const InputFileFacts& facts, const std::filesystem::path& room) {
+    if (!facts.format.is_gzip) {
+      const Added added = add_plain_ply(facts.path, facts.path, &facts);
+      env_.progress.advance(facts.identity.bytes);
+      return added;
+    }
+    TemporaryFile unpacked(env_.files, room, env_.scratch.pool().scratch_use());
+    unpack(facts, unpacked);
+    try {
+      return add_plain_ply(room, facts.path, nullptr);
+    } catch (const Error& error) {
+      throw error.code() == ErrorCode::input ? error.within(facts.path.string() + " (unpacked)")
+                                             : error;
+    }
+  }
+
+  /// `noted`: whose checksum is to be noted.
+  Added add_plain_ply(const std::filesystem::path& path, const std::filesystem::path& name,
+                      const InputFileFacts* noted) {
+    const auto source = mesh_io::make_ply_source(env_.files.open(path));
+    const mesh_io::MeshDescription& description = source->description();
+    const std::uint32_t base = checked_base(name, description.vertex_count);
+    Added added{.layout = description.attributes};
+    source->read_vertices([&](const mesh_io::VertexBlock& block) {
+      env_.cancel.check();
+      for (const Vec3f& p : block.positions)
+        mesh_.positions.append(to_double(p));
+      mesh_.positions.append(block.exact);
+      added.fits_float = added.fits_float && std::ranges::all_of(block.exact, fits_float);
+      mesh_.attributes.append(block.attributes);
+    });
+    const mesh_io::FaceCounts counts = source->read_triangles(
+        [&](std::span<const mesh_io::SourceTriangle> triangles) { append(triangles, base); });
+    added.faces = counts.faces;
+    added.degenerate_triangles = counts.degenerate_triangles;
+    if (noted != nullptr)
+      note(*noted, description.file_bytes, source->checksum([this] { env_.cancel.check(); }));
+    return added;
+  }
+
+  Added add_obj(InputStream& stream, const std::filesystem::path& path) {
+    const ObjImport import = import_obj(stream, path, mesh_, room_);
+    checked_base(path, 0);
+    const mesh_io::ObjCounts& counts = import.counts;
+    count("split_vertices", import.split_vertices);
+    count("vertices_made_white", import.filled_colours);
+    count("vertices_without_texcoord", import.filled_texcoords);
+    count("vertices_without_normal", import.filled_normals);
+    count("groups", counts.groups);
+    count("objects", counts.objects);
+    count("material_uses", counts.materials);
+    count("material_libraries", counts.libraries);
+    count("ignored_points_and_lines", counts.points_and_lines);
+    count("ignored_statements", counts.others);
+    return {import.layout, import.fits_float, counts.faces, counts.degenerate_triangles};
+  }
+
+  /// Binary files hold floats.
+  template <class Point>
+  Added add_stl(InputStream& stream, const std::filesystem::path& path) {
+    storage::RecordSpool<Point> corners(env_.scratch, kImportSpoolBytes);
+    const auto take = [&](std::span<const mesh_io::SoupTriangle> triangles) {
+      for (const mesh_io::SoupTriangle& triangle : triangles) {
+        for (const Vec3d& p : triangle) {
+          if constexpr (std::is_same_v<Point, Vec3f>)
+            corners.append(to_float(p));
+          else
+            corners.append(p);
+        }
+      }
+    };
+    const mesh_io::StlCounts counts = std::is_same_v<Point, Vec3f>
+                                          ? mesh_io::read_binary_stl(stream, path, take)
+                                          : mesh_io::read_text_stl(stream, path, take);
+    const WeldCounts welded = weld_soup(corners, mesh_, room_);
+    checked_base(path, 0);
+    count("welded_corners", welded.merged);
+    count("ignored_facet_normals", counts.facets);
+    count("ignored_facet_attributes", counts.attributes);
+    return {{}, counts.fits_float, counts.facets, welded.degenerate_triangles};
+  }
+
+  Added add_off(InputStream& stream, const std::filesystem::path& path) {
+    const std::uint32_t base = checked_base(path, 0);
+    const mesh_io::OffCounts counts = mesh_io::read_off(
+        stream, path,
+        [&](Vec3d position, std::span<const float> attributes) {
+          mesh_.positions.append(position);
+          mesh_.attributes.append(attributes);
+        },
+        [&](std::span<const mesh_io::SourceTriangle> triangles) {
+          checked_base(path, 0);
+          append(triangles, base);
+        });
+    checked_base(path, 0);
+    count("ignored_face_colours", counts.coloured_faces);
+    return {counts.attributes, counts.fits_float, counts.faces.faces,
+            counts.faces.degenerate_triangles};
+  }
+
+  RawMesh& weld() {
+    welded_.emplace(env_.scratch);
+    const WeldCounts counts = weld_vertices(mesh_, *welded_, room_);
+    count("welded_vertices", counts.merged);
+    count("triangles_lost_by_welding", counts.degenerate_triangles);
+    facts_.degenerate_triangles += counts.degenerate_triangles;
+    return *welded_;
+  }
+
+  void write(RawMesh& mesh, TemporaryFile& ply) {
+    mesh_io::PlyContent content;
+    content.vertex_count = mesh.vertex_count();
+    content.triangle_count = mesh.triangles.size();
+    content.attributes = mesh.layout;
+    content.double_coordinates = !mesh.fits_float;
+    mesh_io::PlyWriter writer(env_.files, ply.path(), content);
+    constexpr std::uint64_t kBlock = 16384;
+    const std::size_t channels = mesh.channels();
+    std::vector<Vec3d> positions;
+    std::vector<float> attributes;
+    for (std::uint64_t i = 0; i < content.vertex_count; i += kBlock) {
+      env_.cancel.check();
+      positions.resize(std::min(kBlock, content.vertex_count - i));
+      attributes.resize(positions.size() * channels);
+      mesh.positions.read(i, positions);
+      mesh.attributes.read(i * channels, attributes);
+      writer.write_vertices(positions, attributes);
+    }
+    std::vector<RawTriangle> triangles;
+    for (std::uint64_t i = 0; i < content.triangle_count; i += kBlock) {
+      env_.cancel.check();
+      triangles.resize(std::min(kBlock, content.triangle_count - i));
+      mesh.triangles.read(i, triangles);
+      writer.write_triangles(triangles);
+    }
+    writer.finish();
+    ply.counted();
+  }
+
+  const InputFiles& input_;
+  const ImportEnvironment& env_;
+  ImportRoom room_;
+  RawMesh mesh_;
+  std::optional<RawMesh> welded_;
+  std::uint64_t faces_ = 0;
+  ImportFacts facts_;
+};
+
+}  // namespace
+
+TemporaryFile::~TemporaryFile() {
+  try {
+    files_.remove_all(path_);
+  } catch (const Error&) {  // the failure that brought us here, or the next one, is the one to tell
+  }
+  use_.add_removed(bytes_);
+}
+
+void TemporaryFile::counted() {
+  use_.add_removed(bytes_);
+  bytes_ = files_.open(path_)->size();
+  use_.add_written(bytes_);
+  use_.add_grown(bytes_);
+}
+
+void ImportFacts::complete(SourceSummary& summary) const {
+  summary.file_bytes = 0;
+  std::vector<std::uint64_t> checksums;
+  for (const SourceFile& file : files) {
+    summary.file_bytes += file.bytes;
+    checksums.push_back(file.checksum);
+  }
+  summary.checksum = joined_checksum(checksums);
+  summary.files = files;
+  summary.counts = counts;
+  if (faces)
+    summary.faces = *faces;
+  summary.degenerate_triangles += degenerate_triangles;
+}
+
+std::string counts_text(const std::vector<SourceCount>& counts) {
+  std::string text;
+  for (const SourceCount& one : counts) {
+    std::string name = one.name;
+    std::ranges::replace(name, '_', ' ');
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", one.count, name);
+  }
+  return text;
+}
+
+ImportMemory plan_import(std::uint64_t memory_budget) {
+  // The program and its allocator, as memory_plan.cpp measured them; blocks and buffers of readers
+  // and writers, 12 MiB.
+  constexpr std::uint64_t kFixed = 30 * kImportMiB;
+  constexpr std::uint64_t kAllocatorParts = 12;
+  const std::uint64_t taken = kFixed + memory_budget / kAllocatorParts;
+  // What cannot be is refused when the mesh is known.
+  const std::uint64_t rest = std::max(memory_budget, taken + 4 * kImportMiB) - taken;
+  return {rest / 4, rest / 4};
+}
+
+std::uint64_t predict_import(const InputFiles& input, const ImportMemory& memory) {
+  // The PLY has at most the size of the text or soup. What lies in spools and sorts beside it, up
+  // to the pool in memory: once the size of a text of floats, three times where corners have
+  // attributes, and three times that of an STL, whose corners are sorted. Gzip packs such files to
+  // a third or a quarter.
+  constexpr std::uint64_t kSpools = 3;
+  constexpr std::uint64_t kPacked = 4;
+  std::uint64_t content = 0;
+  for (const InputFileFacts& file : input.all())
+    content += file.identity.bytes * (file.format.is_gzip ? kPacked : 1);
+  const bool is_unpacked_only =
+      input.all().size() == 1 && !input.weld() && input.all()[0].format.kind == MeshKind::ply;
+  const std::uint64_t spools = is_unpacked_only ? 0 : kSpools * content;
+  return content + spools - std::min(spools, memory.pool_bytes);
+}
+
+ImportFacts import_input(const InputFiles& input, TemporaryFile& ply,
+                         const ImportEnvironment& environment) {
+  return Import(input, environment).run(ply);
+}
+
+}  // namespace meshhier::importing

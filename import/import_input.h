@@ -1,0 +1,85 @@
+// The stage `import`: input that cannot be read where it lies becomes one PLY that can.
+//
+// A PLY that is packed and nothing else is unpacked. All other input (OBJ, STL, OFF, several files,
+// vertices to be welded) is read once as a stream into spools and written from there as a binary
+// little endian PLY: coordinates as float, or as double if one of them does not fit; attributes in
+// the types they have inside (hierarchy/attributes.h).
+#pragma once
+
+#include "execution/cancel.h"
+#include "execution/progress.h"
+#include "import/input_files.h"
+#include "mesh_io/mesh_source.h"
+#include "storage/io/file.h"
+#include "storage/io/spool.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace meshhier::importing {
+
+/// A file that is removed with its object.
+class TemporaryFile {
+ public:
+  /// What is written there counts in `use` from counted() on.
+  TemporaryFile(storage::FileSystem& files, std::filesystem::path path, storage::ScratchUse& use)
+      : files_(files), path_(std::move(path)), use_(use) {}
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile();
+
+  const std::filesystem::path& path() const { return path_; }
+  /// Says that the file is written.
+  void counted();
+  std::uint64_t bytes() const { return bytes_; }
+
+ private:
+  storage::FileSystem& files_;
+  std::filesystem::path path_;
+  storage::ScratchUse& use_;
+  std::uint64_t bytes_ = 0;
+};
+
+/// What was learnt of the files, and is not in the PLY.
+struct ImportFacts {
+  std::vector<SourceFile> files;
+  std::vector<SourceCount> counts;
+  std::optional<std::uint64_t> faces;  ///< none: as many as the PLY has
+  std::uint64_t degenerate_triangles = 0;
+
+  /// What a mesh that was read from the PLY is a summary of.
+  void complete(SourceSummary& summary) const;
+};
+
+/// For people: "12 groups, 3 split vertices".
+std::string counts_text(const std::vector<SourceCount>& counts);
+
+/// The budget's division while it runs.
+struct ImportMemory {
+  std::uint64_t pool_bytes = 0;
+  std::uint64_t sort_bytes = 0;  ///< of each of two sorts, or of a table
+};
+ImportMemory plan_import(std::uint64_t memory_budget);
+
+/// About what it has in temporary files at most, the PLY included, from the files' sizes alone.
+std::uint64_t predict_import(const InputFiles& input, const ImportMemory& memory);
+
+struct ImportEnvironment {
+  storage::FileSystem& files;
+  storage::ScratchFile& scratch;  ///< for spools and sorts; its pool is the memory they have
+  std::uint64_t sort_bytes = 0;
+  execution::Progress& progress;
+  const execution::CancelToken& cancel;
+};
+
+/// Writes the PLY. Parallel only within sorts; the result depends on the files alone, but for the
+/// order of triangles if they are welded. Throws Error(input) naming file and line or byte, also if
+/// files that are joined have not the same attributes, Error(io), Error(interrupted).
+ImportFacts import_input(const InputFiles& input, TemporaryFile& ply,
+                         const ImportEnvironment& environment);
+
+}  // namespace meshhier::importing

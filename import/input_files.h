@@ -1,0 +1,56 @@
+// The mesh files of a build: what they are, and whether they can be read where they lie.
+#pragma once
+
+#include "execution/cancel.h"
+#include "hierarchy/published.h"
+#include "mesh_io/input_paths.h"
+#include "mesh_io/mesh_format.h"
+#include "mesh_io/mesh_source.h"
+#include "storage/io/file.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace meshhier::importing {
+
+struct InputFileFacts {
+  std::filesystem::path path;
+  mesh_io::MeshFormat format;
+  storage::FileIdentity identity;
+
+  bool is_plain_ply() const { return format.kind == mesh_io::MeshKind::ply && !format.is_gzip; }
+};
+
+class InputFiles {
+ public:
+  /// Looks at what each file is. Throws as mesh_io::detect_format.
+  InputFiles(storage::FileSystem& files, const mesh_io::InputPaths& paths, bool weld);
+
+  const std::vector<InputFileFacts>& all() const { return all_; }
+  bool weld() const { return weld_; }
+  /// Not one PLY that is read in place as it is.
+  bool needs_import() const { return weld_ || all_.size() != 1 || !all_[0].is_plain_ply(); }
+
+  /// File names, with ", " between them.
+  std::string name() const;
+  std::uint64_t bytes() const;
+  /// One number for the times of all files.
+  std::int64_t modified_ns() const;
+  /// Throws Error(input) if a file is not what it was any more.
+  void check_unchanged() const;
+  /// As SourceSummary's. Reads all files.
+  std::uint64_t checksum(const execution::CancelToken& cancel) const;
+
+ private:
+  storage::FileSystem& files_;
+  std::vector<InputFileFacts> all_;
+  bool weld_;
+};
+
+/// Of several files from their checksums; of one it is its own.
+std::uint64_t joined_checksum(const std::vector<std::uint64_t>& checksums);
+
+}  // namespace meshhier::importing

@@ -1,0 +1,63 @@
+// What a build reads: its input where it lies, or the PLY that it was imported to, or nothing any
+// more, if an earlier build that was stopped has read it all.
+#pragma once
+
+#include "import/import_input.h"
+#include "import/input_files.h"
+#include "mesh_io/mesh_source.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+namespace meshhier::importing {
+
+class MeshInput {
+ public:
+  /// What an import works with.
+  struct Place {
+    std::filesystem::path ply;      ///< becomes the imported mesh
+    std::filesystem::path scratch;  ///< a temporary file
+    storage::MemoryPool& pool;
+    std::uint64_t sort_bytes = 0;
+    execution::Progress& progress;
+    const execution::CancelToken& cancel;
+  };
+
+  /// Opens the files and finds out what they are; reads the header if they are read in place.
+  /// Throws as mesh_io::open_mesh and mesh_io::detect_format.
+  MeshInput(const mesh_io::InputPaths& paths, bool weld, storage::FileSystem& files);
+
+  const InputFiles& files() const { return input_; }
+  bool needs_import() const { return input_.needs_import(); }
+
+  /// Imports; the PLY stays until drop() or the end of this object.
+  void import(const Place& place);
+  /// Takes what import() would find out from an earlier import of the same files.
+  void recall(const mesh_io::MeshDescription& imported) { description_ = imported; }
+
+  /// Requires that nothing need be imported, or that import() or recall() has been called.
+  const mesh_io::MeshDescription& description() const { return description_; }
+  std::uint64_t imported_bytes() const { return ply_ ? ply_->bytes() : 0; }
+
+  /// Whether there is something to read: not if it was recalled.
+  bool can_be_read() const { return !needs_import() || ply_; }
+  std::unique_ptr<mesh_io::MeshSource> open();
+  /// Adds what the PLY does not say.
+  void complete(SourceSummary& summary) const { facts_.complete(summary); }
+  void drop() { ply_.reset(); }
+
+  /// The files' as in SourceSummary. Reads what was not read so far.
+  std::uint64_t checksum(const execution::CancelToken& cancel);
+
+ private:
+  storage::FileSystem& system_;
+  InputFiles input_;
+  std::unique_ptr<mesh_io::MeshSource> in_place_;
+  std::optional<TemporaryFile> ply_;
+  ImportFacts facts_;
+  mesh_io::MeshDescription description_;
+};
+
+}  // namespace meshhier::importing

@@ -1,0 +1,276 @@
+#include "import/weld.h"
+
+#include "execution/spool_cursor.h"
+#include "hierarchy/error.h"
+#include "partition/external_sort.h"
+#include "partition/renumber.h"
+
+#include <bit>
+#include <type_traits>
+
+namespace meshhier::importing {
+namespace {
+
+/// An item: the bits of what it holds, and which one it is.
+template <std::size_t Words>
+struct Item {
+  std::array<std::uint32_t, Words> bits{};
+  std::array<std::uint8_t, 8>
+      number{};  ///< highest byte first: of equal bits the first item is least
+
+  std::uint64_t index() const {
+    std::uint64_t index = 0;
+    for (const std::uint8_t byte : number)
+      index = index << 8 | byte;
+    return index;
+  }
+  void set_index(std::uint64_t index) {
+    for (std::size_t i = number.size(); i-- > 0; index >>= 8)
+      number[i] = static_cast<std::uint8_t>(index);
+  }
+};
+
+/// One number to compare instead of many; of equal numbers the items' bytes decide.
+struct ItemKey {
+  template <std::size_t Words>
+  std::uint64_t operator()(const Item<Words>& item) const {
+    std::uint64_t key = 0;
+    for (const std::uint32_t word : item.bits)
+      key = (key + word) * 0x9E3779B97F4A7C15;  // 2^64 over the golden ratio
+    return key;
+  }
+};
+
+/// Sorted by the first of the two.
+struct Pair {
+  std::uint64_t first;
+  std::uint64_t second;
+};
+struct PairKey {
+  std::uint64_t operator()(const Pair& pair) const { return pair.first; }
+};
+using PairSort = partition::ExternalSort<Pair, PairKey>;
+
+/// Collects the words of an item; numbers that are equal have equal bits.
+template <std::size_t Words>
+class ItemBits {
+ public:
+  void add(float value) { bits_[used_++] = std::bit_cast<std::uint32_t>(value + 0.0F); }
+  void add(double value) {
+    const auto bits = std::bit_cast<std::uint64_t>(value + 0.0);
+    bits_[used_++] = static_cast<std::uint32_t>(bits >> 32);
+    bits_[used_++] = static_cast<std::uint32_t>(bits);
+  }
+  const std::array<std::uint32_t, Words>& all() const { return bits_; }
+
+ private:
+  std::array<std::uint32_t, Words> bits_{};
+  std::size_t used_ = 0;
+};
+
+/// Finds equal items. Calls keep(index) for each that stays, ascending, then take(number) for all
+/// items in their order: the number of the one that stands for it. `bits_of(index, bits)` is called
+/// for all, ascending. Returns how many stay.
+template <std::size_t Words, class BitsOf, class Keep, class Take>
+std::uint64_t number_equals(std::uint64_t count, const BitsOf& bits_of, const Keep& keep,
+                            const Take& take, const ImportRoom& room) {
+  PairSort by_first(room.scratch, room.sort_bytes);
+  {
+    partition::ExternalSort<Item<Words>, ItemKey> by_bits(room.scratch, room.sort_bytes);
+    for (std::uint64_t i = 0; i < count; ++i) {
+      ItemBits<Words> bits;
+      bits_of(i, bits);
+      Item<Words> item{bits.all()};
+      item.set_index(i);
+      by_bits.add(item);
+    }
+    by_bits.sort();
+    Item<Words> first;
+    bool is_begun = false;
+    by_bits.for_each_block([&](std::span<const Item<Words>> block) {
+      room.cancel.check();
+      for (const Item<Words>& item : block) {
+        if (!is_begun || item.bits != first.bits)
+          first = item;
+        is_begun = true;
+        by_first.add({first.index(), item.index()});
+      }
+    });
+  }
+  by_first.sort();
+  std::uint64_t kept = 0;
+  std::uint64_t last = UINT64_MAX;  // first of those before
+  PairSort by_item(room.scratch, room.sort_bytes);
+  by_first.for_each_block([&](std::span<const Pair> block) {
+    room.cancel.check();
+    for (const auto& [first, item] : block) {
+      if (first != last) {
+        keep(first);
+        ++kept;
+        last = first;
+      }
+      by_item.add({item, kept - 1});
+    }
+  });
+  by_item.sort();
+  by_item.for_each_block([&](std::span<const Pair> block) {
+    room.cancel.check();
+    for (const Pair& pair : block)
+      take(pair.second);
+  });
+  return kept;
+}
+
+/// A vertex's number below 2^32.
+std::uint32_t checked_number(std::uint64_t number) {
+  if (number >= UINT32_MAX)
+    throw Error(ErrorCode::input, "the input has 2^32 vertices or more; split it");
+  return static_cast<std::uint32_t>(number);
+}
+
+bool is_degenerate(const RawTriangle& t) {
+  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
+
+/// Fills the table from the old numbers of vertices to the new ones, and the vertices of `welded`.
+template <std::size_t Words>
+std::uint64_t weld_into(const RawMesh& mesh, RawMesh& welded,
+                        storage::RecordSpool<std::uint32_t>& table, const ImportRoom& room) {
+  const std::size_t channels = mesh.channels();
+  execution::SpoolCursor positions(mesh.positions, room.cancel),
+      kept_positions(mesh.positions, room.cancel);
+  execution::SpoolCursor attributes(mesh.attributes, room.cancel),
+      kept_attributes(mesh.attributes, room.cancel);
+  const auto bits_of = [&](std::uint64_t i, ItemBits<Words>& bits) {
+    const Vec3d p = positions.at(i);
+    for (int axis = 0; axis < 3; ++axis)
+      mesh.fits_float ? bits.add(static_cast<float>(p[axis])) : bits.add(p[axis]);
+    for (std::size_t c = 0; c < channels; ++c)
+      bits.add(attributes.at(i * channels + c));
+  };
+  const auto keep = [&](std::uint64_t i) {
+    welded.positions.append(kept_positions.at(i));
+    for (std::size_t c = 0; c < channels; ++c)
+      welded.attributes.append(kept_attributes.at(i * channels + c));
+  };
+  return number_equals<Words>(
+      mesh.vertex_count(), bits_of, keep,
+      [&](std::uint64_t number) { table.append(checked_number(number)); }, room);
+}
+
+std::uint64_t weld_into(const RawMesh& mesh, RawMesh& welded,
+                        storage::RecordSpool<std::uint32_t>& table, const ImportRoom& room) {
+  const std::size_t words = (mesh.fits_float ? 3 : 6) + mesh.channels();
+  if (words <= 3)
+    return weld_into<3>(mesh, welded, table, room);
+  if (words <= 6)
+    return weld_into<6>(mesh, welded, table, room);
+  if (words <= 9)
+    return weld_into<9>(mesh, welded, table, room);
+  static_assert(6 + kMaxChannels <= 15);
+  return weld_into<15>(mesh, welded, table, room);
+}
+
+/// Translates triangles and drops those that became degenerate; returns how many did.
+class TriangleWelder {
+ public:
+  TriangleWelder(const storage::RecordSpool<std::uint32_t>& table, RawMesh& welded,
+                 const ImportRoom& room)
+      : renumberer_(
+            table,
+            partition::plan_renumbering(table.size(), sizeof(std::uint32_t), room.sort_bytes),
+            room.scratch),
+        welded_(welded),
+        cancel_(room.cancel) {}
+
+  std::uint64_t weld(const storage::RecordSpool<RawTriangle>& triangles) {
+    constexpr std::uint64_t kBlockTriangles = 16384;
+    std::vector<RawTriangle> block;
+    for (std::uint64_t i = 0; i < triangles.size(); i += block.size()) {
+      block.resize(std::min(kBlockTriangles, triangles.size() - i));
+      triangles.read(i, block);
+      renumberer_.translate(std::span<const RawTriangle>(block), renumbered_);
+      keep();
+    }
+    while (renumberer_.next_round()) {
+      for (std::uint64_t batch = 0; batch < renumberer_.batches(); ++batch) {
+        renumberer_.translate_batch(batch, renumbered_);
+        keep();
+      }
+    }
+    return degenerate_;
+  }
+
+ private:
+  void keep() {
+    cancel_.check();
+    for (const RawTriangle& t : renumbered_.finished) {
+      if (is_degenerate(t))
+        ++degenerate_;
+      else
+        welded_.triangles.append(t);
+    }
+    renumberer_.keep(renumbered_);
+  }
+
+  partition::Renumberer<std::uint32_t> renumberer_;
+  partition::Renumbered<std::uint32_t> renumbered_;
+  RawMesh& welded_;
+  const execution::CancelToken& cancel_;
+  std::uint64_t degenerate_ = 0;
+};
+
+}  // namespace
+
+template <class Scalar>
+WeldCounts weld_soup(const storage::RecordSpool<Vec3<Scalar>>& corners, RawMesh& mesh,
+                     const ImportRoom& room) {
+  constexpr std::size_t kWords = 3 * sizeof(Scalar) / sizeof(std::uint32_t);
+  execution::SpoolCursor items(corners, room.cancel), kept(corners, room.cancel);
+  const std::uint64_t base = mesh.vertex_count();
+  WeldCounts counts;
+  RawTriangle triangle{};
+  std::size_t corner = 0;
+  const auto take = [&](std::uint64_t number) {
+    triangle[corner] = checked_number(base + number);
+    if (++corner < 3)
+      return;
+    corner = 0;
+    if (is_degenerate(triangle))
+      ++counts.degenerate_triangles;
+    else
+      mesh.triangles.append(triangle);
+  };
+  const std::uint64_t stay = number_equals<kWords>(
+      corners.size(),
+      [&](std::uint64_t i, ItemBits<kWords>& bits) {
+        const Vec3<Scalar>& p = items.at(i);
+        for (int axis = 0; axis < 3; ++axis)
+          bits.add(p[axis]);
+      },
+      [&](std::uint64_t i) {
+        const Vec3<Scalar>& p = kept.at(i);
+        mesh.positions.append({double{p.x}, double{p.y}, double{p.z}});
+      },
+      take, room);
+  counts.merged = corners.size() - stay;
+  return counts;
+}
+
+template WeldCounts weld_soup(const storage::RecordSpool<Vec3f>&, RawMesh&, const ImportRoom&);
+template WeldCounts weld_soup(const storage::RecordSpool<Vec3d>&, RawMesh&, const ImportRoom&);
+
+WeldCounts weld_vertices(RawMesh& mesh, RawMesh& welded, const ImportRoom& room) {
+  welded.layout = mesh.layout;
+  welded.fits_float = mesh.fits_float;
+  storage::RecordSpool<std::uint32_t> table(room.scratch, kImportSpoolBytes);
+  WeldCounts counts;
+  counts.merged = mesh.vertex_count() - weld_into(mesh, welded, table, room);
+  mesh.positions.clear();
+  mesh.attributes.clear();
+  counts.degenerate_triangles = TriangleWelder(table, welded, room).weld(mesh.triangles);
+  mesh.triangles.clear();
+  return counts;
+}
+
+}  // namespace meshhier::importing

@@ -1,0 +1,68 @@
+#include "inspection/corner_triangle.h"
+
+#include <algorithm>
+#include <cassert>
+#include <iterator>
+
+namespace meshhier::inspection {
+namespace {
+
+constexpr CornerTriangle turned_corners(const CornerTriangle& t) {
+  if (t[1] < t[0] && t[1] < t[2])
+    return {t[1], t[2], t[0]};
+  if (t[2] < t[0] && t[2] < t[1])
+    return {t[2], t[0], t[1]};
+  return t;
+}
+
+}  // namespace
+
+void normalize(std::vector<CornerTriangle>& triangles, bool unique) {
+  std::erase_if(triangles, [](const CornerTriangle& t) {
+    return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+  });
+  for (CornerTriangle& t : triangles)
+    t = turned_corners(t);
+  std::sort(triangles.begin(), triangles.end());
+  if (unique)
+    triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+}
+
+std::vector<CornerTriangle> border_of(const PublishedTile& tile, const Tree& tree) {
+  const TileMesh& mesh = tile.mesh;
+  std::vector<CornerTriangle> triangles;
+  triangles.reserve(mesh.border.size());
+  for (const Triangle& t : mesh.border) {
+    CornerTriangle& corners = triangles.emplace_back();
+    for (std::size_t i = 0; i < 3; ++i) {
+      corners[i] = mesh.is_own(t[i]) ? make_corner(tile.node.index, raw(t[i]))
+                                     : make_corner(mesh.ghost(t[i]).tile, mesh.ghost(t[i]).index);
+    }
+  }
+  // Copies of input triangles stay; simplified tiles have none to drop, or it is told elsewhere.
+  normalize(triangles, !tree.is_partition(tile.node));
+  return triangles;
+}
+
+std::vector<CornerTriangle> early_border_of(const PublishedTile& tile, const Tree& tree) {
+  const TileMesh& mesh = tile.mesh;
+  const Level above = coarser(tile.node.level);
+  const std::uint32_t own = tree.parent(tile.node).index;
+  // No other partition is below the early node, so every chain has an entry for its level.
+  const auto corner = [&](TileVertex v) {
+    if (mesh.is_own(v))
+      return make_corner(own, raw(v));
+    const NodeId neighbour{tile.node.level, mesh.ghost(v).tile};
+    return make_corner(tree.ancestor(neighbour, above).index,
+                       tile.chains[raw(v) - mesh.own_count][1]);
+  };
+  std::vector<CornerTriangle> triangles;
+  triangles.reserve(mesh.border.size());
+  for (const Triangle& t : mesh.border) {
+    triangles.push_back({corner(t[0]), corner(t[1]), corner(t[2])});
+  }
+  normalize(triangles, true);
+  return triangles;
+}
+
+}  // namespace meshhier::inspection

@@ -1,0 +1,39 @@
+// Triangles whose corners name their tile: comparable between the tiles of a level.
+#pragma once
+
+#include "hierarchy/published.h"
+#include "hierarchy/tree.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace meshhier::inspection {
+
+/// NodeId::index of a tile in the upper half, one of its own vertices in the lower.
+enum class Corner : std::uint64_t {};
+
+using CornerTriangle = std::array<Corner, 3>;
+
+constexpr Corner make_corner(std::uint32_t tile, std::uint32_t vertex) {
+  return static_cast<Corner>(std::uint64_t{tile} << 32 | vertex);
+}
+constexpr std::uint32_t tile_index(Corner corner) {
+  return static_cast<std::uint32_t>(static_cast<std::uint64_t>(corner) >> 32);
+}
+constexpr std::uint32_t vertex_index(Corner corner) {
+  return static_cast<std::uint32_t>(static_cast<std::uint64_t>(corner));
+}
+
+/// normalize_triangles() for corner triangles: drops degenerate ones, turns the smallest corner to
+/// the front, sorts; one of exact duplicates stays if `unique`.
+void normalize(std::vector<CornerTriangle>& triangles, bool unique);
+
+/// The tile's border triangles with ghosts as vertices of their own tiles, normalized.
+std::vector<CornerTriangle> border_of(const PublishedTile& tile, const Tree& tree);
+
+/// The border triangles that the early node above a partition would have. Requires that
+/// tile.node is a partition whose parent is early.
+std::vector<CornerTriangle> early_border_of(const PublishedTile& tile, const Tree& tree);
+
+}  // namespace meshhier::inspection

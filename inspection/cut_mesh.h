@@ -1,0 +1,79 @@
+// The mesh a cut shows, tile by tile.
+//
+// The vertices of the cut's tiles are numbered from left to right, each tile's own ones in their
+// order. A border triangle reaches into other tiles: its ghosts are looked up where the cut shows
+// their regions (chains, hierarchy/published.h). Who draws it:
+//
+//   - a tile draws it when every other tile it touches is shown at the same level or coarser; of
+//     tiles of the same level the one with the lowest index draws;
+//   - so all images of one triangle of the cut are drawn by the same tile: the corners alone say
+//     which tiles it touches. Exact duplicates therefore meet within one tile, and dropping them
+//     tile by tile is dropping them all.
+#pragma once
+
+#include "hierarchy/cut.h"
+#include "hierarchy/published.h"
+#include "hierarchy/tree.h"
+#include "storage/format/hierarchy_reader.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace meshhier::inspection {
+
+/// Corners as numbers of the cut's vertices.
+using CutTriangle = std::array<std::uint32_t, 3>;
+
+/// With its smallest corner first.
+constexpr CutTriangle turned(const CutTriangle& t) {
+  if (t[1] < t[0] && t[1] < t[2])
+    return {t[1], t[2], t[0]};
+  if (t[2] < t[0] && t[2] < t[1])
+    return {t[2], t[0], t[1]};
+  return t;
+}
+
+/// A cut whose vertices are numbered.
+struct NumberedCut {
+  Cut cut;
+  std::vector<std::uint64_t> bases;  ///< number of each node's first vertex; then the vertex count
+
+  std::uint64_t vertex_count() const { return bases.back(); }
+  std::uint32_t base(std::size_t position) const {
+    return static_cast<std::uint32_t>(bases[position]);
+  }
+  /// The position of the node that has a vertex. Requires number < vertex_count().
+  std::size_t position_of_vertex(std::uint32_t number) const;
+};
+
+/// Throws Error(corrupt) if there are 2^32 vertices or more.
+NumberedCut number_vertices(const storage::HierarchyReader& reader, Cut cut);
+
+/// Where a cut shows a ghost.
+struct ShownGhost {
+  std::size_t position = 0;  ///< in the cut
+  Level level{};             ///< of the node there
+  std::uint32_t number = 0;  ///< of the vertex
+};
+
+/// Nothing if the ghost's region is shown finer than the tile that has the ghost. Requires that
+/// numbered.cut shows `tile`, which is consistent by itself (decode_tile). Throws Error(corrupt)
+/// naming the tile if the chain leads to a vertex that is not there.
+std::optional<ShownGhost> find_ghost(const Tree& tree, const NumberedCut& numbered,
+                                     const PublishedTile& tile, std::size_t ghost);
+
+/// What a tile contributes to its cut.
+struct DrawnTile {
+  std::vector<CutTriangle> triangles;   ///< the interior ones in the tile's order, then border ones
+  std::vector<std::uint32_t> left_out;  ///< places in tile.mesh.border that another tile draws
+};
+
+/// `position`: the tile's, in the cut. Duplicates of border triangles are dropped unless all their
+/// corners are original vertices: those are the input's own, copies included. O(t log t) in the
+/// border triangles, linear in the interior ones. Deterministic. Throws as find_ghost().
+DrawnTile draw_tile(const Tree& tree, const NumberedCut& numbered, std::size_t position,
+                    const PublishedTile& tile);
+
+}  // namespace meshhier::inspection

@@ -1,0 +1,71 @@
+// The surface that a cut shows, as triangles in space, tile by tile.
+#pragma once
+
+#include "execution/cancel.h"
+#include "execution/progress.h"
+#include "hierarchy/bounds.h"
+#include "inspection/cut_mesh.h"
+#include "inspection/node_cache.h"
+#include "inspection/triangle_search.h"
+#include "storage/format/hierarchy_reader.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <vector>
+
+namespace meshhier::inspection {
+
+/// What one tile draws in its cut. Corners are where the cut shows them.
+struct TileSurface {
+  std::vector<SurfaceTriangle> triangles;  ///< interior ones, then border ones
+  std::size_t interior_count = 0;
+  /// Of each border triangle: the positions in the cut of the tiles that have its corners.
+  std::vector<std::array<std::uint32_t, 3>> touched;
+};
+
+/// What is kept of every tile.
+struct TileSurfaceFacts {
+  std::uint64_t triangles = 0;
+  std::uint64_t flat = 0;  ///< of them without area
+  double area = 0;         ///< input units squared
+  Bounds bounds;           ///< of the triangles drawn, relative to the origin; empty() if none
+};
+
+/// Thread-safe once constructed.
+class CutSurface {
+ public:
+  /// Reads every tile once, to gather its facts. `cache_bytes`: for what neighbours show. `reader`
+  /// must outlive it. Advances `progress` by one for each tile. Throws Error(io | corrupt |
+  /// interrupted).
+  CutSurface(const storage::HierarchyReader& reader, Cut cut, std::uint64_t cache_bytes,
+             execution::Progress& progress, const execution::CancelToken& cancel);
+
+  const Cut& cut() const { return numbered_.cut; }
+  std::size_t size() const { return facts_.size(); }
+  const TileSurfaceFacts& facts(std::size_t position) const { return facts_[position]; }
+  /// All tiles together.
+  const TileSurfaceFacts& total() const { return total_; }
+
+  /// Reads a tile, and of its neighbours those that are shown coarser.
+  TileSurface load(std::size_t position) const;
+
+ private:
+  using Positions = std::vector<Vec3f>;
+
+  Vec3f shown_position(const ShownGhost& ghost) const;
+
+  const storage::HierarchyReader& reader_;
+  NumberedCut numbered_;
+  mutable std::mutex mutex_;  ///< guards neighbours_
+  mutable NodeCache<Positions> neighbours_;
+  std::vector<TileSurfaceFacts> facts_;
+  TileSurfaceFacts total_;
+};
+
+/// How many tiles are worked on at a time where each takes a thread.
+std::size_t tiles_in_flight();
+
+}  // namespace meshhier::inspection

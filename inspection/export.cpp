@@ -1,0 +1,217 @@
+#include "inspection/export.h"
+
+#include "execution/output_file.h"
+#include "hierarchy/cut.h"
+#include "hierarchy/error.h"
+#include "inspection/cut_file.h"
+#include "inspection/cut_mesh.h"
+#include "mesh_io/ply_writer.h"
+#include "storage/format/archive_files.h"
+#include "storage/format/hierarchy_reader.h"
+#include "storage/format/layout.h"
+#include "storage/io/spool.h"
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace meshhier::inspection {
+namespace {
+
+namespace fs = std::filesystem;
+
+using TriangleSpool = storage::RecordSpool<CutTriangle>;
+
+/// Triangles on their way from the scratch to the writer: 768 KiB.
+constexpr std::size_t kTriangleBlock = 65536;
+/// Grain of the scratch: large writes, small beside any budget.
+constexpr std::size_t kScratchBlockBytes = std::size_t{1} << 20;
+
+/// What the four kinds of export share.
+struct ExportJob {
+  storage::FileSystem& files;
+  const storage::HierarchyReader& reader;
+  fs::path work;  ///< directory of the unfinished output
+  fs::path file;  ///< the unfinished output
+  std::uint64_t memory_budget;
+  execution::Progress& progress;
+  const execution::CancelToken& cancel;
+};
+
+/// The directory for unfinished output; removed at the end, come what may.
+class WorkDirectory {
+ public:
+  WorkDirectory(storage::FileSystem& files, fs::path path) : files_(files), path_(std::move(path)) {
+    files_.remove_all(path_);  // what a killed export may have left
+    files_.make_directories(path_);
+  }
+  WorkDirectory(const WorkDirectory&) = delete;
+  WorkDirectory& operator=(const WorkDirectory&) = delete;
+  ~WorkDirectory() {
+    try {
+      files_.remove_all(path_);
+    } catch (const Error&) {  // nothing can be done here; the failure that led here is told
+    }
+  }
+  const fs::path& path() const { return path_; }
+
+ private:
+  storage::FileSystem& files_;
+  fs::path path_;
+};
+
+bool has_origin(const storage::HierarchyReader& reader) {
+  return reader.manifest().origin != Vec3d{};
+}
+
+mesh_io::PlyContent content_for(const storage::HierarchyReader& reader, const std::string& what) {
+  mesh_io::PlyContent content;
+  content.attributes = reader.tile_format().attributes;
+  content.double_coordinates = has_origin(reader);
+  content.comments = {"meshhier export: " + what};
+  return content;
+}
+
+/// `count` vertices from the first on, in doubles where the hierarchy has an origin.
+void write_vertices(mesh_io::PlyWriter& writer, const storage::HierarchyReader& reader,
+                    const VertexArray& vertices, std::size_t count) {
+  const auto positions = std::span(vertices.positions).first(count);
+  const auto attributes =
+      std::span(vertices.attributes).first(count * static_cast<std::size_t>(vertices.channels));
+  if (!has_origin(reader))
+    return writer.write_vertices(positions, attributes);
+  std::vector<Vec3d> exact(count);
+  std::transform(positions.begin(), positions.end(), exact.begin(),
+                 [&](Vec3f p) { return to_double(p) + reader.manifest().origin; });
+  writer.write_vertices(exact, attributes);
+}
+
+void copy_triangles(const TriangleSpool& from, mesh_io::PlyWriter& to) {
+  std::vector<CutTriangle> block;
+  for (std::uint64_t first = 0; first < from.size(); first += block.size()) {
+    block.resize(std::min<std::uint64_t>(kTriangleBlock, from.size() - first));
+    from.read(first, block);
+    to.write_triangles(block);
+  }
+}
+
+/// PLY names its counts first, so triangles wait in a scratch file until they are counted, and
+/// vertices are read in a second pass over the tiles.
+std::string export_cut(const ExportJob& job, Cut cut, const std::string& what) {
+  const Tree& tree = job.reader.tree();
+  const NumberedCut numbered = number_vertices(job.reader, std::move(cut));
+  storage::MemoryPool pool(job.memory_budget / 2);  // the other half: a tile, the writer, the cut
+  storage::ScratchFile scratch(job.files, job.work / "triangles", pool);
+  TriangleSpool triangles(scratch, kScratchBlockBytes);
+
+  job.progress.stage("export", 2 * numbered.cut.size(), "tiles");
+  for (std::size_t i = 0; i < numbered.cut.size(); ++i) {
+    job.cancel.check();
+    DrawnTile drawn = draw_tile(tree, numbered, i, job.reader.read_tile(numbered.cut[i]));
+    for (CutTriangle& triangle : drawn.triangles)
+      triangle = turned(triangle);
+    std::sort(drawn.triangles.begin(), drawn.triangles.end());
+    triangles.append(drawn.triangles);
+    job.progress.advance(1);
+  }
+  mesh_io::PlyContent content = content_for(job.reader, what);
+  content.vertex_count = numbered.vertex_count();
+  content.triangle_count = triangles.size();
+  mesh_io::PlyWriter writer(job.files, job.file, content);
+  for (NodeId node : numbered.cut.nodes()) {
+    job.cancel.check();
+    const PublishedTile tile = job.reader.read_tile(node);
+    write_vertices(writer, job.reader, tile.mesh.vertices, tile.mesh.own_count);
+    job.progress.advance(1);
+  }
+  copy_triangles(triangles, writer);
+  writer.finish();
+  return fmt::format("{}: {} tiles, {} vertices, {} triangles", what, numbered.cut.size(),
+                     content.vertex_count, content.triangle_count);
+}
+
+std::string export_tile(const ExportJob& job, NodeId node) {
+  const Tree& tree = job.reader.tree();
+  require_node(tree, node);
+  job.progress.stage("export", 1, "tiles");
+  const TileMesh mesh = job.reader.read_tile(node).mesh;
+  const std::string what = "tile " + to_text(tile_node(tree, node));
+  mesh_io::PlyContent content = content_for(job.reader, what);
+  content.vertex_count = mesh.vertices.size();
+  content.triangle_count = mesh.interior.size() + mesh.border.size();
+  mesh_io::PlyWriter writer(job.files, job.file, content);
+  write_vertices(writer, job.reader, mesh.vertices, mesh.vertices.size());
+  for (const auto* list : {&mesh.interior, &mesh.border}) {
+    std::vector<CutTriangle> triangles;
+    for (const Triangle& t : *list)
+      triangles.push_back({raw(t[0]), raw(t[1]), raw(t[2])});
+    writer.write_triangles(triangles);
+  }
+  writer.finish();
+  job.progress.advance(1);
+  return fmt::format("{}: {} vertices, {} of them its neighbours', {} triangles, {} of them border",
+                     what, content.vertex_count, mesh.ghosts.size(), content.triangle_count,
+                     mesh.border.size());
+}
+
+std::string export_outline(const ExportJob& job) {
+  job.progress.stage("export", 1, "outlines");
+  const Outline outline = job.reader.read_outline();
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  for (std::size_t line = 0; line < outline.polyline_count(); ++line) {
+    for (std::uint32_t v = outline.starts[line]; v + 1 < outline.starts[line + 1]; ++v) {
+      edges.push_back({v, v + 1});
+    }
+  }
+  mesh_io::PlyContent content = content_for(job.reader, "outline");
+  content.attributes = {};
+  content.vertex_count = outline.vertices.size();
+  content.edge_count = edges.size();
+  mesh_io::PlyWriter writer(job.files, job.file, content);
+  VertexArray vertices;
+  vertices.positions = outline.vertices;
+  write_vertices(writer, job.reader, vertices, vertices.size());
+  writer.write_edges(edges);
+  writer.finish();
+  job.progress.advance(1);
+  return fmt::format("outline: {} lines, {} vertices, {} edges", outline.polyline_count(),
+                     content.vertex_count, content.edge_count);
+}
+
+std::string export_selection(const ExportJob& job, const ExportSelection& selection) {
+  const Tree& tree = job.reader.tree();
+  if (const auto* level = std::get_if<Level>(&selection)) {
+    require_level(tree, *level);
+    return export_cut(job, Cut::of_level(tree, *level), fmt::format("level {}", raw(*level)));
+  }
+  if (const auto* node = std::get_if<NodeId>(&selection))
+    return export_tile(job, *node);
+  if (const auto* path = std::get_if<fs::path>(&selection)) {
+    return export_cut(job, read_cut(job.files, tree, *path), "cut");
+  }
+  return export_outline(job);
+}
+
+}  // namespace
+
+std::string export_mesh(storage::FileSystem& files, const fs::path& hierarchy,
+                        const ExportOptions& options, execution::Progress& progress,
+                        const execution::CancelToken& cancel) {
+  execution::require_place(files, options.output);
+  execution::require_apart(files, options.output, hierarchy, "the hierarchy");
+  const storage::HierarchyFiles place(files, hierarchy);
+  const storage::HierarchyReader reader(place.files(), hierarchy);
+  const WorkDirectory work(files, storage::work_path(options.output));
+  const fs::path file = work.path() / options.output.filename();
+  const ExportJob job{files, reader, work.path(), file, options.memory_budget, progress, cancel};
+  const std::string summary = export_selection(job, options.selection);
+  files.open(file)->sync();
+  files.rename(file, options.output);
+  return fmt::format("{}: {}", options.output.string(), summary);
+}
+
+}  // namespace meshhier::inspection

@@ -1,0 +1,40 @@
+// Writes parts of a hierarchy as an ordinary PLY mesh.
+#pragma once
+
+#include "execution/cancel.h"
+#include "execution/progress.h"
+#include "hierarchy/ids.h"
+#include "storage/io/file.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <variant>
+
+namespace meshhier::inspection {
+
+/// The outline's lines.
+struct OutlineSelection {};
+
+/// A whole level (partitions stand for early nodes); one node's tile with its border triangles and
+/// ghosts; the cut in a text file (parse_cut() in hierarchy/cut.h); the outline.
+using ExportSelection = std::variant<Level, NodeId, std::filesystem::path, OutlineSelection>;
+
+struct ExportOptions {
+  ExportSelection selection;
+  std::filesystem::path output;            ///< PLY; replaced if it is there
+  std::uint64_t memory_budget = 1U << 30;  ///< bytes
+};
+
+/// Assembles the selection seamlessly, tile by tile, into options.output. Vertices are shared
+/// between tiles; coordinates are doubles if the hierarchy has an origin. Triangles of the input
+/// come with all their copies, of coarser ones exact duplicates (same corners, same orientation)
+/// come once. Triangles of a level or cut start with their smallest corner and ascend, tile by
+/// tile; those of the last level ascend as a whole, and its vertices are in the order of ranks. The
+/// output appears complete or not at all. Returns a line for people. Deterministic. Throws
+/// Error(usage) if the selection is not in the tree or the cut file is no cut, Error(io | corrupt).
+std::string export_mesh(storage::FileSystem& files, const std::filesystem::path& hierarchy,
+                        const ExportOptions& options, execution::Progress& progress,
+                        const execution::CancelToken& cancel);
+
+}  // namespace meshhier::inspection

@@ -1,0 +1,369 @@
+#include "inspection/inspect.h"
+
+#include "execution/size_text.h"
+#include "hierarchy/attribute_names.h"
+#include "hierarchy/cut.h"
+#include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
+#include "import/import_input.h"
+#include "storage/format/archive_files.h"
+#include "storage/format/hierarchy_reader.h"
+#include "storage/format/layout.h"
+#include "storage/format/level_summary.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace meshhier::inspection {
+namespace {
+
+using storage::HierarchyReader;
+using Json = nlohmann::ordered_json;
+
+HierarchyReader open_checked(storage::FileSystem& files, const std::filesystem::path& directory,
+                             const InspectOptions& options) {
+  HierarchyReader reader(files, directory);
+  try {
+    if (options.level)
+      require_level(reader.tree(), *options.level);
+    if (options.node)
+      require_node(reader.tree(), *options.node);
+  } catch (const Error& error) {
+    throw error.within(directory.string());
+  }
+  return reader;
+}
+
+std::span<const TileRecord> records_of(const HierarchyReader& reader, Level level) {
+  const auto& records = reader.records();
+  const auto before = [](const TileRecord& r, Level l) { return r.node.level < l; };
+  const auto begin = std::lower_bound(records.begin(), records.end(), level, before);
+  const auto end = std::lower_bound(begin, records.end(), finer(level), before);
+  return {begin, end};
+}
+
+storage::SizeSummary partition_sizes(const HierarchyReader& reader) {
+  return storage::summarize_sizes(records_of(reader, reader.tree().depth()),
+                                  reader.manifest().source.attributes);
+}
+
+storage::SizeSummary all_sizes(const HierarchyReader& reader) {
+  return storage::summarize_sizes(reader.records(), reader.manifest().source.attributes);
+}
+
+std::uint64_t tile_bytes(std::span<const storage::LevelSummary> levels) {
+  std::uint64_t sum = 0;
+  for (const storage::LevelSummary& level : levels)
+    sum += level.bytes_total;
+  return sum;
+}
+
+double ratio(std::uint64_t a, std::uint64_t b) {
+  return b == 0 ? 0 : static_cast<double>(a) / static_cast<double>(b);
+}
+
+/// Bytes of the archive, or of the whole directory: what the manifest counts, and itself.
+std::uint64_t bytes_on_disk(const storage::HierarchyFiles& place, const HierarchyReader& reader) {
+  if (place.archive() != nullptr)
+    return place.archive()->file().size();
+  const auto manifest = place.files().open(storage::manifest_path(reader.directory()));
+  return reader.manifest().total_bytes + manifest->size();
+}
+
+// As text.
+
+/// "1,234,567"
+std::string grouped(std::uint64_t number) {
+  std::string digits = std::to_string(number);
+  for (std::size_t i = digits.size(); i > 3; i -= 3)
+    digits.insert(i - 3, ",");
+  return digits;
+}
+
+/// A manifest's own words, which anyone may have written.
+std::string shown(const std::string& text) {
+  constexpr std::size_t kLongest = 255;  // as a file name
+  return plain_text(text, kLongest);
+}
+
+std::string source_text(const storage::Manifest& manifest) {
+  const SourceSummary& s = manifest.source;
+  const BoundsD& b = s.bounds;
+  std::string text = fmt::format(
+      "source       {}, {}: {} vertices ({} of no triangle), {} triangles of {} faces ({} "
+      "degenerate dropped)\n",
+      shown(s.file_name), execution::rounded_size_text(s.file_bytes), grouped(s.vertices),
+      grouped(s.unreferenced_vertices), grouped(s.triangles), grouped(s.faces),
+      grouped(s.degenerate_triangles));
+  text += fmt::format("bounds       {} {} {} to {} {} {}{}\n", b.min.x, b.min.y, b.min.z, b.max.x,
+                      b.max.y, b.max.z, s.double_precision ? ", double precision" : "");
+  if (manifest.origin != Vec3d{}) {
+    const Vec3d& o = manifest.origin;
+    text += fmt::format("origin       {} {} {}\n", o.x, o.y, o.z);
+  }
+  text += fmt::format("attributes   {}\n", attribute_names(s.attributes));
+  for (const SourceFile& file : s.files) {
+    text += fmt::format("imported     {}: {}, {}\n", shown(file.name), shown(file.format),
+                        execution::rounded_size_text(file.bytes));
+  }
+  if (!s.counts.empty())
+    text += fmt::format("counted      {}\n", shown(importing::counts_text(s.counts)));
+  return text;
+}
+
+/// {"a": {"b": 1}} as "a.b 1".
+void add_parameters(const std::string& prefix, const Json& value, std::string& text) {
+  if (!value.is_object()) {
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", prefix,
+                        shown(value.is_string() ? value.get<std::string>() : value.dump()));
+    return;
+  }
+  for (const auto& [key, inner] : value.items()) {
+    add_parameters(prefix.empty() ? shown(key) : prefix + "." + shown(key), inner, text);
+  }
+}
+
+std::string partitions_text(const storage::LevelSummary& last,
+                            const storage::CompactnessSummary& compactness) {
+  std::string text = fmt::format("partitions   {} of {} to {} vertices", grouped(last.tiles),
+                                 grouped(last.vertices.min), grouped(last.vertices.max));
+  if (compactness.count > 0) {
+    text += fmt::format("; compactness p^2/(4 pi w): mean {:.3f}, median {:.3f}, p95 {:.3f}",
+                        compactness.mean, compactness.median, compactness.p95);
+  }
+  if (compactness.count > 0 && compactness.count < last.tiles) {
+    text += fmt::format(" ({} without area left out)", last.tiles - compactness.count);
+  }
+  return text + "\n";
+}
+
+std::string range_text(const storage::CountRange& range) {
+  return fmt::format("{:>6} {:>8.0f} {:>6} {:>6}", range.min, range.mean, range.max,
+                     fmt::format("{:.0f}%", 100 * range.spread()));
+}
+
+std::string level_table(std::span<const storage::LevelSummary> levels, std::optional<Level> only) {
+  std::string text = fmt::format(
+      "{:>5} {:>7} |{:^29} |{:^29} |{:^33} | {:>6} {:>10} {:>10} | {:>6} {:>8} {:>8} | {:>13}\n",
+      "", "", "vertices a tile", "triangles a tile", "bytes a file", "", "", "", "off", "vertices",
+      "vertices", "triangles");
+  constexpr std::string_view kRange = "   min     mean    max spread";
+  text +=
+      fmt::format("{:>5} {:>7} |{} |{} |{} | {:>6} {:>10} {:>10} | {:>6} {:>8} {:>8} | {:>13}\n",
+                  "level", "tiles", kRange, kRange, "     min     mean      max spread", "border",
+                  "error", "bound", "target", "torn", "forced", "shown");
+  for (const storage::LevelSummary& s : levels) {
+    if (only && s.level != *only)
+      continue;
+    const std::string bytes =
+        fmt::format("{:>8} {:>8.0f} {:>8} {:>6}", s.bytes.min, s.bytes.mean, s.bytes.max,
+                    fmt::format("{:.0f}%", 100 * s.bytes.spread()));
+    text += fmt::format(
+        "{:>5} {:>7} |{} |{} |{} | {:>6} {:>10.4g} {:>10.4g} | {:>6} {:>8} {:>8} | {:>13}\n",
+        raw(s.level), s.tiles, range_text(s.vertices), range_text(s.triangles), bytes,
+        fmt::format("{:.1f}%", 100 * s.border_ratio), s.error_max, s.bound_max, s.off_target,
+        s.torn_total, s.forced_total, (s.shown_exact ? "" : "<=") + grouped(s.shown_triangles));
+  }
+  return text +
+         "spread: (max - min) / mean; border: share of border triangles; error, bound: the "
+         "largest, in input units\ntorn: vertices that went by changing the surface's topology; "
+         "forced: without care for the surface, to reach the count\n";
+}
+
+std::string storage_text(const storage::Manifest& manifest) {
+  std::string text =
+      fmt::format("storage      {}, positions ", storage::name_of(manifest.compression));
+  if (!manifest.quantization)
+    return text + "exact\n";
+  const storage::Quantization& q = *manifest.quantization;
+  return text + fmt::format("on a lattice of {} bits, step {:.4g}, off by {:.4g} at most\n",
+                            q.lattice.bits, q.lattice.step, q.worst_rounding);
+}
+
+std::string sizes_text(std::string_view what, const storage::SizeSummary& sizes) {
+  return fmt::format("{:.2f} bytes a vertex and {:.2f} a triangle in {}, {:.1f}% of raw",
+                     sizes.bytes_per_vertex(), sizes.bytes_per_triangle(), what,
+                     100 * sizes.raw_ratio());
+}
+
+std::string outline_text(const storage::Manifest& manifest) {
+  const OutlineReport& o = manifest.outline;
+  return fmt::format(
+      "outline      {} bytes: {} sectors of level {}, tolerance {:.3g} of the diagonal, {} lines "
+      "found, {} dropped to fit\n",
+      grouped(manifest.outline_bytes), grouped(o.sector_count), o.sector_level, o.tolerance,
+      grouped(o.polylines_found), grouped(o.polylines_dropped));
+}
+
+std::string tileset_text(const storage::Manifest& manifest) {
+  return fmt::format("tileset      {} bytes in {} files, {} up{}{}\n",
+                     grouped(manifest.tileset_bytes), grouped(manifest.tileset_files),
+                     name_of(manifest.up), manifest.transform ? ", placed" : "",
+                     manifest.licence.empty() ? "" : ", licence " + shown(manifest.licence));
+}
+
+std::string totals_text(const storage::Manifest& manifest,
+                        std::span<const storage::LevelSummary> levels, std::uint64_t total_bytes) {
+  std::uint64_t tiles = 0, vertices = 0, triangles = 0;
+  for (const storage::LevelSummary& s : levels) {
+    tiles += s.tiles;
+    vertices += s.vertices_total;
+    triangles += s.triangles_total;
+  }
+  const SourceSummary& s = manifest.source;
+  return fmt::format(
+      "totals       {} tiles, {}: {:.2f} times the input's bytes, {:.1f} bytes a triangle; {} "
+      "vertices ({:.2f} times the input's), {} triangles ({:.2f} times)\n",
+      grouped(tiles), execution::rounded_size_text(total_bytes), ratio(total_bytes, s.file_bytes),
+      ratio(total_bytes, s.triangles), grouped(vertices), ratio(vertices, s.vertices),
+      grouped(triangles), ratio(triangles, s.triangles));
+}
+
+std::string tile_text(const TileRecord& r) {
+  return fmt::format(
+      "tile {}: {} vertices (asked for {}), {} of them rim, {} ghosts; {} interior and {} border "
+      "triangles, {} of them drawn here; error {:.4g}, bound {:.4g}{}; {} bytes; box {} {} {} to "
+      "{} {} {}\n",
+      to_text(r.node), r.own_count, r.target_count, r.rim_count, r.ghost_count, r.interior_count,
+      r.border_count, r.drawn_border_count, r.error, r.bound,
+      r.compactness > 0 ? fmt::format(", compactness {:.3f}", r.compactness) : "", r.file_bytes,
+      r.bounds.min.x, r.bounds.min.y, r.bounds.min.z, r.bounds.max.x, r.bounds.max.y,
+      r.bounds.max.z);
+}
+
+// As JSON.
+
+Json source_json(const storage::Manifest& manifest) {
+  const SourceSummary& s = manifest.source;
+  const auto corner = [](Vec3d p) { return Json::array({p.x, p.y, p.z}); };
+  Json files = Json::array();
+  for (const SourceFile& file : s.files)
+    files.push_back({{"name", file.name}, {"format", file.format}, {"bytes", file.bytes}});
+  Json counts = Json::object();
+  for (const SourceCount& count : s.counts)
+    counts[count.name] = count.count;
+  return {{"file_name", s.file_name},
+          {"file_bytes", s.file_bytes},
+          {"vertices", s.vertices},
+          {"triangles", s.triangles},
+          {"faces", s.faces},
+          {"degenerate_triangles", s.degenerate_triangles},
+          {"unreferenced_vertices", s.unreferenced_vertices},
+          {"bounds", {{"min", corner(s.bounds.min)}, {"max", corner(s.bounds.max)}}},
+          {"double_precision", s.double_precision},
+          {"origin", corner(manifest.origin)},
+          {"attributes", attribute_names(s.attributes)},
+          {"imported_files", files},
+          {"counts", counts}};
+}
+
+Json partitions_json(const storage::LevelSummary& last,
+                     const storage::CompactnessSummary& compactness) {
+  return {{"count", last.tiles},
+          {"vertices_min", last.vertices.min},
+          {"vertices_mean", last.vertices.mean},
+          {"vertices_max", last.vertices.max},
+          {"compactness_count", compactness.count},
+          {"compactness_mean", compactness.mean},
+          {"compactness_median", compactness.median},
+          {"compactness_p95", compactness.p95}};
+}
+
+Json storage_json(const storage::Manifest& manifest) {
+  Json json = {{"compression", storage::name_of(manifest.compression)}, {"positions", nullptr}};
+  if (const auto& q = manifest.quantization) {
+    json["positions"] = {{"bits", q->lattice.bits},
+                         {"step", q->lattice.step},
+                         {"worst_rounding", q->worst_rounding}};
+  }
+  return json;
+}
+
+Json outline_json(const storage::Manifest& manifest) {
+  const OutlineReport& o = manifest.outline;
+  return {{"bytes", manifest.outline_bytes},      {"sector_level", o.sector_level},
+          {"sector_count", o.sector_count},       {"tolerance", o.tolerance},
+          {"polylines_found", o.polylines_found}, {"polylines_dropped", o.polylines_dropped}};
+}
+
+Json tileset_json(const storage::Manifest& manifest) {
+  return {{"files", manifest.tileset_files},
+          {"bytes", manifest.tileset_bytes},
+          {"up", name_of(manifest.up)},
+          {"transform", manifest.transform ? Json(*manifest.transform) : Json()},
+          {"licence", manifest.licence}};
+}
+
+}  // namespace
+
+std::string inspect_text(storage::FileSystem& files, const std::filesystem::path& directory,
+                         const InspectOptions& options) {
+  const storage::HierarchyFiles place(files, directory);
+  const HierarchyReader reader = open_checked(place.files(), directory, options);
+  if (options.node)
+    return tile_text(reader.record(*options.node));
+  const auto levels = storage::summarize_levels(reader.tree(), reader.records());
+  if (options.level) {
+    std::string text = level_table(levels, options.level);
+    for (const TileRecord& record : records_of(reader, *options.level))
+      text += tile_text(record);
+    return text;
+  }
+  const storage::Manifest& manifest = reader.manifest();
+  std::string parameters;
+  add_parameters("", manifest.config, parameters);
+  std::string text = fmt::format("{} (format {}, by {})\n", directory.string(),
+                                 storage::kFormatVersion, shown(manifest.generator));
+  text += source_text(manifest);
+  text += fmt::format("parameters   {}\n", parameters);
+  text += storage_text(manifest);
+  text += fmt::format("sizes        {}; {}\n", sizes_text("partitions", partition_sizes(reader)),
+                      sizes_text("all tiles", all_sizes(reader)));
+  text += partitions_text(levels.back(),
+                          storage::summarize_compactness(reader.tree(), reader.records()));
+  text += outline_text(manifest);
+  text += tileset_text(manifest);
+  text += totals_text(manifest, levels, bytes_on_disk(place, reader));
+  return text + "\n" + level_table(levels, std::nullopt);
+}
+
+Json inspect_json(storage::FileSystem& files, const std::filesystem::path& directory,
+                  const InspectOptions& options) {
+  const storage::HierarchyFiles place(files, directory);
+  const HierarchyReader reader = open_checked(place.files(), directory, options);
+  const storage::Manifest& manifest = reader.manifest();
+  const auto levels = storage::summarize_levels(reader.tree(), reader.records());
+  Json json = {
+      {"generator", manifest.generator},
+      {"source", source_json(manifest)},
+      {"parameters", manifest.config},
+      {"partitions", partitions_json(levels.back(), storage::summarize_compactness(
+                                                        reader.tree(), reader.records()))},
+      {"levels", Json::array()},
+      {"storage", storage_json(manifest)},
+      {"sizes",
+       {{"partitions", to_json(partition_sizes(reader))}, {"all", to_json(all_sizes(reader))}}},
+      {"outline", outline_json(manifest)},
+      {"tileset", tileset_json(manifest)},
+      {"tile_bytes", tile_bytes(levels)},
+      {"total_bytes", bytes_on_disk(place, reader)}};
+  for (const storage::LevelSummary& s : levels) {
+    if (!options.level || s.level == *options.level)
+      json["levels"].push_back(storage::to_json(s));
+  }
+  if (options.level) {
+    json["tiles"] = Json::array();
+    for (const auto& record : records_of(reader, *options.level)) {
+      json["tiles"].push_back(storage::to_json(record));
+    }
+  }
+  if (options.node)
+    json["tile"] = storage::to_json(reader.record(*options.node));
+  return json;
+}
+
+}  // namespace meshhier::inspection

@@ -1,0 +1,151 @@
+#include "inspection/triangle_search.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include <CGAL/AABB_traits.h>
+#include <CGAL/AABB_tree.h>
+#include <CGAL/Simple_cartesian.h>
+
+namespace meshhier::inspection {
+namespace {
+
+using Kernel = CGAL::Simple_cartesian<double>;
+
+Kernel::Point_3 to_point(Vec3f p) {
+  return {p.x, p.y, p.z};
+}
+
+/// The tree keeps a pointer a triangle, and makes CGAL's triangle of it when it wants its box.
+class Primitive {
+ public:
+  using Id = const SurfaceTriangle*;
+  using Point = Kernel::Point_3;
+  using Datum = Kernel::Triangle_3;
+
+  explicit Primitive(std::vector<SurfaceTriangle>::const_iterator triangle) : id_(&*triangle) {}
+  Id id() const { return id_; }
+  Datum datum() const { return {to_point((*id_)[0]), to_point((*id_)[1]), to_point((*id_)[2])}; }
+  Point reference_point() const { return to_point((*id_)[0]); }
+
+ private:
+  Id id_;
+};
+
+using Traits = CGAL::AABB_traits<Kernel, Primitive>;
+using BoxTree = CGAL::AABB_tree<Traits>;
+
+double squared_distance(Vec3d p, const CGAL::Bbox_3& box) {
+  const double x = std::max({box.xmin() - p.x, 0.0, p.x - box.xmax()});
+  const double y = std::max({box.ymin() - p.y, 0.0, p.y - box.ymax()});
+  const double z = std::max({box.zmin() - p.z, 0.0, p.z - box.zmax()});
+  return x * x + y * y + z * z;
+}
+
+double squared_distance_to_segment(Vec3d p, Vec3d a, Vec3d b) {
+  const Vec3d ab = b - a, ap = p - a;
+  const double squared_length = dot(ab, ab);
+  const double t = squared_length > 0 ? std::clamp(dot(ap, ab) / squared_length, 0.0, 1.0) : 0.0;
+  const Vec3d away = ap - ab * t;
+  return dot(away, away);
+}
+
+/// Goes down the tree, the nearer child first, keeping the nearest triangle so far. CGAL's own
+/// distance query projects on the triangle's plane and so requires an area; this one does not.
+class Descent {
+ public:
+  using Priority = double;  ///< CGAL visits the child with the higher one first
+
+  Descent(double squared, const SurfaceTriangle* best) : squared_(squared), best_(best) {}
+
+  bool go_further() const { return squared_ > 0; }
+  void intersection(Vec3d point, const Primitive& primitive) {
+    const double squared = inspection::squared_distance(point, *primitive.id());
+    if (squared < squared_) {
+      squared_ = squared;
+      best_ = primitive.id();
+    }
+  }
+  template <class Node>
+  bool do_intersect(Vec3d point, const Node& node) const {
+    return squared_distance(point, node.bbox()) < squared_;
+  }
+  template <class Node>
+  std::pair<bool, Priority> do_intersect_with_priority(Vec3d point, const Node& node) const {
+    const double squared = squared_distance(point, node.bbox());
+    return {squared < squared_, -squared};
+  }
+
+  double squared() const { return squared_; }
+  const SurfaceTriangle* best() const { return best_; }
+
+ private:
+  double squared_;
+  const SurfaceTriangle* best_;
+};
+
+}  // namespace
+
+Vec3d area_vector(const SurfaceTriangle& triangle) {
+  const Vec3d a = to_double(triangle[0]);
+  return cross(to_double(triangle[1]) - a, to_double(triangle[2]) - a);
+}
+
+/// The nearest point of a triangle is the foot of the perpendicular on its plane if that lies
+/// within, and is on its border else. Taking the border's distance always costs a little time and
+/// makes slivers safe: where rounding misjudges "within", both distances are nearly equal.
+double squared_distance(Vec3d point, const SurfaceTriangle& triangle) {
+  const Vec3d a = to_double(triangle[0]), b = to_double(triangle[1]), c = to_double(triangle[2]);
+  const Vec3d normal = cross(b - a, c - a);
+  const double squared_length = dot(normal, normal);
+  if (squared_length > 0 && dot(cross(normal, b - a), point - a) >= 0 &&
+      dot(cross(normal, c - b), point - b) >= 0 && dot(cross(normal, a - c), point - c) >= 0) {
+    const double height = dot(normal, point - a);
+    return height * height / squared_length;
+  }
+  return std::min({squared_distance_to_segment(point, a, b),
+                   squared_distance_to_segment(point, b, c),
+                   squared_distance_to_segment(point, c, a)});
+}
+
+struct TriangleSearch::Tree {
+  explicit Tree(std::vector<SurfaceTriangle> list)
+      : triangles(std::move(list)), boxes(triangles.cbegin(), triangles.cend()) {
+    boxes.do_not_accelerate_distance_queries();  // the caller has better hints
+    boxes.build();
+  }
+
+  std::vector<SurfaceTriangle> triangles;
+  BoxTree boxes;
+};
+
+TriangleSearch::TriangleSearch(std::vector<SurfaceTriangle> triangles)
+    : tree_(std::make_unique<Tree>(std::move(triangles))) {}
+TriangleSearch::TriangleSearch(TriangleSearch&&) noexcept = default;
+TriangleSearch& TriangleSearch::operator=(TriangleSearch&&) noexcept = default;
+TriangleSearch::~TriangleSearch() = default;
+
+std::size_t TriangleSearch::size() const {
+  return tree_->triangles.size();
+}
+
+std::uint64_t TriangleSearch::memory_bytes() const {
+  constexpr std::uint64_t kEach =
+      sizeof(SurfaceTriangle) + sizeof(Primitive) + sizeof(CGAL::AABB_node<Traits>);
+  return sizeof(Tree) + size() * kEach;
+}
+
+double TriangleSearch::nearest(Vec3d point, double limit, std::uint32_t& hint) const {
+  const std::vector<SurfaceTriangle>& triangles = tree_->triangles;
+  if (triangles.empty())
+    return limit;
+  Descent descent(limit, nullptr);
+  descent.intersection(point, Primitive(triangles.cbegin() + hint));
+  tree_->boxes.traversal_with_priority(point, descent);
+  if (descent.best() != nullptr)
+    hint = static_cast<std::uint32_t>(descent.best() - triangles.data());
+  return descent.squared();
+}
+
+}  // namespace meshhier::inspection

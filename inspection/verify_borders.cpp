@@ -1,0 +1,175 @@
+// What is wrong between two neighbours that do not agree (inspection/border_pairs.h).
+#include "hierarchy/cut.h"
+#include "inspection/corner_triangle.h"
+#include "inspection/verify_parts.h"
+
+#include <algorithm>
+#include <cstring>
+#include <iterator>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace meshhier::inspection {
+namespace {
+
+/// Counts what is wrong with the ghosts in one neighbour, so that a broken pair of tiles is one
+/// line.
+class GhostTally {
+ public:
+  void require(bool holds, std::size_t ghost) {
+    if (holds)
+      return;
+    if (count_++ == 0)
+      first_ = ghost;
+  }
+  void report(const VerifyJob& job, NodeId tile, NodeId neighbour, std::string_view what) const {
+    if (count_ == 0)
+      return;
+    job.problems.add(fmt::format("tile {}: of its ghosts in tile {}, {} {} (the first: ghost {})",
+                                 to_text(tile), to_text(neighbour), count_, what, first_));
+  }
+
+ private:
+  std::size_t count_ = 0, first_ = 0;
+};
+
+/// The ghosts [begin, end) of a tile are vertices of the node.
+struct GhostGroup {
+  NodeId node;
+  std::size_t begin, end;
+};
+
+GhostGroup ghosts_in(const PublishedTile& tile, NodeId neighbour) {
+  const auto& ghosts = tile.mesh.ghosts;
+  const auto at = [&](std::uint32_t index) {
+    const auto found = std::lower_bound(ghosts.begin(), ghosts.end(), GhostRef{index, 0});
+    return static_cast<std::size_t>(found - ghosts.begin());
+  };
+  return {neighbour, at(neighbour.index), at(neighbour.index + 1)};
+}
+
+bool same_attributes(const VertexArray& a, std::size_t i, const VertexArray& b, std::size_t j) {
+  const auto x = a.attributes_of(i), y = b.attributes_of(j);
+  return x.empty() || std::memcmp(x.data(), y.data(), x.size_bytes()) == 0;
+}
+
+/// Bits, not values: -0 is not 0 where "bit for bit" is promised.
+bool same_position(const VertexArray& a, std::size_t i, const VertexArray& b, std::size_t j) {
+  return std::memcmp(&a.positions[i], &b.positions[j], sizeof(Vec3f)) == 0;
+}
+
+void check_ghosts(const VerifyJob& job, const PublishedTile& tile, const GhostGroup& group,
+                  const PublishedTile& neighbour) {
+  const Tree& tree = job.tree();
+  // A simplified tile may store attributes more coarsely than the partition beside it does.
+  const bool same_kind = tree.is_partition(tile.node) == tree.is_partition(neighbour.node);
+  GhostTally missing, moved, recoloured;
+  for (std::size_t i = group.begin; i < group.end; ++i) {
+    const std::size_t vertex = tile.mesh.ghosts[i].index;
+    missing.require(vertex < neighbour.mesh.rim_count, i);
+    if (vertex >= neighbour.mesh.rim_count)
+      continue;
+    const std::size_t here = tile.mesh.own_count + i;
+    const VertexArray &own = neighbour.mesh.vertices, &seen = tile.mesh.vertices;
+    moved.require(same_position(seen, here, own, vertex), i);
+    if (same_kind)
+      recoloured.require(same_attributes(seen, here, own, vertex), i);
+  }
+  missing.report(job, tile.node, neighbour.node, "are not vertices of its rim");
+  moved.report(job, tile.node, neighbour.node, "have not its position");
+  recoloured.report(job, tile.node, neighbour.node, "have not its attributes");
+}
+
+/// Entry k of a chain is entry k-1 through the parent map of the tile that k-1 is a vertex of. An
+/// early node has no tile: its entry repeats the one below, and the partition's map leads past it.
+void check_chains(const VerifyJob& job, const PublishedTile& tile, const GhostGroup& group) {
+  const Tree& tree = job.tree();
+  GhostTally wrong;
+  std::vector<std::uint16_t> reached;
+  for (std::size_t i = group.begin; i < group.end; ++i) {
+    reached.push_back(static_cast<std::uint16_t>(tile.mesh.ghosts[i].index));
+    wrong.require(tile.chains[i].front() == tile.mesh.ghosts[i].index, i);
+  }
+  const int length = tree.chain_length(tile.node, group.node);
+  for (int step = 1; step < length; ++step) {
+    const int level = raw(group.node.level) - step;
+    if (tree.is_early(tree.ancestor(group.node, static_cast<Level>(level)))) {
+      for (std::size_t i = group.begin; i < group.end; ++i) {
+        wrong.require(tile.chains[i][static_cast<std::size_t>(step)] == reached[i - group.begin],
+                      i);
+      }
+      continue;
+    }
+    const auto below = job.tiles.find(tree.ancestor(group.node, static_cast<Level>(level + 1)));
+    if (!below)
+      return;
+    for (std::size_t i = group.begin; i < group.end; ++i) {
+      std::uint16_t& vertex = reached[i - group.begin];
+      const bool known = vertex < below->parent_map.size();
+      if (known)
+        vertex = below->parent_map[vertex];
+      wrong.require(known && tile.chains[i][static_cast<std::size_t>(step)] == vertex, i);
+    }
+  }
+  wrong.report(job, tile.node, group.node, "have chains that are not its parent maps'");
+}
+
+std::vector<CornerTriangle> border_triangles(const VerifyJob& job, const PublishedTile& tile,
+                                             NodeId node) {
+  return tile.node == node ? border_of(tile, job.tree()) : early_border_of(tile, job.tree());
+}
+
+/// Those of `border` that touch another tile.
+std::vector<CornerTriangle> touching(const std::vector<CornerTriangle>& border,
+                                     std::uint32_t other) {
+  std::vector<CornerTriangle> met;
+  std::copy_if(border.begin(), border.end(), std::back_inserter(met), [&](const auto& triangle) {
+    return std::any_of(triangle.begin(), triangle.end(),
+                       [&](Corner corner) { return tile_index(corner) == other; });
+  });
+  return met;
+}
+
+/// Every triangle of `tile` that touches the neighbour is in the neighbour's list, as often.
+void check_lists(const VerifyJob& job, NodeId node, const PublishedTile& tile, NodeId other,
+                 const PublishedTile& neighbour) {
+  const auto here = touching(border_triangles(job, tile, node), other.index);
+  const auto there = border_triangles(job, neighbour, other);
+  if (!std::includes(there.begin(), there.end(), here.begin(), here.end())) {
+    job.problems.add(
+        fmt::format("tile {}: some of its {} border triangles with tile {} are not listed there",
+                    to_text(node), here.size(), to_text(other)));
+  }
+}
+
+/// What the first of two neighbours says of the second. The tiles stand for the nodes.
+void check_side(const VerifyJob& job, NodeId node, const PublishedTile& tile, NodeId other,
+                const PublishedTile& neighbour) {
+  if (tile.node == node) {
+    const GhostGroup group = ghosts_in(tile, other);
+    check_ghosts(job, tile, group, neighbour);
+    check_chains(job, tile, group);
+  }
+  check_lists(job, node, tile, other, neighbour);
+}
+
+}  // namespace
+
+void explain_difference(const VerifyJob& job, NodeId a, NodeId b) {
+  const std::uint64_t told = job.problems.count();
+  if (told < ProblemList::kLimit) {
+    const auto tile = job.tiles.find(a), neighbour = job.tiles.find(b);
+    if (!tile || !neighbour)
+      return;  // told already
+    check_side(job, a, *tile, b, *neighbour);
+    check_side(job, b, *neighbour, a, *tile);
+  }
+  if (job.problems.count() == told) {
+    job.problems.add(fmt::format("tiles {} and {}: say different things of the border between them",
+                                 to_text(a), to_text(b)));
+  }
+}
+
+}  // namespace meshhier::inspection

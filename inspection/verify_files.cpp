@@ -1,0 +1,152 @@
+#include "hierarchy/cut.h"
+#include "hierarchy/error.h"
+#include "inspection/verify_parts.h"
+#include "storage/format/layout.h"
+#include "storage/format/tileset.h"
+#include "storage/io/hash.h"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace meshhier::inspection {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The number that a name starts with, if it has one.
+std::optional<std::uint32_t> leading_number(const std::string& name) {
+  std::uint32_t number = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+  if (error != std::errc{} || end == name.data())
+    return std::nullopt;
+  return number;
+}
+
+/// `relative` is the name that storage/format/layout.h gives to the file of one of the tree's
+/// tiles.
+bool is_tile_file(const Tree& tree, const fs::path& relative) {
+  const auto level = leading_number(relative.parent_path().filename().string());
+  const auto index = leading_number(relative.filename().string());
+  if (!level || !index || *level > raw(tree.depth()))
+    return false;
+  const NodeId node{static_cast<Level>(*level), *index};
+  return tree.contains(node) && !tree.is_early(node) && storage::tile_path({}, node) == relative;
+}
+
+bool is_known(const Tree& tree, const std::set<fs::path>& tilesets, const fs::path& relative) {
+  return relative == storage::manifest_path({}) || relative == storage::index_path({}) ||
+         relative == storage::outline_path({}) || is_tile_file(tree, relative) ||
+         tilesets.contains(relative);
+}
+
+/// A missing file is found by whoever reads it; what is looked for here is what nobody reads.
+std::uint64_t find_extra_files(const VerifyJob& job, const std::set<fs::path>& tilesets) {
+  const fs::path& directory = job.reader.directory();
+  const std::vector<fs::path> found = job.files.list(directory);
+  for (const fs::path& path : found) {
+    if (is_known(job.tree(), tilesets, path.lexically_relative(directory)))
+      continue;
+    job.problems.add(fmt::format("{}: not a file of this hierarchy; remove it", path.string()));
+  }
+  return found.size();
+}
+
+void check_outline(const VerifyJob& job) {
+  try {
+    const Outline outline = job.reader.read_outline();
+    job.checks.push_back(fmt::format("outline: {} bytes, {} lines",
+                                     job.reader.manifest().outline_bytes,
+                                     outline.polyline_count()));
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::corrupt && error.code() != ErrorCode::io)
+      throw;
+    job.problems.add(error.what());
+  }
+}
+
+/// Compares the files of the tileset with what follows from manifest and index. Returns their
+/// names.
+std::set<fs::path> check_tilesets(const VerifyJob& job) {
+  const storage::Manifest& manifest = job.reader.manifest();
+  std::set<fs::path> names;
+  std::uint64_t bytes = 0;
+  storage::Checksum sum;
+  const auto look_at = [&](const storage::TilesetFile& file) {
+    const auto expected = std::as_bytes(std::span(file.text));
+    bytes += expected.size();
+    sum.add(expected);
+    names.insert(file.path);
+    const fs::path path = job.reader.directory() / file.path;
+    if (!job.files.exists(path)) {
+      job.problems.add(fmt::format("{}: this file of the tileset is missing", path.string()));
+      return;
+    }
+    const std::unique_ptr<storage::File> found = job.files.open(path);
+    std::vector<std::byte> content(std::min<std::uint64_t>(found->size(), expected.size() + 1));
+    found->read_exact(0, content);
+    if (!std::equal(content.begin(), content.end(), expected.begin(), expected.end()))
+      job.problems.add(fmt::format("{}: not the tileset of this hierarchy", path.string()));
+  };
+  storage::for_each_tileset(manifest, job.tree(), job.reader.records(), [&](const auto& file) {
+    try {
+      look_at(file);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::io)
+        throw;
+      job.problems.add(error.what());
+    }
+  });
+  if (names.size() != manifest.tileset_files || bytes != manifest.tileset_bytes ||
+      sum.value() != manifest.tileset_checksum) {
+    job.problems.add(
+        fmt::format("{}: the tileset is said to have {} files and {} bytes; it should "
+                    "have {} and {}, and their checksum",
+                    storage::manifest_path(job.reader.directory()).string(), manifest.tileset_files,
+                    manifest.tileset_bytes, names.size(), bytes));
+  }
+  job.checks.push_back(fmt::format("tileset: {} files, {} bytes", names.size(), bytes));
+  return names;
+}
+
+void check_totals(const VerifyJob& job) {
+  const storage::Manifest& manifest = job.reader.manifest();
+  std::uint64_t bytes = manifest.index_bytes + manifest.outline_bytes + manifest.tileset_bytes;
+  std::uint64_t triangles = 0;
+  for (const TileRecord& record : job.reader.records()) {
+    bytes += record.file_bytes;
+    if (!job.tree().is_partition(record.node))
+      continue;
+    triangles += std::uint64_t{record.interior_count} + record.drawn_border_count;
+  }
+  const std::string name = storage::manifest_path(job.reader.directory()).string();
+  const auto compare = [&](std::string_view what, std::uint64_t told, std::uint64_t found) {
+    if (told == found)
+      return;
+    job.problems.add(
+        fmt::format("{}: {} is {}, but the index adds up to {}", name, what, told, found));
+  };
+  compare("total_bytes", manifest.total_bytes, bytes);
+  compare("the number of triangles of the source", manifest.source.triangles, triangles);
+}
+
+}  // namespace
+
+void verify_files(const VerifyJob& job) {
+  const std::uint64_t count = find_extra_files(job, check_tilesets(job));
+  check_outline(job);
+  check_totals(job);
+  job.checks.push_back(
+      fmt::format("files: {} found, {} tiles in the index", count, job.reader.records().size()));
+}
+
+}  // namespace meshhier::inspection

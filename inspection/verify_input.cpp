@@ -1,0 +1,278 @@
+// Proves the hierarchy lossless: the partitions hold the input's vertices and triangles, whatever
+// their order.
+//
+// Both sides become sums over multisets: a vertex is hashed from the bits of its position (as
+// stored) and attributes, a triangle from the hashes of its corners in their order around it. The
+// sums are of two independent 64-bit hashes: two different multisets have the same sums with a
+// chance of 2^-128. Nothing is kept but one 64-bit hash per input vertex, in a spool.
+#include "hierarchy/cut.h"
+#include "hierarchy/error.h"
+#include "hierarchy/lattice.h"
+#include "import/mesh_input.h"
+#include "inspection/verify_parts.h"
+#include "mesh_io/mesh_source.h"
+#include "partition/renumber.h"
+#include "storage/io/hash.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace meshhier::inspection {
+namespace {
+
+using HashTriangle = std::array<std::uint64_t, 3>;
+
+constexpr std::size_t kSpoolBlockBytes = std::size_t{1} << 20;
+
+/// XXH3 of a salt and some bytes: another salt is another, independent hash.
+class SaltedHash {
+ public:
+  explicit SaltedHash(std::uint32_t salt) { append(&salt, sizeof salt); }
+  void append(const void* bytes, std::size_t count) {
+    std::memcpy(buffer_.data() + used_, bytes, count);
+    used_ += count;
+  }
+  std::uint64_t value() const { return storage::checksum(std::span(buffer_).first(used_)); }
+
+ private:
+  /// The longest content: a position and all channels of a vertex.
+  std::array<std::byte, 4 + sizeof(Vec3f) + kMaxChannels * sizeof(float)> buffer_;
+  std::size_t used_ = 0;
+};
+
+enum Salt : std::uint32_t { kVertexTable = 1, kVertexA, kVertexB, kTriangleA, kTriangleB };
+
+std::uint64_t hash_vertex(Salt salt, Vec3f position, std::span<const float> attributes) {
+  SaltedHash hash(salt);
+  hash.append(&position, sizeof position);
+  if (!attributes.empty())
+    hash.append(attributes.data(), attributes.size_bytes());
+  return hash.value();
+}
+
+std::uint64_t hash_triangle(Salt salt, const HashTriangle& corners) {
+  SaltedHash hash(salt);
+  hash.append(corners.data(), sizeof corners);
+  return hash.value();
+}
+
+/// A sum that tells multisets apart.
+struct MultisetSum {
+  std::uint64_t count = 0, a = 0, b = 0;
+
+  void add(std::uint64_t hash_a, std::uint64_t hash_b) {
+    ++count;
+    a += hash_a;
+    b += hash_b;
+  }
+  friend bool operator==(const MultisetSum&, const MultisetSum&) = default;
+};
+
+struct MeshSums {
+  MultisetSum vertices, triangles;
+
+  void add_vertex(Vec3f position, std::span<const float> attributes) {
+    vertices.add(hash_vertex(kVertexA, position, attributes),
+                 hash_vertex(kVertexB, position, attributes));
+  }
+  /// Corners as kVertexTable hashes. Equal ones may be anywhere: the least of all turns is taken.
+  void add_triangle(const HashTriangle& t) {
+    const HashTriangle turned =
+        std::min({t, HashTriangle{t[1], t[2], t[0]}, HashTriangle{t[2], t[0], t[1]}});
+    triangles.add(hash_triangle(kTriangleA, turned), hash_triangle(kTriangleB, turned));
+  }
+};
+
+void add_tile(const PublishedTile& tile, MeshSums& sums) {
+  const TileMesh& mesh = tile.mesh;
+  std::vector<std::uint64_t> hashes;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    const auto attributes = mesh.vertices.attributes_of(v);
+    if (v < mesh.own_count)
+      sums.add_vertex(mesh.vertices.positions[v], attributes);
+    hashes.push_back(hash_vertex(kVertexTable, mesh.vertices.positions[v], attributes));
+  }
+  const auto add = [&](const Triangle& t) {
+    sums.add_triangle({hashes[raw(t[0])], hashes[raw(t[1])], hashes[raw(t[2])]});
+  };
+  const auto ours = [&](TileVertex v) {  // of the tiles that list a triangle, the first counts it
+    return mesh.is_own(v) || tile.node.index < mesh.ghost(v).tile;
+  };
+  std::for_each(mesh.interior.begin(), mesh.interior.end(), add);
+  for (const Triangle& t : mesh.border) {
+    if (std::all_of(t.begin(), t.end(), ours))
+      add(t);
+  }
+}
+
+MeshSums sum_partitions(const VerifyJob& job) {
+  const Tree& tree = job.tree();
+  MeshSums sums;
+  for (std::uint32_t i = 0; i < tree.partition_count(); ++i) {
+    job.cancel.check();
+    if (const auto tile = job.tiles.find({tree.depth(), i}))
+      add_tile(*tile, sums);
+    job.progress.advance(1);
+  }
+  return sums;
+}
+
+/// Positions as the hierarchy stores them but for rounding: float, relative to its origin.
+std::vector<Vec3f> stored_positions(const mesh_io::VertexBlock& block, Vec3d origin) {
+  std::vector<Vec3f> positions;
+  for (const Vec3d& p : block.exact)
+    positions.push_back(to_float(p - origin));
+  for (const Vec3f& p : block.positions) {
+    positions.push_back(origin == Vec3d{} ? p : to_float(to_double(p) - origin));
+  }
+  return positions;
+}
+
+/// What the input comes to.
+struct InputSums {
+  MeshSums mesh;
+  double worst_rounding = 0;  ///< to the hierarchy's lattice, if it has one
+};
+
+InputSums sum_input(const VerifyJob& job, mesh_io::MeshSource& source) {
+  const auto channels = static_cast<std::size_t>(source.description().attributes.channels());
+  const Vec3d origin = job.reader.manifest().origin;
+  const auto& quantization = job.reader.manifest().quantization;
+  InputSums result;
+  MeshSums& sums = result.mesh;
+  storage::RecordSpool<std::uint64_t> table(job.scratch, kSpoolBlockBytes);
+  source.read_vertices([&](const mesh_io::VertexBlock& block) {
+    job.cancel.check();
+    std::vector<Vec3f> positions = stored_positions(block, origin);
+    if (quantization) {
+      const double worst = round_to(quantization->lattice, positions);
+      result.worst_rounding = std::max(result.worst_rounding, worst);
+    }
+    std::vector<std::uint64_t> hashes;
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      const auto attributes = block.attributes.subspan(i * channels, channels);
+      sums.add_vertex(positions[i], attributes);
+      hashes.push_back(hash_vertex(kVertexTable, positions[i], attributes));
+    }
+    table.append(hashes);
+  });
+  partition::Renumberer<std::uint64_t> renumberer(
+      table,
+      partition::plan_renumbering(table.size(), sizeof(std::uint64_t),
+                                  job.options.memory_budget / 4),
+      job.scratch);
+  partition::Renumbered<std::uint64_t> renumbered;
+  const auto add = [&] {
+    for (const HashTriangle& t : renumbered.finished)
+      sums.add_triangle(t);
+    renumberer.keep(renumbered);
+  };
+  source.read_triangles([&](std::span<const mesh_io::SourceTriangle> triangles) {
+    job.cancel.check();
+    renumberer.translate(triangles, renumbered);
+    add();
+  });
+  while (renumberer.next_round()) {
+    for (std::uint64_t batch = 0; batch < renumberer.batches(); ++batch) {
+      job.cancel.check();
+      renumberer.translate_batch(batch, renumbered);
+      add();
+    }
+  }
+  return result;
+}
+
+/// The input file's name starts the problem.
+class InputProblems {
+ public:
+  explicit InputProblems(const VerifyJob& job) : job_(job) {}
+
+  template <class Value>
+  void compare(std::string_view what, const Value& expected, const Value& found) const {
+    if (expected == found)
+      return;
+    add(fmt::format("{} {}, but the hierarchy was made of {}", found, what, expected));
+  }
+  void add(const std::string& problem) const {
+    job_.problems.add(job_.options.input.string() + ": " + problem);
+  }
+
+ private:
+  const VerifyJob& job_;
+};
+
+void compare_files(const VerifyJob& job, const importing::InputFiles& input,
+                   const InputProblems& problems) {
+  const SourceSummary& expected = job.reader.manifest().source;
+  problems.compare("bytes", expected.file_bytes, input.bytes());
+  const std::uint64_t checksum = input.checksum(job.cancel);
+  if (checksum != expected.checksum) {
+    problems.add(fmt::format("checksum {:016x}, but the hierarchy was made of a file with {:016x}",
+                             checksum, expected.checksum));
+  }
+}
+
+/// Whether vertices were welded, as the manifest's config says.
+bool was_welded(const VerifyJob& job) {
+  const nlohmann::ordered_json& config = job.reader.manifest().config;
+  const auto weld = config.find("weld");
+  return weld != config.end() && weld->is_boolean() && weld->get<bool>();
+}
+
+void compare_sums(const MeshSums& input, const MeshSums& partitions,
+                  const InputProblems& problems) {
+  const auto compare = [&](std::string_view what, const MultisetSum& in, const MultisetSum& out) {
+    if (in == out)
+      return;
+    const std::string how =
+        in.count == out.count
+            ? fmt::format("{} {}, but some are not the same", in.count, what)
+            : fmt::format("{} {}, the partitions hold {}", in.count, what, out.count);
+    problems.add("not what the partitions hold: " + how);
+  };
+  compare("vertices", input.vertices, partitions.vertices);
+  compare("triangles", input.triangles, partitions.triangles);
+}
+
+}  // namespace
+
+void verify_input(const VerifyJob& job) {
+  const InputProblems problems(job);
+  const SourceSummary& expected = job.reader.manifest().source;
+  importing::MeshInput files(job.options.input, was_welded(job), job.files);
+  if (files.needs_import()) {
+    files.import({job.scratch.path().string() + "-import", job.scratch.path().string() + "-sorts",
+                  job.scratch.pool(), job.options.memory_budget / 8, job.progress, job.cancel});
+  }
+  job.progress.stage("input", job.tree().partition_count(), "partitions");
+  compare_files(job, files.files(), problems);
+  const auto source = files.open();
+  if (source->description().attributes != expected.attributes) {
+    problems.add("has other vertex attributes than the mesh the hierarchy was made of");
+    return;
+  }
+  const InputSums sums = sum_input(job, *source);
+  const MeshSums& input = sums.mesh;
+  problems.compare("vertices", expected.vertices, input.vertices.count);
+  problems.compare("triangles", expected.triangles, input.triangles.count);
+  const MeshSums partitions = sum_partitions(job);
+  compare_sums(input, partitions, problems);
+  const auto& quantization = job.reader.manifest().quantization;
+  if (quantization && sums.worst_rounding > quantization->worst_rounding) {
+    problems.add(fmt::format("a vertex is {} from its place on the lattice, more than the {} told",
+                             sums.worst_rounding, quantization->worst_rounding));
+  }
+  job.checks.push_back(fmt::format(
+      "input: {} vertices{} and {} triangles compared with those of the partitions, bit for bit",
+      input.vertices.count, quantization ? ", rounded to the lattice," : "",
+      input.triangles.count));
+}
+
+}  // namespace meshhier::inspection

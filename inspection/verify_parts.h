@@ -1,0 +1,100 @@
+// The parts of verify and what they share. For pipeline/verify*.cpp only.
+#pragma once
+
+#include "execution/cancel.h"
+#include "execution/progress.h"
+#include "inspection/border_pairs.h"
+#include "inspection/node_cache.h"
+#include "inspection/verify.h"
+#include "storage/format/hierarchy_reader.h"
+#include "storage/io/spool.h"
+
+#include <cstdint>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace meshhier::inspection {
+
+/// Collects problems up to a limit, counts the rest.
+class ProblemList {
+ public:
+  /// What a person reads before looking at the cause; a broken disk may bring millions.
+  static constexpr std::size_t kLimit = 100;
+
+  void add(std::string problem) {
+    if (problems_.size() < kLimit)
+      problems_.push_back(std::move(problem));
+    ++count_;
+  }
+  std::uint64_t count() const { return count_; }
+  /// The problems; if there were more, a last line says how many.
+  std::vector<std::string> take();
+
+ private:
+  std::vector<std::string> problems_;
+  std::uint64_t count_ = 0;
+};
+
+/// Tiles by node, read at most once while the cache lasts. A tile that cannot be read is a problem,
+/// told once.
+class TileStore {
+ public:
+  TileStore(const storage::HierarchyReader& reader, std::uint64_t cache_bytes,
+            ProblemList& problems);
+
+  /// The node's tile, for an early node its partition's; null if it cannot be read.
+  std::shared_ptr<const PublishedTile> find(NodeId node);
+  std::size_t unreadable_count() const { return unreadable_.size(); }
+
+ private:
+  const Tree& tree_;
+  ProblemList& problems_;
+  NodeCache<PublishedTile> cache_;
+  std::set<NodeId> unreadable_;
+};
+
+/// What every part works with. The memory budget is shared out: a quarter to the tiles, an eighth
+/// to the pool of the scratch file, at most half to the sorts and tables of the part that runs.
+struct VerifyJob {
+  storage::FileSystem& files;
+  const storage::HierarchyReader& reader;
+  const VerifyOptions& options;
+  storage::ScratchFile& scratch;
+  TileStore& tiles;
+  ProblemList& problems;
+  std::vector<std::string>& checks;
+  execution::Progress& progress;
+  const execution::CancelToken& cancel;
+
+  const Tree& tree() const { return reader.tree(); }
+};
+
+/// No file missing, none extra; outline readable; the manifest's totals are the index's.
+void verify_files(const VerifyJob& job);
+
+/// Every tile by itself, with its children, and with its neighbours.
+void verify_tiles(const VerifyJob& job);
+
+/// Counts, bounds, errors, order, rim of one tile against its record and its parent's.
+void verify_tile(const VerifyJob& job, const TileRecord& record, const PublishedTile& tile);
+
+/// `job` must outlive it.
+ParentMaps make_parent_maps(const VerifyJob& job);
+
+/// Tells what two neighbouring nodes of a level, early ones too, say differently of each other:
+/// ghosts, chains, border lists.
+void explain_difference(const VerifyJob& job, NodeId a, NodeId b);
+
+/// That a simplified tile is exactly the image of its children under their parent maps.
+void verify_image(const VerifyJob& job, const PublishedTile& tile);
+
+/// No crack in the cut of all partitions that the input has not, nor in random cuts.
+void verify_seams(const VerifyJob& job);
+
+/// The partitions are exactly the input. Requires job.options.input.
+void verify_input(const VerifyJob& job);
+
+}  // namespace meshhier::inspection

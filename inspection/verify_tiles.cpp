@@ -1,0 +1,182 @@
+#include "hierarchy/cut.h"
+#include "hierarchy/lattice.h"
+#include "inspection/verify_parts.h"
+#include "storage/format/layout.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace meshhier::inspection {
+namespace {
+
+/// Adds problems that start with the tile's file.
+class TileProblems {
+ public:
+  TileProblems(const VerifyJob& job, NodeId node) : job_(job), node_(node) {}
+
+  template <class... Values>
+  void require(bool holds, fmt::format_string<Values...> problem, Values&&... values) const {
+    if (holds)
+      return;
+    job_.problems.add(fmt::format("{}: {}",
+                                  storage::tile_path(job_.reader.directory(), node_).string(),
+                                  fmt::format(problem, std::forward<Values>(values)...)));
+  }
+
+ private:
+  const VerifyJob& job_;
+  NodeId node_;
+};
+
+bool has_order(const std::vector<Triangle>& triangles, bool unique) {
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    if (is_degenerate(triangles[i]) || canonical(triangles[i]) != triangles[i])
+      return false;
+    if (i == 0)
+      continue;
+    if (unique ? triangles[i] <= triangles[i - 1] : triangles[i] < triangles[i - 1])
+      return false;
+  }
+  return true;
+}
+
+/// Own vertices of border triangles are on the rim (which may hold more: triangles that a
+/// neighbour's contraction made degenerate are gone); every ghost is in a border triangle.
+bool has_sound_rim(const TileMesh& mesh) {
+  std::vector<bool> used(mesh.vertices.size());
+  for (const Triangle& t : mesh.border) {
+    for (TileVertex v : t)
+      used[raw(v)] = true;
+  }
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    if (used[v] ? v >= mesh.rim_count && v < mesh.own_count : v >= mesh.own_count)
+      return false;
+  }
+  return true;
+}
+
+/// Border triangles that the tile draws in its own level's cut, where early nodes are shown finer.
+std::uint32_t drawn_border_count(const Tree& tree, const PublishedTile& tile) {
+  const TileMesh& mesh = tile.mesh;
+  std::vector<bool> lets_draw;
+  for (const GhostRef& ghost : mesh.ghosts) {
+    lets_draw.push_back(tile.node.index < ghost.tile &&
+                        !tree.is_early({tile.node.level, ghost.tile}));
+  }
+  const auto drawn = [&](const Triangle& t) {
+    return std::all_of(t.begin(), t.end(), [&](TileVertex v) {
+      return mesh.is_own(v) || lets_draw[raw(v) - mesh.own_count];
+    });
+  };
+  return static_cast<std::uint32_t>(std::count_if(mesh.border.begin(), mesh.border.end(), drawn));
+}
+
+void check_errors(const VerifyJob& job, const TileRecord& record, const TileProblems& problems) {
+  const bool partition = job.tree().is_partition(record.node);
+  const auto proper = [](float x) { return std::isfinite(x) && x >= 0; };
+  problems.require(proper(record.error) && proper(record.bound),
+                   "error {} and bound {} must be finite and not negative", record.error,
+                   record.bound);
+  const auto& quantization = job.reader.manifest().quantization;
+  const float rounding = quantization ? float_above(quantization->worst_rounding) : 0;
+  problems.require(!partition || (record.error == 0 && record.bound == rounding),
+                   "a partition has error {} and bound {}, expected 0 and {}", record.error,
+                   record.bound, rounding);
+  if (record.node.level == Level{})
+    return;
+  const TileRecord& parent = job.reader.record(parent_tile(job.tree(), record.node));
+  problems.require(record.error < parent.error,
+                   "error {} is not below the error {} of its parent {}", record.error,
+                   parent.error, to_text(parent.node));
+}
+
+void check_parent_map(const VerifyJob& job, const PublishedTile& tile,
+                      const TileProblems& problems) {
+  if (tile.node.level == Level{}) {
+    problems.require(tile.parent_map.empty(), "the root has a parent map");
+    return;
+  }
+  const TileRecord& parent = job.reader.record(parent_tile(job.tree(), tile.node));
+  problems.require(tile.parent_map.size() == tile.mesh.own_count,
+                   "the parent map has {} entries for {} vertices", tile.parent_map.size(),
+                   tile.mesh.own_count);
+  const auto wrong = std::find_if(tile.parent_map.begin(), tile.parent_map.end(),
+                                  [&](std::uint16_t v) { return v >= parent.own_count; });
+  problems.require(wrong == tile.parent_map.end(),
+                   "the parent map leads to a vertex beyond the {} of tile {}", parent.own_count,
+                   to_text(parent.node));
+}
+
+}  // namespace
+
+ParentMaps make_parent_maps(const VerifyJob& job) {
+  return {job.options.memory_budget / 16,
+          [&job](NodeId node) {
+            const auto tile = job.tiles.find(node);
+            return tile ? tile->parent_map : std::vector<std::uint16_t>{};
+          },
+          [](const auto& map) { return map.size() * sizeof(map[0]) + sizeof(map); }};
+}
+
+void verify_tile(const VerifyJob& job, const TileRecord& record, const PublishedTile& tile) {
+  const Tree& tree = job.tree();
+  const TileMesh& mesh = tile.mesh;
+  const TileProblems problems(job, tile.node);
+  const bool partition = tree.is_partition(tile.node);
+  problems.require(!partition || mesh.own_count == tree.ranks(tile.node).size(),
+                   "{} vertices, but partition {} of {} has {}", mesh.own_count, tile.node.index,
+                   tree.partition_count(), tree.ranks(tile.node).size());
+  problems.require(record.own_count <= record.target_count,
+                   "{} vertices, more than the {} asked for", record.own_count,
+                   record.target_count);
+  problems.require(has_order(mesh.interior, !partition) && has_order(mesh.border, !partition),
+                   "triangles are not in order, degenerate or repeated");
+  problems.require(
+      has_sound_rim(mesh),
+      "a border triangle has an own corner off the rim, or a ghost has no border triangle");
+  const std::uint32_t drawn = drawn_border_count(tree, tile);
+  problems.require(drawn == record.drawn_border_count,
+                   "draws {} border triangles in its level's cut, the index says {}", drawn,
+                   record.drawn_border_count);
+  check_parent_map(job, tile, problems);
+  check_errors(job, record, problems);
+}
+
+void verify_tiles(const VerifyJob& job) {
+  const auto& records = job.reader.records();
+  std::uint64_t ghosts = 0, border = 0;
+  std::size_t off_target = 0;
+  ParentMaps maps = make_parent_maps(job);
+  BorderPairs pairs(job.tree(), maps, job.scratch, job.options.memory_budget / 8);
+  job.progress.stage("verify", records.size(), "tiles");
+  for (const TileRecord& record : records) {
+    job.cancel.check();
+    if (const auto tile = job.tiles.find(record.node)) {
+      verify_tile(job, record, *tile);
+      pairs.add(*tile);
+      if (!job.tree().is_partition(record.node))
+        verify_image(job, *tile);
+      ghosts += record.ghost_count;
+      border += record.border_count;
+    }
+    if (record.own_count != record.target_count)
+      ++off_target;
+    job.progress.advance(1);
+  }
+  pairs.finish([&](const NodePair& pair) {
+    const auto level = static_cast<Level>(pair.level);
+    explain_difference(job, {level, pair.low}, {level, pair.high});
+  });
+  job.checks.push_back(fmt::format(
+      "tiles: sizes, checksums and structure of {}; {} below the vertex count asked for",
+      records.size() - job.tiles.unreadable_count(), off_target));
+  job.checks.push_back(
+      fmt::format("borders: {} ghosts and {} border triangles compared with the neighbours' own",
+                  ghosts, border));
+  job.checks.push_back("every cut: each simplified tile compared with the image of its children");
+}
+
+}  // namespace meshhier::inspection

@@ -1,0 +1,305 @@
+#include "pipeline/journal/build_journal.h"
+
+#include "hierarchy/error.h"
+#include "storage/format/index.h"
+#include "storage/format/layout.h"
+#include "storage/format/manifest.h"
+#include "storage/io/hash.h"
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+
+namespace meshhier::pipeline {
+namespace {
+
+using Value = nlohmann::json;
+
+Value to_json(Vec3d v) {
+  return {v.x, v.y, v.z};
+}
+Vec3d point(const Value& json) {
+  return {json.at(0), json.at(1), json.at(2)};
+}
+
+Value to_json(const IndexedStep& indexed) {
+  const Step& step = indexed.second;
+  return {indexed.first, step.certain, step.mean_square, step.finer_neighbours.numbers()};
+}
+
+IndexedStep indexed_step(const Value& json) {
+  return {json.at(0),
+          {json.at(1), json.at(2), TileSet(json.at(3).get<std::vector<std::uint32_t>>())}};
+}
+
+/// What is no object, lists as a whole, by its dotted path.
+using Leaves = std::map<std::string, std::string>;
+
+void add_leaves(const Value& value, const std::string& path, Leaves& leaves) {
+  if (!value.is_object()) {
+    leaves[path] = value.dump(-1, ' ', false, Value::error_handler_t::replace);
+    return;
+  }
+  for (const auto& [key, inner] : value.items())
+    add_leaves(inner, path.empty() ? key : path + '.' + key, leaves);
+}
+
+/// "partition.vertices was 8192 and is 4096, ...".
+std::string differences(const Value& was, const Value& is) {
+  Leaves before, now;
+  add_leaves(was, "", before);
+  add_leaves(is, "", now);
+  Leaves all = before;
+  all.insert(now.begin(), now.end());
+  std::string text;
+  const auto value = [](const Leaves& of, const std::string& key) {
+    const auto found = of.find(key);
+    return found == of.end() ? "not set" : found->second;
+  };
+  for (const auto& [key, either] : all) {
+    if (value(before, key) == value(now, key))
+      continue;
+    text += fmt::format("{}{} was {} and is {}", text.empty() ? "" : ", ", key, value(before, key),
+                        value(now, key));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::optional<EarlierBuild> find_earlier_build(storage::FileSystem& files,
+                                               const std::filesystem::path& work) {
+  if (!files.exists(storage::journal_path(work)))
+    return std::nullopt;
+  EarlierBuild earlier;
+  bool is_whole = false;
+  storage::ScratchUse uncounted;
+  const auto read = [&](const Value& entry) {
+    if (entry.contains("build")) {
+      earlier.decides_result = entry.at("build");
+      earlier.input_modified_ns = entry.at("modified");
+    } else if (entry.contains("source")) {
+      earlier.source = storage::parse_source(
+          nlohmann::ordered_json(entry.at("source").at("summary")), "journal");
+      is_whole = earlier.decides_result.is_object();
+    }
+  };
+  const storage::Journal journal(files, storage::journal_path(work), uncounted,
+                                 [&](const Value& entry) {
+                                   try {
+                                     read(entry);
+                                   } catch (const Value::exception&) {
+                                   } catch (const Error& error) {
+                                     if (error.code() != ErrorCode::corrupt)
+                                       throw;
+                                   }
+                                   return true;
+                                 });
+  return is_whole ? std::optional(std::move(earlier)) : std::nullopt;
+}
+
+BuildJournal::BuildJournal(storage::FileSystem& files, const std::filesystem::path& work,
+                           const BuildIdentity& identity, storage::ScratchUse& use, Forest& forest,
+                           Chunks& chunks, const execution::CancelToken& cancel)
+    : files_(files),
+      built_(storage::built_path(work)),
+      identity_(identity),
+      forest_(forest),
+      chunks_(chunks),
+      cancel_(cancel) {
+  const Tree& tree = forest.tree();
+  has_leaves_.resize(chunks.count());
+  steps_.resize(static_cast<std::size_t>(raw(tree.depth())) + 1);
+  for (int l = 0; l <= raw(tree.depth()); ++l)
+    has_tile_.emplace_back(tree.node_count(static_cast<Level>(l)));
+
+  look_ahead(storage::journal_path(work), use);
+  std::optional<Value> build;  // whose journal is there
+  bool is_same = true;
+  bool has_other_work = false;
+  const auto read = [&](const Entry& entry) {
+    if (!build) {
+      build = entry.at("build");
+      is_same = *build == identity.decides_result;
+      input_was_touched_ = entry.at("modified") != identity.input_modified_ns;
+      return true;
+    }
+    has_other_work = has_other_work || entry.contains("source");
+    return !is_same || take(entry);
+  };
+  journal_.emplace(files, storage::journal_path(work), use, [&](const Entry& entry) {
+    try {
+      return read(entry);
+    } catch (const Value::exception&) {
+      return false;
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::corrupt)
+        throw;
+      return false;
+    }
+  });
+  if (!is_same && has_other_work) {
+    throw Error(ErrorCode::exists,
+                fmt::format("{} holds the work of a build that was stopped, but {}; --restart "
+                            "throws it away and begins anew",
+                            work.string(), differences(*build, identity.decides_result)));
+  }
+  if (is_complete_)
+    is_sound_ = is_same && published_.size() == storage::tile_count(tree);
+  else
+    is_sound_ = is_same && source_ && can_make_all_leaves();
+}
+
+/// Of a build that was complete the scratch files are gone: entries of what lay there say nothing.
+void BuildJournal::look_ahead(const std::filesystem::path& path, storage::ScratchUse& use) {
+  if (!files_.exists(path))
+    return;
+  const storage::Journal all(files_, path, use, [&](const Entry& entry) {
+    is_complete_ = entry.contains("complete");
+    return true;
+  });
+}
+
+bool BuildJournal::take(const Entry& entry) {
+  cancel_.check();
+  const auto first = entry.items().begin();
+  const std::string& kind = first.key();
+  const Entry& value = first.value();
+  if (is_complete_ && kind != "source" && kind != "published")
+    return true;
+  if (kind == "chunk")
+    return value.at(0) < chunks_.count() && chunks_.restore(value.at(0), value.at(1));
+  if (kind == "source")
+    return take_source(value);
+  if (kind == "leaves")
+    return take_leaves(value);
+  if (kind == "tile")
+    return take_tile(value);
+  return kind == "published" && take_published(value);
+}
+
+bool BuildJournal::take_source(const Entry& source) {
+  source_ = DistributedSource{
+      storage::parse_source(nlohmann::ordered_json(source.at("summary")), "journal"),
+      point(source.at("origin"))};
+  return true;
+}
+
+bool BuildJournal::take_leaves(const Entry& leaves) {
+  const std::uint32_t chunk = leaves.at("chunk");
+  const std::uint64_t unreferenced = leaves.at("unreferenced");
+  if (chunk >= chunks_.count() || has_leaves_[chunk] != 0 ||
+      !forest_.restore_chunk(chunk, leaves.at("stored")))
+    return false;
+  chunks_.drop(chunk);
+  has_leaves_[chunk] = 1;
+  unreferenced_ += unreferenced;
+  ++found_;
+  return true;
+}
+
+bool BuildJournal::take_tile(const Entry& tile) {
+  const std::uint8_t level = tile.at("node").at(0);
+  const std::uint32_t index = tile.at("node").at(1);
+  if (level >= raw(forest_.tree().depth()) || index >= has_tile_[level].size() ||
+      has_tile_[level][index] != 0)
+    return false;
+  std::vector<IndexedStep> steps;
+  for (const Entry& step : tile.at("steps"))
+    steps.push_back(indexed_step(step));
+  if (!forest_.restore_tile({static_cast<Level>(level), index}, tile.at("stored")))
+    return false;
+  std::move(steps.begin(), steps.end(), std::back_inserter(steps_[level + std::size_t{1}]));
+  has_tile_[level][index] = 1;
+  ++found_;
+  return true;
+}
+
+bool BuildJournal::take_published(const Entry& published) {
+  const Value::binary_t& bytes = published.get_binary();
+  const TileRecord record = storage::decode_record(std::as_bytes(std::span(bytes)));
+  const std::filesystem::path path = storage::tile_path(built_, record.node);
+  if (!files_.exists(path))
+    return false;
+  const std::unique_ptr<storage::File> file = files_.open(path);
+  if (file->size() != record.file_bytes)
+    return false;
+  std::vector<std::byte> content(record.file_bytes);
+  file->read_exact(0, content);
+  if (storage::checksum(content) != record.checksum)
+    return false;
+  published_.emplace(std::pair(record.node.level, record.node.index), record);
+  ++found_;
+  return true;
+}
+
+/// Of chunks that are still needed, the disk must hold all that was put there.
+bool BuildJournal::can_make_all_leaves() const {
+  for (std::uint32_t chunk = 0; chunk < chunks_.count(); ++chunk) {
+    cancel_.check();
+    if (!has_leaves(chunk) && !chunks_.is_as_stored(chunk))
+      return false;
+  }
+  return true;
+}
+
+std::uint64_t BuildJournal::steps() const {
+  std::uint64_t tiles = 0;
+  for (int l = 0; l < raw(forest_.tree().depth()); ++l)
+    tiles += has_tile_[static_cast<std::size_t>(l)].size();
+  return chunks_.count() + tiles + storage::tile_count(forest_.tree());
+}
+
+std::vector<IndexedStep> BuildJournal::take_steps(Level level) {
+  return std::exchange(steps_[raw(level)], {});
+}
+
+const TileRecord* BuildJournal::published(NodeId node) const {
+  const auto found = published_.find({node.level, node.index});
+  return found == published_.end() ? nullptr : &found->second;
+}
+
+void BuildJournal::note_source(const SourceSummary& summary, Vec3d origin) {
+  journal_->append(
+      {{"build", identity_.decides_result}, {"modified", identity_.input_modified_ns}});
+  for (std::uint32_t chunk = 0; chunk < chunks_.count(); ++chunk)
+    journal_->append({{"chunk", {chunk, chunks_.store(chunk)}}});
+  journal_->append(
+      {{"source",
+        {{"summary", Value(storage::source_json(summary))}, {"origin", to_json(origin)}}}});
+  source_ = DistributedSource{summary, origin};
+}
+
+void BuildJournal::note_leaves(std::uint32_t chunk, std::uint64_t unreferenced_vertices) {
+  journal_->append({{"leaves",
+                     {{"chunk", chunk},
+                      {"unreferenced", unreferenced_vertices},
+                      {"stored", forest_.stored_chunk(chunk)}}}});
+}
+
+void BuildJournal::note_tile(NodeId node, std::span<const IndexedStep> steps) {
+  Value all = Value::array();
+  for (const IndexedStep& step : steps)
+    all.push_back(to_json(step));
+  journal_->append({{"tile",
+                     {{"node", {raw(node.level), node.index}},
+                      {"steps", std::move(all)},
+                      {"stored", forest_.stored_tile(node)}}}});
+}
+
+void BuildJournal::note_published(const TileRecord& record) {
+  const std::vector<std::byte> bytes = storage::encode_record(record);
+  const auto* first = reinterpret_cast<const std::uint8_t*>(bytes.data());
+  journal_->append({{"published", Value::binary({first, first + bytes.size()})}});
+}
+
+void BuildJournal::note_complete() {
+  journal_->append({{"complete", true}});
+  is_complete_ = true;
+}
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,132 @@
+// What of a build is done, on disk: a build that is stopped, however, goes on from there.
+//
+// Entries of the journal, in the order in which a build makes them:
+//
+//   build      what decides the result: input, config, tree, version
+//   chunk      where a chunk's spools are, when all triangles are distributed
+//   source     what was learnt of the input; with it distributing is done
+//   leaves     a chunk's partitions
+//   tile       a simplified tile, the maps to it, and how far its children had moved
+//   published  a tile's file
+//   complete   all files of the hierarchy; the scratch files are not needed any more
+//
+// Whatever an entry names is checked, by checksum, before it is believed. The stages before
+// `leaves` are one step: they take a twentieth of a build. `outline` takes no time.
+#pragma once
+
+#include "execution/cancel.h"
+#include "hierarchy/published.h"
+#include "pipeline/tiles/bound_chain.h"
+#include "pipeline/tiles/chunks.h"
+#include "pipeline/tiles/forest.h"
+#include "storage/io/file.h"
+#include "storage/io/journal.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace meshhier::pipeline {
+
+/// What distributing learnt of the input.
+struct DistributedSource {
+  SourceSummary summary;
+  Vec3d origin;
+};
+
+/// Whose journal it is.
+struct BuildIdentity {
+  nlohmann::json decides_result;       ///< an object
+  std::int64_t input_modified_ns = 0;  ///< the input may be the same after it was touched
+};
+
+/// What an earlier build says of itself.
+struct EarlierBuild {
+  nlohmann::json decides_result;
+  std::int64_t input_modified_ns = 0;
+  SourceSummary source;
+};
+/// Of the journal in the directory `work`, unless the input was not read as a whole. Whether all
+/// else is there is not looked at. Throws Error(io).
+std::optional<EarlierBuild> find_earlier_build(storage::FileSystem& files,
+                                               const std::filesystem::path& work);
+
+/// The step of a tile whose index on its level is known.
+using IndexedStep = std::pair<std::uint32_t, Step>;
+
+class BuildJournal {
+ public:
+  /// Opens the journal in the directory `work` and puts back into `forest` and `chunks` all that is
+  /// done; of published tiles, those whose files are whole. What the journal moves counts in `use`.
+  /// Throws Error(exists) if something is done towards another result, telling what differs.
+  BuildJournal(storage::FileSystem& files, const std::filesystem::path& work,
+               const BuildIdentity& identity, storage::ScratchUse& use, Forest& forest,
+               Chunks& chunks, const execution::CancelToken& cancel);
+
+  /// Whether what is there can be gone on with: something is done, and the disk has kept it.
+  bool is_sound() const { return is_sound_; }
+  /// Whether the input has another time than when the journal was begun: whether it is the same is
+  /// to be found out.
+  bool input_was_touched() const { return input_was_touched_; }
+  /// Chunks, simplified tiles and published files that were found done, and all there will be.
+  std::uint64_t found() const { return found_; }
+  std::uint64_t steps() const;
+
+  const std::optional<DistributedSource>& source() const { return source_; }
+  bool has_leaves(std::uint32_t chunk) const { return has_leaves_[chunk] != 0; }
+  /// Vertices that no triangle uses, in all chunks whose leaves are done.
+  std::uint64_t unreferenced_vertices() const { return unreferenced_; }
+  bool has_tile(NodeId node) const { return has_tile_[raw(node.level)][node.index] != 0; }
+  /// Steps of tiles of a level that went into tiles that are done.
+  std::vector<IndexedStep> take_steps(Level level);
+  /// The record of a published tile, null if it is not done.
+  const TileRecord* published(NodeId node) const;
+
+  /// All that is left to do is to give the hierarchy its name.
+  bool is_complete() const { return is_complete_; }
+
+  // Each notes what is done now; one call at a time. Throws Error(io).
+  void note_source(const SourceSummary& summary, Vec3d origin);
+  void note_leaves(std::uint32_t chunk, std::uint64_t unreferenced_vertices);
+  /// `steps`: of the tile's children, if those are simplified tiles.
+  void note_tile(NodeId node, std::span<const IndexedStep> steps);
+  void note_published(const TileRecord& record);
+  void note_complete();
+  void sync() { journal_->sync(); }
+
+ private:
+  using Entry = storage::Journal::Entry;
+  void look_ahead(const std::filesystem::path& path, storage::ScratchUse& use);
+  bool take(const Entry& entry);
+  bool take_source(const Entry& source);
+  bool take_leaves(const Entry& leaves);
+  bool take_tile(const Entry& tile);
+  bool take_published(const Entry& published);
+  bool can_make_all_leaves() const;
+
+  storage::FileSystem& files_;
+  std::filesystem::path built_;
+  BuildIdentity identity_;
+  Forest& forest_;
+  Chunks& chunks_;
+  const execution::CancelToken& cancel_;
+  std::optional<DistributedSource> source_;
+  std::vector<char> has_leaves_;
+  std::vector<std::vector<char>> has_tile_;
+  std::vector<std::vector<IndexedStep>> steps_;  ///< by level
+  std::map<std::pair<Level, std::uint32_t>, TileRecord> published_;
+  std::uint64_t unreferenced_ = 0;
+  std::uint64_t found_ = 0;
+  bool is_sound_ = false;
+  bool is_complete_ = false;
+  bool input_was_touched_ = false;
+  std::optional<storage::Journal> journal_;
+};
+
+}  // namespace meshhier::pipeline

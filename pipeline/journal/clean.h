@@ -1,0 +1,38 @@
+// What builds that were stopped, and other commands that were killed, left on disk.
+#pragma once
+
+#include "storage/format/layout.h"
+#include "storage/io/file.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace meshhier::pipeline {
+
+struct FoundLeftover {
+  std::filesystem::path path;
+  storage::Leftover kind{};
+  std::filesystem::path output;  ///< what it belongs to
+  std::uint64_t bytes = 0;
+  bool in_use = false;     ///< a build is at work there
+  bool only_copy = false;  ///< a hierarchy that was to be replaced, and nothing replaced it
+};
+
+/// Of a directory: what lies there of any output; of a hierarchy, finished or to be: what belongs
+/// to it. Ascending by path. Throws Error(io).
+std::vector<FoundLeftover> find_leftovers(storage::FileSystem& files,
+                                          const std::filesystem::path& directory_or_output);
+
+/// Removes what is not in use; gives a hierarchy that is the only copy its name back instead.
+/// Throws Error(io).
+void remove_leftovers(storage::FileSystem& files, const std::vector<FoundLeftover>& found);
+
+/// A line each, and a last one; `removed`: remove_leftovers() was called.
+std::string leftovers_text(const std::vector<FoundLeftover>& found, bool removed);
+nlohmann::ordered_json leftovers_json(const std::vector<FoundLeftover>& found);
+
+}  // namespace meshhier::pipeline

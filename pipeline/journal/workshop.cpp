@@ -1,0 +1,110 @@
+#include "pipeline/journal/workshop.h"
+
+#include "hierarchy/error.h"
+#include "storage/format/hierarchy_reader.h"
+#include "storage/format/layout.h"
+
+#include <fmt/format.h>
+
+namespace meshhier::pipeline {
+namespace {
+
+BuildIdentity identity_of(const config::Config& config, const importing::MeshInput& input,
+                          const Tree& tree) {
+  const mesh_io::MeshDescription& mesh = input.description();
+  return {{{"program", "meshhier " MESHHIER_VERSION},
+           {"input", input.files().name()},
+           {"input_bytes", input.files().bytes()},
+           {"vertices", mesh.vertex_count},
+           {"faces", mesh.face_count},
+           {"partitions", tree.partition_count()},
+           {"config", config::resolved_json(config)}},
+          input.files().modified_ns()};
+}
+
+/// But for the tiles.
+bool is_whole(storage::FileSystem& files, const std::filesystem::path& hierarchy) {
+  try {
+    storage::HierarchyReader(files, hierarchy).read_outline();
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+Workshop::Workshop(storage::FileSystem& files, const std::filesystem::path& work,
+                   const BuildPlan& build, int channels, const BuildIdentity& identity,
+                   storage::MemoryPool& pool, const execution::CancelToken& cancel)
+    : mesh_scratch(files, work / "mesh", pool, storage::ScratchFile::Stays::yes),
+      tile_scratch(files, work / "tiles", pool, storage::ScratchFile::Stays::yes),
+      chunks(build.tree, channels, mesh_scratch, build.memory.spool_block_bytes),
+      forest(build.tree, chunks.level(), channels, tile_scratch),
+      journal(files, work, identity, pool.scratch_use(), forest, chunks, cancel) {}
+
+OpenWorkshop open_workshop(storage::FileSystem& files, storage::WorkDirectory& work,
+                           const config::Config& config, importing::MeshInput& input,
+                           const BuildPlan& build, storage::MemoryPool& pool,
+                           const execution::CancelToken& cancel) {
+  const BuildIdentity identity = identity_of(config, input, build.tree);
+  OpenWorkshop open;
+  const auto make = [&] {
+    open.workshop = std::make_unique<Workshop>(files, work.path(), build,
+                                               input.description().attributes.channels(), identity,
+                                               pool, cancel);
+  };
+  const auto begin_anew = [&](std::string why) {
+    open.workshop.reset();
+    work.clear();
+    make();
+    open.found = std::move(why);
+  };
+  const bool is_new = !files.exists(storage::journal_path(work.path()));
+  if (is_new)
+    work.clear();      // what was not noted is of no use
+  work.keep(!is_new);  // it may be of another build
+  make();
+  const BuildJournal& journal = open.workshop->journal;
+  work.keep(journal.source().has_value());
+  if (!journal.source()) {
+    if (!is_new)
+      begin_anew("");
+  } else if (!journal.is_sound() || (journal.is_complete() && !is_whole(files, work.built()))) {
+    begin_anew("what an earlier build left has been damaged: this one began anew");
+  } else if (journal.input_was_touched() &&
+             input.checksum(cancel) != journal.source()->summary.checksum) {
+    begin_anew("the input was changed since an earlier build was stopped: this one began anew");
+  } else {
+    open.found =
+        fmt::format("went on where an earlier build was stopped, {} of {} steps being done",
+                    journal.found(), journal.steps());
+  }
+  return open;
+}
+
+std::optional<mesh_io::MeshDescription> recall_import(const EarlierBuild& earlier,
+                                                      importing::MeshInput& input,
+                                                      const execution::CancelToken& cancel) {
+  const auto is = [](const nlohmann::json& object, const char* key, const nlohmann::json& value) {
+    const auto found = object.find(key);
+    return found != object.end() && *found == value;
+  };
+  const nlohmann::json& made_of = earlier.decides_result;
+  const importing::InputFiles& files = input.files();
+  const auto config = made_of.find("config");
+  if (!is(made_of, "input", files.name()) || !is(made_of, "input_bytes", files.bytes()) ||
+      config == made_of.end() || !is(*config, "weld", files.weld()))
+    return std::nullopt;
+  if (earlier.input_modified_ns != files.modified_ns() &&
+      input.checksum(cancel) != earlier.source.checksum)
+    return std::nullopt;
+  mesh_io::MeshDescription mesh;
+  mesh.vertex_count = earlier.source.vertices;
+  mesh.face_count = made_of.value("faces", std::uint64_t{0});
+  mesh.attributes = earlier.source.attributes;
+  mesh.vertices_in_place = true;
+  return mesh;
+}
+
+}  // namespace meshhier::pipeline

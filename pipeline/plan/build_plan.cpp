@@ -1,0 +1,169 @@
+#include "pipeline/plan/build_plan.h"
+
+#include "execution/size_text.h"
+#include "hierarchy/error.h"
+#include "storage/format/layout.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <tbb/info.h>
+
+namespace meshhier::pipeline {
+namespace {
+
+constexpr std::uint32_t kLargestTile = 32768;  // parent maps and ghost references hold 16 bits
+
+Tree plan_tree(const config::Config& config, std::uint64_t vertex_count) {
+  if (vertex_count == 0) {
+    throw Error(ErrorCode::input, fmt::format("{} has no vertices: there is nothing to build",
+                                              config.input.string()));
+  }
+  const std::uint64_t count =
+      config.partition.count
+          ? *config.partition.count
+          : (vertex_count + config.partition.vertices - 1) / config.partition.vertices;
+  if (count > vertex_count) {
+    throw Error(ErrorCode::usage, fmt::format("partition.count is {}, but {} has only {} vertices",
+                                              count, config.input.string(), vertex_count));
+  }
+  if ((vertex_count + count - 1) / count > kLargestTile) {
+    throw Error(ErrorCode::usage,
+                fmt::format("partition.count is {}: partitions of {} vertices; a tile holds at "
+                            "most {}, so the count "
+                            "must be at least {}",
+                            count, (vertex_count + count - 1) / count, kLargestTile,
+                            (vertex_count + kLargestTile - 1) / kLargestTile));
+  }
+  return {vertex_count, static_cast<std::uint32_t>(count)};
+}
+
+std::uint32_t largest_partition(const Tree& tree) {
+  return static_cast<std::uint32_t>((tree.vertex_count() + tree.partition_count() - 1) /
+                                    tree.partition_count());
+}
+
+/// Of what an earlier build of the output left: it takes its place already.
+std::uint64_t bytes_left(const std::filesystem::path& output, storage::FileSystem& files) {
+  const std::filesystem::path work = storage::work_path(output);
+  return files.exists(work) ? storage::bytes_below(files, work) : 0;
+}
+
+AskedVertices asked_vertices(const config::Config& config, const Tree& tree) {
+  if (config.simplify.vertices)
+    return *config.simplify.vertices;
+  return config.partition.count ? std::max(4U, largest_partition(tree)) : config.partition.vertices;
+}
+
+/// Of a vertex in a published tile (docs/file_format.md, 4.3).
+std::uint64_t published_bytes(const AttributeLayout& layout) {
+  const std::uint64_t component = layout.colour == ColourType::u8    ? 1
+                                  : layout.colour == ColourType::u16 ? 2
+                                                                     : 4;
+  const std::uint64_t colour = static_cast<std::uint64_t>(layout.colour_channels()) * component;
+  return (layout.normals ? 12 : 0) + (colour + 3) / 4 * 4 + (layout.texcoords ? 8 : 0);
+}
+
+/// What tiles take of plain ones, about: the most that was seen with exact scans of more than
+/// 20,000 vertices (docs/performance.md). Quantized ones take less.
+double published_ratio(const config::StorageConfig& storage) {
+  switch (storage.compression) {
+    case storage::Compression::none:
+      return 1;
+    case storage::Compression::zlib:
+      return 0.79;
+    case storage::Compression::meshopt:
+      return 0.66;
+    case storage::Compression::meshopt_zlib:
+      break;
+  }
+  return 0.56;
+}
+
+JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& mesh,
+                 const Tree& tree, std::size_t threads) {
+  JobSize job;
+  job.vertex_count = mesh.vertex_count;
+  job.face_count = mesh.face_count;
+  job.channels = mesh.attributes.channels();
+  job.vertices_in_place = mesh.vertices_in_place;
+  job.wide_coordinates = mesh.wide_coordinates;
+  job.partition_count = tree.partition_count();
+  job.threads = threads;
+  job.asked_vertices = asked_vertices(config, tree);
+  job.largest_tile =
+      std::max(largest_partition(tree), job.asked_vertices.largest_above(tree.depth()));
+  job.clustered = config.simplify.method == config::SimplifyMethod::cluster;
+  job.published_attribute_bytes = published_bytes(mesh.attributes);
+  job.published_ratio = published_ratio(config.storage);
+  job.packed = config.storage.container == storage::Container::archive;
+  return job;
+}
+
+}  // namespace
+
+std::size_t thread_count(const config::Config& config) {
+  return config.threads > 0 ? config.threads
+                            : static_cast<std::size_t>(tbb::info::default_concurrency());
+}
+
+BuildPlan plan_build(const config::Config& config, const mesh_io::MeshDescription& mesh,
+                     std::uint64_t imported_bytes) {
+  const Tree tree = plan_tree(config, mesh.vertex_count);
+  const std::size_t threads = thread_count(config);
+  JobSize job = job_size(config, mesh, tree, threads);
+  job.imported_bytes = imported_bytes;
+  const MemoryPlan memory = plan_memory(config.memory_budget, job);
+  return {tree, threads, job.asked_vertices, job, memory, predict_disk(job, memory)};
+}
+
+std::filesystem::path existing_directory(const std::filesystem::path& output,
+                                         storage::FileSystem& files) {
+  std::filesystem::path directory = output.parent_path();
+  while (!directory.empty() && !files.exists(directory))
+    directory = directory.parent_path();
+  return directory.empty() ? "." : directory;
+}
+
+void check_import_disk(std::uint64_t bytes, const std::filesystem::path& output,
+                       storage::FileSystem& files) {
+  const std::filesystem::path directory = existing_directory(output, files);
+  const std::uint64_t free = files.free_bytes(directory);
+  if (free + bytes_left(output, files) < bytes) {
+    throw Error(ErrorCode::budget,
+                fmt::format("{} has {} free; to import the input takes up to about {} of temporary "
+                            "files",
+                            directory.string(), execution::rounded_size_text(free),
+                            execution::rounded_size_text(bytes)));
+  }
+}
+
+void check_disk(const DiskNeed& need, const std::filesystem::path& output,
+                storage::FileSystem& files) {
+  const std::filesystem::path directory = existing_directory(output, files);
+  const std::uint64_t free = files.free_bytes(directory);
+  if (free + bytes_left(output, files) < need.room_bytes) {
+    throw Error(
+        ErrorCode::budget,
+        fmt::format(
+            "{} has {} free; the hierarchy will take about {} and up to {} of temporary files",
+            directory.string(), execution::rounded_size_text(free),
+            execution::rounded_size_text(need.output_bytes),
+            execution::rounded_size_text(need.temporary_bytes)));
+  }
+}
+
+void check_apart(const config::Config& config, storage::FileSystem& files) {
+  const std::filesystem::path output = files.canonical(config.output);
+  for (const std::filesystem::path& path : config.input) {
+    const std::filesystem::path input = files.canonical(path);
+    const auto [end, rest] =
+        std::mismatch(output.begin(), output.end(), input.begin(), input.end());
+    if (end == output.end()) {
+      throw Error(ErrorCode::usage, fmt::format("the input {} lies in the output {}",
+                                                input.string(), output.string()));
+    }
+  }
+}
+
+}  // namespace meshhier::pipeline

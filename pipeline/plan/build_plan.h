@@ -1,0 +1,53 @@
+// What a build will do, decided before anything is written: the tree, who gets how much memory,
+// how much disk it will take.
+#pragma once
+
+#include "config/config.h"
+#include "hierarchy/asked_vertices.h"
+#include "hierarchy/tree.h"
+#include "mesh_io/mesh_source.h"
+#include "pipeline/plan/disk_need.h"
+#include "pipeline/plan/memory_plan.h"
+#include "storage/io/file.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+
+namespace meshhier::pipeline {
+
+struct BuildPlan {
+  Tree tree;
+  std::size_t threads = 1;
+  AskedVertices asked_vertices = 8192;  ///< of simplified tiles
+  JobSize job;
+  MemoryPlan memory;
+  DiskNeed disk;
+};
+
+/// The plan for a mesh of which the header was read; `imported_bytes`: of the PLY, if it is one
+/// that the input was imported to. Throws Error(usage | input) if the partitions asked for cannot
+/// be, Error(budget) if the memory budget is too small.
+BuildPlan plan_build(const config::Config& config, const mesh_io::MeshDescription& mesh,
+                     std::uint64_t imported_bytes = 0);
+
+/// Threads that a build of that config uses.
+std::size_t thread_count(const config::Config& config);
+
+/// A replaced output is removed, and the input must not go with it: throws Error(usage) if a file
+/// of it lies there.
+void check_apart(const config::Config& config, storage::FileSystem& files);
+
+/// The directory nearest above `output` that is there.
+std::filesystem::path existing_directory(const std::filesystem::path& output,
+                                         storage::FileSystem& files);
+
+/// Throws Error(budget) if the disk that will hold `output` has less than `bytes` for an import.
+void check_import_disk(std::uint64_t bytes, const std::filesystem::path& output,
+                       storage::FileSystem& files);
+
+/// Throws Error(budget) if the disk that will hold `output` has too little room.
+void check_disk(const DiskNeed& need, const std::filesystem::path& output,
+                storage::FileSystem& files);
+
+}  // namespace meshhier::pipeline

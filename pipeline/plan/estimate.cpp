@@ -1,0 +1,220 @@
+#include "pipeline/plan/estimate.h"
+
+#include "execution/size_text.h"
+#include "import/import_input.h"
+#include "import/mesh_input.h"
+#include "storage/format/layout.h"
+#include "storage/format/work_directory.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+namespace meshhier::pipeline {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// ---- rates, measured by `scripts/benchmark scale` (docs/performance.md) ----------------------
+
+// CPU microseconds per input triangle for a whole build, disk to disk, tiles of 8192 vertices.
+constexpr double kEdgeCollapseMicroseconds = 1.4;
+constexpr double kHalfEdgeMicroseconds = 1.4;
+constexpr double kClusterMicroseconds = 0.9;
+
+// The part of it that one thread does while the others wait.
+constexpr double kSerialShare = 0.06;
+
+// What a disk takes or gives on its own, a cloud volume or a laptop's SSD when its cache is full.
+constexpr double kDiskBytesPerSecond = 500e6;
+
+// Temporary bytes are written once and read about twice.
+constexpr double kTemporaryMoves = 3;
+
+// Sweeps over the vertices and the checksum read the input more than once; a part comes from the
+// system's cache.
+constexpr double kInputReads = 2;
+
+double microseconds_per_triangle(config::SimplifyMethod method) {
+  switch (method) {
+    case config::SimplifyMethod::edge_collapse:
+      return kEdgeCollapseMicroseconds;
+    case config::SimplifyMethod::half_edge:
+      return kHalfEdgeMicroseconds;
+    case config::SimplifyMethod::cluster:
+      break;
+  }
+  return kClusterMicroseconds;
+}
+
+std::uint64_t fixed_memory(const BuildEstimate& e) {
+  return e.memory_budget_bytes - e.plan.memory.work_bytes - e.plan.memory.pool_bytes;
+}
+
+std::string duration(double seconds) {
+  if (seconds < 99.5)
+    return fmt::format("{:.{}f} s", seconds, seconds < 9.95 ? 1 : 0);
+  return seconds < 5400 ? fmt::format("{:.0f} min", seconds / 60)
+                        : fmt::format("{:.1f} h", seconds / 3600);
+}
+
+std::string memory_text(const BuildEstimate& e) {
+  const MemoryPlan& memory = e.plan.memory;
+  return fmt::format(
+      "memory      {} asked for, {} would do\n"
+      "            {} program, index and allocator, {} stages at work, {} data kept off the "
+      "disk\n"
+      "            in flight: {} blocks, {} chunks, {} tiles; rank table {}\n",
+      execution::exact_size_text(e.memory_budget_bytes),
+      execution::exact_size_text(e.least_budget_bytes),
+      execution::rounded_size_text(fixed_memory(e)),
+      execution::rounded_size_text(memory.work_bytes),
+      execution::rounded_size_text(memory.pool_bytes), memory.blocks_in_flight,
+      memory.chunks_in_flight, memory.tiles_in_flight,
+      execution::rounded_size_text(memory.table_bytes));
+}
+
+Json memory_json(const BuildEstimate& e) {
+  const MemoryPlan& memory = e.plan.memory;
+  return {{"budget_bytes", e.memory_budget_bytes},
+          {"least_budget_bytes", e.least_budget_bytes},
+          {"fixed_bytes", fixed_memory(e)},
+          {"work_bytes", memory.work_bytes},
+          {"pool_bytes", memory.pool_bytes},
+          {"table_bytes", memory.table_bytes},
+          {"blocks_in_flight", memory.blocks_in_flight},
+          {"chunks_in_flight", memory.chunks_in_flight},
+          {"tiles_in_flight", memory.tiles_in_flight}};
+}
+
+}  // namespace
+
+namespace {
+
+/// What is in text or packed, or is to be welded, must be read to be counted: it is imported beside
+/// the output, which leaves nothing behind.
+void count_by_import(const config::Config& config, importing::MeshInput& input,
+                     storage::FileSystem& files, storage::MemoryPool& pool,
+                     const execution::CancelToken& cancel) {
+  const importing::ImportMemory memory = importing::plan_import(config.memory_budget);
+  check_import_disk(importing::predict_import(input.files(), memory), config.output, files);
+  const std::filesystem::path beside =
+      existing_directory(config.output, files) / config.output.filename();
+  std::random_device chance;
+  const auto scratch = [&] { return storage::verify_scratch_path(beside, chance()); };
+  const tbb::global_control thread_limit(tbb::global_control::max_allowed_parallelism,
+                                         thread_count(config));
+  pool.set_capacity(memory.pool_bytes);
+  execution::NoProgress silent;
+  const std::filesystem::path ply = scratch();
+  input.import({ply, scratch(), pool, memory.sort_bytes, silent, cancel});
+}
+
+void describe_import(const importing::InputFiles& input, const importing::ImportMemory& memory,
+                     BuildEstimate& estimate) {
+  estimate.mesh.format.clear();
+  for (const importing::InputFileFacts& file : input.all())
+    estimate.mesh.format += (estimate.mesh.format.empty() ? "" : ", ") + name_of(file.format);
+  estimate.mesh.format += " (imported to count it)";
+  estimate.mesh.file_bytes = input.bytes();
+  std::uint64_t& temporary = estimate.plan.disk.temporary_bytes;
+  temporary = std::max(temporary, importing::predict_import(input, memory));
+}
+
+}  // namespace
+
+TimeEstimate estimate_time(const BuildPlan& plan, config::SimplifyMethod method,
+                           std::uint64_t input_bytes) {
+  TimeEstimate time;
+  time.cpu_seconds =
+      static_cast<double>(plan.job.face_count) * microseconds_per_triangle(method) * 1e-6;
+  const double moved = kInputReads * static_cast<double>(input_bytes) +
+                       kTemporaryMoves * static_cast<double>(plan.disk.temporary_bytes) +
+                       static_cast<double>(plan.disk.output_bytes);
+  time.wall_seconds =
+      time.cpu_seconds * (kSerialShare + (1 - kSerialShare) / static_cast<double>(plan.threads)) +
+      moved / kDiskBytesPerSecond;
+  return time;
+}
+
+BuildEstimate estimate_build(const config::Config& config, bool force, storage::FileSystem& files,
+                             const execution::CancelToken& cancel) {
+  check_apart(config, files);
+  storage::MemoryPool pool(0);
+  importing::MeshInput input(config.input, config.weld, files);
+  if (input.needs_import()) {
+    storage::check_output(files, {config.output, config.storage.container}, force);
+    count_by_import(config, input, files, pool, cancel);
+  }
+  BuildEstimate estimate{.plan = plan_build(config, input.description(), input.imported_bytes()),
+                         .mesh = input.description(),
+                         .tiles = {},
+                         .time = {},
+                         .disk = existing_directory(config.output, files),
+                         .input = config.input,
+                         .output = config.output};
+  if (input.needs_import())
+    describe_import(input.files(), importing::plan_import(config.memory_budget), estimate);
+  input.drop();
+  storage::check_output(files, {config.output, config.storage.container}, force);
+  check_disk(estimate.plan.disk, config.output, files);
+  estimate.tiles = count_tiles(estimate.plan.job);
+  estimate.time = estimate_time(estimate.plan, config.simplify.method, estimate.mesh.file_bytes);
+  estimate.memory_budget_bytes = config.memory_budget;
+  estimate.least_budget_bytes = least_budget(estimate.plan.job);
+  estimate.free_bytes = files.free_bytes(estimate.disk);
+  return estimate;
+}
+
+std::string estimate_text(const BuildEstimate& e) {
+  const Tree& tree = e.plan.tree;
+  const DiskNeed& disk = e.plan.disk;
+  std::string text = fmt::format(
+      "input       {}: {}, {} vertices, {} faces, {}\n"
+      "hierarchy   {} partitions of at most {} vertices, {} levels, {} tiles\n"
+      "output      about {}\n"
+      "temporary   about {} at most\n"
+      "disk        {} needed at once, {} free in {}\n",
+      e.input.string(), e.mesh.format, e.mesh.vertex_count, e.mesh.face_count,
+      execution::rounded_size_text(e.mesh.file_bytes), tree.partition_count(),
+      (tree.vertex_count() + tree.partition_count() - 1) / tree.partition_count(), e.tiles.levels,
+      e.tiles.tiles(), execution::rounded_size_text(disk.output_bytes),
+      execution::rounded_size_text(disk.temporary_bytes),
+      execution::rounded_size_text(disk.room_bytes), execution::rounded_size_text(e.free_bytes),
+      e.disk.string());
+  text += memory_text(e);
+  text += fmt::format(
+      "time        about {} on {} {}, {} of CPU\n"
+      "            (an estimate, for {})\n",
+      duration(e.time.wall_seconds), e.plan.threads, e.plan.threads == 1 ? "thread" : "threads",
+      duration(e.time.cpu_seconds), kRateMachine);
+  return text;
+}
+
+Json to_json(const BuildEstimate& e) {
+  Json paths = Json::array();
+  for (const std::filesystem::path& path : e.input)
+    paths.push_back(path.string());
+  return {{"input", paths.size() == 1 ? paths[0] : paths},
+          {"output", e.output.string()},
+          {"input_bytes", e.mesh.file_bytes},
+          {"vertices", e.mesh.vertex_count},
+          {"faces", e.mesh.face_count},
+          {"partitions", e.plan.tree.partition_count()},
+          {"levels", e.tiles.levels},
+          {"tiles", e.tiles.tiles()},
+          {"predicted_output_bytes", e.plan.disk.output_bytes},
+          {"predicted_temporary_bytes", e.plan.disk.temporary_bytes},
+          {"predicted_room_bytes", e.plan.disk.room_bytes},
+          {"free_bytes", e.free_bytes},
+          {"memory", memory_json(e)},
+          {"threads", e.plan.threads},
+          {"estimated_cpu_seconds", std::round(e.time.cpu_seconds * 1000) / 1000},
+          {"estimated_wall_seconds", std::round(e.time.wall_seconds * 1000) / 1000},
+          {"rates_of", kRateMachine}};
+}
+
+}  // namespace meshhier::pipeline

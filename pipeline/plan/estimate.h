@@ -1,0 +1,57 @@
+// What a build will be like, told before it: from the config and the header of the input alone.
+#pragma once
+
+#include "config/config.h"
+#include "execution/cancel.h"
+#include "pipeline/plan/build_plan.h"
+#include "storage/io/file.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+namespace meshhier::pipeline {
+
+/// Time is the least certain of all: a rate for each method, measured on one kind of machine.
+struct TimeEstimate {
+  double cpu_seconds = 0;
+  double wall_seconds = 0;
+};
+
+TimeEstimate estimate_time(const BuildPlan& plan, config::SimplifyMethod method,
+                           std::uint64_t input_bytes);
+
+/// The machine the rates are of, for people.
+inline constexpr std::string_view kRateMachine =
+    "x86-64 server cores of about 3 GHz and a disk of 500 MB/s";
+
+struct BuildEstimate {
+  BuildPlan plan;
+  mesh_io::MeshDescription mesh;
+  TileCounts tiles;
+  TimeEstimate time;
+  std::uint64_t memory_budget_bytes = 0;
+  std::uint64_t least_budget_bytes = 0;
+  std::filesystem::path disk;  ///< a directory on the disk that would hold the output
+  std::uint64_t free_bytes = 0;
+  mesh_io::InputPaths input;
+  std::filesystem::path output;
+};
+
+/// Refuses what build_hierarchy() refuses before its work, with the same Error; leaves nothing
+/// behind. Input that must be imported is imported to count it, into temporary files beside the
+/// output, which takes as long as in a build; of all else only the header is read.
+/// Whether the output's directory can be written is found out by building only.
+BuildEstimate estimate_build(const config::Config& config, bool force, storage::FileSystem& files,
+                             const execution::CancelToken& cancel = execution::CancelToken());
+
+/// For people, a few lines.
+std::string estimate_text(const BuildEstimate& estimate);
+
+/// One object; README.md lists its keys.
+nlohmann::ordered_json to_json(const BuildEstimate& estimate);
+
+}  // namespace meshhier::pipeline

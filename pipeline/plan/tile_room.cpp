@@ -1,0 +1,87 @@
+#include "pipeline/plan/tile_room.h"
+
+#include "execution/allocator.h"
+#include "execution/size_text.h"
+#include "hierarchy/error.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace meshhier::pipeline {
+
+namespace {
+
+// Some 3 MiB stay behind a usual tile, which has 10 MiB at work: every 64 tiles.
+constexpr std::uint64_t kBytesBetweenReleases = std::uint64_t{640} << 20;
+constexpr std::uint64_t kMostBetweenReleases = 64;
+
+/// Of more budget a twelfth is the allocator's, which may lack its part of this one
+/// (memory_plan.cpp).
+[[noreturn]] void refuse(const MemoryPlan& plan, const storage::MemoryPool& pool,
+                         std::uint64_t needed_bytes) {
+  constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+  const std::uint64_t lacking = needed_bytes - plan.work_bytes - pool.free_bytes();
+  const std::uint64_t more = (lacking + plan.budget_bytes / 12) / 11 * 12 / kMiB + 1;
+  throw Error(ErrorCode::budget,
+              fmt::format("a tile of the mesh has so many triangles at few vertices that it takes "
+                          "{}; it needs a memory_budget larger by {}",
+                          execution::rounded_size_text(needed_bytes),
+                          execution::exact_size_text(more * kMiB)));
+}
+
+std::uint64_t most_triangle_bytes(const Forest& forest, Level level) {
+  std::uint64_t most = 0;
+  for (std::uint32_t i = 0; i < forest.tree().node_count(level); ++i)
+    most = std::max(most, forest.triangle_bytes({level, i}));
+  return most;
+}
+
+}  // namespace
+
+TileRoom::TileRoom(const MemoryPlan& plan, storage::MemoryPool& pool, std::uint64_t heaviest_bytes)
+    : pool_(pool),
+      in_flight_(plan.tiles_in_flight),
+      items_between_releases_(std::clamp<std::uint64_t>(
+          kBytesBetweenReleases / std::max<std::uint64_t>(heaviest_bytes, 1), 1,
+          kMostBetweenReleases)) {
+  if (heaviest_bytes * in_flight_ <= plan.work_bytes)
+    return;
+  if (heaviest_bytes > plan.work_bytes) {
+    const std::uint64_t lacking = heaviest_bytes - plan.work_bytes;
+    if (!pool.try_take(lacking))
+      refuse(plan, pool, heaviest_bytes);
+    taken_ = lacking;
+  }
+  in_flight_ = std::clamp<std::uint64_t>(plan.work_bytes / heaviest_bytes, 1, in_flight_);
+}
+
+TileRoom room_for(Forest& forest, const MemoryPlan& plan, std::uint64_t heaviest_bytes) {
+  if (heaviest_bytes > plan.work_bytes) {
+    forest.drop_copies(heaviest_bytes - plan.work_bytes);
+    execution::release_free_memory();
+  }
+  return {plan, forest.pool(), heaviest_bytes};
+}
+
+std::uint64_t heaviest_read(const Forest& forest, Level level) {
+  return most_triangle_bytes(forest, level) * TileRoom::kRead;
+}
+
+std::uint64_t heaviest_packed(const Forest& forest, Level level) {
+  return most_triangle_bytes(forest, level) * TileRoom::kPacked;
+}
+
+std::uint64_t heaviest_contracted(const Forest& forest, Level level) {
+  std::uint64_t most = 0;
+  for (std::uint32_t i = 0; i < forest.tree().node_count(level); ++i) {
+    std::uint64_t bytes = 0;
+    const Tree::Children children = forest.tree().children({level, i});
+    for (const NodeId child : children.span())
+      bytes += forest.triangle_bytes(child);
+    most = std::max(most, bytes);
+  }
+  return most * TileRoom::kContracted;
+}
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,56 @@
+// Memory for tiles with far more triangles than vertices.
+#pragma once
+
+#include "pipeline/plan/memory_plan.h"
+#include "pipeline/tiles/forest.h"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace meshhier::pipeline {
+
+/// The memory plan counts with the triangles that vertices of the mesh have on average. Around a
+/// vertex of a million triangles, or in a soup, a tile has many times as many: then fewer are at
+/// work at a time, and what one alone needs beyond the plan is taken from the pool, until this
+/// object goes.
+class TileRoom {
+ public:
+  /// How many bytes are at work for each that Forest::triangle_bytes() tells. Measured with
+  /// fans, books and soups: 19 to 22, and half of it where tiles are only read.
+  static constexpr std::uint64_t kContracted = 24;
+  static constexpr std::uint64_t kRead = 12;
+  /// Read and compressed: the plain file, corners in two orders, what finds the orders and the
+  /// results take 80 to 90 bytes a triangle more, of which triangle_bytes() tells 12.
+  static constexpr std::uint64_t kPacked = kRead + 8;
+
+  /// `heaviest_bytes`: what the largest of the items takes at work. Throws Error(budget) naming
+  /// what would do.
+  TileRoom(const MemoryPlan& plan, storage::MemoryPool& pool, std::uint64_t heaviest_bytes);
+  TileRoom(const TileRoom&) = delete;
+  TileRoom& operator=(const TileRoom&) = delete;
+  ~TileRoom() { pool_.give_back(taken_); }
+
+  /// Items at a time.
+  std::size_t in_flight() const { return in_flight_; }
+  /// After so many items free memory should go back to the system (release_free_memory()): what
+  /// they leave behind between the blobs that stay adds up.
+  std::size_t items_between_releases() const { return items_between_releases_; }
+
+ private:
+  storage::MemoryPool& pool_;
+  std::uint64_t taken_ = 0;
+  std::size_t in_flight_;
+  std::size_t items_between_releases_;
+};
+
+/// A TileRoom in the forest's pool, of which tiles kept in memory make way; the memory they had
+/// goes back to the system.
+TileRoom room_for(Forest& forest, const MemoryPlan& plan, std::uint64_t heaviest_bytes);
+
+/// Of the level's tiles, what the heaviest takes while it is read, or also compressed.
+std::uint64_t heaviest_read(const Forest& forest, Level level);
+std::uint64_t heaviest_packed(const Forest& forest, Level level);
+/// Of the level's nodes, what the heaviest takes while its tile is made of its children's.
+std::uint64_t heaviest_contracted(const Forest& forest, Level level);
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,124 @@
+#include "pipeline/tiles/bound_chain.h"
+
+#include "hierarchy/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace meshhier::pipeline {
+namespace {
+
+/// A float that is certainly not below `value`, and above `below`.
+float above(float below, double value) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  auto result = static_cast<float>(value);
+  if (result < value)
+    result = std::nextafter(result, kInfinity);
+  return std::max(result, std::nextafter(below, kInfinity));
+}
+
+}  // namespace
+
+void TileSet::settle() {
+  std::sort(numbers_.begin(), numbers_.end());
+  numbers_.erase(std::unique(numbers_.begin(), numbers_.end()), numbers_.end());
+  numbers_.shrink_to_fit();
+  if (numbers_.size() > kMost)
+    add_all();
+}
+
+BoundChain::BoundChain(Forest& forest, double diagonal) : forest_(forest), diagonal_(diagonal) {
+  const Tree& tree = forest.tree();
+  const std::uint32_t count = tree.node_count(tree.depth());
+  below_.resize(count);
+  for (std::uint32_t i = 0; i < count; ++i)
+    below_[i].reached.add(i);
+}
+
+void BoundChain::add(Level level, std::span<const Step> steps) {
+  most_back_ = most_certain_ = 0;
+  for (const Sum& sum : below_)
+    most_back_ = std::max(most_back_, sum.back);
+  for (const Step& step : steps)
+    most_certain_ = std::max(most_certain_, step.certain);
+  std::vector<Sum> sums(steps.size());
+  for (std::uint32_t i = 0; i < steps.size(); ++i)
+    sums[i] = sum_of({level, i}, steps);
+  for (std::uint32_t i = 0; i < steps.size(); ++i)
+    note({level, i}, steps[i], sums[i]);
+  below_ = std::move(sums);
+}
+
+std::uint32_t BoundChain::parent(Level level, std::uint32_t finer_tile) const {
+  return forest_.tree().parent({finer(level), finer_tile}).index;
+}
+
+/// The largest way back from any of the tiles, which are of the level below.
+double BoundChain::farthest_back(const TileSet& tiles) const {
+  if (tiles.is_all())
+    return most_back_;
+  double farthest = 0;
+  tiles.for_each([&](std::uint32_t tile) { farthest = std::max(farthest, below_[tile].back); });
+  return farthest;
+}
+
+BoundChain::Sum BoundChain::sum_of(NodeId node, std::span<const Step> steps) const {
+  const Step& step = steps[node.index];
+  Sum sum;
+  sum.back = farthest_back(step.finer_neighbours);
+  TileSet landed;  // in tiles of this level
+  const auto add_parents = [&](const TileSet& finer_tiles, TileSet& to) {
+    if (finer_tiles.is_all())
+      return to.add_all();
+    finer_tiles.for_each([&](std::uint32_t tile) { to.add(parent(node.level, tile)); });
+  };
+  const Tree::Children children = forest_.tree().children(node);
+  for (const NodeId child : children.span()) {
+    const Sum& below = below_[child.index];
+    sum.back = std::max(sum.back, below.back);
+    sum.forth = std::max(sum.forth, below.forth);
+    add_parents(below.reached, landed);
+  }
+  landed.settle();
+  sum.reached = landed;
+  double farthest = 0;
+  if (landed.is_all()) {
+    farthest = most_certain_;
+  } else {
+    landed.for_each([&](std::uint32_t tile) {
+      farthest = std::max(farthest, steps[tile].certain);
+      add_parents(steps[tile].finer_neighbours, sum.reached);
+    });
+    sum.reached.settle();
+  }
+  sum.back += step.certain;
+  sum.forth += farthest;
+  return sum;
+}
+
+void BoundChain::note(NodeId node, const Step& step, const Sum& sum) {
+  TileFacts below;
+  const Tree::Children children = forest_.tree().children(node);
+  for (const NodeId child : children.span()) {
+    below.error = std::max(below.error, forest_.facts(child).error);
+    below.bound = std::max(below.bound, forest_.facts(child).bound);
+  }
+  TileFacts& facts = forest_.facts(node);
+  if (forest_.tree().is_early(node)) {
+    facts.error = below.error;
+    facts.bound = below.bound;
+    return;
+  }
+  facts.error = above(below.error, below.error + std::sqrt(step.mean_square));
+  facts.bound =
+      std::max(above(below.bound, std::min(std::max(sum.back, sum.forth), diagonal_)), facts.error);
+  if (!std::isfinite(facts.bound)) {
+    throw Error(
+        ErrorCode::input,
+        "the mesh is so large that distances on it are beyond the range of single precision "
+        "(3.4e38): use a larger unit of length");
+  }
+}
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,95 @@
+// Errors and bounds of tiles, from how far each level's contraction moved the surface.
+#pragma once
+
+#include "pipeline/tiles/forest.h"
+
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace meshhier::pipeline {
+
+/// Tiles of one level. More than a few count as all of them: a vertex that all tiles touch makes
+/// all of them neighbours of each other, and their number squared would be held.
+class TileSet {
+ public:
+  /// Scans stay below a third of it.
+  static constexpr std::size_t kMost = 1024;
+
+  TileSet() = default;
+  /// As numbers() gave it.
+  TileSet(std::vector<std::uint32_t> numbers) : numbers_(std::move(numbers)) {}
+
+  void add(std::uint32_t tile) {
+    if (is_all() || (!numbers_.empty() && numbers_.back() == tile))
+      return;
+    numbers_.push_back(tile);
+    if (numbers_.size() > 4 * kMost)
+      settle();
+  }
+  void add_all() { numbers_ = {kAll}; }
+  /// Sorts and removes repeats; required after the last add().
+  void settle();
+
+  bool is_all() const { return !numbers_.empty() && numbers_.back() == kAll; }
+  /// Calls visit(tile) for each, ascending. Requires that it is not all of them.
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    assert(!is_all());
+    for (const std::uint32_t tile : numbers_)
+      visit(tile);
+  }
+  /// What there is to keep.
+  const std::vector<std::uint32_t>& numbers() const { return numbers_; }
+
+ private:
+  static constexpr std::uint32_t kAll = ~0U;
+  std::vector<std::uint32_t> numbers_;  ///< or kAll alone
+};
+
+/// How far one contraction moved the surface: that of a tile, its seams counted.
+struct Step {
+  double certain = 0;  ///< both ways; infinite if what was drawn is drawn nowhere near
+  double mean_square = 0;
+  TileSet finer_neighbours;  ///< tiles of the children's level that the drawn surface was held
+                             ///< against
+};
+
+/// Adds steps up, level by level, into the tiles' facts. A step of a tile ends where it may: in the
+/// tile or beside it. So two sums are kept per tile:
+///   back   from any point the tile draws down to the original: the step of the tile, then back of
+///          whichever finer tile it was measured against;
+///   forth  from any original point under the tile up: the largest step of all tiles that the point
+///          may have come to lie in.
+class BoundChain {
+ public:
+  /// No distance counts for more than `diagonal`, of the whole model.
+  BoundChain(Forest& forest, double diagonal);
+
+  /// `steps`: one per node of the level, the next above the last call's. Throws Error(input) if a
+  /// bound is beyond the largest float.
+  void add(Level level, std::span<const Step> steps);
+
+ private:
+  struct Sum {
+    double back = 0;
+    double forth = 0;
+    TileSet reached;  ///< tiles that points from under this one may lie in
+  };
+
+  std::uint32_t parent(Level level, std::uint32_t finer_tile) const;
+  double farthest_back(const TileSet& tiles) const;
+  Sum sum_of(NodeId node, std::span<const Step> steps) const;
+  void note(NodeId node, const Step& step, const Sum& sum);
+
+  Forest& forest_;
+  double diagonal_;
+  std::vector<Sum> below_;
+  double most_back_ = 0;     ///< of all of below_
+  double most_certain_ = 0;  ///< of all steps of the level that is added
+};
+
+}  // namespace meshhier::pipeline

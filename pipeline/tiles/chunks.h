@@ -1,0 +1,111 @@
+// The chunks of a mesh while it is distributed to them, and until they are taken.
+#pragma once
+
+#include "hierarchy/tree.h"
+#include "partition/chunk.h"
+#include "storage/io/spool.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace meshhier::pipeline {
+
+/// A triangle with all corners in one chunk: their places in it, 21 bits each, the first corner's
+/// lowest.
+class PackedTriangle {
+ public:
+  PackedTriangle() = default;
+  PackedTriangle(const partition::RankTriangle& t, std::uint32_t first_rank)
+      : bits_((t[0] - first_rank) | std::uint64_t{t[1] - first_rank} << kBits |
+              std::uint64_t{t[2] - first_rank} << 2 * kBits) {}
+
+  partition::RankTriangle ranks(std::uint32_t first_rank) const {
+    const auto corner = [&](int i) {
+      return first_rank + static_cast<std::uint32_t>(bits_ >> i * kBits & kMask);
+    };
+    return {corner(0), corner(1), corner(2)};
+  }
+
+ private:
+  static constexpr int kBits = 21;
+  static constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;
+  std::uint64_t bits_ = 0;
+};
+
+/// A block of vertices sorted by chunk; keeps its memory from block to block.
+struct ChunkedVertices {
+  std::vector<std::uint32_t> chunk_of;  ///< per vertex; filled before sort()
+  std::vector<std::uint32_t> starts;    ///< per chunk: its first row; one entry more than chunks
+  std::vector<float> rows;              ///< per vertex its position and attributes
+
+  void sort(std::uint32_t chunk_count, std::span<const Vec3f> positions,
+            std::span<const float> attributes);
+
+ private:
+  std::vector<std::uint32_t> next_;
+};
+
+/// A block of triangles sorted by chunk; keeps its memory from block to block.
+struct ChunkedTriangles {
+  std::vector<std::uint32_t> starts;  ///< per chunk: its first in `inner`; one entry more
+  std::vector<PackedTriangle> inner;  ///< all corners in one chunk
+  struct Shared {
+    std::uint32_t chunk;
+    partition::RankTriangle triangle;
+  };
+  std::vector<Shared> shared;  ///< the others, once for each chunk they touch
+
+  void sort(std::span<const partition::RankTriangle> triangles, const partition::ChunkMap& map);
+
+ private:
+  static constexpr std::uint32_t kShared = ~0u;
+  std::vector<std::uint32_t> chunk_of_;  ///< per triangle
+  std::vector<std::uint32_t> next_;
+};
+
+/// All chunks of a mesh, spooled.
+class Chunks {
+ public:
+  /// Spools a chunk has: vertices, inner and shared triangles.
+  static constexpr int kSpools = 3;
+
+  Chunks(const Tree& tree, int channels, storage::ScratchFile& scratch, std::size_t block_bytes);
+
+  Level level() const { return level_; }
+  const partition::ChunkMap& map() const { return map_; }
+  std::uint32_t count() const { return map_.count(); }
+
+  /// Blocks in the order of ids.
+  void append(const ChunkedVertices& block);
+  void append(const ChunkedTriangles& block);
+
+  /// Reads a chunk and forgets it. Thread-safe for different chunks.
+  partition::ChunkMesh take(std::uint32_t chunk);
+  /// For the journal, when all is appended: where the scratch file holds a chunk, which is then on
+  /// disk.
+  nlohmann::json store(std::uint32_t chunk);
+  /// False if the scratch file is too short. Throws nlohmann::json::exception if `stored` is
+  /// nothing of the kind.
+  bool restore(std::uint32_t chunk, const nlohmann::json& stored);
+  /// Whether the scratch file holds a restored chunk as it was; reads it all.
+  bool is_as_stored(std::uint32_t chunk) const;
+  /// Forgets a chunk that is not needed.
+  void drop(std::uint32_t chunk);
+
+  /// Bytes a chunk's triangles take in memory.
+  std::uint64_t triangle_bytes(std::uint32_t chunk) const;
+
+ private:
+  Level level_;
+  partition::ChunkMap map_;
+  int channels_;
+  std::vector<storage::RecordSpool<float>> vertices_;
+  std::vector<storage::RecordSpool<PackedTriangle>> inner_;
+  std::vector<storage::RecordSpool<partition::RankTriangle>> shared_;
+};
+
+}  // namespace meshhier::pipeline

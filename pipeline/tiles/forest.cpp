@@ -1,0 +1,237 @@
+#include "pipeline/tiles/forest.h"
+
+#include "cluster_simplify/seams.h"
+#include "storage/format/work_tile.h"
+
+#include <algorithm>
+#include <array>
+
+namespace meshhier::pipeline {
+namespace {
+
+/// Calls visit(begin, end) for each run of references to one tile. Requires them sorted.
+template <class Visit>
+void for_each_tile(std::span<const GhostRef> refs, const Visit& visit) {
+  for (std::size_t begin = 0, end = 0; begin < refs.size(); begin = end) {
+    while (end < refs.size() && refs[end].tile == refs[begin].tile)
+      ++end;
+    visit(begin, end);
+  }
+}
+
+nlohmann::json to_json(const storage::StoredBlob& blob) {
+  return {blob.offset, blob.bytes, blob.checksum};
+}
+
+bool restore(storage::BlobStore& store, std::size_t index, const nlohmann::json& stored) {
+  return store.restore(index, {stored.at(0), stored.at(1), stored.at(2)});
+}
+
+}  // namespace
+
+Forest::Forest(const Tree& tree, Level chunks, int channels, storage::ScratchFile& scratch)
+    : tree_(tree),
+      chunks_(chunks),
+      channels_(channels),
+      pool_(scratch.pool()),
+      places_(scratch, tree.node_count(chunks)) {
+  for (int level = 0; level <= raw(tree.depth()); ++level) {
+    const std::uint32_t count = tree.node_count(static_cast<Level>(level));
+    levels_.push_back({{scratch, count},
+                       {scratch, count},
+                       {scratch, count},
+                       {scratch, count},
+                       std::vector<TileFacts>(count),
+                       std::vector<std::uint32_t>(count)});
+  }
+}
+
+void Forest::put_places(std::uint32_t chunk, std::span<const partition::LeafPlace> places) {
+  places_.put(chunk, std::as_bytes(places));
+}
+
+void Forest::put_tile(NodeId node, const WorkTile& tile) {
+  LevelStore& level = levels_[raw(node.level)];
+  level.tiles.put(node.index, storage::encode_work_tile(tile));
+  level.rims.put(node.index, storage::encode_rim(tile));
+  level.own_counts[node.index] = static_cast<std::uint32_t>(tile.vertices.size());
+}
+
+void Forest::put_parent_map(NodeId child, std::span<const std::uint16_t> parent_map) {
+  levels_[raw(child.level)].parent_maps.put(child.index, std::as_bytes(parent_map));
+}
+
+std::uint64_t Forest::triangle_bytes(NodeId node) const {
+  std::array<std::byte, storage::kWorkTileHeadBytes> head;
+  levels_[raw(node.level)].tiles.read(node.index, 0, head);
+  return storage::work_triangle_bytes(head);
+}
+
+void Forest::drop_copies(std::uint64_t free_bytes) {
+  for (std::size_t level = levels_.size(); level-- > 0;) {
+    for (storage::BlobStore* store : {&levels_[level].tiles, &levels_[level].rims,
+                                      &levels_[level].bands, &levels_[level].parent_maps}) {
+      if (pool_.free_bytes() >= free_bytes)
+        return;
+      store->drop_copies();
+    }
+  }
+}
+
+LoadedTile Forest::load_with_mapped(NodeId node) const {
+  const LevelStore& level = levels_[raw(node.level)];
+  WorkTile work = storage::decode_work_tile(level.tiles.view(node.index).bytes(), channels_);
+  LoadedTile loaded;
+  loaded.mapped = mapped(node, work.foreign);
+  BuildTile& tile = loaded.tile;
+  tile = cluster_simplify::resolve(std::move(work), loaded.mapped, !tree_.is_partition(node));
+  tile.mesh.vertices.reserve(tile.mesh.own_count + tile.mesh.ghosts.size());
+  for_each_tile(tile.mesh.ghosts, [&](std::size_t begin, std::size_t) {
+    const std::uint32_t neighbour = tile.mesh.ghosts[begin].tile;
+    cluster_simplify::fill_ghosts(
+        tile, neighbour, storage::decode_rim(level.rims.view(neighbour).bytes(), channels_));
+  });
+  return loaded;
+}
+
+void Forest::put_band(NodeId node, const Band& band) {
+  levels_[raw(node.level)].bands.put(node.index, storage::encode_band(band));
+}
+
+Band Forest::band(NodeId node) const {
+  return storage::decode_band(levels_[raw(node.level)].bands.view(node.index).bytes());
+}
+
+std::vector<GhostRef> Forest::mapped(NodeId node, std::span<const GhostRef> foreign) const {
+  if (tree_.is_partition(node))
+    return mapped_leaf(foreign);
+  std::vector<GhostRef> result;
+  result.reserve(foreign.size());
+  for_each_tile(foreign, [&](std::size_t begin, std::size_t end) {
+    const NodeId child{finer(node.level), foreign[begin].tile};
+    const std::uint32_t parent = tree_.parent(child).index;
+    const std::vector<std::uint16_t> map = parent_map(child, foreign[end - 1].index + 1);
+    for (std::size_t i = begin; i < end; ++i)
+      result.push_back({parent, map[foreign[i].index]});
+  });
+  return result;
+}
+
+std::vector<GhostRef> Forest::mapped_leaf(std::span<const GhostRef> foreign) const {
+  std::vector<GhostRef> result;
+  result.reserve(foreign.size());
+  for_each_tile(foreign, [&](std::size_t begin, std::size_t end) {
+    const std::uint32_t chunk = foreign[begin].tile;
+    const std::uint32_t first = tree_.partitions({chunks_, chunk}).begin;
+    std::vector<partition::LeafPlace> places(places_.size(chunk) / sizeof(partition::LeafPlace));
+    places_.read(chunk, 0, std::as_writable_bytes(std::span(places)));
+    for (std::size_t i = begin; i < end; ++i) {
+      const partition::LeafPlace& place = partition::find_place(places, foreign[i].index);
+      result.push_back({first + place.partition, place.index});
+    }
+  });
+  return result;
+}
+
+std::vector<std::uint16_t> Forest::parent_map(NodeId child, std::size_t count) const {
+  std::vector<std::uint16_t> map(count);
+  levels_[raw(child.level)].parent_maps.read(child.index, 0,
+                                             std::as_writable_bytes(std::span(map)));
+  return map;
+}
+
+std::vector<std::uint16_t> Forest::parent_map(NodeId child) const {
+  return parent_map(
+      child, levels_[raw(child.level)].parent_maps.size(child.index) / sizeof(std::uint16_t));
+}
+
+std::vector<std::uint16_t> Forest::published_parent_map(NodeId node) const {
+  if (node.level == Level{0})
+    return {};
+  const NodeId parent = tree_.parent(node);
+  // An early node keeps its partition as it is, so the map from it is the map from the partition.
+  return parent_map(tree_.is_early(parent) ? parent : node);
+}
+
+std::vector<std::uint16_t> Forest::chains(NodeId node, std::span<const GhostRef> ghosts) const {
+  std::vector<std::uint16_t> result;
+  for_each_tile(ghosts, [&](std::size_t begin, std::size_t end) {
+    NodeId tile{node.level, ghosts[begin].tile};
+    const auto length = static_cast<std::size_t>(tree_.chain_length(node, tile));
+    const std::size_t first = result.size();
+    result.resize(first + (end - begin) * length);
+    std::uint32_t last = 0;
+    for (std::size_t i = begin, at = first; i < end; ++i, at += length) {
+      result[at] = static_cast<std::uint16_t>(ghosts[i].index);
+      last = std::max(last, ghosts[i].index);
+    }
+    for (std::size_t step = 1; step < length; ++step, tile = tree_.parent(tile)) {
+      const std::vector<std::uint16_t> map = parent_map(tile, std::size_t{last} + 1);
+      last = 0;
+      for (std::size_t at = first + step; at < result.size(); at += length) {
+        result[at] = map[result[at - 1]];
+        last = std::max<std::uint32_t>(last, result[at]);
+      }
+    }
+  });
+  return result;
+}
+
+nlohmann::json Forest::stored_chunk(std::uint32_t chunk) const {
+  const LevelStore& leaves = levels_[raw(tree_.depth())];
+  nlohmann::json partitions = nlohmann::json::array();
+  const PartitionRange range = tree_.partitions({chunks_, chunk});
+  for (std::uint32_t p = range.begin; p < range.end; ++p)
+    partitions.push_back(
+        {leaves.own_counts[p], to_json(leaves.tiles.stored(p)), to_json(leaves.rims.stored(p))});
+  return {{"places", to_json(places_.stored(chunk))}, {"partitions", std::move(partitions)}};
+}
+
+bool Forest::restore_chunk(std::uint32_t chunk, const nlohmann::json& stored) {
+  LevelStore& leaves = levels_[raw(tree_.depth())];
+  const PartitionRange range = tree_.partitions({chunks_, chunk});
+  const nlohmann::json& partitions = stored.at("partitions");
+  if (partitions.size() != range.end - range.begin || !restore(places_, chunk, stored.at("places")))
+    return false;
+  for (std::uint32_t p = range.begin; p < range.end; ++p) {
+    const nlohmann::json& partition = partitions.at(p - range.begin);
+    leaves.own_counts[p] = partition.at(0);
+    if (!restore(leaves.tiles, p, partition.at(1)) || !restore(leaves.rims, p, partition.at(2)))
+      return false;
+  }
+  return true;
+}
+
+nlohmann::json Forest::stored_tile(NodeId node) const {
+  const LevelStore& level = levels_[raw(node.level)];
+  nlohmann::json maps = nlohmann::json::array();
+  const Tree::Children children = tree_.children(node);
+  for (const NodeId child : children.span())
+    maps.push_back(to_json(levels_[raw(child.level)].parent_maps.stored(child.index)));
+  const TileFacts& facts = level.facts[node.index];
+  return {{"own", level.own_counts[node.index]},
+          {"torn", facts.torn_count},
+          {"forced", facts.forced_count},
+          {"tile", to_json(level.tiles.stored(node.index))},
+          {"rim", to_json(level.rims.stored(node.index))},
+          {"band", to_json(level.bands.stored(node.index))},
+          {"maps", std::move(maps)}};
+}
+
+bool Forest::restore_tile(NodeId node, const nlohmann::json& stored) {
+  LevelStore& level = levels_[raw(node.level)];
+  level.own_counts[node.index] = stored.at("own");
+  level.facts[node.index].torn_count = stored.at("torn");
+  level.facts[node.index].forced_count = stored.at("forced");
+  std::size_t map = 0;
+  const Tree::Children children = tree_.children(node);
+  for (const NodeId child : children.span()) {
+    if (!restore(levels_[raw(child.level)].parent_maps, child.index, stored.at("maps").at(map++)))
+      return false;
+  }
+  return restore(level.tiles, node.index, stored.at("tile")) &&
+         restore(level.rims, node.index, stored.at("rim")) &&
+         restore(level.bands, node.index, stored.at("band"));
+}
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,104 @@
+// The hierarchy under construction: every level's tiles, rims and parent maps, in scratch space.
+#pragma once
+
+#include "hierarchy/build_tile.h"
+#include "hierarchy/published.h"
+#include "hierarchy/tree.h"
+#include "partition/leaf_tiles.h"
+#include "storage/io/blob_store.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace meshhier::pipeline {
+
+/// What a build finds out about a tile beside its mesh. See TileRecord.
+struct TileFacts {
+  float error = 0;
+  float bound = 0;
+  std::uint32_t torn_count = 0;
+  std::uint32_t forced_count = 0;
+};
+
+struct LoadedTile {
+  BuildTile tile;  ///< with its ghosts at its own level, positions and all
+  /// What foreign corners of the tile as it was just made (WorkTile::foreign) are at its own level.
+  std::vector<GhostRef> mapped;
+};
+
+/// Tiles are put level by level, finest first. A level's tiles can be loaded once all tiles of that
+/// level are there (and, of a simplified level, all parent maps that lead to it). Loading and
+/// putting are thread-safe.
+///
+/// An early node has a tile here too: its partition's, kept as it is.
+class Forest {
+ public:
+  Forest(const Tree& tree, Level chunks, int channels, storage::ScratchFile& scratch);
+
+  const Tree& tree() const { return tree_; }
+
+  void put_places(std::uint32_t chunk, std::span<const partition::LeafPlace> places);
+  void put_tile(NodeId node, const WorkTile& tile);
+  /// What the neighbours of a simplified tile may see of it.
+  void put_band(NodeId node, const Band& band);
+  /// The map from `child` to its parent's tile.
+  void put_parent_map(NodeId child, std::span<const std::uint16_t> parent_map);
+
+  TileFacts& facts(NodeId node) { return levels_[raw(node.level)].facts[node.index]; }
+  const TileFacts& facts(NodeId node) const { return levels_[raw(node.level)].facts[node.index]; }
+  std::uint32_t own_count(NodeId node) const {
+    return levels_[raw(node.level)].own_counts[node.index];
+  }
+
+  /// What the triangles and foreign corners of a tile take.
+  std::uint64_t triangle_bytes(NodeId node) const;
+  /// What is kept in memory counts against it.
+  storage::MemoryPool& pool() const { return pool_; }
+
+  /// Takes tiles out of memory, which are on disk too, the finest first, until the pool has so much
+  /// free; while nothing is loaded.
+  void drop_copies(std::uint64_t free_bytes);
+
+  LoadedTile load_with_mapped(NodeId node) const;
+  BuildTile load(NodeId node) const { return load_with_mapped(node).tile; }
+  Band band(NodeId node) const;
+  /// The map from `child` to its parent's tile.
+  std::vector<std::uint16_t> parent_map(NodeId child) const;
+  /// The map from `node` to the nearest ancestor that is published; empty for the root.
+  std::vector<std::uint16_t> published_parent_map(NodeId node) const;
+  /// Of each ghost of the node's tile its GhostChain, one after another.
+  std::vector<std::uint16_t> chains(NodeId node, std::span<const GhostRef> ghosts) const;
+
+  // For the journal: where the scratch file holds what was put, to be restored in another process.
+
+  /// Of a chunk: its places, and all its partitions.
+  nlohmann::json stored_chunk(std::uint32_t chunk) const;
+  /// Of a simplified tile: all that was put when it was made, the maps to it included.
+  nlohmann::json stored_tile(NodeId node) const;
+  /// False if the scratch file does not hold it as it was. Throws nlohmann::json::exception if
+  /// `stored` is nothing of the kind.
+  bool restore_chunk(std::uint32_t chunk, const nlohmann::json& stored);
+  bool restore_tile(NodeId node, const nlohmann::json& stored);
+
+ private:
+  struct LevelStore {
+    storage::BlobStore tiles, rims, bands, parent_maps;
+    std::vector<TileFacts> facts;
+    std::vector<std::uint32_t> own_counts;
+  };
+  std::vector<GhostRef> mapped(NodeId node, std::span<const GhostRef> foreign) const;
+  std::vector<GhostRef> mapped_leaf(std::span<const GhostRef> foreign) const;
+  std::vector<std::uint16_t> parent_map(NodeId child, std::size_t count) const;
+
+  Tree tree_;
+  Level chunks_;
+  int channels_;
+  storage::MemoryPool& pool_;
+  storage::BlobStore places_;
+  std::vector<LevelStore> levels_;
+};
+
+}  // namespace meshhier::pipeline

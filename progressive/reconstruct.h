@@ -1,0 +1,47 @@
+// Rebuilds a mesh from a progressive stream, as a client does.
+#pragma once
+
+#include "execution/cancel.h"
+#include "execution/progress.h"
+#include "storage/io/file.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace meshhier::progressive {
+
+struct ReconstructOptions {
+  std::optional<std::uint32_t> details;    ///< how many, in their order; not set: all
+  std::filesystem::path output;            ///< PLY; replaced if it is there
+  std::uint64_t memory_budget = 1U << 30;  ///< bytes; the two arrays must fit
+};
+
+/// What a file did.
+struct ReconstructedStep {
+  std::string file;
+  std::uint64_t bytes = 0;
+  std::uint64_t vertices = 0;   ///< of the mesh with it
+  std::uint64_t triangles = 0;  ///< likewise
+  std::uint64_t entries = 0;    ///< of its three lists
+  double seconds = 0;           ///< to read it, and to put it in its places
+};
+
+struct ReconstructReport {
+  std::vector<ReconstructedStep> steps;  ///< the base first
+  std::uint64_t array_bytes = 0;         ///< of the two arrays
+  std::string summary;                   ///< a line for people
+};
+
+/// Reads the index, the base and the details (files behind those are not looked at), and writes the
+/// mesh they show as a PLY: vertices in the order of the original, each once. The output appears
+/// complete or not at all. Memory is the two arrays, one file and a run of it. Throws Error(usage)
+/// if there are not so many details, Error(io | corrupt) naming the file that is missing or
+/// damaged, Error(budget) if the arrays do not fit.
+ReconstructReport reconstruct(storage::FileSystem& files, const std::filesystem::path& stream,
+                              const ReconstructOptions& options, execution::Progress& progress,
+                              const execution::CancelToken& cancel);
+
+}  // namespace meshhier::progressive

@@ -1,0 +1,71 @@
+// A hierarchy in a 3TZ archive, read as if it were a directory of that name.
+#pragma once
+
+#include "storage/format/archive.h"
+#include "storage/io/file.h"
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace meshhier::storage {
+
+/// A file of an archive, as a file of its own; its version is the archive's. `path`: for messages.
+/// Requires that `place` lies in the archive, as Archive::find() tells it.
+std::unique_ptr<File> open_archived(std::filesystem::path path, std::shared_ptr<const File> archive,
+                                    Archive::Place place);
+
+/// Another file system, in which an archive is a directory as well: what is in it can be opened,
+/// looked at and listed. All else is done by the other one, which refuses to change what is below a
+/// file. Thread-safe as far as the other one is.
+class ArchiveFiles final : public FileSystem {
+ public:
+  /// Opens the archive; throws as Archive does. `others` must outlive this.
+  ArchiveFiles(FileSystem& others, const std::filesystem::path& archive);
+
+  const Archive& archive() const { return archive_; }
+
+  std::unique_ptr<File> open(const std::filesystem::path& path) override;
+  FileIdentity identity(const std::filesystem::path& path) override;
+  bool exists(const std::filesystem::path& path) override;
+  std::vector<std::filesystem::path> list(const std::filesystem::path& directory) override;
+
+  std::unique_ptr<File> create(const std::filesystem::path& path) override;
+  std::unique_ptr<File> reopen(const std::filesystem::path& path) override;
+  std::unique_ptr<FileLock> try_lock(const std::filesystem::path& path) override;
+  bool is_directory(const std::filesystem::path& path) override;
+  std::filesystem::path canonical(const std::filesystem::path& path) override;
+  std::vector<std::filesystem::path> children(const std::filesystem::path& directory) override;
+  void make_directories(const std::filesystem::path& path) override;
+  void remove_all(const std::filesystem::path& path) override;
+  void rename(const std::filesystem::path& from, const std::filesystem::path& to) override;
+  void sync_tree(const std::filesystem::path& directory) override;
+  std::uint64_t free_bytes(const std::filesystem::path& directory) override;
+
+ private:
+  /// The name in the archive; nothing if the path leads elsewhere.
+  std::optional<std::string> name_of(const std::filesystem::path& path) const;
+
+  FileSystem& others_;
+  Archive archive_;
+  std::string root_;  ///< with a slash at its end
+};
+
+/// The file system to read a hierarchy with, by what lies there: a file is taken for an archive.
+class HierarchyFiles {
+ public:
+  /// Throws as Archive does if there is a file that is no archive. `files` must outlive this.
+  HierarchyFiles(FileSystem& files, const std::filesystem::path& hierarchy);
+
+  FileSystem& files() const { return inside_ ? *inside_ : others_; }
+  /// Null if it is a directory, or nothing.
+  const Archive* archive() const { return inside_ ? &inside_->archive() : nullptr; }
+
+ private:
+  FileSystem& others_;
+  std::unique_ptr<ArchiveFiles> inside_;
+};
+
+}  // namespace meshhier::storage

@@ -1,0 +1,96 @@
+#include "storage/format/hierarchy_reader.h"
+
+#include "hierarchy/bounds.h"
+#include "hierarchy/error.h"
+#include "storage/format/index.h"
+#include "storage/format/layout.h"
+#include "storage/format/outline_glb.h"
+#include "storage/format/sealed_json.h"
+#include "storage/io/sealed_file.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstdint>
+
+#include <fmt/format.h>
+
+namespace meshhier::storage {
+namespace {
+
+/// What a GLB can say of its length: a larger file is not worth the memory.
+constexpr std::uint64_t kMaxGlbBytes = UINT32_MAX;
+
+Manifest load_manifest(FileSystem& files, const std::filesystem::path& directory) {
+  const auto path = manifest_path(directory);
+  return parse_manifest(read_sealed_text(*files.open(path)), path.string());
+}
+
+std::vector<TileRecord> load_index(FileSystem& files, const std::filesystem::path& directory,
+                                   const Manifest& manifest, const Tree& tree) {
+  const auto path = index_path(directory);
+  const auto bytes =
+      read_sealed(files, path, {manifest.index_bytes, manifest.index_checksum}, index_bytes(tree));
+  return decode_index(bytes, tree, path.string());
+}
+
+/// The name of the first count in which tile and record differ; null if they agree.
+const char* difference(const TileMesh& mesh, const TileRecord& record) {
+  if (mesh.own_count != record.own_count)
+    return "own vertices";
+  if (mesh.rim_count != record.rim_count)
+    return "rim vertices";
+  if (mesh.ghosts.size() != record.ghost_count)
+    return "ghosts";
+  if (mesh.interior.size() != record.interior_count)
+    return "interior triangles";
+  if (mesh.border.size() != record.border_count)
+    return "border triangles";
+  if (bounds_of(mesh.vertices.positions) != record.bounds)
+    return "bounds";
+  return nullptr;
+}
+
+TileFormat format_of(const Manifest& manifest) {
+  TileFormat format{
+      manifest.source.attributes, {manifest.origin, manifest.up}, manifest.compression, {}};
+  if (manifest.quantization)
+    format.lattice = manifest.quantization->lattice;
+  return format;
+}
+
+}  // namespace
+
+HierarchyReader::HierarchyReader(FileSystem& files, std::filesystem::path directory)
+    : files_(files),
+      directory_(std::move(directory)),
+      manifest_(load_manifest(files_, directory_)),
+      tree_(manifest_.source.vertices, manifest_.partition_count),
+      format_(format_of(manifest_)),
+      records_(load_index(files_, directory_, manifest_, tree_)) {}
+
+const TileRecord& HierarchyReader::record(NodeId node) const {
+  assert(tree_.contains(node));
+  return record_of(records_, tile_node(tree_, node));
+}
+
+PublishedTile HierarchyReader::read_tile(NodeId node) const {
+  const TileRecord& expected = record(node);
+  const auto path = tile_path(directory_, expected.node);
+  const auto bytes =
+      read_sealed(files_, path, {expected.file_bytes, expected.checksum}, kMaxGlbBytes);
+  PublishedTile tile = decode_tile(bytes, expected.node, tree_, format_, path.string());
+  if (const char* what = difference(tile.mesh, expected)) {
+    throw Error(ErrorCode::corrupt,
+                fmt::format("{}: its {} are not those of the index", path.string(), what));
+  }
+  return tile;
+}
+
+Outline HierarchyReader::read_outline() const {
+  const auto path = outline_path(directory_);
+  const auto bytes = read_sealed(
+      files_, path, {manifest_.outline_bytes, manifest_.outline_checksum}, kMaxGlbBytes);
+  return decode_outline(bytes, path.string());
+}
+
+}  // namespace meshhier::storage

@@ -1,0 +1,251 @@
+#include "storage/format/index.h"
+
+#include "hierarchy/error.h"
+#include "storage/format/glb.h"
+#include "storage/format/tile_glb.h"
+#include "storage/io/hash.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace meshhier::storage {
+namespace {
+
+// tiles.bin, little endian: a header, then one record a tile, ascending by level, then index.
+//
+//   header                                     record
+//   offset  bytes  what                        offset  bytes  what
+//        0      8  magic "MHTILES\n"                0      4  level
+//        8      4  version, 2                       4      4  index
+//       12      4  bytes of a record, 96            8      4  own vertices
+//       16      8  number of records               12      4  rim vertices
+//       24      8  XXH3-64 of bytes 0 to 23        16      4  ghosts
+//                  and all records                 20      4  interior triangles
+//                                                  24      4  border triangles
+//                                                  28      4  border triangles drawn
+//                                                  32      4  vertices asked for
+//                                                  36      4  vertices torn away
+//                                                  40      4  vertices forced away
+//                                                  44      4  f32 error
+//                                                  48      4  f32 bound
+//                                                  52      4  f32 compactness
+//                                                  56     24  f32 min x y z, max x y z
+//                                                  80      8  bytes of the file
+//                                                  88      8  XXH3-64 of the file
+constexpr std::string_view kIndexMagic = "MHTILES\n";
+constexpr std::uint32_t kIndexVersion = 2;
+constexpr std::size_t kIndexHeaderBytes = 32;
+constexpr std::size_t kCheckedHeaderBytes = 24;
+constexpr std::size_t kRecordBytes = 96;
+
+void append_record(std::vector<std::byte>& bytes, const TileRecord& record) {
+  for (const std::uint32_t value :
+       {std::uint32_t{raw(record.node.level)}, record.node.index, record.own_count,
+        record.rim_count, record.ghost_count, record.interior_count, record.border_count,
+        record.drawn_border_count, record.target_count, record.torn_count, record.forced_count}) {
+    append_little(bytes, value);
+  }
+  const Bounds& box = record.bounds;
+  for (const float value : {record.error, record.bound, record.compactness, box.min.x, box.min.y,
+                            box.min.z, box.max.x, box.max.y, box.max.z}) {
+    append_little(bytes, value);
+  }
+  append_little(bytes, record.file_bytes);
+  append_little(bytes, record.checksum);
+}
+
+std::uint64_t index_checksum(std::span<const std::byte> bytes) {
+  Checksum sum;
+  sum.add(bytes.first(kCheckedHeaderBytes));
+  sum.add(bytes.subspan(kIndexHeaderBytes));
+  return sum.value();
+}
+
+/// `from`: kRecordBytes bytes whose level was checked to be below 256.
+TileRecord load_record(const std::byte* from) {
+  const auto count = [&](std::size_t offset) { return load_little<std::uint32_t>(from + offset); };
+  const auto real = [&](std::size_t offset) { return load_little<float>(from + offset); };
+  TileRecord record;
+  record.node = {static_cast<Level>(count(0)), count(4)};
+  record.own_count = count(8);
+  record.rim_count = count(12);
+  record.ghost_count = count(16);
+  record.interior_count = count(20);
+  record.border_count = count(24);
+  record.drawn_border_count = count(28);
+  record.target_count = count(32);
+  record.torn_count = count(36);
+  record.forced_count = count(40);
+  record.error = real(44);
+  record.bound = real(48);
+  record.compactness = real(52);
+  record.bounds = {{real(56), real(60), real(64)}, {real(68), real(72), real(76)}};
+  record.file_bytes = load_little<std::uint64_t>(from + 80);
+  record.checksum = load_little<std::uint64_t>(from + 88);
+  return record;
+}
+
+/// What is wrong with the values of a record; null if nothing is.
+const char* flaw_of(const TileRecord& record, const Tree& tree) {
+  const auto is_measure = [](float value) { return std::isfinite(value) && value >= 0; };
+  const Bounds& box = record.bounds;
+  const bool finite = std::isfinite(box.min.x) && std::isfinite(box.min.y) &&
+                      std::isfinite(box.min.z) && std::isfinite(box.max.x) &&
+                      std::isfinite(box.max.y) && std::isfinite(box.max.z);
+  if (record.own_count == 0 || record.own_count > kMaxOwnVertices)
+    return "own vertices";
+  if (tree.is_partition(record.node) && record.own_count != tree.ranks(record.node).size()) {
+    return "own vertices (not the partition's)";
+  }
+  if (record.rim_count > record.own_count)
+    return "rim vertices (more than own)";
+  if (record.drawn_border_count > record.border_count)
+    return "drawn border triangles";
+  if (!is_measure(record.error))
+    return "error";
+  if (!is_measure(record.bound))
+    return "bound";
+  if (!is_measure(record.compactness))
+    return "compactness";
+  if (!finite || box.min.x > box.max.x || box.min.y > box.max.y || box.min.z > box.max.z) {
+    return "bounds";
+  }
+  if (record.file_bytes == 0)
+    return "bytes of the file";
+  return nullptr;
+}
+
+class IndexReader {
+ public:
+  IndexReader(std::span<const std::byte> bytes, const Tree& tree, const std::string& name)
+      : bytes_(bytes), tree_(tree), name_(name) {}
+
+  std::vector<TileRecord> read() const {
+    check_header();
+    std::vector<TileRecord> records;
+    records.reserve(tile_count(tree_));
+    for (int level = 0; level <= raw(tree_.depth()); ++level) {
+      const auto count = tree_.node_count(static_cast<Level>(level));
+      for (std::uint32_t index = 0; index < count; ++index) {
+        const NodeId node{static_cast<Level>(level), index};
+        if (!tree_.is_early(node))
+          records.push_back(read_record(records.size(), node));
+      }
+    }
+    return records;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(ErrorCode::corrupt, name_ + ": " + what);
+  }
+
+  void check_header() const {
+    if (bytes_.size() < kIndexHeaderBytes) {
+      fail(fmt::format("has {} bytes, expected at least {}", bytes_.size(), kIndexHeaderBytes));
+    }
+    const auto magic = std::as_bytes(std::span(kIndexMagic));
+    if (!std::equal(magic.begin(), magic.end(), bytes_.begin())) {
+      fail("does not start with MHTILES: not an index");
+    }
+    const auto version = load_little<std::uint32_t>(bytes_.data() + 8);
+    if (version != kIndexVersion) {
+      fail(fmt::format("version is {}, expected {}{}", version, kIndexVersion,
+                       version > kIndexVersion ? " (written by a newer meshhier)" : ""));
+    }
+    const auto record_bytes = load_little<std::uint32_t>(bytes_.data() + 12);
+    if (record_bytes != kRecordBytes) {
+      fail(fmt::format("records of {} bytes, expected {}", record_bytes, kRecordBytes));
+    }
+    const auto count = load_little<std::uint64_t>(bytes_.data() + 16);
+    if (count != tile_count(tree_)) {
+      fail(fmt::format("{} records, expected {} for {} partitions", count, tile_count(tree_),
+                       tree_.partition_count()));
+    }
+    const std::uint64_t expected = index_bytes(tree_);
+    if (bytes_.size() != expected) {
+      fail(fmt::format("has {} bytes, expected {}", bytes_.size(), expected));
+    }
+    const auto sum = load_little<std::uint64_t>(bytes_.data() + kCheckedHeaderBytes);
+    if (sum != index_checksum(bytes_)) {
+      fail(fmt::format("checksum is {:016x}, expected {:016x}: the file is damaged",
+                       index_checksum(bytes_), sum));
+    }
+  }
+
+  TileRecord read_record(std::size_t number, NodeId node) const {
+    const std::byte* from = bytes_.data() + kIndexHeaderBytes + number * kRecordBytes;
+    const auto level = load_little<std::uint32_t>(from);
+    const auto index = load_little<std::uint32_t>(from + 4);
+    if (level != raw(node.level) || index != node.index) {
+      fail(fmt::format("record {} is of tile {}/{}, expected {}/{}", number, level, index,
+                       raw(node.level), node.index));
+    }
+    const TileRecord record = load_record(from);
+    if (const char* flaw = flaw_of(record, tree_)) {
+      fail(fmt::format("tile {}/{}: impossible {}", level, index, flaw));
+    }
+    return record;
+  }
+
+  std::span<const std::byte> bytes_;
+  const Tree& tree_;
+  const std::string& name_;
+};
+
+}  // namespace
+
+std::uint64_t tile_count(const Tree& tree) {
+  // Every inner tile replaces two by one: a binary tree with P leaves. Early nodes have no tile.
+  return 2 * std::uint64_t{tree.partition_count()} - 1;
+}
+
+std::vector<std::byte> encode_record(const TileRecord& record) {
+  std::vector<std::byte> bytes;
+  bytes.reserve(kRecordBytes);
+  append_record(bytes, record);
+  return bytes;
+}
+
+TileRecord decode_record(std::span<const std::byte> bytes) {
+  if (bytes.size() != kRecordBytes || load_little<std::uint32_t>(bytes.data()) > 255)
+    throw Error(ErrorCode::corrupt, "no record of a tile");
+  return load_record(bytes.data());
+}
+
+std::uint64_t index_bytes(const Tree& tree) {
+  return kIndexHeaderBytes + tile_count(tree) * kRecordBytes;
+}
+
+std::vector<std::byte> encode_index(std::span<const TileRecord> records) {
+  std::vector<std::byte> bytes;
+  bytes.reserve(kIndexHeaderBytes + records.size() * kRecordBytes);
+  const auto magic = std::as_bytes(std::span(kIndexMagic));
+  bytes.insert(bytes.end(), magic.begin(), magic.end());
+  append_little(bytes, kIndexVersion);
+  append_little(bytes, static_cast<std::uint32_t>(kRecordBytes));
+  append_little(bytes, std::uint64_t{records.size()});
+  append_little(bytes, std::uint64_t{0});
+  for (const TileRecord& record : records)
+    append_record(bytes, record);
+  store_little(index_checksum(bytes), bytes.data() + kCheckedHeaderBytes);
+  return bytes;
+}
+
+std::vector<TileRecord> decode_index(std::span<const std::byte> bytes, const Tree& tree,
+                                     const std::string& name) {
+  return IndexReader(bytes, tree, name).read();
+}
+
+const TileRecord& record_of(std::span<const TileRecord> records, NodeId node) {
+  const auto found =
+      std::lower_bound(records.begin(), records.end(), node,
+                       [](const TileRecord& record, NodeId key) { return record.node < key; });
+  assert(found != records.end() && found->node == node);
+  return *found;
+}
+
+}  // namespace meshhier::storage

@@ -1,0 +1,137 @@
+#include "storage/format/layout.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace meshhier::storage {
+
+namespace {
+
+constexpr std::string_view kMark = ".meshhier-";
+constexpr std::size_t kMostDigits = 10;  // of an index below 2^32
+constexpr std::string_view kVerify = "verify-";
+
+/// Takes `least` digits or more off the front; false if there are not so many. Further ones do not
+/// begin with 0.
+bool take_digits(std::string_view& text, std::size_t least) {
+  std::size_t count = std::min(text.find_first_not_of("0123456789"), text.size());
+  const bool is_padded = count > least && text.front() == '0';
+  const bool is_there = count >= least && count <= kMostDigits && !is_padded;
+  text.remove_prefix(count);
+  return is_there;
+}
+
+bool take(std::string_view& text, std::string_view start) {
+  const bool is_there = text.starts_with(start);
+  text.remove_prefix(is_there ? start.size() : 0);
+  return is_there;
+}
+
+/// "LL/NNNNNN" and the extension.
+bool is_node_file(std::string_view name, std::string_view directory, std::string_view extension) {
+  return take(name, directory) && take_digits(name, 2) && take(name, "/") && take_digits(name, 6) &&
+         name == extension;
+}
+
+}  // namespace
+
+std::filesystem::path manifest_path(const std::filesystem::path& hierarchy) {
+  return hierarchy / "hierarchy.json";
+}
+std::filesystem::path index_path(const std::filesystem::path& hierarchy) {
+  return hierarchy / "tiles.bin";
+}
+std::filesystem::path outline_path(const std::filesystem::path& hierarchy) {
+  return hierarchy / "outline.glb";
+}
+
+std::filesystem::path tileset_path(const std::filesystem::path& hierarchy) {
+  return hierarchy / "tileset.json";
+}
+
+std::filesystem::path tileset_path(const std::filesystem::path& hierarchy, NodeId node) {
+  return hierarchy / "tilesets" / fmt::format("{:02}", raw(node.level)) /
+         fmt::format("{:06}.json", node.index);
+}
+
+std::filesystem::path level_directory(const std::filesystem::path& hierarchy, Level level) {
+  return hierarchy / "tiles" / fmt::format("{:02}", raw(level));
+}
+
+std::filesystem::path tile_path(const std::filesystem::path& hierarchy, NodeId node) {
+  return level_directory(hierarchy, node.level) / fmt::format("{:06}.glb", node.index);
+}
+
+std::filesystem::path progressive_index_path(const std::filesystem::path& stream) {
+  return stream / "progressive.json";
+}
+
+std::filesystem::path detail_path(const std::filesystem::path& stream, std::uint32_t step) {
+  return stream / (step == 0 ? std::string("base.bin") : fmt::format("detail_{:02}.bin", step));
+}
+
+bool is_tile_file(std::string_view name) {
+  return is_node_file(name, "tiles/", ".glb");
+}
+
+bool is_hierarchy_file(std::string_view name) {
+  return name == manifest_path({}) || name == index_path({}) || name == outline_path({}) ||
+         name == tileset_path({}) || is_tile_file(name) || is_node_file(name, "tilesets/", ".json");
+}
+
+bool is_stream_file(std::string_view name) {
+  if (name == progressive_index_path({}) || name == detail_path({}, 0))
+    return true;
+  return take(name, "detail_") && take_digits(name, 2) && name == ".bin";
+}
+
+std::filesystem::path work_path(const std::filesystem::path& output) {
+  return output.parent_path() / fmt::format(".{}.meshhier-work", output.filename().string());
+}
+
+std::filesystem::path replaced_path(const std::filesystem::path& output) {
+  return output.parent_path() / fmt::format(".{}.meshhier-old", output.filename().string());
+}
+
+std::filesystem::path verify_scratch_path(const std::filesystem::path& hierarchy,
+                                          std::uint32_t run) {
+  return hierarchy.parent_path() /
+         fmt::format(".{}.meshhier-verify-{:08x}", hierarchy.filename().string(), run);
+}
+
+std::filesystem::path lock_path(const std::filesystem::path& work) {
+  return work / "lock";
+}
+std::filesystem::path journal_path(const std::filesystem::path& work) {
+  return work / "journal";
+}
+std::filesystem::path built_path(const std::filesystem::path& work) {
+  return work / "hierarchy";
+}
+std::filesystem::path packed_path(const std::filesystem::path& work) {
+  return work / "archive";
+}
+
+std::filesystem::path imported_path(const std::filesystem::path& work) {
+  return work / "import.ply";
+}
+
+std::optional<LeftoverName> leftover_name(std::string_view name) {
+  const std::size_t mark = name.rfind(kMark);
+  if (!name.starts_with('.') || mark == std::string_view::npos || mark < 2)
+    return std::nullopt;
+  const std::string output(name.substr(1, mark - 1));
+  const std::string_view kind = name.substr(mark + kMark.size());
+  if (kind == "work")
+    return LeftoverName{Leftover::build, output};
+  if (kind == "old")
+    return LeftoverName{Leftover::replaced, output};
+  if (kind == "part")
+    return LeftoverName{Leftover::unfinished, output};
+  if (kind.size() == kVerify.size() + 8 && kind.starts_with(kVerify))
+    return LeftoverName{Leftover::verify, output};
+  return std::nullopt;
+}
+
+}  // namespace meshhier::storage

@@ -1,0 +1,83 @@
+// Every file name of a hierarchy, and of the work towards one, in one place. A hierarchy may also
+// be one file: an archive in which files have the same names.
+//
+// clang-format off
+//   NAME.hier/hierarchy.json
+//   NAME.hier/tiles.bin
+//   NAME.hier/outline.glb
+//   NAME.hier/tileset.json
+//   NAME.hier/tilesets/LL/NNNNNN.json        of the nodes below that one, where the tree is too large for one file
+//   NAME.hier/tiles/LL/NNNNNN.glb            level (two digits or more), index in it (six or more)
+//   NAME.prog/progressive.json
+//   NAME.prog/base.bin
+//   NAME.prog/detail_NN.bin                  in the order of their use, from 1 on
+//   .NAME.hier.meshhier-work/                beside the output while a build runs, and after it was stopped
+//   .NAME.hier.meshhier-work/lock            held by the build at work
+//   .NAME.hier.meshhier-work/journal         what is done
+//   .NAME.hier.meshhier-work/import.ply      the input, while it is read, if it is not read in place
+//   .NAME.hier.meshhier-work/*               scratch files of the stages
+//   .NAME.hier.meshhier-work/hierarchy/      becomes NAME.hier
+//   .NAME.3tz.meshhier-work/archive          becomes NAME.3tz, of what is in hierarchy/
+//   .NAME.hier.meshhier-old/                 a replaced hierarchy, for the moment of the rename
+//   .NAME.hier.meshhier-verify-XXXXXXXX      beside a hierarchy while `verify` needs room
+//   .NAME.meshhier-part                      beside any other file that is written, until it is whole
+// clang-format on
+#pragma once
+
+#include "hierarchy/ids.h"
+#include "storage/io/atomic_file.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace meshhier::storage {
+
+std::filesystem::path manifest_path(const std::filesystem::path& hierarchy);
+std::filesystem::path index_path(const std::filesystem::path& hierarchy);
+std::filesystem::path outline_path(const std::filesystem::path& hierarchy);
+std::filesystem::path tileset_path(const std::filesystem::path& hierarchy);
+/// The file that tells of `node` and what is below it. Requires node.level > 0.
+std::filesystem::path tileset_path(const std::filesystem::path& hierarchy, NodeId node);
+std::filesystem::path level_directory(const std::filesystem::path& hierarchy, Level level);
+std::filesystem::path tile_path(const std::filesystem::path& hierarchy, NodeId node);
+
+std::filesystem::path progressive_index_path(const std::filesystem::path& stream);
+/// Step 0 is the base.
+std::filesystem::path detail_path(const std::filesystem::path& stream, std::uint32_t step);
+
+/// Whether a published hierarchy, or a stream, may have a file of that relative name: "tiles.bin",
+/// "tiles/00/000000.glb".
+bool is_hierarchy_file(std::string_view name);
+bool is_stream_file(std::string_view name);
+/// Whether it is one of a hierarchy's tiles.
+bool is_tile_file(std::string_view name);
+
+std::filesystem::path work_path(const std::filesystem::path& output);
+std::filesystem::path replaced_path(const std::filesystem::path& output);
+/// `run` tells several runs apart.
+std::filesystem::path verify_scratch_path(const std::filesystem::path& hierarchy,
+                                          std::uint32_t run);
+std::filesystem::path lock_path(const std::filesystem::path& work);
+std::filesystem::path journal_path(const std::filesystem::path& work);
+std::filesystem::path built_path(const std::filesystem::path& work);
+std::filesystem::path packed_path(const std::filesystem::path& work);
+std::filesystem::path imported_path(const std::filesystem::path& work);
+
+/// What the names above that begin with a dot stand for.
+enum class Leftover {
+  build,       ///< work_path: a build that was stopped, or an export
+  replaced,    ///< replaced_path
+  verify,      ///< verify_scratch_path
+  unfinished,  ///< unfinished_path
+};
+struct LeftoverName {
+  Leftover kind;
+  std::string output;  ///< the name of the file or hierarchy it belongs to
+};
+/// Nothing if `name`, that of a file or directory, is none of them.
+std::optional<LeftoverName> leftover_name(std::string_view name);
+
+}  // namespace meshhier::storage

@@ -1,0 +1,215 @@
+#include "storage/format/level_summary.h"
+
+#include "hierarchy/cut.h"
+#include "storage/format/tile_plan.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace meshhier::storage {
+namespace {
+
+/// Collects a CountRange.
+class Range {
+ public:
+  void add(std::uint64_t count) {
+    min_ = std::min(min_, count);
+    max_ = std::max(max_, count);
+    sum_ += count;
+    ++n_;
+  }
+  std::uint64_t sum() const { return sum_; }
+  CountRange range() const {
+    if (n_ == 0)
+      return {};
+    return {min_, max_, static_cast<double>(sum_) / static_cast<double>(n_)};
+  }
+
+ private:
+  std::uint64_t min_ = UINT64_MAX, max_ = 0, sum_ = 0, n_ = 0;
+};
+
+std::uint64_t triangle_count(const TileRecord& record) {
+  return std::uint64_t{record.interior_count} + record.border_count;
+}
+
+std::uint64_t drawn_count(const TileRecord& record) {
+  return std::uint64_t{record.interior_count} + record.drawn_border_count;
+}
+
+/// 0 of nothing.
+double quotient(std::uint64_t a, std::uint64_t b) {
+  return b == 0 ? 0 : static_cast<double>(a) / static_cast<double>(b);
+}
+
+LevelSummary summarize(Level level, Level last, std::span<const TileRecord> records) {
+  LevelSummary summary;
+  summary.level = level;
+  summary.tiles = static_cast<std::uint32_t>(records.size());
+  Range vertices, triangles, bytes;
+  std::uint64_t border = 0;
+  for (const TileRecord& record : records) {
+    vertices.add(record.own_count);
+    triangles.add(triangle_count(record));
+    bytes.add(record.file_bytes);
+    border += record.border_count;
+    summary.triangles_total += drawn_count(record);
+    summary.error_max = std::max(summary.error_max, record.error);
+    summary.bound_max = std::max(summary.bound_max, record.bound);
+    summary.torn_total += record.torn_count;
+    summary.forced_total += record.forced_count;
+    if (level != last && record.own_count != record.target_count)
+      ++summary.off_target;
+  }
+  summary.vertices = vertices.range();
+  summary.triangles = triangles.range();
+  summary.bytes = bytes.range();
+  summary.vertices_total = vertices.sum();
+  summary.bytes_total = bytes.sum();
+  if (triangles.sum() > 0) {
+    summary.border_ratio = static_cast<double>(border) / static_cast<double>(triangles.sum());
+  }
+  summary.shown_tiles = summary.tiles;
+  summary.shown_triangles = summary.triangles_total;
+  return summary;
+}
+
+/// Partitions under early nodes are part of what the level above the last shows.
+void add_early(const Tree& tree, std::span<const TileRecord> partitions, LevelSummary& above) {
+  for (const TileRecord& record : partitions) {
+    if (!tree.is_early(tree.parent(record.node)))
+      continue;
+    ++above.shown_tiles;
+    above.shown_triangles += triangle_count(record);
+    if (record.border_count > 0)
+      above.shown_exact = false;
+  }
+}
+
+/// The value that a share of the ascending values does not exceed (nearest rank).
+double quantile(std::span<const float> ascending, double share) {
+  const auto rank =
+      static_cast<std::size_t>(std::ceil(share * static_cast<double>(ascending.size())));
+  return double{ascending[std::max<std::size_t>(rank, 1) - 1]};
+}
+
+}  // namespace
+
+std::vector<LevelSummary> summarize_levels(const Tree& tree, std::span<const TileRecord> records) {
+  std::vector<LevelSummary> levels;
+  std::size_t begin = 0;
+  for (int level = 0; level <= raw(tree.depth()); ++level) {
+    std::size_t end = begin;
+    while (end < records.size() && raw(records[end].node.level) == level)
+      ++end;
+    const auto of_level = records.subspan(begin, end - begin);
+    levels.push_back(summarize(static_cast<Level>(level), tree.depth(), of_level));
+    if (level > 0 && level == raw(tree.depth())) {
+      add_early(tree, of_level, levels[static_cast<std::size_t>(level) - 1]);
+    }
+    begin = end;
+  }
+  return levels;
+}
+
+double SizeSummary::bytes_per_vertex() const {
+  return quotient(bytes, vertices);
+}
+double SizeSummary::bytes_per_triangle() const {
+  return quotient(bytes, triangles);
+}
+double SizeSummary::raw_ratio() const {
+  return quotient(bytes, raw_bytes);
+}
+
+SizeSummary summarize_sizes(std::span<const TileRecord> records, const AttributeLayout& layout) {
+  using storage::Part;
+  SizeSummary sizes;
+  for (const TileRecord& record : records) {
+    storage::TileShape shape;
+    shape.own = record.own_count;
+    shape.ghosts = record.ghost_count;
+    shape.interior = record.interior_count;
+    shape.border = record.border_count;
+    const storage::TilePlan plan(shape, layout);
+    for (const Part part :
+         {Part::position, Part::normal, Part::colour, Part::texcoord, Part::interior, Part::border})
+      sizes.raw_bytes += plan[part].bytes();
+    sizes.bytes += record.file_bytes;
+    sizes.vertices += record.own_count;
+    sizes.triangles += drawn_count(record);
+  }
+  return sizes;
+}
+
+nlohmann::ordered_json to_json(const SizeSummary& s) {
+  return {{"bytes", s.bytes},
+          {"raw_bytes", s.raw_bytes},
+          {"bytes_per_vertex", s.bytes_per_vertex()},
+          {"bytes_per_triangle", s.bytes_per_triangle()},
+          {"raw_ratio", s.raw_ratio()}};
+}
+
+CompactnessSummary summarize_compactness(const Tree& tree, std::span<const TileRecord> records) {
+  std::vector<float> values;
+  double sum = 0;
+  for (const TileRecord& record : records) {
+    if (!tree.is_partition(record.node) || !(record.compactness > 0))
+      continue;
+    values.push_back(record.compactness);
+    sum += double{record.compactness};
+  }
+  if (values.empty())
+    return {};
+  std::sort(values.begin(), values.end());
+  return {static_cast<std::uint32_t>(values.size()), sum / static_cast<double>(values.size()),
+          quantile(values, 0.5), quantile(values, 0.95)};
+}
+
+nlohmann::ordered_json to_json(const LevelSummary& s) {
+  return {{"level", raw(s.level)},
+          {"tiles", s.tiles},
+          {"vertices_min", s.vertices.min},
+          {"vertices_mean", s.vertices.mean},
+          {"vertices_max", s.vertices.max},
+          {"vertices_total", s.vertices_total},
+          {"triangles_min", s.triangles.min},
+          {"triangles_mean", s.triangles.mean},
+          {"triangles_max", s.triangles.max},
+          {"triangles_total", s.triangles_total},
+          {"bytes_min", s.bytes.min},
+          {"bytes_mean", s.bytes.mean},
+          {"bytes_max", s.bytes.max},
+          {"bytes_total", s.bytes_total},
+          {"border_ratio", s.border_ratio},
+          {"error_max", s.error_max},
+          {"bound_max", s.bound_max},
+          {"torn_vertices", s.torn_total},
+          {"forced_vertices", s.forced_total},
+          {"off_target", s.off_target},
+          {"shown_tiles", s.shown_tiles},
+          {"shown_triangles", s.shown_triangles},
+          {"shown_triangles_exact", s.shown_exact}};
+}
+
+nlohmann::ordered_json to_json(const TileRecord& r) {
+  const auto corner = [](Vec3f p) { return nlohmann::ordered_json::array({p.x, p.y, p.z}); };
+  return {{"node", to_text(r.node)},
+          {"vertices", r.own_count},
+          {"vertices_asked_for", r.target_count},
+          {"rim_vertices", r.rim_count},
+          {"ghosts", r.ghost_count},
+          {"interior_triangles", r.interior_count},
+          {"border_triangles", r.border_count},
+          {"drawn_border_triangles", r.drawn_border_count},
+          {"bounds", {{"min", corner(r.bounds.min)}, {"max", corner(r.bounds.max)}}},
+          {"torn_vertices", r.torn_count},
+          {"forced_vertices", r.forced_count},
+          {"error", r.error},
+          {"bound", r.bound},
+          {"compactness", r.compactness},
+          {"bytes", r.file_bytes}};
+}
+
+}  // namespace meshhier::storage

@@ -1,0 +1,87 @@
+// What the index says of a hierarchy as a whole: how uniform its levels are.
+#pragma once
+
+#include "hierarchy/published.h"
+#include "hierarchy/tree.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace meshhier::storage {
+
+/// The range of a count over the tiles of a level.
+struct CountRange {
+  std::uint64_t min = 0;
+  std::uint64_t max = 0;
+  double mean = 0;
+
+  /// (max - min) / mean: 0 if all are equal.
+  double spread() const { return mean > 0 ? static_cast<double>(max - min) / mean : 0; }
+};
+
+/// The tiles of one level: simplified ones, or on the last level all partitions.
+struct LevelSummary {
+  Level level{};
+  std::uint32_t tiles = 0;
+  CountRange vertices;   ///< own
+  CountRange triangles;  ///< interior and border
+  CountRange bytes;      ///< of the files
+  std::uint64_t vertices_total = 0;
+  std::uint64_t triangles_total = 0;  ///< each once: interior, and border ones where they are drawn
+  std::uint64_t bytes_total = 0;
+  double border_ratio = 0;         ///< border triangles of all triangles, summed over the tiles
+  float error_max = 0;             ///< input units
+  float bound_max = 0;             ///< input units
+  std::uint64_t torn_total = 0;    ///< vertices that went by changing topology
+  std::uint64_t forced_total = 0;  ///< vertices that went without care for the surface
+  std::uint32_t off_target = 0;    ///< simplified tiles whose vertex count is not the one asked for
+
+  // What the cut of this level shows, with partitions in the place of early nodes.
+  std::uint32_t shown_tiles = 0;
+  std::uint64_t shown_triangles = 0;
+  /// False: an upper bound. What a partition among coarser tiles draws is not in the index.
+  bool shown_exact = true;
+};
+
+/// One summary per level, from level 0 on. `records`: all tiles of `tree` (storage/format/index.h).
+/// O(tiles).
+std::vector<LevelSummary> summarize_levels(const Tree& tree, std::span<const TileRecord> records);
+
+/// What tiles take, against floats and indices as they are.
+struct SizeSummary {
+  std::uint64_t bytes = 0;      ///< of the files
+  std::uint64_t raw_bytes = 0;  ///< positions as f32, attributes, indices of 16 or 32 bits, plain
+  std::uint64_t vertices = 0;   ///< own
+  std::uint64_t triangles = 0;  ///< each once
+
+  double bytes_per_vertex() const;
+  double bytes_per_triangle() const;
+  double raw_ratio() const;  ///< bytes / raw_bytes
+};
+
+/// Of these tiles together. Ghosts, and border triangles that other tiles draw, are in both numbers
+/// of bytes. O(tiles).
+SizeSummary summarize_sizes(std::span<const TileRecord> records, const AttributeLayout& layout);
+
+/// How compact the partitions are: p^2 / (4 pi w), 1 for a flat disc, more for ragged borders.
+struct CompactnessSummary {
+  std::uint32_t count = 0;  ///< partitions that have an area; the others have no compactness
+  double mean = 0;
+  double median = 0;
+  double p95 = 0;  ///< 95 of 100 partitions have at most this
+};
+
+CompactnessSummary summarize_compactness(const Tree& tree, std::span<const TileRecord> records);
+
+/// One object per level; the keys are those of `inspect --json` (README).
+nlohmann::ordered_json to_json(const LevelSummary& summary);
+
+nlohmann::ordered_json to_json(const SizeSummary& summary);
+
+/// One object per tile.
+nlohmann::ordered_json to_json(const TileRecord& record);
+
+}  // namespace meshhier::storage

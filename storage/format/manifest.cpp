@@ -1,0 +1,222 @@
+#include "storage/format/manifest.h"
+
+#include "hierarchy/error.h"
+#include "storage/format/layout.h"
+#include "storage/format/sealed_json.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace meshhier::storage {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr SealedFormat kFormat{"meshhier", kFormatVersion};
+
+// ---- writing -------------------------------------------------------------------------------
+
+Json storage_json(const Manifest& manifest) {
+  Json storage = {{"compression", name_of(manifest.compression)}, {"positions", nullptr}};
+  if (const auto& quantization = manifest.quantization) {
+    storage["positions"] = {{"bits", quantization->lattice.bits},
+                            {"step", quantization->lattice.step},
+                            {"corner", point_json(quantization->lattice.corner)},
+                            {"worst_rounding", quantization->worst_rounding}};
+  }
+  return storage;
+}
+
+Json import_json(const SourceSummary& source) {
+  Json files = Json::array();
+  for (const SourceFile& file : source.files) {
+    files.push_back({{"name", file.name},
+                     {"format", file.format},
+                     {"bytes", file.bytes},
+                     {"checksum", hex_digits(file.checksum)}});
+  }
+  Json counts = Json::object();
+  for (const SourceCount& count : source.counts)
+    counts[count.name] = count.count;
+  return {{"files", std::move(files)}, {"counts", std::move(counts)}};
+}
+
+Json outline_json(const Manifest& manifest) {
+  const OutlineReport& outline = manifest.outline;
+  return {{"file", outline_path({}).string()},
+          {"bytes", manifest.outline_bytes},
+          {"checksum", hex_digits(manifest.outline_checksum)},
+          {"sector_level", outline.sector_level},
+          {"sectors", outline.sector_count},
+          {"tolerance", outline.tolerance},
+          {"polylines_found", outline.polylines_found},
+          {"polylines_dropped", outline.polylines_dropped}};
+}
+
+Json manifest_json(const Manifest& manifest) {
+  Json document;
+  document["generator"] = manifest.generator;
+  document["source"] = source_json(manifest.source);
+  document["origin"] = point_json(manifest.origin);
+  document["up"] = name_of(manifest.up);
+  document["transform"] = manifest.transform ? Json(*manifest.transform) : Json();
+  document["licence"] = manifest.licence;
+  document["partitions"] = manifest.partition_count;
+  document["storage"] = storage_json(manifest);
+  document["config"] = manifest.config;
+  document["index"] = {{"file", index_path({}).string()},
+                       {"bytes", manifest.index_bytes},
+                       {"checksum", hex_digits(manifest.index_checksum)}};
+  document["outline"] = outline_json(manifest);
+  document["tileset"] = {{"file", tileset_path({}).string()},
+                         {"files", manifest.tileset_files},
+                         {"bytes", manifest.tileset_bytes},
+                         {"checksum", hex_digits(manifest.tileset_checksum)}};
+  document["levels"] = manifest.levels;
+  document["total_bytes"] = manifest.total_bytes;
+  return document;
+}
+
+// ---- reading -------------------------------------------------------------------------------
+
+Compression read_compression(const JsonObject& object) {
+  const std::string name = object.text("compression");
+  const auto found = std::find(kCompressionNames.begin(), kCompressionNames.end(), name);
+  if (found == kCompressionNames.end())
+    object.wrong("compression", fmt::format("one of {}", fmt::join(kCompressionNames, ", ")));
+  return static_cast<Compression>(found - kCompressionNames.begin());
+}
+
+std::optional<Quantization> read_quantization(const JsonObject& object) {
+  if (object.at("positions").is_null())
+    return std::nullopt;
+  const JsonObject positions = object.object("positions");
+  Quantization quantization;
+  quantization.lattice.bits = static_cast<int>(positions.count("bits", Lattice::kMostBits));
+  quantization.lattice.step = positions.number("step");
+  quantization.lattice.corner = positions.point("corner");
+  quantization.worst_rounding = positions.number("worst_rounding");
+  if (!quantization.lattice.is_sound())
+    object.wrong("positions", "a lattice of 8 to 24 bits, its step a power of two");
+  if (quantization.worst_rounding < 0)
+    positions.wrong("worst_rounding", "at least 0");
+  return quantization;
+}
+
+void read_import(const JsonObject& object, SourceSummary& source) {
+  for (const JsonObject& file : object.objects("files"))
+    source.files.push_back(
+        {file.text("name"), file.text("format"), file.count("bytes"), file.hash("checksum")});
+  if (source.files.empty())
+    object.wrong("files", "at least one");
+  const JsonObject counts = object.object("counts");
+  for (const std::string& name : counts.keys())
+    source.counts.push_back({name, counts.count(name.c_str())});
+}
+
+SourceSummary read_source(const JsonObject& object) {
+  SourceSummary source;
+  source.file_name = object.text("file_name");
+  source.file_bytes = object.count("file_bytes");
+  source.checksum = object.hash("checksum");
+  source.vertices = object.count("vertices", UINT32_MAX);
+  if (source.vertices == 0)
+    object.wrong("vertices", "at least 1");
+  source.triangles = object.count("triangles");
+  source.faces = object.count("faces");
+  source.degenerate_triangles = object.count("degenerate_triangles");
+  source.unreferenced_vertices = object.count("unreferenced_vertices", source.vertices);
+  const JsonObject bounds = object.object("bounds");
+  source.bounds = {bounds.point("min"), bounds.point("max")};
+  const Vec3d size = source.bounds.max - source.bounds.min;
+  if (!(size.x >= 0 && size.y >= 0 && size.z >= 0))
+    object.wrong("bounds", "min <= max");
+  source.double_precision = object.boolean("double_precision");
+  source.attributes = object.attributes("attributes");
+  if (object.has("import"))
+    read_import(object.object("import"), source);
+  return source;
+}
+
+void read_outline(const JsonObject& object, Manifest& manifest) {
+  manifest.outline_bytes = object.count("bytes");
+  manifest.outline_checksum = object.hash("checksum");
+  manifest.outline.sector_level = object.short_count("sector_level");
+  manifest.outline.sector_count = object.short_count("sectors");
+  manifest.outline.tolerance = object.number("tolerance");
+  manifest.outline.polylines_found = object.count("polylines_found");
+  manifest.outline.polylines_dropped = object.count("polylines_dropped");
+}
+
+}  // namespace
+
+Json source_json(const SourceSummary& source) {
+  Json json{
+      {"file_name", source.file_name},
+      {"file_bytes", source.file_bytes},
+      {"checksum", hex_digits(source.checksum)},
+      {"vertices", source.vertices},
+      {"triangles", source.triangles},
+      {"faces", source.faces},
+      {"degenerate_triangles", source.degenerate_triangles},
+      {"unreferenced_vertices", source.unreferenced_vertices},
+      {"bounds", {{"min", point_json(source.bounds.min)}, {"max", point_json(source.bounds.max)}}},
+      {"double_precision", source.double_precision},
+      {"attributes", attributes_json(source.attributes)}};
+  if (!source.files.empty())
+    json["import"] = import_json(source);
+  return json;
+}
+
+SourceSummary parse_source(const Json& source, const std::string& name) {
+  if (!source.is_object())
+    throw Error(ErrorCode::corrupt, name + ": \"source\" is wrong, expected an object");
+  return read_source(JsonObject(source, "source.", name));
+}
+
+std::string to_json_text(const Manifest& manifest) {
+  return sealed_text(kFormat, manifest_json(manifest));
+}
+
+Manifest parse_manifest(const std::string& text, const std::string& name) {
+  const Json document = parse_sealed(text, kFormat, name);
+  const JsonObject object(document, "", name);
+
+  Manifest manifest;
+  manifest.generator = object.text("generator");
+  manifest.source = read_source(object.object("source"));
+  manifest.origin = object.point("origin");
+  manifest.up = object.up("up");
+  manifest.transform = object.transform_or_null("transform");
+  manifest.licence = object.text("licence");
+  manifest.partition_count =
+      static_cast<std::uint32_t>(object.count("partitions", manifest.source.vertices));
+  if (manifest.partition_count == 0)
+    object.wrong("partitions", "at least 1");
+  manifest.compression = read_compression(object.object("storage"));
+  manifest.quantization = read_quantization(object.object("storage"));
+  manifest.config = object.at("config");
+  if (!manifest.config.is_object())
+    object.wrong("config", "an object");
+  manifest.index_bytes = object.object("index").count("bytes");
+  manifest.index_checksum = object.object("index").hash("checksum");
+  read_outline(object.object("outline"), manifest);
+  const JsonObject tileset = object.object("tileset");
+  manifest.tileset_files = tileset.count("files");
+  manifest.tileset_bytes = tileset.count("bytes");
+  manifest.tileset_checksum = tileset.hash("checksum");
+  manifest.levels = object.at("levels");
+  if (!manifest.levels.is_array())
+    object.wrong("levels", "an array");
+  manifest.total_bytes = object.count("total_bytes");
+  return manifest;
+}
+
+}  // namespace meshhier::storage

@@ -1,0 +1,69 @@
+// hierarchy.json: what the hierarchy was made from, how, and what is in it (docs/file_format.md).
+#pragma once
+
+#include "hierarchy/frame.h"
+#include "hierarchy/outline.h"
+#include "hierarchy/published.h"
+#include "hierarchy/vec.h"
+#include "storage/format/tile_glb.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace meshhier::storage {
+
+inline constexpr int kFormatVersion = 4;
+
+/// What rounding to a lattice did.
+struct Quantization {
+  Lattice lattice;
+  double worst_rounding =
+      0;  ///< the largest distance that a position of any tile went, input units
+};
+
+struct Manifest {
+  std::string generator;  ///< "meshhier 0.1.0"
+  SourceSummary source;
+  Vec3d origin;           ///< add to every stored position
+  UpAxis up = UpAxis::y;  ///< of the input
+  /// Of the tileset's root, for instance on the globe; from z-up coordinates, as 3D Tiles has them.
+  std::optional<Transform> transform;
+  std::string licence;  ///< may be empty
+  std::uint32_t partition_count = 0;
+  Compression compression = Compression::none;
+  std::optional<Quantization> quantization;  ///< none: positions are exact
+  /// An object: the resolved config, what decides the result (not budget, threads, paths).
+  nlohmann::ordered_json config;
+  std::uint64_t index_bytes = 0;
+  std::uint64_t index_checksum = 0;  ///< XXH3-64 of tiles.bin
+  std::uint64_t outline_bytes = 0;
+  std::uint64_t outline_checksum = 0;  ///< XXH3-64 of outline.glb
+  OutlineReport outline;
+  /// An array: the level table, for people and scripts; derived from tiles.bin.
+  nlohmann::ordered_json levels;
+  std::uint64_t tileset_files = 0;
+  std::uint64_t tileset_bytes = 0;     ///< of all of them
+  std::uint64_t tileset_checksum = 0;  ///< XXH3-64 of all, one after another, tileset.json first
+  std::uint64_t total_bytes = 0;       ///< of tiles, index, outline and tilesets
+};
+
+/// What the manifest says of the input, on its own. File names keep their bytes, UTF-8 or not.
+nlohmann::ordered_json source_json(const SourceSummary& source);
+/// The inverse. Throws Error(corrupt) that starts with `name`, and says which key is missing or
+/// wrong.
+SourceSummary parse_source(const nlohmann::ordered_json& source, const std::string& name);
+
+/// Deterministic; ends with a checksum of the text. What is no UTF-8 in texts becomes U+FFFD.
+/// Requires finite numbers.
+std::string to_json_text(const Manifest& manifest);
+
+/// The inverse of to_json_text, on text nobody vouches for. Throws Error(corrupt) that starts with
+/// `name`, and says which key is missing or wrong, or that the text was changed; a newer format
+/// version is refused by its number.
+Manifest parse_manifest(const std::string& text, const std::string& name);
+
+}  // namespace meshhier::storage

@@ -1,0 +1,56 @@
+// The codecs of EXT_meshopt_compression (Khronos, ratified 2021), which are meshoptimizer's.
+//
+// All are deterministic for one version of the library, and thread-safe. Decoding is of bytes
+// nobody vouches for: false if they are no stream of that length, never a wrong access.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace meshhier::storage {
+
+/// A byte of a stream of attributes stands for at most so many: 64 vertices' bytes have 2 bits a 16
+/// of them.
+inline constexpr std::uint64_t kMostAttributeBytes = 64;
+
+/// Mode ATTRIBUTES. Requires `plain` to be a positive number of elements of `stride` bytes, a
+/// multiple of 4 up to 256.
+std::vector<std::byte> encode_attributes(std::span<const std::byte> plain, std::size_t stride);
+bool decode_attributes(std::span<const std::byte> packed, std::size_t stride,
+                       std::span<std::byte> plain);
+
+/// Which vertices triangles have: those behind the rim are numbered as they are first used, if the
+/// tile is made so (pipeline/tiles/vertex_order.h).
+struct VertexCounts {
+  std::size_t all = 0;
+  std::size_t rim = 0;
+};
+
+/// Mode TRIANGLES: decoding gives the same triangles in another order, turned. Of two orders that
+/// are good for the GPU's vertex cache, that of vertex_cache_order() and the one in which vertices
+/// are numbered, it takes the one that packs better. `corners`: 3 a triangle, each below
+/// `counts.all`; not empty.
+std::vector<std::byte> encode_triangles(std::span<const std::uint32_t> corners,
+                                        const VertexCounts& counts);
+/// Corners may be any numbers.
+bool decode_triangles(std::span<const std::byte> packed, std::span<std::uint32_t> corners);
+
+/// The triangles in an order for the GPU's vertex cache (meshoptimizer's, a variant of Forsyth
+/// 2006). Requires corners below `vertex_count`. Deterministic for one version of the library.
+std::vector<std::uint32_t> vertex_cache_order(std::span<const std::uint32_t> corners,
+                                              std::size_t vertex_count);
+
+/// Mode INDICES: any numbers, near each other at best.
+std::vector<std::byte> encode_indices(std::span<const std::uint32_t> numbers);
+bool decode_indices(std::span<const std::byte> packed, std::span<std::uint32_t> numbers);
+
+/// Filter EXPONENTIAL: floats as 8 bits of exponent and 24 of mantissa, both signed, here one
+/// exponent for each of three axes. Turns the little endian floats of `positions`, 3 a vertex, into
+/// such words; false, and nothing changed, if any would not come back bit for bit.
+bool try_filter_positions(std::span<std::byte> positions);
+/// Its inverse, on any words; exponents outside -100 to 100 give false: decoders differ on them.
+bool unfilter_positions(std::span<std::byte> positions);
+
+}  // namespace meshhier::storage

@@ -1,0 +1,252 @@
+#include "storage/format/sealed_json.h"
+
+#include "hierarchy/error.h"
+#include "storage/format/glb.h"
+#include "storage/io/file.h"
+#include "storage/io/hash.h"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+
+#include <fmt/format.h>
+
+namespace meshhier::storage {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kBeforeSeal = ",\n  \"checksum\": \"";
+constexpr std::string_view kAfterSeal = "\"\n}\n";
+constexpr std::size_t kDigits = 16;
+constexpr std::string_view kZeros = "0000000000000000";
+
+/// About 40 levels of 300 bytes, a config and 30 more lines make 20 kB.
+constexpr std::size_t kMaxTextBytes = 1024 * 1024;
+
+/// In the order of ColourType.
+constexpr std::array<std::string_view, 4> kColourTypes{"none", "u8", "u16", "f32"};
+
+std::uint64_t text_checksum(const std::string& text) {
+  return checksum(std::as_bytes(std::span(text)));
+}
+
+std::optional<double> finite(const Json& value) {
+  if (!value.is_number() || !std::isfinite(value.get<double>()))
+    return std::nullopt;
+  return value.get<double>();
+}
+
+/// Told before anything else is asked of the document: a newer format may differ in all the rest.
+void check_version(const JsonObject& object, const SealedFormat& format) {
+  if (object.text("format") != format.name)
+    object.wrong("format", fmt::format("\"{}\"", format.name));
+  const std::uint64_t version = object.count("format_version");
+  const auto known = static_cast<std::uint64_t>(format.version);
+  if (version > known) {
+    object.fail(
+        fmt::format("format version {} is newer than {}, the newest known: use a newer meshhier",
+                    version, known));
+  }
+  if (version != known)
+    object.fail(fmt::format("format version is {}, expected {}", version, known));
+}
+
+void check_seal(const std::string& text, const JsonObject& object) {
+  const std::size_t tail = kBeforeSeal.size() + kDigits + kAfterSeal.size();
+  const std::uint64_t expected = object.hash("checksum");
+  const bool ends = text.size() >= tail && text.ends_with(kAfterSeal) &&
+                    text.compare(text.size() - tail, kBeforeSeal.size(), kBeforeSeal) == 0;
+  if (!ends)
+    object.fail("does not end with its checksum: the file was changed");
+  std::string zeroed = text;
+  zeroed.replace(text.size() - kAfterSeal.size() - kDigits, kDigits, kZeros);
+  if (text_checksum(zeroed) != expected) {
+    object.fail(fmt::format("checksum is {}, expected {}: the file was changed",
+                            hex_digits(text_checksum(zeroed)), hex_digits(expected)));
+  }
+}
+
+}  // namespace
+
+std::string sealed_text(const SealedFormat& format, const Json& document) {
+  Json sealed;
+  sealed["format"] = format.name;
+  sealed["format_version"] = format.version;
+  sealed.update(document);
+  sealed["checksum"] = kZeros;
+  // A file name need not be UTF-8, JSON must be.
+  std::string text = sealed.dump(2, ' ', false, Json::error_handler_t::replace);
+  text += '\n';
+  const std::uint64_t sum = text_checksum(text);
+  text.replace(text.size() - kAfterSeal.size() - kDigits, kDigits, hex_digits(sum));
+  return text;
+}
+
+std::string read_sealed_text(const File& file) {
+  const std::vector<std::byte> bytes = read_file(file, kMaxTextBytes);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+Json parse_sealed(const std::string& text, const SealedFormat& format, const std::string& name) {
+  if (text.size() > kMaxTextBytes) {
+    throw Error(ErrorCode::corrupt, fmt::format("{}: has {} bytes, expected at most {}", name,
+                                                text.size(), kMaxTextBytes));
+  }
+  Json document = parse_json(text, name);
+  const JsonObject object(document, "", name);
+  if (!document.is_object())
+    object.fail("is not a JSON object");
+  check_version(object, format);
+  check_seal(text, object);
+  return document;
+}
+
+void JsonObject::fail(const std::string& what) const {
+  throw Error(ErrorCode::corrupt, name_ + ": " + what);
+}
+
+void JsonObject::wrong(const char* key, const std::string& expected) const {
+  fail(fmt::format("\"{}{}\" is wrong, expected {}", path_, key, expected));
+}
+
+const Json& JsonObject::at(const char* key) const {
+  const auto found = json_.find(key);
+  if (found == json_.end())
+    fail(fmt::format("\"{}{}\" is missing", path_, key));
+  return *found;
+}
+
+std::vector<std::string> JsonObject::keys() const {
+  std::vector<std::string> all;
+  for (const auto& item : json_.items())
+    all.push_back(item.key());
+  return all;
+}
+
+JsonObject JsonObject::object(const char* key) const {
+  if (!at(key).is_object())
+    wrong(key, "an object");
+  return {at(key), path_ + key + ".", name_};
+}
+
+std::vector<JsonObject> JsonObject::objects(const char* key) const {
+  if (!at(key).is_array())
+    wrong(key, "an array");
+  std::vector<JsonObject> all;
+  for (const Json& item : at(key)) {
+    if (!item.is_object())
+      wrong(key, "an array of objects");
+    all.emplace_back(item, path_ + key + ".", name_);
+  }
+  return all;
+}
+
+std::uint64_t JsonObject::count(const char* key, std::uint64_t max) const {
+  const Json& value = at(key);
+  if (!value.is_number_unsigned() || value.get<std::uint64_t>() > max) {
+    wrong(key, fmt::format("an integer from 0 to {}", max));
+  }
+  return value.get<std::uint64_t>();
+}
+
+std::uint32_t JsonObject::short_count(const char* key) const {
+  return static_cast<std::uint32_t>(count(key, UINT32_MAX));
+}
+
+bool JsonObject::boolean(const char* key) const {
+  if (!at(key).is_boolean())
+    wrong(key, "true or false");
+  return at(key).get<bool>();
+}
+
+std::string JsonObject::text(const char* key) const {
+  if (!at(key).is_string())
+    wrong(key, "a text");
+  return at(key).get<std::string>();
+}
+
+double JsonObject::number(const char* key) const {
+  const auto value = finite(at(key));
+  if (!value)
+    wrong(key, "a number");
+  return *value;
+}
+
+Vec3d JsonObject::point(const char* key) const {
+  const Json& value = at(key);
+  if (!value.is_array() || value.size() != 3)
+    wrong(key, "three numbers");
+  const auto x = finite(value[0]);
+  const auto y = finite(value[1]);
+  const auto z = finite(value[2]);
+  if (!x || !y || !z)
+    wrong(key, "three numbers");
+  return {*x, *y, *z};
+}
+
+std::optional<Transform> JsonObject::transform_or_null(const char* key) const {
+  const Json& value = at(key);
+  if (value.is_null())
+    return std::nullopt;
+  Transform transform{};
+  bool fits = value.is_array() && value.size() == transform.size();
+  for (std::size_t i = 0; fits && i < transform.size(); ++i) {
+    const auto number = finite(value[i]);
+    fits = number.has_value();
+    transform[i] = number.value_or(0);
+  }
+  if (!fits)
+    wrong(key, "null or 16 numbers");
+  return transform;
+}
+
+std::uint64_t JsonObject::hash(const char* key) const {
+  const std::string digits = text(key);
+  const bool fits =
+      digits.size() == kDigits && digits.find_first_not_of("0123456789abcdef") == std::string::npos;
+  if (!fits)
+    wrong(key, "16 hexadecimal digits");
+  return std::stoull(digits, nullptr, 16);
+}
+
+AttributeLayout JsonObject::attributes(const char* key) const {
+  const JsonObject from = object(key);
+  AttributeLayout attributes;
+  attributes.normals = from.boolean("normals");
+  attributes.alpha = from.boolean("alpha");
+  attributes.texcoords = from.boolean("texcoords");
+  const std::string colours = from.text("colours");
+  for (std::size_t i = 0; i < kColourTypes.size(); ++i) {
+    if (colours != kColourTypes[i])
+      continue;
+    attributes.colour = static_cast<ColourType>(i);
+    return attributes;
+  }
+  from.wrong("colours", "none, u8, u16 or f32");
+}
+
+UpAxis JsonObject::up(const char* key) const {
+  const std::string axis = text(key);
+  if (axis != name_of(UpAxis::y) && axis != name_of(UpAxis::z))
+    wrong(key, "\"y\" or \"z\"");
+  return axis == name_of(UpAxis::z) ? UpAxis::z : UpAxis::y;
+}
+
+std::string hex_digits(std::uint64_t value) {
+  return fmt::format("{:016x}", value);
+}
+
+Json point_json(Vec3d point) {
+  return Json::array({point.x, point.y, point.z});
+}
+
+Json attributes_json(const AttributeLayout& attributes) {
+  return {{"normals", attributes.normals},
+          {"colours", kColourTypes[static_cast<std::size_t>(attributes.colour)]},
+          {"alpha", attributes.alpha},
+          {"texcoords", attributes.texcoords}};
+}
+
+}  // namespace meshhier::storage

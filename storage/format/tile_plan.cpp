@@ -1,0 +1,281 @@
+#include "storage/format/tile_plan.h"
+
+#include "storage/format/glb.h"
+
+#include <nlohmann/json.hpp>
+
+namespace meshhier::storage {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Primitive modes of the glTF 2.0 specification.
+constexpr unsigned kPoints = 0;
+constexpr unsigned kTriangles = 4;
+
+constexpr std::array<const char*, kPartCount> kKeys{
+    "POSITION",   "NORMAL",     "COLOR_0",     "TEXCOORD_0",  "interior",
+    "border",     "parentMap",  "neighbours",  "ghostStarts", "ghostChains",
+    "rawNormals", "rawColours", "rawTexcoords"};
+
+std::uint64_t component_bytes(unsigned component) {
+  return component == kU8 ? 1 : component == kU16 ? 2 : 4;
+}
+
+/// In the order of ViewMode.
+constexpr std::array<const char*, 4> kModes{"", "ATTRIBUTES", "TRIANGLES", "INDICES"};
+
+// Buffers: the BIN chunk, and what compressed views are decoded to, which no file holds.
+constexpr int kBin = 0;
+constexpr int kDecoded = 1;
+
+Json packed_json(const Section& section, Part part, const Packing& packing) {
+  Json packed = {{"buffer", kBin},
+                 {"byteOffset", packing.offset(part)},
+                 {"byteLength", packing.bytes[static_cast<std::size_t>(part)]},
+                 {"byteStride", section.stride},
+                 {"mode", kModes[static_cast<std::size_t>(mode_of(part))]},
+                 {"count", section.count}};
+  if (part == Part::position && packing.exponential)
+    packed["filter"] = "EXPONENTIAL";
+  return packed;
+}
+
+Json view_json(const Section& section, Part part, const Packing* packing) {
+  const bool packed = packing != nullptr && mode_of(part) != ViewMode::raw;
+  const bool moved = packing != nullptr && !packed;
+  Json view = {{"buffer", packed ? kDecoded : kBin},
+               {"byteOffset", moved ? packing->offset(part) : section.offset},
+               {"byteLength", section.bytes()}};
+  const bool padded = section.stride != component_bytes(section.component) * section.components;
+  if (padded)
+    view["byteStride"] = section.stride;
+  if (part <= Part::texcoord)
+    view["target"] = kVertexTarget;
+  if (part == Part::interior || part == Part::border)
+    view["target"] = kIndexTarget;
+  if (packed)
+    view["extensions"][kMeshoptExtension] = packed_json(section, part, *packing);
+  return view;
+}
+
+/// The smallest or largest values of the accessor of positions.
+Json corner_json(const TilePlan& plan, Vec3f corner) {
+  if (plan.has_short_positions()) {
+    const Vec3<std::uint32_t> n = plan.lattice()->numbers_of(corner);
+    return Json::array({n.x, n.y, n.z});
+  }
+  // As doubles: their shortest decimal form is read back as the same float.
+  const Vec3d wide = to_double(corner);
+  return Json::array({wide.x, wide.y, wide.z});
+}
+
+Json accessor_json(const TilePlan& plan, Part part, const Bounds& bounds) {
+  const Section& section = plan[part];
+  constexpr std::array<const char*, 5> kTypes{"", "SCALAR", "VEC2", "VEC3", "VEC4"};
+  Json accessor = {{"bufferView", section.view},
+                   {"componentType", section.component},
+                   {"count", section.count},
+                   {"type", kTypes[section.components]}};
+  if (part == Part::colour && section.component != kF32)
+    accessor["normalized"] = true;
+  if (part == Part::position) {
+    accessor["min"] = corner_json(plan, bounds.min);
+    accessor["max"] = corner_json(plan, bounds.max);
+  }
+  return accessor;
+}
+
+/// Accessors have the numbers of their buffer views: the parts with an accessor come first.
+Json primitives_json(const TilePlan& plan) {
+  Json attributes = Json::object();
+  for (const Part part : {Part::position, Part::normal, Part::colour, Part::texcoord}) {
+    if (plan[part].view >= 0)
+      attributes[key_of(part)] = plan[part].view;
+  }
+  Json primitives = Json::array();
+  for (const Part part : {Part::interior, Part::border}) {
+    if (plan[part].view < 0)
+      continue;
+    primitives.push_back(Json::object({{"attributes", attributes},
+                                       {"indices", plan[part].view},
+                                       {"material", 0},
+                                       {"mode", kTriangles}}));
+  }
+  if (primitives.empty()) {
+    primitives.push_back(
+        Json::object({{"attributes", attributes}, {"material", 0}, {"mode", kPoints}}));
+  }
+  return primitives;
+}
+
+/// Neither metal, which is black without surroundings to mirror, nor one-sided, as scans are open.
+Json material_json() {
+  return {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 1}}},
+          {"doubleSided", true}};
+}
+
+Json extension_json(const TilePlan& plan) {
+  const TileShape& shape = plan.shape();
+  const bool interior = shape.interior > 0;
+  const bool border = shape.border > 0;
+  Json extension = {{"version", kTileExtensionVersion},
+                    {"level", raw(shape.node.level)},
+                    {"index", shape.node.index},
+                    {"ownCount", shape.own},
+                    {"rimCount", shape.rim},
+                    {"ghostCount", shape.ghosts},
+                    {"neighbourCount", shape.neighbours},
+                    {"chainEntryCount", shape.chain_entries},
+                    {"interiorCount", shape.interior},
+                    {"borderCount", shape.border},
+                    {"interiorPrimitive", interior ? 0 : -1},
+                    {"borderPrimitive", border ? (interior ? 1 : 0) : -1}};
+  for (std::size_t i = static_cast<std::size_t>(Part::parent_map); i < kPartCount; ++i) {
+    extension[kKeys[i]] = plan[static_cast<Part>(i)].view;
+  }
+  return extension;
+}
+
+/// The node's way from stored numbers to the input's coordinates.
+Json node_json(const TilePlan& plan, const Frame& frame) {
+  if (!plan.has_short_positions())
+    return mesh_node(frame);
+  return mesh_node({frame.origin + plan.lattice()->corner, frame.up}, plan.lattice()->step);
+}
+
+Json buffers_json(const TilePlan& plan, const Packing* packing) {
+  if (packing == nullptr)
+    return Json::array({Json::object({{"byteLength", plan.bytes()}})});
+  Json decoded = {{"byteLength", plan.bytes()}};
+  decoded["extensions"][kMeshoptExtension] = {{"fallback", true}};
+  return Json::array({Json::object({{"byteLength", packing->total()}}), decoded});
+}
+
+/// Those without which a viewer cannot show the tile.
+Json required_extensions(const TilePlan& plan, const Packing* packing) {
+  Json names = Json::array();
+  if (packing != nullptr)
+    names.push_back(kMeshoptExtension);
+  if (plan.has_short_positions())
+    names.push_back(kQuantizationExtension);
+  return names;
+}
+
+}  // namespace
+
+ViewMode mode_of(Part part) {
+  switch (part) {
+    case Part::interior:
+    case Part::border:
+      return ViewMode::triangles;
+    case Part::parent_map:
+    case Part::ghost_chains:
+      return ViewMode::indices;
+    case Part::neighbours:
+    case Part::ghost_starts:
+      return ViewMode::raw;
+    default:
+      return ViewMode::attributes;
+  }
+}
+
+std::uint64_t Packing::offset(Part part) const {
+  std::uint64_t offset = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(part); ++i)
+    offset += aligned4(bytes[i]);
+  return offset;
+}
+
+std::uint64_t Packing::total() const {
+  return offset(static_cast<Part>(kPartCount));
+}
+
+const char* key_of(Part part) {
+  return kKeys[static_cast<std::size_t>(part)];
+}
+
+std::array<ChannelGroup, 3> groups_of(const AttributeLayout& layout) {
+  const auto size = [](int channels) { return static_cast<std::size_t>(channels); };
+  return {{{Part::normal, Part::raw_normals, size(layout.normal_offset()),
+            size(layout.normals ? 3 : 0)},
+           {Part::colour, Part::raw_colours, size(layout.colour_offset()),
+            size(layout.colour_channels())},
+           {Part::texcoord, Part::raw_texcoords, size(layout.texcoord_offset()),
+            size(layout.texcoords ? 2 : 0)}}};
+}
+
+TilePlan::TilePlan(const TileShape& shape, const AttributeLayout& layout,
+                   const std::optional<Lattice>& lattice)
+    : shape_(shape), layout_(layout), lattice_(lattice) {
+  const auto groups = groups_of(layout);
+  const unsigned index = shape.vertices() <= kMaxShortVertices ? kU16 : kU32;
+  add(Part::position, has_short_positions() ? kU16 : kF32, 3, shape.vertices());
+  for (const ChannelGroup& group : groups) {
+    add(group.part, component_of(group), group.channels, shape.vertices());
+  }
+  add(Part::interior, index, 1, 3 * shape.interior);
+  add(Part::border, index, 1, 3 * shape.border);
+  add(Part::parent_map, kU16, 1, shape.node == NodeId{} ? 0 : shape.own);
+  add(Part::neighbours, kU32, 1, shape.neighbours);
+  add(Part::ghost_starts, kU32, 1, shape.neighbours > 0 ? shape.neighbours + 1 : 0);
+  add(Part::ghost_chains, kU16, 1, shape.chain_entries);
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    add(groups[i].raw, kF32, groups[i].channels, shape.raw[i] ? shape.vertices() : 0);
+  }
+}
+
+unsigned TilePlan::component_of(const ChannelGroup& group) const {
+  if (group.part != Part::colour || layout_.colour == ColourType::f32)
+    return kF32;
+  return layout_.colour == ColourType::u8 ? kU8 : kU16;
+}
+
+void TilePlan::add(Part part, unsigned component, std::size_t components, std::uint64_t count) {
+  if (components == 0 || count == 0)
+    return;
+  const std::uint64_t size = component_bytes(component) * components;
+  sections_[static_cast<std::size_t>(part)] = {.component = component,
+                                               .components = static_cast<unsigned>(components),
+                                               .count = count,
+                                               .stride = components > 1 ? aligned4(size) : size,
+                                               .offset = bytes_,
+                                               .view = views_++};
+  bytes_ = aligned4(bytes_ + count * sections_[static_cast<std::size_t>(part)].stride);
+}
+
+Json TilePlan::document(const Bounds& bounds, const Frame& frame, const Packing* packing) const {
+  Json views = Json::array();
+  Json accessors = Json::array();
+  for (std::size_t i = 0; i < kPartCount; ++i) {
+    const auto part = static_cast<Part>(i);
+    if (sections_[i].view < 0)
+      continue;
+    views.push_back(view_json(sections_[i], part, packing));
+    if (part <= Part::border)
+      accessors.push_back(accessor_json(*this, part, bounds));
+  }
+  const Json mesh = {{"primitives", primitives_json(*this)}};
+  const Json scene = {{"nodes", Json::array({0})}};
+  Json required = required_extensions(*this, packing);
+  Json used = required;
+  used.push_back(kTileExtension);
+
+  Json document;
+  document["asset"] = {{"version", "2.0"}, {"generator", "meshhier"}};
+  document["extensionsUsed"] = std::move(used);
+  if (!required.empty())
+    document["extensionsRequired"] = std::move(required);
+  document["scene"] = 0;
+  document["scenes"] = Json::array({scene});
+  document["nodes"] = Json::array({node_json(*this, frame)});
+  document["meshes"] = Json::array({mesh});
+  document["materials"] = Json::array({material_json()});
+  document["accessors"] = std::move(accessors);
+  document["bufferViews"] = std::move(views);
+  document["buffers"] = buffers_json(*this, packing);
+  document["extensions"][kTileExtension] = extension_json(*this);
+  return document;
+}
+
+}  // namespace meshhier::storage

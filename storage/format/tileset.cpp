@@ -1,0 +1,204 @@
+#include "storage/format/tileset.h"
+
+#include "storage/format/index.h"
+#include "storage/format/layout.h"
+#include "storage/io/hash.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace meshhier::storage {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Viewers divide by the lengths of a box's axes: none is shorter than this part of the model.
+constexpr double kThinnest = 1e-6;
+
+/// From input coordinates to those of 3D Tiles, where z is up. Viewers turn glTF's content, which
+/// is y-up, in the same way.
+Vec3d turned(Vec3d p, UpAxis up) {
+  return up == UpAxis::z ? p : Vec3d{p.x, -p.z, p.y};
+}
+
+/// The boxes that hold a node's tile and all below it, relative to the origin.
+class Boxes {
+ public:
+  Boxes(const Tree& tree, std::span<const TileRecord> records)
+      : tree_(tree), levels_(raw(tree.depth()) + std::size_t{1}) {
+    for (int level = 0; level <= raw(tree.depth()); ++level)
+      levels_[level].resize(tree.node_count(static_cast<Level>(level)));
+    for (std::size_t i = records.size(); i-- > 0;) {  // children first
+      const NodeId node = records[i].node;
+      at(node).add(records[i].bounds);
+      if (node.level > Level{0})
+        at(parent_tile(tree_, node)).add(at(node));
+    }
+  }
+  const Bounds& operator[](NodeId node) const { return levels_[raw(node.level)][node.index]; }
+
+ private:
+  Bounds& at(NodeId node) { return levels_[raw(node.level)][node.index]; }
+
+  const Tree& tree_;
+  std::vector<std::vector<Bounds>> levels_;
+};
+
+class TilesetWriter {
+ public:
+  TilesetWriter(const Manifest& manifest, const Tree& tree, std::span<const TileRecord> records)
+      : manifest_(manifest), tree_(tree), records_(records), boxes_(tree, records) {
+    const Bounds& all = boxes_[tree.root()];
+    thinnest_ = kThinnest * diagonal(all);
+    const int levels = raw(tree.depth()) + 1;
+    const int files = (levels + kTilesetLevels - 1) / kTilesetLevels;
+    levels_per_file_ = (levels + files - 1) / files;
+  }
+
+  void write(const std::function<void(const TilesetFile&)>& visit) const {
+    visit({tileset_path({}), text_of(tree_.root())});
+    for (int level = levels_per_file_; level <= raw(tree_.depth()); level += levels_per_file_) {
+      for (std::uint32_t i = 0; i < tree_.node_count(static_cast<Level>(level)); ++i) {
+        const NodeId node{static_cast<Level>(level), i};
+        if (is_page(node))
+          visit({tileset_path({}, node), text_of(node)});
+      }
+    }
+  }
+
+ private:
+  /// Nodes with a file of their own.
+  bool is_page(NodeId node) const {
+    return raw(node.level) > 0 && raw(node.level) % levels_per_file_ == 0 &&
+           !tree_.is_early(node) && !tree_.is_partition(node);
+  }
+
+  const TileRecord& record(NodeId node) const { return record_of(records_, node); }
+
+  std::string text_of(NodeId root) const {
+    const bool is_first = root == tree_.root();
+    Json document;
+    document["asset"] = {{"version", "1.1"}};
+    if (is_first) {
+      document["asset"]["extras"] = {{"generator", manifest_.generator}};
+      describe_source(document);
+    }
+    // What is missing while nothing is drawn.
+    const double error = record(root).error;
+    document["geometricError"] = std::max(diagonal(boxes_[root]), 2 * error);
+    document["root"] = tile_json(root, root);
+    if (is_first && manifest_.transform)
+      document["root"]["transform"] = *manifest_.transform;
+    return document.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
+  }
+
+  void describe_source(Json& document) const {
+    const SourceSummary& source = manifest_.source;
+    const auto count = [] { return Json{{"type", "SCALAR"}, {"componentType", "UINT64"}}; };
+    Json properties = {
+        {"name", {{"type", "STRING"}}}, {"vertices", count()}, {"triangles", count()}};
+    Json values = {
+        {"name", source.file_name}, {"vertices", source.vertices}, {"triangles", source.triangles}};
+    if (!manifest_.licence.empty()) {
+      properties["licence"] = {{"type", "STRING"}};
+      values["licence"] = manifest_.licence;
+    }
+    document["schema"] = {{"id", "meshhier"},
+                          {"classes", {{"source", {{"properties", std::move(properties)}}}}}};
+    document["metadata"] = {{"class", "source"}, {"properties", std::move(values)}};
+  }
+
+  /// `root`: of the file it is written into.
+  Json tile_json(NodeId node, NodeId root) const {
+    const std::string up = root == tree_.root() ? "" : "../../";
+    Json tile;
+    tile["boundingVolume"] = {{"box", box_json(boxes_[node])}};
+    if (node != root && is_page(node)) {
+      // Shown never; between the errors of its parent and of the tile it leads to.
+      const double above = record(parent_tile(tree_, node)).error;
+      tile["geometricError"] = (above + record(node).error) / 2;
+      tile["content"] = {{"uri", up + tileset_path({}, node).generic_string()}};
+      return tile;
+    }
+    tile["geometricError"] = record(node).error;
+    if (node == root)
+      tile["refine"] = "REPLACE";
+    tile["content"] = {{"uri", up + tile_path({}, node).generic_string()}};
+    const Tree::Children children = tree_.children(node);
+    for (const NodeId child : children.span())
+      tile["children"].push_back(tile_json(tile_node(tree_, child), root));
+    return tile;
+  }
+
+  Json box_json(const Bounds& bounds) const {
+    const Vec3d low = to_double(bounds.min) + manifest_.origin;
+    const Vec3d high = to_double(bounds.max) + manifest_.origin;
+    const Vec3d centre = turned((low + high) * 0.5, manifest_.up);
+    const Vec3d extent = turned((high - low) * 0.5, manifest_.up);
+    const auto half = [&](double x) { return std::max(std::abs(x), thinnest_); };
+    return {centre.x, centre.y, centre.z, half(extent.x), 0, 0, 0, half(extent.y),
+            0,        0,        0,        half(extent.z)};
+  }
+
+  const Manifest& manifest_;
+  const Tree& tree_;
+  std::span<const TileRecord> records_;
+  Boxes boxes_;
+  double thinnest_ = 0;
+  int levels_per_file_ = kTilesetLevels;
+};
+
+}  // namespace
+
+void for_each_tileset(const Manifest& manifest, const Tree& tree,
+                      std::span<const TileRecord> records,
+                      const std::function<void(const TilesetFile&)>& visit) {
+  TilesetWriter(manifest, tree, records).write(visit);
+}
+
+void write_tilesets(FileSystem& files, const std::filesystem::path& directory, const Tree& tree,
+                    std::span<const TileRecord> records, Manifest& manifest) {
+  Checksum sum;
+  std::filesystem::path made;
+  for_each_tileset(manifest, tree, records, [&](const TilesetFile& file) {
+    const std::filesystem::path path = directory / file.path;
+    const auto bytes = std::as_bytes(std::span(file.text));
+    if (path.parent_path() != made)
+      files.make_directories(made = path.parent_path());
+    write_file(files, path, bytes);
+    sum.add(bytes);
+    ++manifest.tileset_files;
+    manifest.tileset_bytes += bytes.size();
+  });
+  manifest.tileset_checksum = sum.value();
+  manifest.total_bytes += manifest.tileset_bytes;
+}
+
+Transform globe_transform(double longitude, double latitude, double height, Vec3d anchor,
+                          UpAxis up) {
+  // WGS 84.
+  constexpr double kSemiMajor = 6378137;
+  constexpr double kFlattening = 1 / 298.257223563;
+  constexpr double kEccentricity2 = kFlattening * (2 - kFlattening);
+  const double lambda = longitude * std::numbers::pi / 180;
+  const double phi = latitude * std::numbers::pi / 180;
+  const double normal = kSemiMajor / std::sqrt(1 - kEccentricity2 * std::pow(std::sin(phi), 2));
+  const Vec3d east{-std::sin(lambda), std::cos(lambda), 0};
+  const Vec3d north{-std::sin(phi) * std::cos(lambda), -std::sin(phi) * std::sin(lambda),
+                    std::cos(phi)};
+  const Vec3d away{std::cos(phi) * std::cos(lambda), std::cos(phi) * std::sin(lambda),
+                   std::sin(phi)};
+  const Vec3d place{(normal + height) * away.x, (normal + height) * away.y,
+                    (normal * (1 - kEccentricity2) + height) * away.z};
+  const Vec3d a = turned(anchor, up);
+  const Vec3d shift = place - (east * a.x + north * a.y + away * a.z);
+  return {east.x, east.y, east.z, 0, north.x, north.y, north.z, 0,
+          away.x, away.y, away.z, 0, shift.x, shift.y, shift.z, 1};
+}
+
+}  // namespace meshhier::storage

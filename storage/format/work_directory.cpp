@@ -1,0 +1,153 @@
+#include "storage/format/work_directory.h"
+
+#include "hierarchy/error.h"
+#include "storage/format/archive.h"
+#include "storage/format/layout.h"
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace meshhier::storage {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Why what lies there is not replaced; empty if it is.
+std::string objection(FileSystem& files, const Output& output) {
+  const bool is_directory = files.is_directory(output.path);
+  if (output.container == Container::archive) {
+    if (is_directory)
+      return "is a directory, and one file is to be made (\"container\": \"3tz\")";
+    return is_hierarchy_archive(files, output.path) ? "" : "is not the archive of a hierarchy";
+  }
+  const bool is_stream = output.content == Content::progressive_stream;
+  if (!is_directory && is_stream)
+    return "is not a progressive stream but a file";
+  if (!is_directory)
+    return "is a file, and a directory is to be made (\"container\": \"files\")";
+  const fs::path mark = is_stream ? progressive_index_path({}) : manifest_path({});
+  if (files.exists(output.path / mark))
+    return "";
+  return fmt::format("is not a {} (it has no {})", is_stream ? "progressive stream" : "hierarchy",
+                     mark.string());
+}
+
+}  // namespace
+
+bool check_output(FileSystem& files, const Output& output, bool replace, const char* state) {
+  if (!files.exists(output.path))
+    return false;
+  if (!replace) {
+    throw Error(ErrorCode::exists,
+                fmt::format("{} {}; --force replaces it", output.path.string(), state));
+  }
+  if (const std::string why = objection(files, output); !why.empty()) {
+    throw Error(ErrorCode::exists,
+                fmt::format("{} {}, so --force does not replace it", output.path.string(), why));
+  }
+  return true;
+}
+
+namespace {
+
+/// A process that was killed holds its lock until the disk has done what it was asked for.
+std::unique_ptr<FileLock> lock_patiently(FileSystem& files, const std::filesystem::path& path) {
+  constexpr int kTries = 60;
+  constexpr std::chrono::milliseconds kPause(50);
+  std::unique_ptr<FileLock> lock = files.try_lock(path);
+  for (int i = 1; i < kTries && !lock; ++i) {
+    std::this_thread::sleep_for(kPause);
+    lock = files.try_lock(path);
+  }
+  return lock;
+}
+
+}  // namespace
+
+WorkDirectory::WorkDirectory(FileSystem& files, Output output, bool replace)
+    : files_(files), output_(std::move(output)), path_(work_path(output_.path)), replace_(replace) {
+  check_output(files_, output_, replace_);
+  for (auto parent = output_.path.parent_path(); !parent.empty() && !files_.exists(parent);
+       parent = parent.parent_path()) {
+    made_parent_ = parent;
+  }
+  files_.make_directories(path_);
+  lock_ = lock_patiently(files_, lock_path(path_));
+  if (!lock_) {
+    throw Error(ErrorCode::exists,
+                fmt::format("another build of {} is at work", output_.path.string()));
+  }
+}
+
+WorkDirectory::~WorkDirectory() {
+  if (published_ || kept_)
+    return;
+  try {
+    files_.remove_all(path_);  // while it is locked: who comes now finds no lock, and makes another
+    if (!made_parent_.empty() && files_.list(made_parent_).empty())
+      files_.remove_all(made_parent_);
+  } catch (const Error&) {  // the failure that brought us here is the one to report
+  }
+}
+
+std::filesystem::path WorkDirectory::built() const {
+  return built_path(path_);
+}
+
+std::filesystem::path WorkDirectory::packed() const {
+  return packed_path(path_);
+}
+
+void WorkDirectory::clear() {
+  for (const std::filesystem::path& file : files_.list(path_)) {
+    if (file != lock_path(path_) && file != imported_path(path_))
+      files_.remove_all(file);
+  }
+  files_.remove_all(built());
+}
+
+/// Of an archive, without the files that were packed into it.
+void WorkDirectory::sync_result() {
+  if (output_.container == Container::archive)
+    files_.open(packed())->sync();
+  else
+    files_.sync_tree(path_);
+}
+
+void WorkDirectory::publish() {
+  sync_result();
+  const std::filesystem::path& to = output_.path;
+  const std::filesystem::path from = output_.container == Container::files ? built() : packed();
+  const std::filesystem::path old = replaced_path(to);
+  const bool replacing = check_output(files_, output_, replace_, "appeared during the build");
+  if (replacing) {
+    files_.remove_all(old);
+    files_.rename(to, old);
+  }
+  bool renamed = false;
+  try {
+    files_.rename(from, to);
+    renamed = true;
+    if (output_.container == Container::archive)
+      files_.remove_all(built());  // or the disk takes them too, for nothing
+    files_.sync_tree(path_);       // which is beside the output
+  } catch (const Error&) {
+    if (renamed)
+      files_.rename(to, from);
+    if (replacing)
+      files_.rename(old, to);
+    throw;
+  }
+  published_ = true;
+  kept_ = false;
+  files_.remove_all(old);
+  files_.remove_all(path_);
+}
+
+}  // namespace meshhier::storage

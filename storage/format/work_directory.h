@@ -1,0 +1,81 @@
+// The directory a hierarchy is built in: beside the output, complete before it takes the output's
+// name. It outlives a build that is stopped, so that the next one can go on.
+#pragma once
+
+#include "storage/io/file.h"
+
+#include <filesystem>
+#include <memory>
+#include <utility>
+
+namespace meshhier::storage {
+
+/// What a hierarchy becomes.
+enum class Container {
+  files,    ///< a directory
+  archive,  ///< one file (storage/format/archive_format.h)
+};
+
+/// What is made: only its own kind is replaced.
+enum class Content { hierarchy, progressive_stream };
+
+/// Where it goes.
+struct Output {
+  // NOLINTNEXTLINE(google-explicit-constructor): a path is a directory unless more is said
+  Output(std::filesystem::path where, Container in = Container::files,
+         Content what = Content::hierarchy)
+      : path(std::move(where)), container(in), content(what) {}
+
+  std::filesystem::path path;
+  Container container;
+  Content content;
+};
+
+/// Whether there is an output. Throws Error(exists) if there is and `replace` is false, or if it is
+/// not of the same content and container; `state` says how it comes to be there.
+bool check_output(FileSystem& files, const Output& output, bool replace,
+                  const char* state = "is already there");
+
+class WorkDirectory {
+ public:
+  /// Takes the directory as an earlier build left it, or makes it. Throws Error(exists) if `output`
+  /// is there and `replace` is false or if another build is at work here, Error(io) if its parent
+  /// cannot be written.
+  WorkDirectory(FileSystem& files, Output output, bool replace);
+  WorkDirectory(const WorkDirectory&) = delete;
+  WorkDirectory& operator=(const WorkDirectory&) = delete;
+  /// Removes the directory and all in it, and directories made above it, unless it is kept or
+  /// published.
+  ~WorkDirectory();
+
+  const std::filesystem::path& path() const {
+    return path_;
+  }                                      ///< for the journal and scratch files
+  std::filesystem::path built() const;   ///< the hierarchy to be, in path()
+  std::filesystem::path packed() const;  ///< its archive to be, in path()
+
+  /// Removes all that is in it, but for an imported mesh.
+  void clear();
+  /// Whether what is in it stays, unless it is published.
+  void keep(bool kept) { kept_ = kept; }
+  bool is_kept() const { return kept_; }
+
+  /// Syncs, gives the hierarchy, or its archive, the output's name and removes the rest; a
+  /// hierarchy that is replaced keeps its name until then.
+  void publish();
+
+ private:
+  void sync_result();
+
+  FileSystem& files_;
+  Output output_;
+  std::filesystem::path path_;
+  std::filesystem::path
+      made_parent_;  ///< the topmost directory above the output that was not there before
+  std::unique_ptr<FileLock> lock_;
+  bool replace_;
+  bool kept_ = false;
+  bool published_ = false;
+};
+
+}  // namespace meshhier::storage

@@ -1,0 +1,81 @@
+#include "storage/io/blob_store.h"
+
+#include "hierarchy/error.h"
+#include "storage/io/hash.h"
+
+#include <cassert>
+#include <cstring>
+
+namespace meshhier::storage {
+
+void BlobStore::put(std::size_t index, std::span<const std::byte> bytes) {
+  Blob& blob = blobs_[index];
+  assert(blob.stored.bytes == 0);
+  if (bytes.empty())
+    return;
+  const std::uint64_t offset = scratch_->append(bytes);
+  if (scratch_->pool().try_take(bytes.size())) {
+    blob.memory = std::make_unique_for_overwrite<std::byte[]>(bytes.size());
+    std::memcpy(blob.memory.get(), bytes.data(), bytes.size());
+  }
+  blob.stored = {offset, bytes.size(), checksum(bytes)};
+}
+
+bool BlobStore::restore(std::size_t index, const StoredBlob& stored) {
+  if (!scratch_->claim(stored.offset, stored.bytes))
+    return false;
+  const auto bytes = std::make_unique_for_overwrite<std::byte[]>(stored.bytes);
+  if (!is_as_put(stored, {bytes.get(), stored.bytes}))
+    return false;
+  blobs_[index].stored = stored;
+  return true;
+}
+
+/// Reads the blob into `bytes`, as many as it has.
+bool BlobStore::is_as_put(const StoredBlob& stored, std::span<std::byte> bytes) const {
+  if (bytes.empty())
+    return true;
+  scratch_->read(stored.offset, bytes);
+  return checksum(bytes) == stored.checksum;
+}
+
+void BlobStore::read(std::size_t index, std::uint64_t offset, std::span<std::byte> bytes) const {
+  const Blob& blob = blobs_[index];
+  assert(offset + bytes.size() <= blob.stored.bytes);
+  if (bytes.empty())
+    return;
+  if (blob.memory) {
+    std::memcpy(bytes.data(), blob.memory.get() + offset, bytes.size());
+  } else {
+    scratch_->read(blob.stored.offset + offset, bytes);
+  }
+}
+
+BlobView BlobStore::view(std::size_t index) const {
+  const Blob& blob = blobs_[index];
+  const std::size_t size = blob.stored.bytes;
+  if (blob.memory || size == 0)
+    return BlobView({blob.memory.get(), size});
+  auto bytes = std::make_unique_for_overwrite<std::byte[]>(size);
+  if (!is_as_put(blob.stored, {bytes.get(), size}))
+    throw Error(ErrorCode::io, scratch_->path().string() +
+                                   " is not what was written to it: the "
+                                   "disk, or another program, changed it");
+  return BlobView(std::move(bytes), size);
+}
+
+void BlobStore::drop_copies() {
+  for (Blob& blob : blobs_) {
+    if (blob.memory)
+      scratch_->pool().give_back(blob.stored.bytes);
+    blob.memory.reset();
+  }
+}
+
+void BlobStore::clear() {
+  drop_copies();
+  for (Blob& blob : blobs_)
+    blob = {};
+}
+
+}  // namespace meshhier::storage

@@ -1,0 +1,78 @@
+// Numbered blobs of scratch data that outlive the process: all on disk, and in memory too while the
+// budget lasts.
+#pragma once
+
+#include "storage/io/spool.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace meshhier::storage {
+
+/// A blob's bytes: in place if the store holds them in memory, else read from disk. Not valid
+/// longer than the store keeps the blob.
+class BlobView {
+ public:
+  explicit BlobView(std::span<const std::byte> in_place) : bytes_(in_place) {}
+  BlobView(std::unique_ptr<std::byte[]> read, std::size_t size)
+      : bytes_(read.get(), size), read_(std::move(read)) {}
+
+  std::span<const std::byte> bytes() const { return bytes_; }
+
+ private:
+  std::span<const std::byte> bytes_;
+  std::unique_ptr<std::byte[]> read_;
+};
+
+/// Where a scratch file holds a blob.
+struct StoredBlob {
+  std::uint64_t offset = 0;
+  std::uint64_t bytes = 0;
+  std::uint64_t checksum = 0;  ///< XXH3-64
+};
+
+/// Each blob is put once, or restored, and read any number of times. Threads may put and read
+/// different blobs at once; a blob may be read once its put() has returned.
+class BlobStore {
+ public:
+  BlobStore(ScratchFile& scratch, std::size_t count) : scratch_(&scratch), blobs_(count) {}
+  BlobStore(BlobStore&&) = default;
+  BlobStore& operator=(BlobStore&&) = delete;
+  ~BlobStore() { clear(); }
+
+  std::size_t count() const { return blobs_.size(); }
+  void put(std::size_t index, std::span<const std::byte> bytes);
+  std::uint64_t size(std::size_t index) const { return blobs_[index].stored.bytes; }
+
+  /// For restore(), in another process even.
+  const StoredBlob& stored(std::size_t index) const { return blobs_[index].stored; }
+  /// Takes a blob that is in the scratch file already; false, and nothing happens, if what is there
+  /// is not what was put.
+  bool restore(std::size_t index, const StoredBlob& stored);
+
+  /// Copies bytes.size() bytes from `offset`; requires them to be there.
+  void read(std::size_t index, std::uint64_t offset, std::span<std::byte> bytes) const;
+  /// A whole blob, without a copy if it is in memory. Throws Error(io) if the disk has changed it.
+  BlobView view(std::size_t index) const;
+
+  /// Gives the memory back; all stays on disk. While there is no view.
+  void drop_copies();
+  /// Forgets everything and gives its memory back.
+  void clear();
+
+ private:
+  struct Blob {
+    StoredBlob stored;
+    std::unique_ptr<std::byte[]> memory;
+  };
+  bool is_as_put(const StoredBlob& stored, std::span<std::byte> bytes) const;
+
+  ScratchFile* scratch_;
+  std::vector<Blob> blobs_;
+};
+
+}  // namespace meshhier::storage

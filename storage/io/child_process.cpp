@@ -1,0 +1,143 @@
+#include "storage/io/child_process.h"
+
+#include "hierarchy/error.h"
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace meshhier::storage {
+namespace {
+
+constexpr const char* kOwnProgram = "/proc/self/exe";
+
+/// Both ends of a pipe.
+struct Pipe {
+  int reader = -1;
+  int writer = -1;
+};
+
+[[noreturn]] void fail(const std::string& what, int error) {
+  throw Error(ErrorCode::io, what + ": " + std::strerror(error));
+}
+
+Pipe make_pipe() {
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0)
+    fail("cannot make a pipe", errno);
+  return {ends[0], ends[1]};
+}
+
+void close_end(int end) {
+  if (end >= 0)
+    ::close(end);
+}
+
+/// Between fork and exec: only what may be called there. Ends the process if it fails. `errors`: -1
+/// if they are dropped.
+[[noreturn]] void become(char* const* words, int errors, pid_t parent) {
+  ::setpgid(0, 0);
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  const int nothing = ::open("/dev/null", O_RDWR);
+  const int said = errors < 0 ? nothing : errors;
+  const bool is_ready = ::getppid() == parent && nothing >= 0 &&
+                        ::dup2(nothing, STDIN_FILENO) >= 0 && ::dup2(nothing, STDOUT_FILENO) >= 0 &&
+                        ::dup2(said, STDERR_FILENO) >= 0 &&
+                        ::close_range(STDERR_FILENO + 1, ~0U, 0) == 0;
+  if (is_ready)
+    ::execv(words[0], words);
+  ::_exit(127);
+}
+
+int exit_code(int status) {
+  return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+}
+
+}  // namespace
+
+ChildProcess::ChildProcess(const std::vector<std::string>& words, Errors errors) {
+  std::vector<char*> arguments;
+  for (const std::string& word : words)
+    arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  const Pipe pipe = errors == Errors::heard ? make_pipe() : Pipe();
+  const pid_t parent = ::getpid();
+  process_ = ::fork();
+  const int error = errno;
+  if (process_ == 0)
+    become(arguments.data(), pipe.writer, parent);
+  close_end(pipe.writer);
+  errors_ = pipe.reader;
+  if (process_ < 0) {
+    close_end(errors_);
+    fail("cannot start " + words[0], error);
+  }
+}
+
+ChildProcess::~ChildProcess() {
+  if (process_ > 0) {
+    ::kill(process_, SIGKILL);
+    wait();
+  }
+  close_end(errors_);
+}
+
+bool ChildProcess::hear(std::string& text, std::chrono::milliseconds longest) {
+  if (errors_ < 0)
+    return false;
+  pollfd ready{errors_, POLLIN, 0};
+  const int count = ::poll(&ready, 1, static_cast<int>(longest.count()));
+  if (count < 0 && errno != EINTR)
+    fail("cannot wait for a child process", errno);
+  if (count <= 0)
+    return true;
+  std::array<char, 4096> buffer;
+  const ssize_t bytes = ::read(errors_, buffer.data(), buffer.size());
+  if (bytes < 0 && errno != EINTR)
+    fail("cannot read what a child process says", errno);
+  if (bytes > 0)
+    text.append(buffer.data(), static_cast<std::size_t>(bytes));
+  return bytes != 0;
+}
+
+void ChildProcess::ask_to_stop() {
+  if (process_ > 0)
+    ::kill(process_, SIGTERM);
+}
+
+int ChildProcess::wait() {
+  int status = 0;
+  while (::waitpid(process_, &status, 0) == -1) {
+    if (errno != EINTR)
+      fail("cannot wait for a child process", errno);
+  }
+  process_ = -1;
+  return exit_code(status);
+}
+
+std::string own_program() {
+  std::error_code error;
+  const std::filesystem::path path = std::filesystem::read_symlink(kOwnProgram, error);
+  // That of a file which was replaced ends with a remark that it was.
+  return !error && std::filesystem::exists(path, error) ? path.string() : kOwnProgram;
+}
+
+std::string own_directory() {
+  std::error_code error;
+  const std::filesystem::path path = std::filesystem::read_symlink(kOwnProgram, error);
+  if (error)
+    fail(std::string("cannot resolve ") + kOwnProgram, error.value());
+  return path.parent_path().string();
+}
+
+}  // namespace meshhier::storage

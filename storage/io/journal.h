@@ -1,0 +1,58 @@
+// The journal of a long job: what of it is done, entry after entry, in a file that outlives the
+// job's process.
+//
+// clang-format off
+//   offset  bytes
+//   0       8      "meshjrn" and the version, 1
+//   then, of each entry:
+//   0       4      n, bytes of the entry, little endian
+//   4       8      XXH3-64 of the entry, seeded with that of the entry before (0 for the first), little endian
+//   12      n      the entry, CBOR
+// clang-format on
+//
+// An entry counts if it and all before it are whole. So one that was half written when the process
+// was killed does not, nor do those that a lost page left without their predecessor: nothing has to
+// be forced to the disk in any order.
+#pragma once
+
+#include "storage/io/file.h"
+#include "storage/io/scratch_use.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+
+#include <nlohmann/json.hpp>
+
+namespace meshhier::storage {
+
+class Journal {
+ public:
+  using Entry = nlohmann::json;
+
+  /// Opens the journal at `path`; begins one if there is none. `take` gets the entries that count,
+  /// in order, until it returns false: that entry and all behind it are dropped. What is moved is
+  /// counted in `use`. Throws Error(io).
+  Journal(FileSystem& files, const std::filesystem::path& path, ScratchUse& use,
+          const std::function<bool(const Entry&)>& take);
+
+  /// Not thread-safe. Throws Error(io); the journal is then as it was.
+  void append(const Entry& entry);
+  /// Forces it to the disk.
+  void sync() { file_->sync(); }
+
+ private:
+  void read(const std::function<bool(const Entry&)>& take);
+  bool read_all(std::uint64_t offset, std::span<std::byte> bytes);
+  void write(std::span<const std::byte> bytes);
+
+  ScratchUse& use_;
+  std::unique_ptr<File> file_;
+  std::uint64_t end_ = 0;
+  std::uint64_t last_checksum_ = 0;
+};
+
+}  // namespace meshhier::storage

@@ -1,0 +1,23 @@
+// A file whose size and checksum another file tells.
+#pragma once
+
+#include "storage/io/file.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace meshhier::storage {
+
+struct Seal {
+  std::uint64_t bytes = 0;
+  std::uint64_t checksum = 0;  ///< XXH3-64
+};
+
+/// All of the file. `limit_bytes`: more than any such file has; guards what is allocated where the
+/// seal lies as well. Throws Error(io), or Error(corrupt) if it is not the file that was sealed.
+std::vector<std::byte> read_sealed(FileSystem& files, const std::filesystem::path& path,
+                                   const Seal& seal, std::uint64_t limit_bytes);
+
+}  // namespace meshhier::storage

@@ -1,0 +1,215 @@
+#include "storage/io/spool.h"
+
+#include "hierarchy/error.h"
+#include "storage/io/hash.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstring>
+#include <utility>
+
+namespace meshhier::storage {
+
+bool MemoryPool::try_take(std::uint64_t bytes) {
+  std::int64_t before = free_.load();
+  do {
+    if (before < static_cast<std::int64_t>(bytes))
+      return false;
+  } while (!free_.compare_exchange_weak(before, before - static_cast<std::int64_t>(bytes)));
+  return true;
+}
+
+ScratchFile::ScratchFile(FileSystem& files, std::filesystem::path path, MemoryPool& pool,
+                         Stays stays)
+    : files_(files), path_(std::move(path)), pool_(pool), stays_(stays) {
+  if (stays == Stays::yes && files_.exists(path_))
+    file_ = files_.reopen(path_);
+}
+
+ScratchFile::~ScratchFile() {
+  if (stays_ == Stays::yes)
+    return;
+  try {
+    remove();
+  } catch (const Error&) {  // the whole work directory is removed at the end of a build in any case
+  }
+}
+
+void ScratchFile::remove() {
+  if (!file_)
+    return;
+  file_.reset();
+  pool_.scratch_use().add_removed(size_.exchange(0));
+  free_.clear();
+  files_.remove_all(path_);
+}
+
+void ScratchFile::sync(const std::function<void()>& check) {
+  if (file_)
+    file_->sync(check);
+}
+
+bool ScratchFile::claim(std::uint64_t offset, std::uint64_t bytes) {
+  if (!file_)
+    return bytes == 0;
+  const std::uint64_t there = file_->size();
+  if (offset > there || bytes > there - offset)
+    return false;
+  const std::uint64_t end = offset + bytes;
+  if (end > size_) {
+    pool_.scratch_use().add_grown(end - size_);
+    size_ = end;
+  }
+  return true;
+}
+
+std::uint64_t ScratchFile::append(std::span<const std::byte> bytes) {
+  File* file = nullptr;
+  std::uint64_t offset = 0;
+  bool grows = false;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!file_)
+      file_ = files_.create(path_);
+    file = file_.get();
+    const auto free = free_.find(bytes.size());
+    grows = free == free_.end() || free->second.empty();
+    if (grows) {
+      offset = size_.fetch_add(bytes.size());
+    } else {
+      offset = free->second.back();
+      free->second.pop_back();
+    }
+  }
+  file->write_at(offset, bytes);
+  pool_.scratch_use().add_written(bytes.size());
+  if (grows)
+    pool_.scratch_use().add_grown(bytes.size());
+  return offset;
+}
+
+void ScratchFile::release(std::uint64_t offset, std::uint64_t bytes) {
+  const std::lock_guard lock(mutex_);
+  free_[bytes].push_back(offset);
+}
+
+Spool::Spool(Spool&& other) noexcept
+    : scratch_(other.scratch_),
+      block_bytes_(other.block_bytes_),
+      size_(std::exchange(other.size_, 0)),
+      checksum_(std::exchange(other.checksum_, 0)),
+      blocks_(std::move(other.blocks_)) {
+  other.blocks_.clear();
+}
+
+void Spool::append(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const std::size_t used = size_ % block_bytes_;
+    if (used == 0)
+      open_block();
+    const std::size_t count = std::min(bytes.size(), block_bytes_ - used);
+    std::memcpy(blocks_.back().memory() + used, bytes.data(), count);
+    size_ += count;
+    bytes = bytes.subspan(count);
+  }
+}
+
+/// Begins a block; the full one before goes into the pool, or to disk and leaves its memory.
+void Spool::open_block() {
+  if (size_ > 0)
+    checksum_ = checksum({blocks_.back().memory(), block_bytes_}, checksum_);
+  if (size_ == 0 || scratch_->pool().try_take(block_bytes_)) {
+    auto memory = std::make_unique_for_overwrite<std::byte[]>(block_bytes_);
+    blocks_.push_back(Block::in_memory(memory.get()));
+    memory.release();
+    return;
+  }
+  std::byte* memory = blocks_.back().memory();
+  const std::uint64_t offset = scratch_->append({memory, block_bytes_});
+  blocks_.push_back(Block::in_memory(memory));
+  blocks_[blocks_.size() - 2] = Block::on_disk(offset);
+}
+
+void Spool::read(std::uint64_t offset, std::span<std::byte> bytes) const {
+  assert(offset + bytes.size() <= size_);
+  while (!bytes.empty()) {
+    const Block& block = blocks_[offset / block_bytes_];
+    const std::size_t start = offset % block_bytes_;
+    const std::size_t count = std::min(bytes.size(), block_bytes_ - start);
+    if (block.is_on_disk()) {
+      scratch_->read(block.offset() + start, bytes.first(count));
+    } else {
+      std::memcpy(bytes.data(), block.memory() + start, count);
+    }
+    offset += count;
+    bytes = bytes.subspan(count);
+  }
+}
+
+StoredSpool Spool::store() {
+  StoredSpool stored{.bytes = size_, .checksum = 0, .block_bytes = block_bytes_, .blocks = {}};
+  stored.blocks.reserve(blocks_.size());
+  if (!blocks_.empty()) {  // the last one is in memory
+    const std::size_t last = blocks_.size() - 1;
+    checksum_ = checksum({blocks_[last].memory(), used_bytes(last)}, checksum_);
+  }
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    Block& block = blocks_[i];
+    if (!block.is_on_disk()) {
+      const std::unique_ptr<std::byte[]> memory(block.memory());
+      block = Block::on_disk(0);  // whatever happens now, it is not in memory
+      if (i + 1 < blocks_.size())
+        scratch_->pool().give_back(block_bytes_);
+      block = Block::on_disk(scratch_->append({memory.get(), used_bytes(i)}));
+    }
+    stored.blocks.push_back(block.offset());
+  }
+  stored.checksum = checksum_;
+  return stored;
+}
+
+bool Spool::restore(const StoredSpool& stored) {
+  const std::uint64_t block = stored.block_bytes;
+  if (block == 0 || stored.blocks.size() != stored.bytes / block + (stored.bytes % block > 0))
+    return false;
+  block_bytes_ = block;
+  size_ = stored.bytes;
+  checksum_ = stored.checksum;
+  for (const std::uint64_t offset : stored.blocks)
+    blocks_.push_back(Block::on_disk(offset));
+  return true;
+}
+
+bool Spool::is_as_stored() const {
+  std::uint64_t sum = 0;
+  std::vector<std::byte> bytes;
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    bytes.resize(used_bytes(i));
+    if (!scratch_->claim(blocks_[i].offset(), bytes.size()))
+      return false;
+    read(i * block_bytes_, bytes);
+    sum = checksum(bytes, sum);
+  }
+  return sum == checksum_;
+}
+
+std::size_t Spool::used_bytes(std::size_t block) const {
+  return std::min<std::uint64_t>(block_bytes_, size_ - block * block_bytes_);
+}
+
+void Spool::clear() {
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    if (blocks_[i].is_on_disk()) {
+      scratch_->release(blocks_[i].offset(), used_bytes(i));
+      continue;
+    }
+    delete[] blocks_[i].memory();
+    if (i + 1 < blocks_.size())
+      scratch_->pool().give_back(block_bytes_);
+  }
+  blocks_ = {};
+  size_ = 0;
+  checksum_ = 0;
+}
+
+}  // namespace meshhier::storage

@@ -1,0 +1,192 @@
+// Append-only scratch bytes: in memory while the budget lasts, on disk from there on.
+//
+// This is what makes one algorithm serve meshes smaller and larger than memory: stages append to
+// spools and read them back, and only the memory pool decides what touches the disk. What is read
+// never depends on it.
+#pragma once
+
+#include "storage/io/file.h"
+#include "storage/io/scratch_use.h"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <vector>
+
+namespace meshhier::storage {
+
+/// Bytes that may be held in memory by all spools together. Thread-safe.
+class MemoryPool {
+ public:
+  explicit MemoryPool(std::uint64_t capacity_bytes)
+      : free_(static_cast<std::int64_t>(capacity_bytes)) {}
+  /// While nothing is taken.
+  void set_capacity(std::uint64_t capacity_bytes) {
+    free_ = static_cast<std::int64_t>(capacity_bytes);
+  }
+  bool try_take(std::uint64_t bytes);
+  void give_back(std::uint64_t bytes) { free_ += static_cast<std::int64_t>(bytes); }
+  std::uint64_t free_bytes() const { return static_cast<std::uint64_t>(free_.load()); }
+
+  /// Of all scratch files that take what the pool does not hold.
+  ScratchUse& scratch_use() { return scratch_use_; }
+  const ScratchUse& scratch_use() const { return scratch_use_; }
+
+ private:
+  std::atomic<std::int64_t> free_;
+  ScratchUse scratch_use_;
+};
+
+/// One temporary file shared by many spools; made when the first block must leave memory, removed
+/// at the end.
+class ScratchFile {
+ public:
+  /// Whether the file is there when its object is gone.
+  enum class Stays {
+    no,
+    yes  ///< for a later process; one that an earlier process left is gone on with
+  };
+
+  ScratchFile(FileSystem& files, std::filesystem::path path, MemoryPool& pool,
+              Stays stays = Stays::no);
+  ScratchFile(const ScratchFile&) = delete;
+  ScratchFile& operator=(const ScratchFile&) = delete;
+  ~ScratchFile();
+
+  /// Another file, `name`, beside this one and of the same pool: for what is needed for a while
+  /// only, as disk space comes back with a whole file.
+  ScratchFile beside(const char* name) const { return {files_, path_.parent_path() / name, pool_}; }
+  const std::filesystem::path& path() const { return path_; }
+
+  /// Bytes on disk.
+  std::uint64_t size() const { return size_; }
+  MemoryPool& pool() { return pool_; }
+
+  /// Writes `bytes` to where as many were released, or else to the end; returns where.
+  /// Thread-safe.
+  std::uint64_t append(std::span<const std::byte> bytes);
+  /// Bytes that were appended so are not needed any more. Thread-safe.
+  void release(std::uint64_t offset, std::uint64_t bytes);
+  /// Says that bytes an earlier process appended are still needed; false if there are not so many.
+  /// Before the first append().
+  bool claim(std::uint64_t offset, std::uint64_t bytes);
+  /// Forces what was appended to the disk; `check` as for File::sync(). While others append, what
+  /// was there before.
+  void sync(const std::function<void()>& check);
+  /// Removes the file; nothing is left of what was appended.
+  void remove();
+  void read(std::uint64_t offset, std::span<std::byte> bytes) const {
+    file_->read_exact(offset, bytes);
+    pool_.scratch_use().add_read(bytes.size());
+  }
+
+ private:
+  FileSystem& files_;
+  std::filesystem::path path_;
+  MemoryPool& pool_;
+  Stays stays_;
+  std::mutex mutex_;  ///< guards file_, until it is made, and free_
+  std::unique_ptr<File> file_;
+  std::atomic<std::uint64_t> size_{0};
+  std::map<std::uint64_t, std::vector<std::uint64_t>> free_;  ///< offsets by size
+};
+
+/// Where a scratch file holds a spool's bytes.
+struct StoredSpool {
+  std::uint64_t bytes = 0;
+  std::uint64_t checksum = 0;
+  std::uint64_t block_bytes = 0;
+  std::vector<std::uint64_t> blocks;  ///< their offsets
+};
+
+/// A sequence of bytes. One writer; after the last append() any number of readers.
+class Spool {
+ public:
+  /// `block_bytes`: held while writing, the grain of what moves to disk; > 0.
+  Spool(ScratchFile& scratch, std::size_t block_bytes)
+      : scratch_(&scratch), block_bytes_(block_bytes) {}
+  Spool(Spool&& other) noexcept;
+  Spool& operator=(Spool&&) = delete;
+  ~Spool() { clear(); }
+
+  void append(std::span<const std::byte> bytes);
+  std::uint64_t size() const { return size_; }
+
+  /// Copies bytes.size() bytes from `offset`. Requires offset + bytes.size() <= size().
+  void read(std::uint64_t offset, std::span<std::byte> bytes) const;
+
+  /// Forgets the content and gives its memory back.
+  void clear();
+
+  /// Puts all that is in memory on disk: for restore(), in another process even. Nothing can be
+  /// appended any more.
+  StoredSpool store();
+  /// Takes what should be in the scratch file already; false if `stored` contradicts itself. On an
+  /// empty spool.
+  bool restore(const StoredSpool& stored);
+  /// Of a restored spool: whether the scratch file holds what was stored; reads it all. Before
+  /// anything is appended there.
+  bool is_as_stored() const;
+
+ private:
+  /// Where a block's bytes are, in 8 bytes, as large meshes have many blocks. Owns nothing.
+  class Block {
+   public:
+    static Block in_memory(std::byte* memory) {
+      return Block(reinterpret_cast<std::uintptr_t>(memory));
+    }
+    static Block on_disk(std::uint64_t offset) { return Block(offset << 1 | 1); }
+    bool is_on_disk() const { return (word_ & 1) != 0; }
+    std::byte* memory() const { return reinterpret_cast<std::byte*>(word_); }
+    std::uint64_t offset() const { return word_ >> 1; }
+
+   private:
+    static_assert(sizeof(std::uintptr_t) == sizeof(std::uint64_t));
+    explicit Block(std::uint64_t word) : word_(word) {}  // addresses of arrays are even
+    std::uint64_t word_;
+  };
+  void open_block();
+  /// Of a block, the last one included.
+  std::size_t used_bytes(std::size_t block) const;
+
+  ScratchFile* scratch_;
+  std::size_t block_bytes_;
+  std::uint64_t size_ = 0;
+  std::uint64_t checksum_ = 0;  ///< of all blocks, each seeded with those before; without the last
+                                ///< one as long as it is open
+  std::vector<Block> blocks_;   ///< in memory: counted in the pool, but for the last, open one
+};
+
+/// A spool of one kind of trivially copyable record.
+template <class Record>
+class RecordSpool {
+ public:
+  RecordSpool(ScratchFile& scratch, std::size_t block_bytes) : spool_(scratch, block_bytes) {}
+  void append(std::span<const Record> records) { spool_.append(std::as_bytes(records)); }
+  void append(const Record& record) { append(std::span(&record, 1)); }
+  std::uint64_t size() const { return spool_.size() / sizeof(Record); }
+  void read(std::uint64_t first, std::span<Record> records) const {
+    spool_.read(first * sizeof(Record), std::as_writable_bytes(records));
+  }
+  std::vector<Record> read_all() const {
+    std::vector<Record> records(size());
+    read(0, records);
+    return records;
+  }
+  void clear() { spool_.clear(); }
+  StoredSpool store() { return spool_.store(); }
+  bool restore(const StoredSpool& stored) { return spool_.restore(stored); }
+  bool is_as_stored() const { return spool_.is_as_stored(); }
+
+ private:
+  static_assert(std::is_trivially_copyable_v<Record>);
+  Spool spool_;
+};
+
+}  // namespace meshhier::storage

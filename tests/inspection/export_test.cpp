@@ -1,0 +1,275 @@
+#include "inspection/export.h"
+
+#include "hierarchy/cut.h"
+#include "hierarchy/error.h"
+#include "mesh_io/mesh_source.h"
+#include "storage/format/layout.h"
+#include "tests/support/faulty_file_system.h"
+#include "tests/support/meshes.h"
+#include "tests/support/sample_hierarchy.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace meshhier::inspection {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using tests::node;
+
+/// What a mesh file holds; coordinates as doubles, exact for both widths.
+struct Loaded {
+  std::vector<Vec3d> positions;
+  std::vector<float> attributes;
+  std::vector<tests::MeshTriangle> triangles;
+  bool wide = false;
+};
+
+Loaded load(storage::FileSystem& files, const fs::path& path) {
+  Loaded mesh;
+  const auto source = mesh_io::open_mesh(files, path);
+  mesh.wide = source->description().wide_coordinates;
+  source->read_vertices([&](const mesh_io::VertexBlock& block) {
+    for (Vec3f p : block.positions)
+      mesh.positions.push_back(to_double(p));
+    mesh.positions.insert(mesh.positions.end(), block.exact.begin(), block.exact.end());
+    mesh.attributes.insert(mesh.attributes.end(), block.attributes.begin(), block.attributes.end());
+  });
+  source->read_triangles([&](std::span<const mesh_io::SourceTriangle> triangles) {
+    for (const auto& t : triangles)
+      mesh.triangles.push_back({raw(t[0]), raw(t[1]), raw(t[2])});
+  });
+  return mesh;
+}
+
+/// A mesh as a multiset of triangles, each a list of coordinates that starts with its least corner.
+std::vector<std::vector<double>> surface(const Loaded& mesh, std::size_t channels = 0) {
+  std::vector<std::vector<double>> triangles;
+  for (const auto& t : mesh.triangles) {
+    std::array<std::vector<double>, 3> corners;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3d p = mesh.positions[t[i]];
+      corners[i] = {p.x, p.y, p.z};
+      for (std::size_t c = 0; c < channels; ++c) {
+        corners[i].push_back(double{mesh.attributes[t[i] * channels + c]});
+      }
+    }
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    std::vector<double>& flat = triangles.emplace_back();
+    for (const auto& corner : corners)
+      flat.insert(flat.end(), corner.begin(), corner.end());
+  }
+  std::sort(triangles.begin(), triangles.end());
+  return triangles;
+}
+
+class ExportTest : public testing::Test {
+ protected:
+  fs::path hierarchy() const { return directory_.path() / "a.hier"; }
+  fs::path output() const { return directory_.path() / "out.ply"; }
+
+  tests::Sample publish(const tests::TestMesh& mesh, const tests::SampleOptions& options = {}) {
+    tests::Sample sample = tests::make_sample(mesh, options);
+    tests::write_sample(*files_, hierarchy(), sample);
+    return sample;
+  }
+  std::string run(ExportSelection selection, std::uint64_t budget = 1 << 30) {
+    return run_on(*files_, std::move(selection), budget);
+  }
+  std::string run_on(storage::FileSystem& files, ExportSelection selection, std::uint64_t budget) {
+    execution::NoProgress progress;
+    return export_mesh(files, hierarchy(), {std::move(selection), output(), budget}, progress,
+                       execution::CancelToken());
+  }
+  Error error_of(ExportSelection selection) {
+    try {
+      run(std::move(selection));
+    } catch (const Error& error) {
+      return error;
+    }
+    return {ErrorCode::internal, "no error"};
+  }
+  fs::path write_cut(const std::string& text) {
+    std::ofstream(directory_.path() / "cut.txt") << text;
+    return directory_.path() / "cut.txt";
+  }
+  std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(directory_.path())) {
+      names.push_back(entry.path().filename().string());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+  static std::string bytes_of(const fs::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+
+  tests::TemporaryDirectory directory_;
+  std::unique_ptr<storage::FileSystem> files_ = storage::make_posix_file_system();
+};
+
+TEST_F(ExportTest, TheLastLevelIsTheInputWithAttributesAndCopies) {
+  for (const auto& mesh : {tests::sphere(900), tests::duplicates(700), tests::soup(90)}) {
+    const tests::Sample sample = publish(mesh, {7, 30, false, true, {}});
+    run(sample.tree.depth());
+    const Loaded exported = load(*files_, output());
+    Loaded input;
+    for (Vec3f p : sample.ranked.positions)
+      input.positions.push_back(to_double(p));
+    input.attributes = sample.attributes;
+    input.triangles = sample.ranked.triangles;
+    EXPECT_EQ(exported.positions.size(), mesh.positions.size());
+    EXPECT_EQ(surface(exported, 3), surface(input, 3));
+    EXPECT_FALSE(exported.wide);
+  }
+}
+
+TEST_F(ExportTest, EveryLevelOfAClosedSurfaceIsClosed) {
+  const tests::Sample sample = publish(tests::torus(3000), {13, 60, true, false, {}});
+  for (int level = 0; level <= raw(sample.tree.depth()); ++level) {
+    run(static_cast<Level>(level));
+    const Loaded mesh = load(*files_, output());
+    EXPECT_FALSE(mesh.triangles.empty()) << level;
+    EXPECT_TRUE(tests::boundary_edges(mesh.triangles).empty()) << level;
+  }
+}
+
+TEST_F(ExportTest, ACutOfMixedLevelsSharesItsVertices) {
+  const tests::Sample sample = publish(tests::torus(3000), {6, 60, false, false, {}});
+  const std::string line = run(write_cut("1/0  # left\n2/2\n3/5\n"));
+  const Loaded mesh = load(*files_, output());
+  EXPECT_TRUE(tests::boundary_edges(mesh.triangles).empty());
+  EXPECT_EQ(mesh.positions.size(), 60 + 60 + sample.tree.ranks(node(3, 5)).size());
+  EXPECT_THAT(line, HasSubstr("cut: 3 tiles"));
+  const std::string bytes = bytes_of(output());
+  run(write_cut(R"(["3/5", "1/0", "2/2"])"));
+  EXPECT_EQ(bytes_of(output()), bytes);
+}
+
+TEST_F(ExportTest, ResultDoesNotDependOnTheBudget) {
+  const tests::Sample sample = publish(tests::sphere(300000), {40, 2000, false, false, {}});
+  run(sample.tree.depth());
+  const std::string bytes = bytes_of(output());
+  run(sample.tree.depth(), 0);
+  EXPECT_EQ(bytes_of(output()), bytes);
+  EXPECT_THAT(names(), testing::ElementsAre("a.hier", "out.ply"));
+}
+
+TEST_F(ExportTest, ANodesTileComesWithItsGhosts) {
+  const tests::Sample sample = publish(tests::sphere(900), {6, 50, false, false, {}});
+  for (NodeId wanted : {node(0, 0), node(1, 1), node(2, 0), node(3, 2)}) {
+    run(wanted);
+    const Loaded mesh = load(*files_, output());
+    const auto& tile = const_cast<tests::Sample&>(sample).tile(wanted).mesh;
+    EXPECT_EQ(mesh.positions.size(), tile.vertices.size());
+    EXPECT_EQ(mesh.triangles.size(), tile.interior.size() + tile.border.size());
+  }
+  run(node(3, 2));
+  const std::string bytes = bytes_of(output());
+  run(node(2, 1));  // early: its partition stands for it
+  EXPECT_EQ(bytes_of(output()), bytes);
+}
+
+TEST_F(ExportTest, AnOriginIsAddedInDoubles) {
+  const Vec3d origin{500000.125, 5000000.5, -70.25};
+  const tests::Sample sample = publish(tests::sphere(900), {6, 50, false, false, origin});
+  run(sample.tree.depth());
+  const Loaded mesh = load(*files_, output());
+  EXPECT_TRUE(mesh.wide);
+  BoundsD found, expected;
+  for (Vec3d p : mesh.positions)
+    found.add(p);
+  for (Vec3f p : sample.ranked.positions)
+    expected.add(to_double(p) + origin);
+  EXPECT_EQ(found, expected);
+}
+
+TEST_F(ExportTest, TheOutlineIsVerticesAndEdges) {
+  publish(tests::sphere(900));
+  EXPECT_THAT(run(OutlineSelection{}), HasSubstr("2 lines, 7 vertices, 5 edges"));
+  const std::string bytes = bytes_of(output());
+  EXPECT_THAT(bytes, HasSubstr("element vertex 7"));
+  EXPECT_THAT(bytes, HasSubstr("element edge 5"));
+  const std::array<std::int32_t, 2> last{5, 6};
+  EXPECT_EQ(std::memcmp(bytes.data() + bytes.size() - 8, last.data(), 8), 0);
+}
+
+TEST_F(ExportTest, WhatIsNotInTheTreeIsAUsageError) {
+  publish(tests::sphere(900), {6, 50, false, false, {}});
+  EXPECT_EQ(error_of(static_cast<Level>(4)).code(), ErrorCode::usage);
+  EXPECT_THAT(error_of(static_cast<Level>(4)).what(), HasSubstr("the levels are 0 to 3"));
+  EXPECT_EQ(error_of(node(2, 4)).code(), ErrorCode::usage);
+  EXPECT_THAT(error_of(node(2, 4)).what(), HasSubstr("the nodes of level 2 are 0 to 3"));
+  const Error gap = error_of(write_cut("1/0\n"));
+  EXPECT_EQ(gap.code(), ErrorCode::usage);
+  EXPECT_THAT(gap.what(), HasSubstr("cut.txt: not a cut: no node covers partitions 3 to 5"));
+  EXPECT_EQ(error_of(directory_.path() / "none.txt").code(), ErrorCode::io);
+  EXPECT_FALSE(fs::exists(output()));
+}
+
+TEST_F(ExportTest, AMistypedDirectoryIsNotMade) {
+  publish(tests::sphere(900));
+  execution::NoProgress progress;
+  const fs::path wrong = directory_.path() / "none" / "out.ply";
+  EXPECT_THROW(
+      export_mesh(*files_, hierarchy(), {Level{}, wrong}, progress, execution::CancelToken()),
+      Error);
+  EXPECT_FALSE(fs::exists(directory_.path() / "none"));
+}
+
+TEST_F(ExportTest, FailureLeavesTheOldOutputAndNothingElse) {
+  const tests::Sample sample = publish(tests::sphere(30000), {6, 50, false, false, {}});
+  std::ofstream(output()) << "old";
+  for (std::uint64_t room : {0, 1000, 100000}) {
+    tests::FaultyFileSystem files;
+    files.limit_room(room);
+    EXPECT_THROW(run_on(files, sample.tree.depth(), 0), Error) << room;
+    EXPECT_THAT(names(), testing::ElementsAre("a.hier", "out.ply"));
+    EXPECT_EQ(bytes_of(output()), "old");
+  }
+  execution::NoProgress progress;
+  execution::CancelToken cancel;
+  cancel.cancel();
+  EXPECT_THROW(export_mesh(*files_, hierarchy(), {Level{}, output()}, progress, cancel), Error);
+  EXPECT_EQ(bytes_of(output()), "old");
+  EXPECT_THAT(names(), testing::ElementsAre("a.hier", "out.ply"));
+}
+
+TEST_F(ExportTest, AnOutputInsideTheHierarchyIsRefused) {
+  publish(tests::sphere(900));
+  const fs::path index = storage::index_path(hierarchy());
+  const std::string before = bytes_of(index);
+  execution::NoProgress progress;
+  try {
+    export_mesh(*files_, hierarchy(), {Level{}, index}, progress, execution::CancelToken());
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::usage);
+  }
+  EXPECT_EQ(bytes_of(index), before);
+}
+
+TEST_F(ExportTest, ABrokenTileIsToldAndNothingWritten) {
+  publish(tests::sphere(900));
+  const fs::path tile = storage::tile_path(hierarchy(), node(1, 1));
+  fs::resize_file(tile, fs::file_size(tile) - 4);
+  const Error error = error_of(static_cast<Level>(1));
+  EXPECT_EQ(error.code(), ErrorCode::corrupt);
+  EXPECT_THAT(error.what(), HasSubstr("000001.glb"));
+  EXPECT_THAT(names(), testing::ElementsAre("a.hier"));
+}
+
+}  // namespace
+}  // namespace meshhier::inspection

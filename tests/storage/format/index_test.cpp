@@ -1,0 +1,217 @@
+#include "storage/format/index.h"
+
+#include "hierarchy/error.h"
+#include "storage/format/glb.h"
+#include "storage/io/hash.h"
+
+#include <limits>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace meshhier::tests {
+namespace {
+
+using storage::decode_index;
+using storage::encode_index;
+using storage::tile_count;
+using testing::HasSubstr;
+using testing::StartsWith;
+using Bytes = std::vector<std::byte>;
+
+const char* const kIndexName = "some/tiles.bin";
+constexpr std::size_t kHeaderBytes = 32;
+constexpr std::size_t kRecordBytes = 96;
+
+/// Every tile of the tree, with values that differ from field to field and from tile to tile.
+std::vector<TileRecord> make_records(const Tree& tree) {
+  std::vector<TileRecord> records;
+  for (int level = 0; level <= raw(tree.depth()); ++level) {
+    for (std::uint32_t i = 0; i < tree.node_count(static_cast<Level>(level)); ++i) {
+      const NodeId node{static_cast<Level>(level), i};
+      if (tree.is_early(node))
+        continue;
+      const auto k = static_cast<std::uint32_t>(records.size());
+      const auto real = static_cast<float>(k);
+      TileRecord record;
+      record.node = node;
+      record.own_count =
+          static_cast<std::uint32_t>(tree.is_partition(node) ? tree.ranks(node).size() : 100 + k);
+      record.rim_count = record.own_count / 3;
+      record.ghost_count = 10 * k + 1;
+      record.interior_count = 10 * k + 2;
+      record.border_count = 10 * k + 3;
+      record.drawn_border_count = 10 * k;
+      record.target_count = 10 * k + 4;
+      record.torn_count = 10 * k + 5;
+      record.forced_count = 10 * k + 6;
+      record.error = real + 0.1F;
+      record.bound = real + 0.2F;
+      record.compactness = real + 0.3F;
+      record.bounds = {{-real, -2, -3}, {1, real + 2, 3}};
+      record.file_bytes = 1000000007ULL * (k + 1);
+      record.checksum = 0x0123456789abcdefULL * (k + 1);
+      records.push_back(record);
+    }
+  }
+  return records;
+}
+
+void expect_same(const TileRecord& a, const TileRecord& b) {
+  EXPECT_EQ(a.node, b.node);
+  EXPECT_EQ(a.own_count, b.own_count);
+  EXPECT_EQ(a.rim_count, b.rim_count);
+  EXPECT_EQ(a.ghost_count, b.ghost_count);
+  EXPECT_EQ(a.interior_count, b.interior_count);
+  EXPECT_EQ(a.border_count, b.border_count);
+  EXPECT_EQ(a.drawn_border_count, b.drawn_border_count);
+  EXPECT_EQ(a.target_count, b.target_count);
+  EXPECT_EQ(a.torn_count, b.torn_count);
+  EXPECT_EQ(a.forced_count, b.forced_count);
+  EXPECT_EQ(a.error, b.error);
+  EXPECT_EQ(a.bound, b.bound);
+  EXPECT_EQ(a.compactness, b.compactness);
+  EXPECT_EQ(a.bounds, b.bounds);
+  EXPECT_EQ(a.file_bytes, b.file_bytes);
+  EXPECT_EQ(a.checksum, b.checksum);
+}
+
+/// Makes the checksum fit the bytes again, so that what is behind it is reached.
+Bytes sealed(Bytes bytes) {
+  storage::Checksum sum;
+  sum.add(std::span(bytes).first(24));
+  sum.add(std::span(bytes).subspan(kHeaderBytes));
+  storage::store_little(sum.value(), bytes.data() + 24);
+  return bytes;
+}
+
+std::string failure(const Bytes& bytes, const Tree& tree) {
+  try {
+    decode_index(bytes, tree, kIndexName);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::corrupt);
+    EXPECT_THAT(error.what(), StartsWith(kIndexName));
+    return error.what();
+  }
+  return {};
+}
+
+TEST(Index, GivesEveryRecordBack) {
+  for (const std::uint32_t partitions : {1U, 2U, 3U, 5U, 8U, 21U, 100U}) {
+    const Tree tree(1003, partitions);
+    const auto records = make_records(tree);
+    EXPECT_EQ(records.size(), tile_count(tree));
+    const Bytes bytes = encode_index(records);
+    EXPECT_EQ(bytes.size(), kHeaderBytes + kRecordBytes * records.size());
+    const auto back = decode_index(bytes, tree, kIndexName);
+    ASSERT_EQ(back.size(), records.size());
+    for (std::size_t i = 0; i < back.size(); ++i)
+      expect_same(records[i], back[i]);
+  }
+}
+
+TEST(Index, TheBytesAreThoseOfTheDocument) {
+  const Tree tree(7, 1);
+  TileRecord record;
+  record.own_count = 7;
+  record.rim_count = 5;
+  record.error = 1.0F;
+  record.bounds = {{0, 0, 0}, {1, 1, 1}};
+  record.file_bytes = 0x0102030405060708;
+  const Bytes bytes = encode_index(std::vector{record});
+  const auto byte = [&](std::size_t offset) { return static_cast<int>(bytes.at(offset)); };
+  EXPECT_EQ(byte(0), 'M');
+  EXPECT_EQ(byte(7), '\n');
+  EXPECT_EQ(byte(8), 2);
+  EXPECT_EQ(byte(12), 96);
+  EXPECT_EQ(byte(16), 1);
+  EXPECT_EQ(byte(kHeaderBytes + 8), 7);
+  EXPECT_EQ(byte(kHeaderBytes + 12), 5);
+  EXPECT_EQ(byte(kHeaderBytes + 47), 0x3F);  // 1.0F is 3F800000
+  EXPECT_EQ(byte(kHeaderBytes + 46), 0x80);
+  EXPECT_EQ(byte(kHeaderBytes + 80), 8);
+  EXPECT_EQ(byte(kHeaderBytes + 87), 1);
+}
+
+TEST(Index, TruncationAndExtraBytesAreRefused) {
+  const Tree tree(50, 5);
+  Bytes bytes = encode_index(make_records(tree));
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    const Bytes cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
+    EXPECT_NE(failure(cut, tree), "") << size;
+  }
+  bytes.push_back(std::byte{0});
+  EXPECT_THAT(failure(bytes, tree), HasSubstr("expected 896"));
+}
+
+TEST(Index, EveryFlippedBitIsFound) {
+  const Tree tree(50, 3);
+  Bytes bytes = encode_index(make_records(tree));
+  for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
+    bytes[bit / 8] ^= static_cast<std::byte>(1U << bit % 8);
+    EXPECT_NE(failure(bytes, tree), "") << bit;
+    bytes[bit / 8] ^= static_cast<std::byte>(1U << bit % 8);
+  }
+}
+
+TEST(Index, FlipsBehindAFittingChecksumNeverCrash) {
+  const Tree tree(50, 5);
+  const Bytes good = encode_index(make_records(tree));
+  std::mt19937 random(3);
+  for (int round = 0; round < 5000; ++round) {
+    Bytes bytes = good;
+    bytes[random() % bytes.size()] ^= static_cast<std::byte>(1U << random() % 8);
+    const Bytes again = sealed(bytes);
+    if (failure(again, tree).empty()) {
+      EXPECT_EQ(encode_index(decode_index(again, tree, kIndexName)), again);
+    }
+  }
+}
+
+struct RecordDamage {
+  std::size_t offset;  ///< in the first record
+  std::uint32_t value;
+  const char* message;
+};
+
+TEST(Index, ImpossibleValuesAreRefusedByName) {
+  constexpr std::uint32_t kNan = 0x7FC00000;
+  constexpr std::uint32_t kMinusOne = 0xBF800000;
+  const Tree tree(50, 5);
+  const Bytes good = encode_index(make_records(tree));
+  for (const RecordDamage& damage :
+       {RecordDamage{0, 3, "record 0 is of tile 3/0, expected 0/0"},
+        RecordDamage{0, 256, "record 0 is of tile 256/0"},
+        RecordDamage{4, 1, "record 0 is of tile 0/1"},
+        RecordDamage{8, 0, "impossible own vertices"},
+        RecordDamage{8, 32769, "impossible own vertices"},
+        RecordDamage{12, 101, "impossible rim vertices"},
+        RecordDamage{28, 4, "impossible drawn border"}, RecordDamage{44, kNan, "impossible error"},
+        RecordDamage{48, kMinusOne, "impossible bound"},
+        RecordDamage{52, kNan, "impossible compactness"},
+        RecordDamage{56, 0x7F800000, "impossible bounds"},
+        RecordDamage{68, 0xC0000000, "impossible bounds"}}) {
+    Bytes bytes = good;
+    storage::store_little(damage.value, bytes.data() + kHeaderBytes + damage.offset);
+    EXPECT_THAT(failure(sealed(bytes), tree), HasSubstr(damage.message));
+  }
+  Bytes partition = good;
+  storage::store_little(11U, partition.data() + partition.size() - kRecordBytes + 8);
+  EXPECT_THAT(failure(sealed(partition), tree), HasSubstr("not the partition's"));
+}
+
+TEST(Index, OtherFilesAndVersionsAreRefused) {
+  const Tree tree(50, 5);
+  const Bytes good = encode_index(make_records(tree));
+  Bytes bytes = good;
+  bytes[8] = std::byte{3};
+  EXPECT_THAT(failure(bytes, tree), HasSubstr("version is 3, expected 2 (written by a newer"));
+  bytes = good;
+  bytes[0] = std::byte{'P'};
+  EXPECT_THAT(failure(bytes, tree), HasSubstr("not an index"));
+  EXPECT_THAT(failure(good, Tree(50, 6)), HasSubstr("9 records, expected 11 for 6 partitions"));
+}
+
+}  // namespace
+}  // namespace meshhier::tests

@@ -1,0 +1,341 @@
+#include "storage/format/manifest.h"
+
+#include "hierarchy/error.h"
+#include "storage/io/hash.h"
+
+#include <random>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace meshhier::tests {
+namespace {
+
+using storage::Manifest;
+using storage::parse_manifest;
+using storage::to_json_text;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+using Json = nlohmann::ordered_json;
+
+const char* const kManifestName = "some/hierarchy.json";
+
+Manifest make_manifest() {
+  Manifest manifest;
+  manifest.generator = "meshhier 0.1.0";
+  manifest.source.file_name = "naïve \"scan\".ply";
+  manifest.source.file_bytes = 0xFFFFFFFFFFFFFFFF;
+  manifest.source.checksum = 0x00000000000000AB;
+  manifest.source.vertices = 1000;
+  manifest.source.triangles = 1990;
+  manifest.source.faces = 995;
+  manifest.source.degenerate_triangles = 3;
+  manifest.source.unreferenced_vertices = 4;
+  manifest.source.bounds = {{-0.1, 1.0 / 3, -5e-324}, {1e300, 2, 0}};
+  manifest.source.double_precision = true;
+  manifest.source.attributes = {true, ColourType::u16, true, true};
+  manifest.origin = {1234567.891, 0, -0.0};
+  manifest.up = UpAxis::z;
+  manifest.transform = Transform{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 0.1, 1e300, -5, 16};
+  manifest.licence = "CC \"BY\"";
+  manifest.partition_count = 7;
+  manifest.config = {{"simplify", {{"method", "cluster"}, {"vertices", 100}}}};
+  manifest.index_bytes = 1176;
+  manifest.index_checksum = 0xFEDCBA9876543210;
+  manifest.outline_bytes = 2222;
+  manifest.outline_checksum = 0x1;
+  manifest.outline = {3, 7, 0.004, 55, 6};
+  manifest.tileset_files = 5;
+  manifest.tileset_bytes = 4321;
+  manifest.tileset_checksum = 0xFFFFFFFFFFFFFFFE;
+  manifest.levels = Json::array({{{"level", 0}, {"tiles", 1}}});
+  manifest.total_bytes = 987654321;
+  return manifest;
+}
+
+void expect_same(const Manifest& a, const Manifest& b) {
+  EXPECT_EQ(a.compression, b.compression);
+  ASSERT_EQ(a.quantization.has_value(), b.quantization.has_value());
+  if (a.quantization) {
+    EXPECT_EQ(a.quantization->lattice, b.quantization->lattice);
+    EXPECT_EQ(a.quantization->worst_rounding, b.quantization->worst_rounding);
+  }
+  EXPECT_EQ(a.generator, b.generator);
+  EXPECT_EQ(a.source.file_name, b.source.file_name);
+  EXPECT_EQ(a.source.file_bytes, b.source.file_bytes);
+  EXPECT_EQ(a.source.checksum, b.source.checksum);
+  EXPECT_EQ(a.source.vertices, b.source.vertices);
+  EXPECT_EQ(a.source.triangles, b.source.triangles);
+  EXPECT_EQ(a.source.faces, b.source.faces);
+  EXPECT_EQ(a.source.degenerate_triangles, b.source.degenerate_triangles);
+  EXPECT_EQ(a.source.unreferenced_vertices, b.source.unreferenced_vertices);
+  EXPECT_EQ(a.source.bounds, b.source.bounds);
+  EXPECT_EQ(a.source.double_precision, b.source.double_precision);
+  EXPECT_EQ(a.source.attributes, b.source.attributes);
+  EXPECT_EQ(a.origin, b.origin);
+  EXPECT_EQ(a.up, b.up);
+  EXPECT_EQ(a.transform, b.transform);
+  EXPECT_EQ(a.licence, b.licence);
+  EXPECT_EQ(a.tileset_files, b.tileset_files);
+  EXPECT_EQ(a.tileset_bytes, b.tileset_bytes);
+  EXPECT_EQ(a.tileset_checksum, b.tileset_checksum);
+  EXPECT_EQ(a.partition_count, b.partition_count);
+  EXPECT_EQ(a.config, b.config);
+  EXPECT_EQ(a.index_bytes, b.index_bytes);
+  EXPECT_EQ(a.index_checksum, b.index_checksum);
+  EXPECT_EQ(a.outline_bytes, b.outline_bytes);
+  EXPECT_EQ(a.outline_checksum, b.outline_checksum);
+  EXPECT_EQ(a.outline.sector_level, b.outline.sector_level);
+  EXPECT_EQ(a.outline.sector_count, b.outline.sector_count);
+  EXPECT_EQ(a.outline.tolerance, b.outline.tolerance);
+  EXPECT_EQ(a.outline.polylines_found, b.outline.polylines_found);
+  EXPECT_EQ(a.outline.polylines_dropped, b.outline.polylines_dropped);
+  EXPECT_EQ(a.levels, b.levels);
+  EXPECT_EQ(a.total_bytes, b.total_bytes);
+}
+
+std::string failure(const std::string& text) {
+  try {
+    parse_manifest(text, kManifestName);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::corrupt);
+    EXPECT_THAT(error.what(), StartsWith(kManifestName));
+    return error.what();
+  }
+  return {};
+}
+
+/// The text of a changed document with the checksum that fits it.
+std::string sealed(Json document) {
+  document.erase("checksum");
+  document["checksum"] = std::string(16, '0');
+  std::string text = document.dump(2) + "\n";
+  const auto sum = storage::checksum(std::as_bytes(std::span(text)));
+  text.replace(text.size() - 20, 16, fmt::format("{:016x}", sum));
+  return text;
+}
+
+TEST(Manifest, GivesEveryValueBack) {
+  const Manifest manifest = make_manifest();
+  expect_same(manifest, parse_manifest(to_json_text(manifest), kManifestName));
+  EXPECT_EQ(to_json_text(parse_manifest(to_json_text(manifest), kManifestName)),
+            to_json_text(manifest));
+  Manifest other = manifest;
+  for (const ColourType type : {ColourType::none, ColourType::u8, ColourType::f32}) {
+    other.source.attributes = {false, type, false, false};
+    expect_same(other, parse_manifest(to_json_text(other), kManifestName));
+  }
+}
+
+Manifest make_quantized() {
+  Manifest manifest = make_manifest();
+  manifest.compression = storage::Compression::meshopt_zlib;
+  manifest.quantization = storage::Quantization{make_lattice({{-1, 2, 3}, {4, 5, 6}}, 14), 1.0 / 3};
+  return manifest;
+}
+
+TEST(Manifest, TellsHowTilesAreStored) {
+  for (const auto compression : {storage::Compression::none, storage::Compression::zlib,
+                                 storage::Compression::meshopt_zlib}) {
+    Manifest manifest = make_quantized();
+    manifest.compression = compression;
+    expect_same(manifest, parse_manifest(to_json_text(manifest), kManifestName));
+    manifest.quantization.reset();
+    expect_same(manifest, parse_manifest(to_json_text(manifest), kManifestName));
+  }
+}
+
+TEST(Manifest, UnsoundStorageIsRefused) {
+  const Json good = Json::parse(to_json_text(make_quantized()));
+  const auto with = [&](const char* pointer, const Json& value) {
+    Json changed = good;
+    changed[Json::json_pointer(pointer)] = value;
+    return failure(sealed(changed));
+  };
+  EXPECT_EQ(with("/storage/compression", "zlib"), "");
+  EXPECT_THAT(with("/storage/compression", "brotli"), HasSubstr("\"storage.compression\""));
+  EXPECT_THAT(with("/storage", nullptr), HasSubstr("\"storage\" is wrong"));
+  EXPECT_THAT(with("/storage/positions", 3), HasSubstr("\"storage.positions\""));
+  EXPECT_THAT(with("/storage/positions/bits", 25), HasSubstr("\"storage.positions.bits\""));
+  EXPECT_THAT(with("/storage/positions/bits", 7), HasSubstr("a lattice of 8 to 24 bits"));
+  EXPECT_THAT(with("/storage/positions/step", 0.3), HasSubstr("a lattice of 8 to 24 bits"));
+  EXPECT_THAT(with("/storage/positions/corner", Json::array({0, 0, 1e-9})),
+              HasSubstr("a lattice of 8 to 24 bits"));
+  EXPECT_THAT(with("/storage/positions/worst_rounding", -1), HasSubstr("worst_rounding"));
+}
+
+TEST(Manifest, GivesBackWhatWasImported) {
+  SourceSummary source = make_manifest().source;
+  EXPECT_FALSE(storage::source_json(source).contains("import"));
+  source.files = {{"a.obj", "OBJ (gzip)", 5, 0xFEDCBA9876543210}, {"b.stl", "binary STL", 84, 0}};
+  source.counts = {{"split_vertices", 3}, {"welded_corners", UINT64_MAX}};
+  const SourceSummary again = storage::parse_source(storage::source_json(source), kManifestName);
+  ASSERT_EQ(again.files.size(), 2U);
+  EXPECT_EQ(again.files[0].name, "a.obj");
+  EXPECT_EQ(again.files[0].format, "OBJ (gzip)");
+  EXPECT_EQ(again.files[0].bytes, 5U);
+  EXPECT_EQ(again.files[0].checksum, 0xFEDCBA9876543210);
+  ASSERT_EQ(again.counts.size(), 2U);
+  EXPECT_EQ(again.counts[1].name, "welded_corners");
+  EXPECT_EQ(again.counts[1].count, UINT64_MAX);
+}
+
+TEST(Manifest, WrongWordsOfAnImportAreNamed) {
+  SourceSummary source = make_manifest().source;
+  source.files = {{"a.obj", "OBJ", 5, 1}};
+  source.counts = {{"groups", 3}};
+  const Json good = storage::source_json(source);
+  const auto refused = [&](const char* pointer, const Json& value) -> std::string {
+    Json json = good;
+    json[Json::json_pointer(pointer)] = value;
+    try {
+      storage::parse_source(json, kManifestName);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::corrupt);
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(refused("/import", 1), testing::HasSubstr("\"source.import\" is wrong"));
+  EXPECT_THAT(refused("/import/files", 1), testing::HasSubstr("\"source.import.files\" is wrong"));
+  EXPECT_THAT(refused("/import/files", Json::array()), testing::HasSubstr("at least one"));
+  EXPECT_THAT(refused("/import/files/0", 1),
+              testing::HasSubstr("\"source.import.files\" is wrong"));
+  EXPECT_THAT(refused("/import/files/0/bytes", -1), testing::HasSubstr("import.files.bytes"));
+  EXPECT_THAT(refused("/import/files/0/checksum", "x"),
+              testing::HasSubstr("import.files.checksum"));
+  EXPECT_THAT(refused("/import/counts", 1),
+              testing::HasSubstr("\"source.import.counts\" is wrong"));
+  EXPECT_THAT(refused("/import/counts/groups", "x"), testing::HasSubstr("import.counts.groups"));
+}
+
+TEST(Manifest, IsReadable) {
+  const std::string text = to_json_text(make_manifest());
+  EXPECT_THAT(text, StartsWith("{\n  \"format\": \"meshhier\",\n  \"format_version\": 4,\n"));
+  EXPECT_THAT(text, HasSubstr("\"checksum\": \"fedcba9876543210\""));
+  EXPECT_THAT(text, HasSubstr("\"checksum\": \"00000000000000ab\""));
+  EXPECT_THAT(text, HasSubstr("\"colours\": \"u16\""));
+  EXPECT_EQ(sealed(Json::parse(text)), text);
+}
+
+TEST(Manifest, AFileNameThatIsNotUtf8IsWrittenAsValidJson) {
+  Manifest manifest = make_manifest();
+  manifest.source.file_name = "scan\xFF.ply";
+  const Manifest back = parse_manifest(to_json_text(manifest), kManifestName);
+  EXPECT_EQ(back.source.file_name, "scan\xEF\xBF\xBD.ply");
+}
+
+TEST(Manifest, EveryFlippedBitIsFound) {
+  std::string text = to_json_text(make_manifest());
+  for (std::size_t bit = 0; bit < 8 * text.size(); ++bit) {
+    text[bit / 8] = static_cast<char>(text[bit / 8] ^ (1 << bit % 8));
+    EXPECT_NE(failure(text), "") << bit;
+    text[bit / 8] = static_cast<char>(text[bit / 8] ^ (1 << bit % 8));
+  }
+}
+
+TEST(Manifest, TruncationAtEveryByteIsRefused) {
+  const std::string text = to_json_text(make_manifest());
+  for (std::size_t size = 0; size < text.size(); ++size) {
+    EXPECT_NE(failure(text.substr(0, size)), "") << size;
+  }
+  EXPECT_NE(failure(text + " "), "");
+}
+
+TEST(Manifest, EveryMissingKeyIsNamed) {
+  const Json good = Json::parse(to_json_text(make_manifest()));
+  const std::vector<std::string> pointers{"/generator",
+                                          "/source",
+                                          "/source/vertices",
+                                          "/source/bounds/max",
+                                          "/source/attributes/alpha",
+                                          "/origin",
+                                          "/partitions",
+                                          "/config",
+                                          "/index",
+                                          "/index/checksum",
+                                          "/outline",
+                                          "/outline/tolerance",
+                                          "/levels",
+                                          "/total_bytes"};
+  for (const std::string& pointer : pointers) {
+    Json changed = good;
+    const Json::json_pointer place(pointer);
+    changed[place.parent_pointer()].erase(place.back());
+    std::string key = pointer.substr(1);
+    for (char& c : key)
+      c = c == '/' ? '.' : c;
+    EXPECT_THAT(failure(sealed(changed)), HasSubstr("\"" + key + "\" is missing"));
+  }
+}
+
+TEST(Manifest, EveryWrongValueIsNamed) {
+  struct Damage {
+    const char* pointer;
+    Json value;
+    const char* message;
+  };
+  const std::vector<Damage> damages{
+      {"/source/vertices", 0, "\"source.vertices\" is wrong, expected at least 1"},
+      {"/source/vertices", 4294967296ULL, "\"source.vertices\""},
+      {"/source/vertices", -1, "\"source.vertices\""},
+      {"/source/triangles", 1.5, "\"source.triangles\""},
+      {"/source/unreferenced_vertices", 1001, "\"source.unreferenced_vertices\""},
+      {"/source/checksum", "AB", "16 hexadecimal digits"},
+      {"/source/checksum", "00000000000000AB", "16 hexadecimal digits"},
+      {"/source/bounds/min", Json::array({1, 2}), "three numbers"},
+      {"/source/bounds/min", Json::array({1, 2, 3}), "min <= max"},
+      {"/source/attributes/colours", "u32", "none, u8, u16 or f32"},
+      {"/source/double_precision", 1, "true or false"},
+      {"/origin", Json::array({1, nullptr, 2}), "\"origin\" is wrong"},
+      {"/up", "x", "\"up\" is wrong"},
+      {"/transform", Json::array({1, 2}), "\"transform\" is wrong"},
+      {"/transform/3", "1", "\"transform\" is wrong"},
+      {"/licence", 3, "\"licence\" is wrong"},
+      {"/tileset/checksum", "x", "\"tileset.checksum\""},
+      {"/partitions", 0, "\"partitions\""},
+      {"/partitions", 1001, "\"partitions\""},
+      {"/config", Json::array(), "\"config\" is wrong, expected an object"},
+      {"/outline/tolerance", "x", "\"outline.tolerance\""},
+      {"/outline/sectors", 4294967296ULL, "\"outline.sectors\""},
+      {"/levels", 3, "\"levels\" is wrong, expected an array"},
+      {"/index", 3, "\"index\" is wrong, expected an object"},
+      {"/generator", 3, "\"generator\" is wrong, expected a text"}};
+  const Json good = Json::parse(to_json_text(make_manifest()));
+  for (const Damage& damage : damages) {
+    Json changed = good;
+    changed[Json::json_pointer(damage.pointer)] = damage.value;
+    EXPECT_THAT(failure(sealed(changed)), HasSubstr(damage.message)) << damage.pointer;
+  }
+}
+
+TEST(Manifest, OtherFormatsAndVersionsAreRefusedByTheirNumber) {
+  Json document = Json::parse(to_json_text(make_manifest()));
+  document["format_version"] = 5;
+  EXPECT_THAT(failure(document.dump()), HasSubstr("format version 5 is newer than 4"));
+  document["format_version"] = 0;
+  EXPECT_THAT(failure(document.dump()), HasSubstr("format version is 0, expected 4"));
+  document["format"] = "nexus";
+  EXPECT_THAT(failure(document.dump()), HasSubstr("\"format\" is wrong"));
+}
+
+TEST(Manifest, ChangedTextIsRefused) {
+  std::string text = to_json_text(make_manifest());
+  text.replace(text.find("cluster"), 7, "mustard");
+  EXPECT_THAT(failure(text), HasSubstr("the file was changed"));
+  Json document = Json::parse(text);
+  EXPECT_THAT(failure(document.dump()), HasSubstr("does not end with its checksum"));
+}
+
+TEST(Manifest, TextsThatAreNoManifestAreRefused) {
+  EXPECT_THAT(failure(""), HasSubstr("not valid JSON"));
+  EXPECT_THAT(failure("[]"), HasSubstr("not a JSON object"));
+  EXPECT_THAT(failure("{\"format\": 1e999}"), HasSubstr("not valid JSON"));
+  EXPECT_THAT(failure(std::string(100000, '[')), HasSubstr("nested deeper"));
+  EXPECT_THAT(failure(std::string(1024 * 1024 + 1, ' ')), HasSubstr("expected at most"));
+}
+
+}  // namespace
+}  // namespace meshhier::tests

@@ -1,0 +1,391 @@
+#include "storage/format/work_directory.h"
+
+#include "hierarchy/error.h"
+#include "storage/format/layout.h"
+#include "tests/support/faulty_file_system.h"
+
+#include <optional>
+#include <set>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace meshhier::storage {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using tests::Call;
+using tests::FaultyFileSystem;
+
+class WorkDirectoryTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    const testing::TestInfo& info = *testing::UnitTest::GetInstance()->current_test_info();
+    parent_ = std::filesystem::path(testing::TempDir()) / (std::string("work_") + info.name());
+    clean();
+    output_ = parent_ / "x.hier";
+  }
+  void TearDown() override { std::filesystem::remove_all(parent_); }
+
+  void clean() {
+    std::filesystem::remove_all(parent_);
+    std::filesystem::create_directories(parent_);
+  }
+
+  void write(const std::filesystem::path& path, const std::string& text) {
+    std::filesystem::create_directories(path.parent_path());
+    write_file(*files_, path, std::as_bytes(std::span(text)));
+  }
+
+  std::string text_of(const std::filesystem::path& path) {
+    const std::vector<std::byte> bytes = read_file(*files_, path, 1000);
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+  }
+
+  void put_hierarchy(const std::filesystem::path& directory, const std::string& text) {
+    write(manifest_path(directory), text);
+    write(tile_path(directory, {}), text + " tile");
+  }
+
+  /// "": no hierarchy; the text if it is all there; anything else fails the test.
+  std::string hierarchy_at(const std::filesystem::path& directory) {
+    if (!std::filesystem::exists(directory))
+      return "";
+    const std::string text = text_of(manifest_path(directory));
+    EXPECT_EQ(text_of(tile_path(directory, {})), text + " tile");
+    return text;
+  }
+
+  std::set<std::string> names() const {
+    std::set<std::string> result;
+    for (const auto& entry : std::filesystem::directory_iterator(parent_))
+      result.insert(entry.path().filename().string());
+    return result;
+  }
+
+  template <class Action>
+  void expect_error(ErrorCode code, const std::string& part, const Action& action) {
+    try {
+      action();
+      ADD_FAILURE() << "nothing was thrown";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), code) << error.what();
+      EXPECT_THAT(error.what(), HasSubstr(part));
+    }
+  }
+
+  std::unique_ptr<FileSystem> files_ = make_posix_file_system();
+  std::filesystem::path parent_;
+  std::filesystem::path output_;
+};
+
+TEST_F(WorkDirectoryTest, PublishingGivesTheOutputItsNameAndLeavesNothingElse) {
+  WorkDirectory work(*files_, output_, false);
+  EXPECT_TRUE(std::filesystem::is_directory(work.path()));
+  put_hierarchy(work.built(), "new");
+  write(work.path() / "scratch", "scratch");
+  EXPECT_FALSE(std::filesystem::exists(output_));
+  work.publish();
+  EXPECT_EQ(hierarchy_at(output_), "new");
+  EXPECT_FALSE(std::filesystem::exists(output_ / "scratch"));
+  EXPECT_THAT(names(), ElementsAre("x.hier"));
+}
+
+TEST_F(WorkDirectoryTest, WhatIsPublishedStaysWhenTheObjectGoes) {
+  {
+    WorkDirectory work(*files_, output_, false);
+    put_hierarchy(work.built(), "new");
+    work.publish();
+  }
+  EXPECT_EQ(hierarchy_at(output_), "new");
+  EXPECT_THAT(names(), ElementsAre("x.hier"));
+}
+
+TEST_F(WorkDirectoryTest, UnpublishedWorkIsRemoved) {
+  {
+    WorkDirectory work(*files_, output_, false);
+    put_hierarchy(work.built(), "new");
+  }
+  EXPECT_THAT(names(), IsEmpty());
+}
+
+TEST_F(WorkDirectoryTest, MissingParentsAreMade) {
+  output_ = parent_ / "a" / "b" / "x.hier";
+  WorkDirectory work(*files_, output_, false);
+  put_hierarchy(work.built(), "new");
+  work.publish();
+  EXPECT_EQ(hierarchy_at(output_), "new");
+}
+
+TEST_F(WorkDirectoryTest, ARelativeOutputIsBesideTheCurrentDirectorysFiles) {
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(parent_);
+  {
+    WorkDirectory work(*files_, std::filesystem::path("x.hier"), false);
+    put_hierarchy(work.built(), "new");
+    work.publish();
+  }
+  std::filesystem::current_path(before);
+  EXPECT_EQ(hierarchy_at(output_), "new");
+  EXPECT_THAT(names(), ElementsAre("x.hier"));
+}
+
+TEST_F(WorkDirectoryTest, AnExistingOutputIsRefusedAndUntouched) {
+  put_hierarchy(output_, "old");
+  expect_error(ErrorCode::exists, "--force", [&] { WorkDirectory(*files_, output_, false); });
+  EXPECT_EQ(hierarchy_at(output_), "old");
+  EXPECT_THAT(names(), ElementsAre("x.hier"));
+}
+
+TEST_F(WorkDirectoryTest, ForceReplacesAHierarchyAndLeavesNothingOfIt) {
+  put_hierarchy(output_, "old");
+  write(output_ / "tiles" / "07" / "000042.glb", "only in the old one");
+  WorkDirectory work(*files_, output_, true);
+  EXPECT_EQ(hierarchy_at(output_), "old");
+  put_hierarchy(work.built(), "new");
+  EXPECT_EQ(hierarchy_at(output_), "old");
+  work.publish();
+  EXPECT_EQ(hierarchy_at(output_), "new");
+  EXPECT_FALSE(std::filesystem::exists(output_ / "tiles" / "07"));
+  EXPECT_THAT(names(), ElementsAre("x.hier"));
+}
+
+TEST_F(WorkDirectoryTest, ForceWithNothingThereIsNoError) {
+  WorkDirectory work(*files_, output_, true);
+  put_hierarchy(work.built(), "new");
+  work.publish();
+  EXPECT_EQ(hierarchy_at(output_), "new");
+}
+
+TEST_F(WorkDirectoryTest, AFailedBuildLeavesTheOldHierarchy) {
+  put_hierarchy(output_, "old");
+  {
+    WorkDirectory work(*files_, output_, true);
+    put_hierarchy(work.built(), "half of the new one");
+  }
+  EXPECT_EQ(hierarchy_at(output_), "old");
+  EXPECT_THAT(names(), ElementsAre("x.hier"));
+}
+
+TEST_F(WorkDirectoryTest, ForceNeverReplacesWhatIsNoHierarchy) {
+  write(output_ / "thesis.tex", "years of work");
+  expect_error(ErrorCode::exists, "not a hierarchy",
+               [&] { WorkDirectory(*files_, output_, true); });
+  EXPECT_EQ(text_of(output_ / "thesis.tex"), "years of work");
+  EXPECT_THAT(names(), ElementsAre("x.hier"));
+}
+
+TEST_F(WorkDirectoryTest, ForceNeverReplacesAFile) {
+  write(output_, "a file");
+  expect_error(ErrorCode::exists, output_.string(), [&] { WorkDirectory(*files_, output_, true); });
+  EXPECT_EQ(text_of(output_), "a file");
+}
+
+TEST_F(WorkDirectoryTest, AnArchiveIsPublishedAsOneFile) {
+  const Output output(parent_ / "x.3tz", storage::Container::archive);
+  for (const char* content : {"one", "two"}) {
+    if (std::filesystem::exists(output.path))
+      std::filesystem::remove(output.path);
+    WorkDirectory work(*files_, output, false);
+    put_hierarchy(work.built(), "packed already");
+    write(work.packed(), content);
+    work.publish();
+    EXPECT_EQ(text_of(output.path), content);
+    EXPECT_THAT(names(), ElementsAre("x.3tz"));
+  }
+}
+
+TEST_F(WorkDirectoryTest, ForceReplacesLikeByLikeOnly) {
+  const auto refused = [&](const Output& output, const char* why) {
+    expect_error(ErrorCode::exists, why, [&] { WorkDirectory(*files_, output, true); });
+  };
+  put_hierarchy(output_, "old");
+  refused({output_, storage::Container::archive}, "is a directory, and one file is to be made");
+  const std::filesystem::path file = parent_ / "x.3tz";
+  write(file, "a text");
+  refused(file, "is a file, and a directory is to be made");
+  refused({file, storage::Container::archive}, "is not the archive of a hierarchy");
+  EXPECT_EQ(text_of(file), "a text");
+  EXPECT_EQ(hierarchy_at(output_), "old");
+}
+
+TEST_F(WorkDirectoryTest, ForceNeverReplacesWhatAppearedDuringTheBuildAndIsNoHierarchy) {
+  {
+    WorkDirectory work(*files_, output_, true);
+    put_hierarchy(work.built(), "new");
+    write(output_ / "thesis.tex", "years of work");
+    expect_error(ErrorCode::exists, output_.string(), [&] { work.publish(); });
+  }
+  ASSERT_TRUE(std::filesystem::exists(output_ / "thesis.tex"));
+  EXPECT_EQ(text_of(output_ / "thesis.tex"), "years of work");
+  EXPECT_THAT(names(), ElementsAre("x.hier"));
+}
+
+TEST_F(WorkDirectoryTest, WithoutForceWhatAppearedDuringTheBuildStays) {
+  {
+    WorkDirectory work(*files_, output_, false);
+    put_hierarchy(work.built(), "new");
+    put_hierarchy(output_, "another's");
+    expect_error(ErrorCode::exists, "appeared", [&] { work.publish(); });
+  }
+  EXPECT_EQ(hierarchy_at(output_), "another's");
+  EXPECT_THAT(names(), ElementsAre("x.hier"));
+}
+
+TEST_F(WorkDirectoryTest, WhatAKilledBuildLeftIsFound) {
+  write(tile_path(built_path(work_path(output_)), {}), "half");
+  write(work_path(output_) / "scratch", "scratch");
+  write(lock_path(work_path(output_)), "");
+  {
+    WorkDirectory work(*files_, output_, false);
+    EXPECT_EQ(text_of(tile_path(work.built(), {})), "half");
+    EXPECT_EQ(text_of(work.path() / "scratch"), "scratch");
+    work.clear();
+    EXPECT_FALSE(std::filesystem::exists(work.built()));
+    EXPECT_FALSE(std::filesystem::exists(work.path() / "scratch"));
+    put_hierarchy(work.built(), "new");
+    work.publish();
+  }
+  EXPECT_EQ(hierarchy_at(output_), "new");
+  EXPECT_THAT(names(), ElementsAre("x.hier"));
+}
+
+TEST_F(WorkDirectoryTest, WhatIsKeptIsThereForTheNextOne) {
+  {
+    WorkDirectory work(*files_, output_, false);
+    write(work.path() / "scratch", "scratch");
+    work.keep(true);
+  }
+  WorkDirectory work(*files_, output_, false);
+  EXPECT_EQ(text_of(work.path() / "scratch"), "scratch");
+}
+
+TEST_F(WorkDirectoryTest, OneAtATime) {
+  WorkDirectory work(*files_, output_, false);
+  write(work.path() / "scratch", "scratch");
+  expect_error(ErrorCode::exists, "at work", [&] { WorkDirectory(*files_, output_, false); });
+  EXPECT_EQ(text_of(work.path() / "scratch"), "scratch");
+  put_hierarchy(work.built(), "new");
+  work.publish();
+  EXPECT_EQ(hierarchy_at(output_), "new");
+}
+
+TEST_F(WorkDirectoryTest, TheReplacedHierarchyOfAKilledBuildIsRemovedInTheEnd) {
+  put_hierarchy(replaced_path(output_), "old");
+  WorkDirectory work(*files_, output_, false);
+  put_hierarchy(work.built(), "new");
+  work.publish();
+  EXPECT_EQ(hierarchy_at(output_), "new");
+  EXPECT_THAT(names(), ElementsAre("x.hier"));
+}
+
+// A kill between the two renames of a replacement leaves the old hierarchy under its side name. It
+// is the only one then, until another has taken its place.
+TEST_F(WorkDirectoryTest, TheReplacedHierarchyOfAKilledBuildOutlivesAFailedPublish) {
+  FaultyFileSystem files;
+  put_hierarchy(replaced_path(output_), "old");
+  {
+    WorkDirectory work(files, output_, false);
+    put_hierarchy(work.built(), "new");
+    files.fail(Call::rename, 1);
+    expect_error(ErrorCode::io, "injected", [&] { work.publish(); });
+  }
+  EXPECT_FALSE(std::filesystem::exists(output_));
+  EXPECT_EQ(hierarchy_at(replaced_path(output_)), "old");
+}
+
+TEST_F(WorkDirectoryTest, AParentThatIsAFileIsAnError) {
+  write(parent_ / "file", "text");
+  expect_error(ErrorCode::io, "file",
+               [&] { WorkDirectory(*files_, parent_ / "file" / "x.hier", false); });
+  EXPECT_EQ(text_of(parent_ / "file"), "text");
+}
+
+TEST_F(WorkDirectoryTest, CleaningUpThatFailsDoesNotEndTheProgram) {
+  FaultyFileSystem files;
+  {
+    const WorkDirectory work(files, output_, false);
+    files.fail(Call::remove_all, 1, 1000);
+  }
+  EXPECT_THAT(names(), ElementsAre(work_path(output_).filename().string()));
+}
+
+class EveryFault : public WorkDirectoryTest, public testing::WithParamInterface<bool> {
+ protected:
+  /// Runs a build with the n-th call of a kind failing; false if there are not so many calls.
+  bool build_with_fault(Call call, std::uint64_t n) {
+    clean();
+    if (GetParam())
+      put_hierarchy(output_, "old");
+    FaultyFileSystem files;
+    files.fail(call, n);
+    threw_ = false;
+    try {
+      WorkDirectory work(files, output_, GetParam());
+      put_hierarchy(work.built(), "new");
+      work.publish();
+    } catch (const Error& error) {
+      threw_ = true;
+      EXPECT_EQ(error.code(), ErrorCode::io);
+    }
+    return files.calls(call) >= n;
+  }
+
+  bool threw_ = false;
+};
+
+TEST_P(EveryFault, LeavesACompleteHierarchyOrNone) {
+  const std::string before = GetParam() ? "old" : "";
+  for (const Call call :
+       {Call::make_directories, Call::remove_all, Call::rename, Call::sync_tree}) {
+    for (std::uint64_t n = 1; build_with_fault(call, n); ++n) {
+      const std::string found = hierarchy_at(output_);
+      EXPECT_TRUE(found == before || found == "new") << found;
+      if (!threw_) {
+        EXPECT_EQ(found, "new");
+      }
+    }
+  }
+}
+
+TEST_P(EveryFault, LeavesNothingBesideItUnlessRemovingItselfFails) {
+  for (const Call call : {Call::make_directories, Call::rename, Call::sync_tree}) {
+    for (std::uint64_t n = 1; build_with_fault(call, n); ++n) {
+      std::set<std::string> found = names();
+      found.erase("x.hier");
+      EXPECT_THAT(found, IsEmpty()) << "kind " << static_cast<int>(call) << ", call " << n;
+    }
+  }
+}
+
+TEST_P(EveryFault, ThatIsToldLeavesTheOutputAsItWas) {
+  const std::string before = GetParam() ? "old" : "";
+  for (const Call call : {Call::make_directories, Call::rename, Call::sync_tree}) {
+    for (std::uint64_t n = 1; build_with_fault(call, n); ++n) {
+      EXPECT_TRUE(threw_);
+      EXPECT_EQ(hierarchy_at(output_), before) << "kind " << static_cast<int>(call) << ", " << n;
+    }
+  }
+}
+
+TEST_P(EveryFault, IsForgottenByTheNextBuild) {
+  for (const Call call :
+       {Call::make_directories, Call::remove_all, Call::rename, Call::sync_tree}) {
+    for (std::uint64_t n = 1; build_with_fault(call, n); ++n) {
+      WorkDirectory work(*files_, output_, true);
+      put_hierarchy(work.built(), "newer");
+      work.publish();
+      EXPECT_EQ(hierarchy_at(output_), "newer");
+      EXPECT_THAT(names(), ElementsAre("x.hier"));
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(WorkDirectory, EveryFault, testing::Bool(),
+                         [](const auto& test) { return test.param ? "Replacing" : "New"; });
+
+}  // namespace
+}  // namespace meshhier::storage

@@ -1,0 +1,250 @@
+#include "storage/format/work_tile.h"
+
+#include "hierarchy/error.h"
+
+#include <bit>
+#include <limits>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace meshhier::storage {
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+struct Shape {
+  std::uint32_t own = 0, rim = 0, foreign = 0, interior = 0, border = 0;
+  int channels = 0;
+};
+
+std::vector<Triangle> random_triangles(std::mt19937& random, std::uint32_t count,
+                                       std::uint32_t corners) {
+  std::vector<Triangle> triangles(count);
+  for (Triangle& t : triangles) {
+    for (TileVertex& v : t)
+      v = static_cast<TileVertex>(random() % corners);
+  }
+  // The last index there is, so that a number too narrow shows.
+  if (!triangles.empty())
+    triangles.back()[2] = static_cast<TileVertex>(corners - 1);
+  return triangles;
+}
+
+WorkTile make_tile(const Shape& shape) {
+  std::mt19937 random(shape.own * 31 + shape.foreign);
+  const auto number = [&] { return static_cast<float>(random() % 65536) / 65536 - 0.5F; };
+  WorkTile tile;
+  tile.vertices.channels = shape.channels;
+  tile.rim_count = shape.rim;
+  for (std::uint32_t i = 0; i < shape.own; ++i) {
+    std::vector<float> attributes;
+    for (int k = 0; k < shape.channels; ++k)
+      attributes.push_back(number());
+    tile.vertices.append({number(), number(), number()}, attributes);
+    tile.history.weights.push_back(static_cast<float>(1 + random() % 1000));
+  }
+  for (std::uint32_t i = 0; i < shape.foreign; ++i)
+    tile.foreign.push_back({i / 3, static_cast<std::uint32_t>(random())});
+  tile.interior = random_triangles(random, shape.interior, shape.own);
+  tile.border = random_triangles(random, shape.border, shape.own + shape.foreign);
+  return tile;
+}
+
+void expect_same(const WorkTile& a, const WorkTile& b) {
+  EXPECT_EQ(a.vertices.channels, b.vertices.channels);
+  EXPECT_EQ(a.vertices.positions, b.vertices.positions);
+  EXPECT_EQ(a.vertices.attributes, b.vertices.attributes);
+  EXPECT_EQ(a.history.weights, b.history.weights);
+  EXPECT_EQ(a.rim_count, b.rim_count);
+  EXPECT_EQ(a.interior, b.interior);
+  EXPECT_EQ(a.border, b.border);
+  EXPECT_EQ(a.foreign, b.foreign);
+}
+
+TEST(WorkTileBytes, HoldEveryTileWithAndWithoutAttributes) {
+  for (const int channels : {0, 3, kMaxChannels}) {
+    for (const Shape& shape :
+         {Shape{0, 0, 0, 0, 0, channels}, Shape{1, 0, 0, 0, 0, channels},
+          Shape{100, 30, 25, 150, 60, channels}, Shape{50, 50, 0, 90, 0, channels},
+          Shape{7, 7, 80, 0, 90, channels}}) {
+      const WorkTile tile = make_tile(shape);
+      expect_same(decode_work_tile(encode_work_tile(tile), channels), tile);
+    }
+  }
+}
+
+TEST(WorkTileBytes, KeepIndicesOnBothSidesOf16Bits) {
+  for (const std::uint32_t foreign : {535U, 536U, 537U, 40000U}) {  // 65535, 65536, 65537, ...
+    const WorkTile tile = make_tile({65000, 40000, foreign, 1000, 1000, 0});
+    ASSERT_EQ(raw(tile.border.back()[2]), 64999 + foreign);
+    expect_same(decode_work_tile(encode_work_tile(tile), 0), tile);
+  }
+}
+
+TEST(WorkTileBytes, TakeSixBytesATriangleWhereThatIsEnough) {
+  const auto bytes_a_triangle = [](std::uint32_t foreign) {
+    const std::size_t few = encode_work_tile(make_tile({65000, 10, foreign, 100, 0, 0})).size();
+    const std::size_t more = encode_work_tile(make_tile({65000, 10, foreign, 200, 0, 0})).size();
+    return (more - few) / 100;
+  };
+  EXPECT_EQ(bytes_a_triangle(536), 6U);
+  EXPECT_EQ(bytes_a_triangle(537), 12U);
+}
+
+TEST(WorkTileBytes, KeepEveryBitOfEveryFloat) {
+  WorkTile tile = make_tile({2, 1, 0, 0, 0, 2});
+  const std::uint32_t signalling = 0x7f800001, negative_zero = 0x80000000, denormal = 1;
+  tile.vertices.positions[0] = {std::bit_cast<float>(negative_zero), std::bit_cast<float>(denormal),
+                                std::numeric_limits<float>::max()};
+  tile.vertices.attributes = {std::bit_cast<float>(signalling),
+                              std::numeric_limits<float>::infinity(),
+                              std::numeric_limits<float>::quiet_NaN(), -0.0F};
+  const WorkTile found = decode_work_tile(encode_work_tile(tile), 2);
+  const auto expect_bits = [](const std::vector<float>& a, const std::vector<float>& b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i)
+      EXPECT_EQ(std::bit_cast<std::uint32_t>(a[i]), std::bit_cast<std::uint32_t>(b[i]));
+  };
+  expect_bits(found.vertices.attributes, tile.vertices.attributes);
+  EXPECT_EQ(std::bit_cast<std::uint32_t>(found.vertices.positions[0].x), negative_zero);
+  EXPECT_EQ(std::bit_cast<std::uint32_t>(found.vertices.positions[0].y), denormal);
+}
+
+TEST(WorkTileBytes, AreTheSameForTheSameTile) {
+  const Shape shape{100, 30, 25, 150, 60, 3};
+  EXPECT_EQ(encode_work_tile(make_tile(shape)), encode_work_tile(make_tile(shape)));
+}
+
+/// `decode` finds something wrong and says that it is a defect.
+template <class Decode>
+void expect_refused(const Decode& decode, const std::string& what) {
+  try {
+    (void)decode();
+    ADD_FAILURE() << what << ": nothing was thrown";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::internal) << what;
+  }
+}
+
+TEST(WorkTileBytes, CutShortAnywhereAreRefused) {
+  const Bytes bytes = encode_work_tile(make_tile({10, 5, 4, 7, 6, 2}));
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    expect_refused([&] { return decode_work_tile(std::span(bytes).first(size), 2); },
+                   "cut to " + std::to_string(size));
+  }
+}
+
+TEST(WorkTileBytes, WithImpossibleCountsAreRefusedBeforeAnythingIsAllocated) {
+  const Bytes bytes = encode_work_tile(make_tile({10, 5, 4, 7, 6, 2}));
+  for (const std::size_t field : {0U, 2U, 3U, 4U}) {  // all but the rim sizes something
+    Bytes broken = bytes;
+    std::fill_n(broken.begin() + static_cast<std::ptrdiff_t>(4 * field), 4, std::byte{0xff});
+    expect_refused([&] { return decode_work_tile(broken, 2); }, "field " + std::to_string(field));
+  }
+}
+
+TEST(WorkTileBytes, OfOtherChannelsAreRefused) {
+  const Bytes bytes = encode_work_tile(make_tile({10, 5, 4, 7, 6, 2}));
+  for (const int channels : {0, 1, 3, 9}) {
+    expect_refused([&] { return decode_work_tile(bytes, channels); },
+                   "channels " + std::to_string(channels));
+  }
+}
+
+TEST(WorkTileBytes, WithMoreBehindThemAreRefused) {
+  Bytes bytes = encode_work_tile(make_tile({10, 5, 4, 7, 6, 2}));
+  bytes.push_back(std::byte{0});
+  expect_refused([&] { return decode_work_tile(bytes, 2); }, "one byte more");
+}
+
+TEST(RimBytes, HoldTheFirstVerticesOfTheTile) {
+  for (const int channels : {0, 3, kMaxChannels}) {
+    for (const std::uint32_t rim_count : {0U, 1U, 30U, 100U}) {
+      const WorkTile tile = make_tile({100, rim_count, 25, 150, 60, channels});
+      const Rim rim = decode_rim(encode_rim(tile), channels);
+      ASSERT_EQ(rim.vertices.size(), rim_count);
+      EXPECT_EQ(rim.vertices.channels, channels);
+      EXPECT_TRUE(std::equal(rim.vertices.positions.begin(), rim.vertices.positions.end(),
+                             tile.vertices.positions.begin()));
+      ASSERT_EQ(rim.vertices.attributes.size(), rim_count * static_cast<std::size_t>(channels));
+      EXPECT_TRUE(std::equal(rim.vertices.attributes.begin(), rim.vertices.attributes.end(),
+                             tile.vertices.attributes.begin()));
+    }
+  }
+}
+
+TEST(RimBytes, CutShortOrOfOtherChannelsAreRefused) {
+  const Bytes bytes = encode_rim(make_tile({10, 5, 4, 7, 6, 2}));
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    expect_refused([&] { return decode_rim(std::span(bytes).first(size), 2); },
+                   "cut to " + std::to_string(size));
+  }
+  for (const int channels : {0, 1, 3, 9}) {
+    expect_refused([&] { return decode_rim(bytes, channels); },
+                   "channels " + std::to_string(channels));
+  }
+}
+
+Band make_band(const Shape& shape) {
+  std::mt19937 random(shape.own * 17 + shape.foreign);
+  const auto number = [&] { return static_cast<float>(random() % 65536) / 65536 - 0.5F; };
+  Band band;
+  band.rim_count = shape.rim;
+  band.own_count = shape.own;
+  for (std::uint32_t i = 0; i < shape.own + shape.foreign; ++i)
+    band.positions.push_back({number(), number(), number()});
+  for (std::uint32_t i = 0; i < shape.own; ++i)
+    band.drifts.push_back(number());
+  for (std::uint32_t i = 0; i < shape.foreign; ++i)
+    band.foreign.push_back({i / 3, static_cast<std::uint32_t>(random())});
+  band.interior = random_triangles(random, shape.interior, shape.own);
+  band.border = random_triangles(random, shape.border, shape.own + shape.foreign);
+  band.interior_drift = 0.125F;
+  band.lost = std::numeric_limits<float>::infinity();
+  band.squared_sum = 1e-300;
+  band.weight_sum = 12345678901.0;
+  return band;
+}
+
+void expect_same(const Band& a, const Band& b) {
+  EXPECT_EQ(a.rim_count, b.rim_count);
+  EXPECT_EQ(a.own_count, b.own_count);
+  EXPECT_EQ(a.positions, b.positions);
+  EXPECT_EQ(a.drifts, b.drifts);
+  EXPECT_EQ(a.foreign, b.foreign);
+  EXPECT_EQ(a.interior, b.interior);
+  EXPECT_EQ(a.border, b.border);
+  EXPECT_EQ(a.interior_drift, b.interior_drift);
+  EXPECT_EQ(a.lost, b.lost);
+  EXPECT_EQ(a.squared_sum, b.squared_sum);
+  EXPECT_EQ(a.weight_sum, b.weight_sum);
+}
+
+TEST(BandBytes, HoldEveryBand) {
+  for (const Shape& shape :
+       {Shape{}, Shape{1, 0, 0, 0, 0}, Shape{100, 30, 25, 150, 60}, Shape{7, 7, 80, 0, 90},
+        Shape{65000, 40000, 535, 100, 100}, Shape{65000, 40000, 536, 100, 100},
+        Shape{65000, 40000, 537, 100, 100}}) {
+    const Band band = make_band(shape);
+    expect_same(decode_band(encode_band(band)), band);
+  }
+}
+
+TEST(BandBytes, CutShortLongerOrImpossibleAreRefused) {
+  Bytes bytes = encode_band(make_band({10, 5, 4, 7, 6}));
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    expect_refused([&] { return decode_band(std::span(bytes).first(size)); },
+                   "cut to " + std::to_string(size));
+  }
+  for (const std::size_t field : {0U, 2U, 3U, 4U}) {  // all but the rim sizes something
+    Bytes broken = bytes;
+    std::fill_n(broken.begin() + static_cast<std::ptrdiff_t>(4 * field), 4, std::byte{0xff});
+    expect_refused([&] { return decode_band(broken); }, "field " + std::to_string(field));
+  }
+  bytes.push_back(std::byte{0});
+  expect_refused([&] { return decode_band(bytes); }, "one byte more");
+}
+
+}  // namespace
+}  // namespace meshhier::storage

@@ -1,0 +1,98 @@
+#include "storage/io/child_process.h"
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace meshhier::storage {
+namespace {
+
+using std::chrono::milliseconds;
+
+std::string all_of(ChildProcess& child) {
+  std::string text;
+  while (child.hear(text, milliseconds(1000))) {
+  }
+  return text;
+}
+
+std::vector<std::string> shell(const std::string& script) {
+  return {"/bin/sh", "-c", script};
+}
+
+TEST(ChildProcessTest, ItsWordsAndItsCodeAreHeard) {
+  ChildProcess child(shell("echo result; echo one >&2; echo two >&2; exit 7"));
+  EXPECT_EQ(all_of(child), "one\ntwo\n");
+  EXPECT_EQ(child.wait(), 7);
+}
+
+TEST(ChildProcessTest, WhatNobodyHearsHoldsNothingUp) {
+  ChildProcess child(shell("head -c 200000 /dev/zero >&2; exit 7"), ChildProcess::Errors::dropped);
+  EXPECT_EQ(child.wait(), 7);
+  EXPECT_EQ(all_of(child), "");
+}
+
+TEST(ChildProcessTest, DeathBySignalIsACode) {
+  ChildProcess child(shell("kill -ABRT $$"));
+  EXPECT_EQ(all_of(child), "");
+  EXPECT_EQ(child.wait(), 128 + SIGABRT);
+}
+
+TEST(ChildProcessTest, ItCanBeAskedToStop) {
+  ChildProcess child(
+      shell("trap 'echo bye >&2; exit 3' TERM; echo up >&2; while :; do sleep 0.01; done"));
+  std::string text;
+  while (text.empty())
+    child.hear(text, milliseconds(100));
+  child.ask_to_stop();
+  EXPECT_EQ(all_of(child), "bye\n");
+  EXPECT_EQ(child.wait(), 3);
+}
+
+TEST(ChildProcessTest, WhatCannotBeStartedEndsWith127) {
+  ChildProcess child({"/nowhere/program"});
+  EXPECT_EQ(child.wait(), 127);
+}
+
+TEST(ChildProcessTest, ItHasNoFilesOfOurs) {
+  const int file = ::dup(STDERR_FILENO);  // without close-on-exec
+  ChildProcess child(shell("exec ls /proc/self/fd >&2"));
+  const std::string files = all_of(child);
+  ::close(file);
+  EXPECT_EQ(child.wait(), 0);
+  EXPECT_EQ(files, "0\n1\n2\n3\n") << "3 is the directory that is listed";
+}
+
+TEST(ChildProcessTest, ItDoesNotOutliveItsObjectOrItsThread) {
+  pid_t process = -1;
+  const auto start = [&](std::unique_ptr<ChildProcess>& child) {
+    child = std::make_unique<ChildProcess>(shell("echo $$ >&2; exec sleep 1000"));
+    std::string text;
+    while (text.find('\n') == std::string::npos)
+      child->hear(text, milliseconds(100));
+    process = std::stoi(text);
+  };
+  std::unique_ptr<ChildProcess> child;
+  start(child);
+  EXPECT_EQ(::kill(process, 0), 0);
+  child.reset();
+  EXPECT_EQ(::kill(process, 0), -1);
+  std::thread([&] { start(child); }).join();
+  EXPECT_EQ(child->wait(), 128 + SIGKILL);
+}
+
+TEST(ChildProcessTest, OwnProgramIsThisOne) {
+  EXPECT_TRUE(std::filesystem::equivalent(own_program(), "/proc/self/exe"));
+  EXPECT_EQ(own_directory(), std::filesystem::path(own_program()).parent_path().string());
+  EXPECT_EQ(::access(own_program().c_str(), X_OK), 0);
+}
+
+}  // namespace
+}  // namespace meshhier::storage
