@@ -384,6 +384,64 @@ async function checkLateRoot(visitor, name) {
   await visitor.close(page, 'late root');
 }
 
+/// Timers wait until the address is the gallery's; then their time comes, before the page is told where the visitor is.
+function holdTimers() {
+  const { setTimeout, clearTimeout } = window;
+  const held = new Map();
+  let last = 0;
+  window.setTimeout = (act) => {
+    held.set(--last, act);
+    return last;
+  };
+  window.clearTimeout = (timer) => held.delete(timer) || clearTimeout(timer);
+  window.addEventListener('popstate', () => {
+    if (location.hash !== '') return;
+    Object.assign(window, { setTimeout, clearTimeout });
+    for (const act of held.values()) act();
+  });
+}
+
+/// Whether the gallery comes, at its own address.
+async function comesToGallery(page) {
+  return (await until(page, () => page.locator('.gallery .badge').isVisible())) && !page.url().includes('#');
+}
+
+/// To a model and back; its camera comes to rest in between, when the address is the gallery's already.
+async function checkLateRest(visitor, name) {
+  const page = await visitor.open('');
+  const cell = page.locator('a.cell', { hasText: name }).first();
+  await cell.waitFor();
+  await page.evaluate(holdTimers);
+  await cell.click();
+  await page.waitForFunction(() => window.meshhier.view !== null);
+  await page.evaluate(() => new Promise((done) => { requestAnimationFrame(done); })); // the view's first frame was before
+  await page.goBack();
+  visitor.check('late rest', await comesToGallery(page), page.url());
+  await visitor.close(page, 'late rest');
+}
+
+/// Escape twice, before the first has led anywhere; Escape from a model that was there before the gallery.
+async function checkEscapes(visitor, name) {
+  const page = await visitor.open('');
+  await page.locator('a.cell', { hasText: name }).first().click();
+  await settle(page);
+  await page.evaluate(() => {
+    const press = () => window.dispatchEvent(new KeyboardEvent('keydown', { key: 'Escape' }));
+    setTimeout(() => [press(), press()]);
+  });
+  visitor.check('Escape twice', await comesToGallery(page), page.url());
+  await visitor.close(page, 'Escape twice');
+  const linked = await visitor.open(anchor(name));
+  await settle(linked);
+  await linked.keyboard.press('Escape');
+  await comesToGallery(linked);
+  await linked.goBack();
+  await settle(linked);
+  await linked.keyboard.press('Escape');
+  visitor.check('Escape from a link again', await comesToGallery(linked), linked.url());
+  await visitor.close(linked, 'Escape from a link again');
+}
+
 async function checkLostCode(visitor, name) {
   const page = await visitor.open('', { ...WIDE, routes: (one) => one.route(CODE, (route) => route.abort()) });
   await page.locator('a.cell', { hasText: name }).first().click();
@@ -545,6 +603,8 @@ async function checkAll(browser, report, pictures, hierarchies, origin) {
   await checkCamera(visitor, names[0]);
   await checkLateCode(visitor, names[0]);
   await checkLateRoot(visitor, names[0]);
+  await checkLateRest(visitor, names[0]);
+  await checkEscapes(visitor, names[0]);
   await checkLostCode(visitor, names[0]);
   await checkLostWorker(visitor, names[0]);
   await checkNames(visitor, names[0]);

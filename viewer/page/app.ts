@@ -4,6 +4,7 @@ import { EarlyStart } from './early_start.js';
 import { Gallery } from './gallery/gallery.js';
 import { ListingWatch } from './listing_watch.js';
 import { modelOfPath, type Listing, type Model } from './listing.js';
+import { ModelEntry } from './model_entry.js';
 import { element } from './parts/element.js';
 import { ModeBadge } from './parts/mode_badge.js';
 import { themeButton } from './parts/theme_button.js';
@@ -17,9 +18,6 @@ import type { ModelView, Surroundings } from './view/model_view.js';
 
 const HOW_TO = 'Put a file models.json beside this page, {"models": [{"path": "NAME.hier"}]}, or let "meshhier serve" do it, ' +
   'or name a hierarchy in the address: ?model=NAME.hier';
-
-/// Of a history entry that was reached from the gallery: going back leads there.
-const FROM_GALLERY = { fromGallery: true };
 
 function messageOf(error: unknown): string {
   return error instanceof Error ? error.message : String(error);
@@ -41,8 +39,7 @@ export class App {
   private readonly query = readQuery(location.search, document.baseURI);
   private readonly watch: ListingWatch;
   private gallery: Gallery | null = null;
-  private opening: Model | null = null;
-  private turn = 0; // of what is shown: what was loaded for an earlier one is of no use
+  private entry: ModelEntry | null = null; // of the model that is shown: what was loaded for an earlier one is of no use
   private left: string | null = null;
 
   constructor(private readonly root: HTMLElement) {
@@ -84,11 +81,7 @@ export class App {
 
   /// From a model to the gallery.
   close(): void {
-    if (this.query.only !== null || this.opening === null) return;
-    if ((history.state as typeof FROM_GALLERY | null)?.fromGallery) {
-      history.back();
-      return;
-    }
+    if (this.query.only !== null || this.entry === null || this.entry.leave()) return;
     history.pushState(null, '', this.galleryAddress);
     this.route();
   }
@@ -138,26 +131,28 @@ export class App {
   }
 
   private showModel(model: Model, pose: Pose | null): void {
-    if (this.opening?.url === model.url) {
+    if (this.entry?.model.url === model.url) {
+      this.entry.arrive(false);
       this.view?.setPose(pose);
       return;
     }
-    if (this.gallery?.shown) history.replaceState(FROM_GALLERY, '');
     this.closeView();
-    this.opening = model;
+    const entry = new ModelEntry(model, this.query.only === null ? model.path : '');
+    this.entry = entry;
+    entry.arrive(this.gallery?.shown ?? false);
     this.gallery?.hide();
     this.watch.stop();
     document.title = `${model.name} – meshhier`;
-    const { turn } = this;
-    this.load(model, pose, turn).catch((error: unknown) => { if (turn === this.turn) this.refuse(model, messageOf(error)); });
+    this.load(entry, pose).catch((error: unknown) => { if (entry === this.entry) this.refuse(entry, messageOf(error)); });
   }
 
-  private async load(model: Model, pose: Pose | null, turn: number): Promise<void> {
+  private async load(entry: ModelEntry, pose: Pose | null): Promise<void> {
+    const { model } = entry;
     const early = new EarlyStart(model.url);
     try {
       const { ModelView } = await loadView();
-      if (turn !== this.turn) return;
-      this.view = new ModelView(model, this.surroundings(model, pose, early));
+      if (entry !== this.entry) return;
+      this.view = new ModelView(model, this.surroundings(entry, pose, early));
     } finally {
       early.close();
     }
@@ -165,14 +160,18 @@ export class App {
     this.view.start();
   }
 
-  /// Back to the gallery, where the model's link can be followed again.
-  private refuse(model: Model, why: string): void {
+  /// Back to the gallery, where the model's link can be followed again; a visitor who is elsewhere by now stays there.
+  private refuse({ model, current }: ModelEntry, why: string): void {
+    if (!current) {
+      this.closeView();
+      return;
+    }
     history.replaceState(null, '', this.galleryAddress);
     this.showGallery();
     this.problems.tell(why === NO_WEBGL ? why : `${model.name} cannot be shown: ${why}. Load the page again to try once more.`);
   }
 
-  private surroundings(model: Model, pose: Pose | null, { fetch, createWorker }: EarlyStart): Surroundings {
+  private surroundings(entry: ModelEntry, pose: Pose | null, { fetch, createWorker }: EarlyStart): Surroundings {
     return {
       fetch,
       createWorker,
@@ -181,22 +180,16 @@ export class App {
       chosen: () => { savePreferences(this.preferences); },
       setTheme: (theme) => { this.setTheme(theme); },
       leave: this.query.only === null ? () => { this.close(); } : null,
-      rested: (rest) => { this.remember(model, rest); },
+      rested: (rest) => { entry.write(rest); },
       failed: (message) => this.problems.tell(message),
     };
   }
 
-  private remember(model: Model, pose: Pose | null): void {
-    const path = this.query.only === null ? model.path : '';
-    history.replaceState(history.state, '', formatAddress({ path, pose }));
-  }
-
   /// Makes room for something else. What was told before anything was shown stays.
   private closeView(): void {
-    if (this.opening !== null || this.gallery?.shown) this.problems.clear();
-    ++this.turn;
-    this.left = this.opening?.path ?? null;
-    this.opening = null;
+    if (this.entry !== null || this.gallery?.shown) this.problems.clear();
+    this.left = this.entry?.model.path ?? null;
+    this.entry = null;
     this.view?.close();
     this.view = null;
   }
