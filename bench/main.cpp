@@ -1,7 +1,7 @@
 // meshgen: makes meshes for tests and measurements.
 #include "bench/generator.h"
-#include "bench/hell.h"
 #include "bench/program.h"
+#include "bench/stress.h"
 
 #include <map>
 #include <string>
@@ -17,8 +17,8 @@ using namespace meshhier;
 struct Arguments {
   bench::SurfaceOptions surface;
   bench::AmplifyOptions amplify;
-  std::string hell_case;
-  std::uint64_t hell_size = 100'000;
+  std::string stress_case;
+  std::uint64_t stress_size = 100'000;
   std::uint64_t seed = 1;
   std::string input;
   std::string output;
@@ -77,18 +77,18 @@ void add_shuffle(CLI::App& app, Arguments& arguments) {
   command->add_option("input", arguments.input, "A PLY file")->required();
 }
 
-void add_hell(CLI::App& app, Arguments& arguments) {
+void add_stress(CLI::App& app, Arguments& arguments) {
   std::string cases = "The cases:";
   std::vector<std::string> names;
-  for (const bench::HellCase& listed : bench::hell_cases()) {
+  for (const bench::StressCase& listed : bench::stress_cases()) {
     cases += fmt::format("\n  {:<11} {}", listed.name, listed.what);
     names.emplace_back(listed.name);
   }
-  CLI::App* command = app.add_subcommand("hell", "Legal and unreasonable meshes");
-  command->add_option("--case", arguments.hell_case, "Which one")
+  CLI::App* command = app.add_subcommand("stress", "Legal and unreasonable meshes");
+  command->add_option("--case", arguments.stress_case, "Which one")
       ->check(CLI::IsMember(names))
       ->required();
-  command->add_option("--size", arguments.hell_size, "About so many triangles, or else vertices")
+  command->add_option("--size", arguments.stress_size, "About so many triangles, or else vertices")
       ->capture_default_str();
   command->footer(cases);
 }
@@ -107,9 +107,9 @@ std::unique_ptr<bench::GeneratedMesh> generate(const CLI::App& app, Arguments& a
     arguments.amplify.seed = arguments.seed;
     return bench::amplify(load(files, arguments.input), arguments.amplify);
   }
-  if (app.got_subcommand("hell")) {
+  if (app.got_subcommand("stress")) {
     return bench::as_generated(
-        bench::make_hell(arguments.hell_case, arguments.hell_size, arguments.seed));
+        bench::make_stress(arguments.stress_case, arguments.stress_size, arguments.seed));
   }
   return bench::shuffle(load(files, arguments.input), arguments.seed);
 }
@@ -131,7 +131,7 @@ int main(int argc, char** argv) {
   add_surface(app, arguments);
   add_amplify(app, arguments);
   add_shuffle(app, arguments);
-  add_hell(app, arguments);
+  add_stress(app, arguments);
   app.require_subcommand(1);
   for (CLI::App* command : app.get_subcommands({})) {
     command->add_option("--seed", arguments.seed, "Another seed, another mesh")

@@ -88,7 +88,7 @@ BuildTile PartTiles::tile(std::uint32_t part) const {
   BuildTile tile;
   TileMesh& mesh = tile.mesh;
   const auto own = vertices_.of(part);
-  mesh.own_count = mesh.rim_count = static_cast<std::uint32_t>(own.size());
+  mesh.own_count = mesh.boundary_count = static_cast<std::uint32_t>(own.size());
   const auto is_own = [&](std::uint32_t v) { return parts_.part_of[v] == part; };
   const auto ghost_of = [&](std::uint32_t v) { return GhostRef{parts_.part_of[v], place_[v]}; };
   for (const std::uint32_t t : triangles_.of(part)) {

@@ -50,10 +50,10 @@ BuildTile SampleTiles::resolved(std::uint32_t partition) const {
   BuildTile tile = cluster_simplify::resolve(work(partition), mapped(partition), false);
   for (std::uint32_t neighbour = 0; neighbour < count(); ++neighbour) {
     const WorkTile& other = work(neighbour);
-    Rim rim;
-    rim.vertices.channels = other.vertices.channels;
-    rim.vertices.append(other.vertices, 0, other.rim_count);
-    cluster_simplify::fill_ghosts(tile, neighbour, rim);
+    Boundary boundary;
+    boundary.vertices.channels = other.vertices.channels;
+    boundary.vertices.append(other.vertices, 0, other.boundary_count);
+    cluster_simplify::fill_ghosts(tile, neighbour, boundary);
   }
   return tile;
 }

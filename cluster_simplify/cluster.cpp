@@ -148,7 +148,7 @@ Contraction cluster(const BuildTile& joined, std::uint32_t target, const Attribu
     normalize_average(layout, attributes);
     result.representatives.append(to_float(points[cell]), attributes);
   }
-  result.drift = motion_of(joined, result);
+  result.deviation = motion_of(joined, result);
   return result;
 }
 

@@ -5,7 +5,7 @@
 #include "cluster_simplify/collapse_mesh.h"
 #include "cluster_simplify/collapse_queue.h"
 #include "cluster_simplify/contraction.h"
-#include "cluster_simplify/drift_meter.h"
+#include "cluster_simplify/deviation_meter.h"
 #include "cluster_simplify/edge_star.h"
 #include "cluster_simplify/link_condition.h"
 
@@ -40,14 +40,14 @@ enum class Care {
 ///   void collapsed(Collapse)
 ///   std::span<const Vec3f> positions()
 /// An edge's cost is looked at again when its turn comes, not when a neighbour changes: collapses
-/// make costs grow, hardly ever shrink. Crowded vertices stay what they are.
+/// make costs grow, hardly ever shrink. HighValence vertices stay what they are.
 template <class Costs>
 class CollapseDriver {
  public:
-  CollapseDriver(CollapseMesh& mesh, Costs& costs, DriftMeter& drift)
+  CollapseDriver(CollapseMesh& mesh, Costs& costs, DeviationMeter& deviation)
       : mesh_(mesh),
         costs_(costs),
-        drift_(drift),
+        deviation_(deviation),
         queue_(static_cast<std::uint32_t>(mesh.edges().size())),
         link_(mesh.vertex_count()),
         changes_(mesh.edges().size(), TopologyChange::none),
@@ -88,7 +88,7 @@ class CollapseDriver {
   }
 
   void push_all(Care care) {
-    recount_crowds();
+    recount_high_valences();
     const auto count = static_cast<std::uint32_t>(mesh_.edges().size());
     std::array<float, kBlock> costs;
     for (std::uint32_t first = 0; first < count; first += kBlock) {
@@ -97,20 +97,20 @@ class CollapseDriver {
       for (std::uint32_t i = 0; i < block.size(); ++i) {
         const std::uint32_t e = first + i;
         if (mesh_.edge(e).triangle_count > 0 && !queue_.contains(e) && mesh_.is_own_edge(e) &&
-            !is_crowded(e))
+            !has_high_valence(e))
           push(e, care, cost(e, block[i]));
       }
     }
   }
 
-  bool is_crowded(std::uint32_t e) const {
-    return mesh_.is_crowded(mesh_.edge(e).a) || mesh_.is_crowded(mesh_.edge(e).b);
+  bool has_high_valence(std::uint32_t e) const {
+    return mesh_.has_high_valence(mesh_.edge(e).a) || mesh_.has_high_valence(mesh_.edge(e).b);
   }
 
-  /// Of what is left at crowded vertices the mesh knows an upper bound only.
-  void recount_crowds() {
+  /// Of what is left at of high valence vertices the mesh knows an upper bound only.
+  void recount_high_valences() {
     for (std::uint32_t v = 0; v < mesh_.own_count(); ++v) {
-      if (mesh_.is_crowded(v))
+      if (mesh_.has_high_valence(v))
         mesh_.gather(v, around_);
     }
   }
@@ -125,7 +125,7 @@ class CollapseDriver {
   }
 
   void push(std::uint32_t e, Care care) {
-    if (queue_.contains(e) || !mesh_.is_own_edge(e) || is_crowded(e))
+    if (queue_.contains(e) || !mesh_.is_own_edge(e) || has_high_valence(e))
       return;
     Collapse collapse;
     costs_.best({&e, 1}, {&collapse, 1});
@@ -176,7 +176,7 @@ class CollapseDriver {
   }
 
   void take_turn(std::uint32_t e, const Collapse& collapse, std::uint32_t bucket, Care care) {
-    if (mesh_.edge(e).triangle_count == 0 || queue_.contains(e) || is_crowded(e))
+    if (mesh_.edge(e).triangle_count == 0 || queue_.contains(e) || has_high_valence(e))
       return;  // by what became of others looked at together with it, or before
     const float today = cost(e, collapse.cost);
     if (CollapseQueue::bucket_of(today) > bucket || has_moved(mesh_.edge(e)))
@@ -214,7 +214,7 @@ class CollapseDriver {
   }
 
   void carry_out(const Collapse& collapse, Care care) {
-    drift_.note(costs_.positions(), star_, collapse.place);
+    deviation_.note(costs_.positions(), star_, collapse.place);
     if (star_.is_disc())
       collapse_disc();
     else
@@ -267,7 +267,7 @@ class CollapseDriver {
 
   CollapseMesh& mesh_;
   Costs& costs_;
-  DriftMeter& drift_;
+  DeviationMeter& deviation_;
   CollapseQueue queue_;
   LinkCondition link_;
   std::vector<TopologyChange> changes_;  ///< as last seen at each edge
@@ -283,11 +283,11 @@ class CollapseDriver {
 
 /// Collapses own edges of `mesh` while more than `target` own vertices have triangles, the cheapest
 /// first. Fewer may remain when the last collapse takes a whole piece; more when no edge between
-/// own vertices is left. `drift` follows.
+/// own vertices is left. `deviation` follows.
 template <class Costs>
-FallbackCounts collapse_edges(CollapseMesh& mesh, Costs& costs, DriftMeter& drift,
+FallbackCounts collapse_edges(CollapseMesh& mesh, Costs& costs, DeviationMeter& deviation,
                               std::uint32_t target) {
-  return CollapseDriver<Costs>(mesh, costs, drift).run(target);
+  return CollapseDriver<Costs>(mesh, costs, deviation).run(target);
 }
 
 }  // namespace meshhier::cluster_simplify

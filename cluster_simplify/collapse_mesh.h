@@ -71,7 +71,7 @@ class CollapseMesh {
   std::uint32_t most_triangles(std::uint32_t vertex) const { return stars_[vertex].count; }
   /// Whether there are too many triangles at the vertex to go through them for every collapse
   /// beside it: n of them would take n squared. Scans stay below a tenth of the limit.
-  bool is_crowded(std::uint32_t vertex) const { return stars_[vertex].count > kCrowd; }
+  bool has_high_valence(std::uint32_t vertex) const { return stars_[vertex].count > kHighValence; }
   /// Whether any triangle is left at the vertex.
   bool is_isolated(std::uint32_t vertex);
   /// What stands for the vertex now.
@@ -102,7 +102,7 @@ class CollapseMesh {
 
  private:
   static constexpr std::uint32_t kMostFetched = 16;
-  static constexpr std::uint32_t kCrowd = 1024;
+  static constexpr std::uint32_t kHighValence = 1024;
 
   /// The corners, 4 t + k, at a vertex: a run of corners_, dead ones among them until next looked
   /// at.

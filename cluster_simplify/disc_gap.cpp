@@ -114,13 +114,13 @@ bool DiscGapMeter::faces_front() const {
   return !any_of(~large) && rounds[0] + rounds[1] + rounds[2] + rounds[3] == -1;
 }
 
-void DiscGapMeter::overlap(std::uint32_t link, float drift, float gap) {
-  drifts_[link] = std::max(drifts_[link], drift);
+void DiscGapMeter::overlap(std::uint32_t link, float deviation, float gap) {
+  deviations_[link] = std::max(deviations_[link], deviation);
   gaps_[link] = std::max(gaps_[link], gap);
 }
 
-void DiscGapMeter::overlap_all(float drift, float gap) {
-  all_drift_ = std::max(all_drift_, drift);
+void DiscGapMeter::overlap_all(float deviation, float gap) {
+  all_deviation_ = std::max(all_deviation_, deviation);
   all_gap_ = std::max(all_gap_, gap);
 }
 
@@ -140,18 +140,18 @@ float DiscGapMeter::lay_over_new(End& end) {
     const float height =
         end.z - (end.beside[link] * ring_.z[link + 1] - end.beside[link + 1] * ring_.z[link]) /
                     ring_.doubled[link];
-    overlap(link, end.drift, std::abs(height));
+    overlap(link, end.deviation, std::abs(height));
     return height;
   }
-  overlap_all(end.drift, std::abs(end.z));
+  overlap_all(end.deviation, std::abs(end.z));
   return end.z;
 }
 
 /// Lays the new vertex over the old disc. False if rounding hides where.
 bool DiscGapMeter::lay_middle() {
   const std::uint32_t turn = ring_.to_begin;
-  const auto lay = [&](float drift, float wa, float a, float wb, float b, float wc, float c) {
-    overlap_all(drift, std::abs((wa * a + wb * b + wc * c) / (wa + wb + wc)));
+  const auto lay = [&](float deviation, float wa, float a, float wb, float b, float wc, float c) {
+    overlap_all(deviation, std::abs((wa * a + wb * b + wc * c) / (wa + wb + wc)));
     return true;
   };
   for (const End* end : {&from_, &to_}) {
@@ -159,11 +159,11 @@ bool DiscGapMeter::lay_middle() {
       return true;
   }
   if (cross_ <= 0 && from_.beside[turn] <= 0 && to_.beside[turn] >= 0) {
-    return lay(ring_.turn_drift, to_.beside[turn], from_.z, -cross_, ring_.z[turn],
+    return lay(ring_.turn_deviation, to_.beside[turn], from_.z, -cross_, ring_.z[turn],
                -from_.beside[turn], to_.z);
   }
   if (cross_ >= 0 && to_.beside[0] <= 0 && from_.beside[0] >= 0) {
-    return lay(ring_.first_drift, -to_.beside[0], from_.z, from_.beside[0], to_.z, cross_,
+    return lay(ring_.first_deviation, -to_.beside[0], from_.z, from_.beside[0], to_.z, cross_,
                ring_.z[0]);
   }
   for (std::uint32_t i = 0; i < ring_.size; i += 4) {
@@ -173,8 +173,8 @@ bool DiscGapMeter::lay_middle() {
       continue;
     const std::uint32_t lane = first_of(holds);
     const std::uint32_t link = i + lane;
-    return lay(ring_.drift[link], ring_.doubled[link], link < turn ? from_.z : to_.z, behind[lane],
-               ring_.z[link], -beside[lane], ring_.z[link + 1]);
+    return lay(ring_.deviation[link], ring_.doubled[link], link < turn ? from_.z : to_.z,
+               behind[lane], ring_.z[link], -beside[lane], ring_.z[link + 1]);
   }
   return false;
 }
@@ -186,12 +186,12 @@ void DiscGapMeter::cross_ray(std::uint32_t ray, const Way& way, float beside, fl
   const float part = std::clamp(beside * scale, 0.0F, 1.0F);
   const float along = -way.turned * scale;
   const float gap = std::abs(way.start + part * way.rise - along * ring_.z[ray]);
-  overlap(ray, way.drift, gap);
-  overlap(ring_.previous(ray), way.drift, gap);
+  overlap(ray, way.deviation, gap);
+  overlap(ring_.previous(ray), way.deviation, gap);
 }
 
 /// The old edge from `end` to a ring vertex.
-void DiscGapMeter::cross_rays(const End& end, std::uint32_t target, float drift) {
+void DiscGapMeter::cross_rays(const End& end, std::uint32_t target, float deviation) {
   if (end.sector < 0)
     return;  // it starts where all new edges start
   const bool forth = end.beside[target] < 0;
@@ -200,7 +200,7 @@ void DiscGapMeter::cross_rays(const End& end, std::uint32_t target, float drift)
     ray = ring_.next(ray);
   const float x = ring_.x[target];
   const float y = ring_.y[target];
-  const Way way{end.z, ring_.z[target] - end.z, -end.beside[target], drift};
+  const Way way{end.z, ring_.z[target] - end.z, -end.beside[target], deviation};
   for (std::uint32_t steps = 0; ray != target && steps < ring_.size; ++steps) {
     cross_ray(ray, way, end.beside[ray], ring_.x[ray] * y - ring_.y[ray] * x);
     ray = forth ? ring_.next(ray) : ring_.previous(ray);
@@ -212,7 +212,8 @@ void DiscGapMeter::cross_rays() {
   if (from_.sector < 0 || to_.sector < 0)
     return;
   const bool forth = cross_ > 0;
-  const Way way{from_.z, to_.z - from_.z, cross_, std::max(ring_.first_drift, ring_.turn_drift)};
+  const Way way{from_.z, to_.z - from_.z, cross_,
+                std::max(ring_.first_deviation, ring_.turn_deviation)};
   auto ray = static_cast<std::uint32_t>(from_.sector);
   const auto last = static_cast<std::uint32_t>(to_.sector);
   while (ray != last) {
@@ -224,44 +225,44 @@ void DiscGapMeter::cross_rays() {
   }
 }
 
-void DiscGapMeter::look_up(std::span<const float> drifts, const EdgeStar& star) {
-  ring_.first_drift = drifts[star.at_edge()[0]->triangle];
-  ring_.turn_drift = drifts[star.at_edge()[1]->triangle];
+void DiscGapMeter::look_up(std::span<const float> deviations, const EdgeStar& star) {
+  ring_.first_deviation = deviations[star.at_edge()[0]->triangle];
+  ring_.turn_deviation = deviations[star.at_edge()[1]->triangle];
   for (std::uint32_t i = 0; i < ring_.size; ++i) {
     triangles_[i] = star.links()[i]->triangle;
-    ring_.drift[i] = drifts[triangles_[i]];
+    ring_.deviation[i] = deviations[triangles_[i]];
   }
-  FourFloats from = FourFloats{} + std::max(ring_.first_drift, ring_.turn_drift);
+  FourFloats from = FourFloats{} + std::max(ring_.first_deviation, ring_.turn_deviation);
   FourFloats to = from;
   for (std::uint32_t i = 0; i < ring_.size; i += 4) {
-    const FourFloats drift = four_at(ring_.drift, i);
+    const FourFloats deviation = four_at(ring_.deviation, i);
     const FourInts of_from = lanes_below(i, ring_.to_begin);
     const FourInts of_to = lanes_below(i, ring_.size) & ~of_from;
-    from = larger_of(of_from ? drift : from, from);
-    to = larger_of(of_to ? drift : to, to);
-    store_four(&drifts_[i], drift);
+    from = larger_of(of_from ? deviation : from, from);
+    to = larger_of(of_to ? deviation : to, to);
+    store_four(&deviations_[i], deviation);
     store_four(&gaps_[i], FourFloats{});
   }
-  from_.drift = largest_of(from);
-  to_.drift = largest_of(to);
-  all_drift_ = all_gap_ = 0;
+  from_.deviation = largest_of(from);
+  to_.deviation = largest_of(to);
+  all_deviation_ = all_gap_ = 0;
 }
 
 void DiscGapMeter::lay_edges() {
   const std::uint32_t turn = ring_.to_begin;
-  const auto at_link = [&](std::uint32_t i) { return ring_.drift[i]; };
+  const auto at_link = [&](std::uint32_t i) { return ring_.deviation[i]; };
   cross_rays();
-  cross_rays(from_, 0, std::max(ring_.first_drift, at_link(0)));
+  cross_rays(from_, 0, std::max(ring_.first_deviation, at_link(0)));
   for (std::uint32_t i = 1; i < turn; ++i)
     cross_rays(from_, i, std::max(at_link(i - 1), at_link(i)));
-  cross_rays(from_, turn, std::max(at_link(turn - 1), ring_.turn_drift));
-  cross_rays(to_, turn, std::max(ring_.turn_drift, at_link(turn)));
+  cross_rays(from_, turn, std::max(at_link(turn - 1), ring_.turn_deviation));
+  cross_rays(to_, turn, std::max(ring_.turn_deviation, at_link(turn)));
   for (std::uint32_t i = turn + 1; i < ring_.size; ++i)
     cross_rays(to_, i, std::max(at_link(i - 1), at_link(i)));
-  cross_rays(to_, 0, std::max(at_link(ring_.size - 1), ring_.first_drift));
+  cross_rays(to_, 0, std::max(at_link(ring_.size - 1), ring_.first_deviation));
 }
 
-/// Whether all drifts and heights together are no more than that; then they are what every link
+/// Whether all deviations and heights together are no more than that; then they are what every link
 /// gets.
 bool DiscGapMeter::is_thin(float enough) {
   FourFloats lowest = FourFloats{} + std::min({0.0F, from_.z, to_.z});
@@ -272,33 +273,33 @@ bool DiscGapMeter::is_thin(float enough) {
     highest = larger_of(z, highest);
   }
   const float range = largest_of(highest) + largest_of(-lowest);
-  const float drift = std::max(from_.drift, to_.drift);
-  if (!(drift + range <= enough))
+  const float deviation = std::max(from_.deviation, to_.deviation);
+  if (!(deviation + range <= enough))
     return false;
-  overlap_all(drift, range);
+  overlap_all(deviation, range);
   return true;
 }
 
-/// Drift and gap of every link. False if they are beyond all numbers.
+/// Deviation and gap of every link. False if they are beyond all numbers.
 bool DiscGapMeter::add_up() {
   const float rounding = kRounding * radius_;
   FourInts fails{};
   for (std::uint32_t i = 0; i < ring_.size; i += 4) {
-    const FourFloats drift = larger_of(four_at(drifts_, i), FourFloats{} + all_drift_);
+    const FourFloats deviation = larger_of(four_at(deviations_, i), FourFloats{} + all_deviation_);
     const FourFloats gap = larger_of(four_at(gaps_, i), FourFloats{} + all_gap_);
-    const FourFloats sum = (drift + gap + rounding) * (1 + 0x1p-22F);
-    store_four(&drifts_[i], sum);
+    const FourFloats sum = (deviation + gap + rounding) * (1 + 0x1p-22F);
+    store_four(&deviations_[i], sum);
     fails |= lanes_below(i, ring_.size) & ~(sum < kInfinity);
   }
   return !any_of(fails);
 }
 
 std::optional<DiscGap> DiscGapMeter::measure(std::span<const Vec3f> positions,
-                                             std::span<const float> drifts, const EdgeStar& star,
-                                             Vec3f place, float enough) {
+                                             std::span<const float> deviations,
+                                             const EdgeStar& star, Vec3f place, float enough) {
   if (!project(positions, star, place) || !faces_front())
     return std::nullopt;
-  look_up(drifts, star);
+  look_up(deviations, star);
   DiscGap result;
   result.from = lay_over_new(from_);
   result.to = lay_over_new(to_);
@@ -310,7 +311,7 @@ std::optional<DiscGap> DiscGapMeter::measure(std::span<const Vec3f> positions,
   if (!add_up())
     return std::nullopt;
   result.triangles = {triangles_.data(), ring_.size};
-  result.drifts = {drifts_.data(), ring_.size};
+  result.deviations = {deviations_.data(), ring_.size};
   return result;
 }
 

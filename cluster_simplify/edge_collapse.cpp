@@ -174,15 +174,15 @@ Contraction edge_collapse(const BuildTile& joined, std::uint32_t target,
   VertexArray vertices = joined.mesh.vertices;
   const LocalFrame frame(vertices.positions);
   OptimalPlacement costs(mesh, frame.to_local(vertices.positions), vertices);
-  DriftMeter drift(mesh, joined.history.weights);
-  const FallbackCounts fallbacks = collapse_edges(mesh, costs, drift, target);
+  DeviationMeter deviation(mesh, joined.history.weights);
+  const FallbackCounts fallbacks = collapse_edges(mesh, costs, deviation, target);
   for (std::uint32_t v = 0; v < mesh.own_count(); ++v) {
     const std::uint32_t root = mesh.representative(v);
     if (root != v)  // one that never moved keeps its place bit for bit
       vertices.positions[root] = frame.to_global(costs.positions()[root]);
   }
   Contraction result =
-      choose_representatives({mesh, vertices, costs.positions(), frame, drift}, target);
+      choose_representatives({mesh, vertices, costs.positions(), frame, deviation}, target);
   result.fallbacks += fallbacks;
   const auto channels = static_cast<std::size_t>(vertices.channels);
   for (std::size_t i = 0; i < result.representatives.size(); ++i) {

@@ -276,39 +276,39 @@ bool FanGapMeter::lies_flat() const {
          turn(a, flat_[turn_]) >= 0;
 }
 
-double FanGapMeter::run_drift(std::uint32_t begin, std::uint32_t until) const {
+double FanGapMeter::run_deviation(std::uint32_t begin, std::uint32_t until) const {
   double most = 0;
   for (std::uint32_t i = begin; i < until; ++i)
-    most = std::max(most, drift_[i]);
+    most = std::max(most, deviation_[i]);
   return most;
 }
 
-void FanGapMeter::look_up(std::span<const float> drifts) {
+void FanGapMeter::look_up(std::span<const float> deviations) {
   for (std::uint32_t i = 0; i < size_; ++i) {
-    drift_[i] = fresh_[i] = double{drifts[triangles_[i]]};
+    deviation_[i] = fresh_[i] = double{deviations[triangles_[i]]};
     gap_[i] = 0;
   }
-  edge_drift_ = {0, 0};
+  edge_deviation_ = {0, 0};
   for (std::size_t side = 0; side < edge_triangle_count_; ++side)
-    edge_drift_[side] = double{drifts[edge_triangles_[side]]};
-  const double at_edge = std::max(edge_drift_[0], edge_drift_[1]);
-  first_.drift = std::max(at_edge, run_drift(head_, turn_));
-  second_.drift = std::max({at_edge, run_drift(0, head_), run_drift(turn_, size_)});
+    edge_deviation_[side] = double{deviations[edge_triangles_[side]]};
+  const double at_edge = std::max(edge_deviation_[0], edge_deviation_[1]);
+  first_.deviation = std::max(at_edge, run_deviation(head_, turn_));
+  second_.deviation = std::max({at_edge, run_deviation(0, head_), run_deviation(turn_, size_)});
 }
 
-void FanGapMeter::overlap(std::uint32_t link, double drift, double gap) {
-  fresh_[link] = std::max(fresh_[link], drift);
+void FanGapMeter::overlap(std::uint32_t link, double deviation, double gap) {
+  fresh_[link] = std::max(fresh_[link], deviation);
   gap_[link] = std::max(gap_[link], gap);
 }
 
-void FanGapMeter::overlap_all(double drift, double gap) {
+void FanGapMeter::overlap_all(double deviation, double gap) {
   for (std::uint32_t i = 0; i < size_; ++i)
-    overlap(i, drift, gap);
+    overlap(i, deviation, gap);
 }
 
 /// Where an old edge from `end` crosses the new edge to a ring vertex.
 void FanGapMeter::cross_ray(std::uint32_t ray, const End& end, Flat to, Vec3d to_place,
-                            double drift) {
+                            double deviation) {
   const double beside = turn(flat_[ray], end.flat);
   const double behind = turn(flat_[ray], to);
   const double divisor = beside - behind;
@@ -316,20 +316,20 @@ void FanGapMeter::cross_ray(std::uint32_t ray, const End& end, Flat to, Vec3d to
   const double along = divisor != 0 ? std::clamp(-turn(end.flat, to) / divisor, 0.0, 1.0) : 0;
   const double gap = length(end.place + (to_place - end.place) * part - ring_[ray] * along);
   if (is_open()) {
-    overlap(ray, drift, gap);  // inner rays only: there is a link on both sides
-    overlap(ray - 1, drift, gap);
+    overlap(ray, deviation, gap);  // inner rays only: there is a link on both sides
+    overlap(ray - 1, deviation, gap);
     return;
   }
-  overlap(ray == size_ ? 0 : ray, drift, gap);
-  overlap((ray == 0 ? size_ : ray) - 1, drift, gap);
+  overlap(ray == size_ ? 0 : ray, deviation, gap);
+  overlap((ray == 0 ? size_ : ray) - 1, deviation, gap);
 }
 
 /// The old edge from an end to a ring vertex.
-void FanGapMeter::cross_rays(const End& end, std::uint32_t target, double drift) {
+void FanGapMeter::cross_rays(const End& end, std::uint32_t target, double deviation) {
   const bool forth = is_open() ? target > end.sector : turn(end.flat, flat_[target]) > 0;
   std::uint32_t ray = forth ? ray_after(end.sector) : end.sector;
   for (std::uint32_t steps = 0; ray != target && steps <= size_; ++steps) {
-    cross_ray(ray, end, flat_[target], ring_[target], drift);
+    cross_ray(ray, end, flat_[target], ring_[target], deviation);
     ray = forth ? ray_after(ray) : (ray == 0 ? size_ : ray) - 1;
   }
 }
@@ -337,12 +337,12 @@ void FanGapMeter::cross_rays(const End& end, std::uint32_t target, double drift)
 /// The collapsing edge, inside a closed ring.
 void FanGapMeter::cross_between_ends() {
   const bool forth = turn(first_.flat, second_.flat) > 0;
-  const double drift = std::max(edge_drift_[0], edge_drift_[1]);
+  const double deviation = std::max(edge_deviation_[0], edge_deviation_[1]);
   std::uint32_t ray = first_.sector;
   for (std::uint32_t steps = 0; ray != second_.sector && steps <= size_; ++steps) {
     if (forth)
       ray = ray_after(ray);
-    cross_ray(ray, first_, second_.flat, second_.place, drift);
+    cross_ray(ray, first_, second_.flat, second_.place, deviation);
     if (!forth)
       ray = (ray == 0 ? size_ : ray) - 1;
   }
@@ -354,34 +354,35 @@ bool FanGapMeter::lay_middle() {
     const double gap = length(second_.place);
     overlap_all(0, gap);
     for (std::uint32_t i = head_; i < turn_; ++i)
-      overlap(i, std::max(edge_drift_[0], edge_drift_[1]), gap);
+      overlap(i, std::max(edge_deviation_[0], edge_deviation_[1]), gap);
     return true;
   }
   if (shape_ == Shape::border_edge) {
     const Vec3d along = second_.place - first_.place;
     const double squared = dot(along, along);
     const double part = squared > 0 ? std::clamp(-dot(first_.place, along) / squared, 0.0, 1.0) : 0;
-    overlap_all(edge_drift_[0], length(first_.place + along * part));
+    overlap_all(edge_deviation_[0], length(first_.place + along * part));
     return true;
   }
-  const auto lay = [&](double drift, Flat a, Vec3d at_a, Flat b, Vec3d at_b, Flat c, Vec3d at_c) {
+  const auto lay = [&](double deviation, Flat a, Vec3d at_a, Flat b, Vec3d at_b, Flat c,
+                       Vec3d at_c) {
     const double wa = turn(b, c);
     const double wb = turn(c, a);
     const double wc = turn(a, b);
     const double sum = wa + wb + wc;
     if (wa < 0 || wb < 0 || wc < 0 || !(sum > 0))
       return false;
-    overlap_all(drift, length((at_a * wa + at_b * wb + at_c * wc) * (1 / sum)));
+    overlap_all(deviation, length((at_a * wa + at_b * wb + at_c * wc) * (1 / sum)));
     return true;
   };
   const End& a = first_;
   const End& b = second_;
-  if (lay(edge_drift_[1], a.flat, a.place, flat_[turn_], ring_[turn_], b.flat, b.place) ||
-      lay(edge_drift_[0], a.flat, a.place, b.flat, b.place, flat_[0], ring_[0]))
+  if (lay(edge_deviation_[1], a.flat, a.place, flat_[turn_], ring_[turn_], b.flat, b.place) ||
+      lay(edge_deviation_[0], a.flat, a.place, b.flat, b.place, flat_[0], ring_[0]))
     return true;
   for (std::uint32_t i = 0; i < size_; ++i) {
     const End& end = i < turn_ ? a : b;
-    if (lay(drift_[i], end.flat, end.place, flat_[i], ring_[i], flat_[i + 1], ring_[i + 1]))
+    if (lay(deviation_[i], end.flat, end.place, flat_[i], ring_[i], flat_[i + 1], ring_[i + 1]))
       return true;
   }
   return false;
@@ -390,41 +391,41 @@ bool FanGapMeter::lay_middle() {
 void FanGapMeter::lay_edges() {
   const auto beside = [&](std::uint32_t i, std::uint32_t begin, std::uint32_t until,
                           double at_begin, double at_end) {
-    return std::max(i == begin ? at_begin : drift_[i - 1], i == until ? at_end : drift_[i]);
+    return std::max(i == begin ? at_begin : deviation_[i - 1], i == until ? at_end : deviation_[i]);
   };
   const bool closed = shape_ == Shape::closed;
-  overlap(first_.sector, first_.drift, length(first_.place - first_.image));
-  const double first_edge = shape_ == Shape::border_edge ? 0 : edge_drift_[0];
-  const double last_edge = shape_ == Shape::border_edge ? edge_drift_[0] : edge_drift_[1];
+  overlap(first_.sector, first_.deviation, length(first_.place - first_.image));
+  const double first_edge = shape_ == Shape::border_edge ? 0 : edge_deviation_[0];
+  const double last_edge = shape_ == Shape::border_edge ? edge_deviation_[0] : edge_deviation_[1];
   const std::uint32_t begin = shape_ == Shape::border_edge ? 1 : head_;
   for (std::uint32_t i = begin; i <= turn_; ++i)
     cross_rays(first_, i, beside(i, head_, turn_, first_edge, last_edge));
   if (shape_ == Shape::border_end)
     return;
-  overlap(second_.sector, second_.drift, length(second_.place - second_.image));
+  overlap(second_.sector, second_.deviation, length(second_.place - second_.image));
   for (std::uint32_t i = turn_; i < size_; ++i)
     cross_rays(second_, i, beside(i, turn_, size_, last_edge, first_edge));
   if (closed) {
-    cross_rays(second_, 0, std::max(drift_[size_ - 1], edge_drift_[0]));
+    cross_rays(second_, 0, std::max(deviation_[size_ - 1], edge_deviation_[0]));
     cross_between_ends();
   }
 }
 
 std::optional<DiscGap> FanGapMeter::measure(std::span<const Vec3f> positions,
-                                            std::span<const float> drifts,
+                                            std::span<const float> deviations,
                                             const StarCollapse& collapse) {
   if (!order_links(collapse) || !find_shape(collapse) || !unfold(positions, collapse) ||
       !lay_ends(positions, collapse))
     return std::nullopt;
-  look_up(drifts);
+  look_up(deviations);
   if (!lay_middle())
     return std::nullopt;
   lay_edges();
   DiscGap result;
   for (std::uint32_t i = 0; i < size_; ++i) {
-    const double drift = fresh_[i] + gap_[i] + kRounding * radius_;
-    drifts_[i] = static_cast<float>(drift * (1 + 0x1p-22));
-    if (!std::isfinite(drifts_[i]))
+    const double deviation = fresh_[i] + gap_[i] + kRounding * radius_;
+    deviations_[i] = static_cast<float>(deviation * (1 + 0x1p-22));
+    if (!std::isfinite(deviations_[i]))
       return std::nullopt;
   }
   const auto distance = [](const End& end) {
@@ -434,7 +435,7 @@ std::optional<DiscGap> FanGapMeter::measure(std::span<const Vec3f> positions,
   result.from = distance(first_is_from ? first_ : second_);
   result.to = distance(first_is_from ? second_ : first_);
   result.triangles = {triangles_.data(), size_};
-  result.drifts = {drifts_.data(), size_};
+  result.deviations = {deviations_.data(), size_};
   return result;
 }
 

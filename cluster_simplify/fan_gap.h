@@ -22,8 +22,8 @@ class FanGapMeter {
  public:
   /// Likewise; `from` and `to` of the result are distances. Nothing if what is around the edge is
   /// no disc, or the old triangles cannot be laid over the fan without a fold.
-  std::optional<DiscGap> measure(std::span<const Vec3f> positions, std::span<const float> drifts,
-                                 const StarCollapse& collapse);
+  std::optional<DiscGap> measure(std::span<const Vec3f> positions,
+                                 std::span<const float> deviations, const StarCollapse& collapse);
 
  private:
   static constexpr std::uint32_t kMostLinks = EdgeStar::kMostLinks;
@@ -41,7 +41,7 @@ class FanGapMeter {
     Flat flat;                 ///< where it is laid
     Vec3d image;               ///< the fan's point there
     std::uint32_t sector = 0;  ///< link
-    double drift = 0;          ///< the most of the triangles around it
+    double deviation = 0;      ///< the most of the triangles around it
   };
 
   enum class Shape : std::uint8_t {
@@ -59,15 +59,15 @@ class FanGapMeter {
   bool lay_ends(std::span<const Vec3f> positions, const StarCollapse& c);
   bool lies_flat() const;
   bool run_lies_flat(const End& end, std::uint32_t begin, std::uint32_t until) const;
-  void look_up(std::span<const float> drifts);
+  void look_up(std::span<const float> deviations);
   bool lay_middle();
   void lay_edges();
-  void cross_rays(const End& end, std::uint32_t target, double drift);
+  void cross_rays(const End& end, std::uint32_t target, double deviation);
   void cross_between_ends();
-  void cross_ray(std::uint32_t ray, const End& end, Flat to, Vec3d to_place, double drift);
-  void overlap(std::uint32_t link, double drift, double gap);
-  void overlap_all(double drift, double gap);
-  double run_drift(std::uint32_t begin, std::uint32_t until) const;
+  void cross_ray(std::uint32_t ray, const End& end, Flat to, Vec3d to_place, double deviation);
+  void overlap(std::uint32_t link, double deviation, double gap);
+  void overlap_all(double deviation, double gap);
+  double run_deviation(std::uint32_t begin, std::uint32_t until) const;
   std::uint32_t ray_after(std::uint32_t i) const { return is_open() || i + 1 < size_ ? i + 1 : 0; }
   bool is_open() const { return shape_ != Shape::closed; }
 
@@ -81,12 +81,12 @@ class FanGapMeter {
   std::uint32_t edge_triangle_count_ = 0;
   std::array<Vec3d, kMostLinks + 1> ring_;
   std::array<Flat, kMostLinks + 1> flat_;
-  std::array<double, kMostLinks> drift_, fresh_, gap_;
-  std::array<double, 2> edge_drift_{};
+  std::array<double, kMostLinks> deviation_, fresh_, gap_;
+  std::array<double, 2> edge_deviation_{};
   End first_, second_;
   double radius_ = 0;
   std::array<std::uint32_t, kMostLinks> triangles_;
-  std::array<float, kMostLinks> drifts_;
+  std::array<float, kMostLinks> deviations_;
 };
 
 }  // namespace meshhier::cluster_simplify

@@ -105,7 +105,8 @@ class MelaxCosts {
     // On flat ground, where nothing bends, short edges go first.
     constexpr float kFlat = 1e-3F;
     const float size = length(positions_[to] - positions_[from]);
-    if (mesh_.is_crowded(from))  // it will not go; its triangles would be gone through for each
+    if (mesh_.has_high_valence(
+            from))  // it will not go; its triangles would be gone through for each
       return {from, to, std::numeric_limits<float>::infinity(), positions_[to]};
     mesh_.gather(from, around_);
     const float bend = std::max(surface_bend(to), border_bend(from, to));
@@ -174,10 +175,10 @@ Contraction contract_with(const BuildTile& joined, std::uint32_t target) {
   const VertexArray& vertices = joined.mesh.vertices;
   const LocalFrame frame(vertices.positions);
   Costs costs(mesh, frame.to_local(vertices.positions));
-  DriftMeter drift(mesh, joined.history.weights);
-  const FallbackCounts fallbacks = collapse_edges(mesh, costs, drift, target);
+  DeviationMeter deviation(mesh, joined.history.weights);
+  const FallbackCounts fallbacks = collapse_edges(mesh, costs, deviation, target);
   Contraction result =
-      choose_representatives({mesh, vertices, costs.positions(), frame, drift}, target);
+      choose_representatives({mesh, vertices, costs.positions(), frame, deviation}, target);
   result.fallbacks += fallbacks;
   return result;
 }

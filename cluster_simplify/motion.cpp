@@ -81,20 +81,20 @@ class Motion {
         drawn_(contraction.representatives.size() + joined.mesh.ghosts.size()) {
     places_.insert(places_.end(), mesh_.vertices.positions.begin() + mesh_.own_count,
                    mesh_.vertices.positions.end());
-    drift_.around.resize(contraction.representatives.size());
+    deviation_.around.resize(contraction.representatives.size());
     for (std::uint32_t v = 0; v < mesh_.own_count; ++v) {
       moved_[v] = length(to_double(mesh_.vertices.positions[v]) -
                          to_double(places_[contraction.parent_of[v]]));
-      drift_.squared_sum += double{joined.history.weights[v]} * moved_[v] * moved_[v];
+      deviation_.squared_sum += double{joined.history.weights[v]} * moved_[v] * moved_[v];
     }
     for (const Triangle& t : mesh_.interior)
-      drift_.interior = std::max(drift_.interior, add(t));
+      deviation_.interior = std::max(deviation_.interior, add(t));
     for (const Triangle& t : mesh_.border)
       add(t);
-    drift_.lost = lost();
+    deviation_.lost = lost();
   }
 
-  Drift take() { return std::move(drift_); }
+  Deviation take() { return std::move(deviation_); }
 
  private:
   /// Representatives, then ghosts.
@@ -104,18 +104,18 @@ class Motion {
                                  static_cast<std::uint32_t>(contraction_.representatives.size());
   }
 
-  float drift_of(const Triangle& t) const {
+  float deviation_of(const Triangle& t) const {
     const double farthest = std::max({moved_[raw(t[0])], moved_[raw(t[1])], moved_[raw(t[2])]});
     return static_cast<float>(farthest * (1 + kRounding));
   }
 
-  void raise(std::uint32_t image, float drift) {
-    if (image < drift_.around.size())
-      drift_.around[image] = std::max(drift_.around[image], drift);
+  void raise(std::uint32_t image, float deviation) {
+    if (image < deviation_.around.size())
+      deviation_.around[image] = std::max(deviation_.around[image], deviation);
   }
 
   float add(const Triangle& t) {
-    const float drift = drift_of(t);
+    const float deviation = deviation_of(t);
     const Corners images{image(t[0]), image(t[1]), image(t[2])};
     const bool is_drawn =
         images[0] != images[1] && images[1] != images[2] && images[2] != images[0];
@@ -124,23 +124,23 @@ class Motion {
     else
       folded_.push_back(t);
     for (const std::uint32_t v : images) {
-      raise(v, drift);
+      raise(v, deviation);
       drawn_[v] = drawn_[v] || is_drawn;
     }
-    return drift;
+    return deviation;
   }
 
   /// What a triangle became whose image has no area lies in the corner or edge of one that is drawn
-  /// and brings its drift along; false if there is none.
+  /// and brings its deviation along; false if there is none.
   bool lands(const EdgeSet& edges, const Triangle& t) {
     const std::uint32_t a = image(t[0]);
     const std::uint32_t b = image(t[1]) != a ? image(t[1]) : image(t[2]);
     const std::uint32_t onto = edges.triangle_at(a, b);
     if (onto == EdgeSet::kNone)
       return false;
-    const float drift = drift_of(t);
+    const float deviation = deviation_of(t);
     for (const std::uint32_t v : shown_[onto])
-      raise(v, drift);
+      raise(v, deviation);
     return true;
   }
 
@@ -197,12 +197,12 @@ class Motion {
   std::vector<char> drawn_;    ///< image: has a triangle
   std::vector<Corners> shown_;
   std::vector<Triangle> folded_;  ///< whose images have no area
-  Drift drift_;
+  Deviation deviation_;
 };
 
 }  // namespace
 
-Drift motion_of(const BuildTile& joined, const Contraction& contraction) {
+Deviation motion_of(const BuildTile& joined, const Contraction& contraction) {
   return Motion(joined, contraction).take();
 }
 

@@ -72,28 +72,28 @@ std::vector<std::uint32_t> left_of(std::uint32_t count, const Stays& stays) {
 }
 
 /// Adds up what the collapses moved the surface, and what joining vertices across gaps adds.
-class DriftSum {
+class DeviationSum {
  public:
-  DriftSum(const CollapsedTile& tile, const std::vector<std::uint32_t>& alive,
-           const std::vector<std::uint32_t>& into)
+  DeviationSum(const CollapsedTile& tile, const std::vector<std::uint32_t>& alive,
+               const std::vector<std::uint32_t>& into)
       : tile_(tile), into_(into), around_(tile.places.size(), kNowhere) {
-    const auto vanished = tile.drift.vanished();
+    const auto vanished = tile.deviation.vanished();
     lost_.assign(vanished.begin(), vanished.end());
     for (const std::uint32_t t : alive)
       add(t);
   }
 
   /// `chosen`: the vertices that are representatives.
-  Drift result(const std::vector<std::uint32_t>& chosen) const {
-    Drift drift;
-    drift.around.reserve(chosen.size());
-    drift.interior = certain(interior_);
-    drift.lost = certain(lost());
-    drift.squared_sum =
-        tile_.drift.squared_sum() * tile_.frame.to_global(1.0) * tile_.frame.to_global(1.0);
+  Deviation result(const std::vector<std::uint32_t>& chosen) const {
+    Deviation deviation;
+    deviation.around.reserve(chosen.size());
+    deviation.interior = certain(interior_);
+    deviation.lost = certain(lost());
+    deviation.squared_sum =
+        tile_.deviation.squared_sum() * tile_.frame.to_global(1.0) * tile_.frame.to_global(1.0);
     for (const std::uint32_t v : chosen)
-      drift.around.push_back(certain(around_[v]));
-    return drift;
+      deviation.around.push_back(certain(around_[v]));
+    return deviation;
   }
 
  private:
@@ -115,19 +115,19 @@ class DriftSum {
     if (!is_drawn(ends)) {
       lost_.push_back(
           {{tile_.places[corners[0]], tile_.places[corners[1]], tile_.places[corners[2]]},
-           tile_.drift.of_triangle(t)});
+           tile_.deviation.of_triangle(t)});
       return;
     }
-    float drift = tile_.drift.of_triangle(t);
+    float deviation = tile_.deviation.of_triangle(t);
     if (ends != corners)
-      drift += farthest_join(corners, ends);
+      deviation += farthest_join(corners, ends);
     bool is_interior = true;
     for (const std::uint32_t v : ends) {
       is_interior = is_interior && v < into_.size();
-      around_[v] = std::max(around_[v], drift);
+      around_[v] = std::max(around_[v], deviation);
     }
     if (is_interior)
-      interior_ = std::max(interior_, drift);
+      interior_ = std::max(interior_, deviation);
   }
 
   /// How far a triangle's corners went by joining.
@@ -154,15 +154,16 @@ class DriftSum {
       return std::numeric_limits<float>::infinity();
     const NearestPoints points(tile_.places, drawn);
     double farthest = 0;
-    for (const DriftMeter::Vanished& piece : lost_) {
+    for (const DeviationMeter::Vanished& piece : lost_) {
       const double away = squared_distance_to_star(piece, points.nearest(piece.corners[0]));
-      farthest = std::max(farthest, std::sqrt(away) + double{piece.drift});
+      farthest = std::max(farthest, std::sqrt(away) + double{piece.deviation});
     }
     return static_cast<float>(farthest);
   }
 
   /// From all of a triangle to the nearest of those that are drawn around a vertex.
-  double squared_distance_to_star(const DriftMeter::Vanished& piece, std::uint32_t vertex) const {
+  double squared_distance_to_star(const DeviationMeter::Vanished& piece,
+                                  std::uint32_t vertex) const {
     const auto at = [&](std::uint32_t v) { return to_double(tile_.places[v]); };
     const auto farthest = [&](const TriangleFrame& frame) {
       double most = 0;
@@ -193,8 +194,8 @@ class DriftSum {
 
   const CollapsedTile& tile_;
   const std::vector<std::uint32_t>& into_;  ///< own vertex -> the one it was joined with, or itself
-  std::vector<float> around_;               ///< per vertex: the drift of what is drawn there
-  std::vector<DriftMeter::Vanished> lost_;
+  std::vector<float> around_;               ///< per vertex: the deviation of what is drawn there
+  std::vector<DeviationMeter::Vanished> lost_;
   float interior_ = 0;
 };
 
@@ -262,7 +263,7 @@ Contraction choose_representatives(const CollapsedTile& tile, std::uint32_t targ
     // An isolated vertex may have gone into a shown one that was then joined with another.
     result.parent_of[v] = number[into[into[collapsed_into[v]]]];
   }
-  result.drift = DriftSum(tile, alive, into).result(chosen);
+  result.deviation = DeviationSum(tile, alive, into).result(chosen);
   return result;
 }
 

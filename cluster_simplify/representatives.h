@@ -3,7 +3,7 @@
 
 #include "cluster_simplify/collapse_mesh.h"
 #include "cluster_simplify/contraction.h"
-#include "cluster_simplify/drift_meter.h"
+#include "cluster_simplify/deviation_meter.h"
 #include "cluster_simplify/local_frame.h"
 
 #include <cstdint>
@@ -16,7 +16,7 @@ struct CollapsedTile {
   const VertexArray& vertices;  ///< own; those that others were collapsed into at their new places
   std::span<const Vec3f> places;  ///< the same and ghosts', in `frame`
   const LocalFrame& frame;
-  const DriftMeter& drift;
+  const DeviationMeter& deviation;
 };
 
 /// Makes the contraction out of the collapses carried out in a tile.

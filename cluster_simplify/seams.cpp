@@ -98,7 +98,7 @@ BuildTile resolve(WorkTile tile, std::span<const GhostRef> mapped_refs, bool uni
   BuildTile result;
   result.mesh = {.vertices = std::move(tile.vertices),
                  .own_count = own_count,
-                 .rim_count = tile.rim_count,
+                 .boundary_count = tile.boundary_count,
                  .ghosts = std::move(ghosts),
                  .interior = std::move(tile.interior),
                  .border = std::move(tile.border)};
@@ -106,16 +106,16 @@ BuildTile resolve(WorkTile tile, std::span<const GhostRef> mapped_refs, bool uni
   return result;
 }
 
-void fill_ghosts(BuildTile& tile, std::uint32_t neighbour, const Rim& rim) {
+void fill_ghosts(BuildTile& tile, std::uint32_t neighbour, const Boundary& boundary) {
   const auto& ghosts = tile.mesh.ghosts;
   auto ghost = std::lower_bound(ghosts.begin(), ghosts.end(), GhostRef{neighbour, 0});
   std::vector<std::uint32_t> named;
   for (; ghost != ghosts.end() && ghost->tile == neighbour; ++ghost) {
-    if (ghost->index >= rim.vertices.size())
-      throw Error(ErrorCode::internal, "a ghost lies outside its tile's rim");
+    if (ghost->index >= boundary.vertices.size())
+      throw Error(ErrorCode::internal, "a ghost lies outside its tile's boundary");
     named.push_back(ghost->index);
   }
-  tile.mesh.vertices.append(rim.vertices, named);
+  tile.mesh.vertices.append(boundary.vertices, named);
 }
 
 BuildTile join(const BuildTile& first, std::uint32_t first_index, const BuildTile& second,
@@ -202,8 +202,8 @@ BuildTile join(const BuildTile& first, std::uint32_t first_index, const BuildTil
 namespace {
 
 /// New numbers for representatives: those of border triangles first, order kept otherwise.
-std::vector<std::uint32_t> rim_first(const std::vector<Triangle>& border, std::uint32_t count,
-                                     std::uint32_t& rim_count) {
+std::vector<std::uint32_t> boundary_first(const std::vector<Triangle>& border, std::uint32_t count,
+                                          std::uint32_t& boundary_count) {
   std::vector<std::uint32_t> place(count, kUnset);
   for (const Triangle& t : border) {
     for (const TileVertex v : t) {
@@ -211,11 +211,11 @@ std::vector<std::uint32_t> rim_first(const std::vector<Triangle>& border, std::u
         place[raw(v)] = 0;
     }
   }
-  rim_count = static_cast<std::uint32_t>(std::count(place.begin(), place.end(), 0U));
-  std::uint32_t rim = 0;
-  std::uint32_t inner = rim_count;
+  boundary_count = static_cast<std::uint32_t>(std::count(place.begin(), place.end(), 0U));
+  std::uint32_t boundary = 0;
+  std::uint32_t inner = boundary_count;
   for (std::uint32_t& entry : place)
-    entry = entry == 0 ? rim++ : inner++;
+    entry = entry == 0 ? boundary++ : inner++;
   return place;
 }
 
@@ -225,7 +225,7 @@ ContractedTile apply(const BuildTile& joined, Contraction contraction) {
   const TileMesh& mesh = joined.mesh;
   const auto count = static_cast<std::uint32_t>(contraction.representatives.size());
   assert(count <= 32768 && contraction.parent_of.size() == mesh.own_count &&
-         contraction.drift.around.size() == count);
+         contraction.deviation.around.size() == count);
 
   // Border triangles in the new numbers; foreign corners keep theirs, moved from own_count to
   // count.
@@ -236,7 +236,7 @@ ContractedTile apply(const BuildTile& joined, Contraction contraction) {
 
   ContractedTile result;
   WorkTile& tile = result.tile;
-  const std::vector<std::uint32_t> place = rim_first(border, count, tile.rim_count);
+  const std::vector<std::uint32_t> place = boundary_first(border, count, tile.boundary_count);
   result.parent_map.resize(mesh.own_count);
   for (std::uint32_t i = 0; i < mesh.own_count; ++i) {
     result.parent_map[i] = static_cast<std::uint16_t>(place[contraction.parent_of[i]]);
@@ -265,11 +265,11 @@ ContractedTile apply(const BuildTile& joined, Contraction contraction) {
   tile.history.weights.assign(count, 0);
   for (std::uint32_t i = 0; i < mesh.own_count; ++i)
     tile.history.weights[result.parent_map[i]] += joined.history.weights[i];
-  result.drift = std::move(contraction.drift);
+  result.deviation = std::move(contraction.deviation);
   std::vector<float> around(count);
   for (std::uint32_t i = 0; i < count; ++i)
-    around[place[i]] = result.drift.around[i];
-  result.drift.around = std::move(around);
+    around[place[i]] = result.deviation.around[i];
+  result.deviation.around = std::move(around);
   result.fallbacks = contraction.fallbacks;
   return result;
 }
@@ -283,13 +283,13 @@ ContractedTile keep(const BuildTile& tile) {
   result.tile.vertices.channels = mesh.vertices.channels;
   result.tile.vertices.append(mesh.vertices, 0, mesh.own_count);
   result.tile.history.weights = tile.history.weights;
-  result.tile.rim_count = mesh.rim_count;
+  result.tile.boundary_count = mesh.boundary_count;
   result.tile.interior = mesh.interior;
   result.tile.border = mesh.border;
   result.tile.foreign = mesh.ghosts;
   normalize_triangles(result.tile.interior, true);
   normalize_triangles(result.tile.border, true);
-  result.drift.around.assign(mesh.own_count, 0);
+  result.deviation.around.assign(mesh.own_count, 0);
   return result;
 }
 

@@ -6,7 +6,7 @@
 // on a joined tile.
 #pragma once
 
-#include "cluster_simplify/drift.h"
+#include "cluster_simplify/deviation.h"
 #include "hierarchy/build_tile.h"
 
 #include <cstdint>
@@ -24,8 +24,8 @@ namespace meshhier::cluster_simplify {
 BuildTile resolve(WorkTile tile, std::span<const GhostRef> mapped, bool unique);
 
 /// Appends the ghosts of one neighbour to the tile's vertices; call in ascending order of
-/// `neighbour`. Throws Error(internal) if a ghost lies outside the rim.
-void fill_ghosts(BuildTile& tile, std::uint32_t neighbour, const Rim& rim);
+/// `neighbour`. Throws Error(internal) if a ghost lies outside the boundary.
+void fill_ghosts(BuildTile& tile, std::uint32_t neighbour, const Boundary& boundary);
 
 /// Two neighbouring tiles of one level as one: first's own vertices, then second's; border
 /// triangles between them become interior; ghosts of one in the other become own vertices.
@@ -50,7 +50,7 @@ struct Contraction {
   std::vector<std::uint32_t>
       parent_of;  ///< own vertex -> representative, < representatives.size(), onto
   VertexArray representatives;
-  Drift drift;
+  Deviation deviation;
   FallbackCounts fallbacks;
 };
 
@@ -58,12 +58,12 @@ struct Contraction {
 struct ContractedTile {
   WorkTile tile;                          ///< foreign: the joined tile's ghosts, one level finer
   std::vector<std::uint16_t> parent_map;  ///< own vertex of the joined tile -> vertex of `tile`
-  Drift drift;                            ///< around: per vertex of `tile`
+  Deviation deviation;                    ///< around: per vertex of `tile`
   FallbackCounts fallbacks;
 };
 
 /// Applies a contraction to a joined tile: maps its triangles, drops degenerate and repeated ones,
-/// puts the rim first and sums weights.
+/// puts the boundary first and sums weights.
 ContractedTile apply(const BuildTile& joined, Contraction contraction);
 
 /// The contraction that changes nothing: for a node whose only child stands for it. The parent map

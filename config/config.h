@@ -5,8 +5,8 @@
 #pragma once
 
 #include "cluster_simplify/contraction.h"
-#include "hierarchy/asked_vertices.h"
 #include "hierarchy/frame.h"
+#include "hierarchy/target_vertex_counts.h"
 #include "mesh_io/input_paths.h"
 #include "partition/direction.h"
 #include "storage/format/tile_glb.h"
@@ -68,7 +68,7 @@ inline constexpr std::array kHalfEdgeCosts{NamedValue{"quadric", HalfEdgeCost::q
 
 struct SimplifyConfig {
   SimplifyMethod method = SimplifyMethod::edge_collapse;
-  std::optional<AskedVertices>
+  std::optional<TargetVertexCounts>
       vertices;  ///< of a simplified tile, 4 to 32768 each; not set: as a partition has
   Representative representative = Representative::quadric;  ///< used by `cluster`
   HalfEdgeCost cost = HalfEdgeCost::quadric;                ///< used by `half_edge`

@@ -167,19 +167,19 @@ ConfigKey numbers(std::string path, Field field) {
   return key;
 }
 
-/// Of optional AskedVertices. A list of one is the number: it means the same.
+/// Of optional TargetVertexCounts. A list of one is the number: it means the same.
 template <class Field>
 ConfigKey levels(std::string path, Limits limits, Field field) {
   ConfigKey key{.path = std::move(path),
                 .kind = KeyKind::levels,
                 .minimum = limits.minimum,
                 .maximum = limits.maximum,
-                .most_levels = AskedVertices::kMostLevels};
+                .most_levels = TargetVertexCounts::kMostLevels};
   key.assign = [field](Config& config, const Json& value) {
     std::vector<std::uint32_t> by_level;
     for (const Json& one : value.is_array() ? value : Json::array({value}))
       by_level.push_back(static_cast<std::uint32_t>(one.get<double>()));
-    field(config) = AskedVertices(std::move(by_level));
+    field(config) = TargetVertexCounts(std::move(by_level));
   };
   key.show = [field](const Config& config) {
     if (!field(config))

@@ -16,7 +16,7 @@ namespace meshhier {
 struct TileRecord {
   NodeId node;
   std::uint32_t own_count = 0;
-  std::uint32_t rim_count = 0;
+  std::uint32_t boundary_count = 0;
   std::uint32_t ghost_count = 0;
   std::uint32_t interior_count = 0;  ///< triangles
   std::uint32_t border_count = 0;    ///< triangles, each also listed in the tiles of its ghosts

@@ -2,8 +2,8 @@
 //
 // Vertices [0, own_count) are the tile's own, the rest are ghosts: corners of border triangles that
 // belong to neighbouring tiles of the same level. The own vertices that border triangles use come
-// first, within the rim, [0, rim_count). The rim may hold a few more: those of border triangles
-// that a neighbour's contraction made degenerate.
+// first, within the boundary, [0, boundary_count). The boundary may hold a few more: those of
+// border triangles that a neighbour's contraction made degenerate.
 #pragma once
 
 #include "hierarchy/attributes.h"
@@ -41,17 +41,17 @@ struct VertexArray {
 /// A vertex of another tile of the same level.
 struct GhostRef {
   std::uint32_t tile = 0;   ///< NodeId::index of that tile
-  std::uint32_t index = 0;  ///< its TileVertex there, below that tile's rim_count
+  std::uint32_t index = 0;  ///< its TileVertex there, below that tile's boundary_count
   friend constexpr auto operator<=>(const GhostRef&, const GhostRef&) = default;
 };
 
 struct TileMesh {
   VertexArray vertices;  ///< own, then ghosts
   std::uint32_t own_count = 0;
-  std::uint32_t rim_count = 0;     ///< <= own_count
-  std::vector<GhostRef> ghosts;    ///< vertices.size() - own_count, ascending, without repeats
-  std::vector<Triangle> interior;  ///< all corners own; ascending, smallest corner first
-  std::vector<Triangle> border;    ///< one or two corners own, the others ghosts; likewise
+  std::uint32_t boundary_count = 0;  ///< <= own_count
+  std::vector<GhostRef> ghosts;      ///< vertices.size() - own_count, ascending, without repeats
+  std::vector<Triangle> interior;    ///< all corners own; ascending, smallest corner first
+  std::vector<Triangle> border;      ///< one or two corners own, the others ghosts; likewise
 
   bool is_own(TileVertex v) const { return raw(v) < own_count; }
   const GhostRef& ghost(TileVertex v) const { return ghosts[raw(v) - own_count]; }

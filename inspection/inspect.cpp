@@ -225,11 +225,13 @@ std::string totals_text(const storage::Manifest& manifest,
 
 std::string tile_text(const TileRecord& r) {
   return fmt::format(
-      "tile {}: {} vertices (asked for {}), {} of them rim, {} ghosts; {} interior and {} border "
+      "tile {}: {} vertices (asked for {}), {} of them on the boundary, {} ghosts; {} interior and "
+      "{} "
+      "border "
       "triangles, {} of them drawn here; error {:.4g}, bound {:.4g}{}; {} bytes; box {} {} {} to "
       "{} {} {}\n",
-      to_text(r.node), r.own_count, r.target_count, r.rim_count, r.ghost_count, r.interior_count,
-      r.border_count, r.drawn_border_count, r.error, r.bound,
+      to_text(r.node), r.own_count, r.target_count, r.boundary_count, r.ghost_count,
+      r.interior_count, r.border_count, r.drawn_border_count, r.error, r.bound,
       r.compactness > 0 ? fmt::format(", compactness {:.3f}", r.compactness) : "", r.file_bytes,
       r.bounds.min.x, r.bounds.min.y, r.bounds.min.z, r.bounds.max.x, r.bounds.max.y,
       r.bounds.max.z);

@@ -68,8 +68,8 @@ void check_ghosts(const VerifyJob& job, const PublishedTile& tile, const GhostGr
   GhostTally missing, moved, recoloured;
   for (std::size_t i = group.begin; i < group.end; ++i) {
     const std::size_t vertex = tile.mesh.ghosts[i].index;
-    missing.require(vertex < neighbour.mesh.rim_count, i);
-    if (vertex >= neighbour.mesh.rim_count)
+    missing.require(vertex < neighbour.mesh.boundary_count, i);
+    if (vertex >= neighbour.mesh.boundary_count)
       continue;
     const std::size_t here = tile.mesh.own_count + i;
     const VertexArray &own = neighbour.mesh.vertices, &seen = tile.mesh.vertices;
@@ -77,7 +77,7 @@ void check_ghosts(const VerifyJob& job, const PublishedTile& tile, const GhostGr
     if (same_kind)
       recoloured.require(same_attributes(seen, here, own, vertex), i);
   }
-  missing.report(job, tile.node, neighbour.node, "are not vertices of its rim");
+  missing.report(job, tile.node, neighbour.node, "are not vertices of its boundary");
   moved.report(job, tile.node, neighbour.node, "have not its position");
   recoloured.report(job, tile.node, neighbour.node, "have not its attributes");
 }

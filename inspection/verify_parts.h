@@ -78,7 +78,7 @@ void verify_files(const VerifyJob& job);
 /// Every tile by itself, with its children, and with its neighbours.
 void verify_tiles(const VerifyJob& job);
 
-/// Counts, bounds, errors, order, rim of one tile against its record and its parent's.
+/// Counts, bounds, errors, order, boundary of one tile against its record and its parent's.
 void verify_tile(const VerifyJob& job, const TileRecord& record, const PublishedTile& tile);
 
 /// `job` must outlive it.

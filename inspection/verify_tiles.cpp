@@ -43,16 +43,16 @@ bool has_order(const std::vector<Triangle>& triangles, bool unique) {
   return true;
 }
 
-/// Own vertices of border triangles are on the rim (which may hold more: triangles that a
+/// Own vertices of border triangles are on the boundary (which may hold more: triangles that a
 /// neighbour's contraction made degenerate are gone); every ghost is in a border triangle.
-bool has_sound_rim(const TileMesh& mesh) {
+bool has_sound_boundary(const TileMesh& mesh) {
   std::vector<bool> used(mesh.vertices.size());
   for (const Triangle& t : mesh.border) {
     for (TileVertex v : t)
       used[raw(v)] = true;
   }
   for (std::size_t v = 0; v < used.size(); ++v) {
-    if (used[v] ? v >= mesh.rim_count && v < mesh.own_count : v >= mesh.own_count)
+    if (used[v] ? v >= mesh.boundary_count && v < mesh.own_count : v >= mesh.own_count)
       return false;
   }
   return true;
@@ -135,8 +135,8 @@ void verify_tile(const VerifyJob& job, const TileRecord& record, const Published
   problems.require(has_order(mesh.interior, !partition) && has_order(mesh.border, !partition),
                    "triangles are not in order, degenerate or repeated");
   problems.require(
-      has_sound_rim(mesh),
-      "a border triangle has an own corner off the rim, or a ghost has no border triangle");
+      has_sound_boundary(mesh),
+      "a border triangle has an own corner off the boundary, or a ghost has no border triangle");
   const std::uint32_t drawn = drawn_border_count(tree, tile);
   problems.require(drawn == record.drawn_border_count,
                    "draws {} border triangles in its level's cut, the index says {}", drawn,

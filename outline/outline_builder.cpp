@@ -110,24 +110,24 @@ std::vector<std::array<std::uint32_t, 2>> own_border_edges(const TileMesh& tile)
   return result;
 }
 
-/// A sector's part of the mesh's own borders, small for soups that are nothing but borders: the rim
-/// (where crossing borders end), then the other vertices on own border edges, ascending.
+/// A sector's part of the mesh's own borders, small for soups that are nothing but borders: the
+/// boundary (where crossing borders end), then the other vertices on own border edges, ascending.
 struct SectorBorder {
   std::uint32_t sector = 0;
-  std::uint32_t rim_count = 0;
+  std::uint32_t boundary_count = 0;
   std::vector<Vec3f> positions;
   std::vector<std::array<std::uint32_t, 2>> edges;  ///< of positions
 };
 
 SectorBorder border_of(std::uint32_t sector, const TileMesh& tile) {
-  SectorBorder border{sector, tile.rim_count, {}, own_border_edges(tile)};
+  SectorBorder border{sector, tile.boundary_count, {}, own_border_edges(tile)};
   std::vector<std::uint32_t> number(tile.own_count, 0);
   for (const auto& edge : border.edges) {
     for (const std::uint32_t vertex : edge)
       number[vertex] = 1;
   }
   for (std::uint32_t vertex = 0; vertex < tile.own_count; ++vertex) {
-    if (number[vertex] == 0 && vertex >= tile.rim_count)
+    if (number[vertex] == 0 && vertex >= tile.boundary_count)
       continue;
     number[vertex] = static_cast<std::uint32_t>(border.positions.size());
     border.positions.push_back(tile.vertices.positions[vertex]);
@@ -198,7 +198,7 @@ class Network {
 
  private:
   struct Sector {
-    std::uint32_t sector, rim_count, base;
+    std::uint32_t sector, boundary_count, base;
   };
   /// Numbers of a triangle's points, as far as it has them.
   struct Points {
@@ -214,7 +214,7 @@ class Network {
 
   void add_border(const SectorBorder& border) {
     const std::uint32_t base = count();
-    sectors_.push_back({border.sector, border.rim_count, base});
+    sectors_.push_back({border.sector, border.boundary_count, base});
     positions_.insert(positions_.end(), border.positions.begin(), border.positions.end());
     for (const auto& [a, b] : border.edges)
       segments_.push_back({base + a, base + b});
@@ -289,18 +289,19 @@ class Network {
       segments_.push_back({crossing, points.centroid});
   }
 
-  /// Of a vertex that a border triangle uses: its sector's rim has it.
+  /// Of a vertex that a border triangle uses: its sector's boundary has it.
   std::uint32_t number_of(VertexKey vertex) const {
     const auto found =
         std::lower_bound(sectors_.begin(), sectors_.end(), sector_of(vertex),
                          [](const Sector& s, std::uint32_t sector) { return s.sector < sector; });
     const auto index = static_cast<std::uint32_t>(vertex);
-    if (found != sectors_.end() && found->sector == sector_of(vertex) && index < found->rim_count) {
+    if (found != sectors_.end() && found->sector == sector_of(vertex) &&
+        index < found->boundary_count) {
       return found->base + index;
     }
     throw Error(ErrorCode::internal,
                 "outline: a border triangle uses vertex " + std::to_string(index) + " of sector " +
-                    std::to_string(sector_of(vertex)) + ", which is not in that sector's rim");
+                    std::to_string(sector_of(vertex)) + ", which is not in that sector's boundary");
   }
 
   static constexpr std::array<VertexKey, 3> kAfterAll{~VertexKey{0}, ~VertexKey{0}, ~VertexKey{0}};

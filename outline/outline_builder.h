@@ -88,7 +88,7 @@ class OutlineBuilder {
   /// First come the polylines between junctions, then the closed ones without, both ordered by the
   /// sector and index of the vertices at their start. Closed ones keep at least a triangle, others
   /// their ends. O(s log s) in the number of line segments.
-  /// Throws Error(internal) if a border triangle's ghost is in no added sector's rim.
+  /// Throws Error(internal) if a border triangle's ghost is in no added sector's boundary.
   std::optional<OutlineResult> finish(const OutlineOptions& options);
 
  private:

@@ -34,7 +34,7 @@ class LeafBuilder {
   }
 
   ChunkLeaves run() {
-    mark_rim();
+    mark_boundary();
     place_vertices();
     divide_triangles();
     place_interior();
@@ -44,7 +44,7 @@ class LeafBuilder {
 
  private:
   // What kinds of triangles a vertex has: bits.
-  static constexpr std::uint8_t kInner = 1, kRim = 2;
+  static constexpr std::uint8_t kInner = 1, kBoundary = 2;
 
   struct Place {
     std::uint32_t leaf = 0;
@@ -62,7 +62,7 @@ class LeafBuilder {
     return is_inside(rank) ? places_[local(rank)].leaf : kOutside;
   }
 
-  void mark_rim() {
+  void mark_boundary() {
     for (const RankTriangle& t : chunk_.triangles) {
       const std::uint32_t a = leaf(t[0]), b = leaf(t[1]), c = leaf(t[2]);
       if (a == b && b == c) {
@@ -74,28 +74,28 @@ class LeafBuilder {
       ++border_count_;
       for (const std::uint32_t rank : t) {
         if (is_inside(rank))
-          touched_[local(rank)] |= kRim;
+          touched_[local(rank)] |= kBoundary;
       }
     }
   }
 
   void place_vertices() {
-    std::size_t rims = 0;
+    std::size_t boundaries = 0;
     for (std::size_t v = 0; v < places_.size(); ++v) {
-      const bool is_rim = (touched_[v] & kRim) != 0;
+      const bool is_boundary = (touched_[v] & kBoundary) != 0;
       ++first_vertex_[places_[v].leaf + 1];
-      result_.tiles[places_[v].leaf].rim_count += is_rim ? 1 : 0;
-      rims += is_rim ? 1 : 0;
+      result_.tiles[places_[v].leaf].boundary_count += is_boundary ? 1 : 0;
+      boundaries += is_boundary ? 1 : 0;
       result_.unreferenced_count += touched_[v] == 0 ? 1 : 0;
     }
-    std::vector<std::uint32_t> next_rim(result_.tiles.size()), next_inner;
+    std::vector<std::uint32_t> next_boundary(result_.tiles.size()), next_inner;
     const auto channels = static_cast<std::size_t>(chunk_.vertices.channels);
     for (std::size_t i = 0; i < result_.tiles.size(); ++i) {
       WorkTile& tile = result_.tiles[i];
       const std::size_t size = first_vertex_[i + 1];
       assert(size <= kMostVertices);
       first_vertex_[i + 1] += first_vertex_[i];
-      next_inner.push_back(tile.rim_count);
+      next_inner.push_back(tile.boundary_count);
       tile.vertices.channels = chunk_.vertices.channels;
       tile.vertices.positions.resize(size);
       tile.vertices.attributes.resize(size * channels);
@@ -104,7 +104,7 @@ class LeafBuilder {
     for (const std::uint32_t v : spatial_order(chunk_.vertices.positions)) {
       auto& [leaf, index] = places_[v];
       VertexArray& vertices = result_.tiles[leaf].vertices;
-      index = ((touched_[v] & kRim) != 0 ? next_rim : next_inner)[leaf]++;
+      index = ((touched_[v] & kBoundary) != 0 ? next_boundary : next_inner)[leaf]++;
       vertices.positions[index] = chunk_.vertices.positions[v];
       if (channels > 0) {
         const auto attributes = chunk_.vertices.attributes_of(v);
@@ -112,9 +112,9 @@ class LeafBuilder {
                   vertices.attributes.begin() + static_cast<std::ptrdiff_t>(index * channels));
       }
     }
-    result_.places.reserve(rims);
+    result_.places.reserve(boundaries);
     for (std::uint32_t v = 0; v < places_.size(); ++v) {
-      if ((touched_[v] & kRim) != 0)
+      if ((touched_[v] & kBoundary) != 0)
         result_.places.push_back({v, places_[v].leaf, places_[v].index});
     }
   }
@@ -271,7 +271,7 @@ const LeafPlace& find_place(std::span<const LeafPlace> places, std::uint32_t loc
       places.begin(), places.end(), local,
       [](const LeafPlace& place, std::uint32_t value) { return place.local < value; });
   if (found == places.end() || found->local != local) {
-    throw Error(ErrorCode::internal, "a border triangle's corner is not in its chunk's rim");
+    throw Error(ErrorCode::internal, "a border triangle's corner is not in its chunk's boundary");
   }
   return *found;
 }

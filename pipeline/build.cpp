@@ -136,7 +136,7 @@ void import_again(importing::MeshInput& input, const importing::MeshInput::Place
 }
 
 /// A failure that leaves work to go on with says so.
-Error told_how_to_go_on(const Error& error, const storage::WorkDirectory& work) {
+Error with_resume_hint(const Error& error, const storage::WorkDirectory& work) {
   return {error.code(),
           fmt::format("{}\nWhat is done so far is kept in {}: the same build goes on with it "
                       "(--restart begins anew, \"meshhier clean\" removes it)",
@@ -170,10 +170,10 @@ void make_hierarchy(const config::Config& config, const BuildPlan& build, Worksh
   });
 
   const double diagonal = length(result.source.bounds.max - result.source.bounds.min);
-  result.asked_vertices = build.asked_vertices;
+  result.target_vertex_counts = build.target_vertex_counts;
   result.config = config::resolved_json(config);
   simplify(forest, journal,
-           {result.asked_vertices,
+           {result.target_vertex_counts,
             result.source.attributes,
             {config.simplify.method, config.simplify.representative, config.simplify.cost},
             diagonal},
@@ -306,7 +306,7 @@ BuildReport build_hierarchy(const config::Config& config, const BuildOptions& op
       work.keep(false);  // nothing to go on with
     if (!work.is_kept() || error.code() == ErrorCode::exists)
       throw;
-    throw told_how_to_go_on(error, work);
+    throw with_resume_hint(error, work);
   }
 }
 

@@ -88,12 +88,12 @@ struct TileWriter {
 };
 
 TileRecord describe(const Tree& tree, NodeId node, const BuildTile& tile, const TileFacts& facts,
-                    const AskedVertices& asked) {
+                    const TargetVertexCounts& asked) {
   const TileMesh& mesh = tile.mesh;
   TileRecord record;
   record.node = node;
   record.own_count = mesh.own_count;
-  record.rim_count = mesh.rim_count;
+  record.boundary_count = mesh.boundary_count;
   record.ghost_count = static_cast<std::uint32_t>(mesh.ghosts.size());
   record.interior_count = static_cast<std::uint32_t>(mesh.interior.size());
   record.border_count = static_cast<std::uint32_t>(mesh.border.size());
@@ -123,7 +123,7 @@ TileRecord write_tile(const TileWriter& to, NodeId node) {
   std::vector<std::uint16_t> parent_map = forest.published_parent_map(node);
   if (tree.is_partition(node))
     order_inner_vertices(tile.mesh, parent_map);
-  TileRecord record = describe(tree, node, tile, forest.facts(node), to.input.asked_vertices);
+  TileRecord record = describe(tree, node, tile, forest.facts(node), to.input.target_vertex_counts);
   if (to.quantization) {
     record.bound = with_rounding(record.bound, to.quantization->worst_rounding,
                                  raw(tree.depth()) - raw(node.level));

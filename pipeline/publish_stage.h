@@ -4,8 +4,8 @@
 #include "config/config.h"
 #include "execution/cancel.h"
 #include "execution/progress.h"
-#include "hierarchy/asked_vertices.h"
 #include "hierarchy/published.h"
+#include "hierarchy/target_vertex_counts.h"
 #include "pipeline/journal/build_journal.h"
 #include "pipeline/outline_stage.h"
 #include "pipeline/plan/memory_plan.h"
@@ -29,7 +29,7 @@ struct PublishInput {
   std::optional<std::uint32_t> position_bits;  ///< of the lattice; none: positions stay exact
   std::optional<Transform> transform;          ///< of the tileset
   std::string licence;
-  AskedVertices asked_vertices = 8192;  ///< of simplified tiles
+  TargetVertexCounts target_vertex_counts = 8192;  ///< of simplified tiles
   bool is_temporary = false;  ///< the files become an archive: they need not reach the disk
 };
 

@@ -1,6 +1,6 @@
 #include "pipeline/simplify_stage.h"
 
-#include "cluster_simplify/band.h"
+#include "cluster_simplify/seam_strip.h"
 #include "execution/allocator.h"
 #include "execution/parallel.h"
 #include "execution/size_text.h"
@@ -58,28 +58,29 @@ ChunkReport put_leaves(Chunks& chunks, std::uint32_t index, partition::Axis axis
 /// complete.
 Step measure_step(const Forest& forest, NodeId node, const LoadedTile& loaded) {
   const TileMesh& mesh = loaded.tile.mesh;
-  const cluster_simplify::BandOf own{node.index, forest.band(node)};
+  const cluster_simplify::SeamStripOf own{node.index, forest.seam_strip(node)};
   Step step;
-  const auto add_foreign = [&](const Band& of) {
+  const auto add_foreign = [&](const SeamStrip& of) {
     for (const GhostRef& ref : of.foreign)
       step.finer_neighbours.add(ref.tile);
   };
-  add_foreign(own.band);
-  const auto band_of_neighbour = [&](std::uint32_t tile) {
-    Band band = forest.band({node.level, tile});
-    add_foreign(band);
+  add_foreign(own.seam_strip);
+  const auto seam_strip_of_neighbour = [&](std::uint32_t tile) {
+    SeamStrip seam_strip = forest.seam_strip({node.level, tile});
+    add_foreign(seam_strip);
     const Tree::Children children = forest.tree().children({node.level, tile});
     for (const NodeId child : children.span())
       step.finer_neighbours.add(child.index);
-    return band;
+    return seam_strip;
   };
-  const double seam = cluster_simplify::seam_gap({mesh, own, loaded.mapped, band_of_neighbour});
+  const double seam =
+      cluster_simplify::seam_gap({mesh, own, loaded.mapped, seam_strip_of_neighbour});
   step.finer_neighbours.settle();
-  const Band& band = own.band;
-  step.certain = std::max(double{band.interior_drift}, seam);
-  if (band.lost > 0)
-    step.certain = std::max(step.certain, double{band.lost} + seam);
-  step.mean_square = band.weight_sum > 0 ? band.squared_sum / band.weight_sum : 0;
+  const SeamStrip& seam_strip = own.seam_strip;
+  step.certain = std::max(double{seam_strip.interior_deviation}, seam);
+  if (seam_strip.lost > 0)
+    step.certain = std::max(step.certain, double{seam_strip.lost} + seam);
+  step.mean_square = seam_strip.weight_sum > 0 ? seam_strip.squared_sum / seam_strip.weight_sum : 0;
   return step;
 }
 
@@ -129,7 +130,7 @@ class Simplifier {
       begin += count;
     }
     forest_.put_tile(node, contracted.tile);
-    forest_.put_band(node, cluster_simplify::make_band(joined, contracted));
+    forest_.put_seam_strip(node, cluster_simplify::make_seam_strip(joined, contracted));
     forest_.facts(node).torn_count = contracted.fallbacks.torn;
     forest_.facts(node).forced_count = contracted.fallbacks.without_care();
   }

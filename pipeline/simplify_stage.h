@@ -5,7 +5,7 @@
 #include "cluster_simplify/contraction.h"
 #include "execution/cancel.h"
 #include "execution/progress.h"
-#include "hierarchy/asked_vertices.h"
+#include "hierarchy/target_vertex_counts.h"
 #include "partition/direction.h"
 #include "pipeline/journal/build_journal.h"
 #include "pipeline/partition_stage.h"
@@ -21,7 +21,7 @@ std::uint64_t make_leaves(Chunks& chunks, Forest& forest, BuildJournal& journal,
                           execution::Progress& progress, const execution::CancelToken& cancel);
 
 struct SimplifyOptions {
-  AskedVertices vertices = 8192;
+  TargetVertexCounts vertices = 8192;
   AttributeLayout attributes;
   cluster_simplify::ContractionOptions contraction;
   double diagonal = 0;  ///< of the whole model
@@ -31,9 +31,9 @@ struct SimplifyOptions {
 /// tile, from the partitions (0) to the root, each more than its children's. Tiles that the journal
 /// has are not made again.
 ///
-/// How far a contraction moves the surface is measured while it is carried out (drift.h), and at
-/// the seams when its level is complete (band.h). `bound` sums the certain distances of the steps
-/// along every way a point may have taken, through the tile itself and its neighbours
+/// How far a contraction moves the surface is measured while it is carried out (deviation.h), and
+/// at the seams when its level is complete (seam strip.h). `bound` sums the certain distances of
+/// the steps along every way a point may have taken, through the tile itself and its neighbours
 /// (bound_chain.h); `error` adds the steps' root mean squares up the tree.
 void simplify(Forest& forest, BuildJournal& journal, const SimplifyOptions& options,
               const MemoryPlan& plan, execution::Progress& progress,

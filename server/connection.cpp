@@ -39,10 +39,10 @@ std::string address_of(socket_t socket, const Ask& ask) {
 }  // namespace
 
 Connection::Connection(socket_t socket, const ConnectionLimits& limits,
-                       std::function<bool()> is_crowded, std::function<bool()> is_stopping)
+                       std::function<bool()> has_high_valence, std::function<bool()> is_stopping)
     : socket_(socket),
       limits_(limits),
-      is_crowded_(std::move(is_crowded)),
+      has_high_valence_(std::move(has_high_valence)),
       is_stopping_(std::move(is_stopping)) {}
 
 bool Connection::wait(short event, Clock::time_point end,
@@ -64,7 +64,7 @@ bool Connection::wait_for_first_byte() {
   const Clock::time_point start = Clock::now();
   const auto patience = requests_ == 0 ? limits_.patience : std::chrono::milliseconds{0};
   return wait(POLLIN, start + limits_.idle, [&] {
-    return is_stopping_() || (is_crowded_() && Clock::now() - start >= patience);
+    return is_stopping_() || (has_high_valence_() && Clock::now() - start >= patience);
   });
 }
 
@@ -122,7 +122,7 @@ ssize_t Connection::read(char* bytes, std::size_t count) {
 }
 
 bool Connection::is_too_slow() const {
-  if (!is_crowded_())
+  if (!has_high_valence_())
     return false;
   const auto time = Clock::now() - reply_start_;
   const double seconds = std::chrono::duration<double>(time).count();

@@ -19,9 +19,9 @@ namespace meshhier::server {
 /// Of one thread.
 class Connection final : public httplib::Stream {
  public:
-  /// `is_crowded`: others wait for a thread; `is_stopping`: the server is to end.
-  Connection(socket_t socket, const ConnectionLimits& limits, std::function<bool()> is_crowded,
-             std::function<bool()> is_stopping);
+  /// `has_high_valence`: others wait for a thread; `is_stopping`: the server is to end.
+  Connection(socket_t socket, const ConnectionLimits& limits,
+             std::function<bool()> has_high_valence, std::function<bool()> is_stopping);
 
   enum class Next {
     request,    ///< head() is the next request's
@@ -64,7 +64,7 @@ class Connection final : public httplib::Stream {
 
   socket_t socket_;
   ConnectionLimits limits_;
-  std::function<bool()> is_crowded_, is_stopping_;
+  std::function<bool()> has_high_valence_, is_stopping_;
   std::string received_;  ///< not yet taken as a head
   RequestHead head_;
   std::size_t place_ = 0;  ///< what was read of the head

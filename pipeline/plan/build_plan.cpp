@@ -49,7 +49,7 @@ std::uint64_t bytes_left(const std::filesystem::path& output, storage::FileSyste
   return files.exists(work) ? storage::bytes_below(files, work) : 0;
 }
 
-AskedVertices asked_vertices(const config::Config& config, const Tree& tree) {
+TargetVertexCounts target_vertex_counts(const config::Config& config, const Tree& tree) {
   if (config.simplify.vertices)
     return *config.simplify.vertices;
   return config.partition.count ? std::max(4U, largest_partition(tree)) : config.partition.vertices;
@@ -90,9 +90,9 @@ JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& m
   job.wide_coordinates = mesh.wide_coordinates;
   job.partition_count = tree.partition_count();
   job.threads = threads;
-  job.asked_vertices = asked_vertices(config, tree);
+  job.target_vertex_counts = target_vertex_counts(config, tree);
   job.largest_tile =
-      std::max(largest_partition(tree), job.asked_vertices.largest_above(tree.depth()));
+      std::max(largest_partition(tree), job.target_vertex_counts.largest_above(tree.depth()));
   job.clustered = config.simplify.method == config::SimplifyMethod::cluster;
   job.published_attribute_bytes = published_bytes(mesh.attributes);
   job.published_ratio = published_ratio(config.storage);
@@ -114,7 +114,7 @@ BuildPlan plan_build(const config::Config& config, const mesh_io::MeshDescriptio
   JobSize job = job_size(config, mesh, tree, threads);
   job.imported_bytes = imported_bytes;
   const MemoryPlan memory = plan_memory(config.memory_budget, job);
-  return {tree, threads, job.asked_vertices, job, memory, predict_disk(job, memory)};
+  return {tree, threads, job.target_vertex_counts, job, memory, predict_disk(job, memory)};
 }
 
 std::filesystem::path existing_directory(const std::filesystem::path& output,

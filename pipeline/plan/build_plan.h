@@ -3,7 +3,7 @@
 #pragma once
 
 #include "config/config.h"
-#include "hierarchy/asked_vertices.h"
+#include "hierarchy/target_vertex_counts.h"
 #include "hierarchy/tree.h"
 #include "mesh_io/mesh_source.h"
 #include "pipeline/plan/disk_need.h"
@@ -19,7 +19,7 @@ namespace meshhier::pipeline {
 struct BuildPlan {
   Tree tree;
   std::size_t threads = 1;
-  AskedVertices asked_vertices = 8192;  ///< of simplified tiles
+  TargetVertexCounts target_vertex_counts = 8192;  ///< of simplified tiles
   JobSize job;
   MemoryPlan memory;
   DiskNeed disk;

@@ -14,20 +14,20 @@ namespace {
 // All of the following was measured on scans of one to eight hundred pieces, a terrain and open
 // patches, with tiles of 64 to 32768 vertices.
 
-// The part of a tile's vertices that is its rim, times the root of their number: 3.6 to 4.7, on
-// nested shells 4.2 to 6.9.
-constexpr double kRimShare = 5;
-// Per vertex of the rim: ghosts 1.0 to 1.2, triangles that a neighbour has as well 1.0 to 1.1,
+// The part of a tile's vertices that is its boundary, times the root of their number: 3.6 to 4.7,
+// on nested shells 4.2 to 6.9.
+constexpr double kBoundaryShare = 5;
+// Per vertex of the boundary: ghosts 1.0 to 1.2, triangles that a neighbour has as well 1.0 to 1.1,
 // foreign corners of a fresh simplified tile, which are one level finer, 1.8.
 constexpr double kGhosts = 1.1;
 constexpr double kSharedTriangles = 1.05;
 constexpr double kFreshForeign = 1.8;
 
 // A tile of far fewer vertices than half of its children's (simplify.vertices by level) has long
-// seams with what is one level finer: bytes of foreign corners and of the band per vertex that the
-// rim of its joined children has beyond that of a tile of twice its own size. With steps from 400
-// to 20 and from 4,000 to 4, temporary files are then predicted 2 to 14 % too large, as with equal
-// tiles of these sizes; without it a step from 4,000 to 4 was 4 % too small.
+// seams with what is one level finer: bytes of foreign corners and of the seam strip per vertex
+// that the boundary of its joined children has beyond that of a tile of twice its own size. With
+// steps from 400 to 20 and from 4,000 to 4, temporary files are then predicted 2 to 14 % too large,
+// as with equal tiles of these sizes; without it a step from 4,000 to 4 was 4 % too small.
 constexpr double kSteepBytes = 48;
 
 // Triangles a vertex after clustering, over those before: 1.1 to 1.8, more on coarser levels; the
@@ -97,8 +97,8 @@ std::vector<LevelNodes> measure_nodes(const JobSize& job) {
       nodes.joined = children;
       nodes.vertices = nodes.early
                            ? children
-                           : job.asked_vertices.target(static_cast<Level>(l),
-                                                       static_cast<std::uint32_t>(children));
+                           : job.target_vertex_counts.target(static_cast<Level>(l),
+                                                             static_cast<std::uint32_t>(children));
     }
   }
   return levels;
@@ -108,23 +108,23 @@ std::vector<LevelNodes> measure_nodes(const JobSize& job) {
 struct Tiles {
   double count = 0;
   double vertices = 0;
-  double rim = 0;
-  double steep_rim = 0;  ///< of joined children, beyond that of twice a tile's vertices
-  double triangles = 0;  ///< border ones in each tile they touch
+  double boundary = 0;
+  double steep_boundary = 0;  ///< of joined children, beyond that of twice a tile's vertices
+  double triangles = 0;       ///< border ones in each tile they touch
 
   Tiles& operator+=(const Tiles& other) {
     count += other.count;
     vertices += other.vertices;
-    rim += other.rim;
-    steep_rim += other.steep_rim;
+    boundary += other.boundary;
+    steep_boundary += other.steep_boundary;
     triangles += other.triangles;
     return *this;
   }
 };
 
 /// Of a tile with others all around it.
-double rim_of(double vertices) {
-  return std::min(vertices, kRimShare * std::sqrt(vertices));
+double boundary_of(double vertices) {
+  return std::min(vertices, kBoundaryShare * std::sqrt(vertices));
 }
 
 /// `ratio`: triangles per vertex, over those of the input. Near the root there is less around a
@@ -134,11 +134,11 @@ Tiles tiles_of(const JobSize& job, const Nodes& nodes, double ratio, std::size_t
   tiles.count = nodes.count;
   tiles.vertices = nodes.count * nodes.vertices;
   const double around = job.face_count == 0 ? 0 : 1 - std::exp2(-static_cast<double>(level));
-  tiles.rim = nodes.count * around * rim_of(nodes.vertices);
-  tiles.steep_rim =
-      nodes.count * around * std::max(0.0, rim_of(nodes.joined) - rim_of(2 * nodes.vertices));
+  tiles.boundary = nodes.count * around * boundary_of(nodes.vertices);
+  tiles.steep_boundary = nodes.count * around *
+                         std::max(0.0, boundary_of(nodes.joined) - boundary_of(2 * nodes.vertices));
   tiles.triangles =
-      tiles.vertices * triangles_per_vertex(job) * ratio + tiles.rim * kSharedTriangles;
+      tiles.vertices * triangles_per_vertex(job) * ratio + tiles.boundary * kSharedTriangles;
   return tiles;
 }
 
@@ -171,17 +171,17 @@ Population population_of(const JobSize& job) {
 
 // ---- what is written, in bytes -------------------------------------------------------------
 
-/// storage/format/work_tile.cpp, and the rim once more for its neighbours. `foreign`: foreign
-/// corners per vertex of the rim.
+/// storage/format/work_tile.cpp, and the boundary once more for its neighbours. `foreign`: foreign
+/// corners per vertex of the boundary.
 double work_tile_bytes(const JobSize& job, const Tiles& tiles, double foreign) {
   return tiles.count * 24 + tiles.vertices * (job.vertex_bytes() + 4) +
-         tiles.rim * (foreign * 8 + job.vertex_bytes()) + tiles.triangles * 6;
+         tiles.boundary * (foreign * 8 + job.vertex_bytes()) + tiles.triangles * 6;
 }
 
-/// What neighbours see of a simplified tile: per vertex of the rim 76 to 89 bytes, up to 130 after
-/// clustering where it leaves long rims; no more than the whole tile.
-double band_bytes(const Tiles& tiles) {
-  return std::min(tiles.rim * 90, tiles.vertices * 20 + tiles.triangles * 12);
+/// What neighbours see of a simplified tile: per vertex of the boundary 76 to 89 bytes, up to 130
+/// after clustering where it leaves long boundaries; no more than the whole tile.
+double seam_strip_bytes(const Tiles& tiles) {
+  return std::min(tiles.boundary * 90, tiles.vertices * 20 + tiles.triangles * 12);
 }
 
 /// Chunks share the triangles along their borders.
@@ -190,7 +190,7 @@ double chunk_triangle_bytes(const JobSize& job) {
       0.0,
       std::ceil(std::log2(static_cast<double>(job.vertex_count) / partition::kChunkVertices))));
   const double share =
-      chunks > 1 ? kRimShare / std::sqrt(static_cast<double>(job.vertex_count) / chunks) : 0;
+      chunks > 1 ? kBoundaryShare / std::sqrt(static_cast<double>(job.vertex_count) / chunks) : 0;
   return static_cast<double>(job.face_count) * 12 * (1 + std::min(1.0, share));
 }
 
@@ -229,7 +229,7 @@ double spooled_input_bytes(const JobSize& job) {
 
 double published_bytes(const JobSize& job, const Tiles& tiles) {
   const double vertex = 12 + static_cast<double>(job.published_attribute_bytes);
-  return tiles.vertices * (vertex + 2) + tiles.rim * kGhosts * (vertex + kChainBytes) +
+  return tiles.vertices * (vertex + 2) + tiles.boundary * kGhosts * (vertex + kChainBytes) +
          tiles.triangles * 6 + tiles.count * kTileOverhead;
 }
 
@@ -240,7 +240,7 @@ struct Volumes {
 
 Volumes volumes_of(const JobSize& job, const MemoryPlan& plan, const Population& all) {
   const auto vertices = static_cast<double>(job.vertex_count);
-  constexpr double kPlaceBytes = 12;  // where a vertex of a chunk's rim went
+  constexpr double kPlaceBytes = 12;  // where a vertex of a chunk's boundary went
   Volumes v{};
   v.input = spooled_input_bytes(job);
   v.windows = window_bytes(job);
@@ -248,10 +248,10 @@ Volumes volumes_of(const JobSize& job, const MemoryPlan& plan, const Population&
   v.waiting = waiting_bytes(job, plan);
   v.chunk_vertices = vertices * job.vertex_bytes();
   v.chunk_triangles = chunk_triangle_bytes(job);
-  v.leaves = work_tile_bytes(job, all.partitions, kGhosts) + all.partitions.rim * kPlaceBytes;
+  v.leaves = work_tile_bytes(job, all.partitions, kGhosts) + all.partitions.boundary * kPlaceBytes;
   v.simplified = work_tile_bytes(job, all.simplified, kFreshForeign) +
                  (all.partitions.vertices + all.simplified.vertices) * 2;
-  v.simplified += band_bytes(all.simplified) + all.simplified.steep_rim * kSteepBytes;
+  v.simplified += seam_strip_bytes(all.simplified) + all.simplified.steep_boundary * kSteepBytes;
   return v;
 }
 

@@ -12,7 +12,7 @@
 //   triangles of chunks     triangles      leaves are done
 //   partition tiles         leaves         the end
 //   simplified tiles, maps  simplify       the end
-//   bands                   simplify       the end
+//   seam strips                   simplify       the end
 //   published files         publish        for good            if they are the output
 //                                          the end             if they are packed, the data above
 //                                          being gone

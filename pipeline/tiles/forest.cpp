@@ -53,7 +53,7 @@ void Forest::put_places(std::uint32_t chunk, std::span<const partition::LeafPlac
 void Forest::put_tile(NodeId node, const WorkTile& tile) {
   LevelStore& level = levels_[raw(node.level)];
   level.tiles.put(node.index, storage::encode_work_tile(tile));
-  level.rims.put(node.index, storage::encode_rim(tile));
+  level.boundaries.put(node.index, storage::encode_boundary(tile));
   level.own_counts[node.index] = static_cast<std::uint32_t>(tile.vertices.size());
 }
 
@@ -69,8 +69,8 @@ std::uint64_t Forest::triangle_bytes(NodeId node) const {
 
 void Forest::drop_copies(std::uint64_t free_bytes) {
   for (std::size_t level = levels_.size(); level-- > 0;) {
-    for (storage::BlobStore* store : {&levels_[level].tiles, &levels_[level].rims,
-                                      &levels_[level].bands, &levels_[level].parent_maps}) {
+    for (storage::BlobStore* store : {&levels_[level].tiles, &levels_[level].boundaries,
+                                      &levels_[level].seam_strips, &levels_[level].parent_maps}) {
       if (pool_.free_bytes() >= free_bytes)
         return;
       store->drop_copies();
@@ -89,17 +89,18 @@ LoadedTile Forest::load_with_mapped(NodeId node) const {
   for_each_tile(tile.mesh.ghosts, [&](std::size_t begin, std::size_t) {
     const std::uint32_t neighbour = tile.mesh.ghosts[begin].tile;
     cluster_simplify::fill_ghosts(
-        tile, neighbour, storage::decode_rim(level.rims.view(neighbour).bytes(), channels_));
+        tile, neighbour,
+        storage::decode_boundary(level.boundaries.view(neighbour).bytes(), channels_));
   });
   return loaded;
 }
 
-void Forest::put_band(NodeId node, const Band& band) {
-  levels_[raw(node.level)].bands.put(node.index, storage::encode_band(band));
+void Forest::put_seam_strip(NodeId node, const SeamStrip& seam_strip) {
+  levels_[raw(node.level)].seam_strips.put(node.index, storage::encode_seam_strip(seam_strip));
 }
 
-Band Forest::band(NodeId node) const {
-  return storage::decode_band(levels_[raw(node.level)].bands.view(node.index).bytes());
+SeamStrip Forest::seam_strip(NodeId node) const {
+  return storage::decode_seam_strip(levels_[raw(node.level)].seam_strips.view(node.index).bytes());
 }
 
 std::vector<GhostRef> Forest::mapped(NodeId node, std::span<const GhostRef> foreign) const {
@@ -182,8 +183,8 @@ nlohmann::json Forest::stored_chunk(std::uint32_t chunk) const {
   nlohmann::json partitions = nlohmann::json::array();
   const PartitionRange range = tree_.partitions({chunks_, chunk});
   for (std::uint32_t p = range.begin; p < range.end; ++p)
-    partitions.push_back(
-        {leaves.own_counts[p], to_json(leaves.tiles.stored(p)), to_json(leaves.rims.stored(p))});
+    partitions.push_back({leaves.own_counts[p], to_json(leaves.tiles.stored(p)),
+                          to_json(leaves.boundaries.stored(p))});
   return {{"places", to_json(places_.stored(chunk))}, {"partitions", std::move(partitions)}};
 }
 
@@ -196,7 +197,8 @@ bool Forest::restore_chunk(std::uint32_t chunk, const nlohmann::json& stored) {
   for (std::uint32_t p = range.begin; p < range.end; ++p) {
     const nlohmann::json& partition = partitions.at(p - range.begin);
     leaves.own_counts[p] = partition.at(0);
-    if (!restore(leaves.tiles, p, partition.at(1)) || !restore(leaves.rims, p, partition.at(2)))
+    if (!restore(leaves.tiles, p, partition.at(1)) ||
+        !restore(leaves.boundaries, p, partition.at(2)))
       return false;
   }
   return true;
@@ -213,8 +215,8 @@ nlohmann::json Forest::stored_tile(NodeId node) const {
           {"torn", facts.torn_count},
           {"forced", facts.forced_count},
           {"tile", to_json(level.tiles.stored(node.index))},
-          {"rim", to_json(level.rims.stored(node.index))},
-          {"band", to_json(level.bands.stored(node.index))},
+          {"boundary", to_json(level.boundaries.stored(node.index))},
+          {"seam_strip", to_json(level.seam_strips.stored(node.index))},
           {"maps", std::move(maps)}};
 }
 
@@ -230,8 +232,8 @@ bool Forest::restore_tile(NodeId node, const nlohmann::json& stored) {
       return false;
   }
   return restore(level.tiles, node.index, stored.at("tile")) &&
-         restore(level.rims, node.index, stored.at("rim")) &&
-         restore(level.bands, node.index, stored.at("band"));
+         restore(level.boundaries, node.index, stored.at("boundary")) &&
+         restore(level.seam_strips, node.index, stored.at("seam_strip"));
 }
 
 }  // namespace meshhier::pipeline

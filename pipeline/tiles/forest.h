@@ -1,4 +1,5 @@
-// The hierarchy under construction: every level's tiles, rims and parent maps, in scratch space.
+// The hierarchy under construction: every level's tiles, boundaries and parent maps, in scratch
+// space.
 #pragma once
 
 #include "hierarchy/build_tile.h"
@@ -43,7 +44,7 @@ class Forest {
   void put_places(std::uint32_t chunk, std::span<const partition::LeafPlace> places);
   void put_tile(NodeId node, const WorkTile& tile);
   /// What the neighbours of a simplified tile may see of it.
-  void put_band(NodeId node, const Band& band);
+  void put_seam_strip(NodeId node, const SeamStrip& seam_strip);
   /// The map from `child` to its parent's tile.
   void put_parent_map(NodeId child, std::span<const std::uint16_t> parent_map);
 
@@ -64,7 +65,7 @@ class Forest {
 
   LoadedTile load_with_mapped(NodeId node) const;
   BuildTile load(NodeId node) const { return load_with_mapped(node).tile; }
-  Band band(NodeId node) const;
+  SeamStrip seam_strip(NodeId node) const;
   /// The map from `child` to its parent's tile.
   std::vector<std::uint16_t> parent_map(NodeId child) const;
   /// The map from `node` to the nearest ancestor that is published; empty for the root.
@@ -85,7 +86,7 @@ class Forest {
 
  private:
   struct LevelStore {
-    storage::BlobStore tiles, rims, bands, parent_maps;
+    storage::BlobStore tiles, boundaries, seam_strips, parent_maps;
     std::vector<TileFacts> facts;
     std::vector<std::uint32_t> own_counts;
   };

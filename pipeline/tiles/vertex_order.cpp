@@ -10,8 +10,8 @@ namespace {
 
 constexpr std::uint32_t kNowhere = UINT32_MAX;
 
-/// The vertices of the tile in their new order: rim and ghosts stay, inner ones as they are first
-/// used, unused ones last.
+/// The vertices of the tile in their new order: boundary and ghosts stay, inner ones as they are
+/// first used, unused ones last.
 std::vector<std::uint32_t> new_order(const TileMesh& mesh) {
   std::vector<std::uint32_t> corners;
   corners.reserve(3 * mesh.interior.size());
@@ -25,7 +25,7 @@ std::vector<std::uint32_t> new_order(const TileMesh& mesh) {
       order.push_back(v);
     placed[v] = true;
   };
-  for (std::uint32_t v = 0; v < mesh.rim_count; ++v)
+  for (std::uint32_t v = 0; v < mesh.boundary_count; ++v)
     place(v);
   for (const std::uint32_t v : storage::vertex_cache_order(corners, mesh.vertices.size()))
     place(v);

@@ -37,8 +37,8 @@ std::vector<TileRecord> load_index(FileSystem& files, const std::filesystem::pat
 const char* difference(const TileMesh& mesh, const TileRecord& record) {
   if (mesh.own_count != record.own_count)
     return "own vertices";
-  if (mesh.rim_count != record.rim_count)
-    return "rim vertices";
+  if (mesh.boundary_count != record.boundary_count)
+    return "boundary vertices";
   if (mesh.ghosts.size() != record.ghost_count)
     return "ghosts";
   if (mesh.interior.size() != record.interior_count)

@@ -21,7 +21,7 @@ namespace {
 //        0      8  magic "MHTILES\n"                0      4  level
 //        8      4  version, 2                       4      4  index
 //       12      4  bytes of a record, 96            8      4  own vertices
-//       16      8  number of records               12      4  rim vertices
+//       16      8  number of records               12      4  boundary vertices
 //       24      8  XXH3-64 of bytes 0 to 23        16      4  ghosts
 //                  and all records                 20      4  interior triangles
 //                                                  24      4  border triangles
@@ -44,7 +44,7 @@ constexpr std::size_t kRecordBytes = 96;
 void append_record(std::vector<std::byte>& bytes, const TileRecord& record) {
   for (const std::uint32_t value :
        {std::uint32_t{raw(record.node.level)}, record.node.index, record.own_count,
-        record.rim_count, record.ghost_count, record.interior_count, record.border_count,
+        record.boundary_count, record.ghost_count, record.interior_count, record.border_count,
         record.drawn_border_count, record.target_count, record.torn_count, record.forced_count}) {
     append_little(bytes, value);
   }
@@ -71,7 +71,7 @@ TileRecord load_record(const std::byte* from) {
   TileRecord record;
   record.node = {static_cast<Level>(count(0)), count(4)};
   record.own_count = count(8);
-  record.rim_count = count(12);
+  record.boundary_count = count(12);
   record.ghost_count = count(16);
   record.interior_count = count(20);
   record.border_count = count(24);
@@ -100,8 +100,8 @@ const char* flaw_of(const TileRecord& record, const Tree& tree) {
   if (tree.is_partition(record.node) && record.own_count != tree.ranks(record.node).size()) {
     return "own vertices (not the partition's)";
   }
-  if (record.rim_count > record.own_count)
-    return "rim vertices (more than own)";
+  if (record.boundary_count > record.own_count)
+    return "boundary vertices (more than own)";
   if (record.drawn_border_count > record.border_count)
     return "drawn border triangles";
   if (!is_measure(record.error))

@@ -198,7 +198,7 @@ nlohmann::ordered_json to_json(const TileRecord& r) {
   return {{"node", to_text(r.node)},
           {"vertices", r.own_count},
           {"vertices_asked_for", r.target_count},
-          {"rim_vertices", r.rim_count},
+          {"boundary_vertices", r.boundary_count},
           {"ghosts", r.ghost_count},
           {"interior_triangles", r.interior_count},
           {"border_triangles", r.border_count},

@@ -61,21 +61,21 @@ std::optional<int> common_exponent(std::span<const std::byte> positions, std::si
   return fits ? std::optional(least) : std::nullopt;
 }
 
-/// Triangles as the vertices that complete them come, those behind the rim in the order of their
-/// numbers, a vertex of the rim with the first triangle that has another beside it. Of the
-/// triangles that a vertex completes, those at the youngest others first: 1.64 bytes a triangle of
-/// the dragon's partitions; oldest first 2.01.
+/// Triangles as the vertices that complete them come, those behind the boundary in the order of
+/// their numbers, a vertex of the boundary with the first triangle that has another beside it. Of
+/// the triangles that a vertex completes, those at the youngest others first: 1.64 bytes a triangle
+/// of the dragon's partitions; oldest first 2.01.
 std::vector<std::uint32_t> completion_order(std::span<const std::uint32_t> corners,
                                             const VertexCounts& counts) {
   const auto youngest = [&](std::size_t t, const auto& age_of) {
     return std::max({age_of(corners[t]), age_of(corners[t + 1]), age_of(corners[t + 2])});
   };
-  const auto inner_age = [&](std::uint32_t v) { return v < counts.rim ? 0 : v; };
+  const auto inner_age = [&](std::uint32_t v) { return v < counts.boundary ? 0 : v; };
   std::vector<std::uint32_t> age(counts.all, UINT32_MAX);
   for (std::size_t t = 0; t < corners.size(); t += 3) {
     const std::uint32_t met = youngest(t, inner_age);
     for (std::size_t c = t; met > 0 && c < t + 3; ++c)
-      age[corners[c]] = std::min(age[corners[c]], corners[c] < counts.rim ? met : corners[c]);
+      age[corners[c]] = std::min(age[corners[c]], corners[c] < counts.boundary ? met : corners[c]);
   }
   const auto known_age = [&](std::uint32_t v) { return age[v] == UINT32_MAX ? 0 : age[v]; };
 

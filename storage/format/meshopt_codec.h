@@ -21,11 +21,11 @@ std::vector<std::byte> encode_attributes(std::span<const std::byte> plain, std::
 bool decode_attributes(std::span<const std::byte> packed, std::size_t stride,
                        std::span<std::byte> plain);
 
-/// Which vertices triangles have: those behind the rim are numbered as they are first used, if the
-/// tile is made so (pipeline/tiles/vertex_order.h).
+/// Which vertices triangles have: those behind the boundary are numbered as they are first used, if
+/// the tile is made so (pipeline/tiles/vertex_order.h).
 struct VertexCounts {
   std::size_t all = 0;
-  std::size_t rim = 0;
+  std::size_t boundary = 0;
 };
 
 /// Mode TRIANGLES: decoding gives the same triangles in another order, turned. Of two orders that

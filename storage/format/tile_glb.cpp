@@ -350,15 +350,15 @@ class Reader {
       fail(fmt::format("{} triangle {} ({}, {}, {}) is degenerate, turned or out of order",
                        key_of(part), t, raw(triangle[0]), raw(triangle[1]), raw(triangle[2])));
     }
-    std::uint64_t own = 0, rim = 0;
+    std::uint64_t own = 0, boundary = 0;
     for (const TileVertex corner : triangle) {
       own += raw(corner) < plan_.shape().own ? 1 : 0;
-      rim += raw(corner) < plan_.shape().rim ? 1 : 0;
+      boundary += raw(corner) < plan_.shape().boundary ? 1 : 0;
     }
-    const bool fits = part == Part::interior ? own == 3 : own == rim && (own == 1 || own == 2);
+    const bool fits = part == Part::interior ? own == 3 : own == boundary && (own == 1 || own == 2);
     if (!fits) {
-      fail(fmt::format("{} triangle {} has {} own corners, {} of them on the rim", key_of(part), t,
-                       own, rim));
+      fail(fmt::format("{} triangle {} has {} own corners, {} of them on the boundary",
+                       key_of(part), t, own, boundary));
     }
   }
 
@@ -390,7 +390,7 @@ TileShape read_shape(const Json& extension, NodeId node, const Tree& tree, const
   TileShape shape;
   shape.node = node;
   shape.own = count("ownCount", kMaxOwnVertices);
-  shape.rim = count("rimCount", shape.own);
+  shape.boundary = count("rimCount", shape.own);
   shape.ghosts = count("ghostCount");
   shape.neighbours = count("neighbourCount", shape.ghosts);
   shape.chain_entries = count("chainEntryCount");
@@ -435,7 +435,7 @@ PublishedTile decode_glb(std::span<const std::byte> bytes, NodeId node, const Tr
   tile.mesh.vertices.attributes = reader.attributes();
   tile.mesh.vertices.channels = format.attributes.channels();
   tile.mesh.own_count = static_cast<std::uint32_t>(plan.shape().own);
-  tile.mesh.rim_count = static_cast<std::uint32_t>(plan.shape().rim);
+  tile.mesh.boundary_count = static_cast<std::uint32_t>(plan.shape().boundary);
   tile.mesh.interior = reader.triangles(Part::interior, is_packed);
   tile.mesh.border = reader.triangles(Part::border, is_packed);
   tile.parent_map = reader.parent_map();
@@ -468,7 +468,7 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
 
   TileShape shape{tile.node,
                   mesh.own_count,
-                  mesh.rim_count,
+                  mesh.boundary_count,
                   mesh.ghosts.size(),
                   neighbours.tiles.size(),
                   tile.chains.size(),

@@ -64,8 +64,8 @@ struct TileView {
 };
 
 /// Deterministic, O(size). Requires a consistent tile (see PublishedTile) with finite positions, on
-/// the lattice if there is one, at most kMaxOwnVertices own vertices and rim vertices below that.
-/// Compressed files depend on the versions of zlib and meshoptimizer.
+/// the lattice if there is one, at most kMaxOwnVertices own vertices and boundary vertices below
+/// that. Compressed files depend on the versions of zlib and meshoptimizer.
 ///
 /// A partition keeps every attribute bit for bit, NaN included. Other tiles keep what glTF can say:
 /// u8 and u16 colours rounded to the nearest number of their type, float colours clamped to [0, 1],

@@ -123,7 +123,7 @@ Json extension_json(const TilePlan& plan) {
                     {"level", raw(shape.node.level)},
                     {"index", shape.node.index},
                     {"ownCount", shape.own},
-                    {"rimCount", shape.rim},
+                    {"rimCount", shape.boundary},
                     {"ghostCount", shape.ghosts},
                     {"neighbourCount", shape.neighbours},
                     {"chainEntryCount", shape.chain_entries},

@@ -91,7 +91,7 @@ std::array<ChannelGroup, 3> groups_of(const AttributeLayout& layout);
 /// size overflows 64 bits.
 struct TileShape {
   NodeId node;
-  std::uint64_t own = 0, rim = 0, ghosts = 0, neighbours = 0, chain_entries = 0;
+  std::uint64_t own = 0, boundary = 0, ghosts = 0, neighbours = 0, chain_entries = 0;
   std::uint64_t interior = 0, border = 0;
   std::array<bool, 3> raw{};  ///< per ChannelGroup: whether its raw part is there
 

@@ -19,7 +19,7 @@ namespace {
 //   border        border * 3 corners     likewise
 struct WorkTileCounts {
   std::uint32_t own = 0;
-  std::uint32_t rim = 0;
+  std::uint32_t boundary = 0;
   std::uint32_t foreign = 0;
   std::uint32_t interior = 0;
   std::uint32_t border = 0;
@@ -141,7 +141,7 @@ std::uint64_t work_triangle_bytes(std::span<const std::byte> head) {
 }
 
 std::vector<std::byte> encode_work_tile(const WorkTile& tile) {
-  const WorkTileCounts counts{static_cast<std::uint32_t>(tile.vertices.size()), tile.rim_count,
+  const WorkTileCounts counts{static_cast<std::uint32_t>(tile.vertices.size()), tile.boundary_count,
                               static_cast<std::uint32_t>(tile.foreign.size()),
                               static_cast<std::uint32_t>(tile.interior.size()),
                               static_cast<std::uint32_t>(tile.border.size())};
@@ -161,7 +161,7 @@ WorkTile decode_work_tile(std::span<const std::byte> bytes, int channels) {
   Unpacker unpacker(bytes);
   const WorkTileCounts counts = unpacker.get<WorkTileCounts>(1)[0];
   WorkTile tile;
-  tile.rim_count = counts.rim;
+  tile.boundary_count = counts.boundary;
   tile.vertices.channels = channels;
   tile.vertices.positions = unpacker.get<Vec3f>(counts.own);
   tile.vertices.attributes = unpacker.get<float>(counts.own * static_cast<std::size_t>(channels));
@@ -172,40 +172,40 @@ WorkTile decode_work_tile(std::span<const std::byte> bytes, int channels) {
   return tile;
 }
 
-// A rim: u32 count, positions, attributes.
-std::vector<std::byte> encode_rim(const WorkTile& tile) {
-  const std::size_t count = tile.rim_count;
+// A boundary: u32 count, positions, attributes.
+std::vector<std::byte> encode_boundary(const WorkTile& tile) {
+  const std::size_t count = tile.boundary_count;
   const auto channels = static_cast<std::size_t>(tile.vertices.channels);
   Packer packer(4 + count * (12 + 4 * channels));
-  packer.put(std::span(&tile.rim_count, 1));
+  packer.put(std::span(&tile.boundary_count, 1));
   packer.put(std::span<const Vec3f>(tile.vertices.positions).first(count));
   packer.put(std::span<const float>(tile.vertices.attributes).first(count * channels));
   return packer.take();
 }
 
-Rim decode_rim(std::span<const std::byte> bytes, int channels) {
+Boundary decode_boundary(std::span<const std::byte> bytes, int channels) {
   Unpacker unpacker(bytes);
   const std::uint32_t count = unpacker.get<std::uint32_t>(1)[0];
-  Rim rim;
-  rim.vertices.channels = channels;
-  rim.vertices.positions = unpacker.get<Vec3f>(count);
-  rim.vertices.attributes = unpacker.get<float>(count * static_cast<std::size_t>(channels));
+  Boundary boundary;
+  boundary.vertices.channels = channels;
+  boundary.vertices.positions = unpacker.get<Vec3f>(count);
+  boundary.vertices.attributes = unpacker.get<float>(count * static_cast<std::size_t>(channels));
   unpacker.finish();
-  return rim;
+  return boundary;
 }
 
-// A band:
-//   head        BandHead
+// A seam strip:
+//   head        SeamStripHead
 //   positions   (own + foreign) * 3 float
-//   drifts      own float
+//   deviations      own float
 //   foreign     foreign * 2 u32
 //   interior    interior * 3 corners   u16 if own + foreign <= 65536, else u32
 //   border      border * 3 corners     likewise
 namespace {
 
-struct BandHead {
+struct SeamStripHead {
   WorkTileCounts counts;
-  float interior_drift = 0;
+  float interior_deviation = 0;
   float lost = 0;
   std::uint32_t padding = 0;
   double squared_sum = 0;
@@ -214,42 +214,43 @@ struct BandHead {
 
 }  // namespace
 
-std::vector<std::byte> encode_band(const Band& band) {
-  BandHead head;
-  head.counts = {band.own_count, band.rim_count, static_cast<std::uint32_t>(band.foreign.size()),
-                 static_cast<std::uint32_t>(band.interior.size()),
-                 static_cast<std::uint32_t>(band.border.size())};
-  head.interior_drift = band.interior_drift;
-  head.lost = band.lost;
-  head.squared_sum = band.squared_sum;
-  head.weight_sum = band.weight_sum;
-  Packer packer(sizeof head + band.positions.size() * 12 + band.drifts.size() * 4 +
-                band.foreign.size() * 8 + triangle_bytes(head.counts));
-  packer.put(std::span<const BandHead>(&head, 1));
-  packer.put(std::span<const Vec3f>(band.positions));
-  packer.put(std::span<const float>(band.drifts));
-  packer.put(std::span<const GhostRef>(band.foreign));
-  put_triangles(packer, head.counts, band.interior, band.border);
+std::vector<std::byte> encode_seam_strip(const SeamStrip& seam_strip) {
+  SeamStripHead head;
+  head.counts = {seam_strip.own_count, seam_strip.boundary_count,
+                 static_cast<std::uint32_t>(seam_strip.foreign.size()),
+                 static_cast<std::uint32_t>(seam_strip.interior.size()),
+                 static_cast<std::uint32_t>(seam_strip.border.size())};
+  head.interior_deviation = seam_strip.interior_deviation;
+  head.lost = seam_strip.lost;
+  head.squared_sum = seam_strip.squared_sum;
+  head.weight_sum = seam_strip.weight_sum;
+  Packer packer(sizeof head + seam_strip.positions.size() * 12 + seam_strip.deviations.size() * 4 +
+                seam_strip.foreign.size() * 8 + triangle_bytes(head.counts));
+  packer.put(std::span<const SeamStripHead>(&head, 1));
+  packer.put(std::span<const Vec3f>(seam_strip.positions));
+  packer.put(std::span<const float>(seam_strip.deviations));
+  packer.put(std::span<const GhostRef>(seam_strip.foreign));
+  put_triangles(packer, head.counts, seam_strip.interior, seam_strip.border);
   return packer.take();
 }
 
-Band decode_band(std::span<const std::byte> bytes) {
+SeamStrip decode_seam_strip(std::span<const std::byte> bytes) {
   Unpacker unpacker(bytes);
-  const BandHead head = unpacker.get<BandHead>(1)[0];
+  const SeamStripHead head = unpacker.get<SeamStripHead>(1)[0];
   const WorkTileCounts& counts = head.counts;
-  Band band;
-  band.rim_count = counts.rim;
-  band.own_count = counts.own;
-  band.positions = unpacker.get<Vec3f>(std::size_t{counts.own} + counts.foreign);
-  band.drifts = unpacker.get<float>(counts.own);
-  band.foreign = unpacker.get<GhostRef>(counts.foreign);
-  get_triangles(unpacker, counts, band.interior, band.border);
-  band.interior_drift = head.interior_drift;
-  band.lost = head.lost;
-  band.squared_sum = head.squared_sum;
-  band.weight_sum = head.weight_sum;
+  SeamStrip seam_strip;
+  seam_strip.boundary_count = counts.boundary;
+  seam_strip.own_count = counts.own;
+  seam_strip.positions = unpacker.get<Vec3f>(std::size_t{counts.own} + counts.foreign);
+  seam_strip.deviations = unpacker.get<float>(counts.own);
+  seam_strip.foreign = unpacker.get<GhostRef>(counts.foreign);
+  get_triangles(unpacker, counts, seam_strip.interior, seam_strip.border);
+  seam_strip.interior_deviation = head.interior_deviation;
+  seam_strip.lost = head.lost;
+  seam_strip.squared_sum = head.squared_sum;
+  seam_strip.weight_sum = head.weight_sum;
   unpacker.finish();
-  return band;
+  return seam_strip;
 }
 
 }  // namespace meshhier::storage

@@ -20,10 +20,10 @@ std::vector<std::byte> encode_work_tile(const WorkTile& tile);
 /// Requires bytes of encode_work_tile with the same `channels`; throws Error(internal) otherwise.
 WorkTile decode_work_tile(std::span<const std::byte> bytes, int channels);
 
-std::vector<std::byte> encode_rim(const WorkTile& tile);
-Rim decode_rim(std::span<const std::byte> bytes, int channels);
+std::vector<std::byte> encode_boundary(const WorkTile& tile);
+Boundary decode_boundary(std::span<const std::byte> bytes, int channels);
 
-std::vector<std::byte> encode_band(const Band& band);
-Band decode_band(std::span<const std::byte> bytes);
+std::vector<std::byte> encode_seam_strip(const SeamStrip& seam_strip);
+SeamStrip decode_seam_strip(std::span<const std::byte> bytes);
 
 }  // namespace meshhier::storage

@@ -183,7 +183,7 @@ TEST(ClusterTest, WithoutPlanesTheVertexNearestToTheMeanStands) {
 TEST(ClusterTest, BorderTrianglesShapeTheCell) {
   // A flat patch; only the ghosts' triangles say that there is a ridge at z = 1.
   BuildTile tile = tile_of({{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {1, 0, 1}}, {{0, 1, 2}}});
-  tile.mesh.rim_count = 4;
+  tile.mesh.boundary_count = 4;
   const std::uint32_t a = add_ghost(tile, {0, 5, 1});
   const std::uint32_t b = add_ghost(tile, {1, 5, 1});
   const auto z = [&] {
@@ -197,7 +197,7 @@ TEST(ClusterTest, BorderTrianglesShapeTheCell) {
 TEST(ClusterTest, ATriangleCountsOnceInACellHoweverManyCornersItHasThere) {
   // Equal areas in the planes z = 0 (two corners in the cell) and z = 1 (one corner).
   BuildTile tile = tile_of({{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}, {}});
-  tile.mesh.rim_count = 3;
+  tile.mesh.boundary_count = 3;
   const std::uint32_t a = add_ghost(tile, {0, 1, 0});
   const std::uint32_t b = add_ghost(tile, {1, 0, 1});
   const std::uint32_t c = add_ghost(tile, {0, 1, 1});

@@ -29,7 +29,7 @@ Star no_disc(Star star) {
                                      tests::count_of(star.mesh.positions) + 1};
   star.mesh.positions.resize(star.mesh.positions.size() + 2, star.mesh.positions[star.from]);
   star.mesh.triangles.push_back(extra);
-  star.drifts.push_back(0);
+  star.deviations.push_back(0);
   return star;
 }
 

@@ -1,6 +1,6 @@
 #include "cluster_simplify/collapse_driver.h"
 
-#include "bench/hell.h"
+#include "bench/stress.h"
 #include "tests/cluster_simplify/test_tiles.h"
 
 #include <algorithm>
@@ -53,8 +53,8 @@ class GreedyCosts {
 };
 
 /// Triangles gone through to halve the vertices of the case.
-std::uint64_t triangles_gone_through(std::string_view hell_case, std::uint32_t size) {
-  const bench::LoadedMesh made = bench::make_hell(hell_case, size);
+std::uint64_t triangles_gone_through(std::string_view stress_case, std::uint32_t size) {
+  const bench::LoadedMesh made = bench::make_stress(stress_case, size);
   tests::TestMesh mesh;
   for (const Vec3d& p : made.positions)
     mesh.positions.push_back(to_float(p));
@@ -62,17 +62,17 @@ std::uint64_t triangles_gone_through(std::string_view hell_case, std::uint32_t s
   const BuildTile tile = tests::tile_of(mesh);
   CollapseMesh collapsing(tile.mesh);
   GreedyCosts costs(collapsing, tile.mesh.vertices.positions);
-  DriftMeter drift(collapsing, tile.history.weights);
-  collapse_edges(collapsing, costs, drift, tile.mesh.own_count / 2);
+  DeviationMeter deviation(collapsing, tile.history.weights);
+  collapse_edges(collapsing, costs, deviation, tile.mesh.own_count / 2);
   EXPECT_LE(costs.collapses(), tile.mesh.own_count);
   return costs.triangles();
 }
 
 TEST(CollapseDriverTest, AVertexOfManyTrianglesTakesStepsInProportionToThem) {
-  for (const std::string_view hell_case : {"hub", "book"}) {
-    SCOPED_TRACE(hell_case);
-    const std::uint64_t once = triangles_gone_through(hell_case, 5000);
-    const std::uint64_t four_times = triangles_gone_through(hell_case, 20000);
+  for (const std::string_view stress_case : {"hub", "book"}) {
+    SCOPED_TRACE(stress_case);
+    const std::uint64_t once = triangles_gone_through(stress_case, 5000);
+    const std::uint64_t four_times = triangles_gone_through(stress_case, 20000);
     EXPECT_LE(four_times, 5 * once);
     EXPECT_LE(four_times, 20000U * 32U);
   }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cluster_simplify/collapse_mesh.h"
-#include "cluster_simplify/drift_meter.h"
+#include "cluster_simplify/deviation_meter.h"
 #include "cluster_simplify/edge_star.h"
 #include "cluster_simplify/local_frame.h"
 #include "cluster_simplify/representatives.h"
@@ -30,10 +30,10 @@ class Collapsing {
         frame_(tile.mesh.vertices.positions),
         places_(frame_.to_local(tile.mesh.vertices.positions)),
         vertices_(tile.mesh.vertices),
-        drift_(mesh_, tile.history.weights) {}
+        deviation_(mesh_, tile.history.weights) {}
 
   cluster_simplify::CollapseMesh& mesh() { return mesh_; }
-  const cluster_simplify::DriftMeter& drift() const { return drift_; }
+  const cluster_simplify::DeviationMeter& deviation() const { return deviation_; }
   const cluster_simplify::LocalFrame& frame() const { return frame_; }
   const std::vector<Vec3f>& places() const { return places_; }  ///< in frame()
 
@@ -42,7 +42,7 @@ class Collapsing {
     star_.gather(mesh_, from, to);
     if (star_.is_disc())
       star_.look_from(place, places_);
-    drift_.note(places_, star_, place);
+    deviation_.note(places_, star_, place);
     if (star_.is_disc())
       mesh_.collapse_disc(star_);
     else
@@ -58,7 +58,7 @@ class Collapsing {
   }
 
   cluster_simplify::Contraction choose(std::uint32_t target) {
-    return cluster_simplify::choose_representatives({mesh_, vertices_, places_, frame_, drift_},
+    return cluster_simplify::choose_representatives({mesh_, vertices_, places_, frame_, deviation_},
                                                     target);
   }
 
@@ -67,7 +67,7 @@ class Collapsing {
   cluster_simplify::LocalFrame frame_;
   std::vector<Vec3f> places_;
   VertexArray vertices_;
-  cluster_simplify::DriftMeter drift_;
+  cluster_simplify::DeviationMeter deviation_;
   cluster_simplify::EdgeStar star_;
 };
 

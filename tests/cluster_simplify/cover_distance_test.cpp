@@ -80,11 +80,11 @@ Scene fan_scene(std::uint64_t seed, double height) {
     return p + Vec3d{0, 0, height * random_point(seed * 4 + i, 11).x};
   };
   const Vec3d middle = lifted({1.2 + 0.3 * random_point(seed, 17).x, 1.3, 0}, 3);
-  std::array<Vec3d, 3> rim;
+  std::array<Vec3d, 3> boundary;
   for (std::size_t k = 0; k < 3; ++k)
-    rim[k] = lifted(scene.triangle[k], k);
+    boundary[k] = lifted(scene.triangle[k], k);
   for (std::size_t k = 0; k < 3; ++k)
-    scene.surface.push_back({middle, rim[k], rim[(k + 1) % 3]});
+    scene.surface.push_back({middle, boundary[k], boundary[(k + 1) % 3]});
   return scene;
 }
 

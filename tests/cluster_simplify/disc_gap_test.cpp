@@ -16,7 +16,7 @@
 namespace meshhier::cluster_simplify {
 namespace {
 
-using tests::largest_drift;
+using tests::largest_deviation;
 using tests::Star;
 using tests::StarMesh;
 using tests::StarShape;
@@ -26,10 +26,10 @@ std::optional<DiscGap> measure(DiscGapMeter& meter, const Star& star, const Star
                                float enough = 0) {
   if (!mesh.edge_star().is_disc())
     return std::nullopt;
-  return meter.measure(star.mesh.positions, star.drifts, mesh.edge_star(), star.place, enough);
+  return meter.measure(star.mesh.positions, star.deviations, mesh.edge_star(), star.place, enough);
 }
 
-TEST(DiscGapTest, NoSampleIsBeyondTheDrifts) {
+TEST(DiscGapTest, NoSampleIsBeyondTheDeviations) {
   DiscGapMeter meter;
   for (const tests::StarRelief& relief :
        {tests::StarRelief{"flat"}, tests::StarRelief{"bumpy", 0.2}, tests::StarRelief{"steep", 1.0},
@@ -60,7 +60,7 @@ TEST(DiscGapTest, FlatGroundStaysWhereItIs) {
     const std::optional<DiscGap> gap = measure(meter, star, mesh);
     if (!gap)
       continue;
-    EXPECT_LE(largest_drift(*gap), 2e-5F);
+    EXPECT_LE(largest_deviation(*gap), 2e-5F);
     EXPECT_EQ(gap->from, 0);
     EXPECT_EQ(gap->to, 0);
   }
@@ -78,12 +78,12 @@ TEST(DiscGapTest, APeakThatGoesIsAsFarAsItWasHigh) {
   const StarMesh mesh(star);
   const std::optional<DiscGap> gap = measure(meter, star, mesh);
   ASSERT_TRUE(gap);
-  EXPECT_NEAR(largest_drift(*gap), 0.25F, 1e-4);
+  EXPECT_NEAR(largest_deviation(*gap), 0.25F, 1e-4);
   EXPECT_NEAR(gap->from, 0.25F, 1e-4);
   EXPECT_EQ(gap->to, 0);
 }
 
-TEST(DiscGapTest, BelowEnoughDriftsMayBeLooseButNeverWrong) {
+TEST(DiscGapTest, BelowEnoughDeviationsMayBeLooseButNeverWrong) {
   DiscGapMeter meter;
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     SCOPED_TRACE(seed);
@@ -92,11 +92,11 @@ TEST(DiscGapTest, BelowEnoughDriftsMayBeLooseButNeverWrong) {
     const std::optional<DiscGap> tight = measure(meter, star, mesh);
     if (!tight)
       continue;
-    const float exact = largest_drift(*tight);
+    const float exact = largest_deviation(*tight);
     for (const float enough : {exact / 2, exact * 1.5F, 10.0F}) {
       const std::optional<DiscGap> loose = measure(meter, star, mesh, enough);
       ASSERT_TRUE(loose);
-      ASSERT_LE(largest_drift(*loose), std::max(exact, enough * 1.001F));
+      ASSERT_LE(largest_deviation(*loose), std::max(exact, enough * 1.001F));
       expect_covers(star, mesh, *loose);
     }
   }
@@ -113,7 +113,7 @@ std::vector<Refused> refused() {
   const auto add = [&](const std::string& name, tests::TestMesh mesh, bool is_disc) {
     Star star{std::move(mesh), 0, 1, {}, {}};
     star.place = (star.mesh.positions[0] + star.mesh.positions[1]) * 0.5F;
-    star.drifts.resize(star.mesh.triangles.size());
+    star.deviations.resize(star.mesh.triangles.size());
     result.push_back({name, std::move(star), is_disc});
   };
   const tests::TestMesh disc = make_star(StarShape::closed, {"flat"}, 0, 5).mesh;
@@ -161,7 +161,7 @@ TEST(DiscGapTest, WhatShowsNoDiscIsRefusedAndForgotten) {
   const StarMesh plain_mesh(plain);
   const std::optional<DiscGap> first = measure(meter, plain, plain_mesh);
   ASSERT_TRUE(first);
-  const float expected = largest_drift(*first);
+  const float expected = largest_deviation(*first);
   for (const auto& [name, star, is_disc] : refused()) {
     SCOPED_TRACE(name);
     const StarMesh mesh(star);
@@ -169,7 +169,7 @@ TEST(DiscGapTest, WhatShowsNoDiscIsRefusedAndForgotten) {
     EXPECT_FALSE(measure(meter, star, mesh));
     const std::optional<DiscGap> again = measure(meter, plain, plain_mesh);
     ASSERT_TRUE(again);
-    EXPECT_EQ(largest_drift(*again), expected);
+    EXPECT_EQ(largest_deviation(*again), expected);
   }
 }
 
@@ -183,7 +183,7 @@ TEST(DiscGapTest, StarsOnOpenBordersAreNoDiscs) {
 }
 
 // Four links at a time, of two ends: whichever are the last of either.
-TEST(DiscGapTest, OnRingsOfAnySizeNoSampleIsBeyondTheDrifts) {
+TEST(DiscGapTest, OnRingsOfAnySizeNoSampleIsBeyondTheDeviations) {
   DiscGapMeter meter;
   for (std::uint32_t size = 4; size <= 28; ++size) {
     for (const std::uint32_t turn : {1U, size / 3, size / 2, size - 1}) {
@@ -202,9 +202,9 @@ TEST(DiscGapTest, OnRingsOfAnySizeNoSampleIsBeyondTheDrifts) {
 TEST(DiscGapTest, WhatIsBeyondAllNumbersIsRefused) {
   DiscGapMeter meter;
   const Star plain = make_star(StarShape::closed, {"bumpy", 0.2}, 0, 7);
-  for (std::size_t t = 0; t < plain.drifts.size(); ++t) {
+  for (std::size_t t = 0; t < plain.deviations.size(); ++t) {
     Star star = plain;
-    star.drifts[t] = std::numeric_limits<float>::infinity();
+    star.deviations[t] = std::numeric_limits<float>::infinity();
     EXPECT_FALSE(measure(meter, star, StarMesh(star))) << "triangle " << t;
   }
 }

@@ -230,7 +230,7 @@ bool is_disc(const TestMesh& mesh, std::uint32_t from, std::uint32_t to) {
 }
 
 TEST(EdgeStarTest, ADiscHasNoMoreTrianglesThanThereIsRoomFor) {
-  const std::uint32_t most = EdgeStar::kMostLinks - 4;  // a rim vertex has four
+  const std::uint32_t most = EdgeStar::kMostLinks - 4;  // a boundary vertex has four
   for (const auto& [spokes, fits] : {std::pair(most, true), std::pair(most + 1, false)}) {
     EXPECT_EQ(is_disc(bipyramid(spokes), 0, 1), fits);
     EXPECT_EQ(is_disc(bipyramid(spokes), 1, 0), fits);

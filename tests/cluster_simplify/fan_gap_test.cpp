@@ -15,7 +15,7 @@
 namespace meshhier::cluster_simplify {
 namespace {
 
-using tests::largest_drift;
+using tests::largest_deviation;
 using tests::Star;
 using tests::StarMesh;
 using tests::StarShape;
@@ -45,10 +45,10 @@ std::vector<Family> families() {
 }
 
 std::optional<DiscGap> measure(FanGapMeter& meter, const Star& star, const StarMesh& mesh) {
-  return meter.measure(star.mesh.positions, star.drifts, mesh.collapse());
+  return meter.measure(star.mesh.positions, star.deviations, mesh.collapse());
 }
 
-TEST(FanGapTest, NoSampleIsBeyondTheDrifts) {
+TEST(FanGapTest, NoSampleIsBeyondTheDeviations) {
   FanGapMeter meter;
   for (const auto& [shape, relief, least] : families()) {
     const int measured = expect_all_covered(
@@ -117,7 +117,7 @@ TEST(FanGapTest, AStraightBorderOfFlatGroundStaysWhereItIs) {
     const std::optional<DiscGap> gap = measure(meter, star, star_mesh);
     ASSERT_TRUE(gap);
     EXPECT_LE(expect_covers(star, star_mesh, *gap), 1e-12);
-    EXPECT_LE(largest_drift(*gap), 1e-5F);
+    EXPECT_LE(largest_deviation(*gap), 1e-5F);
   }
 }
 
@@ -132,7 +132,7 @@ TEST(FanGapTest, ABorderCornerThatGoesIsAsFarAsItStoodOut) {
   ASSERT_TRUE(gap);
   EXPECT_NEAR(expect_covers(star, star_mesh, *gap), 0.5, 1e-6);
   EXPECT_NEAR(gap->from, 0.5F, 1e-5);
-  EXPECT_LE(largest_drift(*gap), 0.75F);
+  EXPECT_LE(largest_deviation(*gap), 0.75F);
 }
 
 TEST(FanGapTest, WhatIsNoDiscIsRefused) {
@@ -140,7 +140,7 @@ TEST(FanGapTest, WhatIsNoDiscIsRefused) {
   const auto expect_refused = [&](const std::string& name, tests::TestMesh mesh) {
     Star star{std::move(mesh), 0, 1, {}, {}};
     star.place = (star.mesh.positions[0] + star.mesh.positions[1]) * 0.5F;
-    star.drifts.resize(star.mesh.triangles.size());
+    star.deviations.resize(star.mesh.triangles.size());
     const StarMesh star_mesh(star);
     EXPECT_FALSE(measure(meter, star, star_mesh)) << name;
   };

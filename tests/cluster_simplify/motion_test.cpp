@@ -1,4 +1,4 @@
-// Drifts of whole contractions: of `cluster`, by motion, and of all other methods.
+// Deviations of whole contractions: of `cluster`, by motion, and of all other methods.
 #include "cluster_simplify/motion.h"
 
 #include "cluster_simplify/contraction.h"
@@ -28,14 +28,14 @@ using tests::surface_of;
 constexpr int kSteps = 4;
 constexpr double kSlack = 1e-6;  // of single precision, of the size of the meshes
 
-/// What the triangles around each representative may have drifted, as neighbours will see it.
-double drift_of(const Contraction& contraction, const tests::MeshTriangle& t) {
-  double drift = std::numeric_limits<double>::infinity();
+/// What the triangles around each representative may have deviated, as neighbours will see it.
+double deviation_of(const Contraction& contraction, const tests::MeshTriangle& t) {
+  double deviation = std::numeric_limits<double>::infinity();
   for (const std::uint32_t v : t) {
-    if (v < contraction.drift.around.size())
-      drift = std::min(drift, double{contraction.drift.around[v]});
+    if (v < contraction.deviation.around.size())
+      deviation = std::min(deviation, double{contraction.deviation.around[v]});
   }
-  return drift;
+  return deviation;
 }
 
 double size_of(const BuildTile& tile) {
@@ -45,46 +45,47 @@ double size_of(const BuildTile& tile) {
   return size;
 }
 
-/// Every point that is drawn is within its triangle's drift of the joined surface.
+/// Every point that is drawn is within its triangle's deviation of the joined surface.
 void expect_drawn_near(const BuildTile& tile, const Contraction& found,
                        const tests::TestMesh& image, double slack) {
   const std::vector<Corners> before = surface_of(tile.mesh);
   const auto own = static_cast<std::uint32_t>(found.representatives.size());
   for (const tests::MeshTriangle& t : image.triangles) {
     const bool is_interior = std::ranges::all_of(t, [&](std::uint32_t v) { return v < own; });
-    const double drift = is_interior ? std::min(drift_of(found, t), double{found.drift.interior})
-                                     : drift_of(found, t);
+    const double deviation =
+        is_interior ? std::min(deviation_of(found, t), double{found.deviation.interior})
+                    : deviation_of(found, t);
     const Corners corners = surface_of(tests::TestMesh{image.positions, {t}})[0];
     for (const Vec3d p : samples_of(corners, kSteps))
-      ASSERT_LE(distance_to_surface(p, before), drift + slack);
+      ASSERT_LE(distance_to_surface(p, before), deviation + slack);
   }
 }
 
-/// Every point of the joined surface is within the drift of a drawn triangle, or within `lost` of
-/// one.
+/// Every point of the joined surface is within the deviation of a drawn triangle, or within `lost`
+/// of one.
 void expect_joined_near(const BuildTile& tile, const Contraction& found,
                         const tests::TestMesh& image, double slack) {
   if (image.triangles.empty()) {
-    EXPECT_TRUE(tile.mesh.interior.empty() || std::isinf(found.drift.lost));
+    EXPECT_TRUE(tile.mesh.interior.empty() || std::isinf(found.deviation.lost));
     return;
   }
   const std::vector<Corners> after = surface_of(image);
-  std::vector<double> drifts;
+  std::vector<double> deviations;
   for (const tests::MeshTriangle& t : image.triangles)
-    drifts.push_back(std::max(drift_of(found, t), double{found.drift.lost}));
+    deviations.push_back(std::max(deviation_of(found, t), double{found.deviation.lost}));
   for (const Corners& corners : surface_of(tile.mesh)) {
     for (const Vec3d p : samples_of(corners, kSteps)) {
       double missing = std::numeric_limits<double>::infinity();
       for (std::size_t t = 0; t < after.size(); ++t)
-        missing = std::min(missing, tests::distance_to_triangle(p, after[t]) - drifts[t]);
+        missing = std::min(missing, tests::distance_to_triangle(p, after[t]) - deviations[t]);
       ASSERT_LE(missing, slack);
     }
   }
 }
 
-void expect_drift_holds(const BuildTile& tile, const Contraction& found) {
-  ASSERT_EQ(found.drift.around.size(), found.representatives.size());
-  EXPECT_GE(found.drift.squared_sum, 0);
+void expect_deviation_holds(const BuildTile& tile, const Contraction& found) {
+  ASSERT_EQ(found.deviation.around.size(), found.representatives.size());
+  EXPECT_GE(found.deviation.squared_sum, 0);
   const tests::TestMesh image = tests::image_of(tile, found);
   const double slack = kSlack * size_of(tile);
   expect_drawn_near(tile, found, image, slack);
@@ -126,9 +127,9 @@ std::vector<tests::NamedMesh> small_meshes() {
           {"one triangle", tests::soup(1)}};
 }
 
-class ContractionDriftTest : public testing::TestWithParam<std::size_t> {};
+class ContractionDeviationTest : public testing::TestWithParam<std::size_t> {};
 
-TEST_P(ContractionDriftTest, HoldsBothWaysOnAnything) {
+TEST_P(ContractionDeviationTest, HoldsBothWaysOnAnything) {
   const auto& [method, options] = all_methods()[GetParam()];
   for (const auto& [name, mesh] : small_meshes()) {
     std::vector<BuildTile> tiles{tests::tile_of(mesh), tests::part_of(mesh, 0.3F)};
@@ -139,7 +140,7 @@ TEST_P(ContractionDriftTest, HoldsBothWaysOnAnything) {
           continue;
         SCOPED_TRACE(method + " of " + name + (tile.mesh.ghosts.empty() ? "" : ", a part") +
                      " to " + std::to_string(target));
-        expect_drift_holds(tile, contract(tile, target, {}, options));
+        expect_deviation_holds(tile, contract(tile, target, {}, options));
         if (HasFailure())
           return;
       }
@@ -147,7 +148,7 @@ TEST_P(ContractionDriftTest, HoldsBothWaysOnAnything) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, ContractionDriftTest,
+INSTANTIATE_TEST_SUITE_P(Methods, ContractionDeviationTest,
                          testing::Range(std::size_t{0}, std::size_t{6}),
                          [](const auto& tested) { return all_methods()[tested.param].first; });
 
@@ -164,8 +165,8 @@ TEST(LostPiecesTest, ATriangleThatHungOnACornerIsLost) {
   tests::Collapsing collapsing(tile);
   collapsing.collapse(5, 4);
   const Contraction found = collapsing.choose(4);
-  EXPECT_GE(found.drift.lost, 2);
-  expect_drift_holds(tile, found);
+  EXPECT_GE(found.deviation.lost, 2);
+  expect_deviation_holds(tile, found);
 }
 
 TEST(LostPiecesTest, AFanThatHungOnACornerIsLost) {
@@ -177,8 +178,8 @@ TEST(LostPiecesTest, AFanThatHungOnACornerIsLost) {
   collapsing.collapse(6, 5);
   collapsing.collapse(5, 4);
   const Contraction found = collapsing.choose(4);
-  EXPECT_GE(found.drift.lost, 2);
-  expect_drift_holds(tile, found);
+  EXPECT_GE(found.deviation.lost, 2);
+  expect_deviation_holds(tile, found);
 }
 
 TEST(LostPiecesTest, ALonePieceIsLost) {
@@ -189,9 +190,9 @@ TEST(LostPiecesTest, ALonePieceIsLost) {
   tests::Collapsing collapsing(tile);
   collapsing.collapse(first + 1, first);
   const Contraction found = collapsing.choose(first);
-  EXPECT_GE(found.drift.lost, 3.5);
-  EXPECT_LE(found.drift.lost, 6.5);
-  expect_drift_holds(tile, found);
+  EXPECT_GE(found.deviation.lost, 3.5);
+  EXPECT_LE(found.deviation.lost, 6.5);
+  expect_deviation_holds(tile, found);
 }
 
 // ---- motion --------------------------------------------------------------------------------
@@ -203,12 +204,12 @@ TEST(MotionTest, IsHowFarTheCornersWent) {
   contraction.parent_of = {0, 1, 2, 3, 4, 5};
   contraction.representatives.positions = tile.mesh.vertices.positions;
   contraction.representatives.positions[5].z = 0.5F;  // the corner of one triangle, or of two
-  const Drift drift = motion_of(tile, contraction);
-  EXPECT_FLOAT_EQ(drift.interior, 0.5F);
-  EXPECT_FLOAT_EQ(drift.around[5], 0.5F);
-  EXPECT_EQ(drift.around[0], 0);
-  EXPECT_EQ(drift.lost, 0);
-  EXPECT_DOUBLE_EQ(drift.squared_sum, 6 * 0.25);
+  const Deviation deviation = motion_of(tile, contraction);
+  EXPECT_FLOAT_EQ(deviation.interior, 0.5F);
+  EXPECT_FLOAT_EQ(deviation.around[5], 0.5F);
+  EXPECT_EQ(deviation.around[0], 0);
+  EXPECT_EQ(deviation.lost, 0);
+  EXPECT_DOUBLE_EQ(deviation.squared_sum, 6 * 0.25);
 }
 
 TEST(MotionTest, GhostsStayAndBorderTrianglesAreNotInterior) {
@@ -216,10 +217,10 @@ TEST(MotionTest, GhostsStayAndBorderTrianglesAreNotInterior) {
   Contraction contraction;
   contraction.parent_of = {0};
   contraction.representatives.positions = {{0, 0, 2}};
-  const Drift drift = motion_of(tile, contraction);
-  EXPECT_EQ(drift.interior, 0);
-  EXPECT_FLOAT_EQ(drift.around[0], 2);
-  EXPECT_EQ(drift.lost, 0);
+  const Deviation deviation = motion_of(tile, contraction);
+  EXPECT_EQ(deviation.interior, 0);
+  EXPECT_FLOAT_EQ(deviation.around[0], 2);
+  EXPECT_EQ(deviation.lost, 0);
 }
 
 TEST(MotionTest, APieceInOnePlaceIsLost) {
@@ -231,10 +232,10 @@ TEST(MotionTest, APieceInOnePlaceIsLost) {
   Contraction contraction;
   contraction.parent_of = {0, 1, 2, 3, 4, 4, 4};
   contraction.representatives.positions.assign(mesh.positions.begin(), mesh.positions.begin() + 5);
-  const Drift drift = motion_of(tile, contraction);
-  EXPECT_FLOAT_EQ(drift.around[4], 1);
-  EXPECT_FLOAT_EQ(drift.lost, 3);  // to (1, 0, 0), and once more as far as its corners went
-  expect_drift_holds(tile, {contraction.parent_of, contraction.representatives, drift, {}});
+  const Deviation deviation = motion_of(tile, contraction);
+  EXPECT_FLOAT_EQ(deviation.around[4], 1);
+  EXPECT_FLOAT_EQ(deviation.lost, 3);  // to (1, 0, 0), and once more as far as its corners went
+  expect_deviation_holds(tile, {contraction.parent_of, contraction.representatives, deviation, {}});
 }
 
 TEST(MotionTest, NothingDrawnIsInfinitelyFar) {
@@ -258,8 +259,8 @@ TEST(MotionTest, ABridgeThatIsDrawnNoMoreIsAsFarAsItsMiddle) {
   contraction.parent_of = {0, 1, 2, 1, 3, 4, 3, 5};
   contraction.representatives.positions = {mesh.positions[0], mesh.positions[1], mesh.positions[2],
                                            mesh.positions[4], mesh.positions[5], mesh.positions[7]};
-  const Drift drift = motion_of(tile, contraction);
-  expect_drift_holds(tile, {contraction.parent_of, contraction.representatives, drift, {}});
+  const Deviation deviation = motion_of(tile, contraction);
+  expect_deviation_holds(tile, {contraction.parent_of, contraction.representatives, deviation, {}});
 }
 
 }  // namespace

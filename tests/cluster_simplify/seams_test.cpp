@@ -50,28 +50,28 @@ struct World {
   std::vector<std::uint32_t> tile_of;
   std::vector<std::uint32_t> local_of;          ///< set by number()
   std::vector<std::vector<std::uint32_t>> own;  ///< tile, local -> global
-  std::vector<std::uint32_t> rim_counts;
+  std::vector<std::uint32_t> boundary_counts;
 
   /// Numbers each tile's vertices, the corners of border triangles first.
   void number(std::uint32_t tile_count) {
-    std::vector<bool> on_rim(positions.size());
+    std::vector<bool> on_boundary(positions.size());
     for (const tests::MeshTriangle& t : triangles) {
       if (!is_inside(t)) {
         for (const std::uint32_t v : t)
-          on_rim[v] = true;
+          on_boundary[v] = true;
       }
     }
     own.assign(tile_count, {});
-    rim_counts.assign(tile_count, 0);
+    boundary_counts.assign(tile_count, 0);
     local_of.assign(positions.size(), 0);
-    for (const bool rim : {true, false}) {
+    for (const bool boundary : {true, false}) {
       for (std::uint32_t v = 0; v < positions.size(); ++v) {
-        if (on_rim[v] != rim)
+        if (on_boundary[v] != boundary)
           continue;
         std::vector<std::uint32_t>& tile = own[tile_of[v]];
         local_of[v] = static_cast<std::uint32_t>(tile.size());
         tile.push_back(v);
-        rim_counts[tile_of[v]] += rim ? 1 : 0;
+        boundary_counts[tile_of[v]] += boundary ? 1 : 0;
       }
     }
   }
@@ -131,7 +131,7 @@ WorkTile work_tile(const World& world, std::uint32_t tile) {
     work.vertices.positions.push_back(world.positions[v]);
     work.history.weights.push_back(world.weights[v]);
   }
-  work.rim_count = world.rim_counts[tile];
+  work.boundary_count = world.boundary_counts[tile];
   const auto own_count = static_cast<std::uint32_t>(work.vertices.size());
   std::set<GhostRef> refs;
   for (const tests::MeshTriangle& t : world.border(tile)) {
@@ -156,12 +156,12 @@ WorkTile work_tile(const World& world, std::uint32_t tile) {
   return work;
 }
 
-Rim rim_of(const World& world, std::uint32_t tile) {
-  Rim rim;
-  for (std::uint32_t i = 0; i < world.rim_counts[tile]; ++i) {
-    rim.vertices.positions.push_back(world.positions[world.own[tile][i]]);
+Boundary boundary_of(const World& world, std::uint32_t tile) {
+  Boundary boundary;
+  for (std::uint32_t i = 0; i < world.boundary_counts[tile]; ++i) {
+    boundary.vertices.positions.push_back(world.positions[world.own[tile][i]]);
   }
-  return rim;
+  return boundary;
 }
 
 void fill_all(BuildTile& tile, const World& world) {
@@ -169,7 +169,7 @@ void fill_all(BuildTile& tile, const World& world) {
   for (const GhostRef& ghost : tile.mesh.ghosts)
     neighbours.insert(ghost.tile);
   for (const std::uint32_t neighbour : neighbours)
-    fill_ghosts(tile, neighbour, rim_of(world, neighbour));
+    fill_ghosts(tile, neighbour, boundary_of(world, neighbour));
 }
 
 BuildTile build_tile(const World& world, std::uint32_t tile) {
@@ -184,7 +184,7 @@ BuildTile build_tile(const World& world, std::uint32_t tile) {
 void expect_tile(const World& world, std::uint32_t tile, const BuildTile& built) {
   const TileMesh& mesh = built.mesh;
   ASSERT_EQ(mesh.own_count, world.own[tile].size());
-  EXPECT_EQ(mesh.rim_count, world.rim_counts[tile]);
+  EXPECT_EQ(mesh.boundary_count, world.boundary_counts[tile]);
   ASSERT_EQ(mesh.vertices.size(), mesh.own_count + mesh.ghosts.size());
   EXPECT_TRUE(std::ranges::is_sorted(mesh.ghosts));
   EXPECT_EQ(std::ranges::adjacent_find(mesh.ghosts), mesh.ghosts.end());
@@ -200,7 +200,7 @@ void expect_tile(const World& world, std::uint32_t tile, const BuildTile& built)
   for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) {
     const std::uint32_t v = world.global(mesh, tile, TileVertex{i});
     ASSERT_EQ(mesh.vertices.positions[i], world.positions[v]) << "vertex " << i;
-    ASSERT_EQ(used[i], i < mesh.rim_count || i >= mesh.own_count) << "vertex " << i;
+    ASSERT_EQ(used[i], i < mesh.boundary_count || i >= mesh.own_count) << "vertex " << i;
   }
 }
 
@@ -237,7 +237,7 @@ WorkTile small_tile() {
   WorkTile tile;
   tile.vertices.positions = {{0, 0, 0}, {1, 0, 0}};
   tile.history = {{1, 1}};
-  tile.rim_count = 2;
+  tile.boundary_count = 2;
   tile.foreign = {{2, 0}, {2, 1}, {2, 2}, {5, 0}};
   return tile;
 }
@@ -271,16 +271,16 @@ TEST(ResolveTest, OnlyExactDuplicatesGoAndOnlyIfAskedTo) {
               ElementsAre(triangle(0, 1, 2), triangle(0, 1, 2), triangle(0, 2, 1)));
 }
 
-TEST(FillGhostsTest, AGhostOutsideTheRimIsADefect) {
+TEST(FillGhostsTest, AGhostOutsideTheBoundaryIsADefect) {
   WorkTile work = small_tile();
   work.border = {triangle(0, 1, 4)};
   const std::vector<GhostRef> mapped = work.foreign;
   BuildTile tile = resolve(work, mapped, true);
-  Rim rim;
-  rim.vertices.positions = {{7, 7, 7}, {8, 8, 8}};  // the ghost is number 2
+  Boundary boundary;
+  boundary.vertices.positions = {{7, 7, 7}, {8, 8, 8}};  // the ghost is number 2
   try {
-    fill_ghosts(tile, 2, rim);
-    FAIL() << "a ghost outside the rim was accepted";
+    fill_ghosts(tile, 2, boundary);
+    FAIL() << "a ghost outside the boundary was accepted";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::internal);
   }
@@ -378,7 +378,7 @@ Contraction wild_contraction(const BuildTile& joined, std::uint32_t target, std:
     contraction.representatives.positions.push_back({tests::hash_noise(r, seed + 1),
                                                      tests::hash_noise(r, seed + 2),
                                                      tests::hash_noise(r, seed + 3)});
-    contraction.drift.around.push_back(tests::hash_noise(r, seed + 4) + 1);
+    contraction.deviation.around.push_back(tests::hash_noise(r, seed + 4) + 1);
   }
   return contraction;
 }
@@ -424,13 +424,14 @@ TEST(ApplyTest, TheTilesOfALevelShowTheImageOfTheMeshUnderOneMap) {
       SCOPED_TRACE(target);
       Contracted contracted = contract_pairs(world, target);
       World& above = contracted.world;
-      // Locals as the tiles have them; what a rim is before its neighbours are known may shrink.
+      // Locals as the tiles have them; what a boundary is before its neighbours are known may
+      // shrink.
       above.own.assign(2, {});
-      above.rim_counts.assign(2, 0);
+      above.boundary_counts.assign(2, 0);
       for (std::uint32_t v = 0; v < above.positions.size(); ++v)
         above.own[above.tile_of[v]].push_back(v);
       for (std::uint32_t pair = 0; pair < 2; ++pair)
-        above.rim_counts[pair] = contracted.tiles[pair].tile.rim_count;
+        above.boundary_counts[pair] = contracted.tiles[pair].tile.boundary_count;
 
       for (std::uint32_t pair = 0; pair < 2; ++pair) {
         WorkTile work = contracted.tiles[pair].tile;
@@ -441,7 +442,7 @@ TEST(ApplyTest, TheTilesOfALevelShowTheImageOfTheMeshUnderOneMap) {
           mapped.push_back({above.tile_of[v], v - first});
         }
         BuildTile tile = resolve(std::move(work), mapped, true);
-        fill_all(tile, above);  // throws if a ghost is not in its tile's rim
+        fill_all(tile, above);  // throws if a ghost is not in its tile's boundary
         EXPECT_EQ(above.global(tile.mesh, pair, tile.mesh.interior), above.interior(pair));
         EXPECT_EQ(above.global(tile.mesh, pair, tile.mesh.border), above.border(pair));
         for (std::uint32_t i = tile.mesh.own_count; i < tile.mesh.vertices.size(); ++i) {
@@ -453,7 +454,7 @@ TEST(ApplyTest, TheTilesOfALevelShowTheImageOfTheMeshUnderOneMap) {
   }
 }
 
-TEST(ApplyTest, PutsTheRimFirst) {
+TEST(ApplyTest, PutsTheBoundaryFirst) {
   const World world = make_world(tests::sphere(1200), 4, false);
   const BuildTile joined = join_pair(world, 0);
   const ContractedTile result = apply(joined, wild_contraction(joined, 150, 9));
@@ -464,10 +465,10 @@ TEST(ApplyTest, PutsTheRimFirst) {
         on_border[raw(v)] = true;
     }
   }
-  EXPECT_GT(result.tile.rim_count, 0U);
-  EXPECT_LT(result.tile.rim_count, 150U);
+  EXPECT_GT(result.tile.boundary_count, 0U);
+  EXPECT_LT(result.tile.boundary_count, 150U);
   for (std::uint32_t i = 0; i < 150; ++i)
-    EXPECT_EQ(on_border[i], i < result.tile.rim_count) << i;
+    EXPECT_EQ(on_border[i], i < result.tile.boundary_count) << i;
 }
 
 TEST(ApplyTest, WeightsAreThoseOfTheVerticesUnderIt) {
@@ -491,27 +492,27 @@ TEST(ApplyTest, RepeatsGoMirrorImagesStay) {
   Contraction contraction;
   contraction.parent_of = {0, 1, 2, 2};
   contraction.representatives.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  contraction.drift.around = {0, 0, 0};
+  contraction.deviation.around = {0, 0, 0};
   EXPECT_THAT(apply(tile, contraction).tile.interior,
               ElementsAre(triangle(0, 1, 2), triangle(0, 2, 1)));
 }
 
-TEST(ApplyTest, DriftsFollowTheirRepresentatives) {
+TEST(ApplyTest, DeviationsFollowTheirRepresentatives) {
   const World world = make_world(tests::sphere(1200), 4, false);
   const BuildTile joined = join_pair(world, 0);
   Contraction contraction = wild_contraction(joined, 80, 5);
-  contraction.drift.interior = 7;
-  contraction.drift.lost = 8;
-  contraction.drift.squared_sum = 9;
+  contraction.deviation.interior = 7;
+  contraction.deviation.lost = 8;
+  contraction.deviation.squared_sum = 9;
   const ContractedTile result = apply(joined, contraction);
-  ASSERT_THAT(result.drift.around, SizeIs(80));
+  ASSERT_THAT(result.deviation.around, SizeIs(80));
   for (std::uint32_t i = 0; i < joined.mesh.own_count; ++i) {
-    EXPECT_EQ(result.drift.around[result.parent_map[i]],
-              contraction.drift.around[contraction.parent_of[i]]);
+    EXPECT_EQ(result.deviation.around[result.parent_map[i]],
+              contraction.deviation.around[contraction.parent_of[i]]);
   }
-  EXPECT_EQ(result.drift.interior, 7);
-  EXPECT_EQ(result.drift.lost, 8);
-  EXPECT_EQ(result.drift.squared_sum, 9);
+  EXPECT_EQ(result.deviation.interior, 7);
+  EXPECT_EQ(result.deviation.lost, 8);
+  EXPECT_EQ(result.deviation.squared_sum, 9);
 }
 
 TEST(ApplyTest, AttributesFollowTheirRepresentatives) {
@@ -541,10 +542,10 @@ TEST(KeepTest, ChangesNothing) {
   EXPECT_EQ(kept.tile.interior, tile.mesh.interior);
   EXPECT_EQ(kept.tile.border, tile.mesh.border);
   EXPECT_EQ(kept.tile.foreign, tile.mesh.ghosts);
-  EXPECT_EQ(kept.tile.rim_count, tile.mesh.rim_count);
+  EXPECT_EQ(kept.tile.boundary_count, tile.mesh.boundary_count);
   EXPECT_EQ(kept.tile.history.weights, tile.history.weights);
-  EXPECT_EQ(kept.drift.around, std::vector<float>(tile.mesh.own_count));
-  EXPECT_EQ(kept.drift.interior, 0);
+  EXPECT_EQ(kept.deviation.around, std::vector<float>(tile.mesh.own_count));
+  EXPECT_EQ(kept.deviation.interior, 0);
   for (std::uint32_t i = 0; i < tile.mesh.own_count; ++i)
     ASSERT_EQ(kept.parent_map[i], i);
 }

@@ -106,7 +106,7 @@ TestMesh border_end_star(const StarRelief& relief, Chance& chance) {
 
 }  // namespace
 
-Star make_star(StarShape shape, const StarRelief& relief, double drift, std::uint64_t seed) {
+Star make_star(StarShape shape, const StarRelief& relief, double deviation, std::uint64_t seed) {
   Chance chance(seed);
   Star star;
   star.mesh = shape == StarShape::closed        ? closed_star(relief, chance)
@@ -133,8 +133,8 @@ Star make_star(StarShape shape, const StarRelief& relief, double drift, std::uin
     }
   }
   for (std::size_t t = 0; t < star.mesh.triangles.size(); ++t) {
-    const bool drifted = drift > 0 && chance.below(3) > 0;
-    star.drifts.push_back(drifted ? static_cast<float>(drift * chance()) : 0.0F);
+    const bool deviated = deviation > 0 && chance.below(3) > 0;
+    star.deviations.push_back(deviated ? static_cast<float>(deviation * chance()) : 0.0F);
   }
   return star;
 }
@@ -161,7 +161,7 @@ Star round_star(RoundRing ring, const StarRelief& relief, std::uint64_t seed) {
     std::swap(mesh.triangles[i], mesh.triangles[chance.below(i + 1)]);
     std::ranges::rotate(mesh.triangles[i], mesh.triangles[i].begin() + chance.below(3));
   }
-  star.drifts.resize(mesh.triangles.size());
+  star.deviations.resize(mesh.triangles.size());
   return star;
 }
 
@@ -193,9 +193,9 @@ double expect_covers(const Star& star, const StarMesh& mesh, const cluster_simpl
   const std::vector<Corners> before = mesh.before();
   const std::vector<Corners> after = mesh.after();
   std::vector<double> fresh(after.size(), -1);
-  EXPECT_EQ(gap.triangles.size(), gap.drifts.size());
+  EXPECT_EQ(gap.triangles.size(), gap.deviations.size());
   for (std::size_t i = 0; i < gap.triangles.size(); ++i)
-    fresh[gap.triangles[i]] = double{gap.drifts[i]};
+    fresh[gap.triangles[i]] = double{gap.deviations[i]};
   double farthest = 0;
   for (std::uint32_t t = 0; t < after.size(); ++t) {
     EXPECT_EQ(fresh[t] >= 0, mesh.survives(t)) << "triangle " << t;
@@ -204,7 +204,8 @@ double expect_covers(const Star& star, const StarMesh& mesh, const cluster_simpl
     for (const Vec3d p : samples_of(after[t], kSteps)) {
       double least = std::numeric_limits<double>::infinity();
       for (std::size_t old = 0; old < before.size(); ++old)
-        least = std::min(least, distance_to_triangle(p, before[old]) + double{star.drifts[old]});
+        least =
+            std::min(least, distance_to_triangle(p, before[old]) + double{star.deviations[old]});
       EXPECT_LE(least, fresh[t] + kSlack) << "new triangle " << t;
       farthest = std::max(farthest, distance_to_surface(p, before));
     }
@@ -213,8 +214,8 @@ double expect_covers(const Star& star, const StarMesh& mesh, const cluster_simpl
     for (const Vec3d p : samples_of(before[old], kSteps)) {
       double missing = std::numeric_limits<double>::infinity();
       for (std::size_t t = 0; t < after.size(); ++t) {
-        missing = std::min(missing,
-                           distance_to_triangle(p, after[t]) + double{star.drifts[old]} - fresh[t]);
+        missing = std::min(
+            missing, distance_to_triangle(p, after[t]) + double{star.deviations[old]} - fresh[t]);
       }
       EXPECT_LE(missing, kSlack) << "old triangle " << old;
       farthest = std::max(farthest, distance_to_surface(p, after));
@@ -226,8 +227,8 @@ double expect_covers(const Star& star, const StarMesh& mesh, const cluster_simpl
   return farthest;
 }
 
-float largest_drift(const cluster_simplify::DiscGap& gap) {
-  return std::ranges::max(gap.drifts);
+float largest_deviation(const cluster_simplify::DiscGap& gap) {
+  return std::ranges::max(gap.deviations);
 }
 
 int expect_all_covered(StarShape shape, const StarRelief& relief, std::uint64_t seeds,
@@ -256,7 +257,7 @@ Looseness looseness_of(StarShape shape, const StarRelief& relief, std::uint64_t 
     const auto gap = measure(star, mesh);
     if (!gap)
       continue;
-    const double ratio = double{largest_drift(*gap)} / expect_covers(star, mesh, *gap);
+    const double ratio = double{largest_deviation(*gap)} / expect_covers(star, mesh, *gap);
     looseness.largest = std::max(looseness.largest, ratio);
     sum += ratio;
     ++looseness.stars;

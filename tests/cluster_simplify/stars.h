@@ -33,12 +33,12 @@ struct Star {
   TestMesh mesh;
   std::uint32_t from = 0, to = 1;
   Vec3f place;
-  std::vector<float> drifts;  ///< per triangle
+  std::vector<float> deviations;  ///< per triangle
 };
 
 /// The place is at either end, between them or beside. Of open shapes some have an end without
-/// triangles of its own. Drifts are 0 or up to `drift`.
-Star make_star(StarShape shape, const StarRelief& relief, double drift, std::uint64_t seed);
+/// triangles of its own. Deviations are 0 or up to `deviation`.
+Star make_star(StarShape shape, const StarRelief& relief, double deviation, std::uint64_t seed);
 
 struct RoundRing {
   std::uint32_t size = 4;
@@ -46,7 +46,7 @@ struct RoundRing {
 };
 
 /// A closed star, its ring a regular polygon of radius 2 and its place near the middle; triangles
-/// in any order. Drifts are 0.
+/// in any order. Deviations are 0.
 Star round_star(RoundRing ring, const StarRelief& relief, std::uint64_t seed);
 
 /// A star in a CollapseMesh.
@@ -72,30 +72,30 @@ class StarMesh {
   cluster_simplify::EdgeStar edge_star_;
 };
 
-/// Holds what was measured against samples: every point of a new triangle is, with the drift of an
-/// old one that it lies near, within its own drift; every point of an old triangle is within the
-/// drift of some new one, its own counted. Returns the largest sampled distance between the two
-/// surfaces.
+/// Holds what was measured against samples: every point of a new triangle is, with the deviation of
+/// an old one that it lies near, within its own deviation; every point of an old triangle is within
+/// the deviation of some new one, its own counted. Returns the largest sampled distance between the
+/// two surfaces.
 double expect_covers(const Star& star, const StarMesh& mesh, const cluster_simplify::DiscGap& gap);
 
-float largest_drift(const cluster_simplify::DiscGap& gap);
+float largest_deviation(const cluster_simplify::DiscGap& gap);
 
 using MeasureStar =
     std::function<std::optional<cluster_simplify::DiscGap>(const Star&, const StarMesh&)>;
 
-/// Holds what is measured of the stars of seeds 0, 1, ... below `seeds`, every other one drifted,
+/// Holds what is measured of the stars of seeds 0, 1, ... below `seeds`, every other one deviated,
 /// against samples, up to the first failure. Returns how many were measured: others are refused.
 int expect_all_covered(StarShape shape, const StarRelief& relief, std::uint64_t seeds,
                        const MeasureStar& measure);
 
-/// The largest drift of a star over its largest sampled distance: at most, and on average.
+/// The largest deviation of a star over its largest sampled distance: at most, and on average.
 struct Looseness {
   int stars = 0;  ///< that were measured
   double largest = 0;
   double mean = 0;
 };
 
-/// Of the stars of seeds 0, 1, ... below `seeds`, none of them drifted.
+/// Of the stars of seeds 0, 1, ... below `seeds`, none of them deviated.
 Looseness looseness_of(StarShape shape, const StarRelief& relief, std::uint64_t seeds,
                        const MeasureStar& measure);
 

@@ -46,7 +46,7 @@ BuildTile tile_of(const TestMesh& mesh, std::uint32_t own_count) {
   BuildTile tile;
   tile.mesh.vertices.positions = mesh.positions;
   tile.mesh.own_count = own_count;
-  tile.mesh.rim_count = own_count;
+  tile.mesh.boundary_count = own_count;
   for (std::uint32_t i = own_count; i < mesh.positions.size(); ++i)
     tile.mesh.ghosts.push_back({1, i - own_count});
   tile.history.weights.assign(own_count, 1);

@@ -40,8 +40,8 @@ void append(TestMesh& mesh, const TestMesh& other, Vec3f shift = {}, float scale
 TestMesh cube(std::uint32_t n);
 std::vector<Vec3f> cube_corners();
 
-/// `count` rim vertices on the unit circle around vertex 0, at `height`, with all triangles between
-/// them: a disk.
+/// `count` boundary vertices on the unit circle around vertex 0, at `height`, with all triangles
+/// between them: a disk.
 TestMesh wheel(std::uint32_t count, float height);
 
 /// Two own vertices, 0 and 1, in a ring of ghosts shaped like a Z: no place in the plane sees all

@@ -149,11 +149,11 @@ std::string tile_vertices_refusal(const std::string& vertices) {
 TEST(ConfigLevels, AreANumberOrAListFromTheRootDown) {
   EXPECT_EQ(with_tile_vertices("300").simplify.vertices, 300U);
   EXPECT_EQ(with_tile_vertices("[937, 5.73e2, 4, 32768]").simplify.vertices,
-            AskedVertices({937, 573, 4, 32768}));
+            TargetVertexCounts({937, 573, 4, 32768}));
   EXPECT_EQ(parse(with(""), {"simplify.vertices=[100,200]"}).simplify.vertices,
-            AskedVertices({100, 200}));
+            TargetVertexCounts({100, 200}));
   EXPECT_EQ(with_tile_vertices(Json(std::vector<int>(32, 50)).dump()).simplify.vertices,
-            AskedVertices(std::vector<std::uint32_t>(32, 50)));
+            TargetVertexCounts(std::vector<std::uint32_t>(32, 50)));
 }
 
 TEST(ConfigLevels, AListOfOneIsTheNumber) {

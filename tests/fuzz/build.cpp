@@ -11,7 +11,7 @@
 // reason and leaves nothing behind.
 #include "pipeline/build.h"
 
-#include "bench/hell.h"
+#include "bench/stress.h"
 #include "config/config.h"
 #include "fuzz/target.h"
 #include "fuzz/targets.h"

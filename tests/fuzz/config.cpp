@@ -44,9 +44,9 @@ void check_config(const Config& config) {
   require(config.memory_budget > 0 && config.threads <= 4096, "budget and threads are in range");
   require(is_tile(config.partition.vertices), "partition.vertices is in range");
   require(config.partition.count.value_or(1) >= 1, "partition.count is in range");
-  const AskedVertices asked = config.simplify.vertices.value_or(4);
+  const TargetVertexCounts asked = config.simplify.vertices.value_or(4);
   require(std::ranges::all_of(asked.by_level(), is_tile), "simplify.vertices is in range");
-  require(!asked.by_level().empty() && asked.by_level().size() <= AskedVertices::kMostLevels,
+  require(!asked.by_level().empty() && asked.by_level().size() <= TargetVertexCounts::kMostLevels,
           "simplify.vertices has a number of levels");
   require(config.outline.sectors >= 1 && config.outline.sectors <= 65536, "sectors are in range");
   require(config.outline.tolerance > 0 && config.outline.tolerance <= 1, "tolerance is in range");

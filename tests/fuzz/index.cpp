@@ -15,7 +15,7 @@ namespace {
 void check_record(const TileRecord& record, const Tree& tree) {
   require(tree.contains(record.node) && !tree.is_early(record.node), "a tile of the tree");
   require(record.own_count >= 1 && record.own_count <= storage::kMaxOwnVertices, "own vertices");
-  require(record.rim_count <= record.own_count, "the rim is of the own");
+  require(record.boundary_count <= record.own_count, "the boundary is of the own");
   require(record.drawn_border_count <= record.border_count, "what is drawn is there");
   require(!record.bounds.empty(), "a box");
 }

@@ -10,7 +10,7 @@
 // like neither, what makes a GLB: counts whose JSON is written as it must be, so that all the rest
 // of the input lies behind the comparison of the JSON:
 //
-//   u16 own, rim, ghosts, neighbours, chain entries, interior, border
+//   u16 own, boundary, ghosts, neighbours, chain entries, interior, border
 //   u8  which attributes have raw values: 1, 2, 4
 //   the BIN chunk before it is compressed, cut or filled up with zeros to its size
 #include "fuzz/target.h"
@@ -100,7 +100,7 @@ std::vector<std::byte> make_glb(Take take, const Place& place) {
   const auto count = [&] { return std::uint64_t{take.number<std::uint16_t>()}; };
   storage::TileShape shape;
   shape.node = place.node;
-  for (std::uint64_t* field : {&shape.own, &shape.rim, &shape.ghosts, &shape.neighbours,
+  for (std::uint64_t* field : {&shape.own, &shape.boundary, &shape.ghosts, &shape.neighbours,
                                &shape.chain_entries, &shape.interior, &shape.border})
     *field = count();
   const auto raw_bits = take.number<std::uint8_t>();
@@ -124,7 +124,7 @@ std::vector<std::byte> make_glb(Take take, const Place& place) {
 
 bool same_but_attributes(const PublishedTile& a, const PublishedTile& b) {
   return a.node == b.node && a.mesh.vertices.positions == b.mesh.vertices.positions &&
-         a.mesh.own_count == b.mesh.own_count && a.mesh.rim_count == b.mesh.rim_count &&
+         a.mesh.own_count == b.mesh.own_count && a.mesh.boundary_count == b.mesh.boundary_count &&
          a.mesh.ghosts == b.mesh.ghosts && a.mesh.interior == b.mesh.interior &&
          a.mesh.border == b.mesh.border && a.parent_map == b.parent_map && a.chains == b.chains;
 }
@@ -158,7 +158,7 @@ bool are_tile_vertices(std::span<const std::uint16_t> vertices) {
 void check_tile(const PublishedTile& tile, const Place& place) {
   const TileMesh& mesh = tile.mesh;
   require(mesh.own_count >= 1 && mesh.own_count <= storage::kMaxOwnVertices, "own vertices");
-  require(mesh.rim_count <= mesh.own_count, "the rim is of the own");
+  require(mesh.boundary_count <= mesh.own_count, "the boundary is of the own");
   require(mesh.vertices.size() == mesh.own_count + mesh.ghosts.size(), "own, then ghosts");
   require(mesh.vertices.attributes.size() ==
               mesh.vertices.size() * static_cast<std::size_t>(mesh.vertices.channels),

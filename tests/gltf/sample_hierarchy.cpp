@@ -13,7 +13,7 @@ namespace {
 struct LevelMap {
   std::vector<GhostRef> of_rank;
   std::vector<std::uint32_t> own_counts;  ///< per tile
-  std::vector<std::uint32_t> rim_counts;
+  std::vector<std::uint32_t> boundary_counts;
 };
 
 class SampleBuilder {
@@ -41,17 +41,17 @@ class SampleBuilder {
   void map_level(Level level) {
     LevelMap& map = at(level);
     map.own_counts.assign(tree_.node_count(level), 0);
-    map.rim_counts.assign(tree_.node_count(level), 0);
+    map.boundary_counts.assign(tree_.node_count(level), 0);
     map.of_rank.resize(mesh_.positions.size());
     for (std::size_t rank = 0; rank < map.of_rank.size(); ++rank)
       map.of_rank[rank] = contract(level, rank);
     for (const GhostRef& ref : map.of_rank) {
       map.own_counts[ref.tile] = std::max(map.own_counts[ref.tile], ref.index + 1);
     }
-    rim_first(level);
+    boundary_first(level);
   }
 
-  /// The vertex that stands for `rank`, before the rim comes first.
+  /// The vertex that stands for `rank`, before the boundary comes first.
   GhostRef contract(Level level, std::size_t rank) {
     if (level == tree_.depth()) {
       const std::uint32_t partition = raw(tree_.partition_of(static_cast<Rank>(rank)));
@@ -69,27 +69,27 @@ class SampleBuilder {
     return {parent.index, joined / 2};
   }
 
-  void rim_first(Level level) {
+  void boundary_first(Level level) {
     LevelMap& map = at(level);
-    std::vector<GhostRef> rim;
+    std::vector<GhostRef> boundary;
     for (const MeshTriangle& t : mesh_.triangles) {
       const GhostRef a = map.of_rank[t[0]], b = map.of_rank[t[1]], c = map.of_rank[t[2]];
       const bool degenerate = a == b || b == c || c == a;
       if (!degenerate && (a.tile != b.tile || b.tile != c.tile))
-        rim.insert(rim.end(), {a, b, c});
+        boundary.insert(boundary.end(), {a, b, c});
     }
-    std::sort(rim.begin(), rim.end());
-    rim.erase(std::unique(rim.begin(), rim.end()), rim.end());
-    for (const GhostRef& ref : rim)
-      ++map.rim_counts[ref.tile];
+    std::sort(boundary.begin(), boundary.end());
+    boundary.erase(std::unique(boundary.begin(), boundary.end()), boundary.end());
+    for (const GhostRef& ref : boundary)
+      ++map.boundary_counts[ref.tile];
     for (GhostRef& ref : map.of_rank) {
       if (tree_.is_early({level, ref.tile}))
         continue;  // numbered as its partition
-      const auto first = std::lower_bound(rim.begin(), rim.end(), GhostRef{ref.tile, 0});
-      const auto place = std::lower_bound(rim.begin(), rim.end(), ref);
+      const auto first = std::lower_bound(boundary.begin(), boundary.end(), GhostRef{ref.tile, 0});
+      const auto place = std::lower_bound(boundary.begin(), boundary.end(), ref);
       const auto before = static_cast<std::uint32_t>(place - first);
-      const bool on_rim = place != rim.end() && *place == ref;
-      ref.index = on_rim ? before : map.rim_counts[ref.tile] + ref.index - before;
+      const bool on_boundary = place != boundary.end() && *place == ref;
+      ref.index = on_boundary ? before : map.boundary_counts[ref.tile] + ref.index - before;
     }
   }
 
@@ -97,7 +97,7 @@ class SampleBuilder {
     PublishedTile tile;
     tile.node = node;
     tile.mesh.own_count = at(node.level).own_counts[node.index];
-    tile.mesh.rim_count = at(node.level).rim_counts[node.index];
+    tile.mesh.boundary_count = at(node.level).boundary_counts[node.index];
     find_ghosts(tile);
     add_triangles(tile);
     add_vertices(tile);

@@ -40,7 +40,7 @@ class ContentHash {
     add_count(raw(tile.node.level));
     add_count(tile.node.index);
     add_count(mesh.own_count);
-    add_count(mesh.rim_count);
+    add_count(mesh.boundary_count);
     add(mesh.vertices.positions);
     add(mesh.vertices.attributes);
     add(mesh.ghosts);

@@ -304,7 +304,7 @@ TEST_F(VerifyTest, MoreVerticesThanAskedForAreFound) {
 TEST_F(VerifyTest, ARimWithMoreThanItsBorderTrianglesUseIsSound) {
   const auto problems = problems_after([](auto& s) {
     for (NodeId where : {node(1, 0), node(3, 3)}) {
-      s.tile(where).mesh.rim_count = ++s.record(where).rim_count;
+      s.tile(where).mesh.boundary_count = ++s.record(where).boundary_count;
     }
   });
   EXPECT_THAT(problems, IsEmpty());
@@ -322,9 +322,10 @@ TEST_F(VerifyTest, AGhostOfNoBorderTriangleIsFound) {
   EXPECT_THAT(problems, Contains(HasSubstr("or a ghost has no border triangle")));
 }
 
-TEST_F(VerifyTest, AnOwnCornerOffTheRimIsFound) {
-  const auto problems = problems_after(
-      [](auto& s) { s.tile(node(2, 2)).mesh.rim_count = --s.record(node(2, 2)).rim_count; });
+TEST_F(VerifyTest, AnOwnCornerOffTheBoundaryIsFound) {
+  const auto problems = problems_after([](auto& s) {
+    s.tile(node(2, 2)).mesh.boundary_count = --s.record(node(2, 2)).boundary_count;
+  });
   EXPECT_THAT(problems, Contains(HasSubstr("tiles/02/000002.glb: ")));
 }
 

@@ -26,19 +26,19 @@ std::vector<TileMesh> cut(const TestMesh& mesh, const std::vector<std::uint32_t>
   const auto is_border = [&](const MeshTriangle& t) {
     return sectors[t[0]] != sectors[t[1]] || sectors[t[0]] != sectors[t[2]];
   };
-  std::vector<bool> rim(sectors.size(), false);
+  std::vector<bool> boundary(sectors.size(), false);
   for (const MeshTriangle& t : mesh.triangles) {
     for (const std::uint32_t corner : t)
-      rim[corner] = rim[corner] || is_border(t);
+      boundary[corner] = boundary[corner] || is_border(t);
   }
   std::vector<std::uint32_t> index(sectors.size());
-  for (const bool in_rim : {true, false}) {
+  for (const bool in_boundary : {true, false}) {
     for (std::size_t v = 0; v < sectors.size(); ++v) {
       TileMesh& tile = tiles[sectors[v]];
-      if (rim[v] != in_rim)
+      if (boundary[v] != in_boundary)
         continue;
       index[v] = tile.own_count++;
-      tile.rim_count += in_rim ? 1 : 0;
+      tile.boundary_count += in_boundary ? 1 : 0;
       tile.vertices.positions.push_back(mesh.positions[v]);
     }
   }

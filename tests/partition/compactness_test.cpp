@@ -33,7 +33,7 @@ TileMesh square_tile(std::size_t k, Vec3f x_axis = {1, 0, 0}, Vec3f y_axis = {0,
     }
   }
   tile.own_count = static_cast<std::uint32_t>(k * k);
-  tile.rim_count = tile.own_count;
+  tile.boundary_count = tile.own_count;
   const auto add = [&](Point a, Point b, Point c) {
     const auto corner = [&](Point p) {
       return static_cast<TileVertex>(index[p.y * (k + 2) + p.x]);
@@ -93,7 +93,7 @@ TileMesh lone_triangle(std::uint32_t own_count) {
   for (const Vec3f p : {Vec3f{0, 0, 0}, Vec3f{1, 0, 0}, Vec3f{0, 1, 0}})
     tile.vertices.append(p, {});
   tile.own_count = own_count;
-  tile.rim_count = own_count;
+  tile.boundary_count = own_count;
   for (std::uint32_t i = own_count; i < 3; ++i)
     tile.ghosts.push_back({1, i});
   tile.border.push_back({TileVertex{0}, TileVertex{1}, TileVertex{2}});

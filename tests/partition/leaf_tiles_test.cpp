@@ -103,14 +103,14 @@ std::vector<RankTriangle> ranks_of(const Cut& mesh, const WorkTile& tile,
 
 /// What the definitions say of one partition.
 struct Expected {
-  std::vector<std::uint32_t> rim, inner;  ///< ranks, ascending
+  std::vector<std::uint32_t> boundary, inner;  ///< ranks, ascending
   std::vector<RankTriangle> interior, border;
   std::set<GhostRef> foreign;
 };
 
 std::vector<Expected> expected_leaves(const Cut& mesh) {
   std::vector<Expected> leaves(mesh.tree.partition_count());
-  std::set<std::uint32_t> rim;
+  std::set<std::uint32_t> boundary;
   for (const RankTriangle& t : mesh.triangles) {
     const std::set<std::uint32_t> touched{mesh.partition_of(t[0]), mesh.partition_of(t[1]),
                                           mesh.partition_of(t[2])};
@@ -118,7 +118,7 @@ std::vector<Expected> expected_leaves(const Cut& mesh) {
       (touched.size() == 1 ? leaves[p].interior : leaves[p].border).push_back(canonical_ranks(t));
       for (const std::uint32_t rank : t) {
         if (touched.size() > 1)
-          rim.insert(rank);
+          boundary.insert(rank);
         if (mesh.partition_of(rank) != p) {
           const std::uint32_t chunk = mesh.map.chunk_of(rank);
           leaves[p].foreign.insert({chunk, rank - mesh.map.first_rank(chunk)});
@@ -130,7 +130,7 @@ std::vector<Expected> expected_leaves(const Cut& mesh) {
     for (const std::uint32_t v : spatial_order(mesh.chunks[c].vertices.positions)) {
       const std::uint32_t rank = mesh.map.first_rank(c) + v;
       Expected& leaf = leaves[mesh.partition_of(rank)];
-      (rim.contains(rank) ? leaf.rim : leaf.inner).push_back(rank);
+      (boundary.contains(rank) ? leaf.boundary : leaf.inner).push_back(rank);
     }
   }
   for (Expected& leaf : leaves) {
@@ -144,10 +144,10 @@ void expect_tile(const Cut& mesh, const WorkTile& tile, const Expected& expected
   std::vector<std::uint32_t> ranks;
   for (std::size_t i = 0; i < tile.vertices.size(); ++i)
     ranks.push_back(rank_of(tile, i));
-  std::vector<std::uint32_t> order = expected.rim;
+  std::vector<std::uint32_t> order = expected.boundary;
   order.insert(order.end(), expected.inner.begin(), expected.inner.end());
   EXPECT_EQ(ranks, order);
-  EXPECT_EQ(tile.rim_count, expected.rim.size());
+  EXPECT_EQ(tile.boundary_count, expected.boundary.size());
   EXPECT_EQ(ranks_of(mesh, tile, tile.interior), expected.interior);
   EXPECT_EQ(ranks_of(mesh, tile, tile.border), expected.border);
   EXPECT_EQ(tile.foreign, std::vector<GhostRef>(expected.foreign.begin(), expected.foreign.end()));
@@ -208,21 +208,21 @@ TEST(LeafTiles, AreWhatTheDefinitionsSayForEveryNumberOfPartitions) {
   expect_leaves(mesh, n, Level{2});  // a vertex each: every triangle is in three
 }
 
-TEST(LeafTiles, PlacesTellWhereEveryRimVertexWent) {
+TEST(LeafTiles, PlacesTellWhereEveryBoundaryVertexWent) {
   const Cut mesh = cut(tests::shuffled(tests::sphere(3000, 0.02F), 2), 13, Level{2});
   for (std::uint32_t c = 0; c < mesh.map.count(); ++c) {
     const ChunkLeaves leaves = leaves_of(mesh, c);
-    std::size_t rim = 0;
+    std::size_t boundary = 0;
     for (const WorkTile& tile : leaves.tiles)
-      rim += tile.rim_count;
-    ASSERT_EQ(leaves.places.size(), rim);
-    ASSERT_GT(rim, 0U);
+      boundary += tile.boundary_count;
+    ASSERT_EQ(leaves.places.size(), boundary);
+    ASSERT_GT(boundary, 0U);
     std::uint32_t next = 0;
     for (const LeafPlace& place : leaves.places) {
       EXPECT_GE(place.local, next);
       next = place.local + 1;
       const WorkTile& tile = leaves.tiles.at(place.partition);
-      EXPECT_LT(place.index, tile.rim_count);
+      EXPECT_LT(place.index, tile.boundary_count);
       EXPECT_EQ(rank_of(tile, place.index), mesh.map.first_rank(c) + place.local);
       EXPECT_EQ(&find_place(leaves.places, place.local), &place);
     }
@@ -242,7 +242,7 @@ TEST(LeafTiles, EveryForeignCornerIsFoundInItsChunksPlaces) {
   }
 }
 
-TEST(LeafTiles, ACornerThatIsInNoRimIsADefect) {
+TEST(LeafTiles, ACornerThatIsInNoBoundaryIsADefect) {
   const std::vector<LeafPlace> places{{3, 0, 0}, {7, 1, 0}};
   EXPECT_EQ(find_place(places, 7).partition, 1U);
   for (const std::uint32_t local : {0U, 4U, 8U}) {
@@ -272,7 +272,7 @@ TEST(LeafTiles, DoNotDependOnTheOrderOrTheFirstCornerOfTriangles) {
       EXPECT_EQ(after.tiles[i].interior, before.tiles[i].interior);
       EXPECT_EQ(after.tiles[i].border, before.tiles[i].border);
       EXPECT_EQ(after.tiles[i].foreign, before.tiles[i].foreign);
-      EXPECT_EQ(after.tiles[i].rim_count, before.tiles[i].rim_count);
+      EXPECT_EQ(after.tiles[i].boundary_count, before.tiles[i].boundary_count);
     }
   }
 }

@@ -229,7 +229,7 @@ TEST_F(BuildTest, TilesOfUnequalAsking) {
   fine.simplify.vertices = 32768;
   expect_builds(tests::sphere(5000), fine);
   config::Config uneven = config(200);
-  uneven.simplify.vertices = AskedVertices({32768, 4, 300, 20});
+  uneven.simplify.vertices = TargetVertexCounts({32768, 4, 300, 20});
   expect_builds(tests::sphere(5000), uneven);
 }
 
@@ -439,7 +439,7 @@ TEST_F(BuildTest, SimplifiedTilesHaveTheVertexCountAskedFor) {
 
 TEST_F(BuildTest, SimplifiedTilesHaveTheVertexCountsAskedForByLevel) {
   // Half a tile's children, more, fewer; the last one holds for all deeper levels.
-  const AskedVertices asked({250, 330, 120, 230, 200});
+  const TargetVertexCounts asked({250, 330, 120, 230, 200});
   tests::write_ply(tests::sphere(20'000, 0.01F), mesh_path());
   for (const auto& [name, method] : tests::all_simplify_methods()) {
     SCOPED_TRACE(name);
@@ -465,7 +465,7 @@ TEST_F(BuildTest, SimplifiedTilesHaveTheVertexCountsAskedForByLevel) {
 
 TEST_F(BuildTest, LevelsThatAreNotThereAreAskedInVain) {
   tests::write_ply(tests::sphere(5000), mesh_path());
-  const auto hashes = [&](const AskedVertices& vertices) {
+  const auto hashes = [&](const TargetVertexCounts& vertices) {
     config::Config with = config(300);  // levels 0 to 3 are simplified
     with.simplify.vertices = vertices;
     build(with, true);
@@ -473,10 +473,10 @@ TEST_F(BuildTest, LevelsThatAreNotThereAreAskedInVain) {
     EXPECT_EQ(reader.tree().depth(), Level{4});
     return reader.manifest().index_checksum;
   };
-  const std::uint64_t expected = hashes(AskedVertices({200, 210, 220, 230}));
-  EXPECT_EQ(hashes(AskedVertices({200, 210, 220, 230, 4, 32768})), expected);
-  EXPECT_NE(hashes(AskedVertices({200, 210, 220})), expected);
-  EXPECT_EQ(hashes(AskedVertices({200, 200})), hashes(200));
+  const std::uint64_t expected = hashes(TargetVertexCounts({200, 210, 220, 230}));
+  EXPECT_EQ(hashes(TargetVertexCounts({200, 210, 220, 230, 4, 32768})), expected);
+  EXPECT_NE(hashes(TargetVertexCounts({200, 210, 220})), expected);
+  EXPECT_EQ(hashes(TargetVertexCounts({200, 200})), hashes(200));
 }
 
 TEST_F(BuildTest, TheReportTellsWhatWasDone) {
@@ -703,7 +703,7 @@ TEST_F(DiskTest, ThePredictionKnowsWhatIsAskedOfEachLevel) {
   for (const std::vector<std::uint32_t>& list : lists) {
     for (const std::uint32_t vertices : {150U, 1000U}) {
       config::Config with = config(vertices);
-      with.simplify.vertices = AskedVertices(list);
+      with.simplify.vertices = TargetVertexCounts(list);
       with.memory_budget = tight_budget(with);
       const pipeline::BuildStats stats = build(with, true).stats;
       SCOPED_TRACE(fmt::format("{}, partitions of {}", fmt::join(list, ", "), vertices));

@@ -28,7 +28,7 @@ struct Case {
   std::string name;
   TestMesh mesh;
   std::uint32_t partitions = 1;
-  AskedVertices tile_vertices = 4;
+  TargetVertexCounts tile_vertices = 4;
   std::uint64_t cuts = 1;
   config::SimplifyConfig simplify = {};  ///< its vertices are tile_vertices
 };
@@ -216,8 +216,8 @@ TEST(Cuts, SmallTilesAndAnyNumberOfPartitions) {
 
 TEST(Cuts, TilesOfOtherSizesOnEachLevel) {
   for (const std::uint32_t partitions : {5U, 33U}) {
-    for (const AskedVertices& tile_vertices :
-         {AskedVertices({300, 20, 200, 30}), AskedVertices({4, 4, 4, 100})}) {
+    for (const TargetVertexCounts& tile_vertices :
+         {TargetVertexCounts({300, 20, 200, 30}), TargetVertexCounts({4, 4, 4, 100})}) {
       expect_seamless({"torus", tests::torus(3000, 0.02F), partitions, tile_vertices, 40});
       expect_seamless({"shells", tests::nested_shells(3000), partitions, tile_vertices, 40});
     }

@@ -288,7 +288,7 @@ TEST_F(DeterminismTest, ThreadsAndMemoryDoNotMatterForAnyMethod) {
       with.partition.vertices = 150;
       with.partition.axis = axis;
       with.simplify = method;
-      with.simplify.vertices = AskedVertices({140, 90, 120, 100});
+      with.simplify.vertices = TargetVertexCounts({140, 90, 120, 100});
       expect_one_result(with, {5});
     }
   }

@@ -1,7 +1,7 @@
 // Promise 5: peak resident memory stays under the budget. Measured on the real program, as the
 // system counts it.
 #include "bench/generator.h"
-#include "bench/hell.h"
+#include "bench/stress.h"
 #include "execution/size_text.h"
 #include "storage/io/file.h"
 #include "tests/support/sample_hierarchy.h"
@@ -168,7 +168,7 @@ TEST_F(MemoryTest, AttributesAndDoubleCoordinatesInTheLeastBudget) {
 // with.
 TEST_F(MemoryTest, TrianglesBetweenAnyVerticesIn64MiB) {
   for (const char* name : {"soup", "tangle"}) {
-    write_mesh(bench::make_hell(name, 100'000));
+    write_mesh(bench::make_stress(name, 100'000));
     expect_within("64MiB");
   }
 }

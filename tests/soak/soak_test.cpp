@@ -4,7 +4,7 @@
 //   MESHHIER_SOAK_ROUNDS   of each kind; 6 if it is not set
 //   MESHHIER_SOAK_SEED     of the first round, 1 if it is not set; each round has the next one and
 //                          tells it when it fails
-#include "bench/hell.h"
+#include "bench/stress.h"
 #include "hierarchy/error.h"
 #include "inspection/verify.h"
 #include "pipeline/build.h"
@@ -78,9 +78,9 @@ class Dice {
 };
 
 bench::LoadedMesh random_mesh(Dice& dice) {
-  const auto cases = bench::hell_cases();
-  const bench::HellCase& chosen = cases[dice.from(0, cases.size() - 1)];
-  return bench::make_hell(chosen.name, dice.of_any_size(4000), dice.from(1, 1000));
+  const auto cases = bench::stress_cases();
+  const bench::StressCase& chosen = cases[dice.from(0, cases.size() - 1)];
+  return bench::make_stress(chosen.name, dice.of_any_size(4000), dice.from(1, 1000));
 }
 
 /// What may change from one build to the next that goes on with it.
@@ -101,7 +101,7 @@ config::Config random_config(Dice& dice) {
     std::vector<std::uint32_t> vertices(dice.one_in(2) ? 1 : dice.from(1, 8));
     for (std::uint32_t& of_level : vertices)
       of_level = 3 + static_cast<std::uint32_t>(dice.of_any_size(600));
-    config.simplify.vertices = AskedVertices(std::move(vertices));
+    config.simplify.vertices = TargetVertexCounts(std::move(vertices));
   }
   config.partition.axis =
       dice.one_in(3) ? config::AxisRule::longest : config::AxisRule::compactness;

@@ -32,7 +32,7 @@ inline void expect_same_mesh(const PublishedTile& a, const PublishedTile& b) {
   EXPECT_EQ(bits_of(a.mesh.vertices.positions), bits_of(b.mesh.vertices.positions));
   EXPECT_EQ(a.mesh.vertices.channels, b.mesh.vertices.channels);
   EXPECT_EQ(a.mesh.own_count, b.mesh.own_count);
-  EXPECT_EQ(a.mesh.rim_count, b.mesh.rim_count);
+  EXPECT_EQ(a.mesh.boundary_count, b.mesh.boundary_count);
   EXPECT_EQ(a.mesh.ghosts, b.mesh.ghosts);
   EXPECT_EQ(a.mesh.interior, b.mesh.interior);
   EXPECT_EQ(a.mesh.border, b.mesh.border);

@@ -142,20 +142,20 @@ LevelMesh level_above(const Tree& tree, Level level, LevelMesh& fine,
 
 /// Numbers the vertices within their tiles: those of border triangles first.
 void number_locally(LevelMesh& level) {
-  std::vector<bool> rim(level.vertices.size());
+  std::vector<bool> boundary(level.vertices.size());
   for (const MeshTriangle& t : level.triangles) {
     const std::uint32_t a = level.node_of(t[0]), b = level.node_of(t[1]), c = level.node_of(t[2]);
     if (a == b && b == c)
       continue;
     for (std::uint32_t v : t)
-      rim[v] = true;
+      boundary[v] = true;
   }
   level.local.resize(level.vertices.size());
   for (std::size_t node = 0; node + 1 < level.first.size(); ++node) {
     std::uint32_t next = 0;
     for (bool wanted : {true, false}) {
       for (std::uint32_t v = level.first[node]; v < level.first[node + 1]; ++v) {
-        if (rim[v] == wanted)
+        if (boundary[v] == wanted)
           level.local[v] = next++;
       }
     }
@@ -235,19 +235,19 @@ class TileMaker {
   std::vector<std::pair<GhostRef, std::uint32_t>> add_ghosts(const LevelMesh& level,
                                                              PublishedTile& tile) const {
     std::set<std::pair<GhostRef, std::uint32_t>> ghosts;
-    std::set<std::uint32_t> rim;
+    std::set<std::uint32_t> boundary;
     for (const MeshTriangle& t : level.triangles) {
       if (!is_border(level, tile.node, t))
         continue;
       for (std::uint32_t v : t) {
         if (is_own(level, tile.node, v)) {
-          rim.insert(v);
+          boundary.insert(v);
         } else {
           ghosts.insert({{level.node_of(v), level.local[v]}, v});
         }
       }
     }
-    tile.mesh.rim_count = static_cast<std::uint32_t>(rim.size());
+    tile.mesh.boundary_count = static_cast<std::uint32_t>(boundary.size());
     for (const auto& [reference, vertex] : ghosts) {
       tile.mesh.ghosts.push_back(reference);
       tile.mesh.vertices.append(level.vertices, vertex, vertex + 1);
@@ -302,7 +302,7 @@ TileRecord make_record(const Tree& tree, const PublishedTile& tile, const Sample
   TileRecord record;
   record.node = tile.node;
   record.own_count = tile.mesh.own_count;
-  record.rim_count = tile.mesh.rim_count;
+  record.boundary_count = tile.mesh.boundary_count;
   record.ghost_count = static_cast<std::uint32_t>(tile.mesh.ghosts.size());
   record.interior_count = static_cast<std::uint32_t>(tile.mesh.interior.size());
   record.border_count = static_cast<std::uint32_t>(tile.mesh.border.size());

@@ -21,7 +21,7 @@ JobSize job_of(std::uint64_t vertices, std::uint32_t tile) {
   job.face_count = 2 * vertices;
   job.partition_count = static_cast<std::uint32_t>((vertices + tile - 1) / tile);
   job.largest_tile = tile;
-  job.asked_vertices = tile;
+  job.target_vertex_counts = tile;
   return job;
 }
 

@@ -87,33 +87,34 @@ TEST_F(EstimateTest, TellsWhatABuildMakes) {
 
 TEST_F(EstimateTest, KnowsWhatIsAskedOfEachLevel) {
   write_mesh(tests::sphere(20'000));
-  const auto estimate = [&](const AskedVertices& vertices) {
+  const auto estimate = [&](const TargetVertexCounts& vertices) {
     config::Config with = config(300);  // levels 0 to 5 are simplified
     with.simplify.vertices = vertices;
     return pipeline::estimate_build(with, true, files_);
   };
   config::Config with = config(300);
-  with.simplify.vertices = AskedVertices({300, 250, 200, 150, 100});
+  with.simplify.vertices = TargetVertexCounts({300, 250, 200, 150, 100});
   const pipeline::BuildStats stats = build(with, true).stats;
   const pipeline::BuildEstimate falling = estimate(*with.simplify.vertices);
   EXPECT_EQ(falling.plan.disk.output_bytes, stats.predicted_output_bytes);
   EXPECT_EQ(falling.plan.disk.temporary_bytes, stats.predicted_temporary_bytes);
   EXPECT_LT(falling.plan.disk.output_bytes, estimate(300).plan.disk.output_bytes);
   EXPECT_GT(falling.plan.disk.output_bytes, estimate(100).plan.disk.output_bytes);
-  EXPECT_EQ(falling.plan.disk.output_bytes,
-            estimate(AskedVertices({300, 250, 200, 150, 100, 100, 9000})).plan.disk.output_bytes);
+  EXPECT_EQ(
+      falling.plan.disk.output_bytes,
+      estimate(TargetVertexCounts({300, 250, 200, 150, 100, 100, 9000})).plan.disk.output_bytes);
 }
 
 TEST_F(EstimateTest, TheLargestTileOfAnyLevelDecidesTheMemory) {
   write_mesh(tests::sphere(20'000));
-  const auto largest = [&](const AskedVertices& vertices) {
+  const auto largest = [&](const TargetVertexCounts& vertices) {
     config::Config with = config(300);  // levels 0 to 5 are simplified
     with.simplify.vertices = vertices;
     return pipeline::estimate_build(with, true, files_).plan.job.largest_tile;
   };
-  EXPECT_EQ(largest(AskedVertices({100, 200, 4000, 300})), 4000U);
-  EXPECT_EQ(largest(AskedVertices({100, 200, 200, 200, 200, 4000})), 4000U);
-  EXPECT_LE(largest(AskedVertices({100, 200, 200, 200, 200, 200, 4000})), 300U);
+  EXPECT_EQ(largest(TargetVertexCounts({100, 200, 4000, 300})), 4000U);
+  EXPECT_EQ(largest(TargetVertexCounts({100, 200, 200, 200, 200, 4000})), 4000U);
+  EXPECT_LE(largest(TargetVertexCounts({100, 200, 200, 200, 200, 200, 4000})), 300U);
   EXPECT_EQ(largest(4000), 4000U);
 }
 

@@ -213,7 +213,7 @@ void expect_true_image(const Grove& grove) {
       const GhostRef ref = tile.mesh.ghosts[g];
       const BuildTile neighbour = grove.forest().load({node.level, ref.tile});
       const std::uint32_t v = tile.mesh.own_count + g;
-      ASSERT_LT(ref.index, neighbour.mesh.rim_count);
+      ASSERT_LT(ref.index, neighbour.mesh.boundary_count);
       ASSERT_EQ(tile.mesh.vertices.positions[v], neighbour.mesh.vertices.positions[ref.index]);
     }
   });

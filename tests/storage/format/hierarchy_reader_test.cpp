@@ -71,7 +71,7 @@ class HierarchyReaderTest : public testing::Test {
     TileRecord record;
     record.node = tile.node;
     record.own_count = tile.mesh.own_count;
-    record.rim_count = tile.mesh.rim_count;
+    record.boundary_count = tile.mesh.boundary_count;
     record.ghost_count = static_cast<std::uint32_t>(tile.mesh.ghosts.size());
     record.interior_count = static_cast<std::uint32_t>(tile.mesh.interior.size());
     record.border_count = static_cast<std::uint32_t>(tile.mesh.border.size());

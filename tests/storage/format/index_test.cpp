@@ -38,7 +38,7 @@ std::vector<TileRecord> make_records(const Tree& tree) {
       record.node = node;
       record.own_count =
           static_cast<std::uint32_t>(tree.is_partition(node) ? tree.ranks(node).size() : 100 + k);
-      record.rim_count = record.own_count / 3;
+      record.boundary_count = record.own_count / 3;
       record.ghost_count = 10 * k + 1;
       record.interior_count = 10 * k + 2;
       record.border_count = 10 * k + 3;
@@ -61,7 +61,7 @@ std::vector<TileRecord> make_records(const Tree& tree) {
 void expect_same(const TileRecord& a, const TileRecord& b) {
   EXPECT_EQ(a.node, b.node);
   EXPECT_EQ(a.own_count, b.own_count);
-  EXPECT_EQ(a.rim_count, b.rim_count);
+  EXPECT_EQ(a.boundary_count, b.boundary_count);
   EXPECT_EQ(a.ghost_count, b.ghost_count);
   EXPECT_EQ(a.interior_count, b.interior_count);
   EXPECT_EQ(a.border_count, b.border_count);
@@ -115,7 +115,7 @@ TEST(Index, TheBytesAreThoseOfTheDocument) {
   const Tree tree(7, 1);
   TileRecord record;
   record.own_count = 7;
-  record.rim_count = 5;
+  record.boundary_count = 5;
   record.error = 1.0F;
   record.bounds = {{0, 0, 0}, {1, 1, 1}};
   record.file_bytes = 0x0102030405060708;
@@ -186,7 +186,7 @@ TEST(Index, ImpossibleValuesAreRefusedByName) {
         RecordDamage{4, 1, "record 0 is of tile 0/1"},
         RecordDamage{8, 0, "impossible own vertices"},
         RecordDamage{8, 32769, "impossible own vertices"},
-        RecordDamage{12, 101, "impossible rim vertices"},
+        RecordDamage{12, 101, "impossible boundary vertices"},
         RecordDamage{28, 4, "impossible drawn border"}, RecordDamage{44, kNan, "impossible error"},
         RecordDamage{48, kMinusOne, "impossible bound"},
         RecordDamage{52, kNan, "impossible compactness"},

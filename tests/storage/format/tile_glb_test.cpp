@@ -74,7 +74,7 @@ std::string failure(const Bytes& bytes, NodeId node, const SampleHierarchy& samp
 void expect_consistent(const PublishedTile& tile, const Tree& tree) {
   const TileMesh& mesh = tile.mesh;
   ASSERT_LE(mesh.own_count, storage::kMaxOwnVertices);
-  ASSERT_LE(mesh.rim_count, mesh.own_count);
+  ASSERT_LE(mesh.boundary_count, mesh.own_count);
   ASSERT_EQ(mesh.ghosts.size() + mesh.own_count, mesh.vertices.size());
   ASSERT_EQ(mesh.vertices.attributes.size(),
             mesh.vertices.size() * static_cast<std::size_t>(mesh.vertices.channels));
@@ -231,7 +231,7 @@ PublishedTile wide_tile(std::uint32_t ghosts) {
   PublishedTile tile;
   tile.node = {Level{2}, 0};
   tile.mesh.own_count = storage::kMaxOwnVertices;
-  tile.mesh.rim_count = 2;
+  tile.mesh.boundary_count = 2;
   tile.parent_map.assign(tile.mesh.own_count, 32767);
   for (std::uint32_t g = 0; g < ghosts; ++g) {
     const GhostRef ref{1 + g / 32768, g % 32768};
@@ -348,7 +348,7 @@ TEST(TileGlb, RandomNumbersInTheJsonAreRefused) {
     std::advance(place, static_cast<std::ptrdiff_t>(random() % flat.size()));
     const Json& value = values[random() % values.size()];
     const bool same = place.value() == value;
-    if (place.key().ends_with("rimCount"))  // a rim may be larger than it need be
+    if (place.key().ends_with("rimCount"))  // a boundary may be larger than it need be
       continue;
     glb.json[Json::json_pointer(place.key())] = value;
     EXPECT_EQ(failure(glb.close(), tile.node, sample).empty(), same) << place.key() << value;
@@ -431,8 +431,8 @@ INSTANTIATE_TEST_SUITE_P(
                        store_u16(g.indices(1) + 2 * c, c);
                    },
                    "border triangle 0 has 3 own corners"},
-        TileDamage{"rim", [](OpenGlb& g) { g.extension()["rimCount"] = 0; },
-                   "0 of them on the rim"},
+        TileDamage{"boundary", [](OpenGlb& g) { g.extension()["rimCount"] = 0; },
+                   "0 of them on the boundary"},
         TileDamage{"parent_map", [](OpenGlb& g) { store_u16(g.view("parentMap") + 2, 32768); },
                    "parent map entry 1 is 32768"},
         TileDamage{"neighbour", [](OpenGlb& g) { store_u32(g.view("neighbours"), 77); },

@@ -14,7 +14,7 @@ namespace {
 using Bytes = std::vector<std::byte>;
 
 struct Shape {
-  std::uint32_t own = 0, rim = 0, foreign = 0, interior = 0, border = 0;
+  std::uint32_t own = 0, boundary = 0, foreign = 0, interior = 0, border = 0;
   int channels = 0;
 };
 
@@ -36,7 +36,7 @@ WorkTile make_tile(const Shape& shape) {
   const auto number = [&] { return static_cast<float>(random() % 65536) / 65536 - 0.5F; };
   WorkTile tile;
   tile.vertices.channels = shape.channels;
-  tile.rim_count = shape.rim;
+  tile.boundary_count = shape.boundary;
   for (std::uint32_t i = 0; i < shape.own; ++i) {
     std::vector<float> attributes;
     for (int k = 0; k < shape.channels; ++k)
@@ -56,7 +56,7 @@ void expect_same(const WorkTile& a, const WorkTile& b) {
   EXPECT_EQ(a.vertices.positions, b.vertices.positions);
   EXPECT_EQ(a.vertices.attributes, b.vertices.attributes);
   EXPECT_EQ(a.history.weights, b.history.weights);
-  EXPECT_EQ(a.rim_count, b.rim_count);
+  EXPECT_EQ(a.boundary_count, b.boundary_count);
   EXPECT_EQ(a.interior, b.interior);
   EXPECT_EQ(a.border, b.border);
   EXPECT_EQ(a.foreign, b.foreign);
@@ -137,7 +137,7 @@ TEST(WorkTileBytes, CutShortAnywhereAreRefused) {
 
 TEST(WorkTileBytes, WithImpossibleCountsAreRefusedBeforeAnythingIsAllocated) {
   const Bytes bytes = encode_work_tile(make_tile({10, 5, 4, 7, 6, 2}));
-  for (const std::size_t field : {0U, 2U, 3U, 4U}) {  // all but the rim sizes something
+  for (const std::size_t field : {0U, 2U, 3U, 4U}) {  // all but the boundary sizes something
     Bytes broken = bytes;
     std::fill_n(broken.begin() + static_cast<std::ptrdiff_t>(4 * field), 4, std::byte{0xff});
     expect_refused([&] { return decode_work_tile(broken, 2); }, "field " + std::to_string(field));
@@ -158,92 +158,93 @@ TEST(WorkTileBytes, WithMoreBehindThemAreRefused) {
   expect_refused([&] { return decode_work_tile(bytes, 2); }, "one byte more");
 }
 
-TEST(RimBytes, HoldTheFirstVerticesOfTheTile) {
+TEST(BoundaryBytes, HoldTheFirstVerticesOfTheTile) {
   for (const int channels : {0, 3, kMaxChannels}) {
-    for (const std::uint32_t rim_count : {0U, 1U, 30U, 100U}) {
-      const WorkTile tile = make_tile({100, rim_count, 25, 150, 60, channels});
-      const Rim rim = decode_rim(encode_rim(tile), channels);
-      ASSERT_EQ(rim.vertices.size(), rim_count);
-      EXPECT_EQ(rim.vertices.channels, channels);
-      EXPECT_TRUE(std::equal(rim.vertices.positions.begin(), rim.vertices.positions.end(),
+    for (const std::uint32_t boundary_count : {0U, 1U, 30U, 100U}) {
+      const WorkTile tile = make_tile({100, boundary_count, 25, 150, 60, channels});
+      const Boundary boundary = decode_boundary(encode_boundary(tile), channels);
+      ASSERT_EQ(boundary.vertices.size(), boundary_count);
+      EXPECT_EQ(boundary.vertices.channels, channels);
+      EXPECT_TRUE(std::equal(boundary.vertices.positions.begin(), boundary.vertices.positions.end(),
                              tile.vertices.positions.begin()));
-      ASSERT_EQ(rim.vertices.attributes.size(), rim_count * static_cast<std::size_t>(channels));
-      EXPECT_TRUE(std::equal(rim.vertices.attributes.begin(), rim.vertices.attributes.end(),
-                             tile.vertices.attributes.begin()));
+      ASSERT_EQ(boundary.vertices.attributes.size(),
+                boundary_count * static_cast<std::size_t>(channels));
+      EXPECT_TRUE(std::equal(boundary.vertices.attributes.begin(),
+                             boundary.vertices.attributes.end(), tile.vertices.attributes.begin()));
     }
   }
 }
 
-TEST(RimBytes, CutShortOrOfOtherChannelsAreRefused) {
-  const Bytes bytes = encode_rim(make_tile({10, 5, 4, 7, 6, 2}));
+TEST(BoundaryBytes, CutShortOrOfOtherChannelsAreRefused) {
+  const Bytes bytes = encode_boundary(make_tile({10, 5, 4, 7, 6, 2}));
   for (std::size_t size = 0; size < bytes.size(); ++size) {
-    expect_refused([&] { return decode_rim(std::span(bytes).first(size), 2); },
+    expect_refused([&] { return decode_boundary(std::span(bytes).first(size), 2); },
                    "cut to " + std::to_string(size));
   }
   for (const int channels : {0, 1, 3, 9}) {
-    expect_refused([&] { return decode_rim(bytes, channels); },
+    expect_refused([&] { return decode_boundary(bytes, channels); },
                    "channels " + std::to_string(channels));
   }
 }
 
-Band make_band(const Shape& shape) {
+SeamStrip make_seam_strip(const Shape& shape) {
   std::mt19937 random(shape.own * 17 + shape.foreign);
   const auto number = [&] { return static_cast<float>(random() % 65536) / 65536 - 0.5F; };
-  Band band;
-  band.rim_count = shape.rim;
-  band.own_count = shape.own;
+  SeamStrip seam_strip;
+  seam_strip.boundary_count = shape.boundary;
+  seam_strip.own_count = shape.own;
   for (std::uint32_t i = 0; i < shape.own + shape.foreign; ++i)
-    band.positions.push_back({number(), number(), number()});
+    seam_strip.positions.push_back({number(), number(), number()});
   for (std::uint32_t i = 0; i < shape.own; ++i)
-    band.drifts.push_back(number());
+    seam_strip.deviations.push_back(number());
   for (std::uint32_t i = 0; i < shape.foreign; ++i)
-    band.foreign.push_back({i / 3, static_cast<std::uint32_t>(random())});
-  band.interior = random_triangles(random, shape.interior, shape.own);
-  band.border = random_triangles(random, shape.border, shape.own + shape.foreign);
-  band.interior_drift = 0.125F;
-  band.lost = std::numeric_limits<float>::infinity();
-  band.squared_sum = 1e-300;
-  band.weight_sum = 12345678901.0;
-  return band;
+    seam_strip.foreign.push_back({i / 3, static_cast<std::uint32_t>(random())});
+  seam_strip.interior = random_triangles(random, shape.interior, shape.own);
+  seam_strip.border = random_triangles(random, shape.border, shape.own + shape.foreign);
+  seam_strip.interior_deviation = 0.125F;
+  seam_strip.lost = std::numeric_limits<float>::infinity();
+  seam_strip.squared_sum = 1e-300;
+  seam_strip.weight_sum = 12345678901.0;
+  return seam_strip;
 }
 
-void expect_same(const Band& a, const Band& b) {
-  EXPECT_EQ(a.rim_count, b.rim_count);
+void expect_same(const SeamStrip& a, const SeamStrip& b) {
+  EXPECT_EQ(a.boundary_count, b.boundary_count);
   EXPECT_EQ(a.own_count, b.own_count);
   EXPECT_EQ(a.positions, b.positions);
-  EXPECT_EQ(a.drifts, b.drifts);
+  EXPECT_EQ(a.deviations, b.deviations);
   EXPECT_EQ(a.foreign, b.foreign);
   EXPECT_EQ(a.interior, b.interior);
   EXPECT_EQ(a.border, b.border);
-  EXPECT_EQ(a.interior_drift, b.interior_drift);
+  EXPECT_EQ(a.interior_deviation, b.interior_deviation);
   EXPECT_EQ(a.lost, b.lost);
   EXPECT_EQ(a.squared_sum, b.squared_sum);
   EXPECT_EQ(a.weight_sum, b.weight_sum);
 }
 
-TEST(BandBytes, HoldEveryBand) {
+TEST(SeamStripBytes, HoldEverySeamStrip) {
   for (const Shape& shape :
        {Shape{}, Shape{1, 0, 0, 0, 0}, Shape{100, 30, 25, 150, 60}, Shape{7, 7, 80, 0, 90},
         Shape{65000, 40000, 535, 100, 100}, Shape{65000, 40000, 536, 100, 100},
         Shape{65000, 40000, 537, 100, 100}}) {
-    const Band band = make_band(shape);
-    expect_same(decode_band(encode_band(band)), band);
+    const SeamStrip seam_strip = make_seam_strip(shape);
+    expect_same(decode_seam_strip(encode_seam_strip(seam_strip)), seam_strip);
   }
 }
 
-TEST(BandBytes, CutShortLongerOrImpossibleAreRefused) {
-  Bytes bytes = encode_band(make_band({10, 5, 4, 7, 6}));
+TEST(SeamStripBytes, CutShortLongerOrImpossibleAreRefused) {
+  Bytes bytes = encode_seam_strip(make_seam_strip({10, 5, 4, 7, 6}));
   for (std::size_t size = 0; size < bytes.size(); ++size) {
-    expect_refused([&] { return decode_band(std::span(bytes).first(size)); },
+    expect_refused([&] { return decode_seam_strip(std::span(bytes).first(size)); },
                    "cut to " + std::to_string(size));
   }
-  for (const std::size_t field : {0U, 2U, 3U, 4U}) {  // all but the rim sizes something
+  for (const std::size_t field : {0U, 2U, 3U, 4U}) {  // all but the boundary sizes something
     Bytes broken = bytes;
     std::fill_n(broken.begin() + static_cast<std::ptrdiff_t>(4 * field), 4, std::byte{0xff});
-    expect_refused([&] { return decode_band(broken); }, "field " + std::to_string(field));
+    expect_refused([&] { return decode_seam_strip(broken); }, "field " + std::to_string(field));
   }
   bytes.push_back(std::byte{0});
-  expect_refused([&] { return decode_band(bytes); }, "one byte more");
+  expect_refused([&] { return decode_seam_strip(bytes); }, "one byte more");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "cluster_simplify/band.h"
+#include "cluster_simplify/seam_strip.h"
 
 #include "cluster_simplify/cover_distance.h"
 #include "cluster_simplify/nearest.h"
@@ -13,49 +13,50 @@
 
 namespace meshhier::cluster_simplify {
 
-Band make_band(const BuildTile& joined, const ContractedTile& contracted) {
+SeamStrip make_seam_strip(const BuildTile& joined, const ContractedTile& contracted) {
   constexpr std::uint32_t kUnset = std::numeric_limits<std::uint32_t>::max();
   const WorkTile& tile = contracted.tile;
   const auto own_count = static_cast<std::uint32_t>(tile.vertices.size());
-  Band band;
-  band.rim_count = tile.rim_count;
+  SeamStrip seam_strip;
+  seam_strip.boundary_count = tile.boundary_count;
   std::vector<std::uint32_t> place(own_count, kUnset);
   const auto add_own = [&](std::uint32_t v) {
-    place[v] = band.own_count++;
-    band.positions.push_back(tile.vertices.positions[v]);
-    band.drifts.push_back(contracted.drift.around[v]);
+    place[v] = seam_strip.own_count++;
+    seam_strip.positions.push_back(tile.vertices.positions[v]);
+    seam_strip.deviations.push_back(contracted.deviation.around[v]);
   };
-  for (std::uint32_t v = 0; v < tile.rim_count; ++v)
+  for (std::uint32_t v = 0; v < tile.boundary_count; ++v)
     add_own(v);
   for (const Triangle& t : tile.interior) {
-    if (raw(t[0]) >= tile.rim_count)  // the smallest corner
-      break;                          // triangles ascend
+    if (raw(t[0]) >= tile.boundary_count)  // the smallest corner
+      break;                               // triangles ascend
     for (const TileVertex v : t) {
       if (place[raw(v)] == kUnset)
         add_own(raw(v));
     }
-    band.interior.push_back(
+    seam_strip.interior.push_back(
         {TileVertex{place[raw(t[0])]}, TileVertex{place[raw(t[1])]}, TileVertex{place[raw(t[2])]}});
   }
-  band.foreign = tile.foreign;
+  seam_strip.foreign = tile.foreign;
   const std::vector<GhostRef>& ghosts = joined.mesh.ghosts;
   for (const GhostRef& ref : tile.foreign) {
     const auto found = std::lower_bound(ghosts.begin(), ghosts.end(), ref);
-    band.positions.push_back(
+    seam_strip.positions.push_back(
         joined.mesh.vertices
             .positions[joined.mesh.own_count + static_cast<std::size_t>(found - ghosts.begin())]);
   }
   for (const Triangle& t : tile.border) {
-    Triangle& copy = band.border.emplace_back(t);
+    Triangle& copy = seam_strip.border.emplace_back(t);
     for (TileVertex& v : copy)
-      v = TileVertex{raw(v) < own_count ? place[raw(v)] : raw(v) - own_count + band.own_count};
+      v = TileVertex{raw(v) < own_count ? place[raw(v)]
+                                        : raw(v) - own_count + seam_strip.own_count};
   }
-  band.interior_drift = contracted.drift.interior;
-  band.lost = contracted.drift.lost;
-  band.squared_sum = contracted.drift.squared_sum;
-  band.weight_sum =
+  seam_strip.interior_deviation = contracted.deviation.interior;
+  seam_strip.lost = contracted.deviation.lost;
+  seam_strip.squared_sum = contracted.deviation.squared_sum;
+  seam_strip.weight_sum =
       std::accumulate(joined.history.weights.begin(), joined.history.weights.end(), 0.0);
-  return band;
+  return seam_strip;
 }
 
 namespace {
@@ -77,7 +78,7 @@ enum class When : std::uint8_t {
 /// A triangle at the seam. Small: around a vertex of a million triangles there are as many.
 struct SeamTriangle {
   std::array<Vec3f, 3> positions;
-  float drift = 0;  ///< 0 if it is drawn now only
+  float deviation = 0;  ///< 0 if it is drawn now only
   When when = When::both;
   std::array<std::uint32_t, 3> vertices{};  ///< kNowhere: of those that nobody asks about
 
@@ -86,21 +87,23 @@ struct SeamTriangle {
   }
 };
 
-/// Vertices here: the own rim, then the ghosts.
+/// Vertices here: the own boundary, then the ghosts.
 class Seam {
  public:
-  explicit Seam(const SeamInput& input) : input_(input), rim_count_(input.mesh.rim_count) {
+  explicit Seam(const SeamInput& input)
+      : input_(input), boundary_count_(input.mesh.boundary_count) {
     for (std::vector<std::uint32_t>& counts : counts_)
-      counts.assign(rim_count_ + ghosts().size(), 0);
-    const Band& band = input.own.band;
+      counts.assign(boundary_count_ + ghosts().size(), 0);
+    const SeamStrip& seam_strip = input.own.seam_strip;
     most_triangles_ =
-        2 * (band.interior.size() + band.border.size() + input.mesh.border.size()) + kMostFurther;
+        2 * (seam_strip.interior.size() + seam_strip.border.size() + input.mesh.border.size()) +
+        kMostFurther;
     triangles_.reserve(most_triangles_);  // no second copy while it grows
     add_own();
     add_drawn();
     for (std::size_t i = 0; i < ghosts().size(); ++i) {
       if (i == 0 || ghosts()[i].tile != ghosts()[i - 1].tile)
-        add({ghosts()[i].tile, input.band_of_neighbour(ghosts()[i].tile)});
+        add({ghosts()[i].tile, input.seam_strip_of_neighbour(ghosts()[i].tile)});
     }
     link();
   }
@@ -115,8 +118,8 @@ class Seam {
         stranded_.push_back(&t);
         continue;
       }
-      const double enough = std::max(largest, double{input_.own.band.interior_drift});
-      largest = std::max(largest, distance_to_covers(t, enough - t.drift) + t.drift);
+      const double enough = std::max(largest, double{input_.own.seam_strip.interior_deviation});
+      largest = std::max(largest, distance_to_covers(t, enough - t.deviation) + t.deviation);
     }
     return std::max(largest, farthest_stranded());
   }
@@ -140,7 +143,7 @@ class Seam {
   std::uint32_t vertex_of(const GhostRef& ref) const {
     const auto found = std::lower_bound(ghosts().begin(), ghosts().end(), ref);
     return found != ghosts().end() && *found == ref
-               ? rim_count_ + static_cast<std::uint32_t>(found - ghosts().begin())
+               ? boundary_count_ + static_cast<std::uint32_t>(found - ghosts().begin())
                : kNowhere;
   }
 
@@ -157,14 +160,14 @@ class Seam {
     return {positions[raw(t[0])], positions[raw(t[1])], positions[raw(t[2])]};
   }
 
-  /// What the triangle may have drifted: no more than what is around any of its own corners.
-  static float drift_of(const Band& band, const Triangle& t) {
-    float drift = std::numeric_limits<float>::infinity();
+  /// What the triangle may have deviated: no more than what is around any of its own corners.
+  static float deviation_of(const SeamStrip& seam_strip, const Triangle& t) {
+    float deviation = std::numeric_limits<float>::infinity();
     for (const TileVertex v : t) {
-      if (raw(v) < band.own_count)
-        drift = std::min(drift, band.drifts[raw(v)]);
+      if (raw(v) < seam_strip.own_count)
+        deviation = std::min(deviation, seam_strip.deviations[raw(v)]);
     }
-    return drift;
+    return deviation;
   }
 
   /// Takes note of a triangle at its corners. False if each of them has had as many before it as
@@ -184,7 +187,7 @@ class Seam {
 
   /// `all`: also those that nobody will ask about others.
   template <class VertexOf>
-  void add_band(const Band& band, bool all, const VertexOf& vertex) {
+  void add_seam_strip(const SeamStrip& seam_strip, bool all, const VertexOf& vertex) {
     const auto add = [&](const std::vector<Triangle>& triangles, When when) {
       for (const Triangle& t : triangles) {
         const Vertices vertices = vertices_of(t, vertex);
@@ -192,23 +195,25 @@ class Seam {
           continue;
         if ((count(vertices, when) && has_room()) || all)
           triangles_.push_back(
-              {positions_of(t, band.positions), drift_of(band, t), when, vertices});
+              {positions_of(t, seam_strip.positions), deviation_of(seam_strip, t), when, vertices});
       }
     };
-    add(band.interior, When::both);
-    add(band.border, When::then);
+    add(seam_strip.interior, When::both);
+    add(seam_strip.border, When::then);
   }
 
   bool has_room() const { return triangles_.size() < most_triangles_; }
 
   void add_own() {
-    const Band& band = input_.own.band;
+    const SeamStrip& seam_strip = input_.own.seam_strip;
     std::vector<std::uint32_t> foreign;
     foreign.reserve(input_.mapped.size());
     for (const GhostRef& ref : input_.mapped)
       foreign.push_back(vertex_of(ref));
-    add_band(band, true, [&](std::uint32_t v) {
-      return v < band.rim_count ? v : v < band.own_count ? kNowhere : foreign[v - band.own_count];
+    add_seam_strip(seam_strip, true, [&](std::uint32_t v) {
+      return v < seam_strip.boundary_count ? v
+             : v < seam_strip.own_count    ? kNowhere
+                                           : foreign[v - seam_strip.own_count];
     });
     own_end_ = triangles_.size();
   }
@@ -216,7 +221,7 @@ class Seam {
   void add_drawn() {
     const TileMesh& mesh = input_.mesh;
     const auto vertex = [&](std::uint32_t v) {
-      return v < mesh.own_count ? v : v - mesh.own_count + rim_count_;
+      return v < mesh.own_count ? v : v - mesh.own_count + boundary_count_;
     };
     for (const Triangle& t : mesh.border) {
       triangles_.push_back(
@@ -226,23 +231,23 @@ class Seam {
     drawn_end_ = triangles_.size();
   }
 
-  void add(const BandOf& neighbour) {
-    std::vector<std::uint32_t> place(neighbour.band.rim_count, kNowhere);
+  void add(const SeamStripOf& neighbour) {
+    std::vector<std::uint32_t> place(neighbour.seam_strip.boundary_count, kNowhere);
     auto ghost = std::lower_bound(ghosts().begin(), ghosts().end(), GhostRef{neighbour.tile, 0});
     for (; ghost != ghosts().end() && ghost->tile == neighbour.tile; ++ghost) {
       if (ghost->index >= place.size())
-        throw Error(ErrorCode::internal, "a ghost lies outside its tile's rim");
-      place[ghost->index] = rim_count_ + static_cast<std::uint32_t>(ghost - ghosts().begin());
+        throw Error(ErrorCode::internal, "a ghost lies outside its tile's boundary");
+      place[ghost->index] = boundary_count_ + static_cast<std::uint32_t>(ghost - ghosts().begin());
     }
-    add_band(neighbour.band, false,
-             [&](std::uint32_t v) { return v < place.size() ? place[v] : kNowhere; });
+    add_seam_strip(neighbour.seam_strip, false,
+                   [&](std::uint32_t v) { return v < place.size() ? place[v] : kNowhere; });
   }
 
   /// A list of corners 3 t + k per vertex and time.
   void link() {
     for (Lists& lists : at_) {
       lists.next.assign(triangles_.size() * 3, kNowhere);
-      lists.first.assign(rim_count_ + ghosts().size(), kNowhere);
+      lists.first.assign(boundary_count_ + ghosts().size(), kNowhere);
     }
     for (std::size_t t = triangles_.size(); t-- > 0;) {
       for (std::size_t k = 3; k-- > 0;) {
@@ -267,7 +272,7 @@ class Seam {
       return false;
     return index < own_end_ ||
            std::all_of(t.vertices.begin(), t.vertices.end(), [&](std::uint32_t v) {
-             return v < rim_count_ || ghosts()[v - rim_count_].tile > input_.own.tile;
+             return v < boundary_count_ || ghosts()[v - boundary_count_].tile > input_.own.tile;
            });
   }
 
@@ -309,7 +314,8 @@ class Seam {
   Cover cover(const SeamTriangle& t, std::uint32_t index) const {
     const SeamTriangle& other = triangles_[index];
     const CoverDistance::Corners corners = other.corners();
-    return {{corners[0], corners[1], corners[2]}, t.when == When::now ? double{other.drift} : 0};
+    return {{corners[0], corners[1], corners[2]},
+            t.when == When::now ? double{other.deviation} : 0};
   }
 
   /// From the triangle to the covers just collected; see CoverDistance.
@@ -347,18 +353,18 @@ class Seam {
     for (const SeamTriangle* t : stranded_) {
       const Vec3d nearest = to_double(positions[points.nearest(t->positions[0])]);
       for (const Vec3d& corner : t->corners())
-        farthest = std::max(farthest, length(corner - nearest) + t->drift);
+        farthest = std::max(farthest, length(corner - nearest) + t->deviation);
     }
     return farthest * (1 + 0x1p-40);
   }
 
   const SeamInput& input_;
-  std::uint32_t rim_count_;
+  std::uint32_t boundary_count_;
   std::size_t most_triangles_ = 0;
   std::vector<SeamTriangle> triangles_;
   std::array<std::vector<std::uint32_t>, 2> counts_;  ///< of those lists, and what was left out
-  std::size_t own_end_ = 0;                           ///< the own band's come first,
-  std::size_t drawn_end_ = 0;  ///< then what is drawn now, then the neighbours' bands
+  std::size_t own_end_ = 0;                           ///< the own seam strip's come first,
+  std::size_t drawn_end_ = 0;  ///< then what is drawn now, then the neighbours' seam strips
   std::array<Lists, 2> at_;    ///< then, now
   struct Met {
     std::uint32_t by = kNowhere;  ///< the last triangle it may cover
@@ -376,7 +382,7 @@ class Seam {
 }  // namespace
 
 double seam_gap(const SeamInput& input) {
-  return input.mesh.border.empty() && input.own.band.border.empty() ? 0 : Seam(input).gap();
+  return input.mesh.border.empty() && input.own.seam_strip.border.empty() ? 0 : Seam(input).gap();
 }
 
 }  // namespace meshhier::cluster_simplify

@@ -1,4 +1,4 @@
-#include "cluster_simplify/drift_meter.h"
+#include "cluster_simplify/deviation_meter.h"
 
 #include "tests/cluster_simplify/collapsing.h"
 #include "tests/cluster_simplify/sampling.h"
@@ -116,7 +116,7 @@ class RandomCollapses {
 
 struct Surface {
   std::vector<Corners> triangles;
-  std::vector<double> drifts;
+  std::vector<double> deviations;
 };
 
 Surface living(Collapsing& tile) {
@@ -128,7 +128,7 @@ Surface living(Collapsing& tile) {
     Corners& corners = surface.triangles.emplace_back();
     for (std::size_t k = 0; k < 3; ++k)
       corners[k] = to_double(tile.places()[faces[t].corners[k]]);
-    surface.drifts.push_back(double{tile.drift().of_triangle(t)});
+    surface.deviations.push_back(double{tile.deviation().of_triangle(t)});
   }
   return surface;
 }
@@ -137,27 +137,27 @@ std::vector<Corners> local_surface(const Collapsing& tile, const tests::TestMesh
   return surface_of(tests::TestMesh{tile.frame().to_local(mesh.positions), mesh.triangles});
 }
 
-/// No point of a triangle is farther from what was there at first than its drift.
+/// No point of a triangle is farther from what was there at first than its deviation.
 void expect_near_the_original(const Surface& now, const std::vector<Corners>& original) {
   for (std::size_t t = 0; t < now.triangles.size(); ++t) {
     for (const Vec3d p : samples_of(now.triangles[t], kSteps))
-      ASSERT_LE(distance_to_surface(p, original), now.drifts[t] + kSlack) << "triangle " << t;
+      ASSERT_LE(distance_to_surface(p, original), now.deviations[t] + kSlack) << "triangle " << t;
   }
 }
 
-/// Every point of what was there at first is within the drift of some triangle.
+/// Every point of what was there at first is within the deviation of some triangle.
 void expect_original_covered(const Surface& now, const std::vector<Corners>& original) {
   for (const Corners& corners : original) {
     for (const Vec3d p : samples_of(corners, kSteps)) {
       double missing = std::numeric_limits<double>::infinity();
       for (std::size_t t = 0; t < now.triangles.size(); ++t)
-        missing = std::min(missing, distance_to_triangle(p, now.triangles[t]) - now.drifts[t]);
+        missing = std::min(missing, distance_to_triangle(p, now.triangles[t]) - now.deviations[t]);
       ASSERT_LE(missing, kSlack);
     }
   }
 }
 
-TEST(DriftMeterTest, DriftsOfManyCollapsesHoldBothWays) {
+TEST(DeviationMeterTest, DeviationsOfManyCollapsesHoldBothWays) {
   for (const auto& [name, mesh] : meshes()) {
     const BuildTile input = tests::tile_of(mesh);
     for (const double part : {0.1, 0.5, 0.8}) {
@@ -177,7 +177,7 @@ TEST(DriftMeterTest, DriftsOfManyCollapsesHoldBothWays) {
   }
 }
 
-TEST(DriftMeterTest, GhostsStayAndTheirTrianglesDrift) {
+TEST(DeviationMeterTest, GhostsStayAndTheirTrianglesDeviation) {
   for (const auto& [name, mesh] : meshes()) {
     SCOPED_TRACE(name);
     const BuildTile input = tests::part_of(mesh, 0.1F);
@@ -197,7 +197,7 @@ TEST(DriftMeterTest, GhostsStayAndTheirTrianglesDrift) {
   }
 }
 
-TEST(DriftMeterTest, IsNotLooseAfterManyCollapses) {
+TEST(DeviationMeterTest, IsNotLooseAfterManyCollapses) {
   for (const auto& mesh : {tests::sphere(500, 0.01F), tests::torus(500, 0.01F)}) {
     const BuildTile input = tests::tile_of(mesh);
     Collapsing tile(input);
@@ -206,19 +206,19 @@ TEST(DriftMeterTest, IsNotLooseAfterManyCollapses) {
     const std::vector<Corners> original = local_surface(tile, mesh);
     const double sampled = std::max(farthest_sample(now.triangles, original, kSteps),
                                     farthest_sample(original, now.triangles, kSteps));
-    EXPECT_LE(*std::ranges::max_element(now.drifts), 4 * sampled);
+    EXPECT_LE(*std::ranges::max_element(now.deviations), 4 * sampled);
   }
 }
 
-TEST(DriftMeterTest, NothingDriftsBeforeTheFirstCollapse) {
+TEST(DeviationMeterTest, NothingDeviationsBeforeTheFirstCollapse) {
   const BuildTile input = tests::tile_of(tests::sphere(200, 0.05F));
   Collapsing tile(input);
-  for (const double drift : living(tile).drifts)
-    EXPECT_EQ(drift, 0);
-  EXPECT_EQ(tile.drift().squared_sum(), 0);
+  for (const double deviation : living(tile).deviations)
+    EXPECT_EQ(deviation, 0);
+  EXPECT_EQ(tile.deviation().squared_sum(), 0);
 }
 
-TEST(DriftMeterTest, SquaresAreWeightedDistancesOfBothEnds) {
+TEST(DeviationMeterTest, SquaresAreWeightedDistancesOfBothEnds) {
   // A peak of weight 3 goes, half its height above the plane of its square.
   tests::TestMesh mesh = tests::open_grid(3, 2);
   const std::uint32_t peak = 5;
@@ -228,23 +228,23 @@ TEST(DriftMeterTest, SquaresAreWeightedDistancesOfBothEnds) {
   Collapsing tile(input);
   tile.collapse(peak, peak + 1);
   const double height = 0.5 / tile.frame().to_global(1.0);
-  EXPECT_NEAR(tile.drift().squared_sum(), 3 * height * height, 0.1 * height * height);
+  EXPECT_NEAR(tile.deviation().squared_sum(), 3 * height * height, 0.1 * height * height);
 }
 
-TEST(DriftMeterTest, WeightsGoWithTheirVertices) {
+TEST(DeviationMeterTest, WeightsGoWithTheirVertices) {
   BuildTile input = tests::tile_of(tests::open_grid(4, 2));
   Collapsing tile(input);
   const double unit = 1 / tile.frame().to_global(1.0);
   tile.collapse(6, 7, tile.places()[7]);
-  EXPECT_LE(tile.drift().squared_sum(), 1e-9);
+  EXPECT_LE(tile.deviation().squared_sum(), 1e-9);
   const Vec3f up{0, 0, static_cast<float>(unit)};
   tile.collapse(7, 8, tile.places()[7] + up);  // two vertices went up one
-  EXPECT_GE(tile.drift().squared_sum(), 0.3 * unit * unit);
-  EXPECT_LE(tile.drift().squared_sum(), 3.1 * unit * unit);
+  EXPECT_GE(tile.deviation().squared_sum(), 0.3 * unit * unit);
+  EXPECT_LE(tile.deviation().squared_sum(), 3.1 * unit * unit);
 }
 
-/// Sheets on each other, one of which has drifted: what lay on both lies on the one that is left.
-TEST(DriftMeterTest, WhatLandsExactlyBringsItsDrift) {
+/// Sheets on each other, one of which has deviated: what lay on both lies on the one that is left.
+TEST(DeviationMeterTest, WhatLandsExactlyBringsItsDeviation) {
   // Two sheets from the edge 0-1 to 2; on the one 3 has gone up and down again.
   tests::TestMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.5F, 0.5F, 0.5F}, {1, 1, 0}, {2, 0, 0}},
                        {{0, 1, 2}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {1, 5, 4}}};
@@ -258,8 +258,8 @@ TEST(DriftMeterTest, WhatLandsExactlyBringsItsDrift) {
   expect_original_covered(now, original);
 }
 
-TEST(DriftMeterTest, OfAllThatCollapsedNothingIsLeftUnseen) {
-  // Pieces vanish: what is left, the drifts and what was lost cover the original together.
+TEST(DeviationMeterTest, OfAllThatCollapsedNothingIsLeftUnseen) {
+  // Pieces vanish: what is left, the deviations and what was lost cover the original together.
   for (const auto& [name, mesh] : meshes()) {
     for (std::uint64_t seed = 0; seed < 3; ++seed) {
       SCOPED_TRACE(name + " " + std::to_string(seed));
@@ -272,9 +272,9 @@ TEST(DriftMeterTest, OfAllThatCollapsedNothingIsLeftUnseen) {
       if (left == 0)
         continue;
       const Contraction chosen = tile.choose(left);
-      double bound = std::max(double{chosen.drift.interior}, double{chosen.drift.lost});
-      for (const float drift : chosen.drift.around)
-        bound = std::max(bound, double{drift});
+      double bound = std::max(double{chosen.deviation.interior}, double{chosen.deviation.lost});
+      for (const float deviation : chosen.deviation.around)
+        bound = std::max(bound, double{deviation});
       const std::vector<Corners> image = surface_of(tests::image_of(input, chosen));
       const double size = tile.frame().to_global(1.0);
       EXPECT_LE(farthest_sample(surface_of(mesh), image, kSteps), bound + kSlack * size);

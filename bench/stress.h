@@ -10,18 +10,18 @@
 
 namespace meshhier::bench {
 
-struct HellCase {
+struct StressCase {
   std::string_view name;
   std::string_view what;  ///< for people
 };
 
 /// All there are.
-std::span<const HellCase> hell_cases();
+std::span<const StressCase> stress_cases();
 
 /// The case of that name with about `size` triangles, or vertices where it has no triangles; at
 /// least the few that the case needs. A pure function of its arguments. Throws Error(usage) if
 /// there is no such case, or `size` is 2^30 or more.
-LoadedMesh make_hell(std::string_view name, std::uint64_t size, std::uint64_t seed = 1);
+LoadedMesh make_stress(std::string_view name, std::uint64_t size, std::uint64_t seed = 1);
 
 /// `mesh` as it is, for write_ply().
 std::unique_ptr<GeneratedMesh> as_generated(LoadedMesh mesh);

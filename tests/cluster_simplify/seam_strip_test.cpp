@@ -1,4 +1,4 @@
-#include "cluster_simplify/band.h"
+#include "cluster_simplify/seam_strip.h"
 
 #include "cluster_simplify/contraction.h"
 #include "tests/cluster_simplify/sampling.h"
@@ -38,16 +38,16 @@ class Level {
     for (std::uint32_t t = 0; t < tile_count; ++t) {
       const BuildTile tile = joined(t, tile_count);
       ContractedTile contracted = apply(tile, contract_tile(tile, t));
-      bands_.push_back({t, make_band(tile, contracted)});
+      seam_strips_.push_back({t, make_seam_strip(tile, contracted)});
       contracted_.push_back(std::move(contracted));
     }
     for (std::uint32_t t = 0; t < tile_count; ++t)
       draw(t);
   }
 
-  std::uint32_t tile_count() const { return static_cast<std::uint32_t>(bands_.size()); }
+  std::uint32_t tile_count() const { return static_cast<std::uint32_t>(seam_strips_.size()); }
   const TileMesh& drawn(std::uint32_t tile) const { return drawn_[tile]; }
-  const Band& band(std::uint32_t tile) const { return bands_[tile].band; }
+  const SeamStrip& seam_strip(std::uint32_t tile) const { return seam_strips_[tile].seam_strip; }
   std::vector<Corners> before() const { return surface_of(mesh_); }
   std::vector<Corners> after() const {
     std::vector<Corners> all;
@@ -59,16 +59,16 @@ class Level {
   }
 
   double seam(std::uint32_t tile) const {
-    const std::vector<GhostRef> foreign = mapped(band(tile).foreign);
-    return seam_gap({drawn_[tile], bands_[tile], foreign,
-                     [&](std::uint32_t neighbour) { return band(neighbour); }});
+    const std::vector<GhostRef> foreign = mapped(seam_strip(tile).foreign);
+    return seam_gap({drawn_[tile], seam_strips_[tile], foreign,
+                     [&](std::uint32_t neighbour) { return seam_strip(neighbour); }});
   }
 
   /// As the stage simplify sums it up.
   double certain(std::uint32_t tile) const {
     const double gap = seam(tile);
-    const double lost = band(tile).lost > 0 ? double{band(tile).lost} + gap : 0;
-    return std::max({double{band(tile).interior_drift}, gap, lost});
+    const double lost = seam_strip(tile).lost > 0 ? double{seam_strip(tile).lost} + gap : 0;
+    return std::max({double{seam_strip(tile).interior_deviation}, gap, lost});
   }
 
  private:
@@ -106,7 +106,7 @@ class Level {
     BuildTile tile;
     TileMesh& mesh = tile.mesh;
     std::vector<std::uint32_t> place(mesh_.positions.size());
-    mesh.own_count = mesh.rim_count = tests::count_of(own_[t]);
+    mesh.own_count = mesh.boundary_count = tests::count_of(own_[t]);
     tile.history.weights.assign(mesh.own_count, 1);
     for (const std::uint32_t v : own_[t]) {
       place[v] = index_[v];
@@ -143,13 +143,14 @@ class Level {
     BuildTile tile = resolve(work, mapped(work.foreign), true);
     for (std::uint32_t other = 0; other < contracted_.size(); ++other) {
       const WorkTile& neighbour = contracted_[other].tile;
-      Rim rim;
-      rim.vertices.positions.assign(neighbour.vertices.positions.begin(),
-                                    neighbour.vertices.positions.begin() + neighbour.rim_count);
+      Boundary boundary;
+      boundary.vertices.positions.assign(
+          neighbour.vertices.positions.begin(),
+          neighbour.vertices.positions.begin() + neighbour.boundary_count);
       const bool is_named = std::ranges::any_of(
           tile.mesh.ghosts, [&](const GhostRef& ghost) { return ghost.tile == other; });
       if (is_named)
-        fill_ghosts(tile, other, rim);
+        fill_ghosts(tile, other, boundary);
     }
     drawn_.push_back(tile.mesh);
   }
@@ -158,7 +159,7 @@ class Level {
   std::vector<std::uint32_t> tile_of_, index_;
   std::vector<std::vector<std::uint32_t>> own_;
   std::vector<ContractedTile> contracted_;
-  std::vector<BandOf> bands_;
+  std::vector<SeamStripOf> seam_strips_;
   std::vector<TileMesh> drawn_;
 };
 
@@ -252,7 +253,7 @@ Contraction identity(const BuildTile& tile) {
   for (std::uint32_t v = 0; v < tile.mesh.own_count; ++v)
     same.parent_of.push_back(v);
   same.representatives.append(tile.mesh.vertices, 0, tile.mesh.own_count);
-  same.drift.around.resize(tile.mesh.own_count);
+  same.deviation.around.resize(tile.mesh.own_count);
   return same;
 }
 
@@ -269,9 +270,9 @@ TEST(SeamGapTest, ANeighbourThatWentUpTakesTheSeamWithIt) {
     Contraction moved = identity(tile);
     for (Vec3f& p : moved.representatives.positions)
       p.z += index == 1 ? 1.0F : 0.0F;
-    for (float& drift : moved.drift.around)
-      drift = index == 1 ? 1.0F : 0.0F;
-    moved.drift.interior = index == 1 ? 1.0F : 0.0F;
+    for (float& deviation : moved.deviation.around)
+      deviation = index == 1 ? 1.0F : 0.0F;
+    moved.deviation.interior = index == 1 ? 1.0F : 0.0F;
     return moved;
   });
   EXPECT_NEAR(level.seam(0), 1, 0.3);
@@ -311,8 +312,8 @@ TEST(SeamGapTest, StrandedBorderTrianglesAreAsFarAsWhatIsLeft) {
       joined.representatives.positions.pop_back();
     }
     const auto count = joined.representatives.size();
-    joined.drift.around.assign(count, 0);
-    joined.drift.around[0] = 1;
+    joined.deviation.around.assign(count, 0);
+    joined.deviation.around[0] = 1;
     return joined;
   };
   const Level level(mesh, 2, [&](const BuildTile& tile, std::uint32_t) {
@@ -323,25 +324,25 @@ TEST(SeamGapTest, StrandedBorderTrianglesAreAsFarAsWhatIsLeft) {
   EXPECT_GE(std::max(level.seam(0), level.seam(1)), 5);
 }
 
-TEST(BandTest, ShowsTheSeamAndWhatIsBesideIt) {
+TEST(SeamStripTest, ShowsTheSeamAndWhatIsBesideIt) {
   const BuildTile joined = tests::part_of(tests::sphere(600), 0.1F);
   const Contraction contraction = contract(joined, 60, {}, {});
   const ContractedTile contracted = apply(joined, contraction);
-  const Band band = make_band(joined, contracted);
+  const SeamStrip seam_strip = make_seam_strip(joined, contracted);
   const WorkTile& tile = contracted.tile;
-  EXPECT_EQ(band.rim_count, tile.rim_count);
-  EXPECT_EQ(band.foreign, tile.foreign);
-  EXPECT_EQ(band.interior_drift, contracted.drift.interior);
-  EXPECT_EQ(band.lost, contracted.drift.lost);
-  EXPECT_EQ(band.weight_sum, joined.mesh.own_count);
-  ASSERT_EQ(band.drifts.size(), band.own_count);
-  ASSERT_EQ(band.positions.size(), band.own_count + band.foreign.size());
-  for (std::uint32_t v = 0; v < band.rim_count; ++v) {
-    EXPECT_EQ(band.positions[v], tile.vertices.positions[v]);
-    EXPECT_EQ(band.drifts[v], contracted.drift.around[v]);
+  EXPECT_EQ(seam_strip.boundary_count, tile.boundary_count);
+  EXPECT_EQ(seam_strip.foreign, tile.foreign);
+  EXPECT_EQ(seam_strip.interior_deviation, contracted.deviation.interior);
+  EXPECT_EQ(seam_strip.lost, contracted.deviation.lost);
+  EXPECT_EQ(seam_strip.weight_sum, joined.mesh.own_count);
+  ASSERT_EQ(seam_strip.deviations.size(), seam_strip.own_count);
+  ASSERT_EQ(seam_strip.positions.size(), seam_strip.own_count + seam_strip.foreign.size());
+  for (std::uint32_t v = 0; v < seam_strip.boundary_count; ++v) {
+    EXPECT_EQ(seam_strip.positions[v], tile.vertices.positions[v]);
+    EXPECT_EQ(seam_strip.deviations[v], contracted.deviation.around[v]);
   }
-  ASSERT_EQ(band.border.size(), tile.border.size());
-  for (std::size_t i = 0; i < band.border.size(); ++i) {
+  ASSERT_EQ(seam_strip.border.size(), tile.border.size());
+  for (std::size_t i = 0; i < seam_strip.border.size(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t v = raw(tile.border[i][k]);
       const Vec3f there =
@@ -349,14 +350,14 @@ TEST(BandTest, ShowsTheSeamAndWhatIsBesideIt) {
               ? tile.vertices.positions[v]
               : joined.mesh.vertices.positions[joined.mesh.own_count +
                                                tile.foreign[v - tile.vertices.size()].index];
-      EXPECT_EQ(band.positions[raw(band.border[i][k])], there);
+      EXPECT_EQ(seam_strip.positions[raw(seam_strip.border[i][k])], there);
     }
   }
-  const auto at_rim = std::ranges::count_if(tile.interior, [&](const Triangle& t) {
-    return std::ranges::any_of(t, [&](TileVertex v) { return raw(v) < tile.rim_count; });
+  const auto at_boundary = std::ranges::count_if(tile.interior, [&](const Triangle& t) {
+    return std::ranges::any_of(t, [&](TileVertex v) { return raw(v) < tile.boundary_count; });
   });
-  EXPECT_EQ(band.interior.size(), static_cast<std::size_t>(at_rim));
-  EXPECT_LT(band.interior.size(), tile.interior.size());
+  EXPECT_EQ(seam_strip.interior.size(), static_cast<std::size_t>(at_boundary));
+  EXPECT_LT(seam_strip.interior.size(), tile.interior.size());
 }
 
 }  // namespace

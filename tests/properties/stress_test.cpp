@@ -1,6 +1,6 @@
 // Meshes that are legal and unreasonable: each is built by every method and keeps all promises, or
 // is refused with a reason.
-#include "bench/hell.h"
+#include "bench/stress.h"
 
 #include "config/config.h"
 #include "hierarchy/error.h"
@@ -33,9 +33,9 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-class HellTest : public testing::Test {
+class StressTest : public testing::Test {
  protected:
-  HellTest() {
+  StressTest() {
     config_.input = "/models/mesh.ply";
     config_.output = "/models/mesh.hier";
     config_.threads = 2;
@@ -90,14 +90,14 @@ class HellTest : public testing::Test {
 };
 
 /// Every case there is.
-class HellCaseTest : public HellTest, public testing::WithParamInterface<bench::HellCase> {
+class StressCaseTest : public StressTest, public testing::WithParamInterface<bench::StressCase> {
  protected:
   bench::LoadedMesh mesh(std::uint64_t size) const {
-    return bench::make_hell(GetParam().name, size);
+    return bench::make_stress(GetParam().name, size);
   }
 };
 
-TEST_P(HellCaseTest, IsSoundWhateverTheMethod) {
+TEST_P(StressCaseTest, IsSoundWhateverTheMethod) {
   write(mesh(2000));
   use_tiles_of(120);
   for (const auto& [name, method] : tests::all_simplify_methods()) {
@@ -107,7 +107,7 @@ TEST_P(HellCaseTest, IsSoundWhateverTheMethod) {
   }
 }
 
-TEST_P(HellCaseTest, IsSoundInPartitionsOfFourVertices) {
+TEST_P(StressCaseTest, IsSoundInPartitionsOfFourVertices) {
   write(mesh(300));
   use_tiles_of(4);
   for (const auto& [name, method] : tests::all_simplify_methods()) {
@@ -117,14 +117,14 @@ TEST_P(HellCaseTest, IsSoundInPartitionsOfFourVertices) {
   }
 }
 
-TEST_P(HellCaseTest, IsSoundInOnePartitionLargerThanTheMesh) {
+TEST_P(StressCaseTest, IsSoundInOnePartitionLargerThanTheMesh) {
   write(mesh(1000));
   use_tiles_of(32768);
   config_.memory_budget = 128 * tests::kMiB;  // tiles so large would take more
   expect_sound();
 }
 
-TEST_P(HellCaseTest, IsSoundHoweverSmall) {
+TEST_P(StressCaseTest, IsSoundHoweverSmall) {
   for (const std::uint64_t size : {0U, 1U, 2U, 3U, 5U, 8U}) {
     SCOPED_TRACE("size " + std::to_string(size));
     bench::LoadedMesh small = mesh(size);
@@ -136,7 +136,7 @@ TEST_P(HellCaseTest, IsSoundHoweverSmall) {
   }
 }
 
-TEST_P(HellCaseTest, IsWithinItsBounds) {
+TEST_P(StressCaseTest, IsWithinItsBounds) {
   write(mesh(1000));
   use_tiles_of(100);
   for (const auto& [name, method] : tests::all_simplify_methods()) {
@@ -153,9 +153,9 @@ TEST_P(HellCaseTest, IsWithinItsBounds) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, HellCaseTest, testing::ValuesIn(bench::hell_cases()),
-                         [](const auto& hell) {
-                           std::string name(hell.param.name);
+INSTANTIATE_TEST_SUITE_P(Cases, StressCaseTest, testing::ValuesIn(bench::stress_cases()),
+                         [](const auto& stress) {
+                           std::string name(stress.param.name);
                            std::replace(name.begin(), name.end(), '-', '_');
                            return name;
                          });
@@ -167,7 +167,7 @@ bench::LoadedMesh loose_vertices(std::size_t count) {
   return mesh;
 }
 
-TEST_F(HellTest, NoVerticesAreRefusedAsAnInputError) {
+TEST_F(StressTest, NoVerticesAreRefusedAsAnInputError) {
   write(loose_vertices(0));
   const auto error = refusal();
   ASSERT_TRUE(error);
@@ -176,7 +176,7 @@ TEST_F(HellTest, NoVerticesAreRefusedAsAnInputError) {
   EXPECT_FALSE(files_.exists(config_.output));
 }
 
-TEST_F(HellTest, OneTwoAndThreeVerticesAreSound) {
+TEST_F(StressTest, OneTwoAndThreeVerticesAreSound) {
   for (const std::size_t count : {1U, 2U, 3U}) {
     for (const std::uint32_t partitions : {1U, 2U, 3U}) {
       if (partitions > count)
@@ -194,7 +194,7 @@ TEST_F(HellTest, OneTwoAndThreeVerticesAreSound) {
   }
 }
 
-TEST_F(HellTest, MorePartitionsThanVerticesAreRefusedAsAUsageError) {
+TEST_F(StressTest, MorePartitionsThanVerticesAreRefusedAsAUsageError) {
   write(loose_vertices(3));
   config_.partition.count = 4;
   const auto error = refusal();
@@ -203,8 +203,8 @@ TEST_F(HellTest, MorePartitionsThanVerticesAreRefusedAsAUsageError) {
   EXPECT_THAT(error->what(), HasSubstr("has only 3 vertices"));
 }
 
-TEST_F(HellTest, BoundsBeyondSinglePrecisionAreRefusedAsAnInputError) {
-  bench::LoadedMesh mesh = bench::make_hell("huge", 300);
+TEST_F(StressTest, BoundsBeyondSinglePrecisionAreRefusedAsAnInputError) {
+  bench::LoadedMesh mesh = bench::make_stress("huge", 300);
   for (Vec3d& p : mesh.positions)
     p = p * 1.5e8;
   write(mesh);
@@ -220,7 +220,7 @@ TEST_F(HellTest, BoundsBeyondSinglePrecisionAreRefusedAsAnInputError) {
   expect_sound();
 }
 
-TEST_F(HellTest, AnOutlierFarBeyondSinglePrecisionIsRefusedAsAnInputError) {
+TEST_F(StressTest, AnOutlierFarBeyondSinglePrecisionIsRefusedAsAnInputError) {
   bench::LoadedMesh mesh = loose_vertices(20);
   mesh.double_coordinates = true;
   mesh.positions[7].y = -1e300;
@@ -243,8 +243,8 @@ std::vector<Vec3d> scaled_positions(storage::FileSystem& files, const fs::path& 
   return positions;
 }
 
-TEST_F(HellTest, TheUnitOfLengthDoesNotMatter) {
-  const bench::LoadedMesh mesh = bench::make_hell("mirrored", 3000);
+TEST_F(StressTest, TheUnitOfLengthDoesNotMatter) {
+  const bench::LoadedMesh mesh = bench::make_stress("mirrored", 3000);
   use_tiles_of(120);
   for (const auto& [name, method] : tests::all_simplify_methods()) {
     SCOPED_TRACE(name);

@@ -16,10 +16,10 @@
 namespace meshhier::cluster_simplify {
 
 /// Follows edge collapses. The bounds of successive collapses add up where they overlap.
-class DriftMeter {
+class DeviationMeter {
  public:
   /// `weights`: one per own vertex. Coordinates as the collapses will have them.
-  DriftMeter(const CollapseMesh& mesh, std::span<const float> weights);
+  DeviationMeter(const CollapseMesh& mesh, std::span<const float> weights);
 
   /// Takes note that an edge is about to collapse to `place`; `positions` as they are before,
   /// `star` as seen from there if it is a disc. O(triangles around the edge).
@@ -28,11 +28,11 @@ class DriftMeter {
   /// A triangle around which nothing was left: what lay on it lies nowhere.
   struct Vanished {
     std::array<Vec3f, 3> corners;
-    float drift = 0;
+    float deviation = 0;
   };
   std::span<const Vanished> vanished() const { return vanished_; }
 
-  float of_triangle(std::uint32_t triangle) const { return drifts_[triangle]; }
+  float of_triangle(std::uint32_t triangle) const { return deviations_[triangle]; }
   /// Weight times squared distance, summed up over all collapses.
   double squared_sum() const { return squared_sum_; }
 
@@ -46,27 +46,27 @@ class DriftMeter {
   std::optional<DiscGap> measure(std::span<const Vec3f> positions, const EdgeStar& star,
                                  const StarCollapse& c);
   void note_any(std::span<const Vec3f> positions, const StarCollapse& c);
-  void note_crowd(std::span<const Vec3f> positions, const StarCollapse& c);
+  void note_high_valence(std::span<const Vec3f> positions, const StarCollapse& c);
   void note_vanished(std::span<const Vec3f> positions, const StarCollapse& c);
   void collect(std::span<const Vec3f> positions, const StarCollapse& c);
-  void cover(std::span<const StarTriangle> triangles, bool with_drift);
-  void set_drift(std::uint32_t triangle, float drift);
+  void cover(std::span<const StarTriangle> triangles, bool with_deviation);
+  void set_deviation(std::uint32_t triangle, float deviation);
   void add_square(std::uint32_t vertex, float distance);
 
   DiscGapMeter discs_;
   FanGapMeter fans_;
   CoverDistance cover_distance_;
-  std::vector<float> drifts_;   ///< per triangle
-  std::vector<float> weights_;  ///< per own vertex
+  std::vector<float> deviations_;  ///< per triangle
+  std::vector<float> weights_;     ///< per own vertex
   std::vector<Vanished> vanished_;
   // Around one edge:
   std::vector<StarTriangle> before_, after_;
   std::vector<Vec3d> points_;
   std::vector<std::uint32_t> ring_;
   std::vector<Cover> covers_;
-  std::vector<double> fresh_;  ///< drifts of after_
+  std::vector<double> fresh_;  ///< deviations of after_
   double squared_sum_ = 0;
-  float largest_ = 0;  ///< drift of any triangle so far
+  float largest_ = 0;  ///< deviation of any triangle so far
 };
 
 }  // namespace meshhier::cluster_simplify

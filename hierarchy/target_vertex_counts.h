@@ -13,16 +13,17 @@
 
 namespace meshhier {
 
-class AskedVertices {
+class TargetVertexCounts {
  public:
   /// More than there are levels above the partitions, which are fewer than 2^32.
   static constexpr std::size_t kMostLevels = 32;
 
   /// So many on all levels. Implicit: one number is what it is in most places.
-  AskedVertices(std::uint32_t everywhere) : by_level_{everywhere} {}
+  TargetVertexCounts(std::uint32_t everywhere) : by_level_{everywhere} {}
   /// From level 0, the root, down; the last one holds for all deeper levels too. Requires one at
   /// least.
-  explicit AskedVertices(std::vector<std::uint32_t> by_level) : by_level_(std::move(by_level)) {
+  explicit TargetVertexCounts(std::vector<std::uint32_t> by_level)
+      : by_level_(std::move(by_level)) {
     assert(!by_level_.empty());
   }
 
@@ -45,7 +46,7 @@ class AskedVertices {
   /// As given; a single one for all levels.
   std::span<const std::uint32_t> by_level() const { return by_level_; }
 
-  friend bool operator==(const AskedVertices&, const AskedVertices&) = default;
+  friend bool operator==(const TargetVertexCounts&, const TargetVertexCounts&) = default;
 
  private:
   std::vector<std::uint32_t> by_level_;

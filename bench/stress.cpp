@@ -1,4 +1,4 @@
-#include "bench/hell.h"
+#include "bench/stress.h"
 
 #include "bench/block_writer.h"
 #include "bench/noise.h"
@@ -16,7 +16,7 @@
 namespace meshhier::bench {
 namespace {
 
-struct HellOptions {
+struct StressOptions {
   std::uint64_t size = 1;
   std::uint64_t seed = 1;
 };
@@ -46,7 +46,7 @@ LoadedMesh collect(const GeneratedMesh& generated) {
 
 // What the cases are made of. A rough closed surface is the sound mesh that many of them spoil.
 
-LoadedMesh surface(const HellOptions& options) {
+LoadedMesh surface(const StressOptions& options) {
   SurfaceOptions wanted;
   wanted.triangles = std::max<std::uint64_t>(options.size, 8);
   wanted.seed = options.seed;
@@ -55,18 +55,18 @@ LoadedMesh surface(const HellOptions& options) {
 
 /// The surface with every position moved.
 template <class Move>
-LoadedMesh moved_surface(const HellOptions& options, Move move) {
+LoadedMesh moved_surface(const StressOptions& options, Move move) {
   LoadedMesh mesh = surface(options);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i)
     mesh.positions[i] = rounded_to_float(move(mesh.positions[i], i));
   return mesh;
 }
 
-LoadedMesh scaled_surface(const HellOptions& options, double factor) {
+LoadedMesh scaled_surface(const StressOptions& options, double factor) {
   return moved_surface(options, [&](Vec3d p, std::size_t) { return p * factor; });
 }
 
-LoadedMesh points(const HellOptions& options) {
+LoadedMesh points(const StressOptions& options) {
   LoadedMesh mesh;
   for (std::uint64_t i = 0; i < options.size; ++i)
     mesh.positions.push_back(random_point(options.seed, i));
@@ -80,7 +80,7 @@ Vec3d ring_point(std::uint64_t i, std::uint64_t count) {
 }
 
 /// A disc of one fan: every triangle has the vertex 0.
-LoadedMesh hub(const HellOptions& options) {
+LoadedMesh hub(const StressOptions& options) {
   const std::uint64_t count = std::max<std::uint64_t>(options.size, 3);
   LoadedMesh mesh;
   mesh.positions.push_back({0, 0, 1});
@@ -92,7 +92,7 @@ LoadedMesh hub(const HellOptions& options) {
 }
 
 /// The same disc, but every triangle has a tip of its own at the one place.
-LoadedMesh copies(const HellOptions& options) {
+LoadedMesh copies(const StressOptions& options) {
   LoadedMesh mesh = hub(options);
   const Vec3d tip = mesh.positions[0];
   for (std::size_t i = 1; i < mesh.triangles.size(); ++i) {
@@ -103,7 +103,7 @@ LoadedMesh copies(const HellOptions& options) {
 }
 
 /// Triangles that all share one edge, like the pages of a book.
-LoadedMesh book(const HellOptions& options) {
+LoadedMesh book(const StressOptions& options) {
   const std::uint64_t count = std::max<std::uint64_t>(options.size, 1);
   LoadedMesh mesh;
   mesh.positions = {{0, 0, -1}, {0, 0, 1}};
@@ -114,13 +114,13 @@ LoadedMesh book(const HellOptions& options) {
   return mesh;
 }
 
-LoadedMesh one_face(const HellOptions& options) {
+LoadedMesh one_face(const StressOptions& options) {
   LoadedMesh mesh = points({std::max<std::uint64_t>(options.size, 3), options.seed});
   mesh.triangles.push_back({0, u32(mesh.positions.size() / 2), u32(mesh.positions.size() - 1)});
   return mesh;
 }
 
-LoadedMesh degenerate(const HellOptions& options) {
+LoadedMesh degenerate(const StressOptions& options) {
   LoadedMesh mesh = points({std::max<std::uint64_t>(options.size, 2), options.seed});
   const std::uint64_t count = mesh.positions.size();
   for (std::uint64_t i = 0; i < count; ++i) {
@@ -132,7 +132,7 @@ LoadedMesh degenerate(const HellOptions& options) {
 }
 
 /// Tetrahedra, each alone.
-LoadedMesh pieces(const HellOptions& options) {
+LoadedMesh pieces(const StressOptions& options) {
   LoadedMesh mesh;
   for (std::uint64_t i = 0; i < std::max<std::uint64_t>(options.size / 4, 1); ++i) {
     const Vec3d at = random_point(options.seed, i);
@@ -149,7 +149,7 @@ LoadedMesh pieces(const HellOptions& options) {
 }
 
 /// Triangles across the whole box, no vertex shared.
-LoadedMesh soup(const HellOptions& options) {
+LoadedMesh soup(const StressOptions& options) {
   LoadedMesh mesh = points({3 * std::max<std::uint64_t>(options.size, 1), options.seed});
   for (std::uint64_t i = 0; i + 2 < mesh.positions.size(); i += 3)
     mesh.triangles.push_back({u32(i), u32(i + 1), u32(i + 2)});
@@ -157,7 +157,7 @@ LoadedMesh soup(const HellOptions& options) {
 }
 
 /// Twice as many triangles as vertices, each between any three: nothing is near its neighbours.
-LoadedMesh tangle(const HellOptions& options) {
+LoadedMesh tangle(const StressOptions& options) {
   LoadedMesh mesh = points({std::max<std::uint64_t>(options.size / 2, 4), options.seed});
   const std::uint64_t count = mesh.positions.size();
   for (std::uint64_t i = 0; mesh.triangles.size() < 2 * count; ++i) {
@@ -171,7 +171,7 @@ LoadedMesh tangle(const HellOptions& options) {
   return mesh;
 }
 
-LoadedMesh moebius(const HellOptions& options) {
+LoadedMesh moebius(const StressOptions& options) {
   const auto width = std::max<std::uint64_t>(
       2, static_cast<std::uint64_t>(std::sqrt(static_cast<double>(options.size) / 16)));
   const std::uint64_t length = 8 * width;
@@ -197,7 +197,7 @@ LoadedMesh moebius(const HellOptions& options) {
   return mesh;
 }
 
-LoadedMesh repeated(const HellOptions& options) {
+LoadedMesh repeated(const StressOptions& options) {
   constexpr std::uint64_t kTimes = 100;
   LoadedMesh mesh = surface({options.size / kTimes, options.seed});
   std::vector<MeshTriangle> all;
@@ -207,7 +207,7 @@ LoadedMesh repeated(const HellOptions& options) {
   return mesh;
 }
 
-LoadedMesh mirrored(const HellOptions& options) {
+LoadedMesh mirrored(const StressOptions& options) {
   LoadedMesh mesh = surface({options.size / 2, options.seed});
   const std::size_t count = mesh.triangles.size();
   for (std::size_t i = 0; i < count; ++i) {
@@ -217,7 +217,7 @@ LoadedMesh mirrored(const HellOptions& options) {
   return mesh;
 }
 
-LoadedMesh utm(const HellOptions& options) {
+LoadedMesh utm(const StressOptions& options) {
   LoadedMesh mesh = surface(options);
   mesh.double_coordinates = true;
   for (Vec3d& p : mesh.positions)
@@ -226,14 +226,14 @@ LoadedMesh utm(const HellOptions& options) {
 }
 
 /// Every vertex of the surface in a size of its own: 10^30, 1, 10^-30 or 10^-40.
-LoadedMesh mixed(const HellOptions& options) {
+LoadedMesh mixed(const StressOptions& options) {
   constexpr std::array kFactors = {1e30, 1.0, 1e-30, 1e-40};
   return moved_surface(options, [&](Vec3d p, std::size_t i) {
     return p * kFactors[random_at(options.seed, i) % kFactors.size()];
   });
 }
 
-LoadedMesh shuffled(const HellOptions& options) {
+LoadedMesh shuffled(const StressOptions& options) {
   return collect(*shuffle(surface(options), options.seed));
 }
 
@@ -270,21 +270,21 @@ class Held final : public GeneratedMesh {
 };
 
 struct Maker {
-  HellCase listed;
-  LoadedMesh (*make)(const HellOptions&);
+  StressCase listed;
+  LoadedMesh (*make)(const StressOptions&);
 };
 
 constexpr std::array kMakers = {
     Maker{{"one-point", "a surface whose vertices are all equal"},
-          [](const HellOptions& o) {
+          [](const StressOptions& o) {
             return moved_surface(o, [](Vec3d, std::size_t) { return Vec3d{1, 2, 3}; });
           }},
     Maker{{"line", "a surface pressed onto a line"},
-          [](const HellOptions& o) {
+          [](const StressOptions& o) {
             return moved_surface(o, [](Vec3d p, std::size_t) { return Vec3d{p.x, p.x, p.x}; });
           }},
     Maker{{"plane", "a surface pressed onto a plane"},
-          [](const HellOptions& o) {
+          [](const StressOptions& o) {
             return moved_surface(o, [](Vec3d p, std::size_t) { return Vec3d{p.x, p.y, 0}; });
           }},
     Maker{{"copies", "a disc of one fan, each triangle with its own copy of the tip"}, copies},
@@ -303,17 +303,17 @@ constexpr std::array kMakers = {
     Maker{{"shuffled", "a surface in random order"}, shuffled},
     Maker{{"utm", "a surface of a kilometre at geographic coordinates, in double"}, utm},
     Maker{{"huge", "coordinates of 10^30"},
-          [](const HellOptions& o) { return scaled_surface(o, 1e30); }},
+          [](const StressOptions& o) { return scaled_surface(o, 1e30); }},
     Maker{{"largest", "coordinates of 10^36"},
-          [](const HellOptions& o) { return scaled_surface(o, 1e36); }},
+          [](const StressOptions& o) { return scaled_surface(o, 1e36); }},
     Maker{{"tiny", "coordinates of 10^-30"},
-          [](const HellOptions& o) { return scaled_surface(o, 1e-30); }},
+          [](const StressOptions& o) { return scaled_surface(o, 1e-30); }},
     Maker{{"denormal", "coordinates of 10^-40"},
-          [](const HellOptions& o) { return scaled_surface(o, 1e-40); }},
+          [](const StressOptions& o) { return scaled_surface(o, 1e-40); }},
     Maker{{"mixed", "each vertex of a size of its own, 10^30 to 10^-40"}, mixed}};
 
 constexpr auto kCases = [] {
-  std::array<HellCase, kMakers.size()> cases;
+  std::array<StressCase, kMakers.size()> cases;
   for (std::size_t i = 0; i < cases.size(); ++i)
     cases[i] = kMakers[i].listed;
   return cases;
@@ -321,11 +321,11 @@ constexpr auto kCases = [] {
 
 }  // namespace
 
-std::span<const HellCase> hell_cases() {
+std::span<const StressCase> stress_cases() {
   return kCases;
 }
 
-LoadedMesh make_hell(std::string_view name, std::uint64_t size, std::uint64_t seed) {
+LoadedMesh make_stress(std::string_view name, std::uint64_t size, std::uint64_t seed) {
   const auto found = std::find_if(kMakers.begin(), kMakers.end(),
                                   [&](const Maker& maker) { return maker.listed.name == name; });
   if (found == kMakers.end())

@@ -1,4 +1,4 @@
-#include "cluster_simplify/drift_meter.h"
+#include "cluster_simplify/deviation_meter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,21 +6,21 @@
 namespace meshhier::cluster_simplify {
 namespace {
 
-// Little is gained by knowing exactly what is small against the largest drift around, or against
-// the largest so far: with a tenth of that, bounds of scans are up to 7 % tighter, and the build of
-// a rough mesh takes a fifth longer.
+// Little is gained by knowing exactly what is small against the largest deviation around, or
+// against the largest so far: with a tenth of that, bounds of scans are up to 7 % tighter, and the
+// build of a rough mesh takes a fifth longer.
 constexpr double kSmallBeside = 0.5;
 constexpr double kSmallAnywhere = 0.5;
 
-// Of drifts on discs, which are cheap to know.
+// Of deviations on discs, which are cheap to know.
 constexpr float kSmallDisc = 0.2F;
 
-// Of the largest drift so far: a fan's is believed up to here.
+// Of the largest deviation so far: a fan's is believed up to here.
 constexpr float kLargeFan = 0.5F;
 
 // Stars of more triangles are not compared all with all, which takes their number squared in time
 // and memory: at this one half a millisecond.
-constexpr std::size_t kCrowd = 128;
+constexpr std::size_t kHighValence = 128;
 
 /// A float that is not below `value`.
 float rounded_up(double value) {
@@ -29,60 +29,61 @@ float rounded_up(double value) {
 
 }  // namespace
 
-DriftMeter::DriftMeter(const CollapseMesh& mesh, std::span<const float> weights)
-    : drifts_(mesh.faces().size()), weights_(weights.begin(), weights.end()) {}
+DeviationMeter::DeviationMeter(const CollapseMesh& mesh, std::span<const float> weights)
+    : deviations_(mesh.faces().size()), weights_(weights.begin(), weights.end()) {}
 
-void DriftMeter::note(std::span<const Vec3f> positions, const EdgeStar& star, Vec3f place) {
+void DeviationMeter::note(std::span<const Vec3f> positions, const EdgeStar& star, Vec3f place) {
   const StarCollapse c{star.from(), star.to(), place, star.around_from(), star.around_to()};
   if (const std::optional<DiscGap> disc = measure(positions, star, c)) {
     for (std::size_t i = 0; i < disc->triangles.size(); ++i)
-      set_drift(disc->triangles[i], disc->drifts[i]);
+      set_deviation(disc->triangles[i], disc->deviations[i]);
     add_square(c.from, disc->from);
     add_square(c.to, disc->to);
   } else if (all_at(c.around_from, c.to) && all_at(c.around_to, c.from)) {
     note_vanished(positions, c);
-  } else if (c.around_from.size() + c.around_to.size() <= kCrowd) {
+  } else if (c.around_from.size() + c.around_to.size() <= kHighValence) {
     note_any(positions, c);
   } else {
-    note_crowd(positions, c);
+    note_high_valence(positions, c);
   }
   weights_[c.to] += weights_[c.from];
 }
 
-/// The drifts on a disc, if they can be told and are not worth a closer look.
-std::optional<DiscGap> DriftMeter::measure(std::span<const Vec3f> positions, const EdgeStar& star,
-                                           const StarCollapse& c) {
+/// The deviations on a disc, if they can be told and are not worth a closer look.
+std::optional<DiscGap> DeviationMeter::measure(std::span<const Vec3f> positions,
+                                               const EdgeStar& star, const StarCollapse& c) {
   if (star.is_disc()) {
     const float enough = kSmallDisc * largest_;
-    if (const auto disc = discs_.measure(positions, drifts_, star, c.place, enough))
+    if (const auto disc = discs_.measure(positions, deviations_, star, c.place, enough))
       return disc;
   }
-  std::optional<DiscGap> fan = fans_.measure(positions, drifts_, c);
+  std::optional<DiscGap> fan = fans_.measure(positions, deviations_, c);
   // Unfolding makes long ways longer.
-  if (fan && *std::max_element(fan->drifts.begin(), fan->drifts.end()) > kLargeFan * largest_)
+  if (fan &&
+      *std::max_element(fan->deviations.begin(), fan->deviations.end()) > kLargeFan * largest_)
     return std::nullopt;
   return fan;
 }
 
-void DriftMeter::set_drift(std::uint32_t triangle, float drift) {
-  drifts_[triangle] = drift;
-  largest_ = std::max(largest_, drift);
+void DeviationMeter::set_deviation(std::uint32_t triangle, float deviation) {
+  deviations_[triangle] = deviation;
+  largest_ = std::max(largest_, deviation);
 }
 
-void DriftMeter::add_square(std::uint32_t vertex, float distance) {
+void DeviationMeter::add_square(std::uint32_t vertex, float distance) {
   squared_sum_ += double{weights_[vertex]} * double{distance} * double{distance};
 }
 
 /// All triangles around the edge are at the edge.
-void DriftMeter::note_vanished(std::span<const Vec3f> positions, const StarCollapse& c) {
+void DeviationMeter::note_vanished(std::span<const Vec3f> positions, const StarCollapse& c) {
   for (const CollapseMesh::Fan& fan : c.around_from) {
-    vanished_.push_back(
-        {{positions[c.from], positions[fan.next], positions[fan.previous]}, drifts_[fan.triangle]});
+    vanished_.push_back({{positions[c.from], positions[fan.next], positions[fan.previous]},
+                         deviations_[fan.triangle]});
   }
 }
 
 /// Gives the triangles around the edge as places among points: 0 and 1 its ends, 2 the new vertex.
-void DriftMeter::collect(std::span<const Vec3f> positions, const StarCollapse& c) {
+void DeviationMeter::collect(std::span<const Vec3f> positions, const StarCollapse& c) {
   before_.clear();
   after_.clear();
   points_ = {to_double(positions[c.from]), to_double(positions[c.to]), to_double(c.place)};
@@ -113,17 +114,17 @@ void DriftMeter::collect(std::span<const Vec3f> positions, const StarCollapse& c
   }
 }
 
-void DriftMeter::cover(std::span<const StarTriangle> triangles, bool with_drift) {
+void DeviationMeter::cover(std::span<const StarTriangle> triangles, bool with_deviation) {
   covers_.clear();
   for (const auto& [corners, triangle] : triangles) {
     covers_.push_back({{points_[corners[0]], points_[corners[1]], points_[corners[2]]},
-                       with_drift ? double{drifts_[triangle]} : 0});
+                       with_deviation ? double{deviations_[triangle]} : 0});
   }
   cover_distance_.begin(covers_, points_);
 }
 
 /// Whatever there is around the edge: sheets that meet, folds.
-void DriftMeter::note_any(std::span<const Vec3f> positions, const StarCollapse& c) {
+void DeviationMeter::note_any(std::span<const Vec3f> positions, const StarCollapse& c) {
   collect(positions, c);
   const double small = kSmallAnywhere * double{largest_};
   double enough = small;
@@ -135,23 +136,23 @@ void DriftMeter::note_any(std::span<const Vec3f> positions, const StarCollapse& 
   }
   cover(after_, false);
   for (const auto& [corners, triangle] : before_) {
-    const auto drift = double{drifts_[triangle]};
-    cover_distance_.triangle(corners, std::max(enough - drift, small));
+    const auto deviation = double{deviations_[triangle]};
+    cover_distance_.triangle(corners, std::max(enough - deviation, small));
     for (std::size_t i = 0; i < after_.size(); ++i) {
       const double landed = cover_distance_.landings()[i];
       if (landed >= 0)
-        fresh_[i] = std::max(fresh_[i], drift + landed);
+        fresh_[i] = std::max(fresh_[i], deviation + landed);
     }
   }
   add_square(c.from, static_cast<float>(cover_distance_.nearest(0)));
   add_square(c.to, static_cast<float>(cover_distance_.nearest(1)));
   for (std::size_t i = 0; i < after_.size(); ++i)
-    set_drift(after_[i].triangle, rounded_up(fresh_[i]));
+    set_deviation(after_[i].triangle, rounded_up(fresh_[i]));
 }
 
 /// A triangle that stays is as near to its image as its corner is. One at the edge shrinks to an
 /// edge of those that stay, or, if it hung on the edge alone, into the new vertex.
-void DriftMeter::note_crowd(std::span<const Vec3f> positions, const StarCollapse& c) {
+void DeviationMeter::note_high_valence(std::span<const Vec3f> positions, const StarCollapse& c) {
   constexpr int kMostAsked = 4;  // each looks through all others
   const auto moved = [&](std::uint32_t v) {
     return length(to_double(positions[v]) - to_double(c.place));
@@ -180,12 +181,12 @@ void DriftMeter::note_crowd(std::span<const Vec3f> positions, const StarCollapse
     double farthest = std::max(from, to);
     if (++asked > kMostAsked || !holds(apex))
       farthest = std::max(farthest, moved(apex));
-    shrunk = std::max(shrunk, double{drifts_[fan.triangle]} + farthest);
+    shrunk = std::max(shrunk, double{deviations_[fan.triangle]} + farthest);
   }
   const auto take = [&](double end) {
     return [this, end, shrunk](const CollapseMesh::Fan& fan) {
-      const auto drift = double{drifts_[fan.triangle]};
-      set_drift(fan.triangle, rounded_up(std::max(drift + end, shrunk)));
+      const auto deviation = double{deviations_[fan.triangle]};
+      set_deviation(fan.triangle, rounded_up(std::max(deviation + end, shrunk)));
     };
   };
   staying(c.around_from, c.to, take(from));
