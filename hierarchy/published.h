@@ -76,6 +76,9 @@ struct SourceSummary {
   AttributeLayout attributes;
   std::vector<SourceFile> files;    ///< in their order; empty: one PLY that was read in place
   std::vector<SourceCount> counts;  ///< of an import, those that are not 0; by name
+
+  /// Of the bounding box.
+  double diagonal() const { return length(bounds.max - bounds.min); }
 };
 
 }  // namespace meshhier

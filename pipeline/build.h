@@ -2,30 +2,14 @@
 #pragma once
 
 #include "config/config.h"
-#include "execution/cancel.h"
-#include "execution/progress.h"
-#include "pipeline/plan/build_stats.h"
-#include "storage/io/file.h"
-
-#include <string>
+#include "pipeline/build_report.h"
+#include "pipeline/plan/stage_context.h"
 
 namespace meshhier::pipeline {
-
-/// What a build works with, besides its config.
-struct BuildEnvironment {
-  storage::FileSystem& files;
-  execution::Progress& progress;
-  const execution::CancelToken& cancel;
-};
 
 struct BuildOptions {
   bool force = false;    ///< replace an existing output
   bool restart = false;  ///< throw away what an earlier build of the output left
-};
-
-struct BuildReport {
-  std::string text;  ///< a few lines and a table for people
-  BuildStats stats;
 };
 
 /// Builds config.output from config.input. An existing output is Error(exists), unless it is to be

@@ -32,15 +32,15 @@ Level sector_level(const Tree& tree, std::uint32_t sectors) {
 }
 
 /// Adds all sectors of a level; false if their lines are too many and there is a coarser level.
-bool collect(Forest& forest, Level level, outline::OutlineBuilder& builder, const MemoryPlan& plan,
-             execution::Progress& progress, const execution::CancelToken& cancel) {
+bool collect(Forest& forest, Level level, outline::OutlineBuilder& builder,
+             const StageContext& context) {
   using Collected = std::optional<outline::OutlineBuilder::Sector>;
   const std::uint32_t count = forest.tree().node_count(level);
-  progress.stage("outline", count, "sectors");
+  context.progress.stage("outline", count, "sectors");
   std::atomic<bool> too_many{false};
-  const TileRoom room = room_for(forest, plan, heaviest_read(forest, level));
+  const TileRoom room = room_for(forest, context.memory(), heaviest_read(forest, level));
   execution::ordered_for(
-      count, room.in_flight(), cancel,
+      count, room.in_flight(), context.cancel,
       [&](std::size_t i) -> Collected {
         if (too_many)
           return std::nullopt;
@@ -52,17 +52,15 @@ bool collect(Forest& forest, Level level, outline::OutlineBuilder& builder, cons
           return;
         builder.add(std::move(*sector));
         too_many = builder.edge_count() > kMostEdges && level > Level{0};
-        progress.advance(1);
+        context.progress.advance(1);
       });
   return !too_many;
 }
 
 }  // namespace
 
-OutlineStageResult make_outline(Forest& forest, const config::OutlineConfig& config,
-                                double diagonal, const MemoryPlan& plan,
-                                execution::Progress& progress,
-                                const execution::CancelToken& cancel) {
+OutlineStageResult make_outline(Forest& forest, double diagonal, const StageContext& context) {
+  const config::OutlineConfig& config = context.config.outline;
   outline::OutlineOptions options;
   options.tolerance = config.tolerance;
   options.diagonal = std::max(diagonal, 1e-30);
@@ -70,10 +68,10 @@ OutlineStageResult make_outline(Forest& forest, const config::OutlineConfig& con
   options.file_bytes = storage::outline_bytes;
   for (Level level = sector_level(forest.tree(), config.sectors);; level = coarser(level)) {
     outline::OutlineBuilder builder;
-    if (!collect(forest, level, builder, plan, progress, cancel))
+    if (!collect(forest, level, builder, context))
       continue;
     options.max_segments = level > Level{0} ? kMostSegments : SIZE_MAX;
-    const TileRoom room = room_for(forest, plan, builder.edge_count() * kEdgeBytes);
+    const TileRoom room = room_for(forest, context.memory(), builder.edge_count() * kEdgeBytes);
     if (auto result = builder.finish(options)) {
       return {std::move(result->outline),
               {raw(level), forest.tree().node_count(level), result->tolerance,

@@ -26,21 +26,21 @@ void for_each_name(const storage::HierarchyReader& made,
 }  // namespace
 
 std::uint64_t pack(const storage::HierarchyReader& made, const fs::path& file,
-                   storage::FileSystem& files, storage::ScratchUse& use,
-                   execution::Progress& progress, const execution::CancelToken& cancel) {
+                   storage::ScratchUse& use, const StageContext& context) {
+  storage::FileSystem& files = context.files;
   constexpr std::uint64_t kOtherFiles = 3;  // manifest, index, outline
-  progress.stage("pack", kOtherFiles + made.manifest().tileset_files + made.records().size(),
-                 "files");
+  context.progress.stage(
+      "pack", kOtherFiles + made.manifest().tileset_files + made.records().size(), "files");
   const std::unique_ptr<storage::File> archive = files.create(file);
-  storage::ArchiveWriter writer(*archive, [&] { cancel.check(); });
+  storage::ArchiveWriter writer(*archive, [&] { context.cancel.check(); });
   for_each_name(made, [&](const fs::path& name) {
     const std::unique_ptr<storage::File> content = files.open(made.directory() / name);
     writer.add(name.generic_string(), *content);
     use.add_read(content->size());
-    progress.advance(1);
+    context.progress.advance(1);
   });
   writer.finish();
-  archive->sync([&] { cancel.check(); });
+  archive->sync([&] { context.cancel.check(); });
   return writer.bytes();
 }
 

@@ -1,10 +1,8 @@
 // The stage `pack`: the published files as one archive.
 #pragma once
 
-#include "execution/cancel.h"
-#include "execution/progress.h"
+#include "pipeline/plan/stage_context.h"
 #include "storage/format/hierarchy_reader.h"
-#include "storage/io/file.h"
 #include "storage/io/scratch_use.h"
 
 #include <cstdint>
@@ -32,7 +30,6 @@ class TemporaryFiles {
 /// Returns the archive's size. Throws Error(io | interrupted), Error(usage) if a file is too
 /// large for an archive.
 std::uint64_t pack(const storage::HierarchyReader& made, const std::filesystem::path& file,
-                   storage::FileSystem& files, storage::ScratchUse& use,
-                   execution::Progress& progress, const execution::CancelToken& cancel);
+                   storage::ScratchUse& use, const StageContext& context);
 
 }  // namespace meshhier::pipeline

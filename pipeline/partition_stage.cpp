@@ -15,18 +15,19 @@ namespace {
 using partition::TopPlan;
 using partition::TopTree;
 
+constexpr const char* kStage = "partition";
+
 /// Hands the vertices to parallel work(block, slot) and a serial sink(slot) in the order of ids.
 template <class Slot, class Work, class Sink>
-void for_each_block(const SourceMesh& mesh, const MemoryPlan& plan,
-                    const execution::CancelToken& cancel, execution::Progress& progress,
-                    const Work& work, const Sink& sink) {
+void for_each_block(const SourceMesh& mesh, const StageContext& context, const Work& work,
+                    const Sink& sink) {
   struct Read {
     mesh_io::BlockMemory memory;
     std::size_t count = 0;
     Slot slot;
   };
   execution::ordered_blocks<Read>(
-      mesh.vertex_blocks(), plan.blocks_in_flight, cancel,
+      mesh.vertex_blocks(), context.memory().blocks_in_flight, context.cancel,
       [&](std::uint64_t i, Read& read) {
         const SourceVertices block = mesh.read_vertex_block(i, read.memory);
         read.count = block.positions.size();
@@ -34,23 +35,23 @@ void for_each_block(const SourceMesh& mesh, const MemoryPlan& plan,
       },
       [&](Read& read) {
         sink(read.slot);
-        progress.advance(read.count);
+        context.progress.advance(read.count);
         return true;
       });
 }
 
-TopTree find_splits(const SourceMesh& mesh, const Tree& tree, partition::Axis axis,
-                    const MemoryPlan& memory, storage::ScratchFile& scratch,
-                    execution::Progress& progress, const execution::CancelToken& cancel) {
-  TopPlan plan = partition::plan_top(mesh.sample(), tree, axis);
+TopTree find_splits(const SourceMesh& mesh, storage::ScratchFile& scratch,
+                    const StageContext& context) {
+  const Tree& tree = context.tree();
+  TopPlan plan = partition::plan_top(mesh.sample(), tree, context.config.partition.axis);
   if (plan.splits.empty())
     return {plan.chunks, {}};
   for (;;) {
-    progress.stage("partition", tree.vertex_count(), "vertices");
+    context.progress.stage(kStage, tree.vertex_count(), "vertices");
     const partition::Sweep sweep(plan);
-    partition::TopSelector selector(plan, tree, scratch, memory.work_bytes / 2);
+    partition::TopSelector selector(plan, tree, scratch, context.memory().work_bytes / 2);
     for_each_block<partition::SweepBlock>(
-        mesh, memory, cancel, progress,
+        mesh, context,
         [&](const SourceVertices& block, partition::SweepBlock& swept) {
           sweep.count(block.positions, static_cast<std::uint32_t>(block.first), swept);
         },
@@ -65,15 +66,14 @@ TopTree find_splits(const SourceMesh& mesh, const Tree& tree, partition::Axis ax
 /// of the ids in their order.
 template <class TakeRanks>
 void distribute_vertices(const SourceMesh& mesh, const TopTree& top, Chunks& chunks,
-                         const MemoryPlan& plan, execution::Progress& progress,
-                         const execution::CancelToken& cancel, const TakeRanks& take_ranks) {
+                         const StageContext& context, const TakeRanks& take_ranks) {
   std::vector<std::uint32_t> next_rank(chunks.count());
   for (std::uint32_t c = 0; c < chunks.count(); ++c)
     next_rank[c] = chunks.map().first_rank(c);
   const partition::ChunkSearch search(top, mesh.stored_bounds());
   std::vector<std::uint32_t> ranks;
   for_each_block<ChunkedVertices>(
-      mesh, plan, cancel, progress,
+      mesh, context,
       [&](const SourceVertices& block, ChunkedVertices& sorted) {
         sorted.chunk_of.resize(block.positions.size());
         search.find(block.positions, static_cast<std::uint32_t>(block.first), sorted.chunk_of);
@@ -92,17 +92,17 @@ void distribute_vertices(const SourceMesh& mesh, const TopTree& top, Chunks& chu
 /// is granted.
 class RankTable {
  public:
-  RankTable(const SourceMesh& mesh, const TopTree& top, Chunks& chunks, const MemoryPlan& plan,
-            storage::ScratchFile& scratch, execution::Progress& progress,
-            const execution::CancelToken& cancel)
+  RankTable(const SourceMesh& mesh, const TopTree& top, Chunks& chunks,
+            storage::ScratchFile& scratch, const StageContext& context)
       : scratch_(scratch), spooled_(scratch, 1 << 18) {
     const std::uint64_t count = mesh.summary().vertices;
-    renumbering_ = partition::plan_renumbering(count, sizeof(std::uint32_t), plan.table_bytes);
-    progress.stage("distribute", count, "vertices");
+    renumbering_ =
+        partition::plan_renumbering(count, sizeof(std::uint32_t), context.memory().table_bytes);
+    context.progress.stage(kStage, count, "vertices");
     const bool in_memory = renumbering_.blocks == 1;
     if (in_memory)
       table_.reserve(count);
-    distribute_vertices(mesh, top, chunks, plan, progress, cancel, [&](auto ranks) {
+    distribute_vertices(mesh, top, chunks, context, [&](auto ranks) {
       in_memory ? void(table_.insert(table_.end(), ranks.begin(), ranks.end()))
                 : spooled_.append(ranks);
     });
@@ -122,23 +122,23 @@ class RankTable {
   storage::RecordSpool<std::uint32_t> spooled_;
 };
 
-void distribute_triangles(SourceMesh& mesh, RankTable& ranks, Chunks& chunks,
-                          const MemoryPlan& plan, execution::Progress& progress,
-                          const execution::CancelToken& cancel) {
+mesh_io::FaceCounts distribute_triangles(SourceMesh& mesh, RankTable& ranks, Chunks& chunks,
+                                         const StageContext& context) {
   struct Slot {
     std::size_t read = 0;
     partition::Renumbered<std::uint32_t> renumbered;
     ChunkedTriangles chunked;
   };
-  progress.stage("triangles", mesh.declared_faces(), "triangles");
+  const std::size_t in_flight = context.memory().blocks_in_flight;
+  context.progress.stage(kStage, mesh.declared_faces(), "triangles");
   partition::Renumberer<std::uint32_t> renumberer = ranks.renumberer();
   const auto keep = [&](const Slot& slot) {
     renumberer.keep(slot.renumbered);
     chunks.append(slot.chunked);
     return true;
   };
-  mesh.read_triangles<Slot>(
-      plan.blocks_in_flight, cancel,
+  const mesh_io::FaceCounts counts = mesh.read_triangles<Slot>(
+      in_flight, context.cancel,
       [&](std::span<const mesh_io::SourceTriangle> triangles, Slot& slot) {
         slot.read = triangles.size();
         renumberer.translate(triangles, slot.renumbered);
@@ -146,34 +146,35 @@ void distribute_triangles(SourceMesh& mesh, RankTable& ranks, Chunks& chunks,
       },
       [&](const Slot& slot) {
         keep(slot);
-        progress.advance(slot.read);
+        context.progress.advance(slot.read);
       });
   while (renumberer.next_round()) {
     execution::ordered_blocks<Slot>(
-        renumberer.batches(), plan.blocks_in_flight, cancel,
+        renumberer.batches(), in_flight, context.cancel,
         [&](std::uint64_t batch, Slot& slot) {
           renumberer.translate_batch(batch, slot.renumbered);
           slot.chunked.sort(slot.renumbered.finished, chunks.map());
         },
         keep);
   }
+  return counts;
 }
 
 }  // namespace
 
-void distribute(SourceMesh& mesh, const Tree& tree, partition::Axis axis, Chunks& chunks,
-                const MemoryPlan& plan, storage::ScratchFile& scratch,
-                execution::Progress& progress, const execution::CancelToken& cancel) {
+mesh_io::FaceCounts partition_mesh(SourceMesh& mesh, Chunks& chunks, storage::ScratchFile& scratch,
+                                   const StageContext& context) {
   const TopTree top = [&] {
     storage::ScratchFile windows = scratch.beside("windows");
-    return find_splits(mesh, tree, axis, plan, windows, progress, cancel);
+    return find_splits(mesh, windows, context);
   }();
   execution::release_free_memory();
   storage::ScratchFile passing = scratch.beside("ranks");
-  RankTable ranks(mesh, top, chunks, plan, passing, progress, cancel);
+  RankTable ranks(mesh, top, chunks, passing, context);
   execution::release_free_memory();
-  distribute_triangles(mesh, ranks, chunks, plan, progress, cancel);
+  const mesh_io::FaceCounts counts = distribute_triangles(mesh, ranks, chunks, context);
   execution::release_free_memory();
+  return counts;
 }
 
 }  // namespace meshhier::pipeline

@@ -50,14 +50,14 @@ bool draws(const Tree& tree, NodeId node, const TileMesh& mesh, const Triangle& 
 /// tiles are looked at, since simplified ones may have vertices beyond the input's bounds.
 storage::Quantization quantize(const Forest& forest, std::span<const NodeId> nodes,
                                const PublishInput& input, std::size_t in_flight,
-                               const execution::CancelToken& cancel) {
+                               const StageContext& context) {
   const BoundsD& bounds = input.source.bounds;
-  const Vec3d& origin = input.format.frame.origin;
+  const Vec3d& origin = input.origin;
   storage::Quantization result;
   result.lattice = make_lattice({to_float(bounds.min - origin), to_float(bounds.max - origin)},
-                                static_cast<int>(*input.position_bits));
+                                static_cast<int>(*context.config.storage.position_bits));
   execution::ordered_for(
-      nodes.size(), in_flight, cancel,
+      nodes.size(), in_flight, context.cancel,
       [&](std::size_t i) {
         BuildTile tile = forest.load(nodes[i]);
         return round_to(result.lattice, tile.mesh.vertices.positions);
@@ -77,19 +77,27 @@ float with_rounding(float bound, double rounding, int levels_below) {
   return sum;
 }
 
+std::optional<Transform> tileset_transform(const config::Config& config) {
+  const config::PlacementConfig& place = config.placement;
+  if (!place.longitude)
+    return place.transform;
+  const auto [x, y, z] = place.anchor.value_or(std::array<double, 3>{});
+  return storage::globe_transform(*place.longitude, *place.latitude, place.height.value_or(0),
+                                  {x, y, z}, config.up);
+}
+
 /// What writes tiles.
 struct TileWriter {
   const Forest& forest;
-  const PublishInput& input;
+  const TileErrors& errors;
   const storage::TileFormat format;
   const std::optional<storage::Quantization> quantization;
   const std::filesystem::path& directory;
-  storage::FileSystem& files;
+  const StageContext& context;
 };
 
-TileRecord describe(const Tree& tree, NodeId node, const BuildTile& tile, const TileFacts& facts,
-                    const TargetVertexCounts& asked) {
-  const TileMesh& mesh = tile.mesh;
+TileRecord describe(const TileWriter& to, NodeId node, const TileMesh& mesh) {
+  const Tree& tree = to.context.tree();
   TileRecord record;
   record.node = node;
   record.own_count = mesh.own_count;
@@ -100,12 +108,18 @@ TileRecord describe(const Tree& tree, NodeId node, const BuildTile& tile, const 
   record.drawn_border_count = static_cast<std::uint32_t>(
       std::count_if(mesh.border.begin(), mesh.border.end(),
                     [&](const Triangle& t) { return draws(tree, node, mesh, t); }));
-  record.target_count = tree.is_partition(node) ? mesh.own_count : asked.of(node.level);
+  record.target_count = tree.is_partition(node)
+                            ? mesh.own_count
+                            : to.context.plan.target_vertex_counts.of(node.level);
   record.bounds = bounds_of(mesh.vertices.positions);
-  record.torn_count = facts.torn_count;
-  record.forced_count = facts.forced_count;
-  record.error = facts.error;
-  record.bound = facts.bound;
+  record.torn_count = to.forest.fallbacks(node).torn_count;
+  record.forced_count = to.forest.fallbacks(node).forced_count;
+  record.error = to.errors[node].error;
+  record.bound = to.errors[node].bound;
+  if (to.quantization) {
+    record.bound = with_rounding(record.bound, to.quantization->worst_rounding,
+                                 raw(tree.depth()) - raw(node.level));
+  }
   if (tree.is_partition(node)) {
     constexpr double kMost = std::numeric_limits<float>::max();
     record.compactness = static_cast<float>(std::min(partition::compactness(mesh), kMost));
@@ -117,88 +131,49 @@ TileRecord describe(const Tree& tree, NodeId node, const BuildTile& tile, const 
 TileRecord write_tile(const TileWriter& to, NodeId node) {
   const Forest& forest = to.forest;
   const Tree& tree = forest.tree();
+  storage::FileSystem& files = to.context.files;
   BuildTile tile = forest.load(node);
   if (to.quantization)
     round_to(to.quantization->lattice, tile.mesh.vertices.positions);
   std::vector<std::uint16_t> parent_map = forest.published_parent_map(node);
   if (tree.is_partition(node))
     order_inner_vertices(tile.mesh, parent_map);
-  TileRecord record = describe(tree, node, tile, forest.facts(node), to.input.target_vertex_counts);
-  if (to.quantization) {
-    record.bound = with_rounding(record.bound, to.quantization->worst_rounding,
-                                 raw(tree.depth()) - raw(node.level));
-  }
+  TileRecord record = describe(to, node, tile.mesh);
   const std::vector<std::uint16_t> chains = forest.chains(node, tile.mesh.ghosts);
   const std::vector<std::byte> bytes =
       storage::encode_tile({node, tile.mesh, record.bounds, parent_map, chains}, tree, to.format);
-  const auto file = to.files.create(storage::tile_path(to.directory, node));
+  const auto file = files.create(storage::tile_path(to.directory, node));
   file->write_at(0, bytes);
-  if (!to.input.is_temporary)
+  if (to.context.config.storage.container == storage::Container::files)
     file->start_sync();
   record.file_bytes = bytes.size();
   record.checksum = storage::checksum(bytes);
   return record;
 }
 
-}  // namespace
-
-void publish(Forest& forest, BuildJournal& journal, const PublishInput& input,
-             const std::filesystem::path& directory, const MemoryPlan& plan,
-             storage::FileSystem& files, execution::Progress& progress,
-             const execution::CancelToken& cancel) {
-  const Tree& tree = forest.tree();
-  const std::vector<NodeId> nodes = published_nodes(tree);
-  for (int l = 0; l <= raw(tree.depth()); ++l) {
-    files.make_directories(storage::level_directory(directory, static_cast<Level>(l)));
-  }
-  std::vector<TileRecord> records(nodes.size());
-  std::vector<std::size_t> left;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (const TileRecord* done = journal.published(nodes[i]))
-      records[i] = *done;
-    else
-      left.push_back(i);
-  }
-  progress.stage("publish", left.size(), "tiles");
-  const bool packed = input.format.compression != storage::Compression::none;
-  std::uint64_t heaviest = 0;
-  for (int l = 0; l <= raw(tree.depth()); ++l)
-    heaviest = std::max(heaviest, packed ? heaviest_packed(forest, static_cast<Level>(l))
-                                         : heaviest_read(forest, static_cast<Level>(l)));
-  const TileRoom room = room_for(forest, plan, heaviest);
-  std::optional<storage::Quantization> quantization;
-  storage::TileFormat format = input.format;
-  if (input.position_bits) {
-    quantization = quantize(forest, nodes, input, room.in_flight(), cancel);
-    format.lattice = quantization->lattice;
-  }
-  const TileWriter writer{forest, input, format, quantization, directory, files};
-  execution::ordered_for(
-      left.size(), room.in_flight(), cancel,
-      [&](std::size_t i) { return write_tile(writer, nodes[left[i]]); },
-      [&](std::size_t i, const TileRecord& record) {
-        journal.note_published(record);
-        records[left[i]] = record;
-        progress.advance(1);
-      });
-
+/// Everything but the tiles.
+void write_account(const TileWriter& to, const PublishInput& input,
+                   const std::vector<TileRecord>& records) {
+  const StageContext& context = to.context;
+  storage::FileSystem& files = context.files;
+  const Tree& tree = context.tree();
   const std::vector<std::byte> index = storage::encode_index(records);
-  storage::write_file(files, storage::index_path(directory), index);
+  storage::write_file(files, storage::index_path(to.directory), index);
   const std::vector<std::byte> outline =
-      storage::encode_outline(input.outline.outline, input.format.frame);
-  storage::write_file(files, storage::outline_path(directory), outline);
+      storage::encode_outline(input.outline.outline, to.format.frame);
+  storage::write_file(files, storage::outline_path(to.directory), outline);
 
   storage::Manifest manifest;
   manifest.generator = "meshhier " MESHHIER_VERSION;
   manifest.source = input.source;
-  manifest.origin = input.format.frame.origin;
-  manifest.up = input.format.frame.up;
-  manifest.transform = input.transform;
-  manifest.licence = input.licence;
+  manifest.origin = to.format.frame.origin;
+  manifest.up = to.format.frame.up;
+  manifest.transform = tileset_transform(context.config);
+  manifest.licence = context.config.licence;
   manifest.partition_count = tree.partition_count();
-  manifest.compression = input.format.compression;
-  manifest.quantization = quantization;
-  manifest.config = input.config;
+  manifest.compression = to.format.compression;
+  manifest.quantization = to.quantization;
+  manifest.config = config::resolved_json(context.config);
   manifest.index_bytes = index.size();
   manifest.index_checksum = storage::checksum(index);
   manifest.outline_bytes = outline.size();
@@ -210,9 +185,60 @@ void publish(Forest& forest, BuildJournal& journal, const PublishInput& input,
   manifest.total_bytes = std::accumulate(
       records.begin(), records.end(), std::uint64_t{index.size() + outline.size()},
       [](std::uint64_t sum, const TileRecord& record) { return sum + record.file_bytes; });
-  storage::write_tilesets(files, directory, tree, records, manifest);
+  storage::write_tilesets(files, to.directory, tree, records, manifest);
   const std::string text = storage::to_json_text(manifest);
-  storage::write_file(files, storage::manifest_path(directory), std::as_bytes(std::span(text)));
+  storage::write_file(files, storage::manifest_path(to.directory), std::as_bytes(std::span(text)));
+}
+
+/// Of all levels, what the heaviest tile takes while it is written.
+std::uint64_t heaviest_written(const Forest& forest, const config::StorageConfig& storage) {
+  const bool packed = storage.compression != storage::Compression::none;
+  std::uint64_t heaviest = 0;
+  for (int l = 0; l <= raw(forest.tree().depth()); ++l) {
+    const auto level = static_cast<Level>(l);
+    heaviest =
+        std::max(heaviest, packed ? heaviest_packed(forest, level) : heaviest_read(forest, level));
+  }
+  return heaviest;
+}
+
+}  // namespace
+
+void publish(Forest& forest, BuildJournal& journal, const PublishInput& input,
+             const std::filesystem::path& directory, const StageContext& context) {
+  const Tree& tree = context.tree();
+  const config::StorageConfig& storage = context.config.storage;
+  for (int l = 0; l <= raw(tree.depth()); ++l) {
+    context.files.make_directories(storage::level_directory(directory, static_cast<Level>(l)));
+  }
+  const std::vector<NodeId> nodes = published_nodes(tree);
+  std::vector<TileRecord> records(nodes.size());
+  std::vector<std::size_t> left;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (const TileRecord* done = journal.published(nodes[i]))
+      records[i] = *done;
+    else
+      left.push_back(i);
+  }
+  context.progress.stage("publish", left.size(), "tiles");
+  const TileRoom room = room_for(forest, context.memory(), heaviest_written(forest, storage));
+  storage::TileFormat format = {
+      input.source.attributes, {input.origin, context.config.up}, storage.compression, {}};
+  std::optional<storage::Quantization> quantization;
+  if (storage.position_bits) {
+    quantization = quantize(forest, nodes, input, room.in_flight(), context);
+    format.lattice = quantization->lattice;
+  }
+  const TileWriter writer{forest, input.errors, format, quantization, directory, context};
+  execution::ordered_for(
+      left.size(), room.in_flight(), context.cancel,
+      [&](std::size_t i) { return write_tile(writer, nodes[left[i]]); },
+      [&](std::size_t i, const TileRecord& record) {
+        journal.note_published(record);
+        records[left[i]] = record;
+        context.progress.advance(1);
+      });
+  write_account(writer, input, records);
 }
 
 }  // namespace meshhier::pipeline

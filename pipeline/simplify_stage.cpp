@@ -3,56 +3,16 @@
 #include "cluster_simplify/seam_strip.h"
 #include "execution/allocator.h"
 #include "execution/parallel.h"
-#include "execution/size_text.h"
-#include "hierarchy/error.h"
 #include "pipeline/plan/tile_room.h"
 #include "pipeline/tiles/bound_chain.h"
 
 #include <algorithm>
 #include <utility>
 
-#include <fmt/format.h>
-
 namespace meshhier::pipeline {
 namespace {
 
 using cluster_simplify::ContractedTile;
-
-// What chunks leave behind between the blobs that stay adds up over thousands of them, and so do
-// the places of spooled blocks, too small for the tiles they turn into: some 3 MiB a chunk.
-constexpr std::size_t kChunksBetweenReleases = 8;
-
-/// A chunk whose triangles alone exceed what a stage may hold: a vertex with an absurd number of
-/// triangles.
-void check_fits(const Chunks& chunks, std::uint32_t chunk, const MemoryPlan& plan) {
-  const std::uint64_t needed = chunks.triangle_bytes(chunk) * 4;
-  if (needed > plan.work_bytes + plan.pool_bytes / 2) {
-    throw Error(ErrorCode::budget,
-                fmt::format("a part of the mesh has {} triangles on {} "
-                            "vertices; it needs a memory_budget larger by {}",
-                            chunks.triangle_bytes(chunk) / 12, chunks.map().size(chunk),
-                            execution::exact_size_text(needed)));
-  }
-}
-
-struct ChunkReport {
-  std::size_t partitions = 0;
-  std::uint64_t unreferenced_vertices = 0;
-};
-
-/// Splits a chunk and puts its partition tiles.
-ChunkReport put_leaves(Chunks& chunks, std::uint32_t index, partition::Axis axis, Forest& forest) {
-  const Tree& tree = forest.tree();
-  const partition::ChunkMesh chunk = chunks.take(index);
-  const std::vector<PartitionId> partition_of = partition::split_chunk(chunk, tree, axis);
-  const partition::ChunkLeaves leaves =
-      partition::build_leaves(chunk, partition_of, tree, chunks.map());
-  forest.put_places(index, leaves.places);
-  const std::uint32_t first = tree.partitions(chunk.node).begin;
-  for (std::uint32_t p = 0; p < leaves.tiles.size(); ++p)
-    forest.put_tile({tree.depth(), first + p}, leaves.tiles[p]);
-  return {leaves.tiles.size(), leaves.unreferenced_count};
-}
 
 /// How far a simplified tile's surface went when its level was made, now that the level is
 /// complete.
@@ -88,7 +48,8 @@ Step measure_step(const Forest& forest, NodeId node, const LoadedTile& loaded) {
 /// of it.
 class Simplifier {
  public:
-  Simplifier(Forest& forest, const SimplifyOptions& options) : forest_(forest), options_(options) {}
+  Simplifier(Forest& forest, const AttributeLayout& attributes, const StageContext& context)
+      : forest_(forest), attributes_(attributes), context_(context) {}
 
   /// `known`: steps of the level that need not be measured again.
   void begin(Level level, std::vector<IndexedStep> known) {
@@ -131,8 +92,7 @@ class Simplifier {
     }
     forest_.put_tile(node, contracted.tile);
     forest_.put_seam_strip(node, cluster_simplify::make_seam_strip(joined, contracted));
-    forest_.facts(node).torn_count = contracted.fallbacks.torn;
-    forest_.facts(node).forced_count = contracted.fallbacks.without_care();
+    forest_.put_fallbacks(node, {contracted.fallbacks.torn, contracted.fallbacks.without_care()});
   }
 
  private:
@@ -147,87 +107,57 @@ class Simplifier {
   ContractedTile contract(const BuildTile& joined, NodeId node) const {
     if (forest_.tree().is_early(node))
       return cluster_simplify::keep(joined);
-    const std::uint32_t target = options_.vertices.target(node.level, joined.mesh.own_count);
+    const config::SimplifyConfig& how = context_.config.simplify;
+    const std::uint32_t target =
+        context_.plan.target_vertex_counts.target(node.level, joined.mesh.own_count);
     return cluster_simplify::apply(
-        joined,
-        cluster_simplify::contract(joined, target, options_.attributes, options_.contraction));
+        joined, cluster_simplify::contract(joined, target, attributes_,
+                                           {how.method, how.representative, how.cost}));
   }
 
   Forest& forest_;
-  const SimplifyOptions& options_;
+  const AttributeLayout& attributes_;
+  const StageContext& context_;
   std::vector<Step> steps_;
 };
 
-/// Those of [0, count) that are not done.
-template <class IsDone>
-std::vector<std::uint32_t> left_to_do(std::uint32_t count, const IsDone& is_done) {
-  std::vector<std::uint32_t> left;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    if (!is_done(i))
-      left.push_back(i);
+/// The nodes of a level whose tiles are still to be made.
+std::vector<NodeId> tiles_left(const Tree& tree, Level level, const BuildJournal& journal) {
+  std::vector<NodeId> left;
+  for (std::uint32_t i = 0; i < tree.node_count(level); ++i) {
+    if (!journal.has_tile({level, i}))
+      left.push_back({level, i});
   }
   return left;
 }
 
 }  // namespace
 
-std::uint64_t make_leaves(Chunks& chunks, Forest& forest, BuildJournal& journal,
-                          partition::Axis axis, const MemoryPlan& plan,
-                          execution::Progress& progress, const execution::CancelToken& cancel) {
-  const Tree& tree = forest.tree();
-  const std::vector<std::uint32_t> left =
-      left_to_do(chunks.count(), [&](std::uint32_t chunk) { return journal.has_leaves(chunk); });
-  std::uint64_t partitions = 0;
-  for (const std::uint32_t chunk : left)
-    partitions += tree.partitions({chunks.level(), chunk}).size();
-  progress.stage("leaves", partitions, "partitions");
-  std::uint64_t unreferenced = journal.unreferenced_vertices();
-  execution::ordered_for(
-      left.size(), plan.chunks_in_flight, cancel,
-      [&](std::size_t i) {
-        check_fits(chunks, left[i], plan);
-        return put_leaves(chunks, left[i], axis, forest);
-      },
-      [&](std::size_t i, const ChunkReport& report) {
-        journal.note_leaves(left[i], report.unreferenced_vertices);
-        unreferenced += report.unreferenced_vertices;
-        progress.advance(report.partitions);
-        if (i % kChunksBetweenReleases == kChunksBetweenReleases - 1)
-          execution::release_free_memory();
-      });
-  return unreferenced;
-}
-
-void simplify(Forest& forest, BuildJournal& journal, const SimplifyOptions& options,
-              const MemoryPlan& plan, execution::Progress& progress,
-              const execution::CancelToken& cancel) {
-  const Tree& tree = forest.tree();
-  std::vector<std::vector<std::uint32_t>> left;
+TileErrors simplify(Forest& forest, BuildJournal& journal, const SourceSummary& source,
+                    const StageContext& context) {
+  const Tree& tree = context.tree();
+  std::vector<std::vector<NodeId>> left;  // by level
   std::uint64_t total = 0;
   for (int l = 0; l < raw(tree.depth()); ++l) {
-    const auto level = static_cast<Level>(l);
-    left.push_back(left_to_do(tree.node_count(level), [&](std::uint32_t index) {
-      return journal.has_tile({level, index});
-    }));
+    left.push_back(tiles_left(tree, static_cast<Level>(l), journal));
     total += left.back().size();
   }
-  progress.stage("simplify", total, "tiles");
-  Simplifier simplifier(forest, options);
-  BoundChain chain(forest, options.diagonal);
+  context.progress.stage("simplify", total, "tiles");
+  Simplifier simplifier(forest, source.attributes, context);
+  BoundChain chain(tree, source.diagonal());
   simplifier.begin(tree.depth(), {});
   for (int l = raw(tree.depth()) - 1; l >= 0; --l) {
     const auto level = static_cast<Level>(l);
-    const TileRoom room = room_for(forest, plan, heaviest_contracted(forest, level));
+    const TileRoom room = room_for(forest, context.memory(), heaviest_contracted(forest, level));
     execution::ordered_for(
-        left[l].size(), room.in_flight(), cancel,
+        left[l].size(), room.in_flight(), context.cancel,
         [&](std::size_t i) {
-          const NodeId node{level, left[l][i]};
-          simplifier.make_tile(node);
-          return node;
+          simplifier.make_tile(left[l][i]);
+          return left[l][i];
         },
         [&](std::size_t i, NodeId node) {
           journal.note_tile(node, simplifier.steps_below(node));
-          progress.advance(1);
+          context.progress.advance(1);
           if ((i + 1) % room.items_between_releases() == 0)
             execution::release_free_memory();
         });
@@ -239,6 +169,7 @@ void simplify(Forest& forest, BuildJournal& journal, const SimplifyOptions& opti
     simplifier.load({Level{0}, 0});
     chain.add(Level{0}, simplifier.steps());
   }
+  return chain.errors();
 }
 
 }  // namespace meshhier::pipeline

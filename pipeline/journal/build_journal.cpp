@@ -82,9 +82,9 @@ std::optional<EarlierBuild> find_earlier_build(storage::FileSystem& files,
     if (entry.contains("build")) {
       earlier.decides_result = entry.at("build");
       earlier.input_modified_ns = entry.at("modified");
-    } else if (entry.contains("source")) {
+    } else if (entry.contains("ingest")) {
       earlier.source = storage::parse_source(
-          nlohmann::ordered_json(entry.at("source").at("summary")), "journal");
+          nlohmann::ordered_json(entry.at("ingest").at("summary")), "journal");
       is_whole = earlier.decides_result.is_object();
     }
   };
@@ -128,7 +128,7 @@ BuildJournal::BuildJournal(storage::FileSystem& files, const std::filesystem::pa
       input_was_touched_ = entry.at("modified") != identity.input_modified_ns;
       return true;
     }
-    has_other_work = has_other_work || entry.contains("source");
+    has_other_work = has_other_work || entry.contains("ingest");
     return !is_same || take(entry);
   };
   journal_.emplace(files, storage::journal_path(work), use, [&](const Entry& entry) {
@@ -169,17 +169,17 @@ bool BuildJournal::take(const Entry& entry) {
   const auto first = entry.items().begin();
   const std::string& kind = first.key();
   const Entry& value = first.value();
-  if (is_complete_ && kind != "source" && kind != "published")
+  if (is_complete_ && kind != "ingest" && kind != "publish")
     return true;
-  if (kind == "chunk")
+  if (kind == "partition")
     return value.at(0) < chunks_.count() && chunks_.restore(value.at(0), value.at(1));
-  if (kind == "source")
+  if (kind == "ingest")
     return take_source(value);
   if (kind == "leaves")
     return take_leaves(value);
-  if (kind == "tile")
+  if (kind == "simplify")
     return take_tile(value);
-  return kind == "published" && take_published(value);
+  return kind == "publish" && take_published(value);
 }
 
 bool BuildJournal::take_source(const Entry& source) {
@@ -267,9 +267,9 @@ void BuildJournal::note_source(const SourceSummary& summary, Vec3d origin) {
   journal_->append(
       {{"build", identity_.decides_result}, {"modified", identity_.input_modified_ns}});
   for (std::uint32_t chunk = 0; chunk < chunks_.count(); ++chunk)
-    journal_->append({{"chunk", {chunk, chunks_.store(chunk)}}});
+    journal_->append({{"partition", {chunk, chunks_.store(chunk)}}});
   journal_->append(
-      {{"source",
+      {{"ingest",
         {{"summary", Value(storage::source_json(summary))}, {"origin", to_json(origin)}}}});
   source_ = DistributedSource{summary, origin};
 }
@@ -285,7 +285,7 @@ void BuildJournal::note_tile(NodeId node, std::span<const IndexedStep> steps) {
   Value all = Value::array();
   for (const IndexedStep& step : steps)
     all.push_back(to_json(step));
-  journal_->append({{"tile",
+  journal_->append({{"simplify",
                      {{"node", {raw(node.level), node.index}},
                       {"steps", std::move(all)},
                       {"stored", forest_.stored_tile(node)}}}});
@@ -294,7 +294,7 @@ void BuildJournal::note_tile(NodeId node, std::span<const IndexedStep> steps) {
 void BuildJournal::note_published(const TileRecord& record) {
   const std::vector<std::byte> bytes = storage::encode_record(record);
   const auto* first = reinterpret_cast<const std::uint8_t*>(bytes.data());
-  journal_->append({{"published", Value::binary({first, first + bytes.size()})}});
+  journal_->append({{"publish", Value::binary({first, first + bytes.size()})}});
 }
 
 void BuildJournal::note_complete() {

@@ -3,11 +3,11 @@
 // Entries of the journal, in the order in which a build makes them:
 //
 //   build      what decides the result: input, config, tree, version
-//   chunk      where a chunk's spools are, when all triangles are distributed
-//   source     what was learnt of the input; with it distributing is done
+//   partition  where a chunk's spools are, when all triangles are distributed
+//   ingest     what was learnt of the input; with it the stages up to partition are done
 //   leaves     a chunk's partitions
-//   tile       a simplified tile, the maps to it, and how far its children had moved
-//   published  a tile's file
+//   simplify   a simplified tile, the maps to it, and how far its children had moved
+//   publish    a tile's file
 //   complete   all files of the hierarchy; the scratch files are not needed any more
 //
 // Whatever an entry names is checked, by checksum, before it is believed. The stages before

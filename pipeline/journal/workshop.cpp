@@ -34,25 +34,22 @@ bool is_whole(storage::FileSystem& files, const std::filesystem::path& hierarchy
 
 }  // namespace
 
-Workshop::Workshop(storage::FileSystem& files, const std::filesystem::path& work,
-                   const BuildPlan& build, int channels, const BuildIdentity& identity,
-                   storage::MemoryPool& pool, const execution::CancelToken& cancel)
-    : mesh_scratch(files, work / "mesh", pool, storage::ScratchFile::Stays::yes),
-      tile_scratch(files, work / "tiles", pool, storage::ScratchFile::Stays::yes),
-      chunks(build.tree, channels, mesh_scratch, build.memory.spool_block_bytes),
-      forest(build.tree, chunks.level(), channels, tile_scratch),
-      journal(files, work, identity, pool.scratch_use(), forest, chunks, cancel) {}
+Workshop::Workshop(const std::filesystem::path& work, const BuildIdentity& identity, int channels,
+                   storage::MemoryPool& pool, const StageContext& context)
+    : mesh_scratch(context.files, work / "mesh", pool, storage::ScratchFile::Stays::yes),
+      tile_scratch(context.files, work / "tiles", pool, storage::ScratchFile::Stays::yes),
+      chunks(context.tree(), channels, mesh_scratch, context.memory().spool_block_bytes),
+      forest(context.tree(), chunks.level(), channels, tile_scratch),
+      journal(context.files, work, identity, pool.scratch_use(), forest, chunks, context.cancel) {}
 
-OpenWorkshop open_workshop(storage::FileSystem& files, storage::WorkDirectory& work,
-                           const config::Config& config, importing::MeshInput& input,
-                           const BuildPlan& build, storage::MemoryPool& pool,
-                           const execution::CancelToken& cancel) {
-  const BuildIdentity identity = identity_of(config, input, build.tree);
+OpenWorkshop open_workshop(storage::WorkDirectory& work, importing::MeshInput& input,
+                           storage::MemoryPool& pool, const StageContext& context) {
+  storage::FileSystem& files = context.files;
+  const BuildIdentity identity = identity_of(context.config, input, context.tree());
   OpenWorkshop open;
   const auto make = [&] {
-    open.workshop = std::make_unique<Workshop>(files, work.path(), build,
-                                               input.description().attributes.channels(), identity,
-                                               pool, cancel);
+    open.workshop = std::make_unique<Workshop>(
+        work.path(), identity, input.description().attributes.channels(), pool, context);
   };
   const auto begin_anew = [&](std::string why) {
     open.workshop.reset();
@@ -73,7 +70,7 @@ OpenWorkshop open_workshop(storage::FileSystem& files, storage::WorkDirectory& w
   } else if (!journal.is_sound() || (journal.is_complete() && !is_whole(files, work.built()))) {
     begin_anew("what an earlier build left has been damaged: this one began anew");
   } else if (journal.input_was_touched() &&
-             input.checksum(cancel) != journal.source()->summary.checksum) {
+             input.checksum(context.cancel) != journal.source()->summary.checksum) {
     begin_anew("the input was changed since an earlier build was stopped: this one began anew");
   } else {
     open.found =

@@ -1,11 +1,10 @@
 // What a build works on: chunks, forest and their scratch files, with the journal of what is done.
 #pragma once
 
-#include "config/config.h"
 #include "execution/cancel.h"
 #include "import/mesh_input.h"
 #include "pipeline/journal/build_journal.h"
-#include "pipeline/plan/build_plan.h"
+#include "pipeline/plan/stage_context.h"
 #include "pipeline/tiles/chunks.h"
 #include "pipeline/tiles/forest.h"
 #include "storage/format/work_directory.h"
@@ -18,9 +17,8 @@
 namespace meshhier::pipeline {
 
 struct Workshop {
-  Workshop(storage::FileSystem& files, const std::filesystem::path& work, const BuildPlan& build,
-           int channels, const BuildIdentity& identity, storage::MemoryPool& pool,
-           const execution::CancelToken& cancel);
+  Workshop(const std::filesystem::path& work, const BuildIdentity& identity, int channels,
+           storage::MemoryPool& pool, const StageContext& context);
 
   storage::ScratchFile mesh_scratch;  ///< what is needed until the leaves are done
   storage::ScratchFile tile_scratch;
@@ -37,10 +35,8 @@ struct OpenWorkshop {
 /// Opens what an earlier build of the same result left in `work`, if it can be gone on with; else
 /// empties it. Reads all that was done, to check it, and all of `input` if it was touched since.
 /// Throws Error(exists) as BuildJournal does, Error(io).
-OpenWorkshop open_workshop(storage::FileSystem& files, storage::WorkDirectory& work,
-                           const config::Config& config, importing::MeshInput& input,
-                           const BuildPlan& build, storage::MemoryPool& pool,
-                           const execution::CancelToken& cancel);
+OpenWorkshop open_workshop(storage::WorkDirectory& work, importing::MeshInput& input,
+                           storage::MemoryPool& pool, const StageContext& context);
 
 /// What importing `input` would find out, from an earlier build of the same files; none if it was
 /// of others or if they were read in another way. Reads them all if they were touched since.

@@ -3,16 +3,16 @@
 // What is written when, and how long it stays:
 //
 //   data                    written in     stays until
-//   the input as a PLY      import         triangles are done  if it is imported
-//   its vertices once more  ingest         triangles are done  only if they cannot be read in place
-//   windows of the medians  partition      partition is done
-//   ranks, triangles that   distribute,    triangles are done
-//   wait for a rank         triangles
-//   vertices of chunks      distribute     leaves are done
-//   triangles of chunks     triangles      leaves are done
+//   the input as a PLY      import         partition is done   if it is imported
+//   its vertices once more  ingest         partition is done   only if they cannot be read in place
+//   windows of the medians  partition      the splits are found
+//   ranks, triangles that   partition      partition is done
+//   wait for a rank
+//   vertices, triangles     partition      leaves is done
+//   of chunks
 //   partition tiles         leaves         the end
 //   simplified tiles, maps  simplify       the end
-//   seam strips                   simplify       the end
+//   seam strips             simplify       the end
 //   published files         publish        for good            if they are the output
 //                                          the end             if they are packed, the data above
 //                                          being gone

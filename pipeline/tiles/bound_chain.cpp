@@ -28,8 +28,8 @@ void TileSet::settle() {
     add_all();
 }
 
-BoundChain::BoundChain(Forest& forest, double diagonal) : forest_(forest), diagonal_(diagonal) {
-  const Tree& tree = forest.tree();
+BoundChain::BoundChain(const Tree& tree, double diagonal)
+    : tree_(tree), errors_(tree), diagonal_(diagonal) {
   const std::uint32_t count = tree.node_count(tree.depth());
   below_.resize(count);
   for (std::uint32_t i = 0; i < count; ++i)
@@ -51,7 +51,7 @@ void BoundChain::add(Level level, std::span<const Step> steps) {
 }
 
 std::uint32_t BoundChain::parent(Level level, std::uint32_t finer_tile) const {
-  return forest_.tree().parent({finer(level), finer_tile}).index;
+  return tree_.parent({finer(level), finer_tile}).index;
 }
 
 /// The largest way back from any of the tiles, which are of the level below.
@@ -73,7 +73,7 @@ BoundChain::Sum BoundChain::sum_of(NodeId node, std::span<const Step> steps) con
       return to.add_all();
     finer_tiles.for_each([&](std::uint32_t tile) { to.add(parent(node.level, tile)); });
   };
-  const Tree::Children children = forest_.tree().children(node);
+  const Tree::Children children = tree_.children(node);
   for (const NodeId child : children.span()) {
     const Sum& below = below_[child.index];
     sum.back = std::max(sum.back, below.back);
@@ -98,22 +98,21 @@ BoundChain::Sum BoundChain::sum_of(NodeId node, std::span<const Step> steps) con
 }
 
 void BoundChain::note(NodeId node, const Step& step, const Sum& sum) {
-  TileFacts below;
-  const Tree::Children children = forest_.tree().children(node);
+  TileError below;
+  const Tree::Children children = tree_.children(node);
   for (const NodeId child : children.span()) {
-    below.error = std::max(below.error, forest_.facts(child).error);
-    below.bound = std::max(below.bound, forest_.facts(child).bound);
+    below.error = std::max(below.error, errors_[child].error);
+    below.bound = std::max(below.bound, errors_[child].bound);
   }
-  TileFacts& facts = forest_.facts(node);
-  if (forest_.tree().is_early(node)) {
-    facts.error = below.error;
-    facts.bound = below.bound;
+  TileError& own = errors_[node];
+  if (tree_.is_early(node)) {
+    own = below;
     return;
   }
-  facts.error = above(below.error, below.error + std::sqrt(step.mean_square));
-  facts.bound =
-      std::max(above(below.bound, std::min(std::max(sum.back, sum.forth), diagonal_)), facts.error);
-  if (!std::isfinite(facts.bound)) {
+  own.error = above(below.error, below.error + std::sqrt(step.mean_square));
+  own.bound =
+      std::max(above(below.bound, std::min(std::max(sum.back, sum.forth), diagonal_)), own.error);
+  if (!std::isfinite(own.bound)) {
     throw Error(
         ErrorCode::input,
         "the mesh is so large that distances on it are beyond the range of single precision "

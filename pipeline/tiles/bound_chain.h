@@ -1,7 +1,7 @@
 // Errors and bounds of tiles, from how far each level's contraction moved the surface.
 #pragma once
 
-#include "pipeline/tiles/forest.h"
+#include "hierarchy/tree.h"
 
 #include <cassert>
 #include <cstddef>
@@ -58,8 +58,28 @@ struct Step {
                              ///< against
 };
 
-/// Adds steps up, level by level, into the tiles' facts. A step of a tile ends where it may: in the
-/// tile or beside it. So two sums are kept per tile:
+/// How far a tile is from the original mesh. See TileRecord.
+struct TileError {
+  float error = 0;
+  float bound = 0;
+};
+
+/// One TileError for each node of a tree; all 0 at first.
+class TileErrors {
+ public:
+  explicit TileErrors(const Tree& tree) {
+    for (int l = 0; l <= raw(tree.depth()); ++l)
+      levels_.emplace_back(tree.node_count(static_cast<Level>(l)));
+  }
+  TileError& operator[](NodeId node) { return levels_[raw(node.level)][node.index]; }
+  const TileError& operator[](NodeId node) const { return levels_[raw(node.level)][node.index]; }
+
+ private:
+  std::vector<std::vector<TileError>> levels_;
+};
+
+/// Adds steps up, level by level, into errors and bounds of the tiles. A step of a tile ends where
+/// it may: in the tile or beside it. So two sums are kept per tile:
 ///   back   from any point the tile draws down to the original: the step of the tile, then back of
 ///          whichever finer tile it was measured against;
 ///   forth  from any original point under the tile up: the largest step of all tiles that the point
@@ -67,11 +87,14 @@ struct Step {
 class BoundChain {
  public:
   /// No distance counts for more than `diagonal`, of the whole model.
-  BoundChain(Forest& forest, double diagonal);
+  BoundChain(const Tree& tree, double diagonal);
 
   /// `steps`: one per node of the level, the next above the last call's. Throws Error(input) if a
   /// bound is beyond the largest float.
   void add(Level level, std::span<const Step> steps);
+
+  /// Of the levels added so far; 0 for the partitions.
+  const TileErrors& errors() const { return errors_; }
 
  private:
   struct Sum {
@@ -85,7 +108,8 @@ class BoundChain {
   Sum sum_of(NodeId node, std::span<const Step> steps) const;
   void note(NodeId node, const Step& step, const Sum& sum);
 
-  Forest& forest_;
+  Tree tree_;
+  TileErrors errors_;
   double diagonal_;
   std::vector<Sum> below_;
   double most_back_ = 0;     ///< of all of below_

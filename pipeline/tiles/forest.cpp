@@ -41,7 +41,7 @@ Forest::Forest(const Tree& tree, Level chunks, int channels, storage::ScratchFil
                        {scratch, count},
                        {scratch, count},
                        {scratch, count},
-                       std::vector<TileFacts>(count),
+                       std::vector<Fallbacks>(count),
                        std::vector<std::uint32_t>(count)});
   }
 }
@@ -210,10 +210,10 @@ nlohmann::json Forest::stored_tile(NodeId node) const {
   const Tree::Children children = tree_.children(node);
   for (const NodeId child : children.span())
     maps.push_back(to_json(levels_[raw(child.level)].parent_maps.stored(child.index)));
-  const TileFacts& facts = level.facts[node.index];
+  const Fallbacks& fallbacks = level.fallbacks[node.index];
   return {{"own", level.own_counts[node.index]},
-          {"torn", facts.torn_count},
-          {"forced", facts.forced_count},
+          {"torn", fallbacks.torn_count},
+          {"forced", fallbacks.forced_count},
           {"tile", to_json(level.tiles.stored(node.index))},
           {"boundary", to_json(level.boundaries.stored(node.index))},
           {"seam_strip", to_json(level.seam_strips.stored(node.index))},
@@ -223,8 +223,8 @@ nlohmann::json Forest::stored_tile(NodeId node) const {
 bool Forest::restore_tile(NodeId node, const nlohmann::json& stored) {
   LevelStore& level = levels_[raw(node.level)];
   level.own_counts[node.index] = stored.at("own");
-  level.facts[node.index].torn_count = stored.at("torn");
-  level.facts[node.index].forced_count = stored.at("forced");
+  level.fallbacks[node.index].torn_count = stored.at("torn");
+  level.fallbacks[node.index].forced_count = stored.at("forced");
   std::size_t map = 0;
   const Tree::Children children = tree_.children(node);
   for (const NodeId child : children.span()) {

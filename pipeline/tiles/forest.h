@@ -16,10 +16,8 @@
 
 namespace meshhier::pipeline {
 
-/// What a build finds out about a tile beside its mesh. See TileRecord.
-struct TileFacts {
-  float error = 0;
-  float bound = 0;
+/// What the contraction that made a tile had to do. See TileRecord.
+struct Fallbacks {
   std::uint32_t torn_count = 0;
   std::uint32_t forced_count = 0;
 };
@@ -48,8 +46,12 @@ class Forest {
   /// The map from `child` to its parent's tile.
   void put_parent_map(NodeId child, std::span<const std::uint16_t> parent_map);
 
-  TileFacts& facts(NodeId node) { return levels_[raw(node.level)].facts[node.index]; }
-  const TileFacts& facts(NodeId node) const { return levels_[raw(node.level)].facts[node.index]; }
+  void put_fallbacks(NodeId node, const Fallbacks& fallbacks) {
+    levels_[raw(node.level)].fallbacks[node.index] = fallbacks;
+  }
+  const Fallbacks& fallbacks(NodeId node) const {
+    return levels_[raw(node.level)].fallbacks[node.index];
+  }
   std::uint32_t own_count(NodeId node) const {
     return levels_[raw(node.level)].own_counts[node.index];
   }
@@ -87,7 +89,7 @@ class Forest {
  private:
   struct LevelStore {
     storage::BlobStore tiles, boundaries, seam_strips, parent_maps;
-    std::vector<TileFacts> facts;
+    std::vector<Fallbacks> fallbacks;
     std::vector<std::uint32_t> own_counts;
   };
   std::vector<GhostRef> mapped(NodeId node, std::span<const GhostRef> foreign) const;

@@ -899,7 +899,7 @@ class Killed : public CommandLine {
   /// Whether all triangles were distributed.
   bool has_work() const {
     const Path journal = work() / ".a.hier.meshhier-work" / "journal";
-    return std::filesystem::exists(journal) && text_of(journal).find("source") != std::string::npos;
+    return std::filesystem::exists(journal) && text_of(journal).find("ingest") != std::string::npos;
   }
 
   /// Kills builds until one leaves work behind.

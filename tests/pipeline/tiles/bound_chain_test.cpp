@@ -26,24 +26,20 @@ constexpr double kDiagonal = 1000;
 class BoundChainTest : public testing::Test {
  protected:
   void make(std::uint32_t partitions, double diagonal = kDiagonal) {
-    forest_ = std::make_unique<Forest>(Tree(partitions * 10, partitions), Level{0}, 0, scratch_);
-    chain_ = std::make_unique<BoundChain>(*forest_, diagonal);
+    tree_ = Tree(partitions * 10, partitions);
+    chain_ = std::make_unique<BoundChain>(tree_, diagonal);
   }
   float bound(int level, std::uint32_t index) const {
-    return forest_->facts(node(level, index)).bound;
+    return chain_->errors()[node(level, index)].bound;
   }
   float error(int level, std::uint32_t index) const {
-    return forest_->facts(node(level, index)).error;
+    return chain_->errors()[node(level, index)].error;
   }
   void add(int level, const std::vector<Step>& steps) {
     chain_->add(static_cast<Level>(level), steps);
   }
 
-  tests::TemporaryDirectory directory_;
-  std::unique_ptr<storage::FileSystem> files_ = storage::make_posix_file_system();
-  storage::MemoryPool pool_{1 << 20};
-  storage::ScratchFile scratch_{*files_, directory_.path() / "scratch", pool_};
-  std::unique_ptr<Forest> forest_;
+  Tree tree_{1, 1};
   std::unique_ptr<BoundChain> chain_;
 };
 
@@ -142,11 +138,11 @@ TEST_F(BoundChainTest, BoundsAreNotBelowErrors) {
 
 TEST_F(BoundChainTest, EarlyNodesAreTheirPartitions) {
   make(5);  // of four nodes on level 2 three hold one partition
-  ASSERT_EQ(raw(forest_->tree().depth()), 3);
+  ASSERT_EQ(raw(tree_.depth()), 3);
   std::vector<Step> steps(4);
   std::uint32_t early = 0;
   for (std::uint32_t i = 0; i < 4; ++i) {
-    if (!forest_->tree().is_early(node(2, i)))
+    if (!tree_.is_early(node(2, i)))
       steps[i].certain = 2;
     else
       ++early;
@@ -154,7 +150,7 @@ TEST_F(BoundChainTest, EarlyNodesAreTheirPartitions) {
   ASSERT_EQ(early, 3U);
   add(2, steps);
   for (std::uint32_t i = 0; i < 4; ++i)
-    EXPECT_EQ(bound(2, i), forest_->tree().is_early(node(2, i)) ? 0 : 2);
+    EXPECT_EQ(bound(2, i), tree_.is_early(node(2, i)) ? 0 : 2);
 }
 
 TEST_F(BoundChainTest, SumsAreNeverRoundedDown) {

@@ -89,17 +89,23 @@ class Grove {
     const partition::ChunkMap map(tree_, chunks);
     for (std::uint32_t c = 0; c < map.count(); ++c)
       put_chunk(c, chunks, map);
-    MemoryPlan plan;
-    plan.work_bytes = 1 << 20;
-    plan.tiles_in_flight = setting.in_flight;
+    BuildPlan plan{.tree = tree_, .target_vertex_counts = 60};
+    plan.memory.work_bytes = 1 << 20;
+    plan.memory.tiles_in_flight = setting.in_flight;
+    SourceSummary source;
+    source.attributes = numbering();
+    source.bounds.add(Vec3d{0, 0, 0});
+    source.bounds.add(Vec3d{kForestDiagonal, 0, 0});
+    const config::Config config;
     execution::NoProgress progress;
-    simplify(forest_, journal_, {60, numbering(), {}, kForestDiagonal}, plan, progress,
-             execution::CancelToken());
+    const execution::CancelToken cancel;
+    errors_ = simplify(forest_, journal_, source, {config, plan, *files_, progress, cancel});
     place_vertices();
   }
 
   const Tree& tree() const { return tree_; }
   const Forest& forest() const { return forest_; }
+  const TileErrors& errors() const { return errors_; }
   const tests::TestMesh& mesh() const { return mesh_; }
   const std::vector<std::vector<Place>>& places() const { return places_; }
 
@@ -175,6 +181,7 @@ class Grove {
   storage::ScratchFile scratch_;
   Tree tree_;
   Forest forest_;
+  TileErrors errors_{tree_};
   Chunks chunks_{tree_, numbering().channels(), scratch_, 4096};
   execution::CancelToken never_;
   BuildJournal journal_{*files_, directory_.path(), {},    pool_.scratch_use(),
@@ -289,8 +296,8 @@ TEST(ForestTest, AnEarlyNodeShowsItsPartition) {
     const NodeId child = grove.tree().children(node).nodes[0];
     const BuildTile tile = grove.forest().load(node);
     const BuildTile partition = grove.forest().load(child);
-    EXPECT_EQ(grove.forest().facts(node).error, 0);
-    EXPECT_EQ(grove.forest().facts(node).bound, 0);
+    EXPECT_EQ(grove.errors()[node].error, 0);
+    EXPECT_EQ(grove.errors()[node].bound, 0);
     EXPECT_EQ(tile.mesh.interior, partition.mesh.interior);
     EXPECT_TRUE(std::equal(tile.mesh.vertices.positions.begin(),
                            tile.mesh.vertices.positions.begin() + tile.mesh.own_count,
@@ -309,12 +316,12 @@ TEST(ForestTest, ErrorsAndBoundsStrictlyDecreaseFromParentToChild) {
     for_each_node(grove.tree(), [&](NodeId node) {
       const Tree::Children children = grove.tree().children(node);
       for (const NodeId child : children.span()) {
-        EXPECT_GT(grove.forest().facts(node).error, grove.forest().facts(child).error);
-        EXPECT_GT(grove.forest().facts(node).bound, grove.forest().facts(child).bound);
+        EXPECT_GT(grove.errors()[node].error, grove.errors()[child].error);
+        EXPECT_GT(grove.errors()[node].bound, grove.errors()[child].bound);
       }
       if (grove.tree().is_partition(node)) {
-        EXPECT_EQ(grove.forest().facts(node).error, 0);
-        EXPECT_EQ(grove.forest().facts(node).bound, 0);
+        EXPECT_EQ(grove.errors()[node].error, 0);
+        EXPECT_EQ(grove.errors()[node].bound, 0);
       }
     });
   }

@@ -1,4 +1,4 @@
-#include "pipeline/source_mesh.h"
+#include "pipeline/ingest_stage.h"
 
 #include "hierarchy/error.h"
 #include "partition/top_tree.h"
@@ -63,8 +63,7 @@ struct BlockScan {
 }  // namespace
 
 SourceMesh::SourceMesh(std::unique_ptr<mesh_io::MeshSource> source, std::string file_name,
-                       storage::ScratchFile& scratch, std::size_t in_flight,
-                       execution::Progress& progress, const execution::CancelToken& cancel)
+                       storage::ScratchFile& scratch)
     : source_(std::move(source)),
       spooled_positions_(scratch, 1 << 18),
       spooled_attributes_(scratch, 1 << 18) {
@@ -73,12 +72,18 @@ SourceMesh::SourceMesh(std::unique_ptr<mesh_io::MeshSource> source, std::string 
   summary_.file_bytes = description.file_bytes;
   summary_.vertices = description.vertex_count;
   summary_.attributes = description.attributes;
-  scan(in_flight, progress, cancel);
-  choose_origin();
 }
 
-void SourceMesh::scan(std::size_t in_flight, execution::Progress& progress,
-                      const execution::CancelToken& cancel) {
+SourceMesh ingest(std::unique_ptr<mesh_io::MeshSource> source, std::string file_name,
+                  storage::ScratchFile& scratch, const StageContext& context) {
+  SourceMesh mesh(std::move(source), std::move(file_name), scratch);
+  mesh.scan(context);
+  mesh.choose_origin();
+  return mesh;
+}
+
+void SourceMesh::scan(const StageContext& context) {
+  execution::Progress& progress = context.progress;
   progress.stage("ingest", summary_.vertices, "vertices");
   const partition::SampleIds ids(summary_.vertices);
   sample_positions_.reserve(ids.count());
@@ -95,7 +100,7 @@ void SourceMesh::scan(std::size_t in_flight, execution::Progress& progress,
       BlockScan scan;
     };
     execution::ordered_blocks<Slot>(
-        source_->vertex_blocks(), in_flight, cancel,
+        source_->vertex_blocks(), context.memory().blocks_in_flight, context.cancel,
         [&](std::uint64_t i, Slot& slot) {
           slot.scan.look_at(source_->read_vertex_block(i, slot.memory), ids);
         },
@@ -104,7 +109,7 @@ void SourceMesh::scan(std::size_t in_flight, execution::Progress& progress,
   }
   BlockScan scan;
   source_->read_vertices([&](const mesh_io::VertexBlock& block) {
-    cancel.check();
+    context.cancel.check();
     scan.look_at(block, ids);
     take(scan);
     const bool wide = !block.exact.empty();
@@ -174,11 +179,4 @@ SourceVertices SourceMesh::read_vertex_block(std::uint64_t index,
   }
   return {first, memory.positions, memory.attributes};
 }
-
-void SourceMesh::count(const mesh_io::FaceCounts& counts) {
-  summary_.faces += counts.faces;
-  summary_.triangles += counts.triangles;
-  summary_.degenerate_triangles += counts.degenerate_triangles;
-}
-
 }  // namespace meshhier::pipeline

@@ -1,4 +1,4 @@
-#include "pipeline/source_mesh.h"
+#include "pipeline/ingest_stage.h"
 
 #include "hierarchy/error.h"
 #include "mesh_io/ply_writer.h"
@@ -33,15 +33,26 @@ constexpr std::size_t kInFlight = 3;
 
 using Triangles = std::vector<mesh_io::SourceTriangle>;
 
-Triangles triangles_of(SourceMesh& mesh, std::size_t in_flight = kInFlight) {
+struct AllTriangles {
   Triangles triangles;
-  mesh.read_triangles<Triangles>(
+  mesh_io::FaceCounts counts;
+};
+
+AllTriangles read_triangles(SourceMesh& mesh, std::size_t in_flight = kInFlight) {
+  AllTriangles all;
+  all.counts = mesh.read_triangles<Triangles>(
       in_flight, execution::CancelToken(),
       [](std::span<const mesh_io::SourceTriangle> block, Triangles& slot) {
         slot.assign(block.begin(), block.end());
       },
-      [&](const Triangles& slot) { triangles.insert(triangles.end(), slot.begin(), slot.end()); });
-  return triangles;
+      [&](const Triangles& slot) {
+        all.triangles.insert(all.triangles.end(), slot.begin(), slot.end());
+      });
+  return all;
+}
+
+Triangles triangles_of(SourceMesh& mesh) {
+  return read_triangles(mesh).triangles;
 }
 
 /// Cancels when the given number of units is done.
@@ -69,9 +80,13 @@ class SourceMeshTest : public testing::Test {
     return directory_.path() / name;
   }
 
-  SourceMesh open(const std::filesystem::path& file) {
-    return SourceMesh(mesh_io::open_mesh(*files_, file), file.filename().string(), scratch_,
-                      kInFlight, progress_, cancel_);
+  SourceMesh open(const std::filesystem::path& file) { return open(file, kInFlight, progress_); }
+  SourceMesh open(const std::filesystem::path& file, std::size_t in_flight,
+                  execution::Progress& progress) {
+    BuildPlan plan{.tree = Tree(1, 1)};
+    plan.memory.blocks_in_flight = in_flight;
+    return ingest(mesh_io::open_mesh(*files_, file), file.filename().string(), scratch_,
+                  {config_, plan, *files_, progress, cancel_});
   }
 
   /// A point cloud of double coordinates.
@@ -94,6 +109,7 @@ class SourceMeshTest : public testing::Test {
   std::unique_ptr<storage::FileSystem> files_ = storage::make_posix_file_system();
   storage::MemoryPool pool_{0};
   storage::ScratchFile scratch_{*files_, directory_.path() / "scratch", pool_};
+  config::Config config_;
   execution::NoProgress progress_;
   execution::CancelToken cancel_;
 };
@@ -246,19 +262,19 @@ TEST_F(SourceMeshTest, ASampleOfManyVerticesIsSpreadOverAll) {
   }
 }
 
-TEST_F(SourceMeshTest, ReadingTheTrianglesCompletesTheCounts) {
+TEST_F(SourceMeshTest, ReadingTheTrianglesCountsThem) {
   SourceMesh mesh = open_text(text_header(5, 4) +
                               "0 0 0\n1 0 0\n1 1 0\n0 1 0\n9 9 9\n"
                               "4 0 1 2 3\n3 0 0 1\n3 0 1 2\n2 0 1\n");
   EXPECT_EQ(mesh.declared_faces(), 4U);
-  const Triangles triangles = triangles_of(mesh);
+  const auto [triangles, counts] = read_triangles(mesh);
   const auto triangle = [](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     return mesh_io::SourceTriangle{VertexId{a}, VertexId{b}, VertexId{c}};
   };
   EXPECT_THAT(triangles, ElementsAre(triangle(0, 1, 2), triangle(0, 2, 3), triangle(0, 1, 2)));
-  EXPECT_EQ(mesh.summary().faces, 4U);
-  EXPECT_EQ(mesh.summary().triangles, 3U);
-  EXPECT_EQ(mesh.summary().degenerate_triangles, 2U);
+  EXPECT_EQ(counts.faces, 4U);
+  EXPECT_EQ(counts.triangles, 3U);
+  EXPECT_EQ(counts.degenerate_triangles, 2U);
 }
 
 TEST_F(SourceMeshTest, TrianglesComeInFileOrderWhereverBlocksEnd) {
@@ -266,14 +282,14 @@ TEST_F(SourceMeshTest, TrianglesComeInFileOrderWhereverBlocksEnd) {
   tests::write_ply(sphere, path());
   for (const std::size_t in_flight : {1U, 2U, 5U}) {
     SourceMesh mesh = open(path());
-    const Triangles triangles = triangles_of(mesh, in_flight);
+    const auto [triangles, counts] = read_triangles(mesh, in_flight);
     ASSERT_EQ(triangles.size(), sphere.triangles.size());
     for (std::size_t i = 0; i < triangles.size(); ++i) {
       for (std::size_t corner = 0; corner < 3; ++corner)
         ASSERT_EQ(raw(triangles[i][corner]), sphere.triangles[i][corner]);
     }
-    EXPECT_EQ(mesh.summary().triangles, sphere.triangles.size());
-    EXPECT_EQ(mesh.summary().degenerate_triangles, 0U);
+    EXPECT_EQ(counts.triangles, sphere.triangles.size());
+    EXPECT_EQ(counts.degenerate_triangles, 0U);
   }
 }
 
@@ -301,10 +317,11 @@ TEST_F(SourceMeshTest, APolygonAmongTrianglesEndsTheBlocksOnly) {
     faces[polygon] = {0, 1, 2, 1};
     faces[150'000] = {0, 0, 1};
     SourceMesh mesh = open_text(binary_faces(faces));
-    EXPECT_EQ(triangles_of(mesh).size(), 200'000U) << polygon;
-    EXPECT_EQ(mesh.summary().faces, 200'000U);
-    EXPECT_EQ(mesh.summary().triangles, 200'000U);
-    EXPECT_EQ(mesh.summary().degenerate_triangles, 1U);
+    const auto [triangles, counts] = read_triangles(mesh);
+    EXPECT_EQ(triangles.size(), 200'000U) << polygon;
+    EXPECT_EQ(counts.faces, 200'000U);
+    EXPECT_EQ(counts.triangles, 200'000U);
+    EXPECT_EQ(counts.degenerate_triangles, 1U);
   }
 }
 
@@ -316,7 +333,7 @@ TEST_F(SourceMeshTest, OfSeveralBrokenFacesTheFirstIsNamed) {
   for (int round = 0; round < 5; ++round) {
     SourceMesh mesh = open_text(bytes);
     try {
-      triangles_of(mesh, 8);
+      read_triangles(mesh, 8);
       FAIL() << "a vertex that is not there was accepted";
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::input);
@@ -332,7 +349,7 @@ TEST_F(SourceMeshTest, OfSeveralBrokenVerticesTheFirstIsNamed) {
   tests::write_ply(points, path());
   for (int round = 0; round < 5; ++round) {
     try {
-      SourceMesh(mesh_io::open_mesh(*files_, path()), "mesh.ply", scratch_, 8, progress_, cancel_);
+      open(path(), 8, progress_);
       FAIL() << "a vertex that is not a number was accepted";
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::input);
@@ -367,8 +384,7 @@ TEST_F(SourceMeshTest, ACancelledJobEndsWhileReading) {
   tests::write_ply(tests::points(200'000), path());
   CancellingProgress progress(cancel_, 1);
   try {
-    SourceMesh(mesh_io::open_mesh(*files_, path()), "mesh.ply", scratch_, kInFlight, progress,
-               cancel_);
+    open(path(), kInFlight, progress);
     FAIL() << "read to the end";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::interrupted);

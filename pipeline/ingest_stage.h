@@ -1,5 +1,5 @@
-// The stage `ingest`: the input checked, bounded and sampled; its vertices ready to be read again
-// as floats.
+// The stage `ingest`: all vertices are read once, checked, bounded and sampled. Later stages read
+// them again as floats.
 #pragma once
 
 #include "execution/cancel.h"
@@ -8,6 +8,7 @@
 #include "hierarchy/published.h"
 #include "mesh_io/mesh_source.h"
 #include "partition/split_plane.h"
+#include "pipeline/plan/stage_context.h"
 #include "storage/io/spool.h"
 
 #include <memory>
@@ -28,15 +29,7 @@ struct SourceVertices {
 /// A mesh that was read once: all vertices are sound.
 class SourceMesh {
  public:
-  /// Reads all vertices: checks them, bounds them, picks the sample. A file whose vertices cannot
-  /// be read again in place is spooled meanwhile. Throws as mesh_io::MeshSource does. `file_name`:
-  /// for the summary. `in_flight`: blocks read at a time. Requires a vertex.
-  SourceMesh(std::unique_ptr<mesh_io::MeshSource> source, std::string file_name,
-             storage::ScratchFile& scratch, std::size_t in_flight, execution::Progress& progress,
-             const execution::CancelToken& cancel);
-
-  /// Counts of faces and triangles are 0 until read_triangles(); checksum and unreferenced_vertices
-  /// are not known here.
+  /// Counts of faces and triangles, checksum and unreferenced_vertices are not known here.
   const SourceSummary& summary() const { return summary_; }
   std::uint64_t declared_faces() const { return source_->description().face_count; }
   bool vertices_in_place() const { return source_->description().vertices_in_place; }
@@ -58,13 +51,12 @@ class SourceMesh {
   /// Thread-safe for different `memory`.
   SourceVertices read_vertex_block(std::uint64_t index, mesh_io::BlockMemory& memory) const;
 
-  /// Reads all triangles once, and completes the summary's face counts. work(triangles, slot) runs
-  /// in parallel, each with one of `in_flight` slots; sink(slot) follows in file order. What work()
-  /// is given may turn out to be none of the file's triangles: then no sink() follows. As
-  /// ordered_blocks.
+  /// Reads all triangles once and counts them. work(triangles, slot) runs in parallel, each with
+  /// one of `in_flight` slots; sink(slot) follows in file order. What work() is given may turn out
+  /// to be none of the file's triangles: then no sink() follows. As ordered_blocks.
   template <class Slot, class Work, class Sink>
-  void read_triangles(std::size_t in_flight, const execution::CancelToken& cancel, const Work& work,
-                      const Sink& sink);
+  mesh_io::FaceCounts read_triangles(std::size_t in_flight, const execution::CancelToken& cancel,
+                                     const Work& work, const Sink& sink);
 
   /// The input's storage::FileChecksum; cheap when all has been read.
   std::uint64_t checksum(const execution::CancelToken& cancel) {
@@ -72,10 +64,12 @@ class SourceMesh {
   }
 
  private:
-  void scan(std::size_t in_flight, execution::Progress& progress,
-            const execution::CancelToken& cancel);
+  friend SourceMesh ingest(std::unique_ptr<mesh_io::MeshSource> source, std::string file_name,
+                           storage::ScratchFile& scratch, const StageContext& context);
+  SourceMesh(std::unique_ptr<mesh_io::MeshSource> source, std::string file_name,
+             storage::ScratchFile& scratch);
+  void scan(const StageContext& context);
   void choose_origin();
-  void count(const mesh_io::FaceCounts& counts);
 
   std::unique_ptr<mesh_io::MeshSource> source_;
   storage::Spool spooled_positions_;  ///< Vec3f or Vec3d
@@ -86,9 +80,16 @@ class SourceMesh {
   std::vector<Vec3d> sample_positions_;
 };
 
+/// Reads all vertices: checks them, bounds them, picks the sample. A file whose vertices cannot be
+/// read again in place is spooled to `scratch` meanwhile, which must outlive the result. Throws as
+/// mesh_io::MeshSource does. `file_name`: for the summary. Requires a vertex.
+SourceMesh ingest(std::unique_ptr<mesh_io::MeshSource> source, std::string file_name,
+                  storage::ScratchFile& scratch, const StageContext& context);
+
 template <class Slot, class Work, class Sink>
-void SourceMesh::read_triangles(std::size_t in_flight, const execution::CancelToken& cancel,
-                                const Work& work, const Sink& sink) {
+mesh_io::FaceCounts SourceMesh::read_triangles(std::size_t in_flight,
+                                               const execution::CancelToken& cancel,
+                                               const Work& work, const Sink& sink) {
   struct Read {
     mesh_io::BlockMemory memory;
     mesh_io::TriangleBlock block;
@@ -108,7 +109,6 @@ void SourceMesh::read_triangles(std::size_t in_flight, const execution::CancelTo
         return read.block.whole;
       });
   counts.degenerate_triangles = counts.faces - counts.triangles;
-  count(counts);
 
   struct Copied {
     std::vector<mesh_io::SourceTriangle> triangles;
@@ -118,12 +118,14 @@ void SourceMesh::read_triangles(std::size_t in_flight, const execution::CancelTo
       in_flight,
       [&](Copied& copied) { work(std::span(std::as_const(copied.triangles)), copied.slot); },
       [&](Copied& copied) { sink(copied.slot); });
-  count(source_->read_triangles_from(
+  const mesh_io::FaceCounts last = source_->read_triangles_from(
       counts.faces, [&](std::span<const mesh_io::SourceTriangle> triangles) {
         cancel.check();
         rest.next().triangles.assign(triangles.begin(), triangles.end());
-      }));
+      });
   rest.finish();
+  return {counts.faces + last.faces, counts.triangles + last.triangles,
+          counts.degenerate_triangles + last.degenerate_triangles};
 }
 
 }  // namespace meshhier::pipeline

@@ -1,0 +1,29 @@
+// What a build says of itself when it is done.
+#pragma once
+
+#include "pipeline/plan/build_stats.h"
+#include "pipeline/plan/stage_context.h"
+#include "storage/format/hierarchy_reader.h"
+
+#include <cstdint>
+#include <string>
+
+namespace meshhier::pipeline {
+
+struct BuildReport {
+  std::string text;  ///< a few lines and a table for people
+  BuildStats stats;
+};
+
+/// What of a build neither its plan nor its hierarchy tells.
+struct BuildOutcome {
+  std::string found;               ///< what an earlier build had done, for people; may be empty
+  std::uint64_t output_bytes = 0;  ///< of the published files, or of the archive
+  std::uint64_t peak_temporary_bytes = 0;
+};
+
+/// Of the hierarchy `made`, when the last stage of `meter` has ended.
+BuildReport make_report(const storage::HierarchyReader& made, const BuildOutcome& outcome,
+                        const StageMeter& meter, const StageContext& context);
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,53 @@
+#include "pipeline/import_stage.h"
+
+#include "execution/allocator.h"
+#include "hierarchy/error.h"
+#include "import/import_input.h"
+#include "pipeline/journal/workshop.h"
+#include "storage/format/layout.h"
+
+#include <algorithm>
+
+namespace meshhier::pipeline {
+
+std::uint64_t import_disk(const importing::MeshInput& input, const config::Config& config) {
+  return importing::predict_import(input.files(), importing::plan_import(config.memory_budget));
+}
+
+BuildPlan import_and_plan(importing::MeshInput& input, storage::WorkDirectory& work,
+                          storage::MemoryPool& pool, const config::Config& config,
+                          const BuildEnvironment& environment) {
+  const auto earlier = find_earlier_build(environment.files, work.path());
+  work.keep(earlier.has_value());
+  const auto recalled = earlier ? recall_import(*earlier, input, environment.cancel) : std::nullopt;
+  if (recalled) {
+    input.recall(*recalled);
+  } else {
+    const importing::ImportMemory memory = importing::plan_import(config.memory_budget);
+    pool.set_capacity(memory.pool_bytes);
+    input.import({storage::imported_path(work.path()), work.path() / "import", pool,
+                  memory.sort_bytes, environment.progress, environment.cancel});
+    execution::release_free_memory();
+  }
+  BuildPlan plan = plan_build(config, input.description(), input.imported_bytes());
+  plan.disk.temporary_bytes = std::max(plan.disk.temporary_bytes, import_disk(input, config));
+  check_disk(plan.disk, config.output, environment.files);
+  return plan;
+}
+
+void import_again(importing::MeshInput& input, const storage::WorkDirectory& work,
+                  storage::MemoryPool& pool, const StageContext& context) {
+  const mesh_io::MeshDescription recalled = input.description();
+  const std::uint64_t sort_bytes =
+      std::min(importing::plan_import(context.config.memory_budget).sort_bytes,
+               context.memory().work_bytes / 4);
+  input.import({storage::imported_path(work.path()), work.path() / "import", pool, sort_bytes,
+                context.progress, context.cancel});
+  const mesh_io::MeshDescription& mesh = input.description();
+  if (mesh.vertex_count != recalled.vertex_count || mesh.face_count != recalled.face_count ||
+      mesh.attributes != recalled.attributes) {
+    throw Error(ErrorCode::input, input.files().name() + " was changed; build it again");
+  }
+}
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,29 @@
+// The stage `import`: input that cannot be read where it lies becomes one PLY in the work
+// directory.
+#pragma once
+
+#include "import/mesh_input.h"
+#include "pipeline/plan/stage_context.h"
+#include "storage/format/work_directory.h"
+#include "storage/io/spool.h"
+
+#include <cstdint>
+
+namespace meshhier::pipeline {
+
+/// About what an import has in temporary files at most.
+std::uint64_t import_disk(const importing::MeshInput& input, const config::Config& config);
+
+/// Imports the input, unless an earlier build did whose work is still there; then it is known what
+/// there is to do. Keeps the work directory if there is earlier work. Throws as
+/// importing::import_input, plan_build and check_disk.
+BuildPlan import_and_plan(importing::MeshInput& input, storage::WorkDirectory& work,
+                          storage::MemoryPool& pool, const config::Config& config,
+                          const BuildEnvironment& environment);
+
+/// Imports the input although an earlier build did, because its work is of no use. Throws
+/// Error(input) if the input is not what it was.
+void import_again(importing::MeshInput& input, const storage::WorkDirectory& work,
+                  storage::MemoryPool& pool, const StageContext& context);
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,84 @@
+#include "pipeline/leaves_stage.h"
+
+#include "execution/allocator.h"
+#include "execution/parallel.h"
+#include "execution/size_text.h"
+#include "hierarchy/error.h"
+#include "partition/chunk.h"
+#include "partition/leaf_tiles.h"
+
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace meshhier::pipeline {
+namespace {
+
+// What chunks leave behind between the blobs that stay adds up over thousands of them, and so do
+// the places of spooled blocks, too small for the tiles they turn into: some 3 MiB a chunk.
+constexpr std::size_t kChunksBetweenReleases = 8;
+
+/// A chunk whose triangles alone exceed what a stage may hold: a vertex with an absurd number of
+/// triangles.
+void check_fits(const Chunks& chunks, std::uint32_t chunk, const MemoryPlan& plan) {
+  const std::uint64_t needed = chunks.triangle_bytes(chunk) * 4;
+  if (needed > plan.work_bytes + plan.pool_bytes / 2) {
+    throw Error(ErrorCode::budget,
+                fmt::format("a part of the mesh has {} triangles on {} "
+                            "vertices; it needs a memory_budget larger by {}",
+                            chunks.triangle_bytes(chunk) / 12, chunks.map().size(chunk),
+                            execution::exact_size_text(needed)));
+  }
+}
+
+struct ChunkReport {
+  std::size_t partitions = 0;
+  std::uint64_t unreferenced_vertices = 0;
+};
+
+/// Splits a chunk and puts its partition tiles.
+ChunkReport put_leaves(Chunks& chunks, std::uint32_t index, partition::Axis axis, Forest& forest) {
+  const Tree& tree = forest.tree();
+  const partition::ChunkMesh chunk = chunks.take(index);
+  const std::vector<PartitionId> partition_of = partition::split_chunk(chunk, tree, axis);
+  const partition::ChunkLeaves leaves =
+      partition::build_leaves(chunk, partition_of, tree, chunks.map());
+  forest.put_places(index, leaves.places);
+  const std::uint32_t first = tree.partitions(chunk.node).begin;
+  for (std::uint32_t p = 0; p < leaves.tiles.size(); ++p)
+    forest.put_tile({tree.depth(), first + p}, leaves.tiles[p]);
+  return {leaves.tiles.size(), leaves.unreferenced_count};
+}
+
+}  // namespace
+
+std::uint64_t make_leaves(Chunks& chunks, Forest& forest, BuildJournal& journal,
+                          const StageContext& context) {
+  const Tree& tree = context.tree();
+  std::vector<std::uint32_t> left;
+  std::uint64_t partitions = 0;
+  for (std::uint32_t chunk = 0; chunk < chunks.count(); ++chunk) {
+    if (journal.has_leaves(chunk))
+      continue;
+    left.push_back(chunk);
+    partitions += tree.partitions({chunks.level(), chunk}).size();
+  }
+  context.progress.stage("leaves", partitions, "partitions");
+  std::uint64_t unreferenced = journal.unreferenced_vertices();
+  execution::ordered_for(
+      left.size(), context.memory().chunks_in_flight, context.cancel,
+      [&](std::size_t i) {
+        check_fits(chunks, left[i], context.memory());
+        return put_leaves(chunks, left[i], context.config.partition.axis, forest);
+      },
+      [&](std::size_t i, const ChunkReport& report) {
+        journal.note_leaves(left[i], report.unreferenced_vertices);
+        unreferenced += report.unreferenced_vertices;
+        context.progress.advance(report.partitions);
+        if (i % kChunksBetweenReleases == kChunksBetweenReleases - 1)
+          execution::release_free_memory();
+      });
+  return unreferenced;
+}
+
+}  // namespace meshhier::pipeline
