@@ -55,11 +55,11 @@ class Session {
     return found;
   }
 
-  /// The tiles that would be drawn, in view or not, and what of each.
+  /// The tiles that would be drawn, in view or not, in order, and what of each.
   cut(): string[] {
-    const texts = this.meshes().map(({ geometry: { attributes: { position }, drawRange } }) =>
+    const meshes = this.meshes().sort((a, b) => a.renderOrder - b.renderOrder);
+    return meshes.map(({ geometry: { attributes: { position }, drawRange } }) =>
       [drawRange.count, position.count, ...position.array.slice(0, 3)].join());
-    return texts.sort();
   }
 }
 
