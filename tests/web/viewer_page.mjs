@@ -291,6 +291,19 @@ async function picture(page) {
   return page.locator('canvas:visible').screenshot();
 }
 
+/// To a part of the distance from the target, and back.
+async function thereAndBack(page, part) {
+  const { position, target } = await page.evaluate(() => window.meshhier.camera());
+  const closer = target.map((from, axis) => from + part * (position[axis] - from));
+  for (const each of [closer, position]) {
+    await page.evaluate((pose) => {
+      window.meshhier.setCamera(pose);
+      return new Promise(requestAnimationFrame); // it was seen
+    }, { position: each, target });
+    await settle(page);
+  }
+}
+
 async function checkLinks(visitor, name) {
   const page = await visitor.open(anchor(name));
   await settle(page);
@@ -307,6 +320,8 @@ async function checkLinks(visitor, name) {
   await settle(again);
   visitor.check('link restores the picture', before.equals(await picture(again)), link);
   visitor.check('link stays', new URL(again.url()).hash === link, new URL(again.url()).hash);
+  await thereAndBack(again, 0.9);
+  visitor.check('way back restores the picture', before.equals(await picture(again)), link);
   await visitor.close(again, 'link again');
   await visitor.close(page, 'link');
 }

@@ -10,7 +10,7 @@ export interface Limits {
   readonly threshold: number;
   /// Of all tiles in view.
   readonly vertices: number;
-  /// Of all tiles of the cut and above it, in memory.
+  /// Of all tiles of the cut and above it, in memory, with room for the largest of them on its way.
   readonly bytes: number;
 }
 
@@ -23,7 +23,7 @@ export interface Sources {
   readonly isHidden: (key: number, record: TileRecord) => boolean;
   /// Whether a tile, or its record, could not be had: the one above stands for it.
   readonly isLost: (node: Node) => boolean;
-  /// Whether the node was refined in the last cut.
+  /// Whether the node was refined in the last cut, and is to stay so for a while.
   readonly wasRefined: (key: number) => boolean;
 }
 
@@ -51,6 +51,8 @@ export interface Choice {
 /// A tile that is shown finer stays so until its error is this much smaller than what refines it, or another one's this
 /// much larger: no flicker.
 const HYSTERESIS = 1.3;
+/// A tile takes so many times its bytes on its way: its file, packed and unpacked, is in memory as well until it is decoded.
+export const LOADING = 2;
 
 class Chooser {
   readonly refined: ChosenNode[] = [];
@@ -59,6 +61,7 @@ class Chooser {
   private readonly queue = new PriorityQueue<ChosenNode>();
   private vertices = 0;
   private bytes = 0;
+  private largest = 0;
 
   constructor(
     private readonly sources: Sources,
@@ -79,7 +82,9 @@ class Chooser {
 
   private add(chosen: ChosenNode): void {
     if (chosen.inView) this.vertices += chosen.record.own;
-    this.bytes += this.sources.bytesOf(chosen.record, chosen.node);
+    const bytes = this.sources.bytesOf(chosen.record, chosen.node);
+    this.bytes += bytes;
+    this.largest = Math.max(this.largest, bytes);
     const deserved = chosen.pixels * (this.sources.wasRefined(chosen.key) ? HYSTERESIS : 1);
     if (deserved > this.limits.threshold) this.queue.push(chosen, deserved);
   }
@@ -101,11 +106,14 @@ class Chooser {
 
   private hasRoom(chosen: ChosenNode, children: readonly ChosenNode[]): boolean {
     let vertices = this.vertices - (chosen.inView ? chosen.record.own : 0);
-    let bytes = this.bytes;
+    let { bytes, largest } = this;
     for (const { inView, record, node } of children) {
+      const each = this.sources.bytesOf(record, node);
       vertices += inView ? record.own : 0;
-      bytes += this.sources.bytesOf(record, node);
+      bytes += each;
+      largest = Math.max(largest, each);
     }
+    bytes += LOADING * largest;
     if (vertices > this.limits.vertices) this.limited.vertices = true;
     if (bytes > this.limits.bytes) this.limited.bytes = true;
     return vertices <= this.limits.vertices && bytes <= this.limits.bytes;

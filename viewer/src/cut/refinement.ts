@@ -2,7 +2,7 @@
 import type { Cone } from '../hierarchy/normals.js';
 import type { TileIndex, TileRecord } from '../hierarchy/tile_index.js';
 import { keyOf, type Node, type Tree } from '../hierarchy/tree.js';
-import { chooseCut, type Choice, type ChosenNode, type Sources } from './choose_cut.js';
+import { chooseCut, LOADING, type Choice, type ChosenNode, type Sources } from './choose_cut.js';
 import type { TileStore, Wanted } from './tile_store.js';
 import { looksAway, type Vector, type Viewpoint } from './viewpoint.js';
 import { windingNumber } from './winding.js';
@@ -33,17 +33,19 @@ function opposite({ axis: [x, y, z], cosine }: Cone): Cone {
 }
 
 const ROOT = keyOf(0, 0);
-/// Finer tiles have normals that their parents have not: so much more must a tile look away. Once refined, more still.
+/// Finer tiles have normals that their parents have not: so much more must a tile look away.
 const HIDDEN_MARGIN = 0.1;
 /// At rest, when there is time for what hardly ever shows.
 const HIDDEN_MARGIN_AT_REST = 0.35;
+/// More still, once refined, while the camera moves.
 const HYSTERESIS_MARGIN = 0.2;
+/// At rest nothing is remembered: the cut is the same whatever was seen before.
+const NONE: ReadonlySet<number> = new Set();
 /// A point is outside of a closed surface if less of it goes around.
 const OUTSIDE = 0.25;
 
 export class Refinement {
-  private refined = new Set<number>();
-  private largest = 0;
+  private refined: ReadonlySet<number> = NONE;
 
   constructor(
     private readonly tree: Tree,
@@ -54,8 +56,7 @@ export class Refinement {
 
   /// null: not even the root is known.
   refine(view: Viewpoint, limits: RefinementLimits, now: number): Refined | null {
-    const room = this.store.budget - 2 * this.largest;
-    const choice = chooseCut(this.sources(view, limits.atRest, now), view, { ...limits, bytes: room });
+    const choice = chooseCut(this.sources(view, limits.atRest, now), view, { ...limits, bytes: this.store.budget });
     if (choice.root === null) return null;
     this.refined = new Set(choice.refined.map(({ key }) => key));
     const missing = this.store.want(this.wanted(choice), now);
@@ -68,17 +69,14 @@ export class Refinement {
   private sources(view: Viewpoint, atRest: boolean, now: number): Sources {
     const culls = this.isOutside(view.eye);
     const margin = atRest ? HIDDEN_MARGIN_AT_REST : HIDDEN_MARGIN;
+    const before = atRest ? NONE : this.refined;
     return {
       tree: this.tree,
       record: (node) => this.index.record(node),
-      bytesOf: (record, node) => {
-        const bytes = this.mostMemory(record, node);
-        this.largest = Math.max(this.largest, bytes);
-        return bytes;
-      },
+      bytesOf: this.mostMemory,
       isLost: (node) => this.index.isDamaged(node) || this.store.isGivenUp(keyOf(node.level, node.index), now),
-      isHidden: (key, record) => culls && this.isHidden(view, key, record, margin),
-      wasRefined: (key) => this.refined.has(key),
+      isHidden: (key, record) => culls && this.isHidden(view, key, record, margin + (before.has(key) ? HYSTERESIS_MARGIN : 0)),
+      wasRefined: (key) => before.has(key),
     };
   }
 
@@ -90,19 +88,15 @@ export class Refinement {
     return !inBox || Math.abs(windingNumber(root, eye)) < OUTSIDE;
   }
 
-  private isHidden(view: Viewpoint, key: number, record: TileRecord, least: number): boolean {
+  private isHidden(view: Viewpoint, key: number, record: TileRecord, margin: number): boolean {
     const cone = this.store.get(key)?.tile.cone;
     if (cone === undefined) return false;
-    const margin = least + (this.refined.has(key) ? HYSTERESIS_MARGIN : 0);
     return looksAway(view, record, this.store.get(ROOT)!.tile.insideOut ? opposite(cone) : cone, margin);
   }
 
   private wanted({ refined }: Choice): Wanted[] {
     return refined.flatMap(({ children }) =>
-      children.map(({ node, record }) => {
-        // Its file, packed and unpacked, is in memory as well until it is decoded.
-        return { node, record, loadingBytes: 2 * this.mostMemory(record, node) };
-      }),
+      children.map(({ node, record }) => ({ node, record, loadingBytes: LOADING * this.mostMemory(record, node) })),
     );
   }
 

@@ -61,6 +61,8 @@ export class TileObject extends Mesh<BufferGeometry, MeshStandardMaterial> {
     for (const attribute of this.attributes()) attribute.setUsage(DynamicDrawUsage);
     this.triangles = tile.interiorCount;
     this.matrixAutoUpdate = false;
+    // Of equal depths the last one shows: the same one in whatever order tiles came.
+    this.renderOrder = resident.key / Number.MAX_SAFE_INTEGER;
   }
 
   private *attributes(): Iterable<BufferAttribute> {
