@@ -29,7 +29,7 @@ struct PublishInput {
   std::optional<std::uint32_t> position_bits;  ///< of the lattice; none: positions stay exact
   std::optional<Transform> transform;          ///< of the tileset
   std::string licence;
-  TargetVertexCounts target_vertex_counts = 8192;  ///< of simplified tiles
+  TargetVertexCounts target_vertex_counts;  ///< of simplified tiles
   bool is_temporary = false;  ///< the files become an archive: they need not reach the disk
 };
 

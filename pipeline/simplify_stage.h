@@ -21,7 +21,7 @@ std::uint64_t make_leaves(Chunks& chunks, Forest& forest, BuildJournal& journal,
                           execution::Progress& progress, const execution::CancelToken& cancel);
 
 struct SimplifyOptions {
-  TargetVertexCounts vertices = 8192;
+  TargetVertexCounts vertices;
   AttributeLayout attributes;
   cluster_simplify::ContractionOptions contraction;
   double diagonal = 0;  ///< of the whole model
