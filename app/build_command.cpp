@@ -1,6 +1,7 @@
 #include "app/command.h"
 #include "app/options.h"
 #include "config/config.h"
+#include "config/config_reference.h"
 #include "hierarchy/error.h"
 #include "pipeline/build.h"
 #include "pipeline/plan/build_stats.h"
@@ -8,6 +9,7 @@
 #include "storage/io/atomic_file.h"
 
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <optional>
 #include <ostream>
@@ -28,7 +30,8 @@ struct BuildArguments {
   bool force = false;
   bool restart = false;
   bool dry_run = false;
-  bool json = false;  ///< the estimate as JSON
+  bool json = false;        ///< the estimate as JSON
+  std::string help_config;  ///< one of kReferences, or empty
 };
 
 /// --set takes all that follows it, so it swallows a config that comes last: the one item without
@@ -105,31 +108,33 @@ int run_build(const BuildArguments& arguments, execution::ProgressMode mode,
   return 0;
 }
 
-constexpr const char* kBuildFooter =
-    R"(The config is JSON; // comments are allowed. "input" and "output" are required:
-  {
-    "input": "david.ply",                    // relative to this file; PLY, OBJ, STL or OFF, perhaps
-                                             // in gzip; or a list of files, which are joined
-    "output": "david.hier",
-    "weld": false,                           // true: equal vertices become one
-    "memory_budget": "1GiB",
-    "threads": 0,                            // 0: all
-    "partition": { "vertices": 8192, "axis": "compactness" },
-    "simplify": { "method": "cluster", "representative": "quadric" },
-    "outline": { "sectors": 128, "tolerance": 0.002 },
-    "storage": { "container": "files" }      // or "3tz": one file instead of a directory
-  }
+/// What --help-config prints.
+const std::map<std::string, std::string (*)()>& references() {
+  static const std::map<std::string, std::string (*)()> all = {{"text", config::keys_text},
+                                                               {"schema", config::schema_text},
+                                                               {"markdown", config::keys_markdown}};
+  return all;
+}
 
+std::string footer() {
+  return R"(The config is JSON; // comments are allowed. Only "input" and "output" are required.
+"input" is a PLY, OBJ, STL or OFF, perhaps in gzip, or a list of files, which are joined; relative
+to the config. With all defaults, `meshhier build --help-config` says what else there is:
+
+)" + config::defaults_text() +
+         R"(
 Examples:
   meshhier build david.json
+  meshhier build david.json --dry-run
+  meshhier build --set input=david.ply output=david.hier
   meshhier build david.json --set partition.count=128 --set memory_budget=256MiB
   meshhier build david.json --set input=other.ply output=other.hier --force
-  meshhier build --set input=david.ply output=david.hier
   meshhier build david.json --set 'input=["a.obj.gz", "b.obj.gz"]' weld=true
   meshhier build david.json --set storage.container=3tz output=david.3tz
-  meshhier build david.json --dry-run
+  meshhier build david.json --set storage.compression=meshopt_zlib storage.positions.bits=16
   meshhier build david.json --stats david.stats.json
 )";
+}
 
 }  // namespace
 
@@ -159,9 +164,21 @@ void add_build_command(CLI::App& parser, Invocation& invocation) {
                    "Write what each stage took of time, memory and disk, as JSON")
       ->type_name("FILE")
       ->excludes(dry_run);
+  command
+      ->add_flag("--help-config{text}", arguments->help_config,
+                 "List the keys of the config; =schema: as a JSON schema, for editors; =markdown: "
+                 "as a table")
+      ->check(CLI::IsMember(references()));
   add_progress_option(*command, invocation.progress);
-  command->footer(kBuildFooter);
+  command->footer(footer());
   command->callback([arguments, &invocation] {
+    if (!arguments->help_config.empty()) {
+      invocation.run = [arguments](Environment& environment) {
+        environment.out << references().at(arguments->help_config)();
+        return 0;
+      };
+      return;
+    }
     give_back_config(*arguments);
     invocation.run = [arguments, &invocation](Environment& environment) {
       return run_build(*arguments, invocation.progress, environment);

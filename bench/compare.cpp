@@ -20,7 +20,6 @@ using namespace meshhier;
 struct Arguments {
   std::vector<std::string> inputs;
   bench::ComparisonOptions options;
-  bool json = false;
 };
 
 void add_options(CLI::App& app, Arguments& arguments) {
@@ -39,33 +38,22 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--samples", options.samples, "Of a distance, in each direction")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_flag("--json", arguments.json, "One JSON array instead of tables");
-}
-
-std::string compare_one(const std::string& input, const Arguments& arguments,
-                        storage::FileSystem& files) {
-  const bench::PlainMesh mesh =
-      bench::plain_mesh(bench::load_mesh(*mesh_io::open_mesh(files, input)));
-  const std::string name = std::filesystem::path(input).stem().string();
-  try {
-    const bench::Comparison comparison = bench::compare(mesh, arguments.options, files);
-    return arguments.json ? bench::json(name, comparison) : bench::markdown(name, comparison);
-  } catch (const Error& error) {
-    throw error.within(input);
-  }
 }
 
 /// Prints each comparison as soon as it is there.
 void run(const Arguments& arguments) {
   const auto files = storage::make_posix_file_system();
-  const char* before = arguments.json ? "[" : "";
   for (const std::string& input : arguments.inputs) {
-    fmt::print("{}{}\n", before, compare_one(input, arguments, *files));
+    try {
+      const auto source = mesh_io::open_mesh(*files, input);
+      const bench::PlainMesh mesh = bench::plain_mesh(bench::load_mesh(*source));
+      fmt::print("{}\n", bench::markdown(std::filesystem::path(input).stem().string(),
+                                         bench::compare(mesh, arguments.options, *files)));
+    } catch (const Error& error) {
+      throw error.within(input);
+    }
     std::fflush(stdout);
-    before = arguments.json ? "," : "";
   }
-  if (arguments.json)
-    fmt::print("]\n");
 }
 
 }  // namespace

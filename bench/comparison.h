@@ -58,7 +58,4 @@ Comparison compare(const PlainMesh& mesh, const ComparisonOptions& options,
 /// Two tables in Markdown below a heading.
 std::string markdown(const std::string& name, const Comparison& comparison);
 
-/// A JSON object; lengths in input units.
-std::string json(const std::string& name, const Comparison& comparison);
-
 }  // namespace meshhier::bench

@@ -21,11 +21,6 @@ double squared_distance(Vec3d a, Vec3d b) {
   return dot(d, d);
 }
 
-/// A number in [0, 1).
-double uniform(std::uint64_t item) {
-  return (signed_unit(random_at(kSeed, item)) + 1) / 2;
-}
-
 class KMeans {
  public:
   explicit KMeans(std::span<const Vec3f> points) : points_(points), part_of_(points.size()) {}
@@ -34,7 +29,8 @@ class KMeans {
   /// there are. Leaves every point with the nearest of them, the first of equally near ones.
   void seed(std::uint32_t count) {
     std::vector<double> squared(points_.size(), std::numeric_limits<double>::infinity());
-    auto drawn = static_cast<std::size_t>(uniform(0) * static_cast<double>(points_.size()));
+    auto drawn =
+        static_cast<std::size_t>(uniform_at(kSeed, 0) * static_cast<double>(points_.size()));
     while (means_.size() < count) {
       add_mean(to_double(points_[drawn]), squared);
       double total = 0;
@@ -42,7 +38,7 @@ class KMeans {
         total += s;
       if (!(total > 0))
         return;  // every point is a mean already
-      double left = uniform(means_.size()) * total;
+      double left = uniform_at(kSeed, means_.size()) * total;
       for (drawn = 0; drawn + 1 < squared.size() && left >= squared[drawn]; ++drawn)
         left -= squared[drawn];
     }

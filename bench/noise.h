@@ -27,6 +27,11 @@ constexpr double signed_unit(std::uint64_t hash) {
   return static_cast<double>(hash >> 11) * 0x1p-52 - 1.0;
 }
 
+/// The item-th number in [0, 1) of the random sequence that `seed` names.
+constexpr double uniform_at(std::uint64_t seed, std::uint64_t item) {
+  return (signed_unit(random_at(seed, item)) + 1) / 2;
+}
+
 struct NoiseSample {
   double value = 0;
   Vec3d gradient;

@@ -18,11 +18,6 @@ constexpr std::uint64_t kPlaceSeed = 1;
 constexpr std::uint64_t kFirstSeed = 2;
 constexpr std::uint64_t kSecondSeed = 3;
 
-/// A number in [0, 1).
-double uniform(std::uint64_t seed, std::uint64_t item) {
-  return (signed_unit(random_at(seed, item)) + 1) / 2;
-}
-
 SurfaceTriangle corners_of(const PlainMesh& mesh, const MeshTriangle& t) {
   return {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
 }
@@ -41,8 +36,8 @@ std::vector<SurfaceTriangle> triangles_of(const PlainMesh& mesh) {
 
 /// Uniform over the triangle (Turk, Generating random points in triangles, 1990).
 Vec3d point_in(const SurfaceTriangle& corners, std::uint64_t sample) {
-  const double s = std::sqrt(uniform(kFirstSeed, sample));
-  const double t = uniform(kSecondSeed, sample);
+  const double s = std::sqrt(uniform_at(kFirstSeed, sample));
+  const double t = uniform_at(kSecondSeed, sample);
   return to_double(corners[0]) * (1 - s) + to_double(corners[1]) * (s * (1 - t)) +
          to_double(corners[2]) * (s * t);
 }
@@ -60,7 +55,7 @@ void for_each_sample(const PlainMesh& mesh, std::uint64_t samples, const Visit& 
   std::uint64_t sample = 0;
   const MeshTriangle* last = nullptr;
   const auto place = [&](std::uint64_t k) {
-    return (static_cast<double>(k) + uniform(kPlaceSeed, k)) * share;
+    return (static_cast<double>(k) + uniform_at(kPlaceSeed, k)) * share;
   };
   for (const MeshTriangle& t : mesh.triangles) {
     const SurfaceTriangle corners = corners_of(mesh, t);

@@ -24,8 +24,8 @@ using Json = nlohmann::ordered_json;
 constexpr std::uint64_t kLargestConfigBytes = std::uint64_t{1} << 20;
 /// Sections are two levels deep; a little more lets the message be about the key instead.
 constexpr std::size_t kDeepestNesting = 8;
-/// There are 25 keys; looking for one goes through those before it, and a MiB of them would take a
-/// minute.
+/// There are a few dozen keys; looking for one goes through those before it, and a MiB of them
+/// would take a minute.
 constexpr std::size_t kMostKeys = 256;
 /// A found key or value is quoted up to so many bytes.
 constexpr std::size_t kLongestQuote = 60;
@@ -48,12 +48,6 @@ std::string with_key(const std::string& section, const std::string& key) {
 std::string leaf_of(std::string_view path) {
   const std::size_t dot = path.rfind('.');
   return std::string(dot == std::string_view::npos ? path : path.substr(dot + 1));
-}
-
-/// Where a dotted path leads in a document.
-Json::json_pointer pointer_to(std::string path) {
-  std::replace(path.begin(), path.end(), '.', '/');
-  return Json::json_pointer('/' + path);
 }
 
 std::string in_quotes(std::string_view text) {
@@ -415,9 +409,10 @@ Json resolved_json(const Config& config) {
   }
   Json result = Json::object();
   for (const ConfigKey& key : config_keys()) {
-    Json value = key.decides_result ? key.show(resolved) : Json();
+    const bool is_told = key.decides_result && key.kind != KeyKind::paths;
+    Json value = is_told ? key.show(resolved) : Json();
     if (!value.is_null())
-      result[pointer_to(key.path)] = std::move(value);
+      result[json_pointer_to(key.path)] = std::move(value);
   }
   // "vertices" has a value even where "count" overrules it.
   if (resolved.partition.count)

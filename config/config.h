@@ -1,7 +1,6 @@
 // What a build is asked to do: the config file as values.
 //
-// The keys, their ranges and what they mean are listed once, in config_schema.cpp;
-// configs/meshhier.schema.json says the same to editors.
+// The keys, their ranges and what they mean are listed once, in config_schema.cpp.
 #pragma once
 
 #include "cluster_simplify/contraction.h"
@@ -43,14 +42,14 @@ inline constexpr std::array kAxisRules{NamedValue{"compactness", AxisRule::compa
                                        NamedValue{"longest", AxisRule::longest}};
 
 struct PartitionConfig {
-  std::uint32_t vertices =
-      8192;  ///< upper bound per partition, 4 to 32768; without effect if `count` is set
+  /// Upper bound per partition, 4 to 32768; without effect if `count` is set.
+  std::uint32_t vertices = kDefaultTileVertices;
   std::optional<std::uint32_t> count;  ///< number of partitions, >= 1
   AxisRule axis = AxisRule::compactness;
   friend bool operator==(const PartitionConfig&, const PartitionConfig&) = default;
 };
 
-/// How a tile is contracted. A new method has its name here and in the JSON schema.
+/// How a tile is contracted. A new method has its name here.
 using SimplifyMethod = cluster_simplify::Method;
 inline constexpr std::array kSimplifyMethods{
     NamedValue{"edge_collapse", SimplifyMethod::edge_collapse},

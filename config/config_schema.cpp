@@ -64,19 +64,20 @@ Json shown(const std::optional<Value>& value) {
   return value ? Json(*value) : Json();
 }
 
-// Each of these makes the row of one kind of key. `field` turns a Config& or a const Config& into a
-// reference to the member that holds the value.
+// Each of these completes the row of one kind of key. `field` turns a Config& or a const Config&
+// into a reference to the member that holds the value.
 
-ConfigKey ignored_text(std::string path) {
-  ConfigKey key{.path = std::move(path), .kind = KeyKind::text};
+ConfigKey ignored_text(ConfigKey key) {
+  key.kind = KeyKind::text;
   key.assign = [](Config&, const Json&) {};
   key.show = [](const Config&) { return Json(); };
   return key;
 }
 
 template <class Field>
-ConfigKey required_path(std::string path, Field field) {
-  ConfigKey key{.path = std::move(path), .kind = KeyKind::path, .required = true};
+ConfigKey required_path(ConfigKey key, Field field) {
+  key.kind = KeyKind::path;
+  key.required = true;
   key.assign = [field](Config& config, const Json& value) {
     field(config) = value.get<std::string>();
   };
@@ -87,8 +88,10 @@ ConfigKey required_path(std::string path, Field field) {
 }
 
 template <class Field>
-ConfigKey required_paths(std::string path, double most, Field field) {
-  ConfigKey key{.path = std::move(path), .kind = KeyKind::paths, .required = true, .maximum = most};
+ConfigKey required_paths(ConfigKey key, double most, Field field) {
+  key.kind = KeyKind::paths;
+  key.required = true;
+  key.maximum = most;
   key.assign = [field](Config& config, const Json& value) {
     field(config).clear();
     for (const Json& one : value.is_array() ? value : Json::array({value}))
@@ -104,17 +107,18 @@ ConfigKey required_paths(std::string path, double most, Field field) {
 }
 
 template <class Field>
-ConfigKey boolean(std::string path, Field field) {
-  ConfigKey key{.path = std::move(path), .kind = KeyKind::boolean};
+ConfigKey boolean(ConfigKey key, Field field) {
+  key.kind = KeyKind::boolean;
   key.assign = [field](Config& config, const Json& value) { field(config) = value.get<bool>(); };
   key.show = [field](const Config& config) { return Json(field(config)); };
   return key;
 }
 
 template <class Field>
-ConfigKey bytes(std::string path, Field field) {
-  ConfigKey key{
-      .path = std::move(path), .kind = KeyKind::size, .minimum = 1, .maximum = kMostBytes};
+ConfigKey bytes(ConfigKey key, Field field) {
+  key.kind = KeyKind::size;
+  key.minimum = 1;
+  key.maximum = kMostBytes;
   key.assign = [field](Config& config, const Json& value) {
     field(config) = value.is_string() ? *execution::parse_size(value.get_ref<const std::string&>())
                                       : static_cast<std::uint64_t>(value.get<double>());
@@ -127,11 +131,9 @@ ConfigKey bytes(std::string path, Field field) {
 
 /// An integer or, for a field of floating point, a number.
 template <class Field>
-ConfigKey number(std::string path, Limits limits, Field field) {
+ConfigKey number(ConfigKey key, Limits limits, Field field) {
   using Member = std::remove_reference_t<decltype(field(std::declval<Config&>()))>;
   using Number = typename Unwrapped<Member>::Type;
-  ConfigKey key;
-  key.path = std::move(path);
   key.kind = std::is_integral_v<Number> ? KeyKind::integer : KeyKind::number;
   key.minimum = limits.minimum;
   key.maximum = limits.maximum;
@@ -143,8 +145,8 @@ ConfigKey number(std::string path, Limits limits, Field field) {
 }
 
 template <class Field>
-ConfigKey text(std::string path, Field field) {
-  ConfigKey key{.path = std::move(path), .kind = KeyKind::text};
+ConfigKey text(ConfigKey key, Field field) {
+  key.kind = KeyKind::text;
   key.assign = [field](Config& config, const Json& value) {
     field(config) = value.get<std::string>();
   };
@@ -156,12 +158,11 @@ ConfigKey text(std::string path, Field field) {
 
 /// Of an optional array.
 template <class Field>
-ConfigKey numbers(std::string path, Field field) {
+ConfigKey numbers(ConfigKey key, Field field) {
   using Array =
       typename Unwrapped<std::remove_reference_t<decltype(field(std::declval<Config&>()))>>::Type;
-  ConfigKey key{.path = std::move(path),
-                .kind = KeyKind::numbers,
-                .maximum = static_cast<double>(std::tuple_size_v<Array>)};
+  key.kind = KeyKind::numbers;
+  key.maximum = static_cast<double>(std::tuple_size_v<Array>);
   key.assign = [field](Config& config, const Json& value) { field(config) = value.get<Array>(); };
   key.show = [field](const Config& config) { return shown(field(config)); };
   return key;
@@ -169,12 +170,11 @@ ConfigKey numbers(std::string path, Field field) {
 
 /// Of optional TargetVertexCounts. A list of one is the number: it means the same.
 template <class Field>
-ConfigKey levels(std::string path, Limits limits, Field field) {
-  ConfigKey key{.path = std::move(path),
-                .kind = KeyKind::levels,
-                .minimum = limits.minimum,
-                .maximum = limits.maximum,
-                .most_levels = TargetVertexCounts::kMostLevels};
+ConfigKey levels(ConfigKey key, Limits limits, Field field) {
+  key.kind = KeyKind::levels;
+  key.minimum = limits.minimum;
+  key.maximum = limits.maximum;
+  key.most_levels = TargetVertexCounts::kMostLevels;
   key.assign = [field](Config& config, const Json& value) {
     std::vector<std::uint32_t> by_level;
     for (const Json& one : value.is_array() ? value : Json::array({value}))
@@ -191,8 +191,8 @@ ConfigKey levels(std::string path, Limits limits, Field field) {
 }
 
 template <class Names, class Field>
-ConfigKey choice(std::string path, const Names& names, Field field) {
-  ConfigKey key{.path = std::move(path), .kind = KeyKind::choice};
+ConfigKey choice(ConfigKey key, const Names& names, Field field) {
+  key.kind = KeyKind::choice;
   for (const auto& named : names)
     key.choices.emplace_back(named.name);
   key.assign = [field, names](Config& config, const Json& value) {
@@ -216,67 +216,131 @@ ConfigKey deciding(ConfigKey key) {
   return key;
 }
 
+/// A change here changes the documents too: scripts/config_reference writes them anew.
 std::vector<ConfigKey> make_config_keys() {
   return {
-      ignored_text("$schema"),  // lets editors find configs/meshhier.schema.json
+      ignored_text(
+          {.path = "$schema", .meaning = "where the JSON schema is, for editors; no other effect"}),
       required_paths(
-          "input", kMostInputs, [](auto& c) -> auto& { return c.input; }),
+          {.path = "input",
+           .meaning = "the mesh: a PLY, OBJ, STL or OFF file, perhaps in gzip; the files of a list "
+                      "are joined in its order, and must have the same vertex attributes",
+           .decides_result = true},
+          kMostInputs, [](auto& c) -> auto& { return c.input; }),
       required_path(
-          "output", [](auto& c) -> auto& { return c.output; }),
+          {.path = "output",
+           .meaning = "the hierarchy to make: a directory, or a file if `storage.container` is "
+                      "`3tz`; missing parent directories are made"},
+          [](auto& c) -> auto& { return c.output; }),
       bytes(
-          "memory_budget", [](auto& c) -> auto& { return c.memory_budget; }),
+          {.path = "memory_budget", .meaning = "peak resident memory of the build"},
+          [](auto& c) -> auto& { return c.memory_budget; }),
       number(
-          "threads", {0, kMostThreads}, [](auto& c) -> auto& { return c.threads; }),
+          {.path = "threads", .meaning = "threads at work; 0: as many as the machine has"},
+          {0, kMostThreads}, [](auto& c) -> auto& { return c.threads; }),
       deciding(boolean(
-          "weld", [](auto& c) -> auto& { return c.weld; })),
+          {.path = "weld",
+           .meaning = "vertices of equal position and equal attributes become one; those of an STL "
+                      "file, which have no numbers of their own, always do"},
+          [](auto& c) -> auto& { return c.weld; })),
       deciding(number(
-          "partition.vertices", kTileVertices,
+          {.path = "partition.vertices", .meaning = "most vertices of a partition"}, kTileVertices,
           [](auto& c) -> auto& { return c.partition.vertices; })),
       deciding(number(
-          "partition.count", {1, kMostPartitions},
-          [](auto& c) -> auto& { return c.partition.count; })),
+          {.path = "partition.count",
+           .meaning = "number of partitions, any",
+           .excludes = "vertices"},
+          {1, kMostPartitions}, [](auto& c) -> auto& { return c.partition.count; })),
       deciding(choice(
-          "partition.axis", kAxisRules, [](auto& c) -> auto& { return c.partition.axis; })),
+          {.path = "partition.axis",
+           .meaning = "how a split direction is chosen: the shortest boundary "
+                      "(`compactness`), or the longest axis of the bounding box"},
+          kAxisRules, [](auto& c) -> auto& { return c.partition.axis; })),
       deciding(choice(
-          "simplify.method", kSimplifyMethods, [](auto& c) -> auto& { return c.simplify.method; })),
+          {.path = "simplify.method",
+           .meaning = "how coarser tiles are made: `edge_collapse` moves an edge to the point of "
+                      "least quadric error; `half_edge` moves a vertex onto another, so coarse "
+                      "vertices are a subset of the finer ones; `cluster` makes one vertex of each "
+                      "cell of equal vertex count"},
+          kSimplifyMethods, [](auto& c) -> auto& { return c.simplify.method; })),
       deciding(levels(
-          "simplify.vertices", kTileVertices,
-          [](auto& c) -> auto& { return c.simplify.vertices; })),
+          {.path = "simplify.vertices",
+           .meaning = "target vertex count of simplified tiles; a list is by level, from the root "
+                      "down, and its last entry holds for all deeper levels",
+           .unset = "as a partition has"},
+          kTileVertices, [](auto& c) -> auto& { return c.simplify.vertices; })),
       deciding(choice(
-          "simplify.representative", kRepresentatives,
-          [](auto& c) -> auto& { return c.simplify.representative; })),
+          {.path = "simplify.representative",
+           .meaning = "of `cluster`: which point stands for a cell, the `mean` of its "
+                      "vertices, the point of least `quadric` error, or the best "
+                      "original `vertex`"},
+          kRepresentatives, [](auto& c) -> auto& { return c.simplify.representative; })),
       deciding(choice(
-          "simplify.cost", kHalfEdgeCosts, [](auto& c) -> auto& { return c.simplify.cost; })),
+          {.path = "simplify.cost",
+           .meaning = "of `half_edge`: what a collapse costs, by `quadric` error, or by "
+                      "length and curvature (`melax`)"},
+          kHalfEdgeCosts, [](auto& c) -> auto& { return c.simplify.cost; })),
       deciding(number(
-          "outline.sectors", {1, kMostSectors},
-          [](auto& c) -> auto& { return c.outline.sectors; })),
+          {.path = "outline.sectors",
+           .meaning = "number of sectors whose boundaries the outline draws; the "
+                      "nearest level of the tree is taken"},
+          {1, kMostSectors}, [](auto& c) -> auto& { return c.outline.sectors; })),
       deciding(number(
-          "outline.tolerance", {0, 1}, [](auto& c) -> auto& { return c.outline.tolerance; })),
+          {.path = "outline.tolerance",
+           .meaning = "how far a line may move to have fewer points, as a part of the "
+                      "bounding-box diagonal"},
+          {0, 1}, [](auto& c) -> auto& { return c.outline.tolerance; })),
       choice(
-          "storage.container", kContainers, [](auto& c) -> auto& { return c.storage.container; }),
+          {.path = "storage.container",
+           .meaning = "a directory (`files`), or one file, a 3D Tiles archive with the same "
+                      "files in it (`3tz`)"},
+          kContainers, [](auto& c) -> auto& { return c.storage.container; }),
       deciding(choice(
-          "storage.compression", kCompressions,
-          [](auto& c) -> auto& { return c.storage.compression; })),
+          {.path = "storage.compression",
+           .meaning = "how tiles are packed: plain glTF (`none`), a gzip stream each (`zlib`), "
+                      "`EXT_meshopt_compression` (`meshopt`), or both, the smallest; none of them "
+                      "loses anything"},
+          kCompressions, [](auto& c) -> auto& { return c.storage.compression; })),
       deciding(number(
-          "storage.positions.bits", {Lattice::kFewestBits, Lattice::kMostBits},
+          {.path = "storage.positions.bits",
+           .meaning = "rounds all positions to one lattice of so many bits an axis; up "
+                      "to 16 bits, tiles hold 16-bit numbers (`KHR_mesh_quantization`)",
+           .unset = "none: exact"},
+          {Lattice::kFewestBits, Lattice::kMostBits},
           [](auto& c) -> auto& { return c.storage.position_bits; })),
       deciding(choice(
-          "up", kUpAxes, [](auto& c) -> auto& { return c.up; })),
+          {.path = "up",
+           .meaning = "which axis of the input points up: `y` as in glTF, `z` as in maps and "
+                      "medical images"},
+          kUpAxes, [](auto& c) -> auto& { return c.up; })),
       deciding(number(
-          "placement.longitude", {-kHalfTurn, kHalfTurn},
-          [](auto& c) -> auto& { return c.placement.longitude; })),
+          {.path = "placement.longitude", .meaning = "degrees east", .needs = "latitude"},
+          {-kHalfTurn, kHalfTurn}, [](auto& c) -> auto& { return c.placement.longitude; })),
       deciding(number(
-          "placement.latitude", {-kHalfTurn / 2, kHalfTurn / 2},
-          [](auto& c) -> auto& { return c.placement.latitude; })),
+          {.path = "placement.latitude", .meaning = "degrees north", .needs = "longitude"},
+          {-kHalfTurn / 2, kHalfTurn / 2}, [](auto& c) -> auto& { return c.placement.latitude; })),
       deciding(number(
-          "placement.height", {-kMostMetres, kMostMetres},
-          [](auto& c) -> auto& { return c.placement.height; })),
+          {.path = "placement.height",
+           .meaning = "metres above the ellipsoid",
+           .unset = "0",
+           .needs = "longitude"},
+          {-kMostMetres, kMostMetres}, [](auto& c) -> auto& { return c.placement.height; })),
       deciding(numbers(
-          "placement.anchor", [](auto& c) -> auto& { return c.placement.anchor; })),
+          {.path = "placement.anchor",
+           .meaning = "the point of the model, in input coordinates, that stands at "
+                      "that place",
+           .unset = "[0, 0, 0]",
+           .needs = "longitude"},
+          [](auto& c) -> auto& { return c.placement.anchor; })),
       deciding(numbers(
-          "placement.transform", [](auto& c) -> auto& { return c.placement.transform; })),
+          {.path = "placement.transform",
+           .meaning = "instead of a place: the matrix of the tileset's root, column "
+                      "by column, from z-up coordinates",
+           .excludes = "longitude"},
+          [](auto& c) -> auto& { return c.placement.transform; })),
       deciding(text(
-          "licence", [](auto& c) -> auto& { return c.licence; })),
+          {.path = "licence", .meaning = "the licence of the model, a text in the tileset"},
+          [](auto& c) -> auto& { return c.licence; })),
   };
 }
 
@@ -323,6 +387,19 @@ const std::vector<ConfigKey>& config_keys() {
   return keys;
 }
 
+const std::vector<ConfigSection>& config_sections() {
+  static const std::vector<ConfigSection> sections = {
+      {"partition", "how the mesh is cut into partitions, the finest tiles"},
+      {"simplify", "how the coarser tiles are made"},
+      {"outline", "the shape-outline, the lines that are shown first"},
+      {"storage", "how tiles are stored"},
+      {"storage.positions", "how positions are rounded; without it they keep every bit"},
+      {"placement",
+       "where the tileset puts the model: on the globe (WGS 84), x to the east, or "
+       "anywhere by a transform"}};
+  return sections;
+}
+
 const ConfigKey* find_config_key(std::string_view path) {
   const std::vector<ConfigKey>& keys = config_keys();
   const auto found = std::find_if(keys.begin(), keys.end(),
@@ -331,10 +408,14 @@ const ConfigKey* find_config_key(std::string_view path) {
 }
 
 bool is_config_section(std::string_view path) {
-  const std::string prefix = std::string(path) + '.';
-  const std::vector<ConfigKey>& keys = config_keys();
-  return std::any_of(keys.begin(), keys.end(),
-                     [&](const ConfigKey& key) { return key.path.starts_with(prefix); });
+  const std::vector<ConfigSection>& sections = config_sections();
+  return std::any_of(sections.begin(), sections.end(),
+                     [&](const ConfigSection& section) { return section.path == path; });
+}
+
+Json::json_pointer json_pointer_to(std::string path) {
+  std::replace(path.begin(), path.end(), '.', '/');
+  return Json::json_pointer('/' + path);
 }
 
 bool accepts(const ConfigKey& key, const Json& value) {
@@ -369,8 +450,11 @@ bool accepts(const ConfigKey& key, const Json& value) {
 }
 
 ConfigKey level_entry(const ConfigKey& key) {
-  return {
-      .path = key.path, .kind = KeyKind::integer, .minimum = key.minimum, .maximum = key.maximum};
+  return {.path = key.path,
+          .meaning = key.meaning,
+          .kind = KeyKind::integer,
+          .minimum = key.minimum,
+          .maximum = key.maximum};
 }
 
 std::string expectation(const ConfigKey& key) {

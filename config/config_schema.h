@@ -1,4 +1,5 @@
-// Every key of the config, described once: for the parser, its messages, and resolved_json().
+// Every key of the config, described once: for the parser, its messages, resolved_json(), and all
+// that is told of the keys (config_reference.h).
 #pragma once
 
 #include "config/config.h"
@@ -28,10 +29,14 @@ enum class KeyKind {
 };
 
 struct ConfigKey {
-  std::string path;  ///< dotted
-  KeyKind kind{};
+  std::string path;            ///< dotted
+  std::string meaning;         ///< for people: no capital, no full stop, names in `backticks`
+  std::string unset = "none";  ///< for people: what holds if there is neither value nor default
+  std::string excludes{};      ///< the key of the same section that must not be there too
+  std::string needs{};         ///< the key of the same section that must be there too
   bool required = false;
   bool decides_result = false;
+  KeyKind kind{};
   double minimum = 0;
   double maximum = 0;
   std::size_t most_levels = 0;
@@ -42,14 +47,25 @@ struct ConfigKey {
   std::function<nlohmann::ordered_json(const Config&)> show{};
 };
 
+struct ConfigSection {
+  std::string path;     ///< dotted
+  std::string meaning;  ///< as that of a key
+};
+
 /// In the order in which they are listed to people. Thread-safe.
 const std::vector<ConfigKey>& config_keys();
+
+/// All inner nodes of the keys' paths. Thread-safe.
+const std::vector<ConfigSection>& config_sections();
 
 /// The key of that dotted path, or null.
 const ConfigKey* find_config_key(std::string_view path);
 
 /// True for an inner node of the keys' paths: "partition".
 bool is_config_section(std::string_view path);
+
+/// Where a dotted path leads in a document.
+nlohmann::ordered_json::json_pointer json_pointer_to(std::string path);
 
 bool accepts(const ConfigKey& key, const nlohmann::ordered_json& value);
 

@@ -13,11 +13,16 @@
 
 namespace meshhier {
 
+/// Vertices of a tile where nobody asks for another number: what a tile costs besides its triangles
+/// hardly counts, and one is still fetched and drawn at once.
+inline constexpr std::uint32_t kDefaultTileVertices = 8192;
+
 class TargetVertexCounts {
  public:
   /// More than there are levels above the partitions, which are fewer than 2^32.
   static constexpr std::size_t kMostLevels = 32;
 
+  TargetVertexCounts() : TargetVertexCounts(kDefaultTileVertices) {}
   /// So many on all levels. Implicit: one number is what it is in most places.
   TargetVertexCounts(std::uint32_t everywhere) : by_level_{everywhere} {}
   /// From level 0, the root, down; the last one holds for all deeper levels too. Requires one at

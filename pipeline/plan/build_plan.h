@@ -19,7 +19,7 @@ namespace meshhier::pipeline {
 struct BuildPlan {
   Tree tree;
   std::size_t threads = 1;
-  TargetVertexCounts target_vertex_counts = 8192;  ///< of simplified tiles
+  TargetVertexCounts target_vertex_counts;  ///< of simplified tiles
   JobSize job;
   MemoryPlan memory;
   DiskNeed disk;

@@ -19,11 +19,11 @@ struct JobSize {
   std::uint32_t partition_count = 0;
   std::uint32_t largest_tile = 0;  ///< vertices of the largest partition or simplified mesh
   std::size_t threads = 1;
-  TargetVertexCounts target_vertex_counts = 8192;  ///< of a simplified mesh
-  bool clustered = false;                          ///< simplified by the method `cluster`
-  std::uint64_t published_attribute_bytes = 0;     ///< of a vertex in a published tile
-  double published_ratio = 1;                      ///< of a published tile, about, to a plain one
-  bool packed = false;                             ///< published files become one archive
+  TargetVertexCounts target_vertex_counts;      ///< of a simplified mesh
+  bool clustered = false;                       ///< simplified by the method `cluster`
+  std::uint64_t published_attribute_bytes = 0;  ///< of a vertex in a published tile
+  double published_ratio = 1;                   ///< of a published tile, about, to a plain one
+  bool packed = false;                          ///< published files become one archive
 
   /// Of a vertex at work: its position and its attributes, as floats.
   std::uint32_t vertex_bytes() const { return 12 + 4 * static_cast<std::uint32_t>(channels); }

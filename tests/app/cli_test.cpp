@@ -194,6 +194,19 @@ TEST_F(CommandLine, EveryCommandHasHelpWithExamples) {
   }
 }
 
+TEST_F(CommandLine, HelpOfABuildShowsTheDefaultsAndHelpOfTheConfigAllKeys) {
+  EXPECT_THAT(run({"build", "--help"}).out,
+              AllOf(HasSubstr(R"("method": "edge_collapse")"), HasSubstr("--help-config"),
+                    Not(HasSubstr("Exit codes:"))));
+  const Outcome keys = run({"build", "--help-config"});
+  EXPECT_EQ(keys.code, 0) << keys.messages;
+  EXPECT_THAT(keys.out, AllOf(HasSubstr("partition.vertices"), HasSubstr("default: 8192")));
+  const Outcome schema = run({"build", "--help-config=schema"});
+  EXPECT_EQ(schema.code, 0) << schema.messages;
+  EXPECT_TRUE(nlohmann::json::parse(schema.out).at("properties").contains("partition"));
+  EXPECT_EQ(run({"build", "--help-config=poem"}).code, kUsage);
+}
+
 TEST_F(CommandLine, ABuildNeedsNoConfigIfAllIsSet) {
   const std::string input = "input=" + write_mesh("a.ply").string();
   const std::string output = "output=" + hierarchy();

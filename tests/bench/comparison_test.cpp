@@ -5,12 +5,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 namespace meshhier::bench {
 namespace {
 
-using Json = nlohmann::json;
 using testing::HasSubstr;
 
 ComparisonOptions quick() {
@@ -80,20 +78,6 @@ TEST(ComparisonTest, TablesAreMarkdown) {
     }
     columns = bars;
   }
-}
-
-TEST(ComparisonTest, JsonHasTheFigures) {
-  const Comparison& result = torus_comparison();
-  const Json object = Json::parse(json("torus", result));
-  EXPECT_EQ(object["name"], "torus");
-  EXPECT_EQ(object["vertices"], result.vertices);
-  EXPECT_EQ(object["partitions"].size(), 4U);
-  EXPECT_EQ(object["partitions"][1]["compactness"]["mean"].get<double>(),
-            result.partitions[1].figures.mean_compactness);
-  EXPECT_EQ(object["partitions"][2]["vertices"]["max"].get<std::uint64_t>(),
-            result.partitions[2].figures.most_vertices);
-  EXPECT_EQ(object["simplifications"][3]["backward"]["rms"].get<double>(),
-            result.simplifications[3].backward.rms);
 }
 
 TEST(ComparisonTest, AMeshThatIsTooSmallIsRefused) {

@@ -1,10 +1,12 @@
 #include "config/config.h"
 
+#include "config/config_reference.h"
 #include "config/config_schema.h"
 #include "config/suggest.h"
 #include "execution/size_text.h"
 #include "hierarchy/error.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -729,6 +731,69 @@ TEST(ConfigSchema, AgreesWithTheParserOnKeysRangesAndDefaults) {
     ADD_FAILURE() << path << " is not known to the parser";
   for (const std::string& path : required)
     ADD_FAILURE() << path << " is required, but not known to the parser";
+}
+
+TEST(ConfigSchema, KnowsWhichKeysExcludeAndNeedEachOther) {
+  const Json properties =
+      Json::parse(text_of(configs_directory() / "meshhier.schema.json")).at("properties");
+  EXPECT_EQ(properties.at("partition").at("allOf"),
+            Json::parse(R"([{"not": {"required": ["vertices", "count"]}}])"));
+  EXPECT_EQ(properties.at("placement").at("allOf"),
+            Json::parse(R"([{"not": {"required": ["longitude", "transform"]}}])"));
+  EXPECT_EQ(properties.at("placement").at("dependentRequired"),
+            Json::parse(R"({"longitude": ["latitude"], "latitude": ["longitude"],
+                            "height": ["longitude"], "anchor": ["longitude"]})"));
+}
+
+// ---- what is told of the keys
+
+TEST(ConfigReference, TheCommittedSchemaIsTheTables) {
+  EXPECT_EQ(text_of(configs_directory() / "meshhier.schema.json"), schema_text())
+      << "scripts/config_reference writes it anew";
+}
+
+TEST(ConfigReference, TheDocumentHasTheTable) {
+  const std::string text =
+      text_of(std::filesystem::path(MESHHIER_SOURCE_DIR) / "docs" / "config.md");
+  EXPECT_THAT(text,
+              HasSubstr("<!-- keys: begin -->\n\n" + keys_markdown() + "\n<!-- keys: end -->"))
+      << "scripts/config_reference writes it anew";
+}
+
+TEST(ConfigReference, TheTerminalsListHasAllKeysInShortLines) {
+  const std::string text = keys_text();
+  for (const ConfigKey& key : config_keys())
+    EXPECT_THAT(text, HasSubstr(' ' + key.path + ": " + expectation(key))) << key.path;
+  EXPECT_THAT(text,
+              HasSubstr("* partition.count: an integer from 1 to 1073741824; default: none\n"
+                        "      number of partitions, any; excludes \"partition.vertices\"\n"));
+  EXPECT_THAT(text,
+              HasSubstr("* partition.vertices: an integer from 4 to 32768; default: 8192\n"
+                        "      most vertices of a partition; excludes \"partition.count\"\n"));
+  EXPECT_THAT(text, HasSubstr("  output: a path; required\n"));
+}
+
+TEST(ConfigReference, TheConfigOfDefaultsHoldsThem) {
+  const Config shown = parse(defaults_text());
+  Config expected;
+  expected.input = shown.input;
+  expected.output = shown.output;
+  EXPECT_EQ(shown, expected);
+  EXPECT_THAT(defaults_text(),
+              HasSubstr("  \"partition\": { \"vertices\": 8192, \"axis\": \"compactness\" },\n"));
+}
+
+TEST(ConfigReference, EverySectionHasKeysAndEveryKeyItsSection) {
+  for (const ConfigKey& key : config_keys()) {
+    const std::size_t dot = key.path.rfind('.');
+    EXPECT_TRUE(dot == std::string::npos || is_config_section(key.path.substr(0, dot))) << key.path;
+    EXPECT_FALSE(key.meaning.empty()) << key.path;
+  }
+  for (const ConfigSection& section : config_sections()) {
+    EXPECT_TRUE(std::ranges::any_of(config_keys(), [&](const ConfigKey& key) {
+      return key.path.starts_with(section.path + '.');
+    })) << section.path;
+  }
 }
 
 /// POSIX regular expressions: as far as the schema goes they mean the same as JavaScript's.

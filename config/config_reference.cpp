@@ -1,0 +1,234 @@
+#include "config/config_reference.h"
+
+#include "config/config_schema.h"
+
+#include <cctype>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace meshhier::config {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// What parse_size() takes as a text, as a regular expression of JavaScript.
+constexpr const char* kSizePattern =
+    R"(^[ \t]*[0-9]+(\.[0-9]*)?[ \t]*([bB]|[kKmMgGtT]([iI]?[bB])?)?[ \t]*$)";
+/// Columns that a line of the terminal may take.
+constexpr std::size_t kLineLength = 96;
+
+std::string with_quotes(std::string text) {
+  for (char& letter : text) {
+    if (letter == '`')
+      letter = '"';
+  }
+  return text;
+}
+
+std::string as_sentence(const std::string& meaning) {
+  std::string text = with_quotes(meaning);
+  text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text + '.';
+}
+
+/// Without ".0" where there is no fraction.
+Json plain_number(double value) {
+  return value == std::trunc(value) ? Json(static_cast<std::int64_t>(value)) : Json(value);
+}
+
+// ---- the JSON schema
+
+/// What a value must be.
+Json value_schema(const ConfigKey& key) {
+  const Json path{{"type", "string"}, {"minLength", 1}};
+  const Json integer{{"type", "integer"},
+                     {"minimum", plain_number(key.minimum)},
+                     {"maximum", plain_number(key.maximum)}};
+  const auto list = [](const Json& items, auto fewest, auto most) {
+    return Json{{"type", "array"}, {"items", items}, {"minItems", fewest}, {"maxItems", most}};
+  };
+  const auto either = [](const Json& one, const Json& other) {
+    return Json{{"oneOf", Json::array({one, other})}};
+  };
+  switch (key.kind) {
+    case KeyKind::text:
+      return {{"type", "string"}};
+    case KeyKind::path:
+      return path;
+    case KeyKind::paths:
+      return either(path, list(path, 1, plain_number(key.maximum)));
+    case KeyKind::boolean:
+      return {{"type", "boolean"}};
+    case KeyKind::integer:
+      return integer;
+    case KeyKind::number:
+      return {{"type", "number"},
+              {"exclusiveMinimum", plain_number(key.minimum)},
+              {"maximum", plain_number(key.maximum)}};
+    case KeyKind::numbers:
+      return list({{"type", "number"}}, plain_number(key.maximum), plain_number(key.maximum));
+    case KeyKind::levels:
+      return either(integer, list(integer, 1, key.most_levels));
+    case KeyKind::size:
+      return either(integer, {{"type", "string"}, {"pattern", kSizePattern}});
+    case KeyKind::choice:
+      break;
+  }
+  return {{"enum", key.choices}};
+}
+
+Json key_schema(const ConfigKey& key) {
+  Json schema{{"description", as_sentence(key.meaning)}};
+  schema.update(value_schema(key));
+  const Json value = key.show(Config{});
+  if (!value.is_null())
+    schema["default"] = value;
+  return schema;
+}
+
+/// An object without description; `prefix`: of its keys' paths, "" or "partition.".
+Json object_schema(const std::string& prefix) {
+  Json required = Json::array();
+  Json exclusions = Json::array();
+  Json needs = Json::object();
+  Json properties = Json::object();
+  for (const ConfigKey& key : config_keys()) {
+    if (!key.path.starts_with(prefix) || key.path.find('.', prefix.size()) != std::string::npos)
+      continue;
+    const std::string name = key.path.substr(prefix.size());
+    properties[name] = key_schema(key);
+    if (key.required)
+      required.push_back(name);
+    if (!key.excludes.empty())
+      exclusions.push_back({{"not", {{"required", Json::array({key.excludes, name})}}}});
+    if (!key.needs.empty())
+      needs[name] = Json::array({key.needs});
+  }
+  for (const ConfigSection& section : config_sections()) {
+    if (!section.path.starts_with(prefix) ||
+        section.path.find('.', prefix.size()) != std::string::npos)
+      continue;
+    Json inner{{"description", as_sentence(section.meaning)}};
+    inner.update(object_schema(section.path + '.'));
+    properties[section.path.substr(prefix.size())] = inner;
+  }
+  Json schema{{"type", "object"}, {"additionalProperties", false}};
+  if (!required.empty())
+    schema["required"] = required;
+  if (!exclusions.empty())
+    schema["allOf"] = exclusions;
+  if (!needs.empty())
+    schema["dependentRequired"] = needs;
+  schema["properties"] = properties;
+  return schema;
+}
+
+// ---- texts
+
+/// The meaning, with the keys that it excludes or needs.
+std::string whole_meaning(const ConfigKey& key) {
+  const std::size_t leaf = key.path.rfind('.') + 1;
+  const std::string section = key.path.substr(0, leaf);
+  std::string text = key.meaning;
+  for (const ConfigKey& other : config_keys()) {
+    if ((!key.excludes.empty() && other.path == section + key.excludes) ||
+        (!other.excludes.empty() && other.path.starts_with(section) &&
+         other.excludes == key.path.substr(leaf)))
+      text += fmt::format("; excludes `{}`", other.path);
+  }
+  if (!key.needs.empty())
+    text += fmt::format("; needs `{}{}`", section, key.needs);
+  return text;
+}
+
+/// Of a key that has none, what holds instead: "required", "none: exact".
+std::string default_text(const ConfigKey& key, const char* quote) {
+  const Json value = key.show(Config{});
+  if (value.is_null())
+    return key.required ? "required" : key.unset;
+  return quote + value.dump() + quote;
+}
+
+/// Breaks a text between words; each line starts with `indent`.
+std::string wrapped(std::string_view text, const std::string& indent) {
+  const std::size_t width = kLineLength - indent.size();
+  std::string lines;
+  while (!text.empty()) {
+    const std::size_t space = text.size() <= width ? text.size() : text.rfind(' ', width);
+    lines += indent + std::string(text.substr(0, space)) + '\n';
+    text.remove_prefix(space == text.size() ? space : space + 1);
+  }
+  return lines;
+}
+
+/// In one line: { "vertices": 8192, "axis": "compactness" }
+std::string in_one_line(const Json& value) {
+  std::string line;
+  for (const char letter : value.dump(1)) {
+    const bool follows_break = !line.empty() && line.back() == ' ';
+    if (letter == '\n' || (letter == ' ' && follows_break)) {
+      line += follows_break ? "" : " ";
+    } else {
+      line += letter;
+    }
+  }
+  return line;
+}
+
+}  // namespace
+
+std::string schema_text() {
+  Json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+              {"title", "meshhier build config"},
+              {"description",
+               "What `meshhier build` makes a hierarchy from, and how. Comments (// and /* */) are "
+               "allowed."}};
+  schema.update(object_schema(""));
+  return schema.dump(2) + '\n';
+}
+
+std::string keys_text() {
+  std::string text =
+      "The keys of the config, dotted as for --set. Those with * decide the result; the others\n"
+      "never change a byte of it.\n";
+  for (const ConfigKey& key : config_keys()) {
+    text += fmt::format("\n{} {}: {}; {}{}\n", key.decides_result ? '*' : ' ', key.path,
+                        expectation(key), key.required ? "" : "default: ", default_text(key, ""));
+    text += wrapped(with_quotes(whole_meaning(key)), "      ");
+  }
+  return text;
+}
+
+std::string keys_markdown() {
+  std::string table =
+      "| key | value | default | result | meaning |\n"
+      "|---|---|---|---|---|\n";
+  for (const ConfigKey& key : config_keys())
+    table +=
+        fmt::format("| `{}` | {} | {} | {} | {} |\n", key.path, expectation(key),
+                    default_text(key, "`"), key.decides_result ? "yes" : "no", whole_meaning(key));
+  return table;
+}
+
+std::string defaults_text() {
+  Json defaults{{"input", "david.ply"}, {"output", "david.hier"}};
+  for (const ConfigKey& key : config_keys()) {
+    Json value = key.show(Config{});
+    if (!value.is_null())
+      defaults[json_pointer_to(key.path)] = std::move(value);
+  }
+  std::vector<std::string> lines;
+  for (const auto& [name, value] : defaults.items())
+    lines.push_back(fmt::format("  \"{}\": {}", name, in_one_line(value)));
+  return fmt::format("{{\n{}\n}}\n", fmt::join(lines, ",\n"));
+}
+
+}  // namespace meshhier::config

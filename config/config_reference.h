@@ -1,0 +1,21 @@
+// What is told of the config's keys, all made from config_schema.h: for editors, the terminal and
+// the documents. scripts/config_reference writes what is kept in files.
+#pragma once
+
+#include <string>
+
+namespace meshhier::config {
+
+/// The JSON schema, as in configs/meshhier.schema.json.
+std::string schema_text();
+
+/// All keys for a terminal: what each takes, its default, and what it means.
+std::string keys_text();
+
+/// The table of docs/config.md, in Markdown.
+std::string keys_markdown();
+
+/// A config that holds every default, for a terminal.
+std::string defaults_text();
+
+}  // namespace meshhier::config
