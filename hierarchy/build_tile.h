@@ -21,8 +21,8 @@ struct WorkTile {
   VertexArray vertices;   ///< own only, boundary first
   VertexHistory history;  ///< own only
   std::uint32_t boundary_count = 0;
-  std::vector<Triangle> interior;
-  std::vector<Triangle>
+  std::vector<TileTriangle> interior;
+  std::vector<TileTriangle>
       border;  ///< corners from vertices.size() on: foreign[corner - vertices.size()]
   std::vector<GhostRef> foreign;  ///< ascending, without repeats
 };
@@ -43,12 +43,12 @@ struct BuildTile {
 /// interior triangles at its boundary.
 struct SeamStrip {
   std::uint32_t boundary_count = 0;
-  std::uint32_t own_count = 0;     ///< own vertices in the seam strip, boundary first
-  std::vector<Vec3f> positions;    ///< own, then foreign
-  std::vector<float> deviations;   ///< of own ones: what the triangles around them may have moved
-  std::vector<GhostRef> foreign;   ///< as WorkTile::foreign
-  std::vector<Triangle> interior;  ///< with a corner in the boundary
-  std::vector<Triangle> border;
+  std::uint32_t own_count = 0;    ///< own vertices in the seam strip, boundary first
+  std::vector<Vec3f> positions;   ///< own, then foreign
+  std::vector<float> deviations;  ///< of own ones: what the triangles around them may have moved
+  std::vector<GhostRef> foreign;  ///< as WorkTile::foreign
+  std::vector<TileTriangle> interior;  ///< with a corner in the boundary
+  std::vector<TileTriangle> border;
   float interior_deviation = 0;  ///< the largest of all interior triangles of the tile
   float lost = 0;                ///< see cluster_simplify::Deviation
   double squared_sum = 0;        ///< likewise

@@ -133,8 +133,9 @@ class LeafBuilder {
         borders_.push_back(t);
         continue;
       }
-      const Triangle turned = canonical({TileVertex{places_[a].index}, TileVertex{places_[b].index},
-                                         TileVertex{places_[c].index}});
+      const TileTriangle turned =
+          canonical(TileTriangle{TileVertex{places_[a].index}, TileVertex{places_[b].index},
+                                 TileVertex{places_[c].index}});
       const std::uint32_t row = first_vertex_[places_[a].leaf] + raw(turned[0]);
       interior_.push_back({row, raw(turned[1]) << 16 | raw(turned[2])});
       ++rows_[row + 1];
@@ -146,7 +147,7 @@ class LeafBuilder {
     std::partial_sum(rows_.begin(), rows_.end(), rows_.begin());
     std::vector<std::uint32_t> sorted = interior_by_row();
     for (std::size_t i = 0; i < result_.tiles.size(); ++i) {
-      std::vector<Triangle>& triangles = result_.tiles[i].interior;
+      std::vector<TileTriangle>& triangles = result_.tiles[i].interior;
       const std::uint32_t first = first_vertex_[i], end = first_vertex_[i + 1];
       triangles.reserve(rows_[end] - rows_[first]);
       for (std::uint32_t row = first; row < end; ++row) {
@@ -186,7 +187,7 @@ class LeafBuilder {
 
   void add_border(WorkTile& tile, std::uint32_t own, const RankTriangle& t,
                   const std::array<std::uint32_t, 3>& leaves) {
-    Triangle border;
+    TileTriangle border;
     for (int k = 0; k < 3; ++k) {
       if (leaves[k] == own) {
         border[k] = TileVertex{places_[local(t[k])].index};
@@ -210,7 +211,7 @@ class LeafBuilder {
                          [](const GhostRef& a, const GhostRef& b) { return a.tile < b.tile; });
     for (auto ref = near.first; ref != near.second; ++ref)
       number[ref->index] = static_cast<std::uint32_t>(ref - unique.begin());
-    for (Triangle& t : tile.border) {
+    for (TileTriangle& t : tile.border) {
       for (TileVertex& corner : t) {
         if (raw(corner) < own_count)
           continue;

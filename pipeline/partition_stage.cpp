@@ -139,7 +139,7 @@ void distribute_triangles(SourceMesh& mesh, RankTable& ranks, Chunks& chunks,
   };
   mesh.read_triangles<Slot>(
       plan.blocks_in_flight, cancel,
-      [&](std::span<const mesh_io::SourceTriangle> triangles, Slot& slot) {
+      [&](std::span<const Triangle<VertexId>> triangles, Slot& slot) {
         slot.read = triangles.size();
         renumberer.translate(triangles, slot.renumbered);
         slot.chunked.sort(slot.renumbered.finished, chunks.map());

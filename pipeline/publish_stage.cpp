@@ -2,6 +2,7 @@
 
 #include "execution/parallel.h"
 #include "hierarchy/bounds.h"
+#include "hierarchy/drawing_rule.h"
 #include "hierarchy/lattice.h"
 #include "partition/compactness.h"
 #include "pipeline/plan/tile_room.h"
@@ -33,17 +34,6 @@ std::vector<NodeId> published_nodes(const Tree& tree) {
     }
   }
   return nodes;
-}
-
-/// Whether a tile draws a border triangle when its own level is shown: early neighbours show their
-/// partitions, which are finer and draw it; among equals the lowest index does.
-bool draws(const Tree& tree, NodeId node, const TileMesh& mesh, const Triangle& triangle) {
-  return std::all_of(triangle.begin(), triangle.end(), [&](TileVertex v) {
-    if (mesh.is_own(v))
-      return true;
-    const NodeId neighbour{node.level, mesh.ghost(v).tile};
-    return !tree.is_early(neighbour) && node.index < neighbour.index;
-  });
 }
 
 /// The lattice over the input's bounds as they are stored, and how far positions go to it: all
@@ -97,9 +87,7 @@ TileRecord describe(const Tree& tree, NodeId node, const BuildTile& tile, const 
   record.ghost_count = static_cast<std::uint32_t>(mesh.ghosts.size());
   record.interior_count = static_cast<std::uint32_t>(mesh.interior.size());
   record.border_count = static_cast<std::uint32_t>(mesh.border.size());
-  record.drawn_border_count = static_cast<std::uint32_t>(
-      std::count_if(mesh.border.begin(), mesh.border.end(),
-                    [&](const Triangle& t) { return draws(tree, node, mesh, t); }));
+  record.drawn_border_count = drawn_border_count(tree, node, mesh);
   record.target_count = tree.is_partition(node) ? mesh.own_count : asked.of(node.level);
   record.bounds = bounds_of(mesh.vertices.positions);
   record.torn_count = facts.torn_count;

@@ -111,7 +111,7 @@ void SourceMesh::read_triangles(std::size_t in_flight, const execution::CancelTo
   count(counts);
 
   struct Copied {
-    std::vector<mesh_io::SourceTriangle> triangles;
+    std::vector<Triangle<VertexId>> triangles;
     Slot slot;
   };
   execution::BatchedWork<Copied> rest(
@@ -119,7 +119,7 @@ void SourceMesh::read_triangles(std::size_t in_flight, const execution::CancelTo
       [&](Copied& copied) { work(std::span(std::as_const(copied.triangles)), copied.slot); },
       [&](Copied& copied) { sink(copied.slot); });
   count(source_->read_triangles_from(
-      counts.faces, [&](std::span<const mesh_io::SourceTriangle> triangles) {
+      counts.faces, [&](std::span<const Triangle<VertexId>> triangles) {
         cancel.check();
         rest.next().triangles.assign(triangles.begin(), triangles.end());
       }));

@@ -121,7 +121,7 @@ class Writer {
     }
   }
 
-  void put_triangles(Part part, std::span<const Triangle> triangles) {
+  void put_triangles(Part part, std::span<const TileTriangle> triangles) {
     const Section& section = plan_[part];
     section.component == kU16 ? put_corners<std::uint16_t>(section, triangles)
                               : put_corners<std::uint32_t>(section, triangles);
@@ -149,9 +149,9 @@ class Writer {
   }
 
   template <class Index>
-  void put_corners(const Section& section, std::span<const Triangle> triangles) {
+  void put_corners(const Section& section, std::span<const TileTriangle> triangles) {
     std::byte* to = at(section);
-    for (const Triangle& t : triangles) {
+    for (const TileTriangle& t : triangles) {
       for (const TileVertex corner : t) {
         const auto index = static_cast<Index>(raw(corner));
         store_all_little(std::span<const Index>(&index, 1), to);
@@ -232,9 +232,9 @@ class Reader {
 
   /// Canonical, ascending triangles of which every corner is a vertex. `is_packed`: as the codec
   /// gave them, turned and in another order; else they must be so in the file.
-  std::vector<Triangle> triangles(Part part, bool is_packed) const {
+  std::vector<TileTriangle> triangles(Part part, bool is_packed) const {
     const Section& section = plan_[part];
-    std::vector<Triangle> triangles(section.count / 3);
+    std::vector<TileTriangle> triangles(section.count / 3);
     for (std::size_t t = 0; t < triangles.size(); ++t) {
       for (std::size_t c = 0; c < 3; ++c) {
         const std::uint32_t index = section.component == kU16
@@ -343,8 +343,8 @@ class Reader {
     }
   }
 
-  void check_triangle(Part part, std::size_t t, std::span<const Triangle> triangles) const {
-    const Triangle& triangle = triangles[t];
+  void check_triangle(Part part, std::size_t t, std::span<const TileTriangle> triangles) const {
+    const TileTriangle& triangle = triangles[t];
     if (is_degenerate(triangle) || triangle != canonical(triangle) ||
         (t > 0 && triangle < triangles[t - 1])) {
       fail(fmt::format("{} triangle {} ({}, {}, {}) is degenerate, turned or out of order",

@@ -81,9 +81,9 @@ bool narrow(const WorkTileCounts& counts) {
 }
 
 template <class Index>
-void put_corners(Packer& packer, const std::vector<Triangle>& triangles) {
+void put_corners(Packer& packer, const std::vector<TileTriangle>& triangles) {
   std::byte* to = packer.make_room<Index>(triangles.size() * 3);
-  for (const Triangle& t : triangles) {
+  for (const TileTriangle& t : triangles) {
     for (const TileVertex v : t) {
       const auto corner = static_cast<Index>(raw(v));
       std::memcpy(to, &corner, sizeof corner);
@@ -93,16 +93,16 @@ void put_corners(Packer& packer, const std::vector<Triangle>& triangles) {
 }
 
 template <class Index>
-std::vector<Triangle> get_corners(Unpacker& unpacker, std::size_t count) {
+std::vector<TileTriangle> get_corners(Unpacker& unpacker, std::size_t count) {
   const std::byte* from = unpacker.skip<Index>(count * 3);
-  std::vector<Triangle> triangles(count);
+  std::vector<TileTriangle> triangles(count);
   const auto next = [&from] {
     Index corner;
     std::memcpy(&corner, from, sizeof corner);
     from += sizeof corner;
     return TileVertex{corner};
   };
-  for (Triangle& t : triangles)
+  for (TileTriangle& t : triangles)
     t = {next(), next(), next()};
   return triangles;
 }
@@ -112,7 +112,8 @@ std::size_t triangle_bytes(const WorkTileCounts& counts) {
 }
 
 void put_triangles(Packer& packer, const WorkTileCounts& counts,
-                   const std::vector<Triangle>& interior, const std::vector<Triangle>& border) {
+                   const std::vector<TileTriangle>& interior,
+                   const std::vector<TileTriangle>& border) {
   for (const auto* triangles : {&interior, &border}) {
     narrow(counts) ? put_corners<std::uint16_t>(packer, *triangles)
                    : put_corners<std::uint32_t>(packer, *triangles);
@@ -120,7 +121,7 @@ void put_triangles(Packer& packer, const WorkTileCounts& counts,
 }
 
 void get_triangles(Unpacker& unpacker, const WorkTileCounts& counts,
-                   std::vector<Triangle>& interior, std::vector<Triangle>& border) {
+                   std::vector<TileTriangle>& interior, std::vector<TileTriangle>& border) {
   const auto get = [&](std::size_t count) {
     return narrow(counts) ? get_corners<std::uint16_t>(unpacker, count)
                           : get_corners<std::uint32_t>(unpacker, count);
@@ -136,7 +137,7 @@ static_assert(sizeof(WorkTileCounts) == kWorkTileHeadBytes);
 std::uint64_t work_triangle_bytes(std::span<const std::byte> head) {
   WorkTileCounts counts;
   std::memcpy(&counts, head.data(), sizeof counts);
-  return (std::uint64_t{counts.interior} + counts.border) * sizeof(Triangle) +
+  return (std::uint64_t{counts.interior} + counts.border) * sizeof(TileTriangle) +
          counts.foreign * sizeof(GhostRef);
 }
 

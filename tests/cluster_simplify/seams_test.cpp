@@ -24,7 +24,7 @@ using testing::IsEmpty;
 using testing::SizeIs;
 using Triangles = std::vector<tests::MeshTriangle>;
 
-Triangle triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+TileTriangle triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   return {TileVertex{a}, TileVertex{b}, TileVertex{c}};
 }
 
@@ -101,9 +101,9 @@ struct World {
   }
   /// A tile's triangles in global numbers, as they are.
   Triangles global(const TileMesh& mesh, std::uint32_t tile,
-                   std::span<const Triangle> local) const {
+                   std::span<const TileTriangle> local) const {
     Triangles result;
-    for (const Triangle& t : local)
+    for (const TileTriangle& t : local)
       result.push_back(
           {global(mesh, tile, t[0]), global(mesh, tile, t[1]), global(mesh, tile, t[2])});
     return normalized(std::move(result), false);
@@ -192,7 +192,7 @@ void expect_tile(const World& world, std::uint32_t tile, const BuildTile& built)
   EXPECT_EQ(world.global(mesh, tile, mesh.interior), world.interior(tile));
   EXPECT_EQ(world.global(mesh, tile, mesh.border), world.border(tile));
   std::vector<bool> used(mesh.vertices.size());
-  for (const Triangle& t : mesh.border) {
+  for (const TileTriangle& t : mesh.border) {
     EXPECT_EQ(t, canonical(t));
     for (const TileVertex v : t)
       used[raw(v)] = true;
@@ -313,9 +313,9 @@ std::uint32_t global_of(const World& world, const World& joined, std::uint32_t p
 }
 
 Triangles global_of(const World& world, const World& joined, std::uint32_t pair,
-                    const TileMesh& mesh, std::span<const Triangle> local) {
+                    const TileMesh& mesh, std::span<const TileTriangle> local) {
   Triangles result;
-  for (const Triangle& t : local) {
+  for (const TileTriangle& t : local) {
     tests::MeshTriangle global{};
     for (std::size_t k = 0; k < 3; ++k)
       global[k] = global_of(world, joined, pair, mesh, t[k]);
@@ -459,7 +459,7 @@ TEST(ApplyTest, PutsTheBoundaryFirst) {
   const BuildTile joined = join_pair(world, 0);
   const ContractedTile result = apply(joined, wild_contraction(joined, 150, 9));
   std::vector<bool> on_border(150);
-  for (const Triangle& t : result.tile.border) {
+  for (const TileTriangle& t : result.tile.border) {
     for (const TileVertex v : t) {
       if (raw(v) < 150)
         on_border[raw(v)] = true;

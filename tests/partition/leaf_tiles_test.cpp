@@ -82,9 +82,9 @@ RankTriangle canonical_ranks(RankTriangle t) {
 
 /// The tile's triangles by provisional ranks, ascending.
 std::vector<RankTriangle> ranks_of(const Cut& mesh, const WorkTile& tile,
-                                   const std::vector<Triangle>& triangles) {
+                                   const std::vector<TileTriangle>& triangles) {
   std::vector<RankTriangle> result;
-  for (const Triangle& t : triangles) {
+  for (const TileTriangle& t : triangles) {
     RankTriangle ranks{};
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t own = tile.vertices.size();
@@ -154,7 +154,7 @@ void expect_tile(const Cut& mesh, const WorkTile& tile, const Expected& expected
   EXPECT_EQ(tile.history.weights, std::vector<float>(ranks.size(), 1.0F));
   for (const auto* triangles : {&tile.interior, &tile.border}) {
     EXPECT_TRUE(std::is_sorted(triangles->begin(), triangles->end()));
-    for (const Triangle& t : *triangles)
+    for (const TileTriangle& t : *triangles)
       EXPECT_EQ(t, canonical(t));
   }
   for (std::size_t i = 0; i < ranks.size(); ++i) {

@@ -18,10 +18,10 @@ struct Shape {
   int channels = 0;
 };
 
-std::vector<Triangle> random_triangles(std::mt19937& random, std::uint32_t count,
-                                       std::uint32_t corners) {
-  std::vector<Triangle> triangles(count);
-  for (Triangle& t : triangles) {
+std::vector<TileTriangle> random_triangles(std::mt19937& random, std::uint32_t count,
+                                           std::uint32_t corners) {
+  std::vector<TileTriangle> triangles(count);
+  for (TileTriangle& t : triangles) {
     for (TileVertex& v : t)
       v = static_cast<TileVertex>(random() % corners);
   }
