@@ -111,11 +111,11 @@ void join(benchmark::State& state) {
 BENCHMARK(join);
 
 void resolve(benchmark::State& state) {
-  const WorkTile& work = sample_tiles().work(0);
+  const LeafTile& work = sample_tiles().work(0);
   const std::vector<GhostRef> mapped = sample_tiles().mapped(0);
   for (auto _ : state) {
     state.PauseTiming();
-    WorkTile copy = work;
+    LeafTile copy = work;
     state.ResumeTiming();
     benchmark::DoNotOptimize(cluster_simplify::resolve(std::move(copy), mapped, true));
   }

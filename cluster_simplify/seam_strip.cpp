@@ -15,7 +15,7 @@ namespace meshhier::cluster_simplify {
 
 SeamStrip make_seam_strip(const BuildTile& joined, const ContractedTile& contracted) {
   constexpr std::uint32_t kUnset = std::numeric_limits<std::uint32_t>::max();
-  const WorkTile& tile = contracted.tile;
+  const SimplifiedTile& tile = contracted.tile;
   const auto own_count = static_cast<std::uint32_t>(tile.vertices.size());
   SeamStrip seam_strip;
   seam_strip.boundary_count = tile.boundary_count;
@@ -39,8 +39,8 @@ SeamStrip make_seam_strip(const BuildTile& joined, const ContractedTile& contrac
   }
   seam_strip.foreign = tile.foreign;
   const std::vector<GhostRef>& ghosts = joined.mesh.ghosts;
-  for (const GhostRef& ref : tile.foreign) {
-    const auto found = std::lower_bound(ghosts.begin(), ghosts.end(), ref);
+  for (const FinerGhost& corner : tile.foreign) {
+    const auto found = std::lower_bound(ghosts.begin(), ghosts.end(), corner.ref);
     seam_strip.positions.push_back(
         joined.mesh.vertices
             .positions[joined.mesh.own_count + static_cast<std::size_t>(found - ghosts.begin())]);

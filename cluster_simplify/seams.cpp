@@ -46,7 +46,8 @@ std::vector<TileTriangle> images(const std::vector<TileTriangle>& triangles, con
 }
 
 /// Removes the references no triangle uses and renumbers the corners from `own_count` on.
-void drop_unused(std::vector<TileTriangle>& border, std::vector<GhostRef>& refs,
+template <class Ref>
+void drop_unused(std::vector<TileTriangle>& border, std::vector<Ref>& refs,
                  std::uint32_t own_count) {
   std::vector<std::uint32_t> place(refs.size(), kUnset);
   for (const TileTriangle& t : border) {
@@ -81,7 +82,8 @@ FallbackCounts& FallbackCounts::operator+=(const FallbackCounts& other) {
   return *this;
 }
 
-BuildTile resolve(WorkTile tile, std::span<const GhostRef> mapped_refs, bool unique) {
+template <class Corner>
+BuildTile resolve(WorkTile<Corner> tile, std::span<const GhostRef> mapped_refs, bool unique) {
   assert(mapped_refs.size() == tile.foreign.size());
   const auto own_count = static_cast<std::uint32_t>(tile.vertices.size());
   std::vector<GhostRef> ghosts(mapped_refs.begin(), mapped_refs.end());
@@ -105,6 +107,9 @@ BuildTile resolve(WorkTile tile, std::span<const GhostRef> mapped_refs, bool uni
   result.history = std::move(tile.history);
   return result;
 }
+
+template BuildTile resolve(LeafTile tile, std::span<const GhostRef> mapped, bool unique);
+template BuildTile resolve(SimplifiedTile tile, std::span<const GhostRef> mapped, bool unique);
 
 void fill_ghosts(BuildTile& tile, std::uint32_t neighbour, const Boundary& boundary) {
   const auto& ghosts = tile.mesh.ghosts;
@@ -219,6 +224,15 @@ std::vector<std::uint32_t> boundary_first(const std::vector<TileTriangle>& borde
   return place;
 }
 
+/// The ghosts of a joined tile as foreign corners of the tile that it becomes.
+std::vector<FinerGhost> one_level_up(const std::vector<GhostRef>& ghosts) {
+  std::vector<FinerGhost> foreign;
+  foreign.reserve(ghosts.size());
+  for (const GhostRef& ghost : ghosts)
+    foreign.push_back({ghost});
+  return foreign;
+}
+
 }  // namespace
 
 ContractedTile apply(const BuildTile& joined, Contraction contraction) {
@@ -235,7 +249,7 @@ ContractedTile apply(const BuildTile& joined, Contraction contraction) {
   });
 
   ContractedTile result;
-  WorkTile& tile = result.tile;
+  SimplifiedTile& tile = result.tile;
   const std::vector<std::uint32_t> place = boundary_first(border, count, tile.boundary_count);
   result.parent_map.resize(mesh.own_count);
   for (std::uint32_t i = 0; i < mesh.own_count; ++i) {
@@ -247,7 +261,7 @@ ContractedTile apply(const BuildTile& joined, Contraction contraction) {
     });
   }
   tile.border = std::move(border);
-  tile.foreign = mesh.ghosts;
+  tile.foreign = one_level_up(mesh.ghosts);
   normalize_triangles(tile.border, true);
   drop_unused(tile.border, tile.foreign, count);
 
@@ -286,7 +300,7 @@ ContractedTile keep(const BuildTile& tile) {
   result.tile.boundary_count = mesh.boundary_count;
   result.tile.interior = mesh.interior;
   result.tile.border = mesh.border;
-  result.tile.foreign = mesh.ghosts;
+  result.tile.foreign = one_level_up(mesh.ghosts);
   normalize_triangles(result.tile.interior, true);
   normalize_triangles(result.tile.border, true);
   result.deviation.around.assign(mesh.own_count, 0);

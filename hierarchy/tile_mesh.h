@@ -45,6 +45,7 @@ struct GhostRef {
   std::uint32_t index = 0;  ///< its TileVertex there, below that tile's boundary_count
   friend constexpr auto operator<=>(const GhostRef&, const GhostRef&) = default;
 };
+static_assert(sizeof(GhostRef) == 8);
 
 struct TileMesh {
   VertexArray vertices;  ///< own, then ghosts

@@ -91,7 +91,7 @@ class LeafBuilder {
     std::vector<std::uint32_t> next_boundary(result_.tiles.size()), next_inner;
     const auto channels = static_cast<std::size_t>(chunk_.vertices.channels);
     for (std::size_t i = 0; i < result_.tiles.size(); ++i) {
-      WorkTile& tile = result_.tiles[i];
+      LeafTile& tile = result_.tiles[i];
       const std::size_t size = first_vertex_[i + 1];
       assert(size <= kMostVertices);
       first_vertex_[i + 1] += first_vertex_[i];
@@ -181,11 +181,11 @@ class LeafBuilder {
       }
     }
     std::vector<std::uint32_t> number(places_.size());
-    for (WorkTile& tile : result_.tiles)
+    for (LeafTile& tile : result_.tiles)
       finish(tile, number);
   }
 
-  void add_border(WorkTile& tile, std::uint32_t own, const RankTriangle& t,
+  void add_border(LeafTile& tile, std::uint32_t own, const RankTriangle& t,
                   const std::array<std::uint32_t, 3>& leaves) {
     TileTriangle border;
     for (int k = 0; k < 3; ++k) {
@@ -203,22 +203,22 @@ class LeafBuilder {
 
   /// Makes the foreign corners unique and brings everything into an order that the triangles' order
   /// does not show in. `number`: one entry a vertex of the chunk, any content.
-  void finish(WorkTile& tile, std::span<std::uint32_t> number) const {
+  void finish(LeafTile& tile, std::span<std::uint32_t> number) const {
     const auto own_count = static_cast<std::uint32_t>(tile.vertices.size());
-    std::vector<GhostRef> unique = sorted_unique(tile.foreign, number);
-    const auto near =
-        std::equal_range(unique.begin(), unique.end(), GhostRef{chunk_.node.index, 0},
-                         [](const GhostRef& a, const GhostRef& b) { return a.tile < b.tile; });
+    std::vector<ChunkVertex> unique = sorted_unique(tile.foreign, number);
+    const auto near = std::equal_range(
+        unique.begin(), unique.end(), ChunkVertex{chunk_.node.index, 0},
+        [](const ChunkVertex& a, const ChunkVertex& b) { return a.chunk < b.chunk; });
     for (auto ref = near.first; ref != near.second; ++ref)
-      number[ref->index] = static_cast<std::uint32_t>(ref - unique.begin());
+      number[ref->local] = static_cast<std::uint32_t>(ref - unique.begin());
     for (TileTriangle& t : tile.border) {
       for (TileVertex& corner : t) {
         if (raw(corner) < own_count)
           continue;
-        const GhostRef& ref = tile.foreign[raw(corner) - own_count];
+        const ChunkVertex& ref = tile.foreign[raw(corner) - own_count];
         const std::uint32_t place =
-            ref.tile == chunk_.node.index
-                ? number[ref.index]
+            ref.chunk == chunk_.node.index
+                ? number[ref.local]
                 : static_cast<std::uint32_t>(std::lower_bound(unique.begin(), unique.end(), ref) -
                                              unique.begin());
         corner = TileVertex{own_count + place};
@@ -229,15 +229,15 @@ class LeafBuilder {
   }
 
   /// `places`: as in finish().
-  std::vector<GhostRef> sorted_unique(std::span<const GhostRef> refs,
-                                      std::span<std::uint32_t> places) const {
-    std::vector<GhostRef> unique;
-    for (const GhostRef& ref : refs) {
-      if (ref.tile == chunk_.node.index) {
-        const std::uint32_t place = places[ref.index];
+  std::vector<ChunkVertex> sorted_unique(std::span<const ChunkVertex> refs,
+                                         std::span<std::uint32_t> places) const {
+    std::vector<ChunkVertex> unique;
+    for (const ChunkVertex& ref : refs) {
+      if (ref.chunk == chunk_.node.index) {
+        const std::uint32_t place = places[ref.local];
         if (place < unique.size() && unique[place] == ref)
           continue;
-        places[ref.index] = static_cast<std::uint32_t>(unique.size());
+        places[ref.local] = static_cast<std::uint32_t>(unique.size());
       }
       unique.push_back(ref);
     }

@@ -141,7 +141,8 @@ std::uint64_t work_triangle_bytes(std::span<const std::byte> head) {
          counts.foreign * sizeof(GhostRef);
 }
 
-std::vector<std::byte> encode_work_tile(const WorkTile& tile) {
+template <class Corner>
+std::vector<std::byte> encode_work_tile(const WorkTile<Corner>& tile) {
   const WorkTileCounts counts{static_cast<std::uint32_t>(tile.vertices.size()), tile.boundary_count,
                               static_cast<std::uint32_t>(tile.foreign.size()),
                               static_cast<std::uint32_t>(tile.interior.size()),
@@ -153,28 +154,30 @@ std::vector<std::byte> encode_work_tile(const WorkTile& tile) {
   packer.put(std::span<const Vec3f>(tile.vertices.positions));
   packer.put(std::span<const float>(tile.vertices.attributes));
   packer.put(std::span<const float>(tile.history.weights));
-  packer.put(std::span<const GhostRef>(tile.foreign));
+  packer.put(std::span<const Corner>(tile.foreign));
   put_triangles(packer, counts, tile.interior, tile.border);
   return packer.take();
 }
 
-WorkTile decode_work_tile(std::span<const std::byte> bytes, int channels) {
+template <class Corner>
+WorkTile<Corner> decode_work_tile(std::span<const std::byte> bytes, int channels) {
   Unpacker unpacker(bytes);
   const WorkTileCounts counts = unpacker.get<WorkTileCounts>(1)[0];
-  WorkTile tile;
+  WorkTile<Corner> tile;
   tile.boundary_count = counts.boundary;
   tile.vertices.channels = channels;
   tile.vertices.positions = unpacker.get<Vec3f>(counts.own);
   tile.vertices.attributes = unpacker.get<float>(counts.own * static_cast<std::size_t>(channels));
   tile.history.weights = unpacker.get<float>(counts.own);
-  tile.foreign = unpacker.get<GhostRef>(counts.foreign);
+  tile.foreign = unpacker.get<Corner>(counts.foreign);
   get_triangles(unpacker, counts, tile.interior, tile.border);
   unpacker.finish();
   return tile;
 }
 
 // A boundary: u32 count, positions, attributes.
-std::vector<std::byte> encode_boundary(const WorkTile& tile) {
+template <class Corner>
+std::vector<std::byte> encode_boundary(const WorkTile<Corner>& tile) {
   const std::size_t count = tile.boundary_count;
   const auto channels = static_cast<std::size_t>(tile.vertices.channels);
   Packer packer(4 + count * (12 + 4 * channels));
@@ -230,7 +233,7 @@ std::vector<std::byte> encode_seam_strip(const SeamStrip& seam_strip) {
   packer.put(std::span<const SeamStripHead>(&head, 1));
   packer.put(std::span<const Vec3f>(seam_strip.positions));
   packer.put(std::span<const float>(seam_strip.deviations));
-  packer.put(std::span<const GhostRef>(seam_strip.foreign));
+  packer.put(std::span<const FinerGhost>(seam_strip.foreign));
   put_triangles(packer, head.counts, seam_strip.interior, seam_strip.border);
   return packer.take();
 }
@@ -244,7 +247,7 @@ SeamStrip decode_seam_strip(std::span<const std::byte> bytes) {
   seam_strip.own_count = counts.own;
   seam_strip.positions = unpacker.get<Vec3f>(std::size_t{counts.own} + counts.foreign);
   seam_strip.deviations = unpacker.get<float>(counts.own);
-  seam_strip.foreign = unpacker.get<GhostRef>(counts.foreign);
+  seam_strip.foreign = unpacker.get<FinerGhost>(counts.foreign);
   get_triangles(unpacker, counts, seam_strip.interior, seam_strip.border);
   seam_strip.interior_deviation = head.interior_deviation;
   seam_strip.lost = head.lost;
@@ -253,5 +256,12 @@ SeamStrip decode_seam_strip(std::span<const std::byte> bytes) {
   unpacker.finish();
   return seam_strip;
 }
+
+template std::vector<std::byte> encode_work_tile(const LeafTile&);
+template std::vector<std::byte> encode_work_tile(const SimplifiedTile&);
+template LeafTile decode_work_tile(std::span<const std::byte>, int);
+template SimplifiedTile decode_work_tile(std::span<const std::byte>, int);
+template std::vector<std::byte> encode_boundary(const LeafTile&);
+template std::vector<std::byte> encode_boundary(const SimplifiedTile&);
 
 }  // namespace meshhier::storage

@@ -131,18 +131,18 @@ class Level {
     return tile;
   }
 
-  std::vector<GhostRef> mapped(const std::vector<GhostRef>& foreign) const {
+  std::vector<GhostRef> mapped(const std::vector<FinerGhost>& foreign) const {
     std::vector<GhostRef> result;
-    for (const GhostRef& ref : foreign)
+    for (const auto& [ref] : foreign)
       result.push_back({ref.tile, contracted_[ref.tile].parent_map[ref.index]});
     return result;
   }
 
   void draw(std::uint32_t t) {
-    const WorkTile& work = contracted_[t].tile;
+    const SimplifiedTile& work = contracted_[t].tile;
     BuildTile tile = resolve(work, mapped(work.foreign), true);
     for (std::uint32_t other = 0; other < contracted_.size(); ++other) {
-      const WorkTile& neighbour = contracted_[other].tile;
+      const SimplifiedTile& neighbour = contracted_[other].tile;
       Boundary boundary;
       boundary.vertices.positions.assign(
           neighbour.vertices.positions.begin(),
@@ -329,7 +329,7 @@ TEST(SeamStripTest, ShowsTheSeamAndWhatIsBesideIt) {
   const Contraction contraction = contract(joined, 60, {}, {});
   const ContractedTile contracted = apply(joined, contraction);
   const SeamStrip seam_strip = make_seam_strip(joined, contracted);
-  const WorkTile& tile = contracted.tile;
+  const SimplifiedTile& tile = contracted.tile;
   EXPECT_EQ(seam_strip.boundary_count, tile.boundary_count);
   EXPECT_EQ(seam_strip.foreign, tile.foreign);
   EXPECT_EQ(seam_strip.interior_deviation, contracted.deviation.interior);
@@ -349,7 +349,7 @@ TEST(SeamStripTest, ShowsTheSeamAndWhatIsBesideIt) {
           v < tile.vertices.size()
               ? tile.vertices.positions[v]
               : joined.mesh.vertices.positions[joined.mesh.own_count +
-                                               tile.foreign[v - tile.vertices.size()].index];
+                                               tile.foreign[v - tile.vertices.size()].ref.index];
       EXPECT_EQ(seam_strip.positions[raw(seam_strip.border[i][k])], there);
     }
   }

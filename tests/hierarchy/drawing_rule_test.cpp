@@ -1,7 +1,7 @@
 #include "hierarchy/drawing_rule.h"
 
 #include "hierarchy/cut.h"
-#include "tests/support/meshes.h"
+#include "tests/support/sample_hierarchy.h"
 
 #include <algorithm>
 #include <array>

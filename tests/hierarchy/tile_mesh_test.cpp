@@ -1,13 +1,23 @@
 #include "hierarchy/tile_mesh.h"
 
+#include "hierarchy/build_tile.h"
+
 #include <algorithm>
 #include <random>
 #include <set>
+#include <type_traits>
 
 #include <gtest/gtest.h>
 
 namespace meshhier::tests {
 namespace {
+
+// What names a vertex of another tile is told apart by its type.
+template <class From, class To>
+constexpr bool kMixes = std::is_convertible_v<From, To> || std::is_assignable_v<To&, From>;
+static_assert(!kMixes<GhostRef, FinerGhost> && !kMixes<FinerGhost, GhostRef>);
+static_assert(!kMixes<ChunkVertex, FinerGhost> && !kMixes<FinerGhost, ChunkVertex>);
+static_assert(!kMixes<ChunkVertex, GhostRef> && !kMixes<GhostRef, ChunkVertex>);
 
 TileTriangle triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   return {static_cast<TileVertex>(a), static_cast<TileVertex>(b), static_cast<TileVertex>(c)};
