@@ -48,9 +48,9 @@ RankRange Tree::ranks(PartitionRange partitions) const {
   return {first_rank(partitions.begin), first_rank(partitions.end)};
 }
 
-PartitionId Tree::partition_of(Rank rank) const {
+PartitionId Tree::partition_of(std::uint64_t rank) const {
   // The largest p with floor(p N / P) <= rank, that is p N < (rank + 1) P.
-  const std::uint64_t bound = (std::uint64_t{raw(rank)} + 1) * partition_count_;
+  const std::uint64_t bound = (rank + 1) * partition_count_;
   return static_cast<PartitionId>((bound - 1) / vertex_count_);
 }
 

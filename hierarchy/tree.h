@@ -1,6 +1,8 @@
 // The kd-tree's shape, by arithmetic alone: it follows from the vertex and partition counts.
 //
-// Partition p of P holds the ranks [floor(p N / P), floor((p + 1) N / P)): sizes equal +-1.
+// A rank is a vertex's position in kd order, 0 to N - 1; it is a plain number here, since mostly
+// runs of ranks are asked for. Partition p of P holds the ranks [floor(p N / P), floor((p + 1) N /
+// P)): sizes equal +-1.
 // A node holds a run of partitions [p0, p1), split at p0 + ceil((p1 - p0) / 2); level 0 is the
 // root. Levels 0 .. depth-1 have exactly 2^level nodes. The last level, depth, has the P
 // partitions, one node each. A node of level depth-1 that holds a single partition is *early*: it
@@ -53,7 +55,8 @@ class Tree {
   PartitionRange partitions(NodeId node) const;
   RankRange ranks(PartitionRange partitions) const;
   RankRange ranks(NodeId node) const { return ranks(partitions(node)); }
-  PartitionId partition_of(Rank rank) const;
+  /// The partition that holds a rank, in [0, N).
+  PartitionId partition_of(std::uint64_t rank) const;
 
   /// True for a node of level depth-1 that holds a single partition and so has no tile of its own.
   bool is_early(NodeId node) const;
