@@ -28,7 +28,7 @@ constexpr bool draws_before(NodeId tile, std::uint32_t neighbour, Level shown) {
 
 /// The same in the cut of the tile's own level.
 inline bool draws_before(const Tree& tree, NodeId tile, std::uint32_t neighbour) {
-  return draws_before(tile, neighbour, tile_node(tree, {tile.level, neighbour}).level);
+  return draws_before(tile, neighbour, tree.tile_node({tile.level, neighbour}).level);
 }
 
 /// Whether a tile draws a border triangle: `before(ghost)` says of each of its ghosts, by the place

@@ -58,6 +58,19 @@ bool Tree::is_early(NodeId node) const {
   return !is_partition(node) && finer(node.level) == depth_ && partitions(node).size() == 1;
 }
 
+std::vector<NodeId> Tree::tile_nodes() const {
+  std::vector<NodeId> nodes;
+  nodes.reserve(tile_count());
+  for (int level = 0; level <= raw(depth_); ++level) {
+    NodeId node{static_cast<Level>(level), 0};
+    for (const std::uint32_t count = node_count(node.level); node.index < count; ++node.index) {
+      if (!is_early(node))
+        nodes.push_back(node);
+    }
+  }
+  return nodes;
+}
+
 NodeId Tree::ancestor(NodeId node, Level level) const {
   assert(level <= node.level);
   if (level == node.level)

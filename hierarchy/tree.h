@@ -14,6 +14,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace meshhier {
 
@@ -61,6 +62,23 @@ class Tree {
   /// True for a node of level depth-1 that holds a single partition and so has no tile of its own.
   bool is_early(NodeId node) const;
 
+  /// The node whose tile stands for `node`: itself, or the partition of an early node.
+  NodeId tile_node(NodeId node) const { return is_early(node) ? children(node).nodes[0] : node; }
+  /// Whether the node's tile stands for its parent too: a partition below an early node. O(log P).
+  bool stands_for_parent(NodeId node) const {
+    return is_partition(node) && raw(node.level) > 0 && is_early(parent(node));
+  }
+  /// The nearest node above `node` that has a tile. Requires node.level > 0.
+  NodeId parent_tile(NodeId node) const {
+    const NodeId above = parent(node);
+    return is_early(above) ? parent(above) : above;
+  }
+  /// How many nodes have a tile: all but the early ones. Every tile above the partitions replaces
+  /// two by one: a binary tree with P leaves.
+  std::uint64_t tile_count() const { return 2 * std::uint64_t{partition_count_} - 1; }
+  /// They, ascending. O(P log P).
+  std::vector<NodeId> tile_nodes() const;
+
   /// One level up / the node of `level` that holds `node`. Require node.level > 0 / level <=
   /// node.level.
   NodeId parent(NodeId node) const { return ancestor(node, coarser(node.level)); }
@@ -93,16 +111,5 @@ class Tree {
   std::uint32_t partition_count_;
   Level depth_;
 };
-
-/// The node whose tile stands for `node`: itself, or the partition of an early node.
-inline NodeId tile_node(const Tree& tree, NodeId node) {
-  return tree.is_early(node) ? tree.children(node).nodes[0] : node;
-}
-
-/// The nearest node above `node` that has a tile. Requires node.level > 0.
-inline NodeId parent_tile(const Tree& tree, NodeId node) {
-  const NodeId parent = tree.parent(node);
-  return tree.is_early(parent) ? tree.parent(parent) : parent;
-}
 
 }  // namespace meshhier

@@ -135,11 +135,11 @@ std::string export_cut(const ExportJob& job, Cut cut, const std::string& what) {
 }
 
 std::string export_tile(const ExportJob& job, NodeId node) {
-  const Tree& tree = job.reader.tree();
-  require_node(tree, node);
+  require_node(job.reader.tree(), node);
   job.progress.stage("export", 1, "tiles");
-  const TileMesh mesh = job.reader.read_tile(node).mesh;
-  const std::string what = "tile " + to_text(tile_node(tree, node));
+  const PublishedTile tile = job.reader.read_tile(node);
+  const TileMesh& mesh = tile.mesh;
+  const std::string what = "tile " + to_text(tile.node);
   mesh_io::PlyContent content = content_for(job.reader, what);
   content.vertex_count = mesh.vertices.size();
   content.triangle_count = mesh.interior.size() + mesh.border.size();

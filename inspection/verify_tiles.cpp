@@ -72,7 +72,7 @@ void check_errors(const VerifyJob& job, const TileRecord& record, const TileProb
                    record.bound, rounding);
   if (record.node.level == Level{})
     return;
-  const TileRecord& parent = job.reader.record(parent_tile(job.tree(), record.node));
+  const TileRecord& parent = job.reader.record(job.tree().parent_tile(record.node));
   problems.require(record.error < parent.error,
                    "error {} is not below the error {} of its parent {}", record.error,
                    parent.error, to_text(parent.node));
@@ -84,7 +84,7 @@ void check_parent_map(const VerifyJob& job, const PublishedTile& tile,
     problems.require(tile.parent_map.empty(), "the root has a parent map");
     return;
   }
-  const TileRecord& parent = job.reader.record(parent_tile(job.tree(), tile.node));
+  const TileRecord& parent = job.reader.record(job.tree().parent_tile(tile.node));
   problems.require(tile.parent_map.size() == tile.mesh.own_count,
                    "the parent map has {} entries for {} vertices", tile.parent_map.size(),
                    tile.mesh.own_count);

@@ -24,18 +24,6 @@
 namespace meshhier::pipeline {
 namespace {
 
-std::vector<NodeId> published_nodes(const Tree& tree) {
-  std::vector<NodeId> nodes;
-  for (int l = 0; l <= raw(tree.depth()); ++l) {
-    const auto level = static_cast<Level>(l);
-    for (std::uint32_t i = 0; i < tree.node_count(level); ++i) {
-      if (!tree.is_early({level, i}))
-        nodes.push_back({level, i});
-    }
-  }
-  return nodes;
-}
-
 /// The lattice over the input's bounds as they are stored, and how far positions go to it: all
 /// tiles are looked at, since simplified ones may have vertices beyond the input's bounds.
 storage::Quantization quantize(const Forest& forest, std::span<const NodeId> nodes,
@@ -135,7 +123,7 @@ void publish(Forest& forest, BuildJournal& journal, const PublishInput& input,
              storage::FileSystem& files, execution::Progress& progress,
              const execution::CancelToken& cancel) {
   const Tree& tree = forest.tree();
-  const std::vector<NodeId> nodes = published_nodes(tree);
+  const std::vector<NodeId> nodes = tree.tile_nodes();
   for (int l = 0; l <= raw(tree.depth()); ++l) {
     files.make_directories(storage::level_directory(directory, static_cast<Level>(l)));
   }

@@ -171,9 +171,8 @@ std::vector<std::uint16_t> Forest::parent_map(NodeId child) const {
 std::vector<std::uint16_t> Forest::published_parent_map(NodeId node) const {
   if (node.level == Level{0})
     return {};
-  const NodeId parent = tree_.parent(node);
   // An early node keeps its partition as it is, so the map from it is the map from the partition.
-  return parent_map(tree_.is_early(parent) ? parent : node);
+  return parent_map(tree_.stands_for_parent(node) ? tree_.parent(node) : node);
 }
 
 std::vector<std::uint16_t> Forest::chains(NodeId node, std::span<const GhostRef> ghosts) const {

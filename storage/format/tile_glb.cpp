@@ -294,8 +294,7 @@ class Reader {
   void read_neighbour(NodeId neighbour, std::size_t count, std::span<const std::uint16_t>& left,
                       PublishedTile& tile) const {
     const auto length = static_cast<std::size_t>(tree_.chain_length(tile.node, neighbour));
-    // The parent of a partition that has none but this below it is the partition itself.
-    const bool early = tree_.is_partition(neighbour) && tree_.is_early(tree_.parent(neighbour));
+    const bool stays = tree_.stands_for_parent(neighbour);
     if (left.size() / length < count) {
       fail(fmt::format("tile {} needs {} chains of {} entries, {} entries are left",
                        neighbour.index, count, length, left.size()));
@@ -307,7 +306,7 @@ class Reader {
         fail(
             fmt::format("ghosts of tile {} do not ascend at vertex {}", neighbour.index, chain[0]));
       }
-      if (early && length > 1 && chain[1] != chain[0]) {
+      if (stays && length > 1 && chain[1] != chain[0]) {
         fail(fmt::format("vertex {} of tile {} changes its number to {} without a parent tile",
                          chain[0], neighbour.index, chain[1]));
       }

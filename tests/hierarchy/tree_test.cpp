@@ -201,6 +201,31 @@ TEST(Tree, OfOnePartitionIsItsRoot) {
   EXPECT_EQ(tree.partition_of(9), PartitionId{0});
 }
 
+TEST(Tree, TilesStandForEveryNode) {
+  for (const std::uint32_t p : {1U, 2U, 3U, 5U, 6U, 8U, 13U, 1000U}) {
+    const Tree tree(5000, p);
+    const std::vector<NodeId> tiles = tree.tile_nodes();
+    EXPECT_TRUE(std::is_sorted(tiles.begin(), tiles.end())) << p;
+    EXPECT_EQ(tiles.size(), tree.tile_count()) << p;
+    std::size_t standing = 0;  // for their parents too
+    for (const NodeId tile : tiles) {
+      ASSERT_FALSE(tree.is_early(tile)) << p;
+      ASSERT_EQ(tree.tile_node(tile), tile) << p;
+      if (tile == tree.root())
+        continue;
+      const NodeId parent = tree.parent(tile);
+      ASSERT_EQ(tree.stands_for_parent(tile), tree.tile_node(parent) == tile) << p;
+      ASSERT_EQ(tree.parent_tile(tile), tree.stands_for_parent(tile) ? tree.parent(parent) : parent)
+          << p;
+      standing += tree.stands_for_parent(tile) ? 1 : 0;
+    }
+    std::size_t nodes = 0;
+    for (int level = 0; level <= raw(tree.depth()); ++level)
+      nodes += tree.node_count(static_cast<Level>(level));
+    EXPECT_EQ(nodes, tiles.size() + standing) << p;
+  }
+}
+
 TEST(Tree, ArithmeticHoldsAtTheLargestCounts) {
   constexpr auto kMost = static_cast<std::uint32_t>(kMostVertices);
   const Tree tree(kMostVertices, kMost);  // a partition for every vertex

@@ -207,7 +207,7 @@ class ProgressiveTest : public testing::Test {
     SCOPED_TRACE(std::to_string(raw(sector.level)) + "/" + std::to_string(sector.index));
     const ProgressiveIndex index = stream(sector);
     const Tree tree = reader().tree();
-    EXPECT_EQ(index.node, tile_node(tree, sector));
+    EXPECT_EQ(index.node, tree.tile_node(sector));
     EXPECT_EQ(index.own_vertices, tree.ranks(sector).size());
     EXPECT_EQ(shown(0).set(), exported(sector).set());
     for (std::uint32_t details = 0; details < index.files.size(); ++details) {
