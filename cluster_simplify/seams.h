@@ -16,7 +16,7 @@
 namespace meshhier::cluster_simplify {
 
 /// Rewrites a fresh tile's border with its foreign corners' places at the tile's own level.
-///
+/// `Corner`: ChunkVertex or FinerGhost.
 /// `mapped`: one entry per tile.foreign, at the tile's level. Corners that became one vertex become
 /// one ghost, triangles that became degenerate go; of exact duplicates one stays if `unique`
 /// (simplified tiles; partitions keep the input's duplicates). The ghosts' positions and

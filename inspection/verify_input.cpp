@@ -100,6 +100,7 @@ void add_tile(const PublishedTile& tile, MeshSums& sums) {
   const auto add = [&](const TileTriangle& t) {
     sums.add_triangle({hashes[raw(t[0])], hashes[raw(t[1])], hashes[raw(t[2])]});
   };
+  // Of the tiles that list a triangle, the one counts it that draws it among all partitions.
   const auto before = [&](std::size_t ghost) {
     return draws_before(tile.node, mesh.ghosts[ghost].tile, tile.node.level);
   };

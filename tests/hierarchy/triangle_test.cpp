@@ -13,7 +13,7 @@ namespace {
 
 using TileCorners = Triangle<TileVertex>;
 
-TileCorners triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+TileCorners corners(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   return {TileVertex{a}, TileVertex{b}, TileVertex{c}};
 }
 
@@ -24,29 +24,29 @@ static_assert(!std::is_convertible_v<Triangle<TileVertex>, Triangle<std::uint32_
 static_assert(std::is_trivially_copyable_v<TileCorners> && sizeof(TileCorners) == 12);
 
 TEST(TriangleForm, CanonicalTurnsTheSmallestCornerToTheFrontAndKeepsOrientation) {
-  for (const TileTriangle& t : {triangle(1, 5, 9), triangle(5, 9, 1), triangle(9, 1, 5)}) {
-    EXPECT_EQ(canonical(t), triangle(1, 5, 9));
+  for (const TileTriangle& t : {corners(1, 5, 9), corners(5, 9, 1), corners(9, 1, 5)}) {
+    EXPECT_EQ(canonical(t), corners(1, 5, 9));
   }
-  for (const TileTriangle& t : {triangle(1, 9, 5), triangle(9, 5, 1), triangle(5, 1, 9)}) {
-    EXPECT_EQ(canonical(t), triangle(1, 9, 5));
+  for (const TileTriangle& t : {corners(1, 9, 5), corners(9, 5, 1), corners(5, 1, 9)}) {
+    EXPECT_EQ(canonical(t), corners(1, 9, 5));
   }
 }
 
 TEST(TriangleForm, TwoEqualCornersAreDegenerate) {
-  EXPECT_TRUE(is_degenerate(triangle(3, 3, 4)));
-  EXPECT_TRUE(is_degenerate(triangle(4, 3, 3)));
-  EXPECT_TRUE(is_degenerate(triangle(3, 4, 3)));
-  EXPECT_TRUE(is_degenerate(triangle(3, 3, 3)));
-  EXPECT_FALSE(is_degenerate(triangle(3, 4, 5)));
+  EXPECT_TRUE(is_degenerate(corners(3, 3, 4)));
+  EXPECT_TRUE(is_degenerate(corners(4, 3, 3)));
+  EXPECT_TRUE(is_degenerate(corners(3, 4, 3)));
+  EXPECT_TRUE(is_degenerate(corners(3, 3, 3)));
+  EXPECT_FALSE(is_degenerate(corners(3, 4, 5)));
 }
 
 TEST(TriangleForm, TheSmallestCornerIsFoundInEveryPlace) {
-  EXPECT_EQ(smallest_corner(triangle(1, 5, 9)), 0U);
-  EXPECT_EQ(smallest_corner(triangle(5, 1, 9)), 1U);
-  EXPECT_EQ(smallest_corner(triangle(5, 9, 1)), 2U);
-  EXPECT_EQ(smallest_corner(triangle(1, 1, 2)), 0U);
-  EXPECT_EQ(smallest_corner(triangle(2, 1, 1)), 0U) << "there twice";
-  EXPECT_EQ(smallest_corner(triangle(1, 2, 1)), 0U) << "there twice";
+  EXPECT_EQ(smallest_corner(corners(1, 5, 9)), 0U);
+  EXPECT_EQ(smallest_corner(corners(5, 1, 9)), 1U);
+  EXPECT_EQ(smallest_corner(corners(5, 9, 1)), 2U);
+  EXPECT_EQ(smallest_corner(corners(1, 1, 2)), 0U);
+  EXPECT_EQ(smallest_corner(corners(2, 1, 1)), 0U) << "there twice";
+  EXPECT_EQ(smallest_corner(corners(1, 2, 1)), 0U) << "there twice";
 }
 
 TEST(TriangleForm, TurningKeepsTheOrderOfCorners) {
