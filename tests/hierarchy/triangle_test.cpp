@@ -24,10 +24,10 @@ static_assert(!std::is_convertible_v<Triangle<TileVertex>, Triangle<std::uint32_
 static_assert(std::is_trivially_copyable_v<TileCorners> && sizeof(TileCorners) == 12);
 
 TEST(TriangleForm, CanonicalTurnsTheSmallestCornerToTheFrontAndKeepsOrientation) {
-  for (const TileTriangle& t : {corners(1, 5, 9), corners(5, 9, 1), corners(9, 1, 5)}) {
+  for (const TileCorners& t : {corners(1, 5, 9), corners(5, 9, 1), corners(9, 1, 5)}) {
     EXPECT_EQ(canonical(t), corners(1, 5, 9));
   }
-  for (const TileTriangle& t : {corners(1, 9, 5), corners(9, 5, 1), corners(5, 1, 9)}) {
+  for (const TileCorners& t : {corners(1, 9, 5), corners(9, 5, 1), corners(5, 1, 9)}) {
     EXPECT_EQ(canonical(t), corners(1, 9, 5));
   }
 }
