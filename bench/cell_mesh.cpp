@@ -27,16 +27,16 @@ PlainMesh cell_mesh(const PlainMesh& mesh, const Parts& cells,
   for (std::uint32_t cell = 0; cell < cells.count; ++cell)
     result.positions.push_back(representative_of(tiles.tile(cell), how));
 
-  std::vector<Triangle> images;
+  std::vector<TileTriangle> images;
   for (const MeshTriangle& t : mesh.triangles) {
-    Triangle image{};
+    TileTriangle image{};
     for (std::size_t k = 0; k < 3; ++k)
       image[k] = static_cast<TileVertex>(cells.part_of[t[k]]);
     if (!is_degenerate(image))
       images.push_back(image);
   }
   normalize_triangles(images, true);
-  for (const Triangle& t : images)
+  for (const TileTriangle& t : images)
     result.triangles.push_back({raw(t[0]), raw(t[1]), raw(t[2])});
   return result;
 }

@@ -67,8 +67,8 @@ LoadedMesh load_mesh(mesh_io::MeshSource& source) {
     mesh.positions.insert(mesh.positions.end(), block.exact.begin(), block.exact.end());
     mesh.channels.insert(mesh.channels.end(), block.attributes.begin(), block.attributes.end());
   });
-  source.read_triangles([&](std::span<const mesh_io::SourceTriangle> block) {
-    for (const mesh_io::SourceTriangle& t : block)
+  source.read_triangles([&](std::span<const Triangle<VertexId>> block) {
+    for (const Triangle<VertexId>& t : block)
       mesh.triangles.push_back({raw(t[0]), raw(t[1]), raw(t[2])});
   });
   return mesh;

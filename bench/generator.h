@@ -3,12 +3,12 @@
 #pragma once
 
 #include "bench/base_surface.h"
+#include "hierarchy/triangle.h"
 #include "hierarchy/vec.h"
 #include "mesh_io/mesh_source.h"
 #include "mesh_io/ply_writer.h"
 #include "storage/io/file.h"
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -18,7 +18,7 @@
 
 namespace meshhier::bench {
 
-using MeshTriangle = std::array<std::uint32_t, 3>;
+using MeshTriangle = Triangle<std::uint32_t>;
 
 /// Consecutive vertices: positions and, for each, content().attributes.channels() floats. Positions
 /// are exact floats unless content().double_coordinates.

@@ -111,11 +111,11 @@ void join(benchmark::State& state) {
 BENCHMARK(join);
 
 void resolve(benchmark::State& state) {
-  const WorkTile& work = sample_tiles().work(0);
+  const LeafTile& work = sample_tiles().work(0);
   const std::vector<GhostRef> mapped = sample_tiles().mapped(0);
   for (auto _ : state) {
     state.PauseTiming();
-    WorkTile copy = work;
+    LeafTile copy = work;
     state.ResumeTiming();
     benchmark::DoNotOptimize(cluster_simplify::resolve(std::move(copy), mapped, true));
   }
@@ -140,7 +140,7 @@ void build_quadrics(benchmark::State& state) {
   std::vector<cluster_simplify::Quadric> quadrics;
   for (auto _ : state) {
     quadrics.assign(mesh.own_count, {});
-    for (const Triangle& t : mesh.interior) {
+    for (const TileTriangle& t : mesh.interior) {
       std::array<Vec3d, 3> corners;
       for (std::size_t k = 0; k < 3; ++k)
         corners[k] = to_double(mesh.vertices.positions[raw(t[k])]);

@@ -108,7 +108,7 @@ BuildTile PartTiles::tile(std::uint32_t part) const {
   tile.history.weights.assign(own.size(), 1);
 
   for (const std::uint32_t t : triangles_.of(part)) {
-    Triangle placed{};
+    TileTriangle placed{};
     bool interior = true;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t v = mesh_.triangles[t][k];

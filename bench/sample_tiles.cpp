@@ -39,8 +39,8 @@ SampleTiles::SampleTiles(const SampleChunk& sample, partition::Axis axis)
 
 std::vector<GhostRef> SampleTiles::mapped(std::uint32_t partition) const {
   std::vector<GhostRef> result;
-  for (const GhostRef& foreign : work(partition).foreign) {
-    const partition::LeafPlace& place = partition::find_place(leaves_.places, foreign.index);
+  for (const ChunkVertex& foreign : work(partition).foreign) {
+    const partition::LeafPlace& place = partition::find_place(leaves_.places, foreign.local);
     result.push_back({place.partition, place.index});
   }
   return result;
@@ -49,7 +49,7 @@ std::vector<GhostRef> SampleTiles::mapped(std::uint32_t partition) const {
 BuildTile SampleTiles::resolved(std::uint32_t partition) const {
   BuildTile tile = cluster_simplify::resolve(work(partition), mapped(partition), false);
   for (std::uint32_t neighbour = 0; neighbour < count(); ++neighbour) {
-    const WorkTile& other = work(neighbour);
+    const LeafTile& other = work(neighbour);
     Boundary boundary;
     boundary.vertices.channels = other.vertices.channels;
     boundary.vertices.append(other.vertices, 0, other.boundary_count);

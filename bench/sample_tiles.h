@@ -32,7 +32,7 @@ class SampleTiles {
   SampleTiles(const SampleChunk& sample, partition::Axis axis);
 
   std::uint32_t count() const { return static_cast<std::uint32_t>(leaves_.tiles.size()); }
-  const WorkTile& work(std::uint32_t partition) const { return leaves_.tiles[partition]; }
+  const LeafTile& work(std::uint32_t partition) const { return leaves_.tiles[partition]; }
 
   /// Where the foreign corners of a tile went: one entry per work(partition).foreign.
   std::vector<GhostRef> mapped(std::uint32_t partition) const;

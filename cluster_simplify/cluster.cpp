@@ -50,7 +50,7 @@ std::vector<Quadric> quadrics_of(const BuildTile& joined, const std::vector<std:
   constexpr std::uint32_t kNoCell = std::numeric_limits<std::uint32_t>::max();
   std::vector<Quadric> quadrics(means.size());
   const TileMesh& mesh = joined.mesh;
-  const auto add = [&](const Triangle& t) {
+  const auto add = [&](const TileTriangle& t) {
     std::array<Vec3d, 3> p;
     std::array<std::uint32_t, 3> cell;
     for (int k = 0; k < 3; ++k) {
@@ -68,9 +68,9 @@ std::vector<Quadric> quadrics_of(const BuildTile& joined, const std::vector<std:
         quadrics[cell[k]].add_plane(normal, doubled_area / 2, p[0] - means[cell[k]]);
     }
   };
-  for (const Triangle& t : mesh.interior)
+  for (const TileTriangle& t : mesh.interior)
     add(t);
-  for (const Triangle& t : mesh.border)
+  for (const TileTriangle& t : mesh.border)
     add(t);
   return quadrics;
 }

@@ -16,7 +16,7 @@ CollapseMesh::CollapseMesh(const TileMesh& mesh)
   faces_.reserve(mesh.interior.size() + mesh.border.size());
   for (const auto* list : {&mesh.interior, &mesh.border}) {
     for (std::size_t i = 0; i < list->size(); ++i) {
-      const Triangle& t = (*list)[i];
+      const TileTriangle& t = (*list)[i];
       if (i == 0 || t != (*list)[i - 1])  // repeats, one after the other, show nothing more
         faces_.push_back({{raw(t[0]), raw(t[1]), raw(t[2])}, {kNone, kNone, kNone}});
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "hierarchy/tile_mesh.h"
+#include "hierarchy/triangle.h"
 
 #include <algorithm>
 #include <array>
@@ -35,7 +36,8 @@ class CollapseMesh {
 
   /// A triangle and its edges, [k]: from corner k to the next. Dead ones have no first corner.
   struct Face {
-    std::array<std::uint32_t, 3> corners, edges;
+    Triangle<std::uint32_t> corners;
+    std::array<std::uint32_t, 3> edges;
     bool is_alive() const { return corners[0] != kNone; }
   };
 

@@ -1,9 +1,9 @@
 #include "cluster_simplify/motion.h"
 
 #include "cluster_simplify/nearest.h"
+#include "hierarchy/triangle.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -16,14 +16,12 @@ namespace {
 
 constexpr double kRounding = 0x1p-22;  // of floats that hold what was summed up in double
 
-using Corners = std::array<std::uint32_t, 3>;
-
 /// Triangles by their edges: with each vertex those of higher number that it has an edge to.
 class EdgeSet {
  public:
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-  EdgeSet(std::span<const Corners> triangles, std::size_t vertex_count)
+  EdgeSet(std::span<const Triangle<std::uint32_t>> triangles, std::size_t vertex_count)
       : begins_(vertex_count + 1), at_(vertex_count, kNone) {
     for_each_edge(triangles,
                   [&](std::uint32_t low, std::uint32_t, std::uint32_t) { ++begins_[low + 1]; });
@@ -57,7 +55,8 @@ class EdgeSet {
   };
 
   template <class Visit>
-  static void for_each_edge(std::span<const Corners> triangles, const Visit& visit) {
+  static void for_each_edge(std::span<const Triangle<std::uint32_t>> triangles,
+                            const Visit& visit) {
     for (std::uint32_t i = 0; i < triangles.size(); ++i) {
       for (std::size_t k = 0; k < 3; ++k) {
         const auto [low, high] = std::minmax(triangles[i][k], triangles[i][(k + 1) % 3]);
@@ -87,9 +86,9 @@ class Motion {
                          to_double(places_[contraction.parent_of[v]]));
       deviation_.squared_sum += double{joined.history.weights[v]} * moved_[v] * moved_[v];
     }
-    for (const Triangle& t : mesh_.interior)
+    for (const TileTriangle& t : mesh_.interior)
       deviation_.interior = std::max(deviation_.interior, add(t));
-    for (const Triangle& t : mesh_.border)
+    for (const TileTriangle& t : mesh_.border)
       add(t);
     deviation_.lost = lost();
   }
@@ -104,7 +103,7 @@ class Motion {
                                  static_cast<std::uint32_t>(contraction_.representatives.size());
   }
 
-  float deviation_of(const Triangle& t) const {
+  float deviation_of(const TileTriangle& t) const {
     const double farthest = std::max({moved_[raw(t[0])], moved_[raw(t[1])], moved_[raw(t[2])]});
     return static_cast<float>(farthest * (1 + kRounding));
   }
@@ -114,9 +113,9 @@ class Motion {
       deviation_.around[image] = std::max(deviation_.around[image], deviation);
   }
 
-  float add(const Triangle& t) {
+  float add(const TileTriangle& t) {
     const float deviation = deviation_of(t);
-    const Corners images{image(t[0]), image(t[1]), image(t[2])};
+    const Triangle<std::uint32_t> images{image(t[0]), image(t[1]), image(t[2])};
     const bool is_drawn =
         images[0] != images[1] && images[1] != images[2] && images[2] != images[0];
     if (is_drawn)
@@ -132,7 +131,7 @@ class Motion {
 
   /// What a triangle became whose image has no area lies in the corner or edge of one that is drawn
   /// and brings its deviation along; false if there is none.
-  bool lands(const EdgeSet& edges, const Triangle& t) {
+  bool lands(const EdgeSet& edges, const TileTriangle& t) {
     const std::uint32_t a = image(t[0]);
     const std::uint32_t b = image(t[1]) != a ? image(t[1]) : image(t[2]);
     const std::uint32_t onto = edges.triangle_at(a, b);
@@ -144,7 +143,7 @@ class Motion {
     return true;
   }
 
-  double farthest_corner(const Triangle& t, std::uint32_t from) const {
+  double farthest_corner(const TileTriangle& t, std::uint32_t from) const {
     double most = 0;
     for (const TileVertex v : t) {
       most = std::max(
@@ -157,10 +156,10 @@ class Motion {
   /// vertex nearest to it; infinite if there is none.
   float lost() {
     const EdgeSet edges(shown_, drawn_.size());
-    std::vector<const Triangle*> stranded;
+    std::vector<const TileTriangle*> stranded;
     std::vector<std::uint32_t> asked;
     double farthest = 0;
-    for (const Triangle& t : folded_) {
+    for (const TileTriangle& t : folded_) {
       if (lands(edges, t))
         continue;
       double least = std::numeric_limits<double>::infinity();
@@ -195,8 +194,8 @@ class Motion {
   std::vector<double> moved_;  ///< ghosts: 0
   std::vector<Vec3f> places_;  ///< of images
   std::vector<char> drawn_;    ///< image: has a triangle
-  std::vector<Corners> shown_;
-  std::vector<Triangle> folded_;  ///< whose images have no area
+  std::vector<Triangle<std::uint32_t>> shown_;
+  std::vector<TileTriangle> folded_;  ///< whose images have no area
   Deviation deviation_;
 };
 

@@ -3,9 +3,9 @@
 #include "cluster_simplify/closest_point.h"
 #include "cluster_simplify/kd_cells.h"
 #include "cluster_simplify/nearest.h"
+#include "hierarchy/triangle.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -97,21 +97,17 @@ class DeviationSum {
   }
 
  private:
-  using Corners = std::array<std::uint32_t, 3>;
-
   static constexpr float kNowhere = -1;  // nothing is drawn at the vertex
 
   std::uint32_t root(std::uint32_t v) const { return v < into_.size() ? into_[v] : v; }
-  Corners roots(const Corners& corners) const {
+  Triangle<std::uint32_t> roots(const Triangle<std::uint32_t>& corners) const {
     return {root(corners[0]), root(corners[1]), root(corners[2])};
   }
-  static bool is_drawn(const Corners& roots) {
-    return roots[0] != roots[1] && roots[1] != roots[2] && roots[2] != roots[0];
-  }
+  static bool is_drawn(const Triangle<std::uint32_t>& roots) { return !is_degenerate(roots); }
 
   void add(std::uint32_t t) {
-    const Corners& corners = tile_.mesh.faces()[t].corners;
-    const Corners ends = roots(corners);
+    const Triangle<std::uint32_t>& corners = tile_.mesh.faces()[t].corners;
+    const Triangle<std::uint32_t> ends = roots(corners);
     if (!is_drawn(ends)) {
       lost_.push_back(
           {{tile_.places[corners[0]], tile_.places[corners[1]], tile_.places[corners[2]]},
@@ -131,7 +127,8 @@ class DeviationSum {
   }
 
   /// How far a triangle's corners went by joining.
-  float farthest_join(const Corners& corners, const Corners& ends) const {
+  float farthest_join(const Triangle<std::uint32_t>& corners,
+                      const Triangle<std::uint32_t>& ends) const {
     float squared = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3f away = tile_.places[ends[k]] - tile_.places[corners[k]];
@@ -177,7 +174,7 @@ class DeviationSum {
     std::vector<CollapseMesh::Fan> fans;
     tile_.mesh.gather(vertex, fans);
     for (const CollapseMesh::Fan& fan : fans) {
-      const Corners ends = roots({vertex, fan.next, fan.previous});
+      const Triangle<std::uint32_t> ends = roots({vertex, fan.next, fan.previous});
       if (is_drawn(ends))
         least = std::min(least, farthest({at(ends[0]), at(ends[1]), at(ends[2])}));
     }

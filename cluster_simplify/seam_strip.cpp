@@ -15,7 +15,7 @@ namespace meshhier::cluster_simplify {
 
 SeamStrip make_seam_strip(const BuildTile& joined, const ContractedTile& contracted) {
   constexpr std::uint32_t kUnset = std::numeric_limits<std::uint32_t>::max();
-  const WorkTile& tile = contracted.tile;
+  const SimplifiedTile& tile = contracted.tile;
   const auto own_count = static_cast<std::uint32_t>(tile.vertices.size());
   SeamStrip seam_strip;
   seam_strip.boundary_count = tile.boundary_count;
@@ -27,7 +27,7 @@ SeamStrip make_seam_strip(const BuildTile& joined, const ContractedTile& contrac
   };
   for (std::uint32_t v = 0; v < tile.boundary_count; ++v)
     add_own(v);
-  for (const Triangle& t : tile.interior) {
+  for (const TileTriangle& t : tile.interior) {
     if (raw(t[0]) >= tile.boundary_count)  // the smallest corner
       break;                               // triangles ascend
     for (const TileVertex v : t) {
@@ -39,14 +39,14 @@ SeamStrip make_seam_strip(const BuildTile& joined, const ContractedTile& contrac
   }
   seam_strip.foreign = tile.foreign;
   const std::vector<GhostRef>& ghosts = joined.mesh.ghosts;
-  for (const GhostRef& ref : tile.foreign) {
-    const auto found = std::lower_bound(ghosts.begin(), ghosts.end(), ref);
+  for (const FinerGhost& corner : tile.foreign) {
+    const auto found = std::lower_bound(ghosts.begin(), ghosts.end(), corner.ref);
     seam_strip.positions.push_back(
         joined.mesh.vertices
             .positions[joined.mesh.own_count + static_cast<std::size_t>(found - ghosts.begin())]);
   }
-  for (const Triangle& t : tile.border) {
-    Triangle& copy = seam_strip.border.emplace_back(t);
+  for (const TileTriangle& t : tile.border) {
+    TileTriangle& copy = seam_strip.border.emplace_back(t);
     for (TileVertex& v : copy)
       v = TileVertex{raw(v) < own_count ? place[raw(v)]
                                         : raw(v) - own_count + seam_strip.own_count};
@@ -80,7 +80,7 @@ struct SeamTriangle {
   std::array<Vec3f, 3> positions;
   float deviation = 0;  ///< 0 if it is drawn now only
   When when = When::both;
-  std::array<std::uint32_t, 3> vertices{};  ///< kNowhere: of those that nobody asks about
+  Triangle<std::uint32_t> vertices{};  ///< kNowhere: of those that nobody asks about
 
   CoverDistance::Corners corners() const {
     return {to_double(positions[0]), to_double(positions[1]), to_double(positions[2])};
@@ -125,7 +125,7 @@ class Seam {
   }
 
  private:
-  using Vertices = std::array<std::uint32_t, 3>;
+  using Vertices = Triangle<std::uint32_t>;
 
   struct Lists {
     std::vector<std::uint32_t> first, next;
@@ -148,7 +148,7 @@ class Seam {
   }
 
   template <class VertexOf>
-  static Vertices vertices_of(const Triangle& t, const VertexOf& vertex) {
+  static Vertices vertices_of(const TileTriangle& t, const VertexOf& vertex) {
     return {vertex(raw(t[0])), vertex(raw(t[1])), vertex(raw(t[2]))};
   }
 
@@ -156,12 +156,13 @@ class Seam {
     return vertices[0] != kNowhere || vertices[1] != kNowhere || vertices[2] != kNowhere;
   }
 
-  static std::array<Vec3f, 3> positions_of(const Triangle& t, const std::vector<Vec3f>& positions) {
+  static std::array<Vec3f, 3> positions_of(const TileTriangle& t,
+                                           const std::vector<Vec3f>& positions) {
     return {positions[raw(t[0])], positions[raw(t[1])], positions[raw(t[2])]};
   }
 
   /// What the triangle may have deviated: no more than what is around any of its own corners.
-  static float deviation_of(const SeamStrip& seam_strip, const Triangle& t) {
+  static float deviation_of(const SeamStrip& seam_strip, const TileTriangle& t) {
     float deviation = std::numeric_limits<float>::infinity();
     for (const TileVertex v : t) {
       if (raw(v) < seam_strip.own_count)
@@ -188,8 +189,8 @@ class Seam {
   /// `all`: also those that nobody will ask about others.
   template <class VertexOf>
   void add_seam_strip(const SeamStrip& seam_strip, bool all, const VertexOf& vertex) {
-    const auto add = [&](const std::vector<Triangle>& triangles, When when) {
-      for (const Triangle& t : triangles) {
+    const auto add = [&](const std::vector<TileTriangle>& triangles, When when) {
+      for (const TileTriangle& t : triangles) {
         const Vertices vertices = vertices_of(t, vertex);
         if (!any_known(vertices))  // few of a neighbour's are
           continue;
@@ -223,7 +224,7 @@ class Seam {
     const auto vertex = [&](std::uint32_t v) {
       return v < mesh.own_count ? v : v - mesh.own_count + boundary_count_;
     };
-    for (const Triangle& t : mesh.border) {
+    for (const TileTriangle& t : mesh.border) {
       triangles_.push_back(
           {positions_of(t, mesh.vertices.positions), 0, When::now, vertices_of(t, vertex)});
       count(triangles_.back().vertices, When::now);
@@ -340,7 +341,7 @@ class Seam {
       return 0;
     std::vector<std::uint32_t> drawn;
     for (const auto* triangles : {&input_.mesh.interior, &input_.mesh.border}) {
-      for (const Triangle& t : *triangles)
+      for (const TileTriangle& t : *triangles)
         drawn.insert(drawn.end(), {raw(t[0]), raw(t[1]), raw(t[2])});
     }
     if (drawn.empty())

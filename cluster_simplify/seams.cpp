@@ -26,18 +26,18 @@ std::vector<std::uint32_t> make_unique(std::vector<GhostRef>& refs) {
 }
 
 template <class Map>
-Triangle mapped(const Triangle& t, const Map& map) {
+TileTriangle mapped(const TileTriangle& t, const Map& map) {
   return {map(t[0]), map(t[1]), map(t[2])};
 }
 
 /// The images of triangles that keep an area. Half of them may go, which ones no processor can
 /// predict: no branch.
 template <class Map>
-std::vector<Triangle> images(const std::vector<Triangle>& triangles, const Map& map) {
-  std::vector<Triangle> kept(triangles.size());
+std::vector<TileTriangle> images(const std::vector<TileTriangle>& triangles, const Map& map) {
+  std::vector<TileTriangle> kept(triangles.size());
   std::size_t count = 0;
-  for (const Triangle& t : triangles) {
-    const Triangle image = mapped(t, map);
+  for (const TileTriangle& t : triangles) {
+    const TileTriangle image = mapped(t, map);
     kept[count] = image;
     count += std::size_t{!is_degenerate(image)};
   }
@@ -46,10 +46,11 @@ std::vector<Triangle> images(const std::vector<Triangle>& triangles, const Map& 
 }
 
 /// Removes the references no triangle uses and renumbers the corners from `own_count` on.
-void drop_unused(std::vector<Triangle>& border, std::vector<GhostRef>& refs,
+template <class Ref>
+void drop_unused(std::vector<TileTriangle>& border, std::vector<Ref>& refs,
                  std::uint32_t own_count) {
   std::vector<std::uint32_t> place(refs.size(), kUnset);
-  for (const Triangle& t : border) {
+  for (const TileTriangle& t : border) {
     for (const TileVertex corner : t) {
       if (raw(corner) >= own_count)
         place[raw(corner) - own_count] = 0;
@@ -63,7 +64,7 @@ void drop_unused(std::vector<Triangle>& border, std::vector<GhostRef>& refs,
     refs[kept++] = refs[i];
   }
   refs.resize(kept);
-  for (Triangle& t : border) {
+  for (TileTriangle& t : border) {
     t = mapped(t, [&](TileVertex v) {
       return raw(v) < own_count ? v
                                 : static_cast<TileVertex>(own_count + place[raw(v) - own_count]);
@@ -81,12 +82,13 @@ FallbackCounts& FallbackCounts::operator+=(const FallbackCounts& other) {
   return *this;
 }
 
-BuildTile resolve(WorkTile tile, std::span<const GhostRef> mapped_refs, bool unique) {
+template <class Corner>
+BuildTile resolve(WorkTile<Corner> tile, std::span<const GhostRef> mapped_refs, bool unique) {
   assert(mapped_refs.size() == tile.foreign.size());
   const auto own_count = static_cast<std::uint32_t>(tile.vertices.size());
   std::vector<GhostRef> ghosts(mapped_refs.begin(), mapped_refs.end());
   const std::vector<std::uint32_t> place = make_unique(ghosts);
-  for (Triangle& t : tile.border) {
+  for (TileTriangle& t : tile.border) {
     t = mapped(t, [&](TileVertex v) {
       return raw(v) < own_count ? v
                                 : static_cast<TileVertex>(own_count + place[raw(v) - own_count]);
@@ -105,6 +107,9 @@ BuildTile resolve(WorkTile tile, std::span<const GhostRef> mapped_refs, bool uni
   result.history = std::move(tile.history);
   return result;
 }
+
+template BuildTile resolve(LeafTile tile, std::span<const GhostRef> mapped, bool unique);
+template BuildTile resolve(SimplifiedTile tile, std::span<const GhostRef> mapped, bool unique);
 
 void fill_ghosts(BuildTile& tile, std::uint32_t neighbour, const Boundary& boundary) {
   const auto& ghosts = tile.mesh.ghosts;
@@ -179,18 +184,18 @@ BuildTile join(const BuildTile& first, std::uint32_t first_index, const BuildTil
 
   mesh.interior.reserve(a.interior.size() + b.interior.size() + a.border.size());
   mesh.interior = a.interior;
-  for (const Triangle& t : b.interior)  // own corners move by as much as the first tile has
+  for (const TileTriangle& t : b.interior)  // own corners move by as much as the first tile has
     mesh.interior.push_back(
         mapped(t, [&](TileVertex v) { return static_cast<TileVertex>(raw(v) + a.own_count); }));
-  const auto add_border = [&](const Triangle& t) {
+  const auto add_border = [&](const TileTriangle& t) {
     const bool inside =
         std::all_of(t.begin(), t.end(), [&](TileVertex v) { return raw(v) < own_count; });
     (inside ? mesh.interior : mesh.border).push_back(t);
   };
-  for (const Triangle& t : a.border)
+  for (const TileTriangle& t : a.border)
     add_border(mapped(t, [&](TileVertex v) { return place_a[raw(v)]; }));
-  for (const Triangle& t : b.border) {
-    const Triangle placed = mapped(t, [&](TileVertex v) { return place_b[raw(v)]; });
+  for (const TileTriangle& t : b.border) {
+    const TileTriangle placed = mapped(t, [&](TileVertex v) { return place_b[raw(v)]; });
     const bool known = std::any_of(placed.begin(), placed.end(),
                                    [&](TileVertex v) { return raw(v) < a.own_count; });
     if (!known)
@@ -202,10 +207,10 @@ BuildTile join(const BuildTile& first, std::uint32_t first_index, const BuildTil
 namespace {
 
 /// New numbers for representatives: those of border triangles first, order kept otherwise.
-std::vector<std::uint32_t> boundary_first(const std::vector<Triangle>& border, std::uint32_t count,
-                                          std::uint32_t& boundary_count) {
+std::vector<std::uint32_t> boundary_first(const std::vector<TileTriangle>& border,
+                                          std::uint32_t count, std::uint32_t& boundary_count) {
   std::vector<std::uint32_t> place(count, kUnset);
-  for (const Triangle& t : border) {
+  for (const TileTriangle& t : border) {
     for (const TileVertex v : t) {
       if (raw(v) < count)
         place[raw(v)] = 0;
@@ -219,6 +224,15 @@ std::vector<std::uint32_t> boundary_first(const std::vector<Triangle>& border, s
   return place;
 }
 
+/// The ghosts of a joined tile as foreign corners of the tile that it becomes.
+std::vector<FinerGhost> one_level_up(const std::vector<GhostRef>& ghosts) {
+  std::vector<FinerGhost> foreign;
+  foreign.reserve(ghosts.size());
+  for (const GhostRef& ghost : ghosts)
+    foreign.push_back({ghost});
+  return foreign;
+}
+
 }  // namespace
 
 ContractedTile apply(const BuildTile& joined, Contraction contraction) {
@@ -229,25 +243,25 @@ ContractedTile apply(const BuildTile& joined, Contraction contraction) {
 
   // Border triangles in the new numbers; foreign corners keep theirs, moved from own_count to
   // count.
-  std::vector<Triangle> border = images(mesh.border, [&](TileVertex v) {
+  std::vector<TileTriangle> border = images(mesh.border, [&](TileVertex v) {
     return static_cast<TileVertex>(raw(v) < mesh.own_count ? contraction.parent_of[raw(v)]
                                                            : raw(v) - mesh.own_count + count);
   });
 
   ContractedTile result;
-  WorkTile& tile = result.tile;
+  SimplifiedTile& tile = result.tile;
   const std::vector<std::uint32_t> place = boundary_first(border, count, tile.boundary_count);
   result.parent_map.resize(mesh.own_count);
   for (std::uint32_t i = 0; i < mesh.own_count; ++i) {
     result.parent_map[i] = static_cast<std::uint16_t>(place[contraction.parent_of[i]]);
   }
-  for (Triangle& t : border) {
+  for (TileTriangle& t : border) {
     t = mapped(t, [&](TileVertex v) {
       return raw(v) < count ? static_cast<TileVertex>(place[raw(v)]) : v;
     });
   }
   tile.border = std::move(border);
-  tile.foreign = mesh.ghosts;
+  tile.foreign = one_level_up(mesh.ghosts);
   normalize_triangles(tile.border, true);
   drop_unused(tile.border, tile.foreign, count);
 
@@ -286,7 +300,7 @@ ContractedTile keep(const BuildTile& tile) {
   result.tile.boundary_count = mesh.boundary_count;
   result.tile.interior = mesh.interior;
   result.tile.border = mesh.border;
-  result.tile.foreign = mesh.ghosts;
+  result.tile.foreign = one_level_up(mesh.ghosts);
   normalize_triangles(result.tile.interior, true);
   normalize_triangles(result.tile.border, true);
   result.deviation.around.assign(mesh.own_count, 0);

@@ -16,12 +16,13 @@
 namespace meshhier::cluster_simplify {
 
 /// Rewrites a fresh tile's border with its foreign corners' places at the tile's own level.
-///
+/// `Corner`: ChunkVertex or FinerGhost.
 /// `mapped`: one entry per tile.foreign, at the tile's level. Corners that became one vertex become
 /// one ghost, triangles that became degenerate go; of exact duplicates one stays if `unique`
 /// (simplified tiles; partitions keep the input's duplicates). The ghosts' positions and
 /// attributes are left for fill_ghosts(). O(n log n).
-BuildTile resolve(WorkTile tile, std::span<const GhostRef> mapped, bool unique);
+template <class Corner>
+BuildTile resolve(WorkTile<Corner> tile, std::span<const GhostRef> mapped, bool unique);
 
 /// Appends the ghosts of one neighbour to the tile's vertices; call in ascending order of
 /// `neighbour`. Throws Error(internal) if a ghost lies outside the boundary.
@@ -56,7 +57,7 @@ struct Contraction {
 
 /// A parent tile and the map that leads to it.
 struct ContractedTile {
-  WorkTile tile;                          ///< foreign: the joined tile's ghosts, one level finer
+  SimplifiedTile tile;                    ///< foreign: ghosts of the joined tile
   std::vector<std::uint16_t> parent_map;  ///< own vertex of the joined tile -> vertex of `tile`
   Deviation deviation;                    ///< around: per vertex of `tile`
   FallbackCounts fallbacks;

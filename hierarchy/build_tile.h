@@ -13,19 +13,39 @@ struct VertexHistory {
   std::vector<float> weights;  ///< how many original vertices it stands for, >= 1
 };
 
-/// A tile just made: its border triangles still name their foreign corners as they were one step
-/// earlier, because the neighbours' own maps were not known yet. `foreign` of a simplified tile
-/// counts in tiles and vertices one level finer; of a partition, in chunks (partition/chunk.h) and
-/// provisional ranks within the chunk.
+// A tile just made names the foreign corners of its border triangles as they were one step earlier,
+// because the neighbours' own maps were not known yet. Kept in scratch space as they are here.
+
+/// A foreign corner of a simplified tile: the ghost that it was one level finer, where its tiles
+/// were made from.
+struct FinerGhost {
+  GhostRef ref;  ///< `tile` counts the nodes one level finer than the tile that has the corner
+  friend constexpr auto operator<=>(const FinerGhost&, const FinerGhost&) = default;
+};
+static_assert(sizeof(FinerGhost) == 8);
+
+/// A foreign corner of a partition: a vertex of a chunk (partition/chunk.h) that was not split yet.
+struct ChunkVertex {
+  std::uint32_t chunk = 0;  ///< NodeId::index of the chunk
+  std::uint32_t local = 0;  ///< provisional rank within the chunk
+  friend constexpr auto operator<=>(const ChunkVertex&, const ChunkVertex&) = default;
+};
+static_assert(sizeof(ChunkVertex) == 8);
+
+/// A tile just made, its foreign corners named by `Corner`.
+template <class Corner>
 struct WorkTile {
   VertexArray vertices;   ///< own only, boundary first
   VertexHistory history;  ///< own only
   std::uint32_t boundary_count = 0;
-  std::vector<Triangle> interior;
-  std::vector<Triangle>
+  std::vector<TileTriangle> interior;
+  std::vector<TileTriangle>
       border;  ///< corners from vertices.size() on: foreign[corner - vertices.size()]
-  std::vector<GhostRef> foreign;  ///< ascending, without repeats
+  std::vector<Corner> foreign;  ///< ascending, without repeats
 };
+
+using LeafTile = WorkTile<ChunkVertex>;       ///< of a partition
+using SimplifiedTile = WorkTile<FinerGhost>;  ///< of a node above
 
 /// What a tile shows of itself to its neighbours: its boundary vertices, [0, boundary_count).
 struct Boundary {
@@ -43,12 +63,12 @@ struct BuildTile {
 /// interior triangles at its boundary.
 struct SeamStrip {
   std::uint32_t boundary_count = 0;
-  std::uint32_t own_count = 0;     ///< own vertices in the seam strip, boundary first
-  std::vector<Vec3f> positions;    ///< own, then foreign
-  std::vector<float> deviations;   ///< of own ones: what the triangles around them may have moved
-  std::vector<GhostRef> foreign;   ///< as WorkTile::foreign
-  std::vector<Triangle> interior;  ///< with a corner in the boundary
-  std::vector<Triangle> border;
+  std::uint32_t own_count = 0;      ///< own vertices in the seam strip, boundary first
+  std::vector<Vec3f> positions;     ///< own, then foreign
+  std::vector<float> deviations;    ///< of own ones: what the triangles around them may have moved
+  std::vector<FinerGhost> foreign;  ///< as WorkTile::foreign
+  std::vector<TileTriangle> interior;  ///< with a corner in the boundary
+  std::vector<TileTriangle> border;
   float interior_deviation = 0;  ///< the largest of all interior triangles of the tile
   float lost = 0;                ///< see cluster_simplify::Deviation
   double squared_sum = 0;        ///< likewise

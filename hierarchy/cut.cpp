@@ -59,7 +59,7 @@ void require_node(const Tree& tree, NodeId node) {
 Cut::Cut(const Tree& tree, std::vector<NodeId> nodes) : nodes_(std::move(nodes)) {
   for (NodeId& node : nodes_) {
     require_node(tree, node);
-    node = tile_node(tree, node);
+    node = tree.tile_node(node);
   }
   const auto first = [&](NodeId node) { return tree.partitions(node).begin; };
   std::sort(nodes_.begin(), nodes_.end(),

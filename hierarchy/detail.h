@@ -13,8 +13,8 @@
 #pragma once
 
 #include "hierarchy/attributes.h"
+#include "hierarchy/triangle.h"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <variant>
@@ -45,7 +45,7 @@ struct VertexRun {
 
 struct TriangleRun {
   std::vector<std::uint64_t> indices;  ///< ascending
-  std::vector<std::array<std::uint32_t, 3>> corners;
+  std::vector<Triangle<std::uint32_t>> corners;
 };
 
 struct MergeRun {

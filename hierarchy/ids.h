@@ -10,9 +10,6 @@ namespace meshhier {
 /// A vertex in the order of the input file, in [0, N).
 enum class VertexId : std::uint32_t {};
 
-/// A vertex's position in kd order, in [0, N).
-enum class Rank : std::uint32_t {};
-
 /// A leaf of the kd-tree, in [0, P).
 enum class PartitionId : std::uint32_t {};
 

@@ -8,9 +8,9 @@
 
 #include "hierarchy/attributes.h"
 #include "hierarchy/ids.h"
+#include "hierarchy/triangle.h"
 #include "hierarchy/vec.h"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -18,7 +18,8 @@
 
 namespace meshhier {
 
-using Triangle = std::array<TileVertex, 3>;
+/// Its corners are vertices of one tile.
+using TileTriangle = Triangle<TileVertex>;
 
 /// Positions and attributes of n vertices, each as one flat array.
 struct VertexArray {
@@ -44,38 +45,23 @@ struct GhostRef {
   std::uint32_t index = 0;  ///< its TileVertex there, below that tile's boundary_count
   friend constexpr auto operator<=>(const GhostRef&, const GhostRef&) = default;
 };
+static_assert(sizeof(GhostRef) == 8);
 
 struct TileMesh {
   VertexArray vertices;  ///< own, then ghosts
   std::uint32_t own_count = 0;
-  std::uint32_t boundary_count = 0;  ///< <= own_count
-  std::vector<GhostRef> ghosts;      ///< vertices.size() - own_count, ascending, without repeats
-  std::vector<Triangle> interior;    ///< all corners own; ascending, smallest corner first
-  std::vector<Triangle> border;      ///< one or two corners own, the others ghosts; likewise
+  std::uint32_t boundary_count = 0;    ///< <= own_count
+  std::vector<GhostRef> ghosts;        ///< vertices.size() - own_count, ascending, without repeats
+  std::vector<TileTriangle> interior;  ///< all corners own; ascending, smallest corner first
+  std::vector<TileTriangle> border;    ///< one or two corners own, the others ghosts; likewise
 
   bool is_own(TileVertex v) const { return raw(v) < own_count; }
   const GhostRef& ghost(TileVertex v) const { return ghosts[raw(v) - own_count]; }
 };
 
-// Which corner is the smallest, and which triangle degenerate, no processor can predict: these two
-// do without branches.
-
-/// Turns the corners so that the smallest comes first; orientation is kept.
-constexpr Triangle canonical(const Triangle& t) {
-  constexpr std::array<std::size_t, 5> kTurn{0, 1, 2, 0, 1};
-  const bool second = bool(int{t[1] < t[0]} & int{t[1] < t[2]});
-  const bool third = bool(int{t[2] < t[0]} & int{t[2] < t[1]});
-  const std::size_t first = std::size_t{second} + 2 * std::size_t{third};
-  return {t[first], t[kTurn[first + 1]], t[kTurn[first + 2]]};
-}
-
-constexpr bool is_degenerate(const Triangle& t) {
-  return (int{t[0] == t[1]} | int{t[1] == t[2]} | int{t[2] == t[0]}) != 0;
-}
-
-/// Drops degenerate triangles, turns the rest to canonical form and sorts them. Exact duplicates
+/// Drops degenerate triangles, makes the rest canonical() and sorts them. Exact duplicates
 /// (same corners, same orientation) lose all but one copy if `unique`; mirror images always stay.
 /// O(t log t), deterministic.
-void normalize_triangles(std::vector<Triangle>& triangles, bool unique);
+void normalize_triangles(std::vector<TileTriangle>& triangles, bool unique);
 
 }  // namespace meshhier

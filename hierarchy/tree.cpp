@@ -48,14 +48,27 @@ RankRange Tree::ranks(PartitionRange partitions) const {
   return {first_rank(partitions.begin), first_rank(partitions.end)};
 }
 
-PartitionId Tree::partition_of(Rank rank) const {
+PartitionId Tree::partition_of(std::uint64_t rank) const {
   // The largest p with floor(p N / P) <= rank, that is p N < (rank + 1) P.
-  const std::uint64_t bound = (std::uint64_t{raw(rank)} + 1) * partition_count_;
+  const std::uint64_t bound = (rank + 1) * partition_count_;
   return static_cast<PartitionId>((bound - 1) / vertex_count_);
 }
 
 bool Tree::is_early(NodeId node) const {
   return !is_partition(node) && finer(node.level) == depth_ && partitions(node).size() == 1;
+}
+
+std::vector<NodeId> Tree::tile_nodes() const {
+  std::vector<NodeId> nodes;
+  nodes.reserve(tile_count());
+  for (int level = 0; level <= raw(depth_); ++level) {
+    NodeId node{static_cast<Level>(level), 0};
+    for (const std::uint32_t count = node_count(node.level); node.index < count; ++node.index) {
+      if (!is_early(node))
+        nodes.push_back(node);
+    }
+  }
+  return nodes;
 }
 
 NodeId Tree::ancestor(NodeId node, Level level) const {

@@ -1,6 +1,8 @@
 // The kd-tree's shape, by arithmetic alone: it follows from the vertex and partition counts.
 //
-// Partition p of P holds the ranks [floor(p N / P), floor((p + 1) N / P)): sizes equal +-1.
+// A rank is a vertex's position in kd order, 0 to N - 1; a plain number, since mostly runs of ranks
+// are asked for. Partition p of P holds the ranks from floor(p N / P) to floor((p + 1) N / P) - 1:
+// sizes equal +-1.
 // A node holds a run of partitions [p0, p1), split at p0 + ceil((p1 - p0) / 2); level 0 is the
 // root. Levels 0 .. depth-1 have exactly 2^level nodes. The last level, depth, has the P
 // partitions, one node each. A node of level depth-1 that holds a single partition is *early*: it
@@ -12,6 +14,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace meshhier {
 
@@ -53,10 +56,28 @@ class Tree {
   PartitionRange partitions(NodeId node) const;
   RankRange ranks(PartitionRange partitions) const;
   RankRange ranks(NodeId node) const { return ranks(partitions(node)); }
-  PartitionId partition_of(Rank rank) const;
+  /// The partition that holds a rank, in [0, N).
+  PartitionId partition_of(std::uint64_t rank) const;
 
   /// True for a node of level depth-1 that holds a single partition and so has no tile of its own.
   bool is_early(NodeId node) const;
+
+  /// The node whose tile stands for `node`: itself, or the partition of an early node.
+  NodeId tile_node(NodeId node) const { return is_early(node) ? children(node).nodes[0] : node; }
+  /// Whether the node's tile stands for its parent too: a partition below an early node. O(log P).
+  bool stands_for_parent(NodeId node) const {
+    return is_partition(node) && raw(node.level) > 0 && is_early(parent(node));
+  }
+  /// The nearest node above `node` that has a tile. Requires node.level > 0.
+  NodeId parent_tile(NodeId node) const {
+    const NodeId above = parent(node);
+    return is_early(above) ? parent(above) : above;
+  }
+  /// How many nodes have a tile: all but the early ones. Every tile above the partitions replaces
+  /// two by one: a binary tree with P leaves.
+  std::uint64_t tile_count() const { return 2 * std::uint64_t{partition_count_} - 1; }
+  /// These nodes, ascending. O(P log P).
+  std::vector<NodeId> tile_nodes() const;
 
   /// One level up / the node of `level` that holds `node`. Require node.level > 0 / level <=
   /// node.level.
@@ -90,16 +111,5 @@ class Tree {
   std::uint32_t partition_count_;
   Level depth_;
 };
-
-/// The node whose tile stands for `node`: itself, or the partition of an early node.
-inline NodeId tile_node(const Tree& tree, NodeId node) {
-  return tree.is_early(node) ? tree.children(node).nodes[0] : node;
-}
-
-/// The nearest node above `node` that has a tile. Requires node.level > 0.
-inline NodeId parent_tile(const Tree& tree, NodeId node) {
-  const NodeId parent = tree.parent(node);
-  return tree.is_early(parent) ? tree.parent(parent) : parent;
-}
 
 }  // namespace meshhier

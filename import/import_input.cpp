@@ -149,10 +149,11 @@ class Import {
     return static_cast<std::uint32_t>(base);
   }
 
-  void append(std::span<const mesh_io::SourceTriangle> triangles, std::uint32_t base) {
+  void append(std::span<const Triangle<VertexId>> triangles, std::uint32_t base) {
     env_.cancel.check();
-    for (const mesh_io::SourceTriangle& t : triangles)
-      mesh_.triangles.append(RawTriangle{base + raw(t[0]), base + raw(t[1]), base + raw(t[2])});
+    for (const Triangle<VertexId>& t : triangles)
+      mesh_.triangles.append(
+          Triangle<std::uint32_t>{base + raw(t[0]), base + raw(t[1]), base + raw(t[2])});
   }
 
   Added add_ply(const InputFileFacts& facts, const std::filesystem::path& room) {
@@ -187,7 +188,7 @@ class Import {
       mesh_.attributes.append(block.attributes);
     });
     const mesh_io::FaceCounts counts = source->read_triangles(
-        [&](std::span<const mesh_io::SourceTriangle> triangles) { append(triangles, base); });
+        [&](std::span<const Triangle<VertexId>> triangles) { append(triangles, base); });
     added.faces = counts.faces;
     added.degenerate_triangles = counts.degenerate_triangles;
     if (noted != nullptr)
@@ -245,7 +246,7 @@ class Import {
           mesh_.positions.append(position);
           mesh_.attributes.append(attributes);
         },
-        [&](std::span<const mesh_io::SourceTriangle> triangles) {
+        [&](std::span<const Triangle<VertexId>> triangles) {
           checked_base(path, 0);
           append(triangles, base);
         });
@@ -283,7 +284,7 @@ class Import {
       mesh.attributes.read(i * channels, attributes);
       writer.write_vertices(positions, attributes);
     }
-    std::vector<RawTriangle> triangles;
+    std::vector<Triangle<std::uint32_t>> triangles;
     for (std::uint64_t i = 0; i < content.triangle_count; i += kBlock) {
       env_.cancel.check();
       triangles.resize(std::min(kBlock, content.triangle_count - i));

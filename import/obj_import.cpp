@@ -234,7 +234,7 @@ void append_plain(const ObjParts& parts, RawMesh& mesh, const ImportRoom& room) 
 void append_triangles(CornerSort& corners, std::uint64_t base, RawMesh& mesh,
                       const ImportRoom& room) {
   corners.sort();
-  RawTriangle triangle{};
+  Triangle<std::uint32_t> triangle{};
   corners.for_each_block([&](std::span<const CornerVertex> block) {
     room.cancel.check();
     for (const auto& [corner, vertex] : block) {

@@ -3,18 +3,16 @@
 
 #include "execution/cancel.h"
 #include "hierarchy/attributes.h"
+#include "hierarchy/triangle.h"
 #include "hierarchy/vec.h"
 #include "storage/io/spool.h"
 
-#include <array>
 #include <cstdint>
 
 namespace meshhier::importing {
 
 /// Blocks of the import's spools: large writes, but small beside the least budget.
 inline constexpr std::size_t kImportSpoolBytes = std::size_t{1} << 18;
-
-using RawTriangle = std::array<std::uint32_t, 3>;
 
 struct RawMesh {
   explicit RawMesh(storage::ScratchFile& scratch)
@@ -29,7 +27,7 @@ struct RawMesh {
   bool fits_float = true;  ///< all coordinates do, or their texts (mesh_io::DecimalNumber)
   storage::RecordSpool<Vec3d> positions;
   storage::RecordSpool<float> attributes;  ///< channels() a vertex
-  storage::RecordSpool<RawTriangle> triangles;
+  storage::RecordSpool<Triangle<std::uint32_t>> triangles;
 };
 
 /// What an import works with.

@@ -128,10 +128,6 @@ std::uint32_t checked_number(std::uint64_t number) {
   return static_cast<std::uint32_t>(number);
 }
 
-bool is_degenerate(const RawTriangle& t) {
-  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-}
-
 /// Fills the table from the old numbers of vertices to the new ones, and the vertices of `welded`.
 template <std::size_t Words>
 std::uint64_t weld_into(const RawMesh& mesh, RawMesh& welded,
@@ -183,13 +179,13 @@ class TriangleWelder {
         welded_(welded),
         cancel_(room.cancel) {}
 
-  std::uint64_t weld(const storage::RecordSpool<RawTriangle>& triangles) {
+  std::uint64_t weld(const storage::RecordSpool<Triangle<std::uint32_t>>& triangles) {
     constexpr std::uint64_t kBlockTriangles = 16384;
-    std::vector<RawTriangle> block;
+    std::vector<Triangle<std::uint32_t>> block;
     for (std::uint64_t i = 0; i < triangles.size(); i += block.size()) {
       block.resize(std::min(kBlockTriangles, triangles.size() - i));
       triangles.read(i, block);
-      renumberer_.translate(std::span<const RawTriangle>(block), renumbered_);
+      renumberer_.translate(std::span<const Triangle<std::uint32_t>>(block), renumbered_);
       keep();
     }
     while (renumberer_.next_round()) {
@@ -204,7 +200,7 @@ class TriangleWelder {
  private:
   void keep() {
     cancel_.check();
-    for (const RawTriangle& t : renumbered_.finished) {
+    for (const Triangle<std::uint32_t>& t : renumbered_.finished) {
       if (is_degenerate(t))
         ++degenerate_;
       else
@@ -229,7 +225,7 @@ WeldCounts weld_soup(const storage::RecordSpool<Vec3<Scalar>>& corners, RawMesh&
   execution::SpoolCursor items(corners, room.cancel), kept(corners, room.cancel);
   const std::uint64_t base = mesh.vertex_count();
   WeldCounts counts;
-  RawTriangle triangle{};
+  Triangle<std::uint32_t> triangle{};
   std::size_t corner = 0;
   const auto take = [&](std::uint64_t number) {
     triangle[corner] = checked_number(base + number);

@@ -59,8 +59,7 @@ class BorderPairs::Node {
       : tree_(tree), tile_(tile), node_(node) {
     for (int level = raw(node.level); level > 1; --level) {
       const NodeId below = tree.ancestor(node, static_cast<Level>(level));
-      const bool is_early = tree.is_early(tree.parent(below));
-      maps_.push_back(is_early ? nullptr : maps.get(tile_node(tree, below)));
+      maps_.push_back(tree.stands_for_parent(below) ? nullptr : maps.get(tree.tile_node(below)));
     }
   }
 
@@ -72,7 +71,7 @@ class BorderPairs::Node {
     const auto length = static_cast<std::size_t>(tree_.chain_length(node_, other));
     chain.assign(1, static_cast<std::uint16_t>(vertex));
     for (std::size_t step = 0; step + 1 < length; ++step) {
-      // An early node has no tile: the entry is repeated, and the partition's map leads past it.
+      // A tile that stands for its parent too: the entry is repeated, and its map leads past it.
       if (const auto& map = maps_[step]; map != nullptr)
         vertex = vertex < map->size() ? (*map)[vertex] : UINT16_MAX;
       chain.push_back(static_cast<std::uint16_t>(vertex));
@@ -83,17 +82,16 @@ class BorderPairs::Node {
   const Tree& tree_;
   const PublishedTile& tile_;
   NodeId node_;
-  /// [k]: from the node k levels up to the next; null to an early node.
+  /// [k]: from the node k levels up to the next; null if its tile stands for that too.
   std::vector<std::shared_ptr<const std::vector<std::uint16_t>>> maps_;
 };
 
 void BorderPairs::add(const PublishedTile& tile) {
   add_sides(Node(tree_, maps_, tile, tile.node), border_of(tile, tree_), &tile);
-  if (tile.node == tree_.root())
-    return;
-  const NodeId above = tree_.parent(tile.node);
-  if (tree_.is_early(above))
-    add_sides(Node(tree_, maps_, tile, above), early_border_of(tile, tree_), nullptr);
+  if (tree_.stands_for_parent(tile.node)) {
+    add_sides(Node(tree_, maps_, tile, tree_.parent(tile.node)), early_border_of(tile, tree_),
+              nullptr);
+  }
 }
 
 void BorderPairs::add_sides(const Node& node, std::span<const CornerTriangle> border,

@@ -5,24 +5,10 @@
 #include <iterator>
 
 namespace meshhier::inspection {
-namespace {
-
-constexpr CornerTriangle turned_corners(const CornerTriangle& t) {
-  if (t[1] < t[0] && t[1] < t[2])
-    return {t[1], t[2], t[0]};
-  if (t[2] < t[0] && t[2] < t[1])
-    return {t[2], t[0], t[1]};
-  return t;
-}
-
-}  // namespace
-
 void normalize(std::vector<CornerTriangle>& triangles, bool unique) {
-  std::erase_if(triangles, [](const CornerTriangle& t) {
-    return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-  });
+  std::erase_if(triangles, [](const CornerTriangle& t) { return is_degenerate(t); });
   for (CornerTriangle& t : triangles)
-    t = turned_corners(t);
+    t = canonical(t);
   std::sort(triangles.begin(), triangles.end());
   if (unique)
     triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
@@ -32,7 +18,7 @@ std::vector<CornerTriangle> border_of(const PublishedTile& tile, const Tree& tre
   const TileMesh& mesh = tile.mesh;
   std::vector<CornerTriangle> triangles;
   triangles.reserve(mesh.border.size());
-  for (const Triangle& t : mesh.border) {
+  for (const TileTriangle& t : mesh.border) {
     CornerTriangle& corners = triangles.emplace_back();
     for (std::size_t i = 0; i < 3; ++i) {
       corners[i] = mesh.is_own(t[i]) ? make_corner(tile.node.index, raw(t[i]))
@@ -58,7 +44,7 @@ std::vector<CornerTriangle> early_border_of(const PublishedTile& tile, const Tre
   };
   std::vector<CornerTriangle> triangles;
   triangles.reserve(mesh.border.size());
-  for (const Triangle& t : mesh.border) {
+  for (const TileTriangle& t : mesh.border) {
     triangles.push_back({corner(t[0]), corner(t[1]), corner(t[2])});
   }
   normalize(triangles, true);

@@ -3,8 +3,8 @@
 
 #include "hierarchy/published.h"
 #include "hierarchy/tree.h"
+#include "hierarchy/triangle.h"
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -13,7 +13,7 @@ namespace meshhier::inspection {
 /// NodeId::index of a tile in the upper half, one of its own vertices in the lower.
 enum class Corner : std::uint64_t {};
 
-using CornerTriangle = std::array<Corner, 3>;
+using CornerTriangle = Triangle<Corner>;
 
 constexpr Corner make_corner(std::uint32_t tile, std::uint32_t vertex) {
   return static_cast<Corner>(std::uint64_t{tile} << 32 | vertex);
@@ -25,8 +25,8 @@ constexpr std::uint32_t vertex_index(Corner corner) {
   return static_cast<std::uint32_t>(static_cast<std::uint64_t>(corner));
 }
 
-/// normalize_triangles() for corner triangles: drops degenerate ones, turns the smallest corner to
-/// the front, sorts; one of exact duplicates stays if `unique`.
+/// normalize_triangles() for corner triangles: drops degenerate ones, makes the rest canonical(),
+/// sorts; one of exact duplicates stays if `unique`.
 void normalize(std::vector<CornerTriangle>& triangles, bool unique);
 
 /// The tile's border triangles with ghosts as vertices of their own tiles, normalized.

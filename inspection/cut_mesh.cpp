@@ -1,5 +1,6 @@
 #include "inspection/cut_mesh.h"
 
+#include "hierarchy/drawing_rule.h"
 #include "hierarchy/error.h"
 
 #include <algorithm>
@@ -18,7 +19,7 @@ struct BorderView {
 };
 
 BorderView view_border(const TileMesh& mesh, NodeId node, std::uint32_t base,
-                       const Triangle& triangle,
+                       const TileTriangle& triangle,
                        const std::vector<std::optional<ShownGhost>>& ghosts, Level last) {
   BorderView view;
   view.original = node.level == last;
@@ -29,17 +30,13 @@ BorderView view_border(const TileMesh& mesh, NodeId node, std::uint32_t base,
       continue;
     }
     const auto& ghost = ghosts[raw(v) - mesh.own_count];
-    const bool ours = ghost && (ghost->level < node.level || node.index < mesh.ghost(v).tile);
+    const bool ours = ghost && draws_before(node, mesh.ghost(v).tile, ghost->level);
     if (!ours)
       return {.corners = {}, .drawn = false, .original = false};
     view.corners[corner] = ghost->number;
     view.original = view.original && ghost->level == last;
   }
   return view;
-}
-
-bool is_flat(const CutTriangle& t) {
-  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
 }  // namespace
@@ -90,7 +87,7 @@ DrawnTile draw_tile(const Tree& tree, const NumberedCut& numbered, std::size_t p
 
   DrawnTile drawn;
   drawn.triangles.reserve(mesh.interior.size() + mesh.border.size());
-  for (const Triangle& t : mesh.interior) {
+  for (const TileTriangle& t : mesh.interior) {
     drawn.triangles.push_back({base + raw(t[0]), base + raw(t[1]), base + raw(t[2])});
   }
   std::vector<CutTriangle> images;
@@ -101,8 +98,8 @@ DrawnTile draw_tile(const Tree& tree, const NumberedCut& numbered, std::size_t p
       drawn.left_out.push_back(static_cast<std::uint32_t>(i));
     } else if (view.original) {
       drawn.triangles.push_back(view.corners);
-    } else if (!is_flat(view.corners)) {
-      images.push_back(turned(view.corners));
+    } else if (!is_degenerate(view.corners)) {
+      images.push_back(canonical(view.corners));
     }
   }
   std::sort(images.begin(), images.end());

@@ -2,21 +2,17 @@
 //
 // The vertices of the cut's tiles are numbered from left to right, each tile's own ones in their
 // order. A border triangle reaches into other tiles: its ghosts are looked up where the cut shows
-// their regions (chains, hierarchy/published.h). Who draws it:
-//
-//   - a tile draws it when every other tile it touches is shown at the same level or coarser; of
-//     tiles of the same level the one with the lowest index draws;
-//   - so all images of one triangle of the cut are drawn by the same tile: the corners alone say
-//     which tiles it touches. Exact duplicates therefore meet within one tile, and dropping them
-//     tile by tile is dropping them all.
+// their regions (chains, hierarchy/published.h). One tile draws it (hierarchy/drawing_rule.h), the
+// same for all images of one triangle of the cut. Exact duplicates therefore meet within one tile,
+// and dropping them tile by tile is dropping them all.
 #pragma once
 
 #include "hierarchy/cut.h"
 #include "hierarchy/published.h"
 #include "hierarchy/tree.h"
+#include "hierarchy/triangle.h"
 #include "storage/format/hierarchy_reader.h"
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -24,16 +20,7 @@
 namespace meshhier::inspection {
 
 /// Corners as numbers of the cut's vertices.
-using CutTriangle = std::array<std::uint32_t, 3>;
-
-/// With its smallest corner first.
-constexpr CutTriangle turned(const CutTriangle& t) {
-  if (t[1] < t[0] && t[1] < t[2])
-    return {t[1], t[2], t[0]};
-  if (t[2] < t[0] && t[2] < t[1])
-    return {t[2], t[0], t[1]};
-  return t;
-}
+using CutTriangle = Triangle<std::uint32_t>;
 
 /// A cut whose vertices are numbered.
 struct NumberedCut {

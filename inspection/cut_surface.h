@@ -4,12 +4,12 @@
 #include "execution/cancel.h"
 #include "execution/progress.h"
 #include "hierarchy/bounds.h"
+#include "hierarchy/triangle.h"
 #include "inspection/cut_mesh.h"
 #include "inspection/node_cache.h"
 #include "inspection/triangle_search.h"
 #include "storage/format/hierarchy_reader.h"
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -23,7 +23,7 @@ struct TileSurface {
   std::vector<SurfaceTriangle> triangles;  ///< interior ones, then border ones
   std::size_t interior_count = 0;
   /// Of each border triangle: the positions in the cut of the tiles that have its corners.
-  std::vector<std::array<std::uint32_t, 3>> touched;
+  std::vector<Triangle<std::uint32_t>> touched;
 };
 
 /// What is kept of every tile.

@@ -10,7 +10,7 @@ std::vector<std::uint64_t> shared_edges(const PublishedTile& tile, std::uint32_t
                                         const std::vector<std::uint32_t>& left_out) {
   std::vector<std::uint64_t> keys;
   for (std::uint32_t place : left_out) {
-    const Triangle& t = tile.mesh.border[place];
+    const TileTriangle& t = tile.mesh.border[place];
     for (std::size_t i = 0; i < 3; ++i) {
       const TileVertex a = t[i], b = t[(i + 1) % 3];
       if (!tile.mesh.is_own(a) || !tile.mesh.is_own(b))

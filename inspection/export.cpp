@@ -113,7 +113,7 @@ std::string export_cut(const ExportJob& job, Cut cut, const std::string& what) {
     job.cancel.check();
     DrawnTile drawn = draw_tile(tree, numbered, i, job.reader.read_tile(numbered.cut[i]));
     for (CutTriangle& triangle : drawn.triangles)
-      triangle = turned(triangle);
+      triangle = canonical(triangle);
     std::sort(drawn.triangles.begin(), drawn.triangles.end());
     triangles.append(drawn.triangles);
     job.progress.advance(1);
@@ -135,11 +135,11 @@ std::string export_cut(const ExportJob& job, Cut cut, const std::string& what) {
 }
 
 std::string export_tile(const ExportJob& job, NodeId node) {
-  const Tree& tree = job.reader.tree();
-  require_node(tree, node);
+  require_node(job.reader.tree(), node);
   job.progress.stage("export", 1, "tiles");
-  const TileMesh mesh = job.reader.read_tile(node).mesh;
-  const std::string what = "tile " + to_text(tile_node(tree, node));
+  const PublishedTile tile = job.reader.read_tile(node);
+  const TileMesh& mesh = tile.mesh;
+  const std::string what = "tile " + to_text(tile.node);
   mesh_io::PlyContent content = content_for(job.reader, what);
   content.vertex_count = mesh.vertices.size();
   content.triangle_count = mesh.interior.size() + mesh.border.size();
@@ -147,7 +147,7 @@ std::string export_tile(const ExportJob& job, NodeId node) {
   write_vertices(writer, job.reader, mesh.vertices, mesh.vertices.size());
   for (const auto* list : {&mesh.interior, &mesh.border}) {
     std::vector<CutTriangle> triangles;
-    for (const Triangle& t : *list)
+    for (const TileTriangle& t : *list)
       triangles.push_back({raw(t[0]), raw(t[1]), raw(t[2])});
     writer.write_triangles(triangles);
   }

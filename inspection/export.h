@@ -16,7 +16,7 @@ namespace meshhier::inspection {
 /// The outline's lines.
 struct OutlineSelection {};
 
-/// A whole level (partitions stand for early nodes); one node's tile with its border triangles and
+/// A whole level (Cut::of_level); one node's tile with its border triangles and
 /// ghosts; the cut in a text file (parse_cut() in hierarchy/cut.h); the outline.
 using ExportSelection = std::variant<Level, NodeId, std::filesystem::path, OutlineSelection>;
 

@@ -15,7 +15,7 @@ namespace meshhier::inspection {
 /// Narrows what is told. Both unset: everything.
 struct InspectOptions {
   std::optional<Level> level;  ///< this level, tile by tile
-  std::optional<NodeId> node;  ///< this node's tile; for an early node its partition's
+  std::optional<NodeId> node;  ///< the tile that stands for this node
 };
 
 /// For people: source, parameters, a table per level, compactness, outline, totals. Reads manifest

@@ -18,7 +18,7 @@ inline std::uint64_t memory_bytes(const PublishedTile& tile) {
   const TileMesh& mesh = tile.mesh;
   return sizeof(PublishedTile) + mesh.vertices.positions.size() * sizeof(Vec3f) +
          mesh.vertices.attributes.size() * sizeof(float) + mesh.ghosts.size() * sizeof(GhostRef) +
-         (mesh.interior.size() + mesh.border.size()) * sizeof(Triangle) +
+         (mesh.interior.size() + mesh.border.size()) * sizeof(TileTriangle) +
          tile.parent_map.size() * sizeof(std::uint16_t) +
          tile.chains.size() * sizeof(std::uint32_t) + tile.chains.entries().size_bytes();
 }

@@ -106,7 +106,7 @@ TileStore::TileStore(const storage::HierarchyReader& reader, std::uint64_t cache
           [](const PublishedTile& tile) { return memory_bytes(tile); }) {}
 
 std::shared_ptr<const PublishedTile> TileStore::find(NodeId node) {
-  node = tile_node(tree_, node);
+  node = tree_.tile_node(node);
   if (unreadable_.contains(node))
     return nullptr;
   try {

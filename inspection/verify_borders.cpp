@@ -82,8 +82,8 @@ void check_ghosts(const VerifyJob& job, const PublishedTile& tile, const GhostGr
   recoloured.report(job, tile.node, neighbour.node, "have not its attributes");
 }
 
-/// Entry k of a chain is entry k-1 through the parent map of the tile that k-1 is a vertex of. An
-/// early node has no tile: its entry repeats the one below, and the partition's map leads past it.
+/// Entry k of a chain is entry k-1 through the parent map of the tile that k-1 is a vertex of. A
+/// tile that stands for its parent too has the same entry twice, and its map leads past that.
 void check_chains(const VerifyJob& job, const PublishedTile& tile, const GhostGroup& group) {
   const Tree& tree = job.tree();
   GhostTally wrong;
@@ -94,15 +94,16 @@ void check_chains(const VerifyJob& job, const PublishedTile& tile, const GhostGr
   }
   const int length = tree.chain_length(tile.node, group.node);
   for (int step = 1; step < length; ++step) {
-    const int level = raw(group.node.level) - step;
-    if (tree.is_early(tree.ancestor(group.node, static_cast<Level>(level)))) {
+    const NodeId from =
+        tree.ancestor(group.node, static_cast<Level>(raw(group.node.level) - step + 1));
+    if (tree.stands_for_parent(from)) {
       for (std::size_t i = group.begin; i < group.end; ++i) {
         wrong.require(tile.chains[i][static_cast<std::size_t>(step)] == reached[i - group.begin],
                       i);
       }
       continue;
     }
-    const auto below = job.tiles.find(tree.ancestor(group.node, static_cast<Level>(level + 1)));
+    const auto below = job.tiles.find(from);
     if (!below)
       return;
     for (std::size_t i = group.begin; i < group.end; ++i) {

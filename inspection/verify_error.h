@@ -22,7 +22,7 @@ namespace meshhier::inspection {
 struct AllLevels {};
 
 struct ErrorOptions {
-  /// A level (partitions stand for early nodes); all; the cut in a text file (parse_nodes()).
+  /// A level (Cut::of_level); all; the cut in a text file (parse_nodes()).
   std::variant<Level, AllLevels, std::filesystem::path> selection = Level{};
   std::uint64_t samples = 400'000;         ///< in each direction, >= 1; Metro figures use so many
   std::uint64_t memory_budget = 1U << 30;  ///< bytes

@@ -40,7 +40,8 @@ bool is_tile_file(const Tree& tree, const fs::path& relative) {
   if (!level || !index || *level > raw(tree.depth()))
     return false;
   const NodeId node{static_cast<Level>(*level), *index};
-  return tree.contains(node) && !tree.is_early(node) && storage::tile_path({}, node) == relative;
+  return tree.contains(node) && tree.tile_node(node) == node &&
+         storage::tile_path({}, node) == relative;
 }
 
 bool is_known(const Tree& tree, const std::set<fs::path>& tilesets, const fs::path& relative) {

@@ -76,7 +76,7 @@ bool add_image(const Tree& tree, const PublishedTile& child, const PublishedTile
   if (!corners)
     return false;
   for (const auto* list : {&child.mesh.interior, &child.mesh.border}) {
-    for (const Triangle& t : *list) {
+    for (const TileTriangle& t : *list) {
       images.push_back({(*corners)[raw(t[0])], (*corners)[raw(t[1])], (*corners)[raw(t[2])]});
     }
   }
@@ -89,7 +89,7 @@ bool add_image(const Tree& tree, const PublishedTile& child, const PublishedTile
 
 std::vector<CornerTriangle> all_triangles(const PublishedTile& tile, const Tree& tree) {
   std::vector<CornerTriangle> triangles = border_of(tile, tree);
-  for (const Triangle& t : tile.mesh.interior) {
+  for (const TileTriangle& t : tile.mesh.interior) {
     triangles.push_back({make_corner(tile.node.index, raw(t[0])),
                          make_corner(tile.node.index, raw(t[1])),
                          make_corner(tile.node.index, raw(t[2]))});

@@ -6,6 +6,7 @@
 // sums are of two independent 64-bit hashes: two different multisets have the same sums with a
 // chance of 2^-128. Nothing is kept but one 64-bit hash per input vertex, in a spool.
 #include "hierarchy/cut.h"
+#include "hierarchy/drawing_rule.h"
 #include "hierarchy/error.h"
 #include "hierarchy/lattice.h"
 #include "import/mesh_input.h"
@@ -26,8 +27,6 @@
 
 namespace meshhier::inspection {
 namespace {
-
-using HashTriangle = std::array<std::uint64_t, 3>;
 
 constexpr std::size_t kSpoolBlockBytes = std::size_t{1} << 20;
 
@@ -57,7 +56,7 @@ std::uint64_t hash_vertex(Salt salt, Vec3f position, std::span<const float> attr
   return hash.value();
 }
 
-std::uint64_t hash_triangle(Salt salt, const HashTriangle& corners) {
+std::uint64_t hash_triangle(Salt salt, const Triangle<std::uint64_t>& corners) {
   SaltedHash hash(salt);
   hash.append(corners.data(), sizeof corners);
   return hash.value();
@@ -83,10 +82,9 @@ struct MeshSums {
                  hash_vertex(kVertexB, position, attributes));
   }
   /// Corners as kVertexTable hashes. Equal ones may be anywhere: the least of all turns is taken.
-  void add_triangle(const HashTriangle& t) {
-    const HashTriangle turned =
-        std::min({t, HashTriangle{t[1], t[2], t[0]}, HashTriangle{t[2], t[0], t[1]}});
-    triangles.add(hash_triangle(kTriangleA, turned), hash_triangle(kTriangleB, turned));
+  void add_triangle(const Triangle<std::uint64_t>& t) {
+    const Triangle<std::uint64_t> least = std::min({t, turned(t, 1), turned(t, 2)});
+    triangles.add(hash_triangle(kTriangleA, least), hash_triangle(kTriangleB, least));
   }
 };
 
@@ -99,15 +97,16 @@ void add_tile(const PublishedTile& tile, MeshSums& sums) {
       sums.add_vertex(mesh.vertices.positions[v], attributes);
     hashes.push_back(hash_vertex(kVertexTable, mesh.vertices.positions[v], attributes));
   }
-  const auto add = [&](const Triangle& t) {
+  const auto add = [&](const TileTriangle& t) {
     sums.add_triangle({hashes[raw(t[0])], hashes[raw(t[1])], hashes[raw(t[2])]});
   };
-  const auto ours = [&](TileVertex v) {  // of the tiles that list a triangle, the first counts it
-    return mesh.is_own(v) || tile.node.index < mesh.ghost(v).tile;
+  // Of the tiles that list a triangle, the one counts it that draws it among all partitions.
+  const auto before = [&](std::size_t ghost) {
+    return draws_before(tile.node, mesh.ghosts[ghost].tile, tile.node.level);
   };
   std::for_each(mesh.interior.begin(), mesh.interior.end(), add);
-  for (const Triangle& t : mesh.border) {
-    if (std::all_of(t.begin(), t.end(), ours))
+  for (const TileTriangle& t : mesh.border) {
+    if (draws(mesh, t, before))
       add(t);
   }
 }
@@ -170,11 +169,11 @@ InputSums sum_input(const VerifyJob& job, mesh_io::MeshSource& source) {
       job.scratch);
   partition::Renumbered<std::uint64_t> renumbered;
   const auto add = [&] {
-    for (const HashTriangle& t : renumbered.finished)
+    for (const Triangle<std::uint64_t>& t : renumbered.finished)
       sums.add_triangle(t);
     renumberer.keep(renumbered);
   };
-  source.read_triangles([&](std::span<const mesh_io::SourceTriangle> triangles) {
+  source.read_triangles([&](std::span<const Triangle<VertexId>> triangles) {
     job.cancel.check();
     renumberer.translate(triangles, renumbered);
     add();

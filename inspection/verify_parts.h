@@ -45,7 +45,7 @@ class TileStore {
   TileStore(const storage::HierarchyReader& reader, std::uint64_t cache_bytes,
             ProblemList& problems);
 
-  /// The node's tile, for an early node its partition's; null if it cannot be read.
+  /// The tile that stands for the node; null if it cannot be read.
   std::shared_ptr<const PublishedTile> find(NodeId node);
   std::size_t unreadable_count() const { return unreadable_.size(); }
 

@@ -98,7 +98,7 @@ class Images {
     begin_ = original_.bases[partition];
     images_.resize(original_.bases[partition + 1] - begin_);
     std::iota(images_.begin(), images_.end(), 0U);
-    for (; node != shown_.cut[position]; node = parent_tile(job_.tree(), node)) {
+    for (; node != shown_.cut[position]; node = job_.tree().parent_tile(node)) {
       const auto map = maps_.get(node);
       for (std::uint32_t& vertex : images_)
         vertex = step(node, *map, vertex);

@@ -1,4 +1,5 @@
 #include "hierarchy/cut.h"
+#include "hierarchy/drawing_rule.h"
 #include "hierarchy/lattice.h"
 #include "inspection/verify_parts.h"
 #include "storage/format/layout.h"
@@ -31,7 +32,7 @@ class TileProblems {
   NodeId node_;
 };
 
-bool has_order(const std::vector<Triangle>& triangles, bool unique) {
+bool has_order(const std::vector<TileTriangle>& triangles, bool unique) {
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     if (is_degenerate(triangles[i]) || canonical(triangles[i]) != triangles[i])
       return false;
@@ -47,7 +48,7 @@ bool has_order(const std::vector<Triangle>& triangles, bool unique) {
 /// neighbour's contraction made degenerate are gone); every ghost is in a border triangle.
 bool has_sound_boundary(const TileMesh& mesh) {
   std::vector<bool> used(mesh.vertices.size());
-  for (const Triangle& t : mesh.border) {
+  for (const TileTriangle& t : mesh.border) {
     for (TileVertex v : t)
       used[raw(v)] = true;
   }
@@ -56,22 +57,6 @@ bool has_sound_boundary(const TileMesh& mesh) {
       return false;
   }
   return true;
-}
-
-/// Border triangles that the tile draws in its own level's cut, where early nodes are shown finer.
-std::uint32_t drawn_border_count(const Tree& tree, const PublishedTile& tile) {
-  const TileMesh& mesh = tile.mesh;
-  std::vector<bool> lets_draw;
-  for (const GhostRef& ghost : mesh.ghosts) {
-    lets_draw.push_back(tile.node.index < ghost.tile &&
-                        !tree.is_early({tile.node.level, ghost.tile}));
-  }
-  const auto drawn = [&](const Triangle& t) {
-    return std::all_of(t.begin(), t.end(), [&](TileVertex v) {
-      return mesh.is_own(v) || lets_draw[raw(v) - mesh.own_count];
-    });
-  };
-  return static_cast<std::uint32_t>(std::count_if(mesh.border.begin(), mesh.border.end(), drawn));
 }
 
 void check_errors(const VerifyJob& job, const TileRecord& record, const TileProblems& problems) {
@@ -87,7 +72,7 @@ void check_errors(const VerifyJob& job, const TileRecord& record, const TileProb
                    record.bound, rounding);
   if (record.node.level == Level{})
     return;
-  const TileRecord& parent = job.reader.record(parent_tile(job.tree(), record.node));
+  const TileRecord& parent = job.reader.record(job.tree().parent_tile(record.node));
   problems.require(record.error < parent.error,
                    "error {} is not below the error {} of its parent {}", record.error,
                    parent.error, to_text(parent.node));
@@ -99,7 +84,7 @@ void check_parent_map(const VerifyJob& job, const PublishedTile& tile,
     problems.require(tile.parent_map.empty(), "the root has a parent map");
     return;
   }
-  const TileRecord& parent = job.reader.record(parent_tile(job.tree(), tile.node));
+  const TileRecord& parent = job.reader.record(job.tree().parent_tile(tile.node));
   problems.require(tile.parent_map.size() == tile.mesh.own_count,
                    "the parent map has {} entries for {} vertices", tile.parent_map.size(),
                    tile.mesh.own_count);
@@ -137,7 +122,7 @@ void verify_tile(const VerifyJob& job, const TileRecord& record, const Published
   problems.require(
       has_sound_boundary(mesh),
       "a border triangle has an own corner off the boundary, or a ghost has no border triangle");
-  const std::uint32_t drawn = drawn_border_count(tree, tile);
+  const std::uint32_t drawn = drawn_border_count(tree, tile.node, mesh);
   problems.require(drawn == record.drawn_border_count,
                    "draws {} border triangles in its level's cut, the index says {}", drawn,
                    record.drawn_border_count);

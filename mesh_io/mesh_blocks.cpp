@@ -178,7 +178,7 @@ void TriangleBlocks::flush() {
   const std::size_t count = filled_;
   filled_ = 0;
   counts_.triangles += count;
-  visit_(std::span<const SourceTriangle>(block_.get(), count));
+  visit_(std::span<const Triangle<VertexId>>(block_.get(), count));
 }
 
 }  // namespace meshhier::mesh_io

@@ -76,7 +76,7 @@ class TriangleBlocks {
  public:
   explicit TriangleBlocks(const TriangleVisitor& visit)
       : visit_(visit),
-        block_(std::make_unique_for_overwrite<SourceTriangle[]>(MeshSource::kBlockSize)) {}
+        block_(std::make_unique_for_overwrite<Triangle<VertexId>[]>(MeshSource::kBlockSize)) {}
 
   /// A whole face of three corners.
   void add_triangle_face(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
@@ -112,7 +112,7 @@ class TriangleBlocks {
   void flush();
 
   const TriangleVisitor& visit_;
-  std::unique_ptr<SourceTriangle[]> block_;  ///< kBlockSize
+  std::unique_ptr<Triangle<VertexId>[]> block_;  ///< kBlockSize
   std::size_t filled_ = 0;
   FaceCounts counts_;
   std::uint64_t corner_count_ = 0;

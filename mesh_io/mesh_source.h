@@ -3,10 +3,10 @@
 
 #include "hierarchy/attributes.h"
 #include "hierarchy/ids.h"
+#include "hierarchy/triangle.h"
 #include "hierarchy/vec.h"
 #include "storage/io/file.h"
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -38,8 +38,6 @@ struct VertexBlock {
   std::span<const float> attributes;  ///< count * attributes.channels(), see hierarchy/attributes.h
 };
 
-using SourceTriangle = std::array<VertexId, 3>;
-
 /// What reading all faces found.
 struct FaceCounts {
   std::uint64_t faces = 0;
@@ -50,7 +48,7 @@ struct FaceCounts {
 
 /// Some triangles of consecutive faces. Valid as long as the memory it was read into is not used.
 struct TriangleBlock {
-  std::span<const SourceTriangle> triangles;
+  std::span<const Triangle<VertexId>> triangles;
   std::uint64_t faces = 0;  ///< taken; those without a triangle here were degenerate
   bool whole = false;       ///< all faces of the block were taken
 };
@@ -61,11 +59,11 @@ struct BlockMemory {
   std::vector<Vec3f> positions;
   std::vector<Vec3d> exact;
   std::vector<float> attributes;
-  std::vector<SourceTriangle> triangles;
+  std::vector<Triangle<VertexId>> triangles;
 };
 
 using VertexVisitor = std::function<void(const VertexBlock&)>;
-using TriangleVisitor = std::function<void(std::span<const SourceTriangle>)>;
+using TriangleVisitor = std::function<void(std::span<const Triangle<VertexId>>)>;
 
 /// Every failure throws Error(input) naming file, byte offset (binary) or line (text), what was
 /// expected and what was found; Error(io) if the file cannot be read. An exception of a visitor

@@ -165,7 +165,7 @@ TriangleBlock PlyTriangleBlocks::read(const InputFile& input, std::uint64_t inde
   const std::size_t wanted = block.rows;
   const std::byte* bytes = blocks_.read(input, index, block, memory.bytes);
   memory.triangles.resize(block.rows);
-  SourceTriangle* out = memory.triangles.data();
+  Triangle<VertexId>* out = memory.triangles.data();
   const auto take = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     *out = {VertexId{a}, VertexId{b}, VertexId{c}};
     out += static_cast<int>(a != b) & static_cast<int>(b != c) & static_cast<int>(c != a);

@@ -170,7 +170,7 @@ void PlyWriter::write_vertices(std::span<const Vec3d> positions,
   state_->put_vertices(positions, attributes);
 }
 
-void PlyWriter::write_triangles(std::span<const std::array<std::uint32_t, 3>> triangles) {
+void PlyWriter::write_triangles(std::span<const Triangle<std::uint32_t>> triangles) {
   assert(state_->vertices == state_->content.vertex_count && state_->edges == 0);
   for (const auto& triangle : triangles) {
     state_->begin_row();

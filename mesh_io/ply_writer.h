@@ -2,6 +2,7 @@
 #pragma once
 
 #include "hierarchy/attributes.h"
+#include "hierarchy/triangle.h"
 #include "hierarchy/vec.h"
 #include "storage/io/file.h"
 
@@ -37,7 +38,7 @@ class PlyWriter {
   /// `attributes`: positions.size() * content.attributes.channels() floats.
   void write_vertices(std::span<const Vec3f> positions, std::span<const float> attributes);
   void write_vertices(std::span<const Vec3d> positions, std::span<const float> attributes);
-  void write_triangles(std::span<const std::array<std::uint32_t, 3>> triangles);
+  void write_triangles(std::span<const Triangle<std::uint32_t>> triangles);
   void write_edges(std::span<const std::array<std::uint32_t, 2>> edges);
   /// Flushes; the file is complete after it.
   void finish();

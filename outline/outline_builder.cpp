@@ -28,24 +28,24 @@ struct Corner {
 };
 
 /// Corners by ascending key: both sides of a line compute its points from the same order.
-using CornerTriangle = std::array<Corner, 3>;
+using PlacedTriangle = std::array<Corner, 3>;
 
 /// Of a triangle's edges, which corners they join.
 constexpr std::array<std::array<std::size_t, 2>, 3> kEdges{{{0, 1}, {0, 2}, {1, 2}}};
 
-bool is_crossing(const CornerTriangle& t, std::size_t edge) {
+bool is_crossing(const PlacedTriangle& t, std::size_t edge) {
   return sector_of(t[kEdges[edge][0]].key) != sector_of(t[kEdges[edge][1]].key);
 }
 
-bool touches_three(const CornerTriangle& t) {
+bool touches_three(const PlacedTriangle& t) {
   return is_crossing(t, 0) && is_crossing(t, 2);  // corners ascend by sector
 }
 
-std::array<VertexKey, 3> key_of(const CornerTriangle& t) {
+Triangle<VertexKey> key_of(const PlacedTriangle& t) {
   return {t[0].key, t[1].key, t[2].key};
 }
 
-bool before(const CornerTriangle& a, const CornerTriangle& b) {
+bool before(const PlacedTriangle& a, const PlacedTriangle& b) {
   return key_of(a) < key_of(b);
 }
 
@@ -81,8 +81,8 @@ void append_lonely(std::span<std::uint32_t> numbers, std::vector<std::uint32_t>&
 std::vector<std::array<std::uint32_t, 2>> own_border_edges(const TileMesh& tile) {
   std::vector<std::uint32_t> first(tile.own_count + 1, 0);
   const auto visit_edges = [&tile](auto&& visit) {
-    for (const std::vector<Triangle>* triangles : {&tile.interior, &tile.border}) {
-      for (const Triangle& t : *triangles) {
+    for (const std::vector<TileTriangle>* triangles : {&tile.interior, &tile.border}) {
+      for (const TileTriangle& t : *triangles) {
         if (is_degenerate(t))
           continue;
         for (std::size_t i = 0; i < 3; ++i) {
@@ -140,7 +140,7 @@ SectorBorder border_of(std::uint32_t sector, const TileMesh& tile) {
 }
 
 struct SectorContent {
-  std::vector<CornerTriangle> triangles;  ///< border triangles of which it is the first, sorted
+  std::vector<PlacedTriangle> triangles;  ///< border triangles of which it is the first, sorted
   SectorBorder border;
 };
 
@@ -243,7 +243,7 @@ class Network {
     points_.resize(triangles_.size());
     const std::vector<CrossingEdge> edges = crossing_edges();
     std::size_t t = 0;
-    const auto add_centroids_before = [&](const std::array<VertexKey, 3>& key) {
+    const auto add_centroids_before = [&](const Triangle<VertexKey>& key) {
       for (; t < triangles_.size() && key_of(triangles_[t]) < key; ++t) {
         if (touches_three(triangles_[t]) && !is_repeated(t))
           points_[t].centroid = add_centroid(triangles_[t]);
@@ -261,14 +261,14 @@ class Network {
     add_centroids_before(kAfterAll);
   }
 
-  std::uint32_t add_midpoint(const CornerTriangle& t, std::size_t edge) {
+  std::uint32_t add_midpoint(const PlacedTriangle& t, std::size_t edge) {
     const auto& [a, b] = kEdges[edge];
     const Vec3d sum = to_double(t[a].position) + to_double(t[b].position);
     positions_.push_back(to_float(sum * 0.5));
     return count() - 1;
   }
 
-  std::uint32_t add_centroid(const CornerTriangle& t) {
+  std::uint32_t add_centroid(const PlacedTriangle& t) {
     const Vec3d sum =
         to_double(t[0].position) + to_double(t[1].position) + to_double(t[2].position);
     positions_.push_back(to_float(sum * (1.0 / 3)));
@@ -276,7 +276,7 @@ class Network {
   }
 
   /// The line through one border triangle, which has two or three crossing edges.
-  void add_line(const CornerTriangle& triangle, const Points& points) {
+  void add_line(const PlacedTriangle& triangle, const Points& points) {
     std::array<std::uint32_t, 3> crossings{};
     std::size_t count = 0;
     for (std::size_t edge = 0; edge < 3; ++edge) {
@@ -304,14 +304,14 @@ class Network {
                     std::to_string(sector_of(vertex)) + ", which is not in that sector's boundary");
   }
 
-  static constexpr std::array<VertexKey, 3> kAfterAll{~VertexKey{0}, ~VertexKey{0}, ~VertexKey{0}};
+  static constexpr Triangle<VertexKey> kAfterAll{~VertexKey{0}, ~VertexKey{0}, ~VertexKey{0}};
 
   std::vector<Sector> sectors_;
   std::vector<Vec3f> positions_;
   std::vector<std::array<std::uint32_t, 2>> segments_;
   std::uint32_t vertex_count_ = 0;
   // Until segments are made:
-  std::vector<CornerTriangle> triangles_;  ///< sorted: a sector's come before the next one's
+  std::vector<PlacedTriangle> triangles_;  ///< sorted: a sector's come before the next one's
   std::vector<Points> points_;             ///< of each triangle
   std::vector<CrossingEdge> lonely_;       ///< ascending
 };
@@ -433,10 +433,10 @@ OutlineBuilder::Sector::Sector(std::uint32_t index, const TileMesh& tile)
     const std::uint32_t own = tile.is_own(v) ? vertex : tile.ghost(v).index;
     return {VertexKey{sector} << 32 | own, tile.vertices.positions[vertex]};
   };
-  for (const Triangle& t : tile.border) {
+  for (const TileTriangle& t : tile.border) {
     if (is_degenerate(t))
       continue;
-    CornerTriangle triangle = {corner(raw(t[0])), corner(raw(t[1])), corner(raw(t[2]))};
+    PlacedTriangle triangle = {corner(raw(t[0])), corner(raw(t[1])), corner(raw(t[2]))};
     std::sort(triangle.begin(), triangle.end(),
               [](const Corner& a, const Corner& b) { return a.key < b.key; });
     // Every tile it touches has it; the lowest brings it.

@@ -3,9 +3,9 @@
 
 #include "hierarchy/tile_mesh.h"
 #include "hierarchy/tree.h"
+#include "hierarchy/triangle.h"
 #include "partition/direction.h"
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -13,7 +13,7 @@ namespace meshhier::partition {
 
 /// Provisional ranks order the vertices by chunk, and by id within a chunk; the splits inside a
 /// chunk make them final.
-using RankTriangle = std::array<std::uint32_t, 3>;
+using RankTriangle = Triangle<std::uint32_t>;
 
 struct ChunkMesh {
   NodeId node;

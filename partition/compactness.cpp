@@ -30,11 +30,11 @@ double compactness(const TileMesh& tile) {
   const std::vector<Vec3f>& positions = tile.vertices.positions;
   double perimeter = 0;
   double double_area = 0;
-  for (const Triangle& t : tile.interior) {
+  for (const TileTriangle& t : tile.interior) {
     double_area += double_area_of(to_double(positions[raw(t[0])]), to_double(positions[raw(t[1])]),
                                   to_double(positions[raw(t[2])]));
   }
-  for (const Triangle& t : tile.border) {
+  for (const TileTriangle& t : tile.border) {
     std::array<Vec3d, 3> corners;
     std::array<bool, 3> own;
     for (int k = 0; k < 3; ++k) {

@@ -80,7 +80,7 @@ class ArcBuilder {
   void find_crossings(std::span<const std::uint32_t> group_of) {
     crossings_ = std::make_unique_for_overwrite<Crossing[]>(surface_.triangles.size() + 1);
     for (std::uint32_t i = 0; i < surface_.triangles.size(); ++i) {
-      const LocalTriangle& t = surface_.triangles[i];
+      const Triangle<std::uint32_t>& t = surface_.triangles[i];
       const std::uint32_t a = group_of[t[0]], b = group_of[t[1]], c = group_of[t[2]];
       crossings_[crossing_count_] = {i, {a, b, c}};
       crossing_count_ += static_cast<std::uint32_t>(a != b) | static_cast<std::uint32_t>(b != c);
@@ -93,7 +93,7 @@ class ArcBuilder {
   }
 
   void add_edges(const Crossing& crossing) {
-    const LocalTriangle& t = surface_.triangles[crossing.triangle];
+    const Triangle<std::uint32_t>& t = surface_.triangles[crossing.triangle];
     const Vec3f p = surface_.positions[t[0]], q = surface_.positions[t[1]],
                 r = surface_.positions[t[2]];
     const auto [a, b, c] = crossing.group;

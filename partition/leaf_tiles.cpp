@@ -91,7 +91,7 @@ class LeafBuilder {
     std::vector<std::uint32_t> next_boundary(result_.tiles.size()), next_inner;
     const auto channels = static_cast<std::size_t>(chunk_.vertices.channels);
     for (std::size_t i = 0; i < result_.tiles.size(); ++i) {
-      WorkTile& tile = result_.tiles[i];
+      LeafTile& tile = result_.tiles[i];
       const std::size_t size = first_vertex_[i + 1];
       assert(size <= kMostVertices);
       first_vertex_[i + 1] += first_vertex_[i];
@@ -133,8 +133,9 @@ class LeafBuilder {
         borders_.push_back(t);
         continue;
       }
-      const Triangle turned = canonical({TileVertex{places_[a].index}, TileVertex{places_[b].index},
-                                         TileVertex{places_[c].index}});
+      const TileTriangle turned =
+          canonical(TileTriangle{TileVertex{places_[a].index}, TileVertex{places_[b].index},
+                                 TileVertex{places_[c].index}});
       const std::uint32_t row = first_vertex_[places_[a].leaf] + raw(turned[0]);
       interior_.push_back({row, raw(turned[1]) << 16 | raw(turned[2])});
       ++rows_[row + 1];
@@ -146,7 +147,7 @@ class LeafBuilder {
     std::partial_sum(rows_.begin(), rows_.end(), rows_.begin());
     std::vector<std::uint32_t> sorted = interior_by_row();
     for (std::size_t i = 0; i < result_.tiles.size(); ++i) {
-      std::vector<Triangle>& triangles = result_.tiles[i].interior;
+      std::vector<TileTriangle>& triangles = result_.tiles[i].interior;
       const std::uint32_t first = first_vertex_[i], end = first_vertex_[i + 1];
       triangles.reserve(rows_[end] - rows_[first]);
       for (std::uint32_t row = first; row < end; ++row) {
@@ -180,13 +181,13 @@ class LeafBuilder {
       }
     }
     std::vector<std::uint32_t> number(places_.size());
-    for (WorkTile& tile : result_.tiles)
+    for (LeafTile& tile : result_.tiles)
       finish(tile, number);
   }
 
-  void add_border(WorkTile& tile, std::uint32_t own, const RankTriangle& t,
+  void add_border(LeafTile& tile, std::uint32_t own, const RankTriangle& t,
                   const std::array<std::uint32_t, 3>& leaves) {
-    Triangle border;
+    TileTriangle border;
     for (int k = 0; k < 3; ++k) {
       if (leaves[k] == own) {
         border[k] = TileVertex{places_[local(t[k])].index};
@@ -202,22 +203,22 @@ class LeafBuilder {
 
   /// Makes the foreign corners unique and brings everything into an order that the triangles' order
   /// does not show in. `number`: one entry a vertex of the chunk, any content.
-  void finish(WorkTile& tile, std::span<std::uint32_t> number) const {
+  void finish(LeafTile& tile, std::span<std::uint32_t> number) const {
     const auto own_count = static_cast<std::uint32_t>(tile.vertices.size());
-    std::vector<GhostRef> unique = sorted_unique(tile.foreign, number);
-    const auto near =
-        std::equal_range(unique.begin(), unique.end(), GhostRef{chunk_.node.index, 0},
-                         [](const GhostRef& a, const GhostRef& b) { return a.tile < b.tile; });
+    std::vector<ChunkVertex> unique = sorted_unique(tile.foreign, number);
+    const auto near = std::equal_range(
+        unique.begin(), unique.end(), ChunkVertex{chunk_.node.index, 0},
+        [](const ChunkVertex& a, const ChunkVertex& b) { return a.chunk < b.chunk; });
     for (auto ref = near.first; ref != near.second; ++ref)
-      number[ref->index] = static_cast<std::uint32_t>(ref - unique.begin());
-    for (Triangle& t : tile.border) {
+      number[ref->local] = static_cast<std::uint32_t>(ref - unique.begin());
+    for (TileTriangle& t : tile.border) {
       for (TileVertex& corner : t) {
         if (raw(corner) < own_count)
           continue;
-        const GhostRef& ref = tile.foreign[raw(corner) - own_count];
+        const ChunkVertex& ref = tile.foreign[raw(corner) - own_count];
         const std::uint32_t place =
-            ref.tile == chunk_.node.index
-                ? number[ref.index]
+            ref.chunk == chunk_.node.index
+                ? number[ref.local]
                 : static_cast<std::uint32_t>(std::lower_bound(unique.begin(), unique.end(), ref) -
                                              unique.begin());
         corner = TileVertex{own_count + place};
@@ -228,15 +229,15 @@ class LeafBuilder {
   }
 
   /// `places`: as in finish().
-  std::vector<GhostRef> sorted_unique(std::span<const GhostRef> refs,
-                                      std::span<std::uint32_t> places) const {
-    std::vector<GhostRef> unique;
-    for (const GhostRef& ref : refs) {
-      if (ref.tile == chunk_.node.index) {
-        const std::uint32_t place = places[ref.index];
+  std::vector<ChunkVertex> sorted_unique(std::span<const ChunkVertex> refs,
+                                         std::span<std::uint32_t> places) const {
+    std::vector<ChunkVertex> unique;
+    for (const ChunkVertex& ref : refs) {
+      if (ref.chunk == chunk_.node.index) {
+        const std::uint32_t place = places[ref.local];
         if (place < unique.size() && unique[place] == ref)
           continue;
-        places[ref.index] = static_cast<std::uint32_t>(unique.size());
+        places[ref.local] = static_cast<std::uint32_t>(unique.size());
       }
       unique.push_back(ref);
     }

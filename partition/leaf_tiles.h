@@ -18,14 +18,14 @@ struct LeafPlace {
 };
 
 struct ChunkLeaves {
-  std::vector<WorkTile> tiles;           ///< of the chunk's partitions, in order
+  std::vector<LeafTile> tiles;           ///< of the chunk's partitions, in order
   std::vector<LeafPlace> places;         ///< every boundary vertex, ascending by `local`
   std::uint64_t unreferenced_count = 0;  ///< vertices without a triangle
 };
 
 /// Builds the partition tiles, of at most 65,536 vertices each: vertices by id, boundary first; a
-/// border triangle goes to each partition it touches; its foreign corners are named by chunk and
-/// provisional rank within it. Independent of the order of the triangles.
+/// border triangle goes to each partition it touches; its foreign corners are vertices
+/// of chunks. Independent of the order of the triangles.
 ChunkLeaves build_leaves(const ChunkMesh& chunk, std::span<const PartitionId> partition_of,
                          const Tree& tree, const ChunkMap& chunks);
 

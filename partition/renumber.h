@@ -14,6 +14,7 @@
 // fashion), and a triangle passes at most one group more for each of its buckets.
 #pragma once
 
+#include "hierarchy/triangle.h"
 #include "storage/io/spool.h"
 
 #include <array>
@@ -23,8 +24,6 @@
 #include <vector>
 
 namespace meshhier::partition {
-
-using IdTriangle = std::array<std::uint32_t, 3>;
 
 struct RenumberReport {
   std::uint64_t triangles = 0;
@@ -57,11 +56,11 @@ struct WaitingTriangle {
 /// What became of some triangles. Used again and again, it keeps its memory.
 template <class Value>
 struct Renumbered {
-  std::vector<std::array<Value, 3>> finished;  ///< corners as they were
+  std::vector<Triangle<Value>> finished;  ///< corners as they were
 
   struct Fresh {
     std::uint32_t bucket;
-    IdTriangle ids;
+    Triangle<std::uint32_t> ids;
   };
   struct Begun {
     std::uint32_t bucket;
@@ -69,7 +68,7 @@ struct Renumbered {
   };
   std::vector<Fresh> fresh;  ///< to wait, nothing translated yet
   std::vector<Begun> begun;
-  std::vector<IdTriangle> read_fresh;  ///< of a batch
+  std::vector<Triangle<std::uint32_t>> read_fresh;  ///< of a batch
   std::vector<WaitingTriangle<Value>> read_begun;
 };
 
@@ -95,8 +94,8 @@ class Renumberer {
 
   /// Ids are unsigned integers or enums of 32 bits. Throws Error(internal) if one is not below the
   /// table's size: sources check their ids.
-  template <class Triangle>
-  void translate(std::span<const Triangle> triangles, Renumbered<Value>& result) const;
+  template <class Id>
+  void translate(std::span<const Triangle<Id>> triangles, Renumbered<Value>& result) const;
 
   /// Adds the triangles of `result` that wait to their buckets.
   void keep(const Renumbered<Value>& result);
@@ -113,7 +112,7 @@ class Renumberer {
   using Waiting = WaitingTriangle<Value>;
   /// Triangles that wait for one block, or for a group of blocks.
   struct Bucket {
-    storage::RecordSpool<IdTriangle> fresh;  ///< nothing translated yet
+    storage::RecordSpool<Triangle<std::uint32_t>> fresh;  ///< nothing translated yet
     storage::RecordSpool<Waiting> begun;
     std::uint64_t fresh_batches() const { return (fresh.size() + kBatch - 1) / kBatch; }
     std::uint64_t begun_batches() const { return (begun.size() + kBatch - 1) / kBatch; }
@@ -125,7 +124,7 @@ class Renumberer {
   void make_buckets();
   void load(std::uint64_t block);
   bool is_loaded(std::uint32_t id) const { return id - first_ < loaded_.size(); }
-  void route_fresh(const IdTriangle& ids, Renumbered<Value>& result) const;
+  void route_fresh(const Triangle<std::uint32_t>& ids, Renumbered<Value>& result) const;
   void route_begun(Waiting& triangle, Renumbered<Value>& result) const;
   /// Number of the bucket that waits for `id`: those of this group's blocks, then all groups'.
   std::uint32_t bucket_of(std::uint32_t id) const;

@@ -77,14 +77,14 @@ std::uint32_t Renumberer<Value>::bucket_of(std::uint32_t id) const {
 }
 
 template <class Value>
-template <class Triangle>
-void Renumberer<Value>::translate(std::span<const Triangle> triangles,
+template <class Id>
+void Renumberer<Value>::translate(std::span<const Triangle<Id>> triangles,
                                   Renumbered<Value>& result) const {
   result.finished.clear();
   result.fresh.clear();
   result.begun.clear();
-  for (const Triangle& triangle : triangles) {
-    IdTriangle ids;
+  for (const Triangle<Id>& triangle : triangles) {
+    Triangle<std::uint32_t> ids;
     for (std::size_t corner = 0; corner < 3; ++corner)
       ids[corner] = static_cast<std::uint32_t>(triangle[corner]);
     const std::uint32_t greatest = std::max({ids[0], ids[1], ids[2]});
@@ -98,7 +98,8 @@ void Renumberer<Value>::translate(std::span<const Triangle> triangles,
 }
 
 template <class Value>
-void Renumberer<Value>::route_fresh(const IdTriangle& ids, Renumbered<Value>& result) const {
+void Renumberer<Value>::route_fresh(const Triangle<std::uint32_t>& ids,
+                                    Renumbered<Value>& result) const {
   const bool a = is_loaded(ids[0]), b = is_loaded(ids[1]), c = is_loaded(ids[2]);
   if (a && b && c) {
     result.finished.push_back(
@@ -136,7 +137,7 @@ void Renumberer<Value>::route_begun(Waiting& triangle, Renumbered<Value>& result
     result.begun.push_back({bucket_of(least), triangle});
     return;
   }
-  std::array<Value, 3>& finished = result.finished.emplace_back();
+  Triangle<Value>& finished = result.finished.emplace_back();
   for (std::size_t corner = 0; corner < 3; ++corner)
     std::memcpy(&finished[corner], &triangle.slots[corner * Waiting::kSlot], sizeof(Value));
 }
@@ -149,7 +150,7 @@ void Renumberer<Value>::keep(const Renumbered<Value>& result) {
     buckets_[bucket].begun.append(triangle);
   report_.triangles += result.finished.size();
   report_.spooled_bytes +=
-      result.fresh.size() * sizeof(IdTriangle) + result.begun.size() * sizeof(Waiting);
+      result.fresh.size() * sizeof(Triangle<std::uint32_t>) + result.begun.size() * sizeof(Waiting);
 }
 
 template <class Value>
@@ -181,10 +182,10 @@ void Renumberer<Value>::translate_batch(std::uint64_t batch, Renumbered<Value>& 
   const std::uint64_t fresh_batches = draining_->fresh_batches();
   if (batch < fresh_batches) {
     read(draining_->fresh, batch, result.read_fresh);
-    translate(std::span<const IdTriangle>(result.read_fresh), result);
+    translate(std::span<const Triangle<std::uint32_t>>(result.read_fresh), result);
     return;
   }
-  translate(std::span<const IdTriangle>(), result);
+  translate(std::span<const Triangle<std::uint32_t>>(), result);
   read(draining_->begun, batch - fresh_batches, result.read_begun);
   for (Waiting& triangle : result.read_begun)
     route_begun(triangle, result);

@@ -12,25 +12,19 @@ constexpr std::uint64_t mix(std::uint64_t x) {
   return x ^ (x >> 32);
 }
 
-constexpr std::uint64_t hash(const LocalTriangle& t) {
+constexpr std::uint64_t hash(const Triangle<std::uint32_t>& t) {
   return mix(mix(mix(t[0] + 1) + t[1]) + t[2]);
 }
 
-/// The same corners from the smallest on.
-LocalTriangle turned(const LocalTriangle& t) {
-  if (t[1] < t[0] && t[1] < t[2])
-    return {t[1], t[2], t[0]};
-  return t[2] < t[0] && t[2] < t[1] ? LocalTriangle{t[2], t[0], t[1]} : t;
-}
-
 /// Leaves no more than `most` distinct ones, chosen by their corners alone.
-void choose(std::vector<LocalTriangle>& triangles, std::size_t most) {
-  for (LocalTriangle& t : triangles)
-    t = turned(t);
-  std::sort(triangles.begin(), triangles.end(), [](const LocalTriangle& a, const LocalTriangle& b) {
-    const std::uint64_t hash_a = hash(a), hash_b = hash(b);
-    return hash_a != hash_b ? hash_a < hash_b : a < b;
-  });
+void choose(std::vector<Triangle<std::uint32_t>>& triangles, std::size_t most) {
+  for (Triangle<std::uint32_t>& t : triangles)
+    t = canonical(t);
+  std::sort(triangles.begin(), triangles.end(),
+            [](const Triangle<std::uint32_t>& a, const Triangle<std::uint32_t>& b) {
+              const std::uint64_t hash_a = hash(a), hash_b = hash(b);
+              return hash_a != hash_b ? hash_a < hash_b : a < b;
+            });
   triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
   triangles.resize(std::min(triangles.size(), most));
   triangles.shrink_to_fit();
@@ -50,13 +44,14 @@ std::vector<Vec3f> in_unit_cube(std::span<const Vec3f> positions) {
 
 }  // namespace
 
-Surface make_surface(std::span<const Vec3f> positions, std::span<const LocalTriangle> triangles,
-                     std::uint32_t first) {
+Surface make_surface(std::span<const Vec3f> positions,
+                     std::span<const Triangle<std::uint32_t>> triangles, std::uint32_t first) {
   Surface surface{in_unit_cube(positions), {}};
   surface.triangles.reserve(triangles.size());
   const std::uint32_t count = surface.size();
-  for (const LocalTriangle& t : triangles) {
-    const LocalTriangle local{t[0] - first, t[1] - first, t[2] - first};  // wraps around below it
+  for (const Triangle<std::uint32_t>& t : triangles) {
+    const Triangle<std::uint32_t> local{t[0] - first, t[1] - first,
+                                        t[2] - first};  // wraps around below it
     if (local[0] < count && local[1] < count && local[2] < count &&
         (local[0] != local[1] || local[1] != local[2]))
       surface.triangles.push_back(local);
@@ -75,7 +70,7 @@ std::vector<Surface> separate(const Surface& surface, std::span<const std::uint3
     place[v] = static_cast<std::uint32_t>(positions.size());
     positions.push_back(surface.positions[v]);
   }
-  for (const LocalTriangle& t : surface.triangles) {
+  for (const Triangle<std::uint32_t>& t : surface.triangles) {
     const std::uint32_t part = part_of[t[0]];
     if (part_of[t[1]] == part && part_of[t[2]] == part)
       parts[part].triangles.push_back({place[t[0]], place[t[1]], place[t[2]]});

@@ -1,23 +1,20 @@
 // The triangles within one chunk, and what they lie on, as the splits see them.
 #pragma once
 
+#include "hierarchy/triangle.h"
 #include "hierarchy/vec.h"
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace meshhier::partition {
 
-/// A triangle by vertex numbers.
-using LocalTriangle = std::array<std::uint32_t, 3>;
-
 /// Vertices numbered from 0, in the unit cube so that no length overflows or vanishes as a float,
 /// and triangles between them, none with three equal corners.
 struct Surface {
   std::vector<Vec3f> positions;
-  std::vector<LocalTriangle> triangles;
+  std::vector<Triangle<std::uint32_t>> triangles;
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(positions.size()); }
 };
@@ -26,8 +23,8 @@ struct Surface {
 /// with more than `kMostTriangles` triangles a vertex a choice of so many distinct ones is taken,
 /// by their corners alone. O(n + t), t log t for the choice. Holds 12 bytes a vertex and 12 a
 /// triangle, as many again for the triangles chosen from.
-Surface make_surface(std::span<const Vec3f> positions, std::span<const LocalTriangle> triangles,
-                     std::uint32_t first = 0);
+Surface make_surface(std::span<const Vec3f> positions,
+                     std::span<const Triangle<std::uint32_t>> triangles, std::uint32_t first = 0);
 
 /// On a closed surface there are two triangles a vertex; this bounds the memory for any other.
 inline constexpr std::size_t kMostTriangles = 3;

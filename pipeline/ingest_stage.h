@@ -111,7 +111,7 @@ mesh_io::FaceCounts SourceMesh::read_triangles(std::size_t in_flight,
   counts.degenerate_triangles = counts.faces - counts.triangles;
 
   struct Copied {
-    std::vector<mesh_io::SourceTriangle> triangles;
+    std::vector<Triangle<VertexId>> triangles;
     Slot slot;
   };
   execution::BatchedWork<Copied> rest(
@@ -119,7 +119,7 @@ mesh_io::FaceCounts SourceMesh::read_triangles(std::size_t in_flight,
       [&](Copied& copied) { work(std::span(std::as_const(copied.triangles)), copied.slot); },
       [&](Copied& copied) { sink(copied.slot); });
   const mesh_io::FaceCounts last = source_->read_triangles_from(
-      counts.faces, [&](std::span<const mesh_io::SourceTriangle> triangles) {
+      counts.faces, [&](std::span<const Triangle<VertexId>> triangles) {
         cancel.check();
         rest.next().triangles.assign(triangles.begin(), triangles.end());
       });

@@ -139,7 +139,7 @@ mesh_io::FaceCounts distribute_triangles(SourceMesh& mesh, RankTable& ranks, Chu
   };
   const mesh_io::FaceCounts counts = mesh.read_triangles<Slot>(
       in_flight, context.cancel,
-      [&](std::span<const mesh_io::SourceTriangle> triangles, Slot& slot) {
+      [&](std::span<const Triangle<VertexId>> triangles, Slot& slot) {
         slot.read = triangles.size();
         renumberer.translate(triangles, slot.renumbered);
         slot.chunked.sort(slot.renumbered.finished, chunks.map());

@@ -2,6 +2,7 @@
 
 #include "execution/parallel.h"
 #include "hierarchy/bounds.h"
+#include "hierarchy/drawing_rule.h"
 #include "hierarchy/lattice.h"
 #include "partition/compactness.h"
 #include "pipeline/plan/tile_room.h"
@@ -22,29 +23,6 @@
 
 namespace meshhier::pipeline {
 namespace {
-
-std::vector<NodeId> published_nodes(const Tree& tree) {
-  std::vector<NodeId> nodes;
-  for (int l = 0; l <= raw(tree.depth()); ++l) {
-    const auto level = static_cast<Level>(l);
-    for (std::uint32_t i = 0; i < tree.node_count(level); ++i) {
-      if (!tree.is_early({level, i}))
-        nodes.push_back({level, i});
-    }
-  }
-  return nodes;
-}
-
-/// Whether a tile draws a border triangle when its own level is shown: early neighbours show their
-/// partitions, which are finer and draw it; among equals the lowest index does.
-bool draws(const Tree& tree, NodeId node, const TileMesh& mesh, const Triangle& triangle) {
-  return std::all_of(triangle.begin(), triangle.end(), [&](TileVertex v) {
-    if (mesh.is_own(v))
-      return true;
-    const NodeId neighbour{node.level, mesh.ghost(v).tile};
-    return !tree.is_early(neighbour) && node.index < neighbour.index;
-  });
-}
 
 /// The lattice over the input's bounds as they are stored, and how far positions go to it: all
 /// tiles are looked at, since simplified ones may have vertices beyond the input's bounds.
@@ -105,9 +83,7 @@ TileRecord describe(const TileWriter& to, NodeId node, const TileMesh& mesh) {
   record.ghost_count = static_cast<std::uint32_t>(mesh.ghosts.size());
   record.interior_count = static_cast<std::uint32_t>(mesh.interior.size());
   record.border_count = static_cast<std::uint32_t>(mesh.border.size());
-  record.drawn_border_count = static_cast<std::uint32_t>(
-      std::count_if(mesh.border.begin(), mesh.border.end(),
-                    [&](const Triangle& t) { return draws(tree, node, mesh, t); }));
+  record.drawn_border_count = drawn_border_count(tree, node, mesh);
   record.target_count = tree.is_partition(node)
                             ? mesh.own_count
                             : to.context.plan.target_vertex_counts.of(node.level);
@@ -211,7 +187,7 @@ void publish(Forest& forest, BuildJournal& journal, const PublishInput& input,
   for (int l = 0; l <= raw(tree.depth()); ++l) {
     context.files.make_directories(storage::level_directory(directory, static_cast<Level>(l)));
   }
-  const std::vector<NodeId> nodes = published_nodes(tree);
+  const std::vector<NodeId> nodes = tree.tile_nodes();
   std::vector<TileRecord> records(nodes.size());
   std::vector<std::size_t> left;
   for (std::size_t i = 0; i < nodes.size(); ++i) {

@@ -21,8 +21,8 @@ Step measure_step(const Forest& forest, NodeId node, const LoadedTile& loaded) {
   const cluster_simplify::SeamStripOf own{node.index, forest.seam_strip(node)};
   Step step;
   const auto add_foreign = [&](const SeamStrip& of) {
-    for (const GhostRef& ref : of.foreign)
-      step.finer_neighbours.add(ref.tile);
+    for (const FinerGhost& corner : of.foreign)
+      step.finer_neighbours.add(corner.ref.tile);
   };
   add_foreign(own.seam_strip);
   const auto seam_strip_of_neighbour = [&](std::uint32_t tile) {

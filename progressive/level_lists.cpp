@@ -168,7 +168,7 @@ class Tracer {
     std::ranges::sort(foreign, {}, &progressive::StandIns::Foreign::ghost);
     for (const auto& corner : foreign) {
       const GhostRef& ghost = tile.ghosts[corner.ghost];
-      const NodeId node = tile_node(tree_, {tile.node.level, ghost.tile});
+      const NodeId node = tree_.tile_node({tile.node.level, ghost.tile});
       if (!neighbour || neighbour->node != node)
         neighbour = reader_.read_tile(node);
       if (ghost.index >= neighbour->mesh.own_count)

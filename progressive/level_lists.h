@@ -5,6 +5,7 @@
 #include "execution/cancel.h"
 #include "execution/progress.h"
 #include "hierarchy/tree.h"
+#include "hierarchy/triangle.h"
 #include "progressive/traced_tile.h"
 #include "storage/format/hierarchy_reader.h"
 #include "storage/io/spool.h"
@@ -18,7 +19,7 @@ namespace meshhier::progressive {
 struct LostTriangle {
   std::uint32_t index_low = 0;
   std::uint32_t index_high = 0;
-  progressive::Corners corners{};  ///< ranks
+  Triangle<std::uint32_t> corners{};  ///< ranks
 
   std::uint64_t index() const { return std::uint64_t{index_high} << 32 | index_low; }
 };

@@ -168,7 +168,7 @@ void write_mesh(storage::FileSystem& files, const fs::path& path, const Progress
         cancel.check();
         splitter.write(values);
       },
-      [&](std::span<const std::array<std::uint32_t, 3>> triangles) {
+      [&](std::span<const Triangle<std::uint32_t>> triangles) {
         cancel.check();
         writer.write_triangles(triangles);
       });

@@ -28,12 +28,12 @@ Reconstruction::Reconstruction(const StreamSize& size, const AttributeLayout& la
       width_(static_cast<std::size_t>(vertex_values(layout))),
       values_(size.vertices * width_),
       origins_(size.vertices, kNowhere),
-      corners_(size.triangles, Corners{kNowhere, kNowhere, kNowhere}) {}
+      corners_(size.triangles, Triangle<std::uint32_t>{kNowhere, kNowhere, kNowhere}) {}
 
 std::uint64_t Reconstruction::memory_bytes(const StreamSize& size, const AttributeLayout& layout) {
   const auto width = static_cast<std::uint64_t>(vertex_values(layout));
   return size.vertices * (width * sizeof(float) + sizeof(std::uint32_t)) +
-         size.triangles * sizeof(Corners);
+         size.triangles * sizeof(Triangle<std::uint32_t>);
 }
 
 void Reconstruction::apply(const DetailRun& run) {
@@ -94,7 +94,7 @@ void Reconstruction::apply(const MergeRun& run) {
 
 void Reconstruction::hand_out(
     const std::function<void(std::span<const float>)>& vertices,
-    const std::function<void(std::span<const std::array<std::uint32_t, 3>>)>& triangles) && {
+    const std::function<void(std::span<const Triangle<std::uint32_t>>)>& triangles) && {
   std::vector<float> block;
   std::uint32_t number = 0;
   for (std::uint32_t vertex = 0; vertex < size_.vertices; ++vertex) {
@@ -110,11 +110,11 @@ void Reconstruction::hand_out(
   }
   vertices(block);
 
-  std::vector<Corners> shown;
+  std::vector<Triangle<std::uint32_t>> shown;
   for (std::uint64_t triangle = 0; triangle < size_.triangles; ++triangle) {
     if (corners_[triangle][0] == kNowhere)
       continue;
-    Corners& numbers = shown.emplace_back(corners_[triangle]);
+    Triangle<std::uint32_t>& numbers = shown.emplace_back(corners_[triangle]);
     for (std::uint32_t& corner : numbers) {
       if (origins_[corner] == kNowhere)
         fail("triangle", triangle, "has a corner that is nowhere");

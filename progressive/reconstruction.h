@@ -6,8 +6,8 @@
 #pragma once
 
 #include "hierarchy/detail.h"
+#include "hierarchy/triangle.h"
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -42,13 +42,10 @@ class Reconstruction {
   /// values; then triangles, in theirs, as numbers of these vertices. Both are handed out in
   /// blocks. Throws Error(corrupt) if a triangle's corner is nowhere. It can be done once, and ends
   /// the reconstruction: the numbers take the vertices' place in memory.
-  void hand_out(
-      const std::function<void(std::span<const float> values)>& vertices,
-      const std::function<void(std::span<const std::array<std::uint32_t, 3>>)>& triangles) &&;
+  void hand_out(const std::function<void(std::span<const float> values)>& vertices,
+                const std::function<void(std::span<const Triangle<std::uint32_t>>)>& triangles) &&;
 
  private:
-  using Corners = std::array<std::uint32_t, 3>;
-
   void apply(const VertexRun& run);
   void apply(const TriangleRun& run);
   void apply(const MergeRun& run);
@@ -63,7 +60,7 @@ class Reconstruction {
   // The vertex array, in two columns: a slot has the values of a vertex, and says which one's.
   std::vector<float> values_;
   std::vector<std::uint32_t> origins_;
-  std::vector<Corners> corners_;  ///< the triangle array
+  std::vector<Triangle<std::uint32_t>> corners_;  ///< the triangle array
   std::uint64_t shown_vertices_ = 0;
   std::uint64_t shown_triangles_ = 0;
 };

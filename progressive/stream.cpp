@@ -203,7 +203,7 @@ class StreamWriter {
     return index;
   }
 
-  /// Of the sector's tiles of a level; partitions stand for early nodes.
+  /// Of the tiles that stand for the sector's nodes of a level.
   std::uint64_t own_vertices(Level level) const {
     std::uint64_t vertices = 0;
     const Tree& tree = reader_.tree();
@@ -250,7 +250,7 @@ std::string write_progressive(storage::FileSystem& files, const fs::path& hierar
   require_half_edge(reader);
   const NodeId asked = options.node.value_or(NodeId{});
   require_node(reader.tree(), asked);
-  const Sector sector(reader.tree(), tile_node(reader.tree(), asked));
+  const Sector sector(reader.tree(), reader.tree().tile_node(asked));
   std::vector<Level> levels = shown_levels(reader.tree(), sector.node, options.steps);
 
   const ProgressivePlan plan =

@@ -1,5 +1,6 @@
 #include "progressive/traced_tile.h"
 
+#include "hierarchy/drawing_rule.h"
 #include "hierarchy/error.h"
 
 #include <algorithm>
@@ -67,7 +68,7 @@ class Raiser {
   }
 
   /// The image of a triangle of a child.
-  Triangle image_of(std::size_t child, const Triangle& t) const {
+  TileTriangle image_of(std::size_t child, const TileTriangle& t) const {
     return {maps_[child][raw(t[0])], maps_[child][raw(t[1])], maps_[child][raw(t[2])]};
   }
 
@@ -136,8 +137,8 @@ class Raiser {
 
 /// Of the triangles with one image the first original stays, whoever looks at them.
 struct RaisedTriangle {
-  Triangle key;  ///< the image, turned
-  std::array<std::uint64_t, 3> order;
+  TileTriangle key;  ///< the image, turned
+  Triangle<std::uint64_t> order;
   TracedTriangle triangle;
 
   friend bool operator<(const RaisedTriangle& a, const RaisedTriangle& b) {
@@ -145,7 +146,7 @@ struct RaisedTriangle {
   }
 };
 
-std::array<std::uint64_t, 3> orders_of(const Sector& sector, const Corners& corners) {
+Triangle<std::uint64_t> orders_of(const Sector& sector, const Triangle<std::uint32_t>& corners) {
   return {order_of(sector, corners[0]), order_of(sector, corners[1]), order_of(sector, corners[2])};
 }
 
@@ -165,7 +166,7 @@ void raise_triangles(const Sector& sector, Raiser& raiser, Lifted& lifted) {
   std::vector<TracedTriangle> lost;
   for (std::size_t child = 0; child < raiser.children().size(); ++child) {
     for (const TracedTriangle& t : raiser.children()[child].triangles) {
-      const Triangle image = raiser.image_of(child, t.image);
+      const TileTriangle image = raiser.image_of(child, t.image);
       if (!is_degenerate(image)) {
         raised.push_back(
             {canonical(image), orders_of(sector, t.corners), {t.corners, image, t.index}});
@@ -259,22 +260,18 @@ std::vector<std::uint32_t> ranks_of(const Tree& tree, const PublishedTile& tile)
 }
 
 /// Whether the partition is the first of the sector's that the triangle touches.
-bool counts(const Sector& sector, const PublishedTile& tile, const Triangle& t) {
-  return std::ranges::all_of(t, [&](TileVertex v) {
-    return tile.mesh.is_own(v) || tile.mesh.ghost(v).tile > tile.node.index ||
-           !sector.has_partition(tile.mesh.ghost(v).tile);
+bool counts(const Sector& sector, const PublishedTile& tile, const TileTriangle& t) {
+  return draws(tile.mesh, t, [&](std::size_t ghost) {
+    const std::uint32_t partition = tile.mesh.ghosts[ghost].tile;
+    return !sector.has_partition(partition) || draws_before(tile.node, partition, tile.node.level);
   });
 }
 
 }  // namespace
 
-Corners sorted_corners(const Sector& sector, const Corners& corners) {
-  const auto less = [&](std::uint32_t a, std::uint32_t b) {
-    return order_of(sector, a) < order_of(sector, b);
-  };
-  Corners turned = corners;
-  std::rotate(turned.begin(), std::min_element(turned.begin(), turned.end(), less), turned.end());
-  return turned;
+Triangle<std::uint32_t> sorted_corners(const Sector& sector,
+                                       const Triangle<std::uint32_t>& corners) {
+  return turned(corners, smallest_corner(orders_of(sector, corners)));
 }
 
 TracedTile trace_partition(const Tree& tree, const Sector& sector, const PublishedTile& tile,
@@ -284,14 +281,11 @@ TracedTile trace_partition(const Tree& tree, const Sector& sector, const Publish
   traced.node = tile.node;
   traced.values = values_of(tile.mesh.vertices, tile.mesh.own_count);
   for (const auto* list : {&tile.mesh.interior, &tile.mesh.border}) {
-    for (const Triangle& t : *list) {
-      const Corners corners{ranks[raw(t[0])], ranks[raw(t[1])], ranks[raw(t[2])]};
-      const Corners turned = sorted_corners(sector, corners);
-      Triangle image = t;
-      std::rotate(image.begin(),
-                  image.begin() + (std::ranges::find(corners, turned[0]) - corners.begin()),
-                  image.end());
-      traced.triangles.push_back({turned, image, counts(sector, tile, t) ? 0 : kCountedElsewhere});
+    for (const TileTriangle& t : *list) {
+      const Triangle<std::uint32_t> corners{ranks[raw(t[0])], ranks[raw(t[1])], ranks[raw(t[2])]};
+      const std::size_t first = smallest_corner(orders_of(sector, corners));
+      traced.triangles.push_back({turned(corners, first), turned(t, first),
+                                  counts(sector, tile, t) ? 0 : kCountedElsewhere});
     }
   }
   std::ranges::stable_sort(traced.triangles, {},

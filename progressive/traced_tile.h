@@ -9,16 +9,15 @@
 
 #include "hierarchy/published.h"
 #include "hierarchy/tree.h"
+#include "hierarchy/triangle.h"
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
 namespace meshhier::progressive {
 
-/// Vertices of the original mesh are ranks; triangles are numbered in the order of sorted_corners()
-/// below, partition by partition, a triangle in the first partition that it touches.
-using Corners = std::array<std::uint32_t, 3>;
+// Vertices of the original mesh are ranks; triangles are numbered in the order of sorted_corners()
+// below, partition by partition, a triangle in the first partition that it touches.
 
 /// Of a triangle that a tile before counts.
 inline constexpr std::uint64_t kCountedElsewhere = UINT64_MAX;
@@ -42,13 +41,14 @@ inline std::uint64_t order_of(const Sector& sector, std::uint32_t rank) {
   return sector.has_rank(rank) ? rank : std::uint64_t{rank} + (std::uint64_t{1} << 32);
 }
 
-/// Turned so that the first in order_of() comes first.
-Corners sorted_corners(const Sector& sector, const Corners& corners);
+/// canonical(), but by order_of().
+Triangle<std::uint32_t> sorted_corners(const Sector& sector,
+                                       const Triangle<std::uint32_t>& corners);
 
 struct TracedTriangle {
-  Corners corners;          ///< of the original triangle, sorted_corners()
-  Triangle image;           ///< the tile's vertices that stand for them, one for each
-  std::uint64_t index = 0;  ///< in the original mesh, or kCountedElsewhere
+  Triangle<std::uint32_t> corners;  ///< of the original triangle, sorted_corners()
+  TileTriangle image;               ///< the tile's vertices that stand for them, one for each
+  std::uint64_t index = 0;          ///< in the original mesh, or kCountedElsewhere
 };
 
 /// Vertices of an array of values: x, y, z, attributes.
@@ -80,7 +80,7 @@ struct Losses {
   std::vector<std::uint32_t> ranks;
   Values values;
   std::vector<std::uint64_t> triangles;  ///< indices; those counted elsewhere are not there
-  std::vector<Corners> corners;
+  std::vector<Triangle<std::uint32_t>> corners;
 };
 
 /// A partition; its triangles are counted from `first_index` on. Throws Error(corrupt) if it

@@ -149,7 +149,7 @@ BuildJournal::BuildJournal(storage::FileSystem& files, const std::filesystem::pa
                             work.string(), differences(*build, identity.decides_result)));
   }
   if (is_complete_)
-    is_sound_ = is_same && published_.size() == storage::tile_count(tree);
+    is_sound_ = is_same && published_.size() == tree.tile_count();
   else
     is_sound_ = is_same && source_ && can_make_all_leaves();
 }
@@ -251,7 +251,7 @@ std::uint64_t BuildJournal::steps() const {
   std::uint64_t tiles = 0;
   for (int l = 0; l < raw(forest_.tree().depth()); ++l)
     tiles += has_tile_[static_cast<std::size_t>(l)].size();
-  return chunks_.count() + tiles + storage::tile_count(forest_.tree());
+  return chunks_.count() + tiles + forest_.tree().tile_count();
 }
 
 std::vector<IndexedStep> BuildJournal::take_steps(Level level) {

@@ -9,11 +9,21 @@
 namespace meshhier::pipeline {
 namespace {
 
-/// Calls visit(begin, end) for each run of references to one tile. Requires them sorted.
-template <class Visit>
-void for_each_tile(std::span<const GhostRef> refs, const Visit& visit) {
+std::uint32_t owner_of(const GhostRef& ghost) {
+  return ghost.tile;
+}
+std::uint32_t owner_of(const FinerGhost& ghost) {
+  return ghost.ref.tile;
+}
+std::uint32_t owner_of(const ChunkVertex& vertex) {
+  return vertex.chunk;
+}
+
+/// Calls visit(begin, end) for each run of references to one tile or chunk. Requires them sorted.
+template <class Ref, class Visit>
+void for_each_owner(std::span<const Ref> refs, const Visit& visit) {
   for (std::size_t begin = 0, end = 0; begin < refs.size(); begin = end) {
-    while (end < refs.size() && refs[end].tile == refs[begin].tile)
+    while (end < refs.size() && owner_of(refs[end]) == owner_of(refs[begin]))
       ++end;
     visit(begin, end);
   }
@@ -50,12 +60,16 @@ void Forest::put_places(std::uint32_t chunk, std::span<const partition::LeafPlac
   places_.put(chunk, std::as_bytes(places));
 }
 
-void Forest::put_tile(NodeId node, const WorkTile& tile) {
+template <class Corner>
+void Forest::put_work_tile(NodeId node, const WorkTile<Corner>& tile) {
   LevelStore& level = levels_[raw(node.level)];
   level.tiles.put(node.index, storage::encode_work_tile(tile));
   level.boundaries.put(node.index, storage::encode_boundary(tile));
   level.own_counts[node.index] = static_cast<std::uint32_t>(tile.vertices.size());
 }
+
+template void Forest::put_work_tile(NodeId node, const LeafTile& tile);
+template void Forest::put_work_tile(NodeId node, const SimplifiedTile& tile);
 
 void Forest::put_parent_map(NodeId child, std::span<const std::uint16_t> parent_map) {
   levels_[raw(child.level)].parent_maps.put(child.index, std::as_bytes(parent_map));
@@ -78,15 +92,25 @@ void Forest::drop_copies(std::uint64_t free_bytes) {
   }
 }
 
-LoadedTile Forest::load_with_mapped(NodeId node) const {
-  const LevelStore& level = levels_[raw(node.level)];
-  WorkTile work = storage::decode_work_tile(level.tiles.view(node.index).bytes(), channels_);
+/// The tile with its ghosts at its own level, but without their vertices.
+template <class Corner>
+LoadedTile Forest::resolved(NodeId node) const {
+  const storage::BlobStore& tiles = levels_[raw(node.level)].tiles;
+  auto work = storage::decode_work_tile<Corner>(tiles.view(node.index).bytes(), channels_);
   LoadedTile loaded;
   loaded.mapped = mapped(node, work.foreign);
+  loaded.tile =
+      cluster_simplify::resolve(std::move(work), loaded.mapped, !tree_.is_partition(node));
+  return loaded;
+}
+
+LoadedTile Forest::load_with_mapped(NodeId node) const {
+  const LevelStore& level = levels_[raw(node.level)];
+  LoadedTile loaded =
+      tree_.is_partition(node) ? resolved<ChunkVertex>(node) : resolved<FinerGhost>(node);
   BuildTile& tile = loaded.tile;
-  tile = cluster_simplify::resolve(std::move(work), loaded.mapped, !tree_.is_partition(node));
   tile.mesh.vertices.reserve(tile.mesh.own_count + tile.mesh.ghosts.size());
-  for_each_tile(tile.mesh.ghosts, [&](std::size_t begin, std::size_t) {
+  for_each_owner(std::span<const GhostRef>(tile.mesh.ghosts), [&](std::size_t begin, std::size_t) {
     const std::uint32_t neighbour = tile.mesh.ghosts[begin].tile;
     cluster_simplify::fill_ghosts(
         tile, neighbour,
@@ -103,31 +127,29 @@ SeamStrip Forest::seam_strip(NodeId node) const {
   return storage::decode_seam_strip(levels_[raw(node.level)].seam_strips.view(node.index).bytes());
 }
 
-std::vector<GhostRef> Forest::mapped(NodeId node, std::span<const GhostRef> foreign) const {
-  if (tree_.is_partition(node))
-    return mapped_leaf(foreign);
+std::vector<GhostRef> Forest::mapped(NodeId node, std::span<const FinerGhost> foreign) const {
   std::vector<GhostRef> result;
   result.reserve(foreign.size());
-  for_each_tile(foreign, [&](std::size_t begin, std::size_t end) {
-    const NodeId child{finer(node.level), foreign[begin].tile};
+  for_each_owner(foreign, [&](std::size_t begin, std::size_t end) {
+    const NodeId child{finer(node.level), foreign[begin].ref.tile};
     const std::uint32_t parent = tree_.parent(child).index;
-    const std::vector<std::uint16_t> map = parent_map(child, foreign[end - 1].index + 1);
+    const std::vector<std::uint16_t> map = parent_map(child, foreign[end - 1].ref.index + 1);
     for (std::size_t i = begin; i < end; ++i)
-      result.push_back({parent, map[foreign[i].index]});
+      result.push_back({parent, map[foreign[i].ref.index]});
   });
   return result;
 }
 
-std::vector<GhostRef> Forest::mapped_leaf(std::span<const GhostRef> foreign) const {
+std::vector<GhostRef> Forest::mapped(NodeId, std::span<const ChunkVertex> foreign) const {
   std::vector<GhostRef> result;
   result.reserve(foreign.size());
-  for_each_tile(foreign, [&](std::size_t begin, std::size_t end) {
-    const std::uint32_t chunk = foreign[begin].tile;
+  for_each_owner(foreign, [&](std::size_t begin, std::size_t end) {
+    const std::uint32_t chunk = foreign[begin].chunk;
     const std::uint32_t first = tree_.partitions({chunks_, chunk}).begin;
     std::vector<partition::LeafPlace> places(places_.size(chunk) / sizeof(partition::LeafPlace));
     places_.read(chunk, 0, std::as_writable_bytes(std::span(places)));
     for (std::size_t i = begin; i < end; ++i) {
-      const partition::LeafPlace& place = partition::find_place(places, foreign[i].index);
+      const partition::LeafPlace& place = partition::find_place(places, foreign[i].local);
       result.push_back({first + place.partition, place.index});
     }
   });
@@ -149,14 +171,13 @@ std::vector<std::uint16_t> Forest::parent_map(NodeId child) const {
 std::vector<std::uint16_t> Forest::published_parent_map(NodeId node) const {
   if (node.level == Level{0})
     return {};
-  const NodeId parent = tree_.parent(node);
   // An early node keeps its partition as it is, so the map from it is the map from the partition.
-  return parent_map(tree_.is_early(parent) ? parent : node);
+  return parent_map(tree_.stands_for_parent(node) ? tree_.parent(node) : node);
 }
 
 std::vector<std::uint16_t> Forest::chains(NodeId node, std::span<const GhostRef> ghosts) const {
   std::vector<std::uint16_t> result;
-  for_each_tile(ghosts, [&](std::size_t begin, std::size_t end) {
+  for_each_owner(ghosts, [&](std::size_t begin, std::size_t end) {
     NodeId tile{node.level, ghosts[begin].tile};
     const auto length = static_cast<std::size_t>(tree_.chain_length(node, tile));
     const std::size_t first = result.size();

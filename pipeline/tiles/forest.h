@@ -40,7 +40,8 @@ class Forest {
   const Tree& tree() const { return tree_; }
 
   void put_places(std::uint32_t chunk, std::span<const partition::LeafPlace> places);
-  void put_tile(NodeId node, const WorkTile& tile);
+  void put_tile(NodeId node, const LeafTile& tile) { put_work_tile(node, tile); }
+  void put_tile(NodeId node, const SimplifiedTile& tile) { put_work_tile(node, tile); }
   /// What the neighbours of a simplified tile may see of it.
   void put_seam_strip(NodeId node, const SeamStrip& seam_strip);
   /// The map from `child` to its parent's tile.
@@ -92,8 +93,12 @@ class Forest {
     std::vector<Fallbacks> fallbacks;
     std::vector<std::uint32_t> own_counts;
   };
-  std::vector<GhostRef> mapped(NodeId node, std::span<const GhostRef> foreign) const;
-  std::vector<GhostRef> mapped_leaf(std::span<const GhostRef> foreign) const;
+  template <class Corner>
+  void put_work_tile(NodeId node, const WorkTile<Corner>& tile);
+  template <class Corner>
+  LoadedTile resolved(NodeId node) const;
+  std::vector<GhostRef> mapped(NodeId node, std::span<const FinerGhost> foreign) const;
+  std::vector<GhostRef> mapped(NodeId partition, std::span<const ChunkVertex> foreign) const;
   std::vector<std::uint16_t> parent_map(NodeId child, std::size_t count) const;
 
   Tree tree_;

@@ -15,7 +15,7 @@ constexpr std::uint32_t kNowhere = UINT32_MAX;
 std::vector<std::uint32_t> new_order(const TileMesh& mesh) {
   std::vector<std::uint32_t> corners;
   corners.reserve(3 * mesh.interior.size());
-  for (const Triangle& t : mesh.interior)
+  for (const TileTriangle& t : mesh.interior)
     corners.insert(corners.end(), {raw(t[0]), raw(t[1]), raw(t[2])});
   std::vector<bool> placed(mesh.own_count);
   std::vector<std::uint32_t> order;
@@ -54,7 +54,7 @@ void order_inner_vertices(TileMesh& mesh, std::vector<std::uint16_t>& parent_map
   for (std::size_t v = 0; v < parents.size(); ++v)
     parents[place[v]] = parent_map[v];
   parent_map = std::move(parents);
-  for (Triangle& t : mesh.interior)
+  for (TileTriangle& t : mesh.interior)
     t = {TileVertex{place[raw(t[0])]}, TileVertex{place[raw(t[1])]}, TileVertex{place[raw(t[2])]}};
   normalize_triangles(mesh.interior, false);
 }

@@ -70,7 +70,7 @@ HierarchyReader::HierarchyReader(FileSystem& files, std::filesystem::path direct
 
 const TileRecord& HierarchyReader::record(NodeId node) const {
   assert(tree_.contains(node));
-  return record_of(records_, tile_node(tree_, node));
+  return record_of(records_, tree_.tile_node(node));
 }
 
 PublishedTile HierarchyReader::read_tile(NodeId node) const {

@@ -28,7 +28,7 @@ class HierarchyReader {
 
   /// Ascending by node.
   const std::vector<TileRecord>& records() const { return records_; }
-  /// The node's tile; for an early node its partition's. Requires tree().contains(node).
+  /// Of the tile that stands for the node (Tree::tile_node). Requires tree().contains(node).
   const TileRecord& record(NodeId node) const;
 
   /// Reads one tile, checks its size and checksum, and that its counts are those of the index.

@@ -126,15 +126,9 @@ class IndexReader {
   std::vector<TileRecord> read() const {
     check_header();
     std::vector<TileRecord> records;
-    records.reserve(tile_count(tree_));
-    for (int level = 0; level <= raw(tree_.depth()); ++level) {
-      const auto count = tree_.node_count(static_cast<Level>(level));
-      for (std::uint32_t index = 0; index < count; ++index) {
-        const NodeId node{static_cast<Level>(level), index};
-        if (!tree_.is_early(node))
-          records.push_back(read_record(records.size(), node));
-      }
-    }
+    records.reserve(tree_.tile_count());
+    for (const NodeId node : tree_.tile_nodes())
+      records.push_back(read_record(records.size(), node));
     return records;
   }
 
@@ -161,8 +155,8 @@ class IndexReader {
       fail(fmt::format("records of {} bytes, expected {}", record_bytes, kRecordBytes));
     }
     const auto count = load_little<std::uint64_t>(bytes_.data() + 16);
-    if (count != tile_count(tree_)) {
-      fail(fmt::format("{} records, expected {} for {} partitions", count, tile_count(tree_),
+    if (count != tree_.tile_count()) {
+      fail(fmt::format("{} records, expected {} for {} partitions", count, tree_.tile_count(),
                        tree_.partition_count()));
     }
     const std::uint64_t expected = index_bytes(tree_);
@@ -198,11 +192,6 @@ class IndexReader {
 
 }  // namespace
 
-std::uint64_t tile_count(const Tree& tree) {
-  // Every inner tile replaces two by one: a binary tree with P leaves. Early nodes have no tile.
-  return 2 * std::uint64_t{tree.partition_count()} - 1;
-}
-
 std::vector<std::byte> encode_record(const TileRecord& record) {
   std::vector<std::byte> bytes;
   bytes.reserve(kRecordBytes);
@@ -217,7 +206,7 @@ TileRecord decode_record(std::span<const std::byte> bytes) {
 }
 
 std::uint64_t index_bytes(const Tree& tree) {
-  return kIndexHeaderBytes + tile_count(tree) * kRecordBytes;
+  return kIndexHeaderBytes + tree.tile_count() * kRecordBytes;
 }
 
 std::vector<std::byte> encode_index(std::span<const TileRecord> records) {

@@ -10,7 +10,7 @@
 
 namespace meshhier::storage {
 
-/// `records`: every tile of `tree` once (early nodes have none), ascending by node.
+/// `records`: one for each of tree.tile_nodes(), in that order.
 std::vector<std::byte> encode_index(std::span<const TileRecord> records);
 
 /// Checks version, length, checksum, order, and that exactly the tree's tiles are there. Throws
@@ -22,9 +22,6 @@ std::vector<TileRecord> decode_index(std::span<const std::byte> bytes, const Tre
 std::vector<std::byte> encode_record(const TileRecord& record);
 /// The inverse. Throws Error(corrupt) if `bytes` has another size or names no level.
 TileRecord decode_record(std::span<const std::byte> bytes);
-
-/// How many tiles a hierarchy of this tree has: all nodes but the early ones.
-std::uint64_t tile_count(const Tree& tree);
 
 /// Bytes of its index.
 std::uint64_t index_bytes(const Tree& tree);

@@ -75,10 +75,10 @@ LevelSummary summarize(Level level, Level last, std::span<const TileRecord> reco
   return summary;
 }
 
-/// Partitions under early nodes are part of what the level above the last shows.
-void add_early(const Tree& tree, std::span<const TileRecord> partitions, LevelSummary& above) {
+/// Some partitions are part of what the level above the last shows.
+void add_partitions(const Tree& tree, std::span<const TileRecord> partitions, LevelSummary& above) {
   for (const TileRecord& record : partitions) {
-    if (!tree.is_early(tree.parent(record.node)))
+    if (!tree.stands_for_parent(record.node))
       continue;
     ++above.shown_tiles;
     above.shown_triangles += triangle_count(record);
@@ -106,7 +106,7 @@ std::vector<LevelSummary> summarize_levels(const Tree& tree, std::span<const Til
     const auto of_level = records.subspan(begin, end - begin);
     levels.push_back(summarize(static_cast<Level>(level), tree.depth(), of_level));
     if (level > 0 && level == raw(tree.depth())) {
-      add_early(tree, of_level, levels[static_cast<std::size_t>(level) - 1]);
+      add_partitions(tree, of_level, levels[static_cast<std::size_t>(level) - 1]);
     }
     begin = end;
   }

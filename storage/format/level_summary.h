@@ -39,7 +39,7 @@ struct LevelSummary {
   std::uint64_t forced_total = 0;  ///< vertices that went without care for the surface
   std::uint32_t off_target = 0;    ///< simplified tiles whose vertex count is not the one asked for
 
-  // What the cut of this level shows, with partitions in the place of early nodes.
+  // What the cut of this level shows (Cut::of_level).
   std::uint32_t shown_tiles = 0;
   std::uint64_t shown_triangles = 0;
   /// False: an upper bound. What a partition among coarser tiles draws is not in the index.

@@ -121,7 +121,7 @@ class Writer {
     }
   }
 
-  void put_triangles(Part part, std::span<const Triangle> triangles) {
+  void put_triangles(Part part, std::span<const TileTriangle> triangles) {
     const Section& section = plan_[part];
     section.component == kU16 ? put_corners<std::uint16_t>(section, triangles)
                               : put_corners<std::uint32_t>(section, triangles);
@@ -149,9 +149,9 @@ class Writer {
   }
 
   template <class Index>
-  void put_corners(const Section& section, std::span<const Triangle> triangles) {
+  void put_corners(const Section& section, std::span<const TileTriangle> triangles) {
     std::byte* to = at(section);
-    for (const Triangle& t : triangles) {
+    for (const TileTriangle& t : triangles) {
       for (const TileVertex corner : t) {
         const auto index = static_cast<Index>(raw(corner));
         store_all_little(std::span<const Index>(&index, 1), to);
@@ -232,9 +232,9 @@ class Reader {
 
   /// Canonical, ascending triangles of which every corner is a vertex. `is_packed`: as the codec
   /// gave them, turned and in another order; else they must be so in the file.
-  std::vector<Triangle> triangles(Part part, bool is_packed) const {
+  std::vector<TileTriangle> triangles(Part part, bool is_packed) const {
     const Section& section = plan_[part];
-    std::vector<Triangle> triangles(section.count / 3);
+    std::vector<TileTriangle> triangles(section.count / 3);
     for (std::size_t t = 0; t < triangles.size(); ++t) {
       for (std::size_t c = 0; c < 3; ++c) {
         const std::uint32_t index = section.component == kU16
@@ -294,8 +294,7 @@ class Reader {
   void read_neighbour(NodeId neighbour, std::size_t count, std::span<const std::uint16_t>& left,
                       PublishedTile& tile) const {
     const auto length = static_cast<std::size_t>(tree_.chain_length(tile.node, neighbour));
-    // The parent of a partition that has none but this below it is the partition itself.
-    const bool early = tree_.is_partition(neighbour) && tree_.is_early(tree_.parent(neighbour));
+    const bool stays = tree_.stands_for_parent(neighbour);
     if (left.size() / length < count) {
       fail(fmt::format("tile {} needs {} chains of {} entries, {} entries are left",
                        neighbour.index, count, length, left.size()));
@@ -307,7 +306,7 @@ class Reader {
         fail(
             fmt::format("ghosts of tile {} do not ascend at vertex {}", neighbour.index, chain[0]));
       }
-      if (early && length > 1 && chain[1] != chain[0]) {
+      if (stays && length > 1 && chain[1] != chain[0]) {
         fail(fmt::format("vertex {} of tile {} changes its number to {} without a parent tile",
                          chain[0], neighbour.index, chain[1]));
       }
@@ -343,8 +342,8 @@ class Reader {
     }
   }
 
-  void check_triangle(Part part, std::size_t t, std::span<const Triangle> triangles) const {
-    const Triangle& triangle = triangles[t];
+  void check_triangle(Part part, std::size_t t, std::span<const TileTriangle> triangles) const {
+    const TileTriangle& triangle = triangles[t];
     if (is_degenerate(triangle) || triangle != canonical(triangle) ||
         (t > 0 && triangle < triangles[t - 1])) {
       fail(fmt::format("{} triangle {} ({}, {}, {}) is degenerate, turned or out of order",

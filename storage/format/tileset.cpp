@@ -37,7 +37,7 @@ class Boxes {
       const NodeId node = records[i].node;
       at(node).add(records[i].bounds);
       if (node.level > Level{0})
-        at(parent_tile(tree_, node)).add(at(node));
+        at(tree_.parent_tile(node)).add(at(node));
     }
   }
   const Bounds& operator[](NodeId node) const { return levels_[raw(node.level)][node.index]; }
@@ -75,7 +75,7 @@ class TilesetWriter {
   /// Nodes with a file of their own.
   bool is_page(NodeId node) const {
     return raw(node.level) > 0 && raw(node.level) % levels_per_file_ == 0 &&
-           !tree_.is_early(node) && !tree_.is_partition(node);
+           !tree_.is_partition(tree_.tile_node(node));
   }
 
   const TileRecord& record(NodeId node) const { return record_of(records_, node); }
@@ -120,7 +120,7 @@ class TilesetWriter {
     tile["boundingVolume"] = {{"box", box_json(boxes_[node])}};
     if (node != root && is_page(node)) {
       // Shown never; between the errors of its parent and of the tile it leads to.
-      const double above = record(parent_tile(tree_, node)).error;
+      const double above = record(tree_.parent_tile(node)).error;
       tile["geometricError"] = (above + record(node).error) / 2;
       tile["content"] = {{"uri", up + tileset_path({}, node).generic_string()}};
       return tile;
@@ -131,7 +131,7 @@ class TilesetWriter {
     tile["content"] = {{"uri", up + tile_path({}, node).generic_string()}};
     const Tree::Children children = tree_.children(node);
     for (const NodeId child : children.span())
-      tile["children"].push_back(tile_json(tile_node(tree_, child), root));
+      tile["children"].push_back(tile_json(tree_.tile_node(child), root));
     return tile;
   }
 

@@ -81,9 +81,9 @@ bool narrow(const WorkTileCounts& counts) {
 }
 
 template <class Index>
-void put_corners(Packer& packer, const std::vector<Triangle>& triangles) {
+void put_corners(Packer& packer, const std::vector<TileTriangle>& triangles) {
   std::byte* to = packer.make_room<Index>(triangles.size() * 3);
-  for (const Triangle& t : triangles) {
+  for (const TileTriangle& t : triangles) {
     for (const TileVertex v : t) {
       const auto corner = static_cast<Index>(raw(v));
       std::memcpy(to, &corner, sizeof corner);
@@ -93,16 +93,16 @@ void put_corners(Packer& packer, const std::vector<Triangle>& triangles) {
 }
 
 template <class Index>
-std::vector<Triangle> get_corners(Unpacker& unpacker, std::size_t count) {
+std::vector<TileTriangle> get_corners(Unpacker& unpacker, std::size_t count) {
   const std::byte* from = unpacker.skip<Index>(count * 3);
-  std::vector<Triangle> triangles(count);
+  std::vector<TileTriangle> triangles(count);
   const auto next = [&from] {
     Index corner;
     std::memcpy(&corner, from, sizeof corner);
     from += sizeof corner;
     return TileVertex{corner};
   };
-  for (Triangle& t : triangles)
+  for (TileTriangle& t : triangles)
     t = {next(), next(), next()};
   return triangles;
 }
@@ -112,7 +112,8 @@ std::size_t triangle_bytes(const WorkTileCounts& counts) {
 }
 
 void put_triangles(Packer& packer, const WorkTileCounts& counts,
-                   const std::vector<Triangle>& interior, const std::vector<Triangle>& border) {
+                   const std::vector<TileTriangle>& interior,
+                   const std::vector<TileTriangle>& border) {
   for (const auto* triangles : {&interior, &border}) {
     narrow(counts) ? put_corners<std::uint16_t>(packer, *triangles)
                    : put_corners<std::uint32_t>(packer, *triangles);
@@ -120,7 +121,7 @@ void put_triangles(Packer& packer, const WorkTileCounts& counts,
 }
 
 void get_triangles(Unpacker& unpacker, const WorkTileCounts& counts,
-                   std::vector<Triangle>& interior, std::vector<Triangle>& border) {
+                   std::vector<TileTriangle>& interior, std::vector<TileTriangle>& border) {
   const auto get = [&](std::size_t count) {
     return narrow(counts) ? get_corners<std::uint16_t>(unpacker, count)
                           : get_corners<std::uint32_t>(unpacker, count);
@@ -136,11 +137,12 @@ static_assert(sizeof(WorkTileCounts) == kWorkTileHeadBytes);
 std::uint64_t work_triangle_bytes(std::span<const std::byte> head) {
   WorkTileCounts counts;
   std::memcpy(&counts, head.data(), sizeof counts);
-  return (std::uint64_t{counts.interior} + counts.border) * sizeof(Triangle) +
+  return (std::uint64_t{counts.interior} + counts.border) * sizeof(TileTriangle) +
          counts.foreign * sizeof(GhostRef);
 }
 
-std::vector<std::byte> encode_work_tile(const WorkTile& tile) {
+template <class Corner>
+std::vector<std::byte> encode_work_tile(const WorkTile<Corner>& tile) {
   const WorkTileCounts counts{static_cast<std::uint32_t>(tile.vertices.size()), tile.boundary_count,
                               static_cast<std::uint32_t>(tile.foreign.size()),
                               static_cast<std::uint32_t>(tile.interior.size()),
@@ -152,28 +154,30 @@ std::vector<std::byte> encode_work_tile(const WorkTile& tile) {
   packer.put(std::span<const Vec3f>(tile.vertices.positions));
   packer.put(std::span<const float>(tile.vertices.attributes));
   packer.put(std::span<const float>(tile.history.weights));
-  packer.put(std::span<const GhostRef>(tile.foreign));
+  packer.put(std::span<const Corner>(tile.foreign));
   put_triangles(packer, counts, tile.interior, tile.border);
   return packer.take();
 }
 
-WorkTile decode_work_tile(std::span<const std::byte> bytes, int channels) {
+template <class Corner>
+WorkTile<Corner> decode_work_tile(std::span<const std::byte> bytes, int channels) {
   Unpacker unpacker(bytes);
   const WorkTileCounts counts = unpacker.get<WorkTileCounts>(1)[0];
-  WorkTile tile;
+  WorkTile<Corner> tile;
   tile.boundary_count = counts.boundary;
   tile.vertices.channels = channels;
   tile.vertices.positions = unpacker.get<Vec3f>(counts.own);
   tile.vertices.attributes = unpacker.get<float>(counts.own * static_cast<std::size_t>(channels));
   tile.history.weights = unpacker.get<float>(counts.own);
-  tile.foreign = unpacker.get<GhostRef>(counts.foreign);
+  tile.foreign = unpacker.get<Corner>(counts.foreign);
   get_triangles(unpacker, counts, tile.interior, tile.border);
   unpacker.finish();
   return tile;
 }
 
 // A boundary: u32 count, positions, attributes.
-std::vector<std::byte> encode_boundary(const WorkTile& tile) {
+template <class Corner>
+std::vector<std::byte> encode_boundary(const WorkTile<Corner>& tile) {
   const std::size_t count = tile.boundary_count;
   const auto channels = static_cast<std::size_t>(tile.vertices.channels);
   Packer packer(4 + count * (12 + 4 * channels));
@@ -229,7 +233,7 @@ std::vector<std::byte> encode_seam_strip(const SeamStrip& seam_strip) {
   packer.put(std::span<const SeamStripHead>(&head, 1));
   packer.put(std::span<const Vec3f>(seam_strip.positions));
   packer.put(std::span<const float>(seam_strip.deviations));
-  packer.put(std::span<const GhostRef>(seam_strip.foreign));
+  packer.put(std::span<const FinerGhost>(seam_strip.foreign));
   put_triangles(packer, head.counts, seam_strip.interior, seam_strip.border);
   return packer.take();
 }
@@ -243,7 +247,7 @@ SeamStrip decode_seam_strip(std::span<const std::byte> bytes) {
   seam_strip.own_count = counts.own;
   seam_strip.positions = unpacker.get<Vec3f>(std::size_t{counts.own} + counts.foreign);
   seam_strip.deviations = unpacker.get<float>(counts.own);
-  seam_strip.foreign = unpacker.get<GhostRef>(counts.foreign);
+  seam_strip.foreign = unpacker.get<FinerGhost>(counts.foreign);
   get_triangles(unpacker, counts, seam_strip.interior, seam_strip.border);
   seam_strip.interior_deviation = head.interior_deviation;
   seam_strip.lost = head.lost;
@@ -252,5 +256,12 @@ SeamStrip decode_seam_strip(std::span<const std::byte> bytes) {
   unpacker.finish();
   return seam_strip;
 }
+
+template std::vector<std::byte> encode_work_tile(const LeafTile&);
+template std::vector<std::byte> encode_work_tile(const SimplifiedTile&);
+template LeafTile decode_work_tile(std::span<const std::byte>, int);
+template SimplifiedTile decode_work_tile(std::span<const std::byte>, int);
+template std::vector<std::byte> encode_boundary(const LeafTile&);
+template std::vector<std::byte> encode_boundary(const SimplifiedTile&);
 
 }  // namespace meshhier::storage

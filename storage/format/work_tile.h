@@ -16,11 +16,15 @@ constexpr std::size_t kWorkTileHeadBytes = 20;
 /// kWorkTileHeadBytes.
 std::uint64_t work_triangle_bytes(std::span<const std::byte> head);
 
-std::vector<std::byte> encode_work_tile(const WorkTile& tile);
+// `Corner`: ChunkVertex or FinerGhost. The bytes do not tell which.
+template <class Corner>
+std::vector<std::byte> encode_work_tile(const WorkTile<Corner>& tile);
 /// Requires bytes of encode_work_tile with the same `channels`; throws Error(internal) otherwise.
-WorkTile decode_work_tile(std::span<const std::byte> bytes, int channels);
+template <class Corner>
+WorkTile<Corner> decode_work_tile(std::span<const std::byte> bytes, int channels);
 
-std::vector<std::byte> encode_boundary(const WorkTile& tile);
+template <class Corner>
+std::vector<std::byte> encode_boundary(const WorkTile<Corner>& tile);
 Boundary decode_boundary(std::span<const std::byte> bytes, int channels);
 
 std::vector<std::byte> encode_seam_strip(const SeamStrip& seam_strip);

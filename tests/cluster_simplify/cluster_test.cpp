@@ -23,7 +23,7 @@ using tests::tile_of;
 
 constexpr std::array kAll{Representative::mean, Representative::quadric, Representative::vertex};
 
-Triangle triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+TileTriangle triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   return {TileVertex{a}, TileVertex{b}, TileVertex{c}};
 }
 
@@ -141,7 +141,7 @@ TEST(ClusterTest, AVertexRepresentativeIsTheBestOfItsCell) {
   const Contraction found = cluster(tile, 90, {}, Representative::vertex);
   const std::vector<Vec3d> means = cell_means(tile, found);
   std::vector<Quadric> quadrics(90);
-  for (const Triangle& t : tile.mesh.interior) {
+  for (const TileTriangle& t : tile.mesh.interior) {
     std::vector<std::uint32_t> cells;
     for (const TileVertex v : t)
       cells.push_back(found.parent_of[raw(v)]);

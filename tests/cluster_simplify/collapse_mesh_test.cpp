@@ -37,7 +37,7 @@ class Reference {
  public:
   explicit Reference(const TileMesh& mesh) : roots_(mesh.vertices.size()) {
     for (const auto* list : {&mesh.interior, &mesh.border}) {
-      for (const Triangle& t : *list)
+      for (const TileTriangle& t : *list)
         triangles_.push_back({raw(t[0]), raw(t[1]), raw(t[2])});
     }
     alive_.assign(triangles_.size(), true);

@@ -187,7 +187,7 @@ TEST(DeviationMeterTest, GhostsStayAndTheirTrianglesDeviation) {
     const std::vector<Vec3f> before = tile.places();
     tests::TestMesh local{before, {}};
     for (const auto* triangles : {&input.mesh.interior, &input.mesh.border}) {
-      for (const Triangle& t : *triangles)
+      for (const TileTriangle& t : *triangles)
         local.triangles.push_back({raw(t[0]), raw(t[1]), raw(t[2])});
     }
     RandomCollapses(tile, 5, false).run(input.mesh.own_count / 2);

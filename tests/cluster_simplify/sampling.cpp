@@ -72,7 +72,7 @@ std::vector<Corners> surface_of(const TestMesh& mesh) {
 std::vector<Corners> surface_of(const TileMesh& mesh) {
   std::vector<Corners> surface;
   for (const auto* triangles : {&mesh.interior, &mesh.border}) {
-    for (const Triangle& t : *triangles) {
+    for (const TileTriangle& t : *triangles) {
       surface.push_back(
           corners_of(mesh.vertices.positions, t, [](TileVertex v) { return raw(v); }));
     }

@@ -131,18 +131,18 @@ class Level {
     return tile;
   }
 
-  std::vector<GhostRef> mapped(const std::vector<GhostRef>& foreign) const {
+  std::vector<GhostRef> mapped(const std::vector<FinerGhost>& foreign) const {
     std::vector<GhostRef> result;
-    for (const GhostRef& ref : foreign)
+    for (const auto& [ref] : foreign)
       result.push_back({ref.tile, contracted_[ref.tile].parent_map[ref.index]});
     return result;
   }
 
   void draw(std::uint32_t t) {
-    const WorkTile& work = contracted_[t].tile;
+    const SimplifiedTile& work = contracted_[t].tile;
     BuildTile tile = resolve(work, mapped(work.foreign), true);
     for (std::uint32_t other = 0; other < contracted_.size(); ++other) {
-      const WorkTile& neighbour = contracted_[other].tile;
+      const SimplifiedTile& neighbour = contracted_[other].tile;
       Boundary boundary;
       boundary.vertices.positions.assign(
           neighbour.vertices.positions.begin(),
@@ -170,13 +170,13 @@ ContractTile by(const ContractionOptions& options, double part) {
   };
 }
 
-Corners corners_of(const TileMesh& mesh, const Triangle& t) {
+Corners corners_of(const TileMesh& mesh, const TileTriangle& t) {
   const auto at = [&](TileVertex v) { return to_double(mesh.vertices.positions[raw(v)]); };
   return {at(t[0]), at(t[1]), at(t[2])};
 }
 
 /// Whether no tile before this one draws the border triangle.
-bool is_lowest(const TileMesh& mesh, std::uint32_t tile, const Triangle& t) {
+bool is_lowest(const TileMesh& mesh, std::uint32_t tile, const TileTriangle& t) {
   return std::ranges::all_of(
       t, [&](TileVertex v) { return mesh.is_own(v) || mesh.ghost(v).tile > tile; });
 }
@@ -190,11 +190,11 @@ void expect_step_holds(const Level& level) {
     const double certain = level.certain(tile);
     largest = std::max(largest, certain);
     const TileMesh& mesh = level.drawn(tile);
-    for (const Triangle& t : mesh.interior) {
+    for (const TileTriangle& t : mesh.interior) {
       for (const Vec3d p : samples_of(corners_of(mesh, t), kSteps))
         ASSERT_LE(distance_to_surface(p, before), certain + kSlack) << "tile " << tile;
     }
-    for (const Triangle& t : mesh.border) {
+    for (const TileTriangle& t : mesh.border) {
       if (!is_lowest(mesh, tile, t))
         continue;
       for (const Vec3d p : samples_of(corners_of(mesh, t), kSteps))
@@ -329,7 +329,7 @@ TEST(SeamStripTest, ShowsTheSeamAndWhatIsBesideIt) {
   const Contraction contraction = contract(joined, 60, {}, {});
   const ContractedTile contracted = apply(joined, contraction);
   const SeamStrip seam_strip = make_seam_strip(joined, contracted);
-  const WorkTile& tile = contracted.tile;
+  const SimplifiedTile& tile = contracted.tile;
   EXPECT_EQ(seam_strip.boundary_count, tile.boundary_count);
   EXPECT_EQ(seam_strip.foreign, tile.foreign);
   EXPECT_EQ(seam_strip.interior_deviation, contracted.deviation.interior);
@@ -349,11 +349,11 @@ TEST(SeamStripTest, ShowsTheSeamAndWhatIsBesideIt) {
           v < tile.vertices.size()
               ? tile.vertices.positions[v]
               : joined.mesh.vertices.positions[joined.mesh.own_count +
-                                               tile.foreign[v - tile.vertices.size()].index];
+                                               tile.foreign[v - tile.vertices.size()].ref.index];
       EXPECT_EQ(seam_strip.positions[raw(seam_strip.border[i][k])], there);
     }
   }
-  const auto at_boundary = std::ranges::count_if(tile.interior, [&](const Triangle& t) {
+  const auto at_boundary = std::ranges::count_if(tile.interior, [&](const TileTriangle& t) {
     return std::ranges::any_of(t, [&](TileVertex v) { return raw(v) < tile.boundary_count; });
   });
   EXPECT_EQ(seam_strip.interior.size(), static_cast<std::size_t>(at_boundary));

@@ -24,7 +24,7 @@ using testing::IsEmpty;
 using testing::SizeIs;
 using Triangles = std::vector<tests::MeshTriangle>;
 
-Triangle triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+TileTriangle triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   return {TileVertex{a}, TileVertex{b}, TileVertex{c}};
 }
 
@@ -101,9 +101,9 @@ struct World {
   }
   /// A tile's triangles in global numbers, as they are.
   Triangles global(const TileMesh& mesh, std::uint32_t tile,
-                   std::span<const Triangle> local) const {
+                   std::span<const TileTriangle> local) const {
     Triangles result;
-    for (const Triangle& t : local)
+    for (const TileTriangle& t : local)
       result.push_back(
           {global(mesh, tile, t[0]), global(mesh, tile, t[1]), global(mesh, tile, t[2])});
     return normalized(std::move(result), false);
@@ -124,9 +124,17 @@ World make_world(const tests::TestMesh& mesh, std::uint32_t tile_count, bool sca
   return world;
 }
 
+/// The same vertices of the same tiles, as if these were of one level with who names them.
+std::vector<GhostRef> refs_of(const std::vector<FinerGhost>& foreign) {
+  std::vector<GhostRef> refs;
+  for (const FinerGhost& corner : foreign)
+    refs.push_back(corner.ref);
+  return refs;
+}
+
 /// The tile as its own stage would leave it: foreign corners named, not known.
-WorkTile work_tile(const World& world, std::uint32_t tile) {
-  WorkTile work;
+SimplifiedTile work_tile(const World& world, std::uint32_t tile) {
+  SimplifiedTile work;
   for (const std::uint32_t v : world.own[tile]) {
     work.vertices.positions.push_back(world.positions[v]);
     work.history.weights.push_back(world.weights[v]);
@@ -140,12 +148,13 @@ WorkTile work_tile(const World& world, std::uint32_t tile) {
         refs.insert({world.tile_of[v], world.local_of[v]});
     }
   }
-  work.foreign.assign(refs.begin(), refs.end());
+  for (const GhostRef& ref : refs)
+    work.foreign.push_back({ref});
   const auto local = [&](std::uint32_t v) {
     if (world.tile_of[v] == tile)
       return world.local_of[v];
-    const GhostRef ref{world.tile_of[v], world.local_of[v]};
-    return own_count + static_cast<std::uint32_t>(std::ranges::lower_bound(work.foreign, ref) -
+    const FinerGhost corner{{world.tile_of[v], world.local_of[v]}};
+    return own_count + static_cast<std::uint32_t>(std::ranges::lower_bound(work.foreign, corner) -
                                                   work.foreign.begin());
   };
   for (const tests::MeshTriangle& t : world.interior(tile))
@@ -173,8 +182,8 @@ void fill_all(BuildTile& tile, const World& world) {
 }
 
 BuildTile build_tile(const World& world, std::uint32_t tile) {
-  WorkTile work = work_tile(world, tile);
-  const std::vector<GhostRef> same = work.foreign;
+  SimplifiedTile work = work_tile(world, tile);
+  const std::vector<GhostRef> same = refs_of(work.foreign);
   BuildTile built = resolve(std::move(work), same, true);
   fill_all(built, world);
   return built;
@@ -192,7 +201,7 @@ void expect_tile(const World& world, std::uint32_t tile, const BuildTile& built)
   EXPECT_EQ(world.global(mesh, tile, mesh.interior), world.interior(tile));
   EXPECT_EQ(world.global(mesh, tile, mesh.border), world.border(tile));
   std::vector<bool> used(mesh.vertices.size());
-  for (const Triangle& t : mesh.border) {
+  for (const TileTriangle& t : mesh.border) {
     EXPECT_EQ(t, canonical(t));
     for (const TileVertex v : t)
       used[raw(v)] = true;
@@ -233,17 +242,17 @@ TEST(SeamsTest, AResolvedTileShowsItsNeighboursVertices) {
 }
 
 /// Two own vertices, four foreign corners.
-WorkTile small_tile() {
-  WorkTile tile;
+SimplifiedTile small_tile() {
+  SimplifiedTile tile;
   tile.vertices.positions = {{0, 0, 0}, {1, 0, 0}};
   tile.history = {{1, 1}};
   tile.boundary_count = 2;
-  tile.foreign = {{2, 0}, {2, 1}, {2, 2}, {5, 0}};
+  tile.foreign = {{{2, 0}}, {{2, 1}}, {{2, 2}}, {{5, 0}}};
   return tile;
 }
 
 TEST(ResolveTest, ForeignCornersThatBecameOneVertexBecomeOneGhost) {
-  WorkTile tile = small_tile();
+  SimplifiedTile tile = small_tile();
   tile.border = {triangle(0, 2, 4), triangle(0, 3, 5)};
   const std::vector<GhostRef> mapped = {{1, 3}, {1, 3}, {1, 9}, {1, 3}};
   const BuildTile built = resolve(tile, mapped, true);
@@ -252,7 +261,7 @@ TEST(ResolveTest, ForeignCornersThatBecameOneVertexBecomeOneGhost) {
 }
 
 TEST(ResolveTest, AGhostThatNoTriangleUsesAnyMoreGoes) {
-  WorkTile tile = small_tile();
+  SimplifiedTile tile = small_tile();
   tile.border = {triangle(0, 2, 3), triangle(0, 1, 5)};
   const std::vector<GhostRef> mapped = {{1, 4}, {1, 4}, {1, 0}, {3, 7}};
   const BuildTile built = resolve(tile, mapped, true);
@@ -261,7 +270,7 @@ TEST(ResolveTest, AGhostThatNoTriangleUsesAnyMoreGoes) {
 }
 
 TEST(ResolveTest, OnlyExactDuplicatesGoAndOnlyIfAskedTo) {
-  WorkTile tile = small_tile();
+  SimplifiedTile tile = small_tile();
   // The same triangle, turned; and its mirror image, which must stay.
   tile.border = {triangle(0, 1, 2), triangle(3, 0, 1), triangle(1, 0, 2)};
   const std::vector<GhostRef> mapped = {{1, 4}, {1, 4}, {1, 4}, {1, 4}};
@@ -272,9 +281,9 @@ TEST(ResolveTest, OnlyExactDuplicatesGoAndOnlyIfAskedTo) {
 }
 
 TEST(FillGhostsTest, AGhostOutsideTheBoundaryIsADefect) {
-  WorkTile work = small_tile();
+  SimplifiedTile work = small_tile();
   work.border = {triangle(0, 1, 4)};
-  const std::vector<GhostRef> mapped = work.foreign;
+  const std::vector<GhostRef> mapped = refs_of(work.foreign);
   BuildTile tile = resolve(work, mapped, true);
   Boundary boundary;
   boundary.vertices.positions = {{7, 7, 7}, {8, 8, 8}};  // the ghost is number 2
@@ -313,9 +322,9 @@ std::uint32_t global_of(const World& world, const World& joined, std::uint32_t p
 }
 
 Triangles global_of(const World& world, const World& joined, std::uint32_t pair,
-                    const TileMesh& mesh, std::span<const Triangle> local) {
+                    const TileMesh& mesh, std::span<const TileTriangle> local) {
   Triangles result;
-  for (const Triangle& t : local) {
+  for (const TileTriangle& t : local) {
     tests::MeshTriangle global{};
     for (std::size_t k = 0; k < 3; ++k)
       global[k] = global_of(world, joined, pair, mesh, t[k]);
@@ -434,9 +443,9 @@ TEST(ApplyTest, TheTilesOfALevelShowTheImageOfTheMeshUnderOneMap) {
         above.boundary_counts[pair] = contracted.tiles[pair].tile.boundary_count;
 
       for (std::uint32_t pair = 0; pair < 2; ++pair) {
-        WorkTile work = contracted.tiles[pair].tile;
+        SimplifiedTile work = contracted.tiles[pair].tile;
         std::vector<GhostRef> mapped;
-        for (const GhostRef& foreign : work.foreign) {
+        for (const auto& [foreign] : work.foreign) {
           const std::uint32_t v = contracted.parent_of[world.own[foreign.tile].at(foreign.index)];
           const auto first = static_cast<std::uint32_t>(above.own[above.tile_of[v]].front());
           mapped.push_back({above.tile_of[v], v - first});
@@ -459,7 +468,7 @@ TEST(ApplyTest, PutsTheBoundaryFirst) {
   const BuildTile joined = join_pair(world, 0);
   const ContractedTile result = apply(joined, wild_contraction(joined, 150, 9));
   std::vector<bool> on_border(150);
-  for (const Triangle& t : result.tile.border) {
+  for (const TileTriangle& t : result.tile.border) {
     for (const TileVertex v : t) {
       if (raw(v) < 150)
         on_border[raw(v)] = true;
@@ -541,7 +550,7 @@ TEST(KeepTest, ChangesNothing) {
                                tile.mesh.vertices.positions.begin() + tile.mesh.own_count));
   EXPECT_EQ(kept.tile.interior, tile.mesh.interior);
   EXPECT_EQ(kept.tile.border, tile.mesh.border);
-  EXPECT_EQ(kept.tile.foreign, tile.mesh.ghosts);
+  EXPECT_EQ(refs_of(kept.tile.foreign), tile.mesh.ghosts);
   EXPECT_EQ(kept.tile.boundary_count, tile.mesh.boundary_count);
   EXPECT_EQ(kept.tile.history.weights, tile.history.weights);
   EXPECT_EQ(kept.deviation.around, std::vector<float>(tile.mesh.own_count));

@@ -12,7 +12,7 @@
 namespace meshhier::tests {
 namespace {
 
-Triangle tile_triangle(const MeshTriangle& t) {
+TileTriangle tile_triangle(const MeshTriangle& t) {
   return {TileVertex{t[0]}, TileVertex{t[1]}, TileVertex{t[2]}};
 }
 
@@ -183,8 +183,8 @@ TestMesh image_of(const BuildTile& tile, const cluster_simplify::Contraction& co
                          mesh.vertices.positions.end());
   std::set<MeshTriangle> triangles;
   for (const auto* list : {&mesh.interior, &mesh.border}) {
-    for (const Triangle& t : *list) {
-      Triangle mapped = t;
+    for (const TileTriangle& t : *list) {
+      TileTriangle mapped = t;
       for (TileVertex& v : mapped)
         v = TileVertex{mesh.is_own(v) ? contraction.parent_of[raw(v)] : raw(v) + shift};
       mapped = canonical(mapped);

@@ -86,7 +86,7 @@ void check_mesh(Reconstruction mesh, std::size_t width) {
   const std::string refused = refusal({ErrorCode::corrupt}, "triangle ", [&] {
     std::move(mesh).hand_out(
         [&](std::span<const float> values) { values_seen += values.size(); },
-        [&](std::span<const std::array<std::uint32_t, 3>> block) {
+        [&](std::span<const Triangle<std::uint32_t>> block) {
           triangles_seen += block.size();
           for (const auto& t : block) {
             require(std::ranges::all_of(t, [&](std::uint32_t v) { return v < vertices; }),

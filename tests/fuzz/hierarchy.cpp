@@ -132,7 +132,7 @@ bool is_exported(MemoryFiles& files, const inspection::ExportSelection& selectio
   if (refused.empty() && !std::holds_alternative<inspection::OutlineSelection>(selection)) {
     const auto mesh = mesh_io::open_mesh(files, kExported);
     mesh->read_vertices([](const mesh_io::VertexBlock&) {});
-    mesh->read_triangles([](std::span<const mesh_io::SourceTriangle>) {});
+    mesh->read_triangles([](std::span<const Triangle<VertexId>>) {});
   }
   return refused.empty();
 }

@@ -25,7 +25,7 @@ void decode(Bytes bytes, const Tree& tree) {
   const auto read = [&] { records = storage::decode_index(bytes, tree, "tiles.bin"); };
   if (!refusal({ErrorCode::corrupt}, "tiles.bin: ", read).empty())
     return;
-  require(records.size() == storage::tile_count(tree), "every tile");
+  require(records.size() == tree.tile_count(), "every tile");
   for (const TileRecord& record : records)
     check_record(record, tree);
   require(std::ranges::equal(storage::encode_index(records), bytes), "nothing is lost");

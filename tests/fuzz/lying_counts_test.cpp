@@ -60,7 +60,7 @@ void read_all(const std::string& file) {
   files.put("mesh.ply", file);
   const auto source = mesh_io::open_mesh(files, "mesh.ply");
   source->read_vertices([](const mesh_io::VertexBlock&) {});
-  source->read_triangles([](std::span<const mesh_io::SourceTriangle>) {});
+  source->read_triangles([](std::span<const Triangle<VertexId>>) {});
 }
 
 std::string with_number(std::string text, const std::string& before, const std::string& number) {

@@ -11,7 +11,6 @@ namespace {
 using mesh_io::BlockMemory;
 using mesh_io::MeshDescription;
 using mesh_io::MeshSource;
-using mesh_io::SourceTriangle;
 using mesh_io::TriangleBlock;
 using mesh_io::VertexBlock;
 
@@ -40,10 +39,10 @@ void append(const MeshDescription& mesh, const VertexBlock& block, PlyReading& r
                             block.attributes.end());
 }
 
-void append(const MeshDescription& mesh, std::span<const SourceTriangle> triangles,
+void append(const MeshDescription& mesh, std::span<const Triangle<VertexId>> triangles,
             PlyReading& reading) {
   require(triangles.size() <= MeshSource::kBlockSize, "blocks have their size");
-  for (const SourceTriangle& t : triangles) {
+  for (const Triangle<VertexId>& t : triangles) {
     for (const VertexId corner : t)
       require(raw(corner) < mesh.vertex_count, "corners are vertices");
     require(t[0] != t[1] && t[1] != t[2] && t[2] != t[0], "no triangle is degenerate");
@@ -81,7 +80,7 @@ template <class Read>
 void read_triangles(MeshSource& source, PlyReading& reading, const Read& read) {
   const MeshDescription& mesh = source.description();
   reading.triangle_refusal = refused([&] {
-    read([&](std::span<const SourceTriangle> block) { append(mesh, block, reading); });
+    read([&](std::span<const Triangle<VertexId>> block) { append(mesh, block, reading); });
     check_triangles(mesh, reading);
   });
   if (!reading.triangle_refusal.empty())

@@ -1,9 +1,9 @@
 // A mesh file read in every way there is.
 #pragma once
 
+#include "hierarchy/triangle.h"
 #include "mesh_io/mesh_source.h"
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -17,7 +17,7 @@ struct PlyReading {
   std::vector<float> attributes;
   std::string vertex_refusal;
 
-  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<Triangle<std::uint32_t>> triangles;
   mesh_io::FaceCounts counts;
   std::string triangle_refusal;
 

@@ -138,7 +138,7 @@ bool same_attributes(const PublishedTile& a, const PublishedTile& b) {
 
 void check_triangles(const TileMesh& mesh) {
   for (const auto* triangles : {&mesh.interior, &mesh.border}) {
-    for (const Triangle& t : *triangles) {
+    for (const TileTriangle& t : *triangles) {
       std::size_t own = 0;
       for (const TileVertex corner : t) {
         require(raw(corner) < mesh.vertices.size(), "corners are vertices");

@@ -54,7 +54,7 @@ class SampleBuilder {
   /// The vertex that stands for `rank`, before the boundary comes first.
   GhostRef contract(Level level, std::size_t rank) {
     if (level == tree_.depth()) {
-      const std::uint32_t partition = raw(tree_.partition_of(static_cast<Rank>(rank)));
+      const std::uint32_t partition = raw(tree_.partition_of(rank));
       const auto begin = tree_.ranks(PartitionRange{partition, partition + 1}).begin;
       return {partition, static_cast<std::uint32_t>(rank - begin)};
     }

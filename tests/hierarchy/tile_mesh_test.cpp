@@ -1,21 +1,31 @@
 #include "hierarchy/tile_mesh.h"
 
+#include "hierarchy/build_tile.h"
+
 #include <algorithm>
 #include <random>
 #include <set>
+#include <type_traits>
 
 #include <gtest/gtest.h>
 
 namespace meshhier::tests {
 namespace {
 
-Triangle triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+// What names a vertex of another tile is told apart by its type.
+template <class From, class To>
+constexpr bool kMixes = std::is_convertible_v<From, To> || std::is_assignable_v<To&, From>;
+static_assert(!kMixes<GhostRef, FinerGhost> && !kMixes<FinerGhost, GhostRef>);
+static_assert(!kMixes<ChunkVertex, FinerGhost> && !kMixes<FinerGhost, ChunkVertex>);
+static_assert(!kMixes<ChunkVertex, GhostRef> && !kMixes<GhostRef, ChunkVertex>);
+
+TileTriangle triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   return {static_cast<TileVertex>(a), static_cast<TileVertex>(b), static_cast<TileVertex>(c)};
 }
 
-std::vector<Triangle> random_triangles(std::size_t count, std::uint32_t corners) {
+std::vector<TileTriangle> random_triangles(std::size_t count, std::uint32_t corners) {
   std::mt19937 random(7);
-  std::vector<Triangle> triangles;
+  std::vector<TileTriangle> triangles;
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t a = static_cast<std::uint32_t>(random()) % corners;
     const std::uint32_t b = static_cast<std::uint32_t>(random()) % corners;
@@ -25,9 +35,9 @@ std::vector<Triangle> random_triangles(std::size_t count, std::uint32_t corners)
 }
 
 /// The definition, without any cleverness.
-std::vector<Triangle> normalized(const std::vector<Triangle>& triangles, bool unique) {
-  std::vector<Triangle> result;
-  for (Triangle t : triangles) {
+std::vector<TileTriangle> normalized(const std::vector<TileTriangle>& triangles, bool unique) {
+  std::vector<TileTriangle> result;
+  for (TileTriangle t : triangles) {
     if (t[0] == t[1] || t[1] == t[2] || t[0] == t[2])
       continue;
     std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
@@ -35,35 +45,18 @@ std::vector<Triangle> normalized(const std::vector<Triangle>& triangles, bool un
   }
   std::sort(result.begin(), result.end());
   if (unique) {
-    const std::set<Triangle> set(result.begin(), result.end());
+    const std::set<TileTriangle> set(result.begin(), result.end());
     result.assign(set.begin(), set.end());
   }
   return result;
-}
-
-TEST(TileMesh, CanonicalTurnsTheSmallestCornerToTheFrontAndKeepsOrientation) {
-  for (const Triangle& t : {triangle(1, 5, 9), triangle(5, 9, 1), triangle(9, 1, 5)}) {
-    EXPECT_EQ(canonical(t), triangle(1, 5, 9));
-  }
-  for (const Triangle& t : {triangle(1, 9, 5), triangle(9, 5, 1), triangle(5, 1, 9)}) {
-    EXPECT_EQ(canonical(t), triangle(1, 9, 5));
-  }
-}
-
-TEST(TileMesh, TwoEqualCornersAreDegenerate) {
-  EXPECT_TRUE(is_degenerate(triangle(3, 3, 4)));
-  EXPECT_TRUE(is_degenerate(triangle(4, 3, 3)));
-  EXPECT_TRUE(is_degenerate(triangle(3, 4, 3)));
-  EXPECT_TRUE(is_degenerate(triangle(3, 3, 3)));
-  EXPECT_FALSE(is_degenerate(triangle(3, 4, 5)));
 }
 
 TEST(TileMesh, NormalizingSortsAndDropsAsDefined) {
   for (const std::uint32_t corners : {1U, 3U, 4U, 12U, 300U, 70000U}) {
     for (const std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{5000}}) {
       for (const bool unique : {false, true}) {
-        const std::vector<Triangle> input = random_triangles(count, corners);
-        std::vector<Triangle> triangles = input;
+        const std::vector<TileTriangle> input = random_triangles(count, corners);
+        std::vector<TileTriangle> triangles = input;
         normalize_triangles(triangles, unique);
         EXPECT_EQ(triangles, normalized(input, unique)) << corners << " " << count << " " << unique;
       }
@@ -72,8 +65,8 @@ TEST(TileMesh, NormalizingSortsAndDropsAsDefined) {
 }
 
 TEST(TileMesh, NormalizingDoesNotDependOnTheOrderGiven) {
-  std::vector<Triangle> triangles = random_triangles(2000, 50);
-  std::vector<Triangle> other(triangles.rbegin(), triangles.rend());
+  std::vector<TileTriangle> triangles = random_triangles(2000, 50);
+  std::vector<TileTriangle> other(triangles.rbegin(), triangles.rend());
   for (std::size_t i = 0; i < other.size(); ++i) {
     std::rotate(other[i].begin(), other[i].begin() + static_cast<std::ptrdiff_t>(i % 3),
                 other[i].end());
@@ -84,16 +77,16 @@ TEST(TileMesh, NormalizingDoesNotDependOnTheOrderGiven) {
 }
 
 TEST(TileMesh, OfDuplicatesOneIsKeptAndTheMirrorImageStays) {
-  std::vector<Triangle> triangles{triangle(7, 2, 4), triangle(2, 4, 7), triangle(4, 2, 7),
-                                  triangle(4, 7, 2), triangle(7, 4, 2)};
+  std::vector<TileTriangle> triangles{triangle(7, 2, 4), triangle(2, 4, 7), triangle(4, 2, 7),
+                                      triangle(4, 7, 2), triangle(7, 4, 2)};
   normalize_triangles(triangles, true);
-  EXPECT_EQ(triangles, (std::vector<Triangle>{triangle(2, 4, 7), triangle(2, 7, 4)}));
+  EXPECT_EQ(triangles, (std::vector<TileTriangle>{triangle(2, 4, 7), triangle(2, 7, 4)}));
 }
 
 TEST(TileMesh, DuplicatesStayUnlessTheyAreUnwanted) {
-  std::vector<Triangle> triangles{triangle(7, 2, 4), triangle(2, 4, 7)};
+  std::vector<TileTriangle> triangles{triangle(7, 2, 4), triangle(2, 4, 7)};
   normalize_triangles(triangles, false);
-  EXPECT_EQ(triangles, (std::vector<Triangle>{triangle(2, 4, 7), triangle(2, 4, 7)}));
+  EXPECT_EQ(triangles, (std::vector<TileTriangle>{triangle(2, 4, 7), triangle(2, 4, 7)}));
 }
 
 VertexArray numbered(std::size_t count, int channels, float first) {
@@ -160,10 +153,10 @@ TEST(TileMesh, NamedVerticesAreAppendedInTheirOrder) {
 
 TEST(TileMesh, ManyTrianglesOfOneFirstCornerAreSortedLikeFew) {
   for (const std::uint32_t count : {2U, 16U, 17U, 300U}) {
-    std::vector<Triangle> triangles;
+    std::vector<TileTriangle> triangles;
     for (std::uint32_t i = count; i-- > 0;)
       triangles.push_back({TileVertex{0}, TileVertex{1 + i * 7 % count}, TileVertex{1000 + i}});
-    std::vector<Triangle> sorted = triangles;
+    std::vector<TileTriangle> sorted = triangles;
     std::sort(sorted.begin(), sorted.end());
     normalize_triangles(triangles, true);
     EXPECT_EQ(triangles, sorted) << count;

@@ -103,8 +103,8 @@ TEST(Tree, EveryRankIsInThePartitionFoundForIt) {
         const auto partition = static_cast<PartitionId>(i);
         const std::uint64_t step = std::max<std::uint64_t>(1, ranks.size() / 5);
         for (std::uint64_t r = ranks.begin; r < ranks.end; r += step)
-          ASSERT_EQ(tree.partition_of(static_cast<Rank>(r)), partition) << n << " " << p;
-        ASSERT_EQ(tree.partition_of(static_cast<Rank>(ranks.end - 1)), partition) << n << " " << p;
+          ASSERT_EQ(tree.partition_of(r), partition) << n << " " << p;
+        ASSERT_EQ(tree.partition_of(ranks.end - 1), partition) << n << " " << p;
       }
     }
   }
@@ -198,7 +198,32 @@ TEST(Tree, OfOnePartitionIsItsRoot) {
   EXPECT_FALSE(tree.is_early(tree.root()));
   EXPECT_EQ(tree.children(tree.root()).count, 0);
   EXPECT_EQ(tree.ranks(tree.root()), (RankRange{0, 10}));
-  EXPECT_EQ(tree.partition_of(Rank{9}), PartitionId{0});
+  EXPECT_EQ(tree.partition_of(9), PartitionId{0});
+}
+
+TEST(Tree, TilesStandForEveryNode) {
+  for (const std::uint32_t p : {1U, 2U, 3U, 5U, 6U, 8U, 13U, 1000U}) {
+    const Tree tree(5000, p);
+    const std::vector<NodeId> tiles = tree.tile_nodes();
+    EXPECT_TRUE(std::is_sorted(tiles.begin(), tiles.end())) << p;
+    EXPECT_EQ(tiles.size(), tree.tile_count()) << p;
+    std::size_t standing = 0;  // for their parents too
+    for (const NodeId tile : tiles) {
+      ASSERT_FALSE(tree.is_early(tile)) << p;
+      ASSERT_EQ(tree.tile_node(tile), tile) << p;
+      if (tile == tree.root())
+        continue;
+      const NodeId parent = tree.parent(tile);
+      ASSERT_EQ(tree.stands_for_parent(tile), tree.tile_node(parent) == tile) << p;
+      ASSERT_EQ(tree.parent_tile(tile), tree.stands_for_parent(tile) ? tree.parent(parent) : parent)
+          << p;
+      standing += tree.stands_for_parent(tile) ? 1 : 0;
+    }
+    std::size_t nodes = 0;
+    for (int level = 0; level <= raw(tree.depth()); ++level)
+      nodes += tree.node_count(static_cast<Level>(level));
+    EXPECT_EQ(nodes, tiles.size() + standing) << p;
+  }
 }
 
 TEST(Tree, ArithmeticHoldsAtTheLargestCounts) {
@@ -209,7 +234,7 @@ TEST(Tree, ArithmeticHoldsAtTheLargestCounts) {
   for (const std::uint32_t p : {0U, 1U, (1U << 31) - 1, 1U << 31, kMost - 1}) {
     const NodeId leaf{tree.depth(), p};
     EXPECT_EQ(tree.ranks(leaf), (RankRange{p, std::uint64_t{p} + 1}));
-    EXPECT_EQ(tree.partition_of(static_cast<Rank>(p)), static_cast<PartitionId>(p));
+    EXPECT_EQ(tree.partition_of(p), static_cast<PartitionId>(p));
     for (int level = 0; level <= 32; ++level) {
       const PartitionRange range = tree.partitions(tree.ancestor(leaf, static_cast<Level>(level)));
       EXPECT_LE(range.begin, p);

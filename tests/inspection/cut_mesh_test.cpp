@@ -169,8 +169,7 @@ struct Published {
 
   /// Where the cut shows an original vertex, by the sample's own book-keeping.
   std::uint32_t image(const NumberedCut& numbered, std::uint32_t rank) const {
-    const auto position =
-        numbered.cut.position_of(reader.tree().partition_of(static_cast<Rank>(rank)));
+    const auto position = numbered.cut.position_of(reader.tree().partition_of(rank));
     return numbered.base(position) + sample.local[raw(numbered.cut[position].level)][rank];
   }
 

@@ -45,7 +45,7 @@ Loaded load(storage::FileSystem& files, const fs::path& path) {
     mesh.positions.insert(mesh.positions.end(), block.exact.begin(), block.exact.end());
     mesh.attributes.insert(mesh.attributes.end(), block.attributes.begin(), block.attributes.end());
   });
-  source->read_triangles([&](std::span<const mesh_io::SourceTriangle> triangles) {
+  source->read_triangles([&](std::span<const Triangle<VertexId>> triangles) {
     for (const auto& t : triangles)
       mesh.triangles.push_back({raw(t[0]), raw(t[1]), raw(t[2])});
   });

@@ -208,8 +208,7 @@ std::vector<SurfaceTriangle> image_of(tests::Sample& sample, const Cut& cut) {
     SurfaceTriangle corners{};
     bool original = true;
     for (std::size_t i = 0; i < 3; ++i) {
-      const auto rank = static_cast<Rank>(t[i]);
-      const std::size_t position = cut.position_of(sample.tree.partition_of(rank));
+      const std::size_t position = cut.position_of(sample.tree.partition_of(t[i]));
       const NodeId node = cut[position];
       const std::uint32_t vertex = sample.local[raw(node.level)][t[i]];
       key[i] = {position, vertex};

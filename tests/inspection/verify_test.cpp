@@ -31,9 +31,9 @@ using testing::SizeIs;
 using tests::node;
 
 /// Mirrors the first triangle whose mirror image is not there yet.
-void mirror_one(std::vector<Triangle>& triangles) {
-  for (Triangle& t : triangles) {
-    const Triangle mirrored = {t[0], t[2], t[1]};
+void mirror_one(std::vector<TileTriangle>& triangles) {
+  for (TileTriangle& t : triangles) {
+    const TileTriangle mirrored = {t[0], t[2], t[1]};
     if (std::find(triangles.begin(), triangles.end(), mirrored) != triangles.end())
       continue;
     t = mirrored;
@@ -314,7 +314,7 @@ TEST_F(VerifyTest, AGhostOfNoBorderTriangleIsFound) {
   const auto problems = problems_after([](auto& s) {
     PublishedTile& tile = s.tile(node(3, 3));
     const auto ghost = static_cast<TileVertex>(tile.mesh.own_count);
-    const auto gone = std::erase_if(tile.mesh.border, [&](const Triangle& t) {
+    const auto gone = std::erase_if(tile.mesh.border, [&](const TileTriangle& t) {
       return std::find(t.begin(), t.end(), ghost) != t.end();
     });
     s.record(node(3, 3)).border_count -= static_cast<std::uint32_t>(gone);
@@ -420,7 +420,7 @@ TEST_F(VerifyTest, AMirroredTriangleIsFound) {
 }
 
 /// The triangle as corners (tile, vertex), the smallest first.
-std::array<GhostRef, 3> corners(const PublishedTile& tile, const Triangle& t) {
+std::array<GhostRef, 3> corners(const PublishedTile& tile, const TileTriangle& t) {
   std::array<GhostRef, 3> corners;
   for (std::size_t i = 0; i < 3; ++i) {
     corners[i] =
@@ -440,7 +440,7 @@ TEST_F(VerifyTest, ACrackAlongASeamIsFoundByTheProofAndInCuts) {
         const auto hole = corners(left, left.mesh.border.back());
         left.mesh.border.pop_back();
         ASSERT_EQ(std::erase_if(right.mesh.border,
-                                [&](const Triangle& t) { return corners(right, t) == hole; }),
+                                [&](const TileTriangle& t) { return corners(right, t) == hole; }),
                   1U);
         for (NodeId side : {node(1, 0), node(1, 1)})
           --s.record(side).border_count;

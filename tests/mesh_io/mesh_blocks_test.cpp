@@ -18,8 +18,8 @@ struct Collected {
 template <class Fill>
 Collected collect(Fill fill) {
   Collected result;
-  const TriangleVisitor visit = [&](std::span<const SourceTriangle> block) {
-    for (const SourceTriangle& t : block) {
+  const TriangleVisitor visit = [&](std::span<const Triangle<VertexId>> block) {
+    for (const Triangle<VertexId>& t : block) {
       result.triangles.push_back({raw(t[0]), raw(t[1]), raw(t[2])});
     }
   };
@@ -92,7 +92,7 @@ TEST(TriangleBlocks, StitchesInsideStripsKeepTheOrientationOfWhatFollows) {
 
 TEST(TriangleBlocks, BlocksAreFullButTheLast) {
   std::vector<std::size_t> sizes;
-  const TriangleVisitor visit = [&](std::span<const SourceTriangle> block) {
+  const TriangleVisitor visit = [&](std::span<const Triangle<VertexId>> block) {
     sizes.push_back(block.size());
   };
   TriangleBlocks blocks(visit);

@@ -26,8 +26,8 @@ struct Taken {
           for (const float value : attributes)
             vertices.back() += fmt::format(" {}", value);
         },
-        [&](std::span<const SourceTriangle> all) {
-          for (const SourceTriangle& t : all)
+        [&](std::span<const Triangle<VertexId>> all) {
+          for (const Triangle<VertexId>& t : all)
             triangles.push_back(fmt::format("{} {} {}", raw(t[0]), raw(t[1]), raw(t[2])));
         });
   }

@@ -245,7 +245,9 @@ TEST(PlyErrors, ATruncatedFileIsToldAsSuchHoweverOftenItIsRead) {
       }
       return std::string("none");
     };
-    const auto read_faces = [&] { source->read_triangles([](std::span<const SourceTriangle>) {}); };
+    const auto read_faces = [&] {
+      source->read_triangles([](std::span<const Triangle<VertexId>>) {});
+    };
     const std::string first = told(read_faces);
     EXPECT_THAT(first, HasSubstr("(truncated)"));
     EXPECT_THAT(told([&] { source->read_vertices([](const VertexBlock&) {}); }),
@@ -279,7 +281,7 @@ TEST(PlyErrors, ABlockOfTrianglesThatWouldLieBehindTheFile) {
     const TriangleBlock block = source->read_triangle_block(source->triangle_blocks() - 1, memory);
     EXPECT_EQ(block.faces, 0U);
     EXPECT_FALSE(block.whole);
-    const FaceCounts counts = source->read_triangles([](std::span<const SourceTriangle>) {});
+    const FaceCounts counts = source->read_triangles([](std::span<const Triangle<VertexId>>) {});
     EXPECT_EQ(counts.degenerate_triangles, std::uint64_t{kFaces});
   }
 }

@@ -33,8 +33,8 @@ void expect_same_in_blocks(MeshSource& source, bool backwards) {
   const std::string expected = told([&] {
     ReadMesh mesh;
     source.read_vertices([](const VertexBlock&) {});
-    source.read_triangles([&](std::span<const SourceTriangle> block) {
-      for (const SourceTriangle& t : block)
+    source.read_triangles([&](std::span<const Triangle<VertexId>> block) {
+      for (const Triangle<VertexId>& t : block)
         mesh.triangles.push_back({raw(t[0]), raw(t[1]), raw(t[2])});
     });
     return mesh;
@@ -56,9 +56,9 @@ Outcome outcome_of(const Bytes& bytes) {
       expect_same_in_blocks(*source, backwards);
     source->read_vertices(
         [&](const VertexBlock& block) { vertices += block.positions.size() + block.exact.size(); });
-    source->read_triangles([&](std::span<const SourceTriangle> block) {
+    source->read_triangles([&](std::span<const Triangle<VertexId>> block) {
       triangles += block.size();
-      for (const SourceTriangle& t : block) {
+      for (const Triangle<VertexId>& t : block) {
         for (const VertexId corner : t)
           EXPECT_LT(raw(corner), count);
       }

@@ -31,10 +31,10 @@ void read_vertices(MeshSource& source, ReadMesh& mesh) {
 }
 
 void read_triangles(MeshSource& source, ReadMesh& mesh) {
-  mesh.counts = source.read_triangles([&](std::span<const SourceTriangle> block) {
+  mesh.counts = source.read_triangles([&](std::span<const Triangle<VertexId>> block) {
     EXPECT_GT(block.size(), 0U);
     EXPECT_LE(block.size(), MeshSource::kBlockSize);
-    for (const SourceTriangle& t : block) {
+    for (const Triangle<VertexId>& t : block) {
       for (const VertexId corner : t)
         EXPECT_LT(raw(corner), source.description().vertex_count);
       mesh.triangles.push_back({raw(t[0]), raw(t[1]), raw(t[2])});
@@ -53,9 +53,9 @@ void append(const VertexBlock& block, ReadMesh& mesh) {
   mesh.attributes.insert(mesh.attributes.end(), block.attributes.begin(), block.attributes.end());
 }
 
-void append(std::span<const SourceTriangle> triangles, ReadMesh& mesh) {
+void append(std::span<const Triangle<VertexId>> triangles, ReadMesh& mesh) {
   EXPECT_LE(triangles.size(), MeshSource::kBlockSize);
-  for (const SourceTriangle& t : triangles)
+  for (const Triangle<VertexId>& t : triangles)
     mesh.triangles.push_back({raw(t[0]), raw(t[1]), raw(t[2])});
 }
 
@@ -94,7 +94,7 @@ void read_triangle_blocks(MeshSource& source, bool backwards, ReadMesh& mesh) {
   }
   mesh.counts = {faces, mesh.triangles.size(), faces - mesh.triangles.size()};
   const FaceCounts rest = source.read_triangles_from(
-      faces, [&](std::span<const SourceTriangle> block) { append(block, mesh); });
+      faces, [&](std::span<const Triangle<VertexId>> block) { append(block, mesh); });
   mesh.counts.faces += rest.faces;
   mesh.counts.triangles += rest.triangles;
   mesh.counts.degenerate_triangles += rest.degenerate_triangles;

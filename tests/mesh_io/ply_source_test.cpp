@@ -420,7 +420,7 @@ TEST(PlySource, AVisitorsExceptionPassesThrough) {
   files.put("m", tetrahedron(PlyEncoding::little_endian));
   const auto source = open_mesh(files, "m");
   EXPECT_THROW(source->read_vertices([](const VertexBlock&) { throw 17; }), int);
-  EXPECT_THROW(source->read_triangles([](std::span<const SourceTriangle>) { throw 17; }), int);
+  EXPECT_THROW(source->read_triangles([](std::span<const Triangle<VertexId>>) { throw 17; }), int);
   EXPECT_EQ(read_mesh(*source).triangles, kTriangles) << "and the source still works";
 }
 

@@ -16,7 +16,7 @@
 namespace meshhier::partition {
 namespace {
 
-std::vector<LocalTriangle> triangles_of(const tests::TestMesh& mesh) {
+std::vector<Triangle<std::uint32_t>> triangles_of(const tests::TestMesh& mesh) {
   return {mesh.triangles.begin(), mesh.triangles.end()};
 }
 
@@ -125,7 +125,7 @@ TEST(SurfaceGraph, ACutWeighsThePerimeterOfCompactness) {
     }
     double area = 0;
     for (const tests::MeshTriangle& t : mesh.triangles) {
-      Triangle corners;
+      TileTriangle corners;
       int own = 0;
       for (int k = 0; k < 3; ++k) {
         corners[k] = static_cast<TileVertex>(number[t[k]]);
@@ -155,7 +155,7 @@ TEST(SurfaceGraph, ACutWeighsThePerimeterOfCompactness) {
 
 TEST(SurfaceGraph, DoesNotDependOnTheOrderOfTrianglesNorOnTheirFirstCorner) {
   const tests::TestMesh mesh = tests::duplicates(3000, 0.02F);
-  std::vector<LocalTriangle> triangles = triangles_of(mesh);
+  std::vector<Triangle<std::uint32_t>> triangles = triangles_of(mesh);
   const Graph expected = surface_graph(make_surface(mesh.positions, triangles));
   for (const unsigned seed : {1U, 2U}) {
     std::shuffle(triangles.begin(), triangles.end(), std::mt19937(seed));
@@ -181,7 +181,7 @@ TEST(SurfaceGraph, LeavesOutTrianglesOfOtherVertices) {
   const auto count = static_cast<std::uint32_t>(mesh.positions.size());
   const Graph expected = graph_of(mesh);
   for (const std::uint32_t first : {7U, 0xffffffffU - count}) {
-    std::vector<LocalTriangle> triangles;
+    std::vector<Triangle<std::uint32_t>> triangles;
     for (const tests::MeshTriangle& t : mesh.triangles) {
       triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
       triangles.push_back({t[0] + first, first - 1, t[2] + first});
@@ -203,7 +203,7 @@ TEST(SurfaceGraph, EdgesWithoutLengthWeighTheLeast) {
 
 TEST(SurfaceGraph, TrianglesThatTurnBackOnThemselvesHaveNoLoops) {
   const std::vector<Vec3f> positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  const std::vector<LocalTriangle> triangles{{0, 0, 1}, {1, 1, 1}, {2, 1, 2}};
+  const std::vector<Triangle<std::uint32_t>> triangles{{0, 0, 1}, {1, 1, 1}, {2, 1, 2}};
   const Graph graph = surface_graph(make_surface(positions, triangles));
   expect_sound(graph);
   EXPECT_EQ(graph.arcs.size(), 4U);
@@ -211,14 +211,14 @@ TEST(SurfaceGraph, TrianglesThatTurnBackOnThemselvesHaveNoLoops) {
 
 TEST(SurfaceGraph, ManyTrianglesAVertexAreAChoiceThatTheirOrderDoesNotChange) {
   const tests::TestMesh points = tests::points(60);
-  std::vector<LocalTriangle> triangles;
+  std::vector<Triangle<std::uint32_t>> triangles;
   for (std::uint32_t a = 0; a < 60; ++a) {
     for (std::uint32_t b = a + 1; b < 60; ++b) {
       for (std::uint32_t c = b + 1; c < 60; ++c)
         triangles.push_back({b, c, a});
     }
   }
-  const std::vector<LocalTriangle> once = triangles;
+  const std::vector<Triangle<std::uint32_t>> once = triangles;
   triangles.insert(triangles.end(), once.begin(), once.end());
   const Graph graph = surface_graph(make_surface(points.positions, triangles));
   expect_sound(graph);

@@ -71,7 +71,7 @@ ChunkLeaves leaves_of(const Cut& mesh, std::uint32_t chunk) {
   return build_leaves(mesh.chunks[chunk], mesh.partitions[chunk], mesh.tree, mesh.map);
 }
 
-std::uint32_t rank_of(const WorkTile& tile, std::size_t vertex) {
+std::uint32_t rank_of(const LeafTile& tile, std::size_t vertex) {
   return static_cast<std::uint32_t>(tile.vertices.attributes_of(vertex)[0]);
 }
 
@@ -81,18 +81,18 @@ RankTriangle canonical_ranks(RankTriangle t) {
 }
 
 /// The tile's triangles by provisional ranks, ascending.
-std::vector<RankTriangle> ranks_of(const Cut& mesh, const WorkTile& tile,
-                                   const std::vector<Triangle>& triangles) {
+std::vector<RankTriangle> ranks_of(const Cut& mesh, const LeafTile& tile,
+                                   const std::vector<TileTriangle>& triangles) {
   std::vector<RankTriangle> result;
-  for (const Triangle& t : triangles) {
+  for (const TileTriangle& t : triangles) {
     RankTriangle ranks{};
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t own = tile.vertices.size();
       if (raw(t[k]) < own) {
         ranks[k] = rank_of(tile, raw(t[k]));
       } else {
-        const GhostRef& foreign = tile.foreign.at(raw(t[k]) - own);
-        ranks[k] = mesh.map.first_rank(foreign.tile) + foreign.index;
+        const ChunkVertex& foreign = tile.foreign.at(raw(t[k]) - own);
+        ranks[k] = mesh.map.first_rank(foreign.chunk) + foreign.local;
       }
     }
     result.push_back(canonical_ranks(ranks));
@@ -105,7 +105,7 @@ std::vector<RankTriangle> ranks_of(const Cut& mesh, const WorkTile& tile,
 struct Expected {
   std::vector<std::uint32_t> boundary, inner;  ///< ranks, ascending
   std::vector<RankTriangle> interior, border;
-  std::set<GhostRef> foreign;
+  std::set<ChunkVertex> foreign;
 };
 
 std::vector<Expected> expected_leaves(const Cut& mesh) {
@@ -140,7 +140,7 @@ std::vector<Expected> expected_leaves(const Cut& mesh) {
   return leaves;
 }
 
-void expect_tile(const Cut& mesh, const WorkTile& tile, const Expected& expected) {
+void expect_tile(const Cut& mesh, const LeafTile& tile, const Expected& expected) {
   std::vector<std::uint32_t> ranks;
   for (std::size_t i = 0; i < tile.vertices.size(); ++i)
     ranks.push_back(rank_of(tile, i));
@@ -150,11 +150,12 @@ void expect_tile(const Cut& mesh, const WorkTile& tile, const Expected& expected
   EXPECT_EQ(tile.boundary_count, expected.boundary.size());
   EXPECT_EQ(ranks_of(mesh, tile, tile.interior), expected.interior);
   EXPECT_EQ(ranks_of(mesh, tile, tile.border), expected.border);
-  EXPECT_EQ(tile.foreign, std::vector<GhostRef>(expected.foreign.begin(), expected.foreign.end()));
+  EXPECT_EQ(tile.foreign,
+            std::vector<ChunkVertex>(expected.foreign.begin(), expected.foreign.end()));
   EXPECT_EQ(tile.history.weights, std::vector<float>(ranks.size(), 1.0F));
   for (const auto* triangles : {&tile.interior, &tile.border}) {
     EXPECT_TRUE(std::is_sorted(triangles->begin(), triangles->end()));
-    for (const Triangle& t : *triangles)
+    for (const TileTriangle& t : *triangles)
       EXPECT_EQ(t, canonical(t));
   }
   for (std::size_t i = 0; i < ranks.size(); ++i) {
@@ -213,7 +214,7 @@ TEST(LeafTiles, PlacesTellWhereEveryBoundaryVertexWent) {
   for (std::uint32_t c = 0; c < mesh.map.count(); ++c) {
     const ChunkLeaves leaves = leaves_of(mesh, c);
     std::size_t boundary = 0;
-    for (const WorkTile& tile : leaves.tiles)
+    for (const LeafTile& tile : leaves.tiles)
       boundary += tile.boundary_count;
     ASSERT_EQ(leaves.places.size(), boundary);
     ASSERT_GT(boundary, 0U);
@@ -221,7 +222,7 @@ TEST(LeafTiles, PlacesTellWhereEveryBoundaryVertexWent) {
     for (const LeafPlace& place : leaves.places) {
       EXPECT_GE(place.local, next);
       next = place.local + 1;
-      const WorkTile& tile = leaves.tiles.at(place.partition);
+      const LeafTile& tile = leaves.tiles.at(place.partition);
       EXPECT_LT(place.index, tile.boundary_count);
       EXPECT_EQ(rank_of(tile, place.index), mesh.map.first_rank(c) + place.local);
       EXPECT_EQ(&find_place(leaves.places, place.local), &place);
@@ -235,9 +236,9 @@ TEST(LeafTiles, EveryForeignCornerIsFoundInItsChunksPlaces) {
   for (std::uint32_t c = 0; c < mesh.map.count(); ++c)
     leaves.push_back(leaves_of(mesh, c));
   for (const ChunkLeaves& chunk : leaves) {
-    for (const WorkTile& tile : chunk.tiles) {
-      for (const GhostRef& foreign : tile.foreign)
-        EXPECT_NO_THROW((void)find_place(leaves[foreign.tile].places, foreign.index));
+    for (const LeafTile& tile : chunk.tiles) {
+      for (const ChunkVertex& foreign : tile.foreign)
+        EXPECT_NO_THROW((void)find_place(leaves[foreign.chunk].places, foreign.local));
     }
   }
 }

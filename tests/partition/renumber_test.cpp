@@ -67,10 +67,10 @@ class RenumberTest : public testing::Test {
   }
 
   template <class Value>
-  void expect_exact(const std::vector<IdTriangle>& triangles, std::size_t id_count,
+  void expect_exact(const std::vector<Triangle<std::uint32_t>>& triangles, std::size_t id_count,
                     std::uint64_t memory_bytes) {
     std::vector<std::array<Value, 3>> expected, found;
-    for (const IdTriangle& t : triangles) {
+    for (const Triangle<std::uint32_t>& t : triangles) {
       expected.push_back({value_of<Value>(t[0]), value_of<Value>(t[1]), value_of<Value>(t[2])});
     }
     found = renumbered<Value>(triangles, id_count, memory_bytes);
@@ -142,8 +142,8 @@ TEST_F(RenumberTest, OneLevelOfBucketsAndTwo) {
   EXPECT_EQ(two.blocks, 46u);
   EXPECT_EQ(two.groups, 7u);
   const tests::TestMesh mesh = tests::shuffled(tests::torus(200'000), 6);
-  std::vector<IdTriangle> triangles = mesh.triangles;
-  for (IdTriangle& t : triangles)
+  std::vector<Triangle<std::uint32_t>> triangles = mesh.triangles;
+  for (Triangle<std::uint32_t>& t : triangles)
     t = {t[0] * 9, t[1] * 9 + 1, t[2] * 9 + 2};
   expect_exact<std::uint64_t>(triangles, entries, 2 << 20);
   expect_exact<std::uint64_t>(triangles, entries, 1 << 18);
@@ -168,7 +168,7 @@ TEST_F(RenumberTest, ThePlanKeepsWithinTheMemory) {
 }
 
 TEST_F(RenumberTest, RepeatedCornersAndTriangles) {
-  std::vector<IdTriangle> triangles;
+  std::vector<Triangle<std::uint32_t>> triangles;
   for (std::uint32_t i = 0; i < 1000; ++i) {
     const std::uint32_t a = i * 97 % 50'000, b = 49'999 - a;
     triangles.insert(triangles.end(), {{a, a, b}, {b, a, a}, {a, b, a}, {a, a, a}, {a, a, b}});

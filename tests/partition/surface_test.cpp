@@ -23,9 +23,9 @@ TEST(Surface, LiesInTheUnitCube) {
 
 TEST(Surface, LeavesOutOtherVerticesAndPoints) {
   const std::vector<Vec3f> positions(3);
-  const std::vector<LocalTriangle> triangles{{10, 11, 12}, {9, 10, 11},  {10, 13, 11},
-                                             {11, 11, 11}, {12, 10, 12}, {0, 1, 2}};
-  const std::vector<LocalTriangle> expected{{0, 1, 2}, {2, 0, 2}};
+  const std::vector<Triangle<std::uint32_t>> triangles{{10, 11, 12}, {9, 10, 11},  {10, 13, 11},
+                                                       {11, 11, 11}, {12, 10, 12}, {0, 1, 2}};
+  const std::vector<Triangle<std::uint32_t>> expected{{0, 1, 2}, {2, 0, 2}};
   EXPECT_EQ(make_surface(positions, triangles, 10).triangles, expected);
 }
 
@@ -47,14 +47,14 @@ TEST(Surface, IsSeparatedIntoWhatLiesWithinTheParts) {
         positions.push_back(surface.positions[v]);
     }
     EXPECT_EQ(parts[part].positions, positions);
-    const auto corners = [](const Surface& from, const LocalTriangle& t) {
+    const auto corners = [](const Surface& from, const Triangle<std::uint32_t>& t) {
       return std::array{from.positions[t[0]], from.positions[t[1]], from.positions[t[2]]};
     };
-    for (const LocalTriangle& t : surface.triangles) {
+    for (const Triangle<std::uint32_t>& t : surface.triangles) {
       if (std::all_of(t.begin(), t.end(), [&](std::uint32_t v) { return part_of[v] == part; }))
         expected.push_back(corners(surface, t));
     }
-    for (const LocalTriangle& t : parts[part].triangles)
+    for (const Triangle<std::uint32_t>& t : parts[part].triangles)
       found.push_back(corners(parts[part], t));
     EXPECT_EQ(found, expected);
   }

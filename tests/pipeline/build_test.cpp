@@ -385,7 +385,7 @@ TEST_F(BuildTest, QuantizedPositionsLieOnTheLatticeAndBoundsSaySo) {
         EXPECT_EQ(record.error, before[i].error);
         if (record.node == NodeId{})
           continue;
-        EXPECT_LT(record.bound, reader.record(parent_tile(reader.tree(), record.node)).bound);
+        EXPECT_LT(record.bound, reader.record(reader.tree().parent_tile(record.node)).bound);
         for (const Vec3f& p : reader.read_tile(record.node).mesh.vertices.positions)
           ASSERT_EQ(lattice.nearest(p), p);
       }

@@ -31,7 +31,7 @@ using testing::HasSubstr;
 
 constexpr std::size_t kInFlight = 3;
 
-using Triangles = std::vector<mesh_io::SourceTriangle>;
+using Triangles = std::vector<Triangle<VertexId>>;
 
 struct AllTriangles {
   Triangles triangles;
@@ -42,7 +42,7 @@ AllTriangles read_triangles(SourceMesh& mesh, std::size_t in_flight = kInFlight)
   AllTriangles all;
   all.counts = mesh.read_triangles<Triangles>(
       in_flight, execution::CancelToken(),
-      [](std::span<const mesh_io::SourceTriangle> block, Triangles& slot) {
+      [](std::span<const Triangle<VertexId>> block, Triangles& slot) {
         slot.assign(block.begin(), block.end());
       },
       [&](const Triangles& slot) {
@@ -269,7 +269,7 @@ TEST_F(SourceMeshTest, ReadingTheTrianglesCountsThem) {
   EXPECT_EQ(mesh.declared_faces(), 4U);
   const auto [triangles, counts] = read_triangles(mesh);
   const auto triangle = [](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    return mesh_io::SourceTriangle{VertexId{a}, VertexId{b}, VertexId{c}};
+    return Triangle<VertexId>{VertexId{a}, VertexId{b}, VertexId{c}};
   };
   EXPECT_THAT(triangles, ElementsAre(triangle(0, 1, 2), triangle(0, 2, 3), triangle(0, 1, 2)));
   EXPECT_EQ(counts.faces, 4U);

@@ -21,7 +21,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::StrEq;
 
-using Numbers = std::array<std::uint32_t, 3>;
+using Numbers = Triangle<std::uint32_t>;
 
 /// Vertices of a run at these places; `known` is what the client has in each one's slot.
 VertexRun vertices(const std::vector<std::uint32_t>& indices,

@@ -61,7 +61,7 @@ void insert(PlaceSet& set, PlaceTriangle triangle) {
 struct Shown {
   std::vector<Place> vertices;
   std::vector<float> attributes;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<Triangle<std::uint32_t>> triangles;
 
   PlaceSet set() const {
     PlaceSet set;
@@ -118,7 +118,7 @@ class ProgressiveTest : public testing::Test {
       mesh.attributes.insert(mesh.attributes.end(), block.attributes.begin(),
                              block.attributes.end());
     });
-    source->read_triangles([&](std::span<const mesh_io::SourceTriangle> triangles) {
+    source->read_triangles([&](std::span<const Triangle<VertexId>> triangles) {
       for (const auto& t : triangles)
         mesh.triangles.push_back({raw(t[0]), raw(t[1]), raw(t[2])});
     });
@@ -207,7 +207,7 @@ class ProgressiveTest : public testing::Test {
     SCOPED_TRACE(std::to_string(raw(sector.level)) + "/" + std::to_string(sector.index));
     const ProgressiveIndex index = stream(sector);
     const Tree tree = reader().tree();
-    EXPECT_EQ(index.node, tile_node(tree, sector));
+    EXPECT_EQ(index.node, tree.tile_node(sector));
     EXPECT_EQ(index.own_vertices, tree.ranks(sector).size());
     EXPECT_EQ(shown(0).set(), exported(sector).set());
     for (std::uint32_t details = 0; details < index.files.size(); ++details) {

@@ -73,7 +73,7 @@ class TracedTileTest : public testing::Test {
 
 TEST_F(TracedTileTest, APartitionCountsEachTriangleInTheFirstThatItTouches) {
   std::uint64_t next = 0;
-  std::set<Corners> counted;
+  std::set<Triangle<std::uint32_t>> counted;
   for (std::uint32_t p = 0; p < 6; ++p) {
     const TracedTile tile = traced(node(3, p), next);
     for (const TracedTriangle& triangle : tile.triangles) {
@@ -103,12 +103,12 @@ TEST_F(TracedTileTest, ASectorCountsItsOwnTrianglesAndItsBorder) {
 }
 
 TEST_F(TracedTileTest, CornersAreTurnedNotMirrored) {
-  EXPECT_EQ(sorted_corners(sector_, {5, 3, 9}), (Corners{3, 9, 5}));
-  EXPECT_EQ(sorted_corners(sector_, {3, 9, 5}), (Corners{3, 9, 5}));
-  EXPECT_EQ(sorted_corners(sector_, {9, 5, 3}), (Corners{3, 9, 5}));
+  EXPECT_EQ(sorted_corners(sector_, {5, 3, 9}), (Triangle<std::uint32_t>{3, 9, 5}));
+  EXPECT_EQ(sorted_corners(sector_, {3, 9, 5}), (Triangle<std::uint32_t>{3, 9, 5}));
+  EXPECT_EQ(sorted_corners(sector_, {9, 5, 3}), (Triangle<std::uint32_t>{3, 9, 5}));
   // The second of six partitions has ranks 33 to 65: 7 comes behind them.
   const Sector second(tree_, node(3, 1));
-  EXPECT_EQ(sorted_corners(second, {7, 50, 40}), (Corners{40, 7, 50}));
+  EXPECT_EQ(sorted_corners(second, {7, 50, 40}), (Triangle<std::uint32_t>{40, 7, 50}));
 }
 
 TEST_F(TracedTileTest, WhatIsLiftedAndWhatIsLostIsAll) {
@@ -240,7 +240,8 @@ TEST_F(TracedTileTest, AVertexThatNoChildLeadsToIsRefused) {
 TEST_F(TracedTileTest, OtherTrianglesThanTheChildrensAreRefused) {
   for (const bool of_border : {false, true}) {
     Family fewer = family();
-    std::vector<Triangle>& list = of_border ? fewer.parent.mesh.border : fewer.parent.mesh.interior;
+    std::vector<TileTriangle>& list =
+        of_border ? fewer.parent.mesh.border : fewer.parent.mesh.interior;
     ASSERT_FALSE(list.empty());
     list.pop_back();
     EXPECT_THAT(refused(std::move(fewer)),

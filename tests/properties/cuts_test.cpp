@@ -97,7 +97,7 @@ class Built {
       const auto position = shown.cut.position_of(static_cast<PartitionId>(node.index));
       while (node != shown.cut[position]) {
         vertex = tiles_.at(node).parent_map.at(vertex);
-        node = parent_tile(tree(), node);
+        node = tree().parent_tile(node);
       }
       images.push_back(shown.base(position) + vertex);
     }

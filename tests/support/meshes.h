@@ -3,6 +3,7 @@
 // Independent of the library's readers and writers. Everything is deterministic.
 #pragma once
 
+#include "hierarchy/triangle.h"
 #include "hierarchy/vec.h"
 
 #include <array>
@@ -14,7 +15,7 @@
 
 namespace meshhier::tests {
 
-using MeshTriangle = std::array<std::uint32_t, 3>;
+using MeshTriangle = Triangle<std::uint32_t>;
 
 struct TestMesh {
   std::vector<Vec3f> positions;

@@ -267,7 +267,7 @@ class TileMaker {
       return static_cast<TileVertex>(tile.mesh.own_count + (found - ghosts.begin()));
     };
     for (const MeshTriangle& t : level.triangles) {
-      const Triangle triangle = {number(t[0]), number(t[1]), number(t[2])};
+      const TileTriangle triangle = {number(t[0]), number(t[1]), number(t[2])};
       if (is_border(level, tile.node, t)) {
         tile.mesh.border.push_back(triangle);
       } else if (is_own(level, tile.node, t[0])) {
@@ -284,7 +284,7 @@ class TileMaker {
 
 std::uint32_t drawn_count(const Tree& tree, const PublishedTile& tile) {
   std::uint32_t drawn = 0;
-  for (const Triangle& t : tile.mesh.border) {
+  for (const TileTriangle& t : tile.mesh.border) {
     bool ours = true;
     for (TileVertex v : t) {
       if (tile.mesh.is_own(v))

@@ -190,13 +190,13 @@ class Grove {
 };
 
 std::vector<PlaceTriangle> shown(NodeId node, const TileMesh& mesh,
-                                 std::span<const Triangle> triangles) {
+                                 std::span<const TileTriangle> triangles) {
   const auto place = [&](TileVertex v) {
     return mesh.is_own(v) ? Place{node.index, raw(v)}
                           : Place{mesh.ghost(v).tile, mesh.ghost(v).index};
   };
   std::vector<PlaceTriangle> result;
-  for (const Triangle& t : triangles)
+  for (const TileTriangle& t : triangles)
     result.push_back({place(t[0]), place(t[1]), place(t[2])});
   return normalized(std::move(result), false);
 }

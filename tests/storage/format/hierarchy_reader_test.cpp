@@ -179,9 +179,9 @@ class CutAssembler {
 
   void add(const PublishedTile& tile) {
     const auto own = [&](TileVertex v) { return Place{tile.node, raw(v)}; };
-    for (const Triangle& t : tile.mesh.interior)
+    for (const TileTriangle& t : tile.mesh.interior)
       append({own(t[0]), own(t[1]), own(t[2])});
-    for (const Triangle& t : tile.mesh.border) {
+    for (const TileTriangle& t : tile.mesh.border) {
       std::array<Place, 3> places;
       bool drawn = true;
       for (std::size_t c = 0; c < 3; ++c) {

@@ -15,7 +15,6 @@ namespace {
 
 using storage::decode_index;
 using storage::encode_index;
-using storage::tile_count;
 using testing::HasSubstr;
 using testing::StartsWith;
 using Bytes = std::vector<std::byte>;
@@ -101,7 +100,7 @@ TEST(Index, GivesEveryRecordBack) {
   for (const std::uint32_t partitions : {1U, 2U, 3U, 5U, 8U, 21U, 100U}) {
     const Tree tree(1003, partitions);
     const auto records = make_records(tree);
-    EXPECT_EQ(records.size(), tile_count(tree));
+    EXPECT_EQ(records.size(), tree.tile_count());
     const Bytes bytes = encode_index(records);
     EXPECT_EQ(bytes.size(), kHeaderBytes + kRecordBytes * records.size());
     const auto back = decode_index(bytes, tree, kIndexName);

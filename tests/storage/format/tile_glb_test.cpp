@@ -87,7 +87,7 @@ void expect_consistent(const PublishedTile& tile, const Tree& tree) {
     ASSERT_EQ(tile.chains[g][0], mesh.ghosts[g].index);
   }
   for (const auto* triangles : {&mesh.interior, &mesh.border}) {
-    for (const Triangle& t : *triangles) {
+    for (const TileTriangle& t : *triangles) {
       for (const TileVertex v : t)
         ASSERT_LT(raw(v), mesh.vertices.size());
     }

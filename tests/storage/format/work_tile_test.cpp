@@ -18,10 +18,10 @@ struct Shape {
   int channels = 0;
 };
 
-std::vector<Triangle> random_triangles(std::mt19937& random, std::uint32_t count,
-                                       std::uint32_t corners) {
-  std::vector<Triangle> triangles(count);
-  for (Triangle& t : triangles) {
+std::vector<TileTriangle> random_triangles(std::mt19937& random, std::uint32_t count,
+                                           std::uint32_t corners) {
+  std::vector<TileTriangle> triangles(count);
+  for (TileTriangle& t : triangles) {
     for (TileVertex& v : t)
       v = static_cast<TileVertex>(random() % corners);
   }
@@ -31,10 +31,10 @@ std::vector<Triangle> random_triangles(std::mt19937& random, std::uint32_t count
   return triangles;
 }
 
-WorkTile make_tile(const Shape& shape) {
+SimplifiedTile make_tile(const Shape& shape) {
   std::mt19937 random(shape.own * 31 + shape.foreign);
   const auto number = [&] { return static_cast<float>(random() % 65536) / 65536 - 0.5F; };
-  WorkTile tile;
+  SimplifiedTile tile;
   tile.vertices.channels = shape.channels;
   tile.boundary_count = shape.boundary;
   for (std::uint32_t i = 0; i < shape.own; ++i) {
@@ -45,13 +45,13 @@ WorkTile make_tile(const Shape& shape) {
     tile.history.weights.push_back(static_cast<float>(1 + random() % 1000));
   }
   for (std::uint32_t i = 0; i < shape.foreign; ++i)
-    tile.foreign.push_back({i / 3, static_cast<std::uint32_t>(random())});
+    tile.foreign.push_back({{i / 3, static_cast<std::uint32_t>(random())}});
   tile.interior = random_triangles(random, shape.interior, shape.own);
   tile.border = random_triangles(random, shape.border, shape.own + shape.foreign);
   return tile;
 }
 
-void expect_same(const WorkTile& a, const WorkTile& b) {
+void expect_same(const SimplifiedTile& a, const SimplifiedTile& b) {
   EXPECT_EQ(a.vertices.channels, b.vertices.channels);
   EXPECT_EQ(a.vertices.positions, b.vertices.positions);
   EXPECT_EQ(a.vertices.attributes, b.vertices.attributes);
@@ -68,17 +68,17 @@ TEST(WorkTileBytes, HoldEveryTileWithAndWithoutAttributes) {
          {Shape{0, 0, 0, 0, 0, channels}, Shape{1, 0, 0, 0, 0, channels},
           Shape{100, 30, 25, 150, 60, channels}, Shape{50, 50, 0, 90, 0, channels},
           Shape{7, 7, 80, 0, 90, channels}}) {
-      const WorkTile tile = make_tile(shape);
-      expect_same(decode_work_tile(encode_work_tile(tile), channels), tile);
+      const SimplifiedTile tile = make_tile(shape);
+      expect_same(decode_work_tile<FinerGhost>(encode_work_tile(tile), channels), tile);
     }
   }
 }
 
 TEST(WorkTileBytes, KeepIndicesOnBothSidesOf16Bits) {
   for (const std::uint32_t foreign : {535U, 536U, 537U, 40000U}) {  // 65535, 65536, 65537, ...
-    const WorkTile tile = make_tile({65000, 40000, foreign, 1000, 1000, 0});
+    const SimplifiedTile tile = make_tile({65000, 40000, foreign, 1000, 1000, 0});
     ASSERT_EQ(raw(tile.border.back()[2]), 64999 + foreign);
-    expect_same(decode_work_tile(encode_work_tile(tile), 0), tile);
+    expect_same(decode_work_tile<FinerGhost>(encode_work_tile(tile), 0), tile);
   }
 }
 
@@ -93,14 +93,14 @@ TEST(WorkTileBytes, TakeSixBytesATriangleWhereThatIsEnough) {
 }
 
 TEST(WorkTileBytes, KeepEveryBitOfEveryFloat) {
-  WorkTile tile = make_tile({2, 1, 0, 0, 0, 2});
+  SimplifiedTile tile = make_tile({2, 1, 0, 0, 0, 2});
   const std::uint32_t signalling = 0x7f800001, negative_zero = 0x80000000, denormal = 1;
   tile.vertices.positions[0] = {std::bit_cast<float>(negative_zero), std::bit_cast<float>(denormal),
                                 std::numeric_limits<float>::max()};
   tile.vertices.attributes = {std::bit_cast<float>(signalling),
                               std::numeric_limits<float>::infinity(),
                               std::numeric_limits<float>::quiet_NaN(), -0.0F};
-  const WorkTile found = decode_work_tile(encode_work_tile(tile), 2);
+  const SimplifiedTile found = decode_work_tile<FinerGhost>(encode_work_tile(tile), 2);
   const auto expect_bits = [](const std::vector<float>& a, const std::vector<float>& b) {
     ASSERT_EQ(a.size(), b.size());
     for (std::size_t i = 0; i < a.size(); ++i)
@@ -130,7 +130,7 @@ void expect_refused(const Decode& decode, const std::string& what) {
 TEST(WorkTileBytes, CutShortAnywhereAreRefused) {
   const Bytes bytes = encode_work_tile(make_tile({10, 5, 4, 7, 6, 2}));
   for (std::size_t size = 0; size < bytes.size(); ++size) {
-    expect_refused([&] { return decode_work_tile(std::span(bytes).first(size), 2); },
+    expect_refused([&] { return decode_work_tile<FinerGhost>(std::span(bytes).first(size), 2); },
                    "cut to " + std::to_string(size));
   }
 }
@@ -140,14 +140,15 @@ TEST(WorkTileBytes, WithImpossibleCountsAreRefusedBeforeAnythingIsAllocated) {
   for (const std::size_t field : {0U, 2U, 3U, 4U}) {  // all but the boundary sizes something
     Bytes broken = bytes;
     std::fill_n(broken.begin() + static_cast<std::ptrdiff_t>(4 * field), 4, std::byte{0xff});
-    expect_refused([&] { return decode_work_tile(broken, 2); }, "field " + std::to_string(field));
+    expect_refused([&] { return decode_work_tile<FinerGhost>(broken, 2); },
+                   "field " + std::to_string(field));
   }
 }
 
 TEST(WorkTileBytes, OfOtherChannelsAreRefused) {
   const Bytes bytes = encode_work_tile(make_tile({10, 5, 4, 7, 6, 2}));
   for (const int channels : {0, 1, 3, 9}) {
-    expect_refused([&] { return decode_work_tile(bytes, channels); },
+    expect_refused([&] { return decode_work_tile<FinerGhost>(bytes, channels); },
                    "channels " + std::to_string(channels));
   }
 }
@@ -155,13 +156,13 @@ TEST(WorkTileBytes, OfOtherChannelsAreRefused) {
 TEST(WorkTileBytes, WithMoreBehindThemAreRefused) {
   Bytes bytes = encode_work_tile(make_tile({10, 5, 4, 7, 6, 2}));
   bytes.push_back(std::byte{0});
-  expect_refused([&] { return decode_work_tile(bytes, 2); }, "one byte more");
+  expect_refused([&] { return decode_work_tile<FinerGhost>(bytes, 2); }, "one byte more");
 }
 
 TEST(BoundaryBytes, HoldTheFirstVerticesOfTheTile) {
   for (const int channels : {0, 3, kMaxChannels}) {
     for (const std::uint32_t boundary_count : {0U, 1U, 30U, 100U}) {
-      const WorkTile tile = make_tile({100, boundary_count, 25, 150, 60, channels});
+      const SimplifiedTile tile = make_tile({100, boundary_count, 25, 150, 60, channels});
       const Boundary boundary = decode_boundary(encode_boundary(tile), channels);
       ASSERT_EQ(boundary.vertices.size(), boundary_count);
       EXPECT_EQ(boundary.vertices.channels, channels);
@@ -198,7 +199,7 @@ SeamStrip make_seam_strip(const Shape& shape) {
   for (std::uint32_t i = 0; i < shape.own; ++i)
     seam_strip.deviations.push_back(number());
   for (std::uint32_t i = 0; i < shape.foreign; ++i)
-    seam_strip.foreign.push_back({i / 3, static_cast<std::uint32_t>(random())});
+    seam_strip.foreign.push_back({{i / 3, static_cast<std::uint32_t>(random())}});
   seam_strip.interior = random_triangles(random, shape.interior, shape.own);
   seam_strip.border = random_triangles(random, shape.border, shape.own + shape.foreign);
   seam_strip.interior_deviation = 0.125F;
