@@ -1,7 +1,7 @@
 // How far a triangle is from a few others that cover it together: a certain upper bound.
 #pragma once
 
-#include "cluster_simplify/closest_point.h"
+#include "hierarchy/closest_point.h"
 
 #include <array>
 #include <cstddef>

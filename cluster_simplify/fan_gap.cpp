@@ -1,6 +1,6 @@
 #include "cluster_simplify/fan_gap.h"
 
-#include "cluster_simplify/closest_point.h"
+#include "hierarchy/closest_point.h"
 
 #include <algorithm>
 #include <cmath>

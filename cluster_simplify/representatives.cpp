@@ -1,8 +1,8 @@
 #include "cluster_simplify/representatives.h"
 
-#include "cluster_simplify/closest_point.h"
 #include "cluster_simplify/kd_cells.h"
 #include "cluster_simplify/nearest.h"
+#include "hierarchy/closest_point.h"
 #include "hierarchy/triangle.h"
 
 #include <algorithm>

@@ -1,5 +1,7 @@
 #include "inspection/triangle_search.h"
 
+#include "hierarchy/closest_point.h"
+
 #include <algorithm>
 #include <cstddef>
 #include <utility>
@@ -43,14 +45,6 @@ double squared_distance(Vec3d p, const CGAL::Bbox_3& box) {
   return x * x + y * y + z * z;
 }
 
-double squared_distance_to_segment(Vec3d p, Vec3d a, Vec3d b) {
-  const Vec3d ab = b - a, ap = p - a;
-  const double squared_length = dot(ab, ab);
-  const double t = squared_length > 0 ? std::clamp(dot(ap, ab) / squared_length, 0.0, 1.0) : 0.0;
-  const Vec3d away = ap - ab * t;
-  return dot(away, away);
-}
-
 /// Goes down the tree, the nearer child first, keeping the nearest triangle so far. CGAL's own
 /// distance query projects on the triangle's plane and so requires an area; this one does not.
 class Descent {
@@ -92,21 +86,9 @@ Vec3d area_vector(const SurfaceTriangle& triangle) {
   return cross(to_double(triangle[1]) - a, to_double(triangle[2]) - a);
 }
 
-/// The nearest point of a triangle is the foot of the perpendicular on its plane if that lies
-/// within, and is on its border else. Taking the border's distance always costs a little time and
-/// makes slivers safe: where rounding misjudges "within", both distances are nearly equal.
 double squared_distance(Vec3d point, const SurfaceTriangle& triangle) {
-  const Vec3d a = to_double(triangle[0]), b = to_double(triangle[1]), c = to_double(triangle[2]);
-  const Vec3d normal = cross(b - a, c - a);
-  const double squared_length = dot(normal, normal);
-  if (squared_length > 0 && dot(cross(normal, b - a), point - a) >= 0 &&
-      dot(cross(normal, c - b), point - b) >= 0 && dot(cross(normal, a - c), point - c) >= 0) {
-    const double height = dot(normal, point - a);
-    return height * height / squared_length;
-  }
-  return std::min({squared_distance_to_segment(point, a, b),
-                   squared_distance_to_segment(point, b, c),
-                   squared_distance_to_segment(point, c, a)});
+  return squared_distance(
+      point, TriangleFrame(to_double(triangle[0]), to_double(triangle[1]), to_double(triangle[2])));
 }
 
 struct TriangleSearch::Tree {

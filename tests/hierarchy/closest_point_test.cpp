@@ -1,4 +1,4 @@
-#include "cluster_simplify/closest_point.h"
+#include "hierarchy/closest_point.h"
 
 #include "tests/support/meshes.h"
 
@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace meshhier::cluster_simplify {
+namespace meshhier {
 namespace {
 
 Vec3d random_point(std::uint64_t index) {
@@ -91,4 +91,4 @@ TEST(ClosestPointTest, WorksAtTheEndsOfFloat) {
 }
 
 }  // namespace
-}  // namespace meshhier::cluster_simplify
+}  // namespace meshhier

@@ -1,9 +1,9 @@
-#include "cluster_simplify/closest_point.h"
+#include "hierarchy/closest_point.h"
 
 #include <algorithm>
 #include <limits>
 
-namespace meshhier::cluster_simplify {
+namespace meshhier {
 namespace {
 
 /// numerator / denominator held in [0, 1]; 0 where there is nothing to divide by.
@@ -122,4 +122,4 @@ TrianglePair::Two squared_distances(Vec3d point, const TrianglePair& t) {
   return least < other ? least : other;
 }
 
-}  // namespace meshhier::cluster_simplify
+}  // namespace meshhier

@@ -8,7 +8,7 @@
 
 #include "hierarchy/vec.h"
 
-namespace meshhier::cluster_simplify {
+namespace meshhier {
 
 /// A triangle by one corner and two edges, with the products every query needs.
 struct TriangleFrame {
@@ -52,4 +52,4 @@ struct ClosestPoint {
 };
 ClosestPoint closest_point(Vec3d x, const TriangleFrame& triangle);
 
-}  // namespace meshhier::cluster_simplify
+}  // namespace meshhier
