@@ -4,8 +4,8 @@
 #include "config/config_reference.h"
 #include "hierarchy/error.h"
 #include "pipeline/build.h"
+#include "pipeline/estimate.h"
 #include "pipeline/plan/build_stats.h"
-#include "pipeline/plan/estimate.h"
 #include "storage/io/atomic_file.h"
 
 #include <algorithm>

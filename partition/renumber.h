@@ -53,6 +53,13 @@ struct WaitingTriangle {
   std::uint32_t open;
 };
 
+/// Bytes of the triangles that wait for blocks of the table, where most are there at once: all but
+/// those within the first block, if they jump through the table at random or if it has its vertices
+/// in several runs, as subdivided meshes do. Each waits in one place at a time, and places are used
+/// again. A group of blocks is kept until all of it is handed on.
+template <class Value>
+double expected_waiting_bytes(const RenumberPlan& plan, std::uint64_t triangles);
+
 /// What became of some triangles. Used again and again, it keeps its memory.
 template <class Value>
 struct Renumbered {

@@ -4,6 +4,7 @@
 #include "hierarchy/error.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <string>
 #include <utility>
@@ -34,6 +35,15 @@ inline RenumberPlan plan_renumbering(std::uint64_t entries, std::uint64_t entry_
   const std::uint64_t spools = 2 * (plan.group_blocks + (plan.groups > 1 ? plan.groups : 0));
   plan.bucket_bytes = std::clamp<std::uint64_t>(memory / 3 / spools, 512, kMostBuffer);
   return plan;
+}
+
+template <class Value>
+double expected_waiting_bytes(const RenumberPlan& plan, std::uint64_t triangles) {
+  if (plan.blocks == 1)
+    return 0;
+  const double group = plan.groups > 1 ? 1.0 / static_cast<double>(plan.groups) : 0;
+  const double first = std::pow(static_cast<double>(plan.blocks), -3);
+  return static_cast<double>(triangles) * sizeof(WaitingTriangle<Value>) * (1 - first + group);
 }
 
 template <class Value>

@@ -370,4 +370,16 @@ void TopSelector::settle_node(std::uint32_t node, PlannedSplit& split) {
   }
 }
 
+double expected_window_bytes(std::uint64_t vertex_count) {
+  // The part of a sample's vertices that a window holds, times the root of their number.
+  const double share = 2 * kWindowSigmas * std::sqrt(kMedianVariance);
+  double outside = 1;
+  double sample = static_cast<double>(std::min(vertex_count, kSampleVertices));
+  for (double size = static_cast<double>(vertex_count); size > kChunkVertices;
+       size /= 2, sample /= 2) {
+    outside *= 1 - std::min(1.0, share / std::sqrt(sample));
+  }
+  return static_cast<double>(vertex_count) * (1 - outside) * sizeof(IdPoint);
+}
+
 }  // namespace meshhier::partition

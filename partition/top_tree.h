@@ -125,6 +125,10 @@ class ChunkSearch {
   SplitCells cells_;
 };
 
+/// Bytes of what a TopSelector keeps aside of so many vertices: those within the window of some
+/// split.
+double expected_window_bytes(std::uint64_t vertex_count);
+
 /// Gathers sweep blocks and settles the medians.
 class TopSelector {
  public:

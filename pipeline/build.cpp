@@ -11,6 +11,7 @@
 #include "pipeline/partition_stage.h"
 #include "pipeline/publish_stage.h"
 #include "pipeline/simplify_stage.h"
+#include "pipeline/stage_costs.h"
 #include "storage/format/layout.h"
 
 #include <future>

@@ -4,6 +4,7 @@
 #include "hierarchy/error.h"
 #include "import/import_input.h"
 #include "pipeline/journal/workshop.h"
+#include "pipeline/stage_costs.h"
 #include "storage/format/layout.h"
 
 #include <algorithm>
@@ -12,6 +13,10 @@ namespace meshhier::pipeline {
 
 std::uint64_t import_disk(const importing::MeshInput& input, const config::Config& config) {
   return importing::predict_import(input.files(), importing::plan_import(config.memory_budget));
+}
+
+DiskVolumes imported_disk(const JobSize& job) {
+  return {{static_cast<double>(job.imported_bytes), DiskMoment::splits, DiskMoment::noted}};
 }
 
 BuildPlan import_and_plan(importing::MeshInput& input, storage::WorkDirectory& work,

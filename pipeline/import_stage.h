@@ -11,8 +11,11 @@
 
 namespace meshhier::pipeline {
 
-/// About what an import has in temporary files at most.
+/// About what an import has in temporary files at most, before it is known what is in the input.
 std::uint64_t import_disk(const importing::MeshInput& input, const config::Config& config);
+
+/// What stays of it: the PLY, until the triangles are distributed.
+DiskVolumes imported_disk(const JobSize& job);
 
 /// Imports the input, unless an earlier build did whose work is still there; then it is known what
 /// there is to do. Keeps the work directory if there is earlier work. Throws as

@@ -179,4 +179,28 @@ SourceVertices SourceMesh::read_vertex_block(std::uint64_t index,
   }
   return {first, memory.positions, memory.attributes};
 }
+std::uint64_t input_block_bytes(const JobSize& job) {
+  // A block with its copy, its sorted copy and its ranks.
+  return kBlock * (2 * job.vertex_bytes() + 32);
+}
+
+std::uint64_t sample_bytes(const JobSize& job) {
+  // The sample, its keys and its positions.
+  return std::min(job.vertex_count, partition::kSampleVertices) * (16 + 16 + 12 + 8);
+}
+
+StageMemory ingest_memory(const JobSize& job) {
+  const std::uint64_t block = input_block_bytes(job);
+  const std::uint64_t least = 2 * block + sample_bytes(job);
+  return {block, 2 * job.threads, least, least};
+}
+
+DiskVolumes ingest_disk(const JobSize& job) {
+  if (job.vertices_in_place)
+    return {};
+  const double vertex = (job.wide_coordinates ? 24 : 12) + 4.0 * job.channels;
+  return {{static_cast<double>(job.vertex_count) * vertex, DiskMoment::splits, DiskMoment::noted,
+           true}};
+}
+
 }  // namespace meshhier::pipeline

@@ -18,6 +18,16 @@
 
 namespace meshhier::pipeline {
 
+/// Of a block of input, here and in `partition`.
+std::uint64_t input_block_bytes(const JobSize& job);
+/// Of the sample, here and in `partition`.
+std::uint64_t sample_bytes(const JobSize& job);
+
+/// Items are blocks of input.
+StageMemory ingest_memory(const JobSize& job);
+/// The vertices once more, if they cannot be read in place, until the triangles are distributed.
+DiskVolumes ingest_disk(const JobSize& job);
+
 /// Vertices first, first + 1, ... relative to the origin. Valid as long as the memory they were
 /// read into is not used.
 struct SourceVertices {

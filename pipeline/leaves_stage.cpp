@@ -6,7 +6,10 @@
 #include "hierarchy/error.h"
 #include "partition/chunk.h"
 #include "partition/leaf_tiles.h"
+#include "partition/top_tree.h"
+#include "storage/format/work_tile.h"
 
+#include <algorithm>
 #include <vector>
 
 #include <fmt/format.h>
@@ -79,6 +82,26 @@ std::uint64_t make_leaves(Chunks& chunks, Forest& forest, BuildJournal& journal,
           execution::release_free_memory();
       });
   return unreferenced;
+}
+
+StageMemory leaves_memory(const JobSize& job) {
+  // A chunk read, split and turned into tiles: vertices twice, keys and numbers; triangles as read,
+  // as split, as tiles and as bytes.
+  const std::uint64_t vertices = std::min(job.vertex_count, partition::kChunkVertices);
+  const std::uint64_t triangles = job.part_triangles(vertices);
+  const std::uint64_t usual = vertices * (3 * job.vertex_bytes() + 60) + triangles * 40;
+  // Where more than two and a half triangles share a vertex, the graph that the chunk is split by
+  // counts for more: 500 bytes a vertex at most.
+  const bool is_dense = 2 * job.face_count > 5 * job.vertex_count;
+  const std::uint64_t dense = vertices * (job.vertex_bytes() + 500) + triangles * 12;
+  const std::uint64_t chunk = is_dense ? std::max(usual, dense) : usual;
+  return {chunk, job.threads + 1, chunk, (job.threads + 1) * chunk};
+}
+
+DiskVolumes leaves_disk(const JobSize& job, const TilePopulation& tiles) {
+  const double bytes = storage::expected_work_tile_bytes(tiles.partitions, job.vertex_bytes()) +
+                       tiles.partitions.boundary * sizeof(partition::LeafPlace);
+  return {{bytes, DiskMoment::leaves, DiskMoment::simplify}};
 }
 
 }  // namespace meshhier::pipeline

@@ -44,4 +44,8 @@ std::uint64_t pack(const storage::HierarchyReader& made, const fs::path& file,
   return writer.bytes();
 }
 
+double archive_overhead_bytes(const TilePopulation& tiles) {
+  return tiles.files() * storage::kArchivedFileOverhead;
+}
+
 }  // namespace meshhier::pipeline

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pipeline/plan/stage_context.h"
+#include "pipeline/plan/tile_population.h"
 #include "storage/format/hierarchy_reader.h"
 #include "storage/io/scratch_use.h"
 
@@ -24,6 +25,9 @@ class TemporaryFiles {
   storage::ScratchUse& use_;
   std::uint64_t bytes_;
 };
+
+/// Of the archive, beside the files in it.
+double archive_overhead_bytes(const TilePopulation& tiles);
 
 /// Makes the archive `file` of all files of the hierarchy `made`: manifest, index, outline,
 /// tilesets, then tiles level by level; forces it to the disk. What is read counts in `use`.

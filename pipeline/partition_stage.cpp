@@ -4,7 +4,9 @@
 #include "execution/parallel.h"
 #include "partition/renumber.h"
 #include "partition/top_tree.h"
+#include "pipeline/plan/tile_population.h"
 
+#include <algorithm>
 #include <span>
 #include <utility>
 #include <vector>
@@ -175,6 +177,40 @@ mesh_io::FaceCounts partition_mesh(SourceMesh& mesh, Chunks& chunks, storage::Sc
   const mesh_io::FaceCounts counts = distribute_triangles(mesh, ranks, chunks, context);
   execution::release_free_memory();
   return counts;
+}
+
+StageMemory partition_memory(const JobSize& job) {
+  constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+  constexpr std::uint64_t kNodeBytes = 1024;  // a split, and the spool of its window
+  const std::uint64_t block = input_block_bytes(job);
+  const auto spools = ChunkSpools::of(job.vertex_count, job.vertex_bytes(), job.face_count);
+  const std::uint64_t splits =
+      2 * block + sample_bytes(job) + most_chunks(job.vertex_count) * kNodeBytes;
+  const std::uint64_t distribution = 2 * block + 12 * kMiB + spools.bytes(ChunkSpools::kLeastBlock);
+  // With so much the table of ranks is in memory as a whole, beside the spools of chunks.
+  const std::uint64_t beside =
+      2 * job.threads * block + spools.index_bytes(4 * ChunkSpools::kLeastBlock);
+  const std::uint64_t table = (sizeof(std::uint32_t) * job.vertex_count + beside) /
+                                  (ChunkSpools::kWorkParts - 1) * ChunkSpools::kWorkParts +
+                              4 * kMiB;
+  return {block, 2 * job.threads, std::max(splits, distribution), table};
+}
+
+DiskVolumes partition_disk(const JobSize& job, const MemoryPlan& memory) {
+  const auto vertices = static_cast<double>(job.vertex_count);
+  const partition::RenumberPlan renumbering =
+      partition::plan_renumbering(job.vertex_count, sizeof(std::uint32_t), memory.table_bytes);
+  const double waiting =
+      partition::expected_waiting_bytes<std::uint32_t>(renumbering, job.face_count);
+  const double chunks =
+      vertices * job.vertex_bytes() +
+      Chunks::expected_triangle_bytes(job.vertex_count, job.face_count, kBoundaryShare);
+  using enum DiskMoment;
+  return {{partition::expected_window_bytes(job.vertex_count), splits, splits, true},
+          {vertices * sizeof(std::uint32_t), triangles, triangles, true},
+          {waiting, triangles, triangles, true},
+          {chunks, triangles, triangles, true},
+          {chunks, noted, leaves}};
 }
 
 }  // namespace meshhier::pipeline

@@ -9,6 +9,12 @@
 
 namespace meshhier::pipeline {
 
+/// Items are blocks of input.
+StageMemory partition_memory(const JobSize& job);
+/// Windows of the medians until the splits are found; ranks, and triangles that wait for one, while
+/// triangles are distributed; chunks until the end of `leaves`.
+DiskVolumes partition_disk(const JobSize& job, const MemoryPlan& memory);
+
 /// Finds the exact splits above the chunks, then distributes the vertices in one pass and the
 /// triangles in one; returns how many faces the mesh has. What is needed meanwhile only is beside
 /// `scratch`.

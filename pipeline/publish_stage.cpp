@@ -12,6 +12,7 @@
 #include "storage/format/level_summary.h"
 #include "storage/format/manifest.h"
 #include "storage/format/outline_glb.h"
+#include "storage/format/tile_plan.h"
 #include "storage/format/tileset.h"
 #include "storage/io/hash.h"
 
@@ -215,6 +216,16 @@ void publish(Forest& forest, BuildJournal& journal, const PublishInput& input,
         context.progress.advance(1);
       });
   write_account(writer, input, records);
+}
+
+OutputCost publish_output(const JobSize& job, const TilePopulation& tiles) {
+  constexpr double kFileSlack = 2048;  // half a disk block
+  const auto bytes_of = [&](const storage::TileSums& sums) {
+    return storage::expected_tile_bytes(sums, job.published_attribute_bytes);
+  };
+  const double plain =
+      bytes_of(tiles.partitions) + bytes_of(tiles.simplified) - bytes_of(tiles.early);
+  return {plain, plain * job.published_ratio, tiles.files() * kFileSlack};
 }
 
 }  // namespace meshhier::pipeline

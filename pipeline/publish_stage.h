@@ -6,12 +6,16 @@
 #include "pipeline/journal/build_journal.h"
 #include "pipeline/outline_stage.h"
 #include "pipeline/plan/stage_context.h"
+#include "pipeline/plan/tile_population.h"
 #include "pipeline/tiles/bound_chain.h"
 #include "pipeline/tiles/forest.h"
 
 #include <filesystem>
 
 namespace meshhier::pipeline {
+
+/// The published files, for good or until they are packed.
+OutputCost publish_output(const JobSize& job, const TilePopulation& tiles);
 
 /// What earlier stages learnt and the published files tell.
 struct PublishInput {

@@ -4,10 +4,16 @@
 #include "hierarchy/published.h"
 #include "pipeline/journal/build_journal.h"
 #include "pipeline/plan/stage_context.h"
+#include "pipeline/plan/tile_population.h"
 #include "pipeline/tiles/bound_chain.h"
 #include "pipeline/tiles/forest.h"
 
 namespace meshhier::pipeline {
+
+/// Items are pairs of children and their parent.
+StageMemory simplify_memory(const JobSize& job);
+/// Simplified tiles, parent maps and seam strips, until the end.
+DiskVolumes simplify_disk(const JobSize& job, const TilePopulation& tiles);
 
 /// Contracts all levels, from the partitions to one root tile, and returns error and bound of every
 /// tile, from the partitions (0) to the root, each more than its children's. Tiles that the journal

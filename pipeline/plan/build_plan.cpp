@@ -3,6 +3,8 @@
 #include "execution/size_text.h"
 #include "hierarchy/error.h"
 #include "storage/format/layout.h"
+#include "storage/format/tile_glb.h"
+#include "storage/format/tile_plan.h"
 
 #include <algorithm>
 
@@ -13,6 +15,25 @@ namespace meshhier::pipeline {
 namespace {
 
 constexpr std::uint32_t kLargestTile = 32768;  // parent maps and ghost references hold 16 bits
+
+std::uint32_t largest_partition(const Tree& tree) {
+  return static_cast<std::uint32_t>((tree.vertex_count() + tree.partition_count() - 1) /
+                                    tree.partition_count());
+}
+
+/// Of what an earlier build of the output left: it takes its place already.
+std::uint64_t bytes_left(const std::filesystem::path& output, storage::FileSystem& files) {
+  const std::filesystem::path work = storage::work_path(output);
+  return files.exists(work) ? storage::bytes_below(files, work) : 0;
+}
+
+TargetVertexCounts target_vertex_counts(const config::Config& config, const Tree& tree) {
+  if (config.simplify.vertices)
+    return *config.simplify.vertices;
+  return config.partition.count ? std::max(4U, largest_partition(tree)) : config.partition.vertices;
+}
+
+}  // namespace
 
 Tree plan_tree(const config::Config& config, std::uint64_t vertex_count) {
   if (vertex_count == 0) {
@@ -38,83 +59,30 @@ Tree plan_tree(const config::Config& config, std::uint64_t vertex_count) {
   return {vertex_count, static_cast<std::uint32_t>(count)};
 }
 
-std::uint32_t largest_partition(const Tree& tree) {
-  return static_cast<std::uint32_t>((tree.vertex_count() + tree.partition_count() - 1) /
-                                    tree.partition_count());
-}
-
-/// Of what an earlier build of the output left: it takes its place already.
-std::uint64_t bytes_left(const std::filesystem::path& output, storage::FileSystem& files) {
-  const std::filesystem::path work = storage::work_path(output);
-  return files.exists(work) ? storage::bytes_below(files, work) : 0;
-}
-
-TargetVertexCounts target_vertex_counts(const config::Config& config, const Tree& tree) {
-  if (config.simplify.vertices)
-    return *config.simplify.vertices;
-  return config.partition.count ? std::max(4U, largest_partition(tree)) : config.partition.vertices;
-}
-
-/// Of a vertex in a published tile (docs/file_format.md, 4.3).
-std::uint64_t published_bytes(const AttributeLayout& layout) {
-  const std::uint64_t component = layout.colour == ColourType::u8    ? 1
-                                  : layout.colour == ColourType::u16 ? 2
-                                                                     : 4;
-  const std::uint64_t colour = static_cast<std::uint64_t>(layout.colour_channels()) * component;
-  return (layout.normals ? 12 : 0) + (colour + 3) / 4 * 4 + (layout.texcoords ? 8 : 0);
-}
-
-/// What tiles take of plain ones, about: the most that was seen with exact scans of more than
-/// 20,000 vertices (docs/performance.md). Quantized ones take less.
-double published_ratio(const config::StorageConfig& storage) {
-  switch (storage.compression) {
-    case storage::Compression::none:
-      return 1;
-    case storage::Compression::zlib:
-      return 0.79;
-    case storage::Compression::meshopt:
-      return 0.66;
-    case storage::Compression::meshopt_zlib:
-      break;
-  }
-  return 0.56;
-}
-
-JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& mesh,
-                 const Tree& tree, std::size_t threads) {
-  JobSize job;
-  job.vertex_count = mesh.vertex_count;
-  job.face_count = mesh.face_count;
-  job.channels = mesh.attributes.channels();
-  job.vertices_in_place = mesh.vertices_in_place;
-  job.wide_coordinates = mesh.wide_coordinates;
-  job.partition_count = tree.partition_count();
-  job.threads = threads;
-  job.target_vertex_counts = target_vertex_counts(config, tree);
-  job.largest_tile =
-      std::max(largest_partition(tree), job.target_vertex_counts.largest_above(tree.depth()));
-  job.clustered = config.simplify.method == config::SimplifyMethod::cluster;
-  job.published_attribute_bytes = published_bytes(mesh.attributes);
-  job.published_ratio = published_ratio(config.storage);
-  job.packed = config.storage.container == storage::Container::archive;
-  return job;
-}
-
-}  // namespace
-
 std::size_t thread_count(const config::Config& config) {
   return config.threads > 0 ? config.threads
                             : static_cast<std::size_t>(tbb::info::default_concurrency());
 }
 
-BuildPlan plan_build(const config::Config& config, const mesh_io::MeshDescription& mesh,
-                     std::uint64_t imported_bytes) {
-  const Tree tree = plan_tree(config, mesh.vertex_count);
-  const std::size_t threads = thread_count(config);
-  JobSize job = job_size(config, mesh, tree, threads);
+JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& mesh,
+                 std::uint64_t imported_bytes, const Tree& tree) {
+  JobSize job;
+  job.vertex_count = mesh.vertex_count;
+  job.face_count = mesh.face_count;
+  job.channels = mesh.attributes.channels();
   job.imported_bytes = imported_bytes;
-  const MemoryPlan memory = plan_memory(config.memory_budget, job);
-  return {tree, threads, job.target_vertex_counts, job, memory, predict_disk(job, memory)};
+  job.vertices_in_place = mesh.vertices_in_place;
+  job.wide_coordinates = mesh.wide_coordinates;
+  job.partition_count = tree.partition_count();
+  job.threads = thread_count(config);
+  job.target_vertex_counts = target_vertex_counts(config, tree);
+  job.largest_tile =
+      std::max(largest_partition(tree), job.target_vertex_counts.largest_above(tree.depth()));
+  job.clustered = config.simplify.method == config::SimplifyMethod::cluster;
+  job.published_attribute_bytes = storage::published_attribute_bytes(mesh.attributes);
+  job.published_ratio = storage::expected_ratio(config.storage.compression);
+  job.packed = config.storage.container == storage::Container::archive;
+  return job;
 }
 
 std::filesystem::path existing_directory(const std::filesystem::path& output,

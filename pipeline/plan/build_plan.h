@@ -7,6 +7,7 @@
 #include "hierarchy/tree.h"
 #include "mesh_io/mesh_source.h"
 #include "pipeline/plan/disk_need.h"
+#include "pipeline/plan/job_size.h"
 #include "pipeline/plan/memory_plan.h"
 #include "storage/io/file.h"
 
@@ -25,11 +26,13 @@ struct BuildPlan {
   DiskNeed disk;
 };
 
-/// The plan for a mesh of which the header was read; `imported_bytes`: of the PLY, if it is one
-/// that the input was imported to. Throws Error(usage | input) if the partitions asked for cannot
-/// be, Error(budget) if the memory budget is too small.
-BuildPlan plan_build(const config::Config& config, const mesh_io::MeshDescription& mesh,
-                     std::uint64_t imported_bytes = 0);
+/// The partitions of a mesh. Throws Error(usage | input) if those asked for cannot be.
+Tree plan_tree(const config::Config& config, std::uint64_t vertex_count);
+
+/// Of a mesh of which the header was read; `imported_bytes`: of the PLY, if it is one that the
+/// input was imported to.
+JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& mesh,
+                 std::uint64_t imported_bytes, const Tree& tree);
 
 /// Threads that a build of that config uses.
 std::size_t thread_count(const config::Config& config);

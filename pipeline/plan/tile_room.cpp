@@ -16,13 +16,14 @@ namespace {
 constexpr std::uint64_t kBytesBetweenReleases = std::uint64_t{640} << 20;
 constexpr std::uint64_t kMostBetweenReleases = 64;
 
-/// Of more budget a twelfth is the allocator's, which may lack its part of this one
-/// (memory_plan.cpp).
+/// Of more budget a part is the allocator's (kAllocatorParts), which may lack its part of this one.
 [[noreturn]] void refuse(const MemoryPlan& plan, const storage::MemoryPool& pool,
                          std::uint64_t needed_bytes) {
   constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
   const std::uint64_t lacking = needed_bytes - plan.work_bytes - pool.free_bytes();
-  const std::uint64_t more = (lacking + plan.budget_bytes / 12) / 11 * 12 / kMiB + 1;
+  const std::uint64_t more = (lacking + plan.budget_bytes / kAllocatorParts) /
+                                 (kAllocatorParts - 1) * kAllocatorParts / kMiB +
+                             1;
   throw Error(ErrorCode::budget,
               fmt::format("a tile of the mesh has so many triangles at few vertices that it takes "
                           "{}; it needs a memory_budget larger by {}",

@@ -3,6 +3,7 @@
 #include "partition/top_tree.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace meshhier::pipeline {
 namespace {
@@ -188,6 +189,37 @@ bool Chunks::restore(std::uint32_t chunk, const nlohmann::json& stored) {
 bool Chunks::is_as_stored(std::uint32_t chunk) const {
   return vertices_[chunk].is_as_stored() && inner_[chunk].is_as_stored() &&
          shared_[chunk].is_as_stored();
+}
+
+double Chunks::expected_triangle_bytes(std::uint64_t vertex_count, std::uint64_t face_count,
+                                       double boundary_share) {
+  const auto vertices = static_cast<double>(vertex_count);
+  const double chunks =
+      std::exp2(std::max(0.0, std::ceil(std::log2(vertices / partition::kChunkVertices))));
+  const double share = chunks > 1 ? boundary_share / std::sqrt(vertices / chunks) : 0;
+  return static_cast<double>(face_count) * sizeof(RankTriangle) * (1 + std::min(1.0, share));
+}
+
+std::uint64_t most_chunks(std::uint64_t vertex_count) {
+  return vertex_count * 2 / partition::kChunkVertices + 1;
+}
+
+ChunkSpools ChunkSpools::of(std::uint64_t vertex_count, std::uint32_t vertex_bytes,
+                            std::uint64_t face_count) {
+  constexpr std::uint64_t kTriangleBytes = 13;  // 12, and those that chunks share
+  return {Chunks::kSpools * most_chunks(vertex_count),
+          vertex_count * vertex_bytes + face_count * kTriangleBytes};
+}
+
+std::size_t ChunkSpools::block_bytes(std::uint64_t work_bytes) const {
+  return std::clamp(work_bytes / kWorkParts / count, kLeastBlock, kMostBlock);
+}
+
+std::uint64_t ChunkSpools::index_bytes(std::uint64_t block) const {
+  // 8 bytes for every block, in vectors that may be half empty, and both halves held while they
+  // grow.
+  constexpr std::uint64_t kEntryBytes = 24;
+  return spooled_bytes / block * kEntryBytes;
 }
 
 }  // namespace meshhier::pipeline

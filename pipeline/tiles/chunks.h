@@ -6,6 +6,7 @@
 #include "storage/io/spool.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -67,11 +68,43 @@ struct ChunkedTriangles {
   std::vector<std::uint32_t> next_;
 };
 
+/// Chunks of a mesh of so many vertices, at most: each has more than half of
+/// partition::kChunkVertices.
+std::uint64_t most_chunks(std::uint64_t vertex_count);
+
+/// Memory that the spools of all chunks take while they are written: their open blocks, and the
+/// index of all blocks.
+struct ChunkSpools {
+  // Open blocks weigh against the index, and both are least together at about 4 KiB, whatever the
+  // size of the mesh.
+  static constexpr std::uint64_t kLeastBlock = 4096;
+  static constexpr std::uint64_t kMostBlock = 262144;
+  /// Of a stage's memory, one part in so many is for the open blocks.
+  static constexpr std::uint64_t kWorkParts = 8;
+
+  std::uint64_t count = 0;  ///< spools
+  std::uint64_t spooled_bytes = 0;
+
+  /// `vertex_bytes`: of a position and its attributes.
+  static ChunkSpools of(std::uint64_t vertex_count, std::uint32_t vertex_bytes,
+                        std::uint64_t face_count);
+
+  /// For a stage that may hold `work_bytes`.
+  std::size_t block_bytes(std::uint64_t work_bytes) const;
+  std::uint64_t index_bytes(std::uint64_t block) const;
+  std::uint64_t bytes(std::uint64_t block) const { return count * block + index_bytes(block); }
+};
+
 /// All chunks of a mesh, spooled.
 class Chunks {
  public:
   /// Spools a chunk has: vertices, inner and shared triangles.
   static constexpr int kSpools = 3;
+
+  /// Bytes of the spooled triangles; chunks share those along their borders. `boundary_share`: the
+  /// part of a chunk's vertices that is its boundary, times the root of their number.
+  static double expected_triangle_bytes(std::uint64_t vertex_count, std::uint64_t face_count,
+                                        double boundary_share);
 
   Chunks(const Tree& tree, int channels, storage::ScratchFile& scratch, std::size_t block_bytes);
 

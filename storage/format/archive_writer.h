@@ -12,10 +12,16 @@
 
 namespace meshhier::storage {
 
+/// A file in an archive beside its content: two headers with its name, and its place in the index.
+inline constexpr double kArchivedFileOverhead = 138;
+
 /// Holds 24 bytes a file, and a block. Deterministic: the archive follows from names and contents
 /// in their order. Failures throw Error(io); what was written is then of no use.
 class ArchiveWriter {
  public:
+  /// Memory for a file's place in the index, twice while the list grows.
+  static constexpr std::uint64_t kFileMemory = 2 * sizeof(IndexPlace);
+
   /// `archive` is empty, and can be read as well; it must outlive this. `check` is called before
   /// each block of content and may throw.
   ArchiveWriter(File& archive, std::function<void()> check)

@@ -444,6 +444,20 @@ PublishedTile decode_glb(std::span<const std::byte> bytes, NodeId node, const Tr
 
 }  // namespace
 
+double expected_ratio(Compression compression) {
+  switch (compression) {
+    case Compression::none:
+      return 1;
+    case Compression::zlib:
+      return 0.79;
+    case Compression::meshopt:
+      return 0.66;
+    case Compression::meshopt_zlib:
+      break;
+  }
+  return 0.56;
+}
+
 std::string_view name_of(Compression compression) {
   return kCompressionNames[static_cast<std::size_t>(compression)];
 }

@@ -278,4 +278,23 @@ Json TilePlan::document(const Bounds& bounds, const Frame& frame, const Packing*
   return document;
 }
 
+std::uint64_t published_attribute_bytes(const AttributeLayout& layout) {
+  const std::uint64_t component = layout.colour == ColourType::u8    ? 1
+                                  : layout.colour == ColourType::u16 ? 2
+                                                                     : 4;
+  const std::uint64_t colour = static_cast<std::uint64_t>(layout.colour_channels()) * component;
+  return (layout.normals ? 12 : 0) + (colour + 3) / 4 * 4 + (layout.texcoords ? 8 : 0);
+}
+
+double expected_tile_bytes(const TileSums& tiles, std::uint64_t attribute_bytes) {
+  constexpr double kOverhead = 1600;  // JSON and headers
+  constexpr double kChain = 6;        // two or three indices of 16 bits on average
+  constexpr double kParent = sizeof(std::uint16_t);
+  constexpr double kTriangle = 3 * sizeof(std::uint16_t);
+  const double vertex = 12 + static_cast<double>(attribute_bytes);
+  return tiles.vertices * (vertex + kParent) +
+         tiles.boundary * tiles.ghosts_per_boundary * (vertex + kChain) +
+         tiles.triangles * kTriangle + tiles.count * kOverhead;
+}
+
 }  // namespace meshhier::storage

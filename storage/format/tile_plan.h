@@ -6,6 +6,7 @@
 #include "hierarchy/frame.h"
 #include "hierarchy/ids.h"
 #include "hierarchy/lattice.h"
+#include "storage/format/tile_sums.h"
 
 #include <array>
 #include <cstddef>
@@ -139,5 +140,11 @@ class TilePlan {
   std::uint64_t bytes_ = 0;
   int views_ = 0;
 };
+
+/// Of a vertex in a tile's file, beside its position.
+std::uint64_t published_attribute_bytes(const AttributeLayout& layout);
+/// Bytes of the tiles' files, not compressed. `attribute_bytes`: published_attribute_bytes().
+/// Attributes that glTF cannot hold as they are count once.
+double expected_tile_bytes(const TileSums& tiles, std::uint64_t attribute_bytes);
 
 }  // namespace meshhier::storage

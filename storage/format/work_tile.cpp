@@ -257,6 +257,25 @@ SeamStrip decode_seam_strip(std::span<const std::byte> bytes) {
   return seam_strip;
 }
 
+double expected_work_tile_bytes(const TileSums& tiles, std::uint32_t vertex_bytes) {
+  constexpr double kCounts = 24;
+  constexpr double kWeight = sizeof(float);
+  constexpr double kForeign = sizeof(FinerGhost);
+  constexpr double kTriangle = 3 * sizeof(std::uint16_t);
+  return tiles.count * kCounts + tiles.vertices * (vertex_bytes + kWeight) +
+         tiles.boundary * (tiles.foreign_per_boundary * kForeign + vertex_bytes) +
+         tiles.triangles * kTriangle;
+}
+
+double expected_seam_strip_bytes(const TileSums& tiles) {
+  // Per vertex of the boundary 76 to 89 bytes were measured, up to 130 after clustering where it
+  // leaves long boundaries; no more than the whole tile.
+  constexpr double kBoundaryVertex = 90;
+  constexpr double kVertex = 20, kTriangle = 12;
+  return std::min(tiles.boundary * kBoundaryVertex,
+                  tiles.vertices * kVertex + tiles.triangles * kTriangle);
+}
+
 template std::vector<std::byte> encode_work_tile(const LeafTile&);
 template std::vector<std::byte> encode_work_tile(const SimplifiedTile&);
 template LeafTile decode_work_tile(std::span<const std::byte>, int);

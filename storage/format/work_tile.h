@@ -3,6 +3,7 @@
 #pragma once
 
 #include "hierarchy/build_tile.h"
+#include "storage/format/tile_sums.h"
 
 #include <cstddef>
 #include <span>
@@ -29,5 +30,11 @@ Boundary decode_boundary(std::span<const std::byte> bytes, int channels);
 
 std::vector<std::byte> encode_seam_strip(const SeamStrip& seam_strip);
 SeamStrip decode_seam_strip(std::span<const std::byte> bytes);
+
+/// Bytes of the encoded tiles, and of their boundaries, which are encoded once more.
+/// `vertex_bytes`: of a position and its attributes. Corners count as 16 bits.
+double expected_work_tile_bytes(const TileSums& tiles, std::uint32_t vertex_bytes);
+/// Bytes of the encoded seam strips of simplified tiles.
+double expected_seam_strip_bytes(const TileSums& tiles);
 
 }  // namespace meshhier::storage

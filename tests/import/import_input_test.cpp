@@ -5,7 +5,7 @@
 #include "inspection/verify.h"
 #include "mesh_io/ply_writer.h"
 #include "pipeline/build.h"
-#include "pipeline/plan/estimate.h"
+#include "pipeline/estimate.h"
 #include "storage/format/hierarchy_reader.h"
 #include "storage/format/layout.h"
 #include "tests/support/gzip.h"

@@ -3,6 +3,8 @@
 #include "bench/generator.h"
 #include "bench/stress.h"
 #include "execution/size_text.h"
+#include "pipeline/estimate.h"
+#include "pipeline/stage_costs.h"
 #include "storage/io/file.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/sizes.h"
@@ -14,6 +16,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -22,6 +25,7 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <spawn.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -72,13 +76,17 @@ class MemoryTest : public testing::Test {
     bench::write_ply(*files, path("mesh.ply"), *bench::as_generated(std::move(mesh)));
   }
 
-  Outcome build(const std::string& budget, const std::vector<std::string>& settings = {}) {
+  /// `stats`: file for the account.
+  Outcome build(const std::string& budget, const std::vector<std::string>& settings = {},
+                const fs::path& stats = {}) {
     std::ofstream(path("config.json")) << R"({"input": "mesh.ply", "output": "mesh.hier"})";
     std::vector<std::string> words = {
         MESHHIER_BINARY, "build", path("config.json").string(), "--force", "--progress",
         "none",          "--set", "memory_budget=" + budget};
     for (const std::string& setting : settings)
       words.insert(words.end(), {"--set", setting});
+    if (!stats.empty())
+      words.insert(words.end(), {"--stats", stats.string()});
     return run(words);
   }
 
@@ -132,6 +140,36 @@ class MemoryTest : public testing::Test {
     return outcome.messages.substr(start, outcome.messages.find_first_of(" \n", start) - start);
   }
 
+  /// In the least budget, no stage's peak is beyond what it and those before tell of themselves;
+  /// and what all tell is not far beyond the peak.
+  void expect_told(std::uint32_t partition_vertices) {
+    const auto files = storage::make_posix_file_system();
+    config::Config config;
+    config.input = path("mesh.ply");
+    config.output = path("none.hier");
+    config.partition.vertices = partition_vertices;
+    const pipeline::MemoryCosts costs =
+        pipeline::memory_costs(pipeline::estimate_build(config, true, *files).plan.job);
+    const Outcome outcome =
+        build(execution::exact_size_text(pipeline::least_budget(costs)),
+              {"partition.vertices=" + std::to_string(partition_vertices)}, path("stats.json"));
+    ASSERT_EQ(outcome.code, 0) << outcome.messages;
+    const std::map<std::string, std::uint64_t> told = {{"ingest", costs.ingest.least_bytes},
+                                                       {"partition", costs.partition.least_bytes},
+                                                       {"leaves", costs.leaves.least_bytes},
+                                                       {"simplify", costs.simplify.least_bytes}};
+    std::uint64_t most = 0;
+    const auto stats = nlohmann::json::parse(std::ifstream(path("stats.json")));
+    for (const auto& stage : stats.at("stages")) {
+      const auto name = stage.at("name").get<std::string>();
+      const auto peak = stage.at("peak_resident_bytes").get<std::uint64_t>();
+      most = std::max(most, told.contains(name) ? told.at(name) : 0);
+      EXPECT_LE(peak, pipeline::fixed_bytes(costs) + most) << name;
+      RecordProperty("peak_bytes_of_" + name, std::to_string(peak));
+    }
+    EXPECT_GE(outcome.peak_bytes * 5, (pipeline::fixed_bytes(costs) + most) * 3);
+  }
+
   tests::TemporaryDirectory directory_;
 };
 
@@ -183,6 +221,17 @@ TEST_F(MemoryTest, TheLeastBudgetIsNamedAndWorks) {
   EXPECT_THAT(below.messages, HasSubstr(least));
   EXPECT_FALSE(fs::exists(path("mesh.hier")));
   expect_within(least);
+}
+
+// The first is hungriest in ingest and partition; of the second, one chunk and two tiles, leaves
+// and simplify take more than the stages before.
+TEST_F(MemoryTest, NoStageHoldsMoreThanItTells) {
+  write_mesh(million_vertices());
+  expect_told(8192);
+  bench::SurfaceOptions options;
+  options.triangles = 250'000;
+  write_mesh(options);
+  expect_told(32768);
 }
 
 // ---- progressive streams

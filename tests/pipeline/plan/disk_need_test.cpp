@@ -2,6 +2,7 @@
 
 #include "hierarchy/tree.h"
 #include "partition/top_tree.h"
+#include "pipeline/stage_costs.h"
 #include "tests/support/sizes.h"
 
 #include <cstdint>
@@ -25,15 +26,19 @@ JobSize job_of(std::uint64_t vertices, std::uint32_t tile) {
   return job;
 }
 
+std::uint64_t least_of(const JobSize& job) {
+  return least_budget(memory_costs(job));
+}
+
 DiskNeed need_of(const JobSize& job, std::uint64_t budget) {
-  return predict_disk(job, plan_memory(budget, job));
+  const MemoryPlan plan = plan_memory(budget, memory_costs(job));
+  return predict_disk(disk_costs(job, plan, expected_tiles(job)), plan.pool_bytes);
 }
 
 TEST(DiskNeedTest, WhatABuildGoesOnWithIsOnDiskWhateverTheMemory) {
   const JobSize job = job_of(100'000, 8192);
   EXPECT_GT(need_of(job, 4 * kGiB).temporary_bytes, job.vertex_count * 12 + job.face_count * 6);
-  EXPECT_GE(need_of(job, least_budget(job)).temporary_bytes,
-            need_of(job, 4 * kGiB).temporary_bytes);
+  EXPECT_GE(need_of(job, least_of(job)).temporary_bytes, need_of(job, 4 * kGiB).temporary_bytes);
   EXPECT_GT(need_of(job, 4 * kGiB).output_bytes, job.vertex_count * 12 + job.face_count * 12);
 }
 
@@ -61,7 +66,7 @@ TEST(DiskNeedTest, TheRoomHoldsTheOutputAndEachStagesFiles) {
   for (const std::uint32_t tile : {16U, 512U, 8192U, 32768U}) {
     for (const std::uint64_t budget : {128 * kMiB, kGiB}) {
       JobSize job = job_of(3'000'000, tile);
-      const DiskNeed need = need_of(job, std::max(budget, least_budget(job)));
+      const DiskNeed need = need_of(job, std::max(budget, least_of(job)));
       EXPECT_GE(need.room_bytes, need.temporary_bytes);
       EXPECT_GE(need.room_bytes, need.output_bytes);
       EXPECT_LE(need.room_bytes, need.temporary_bytes + need.output_bytes +
@@ -87,7 +92,7 @@ TEST(DiskNeedTest, TemporaryFilesStayBelowOneAndAHalfTimesInputAndOutput) {
   // What the input takes: 12 bytes a vertex and 13 a triangle.
   for (const std::uint64_t vertices : {7'000'000U, 28'000'000U, 250'000'000U}) {
     const JobSize job = job_of(vertices, 8192);
-    const DiskNeed need = need_of(job, std::max(64 * kMiB, least_budget(job)));
+    const DiskNeed need = need_of(job, std::max(64 * kMiB, least_of(job)));
     const std::uint64_t floor = vertices * 12 + job.face_count * 13 + need.output_bytes;
     EXPECT_LE(2 * need.temporary_bytes, 3 * floor) << vertices;
   }
@@ -122,7 +127,7 @@ TEST(DiskNeedTest, TilesAreCountedAsTheTreeHasThem) {
       for (std::uint32_t i = 0; i < tree.node_count(level); ++i)
         simplified += tree.is_early({level, i}) ? 0 : 1;
     }
-    const TileCounts counts = count_tiles(job);
+    const TileCounts counts = count_tiles(expected_tiles(job));
     EXPECT_EQ(counts.levels, raw(tree.depth()) + 1) << partitions;
     EXPECT_EQ(counts.simplified, simplified) << partitions;
     EXPECT_EQ(counts.tiles(), simplified + partitions);

@@ -2,6 +2,7 @@
 
 #include "execution/size_text.h"
 #include "hierarchy/error.h"
+#include "pipeline/stage_costs.h"
 #include "tests/support/sizes.h"
 
 #include <cstdint>
@@ -54,7 +55,7 @@ std::string text_of(const JobSize& job) {
 /// What the refusal of a budget says, if it is refused.
 std::optional<std::string> refusal(std::uint64_t budget, const JobSize& job) {
   try {
-    plan_memory(budget, job);
+    plan_memory(budget, memory_costs(job));
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::budget);
     return error.what();
@@ -88,7 +89,7 @@ TEST(MemoryPlanTest, TheLeastThatIsNamedIsEnoughAndHardlyMoreThanNeeded) {
 
 TEST(MemoryPlanTest, TheLeastBudgetIsTheOneThatARefusalNames) {
   for (const JobSize& job : jobs())
-    EXPECT_EQ(least_budget(job), named_budget(job)) << text_of(job);
+    EXPECT_EQ(least_budget(memory_costs(job)), named_budget(job)) << text_of(job);
 }
 
 TEST(MemoryPlanTest, AMillionVerticesAreContentWith64MiB) {
@@ -106,7 +107,7 @@ TEST(MemoryPlanTest, ThePartsStayWithinTheBudget) {
     const std::uint64_t least = named_budget(job);
     for (const std::uint64_t budget : {least, least + 7 * kMiB, 2 * least, least + 64 * kGiB}) {
       SCOPED_TRACE(text_of(job) + ", budget " + execution::exact_size_text(budget));
-      const MemoryPlan plan = plan_memory(budget, job);
+      const MemoryPlan plan = plan_memory(budget, memory_costs(job));
       EXPECT_LE(plan.pool_bytes + plan.work_bytes, budget);
       EXPECT_GT(plan.work_bytes, 0U);
       EXPECT_LE(plan.table_bytes, plan.work_bytes);
@@ -123,7 +124,7 @@ TEST(MemoryPlanTest, ThePartsStayWithinTheBudget) {
 
 TEST(MemoryPlanTest, OpenSpoolsFitTheWorkOfTheLargestMesh) {
   const JobSize job = job_of(4'294'967'295, 32768, 9, 2);
-  const MemoryPlan plan = plan_memory(named_budget(job), job);
+  const MemoryPlan plan = plan_memory(named_budget(job), memory_costs(job));
   const std::uint64_t spools = 2 * (job.vertex_count / 131072 + 1);  // a chunk's two, at least
   EXPECT_LE(spools * plan.spool_block_bytes, plan.work_bytes);
 }
@@ -133,7 +134,7 @@ TEST(MemoryPlanTest, TheIndexOfTheSpoolsFitsTheWorkOfALargeMesh) {
   constexpr std::uint64_t kIndexBytes = 24;
   for (const std::uint64_t vertices : {std::uint64_t{10'000'000}, std::uint64_t{500'000'000}}) {
     const JobSize job = job_of(vertices, 8192, 0, 1);
-    const MemoryPlan plan = plan_memory(named_budget(job), job);
+    const MemoryPlan plan = plan_memory(named_budget(job), memory_costs(job));
     const std::uint64_t spooled_bytes = job.vertex_count * 12 + job.face_count * 12;
     EXPECT_LE(spooled_bytes / plan.spool_block_bytes * kIndexBytes, plan.work_bytes)
         << vertices << " vertices in blocks of " << plan.spool_block_bytes << " bytes";
@@ -142,9 +143,9 @@ TEST(MemoryPlanTest, TheIndexOfTheSpoolsFitsTheWorkOfALargeMesh) {
 
 TEST(MemoryPlanTest, MoreMemoryNeverGivesLess) {
   const JobSize job = job_of(50'000'000, 8192, 4, 8);
-  MemoryPlan before = plan_memory(named_budget(job), job);
+  MemoryPlan before = plan_memory(named_budget(job), memory_costs(job));
   for (std::uint64_t budget = named_budget(job); budget < 16 * kGiB; budget += budget / 7) {
-    const MemoryPlan plan = plan_memory(budget, job);
+    const MemoryPlan plan = plan_memory(budget, memory_costs(job));
     EXPECT_GE(plan.pool_bytes, before.pool_bytes);
     EXPECT_GE(plan.work_bytes, before.work_bytes);
     EXPECT_GE(plan.tiles_in_flight, before.tiles_in_flight);

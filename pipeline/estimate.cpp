@@ -1,8 +1,9 @@
-#include "pipeline/plan/estimate.h"
+#include "pipeline/estimate.h"
 
 #include "execution/size_text.h"
 #include "import/import_input.h"
 #include "import/mesh_input.h"
+#include "pipeline/stage_costs.h"
 #include "storage/format/layout.h"
 #include "storage/format/work_directory.h"
 
@@ -161,10 +162,10 @@ BuildEstimate estimate_build(const config::Config& config, bool force, storage::
   input.drop();
   storage::check_output(files, {config.output, config.storage.container}, force);
   check_disk(estimate.plan.disk, config.output, files);
-  estimate.tiles = count_tiles(estimate.plan.job);
+  estimate.tiles = count_tiles(expected_tiles(estimate.plan.job));
   estimate.time = estimate_time(estimate.plan, config.simplify.method, estimate.mesh.file_bytes);
   estimate.memory_budget_bytes = config.memory_budget;
-  estimate.least_budget_bytes = least_budget(estimate.plan.job);
+  estimate.least_budget_bytes = least_budget(memory_costs(estimate.plan.job));
   estimate.free_bytes = files.free_bytes(estimate.disk);
   return estimate;
 }

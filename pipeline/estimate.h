@@ -4,6 +4,7 @@
 #include "config/config.h"
 #include "execution/cancel.h"
 #include "pipeline/plan/build_plan.h"
+#include "pipeline/plan/tile_population.h"
 #include "storage/io/file.h"
 
 #include <cstdint>

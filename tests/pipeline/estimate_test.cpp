@@ -1,4 +1,4 @@
-#include "pipeline/plan/estimate.h"
+#include "pipeline/estimate.h"
 
 #include "hierarchy/error.h"
 #include "pipeline/build.h"

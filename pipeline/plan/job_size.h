@@ -1,0 +1,40 @@
+// How large a job is: all that decides what its stages take.
+#pragma once
+
+#include "hierarchy/target_vertex_counts.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+namespace meshhier::pipeline {
+
+/// What decides the needs of a build.
+struct JobSize {
+  std::uint64_t vertex_count = 0;
+  std::uint64_t face_count = 0;
+  int channels = 0;                  ///< attribute floats per vertex
+  std::uint64_t imported_bytes = 0;  ///< of the PLY that the input was imported to, if it was
+  bool vertices_in_place = true;     ///< else the vertices are spooled once more
+  bool wide_coordinates = false;     ///< spooled as doubles
+  std::uint32_t partition_count = 0;
+  std::uint32_t largest_tile = 0;  ///< vertices of the largest partition or simplified mesh
+  std::size_t threads = 1;
+  TargetVertexCounts target_vertex_counts;      ///< of a simplified mesh
+  bool clustered = false;                       ///< simplified by the method `cluster`
+  std::uint64_t published_attribute_bytes = 0;  ///< of a vertex in a published tile
+  double published_ratio = 1;                   ///< of a published tile, about, to a plain one
+  bool packed = false;                          ///< published files become one archive
+
+  /// Of a vertex at work: its position and its attributes, as floats.
+  std::uint32_t vertex_bytes() const { return 12 + 4 * static_cast<std::uint32_t>(channels); }
+
+  /// Triangles of a part of the mesh with so many vertices, at most where the mesh is as dense as
+  /// on average: 2 a vertex on closed surfaces, less on open ones; half as much again for those
+  /// that several parts share.
+  std::uint64_t part_triangles(std::uint64_t part_vertices) const {
+    return part_vertices * std::max<std::uint64_t>(3, face_count * 3 / 2 / vertex_count + 1);
+  }
+};
+
+}  // namespace meshhier::pipeline

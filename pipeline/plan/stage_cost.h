@@ -1,0 +1,60 @@
+// What the stages of a build take, as values: each stage tells it beside its code (*_memory(),
+// *_disk()), pipeline/stage_costs collects it, and the plan adds it up.
+#pragma once
+
+#include "pipeline/tiles/chunks.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace meshhier::pipeline {
+
+/// Memory of a stage at work: upper bounds for tiles as they are on average (TileRoom has the
+/// others).
+struct StageMemory {
+  std::uint64_t item_bytes = 0;    ///< an item in flight: a block of input, a chunk, a tile
+  std::size_t most_items = 1;      ///< in flight; more gain nothing
+  std::uint64_t least_bytes = 0;   ///< all of the stage, with one item in flight
+  std::uint64_t wanted_bytes = 0;  ///< all of the stage; more gains nothing
+};
+
+/// Outline and publish hold less than simplify, with as many tiles in flight.
+struct MemoryCosts {
+  std::uint64_t bookkeeping_bytes = 0;  ///< held all the time
+  StageMemory ingest, partition, leaves, simplify;
+  ChunkSpools chunk_spools;
+};
+
+/// When the most lies on disk, in the order of a build.
+enum class DiskMoment {
+  splits,     ///< partition: the medians are being settled
+  triangles,  ///< partition: triangles are being distributed
+  noted,      ///< partition: the chunks are on disk, named by the journal
+  leaves,     ///< the end of leaves
+  simplify    ///< the end of simplify; outline and publish add no temporary files
+};
+
+/// Temporary bytes and how long they stay. Expected ones: a few per cent above what was measured.
+struct DiskVolume {
+  double bytes = 0;
+  DiskMoment from{}, until{};  ///< there from the first moment to the last, both included
+  bool pooled = false;         ///< what the memory pool holds of it is not on disk
+};
+using DiskVolumes = std::vector<DiskVolume>;
+
+/// The published files.
+struct OutputCost {
+  double plain_bytes = 0;  ///< if no tile compresses
+  double bytes = 0;        ///< about, as they are compressed
+  double slack_bytes = 0;  ///< what the last disk block of each file leaves empty
+};
+
+struct DiskCosts {
+  DiskVolumes volumes;
+  OutputCost output;
+  bool packed = false;                ///< the published files become one archive
+  double archive_overhead_bytes = 0;  ///< of the archive, beside the files in it
+};
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,43 @@
+// The tiles that a job will have, before there are any: how many, and how large all together.
+#pragma once
+
+#include "pipeline/plan/job_size.h"
+#include "storage/format/tile_sums.h"
+
+#include <cstdint>
+
+namespace meshhier::pipeline {
+
+/// The part of a tile's vertices that is its boundary, times the root of their number. Measured on
+/// scans of one to eight hundred pieces, a terrain and open patches, with tiles of 64 to 32768
+/// vertices: 3.6 to 4.7; on nested shells 4.2 to 6.9.
+inline constexpr double kBoundaryShare = 5;
+
+/// Tiles as the forest holds them: early ones among the simplified.
+struct TilePopulation {
+  storage::TileSums partitions;
+  storage::TileSums simplified;
+  storage::TileSums early;  ///< of the simplified ones
+  double steep_boundary =
+      0;  ///< of the joined children of simplified tiles, in vertices: what they
+          ///< have beyond the boundary of a tile of twice their parent's size
+  int levels = 0;
+
+  /// Files that hold them: partitions and simplified tiles, manifest, index and outline.
+  double files() const { return partitions.count + simplified.count + 3; }
+};
+
+/// For a surface, whose tiles have borders as scans have them.
+TilePopulation expected_tiles(const JobSize& job);
+
+/// Tiles of a hierarchy, by arithmetic alone.
+struct TileCounts {
+  int levels = 0;
+  std::uint64_t partitions = 0;
+  std::uint64_t simplified = 0;  ///< published ones
+  std::uint64_t tiles() const { return partitions + simplified; }
+};
+
+TileCounts count_tiles(const TilePopulation& tiles);
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,58 @@
+#include "pipeline/stage_costs.h"
+
+#include "pipeline/import_stage.h"
+#include "pipeline/ingest_stage.h"
+#include "pipeline/leaves_stage.h"
+#include "pipeline/pack_stage.h"
+#include "pipeline/partition_stage.h"
+#include "pipeline/publish_stage.h"
+#include "pipeline/simplify_stage.h"
+#include "storage/format/archive_writer.h"
+
+namespace meshhier::pipeline {
+namespace {
+
+/// What several stages know of each tile until the end, and the archive's index.
+std::uint64_t bookkeeping_bytes(const JobSize& job) {
+  // Four blob entries, what is known of it, its record, its statistics, its step and the sums of
+  // steps with some twenty neighbours each.
+  constexpr std::uint64_t kTileBytes = 480;
+  const std::uint64_t tiles = 2 * std::uint64_t{job.partition_count};
+  return tiles * (kTileBytes + (job.packed ? storage::ArchiveWriter::kFileMemory : 0));
+}
+
+}  // namespace
+
+MemoryCosts memory_costs(const JobSize& job) {
+  return {bookkeeping_bytes(job),
+          ingest_memory(job),
+          partition_memory(job),
+          leaves_memory(job),
+          simplify_memory(job),
+          ChunkSpools::of(job.vertex_count, job.vertex_bytes(), job.face_count)};
+}
+
+DiskCosts disk_costs(const JobSize& job, const MemoryPlan& memory, const TilePopulation& tiles) {
+  DiskCosts costs;
+  for (const DiskVolumes& stage :
+       {imported_disk(job), ingest_disk(job), partition_disk(job, memory), leaves_disk(job, tiles),
+        simplify_disk(job, tiles)}) {
+    costs.volumes.insert(costs.volumes.end(), stage.begin(), stage.end());
+  }
+  costs.output = publish_output(job, tiles);
+  costs.packed = job.packed;
+  costs.archive_overhead_bytes = archive_overhead_bytes(tiles);
+  return costs;
+}
+
+BuildPlan plan_build(const config::Config& config, const mesh_io::MeshDescription& mesh,
+                     std::uint64_t imported_bytes) {
+  const Tree tree = plan_tree(config, mesh.vertex_count);
+  const JobSize job = job_size(config, mesh, imported_bytes, tree);
+  const MemoryPlan memory = plan_memory(config.memory_budget, memory_costs(job));
+  const DiskCosts disk = disk_costs(job, memory, expected_tiles(job));
+  return {tree, job.threads, job.target_vertex_counts,
+          job,  memory,      predict_disk(disk, memory.pool_bytes)};
+}
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,44 @@
+// What all stages of a build take together, and the plan that follows from it.
+//
+// What is written when, and how long it stays:
+//
+//   data                    written in     stays until
+//   the input as a PLY      import         partition is done   if it is imported
+//   its vertices once more  ingest         partition is done   only if they cannot be read in place
+//   windows of the medians  partition      the splits are found
+//   ranks, triangles that   partition      partition is done
+//   wait for a rank
+//   vertices, triangles     partition      leaves is done
+//   of chunks
+//   partition tiles         leaves         the end
+//   simplified tiles, maps  simplify       the end
+//   seam strips             simplify       the end
+//   published files         publish        for good            if they are the output
+//                                          the end             if they are packed, the data above
+//                                          being gone
+//   the archive             pack           for good
+#pragma once
+
+#include "config/config.h"
+#include "mesh_io/mesh_source.h"
+#include "pipeline/plan/build_plan.h"
+#include "pipeline/plan/job_size.h"
+#include "pipeline/plan/memory_plan.h"
+#include "pipeline/plan/stage_cost.h"
+#include "pipeline/plan/tile_population.h"
+
+#include <cstdint>
+
+namespace meshhier::pipeline {
+
+MemoryCosts memory_costs(const JobSize& job);
+
+/// `tiles`: expected_tiles(job), or what is known better.
+DiskCosts disk_costs(const JobSize& job, const MemoryPlan& memory, const TilePopulation& tiles);
+
+/// The plan for a mesh of which the header was read; `imported_bytes` as in job_size(). Throws as
+/// plan_tree(), and Error(budget) if the memory budget is too small.
+BuildPlan plan_build(const config::Config& config, const mesh_io::MeshDescription& mesh,
+                     std::uint64_t imported_bytes = 0);
+
+}  // namespace meshhier::pipeline

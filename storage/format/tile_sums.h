@@ -1,0 +1,16 @@
+// Sums over many tiles, from which follows what they take: expected ones before a build, or counted
+// ones.
+#pragma once
+
+namespace meshhier::storage {
+
+struct TileSums {
+  double count = 0;                 ///< tiles
+  double vertices = 0;              ///< own ones
+  double boundary = 0;              ///< of the own vertices, those in the boundary
+  double triangles = 0;             ///< border ones once in each tile they touch
+  double foreign_per_boundary = 0;  ///< WorkTile::foreign, per vertex of the boundary
+  double ghosts_per_boundary = 0;   ///< of published tiles, per vertex of the boundary
+};
+
+}  // namespace meshhier::storage
