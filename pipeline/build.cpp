@@ -34,9 +34,10 @@ void read_input(importing::MeshInput& input, const storage::WorkDirectory& work,
                 storage::MemoryPool& pool, Workshop& workshop, const StageContext& context);
 
 /// The stages from leaves to publish, as far as the journal does not have their work: all files of
-/// the hierarchy in `directory`.
-void make_hierarchy(Workshop& workshop, const std::filesystem::path& directory,
-                    const StageContext& context);
+/// the hierarchy in `directory`. Returns how much disk they need, as it is known after leaves, and
+/// throws Error(budget) then if there is less.
+DiskNeed make_hierarchy(Workshop& workshop, const std::filesystem::path& directory,
+                        const StageContext& context);
 
 /// A failure that leaves work to go on with says so.
 Error with_resume_hint(const Error& error, const storage::WorkDirectory& work);
@@ -131,10 +132,11 @@ BuildReport run_stages(importing::MeshInput& input, storage::WorkDirectory& work
   work.keep(true);
 
   const std::uint64_t before = written_for_good(files, use);
+  DiskNeed predicted = context.plan.disk;
   if (!workshop.journal.is_complete())
-    make_hierarchy(workshop, work.built(), context);
+    predicted = make_hierarchy(workshop, work.built(), context);
   const storage::HierarchyReader made(files, work.built());
-  BuildOutcome outcome{open.found, bytes_of(made, files), 0};
+  BuildOutcome outcome{open.found, bytes_of(made, files), 0, predicted};
   context.cancel.check();
   if (context.config.storage.container == storage::Container::archive) {
     use.add_written(written_for_good(files, use) - before);
@@ -161,11 +163,14 @@ void read_input(importing::MeshInput& input, const storage::WorkDirectory& work,
   workshop.journal.note_source(summarize(mesh, counts, input, context.cancel), mesh.origin());
 }
 
-void make_hierarchy(Workshop& workshop, const std::filesystem::path& directory,
-                    const StageContext& context) {
+DiskNeed make_hierarchy(Workshop& workshop, const std::filesystem::path& directory,
+                        const StageContext& context) {
   auto& [mesh_scratch, tile_scratch, chunks, forest, journal] = workshop;
   SourceSummary source = journal.source()->summary;
   source.unreferenced_vertices = make_leaves(chunks, forest, journal, context);
+  const std::optional<DiskNeed> refined = refine_disk(context.plan, forest.partition_sums());
+  if (refined)
+    check_disk(*refined, context.config.output, context.files);
   // Without the chunks leaves cannot be made again, so these reach the disk before those go.
   std::future<void> settled = std::async(std::launch::async, [&workshop, &context] {
     workshop.tile_scratch.sync([&] { context.cancel.check(); });
@@ -177,6 +182,7 @@ void make_hierarchy(Workshop& workshop, const std::filesystem::path& directory,
   const OutlineStageResult outline = make_outline(forest, source.diagonal(), context);
   publish(forest, journal, {source, journal.source()->origin, errors, outline}, directory, context);
   journal.note_complete();
+  return refined.value_or(context.plan.disk);
 }
 
 Error with_resume_hint(const Error& error, const storage::WorkDirectory& work) {

@@ -39,8 +39,6 @@ BuildStats make_stats(const storage::HierarchyReader& made, const StageContext& 
   stats.levels = raw(plan.tree.depth()) + 1;
   stats.tiles = made.records().size();
   stats.input_bytes = source.file_bytes;
-  stats.predicted_output_bytes = plan.disk.output_bytes;
-  stats.predicted_temporary_bytes = plan.disk.temporary_bytes;
   return stats;
 }
 
@@ -73,6 +71,8 @@ BuildReport make_report(const storage::HierarchyReader& made, const BuildOutcome
   report.stats = make_stats(made, context);
   report.stats.output_bytes = outcome.output_bytes;
   report.stats.peak_temporary_bytes = outcome.peak_temporary_bytes;
+  report.stats.predicted_output_bytes = outcome.predicted.output_bytes;
+  report.stats.predicted_temporary_bytes = outcome.predicted.temporary_bytes;
   report.stats.stages = meter.stages();
   report.stats.total = meter.total();
   report.text = report_text(made.manifest().source, outcome.found, report.stats);

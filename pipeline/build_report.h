@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pipeline/plan/build_stats.h"
+#include "pipeline/plan/disk_need.h"
 #include "pipeline/plan/stage_context.h"
 #include "storage/format/hierarchy_reader.h"
 
@@ -20,6 +21,7 @@ struct BuildOutcome {
   std::string found;               ///< what an earlier build had done, for people; may be empty
   std::uint64_t output_bytes = 0;  ///< of the published files, or of the archive
   std::uint64_t peak_temporary_bytes = 0;
+  DiskNeed predicted;  ///< from the header, or from the partitions if it was far off
 };
 
 /// Of the hierarchy `made`, when the last stage of `meter` has ended.

@@ -191,8 +191,9 @@ DiskVolumes simplify_disk(const JobSize& job, const TilePopulation& tiles) {
   constexpr double kParent = sizeof(std::uint16_t);
   double bytes = storage::expected_work_tile_bytes(tiles.simplified, job.vertex_bytes()) +
                  (tiles.partitions.vertices + tiles.simplified.vertices) * kParent;
-  bytes +=
-      storage::expected_seam_strip_bytes(tiles.simplified) + tiles.steep_boundary * kSteepBytes;
+  bytes += (tiles.counted ? storage::long_seam_strip_bytes(tiles.simplified)
+                          : storage::expected_seam_strip_bytes(tiles.simplified)) +
+           tiles.steep_boundary * kSteepBytes;
   return {{bytes, DiskMoment::simplify, DiskMoment::simplify}};
 }
 

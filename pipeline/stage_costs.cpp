@@ -55,4 +55,17 @@ BuildPlan plan_build(const config::Config& config, const mesh_io::MeshDescriptio
           job,  memory,      predict_disk(disk, memory.pool_bytes)};
 }
 
+std::optional<DiskNeed> refine_disk(const BuildPlan& plan, const storage::TileSums& partitions) {
+  constexpr double kFarMore = 1.25;  // surfaces are within a few per cent
+  const JobSize& job = plan.job;
+  const TilePopulation expected = expected_tiles(job);
+  const TilePopulation counted = with_counted(expected, partitions);
+  const auto leaves_bytes = [&](const TilePopulation& tiles) {
+    return temporary_bytes_at(DiskMoment::leaves, leaves_disk(job, tiles), 0);
+  };
+  if (leaves_bytes(counted) <= kFarMore * leaves_bytes(expected))
+    return std::nullopt;
+  return predict_disk(disk_costs(job, plan.memory, counted), plan.memory.pool_bytes);
+}
+
 }  // namespace meshhier::pipeline

@@ -28,6 +28,7 @@
 #include "pipeline/plan/tile_population.h"
 
 #include <cstdint>
+#include <optional>
 
 namespace meshhier::pipeline {
 
@@ -35,6 +36,10 @@ MemoryCosts memory_costs(const JobSize& job);
 
 /// `tiles`: expected_tiles(job), or what is known better.
 DiskCosts disk_costs(const JobSize& job, const MemoryPlan& memory, const TilePopulation& tiles);
+
+/// What the disk needs when all partitions are there, if these take far more than was expected from
+/// the header: around vertices of very many triangles, or in a soup. Else none.
+std::optional<DiskNeed> refine_disk(const BuildPlan& plan, const storage::TileSums& partitions);
 
 /// The plan for a mesh of which the header was read; `imported_bytes` as in job_size(). Throws as
 /// plan_tree(), and Error(budget) if the memory budget is too small.

@@ -109,7 +109,34 @@ double steep_boundary_of(const JobSize& job, const Nodes& nodes, std::size_t lev
          std::max(0.0, boundary_of(nodes.joined) - boundary_of(2 * nodes.vertices));
 }
 
+double times_expected(double counted, double expected) {
+  return expected > 0 ? counted / expected : 1;
+}
+
+/// `expected`, `counted`: partitions.
+TileSums in_proportion(TileSums tiles, const TileSums& expected, const TileSums& counted) {
+  tiles.boundary = std::min(tiles.vertices,
+                            tiles.boundary * times_expected(counted.boundary, expected.boundary));
+  tiles.triangles *= times_expected(counted.triangles, expected.triangles);
+  tiles.wide_triangles =
+      counted.triangles > 0 ? tiles.triangles * counted.wide_triangles / counted.triangles : 0;
+  const double corners =
+      std::max(1.0, times_expected(counted.foreign_per_boundary, expected.foreign_per_boundary));
+  tiles.foreign_per_boundary *= corners;
+  tiles.ghosts_per_boundary *= corners;
+  return tiles;
+}
+
 }  // namespace
+
+TilePopulation with_counted(const TilePopulation& expected, const TileSums& partitions) {
+  TilePopulation all = expected;
+  all.counted = true;
+  all.partitions = partitions;
+  for (TileSums* sums : {&all.simplified, &all.early})
+    *sums = in_proportion(*sums, expected.partitions, partitions);
+  return all;
+}
 
 TilePopulation expected_tiles(const JobSize& job) {
   const std::vector<LevelNodes> levels = measure_nodes(job);

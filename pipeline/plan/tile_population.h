@@ -22,6 +22,7 @@ struct TilePopulation {
       0;  ///< of the joined children of simplified tiles, in vertices: what they
           ///< have beyond the boundary of a tile of twice their parent's size
   int levels = 0;
+  bool counted = false;  ///< the partitions are, and the others follow from them
 
   /// Files that hold them: partitions and simplified tiles, manifest, index and outline.
   double files() const { return partitions.count + simplified.count + 3; }
@@ -29,6 +30,9 @@ struct TilePopulation {
 
 /// For a surface, whose tiles have borders as scans have them.
 TilePopulation expected_tiles(const JobSize& job);
+
+/// With partitions as they were counted: the tiles above have borders and triangles in proportion.
+TilePopulation with_counted(const TilePopulation& expected, const storage::TileSums& partitions);
 
 /// Tiles of a hierarchy, by arithmetic alone.
 struct TileCounts {

@@ -81,6 +81,17 @@ std::uint64_t Forest::triangle_bytes(NodeId node) const {
   return storage::work_triangle_bytes(head);
 }
 
+storage::TileSums Forest::partition_sums() const {
+  const storage::BlobStore& tiles = levels_[raw(tree_.depth())].tiles;
+  storage::TileSums sums;
+  for (std::size_t i = 0; i < tiles.count(); ++i) {
+    std::array<std::byte, storage::kWorkTileHeadBytes> head;
+    tiles.read(i, 0, head);
+    storage::add_work_tile(head, sums);
+  }
+  return sums;
+}
+
 void Forest::drop_copies(std::uint64_t free_bytes) {
   for (std::size_t level = levels_.size(); level-- > 0;) {
     for (storage::BlobStore* store : {&levels_[level].tiles, &levels_[level].boundaries,

@@ -6,6 +6,7 @@
 #include "hierarchy/published.h"
 #include "hierarchy/tree.h"
 #include "partition/leaf_tiles.h"
+#include "storage/format/tile_sums.h"
 #include "storage/io/blob_store.h"
 
 #include <cstdint>
@@ -59,6 +60,8 @@ class Forest {
 
   /// What the triangles and foreign corners of a tile take.
   std::uint64_t triangle_bytes(NodeId node) const;
+  /// Of all partitions; ask when all are there.
+  storage::TileSums partition_sums() const;
   /// What is kept in memory counts against it.
   storage::MemoryPool& pool() const { return pool_; }
 

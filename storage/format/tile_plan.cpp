@@ -294,7 +294,7 @@ double expected_tile_bytes(const TileSums& tiles, std::uint64_t attribute_bytes)
   const double vertex = 12 + static_cast<double>(attribute_bytes);
   return tiles.vertices * (vertex + kParent) +
          tiles.boundary * tiles.ghosts_per_boundary * (vertex + kChain) +
-         tiles.triangles * kTriangle + tiles.count * kOverhead;
+         (tiles.triangles + tiles.wide_triangles) * kTriangle + tiles.count * kOverhead;
 }
 
 }  // namespace meshhier::storage

@@ -9,6 +9,7 @@ struct TileSums {
   double vertices = 0;              ///< own ones
   double boundary = 0;              ///< of the own vertices, those in the boundary
   double triangles = 0;             ///< border ones once in each tile they touch
+  double wide_triangles = 0;        ///< of these, those whose corners take 32 bits
   double foreign_per_boundary = 0;  ///< WorkTile::foreign, per vertex of the boundary
   double ghosts_per_boundary = 0;   ///< of published tiles, per vertex of the boundary
 };

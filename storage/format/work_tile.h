@@ -17,6 +17,9 @@ constexpr std::size_t kWorkTileHeadBytes = 20;
 /// kWorkTileHeadBytes.
 std::uint64_t work_triangle_bytes(std::span<const std::byte> head);
 
+/// Adds a tile to `sums`; published it has as many ghosts as foreign corners.
+void add_work_tile(std::span<const std::byte> head, TileSums& sums);
+
 // `Corner`: ChunkVertex or FinerGhost. The bytes do not tell which.
 template <class Corner>
 std::vector<std::byte> encode_work_tile(const WorkTile<Corner>& tile);
@@ -32,9 +35,11 @@ std::vector<std::byte> encode_seam_strip(const SeamStrip& seam_strip);
 SeamStrip decode_seam_strip(std::span<const std::byte> bytes);
 
 /// Bytes of the encoded tiles, and of their boundaries, which are encoded once more.
-/// `vertex_bytes`: of a position and its attributes. Corners count as 16 bits.
+/// `vertex_bytes`: of a position and its attributes.
 double expected_work_tile_bytes(const TileSums& tiles, std::uint32_t vertex_bytes);
-/// Bytes of the encoded seam strips of simplified tiles.
+/// Bytes of the encoded seam strips of simplified tiles, as surfaces have them.
 double expected_seam_strip_bytes(const TileSums& tiles);
+/// Likewise where borders are far longer: foreign corners outweigh the tile.
+double long_seam_strip_bytes(const TileSums& tiles);
 
 }  // namespace meshhier::storage

@@ -1,6 +1,8 @@
 // Whole builds: inputs at the edge of what there is, and what is refused.
 #include "pipeline/build.h"
 
+#include "bench/generator.h"
+#include "bench/stress.h"
 #include "execution/size_text.h"
 #include "hierarchy/cut.h"
 #include "hierarchy/error.h"
@@ -765,6 +767,29 @@ TEST_F(DiskTest, ThePredictionIsNearWhatASurfaceTakes) {
       }
     }
   }
+}
+
+// A header does not tell of a vertex that all triangles share.
+TEST_F(DiskTest, ThePredictionIsRefinedWhenThePartitionsAreKnown) {
+  bench::write_ply(files_, mesh_path(), *bench::as_generated(bench::make_stress("hub", 100'000)));
+  const config::Config with = config(1000);
+  const std::uint64_t room = least_room(with);
+  files_.limit_room(room + room / 8);
+  try {
+    build(with);
+    FAIL() << "the disk was large enough";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::budget);
+    EXPECT_THAT(error.what(), HasSubstr("the hierarchy will take about"));
+    EXPECT_THAT(error.what(), HasSubstr("the same build goes on with it"));
+  }
+  files_.limit_room(16 * room);
+  const pipeline::BuildStats stats = build(with).stats;
+  // The header alone tells less than half.
+  EXPECT_GE(stats.predicted_output_bytes * 10, stats.output_bytes * 9);
+  EXPECT_LE(stats.predicted_output_bytes * 10, stats.output_bytes * 12);
+  EXPECT_GE(stats.predicted_temporary_bytes * 10, stats.peak_temporary_bytes * 9);
+  EXPECT_LE(stats.predicted_temporary_bytes * 10, stats.peak_temporary_bytes * 12);
 }
 
 }  // namespace
