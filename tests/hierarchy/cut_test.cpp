@@ -3,6 +3,7 @@
 #include "hierarchy/error.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_hierarchy.h"
+#include "tests/support/usage_error.h"
 
 #include <algorithm>
 #include <array>
@@ -18,17 +19,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using tests::node;
-
-template <class Action>
-std::string usage_error(Action action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::usage);
-    return error.what();
-  }
-  return "no error";
-}
+using tests::usage_error;
 
 TEST(Cut, OfALevelShowsThePartitionsOfEarlyNodes) {
   const Tree tree(60, 6);  // 2, 1, 2, 1 partitions below the four nodes of level 2

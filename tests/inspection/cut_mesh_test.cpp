@@ -7,6 +7,7 @@
 #include "inspection/random_cut.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_hierarchy.h"
+#include "tests/support/usage_error.h"
 
 #include <algorithm>
 #include <array>
@@ -23,17 +24,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using tests::node;
-
-template <class Action>
-std::string usage_error(Action action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::usage);
-    return error.what();
-  }
-  return "no error";
-}
+using tests::usage_error;
 
 TEST(RandomCut, CutsAreCutsOfMixedLevelsAndRepeatable) {
   for (std::uint32_t partitions : {1U, 2U, 3U, 5U, 8U, 13U, 100U}) {
