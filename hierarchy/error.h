@@ -1,5 +1,4 @@
-// The one exception type. Its code is the exit code of the command line (docs/exit_codes in
-// README).
+// The one exception type. Its code is the exit code of the command line (docs/command_line.md).
 #pragma once
 
 #include <stdexcept>

@@ -1,4 +1,4 @@
-// The parts of verify and what they share. For pipeline/verify*.cpp only.
+// The parts of verify and what they share. For verify*.cpp only.
 #pragma once
 
 #include "execution/cancel.h"

@@ -52,7 +52,7 @@ BuildEstimate estimate_build(const config::Config& config, bool force, storage::
 /// For people, a few lines.
 std::string estimate_text(const BuildEstimate& estimate);
 
-/// One object; README.md lists its keys.
+/// One object; docs/command_line.md lists its keys.
 nlohmann::ordered_json to_json(const BuildEstimate& estimate);
 
 }  // namespace meshhier::pipeline

@@ -107,7 +107,7 @@ struct BuildStats {
 /// A table for people, a line a stage, then what was on disk.
 std::string stats_text(const BuildStats& stats);
 
-/// One object; README.md lists its keys. Bytes and seconds throughout.
+/// One object; docs/command_line.md lists its keys. Bytes and seconds throughout.
 nlohmann::ordered_json to_json(const BuildStats& stats);
 
 }  // namespace meshhier::pipeline

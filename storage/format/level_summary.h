@@ -76,7 +76,7 @@ struct CompactnessSummary {
 
 CompactnessSummary summarize_compactness(const Tree& tree, std::span<const TileRecord> records);
 
-/// One object per level; the keys are those of `inspect --json` (README).
+/// One object per level; the keys are those of `inspect --json` (docs/command_line.md).
 nlohmann::ordered_json to_json(const LevelSummary& summary);
 
 nlohmann::ordered_json to_json(const SizeSummary& summary);
