@@ -10,6 +10,16 @@
 #include <algorithm>
 
 namespace meshhier::pipeline {
+namespace {
+
+void import_into(const storage::WorkDirectory& work, importing::MeshInput& input,
+                 storage::MemoryPool& pool, std::uint64_t sort_bytes,
+                 const BuildEnvironment& environment) {
+  input.import({storage::imported_path(work.path()), work.path() / "import", pool, sort_bytes,
+                environment.progress, environment.cancel});
+}
+
+}  // namespace
 
 std::uint64_t import_disk(const importing::MeshInput& input, const config::Config& config) {
   return importing::predict_import(input.files(), importing::plan_import(config.memory_budget));
@@ -30,8 +40,7 @@ BuildPlan import_and_plan(importing::MeshInput& input, storage::WorkDirectory& w
   } else {
     const importing::ImportMemory memory = importing::plan_import(config.memory_budget);
     pool.set_capacity(memory.pool_bytes);
-    input.import({storage::imported_path(work.path()), work.path() / "import", pool,
-                  memory.sort_bytes, environment.progress, environment.cancel});
+    import_into(work, input, pool, memory.sort_bytes, environment);
     execution::release_free_memory();
   }
   BuildPlan plan = plan_build(config, input.description(), input.imported_bytes());
@@ -46,8 +55,7 @@ void import_again(importing::MeshInput& input, const storage::WorkDirectory& wor
   const std::uint64_t sort_bytes =
       std::min(importing::plan_import(context.config.memory_budget).sort_bytes,
                context.memory().work_bytes / 4);
-  input.import({storage::imported_path(work.path()), work.path() / "import", pool, sort_bytes,
-                context.progress, context.cancel});
+  import_into(work, input, pool, sort_bytes, {context.files, context.progress, context.cancel});
   const mesh_io::MeshDescription& mesh = input.description();
   if (mesh.vertex_count != recalled.vertex_count || mesh.face_count != recalled.face_count ||
       mesh.attributes != recalled.attributes) {
