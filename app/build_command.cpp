@@ -6,7 +6,7 @@
 #include "pipeline/build.h"
 #include "pipeline/estimate.h"
 #include "pipeline/plan/build_stats.h"
-#include "storage/io/atomic_file.h"
+#include "storage/io/output_file.h"
 
 #include <algorithm>
 #include <map>
@@ -52,19 +52,14 @@ void give_back_config(BuildArguments& arguments) {
 }
 
 /// The account must not take the place of what the build reads or makes.
-void check_stats_path(const std::string& path, const config::Config& config,
-                      storage::FileSystem& files) {
-  const std::filesystem::path stats = files.canonical(path);
-  const std::filesystem::path output = files.canonical(config.output);
-  for (const std::filesystem::path& input : config.input) {
-    if (stats == files.canonical(input))
-      throw Error(ErrorCode::usage, "--stats " + path + " is the input");
-  }
-  if (std::mismatch(output.begin(), output.end(), stats.begin(), stats.end()).first == output.end())
-    throw Error(ErrorCode::usage, "--stats " + path + " lies in the output");
+storage::OutputRequest stats_request(const BuildArguments& arguments,
+                                     const config::Config& config) {
+  storage::OutputRequest request{arguments.stats, arguments.force, config.input};
+  request.inputs.push_back(config.output);
+  return request;
 }
 
-void write_stats(storage::AtomicFile& file, const pipeline::BuildStats& stats) {
+void write_stats(storage::OutputFile& file, const pipeline::BuildStats& stats) {
   const std::string text = pretty_json(to_json(stats));
   file.publish(std::as_bytes(std::span(text)));
 }
@@ -89,10 +84,10 @@ int run_build(const BuildArguments& arguments, execution::ProgressMode mode,
           : config::load_config(environment.files, arguments.config, arguments.settings);
   if (arguments.dry_run)
     return run_estimate(config, arguments, environment);
-  std::optional<storage::AtomicFile> stats;
+  std::optional<storage::OutputFile> stats;
   if (!arguments.stats.empty()) {
-    check_stats_path(arguments.stats, config, environment.files);
-    stats.emplace(environment.files, arguments.stats);
+    stats.emplace(environment.files, stats_request(arguments, config),
+                  [&] { environment.cancel.check(); });
   }
   const auto progress =
       execution::make_progress(mode, environment.messages, environment.messages_on_terminal);
@@ -102,9 +97,10 @@ int run_build(const BuildArguments& arguments, execution::ProgressMode mode,
   progress->finish(config.output.string());
   if (stats)
     write_stats(*stats, report.stats);
-  environment.out << report.text;
+  std::ostream& account = stats ? account_stream(environment, arguments.stats) : environment.out;
+  account << report.text;
   if (!report.text.empty() && report.text.back() != '\n')
-    environment.out << '\n';
+    account << '\n';
   return 0;
 }
 

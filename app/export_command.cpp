@@ -20,6 +20,7 @@ struct ExportArguments {
   std::string cut;
   bool outline = false;
   std::string output;
+  bool force = false;
   std::uint64_t memory_budget = inspection::ExportOptions{}.memory_budget;
 };
 
@@ -39,11 +40,13 @@ int run_export(const ExportArguments& arguments, execution::ProgressMode mode,
   const auto progress =
       execution::make_progress(mode, environment.messages, environment.messages_on_terminal);
   const inspection::ExportOptions options{selection(arguments), arguments.output,
-                                          arguments.memory_budget};
+                                          arguments.memory_budget, arguments.force};
+  require_no_terminal(environment, arguments.output);
+  std::ostream& account = account_stream(environment, arguments.output);
   const std::string line = inspection::export_mesh(environment.files, arguments.directory, options,
                                                    *progress, environment.cancel);
   progress->finish(arguments.output);
-  environment.out << line << '\n';
+  account << line << '\n';
   return 0;
 }
 
@@ -56,6 +59,7 @@ Examples:
   meshhier export david.hier --node 3/5 -o sector.ply
   meshhier export david.hier --cut view.txt -o view.ply
   meshhier export david.hier --outline -o outline.ply
+  meshhier export david.hier --level 2 -o - | gzip > level2.ply.gz
 )";
 
 }  // namespace
@@ -76,9 +80,7 @@ void add_export_command(CLI::App& parser, Invocation& invocation) {
   what->add_flag("--outline", arguments->outline, "The shape-outline, as edges");
   what->require_option(1);
 
-  command->add_option("-o,--output", arguments->output, "The PLY file; replaced if it exists")
-      ->type_name("FILE")
-      ->required();
+  add_file_output_options(*command, "The PLY to write", arguments->output, arguments->force);
   add_memory_budget_option(*command, arguments->memory_budget);
   add_progress_option(*command, invocation.progress);
   command->footer(kExportFooter);

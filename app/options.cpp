@@ -1,10 +1,14 @@
 #include "app/options.h"
 
+#include "app/process.h"
 #include "execution/size_text.h"
+#include "hierarchy/error.h"
+#include "storage/io/output_file.h"
 
 #include <charconv>
 #include <limits>
 #include <map>
+#include <ostream>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -63,6 +67,26 @@ void add_progress_option(CLI::App& command, execution::ProgressMode& mode) {
           "How far the work is, on standard error: a bar, JSON lines, or nothing; auto: "
           "a bar if standard error is a terminal [auto]")
       ->type_name("auto|bar|json|none");
+}
+
+void add_file_output_options(CLI::App& command, const std::string& help, std::string& output,
+                             bool& replace) {
+  command.add_option("-o,--output", output, help + "; \"-\" is standard output")
+      ->type_name("FILE")
+      ->required();
+  command.add_flag("--force", replace, "Replace an existing file");
+}
+
+std::ostream& account_stream(const Environment& environment, const std::filesystem::path& output) {
+  return storage::is_standard_output(environment.files, output) ? environment.messages
+                                                                : environment.out;
+}
+
+void require_no_terminal(const Environment& environment, const std::filesystem::path& output) {
+  if (storage::is_standard_output(environment.files, output) && output_is_terminal()) {
+    throw Error(ErrorCode::usage,
+                "a terminal cannot show a mesh; send standard output to a file or a program");
+  }
 }
 
 void add_memory_budget_option(CLI::App& command, std::uint64_t& bytes) {

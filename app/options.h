@@ -6,7 +6,9 @@
 #include "hierarchy/ids.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
+#include <iosfwd>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,6 +24,17 @@ inline constexpr std::uint8_t kDeepestLevel = 32;
 
 /// --progress auto|bar|json|none
 void add_progress_option(CLI::App& command, execution::ProgressMode& mode);
+
+/// -o FILE and --force, of commands that make one file.
+void add_file_output_options(CLI::App& command, const std::string& help, std::string& output,
+                             bool& replace);
+
+/// Where a command that writes `output` tells what it did: not on standard output if that is the
+/// output.
+std::ostream& account_stream(const Environment& environment, const std::filesystem::path& output);
+
+/// Throws Error(usage) if a mesh would be shown on a terminal.
+void require_no_terminal(const Environment& environment, const std::filesystem::path& output);
 
 /// --memory-budget SIZE
 void add_memory_budget_option(CLI::App& command, std::uint64_t& bytes);

@@ -49,4 +49,8 @@ bool error_output_is_terminal() {
   return isatty(STDERR_FILENO) == 1;
 }
 
+bool output_is_terminal() {
+  return isatty(STDOUT_FILENO) == 1;
+}
+
 }  // namespace meshhier::app

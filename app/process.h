@@ -11,7 +11,8 @@ namespace meshhier::app {
 /// once.
 void cancel_on_signals(execution::CancelToken& token);
 
-/// Whether standard error is a terminal.
+/// Whether standard error, or standard output, is a terminal.
 bool error_output_is_terminal();
+bool output_is_terminal();
 
 }  // namespace meshhier::app

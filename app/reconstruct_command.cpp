@@ -42,12 +42,14 @@ int run_reconstruct(ReconstructArguments& arguments, execution::ProgressMode mod
   const auto progress =
       execution::make_progress(mode, environment.messages, environment.messages_on_terminal);
   arguments.options.output = arguments.output;
+  require_no_terminal(environment, arguments.output);
+  std::ostream& account = account_stream(environment, arguments.output);
   const progressive::ReconstructReport report = progressive::reconstruct(
       environment.files, arguments.directory, arguments.options, *progress, environment.cancel);
   progress->finish(arguments.output);
   if (arguments.stats)
-    print_stats(environment.out, report);
-  environment.out << report.summary << '\n';
+    print_stats(account, report);
+  account << report.summary << '\n';
   return 0;
 }
 
@@ -71,9 +73,8 @@ void add_reconstruct_command(CLI::App& parser, Invocation& invocation) {
                        arguments->options.details = static_cast<std::uint32_t>(details);
                      });
   command->add_flag("--stats", arguments->stats, "What each file holds and took");
-  command->add_option("-o,--output", arguments->output, "The PLY file; replaced if it exists")
-      ->type_name("FILE")
-      ->required();
+  add_file_output_options(*command, "The PLY to write", arguments->output,
+                          arguments->options.replace);
   add_memory_budget_option(*command, arguments->options.memory_budget);
   add_progress_option(*command, invocation.progress);
   command->footer(kReconstructFooter);

@@ -1,7 +1,5 @@
 #include "bench/generator.h"
 
-#include <utility>
-
 namespace meshhier::bench {
 namespace {
 
@@ -23,37 +21,6 @@ void write_vertices(mesh_io::PlyWriter& writer, const GeneratedMesh& mesh) {
                       });
 }
 
-/// Removes the temporary file unless it was renamed.
-class PartialFile {
- public:
-  PartialFile(storage::FileSystem& files, const std::filesystem::path& path)
-      : files_(files), path_(path), partial_(path) {
-    partial_ += ".part";
-  }
-  PartialFile(const PartialFile&) = delete;
-  PartialFile& operator=(const PartialFile&) = delete;
-  ~PartialFile() {
-    if (published_)
-      return;
-    try {
-      files_.remove_all(partial_);
-    } catch (...) {  // The failure that brought us here is the one to tell.
-    }
-  }
-
-  const std::filesystem::path& path() const { return partial_; }
-  void publish() {
-    files_.rename(partial_, path_);
-    published_ = true;
-  }
-
- private:
-  storage::FileSystem& files_;
-  std::filesystem::path path_;
-  std::filesystem::path partial_;
-  bool published_ = false;
-};
-
 }  // namespace
 
 LoadedMesh load_mesh(mesh_io::MeshSource& source) {
@@ -74,18 +41,18 @@ LoadedMesh load_mesh(mesh_io::MeshSource& source) {
   return mesh;
 }
 
-void write_ply(storage::FileSystem& files, const std::filesystem::path& path,
-               const GeneratedMesh& mesh) {
-  PartialFile partial(files, path);
-  {
-    mesh_io::PlyWriter writer(files, partial.path(), mesh.content());
-    write_vertices(writer, mesh);
-    mesh.visit_triangles(kWriteBlock, [&](std::span<const MeshTriangle> triangles) {
-      writer.write_triangles(triangles);
-    });
-    writer.finish();
-  }
-  partial.publish();
+std::uint64_t write_ply(storage::FileSystem& files, const storage::OutputRequest& request,
+                        const GeneratedMesh& mesh) {
+  storage::OutputFile output(files, request);
+  mesh_io::PlyWriter writer(output.file(), mesh.content());
+  write_vertices(writer, mesh);
+  mesh.visit_triangles(kWriteBlock, [&](std::span<const MeshTriangle> triangles) {
+    writer.write_triangles(triangles);
+  });
+  writer.finish();
+  const std::uint64_t bytes = output.file()->size();
+  output.publish();
+  return bytes;
 }
 
 }  // namespace meshhier::bench

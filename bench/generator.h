@@ -8,6 +8,7 @@
 #include "mesh_io/mesh_source.h"
 #include "mesh_io/ply_writer.h"
 #include "storage/io/file.h"
+#include "storage/io/output_file.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -90,9 +91,9 @@ std::unique_ptr<GeneratedMesh> amplify(LoadedMesh mesh, const AmplifyOptions& op
 /// `mesh` with its vertices and its triangles in random order; corners keep their order.
 std::unique_ptr<GeneratedMesh> shuffle(LoadedMesh mesh, std::uint64_t seed);
 
-/// Writes `mesh` as binary little endian PLY under a temporary name beside `path` and renames it
-/// when complete: `path` is whole or untouched. Throws Error(io).
-void write_ply(storage::FileSystem& files, const std::filesystem::path& path,
-               const GeneratedMesh& mesh);
+/// Writes `mesh` as binary little endian PLY, complete or not at all; returns its bytes. Throws as
+/// storage::OutputFile does.
+std::uint64_t write_ply(storage::FileSystem& files, const storage::OutputRequest& request,
+                        const GeneratedMesh& mesh);
 
 }  // namespace meshhier::bench

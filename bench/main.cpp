@@ -22,6 +22,7 @@ struct Arguments {
   std::uint64_t seed = 1;
   std::string input;
   std::string output;
+  bool force = false;
 };
 
 void add_surface(CLI::App& app, Arguments& arguments) {
@@ -117,10 +118,13 @@ std::unique_ptr<bench::GeneratedMesh> generate(const CLI::App& app, Arguments& a
 void run(const CLI::App& app, Arguments& arguments) {
   const auto files = storage::make_posix_file_system();
   const auto mesh = generate(app, arguments, *files);
-  bench::write_ply(*files, arguments.output, *mesh);
-  fmt::print("{}: {} vertices, {} triangles, {} bytes\n", arguments.output,
-             mesh->content().vertex_count, mesh->content().triangle_count,
-             files->open(arguments.output)->size());
+  storage::OutputRequest request{arguments.output, arguments.force, {}};
+  if (!arguments.input.empty())
+    request.inputs.emplace_back(arguments.input);
+  const bool is_taken = storage::is_standard_output(*files, arguments.output);
+  const std::uint64_t bytes = bench::write_ply(*files, request, *mesh);
+  fmt::print(is_taken ? stderr : stdout, "{}: {} vertices, {} triangles, {} bytes\n",
+             arguments.output, mesh->content().vertex_count, mesh->content().triangle_count, bytes);
 }
 
 }  // namespace
@@ -136,7 +140,10 @@ int main(int argc, char** argv) {
   for (CLI::App* command : app.get_subcommands({})) {
     command->add_option("--seed", arguments.seed, "Another seed, another mesh")
         ->capture_default_str();
-    command->add_option("-o,--output", arguments.output, "The PLY file to write")->required();
+    command
+        ->add_option("-o,--output", arguments.output, "The PLY to write; \"-\" is standard output")
+        ->required();
+    command->add_flag("--force", arguments.force, "Replace an existing file");
   }
   return bench::run_program("meshgen", app, argc, argv, [&] { run(app, arguments); });
 }

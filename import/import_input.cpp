@@ -271,7 +271,7 @@ class Import {
     content.triangle_count = mesh.triangles.size();
     content.attributes = mesh.layout;
     content.double_coordinates = !mesh.fits_float;
-    mesh_io::PlyWriter writer(env_.files, ply.path(), content);
+    mesh_io::PlyWriter writer(env_.files.create(ply.path()), content);
     constexpr std::uint64_t kBlock = 16384;
     const std::size_t channels = mesh.channels();
     std::vector<Vec3d> positions;

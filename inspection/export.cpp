@@ -1,6 +1,5 @@
 #include "inspection/export.h"
 
-#include "execution/output_file.h"
 #include "hierarchy/cut.h"
 #include "hierarchy/error.h"
 #include "inspection/cut_file.h"
@@ -8,7 +7,7 @@
 #include "mesh_io/ply_writer.h"
 #include "storage/format/archive_files.h"
 #include "storage/format/hierarchy_reader.h"
-#include "storage/format/layout.h"
+#include "storage/io/output_file.h"
 #include "storage/io/spool.h"
 
 #include <algorithm>
@@ -35,33 +34,10 @@ constexpr std::size_t kScratchBlockBytes = std::size_t{1} << 20;
 struct ExportJob {
   storage::FileSystem& files;
   const storage::HierarchyReader& reader;
-  fs::path work;  ///< directory of the unfinished output
-  fs::path file;  ///< the unfinished output
+  const storage::OutputFile& output;
   std::uint64_t memory_budget;
   execution::Progress& progress;
   const execution::CancelToken& cancel;
-};
-
-/// The directory for unfinished output; removed at the end, come what may.
-class WorkDirectory {
- public:
-  WorkDirectory(storage::FileSystem& files, fs::path path) : files_(files), path_(std::move(path)) {
-    files_.remove_all(path_);  // what a killed export may have left
-    files_.make_directories(path_);
-  }
-  WorkDirectory(const WorkDirectory&) = delete;
-  WorkDirectory& operator=(const WorkDirectory&) = delete;
-  ~WorkDirectory() {
-    try {
-      files_.remove_all(path_);
-    } catch (const Error&) {  // nothing can be done here; the failure that led here is told
-    }
-  }
-  const fs::path& path() const { return path_; }
-
- private:
-  storage::FileSystem& files_;
-  fs::path path_;
 };
 
 bool has_origin(const storage::HierarchyReader& reader) {
@@ -105,7 +81,7 @@ std::string export_cut(const ExportJob& job, Cut cut, const std::string& what) {
   const Tree& tree = job.reader.tree();
   const NumberedCut numbered = number_vertices(job.reader, std::move(cut));
   storage::MemoryPool pool(job.memory_budget / 2);  // the other half: a tile, the writer, the cut
-  storage::ScratchFile scratch(job.files, job.work / "triangles", pool);
+  storage::ScratchFile scratch(job.files, job.output.scratch(), pool);
   TriangleSpool triangles(scratch, kScratchBlockBytes);
 
   job.progress.stage("export", 2 * numbered.cut.size(), "tiles");
@@ -121,7 +97,7 @@ std::string export_cut(const ExportJob& job, Cut cut, const std::string& what) {
   mesh_io::PlyContent content = content_for(job.reader, what);
   content.vertex_count = numbered.vertex_count();
   content.triangle_count = triangles.size();
-  mesh_io::PlyWriter writer(job.files, job.file, content);
+  mesh_io::PlyWriter writer(job.output.file(), content);
   for (NodeId node : numbered.cut.nodes()) {
     job.cancel.check();
     const PublishedTile tile = job.reader.read_tile(node);
@@ -143,7 +119,7 @@ std::string export_tile(const ExportJob& job, NodeId node) {
   mesh_io::PlyContent content = content_for(job.reader, what);
   content.vertex_count = mesh.vertices.size();
   content.triangle_count = mesh.interior.size() + mesh.border.size();
-  mesh_io::PlyWriter writer(job.files, job.file, content);
+  mesh_io::PlyWriter writer(job.output.file(), content);
   write_vertices(writer, job.reader, mesh.vertices, mesh.vertices.size());
   for (const auto* list : {&mesh.interior, &mesh.border}) {
     std::vector<CutTriangle> triangles;
@@ -171,7 +147,7 @@ std::string export_outline(const ExportJob& job) {
   content.attributes = {};
   content.vertex_count = outline.vertices.size();
   content.edge_count = edges.size();
-  mesh_io::PlyWriter writer(job.files, job.file, content);
+  mesh_io::PlyWriter writer(job.output.file(), content);
   VertexArray vertices;
   vertices.positions = outline.vertices;
   write_vertices(writer, job.reader, vertices, vertices.size());
@@ -201,16 +177,15 @@ std::string export_selection(const ExportJob& job, const ExportSelection& select
 std::string export_mesh(storage::FileSystem& files, const fs::path& hierarchy,
                         const ExportOptions& options, execution::Progress& progress,
                         const execution::CancelToken& cancel) {
-  execution::require_place(files, options.output);
-  execution::require_apart(files, options.output, hierarchy, "the hierarchy");
+  storage::OutputRequest request{options.output, options.replace, {hierarchy}};
+  if (const auto* cut = std::get_if<fs::path>(&options.selection))
+    request.inputs.push_back(*cut);
   const storage::HierarchyFiles place(files, hierarchy);
   const storage::HierarchyReader reader(place.files(), hierarchy);
-  const WorkDirectory work(files, storage::work_path(options.output));
-  const fs::path file = work.path() / options.output.filename();
-  const ExportJob job{files, reader, work.path(), file, options.memory_budget, progress, cancel};
+  storage::OutputFile output(files, request, [&] { cancel.check(); });
+  const ExportJob job{files, reader, output, options.memory_budget, progress, cancel};
   const std::string summary = export_selection(job, options.selection);
-  files.open(file)->sync();
-  files.rename(file, options.output);
+  output.publish();
   return fmt::format("{}: {}", options.output.string(), summary);
 }
 

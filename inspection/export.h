@@ -22,8 +22,9 @@ using ExportSelection = std::variant<Level, NodeId, std::filesystem::path, Outli
 
 struct ExportOptions {
   ExportSelection selection;
-  std::filesystem::path output;            ///< PLY; replaced if it is there
+  std::filesystem::path output;            ///< PLY; a file or a stream (storage::OutputFile)
   std::uint64_t memory_budget = 1U << 30;  ///< bytes
+  bool replace = false;                    ///< a file that is there
 };
 
 /// Assembles the selection seamlessly, tile by tile, into options.output. Vertices are shared

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -80,7 +81,7 @@ T nearest(float value) {
 }  // namespace
 
 struct PlyWriter::State {
-  std::unique_ptr<storage::File> file;
+  std::shared_ptr<storage::File> file;
   PlyContent content;
   std::vector<std::byte> buffer;
   std::uint64_t offset = 0;
@@ -145,10 +146,9 @@ struct PlyWriter::State {
   }
 };
 
-PlyWriter::PlyWriter(storage::FileSystem& files, const std::filesystem::path& path,
-                     const PlyContent& content)
+PlyWriter::PlyWriter(std::shared_ptr<storage::File> file, const PlyContent& content)
     : state_(std::make_unique<State>()) {
-  state_->file = files.create(path);
+  state_->file = std::move(file);
   state_->content = content;
   state_->buffer.reserve(kBufferBytes);
   constexpr std::uint64_t kMaxIntVertices = std::uint64_t{1} << 31;

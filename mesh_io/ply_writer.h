@@ -8,7 +8,6 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -26,13 +25,12 @@ struct PlyContent {
 };
 
 /// Vertices, then triangles, then edges, in the declared numbers, each in as many calls as one
-/// likes. Colours are written in their stored type (attributes.h), indices as `int` (`uint` from
-/// 2^31 vertices on). Buffered: at most 1 MiB. Throws Error(io). finish() is required and asserts
-/// that all declared content came.
+/// likes, from the file's first byte to its last. Colours are written in their stored type
+/// (attributes.h), indices as `int` (`uint` from 2^31 vertices on). Buffered: at most 1 MiB. Throws
+/// Error(io). finish() is required and asserts that all declared content came.
 class PlyWriter {
  public:
-  PlyWriter(storage::FileSystem& files, const std::filesystem::path& path,
-            const PlyContent& content);
+  PlyWriter(std::shared_ptr<storage::File> file, const PlyContent& content);
   ~PlyWriter();
 
   /// `attributes`: positions.size() * content.attributes.channels() floats.

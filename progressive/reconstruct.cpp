@@ -1,6 +1,5 @@
 #include "progressive/reconstruct.h"
 
-#include "execution/output_file.h"
 #include "execution/size_text.h"
 #include "hierarchy/detail.h"
 #include "hierarchy/error.h"
@@ -9,7 +8,7 @@
 #include "progressive/reconstruction.h"
 #include "progressive/stream_index.h"
 #include "storage/format/layout.h"
-#include "storage/io/atomic_file.h"
+#include "storage/io/output_file.h"
 
 #include <algorithm>
 #include <span>
@@ -152,7 +151,7 @@ class VertexSplitter {
   mesh_io::PlyWriter& writer_;
 };
 
-void write_mesh(storage::FileSystem& files, const fs::path& path, const ProgressiveIndex& index,
+void write_mesh(const storage::OutputFile& output, const ProgressiveIndex& index,
                 Reconstruction& mesh, const std::string& what,
                 const execution::CancelToken& cancel) {
   mesh_io::PlyContent content;
@@ -161,7 +160,7 @@ void write_mesh(storage::FileSystem& files, const fs::path& path, const Progress
   content.attributes = index.source.attributes;
   content.double_coordinates = index.origin != Vec3d{};
   content.comments = {"meshhier reconstruct: " + what};
-  mesh_io::PlyWriter writer(files, path, content);
+  mesh_io::PlyWriter writer(output.file(), content);
   const VertexSplitter splitter(index, writer);
   std::move(mesh).hand_out(
       [&](std::span<const float> values) {
@@ -180,13 +179,12 @@ void write_mesh(storage::FileSystem& files, const fs::path& path, const Progress
 ReconstructReport reconstruct(storage::FileSystem& files, const fs::path& stream,
                               const ReconstructOptions& options, execution::Progress& progress,
                               const execution::CancelToken& cancel) {
-  execution::require_place(files, options.output);
-  execution::require_apart(files, options.output, stream, "the stream");
   const ProgressiveIndex index = progressive::read_progressive_index(files, stream);
   const std::uint32_t details = details_wanted(index, options);
   const StreamSize size{index.vertices, index.own_vertices, index.triangles};
   require_memory(size, index.source.attributes, options.memory_budget);
-  storage::AtomicFile output(files, options.output);
+  storage::OutputFile output(files, {options.output, options.replace, {stream}},
+                             [&] { cancel.check(); });
 
   ReconstructReport report;
   report.array_bytes = Reconstruction::memory_bytes(size, index.source.attributes);
@@ -201,7 +199,7 @@ ReconstructReport reconstruct(storage::FileSystem& files, const fs::path& stream
   const ReconstructedStep shown = report.steps.back();
   progress.stage("write", 1, "files");
   try {
-    write_mesh(files, output.unfinished(), index, client.mesh(), what, cancel);
+    write_mesh(output, index, client.mesh(), what, cancel);
   } catch (const Error& error) {
     if (error.code() == ErrorCode::corrupt)
       throw error.within(stream.string());

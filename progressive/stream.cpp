@@ -1,7 +1,6 @@
 #include "progressive/stream.h"
 
 #include "execution/allocator.h"
-#include "execution/output_file.h"
 #include "execution/size_text.h"
 #include "hierarchy/cut.h"
 #include "hierarchy/detail.h"
@@ -15,8 +14,10 @@
 #include "storage/format/hierarchy_reader.h"
 #include "storage/format/layout.h"
 #include "storage/format/work_directory.h"
+#include "storage/io/output_file.h"
 
 #include <algorithm>
+#include <array>
 #include <span>
 #include <utility>
 #include <vector>
@@ -243,7 +244,7 @@ std::string write_progressive(storage::FileSystem& files, const fs::path& hierar
   const storage::Output output{options.output, storage::Container::files,
                                storage::Content::progressive_stream};
   storage::check_output(files, output, options.replace);
-  execution::require_apart(files, options.output, hierarchy, "the hierarchy");
+  storage::require_apart(files, options.output, std::array{hierarchy});
   execution::configure_allocator(options.memory_budget);
   const storage::HierarchyFiles place(files, hierarchy);
   const storage::HierarchyReader reader(place.files(), hierarchy);

@@ -13,7 +13,7 @@ using storage::Leftover;
 const char* description(const FoundLeftover& leftover) {
   switch (leftover.kind) {
     case Leftover::build:
-      return leftover.in_use ? "a build at work" : "a build or export that was stopped";
+      return leftover.in_use ? "a build at work" : "a build that was stopped";
     case Leftover::replaced:
       return leftover.only_copy ? "the hierarchy a build was about to replace: the only copy"
                                 : "a hierarchy that was replaced";

@@ -105,8 +105,12 @@ std::unique_ptr<File> ArchiveFiles::reopen(const std::filesystem::path& path) {
 std::unique_ptr<FileLock> ArchiveFiles::try_lock(const std::filesystem::path& path) {
   return others_.try_lock(path);
 }
-bool ArchiveFiles::is_directory(const std::filesystem::path& path) {
-  return others_.is_directory(path);
+std::unique_ptr<File> ArchiveFiles::open_stream(const std::filesystem::path& path,
+                                                const std::function<void()>& check) {
+  return others_.open_stream(path, check);
+}
+FileKind ArchiveFiles::kind(const std::filesystem::path& path) {
+  return others_.kind(path);
 }
 std::filesystem::path ArchiveFiles::canonical(const std::filesystem::path& path) {
   return others_.canonical(path);
@@ -122,6 +126,15 @@ void ArchiveFiles::remove_all(const std::filesystem::path& path) {
 }
 void ArchiveFiles::rename(const std::filesystem::path& from, const std::filesystem::path& to) {
   others_.rename(from, to);
+}
+bool ArchiveFiles::rename_new(const std::filesystem::path& from, const std::filesystem::path& to) {
+  return others_.rename_new(from, to);
+}
+bool ArchiveFiles::exchange(const std::filesystem::path& a, const std::filesystem::path& b) {
+  return others_.exchange(a, b);
+}
+void ArchiveFiles::sync_directory(const std::filesystem::path& directory) {
+  others_.sync_directory(directory);
 }
 void ArchiveFiles::sync_tree(const std::filesystem::path& directory) {
   others_.sync_tree(directory);

@@ -28,6 +28,8 @@ class ArchiveFiles final : public FileSystem {
   const Archive& archive() const { return archive_; }
 
   std::unique_ptr<File> open(const std::filesystem::path& path) override;
+  std::unique_ptr<File> open_stream(const std::filesystem::path& path,
+                                    const std::function<void()>& check) override;
   FileIdentity identity(const std::filesystem::path& path) override;
   bool exists(const std::filesystem::path& path) override;
   std::vector<std::filesystem::path> list(const std::filesystem::path& directory) override;
@@ -35,12 +37,15 @@ class ArchiveFiles final : public FileSystem {
   std::unique_ptr<File> create(const std::filesystem::path& path) override;
   std::unique_ptr<File> reopen(const std::filesystem::path& path) override;
   std::unique_ptr<FileLock> try_lock(const std::filesystem::path& path) override;
-  bool is_directory(const std::filesystem::path& path) override;
+  FileKind kind(const std::filesystem::path& path) override;
   std::filesystem::path canonical(const std::filesystem::path& path) override;
   std::vector<std::filesystem::path> children(const std::filesystem::path& directory) override;
   void make_directories(const std::filesystem::path& path) override;
   void remove_all(const std::filesystem::path& path) override;
   void rename(const std::filesystem::path& from, const std::filesystem::path& to) override;
+  bool rename_new(const std::filesystem::path& from, const std::filesystem::path& to) override;
+  bool exchange(const std::filesystem::path& a, const std::filesystem::path& b) override;
+  void sync_directory(const std::filesystem::path& directory) override;
   void sync_tree(const std::filesystem::path& directory) override;
   std::uint64_t free_bytes(const std::filesystem::path& directory) override;
 

@@ -14,6 +14,7 @@
 //   .NAME.hier.meshhier-work/                beside the output while a build runs, and after it was stopped
 //   .NAME.hier.meshhier-work/lock            held by the build at work
 //   .NAME.hier.meshhier-work/journal         what is done
+//   .NAME.hier.meshhier-work/journal.aside   the same while the hierarchy gets its name
 //   .NAME.hier.meshhier-work/import.ply      the input, while it is read, if it is not read in place
 //   .NAME.hier.meshhier-work/*               scratch files of the stages
 //   .NAME.hier.meshhier-work/hierarchy/      becomes NAME.hier
@@ -21,11 +22,12 @@
 //   .NAME.hier.meshhier-old/                 a replaced hierarchy, for the moment of the rename
 //   .NAME.hier.meshhier-verify-XXXXXXXX      beside a hierarchy while `verify` needs room
 //   .NAME.meshhier-part                      beside any other file that is written, until it is whole
+//   .NAME.meshhier-scratch                   beside it, while it is made
 // clang-format on
 #pragma once
 
 #include "hierarchy/ids.h"
-#include "storage/io/atomic_file.h"
+#include "storage/io/output_file.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -62,16 +64,17 @@ std::filesystem::path verify_scratch_path(const std::filesystem::path& hierarchy
                                           std::uint32_t run);
 std::filesystem::path lock_path(const std::filesystem::path& work);
 std::filesystem::path journal_path(const std::filesystem::path& work);
+std::filesystem::path set_aside_path(const std::filesystem::path& work);
 std::filesystem::path built_path(const std::filesystem::path& work);
 std::filesystem::path packed_path(const std::filesystem::path& work);
 std::filesystem::path imported_path(const std::filesystem::path& work);
 
 /// What the names above that begin with a dot stand for.
 enum class Leftover {
-  build,       ///< work_path: a build that was stopped, or an export
+  build,       ///< work_path: a build that was stopped
   replaced,    ///< replaced_path
   verify,      ///< verify_scratch_path
-  unfinished,  ///< unfinished_path
+  unfinished,  ///< unfinished_path, scratch_path
 };
 struct LeftoverName {
   Leftover kind;

@@ -56,6 +56,15 @@ bool check_output(FileSystem& files, const Output& output, bool replace, const c
 
 namespace {
 
+/// The output where a link of its name leads to.
+Output followed(FileSystem& files, Output output) {
+  const fs::path parent = output.path.parent_path();
+  const fs::path real = files.canonical(output.path);
+  if (real != files.canonical(parent.empty() ? "." : parent) / output.path.filename())
+    output.path = real;
+  return output;
+}
+
 /// A process that was killed holds its lock until the disk has done what it was asked for.
 std::unique_ptr<FileLock> lock_patiently(FileSystem& files, const std::filesystem::path& path) {
   constexpr int kTries = 60;
@@ -71,7 +80,10 @@ std::unique_ptr<FileLock> lock_patiently(FileSystem& files, const std::filesyste
 }  // namespace
 
 WorkDirectory::WorkDirectory(FileSystem& files, Output output, bool replace)
-    : files_(files), output_(std::move(output)), path_(work_path(output_.path)), replace_(replace) {
+    : files_(files),
+      output_(followed(files, std::move(output))),
+      path_(work_path(output_.path)),
+      replace_(replace) {
   check_output(files_, output_, replace_);
   for (auto parent = output_.path.parent_path(); !parent.empty() && !files_.exists(parent);
        parent = parent.parent_path()) {
@@ -122,32 +134,68 @@ void WorkDirectory::sync_result() {
 
 void WorkDirectory::publish() {
   sync_result();
-  const std::filesystem::path& to = output_.path;
-  const std::filesystem::path from = output_.container == Container::files ? built() : packed();
-  const std::filesystem::path old = replaced_path(to);
-  const bool replacing = check_output(files_, output_, replace_, "appeared during the build");
-  if (replacing) {
-    files_.remove_all(old);
-    files_.rename(to, old);
-  }
-  bool renamed = false;
-  try {
-    files_.rename(from, to);
-    renamed = true;
-    if (output_.container == Container::archive)
-      files_.remove_all(built());  // or the disk takes them too, for nothing
-    files_.sync_tree(path_);       // which is beside the output
-  } catch (const Error&) {
-    if (renamed)
-      files_.rename(to, from);
-    if (replacing)
-      files_.rename(old, to);
-    throw;
-  }
+  const fs::path from = output_.container == Container::files ? built() : packed();
+  if (!check_output(files_, output_, replace_, "appeared during the build"))
+    give_name(from);
+  else if (!exchange(from))
+    replace(from);
   published_ = true;
   kept_ = false;
-  files_.remove_all(old);
+  files_.remove_all(replaced_path(output_.path));
   files_.remove_all(path_);
+}
+
+void WorkDirectory::give_name(const fs::path& from) {
+  files_.rename(from, output_.path);
+  try {
+    sync_names();
+  } catch (const Error&) {
+    files_.rename(output_.path, from);
+    throw;
+  }
+}
+
+bool WorkDirectory::exchange(const fs::path& from) {
+  // From then on the hierarchy in this directory may be the one that is replaced: no later build
+  // may take it for what the journal says is done.
+  const fs::path journal = journal_path(path_);
+  const fs::path aside = set_aside_path(path_);
+  const bool has_journal = files_.exists(journal);
+  if (has_journal)
+    files_.rename(journal, aside);
+  bool exchanged = false;
+  try {
+    exchanged = files_.exchange(from, output_.path);
+    if (exchanged)
+      sync_names();
+  } catch (const Error&) {
+    if (exchanged)
+      files_.exchange(from, output_.path);
+    if (has_journal)
+      files_.rename(aside, journal);
+    throw;
+  }
+  if (!exchanged && has_journal)
+    files_.rename(aside, journal);
+  return exchanged;
+}
+
+void WorkDirectory::replace(const fs::path& from) {
+  const fs::path old = replaced_path(output_.path);
+  files_.remove_all(old);
+  files_.rename(output_.path, old);
+  try {
+    give_name(from);
+  } catch (const Error&) {
+    files_.rename(old, output_.path);
+    throw;
+  }
+}
+
+void WorkDirectory::sync_names() {
+  if (output_.container == Container::archive)
+    files_.remove_all(built());  // or the disk takes them too, for nothing
+  files_.sync_tree(path_);       // which is beside the output
 }
 
 }  // namespace meshhier::storage

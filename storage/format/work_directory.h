@@ -38,7 +38,8 @@ bool check_output(FileSystem& files, const Output& output, bool replace,
 
 class WorkDirectory {
  public:
-  /// Takes the directory as an earlier build left it, or makes it. Throws Error(exists) if `output`
+  /// Takes the directory as an earlier build left it, or makes it: beside what a link of the
+  /// output's name leads to. Throws Error(exists) if `output`
   /// is there and `replace` is false or if another build is at work here, Error(io) if its parent
   /// cannot be written.
   WorkDirectory(FileSystem& files, Output output, bool replace);
@@ -60,12 +61,17 @@ class WorkDirectory {
   void keep(bool kept) { kept_ = kept; }
   bool is_kept() const { return kept_; }
 
-  /// Syncs, gives the hierarchy, or its archive, the output's name and removes the rest; a
-  /// hierarchy that is replaced keeps its name until then.
+  /// Syncs, gives the hierarchy, or its archive, the output's name and removes the rest. What is
+  /// replaced has that name until then, without a gap where the system can exchange two names.
   void publish();
 
  private:
   void sync_result();
+  /// Three ways for what was made to get its name: undone if they fail.
+  void give_name(const std::filesystem::path& from);
+  bool exchange(const std::filesystem::path& from);  ///< false if the system cannot
+  void replace(const std::filesystem::path& from);
+  void sync_names();
 
   FileSystem& files_;
   Output output_;

@@ -1,9 +1,12 @@
 #include "storage/io/file.h"
 
 #include "hierarchy/error.h"
+#include "storage/io/stream.h"
+#include "storage/io/system_failure.h"
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <system_error>
 #include <utility>
@@ -17,13 +20,14 @@
 #include <unistd.h>
 
 namespace meshhier::storage {
-namespace {
 
-[[noreturn]] void fail(const char* action, const std::filesystem::path& path, int error) {
+void fail_system(const char* action, const std::filesystem::path& path, int error) {
   const char* hint = error == ENOSPC || error == EDQUOT ? " (free some space and run again)" : "";
   throw Error(ErrorCode::io,
               fmt::format("cannot {} {}: {}{}", action, path.string(), std::strerror(error), hint));
 }
+
+namespace {
 
 std::int64_t nanoseconds(const timespec& time) {
   return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
@@ -43,20 +47,20 @@ class PosixFile final : public File {
   std::uint64_t size() const override {
     struct stat status {};
     if (::fstat(descriptor_, &status) != 0)
-      fail("inspect", path(), errno);
+      fail_system("inspect", path(), errno);
     return static_cast<std::uint64_t>(status.st_size);
   }
 
   FileVersion version() const override {
     struct stat status {};
     if (::fstat(descriptor_, &status) != 0)
-      fail("inspect", path(), errno);
+      fail_system("inspect", path(), errno);
     return version_of(status);
   }
 
   void sync() override {
     if (::fsync(descriptor_) != 0)
-      fail("sync", path(), errno);
+      fail_system("sync", path(), errno);
   }
   using File::sync;
 
@@ -67,7 +71,7 @@ class PosixFile final : public File {
       count = ::pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
     } while (count < 0 && errno == EINTR);
     if (count < 0)
-      fail("read", path(), errno);
+      fail_system("read", path(), errno);
     counters_->bytes_read += static_cast<std::uint64_t>(count);
     return static_cast<std::size_t>(count);
   }
@@ -78,7 +82,7 @@ class PosixFile final : public File {
       count = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
     } while (count < 0 && errno == EINTR);
     if (count < 0)
-      fail("write", path(), errno);
+      fail_system("write", path(), errno);
     counters_->bytes_written += static_cast<std::uint64_t>(count);
     return static_cast<std::size_t>(count);
   }
@@ -117,18 +121,23 @@ class PosixLock final : public FileLock {
   int descriptor_;
 };
 
+/// Whether a file system or kernel lacks what was asked for.
+bool is_inability(int error) {
+  return error == EINVAL || error == ENOSYS || error == EOPNOTSUPP;
+}
+
 class PosixFileSystem final : public FileSystem {
  public:
   std::unique_ptr<File> open(const std::filesystem::path& path) override {
     // Without O_NONBLOCK a pipe that nobody writes to would hang here.
     const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (descriptor < 0)
-      fail("open", path, errno);
+      fail_system("open", path, errno);
     struct stat status {};
     if (::fstat(descriptor, &status) == 0 && !S_ISREG(status.st_mode)) {
       ::close(descriptor);
       if (S_ISDIR(status.st_mode))
-        fail("open", path, EISDIR);
+        fail_system("open", path, EISDIR);
       throw Error(ErrorCode::io,
                   fmt::format("cannot open {}: it is not a regular file", path.string()));
     }
@@ -138,21 +147,21 @@ class PosixFileSystem final : public FileSystem {
   std::unique_ptr<File> create(const std::filesystem::path& path) override {
     const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (descriptor < 0)
-      fail("create", path, errno);
+      fail_system("create", path, errno);
     return std::make_unique<PosixFile>(path, descriptor, counters_);
   }
 
   std::unique_ptr<File> reopen(const std::filesystem::path& path) override {
     const int descriptor = ::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
     if (descriptor < 0)
-      fail("open", path, errno);
+      fail_system("open", path, errno);
     return std::make_unique<PosixFile>(path, descriptor, counters_);
   }
 
   FileIdentity identity(const std::filesystem::path& path) override {
     struct stat status {};
     if (::stat(path.c_str(), &status) != 0)
-      fail("look at", path, errno);
+      fail_system("look at", path, errno);
     return {static_cast<std::uint64_t>(status.st_size), nanoseconds(status.st_mtim)};
   }
 
@@ -160,13 +169,13 @@ class PosixFileSystem final : public FileSystem {
     for (;;) {
       const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
       if (descriptor < 0)
-        fail("create", path, errno);
+        fail_system("create", path, errno);
       if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
         const int error = errno;
         ::close(descriptor);
         if (error == EWOULDBLOCK)
           return nullptr;
-        fail("lock", path, error);
+        fail_system("lock", path, error);
       }
       if (is_same_file(descriptor, path))
         return std::make_unique<PosixLock>(path, descriptor);
@@ -180,22 +189,40 @@ class PosixFileSystem final : public FileSystem {
     if (status.type() == std::filesystem::file_type::not_found)
       return false;
     if (error)
-      fail("look at", path, error.value());
+      fail_system("look at", path, error.value());
     return true;
   }
 
-  bool is_directory(const std::filesystem::path& path) override {
-    std::error_code error;  // that of a file which is not there, or cannot be looked at: none
-    return std::filesystem::is_directory(path, error);
+  std::unique_ptr<File> open_stream(const std::filesystem::path& path,
+                                    const std::function<void()>& check) override {
+    return open_posix_stream(path, counters_, check);
+  }
+
+  FileKind kind(const std::filesystem::path& path) override {
+    struct stat status {};
+    if (::stat(path.c_str(), &status) != 0)
+      return FileKind::none;
+    if (S_ISDIR(status.st_mode))
+      return FileKind::directory;
+    if (is_own_output(path))
+      return FileKind::standard_output;
+    if (S_ISREG(status.st_mode))
+      return FileKind::regular;
+    return S_ISFIFO(status.st_mode) || S_ISCHR(status.st_mode) ? FileKind::stream : FileKind::other;
   }
 
   std::filesystem::path canonical(const std::filesystem::path& path) override {
+    constexpr int kMostLinks = 40;  // as many as the system follows
     std::error_code error;
     std::filesystem::path result = std::filesystem::absolute(path, error);
-    if (!error)
+    for (int i = 0; i < kMostLinks && !error; ++i) {
       result = std::filesystem::weakly_canonical(result, error);
+      if (error || !std::filesystem::is_symlink(std::filesystem::symlink_status(result)))
+        break;  // what is still a link leads to nothing
+      result = result.parent_path() / std::filesystem::read_symlink(result, error);
+    }
     if (error)
-      fail("resolve", path, error.value());
+      fail_system("resolve", path, error.value());
     return result;
   }
 
@@ -213,7 +240,7 @@ class PosixFileSystem final : public FileSystem {
         found.push_back(entry->path());
     }
     if (error)
-      fail("list", directory, error.value());
+      fail_system("list", directory, error.value());
     std::sort(found.begin(), found.end());
     return found;
   }
@@ -225,7 +252,7 @@ class PosixFileSystem final : public FileSystem {
     for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error))
       found.push_back(entry->path());
     if (error)
-      fail("list", directory, error.value());
+      fail_system("list", directory, error.value());
     std::sort(found.begin(), found.end());
     return found;
   }
@@ -234,39 +261,66 @@ class PosixFileSystem final : public FileSystem {
     std::error_code error;
     std::filesystem::create_directories(path, error);
     if (error)
-      fail("make the directory", path, error.value());
+      fail_system("make the directory", path, error.value());
   }
 
   void remove_all(const std::filesystem::path& path) override {
     std::error_code error;
     std::filesystem::remove_all(path, error);
     if (error)
-      fail("remove", path, error.value());
+      fail_system("remove", path, error.value());
   }
 
   void rename(const std::filesystem::path& from, const std::filesystem::path& to) override {
     std::error_code error;
     std::filesystem::rename(from, to, error);
     if (error)
-      fail("rename to", to, error.value());
+      fail_system("rename to", to, error.value());
   }
 
-  void sync_tree(const std::filesystem::path& directory) override {
-    const int descriptor = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (descriptor < 0)
-      fail("open", directory, errno);
-    const int result = ::syncfs(descriptor);
-    const int error = errno;
-    ::close(descriptor);
-    if (result != 0)
-      fail("sync", directory, error);
+  bool rename_new(const std::filesystem::path& from, const std::filesystem::path& to) override {
+    if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0)
+      return true;
+    if (errno == EEXIST)
+      return false;
+    if (!is_inability(errno))
+      fail_system("rename to", to, errno);
+    if (exists(to))
+      return false;
+    rename(from, to);
+    return true;
   }
+
+  bool exchange(const std::filesystem::path& a, const std::filesystem::path& b) override {
+    if (::renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0)
+      return true;
+    if (!is_inability(errno))
+      fail_system("rename to", b, errno);
+    return false;
+  }
+
+  void sync_directory(const std::filesystem::path& directory) override {
+    sync_by(::fsync, directory);
+  }
+  void sync_tree(const std::filesystem::path& directory) override { sync_by(::syncfs, directory); }
 
   std::uint64_t free_bytes(const std::filesystem::path& directory) override {
     struct statvfs status {};
     if (::statvfs(directory.c_str(), &status) != 0)
-      fail("inspect", directory, errno);
+      fail_system("inspect", directory, errno);
     return std::uint64_t{status.f_bavail} * status.f_frsize;
+  }
+
+ private:
+  static void sync_by(int (*call)(int), const std::filesystem::path& directory) {
+    const int descriptor = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0)
+      fail_system("open", directory, errno);
+    const int result = call(descriptor);
+    const int error = errno;
+    ::close(descriptor);
+    if (result != 0)
+      fail_system("sync", directory, error);
   }
 };
 
@@ -311,7 +365,7 @@ class PosixFolder final : public Folder {
       return nullptr;
     struct stat status {};
     if (::fstat(file.number(), &status) != 0)
-      fail("inspect", path() / name, errno);
+      fail_system("inspect", path() / name, errno);
     if (!S_ISREG(status.st_mode))
       return nullptr;
     return std::make_unique<PosixFile>(path() / name, file.release(), counters_);
@@ -324,7 +378,7 @@ class PosixFolder final : public Folder {
       return {};
     const std::unique_ptr<DIR, int (*)(DIR*)> listing(::fdopendir(directory.number()), ::closedir);
     if (!listing)
-      fail("list", path() / name, errno);
+      fail_system("list", path() / name, errno);
     directory.release();  // closed with the listing
     return read_entries(*listing, path() / name);
   }
@@ -333,7 +387,7 @@ class PosixFolder final : public Folder {
   Descriptor again(int flags) const {
     Descriptor opened(::openat(descriptor_.number(), ".", flags | O_CLOEXEC));
     if (opened.number() < 0)
-      fail("open", path(), errno);
+      fail_system("open", path(), errno);
     return opened;
   }
 
@@ -350,7 +404,7 @@ class PosixFolder final : public Folder {
       Descriptor next(::openat(start, part.c_str(),
                                (is_last ? flags : O_PATH | O_DIRECTORY) | O_NOFOLLOW | O_CLOEXEC));
       if (next.number() < 0 && !is_absence(errno))
-        fail("open", path() / name, errno);
+        fail_system("open", path() / name, errno);
       if (is_last || next.number() < 0)
         return next;
       here = std::move(next);
@@ -364,7 +418,7 @@ class PosixFolder final : public Folder {
       errno = 0;
       const dirent* entry = ::readdir(&listing);
       if (entry == nullptr && errno != 0)
-        fail("list", path, errno);
+        fail_system("list", path, errno);
       if (entry == nullptr)
         break;
       struct stat status {};
@@ -433,7 +487,7 @@ std::unique_ptr<FileSystem> make_posix_file_system() {
 std::unique_ptr<Folder> open_folder(const std::filesystem::path& path) {
   Descriptor descriptor(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (descriptor.number() < 0)
-    fail("open the directory", path, errno);
+    fail_system("open the directory", path, errno);
   return std::make_unique<PosixFolder>(path, std::move(descriptor));
 }
 

@@ -87,6 +87,16 @@ class FileLock {
   virtual ~FileLock() = default;
 };
 
+/// What a path leads to, links followed.
+enum class FileKind {
+  none,
+  regular,
+  directory,
+  stream,           ///< a FIFO or a character device
+  standard_output,  ///< of this process, whatever it is
+  other
+};
+
 /// Bytes moved through a FileSystem since it was made.
 struct IoCounters {
   std::atomic<std::uint64_t> bytes_read{0};
@@ -104,14 +114,20 @@ class FileSystem {
   /// Opens a file that is there for reading and writing, with all that is in it.
   virtual std::unique_ptr<File> reopen(const std::filesystem::path& path) = 0;
 
+  /// A stream, or standard output, for writing from the first byte to the last. Waits until a FIFO
+  /// has a reader; calls `check` before each wait, here and in each write: it may throw.
+  virtual std::unique_ptr<File> open_stream(const std::filesystem::path& path,
+                                            const std::function<void()>& check) = 0;
+
   virtual FileIdentity identity(const std::filesystem::path& path) = 0;
   /// Makes the file if need be and locks it; null if it is locked already, here or elsewhere.
   virtual std::unique_ptr<FileLock> try_lock(const std::filesystem::path& path) = 0;
 
   virtual bool exists(const std::filesystem::path& path) = 0;
-  /// Follows links; false if nothing is there.
-  virtual bool is_directory(const std::filesystem::path& path) = 0;
-  /// The absolute path without links and dots, as far as it exists.
+  virtual FileKind kind(const std::filesystem::path& path) = 0;
+  bool is_directory(const std::filesystem::path& path) { return kind(path) == FileKind::directory; }
+  /// The absolute path without links and dots, as far as it exists; of a link to nothing, where it
+  /// leads to.
   virtual std::filesystem::path canonical(const std::filesystem::path& path) = 0;
   /// Every file below `directory`, links as themselves; ascending.
   virtual std::vector<std::filesystem::path> list(const std::filesystem::path& directory) = 0;
@@ -122,6 +138,13 @@ class FileSystem {
   virtual void remove_all(const std::filesystem::path& path) = 0;
   /// Renames a file or directory; an existing file of that name is replaced.
   virtual void rename(const std::filesystem::path& from, const std::filesystem::path& to) = 0;
+  /// The same, but nothing is replaced: false if there is something of that name.
+  virtual bool rename_new(const std::filesystem::path& from, const std::filesystem::path& to) = 0;
+  /// Each of two files or directories gets the name of the other, at one moment; false if the
+  /// system cannot.
+  virtual bool exchange(const std::filesystem::path& a, const std::filesystem::path& b) = 0;
+  /// Forces the names in a directory to the disk.
+  virtual void sync_directory(const std::filesystem::path& directory) = 0;
   /// Forces everything written to the file system that holds `directory` to the disk.
   virtual void sync_tree(const std::filesystem::path& directory) = 0;
   /// Bytes free for this user on the file system that holds `directory`.

@@ -1,11 +1,15 @@
 #include "storage/io/process.h"
 
+#include "hierarchy/error.h"
+
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <string_view>
+#include <system_error>
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -46,6 +50,17 @@ ProcessUsage process_usage() {
   if (result.peak_resident_bytes == 0)
     result.peak_resident_bytes = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
   return result;
+}
+
+std::filesystem::path own_temporary_path() {
+  std::error_code error;
+  const std::filesystem::path directory = std::filesystem::temp_directory_path(error);
+  if (error) {
+    throw Error(ErrorCode::io,
+                fmt::format("there is no directory for temporary files ({}); set TMPDIR to one",
+                            error.message()));
+  }
+  return directory / fmt::format("meshhier-{}", ::getpid());
 }
 
 }  // namespace meshhier::storage

@@ -1,7 +1,8 @@
-// What this process has used of the machine so far.
+// This process: what it has used of the machine so far, and what is its own.
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 
 namespace meshhier::storage {
 
@@ -15,5 +16,9 @@ struct ProcessUsage {
 
 /// Thread-safe; some 20 microseconds. A figure that the system does not tell is 0.
 ProcessUsage process_usage();
+
+/// A name in the system's directory for temporary files that is this process's alone. Throws
+/// Error(io) if there is no such directory.
+std::filesystem::path own_temporary_path();
 
 }  // namespace meshhier::storage

@@ -391,7 +391,7 @@ TEST_F(CommandLine, AnAccountThatCannotBeWrittenIsRefusedBeforeTheBuild) {
   const Path mesh = write_mesh("a.ply");
   const std::string before = text_of(mesh);
   const std::vector<std::pair<Path, int>> refused{{work() / "absent" / "s.json", kIo},
-                                                  {work(), kIo},
+                                                  {work(), kUsage},
                                                   {mesh, kUsage},
                                                   {Path(hierarchy()) / "s.json", kUsage}};
   for (const auto& [path, code] : refused) {
@@ -568,6 +568,41 @@ TEST_F(CommandLine, ExportWritesPlyFiles) {
   }
 }
 
+TEST_F(CommandLine, ExportReplacesNothingUnasked) {
+  build();
+  const std::string scan = (work() / "a.ply").string();
+  const std::string original = text_of(scan);
+  const Arguments outline{"export", hierarchy(), "--outline", "-o", scan};
+  const Outcome refused = run(outline);
+  EXPECT_EQ(refused.code, kExists);
+  EXPECT_THAT(refused.messages, HasSubstr("a.ply is already there; --force replaces it"));
+  EXPECT_EQ(text_of(scan), original);
+
+  write_text(work() / "cut.txt", "0/0\n");
+  const std::string cut = (work() / "cut.txt").string();
+  const Outcome of_itself = run({"export", hierarchy(), "--cut", cut, "-o", cut, "--force"});
+  EXPECT_EQ(of_itself.code, kUsage);
+  EXPECT_EQ(text_of(cut), "0/0\n");
+
+  const std::string made = (work() / "x.ply").string();
+  write_text(made, "old");
+  EXPECT_EQ(run({"export", hierarchy(), "--outline", "-o", made, "--force"}).code, 0);
+  EXPECT_THAT(text_of(made), StartsWith("ply\n"));
+  EXPECT_EQ(names(), (std::set<std::string>{"a.hier", "a.json", "a.ply", "cut.txt", "x.ply"}));
+}
+
+TEST_F(CommandLine, ExportWritesToStandardOutput) {
+  build();
+  const std::string ply = (work() / "x.ply").string();
+  ASSERT_EQ(run({"export", hierarchy(), "--level", "2", "-o", ply}).code, 0);
+  for (const char* place : {"-", "/dev/stdout", "/proc/self/fd/1"}) {
+    const Outcome outcome = run({"export", hierarchy(), "--level", "2", "-o", place});
+    EXPECT_EQ(outcome.code, 0) << outcome.messages;
+    EXPECT_TRUE(outcome.out == text_of(ply)) << place;
+    EXPECT_THAT(outcome.messages, HasSubstr("level 2: "));
+  }
+}
+
 TEST_F(CommandLine, ExportRefusesWhatIsNoCut) {
   build();
   write_text(work() / "cut.txt", "1/0\n");
@@ -606,6 +641,19 @@ TEST_F(CommandLine, AnArchiveIsAHierarchyForEveryCommand) {
   const Outcome mistaken = run({"inspect", mesh});
   EXPECT_EQ(mistaken.code, kIo);
   EXPECT_THAT(mistaken.messages, HasSubstr("neither a directory nor a 3tz archive"));
+}
+
+TEST_F(CommandLine, ForceFollowsALinkAndReplacesWhatItLeadsTo) {
+  build();
+  std::filesystem::rename(hierarchy(), work() / "v1.hier");
+  std::filesystem::create_directory_symlink("v1.hier", hierarchy());
+  const std::string before = text_of(work() / "v1.hier" / "hierarchy.json");
+  const Outcome outcome =
+      run({"build", (work() / "a.json").string(), "--force", "--set", "simplify.method=cluster"});
+  EXPECT_EQ(outcome.code, 0) << outcome.messages;
+  EXPECT_TRUE(std::filesystem::is_symlink(hierarchy()));
+  EXPECT_NE(text_of(work() / "v1.hier" / "hierarchy.json"), before);
+  EXPECT_EQ(names(), (std::set<std::string>{"a.hier", "a.json", "a.ply", "v1.hier"}));
 }
 
 // ---- progressive streams
@@ -652,6 +700,18 @@ TEST_F(Streams, FewerStepsAndSectorsAreAskedForByOptions) {
   const Outcome too_many = run({"reconstruct", stream(), "--details", "2", "-o", mesh()});
   EXPECT_EQ(too_many.code, kUsage);
   EXPECT_THAT(too_many.messages, HasSubstr("--details 2: the stream has 1"));
+}
+
+TEST_F(Streams, AFileThatIsThereIsNotReplacedByReconstruct) {
+  make_stream();
+  write_text(mesh(), "old");
+  EXPECT_EQ(run({"reconstruct", stream(), "-o", mesh()}).code, kExists);
+  EXPECT_EQ(text_of(mesh()), "old");
+  EXPECT_EQ(run({"reconstruct", stream(), "-o", mesh(), "--force"}).code, 0);
+  const Outcome streamed = run({"reconstruct", stream(), "--stats", "-o", "-"});
+  EXPECT_EQ(streamed.code, 0) << streamed.messages;
+  EXPECT_TRUE(streamed.out == text_of(mesh()));
+  EXPECT_THAT(streamed.messages, HasSubstr("the two arrays: "));
 }
 
 TEST_F(Streams, StatsAreATableOfTheFiles) {

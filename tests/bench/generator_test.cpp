@@ -109,7 +109,7 @@ TEST_F(GeneratorFiles, what_is_written_is_what_is_read) {
                                     .colours = true,
                                     .alpha = true,
                                     .double_coordinates = wide});
-    write_ply(*files_, path("mesh.ply"), *mesh);
+    write_ply(*files_, {path("mesh.ply"), true}, *mesh);
     EXPECT_EQ(entries(), 1u) << "a temporary file stayed";
     const LoadedMesh read = load_mesh(*mesh_io::open_mesh(*files_, path("mesh.ply")));
     EXPECT_EQ(read.attributes, mesh->content().attributes);
@@ -136,17 +136,17 @@ TEST_F(GeneratorFiles, an_earlier_file_is_replaced_only_by_a_whole_one) {
    private:
     std::unique_ptr<GeneratedMesh> mesh_;
   };
-  write_ply(*files_, path("mesh.ply"), *make_surface({.triangles = 100}));
+  write_ply(*files_, {path("mesh.ply"), true}, *make_surface({.triangles = 100}));
   const auto size = std::filesystem::file_size(path("mesh.ply"));
   const FailingMesh failing(make_surface({.triangles = 100'000}));
-  EXPECT_THROW(write_ply(*files_, path("mesh.ply"), failing), Error);
+  EXPECT_THROW(write_ply(*files_, {path("mesh.ply"), true}, failing), Error);
   EXPECT_EQ(std::filesystem::file_size(path("mesh.ply")), size);
   EXPECT_EQ(entries(), 1u);
 }
 
 TEST_F(GeneratorFiles, a_missing_directory_is_an_error_of_io) {
   try {
-    write_ply(*files_, path("nowhere") / "mesh.ply", *make_surface({.triangles = 100}));
+    write_ply(*files_, {path("nowhere") / "mesh.ply"}, *make_surface({.triangles = 100}));
     ADD_FAILURE();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::io);

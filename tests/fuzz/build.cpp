@@ -83,8 +83,8 @@ void build(Bytes input) {
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   Take take(input);
   config::Config config;
-  config.input = "models/a.ply";
-  config.output = "models/a.hier";
+  config.input = "/models/a.ply";
+  config.output = "/models/a.hier";
   config.threads = 1;
   const auto methods = all_simplify_methods();
   config.simplify = methods[take.upto(static_cast<std::uint8_t>(methods.size() - 1))].second;
@@ -94,9 +94,9 @@ void build(Bytes input) {
   config.partition.count = 1 + partitions % static_cast<std::uint32_t>(mesh.positions.size());
 
   MemoryFiles files;
-  bench::write_ply(files, config.input.front(), *bench::as_generated(std::move(mesh)));
+  bench::write_ply(files, {config.input.front(), true}, *bench::as_generated(std::move(mesh)));
   execution::NoProgress progress;
-  const std::string refused = refusal({ErrorCode::input}, "models/a.ply: ", [&] {
+  const std::string refused = refusal({ErrorCode::input}, "/models/a.ply: ", [&] {
     pipeline::build_hierarchy(config, {}, {files, progress, {}});
   });
   if (!refused.empty()) {

@@ -65,7 +65,7 @@ Contents make_sound(config::SimplifyMethod method) {
   config.simplify.method = method;
   config.simplify.vertices = 12;
   MemoryFiles files;
-  bench::write_ply(files, config.input.front(), *bench::make_surface(surface));
+  bench::write_ply(files, {config.input.front(), true}, *bench::make_surface(surface));
   execution::NoProgress progress;
   pipeline::build_hierarchy(config, {}, {files, progress, {}});
   Contents contents;
@@ -125,7 +125,7 @@ bool is_exported(MemoryFiles& files, const inspection::ExportSelection& selectio
   execution::NoProgress progress;
   files.remove_all(kExported);
   const std::string refused = refusal({ErrorCode::corrupt, ErrorCode::usage}, "", [&] {
-    inspection::export_mesh(files, kHierarchy, {selection, kExported, std::uint64_t{1} << 24},
+    inspection::export_mesh(files, kHierarchy, {selection, kExported, std::uint64_t{1} << 24, true},
                             progress, {});
   });
   require(files.exists(kExported) == refused.empty(), "an export is whole, or not there");
@@ -165,8 +165,8 @@ void check_streamed(MemoryFiles& files, std::optional<NodeId> part) {
   const std::size_t steps = progressive::read_progressive_index(files, kStream).files.size();
   for (std::uint32_t details = 0; details < steps; ++details) {
     files.remove_all(kExported);
-    progressive::reconstruct(files, kStream, {details, kExported, std::uint64_t{1} << 24}, progress,
-                             {});
+    progressive::reconstruct(files, kStream, {details, kExported, std::uint64_t{1} << 24, true},
+                             progress, {});
     require(files.exists(kExported), "what is streamed can be put together");
   }
 }

@@ -64,7 +64,7 @@ void check_written(const mesh_io::MeshDescription& mesh, const PlyReading& readi
   content.triangle_count = reading.triangles.size();
   content.attributes = mesh.attributes;
   content.double_coordinates = mesh.wide_coordinates;
-  mesh_io::PlyWriter writer(files, kMeshName, content);
+  mesh_io::PlyWriter writer(files.create(kMeshName), content);
   if (mesh.wide_coordinates) {
     writer.write_vertices(reading.exact, reading.attributes);
   } else {

@@ -151,7 +151,7 @@ class GoldenTest : public testing::TestWithParam<Golden> {
       for (std::size_t k = 0; k < 3; ++k)
         colours.push_back(static_cast<float>((v * (k + 3)) % 256));
     }
-    mesh_io::PlyWriter writer(*files_, directory_.path() / "terrain.ply", content);
+    mesh_io::PlyWriter writer(files_->create(directory_.path() / "terrain.ply"), content);
     writer.write_vertices(std::span<const Vec3f>(mesh.positions), colours);
     writer.write_triangles(mesh.triangles);
     writer.finish();

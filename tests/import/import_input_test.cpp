@@ -135,7 +135,7 @@ class ImportTest : public testing::Test {
     content.vertex_count = mesh.positions.size();
     content.triangle_count = mesh.triangles.size();
     content.attributes = layout;
-    mesh_io::PlyWriter writer(files_, fs::path("w/in") / name, content);
+    mesh_io::PlyWriter writer(files_.create(fs::path("w/in") / name), content);
     writer.write_vertices(mesh.positions, attributes);
     writer.write_triangles(mesh.triangles);
     writer.finish();

@@ -88,7 +88,7 @@ class ExportTest : public testing::Test {
   }
   std::string run_on(storage::FileSystem& files, ExportSelection selection, std::uint64_t budget) {
     execution::NoProgress progress;
-    return export_mesh(files, hierarchy(), {std::move(selection), output(), budget}, progress,
+    return export_mesh(files, hierarchy(), {std::move(selection), output(), budget, true}, progress,
                        execution::CancelToken());
   }
   Error error_of(ExportSelection selection) {

@@ -54,7 +54,7 @@ TEST(PlyWriter, WhatIsWrittenIsReadBack) {
     content.vertex_count = sample.positions.size();
     content.triangle_count = sample.triangles.size();
     MemoryFiles files;
-    PlyWriter writer(files, "out.ply", content);
+    PlyWriter writer(files.create("out.ply"), content);
     const auto channels = static_cast<std::size_t>(content.attributes.channels());
     const std::span<const Vec3f> positions(sample.positions);
     const std::span<const float> attributes(sample.attributes);
@@ -80,7 +80,7 @@ TEST(PlyWriter, DoubleCoordinatesAreExact) {
   content.vertex_count = 2;
   content.double_coordinates = true;
   MemoryFiles files;
-  PlyWriter writer(files, "out.ply", content);
+  PlyWriter writer(files.create("out.ply"), content);
   const std::vector<Vec3d> exact{{1.0 / 3, 1e300, -4321987.123456789}};
   const std::vector<Vec3f> single{{0.1F, 2, 3}};
   writer.write_vertices(exact, {});
@@ -98,7 +98,7 @@ TEST(PlyWriter, HeaderAndBytes) {
   content.comments = {"one", "two\nelement vertex 9\rx"};
   content.attributes.colour = ColourType::u8;
   MemoryFiles files;
-  PlyWriter writer(files, "out.ply", content);
+  PlyWriter writer(files.create("out.ply"), content);
   const std::vector<Vec3f> positions{{1, 2, 3}};
   const std::vector<float> colours{0, 127.5F, 300};
   const std::vector<std::array<std::uint32_t, 2>> edges{{0, 258}};
@@ -120,10 +120,10 @@ TEST(PlyWriter, ManyVerticesNeedUnsignedIndices) {
   PlyContent content;
   content.vertex_count = (std::uint64_t{1} << 31) - 1;
   MemoryFiles files;
-  { PlyWriter writer(files, "int.ply", content); }
+  { PlyWriter writer(files.create("int.ply"), content); }
   EXPECT_THAT(files.content("int.ply"), HasSubstr("property list uchar int vertex_indices"));
   content.vertex_count += 1;
-  { PlyWriter writer(files, "uint.ply", content); }
+  { PlyWriter writer(files.create("uint.ply"), content); }
   EXPECT_THAT(files.content("uint.ply"), HasSubstr("property list uchar uint vertex_indices"));
 }
 
@@ -142,38 +142,9 @@ TEST(PlyWriter, AFullDiskIsAnIoError) {
       return bytes.size();
     }
   };
-  class FullFiles final : public storage::FileSystem {
-   public:
-    std::unique_ptr<storage::File> open(const std::filesystem::path&) override {
-      return create("");
-    }
-    std::unique_ptr<storage::File> create(const std::filesystem::path&) override {
-      return std::make_unique<FullFile>();
-    }
-    std::unique_ptr<storage::File> reopen(const std::filesystem::path&) override {
-      return create("");
-    }
-    storage::FileIdentity identity(const std::filesystem::path&) override { return {}; }
-    std::unique_ptr<storage::FileLock> try_lock(const std::filesystem::path&) override {
-      return std::make_unique<storage::FileLock>();
-    }
-    bool exists(const std::filesystem::path&) override { return false; }
-    bool is_directory(const std::filesystem::path&) override { return false; }
-    std::filesystem::path canonical(const std::filesystem::path& path) override { return path; }
-    std::vector<std::filesystem::path> list(const std::filesystem::path&) override { return {}; }
-    std::vector<std::filesystem::path> children(const std::filesystem::path&) override {
-      return {};
-    }
-    void make_directories(const std::filesystem::path&) override {}
-    void remove_all(const std::filesystem::path&) override {}
-    void rename(const std::filesystem::path&, const std::filesystem::path&) override {}
-    void sync_tree(const std::filesystem::path&) override {}
-    std::uint64_t free_bytes(const std::filesystem::path&) override { return 0; }
-  };
   PlyContent content;
   content.vertex_count = 1000;
-  FullFiles files;
-  PlyWriter writer(files, "full.ply", content);
+  PlyWriter writer(std::make_shared<FullFile>(), content);
   writer.write_vertices(std::vector<Vec3f>(1000), {});
   writer.write_triangles({});
   try {

@@ -771,7 +771,8 @@ TEST_F(DiskTest, ThePredictionIsNearWhatASurfaceTakes) {
 
 // A header does not tell of a vertex that all triangles share.
 TEST_F(DiskTest, ThePredictionIsRefinedWhenThePartitionsAreKnown) {
-  bench::write_ply(files_, mesh_path(), *bench::as_generated(bench::make_stress("hub", 100'000)));
+  bench::write_ply(files_, {mesh_path(), true},
+                   *bench::as_generated(bench::make_stress("hub", 100'000)));
   const config::Config with = config(1000);
   const std::uint64_t room = least_room(with);
   files_.limit_room(room + room / 8);

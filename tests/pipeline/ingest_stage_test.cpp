@@ -94,7 +94,7 @@ class SourceMeshTest : public testing::Test {
     mesh_io::PlyContent content;
     content.vertex_count = points.size();
     content.double_coordinates = true;
-    mesh_io::PlyWriter writer(*files_, path(), content);
+    mesh_io::PlyWriter writer(files_->create(path()), content);
     writer.write_vertices(points, {});
     writer.finish();
     return open(path());

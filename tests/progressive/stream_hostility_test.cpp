@@ -91,7 +91,8 @@ class StreamTest : public testing::Test {
   std::optional<Error> reconstruct_error(std::optional<std::uint32_t> details = {},
                                          std::uint64_t budget = kPlenty) {
     return error_of([&] {
-      progressive::reconstruct(files_, kStream, {details, kOutput, budget}, progress_, cancel_);
+      progressive::reconstruct(files_, kStream, {details, kOutput, budget, true}, progress_,
+                               cancel_);
     });
   }
 
@@ -406,7 +407,9 @@ TEST_F(StreamTest, NoOutputGoesIntoWhatIsRead) {
   EXPECT_EQ(refused->code(), ErrorCode::usage);
   for (const char* name : {"base.bin", "out.ply"}) {
     const std::optional<Error> error = error_of([&] {
-      progressive::reconstruct(files_, kStream, {{}, fs::path(kStream) / name}, progress_, cancel_);
+      progressive::reconstruct(files_, kStream,
+                               {.output = fs::path(kStream) / name, .replace = true}, progress_,
+                               cancel_);
     });
     ASSERT_TRUE(error);
     EXPECT_EQ(error->code(), ErrorCode::usage);
@@ -418,7 +421,8 @@ TEST_F(StreamTest, NoOutputGoesIntoWhatIsRead) {
 TEST_F(StreamTest, APathThatIsNoStreamIsTold) {
   for (const char* path : {"/models/none", kHierarchy, "/models/mesh.ply"}) {
     const std::optional<Error> error = error_of([&] {
-      progressive::reconstruct(files_, path, {{}, kOutput}, progress_, cancel_);
+      progressive::reconstruct(files_, path, {.output = kOutput, .replace = true}, progress_,
+                               cancel_);
     });
     ASSERT_TRUE(error) << path;
     EXPECT_EQ(error->code(), ErrorCode::io);
@@ -430,7 +434,8 @@ TEST_F(StreamTest, APathThatIsNoStreamIsTold) {
 TEST_F(StreamTest, AMistypedDirectoryOfTheMeshIsNotMade) {
   for (const char* output : {"/models/none/out.ply", "", ".", "/models/.."}) {
     EXPECT_TRUE(error_of([&] {
-      progressive::reconstruct(files_, kStream, {{}, output}, progress_, cancel_);
+      progressive::reconstruct(files_, kStream, {.output = output, .replace = true}, progress_,
+                               cancel_);
     })) << output;
   }
   EXPECT_FALSE(files_.exists("/models/none"));
@@ -483,7 +488,8 @@ class StreamFaultsTest : public StreamTest {
   }
   static void reconstructing(storage::FileSystem& files, execution::Progress& progress,
                              const execution::CancelToken& cancel) {
-    progressive::reconstruct(files, kStream, {{}, kOutput}, progress, cancel);
+    progressive::reconstruct(files, kStream, {.output = kOutput, .replace = true}, progress,
+                             cancel);
   }
 
   /// What jobs make: the stream and the mesh.

@@ -94,7 +94,9 @@ class ProgressiveTest : public testing::Test {
   }
 
   void reconstruct(std::optional<std::uint32_t> details) {
-    progressive::reconstruct(files_, kStream, {details, "/models/out.ply"}, progress_, cancel_);
+    progressive::reconstruct(files_, kStream,
+                             {.details = details, .output = "/models/out.ply", .replace = true},
+                             progress_, cancel_);
   }
   Shown shown(std::optional<std::uint32_t> details) {
     reconstruct(details);
@@ -102,8 +104,10 @@ class ProgressiveTest : public testing::Test {
   }
 
   Shown exported(const inspection::ExportSelection& selection) {
-    inspection::export_mesh(files_, hierarchy_, {selection, "/models/level.ply"}, progress_,
-                            cancel_);
+    inspection::export_mesh(
+        files_, hierarchy_,
+        {.selection = selection, .output = "/models/level.ply", .replace = true}, progress_,
+        cancel_);
     return load("/models/level.ply");
   }
 
@@ -150,8 +154,10 @@ class ProgressiveTest : public testing::Test {
 
   void expect_original() {
     reconstruct(std::nullopt);
-    inspection::export_mesh(files_, hierarchy_, {reader().tree().depth(), "/models/level.ply"},
-                            progress_, cancel_);
+    inspection::export_mesh(
+        files_, hierarchy_,
+        {.selection = reader().tree().depth(), .output = "/models/level.ply", .replace = true},
+        progress_, cancel_);
     EXPECT_TRUE(without_comment("/models/out.ply") == without_comment("/models/level.ply"));
   }
 

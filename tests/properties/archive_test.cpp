@@ -36,7 +36,7 @@ class PackedTest : public testing::Test {
     bench::SurfaceOptions surface;
     surface.triangles = 100;
     surface.noise = 0.5;
-    bench::write_ply(files_, "/models/mesh.ply", *bench::make_surface(surface));
+    bench::write_ply(files_, {"/models/mesh.ply", true}, *bench::make_surface(surface));
     config_.input = "/models/mesh.ply";
     config_.threads = 1;
     config_.partition.count = 5;
@@ -128,7 +128,9 @@ TEST_F(PackedTest, IsReadByEveryCommandAsADirectoryIs) {
   build(kDirectory, storage::Container::files);
   build(kArchive, storage::Container::archive);
   const auto exported = [&](const fs::path& from, const inspection::ExportSelection& selection) {
-    inspection::export_mesh(files_, from, {selection, "/models/out.ply"}, progress_, cancel_);
+    inspection::export_mesh(files_, from,
+                            {.selection = selection, .output = "/models/out.ply", .replace = true},
+                            progress_, cancel_);
     return files_.content("/models/out.ply");
   };
   files_.put("/models/cut.txt", "1/0\n3/3\n3/4\n");
@@ -175,7 +177,9 @@ TEST_F(PackedTest, ATruncatedOneIsOneErrorForEveryCommand) {
     EXPECT_THAT(complaint(), HasSubstr("the file is cut or damaged")) << size;
     refusal(ErrorCode::corrupt, [&] { inspection::inspect_text(files_, kArchive, {}); });
     refusal(ErrorCode::corrupt, [&] {
-      inspection::export_mesh(files_, kArchive, {Level{0}, "/models/out.ply"}, progress_, cancel_);
+      inspection::export_mesh(files_, kArchive,
+                              {.selection = Level{0}, .output = "/models/out.ply", .replace = true},
+                              progress_, cancel_);
     });
     EXPECT_FALSE(files_.exists("/models/out.ply"));
     files_.bytes(kArchive) = whole;

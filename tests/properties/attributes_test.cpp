@@ -43,7 +43,7 @@ class AttributesTest : public testing::Test {
     config.partition.vertices = 150;
     config.simplify.method = config::SimplifyMethod::cluster;  // its attributes are means, exactly
     config.simplify.representative = kind;
-    mesh_io::PlyWriter writer(*files_, config.input.front(), content);
+    mesh_io::PlyWriter writer(files_->create(config.input.front()), content);
     writer.write_vertices(std::span(positions), attributes);
     writer.write_triangles(mesh.triangles);
     writer.finish();

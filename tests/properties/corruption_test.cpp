@@ -104,7 +104,7 @@ class CorruptionTest : public testing::TestWithParam<Victim> {
     config.threads = 1;
     config.partition.count = 5;  // with early nodes
     config.simplify.vertices = 12;
-    bench::write_ply(files_, config.input.front(), *bench::make_surface(surface));
+    bench::write_ply(files_, {config.input.front(), true}, *bench::make_surface(surface));
     pipeline::build_hierarchy(config, {}, {files_, progress_, cancel_});
   }
 
@@ -123,8 +123,9 @@ class CorruptionTest : public testing::TestWithParam<Victim> {
   }
 
   std::string export_of(const inspection::ExportSelection& selection) {
-    const std::string summary =
-        inspection::export_mesh(files_, kDirectory, {selection, kExported}, progress_, cancel_);
+    const std::string summary = inspection::export_mesh(
+        files_, kDirectory, {.selection = selection, .output = kExported, .replace = true},
+        progress_, cancel_);
     const Bytes& bytes = files_.bytes(kExported);
     return summary + std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   }

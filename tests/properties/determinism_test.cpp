@@ -89,7 +89,7 @@ class DeterminismTest : public testing::Test {
     content.vertex_count = mesh.shape.positions.size();
     content.triangle_count = mesh.shape.triangles.size();
     content.attributes = mesh.layout;
-    mesh_io::PlyWriter writer(*files_, mesh_path(), content);
+    mesh_io::PlyWriter writer(files_->create(mesh_path()), content);
     writer.write_vertices(std::span<const Vec3f>(mesh.shape.positions), mesh.attributes);
     writer.write_triangles(mesh.shape.triangles);
     writer.finish();

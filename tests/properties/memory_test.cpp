@@ -68,12 +68,12 @@ class MemoryTest : public testing::Test {
   /// what it holds at the start of a child as the child's.
   void write_mesh(bench::SurfaceOptions options) {
     const auto files = storage::make_posix_file_system();
-    bench::write_ply(*files, path("mesh.ply"), *bench::make_surface(options));
+    bench::write_ply(*files, {path("mesh.ply"), true}, *bench::make_surface(options));
   }
 
   void write_mesh(bench::LoadedMesh mesh) {
     const auto files = storage::make_posix_file_system();
-    bench::write_ply(*files, path("mesh.ply"), *bench::as_generated(std::move(mesh)));
+    bench::write_ply(*files, {path("mesh.ply"), true}, *bench::as_generated(std::move(mesh)));
   }
 
   /// `stats`: file for the account.

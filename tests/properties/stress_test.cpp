@@ -42,7 +42,7 @@ class StressTest : public testing::Test {
   }
 
   void write(bench::LoadedMesh mesh) {
-    bench::write_ply(files_, config_.input.front(), *bench::as_generated(std::move(mesh)));
+    bench::write_ply(files_, {config_.input.front(), true}, *bench::as_generated(std::move(mesh)));
   }
 
   void use_tiles_of(std::uint32_t vertices) {

@@ -139,7 +139,8 @@ class DisturbedBuild {
   explicit DisturbedBuild(std::uint64_t seed) : dice_(seed), config_(random_config(dice_)) {
     config_.input = "/models/mesh.ply";
     config_.output = "/models/mesh.hier";
-    bench::write_ply(*files_, config_.input.front(), *bench::as_generated(random_mesh(dice_)));
+    bench::write_ply(*files_, {config_.input.front(), true},
+                     *bench::as_generated(random_mesh(dice_)));
   }
 
   void run() {
@@ -245,7 +246,7 @@ void kill_builds(std::uint64_t seed) {
   config::Config config = random_config(dice);
   config.input = directory.path() / "mesh.ply";
   config.output = directory.path() / "mesh.hier";
-  bench::write_ply(*files, config.input.front(), *bench::as_generated(random_mesh(dice)));
+  bench::write_ply(*files, {config.input.front(), true}, *bench::as_generated(random_mesh(dice)));
   nlohmann::ordered_json text = config::resolved_json(config);
   text["input"] = "mesh.ply";
   text["output"] = "mesh.hier";

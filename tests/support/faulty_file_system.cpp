@@ -156,8 +156,14 @@ bool FaultyFileSystem::exists(const std::filesystem::path& path) {
   return real_->exists(path);
 }
 
-bool FaultyFileSystem::is_directory(const std::filesystem::path& path) {
-  return real_->is_directory(path);
+std::unique_ptr<storage::File> FaultyFileSystem::open_stream(const std::filesystem::path& path,
+                                                             const std::function<void()>& check) {
+  strike(Call::open, path);
+  return std::make_unique<FaultyFile>(real_->open_stream(path, check), plan_, counters_);
+}
+
+storage::FileKind FaultyFileSystem::kind(const std::filesystem::path& path) {
+  return real_->kind(path);
 }
 
 std::filesystem::path FaultyFileSystem::canonical(const std::filesystem::path& path) {
@@ -188,6 +194,21 @@ void FaultyFileSystem::remove_all(const std::filesystem::path& path) {
 void FaultyFileSystem::rename(const std::filesystem::path& from, const std::filesystem::path& to) {
   strike(Call::rename, to);
   real_->rename(from, to);
+}
+
+bool FaultyFileSystem::rename_new(const std::filesystem::path& from,
+                                  const std::filesystem::path& to) {
+  strike(Call::rename, to);
+  return real_->rename_new(from, to);
+}
+
+bool FaultyFileSystem::exchange(const std::filesystem::path& a, const std::filesystem::path& b) {
+  strike(Call::rename, b);
+  return can_exchange_ && real_->exchange(a, b);
+}
+
+void FaultyFileSystem::sync_directory(const std::filesystem::path& directory) {
+  strike(Call::sync_tree, directory);
 }
 
 void FaultyFileSystem::sync_tree(const std::filesystem::path& directory) {

@@ -78,6 +78,8 @@ class FaultyFileSystem final : public storage::FileSystem {
   void limit_room(std::uint64_t bytes);
   /// As limit_room(), but the disk does not say so.
   void limit_writes(std::uint64_t bytes);
+  /// From now on it is one that cannot exchange names.
+  void deny_exchange() { can_exchange_ = false; }
   /// Calls of a kind so far, failed ones included.
   std::uint64_t calls(Call call) const;
 
@@ -87,13 +89,18 @@ class FaultyFileSystem final : public storage::FileSystem {
   storage::FileIdentity identity(const std::filesystem::path& path) override;
   std::unique_ptr<storage::FileLock> try_lock(const std::filesystem::path& path) override;
   bool exists(const std::filesystem::path& path) override;
-  bool is_directory(const std::filesystem::path& path) override;  ///< never fails
+  std::unique_ptr<storage::File> open_stream(const std::filesystem::path& path,
+                                             const std::function<void()>& check) override;
+  storage::FileKind kind(const std::filesystem::path& path) override;  ///< never fails
   std::filesystem::path canonical(const std::filesystem::path& path) override;
   std::vector<std::filesystem::path> list(const std::filesystem::path& directory) override;
   std::vector<std::filesystem::path> children(const std::filesystem::path& directory) override;
   void make_directories(const std::filesystem::path& path) override;
   void remove_all(const std::filesystem::path& path) override;
   void rename(const std::filesystem::path& from, const std::filesystem::path& to) override;
+  bool rename_new(const std::filesystem::path& from, const std::filesystem::path& to) override;
+  bool exchange(const std::filesystem::path& a, const std::filesystem::path& b) override;
+  void sync_directory(const std::filesystem::path& directory) override;
   void sync_tree(const std::filesystem::path& directory) override;
   /// The real figure, or the room left if that is less.
   std::uint64_t free_bytes(const std::filesystem::path& directory) override;
@@ -102,6 +109,7 @@ class FaultyFileSystem final : public storage::FileSystem {
   void strike(Call call, const std::filesystem::path& path);
 
   std::shared_ptr<storage::FileSystem> real_;
+  bool can_exchange_ = true;
   std::shared_ptr<FaultPlan> plan_ = std::make_shared<FaultPlan>();
 };
 

@@ -60,7 +60,7 @@ void build_half_edge(storage::FileSystem& files, const AttributedMesh& mesh,
   content.triangle_count = mesh.shape.triangles.size();
   content.attributes = mesh.layout;
   content.double_coordinates = !mesh.exact.empty();
-  mesh_io::PlyWriter writer(files, config.input.front(), content);
+  mesh_io::PlyWriter writer(files.create(config.input.front()), content);
   if (mesh.exact.empty())
     writer.write_vertices(std::span<const Vec3f>(mesh.shape.positions), mesh.attributes);
   else

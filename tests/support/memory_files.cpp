@@ -90,8 +90,17 @@ storage::FileIdentity MemoryFiles::identity(const fs::path& path) {
 
 /// Nobody else is here.
 std::unique_ptr<storage::FileLock> MemoryFiles::try_lock(const fs::path& path) {
+  class Lock final : public storage::FileLock {
+   public:
+    Lock(MemoryFiles& files, fs::path path) : files_(files), path_(std::move(path)) {}
+    ~Lock() override { files_.remove_all(path_); }
+
+   private:
+    MemoryFiles& files_;
+    fs::path path_;
+  };
   create(path);
-  return std::make_unique<storage::FileLock>();
+  return std::make_unique<Lock>(*this, path);
 }
 
 bool MemoryFiles::exists(const fs::path& path) {
@@ -99,13 +108,15 @@ bool MemoryFiles::exists(const fs::path& path) {
   return files_.contains(path.lexically_normal()) || has_directory(path);
 }
 
-bool MemoryFiles::is_directory(const fs::path& path) {
+storage::FileKind MemoryFiles::kind(const fs::path& path) {
   const std::lock_guard lock(mutex_);
-  return has_directory(path);
+  if (files_.contains(path.lexically_normal()))
+    return storage::FileKind::regular;
+  return has_directory(path) ? storage::FileKind::directory : storage::FileKind::none;
 }
 
 fs::path MemoryFiles::canonical(const fs::path& path) {
-  return ("/" / path).lexically_normal();
+  return path.lexically_normal();
 }
 
 std::vector<fs::path> MemoryFiles::list(const fs::path& directory) {
@@ -159,6 +170,13 @@ void MemoryFiles::rename(const fs::path& from, const fs::path& to) {
     directories.insert(is_moved(path) ? moved(path, old_name, new_name) : path);
   files_ = std::move(files);
   directories_ = std::move(directories);
+}
+
+bool MemoryFiles::rename_new(const fs::path& from, const fs::path& to) {
+  if (exists(to))
+    return false;
+  rename(from, to);
+  return true;
 }
 
 MemoryFiles::Bytes& MemoryFiles::bytes(const fs::path& path) {

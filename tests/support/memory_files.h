@@ -17,7 +17,8 @@
 
 namespace meshhier::tests {
 
-/// Paths are taken as they are written, normalized; there are no links. Thread-safe.
+/// Paths are taken as they are written, normalized; there are no links. Has a directory /models
+/// from the start. Thread-safe.
 class MemoryFiles : public storage::FileSystem {
  public:
   using Bytes = std::vector<std::byte>;
@@ -28,13 +29,22 @@ class MemoryFiles : public storage::FileSystem {
   storage::FileIdentity identity(const std::filesystem::path& path) override;
   std::unique_ptr<storage::FileLock> try_lock(const std::filesystem::path& path) override;
   bool exists(const std::filesystem::path& path) override;
-  bool is_directory(const std::filesystem::path& path) override;
+  std::unique_ptr<storage::File> open_stream(const std::filesystem::path& path,
+                                             const std::function<void()>&) override {
+    return open(path);
+  }
+  storage::FileKind kind(const std::filesystem::path& path) override;
   std::filesystem::path canonical(const std::filesystem::path& path) override;
   std::vector<std::filesystem::path> list(const std::filesystem::path& directory) override;
   std::vector<std::filesystem::path> children(const std::filesystem::path& directory) override;
   void make_directories(const std::filesystem::path& path) override;
   void remove_all(const std::filesystem::path& path) override;
   void rename(const std::filesystem::path& from, const std::filesystem::path& to) override;
+  bool rename_new(const std::filesystem::path& from, const std::filesystem::path& to) override;
+  bool exchange(const std::filesystem::path&, const std::filesystem::path&) override {
+    return false;
+  }
+  void sync_directory(const std::filesystem::path&) override {}
   void sync_tree(const std::filesystem::path&) override {}
   std::uint64_t free_bytes(const std::filesystem::path&) override { return std::uint64_t{1} << 40; }
 
@@ -56,7 +66,8 @@ class MemoryFiles : public storage::FileSystem {
 
   std::mutex mutex_;  ///< of what follows
   std::map<std::filesystem::path, std::shared_ptr<Content>> files_;
-  std::set<std::filesystem::path> directories_;  ///< those made; others are there by their files
+  /// Those made, and the two that are there from the start; others are there by their files.
+  std::set<std::filesystem::path> directories_{"/", "/models"};
 };
 
 }  // namespace meshhier::tests

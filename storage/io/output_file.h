@@ -1,0 +1,75 @@
+// Where a command puts the one file it makes.
+#pragma once
+
+#include "storage/io/file.h"
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace meshhier::storage {
+
+/// What stands for standard output on the command line.
+inline constexpr const char* kStandardOutput = "-";
+
+struct OutputRequest {
+  std::filesystem::path path;                   ///< a file, or kStandardOutput; links are followed
+  bool replace = false;                         ///< a regular file that is there
+  std::vector<std::filesystem::path> inputs{};  ///< files and directories that stay as they are
+};
+
+/// Whether all that is written there goes to standard output, which then can take nothing else.
+bool is_standard_output(FileSystem& files, const std::filesystem::path& path);
+
+/// Throws Error(usage) if the output is one of the inputs, or lies in one.
+void require_apart(FileSystem& files, const std::filesystem::path& output,
+                   std::span<const std::filesystem::path> inputs);
+
+/// Beside `file`: its name until it is whole, and what is needed to make it.
+std::filesystem::path unfinished_path(const std::filesystem::path& file);
+std::filesystem::path scratch_path(const std::filesystem::path& file);
+
+/// A regular file is there complete or not at all: it gets its name when it is published. A FIFO or
+/// a character device, such as standard output, takes the bytes as they come. Nothing else is
+/// written to.
+class OutputFile {
+ public:
+  /// Refuses what can be refused: Error(usage) if the path is no file's, or if it is one of the
+  /// inputs or lies in one; Error(exists) if there is a file that is not to be replaced, or if
+  /// another process is writing it; Error(io) if it cannot be written. `check` is called now and
+  /// then while a reader is waited for, and may throw.
+  OutputFile(
+      FileSystem& files, const OutputRequest& request, const std::function<void()>& check = [] {});
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+  /// Removes what was not published.
+  ~OutputFile();
+
+  /// Takes bytes from the first to the last.
+  const std::shared_ptr<File>& file() const { return file_; }
+  /// For a temporary file of whoever writes: beside a regular file, else in the system's directory.
+  const std::filesystem::path& scratch() const { return scratch_; }
+
+  /// Forces the file to the disk and gives it its name. Throws Error(io), and Error(exists) if a
+  /// file that is not to be replaced has appeared.
+  void publish();
+  /// Writes `bytes`, which are all, before that.
+  void publish(std::span<const std::byte> bytes);
+
+ private:
+  void open_regular(const OutputRequest& request);
+
+  FileSystem& files_;
+  std::function<void()> check_;
+  bool replace_;
+  std::filesystem::path target_;     ///< empty: a stream
+  std::filesystem::path temporary_;  ///< its name until it is published
+  std::filesystem::path scratch_;
+  std::unique_ptr<FileLock> lock_;  ///< of temporary_
+  std::shared_ptr<File> file_;
+};
+
+}  // namespace meshhier::storage
