@@ -20,10 +20,10 @@ namespace meshhier::pipeline {
 struct BuildPlan {
   Tree tree;
   std::size_t threads = 1;
-  TargetVertexCounts target_vertex_counts;  ///< of simplified tiles
-  JobSize job;
-  MemoryPlan memory;
-  DiskNeed disk;
+  TargetVertexCounts target_vertex_counts{};  ///< of simplified tiles
+  JobSize job{};
+  MemoryPlan memory{};
+  DiskNeed disk{};
 };
 
 /// The partitions of a mesh. Throws Error(usage | input) if those asked for cannot be.

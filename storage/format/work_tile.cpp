@@ -150,7 +150,7 @@ void add_work_tile(std::span<const std::byte> head, TileSums& sums) {
   WorkTileCounts counts;
   std::memcpy(&counts, head.data(), sizeof counts);
   const double foreign = sums.foreign_per_boundary * sums.boundary + counts.foreign;
-  const double triangles = double{counts.interior} + counts.border;
+  const double triangles = static_cast<double>(counts.interior) + counts.border;
   sums.count += 1;
   sums.vertices += counts.own;
   sums.boundary += counts.boundary;

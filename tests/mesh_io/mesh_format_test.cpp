@@ -66,7 +66,8 @@ TEST(MeshFormat, WhatIsNoMeshIsRefused) {
   EXPECT_THAT(refusal(gzip("hello world")), HasSubstr("found 'hello world'"));
   EXPECT_THAT(refusal("\x7f"
                       "ELF\1\2"),
-              HasSubstr("found '?ELF??'"));
+              HasSubstr("found '?ELF"
+                        "??'"));
 }
 
 TEST(MeshFormat, AnStlOfAnotherSizeIsToldWhatItShouldHave) {

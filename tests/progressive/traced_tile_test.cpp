@@ -125,8 +125,9 @@ TEST_F(TracedTileTest, WhatIsLiftedAndWhatIsLostIsAll) {
 
   std::set<std::uint64_t> triangles(up.losses.triangles.begin(), up.losses.triangles.end());
   for (const TracedTriangle& triangle : up.tile.triangles) {
-    if (triangle.index != kCountedElsewhere)
+    if (triangle.index != kCountedElsewhere) {
       EXPECT_TRUE(triangles.insert(triangle.index).second);
+    }
   }
   EXPECT_EQ(triangles.size(), before.right.end_index);
   EXPECT_EQ(up.tile.end_index, before.right.end_index);

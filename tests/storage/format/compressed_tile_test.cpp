@@ -278,8 +278,9 @@ TEST(MeshoptCodec, TheFilterIsForPositionsThatComeBackBitForBit) {
     const Bytes before = bytes;
     const bool done = storage::try_filter_positions(bytes);
     EXPECT_EQ(done, bytes != before);
-    if (done)
+    if (done) {
       EXPECT_TRUE(storage::unfilter_positions(bytes));
+    }
     EXPECT_EQ(bytes, before);
     return done;
   };

@@ -70,8 +70,9 @@ TEST(GzipTest, EveryFlippedBitIsRefusedOrHarmless) {
   for (std::size_t bit = 0; bit < 8 * packed.size(); ++bit) {
     Bytes damaged = packed;
     damaged[bit / 8] ^= static_cast<std::byte>(1U << bit % 8);
-    if (failure(damaged).empty())
+    if (failure(damaged).empty()) {
       EXPECT_EQ(gunzip_glb(damaged, "a.glb"), glb) << bit;
+    }
   }
 }
 
