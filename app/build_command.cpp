@@ -2,6 +2,7 @@
 #include "app/options.h"
 #include "config/config.h"
 #include "config/config_reference.h"
+#include "config/named_files.h"
 #include "hierarchy/error.h"
 #include "pipeline/build.h"
 #include "pipeline/estimate.h"
@@ -15,6 +16,7 @@
 #include <ostream>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -24,7 +26,8 @@ namespace meshhier::app {
 namespace {
 
 struct BuildArguments {
-  std::string config;
+  std::vector<std::string> named;  ///< a config, or meshes
+  std::string output;
   std::vector<std::string> settings;
   std::string stats;  ///< file for the account; empty: none
   bool force = false;
@@ -34,21 +37,19 @@ struct BuildArguments {
   std::string help_config;  ///< one of kReferences, or empty
 };
 
-/// --set takes all that follows it, so it swallows a config that comes last: the one item without
-/// "=" is given back. Without one, what is set must do.
-void give_back_config(BuildArguments& arguments) {
-  if (!arguments.config.empty())
+/// --set takes all that follows it, so it swallows files that come last: items without "=" are
+/// given back.
+void give_back_files(BuildArguments& arguments) {
+  if (!arguments.named.empty())
     return;
   std::vector<std::string>& settings = arguments.settings;
-  const auto found = std::find_if(settings.begin(), settings.end(), [](const std::string& item) {
-    return item.find('=') == std::string::npos;
-  });
-  if (found == settings.end() && settings.empty())
-    throw CLI::RequiredError("CONFIG, a config file,");
-  if (found == settings.end())
-    return;
-  arguments.config = *found;
-  settings.erase(found);
+  const auto files = std::stable_partition(
+      settings.begin(), settings.end(),
+      [](const std::string& item) { return item.find('=') != std::string::npos; });
+  arguments.named.assign(files, settings.end());
+  settings.erase(files, settings.end());
+  if (arguments.named.empty() && settings.empty())
+    throw CLI::RequiredError("A mesh or a config");
 }
 
 /// The account must not take the place of what the build reads or makes.
@@ -78,10 +79,10 @@ int run_estimate(const config::Config& config, const BuildArguments& arguments,
 
 int run_build(const BuildArguments& arguments, execution::ProgressMode mode,
               Environment& environment) {
-  const config::Config config =
-      arguments.config.empty()
-          ? config::parse_config("{}", {"--set", {}}, arguments.settings)
-          : config::load_config(environment.files, arguments.config, arguments.settings);
+  config::CommandLine words(arguments.settings);
+  words.output = arguments.output;
+  const config::Config config = config::load_named(
+      environment.files, {arguments.named.begin(), arguments.named.end()}, std::move(words));
   if (arguments.dry_run)
     return run_estimate(config, arguments, environment);
   std::optional<storage::OutputFile> stats;
@@ -113,22 +114,24 @@ const std::map<std::string, std::string (*)()>& references() {
 }
 
 std::string footer() {
-  return R"(The config is JSON; // comments are allowed. Only "input" and "output" are required.
-"input" is a PLY, OBJ, STL or OFF, perhaps in gzip, or a list of files, which are joined; relative
-to the config. With all defaults, `meshhier build --help-config` says what else there is:
+  return R"(FILE is a mesh: a PLY, OBJ, STL or OFF, perhaps in gzip. The hierarchy of scan.ply is made beside
+it, as scan.hier, unless -o names another. Several meshes are joined. --set changes the keys of a
+config; `meshhier build --help-config` says what they mean.
+
+FILE may be a config instead, for jobs to be repeated: JSON with // comments. It needs "input" (a
+mesh, or a list of meshes) and "output", both relative to the config. With all defaults:
 
 )" + config::defaults_text() +
          R"(
 Examples:
+  meshhier build david.ply
+  meshhier build david.ply -o models/david.hier --force
+  meshhier build david.ply --dry-run
+  meshhier build david.obj.gz -o david.3tz --set memory_budget=256MiB
+  meshhier build left.obj.gz right.obj.gz -o both.hier --set weld=true
+  meshhier build david.ply --set storage.compression=meshopt_zlib storage.positions.bits=16
   meshhier build david.json
-  meshhier build david.json --dry-run
-  meshhier build --set input=david.ply output=david.hier
-  meshhier build david.json --set partition.count=128 --set memory_budget=256MiB
-  meshhier build david.json --set input=other.ply output=other.hier --force
-  meshhier build david.json --set 'input=["a.obj.gz", "b.obj.gz"]' weld=true
-  meshhier build david.json --set storage.container=3tz output=david.3tz
-  meshhier build david.json --set storage.compression=meshopt_zlib storage.positions.bits=16
-  meshhier build david.json --stats david.stats.json
+  meshhier build david.json --set partition.count=128 -o coarse.hier --stats coarse.json
 )";
 }
 
@@ -137,11 +140,15 @@ Examples:
 void add_build_command(CLI::App& parser, Invocation& invocation) {
   const auto arguments = std::make_shared<BuildArguments>();
   CLI::App* command = parser.add_subcommand("build", "Make a hierarchy from a mesh");
-  command->add_option("CONFIG", arguments->config,
-                      "The config file; without it --set gives input and output");
+  command->add_option("FILE", arguments->named,
+                      "A mesh, several meshes that are joined, or a config");
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "The hierarchy to make: a directory, or one file if it ends in .3tz")
+      ->type_name("PATH");
   command
       ->add_option("--set", arguments->settings,
-                   "Override keys of the config, dotted: partition.vertices=4096. Paths given here "
+                   "Set keys of the config, dotted: partition.vertices=4096. Paths given here "
                    "are relative to the "
                    "current directory")
       ->type_name("KEY=VALUE");
@@ -175,7 +182,7 @@ void add_build_command(CLI::App& parser, Invocation& invocation) {
       };
       return;
     }
-    give_back_config(*arguments);
+    give_back_files(*arguments);
     invocation.run = [arguments, &invocation](Environment& environment) {
       return run_build(*arguments, invocation.progress, environment);
     };

@@ -3,6 +3,7 @@
 #include "app/process.h"
 #include "config/suggest.h"
 #include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -28,7 +29,7 @@ about equal size, from a coarse view of the whole model down to the original tri
 what the user looks at.)";
 
 constexpr const char* kFooter = R"(Examples:
-  meshhier build david.json                          make the hierarchy that david.json describes
+  meshhier build david.ply                           make the hierarchy david.hier beside the mesh
   meshhier inspect david.hier                        what is in it
   meshhier verify david.hier --input david.ply       prove that it holds the input exactly
   meshhier export david.hier --level 0 -o whole.ply  the coarse view of the whole model
@@ -119,10 +120,11 @@ int execute_guarded(const Invocation& invocation) {
     return fail(ErrorCode::budget,
                 "the system has no more memory; lower memory_budget or close other programs");
   } catch (const std::filesystem::filesystem_error& error) {
-    return fail(ErrorCode::io, error.what());
+    return fail(ErrorCode::io,
+                "cannot use " + error.path1().string() + ": " + error.code().message());
   } catch (const std::exception& error) {
     return fail(ErrorCode::internal,
-                std::string("a defect in meshhier, please report it: ") + error.what());
+                std::string("a defect in meshhier, please report it: ") + json_fault(error.what()));
   }
 }
 

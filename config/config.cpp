@@ -3,11 +3,14 @@
 #include "config/config_schema.h"
 #include "config/suggest.h"
 #include "hierarchy/error.h"
+#include "hierarchy/mesh_name.h"
 #include "hierarchy/plain_text.h"
 
 #include <algorithm>
 #include <cstddef>
+#include <map>
 #include <set>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -132,18 +135,6 @@ class ParseGuard {
   std::vector<std::string> path_;            ///< the current key of each
 };
 
-/// nlohmann's "[json.exception.parse_error.101] parse error at line 3, column 5: ..." without its
-/// first part.
-std::string without_prefix(std::string message) {
-  for (const std::string_view prefix : {"] ", "parse error at ", "parse error: "}) {
-    const std::size_t found = message.find(prefix);
-    if (found != std::string::npos && (prefix != "] " || message.front() == '[')) {
-      message.erase(0, found + prefix.size());
-    }
-  }
-  return message;
-}
-
 Json::parser_callback_t watched_by(ParseGuard& guard) {
   return [&guard](int, Json::parse_event_t event, Json& parsed) { return guard(event, parsed); };
 }
@@ -154,7 +145,7 @@ Json parse_text(std::string_view text, const std::string& name) {
   try {
     document = Json::parse(text, watched_by(guard), true, true);
   } catch (const nlohmann::json::exception& failure) {
-    refuse(name, plain_text(without_prefix(failure.what()), kLongestParserMessage) +
+    refuse(name, plain_text(json_fault(failure.what()), kLongestParserMessage) +
                      " (expected JSON; // comments are allowed, trailing commas are not)");
   }
   if (!document.is_object())
@@ -197,17 +188,29 @@ class Draft {
 
   const Json& document() const { return document_; }
 
-  void apply(const Override& setting) {
-    const std::size_t dot = setting.path.rfind('.');
-    if (dot == std::string::npos) {
-      document_[setting.path] = override_value(setting);
-    } else {
-      const std::string section = setting.path.substr(0, dot);
-      if (!is_config_section(section))
-        refuse_unknown("--set", setting.path);
-      open_section(section)[leaf_of(setting.path)] = override_value(setting);
+  void apply(const Override& setting) { put(setting.path, override_value(setting), "--set"); }
+
+  /// `source`: which words of the command line say so.
+  void put(const std::string& path, Json value, const std::string& source) {
+    const auto [before, is_new] = overridden_.emplace(path, source);
+    if (before->second != source) {
+      refuse(source,
+             fmt::format("\"{}\" is given by {} as well; remove one", path, before->second));
     }
-    overridden_.insert(setting.path);
+    const std::size_t dot = path.rfind('.');
+    if (dot == std::string::npos) {
+      document_[path] = std::move(value);
+      return;
+    }
+    const std::string section = path.substr(0, dot);
+    if (!is_config_section(section))
+      refuse_unknown(source, path);
+    open_section(section)[leaf_of(path)] = std::move(value);
+  }
+
+  bool has(const std::string& path) const {
+    const Json::json_pointer place = json_pointer_to(path);
+    return document_.contains(place);
   }
 
   /// Of two keys that exclude each other, one that was overridden replaces one that was not.
@@ -226,17 +229,12 @@ class Draft {
   }
 
   bool is_overridden(const std::string& path) const {
-    for (std::size_t end = path.find('.'); end != std::string::npos;
-         end = path.find('.', end + 1)) {
-      if (overridden_.contains(path.substr(0, end)))
-        return true;
-    }
-    return overridden_.contains(path);
+    return overriding(path) != overridden_.end();
   }
 
   /// For messages: "config.json: partition.vertices" or "--set partition.vertices".
   std::string origin_of(const std::string& path) const {
-    return is_overridden(path) ? "--set " + path : name_ + ": " + path;
+    return is_overridden(path) ? source_of(path) + ' ' + path : name_ + ": " + path;
   }
 
   [[noreturn]] static void refuse_unknown(const std::string& where, const std::string& path) {
@@ -244,10 +242,22 @@ class Draft {
   }
 
   std::string source_of(const std::string& path) const {
-    return is_overridden(path) ? "--set" : name_;
+    const auto found = overriding(path);
+    return found == overridden_.end() ? name_ : found->second;
   }
 
  private:
+  /// What the command line says of the key or of a section around it.
+  std::map<std::string, std::string>::const_iterator overriding(const std::string& path) const {
+    for (std::size_t end = path.find('.'); end != std::string::npos;
+         end = path.find('.', end + 1)) {
+      const auto found = overridden_.find(path.substr(0, end));
+      if (found != overridden_.end())
+        return found;
+    }
+    return overridden_.find(path);
+  }
+
   /// The object of that dotted path, made if it is not there.
   Json& open_section(const std::string& path) {
     Json* object = &document_;
@@ -265,7 +275,7 @@ class Draft {
 
   Json document_;
   std::string name_;
-  std::set<std::string> overridden_;
+  std::map<std::string, std::string> overridden_;  ///< by what
 };
 
 /// A wrong list for KeyKind::levels: an entry is told by its level, else it is the length.
@@ -363,6 +373,42 @@ void check_placement(const Config& config, const Draft& draft) {
     refuse(draft.origin_of("placement"), "expected both \"longitude\" and \"latitude\"");
 }
 
+constexpr const char* kMeshWords = "the mesh on the command line";
+constexpr const char* kOutputWord = "-o";
+constexpr const char* kContainerKey = "storage.container";
+
+void put_meshes(Draft& draft, const CommandLine& words) {
+  if (words.meshes.empty())
+    return;
+  Json paths = Json::array();
+  for (const std::filesystem::path& mesh : words.meshes)
+    paths.push_back(mesh.string());
+  draft.put("input", std::move(paths), kMeshWords);
+}
+
+/// "models/scan.hier" of "models/scan.ply.gz".
+std::filesystem::path beside(const std::filesystem::path& mesh, const std::string& ending) {
+  const std::string name = mesh.filename().string();
+  const std::string stem = mesh_stem(name);
+  return mesh.parent_path() / ((stem.empty() ? name : stem) + ending);
+}
+
+/// What is not given follows from what is: the name from the mesh, the container from the name.
+void put_output(Draft& draft, const CommandLine& words) {
+  if (!words.output.empty()) {
+    draft.put("output", words.output.string(), kOutputWord);
+    if (words.output.extension() == ".3tz" && !draft.has(kContainerKey))
+      draft.put(kContainerKey, "3tz", kOutputWord);
+  }
+  if (words.meshes.empty() || draft.has("output"))
+    return;
+  if (words.meshes.size() > 1)
+    refuse("output is missing", "several meshes become one hierarchy; name it by -o");
+  const Json::json_pointer place = json_pointer_to(kContainerKey);
+  const bool packed = draft.has(kContainerKey) && draft.document()[place] == "3tz";
+  draft.put("output", beside(words.meshes[0], packed ? ".3tz" : ".hier").string(), kMeshWords);
+}
+
 std::string read_text(storage::FileSystem& files, const std::filesystem::path& path) {
   const std::unique_ptr<storage::File> file = files.open(path);
   const std::uint64_t size = file->size();
@@ -379,12 +425,13 @@ std::string read_text(storage::FileSystem& files, const std::filesystem::path& p
 
 }  // namespace
 
-Config parse_config(std::string_view text, const ConfigOrigin& origin,
-                    std::span<const std::string> overrides) {
+Config parse_config(std::string_view text, const ConfigOrigin& origin, const CommandLine& words) {
   Draft draft(parse_text(text, origin.name), origin.name);
-  for (const std::string& setting : overrides)
+  for (const std::string& setting : words.settings)
     draft.apply(split_override(setting));
   draft.settle("partition", "vertices", "count");
+  put_meshes(draft, words);
+  put_output(draft, words);
 
   Config config;
   assign_all(config, draft, draft.document(), "");
@@ -398,8 +445,8 @@ Config parse_config(std::string_view text, const ConfigOrigin& origin,
 }
 
 Config load_config(storage::FileSystem& files, const std::filesystem::path& file,
-                   std::span<const std::string> overrides) {
-  return parse_config(read_text(files, file), {file.string(), file.parent_path()}, overrides);
+                   const CommandLine& words) {
+  return parse_config(read_text(files, file), {file.string(), file.parent_path()}, words);
 }
 
 Json resolved_json(const Config& config) {

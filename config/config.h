@@ -18,9 +18,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -133,21 +133,32 @@ struct ConfigOrigin {
   std::filesystem::path directory;  ///< relative paths of the text start here; may be empty
 };
 
-/// Reads a config: JSON with // and /* */ comments, then `overrides` on top, in order.
+/// What a command line says besides a config, or instead of one. Its paths are relative to the
+/// current directory.
+struct CommandLine {
+  CommandLine() = default;
+  // NOLINTNEXTLINE(google-explicit-constructor): most say no more
+  CommandLine(std::vector<std::string> what) : settings(std::move(what)) {}
+
+  mesh_io::InputPaths meshes;         ///< the key `input`; may be empty
+  std::filesystem::path output;       ///< the key `output`; may be empty
+  std::vector<std::string> settings;  ///< "key=value", in order
+};
+
+/// Reads a config: JSON with // and /* */ comments, then what the command line says on top.
 ///
-/// An override is "key=value", the key dotted ("partition.vertices"), the value JSON, or else a
-/// plain string. A path given by an override is relative to the current directory, like any path on
-/// a command line. An override of partition.vertices or partition.count replaces whichever of the
-/// two the text has.
+/// A setting is "key=value", the key dotted ("partition.vertices"), the value JSON, or else a
+/// plain string. One of partition.vertices or partition.count replaces whichever of the two the
+/// text has. `output` also decides the container by its ending, ".3tz", unless a key does; without
+/// any output, that of one mesh is beside it: scan.hier of scan.ply.gz.
 ///
 /// Throws Error(usage) naming origin, key, what was expected, what was found and the nearest known
 /// key.
-Config parse_config(std::string_view text, const ConfigOrigin& origin,
-                    std::span<const std::string> overrides);
+Config parse_config(std::string_view text, const ConfigOrigin& origin, const CommandLine& words);
 
 /// parse_config() of a file; its paths are relative to the file's directory. Throws also Error(io).
 Config load_config(storage::FileSystem& files, const std::filesystem::path& file,
-                   std::span<const std::string> overrides);
+                   const CommandLine& words);
 
 /// What decides the result: weld, partition, simplify, outline, storage; not paths, budget,
 /// threads, container. All defaults are filled in, except that simplify.vertices is absent if it

@@ -18,4 +18,14 @@ std::string plain_text(std::string_view text, std::size_t most_bytes) {
   return cut ? plain + "..." : plain;
 }
 
+std::string json_fault(std::string_view message) {
+  if (message.starts_with('[') && message.find("] ") != std::string_view::npos)
+    message.remove_prefix(message.find("] ") + 2);
+  for (const std::string_view prefix : {"parse error at ", "parse error: "}) {
+    if (message.starts_with(prefix))
+      message.remove_prefix(prefix.size());
+  }
+  return std::string(message);
+}
+
 }  // namespace meshhier

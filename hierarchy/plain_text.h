@@ -11,4 +11,8 @@ namespace meshhier {
 /// `most_bytes` the beginning and "..." remain, cut between UTF-8 characters.
 std::string plain_text(std::string_view text, std::size_t most_bytes);
 
+/// What a JSON library says of a text that is none, for people: "line 3, column 5: syntax error
+/// ..." of "[json.exception.parse_error.101] parse error at line 3, column 5: syntax error ...".
+std::string json_fault(std::string_view message);
+
 }  // namespace meshhier

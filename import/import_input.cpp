@@ -9,6 +9,7 @@
 #include "mesh_io/off_reader.h"
 #include "mesh_io/ply_source.h"
 #include "mesh_io/ply_writer.h"
+#include "mesh_io/renamed_file.h"
 #include "mesh_io/stl_reader.h"
 #include "storage/io/file_checksum.h"
 
@@ -37,7 +38,7 @@ class Import {
 
   ImportFacts run(TemporaryFile& ply) {
     env_.progress.stage("import", input_.bytes(), "bytes");
-    if (is_packed_ply(input_.all()[0]) && input_.all().size() == 1 && !input_.weld()) {
+    if (input_.is_unpacked_only()) {
       unpack(input_.all()[0], ply);
     } else {
       for (const InputFileFacts& file : input_.all())
@@ -51,10 +52,6 @@ class Import {
   }
 
  private:
-  static bool is_packed_ply(const InputFileFacts& file) {
-    return file.format.kind == MeshKind::ply && file.format.is_gzip;
-  }
-
   /// What a file adds to the mesh besides vertices and triangles.
   struct Added {
     AttributeLayout layout;
@@ -158,28 +155,25 @@ class Import {
 
   Added add_ply(const InputFileFacts& facts, const std::filesystem::path& room) {
     if (!facts.format.is_gzip) {
-      const Added added = add_plain_ply(facts.path, facts.path, &facts);
+      const auto source = mesh_io::make_ply_source(env_.files.open(facts.path));
+      const Added added = add_plain_ply(*source, facts.path);
+      note(facts, source->description().file_bytes,
+           source->checksum([this] { env_.cancel.check(); }));
       env_.progress.advance(facts.identity.bytes);
       return added;
     }
     TemporaryFile unpacked(env_.files, room, env_.scratch.pool().scratch_use());
     unpack(facts, unpacked);
-    try {
-      return add_plain_ply(room, facts.path, nullptr);
-    } catch (const Error& error) {
-      throw error.code() == ErrorCode::input ? error.within(facts.path.string() + " (unpacked)")
-                                             : error;
-    }
+    const auto source =
+        mesh_io::make_ply_source(mesh_io::renamed(env_.files.open(room), facts.unpacked_name()));
+    return add_plain_ply(*source, facts.path);
   }
 
-  /// `noted`: whose checksum is to be noted.
-  Added add_plain_ply(const std::filesystem::path& path, const std::filesystem::path& name,
-                      const InputFileFacts* noted) {
-    const auto source = mesh_io::make_ply_source(env_.files.open(path));
-    const mesh_io::MeshDescription& description = source->description();
-    const std::uint32_t base = checked_base(name, description.vertex_count);
+  Added add_plain_ply(mesh_io::MeshSource& source, const std::filesystem::path& path) {
+    const mesh_io::MeshDescription& description = source.description();
+    const std::uint32_t base = checked_base(path, description.vertex_count);
     Added added{.layout = description.attributes};
-    source->read_vertices([&](const mesh_io::VertexBlock& block) {
+    source.read_vertices([&](const mesh_io::VertexBlock& block) {
       env_.cancel.check();
       for (const Vec3f& p : block.positions)
         mesh_.positions.append(to_double(p));
@@ -187,12 +181,10 @@ class Import {
       added.fits_float = added.fits_float && std::ranges::all_of(block.exact, fits_float);
       mesh_.attributes.append(block.attributes);
     });
-    const mesh_io::FaceCounts counts = source->read_triangles(
+    const mesh_io::FaceCounts counts = source.read_triangles(
         [&](std::span<const Triangle<VertexId>> triangles) { append(triangles, base); });
     added.faces = counts.faces;
     added.degenerate_triangles = counts.degenerate_triangles;
-    if (noted != nullptr)
-      note(*noted, description.file_bytes, source->checksum([this] { env_.cancel.check(); }));
     return added;
   }
 
@@ -367,9 +359,7 @@ std::uint64_t predict_import(const InputFiles& input, const ImportMemory& memory
   std::uint64_t content = 0;
   for (const InputFileFacts& file : input.all())
     content += file.identity.bytes * (file.format.is_gzip ? kPacked : 1);
-  const bool is_unpacked_only =
-      input.all().size() == 1 && !input.weld() && input.all()[0].format.kind == MeshKind::ply;
-  const std::uint64_t spools = is_unpacked_only ? 0 : kSpools * content;
+  const std::uint64_t spools = input.is_unpacked_only() ? 0 : kSpools * content;
   return content + spools - std::min(spools, memory.pool_bytes);
 }
 

@@ -12,8 +12,13 @@ namespace meshhier::importing {
 
 InputFiles::InputFiles(storage::FileSystem& files, const mesh_io::InputPaths& paths, bool weld)
     : files_(files), weld_(weld) {
-  for (const std::filesystem::path& path : paths)
+  for (const std::filesystem::path& path : paths) {
+    if (files.is_directory(path)) {
+      throw Error(ErrorCode::io,
+                  path.string() + " is a folder; name the mesh in it (PLY, OBJ, STL or OFF)");
+    }
     all_.push_back({path, mesh_io::detect_format(*files.open(path)), files.identity(path)});
+  }
 }
 
 std::string InputFiles::name() const {
@@ -23,6 +28,15 @@ std::string InputFiles::name() const {
     name += file.path.filename().string();
   }
   return name;
+}
+
+std::string InputFiles::imported_name() const {
+  if (is_unpacked_only())
+    return all_[0].unpacked_name();
+  mesh_io::InputPaths paths;
+  for (const InputFileFacts& file : all_)
+    paths.push_back(file.path);
+  return paths.string() + " (imported)";
 }
 
 std::uint64_t InputFiles::bytes() const {

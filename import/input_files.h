@@ -22,6 +22,8 @@ struct InputFileFacts {
   storage::FileIdentity identity;
 
   bool is_plain_ply() const { return format.kind == mesh_io::MeshKind::ply && !format.is_gzip; }
+  /// What its content is called in messages when it is no longer packed.
+  std::string unpacked_name() const { return path.string() + " (unpacked)"; }
 };
 
 class InputFiles {
@@ -34,8 +36,15 @@ class InputFiles {
   /// Not one PLY that is read in place as it is.
   bool needs_import() const { return weld_ || all_.size() != 1 || !all_[0].is_plain_ply(); }
 
+  /// One packed PLY, to be unpacked and nothing else.
+  bool is_unpacked_only() const {
+    return !weld_ && all_.size() == 1 && all_[0].format.kind == mesh_io::MeshKind::ply;
+  }
+
   /// File names, with ", " between them.
   std::string name() const;
+  /// What the mesh that they are imported to is called in messages.
+  std::string imported_name() const;
   std::uint64_t bytes() const;
   /// One number for the times of all files.
   std::int64_t modified_ns() const;

@@ -1,5 +1,8 @@
 #include "import/mesh_input.h"
 
+#include "mesh_io/ply_source.h"
+#include "mesh_io/renamed_file.h"
+
 #include <utility>
 
 namespace meshhier::importing {
@@ -17,11 +20,16 @@ void MeshInput::import(const Place& place) {
   ply_.emplace(system_, place.ply, place.pool.scratch_use());
   facts_ = import_input(input_, *ply_,
                         {system_, scratch, place.sort_bytes, place.progress, place.cancel});
-  description_ = mesh_io::open_mesh(system_, place.ply)->description();
+  description_ = open_imported()->description();
 }
 
 std::unique_ptr<mesh_io::MeshSource> MeshInput::open() {
-  return needs_import() ? mesh_io::open_mesh(system_, ply_->path()) : std::move(in_place_);
+  return needs_import() ? open_imported() : std::move(in_place_);
+}
+
+std::unique_ptr<mesh_io::MeshSource> MeshInput::open_imported() {
+  return mesh_io::make_ply_source(
+      mesh_io::renamed(system_.open(ply_->path()), input_.imported_name()));
 }
 
 std::uint64_t MeshInput::checksum(const execution::CancelToken& cancel) {

@@ -52,6 +52,8 @@ class MeshInput {
   std::uint64_t checksum(const execution::CancelToken& cancel);
 
  private:
+  std::unique_ptr<mesh_io::MeshSource> open_imported();
+
   storage::FileSystem& system_;
   InputFiles input_;
   std::unique_ptr<mesh_io::MeshSource> in_place_;

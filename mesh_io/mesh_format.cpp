@@ -79,6 +79,24 @@ std::optional<MeshKind> kind_of(std::string_view start, std::uint64_t file_bytes
   return is_gzip && size ? std::optional(MeshKind::stl_binary) : std::nullopt;
 }
 
+/// What is looked at of the content; a PLY is known by its first bytes.
+std::string start_of(const storage::File& file) {
+  std::string start(4, '\0');
+  start.resize(file.read_at(0, std::as_writable_bytes(std::span(start))));
+  if (is_ply(start))
+    return start;
+  start.resize(kLookedAt);
+  start.resize(
+      open_stream({file, file.size()}, {})->read(std::as_writable_bytes(std::span(start))));
+  return start;
+}
+
+std::optional<MeshFormat> format_of(std::uint64_t file_bytes, bool is_gzip,
+                                    std::string_view start) {
+  const auto kind = kind_of(start, file_bytes, is_gzip);
+  return kind ? std::optional(MeshFormat{*kind, is_gzip}) : std::nullopt;
+}
+
 }  // namespace
 
 std::string name_of(const MeshFormat& format) {
@@ -87,21 +105,20 @@ std::string name_of(const MeshFormat& format) {
          (format.is_gzip ? " (gzip)" : "");
 }
 
+std::optional<MeshFormat> find_format(const storage::File& file) {
+  return format_of(file.size(), is_gzip(file), start_of(file));
+}
+
 MeshFormat detect_format(const storage::File& file) {
-  const InputFile input{file, file.size()};
-  std::string start(4, '\0');
-  start.resize(file.read_at(0, std::as_writable_bytes(std::span(start))));
-  if (is_ply(start))
-    return {MeshKind::ply, false};
+  const std::uint64_t bytes = file.size();
   const bool packed = is_gzip(file);
-  start.resize(kLookedAt);
-  start.resize(open_stream(input, {})->read(std::as_writable_bytes(std::span(start))));
-  if (const auto kind = kind_of(start, input.bytes, packed))
-    return {*kind, packed};
+  const std::string start = start_of(file);
+  if (const auto format = format_of(bytes, packed, start))
+    return *format;
   std::string hint;
   if (const auto size = stl_size(start); size && !packed && !is_text(start)) {
     hint = fmt::format("; as a binary STL it would have {} bytes, it has {} (truncated?)", *size,
-                       input.bytes);
+                       bytes);
   }
   fail_file(file.path(), fmt::format("expected a mesh (PLY, OBJ, STL or OFF, or one of them packed "
                                      "by gzip), found {}{}",

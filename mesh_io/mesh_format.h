@@ -4,6 +4,7 @@
 #include "mesh_io/input_stream.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace meshhier::mesh_io {
@@ -22,5 +23,8 @@ std::string name_of(const MeshFormat& format);
 /// begins with "solid", as texts do, is binary if its size says so or (where it is packed) if the
 /// first bytes are no text. Throws Error(input) if it is none of these, Error(io).
 MeshFormat detect_format(const storage::File& file);
+
+/// The same; nothing if it is none of these.
+std::optional<MeshFormat> find_format(const storage::File& file);
 
 }  // namespace meshhier::mesh_io

@@ -66,6 +66,7 @@ BuildReport build_hierarchy(const config::Config& config, const BuildOptions& op
                                          thread_count(config));
   const storage::Output output(config.output, config.storage.container);
   storage::check_output(files, output, options.force);
+  check_place(config.output, files);
   if (plan)
     check_disk(plan->disk, config.output, files);
   else

@@ -144,6 +144,7 @@ TimeEstimate estimate_time(const BuildPlan& plan, config::SimplifyMethod method,
 BuildEstimate estimate_build(const config::Config& config, bool force, storage::FileSystem& files,
                              const execution::CancelToken& cancel) {
   check_apart(config, files);
+  check_place(config.output, files);
   storage::MemoryPool pool(0);
   importing::MeshInput input(config.input, config.weld, files);
   if (input.needs_import()) {

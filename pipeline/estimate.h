@@ -45,7 +45,6 @@ struct BuildEstimate {
 /// Refuses what build_hierarchy() refuses before its work, with the same Error; leaves nothing
 /// behind. Input that must be imported is imported to count it, into temporary files beside the
 /// output, which takes as long as in a build; of all else only the header is read.
-/// Whether the output's directory can be written is found out by building only.
 BuildEstimate estimate_build(const config::Config& config, bool force, storage::FileSystem& files,
                              const execution::CancelToken& cancel = execution::CancelToken());
 

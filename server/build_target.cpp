@@ -1,6 +1,6 @@
 #include "server/build_target.h"
 
-#include "server/inbox.h"
+#include "hierarchy/mesh_name.h"
 
 #include <algorithm>
 #include <optional>

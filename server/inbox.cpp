@@ -1,33 +1,10 @@
 #include "server/inbox.h"
 
-#include "server/text.h"
+#include "hierarchy/mesh_name.h"
 
 #include <utility>
 
 namespace meshhier::server {
-namespace {
-
-/// 0 if it is no mesh's name.
-std::size_t stem_length(std::string_view name) {
-  std::string text = lower_case(name);
-  if (text.ends_with(".gz"))
-    text.resize(text.size() - 3);
-  for (const std::string_view ending : {".ply", ".obj", ".stl", ".off"}) {
-    if (text.ends_with(ending))
-      return text.size() - ending.size();
-  }
-  return 0;
-}
-
-}  // namespace
-
-bool is_mesh_name(std::string_view name) {
-  return !name.starts_with('.') && stem_length(name) > 0;
-}
-
-std::string mesh_stem(std::string_view name) {
-  return std::string(name.substr(0, stem_length(name)));
-}
 
 Inbox::Inbox(std::filesystem::path directory, std::chrono::milliseconds settle, Clock clock)
     : directory_(std::move(directory)), settle_(settle), clock_(std::move(clock)) {}

@@ -8,17 +8,9 @@
 #include <functional>
 #include <map>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace meshhier::server {
-
-/// Whether a file of that name is taken for a mesh: ".ply", ".obj", ".stl", ".off", perhaps with
-/// ".gz" behind it, upper or lower case; not if it begins with a dot.
-bool is_mesh_name(std::string_view name);
-
-/// The name without these endings: "david" of "david.ply.gz".
-std::string mesh_stem(std::string_view name);
 
 struct InboxFile {
   std::string name;

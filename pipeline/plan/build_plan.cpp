@@ -93,6 +93,23 @@ std::filesystem::path existing_directory(const std::filesystem::path& output,
   return directory.empty() ? "." : directory;
 }
 
+void check_place(const std::filesystem::path& output, storage::FileSystem& files) {
+  constexpr std::size_t kLongestName = 255;  // of Linux's file systems
+  const auto refuse = [&](const std::string& why) {
+    throw Error(ErrorCode::io, fmt::format("cannot make {}: {}", output.string(), why));
+  };
+  const std::size_t length = storage::work_path(output).filename().string().size();
+  if (length > kLongestName)
+    refuse(fmt::format("its name is too long, by {} bytes", length - kLongestName));
+  const std::filesystem::path directory = existing_directory(output, files);
+  if (!files.is_directory(directory))
+    refuse(fmt::format("{} is not a directory", directory.string()));
+  if (const std::string why = files.why_not_writable(directory); !why.empty()) {
+    refuse(fmt::format("{} cannot be written ({}); choose another place for the output",
+                       directory.string(), why));
+  }
+}
+
 void check_import_disk(std::uint64_t bytes, const std::filesystem::path& output,
                        storage::FileSystem& files) {
   const std::filesystem::path directory = existing_directory(output, files);

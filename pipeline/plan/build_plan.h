@@ -45,6 +45,9 @@ void check_apart(const config::Config& config, storage::FileSystem& files);
 std::filesystem::path existing_directory(const std::filesystem::path& output,
                                          storage::FileSystem& files);
 
+/// Throws Error(io) if it is clear already that nothing can be made where `output` is to be.
+void check_place(const std::filesystem::path& output, storage::FileSystem& files);
+
 /// Throws Error(budget) if the disk that will hold `output` has less than `bytes` for an import.
 void check_import_disk(std::uint64_t bytes, const std::filesystem::path& output,
                        storage::FileSystem& files);

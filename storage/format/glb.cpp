@@ -153,7 +153,7 @@ Json parse_json(std::string_view text, const std::string& name) {
   try {
     return Json::parse(text.begin(), text.end(), guard);
   } catch (const Json::exception& error) {
-    fail(name, "is not valid JSON: " + plain_text(error.what(), kMaxParserMessage));
+    fail(name, "is not valid JSON: " + plain_text(json_fault(error.what()), kMaxParserMessage));
   }
 }
 

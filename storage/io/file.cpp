@@ -311,6 +311,14 @@ class PosixFileSystem final : public FileSystem {
     return std::uint64_t{status.f_bavail} * status.f_frsize;
   }
 
+  std::string why_not_writable(const std::filesystem::path& directory) override {
+    if (::faccessat(AT_FDCWD, directory.c_str(), W_OK | X_OK, AT_EACCESS) != 0)
+      return std::strerror(errno);
+    struct statvfs status {};
+    const bool holds_files = ::statvfs(directory.c_str(), &status) != 0 || status.f_blocks > 0;
+    return holds_files ? "" : "the system keeps no files there";
+  }
+
  private:
   static void sync_by(int (*call)(int), const std::filesystem::path& directory) {
     const int descriptor = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);

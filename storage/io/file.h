@@ -149,6 +149,9 @@ class FileSystem {
   virtual void sync_tree(const std::filesystem::path& directory) = 0;
   /// Bytes free for this user on the file system that holds `directory`.
   virtual std::uint64_t free_bytes(const std::filesystem::path& directory) = 0;
+  /// Why no file can be made in that directory, as far as it can be known before: "Permission
+  /// denied"; empty if nothing speaks against it.
+  virtual std::string why_not_writable(const std::filesystem::path& /*directory*/) { return ""; }
 
   const IoCounters& counters() const { return *counters_; }
 

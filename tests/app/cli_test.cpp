@@ -232,7 +232,7 @@ TEST_F(CommandLine, MistakesExitWithUsageAndSayWhatIsWrong) {
   const std::vector<std::pair<Arguments, std::string>> mistakes{
       {{}, "subcommand is required"},
       {{"biuld", "a.json"}, "unknown command \"biuld\"; did you mean \"build\"?"},
-      {{"build"}, "config"},
+      {{"build"}, "A mesh or a config is required"},
       {{"build", "a.json", "--froce"}, "--froce"},
       {{"build", "a.json", "--progress", "loud"}, "auto, bar, json or none"},
       {{"build", "a.json", "--json"}, "--dry-run"},
@@ -427,6 +427,113 @@ TEST_F(CommandLine, SetTakesSeveralSettingsInAnyPlace) {
     EXPECT_EQ(json::parse(inspected.out).at("partitions").at("count"), 3);
     std::filesystem::remove_all(work() / "b.hier");
   }
+}
+
+// ---- a build of meshes
+
+TEST_F(CommandLine, AMeshIsEnough) {
+  const std::string mesh = write_mesh("a.ply").string();
+  const Outcome made = run({"build", mesh, "--set", "partition.vertices=500"});
+  ASSERT_EQ(made.code, 0) << made.messages;
+  EXPECT_EQ(names(), (std::set<std::string>{"a.hier", "a.ply"}));
+  const auto by_mesh = contents(hierarchy());
+  EXPECT_EQ(run({"build", mesh}).code, kExists);
+  EXPECT_EQ(run({"build", write_config(), "--force"}).code, 0);
+  EXPECT_EQ(contents(hierarchy()), by_mesh);
+  EXPECT_EQ(run({"build", "--set", "partition.vertices=500", "--force", mesh}).code, 0);
+  EXPECT_EQ(run({"build", "--force", "--set", "partition.vertices=500", mesh}).code, 0);
+  EXPECT_EQ(contents(hierarchy()), by_mesh);
+}
+
+TEST_F(CommandLine, AMeshIsKnownByItsContent) {
+  const Path mesh = write_mesh("b.dat");
+  ASSERT_EQ(run({"build", mesh.string()}).code, 0);
+  std::filesystem::rename(mesh, work() / "mesh.obj.gz");
+  ASSERT_EQ(run({"build", (work() / "mesh.obj.gz").string()}).code, 0);
+  EXPECT_EQ(names(), (std::set<std::string>{"b.dat.hier", "mesh.hier", "mesh.obj.gz"}));
+}
+
+TEST_F(CommandLine, TheOutputIsNamedByO) {
+  const std::string mesh = write_mesh("a.ply").string();
+  ASSERT_EQ(run({"build", mesh, "-o", (work() / "new" / "x.hier").string()}).code, 0);
+  EXPECT_TRUE(std::filesystem::is_directory(work() / "new" / "x.hier"));
+  const std::string archive = (work() / "x.3tz").string();
+  ASSERT_EQ(run({"build", mesh, "--output", archive}).code, 0);
+  EXPECT_TRUE(std::filesystem::is_regular_file(archive));
+  ASSERT_EQ(run({"build", mesh, "--set", "storage.container=3tz"}).code, 0);
+  EXPECT_TRUE(std::filesystem::is_regular_file(work() / "a.3tz"));
+  ASSERT_EQ(run({"build", write_config(), "-o", (work() / "y.3tz").string()}).code, 0);
+  EXPECT_TRUE(std::filesystem::is_regular_file(work() / "y.3tz"));
+  EXPECT_FALSE(std::filesystem::exists(hierarchy()));
+}
+
+TEST_F(CommandLine, SeveralMeshesAreJoinedUnderAName) {
+  const std::string mesh = write_mesh("a.ply").string();
+  const std::string other = write_mesh("b.ply").string();
+  const Outcome nameless = run({"build", mesh, other});
+  EXPECT_EQ(nameless.code, kUsage);
+  EXPECT_THAT(nameless.messages, HasSubstr("name it by -o"));
+  ASSERT_EQ(run({"build", mesh, other, "-o", hierarchy()}).code, 0);
+  EXPECT_EQ(run({"verify", hierarchy(), "--input", mesh, "--input", other}).code, 0);
+}
+
+TEST_F(CommandLine, AKeyIsGivenOnce) {
+  const std::string mesh = write_mesh("a.ply").string();
+  const std::vector<Arguments> twice{
+      {"build", mesh, "-o", "x.hier", "--set", "output=y.hier"},
+      {"build", mesh, "--set", "input=" + mesh},
+      {"build", mesh, write_config(), "-o", "x.hier"},
+  };
+  for (const Arguments& arguments : twice)
+    EXPECT_EQ(run(arguments).code, kUsage) << ::testing::PrintToString(arguments);
+  EXPECT_THAT(run(twice[0]).messages, HasSubstr("-o: \"output\" is given by --set as well"));
+  EXPECT_EQ(names(), (std::set<std::string>{"a.json", "a.ply"}));
+}
+
+TEST_F(CommandLine, WhatIsNeitherAMeshNorAConfigIsToldSo) {
+  write_text(work() / "a.txt", "Dear Sir,");
+  const Outcome letter = run({"build", (work() / "a.txt").string()});
+  EXPECT_EQ(letter.code, kUsage);
+  EXPECT_THAT(letter.messages, HasSubstr("expected a mesh (PLY, OBJ, STL or OFF, perhaps in gzip) "
+                                         "or a config (JSON), found 'Dear Sir,'"));
+  write_text(work() / "a.ply", "Dear Sir,");
+  const Outcome ply = run({"build", (work() / "a.ply").string()});
+  EXPECT_EQ(ply.code, kInput);
+  EXPECT_THAT(ply.messages, HasSubstr("expected a mesh"));
+  const Outcome folder = run({"build", work().string()});
+  EXPECT_EQ(folder.code, kIo);
+  EXPECT_THAT(folder.messages, HasSubstr("is a folder; name the mesh in it"));
+  write_text(work() / "a.json", "{");
+  EXPECT_THAT(run({"build", (work() / "a.json").string()}).messages,
+              AllOf(HasSubstr("line 1, column"), Not(HasSubstr("json.exception"))));
+}
+
+TEST_F(CommandLine, APlaceThatTakesNoOutputIsToldByTheNameThatWasGiven) {
+  const std::string mesh = write_mesh("a.ply").string();
+  const std::vector<std::pair<std::string, std::string>> places{
+      {mesh + "/x.hier", mesh + " is not a directory"},
+      {"/proc/x.hier", "/proc cannot be written"},
+      {"/proc/absent/x.hier", "/proc cannot be written"},
+      {(work() / std::string(250, 'x')).string(), "its name is too long"},
+  };
+  for (const auto& [output, why] : places) {
+    for (const Arguments& more : {Arguments{}, Arguments{"--dry-run"}}) {
+      Arguments arguments{"build", mesh, "-o", output};
+      arguments.insert(arguments.end(), more.begin(), more.end());
+      const Outcome outcome = run(arguments);
+      EXPECT_EQ(outcome.code, kIo);
+      EXPECT_THAT(outcome.messages, AllOf(HasSubstr("cannot make " + output + ": "), HasSubstr(why),
+                                          Not(HasSubstr("meshhier-work"))));
+    }
+  }
+  EXPECT_EQ(names(), (std::set<std::string>{"a.ply"}));
+}
+
+TEST_F(CommandLine, ADamagedManifestIsToldWithoutTheParsersName) {
+  build();
+  write_text(work() / "a.hier" / "hierarchy.json", "{\"a\": ]");
+  EXPECT_THAT(run({"inspect", hierarchy()}).messages,
+              AllOf(HasSubstr("is not valid JSON: line 1"), Not(HasSubstr("json.exception"))));
 }
 
 // ---- progress

@@ -21,5 +21,12 @@ TEST(PlainText, IsCutBetweenCharacters) {
   EXPECT_EQ(plain_text("\x80\x80\x80", 2), "...");
 }
 
+TEST(JsonFault, IsToldWithoutTheParsersName) {
+  EXPECT_EQ(json_fault("[json.exception.parse_error.101] parse error at line 1, column 2: x"),
+            "line 1, column 2: x");
+  EXPECT_EQ(json_fault("[json.exception.out_of_range.406] number overflow"), "number overflow");
+  EXPECT_EQ(json_fault("plain"), "plain");
+}
+
 }  // namespace
 }  // namespace meshhier::tests

@@ -28,6 +28,7 @@ namespace meshhier::importing {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -478,6 +479,9 @@ TEST_F(ImportTest, BrokenInputLeavesNothingBehind) {
   put("a.ply", tests::gzip(ply.substr(0, ply.size() - 1)));
   EXPECT_EQ(failure(config({"a.ply"})).code(), ErrorCode::input);
   EXPECT_THAT(failure(config({"a.ply"}, true)).what(), HasSubstr("w/in/a.ply (unpacked)"));
+  for (const bool weld : {false, true})
+    EXPECT_THAT(failure(config({"a.ply"}, weld)).what(),
+                AllOf(HasSubstr("w/in/a.ply (unpacked): byte"), Not(HasSubstr("import.ply"))));
   put("a.obj", "# nothing\no x\n");
   EXPECT_THAT(failure(config({"a.obj"})).what(), HasSubstr("no vertices"));
 }

@@ -1,0 +1,72 @@
+#include "config/named_files.h"
+
+#include "hierarchy/error.h"
+#include "hierarchy/mesh_name.h"
+#include "mesh_io/input_error.h"
+#include "mesh_io/mesh_format.h"
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace meshhier::config {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The first bytes behind blanks and the mark of UTF-8.
+std::string first_bytes(const storage::File& file) {
+  constexpr std::size_t kLookedAt = 1024;
+  std::string start(kLookedAt, '\0');
+  start.resize(file.read_at(0, std::as_writable_bytes(std::span(start))));
+  if (start.starts_with("\xef\xbb\xbf"))
+    start.erase(0, 3);
+  return start.erase(0, std::min(start.find_first_not_of(" \t\r\n"), start.size()));
+}
+
+bool begins_as_config(std::string_view text) {
+  return text.starts_with('{') || text.starts_with("//") || text.starts_with("/*");
+}
+
+/// What is told as a mesh is refused as one, if it is none.
+bool is_config(storage::FileSystem& files, const fs::path& path) {
+  if (path.extension() == ".json")
+    return true;
+  if (files.is_directory(path))
+    return false;
+  const auto file = files.open(path);
+  if (mesh_io::find_format(*file))
+    return false;
+  const std::string start = first_bytes(*file);
+  if (begins_as_config(start))
+    return true;
+  if (is_mesh_name(path.filename().string()))
+    return false;
+  throw Error(
+      ErrorCode::usage,
+      fmt::format("{}: expected a mesh (PLY, OBJ, STL or OFF, perhaps in gzip) or a config "
+                  "(JSON), found {}",
+                  path.string(), start.empty() ? "an empty file" : mesh_io::in_quotes(start)));
+}
+
+}  // namespace
+
+Config load_named(storage::FileSystem& files, const std::vector<fs::path>& named,
+                  CommandLine words) {
+  const auto config =
+      std::ranges::find_if(named, [&](const fs::path& path) { return is_config(files, path); });
+  if (config == named.end()) {
+    words.meshes.assign(named.begin(), named.end());
+    return parse_config("{}", {"--set", {}}, words);
+  }
+  if (named.size() == 1)
+    return load_config(files, *config, words);
+  throw Error(ErrorCode::usage, fmt::format("{} is a config: a build takes one config, or meshes; "
+                                            "a config names its meshes by the key \"input\"",
+                                            config->string()));
+}
+
+}  // namespace meshhier::config

@@ -1,0 +1,21 @@
+// The files that `meshhier build` is given: one config, or meshes.
+#pragma once
+
+#include "config/config.h"
+#include "storage/io/file.h"
+
+#include <filesystem>
+#include <vector>
+
+namespace meshhier::config {
+
+/// The config of a build that is given these files; without any, what `words` say must do.
+/// Requires words.meshes to be empty.
+///
+/// A mesh is known by its content, a config by its content or the ending ".json". Throws
+/// Error(usage) for a config beside other files and for a file that is neither, and as
+/// load_config().
+Config load_named(storage::FileSystem& files, const std::vector<std::filesystem::path>& named,
+                  CommandLine words);
+
+}  // namespace meshhier::config
