@@ -90,8 +90,7 @@ int run_build(const BuildArguments& arguments, execution::ProgressMode mode,
     stats.emplace(environment.files, stats_request(arguments, config),
                   [&] { environment.cancel.check(); });
   }
-  const auto progress =
-      execution::make_progress(mode, environment.messages, environment.messages_on_terminal);
+  const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
   const pipeline::BuildReport report =
       pipeline::build_hierarchy(config, {arguments.force, arguments.restart},
                                 {environment.files, *progress, environment.cancel});

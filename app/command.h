@@ -8,6 +8,7 @@
 
 #include <functional>
 #include <iosfwd>
+#include <string>
 
 #include <CLI/CLI.hpp>
 
@@ -17,15 +18,17 @@ namespace meshhier::app {
 struct Environment {
   storage::FileSystem& files;
   const execution::CancelToken& cancel;
-  std::ostream& out;       ///< results
-  std::ostream& messages;  ///< progress and errors
-  bool messages_on_terminal = false;
+  std::ostream& out;             ///< results
+  std::ostream& messages;        ///< progress and errors
+  execution::Terminal terminal;  ///< where messages go
+  std::string program;           ///< as it was called, for lines to be typed
 };
 
 /// What the arguments ask for.
 struct Invocation {
   std::function<int(Environment&)> run;  ///< returns the exit code; throws Error
   execution::ProgressMode progress = execution::ProgressMode::automatic;
+  std::string program = "meshhier";
 };
 
 /// Each registers one subcommand of `parser`. When arguments choose it, `invocation` is filled;

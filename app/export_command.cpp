@@ -37,8 +37,7 @@ inspection::ExportSelection selection(const ExportArguments& arguments) {
 
 int run_export(const ExportArguments& arguments, execution::ProgressMode mode,
                Environment& environment) {
-  const auto progress =
-      execution::make_progress(mode, environment.messages, environment.messages_on_terminal);
+  const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
   const inspection::ExportOptions options{selection(arguments), arguments.output,
                                           arguments.memory_budget, arguments.force};
   require_no_terminal(environment, arguments.output);

@@ -101,7 +101,8 @@ int execute(const Invocation& invocation) {
   static execution::CancelToken cancel;  // signal handlers reach it to the end of the process
   cancel_on_signals(cancel);
   const std::unique_ptr<storage::FileSystem> files = storage::make_posix_file_system();
-  Environment environment{*files, cancel, std::cout, std::cerr, error_output_is_terminal()};
+  Environment environment{*files,    cancel,           std::cout,
+                          std::cerr, error_terminal(), invocation.program};
   const int code = invocation.run(environment);
   flush_results();
   return code;
@@ -130,6 +131,8 @@ int execute_guarded(const Invocation& invocation) {
 
 int run(int argc, char** argv) {
   Invocation invocation;
+  if (argc > 0)
+    invocation.program = argv[0];
   CLI::App parser(kDescription, "meshhier");
   parser.set_version_flag("--version", "meshhier " MESHHIER_VERSION);
   parser.require_subcommand(1);

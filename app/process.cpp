@@ -2,7 +2,9 @@
 
 #include <atomic>
 #include <csignal>
+#include <cstddef>
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 namespace meshhier::app {
@@ -45,8 +47,12 @@ void cancel_on_signals(execution::CancelToken& token) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is then a failed write, told and cleaned up
 }
 
-bool error_output_is_terminal() {
-  return isatty(STDERR_FILENO) == 1;
+execution::Terminal error_terminal() {
+  const auto columns = [] {
+    struct winsize size {};
+    return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 ? std::size_t{size.ws_col} : 0;
+  };
+  return {isatty(STDERR_FILENO) == 1, columns};
 }
 
 bool output_is_terminal() {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "execution/cancel.h"
+#include "execution/progress.h"
 
 namespace meshhier::app {
 
@@ -11,8 +12,9 @@ namespace meshhier::app {
 /// once.
 void cancel_on_signals(execution::CancelToken& token);
 
-/// Whether standard error, or standard output, is a terminal.
-bool error_output_is_terminal();
+/// What standard error is.
+execution::Terminal error_terminal();
+/// Whether standard output is a terminal.
 bool output_is_terminal();
 
 }  // namespace meshhier::app

@@ -20,8 +20,7 @@ struct ProgressiveArguments {
 
 int run_progressive(ProgressiveArguments& arguments, execution::ProgressMode mode,
                     Environment& environment) {
-  const auto progress =
-      execution::make_progress(mode, environment.messages, environment.messages_on_terminal);
+  const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
   arguments.options.output = arguments.output;
   const std::string line = progressive::write_progressive(
       environment.files, arguments.directory, arguments.options, *progress, environment.cancel);

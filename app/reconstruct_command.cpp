@@ -39,8 +39,7 @@ void print_stats(std::ostream& out, const progressive::ReconstructReport& report
 
 int run_reconstruct(ReconstructArguments& arguments, execution::ProgressMode mode,
                     Environment& environment) {
-  const auto progress =
-      execution::make_progress(mode, environment.messages, environment.messages_on_terminal);
+  const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
   arguments.options.output = arguments.output;
   require_no_terminal(environment, arguments.output);
   std::ostream& account = account_stream(environment, arguments.output);

@@ -89,8 +89,7 @@ int run_error(VerifyArguments arguments, execution::Progress& progress, Environm
 
 int run_verify(VerifyArguments arguments, execution::ProgressMode mode, Environment& environment) {
   arguments.options.input.assign(arguments.input.begin(), arguments.input.end());
-  const auto progress =
-      execution::make_progress(mode, environment.messages, environment.messages_on_terminal);
+  const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
   if (arguments.measures_error)
     return run_error(arguments, *progress, environment);
   const inspection::VerifyReport report = inspection::verify_hierarchy(

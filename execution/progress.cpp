@@ -22,8 +22,10 @@ namespace {
 constexpr double kBarInterval = 0.1;
 constexpr double kJsonInterval = 0.5;
 constexpr std::size_t kBarWidth = 24;
-/// Narrower than any terminal of today, so that "\r" always returns to the line's start.
-constexpr std::size_t kLineWidth = 79;
+/// A shorter bar says less than the percentage beside it.
+constexpr std::size_t kLeastBarWidth = 8;
+/// Of a terminal that does not say how wide it is.
+constexpr std::size_t kUsualColumns = 80;
 
 /// A stage at one moment.
 struct Snapshot {
@@ -32,6 +34,8 @@ struct Snapshot {
   std::uint64_t done = 0;
   std::uint64_t total = 0;  ///< 0: unknown
   double seconds = 0;
+  std::optional<double> job_part;
+  std::optional<double> job_seconds_left;
 
   double rate() const { return seconds > 0 ? static_cast<double>(done) / seconds : 0; }
   std::optional<double> seconds_left() const {
@@ -47,10 +51,17 @@ class PacedProgress : public Progress {
   PacedProgress(std::ostream& out, double interval, Clock clock)
       : out_(out), interval_(interval), clock_(std::move(clock)), job_start_(clock_()) {}
 
+  void expect(std::vector<ExpectedStage> stages) override {
+    const std::lock_guard lock(mutex_);
+    end_stage(clock_());
+    job_.expect(std::move(stages));
+  }
+
   void stage(std::string_view name, std::uint64_t total, std::string_view unit) override {
     const std::lock_guard lock(mutex_);
     const double now = clock_();
     end_stage(now);
+    job_.begin(name, unit, total, now);
     name_ = name;
     unit_ = unit;
     total_ = total;
@@ -90,11 +101,22 @@ class PacedProgress : public Progress {
   virtual void show_finish(std::string_view summary, double seconds) = 0;
 
  private:
-  Snapshot snapshot(double now) const { return {name_, unit_, done_, total_, now - stage_start_}; }
+  Snapshot snapshot(double now) {
+    const std::uint64_t done = done_;
+    return {name_,
+            unit_,
+            done,
+            total_,
+            now - stage_start_,
+            job_.part(done),
+            job_.seconds_left(done, now)};
+  }
 
   void end_stage(double now) {
-    if (std::exchange(in_stage_, false))
-      show_end(snapshot(now));
+    if (!std::exchange(in_stage_, false))
+      return;
+    job_.end(now);
+    show_end(snapshot(now));
   }
 
   std::ostream& out_;
@@ -103,6 +125,7 @@ class PacedProgress : public Progress {
   double job_start_;
 
   std::mutex mutex_;  ///< guards all below but the atomics
+  JobProgress job_;
   std::string name_;
   std::string unit_;
   std::uint64_t total_ = 0;
@@ -137,58 +160,86 @@ std::string duration_text(double seconds) {
   return fmt::format("{} h {:02} min", whole / 3600, whole % 3600 / 60);
 }
 
+/// One line of a terminal for the whole job.
 class BarProgress final : public PacedProgress {
  public:
-  BarProgress(std::ostream& out, Clock clock)
-      : PacedProgress(out, kBarInterval, std::move(clock)) {}
+  BarProgress(std::ostream& out, Terminal terminal, Clock clock)
+      : PacedProgress(out, kBarInterval, std::move(clock)), terminal_(std::move(terminal)) {}
 
-  ~BarProgress() override {
-    if (shown_ > 0)
-      out() << '\n' << std::flush;
-  }
+  ~BarProgress() override { wipe(); }
 
  protected:
-  void show_start(const Snapshot& stage) override { redraw(line(stage)); }
-  void show_progress(const Snapshot& stage) override { redraw(line(stage)); }
+  void show_start(const Snapshot& stage) override { redraw(stage); }
+  void show_progress(const Snapshot& stage) override { redraw(stage); }
+  void show_end(const Snapshot& /*stage*/) override {}
+  void show_finish(std::string_view /*summary*/, double /*seconds*/) override { wipe(); }
 
-  void show_end(const Snapshot& stage) override {
-    redraw(fmt::format("{:<10} {} {} in {}", stage.name,
-                       short_number(static_cast<double>(stage.done)), stage.unit,
-                       duration_text(stage.seconds)));
-    out() << '\n' << std::flush;
+ private:
+  /// The last column stays free: a letter there may already wrap.
+  std::size_t width() const {
+    const std::size_t columns = terminal_.columns ? terminal_.columns() : 0;
+    return (columns == 0 ? kUsualColumns : columns) - 1;
+  }
+
+  static std::string numbers(const Snapshot& stage) {
+    if (!stage.job_part)
+      return fmt::format("{} {}", short_number(static_cast<double>(stage.done)), stage.unit);
+    return fmt::format(
+        "{:>3} %{}", static_cast<int>(*stage.job_part * 100),
+        stage.job_seconds_left ? "  " + duration_text(*stage.job_seconds_left) + " left" : "");
+  }
+
+  static std::string line(const Snapshot& stage, std::size_t width) {
+    std::string text = fmt::format("{}  {}", numbers(stage), stage.name);
+    constexpr std::size_t kAround = 3;  // "[] "
+    if (stage.job_part && text.size() + kLeastBarWidth + kAround <= width) {
+      const std::size_t bar = std::min(kBarWidth, width - text.size() - kAround);
+      const auto filled = static_cast<std::size_t>(*stage.job_part * static_cast<double>(bar));
+      text = fmt::format("[{:.<{}}] {}", std::string(filled, '#'), bar, text);
+    }
+    text.resize(std::min(text.size(), width));
+    return text;
+  }
+
+  /// Blanks wipe what the line before had more.
+  void redraw(const Snapshot& stage) {
+    const std::size_t most = width();
+    const std::string text = line(stage, most);
+    const std::size_t old = std::min(shown_, most);
+    out() << '\r' << text << std::string(old - std::min(old, text.size()), ' ') << std::flush;
+    shown_ = text.size();
+  }
+
+  void wipe() {
+    if (shown_ > 0)
+      out() << '\r' << std::string(std::min(shown_, width()), ' ') << '\r' << std::flush;
     shown_ = 0;
   }
 
+  Terminal terminal_;
+  std::size_t shown_ = 0;  ///< letters on the terminal's current line
+};
+
+/// For files and pipes: a line a stage.
+class PlainProgress final : public PacedProgress {
+ public:
+  PlainProgress(std::ostream& out, Clock clock)
+      : PacedProgress(out, kBarInterval, std::move(clock)) {}
+
+ protected:
+  void show_start(const Snapshot& /*stage*/) override {}
+  void show_progress(const Snapshot& /*stage*/) override {}
+  void show_end(const Snapshot& stage) override {
+    out() << fmt::format("{:<10} {} {} in {}\n", stage.name,
+                         short_number(static_cast<double>(stage.done)), stage.unit,
+                         duration_text(stage.seconds))
+          << std::flush;
+  }
   void show_finish(std::string_view summary, double seconds) override {
     out() << fmt::format("{:<10} {}{}{}\n", "done", summary, summary.empty() ? "in " : ", ",
                          duration_text(seconds))
           << std::flush;
   }
-
- private:
-  static std::string line(const Snapshot& stage) {
-    const std::string rate = fmt::format("{} {}/s", short_number(stage.rate()), stage.unit);
-    if (stage.total == 0) {
-      return fmt::format("{:<10} {} {}  {}", stage.name,
-                         short_number(static_cast<double>(stage.done)), stage.unit, rate);
-    }
-    const double part =
-        std::min(1.0, static_cast<double>(stage.done) / static_cast<double>(stage.total));
-    const auto filled = static_cast<std::size_t>(part * static_cast<double>(kBarWidth));
-    const std::optional<double> left = stage.seconds_left();
-    return fmt::format("{:<10} [{:.<{}}] {:>3} %  {}{}", stage.name, std::string(filled, '#'),
-                       kBarWidth, static_cast<int>(part * 100), rate,
-                       left ? "  " + duration_text(*left) + " left" : "");
-  }
-
-  /// Blanks wipe what the line before had more.
-  void redraw(std::string text) {
-    text.resize(std::min(text.size(), kLineWidth));
-    out() << '\r' << text << std::string(shown_ - std::min(shown_, text.size()), ' ') << std::flush;
-    shown_ = text.size();
-  }
-
-  std::size_t shown_ = 0;  ///< letters on the terminal's current line
 };
 
 class JsonProgress final : public PacedProgress {
@@ -211,6 +262,10 @@ class JsonProgress final : public PacedProgress {
   /// Finer times are noise.
   static double milliseconds(double seconds) { return std::round(seconds * 1000) / 1000; }
 
+  static Json rounded(std::optional<double> number) {
+    return number ? Json(std::round(*number * 1e4) / 1e4) : Json();
+  }
+
   void write(std::string_view event, const Snapshot& stage) {
     const std::optional<double> left = stage.seconds_left();
     write_line({{"event", event},
@@ -220,7 +275,9 @@ class JsonProgress final : public PacedProgress {
                 {"unit", stage.unit},
                 {"rate", std::round(stage.rate())},
                 {"seconds", milliseconds(stage.seconds)},
-                {"eta_seconds", left ? Json(milliseconds(*left)) : Json()}});
+                {"eta_seconds", left ? Json(milliseconds(*left)) : Json()},
+                {"job_done", rounded(stage.job_part)},
+                {"job_eta_seconds", rounded(stage.job_seconds_left)}});
   }
 
   void write_line(const Json& event) {
@@ -237,13 +294,15 @@ Clock steady_clock() {
   };
 }
 
-std::unique_ptr<Progress> make_progress(ProgressMode mode, std::ostream& out, bool is_terminal,
-                                        Clock clock) {
+std::unique_ptr<Progress> make_progress(ProgressMode mode, std::ostream& out,
+                                        const Terminal& terminal, Clock clock) {
   if (mode == ProgressMode::automatic)
-    mode = is_terminal ? ProgressMode::bar : ProgressMode::none;
+    mode = terminal.is_terminal ? ProgressMode::bar : ProgressMode::none;
   switch (mode) {
     case ProgressMode::bar:
-      return std::make_unique<BarProgress>(out, std::move(clock));
+      if (terminal.is_terminal)
+        return std::make_unique<BarProgress>(out, terminal, std::move(clock));
+      return std::make_unique<PlainProgress>(out, std::move(clock));
     case ProgressMode::json:
       return std::make_unique<JsonProgress>(out, std::move(clock));
     case ProgressMode::automatic:

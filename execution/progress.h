@@ -1,11 +1,16 @@
 // How far a job is, told while it runs: to people as a bar, to programs as JSON lines.
 #pragma once
 
+#include "execution/job_progress.h"
+
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <iosfwd>
 #include <memory>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace meshhier::execution {
 
@@ -14,6 +19,10 @@ namespace meshhier::execution {
 class Progress {
  public:
   virtual ~Progress() = default;
+
+  /// Says which stages are to come and what each will take, so that the whole job's progress can be
+  /// told. May be said again when more is known. No advance() may run at the same time.
+  virtual void expect(std::vector<ExpectedStage> /*stages*/) {}
 
   /// Ends the stage before and begins the next. `name`: one word ("simplify"); `total`: units of
   /// work in it, 0 if unknown; `unit`: what is counted, plural ("tiles"). No advance() may run at
@@ -40,24 +49,34 @@ class NoProgress final : public Progress {
 
 enum class ProgressMode {
   automatic,  ///< bar on a terminal, none elsewhere
-  bar,   ///< one line, redrawn at most 10 times a second, and one line that stays for each finished
-         ///< stage
+  bar,   ///< on a terminal one line for the whole job, redrawn at most 10 times a second and wiped
+         ///< at the end; elsewhere a plain line for each finished stage
   json,  ///< one JSON object a line, at most 2 a second besides the start and the end of each stage
   none
+};
+
+/// Where progress is shown.
+struct Terminal {
+  // NOLINTNEXTLINE(google-explicit-constructor): most say no more
+  Terminal(bool there = false, std::function<std::size_t()> width = {})
+      : is_terminal(there), columns(std::move(width)) {}
+
+  bool is_terminal;
+  std::function<std::size_t()> columns;  ///< now; none, or 0 if it is unknown
 };
 
 /// Seconds since some moment; never decreases.
 using Clock = std::function<double()>;
 Clock steady_clock();
 
-/// `out` (usually standard error) must outlive the result; `is_terminal` decides what `automatic`
-/// means.
+/// `out` (usually standard error) must outlive the result; `terminal` is what it is.
 ///
 /// The JSON objects have "event": "stage_start" | "progress" | "stage_end", each with "stage",
 /// "done", "total" (null if unknown), "unit", "rate" (units a second since the start of the stage),
-/// "seconds" (likewise) and "eta_seconds" (null if unknown); at the end "event": "finish" with
-/// "seconds" (of the whole job) and "summary".
-std::unique_ptr<Progress> make_progress(ProgressMode mode, std::ostream& out, bool is_terminal,
-                                        Clock clock = steady_clock());
+/// "seconds" (likewise), "eta_seconds" (null if unknown), "job_done" (0 to 1) and "job_eta_seconds"
+/// of the whole job (null if unknown); at the end "event": "finish" with "seconds" (of the whole
+/// job) and "summary".
+std::unique_ptr<Progress> make_progress(ProgressMode mode, std::ostream& out,
+                                        const Terminal& terminal, Clock clock = steady_clock());
 
 }  // namespace meshhier::execution

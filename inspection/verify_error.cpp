@@ -282,6 +282,25 @@ ErrorMeasurement measure_cut(const MeasureJob& job, Cut cut, std::string name,
   return result;
 }
 
+/// As a scan of 54 partitions took.
+std::vector<execution::ExpectedStage> expected_times(const Tree& tree, const ErrorOptions& options,
+                                                     const std::optional<Cut>& cut) {
+  std::vector<execution::ExpectedStage> times{
+      {"original", "partitions", 0, tree.partition_count() * 0.8e-3}};
+  const auto add_measured = [&](std::size_t tiles) {
+    times.push_back({"read", "tiles", 0, static_cast<double>(tiles) * 0.6e-3});
+    times.push_back({"error", "samples", 0, 2.0 * static_cast<double>(options.samples) * 1.5e-6});
+  };
+  if (cut)
+    add_measured(cut->size());
+  else if (const auto* level = std::get_if<Level>(&options.selection))
+    add_measured(tree.node_count(*level));
+  else
+    for (Level each = tree.root().level; each < tree.depth(); each = finer(each))
+      add_measured(tree.node_count(each));
+  return times;
+}
+
 ErrorMeasurement measure_level(const MeasureJob& job, Level level) {
   return measure_cut(job, Cut::of_level(job.reader.tree(), level),
                      fmt::format("level {}", raw(level)), level);
@@ -302,6 +321,7 @@ std::vector<ErrorMeasurement> measure_errors(storage::FileSystem& files, const f
   if (const auto* path = std::get_if<fs::path>(&options.selection))
     cut = read_cut(files, tree, *path);
 
+  progress.expect(expected_times(tree, options, cut));
   progress.stage("original", tree.partition_count(), "partitions");
   const CutSurface original(reader, Cut::of_level(tree, tree.depth()), options.memory_budget / 16,
                             progress, cancel);

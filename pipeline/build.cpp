@@ -123,6 +123,7 @@ BuildReport run_stages(importing::MeshInput& input, storage::WorkDirectory& work
   storage::FileSystem& files = context.files;
   storage::ScratchUse& use = pool.scratch_use();
   pool.set_capacity(context.memory().pool_bytes);
+  meter.expect(wall_times(context.config, context.plan));
   if (files.exists(storage::journal_path(work.path())))
     meter.stage("resume", 0, "entries");
   const OpenWorkshop open = open_workshop(work, input, pool, context);
@@ -145,7 +146,7 @@ BuildReport run_stages(importing::MeshInput& input, storage::WorkDirectory& work
     workshop.tile_scratch.remove();  // the archive needs its room
     outcome.output_bytes = pack(made, work.packed(), use, context);
   }
-  meter.begin("sync");
+  meter.stage("sync", 0, "bytes");
   workshop.tile_scratch.remove();  // the sync would take it along
   work.publish();
   meter.end();

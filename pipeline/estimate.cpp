@@ -19,37 +19,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// ---- rates, measured by `scripts/benchmark scale` (docs/performance.md) ----------------------
-
-// CPU microseconds per input triangle for a whole build, disk to disk, tiles of 8192 vertices.
-constexpr double kEdgeCollapseMicroseconds = 1.4;
-constexpr double kHalfEdgeMicroseconds = 1.4;
-constexpr double kClusterMicroseconds = 0.9;
-
-// The part of it that one thread does while the others wait.
-constexpr double kSerialShare = 0.06;
-
-// What a disk takes or gives on its own, a cloud volume or a laptop's SSD when its cache is full.
-constexpr double kDiskBytesPerSecond = 500e6;
-
 // Temporary bytes are written once and read about twice.
 constexpr double kTemporaryMoves = 3;
 
 // Sweeps over the vertices and the checksum read the input more than once; a part comes from the
 // system's cache.
 constexpr double kInputReads = 2;
-
-double microseconds_per_triangle(config::SimplifyMethod method) {
-  switch (method) {
-    case config::SimplifyMethod::edge_collapse:
-      return kEdgeCollapseMicroseconds;
-    case config::SimplifyMethod::half_edge:
-      return kHalfEdgeMicroseconds;
-    case config::SimplifyMethod::cluster:
-      break;
-  }
-  return kClusterMicroseconds;
-}
 
 std::uint64_t fixed_memory(const BuildEstimate& e) {
   return e.memory_budget_bytes - e.plan.memory.work_bytes - e.plan.memory.pool_bytes;
@@ -127,17 +102,15 @@ void describe_import(const importing::InputFiles& input, const importing::Import
 
 }  // namespace
 
-TimeEstimate estimate_time(const BuildPlan& plan, config::SimplifyMethod method,
+TimeEstimate estimate_time(const config::Config& config, const BuildPlan& plan,
                            std::uint64_t input_bytes) {
   TimeEstimate time;
-  time.cpu_seconds =
-      static_cast<double>(plan.job.face_count) * microseconds_per_triangle(method) * 1e-6;
+  for (const StageTime& stage : cpu_times(config, plan))
+    time.cpu_seconds += stage.seconds;
   const double moved = kInputReads * static_cast<double>(input_bytes) +
                        kTemporaryMoves * static_cast<double>(plan.disk.temporary_bytes) +
                        static_cast<double>(plan.disk.output_bytes);
-  time.wall_seconds =
-      time.cpu_seconds * (kSerialShare + (1 - kSerialShare) / static_cast<double>(plan.threads)) +
-      moved / kDiskBytesPerSecond;
+  time.wall_seconds = wall_seconds(time.cpu_seconds, plan.threads) + moved / kDiskBytesPerSecond;
   return time;
 }
 
@@ -164,7 +137,7 @@ BuildEstimate estimate_build(const config::Config& config, bool force, storage::
   storage::check_output(files, {config.output, config.storage.container}, force);
   check_disk(estimate.plan.disk, config.output, files);
   estimate.tiles = count_tiles(expected_tiles(estimate.plan.job));
-  estimate.time = estimate_time(estimate.plan, config.simplify.method, estimate.mesh.file_bytes);
+  estimate.time = estimate_time(config, estimate.plan, estimate.mesh.file_bytes);
   estimate.memory_budget_bytes = config.memory_budget;
   estimate.least_budget_bytes = least_budget(memory_costs(estimate.plan.job));
   estimate.free_bytes = files.free_bytes(estimate.disk);

@@ -16,13 +16,13 @@
 
 namespace meshhier::pipeline {
 
-/// Time is the least certain of all: a rate for each method, measured on one kind of machine.
+/// Time is the least certain of all: rates measured on one kind of machine (stage_costs.h).
 struct TimeEstimate {
   double cpu_seconds = 0;
   double wall_seconds = 0;
 };
 
-TimeEstimate estimate_time(const BuildPlan& plan, config::SimplifyMethod method,
+TimeEstimate estimate_time(const config::Config& config, const BuildPlan& plan,
                            std::uint64_t input_bytes);
 
 /// The machine the rates are of, for people.

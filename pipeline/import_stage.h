@@ -8,6 +8,7 @@
 #include "storage/io/spool.h"
 
 #include <cstdint>
+#include <vector>
 
 namespace meshhier::pipeline {
 
@@ -16,6 +17,9 @@ std::uint64_t import_disk(const importing::MeshInput& input, const config::Confi
 
 /// What stays of it: the PLY, until the triangles are distributed.
 DiskVolumes imported_disk(const JobSize& job);
+
+/// Of the import and of all that follows, from the files' sizes alone.
+std::vector<StageTime> import_time(const importing::MeshInput& input, const config::Config& config);
 
 /// Imports the input, unless an earlier build did whose work is still there; then it is known what
 /// there is to do. Keeps the work directory if there is earlier work. Throws as

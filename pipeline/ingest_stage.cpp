@@ -179,6 +179,7 @@ SourceVertices SourceMesh::read_vertex_block(std::uint64_t index,
   }
   return {first, memory.positions, memory.attributes};
 }
+
 std::uint64_t input_block_bytes(const JobSize& job) {
   // A block with its copy, its sorted copy and its ranks.
   return kBlock * (2 * job.vertex_bytes() + 32);
@@ -193,6 +194,12 @@ StageMemory ingest_memory(const JobSize& job) {
   const std::uint64_t block = input_block_bytes(job);
   const std::uint64_t least = 2 * block + sample_bytes(job);
   return {block, 2 * job.threads, least, least};
+}
+
+StageTime ingest_time(const JobSize& job) {
+  constexpr double kVertexSeconds = 47e-9;
+  return {"ingest", "vertices", job.vertex_count,
+          static_cast<double>(job.vertex_count) * kVertexSeconds};
 }
 
 DiskVolumes ingest_disk(const JobSize& job) {

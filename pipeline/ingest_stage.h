@@ -25,6 +25,7 @@ std::uint64_t sample_bytes(const JobSize& job);
 
 /// Items are blocks of input.
 StageMemory ingest_memory(const JobSize& job);
+StageTime ingest_time(const JobSize& job);
 /// The vertices once more, if they cannot be read in place, until the triangles are distributed.
 DiskVolumes ingest_disk(const JobSize& job);
 

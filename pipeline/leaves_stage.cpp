@@ -98,6 +98,12 @@ StageMemory leaves_memory(const JobSize& job) {
   return {chunk, job.threads + 1, chunk, (job.threads + 1) * chunk};
 }
 
+StageTime leaves_time(const JobSize& job) {
+  constexpr double kTriangleSeconds = 130e-9;
+  return {"leaves", "partitions", job.partition_count,
+          static_cast<double>(job.face_count) * kTriangleSeconds};
+}
+
 DiskVolumes leaves_disk(const JobSize& job, const TilePopulation& tiles) {
   const double bytes = storage::expected_work_tile_bytes(tiles.partitions, job.vertex_bytes()) +
                        tiles.partitions.boundary * sizeof(partition::LeafPlace);

@@ -13,6 +13,7 @@ namespace meshhier::pipeline {
 
 /// Items are chunks.
 StageMemory leaves_memory(const JobSize& job);
+StageTime leaves_time(const JobSize& job);
 /// Partition tiles, until the end.
 DiskVolumes leaves_disk(const JobSize& job, const TilePopulation& tiles);
 

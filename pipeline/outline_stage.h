@@ -3,9 +3,13 @@
 
 #include "hierarchy/outline.h"
 #include "pipeline/plan/stage_context.h"
+#include "pipeline/plan/stage_cost.h"
+#include "pipeline/plan/tile_population.h"
 #include "pipeline/tiles/forest.h"
 
 namespace meshhier::pipeline {
+
+StageTime outline_time(const config::Config& config, const TilePopulation& tiles);
 
 struct OutlineStageResult {
   Outline outline;

@@ -44,6 +44,12 @@ std::uint64_t pack(const storage::HierarchyReader& made, const fs::path& file,
   return writer.bytes();
 }
 
+StageTime pack_time(const TilePopulation& tiles, double output_bytes, double bytes_per_second) {
+  constexpr double kMoves = 2;  // read and written
+  return {"pack", "files", static_cast<std::uint64_t>(tiles.files()),
+          kMoves * output_bytes / bytes_per_second};
+}
+
 double archive_overhead_bytes(const TilePopulation& tiles) {
   return tiles.files() * storage::kArchivedFileOverhead;
 }

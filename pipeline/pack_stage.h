@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pipeline/plan/stage_context.h"
+#include "pipeline/plan/stage_cost.h"
 #include "pipeline/plan/tile_population.h"
 #include "storage/format/hierarchy_reader.h"
 #include "storage/io/scratch_use.h"
@@ -28,6 +29,9 @@ class TemporaryFiles {
 
 /// Of the archive, beside the files in it.
 double archive_overhead_bytes(const TilePopulation& tiles);
+
+/// Seconds on a disk that takes `bytes_per_second`.
+StageTime pack_time(const TilePopulation& tiles, double output_bytes, double bytes_per_second);
 
 /// Makes the archive `file` of all files of the hierarchy `made`: manifest, index, outline,
 /// tilesets, then tiles level by level; forces it to the disk. What is read counts in `use`.

@@ -196,6 +196,17 @@ StageMemory partition_memory(const JobSize& job) {
   return {block, 2 * job.threads, std::max(splits, distribution), table};
 }
 
+std::vector<StageTime> partition_time(const JobSize& job) {
+  constexpr double kVertexSeconds = 35e-9;
+  constexpr double kTriangleSeconds = 35e-9;
+  const StageTime vertices{kStage, "vertices", job.vertex_count,
+                           static_cast<double>(job.vertex_count) * kVertexSeconds};
+  return {vertices,
+          vertices,
+          {kStage, "triangles", job.face_count,
+           static_cast<double>(job.face_count) * kTriangleSeconds}};
+}
+
 DiskVolumes partition_disk(const JobSize& job, const MemoryPlan& memory) {
   const auto vertices = static_cast<double>(job.vertex_count);
   const partition::RenumberPlan renumbering =

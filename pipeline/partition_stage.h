@@ -7,10 +7,14 @@
 #include "pipeline/tiles/chunks.h"
 #include "storage/io/spool.h"
 
+#include <vector>
+
 namespace meshhier::pipeline {
 
 /// Items are blocks of input.
 StageMemory partition_memory(const JobSize& job);
+/// A sweep for the splits, then vertices and triangles distributed.
+std::vector<StageTime> partition_time(const JobSize& job);
 /// Windows of the medians until the splits are found; ranks, and triangles that wait for one, while
 /// triangles are distributed; chunks until the end of `leaves`.
 DiskVolumes partition_disk(const JobSize& job, const MemoryPlan& memory);

@@ -218,6 +218,17 @@ void publish(Forest& forest, BuildJournal& journal, const PublishInput& input,
   write_account(writer, input, records);
 }
 
+StageTime publish_time(const JobSize& job, const TilePopulation& tiles) {
+  constexpr double kVertexSeconds = 55e-9;
+  constexpr double kPackedByteSeconds = 20e-9;
+  const double vertices = tiles.partitions.vertices + tiles.simplified.vertices;
+  const double packed = job.published_ratio < 1 ? publish_output(job, tiles).plain_bytes : 0;
+  return {"publish", "tiles",
+          static_cast<std::uint64_t>(tiles.partitions.count + tiles.simplified.count -
+                                     tiles.early.count),
+          vertices * kVertexSeconds + packed * kPackedByteSeconds};
+}
+
 OutputCost publish_output(const JobSize& job, const TilePopulation& tiles) {
   constexpr double kFileSlack = 2048;  // half a disk block
   const auto bytes_of = [&](const storage::TileSums& sums) {

@@ -16,6 +16,7 @@ namespace meshhier::pipeline {
 
 /// The published files, for good or until they are packed.
 OutputCost publish_output(const JobSize& job, const TilePopulation& tiles);
+StageTime publish_time(const JobSize& job, const TilePopulation& tiles);
 
 /// What earlier stages learnt and the published files tell.
 struct PublishInput {

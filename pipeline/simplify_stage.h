@@ -12,6 +12,7 @@ namespace meshhier::pipeline {
 
 /// Items are pairs of children and their parent.
 StageMemory simplify_memory(const JobSize& job);
+StageTime simplify_time(const JobSize& job, const TilePopulation& tiles);
 /// Simplified tiles, parent maps and seam strips, until the end.
 DiskVolumes simplify_disk(const JobSize& job, const TilePopulation& tiles);
 

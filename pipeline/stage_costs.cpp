@@ -3,6 +3,7 @@
 #include "pipeline/import_stage.h"
 #include "pipeline/ingest_stage.h"
 #include "pipeline/leaves_stage.h"
+#include "pipeline/outline_stage.h"
 #include "pipeline/pack_stage.h"
 #include "pipeline/partition_stage.h"
 #include "pipeline/publish_stage.h"
@@ -53,6 +54,32 @@ BuildPlan plan_build(const config::Config& config, const mesh_io::MeshDescriptio
   const DiskCosts disk = disk_costs(job, memory, expected_tiles(job));
   return {tree, job.threads, job.target_vertex_counts,
           job,  memory,      predict_disk(disk, memory.pool_bytes)};
+}
+
+std::vector<StageTime> cpu_times(const config::Config& config, const BuildPlan& plan) {
+  const JobSize& job = plan.job;
+  const TilePopulation tiles = expected_tiles(job);
+  std::vector<StageTime> times = partition_time(job);
+  times.insert(times.begin(), ingest_time(job));
+  times.insert(times.end(), {leaves_time(job), simplify_time(job, tiles),
+                             outline_time(config, tiles), publish_time(job, tiles)});
+  return times;
+}
+
+double wall_seconds(double cpu_seconds, std::size_t threads) {
+  constexpr double kSerialShare = 0.06;
+  return cpu_seconds * (kSerialShare + (1 - kSerialShare) / static_cast<double>(threads));
+}
+
+std::vector<StageTime> wall_times(const config::Config& config, const BuildPlan& plan) {
+  std::vector<StageTime> times = cpu_times(config, plan);
+  for (StageTime& stage : times)
+    stage.seconds = wall_seconds(stage.seconds, plan.threads);
+  const auto output = static_cast<double>(plan.disk.output_bytes);
+  if (plan.job.packed)
+    times.push_back(pack_time(expected_tiles(plan.job), output, kDiskBytesPerSecond));
+  times.push_back({"sync", "bytes", 0, output / kDiskBytesPerSecond});
+  return times;
 }
 
 std::optional<DiskNeed> refine_disk(const BuildPlan& plan, const storage::TileSums& partitions) {

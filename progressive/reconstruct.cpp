@@ -188,6 +188,7 @@ ReconstructReport reconstruct(storage::FileSystem& files, const fs::path& stream
 
   ReconstructReport report;
   report.array_bytes = Reconstruction::memory_bytes(size, index.source.attributes);
+  progress.expect({{"reconstruct", "files", 0, 4}, {"write", "files", 0, 1}});  // measured
   progress.stage("reconstruct", std::uint64_t{details} + 1, "files");
   Client client(files, stream, index, size);
   for (std::uint32_t step = 0; step <= details; ++step) {

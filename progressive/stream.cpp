@@ -111,6 +111,8 @@ class StreamWriter {
     std::vector<LevelLists> lists;
     for (int level = 0; level <= raw(reader_.tree().depth()); ++level)
       lists.emplace_back(scratch);
+    // Tracing a tile took twice as long as writing what it loses.
+    progress.expect({{"trace", "tiles", 0, 2}, {"write", "entries", 0, 1}});
     trace(lists, progress, cancel);
     return write_files(lists, directory, progress, cancel);
   }

@@ -10,6 +10,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -54,6 +55,9 @@ class StageMeter final : public execution::Progress {
   };
   explicit StageMeter(Sources sources);
 
+  void expect(std::vector<execution::ExpectedStage> stages) override {
+    sources_.shown.expect(std::move(stages));
+  }
   void stage(std::string_view name, std::uint64_t total, std::string_view unit) override;
   void advance(std::uint64_t count) override { sources_.shown.advance(count); }
   void finish(std::string_view summary) override { sources_.shown.finish(summary); }

@@ -1,7 +1,8 @@
 // What the stages of a build take, as values: each stage tells it beside its code (*_memory(),
-// *_disk()), pipeline/stage_costs collects it, and the plan adds it up.
+// *_disk(), *_time()), pipeline/stage_costs collects it, and the plan adds it up.
 #pragma once
 
+#include "execution/job_progress.h"
 #include "pipeline/tiles/chunks.h"
 
 #include <cstddef>
@@ -25,6 +26,10 @@ struct MemoryCosts {
   StageMemory ingest, partition, leaves, simplify;
   ChunkSpools chunk_spools;
 };
+
+/// CPU seconds of a stage on the machine of kRateMachine, as `scripts/benchmark scale` measured
+/// them, disk to disk; an entry for each pass that it tells progress of.
+using StageTime = execution::ExpectedStage;
 
 /// When the most lies on disk, in the order of a build.
 enum class DiskMoment {

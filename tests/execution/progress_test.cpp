@@ -79,18 +79,42 @@ TEST(JsonProgress, TellsStartProgressEndAndFinish) {
   ASSERT_THAT(lines, SizeIs(6));
   EXPECT_EQ(lines[0],
             nlohmann::json::parse(R"({"event":"stage_start","stage":"simplify","done":0,"total":400,
-      "unit":"tiles","rate":0.0,"seconds":0.0,"eta_seconds":null})"));
+      "unit":"tiles","rate":0.0,"seconds":0.0,"eta_seconds":null,
+      "job_done":0.0,"job_eta_seconds":null})"));
   EXPECT_EQ(lines[1],
             nlohmann::json::parse(R"({"event":"progress","stage":"simplify","done":100,"total":400,
-      "unit":"tiles","rate":50.0,"seconds":2.0,"eta_seconds":6.0})"));
+      "unit":"tiles","rate":50.0,"seconds":2.0,"eta_seconds":6.0,
+      "job_done":0.25,"job_eta_seconds":6.0})"));
   EXPECT_EQ(lines[2],
             nlohmann::json::parse(R"({"event":"stage_end","stage":"simplify","done":100,"total":400,
-      "unit":"tiles","rate":25.0,"seconds":4.0,"eta_seconds":12.0})"));
+      "unit":"tiles","rate":25.0,"seconds":4.0,"eta_seconds":12.0,
+      "job_done":0.25,"job_eta_seconds":12.0})"));
   EXPECT_EQ(lines[3]["stage"], "outline");
   EXPECT_EQ(lines[3]["total"], nullptr);
   EXPECT_EQ(lines[4]["event"], "stage_end");
   EXPECT_EQ(lines[5],
             nlohmann::json::parse(R"({"event":"finish","seconds":5.0,"summary":"all well"})"));
+}
+
+TEST(JsonProgress, TellsOfTheWholeJob) {
+  std::ostringstream out;
+  Hand hand;
+  const auto progress = make_progress(ProgressMode::json, out, false, hand.clock());
+  progress->expect({{"leaves", "partitions", 10, 10}, {"simplify", "tiles", 90, 90}});
+  progress->stage("leaves", 10, "partitions");
+  hand.now += 10;
+  progress->advance(10);
+  progress->stage("simplify", 90, "tiles");
+  hand.now += 45;
+  progress->advance(45);
+  progress->finish("");
+  const auto lines = json_lines(out.str());
+  ASSERT_THAT(lines, SizeIs(7));
+  EXPECT_EQ(lines[0]["job_done"], 0);
+  EXPECT_EQ(lines[0]["job_eta_seconds"], 100);
+  EXPECT_DOUBLE_EQ(lines[4]["job_done"], 0.55);
+  EXPECT_DOUBLE_EQ(lines[4]["job_eta_seconds"], 45);
+  EXPECT_EQ(lines[5]["job_done"], 1);
 }
 
 TEST(JsonProgress, WritesAtMostTwoEventsASecond) {
@@ -140,19 +164,20 @@ TEST(JsonProgress, CountsOfManyThreadsAddUp) {
     EXPECT_GE(lines[i]["done"], lines[i - 1]["done"]);
 }
 
-TEST(BarProgress, ShowsStagePercentRateAndTimeLeft) {
+TEST(BarProgress, ShowsTheJobWithItsTimeLeftAndTheStageBesideIt) {
   std::ostringstream out;
   Hand hand;
   const auto progress = make_progress(ProgressMode::bar, out, true, hand.clock());
-  progress->stage("simplify", 4'000'000, "tiles");
-  hand.now += 30;
-  progress->advance(1'000'000);
-  EXPECT_THAT(
-      on_terminal(out.str()),
-      ElementsAre("simplify   [######..................]  25 %  33.3 k tiles/s  1 min 30 s left"));
+  progress->expect({{"ingest", "vertices", 1000, 1}, {"simplify", "tiles", 4000, 99}});
+  progress->stage("ingest", 1000, "vertices");
+  progress->stage("simplify", 4000, "tiles");
+  hand.now += 24.75;
+  progress->advance(1000);
+  EXPECT_THAT(on_terminal(out.str()),
+              ElementsAre("[######..................]  25 %  1 min 12 s left  simplify"));
 }
 
-TEST(BarProgress, LeavesALineForEachStage) {
+TEST(BarProgress, IsOneLineThatIsWipedAtTheEnd) {
   std::ostringstream out;
   Hand hand;
   {
@@ -163,11 +188,54 @@ TEST(BarProgress, LeavesALineForEachStage) {
     progress->stage("outline", 0, "sectors");
     hand.now += 7200;
     progress->advance(64);
+    EXPECT_THAT(on_terminal(out.str()), ElementsAre("64 sectors  outline"));
     progress->finish("128 tiles");
   }
-  EXPECT_THAT(on_terminal(out.str()), ElementsAre("ingest     2.50 k blocks in 1.5 s",
-                                                  "outline    64 sectors in 2 h 00 min",
-                                                  "done       128 tiles, 2 h 00 min", ""));
+  EXPECT_THAT(on_terminal(out.str()), ElementsAre(""));
+  EXPECT_THAT(out.str(), EndsWith("\r"));
+}
+
+TEST(BarProgress, NeverWrapsWhateverTheWidth) {
+  for (const std::size_t columns : {0U, 1U, 2U, 7U, 20U, 30U, 41U, 200U}) {
+    std::ostringstream out;
+    Hand hand;
+    std::size_t now = columns;
+    {
+      const auto progress =
+          make_progress(ProgressMode::bar, out, Terminal(true, [&] { return now; }), hand.clock());
+      progress->expect({{"simplify", "tiles", 100, 5000}});
+      progress->stage("simplify", 100, "tiles");
+      hand.now += 1;
+      progress->advance(50);
+      now = columns / 2 + 1;  // somebody drags the window
+      hand.now += 1;
+      progress->advance(1);
+    }
+    std::istringstream pictures(out.str());
+    const std::size_t most = (columns == 0 ? 80 : columns) - 1;
+    for (std::string picture; std::getline(pictures, picture, '\r');)
+      EXPECT_LE(picture.size(), most) << columns;
+    EXPECT_THAT(out.str(), Not(HasSubstr("\n")));
+  }
+}
+
+TEST(PlainProgress, HasALineForEachStageAndNoControlCharacter) {
+  std::ostringstream out;
+  Hand hand;
+  {
+    const auto progress = make_progress(ProgressMode::bar, out, false, hand.clock());
+    progress->stage("ingest", 2500, "blocks");
+    hand.now += 1.5;
+    progress->advance(2500);
+    progress->stage("outline", 0, "sectors");
+    hand.now += 7200;
+    progress->advance(64);
+    progress->finish("128 tiles");
+  }
+  EXPECT_EQ(out.str(),
+            "ingest     2.50 k blocks in 1.5 s\n"
+            "outline    64 sectors in 2 h 00 min\n"
+            "done       128 tiles, 2 h 00 min\n");
 }
 
 TEST(BarProgress, RedrawsAtMostTenTimesASecond) {
@@ -202,14 +270,15 @@ TEST(BarProgress, StaysWithinTheLineAndTheTotal) {
               AllOf(HasSubstr("] 100 %"), HasSubstr("  0.0 s left")));
 }
 
-TEST(BarProgress, AbortedJobLeavesTheCursorOnANewLine) {
+TEST(BarProgress, AbortedJobLeavesAnEmptyLine) {
   std::ostringstream out;
   Hand hand;
   {
     const auto progress = make_progress(ProgressMode::bar, out, true, hand.clock());
     progress->stage("ingest", 10, "blocks");
   }
-  EXPECT_THAT(out.str(), EndsWith("\n"));
+  EXPECT_THAT(on_terminal(out.str()), ElementsAre(""));
+  EXPECT_THAT(out.str(), EndsWith("\r"));
 }
 
 TEST(BarProgress, AdvanceWithoutAStageIsIgnored) {
@@ -218,7 +287,7 @@ TEST(BarProgress, AdvanceWithoutAStageIsIgnored) {
   const auto progress = make_progress(ProgressMode::bar, out, true, hand.clock());
   progress->advance(5);
   progress->finish("");
-  EXPECT_THAT(on_terminal(out.str()), ElementsAre("done       in 0.0 s", ""));
+  EXPECT_EQ(out.str(), "");
 }
 
 TEST(MakeProgress, AutomaticIsABarOnATerminalOnly) {
