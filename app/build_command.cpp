@@ -1,5 +1,6 @@
 #include "app/command.h"
 #include "app/options.h"
+#include "app/shell_word.h"
 #include "config/config.h"
 #include "config/config_reference.h"
 #include "config/named_files.h"
@@ -32,6 +33,7 @@ struct BuildArguments {
   std::string stats;  ///< file for the account; empty: none
   bool force = false;
   bool restart = false;
+  bool verbose = false;  ///< also the account
   bool dry_run = false;
   bool json = false;        ///< the estimate as JSON
   std::string help_config;  ///< one of kReferences, or empty
@@ -77,6 +79,15 @@ int run_estimate(const config::Config& config, const BuildArguments& arguments,
   return 0;
 }
 
+/// What shows the hierarchy in the browser.
+std::string serve_line(const config::Config& config, const std::string& program) {
+  const std::filesystem::path parent = config.output.parent_path();
+  std::string folder = parent.empty() ? "." : parent.string();
+  if (folder.starts_with('-'))
+    folder.insert(0, "./");
+  return shell_word(program) + " serve " + shell_word(folder) + " --open";
+}
+
 int run_build(const BuildArguments& arguments, execution::ProgressMode mode,
               Environment& environment) {
   config::CommandLine words(arguments.settings);
@@ -97,10 +108,11 @@ int run_build(const BuildArguments& arguments, execution::ProgressMode mode,
   progress->finish(config.output.string());
   if (stats)
     write_stats(*stats, report.stats);
-  std::ostream& account = stats ? account_stream(environment, arguments.stats) : environment.out;
-  account << report.text;
-  if (!report.text.empty() && report.text.back() != '\n')
-    account << '\n';
+  std::ostream& out = stats ? account_stream(environment, arguments.stats) : environment.out;
+  out << report.text;
+  if (arguments.verbose)
+    out << report.account;
+  out << "next: " << serve_line(config, environment.program) << '\n';
   return 0;
 }
 
@@ -154,6 +166,8 @@ void add_build_command(CLI::App& parser, Invocation& invocation) {
   command->add_flag("--force", arguments->force, "Replace an existing output");
   command->add_flag("--restart", arguments->restart,
                     "Throw away what an earlier build of this output, which was stopped, had done");
+  command->add_flag("--verbose", arguments->verbose,
+                    "Also print what each stage took of time, memory and disk");
   CLI::Option* dry_run =
       command->add_flag("--dry-run", arguments->dry_run,
                         "Read only the mesh's header (or import it to count it); "

@@ -1,6 +1,7 @@
 #include "app/command.h"
 #include "app/options.h"
 #include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
 #include "inspection/verify.h"
 #include "inspection/verify_error.h"
 
@@ -38,7 +39,7 @@ std::string json_text(const inspection::VerifyReport& report) {
 std::string verdict(std::size_t count) {
   if (count == 0)
     return "No problem found";
-  return fmt::format("{} problem{} found", count, count == 1 ? "" : "s");
+  return counted(count, "problems") + " found";
 }
 
 std::string plain_text(const inspection::VerifyReport& report) {

@@ -1,5 +1,8 @@
 #include "execution/progress.h"
 
+#include "execution/size_text.h"
+#include "hierarchy/plain_text.h"
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -149,17 +152,6 @@ std::string short_number(double number) {
   return fmt::format("{:.{}f}{}", number, decimals, kLetters[letter]);
 }
 
-std::string duration_text(double seconds) {
-  if (seconds < 9.95)
-    return fmt::format("{:.1f} s", seconds);
-  const auto whole = static_cast<std::uint64_t>(std::llround(std::min(seconds, 1e9)));
-  if (whole < 60)
-    return fmt::format("{} s", whole);
-  if (whole < 3600)
-    return fmt::format("{} min {:02} s", whole / 60, whole % 60);
-  return fmt::format("{} h {:02} min", whole / 3600, whole % 3600 / 60);
-}
-
 /// One line of a terminal for the whole job.
 class BarProgress final : public PacedProgress {
  public:
@@ -230,9 +222,9 @@ class PlainProgress final : public PacedProgress {
   void show_start(const Snapshot& /*stage*/) override {}
   void show_progress(const Snapshot& /*stage*/) override {}
   void show_end(const Snapshot& stage) override {
-    out() << fmt::format("{:<10} {} {} in {}\n", stage.name,
-                         short_number(static_cast<double>(stage.done)), stage.unit,
-                         duration_text(stage.seconds))
+    out() << fmt::format(
+                 "{:<10} {} {} in {}\n", stage.name, short_number(static_cast<double>(stage.done)),
+                 stage.done == 1 ? singular(stage.unit) : stage.unit, duration_text(stage.seconds))
           << std::flush;
   }
   void show_finish(std::string_view summary, double seconds) override {

@@ -1,4 +1,4 @@
-// Sizes as people write them: "512MiB", "1.5 GiB".
+// Sizes and times as people write them: "512MiB", "1.5 GiB", "3.2 s".
 #pragma once
 
 #include <cstdint>
@@ -23,5 +23,8 @@ std::string exact_size_text(std::uint64_t bytes);
 
 /// For people, three digits: "1.46 GiB", "980 B".
 std::string rounded_size_text(std::uint64_t bytes);
+
+/// For people: "3.2 s", "1 min 30 s", "2 h 00 min".
+std::string duration_text(double seconds);
 
 }  // namespace meshhier::execution

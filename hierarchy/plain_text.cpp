@@ -18,6 +18,35 @@ std::string plain_text(std::string_view text, std::size_t most_bytes) {
   return cut ? plain + "..." : plain;
 }
 
+namespace {
+
+std::string singular_word(std::string_view word) {
+  struct Ending {
+    std::string_view plural, singular;
+  };
+  constexpr Ending kEndings[] = {{"ices", "ex"}, {"ies", "y"}, {"s", ""}};
+  for (const Ending& ending : kEndings) {
+    if (word.ends_with(ending.plural)) {
+      return std::string(word.substr(0, word.size() - ending.plural.size()))
+          .append(ending.singular);
+    }
+  }
+  return std::string(word);
+}
+
+}  // namespace
+
+std::string singular(std::string_view words) {
+  const std::size_t space = words.find(' ');
+  if (space == std::string_view::npos)
+    return singular_word(words);
+  return singular_word(words.substr(0, space)) + ' ' + singular(words.substr(space + 1));
+}
+
+std::string counted(std::uint64_t count, std::string_view plural) {
+  return std::to_string(count) + ' ' + (count == 1 ? singular(plural) : std::string(plural));
+}
+
 std::string json_fault(std::string_view message) {
   if (message.starts_with('[') && message.find("] ") != std::string_view::npos)
     message.remove_prefix(message.find("] ") + 2);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -10,6 +11,13 @@ namespace meshhier {
 /// `text` on one line, which a terminal shows as it is: control characters become '?'; of more than
 /// `most_bytes` the beginning and "..." remain, cut between UTF-8 characters.
 std::string plain_text(std::string_view text, std::size_t most_bytes);
+
+/// The singular of English words that count things: "split vertex" of "split vertices". Words end
+/// in "ices", "ies" or "s", or have no plural.
+std::string singular(std::string_view words);
+
+/// "1 vertex", "2 vertices".
+std::string counted(std::uint64_t count, std::string_view plural);
 
 /// What a JSON library says of a text that is none, for people: "line 3, column 5: syntax error
 /// ..." of "[json.exception.parse_error.101] parse error at line 3, column 5: syntax error ...".

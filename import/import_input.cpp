@@ -2,6 +2,7 @@
 
 #include "hierarchy/attribute_names.h"
 #include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
 #include "import/obj_import.h"
 #include "import/raw_mesh.h"
 #include "import/weld.h"
@@ -333,7 +334,7 @@ std::string counts_text(const std::vector<SourceCount>& counts) {
   for (const SourceCount& one : counts) {
     std::string name = one.name;
     std::ranges::replace(name, '_', ' ');
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", one.count, name);
+    text += (text.empty() ? "" : ", ") + counted(one.count, name);
   }
   return text;
 }

@@ -1,4 +1,5 @@
 // What was measured, in words.
+#include "hierarchy/plain_text.h"
 #include "inspection/verify_error.h"
 
 #include <fmt/format.h>
@@ -26,10 +27,10 @@ std::string row(const char* name, const DistanceSummary& summary, double diagona
 }  // namespace
 
 std::string to_text(const ErrorMeasurement& m) {
-  std::string text =
-      fmt::format("{}: {} tile{}, {} triangles{}; {} samples each way\n", m.name, m.tiles,
-                  m.tiles == 1 ? "" : "s", m.triangles,
-                  m.flat > 0 ? fmt::format(", {} of them without area", m.flat) : "", m.samples);
+  std::string text = fmt::format("{}: {}, {}{}; {} each way\n", m.name, counted(m.tiles, "tiles"),
+                                 counted(m.triangles, "triangles"),
+                                 m.flat > 0 ? fmt::format(", {} of them without area", m.flat) : "",
+                                 counted(m.samples, "samples"));
   text += fmt::format("  {:<8} {:>38} | {:>32}\n", "", "input units", "diagonal x 10^-4");
   text += fmt::format("  {:<8} {:>12} {:>12} {:>12} | {:>10} {:>10} {:>10}\n", "", "mean", "rms",
                       "max", "mean", "rms", "max");

@@ -2,6 +2,7 @@
 
 #include "hierarchy/cut.h"
 #include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
 #include "inspection/cut_file.h"
 #include "inspection/cut_mesh.h"
 #include "mesh_io/ply_writer.h"
@@ -106,8 +107,9 @@ std::string export_cut(const ExportJob& job, Cut cut, const std::string& what) {
   }
   copy_triangles(triangles, writer);
   writer.finish();
-  return fmt::format("{}: {} tiles, {} vertices, {} triangles", what, numbered.cut.size(),
-                     content.vertex_count, content.triangle_count);
+  return fmt::format("{}: {}, {}, {}", what, counted(numbered.cut.size(), "tiles"),
+                     counted(content.vertex_count, "vertices"),
+                     counted(content.triangle_count, "triangles"));
 }
 
 std::string export_tile(const ExportJob& job, NodeId node) {
@@ -129,9 +131,9 @@ std::string export_tile(const ExportJob& job, NodeId node) {
   }
   writer.finish();
   job.progress.advance(1);
-  return fmt::format("{}: {} vertices, {} of them its neighbours', {} triangles, {} of them border",
-                     what, content.vertex_count, mesh.ghosts.size(), content.triangle_count,
-                     mesh.border.size());
+  return fmt::format("{}: {}, {} of them its neighbours', {}, {} of them border", what,
+                     counted(content.vertex_count, "vertices"), mesh.ghosts.size(),
+                     counted(content.triangle_count, "triangles"), mesh.border.size());
 }
 
 std::string export_outline(const ExportJob& job) {
@@ -154,8 +156,9 @@ std::string export_outline(const ExportJob& job) {
   writer.write_edges(edges);
   writer.finish();
   job.progress.advance(1);
-  return fmt::format("outline: {} lines, {} vertices, {} edges", outline.polyline_count(),
-                     content.vertex_count, content.edge_count);
+  return fmt::format("outline: {}, {}, {}", counted(outline.polyline_count(), "lines"),
+                     counted(content.vertex_count, "vertices"),
+                     counted(content.edge_count, "edges"));
 }
 
 std::string export_selection(const ExportJob& job, const ExportSelection& selection) {

@@ -84,6 +84,11 @@ std::string grouped(std::uint64_t number) {
   return digits;
 }
 
+/// "1,234 vertices", "1 vertex"
+std::string grouped(std::uint64_t number, std::string_view plural) {
+  return grouped(number) + ' ' + (number == 1 ? singular(plural) : std::string(plural));
+}
+
 /// A manifest's own words, which anyone may have written.
 std::string shown(const std::string& text) {
   constexpr std::size_t kLongest = 255;  // as a file name
@@ -93,12 +98,12 @@ std::string shown(const std::string& text) {
 std::string source_text(const storage::Manifest& manifest) {
   const SourceSummary& s = manifest.source;
   const BoundsD& b = s.bounds;
-  std::string text = fmt::format(
-      "source       {}, {}: {} vertices ({} of no triangle), {} triangles of {} faces ({} "
-      "degenerate dropped)\n",
-      shown(s.file_name), execution::rounded_size_text(s.file_bytes), grouped(s.vertices),
-      grouped(s.unreferenced_vertices), grouped(s.triangles), grouped(s.faces),
-      grouped(s.degenerate_triangles));
+  std::string text =
+      fmt::format("source       {}, {}: {} ({} of no triangle), {} of {} ({} degenerate dropped)\n",
+                  shown(s.file_name), execution::rounded_size_text(s.file_bytes),
+                  grouped(s.vertices, "vertices"), grouped(s.unreferenced_vertices),
+                  grouped(s.triangles, "triangles"), grouped(s.faces, "faces"),
+                  grouped(s.degenerate_triangles));
   text += fmt::format("bounds       {} {} {} to {} {} {}{}\n", b.min.x, b.min.y, b.min.z, b.max.x,
                       b.max.y, b.max.z, s.double_precision ? ", double precision" : "");
   if (manifest.origin != Vec3d{}) {
@@ -129,8 +134,9 @@ void add_parameters(const std::string& prefix, const Json& value, std::string& t
 
 std::string partitions_text(const storage::LevelSummary& last,
                             const storage::CompactnessSummary& compactness) {
-  std::string text = fmt::format("partitions   {} of {} to {} vertices", grouped(last.tiles),
-                                 grouped(last.vertices.min), grouped(last.vertices.max));
+  std::string text =
+      fmt::format("partitions   {} of {} to {}", grouped(last.tiles), grouped(last.vertices.min),
+                  grouped(last.vertices.max, "vertices"));
   if (compactness.count > 0) {
     text += fmt::format("; compactness p^2/(4 pi w): mean {:.3f}, median {:.3f}, p95 {:.3f}",
                         compactness.mean, compactness.median, compactness.p95);
@@ -193,16 +199,16 @@ std::string sizes_text(std::string_view what, const storage::SizeSummary& sizes)
 std::string outline_text(const storage::Manifest& manifest) {
   const OutlineReport& o = manifest.outline;
   return fmt::format(
-      "outline      {} bytes: {} sectors of level {}, tolerance {:.3g} of the diagonal, {} lines "
-      "found, {} dropped to fit\n",
-      grouped(manifest.outline_bytes), grouped(o.sector_count), o.sector_level, o.tolerance,
-      grouped(o.polylines_found), grouped(o.polylines_dropped));
+      "outline      {}: {} of level {}, tolerance {:.3g} of the diagonal, {} found, {} dropped to "
+      "fit\n",
+      grouped(manifest.outline_bytes, "bytes"), grouped(o.sector_count, "sectors"), o.sector_level,
+      o.tolerance, grouped(o.polylines_found, "lines"), grouped(o.polylines_dropped));
 }
 
 std::string tileset_text(const storage::Manifest& manifest) {
-  return fmt::format("tileset      {} bytes in {} files, {} up{}{}\n",
-                     grouped(manifest.tileset_bytes), grouped(manifest.tileset_files),
-                     name_of(manifest.up), manifest.transform ? ", placed" : "",
+  return fmt::format("tileset      {} in {}, {} up{}{}\n", grouped(manifest.tileset_bytes, "bytes"),
+                     grouped(manifest.tileset_files, "files"), name_of(manifest.up),
+                     manifest.transform ? ", placed" : "",
                      manifest.licence.empty() ? "" : ", licence " + shown(manifest.licence));
 }
 
@@ -216,25 +222,24 @@ std::string totals_text(const storage::Manifest& manifest,
   }
   const SourceSummary& s = manifest.source;
   return fmt::format(
-      "totals       {} tiles, {}: {:.2f} times the input's bytes, {:.1f} bytes a triangle; {} "
-      "vertices ({:.2f} times the input's), {} triangles ({:.2f} times)\n",
-      grouped(tiles), execution::rounded_size_text(total_bytes), ratio(total_bytes, s.file_bytes),
-      ratio(total_bytes, s.triangles), grouped(vertices), ratio(vertices, s.vertices),
-      grouped(triangles), ratio(triangles, s.triangles));
+      "totals       {}, {}: {:.2f} times the input's bytes, {:.1f} bytes a triangle; {} "
+      "({:.2f} times the input's), {} ({:.2f} times)\n",
+      grouped(tiles, "tiles"), execution::rounded_size_text(total_bytes),
+      ratio(total_bytes, s.file_bytes), ratio(total_bytes, s.triangles),
+      grouped(vertices, "vertices"), ratio(vertices, s.vertices), grouped(triangles, "triangles"),
+      ratio(triangles, s.triangles));
 }
 
 std::string tile_text(const TileRecord& r) {
   return fmt::format(
-      "tile {}: {} vertices (asked for {}), {} of them on the boundary, {} ghosts; {} interior and "
-      "{} "
-      "border "
-      "triangles, {} of them drawn here; error {:.4g}, bound {:.4g}{}; {} bytes; box {} {} {} to "
-      "{} {} {}\n",
-      to_text(r.node), r.own_count, r.target_count, r.boundary_count, r.ghost_count,
-      r.interior_count, r.border_count, r.drawn_border_count, r.error, r.bound,
-      r.compactness > 0 ? fmt::format(", compactness {:.3f}", r.compactness) : "", r.file_bytes,
-      r.bounds.min.x, r.bounds.min.y, r.bounds.min.z, r.bounds.max.x, r.bounds.max.y,
-      r.bounds.max.z);
+      "tile {}: {} (asked for {}), {} of them on the boundary, {}; {} interior and {}, {} of them "
+      "drawn here; error {:.4g}, bound {:.4g}{}; {}; box {} {} {} to {} {} {}\n",
+      to_text(r.node), counted(r.own_count, "vertices"), r.target_count, r.boundary_count,
+      counted(r.ghost_count, "ghosts"), r.interior_count,
+      counted(r.border_count, "border triangles"), r.drawn_border_count, r.error, r.bound,
+      r.compactness > 0 ? fmt::format(", compactness {:.3f}", r.compactness) : "",
+      counted(r.file_bytes, "bytes"), r.bounds.min.x, r.bounds.min.y, r.bounds.min.z,
+      r.bounds.max.x, r.bounds.max.y, r.bounds.max.z);
 }
 
 // As JSON.

@@ -2,6 +2,7 @@
 
 #include "hierarchy/cut.h"
 #include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
 #include "inspection/verify_parts.h"
 #include "storage/format/archive_check.h"
 #include "storage/format/archive_files.h"
@@ -50,8 +51,9 @@ void verify_archive(const storage::Archive& archive, ProblemList& problems,
                     std::vector<std::string>& checks, const execution::CancelToken& cancel) {
   storage::check_archive(
       archive, [&] { cancel.check(); }, [&](const std::string& problem) { problems.add(problem); });
-  checks.push_back(fmt::format("archive: {} bytes, {} files with the index", archive.file().size(),
-                               archive.entry_count()));
+  checks.push_back(fmt::format("archive: {}, {} with the index",
+                               counted(archive.file().size(), "bytes"),
+                               counted(archive.entry_count(), "files")));
 }
 
 /// Nothing if manifest or index are broken: no more can be said of the rest then.
@@ -85,9 +87,10 @@ void verify_all(const VerifyJob& job) {
   verify_files(job);
   verify_tiles(job);
   if (job.tiles.unreadable_count() > 0) {
-    job.problems.add(fmt::format(
-        "{}: seams{} not looked at: {} tiles cannot be read", job.reader.directory().string(),
-        job.options.input.empty() ? "" : " and input", job.tiles.unreadable_count()));
+    job.problems.add(fmt::format("{}: seams{} not looked at: {} cannot be read",
+                                 job.reader.directory().string(),
+                                 job.options.input.empty() ? "" : " and input",
+                                 counted(job.tiles.unreadable_count(), "tiles")));
     return;
   }
   try {
@@ -106,7 +109,7 @@ void verify_all(const VerifyJob& job) {
 std::vector<std::string> ProblemList::take() {
   std::vector<std::string> all = std::move(problems_);
   if (count_ > all.size())
-    all.push_back(fmt::format("and {} more problems", count_ - all.size()));
+    all.push_back("and " + counted(count_ - all.size(), "more problems"));
   return all;
 }
 

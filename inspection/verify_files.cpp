@@ -1,5 +1,6 @@
 #include "hierarchy/cut.h"
 #include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
 #include "inspection/verify_parts.h"
 #include "storage/format/layout.h"
 #include "storage/format/tileset.h"
@@ -65,9 +66,9 @@ std::uint64_t find_extra_files(const VerifyJob& job, const std::set<fs::path>& t
 void check_outline(const VerifyJob& job) {
   try {
     const Outline outline = job.reader.read_outline();
-    job.checks.push_back(fmt::format("outline: {} bytes, {} lines",
-                                     job.reader.manifest().outline_bytes,
-                                     outline.polyline_count()));
+    job.checks.push_back(fmt::format("outline: {}, {}",
+                                     counted(job.reader.manifest().outline_bytes, "bytes"),
+                                     counted(outline.polyline_count(), "lines")));
   } catch (const Error& error) {
     if (error.code() != ErrorCode::corrupt && error.code() != ErrorCode::io)
       throw;
@@ -115,7 +116,8 @@ std::set<fs::path> check_tilesets(const VerifyJob& job) {
                     storage::manifest_path(job.reader.directory()).string(), manifest.tileset_files,
                     manifest.tileset_bytes, names.size(), bytes));
   }
-  job.checks.push_back(fmt::format("tileset: {} files, {} bytes", names.size(), bytes));
+  job.checks.push_back(
+      fmt::format("tileset: {}, {}", counted(names.size(), "files"), counted(bytes, "bytes")));
   return names;
 }
 
@@ -146,8 +148,8 @@ void verify_files(const VerifyJob& job) {
   const std::uint64_t count = find_extra_files(job, check_tilesets(job));
   check_outline(job);
   check_totals(job);
-  job.checks.push_back(
-      fmt::format("files: {} found, {} tiles in the index", count, job.reader.records().size()));
+  job.checks.push_back(fmt::format("files: {} found, {} in the index", count,
+                                   counted(job.reader.records().size(), "tiles")));
 }
 
 }  // namespace meshhier::inspection

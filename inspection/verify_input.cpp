@@ -9,6 +9,7 @@
 #include "hierarchy/drawing_rule.h"
 #include "hierarchy/error.h"
 #include "hierarchy/lattice.h"
+#include "hierarchy/plain_text.h"
 #include "import/mesh_input.h"
 #include "inspection/verify_parts.h"
 #include "mesh_io/mesh_source.h"
@@ -269,9 +270,9 @@ void verify_input(const VerifyJob& job) {
                              sums.worst_rounding, quantization->worst_rounding));
   }
   job.checks.push_back(fmt::format(
-      "input: {} vertices{} and {} triangles compared with those of the partitions, bit for bit",
-      input.vertices.count, quantization ? ", rounded to the lattice," : "",
-      input.triangles.count));
+      "input: {}{} and {} compared with those of the partitions, bit for bit",
+      counted(input.vertices.count, "vertices"), quantization ? ", rounded to the lattice," : "",
+      counted(input.triangles.count, "triangles")));
 }
 
 }  // namespace meshhier::inspection

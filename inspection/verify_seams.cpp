@@ -8,6 +8,7 @@
 // unbalanced original edge, and where there is none (closed, oriented input), no cut has a border.
 #include "hierarchy/cut.h"
 #include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
 #include "inspection/cut_mesh.h"
 #include "inspection/edge_census.h"
 #include "inspection/random_cut.h"
@@ -197,7 +198,7 @@ std::uint64_t find_cracks(const VerifyJob& job, const NumberedCut& shown, const 
                     name, vertex_text(shown, edge.low), vertex_text(shown, edge.high)));
   }
   if (cracks > kToldCracks) {
-    job.problems.add(fmt::format("{}: {} cracks in all", name, cracks));
+    job.problems.add(fmt::format("{}: {} in all", name, counted(cracks, "cracks")));
   }
   return cracks;
 }
@@ -215,7 +216,8 @@ std::uint64_t look_at_cut(const VerifyJob& job, ParentMaps& maps, const Original
     return 0;
   EdgeSort images(job.scratch, job.options.memory_budget / 8);
   add_images(job, maps, original, shown, images);
-  find_cracks(job, shown, fmt::format("random cut {} ({} tiles)", seed, shown.cut.size()), border,
+  find_cracks(job, shown,
+              fmt::format("random cut {} ({})", seed, counted(shown.cut.size(), "tiles")), border,
               images);
   return border.size();
 }
@@ -235,10 +237,9 @@ void verify_seams(const VerifyJob& job) {
   job.checks.push_back(fmt::format("input surface: {} border edges, {} unbalanced edges{}",
                                    original.border_count, original.unbalanced.size(),
                                    original.unbalanced.size() == 0 ? ": closed and oriented" : ""));
-  job.checks.push_back(
-      fmt::format("seams: {} random cuts from seed {}; at most {} border edges in one, looked for "
-                  "in the input's borders",
-                  job.options.cuts, job.options.seed, most));
+  job.checks.push_back(fmt::format(
+      "seams: {} from seed {}; at most {} in one, looked for in the input's borders",
+      counted(job.options.cuts, "random cuts"), job.options.seed, counted(most, "border edges")));
 }
 
 }  // namespace meshhier::inspection

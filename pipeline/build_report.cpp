@@ -13,6 +13,7 @@ namespace meshhier::pipeline {
 namespace {
 
 constexpr std::size_t kLongestName = 255;
+constexpr std::size_t kLongestPath = 4096;
 
 /// What `config` became, with what does not decide the result.
 nlohmann::ordered_json whole_config(const config::Config& config) {
@@ -42,24 +43,52 @@ BuildStats make_stats(const storage::HierarchyReader& made, const StageContext& 
   return stats;
 }
 
-std::string report_text(const SourceSummary& source, const std::string& found,
-                        const BuildStats& stats) {
-  std::string text = found.empty() ? "" : found + '\n';
-  text += fmt::format("{} vertices, {} triangles -> {} partitions, {} levels, {} tiles, {}\n",
-                      source.vertices, source.triangles, stats.partitions, stats.levels,
-                      stats.tiles, execution::rounded_size_text(stats.output_bytes));
+/// What makes a hierarchy of which a viewer shows nothing, or less than its maker may think.
+std::string warning_text(const SourceSummary& source) {
+  std::string text;
+  const auto warn = [&](const std::string& what) { text += "warning: " + what + '\n'; };
+  if (source.triangles == 0 && source.faces == 0)
+    warn("the mesh has no triangles: viewers show nothing of points alone");
+  else if (source.triangles == 0)
+    warn("all triangles of the mesh are degenerate: viewers show nothing");
+  else if (source.diagonal() == 0)
+    warn("all vertices of the mesh are at one point: viewers show nothing");
+  else if (source.degenerate_triangles > source.triangles)
+    warn("most triangles of the mesh are degenerate");
+  if (source.triangles > 0 && source.unreferenced_vertices > source.vertices / 2)
+    warn("most vertices of the mesh belong to no triangle");
+  return text;
+}
+
+std::string report_text(const config::Config& config, const SourceSummary& source,
+                        const std::string& found, const BuildStats& stats) {
+  std::string text = fmt::format(
+      "made {}: {}, {} in {}, {}, {}, {}\n", plain_text(config.output.string(), kLongestPath),
+      counted(source.vertices, "vertices"), counted(source.triangles, "triangles"),
+      counted(stats.partitions, "partitions"), counted(stats.levels, "levels"),
+      counted(stats.tiles, "tiles"), execution::rounded_size_text(stats.output_bytes));
+  text +=
+      fmt::format("took {} and {} of memory\n", execution::duration_text(stats.total.wall_seconds),
+                  execution::rounded_size_text(stats.total.peak_resident_bytes));
+  if (!found.empty())
+    text += found + '\n';
+  if (source.degenerate_triangles > 0)
+    text += "dropped " + counted(source.degenerate_triangles, "degenerate triangles") + '\n';
+  if (source.unreferenced_vertices > 0) {
+    text += fmt::format("kept {} that no triangle uses\n",
+                        counted(source.unreferenced_vertices, "vertices"));
+  }
+  return text + warning_text(source);
+}
+
+std::string account_text(const SourceSummary& source, const BuildStats& stats) {
+  std::string text;
   for (const SourceFile& file : source.files) {
     text += fmt::format("imported {}: {}, {}\n", plain_text(file.name, kLongestName), file.format,
                         execution::rounded_size_text(file.bytes));
   }
   if (!source.counts.empty())
     text += "counted " + importing::counts_text(source.counts) + '\n';
-  if (source.degenerate_triangles > 0) {
-    text += fmt::format("dropped {} degenerate triangles\n", source.degenerate_triangles);
-  }
-  if (source.unreferenced_vertices > 0) {
-    text += fmt::format("kept {} vertices that no triangle uses\n", source.unreferenced_vertices);
-  }
   return text + stats_text(stats);
 }
 
@@ -75,7 +104,9 @@ BuildReport make_report(const storage::HierarchyReader& made, const BuildOutcome
   report.stats.predicted_temporary_bytes = outcome.predicted.temporary_bytes;
   report.stats.stages = meter.stages();
   report.stats.total = meter.total();
-  report.text = report_text(made.manifest().source, outcome.found, report.stats);
+  const SourceSummary& source = made.manifest().source;
+  report.text = report_text(context.config, source, outcome.found, report.stats);
+  report.account = account_text(source, report.stats);
   return report;
 }
 

@@ -12,7 +12,8 @@
 namespace meshhier::pipeline {
 
 struct BuildReport {
-  std::string text;  ///< a few lines and a table for people
+  std::string text;     ///< for people: what was made, how long it took, what is to be known of it
+  std::string account;  ///< for people: what was imported, and a table of the stages
   BuildStats stats;
 };
 

@@ -1,6 +1,7 @@
 #include "pipeline/estimate.h"
 
 #include "execution/size_text.h"
+#include "hierarchy/plain_text.h"
 #include "import/import_input.h"
 #include "import/mesh_input.h"
 #include "pipeline/stage_costs.h"
@@ -30,26 +31,19 @@ std::uint64_t fixed_memory(const BuildEstimate& e) {
   return e.memory_budget_bytes - e.plan.memory.work_bytes - e.plan.memory.pool_bytes;
 }
 
-std::string duration(double seconds) {
-  if (seconds < 99.5)
-    return fmt::format("{:.{}f} s", seconds, seconds < 9.95 ? 1 : 0);
-  return seconds < 5400 ? fmt::format("{:.0f} min", seconds / 60)
-                        : fmt::format("{:.1f} h", seconds / 3600);
-}
-
 std::string memory_text(const BuildEstimate& e) {
   const MemoryPlan& memory = e.plan.memory;
   return fmt::format(
       "memory      {} asked for, {} would do\n"
       "            {} program, index and allocator, {} stages at work, {} data kept off the "
       "disk\n"
-      "            in flight: {} blocks, {} chunks, {} tiles; rank table {}\n",
+      "            in flight: {}, {}, {}; rank table {}\n",
       execution::exact_size_text(e.memory_budget_bytes),
       execution::exact_size_text(e.least_budget_bytes),
       execution::rounded_size_text(fixed_memory(e)),
       execution::rounded_size_text(memory.work_bytes),
-      execution::rounded_size_text(memory.pool_bytes), memory.blocks_in_flight,
-      memory.chunks_in_flight, memory.tiles_in_flight,
+      execution::rounded_size_text(memory.pool_bytes), counted(memory.blocks_in_flight, "blocks"),
+      counted(memory.chunks_in_flight, "chunks"), counted(memory.tiles_in_flight, "tiles"),
       execution::rounded_size_text(memory.table_bytes));
 }
 
@@ -148,24 +142,27 @@ std::string estimate_text(const BuildEstimate& e) {
   const Tree& tree = e.plan.tree;
   const DiskNeed& disk = e.plan.disk;
   std::string text = fmt::format(
-      "input       {}: {}, {} vertices, {} faces, {}\n"
-      "hierarchy   {} partitions of at most {} vertices, {} levels, {} tiles\n"
+      "input       {}: {}, {}, {}, {}\n"
+      "hierarchy   {} of at most {}, {}, {}\n"
       "output      about {}\n"
       "temporary   about {} at most\n"
       "disk        {} needed at once, {} free in {}\n",
-      e.input.string(), e.mesh.format, e.mesh.vertex_count, e.mesh.face_count,
-      execution::rounded_size_text(e.mesh.file_bytes), tree.partition_count(),
-      (tree.vertex_count() + tree.partition_count() - 1) / tree.partition_count(), e.tiles.levels,
-      e.tiles.tiles(), execution::rounded_size_text(disk.output_bytes),
+      e.input.string(), e.mesh.format, counted(e.mesh.vertex_count, "vertices"),
+      counted(e.mesh.face_count, "faces"), execution::rounded_size_text(e.mesh.file_bytes),
+      counted(tree.partition_count(), "partitions"),
+      counted((tree.vertex_count() + tree.partition_count() - 1) / tree.partition_count(),
+              "vertices"),
+      counted(e.tiles.levels, "levels"), counted(e.tiles.tiles(), "tiles"),
+      execution::rounded_size_text(disk.output_bytes),
       execution::rounded_size_text(disk.temporary_bytes),
       execution::rounded_size_text(disk.room_bytes), execution::rounded_size_text(e.free_bytes),
       e.disk.string());
   text += memory_text(e);
   text += fmt::format(
-      "time        about {} on {} {}, {} of CPU\n"
+      "time        about {} on {}, {} of CPU\n"
       "            (an estimate, for {})\n",
-      duration(e.time.wall_seconds), e.plan.threads, e.plan.threads == 1 ? "thread" : "threads",
-      duration(e.time.cpu_seconds), kRateMachine);
+      execution::duration_text(e.time.wall_seconds), counted(e.plan.threads, "threads"),
+      execution::duration_text(e.time.cpu_seconds), kRateMachine);
   return text;
 }
 

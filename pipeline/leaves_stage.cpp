@@ -4,6 +4,7 @@
 #include "execution/parallel.h"
 #include "execution/size_text.h"
 #include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
 #include "partition/chunk.h"
 #include "partition/leaf_tiles.h"
 #include "partition/top_tree.h"
@@ -26,11 +27,12 @@ constexpr std::size_t kChunksBetweenReleases = 8;
 void check_fits(const Chunks& chunks, std::uint32_t chunk, const MemoryPlan& plan) {
   const std::uint64_t needed = chunks.triangle_bytes(chunk) * 4;
   if (needed > plan.work_bytes + plan.pool_bytes / 2) {
-    throw Error(ErrorCode::budget,
-                fmt::format("a part of the mesh has {} triangles on {} "
-                            "vertices; it needs a memory_budget larger by {}",
-                            chunks.triangle_bytes(chunk) / 12, chunks.map().size(chunk),
-                            execution::exact_size_text(needed)));
+    throw Error(
+        ErrorCode::budget,
+        fmt::format("a part of the mesh has {} on {}; it needs a memory_budget larger by {}",
+                    counted(chunks.triangle_bytes(chunk) / 12, "triangles"),
+                    counted(chunks.map().size(chunk), "vertices"),
+                    execution::exact_size_text(needed)));
   }
 }
 

@@ -3,6 +3,7 @@
 #include "execution/size_text.h"
 #include "hierarchy/detail.h"
 #include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
 #include "mesh_io/ply_writer.h"
 #include "progressive/detail_file.h"
 #include "progressive/reconstruction.h"
@@ -208,9 +209,9 @@ ReconstructReport reconstruct(storage::FileSystem& files, const fs::path& stream
   }
   output.publish();
   progress.advance(1);
-  report.summary =
-      fmt::format("{}: {}, level {}: {} vertices, {} triangles", options.output.string(), what,
-                  raw(index.files[details].level), shown.vertices, shown.triangles);
+  report.summary = fmt::format("{}: {}, level {}: {}, {}", options.output.string(), what,
+                               raw(index.files[details].level), counted(shown.vertices, "vertices"),
+                               counted(shown.triangles, "triangles"));
   return report;
 }
 

@@ -5,6 +5,7 @@
 #include "hierarchy/cut.h"
 #include "hierarchy/detail.h"
 #include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
 #include "progressive/detail_writer.h"
 #include "progressive/foreign_corners.h"
 #include "progressive/level_lists.h"
@@ -230,11 +231,10 @@ std::string summary_of(const fs::path& output, const progressive::ProgressiveInd
   for (const progressive::ProgressiveFile& file : index.files)
     bytes += file.bytes;
   return fmt::format(
-      "{}: {} vertices, {} triangles, in a base of {} and {} details, {} in all, "
-      "{:.2f} bytes a vertex",
-      output.string(), index.vertices, index.triangles,
-      execution::rounded_size_text(index.files.front().bytes), index.files.size() - 1,
-      execution::rounded_size_text(bytes),
+      "{}: {}, {}, in a base of {} and {}, {} in all, {:.2f} bytes a vertex", output.string(),
+      counted(index.vertices, "vertices"), counted(index.triangles, "triangles"),
+      execution::rounded_size_text(index.files.front().bytes),
+      counted(index.files.size() - 1, "details"), execution::rounded_size_text(bytes),
       static_cast<double>(bytes) / static_cast<double>(index.vertices));
 }
 

@@ -2,6 +2,7 @@
 
 #include "execution/size_text.h"
 #include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
 #include "storage/format/layout.h"
 #include "storage/format/tile_glb.h"
 #include "storage/format/tile_plan.h"
@@ -45,8 +46,9 @@ Tree plan_tree(const config::Config& config, std::uint64_t vertex_count) {
           ? *config.partition.count
           : (vertex_count + config.partition.vertices - 1) / config.partition.vertices;
   if (count > vertex_count) {
-    throw Error(ErrorCode::usage, fmt::format("partition.count is {}, but {} has only {} vertices",
-                                              count, config.input.string(), vertex_count));
+    throw Error(ErrorCode::usage,
+                fmt::format("partition.count is {}, but {} has only {}", count,
+                            config.input.string(), counted(vertex_count, "vertices")));
   }
   if ((vertex_count + count - 1) / count > kLargestTile) {
     throw Error(ErrorCode::usage,
@@ -100,7 +102,7 @@ void check_place(const std::filesystem::path& output, storage::FileSystem& files
   };
   const std::size_t length = storage::work_path(output).filename().string().size();
   if (length > kLongestName)
-    refuse(fmt::format("its name is too long, by {} bytes", length - kLongestName));
+    refuse("its name is too long, by " + counted(length - kLongestName, "bytes"));
   const std::filesystem::path directory = existing_directory(output, files);
   if (!files.is_directory(directory))
     refuse(fmt::format("{} is not a directory", directory.string()));

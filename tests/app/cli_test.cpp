@@ -376,7 +376,7 @@ TEST_F(CommandLine, ADryRunRefusesAsTheBuildDoes) {
 TEST_F(CommandLine, BuildWritesItsAccountWhereItIsAskedTo) {
   write_mesh("a.ply");
   const Path stats = work() / "stats.json";
-  const Outcome outcome = run({"build", write_config(), "--stats", stats.string()});
+  const Outcome outcome = run({"build", write_config(), "--verbose", "--stats", stats.string()});
   ASSERT_EQ(outcome.code, 0) << outcome.messages;
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("stage"), HasSubstr("simplify"), HasSubstr("total")));
   const json account = json::parse(text_of(stats));
@@ -385,6 +385,49 @@ TEST_F(CommandLine, BuildWritesItsAccountWhereItIsAskedTo) {
   EXPECT_EQ(account["config"]["partition"]["vertices"], 500);
   EXPECT_GT(account["total"]["peak_resident_bytes"], 0);
   EXPECT_EQ(names(), (std::set<std::string>{"a.hier", "a.json", "a.ply", "stats.json"}));
+}
+
+TEST_F(CommandLine, ABuildEndsWithThreeLines) {
+  std::filesystem::create_directory(work() / "my $models");
+  const Path mesh = write_mesh("my $models/it's.ply");
+  const Outcome outcome = run({"build", mesh.string()});
+  ASSERT_EQ(outcome.code, 0) << outcome.messages;
+  std::istringstream lines(outcome.out);
+  std::string made, took, next, more;
+  std::getline(lines, made);
+  std::getline(lines, took);
+  std::getline(lines, next);
+  EXPECT_EQ(made.substr(0, made.rfind(',')),
+            "made " + (mesh.parent_path() / "it's.hier").string() +
+                ": 2500 vertices, 4802 triangles in 1 partition, 1 level, 1 tile");
+  EXPECT_THAT(took, ::testing::MatchesRegex("took [0-9.]+ s and [0-9.]+ MiB of memory"));
+  EXPECT_EQ(next, "next: " MESHHIER_BINARY " serve '" + mesh.parent_path().string() + "' --open");
+  EXPECT_FALSE(std::getline(lines, more)) << more;
+}
+
+TEST_F(CommandLine, ABuildThatShowsNothingWarns) {
+  const std::string vertices =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+      "property float z\nelement face ";
+  const std::string lists = "\nproperty list uchar int vertex_indices\nend_header\n";
+  const std::string corners = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
+  const std::string point = "1 1 1\n1 1 1\n1 1 1\n1 1 1\n";
+  const std::vector<std::pair<std::string, std::string>> meshes{
+      {vertices + "0" + lists + corners, "no triangles: viewers show nothing of points alone"},
+      {vertices + "1" + lists + corners + "3 0 0 1\n", "all triangles of the mesh are degenerate"},
+      {vertices + "1" + lists + point + "3 0 1 2\n", "all vertices of the mesh are at one point"},
+      {vertices + "3" + lists + corners + "3 0 0 1\n3 0 1 1\n3 0 1 2\n", "most triangles"},
+  };
+  for (const auto& [mesh, warning] : meshes) {
+    write_text(work() / "a.ply", mesh);
+    const Outcome outcome = run({"build", (work() / "a.ply").string(), "--force"});
+    EXPECT_EQ(outcome.code, 0) << outcome.messages;
+    EXPECT_THAT(outcome.out, AllOf(HasSubstr("\nwarning: "), HasSubstr(warning)));
+  }
+  write_text(work() / "a.off",
+             "OFF\n7 1 0\n0 0 0\n1 0 0\n0 1 0\n5 5 5\n6 5 5\n5 6 5\n6 6 6\n3 0 1 2\n");
+  EXPECT_THAT(run({"build", (work() / "a.off").string(), "--force"}).out,
+              HasSubstr("warning: most vertices of the mesh belong to no triangle"));
 }
 
 TEST_F(CommandLine, AnAccountThatCannotBeWrittenIsRefusedBeforeTheBuild) {
@@ -732,7 +775,7 @@ TEST_F(CommandLine, AnArchiveIsAHierarchyForEveryCommand) {
                        "output=" + archive.string()};
   const Outcome built = run(pack);
   ASSERT_EQ(built.code, 0) << built.messages;
-  EXPECT_THAT(built.out, HasSubstr("pack"));
+  EXPECT_THAT(built.out, HasSubstr("made " + archive.string()));
   EXPECT_EQ(names(), (std::set<std::string>{"a.3tz", "a.hier", "a.json", "a.ply"}));
   EXPECT_EQ(run(pack).code, kExists);
   EXPECT_THAT(run({"inspect", archive.string()}).out, HasSubstr("a.3tz (format"));
@@ -807,7 +850,7 @@ TEST_F(Streams, FewerStepsAndSectorsAreAskedForByOptions) {
   const Outcome made =
       run({"progressive", hierarchy(), "--node", "1/0", "--steps", "1", "-o", stream()});
   EXPECT_EQ(made.code, 0) << made.messages;
-  EXPECT_THAT(made.out, HasSubstr("and 1 details"));
+  EXPECT_THAT(made.out, HasSubstr("and 1 detail,"));
   EXPECT_EQ(run({"reconstruct", stream(), "--details", "0", "-o", mesh()}).code, 0);
   const Outcome too_many = run({"reconstruct", stream(), "--details", "2", "-o", mesh()});
   EXPECT_EQ(too_many.code, kUsage);

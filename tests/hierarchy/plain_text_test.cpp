@@ -21,6 +21,16 @@ TEST(PlainText, IsCutBetweenCharacters) {
   EXPECT_EQ(plain_text("\x80\x80\x80", 2), "...");
 }
 
+TEST(Counted, HasTheSingularForOne) {
+  EXPECT_EQ(counted(0, "vertices"), "0 vertices");
+  EXPECT_EQ(counted(1, "vertices"), "1 vertex");
+  EXPECT_EQ(counted(2, "vertices"), "2 vertices");
+  EXPECT_EQ(counted(1, "entries"), "1 entry");
+  EXPECT_EQ(counted(1, "pieces"), "1 piece");
+  EXPECT_EQ(counted(1, "degenerate triangles"), "1 degenerate triangle");
+  EXPECT_EQ(counted(1, "triangles lost by welding"), "1 triangle lost by welding");
+}
+
 TEST(JsonFault, IsToldWithoutTheParsersName) {
   EXPECT_EQ(json_fault("[json.exception.parse_error.101] parse error at line 1, column 2: x"),
             "line 1, column 2: x");

@@ -350,9 +350,9 @@ TEST_F(ImportTest, WhatAnObjHoldsBesidesIsCounted) {
   const config::Config with = config({"a.obj"});
   const pipeline::BuildReport report = build(with);
   for (const char* text :
-       {"imported a.obj: OBJ", "2 groups", "1 objects", "1 material uses", "1 material libraries",
-        "1 ignored points and lines", "1 ignored statements", "dropped 1 degenerate"})
-    EXPECT_THAT(report.text, HasSubstr(text));
+       {"imported a.obj: OBJ", "2 groups", "1 object", "1 material use", "1 material library",
+        "1 ignored point and line", "1 ignored statement", "dropped 1 degenerate"})
+    EXPECT_THAT(report.text + report.account, HasSubstr(text));
   EXPECT_EQ(source(with).faces, 2U);
   EXPECT_EQ(source(with).degenerate_triangles, 1U);
 }
