@@ -48,6 +48,10 @@ struct Snapshot {
   }
 };
 
+void write_warning(std::ostream& out, std::string_view message) {
+  out << "warning: " << message << '\n' << std::flush;
+}
+
 /// Counts and keeps time; says what is to be shown, and when.
 class PacedProgress : public Progress {
  public:
@@ -88,6 +92,11 @@ class PacedProgress : public Progress {
     show_progress(snapshot(now));
   }
 
+  void warn(std::string_view message) override {
+    const std::lock_guard lock(mutex_);
+    show_warning(message);
+  }
+
   void finish(std::string_view summary) override {
     const std::lock_guard lock(mutex_);
     const double now = clock_();
@@ -101,6 +110,7 @@ class PacedProgress : public Progress {
   virtual void show_start(const Snapshot& stage) = 0;
   virtual void show_progress(const Snapshot& stage) = 0;
   virtual void show_end(const Snapshot& stage) = 0;
+  virtual void show_warning(std::string_view message) { write_warning(out(), message); }
   virtual void show_finish(std::string_view summary, double seconds) = 0;
 
  private:
@@ -164,6 +174,10 @@ class BarProgress final : public PacedProgress {
   void show_start(const Snapshot& stage) override { redraw(stage); }
   void show_progress(const Snapshot& stage) override { redraw(stage); }
   void show_end(const Snapshot& /*stage*/) override {}
+  void show_warning(std::string_view message) override {
+    wipe();
+    write_warning(out(), message);
+  }
   void show_finish(std::string_view /*summary*/, double /*seconds*/) override { wipe(); }
 
  private:
@@ -212,6 +226,19 @@ class BarProgress final : public PacedProgress {
   std::size_t shown_ = 0;  ///< letters on the terminal's current line
 };
 
+/// Shows nothing but warnings.
+class QuietProgress final : public Progress {
+ public:
+  explicit QuietProgress(std::ostream& out) : out_(out) {}
+  void stage(std::string_view, std::uint64_t, std::string_view) override {}
+  void advance(std::uint64_t) override {}
+  void warn(std::string_view message) override { write_warning(out_, message); }
+  void finish(std::string_view) override {}
+
+ private:
+  std::ostream& out_;
+};
+
 /// For files and pipes: a line a stage.
 class PlainProgress final : public PacedProgress {
  public:
@@ -243,6 +270,9 @@ class JsonProgress final : public PacedProgress {
   void show_start(const Snapshot& stage) override { write("stage_start", stage); }
   void show_progress(const Snapshot& stage) override { write("progress", stage); }
   void show_end(const Snapshot& stage) override { write("stage_end", stage); }
+  void show_warning(std::string_view message) override {
+    write_line({{"event", "warning"}, {"message", message}});
+  }
 
   void show_finish(std::string_view summary, double seconds) override {
     write_line({{"event", "finish"}, {"seconds", milliseconds(seconds)}, {"summary", summary}});
@@ -301,7 +331,7 @@ std::unique_ptr<Progress> make_progress(ProgressMode mode, std::ostream& out,
     case ProgressMode::none:
       break;
   }
-  return std::make_unique<NoProgress>();
+  return std::make_unique<QuietProgress>(out);
 }
 
 }  // namespace meshhier::execution

@@ -33,6 +33,10 @@ class Progress {
   /// and blocks, not for single vertices. Does nothing before the first stage().
   virtual void advance(std::uint64_t count) = 0;
 
+  /// Something to know before the end, one line without its end; shown in every mode. No advance()
+  /// may run at the same time.
+  virtual void warn(std::string_view /*message*/) {}
+
   /// Ends the last stage and the job. `summary`: one line for people, may be empty. No advance()
   /// may run at the same time. Called by who made the object, not by the job; not called if the job
   /// failed: destroying the object tidies the terminal.
@@ -52,7 +56,7 @@ enum class ProgressMode {
   bar,   ///< on a terminal one line for the whole job, redrawn at most 10 times a second and wiped
          ///< at the end; elsewhere a plain line for each finished stage
   json,  ///< one JSON object a line, at most 2 a second besides the start and the end of each stage
-  none
+  none   ///< nothing but warnings
 };
 
 /// Where progress is shown.
@@ -74,8 +78,8 @@ Clock steady_clock();
 /// The JSON objects have "event": "stage_start" | "progress" | "stage_end", each with "stage",
 /// "done", "total" (null if unknown), "unit", "rate" (units a second since the start of the stage),
 /// "seconds" (likewise), "eta_seconds" (null if unknown), "job_done" (0 to 1) and "job_eta_seconds"
-/// of the whole job (null if unknown); at the end "event": "finish" with "seconds" (of the whole
-/// job) and "summary".
+/// of the whole job (null if unknown); "event": "warning" with "message"; at the end "event":
+/// "finish" with "seconds" (of the whole job) and "summary".
 std::unique_ptr<Progress> make_progress(ProgressMode mode, std::ostream& out,
                                         const Terminal& terminal, Clock clock = steady_clock());
 

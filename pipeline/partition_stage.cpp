@@ -2,14 +2,18 @@
 
 #include "execution/allocator.h"
 #include "execution/parallel.h"
+#include "execution/size_text.h"
 #include "partition/renumber.h"
 #include "partition/top_tree.h"
 #include "pipeline/plan/tile_population.h"
+#include "pipeline/plan/tile_room.h"
 
 #include <algorithm>
 #include <span>
 #include <utility>
 #include <vector>
+
+#include <fmt/format.h>
 
 namespace meshhier::pipeline {
 namespace {
@@ -162,6 +166,20 @@ mesh_io::FaceCounts distribute_triangles(SourceMesh& mesh, RankTable& ranks, Chu
   return counts;
 }
 
+/// The stage that would be refused comes late, and takes long where triangles reach across.
+void warn_of_wide_triangles(const Chunks& chunks, const StageContext& context) {
+  const MemoryPlan& plan = context.memory();
+  const std::uint64_t expected = expected_contracted(chunks);
+  if (expected <= plan.work_bytes + plan.pool_bytes)
+    return;
+  context.progress.warn(fmt::format(
+      "many triangles of the mesh reach far across it: a tile may take about {}, more than "
+      "memory_budget {} leaves. The build goes on and may be refused later; a budget of about {} "
+      "will probably do",
+      execution::rounded_size_text(expected), execution::exact_size_text(plan.budget_bytes),
+      execution::rounded_size_text(budget_for(plan, expected))));
+}
+
 }  // namespace
 
 mesh_io::FaceCounts partition_mesh(SourceMesh& mesh, Chunks& chunks, storage::ScratchFile& scratch,
@@ -175,6 +193,7 @@ mesh_io::FaceCounts partition_mesh(SourceMesh& mesh, Chunks& chunks, storage::Sc
   RankTable ranks(mesh, top, chunks, passing, context);
   execution::release_free_memory();
   const mesh_io::FaceCounts counts = distribute_triangles(mesh, ranks, chunks, context);
+  warn_of_wide_triangles(chunks, context);
   execution::release_free_memory();
   return counts;
 }

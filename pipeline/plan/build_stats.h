@@ -59,6 +59,7 @@ class StageMeter final : public execution::Progress {
     sources_.shown.expect(std::move(stages));
   }
   void stage(std::string_view name, std::uint64_t total, std::string_view unit) override;
+  void warn(std::string_view message) override { sources_.shown.warn(message); }
   void advance(std::uint64_t count) override { sources_.shown.advance(count); }
   void finish(std::string_view summary) override { sources_.shown.finish(summary); }
 

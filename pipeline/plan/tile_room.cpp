@@ -16,19 +16,25 @@ namespace {
 constexpr std::uint64_t kBytesBetweenReleases = std::uint64_t{640} << 20;
 constexpr std::uint64_t kMostBetweenReleases = 64;
 
-/// Of more budget a part is the allocator's (kAllocatorParts), which may lack its part of this one.
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+
+/// So much more budget has room for what lacks. Of more budget a part is the allocator's
+/// (kAllocatorParts), which may lack its part of this one.
+std::uint64_t more_budget(const MemoryPlan& plan, std::uint64_t lacking) {
+  return ((lacking + plan.budget_bytes / kAllocatorParts) / (kAllocatorParts - 1) *
+              kAllocatorParts / kMiB +
+          1) *
+         kMiB;
+}
+
 [[noreturn]] void refuse(const MemoryPlan& plan, const storage::MemoryPool& pool,
                          std::uint64_t needed_bytes) {
-  constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
   const std::uint64_t lacking = needed_bytes - plan.work_bytes - pool.free_bytes();
-  const std::uint64_t more = (lacking + plan.budget_bytes / kAllocatorParts) /
-                                 (kAllocatorParts - 1) * kAllocatorParts / kMiB +
-                             1;
   throw Error(ErrorCode::budget,
               fmt::format("a tile of the mesh has so many triangles at few vertices that it takes "
                           "{}; it needs a memory_budget larger by {}",
                           execution::rounded_size_text(needed_bytes),
-                          execution::exact_size_text(more * kMiB)));
+                          execution::exact_size_text(more_budget(plan, lacking))));
 }
 
 std::uint64_t most_triangle_bytes(const Forest& forest, Level level) {
@@ -83,6 +89,22 @@ std::uint64_t heaviest_contracted(const Forest& forest, Level level) {
     most = std::max(most, bytes);
   }
   return most * TileRoom::kContracted;
+}
+
+std::uint64_t expected_contracted(const Chunks& chunks) {
+  constexpr std::uint64_t kTiles = 3;  // each such triangle is in those of its corners
+  std::uint64_t most = 0;
+  for (int l = 1; l <= raw(chunks.level()); ++l) {
+    const std::uint64_t parents = std::uint64_t{1} << (l - 1);
+    const std::uint64_t triangles = kTiles * chunks.wide_triangles(static_cast<Level>(l)) / parents;
+    most = std::max(most, triangles * sizeof(TileTriangle));
+  }
+  return most * TileRoom::kContracted;
+}
+
+std::uint64_t budget_for(const MemoryPlan& plan, std::uint64_t heaviest_bytes) {
+  const std::uint64_t room = plan.work_bytes + plan.pool_bytes;
+  return plan.budget_bytes + (heaviest_bytes > room ? more_budget(plan, heaviest_bytes - room) : 0);
 }
 
 }  // namespace meshhier::pipeline

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pipeline/plan/memory_plan.h"
+#include "pipeline/tiles/chunks.h"
 #include "pipeline/tiles/forest.h"
 
 #include <cstddef>
@@ -52,5 +53,14 @@ std::uint64_t heaviest_read(const Forest& forest, Level level);
 std::uint64_t heaviest_packed(const Forest& forest, Level level);
 /// Of the level's nodes, what the heaviest takes while its tile is made of its children's.
 std::uint64_t heaviest_contracted(const Forest& forest, Level level);
+
+/// A budget with room for such an item, if the pool is empty then.
+std::uint64_t budget_for(const MemoryPlan& plan, std::uint64_t heaviest_bytes);
+
+/// About the same for the heaviest node of all levels above the chunks, before there are tiles:
+/// from triangles that reach across the mesh, and so stay in the tiles of many nodes. Far less
+/// where vertices join so that many of these become one, and 0 if there are none: it may warn, not
+/// refuse.
+std::uint64_t expected_contracted(const Chunks& chunks);
 
 }  // namespace meshhier::pipeline

@@ -3,7 +3,9 @@
 #include "partition/top_tree.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <numeric>
 
 namespace meshhier::pipeline {
 namespace {
@@ -36,6 +38,11 @@ class ChunkFinder {
   const partition::ChunkMap& map_;
   std::uint32_t chunk_ = 0, first_ = 0, size_;
 };
+
+/// How many levels above these three nodes of one level their ancestors still are three.
+int levels_apart(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  return std::min({std::bit_width(a ^ b), std::bit_width(b ^ c), std::bit_width(a ^ c)}) - 1;
+}
 
 template <class Record>
 nlohmann::json store(storage::RecordSpool<Record>& spool) {
@@ -73,6 +80,7 @@ void ChunkedTriangles::sort(std::span<const RankTriangle> triangles,
                             const partition::ChunkMap& map) {
   starts.assign(map.count() + 1, 0);
   shared.clear();
+  wide.fill(0);
   chunk_of_.resize(triangles.size());
   ChunkFinder finder(map);
   for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -89,8 +97,11 @@ void ChunkedTriangles::sort(std::span<const RankTriangle> triangles,
     shared.push_back({a, t});
     if (b != a)
       shared.push_back({b, t});
-    if (c != a && c != b)
+    if (c != a && c != b) {
       shared.push_back({c, t});
+      if (b != a)
+        ++wide[levels_apart(a, b, c)];
+    }
   }
   counts_to_starts(starts, next_);
   inner.resize(starts.back());
@@ -129,6 +140,13 @@ void Chunks::append(const ChunkedTriangles& block) {
   }
   for (const auto& [chunk, triangle] : block.shared)
     shared_[chunk].append(triangle);
+  for (std::size_t k = 0; k < wide_.size(); ++k)
+    wide_[k] += block.wide[k];
+}
+
+std::uint64_t Chunks::wide_triangles(Level level) const {
+  const auto above = wide_.begin() + (raw(level_) - raw(level));
+  return std::accumulate(above, wide_.end(), std::uint64_t{0});
 }
 
 std::uint64_t Chunks::triangle_bytes(std::uint32_t chunk) const {

@@ -59,6 +59,8 @@ struct ChunkedTriangles {
     partition::RankTriangle triangle;
   };
   std::vector<Shared> shared;  ///< the others, once for each chunk they touch
+  /// Of triangles with corners in three chunks: [k] have them in three nodes up to k levels above.
+  std::array<std::uint64_t, 32> wide{};
 
   void sort(std::span<const partition::RankTriangle> triangles, const partition::ChunkMap& map);
 
@@ -132,6 +134,10 @@ class Chunks {
   /// Bytes a chunk's triangles take in memory.
   std::uint64_t triangle_bytes(std::uint32_t chunk) const;
 
+  /// Triangles appended whose corners are in three nodes of `level`, not below the chunks'. As
+  /// vertices join within nodes only, none of them degenerates on that level or below.
+  std::uint64_t wide_triangles(Level level) const;
+
  private:
   Level level_;
   partition::ChunkMap map_;
@@ -139,6 +145,7 @@ class Chunks {
   std::vector<storage::RecordSpool<float>> vertices_;
   std::vector<storage::RecordSpool<PackedTriangle>> inner_;
   std::vector<storage::RecordSpool<partition::RankTriangle>> shared_;
+  decltype(ChunkedTriangles::wide) wide_{};
 };
 
 }  // namespace meshhier::pipeline

@@ -302,6 +302,23 @@ TEST(MakeProgress, AutomaticIsABarOnATerminalOnly) {
   }
 }
 
+TEST(MakeProgress, WarningsAreShownInEveryMode) {
+  Hand hand;
+  for (const ProgressMode mode : {ProgressMode::automatic, ProgressMode::bar, ProgressMode::none}) {
+    for (const bool is_terminal : {true, false}) {
+      std::ostringstream out;
+      const auto progress = make_progress(mode, out, is_terminal, hand.clock());
+      progress->stage("ingest", 0, "blocks");
+      progress->warn("mind the gap");
+      EXPECT_EQ(on_terminal(out.str()).front(), "warning: mind the gap");
+    }
+  }
+  std::ostringstream out;
+  make_progress(ProgressMode::json, out, true, hand.clock())->warn("mind the gap");
+  EXPECT_EQ(out.str(), R"({"event":"warning","message":"mind the gap"})"
+                       "\n");
+}
+
 TEST(MakeProgress, NoneWritesNothing) {
   std::ostringstream out;
   const auto progress = make_progress(ProgressMode::none, out, true);

@@ -1,5 +1,6 @@
 #include "pipeline/tiles/chunks.h"
 
+#include "pipeline/plan/tile_room.h"
 #include "tests/support/sample_hierarchy.h"
 
 #include <algorithm>
@@ -63,6 +64,25 @@ TEST_F(ChunksTest, VerticesKeepTheirOrderWithinTheirChunk) {
       ASSERT_EQ(chunk.vertices.attributes_of(v)[0], static_cast<float>(id) + 0.5F);
     }
   }
+}
+
+TEST_F(ChunksTest, CountsTrianglesThatReachAcross) {
+  // Chunks 0 to 3 begin at multiples of 75,000; 0 and 1 have one parent, 2 and 3 the other.
+  const std::vector<RankTriangle> triangles{{0, 1, 2},
+                                            {0, 80'000, 1},
+                                            {0, 80'000, 160'000},
+                                            {160'000, 0, 299'999},
+                                            {0, 160'000, 160'001}};
+  ChunkedTriangles block;
+  for (int i = 0; i < 2; ++i) {
+    block.sort(triangles, chunks_.map());
+    chunks_.append(block);
+  }
+  EXPECT_EQ(chunks_.wide_triangles(chunks_.level()), 4U);
+  EXPECT_EQ(chunks_.wide_triangles(Level{1}), 0U) << "there are two nodes only";
+  EXPECT_EQ(chunks_.wide_triangles(Level{0}), 0U);
+  EXPECT_EQ(expected_contracted(chunks_), 3U * 4 / 2 * sizeof(TileTriangle) * TileRoom::kContracted)
+      << "each is in three tiles, and two nodes are made of these";
 }
 
 TEST_F(ChunksTest, ATriangleGoesToEachChunkItTouches) {
