@@ -173,9 +173,9 @@ void warn_of_wide_triangles(const Chunks& chunks, const StageContext& context) {
   if (expected <= plan.work_bytes + plan.pool_bytes)
     return;
   context.progress.warn(fmt::format(
-      "many triangles of the mesh reach far across it: a tile may take about {}, more than "
-      "memory_budget {} leaves. The build goes on and may be refused later; a budget of about {} "
-      "will probably do",
+      "many triangles of the mesh reach far across it: a tile may take {} or more, and "
+      "memory_budget {} leaves less. The build goes on and may be refused later; it will probably "
+      "need more than {}",
       execution::rounded_size_text(expected), execution::exact_size_text(plan.budget_bytes),
       execution::rounded_size_text(budget_for(plan, expected))));
 }
