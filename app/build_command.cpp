@@ -34,6 +34,7 @@ struct BuildArguments {
   bool force = false;
   bool restart = false;
   bool verbose = false;  ///< also the account
+  bool no_links = false;
   bool dry_run = false;
   bool json = false;        ///< the estimate as JSON
   std::string help_config;  ///< one of kReferences, or empty
@@ -89,7 +90,15 @@ std::string serve_line(const config::Config& config, const std::string& program)
 }
 
 int run_build(const BuildArguments& arguments, execution::ProgressMode mode,
-              Environment& environment) {
+              const Environment& around) {
+  const auto without_links =
+      arguments.no_links ? storage::make_posix_file_system(storage::Links::refused) : nullptr;
+  Environment environment{without_links ? *without_links : around.files,
+                          around.cancel,
+                          around.out,
+                          around.messages,
+                          around.terminal,
+                          around.program};
   config::CommandLine words(arguments.settings);
   words.output = arguments.output;
   const config::Config config = config::load_named(
@@ -168,6 +177,7 @@ void add_build_command(CLI::App& parser, Invocation& invocation) {
                     "Throw away what an earlier build of this output, which was stopped, had done");
   command->add_flag("--verbose", arguments->verbose,
                     "Also print what each stage took of time, memory and disk");
+  command->add_flag("--no-links", arguments->no_links, "Refuse an input file that is a link");
   CLI::Option* dry_run =
       command->add_flag("--dry-run", arguments->dry_run,
                         "Read only the mesh's header (or import it to count it); "

@@ -46,12 +46,10 @@ std::uint64_t InputFiles::bytes() const {
   return bytes;
 }
 
-std::int64_t InputFiles::modified_ns() const {
-  if (all_.size() == 1)
-    return all_[0].identity.modified_ns;
+std::int64_t InputFiles::times() const {
   std::vector<std::int64_t> times;
   for (const InputFileFacts& file : all_)
-    times.push_back(file.identity.modified_ns);
+    times.insert(times.end(), {file.identity.modified_ns, file.identity.changed_ns});
   return std::bit_cast<std::int64_t>(storage::checksum(std::as_bytes(std::span(times))));
 }
 

@@ -46,8 +46,8 @@ class InputFiles {
   /// What the mesh that they are imported to is called in messages.
   std::string imported_name() const;
   std::uint64_t bytes() const;
-  /// One number for the times of all files.
-  std::int64_t modified_ns() const;
+  /// One number for the times of all files: as long as it stays, so does what is in them.
+  std::int64_t times() const;
   /// Throws Error(input) if a file is not what it was any more.
   void check_unchanged() const;
   /// As SourceSummary's. Reads all files.

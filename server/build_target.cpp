@@ -15,14 +15,6 @@ std::string as_text(const std::string& name) {
   return nlohmann::json(name).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-bool is_made_of(const Model& model, const storage::FileVersion& version,
-                const std::function<std::uint64_t()>& checksum) {
-  if (model.source_bytes != version.bytes)
-    return false;
-  return std::max(version.modified_ns, version.changed_ns) <= model.built_ns ||
-         (checksum && model.source_checksum == checksum());
-}
-
 bool is_first_of_its_stem(const std::string& name, const std::vector<std::string>& inbox) {
   return std::none_of(inbox.begin(), inbox.end(), [&](const std::string& other) {
     return mesh_stem(other) == mesh_stem(name) && other < name;
@@ -37,16 +29,20 @@ bool is_taken(const storage::Folder& folder, const std::string& name) {
 
 }  // namespace
 
-BuildTarget find_target(TargetFolder target, const std::string& name,
-                        const storage::FileVersion& version, const std::vector<std::string>& inbox,
-                        const std::function<std::uint64_t()>& checksum) {
+BuildTarget find_target(
+    TargetFolder target, const std::string& name, std::uint64_t bytes,
+    const std::vector<std::string>& inbox,
+    const std::function<std::optional<std::uint64_t>(const std::string&)>& checksum_for) {
   using Kind = BuildTarget::Kind;
   const std::string by_stem = mesh_stem(name) + target.suffix;
   const std::string by_name = name + target.suffix;
   for (const std::string& output : {by_stem, by_name}) {
     const std::optional<Model> model = target.hierarchies.look(output);
-    if (model && as_text(model->source) == as_text(name))
-      return {is_made_of(*model, version, checksum) ? Kind::done : Kind::replace, output};
+    if (model && as_text(model->source) == as_text(name)) {
+      const bool is_done =
+          model->source_bytes == bytes && checksum_for(output) == model->source_checksum;
+      return {is_done ? Kind::done : Kind::replace, output};
+    }
     const bool may_use = output == by_name || is_first_of_its_stem(name, inbox);
     if (!model && may_use && !is_taken(target.folder, output))
       return {Kind::build, output};

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,11 +31,13 @@ struct TargetFolder {
 
 /// For the file `name` of that version, among all `inbox` files. "a.ply" goes to "a.hier"; to
 /// "a.ply.hier" if a.hier was made from something else, or an inbox file earlier in the alphabet
-/// has the same stem. A hierarchy that was written after the file was last touched, from a file of
-/// its name and size, is made of it; otherwise `checksum` tells, which reads the file; if it is
-/// empty, another version is supposed. Throws Error(io).
-BuildTarget find_target(TargetFolder target, const std::string& name,
-                        const storage::FileVersion& version, const std::vector<std::string>& inbox,
-                        const std::function<std::uint64_t()>& checksum);
+/// has the same stem. A hierarchy of a file of its name and size is made of it if `checksum_for`
+/// that hierarchy, which is asked for no other, is the one it was made of; if it is not known, it
+/// is made of another version. No time is compared: a file may be replaced while it is built, and
+/// by an older one. Throws Error(io), and what `checksum_for` throws.
+BuildTarget find_target(
+    TargetFolder target, const std::string& name, std::uint64_t bytes,
+    const std::vector<std::string>& inbox,
+    const std::function<std::optional<std::uint64_t>(const std::string&)>& checksum_for);
 
 }  // namespace meshhier::server

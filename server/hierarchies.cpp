@@ -229,8 +229,7 @@ Model Hierarchies::model_of(const std::string& path, const storage::File& file) 
           manifest.source.triangles,
           manifest.total_bytes,
           manifest.source.file_bytes,
-          manifest.source.checksum,
-          file.version().modified_ns};
+          manifest.source.checksum};
 }
 
 void Hierarchies::tell_left_out(const std::string& cause) {

@@ -26,4 +26,10 @@ std::vector<InboxFile> Inbox::look() {
   return files;
 }
 
+std::unique_ptr<storage::File> Inbox::open(const std::string& name,
+                                           const storage::FileVersion& version) const {
+  auto file = storage::open_folder(directory_)->open(name);
+  return file && file->version() == version ? std::move(file) : nullptr;
+}
+
 }  // namespace meshhier::server

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,10 @@ class Inbox {
 
   /// The mesh files that are there now, by name. Links are left out. Throws Error(io).
   std::vector<InboxFile> look();
+  /// That file as it is now, not followed if it has become a link. Null if it is not there, or of
+  /// another version. Throws Error(io).
+  std::unique_ptr<storage::File> open(const std::string& name,
+                                      const storage::FileVersion& version) const;
 
  private:
   struct Seen {

@@ -15,7 +15,6 @@ struct Model {
   std::uint64_t bytes = 0;  ///< of its files
   std::uint64_t source_bytes = 0;
   std::uint64_t source_checksum = 0;  ///< as in the manifest
-  std::int64_t built_ns = 0;          ///< when its manifest was written, since 1970
 
   friend bool operator==(const Model&, const Model&) = default;
 };

@@ -1,9 +1,9 @@
 #include "server/watch.h"
 
 #include "hierarchy/error.h"
-#include "import/input_files.h"
 #include "server/url_path.h"
 #include "storage/format/layout.h"
+#include "storage/io/file_checksum.h"
 
 #include <algorithm>
 #include <exception>
@@ -43,6 +43,7 @@ Watch::Watch(WatchOptions options, storage::FileSystem& files, Hierarchies& hier
       hierarchies_(hierarchies),
       tell_(std::move(tell)),
       folder_(storage::open_folder(options_.folder)),
+      notes_(files_, folder_),
       inbox_(options_.inbox, options_.settle) {}
 
 Watch::~Watch() {
@@ -121,7 +122,7 @@ void Watch::look() {
 void Watch::drop_what_is_done() {
   for (const std::string& name : names_in(State::fresh)) {
     try {
-      const BuildTarget target = target_of(name, nullptr);
+      const BuildTarget target = target_of(name, Unknown::is_another);
       const bool is_done = target.kind == BuildTarget::Kind::done;
       leave_fresh(name, is_done ? State::done : State::growing);
     } catch (const std::exception& error) {
@@ -184,9 +185,7 @@ std::string Watch::next_waiting() const {
 /// Nothing that goes wrong with one file keeps the others waiting.
 void Watch::handle(const std::string& name) {
   try {
-    const BuildTarget target = target_of(name, [&] {
-      return importing::InputFiles(files_, options_.inbox / name, false).checksum(cancel_);
-    });
+    const BuildTarget target = target_of(name, Unknown::is_read);
     if (target.kind == BuildTarget::Kind::done)
       return set_state(name, State::done, "");
     check_target(name, target);
@@ -201,15 +200,55 @@ void Watch::handle(const std::string& name) {
   }
 }
 
-BuildTarget Watch::target_of(const std::string& name,
-                             const std::function<std::uint64_t()>& checksum) {
-  const std::vector<std::string> inbox = names_in(std::nullopt);
-  storage::FileVersion version;
-  {
-    const std::lock_guard lock(mutex_);
-    version = entries_[name].version;
+BuildTarget Watch::target_of(const std::string& name, Unknown unknown) {
+  const storage::FileVersion version = version_of(name);
+  std::optional<std::uint64_t> read;
+  const auto checksum_for = [&](const std::string& hierarchy) {
+    const auto noted = notes_.find(hierarchy, version);
+    if (!noted && unknown == Unknown::is_read)
+      read = read_checksum(name, version);
+    return noted ? noted : read;
+  };
+  const BuildTarget target = find_target({hierarchies_, *folder_, options_.suffix}, name,
+                                         version.bytes, names_in(std::nullopt), checksum_for);
+  if (read && target.kind == BuildTarget::Kind::done)
+    note_input(target, version, *read);
+  return target;
+}
+
+/// That of one file as it lies there, as builds know it.
+std::uint64_t Watch::read_checksum(const std::string& name, const storage::FileVersion& version) {
+  const auto file = inbox_.open(name, version);
+  const std::uint64_t checksum =
+      file ? storage::FileChecksum(version.bytes).complete(*file, [&] { cancel_.check(); }) : 0;
+  if (!is_still(name, version))
+    throw Error(ErrorCode::input, "it was changed while it was read; it is looked at again");
+  return checksum;
+}
+
+storage::FileVersion Watch::version_of(const std::string& name) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = entries_.find(name);
+  return found == entries_.end() ? storage::FileVersion() : found->second.version;
+}
+
+/// Not if nobody can tell.
+bool Watch::is_still(const std::string& name, const storage::FileVersion& version) const {
+  try {
+    return inbox_.open(name, version) != nullptr;
+  } catch (const Error&) {
+    return false;
   }
-  return find_target({hierarchies_, *folder_, options_.suffix}, name, version, inbox, checksum);
+}
+
+/// Without the note, the file is only read once more.
+void Watch::note_input(const BuildTarget& target, const storage::FileVersion& version,
+                       std::uint64_t checksum) {
+  try {
+    notes_.write(target.name, version, checksum);
+  } catch (const Error& error) {
+    tell_(error.what());
+  }
 }
 
 void Watch::check_target(const std::string& name, const BuildTarget& target) const {
@@ -240,11 +279,10 @@ void Watch::put_off(const std::string& name, const std::string& message) {
 }
 
 void Watch::build(const std::string& name, const BuildTarget& target) {
-  storage::FileVersion version;
+  const storage::FileVersion version = version_of(name);
   {
     const std::lock_guard lock(mutex_);
     Entry& entry = entries_[name];
-    version = entry.version;
     entry.state = State::building;
     entry.job = {.name = name, .state = JobState::building};
   }
@@ -253,7 +291,7 @@ void Watch::build(const std::string& name, const BuildTarget& target) {
   // What was begun with another config, or from another version of the file, is no use any more.
   if (outcome.code == kExists && !is_stopping())
     outcome = run_build(name, target, true);
-  settle(name, version, outcome);
+  settle(name, target, version, outcome);
 }
 
 Watch::Outcome Watch::run_build(const std::string& name, const BuildTarget& target, bool restart) {
@@ -276,7 +314,7 @@ std::vector<std::string> Watch::words(const std::string& name, const BuildTarget
   std::vector<std::string> list{options_.program, "build"};
   if (!options_.config.empty())
     list.push_back(options_.config.string());
-  list.insert(list.end(), {"--progress", "json"});
+  list.insert(list.end(), {"--progress", "json", "--no-links"});
   if (target.kind == BuildTarget::Kind::replace)
     list.emplace_back("--force");
   if (restart)
@@ -307,27 +345,34 @@ void Watch::hear(storage::ChildProcess& child, const std::string& name) {
   }
 }
 
-void Watch::settle(const std::string& name, const storage::FileVersion& version,
-                   const Outcome& outcome) {
+void Watch::settle(const std::string& name, const BuildTarget& target,
+                   const storage::FileVersion& version, const Outcome& outcome) {
   if (is_stopping())
     return;
   if (outcome.code == 0)
-    options_.on_new();
-  tell_(fmt::format("{}: {}", name, outcome.code == 0 ? "done" : outcome.message));
-  if (!has_version(name, version))
+    return settle_built(name, target, version);
+  tell_(fmt::format("{}: {}", name, outcome.message));
+  if (version_of(name) != version)
     set_state(name, State::growing, kGrowing);
-  else if (outcome.code == 0)
-    set_state(name, State::done, "");
   else if (outcome.code == kExists)
     put_off(name, outcome.message);
   else
     set_state(name, State::failed, outcome.message);
 }
 
-bool Watch::has_version(const std::string& name, const storage::FileVersion& version) const {
-  const std::lock_guard lock(mutex_);
-  const auto found = entries_.find(name);
-  return found != entries_.end() && found->second.version == version;
+/// A file that is now as it was before the build is what was built: whoever changes it, or puts
+/// another one in its place and it back again, changes one of its times.
+void Watch::settle_built(const std::string& name, const BuildTarget& target,
+                         const storage::FileVersion& version) {
+  options_.on_new();
+  const std::optional<Model> model = hierarchies_.look(target.name);
+  if (model && is_still(name, version)) {
+    note_input(target, version, model->source_checksum);
+    tell_(name + ": done");
+    return set_state(name, State::done, "");
+  }
+  tell_(name + ": it was changed while it was built; it is looked at again");
+  set_state(name, State::growing, kGrowing);
 }
 
 std::string Watch::shown_text(const std::string& message) const {

@@ -5,6 +5,7 @@
 #include "server/build_target.h"
 #include "server/hierarchies.h"
 #include "server/inbox.h"
+#include "server/input_notes.h"
 #include "server/job.h"
 #include "storage/io/child_process.h"
 #include "storage/io/file.h"
@@ -86,15 +87,24 @@ class Watch {
   void leave_fresh(const std::string& name, State state);
   void keep_fresh(const std::string& name, const std::string& cause);
   std::vector<std::string> names_in(std::optional<State> state) const;
-  BuildTarget target_of(const std::string& name, const std::function<std::uint64_t()>& checksum);
+  /// Whether a file is read whose checksum nobody has noted.
+  enum class Unknown { is_read, is_another };
+  BuildTarget target_of(const std::string& name, Unknown unknown);
+  std::uint64_t read_checksum(const std::string& name, const storage::FileVersion& version);
+  storage::FileVersion version_of(const std::string& name) const;
+  bool is_still(const std::string& name, const storage::FileVersion& version) const;
+  void note_input(const BuildTarget& target, const storage::FileVersion& version,
+                  std::uint64_t checksum);
   void check_target(const std::string& name, const BuildTarget& target) const;
   bool is_in_hand(const BuildTarget& target);
   void put_off(const std::string& name, const std::string& message);
   void build(const std::string& name, const BuildTarget& target);
   Outcome run_build(const std::string& name, const BuildTarget& target, bool restart);
   void hear(storage::ChildProcess& child, const std::string& name);
-  void settle(const std::string& name, const storage::FileVersion& version, const Outcome& outcome);
-  bool has_version(const std::string& name, const storage::FileVersion& version) const;
+  void settle(const std::string& name, const BuildTarget& target,
+              const storage::FileVersion& version, const Outcome& outcome);
+  void settle_built(const std::string& name, const BuildTarget& target,
+                    const storage::FileVersion& version);
   void set_state(const std::string& name, State state, const std::string& message);
   std::string shown_text(const std::string& message) const;
   std::vector<std::string> words(const std::string& name, const BuildTarget& target,
@@ -107,6 +117,7 @@ class Watch {
   Hierarchies& hierarchies_;
   Hierarchies::Tell tell_;
   std::shared_ptr<const storage::Folder> folder_;
+  InputNotes notes_;
   Inbox inbox_;
   Time last_look_;
   std::string trouble_;  ///< the failure of the last look, told once

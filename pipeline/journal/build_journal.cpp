@@ -81,7 +81,7 @@ std::optional<EarlierBuild> find_earlier_build(storage::FileSystem& files,
   const auto read = [&](const Value& entry) {
     if (entry.contains("build")) {
       earlier.decides_result = entry.at("build");
-      earlier.input_modified_ns = entry.at("modified");
+      earlier.input_times = entry.at("times");
     } else if (entry.contains("ingest")) {
       earlier.source = storage::parse_source(
           nlohmann::ordered_json(entry.at("ingest").at("summary")), "journal");
@@ -125,7 +125,7 @@ BuildJournal::BuildJournal(storage::FileSystem& files, const std::filesystem::pa
     if (!build) {
       build = entry.at("build");
       is_same = *build == identity.decides_result;
-      input_was_touched_ = entry.at("modified") != identity.input_modified_ns;
+      input_was_touched_ = entry.at("times") != identity.input_times;
       return true;
     }
     has_other_work = has_other_work || entry.contains("ingest");
@@ -264,8 +264,7 @@ const TileRecord* BuildJournal::published(NodeId node) const {
 }
 
 void BuildJournal::note_source(const SourceSummary& summary, Vec3d origin) {
-  journal_->append(
-      {{"build", identity_.decides_result}, {"modified", identity_.input_modified_ns}});
+  journal_->append({{"build", identity_.decides_result}, {"times", identity_.input_times}});
   for (std::uint32_t chunk = 0; chunk < chunks_.count(); ++chunk)
     journal_->append({{"partition", {chunk, chunks_.store(chunk)}}});
   journal_->append(

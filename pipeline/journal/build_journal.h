@@ -42,14 +42,14 @@ struct DistributedSource {
 
 /// Whose journal it is.
 struct BuildIdentity {
-  nlohmann::json decides_result;       ///< an object
-  std::int64_t input_modified_ns = 0;  ///< the input may be the same after it was touched
+  nlohmann::json decides_result;  ///< an object
+  std::int64_t input_times = 0;   ///< the input may be the same after it was touched
 };
 
 /// What an earlier build says of itself.
 struct EarlierBuild {
   nlohmann::json decides_result;
-  std::int64_t input_modified_ns = 0;
+  std::int64_t input_times = 0;
   SourceSummary source;
 };
 /// Of the journal in the directory `work`, unless the input was not read as a whole. Whether all

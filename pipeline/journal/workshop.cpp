@@ -19,7 +19,7 @@ BuildIdentity identity_of(const config::Config& config, const importing::MeshInp
            {"faces", mesh.face_count},
            {"partitions", tree.partition_count()},
            {"config", config::resolved_json(config)}},
-          input.files().modified_ns()};
+          input.files().times()};
 }
 
 /// But for the tiles.
@@ -93,8 +93,7 @@ std::optional<mesh_io::MeshDescription> recall_import(const EarlierBuild& earlie
   if (!is(made_of, "input", files.name()) || !is(made_of, "input_bytes", files.bytes()) ||
       config == made_of.end() || !is(*config, "weld", files.weld()))
     return std::nullopt;
-  if (earlier.input_modified_ns != files.modified_ns() &&
-      input.checksum(cancel) != earlier.source.checksum)
+  if (earlier.input_times != files.times() && input.checksum(cancel) != earlier.source.checksum)
     return std::nullopt;
   mesh_io::MeshDescription mesh;
   mesh.vertex_count = earlier.source.vertices;

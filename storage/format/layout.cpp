@@ -90,6 +90,10 @@ std::filesystem::path work_path(const std::filesystem::path& output) {
   return output.parent_path() / fmt::format(".{}.meshhier-work", output.filename().string());
 }
 
+std::filesystem::path input_note_path(const std::filesystem::path& output) {
+  return output.parent_path() / fmt::format(".{}.meshhier-input", output.filename().string());
+}
+
 std::filesystem::path replaced_path(const std::filesystem::path& output) {
   return output.parent_path() / fmt::format(".{}.meshhier-old", output.filename().string());
 }

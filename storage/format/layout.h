@@ -20,6 +20,7 @@
 //   .NAME.hier.meshhier-work/hierarchy/      becomes NAME.hier
 //   .NAME.3tz.meshhier-work/archive          becomes NAME.3tz, of what is in hierarchy/
 //   .NAME.hier.meshhier-old/                 a replaced hierarchy, for the moment of the rename
+//   .NAME.hier.meshhier-input                by `serve --watch`: which version of which file it was made of
 //   .NAME.hier.meshhier-verify-XXXXXXXX      beside a hierarchy while `verify` needs room
 //   .NAME.meshhier-part                      beside any other file that is written, until it is whole
 //   .NAME.meshhier-scratch                   beside it, while it is made
@@ -59,6 +60,7 @@ bool is_tile_file(std::string_view name);
 
 std::filesystem::path work_path(const std::filesystem::path& output);
 std::filesystem::path replaced_path(const std::filesystem::path& output);
+std::filesystem::path input_note_path(const std::filesystem::path& output);
 /// `run` tells several runs apart.
 std::filesystem::path verify_scratch_path(const std::filesystem::path& hierarchy,
                                           std::uint32_t run);

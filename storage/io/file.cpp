@@ -128,9 +128,15 @@ bool is_inability(int error) {
 
 class PosixFileSystem final : public FileSystem {
  public:
+  explicit PosixFileSystem(Links links) : links_(links) {}
+
   std::unique_ptr<File> open(const std::filesystem::path& path) override {
     // Without O_NONBLOCK a pipe that nobody writes to would hang here.
-    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    const int no_link = links_ == Links::refused ? O_NOFOLLOW : 0;
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | no_link);
+    if (descriptor < 0 && errno == ELOOP && no_link != 0) {
+      throw Error(ErrorCode::io, fmt::format("cannot open {}: it is a link", path.string()));
+    }
     if (descriptor < 0)
       fail_system("open", path, errno);
     struct stat status {};
@@ -162,7 +168,8 @@ class PosixFileSystem final : public FileSystem {
     struct stat status {};
     if (::stat(path.c_str(), &status) != 0)
       fail_system("look at", path, errno);
-    return {static_cast<std::uint64_t>(status.st_size), nanoseconds(status.st_mtim)};
+    return {static_cast<std::uint64_t>(status.st_size), nanoseconds(status.st_mtim),
+            nanoseconds(status.st_ctim)};
   }
 
   std::unique_ptr<FileLock> try_lock(const std::filesystem::path& path) override {
@@ -330,6 +337,8 @@ class PosixFileSystem final : public FileSystem {
     if (result != 0)
       fail_system("sync", directory, error);
   }
+
+  Links links_;
 };
 
 /// A descriptor that is closed with its object; below 0: none.
@@ -488,8 +497,8 @@ void File::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
   }
 }
 
-std::unique_ptr<FileSystem> make_posix_file_system() {
-  return std::make_unique<PosixFileSystem>();
+std::unique_ptr<FileSystem> make_posix_file_system(Links links) {
+  return std::make_unique<PosixFileSystem>(links);
 }
 
 std::unique_ptr<Folder> open_folder(const std::filesystem::path& path) {

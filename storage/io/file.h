@@ -74,7 +74,12 @@ class File {
 struct FileIdentity {
   std::uint64_t bytes = 0;
   std::int64_t modified_ns = 0;  ///< since 1970
-  friend bool operator==(const FileIdentity&, const FileIdentity&) = default;
+  std::int64_t changed_ns = 0;   ///< as FileVersion's: a new link to the file changes it, too
+
+  /// But for `changed_ns`.
+  friend bool operator==(const FileIdentity& a, const FileIdentity& b) {
+    return a.bytes == b.bytes && a.modified_ns == b.modified_ns;
+  }
 };
 
 /// A lock is held as long as its object is there, and not beyond the end of the process, whatever
@@ -159,8 +164,11 @@ class FileSystem {
   std::shared_ptr<IoCounters> counters_ = std::make_shared<IoCounters>();
 };
 
+/// What open() does with a path whose last part is a link.
+enum class Links { followed, refused };
+
 /// The real one.
-std::unique_ptr<FileSystem> make_posix_file_system();
+std::unique_ptr<FileSystem> make_posix_file_system(Links links = Links::followed);
 
 /// A file or directory in a folder.
 struct FolderEntry {

@@ -56,7 +56,7 @@ const std::map<std::string, std::set<std::string>>& allowed_rooms() {
                                  "pipeline/plan", "pipeline/tiles"})},
       {"inspection", with_storage({"execution", "hierarchy", "import", "mesh_io", "partition"})},
       {"progressive", with_storage({"execution", "hierarchy", "mesh_io"})},
-      {"server", with_storage({"execution", "hierarchy", "import", "progressive"})},
+      {"server", with_storage({"execution", "hierarchy", "progressive"})},
       {"app",
        {"config", "execution", "hierarchy", "inspection", "pipeline", "pipeline/journal",
         "pipeline/plan", "progressive", "server", "storage/io"}},

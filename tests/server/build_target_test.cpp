@@ -2,7 +2,8 @@
 
 #include "tests/server/served_folder.h"
 
-#include <chrono>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,12 +17,13 @@ using Kind = BuildTarget::Kind;
 
 class BuildTargetTest : public testing::Test {
  protected:
-  BuildTarget target(const std::string& name, const storage::FileVersion& version = {},
-                     std::uint64_t checksum = 0) {
-    return find_target({hierarchies_, *folder_, ".hier"}, name, version, inbox_, [&] {
-      ++read_;
-      return checksum;
-    });
+  BuildTarget target(const std::string& name, std::uint64_t bytes = 0,
+                     std::optional<std::uint64_t> checksum = std::nullopt) {
+    return find_target({hierarchies_, *folder_, ".hier"}, name, bytes, inbox_,
+                       [&](const std::string& hierarchy) {
+                         asked_.push_back(hierarchy);
+                         return checksum;
+                       });
   }
   /// The hierarchy `name` with the facts about its source.
   Model model(const std::string& name) { return hierarchies_.look(name).value(); }
@@ -30,7 +32,7 @@ class BuildTargetTest : public testing::Test {
   std::shared_ptr<const storage::Folder> folder_ = storage::open_folder(served_.models());
   Hierarchies hierarchies_{folder_, [](const std::string&) {}};
   std::vector<std::string> inbox_{"new.ply", "plain.ply"};
-  int read_ = 0;
+  std::vector<std::string> asked_;  ///< for whom a checksum was
 };
 
 void expect(const BuildTarget& target, Kind kind, const std::string& name) {
@@ -62,27 +64,23 @@ TEST_F(BuildTargetTest, WhatIsNoHierarchyOfOursIsLeftAlone) {
   expect(target("new.ply"), Kind::nowhere, "new.ply.hier");
 }
 
-TEST_F(BuildTargetTest, AHierarchyThatIsNewerIsMadeOfTheFile) {
+TEST_F(BuildTargetTest, TheContentTellsWhatAHierarchyIsMadeOf) {
   const Model made = model("plain.hier");
-  storage::FileVersion version{
-      .bytes = made.source_bytes, .modified_ns = made.built_ns, .changed_ns = made.built_ns};
-  expect(target("plain.ply", version), Kind::done, "plain.hier");
-  EXPECT_EQ(read_, 0);
-  version.bytes += 1;
-  expect(target("plain.ply", version, made.source_checksum), Kind::replace, "plain.hier");
-  EXPECT_EQ(read_, 0);
+  expect(target("plain.ply", made.source_bytes, made.source_checksum), Kind::done, "plain.hier");
+  expect(target("plain.ply", made.source_bytes, made.source_checksum + 1), Kind::replace,
+         "plain.hier");
+  EXPECT_EQ(asked_, std::vector<std::string>(2, "plain.hier"));
 }
 
-TEST_F(BuildTargetTest, WhereTimesDoNotTellTheContentDoes) {
+TEST_F(BuildTargetTest, AFileOfUnknownContentIsAnotherVersion) {
+  expect(target("plain.ply", model("plain.hier").source_bytes), Kind::replace, "plain.hier");
+}
+
+TEST_F(BuildTargetTest, AFileOfAnotherSizeNeedNotBeRead) {
   const Model made = model("plain.hier");
-  for (const std::int64_t later : {0, 1}) {
-    const storage::FileVersion touched{.bytes = made.source_bytes,
-                                       .modified_ns = made.built_ns + later,
-                                       .changed_ns = made.built_ns + 1};
-    expect(target("plain.ply", touched, made.source_checksum), Kind::done, "plain.hier");
-    expect(target("plain.ply", touched, made.source_checksum + 1), Kind::replace, "plain.hier");
-  }
-  EXPECT_EQ(read_, 4);
+  expect(target("plain.ply", made.source_bytes + 1, made.source_checksum), Kind::replace,
+         "plain.hier");
+  EXPECT_TRUE(asked_.empty());
 }
 
 }  // namespace

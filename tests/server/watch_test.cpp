@@ -1,6 +1,7 @@
 // A watched folder with the real program.
 #include "server/watch.h"
 
+#include "storage/io/file_checksum.h"
 #include "tests/server/refusing_folder.h"
 #include "tests/server/served_folder.h"
 #include "tests/server/wait_until.h"
@@ -68,6 +69,36 @@ class WatchTest : public testing::Test {
     tests::write_ply(tests::sphere(triangles), directory_.path() / "made.ply");
     fs::rename(directory_.path() / "made.ply", inbox() / name);
   }
+  /// Another mesh than drop()'s, in as many bytes.
+  void drop_other_shape(const std::string& name) {
+    auto mesh = tests::sphere(600);
+    mesh.positions[0].x += 1;
+    tests::write_ply(mesh, directory_.path() / "made.ply");
+    fs::rename(directory_.path() / "made.ply", inbox() / name);
+  }
+  fs::path other() const { return directory_.path() / "other.ply"; }
+
+  /// The program is a script from now on.
+  void run_instead(const std::string& lines) {
+    program_ = directory_.path() / "build.sh";
+    tests::write_text(program_, "#!/bin/sh\n" + lines);
+    fs::permissions(program_, fs::perms::owner_all);
+  }
+  void run_before_the_build(const std::string& line) {
+    run_instead(line + "\nexec " MESHHIER_BINARY " \"$@\"\n");
+  }
+  /// The manifest is the last file that is written.
+  void run_before_the_end(const std::string& line) {
+    run_instead(MESHHIER_BINARY " \"$@\"\ncode=$?\n" + line + "\ntouch " +
+                (models() / "*/hierarchy.json").string() + "\nexit $code\n");
+  }
+  bool is_made_of(const std::string& name, const fs::path& mesh) {
+    const auto file = files_->open(mesh);
+    const auto model = hierarchies_->look(name);
+    return model &&
+           model->source_checksum == storage::FileChecksum(file->size()).complete(*file, [] {});
+  }
+
   bool is_there(const std::string& name) const {
     return fs::exists(models() / name / "hierarchy.json");
   }
@@ -159,11 +190,9 @@ TEST_F(WatchTest, WhatIsDroppedIsBuiltBrokenOnesAreTold) {
 }
 
 TEST_F(WatchTest, WhatABuildSaysOfPlacesStaysHere) {
-  program_ = directory_.path() / "build.sh";
   config_ = directory_.path() / "all.json";
   tests::write_text(config_, "{}");
-  tests::write_text(program_, "#!/bin/sh\necho \"$@\" >&2\nexec sleep 600\n");
-  fs::permissions(program_, fs::perms::owner_all);
+  run_instead("echo \"$@\" >&2\nexec sleep 600\n");
   start();
   drop("a.ply");
   wait_until(
@@ -241,6 +270,52 @@ TEST_F(WatchTest, ARestartBuildsNothingAgain) {
   wait_until([&] { return is_there("b.hier") && is_idle(); });
   EXPECT_EQ(folder_->open("a.hier/hierarchy.json")->version(), manifest);
   EXPECT_THAT(told(), Not(Contains(HasSubstr("a.ply"))));
+}
+
+TEST_F(WatchTest, AFileThatIsReplacedAtTheEndOfItsBuildIsBuiltAgain) {
+  // The program itself replaces the file, by one of its size, before it says that it is done.
+  tests::write_ply(tests::sphere(600), other());
+  run_before_the_end("test -e " + other().string() + " && mv " + other().string() + " " +
+                     (inbox() / "a.ply").string());
+  start();
+  drop_other_shape("a.ply");
+  wait_until([&] { return is_there("a.hier") && !fs::exists(other()) && is_idle(); });
+  EXPECT_TRUE(is_made_of("a.hier", inbox() / "a.ply"));
+  EXPECT_THAT(told(), Contains("a.ply: it was changed while it was built; it is looked at again"));
+}
+
+TEST_F(WatchTest, AnOlderFileOfEqualSizeReplacesAtARestart) {
+  drop_other_shape("a.ply");
+  start();
+  wait_until([&] { return is_there("a.hier") && is_idle(); });
+  watch_->stop();
+  drop("a.ply");
+  const auto long_ago = fs::file_time_type::clock::now() - std::chrono::hours(1000);
+  fs::last_write_time(inbox() / "a.ply", long_ago);
+  fs::last_write_time(models() / "a.hier/hierarchy.json",
+                      fs::file_time_type::clock::now() + std::chrono::hours(1));
+  start();
+  wait_until([&] { return is_made_of("a.hier", inbox() / "a.ply"); });
+}
+
+TEST_F(WatchTest, AHierarchyMadeByHandIsLeftAsItIs) {
+  drop("a.ply");
+  tests::build_small(directory_.path() / "a.ply", models() / "a.hier");
+  const auto manifest = storage::open_folder(models())->open("a.hier/hierarchy.json")->version();
+  start();
+  wait_until([&] { return is_idle() && fs::exists(models() / ".a.hier.meshhier-input"); });
+  EXPECT_EQ(folder_->open("a.hier/hierarchy.json")->version(), manifest);
+}
+
+TEST_F(WatchTest, AFileThatBecomesALinkBeforeItIsOpenedIsNotFollowed) {
+  const fs::path secret = directory_.path() / "secret.off";
+  tests::write_text(secret, "OFF\nnobody may read this");
+  run_before_the_build("ln -sfn " + secret.string() + " " + (inbox() / "a.off").string());
+  start();
+  tests::write_text(inbox() / "a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  wait_until([&] { return told().size() == 2; });
+  EXPECT_THAT(told()[1], AllOf(HasSubstr("it is a link"), Not(HasSubstr("nobody"))));
+  EXPECT_FALSE(fs::exists(models() / "a.hier"));
 }
 
 TEST_F(WatchTest, StoppingStopsTheBuildAndTheNextOneGoesOn) {
