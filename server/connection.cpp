@@ -39,11 +39,16 @@ std::string address_of(socket_t socket, const Ask& ask) {
 }  // namespace
 
 Connection::Connection(socket_t socket, const ConnectionLimits& limits,
-                       std::function<bool()> has_high_valence, std::function<bool()> is_stopping)
+                       std::function<bool()> is_crowded, std::function<bool()> is_stopping)
     : socket_(socket),
+      address_(address_of(socket, ::getpeername)),
       limits_(limits),
-      has_high_valence_(std::move(has_high_valence)),
+      is_crowded_(std::move(is_crowded)),
       is_stopping_(std::move(is_stopping)) {}
+
+Connection::~Connection() {
+  ::close(socket_);
+}
 
 bool Connection::wait(short event, Clock::time_point end,
                       const std::function<bool()>& is_over) const {
@@ -59,33 +64,29 @@ bool Connection::wait(short event, Clock::time_point end,
   }
 }
 
-/// A new client is given time to speak; one that was served lets others pass.
-bool Connection::wait_for_first_byte() {
-  const Clock::time_point start = Clock::now();
-  const auto patience = requests_ == 0 ? limits_.patience : std::chrono::milliseconds{0};
-  return wait(POLLIN, start + limits_.idle, [&] {
-    return is_stopping_() || (has_high_valence_() && Clock::now() - start >= patience);
-  });
-}
-
-bool Connection::receive() {
+Connection::Received Connection::receive() {
   std::array<char, 4096> buffer;
   const ssize_t count = ::recv(socket_, buffer.data(), buffer.size(), MSG_DONTWAIT);
-  if (count > 0)
+  if (count > 0) {
     received_.append(buffer.data(), static_cast<std::size_t>(count));
-  return count > 0 || (count < 0 && (errno == EAGAIN || errno == EINTR));
+    return Received::something;
+  }
+  const bool may_go_on = count < 0 && (errno == EAGAIN || errno == EINTR);
+  return may_go_on ? Received::nothing_yet : Received::end;
 }
 
-std::size_t Connection::receive_head() {
-  const Clock::time_point end = Clock::now() + limits_.head;
-  for (;;) {
-    const std::size_t found = received_.find(kHeadEnd);
-    if (found != std::string::npos)
-      return found + kHeadEnd.size();
-    if (received_.size() > kMostHeadBytes || Clock::now() >= end ||
-        !wait(POLLIN, end, is_stopping_) || !receive())
-      return 0;
+bool Connection::has_head() const {
+  return received_.find(kHeadEnd) != std::string::npos || received_.size() > kMostHeadBytes;
+}
+
+bool Connection::take_in() {
+  while (!has_head()) {
+    const Received received = receive();
+    has_ended_ = received == Received::end;
+    if (received != Received::something)
+      return has_ended_;
   }
+  return true;
 }
 
 void Connection::begin_reply() {
@@ -95,19 +96,19 @@ void Connection::begin_reply() {
 
 Connection::Next Connection::next_request() {
   begin_reply();  // which may be that there is no request
-  has_unread_ = false;
-  if (received_.empty() && !wait_for_first_byte())
+  has_unread_ = has_begun();
+  const std::size_t found = received_.find(kHeadEnd);
+  const std::size_t bytes = found == std::string::npos ? 0 : found + kHeadEnd.size();
+  if (bytes > kMostHeadBytes || received_.size() - bytes > kMostHeadBytes)
+    return Next::too_large;
+  if (bytes == 0)
     return Next::end;
-  has_unread_ = true;
-  const std::size_t bytes = receive_head();
-  if (bytes == 0 || bytes > kMostHeadBytes)
-    return received_.size() > kMostHeadBytes ? Next::too_large : Next::end;
   auto head = parse_head(std::string_view(received_).substr(0, bytes));
   if (!head)
     return Next::malformed;
-  has_unread_ = head->has_body;
   head_ = std::move(*head);
   received_.erase(0, bytes);
+  has_unread_ = head_.has_body || has_begun();
   place_ = 0;
   ++requests_;
   begin_reply();
@@ -122,7 +123,7 @@ ssize_t Connection::read(char* bytes, std::size_t count) {
 }
 
 bool Connection::is_too_slow() const {
-  if (!has_high_valence_())
+  if (!is_crowded_())
     return false;
   const auto time = Clock::now() - reply_start_;
   const double seconds = std::chrono::duration<double>(time).count();
@@ -144,29 +145,25 @@ ssize_t Connection::write(const char* bytes, std::size_t count) {
 }
 
 void Connection::finish() {
+  if (!has_unread_)
+    return;
   ::shutdown(socket_, SHUT_WR);
   const Clock::time_point end = Clock::now() + kDropTime;
   std::size_t dropped = 0;
   while (dropped < kMostDropped && wait(POLLIN, end, is_stopping_)) {
     received_.clear();
-    if (!receive())
+    if (receive() == Received::end)
       break;
     dropped += received_.size();
   }
 }
 
 void Connection::get_remote_ip_and_port(std::string& ip, int&) const {
-  ip = address_of(socket_, ::getpeername);
+  ip = address_;
 }
 
 void Connection::get_local_ip_and_port(std::string& ip, int&) const {
   ip = address_of(socket_, ::getsockname);
-}
-
-void Connection::close() {
-  if (has_unread_)
-    finish();
-  ::close(socket_);
 }
 
 }  // namespace meshhier::server

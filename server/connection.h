@@ -16,26 +16,39 @@
 
 namespace meshhier::server {
 
-/// Of one thread.
+/// Of one thread at a time.
 class Connection final : public httplib::Stream {
  public:
-  /// `has_high_valence`: others wait for a thread; `is_stopping`: the server is to end.
-  Connection(socket_t socket, const ConnectionLimits& limits,
-             std::function<bool()> has_high_valence, std::function<bool()> is_stopping);
+  /// Takes the socket over. `is_crowded`: others wait; `is_stopping`: the server is to end.
+  Connection(socket_t socket, const ConnectionLimits& limits, std::function<bool()> is_crowded,
+             std::function<bool()> is_stopping);
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+  ~Connection() override;
+
+  /// Of the client; the same however often it is asked.
+  const std::string& address() const { return address_; }
+  /// Takes in what the client has said by now, without waiting. True if next_request() knows what
+  /// to say: a request is there as a whole, or none will come.
+  bool take_in();
+  /// Whether a part of the next request is there.
+  bool has_begun() const { return !received_.empty(); }
+  /// How many requests there were.
+  std::size_t requests() const { return requests_; }
 
   enum class Next {
     request,    ///< head() is the next request's
     malformed,  ///< what came is none
     too_large,
-    end,  ///< of the conversation: the client has closed it, or is too slow
+    end,  ///< of the conversation: the client has closed it
   };
-  /// Waits for the next request and reads its head.
+  /// Requires take_in(), which has said true.
   Next next_request();
   const RequestHead& head() const { return head_; }
 
-  /// Closes the socket. If the client may still be speaking, what it says is dropped for a moment:
-  /// it could not read the reply otherwise.
-  void close();
+  /// Nothing more is said. If the client may still be speaking, what it says is dropped for a
+  /// moment: it could not read the reply otherwise.
+  void finish();
 
   bool is_readable() const override { return place_ < head_.text.size(); }
   bool is_writable() const override { return !is_broken_; }
@@ -52,19 +65,18 @@ class Connection final : public httplib::Stream {
 
   /// Whether the socket is ready for `event` before `end`; false, too, if `is_over` says so.
   bool wait(short event, Clock::time_point end, const std::function<bool()>& is_over) const;
-  bool wait_for_first_byte();
-  /// Bytes of the head that received_ begins with; 0 if it is too large, or does not come.
-  std::size_t receive_head();
+  bool has_head() const;
   void begin_reply();
-  /// Appends what has come to received_; false at the end of it.
-  bool receive();
+  /// Appends what has come to received_.
+  enum class Received { something, nothing_yet, end };
+  Received receive();
   /// As others wait; while nobody does, it may take its time.
   bool is_too_slow() const;
-  void finish();
 
   socket_t socket_;
+  std::string address_;
   ConnectionLimits limits_;
-  std::function<bool()> has_high_valence_, is_stopping_;
+  std::function<bool()> is_crowded_, is_stopping_;
   std::string received_;  ///< not yet taken as a head
   RequestHead head_;
   std::size_t place_ = 0;  ///< what was read of the head
@@ -72,6 +84,7 @@ class Connection final : public httplib::Stream {
   Clock::time_point reply_start_;
   std::size_t reply_bytes_ = 0;
   bool is_broken_ = false;
+  bool has_ended_ = false;   ///< the client says no more
   bool has_unread_ = false;  ///< what was not taken as a request
 };
 

@@ -22,6 +22,7 @@ struct Request {
   std::optional<std::string> if_none_match{};
   std::optional<std::string> if_range{};
   std::optional<std::string> range{};
+  bool has_body = false;  ///< more than 0 bytes are announced behind the head
 };
 
 /// A part of a file, sent piece by piece.

@@ -3,7 +3,7 @@
 #include "hierarchy/error.h"
 #include "server/conditions.h"
 #include "server/connection.h"
-#include "server/worker_pool.h"
+#include "server/lobby.h"
 
 #include <algorithm>
 #include <atomic>
@@ -39,6 +39,12 @@ std::optional<std::string> header(const httplib::Request& request, const char* n
   return request.get_header_value(name);
 }
 
+/// Heads that say it in two ways were refused before.
+bool announces_body(const httplib::Request& request) {
+  return request.has_header("Transfer-Encoding") ||
+         request.get_header_value("Content-Length").find_first_not_of('0') != std::string::npos;
+}
+
 Request request_of(const httplib::Request& request) {
   return {request.method,
           request.target,
@@ -46,7 +52,8 @@ Request request_of(const httplib::Request& request) {
           header(request, "Accept-Encoding"),
           header(request, "If-None-Match"),
           header(request, "If-Range"),
-          header(request, "Range")};
+          header(request, "Range"),
+          announces_body(request)};
 }
 
 /// Sends a file piece by piece. The library has no place for exceptions here: a file that cannot be
@@ -106,6 +113,16 @@ std::string in_url(const std::string& host) {
   return host.find(':') == std::string::npos ? host : '[' + host + ']';
 }
 
+/// Whom the library accepts it hands over at once.
+class HandedOver final : public httplib::TaskQueue {
+ public:
+  void enqueue(std::function<void()> task) override { task(); }
+  void shutdown() override {}
+};
+
+/// Whether the reply that this thread writes ends its connection: the library tells nobody.
+thread_local bool ends_connection = false;
+
 }  // namespace
 
 /// The library's server, with connections of ours: as its own server for TLS, it takes over from
@@ -113,7 +130,10 @@ std::string in_url(const std::string& host) {
 class HttpServer::Library final : public httplib::Server {
  public:
   Library(const ServerOptions& options, Answer answer, Log log)
-      : options_(options), answer_(std::move(answer)), log_(std::move(log)) {
+      : options_(options),
+        answer_(std::move(answer)),
+        log_(std::move(log)),
+        lobby_({options.threads, options.most_connections}, options.limits) {
     set_up();
     bind();
   }
@@ -121,8 +141,11 @@ class HttpServer::Library final : public httplib::Server {
 
   std::uint16_t port() const { return port_; }
   bool is_lost() const { return is_lost_; }
+  std::size_t served() const { return lobby_.served(); }
 
   void begin() {
+    for (std::size_t i = 0; i < options_.threads; ++i)
+      workers_.emplace_back([this] { work(); });
     thread_ = std::thread([this] { run(); });
     while (!is_running())
       std::this_thread::yield();
@@ -133,8 +156,12 @@ class HttpServer::Library final : public httplib::Server {
     if (!is_running())
       close_socket();
     stop();
+    lobby_.close();
     if (thread_.joinable())
       thread_.join();
+    for (std::thread& worker : workers_)
+      worker.join();
+    workers_.clear();
   }
 
  private:
@@ -166,9 +193,7 @@ class HttpServer::Library final : public httplib::Server {
   }
 
   void set_up() {
-    new_task_queue = [this] {
-      return new WorkerPool(options_.threads, options_.most_waiting, waiting_);
-    };
+    new_task_queue = [] { return new HandedOver; };
     set_tcp_nodelay(true);
     // Without this the library's default, by which two servers share a port without knowing.
     set_socket_options([](socket_t socket) {
@@ -181,6 +206,10 @@ class HttpServer::Library final : public httplib::Server {
     });
     set_post_routing_handler([](const httplib::Request&, httplib::Response& response) {
       response.headers.erase("Keep-Alive");
+      // Where one request ends and the next one begins is not certain any more.
+      ends_connection = response.status == 400;
+      if (ends_connection && !response.has_header("Connection"))
+        response.set_header("Connection", "close");
       if (response.status == 304 || response.status == 204)
         response.headers.erase("Content-Length");
     });
@@ -205,19 +234,25 @@ class HttpServer::Library final : public httplib::Server {
   }
 
   bool process_and_close_socket(socket_t socket) override {
-    Connection connection(
-        socket, options_.limits, [this] { return waiting_ > 0; },
-        [this] { return is_stopping_.load(); });
-    for (std::size_t count = 1; converse(connection, count == kMostRequests); ++count) {
-    }
-    connection.close();
+    lobby_.enter(std::make_unique<Connection>(
+        socket, options_.limits, [this] { return lobby_.is_crowded(); },
+        [this] { return is_stopping_.load(); }));
     return true;
   }
 
+  void work() {
+    while (std::unique_ptr<Connection> connection = lobby_.next()) {
+      if (converse(*connection)) {
+        lobby_.come_back(std::move(connection));
+      } else {
+        connection->finish();
+        lobby_.leave(connection->address());
+      }
+    }
+  }
+
   /// One request and its reply; false if it was the last one.
-  bool converse(Connection& connection, bool is_last) {
-    if (is_stopping_)
-      return false;
+  bool converse(Connection& connection) {
     switch (connection.next_request()) {
       case Connection::Next::request:
         break;
@@ -229,14 +264,15 @@ class HttpServer::Library final : public httplib::Server {
         return false;
     }
     const RequestHead& head = connection.head();
-    const bool closes = is_last || head.has_body || waiting_ > 0;
+    const bool closes =
+        connection.requests() == kMostRequests || head.has_body || lobby_.is_crowded();
     bool client_closes = false;
     const auto add_range = [&](httplib::Request& request) {
       if (head.range)
         request.set_header("Range", *head.range);
     };
     const bool is_sent = process_request(connection, closes, client_closes, add_range);
-    return is_sent && !closes && !client_closes && !is_stopping_;
+    return is_sent && !closes && !client_closes && !ends_connection && !is_stopping_;
   }
 
   static bool refuse(Connection& connection, const char* status) {
@@ -250,10 +286,11 @@ class HttpServer::Library final : public httplib::Server {
   Answer answer_;
   Log log_;
   std::uint16_t port_ = 0;
-  std::atomic<std::size_t> waiting_{0};
   std::atomic<bool> is_stopping_{false};
   std::atomic<bool> is_lost_{false};
+  Lobby lobby_;
   std::thread thread_;
+  std::vector<std::thread> workers_;
 };
 
 HttpServer::HttpServer(const ServerOptions& options, Answer answer, Log log)
@@ -263,6 +300,10 @@ HttpServer::~HttpServer() = default;
 
 std::uint16_t HttpServer::port() const {
   return library_->port();
+}
+
+std::size_t HttpServer::served() const {
+  return library_->served();
 }
 
 bool HttpServer::is_lost() const {

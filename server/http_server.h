@@ -15,10 +15,10 @@ namespace meshhier::server {
 struct ServerOptions {
   std::string host = "127.0.0.1";  ///< an address of this machine
   std::uint16_t port = 8080;       ///< 0: any that is free
-  // A thread waits for the disk or the network most of its time. Each takes some 100 KiB; with
-  // those that wait there are at most 320 connections, below the 1024 open files of a process.
+  // A thread waits for the disk or the network most of its time, and takes some 100 KiB.
   std::size_t threads = 64;
-  std::size_t most_waiting = 256;
+  /// With a file for each thread, below the 1024 open files of a process.
+  std::size_t most_connections = 512;
   ConnectionLimits limits{};
 };
 
@@ -46,6 +46,8 @@ class HttpServer {
   ~HttpServer();
 
   std::uint16_t port() const;
+  /// Connections that a thread serves at this moment.
+  std::size_t served() const;
   void start();
   /// Whether the system has taken the port away, and it could not be had again. Nothing is served
   /// then.

@@ -3,8 +3,8 @@
 #include "hierarchy/error.h"
 #include "storage/format/layout.h"
 #include "storage/format/sealed_json.h"
-#include "storage/io/atomic_file.h"
 #include "storage/io/hash.h"
+#include "storage/io/output_file.h"
 
 #include <array>
 #include <bit>
@@ -50,7 +50,8 @@ void InputNotes::write(const std::string& hierarchy, const storage::FileVersion&
   const std::string text =
       storage::sealed_text(kFormat, {{"file", storage::hex_digits(mark_of(version))},
                                      {"content", storage::hex_digits(checksum)}});
-  storage::AtomicFile(files_, folder_->path() / storage::input_note_path(hierarchy))
+  const std::filesystem::path path = folder_->path() / storage::input_note_path(hierarchy);
+  storage::OutputFile(files_, {.path = path, .replace = true})
       .publish(std::as_bytes(std::span(text)));
 }
 

@@ -9,6 +9,26 @@ namespace {
 
 constexpr std::string_view kLineEnd = "\r\n";
 
+/// RFC 9110, section 5.6.2.
+bool is_token(std::string_view text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+           std::string_view("!#$%&'*+-.^_`|~").find(c) != std::string_view::npos;
+  });
+}
+
+bool has_controls(std::string_view text) {
+  return std::any_of(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) < ' ' && c != '\t') || c == '\x7f';
+  });
+}
+
+/// Not beyond what fits 64 bits.
+bool is_length(std::string_view text) {
+  return !text.empty() && text.size() < 20 &&
+         text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
 bool has_only_whole_lines(std::string_view raw) {
   for (std::size_t i = 0; i < raw.size(); ++i) {
     const bool ends = raw[i] == '\r' && i + 1 < raw.size() && raw[i + 1] == '\n';
@@ -17,7 +37,49 @@ bool has_only_whole_lines(std::string_view raw) {
     else if (raw[i] == '\r' || raw[i] == '\n' || raw[i] == '\0')
       return false;
   }
-  return raw.ends_with(kLineEnd);
+  return raw.ends_with("\r\n\r\n");
+}
+
+struct Header {
+  std::string name;  ///< in lower case
+  std::string_view value;
+};
+/// Of a line without its end; nothing if it is none.
+std::optional<Header> parse_header(std::string_view line) {
+  const std::size_t colon = line.find(':');
+  if (colon == std::string_view::npos || !is_token(line.substr(0, colon)) || has_controls(line))
+    return std::nullopt;
+  return Header{lower_case(line.substr(0, colon)), trimmed(line.substr(colon + 1))};
+}
+
+/// What may be there once, and decides how the rest is read.
+class Framing {
+ public:
+  /// False if it contradicts what was there, or means nothing.
+  bool take(const Header& header) {
+    if (header.name == "host")
+      return ++hosts_ == 1;
+    if (header.name == "content-length")
+      has_body_ = has_body_ || header.value.find_first_not_of('0') != std::string_view::npos;
+    else if (header.name == "transfer-encoding")
+      has_body_ = true;
+    else
+      return true;
+    const bool is_clear = header.name == "content-length" ? is_length(header.value)
+                                                          : lower_case(header.value) == "chunked";
+    return is_clear && ++lengths_ == 1;
+  }
+  bool has_body() const { return has_body_; }
+
+ private:
+  int hosts_ = 0, lengths_ = 0;
+  bool has_body_ = false;
+};
+
+std::string_view take_line(std::string_view& rest) {
+  const std::string_view line = rest.substr(0, rest.find(kLineEnd));
+  rest.remove_prefix(line.size() + kLineEnd.size());
+  return line;
 }
 
 }  // namespace
@@ -25,23 +87,27 @@ bool has_only_whole_lines(std::string_view raw) {
 std::optional<RequestHead> parse_head(std::string_view raw) {
   if (!has_only_whole_lines(raw))
     return std::nullopt;
-  RequestHead head;
+  const std::string_view request_line = take_line(raw);
+  if (request_line.empty() || request_line.front() == ' ' || has_controls(request_line) ||
+      request_line.find('\t') != std::string_view::npos)
+    return std::nullopt;
+  RequestHead head{.text = std::string(request_line).append(kLineEnd)};
   std::size_t ranges = 0;
-  while (!raw.empty()) {
-    const std::size_t end = raw.find(kLineEnd) + kLineEnd.size();
-    const std::string_view line = raw.substr(0, end);
-    raw.remove_prefix(end);
-    const std::size_t colon = std::min(line.find(':'), line.size());
-    const std::string name = lower_case(line.substr(0, colon));
-    if (name == "range") {
-      head.range = trimmed(line.substr(colon + 1, line.size() - colon - 1 - kLineEnd.size()));
+  Framing framing;
+  while (raw != kLineEnd) {
+    const std::string_view line = take_line(raw);
+    const std::optional<Header> header = parse_header(line);
+    if (!header || !framing.take(*header))
+      return std::nullopt;
+    if (header->name == "range") {
+      head.range = header->value;
       ++ranges;
-      continue;
+    } else {
+      head.text.append(line).append(kLineEnd);
     }
-    if (name == "content-length" || name == "transfer-encoding")
-      head.has_body = true;
-    head.text += line;
   }
+  head.text += kLineEnd;
+  head.has_body = framing.has_body();
   if (ranges > 1)
     head.range.reset();
   return head;

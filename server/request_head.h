@@ -17,13 +17,15 @@ struct RequestHead {
   /// as many copies of the file.
   std::string text;
   std::optional<std::string> range;  ///< the value, if there is one such header and no more
-  bool has_body = false;
+  bool has_body = false;             ///< of more than 0 bytes, as announced
 
   friend bool operator==(const RequestHead&, const RequestHead&) = default;
 };
 
-/// `raw`: up to and with the empty line. Nothing if a line ends otherwise than with CR LF, or holds
-/// a NUL: the library and this would not see the same lines.
+/// `raw`: up to and with the empty line. Nothing if two readers could see two things in it (RFC
+/// 9112, sections 3, 5 and 6): a line that ends otherwise than with CR LF or goes on in the next
+/// one, a character of control, a name that is none or is followed by a blank, more than one Host,
+/// or a body whose length is said twice or in no number.
 std::optional<RequestHead> parse_head(std::string_view raw);
 
 }  // namespace meshhier::server

@@ -71,6 +71,8 @@ Reply Site::route(const Request& request) {
     reply.headers.emplace_back("Allow", kMethods);
     return reply;
   }
+  if (request.has_body)
+    return text_reply(413, "This server takes no request with a body.");
   const std::optional<std::string> path = decode_path(request.target);
   if (!path)
     return not_found();

@@ -49,7 +49,7 @@ RawReply parse_reply_head(const std::string& head) {
 
 }  // namespace
 
-RawClient::RawClient(std::uint16_t port, int receive_buffer_bytes)
+RawClient::RawClient(std::uint16_t port, int receive_buffer_bytes, const char* from)
     : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
   if (receive_buffer_bytes > 0)
     ::setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &receive_buffer_bytes,
@@ -57,6 +57,9 @@ RawClient::RawClient(std::uint16_t port, int receive_buffer_bytes)
   ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &kMinute, sizeof(kMinute));
   sockaddr_in address{};
   address.sin_family = AF_INET;
+  address.sin_addr.s_addr = ::inet_addr(from);
+  if (::bind(socket_, reinterpret_cast<sockaddr*>(&address), sizeof(address)) != 0)
+    fail("cannot bind");
   address.sin_port = htons(port);
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   if (::connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof(address)) != 0)

@@ -17,7 +17,9 @@ struct RawReply {
 /// One connection. Throws std::runtime_error if it cannot be made, or is silent for a minute.
 class RawClient {
  public:
-  explicit RawClient(std::uint16_t port, int receive_buffer_bytes = 0);
+  /// `from`: the address it has itself, any of the loopback.
+  explicit RawClient(std::uint16_t port, int receive_buffer_bytes = 0,
+                     const char* from = "127.0.0.1");
   RawClient(const RawClient&) = delete;
   RawClient& operator=(const RawClient&) = delete;
   ~RawClient();

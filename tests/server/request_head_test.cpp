@@ -33,11 +33,48 @@ TEST(RequestHeadTest, AnEmptyRangeIsOne) {
 
 TEST(RequestHeadTest, BodiesAreAnnounced) {
   for (const char* line :
-       {"Content-Length: 0", "content-length: 5", "Transfer-Encoding: chunked"}) {
+       {"content-length: 5", "Content-Length: 05", "Transfer-Encoding: chunked"}) {
     const auto head = parse_head("POST / HTTP/1.1\r\n" + std::string(line) + "\r\n\r\n");
     ASSERT_TRUE(head);
     EXPECT_TRUE(head->has_body) << line;
   }
+}
+
+TEST(RequestHeadTest, NoBytesAreNoBody) {
+  const auto head = parse_head("GET / HTTP/1.1\r\nContent-Length: 0\r\n\r\n");
+  ASSERT_TRUE(head);
+  EXPECT_FALSE(head->has_body);
+}
+
+TEST(RequestHeadTest, HeadersThatCanBeReadInTwoWaysAreRefused) {
+  for (const std::string& lines : {"Transfer-Encoding : chunked"s,
+                                   "X: a\r\n b"s,
+                                   " X: a"s,
+                                   "X: a\r\n\t"s,
+                                   ": a"s,
+                                   "X"s,
+                                   "X Y: a"s,
+                                   "X\x01: a"s,
+                                   "X: a\x01"s,
+                                   "X: \x7f"s,
+                                   "X\x80: a"s,
+                                   "Host: a\r\nhost: a"s,
+                                   "Content-Length: 5\r\nContent-Length: 5"s,
+                                   "Content-Length: 0\r\nContent-Length: 5"s,
+                                   "Content-Length: 5\r\nTransfer-Encoding: chunked"s,
+                                   "Content-Length: 5,5"s,
+                                   "Content-Length: +5"s,
+                                   "Content-Length:"s,
+                                   "Content-Length: 123456789012345678901"s,
+                                   "Transfer-Encoding: chunked\r\nTransfer-Encoding: chunked"s,
+                                   "Transfer-Encoding: gzip"s})
+    EXPECT_EQ(parse_head("GET / HTTP/1.1\r\n" + lines + "\r\n\r\n"), std::nullopt) << lines;
+  for (const std::string& line : {"\r\n"s, " GET / HTTP/1.1\r\n"s, "GET /\t HTTP/1.1\r\n"s})
+    EXPECT_EQ(parse_head(line + "\r\n"), std::nullopt) << line;
+}
+
+TEST(RequestHeadTest, LettersOfOtherScriptsMayBeInValues) {
+  EXPECT_TRUE(parse_head("GET / HTTP/1.1\r\nX:\t\xc3\xa4 \r\n\r\n"));
 }
 
 TEST(RequestHeadTest, LinesThatOthersWouldSeeOtherwiseAreRefused) {
