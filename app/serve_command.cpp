@@ -131,6 +131,33 @@ void wait_for_end(const execution::CancelToken& cancel, const server::HttpServer
     std::this_thread::sleep_for(kLook);
 }
 
+/// Whole paths stay on this machine: others get to know the last part.
+std::string place_name(const std::string& folder, bool stays_here, storage::FileSystem& files) {
+  if (folder.empty())
+    return {};
+  const std::filesystem::path path = files.canonical(folder);
+  return (stays_here ? path : path.filename()).string();
+}
+
+server::PlaceNames place_names(const ServeArguments& arguments, storage::FileSystem& files) {
+  const bool stays_here = server::is_loopback_host(arguments.server.host) && arguments.cors.empty();
+  return {place_name(arguments.folder, stays_here, files),
+          place_name(arguments.inbox, stays_here, files)};
+}
+
+std::string empty_text(const ServeArguments& arguments) {
+  const std::string folder = plain_text(arguments.folder, kLongestTarget);
+  if (arguments.inbox.empty()) {
+    return fmt::format(
+        "there are no hierarchies in {} yet; those that \"meshhier build\" puts "
+        "there are shown at once",
+        folder);
+  }
+  return fmt::format(
+      "there are no hierarchies in {} yet; mesh files that are put into {} become some", folder,
+      plain_text(arguments.inbox, kLongestTarget));
+}
+
 /// All that runs. What others use comes before them: it ends after them.
 class Service {
  public:
@@ -147,10 +174,11 @@ class Service {
       options.on_new = [this] { site_->refresh(); };
       watch_.emplace(std::move(options), environment.files, hierarchies_, tell_);
     }
-    site_.emplace(
-        server::SiteOptions{std::move(viewer.folder), page_without_viewer(),
-                            server::is_loopback_host(arguments.server.host), arguments.cors},
-        hierarchies_, watch_ ? [this] { return watch_->jobs(); } : server::Site::Jobs(), tell_);
+    site_.emplace(server::SiteOptions{std::move(viewer.folder), page_without_viewer(),
+                                      server::is_loopback_host(arguments.server.host),
+                                      arguments.cors, place_names(arguments, environment.files)},
+                  hierarchies_, watch_ ? [this] { return watch_->jobs(); } : server::Site::Jobs(),
+                  tell_);
     const auto log = [this](const server::Served& served) { console_.print(log_line(served)); };
     http_.emplace(
         arguments.server, [this](const server::Request& request) { return site_->answer(request); },
@@ -161,6 +189,7 @@ class Service {
     http_->start();
     const std::string url = server::url_of(arguments.server.host, http_->port());
     environment_.out << url << std::endl;
+    tell_if_empty(arguments);
     if (watch_)
       watch_->start();
     const auto browser = arguments.open ? open_browser(url, console_, environment_.files) : nullptr;
@@ -174,6 +203,16 @@ class Service {
   }
 
  private:
+  /// A folder that cannot be listed now may be listed later.
+  void tell_if_empty(const ServeArguments& arguments) {
+    try {
+      if (hierarchies_.list().empty())
+        console_.tell(empty_text(arguments));
+    } catch (const Error& error) {
+      console_.tell(error.what());
+    }
+  }
+
   Environment& environment_;
   Console console_;
   server::Hierarchies::Tell tell_;

@@ -17,7 +17,8 @@ std::string url_of(const Model& model) {
 }  // namespace
 
 std::string gallery_json(const std::vector<Model>& models,
-                         const std::optional<nlohmann::ordered_json>& jobs) {
+                         const std::optional<nlohmann::ordered_json>& jobs,
+                         const PlaceNames& places) {
   nlohmann::ordered_json document{{"models", nlohmann::ordered_json::array()}};
   for (const Model& model : models) {
     document["models"].push_back({{"name", model.name},
@@ -29,6 +30,10 @@ std::string gallery_json(const std::vector<Model>& models,
   }
   if (jobs)
     document["jobs"] = *jobs;
+  if (!places.folder.empty())
+    document["folder"] = places.folder;
+  if (!places.inbox.empty())
+    document["inbox"] = places.inbox;
   // Names of files may hold any bytes, JSON may not.
   return document.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
 }

@@ -14,10 +14,17 @@
 
 namespace meshhier::server {
 
+/// What the page calls the folder that is served, and the one that is watched; empty: not told.
+struct PlaceNames {
+  std::string folder{};
+  std::string inbox{};
+};
+
 /// `jobs`: of a watched folder; none if none is watched. Paths are relative to the document, as a
 /// URL has them.
 std::string gallery_json(const std::vector<Model>& models,
-                         const std::optional<nlohmann::ordered_json>& jobs);
+                         const std::optional<nlohmann::ordered_json>& jobs,
+                         const PlaceNames& places);
 
 /// Thread-safe.
 class Gallery {

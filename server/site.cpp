@@ -85,7 +85,7 @@ Reply Site::route(const Request& request) {
 
 Reply Site::models_json(const Request& request) {
   const auto jobs = jobs_ ? std::optional(jobs_()) : std::nullopt;
-  const std::string text = gallery_json(gallery_.models(), jobs);
+  const std::string text = gallery_json(gallery_.models(), jobs, options_.places);
   const std::string tag = text_tag(text);
   const bool is_known = request.if_none_match && names_tag(*request.if_none_match, tag);
   Reply reply{.headers = {{"ETag", tag}, {"Cache-Control", kRevalidate}}, .text = text};

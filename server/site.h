@@ -20,6 +20,7 @@ struct SiteOptions {
   std::string missing_viewer{};                     ///< what "/" says then
   bool is_loopback = true;  ///< requests must name this machine by its loopback
   std::string cors{};       ///< an origin, or "*"; empty: pages of others may not read
+  PlaceNames places{};
 };
 
 /// Thread-safe.

@@ -278,5 +278,31 @@ TEST_F(ServeTest, KilledInTheMiddleOfABuildItGoesOnWhenItIsStartedAgain) {
   EXPECT_GT(files, 10U);
 }
 
+TEST(ServeEmptyTest, AnEmptyFolderIsNamedAndSoIsTheInbox) {
+  const tests::TemporaryDirectory directory;
+  fs::create_directories(directory.path() / "models");
+  fs::create_directories(directory.path() / "inbox");
+  const std::string models = (directory.path() / "models").string();
+  const std::string inbox = (directory.path() / "inbox").string();
+  ServeProcess server(directory.path(), {models, "--watch", inbox, "--port", "0"});
+  tests::RawClient client(server.port());
+  const json listing = json::parse(client.get("/models.json").body);
+  EXPECT_EQ(listing["folder"], fs::canonical(models).string());
+  EXPECT_EQ(listing["inbox"], fs::canonical(inbox).string());
+  server.end(SIGTERM);
+  EXPECT_THAT(server.messages(), AllOf(HasSubstr("no hierarchies in " + models + " yet"),
+                                       HasSubstr("put into " + inbox)));
+}
+
+TEST(ServeEmptyTest, OthersDoNotGetToKnowWhereTheFolderLies) {
+  const tests::TemporaryDirectory directory;
+  fs::create_directories(directory.path() / "models");
+  ServeProcess server(directory.path(),
+                      {(directory.path() / "models").string(), "--cors", "*", "--port", "0"});
+  const json listing = json::parse(tests::RawClient(server.port()).get("/models.json").body);
+  EXPECT_EQ(listing["folder"], "models");
+  EXPECT_FALSE(listing.contains("inbox"));
+}
+
 }  // namespace
 }  // namespace meshhier::app

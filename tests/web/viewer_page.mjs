@@ -586,6 +586,49 @@ async function checkUnreachable(visitor, name) {
   await visitor.close(page, 'unreachable after a model');
 }
 
+/// A host that is away for all tiles but the root: one message, which goes when they come.
+async function checkTroubledTiles(visitor, name) {
+  const finer = /\/tiles\/(?!00\/)/;
+  const page = await visitor.open(anchor(name), { ...WIDE, routes: (one) => one.route(finer, (route) => route.abort()) });
+  const problem = page.getByRole('alert').locator('.problem');
+  await problem.filter({ hasText: 'files are missing in all' }).waitFor();
+  const text = await problem.innerText();
+  visitor.check('troubled tiles', (await problem.count()) === 1 && !/TypeError|CORS/.test(text), text);
+  await page.unroute(finer);
+  await problem.getByRole('button', { name: 'Retry' }).click();
+  await settle(page);
+  visitor.check('troubled tiles again', await until(page, async () => (await problem.count()) === 0), 'all is there, and nothing is told');
+  await page.close();
+}
+
+/// A root that is no tile, until it is one.
+async function checkCorruptRoot(visitor, name) {
+  const page = await visitor.open(anchor(name), { ...WIDE, routes: (one) => one.route(ROOT, (route) => route.fulfill({ body: 'no tile at all' })) });
+  const problem = page.getByRole('alert').locator('.problem', { hasText: 'cannot be opened' });
+  await problem.waitFor();
+  const text = await problem.innerText();
+  visitor.check('corrupt root', !/TypeError|CORS/.test(text) && text.includes('meshhier verify'), text);
+  await page.unroute(ROOT);
+  await problem.getByRole('button', { name: 'Retry' }).click();
+  await settle(page);
+  visitor.check('corrupt root again', (await problem.count()) === 0, 'the model is shown');
+  await page.close();
+}
+
+/// A listing of an empty folder names it, and the inbox; a model that comes is shown without a visit more.
+async function checkEmptyFolder(visitor, name) {
+  let listing = { models: [], folder: '/data/models', inbox: '/data/inbox' };
+  const page = await visitor.open('', { ...WIDE, routes: (one) => one.route('**/models.json', (route) => route.fulfill({ json: listing })) });
+  const note = page.locator('.gallery-note', { hasText: 'no hierarchies' });
+  await note.waitFor();
+  const text = await note.innerText();
+  visitor.check('empty folder', text.includes('/data/models') && text.includes('/data/inbox'), text);
+  listing = { models: [{ path: `models/${name}.hier` }] };
+  await page.locator('a.cell', { hasText: name }).waitFor();
+  visitor.check('empty folder filled', (await page.locator('.problem').count()) === 0, 'its model is shown');
+  await page.close();
+}
+
 function withoutWebGl() {
   const get = HTMLCanvasElement.prototype.getContext;
   HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
@@ -618,6 +661,9 @@ async function checkAll(browser, report, pictures, hierarchies, origin) {
   await checkCamera(visitor, names[0]);
   await checkLateCode(visitor, names[0]);
   await checkLateRoot(visitor, names[0]);
+  await checkTroubledTiles(visitor, names[0]);
+  await checkCorruptRoot(visitor, names[0]);
+  await checkEmptyFolder(visitor, names[0]);
   await checkLateRest(visitor, names[0]);
   await checkEscapes(visitor, names[0]);
   await checkLostCode(visitor, names[0]);

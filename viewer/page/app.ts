@@ -16,10 +16,18 @@ import { watchInput } from './parts/input.js';
 import { applyTheme, watchSystemTheme } from './theme.js';
 import type { ModelView, Surroundings } from './view/model_view.js';
 
+/// What a folder without a model says, of a listing that knows where it lies.
+function emptyText({ folder, inbox }: Listing): string {
+  const how = inbox === null ? 'Hierarchies that "meshhier build" puts there appear here' : `Mesh files that are put into ${inbox} become some`;
+  return `There are no hierarchies in ${folder} yet. ${how}.`;
+}
+
 const HOW_TO = 'Put a file models.json beside this page, {"models": [{"path": "NAME.hier"}]}, or let "meshhier serve" do it, ' +
   'or name a hierarchy in the address: ?model=NAME.hier';
 
+/// A browser's word for code that did not come says nothing to people.
 function messageOf(error: unknown): string {
+  if (error instanceof TypeError) return "the page's code could not be fetched";
   return error instanceof Error ? error.message : String(error);
 }
 
@@ -106,7 +114,7 @@ export class App {
   private listed(listing: Listing): void {
     this.gallery?.update(listing);
     const isEmpty = listing.models.length + (listing.jobs?.length ?? 0) === 0;
-    if (isEmpty) this.gallery?.tell(`The listing ${this.query.listing} is empty. ${HOW_TO}`);
+    if (isEmpty) this.gallery?.tell(listing.folder === null ? `The listing ${this.query.listing} is empty. ${HOW_TO}` : emptyText(listing));
   }
 
   private showGallery(): void {
@@ -143,7 +151,7 @@ export class App {
     this.gallery?.hide();
     this.watch.stop();
     document.title = `${model.name} – meshhier`;
-    this.load(entry, pose).catch((error: unknown) => { if (entry === this.entry) this.refuse(entry, messageOf(error)); });
+    this.load(entry, pose).catch((error: unknown) => { if (entry === this.entry) this.refuse(entry, messageOf(error), pose); });
   }
 
   private async load(entry: ModelEntry, pose: Pose | null): Promise<void> {
@@ -161,14 +169,15 @@ export class App {
   }
 
   /// Back to the gallery, where the model's link can be followed again; a visitor who is elsewhere by now stays there.
-  private refuse({ model, current }: ModelEntry, why: string): void {
+  private refuse({ model, current }: ModelEntry, why: string, pose: Pose | null): void {
     if (!current) {
       this.closeView();
       return;
     }
     history.replaceState(null, '', this.galleryAddress);
     this.showGallery();
-    this.problems.tell(why === NO_WEBGL ? why : `${model.name} cannot be shown: ${why}. Load the page again to try once more.`);
+    const retry = (): void => { location.hash = formatAddress({ path: model.path, pose }); };
+    this.problems.tell(why === NO_WEBGL ? why : `${model.name} cannot be shown: ${why}.`, { retry: why === NO_WEBGL ? null : retry });
   }
 
   private surroundings(entry: ModelEntry, pose: Pose | null, { fetch, createWorker }: EarlyStart): Surroundings {
@@ -181,7 +190,11 @@ export class App {
       setTheme: (theme) => { this.setTheme(theme); },
       leave: this.query.only === null ? () => { this.close(); } : null,
       rested: (rest) => { entry.write(rest); },
-      failed: (message) => this.problems.tell(message),
+      failed: (message, telling) => this.problems.tell(message, telling),
+      again: () => {
+        this.closeView();
+        this.route();
+      },
     };
   }
 

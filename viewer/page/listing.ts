@@ -27,6 +27,9 @@ export interface Listing {
   models: Model[];
   /// Null: the listing has none and never will.
   jobs: Job[] | null;
+  /// Where the models lie, and where meshes are put; null: it does not say so.
+  folder: string | null;
+  inbox: string | null;
 }
 
 export class ListingError extends Error {}
@@ -126,5 +129,5 @@ export function parseListing(text: string, url: string): Listing {
   if (!isObject(document) || !Array.isArray(document.models)) throw new ListingError(`${url} has no list "models"`);
   const models = readAll(document.models, (value) => readModel(value, url), (model) => model.path);
   const jobs = Array.isArray(document.jobs) ? readAll(document.jobs, readJob, (job) => job.name) : null;
-  return { models, jobs };
+  return { models, jobs, folder: textOf(document.folder) || null, inbox: textOf(document.inbox) || null };
 }

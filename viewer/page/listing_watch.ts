@@ -1,4 +1,4 @@
-// Fetches the listing, and again and again until there is one and while it tells of jobs.
+// Fetches the listing, and again and again until there is one with models and while it tells of jobs.
 import { drain } from '../src/hierarchy/bytes.js';
 import { HierarchyProblem } from '../src/hierarchy/problem.js';
 import { ListingError, parseListing, type Listing } from './listing.js';
@@ -67,7 +67,7 @@ export class ListingWatch {
 
   /// For the next look, if there is to be one.
   private wait(ended: AbortSignal): void {
-    if (this.listing !== null && this.listing.jobs === null) return;
+    if (this.listing !== null && this.listing.jobs === null && this.listing.models.length > 0) return;
     this.timer = window.setTimeout(() => {
       if (document.hidden) this.wait(ended);
       else void this.look(ended);

@@ -1,31 +1,75 @@
-// What failed and what to do, in a region that can be dismissed.
+// What failed and what to do: one message at a time, the newest, in a region that can be dismissed.
 import { element, iconButton } from './parts/element.js';
 import { ICONS } from './parts/icons.js';
 
-const MOST_SHOWN = 3;
+interface Told {
+  message: string;
+  retry: (() => void) | null;
+}
+
+export interface Telling {
+  /// What the button Retry does; null: there is none.
+  retry?: (() => void) | null;
+  /// What the message is about: a later one about the same takes its place.
+  subject?: string;
+}
 
 export class Problems {
   readonly root = element('div', { class: 'problems', role: 'alert' });
 
+  private readonly told = new Map<string, Told>();
   private readonly dismissed = new Set<string>();
+  private readonly text = element('p');
+  private readonly box = element('div', { class: 'problem' }, this.text);
+  private readonly retry = element('button', { type: 'button', class: 'button problem-retry' }, 'Retry');
 
-  /// The same message is shown once, and not again when it was dismissed. What it returns takes the message away.
-  tell(message: string): () => void {
-    if (this.dismissed.has(message)) return () => undefined;
-    const shown = [...this.root.children].find((child) => child.firstChild?.textContent === message);
-    if (shown !== undefined) return () => { shown.remove(); };
-    const problem = element('div', { class: 'problem' }, element('p', {}, message));
-    problem.append(iconButton('Dismiss', ICONS.close, () => {
-      this.dismissed.add(message);
-      problem.remove();
-    }));
-    this.root.append(problem);
-    if (this.root.children.length > MOST_SHOWN) this.root.firstElementChild?.remove();
-    return () => { problem.remove(); };
+  constructor() {
+    this.retry.addEventListener('click', () => { this.newest()?.[1].retry?.(); });
+    this.box.append(this.retry, iconButton('Dismiss', ICONS.close, () => { this.dismiss(); }));
+  }
+
+  /// What was dismissed is not told again until it was taken away, which is what the result does.
+  tell(message: string, { retry = null, subject = message }: Telling = {}): () => void {
+    if (!this.dismissed.has(subject)) {
+      this.told.delete(subject);
+      this.told.set(subject, { message, retry });
+      this.show();
+    }
+    return () => {
+      this.told.delete(subject);
+      this.dismissed.delete(subject);
+      this.show();
+    };
   }
 
   clear(): void {
     this.dismissed.clear();
-    this.root.replaceChildren();
+    this.told.clear();
+    this.show();
+  }
+
+  private newest(): [string, Told] | undefined {
+    return [...this.told].at(-1);
+  }
+
+  private dismiss(): void {
+    const newest = this.newest();
+    if (newest === undefined) return;
+    this.told.delete(newest[0]);
+    this.dismissed.add(newest[0]);
+    this.show();
+  }
+
+  /// A text that stays is not read out again.
+  private show(): void {
+    const newest = this.newest();
+    if (newest === undefined) {
+      this.box.remove();
+      return;
+    }
+    const [, { message, retry }] = newest;
+    if (this.text.textContent !== message) this.text.textContent = message;
+    this.retry.hidden = retry === null;
+    if (this.box.parentNode === null) this.root.append(this.box);
   }
 }

@@ -16,12 +16,17 @@ type Place = readonly [number, number, number];
 class Session {
   readonly camera = new PerspectiveCamera(45, VIEWPORT.width / VIEWPORT.height, 1e-3, 100);
   readonly problems: string[] = [];
+  missing = 0; // files
   readonly view: HierarchyView;
   private now = 0;
 
   constructor(fetch: Fetch, options: ViewOptions = {}) {
     this.view = new HierarchyView('', { fetch, ...options });
-    this.view.addEventListener('problem', ({ message }) => this.problems.push(message));
+    this.view.addEventListener('problem', ({ message, files }) => {
+      this.problems.push(message);
+      this.missing = files;
+    });
+    this.view.addEventListener('recovered', () => { this.missing = 0; });
   }
 
   look(from: Place, at: Place): void {
@@ -137,6 +142,20 @@ describe.skipIf(!hasProgram)('HierarchyView', () => {
     expect(await session.settle(60)).toBe(true);
     expect(session.view.stats().worstError).toBeLessThanOrEqual(1);
     expect(session.problems.length).toBeGreaterThan(2);
+    expect(session.missing).toBe(0);
+  });
+
+  it('asks at once for what failed, if it is told to', async () => {
+    let isDown = true;
+    const session = begin(troubled(fetchFrom(torus()), (url) => (isDown && !url.includes('tiles/00/') && url.endsWith('.glb') ? down() : null)));
+    await session.view.opened;
+    closeUp(session);
+    await session.settle(14); // after three tries it waits for a minute
+    expect(session.missing).toBeGreaterThan(0);
+    isDown = false;
+    session.view.retry();
+    expect(await session.settle(10)).toBe(true);
+    expect(session.missing).toBe(0);
   });
 
   it('opens though the root failed at first', async () => {

@@ -1,9 +1,10 @@
 // A model, as large as the window, and all that can be done with it.
 import { Box3, Vector3 } from 'three';
-import { HierarchyView, type Look, type Settings, type Stats, type ViewOptions } from '../../src/index.js';
+import { HierarchyProblem, HierarchyView, type Look, type Settings, type Stats, type ViewOptions } from '../../src/index.js';
 import { roundedPose, type Pose } from '../address.js';
 import type { Model } from '../listing.js';
 import { element } from '../parts/element.js';
+import type { Telling } from '../problems.js';
 import { COLOURS, type Preferences, type Theme } from '../preferences.js';
 import { CameraPose } from './camera_pose.js';
 import { Chrome } from './chrome.js';
@@ -25,8 +26,10 @@ export interface Surroundings extends Pick<ViewOptions, 'fetch' | 'createWorker'
   leave: (() => void) | null;
   /// The camera stands still, elsewhere than before; null: it sees all of the model, whatever the window's size.
   rested(pose: Pose | null): void;
-  /// What it returns takes the message away.
-  failed(message: string): () => void;
+  /// What it returns takes the message away; one about the same subject takes its place.
+  failed(message: string, telling?: Telling): () => void;
+  /// Opens the model anew.
+  again(): void;
 }
 
 /// In the browser's own account of the page's times.
@@ -53,6 +56,7 @@ export class ModelView {
   private shown = false;
   private refused = false;
   private lost: (() => void) | null = null;
+  private missing: (() => void) | null = null;
   private restTimer = 0;
   private reportedAt = -Infinity;
 
@@ -133,10 +137,18 @@ export class ModelView {
     const { signal } = this.ending;
     const { canvas } = this.stage;
     this.view.addEventListener('change', this.loop.wake);
-    this.view.addEventListener('problem', ({ message }) => { this.around.failed(`${this.model.name}: ${message}. The view goes on with what it has.`); });
+    this.view.addEventListener('problem', ({ message, files }) => { this.miss(message, files); });
+    this.view.addEventListener('recovered', () => { this.missing?.(); });
     canvas.addEventListener('webglcontextlost', () => { this.lost = this.around.failed(LOST); }, { signal });
     canvas.addEventListener('webglcontextrestored', () => { this.restored(); }, { signal });
     document.addEventListener('visibilitychange', () => { this.redraw(); }, { signal });
+  }
+
+  /// However many files are missing, they are one message.
+  private miss(message: string, files: number): void {
+    const more = files > 1 ? ` ${files} files are missing in all.` : '';
+    const text = `${this.model.name}: ${message.replace(/[.?!]$/, '')}.${more} The view goes on with what it has.`;
+    this.missing = this.around.failed(text, { subject: 'missing', retry: () => { this.view.retry(); } });
   }
 
   private restored(): void {
@@ -162,7 +174,10 @@ export class ModelView {
     this.refused = true;
     this.redraw();
     const why = error instanceof Error ? error.message : String(error);
-    this.around.failed(`${this.model.name} cannot be opened: ${why}. Is ${this.model.url} a hierarchy made by "meshhier build", and may this page fetch from there (CORS)?`);
+    const passes = error instanceof HierarchyProblem && error.mayPass;
+    const hint = passes ? '' : `. Is ${this.model.url} a hierarchy made by "meshhier build"? "meshhier verify" says what is wrong with one`;
+    this.missing?.();
+    this.around.failed(`${this.model.name} cannot be opened: ${why}${hint}`, { subject: 'refused', retry: () => { this.around.again(); } });
   }
 
   private redraw(): void {

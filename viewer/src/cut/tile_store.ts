@@ -271,6 +271,11 @@ export class TileStore {
       if (!entry.resident && this.entries.has(entry.key) && entry.useful < now - PATIENCE_MS) this.cancel(entry);
   }
 
+  /// What failed is asked for again as soon as it is wanted.
+  retry(): void {
+    this.failures.clear();
+  }
+
   private mustWait(key: number, now: number): boolean {
     return now < (this.failures.get(key)?.again ?? 0);
   }

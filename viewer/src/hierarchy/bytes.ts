@@ -56,7 +56,7 @@ async function respond(fetch: Fetch, url: string, name: string, init: RequestIni
     response = await fetch(url, init);
   } catch (problem) {
     if (init.signal?.aborted) throw problem;
-    throw new HierarchyProblem(name, `could not be fetched (${String(problem)}); is the host up, and does it allow this page?`, true);
+    throw new HierarchyProblem(name, 'could not be fetched; is the host up, and does it allow this page?', true);
   }
   if (response.ok) return response;
   void response.body?.cancel();
@@ -73,7 +73,7 @@ async function receive(
     return await drain(body, most, name);
   } catch (problem) {
     if (signal?.aborted || problem instanceof HierarchyProblem) throw problem;
-    throw new HierarchyProblem(name, `broke off (${String(problem)})`, true);
+    throw new HierarchyProblem(name, 'broke off', true);
   }
 }
 

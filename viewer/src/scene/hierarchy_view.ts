@@ -37,8 +37,10 @@ export interface ViewOptions {
 export interface ViewEvents extends Object3DEventMap {
   /// There is something new to draw: call `update` before the next frame.
   change: object;
-  /// A file failed; the view goes on with what it has.
-  problem: { message: string };
+  /// A file failed; the view goes on with what it has. `files`: how many are missing by now.
+  problem: { message: string; files: number };
+  /// All that had failed has come.
+  recovered: object;
 }
 
 const WORKERS = 2;
@@ -78,6 +80,7 @@ export class HierarchyView extends Group<ViewEvents> {
   private wasMoving = false;
   private lastFrame = 0;
   private failed = 0;
+  private readonly missing = new Set<string | number>(); // files that failed and have not come since; tiles by their keys
   private readonly alarm = new Alarm(() => { this.changed(); });
   private readonly ending = new AbortController();
   private root: Tile | null = null;
@@ -136,9 +139,10 @@ export class HierarchyView extends Group<ViewEvents> {
     try {
       const object = new OutlineObject(await this.remote.outline(), place);
       this.tiles.add(object);
+      this.recover('outline');
       return object;
     } catch (problem) {
-      this.tell(problem);
+      this.tell('outline', problem);
       if (problem instanceof HierarchyProblem && problem.mayPass) this.outline = null; // asked for again when it is switched on again
       return null;
     }
@@ -155,7 +159,7 @@ export class HierarchyView extends Group<ViewEvents> {
         this.tiles.drop(tile);
         this.epochs.delete(tile.key);
       },
-      failed: (_node: Node, problem: unknown): void => { this.tell(problem); },
+      failed: ({ level, index }: Node, problem: unknown): void => { this.tell(keyOf(level, index), problem); },
     };
     return new TileStore(host, () => this.directory!.tree, this.settings.memoryBudget, requests);
   }
@@ -163,7 +167,7 @@ export class HierarchyView extends Group<ViewEvents> {
   private async open(): Promise<void> {
     const manifest = this.remote.manifest();
     manifest.catch(() => undefined); // told when it is needed
-    const root = await this.persist(() => this.remote.root());
+    const root = await this.persist('root', () => this.remote.root());
     this.ending.signal.throwIfAborted();
     this.root = root;
     if (root.zUp) this.tiles.applyMatrix4(UPRIGHT);
@@ -175,14 +179,16 @@ export class HierarchyView extends Group<ViewEvents> {
   }
 
   /// Tries again, for a while, what failed by the host or the line; tells of each failure but the last.
-  private async persist<T>(ask: (tries: number) => Promise<T>): Promise<T> {
+  private async persist<T>(file: string, ask: (tries: number) => Promise<T>): Promise<T> {
     for (let tries = 1; ; ++tries) {
       try {
-        return await ask(tries);
+        const found = await ask(tries);
+        this.recover(file);
+        return found;
       } catch (problem) {
         const mayPass = problem instanceof HierarchyProblem && problem.mayPass;
         if (tries === MOST_TRIES || !mayPass) throw problem;
-        this.tell(problem);
+        this.tell(file, problem);
       }
       await new Promise((resolve) => setTimeout(resolve, RETRY_MS * 2 ** (tries - 1)));
       this.ending.signal.throwIfAborted();
@@ -196,12 +202,12 @@ export class HierarchyView extends Group<ViewEvents> {
   /// Without it there is the root and no more. `early`: the manifest was asked for already.
   private async openDirectory(root: Tile, early: Promise<Manifest>): Promise<void> {
     try {
-      this.begin(await this.persist(async (tries) => {
+      this.begin(await this.persist('directory', async (tries) => {
         const manifest = await (tries === 1 ? early : this.remote.manifest());
-        return this.remote.directory(manifest, root, () => { this.changed(); }, (problem) => { this.tell(problem); });
+        return this.remote.directory(manifest, root, () => { this.recover('index'); this.changed(); }, (problem) => { this.tell('index', problem); });
       }));
     } catch (problem) {
-      this.tell(problem);
+      this.tell('directory', problem);
       this.isRootAll = true;
       this.changed();
     }
@@ -223,15 +229,33 @@ export class HierarchyView extends Group<ViewEvents> {
 
   private came({ key, node }: ResidentTile): void {
     this.epochs.set(key, this.account.epoch);
+    this.recover(key);
     const record = this.directory?.index.record(node);
     if (record) this.account.fetched(record.bytes);
     this.changed();
   }
 
-  private tell(problem: unknown): void {
+  private tell(file: string | number, problem: unknown): void {
     if (this.ending.signal.aborted) return;
     ++this.failed;
-    this.dispatchEvent({ type: 'problem', message: problem instanceof Error ? problem.message : String(problem) });
+    this.missing.add(file);
+    const message = problem instanceof Error ? problem.message : String(problem);
+    this.dispatchEvent({ type: 'problem', message, files: this.missing.size });
+    this.changed();
+  }
+
+  private recover(file: string | number): void {
+    if (this.missing.delete(file) && this.missing.size === 0) this.dispatchEvent({ type: 'recovered' });
+  }
+
+  /// Asks at once for what failed.
+  retry(): void {
+    this.store.retry();
+    if (this.isRootAll && this.root !== null) {
+      this.isRootAll = false;
+      void this.openDirectory(this.root, this.remote.manifest());
+    }
+    this.showOutline();
     this.changed();
   }
 
@@ -292,7 +316,8 @@ export class HierarchyView extends Group<ViewEvents> {
     const keys = this.state === null ? [ROOT_KEY] : this.drawn.map(({ key }) => key);
     const isElse = this.tiles.show(keys.map((key) => this.store.get(key)!), this.look);
     this.tiles.paint(this.drawn, this.look, this.settings.threshold);
-    for (const node of this.tiles.takeDamaged()) this.tell(new HierarchyProblem(tilePath(node), 'a ghost is no vertex of its tile'));
+    for (const node of this.tiles.takeDamaged())
+      this.tell(keyOf(node.level, node.index), new HierarchyProblem(tilePath(node), 'a ghost is no vertex of its tile'));
     if (this.isSettled()) this.settle();
     if (this.isFirstFrame) this.changed();
     this.isFirstFrame = false;

@@ -33,7 +33,11 @@ describe('a listing', () => {
   it('leaves out entries that are none', () => {
     const bad = [null, 5, 'x', [], {}, { path: 5 }, { path: '' }, { path: 'javascript:alert(1)' }, { path: 'http://[' },
       { path: 'data:text/html,x' }, { path: { toString: 'x' } }];
-    expect(parse({ models: bad, jobs: [null, {}, { state: 'done' }, 7] })).toEqual({ models: [], jobs: [] });
+    expect(parse({ models: bad, jobs: [null, {}, { state: 'done' }, 7] })).toEqual({ models: [], jobs: [], folder: null, inbox: null });
+  });
+
+  it('says where the models lie', () => {
+    expect(parse({ models: [], folder: 'models', inbox: 5 })).toMatchObject({ folder: 'models', inbox: null });
   });
 
   it('leaves out values that are none', () => {
