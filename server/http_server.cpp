@@ -257,9 +257,9 @@ class HttpServer::Library final : public httplib::Server {
       case Connection::Next::request:
         break;
       case Connection::Next::malformed:
-        return refuse(connection, "400 Bad Request");
+        return refuse(connection, 400, "Bad Request");
       case Connection::Next::too_large:
-        return refuse(connection, "431 Request Header Fields Too Large");
+        return refuse(connection, 431, "Request Header Fields Too Large");
       case Connection::Next::end:
         return false;
     }
@@ -275,10 +275,13 @@ class HttpServer::Library final : public httplib::Server {
     return is_sent && !closes && !client_closes && !ends_connection && !is_stopping_;
   }
 
-  static bool refuse(Connection& connection, const char* status) {
-    const std::string reply =
-        fmt::format("HTTP/1.1 {}\r\nConnection: close\r\nContent-Length: 0\r\n\r\n", status);
+  /// What is no request is not shown in the log: "-" stands for it.
+  bool refuse(Connection& connection, int status, const char* reason) {
+    const std::string reply = fmt::format(
+        "HTTP/1.1 {} {}\r\nConnection: close\r\nContent-Length: 0\r\n\r\n", status, reason);
     connection.write(reply.data(), reply.size());
+    if (log_)
+      log_({connection.address(), "-", "-", status, 0});
     return false;
   }
 
