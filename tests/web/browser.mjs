@@ -42,12 +42,15 @@ export function readHierarchy(directory) {
   };
 }
 
+/// Adds to `complaints` what the page writes on its console of these types, and what it throws.
+export function collectComplaints(page, complaints, types = ['error']) {
+  page.on('console', (message) => types.includes(message.type()) && complaints.push(message.text()));
+  page.on('pageerror', (error) => complaints.push(String(error)));
+}
+
 async function openPage(browser, url, errors) {
   const page = await browser.newPage({ viewport: { width: SIZE, height: SIZE } });
-  page.on('console', (message) => {
-    if (message.type() === 'error') errors.push(message.text());
-  });
-  page.on('pageerror', (error) => errors.push(String(error)));
+  collectComplaints(page, errors);
   const { origin } = new URL(url);
   page.on('request', (request) => {
     const asked = new URL(request.url());

@@ -5,38 +5,19 @@
 //
 // MODELS: a directory with hierarchies; MESH: a PLY file of more than 100,000 bytes. Pictures go to the directory PICTURES. Exit code 2: wrong use;
 // else see browser.mjs.
-import { spawn } from 'node:child_process';
 import { appendFileSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
-import { inChromium } from './browser.mjs';
+import { collectComplaints, inChromium } from './browser.mjs';
+import { startServer } from './meshhier_server.mjs';
 
 const PATIENCE = 240_000; // milliseconds
 const SETTLE = 2; // seconds: a file that was as it is for so long is whole
 
-/// A server of its own, once it says where it is.
-function startServer(meshhier, models, inbox) {
-  const server = spawn(meshhier, ['serve', models, '--port', '0', '--watch', inbox, '--settle', String(SETTLE)], { stdio: ['ignore', 'pipe', 'pipe'] });
-  const ended = new Promise((resolve) => server.on('exit', (code) => resolve(code)));
-  const url = new Promise((resolve, reject) => {
-    let text = '';
-    const listen = (data) => {
-      text += data;
-      const found = /http:\/\/\S+/.exec(text);
-      if (found) resolve(found[0]);
-    };
-    server.stdout.on('data', listen);
-    server.stderr.on('data', listen);
-    ended.then((code) => reject(new Error(`the server ended with ${code}: ${text}`)));
-  });
-  return { url, pid: server.pid, stop: () => (server.kill('SIGTERM'), ended) };
-}
-
 async function openPage(browser, url, complaints) {
   const page = await browser.newPage({ reducedMotion: 'reduce', viewport: { width: 1000, height: 700 } });
   page.setDefaultTimeout(PATIENCE);
-  page.on('console', (message) => ['error', 'warning'].includes(message.type()) && complaints.push(message.text()));
-  page.on('pageerror', (error) => complaints.push(String(error)));
+  collectComplaints(page, complaints, ['error', 'warning']);
   await page.goto(url);
   return page;
 }
@@ -120,7 +101,7 @@ async function checkPage(browser, report, { server, inbox, pictures, mesh }) {
 async function check(browser, report, { meshhier, pictures, models, mesh, work }) {
   const inbox = path.join(work, 'inbox');
   mkdirSync(inbox);
-  const server = startServer(meshhier, models, inbox);
+  const server = startServer(meshhier, models, '--watch', inbox, '--settle', String(SETTLE));
   let code;
   try {
     await checkPage(browser, report, { server, inbox, pictures, mesh });
