@@ -148,6 +148,8 @@ int run(int argc, char** argv) {
   add_reconstruct_command(parser, invocation);
   add_serve_command(parser, invocation);
   add_clean_command(parser, invocation);
+  add_completion_command(parser, invocation);
+  add_manual_command(parser, invocation);
 
   const std::vector<std::string> names = command_names(parser);
   if (argc > 1 && is_unknown_command(argv[1], names))

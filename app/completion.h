@@ -1,0 +1,26 @@
+// What a shell offers for the word that is being typed: found by walking the parser, so that no
+// list can fall behind it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace meshhier::app {
+
+struct Suggestion {
+  std::string word;
+  std::string meaning;  ///< one line; may be empty
+};
+
+struct Completion {
+  std::vector<Suggestion> suggestions;  ///< all begin with the word that is being typed
+  bool takes_files = false;             ///< files may stand here, too
+};
+
+/// `words`: what follows the program's name up to the cursor; the last one, perhaps empty, is being
+/// typed.
+Completion complete(const CLI::App& parser, const std::vector<std::string>& words);
+
+}  // namespace meshhier::app

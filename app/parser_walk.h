@@ -1,0 +1,27 @@
+// What the parser has, in the order in which --help lists it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace meshhier::app {
+
+/// The commands that --help lists.
+std::vector<const CLI::App*> commands_of(const CLI::App& parser);
+
+/// All arguments of a command, those of its option groups included.
+struct Arguments {
+  std::vector<const CLI::Option*> positionals;
+  std::vector<const CLI::Option*> options;  ///< flags too
+};
+Arguments arguments_of(const CLI::App& command);
+
+/// The words of "auto|bar|json|none", or of the check of a value that is one of a few: what the
+/// program takes as they are. Words in capitals stand for something else and are left out.
+std::vector<std::string> choices_of(const CLI::Option& option);
+
+bool takes_value(const CLI::Option& option);
+
+}  // namespace meshhier::app
