@@ -1,11 +1,11 @@
-# For scripts/install and scripts/package: the program in build/release and the viewer's page. To be sourced at the root.
+# For scripts/install, scripts/package and scripts/sample: the program in build/release and the viewer's page. To be sourced at the root.
 
 release=build/release
 
-# Uses what is built already; a build that was set up in another way stays so.
+# Builds the targets that are given. Uses what is built already; a build that was set up in another way stays so.
 build_program() {
   [[ -f $release/CMakeCache.txt ]] || cmake --preset release -DBUILD_TESTING=OFF -DCMAKE_UNITY_BUILD=ON
-  cmake --build "$release" --target meshhier
+  cmake --build "$release" --target "$@"
 }
 
 # Prints why there is no new page, if there is none. Packages that scripts/install_dependencies installed are used.
