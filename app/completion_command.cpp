@@ -68,7 +68,11 @@ function __meshhier_complete
   set -l words (commandline -opc)
   set -l answer ($words[1] complete -- $words[2..-1] (commandline -ct) 2>/dev/null)
   printf '%s\n' $answer[2..-1]
-  test "$answer[1]" = files; and __fish_complete_path (commandline -ct)
+  if test "$answer[1]" = files
+    set -l typed (commandline -ct)
+    set -l head (string match -r '^[^=]*=' -- $typed; or echo '')
+    printf '%s\n' $head(__fish_complete_path (string replace -r '^[^=]*=' '' -- $typed))
+  end
 end
 complete -c meshhier -f -a '(__meshhier_complete)'
 )";

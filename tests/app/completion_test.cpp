@@ -235,6 +235,7 @@ TEST_P(ShellTest, TabCompletes) {
   run("meshhier build --set partition.ver\t8", "3: build --set partition.vertices=8");
   run("meshhier build --set simplify.method=clu\tx", "4: build --set simplify.method=cluster x");
   run("meshhier build a\tx", "3: build a mesh.json x");
+  run("meshhier build --set input=a\tx", "4: build --set input=a mesh.json x");
 }
 
 INSTANTIATE_TEST_SUITE_P(
