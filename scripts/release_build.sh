@@ -1,3 +1,4 @@
+# shellcheck shell=bash
 # For scripts/install, scripts/package and scripts/sample: the program in build/release and the viewer's page. To be sourced at the root.
 
 release=build/release
