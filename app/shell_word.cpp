@@ -16,7 +16,7 @@ bool is_control(char c) {
   return static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
 }
 
-std::string escaped(std::string_view word) {
+std::string with_escapes(std::string_view word) {
   std::string text = "$'";
   for (const char c : word) {
     if (is_control(c))
@@ -40,7 +40,7 @@ std::string quoted(std::string_view word) {
 
 std::string shell_word(std::string_view word) {
   if (std::ranges::any_of(word, is_control))
-    return escaped(word);
+    return with_escapes(word);
   if (!word.empty() && std::ranges::all_of(word, is_plain))
     return std::string(word);
   return quoted(word);

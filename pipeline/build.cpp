@@ -147,6 +147,7 @@ BuildReport run_stages(importing::MeshInput& input, storage::WorkDirectory& work
     outcome.output_bytes = pack(made, work.packed(), use, context);
   }
   meter.stage("sync", 0, "bytes");
+  context.cancel.check();
   workshop.tile_scratch.remove();  // the sync would take it along
   work.publish();
   meter.end();

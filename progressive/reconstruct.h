@@ -14,7 +14,7 @@
 namespace meshhier::progressive {
 
 struct ReconstructOptions {
-  std::optional<std::uint32_t> details;    ///< how many, in their order; not set: all
+  std::optional<std::uint32_t> details{};  ///< how many, in their order; not set: all
   std::filesystem::path output;            ///< PLY; a file or a stream (storage::OutputFile)
   std::uint64_t memory_budget = 1U << 30;  ///< bytes; the two arrays must fit
   bool replace = false;                    ///< a file that is there

@@ -16,8 +16,8 @@ struct RequestHead {
   /// expression, recursing with each byte (2.2 MB of stack for 8 KB), and hold several ranges for
   /// as many copies of the file.
   std::string text;
-  std::optional<std::string> range;  ///< the value, if there is one such header and no more
-  bool has_body = false;             ///< of more than 0 bytes, as announced
+  std::optional<std::string> range{};  ///< the value, if there is one such header and no more
+  bool has_body = false;               ///< of more than 0 bytes, as announced
 
   friend bool operator==(const RequestHead&, const RequestHead&) = default;
 };

@@ -66,8 +66,7 @@ TEST(MeshFormat, WhatIsNoMeshIsRefused) {
   EXPECT_THAT(refusal(gzip("hello world")), HasSubstr("found 'hello world'"));
   EXPECT_THAT(refusal("\x7f"
                       "ELF\1\2"),
-              HasSubstr("found '?ELF"
-                        "??'"));
+              HasSubstr(R"(found '?ELF?)"));
 }
 
 TEST(MeshFormat, AnStlOfAnotherSizeIsToldWhatItShouldHave) {

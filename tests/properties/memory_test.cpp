@@ -259,8 +259,8 @@ TEST_F(MemoryTest, AStreamIsMadeInTheBudgetAndPutTogetherInItsArrays) {
     EXPECT_LT(made.peak_bytes, 64 * kMiB) << node;
     RecordProperty("peak_bytes_of_progressive", std::to_string(made.peak_bytes));
 
-    words = {MESHHIER_BINARY, "reconstruct", path("mesh.prog").string(), "-o",
-             path("out.ply").string()};
+    words = {MESHHIER_BINARY,          "reconstruct", path("mesh.prog").string(), "-o",
+             path("out.ply").string(), "--force"};
     const Outcome rebuilt = run(words);
     ASSERT_EQ(rebuilt.code, 0) << rebuilt.messages;
     std::uint64_t largest = 0;

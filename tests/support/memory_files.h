@@ -66,8 +66,8 @@ class MemoryFiles : public storage::FileSystem {
 
   std::mutex mutex_;  ///< of what follows
   std::map<std::filesystem::path, std::shared_ptr<Content>> files_;
-  /// Those made, and the two that are there from the start; others are there by their files.
-  std::set<std::filesystem::path> directories_{"/", "/models"};
+  /// Those made, and the three that are there from the start; others are there by their files.
+  std::set<std::filesystem::path> directories_{"/", ".", "/models"};
 };
 
 }  // namespace meshhier::tests
