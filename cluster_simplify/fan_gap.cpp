@@ -1,5 +1,6 @@
 #include "cluster_simplify/fan_gap.h"
 
+#include "hierarchy/angle.h"
 #include "hierarchy/closest_point.h"
 
 #include <algorithm>
@@ -171,16 +172,16 @@ bool FanGapMeter::unfold(std::span<const Vec3f> positions, const StarCollapse& c
   }
   angles[0] = 0;
   for (std::uint32_t i = 0; i < size_; ++i) {
-    const double angle =
-        std::atan2(length(cross(ring_[i], ring_[i + 1])), dot(ring_[i], ring_[i + 1]));
-    angles[i + 1] = angles[i] + angle;
+    angles[i + 1] =
+        angles[i] + angle_of(dot(ring_[i], ring_[i + 1]), length(cross(ring_[i], ring_[i + 1])));
   }
   const double total = angles[size_];
   if (!(total > 0))
     return false;
   const double scale = is_open() ? std::min(1.0, kWidest / total) : 2 * std::numbers::pi / total;
   for (std::uint32_t i = 0; i <= size_; ++i) {
-    flat_[i] = {lengths[i] * std::cos(angles[i] * scale), lengths[i] * std::sin(angles[i] * scale)};
+    const UnitTurn turn = turn_by(angles[i] * scale);
+    flat_[i] = {lengths[i] * turn.cosine, lengths[i] * turn.sine};
   }
   if (!is_open())
     flat_[size_] = flat_[0];

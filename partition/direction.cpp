@@ -1,12 +1,13 @@
 #include "partition/direction.h"
 
 #include "hierarchy/bounds.h"
+#include "partition/eigenvectors.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
-
-#include <CGAL/Default_diagonalize_traits.h>
 
 namespace meshhier::partition {
 namespace {
@@ -48,28 +49,24 @@ std::array<Vec3d, 3> principal_axes(std::span<const Vec3f> points) {
   for (const Vec3f& p : points)
     mean = mean + to_double(p);
   mean = mean * (1.0 / static_cast<double>(points.size()));
-  std::array<double, 6> covariance{};
+  Matrix3 covariance{};
   for (const Vec3f& p : points) {
     const Vec3d d = to_double(p) - mean;
-    covariance[0] += d.x * d.x;
-    covariance[1] += d.x * d.y;
-    covariance[2] += d.x * d.z;
-    covariance[3] += d.y * d.y;
-    covariance[4] += d.y * d.z;
-    covariance[5] += d.z * d.z;
+    const std::array<double, 3> from_mean{d.x, d.y, d.z};
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j)
+        covariance[i][j] += from_mean[i] * from_mean[j];
+    }
   }
   // Scaled to about one, so that very small and very large models keep their digits.
-  const double scale = covariance[0] + covariance[3] + covariance[5];
+  const double scale = covariance[0][0] + covariance[1][1] + covariance[2][2];
   if (!(scale > 0) || !std::isfinite(scale))
     return {unit_axis(0), unit_axis(1), unit_axis(2)};
-  for (double& entry : covariance)
-    entry /= scale;
-  std::array<double, 3> values{};
-  std::array<double, 9> vectors{};
-  CGAL::Default_diagonalize_traits<double, 3>::diagonalize_selfadjoint_covariance_matrix(
-      covariance, values, vectors);
-  return {Vec3d{vectors[0], vectors[1], vectors[2]}, Vec3d{vectors[3], vectors[4], vectors[5]},
-          Vec3d{vectors[6], vectors[7], vectors[8]}};
+  for (std::array<double, 3>& row : covariance) {
+    for (double& entry : row)
+      entry /= scale;
+  }
+  return eigenvectors(covariance);
 }
 
 std::vector<double> projections(std::span<const Vec3f> points, Vec3d direction) {

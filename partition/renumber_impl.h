@@ -42,7 +42,8 @@ double expected_waiting_bytes(const RenumberPlan& plan, std::uint64_t triangles)
   if (plan.blocks == 1)
     return 0;
   const double group = plan.groups > 1 ? 1.0 / static_cast<double>(plan.groups) : 0;
-  const double first = std::pow(static_cast<double>(plan.blocks), -3);
+  const auto blocks = static_cast<double>(plan.blocks);
+  const double first = 1 / (blocks * blocks * blocks);
   return static_cast<double>(triangles) * sizeof(WaitingTriangle<Value>) * (1 - first + group);
 }
 

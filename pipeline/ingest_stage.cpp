@@ -1,6 +1,7 @@
 #include "pipeline/ingest_stage.h"
 
 #include "hierarchy/error.h"
+#include "hierarchy/power_of_two.h"
 #include "partition/top_tree.h"
 
 #include <algorithm>
@@ -20,7 +21,7 @@ double round_origin(double low, double high) {
   const double extent = std::max(high - low, std::abs(high) * 1e-6);
   if (!(extent > 0) || !std::isfinite(extent))
     return 0;
-  const double grid = std::exp2(std::ceil(std::log2(extent)) - 10);
+  const double grid = power_of_two_from(extent) / 1024;
   const double origin = std::round((low / 2 + high / 2) / grid) * grid;
   return std::isfinite(origin) ? origin : 0;
 }

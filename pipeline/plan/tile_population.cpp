@@ -90,7 +90,7 @@ double boundary_of(double vertices) {
 
 /// Near the root there is less around a tile.
 double share_around(const JobSize& job, std::size_t level) {
-  return job.face_count == 0 ? 0 : 1 - std::exp2(-static_cast<double>(level));
+  return job.face_count == 0 ? 0 : 1 - std::ldexp(1.0, -static_cast<int>(level));
 }
 
 /// `ratio`: triangles per vertex, over those of the input.

@@ -1,5 +1,6 @@
 #include "pipeline/tiles/chunks.h"
 
+#include "hierarchy/power_of_two.h"
 #include "partition/top_tree.h"
 
 #include <algorithm>
@@ -212,8 +213,7 @@ bool Chunks::is_as_stored(std::uint32_t chunk) const {
 double Chunks::expected_triangle_bytes(std::uint64_t vertex_count, std::uint64_t face_count,
                                        double boundary_share) {
   const auto vertices = static_cast<double>(vertex_count);
-  const double chunks =
-      std::exp2(std::max(0.0, std::ceil(std::log2(vertices / partition::kChunkVertices))));
+  const double chunks = std::max(1.0, power_of_two_from(vertices / partition::kChunkVertices));
   const double share = chunks > 1 ? boundary_share / std::sqrt(vertices / chunks) : 0;
   return static_cast<double>(face_count) * sizeof(RankTriangle) * (1 + std::min(1.0, share));
 }

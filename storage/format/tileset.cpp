@@ -1,5 +1,6 @@
 #include "storage/format/tileset.h"
 
+#include "hierarchy/angle.h"
 #include "storage/format/index.h"
 #include "storage/format/layout.h"
 #include "storage/io/hash.h"
@@ -185,14 +186,12 @@ Transform globe_transform(double longitude, double latitude, double height, Vec3
   constexpr double kSemiMajor = 6378137;
   constexpr double kFlattening = 1 / 298.257223563;
   constexpr double kEccentricity2 = kFlattening * (2 - kFlattening);
-  const double lambda = longitude * std::numbers::pi / 180;
-  const double phi = latitude * std::numbers::pi / 180;
-  const double normal = kSemiMajor / std::sqrt(1 - kEccentricity2 * std::pow(std::sin(phi), 2));
-  const Vec3d east{-std::sin(lambda), std::cos(lambda), 0};
-  const Vec3d north{-std::sin(phi) * std::cos(lambda), -std::sin(phi) * std::sin(lambda),
-                    std::cos(phi)};
-  const Vec3d away{std::cos(phi) * std::cos(lambda), std::cos(phi) * std::sin(lambda),
-                   std::sin(phi)};
+  const UnitTurn lambda = turn_by(longitude * std::numbers::pi / 180);
+  const UnitTurn phi = turn_by(latitude * std::numbers::pi / 180);
+  const double normal = kSemiMajor / std::sqrt(1 - kEccentricity2 * phi.sine * phi.sine);
+  const Vec3d east{-lambda.sine, lambda.cosine, 0};
+  const Vec3d north{-phi.sine * lambda.cosine, -phi.sine * lambda.sine, phi.cosine};
+  const Vec3d away{phi.cosine * lambda.cosine, phi.cosine * lambda.sine, phi.sine};
   const Vec3d place{(normal + height) * away.x, (normal + height) * away.y,
                     (normal * (1 - kEccentricity2) + height) * away.z};
   const Vec3d a = turned(anchor, up);
