@@ -8,6 +8,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 #include <meshoptimizer.h>
@@ -17,6 +18,11 @@ namespace {
 
 constexpr int kExponentLimit = 100;             // of the extension's specification
 constexpr std::int32_t kMantissaEnd = 1 << 23;  // 24 bits, signed
+
+// Of steps_by_score() a corner: 6 of scans, and 128 still take a million triangles 2 s. A few
+// vertices with many triangles, or with copies of a few, would take the square of their number.
+constexpr std::uint64_t kMostSteps = 128;
+constexpr unsigned kCachedVertices = 16;  // of the order that takes linear time
 
 /// The library's versions of the streams are global; the extension knows these alone. Called before
 /// each encoding: the first caller sets them, the others wait.
@@ -96,6 +102,15 @@ std::vector<std::uint32_t> completion_order(std::span<const std::uint32_t> corne
   return ordered;
 }
 
+/// The order by scores looks at all triangles around each of the vertices in its cache, for every
+/// triangle: about so many steps, a part of them.
+std::uint64_t steps_by_score(std::span<const std::uint32_t> corners, std::size_t vertex_count) {
+  std::vector<std::uint64_t> valences(vertex_count);
+  for (const std::uint32_t v : corners)
+    ++valences[v];
+  return std::inner_product(valences.begin(), valences.end(), valences.begin(), std::uint64_t{0});
+}
+
 std::vector<std::byte> encode_in_order(std::span<const std::uint32_t> corners,
                                        const VertexCounts& counts) {
   use_extension_versions();
@@ -138,8 +153,14 @@ bool decode_triangles(std::span<const std::byte> packed, std::span<std::uint32_t
 std::vector<std::uint32_t> vertex_cache_order(std::span<const std::uint32_t> corners,
                                               std::size_t vertex_count) {
   std::vector<std::uint32_t> ordered(corners.size());
-  if (!ordered.empty())
+  if (ordered.empty())
+    return ordered;
+  if (steps_by_score(corners, vertex_count) <= kMostSteps * corners.size()) {
     meshopt_optimizeVertexCache(ordered.data(), corners.data(), corners.size(), vertex_count);
+  } else {
+    meshopt_optimizeVertexCacheFifo(ordered.data(), corners.data(), corners.size(), vertex_count,
+                                    kCachedVertices);
+  }
   return ordered;
 }
 

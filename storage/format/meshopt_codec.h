@@ -37,8 +37,10 @@ std::vector<std::byte> encode_triangles(std::span<const std::uint32_t> corners,
 /// Corners may be any numbers.
 bool decode_triangles(std::span<const std::byte> packed, std::span<std::uint32_t> corners);
 
-/// The triangles in an order for the GPU's vertex cache (meshoptimizer's, a variant of Forsyth
-/// 2006). Requires corners below `vertex_count`. Deterministic for one version of the library.
+/// The triangles in an order for the GPU's vertex cache: by scores (meshoptimizer's variant of
+/// Forsyth 2006), or, where vertices have so many triangles that this would take quadratic time, by
+/// fans (Sander, Nehab & Barczak 2007). Requires corners below `vertex_count`. Deterministic for
+/// one version of the library. O(n).
 std::vector<std::uint32_t> vertex_cache_order(std::span<const std::uint32_t> corners,
                                               std::size_t vertex_count);
 
