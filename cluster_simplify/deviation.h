@@ -14,7 +14,8 @@ struct Deviation {
       around;          ///< representative -> the largest deviation of the triangles around it
   float interior = 0;  ///< the largest deviation of triangles without ghosts
   float lost = 0;      ///< of pieces that are drawn no more: the largest distance to what still is
-  double squared_sum = 0;  ///< over own vertices: weight times squared distance to the surface
+  double squared_sum = 0;  ///< over own vertices: weight times squared distance to the surface;
+                           ///< infinite if nothing is drawn where something was
 };
 
 }  // namespace meshhier::cluster_simplify

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace meshhier::cluster_simplify {
 namespace {
@@ -30,7 +31,12 @@ float rounded_up(double value) {
 }  // namespace
 
 DeviationMeter::DeviationMeter(const CollapseMesh& mesh, std::span<const float> weights)
-    : deviations_(mesh.faces().size()), weights_(weights.begin(), weights.end()) {}
+    : deviations_(mesh.faces().size()), weights_(weights.begin(), weights.end()) {
+  for (std::uint32_t v = 0; v < weights_.size(); ++v) {
+    if (mesh.most_triangles(v) == 0)
+      weights_[v] = 0;
+  }
+}
 
 void DeviationMeter::note(std::span<const Vec3f> positions, const EdgeStar& star, Vec3f place) {
   const StarCollapse c{star.from(), star.to(), place, star.around_from(), star.around_to()};
@@ -80,6 +86,12 @@ void DeviationMeter::note_vanished(std::span<const Vec3f> positions, const StarC
     vanished_.push_back({{positions[c.from], positions[fan.next], positions[fan.previous]},
                          deviations_[fan.triangle]});
   }
+  lose(positions, c.from);
+  lose(positions, c.to);
+}
+
+void DeviationMeter::lose(std::span<const Vec3f> positions, std::uint32_t vertex) {
+  lost_vertices_.push_back({positions[vertex], std::exchange(weights_[vertex], 0.0F)});
 }
 
 /// Gives the triangles around the edge as places among points: 0 and 1 its ends, 2 the new vertex.

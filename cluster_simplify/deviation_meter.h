@@ -32,6 +32,17 @@ class DeviationMeter {
   };
   std::span<const Vanished> vanished() const { return vanished_; }
 
+  /// An end of an edge that vanished with all around it, where it was, and for how many original
+  /// vertices it stood: squared_sum() knows nothing of it.
+  struct LostVertex {
+    Vec3f position;
+    float weight = 0;
+  };
+  std::span<const LostVertex> lost_vertices() const { return lost_vertices_; }
+  /// How many original vertices of the surface an own vertex stands for now: 0 if it had no
+  /// triangle from the start, or if its surface vanished.
+  float weight(std::uint32_t vertex) const { return weights_[vertex]; }
+
   float of_triangle(std::uint32_t triangle) const { return deviations_[triangle]; }
   /// Weight times squared distance, summed up over all collapses.
   double squared_sum() const { return squared_sum_; }
@@ -48,6 +59,7 @@ class DeviationMeter {
   void note_any(std::span<const Vec3f> positions, const StarCollapse& c);
   void note_high_valence(std::span<const Vec3f> positions, const StarCollapse& c);
   void note_vanished(std::span<const Vec3f> positions, const StarCollapse& c);
+  void lose(std::span<const Vec3f> positions, std::uint32_t vertex);
   void collect(std::span<const Vec3f> positions, const StarCollapse& c);
   void cover(std::span<const StarTriangle> triangles, bool with_deviation);
   void set_deviation(std::uint32_t triangle, float deviation);
@@ -59,6 +71,7 @@ class DeviationMeter {
   std::vector<float> deviations_;  ///< per triangle
   std::vector<float> weights_;     ///< per own vertex
   std::vector<Vanished> vanished_;
+  std::vector<LostVertex> lost_vertices_;
   // Around one edge:
   std::vector<StarTriangle> before_, after_;
   std::vector<Vec3d> points_;

@@ -84,13 +84,13 @@ class Motion {
     for (std::uint32_t v = 0; v < mesh_.own_count; ++v) {
       moved_[v] = length(to_double(mesh_.vertices.positions[v]) -
                          to_double(places_[contraction.parent_of[v]]));
-      deviation_.squared_sum += double{joined.history.weights[v]} * moved_[v] * moved_[v];
     }
     for (const TileTriangle& t : mesh_.interior)
       deviation_.interior = std::max(deviation_.interior, add(t));
     for (const TileTriangle& t : mesh_.border)
       add(t);
     deviation_.lost = lost();
+    deviation_.squared_sum = squared_sum(joined.history.weights);
   }
 
   Deviation take() { return std::move(deviation_); }
@@ -152,6 +152,47 @@ class Motion {
     return most;
   }
 
+  std::vector<std::uint32_t> drawn_images() const {
+    std::vector<std::uint32_t> drawn;
+    for (std::uint32_t v = 0; v < drawn_.size(); ++v) {
+      if (drawn_[v])
+        drawn.push_back(v);
+    }
+    return drawn;
+  }
+
+  /// Own vertices of triangles, as numbers, whose image is not drawn; some more than once.
+  std::vector<std::uint32_t> stranded_vertices() const {
+    std::vector<std::uint32_t> stranded;
+    for (const TileTriangle& t : folded_) {
+      for (const TileVertex v : t) {
+        if (mesh_.is_own(v) && !drawn_[image(v)])
+          stranded.push_back(raw(v));
+      }
+    }
+    return stranded;
+  }
+
+  /// Weight times squared distance from each vertex to its image, or to the drawn one nearest to
+  /// that if it is not drawn; infinite if nothing is.
+  double squared_sum(std::span<const float> weights) const {
+    std::vector<double> distances = moved_;
+    if (const std::vector<std::uint32_t> stranded = stranded_vertices(); !stranded.empty()) {
+      const std::vector<std::uint32_t> drawn = drawn_images();
+      if (drawn.empty())
+        return std::numeric_limits<double>::infinity();
+      const NearestPoints points(places_, drawn);
+      for (const std::uint32_t v : stranded) {
+        const Vec3f onto = places_[points.nearest(places_[contraction_.parent_of[v]])];
+        distances[v] = length(to_double(mesh_.vertices.positions[v]) - to_double(onto));
+      }
+    }
+    double sum = 0;
+    for (std::uint32_t v = 0; v < mesh_.own_count; ++v)
+      sum += double{weights[v]} * distances[v] * distances[v];
+    return sum;
+  }
+
   /// Of triangles whose image is drawn nowhere, to a corner of it that is, or else to the drawn
   /// vertex nearest to it; infinite if there is none.
   float lost() {
@@ -175,11 +216,7 @@ class Motion {
       }
     }
     if (!stranded.empty()) {
-      std::vector<std::uint32_t> drawn;
-      for (std::uint32_t v = 0; v < drawn_.size(); ++v) {
-        if (drawn_[v])
-          drawn.push_back(v);
-      }
+      const std::vector<std::uint32_t> drawn = drawn_images();
       if (drawn.empty())
         return std::numeric_limits<float>::infinity();
       const std::vector<std::uint32_t> nearest = nearest_of(places_, drawn, asked);

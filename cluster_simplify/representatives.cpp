@@ -89,8 +89,8 @@ class DeviationSum {
     deviation.around.reserve(chosen.size());
     deviation.interior = certain(interior_);
     deviation.lost = certain(lost());
-    deviation.squared_sum =
-        tile_.deviation.squared_sum() * tile_.frame.to_global(1.0) * tile_.frame.to_global(1.0);
+    deviation.squared_sum = (tile_.deviation.squared_sum() + stray_squares()) *
+                            tile_.frame.to_global(1.0) * tile_.frame.to_global(1.0);
     for (const std::uint32_t v : chosen)
       deviation.around.push_back(certain(around_[v]));
     return deviation;
@@ -142,30 +142,67 @@ class DeviationSum {
   float lost() const {
     if (lost_.empty())
       return 0;
-    std::vector<std::uint32_t> drawn;
-    for (std::uint32_t v = 0; v < around_.size(); ++v) {
-      if (around_[v] != kNowhere)
-        drawn.push_back(v);
-    }
+    const std::vector<std::uint32_t> drawn = drawn_vertices();
     if (drawn.empty())
       return std::numeric_limits<float>::infinity();
     const NearestPoints points(tile_.places, drawn);
     double farthest = 0;
     for (const DeviationMeter::Vanished& piece : lost_) {
-      const double away = squared_distance_to_star(piece, points.nearest(piece.corners[0]));
+      const double away = squared_distance_to_star(piece.corners, points.nearest(piece.corners[0]));
       farthest = std::max(farthest, std::sqrt(away) + double{piece.deviation});
     }
     return static_cast<float>(farthest);
   }
 
-  /// From all of a triangle to the nearest of those that are drawn around a vertex.
-  double squared_distance_to_star(const DeviationMeter::Vanished& piece,
-                                  std::uint32_t vertex) const {
+  std::vector<std::uint32_t> drawn_vertices() const {
+    return left_of(static_cast<std::uint32_t>(around_.size()),
+                   [&](std::uint32_t v) { return is_shown(v); });
+  }
+  bool is_shown(std::uint32_t vertex) const { return around_[vertex] != kNowhere; }
+
+  /// Of vertices that are drawn no more where they were, because all around them vanished or they
+  /// were joined with others: weight times squared distance to what is drawn around the one that
+  /// stands for them, or nearest to them.
+  double stray_squares() const {
+    std::vector<DeviationMeter::LostVertex> strays(tile_.deviation.lost_vertices().begin(),
+                                                   tile_.deviation.lost_vertices().end());
+    double sum = 0;
+    for (std::uint32_t v = 0; v < into_.size(); ++v) {
+      const float weight = tile_.deviation.weight(v);
+      if (into_[v] == kNone || !(weight > 0))
+        continue;
+      if (!is_shown(into_[into_[v]]))
+        strays.push_back({tile_.places[v], weight});
+      else if (into_[v] != v)
+        sum += square_to_star({tile_.places[v], weight}, into_[into_[v]]);
+    }
+    return sum + squares_to_nearest(strays);
+  }
+
+  double squares_to_nearest(std::span<const DeviationMeter::LostVertex> strays) const {
+    if (strays.empty())
+      return 0;
+    const std::vector<std::uint32_t> drawn = drawn_vertices();
+    if (drawn.empty())
+      return std::numeric_limits<double>::infinity();
+    const NearestPoints points(tile_.places, drawn);
+    double sum = 0;
+    for (const DeviationMeter::LostVertex& stray : strays)
+      sum += square_to_star(stray, points.nearest(stray.position));
+    return sum;
+  }
+
+  double square_to_star(const DeviationMeter::LostVertex& stray, std::uint32_t vertex) const {
+    return double{stray.weight} * squared_distance_to_star(std::span(&stray.position, 1), vertex);
+  }
+
+  /// From all of some points to the nearest of the triangles that are drawn around a vertex.
+  double squared_distance_to_star(std::span<const Vec3f> from, std::uint32_t vertex) const {
     const auto at = [&](std::uint32_t v) { return to_double(tile_.places[v]); };
     const auto farthest = [&](const TriangleFrame& frame) {
       double most = 0;
-      for (const Vec3f corner : piece.corners)
-        most = std::max(most, squared_distance(to_double(corner), frame));
+      for (const Vec3f point : from)
+        most = std::max(most, squared_distance(to_double(point), frame));
       return most;
     };
     double least = farthest({at(vertex), at(vertex), at(vertex)});

@@ -35,6 +35,8 @@ std::string to_text(const ErrorMeasurement& m) {
   text += fmt::format("  {:<8} {:>12} {:>12} {:>12} | {:>10} {:>10} {:>10}\n", "", "mean", "rms",
                       "max", "mean", "rms", "max");
   text += row("forward", m.forward, m.diagonal) + row("backward", m.backward, m.diagonal);
+  text += fmt::format("  {:<8} {:>12.6g} {:>25} | {:>10.4f}\n", "error", m.error, "",
+                      in_parts(m.error, m.diagonal));
   text += fmt::format("  {:<8} {:>38.6g} | {:>32.3f}\n", "bound", m.bound,
                       in_parts(m.bound, m.diagonal));
   if (m.ratio) {
@@ -56,6 +58,7 @@ nlohmann::ordered_json to_json(const ErrorMeasurement& m) {
           {"samples", m.samples},
           {"forward", to_json(m.forward)},
           {"backward", to_json(m.backward)},
+          {"error", m.error},
           {"bound", m.bound},
           {"ratio", m.ratio ? Json{{"median", m.ratio->median}, {"p95", m.ratio->p95}} : Json()},
           {"problems", m.problems}};

@@ -31,6 +31,9 @@ constexpr std::size_t kBatchSamples = 131072;
 /// Positions and bounds are floats, rounded by up to 2^-24 of the coordinate in each axis at every
 /// level, and measured in doubles. 1e-6 of the largest coordinate is 17 such roundings.
 constexpr double kRounding = 1e-6;
+/// An error is an estimate of the root of the mean square, counted by vertices: means by area are a
+/// half of it as a rule.
+constexpr double kMostMean = 2;
 
 /// Streams of random numbers: samples of the two surfaces must not be alike.
 constexpr std::uint64_t kForwardStream = 1;
@@ -72,8 +75,10 @@ Samples along_curve(const Samples& samples) {
 struct DistanceTally {
   explicit DistanceTally(std::size_t tiles) : tile_max(tiles) {}
 
-  void add(double distance, std::uint32_t owner) {
+  /// `told`: what the owner says of itself.
+  void add(double distance, std::uint32_t owner, float told) {
     ++count;
+    sum_of_errors += double{told};
     sum += distance;
     sum_of_squares += distance * distance;
     tile_max[owner] = std::max(tile_max[owner], distance);
@@ -86,7 +91,11 @@ struct DistanceTally {
             *std::max_element(tile_max.begin(), tile_max.end())};
   }
 
+  /// What the tiles say, as `summary().mean` is what was found.
+  double mean_error() const { return count == 0 ? 0 : sum_of_errors / static_cast<double>(count); }
+
   std::uint64_t count = 0;
+  double sum_of_errors = 0;
   double sum = 0;
   double sum_of_squares = 0;
   std::vector<double> tile_max;  ///< of the shown cut's tiles
@@ -172,8 +181,10 @@ DistanceTally measure(const MeasureJob& job, const Cut& shown, const Direction& 
   const auto look_up = [&] {
     const Samples sorted = along_curve(waiting);
     const std::vector<double> distances = direction.target.distances(sorted.points, job.cancel);
-    for (std::size_t i = 0; i < distances.size(); ++i)
-      tally.add(distances[i], sorted.owners[i]);
+    for (std::size_t i = 0; i < distances.size(); ++i) {
+      const std::uint32_t owner = sorted.owners[i];
+      tally.add(distances[i], owner, job.reader.record(shown[owner]).error);
+    }
     job.progress.advance(distances.size());
     waiting = {};
   };
@@ -198,14 +209,39 @@ double largest_coordinate(const Bounds& box) {
   return std::max(largest(box.min), largest(box.max));
 }
 
+/// What a distance may be off by without anybody's fault.
+double slack_of(const MeasureJob& job, const CutSurface& shown) {
+  return kRounding * std::max(largest_coordinate(job.original.total().bounds),
+                              largest_coordinate(shown.total().bounds));
+}
+
+/// Bounds and errors hold to the input; quantized partitions, the original here, are so far away.
+double rounding_of(const MeasureJob& job) {
+  const auto& quantization = job.reader.manifest().quantization;
+  return quantization ? quantization->worst_rounding : 0;
+}
+
+/// Holds the measured means against the tiles' errors.
+void check_errors(const MeasureJob& job, const CutSurface& shown, const DistanceTally& forward,
+                  const DistanceTally& backward, ErrorMeasurement& result) {
+  for (const DistanceTally& tally : {forward, backward}) {
+    const double mean = tally.summary().mean;
+    const double told = tally.mean_error();
+    result.error = std::max(result.error, told);
+    if (mean <= kMostMean * told + rounding_of(job) + slack_of(job, shown))
+      continue;
+    result.problems.push_back(fmt::format(
+        "{}: {} is off by {:.6g} on average, more than twice the {:.6g} that its tiles' errors say",
+        job.reader.directory().string(), result.name, mean, told));
+    return;
+  }
+}
+
 /// Holds the measured maxima of every tile against its bound.
 void check_bounds(const MeasureJob& job, const CutSurface& shown, const DistanceTally& forward,
                   const DistanceTally& backward, ErrorMeasurement& result) {
-  const double slack = kRounding * std::max(largest_coordinate(job.original.total().bounds),
-                                            largest_coordinate(shown.total().bounds));
-  // Bounds hold to the input; of quantized partitions, the original here, that is so far away.
-  const auto& quantization = job.reader.manifest().quantization;
-  const double rounding = quantization ? quantization->worst_rounding : 0;
+  const double slack = slack_of(job, shown);
+  const double rounding = rounding_of(job);
   std::vector<double> ratios;
   ProblemList problems;
   for (std::size_t i = 0; i < shown.size(); ++i) {
@@ -253,6 +289,7 @@ void measure_both_ways(const MeasureJob& job, const CutSurface& shown, ErrorMeas
   result.forward = forward.summary();
   result.backward = backward.summary();
   check_bounds(job, shown, forward, backward, result);
+  check_errors(job, shown, forward, backward, result);
 }
 
 ErrorMeasurement measure_cut(const MeasureJob& job, Cut cut, std::string name,

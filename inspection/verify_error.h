@@ -52,9 +52,10 @@ struct ErrorMeasurement {
   std::uint64_t samples = 0;          ///< asked for, in each direction
   DistanceSummary forward;            ///< from the original surface to the cut's
   DistanceSummary backward;           ///< from the cut's surface to the original
+  double error = 0;                   ///< the mean over the samples of what their tiles say
   double bound = 0;                   ///< the largest of the tiles shown, input units
   std::optional<BoundRatio> ratio;    ///< none if no tile is off by more than rounding
-  std::vector<std::string> problems;  ///< each names its tile; empty: the bounds hold
+  std::vector<std::string> problems;  ///< empty: bounds and errors hold
 };
 
 /// Measures the Hausdorff-like distances of Metro (Cignoni, Rocchini & Scopigno 1998) between the
@@ -66,7 +67,8 @@ struct ErrorMeasurement {
 /// A sample belongs to the tile of the cut that shows it: of the original surface the one that has
 /// the partition, of the cut's surface the one that draws it; on a border triangle, whose corners
 /// several tiles have, to the one of them with the largest bound. A tile whose samples are off by
-/// more than its bound, in either direction, is a problem.
+/// more than its bound, in either direction, is a problem; so is a cut that is off on average by
+/// more than twice what its tiles' errors say.
 ///
 /// Deterministic to the bit for any threads and budget. Memory stays about `memory_budget`. Throws
 /// Error(usage) if the selection is not in the tree or the file is no cut, Error(io | corrupt) if a
@@ -81,8 +83,8 @@ std::vector<ErrorMeasurement> measure_errors(storage::FileSystem& files,
 std::string to_text(const ErrorMeasurement& measurement);
 
 /// For scripts: level, name, tiles, triangles, flat_triangles, diagonal, samples, forward and
-/// backward with mean, rms, max; bound; ratio with median, p95; problems. Lengths in input units;
-/// level is null for a cut from a file, ratio if there is none.
+/// backward with mean, rms, max; error; bound; ratio with median, p95; problems. Lengths in input
+/// units; level is null for a cut from a file, ratio if there is none.
 nlohmann::ordered_json to_json(const ErrorMeasurement& measurement);
 
 }  // namespace meshhier::inspection

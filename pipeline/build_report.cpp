@@ -4,6 +4,7 @@
 #include "execution/size_text.h"
 #include "hierarchy/plain_text.h"
 #include "import/import_input.h"
+#include "storage/format/level_summary.h"
 
 #include <cstddef>
 
@@ -105,7 +106,8 @@ BuildReport make_report(const storage::HierarchyReader& made, const BuildOutcome
   report.stats.stages = meter.stages();
   report.stats.total = meter.total();
   const SourceSummary& source = made.manifest().source;
-  report.text = report_text(context.config, source, outcome.found, report.stats);
+  report.text = report_text(context.config, source, outcome.found, report.stats) +
+                storage::care_text(storage::summarize_care(made.records(), source.vertices));
   report.account = account_text(source, report.stats);
   return report;
 }

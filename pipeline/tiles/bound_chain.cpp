@@ -109,7 +109,7 @@ void BoundChain::note(NodeId node, const Step& step, const Sum& sum) {
     own = below;
     return;
   }
-  own.error = above(below.error, below.error + std::sqrt(step.mean_square));
+  own.error = above(below.error, std::min(below.error + std::sqrt(step.mean_square), diagonal_));
   own.bound =
       std::max(above(below.bound, std::min(std::max(sum.back, sum.forth), diagonal_)), own.error);
   if (!std::isfinite(own.bound)) {

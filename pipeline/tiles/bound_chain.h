@@ -52,8 +52,8 @@ class TileSet {
 
 /// How far one contraction moved the surface: that of a tile, its seams counted.
 struct Step {
-  double certain = 0;  ///< both ways; infinite if what was drawn is drawn nowhere near
-  double mean_square = 0;
+  double certain = 0;        ///< both ways; infinite if what was drawn is drawn nowhere near
+  double mean_square = 0;    ///< infinite likewise
   TileSet finer_neighbours;  ///< tiles of the children's level that the drawn surface was held
                              ///< against
 };

@@ -7,6 +7,8 @@
 #include <cassert>
 #include <cmath>
 
+#include <fmt/format.h>
+
 namespace meshhier::storage {
 namespace {
 
@@ -165,6 +167,24 @@ CompactnessSummary summarize_compactness(const Tree& tree, std::span<const TileR
   std::sort(values.begin(), values.end());
   return {static_cast<std::uint32_t>(values.size()), sum / static_cast<double>(values.size()),
           quantile(values, 0.5), quantile(values, 0.95)};
+}
+
+CareSummary summarize_care(std::span<const TileRecord> records, std::uint64_t source_vertices) {
+  CareSummary care;
+  for (const TileRecord& record : records)
+    care.given_up += std::uint64_t{record.torn_count} + record.forced_count;
+  care.share = quotient(care.given_up, source_vertices);
+  return care;
+}
+
+std::string care_text(const CareSummary& care) {
+  if (!care.is_low())
+    return "";
+  return fmt::format(
+      "warning: {} vertices ({:.1f} % of the input's) went by tearing the surface or without care "
+      "for it: coarse levels show it badly. Are neighbouring triangles joined by common "
+      "vertices?\n",
+      care.given_up, 100 * care.share);
 }
 
 nlohmann::ordered_json to_json(const LevelSummary& s) {

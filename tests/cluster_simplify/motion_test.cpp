@@ -192,7 +192,17 @@ TEST(LostPiecesTest, ALonePieceIsLost) {
   const Contraction found = collapsing.choose(first);
   EXPECT_GE(found.deviation.lost, 3.5);
   EXPECT_LE(found.deviation.lost, 6.5);
+  EXPECT_GE(found.deviation.squared_sum, 3 * 3.5 * 3.5);  // of its three vertices
+  EXPECT_LE(found.deviation.squared_sum, 3 * 6.5 * 6.5);
   expect_deviation_holds(tile, found);
+}
+
+TEST(LostPiecesTest, VerticesThatNeverShowedAnythingLoseNothing) {
+  tests::TestMesh mesh = tests::sphere(100);
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  mesh.positions.insert(mesh.positions.end(), {{9, 9, 9}, {8, 8, 8}});
+  const Contraction found = tests::Collapsing(tests::tile_of(mesh)).choose(first);
+  EXPECT_EQ(found.deviation.squared_sum, 0);
 }
 
 // ---- motion --------------------------------------------------------------------------------
@@ -234,6 +244,7 @@ TEST(MotionTest, APieceInOnePlaceIsLost) {
   contraction.representatives.positions.assign(mesh.positions.begin(), mesh.positions.begin() + 5);
   const Deviation deviation = motion_of(tile, contraction);
   EXPECT_FLOAT_EQ(deviation.around[4], 1);
+  EXPECT_DOUBLE_EQ(deviation.squared_sum, 4 + 9 + 9);  // from (3, 0, 0) and the two at (4, 0, 0)
   EXPECT_FLOAT_EQ(deviation.lost, 3);  // to (1, 0, 0), and once more as far as its corners went
   expect_deviation_holds(tile, {contraction.parent_of, contraction.representatives, deviation, {}});
 }
@@ -244,6 +255,7 @@ TEST(MotionTest, NothingDrawnIsInfinitelyFar) {
   contraction.parent_of = {0, 0, 0, 0, 0, 0};
   contraction.representatives.positions = {{0, 0, 0}};
   EXPECT_TRUE(std::isinf(motion_of(tile, contraction).lost));
+  EXPECT_TRUE(std::isinf(motion_of(tile, contraction).squared_sum));
 }
 
 TEST(MotionTest, ABridgeThatIsDrawnNoMoreIsAsFarAsItsMiddle) {

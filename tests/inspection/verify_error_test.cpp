@@ -32,7 +32,7 @@ using testing::IsEmpty;
 using testing::SizeIs;
 using tests::node;
 
-/// A bound that holds: how far any vertex under a node is from where the node shows it.
+/// Bounds and errors that hold: how far any vertex under a node is from where the node shows it.
 void set_true_bounds(tests::Sample& sample) {
   for (TileRecord& record : sample.records) {
     const RankRange ranks = sample.tree.ranks(record.node);
@@ -44,8 +44,9 @@ void set_true_bounds(tests::Sample& sample) {
                                      to_double(mesh.vertices.positions[vertex])));
     }
     record.bound = std::nextafter(static_cast<float>(bound), 1e30F);
+    record.error = record.bound / 2;
     if (sample.tree.is_partition(record.node))
-      record.bound = 0;
+      record.bound = record.error = 0;
   }
 }
 
@@ -135,6 +136,7 @@ TEST_F(VerifyErrorTest, AShrunkSphereIsARadiusAway) {
   auto& root = coarse.tile(node(0, 0)).mesh;  // as many vertices as the sphere: a copy
   for (Vec3f& p : root.vertices.positions)
     p = p * 0.9F;
+  coarse.record(node(0, 0)).error = 0.1F;
   coarse.record(node(0, 0)).bounds = bounds_of(root.vertices.positions);
   coarse.record(node(0, 0)).bound = 0.1001F;
   const ErrorMeasurement m = measure_level(coarse, 0);
@@ -198,6 +200,56 @@ TEST_F(VerifyErrorTest, ABoundBelowTheMeasuredMaximumIsAProblemOfItsTile) {
   EXPECT_EQ(m.forward.max, before.forward.max) << "bounds do not change what is measured";
 }
 
+TEST_F(VerifyErrorTest, ErrorsOfLessThanHalfTheMeanAreAProblem) {
+  tests::Sample sample = make(tests::torus(2000), {8, 40, false, false, {}});
+  const ErrorMeasurement before = measure_level(sample, 1);
+  ASSERT_THAT(before.problems, IsEmpty());
+  const double mean = std::max(before.forward.mean, before.backward.mean);
+  const auto say = [&](double error) {
+    for (const std::uint32_t i : {0U, 1U})
+      sample.record(node(1, i)).error = static_cast<float>(error);
+    return measure_level(sample, 1);
+  };
+  const ErrorMeasurement honest = say(0.51 * mean);
+  EXPECT_THAT(honest.problems, IsEmpty());
+  EXPECT_NEAR(honest.error, 0.51 * mean, 1e-6 * mean);
+  for (const double error : {0.49 * mean, 7e-45}) {
+    EXPECT_THAT(say(error).problems, ElementsAre(AllOf(HasSubstr("level 1 is off by"),
+                                                       HasSubstr("more than twice the"))));
+  }
+}
+
+/// As a scan whose triangles share no vertex: every piece vanishes by itself.
+TEST_F(VerifyErrorTest, ASoupSaysHowFarItIsOff) {
+  const tests::TestMesh sphere = tests::sphere(4000);
+  tests::TestMesh soup;
+  for (const tests::MeshTriangle& t : sphere.triangles) {
+    const auto first = static_cast<std::uint32_t>(soup.positions.size());
+    for (const std::uint32_t v : t)
+      soup.positions.push_back(sphere.positions[v]);
+    soup.triangles.push_back({first, first + 1, first + 2});
+  }
+  const fs::path input = directory_.path() / "soup.ply";
+  tests::write_ply(soup, input);
+  for (const auto method : {config::SimplifyMethod::edge_collapse,
+                            config::SimplifyMethod::half_edge, config::SimplifyMethod::cluster}) {
+    config::Config config;
+    config.input = input;
+    config.output = path();
+    config.partition.vertices = 500;
+    config.simplify.vertices = 500;
+    config.simplify.method = method;
+    execution::NoProgress progress;
+    const execution::CancelToken cancel;
+    pipeline::build_hierarchy(config, {.force = true}, {*files_, progress, cancel});
+    for (const ErrorMeasurement& m :
+         measure_errors(*files_, path(), {AllLevels{}, 10'000}, progress, cancel)) {
+      EXPECT_THAT(m.problems, IsEmpty()) << m.name;
+      EXPECT_GT(m.error, std::max(m.forward.mean, m.backward.mean) / 2) << m.name;
+    }
+  }
+}
+
 TEST_F(VerifyErrorTest, RoundingOfFarCoordinatesIsNoProblem) {
   tests::TestMesh mesh = tests::sphere(500);
   for (Vec3f& p : mesh.positions)
@@ -214,7 +266,8 @@ TEST_F(VerifyErrorTest, RoundingOfFarCoordinatesIsNoProblem) {
   for (Vec3f& p : root)
     p.x += 0.01F;
   sample.record(node(0, 0)).bounds = bounds_of(root);
-  EXPECT_THAT(measure_level(sample, 0).problems, SizeIs(1));
+  sample.record(node(0, 0)).error = 0.01F;
+  EXPECT_THAT(measure_level(sample, 0).problems, ElementsAre(HasSubstr("its bound is 0")));
 }
 
 TEST_F(VerifyErrorTest, ResultsAreTheSameForAnyBudgetAndAnyThreads) {
@@ -327,6 +380,7 @@ TEST(ErrorReportTest, JsonHasTheKeysThatScriptsRead) {
   m.samples = 500;
   m.forward = {0.5, 0.75, 1};
   m.backward = {0.25, 0.375, 2};
+  m.error = 0.875;
   m.bound = 4;
   m.ratio = BoundRatio{2, 3};
   m.problems = {"one"};
@@ -339,6 +393,7 @@ TEST(ErrorReportTest, JsonHasTheKeysThatScriptsRead) {
   EXPECT_EQ(json["forward"]["mean"], 0.5);
   EXPECT_EQ(json["forward"]["rms"], 0.75);
   EXPECT_EQ(json["backward"]["max"], 2);
+  EXPECT_EQ(json["error"], 0.875);
   EXPECT_EQ(json["bound"], 4);
   EXPECT_EQ(json["ratio"]["median"], 2);
   EXPECT_EQ(json["ratio"]["p95"], 3);

@@ -308,7 +308,7 @@ TEST_F(BuildTest, CoordinatesOfAllMagnitudesAtOnce) {
 TEST_F(BuildTest, TheLargestCoordinates) {
   TestMesh mesh = tests::sphere(2000, 0.02F);
   for (Vec3f& p : mesh.positions)
-    p = p * 3e38F;
+    p = p * 0x1.fp125F;
   expect_builds(mesh, config());
 }
 
@@ -486,6 +486,13 @@ TEST_F(BuildTest, TheReportTellsWhatWasDone) {
   EXPECT_THAT(text, HasSubstr("vertices"));
   EXPECT_THAT(text, HasSubstr("partitions"));
   EXPECT_THAT(text, HasSubstr("levels"));
+}
+
+TEST_F(BuildTest, TheReportWarnsOnlyWhereCareWasGivenUp) {
+  EXPECT_THAT(build(tests::sphere(5000), config()).text, testing::Not(HasSubstr("warning")));
+  const std::string text = build(tests::soup(2000), config()).text;
+  EXPECT_THAT(
+      text, testing::ContainsRegex("warning: [0-9]+ vertices \\([0-9.]+ % of the input's\\) went"));
 }
 
 TEST_F(BuildTest, TheAccountAddsUp) {

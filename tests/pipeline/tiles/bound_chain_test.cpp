@@ -85,6 +85,17 @@ TEST_F(BoundChainTest, StepsAddUpLevelByLevel) {
     EXPECT_EQ(bound(2, i), 0);
 }
 
+TEST_F(BoundChainTest, NothingIsFartherOffThanTheModelIsLarge) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  make(4);
+  add(1, {{kInfinity, kInfinity, {}}, {2, 0.25, {}}});
+  add(0, {{4, 1, {}}});
+  for (const float value : {error(1, 0), bound(1, 0), error(0, 0), bound(0, 0)})
+    EXPECT_FLOAT_EQ(value, kDiagonal);
+  EXPECT_GT(error(0, 0), error(1, 0));
+  EXPECT_FLOAT_EQ(error(1, 1), 0.5F);
+}
+
 TEST_F(BoundChainTest, WhatATileWasHeldAgainstCountsOnTheWayBack) {
   // Level 1's tile 1 is measured against tile 3's partition, too; that adds nothing. Level 0's
   // second step below is held against its neighbour's tile of the finer level.
