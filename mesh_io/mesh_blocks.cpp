@@ -1,38 +1,44 @@
 #include "mesh_io/mesh_blocks.h"
 
+#include "mesh_io/coordinate_range.h"
 #include "mesh_io/ply_plan.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <span>
 
 namespace meshhier::mesh_io {
 namespace {
 
-/// True if all are finite: no exponent has all bits set. Without branches, so that it vectorizes.
-bool all_finite(const float* values, std::size_t count) {
-  constexpr std::uint32_t kExponent = 0x7f800000;
+/// True if no size is above `most`. Infinity's bits and those of what is no number are above all
+/// others as integers. Without branches, so that it vectorizes.
+bool all_up_to(float most, const float* values, std::size_t count) {
+  constexpr std::uint32_t kSign = 0x80000000;
+  const auto limit = std::bit_cast<std::uint32_t>(most);
   std::uint32_t bad = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    bad |= static_cast<std::uint32_t>((std::bit_cast<std::uint32_t>(values[i]) & kExponent) ==
-                                      kExponent);
-  }
+  for (std::size_t i = 0; i < count; ++i)
+    bad |= static_cast<std::uint32_t>((std::bit_cast<std::uint32_t>(values[i]) & ~kSign) > limit);
   return bad == 0;
 }
 
-bool all_finite(std::span<const Vec3f> points) {
-  static_assert(sizeof(Vec3f) == 3 * sizeof(float));
-  return all_finite(reinterpret_cast<const float*>(points.data()), 3 * points.size());
+bool all_finite(const float* values, std::size_t count) {
+  return all_up_to(std::numeric_limits<float>::max(), values, count);
 }
 
-bool all_finite(std::span<const Vec3d> points) {
-  int finite = 1;  // not a bool: what has no branch is meant to have none
-  for (const Vec3d& p : points) {
-    finite &= int{std::isfinite(p.x)} & int{std::isfinite(p.y)} & int{std::isfinite(p.z)};
-  }
-  return finite != 0;
+bool all_in_range(std::span<const Vec3f> points) {
+  static_assert(sizeof(Vec3f) == 3 * sizeof(float));
+  return all_up_to(static_cast<float>(kMostCoordinate),
+                   reinterpret_cast<const float*>(points.data()), 3 * points.size());
+}
+
+bool all_in_range(std::span<const Vec3d> points) {
+  int good = 1;  // not a bool: what has no branch is meant to have none
+  for (const Vec3d& p : points)
+    good &= int{is_coordinate(p.x)} & int{is_coordinate(p.y)} & int{is_coordinate(p.z)};
+  return good != 0;
 }
 
 bool is_byte(double value) {
@@ -79,11 +85,11 @@ double VertexRows::value_of(std::size_t row, int slot) const {
 
 std::optional<VertexRows::Defect> VertexRows::find_defect(std::size_t first, std::size_t count,
                                                           bool check_colours) const {
-  const bool finite =
-      (wide_ ? all_finite(std::span<const Vec3d>(memory_.exact).subspan(first, count))
-             : all_finite(std::span<const Vec3f>(memory_.positions).subspan(first, count))) &&
+  const bool sound =
+      (wide_ ? all_in_range(std::span<const Vec3d>(memory_.exact).subspan(first, count))
+             : all_in_range(std::span<const Vec3f>(memory_.positions).subspan(first, count))) &&
       all_finite(memory_.attributes.data() + first * channels_, count * channels_);
-  if (finite && !check_colours)
+  if (sound && !check_colours)
     return std::nullopt;
   const int slots = kFirstAttributeSlot + layout_.channels();
   const int first_colour = kFirstAttributeSlot + layout_.colour_offset();
@@ -92,7 +98,9 @@ std::optional<VertexRows::Defect> VertexRows::find_defect(std::size_t first, std
     for (int slot = 0; slot < slots; ++slot) {
       const double value = value_of(first + row, slot);
       const bool colour = check_colours && slot >= first_colour && slot < last_colour;
-      if (!std::isfinite(value) || (colour && !is_byte(value)))
+      const bool coordinate = slot < kFirstAttributeSlot;
+      if (!std::isfinite(value) || (colour && !is_byte(value)) ||
+          (coordinate && !is_coordinate(value)))
         return Defect{row, slot, value};
     }
   }

@@ -32,7 +32,8 @@ class VertexRows {
     int slot = 0;
     double value = 0;
   };
-  /// The first number of rows [first, first + count) that is not finite or (if `check_colours`) not
+  /// The first number of rows [first, first + count) that is not finite, is a coordinate
+  /// out of range, or (if `check_colours`) not
   /// one of the integers 0 to 255 where a colour must be.
   std::optional<Defect> find_defect(std::size_t first, std::size_t count, bool check_colours) const;
 

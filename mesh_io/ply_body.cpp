@@ -1,5 +1,6 @@
 #include "mesh_io/ply_body.h"
 
+#include "mesh_io/coordinate_range.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/ply_values.h"
 
@@ -25,9 +26,10 @@ static std::string slot_name(const PlyElementPlan& plan, int slot) {
 }
 
 std::string defect_text(const PlyElementPlan& plan, std::uint64_t row, int slot, double value) {
-  const bool finite = std::isfinite(value);
-  return fmt::format("expected {} as '{}' in {}, found {}",
-                     finite ? "an integer from 0 to 255" : "a finite number", slot_name(plan, slot),
+  const char* expected = !std::isfinite(value)        ? "a finite number"
+                         : slot < kFirstAttributeSlot ? kCoordinateRange
+                                                      : "an integer from 0 to 255";
+  return fmt::format("expected {} as '{}' in {}, found {}", expected, slot_name(plan, slot),
                      row_name(plan, row), value);
 }
 

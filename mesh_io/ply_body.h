@@ -50,7 +50,7 @@ bool is_strip_restart(std::int64_t index, PlyType type);
 
 /// "row 17 of 20 of element 'face'"; rows count from 0, as vertex indices do.
 std::string row_name(const PlyElementPlan& plan, std::uint64_t row);
-/// The number read for a slot is not finite, or not a colour.
+/// The number read for a slot is not finite, no coordinate, or no colour.
 std::string defect_text(const PlyElementPlan& plan, std::uint64_t row, int slot, double value);
 /// A face refers to a vertex that is not there.
 std::string index_text(const PlyElementPlan& plan, std::uint64_t row, std::int64_t index,

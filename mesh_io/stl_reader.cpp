@@ -1,5 +1,6 @@
 #include "mesh_io/stl_reader.h"
 
+#include "mesh_io/coordinate_range.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/ply_values.h"
 #include "mesh_io/word_stream.h"
@@ -65,12 +66,12 @@ class BinaryStl {
     std::array<double, 9> values{};
     for (std::size_t i = 0; i < values.size(); ++i) {
       const auto value = load<float, kSwap>(bytes + 12 + 4 * i);
-      if (!std::isfinite(value)) {
+      values[i] = double{value};
+      if (!is_coordinate(values[i])) {
         fail_at_byte(
             path_, offset() + 12 + 4 * i,
-            fmt::format("expected a finite coordinate in facet {}, found {}", done_, value));
+            fmt::format("expected {} in facet {}, found {}", kCoordinateRange, done_, value));
       }
-      values[i] = static_cast<double>(value);
     }
     counts_.attributes += load<std::uint16_t, kSwap>(bytes + 48) != 0 ? 1 : 0;
     return {Vec3d{values[0], values[1], values[2]}, Vec3d{values[3], values[4], values[5]},

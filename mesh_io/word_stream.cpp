@@ -1,5 +1,6 @@
 #include "mesh_io/word_stream.h"
 
+#include "mesh_io/coordinate_range.h"
 #include "mesh_io/input_error.h"
 
 #include <array>
@@ -136,6 +137,8 @@ Vec3d WordStream::take_position(bool& fits_float) {
   std::array<double, 3> position{};
   for (double& coordinate : position) {
     const DecimalNumber number = take_number("a coordinate");
+    if (!is_coordinate(number.value))
+      fail(fmt::format("expected {}, found {}", kCoordinateRange, number.value));
     coordinate = number.value;
     fits_float = fits_float && number.fits_float;
   }

@@ -146,6 +146,10 @@ TEST(ObjReader, RefusesWhatIsWrongAndNamesTheLine) {
             "mesh: line 3: expected a finite number for a coordinate, found 'x'");
   for (const char* bad : {"nan", "inf", "-inf", "1e999", "0x10", "1,5"})
     EXPECT_THAT(after(fmt::format("v 1 2 {}\n", bad)), HasSubstr("expected a finite number"));
+  for (const char* bad : {"-3e38", "1e200"}) {
+    EXPECT_THAT(after(fmt::format("v 1 {} 3\n", bad)),
+                HasSubstr("line 3: expected a coordinate from -8.5e37 to 8.5e37 (2^126), found"));
+  }
   EXPECT_THAT(after("v 1 2 3 4 5\n"), HasSubstr("line 3: expected 3, 4, 6 or 7 numbers"));
   EXPECT_THAT(after("v 1 2 3 4 5 6 7 8\n"), HasSubstr("line 3: expected 3, 4, 6 or 7 numbers"));
   EXPECT_THAT(after("vn 1 2\n"), HasSubstr("line 3: expected a number for a normal"));

@@ -101,6 +101,7 @@ TEST(OffReader, RefusesWhatIsWrongAndNamesTheLine) {
   EXPECT_THAT(refusal("OFF\n4000000000 4000000000 0\n1 2 3\n"),
               HasSubstr("expected vertex 1 of 4000000000, found the end of the file (truncated)"));
   EXPECT_THAT(refusal("OFF\n1 0 0\n1 2\n"), HasSubstr("line 3: expected a number"));
+  EXPECT_THAT(refusal("OFF\n1 0 0\n1 2 9e37\n"), HasSubstr("line 3: expected a coordinate from"));
   EXPECT_THAT(refusal("OFF\n1 0 0\n1 2 3 4\n"), HasSubstr("line 3: expected 0 numbers behind"));
   EXPECT_THAT(refusal("COFF\n2 0 0\n1 2 3 1 1 1\n1 2 3 1 1 1 1\n"),
               HasSubstr("line 4: expected 3 numbers behind"));

@@ -62,6 +62,24 @@ TEST(PlyErrors, CoordinatesThatAreNotFinite) {
   }
 }
 
+TEST(PlyErrors, CoordinatesBetweenWhichDistancesAreNoFloats) {
+  for (const PlyEncoding encoding : kEncodings) {
+    for (const auto& [type, bad] : {std::pair{PlyType::f32, 3e38},
+                                    {PlyType::f32, -9e37},
+                                    {PlyType::f64, 1e39},
+                                    {PlyType::f64, -1e308}}) {
+      PlyText ply = vertices(encoding, "2", std::string(name_of(type))).end_header();
+      ply.row(type, {0x1p126, -0x1p126, 6});
+      const std::size_t data = ply.bytes().size();
+      ply.row(type, {1, 2, bad});
+      EXPECT_THAT(error_of(ply.bytes()),
+                  HasSubstr(place(encoding, data + 2 * size_of(type), 9) +
+                            "expected a coordinate from -8.5e37 to 8.5e37 (2^126) as 'z' in row 1 "
+                            "of 2 of element 'vertex', found "));
+    }
+  }
+}
+
 TEST(PlyErrors, CoordinatesThatAreNotFiniteBehindLists) {
   for (const PlyEncoding encoding : kEncodings) {
     PlyText ply = vertices(encoding, "2", "float").line("property list uchar int l").end_header();

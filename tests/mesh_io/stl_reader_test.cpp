@@ -139,12 +139,15 @@ TEST(StlReader, RefusesBinaryFilesThatAreCutAnywhereOrTooLong) {
   EXPECT_THAT(refusal(lying), HasSubstr("mesh: byte 184: expected facet 2 of 213070"));
 }
 
-TEST(StlReader, RefusesCoordinatesThatAreNotFinite) {
-  std::vector<Facet> facets = many_facets(2);
-  facets[1][4] = std::numeric_limits<float>::infinity();
-  EXPECT_EQ(input_error_of([&] { take_binary(binary_stl(facets)); }),
-            fmt::format("mesh: byte {}: expected a finite coordinate in facet 1, found inf",
-                        84 + 50 + 12 + 16));
+TEST(StlReader, RefusesCoordinatesThatAreNotFiniteOrOutOfRange) {
+  for (const float bad : {std::numeric_limits<float>::infinity(), -3e38F}) {
+    std::vector<Facet> facets = many_facets(2);
+    facets[1][4] = bad;
+    EXPECT_EQ(input_error_of([&] { take_binary(binary_stl(facets)); }),
+              fmt::format("mesh: byte {}: expected a coordinate from -8.5e37 to 8.5e37 (2^126) in "
+                          "facet 1, found {}",
+                          84 + 50 + 12 + 16, bad));
+  }
 }
 
 TEST(StlReader, RefusesTextThatIsNoneAndNamesTheLine) {
