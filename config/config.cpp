@@ -5,10 +5,13 @@
 #include "hierarchy/error.h"
 #include "hierarchy/mesh_name.h"
 #include "hierarchy/plain_text.h"
+#include "storage/format/tileset.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 #include <utility>
@@ -447,6 +450,15 @@ Config parse_config(std::string_view text, const ConfigOrigin& origin, const Com
 Config load_config(storage::FileSystem& files, const std::filesystem::path& file,
                    const CommandLine& words) {
   return parse_config(read_text(files, file), {file.string(), file.parent_path()}, words);
+}
+
+std::optional<Transform> tileset_transform(const Config& config) {
+  const PlacementConfig& place = config.placement;
+  if (!place.longitude)
+    return place.transform;
+  const auto [x, y, z] = place.anchor.value_or(std::array<double, 3>{});
+  return storage::globe_transform(*place.longitude, *place.latitude, place.height.value_or(0),
+                                  {x, y, z}, config.up);
 }
 
 Json resolved_json(const Config& config) {

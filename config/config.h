@@ -160,6 +160,9 @@ Config parse_config(std::string_view text, const ConfigOrigin& origin, const Com
 Config load_config(storage::FileSystem& files, const std::filesystem::path& file,
                    const CommandLine& words);
 
+/// What `placement` comes to: of the tileset's root, or none.
+std::optional<Transform> tileset_transform(const Config& config);
+
 /// What decides the result: weld, partition, simplify, outline, storage; not paths, budget,
 /// threads, container. All defaults are filled in, except that simplify.vertices is absent if it
 /// follows partition.count.

@@ -84,6 +84,7 @@ std::vector<execution::ExpectedStage> expected_times(const VerifyJob& job) {
 
 void verify_all(const VerifyJob& job) {
   job.progress.expect(expected_times(job));
+  verify_manifest(job);
   verify_files(job);
   verify_tiles(job);
   if (job.tiles.unreadable_count() > 0) {

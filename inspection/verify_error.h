@@ -68,7 +68,7 @@ struct ErrorMeasurement {
 /// the partition, of the cut's surface the one that draws it; on a border triangle, whose corners
 /// several tiles have, to the one of them with the largest bound. A tile whose samples are off by
 /// more than its bound, in either direction, is a problem; so is a cut that is off on average by
-/// more than twice what its tiles' errors say.
+/// more than twice what its tiles' errors say, and by more than a 64th of the largest bound.
 ///
 /// Deterministic to the bit for any threads and budget. Memory stays about `memory_budget`. Throws
 /// Error(usage) if the selection is not in the tree or the file is no cut, Error(io | corrupt) if a

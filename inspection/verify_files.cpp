@@ -51,6 +51,38 @@ bool is_known(const Tree& tree, const std::set<fs::path>& tilesets, const fs::pa
          tilesets.contains(relative);
 }
 
+/// The directories that hold the hierarchy's files, as names in it.
+std::set<fs::path> known_directories(const Tree& tree, const std::set<fs::path>& tilesets) {
+  std::set<fs::path> known;
+  const auto add_above = [&](const fs::path& path) {
+    for (fs::path above = path; !above.empty(); above = above.parent_path())
+      known.insert(above);
+  };
+  for (int level = 0; level <= raw(tree.depth()); ++level)
+    add_above(storage::level_directory({}, static_cast<Level>(level)));
+  for (const fs::path& tileset : tilesets)
+    add_above(tileset.parent_path());
+  return known;
+}
+
+/// Looks for directories that hold none of the hierarchy's files, and for links, at `directory`
+/// and below it.
+void find_strange_entries(const VerifyJob& job, const std::set<fs::path>& known,
+                          const fs::path& directory) {
+  for (const fs::path& path : job.files.children(directory)) {
+    job.cancel.check();
+    if (job.files.is_link(path)) {
+      job.problems.add(fmt::format("{}: a link; put the file itself in its place", path.string()));
+    } else if (job.files.is_directory(path)) {
+      if (!known.contains(path.lexically_relative(job.reader.directory())))
+        job.problems.add(
+            fmt::format("{}: not a directory of this hierarchy; remove it", path.string()));
+      else
+        find_strange_entries(job, known, path);
+    }
+  }
+}
+
 /// A missing file is found by whoever reads it; what is looked for here is what nobody reads.
 std::uint64_t find_extra_files(const VerifyJob& job, const std::set<fs::path>& tilesets) {
   const fs::path& directory = job.reader.directory();
@@ -60,12 +92,15 @@ std::uint64_t find_extra_files(const VerifyJob& job, const std::set<fs::path>& t
       continue;
     job.problems.add(fmt::format("{}: not a file of this hierarchy; remove it", path.string()));
   }
+  if (job.files.is_directory(directory))  // an archive has files only
+    find_strange_entries(job, known_directories(job.tree(), tilesets), directory);
   return found.size();
 }
 
 void check_outline(const VerifyJob& job) {
   try {
     const Outline outline = job.reader.read_outline();
+    verify_outline(job, outline);
     job.checks.push_back(fmt::format("outline: {}, {}",
                                      counted(job.reader.manifest().outline_bytes, "bytes"),
                                      counted(outline.polyline_count(), "lines")));
@@ -121,33 +156,11 @@ std::set<fs::path> check_tilesets(const VerifyJob& job) {
   return names;
 }
 
-void check_totals(const VerifyJob& job) {
-  const storage::Manifest& manifest = job.reader.manifest();
-  std::uint64_t bytes = manifest.index_bytes + manifest.outline_bytes + manifest.tileset_bytes;
-  std::uint64_t triangles = 0;
-  for (const TileRecord& record : job.reader.records()) {
-    bytes += record.file_bytes;
-    if (!job.tree().is_partition(record.node))
-      continue;
-    triangles += std::uint64_t{record.interior_count} + record.drawn_border_count;
-  }
-  const std::string name = storage::manifest_path(job.reader.directory()).string();
-  const auto compare = [&](std::string_view what, std::uint64_t told, std::uint64_t found) {
-    if (told == found)
-      return;
-    job.problems.add(
-        fmt::format("{}: {} is {}, but the index adds up to {}", name, what, told, found));
-  };
-  compare("total_bytes", manifest.total_bytes, bytes);
-  compare("the number of triangles of the source", manifest.source.triangles, triangles);
-}
-
 }  // namespace
 
 void verify_files(const VerifyJob& job) {
   const std::uint64_t count = find_extra_files(job, check_tilesets(job));
   check_outline(job);
-  check_totals(job);
   job.checks.push_back(fmt::format("files: {} found, {} in the index", count,
                                    counted(job.reader.records().size(), "tiles")));
 }

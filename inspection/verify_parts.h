@@ -72,8 +72,16 @@ struct VerifyJob {
   const Tree& tree() const { return reader.tree(); }
 };
 
-/// No file missing, none extra; outline readable; the manifest's totals are the index's.
+/// No file missing, none extra, no link; outline readable.
 void verify_files(const VerifyJob& job);
+
+/// Every value of the manifest that follows from the rest is what it should be, and nothing else is
+/// there.
+void verify_manifest(const VerifyJob& job);
+/// What it says of the outline.
+void verify_outline(const VerifyJob& job, const Outline& outline);
+/// What it says of vertices without triangles; `found`: in the partitions.
+void verify_unreferenced(const VerifyJob& job, std::uint64_t found);
 
 /// Every tile by itself, with its children, and with its neighbours.
 void verify_tiles(const VerifyJob& job);

@@ -2,6 +2,7 @@
 #include "hierarchy/drawing_rule.h"
 #include "hierarchy/lattice.h"
 #include "inspection/verify_parts.h"
+#include "partition/compactness.h"
 #include "storage/format/layout.h"
 
 #include <algorithm>
@@ -76,6 +77,50 @@ void check_errors(const VerifyJob& job, const TileRecord& record, const TileProb
   problems.require(record.error < parent.error,
                    "error {} is not below the error {} of its parent {}", record.error,
                    parent.error, to_text(parent.node));
+  problems.require(record.bound < parent.bound,
+                   "bound {} is not below the bound {} of its parent {}", record.bound,
+                   parent.bound, to_text(parent.node));
+}
+
+std::uint64_t vertices_below(const VerifyJob& job, NodeId node) {
+  std::uint64_t sum = 0;
+  const Tree::Children children = job.tree().children(node);
+  for (const NodeId child : children.span())
+    sum += job.reader.record(child).own_count;
+  return sum;
+}
+
+/// Vertices went into tiles above the partitions only, and no more of them than there were.
+void check_history(const VerifyJob& job, const TileRecord& record, const TileProblems& problems) {
+  const bool partition = job.tree().is_partition(record.node);
+  const std::uint64_t below = partition ? 0 : vertices_below(job, record.node);
+  const std::uint64_t given_up = std::uint64_t{record.torn_count} + record.forced_count;
+  problems.require(given_up <= below, "{} vertices torn or forced away of {} below it", given_up,
+                   below);
+  problems.require(!partition || record.target_count == record.own_count,
+                   "a partition of {} vertices, of which {} were asked for", record.own_count,
+                   record.target_count);
+  problems.require(partition || record.compactness == 0, "a simplified tile has compactness {}",
+                   record.compactness);
+}
+
+void check_compactness(const TileMesh& mesh, const TileRecord& record,
+                       const TileProblems& problems) {
+  const float found = partition::published_compactness(mesh);
+  problems.require(record.compactness == found, "compactness {}, the index says {}", found,
+                   record.compactness);
+}
+
+/// Own vertices that are corners of no triangle.
+std::uint64_t unreferenced_count(const TileMesh& mesh) {
+  std::vector<bool> used(mesh.vertices.size());
+  for (const auto* triangles : {&mesh.interior, &mesh.border}) {
+    for (const TileTriangle& t : *triangles) {
+      for (const TileVertex v : t)
+        used[raw(v)] = true;
+    }
+  }
+  return static_cast<std::uint64_t>(std::count(used.begin(), used.begin() + mesh.own_count, false));
 }
 
 void check_parent_map(const VerifyJob& job, const PublishedTile& tile,
@@ -128,11 +173,14 @@ void verify_tile(const VerifyJob& job, const TileRecord& record, const Published
                    record.drawn_border_count);
   check_parent_map(job, tile, problems);
   check_errors(job, record, problems);
+  check_history(job, record, problems);
+  if (partition)
+    check_compactness(mesh, record, problems);
 }
 
 void verify_tiles(const VerifyJob& job) {
   const auto& records = job.reader.records();
-  std::uint64_t ghosts = 0, border = 0;
+  std::uint64_t ghosts = 0, border = 0, unreferenced = 0;
   std::size_t off_target = 0;
   ParentMaps maps = make_parent_maps(job);
   BorderPairs pairs(job.tree(), maps, job.scratch, job.options.memory_budget / 8);
@@ -144,6 +192,8 @@ void verify_tiles(const VerifyJob& job) {
       pairs.add(*tile);
       if (!job.tree().is_partition(record.node))
         verify_image(job, *tile);
+      else
+        unreferenced += unreferenced_count(tile->mesh);
       ghosts += record.ghost_count;
       border += record.border_count;
     }
@@ -151,6 +201,8 @@ void verify_tiles(const VerifyJob& job) {
       ++off_target;
     job.progress.advance(1);
   }
+  if (job.tiles.unreadable_count() == 0)
+    verify_unreferenced(job, unreferenced);
   pairs.finish([&](const NodePair& pair) {
     const auto level = static_cast<Level>(pair.level);
     explain_difference(job, {level, pair.low}, {level, pair.high});

@@ -1,6 +1,8 @@
 #include "partition/compactness.h"
 
+#include <algorithm>
 #include <array>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -46,6 +48,11 @@ double compactness(const TileMesh& tile) {
     perimeter += border_length(corners, own);
   }
   return double_area > 0 ? perimeter * perimeter / (2 * std::numbers::pi * double_area) : 0;
+}
+
+float published_compactness(const TileMesh& tile) {
+  constexpr double kMost = std::numeric_limits<float>::max();
+  return static_cast<float>(std::min(compactness(tile), kMost));
 }
 
 }  // namespace meshhier::partition

@@ -11,4 +11,7 @@ namespace meshhier::partition {
 /// partitions (Kim & Lee); 0 if there is no area. Requires filled ghosts.
 double compactness(const TileMesh& tile);
 
+/// As the index has it: the largest float if it is larger.
+float published_compactness(const TileMesh& tile);
+
 }  // namespace meshhier::partition

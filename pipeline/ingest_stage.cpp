@@ -1,14 +1,11 @@
 #include "pipeline/ingest_stage.h"
 
-#include "hierarchy/error.h"
 #include "hierarchy/power_of_two.h"
 #include "partition/top_tree.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include <fmt/format.h>
 
 namespace meshhier::pipeline {
 namespace {
@@ -126,14 +123,6 @@ void SourceMesh::choose_origin() {
   const BoundsD& b = summary_.bounds;
   origin_ = {round_origin(b.min.x, b.max.x), round_origin(b.min.y, b.max.y),
              round_origin(b.min.z, b.max.z)};
-  for (const Vec3d corner : {b.min - origin_, b.max - origin_}) {
-    const Vec3f stored = to_float(corner);
-    if (!std::isfinite(stored.x) || !std::isfinite(stored.y) || !std::isfinite(stored.z)) {
-      throw Error(ErrorCode::input,
-                  fmt::format("{}: coordinates beyond the range of single precision (3.4e38)",
-                              summary_.file_name));
-    }
-  }
 }
 
 std::vector<partition::IdPoint> SourceMesh::sample() const {

@@ -56,15 +56,6 @@ float with_rounding(float bound, double rounding, int levels_below) {
   return sum;
 }
 
-std::optional<Transform> tileset_transform(const config::Config& config) {
-  const config::PlacementConfig& place = config.placement;
-  if (!place.longitude)
-    return place.transform;
-  const auto [x, y, z] = place.anchor.value_or(std::array<double, 3>{});
-  return storage::globe_transform(*place.longitude, *place.latitude, place.height.value_or(0),
-                                  {x, y, z}, config.up);
-}
-
 /// What writes tiles.
 struct TileWriter {
   const Forest& forest;
@@ -97,10 +88,8 @@ TileRecord describe(const TileWriter& to, NodeId node, const TileMesh& mesh) {
     record.bound = with_rounding(record.bound, to.quantization->worst_rounding,
                                  raw(tree.depth()) - raw(node.level));
   }
-  if (tree.is_partition(node)) {
-    constexpr double kMost = std::numeric_limits<float>::max();
-    record.compactness = static_cast<float>(std::min(partition::compactness(mesh), kMost));
-  }
+  if (tree.is_partition(node))
+    record.compactness = partition::published_compactness(mesh);
   return record;
 }
 
@@ -145,7 +134,7 @@ void write_account(const TileWriter& to, const PublishInput& input,
   manifest.source = input.source;
   manifest.origin = to.format.frame.origin;
   manifest.up = to.format.frame.up;
-  manifest.transform = tileset_transform(context.config);
+  manifest.transform = config::tileset_transform(context.config);
   manifest.licence = context.config.licence;
   manifest.partition_count = tree.partition_count();
   manifest.compression = to.format.compression;

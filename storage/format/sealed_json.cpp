@@ -222,6 +222,8 @@ AttributeLayout JsonObject::attributes(const char* key) const {
     if (colours != kColourTypes[i])
       continue;
     attributes.colour = static_cast<ColourType>(i);
+    if (attributes.alpha && attributes.colour == ColourType::none)
+      from.wrong("alpha", "false without colours");
     return attributes;
   }
   from.wrong("colours", "none, u8, u16 or f32");

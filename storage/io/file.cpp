@@ -218,6 +218,11 @@ class PosixFileSystem final : public FileSystem {
     return S_ISFIFO(status.st_mode) || S_ISCHR(status.st_mode) ? FileKind::stream : FileKind::other;
   }
 
+  bool is_link(const std::filesystem::path& path) override {
+    std::error_code error;
+    return std::filesystem::is_symlink(path, error);
+  }
+
   std::filesystem::path canonical(const std::filesystem::path& path) override {
     constexpr int kMostLinks = 40;  // as many as the system follows
     std::error_code error;

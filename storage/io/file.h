@@ -131,6 +131,8 @@ class FileSystem {
   virtual bool exists(const std::filesystem::path& path) = 0;
   virtual FileKind kind(const std::filesystem::path& path) = 0;
   bool is_directory(const std::filesystem::path& path) { return kind(path) == FileKind::directory; }
+  /// A symbolic link, wherever it leads; systems without links have none.
+  virtual bool is_link(const std::filesystem::path& /*path*/) { return false; }
   /// The absolute path without links and dots, as far as it exists; of a link to nothing, where it
   /// leads to.
   virtual std::filesystem::path canonical(const std::filesystem::path& path) = 0;

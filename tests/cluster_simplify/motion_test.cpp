@@ -244,7 +244,7 @@ TEST(MotionTest, APieceInOnePlaceIsLost) {
   contraction.representatives.positions.assign(mesh.positions.begin(), mesh.positions.begin() + 5);
   const Deviation deviation = motion_of(tile, contraction);
   EXPECT_FLOAT_EQ(deviation.around[4], 1);
-  EXPECT_DOUBLE_EQ(deviation.squared_sum, 4 + 9 + 9);  // from (3, 0, 0) and the two at (4, 0, 0)
+  EXPECT_DOUBLE_EQ(deviation.squared_sum, 4 + 5 + 9);  // of (3, 0, 0), (3, 1, 0) and (4, 0, 0)
   EXPECT_FLOAT_EQ(deviation.lost, 3);  // to (1, 0, 0), and once more as far as its corners went
   expect_deviation_holds(tile, {contraction.parent_of, contraction.representatives, deviation, {}});
 }

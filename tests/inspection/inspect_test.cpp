@@ -26,6 +26,10 @@ using tests::node;
 class InspectTest : public testing::Test {
  protected:
   InspectTest() : sample_(tests::make_sample(tests::sphere(1000), {6, 40, false, true, {}})) {
+    for (TileRecord& record : sample_.records) {
+      if (sample_.tree.is_partition(record.node))
+        record.compactness = 1.5F + 0.25F * static_cast<float>(record.node.index);
+    }
     tests::write_sample(*files_, path(), sample_);
     // Only manifest and index are read: the rest need not be there.
     fs::remove_all(path() / "tiles");

@@ -162,6 +162,10 @@ std::unique_ptr<storage::File> FaultyFileSystem::open_stream(const std::filesyst
   return std::make_unique<FaultyFile>(real_->open_stream(path, check), plan_, counters_);
 }
 
+bool FaultyFileSystem::is_link(const std::filesystem::path& path) {
+  return real_->is_link(path);
+}
+
 storage::FileKind FaultyFileSystem::kind(const std::filesystem::path& path) {
   return real_->kind(path);
 }

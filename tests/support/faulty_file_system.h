@@ -92,6 +92,7 @@ class FaultyFileSystem final : public storage::FileSystem {
   std::unique_ptr<storage::File> open_stream(const std::filesystem::path& path,
                                              const std::function<void()>& check) override;
   storage::FileKind kind(const std::filesystem::path& path) override;  ///< never fails
+  bool is_link(const std::filesystem::path& path) override;            ///< likewise
   std::filesystem::path canonical(const std::filesystem::path& path) override;
   std::vector<std::filesystem::path> list(const std::filesystem::path& directory) override;
   std::vector<std::filesystem::path> children(const std::filesystem::path& directory) override;

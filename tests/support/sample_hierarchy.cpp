@@ -2,8 +2,10 @@
 
 #include "hierarchy/bounds.h"
 #include "hierarchy/cut.h"
+#include "partition/compactness.h"
 #include "storage/format/index.h"
 #include "storage/format/layout.h"
+#include "storage/format/level_summary.h"
 #include "storage/format/outline_glb.h"
 #include "storage/format/tileset.h"
 #include "storage/io/file_checksum.h"
@@ -314,7 +316,7 @@ TileRecord make_record(const Tree& tree, const PublishedTile& tile, const Sample
   record.error = static_cast<float>(height) * 0.25F;
   record.bound = static_cast<float>(height) * 0.5F;
   if (partition)
-    record.compactness = 1.5F + 0.25F * static_cast<float>(tile.node.index);
+    record.compactness = partition::published_compactness(tile.mesh);
   return record;
 }
 
@@ -345,6 +347,10 @@ storage::Manifest make_manifest(const Sample& sample, const fs::path& source) {
   manifest.source.triangles = sample.ranked.triangles.size();
   manifest.source.faces = sample.ranked.triangles.size();
   manifest.source.attributes = sample.format.attributes;
+  std::set<std::uint32_t> used;
+  for (const MeshTriangle& t : sample.ranked.triangles)
+    used.insert(t.begin(), t.end());
+  manifest.source.unreferenced_vertices = manifest.source.vertices - used.size();
   for (Vec3f p : sample.ranked.positions) {
     manifest.source.bounds.add(to_double(p) + sample.format.frame.origin);
   }
@@ -440,6 +446,10 @@ void write_sample(storage::FileSystem& files, const fs::path& directory, Sample&
   manifest.outline_checksum = storage::checksum(outline);
   manifest.outline.polylines_found = 2;
   manifest.total_bytes += index.size() + outline.size();
+  manifest.outline.sector_count = 1;
+  manifest.levels = nlohmann::ordered_json::array();
+  for (const storage::LevelSummary& level : storage::summarize_levels(sample.tree, sample.records))
+    manifest.levels.push_back(storage::to_json(level));
   manifest.tileset_files = manifest.tileset_bytes = 0;
   storage::write_tilesets(files, directory, sample.tree, sample.records, manifest);
   const std::string text = storage::to_json_text(manifest);

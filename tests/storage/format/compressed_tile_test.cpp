@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <random>
@@ -303,6 +304,47 @@ TEST(MeshoptCodec, ExponentsThatDecodersDifferOnAreRefused) {
   EXPECT_TRUE(is_read(-100));
   EXPECT_FALSE(is_read(101));
   EXPECT_FALSE(is_read(-101));
+}
+
+/// The triangles in the order that is made, and as they were: both sorted.
+void expect_same_triangles(const std::vector<std::uint32_t>& corners, std::size_t vertex_count) {
+  const auto sorted = [](const std::vector<std::uint32_t>& list) {
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    for (std::size_t i = 0; i < list.size(); i += 3)
+      triangles.push_back({list[i], list[i + 1], list[i + 2]});
+    std::ranges::sort(triangles);
+    return triangles;
+  };
+  EXPECT_EQ(sorted(storage::vertex_cache_order(corners, vertex_count)), sorted(corners));
+}
+
+// A million triangles, each looked at for each, would take hours.
+
+TEST(VertexCacheOrderTest, AMillionCopiesOfATriangleAreOrdered) {
+  std::vector<std::uint32_t> corners;
+  for (int i = 0; i < 1'000'000; ++i)
+    corners.insert(corners.end(), {0, 1, 2});
+  expect_same_triangles(corners, 3);
+}
+
+TEST(VertexCacheOrderTest, AMillionTrianglesAroundOneVertexAreOrdered) {
+  constexpr std::uint32_t kCount = 1'000'000;
+  std::vector<std::uint32_t> corners;
+  for (std::uint32_t i = 0; i < kCount; ++i)
+    corners.insert(corners.end(), {0, 1 + i, 1 + (i + 1) % kCount});
+  expect_same_triangles(corners, kCount + 1);
+}
+
+TEST(VertexCacheOrderTest, AMillionTrianglesBetweenTwoHundredVerticesAreOrdered) {
+  constexpr std::uint32_t kVertices = 200;
+  std::vector<std::uint32_t> corners;
+  for (std::uint32_t a = 0; a < kVertices; ++a) {
+    for (std::uint32_t b = a + 1; b < kVertices; ++b) {
+      for (std::uint32_t c = b + 1; c < kVertices; ++c)
+        corners.insert(corners.end(), {a, b, c});
+    }
+  }
+  expect_same_triangles(corners, kVertices);
 }
 
 }  // namespace

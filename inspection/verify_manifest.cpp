@@ -1,0 +1,203 @@
+// What the manifest says, against what follows from tiles, index and itself.
+#include "config/config.h"
+#include "hierarchy/bounds.h"
+#include "hierarchy/error.h"
+#include "inspection/verify_parts.h"
+#include "storage/format/layout.h"
+#include "storage/format/level_summary.h"
+#include "storage/format/sealed_json.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace meshhier::inspection {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Adds problems that start with the manifest's file.
+class ManifestProblems {
+ public:
+  explicit ManifestProblems(const VerifyJob& job)
+      : job_(job), path_(storage::manifest_path(job.reader.directory())) {}
+
+  void require(bool holds, const std::string& problem) const {
+    if (!holds)
+      job_.problems.add(path_.string() + ": " + problem);
+  }
+  template <class Value>
+  void compare(std::string_view what, const Value& told, const Value& found) const {
+    require(told == found, fmt::format("{} is {}, expected {}", what, told, found));
+  }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  const VerifyJob& job_;
+  std::filesystem::path path_;
+};
+
+/// Written again it is the same text: nothing has been added, renamed, or is of another type.
+void check_form(const VerifyJob& job, const ManifestProblems& problems) {
+  const auto file = job.files.open(problems.path());
+  problems.require(storage::read_sealed_text(*file) == storage::to_json_text(job.reader.manifest()),
+                   "has a key that is not known, or a value in another form than it is written in");
+}
+
+void check_levels(const VerifyJob& job, const ManifestProblems& problems) {
+  Json expected = Json::array();
+  for (const storage::LevelSummary& level :
+       storage::summarize_levels(job.tree(), job.reader.records()))
+    expected.push_back(storage::to_json(level));
+  problems.require(job.reader.manifest().levels.dump() == expected.dump(),
+                   "\"levels\" is not what the index adds up to");
+}
+
+/// The first key, dotted, whose value is not that of `whole`; "" if there is none.
+std::string first_difference(const Json& part, const Json& whole, const std::string& path) {
+  if (!part.is_object() || !whole.is_object())
+    return part.dump() == whole.dump() ? "" : path;
+  for (const auto& [key, value] : part.items()) {
+    const std::string here = path.empty() ? key : path + '.' + key;
+    const auto found = whole.find(key);
+    const std::string difference =
+        found == whole.end() ? here : first_difference(value, *found, here);
+    if (!difference.empty())
+      return difference;
+  }
+  return "";
+}
+
+/// What the rest of the manifest says of what the config asked for. Older programs wrote fewer
+/// keys.
+void check_config_against_rest(const storage::Manifest& manifest, const config::Config& config,
+                               const ManifestProblems& problems) {
+  const Json& told = manifest.config;
+  const auto says = [&](const char* pointer) { return told.contains(Json::json_pointer(pointer)); };
+  const std::uint64_t vertices = manifest.source.vertices;
+  const std::uint64_t partitions =
+      config.partition.count.value_or((vertices - 1) / config.partition.vertices + 1);
+  if (says("/partition/count") || says("/partition/vertices"))
+    problems.compare("partitions", std::uint64_t{manifest.partition_count}, partitions);
+  if (says("/storage/compression")) {
+    problems.compare("storage.compression", storage::name_of(manifest.compression),
+                     storage::name_of(config.storage.compression));
+  }
+  if (says("/up"))
+    problems.compare("up", name_of(manifest.up), name_of(config.up));
+  if (says("/placement")) {
+    problems.require(manifest.transform == config::tileset_transform(config),
+                     "\"transform\" is not that of \"config.placement\"");
+  }
+  problems.compare("licence", manifest.licence, config.licence);
+}
+
+/// The config is one that builds, and its values are written as a build writes them.
+void check_config(const VerifyJob& job, const ManifestProblems& problems) {
+  const storage::Manifest& manifest = job.reader.manifest();
+  Json text = {{"input", "input.ply"}, {"output", "output.hier"}};
+  text.update(manifest.config);
+  try {
+    const config::Config config = config::parse_config(text.dump(), {"\"config\"", {}}, {});
+    const std::string wrong = first_difference(manifest.config, config::resolved_json(config), "");
+    problems.require(wrong.empty(), fmt::format("\"config.{}\" is not what a build writes", wrong));
+    check_config_against_rest(manifest, config, problems);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::usage)
+      throw;
+    problems.require(false, error.what());
+  }
+}
+
+/// How far the partitions' box may be from the input's: by rounding.
+double bounds_slack(const storage::Manifest& manifest, const BoundsD& box) {
+  const double rounding = manifest.quantization ? manifest.quantization->worst_rounding : 0;
+  if (!manifest.source.double_precision)
+    return rounding;
+  const Vec3d from_origin = box.max - manifest.origin;
+  const Vec3d to_origin = box.min - manifest.origin;
+  return rounding + 0x1p-23 * std::max(length(from_origin), length(to_origin)) +
+         0x1p-50 * length(manifest.origin);
+}
+
+void check_bounds(const VerifyJob& job, const ManifestProblems& problems) {
+  const storage::Manifest& manifest = job.reader.manifest();
+  BoundsD found;
+  for (const TileRecord& record : job.reader.records()) {
+    if (!job.tree().is_partition(record.node))
+      continue;
+    found.add(to_double(record.bounds.min) + manifest.origin);
+    found.add(to_double(record.bounds.max) + manifest.origin);
+  }
+  const double slack = bounds_slack(manifest, found);
+  const auto is_near = [&](Vec3d a, Vec3d b) {
+    return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)}) <= slack;
+  };
+  const BoundsD& told = manifest.source.bounds;
+  problems.require(is_near(told.min, found.min) && is_near(told.max, found.max),
+                   "\"source.bounds\" are not those of the partitions");
+}
+
+void check_totals(const VerifyJob& job, const ManifestProblems& problems) {
+  const storage::Manifest& manifest = job.reader.manifest();
+  std::uint64_t bytes = manifest.index_bytes + manifest.outline_bytes + manifest.tileset_bytes;
+  std::uint64_t triangles = 0;
+  for (const TileRecord& record : job.reader.records()) {
+    bytes += record.file_bytes;
+    if (job.tree().is_partition(record.node))
+      triangles += std::uint64_t{record.interior_count} + record.drawn_border_count;
+  }
+  problems.compare("total_bytes", manifest.total_bytes, bytes);
+  problems.compare("the number of triangles of the source", manifest.source.triangles, triangles);
+}
+
+/// Of the files that were imported, together.
+void check_import(const VerifyJob& job, const ManifestProblems& problems) {
+  const SourceSummary& source = job.reader.manifest().source;
+  if (source.files.empty())
+    return;
+  std::uint64_t bytes = 0;
+  for (const SourceFile& file : source.files)
+    bytes += file.bytes;
+  problems.compare("source.file_bytes", source.file_bytes, bytes);
+}
+
+}  // namespace
+
+void verify_manifest(const VerifyJob& job) {
+  const ManifestProblems problems(job);
+  check_form(job, problems);
+  check_levels(job, problems);
+  check_config(job, problems);
+  check_bounds(job, problems);
+  check_totals(job, problems);
+  check_import(job, problems);
+}
+
+void verify_outline(const VerifyJob& job, const Outline& outline) {
+  const ManifestProblems problems(job);
+  const OutlineReport& told = job.reader.manifest().outline;
+  const bool is_level = told.sector_level <= raw(job.tree().depth());
+  problems.require(
+      is_level && told.sector_count == job.tree().node_count(static_cast<Level>(told.sector_level)),
+      "the outline's sectors are not the nodes of their level");
+  problems.require(
+      told.polylines_dropped <= told.polylines_found &&
+          told.polylines_found - told.polylines_dropped == outline.polyline_count(),
+      fmt::format("{} lines found and {} dropped, but the outline has {}", told.polylines_found,
+                  told.polylines_dropped, outline.polyline_count()));
+  problems.require(told.tolerance >= 0, "the outline's tolerance is negative");
+}
+
+void verify_unreferenced(const VerifyJob& job, std::uint64_t found) {
+  ManifestProblems(job).compare("source.unreferenced_vertices",
+                                job.reader.manifest().source.unreferenced_vertices, found);
+}
+
+}  // namespace meshhier::inspection
