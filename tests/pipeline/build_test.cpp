@@ -490,6 +490,7 @@ TEST_F(BuildTest, TheReportTellsWhatWasDone) {
 
 TEST_F(BuildTest, TheReportWarnsOnlyWhereCareWasGivenUp) {
   EXPECT_THAT(build(tests::sphere(5000), config()).text, testing::Not(HasSubstr("warning")));
+  fs::remove_all(output_path());
   const std::string text = build(tests::soup(2000), config()).text;
   EXPECT_THAT(
       text, testing::ContainsRegex("warning: [0-9]+ vertices \\([0-9.]+ % of the input's\\) went"));
