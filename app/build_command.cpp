@@ -43,13 +43,11 @@ struct BuildArguments {
 /// --set takes all that follows it, so it swallows files that come last: items without "=" are
 /// given back.
 void give_back_files(BuildArguments& arguments) {
-  if (!arguments.named.empty())
-    return;
   std::vector<std::string>& settings = arguments.settings;
   const auto files = std::stable_partition(
       settings.begin(), settings.end(),
       [](const std::string& item) { return item.find('=') != std::string::npos; });
-  arguments.named.assign(files, settings.end());
+  arguments.named.insert(arguments.named.end(), files, settings.end());
   settings.erase(files, settings.end());
   if (arguments.named.empty() && settings.empty())
     throw CLI::RequiredError("A mesh or a config");

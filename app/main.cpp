@@ -168,5 +168,6 @@ int run(int argc, char** argv) {
 }  // namespace meshhier::app
 
 int main(int argc, char** argv) {
+  meshhier::app::reserve_standard_descriptors();
   return meshhier::app::run(argc, argv);
 }

@@ -4,6 +4,7 @@
 #include <csignal>
 #include <cstddef>
 
+#include <fcntl.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -37,6 +38,16 @@ bool is_ignored(int signal_number) {
 }
 
 }  // namespace
+
+void reserve_standard_descriptors() {
+  for (int descriptor = ::open("/dev/null", O_RDONLY); descriptor >= 0;
+       descriptor = ::open("/dev/null", O_RDONLY)) {
+    if (descriptor > STDERR_FILENO) {
+      ::close(descriptor);
+      return;
+    }
+  }
+}
 
 void cancel_on_signals(execution::CancelToken& token) {
   token_to_cancel = &token;

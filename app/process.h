@@ -7,6 +7,10 @@
 
 namespace meshhier::app {
 
+/// Where standard input, output or error is closed, their numbers would go to the next files that
+/// are opened, which would then take what is printed. From now on printing there fails.
+void reserve_standard_descriptors();
+
 /// From now on the first SIGINT or SIGTERM (SIGHUP too, unless it is ignored, as nohup does)
 /// cancels `token`, which must live to the end of the process; the second kills the process at
 /// once.

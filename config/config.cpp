@@ -6,6 +6,7 @@
 #include "hierarchy/mesh_name.h"
 #include "hierarchy/plain_text.h"
 #include "storage/format/tileset.h"
+#include "storage/io/paths.h"
 
 #include <algorithm>
 #include <array>
@@ -354,9 +355,7 @@ void check_output(const Config& config, const Draft& draft) {
            "expected the path of a directory to make, found " + in_quotes(config.output.string()));
   }
   for (const std::filesystem::path& input : config.input) {
-    const auto [end, unused] =
-        std::mismatch(config.output.begin(), config.output.end(), input.begin(), input.end());
-    if (end == config.output.end()) {
+    if (storage::is_within(input, config.output)) {
       refuse(draft.origin_of("output"),
              fmt::format("{} is or holds the input {}; choose another directory",
                          in_quotes(config.output.string()), in_quotes(input.string())));

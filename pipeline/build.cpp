@@ -50,9 +50,11 @@ struct DropAtEnd {
 
 }  // namespace
 
-BuildReport build_hierarchy(const config::Config& config, const BuildOptions& options,
+BuildReport build_hierarchy(const config::Config& asked, const BuildOptions& options,
                             BuildEnvironment environment) {
   storage::FileSystem& files = environment.files;
+  config::Config config = asked;
+  config.output = storage::followed(files, asked.output);
   execution::configure_allocator(config.memory_budget);
 
   // Everything that can be refused is refused before anything is written.

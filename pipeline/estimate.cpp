@@ -108,8 +108,10 @@ TimeEstimate estimate_time(const config::Config& config, const BuildPlan& plan,
   return time;
 }
 
-BuildEstimate estimate_build(const config::Config& config, bool force, storage::FileSystem& files,
+BuildEstimate estimate_build(const config::Config& asked, bool force, storage::FileSystem& files,
                              const execution::CancelToken& cancel) {
+  config::Config config = asked;
+  config.output = storage::followed(files, asked.output);
   check_apart(config, files);
   check_place(config.output, files);
   storage::MemoryPool pool(0);

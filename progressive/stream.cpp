@@ -243,7 +243,7 @@ std::string summary_of(const fs::path& output, const progressive::ProgressiveInd
 std::string write_progressive(storage::FileSystem& files, const fs::path& hierarchy,
                               const ProgressiveOptions& options, execution::Progress& progress,
                               const execution::CancelToken& cancel) {
-  const storage::Output output{options.output, storage::Container::files,
+  const storage::Output output{storage::followed(files, options.output), storage::Container::files,
                                storage::Content::progressive_stream};
   storage::check_output(files, output, options.replace);
   storage::require_apart(files, options.output, std::array{hierarchy});

@@ -6,6 +6,7 @@
 #include "storage/format/layout.h"
 #include "storage/format/tile_glb.h"
 #include "storage/format/tile_plan.h"
+#include "storage/io/paths.h"
 
 #include <algorithm>
 
@@ -144,9 +145,7 @@ void check_apart(const config::Config& config, storage::FileSystem& files) {
   const std::filesystem::path output = files.canonical(config.output);
   for (const std::filesystem::path& path : config.input) {
     const std::filesystem::path input = files.canonical(path);
-    const auto [end, rest] =
-        std::mismatch(output.begin(), output.end(), input.begin(), input.end());
-    if (end == output.end()) {
+    if (storage::is_within(input, output)) {
       throw Error(ErrorCode::usage, fmt::format("the input {} lies in the output {}",
                                                 input.string(), output.string()));
     }

@@ -110,8 +110,8 @@ std::filesystem::path lock_path(const std::filesystem::path& work) {
 std::filesystem::path journal_path(const std::filesystem::path& work) {
   return work / "journal";
 }
-std::filesystem::path set_aside_path(const std::filesystem::path& work) {
-  return work / "journal.aside";
+std::filesystem::path set_aside_path(const std::filesystem::path& work, std::uint64_t checksum) {
+  return work / fmt::format("journal.{:016x}", checksum);
 }
 std::filesystem::path built_path(const std::filesystem::path& work) {
   return work / "hierarchy";
@@ -134,7 +134,7 @@ std::optional<LeftoverName> leftover_name(std::string_view name) {
     return LeftoverName{Leftover::build, output};
   if (kind == "old")
     return LeftoverName{Leftover::replaced, output};
-  if (kind == "part" || kind == "scratch")
+  if (kind == "part" || kind == "scratch" || kind == "lock")
     return LeftoverName{Leftover::unfinished, output};
   if (kind.size() == kVerify.size() + 8 && kind.starts_with(kVerify))
     return LeftoverName{Leftover::verify, output};

@@ -14,7 +14,7 @@
 //   .NAME.hier.meshhier-work/                beside the output while a build runs, and after it was stopped
 //   .NAME.hier.meshhier-work/lock            held by the build at work
 //   .NAME.hier.meshhier-work/journal         what is done
-//   .NAME.hier.meshhier-work/journal.aside   the same while the hierarchy gets its name
+//   .NAME.hier.meshhier-work/journal.XXXXXXXXXXXXXXXX  the same while the hierarchy gets its name
 //   .NAME.hier.meshhier-work/import.ply      the input, while it is read, if it is not read in place
 //   .NAME.hier.meshhier-work/*               scratch files of the stages
 //   .NAME.hier.meshhier-work/hierarchy/      becomes NAME.hier
@@ -24,6 +24,7 @@
 //   .NAME.hier.meshhier-verify-XXXXXXXX      beside a hierarchy while `verify` needs room
 //   .NAME.meshhier-part                      beside any other file that is written, until it is whole
 //   .NAME.meshhier-scratch                   beside it, while it is made
+//   .NAME.meshhier-lock                      held by who makes it
 // clang-format on
 #pragma once
 
@@ -66,7 +67,8 @@ std::filesystem::path verify_scratch_path(const std::filesystem::path& hierarchy
                                           std::uint32_t run);
 std::filesystem::path lock_path(const std::filesystem::path& work);
 std::filesystem::path journal_path(const std::filesystem::path& work);
-std::filesystem::path set_aside_path(const std::filesystem::path& work);
+/// `checksum`: of the manifest of the hierarchy that the journal tells of.
+std::filesystem::path set_aside_path(const std::filesystem::path& work, std::uint64_t checksum);
 std::filesystem::path built_path(const std::filesystem::path& work);
 std::filesystem::path packed_path(const std::filesystem::path& work);
 std::filesystem::path imported_path(const std::filesystem::path& work);
@@ -76,7 +78,7 @@ enum class Leftover {
   build,       ///< work_path: a build that was stopped
   replaced,    ///< replaced_path
   verify,      ///< verify_scratch_path
-  unfinished,  ///< unfinished_path, scratch_path
+  unfinished,  ///< unfinished_path, scratch_path, output_lock_path
 };
 struct LeftoverName {
   Leftover kind;

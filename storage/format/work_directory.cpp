@@ -3,6 +3,7 @@
 #include "hierarchy/error.h"
 #include "storage/format/archive.h"
 #include "storage/format/layout.h"
+#include "storage/io/hash.h"
 
 #include <chrono>
 #include <memory>
@@ -40,6 +41,12 @@ std::string objection(FileSystem& files, const Output& output) {
 
 }  // namespace
 
+fs::path followed(FileSystem& files, const fs::path& output) {
+  const fs::path parent = output.parent_path();
+  const fs::path real = files.canonical(output);
+  return real == files.canonical(parent.empty() ? "." : parent) / output.filename() ? output : real;
+}
+
 bool check_output(FileSystem& files, const Output& output, bool replace, const char* state) {
   if (!files.exists(output.path))
     return false;
@@ -56,13 +63,9 @@ bool check_output(FileSystem& files, const Output& output, bool replace, const c
 
 namespace {
 
-/// The output where a link of its name leads to.
-Output followed(FileSystem& files, Output output) {
-  const fs::path parent = output.path.parent_path();
-  const fs::path real = files.canonical(output.path);
-  if (real != files.canonical(parent.empty() ? "." : parent) / output.path.filename())
-    output.path = real;
-  return output;
+std::uint64_t manifest_checksum(FileSystem& files, const fs::path& hierarchy) {
+  const std::unique_ptr<File> manifest = files.open(manifest_path(hierarchy));
+  return checksum(read_file(*manifest, manifest->size()));
 }
 
 /// A process that was killed holds its lock until the disk has done what it was asked for.
@@ -80,10 +83,7 @@ std::unique_ptr<FileLock> lock_patiently(FileSystem& files, const std::filesyste
 }  // namespace
 
 WorkDirectory::WorkDirectory(FileSystem& files, Output output, bool replace)
-    : files_(files),
-      output_(followed(files, std::move(output))),
-      path_(work_path(output_.path)),
-      replace_(replace) {
+    : files_(files), output_(std::move(output)), path_(work_path(output_.path)), replace_(replace) {
   check_output(files_, output_, replace_);
   for (auto parent = output_.path.parent_path(); !parent.empty() && !files_.exists(parent);
        parent = parent.parent_path()) {
@@ -95,6 +95,7 @@ WorkDirectory::WorkDirectory(FileSystem& files, Output output, bool replace)
     throw Error(ErrorCode::exists,
                 fmt::format("another build of {} is at work", output_.path.string()));
   }
+  restore_journal();
 }
 
 WorkDirectory::~WorkDirectory() {
@@ -141,8 +142,11 @@ void WorkDirectory::publish() {
     replace(from);
   published_ = true;
   kept_ = false;
-  files_.remove_all(replaced_path(output_.path));
-  files_.remove_all(path_);
+  try {
+    files_.remove_all(replaced_path(output_.path));
+    files_.remove_all(path_);
+  } catch (const Error&) {  // the output is there; `meshhier clean` finds what is left
+  }
 }
 
 void WorkDirectory::give_name(const fs::path& from) {
@@ -156,13 +160,12 @@ void WorkDirectory::give_name(const fs::path& from) {
 }
 
 bool WorkDirectory::exchange(const fs::path& from) {
-  // From then on the hierarchy in this directory may be the one that is replaced: no later build
-  // may take it for what the journal says is done.
   const fs::path journal = journal_path(path_);
-  const fs::path aside = set_aside_path(path_);
-  const bool has_journal = files_.exists(journal);
-  if (has_journal)
-    files_.rename(journal, aside);
+  const fs::path aside = files_.exists(journal) ? set_aside() : fs::path();
+  const auto take_back = [&] {
+    if (!aside.empty())
+      files_.rename(aside, journal);
+  };
   bool exchanged = false;
   try {
     exchanged = files_.exchange(from, output_.path);
@@ -171,13 +174,28 @@ bool WorkDirectory::exchange(const fs::path& from) {
   } catch (const Error&) {
     if (exchanged)
       files_.exchange(from, output_.path);
-    if (has_journal)
-      files_.rename(aside, journal);
+    take_back();
     throw;
   }
-  if (!exchanged && has_journal)
-    files_.rename(aside, journal);
+  if (!exchanged)
+    take_back();
   return exchanged;
+}
+
+// From the exchange on the hierarchy in this directory is the one that is replaced: no later build
+// may take it for what the journal says is done.
+fs::path WorkDirectory::set_aside() {
+  const fs::path aside = set_aside_path(path_, manifest_checksum(files_, built()));
+  files_.rename(journal_path(path_), aside);
+  return aside;
+}
+
+void WorkDirectory::restore_journal() {
+  if (files_.exists(journal_path(path_)) || !files_.exists(manifest_path(built())))
+    return;
+  const fs::path aside = set_aside_path(path_, manifest_checksum(files_, built()));
+  if (files_.exists(aside))
+    files_.rename(aside, journal_path(path_));
 }
 
 void WorkDirectory::replace(const fs::path& from) {

@@ -31,6 +31,9 @@ struct Output {
   Content content;
 };
 
+/// Where a link of that name leads to; the name itself if it is none.
+std::filesystem::path followed(FileSystem& files, const std::filesystem::path& output);
+
 /// Whether there is an output. Throws Error(exists) if there is and `replace` is false, or if it is
 /// not of the same content and container; `state` says how it comes to be there.
 bool check_output(FileSystem& files, const Output& output, bool replace,
@@ -38,8 +41,7 @@ bool check_output(FileSystem& files, const Output& output, bool replace,
 
 class WorkDirectory {
  public:
-  /// Takes the directory as an earlier build left it, or makes it: beside what a link of the
-  /// output's name leads to. Throws Error(exists) if `output`
+  /// Takes the directory as an earlier build left it, or makes it. Throws Error(exists) if `output`
   /// is there and `replace` is false or if another build is at work here, Error(io) if its parent
   /// cannot be written.
   WorkDirectory(FileSystem& files, Output output, bool replace);
@@ -71,6 +73,8 @@ class WorkDirectory {
   void give_name(const std::filesystem::path& from);
   bool exchange(const std::filesystem::path& from);  ///< false if the system cannot
   void replace(const std::filesystem::path& from);
+  std::filesystem::path set_aside();  ///< of the journal, while names are exchanged
+  void restore_journal();             ///< of a build that was killed then, if it tells the truth
   void sync_names();
 
   FileSystem& files_;

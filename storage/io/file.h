@@ -119,8 +119,9 @@ class FileSystem {
   /// Opens a file that is there for reading and writing, with all that is in it.
   virtual std::unique_ptr<File> reopen(const std::filesystem::path& path) = 0;
 
-  /// A stream, or standard output, for writing from the first byte to the last. Waits until a FIFO
-  /// has a reader; calls `check` before each wait, here and in each write: it may throw.
+  /// A stream, or standard output ("/dev/stdout", or a path that leads to it), for writing from the
+  /// first byte to the last. Waits until a FIFO has a reader; calls `check` before each wait, here
+  /// and in each write: it may throw.
   virtual std::unique_ptr<File> open_stream(const std::filesystem::path& path,
                                             const std::function<void()>& check) = 0;
 

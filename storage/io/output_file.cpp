@@ -1,9 +1,9 @@
 #include "storage/io/output_file.h"
 
 #include "hierarchy/error.h"
+#include "storage/io/paths.h"
 #include "storage/io/process.h"
 
-#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,15 +12,6 @@ namespace meshhier::storage {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The name that the system has for what is asked for.
-fs::path system_path(const fs::path& path) {
-  return path == kStandardOutput ? fs::path("/dev/stdout") : path;
-}
-
-bool is_in(const fs::path& path, const fs::path& place) {
-  return std::mismatch(place.begin(), place.end(), path.begin(), path.end()).first == place.end();
-}
 
 /// Unlike a work directory, the parent is not made: a mistyped path should be told.
 void require_parent(FileSystem& files, const OutputRequest& request, const fs::path& target) {
@@ -36,6 +27,9 @@ void require_parent(FileSystem& files, const OutputRequest& request, const fs::p
                                             request.path.string(), what));
 }
 
+/// Of the system, for what is open as this process's standard output.
+constexpr const char* kSystemsStandardOutput = "/dev/stdout";
+
 Error already_there(const fs::path& path, const char* state) {
   return {ErrorCode::exists, fmt::format("{} {}; --force replaces it", path.string(), state)};
 }
@@ -43,18 +37,18 @@ Error already_there(const fs::path& path, const char* state) {
 }  // namespace
 
 bool is_standard_output(FileSystem& files, const fs::path& path) {
-  return files.kind(system_path(path)) == FileKind::standard_output;
+  return path == kStandardOutput || files.kind(path) == FileKind::standard_output;
 }
 
 void require_apart(FileSystem& files, const fs::path& output, std::span<const fs::path> inputs) {
   const fs::path file = files.canonical(output);
   for (const fs::path& input : inputs) {
     const fs::path place = files.canonical(input);
-    if (!is_in(file, place))
+    if (!is_within(file, place))
       continue;
     throw Error(ErrorCode::usage,
                 fmt::format("cannot write {}: it {} {}; name another output", output.string(),
-                            file == place ? "is the input" : "lies in", input.string()));
+                            file == place ? "would replace" : "lies in", input.string()));
   }
 }
 
@@ -66,15 +60,22 @@ fs::path scratch_path(const fs::path& file) {
   return file.parent_path() / fmt::format(".{}.meshhier-scratch", file.filename().string());
 }
 
+fs::path output_lock_path(const fs::path& file) {
+  return file.parent_path() / fmt::format(".{}.meshhier-lock", file.filename().string());
+}
+
 OutputFile::OutputFile(FileSystem& files, const OutputRequest& request,
                        const std::function<void()>& check)
     : files_(files), check_(check), replace_(request.replace) {
-  const fs::path path = system_path(request.path);
+  const fs::path& path = request.path;
+  if (is_standard_output(files, path)) {
+    open_stream(kSystemsStandardOutput);
+    return;
+  }
   switch (files.kind(path)) {
     case FileKind::stream:
     case FileKind::standard_output:
-      file_ = files.open_stream(path, check);
-      scratch_ = scratch_path(own_temporary_path());
+      open_stream(path);
       return;
     case FileKind::directory:
       refuse_kind(request, "a directory");
@@ -94,25 +95,34 @@ OutputFile::OutputFile(FileSystem& files, const OutputRequest& request,
   open_regular(request);
 }
 
+void OutputFile::open_stream(const fs::path& path) {
+  file_ = files_.open_stream(path, check_);
+  own_directory_ = make_temporary_directory();
+  scratch_ = own_directory_ / "scratch";
+}
+
 void OutputFile::open_regular(const OutputRequest& request) {
-  target_ = files_.canonical(request.path);
-  require_parent(files_, request, target_);
-  temporary_ = unfinished_path(target_);
-  scratch_ = scratch_path(target_);
-  lock_ = files_.try_lock(temporary_);
+  const fs::path target = files_.canonical(request.path);
+  require_parent(files_, request, target);
+  lock_ = files_.try_lock(output_lock_path(target));
   if (!lock_) {
     throw Error(ErrorCode::exists,
                 fmt::format("another command is writing {}", request.path.string()));
   }
+  target_ = target;
+  temporary_ = unfinished_path(target);
+  scratch_ = scratch_path(target);
+  files_.remove_all(temporary_);  // what a killed command may have left
   file_ = files_.create(temporary_);
 }
 
 OutputFile::~OutputFile() {
-  if (!file_ || target_.empty())
-    return;
   file_.reset();
   try {
-    files_.remove_all(temporary_);
+    if (!temporary_.empty())
+      files_.remove_all(temporary_);
+    if (!own_directory_.empty())
+      files_.remove_all(own_directory_);
   } catch (const Error&) {  // the failure that brought us here is the one to report
   }
 }
@@ -121,24 +131,18 @@ void OutputFile::publish() {
   if (target_.empty())
     return file_.reset();
   file_->sync(check_);
-  const bool is_new = files_.rename_new(temporary_, target_);
-  if (!is_new && !replace_)
-    throw already_there(target_, "appeared meanwhile");
-  const bool exchanged = !is_new && files_.exchange(temporary_, target_);
-  if (!is_new && !exchanged)
-    files_.rename(temporary_, target_);
-  try {
-    files_.sync_directory(target_.parent_path());
-  } catch (const Error&) {
-    if (exchanged)
-      files_.exchange(temporary_, target_);
-    else if (is_new)
-      files_.rename(target_, temporary_);
-    throw;
-  }
+  if (!files_.rename_new(temporary_, target_))
+    rename_over();
+  temporary_.clear();
   file_.reset();
-  if (exchanged)
-    files_.remove_all(temporary_);
+  files_.sync_directory(target_.parent_path());
+  lock_.reset();
+}
+
+void OutputFile::rename_over() {
+  if (!replace_ || files_.kind(target_) != FileKind::regular)
+    throw already_there(target_, "appeared meanwhile");
+  files_.rename(temporary_, target_);
 }
 
 void OutputFile::publish(std::span<const std::byte> bytes) {

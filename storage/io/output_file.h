@@ -28,9 +28,10 @@ bool is_standard_output(FileSystem& files, const std::filesystem::path& path);
 void require_apart(FileSystem& files, const std::filesystem::path& output,
                    std::span<const std::filesystem::path> inputs);
 
-/// Beside `file`: its name until it is whole, and what is needed to make it.
+/// Beside `file`: its name until it is whole, what is needed to make it, and who makes it.
 std::filesystem::path unfinished_path(const std::filesystem::path& file);
 std::filesystem::path scratch_path(const std::filesystem::path& file);
+std::filesystem::path output_lock_path(const std::filesystem::path& file);
 
 /// A regular file is there complete or not at all: it gets its name when it is published. A FIFO or
 /// a character device, such as standard output, takes the bytes as they come. Nothing else is
@@ -60,7 +61,9 @@ class OutputFile {
   void publish(std::span<const std::byte> bytes);
 
  private:
+  void open_stream(const std::filesystem::path& path);
   void open_regular(const OutputRequest& request);
+  void rename_over();
 
   FileSystem& files_;
   std::function<void()> check_;
@@ -68,7 +71,8 @@ class OutputFile {
   std::filesystem::path target_;     ///< empty: a stream
   std::filesystem::path temporary_;  ///< its name until it is published
   std::filesystem::path scratch_;
-  std::unique_ptr<FileLock> lock_;  ///< of temporary_
+  std::filesystem::path own_directory_;  ///< a stream's, in the system's for temporary files
+  std::unique_ptr<FileLock> lock_;
   std::shared_ptr<File> file_;
 };
 

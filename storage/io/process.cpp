@@ -4,7 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <charconv>
+#include <cstdlib>
+#include <cstring>
+#include <string>
 #include <string_view>
 #include <system_error>
 
@@ -52,15 +56,18 @@ ProcessUsage process_usage() {
   return result;
 }
 
-std::filesystem::path own_temporary_path() {
+std::filesystem::path make_temporary_directory() {
   std::error_code error;
-  const std::filesystem::path directory = std::filesystem::temp_directory_path(error);
-  if (error) {
+  const std::filesystem::path parent = std::filesystem::temp_directory_path(error);
+  std::string name = (parent / "meshhier-XXXXXX").string();
+  if (error || ::mkdtemp(name.data()) == nullptr) {
     throw Error(ErrorCode::io,
-                fmt::format("there is no directory for temporary files ({}); set TMPDIR to one",
-                            error.message()));
+                fmt::format("cannot make a directory for temporary files in {}: {}; set TMPDIR to "
+                            "another place",
+                            parent.empty() ? "TMPDIR" : parent.string(),
+                            error ? error.message() : std::strerror(errno)));
   }
-  return directory / fmt::format("meshhier-{}", ::getpid());
+  return name;
 }
 
 }  // namespace meshhier::storage

@@ -1,4 +1,4 @@
-// This process: what it has used of the machine so far, and what is its own.
+// This process: what it has used of the machine so far, and a place of its own.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@ struct ProcessUsage {
 /// Thread-safe; some 20 microseconds. A figure that the system does not tell is 0.
 ProcessUsage process_usage();
 
-/// A name in the system's directory for temporary files that is this process's alone. Throws
-/// Error(io) if there is no such directory.
-std::filesystem::path own_temporary_path();
+/// Makes a directory that only this user can enter, in the system's for temporary files. Throws
+/// Error(io).
+std::filesystem::path make_temporary_directory();
 
 }  // namespace meshhier::storage

@@ -96,7 +96,7 @@ std::unique_ptr<File> open_posix_stream(const std::filesystem::path& path,
                                         std::shared_ptr<IoCounters> counters,
                                         const std::function<void()>& check) {
   std::signal(SIGPIPE, SIG_IGN);  // a reader that went away is then a failed write
-  const bool is_own = is_own_output(path);
+  const bool is_own = path == "/dev/stdout" || is_own_output(path);
   const int descriptor =
       is_own ? ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0) : open_named(path, check);
   if (descriptor < 0)

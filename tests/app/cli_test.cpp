@@ -518,6 +518,9 @@ TEST_F(CommandLine, SeveralMeshesAreJoinedUnderAName) {
   EXPECT_THAT(nameless.messages, HasSubstr("name it by -o"));
   ASSERT_EQ(run({"build", mesh, other, "-o", hierarchy()}).code, 0);
   EXPECT_EQ(run({"verify", hierarchy(), "--input", mesh, "--input", other}).code, 0);
+  const std::string output = "output=" + hierarchy();
+  EXPECT_EQ(run({"build", mesh, "--force", "--set", "weld=true", output, other}).code, 0);
+  EXPECT_EQ(run({"verify", hierarchy(), "--input", mesh, "--input", other}).code, 0);
 }
 
 TEST_F(CommandLine, AKeyIsGivenOnce) {
@@ -756,6 +759,17 @@ TEST_F(CommandLine, ExportWritesToStandardOutput) {
     EXPECT_TRUE(outcome.out == text_of(ply)) << place;
     EXPECT_THAT(outcome.messages, HasSubstr("level 2: "));
   }
+}
+
+TEST_F(CommandLine, AClosedStandardOutputTakesNothing) {
+  build();
+  const std::string ply = (work() / "x.ply").string();
+  const std::string command = std::string(MESHHIER_BINARY) + " export " + hierarchy() +
+                              " --level 0 --progress none 2>/dev/null >&- -o ";
+  EXPECT_EQ(WEXITSTATUS(std::system((command + "-").c_str())), kIo);
+  EXPECT_EQ(WEXITSTATUS(std::system((command + ply).c_str())), kIo);  // the summary is lost
+  EXPECT_THAT(text_of(ply), AllOf(StartsWith("ply\n"), Not(HasSubstr("level 0: "))));
+  EXPECT_EQ(names(), (std::set<std::string>{"a.hier", "a.json", "a.ply", "x.ply"}));
 }
 
 TEST_F(CommandLine, ExportRefusesWhatIsNoCut) {

@@ -263,6 +263,36 @@ TEST_F(WorkDirectoryTest, WhatIsKeptIsThereForTheNextOne) {
   EXPECT_EQ(text_of(work.path() / "scratch"), "scratch");
 }
 
+// Killed at any call of publish(): the journal is found as long as what it tells of is there.
+TEST_F(WorkDirectoryTest, AJournalThatWasSetAsideIsFoundAgain) {
+  constexpr std::uint64_t kForever = std::uint64_t{1} << 40;
+  for (std::uint64_t last = 1; last < 40; ++last) {
+    SCOPED_TRACE(last);
+    clean();
+    put_hierarchy(output_, "old");
+    tests::FaultyFileSystem files;
+    {
+      WorkDirectory work(files, output_, true);
+      work.keep(true);
+      put_hierarchy(work.built(), "new");
+      write(journal_path(work.path()), "what is done");
+      files.fail(Call::any, last, kForever);
+      try {
+        work.publish();
+      } catch (const Error&) {
+      }
+    }
+    const std::string shown = hierarchy_at(output_);
+    EXPECT_TRUE(shown == "old" || shown == "new");
+    const WorkDirectory next(*files_, output_, true);
+    const bool is_there = std::filesystem::exists(journal_path(next.path()));
+    if (is_there) {
+      EXPECT_EQ(hierarchy_at(next.built()), "new");
+    }
+    EXPECT_TRUE(is_there || shown == "new") << "the work is lost";
+  }
+}
+
 TEST_F(WorkDirectoryTest, OneAtATime) {
   WorkDirectory work(*files_, output_, false);
   write(work.path() / "scratch", "scratch");

@@ -4,6 +4,7 @@
 #include "storage/format/layout.h"
 #include "tests/support/faulty_file_system.h"
 
+#include <climits>
 #include <fstream>
 #include <iterator>
 #include <optional>
@@ -128,6 +129,27 @@ TEST_F(OutputFileTest, AFileThatAppearsMeanwhileStays) {
   EXPECT_EQ(names(), std::set<std::string>{"a.json"});
 }
 
+TEST_F(OutputFileTest, ADirectoryThatAppearsMeanwhileStays) {
+  {
+    OutputFile file(files_, {path_, true});
+    fs::create_directories(path_);
+    put(path_ / "precious", "of another program");
+    EXPECT_THROW(file.publish(bytes_of("new")), Error);
+  }
+  EXPECT_EQ(text(path_ / "precious"), "of another program");
+  EXPECT_EQ(names(), std::set<std::string>{"a.json"});
+}
+
+TEST_F(OutputFileTest, AStreamsScratchIsItsOwnAndGoes) {
+  fs::path scratch;
+  {
+    const OutputFile file(files_, {"/dev/null"});
+    scratch = file.scratch();
+    EXPECT_EQ(fs::status(scratch.parent_path()).permissions(), fs::perms::owner_all);
+  }
+  EXPECT_FALSE(fs::exists(scratch.parent_path()));
+}
+
 TEST_F(OutputFileTest, LinksAreFollowed) {
   fs::create_directory(parent_ / "elsewhere");
   const fs::path real = parent_ / "elsewhere" / "real.json";
@@ -148,7 +170,7 @@ TEST_F(OutputFileTest, AnInputIsNeverReplaced) {
   fs::create_directory_symlink(parent_, parent_ / "here");
   for (const fs::path& output : {scan, path_, parent_ / "here" / "scan.ply"}) {
     EXPECT_EQ(refusal({output, true, {scan}}), ErrorCode::usage) << output;
-    EXPECT_THAT(message_, HasSubstr("is the input"));
+    EXPECT_THAT(message_, HasSubstr("would replace"));
   }
   EXPECT_EQ(refusal({parent_ / "here" / "new.ply", true, {parent_}}), ErrorCode::usage);
   EXPECT_THAT(message_, HasSubstr("lies in"));
@@ -192,13 +214,16 @@ TEST_F(OutputFileTest, WaitingForAReaderCanBeCancelled) {
 TEST_F(OutputFileTest, WaitingForASlowReaderCanBeCancelled) {
   ASSERT_EQ(::mkfifo(path_.c_str(), 0600), 0);
   const int reader = ::open(path_.c_str(), O_RDONLY | O_NONBLOCK);  // which reads nothing
-  int waits = 0;
+  constexpr int kMost = 30;                                         // a pipe holds 16 writes
+  int checks = 0;
   const auto check = [&] {
-    if (++waits == 1000)
+    if (++checks == kMost)
       throw Error(ErrorCode::interrupted, "interrupted");
   };
   OutputFile file(files_, {path_}, check);
+  const std::shared_ptr<File> pipe = file.file();
   EXPECT_THROW(file.publish(bytes_of(std::string(10'000'000, 'x'))), Error);
+  EXPECT_LT(pipe->size(), (kMost - 1) * std::uint64_t{PIPE_BUF}) << "nothing waited";
   ::close(reader);
 }
 
