@@ -58,6 +58,7 @@ storage::OutputRequest stats_request(const BuildArguments& arguments,
                                      const config::Config& config) {
   storage::OutputRequest request{arguments.stats, arguments.force, config.input};
   request.inputs.push_back(config.output);
+  request.inputs.insert(request.inputs.end(), arguments.named.begin(), arguments.named.end());
   return request;
 }
 

@@ -42,6 +42,9 @@ struct ServeArguments {
   bool quiet = false;
 };
 
+/// Names and messages of files that nobody vouches for are cut there.
+constexpr std::size_t kLongestLine = 4096;
+
 /// Lines on standard error, whole ones from any thread.
 class Console {
  public:
@@ -53,7 +56,7 @@ class Console {
   }
   void print(const std::string& message) {
     const std::lock_guard lock(mutex_);
-    out_ << "meshhier: " << message << std::endl;
+    out_ << "meshhier: " << plain_text(message, kLongestLine) << std::endl;
   }
 
  private:

@@ -42,12 +42,15 @@ std::string verdict(std::size_t count) {
   return counted(count, "problems") + " found";
 }
 
+/// A manifest may say anything.
+constexpr std::size_t kLongestProblem = 4096;
+
 std::string plain_text(const inspection::VerifyReport& report) {
   std::string text;
   for (const std::string& check : report.checks)
     text += fmt::format("checked: {}\n", check);
   for (const std::string& problem : report.problems)
-    text += fmt::format("PROBLEM: {}\n", problem);
+    text += fmt::format("PROBLEM: {}\n", meshhier::plain_text(problem, kLongestProblem));
   return text + verdict(report.problems.size()) + ".\n";
 }
 

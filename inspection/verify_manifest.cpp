@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -115,7 +116,7 @@ void check_config(const VerifyJob& job, const ManifestProblems& problems) {
   }
 }
 
-/// How far the partitions' box may be from the input's: by rounding.
+/// How far the partitions' box may be from the input's: by rounding, which has an end near 0.
 double bounds_slack(const storage::Manifest& manifest, const BoundsD& box) {
   const double rounding = manifest.quantization ? manifest.quantization->worst_rounding : 0;
   if (!manifest.source.double_precision)
@@ -123,7 +124,7 @@ double bounds_slack(const storage::Manifest& manifest, const BoundsD& box) {
   const Vec3d from_origin = box.max - manifest.origin;
   const Vec3d to_origin = box.min - manifest.origin;
   return rounding + 0x1p-23 * std::max(length(from_origin), length(to_origin)) +
-         0x1p-50 * length(manifest.origin);
+         0x1p-50 * length(manifest.origin) + std::numeric_limits<float>::denorm_min();
 }
 
 void check_bounds(const VerifyJob& job, const ManifestProblems& problems) {

@@ -296,12 +296,8 @@ void Watch::build(const std::string& name, const BuildTarget& target) {
 
 Watch::Outcome Watch::run_build(const std::string& name, const BuildTarget& target, bool restart) {
   storage::ChildProcess child(words(name, target, restart));
-  hear(child, name);
-  Outcome outcome{child.wait(), {}};
-  const std::lock_guard lock(mutex_);
-  const auto found = entries_.find(name);
-  if (found != entries_.end())
-    outcome.message = std::exchange(found->second.job.message, "");
+  const Job job = hear(child, name);
+  Outcome outcome{child.wait(), job.message};
   if (outcome.message.empty() && outcome.code > 128)
     outcome.message = fmt::format("the build was ended by signal {}", outcome.code - 128);
   else if (outcome.message.empty())
@@ -324,25 +320,29 @@ std::vector<std::string> Watch::words(const std::string& name, const BuildTarget
   return list;
 }
 
-/// Until the build has ended; meanwhile the inbox is looked at as ever.
-void Watch::hear(storage::ChildProcess& child, const std::string& name) {
+/// Until the build has ended; meanwhile the inbox is looked at as ever, and what is built may go
+/// from it. Returns what the build told last.
+Job Watch::hear(storage::ChildProcess& child, const std::string& name) {
+  Job job{.name = name, .state = JobState::building};
   std::string text;
   bool is_asked = false;
   while (child.hear(text, kHearFor)) {
     if (is_stopping() && !std::exchange(is_asked, true))
       child.ask_to_stop();
     for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n')) {
+      take_line(job, std::string_view(text).substr(0, end));
+      text.erase(0, end + 1);
       const std::lock_guard lock(mutex_);
       const auto found = entries_.find(name);
-      if (found != entries_.end())
-        take_line(found->second.job, std::string_view(text).substr(0, end));
-      text.erase(0, end + 1);
+      if (found != entries_.end() && found->second.state == State::building)
+        found->second.job = job;
     }
     if (text.size() > kLongestLine)
       text.clear();
     if (Clock::now() - last_look_ >= options_.look_every)
       look();
   }
+  return job;
 }
 
 void Watch::settle(const std::string& name, const BuildTarget& target,

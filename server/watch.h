@@ -100,7 +100,7 @@ class Watch {
   void put_off(const std::string& name, const std::string& message);
   void build(const std::string& name, const BuildTarget& target);
   Outcome run_build(const std::string& name, const BuildTarget& target, bool restart);
-  void hear(storage::ChildProcess& child, const std::string& name);
+  Job hear(storage::ChildProcess& child, const std::string& name);
   void settle(const std::string& name, const BuildTarget& target,
               const storage::FileVersion& version, const Outcome& outcome);
   void settle_built(const std::string& name, const BuildTarget& target,

@@ -19,6 +19,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// A file in the directory that no hierarchy, or stream, has; empty if there is none.
+std::string foreign_file(FileSystem& files, const Output& output) {
+  const auto is_own =
+      output.content == Content::progressive_stream ? is_stream_file : is_hierarchy_file;
+  for (const fs::path& file : files.list(output.path)) {
+    const std::string name = file.lexically_relative(output.path).generic_string();
+    if (!is_own(name))
+      return name;
+  }
+  return "";
+}
+
 /// Why what lies there is not replaced; empty if it is.
 std::string objection(FileSystem& files, const Output& output) {
   const bool is_directory = files.is_directory(output.path);
@@ -33,10 +45,24 @@ std::string objection(FileSystem& files, const Output& output) {
   if (!is_directory)
     return "is a file, and a directory is to be made (\"container\": \"files\")";
   const fs::path mark = is_stream ? progressive_index_path({}) : manifest_path({});
-  if (files.exists(output.path / mark))
-    return "";
-  return fmt::format("is not a {} (it has no {})", is_stream ? "progressive stream" : "hierarchy",
-                     mark.string());
+  const char* const what = is_stream ? "progressive stream" : "hierarchy";
+  if (!files.exists(output.path / mark))
+    return fmt::format("is not a {} (it has no {})", what, mark.string());
+  const std::string foreign = foreign_file(files, output);
+  return foreign.empty() ? "" : fmt::format("holds {}, which is no file of a {}", foreign, what);
+}
+
+/// A hierarchy in another one would be damage to it, and go when it is replaced.
+void require_outside(FileSystem& files, const fs::path& output) {
+  fs::path place = files.canonical(output);
+  for (fs::path parent = place.parent_path(); parent != place; parent = place.parent_path()) {
+    if (files.exists(manifest_path(parent)) && files.exists(index_path(parent))) {
+      throw Error(ErrorCode::usage, fmt::format("cannot make {} in the hierarchy {}; choose "
+                                                "another place",
+                                                output.string(), parent.string()));
+    }
+    place = parent;
+  }
 }
 
 }  // namespace
@@ -48,6 +74,7 @@ fs::path followed(FileSystem& files, const fs::path& output) {
 }
 
 bool check_output(FileSystem& files, const Output& output, bool replace, const char* state) {
+  require_outside(files, output.path);
   if (!files.exists(output.path))
     return false;
   if (!replace) {
@@ -68,16 +95,31 @@ std::uint64_t manifest_checksum(FileSystem& files, const fs::path& hierarchy) {
   return checksum(read_file(*manifest, manifest->size()));
 }
 
+/// Makes the directory and locks it; nothing if it is locked, or if another build that has just
+/// ended takes it away.
+std::unique_ptr<FileLock> try_to_take(FileSystem& files, const fs::path& work) {
+  files.make_directories(work);
+  try {
+    return files.try_lock(lock_path(work));
+  } catch (const Error&) {
+    if (files.exists(work))
+      throw;
+    return nullptr;
+  }
+}
+
 /// A process that was killed holds its lock until the disk has done what it was asked for.
-std::unique_ptr<FileLock> lock_patiently(FileSystem& files, const std::filesystem::path& path) {
+std::unique_ptr<FileLock> take_patiently(FileSystem& files, const Output& output, bool replace) {
   constexpr int kTries = 60;
   constexpr std::chrono::milliseconds kPause(50);
-  std::unique_ptr<FileLock> lock = files.try_lock(path);
-  for (int i = 1; i < kTries && !lock; ++i) {
+  const fs::path work = work_path(output.path);
+  for (int i = 0; i < kTries; ++i) {
+    if (std::unique_ptr<FileLock> lock = try_to_take(files, work))
+      return lock;
     std::this_thread::sleep_for(kPause);
-    lock = files.try_lock(path);
+    check_output(files, output, replace);
   }
-  return lock;
+  return nullptr;
 }
 
 }  // namespace
@@ -89,8 +131,12 @@ WorkDirectory::WorkDirectory(FileSystem& files, Output output, bool replace)
        parent = parent.parent_path()) {
     made_parent_ = parent;
   }
-  files_.make_directories(path_);
-  lock_ = lock_patiently(files_, lock_path(path_));
+  if (files_.is_link(path_)) {
+    throw Error(ErrorCode::io,
+                fmt::format("{} is a link, and temporary files of the build go there; remove it",
+                            path_.string()));
+  }
+  lock_ = take_patiently(files_, output_, replace_);
   if (!lock_) {
     throw Error(ErrorCode::exists,
                 fmt::format("another build of {} is at work", output_.path.string()));

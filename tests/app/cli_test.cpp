@@ -434,6 +434,7 @@ TEST_F(CommandLine, AnAccountThatCannotBeWrittenIsRefusedBeforeTheBuild) {
   const Path mesh = write_mesh("a.ply");
   const std::string before = text_of(mesh);
   const std::vector<std::pair<Path, int>> refused{{work() / "absent" / "s.json", kIo},
+                                                  {work() / "a.json", kUsage},
                                                   {work(), kUsage},
                                                   {mesh, kUsage},
                                                   {Path(hierarchy()) / "s.json", kUsage}};

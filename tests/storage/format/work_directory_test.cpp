@@ -4,9 +4,12 @@
 #include "storage/format/layout.h"
 #include "tests/support/faulty_file_system.h"
 
+#include <atomic>
 #include <optional>
 #include <set>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -176,6 +179,59 @@ TEST_F(WorkDirectoryTest, ForceNeverReplacesWhatIsNoHierarchy) {
                [&] { WorkDirectory(*files_, output_, true); });
   EXPECT_EQ(text_of(output_ / "thesis.tex"), "years of work");
   EXPECT_THAT(names(), ElementsAre("x.hier"));
+}
+
+TEST_F(WorkDirectoryTest, ForceNeverReplacesWhatHoldsMoreThanAHierarchy) {
+  for (const char* name : {"notes.txt", "tiles/00/000000.ply", "more/000000.glb"}) {
+    clean();
+    put_hierarchy(output_, "old");
+    write(output_ / name, "years of work");
+    expect_error(ErrorCode::exists, name, [&] { WorkDirectory(*files_, output_, true); });
+    EXPECT_EQ(text_of(output_ / name), "years of work");
+  }
+}
+
+TEST_F(WorkDirectoryTest, NoHierarchyIsMadeInAnother) {
+  put_hierarchy(output_, "outer");
+  write(index_path(output_), "tiles");
+  for (const char* name : {"inner.hier", "tiles/inner.hier"}) {
+    expect_error(ErrorCode::usage, "in the hierarchy",
+                 [&] { WorkDirectory(*files_, output_ / name, false); });
+  }
+  EXPECT_EQ(hierarchy_at(output_), "outer");
+}
+
+TEST_F(WorkDirectoryTest, ALinkInItsPlaceIsNotFollowed) {
+  write(parent_ / "precious" / "thesis.tex", "years of work");
+  std::filesystem::create_directory_symlink("precious", work_path(output_));
+  expect_error(ErrorCode::io, "is a link", [&] { WorkDirectory(*files_, output_, true); });
+  EXPECT_EQ(text_of(parent_ / "precious" / "thesis.tex"), "years of work");
+}
+
+// Each is told what it is told, and one of them wins, whoever comes just as another one ends.
+TEST_F(WorkDirectoryTest, ManyAtOnceMakeOne) {
+  for (int round = 0; round < 20; ++round) {
+    clean();
+    std::atomic<int> made = 0;
+    std::vector<std::thread> threads;
+    for (int i = 0; i < 4; ++i) {
+      threads.emplace_back([&] {
+        const auto files = make_posix_file_system();
+        try {
+          WorkDirectory work(*files, output_, false);
+          put_hierarchy(work.built(), "new");
+          work.publish();
+          ++made;
+        } catch (const Error& error) {
+          EXPECT_EQ(error.code(), ErrorCode::exists) << error.what();
+        }
+      });
+    }
+    for (std::thread& thread : threads)
+      thread.join();
+    EXPECT_EQ(made, 1);
+    EXPECT_EQ(hierarchy_at(output_), "new");
+  }
 }
 
 TEST_F(WorkDirectoryTest, ForceNeverReplacesAFile) {
