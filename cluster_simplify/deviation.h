@@ -14,8 +14,9 @@ struct Deviation {
       around;          ///< representative -> the largest deviation of the triangles around it
   float interior = 0;  ///< the largest deviation of triangles without ghosts
   float lost = 0;      ///< of pieces that are drawn no more: the largest distance to what still is
-  double squared_sum = 0;  ///< over own vertices: weight times squared distance to the surface;
-                           ///< infinite if nothing is drawn where something was
+  double squared_sum = 0;  ///< over own vertices that have triangles: weight times squared distance
+                           ///< to the surface; infinite if nothing is drawn where something was
+  double weight_sum = 0;   ///< over the same vertices
 };
 
 }  // namespace meshhier::cluster_simplify

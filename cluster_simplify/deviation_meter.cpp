@@ -35,6 +35,7 @@ DeviationMeter::DeviationMeter(const CollapseMesh& mesh, std::span<const float> 
   for (std::uint32_t v = 0; v < weights_.size(); ++v) {
     if (mesh.most_triangles(v) == 0)
       weights_[v] = 0;
+    weight_sum_ += double{weights_[v]};
   }
 }
 

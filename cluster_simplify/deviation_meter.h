@@ -46,6 +46,8 @@ class DeviationMeter {
   float of_triangle(std::uint32_t triangle) const { return deviations_[triangle]; }
   /// Weight times squared distance, summed up over all collapses.
   double squared_sum() const { return squared_sum_; }
+  /// Of own vertices that had triangles from the start.
+  double weight_sum() const { return weight_sum_; }
 
  private:
   /// A triangle around the edge, its corners as places in points_.
@@ -79,6 +81,7 @@ class DeviationMeter {
   std::vector<Cover> covers_;
   std::vector<double> fresh_;  ///< deviations of after_
   double squared_sum_ = 0;
+  double weight_sum_ = 0;
   float largest_ = 0;  ///< deviation of any triangle so far
 };
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -76,6 +77,7 @@ class Motion {
       : mesh_(joined.mesh),
         contraction_(contraction),
         moved_(joined.mesh.vertices.size()),
+        weights_(joined.mesh.own_count),
         places_(contraction.representatives.positions),
         drawn_(contraction.representatives.size() + joined.mesh.ghosts.size()) {
     places_.insert(places_.end(), mesh_.vertices.positions.begin() + mesh_.own_count,
@@ -89,8 +91,11 @@ class Motion {
       deviation_.interior = std::max(deviation_.interior, add(t));
     for (const TileTriangle& t : mesh_.border)
       add(t);
+    weigh(mesh_.interior, joined.history.weights);
+    weigh(mesh_.border, joined.history.weights);
     deviation_.lost = lost();
-    deviation_.squared_sum = squared_sum(joined.history.weights);
+    deviation_.squared_sum = squared_sum();
+    deviation_.weight_sum = std::accumulate(weights_.begin(), weights_.end(), 0.0);
   }
 
   Deviation take() { return std::move(deviation_); }
@@ -127,6 +132,15 @@ class Motion {
       drawn_[v] = drawn_[v] || is_drawn;
     }
     return deviation;
+  }
+
+  void weigh(std::span<const TileTriangle> triangles, std::span<const float> weights) {
+    for (const TileTriangle& t : triangles) {
+      for (const TileVertex v : t) {
+        if (mesh_.is_own(v))
+          weights_[raw(v)] = weights[raw(v)];
+      }
+    }
   }
 
   /// What a triangle became whose image has no area lies in the corner or edge of one that is drawn
@@ -175,7 +189,7 @@ class Motion {
 
   /// Weight times squared distance from each vertex to its image, or to the drawn one nearest to
   /// that if it is not drawn; infinite if nothing is.
-  double squared_sum(std::span<const float> weights) const {
+  double squared_sum() const {
     std::vector<double> distances = moved_;
     if (const std::vector<std::uint32_t> stranded = stranded_vertices(); !stranded.empty()) {
       const std::vector<std::uint32_t> drawn = drawn_images();
@@ -189,7 +203,7 @@ class Motion {
     }
     double sum = 0;
     for (std::uint32_t v = 0; v < mesh_.own_count; ++v)
-      sum += double{weights[v]} * distances[v] * distances[v];
+      sum += double{weights_[v]} * distances[v] * distances[v];
     return sum;
   }
 
@@ -228,9 +242,10 @@ class Motion {
 
   const TileMesh& mesh_;
   const Contraction& contraction_;
-  std::vector<double> moved_;  ///< ghosts: 0
-  std::vector<Vec3f> places_;  ///< of images
-  std::vector<char> drawn_;    ///< image: has a triangle
+  std::vector<double> moved_;   ///< ghosts: 0
+  std::vector<float> weights_;  ///< of own vertices; 0 of those without triangles
+  std::vector<Vec3f> places_;   ///< of images
+  std::vector<char> drawn_;     ///< image: has a triangle
   std::vector<Triangle<std::uint32_t>> shown_;
   std::vector<TileTriangle> folded_;  ///< whose images have no area
   Deviation deviation_;

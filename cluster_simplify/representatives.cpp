@@ -91,6 +91,7 @@ class DeviationSum {
     deviation.lost = certain(lost());
     deviation.squared_sum = (tile_.deviation.squared_sum() + stray_squares()) *
                             tile_.frame.to_global(1.0) * tile_.frame.to_global(1.0);
+    deviation.weight_sum = tile_.deviation.weight_sum();
     for (const std::uint32_t v : chosen)
       deviation.around.push_back(certain(around_[v]));
     return deviation;

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -54,8 +53,7 @@ SeamStrip make_seam_strip(const BuildTile& joined, const ContractedTile& contrac
   seam_strip.interior_deviation = contracted.deviation.interior;
   seam_strip.lost = contracted.deviation.lost;
   seam_strip.squared_sum = contracted.deviation.squared_sum;
-  seam_strip.weight_sum =
-      std::accumulate(joined.history.weights.begin(), joined.history.weights.end(), 0.0);
+  seam_strip.weight_sum = contracted.deviation.weight_sum;
   return seam_strip;
 }
 

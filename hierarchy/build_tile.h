@@ -72,7 +72,7 @@ struct SeamStrip {
   float interior_deviation = 0;  ///< the largest of all interior triangles of the tile
   float lost = 0;                ///< see cluster_simplify::Deviation
   double squared_sum = 0;        ///< likewise
-  double weight_sum = 0;         ///< of own vertices
+  double weight_sum = 0;         ///< likewise
 };
 
 }  // namespace meshhier

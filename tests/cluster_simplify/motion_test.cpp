@@ -203,6 +203,7 @@ TEST(LostPiecesTest, VerticesThatNeverShowedAnythingLoseNothing) {
   mesh.positions.insert(mesh.positions.end(), {{9, 9, 9}, {8, 8, 8}});
   const Contraction found = tests::Collapsing(tests::tile_of(mesh)).choose(first);
   EXPECT_EQ(found.deviation.squared_sum, 0);
+  EXPECT_EQ(found.deviation.weight_sum, first);
 }
 
 // ---- motion --------------------------------------------------------------------------------
@@ -220,6 +221,7 @@ TEST(MotionTest, IsHowFarTheCornersWent) {
   EXPECT_EQ(deviation.around[0], 0);
   EXPECT_EQ(deviation.lost, 0);
   EXPECT_DOUBLE_EQ(deviation.squared_sum, 6 * 0.25);
+  EXPECT_EQ(deviation.weight_sum, 21);
 }
 
 TEST(MotionTest, GhostsStayAndBorderTrianglesAreNotInterior) {

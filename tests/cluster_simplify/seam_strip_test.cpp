@@ -1,6 +1,7 @@
 #include "cluster_simplify/seam_strip.h"
 
 #include "cluster_simplify/contraction.h"
+#include "cluster_simplify/motion.h"
 #include "tests/cluster_simplify/sampling.h"
 #include "tests/cluster_simplify/test_tiles.h"
 #include "tests/support/meshes.h"
@@ -322,6 +323,45 @@ TEST(SeamGapTest, StrandedBorderTrianglesAreAsFarAsWhatIsLeft) {
   ASSERT_TRUE(level.drawn(0).border.empty());
   ASSERT_EQ(level.drawn(0).interior.size(), 1U);
   EXPECT_GE(std::max(level.seam(0), level.seam(1)), 5);
+}
+
+/// With ten times as many vertices of no triangle, inside, last.
+tests::TestMesh with_loose_vertices(tests::TestMesh mesh) {
+  const auto count = mesh.positions.size();
+  for (std::uint64_t i = 0; i < 10 * count; ++i) {
+    mesh.positions.push_back({0.2F * tests::hash_noise(i, 1), 0.2F * tests::hash_noise(i, 2),
+                              0.2F * tests::hash_noise(i, 3)});
+  }
+  return mesh;
+}
+
+double mean_square(const BuildTile& joined, const Contraction& contraction) {
+  const SeamStrip seam_strip = make_seam_strip(joined, apply(joined, contraction));
+  return seam_strip.squared_sum / seam_strip.weight_sum;
+}
+
+TEST(SeamStripTest, LooseVerticesDoNotDiluteTheErrorOfCollapses) {
+  const BuildTile plain = tests::tile_of(tests::sphere(600, 0.03F));
+  const BuildTile loose = tests::tile_of(with_loose_vertices(tests::sphere(600, 0.03F)));
+  for (const ContractionOptions& options :
+       {ContractionOptions{Method::edge_collapse, {}, {}},
+        ContractionOptions{Method::half_edge, {}, HalfEdgeCost::quadric},
+        ContractionOptions{Method::half_edge, {}, HalfEdgeCost::melax}}) {
+    const double expected = mean_square(plain, contract(plain, 150, {}, options));
+    EXPECT_GT(expected, 0);
+    EXPECT_EQ(mean_square(loose, contract(loose, 150, {}, options)), expected);
+  }
+}
+
+TEST(SeamStripTest, LooseVerticesDoNotDiluteTheErrorOfClusters) {
+  const BuildTile plain = tests::tile_of(tests::sphere(600, 0.03F));
+  const BuildTile loose = tests::tile_of(with_loose_vertices(tests::sphere(600, 0.03F)));
+  Contraction contraction = contract(plain, 150, {}, {Method::cluster, Representative::mean, {}});
+  const double expected = mean_square(plain, contraction);
+  EXPECT_GT(expected, 0);
+  contraction.parent_of.resize(loose.mesh.own_count, 0);
+  contraction.deviation = motion_of(loose, contraction);
+  EXPECT_EQ(mean_square(loose, contraction), expected);
 }
 
 TEST(SeamStripTest, ShowsTheSeamAndWhatIsBesideIt) {

@@ -513,6 +513,7 @@ TEST(ApplyTest, DeviationsFollowTheirRepresentatives) {
   contraction.deviation.interior = 7;
   contraction.deviation.lost = 8;
   contraction.deviation.squared_sum = 9;
+  contraction.deviation.weight_sum = 10;
   const ContractedTile result = apply(joined, contraction);
   ASSERT_THAT(result.deviation.around, SizeIs(80));
   for (std::uint32_t i = 0; i < joined.mesh.own_count; ++i) {
@@ -522,6 +523,7 @@ TEST(ApplyTest, DeviationsFollowTheirRepresentatives) {
   EXPECT_EQ(result.deviation.interior, 7);
   EXPECT_EQ(result.deviation.lost, 8);
   EXPECT_EQ(result.deviation.squared_sum, 9);
+  EXPECT_EQ(result.deviation.weight_sum, 10);
 }
 
 TEST(ApplyTest, AttributesFollowTheirRepresentatives) {
