@@ -47,7 +47,7 @@ void DeviationMeter::note(std::span<const Vec3f> positions, const EdgeStar& star
     add_square(c.from, disc->from);
     add_square(c.to, disc->to);
   } else if (all_at(c.around_from, c.to) && all_at(c.around_to, c.from)) {
-    note_vanished(positions, c);
+    note_lost(positions, c);
   } else if (c.around_from.size() + c.around_to.size() <= kHighValence) {
     note_any(positions, c);
   } else {
@@ -82,10 +82,10 @@ void DeviationMeter::add_square(std::uint32_t vertex, float distance) {
 }
 
 /// All triangles around the edge are at the edge.
-void DeviationMeter::note_vanished(std::span<const Vec3f> positions, const StarCollapse& c) {
+void DeviationMeter::note_lost(std::span<const Vec3f> positions, const StarCollapse& c) {
   for (const CollapseMesh::Fan& fan : c.around_from) {
-    vanished_.push_back({{positions[c.from], positions[fan.next], positions[fan.previous]},
-                         deviations_[fan.triangle]});
+    lost_triangles_.push_back({{positions[c.from], positions[fan.next], positions[fan.previous]},
+                               deviations_[fan.triangle]});
   }
   lose(positions, c.from);
   lose(positions, c.to);

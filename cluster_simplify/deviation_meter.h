@@ -26,13 +26,13 @@ class DeviationMeter {
   void note(std::span<const Vec3f> positions, const EdgeStar& star, Vec3f place);
 
   /// A triangle around which nothing was left: what lay on it lies nowhere.
-  struct Vanished {
+  struct LostTriangle {
     std::array<Vec3f, 3> corners;
     float deviation = 0;
   };
-  std::span<const Vanished> vanished() const { return vanished_; }
+  std::span<const LostTriangle> lost_triangles() const { return lost_triangles_; }
 
-  /// An end of an edge that vanished with all around it, where it was, and for how many original
+  /// An end of an edge that was lost with all around it, where it was, and for how many original
   /// vertices it stood: squared_sum() knows nothing of it.
   struct LostVertex {
     Vec3f position;
@@ -40,7 +40,7 @@ class DeviationMeter {
   };
   std::span<const LostVertex> lost_vertices() const { return lost_vertices_; }
   /// How many original vertices of the surface an own vertex stands for now: 0 if it had no
-  /// triangle from the start, or if its surface vanished.
+  /// triangle from the start, or if its surface was lost.
   float weight(std::uint32_t vertex) const { return weights_[vertex]; }
 
   float of_triangle(std::uint32_t triangle) const { return deviations_[triangle]; }
@@ -60,7 +60,7 @@ class DeviationMeter {
                                  const StarCollapse& c);
   void note_any(std::span<const Vec3f> positions, const StarCollapse& c);
   void note_high_valence(std::span<const Vec3f> positions, const StarCollapse& c);
-  void note_vanished(std::span<const Vec3f> positions, const StarCollapse& c);
+  void note_lost(std::span<const Vec3f> positions, const StarCollapse& c);
   void lose(std::span<const Vec3f> positions, std::uint32_t vertex);
   void collect(std::span<const Vec3f> positions, const StarCollapse& c);
   void cover(std::span<const StarTriangle> triangles, bool with_deviation);
@@ -72,7 +72,7 @@ class DeviationMeter {
   CoverDistance cover_distance_;
   std::vector<float> deviations_;  ///< per triangle
   std::vector<float> weights_;     ///< per own vertex
-  std::vector<Vanished> vanished_;
+  std::vector<LostTriangle> lost_triangles_;
   std::vector<LostVertex> lost_vertices_;
   // Around one edge:
   std::vector<StarTriangle> before_, after_;

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -93,9 +92,8 @@ class Motion {
       add(t);
     weigh(mesh_.interior, joined.history.weights);
     weigh(mesh_.border, joined.history.weights);
-    deviation_.lost = lost();
-    deviation_.squared_sum = squared_sum();
-    deviation_.weight_sum = std::accumulate(weights_.begin(), weights_.end(), 0.0);
+    measure_lost();
+    sum_up();
   }
 
   Deviation take() { return std::move(deviation_); }
@@ -176,44 +174,22 @@ class Motion {
   }
 
   /// Own vertices of triangles, as numbers, whose image is not drawn; some more than once.
-  std::vector<std::uint32_t> stranded_vertices() const {
-    std::vector<std::uint32_t> stranded;
+  std::vector<std::uint32_t> lost_vertices() const {
+    std::vector<std::uint32_t> lost;
     for (const TileTriangle& t : folded_) {
       for (const TileVertex v : t) {
         if (mesh_.is_own(v) && !drawn_[image(v)])
-          stranded.push_back(raw(v));
+          lost.push_back(raw(v));
       }
     }
-    return stranded;
+    return lost;
   }
 
-  /// Weight times squared distance from each vertex to its image, or to the drawn one nearest to
-  /// that if it is not drawn; infinite if nothing is.
-  double squared_sum() const {
-    std::vector<double> distances = moved_;
-    if (const std::vector<std::uint32_t> stranded = stranded_vertices(); !stranded.empty()) {
-      const std::vector<std::uint32_t> drawn = drawn_images();
-      if (drawn.empty())
-        return std::numeric_limits<double>::infinity();
-      const NearestPoints points(places_, drawn);
-      for (const std::uint32_t v : stranded) {
-        const Vec3f onto = places_[points.nearest(places_[contraction_.parent_of[v]])];
-        distances[v] = length(to_double(mesh_.vertices.positions[v]) - to_double(onto));
-      }
-    }
-    double sum = 0;
-    for (std::uint32_t v = 0; v < mesh_.own_count; ++v)
-      sum += double{weights_[v]} * distances[v] * distances[v];
-    return sum;
-  }
-
-  /// Of triangles whose image is drawn nowhere, to a corner of it that is, or else to the drawn
-  /// vertex nearest to it; infinite if there is none.
-  float lost() {
+  /// Triangles whose image neither lies in what is drawn nor has a corner that is. Of those that
+  /// have one, `farthest` is told how far that is.
+  std::vector<TileTriangle> lost_triangles(double& farthest) {
     const EdgeSet edges(shown_, drawn_.size());
-    std::vector<const TileTriangle*> stranded;
-    std::vector<std::uint32_t> asked;
-    double farthest = 0;
+    std::vector<TileTriangle> lost;
     for (const TileTriangle& t : folded_) {
       if (lands(edges, t))
         continue;
@@ -222,22 +198,45 @@ class Motion {
         if (drawn_[image(v)])
           least = std::min(least, farthest_corner(t, image(v)));
       }
-      if (std::isfinite(least)) {
+      if (std::isfinite(least))
         farthest = std::max(farthest, least);
-      } else {
-        stranded.push_back(&t);
-        asked.push_back(image(t[0]));
+      else
+        lost.push_back(t);
+    }
+    return lost;
+  }
+
+  /// Of triangles whose image is drawn nowhere, to a corner of it that is, or else to the drawn
+  /// vertex nearest to it; infinite if there is none. Vertices whose image is not drawn have moved
+  /// to the drawn one nearest to it.
+  void measure_lost() {
+    double farthest = 0;
+    const std::vector<TileTriangle> triangles = lost_triangles(farthest);
+    const std::vector<std::uint32_t> vertices = lost_vertices();
+    if (!triangles.empty() || !vertices.empty()) {
+      const NearestDrawn nearest(places_, drawn_images());
+      for (const TileTriangle& t : triangles) {
+        farthest = std::max(farthest, nearest.from(places_[image(t[0])], [&](std::uint32_t drawn) {
+          return farthest_corner(t, drawn);
+        }));
+      }
+      for (const std::uint32_t v : vertices) {
+        moved_[v] = nearest.from(places_[contraction_.parent_of[v]], [&](std::uint32_t drawn) {
+          return length(to_double(mesh_.vertices.positions[v]) - to_double(places_[drawn]));
+        });
       }
     }
-    if (!stranded.empty()) {
-      const std::vector<std::uint32_t> drawn = drawn_images();
-      if (drawn.empty())
-        return std::numeric_limits<float>::infinity();
-      const std::vector<std::uint32_t> nearest = nearest_of(places_, drawn, asked);
-      for (std::size_t i = 0; i < stranded.size(); ++i)
-        farthest = std::max(farthest, farthest_corner(*stranded[i], nearest[i]));
+    deviation_.lost = static_cast<float>(farthest * (1 + kRounding));
+  }
+
+  /// Weight times squared distance from each vertex to its image.
+  void sum_up() {
+    for (std::uint32_t v = 0; v < mesh_.own_count; ++v) {
+      if (weights_[v] > 0) {
+        deviation_.squared_sum += double{weights_[v]} * moved_[v] * moved_[v];
+        deviation_.weight_sum += double{weights_[v]};
+      }
     }
-    return static_cast<float>(farthest * (1 + kRounding));
   }
 
   const TileMesh& mesh_;

@@ -6,6 +6,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -32,6 +34,26 @@ class NearestPoints {
   std::vector<std::uint32_t> candidates_;
   std::vector<Vec3f> points_;                ///< of the candidates
   std::vector<std::vector<Bounds>> levels_;  ///< finest first; the last one is the root's
+};
+
+/// The nearest of the vertices that are drawn, for those that ask how far what is lost is from it.
+class NearestDrawn {
+ public:
+  /// `drawn`: indices into `positions`; there may be none.
+  NearestDrawn(std::span<const Vec3f> positions, std::span<const std::uint32_t> drawn) {
+    if (!drawn.empty())
+      points_.emplace(positions, drawn);
+  }
+
+  /// What `measure` gives for the drawn vertex nearest to a point; infinite if nothing is drawn.
+  template <class Measure>
+  double from(Vec3f lost, const Measure& measure) const {
+    return points_ ? double{measure(points_->nearest(lost))}
+                   : std::numeric_limits<double>::infinity();
+  }
+
+ private:
+  std::optional<NearestPoints> points_;
 };
 
 /// For each of `asked` the nearest of `candidates` (at least one), both indices into `positions`;

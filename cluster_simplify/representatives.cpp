@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <span>
 #include <vector>
@@ -77,20 +78,22 @@ class DeviationSum {
   DeviationSum(const CollapsedTile& tile, const std::vector<std::uint32_t>& alive,
                const std::vector<std::uint32_t>& into)
       : tile_(tile), into_(into), around_(tile.places.size(), kNowhere) {
-    const auto vanished = tile.deviation.vanished();
-    lost_.assign(vanished.begin(), vanished.end());
+    const auto lost = tile.deviation.lost_triangles();
+    lost_triangles_.assign(lost.begin(), lost.end());
     for (const std::uint32_t t : alive)
       add(t);
   }
 
   /// `chosen`: the vertices that are representatives.
   Deviation result(const std::vector<std::uint32_t>& chosen) const {
+    const Loss loss = measure_loss();
     Deviation deviation;
     deviation.around.reserve(chosen.size());
     deviation.interior = certain(interior_);
-    deviation.lost = certain(lost());
-    deviation.squared_sum = (tile_.deviation.squared_sum() + stray_squares()) *
-                            tile_.frame.to_global(1.0) * tile_.frame.to_global(1.0);
+    deviation.lost = certain(static_cast<float>(loss.farthest));
+    deviation.squared_sum =
+        (tile_.deviation.squared_sum() + (joined_squares() + loss.squared_sum)) *
+        tile_.frame.to_global(1.0) * tile_.frame.to_global(1.0);
     deviation.weight_sum = tile_.deviation.weight_sum();
     for (const std::uint32_t v : chosen)
       deviation.around.push_back(certain(around_[v]));
@@ -98,6 +101,9 @@ class DeviationSum {
   }
 
  private:
+  using LostTriangle = DeviationMeter::LostTriangle;
+  using LostVertex = DeviationMeter::LostVertex;
+
   static constexpr float kNowhere = -1;  // nothing is drawn at the vertex
 
   std::uint32_t root(std::uint32_t v) const { return v < into_.size() ? into_[v] : v; }
@@ -110,7 +116,7 @@ class DeviationSum {
     const Triangle<std::uint32_t>& corners = tile_.mesh.faces()[t].corners;
     const Triangle<std::uint32_t> ends = roots(corners);
     if (!is_drawn(ends)) {
-      lost_.push_back(
+      lost_triangles_.push_back(
           {{tile_.places[corners[0]], tile_.places[corners[1]], tile_.places[corners[2]]},
            tile_.deviation.of_triangle(t)});
       return;
@@ -138,21 +144,29 @@ class DeviationSum {
     return std::sqrt(squared);
   }
 
-  /// From what is drawn no more to what is drawn around the vertex nearest to it; infinite if there
-  /// is none.
-  float lost() const {
-    if (lost_.empty())
-      return 0;
-    const std::vector<std::uint32_t> drawn = drawn_vertices();
-    if (drawn.empty())
-      return std::numeric_limits<float>::infinity();
-    const NearestPoints points(tile_.places, drawn);
-    double farthest = 0;
-    for (const DeviationMeter::Vanished& piece : lost_) {
-      const double away = squared_distance_to_star(piece.corners, points.nearest(piece.corners[0]));
-      farthest = std::max(farthest, std::sqrt(away) + double{piece.deviation});
+  /// What is drawn no more, held against what still is. Infinite where nothing is.
+  struct Loss {
+    double farthest = 0;     ///< of lost triangles
+    double squared_sum = 0;  ///< of lost vertices: weight times squared distance
+  };
+
+  Loss measure_loss() const {
+    const std::vector<LostVertex> vertices = lost_vertices();
+    Loss loss;
+    if (lost_triangles_.empty() && vertices.empty())
+      return loss;
+    const NearestDrawn nearest(tile_.places, drawn_vertices());
+    for (const LostTriangle& lost : lost_triangles_) {
+      const double away = nearest.from(lost.corners[0], [&](std::uint32_t drawn) {
+        return std::sqrt(squared_distance_to_star(lost.corners, drawn)) + double{lost.deviation};
+      });
+      loss.farthest = std::max(loss.farthest, away);
     }
-    return static_cast<float>(farthest);
+    for (const LostVertex& lost : vertices) {
+      loss.squared_sum += nearest.from(
+          lost.position, [&](std::uint32_t drawn) { return square_to_star(lost, drawn); });
+    }
+    return loss;
   }
 
   std::vector<std::uint32_t> drawn_vertices() const {
@@ -161,40 +175,41 @@ class DeviationSum {
   }
   bool is_shown(std::uint32_t vertex) const { return around_[vertex] != kNowhere; }
 
-  /// Of vertices that are drawn no more where they were, because all around them vanished or they
-  /// were joined with others: weight times squared distance to what is drawn around the one that
-  /// stands for them, or nearest to them.
-  double stray_squares() const {
-    std::vector<DeviationMeter::LostVertex> strays(tile_.deviation.lost_vertices().begin(),
-                                                   tile_.deviation.lost_vertices().end());
-    double sum = 0;
+  /// Calls visit(vertex, weight, the one that stands for it) for each that stands for others or
+  /// itself.
+  template <class Visit>
+  void for_each_weight(const Visit& visit) const {
     for (std::uint32_t v = 0; v < into_.size(); ++v) {
       const float weight = tile_.deviation.weight(v);
-      if (into_[v] == kNone || !(weight > 0))
-        continue;
-      if (!is_shown(into_[into_[v]]))
-        strays.push_back({tile_.places[v], weight});
-      else if (into_[v] != v)
-        sum += square_to_star({tile_.places[v], weight}, into_[into_[v]]);
+      if (into_[v] != kNone && weight > 0)
+        visit(v, weight, into_[into_[v]]);
     }
-    return sum + squares_to_nearest(strays);
   }
 
-  double squares_to_nearest(std::span<const DeviationMeter::LostVertex> strays) const {
-    if (strays.empty())
-      return 0;
-    const std::vector<std::uint32_t> drawn = drawn_vertices();
-    if (drawn.empty())
-      return std::numeric_limits<double>::infinity();
-    const NearestPoints points(tile_.places, drawn);
+  /// Those around which all was lost, and those whose representative is not drawn.
+  std::vector<LostVertex> lost_vertices() const {
+    const auto known = tile_.deviation.lost_vertices();
+    std::vector<LostVertex> lost(known.begin(), known.end());
+    for_each_weight([&](std::uint32_t v, float weight, std::uint32_t representative) {
+      if (!is_shown(representative))
+        lost.push_back({tile_.places[v], weight});
+    });
+    return lost;
+  }
+
+  /// Of vertices that were joined with others: weight times squared distance to what is drawn
+  /// around the one that stands for them.
+  double joined_squares() const {
     double sum = 0;
-    for (const DeviationMeter::LostVertex& stray : strays)
-      sum += square_to_star(stray, points.nearest(stray.position));
+    for_each_weight([&](std::uint32_t v, float weight, std::uint32_t representative) {
+      if (is_shown(representative) && into_[v] != v)
+        sum += square_to_star({tile_.places[v], weight}, representative);
+    });
     return sum;
   }
 
-  double square_to_star(const DeviationMeter::LostVertex& stray, std::uint32_t vertex) const {
-    return double{stray.weight} * squared_distance_to_star(std::span(&stray.position, 1), vertex);
+  double square_to_star(const LostVertex& lost, std::uint32_t vertex) const {
+    return double{lost.weight} * squared_distance_to_star(std::span(&lost.position, 1), vertex);
   }
 
   /// From all of some points to the nearest of the triangles that are drawn around a vertex.
@@ -230,74 +245,107 @@ class DeviationSum {
   const CollapsedTile& tile_;
   const std::vector<std::uint32_t>& into_;  ///< own vertex -> the one it was joined with, or itself
   std::vector<float> around_;               ///< per vertex: the deviation of what is drawn there
-  std::vector<DeviationMeter::Vanished> lost_;
+  std::vector<LostTriangle> lost_triangles_;
   float interior_ = 0;
 };
+
+/// Own vertices that are left after the collapses, ascending, all and by whether they show
+/// anything.
+struct LeftVertices {
+  std::vector<std::uint32_t> all, shown, isolated;
+};
+
+LeftVertices left_vertices(CollapseMesh& mesh, const std::vector<std::uint32_t>& alive) {
+  std::vector<char> has_triangle(mesh.vertex_count());
+  for (const std::uint32_t t : alive) {
+    for (const std::uint32_t v : mesh.faces()[t].corners)
+      has_triangle[v] = 1;
+  }
+  LeftVertices left;
+  left.all =
+      left_of(mesh.own_count(), [&](std::uint32_t v) { return mesh.representative(v) == v; });
+  left.shown.reserve(left.all.size());
+  for (const std::uint32_t v : left.all)
+    (has_triangle[v] ? left.shown : left.isolated).push_back(v);
+  return left;
+}
+
+/// Where those that are left go: into themselves or others.
+class Joins {
+ public:
+  Joins(const VertexArray& vertices, std::uint32_t own_count)
+      : vertices_(vertices), into_(own_count, kNone) {}
+
+  /// Returns how many were joined because there is no room for more than `target`.
+  std::uint32_t join_shown(const std::vector<std::uint32_t>& shown, std::uint32_t target) {
+    if (shown.size() <= target) {
+      absorb(shown, shown);
+      return 0;
+    }
+    absorb(shown, join_neighbours(vertices_, shown, target));
+    return static_cast<std::uint32_t>(shown.size()) - target;
+  }
+
+  void join_isolated(const LeftVertices& left, std::uint32_t target) {
+    if (left.isolated.empty())
+      return;
+    std::vector<std::uint32_t> kept;
+    if (left.shown.size() < target) {
+      kept = join_neighbours(vertices_, left.isolated,
+                             target - static_cast<std::uint32_t>(left.shown.size()));
+    }
+    std::vector<std::uint32_t> around = left.shown;
+    around.insert(around.end(), kept.begin(), kept.end());
+    absorb(left.isolated, nearest_of(vertices_.positions, around, left.isolated));
+    absorb(kept, kept);  // whatever lies at the same point
+  }
+
+  const std::vector<std::uint32_t>& into() const { return into_; }
+
+ private:
+  void absorb(const std::vector<std::uint32_t>& group, const std::vector<std::uint32_t>& targets) {
+    for (std::size_t i = 0; i < group.size(); ++i)
+      into_[group[i]] = targets[i];
+  }
+
+  const VertexArray& vertices_;
+  std::vector<std::uint32_t> into_;  ///< kNone: of those that collapsed
+};
+
+/// For each own vertex the place among `chosen` of the one that stands for it.
+std::vector<std::uint32_t> parents_of(CollapseMesh& mesh, const std::vector<std::uint32_t>& into,
+                                      const std::vector<std::uint32_t>& chosen) {
+  std::vector<std::uint32_t> number(mesh.own_count(), kNone);
+  for (std::uint32_t i = 0; i < chosen.size(); ++i)
+    number[chosen[i]] = i;
+  std::vector<std::uint32_t> parents(mesh.own_count());
+  for (std::uint32_t v = 0; v < mesh.own_count(); ++v) {
+    // An isolated vertex may have gone into a shown one that was then joined with another.
+    parents[v] = number[into[into[mesh.representative(v)]]];
+  }
+  return parents;
+}
 
 }  // namespace
 
 Contraction choose_representatives(const CollapsedTile& tile, std::uint32_t target) {
-  CollapseMesh& mesh = tile.mesh;
-  const VertexArray& vertices = tile.vertices;
-  const std::span<const CollapseMesh::Face> faces = mesh.faces();
+  const std::span<const CollapseMesh::Face> faces = tile.mesh.faces();
   const std::vector<std::uint32_t> alive =
       left_of(static_cast<std::uint32_t>(faces.size()),
               [&](std::uint32_t t) { return faces[t].is_alive(); });
-  std::vector<char> has_triangle(mesh.vertex_count());
-  for (const std::uint32_t t : alive) {
-    for (const std::uint32_t v : faces[t].corners)
-      has_triangle[v] = 1;
-  }
-  std::vector<std::uint32_t> collapsed_into(mesh.own_count());
-  for (std::uint32_t v = 0; v < mesh.own_count(); ++v)
-    collapsed_into[v] = mesh.representative(v);
-  const std::vector<std::uint32_t> left =
-      left_of(mesh.own_count(), [&](std::uint32_t v) { return collapsed_into[v] == v; });
-  std::vector<std::uint32_t> shown;
-  std::vector<std::uint32_t> isolated;
-  shown.reserve(left.size());
-  for (const std::uint32_t v : left)
-    (has_triangle[v] ? shown : isolated).push_back(v);
-  std::vector<std::uint32_t> into(mesh.own_count(), kNone);
-  const auto absorb = [&](const std::vector<std::uint32_t>& group,
-                          const std::vector<std::uint32_t>& targets) {
-    for (std::size_t i = 0; i < group.size(); ++i)
-      into[group[i]] = targets[i];
-  };
+  const LeftVertices left = left_vertices(tile.mesh, alive);
+  Joins joins(tile.vertices, tile.mesh.own_count());
   Contraction result;
-  if (shown.size() > target) {
-    result.fallbacks.joined = static_cast<std::uint32_t>(shown.size()) - target;
-    absorb(shown, join_neighbours(vertices, shown, target));
-  } else {
-    absorb(shown, shown);
-  }
-  const std::uint32_t room = target - std::min(target, static_cast<std::uint32_t>(shown.size()));
-  if (!isolated.empty()) {
-    std::vector<std::uint32_t> kept;
-    if (room > 0)
-      kept = join_neighbours(vertices, isolated, room);
-    std::vector<std::uint32_t> around = shown;
-    around.insert(around.end(), kept.begin(), kept.end());
-    absorb(isolated, nearest_of(vertices.positions, around, isolated));
-    absorb(kept, kept);  // whatever lies at the same point
-  }
-
-  std::vector<std::uint32_t> number(mesh.own_count(), kNone);
+  result.fallbacks.joined = joins.join_shown(left.shown, target);
+  joins.join_isolated(left, target);
+  const std::vector<std::uint32_t>& into = joins.into();
   std::vector<std::uint32_t> chosen;
   chosen.reserve(target);
-  for (const std::uint32_t v : left) {
-    if (into[v] != v)
-      continue;
-    number[v] = static_cast<std::uint32_t>(chosen.size());
-    chosen.push_back(v);
-  }
-  result.representatives.channels = vertices.channels;
-  result.representatives.append(vertices, chosen);
-  result.parent_of.resize(mesh.own_count());
-  for (std::uint32_t v = 0; v < mesh.own_count(); ++v) {
-    // An isolated vertex may have gone into a shown one that was then joined with another.
-    result.parent_of[v] = number[into[into[collapsed_into[v]]]];
-  }
+  std::copy_if(left.all.begin(), left.all.end(), std::back_inserter(chosen),
+               [&](std::uint32_t v) { return into[v] == v; });
+  result.representatives.channels = tile.vertices.channels;
+  result.representatives.append(tile.vertices, chosen);
+  result.parent_of = parents_of(tile.mesh, into, chosen);
   result.deviation = DeviationSum(tile, alive, into).result(chosen);
   return result;
 }

@@ -113,13 +113,13 @@ class Seam {
         continue;
       collect_covers(t);
       if (of_covers_.empty()) {
-        stranded_.push_back(&t);
+        lost_.push_back(&t);
         continue;
       }
       const double enough = std::max(largest, double{input_.own.seam_strip.interior_deviation});
       largest = std::max(largest, distance_to_covers(t, enough - t.deviation) + t.deviation);
     }
-    return std::max(largest, farthest_stranded());
+    return std::max(largest, farthest_lost());
   }
 
  private:
@@ -334,25 +334,27 @@ class Seam {
   }
 
   /// Of border triangles around whose corners nothing is left, to the nearest vertex that is drawn.
-  double farthest_stranded() const {
-    if (stranded_.empty())
+  double farthest_lost() const {
+    if (lost_.empty())
       return 0;
     std::vector<std::uint32_t> drawn;
     for (const auto* triangles : {&input_.mesh.interior, &input_.mesh.border}) {
       for (const TileTriangle& t : *triangles)
         drawn.insert(drawn.end(), {raw(t[0]), raw(t[1]), raw(t[2])});
     }
-    if (drawn.empty())
-      return std::numeric_limits<double>::infinity();
     std::sort(drawn.begin(), drawn.end());
     drawn.erase(std::unique(drawn.begin(), drawn.end()), drawn.end());
     const std::vector<Vec3f>& positions = input_.mesh.vertices.positions;
-    const NearestPoints points(positions, drawn);
+    const NearestDrawn nearest(positions, drawn);
     double farthest = 0;
-    for (const SeamTriangle* t : stranded_) {
-      const Vec3d nearest = to_double(positions[points.nearest(t->positions[0])]);
-      for (const Vec3d& corner : t->corners())
-        farthest = std::max(farthest, length(corner - nearest) + t->deviation);
+    for (const SeamTriangle* t : lost_) {
+      const double away = nearest.from(t->positions[0], [&](std::uint32_t drawn_vertex) {
+        double most = 0;
+        for (const Vec3d& corner : t->corners())
+          most = std::max(most, length(corner - to_double(positions[drawn_vertex])));
+        return most;
+      });
+      farthest = std::max(farthest, away + t->deviation);
     }
     return farthest * (1 + 0x1p-40);
   }
@@ -375,7 +377,7 @@ class Seam {
   std::uint32_t front_ = 0;               ///< so many of them share more than one corner with it
   std::vector<Cover> covers_;
   CoverDistance cover_distance_;
-  std::vector<const SeamTriangle*> stranded_;
+  std::vector<const SeamTriangle*> lost_;
 };
 
 }  // namespace
