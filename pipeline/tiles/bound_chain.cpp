@@ -1,8 +1,7 @@
 #include "pipeline/tiles/bound_chain.h"
 
-#include "hierarchy/error.h"
-
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -112,12 +111,7 @@ void BoundChain::note(NodeId node, const Step& step, const Sum& sum) {
   own.error = above(below.error, std::min(below.error + std::sqrt(step.mean_square), diagonal_));
   own.bound =
       std::max(above(below.bound, std::min(std::max(sum.back, sum.forth), diagonal_)), own.error);
-  if (!std::isfinite(own.bound)) {
-    throw Error(
-        ErrorCode::input,
-        "the mesh is so large that distances on it are beyond the range of single precision "
-        "(3.4e38): use a larger unit of length");
-  }
+  assert(std::isfinite(own.bound));
 }
 
 }  // namespace meshhier::pipeline

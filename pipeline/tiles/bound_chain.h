@@ -86,11 +86,11 @@ class TileErrors {
 ///          may have come to lie in.
 class BoundChain {
  public:
-  /// No distance counts for more than `diagonal`, of the whole model.
+  /// No distance counts for more than `diagonal`, of the whole model: a float, as readers refuse
+  /// coordinates between which there are longer ones (mesh_io/coordinate_range.h).
   BoundChain(const Tree& tree, double diagonal);
 
-  /// `steps`: one per node of the level, the next above the last call's. Throws Error(input) if a
-  /// bound is beyond the largest float.
+  /// `steps`: one per node of the level, the next above the last call's.
   void add(Level level, std::span<const Step> steps);
 
   /// Of the levels added so far; 0 for the partitions.
