@@ -1,11 +1,14 @@
 #include "hierarchy/angle.h"
 
 #include "hierarchy/power_of_two.h"
+#include "storage/io/hash.h"
 #include "tests/support/meshes.h"
 
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -45,6 +48,19 @@ TEST(AngleTest, AngleAndTurnAreInverses) {
     const UnitTurn turn = turn_by(angle);
     EXPECT_NEAR(angle_of(turn.cosine, turn.sine), angle, kClose);
   }
+}
+
+// Another value means another compiler or processor, or other code: hierarchies would differ, too.
+TEST(AngleTest, TheBitsAreTheSameEverywhere) {
+  std::vector<double> turns;
+  std::vector<double> angles;
+  for (int i = 0; i < 1000; ++i) {
+    const UnitTurn turn = turn_by((i - 500) / 128.0);
+    turns.insert(turns.end(), {turn.cosine, turn.sine});
+    angles.push_back(angle_of(i * 7919 % 2001 - 1000, i * 104729 % 997));
+  }
+  EXPECT_EQ(storage::checksum(std::as_bytes(std::span(turns))), 5383447823420107832U);
+  EXPECT_EQ(storage::checksum(std::as_bytes(std::span(angles))), 10766985568894622259U);
 }
 
 TEST(PowerOfTwoTest, IsTheNextOneOrTheSame) {
