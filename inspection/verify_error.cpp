@@ -228,9 +228,9 @@ double rounding_of(const MeasureJob& job) {
 /// Holds the measured means against the tiles' errors.
 void check_errors(const MeasureJob& job, const CutSurface& shown, const DistanceTally& forward,
                   const DistanceTally& backward, ErrorMeasurement& result) {
-  for (const DistanceTally& tally : {forward, backward}) {
-    const double mean = tally.summary().mean;
-    const double told = tally.mean_error();
+  for (const DistanceTally* tally : {&forward, &backward}) {
+    const double mean = tally->summary().mean;
+    const double told = tally->mean_error();
     result.error = std::max(result.error, told);
     const double believed = std::max(kMostMean * told, kSmallPart * result.bound);
     if (mean <= believed + rounding_of(job) + slack_of(job, shown))
