@@ -51,8 +51,8 @@ storage::SizeSummary partition_sizes(const HierarchyReader& reader) {
                                   reader.manifest().source.attributes);
 }
 
-storage::CareSummary care_of(const HierarchyReader& reader) {
-  return storage::summarize_care(reader.records(), reader.manifest().source.vertices);
+storage::ForcedCollapses forced_collapses_of(const HierarchyReader& reader) {
+  return storage::summarize_forced_collapses(reader.records(), reader.manifest().source.vertices);
 }
 
 storage::SizeSummary all_sizes(const HierarchyReader& reader) {
@@ -340,7 +340,7 @@ std::string inspect_text(storage::FileSystem& files, const std::filesystem::path
   text += tileset_text(manifest);
   text += totals_text(manifest, levels, bytes_on_disk(place, reader));
   text += "\n" + level_table(levels, std::nullopt);
-  return text + storage::care_text(care_of(reader));
+  return text + storage::forced_collapses_text(forced_collapses_of(reader));
 }
 
 Json inspect_json(storage::FileSystem& files, const std::filesystem::path& directory,
@@ -361,7 +361,7 @@ Json inspect_json(storage::FileSystem& files, const std::filesystem::path& direc
        {{"partitions", to_json(partition_sizes(reader))}, {"all", to_json(all_sizes(reader))}}},
       {"outline", outline_json(manifest)},
       {"tileset", tileset_json(manifest)},
-      {"care", {{"given_up", care_of(reader).given_up}, {"share", care_of(reader).share}}},
+      {"forced_collapses", storage::to_json(forced_collapses_of(reader))},
       {"tile_bytes", tile_bytes(levels)},
       {"total_bytes", bytes_on_disk(place, reader)}};
   for (const storage::LevelSummary& s : levels) {

@@ -70,7 +70,7 @@ std::optional<storage::HierarchyReader> open_hierarchy(storage::FileSystem& file
   }
 }
 
-/// Milliseconds per tile, partition and cut, as a scan of 54 partitions took.
+/// Seconds, as a scan of 54 partitions took.
 std::vector<execution::ExpectedStage> expected_times(const VerifyJob& job) {
   const auto tiles = static_cast<double>(job.reader.records().size());
   const auto partitions = static_cast<double>(job.tree().partition_count());

@@ -107,7 +107,8 @@ BuildReport make_report(const storage::HierarchyReader& made, const BuildOutcome
   report.stats.total = meter.total();
   const SourceSummary& source = made.manifest().source;
   report.text = report_text(context.config, source, outcome.found, report.stats) +
-                storage::care_text(storage::summarize_care(made.records(), source.vertices));
+                storage::forced_collapses_text(
+                    storage::summarize_forced_collapses(made.records(), source.vertices));
   report.account = account_text(source, report.stats);
   return report;
 }

@@ -169,22 +169,27 @@ CompactnessSummary summarize_compactness(const Tree& tree, std::span<const TileR
           quantile(values, 0.5), quantile(values, 0.95)};
 }
 
-CareSummary summarize_care(std::span<const TileRecord> records, std::uint64_t source_vertices) {
-  CareSummary care;
+ForcedCollapses summarize_forced_collapses(std::span<const TileRecord> records,
+                                           std::uint64_t source_vertices) {
+  ForcedCollapses forced;
   for (const TileRecord& record : records)
-    care.given_up += std::uint64_t{record.torn_count} + record.forced_count;
-  care.share = quotient(care.given_up, source_vertices);
-  return care;
+    forced.vertices += std::uint64_t{record.torn_count} + record.forced_count;
+  forced.share = quotient(forced.vertices, source_vertices);
+  return forced;
 }
 
-std::string care_text(const CareSummary& care) {
-  if (!care.is_low())
+std::string forced_collapses_text(const ForcedCollapses& forced) {
+  if (!forced.is_many())
     return "";
   return fmt::format(
       "warning: {} vertices ({:.1f} % of the input's) went by tearing the surface or without care "
       "for it: coarse levels show it badly. Are neighbouring triangles joined by common "
       "vertices?\n",
-      care.given_up, 100 * care.share);
+      forced.vertices, 100 * forced.share);
+}
+
+nlohmann::ordered_json to_json(const ForcedCollapses& forced) {
+  return {{"vertices", forced.vertices}, {"share", forced.share}};
 }
 
 nlohmann::ordered_json to_json(const LevelSummary& s) {

@@ -77,25 +77,28 @@ struct CompactnessSummary {
 
 CompactnessSummary summarize_compactness(const Tree& tree, std::span<const TileRecord> records);
 
-/// How many vertices went, on all levels together, by changing the surface's topology or without
-/// care for it.
-struct CareSummary {
-  std::uint64_t given_up = 0;
+/// How many vertices went, on all levels together, by changing the surface's topology or beyond any
+/// error limit, because their tiles would not have reached their targets otherwise.
+struct ForcedCollapses {
+  std::uint64_t vertices = 0;
   double share = 0;  ///< of the input's vertices
 
   /// Coarse levels show little of the input. Raw range images come to half of this.
-  bool is_low() const { return share > 0.01; }
+  bool is_many() const { return share > 0.01; }
 };
 
-CareSummary summarize_care(std::span<const TileRecord> records, std::uint64_t source_vertices);
+ForcedCollapses summarize_forced_collapses(std::span<const TileRecord> records,
+                                           std::uint64_t source_vertices);
 
-/// For people: a warning line if is_low(), "" otherwise.
-std::string care_text(const CareSummary& care);
+/// For people: a warning line if is_many(), "" otherwise.
+std::string forced_collapses_text(const ForcedCollapses& forced);
 
 /// One object per level; the keys are those of `inspect --json` (docs/command_line.md).
 nlohmann::ordered_json to_json(const LevelSummary& summary);
 
 nlohmann::ordered_json to_json(const SizeSummary& summary);
+
+nlohmann::ordered_json to_json(const ForcedCollapses& forced);
 
 /// One object per tile.
 nlohmann::ordered_json to_json(const TileRecord& record);

@@ -226,28 +226,28 @@ TEST(Summary, CountsTilesOffTheirTargetButNotPartitions) {
   EXPECT_EQ(levels[1].vertices.spread(), 0);
 }
 
-TEST(Summary, CareIsLowFromAHundredthOfTheVerticesOn) {
+TEST(Summary, ForcedCollapsesAreManyFromAHundredthOfTheVerticesOn) {
   std::vector<TileRecord> records(2);
   records[0].torn_count = 6;
   records[1].forced_count = 4;
-  const storage::CareSummary care = storage::summarize_care(records, 1000);
-  EXPECT_EQ(care.given_up, 10U);
-  EXPECT_DOUBLE_EQ(care.share, 0.01);
-  EXPECT_EQ(storage::care_text(care), "");
+  const storage::ForcedCollapses forced = storage::summarize_forced_collapses(records, 1000);
+  EXPECT_EQ(forced.vertices, 10U);
+  EXPECT_DOUBLE_EQ(forced.share, 0.01);
+  EXPECT_EQ(storage::forced_collapses_text(forced), "");
   records[1].forced_count = 5;
-  EXPECT_THAT(storage::care_text(storage::summarize_care(records, 1000)),
+  EXPECT_THAT(storage::forced_collapses_text(storage::summarize_forced_collapses(records, 1000)),
               HasSubstr("warning: 11 vertices (1.1 % of the input's)"));
 }
 
-TEST_F(InspectTest, GivingUpCareIsTold) {
+TEST_F(InspectTest, ForcedCollapsesAreTold) {
   EXPECT_THAT(text(), Not(HasSubstr("warning")));
-  EXPECT_EQ(json()["care"]["given_up"], 0U);
+  EXPECT_EQ(json()["forced_collapses"]["vertices"], 0U);
   sample_.record(node(0, 0)).torn_count = 100;
   fs::remove_all(path());
   tests::write_sample(*files_, path(), sample_);
   EXPECT_THAT(text(), HasSubstr("warning: 100 vertices (17.3 % of the input's)"));
-  EXPECT_EQ(json()["care"]["given_up"], 100U);
-  EXPECT_DOUBLE_EQ(json()["care"]["share"], 100.0 / 578);
+  EXPECT_EQ(json()["forced_collapses"]["vertices"], 100U);
+  EXPECT_DOUBLE_EQ(json()["forced_collapses"]["share"], 100.0 / 578);
 }
 
 TEST(Summary, OnePartitionIsOneLevel) {
