@@ -1,5 +1,7 @@
 #include "server/connection.h"
 
+#include "server/client_key.h"
+
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -38,12 +40,13 @@ std::string address_of(socket_t socket, const Ask& ask) {
 
 }  // namespace
 
-Connection::Connection(socket_t socket, const ConnectionLimits& limits,
-                       std::function<bool()> is_crowded, std::function<bool()> is_stopping)
+Connection::Connection(socket_t socket, const ConnectionLimits& limits, MustYield must_yield,
+                       std::function<bool()> is_stopping)
     : socket_(socket),
       address_(address_of(socket, ::getpeername)),
+      client_(client_key(address_)),
       limits_(limits),
-      is_crowded_(std::move(is_crowded)),
+      must_yield_(std::move(must_yield)),
       is_stopping_(std::move(is_stopping)) {}
 
 Connection::~Connection() {
@@ -79,7 +82,7 @@ bool Connection::has_head() const {
   return received_.find(kHeadEnd) != std::string::npos || received_.size() > kMostHeadBytes;
 }
 
-bool Connection::take_in() {
+bool Connection::read_available() {
   while (!has_head()) {
     const Received received = receive();
     has_ended_ = received == Received::end;
@@ -123,12 +126,11 @@ ssize_t Connection::read(char* bytes, std::size_t count) {
 }
 
 bool Connection::is_too_slow() const {
-  if (!is_crowded_())
-    return false;
   const auto time = Clock::now() - reply_start_;
   const double seconds = std::chrono::duration<double>(time).count();
   return time > limits_.grace &&
-         static_cast<double>(reply_bytes_) < seconds * static_cast<double>(limits_.least_rate);
+         static_cast<double>(reply_bytes_) < seconds * static_cast<double>(limits_.least_rate) &&
+         must_yield_(client_);
 }
 
 ssize_t Connection::write(const char* bytes, std::size_t count) {

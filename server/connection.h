@@ -19,8 +19,11 @@ namespace meshhier::server {
 /// Of one thread at a time.
 class Connection final : public httplib::Stream {
  public:
-  /// Takes the socket over. `is_crowded`: others wait; `is_stopping`: the server is to end.
-  Connection(socket_t socket, const ConnectionLimits& limits, std::function<bool()> is_crowded,
+  /// Whether a slow reply to that client must end, because others wait.
+  using MustYield = std::function<bool(const std::string& client)>;
+
+  /// Takes the socket over. `is_stopping`: the server is to end.
+  Connection(socket_t socket, const ConnectionLimits& limits, MustYield must_yield,
              std::function<bool()> is_stopping);
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
@@ -28,9 +31,11 @@ class Connection final : public httplib::Stream {
 
   /// Of the client; the same however often it is asked.
   const std::string& address() const { return address_; }
-  /// Takes in what the client has said by now, without waiting. True if next_request() knows what
-  /// to say: a request is there as a whole, or none will come.
-  bool take_in();
+  /// client_key() of it.
+  const std::string& client() const { return client_; }
+  /// Reads what has arrived, without waiting. True if next_request() may be called: a request is
+  /// there as a whole, or none will come.
+  bool read_available();
   /// Whether a part of the next request is there.
   bool has_begun() const { return !received_.empty(); }
   /// How many requests there were.
@@ -42,7 +47,7 @@ class Connection final : public httplib::Stream {
     too_large,
     end,  ///< of the conversation: the client has closed it
   };
-  /// Requires take_in(), which has said true.
+  /// Requires that read_available() was true.
   Next next_request();
   const RequestHead& head() const { return head_; }
 
@@ -70,13 +75,14 @@ class Connection final : public httplib::Stream {
   /// Appends what has come to received_.
   enum class Received { something, nothing_yet, end };
   Received receive();
-  /// As others wait; while nobody does, it may take its time.
+  /// Whether it takes less than the least rate while others wait.
   bool is_too_slow() const;
 
   socket_t socket_;
-  std::string address_;
+  std::string address_, client_;
   ConnectionLimits limits_;
-  std::function<bool()> is_crowded_, is_stopping_;
+  MustYield must_yield_;
+  std::function<bool()> is_stopping_;
   std::string received_;  ///< not yet taken as a head
   RequestHead head_;
   std::size_t place_ = 0;  ///< what was read of the head

@@ -3,7 +3,7 @@
 #include "hierarchy/error.h"
 #include "server/conditions.h"
 #include "server/connection.h"
-#include "server/lobby.h"
+#include "server/connection_queue.h"
 
 #include <algorithm>
 #include <atomic>
@@ -113,8 +113,8 @@ std::string in_url(const std::string& host) {
   return host.find(':') == std::string::npos ? host : '[' + host + ']';
 }
 
-/// Whom the library accepts it hands over at once.
-class HandedOver final : public httplib::TaskQueue {
+/// Runs a task at once: it only puts the accepted connection into the queue.
+class InlineTaskQueue final : public httplib::TaskQueue {
  public:
   void enqueue(std::function<void()> task) override { task(); }
   void shutdown() override {}
@@ -133,7 +133,7 @@ class HttpServer::Library final : public httplib::Server {
       : options_(options),
         answer_(std::move(answer)),
         log_(std::move(log)),
-        lobby_({options.threads, options.most_connections}, options.limits) {
+        queue_({options.threads, options.most_connections}, options.limits) {
     set_up();
     bind();
   }
@@ -141,7 +141,7 @@ class HttpServer::Library final : public httplib::Server {
 
   std::uint16_t port() const { return port_; }
   bool is_lost() const { return is_lost_; }
-  std::size_t served() const { return lobby_.served(); }
+  std::size_t served() const { return queue_.served(); }
 
   void begin() {
     for (std::size_t i = 0; i < options_.threads; ++i)
@@ -156,7 +156,7 @@ class HttpServer::Library final : public httplib::Server {
     if (!is_running())
       close_socket();
     stop();
-    lobby_.close();
+    queue_.close();
     if (thread_.joinable())
       thread_.join();
     for (std::thread& worker : workers_)
@@ -193,7 +193,7 @@ class HttpServer::Library final : public httplib::Server {
   }
 
   void set_up() {
-    new_task_queue = [] { return new HandedOver; };
+    new_task_queue = [] { return new InlineTaskQueue; };
     set_tcp_nodelay(true);
     // Without this the library's default, by which two servers share a port without knowing.
     set_socket_options([](socket_t socket) {
@@ -234,25 +234,26 @@ class HttpServer::Library final : public httplib::Server {
   }
 
   bool process_and_close_socket(socket_t socket) override {
-    lobby_.enter(std::make_unique<Connection>(
-        socket, options_.limits, [this] { return lobby_.is_crowded(); },
+    queue_.accept(std::make_unique<Connection>(
+        socket, options_.limits,
+        [this](const std::string& client) { return queue_.must_yield(client); },
         [this] { return is_stopping_.load(); }));
     return true;
   }
 
   void work() {
-    while (std::unique_ptr<Connection> connection = lobby_.next()) {
-      if (converse(*connection)) {
-        lobby_.come_back(std::move(connection));
+    while (std::unique_ptr<Connection> connection = queue_.next()) {
+      if (serve_request(*connection)) {
+        queue_.return_connection(std::move(connection));
       } else {
         connection->finish();
-        lobby_.leave(connection->address());
+        queue_.close_connection(std::move(connection));
       }
     }
   }
 
   /// One request and its reply; false if it was the last one.
-  bool converse(Connection& connection) {
+  bool serve_request(Connection& connection) {
     switch (connection.next_request()) {
       case Connection::Next::request:
         break;
@@ -265,7 +266,7 @@ class HttpServer::Library final : public httplib::Server {
     }
     const RequestHead& head = connection.head();
     const bool closes =
-        connection.requests() == kMostRequests || head.has_body || lobby_.is_crowded();
+        connection.requests() == kMostRequests || head.has_body || queue_.has_waiting_accepts();
     bool client_closes = false;
     const auto add_range = [&](httplib::Request& request) {
       if (head.range)
@@ -291,7 +292,7 @@ class HttpServer::Library final : public httplib::Server {
   std::uint16_t port_ = 0;
   std::atomic<bool> is_stopping_{false};
   std::atomic<bool> is_lost_{false};
-  Lobby lobby_;
+  ConnectionQueue queue_;
   std::thread thread_;
   std::vector<std::thread> workers_;
 };

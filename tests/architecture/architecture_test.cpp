@@ -245,7 +245,7 @@ std::string check_system(const Source& source, const Include& include) {
       {"app/process.cpp", {"csignal", "fcntl.h", "signal.h", "sys/ioctl.h", "unistd.h"}},
       // The library's sockets, with limits that it does not have.
       {"server/connection.cpp", {"poll.h", "sys/socket.h", "unistd.h"}},
-      {"server/lobby.cpp", {"poll.h", "sys/eventfd.h", "unistd.h"}},
+      {"server/connection_queue.cpp", {"poll.h", "sys/eventfd.h", "unistd.h"}},
       {"server/http_server.cpp", {"sys/socket.h", "unistd.h"}},
       {"storage/io/child_process.cpp",
        {"csignal", "fcntl.h", "poll.h", "sys/prctl.h", "sys/wait.h", "unistd.h"}},

@@ -409,6 +409,42 @@ TEST_F(HttpServerTest, ClientsThatTakeTooLittleMakeRoomForOthers) {
   EXPECT_EQ(other.receive().status, 200);
 }
 
+TEST_F(HttpServerTest, RequestsAtTheSameMomentCloseNoConnection) {
+  start({.threads = 4});
+  std::vector<std::unique_ptr<RawClient>> clients;
+  for (int i = 0; i < 2; ++i)
+    clients.push_back(std::make_unique<RawClient>(port()));
+  for (int round = 0; round < 500; ++round) {
+    for (const auto& client : clients)
+      client->send("GET /models/plain.hier/tiles.bin HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    for (const auto& client : clients) {
+      const RawReply reply = client->receive();
+      ASSERT_EQ(reply.status, 200) << "round " << round;
+      ASSERT_FALSE(reply.headers.contains("connection")) << "round " << round;
+    }
+  }
+}
+
+TEST_F(HttpServerTest, RequestsAtTheSameMomentAreServedByAsManyThreads) {
+  constexpr std::size_t kClients = 48;  // as many as one address gets of 64 threads
+  std::atomic<std::size_t> begun{0};
+  HttpServer server({.port = 0},
+                    [&](const Request&) {
+                      ++begun;
+                      tests::wait_until([&] { return begun == kClients; });
+                      return Reply{.status = 204};
+                    },
+                    {});
+  server.start();
+  std::vector<std::unique_ptr<RawClient>> clients;
+  for (std::size_t i = 0; i < kClients; ++i)
+    clients.push_back(std::make_unique<RawClient>(server.port()));
+  for (const auto& client : clients)
+    client->send("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  for (const auto& client : clients)
+    EXPECT_EQ(client->receive().status, 204);
+}
+
 TEST_F(HttpServerTest, AnIdleConnectionHoldsNoThread) {
   ServerOptions options;
   options.threads = 1;
