@@ -19,10 +19,18 @@ const char* description(const FoundLeftover& leftover) {
                                 : "a hierarchy that was replaced";
     case Leftover::verify:
       return "room of a verify";
+    case Leftover::input_note:
+      return "a note about a hierarchy that is gone";
     case Leftover::unfinished:
       break;
   }
   return "a file that was not finished";
+}
+
+/// A note about a hierarchy that is there, or can have its name back, is none.
+bool is_leftover(storage::FileSystem& files, Leftover kind, const fs::path& output) {
+  return kind != Leftover::input_note ||
+         (!files.exists(output) && !files.exists(storage::replaced_path(output)));
 }
 
 bool is_in_use(storage::FileSystem& files, const FoundLeftover& leftover) {
@@ -50,6 +58,8 @@ std::vector<FoundLeftover> find_leftovers(storage::FileSystem& files,
     if (!name || (is_output && name->output != path.filename().string()))
       continue;
     FoundLeftover leftover{child, name->kind, directory / name->output};
+    if (!is_leftover(files, leftover.kind, leftover.output))
+      continue;
     leftover.in_use = is_in_use(files, leftover);
     leftover.only_copy = name->kind == Leftover::replaced && !files.exists(leftover.output);
     leftover.bytes = leftover.in_use ? 0 : bytes_of(files, leftover);

@@ -1,4 +1,5 @@
-// What builds that were stopped, and other commands that were killed, left on disk.
+// What builds that were stopped, other commands that were killed, and hierarchies that were removed
+// left on disk.
 #pragma once
 
 #include "storage/format/layout.h"

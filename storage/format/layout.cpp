@@ -134,6 +134,8 @@ std::optional<LeftoverName> leftover_name(std::string_view name) {
     return LeftoverName{Leftover::build, output};
   if (kind == "old")
     return LeftoverName{Leftover::replaced, output};
+  if (kind == "input")
+    return LeftoverName{Leftover::input_note, output};
   if (kind == "part" || kind == "scratch" || kind == "lock")
     return LeftoverName{Leftover::unfinished, output};
   if (kind.size() == kVerify.size() + 8 && kind.starts_with(kVerify))

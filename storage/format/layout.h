@@ -78,6 +78,7 @@ enum class Leftover {
   build,       ///< work_path: a build that was stopped
   replaced,    ///< replaced_path
   verify,      ///< verify_scratch_path
+  input_note,  ///< input_note_path: left only if the hierarchy is gone
   unfinished,  ///< unfinished_path, scratch_path, output_lock_path
 };
 struct LeftoverName {

@@ -1261,6 +1261,20 @@ TEST_F(Killed, CleanGivesAReplacedHierarchyItsNameBack) {
   EXPECT_EQ(contents(hierarchy()), expected);
 }
 
+TEST_F(Killed, CleanRemovesTheNoteOfAHierarchyThatIsGone) {
+  build();
+  const Path note = work() / ".a.hier.meshhier-input";
+  write_text(note, "of serve --watch");
+  EXPECT_THAT(run({"clean", work().string()}).out, HasSubstr("nothing")) << "it is still of use";
+  std::filesystem::rename(hierarchy(), work() / ".a.hier.meshhier-old");
+  EXPECT_EQ(run({"clean", work().string(), "--remove"}).code, 0);
+  EXPECT_TRUE(std::filesystem::exists(note)) << "its hierarchy has its name back";
+  std::filesystem::remove_all(hierarchy());
+  EXPECT_THAT(run({"clean", hierarchy()}).out, HasSubstr(note.filename().string()));
+  EXPECT_EQ(run({"clean", work().string(), "--remove"}).code, 0);
+  EXPECT_FALSE(std::filesystem::exists(note));
+}
+
 TEST_F(Killed, CleanGivesAReplacedArchiveItsNameBack) {
   write_mesh("a.ply");
   ASSERT_EQ(run({"build", write_config(R"(, "storage": {"container": "3tz"})")}).code, 0);

@@ -48,6 +48,7 @@ TEST(Layout, NamesOfWhatWasLeftAreKnownAgain) {
     const std::filesystem::path path = std::filesystem::path("a") / output;
     EXPECT_EQ(known(work_path(path)), std::pair(Leftover::build, output));
     EXPECT_EQ(known(replaced_path(path)), std::pair(Leftover::replaced, output));
+    EXPECT_EQ(known(input_note_path(path)), std::pair(Leftover::input_note, output));
     EXPECT_EQ(known(unfinished_path(path)), std::pair(Leftover::unfinished, output));
     EXPECT_EQ(known(verify_scratch_path(path, 0xab)), std::pair(Leftover::verify, output));
   }
