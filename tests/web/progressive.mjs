@@ -44,7 +44,7 @@ async function check(page, stream, meshhier, pictures, report) {
   const files = await call(page, 'open', '/stream');
   for (let step = 0; step < files; ++step) {
     const state = await call(page, 'next');
-    execFileSync(meshhier, ['reconstruct', stream, '--details', String(step), '-o', ply, '--progress', 'none']);
+    execFileSync(meshhier, ['reconstruct', stream, '--details', String(step), '-o', ply, '--force', '--progress', 'none']);
     const same = (await call(page, 'digest')) === digestOf(ply);
     const covered = await call(page, 'covered');
     await page.screenshot({ path: path.join(pictures, `${name}-progressive-${step}.png`) });
