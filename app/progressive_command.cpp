@@ -30,8 +30,8 @@ int run_progressive(ProgressiveArguments& arguments, execution::ProgressMode mod
 }
 
 constexpr const char* kProgressiveFooter =
-    R"(The hierarchy must have been built with "simplify": {"method": "half_edge"}. The base shows its
-coarsest level; with each detail a client shows the next finer one, with the last the original mesh
+    R"(The hierarchy must have been built with "simplify": {"method": "half_edge"}, and have one vertex at
+each place ("topology": "index" makes it so). The base shows its coarsest level; with each detail a client shows the next finer one, with the last the original mesh
 bit for bit, and needs no more than an array of vertices and one of triangles for it
 ("meshhier reconstruct"; docs/file_format.md).
 

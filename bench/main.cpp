@@ -1,6 +1,7 @@
 // meshgen: makes meshes for tests and measurements.
 #include "bench/generator.h"
 #include "bench/program.h"
+#include "bench/split.h"
 #include "bench/stress.h"
 
 #include <map>
@@ -19,6 +20,8 @@ struct Arguments {
   bench::AmplifyOptions amplify;
   std::string stress_case;
   std::uint64_t stress_size = 100'000;
+  std::string split_case;
+  double split_degrees = 40;
   std::uint64_t seed = 1;
   std::string input;
   std::string output;
@@ -78,20 +81,43 @@ void add_shuffle(CLI::App& app, Arguments& arguments) {
   command->add_option("input", arguments.input, "A PLY file")->required();
 }
 
-void add_stress(CLI::App& app, Arguments& arguments) {
-  std::string cases = "The cases:";
+/// "name what" lines, for a footer.
+template <class Cases>
+std::string listing(const Cases& cases) {
+  std::string text = "The cases:";
+  for (const auto& listed : cases)
+    text += fmt::format("\n  {:<12} {}", listed.name, listed.what);
+  return text;
+}
+
+template <class Cases>
+std::vector<std::string> names_of(const Cases& cases) {
   std::vector<std::string> names;
-  for (const bench::StressCase& listed : bench::stress_cases()) {
-    cases += fmt::format("\n  {:<11} {}", listed.name, listed.what);
+  for (const auto& listed : cases)
     names.emplace_back(listed.name);
-  }
+  return names;
+}
+
+void add_split(CLI::App& app, Arguments& arguments) {
+  CLI::App* command =
+      app.add_subcommand("split", "The same surface with vertices split by their attributes");
+  command->add_option("input", arguments.input, "A PLY file")->required();
+  command->add_option("--by", arguments.split_case, "What splits them")
+      ->check(CLI::IsMember(names_of(bench::split_cases())))
+      ->required();
+  command->add_option("--degrees", arguments.split_degrees, "What bends more is a hard edge")
+      ->capture_default_str();
+  command->footer(listing(bench::split_cases()));
+}
+
+void add_stress(CLI::App& app, Arguments& arguments) {
   CLI::App* command = app.add_subcommand("stress", "Legal and unreasonable meshes");
   command->add_option("--case", arguments.stress_case, "Which one")
-      ->check(CLI::IsMember(names))
+      ->check(CLI::IsMember(names_of(bench::stress_cases())))
       ->required();
   command->add_option("--size", arguments.stress_size, "About so many triangles, or else vertices")
       ->capture_default_str();
-  command->footer(cases);
+  command->footer(listing(bench::stress_cases()));
 }
 
 bench::LoadedMesh load(storage::FileSystem& files, const std::string& path) {
@@ -107,6 +133,10 @@ std::unique_ptr<bench::GeneratedMesh> generate(const CLI::App& app, Arguments& a
   if (app.got_subcommand("amplify")) {
     arguments.amplify.seed = arguments.seed;
     return bench::amplify(load(files, arguments.input), arguments.amplify);
+  }
+  if (app.got_subcommand("split")) {
+    return bench::as_generated(
+        bench::split(load(files, arguments.input), arguments.split_case, arguments.split_degrees));
   }
   if (app.got_subcommand("stress")) {
     return bench::as_generated(
@@ -135,6 +165,7 @@ int main(int argc, char** argv) {
   add_surface(app, arguments);
   add_amplify(app, arguments);
   add_shuffle(app, arguments);
+  add_split(app, arguments);
   add_stress(app, arguments);
   app.require_subcommand(1);
   for (CLI::App* command : app.get_subcommands({})) {

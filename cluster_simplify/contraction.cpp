@@ -1,5 +1,6 @@
 #include "cluster_simplify/contraction.h"
 
+#include "cluster_simplify/attribute_seams.h"
 #include "cluster_simplify/cluster.h"
 #include "cluster_simplify/edge_collapse.h"
 #include "cluster_simplify/half_edge.h"
@@ -11,13 +12,14 @@ namespace meshhier::cluster_simplify {
 
 Contraction contract(const BuildTile& joined, std::uint32_t target, const AttributeLayout& layout,
                      const ContractionOptions& options) {
+  const auto seams = [&] { return attribute_seams(joined, layout, options.wedges); };
   switch (options.method) {
     case Method::cluster:
       return cluster(joined, target, layout, options.representative);
     case Method::edge_collapse:
-      return edge_collapse(joined, target, layout);
+      return edge_collapse(joined, target, layout, seams());
     case Method::half_edge:
-      return half_edge(joined, target, options.cost);
+      return half_edge(joined, target, options.cost, seams());
   }
   throw Error(ErrorCode::internal, "unknown contraction method");
 }

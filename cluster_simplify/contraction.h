@@ -5,6 +5,7 @@
 #pragma once
 
 #include "cluster_simplify/seams.h"
+#include "cluster_simplify/wedge_options.h"
 #include "hierarchy/attributes.h"
 
 #include <cstdint>
@@ -36,12 +37,14 @@ struct ContractionOptions {
   Method method = Method::edge_collapse;
   Representative representative = Representative::quadric;  ///< of `cluster`
   HalfEdgeCost cost = HalfEdgeCost::quadric;                ///< of `half_edge`
+  WedgeOptions wedges = {};                                 ///< which seams to hold
 };
 
 /// Contracts the own vertices of `joined` to `target` representatives, 1 <= target <= own_count <=
 /// 65536; never more or fewer. Attributes: `cluster` takes means over the original vertices a
 /// representative stands for, `edge_collapse` interpolates along the edges (normals made unit
-/// length by both), `half_edge` keeps them. Pure, deterministic; O(n log n).
+/// length by both), `half_edge` keeps them; of places with copies those of the first wedge, see
+/// contract_wedges() for all. Pure, deterministic; O(n log n).
 Contraction contract(const BuildTile& joined, std::uint32_t target, const AttributeLayout& layout,
                      const ContractionOptions& options);
 

@@ -68,9 +68,10 @@ std::vector<PlacedQuadric> placed(std::span<const VertexQuadric> quadrics,
 /// Vertices meet where the sum of their quadrics is least.
 class OptimalPlacement {
  public:
-  OptimalPlacement(const CollapseMesh& mesh, std::vector<Vec3f> positions, VertexArray& vertices)
+  OptimalPlacement(const CollapseMesh& mesh, std::vector<Vec3f> positions,
+                   std::span<const PlaceEdge> seams, VertexArray& vertices)
       : mesh_(mesh), positions_(std::move(positions)), vertices_(vertices) {
-    const std::vector<VertexQuadric> quadrics = vertex_quadrics(mesh, positions_);
+    const std::vector<VertexQuadric> quadrics = vertex_quadrics(mesh, positions_, seams);
     prices_.emplace(mesh, positions_, total_area(quadrics));
     placed_ = placed(quadrics, positions_);
   }
@@ -169,11 +170,11 @@ class OptimalPlacement {
 }  // namespace
 
 Contraction edge_collapse(const BuildTile& joined, std::uint32_t target,
-                          const AttributeLayout& layout) {
+                          const AttributeLayout& layout, std::span<const PlaceEdge> seams) {
   CollapseMesh mesh(joined.mesh);
   VertexArray vertices = joined.mesh.vertices;
   const LocalFrame frame(vertices.positions);
-  OptimalPlacement costs(mesh, frame.to_local(vertices.positions), vertices);
+  OptimalPlacement costs(mesh, frame.to_local(vertices.positions), seams, vertices);
   DeviationMeter deviation(mesh, joined.history.weights);
   const FallbackCounts fallbacks = collapse_edges(mesh, costs, deviation, target);
   for (std::uint32_t v = 0; v < mesh.own_count(); ++v) {

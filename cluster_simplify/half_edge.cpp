@@ -20,10 +20,10 @@ Collapse cheaper(Collapse first, Collapse second) {
 /// One vertex takes over the other's quadric.
 class QuadricCosts {
  public:
-  QuadricCosts(CollapseMesh& mesh, std::vector<Vec3f> positions)
+  QuadricCosts(CollapseMesh& mesh, std::vector<Vec3f> positions, std::span<const PlaceEdge> seams)
       : mesh_(mesh),
         positions_(std::move(positions)),
-        quadrics_(vertex_quadrics(mesh, positions_)),
+        quadrics_(vertex_quadrics(mesh, positions_, seams)),
         prices_(mesh, positions_, total_area(quadrics_)) {}
 
   std::span<const Vec3f> positions() const { return positions_; }
@@ -72,7 +72,7 @@ class QuadricCosts {
 /// edges do, and are not left.
 class MelaxCosts {
  public:
-  MelaxCosts(CollapseMesh& mesh, std::vector<Vec3f> positions)
+  MelaxCosts(CollapseMesh& mesh, std::vector<Vec3f> positions, std::span<const PlaceEdge>)
       : mesh_(mesh), positions_(std::move(positions)), prices_(mesh, positions_, 0) {}
 
   std::span<const Vec3f> positions() const { return positions_; }
@@ -170,11 +170,12 @@ class MelaxCosts {
 };
 
 template <class Costs>
-Contraction contract_with(const BuildTile& joined, std::uint32_t target) {
+Contraction contract_with(const BuildTile& joined, std::uint32_t target,
+                          std::span<const PlaceEdge> seams) {
   CollapseMesh mesh(joined.mesh);
   const VertexArray& vertices = joined.mesh.vertices;
   const LocalFrame frame(vertices.positions);
-  Costs costs(mesh, frame.to_local(vertices.positions));
+  Costs costs(mesh, frame.to_local(vertices.positions), seams);
   DeviationMeter deviation(mesh, joined.history.weights);
   const FallbackCounts fallbacks = collapse_edges(mesh, costs, deviation, target);
   Contraction result =
@@ -185,9 +186,10 @@ Contraction contract_with(const BuildTile& joined, std::uint32_t target) {
 
 }  // namespace
 
-Contraction half_edge(const BuildTile& joined, std::uint32_t target, HalfEdgeCost cost) {
-  return cost == HalfEdgeCost::melax ? contract_with<MelaxCosts>(joined, target)
-                                     : contract_with<QuadricCosts>(joined, target);
+Contraction half_edge(const BuildTile& joined, std::uint32_t target, HalfEdgeCost cost,
+                      std::span<const PlaceEdge> seams) {
+  return cost == HalfEdgeCost::melax ? contract_with<MelaxCosts>(joined, target, seams)
+                                     : contract_with<QuadricCosts>(joined, target, seams);
 }
 
 }  // namespace meshhier::cluster_simplify

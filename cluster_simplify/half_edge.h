@@ -5,13 +5,17 @@
 // Progressive Display Method for Interactive Mobile 3D Graphics; Zunino et al.).
 #pragma once
 
+#include "cluster_simplify/attribute_seams.h"
 #include "cluster_simplify/contraction.h"
 
 #include <cstdint>
+#include <span>
 
 namespace meshhier::cluster_simplify {
 
-/// See contract(), and edge_collapse() for what a tile does that cannot reach its count.
-Contraction half_edge(const BuildTile& joined, std::uint32_t target, HalfEdgeCost cost);
+/// See contract(), and edge_collapse() for what a tile does that cannot reach its count. Melax's
+/// cost knows no seams.
+Contraction half_edge(const BuildTile& joined, std::uint32_t target, HalfEdgeCost cost,
+                      std::span<const PlaceEdge> seams = {});
 
 }  // namespace meshhier::cluster_simplify

@@ -1,5 +1,7 @@
 #include "cluster_simplify/seams.h"
 
+#include "cluster_simplify/seam_wedges.h"
+#include "cluster_simplify/wedges.h"
 #include "hierarchy/error.h"
 
 #include <algorithm>
@@ -94,7 +96,7 @@ BuildTile resolve(WorkTile<Corner> tile, std::span<const GhostRef> mapped_refs, 
                                 : static_cast<TileVertex>(own_count + place[raw(v) - own_count]);
     });
   }
-  normalize_triangles(tile.border, unique);
+  normalize_triangles(tile.border, tile.border_wedges, unique);
   drop_unused(tile.border, ghosts, own_count);  // order-preserving: the triangles stay sorted
 
   BuildTile result;
@@ -103,8 +105,13 @@ BuildTile resolve(WorkTile<Corner> tile, std::span<const GhostRef> mapped_refs, 
                  .boundary_count = tile.boundary_count,
                  .ghosts = std::move(ghosts),
                  .interior = std::move(tile.interior),
-                 .border = std::move(tile.border)};
+                 .border = std::move(tile.border),
+                 .copies = std::move(tile.copies),
+                 .ghost_wedges = {},
+                 .interior_wedges = std::move(tile.interior_wedges),
+                 .border_wedges = std::move(tile.border_wedges)};
   result.history = std::move(tile.history);
+  number_ghost_wedges(result.mesh);
   return result;
 }
 
@@ -121,6 +128,7 @@ void fill_ghosts(BuildTile& tile, std::uint32_t neighbour, const Boundary& bound
     named.push_back(ghost->index);
   }
   tile.mesh.vertices.append(boundary.vertices, named);
+  fill_ghost_copies(tile.mesh, boundary);
 }
 
 BuildTile join(const BuildTile& first, std::uint32_t first_index, const BuildTile& second,
@@ -179,6 +187,9 @@ BuildTile join(const BuildTile& first, std::uint32_t first_index, const BuildTil
     }
     return place;
   };
+  const bool has_copies = !a.copies.empty() || !b.copies.empty();
+  if (has_copies)
+    join_copies(a, second_index, b, first_index, mesh);
   const std::vector<TileVertex> place_a = place_of(a, 0, second_index, a.own_count);
   const std::vector<TileVertex> place_b = place_of(b, a.own_count, first_index, 0);
 
@@ -187,21 +198,32 @@ BuildTile join(const BuildTile& first, std::uint32_t first_index, const BuildTil
   for (const TileTriangle& t : b.interior)  // own corners move by as much as the first tile has
     mesh.interior.push_back(
         mapped(t, [&](TileVertex v) { return static_cast<TileVertex>(raw(v) + a.own_count); }));
-  const auto add_border = [&](const TileTriangle& t) {
+  if (has_copies) {
+    append_wedges(a.interior.size(), a.interior_wedges, mesh.interior_wedges);
+    append_wedges(b.interior.size(), b.interior_wedges, mesh.interior_wedges);
+  }
+  const auto add_border = [&](const TileMesh& tile, std::size_t i, const TileTriangle& placed) {
     const bool inside =
-        std::all_of(t.begin(), t.end(), [&](TileVertex v) { return raw(v) < own_count; });
-    (inside ? mesh.interior : mesh.border).push_back(t);
+        std::all_of(placed.begin(), placed.end(), [&](TileVertex v) { return raw(v) < own_count; });
+    (inside ? mesh.interior : mesh.border).push_back(placed);
+    if (has_copies)
+      (inside ? mesh.interior_wedges : mesh.border_wedges)
+          .push_back(joined_wedges(tile, i, placed, mesh));
   };
-  for (const TileTriangle& t : a.border)
-    add_border(mapped(t, [&](TileVertex v) { return place_a[raw(v)]; }));
-  for (const TileTriangle& t : b.border) {
-    const TileTriangle placed = mapped(t, [&](TileVertex v) { return place_b[raw(v)]; });
+  for (std::size_t i = 0; i < a.border.size(); ++i)
+    add_border(a, i, mapped(a.border[i], [&](TileVertex v) { return place_a[raw(v)]; }));
+  for (std::size_t i = 0; i < b.border.size(); ++i) {
+    const TileTriangle placed = mapped(b.border[i], [&](TileVertex v) { return place_b[raw(v)]; });
     const bool known = std::any_of(placed.begin(), placed.end(),
                                    [&](TileVertex v) { return raw(v) < a.own_count; });
     if (!known)
-      add_border(placed);  // a triangle that touches the first tile came with it
+      add_border(b, i, placed);  // a triangle that touches the first tile came with it
   }
-  return joined;  // every outside ghost still has its border triangle
+  if (has_copies) {
+    drop_degenerate(mesh.interior, mesh.interior_wedges);
+    drop_degenerate(mesh.border, mesh.border_wedges);
+  }
+  return joined;  // an outside ghost has its border triangle, but for those of flat ones
 }
 
 namespace {
@@ -235,7 +257,7 @@ std::vector<FinerGhost> one_level_up(const std::vector<GhostRef>& ghosts) {
 
 }  // namespace
 
-ContractedTile apply(const BuildTile& joined, Contraction contraction) {
+ContractedTile apply(const BuildTile& joined, Contraction contraction, ContractedWedges wedges) {
   const TileMesh& mesh = joined.mesh;
   const auto count = static_cast<std::uint32_t>(contraction.representatives.size());
   assert(count <= 32768 && contraction.parent_of.size() == mesh.own_count &&
@@ -243,34 +265,40 @@ ContractedTile apply(const BuildTile& joined, Contraction contraction) {
 
   // Border triangles in the new numbers; foreign corners keep theirs, moved from own_count to
   // count.
-  std::vector<TileTriangle> border = images(mesh.border, [&](TileVertex v) {
+  ContractedTile result;
+  SimplifiedTile& tile = result.tile;
+  tile.border = images(mesh.border, [&](TileVertex v) {
     return static_cast<TileVertex>(raw(v) < mesh.own_count ? contraction.parent_of[raw(v)]
                                                            : raw(v) - mesh.own_count + count);
   });
-
-  ContractedTile result;
-  SimplifiedTile& tile = result.tile;
-  const std::vector<std::uint32_t> place = boundary_first(border, count, tile.boundary_count);
+  const std::vector<std::uint32_t> place = boundary_first(tile.border, count, tile.boundary_count);
   result.parent_map.resize(mesh.own_count);
   for (std::uint32_t i = 0; i < mesh.own_count; ++i) {
     result.parent_map[i] = static_cast<std::uint16_t>(place[contraction.parent_of[i]]);
   }
-  for (TileTriangle& t : border) {
+  for (TileTriangle& t : tile.border) {
     t = mapped(t, [&](TileVertex v) {
       return raw(v) < count ? static_cast<TileVertex>(place[raw(v)]) : v;
     });
   }
-  tile.border = std::move(border);
-  tile.foreign = one_level_up(mesh.ghosts);
-  normalize_triangles(tile.border, true);
-  drop_unused(tile.border, tile.foreign, count);
-
-  tile.interior = images(mesh.interior, [&](TileVertex v) {
+  const auto new_place = [&](TileVertex v) {
     return static_cast<TileVertex>(result.parent_map[raw(v)]);
-  });
-  normalize_triangles(tile.interior, true);
+  };
+  tile.interior = images(mesh.interior, new_place);
+  tile.foreign = one_level_up(mesh.ghosts);
+  if (!mesh.copies.empty()) {
+    tile.copies = renumbered(wedges.copies, place);
+    contraction.representatives.attributes = std::move(wedges.attributes);
+    result.wedge_map = std::move(wedges.map);
+    tile.border_wedges = wedges_of_images(mesh, mesh.border, mesh.border_wedges, result);
+    tile.interior_wedges = wedges_of_images(mesh, mesh.interior, mesh.interior_wedges, result);
+  }
+  normalize_triangles(tile.border, tile.border_wedges, true);
+  drop_unused(tile.border, tile.foreign, count);
+  normalize_triangles(tile.interior, tile.interior_wedges, true);
 
   tile.vertices.channels = contraction.representatives.channels;
+  tile.copies.vertices.channels = tile.vertices.channels;
   std::vector<std::uint32_t> old_of(count);
   for (std::uint32_t i = 0; i < count; ++i)
     old_of[place[i]] = i;
@@ -288,6 +316,11 @@ ContractedTile apply(const BuildTile& joined, Contraction contraction) {
   return result;
 }
 
+ContractedTile apply(const BuildTile& joined, Contraction contraction) {
+  assert(joined.mesh.copies.empty());
+  return apply(joined, std::move(contraction), {});
+}
+
 ContractedTile keep(const BuildTile& tile) {
   const TileMesh& mesh = tile.mesh;
   ContractedTile result;
@@ -295,14 +328,25 @@ ContractedTile keep(const BuildTile& tile) {
   for (std::uint32_t i = 0; i < mesh.own_count; ++i)
     result.parent_map[i] = static_cast<std::uint16_t>(i);
   result.tile.vertices.channels = mesh.vertices.channels;
+  result.tile.copies.vertices.channels = mesh.vertices.channels;
   result.tile.vertices.append(mesh.vertices, 0, mesh.own_count);
   result.tile.history.weights = tile.history.weights;
   result.tile.boundary_count = mesh.boundary_count;
   result.tile.interior = mesh.interior;
   result.tile.border = mesh.border;
   result.tile.foreign = one_level_up(mesh.ghosts);
-  normalize_triangles(result.tile.interior, true);
-  normalize_triangles(result.tile.border, true);
+  if (!mesh.copies.empty()) {
+    const std::size_t own_copies = mesh.copies.first_of(mesh.own_count);
+    result.tile.copies.places.assign(
+        mesh.copies.places.begin(),
+        mesh.copies.places.begin() + static_cast<std::ptrdiff_t>(own_copies));
+    result.tile.copies.vertices.append(mesh.copies.vertices, 0, own_copies);
+    result.tile.interior_wedges = mesh.interior_wedges;
+    result.tile.border_wedges = mesh.border_wedges;
+    name_ghost_wedges(mesh, result.tile.border_wedges);
+  }
+  normalize_triangles(result.tile.interior, result.tile.interior_wedges, true);
+  normalize_triangles(result.tile.border, result.tile.border_wedges, true);
   result.deviation.around.assign(mesh.own_count, 0);
   return result;
 }

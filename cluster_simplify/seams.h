@@ -17,10 +17,10 @@ namespace meshhier::cluster_simplify {
 
 /// Rewrites a fresh tile's border with its foreign corners' places at the tile's own level.
 /// `Corner`: ChunkVertex or FinerGhost.
-/// `mapped`: one entry per tile.foreign, at the tile's level. Corners that became one vertex become
-/// one ghost, triangles that became degenerate go; of exact duplicates one stays if `unique`
-/// (simplified tiles; partitions keep the input's duplicates). The ghosts' positions and
-/// attributes are left for fill_ghosts(). O(n log n).
+/// `mapped`: one entry per tile.foreign, at the tile's level, as are the wedges of foreign corners.
+/// Corners that became one place become one ghost, triangles that became degenerate go; of exact
+/// duplicates one stays if `unique` (simplified tiles; partitions keep the input's duplicates). The
+/// ghosts' positions and attributes are left for fill_ghosts(). O(n log n).
 template <class Corner>
 BuildTile resolve(WorkTile<Corner> tile, std::span<const GhostRef> mapped, bool unique);
 
@@ -60,11 +60,17 @@ struct ContractedTile {
   SimplifiedTile tile;                    ///< foreign: ghosts of the joined tile
   std::vector<std::uint16_t> parent_map;  ///< own vertex of the joined tile -> vertex of `tile`
   Deviation deviation;                    ///< around: per vertex of `tile`
+  WedgeMap wedge_map;                     ///< of the joined tile
   FallbackCounts fallbacks;
 };
 
+struct ContractedWedges;  // cluster_simplify/wedges.h
+
 /// Applies a contraction to a joined tile: maps its triangles, drops degenerate and repeated ones,
-/// puts the boundary first and sums weights.
+/// puts the boundary first and sums weights. `wedges`: of the contraction, if the joined tile has
+/// copies.
+ContractedTile apply(const BuildTile& joined, Contraction contraction, ContractedWedges wedges);
+/// Of a joined tile without copies.
 ContractedTile apply(const BuildTile& joined, Contraction contraction);
 
 /// The contraction that changes nothing: for a node whose only child stands for it. The parent map

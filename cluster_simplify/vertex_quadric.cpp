@@ -1,7 +1,9 @@
 #include "cluster_simplify/vertex_quadric.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 
 namespace meshhier::cluster_simplify {
@@ -18,6 +20,12 @@ constexpr float kBorderWeight = 10;
 // (with 100 the head's mean distance grows by a tenth).
 constexpr float kFoldCosine = -0.9F;
 constexpr float kFoldWeight = 3;
+
+// Seams of attributes are held like borders, but less firmly: nothing shrinks away at them. At a
+// tenth of a wavy sheet's vertices a seam goes off its line by 0.1 edges on average with 0.1, by
+// 0.02 with 1, by 0.95 with 0. Seams of projected charts are jagged: holding them takes triangles
+// from the shape (decision 025).
+constexpr float kSeamWeight = 0.1F;
 
 void add_upright(VertexQuadric& q, Vec3f along, Vec3f normal, float weight) {
   const Vec3f upright = cross(along, normal);
@@ -87,6 +95,53 @@ float upright_weight(std::uint32_t triangle_count, bool folds_back) {
   return folds_back && triangle_count == 2 ? kFoldWeight : 0;
 }
 
+/// Of each edge whether it is a seam.
+std::vector<char> seam_marks(const CollapseMesh& mesh, std::span<const PlaceEdge> seams) {
+  std::vector<char> marks;
+  marks.reserve(mesh.edges().size());
+  for (const CollapseMesh::Edge& edge : mesh.edges())
+    marks.push_back(std::ranges::binary_search(seams, PlaceEdge{edge.a, edge.b}) ? 1 : 0);
+  return marks;
+}
+
+/// Of each vertex whether seams are lines there: no more than half of its edges.
+std::vector<char> line_marks(const CollapseMesh& mesh, std::span<const char> is_seam) {
+  std::vector<std::int64_t> others(mesh.vertex_count());  // edges, less twice the seams
+  for (std::size_t e = 0; e < is_seam.size(); ++e) {
+    for (const std::uint32_t v :
+         {mesh.edge(static_cast<std::uint32_t>(e)).a, mesh.edge(static_cast<std::uint32_t>(e)).b})
+      others[v] += is_seam[e] != 0 ? -1 : 1;
+  }
+  std::vector<char> marks;
+  marks.reserve(others.size());
+  for (const std::int64_t more : others)
+    marks.push_back(more >= 0 ? 1 : 0);
+  return marks;
+}
+
+void hold_seams(const CollapseMesh& mesh, std::span<const Vec3f> positions,
+                std::span<const PlaceEdge> seams, std::span<VertexQuadric> quadrics) {
+  const std::vector<char> is_seam = seam_marks(mesh, seams);
+  const std::vector<char> is_line = line_marks(mesh, is_seam);
+  for (const CollapseMesh::Face& face : mesh.faces()) {
+    const auto& [a, b, c] = face.corners;
+    const Vec3f doubled = cross(positions[b] - positions[a], positions[c] - positions[a]);
+    const float doubled_area = length(doubled);
+    if (!(doubled_area > 0))
+      continue;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      if (is_seam[face.edges[k]] == 0)
+        continue;
+      const std::array ends{face.corners[k], face.corners[CollapseMesh::after(k)]};
+      const Vec3f along = positions[ends[1]] - positions[ends[0]];
+      for (const std::uint32_t v : ends) {
+        if (is_line[v] != 0)
+          add_upright(quadrics[v], along, doubled * (1 / doubled_area), kSeamWeight);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 float total_area(std::span<const VertexQuadric> quadrics) {
@@ -97,7 +152,8 @@ float total_area(std::span<const VertexQuadric> quadrics) {
 }
 
 std::vector<VertexQuadric> vertex_quadrics(const CollapseMesh& mesh,
-                                           std::span<const Vec3f> positions) {
+                                           std::span<const Vec3f> positions,
+                                           std::span<const PlaceEdge> seams) {
   std::vector<VertexQuadric> quadrics(mesh.vertex_count());
   std::vector<FourFloats> normals(mesh.edges().size());  // of the triangle last met at an edge
   for (const CollapseMesh::Face& face : mesh.faces()) {
@@ -124,6 +180,8 @@ std::vector<VertexQuadric> vertex_quadrics(const CollapseMesh& mesh,
     meet(face.edges[1], corners[1], corners[2]);
     meet(face.edges[2], corners[2], corners[0]);
   }
+  if (!seams.empty())
+    hold_seams(mesh, positions, seams, quadrics);
   return quadrics;
 }
 

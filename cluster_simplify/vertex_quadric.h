@@ -2,6 +2,7 @@
 // itself.
 #pragma once
 
+#include "cluster_simplify/attribute_seams.h"
 #include "cluster_simplify/collapse_mesh.h"
 #include "hierarchy/vec.h"
 
@@ -64,8 +65,11 @@ struct alignas(16) VertexQuadric {
 float total_area(std::span<const VertexQuadric> quadrics);
 
 /// The quadrics of all vertices: the planes of their triangles, each weighted with twice its area,
-/// and planes upright on open borders and on sharp folds. `positions`: one per vertex. O(t).
+/// and planes upright on open borders, on sharp folds and on `seams` (ascending). A seam is held at
+/// vertices where it is a line: not where more than half of the edges are seams, as if each
+/// triangle were a chart. `positions`: one per vertex. O(t), with seams O(t log t).
 std::vector<VertexQuadric> vertex_quadrics(const CollapseMesh& mesh,
-                                           std::span<const Vec3f> positions);
+                                           std::span<const Vec3f> positions,
+                                           std::span<const PlaceEdge> seams = {});
 
 }  // namespace meshhier::cluster_simplify

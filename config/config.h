@@ -6,6 +6,7 @@
 #include "cluster_simplify/contraction.h"
 #include "hierarchy/frame.h"
 #include "hierarchy/target_vertex_counts.h"
+#include "hierarchy/topology.h"
 #include "mesh_io/input_paths.h"
 #include "partition/direction.h"
 #include "storage/format/tile_glb.h"
@@ -111,10 +112,14 @@ struct PlacementConfig {
   friend bool operator==(const PlacementConfig&, const PlacementConfig&) = default;
 };
 
+inline constexpr std::array kTopologies{NamedValue{"place", Topology::place},
+                                        NamedValue{"index", Topology::index}};
+
 struct Config {
-  mesh_io::InputPaths input;     ///< not empty
-  bool weld = false;             ///< vertices of equal position and attributes become one
-  std::filesystem::path output;  ///< a directory or file, without a slash at its end
+  mesh_io::InputPaths input;            ///< not empty
+  bool weld = false;                    ///< vertices of equal position and attributes become one
+  Topology topology = Topology::place;  ///< which vertices are one point of the surface
+  std::filesystem::path output;         ///< a directory or file, without a slash at its end
   std::uint64_t memory_budget = std::uint64_t{1} << 30;  ///< bytes, > 0
   std::uint32_t threads = 0;                             ///< 0: all
   PartitionConfig partition;
@@ -163,9 +168,9 @@ Config load_config(storage::FileSystem& files, const std::filesystem::path& file
 /// What `placement` comes to: of the tileset's root, or none.
 std::optional<Transform> tileset_transform(const Config& config);
 
-/// What decides the result: weld, partition, simplify, outline, storage; not paths, budget,
-/// threads, container. All defaults are filled in, except that simplify.vertices is absent if it
-/// follows partition.count.
+/// What decides the result: weld, topology, partition, simplify, outline, storage; not paths,
+/// budget, threads, container. All defaults are filled in, except that simplify.vertices is absent
+/// if it follows partition.count.
 nlohmann::ordered_json resolved_json(const Config& config);
 
 }  // namespace meshhier::config

@@ -243,6 +243,11 @@ std::vector<ConfigKey> make_config_keys() {
            .meaning = "vertices of equal position and equal attributes become one; those of an STL "
                       "file, which have no numbers of their own, always do"},
           [](auto& c) -> auto& { return c.weld; })),
+      deciding(choice(
+          {.path = "topology",
+           .meaning = "which vertices are one point of the surface: all at one place, whatever "
+                      "their attributes (`place`), or each by itself (`index`)"},
+          kTopologies, [](auto& c) -> auto& { return c.topology; })),
       deciding(number(
           {.path = "partition.vertices", .meaning = "most vertices of a partition"}, kTileVertices,
           [](auto& c) -> auto& { return c.partition.vertices; })),

@@ -4,6 +4,7 @@
 
 #include "execution/cancel.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -13,10 +14,19 @@
 #include <utility>
 #include <vector>
 
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>
 
 namespace meshhier::execution {
+
+/// How many blocks of `block_bytes` to have in flight within `memory_bytes`: one at least, and no
+/// more than there are threads for.
+inline std::size_t useful_blocks(std::uint64_t memory_bytes, std::uint64_t block_bytes) {
+  const std::size_t threads =
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  return std::clamp<std::uint64_t>(memory_bytes / block_bytes, 1, 2 * threads);
+}
 
 /// Runs work(i) for all i in [0, count) in parallel, at most `in_flight` at a time, and hands each
 /// result to sink(i, result) in the order of i, one at a time. The first exception ends it and is

@@ -3,6 +3,8 @@
 
 #include "hierarchy/tile_mesh.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -42,6 +44,9 @@ struct WorkTile {
   std::vector<TileTriangle>
       border;  ///< corners from vertices.size() on: foreign[corner - vertices.size()]
   std::vector<Corner> foreign;  ///< ascending, without repeats
+  Copies copies;                ///< of own places
+  /// As TileMesh's; of a foreign corner its wedge in its own tile where it was named.
+  std::vector<CornerWedges> interior_wedges, border_wedges;
 };
 
 using LeafTile = WorkTile<ChunkVertex>;       ///< of a partition
@@ -50,6 +55,27 @@ using SimplifiedTile = WorkTile<FinerGhost>;  ///< of a node above
 /// What a tile shows of itself to its neighbours: its boundary vertices, [0, boundary_count).
 struct Boundary {
   VertexArray vertices;
+  Copies copies;
+};
+
+/// What became of the wedges of a tile's own places when it was contracted: of each the wedge at
+/// the place that stands for its own, which the parent map names. Empty if all have kept their
+/// numbers.
+struct WedgeMap {
+  std::vector<std::uint32_t> firsts;  ///< of the vertex of each place
+  std::vector<std::uint32_t> copies;  ///< of each copy
+  std::vector<std::uint32_t> places;  ///< of each copy, as Copies::places
+
+  bool empty() const { return firsts.empty(); }
+  /// O(log n).
+  std::uint32_t operator()(std::uint32_t place, std::uint32_t wedge) const {
+    if (firsts.empty())
+      return wedge;
+    if (wedge == 0)
+      return firsts[place];
+    const auto first = std::lower_bound(places.begin(), places.end(), place) - places.begin();
+    return copies[static_cast<std::size_t>(first) + wedge - 1];
+  }
 };
 
 /// A tile whose ghosts are known at its own level, with what contraction needs of them.

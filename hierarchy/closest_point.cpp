@@ -47,12 +47,12 @@ struct InFrame {
 
 ClosestPoint closest_point(Vec3d x, const TriangleFrame& t) {
   const InFrame in(x, t);
-  ClosestPoint best{{}, std::numeric_limits<double>::infinity()};
+  ClosestPoint best{{}, std::numeric_limits<double>::infinity(), 0, 0};
   const auto offer = [&](double on_b, double on_c) {
     const Vec3d offset = t.ab * on_b + t.ac * on_c;
     const double distance = squared_length(in.ax - offset);
     if (distance < best.squared_distance)
-      best = {t.a + offset, distance};
+      best = {t.a + offset, distance, on_b, on_c};
   };
   if (in.inside()) {
     offer(in.v / in.area, in.w / in.area);

@@ -49,7 +49,9 @@ TrianglePair::Two squared_distances(Vec3d x, const TrianglePair& pair);
 struct ClosestPoint {
   Vec3d point;
   double squared_distance = 0;
+  double on_b = 0, on_c = 0;  ///< a + ab * on_b + ac * on_c is the point; both in [0, 1]
 };
+/// At a corner on_b and on_c are 0 or 1 exactly.
 ClosestPoint closest_point(Vec3d x, const TriangleFrame& triangle);
 
 }  // namespace meshhier

@@ -57,4 +57,9 @@ std::string json_fault(std::string_view message) {
   return std::string(message);
 }
 
+std::string counted_vertices(std::uint64_t vertices, std::uint64_t places) {
+  const std::string text = counted(vertices, "vertices");
+  return places == vertices ? text : text + " at " + counted(places, "places");
+}
+
 }  // namespace meshhier

@@ -18,6 +18,7 @@ struct TileRecord {
   std::uint32_t own_count = 0;
   std::uint32_t boundary_count = 0;
   std::uint32_t ghost_count = 0;
+  std::uint32_t copy_count = 0;      ///< vertices at places that have one already
   std::uint32_t interior_count = 0;  ///< triangles
   std::uint32_t border_count = 0;    ///< triangles, each also listed in the tiles of its ghosts
   std::uint32_t drawn_border_count =
@@ -67,8 +68,9 @@ struct SourceSummary {
   std::uint64_t checksum = 0;    ///< storage::FileChecksum; of several files XXH3-64 over theirs, 8
                                  ///< bytes each, little endian
   std::uint64_t vertices = 0;
-  std::uint64_t triangles = 0;             ///< kept, after polygons became fans
-  std::uint64_t faces = 0;                 ///< as the file counts them
+  std::uint64_t places = 0;     ///< where vertices lie, <= vertices: what the tree counts
+  std::uint64_t triangles = 0;  ///< kept, after polygons became fans
+  std::uint64_t faces = 0;      ///< as the file counts them
   std::uint64_t degenerate_triangles = 0;  ///< dropped: two corners are the same vertex
   std::uint64_t unreferenced_vertices = 0;
   BoundsD bounds;                 ///< input coordinates

@@ -3,6 +3,8 @@
 #include "hierarchy/sort_few.h"
 
 #include <algorithm>
+#include <numeric>
+#include <utility>
 
 namespace meshhier {
 
@@ -38,6 +40,27 @@ void VertexArray::append(const VertexArray& other, std::span<const std::uint32_t
   for (std::size_t i = 0; i < vertices.size(); ++i)
     std::ranges::copy(other.attributes_of(vertices[i]),
                       attributes.begin() + static_cast<std::ptrdiff_t>((first + i) * width));
+}
+
+Copies sorted_by_place(const Copies& copies) {
+  std::vector<std::uint32_t> order(copies.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return copies.places[a] < copies.places[b];
+  });
+  Copies sorted;
+  sorted.vertices.channels = copies.vertices.channels;
+  sorted.vertices.append(copies.vertices, order);
+  sorted.places.reserve(order.size());
+  for (const std::uint32_t copy : order)
+    sorted.places.push_back(copies.places[copy]);
+  return sorted;
+}
+
+Copies renumbered(Copies copies, std::span<const std::uint32_t> place) {
+  for (std::uint32_t& at : copies.places)
+    at = place[at];
+  return sorted_by_place(copies);
 }
 
 namespace {
@@ -79,6 +102,49 @@ void normalize_triangles(std::vector<TileTriangle>& triangles, bool unique) {
   sort_by_first_corner(triangles);
   if (unique)
     triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+}
+
+namespace {
+
+struct Wedged {
+  TileTriangle places;
+  CornerWedges wedges;
+  friend auto operator<=>(const Wedged&, const Wedged&) = default;
+};
+
+}  // namespace
+
+void normalize_triangles(std::vector<TileTriangle>& triangles, std::vector<CornerWedges>& wedges,
+                         bool unique) {
+  if (wedges.empty())
+    return normalize_triangles(triangles, unique);
+  const auto equal = [&](const Wedged& t, std::size_t a, std::size_t b) {
+    return t.places[a] == t.places[b] && (unique || t.wedges[a] == t.wedges[b]);
+  };
+  std::vector<Wedged> sorted;
+  sorted.reserve(triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const Wedged t{triangles[i], wedges[i]};
+    if (equal(t, 0, 1) || equal(t, 1, 2) || equal(t, 2, 0))
+      continue;
+    const auto corner = [&](std::size_t k) { return std::pair(t.places[k], t.wedges[k]); };
+    const std::size_t first = corner(1) < std::min(corner(0), corner(2))   ? 1
+                              : corner(2) < std::min(corner(0), corner(1)) ? 2
+                                                                           : 0;
+    sorted.push_back({turned(t.places, first), turned(t.wedges, first)});
+  }
+  std::sort(sorted.begin(), sorted.end());
+  if (unique) {
+    sorted.erase(std::unique(sorted.begin(), sorted.end(),
+                             [](const Wedged& a, const Wedged& b) { return a.places == b.places; }),
+                 sorted.end());
+  }
+  triangles.resize(sorted.size());
+  wedges.resize(sorted.size());
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    triangles[i] = sorted[i].places;
+    wedges[i] = sorted[i].wedges;
+  }
 }
 
 }  // namespace meshhier

@@ -1,5 +1,7 @@
 #include "import/mesh_input.h"
 
+#include "execution/parallel.h"
+#include "import/find_copies.h"
 #include "mesh_io/ply_source.h"
 #include "mesh_io/renamed_file.h"
 
@@ -21,6 +23,32 @@ void MeshInput::import(const Place& place) {
   facts_ = import_input(input_, *ply_,
                         {system_, scratch, place.sort_bytes, place.progress, place.cancel});
   description_ = open_imported()->description();
+}
+
+void MeshInput::find_copies(const Place& place) {
+  place.progress.stage("import", description_.vertex_count, "vertices");
+  const std::unique_ptr<mesh_io::MeshSource> imported = in_place_ ? nullptr : open_imported();
+  mesh_io::MeshSource& source = in_place_ ? *in_place_ : *imported;
+  storage::ScratchFile scratch(system_, place.scratch, place.pool);
+  const std::uint64_t memory = place.sort_bytes;
+  copy_scratch_.emplace(system_, place.copies, place.pool);
+  copies_ = importing::find_copies(
+      source, *copy_scratch_,
+      {scratch, memory, execution::useful_blocks(memory, look_block_bytes(description_)),
+       place.progress, place.cancel});
+  description_.place_count = description_.vertex_count - copies_.count();
+}
+
+void MeshInput::recall(const mesh_io::MeshDescription& found) {
+  if (needs_import())
+    description_ = found;
+  description_.place_count = found.place_count;
+}
+
+void MeshInput::drop() {
+  ply_.reset();
+  copies_ = {};
+  copy_scratch_.reset();
 }
 
 std::unique_ptr<mesh_io::MeshSource> MeshInput::open() {

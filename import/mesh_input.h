@@ -2,6 +2,7 @@
 // more, if an earlier build that was stopped has read it all.
 #pragma once
 
+#include "import/copy_list.h"
 #include "import/import_input.h"
 #include "import/input_files.h"
 #include "mesh_io/mesh_source.h"
@@ -20,9 +21,10 @@ class MeshInput {
     std::filesystem::path ply;      ///< becomes the imported mesh
     std::filesystem::path scratch;  ///< a temporary file
     storage::MemoryPool& pool;
-    std::uint64_t sort_bytes = 0;
+    std::uint64_t sort_bytes = 0;  ///< of each of two sorts
     execution::Progress& progress;
     const execution::CancelToken& cancel;
+    std::filesystem::path copies{};  ///< a temporary file
   };
 
   /// Opens the files and finds out what they are; reads the header if they are read in place.
@@ -34,8 +36,16 @@ class MeshInput {
 
   /// Imports; the PLY stays until drop() or the end of this object.
   void import(const Place& place);
-  /// Takes what import() would find out from an earlier import of the same files.
-  void recall(const mesh_io::MeshDescription& imported) { description_ = imported; }
+  /// Finds the vertices that lie where others do: copies() and the description's place_count are
+  /// known then. The list stays until drop() or the end of this object.
+  void find_copies(const Place& place);
+  /// Empty unless find_copies() has found any.
+  const CopyList& copies() const { return copies_; }
+  /// Whether find_copies() was called.
+  bool was_looked_at() const { return copy_scratch_.has_value(); }
+
+  /// Takes what import() and find_copies() would find out from an earlier build of the same files.
+  void recall(const mesh_io::MeshDescription& found);
 
   /// Requires that nothing need be imported, or that import() or recall() has been called.
   const mesh_io::MeshDescription& description() const { return description_; }
@@ -46,7 +56,7 @@ class MeshInput {
   std::unique_ptr<mesh_io::MeshSource> open();
   /// Adds what the PLY does not say.
   void complete(SourceSummary& summary) const { facts_.complete(summary); }
-  void drop() { ply_.reset(); }
+  void drop();
 
   /// The files' as in SourceSummary. Reads what was not read so far.
   std::uint64_t checksum(const execution::CancelToken& cancel);
@@ -60,6 +70,8 @@ class MeshInput {
   std::optional<TemporaryFile> ply_;
   ImportFacts facts_;
   mesh_io::MeshDescription description_;
+  std::optional<storage::ScratchFile> copy_scratch_;
+  CopyList copies_;
 };
 
 }  // namespace meshhier::importing

@@ -1,41 +1,15 @@
 #include "inspection/border_pairs.h"
 
 #include "hierarchy/cut.h"
-#include "storage/io/hash.h"
+#include "inspection/vertex_hash.h"
 
 #include <algorithm>
-#include <cstring>
 #include <map>
 #include <memory>
 #include <utility>
 
 namespace meshhier::inspection {
 namespace {
-
-/// A vertex as its tile and a ghost of it must both know it.
-class VertexHash {
- public:
-  std::uint64_t operator()(std::span<const std::uint16_t> chain, const VertexArray& vertices,
-                           std::size_t vertex, bool with_attributes) {
-    bytes_.clear();
-    append(chain);
-    append(std::span(&vertices.positions[vertex], 1));
-    if (with_attributes)
-      append(vertices.attributes_of(vertex));
-    return storage::checksum(bytes_);
-  }
-
- private:
-  template <class T>
-  void append(std::span<const T> values) {
-    const std::size_t end = bytes_.size();
-    bytes_.resize(end + values.size_bytes());
-    if (!values.empty())
-      std::memcpy(bytes_.data() + end, values.data(), values.size_bytes());
-  }
-
-  std::vector<std::byte> bytes_;
-};
 
 /// Calls visit(tile) for each other tile that a triangle of `own` touches, once.
 template <class Visit>
@@ -137,7 +111,7 @@ void BorderPairs::add_own(const Node& node, std::vector<Use> uses, SumsByOther& 
     const NodeId other{node.id().level, use.other};
     node.find_chain(use.vertex, other, chain);
     sums[use.other].own +=
-        hash(chain, node.tile().mesh.vertices, use.vertex, compare_attributes(node.id(), other));
+        hash(chain, {node.tile().mesh.vertices, use.vertex}, compare_attributes(node.id(), other));
   }
 }
 
@@ -146,7 +120,7 @@ void BorderPairs::add_ghosts(const PublishedTile& tile, SumsByOther& sums) const
   VertexHash hash;
   for (std::size_t i = 0; i < mesh.ghosts.size(); ++i) {
     const NodeId other{tile.node.level, mesh.ghosts[i].tile};
-    sums[other.index].other += hash(tile.chains[i], mesh.vertices, mesh.own_count + i,
+    sums[other.index].other += hash(tile.chains[i], {mesh.vertices, mesh.own_count + i},
                                     compare_attributes(tile.node, other));
   }
 }

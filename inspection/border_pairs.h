@@ -1,13 +1,13 @@
 // What two neighbouring nodes of a level say of each other, summed up.
 //
 // Neighbours agree if both list the same border triangles between them, and if each has the other's
-// vertices there as they are: number, chain, position, attributes. To look into every neighbour's
+// places there as they are: number, chain, position, attributes of the first vertex (copy_claims.h
+// sees to the others). To look into every neighbour's
 // tile would be quadratic where all tiles are neighbours (a soup of long triangles). So each node
 // sums up what it says of every pair it is in, and the two sums of a pair meet in one sort: every
 // tile is read once, whatever the mesh. Only pairs that differ need to be looked into.
 //
-// The sums are of 64-bit hashes, so their order does not matter. That two unlike sides get equal
-// sums by accident is as unlikely as that a damaged file keeps its checksum.
+// The sums are of 64-bit hashes (vertex_hash.h), so their order does not matter.
 #pragma once
 
 #include "hierarchy/published.h"

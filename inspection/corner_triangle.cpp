@@ -6,9 +6,10 @@
 
 namespace meshhier::inspection {
 void normalize(std::vector<CornerTriangle>& triangles, bool unique) {
-  std::erase_if(triangles, [](const CornerTriangle& t) { return is_degenerate(t); });
-  for (CornerTriangle& t : triangles)
-    t = canonical(t);
+  if (unique)
+    std::erase_if(triangles, [](const CornerTriangle& t) { return is_degenerate(t); });
+  for (CornerTriangle& t : triangles)  // canonical() does not tell where a corner is there twice
+    t = is_degenerate(t) ? std::min({t, turned(t, 1), turned(t, 2)}) : canonical(t);
   std::sort(triangles.begin(), triangles.end());
   if (unique)
     triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
@@ -25,7 +26,7 @@ std::vector<CornerTriangle> border_of(const PublishedTile& tile, const Tree& tre
                                      : make_corner(mesh.ghost(t[i]).tile, mesh.ghost(t[i]).index);
     }
   }
-  // Copies of input triangles stay; simplified tiles have none to drop, or it is told elsewhere.
+  // All of the input's triangles stay; simplified tiles have none to drop, or it is told elsewhere.
   normalize(triangles, !tree.is_partition(tile.node));
   return triangles;
 }

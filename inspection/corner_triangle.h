@@ -10,7 +10,7 @@
 
 namespace meshhier::inspection {
 
-/// NodeId::index of a tile in the upper half, one of its own vertices in the lower.
+/// NodeId::index of a tile in the upper half, one of its own places in the lower.
 enum class Corner : std::uint64_t {};
 
 using CornerTriangle = Triangle<Corner>;
@@ -25,11 +25,12 @@ constexpr std::uint32_t vertex_index(Corner corner) {
   return static_cast<std::uint32_t>(static_cast<std::uint64_t>(corner));
 }
 
-/// normalize_triangles() for corner triangles: drops degenerate ones, makes the rest canonical(),
-/// sorts; one of exact duplicates stays if `unique`.
+/// Turns triangles so that equal ones begin alike, and sorts them. `unique`: drops degenerate ones,
+/// and of equal ones all but one.
 void normalize(std::vector<CornerTriangle>& triangles, bool unique);
 
-/// The tile's border triangles with ghosts as vertices of their own tiles, normalized.
+/// The tile's border triangles with ghosts as places of their own tiles, normalized: of a partition
+/// all, of other tiles the `unique` ones.
 std::vector<CornerTriangle> border_of(const PublishedTile& tile, const Tree& tree);
 
 /// The border triangles that the early node above a partition would have. Requires that

@@ -39,6 +39,23 @@ BorderView view_border(const TileMesh& mesh, NodeId node, std::uint32_t base,
   return view;
 }
 
+/// A border triangle that is not the input's, where the cut shows it.
+struct DrawnImage {
+  CutTriangle corners;
+  std::uint32_t border = 0;  ///< which of the tile's border triangles
+  friend auto operator<=>(const DrawnImage&, const DrawnImage&) = default;
+};
+
+void add_each_once(std::vector<DrawnImage> images, DrawnTile& drawn) {
+  std::sort(images.begin(), images.end());
+  const auto end = std::unique(images.begin(), images.end(),
+                               [](const auto& a, const auto& b) { return a.corners == b.corners; });
+  std::for_each(images.begin(), end, [&](const DrawnImage& image) {
+    drawn.triangles.push_back(image.corners);
+    drawn.border.push_back(image.border);
+  });
+}
+
 }  // namespace
 
 std::size_t NumberedCut::position_of_vertex(std::uint32_t number) const {
@@ -90,7 +107,7 @@ DrawnTile draw_tile(const Tree& tree, const NumberedCut& numbered, std::size_t p
   for (const TileTriangle& t : mesh.interior) {
     drawn.triangles.push_back({base + raw(t[0]), base + raw(t[1]), base + raw(t[2])});
   }
-  std::vector<CutTriangle> images;
+  std::vector<DrawnImage> images;
   for (std::size_t i = 0; i < mesh.border.size(); ++i) {
     const BorderView view =
         view_border(mesh, tile.node, base, mesh.border[i], ghosts, tree.depth());
@@ -98,13 +115,12 @@ DrawnTile draw_tile(const Tree& tree, const NumberedCut& numbered, std::size_t p
       drawn.left_out.push_back(static_cast<std::uint32_t>(i));
     } else if (view.original) {
       drawn.triangles.push_back(view.corners);
+      drawn.border.push_back(static_cast<std::uint32_t>(i));
     } else if (!is_degenerate(view.corners)) {
-      images.push_back(canonical(view.corners));
+      images.push_back({canonical(view.corners), static_cast<std::uint32_t>(i)});
     }
   }
-  std::sort(images.begin(), images.end());
-  images.erase(std::unique(images.begin(), images.end()), images.end());
-  drawn.triangles.insert(drawn.triangles.end(), images.begin(), images.end());
+  add_each_once(std::move(images), drawn);
   return drawn;
 }
 

@@ -1,6 +1,7 @@
-// The mesh a cut shows, tile by tile.
+// The mesh a cut shows, tile by tile, by place: which vertex of its place a corner is makes no
+// difference here (cut_vertices.h knows).
 //
-// The vertices of the cut's tiles are numbered from left to right, each tile's own ones in their
+// The places of the cut's tiles are numbered from left to right, each tile's own ones in their
 // order. A border triangle reaches into other tiles: its ghosts are looked up where the cut shows
 // their regions (chains, hierarchy/published.h). One tile draws it (hierarchy/drawing_rule.h), the
 // same for all images of one triangle of the cut. Exact duplicates therefore meet within one tile,
@@ -19,10 +20,10 @@
 
 namespace meshhier::inspection {
 
-/// Corners as numbers of the cut's vertices.
+/// Corners as numbers of the cut's places.
 using CutTriangle = Triangle<std::uint32_t>;
 
-/// A cut whose vertices are numbered.
+/// A cut whose places are numbered. A vertex here is the first one of its place.
 struct NumberedCut {
   Cut cut;
   std::vector<std::uint64_t> bases;  ///< number of each node's first vertex; then the vertex count
@@ -53,13 +54,15 @@ std::optional<ShownGhost> find_ghost(const Tree& tree, const NumberedCut& number
 
 /// What a tile contributes to its cut.
 struct DrawnTile {
-  std::vector<CutTriangle> triangles;   ///< the interior ones in the tile's order, then border ones
-  std::vector<std::uint32_t> left_out;  ///< places in tile.mesh.border that another tile draws
+  std::vector<CutTriangle> triangles;  ///< the interior ones in the tile's order, then border ones
+  std::vector<std::uint32_t> border;   ///< of each border triangle drawn, which of tile.mesh.border
+  std::vector<std::uint32_t> left_out;  ///< those of tile.mesh.border that another tile draws
 };
 
-/// `position`: the tile's, in the cut. Duplicates of border triangles are dropped unless all their
-/// corners are original vertices: those are the input's own, copies included. O(t log t) in the
-/// border triangles, linear in the interior ones. Deterministic. Throws as find_ghost().
+/// `position`: the tile's, in the cut. Of equal border triangles the tile's first is drawn, and
+/// none with a place twice, unless all their corners are original: those are the input's own,
+/// repeated and flat ones included. O(t log t) in the border triangles, linear in the interior
+/// ones. Deterministic. Throws as find_ghost().
 DrawnTile draw_tile(const Tree& tree, const NumberedCut& numbered, std::size_t position,
                     const PublishedTile& tile);
 

@@ -38,6 +38,8 @@ void EdgeCensus::add(const PublishedTile& tile, std::uint32_t base, const DrawnT
   std::vector<Use> uses;
   uses.reserve(3 * drawn.triangles.size());
   for (const CutTriangle& t : drawn.triangles) {
+    if (is_degenerate(t))
+      continue;
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t from = t[i], to = t[(i + 1) % 3];
       const Use use = use_of(from, to);

@@ -1,4 +1,6 @@
-// Counts the triangles at the edges of a cut's mesh, tile by tile, out of core.
+// Counts the triangles at the edges of a cut's mesh, by place, tile by tile, out of core.
+//
+// Triangles with a place twice count nowhere: they have no area, and close no gap.
 #pragma once
 
 #include "inspection/cut_mesh.h"
@@ -11,7 +13,7 @@
 
 namespace meshhier::inspection {
 
-/// An edge between two vertices of a cut; low < high.
+/// An edge between two places of a cut; low < high.
 struct CutEdge {
   std::uint32_t low = 0;
   std::uint32_t high = 0;
@@ -46,7 +48,7 @@ class EdgeCensus {
   EdgeCensus(storage::ScratchFile& scratch, std::uint64_t memory_bytes, Visit visit)
       : seams_(scratch, memory_bytes), visit_(std::move(visit)) {}
 
-  /// Adds what a tile draws (draw_tile()); `base`: number of its first vertex. O(t log t).
+  /// Adds what a tile draws (draw_tile()); `base`: number of its first place. O(t log t).
   void add(const PublishedTile& tile, std::uint32_t base, const DrawnTile& drawn);
 
   /// Counts the edges along the seams. Call it once, after all tiles.

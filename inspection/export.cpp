@@ -5,6 +5,8 @@
 #include "hierarchy/plain_text.h"
 #include "inspection/cut_file.h"
 #include "inspection/cut_mesh.h"
+#include "inspection/cut_vertices.h"
+#include "inspection/tile_vertices.h"
 #include "mesh_io/ply_writer.h"
 #include "storage/format/archive_files.h"
 #include "storage/format/hierarchy_reader.h"
@@ -81,28 +83,32 @@ void copy_triangles(const TriangleSpool& from, mesh_io::PlyWriter& to) {
 std::string export_cut(const ExportJob& job, Cut cut, const std::string& what) {
   const Tree& tree = job.reader.tree();
   const NumberedCut numbered = number_vertices(job.reader, std::move(cut));
-  storage::MemoryPool pool(job.memory_budget / 2);  // the other half: a tile, the writer, the cut
+  CutVertices vertices(job.reader, numbered, job.memory_budget / 8, job.cancel);
+  // What is left: a tile, the writer, the cut.
+  storage::MemoryPool pool(job.memory_budget / 2);
   storage::ScratchFile scratch(job.files, job.output.scratch(), pool);
   TriangleSpool triangles(scratch, kScratchBlockBytes);
 
   job.progress.stage("export", 2 * numbered.cut.size(), "tiles");
   for (std::size_t i = 0; i < numbered.cut.size(); ++i) {
     job.cancel.check();
-    DrawnTile drawn = draw_tile(tree, numbered, i, job.reader.read_tile(numbered.cut[i]));
-    for (CutTriangle& triangle : drawn.triangles)
+    const PublishedTile tile = job.reader.read_tile(numbered.cut[i]);
+    auto drawn = vertices.triangles(i, tile, draw_tile(tree, numbered, i, tile));
+    for (CutTriangle& triangle : drawn)
       triangle = canonical(triangle);
-    std::sort(drawn.triangles.begin(), drawn.triangles.end());
-    triangles.append(drawn.triangles);
+    std::sort(drawn.begin(), drawn.end());
+    triangles.append(drawn);
     job.progress.advance(1);
   }
   mesh_io::PlyContent content = content_for(job.reader, what);
-  content.vertex_count = numbered.vertex_count();
+  content.vertex_count = vertices.count();
   content.triangle_count = triangles.size();
   mesh_io::PlyWriter writer(job.output.file(), content);
   for (NodeId node : numbered.cut.nodes()) {
     job.cancel.check();
     const PublishedTile tile = job.reader.read_tile(node);
     write_vertices(writer, job.reader, tile.mesh.vertices, tile.mesh.own_count);
+    write_vertices(writer, job.reader, tile.mesh.copies.vertices, own_copy_count(tile.mesh));
     job.progress.advance(1);
   }
   copy_triangles(triangles, writer);
@@ -112,6 +118,16 @@ std::string export_cut(const ExportJob& job, Cut cut, const std::string& what) {
                      counted(content.triangle_count, "triangles"));
 }
 
+/// Corners as the tile's file numbers them.
+void write_triangles(mesh_io::PlyWriter& writer, const TileMesh& mesh,
+                     const std::vector<TileTriangle>& list,
+                     const std::vector<CornerWedges>& wedges) {
+  std::vector<CutTriangle> triangles;
+  for (const TileTriangle& t : vertex_numbers(mesh).numbered(list, wedges))
+    triangles.push_back({raw(t[0]), raw(t[1]), raw(t[2])});
+  writer.write_triangles(triangles);
+}
+
 std::string export_tile(const ExportJob& job, NodeId node) {
   require_node(job.reader.tree(), node);
   job.progress.stage("export", 1, "tiles");
@@ -119,20 +135,18 @@ std::string export_tile(const ExportJob& job, NodeId node) {
   const TileMesh& mesh = tile.mesh;
   const std::string what = "tile " + to_text(tile.node);
   mesh_io::PlyContent content = content_for(job.reader, what);
-  content.vertex_count = mesh.vertices.size();
+  content.vertex_count = mesh.vertices.size() + mesh.copies.size();
   content.triangle_count = mesh.interior.size() + mesh.border.size();
   mesh_io::PlyWriter writer(job.output.file(), content);
   write_vertices(writer, job.reader, mesh.vertices, mesh.vertices.size());
-  for (const auto* list : {&mesh.interior, &mesh.border}) {
-    std::vector<CutTriangle> triangles;
-    for (const TileTriangle& t : *list)
-      triangles.push_back({raw(t[0]), raw(t[1]), raw(t[2])});
-    writer.write_triangles(triangles);
-  }
+  write_vertices(writer, job.reader, mesh.copies.vertices, mesh.copies.size());
+  write_triangles(writer, mesh, mesh.interior, mesh.interior_wedges);
+  write_triangles(writer, mesh, mesh.border, mesh.border_wedges);
   writer.finish();
   job.progress.advance(1);
+  const std::size_t foreign = mesh.ghosts.size() + mesh.copies.size() - own_copy_count(mesh);
   return fmt::format("{}: {}, {} of them its neighbours', {}, {} of them border", what,
-                     counted(content.vertex_count, "vertices"), mesh.ghosts.size(),
+                     counted(content.vertex_count, "vertices"), foreign,
                      counted(content.triangle_count, "triangles"), mesh.border.size());
 }
 

@@ -30,10 +30,11 @@ struct ExportOptions {
 /// Assembles the selection seamlessly, tile by tile, into options.output. Vertices are shared
 /// between tiles; coordinates are doubles if the hierarchy has an origin. Triangles of the input
 /// come with all their copies, of coarser ones exact duplicates (same corners, same orientation)
-/// come once. Triangles of a level or cut start with their smallest corner and ascend, tile by
-/// tile; those of the last level ascend as a whole, and its vertices are in the order of ranks. The
-/// output appears complete or not at all. Returns a line for people. Deterministic. Throws
-/// Error(usage) if the selection is not in the tree or the cut file is no cut, Error(io | corrupt).
+/// come once. Vertices of a level or cut are those of CutVertices, of a node they come as in its
+/// file. Triangles of a level or cut start with their smallest corner and ascend, tile by tile;
+/// those of the last level ascend as a whole, and its places are in the order of ranks. The output
+/// appears complete or not at all. Returns a line for people. Deterministic. Throws Error(usage) if
+/// the selection is not in the tree or the cut file is no cut, Error(io | corrupt).
 std::string export_mesh(storage::FileSystem& files, const std::filesystem::path& hierarchy,
                         const ExportOptions& options, execution::Progress& progress,
                         const execution::CancelToken& cancel);

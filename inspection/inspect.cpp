@@ -52,7 +52,7 @@ storage::SizeSummary partition_sizes(const HierarchyReader& reader) {
 }
 
 storage::ForcedCollapses forced_collapses_of(const HierarchyReader& reader) {
-  return storage::summarize_forced_collapses(reader.records(), reader.manifest().source.vertices);
+  return storage::summarize_forced_collapses(reader.records(), reader.manifest().source.places);
 }
 
 storage::SizeSummary all_sizes(const HierarchyReader& reader) {
@@ -84,7 +84,7 @@ std::uint64_t bytes_on_disk(const storage::HierarchyFiles& place, const Hierarch
 std::string grouped(std::uint64_t number) {
   std::string digits = std::to_string(number);
   for (std::size_t i = digits.size(); i > 3; i -= 3)
-    digits.insert(i - 3, ",");
+    digits.insert(i - 3, 1, ',');
   return digits;
 }
 
@@ -99,15 +99,22 @@ std::string shown(const std::string& text) {
   return plain_text(text, kLongest);
 }
 
+/// "1,234 vertices", "1,234 vertices at 1,000 places" if some lie where others do.
+std::string vertices_text(const SourceSummary& source) {
+  const std::string vertices = grouped(source.vertices, "vertices");
+  return source.places == source.vertices
+             ? vertices
+             : fmt::format("{} at {}", vertices, grouped(source.places, "places"));
+}
+
 std::string source_text(const storage::Manifest& manifest) {
   const SourceSummary& s = manifest.source;
   const BoundsD& b = s.bounds;
   std::string text =
       fmt::format("source       {}, {}: {} ({} of no triangle), {} of {} ({} degenerate dropped)\n",
-                  shown(s.file_name), execution::rounded_size_text(s.file_bytes),
-                  grouped(s.vertices, "vertices"), grouped(s.unreferenced_vertices),
-                  grouped(s.triangles, "triangles"), grouped(s.faces, "faces"),
-                  grouped(s.degenerate_triangles));
+                  shown(s.file_name), execution::rounded_size_text(s.file_bytes), vertices_text(s),
+                  grouped(s.unreferenced_vertices), grouped(s.triangles, "triangles"),
+                  grouped(s.faces, "faces"), grouped(s.degenerate_triangles));
   text += fmt::format("bounds       {} {} {} to {} {} {}{}\n", b.min.x, b.min.y, b.min.z, b.max.x,
                       b.max.y, b.max.z, s.double_precision ? ", double precision" : "");
   if (manifest.origin != Vec3d{}) {
@@ -158,14 +165,15 @@ std::string range_text(const storage::CountRange& range) {
 
 std::string level_table(std::span<const storage::LevelSummary> levels, std::optional<Level> only) {
   std::string text = fmt::format(
-      "{:>5} {:>7} |{:^29} |{:^29} |{:^33} | {:>6} {:>10} {:>10} | {:>6} {:>8} {:>8} | {:>13}\n",
-      "", "", "vertices a tile", "triangles a tile", "bytes a file", "", "", "", "off", "vertices",
-      "vertices", "triangles");
+      "{:>5} {:>7} |{:^29} | {:>9} |{:^29} |{:^33} | {:>6} {:>10} {:>10} | {:>6} {:>8} {:>8} | "
+      "{:>13}\n",
+      "", "", "vertices a tile", "", "triangles a tile", "bytes a file", "", "", "", "off",
+      "vertices", "vertices", "triangles");
   constexpr std::string_view kRange = "   min     mean    max spread";
-  text +=
-      fmt::format("{:>5} {:>7} |{} |{} |{} | {:>6} {:>10} {:>10} | {:>6} {:>8} {:>8} | {:>13}\n",
-                  "level", "tiles", kRange, kRange, "     min     mean      max spread", "border",
-                  "error", "bound", "target", "torn", "forced", "shown");
+  text += fmt::format(
+      "{:>5} {:>7} |{} | {:>9} |{} |{} | {:>6} {:>10} {:>10} | {:>6} {:>8} {:>8} | {:>13}\n",
+      "level", "tiles", kRange, "copies", kRange, "     min     mean      max spread", "border",
+      "error", "bound", "target", "torn", "forced", "shown");
   for (const storage::LevelSummary& s : levels) {
     if (only && s.level != *only)
       continue;
@@ -173,13 +181,15 @@ std::string level_table(std::span<const storage::LevelSummary> levels, std::opti
         fmt::format("{:>8} {:>8.0f} {:>8} {:>6}", s.bytes.min, s.bytes.mean, s.bytes.max,
                     fmt::format("{:.0f}%", 100 * s.bytes.spread()));
     text += fmt::format(
-        "{:>5} {:>7} |{} |{} |{} | {:>6} {:>10.4g} {:>10.4g} | {:>6} {:>8} {:>8} | {:>13}\n",
-        raw(s.level), s.tiles, range_text(s.vertices), range_text(s.triangles), bytes,
-        fmt::format("{:.1f}%", 100 * s.border_ratio), s.error_max, s.bound_max, s.off_target,
+        "{:>5} {:>7} |{} | {:>9} |{} |{} | {:>6} {:>10.4g} {:>10.4g} | {:>6} {:>8} {:>8} | "
+        "{:>13}\n",
+        raw(s.level), s.tiles, range_text(s.vertices), s.copies_total, range_text(s.triangles),
+        bytes, fmt::format("{:.1f}%", 100 * s.border_ratio), s.error_max, s.bound_max, s.off_target,
         s.torn_total, s.forced_total, (s.shown_exact ? "" : "<=") + grouped(s.shown_triangles));
   }
   return text +
-         "spread: (max - min) / mean; border: share of border triangles; error, bound: the "
+         "spread: (max - min) / mean; copies: further vertices where one lies already, with other "
+         "attributes\nborder: share of border triangles; error, bound: the "
          "largest, in input units\ntorn: vertices that went by changing the surface's topology; "
          "forced: without care for the surface, to reach the count\n";
 }
@@ -236,10 +246,11 @@ std::string totals_text(const storage::Manifest& manifest,
 
 std::string tile_text(const TileRecord& r) {
   return fmt::format(
-      "tile {}: {} (asked for {}), {} of them on the boundary, {}; {} interior and {}, {} of them "
-      "drawn here; error {:.4g}, bound {:.4g}{}; {}; box {} {} {} to {} {} {}\n",
+      "tile {}: {} (asked for {}), {} of them on the boundary, {}{}; {} interior and {}, {} of "
+      "them drawn here; error {:.4g}, bound {:.4g}{}; {}; box {} {} {} to {} {} {}\n",
       to_text(r.node), counted(r.own_count, "vertices"), r.target_count, r.boundary_count,
-      counted(r.ghost_count, "ghosts"), r.interior_count,
+      counted(r.ghost_count, "ghosts"),
+      r.copy_count > 0 ? ", " + counted(r.copy_count, "copies") : "", r.interior_count,
       counted(r.border_count, "border triangles"), r.drawn_border_count, r.error, r.bound,
       r.compactness > 0 ? fmt::format(", compactness {:.3f}", r.compactness) : "",
       counted(r.file_bytes, "bytes"), r.bounds.min.x, r.bounds.min.y, r.bounds.min.z,
@@ -260,6 +271,7 @@ Json source_json(const storage::Manifest& manifest) {
   return {{"file_name", s.file_name},
           {"file_bytes", s.file_bytes},
           {"vertices", s.vertices},
+          {"places", s.places},
           {"triangles", s.triangles},
           {"faces", s.faces},
           {"degenerate_triangles", s.degenerate_triangles},

@@ -13,12 +13,17 @@
 
 namespace meshhier::inspection {
 
+inline std::uint64_t memory_bytes(const VertexArray& vertices) {
+  return vertices.positions.size() * sizeof(Vec3f) + vertices.attributes.size() * sizeof(float);
+}
+
 /// Bytes a tile holds in memory.
 inline std::uint64_t memory_bytes(const PublishedTile& tile) {
   const TileMesh& mesh = tile.mesh;
-  return sizeof(PublishedTile) + mesh.vertices.positions.size() * sizeof(Vec3f) +
-         mesh.vertices.attributes.size() * sizeof(float) + mesh.ghosts.size() * sizeof(GhostRef) +
+  return sizeof(PublishedTile) + memory_bytes(mesh.vertices) + memory_bytes(mesh.copies.vertices) +
+         mesh.copies.size() * sizeof(std::uint32_t) + mesh.ghosts.size() * sizeof(GhostRef) +
          (mesh.interior.size() + mesh.border.size()) * sizeof(TileTriangle) +
+         (mesh.interior_wedges.size() + mesh.border_wedges.size()) * sizeof(CornerWedges) +
          tile.parent_map.size() * sizeof(std::uint16_t) +
          tile.chains.size() * sizeof(std::uint32_t) + tile.chains.entries().size_bytes();
 }

@@ -1,10 +1,10 @@
 // What is wrong between two neighbours that do not agree (inspection/border_pairs.h).
 #include "hierarchy/cut.h"
 #include "inspection/corner_triangle.h"
+#include "inspection/tile_vertices.h"
 #include "inspection/verify_parts.h"
 
 #include <algorithm>
-#include <cstring>
 #include <iterator>
 #include <string_view>
 #include <vector>
@@ -50,16 +50,6 @@ GhostGroup ghosts_in(const PublishedTile& tile, NodeId neighbour) {
   return {neighbour, at(neighbour.index), at(neighbour.index + 1)};
 }
 
-bool same_attributes(const VertexArray& a, std::size_t i, const VertexArray& b, std::size_t j) {
-  const auto x = a.attributes_of(i), y = b.attributes_of(j);
-  return x.empty() || std::memcmp(x.data(), y.data(), x.size_bytes()) == 0;
-}
-
-/// Bits, not values: -0 is not 0 where "bit for bit" is promised.
-bool same_position(const VertexArray& a, std::size_t i, const VertexArray& b, std::size_t j) {
-  return std::memcmp(&a.positions[i], &b.positions[j], sizeof(Vec3f)) == 0;
-}
-
 void check_ghosts(const VerifyJob& job, const PublishedTile& tile, const GhostGroup& group,
                   const PublishedTile& neighbour) {
   const Tree& tree = job.tree();
@@ -71,11 +61,11 @@ void check_ghosts(const VerifyJob& job, const PublishedTile& tile, const GhostGr
     missing.require(vertex < neighbour.mesh.boundary_count, i);
     if (vertex >= neighbour.mesh.boundary_count)
       continue;
-    const std::size_t here = tile.mesh.own_count + i;
-    const VertexArray &own = neighbour.mesh.vertices, &seen = tile.mesh.vertices;
-    moved.require(same_position(seen, here, own, vertex), i);
+    const VertexAt own{neighbour.mesh.vertices, vertex};
+    const VertexAt seen{tile.mesh.vertices, tile.mesh.own_count + i};
+    moved.require(has_same_position(seen, own), i);
     if (same_kind)
-      recoloured.require(same_attributes(seen, here, own, vertex), i);
+      recoloured.require(has_same_attributes(seen, own), i);
   }
   missing.report(job, tile.node, neighbour.node, "are not vertices of its boundary");
   moved.report(job, tile.node, neighbour.node, "have not its position");
@@ -171,6 +161,13 @@ void explain_difference(const VerifyJob& job, NodeId a, NodeId b) {
     job.problems.add(fmt::format("tiles {} and {}: say different things of the border between them",
                                  to_text(a), to_text(b)));
   }
+}
+
+void tell_wrong_copies(const VerifyJob& job, const WrongCopies& wrong) {
+  job.problems.add(fmt::format(
+      "tile {}: of its copies of vertices in tile {}, {} are not there, or in another order (the "
+      "first: of vertex {})",
+      to_text(wrong.tile), to_text(wrong.neighbour), wrong.count, wrong.first_place));
 }
 
 }  // namespace meshhier::inspection

@@ -1,10 +1,10 @@
 // The proof that every cut is seamless, one tile at a time.
 //
-// All levels show images of the original mesh under maps of vertices, and the maps of neighbours
+// All levels show images of the original mesh under maps of places, and the maps of neighbours
 // agree (verify_borders). So if the triangles of each simplified tile are the images of its
 // children's, then by induction the triangles of every tile are the images of the original ones
 // that touch its node; and a cut, which draws each of them once, shows the image of the original
-// mesh under one map of vertices. A closed surface stays closed under any such map.
+// mesh under one map of places. A closed surface stays closed under any such map.
 #include "hierarchy/cut.h"
 #include "inspection/corner_triangle.h"
 #include "inspection/verify_parts.h"
@@ -50,7 +50,7 @@ std::optional<Corner> ghost_image(const Tree& tree, const PublishedTile& child,
   return make_corner(parent.index, sibling.parent_map[chain[up - 1]]);
 }
 
-/// The vertices of a child's tile as vertices of the parent's level; nothing if the child is
+/// The places of a child's tile as places of the parent's level; nothing if the child is
 /// broken.
 std::optional<std::vector<Corner>> image_of_vertices(const Tree& tree, const PublishedTile& child,
                                                      const PublishedTile& sibling, NodeId parent) {

@@ -5,14 +5,20 @@
 // stored) and attributes, a triangle from the hashes of its corners in their order around it. The
 // sums are of two independent 64-bit hashes: two different multisets have the same sums with a
 // chance of 2^-128. Nothing is kept but one 64-bit hash per input vertex, in a spool.
+//
+// Where vertices of equal coordinates are one place, the input's distinct coordinates are counted,
+// by sorting them. Copies lie where their places do (decode_tile), so if there are as many places
+// no two of them lie together.
 #include "hierarchy/cut.h"
 #include "hierarchy/drawing_rule.h"
 #include "hierarchy/error.h"
 #include "hierarchy/lattice.h"
 #include "hierarchy/plain_text.h"
 #include "import/mesh_input.h"
+#include "inspection/tile_vertices.h"
 #include "inspection/verify_parts.h"
 #include "mesh_io/mesh_source.h"
+#include "partition/external_sort.h"
 #include "partition/renumber.h"
 #include "storage/io/hash.h"
 
@@ -20,8 +26,10 @@
 #include <array>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <fmt/format.h>
@@ -89,15 +97,22 @@ struct MeshSums {
   }
 };
 
+/// Adds the first `own` of them to the sums, and hashes of all to `hashes`.
+void add_vertices(const VertexArray& vertices, std::size_t own, MeshSums& sums,
+                  std::vector<std::uint64_t>& hashes) {
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    const auto attributes = vertices.attributes_of(v);
+    if (v < own)
+      sums.add_vertex(vertices.positions[v], attributes);
+    hashes.push_back(hash_vertex(kVertexTable, vertices.positions[v], attributes));
+  }
+}
+
 void add_tile(const PublishedTile& tile, MeshSums& sums) {
   const TileMesh& mesh = tile.mesh;
   std::vector<std::uint64_t> hashes;
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    const auto attributes = mesh.vertices.attributes_of(v);
-    if (v < mesh.own_count)
-      sums.add_vertex(mesh.vertices.positions[v], attributes);
-    hashes.push_back(hash_vertex(kVertexTable, mesh.vertices.positions[v], attributes));
-  }
+  add_vertices(mesh.vertices, mesh.own_count, sums, hashes);
+  add_vertices(mesh.copies.vertices, own_copy_count(mesh), sums, hashes);
   const auto add = [&](const TileTriangle& t) {
     sums.add_triangle({hashes[raw(t[0])], hashes[raw(t[1])], hashes[raw(t[2])]});
   };
@@ -105,10 +120,13 @@ void add_tile(const PublishedTile& tile, MeshSums& sums) {
   const auto before = [&](std::size_t ghost) {
     return draws_before(tile.node, mesh.ghosts[ghost].tile, tile.node.level);
   };
-  std::for_each(mesh.interior.begin(), mesh.interior.end(), add);
-  for (const TileTriangle& t : mesh.border) {
-    if (draws(mesh, t, before))
-      add(t);
+  const VertexNumbers numbers = vertex_numbers(mesh);
+  const auto interior = numbers.numbered(mesh.interior, mesh.interior_wedges);
+  std::for_each(interior.begin(), interior.end(), add);
+  const auto border = numbers.numbered(mesh.border, mesh.border_wedges);
+  for (std::size_t i = 0; i < border.size(); ++i) {
+    if (draws(mesh, mesh.border[i], before))
+      add(border[i]);
   }
 }
 
@@ -135,11 +153,52 @@ std::vector<Vec3f> stored_positions(const mesh_io::VertexBlock& block, Vec3d ori
   return positions;
 }
 
+/// Counts the different coordinates of vertices, exactly; -0 is 0.
+class PlaceCount {
+ public:
+  PlaceCount(storage::ScratchFile& scratch, std::uint64_t memory_bytes)
+      : coordinates_(scratch, memory_bytes) {}
+
+  void add(const mesh_io::VertexBlock& block) {
+    coordinates_.add(block.exact);
+    for (const Vec3f& p : block.positions)
+      coordinates_.add(to_double(p));
+  }
+  /// Call it once, after all vertices.
+  std::uint64_t finish() {
+    std::uint64_t places = 0;
+    Vec3d last;
+    coordinates_.sort();
+    coordinates_.for_each_block([&](std::span<const Vec3d> block) {
+      for (const Vec3d& p : block) {
+        if (places == 0 || p != last)
+          ++places;
+        last = p;
+      }
+    });
+    return places;
+  }
+
+ private:
+  struct Key {
+    auto operator()(const Vec3d& p) const { return std::tuple(p.x, p.y, p.z); }
+  };
+  partition::ExternalSort<Vec3d, Key> coordinates_;
+};
+
 /// What the input comes to.
 struct InputSums {
   MeshSums mesh;
-  double worst_rounding = 0;  ///< to the hierarchy's lattice, if it has one
+  std::optional<std::uint64_t> places;  ///< where the hierarchy has one for each coordinates
+  double worst_rounding = 0;            ///< to the hierarchy's lattice, if it has one
 };
+
+/// Whether vertices of equal coordinates were one place, as the manifest's config says.
+bool has_topology_by_place(const VerifyJob& job) {
+  const nlohmann::ordered_json& config = job.reader.manifest().config;
+  const auto topology = config.find("topology");
+  return topology != config.end() && *topology == "place";
+}
 
 InputSums sum_input(const VerifyJob& job, mesh_io::MeshSource& source) {
   const auto channels = static_cast<std::size_t>(source.description().attributes.channels());
@@ -148,8 +207,13 @@ InputSums sum_input(const VerifyJob& job, mesh_io::MeshSource& source) {
   InputSums result;
   MeshSums& sums = result.mesh;
   storage::RecordSpool<std::uint64_t> table(job.scratch, kSpoolBlockBytes);
+  std::optional<PlaceCount> places;
+  if (has_topology_by_place(job))
+    places.emplace(job.scratch, job.options.memory_budget / 4);
   source.read_vertices([&](const mesh_io::VertexBlock& block) {
     job.cancel.check();
+    if (places)
+      places->add(block);
     std::vector<Vec3f> positions = stored_positions(block, origin);
     if (quantization) {
       const double worst = round_to(quantization->lattice, positions);
@@ -163,6 +227,9 @@ InputSums sum_input(const VerifyJob& job, mesh_io::MeshSource& source) {
     }
     table.append(hashes);
   });
+  if (places)
+    result.places = places->finish();
+  places.reset();
   partition::Renumberer<std::uint64_t> renumberer(
       table,
       partition::plan_renumbering(table.size(), sizeof(std::uint64_t),
@@ -262,6 +329,8 @@ void verify_input(const VerifyJob& job) {
   const MeshSums& input = sums.mesh;
   problems.compare("vertices", expected.vertices, input.vertices.count);
   problems.compare("triangles", expected.triangles, input.triangles.count);
+  if (sums.places)
+    problems.compare("different places of vertices", job.tree().vertex_count(), *sums.places);
   const MeshSums partitions = sum_partitions(job);
   compare_sums(input, partitions, problems);
   const auto& quantization = job.reader.manifest().quantization;

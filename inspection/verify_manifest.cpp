@@ -81,9 +81,8 @@ void check_config_against_rest(const storage::Manifest& manifest, const config::
                                const ManifestProblems& problems) {
   const Json& told = manifest.config;
   const auto says = [&](const char* pointer) { return told.contains(Json::json_pointer(pointer)); };
-  const std::uint64_t vertices = manifest.source.vertices;
   const std::uint64_t partitions =
-      config.partition.count.value_or((vertices - 1) / config.partition.vertices + 1);
+      config.partition.count.value_or((manifest.source.places - 1) / config.partition.vertices + 1);
   if (says("/partition/count") || says("/partition/vertices"))
     problems.compare("partitions", std::uint64_t{manifest.partition_count}, partitions);
   if (says("/storage/compression")) {
@@ -196,9 +195,11 @@ void verify_outline(const VerifyJob& job, const Outline& outline) {
   problems.require(told.tolerance >= 0, "the outline's tolerance is negative");
 }
 
-void verify_unreferenced(const VerifyJob& job, std::uint64_t found) {
-  ManifestProblems(job).compare("source.unreferenced_vertices",
-                                job.reader.manifest().source.unreferenced_vertices, found);
+void verify_vertex_counts(const VerifyJob& job, const PartitionTotals& found) {
+  const ManifestProblems problems(job);
+  const SourceSummary& told = job.reader.manifest().source;
+  problems.compare("source.vertices", told.vertices, job.tree().vertex_count() + found.copies);
+  problems.compare("source.unreferenced_vertices", told.unreferenced_vertices, found.unreferenced);
 }
 
 }  // namespace meshhier::inspection

@@ -4,6 +4,7 @@
 #include "execution/cancel.h"
 #include "execution/progress.h"
 #include "inspection/border_pairs.h"
+#include "inspection/copy_claims.h"
 #include "inspection/node_cache.h"
 #include "inspection/verify.h"
 #include "storage/format/hierarchy_reader.h"
@@ -80,13 +81,18 @@ void verify_files(const VerifyJob& job);
 void verify_manifest(const VerifyJob& job);
 /// What it says of the outline.
 void verify_outline(const VerifyJob& job, const Outline& outline);
-/// What it says of vertices without triangles; `found`: in the partitions.
-void verify_unreferenced(const VerifyJob& job, std::uint64_t found);
+/// What all partitions together hold, beside places and triangles.
+struct PartitionTotals {
+  std::uint64_t copies = 0;
+  std::uint64_t unreferenced = 0;  ///< vertices that are corners of no triangle
+};
+/// What it says of the input's vertices.
+void verify_vertex_counts(const VerifyJob& job, const PartitionTotals& found);
 
 /// Every tile by itself, with its children, and with its neighbours.
 void verify_tiles(const VerifyJob& job);
 
-/// Counts, bounds, errors, order, boundary of one tile against its record and its parent's.
+/// Counts, bounds, errors, order, boundary, copies of one tile against its record and its parent's.
 void verify_tile(const VerifyJob& job, const TileRecord& record, const PublishedTile& tile);
 
 /// `job` must outlive it.
@@ -95,6 +101,9 @@ ParentMaps make_parent_maps(const VerifyJob& job);
 /// Tells what two neighbouring nodes of a level, early ones too, say differently of each other:
 /// ghosts, chains, border lists.
 void explain_difference(const VerifyJob& job, NodeId a, NodeId b);
+
+/// Tells it.
+void tell_wrong_copies(const VerifyJob& job, const WrongCopies& wrong);
 
 /// That a simplified tile is exactly the image of its children under their parent maps.
 void verify_image(const VerifyJob& job, const PublishedTile& tile);

@@ -1,11 +1,14 @@
 // Looks for cracks in random cuts.
 //
-// A cut shows the image of the original mesh under a map of vertices, one of exact duplicates kept.
-// Say that an edge is unbalanced if unequal numbers of triangles run along it in the two
-// directions. If an edge of the cut has a single triangle, all images of triangles there are copies
-// of that one, so they do not balance; the sum over the original edges that came there is not zero;
-// so one of these is unbalanced. Hence: every edge with a single triangle is the image of an
-// unbalanced original edge, and where there is none (closed, oriented input), no cut has a border.
+// All of this is by place: attributes that differ at one place open no edge. A cut shows the image
+// of the original mesh under a map of places, one of exact duplicates kept. Say that an edge is
+// unbalanced if unequal numbers of triangles run along it in the two directions. If an edge of the
+// cut has a single triangle, all images of triangles there are copies of that one, so they do not
+// balance; the sum over the original edges that came there is not zero; so one of these is
+// unbalanced. Hence: every edge with a single triangle is the image of an unbalanced original edge:
+// no cut has more border edges than the input has unbalanced ones, and where there is none (closed,
+// oriented input), no cut has a border. Triangles with a place twice are balanced along every edge,
+// and have no image.
 #include "hierarchy/cut.h"
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"

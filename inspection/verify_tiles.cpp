@@ -1,12 +1,14 @@
 #include "hierarchy/cut.h"
 #include "hierarchy/drawing_rule.h"
 #include "hierarchy/lattice.h"
+#include "inspection/tile_vertices.h"
 #include "inspection/verify_parts.h"
 #include "partition/compactness.h"
 #include "storage/format/layout.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -33,19 +35,61 @@ class TileProblems {
   NodeId node_;
 };
 
-bool has_order(const std::vector<TileTriangle>& triangles, bool unique) {
+/// A triangle with the vertices that its corners have at their places.
+struct WedgedTriangle {
+  TileTriangle places;
+  CornerWedges wedges;
+  friend auto operator<=>(const WedgedTriangle&, const WedgedTriangle&) = default;
+};
+
+/// No corner twice, the smallest first. `unique`: a place is a corner.
+bool is_canonical(const WedgedTriangle& t, bool unique) {
+  const auto corner = [&](std::size_t i) {
+    return std::pair(t.places[i], unique ? 0 : t.wedges[i]);
+  };
+  return corner(0) < corner(1) && corner(0) < corner(2) && corner(1) != corner(2);
+}
+
+/// As normalize_triangles() leaves them.
+bool has_order(const std::vector<TileTriangle>& triangles, const std::vector<CornerWedges>& wedges,
+               bool unique) {
+  WedgedTriangle last{};
   for (std::size_t i = 0; i < triangles.size(); ++i) {
-    if (is_degenerate(triangles[i]) || canonical(triangles[i]) != triangles[i])
+    const WedgedTriangle now{triangles[i], corner_wedges(wedges, i)};
+    if (!is_canonical(now, unique))
       return false;
-    if (i == 0)
-      continue;
-    if (unique ? triangles[i] <= triangles[i - 1] : triangles[i] < triangles[i - 1])
+    if (i > 0 && (unique ? now.places <= last.places : now < last))
       return false;
+    last = now;
   }
   return true;
 }
 
-/// Own vertices of border triangles are on the boundary (which may hold more: triangles that a
+/// Marks the corners of triangles, by vertex_numbers().
+void mark_used(const TileMesh& mesh, const std::vector<TileTriangle>& triangles,
+               const std::vector<CornerWedges>& wedges, std::vector<bool>& used) {
+  used.resize(mesh.vertices.size() + mesh.copies.size());
+  for (const TileTriangle& t : vertex_numbers(mesh).numbered(triangles, wedges)) {
+    for (const TileVertex v : t)
+      used[raw(v)] = true;
+  }
+}
+
+std::uint64_t count_unused(const std::vector<bool>& used, std::size_t first, std::size_t count) {
+  const auto begin = used.begin() + static_cast<std::ptrdiff_t>(first);
+  return static_cast<std::uint64_t>(
+      std::count(begin, begin + static_cast<std::ptrdiff_t>(count), false));
+}
+
+/// A tile has no more of its neighbours' copies than its border triangles need.
+bool uses_ghost_copies(const TileMesh& mesh) {
+  std::vector<bool> used;
+  mark_used(mesh, mesh.border, mesh.border_wedges, used);
+  const std::size_t own = own_copy_count(mesh);
+  return count_unused(used, mesh.vertices.size() + own, mesh.copies.size() - own) == 0;
+}
+
+/// Own places of border triangles are on the boundary (which may hold more: triangles that a
 /// neighbour's contraction made degenerate are gone); every ghost is in a border triangle.
 bool has_sound_boundary(const TileMesh& mesh) {
   std::vector<bool> used(mesh.vertices.size());
@@ -111,16 +155,13 @@ void check_compactness(const TileMesh& mesh, const TileRecord& record,
                    record.compactness);
 }
 
-/// Own vertices that are corners of no triangle.
+/// Own vertices, copies too, that are corners of no triangle.
 std::uint64_t unreferenced_count(const TileMesh& mesh) {
-  std::vector<bool> used(mesh.vertices.size());
-  for (const auto* triangles : {&mesh.interior, &mesh.border}) {
-    for (const TileTriangle& t : *triangles) {
-      for (const TileVertex v : t)
-        used[raw(v)] = true;
-    }
-  }
-  return static_cast<std::uint64_t>(std::count(used.begin(), used.begin() + mesh.own_count, false));
+  std::vector<bool> used;
+  mark_used(mesh, mesh.interior, mesh.interior_wedges, used);
+  mark_used(mesh, mesh.border, mesh.border_wedges, used);
+  return count_unused(used, 0, mesh.own_count) +
+         count_unused(used, mesh.vertices.size(), own_copy_count(mesh));
 }
 
 void check_parent_map(const VerifyJob& job, const PublishedTile& tile,
@@ -162,8 +203,10 @@ void verify_tile(const VerifyJob& job, const TileRecord& record, const Published
   problems.require(record.own_count <= record.target_count,
                    "{} vertices, more than the {} asked for", record.own_count,
                    record.target_count);
-  problems.require(has_order(mesh.interior, !partition) && has_order(mesh.border, !partition),
+  problems.require(has_order(mesh.interior, mesh.interior_wedges, !partition) &&
+                       has_order(mesh.border, mesh.border_wedges, !partition),
                    "triangles are not in order, degenerate or repeated");
+  problems.require(uses_ghost_copies(mesh), "a copy of a ghost has no border triangle");
   problems.require(
       has_sound_boundary(mesh),
       "a border triangle has an own corner off the boundary, or a ghost has no border triangle");
@@ -180,20 +223,25 @@ void verify_tile(const VerifyJob& job, const TileRecord& record, const Published
 
 void verify_tiles(const VerifyJob& job) {
   const auto& records = job.reader.records();
-  std::uint64_t ghosts = 0, border = 0, unreferenced = 0;
+  std::uint64_t ghosts = 0, border = 0;
+  PartitionTotals totals;
   std::size_t off_target = 0;
   ParentMaps maps = make_parent_maps(job);
   BorderPairs pairs(job.tree(), maps, job.scratch, job.options.memory_budget / 8);
+  CopyClaims claims(job.tree(), job.scratch, job.options.memory_budget / 8);
   job.progress.stage("verify", records.size(), "tiles");
   for (const TileRecord& record : records) {
     job.cancel.check();
     if (const auto tile = job.tiles.find(record.node)) {
       verify_tile(job, record, *tile);
       pairs.add(*tile);
-      if (!job.tree().is_partition(record.node))
+      claims.add(*tile);
+      if (!job.tree().is_partition(record.node)) {
         verify_image(job, *tile);
-      else
-        unreferenced += unreferenced_count(tile->mesh);
+      } else {
+        totals.copies += own_copy_count(tile->mesh);
+        totals.unreferenced += unreferenced_count(tile->mesh);
+      }
       ghosts += record.ghost_count;
       border += record.border_count;
     }
@@ -202,11 +250,12 @@ void verify_tiles(const VerifyJob& job) {
     job.progress.advance(1);
   }
   if (job.tiles.unreadable_count() == 0)
-    verify_unreferenced(job, unreferenced);
+    verify_vertex_counts(job, totals);
   pairs.finish([&](const NodePair& pair) {
     const auto level = static_cast<Level>(pair.level);
     explain_difference(job, {level, pair.low}, {level, pair.high});
   });
+  claims.finish([&](const WrongCopies& wrong) { tell_wrong_copies(job, wrong); });
   job.checks.push_back(fmt::format(
       "tiles: sizes, checksums and structure of {}; {} below the vertex count asked for",
       records.size() - job.tiles.unreadable_count(), off_target));

@@ -22,12 +22,15 @@ struct MeshDescription {
   std::string format;  ///< for people: "PLY binary little endian"
   std::uint64_t file_bytes = 0;
   std::uint64_t vertex_count = 0;  ///< N < 2^32
+  std::uint64_t place_count = 0;   ///< where they lie, if that is known; 0: each at its own place
   std::uint64_t face_count = 0;    ///< polygons, or triangle strips, as declared
   AttributeLayout attributes;
   bool wide_coordinates =
       false;  ///< declared as double, int32 or uint32: may not fit float exactly
   bool vertices_in_place = false;  ///< vertices are binary, of one fixed size, at a known offset:
                                    ///< reading them again costs no more than their bytes
+
+  std::uint64_t places() const { return place_count > 0 ? place_count : vertex_count; }
 };
 
 /// Consecutive vertices of the file. Valid during the visit only.

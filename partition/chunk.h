@@ -11,15 +11,23 @@
 
 namespace meshhier::partition {
 
-/// Provisional ranks order the vertices by chunk, and by id within a chunk; the splits inside a
+/// Provisional ranks order the places by chunk, and by id within a chunk; the splits inside a
 /// chunk make them final.
 using RankTriangle = Triangle<std::uint32_t>;
 
 struct ChunkMesh {
   NodeId node;
-  VertexArray vertices;  ///< by id
+  VertexArray vertices;  ///< of each place the first, by id
+  Copies copies;         ///< `places`: provisional ranks within the chunk
   std::vector<RankTriangle>
       triangles;  ///< every triangle with a corner in the chunk, provisional ranks, any order
+  std::vector<CornerWedges> wedges;  ///< of the last triangles; those of all others are 0
+
+  /// Of the triangle at that place in `triangles`.
+  CornerWedges wedges_of(std::size_t triangle) const {
+    const std::size_t before = triangles.size() - wedges.size();
+    return triangle < before ? CornerWedges{} : wedges[triangle - before];
+  }
 };
 
 /// The chunk that holds a rank. O(1).

@@ -1,5 +1,7 @@
 #include "partition/graph.h"
 
+#include "hierarchy/union_find.h"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -169,30 +171,6 @@ std::uint32_t morton_code(Vec3f unit) {
   };
   return bits(unit.x) | bits(unit.y) << 1 | bits(unit.z) << 2;
 }
-
-class UnionFind {
- public:
-  explicit UnionFind(std::uint32_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), 0U);
-  }
-  std::uint32_t find(std::uint32_t v) {
-    while (parent_[v] != v)
-      v = parent_[v] = parent_[parent_[v]];
-    return v;
-  }
-  /// False if they were one already.
-  bool join(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    if (a == b)
-      return false;
-    parent_[std::max(a, b)] = std::min(a, b);
-    return true;
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 void add_edges(Graph& graph, std::span<const std::array<std::uint32_t, 2>> edges) {
   std::vector<std::uint32_t> more(graph.size() + 1);

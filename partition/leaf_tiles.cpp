@@ -8,6 +8,7 @@
 #include <cassert>
 #include <functional>
 #include <numeric>
+#include <tuple>
 
 namespace meshhier::partition {
 namespace {
@@ -36,6 +37,7 @@ class LeafBuilder {
   ChunkLeaves run() {
     mark_boundary();
     place_vertices();
+    place_copies();
     divide_triangles();
     place_interior();
     place_borders();
@@ -124,13 +126,18 @@ class LeafBuilder {
     interior_.reserve(chunk_.triangles.size() - border_count_);
     borders_.reserve(border_count_);
     rows_.assign(places_.size() + 1, 0);
-    for (const RankTriangle& t : chunk_.triangles) {
+    const std::size_t plain = chunk_.triangles.size() - chunk_.wedges.size();
+    for (const RankTriangle& t : std::span(chunk_.triangles).first(plain)) {
       const std::uint32_t a = local(t[0]), b = local(t[1]), c = local(t[2]);
       if (a == b || b == c || c == a)
         continue;
       if (!is_inside(t[0]) || !is_inside(t[1]) || !is_inside(t[2]) ||
           places_[a].leaf != places_[b].leaf || places_[b].leaf != places_[c].leaf) {
         borders_.push_back(t);
+        continue;
+      }
+      if (LeafTile& tile = result_.tiles[places_[a].leaf]; !tile.copies.empty()) {
+        add_wedged(tile, t, {});
         continue;
       }
       const TileTriangle turned =
@@ -140,6 +147,71 @@ class LeafBuilder {
       interior_.push_back({row, raw(turned[1]) << 16 | raw(turned[2])});
       ++rows_[row + 1];
     }
+    divide_wedged_triangles(plain);
+  }
+
+  /// Those from `first` on. The ones that have a place twice stay.
+  void divide_wedged_triangles(std::size_t first) {
+    first_wedged_border_ = borders_.size();
+    for (std::size_t i = first; i < chunk_.triangles.size(); ++i) {
+      const RankTriangle& t = chunk_.triangles[i];
+      const std::uint32_t a = leaf(t[0]);
+      if (a != kOutside && leaf(t[1]) == a && leaf(t[2]) == a) {
+        add_wedged(result_.tiles[a], t, chunk_.wedges[i - first]);
+      } else {
+        borders_.push_back(t);
+        border_wedges_.push_back(chunk_.wedges[i - first]);
+      }
+    }
+    for (LeafTile& tile : result_.tiles)
+      normalize_triangles(tile.interior, tile.interior_wedges, false);
+  }
+  /// An interior triangle of a tile with copies.
+  void add_wedged(LeafTile& tile, const RankTriangle& t, const CornerWedges& wedges) const {
+    tile.interior.push_back({vertex_of(t[0]), vertex_of(t[1]), vertex_of(t[2])});
+    tile.interior_wedges.push_back(wedges);
+  }
+  TileVertex vertex_of(std::uint32_t rank) const { return TileVertex{places_[local(rank)].index}; }
+
+  /// Copies go where their places went. Counts the vertices without a triangle.
+  void place_copies() {
+    if (chunk_.copies.empty())
+      return;
+    const std::vector<std::uint32_t>& places = chunk_.copies.places;
+    std::vector<std::uint32_t> order(places.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      const auto key = [&](std::uint32_t copy) {
+        const Place& place = places_[places[copy]];
+        return std::tuple(place.leaf, place.index, copy);
+      };
+      return key(a) < key(b);
+    });
+    for (LeafTile& tile : result_.tiles)
+      tile.copies.vertices.channels = chunk_.vertices.channels;
+    for (const std::uint32_t copy : order) {
+      const Place& place = places_[places[copy]];
+      Copies& copies = result_.tiles[place.leaf].copies;
+      copies.places.push_back(place.index);
+      copies.vertices.append(chunk_.copies.vertices.positions[copy],
+                             chunk_.copies.vertices.attributes_of(copy));
+    }
+    result_.unreferenced_count = places_.size() + places.size() - count_used();
+  }
+
+  /// Vertices of the chunk that triangles use.
+  std::uint64_t count_used() const {
+    std::vector<bool> used(places_.size() + chunk_.copies.size());
+    for (std::size_t i = 0; i < chunk_.triangles.size(); ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t place = local(chunk_.triangles[i][k]);
+        const std::uint32_t wedge = chunk_.wedges_of(i)[k];
+        if (place < places_.size())
+          used[wedge == 0 ? place : places_.size() + chunk_.copies.first_of(place) + wedge - 1] =
+              true;
+      }
+    }
+    return static_cast<std::uint64_t>(std::count(used.begin(), used.end(), true));
   }
 
   /// Sorts interior triangles by all corners: into rows of their first, then within the rows.
@@ -147,6 +219,8 @@ class LeafBuilder {
     std::partial_sum(rows_.begin(), rows_.end(), rows_.begin());
     std::vector<std::uint32_t> sorted = interior_by_row();
     for (std::size_t i = 0; i < result_.tiles.size(); ++i) {
+      if (!result_.tiles[i].copies.empty())
+        continue;
       std::vector<TileTriangle>& triangles = result_.tiles[i].interior;
       const std::uint32_t first = first_vertex_[i], end = first_vertex_[i + 1];
       triangles.reserve(rows_[end] - rows_[first]);
@@ -171,13 +245,19 @@ class LeafBuilder {
   }
 
   void place_borders() {
-    for (const RankTriangle& t : borders_) {
+    for (std::size_t i = 0; i < borders_.size(); ++i) {
+      const RankTriangle& t = borders_[i];
       const std::array<std::uint32_t, 3> leaves{leaf(t[0]), leaf(t[1]), leaf(t[2])};
       for (int k = 0; k < 3; ++k) {
         const bool repeated =
             (k > 0 && leaves[k] == leaves[0]) || (k > 1 && leaves[k] == leaves[1]);
-        if (leaves[k] != kOutside && !repeated)
-          add_border(result_.tiles[leaves[k]], leaves[k], t, leaves);
+        if (leaves[k] == kOutside || repeated)
+          continue;
+        LeafTile& tile = result_.tiles[leaves[k]];
+        add_border(tile, leaves[k], t, leaves);
+        if (!border_wedges_.empty())
+          tile.border_wedges.push_back(
+              i < first_wedged_border_ ? CornerWedges{} : border_wedges_[i - first_wedged_border_]);
       }
     }
     std::vector<std::uint32_t> number(places_.size());
@@ -225,7 +305,10 @@ class LeafBuilder {
       }
     }
     tile.foreign = std::move(unique);
-    normalize_triangles(tile.border, false);
+    if (std::ranges::all_of(tile.border_wedges,
+                            [](const CornerWedges& w) { return w == CornerWedges{}; }))
+      tile.border_wedges.clear();
+    normalize_triangles(tile.border, tile.border_wedges, false);
   }
 
   /// `places`: as in finish().
@@ -255,6 +338,8 @@ class LeafBuilder {
   std::vector<std::uint32_t> first_vertex_;  ///< of each tile, among the vertices of all
   std::size_t border_count_ = 0;
   std::vector<RankTriangle> borders_;
+  std::vector<CornerWedges> border_wedges_;  ///< of the last ones
+  std::size_t first_wedged_border_ = 0;
   std::vector<Interior> interior_;
   std::vector<std::uint32_t> rows_;  ///< of interior triangles, by their first corner
   ChunkLeaves result_;

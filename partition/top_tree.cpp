@@ -230,12 +230,14 @@ Sweep::Sweep(const TopPlan& plan)
                          }),
              plan.box) {}
 
-void Sweep::count(std::span<const Vec3f> positions, std::uint32_t first, SweepBlock& block) const {
+template <class IdOf>
+void Sweep::count_all(std::span<const Vec3f> positions, const IdOf& id_of,
+                      SweepBlock& block) const {
   const std::vector<PlannedSplit>& splits = plan_.splits;
   block.passed.assign(2 * splits.size() + 1, 0);
   block.undecided.clear();
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    const auto id = static_cast<std::uint32_t>(first + i);
+    const std::uint32_t id = id_of(i);
     std::uint32_t node = cells_.start(positions[i]);
     while (node < splits.size()) {
       const SplitKey key = key_along(splits[node].direction, positions[i], id);
@@ -258,6 +260,17 @@ void Sweep::count(std::span<const Vec3f> positions, std::uint32_t first, SweepBl
   }
 }
 
+void Sweep::count(std::span<const Vec3f> positions, std::uint32_t first, SweepBlock& block) const {
+  count_all(
+      positions, [first](std::size_t i) { return static_cast<std::uint32_t>(first + i); }, block);
+}
+
+void Sweep::count(std::span<const Vec3f> positions, std::span<const std::uint32_t> ids,
+                  SweepBlock& block) const {
+  count_all(
+      positions, [ids](std::size_t i) { return ids[i]; }, block);
+}
+
 ChunkSearch::ChunkSearch(const TopTree& top, const Bounds& box)
     : top_(top),
       cells_(cell_splits(top.planes_,
@@ -273,6 +286,12 @@ void ChunkSearch::find(std::span<const Vec3f> positions, std::uint32_t first,
     chunks[i] = top_.chunk_below(cells_.start(positions[i]), positions[i],
                                  static_cast<std::uint32_t>(first + i));
   }
+}
+
+void ChunkSearch::find(std::span<const Vec3f> positions, std::span<const std::uint32_t> ids,
+                       std::span<std::uint32_t> chunks) const {
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    chunks[i] = top_.chunk_below(cells_.start(positions[i]), positions[i], ids[i]);
 }
 
 TopSelector::TopSelector(const TopPlan& plan, const Tree& tree, storage::ScratchFile& scratch,

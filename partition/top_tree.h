@@ -82,8 +82,14 @@ class Sweep {
   explicit Sweep(const TopPlan& plan);
   /// `first`: the id of the first vertex. `block`: overwritten; keeps its memory.
   void count(std::span<const Vec3f> positions, std::uint32_t first, SweepBlock& block) const;
+  /// Likewise of vertices with these ids, ascending; as many as positions.
+  void count(std::span<const Vec3f> positions, std::span<const std::uint32_t> ids,
+             SweepBlock& block) const;
 
  private:
+  template <class IdOf>
+  void count_all(std::span<const Vec3f> positions, const IdOf& id_of, SweepBlock& block) const;
+
   const TopPlan& plan_;
   SplitCells cells_;
 };
@@ -118,6 +124,9 @@ class ChunkSearch {
   ChunkSearch(const TopTree& top, const Bounds& box);
   /// The chunks of the vertices first, first + 1, ...; as many as positions.
   void find(std::span<const Vec3f> positions, std::uint32_t first,
+            std::span<std::uint32_t> chunks) const;
+  /// Likewise of vertices with these ids.
+  void find(std::span<const Vec3f> positions, std::span<const std::uint32_t> ids,
             std::span<std::uint32_t> chunks) const;
 
  private:

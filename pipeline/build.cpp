@@ -62,7 +62,7 @@ BuildReport build_hierarchy(const config::Config& asked, const BuildOptions& opt
   storage::MemoryPool pool(0);
   importing::MeshInput input(config.input, config.weld, files);
   std::optional<BuildPlan> plan;
-  if (!input.needs_import())
+  if (!is_read_before_plan(input, config))
     plan = plan_build(config, input.description());
   const tbb::global_control thread_limit(tbb::global_control::max_allowed_parallelism,
                                          thread_count(config));
@@ -159,12 +159,12 @@ BuildReport run_stages(importing::MeshInput& input, storage::WorkDirectory& work
 
 void read_input(importing::MeshInput& input, const storage::WorkDirectory& work,
                 storage::MemoryPool& pool, Workshop& workshop, const StageContext& context) {
-  if (!input.can_be_read())
+  if (!can_be_read(input, context.config))
     import_again(input, work, pool, context);
   storage::ScratchFile vertices = workshop.mesh_scratch.beside("vertices");
   SourceMesh mesh = ingest(input.open(), input.files().name(), vertices, context);
   const mesh_io::FaceCounts counts =
-      partition_mesh(mesh, workshop.chunks, workshop.mesh_scratch, context);
+      partition_mesh(mesh, input.copies(), workshop.chunks, workshop.mesh_scratch, context);
   workshop.journal.note_source(summarize(mesh, counts, input, context.cancel), mesh.origin());
 }
 

@@ -65,7 +65,7 @@ std::string report_text(const config::Config& config, const SourceSummary& sourc
                         const std::string& found, const BuildStats& stats) {
   std::string text = fmt::format(
       "made {}: {}, {} in {}, {}, {}, {}\n", plain_text(config.output.string(), kLongestPath),
-      counted(source.vertices, "vertices"), counted(source.triangles, "triangles"),
+      counted_vertices(source.vertices, source.places), counted(source.triangles, "triangles"),
       counted(stats.partitions, "partitions"), counted(stats.levels, "levels"),
       counted(stats.tiles, "tiles"), execution::rounded_size_text(stats.output_bytes));
   text +=
@@ -108,7 +108,7 @@ BuildReport make_report(const storage::HierarchyReader& made, const BuildOutcome
   const SourceSummary& source = made.manifest().source;
   report.text = report_text(context.config, source, outcome.found, report.stats) +
                 storage::forced_collapses_text(
-                    storage::summarize_forced_collapses(made.records(), source.vertices));
+                    storage::summarize_forced_collapses(made.records(), source.places));
   report.account = account_text(source, report.stats);
   return report;
 }

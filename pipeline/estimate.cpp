@@ -4,6 +4,7 @@
 #include "hierarchy/plain_text.h"
 #include "import/import_input.h"
 #include "import/mesh_input.h"
+#include "pipeline/import_stage.h"
 #include "pipeline/stage_costs.h"
 #include "storage/format/layout.h"
 #include "storage/format/work_directory.h"
@@ -65,12 +66,12 @@ Json memory_json(const BuildEstimate& e) {
 namespace {
 
 /// What is in text or packed, or is to be welded, must be read to be counted: it is imported beside
-/// the output, which leaves nothing behind.
-void count_by_import(const config::Config& config, importing::MeshInput& input,
-                     storage::FileSystem& files, storage::MemoryPool& pool,
-                     const execution::CancelToken& cancel) {
+/// the output, which leaves nothing behind. Places are counted likewise.
+void count_by_reading(const config::Config& config, importing::MeshInput& input,
+                      storage::FileSystem& files, storage::MemoryPool& pool,
+                      const execution::CancelToken& cancel) {
   const importing::ImportMemory memory = importing::plan_import(config.memory_budget);
-  check_import_disk(importing::predict_import(input.files(), memory), config.output, files);
+  check_import_disk(import_disk(input, config), config.output, files);
   const std::filesystem::path beside =
       existing_directory(config.output, files) / config.output.filename();
   std::random_device chance;
@@ -79,8 +80,8 @@ void count_by_import(const config::Config& config, importing::MeshInput& input,
                                          thread_count(config));
   pool.set_capacity(memory.pool_bytes);
   execution::NoProgress silent;
-  const std::filesystem::path ply = scratch();
-  input.import({ply, scratch(), pool, memory.sort_bytes, silent, cancel});
+  read_once(input, config,
+            {scratch(), scratch(), pool, memory.sort_bytes, silent, cancel, scratch()});
 }
 
 void describe_import(const importing::InputFiles& input, const importing::ImportMemory& memory,
@@ -116,9 +117,9 @@ BuildEstimate estimate_build(const config::Config& asked, bool force, storage::F
   check_place(config.output, files);
   storage::MemoryPool pool(0);
   importing::MeshInput input(config.input, config.weld, files);
-  if (input.needs_import()) {
+  if (is_read_before_plan(input, config)) {
     storage::check_output(files, {config.output, config.storage.container}, force);
-    count_by_import(config, input, files, pool, cancel);
+    count_by_reading(config, input, files, pool, cancel);
   }
   BuildEstimate estimate{.plan = plan_build(config, input.description(), input.imported_bytes()),
                          .mesh = input.description(),
@@ -149,7 +150,7 @@ std::string estimate_text(const BuildEstimate& e) {
       "output      about {}\n"
       "temporary   about {} at most\n"
       "disk        {} needed at once, {} free in {}\n",
-      e.input.string(), e.mesh.format, counted(e.mesh.vertex_count, "vertices"),
+      e.input.string(), e.mesh.format, counted_vertices(e.mesh.vertex_count, e.mesh.places()),
       counted(e.mesh.face_count, "faces"), execution::rounded_size_text(e.mesh.file_bytes),
       counted(tree.partition_count(), "partitions"),
       counted((tree.vertex_count() + tree.partition_count() - 1) / tree.partition_count(),
@@ -176,6 +177,7 @@ Json to_json(const BuildEstimate& e) {
           {"output", e.output.string()},
           {"input_bytes", e.mesh.file_bytes},
           {"vertices", e.mesh.vertex_count},
+          {"places", e.mesh.places()},
           {"faces", e.mesh.face_count},
           {"partitions", e.plan.tree.partition_count()},
           {"levels", e.tiles.levels},

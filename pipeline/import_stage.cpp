@@ -2,6 +2,7 @@
 
 #include "execution/allocator.h"
 #include "hierarchy/error.h"
+#include "import/find_copies.h"
 #include "import/import_input.h"
 #include "pipeline/journal/workshop.h"
 #include "pipeline/stage_costs.h"
@@ -12,17 +13,32 @@
 namespace meshhier::pipeline {
 namespace {
 
-void import_into(const storage::WorkDirectory& work, importing::MeshInput& input,
-                 storage::MemoryPool& pool, std::uint64_t sort_bytes,
-                 const BuildEnvironment& environment) {
-  input.import({storage::imported_path(work.path()), work.path() / "import", pool, sort_bytes,
-                environment.progress, environment.cancel});
+importing::MeshInput::Place place_of(const storage::WorkDirectory& work, storage::MemoryPool& pool,
+                                     std::uint64_t sort_bytes,
+                                     const BuildEnvironment& environment) {
+  return {storage::imported_path(work.path()),
+          work.path() / "import",
+          pool,
+          sort_bytes,
+          environment.progress,
+          environment.cancel,
+          work.path() / "copies"};
+}
+
+bool is_to_be_looked_at(const config::Config& config) {
+  return config.topology == Topology::place;
 }
 
 }  // namespace
 
 std::uint64_t import_disk(const importing::MeshInput& input, const config::Config& config) {
-  return importing::predict_import(input.files(), importing::plan_import(config.memory_budget));
+  const importing::ImportMemory memory = importing::plan_import(config.memory_budget);
+  const std::uint64_t imported =
+      input.needs_import() ? importing::predict_import(input.files(), memory) : 0;
+  if (!is_to_be_looked_at(config))
+    return imported;
+  const std::uint64_t look = importing::look_bytes(input.description());
+  return std::max(imported, input.imported_bytes() + look - std::min(look, memory.pool_bytes));
 }
 
 std::vector<StageTime> import_time(const importing::MeshInput& input,
@@ -32,16 +48,34 @@ std::vector<StageTime> import_time(const importing::MeshInput& input,
   constexpr double kByteSeconds = 20e-9;
   constexpr double kTriangleBytes = 45;
   constexpr double kPacked = 4;
+  constexpr double kVertexSeconds = 40e-9;  // to find those that lie together
   double bytes = 0;
   for (const importing::InputFileFacts& file : input.files().all())
     bytes += static_cast<double>(file.identity.bytes) * (file.format.is_gzip ? kPacked : 1);
   const double rest = bytes / kTriangleBytes * kBuildTriangleSeconds;
-  return {{"import", "bytes", input.files().bytes(), bytes * kByteSeconds},
-          {"", "", 0, rest / static_cast<double>(thread_count(config))}};
+  const StageTime others{"", "", 0, rest / static_cast<double>(thread_count(config))};
+  const std::uint64_t vertices = input.needs_import() ? 0 : input.description().vertex_count;
+  const StageTime look{"import", "vertices", vertices,
+                       static_cast<double>(vertices) * kVertexSeconds};
+  if (!input.needs_import())
+    return {look, others};
+  return {{"import", "bytes", input.files().bytes(), bytes * kByteSeconds}, look, others};
 }
 
 DiskVolumes imported_disk(const JobSize& job) {
   return {{static_cast<double>(job.imported_bytes), DiskMoment::splits, DiskMoment::noted}};
+}
+
+void read_once(importing::MeshInput& input, const config::Config& config,
+               const importing::MeshInput::Place& place) {
+  if (input.needs_import())
+    input.import(place);
+  if (is_to_be_looked_at(config))
+    input.find_copies(place);
+}
+
+bool is_read_before_plan(const importing::MeshInput& input, const config::Config& config) {
+  return input.needs_import() || is_to_be_looked_at(config);
 }
 
 BuildPlan import_and_plan(importing::MeshInput& input, storage::WorkDirectory& work,
@@ -49,14 +83,15 @@ BuildPlan import_and_plan(importing::MeshInput& input, storage::WorkDirectory& w
                           const BuildEnvironment& environment) {
   const auto earlier = find_earlier_build(environment.files, work.path());
   work.keep(earlier.has_value());
-  const auto recalled = earlier ? recall_import(*earlier, input, environment.cancel) : std::nullopt;
+  const auto recalled =
+      earlier ? recall_import(*earlier, input, config, environment.cancel) : std::nullopt;
   if (recalled) {
     input.recall(*recalled);
   } else {
     const importing::ImportMemory memory = importing::plan_import(config.memory_budget);
     pool.set_capacity(memory.pool_bytes);
     environment.progress.expect(import_time(input, config));
-    import_into(work, input, pool, memory.sort_bytes, environment);
+    read_once(input, config, place_of(work, pool, memory.sort_bytes, environment));
     execution::release_free_memory();
   }
   BuildPlan plan = plan_build(config, input.description(), input.imported_bytes());
@@ -71,12 +106,17 @@ void import_again(importing::MeshInput& input, const storage::WorkDirectory& wor
   const std::uint64_t sort_bytes =
       std::min(importing::plan_import(context.config.memory_budget).sort_bytes,
                context.memory().work_bytes / 4);
-  import_into(work, input, pool, sort_bytes, {context.files, context.progress, context.cancel});
+  read_once(input, context.config,
+            place_of(work, pool, sort_bytes, {context.files, context.progress, context.cancel}));
   const mesh_io::MeshDescription& mesh = input.description();
-  if (mesh.vertex_count != recalled.vertex_count || mesh.face_count != recalled.face_count ||
-      mesh.attributes != recalled.attributes) {
+  if (mesh.vertex_count != recalled.vertex_count || mesh.places() != recalled.places() ||
+      mesh.face_count != recalled.face_count || mesh.attributes != recalled.attributes) {
     throw Error(ErrorCode::input, input.files().name() + " was changed; build it again");
   }
+}
+
+bool can_be_read(const importing::MeshInput& input, const config::Config& config) {
+  return input.can_be_read() && (!is_to_be_looked_at(config) || input.was_looked_at());
 }
 
 }  // namespace meshhier::pipeline

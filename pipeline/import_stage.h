@@ -1,5 +1,5 @@
 // The stage `import`: input that cannot be read where it lies becomes one PLY in the work
-// directory.
+// directory, and vertices that lie at one place are found.
 #pragma once
 
 #include "import/mesh_input.h"
@@ -12,7 +12,7 @@
 
 namespace meshhier::pipeline {
 
-/// About what an import has in temporary files at most, before it is known what is in the input.
+/// About what the stage has in temporary files at most, before it is known what is in the input.
 std::uint64_t import_disk(const importing::MeshInput& input, const config::Config& config);
 
 /// What stays of it: the PLY, until the triangles are distributed.
@@ -21,15 +21,26 @@ DiskVolumes imported_disk(const JobSize& job);
 /// Of the import and of all that follows, from the files' sizes alone.
 std::vector<StageTime> import_time(const importing::MeshInput& input, const config::Config& config);
 
-/// Imports the input, unless an earlier build did whose work is still there; then it is known what
-/// there is to do. Keeps the work directory if there is earlier work. Throws as
-/// importing::import_input, plan_build and check_disk.
+/// Whether only reading the input tells what there is to do: it is to be imported, or places are to
+/// be found.
+bool is_read_before_plan(const importing::MeshInput& input, const config::Config& config);
+
+/// Imports what needs it, and finds places if topology is by place.
+void read_once(importing::MeshInput& input, const config::Config& config,
+               const importing::MeshInput::Place& place);
+
+/// Imports the input and finds places, unless an earlier build did whose work is still there; then
+/// it is known what there is to do. Keeps the work directory if there is earlier work. Throws as
+/// importing::import_input, importing::find_copies, plan_build and check_disk.
 BuildPlan import_and_plan(importing::MeshInput& input, storage::WorkDirectory& work,
                           storage::MemoryPool& pool, const config::Config& config,
                           const BuildEnvironment& environment);
 
-/// Imports the input although an earlier build did, because its work is of no use. Throws
-/// Error(input) if the input is not what it was.
+/// Whether it was read so far as the stages from `ingest` on need it.
+bool can_be_read(const importing::MeshInput& input, const config::Config& config);
+
+/// The same although an earlier build did it, because its work is of no use. Throws Error(input) if
+/// the input is not what it was.
 void import_again(importing::MeshInput& input, const storage::WorkDirectory& work,
                   storage::MemoryPool& pool, const StageContext& context);
 

@@ -69,6 +69,7 @@ SourceMesh::SourceMesh(std::unique_ptr<mesh_io::MeshSource> source, std::string 
   summary_.file_name = std::move(file_name);
   summary_.file_bytes = description.file_bytes;
   summary_.vertices = description.vertex_count;
+  summary_.places = description.vertex_count;
   summary_.attributes = description.attributes;
 }
 
@@ -82,6 +83,7 @@ SourceMesh ingest(std::unique_ptr<mesh_io::MeshSource> source, std::string file_
 
 void SourceMesh::scan(const StageContext& context) {
   execution::Progress& progress = context.progress;
+  summary_.places = context.tree().vertex_count();
   progress.stage("ingest", summary_.vertices, "vertices");
   const partition::SampleIds ids(summary_.vertices);
   sample_positions_.reserve(ids.count());
@@ -125,11 +127,15 @@ void SourceMesh::choose_origin() {
              round_origin(b.min.z, b.max.z)};
 }
 
-std::vector<partition::IdPoint> SourceMesh::sample() const {
+std::vector<partition::IdPoint> SourceMesh::sample(const importing::CopyList& copies) const {
   const partition::SampleIds ids(summary_.vertices);
-  std::vector<partition::IdPoint> sample(sample_positions_.size());
-  for (std::size_t i = 0; i < sample.size(); ++i) {
-    sample[i] = {to_float(sample_positions_[i] - origin_), static_cast<std::uint32_t>(ids[i])};
+  std::vector<partition::IdPoint> sample;
+  sample.reserve(sample_positions_.size());
+  importing::CopyCursor cursor(copies);
+  for (std::size_t i = 0; i < sample_positions_.size(); ++i) {
+    const auto id = static_cast<std::uint32_t>(ids[i]);
+    if (!cursor.is_copy(id))
+      sample.push_back({to_float(sample_positions_[i] - origin_), id});
   }
   return sample;
 }

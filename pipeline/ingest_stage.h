@@ -6,6 +6,7 @@
 #include "execution/parallel.h"
 #include "execution/progress.h"
 #include "hierarchy/published.h"
+#include "import/copy_list.h"
 #include "mesh_io/mesh_source.h"
 #include "partition/split_plane.h"
 #include "pipeline/plan/stage_context.h"
@@ -35,6 +36,10 @@ struct SourceVertices {
   std::uint64_t first = 0;
   std::span<const Vec3f> positions;
   std::span<const float> attributes;
+
+  std::size_t channels() const {
+    return attributes.size() / std::max<std::size_t>(positions.size(), 1);
+  }
 };
 
 /// A mesh that was read once: all vertices are sound.
@@ -54,8 +59,8 @@ class SourceMesh {
     return {to_float(summary_.bounds.min - origin_), to_float(summary_.bounds.max - origin_)};
   }
 
-  /// The vertices that partition::SampleIds names.
-  std::vector<partition::IdPoint> sample() const;
+  /// The vertices that partition::SampleIds names, but for copies.
+  std::vector<partition::IdPoint> sample(const importing::CopyList& copies) const;
 
   /// All vertices in blocks of at most MeshSource::kBlockSize, in the order of ids.
   std::uint64_t vertex_blocks() const;

@@ -22,16 +22,16 @@ namespace {
 // the places of spooled blocks, too small for the tiles they turn into: some 3 MiB a chunk.
 constexpr std::size_t kChunksBetweenReleases = 8;
 
-/// A chunk whose triangles alone exceed what a stage may hold: a vertex with an absurd number of
-/// triangles.
+/// A chunk whose triangles and copies alone exceed what a stage may hold: a place with an absurd
+/// number of them.
 void check_fits(const Chunks& chunks, std::uint32_t chunk, const MemoryPlan& plan) {
-  const std::uint64_t needed = chunks.triangle_bytes(chunk) * 4;
+  const std::uint64_t needed = (chunks.triangle_bytes(chunk) + chunks.copy_bytes(chunk)) * 4;
   if (needed > plan.work_bytes + plan.pool_bytes / 2) {
     throw Error(
         ErrorCode::budget,
         fmt::format("a part of the mesh has {} on {}; it needs a memory_budget larger by {}",
-                    counted(chunks.triangle_bytes(chunk) / 12, "triangles"),
-                    counted(chunks.map().size(chunk), "vertices"),
+                    counted(chunks.triangle_count(chunk), "triangles"),
+                    counted(chunks.map().size(chunk) + chunks.copy_count(chunk), "vertices"),
                     execution::exact_size_text(needed)));
   }
 }
@@ -89,14 +89,17 @@ std::uint64_t make_leaves(Chunks& chunks, Forest& forest, BuildJournal& journal,
 StageMemory leaves_memory(const JobSize& job) {
   // A chunk read, split and turned into tiles: vertices twice, keys and numbers; triangles as read,
   // as split, as tiles and as bytes.
-  const std::uint64_t vertices = std::min(job.vertex_count, partition::kChunkVertices);
+  const std::uint64_t vertices = std::min(job.place_count, partition::kChunkVertices);
   const std::uint64_t triangles = job.part_triangles(vertices);
   const std::uint64_t usual = vertices * (3 * job.vertex_bytes() + 60) + triangles * 40;
   // Where more than two and a half triangles share a vertex, the graph that the chunk is split by
   // counts for more: 500 bytes a vertex at most.
-  const bool is_dense = 2 * job.face_count > 5 * job.vertex_count;
+  const bool is_dense = 2 * job.face_count > 5 * job.place_count;
   const std::uint64_t dense = vertices * (job.vertex_bytes() + 500) + triangles * 12;
-  const std::uint64_t chunk = is_dense ? std::max(usual, dense) : usual;
+  // Copies twice, with their places and order; the wedges of triangles as read and in tiles.
+  const std::uint64_t copies = job.part_copies(vertices) * (2 * job.vertex_bytes() + 24) +
+                               std::min(triangles, 6 * job.part_copies(vertices)) * 24;
+  const std::uint64_t chunk = (is_dense ? std::max(usual, dense) : usual) + copies;
   return {chunk, job.threads + 1, chunk, (job.threads + 1) * chunk};
 }
 

@@ -3,7 +3,8 @@
 #include "execution/allocator.h"
 #include "execution/parallel.h"
 #include "execution/size_text.h"
-#include "partition/renumber.h"
+#include "execution/spool_cursor.h"
+#include "partition/rank_table.h"
 #include "partition/top_tree.h"
 #include "pipeline/plan/tile_population.h"
 #include "pipeline/plan/tile_room.h"
@@ -18,8 +19,10 @@
 namespace meshhier::pipeline {
 namespace {
 
+using partition::RankTable;
 using partition::TopPlan;
 using partition::TopTree;
+using partition::WedgeRank;
 
 constexpr const char* kStage = "partition";
 
@@ -46,98 +49,217 @@ void for_each_block(const SourceMesh& mesh, const StageContext& context, const W
       });
 }
 
-TopTree find_splits(const SourceMesh& mesh, storage::ScratchFile& scratch,
-                    const StageContext& context) {
+/// The first vertices of the places in a block, and the copies among its vertices.
+struct BlockPlaces {
+  std::vector<Vec3f> positions;
+  std::vector<float> attributes;
+  std::vector<std::uint32_t> ids;
+  std::vector<CopyVertex> memory;
+  std::span<const CopyVertex> copies;
+
+  /// False, and nothing picked, if all vertices of the block are.
+  bool pick(const SourceVertices& block, const importing::CopyList& list) {
+    copies = list.read(block.first, block.positions.size(), memory);
+    if (copies.empty())
+      return false;
+    const std::size_t channels = block.channels();
+    positions.clear();
+    attributes.clear();
+    ids.clear();
+    auto copy = copies.begin();
+    for (std::size_t i = 0; i < block.positions.size(); ++i) {
+      const auto id = static_cast<std::uint32_t>(block.first + i);
+      if (copy != copies.end() && copy->id == id) {
+        ++copy;
+        continue;
+      }
+      positions.push_back(block.positions[i]);
+      const auto values = block.attributes.subspan(i * channels, channels);
+      attributes.insert(attributes.end(), values.begin(), values.end());
+      ids.push_back(id);
+    }
+    return true;
+  }
+};
+
+TopTree find_splits(const SourceMesh& mesh, const importing::CopyList& copies,
+                    storage::ScratchFile& scratch, const StageContext& context) {
   const Tree& tree = context.tree();
-  TopPlan plan = partition::plan_top(mesh.sample(), tree, context.config.partition.axis);
+  TopPlan plan = partition::plan_top(mesh.sample(copies), tree, context.config.partition.axis);
   if (plan.splits.empty())
     return {plan.chunks, {}};
   for (;;) {
-    context.progress.stage(kStage, tree.vertex_count(), "vertices");
+    context.progress.stage(kStage, mesh.summary().vertices, "vertices");
     const partition::Sweep sweep(plan);
     partition::TopSelector selector(plan, tree, scratch, context.memory().work_bytes / 2);
-    for_each_block<partition::SweepBlock>(
+    struct Slot {
+      BlockPlaces places;
+      partition::SweepBlock swept;
+    };
+    for_each_block<Slot>(
         mesh, context,
-        [&](const SourceVertices& block, partition::SweepBlock& swept) {
-          sweep.count(block.positions, static_cast<std::uint32_t>(block.first), swept);
+        [&](const SourceVertices& block, Slot& slot) {
+          if (slot.places.pick(block, copies))
+            sweep.count(slot.places.positions, slot.places.ids, slot.swept);
+          else
+            sweep.count(block.positions, static_cast<std::uint32_t>(block.first), slot.swept);
         },
-        [&](const partition::SweepBlock& swept) { selector.add(swept); });
+        [&](const Slot& slot) { selector.add(slot.swept); });
     std::vector<partition::SplitPlane> planes = selector.settle(plan);
     if (!planes.empty())
       return {plan.chunks, std::move(planes)};
   }
 }
 
-/// Distributes the vertices; calls take_ranks(ranks) for block after block: the provisional ranks
-/// of the ids in their order.
-template <class TakeRanks>
-void distribute_vertices(const SourceMesh& mesh, const TopTree& top, Chunks& chunks,
-                         const StageContext& context, const TakeRanks& take_ranks) {
-  std::vector<std::uint32_t> next_rank(chunks.count());
-  for (std::uint32_t c = 0; c < chunks.count(); ++c)
-    next_rank[c] = chunks.map().first_rank(c);
-  const partition::ChunkSearch search(top, mesh.stored_bounds());
-  std::vector<std::uint32_t> ranks;
-  for_each_block<ChunkedVertices>(
-      mesh, context,
-      [&](const SourceVertices& block, ChunkedVertices& sorted) {
-        sorted.chunk_of.resize(block.positions.size());
-        search.find(block.positions, static_cast<std::uint32_t>(block.first), sorted.chunk_of);
-        sorted.sort(chunks.count(), block.positions, block.attributes);
-      },
-      [&](const ChunkedVertices& sorted) {
-        ranks.resize(sorted.chunk_of.size());
-        for (std::size_t i = 0; i < ranks.size(); ++i)
-          ranks[i] = next_rank[sorted.chunk_of[i]]++;
-        take_ranks(std::span<const std::uint32_t>(ranks));
-        chunks.append(sorted);
-      });
-}
+/// A block of vertices on its way to the chunks.
+struct DistributedBlock {
+  ChunkedVertices sorted;  ///< the places' first vertices
+  // With copies only:
+  std::uint64_t first = 0;  ///< id
+  BlockPlaces places;
+  std::vector<float> copy_rows;
 
-/// Distributes the vertices and makes what gives every id its provisional rank: in memory if that
-/// is granted.
-class RankTable {
- public:
-  RankTable(const SourceMesh& mesh, const TopTree& top, Chunks& chunks,
-            storage::ScratchFile& scratch, const StageContext& context)
-      : scratch_(scratch), spooled_(scratch, 1 << 18) {
-    const std::uint64_t count = mesh.summary().vertices;
-    renumbering_ =
-        partition::plan_renumbering(count, sizeof(std::uint32_t), context.memory().table_bytes);
-    context.progress.stage(kStage, count, "vertices");
-    const bool in_memory = renumbering_.blocks == 1;
-    if (in_memory)
-      table_.reserve(count);
-    distribute_vertices(mesh, top, chunks, context, [&](auto ranks) {
-      in_memory ? void(table_.insert(table_.end(), ranks.begin(), ranks.end()))
-                : spooled_.append(ranks);
-    });
+  void sort(const SourceVertices& block, const partition::ChunkSearch& search,
+            std::uint32_t chunk_count) {
+    sorted.chunk_of.resize(block.positions.size());
+    search.find(block.positions, static_cast<std::uint32_t>(block.first), sorted.chunk_of);
+    sorted.sort(chunk_count, block.positions, block.attributes);
   }
 
-  /// Call once.
-  partition::Renumberer<std::uint32_t> renumberer() {
-    if (renumbering_.blocks == 1)
-      return {std::move(table_), scratch_};
-    return {spooled_, renumbering_, scratch_};
+  void sort(const SourceVertices& block, const importing::CopyList& list,
+            const partition::ChunkSearch& search, std::uint32_t chunk_count) {
+    first = block.first;
+    copy_rows.clear();
+    if (!places.pick(block, list)) {
+      sort(block, search, chunk_count);
+      return;
+    }
+    sorted.chunk_of.resize(places.positions.size());
+    search.find(places.positions, places.ids, sorted.chunk_of);
+    sorted.sort(chunk_count, places.positions, places.attributes);
+    take_copies(block);
   }
 
  private:
-  storage::ScratchFile& scratch_;
-  partition::RenumberPlan renumbering_;
-  std::vector<std::uint32_t> table_;
-  storage::RecordSpool<std::uint32_t> spooled_;
+  void take_copies(const SourceVertices& block) {
+    const std::size_t channels = block.channels();
+    for (const CopyVertex& copy : places.copies) {
+      const std::size_t at = copy.id - block.first;
+      const Vec3f& p = block.positions[at];
+      copy_rows.insert(copy_rows.end(), {p.x, p.y, p.z});
+      const auto values = block.attributes.subspan(at * channels, channels);
+      copy_rows.insert(copy_rows.end(), values.begin(), values.end());
+    }
+  }
 };
 
-mesh_io::FaceCounts distribute_triangles(SourceMesh& mesh, RankTable& ranks, Chunks& chunks,
-                                         const StageContext& context) {
-  struct Slot {
-    std::size_t read = 0;
-    partition::Renumbered<std::uint32_t> renumbered;
-    ChunkedTriangles chunked;
-  };
+/// Gives the places' first vertices of a block their ranks.
+class Ranker {
+ public:
+  explicit Ranker(const Chunks& chunks) : next_(chunks.count()) {
+    for (std::uint32_t c = 0; c < chunks.count(); ++c)
+      next_[c] = chunks.map().first_rank(c);
+  }
+
+  template <class Rank>
+  void rank(const ChunkedVertices& block, std::vector<Rank>& ranks) {
+    ranks.clear();
+    for (const std::uint32_t chunk : block.chunk_of)
+      ranks.push_back(Rank{next_[chunk]++});
+  }
+
+ private:
+  std::vector<std::uint32_t> next_;
+};
+
+/// Distributes the vertices of a mesh without copies, and fills the table of their ranks.
+void distribute_vertices(const SourceMesh& mesh, const TopTree& top, Chunks& chunks,
+                         RankTable<std::uint32_t>& table, const StageContext& context) {
+  const partition::ChunkSearch search(top, mesh.stored_bounds());
+  Ranker ranker(chunks);
+  std::vector<std::uint32_t> ranks;
+  for_each_block<DistributedBlock>(
+      mesh, context,
+      [&](const SourceVertices& block, DistributedBlock& distributed) {
+        distributed.sort(block, search, chunks.count());
+      },
+      [&](const DistributedBlock& distributed) {
+        ranker.rank(distributed.sorted, ranks);
+        table.append(ranks);
+        chunks.append(distributed.sorted);
+      });
+}
+
+/// Likewise with copies: these wait until their places' ranks are known.
+void distribute_vertices(const SourceMesh& mesh, const importing::CopyList& copies,
+                         const TopTree& top, Chunks& chunks, RankTable<WedgeRank>& table,
+                         storage::ScratchFile& scratch, const StageContext& context) {
+  const partition::ChunkSearch search(top, mesh.stored_bounds());
+  Ranker ranker(chunks);
+  std::vector<WedgeRank> ranks;
+  storage::RecordSpool<float> rows(scratch, 1 << 18);
+  for_each_block<DistributedBlock>(
+      mesh, context,
+      [&](const SourceVertices& block, DistributedBlock& distributed) {
+        distributed.sort(block, copies, search, chunks.count());
+      },
+      [&](const DistributedBlock& distributed) {
+        ranker.rank(distributed.sorted, ranks);
+        table.append(ranks, distributed.first, distributed.places.copies);
+        chunks.append(distributed.sorted);
+        rows.append(std::span<const float>(distributed.copy_rows));
+      });
+  execution::SpoolCursor row(rows, context.cancel);
+  const std::size_t width = 3 + static_cast<std::size_t>(mesh.summary().attributes.channels());
+  std::vector<float> values(width);
+  std::uint64_t next = 0;
+  const auto check = [&] { context.cancel.check(); };
+  table.settle(
+      [&](const auto& visit) { copies.for_each(check, visit); },
+      [&](std::uint32_t rank) {
+        for (float& value : values)
+          value = row.at(next++);
+        chunks.append_copy(rank, {values[0], values[1], values[2]}, std::span(values).subspan(3));
+      });
+}
+
+/// A block of triangles on its way to the chunks.
+struct TrianglesByRank {
+  std::size_t read = 0;
+  partition::Renumbered<std::uint32_t> renumbered;
+  ChunkedTriangles chunked;
+
+  void sort(const partition::ChunkMap& map) { chunked.sort(renumbered.finished, map); }
+};
+
+/// Likewise of a mesh with copies.
+struct TrianglesByWedge {
+  std::size_t read = 0;
+  partition::Renumbered<WedgeRank> renumbered;
+  std::vector<partition::RankTriangle> triangles;
+  std::vector<WedgedTriangle> wedged;
+  ChunkedTriangles chunked;
+
+  void sort(const partition::ChunkMap& map) {
+    triangles.clear();
+    wedged.clear();
+    for (const auto& [a, b, c] : renumbered.finished) {
+      const partition::RankTriangle ranks{a.rank, b.rank, c.rank};
+      if ((a.wedge | b.wedge | c.wedge) == 0)
+        triangles.push_back(ranks);
+      else
+        wedged.push_back({ranks, {a.wedge, b.wedge, c.wedge}});
+    }
+    chunked.sort(triangles, map);
+    chunked.sort_wedged(wedged, map);
+  }
+};
+
+template <class Slot, class Rank>
+mesh_io::FaceCounts distribute_triangles(SourceMesh& mesh, partition::Renumberer<Rank> renumberer,
+                                         Chunks& chunks, const StageContext& context) {
   const std::size_t in_flight = context.memory().blocks_in_flight;
   context.progress.stage(kStage, mesh.declared_faces(), "triangles");
-  partition::Renumberer<std::uint32_t> renumberer = ranks.renumberer();
   const auto keep = [&](const Slot& slot) {
     renumberer.keep(slot.renumbered);
     chunks.append(slot.chunked);
@@ -148,7 +270,7 @@ mesh_io::FaceCounts distribute_triangles(SourceMesh& mesh, RankTable& ranks, Chu
       [&](std::span<const Triangle<VertexId>> triangles, Slot& slot) {
         slot.read = triangles.size();
         renumberer.translate(triangles, slot.renumbered);
-        slot.chunked.sort(slot.renumbered.finished, chunks.map());
+        slot.sort(chunks.map());
       },
       [&](const Slot& slot) {
         keep(slot);
@@ -159,11 +281,31 @@ mesh_io::FaceCounts distribute_triangles(SourceMesh& mesh, RankTable& ranks, Chu
         renumberer.batches(), in_flight, context.cancel,
         [&](std::uint64_t batch, Slot& slot) {
           renumberer.translate_batch(batch, slot.renumbered);
-          slot.chunked.sort(slot.renumbered.finished, chunks.map());
+          slot.sort(chunks.map());
         },
         keep);
   }
   return counts;
+}
+
+/// Vertices, then triangles. `passing`: for what is needed meanwhile only.
+mesh_io::FaceCounts distribute(SourceMesh& mesh, const importing::CopyList& copies,
+                               const TopTree& top, Chunks& chunks, storage::ScratchFile& passing,
+                               const StageContext& context) {
+  const std::uint64_t count = mesh.summary().vertices;
+  context.progress.stage(kStage, count, "vertices");
+  const auto triangles = [&]<class Slot>(auto& table, Slot) {
+    execution::release_free_memory();
+    return distribute_triangles<Slot>(mesh, table.renumberer(), chunks, context);
+  };
+  if (copies.empty()) {
+    RankTable<std::uint32_t> table(count, context.memory().table_bytes, passing);
+    distribute_vertices(mesh, top, chunks, table, context);
+    return triangles(table, TrianglesByRank{});
+  }
+  RankTable<WedgeRank> table(count, context.memory().table_bytes, passing);
+  distribute_vertices(mesh, copies, top, chunks, table, passing, context);
+  return triangles(table, TrianglesByWedge{});
 }
 
 /// The stage that would be refused comes late, and takes long where triangles reach across.
@@ -182,34 +324,47 @@ void warn_of_wide_triangles(const Chunks& chunks, const StageContext& context) {
 
 }  // namespace
 
-mesh_io::FaceCounts partition_mesh(SourceMesh& mesh, Chunks& chunks, storage::ScratchFile& scratch,
+mesh_io::FaceCounts partition_mesh(SourceMesh& mesh, const importing::CopyList& copies,
+                                   Chunks& chunks, storage::ScratchFile& scratch,
                                    const StageContext& context) {
   const TopTree top = [&] {
     storage::ScratchFile windows = scratch.beside("windows");
-    return find_splits(mesh, windows, context);
+    return find_splits(mesh, copies, windows, context);
   }();
   execution::release_free_memory();
   storage::ScratchFile passing = scratch.beside("ranks");
-  RankTable ranks(mesh, top, chunks, passing, context);
-  execution::release_free_memory();
-  const mesh_io::FaceCounts counts = distribute_triangles(mesh, ranks, chunks, context);
+  const mesh_io::FaceCounts counts = distribute(mesh, copies, top, chunks, passing, context);
   warn_of_wide_triangles(chunks, context);
   execution::release_free_memory();
   return counts;
+}
+
+namespace {
+
+/// Of an entry of the table of ranks.
+std::uint64_t rank_bytes(const JobSize& job) {
+  return job.has_copies() ? sizeof(WedgeRank) : sizeof(std::uint32_t);
+}
+
+}  // namespace
+
+ChunkSpools chunk_spools(const JobSize& job) {
+  return ChunkSpools::of(job.place_count, job.vertex_count - job.place_count, job.vertex_bytes(),
+                         job.face_count, job.wedged_triangles());
 }
 
 StageMemory partition_memory(const JobSize& job) {
   constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
   constexpr std::uint64_t kNodeBytes = 1024;  // a split, and the spool of its window
   const std::uint64_t block = input_block_bytes(job);
-  const auto spools = ChunkSpools::of(job.vertex_count, job.vertex_bytes(), job.face_count);
+  const ChunkSpools spools = chunk_spools(job);
   const std::uint64_t splits =
-      2 * block + sample_bytes(job) + most_chunks(job.vertex_count) * kNodeBytes;
+      2 * block + sample_bytes(job) + most_chunks(job.place_count) * kNodeBytes;
   const std::uint64_t distribution = 2 * block + 12 * kMiB + spools.bytes(ChunkSpools::kLeastBlock);
   // With so much the table of ranks is in memory as a whole, beside the spools of chunks.
   const std::uint64_t beside =
       2 * job.threads * block + spools.index_bytes(4 * ChunkSpools::kLeastBlock);
-  const std::uint64_t table = (sizeof(std::uint32_t) * job.vertex_count + beside) /
+  const std::uint64_t table = (rank_bytes(job) * job.vertex_count + beside) /
                                   (ChunkSpools::kWorkParts - 1) * ChunkSpools::kWorkParts +
                               4 * kMiB;
   return {block, 2 * job.threads, std::max(splits, distribution), table};
@@ -229,18 +384,27 @@ std::vector<StageTime> partition_time(const JobSize& job) {
 DiskVolumes partition_disk(const JobSize& job, const MemoryPlan& memory) {
   const auto vertices = static_cast<double>(job.vertex_count);
   const partition::RenumberPlan renumbering =
-      partition::plan_renumbering(job.vertex_count, sizeof(std::uint32_t), memory.table_bytes);
+      partition::plan_renumbering(job.vertex_count, rank_bytes(job), memory.table_bytes);
   const double waiting =
-      partition::expected_waiting_bytes<std::uint32_t>(renumbering, job.face_count);
-  const double chunks =
-      vertices * job.vertex_bytes() +
-      Chunks::expected_triangle_bytes(job.vertex_count, job.face_count, kBoundaryShare);
+      job.has_copies()
+          ? partition::expected_waiting_bytes<WedgeRank>(renumbering, job.face_count)
+          : partition::expected_waiting_bytes<std::uint32_t>(renumbering, job.face_count);
+  const double chunks = vertices * job.vertex_bytes() +
+                        Chunks::expected_triangle_bytes(job.place_count, job.face_count,
+                                                        job.wedged_triangles(), kBoundaryShare);
+  // Copies: their list, and their rows until the ranks of their places are known; then the table is
+  // there twice.
+  const auto copies = static_cast<double>(job.vertex_count - job.place_count);
+  const double list = copies * sizeof(CopyVertex);
+  const double rows = copies * job.vertex_bytes();
+  const double ranks = vertices * static_cast<double>(rank_bytes(job));
   using enum DiskMoment;
-  return {{partition::expected_window_bytes(job.vertex_count), splits, splits, true},
-          {vertices * sizeof(std::uint32_t), triangles, triangles, true},
+  return {{partition::expected_window_bytes(job.place_count), splits, splits, true},
+          {list, splits, triangles, true},
+          {ranks + (job.has_copies() ? std::max(rows, ranks) : 0), triangles, triangles, true},
           {waiting, triangles, triangles, true},
-          {chunks, triangles, triangles, true},
-          {chunks, noted, leaves}};
+          {chunks + copies * sizeof(float), triangles, triangles, true},
+          {chunks + copies * sizeof(float), noted, leaves}};
 }
 
 }  // namespace meshhier::pipeline

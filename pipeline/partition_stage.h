@@ -11,6 +11,9 @@
 
 namespace meshhier::pipeline {
 
+/// What chunks are spooled to.
+ChunkSpools chunk_spools(const JobSize& job);
+
 /// Items are blocks of input.
 StageMemory partition_memory(const JobSize& job);
 /// A sweep for the splits, then vertices and triangles distributed.
@@ -22,7 +25,8 @@ DiskVolumes partition_disk(const JobSize& job, const MemoryPlan& memory);
 /// Finds the exact splits above the chunks, then distributes the vertices in one pass and the
 /// triangles in one; returns how many faces the mesh has. What is needed meanwhile only is beside
 /// `scratch`.
-mesh_io::FaceCounts partition_mesh(SourceMesh& mesh, Chunks& chunks, storage::ScratchFile& scratch,
+mesh_io::FaceCounts partition_mesh(SourceMesh& mesh, const importing::CopyList& copies,
+                                   Chunks& chunks, storage::ScratchFile& scratch,
                                    const StageContext& context);
 
 }  // namespace meshhier::pipeline

@@ -25,6 +25,12 @@
 namespace meshhier::pipeline {
 namespace {
 
+/// Rounds all vertices; returns how far one went at most.
+double round_to(const Lattice& lattice, TileMesh& mesh) {
+  return std::max(meshhier::round_to(lattice, mesh.vertices.positions),
+                  meshhier::round_to(lattice, mesh.copies.vertices.positions));
+}
+
 /// The lattice over the input's bounds as they are stored, and how far positions go to it: all
 /// tiles are looked at, since simplified ones may have vertices beyond the input's bounds.
 storage::Quantization quantize(const Forest& forest, std::span<const NodeId> nodes,
@@ -39,7 +45,7 @@ storage::Quantization quantize(const Forest& forest, std::span<const NodeId> nod
       nodes.size(), in_flight, context.cancel,
       [&](std::size_t i) {
         BuildTile tile = forest.load(nodes[i]);
-        return round_to(result.lattice, tile.mesh.vertices.positions);
+        return round_to(result.lattice, tile.mesh);
       },
       [&](std::size_t, double worst) {
         result.worst_rounding = std::max(result.worst_rounding, worst);
@@ -73,6 +79,7 @@ TileRecord describe(const TileWriter& to, NodeId node, const TileMesh& mesh) {
   record.own_count = mesh.own_count;
   record.boundary_count = mesh.boundary_count;
   record.ghost_count = static_cast<std::uint32_t>(mesh.ghosts.size());
+  record.copy_count = static_cast<std::uint32_t>(mesh.copies.size());
   record.interior_count = static_cast<std::uint32_t>(mesh.interior.size());
   record.border_count = static_cast<std::uint32_t>(mesh.border.size());
   record.drawn_border_count = drawn_border_count(tree, node, mesh);
@@ -100,7 +107,7 @@ TileRecord write_tile(const TileWriter& to, NodeId node) {
   storage::FileSystem& files = to.context.files;
   BuildTile tile = forest.load(node);
   if (to.quantization)
-    round_to(to.quantization->lattice, tile.mesh.vertices.positions);
+    round_to(to.quantization->lattice, tile.mesh);
   std::vector<std::uint16_t> parent_map = forest.published_parent_map(node);
   if (tree.is_partition(node))
     order_inner_vertices(tile.mesh, parent_map);

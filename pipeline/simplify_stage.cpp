@@ -1,6 +1,8 @@
 #include "pipeline/simplify_stage.h"
 
+#include "cluster_simplify/contraction.h"
 #include "cluster_simplify/seam_strip.h"
+#include "cluster_simplify/wedges.h"
 #include "execution/allocator.h"
 #include "execution/parallel.h"
 #include "pipeline/plan/tile_room.h"
@@ -43,6 +45,24 @@ Step measure_step(const Forest& forest, NodeId node, const LoadedTile& loaded) {
     step.certain = std::max(step.certain, double{seam_strip.lost} + seam);
   step.mean_square = seam_strip.weight_sum > 0 ? seam_strip.squared_sum / seam_strip.weight_sum : 0;
   return step;
+}
+
+/// Of the places [begin, begin + count).
+WedgeMap part_of(const WedgeMap& map, std::size_t begin, std::size_t count) {
+  const auto at = [&](std::size_t place) {
+    return std::lower_bound(map.places.begin(), map.places.end(), place) - map.places.begin();
+  };
+  const std::ptrdiff_t first = at(begin);
+  const std::ptrdiff_t end = at(begin + count);
+  const auto low = static_cast<std::ptrdiff_t>(begin);
+  const auto high = static_cast<std::ptrdiff_t>(begin + count);
+  WedgeMap part;
+  part.firsts.assign(map.firsts.begin() + low, map.firsts.begin() + high);
+  part.copies.assign(map.copies.begin() + first, map.copies.begin() + end);
+  part.places.assign(map.places.begin() + first, map.places.begin() + end);
+  for (std::uint32_t& place : part.places)
+    place -= static_cast<std::uint32_t>(begin);
+  return part;
 }
 
 /// Makes the levels one by one, finest first; a level's steps are measured while the next is made
@@ -89,6 +109,8 @@ class Simplifier {
     for (const NodeId child : children.span()) {
       const std::size_t count = forest_.own_count(child);
       forest_.put_parent_map(child, std::span(contracted.parent_map).subspan(begin, count));
+      if (!contracted.wedge_map.empty())
+        forest_.put_wedge_map(child, part_of(contracted.wedge_map, begin, count));
       begin += count;
     }
     forest_.put_tile(node, contracted.tile);
@@ -111,9 +133,12 @@ class Simplifier {
     const config::SimplifyConfig& how = context_.config.simplify;
     const std::uint32_t target =
         context_.plan.target_vertex_counts.target(node.level, joined.mesh.own_count);
-    return cluster_simplify::apply(
-        joined, cluster_simplify::contract(joined, target, attributes_,
-                                           {how.method, how.representative, how.cost}));
+    cluster_simplify::Contraction contraction = cluster_simplify::contract(
+        joined, target, attributes_, {how.method, how.representative, how.cost});
+    cluster_simplify::ContractedWedges wedges;
+    if (!joined.mesh.copies.empty())
+      wedges = cluster_simplify::contract_wedges(joined, contraction, attributes_, {});
+    return cluster_simplify::apply(joined, std::move(contraction), std::move(wedges));
   }
 
   Forest& forest_;
@@ -176,9 +201,14 @@ TileErrors simplify(Forest& forest, BuildJournal& journal, const SourceSummary& 
 StageMemory simplify_memory(const JobSize& job) {
   // Two children read, joined, contracted and encoded: 16 copies of a vertex's 20 bytes and 8 of a
   // triangle's 12; edges, queue and quadrics while they collapse.
-  const std::uint64_t vertices = std::min(2 * std::uint64_t{job.largest_tile}, job.vertex_count);
+  const std::uint64_t vertices = std::min(2 * std::uint64_t{job.largest_tile}, job.place_count);
+  // With copies, these and the wedges of triangles likewise, and what each wedge becomes.
+  const std::uint64_t copies =
+      job.has_copies() ? job.part_copies(vertices) * (5 * (job.vertex_bytes() + 4) + 60) +
+                             job.part_triangles(vertices) * 48
+                       : 0;
   const std::uint64_t tile =
-      vertices * (6 * (job.vertex_bytes() + 8) + 260) + job.part_triangles(vertices) * 80;
+      vertices * (6 * (job.vertex_bytes() + 8) + 260) + job.part_triangles(vertices) * 80 + copies;
   return {tile, 2 * job.threads, tile, 2 * job.threads * tile};
 }
 

@@ -25,12 +25,8 @@ std::uint64_t bookkeeping_bytes(const JobSize& job) {
 }  // namespace
 
 MemoryCosts memory_costs(const JobSize& job) {
-  return {bookkeeping_bytes(job),
-          ingest_memory(job),
-          partition_memory(job),
-          leaves_memory(job),
-          simplify_memory(job),
-          ChunkSpools::of(job.vertex_count, job.vertex_bytes(), job.face_count)};
+  return {bookkeeping_bytes(job), ingest_memory(job),   partition_memory(job),
+          leaves_memory(job),     simplify_memory(job), chunk_spools(job)};
 }
 
 DiskCosts disk_costs(const JobSize& job, const MemoryPlan& memory, const TilePopulation& tiles) {
@@ -48,7 +44,7 @@ DiskCosts disk_costs(const JobSize& job, const MemoryPlan& memory, const TilePop
 
 BuildPlan plan_build(const config::Config& config, const mesh_io::MeshDescription& mesh,
                      std::uint64_t imported_bytes) {
-  const Tree tree = plan_tree(config, mesh.vertex_count);
+  const Tree tree = plan_tree(config, mesh.places());
   const JobSize job = job_size(config, mesh, imported_bytes, tree);
   const MemoryPlan memory = plan_memory(config.memory_budget, memory_costs(job));
   const DiskCosts disk = disk_costs(job, memory, expected_tiles(job));

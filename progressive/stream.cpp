@@ -47,6 +47,18 @@ void require_half_edge(const storage::HierarchyReader& reader) {
                   reader.directory().string(), method));
 }
 
+void require_one_vertex_a_place(const storage::HierarchyReader& reader) {
+  const auto& records = reader.records();
+  if (std::none_of(records.begin(), records.end(),
+                   [](const TileRecord& record) { return record.copy_count > 0; }))
+    return;
+  throw Error(ErrorCode::usage,
+              fmt::format("{} has several vertices at one place: a progressive stream needs one "
+                          "vertex at each, so build it with \"topology\": \"index\", or with "
+                          "\"weld\": true if those vertices are equal",
+                          reader.directory().string()));
+}
+
 /// The levels that the stream shows, one a file, from the sector's own to the last.
 std::vector<Level> shown_levels(const Tree& tree, NodeId node,
                                 const std::optional<std::uint32_t>& steps) {
@@ -251,6 +263,7 @@ std::string write_progressive(storage::FileSystem& files, const fs::path& hierar
   const storage::HierarchyFiles place(files, hierarchy);
   const storage::HierarchyReader reader(place.files(), hierarchy);
   require_half_edge(reader);
+  require_one_vertex_a_place(reader);
   const NodeId asked = options.node.value_or(NodeId{});
   require_node(reader.tree(), asked);
   const Sector sector(reader.tree(), reader.tree().tile_node(asked));

@@ -27,8 +27,8 @@ struct ProgressiveOptions {
 /// order of progressive/traced_tile.h; of a sector also the corners of its border that belong to
 /// others, behind its own. The output appears complete or not at all. Returns a line for people.
 /// Deterministic: the bytes do not depend on threads or budget. Throws Error(usage) if the
-/// hierarchy was not made by half_edge, or has no such node or so many levels; Error(exists | io |
-/// corrupt), Error(budget) for memory or disk.
+/// hierarchy was not made by half_edge, has copies (hierarchy/tile_mesh.h), or has no such node or
+/// so many levels; Error(exists | io | corrupt), Error(budget) for memory or disk.
 std::string write_progressive(storage::FileSystem& files, const std::filesystem::path& hierarchy,
                               const ProgressiveOptions& options, execution::Progress& progress,
                               const execution::CancelToken& cancel);

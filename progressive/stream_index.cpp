@@ -15,7 +15,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr storage::SealedFormat kStreamFormat{"meshhier-progressive", 1};
+constexpr storage::SealedFormat kStreamFormat{"meshhier-progressive", 2,
+                                              "make it again from its hierarchy"};
 
 /// Their array's bytes are countable; no disk holds so many.
 constexpr std::uint64_t kMostTriangles = std::uint64_t{1} << 56;

@@ -3,6 +3,7 @@
 #include "hierarchy/error.h"
 #include "storage/format/hierarchy_reader.h"
 #include "storage/format/layout.h"
+#include "storage/format/manifest.h"
 
 #include <fmt/format.h>
 
@@ -13,9 +14,11 @@ BuildIdentity identity_of(const config::Config& config, const importing::MeshInp
                           const Tree& tree) {
   const mesh_io::MeshDescription& mesh = input.description();
   return {{{"program", "meshhier " MESHHIER_VERSION},
+           {"format_version", storage::kFormatVersion},
            {"input", input.files().name()},
            {"input_bytes", input.files().bytes()},
            {"vertices", mesh.vertex_count},
+           {"places", tree.vertex_count()},
            {"faces", mesh.face_count},
            {"partitions", tree.partition_count()},
            {"config", config::resolved_json(config)}},
@@ -38,7 +41,8 @@ Workshop::Workshop(const std::filesystem::path& work, const BuildIdentity& ident
                    storage::MemoryPool& pool, const StageContext& context)
     : mesh_scratch(context.files, work / "mesh", pool, storage::ScratchFile::Stays::yes),
       tile_scratch(context.files, work / "tiles", pool, storage::ScratchFile::Stays::yes),
-      chunks(context.tree(), channels, mesh_scratch, context.memory().spool_block_bytes),
+      chunks(context.tree(), channels, context.plan.job.has_copies(), mesh_scratch,
+             context.memory().spool_block_bytes),
       forest(context.tree(), chunks.level(), channels, tile_scratch),
       journal(context.files, work, identity, pool.scratch_use(), forest, chunks, context.cancel) {}
 
@@ -82,6 +86,7 @@ OpenWorkshop open_workshop(storage::WorkDirectory& work, importing::MeshInput& i
 
 std::optional<mesh_io::MeshDescription> recall_import(const EarlierBuild& earlier,
                                                       importing::MeshInput& input,
+                                                      const config::Config& asked,
                                                       const execution::CancelToken& cancel) {
   const auto is = [](const nlohmann::json& object, const char* key, const nlohmann::json& value) {
     const auto found = object.find(key);
@@ -91,12 +96,14 @@ std::optional<mesh_io::MeshDescription> recall_import(const EarlierBuild& earlie
   const importing::InputFiles& files = input.files();
   const auto config = made_of.find("config");
   if (!is(made_of, "input", files.name()) || !is(made_of, "input_bytes", files.bytes()) ||
-      config == made_of.end() || !is(*config, "weld", files.weld()))
+      config == made_of.end() || !is(*config, "weld", files.weld()) ||
+      !is(*config, "topology", config::resolved_json(asked).at("topology")))
     return std::nullopt;
   if (earlier.input_times != files.times() && input.checksum(cancel) != earlier.source.checksum)
     return std::nullopt;
   mesh_io::MeshDescription mesh;
   mesh.vertex_count = earlier.source.vertices;
+  mesh.place_count = earlier.source.places;
   mesh.face_count = made_of.value("faces", std::uint64_t{0});
   mesh.attributes = earlier.source.attributes;
   mesh.vertices_in_place = true;

@@ -38,10 +38,11 @@ struct OpenWorkshop {
 OpenWorkshop open_workshop(storage::WorkDirectory& work, importing::MeshInput& input,
                            storage::MemoryPool& pool, const StageContext& context);
 
-/// What importing `input` would find out, from an earlier build of the same files; none if it was
+/// What reading `input` would find out, from an earlier build of the same files; none if it was
 /// of others or if they were read in another way. Reads them all if they were touched since.
 std::optional<mesh_io::MeshDescription> recall_import(const EarlierBuild& earlier,
                                                       importing::MeshInput& input,
+                                                      const config::Config& asked,
                                                       const execution::CancelToken& cancel);
 
 }  // namespace meshhier::pipeline

@@ -71,6 +71,7 @@ JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& m
                  std::uint64_t imported_bytes, const Tree& tree) {
   JobSize job;
   job.vertex_count = mesh.vertex_count;
+  job.place_count = tree.vertex_count();
   job.face_count = mesh.face_count;
   job.channels = mesh.attributes.channels();
   job.imported_bytes = imported_bytes;

@@ -12,13 +12,14 @@ namespace meshhier::pipeline {
 /// What decides the needs of a build.
 struct JobSize {
   std::uint64_t vertex_count = 0;
+  std::uint64_t place_count = 0;  ///< where they lie: what the tree counts
   std::uint64_t face_count = 0;
   int channels = 0;                  ///< attribute floats per vertex
   std::uint64_t imported_bytes = 0;  ///< of the PLY that the input was imported to, if it was
   bool vertices_in_place = true;     ///< else the vertices are spooled once more
   bool wide_coordinates = false;     ///< spooled as doubles
   std::uint32_t partition_count = 0;
-  std::uint32_t largest_tile = 0;  ///< vertices of the largest partition or simplified mesh
+  std::uint32_t largest_tile = 0;  ///< places of the largest partition or simplified mesh
   std::size_t threads = 1;
   TargetVertexCounts target_vertex_counts;      ///< of a simplified mesh
   bool clustered = false;                       ///< simplified by the method `cluster`
@@ -26,14 +27,30 @@ struct JobSize {
   double published_ratio = 1;                   ///< of a published tile, about, to a plain one
   bool packed = false;                          ///< published files become one archive
 
+  /// Vertices at places that have one already, for each place.
+  double copies_per_place() const {
+    return static_cast<double>(vertex_count - place_count) / static_cast<double>(place_count);
+  }
+  bool has_copies() const { return place_count < vertex_count; }
+  /// Of so many places of the mesh, as many as they have on average; half as much again for those
+  /// that have more.
+  std::uint64_t part_copies(std::uint64_t places) const {
+    return static_cast<std::uint64_t>(static_cast<double>(places) * copies_per_place() * 1.5);
+  }
+
   /// Of a vertex at work: its position and its attributes, as floats.
   std::uint32_t vertex_bytes() const { return 12 + 4 * static_cast<std::uint32_t>(channels); }
 
-  /// Triangles of a part of the mesh with so many vertices, at most where the mesh is as dense as
-  /// on average: 2 a vertex on closed surfaces, less on open ones; half as much again for those
+  /// Triangles that name copies, at most where a vertex has six.
+  std::uint64_t wedged_triangles() const {
+    return std::min(face_count, 6 * (vertex_count - place_count));
+  }
+
+  /// Triangles of a part of the mesh with so many places, at most where the mesh is as dense as
+  /// on average: 2 a place on closed surfaces, less on open ones; half as much again for those
   /// that several parts share.
-  std::uint64_t part_triangles(std::uint64_t part_vertices) const {
-    return part_vertices * std::max<std::uint64_t>(3, face_count * 3 / 2 / vertex_count + 1);
+  std::uint64_t part_triangles(std::uint64_t places) const {
+    return places * std::max<std::uint64_t>(3, face_count * 3 / 2 / place_count + 1);
   }
 };
 

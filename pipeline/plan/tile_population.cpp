@@ -31,7 +31,7 @@ struct Nodes {
 using LevelNodes = std::map<std::uint32_t, Nodes>;  // by partitions: never more than two kinds
 
 double triangles_per_vertex(const JobSize& job) {
-  return static_cast<double>(job.face_count) / static_cast<double>(job.vertex_count);
+  return static_cast<double>(job.face_count) / static_cast<double>(job.place_count);
 }
 
 /// Triangles a vertex on simplified levels, over those of the input.
@@ -58,7 +58,7 @@ std::vector<LevelNodes> count_nodes(const JobSize& job) {
 
 std::vector<LevelNodes> measure_nodes(const JobSize& job) {
   std::vector<LevelNodes> levels = count_nodes(job);
-  const double partition = static_cast<double>(job.vertex_count) / job.partition_count;
+  const double partition = static_cast<double>(job.place_count) / job.partition_count;
   levels.back().begin()->second.vertices = partition;
   for (std::size_t l = levels.size() - 1; l-- > 0;) {
     const LevelNodes& finer = levels[l + 1];
@@ -79,6 +79,7 @@ std::vector<LevelNodes> measure_nodes(const JobSize& job) {
 void add(const TileSums& from, TileSums& to) {
   to.count += from.count;
   to.vertices += from.vertices;
+  to.copies += from.copies;
   to.boundary += from.boundary;
   to.triangles += from.triangles;
 }
@@ -98,6 +99,7 @@ TileSums tiles_of(const JobSize& job, const Nodes& nodes, double ratio, std::siz
   TileSums tiles;
   tiles.count = nodes.count;
   tiles.vertices = nodes.count * nodes.vertices;
+  tiles.copies = tiles.vertices * job.copies_per_place();
   tiles.boundary = nodes.count * share_around(job, level) * boundary_of(nodes.vertices);
   tiles.triangles =
       tiles.vertices * triangles_per_vertex(job) * ratio + tiles.boundary * kSharedTriangles;
@@ -117,6 +119,7 @@ double times_expected(double counted, double expected) {
 TileSums in_proportion(TileSums tiles, const TileSums& expected, const TileSums& counted) {
   tiles.boundary = std::min(tiles.vertices,
                             tiles.boundary * times_expected(counted.boundary, expected.boundary));
+  tiles.copies = tiles.vertices * counted.copies_per_vertex();
   tiles.triangles *= times_expected(counted.triangles, expected.triangles);
   tiles.wide_triangles =
       counted.triangles > 0 ? tiles.triangles * counted.wide_triangles / counted.triangles : 0;

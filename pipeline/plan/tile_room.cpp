@@ -30,11 +30,13 @@ std::uint64_t more_budget(const MemoryPlan& plan, std::uint64_t lacking) {
 [[noreturn]] void refuse(const MemoryPlan& plan, const storage::MemoryPool& pool,
                          std::uint64_t needed_bytes) {
   const std::uint64_t lacking = needed_bytes - plan.work_bytes - pool.free_bytes();
-  throw Error(ErrorCode::budget,
-              fmt::format("a tile of the mesh has so many triangles at few vertices that it takes "
-                          "{}; it needs a memory_budget larger by {}",
-                          execution::rounded_size_text(needed_bytes),
-                          execution::exact_size_text(more_budget(plan, lacking))));
+  throw Error(
+      ErrorCode::budget,
+      fmt::format("a tile of the mesh has so many triangles or vertices at few places that it "
+                  "takes "
+                  "{}; it needs a memory_budget larger by {}",
+                  execution::rounded_size_text(needed_bytes),
+                  execution::exact_size_text(more_budget(plan, lacking))));
 }
 
 std::uint64_t most_triangle_bytes(const Forest& forest, Level level) {

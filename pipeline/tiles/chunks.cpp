@@ -13,6 +13,8 @@ namespace {
 
 using partition::RankTriangle;
 
+constexpr std::uint64_t kBatch = 16384;  // records read at a time: nothing is held twice
+
 /// Counts of items, entry i + 1 for item i, become the places where they start, and where the next
 /// of each goes.
 void counts_to_starts(std::vector<std::uint32_t>& counts, std::vector<std::uint32_t>& next) {
@@ -81,6 +83,7 @@ void ChunkedTriangles::sort(std::span<const RankTriangle> triangles,
                             const partition::ChunkMap& map) {
   starts.assign(map.count() + 1, 0);
   shared.clear();
+  wedged.clear();
   wide.fill(0);
   chunk_of_.resize(triangles.size());
   ChunkFinder finder(map);
@@ -113,7 +116,25 @@ void ChunkedTriangles::sort(std::span<const RankTriangle> triangles,
   }
 }
 
-Chunks::Chunks(const Tree& tree, int channels, storage::ScratchFile& scratch,
+void ChunkedTriangles::sort_wedged(std::span<const WedgedTriangle> triangles,
+                                   const partition::ChunkMap& map) {
+  ChunkFinder finder(map);
+  for (const WedgedTriangle& t : triangles) {
+    const std::uint32_t a = finder.chunk_of(t.ranks[0]);
+    const std::uint32_t b = finder.chunk_of(t.ranks[1]);
+    const std::uint32_t c = finder.chunk_of(t.ranks[2]);
+    wedged.emplace_back(a, t);
+    if (b != a)
+      wedged.emplace_back(b, t);
+    if (c == a || c == b)
+      continue;
+    wedged.emplace_back(c, t);
+    if (b != a)
+      ++wide[levels_apart(a, b, c)];
+  }
+}
+
+Chunks::Chunks(const Tree& tree, int channels, bool has_copies, storage::ScratchFile& scratch,
                std::size_t block_bytes)
     : level_(partition::chunk_level(tree)), map_(tree, level_), channels_(channels) {
   static_assert(partition::kChunkVertices <= std::uint64_t{1} << 21, "PackedTriangle");
@@ -122,10 +143,14 @@ Chunks::Chunks(const Tree& tree, int channels, storage::ScratchFile& scratch,
     inner_.emplace_back(scratch, block_bytes);
     shared_.emplace_back(scratch, block_bytes);
   }
+  for (std::uint32_t i = 0; i < (has_copies ? map_.count() : 0); ++i) {
+    copies_.emplace_back(scratch, block_bytes);
+    wedged_.emplace_back(scratch, block_bytes);
+  }
 }
 
 void Chunks::append(const ChunkedVertices& block) {
-  const std::size_t width = 3 + static_cast<std::size_t>(channels_);
+  const std::size_t width = row_width();
   for (std::uint32_t c = 0; c < count(); ++c) {
     const std::size_t rows = block.starts[c + 1] - block.starts[c];
     if (rows > 0)
@@ -141,8 +166,19 @@ void Chunks::append(const ChunkedTriangles& block) {
   }
   for (const auto& [chunk, triangle] : block.shared)
     shared_[chunk].append(triangle);
+  for (const auto& [chunk, triangle] : block.wedged)
+    wedged_[chunk].append(triangle);
   for (std::size_t k = 0; k < wide_.size(); ++k)
     wide_[k] += block.wide[k];
+}
+
+void Chunks::append_copy(std::uint32_t rank, Vec3f position, std::span<const float> attributes) {
+  const std::uint32_t chunk = map_.chunk_of(rank);
+  storage::RecordSpool<float>& spool = copies_[chunk];
+  spool.append(std::bit_cast<float>(rank - map_.first_rank(chunk)));
+  for (const float coordinate : {position.x, position.y, position.z})
+    spool.append(coordinate);
+  spool.append(attributes);
 }
 
 std::uint64_t Chunks::wide_triangles(Level level) const {
@@ -151,30 +187,24 @@ std::uint64_t Chunks::wide_triangles(Level level) const {
 }
 
 std::uint64_t Chunks::triangle_bytes(std::uint32_t chunk) const {
-  return (inner_[chunk].size() + shared_[chunk].size()) * sizeof(RankTriangle);
+  return triangle_count(chunk) * sizeof(RankTriangle) +
+         (has_copies() ? wedged_[chunk].size() * sizeof(CornerWedges) : 0);
+}
+
+std::uint64_t Chunks::copy_count(std::uint32_t chunk) const {
+  return has_copies() ? copies_[chunk].size() / (1 + row_width()) : 0;
+}
+
+std::uint64_t Chunks::copy_bytes(std::uint32_t chunk) const {
+  return copy_count(chunk) * (1 + row_width()) * sizeof(float);
 }
 
 partition::ChunkMesh Chunks::take(std::uint32_t chunk) {
   partition::ChunkMesh mesh;
   mesh.node = {level_, chunk};
-  mesh.vertices.channels = channels_;
-  mesh.vertices.positions.resize(map_.size(chunk));
-  mesh.vertices.attributes.resize(map_.size(chunk) * static_cast<std::size_t>(channels_));
-  constexpr std::uint64_t kBatch = 16384;  // records at a time: nothing is held twice
-  const std::size_t width = 3 + static_cast<std::size_t>(channels_);
-  std::vector<float> rows;
-  for (std::uint64_t first = 0; first < map_.size(chunk); first += kBatch) {
-    rows.resize(std::min<std::uint64_t>(kBatch, map_.size(chunk) - first) * width);
-    vertices_[chunk].read(first * width, rows);
-    Vec3f* position = mesh.vertices.positions.data() + first;
-    float* attributes = mesh.vertices.attributes.data() + first * (width - 3);
-    for (std::size_t at = 0; at < rows.size(); at += width) {
-      *position++ = {rows[at], rows[at + 1], rows[at + 2]};
-      attributes = std::copy_n(rows.data() + at + 3, width - 3, attributes);
-    }
-  }
-
+  read_vertices(chunk, mesh.vertices);
   const std::uint64_t inner_count = inner_[chunk].size();
+  mesh.triangles.reserve(triangle_count(chunk));
   mesh.triangles.resize(inner_count + shared_[chunk].size());
   std::vector<PackedTriangle> packed;
   for (std::uint64_t first = 0; first < inner_count; first += kBatch) {
@@ -184,49 +214,112 @@ partition::ChunkMesh Chunks::take(std::uint32_t chunk) {
       mesh.triangles[first + i] = packed[i].ranks(map_.first_rank(chunk));
   }
   shared_[chunk].read(0, std::span(mesh.triangles).subspan(inner_count));
+  if (has_copies()) {
+    mesh.copies = read_copies(chunk);
+    for (const WedgedTriangle& t : wedged_[chunk].read_all()) {
+      mesh.triangles.push_back(t.ranks);
+      mesh.wedges.push_back(t.wedges);
+    }
+  }
   drop(chunk);
   return mesh;
+}
+
+void Chunks::read_vertices(std::uint32_t chunk, VertexArray& vertices) const {
+  vertices.channels = channels_;
+  vertices.positions.resize(map_.size(chunk));
+  vertices.attributes.resize(map_.size(chunk) * static_cast<std::size_t>(channels_));
+  const std::size_t width = row_width();
+  std::vector<float> rows;
+  for (std::uint64_t first = 0; first < map_.size(chunk); first += kBatch) {
+    rows.resize(std::min<std::uint64_t>(kBatch, map_.size(chunk) - first) * width);
+    vertices_[chunk].read(first * width, rows);
+    Vec3f* position = vertices.positions.data() + first;
+    float* attributes = vertices.attributes.data() + first * (width - 3);
+    for (std::size_t at = 0; at < rows.size(); at += width) {
+      *position++ = {rows[at], rows[at + 1], rows[at + 2]};
+      attributes = std::copy_n(rows.data() + at + 3, width - 3, attributes);
+    }
+  }
+}
+
+Copies Chunks::read_copies(std::uint32_t chunk) const {
+  const std::size_t width = 1 + row_width();
+  const std::uint64_t count = copies_[chunk].size() / width;
+  Copies copies;
+  copies.vertices.channels = channels_;
+  copies.vertices.reserve(count);
+  copies.places.reserve(count);
+  std::vector<float> rows;
+  for (std::uint64_t first = 0; first < count; first += kBatch) {
+    rows.resize(std::min(kBatch, count - first) * width);
+    copies_[chunk].read(first * width, rows);
+    for (std::size_t at = 0; at < rows.size(); at += width) {
+      const std::span<const float> row = std::span(rows).subspan(at, width);
+      copies.places.push_back(std::bit_cast<std::uint32_t>(row[0]));
+      copies.vertices.append({row[1], row[2], row[3]}, row.subspan(4));
+    }
+  }
+  return sorted_by_place(copies);
 }
 
 void Chunks::drop(std::uint32_t chunk) {
   vertices_[chunk].clear();
   inner_[chunk].clear();
   shared_[chunk].clear();
+  if (has_copies()) {
+    copies_[chunk].clear();
+    wedged_[chunk].clear();
+  }
 }
 
 nlohmann::json Chunks::store(std::uint32_t chunk) {
-  return {pipeline::store(vertices_[chunk]), pipeline::store(inner_[chunk]),
-          pipeline::store(shared_[chunk])};
+  nlohmann::json stored = {pipeline::store(vertices_[chunk]), pipeline::store(inner_[chunk]),
+                           pipeline::store(shared_[chunk])};
+  if (has_copies()) {
+    stored.push_back(pipeline::store(copies_[chunk]));
+    stored.push_back(pipeline::store(wedged_[chunk]));
+  }
+  return stored;
 }
 
 bool Chunks::restore(std::uint32_t chunk, const nlohmann::json& stored) {
   return pipeline::restore(vertices_[chunk], stored.at(0)) &&
          pipeline::restore(inner_[chunk], stored.at(1)) &&
-         pipeline::restore(shared_[chunk], stored.at(2));
+         pipeline::restore(shared_[chunk], stored.at(2)) &&
+         (!has_copies() || (pipeline::restore(copies_[chunk], stored.at(3)) &&
+                            pipeline::restore(wedged_[chunk], stored.at(4))));
 }
 
 bool Chunks::is_as_stored(std::uint32_t chunk) const {
   return vertices_[chunk].is_as_stored() && inner_[chunk].is_as_stored() &&
-         shared_[chunk].is_as_stored();
+         shared_[chunk].is_as_stored() &&
+         (!has_copies() || (copies_[chunk].is_as_stored() && wedged_[chunk].is_as_stored()));
 }
 
-double Chunks::expected_triangle_bytes(std::uint64_t vertex_count, std::uint64_t face_count,
-                                       double boundary_share) {
-  const auto vertices = static_cast<double>(vertex_count);
-  const double chunks = std::max(1.0, power_of_two_from(vertices / partition::kChunkVertices));
-  const double share = chunks > 1 ? boundary_share / std::sqrt(vertices / chunks) : 0;
-  return static_cast<double>(face_count) * sizeof(RankTriangle) * (1 + std::min(1.0, share));
+double Chunks::expected_triangle_bytes(std::uint64_t place_count, std::uint64_t face_count,
+                                       std::uint64_t wedged, double boundary_share) {
+  const auto places = static_cast<double>(place_count);
+  const double chunks = std::max(1.0, power_of_two_from(places / partition::kChunkVertices));
+  const double share = chunks > 1 ? boundary_share / std::sqrt(places / chunks) : 0;
+  const double bytes = static_cast<double>(face_count) * sizeof(RankTriangle) +
+                       static_cast<double>(wedged) * sizeof(CornerWedges);
+  return bytes * (1 + std::min(1.0, share));
 }
 
-std::uint64_t most_chunks(std::uint64_t vertex_count) {
-  return vertex_count * 2 / partition::kChunkVertices + 1;
+std::uint64_t most_chunks(std::uint64_t place_count) {
+  return place_count * 2 / partition::kChunkVertices + 1;
 }
 
-ChunkSpools ChunkSpools::of(std::uint64_t vertex_count, std::uint32_t vertex_bytes,
-                            std::uint64_t face_count) {
+ChunkSpools ChunkSpools::of(std::uint64_t place_count, std::uint64_t copy_count,
+                            std::uint32_t vertex_bytes, std::uint64_t face_count,
+                            std::uint64_t wedged) {
   constexpr std::uint64_t kTriangleBytes = 13;  // 12, and those that chunks share
-  return {Chunks::kSpools * most_chunks(vertex_count),
-          vertex_count * vertex_bytes + face_count * kTriangleBytes};
+  constexpr std::uint64_t kWedgedBytes = 26;    // likewise
+  const std::uint64_t spools = Chunks::kSpools + (copy_count > 0 ? Chunks::kCopySpools : 0);
+  return {spools * most_chunks(place_count),
+          (place_count + copy_count) * vertex_bytes + copy_count * sizeof(float) +
+              face_count * kTriangleBytes + wedged * kWedgedBytes};
 }
 
 std::size_t ChunkSpools::block_bytes(std::uint64_t work_bytes) const {

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -37,7 +38,8 @@ class PackedTriangle {
   std::uint64_t bits_ = 0;
 };
 
-/// A block of vertices sorted by chunk; keeps its memory from block to block.
+/// The first vertices of places, a block of them, sorted by chunk; keeps its memory from block to
+/// block.
 struct ChunkedVertices {
   std::vector<std::uint32_t> chunk_of;  ///< per vertex; filled before sort()
   std::vector<std::uint32_t> starts;    ///< per chunk: its first row; one entry more than chunks
@@ -50,6 +52,13 @@ struct ChunkedVertices {
   std::vector<std::uint32_t> next_;
 };
 
+/// A triangle with a corner that is not the first vertex of its place.
+struct WedgedTriangle {
+  partition::RankTriangle ranks;
+  CornerWedges wedges;
+};
+static_assert(sizeof(WedgedTriangle) == 24);
+
 /// A block of triangles sorted by chunk; keeps its memory from block to block.
 struct ChunkedTriangles {
   std::vector<std::uint32_t> starts;  ///< per chunk: its first in `inner`; one entry more
@@ -59,10 +68,13 @@ struct ChunkedTriangles {
     partition::RankTriangle triangle;
   };
   std::vector<Shared> shared;  ///< the others, once for each chunk they touch
+  std::vector<std::pair<std::uint32_t, WedgedTriangle>> wedged;  ///< as `shared`, by sort_wedged()
   /// Of triangles with corners in three chunks: [k] have them in three nodes up to k levels above.
   std::array<std::uint64_t, 32> wide{};
 
   void sort(std::span<const partition::RankTriangle> triangles, const partition::ChunkMap& map);
+  /// After sort(): triangles that name copies.
+  void sort_wedged(std::span<const WedgedTriangle> triangles, const partition::ChunkMap& map);
 
  private:
   static constexpr std::uint32_t kShared = ~0u;
@@ -72,7 +84,7 @@ struct ChunkedTriangles {
 
 /// Chunks of a mesh of so many vertices, at most: each has more than half of
 /// partition::kChunkVertices.
-std::uint64_t most_chunks(std::uint64_t vertex_count);
+std::uint64_t most_chunks(std::uint64_t place_count);
 
 /// Memory that the spools of all chunks take while they are written: their open blocks, and the
 /// index of all blocks.
@@ -87,9 +99,10 @@ struct ChunkSpools {
   std::uint64_t count = 0;  ///< spools
   std::uint64_t spooled_bytes = 0;
 
-  /// `vertex_bytes`: of a position and its attributes.
-  static ChunkSpools of(std::uint64_t vertex_count, std::uint32_t vertex_bytes,
-                        std::uint64_t face_count);
+  /// `vertex_bytes`: of a position and its attributes. `wedged`: of the faces, those that name
+  /// copies.
+  static ChunkSpools of(std::uint64_t place_count, std::uint64_t copy_count,
+                        std::uint32_t vertex_bytes, std::uint64_t face_count, std::uint64_t wedged);
 
   /// For a stage that may hold `work_bytes`.
   std::size_t block_bytes(std::uint64_t work_bytes) const;
@@ -100,23 +113,28 @@ struct ChunkSpools {
 /// All chunks of a mesh, spooled.
 class Chunks {
  public:
-  /// Spools a chunk has: vertices, inner and shared triangles.
-  static constexpr int kSpools = 3;
+  /// Spools a chunk has: vertices, inner and shared triangles; with copies, these and the triangles
+  /// that name them.
+  static constexpr int kSpools = 3, kCopySpools = 2;
 
   /// Bytes of the spooled triangles; chunks share those along their borders. `boundary_share`: the
   /// part of a chunk's vertices that is its boundary, times the root of their number.
-  static double expected_triangle_bytes(std::uint64_t vertex_count, std::uint64_t face_count,
-                                        double boundary_share);
+  static double expected_triangle_bytes(std::uint64_t place_count, std::uint64_t face_count,
+                                        std::uint64_t wedged, double boundary_share);
 
-  Chunks(const Tree& tree, int channels, storage::ScratchFile& scratch, std::size_t block_bytes);
+  Chunks(const Tree& tree, int channels, bool has_copies, storage::ScratchFile& scratch,
+         std::size_t block_bytes);
 
   Level level() const { return level_; }
   const partition::ChunkMap& map() const { return map_; }
   std::uint32_t count() const { return map_.count(); }
+  bool has_copies() const { return !copies_.empty(); }
 
   /// Blocks in the order of ids.
   void append(const ChunkedVertices& block);
   void append(const ChunkedTriangles& block);
+  /// A copy of the place that has this provisional rank, after all copies before it.
+  void append_copy(std::uint32_t rank, Vec3f position, std::span<const float> attributes);
 
   /// Reads a chunk and forgets it. Thread-safe for different chunks.
   partition::ChunkMesh take(std::uint32_t chunk);
@@ -131,20 +149,35 @@ class Chunks {
   /// Forgets a chunk that is not needed.
   void drop(std::uint32_t chunk);
 
+  std::uint64_t triangle_count(std::uint32_t chunk) const {
+    return inner_[chunk].size() + shared_[chunk].size() +
+           (has_copies() ? wedged_[chunk].size() : 0);
+  }
   /// Bytes a chunk's triangles take in memory.
   std::uint64_t triangle_bytes(std::uint32_t chunk) const;
+
+  std::uint64_t copy_count(std::uint32_t chunk) const;
+  /// Bytes a chunk's copies take in memory.
+  std::uint64_t copy_bytes(std::uint32_t chunk) const;
 
   /// Triangles appended whose corners are in three nodes of `level`, not below the chunks'. As
   /// vertices join within nodes only, none of them degenerates on that level or below.
   std::uint64_t wide_triangles(Level level) const;
 
  private:
+  std::size_t row_width() const { return 3 + static_cast<std::size_t>(channels_); }
+  void read_vertices(std::uint32_t chunk, VertexArray& vertices) const;
+  Copies read_copies(std::uint32_t chunk) const;
+
   Level level_;
   partition::ChunkMap map_;
   int channels_;
   std::vector<storage::RecordSpool<float>> vertices_;
   std::vector<storage::RecordSpool<PackedTriangle>> inner_;
   std::vector<storage::RecordSpool<partition::RankTriangle>> shared_;
+  std::vector<storage::RecordSpool<float>>
+      copies_;  ///< rank in the chunk as bits, then as vertices
+  std::vector<storage::RecordSpool<WedgedTriangle>> wedged_;
   decltype(ChunkedTriangles::wide) wide_{};
 };
 

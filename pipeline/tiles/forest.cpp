@@ -51,6 +51,7 @@ Forest::Forest(const Tree& tree, Level chunks, int channels, storage::ScratchFil
                        {scratch, count},
                        {scratch, count},
                        {scratch, count},
+                       {scratch, count},
                        std::vector<Fallbacks>(count),
                        std::vector<std::uint32_t>(count)});
   }
@@ -75,10 +76,15 @@ void Forest::put_parent_map(NodeId child, std::span<const std::uint16_t> parent_
   levels_[raw(child.level)].parent_maps.put(child.index, std::as_bytes(parent_map));
 }
 
+void Forest::put_wedge_map(NodeId child, const WedgeMap& wedge_map) {
+  levels_[raw(child.level)].wedge_maps.put(child.index, storage::encode_wedge_map(wedge_map));
+}
+
 std::uint64_t Forest::triangle_bytes(NodeId node) const {
   std::array<std::byte, storage::kWorkTileHeadBytes> head;
   levels_[raw(node.level)].tiles.read(node.index, 0, head);
-  return storage::work_triangle_bytes(head);
+  return storage::work_triangle_bytes(head) +
+         storage::work_copy_bytes(head, channels_) / kCopyShare;
 }
 
 storage::TileSums Forest::partition_sums() const {
@@ -94,8 +100,9 @@ storage::TileSums Forest::partition_sums() const {
 
 void Forest::drop_copies(std::uint64_t free_bytes) {
   for (std::size_t level = levels_.size(); level-- > 0;) {
-    for (storage::BlobStore* store : {&levels_[level].tiles, &levels_[level].boundaries,
-                                      &levels_[level].seam_strips, &levels_[level].parent_maps}) {
+    for (storage::BlobStore* store :
+         {&levels_[level].tiles, &levels_[level].boundaries, &levels_[level].seam_strips,
+          &levels_[level].parent_maps, &levels_[level].wedge_maps}) {
       if (pool_.free_bytes() >= free_bytes)
         return;
       store->drop_copies();
@@ -110,6 +117,7 @@ LoadedTile Forest::resolved(NodeId node) const {
   auto work = storage::decode_work_tile<Corner>(tiles.view(node.index).bytes(), channels_);
   LoadedTile loaded;
   loaded.mapped = mapped(node, work.foreign);
+  map_wedges(node, work);
   loaded.tile =
       cluster_simplify::resolve(std::move(work), loaded.mapped, !tree_.is_partition(node));
   return loaded;
@@ -149,6 +157,37 @@ std::vector<GhostRef> Forest::mapped(NodeId node, std::span<const FinerGhost> fo
       result.push_back({parent, map[foreign[i].ref.index]});
   });
   return result;
+}
+
+void Forest::map_wedges(NodeId node, SimplifiedTile& tile) const {
+  if (tile.border_wedges.empty())
+    return;
+  // Of each foreign corner, the map of its tile.
+  std::vector<WedgeMap> maps;
+  std::vector<std::uint32_t> map_of(tile.foreign.size());
+  for_each_owner(std::span<const FinerGhost>(tile.foreign),
+                 [&](std::size_t begin, std::size_t end) {
+                   std::fill(map_of.begin() + static_cast<std::ptrdiff_t>(begin),
+                             map_of.begin() + static_cast<std::ptrdiff_t>(end),
+                             static_cast<std::uint32_t>(maps.size()));
+                   maps.push_back(wedge_map({finer(node.level), tile.foreign[begin].ref.tile}));
+                 });
+  const std::size_t own_count = tile.vertices.size();
+  for (std::size_t i = 0; i < tile.border.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (raw(tile.border[i][k]) < own_count)
+        continue;
+      const std::size_t foreign = raw(tile.border[i][k]) - own_count;
+      std::uint32_t& wedge = tile.border_wedges[i][k];
+      wedge = maps[map_of[foreign]](tile.foreign[foreign].ref.index, wedge);
+    }
+  }
+}
+
+WedgeMap Forest::wedge_map(NodeId child) const {
+  const storage::BlobStore& maps = levels_[raw(child.level)].wedge_maps;
+  return maps.size(child.index) == 0 ? WedgeMap{}
+                                     : storage::decode_wedge_map(maps.view(child.index).bytes());
 }
 
 std::vector<GhostRef> Forest::mapped(NodeId, std::span<const ChunkVertex> foreign) const {
@@ -242,6 +281,9 @@ nlohmann::json Forest::stored_tile(NodeId node) const {
   const Tree::Children children = tree_.children(node);
   for (const NodeId child : children.span())
     maps.push_back(to_json(levels_[raw(child.level)].parent_maps.stored(child.index)));
+  nlohmann::json wedge_maps = nlohmann::json::array();
+  for (const NodeId child : children.span())
+    wedge_maps.push_back(to_json(levels_[raw(child.level)].wedge_maps.stored(child.index)));
   const Fallbacks& fallbacks = level.fallbacks[node.index];
   return {{"own", level.own_counts[node.index]},
           {"torn", fallbacks.torn_count},
@@ -249,7 +291,8 @@ nlohmann::json Forest::stored_tile(NodeId node) const {
           {"tile", to_json(level.tiles.stored(node.index))},
           {"boundary", to_json(level.boundaries.stored(node.index))},
           {"seam_strip", to_json(level.seam_strips.stored(node.index))},
-          {"maps", std::move(maps)}};
+          {"maps", std::move(maps)},
+          {"wedge_maps", std::move(wedge_maps)}};
 }
 
 bool Forest::restore_tile(NodeId node, const nlohmann::json& stored) {
@@ -260,8 +303,11 @@ bool Forest::restore_tile(NodeId node, const nlohmann::json& stored) {
   std::size_t map = 0;
   const Tree::Children children = tree_.children(node);
   for (const NodeId child : children.span()) {
-    if (!restore(levels_[raw(child.level)].parent_maps, child.index, stored.at("maps").at(map++)))
+    LevelStore& below = levels_[raw(child.level)];
+    if (!restore(below.parent_maps, child.index, stored.at("maps").at(map)) ||
+        !restore(below.wedge_maps, child.index, stored.at("wedge_maps").at(map)))
       return false;
+    ++map;
   }
   return restore(level.tiles, node.index, stored.at("tile")) &&
          restore(level.boundaries, node.index, stored.at("boundary")) &&

@@ -47,6 +47,8 @@ class Forest {
   void put_seam_strip(NodeId node, const SeamStrip& seam_strip);
   /// The map from `child` to its parent's tile.
   void put_parent_map(NodeId child, std::span<const std::uint16_t> parent_map);
+  /// The same for its wedges; not needed if all keep their numbers.
+  void put_wedge_map(NodeId child, const WedgeMap& wedge_map);
 
   void put_fallbacks(NodeId node, const Fallbacks& fallbacks) {
     levels_[raw(node.level)].fallbacks[node.index] = fallbacks;
@@ -58,8 +60,11 @@ class Forest {
     return levels_[raw(node.level)].own_counts[node.index];
   }
 
-  /// What the triangles and foreign corners of a tile take.
+  /// What the triangles and foreign corners of a tile take, and a part of what its copies do.
   std::uint64_t triangle_bytes(NodeId node) const;
+  /// For each byte of a triangle four times as many are at work as for one of a copy (TileRoom):
+  /// five with a million vertices at one place.
+  static constexpr std::uint64_t kCopyShare = 4;
   /// Of all partitions; ask when all are there.
   storage::TileSums partition_sums() const;
   /// What is kept in memory counts against it.
@@ -92,7 +97,7 @@ class Forest {
 
  private:
   struct LevelStore {
-    storage::BlobStore tiles, boundaries, seam_strips, parent_maps;
+    storage::BlobStore tiles, boundaries, seam_strips, parent_maps, wedge_maps;
     std::vector<Fallbacks> fallbacks;
     std::vector<std::uint32_t> own_counts;
   };
@@ -102,6 +107,10 @@ class Forest {
   LoadedTile resolved(NodeId node) const;
   std::vector<GhostRef> mapped(NodeId node, std::span<const FinerGhost> foreign) const;
   std::vector<GhostRef> mapped(NodeId partition, std::span<const ChunkVertex> foreign) const;
+  /// Gives the foreign corners of the border the wedges that stand for theirs, one level up.
+  void map_wedges(NodeId node, SimplifiedTile& tile) const;
+  void map_wedges(NodeId, const LeafTile&) const {}  // they are at their own level
+  WedgeMap wedge_map(NodeId child) const;
   std::vector<std::uint16_t> parent_map(NodeId child, std::size_t count) const;
 
   Tree tree_;

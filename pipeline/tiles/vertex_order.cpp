@@ -56,7 +56,9 @@ void order_inner_vertices(TileMesh& mesh, std::vector<std::uint16_t>& parent_map
   parent_map = std::move(parents);
   for (TileTriangle& t : mesh.interior)
     t = {TileVertex{place[raw(t[0])]}, TileVertex{place[raw(t[1])]}, TileVertex{place[raw(t[2])]}};
-  normalize_triangles(mesh.interior, false);
+  normalize_triangles(mesh.interior, mesh.interior_wedges, false);
+  if (!mesh.copies.empty())
+    mesh.copies = renumbered(mesh.copies, place);
 }
 
 }  // namespace meshhier::pipeline

@@ -41,6 +41,8 @@ const char* difference(const TileMesh& mesh, const TileRecord& record) {
     return "boundary vertices";
   if (mesh.ghosts.size() != record.ghost_count)
     return "ghosts";
+  if (mesh.copies.size() != record.copy_count)
+    return "copies";
   if (mesh.interior.size() != record.interior_count)
     return "interior triangles";
   if (mesh.border.size() != record.border_count)
@@ -64,7 +66,7 @@ HierarchyReader::HierarchyReader(FileSystem& files, std::filesystem::path direct
     : files_(files),
       directory_(std::move(directory)),
       manifest_(load_manifest(files_, directory_)),
-      tree_(manifest_.source.vertices, manifest_.partition_count),
+      tree_(manifest_.source.places, manifest_.partition_count),
       format_(format_of(manifest_)),
       records_(load_index(files_, directory_, manifest_, tree_)) {}
 

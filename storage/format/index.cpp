@@ -19,33 +19,38 @@ namespace {
 //   header                                     record
 //   offset  bytes  what                        offset  bytes  what
 //        0      8  magic "MHTILES\n"                0      4  level
-//        8      4  version, 2                       4      4  index
-//       12      4  bytes of a record, 96            8      4  own vertices
-//       16      8  number of records               12      4  boundary vertices
+//        8      4  version, 3                       4      4  index
+//       12      4  bytes of a record, 104           8      4  own places
+//       16      8  number of records               12      4  boundary places
 //       24      8  XXH3-64 of bytes 0 to 23        16      4  ghosts
-//                  and all records                 20      4  interior triangles
-//                                                  24      4  border triangles
-//                                                  28      4  border triangles drawn
-//                                                  32      4  vertices asked for
-//                                                  36      4  vertices torn away
-//                                                  40      4  vertices forced away
-//                                                  44      4  f32 error
-//                                                  48      4  f32 bound
-//                                                  52      4  f32 compactness
-//                                                  56     24  f32 min x y z, max x y z
-//                                                  80      8  bytes of the file
-//                                                  88      8  XXH3-64 of the file
+//                  and all records                 20      4  copies
+//                                                  24      4  interior triangles
+//                                                  28      4  border triangles
+//                                                  32      4  border triangles drawn
+//                                                  36      4  places asked for
+//                                                  40      4  places torn away
+//                                                  44      4  places forced away
+//                                                  48      4  f32 error
+//                                                  52      4  f32 bound
+//                                                  56      4  f32 compactness
+//                                                  60     24  f32 min x y z, max x y z
+//                                                  84      4  0
+//                                                  88      8  bytes of the file
+//                                                  96      8  XXH3-64 of the file
 constexpr std::string_view kIndexMagic = "MHTILES\n";
-constexpr std::uint32_t kIndexVersion = 2;
+constexpr std::uint32_t kIndexVersion = 3;
 constexpr std::size_t kIndexHeaderBytes = 32;
 constexpr std::size_t kCheckedHeaderBytes = 24;
-constexpr std::size_t kRecordBytes = 96;
+constexpr std::size_t kRecordBytes = 104;
+constexpr std::size_t kFillingOffset = 84;
+constexpr std::uint32_t kFilling = 0;
 
 void append_record(std::vector<std::byte>& bytes, const TileRecord& record) {
   for (const std::uint32_t value :
        {std::uint32_t{raw(record.node.level)}, record.node.index, record.own_count,
-        record.boundary_count, record.ghost_count, record.interior_count, record.border_count,
-        record.drawn_border_count, record.target_count, record.torn_count, record.forced_count}) {
+        record.boundary_count, record.ghost_count, record.copy_count, record.interior_count,
+        record.border_count, record.drawn_border_count, record.target_count, record.torn_count,
+        record.forced_count}) {
     append_little(bytes, value);
   }
   const Bounds& box = record.bounds;
@@ -53,6 +58,7 @@ void append_record(std::vector<std::byte>& bytes, const TileRecord& record) {
                             box.min.z, box.max.x, box.max.y, box.max.z}) {
     append_little(bytes, value);
   }
+  append_little(bytes, kFilling);
   append_little(bytes, record.file_bytes);
   append_little(bytes, record.checksum);
 }
@@ -73,18 +79,19 @@ TileRecord load_record(const std::byte* from) {
   record.own_count = count(8);
   record.boundary_count = count(12);
   record.ghost_count = count(16);
-  record.interior_count = count(20);
-  record.border_count = count(24);
-  record.drawn_border_count = count(28);
-  record.target_count = count(32);
-  record.torn_count = count(36);
-  record.forced_count = count(40);
-  record.error = real(44);
-  record.bound = real(48);
-  record.compactness = real(52);
-  record.bounds = {{real(56), real(60), real(64)}, {real(68), real(72), real(76)}};
-  record.file_bytes = load_little<std::uint64_t>(from + 80);
-  record.checksum = load_little<std::uint64_t>(from + 88);
+  record.copy_count = count(20);
+  record.interior_count = count(24);
+  record.border_count = count(28);
+  record.drawn_border_count = count(32);
+  record.target_count = count(36);
+  record.torn_count = count(40);
+  record.forced_count = count(44);
+  record.error = real(48);
+  record.bound = real(52);
+  record.compactness = real(56);
+  record.bounds = {{real(60), real(64), real(68)}, {real(72), real(76), real(80)}};
+  record.file_bytes = load_little<std::uint64_t>(from + 88);
+  record.checksum = load_little<std::uint64_t>(from + 96);
   return record;
 }
 
@@ -178,6 +185,9 @@ class IndexReader {
       fail(fmt::format("record {} is of tile {}/{}, expected {}/{}", number, level, index,
                        raw(node.level), node.index));
     }
+    if (load_little<std::uint32_t>(from + kFillingOffset) != kFilling)
+      fail(fmt::format("tile {}/{}: bytes {} to {} of its record are not 0", level, index,
+                       kFillingOffset, kFillingOffset + 3));
     const TileRecord record = load_record(from);
     if (const char* flaw = flaw_of(record, tree_)) {
       fail(fmt::format("tile {}/{}: impossible {}", level, index, flaw));

@@ -56,6 +56,7 @@ LevelSummary summarize(Level level, Level last, std::span<const TileRecord> reco
     triangles.add(triangle_count(record));
     bytes.add(record.file_bytes);
     border += record.border_count;
+    summary.copies_total += record.copy_count;
     summary.triangles_total += drawn_count(record);
     summary.error_max = std::max(summary.error_max, record.error);
     summary.bound_max = std::max(summary.bound_max, record.bound);
@@ -132,6 +133,7 @@ SizeSummary summarize_sizes(std::span<const TileRecord> records, const Attribute
     storage::TileShape shape;
     shape.own = record.own_count;
     shape.ghosts = record.ghost_count;
+    shape.copies = record.copy_count;
     shape.interior = record.interior_count;
     shape.border = record.border_count;
     const storage::TilePlan plan(shape, layout);
@@ -170,11 +172,11 @@ CompactnessSummary summarize_compactness(const Tree& tree, std::span<const TileR
 }
 
 ForcedCollapses summarize_forced_collapses(std::span<const TileRecord> records,
-                                           std::uint64_t source_vertices) {
+                                           std::uint64_t source_places) {
   ForcedCollapses forced;
   for (const TileRecord& record : records)
     forced.vertices += std::uint64_t{record.torn_count} + record.forced_count;
-  forced.share = quotient(forced.vertices, source_vertices);
+  forced.share = quotient(forced.vertices, source_places);
   return forced;
 }
 
@@ -199,6 +201,7 @@ nlohmann::ordered_json to_json(const LevelSummary& s) {
           {"vertices_mean", s.vertices.mean},
           {"vertices_max", s.vertices.max},
           {"vertices_total", s.vertices_total},
+          {"copies_total", s.copies_total},
           {"triangles_min", s.triangles.min},
           {"triangles_mean", s.triangles.mean},
           {"triangles_max", s.triangles.max},
@@ -225,6 +228,7 @@ nlohmann::ordered_json to_json(const TileRecord& r) {
           {"vertices_asked_for", r.target_count},
           {"boundary_vertices", r.boundary_count},
           {"ghosts", r.ghost_count},
+          {"copies", r.copy_count},
           {"interior_triangles", r.interior_count},
           {"border_triangles", r.border_count},
           {"drawn_border_triangles", r.drawn_border_count},

@@ -27,10 +27,11 @@ struct CountRange {
 struct LevelSummary {
   Level level{};
   std::uint32_t tiles = 0;
-  CountRange vertices;   ///< own
+  CountRange vertices;   ///< own; of those at one place one
   CountRange triangles;  ///< interior and border
   CountRange bytes;      ///< of the files
   std::uint64_t vertices_total = 0;
+  std::uint64_t copies_total = 0;     ///< further vertices at places, those of ghosts included
   std::uint64_t triangles_total = 0;  ///< each once: interior, and border ones where they are drawn
   std::uint64_t bytes_total = 0;
   double border_ratio = 0;         ///< border triangles of all triangles, summed over the tiles
@@ -55,7 +56,7 @@ std::vector<LevelSummary> summarize_levels(const Tree& tree, std::span<const Til
 struct SizeSummary {
   std::uint64_t bytes = 0;      ///< of the files
   std::uint64_t raw_bytes = 0;  ///< positions as f32, attributes, indices of 16 or 32 bits, plain
-  std::uint64_t vertices = 0;   ///< own
+  std::uint64_t vertices = 0;   ///< own, without copies
   std::uint64_t triangles = 0;  ///< each once
 
   double bytes_per_vertex() const;
@@ -81,14 +82,14 @@ CompactnessSummary summarize_compactness(const Tree& tree, std::span<const TileR
 /// error limit, because their tiles would not have reached their targets otherwise.
 struct ForcedCollapses {
   std::uint64_t vertices = 0;
-  double share = 0;  ///< of the input's vertices
+  double share = 0;  ///< of the places where the input has vertices
 
   /// Coarse levels show little of the input. Raw range images come to half of this.
   bool is_many() const { return share > 0.01; }
 };
 
 ForcedCollapses summarize_forced_collapses(std::span<const TileRecord> records,
-                                           std::uint64_t source_vertices);
+                                           std::uint64_t source_places);
 
 /// For people: a warning line if is_many(), "" otherwise.
 std::string forced_collapses_text(const ForcedCollapses& forced);

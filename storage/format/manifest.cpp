@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr SealedFormat kFormat{"meshhier", kFormatVersion};
+constexpr SealedFormat kFormat{"meshhier", kFormatVersion, "build it again from the mesh"};
 
 // ---- writing -------------------------------------------------------------------------------
 
@@ -129,6 +129,9 @@ SourceSummary read_source(const JsonObject& object) {
   source.vertices = object.count("vertices", UINT32_MAX);
   if (source.vertices == 0)
     object.wrong("vertices", "at least 1");
+  source.places = object.count("places", source.vertices);
+  if (source.places == 0)
+    object.wrong("places", "at least 1");
   source.triangles = object.count("triangles");
   source.faces = object.count("faces");
   source.degenerate_triangles = object.count("degenerate_triangles");
@@ -163,6 +166,7 @@ Json source_json(const SourceSummary& source) {
       {"file_bytes", source.file_bytes},
       {"checksum", hex_digits(source.checksum)},
       {"vertices", source.vertices},
+      {"places", source.places},
       {"triangles", source.triangles},
       {"faces", source.faces},
       {"degenerate_triangles", source.degenerate_triangles},
@@ -197,7 +201,7 @@ Manifest parse_manifest(const std::string& text, const std::string& name) {
   manifest.transform = object.transform_or_null("transform");
   manifest.licence = object.text("licence");
   manifest.partition_count =
-      static_cast<std::uint32_t>(object.count("partitions", manifest.source.vertices));
+      static_cast<std::uint32_t>(object.count("partitions", manifest.source.places));
   if (manifest.partition_count == 0)
     object.wrong("partitions", "at least 1");
   manifest.compression = read_compression(object.object("storage"));

@@ -16,7 +16,7 @@
 
 namespace meshhier::storage {
 
-inline constexpr int kFormatVersion = 4;
+inline constexpr int kFormatVersion = 5;
 
 /// What rounding to a lattice did.
 struct Quantization {
@@ -62,8 +62,8 @@ SourceSummary parse_source(const nlohmann::ordered_json& source, const std::stri
 std::string to_json_text(const Manifest& manifest);
 
 /// The inverse of to_json_text, on text nobody vouches for. Throws Error(corrupt) that starts with
-/// `name`, and says which key is missing or wrong, or that the text was changed; a newer format
-/// version is refused by its number.
+/// `name`, and says which key is missing or wrong, or that the text was changed; other format
+/// versions are refused by their number, with what to do.
 Manifest parse_manifest(const std::string& text, const std::string& name);
 
 }  // namespace meshhier::storage

@@ -58,8 +58,8 @@ std::optional<int> common_exponent(std::span<const std::byte> positions, std::si
   float largest = 0;
   for (std::size_t at = 4 * axis; at < positions.size(); at += 12) {
     const auto value = load_little<float>(positions.data() + at);
-    if (std::signbit(value) && value == 0)
-      return std::nullopt;  // would come back as +0
+    if (!std::isfinite(value) || (std::signbit(value) && value == 0))
+      return std::nullopt;  // would come back as another number, or as +0
     least = std::min(least, lowest_bit(value).value_or(kExponentLimit));
     largest = std::max(largest, std::abs(value));
   }

@@ -49,8 +49,10 @@ void check_version(const JsonObject& object, const SealedFormat& format) {
         fmt::format("format version {} is newer than {}, the newest known: use a newer meshhier",
                     version, known));
   }
-  if (version != known)
-    object.fail(fmt::format("format version is {}, expected {}", version, known));
+  if (version != known) {
+    object.fail(fmt::format("was made with format version {}, this program reads {}: {}", version,
+                            known, format.way_out));
+  }
 }
 
 void check_seal(const std::string& text, const JsonObject& object) {

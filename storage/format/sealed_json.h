@@ -22,8 +22,9 @@ class File;
 
 /// What a file says that it is.
 struct SealedFormat {
-  std::string_view name;  ///< `format`
-  int version = 0;        ///< `format_version`, the only one that is read
+  std::string_view name;                       ///< `format`
+  int version = 0;                             ///< `format_version`, the only one that is read
+  std::string_view way_out = "make it again";  ///< from an older version: what to do
 };
 
 /// `document`, an object without these keys, between `format` and `checksum`. Deterministic; what

@@ -1,10 +1,12 @@
 #include "storage/format/tile_glb.h"
 
 #include "hierarchy/error.h"
+#include "hierarchy/vertex_numbers.h"
 #include "storage/format/glb.h"
 #include "storage/format/gzip.h"
 #include "storage/format/tile_pack.h"
 #include "storage/format/tile_plan.h"
+#include "storage/format/tile_sections.h"
 
 #include <algorithm>
 #include <array>
@@ -12,6 +14,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -132,6 +135,14 @@ class Writer {
     store_all_little(values, at(plan_[part]));
   }
 
+  void put_copies(std::span<const std::uint32_t> places) {
+    const Section& section = plan_[Part::copy_of];
+    if (section.component == kU32)
+      return put_list(Part::copy_of, places);
+    const std::vector<std::uint16_t> narrowed(places.begin(), places.end());
+    put_list<std::uint16_t>(Part::copy_of, narrowed);
+  }
+
  private:
   std::byte* at(const Section& section) { return bin_.data() + section.offset; }
 
@@ -164,6 +175,24 @@ class Writer {
   std::span<std::byte> bin_;
 };
 
+/// All of a tile, in the order of its file.
+VertexArray with_copies(const TileMesh& mesh) {
+  VertexArray vertices = mesh.vertices;
+  vertices.append(mesh.copies.vertices, 0, mesh.copies.size());
+  return vertices;
+}
+
+void put_triangles(const TileMesh& mesh, Writer& writer) {
+  if (mesh.copies.empty()) {
+    writer.put_triangles(Part::interior, mesh.interior);
+    writer.put_triangles(Part::border, mesh.border);
+    return;
+  }
+  const VertexNumbers numbers(static_cast<std::uint32_t>(mesh.vertices.size()), mesh.copies.places);
+  writer.put_triangles(Part::interior, numbers.numbered(mesh.interior, mesh.interior_wedges));
+  writer.put_triangles(Part::border, numbers.numbered(mesh.border, mesh.border_wedges));
+}
+
 /// The ghosts by neighbour: those of tiles[i] are [starts[i], starts[i + 1]).
 struct GhostGroups {
   std::vector<std::uint32_t> tiles;
@@ -185,201 +214,6 @@ GhostGroups group_ghosts(std::span<const GhostRef> ghosts) {
 
 // ---- reading -------------------------------------------------------------------------------
 
-/// Reads one tile's bytes whose extents were compared with the plan.
-class Reader {
- public:
-  Reader(const TilePlan& plan, std::span<const std::byte> bin, const Tree& tree,
-         const std::string& name)
-      : plan_(plan), bin_(bin), tree_(tree), name_(name) {}
-
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(ErrorCode::corrupt, name_ + ": " + what);
-  }
-
-  template <Scalar T>
-  T get(const Section& section, std::size_t element, std::size_t component = 0) const {
-    return load_little<T>(bin_.data() + section.offset + element * section.stride +
-                          component * sizeof(T));
-  }
-
-  std::vector<Vec3f> positions() const {
-    const Section& section = plan_[Part::position];
-    std::vector<Vec3f> positions(section.count);
-    for (std::size_t v = 0; v < positions.size(); ++v) {
-      positions[v] = position(section, v);
-      if (!std::isfinite(positions[v].x) || !std::isfinite(positions[v].y) ||
-          !std::isfinite(positions[v].z)) {
-        fail(fmt::format("position of vertex {} is not finite", v));
-      }
-      if (plan_.lattice() && plan_.lattice()->nearest(positions[v]) != positions[v])
-        fail(fmt::format("position of vertex {} is not on the lattice", v));
-    }
-    return positions;
-  }
-
-  std::vector<float> attributes() const {
-    const auto channels = static_cast<std::size_t>(plan_.layout().channels());
-    std::vector<float> attributes(plan_.shape().vertices() * channels);
-    const auto groups = groups_of(plan_.layout());
-    for (std::size_t i = 0; i < groups.size(); ++i) {
-      const bool is_raw = plan_.shape().raw[i];
-      read_group(groups[i], groups[i].part, true, attributes);
-      if (is_raw)
-        read_group(groups[i], groups[i].raw, false, attributes);
-    }
-    return attributes;
-  }
-
-  /// Canonical, ascending triangles of which every corner is a vertex. `is_packed`: as the codec
-  /// gave them, turned and in another order; else they must be so in the file.
-  std::vector<TileTriangle> triangles(Part part, bool is_packed) const {
-    const Section& section = plan_[part];
-    std::vector<TileTriangle> triangles(section.count / 3);
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        const std::uint32_t index = section.component == kU16
-                                        ? get<std::uint16_t>(section, 3 * t + c)
-                                        : get<std::uint32_t>(section, 3 * t + c);
-        if (index >= plan_.shape().vertices()) {
-          fail(fmt::format("index {} of {} triangle {} is not below the {} vertices", index,
-                           key_of(part), t, plan_.shape().vertices()));
-        }
-        triangles[t][c] = static_cast<TileVertex>(index);
-      }
-      if (is_packed)
-        triangles[t] = canonical(triangles[t]);
-    }
-    if (is_packed)
-      std::sort(triangles.begin(), triangles.end());
-    for (std::size_t t = 0; t < triangles.size(); ++t)
-      check_triangle(part, t, triangles);
-    return triangles;
-  }
-
-  std::vector<std::uint16_t> parent_map() const {
-    return short_list(Part::parent_map, "parent map");
-  }
-
-  void read_ghosts(PublishedTile& tile) const {
-    const Section& neighbours = plan_[Part::neighbours];
-    const Section& starts = plan_[Part::ghost_starts];
-    const std::vector<std::uint16_t> chains = short_list(Part::ghost_chains, "ghost chain");
-    tile.mesh.ghosts.reserve(plan_.shape().ghosts);
-    tile.chains.reserve(plan_.shape().ghosts, chains.size());
-    std::span<const std::uint16_t> left = chains;
-    for (std::size_t i = 0; i < neighbours.count; ++i) {
-      const auto index = get<std::uint32_t>(neighbours, i);
-      const bool ascends = i == 0 || index > get<std::uint32_t>(neighbours, i - 1);
-      const NodeId neighbour{plan_.shape().node.level, index};
-      if (!tree_.contains(neighbour) || neighbour == plan_.shape().node || !ascends) {
-        fail(fmt::format(
-            "neighbour {} is tile {}, which is not another one of the level, ascending", i, index));
-      }
-      const std::uint64_t begin = get<std::uint32_t>(starts, i);
-      const std::uint64_t end = get<std::uint32_t>(starts, i + 1);
-      if (begin != tile.mesh.ghosts.size() || end <= begin || end > plan_.shape().ghosts) {
-        fail(fmt::format("ghosts {} to {} of neighbour {} are not a run of the {} from {} on",
-                         begin, end, i, plan_.shape().ghosts, tile.mesh.ghosts.size()));
-      }
-      read_neighbour(neighbour, end - begin, left, tile);
-    }
-    if (tile.mesh.ghosts.size() != plan_.shape().ghosts || !left.empty()) {
-      fail(fmt::format("the neighbours account for {} of {} ghosts and leave {} chain entries",
-                       tile.mesh.ghosts.size(), plan_.shape().ghosts, left.size()));
-    }
-  }
-
- private:
-  /// Takes `count` chains from the front of `left`.
-  void read_neighbour(NodeId neighbour, std::size_t count, std::span<const std::uint16_t>& left,
-                      PublishedTile& tile) const {
-    const auto length = static_cast<std::size_t>(tree_.chain_length(tile.node, neighbour));
-    const bool stays = tree_.stands_for_parent(neighbour);
-    if (left.size() / length < count) {
-      fail(fmt::format("tile {} needs {} chains of {} entries, {} entries are left",
-                       neighbour.index, count, length, left.size()));
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto chain = left.first(length);
-      left = left.subspan(length);
-      if (i > 0 && chain[0] <= tile.mesh.ghosts.back().index) {
-        fail(
-            fmt::format("ghosts of tile {} do not ascend at vertex {}", neighbour.index, chain[0]));
-      }
-      if (stays && length > 1 && chain[1] != chain[0]) {
-        fail(fmt::format("vertex {} of tile {} changes its number to {} without a parent tile",
-                         chain[0], neighbour.index, chain[1]));
-      }
-      tile.mesh.ghosts.push_back({neighbour.index, chain[0]});
-      tile.chains.add(chain);
-    }
-  }
-
-  Vec3f position(const Section& section, std::size_t v) const {
-    if (!plan_.has_short_positions()) {
-      return {get<float>(section, v, 0), get<float>(section, v, 1), get<float>(section, v, 2)};
-    }
-    return plan_.lattice()->point({get<std::uint16_t>(section, v, 0),
-                                   get<std::uint16_t>(section, v, 1),
-                                   get<std::uint16_t>(section, v, 2)});
-  }
-
-  /// `require_finite`: of what viewers read; raw values may be anything.
-  void read_group(const ChannelGroup& group, Part part, bool require_finite,
-                  std::span<float> attributes) const {
-    const Section& section = plan_[part];
-    const auto channels = static_cast<std::size_t>(plan_.layout().channels());
-    for (std::size_t v = 0; v < section.count; ++v) {
-      for (std::size_t c = 0; c < section.components; ++c) {
-        float& value = attributes[v * channels + group.offset + c];
-        value = section.component == kU8    ? get<std::uint8_t>(section, v, c)
-                : section.component == kU16 ? get<std::uint16_t>(section, v, c)
-                                            : get<float>(section, v, c);
-        if (require_finite && !std::isfinite(value)) {
-          fail(fmt::format("{} of vertex {} is not finite", key_of(part), v));
-        }
-      }
-    }
-  }
-
-  void check_triangle(Part part, std::size_t t, std::span<const TileTriangle> triangles) const {
-    const TileTriangle& triangle = triangles[t];
-    if (is_degenerate(triangle) || triangle != canonical(triangle) ||
-        (t > 0 && triangle < triangles[t - 1])) {
-      fail(fmt::format("{} triangle {} ({}, {}, {}) is degenerate, turned or out of order",
-                       key_of(part), t, raw(triangle[0]), raw(triangle[1]), raw(triangle[2])));
-    }
-    std::uint64_t own = 0, boundary = 0;
-    for (const TileVertex corner : triangle) {
-      own += raw(corner) < plan_.shape().own ? 1 : 0;
-      boundary += raw(corner) < plan_.shape().boundary ? 1 : 0;
-    }
-    const bool fits = part == Part::interior ? own == 3 : own == boundary && (own == 1 || own == 2);
-    if (!fits) {
-      fail(fmt::format("{} triangle {} has {} own corners, {} of them on the boundary",
-                       key_of(part), t, own, boundary));
-    }
-  }
-
-  std::vector<std::uint16_t> short_list(Part part, const char* what) const {
-    const Section& section = plan_[part];
-    std::vector<std::uint16_t> list(section.count);
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      list[i] = get<std::uint16_t>(section, i);
-      if (list[i] >= kMaxOwnVertices) {
-        fail(fmt::format("{} entry {} is {}, expected less than {}", what, i, list[i],
-                         kMaxOwnVertices));
-      }
-    }
-    return list;
-  }
-
-  const TilePlan& plan_;
-  std::span<const std::byte> bin_;
-  const Tree& tree_;
-  const std::string& name_;
-};
-
 /// Counts are bounded by 2^32, so that no product or sum of sizes overflows 64 bits.
 TileShape read_shape(const Json& extension, NodeId node, const Tree& tree, const TileFormat& format,
                      const std::string& name) {
@@ -395,8 +229,12 @@ TileShape read_shape(const Json& extension, NodeId node, const Tree& tree, const
   shape.chain_entries = count("chainEntryCount");
   shape.interior = count("interiorCount");
   shape.border = count("borderCount");
+  shape.copies = count("copyCount");
   if (shape.own == 0)
     throw Error(ErrorCode::corrupt, name + ": a tile without vertices");
+  if (shape.vertices() > UINT32_MAX)
+    throw Error(ErrorCode::corrupt,
+                fmt::format("{}: {} vertices, expected less than 2^32", name, shape.vertices()));
   const auto groups = groups_of(format.attributes);
   for (std::size_t i = 0; tree.is_partition(node) && i < groups.size(); ++i) {
     const char* key = key_of(groups[i].raw);
@@ -424,22 +262,12 @@ PublishedTile decode_glb(std::span<const std::byte> bytes, NodeId node, const Tr
     unpacked = unpack_bin(plan, packing, glb.bin, name);
   }
 
-  const Reader reader(plan, is_packed ? unpacked : glb.bin, tree, name);
-  PublishedTile tile;
-  tile.node = node;
-  tile.mesh.vertices.positions = reader.positions();
-  const Bounds bounds = bounds_of(tile.mesh.vertices.positions);
-  require_same_json(plan.document(bounds, format.frame, is_packed ? &packing : nullptr), document,
-                    name);
-  tile.mesh.vertices.attributes = reader.attributes();
-  tile.mesh.vertices.channels = format.attributes.channels();
-  tile.mesh.own_count = static_cast<std::uint32_t>(plan.shape().own);
-  tile.mesh.boundary_count = static_cast<std::uint32_t>(plan.shape().boundary);
-  tile.mesh.interior = reader.triangles(Part::interior, is_packed);
-  tile.mesh.border = reader.triangles(Part::border, is_packed);
-  tile.parent_map = reader.parent_map();
-  reader.read_ghosts(tile);
-  return tile;
+  const TileSections sections{plan, is_packed ? unpacked : glb.bin, is_packed};
+  std::vector<Vec3f> positions = read_positions(sections, tree, name);
+  require_same_json(
+      plan.document(bounds_of(positions), format.frame, is_packed ? &packing : nullptr), document,
+      name);
+  return read_tile(sections, std::move(positions), tree, name);
 }
 
 }  // namespace
@@ -474,9 +302,12 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
   assert(mesh.ghosts.size() == mesh.vertices.size() - mesh.own_count);
   assert(tile.parent_map.size() == (tile.node == tree.root() ? 0 : mesh.own_count));
   assert(mesh.vertices.channels == format.attributes.channels());
+  assert(mesh.copies.vertices.size() == mesh.copies.size());
 
   const GhostGroups neighbours = group_ghosts(mesh.ghosts);
-  const std::vector<float> shown = showable_attributes(format.attributes, mesh.vertices);
+  const VertexArray joined = mesh.copies.empty() ? VertexArray{} : with_copies(mesh);
+  const VertexArray& vertices = mesh.copies.empty() ? mesh.vertices : joined;
+  const std::vector<float> shown = showable_attributes(format.attributes, vertices);
   const auto groups = groups_of(format.attributes);
 
   TileShape shape{tile.node,
@@ -487,9 +318,10 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
                   tile.chains.size(),
                   mesh.interior.size(),
                   mesh.border.size(),
+                  mesh.copies.size(),
                   {}};
   for (std::size_t i = 0; tree.is_partition(tile.node) && i < groups.size(); ++i) {
-    shape.raw[i] = differs(shown, mesh.vertices.attributes, groups[i], mesh.vertices.channels);
+    shape.raw[i] = differs(shown, vertices.attributes, groups[i], vertices.channels);
   }
   const TilePlan plan(shape, format.attributes, format.lattice);
 
@@ -499,17 +331,17 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
       packed ? std::vector<std::byte>(plan.bytes())
              : begin_glb(plan.document(tile.bounds, format.frame).dump(), plan.bytes());
   Writer writer(plan, std::span(bytes).last(plan.bytes()));
-  writer.put_positions(mesh.vertices.positions);
+  writer.put_positions(vertices.positions);
   for (std::size_t i = 0; i < groups.size(); ++i) {
     writer.put_group(groups[i].part, groups[i], shown);
-    writer.put_group(groups[i].raw, groups[i], mesh.vertices.attributes);
+    writer.put_group(groups[i].raw, groups[i], vertices.attributes);
   }
-  writer.put_triangles(Part::interior, mesh.interior);
-  writer.put_triangles(Part::border, mesh.border);
+  put_triangles(mesh, writer);
   writer.put_list<std::uint16_t>(Part::parent_map, tile.parent_map);
   writer.put_list<std::uint32_t>(Part::neighbours, neighbours.tiles);
   writer.put_list<std::uint32_t>(Part::ghost_starts, neighbours.starts);
   writer.put_list<std::uint16_t>(Part::ghost_chains, tile.chains);
+  writer.put_copies(mesh.copies.places);
   if (packed) {
     const PackedBin bin = pack_bin(plan, bytes);
     bytes = join_glb(plan.document(tile.bounds, format.frame, &bin.packing).dump(), bin.bin);

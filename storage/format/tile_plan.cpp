@@ -14,9 +14,9 @@ constexpr unsigned kPoints = 0;
 constexpr unsigned kTriangles = 4;
 
 constexpr std::array<const char*, kPartCount> kKeys{
-    "POSITION",   "NORMAL",     "COLOR_0",     "TEXCOORD_0",  "interior",
-    "border",     "parentMap",  "neighbours",  "ghostStarts", "ghostChains",
-    "rawNormals", "rawColours", "rawTexcoords"};
+    "POSITION", "NORMAL",     "COLOR_0",    "TEXCOORD_0",  "interior",
+    "border",   "parentMap",  "neighbours", "ghostStarts", "ghostChains",
+    "copyOf",   "rawNormals", "rawColours", "rawTexcoords"};
 
 std::uint64_t component_bytes(unsigned component) {
   return component == kU8 ? 1 : component == kU16 ? 2 : 4;
@@ -125,6 +125,7 @@ Json extension_json(const TilePlan& plan) {
                     {"ownCount", shape.own},
                     {"rimCount", shape.boundary},
                     {"ghostCount", shape.ghosts},
+                    {"copyCount", shape.copies},
                     {"neighbourCount", shape.neighbours},
                     {"chainEntryCount", shape.chain_entries},
                     {"interiorCount", shape.interior},
@@ -171,6 +172,7 @@ ViewMode mode_of(Part part) {
       return ViewMode::triangles;
     case Part::parent_map:
     case Part::ghost_chains:
+    case Part::copy_of:
       return ViewMode::indices;
     case Part::neighbours:
     case Part::ghost_starts:
@@ -209,7 +211,10 @@ TilePlan::TilePlan(const TileShape& shape, const AttributeLayout& layout,
                    const std::optional<Lattice>& lattice)
     : shape_(shape), layout_(layout), lattice_(lattice) {
   const auto groups = groups_of(layout);
-  const unsigned index = shape.vertices() <= kMaxShortVertices ? kU16 : kU32;
+  const auto index_below = [](std::uint64_t count) {
+    return count <= kMaxShortVertices ? kU16 : kU32;
+  };
+  const unsigned index = index_below(shape.vertices());
   add(Part::position, has_short_positions() ? kU16 : kF32, 3, shape.vertices());
   for (const ChannelGroup& group : groups) {
     add(group.part, component_of(group), group.channels, shape.vertices());
@@ -220,6 +225,7 @@ TilePlan::TilePlan(const TileShape& shape, const AttributeLayout& layout,
   add(Part::neighbours, kU32, 1, shape.neighbours);
   add(Part::ghost_starts, kU32, 1, shape.neighbours > 0 ? shape.neighbours + 1 : 0);
   add(Part::ghost_chains, kU16, 1, shape.chain_entries);
+  add(Part::copy_of, index_below(shape.places()), 1, shape.copies);
   for (std::size_t i = 0; i < groups.size(); ++i) {
     add(groups[i].raw, kF32, groups[i].channels, shape.raw[i] ? shape.vertices() : 0);
   }
@@ -291,10 +297,13 @@ double expected_tile_bytes(const TileSums& tiles, std::uint64_t attribute_bytes)
   constexpr double kChain = 6;        // two or three indices of 16 bits on average
   constexpr double kParent = sizeof(std::uint16_t);
   constexpr double kTriangle = 3 * sizeof(std::uint16_t);
+  constexpr double kCopyOf = sizeof(std::uint16_t);
   const double vertex = 12 + static_cast<double>(attribute_bytes);
-  return tiles.vertices * (vertex + kParent) +
-         tiles.boundary * tiles.ghosts_per_boundary * (vertex + kChain) +
-         (tiles.triangles + tiles.wide_triangles) * kTriangle + tiles.count * kOverhead;
+  const double ghosts = tiles.boundary * tiles.ghosts_per_boundary;
+  const double copies = tiles.copies + ghosts * tiles.copies_per_vertex();
+  return tiles.vertices * (vertex + kParent) + ghosts * (vertex + kChain) +
+         copies * (vertex + kCopyOf) + (tiles.triangles + tiles.wide_triangles) * kTriangle +
+         tiles.count * kOverhead;
 }
 
 }  // namespace meshhier::storage

@@ -18,13 +18,13 @@
 namespace meshhier::storage {
 
 inline constexpr const char* kTileExtension = "MESHHIER_tile";
-inline constexpr unsigned kTileExtensionVersion = 1;
+inline constexpr unsigned kTileExtensionVersion = 2;
 inline constexpr const char* kMeshoptExtension = "EXT_meshopt_compression";
 inline constexpr const char* kQuantizationExtension = "KHR_mesh_quantization";
 
 // The BIN chunk: one section, and one buffer view, for each of these that is not empty, in this
-// order, each starting at a multiple of 4. o, g, n = o + g: own, ghost, all vertices; m:
-// neighbours.
+// order, each starting at a multiple of 4. o, g: own places, ghosts; c: copies at either; n = o + g
+// + c: vertices, in this order; m: neighbours.
 //
 //   section        elements          of
 //   position       n                 3 f32; 3 u16, stride 8, on a lattice of up to 16 bits
@@ -37,6 +37,7 @@ inline constexpr const char* kQuantizationExtension = "KHR_mesh_quantization";
 //   neighbours     m                 u32, ascending
 //   ghost_starts   m + 1, m = 0: 0   u32
 //   ghost_chains   a chain a ghost   u16, Tree::chain_length entries a chain
+//   copy_of        c                 u16 if o + g <= 65535, else u32; ascending
 //   raw_normals    n or none         3 f32
 //   raw_colours    n or none         3 or 4 f32
 //   raw_texcoords  n or none         2 f32
@@ -51,11 +52,12 @@ enum class Part : std::size_t {
   neighbours,
   ghost_starts,
   ghost_chains,
+  copy_of,
   raw_normals,
   raw_colours,
   raw_texcoords
 };
-inline constexpr std::size_t kPartCount = 13;
+inline constexpr std::size_t kPartCount = 14;
 
 /// The key of a part in the extension (from parent_map on), or the name of its attribute (up to
 /// texcoord).
@@ -93,10 +95,11 @@ std::array<ChannelGroup, 3> groups_of(const AttributeLayout& layout);
 struct TileShape {
   NodeId node;
   std::uint64_t own = 0, boundary = 0, ghosts = 0, neighbours = 0, chain_entries = 0;
-  std::uint64_t interior = 0, border = 0;
+  std::uint64_t interior = 0, border = 0, copies = 0;
   std::array<bool, 3> raw{};  ///< per ChannelGroup: whether its raw part is there
 
-  std::uint64_t vertices() const { return own + ghosts; }
+  std::uint64_t places() const { return own + ghosts; }
+  std::uint64_t vertices() const { return places() + copies; }
 };
 
 struct Section {

@@ -6,12 +6,15 @@ namespace meshhier::storage {
 
 struct TileSums {
   double count = 0;                 ///< tiles
-  double vertices = 0;              ///< own ones
+  double vertices = 0;              ///< own places
+  double copies = 0;                ///< further vertices at own places
   double boundary = 0;              ///< of the own vertices, those in the boundary
   double triangles = 0;             ///< border ones once in each tile they touch
   double wide_triangles = 0;        ///< of these, those whose corners take 32 bits
   double foreign_per_boundary = 0;  ///< WorkTile::foreign, per vertex of the boundary
   double ghosts_per_boundary = 0;   ///< of published tiles, per vertex of the boundary
+
+  double copies_per_vertex() const { return vertices > 0 ? copies / vertices : 0; }
 };
 
 }  // namespace meshhier::storage

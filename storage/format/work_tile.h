@@ -12,15 +12,18 @@
 namespace meshhier::storage {
 
 /// The first bytes of an encoded tile: they tell what is in it.
-constexpr std::size_t kWorkTileHeadBytes = 20;
-/// What the triangles and foreign corners of a tile take once it is decoded. `head`: the first
-/// kWorkTileHeadBytes.
+constexpr std::size_t kWorkTileHeadBytes = 28;
+/// What the triangles, their wedges and foreign corners take once a tile is decoded. `head`: the
+/// first kWorkTileHeadBytes.
 std::uint64_t work_triangle_bytes(std::span<const std::byte> head);
+/// Likewise what the copies of its own places take.
+std::uint64_t work_copy_bytes(std::span<const std::byte> head, int channels);
 
 /// Adds a tile to `sums`; published it has as many ghosts as foreign corners.
 void add_work_tile(std::span<const std::byte> head, TileSums& sums);
 
-// `Corner`: ChunkVertex or FinerGhost. The bytes do not tell which.
+// `Corner`: ChunkVertex or FinerGhost. The bytes do not tell which. Triangles come back with wedges
+// if the tile has copies or any wedge is not 0, and without any otherwise.
 template <class Corner>
 std::vector<std::byte> encode_work_tile(const WorkTile<Corner>& tile);
 /// Requires bytes of encode_work_tile with the same `channels`; throws Error(internal) otherwise.
@@ -30,6 +33,10 @@ WorkTile<Corner> decode_work_tile(std::span<const std::byte> bytes, int channels
 template <class Corner>
 std::vector<std::byte> encode_boundary(const WorkTile<Corner>& tile);
 Boundary decode_boundary(std::span<const std::byte> bytes, int channels);
+
+/// No bytes if the map is empty.
+std::vector<std::byte> encode_wedge_map(const WedgeMap& map);
+WedgeMap decode_wedge_map(std::span<const std::byte> bytes);
 
 std::vector<std::byte> encode_seam_strip(const SeamStrip& seam_strip);
 SeamStrip decode_seam_strip(std::span<const std::byte> bytes);

@@ -151,6 +151,32 @@ TEST(VertexQuadricTest, ARightAngleIsNoFold) {
   EXPECT_LT(both.at({-0.1F, 0, 0}), one.at({-0.1F, 0, 0}));
 }
 
+std::vector<VertexQuadric> quadrics_with(const tests::TestMesh& mesh,
+                                         std::vector<PlaceEdge> seams) {
+  std::ranges::sort(seams);
+  return vertex_quadrics(CollapseMesh(tests::tile_of(mesh).mesh), mesh.positions, seams);
+}
+
+TEST(VertexQuadricTest, ASeamIsHeldButLessThanABorder) {
+  const tests::TestMesh grid = tests::open_grid(4, 4);  // 12 is its middle
+  const std::vector<VertexQuadric> plain = quadrics_of(grid);
+  const std::vector<VertexQuadric> held = quadrics_with(grid, {{7, 12}, {12, 17}});
+  EXPECT_NEAR(held[12].at({0, 0.1F, 0}), 0, 1e-6);  // free along the seam
+  EXPECT_GT(held[12].at({0.1F, 0, 0}), 0.05F * held[12].at({0, 0, 0.1F}));
+  EXPECT_LT(held[12].at({0.1F, 0, 0}), plain[2].at({0, 0.1F, 0}));
+  EXPECT_EQ(held[12].area, plain[12].area);
+  EXPECT_EQ(held[6].at({1, 1, 1}), plain[6].at({1, 1, 1}));
+}
+
+TEST(VertexQuadricTest, WhereMostEdgesAreSeamsNoneIsALine) {
+  const tests::TestMesh grid = tests::open_grid(4, 4);
+  std::vector<PlaceEdge> all;
+  for (const CollapseMesh::Edge& edge : CollapseMesh(tests::tile_of(grid).mesh).edges())
+    all.push_back({edge.a, edge.b});
+  const std::vector<VertexQuadric> held = quadrics_with(grid, all);
+  EXPECT_EQ(held[12].at({0.1F, 0.2F, 0}), quadrics_of(grid)[12].at({0.1F, 0.2F, 0}));
+}
+
 TEST(VertexQuadricTest, TrianglesWithoutAreaSayNothing) {
   const std::vector<VertexQuadric> quadrics =
       quadrics_of({{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 0, 0}}, {{0, 1, 2}, {1, 2, 3}}});

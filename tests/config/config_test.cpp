@@ -573,18 +573,26 @@ TEST(ConfigWeld, IsTrueOrFalse) {
   EXPECT_THAT(refusal(with(R"("weld": 1)")), HasSubstr("weld: expected true or false"));
 }
 
+TEST(ConfigTopology, IsPlaceOrIndex) {
+  EXPECT_EQ(parse(with("")).topology, Topology::place);
+  EXPECT_EQ(parse(with(R"("topology": "index")")).topology, Topology::index);
+  EXPECT_THAT(refusal(with(R"("topology": "indexes")")),
+              HasSubstr("topology: expected one of \"place\", \"index\", found the string"));
+  EXPECT_THAT(refusal(with(R"("topolgy": "index")")), HasSubstr("did you mean \"topology\"?"));
+}
+
 // ---- resolved
 
 TEST(ResolvedJson, HoldsWhatDecidesTheResultAndNothingElse) {
   EXPECT_EQ(resolved_json(parse(with(""))), Json::parse(R"({
-      "weld": false,
+      "weld": false, "topology": "place",
       "partition": {"vertices": 8192, "axis": "compactness"},
       "simplify": {"method": "edge_collapse", "vertices": 8192, "representative": "quadric",
                    "cost": "quadric"},
       "outline": {"sectors": 128, "tolerance": 0.002},
       "storage": {"compression": "none"}, "up": "y"})"));
   EXPECT_EQ(resolved_json(parse(with(R"("partition": {"count": 9})"))), Json::parse(R"({
-      "weld": false,
+      "weld": false, "topology": "place",
       "partition": {"count": 9, "axis": "compactness"},
       "simplify": {"method": "edge_collapse", "representative": "quadric", "cost": "quadric"},
       "outline": {"sectors": 128, "tolerance": 0.002},

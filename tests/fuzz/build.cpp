@@ -1,7 +1,7 @@
 // The input of the target `build`, little endian:
 //
 //   u8  method            of simplifying, modulo what there are
-//   u8  partitions        one less than there are, modulo the vertices
+//   u8  partitions        one less than there are, modulo the places of the vertices
 //   u8  tile vertices     four less than a simplified tile has
 //   u8  form              0 to 15: positions are bytes times 10^(form - 8); above: floats
 //   u8  vertices          one less than there are
@@ -20,8 +20,11 @@
 #include "support/memory_files.h"
 #include "support/simplify_methods.h"
 
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -54,6 +57,15 @@ bench::LoadedMesh take_mesh(Take& take) {
       corner = take.upto(last);
   }
   return mesh;
+}
+
+/// Where the vertices lie: -0 equals 0.
+std::size_t count_places(const bench::LoadedMesh& mesh) {
+  std::set<std::array<std::uint64_t, 3>> places;
+  const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value + 0.0); };
+  for (const Vec3d& p : mesh.positions)
+    places.insert({bits(p.x), bits(p.y), bits(p.z)});
+  return places.size();
 }
 
 /// A mesh of which nothing can be measured has no errors.
@@ -91,7 +103,7 @@ void build(Bytes input) {
   const auto partitions = take.number<std::uint8_t>();
   config.simplify.vertices = 4U + take.number<std::uint8_t>();
   bench::LoadedMesh mesh = take_mesh(take);
-  config.partition.count = 1 + partitions % static_cast<std::uint32_t>(mesh.positions.size());
+  config.partition.count = 1 + partitions % static_cast<std::uint32_t>(count_places(mesh));
 
   MemoryFiles files;
   bench::write_ply(files, {config.input.front(), true}, *bench::as_generated(std::move(mesh)));

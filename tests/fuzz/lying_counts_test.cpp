@@ -73,6 +73,7 @@ storage::Manifest small_manifest() {
   manifest.generator = "meshhier";
   manifest.source.file_name = "a.ply";
   manifest.source.vertices = 10;
+  manifest.source.places = 10;
   manifest.source.bounds = {{0, 0, 0}, {1, 1, 1}};
   manifest.partition_count = 1;
   manifest.config = Json::object();
@@ -142,12 +143,13 @@ TEST(LyingCounts, OfAManifestTakeNoMemory) {
   const std::string index = "\"file\": \"tiles.bin\",\n    \"bytes\": ";
   const std::string outline = "\"file\": \"outline.glb\",\n    \"bytes\": ";
   for (const std::string lie : kLies) {
-    for (const std::string& key :
-         {std::string("\"vertices\": "), std::string("\"partitions\": "), index, outline}) {
+    for (const std::string& key : {std::string("\"vertices\": "), std::string("\"places\": "),
+                                   std::string("\"partitions\": "), index, outline}) {
       // The most that is allowed everywhere, and the lie.
       std::string text = with_number(honest, "\"vertices\": ", "4294967295");
+      text = with_number(text, "\"places\": ", "4294967295");
       text =
-          with_number(with_number(text, "\"partitions\": ", "4294967295"), index, "824633720736");
+          with_number(with_number(text, "\"partitions\": ", "4294967295"), index, "893353197288");
       MemoryFiles files;
       files.put("a.hier/hierarchy.json", fuzz::sealed_manifest(with_number(text, key, lie)));
       files.put("a.hier/tiles.bin", std::string(1024, '\0'));
@@ -194,10 +196,10 @@ TEST(LyingCounts, OfATileTakeNoMemory) {
   const Tree tree(1000, 4);
   for (const std::uint64_t lie : {std::uint64_t{1000000000000000000}, std::uint64_t{4294967295}}) {
     for (const char* key : {"ghostCount", "neighbourCount", "chainEntryCount", "interiorCount",
-                            "borderCount", "ownCount"}) {
-      Json extension = {{"version", 1},       {"ownCount", 4},       {"rimCount", 2},
+                            "borderCount", "ownCount", "copyCount"}) {
+      Json extension = {{"version", 2},       {"ownCount", 4},       {"rimCount", 2},
                         {"ghostCount", 2},    {"neighbourCount", 1}, {"chainEntryCount", 4},
-                        {"interiorCount", 2}, {"borderCount", 2}};
+                        {"interiorCount", 2}, {"borderCount", 2},    {"copyCount", 2}};
       extension[key] = lie;
       if (key == std::string("neighbourCount"))
         extension["ghostCount"] = lie;

@@ -33,7 +33,7 @@ void check_manifest(const Manifest& manifest, const std::string& text) {
   const std::string written = storage::to_json_text(manifest);
   const Manifest again = storage::parse_manifest(written, "again");
   require(storage::to_json_text(again) == written, "what is written is read again");
-  const Tree tree(manifest.source.vertices, manifest.partition_count);
+  const Tree tree(manifest.source.places, manifest.partition_count);
   require(tree.tile_count() < std::uint64_t{1} << 33, "the counts make a tree");
   check_reader(text);
 }

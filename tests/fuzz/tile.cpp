@@ -10,7 +10,7 @@
 // like neither, what makes a GLB: counts whose JSON is written as it must be, so that all the rest
 // of the input lies behind the comparison of the JSON:
 //
-//   u16 own, boundary, ghosts, neighbours, chain entries, interior, border
+//   u16 own, boundary, ghosts, neighbours, chain entries, interior, border, copies
 //   u8  which attributes have raw values: 1, 2, 4
 //   the BIN chunk before it is compressed, cut or filled up with zeros to its size
 #include "fuzz/target.h"
@@ -101,7 +101,7 @@ std::vector<std::byte> make_glb(Take take, const Place& place) {
   storage::TileShape shape;
   shape.node = place.node;
   for (std::uint64_t* field : {&shape.own, &shape.boundary, &shape.ghosts, &shape.neighbours,
-                               &shape.chain_entries, &shape.interior, &shape.border})
+                               &shape.chain_entries, &shape.interior, &shape.border, &shape.copies})
     *field = count();
   const auto raw_bits = take.number<std::uint8_t>();
   const auto groups = storage::groups_of(place.format.attributes);
@@ -126,14 +126,50 @@ bool same_but_attributes(const PublishedTile& a, const PublishedTile& b) {
   return a.node == b.node && a.mesh.vertices.positions == b.mesh.vertices.positions &&
          a.mesh.own_count == b.mesh.own_count && a.mesh.boundary_count == b.mesh.boundary_count &&
          a.mesh.ghosts == b.mesh.ghosts && a.mesh.interior == b.mesh.interior &&
-         a.mesh.border == b.mesh.border && a.parent_map == b.parent_map && a.chains == b.chains;
+         a.mesh.border == b.mesh.border && a.parent_map == b.parent_map && a.chains == b.chains &&
+         a.mesh.copies.vertices.positions == b.mesh.copies.vertices.positions &&
+         a.mesh.copies.places == b.mesh.copies.places &&
+         a.mesh.interior_wedges == b.mesh.interior_wedges &&
+         a.mesh.border_wedges == b.mesh.border_wedges;
+}
+
+bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
+  return a.size() == b.size() &&
+         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0);
 }
 
 bool same_attributes(const PublishedTile& a, const PublishedTile& b) {
-  const std::vector<float>& x = a.mesh.vertices.attributes;
-  const std::vector<float>& y = b.mesh.vertices.attributes;
-  return x.size() == y.size() &&
-         (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof(float)) == 0);
+  return same_bits(a.mesh.vertices.attributes, b.mesh.vertices.attributes) &&
+         same_bits(a.mesh.copies.vertices.attributes, b.mesh.copies.vertices.attributes);
+}
+
+void check_wedges(const TileMesh& mesh, const std::vector<TileTriangle>& triangles,
+                  const std::vector<CornerWedges>& wedges) {
+  const Copies& copies = mesh.copies;
+  require(wedges.size() == (copies.empty() ? 0 : triangles.size()), "wedges of each triangle");
+  for (std::size_t t = 0; t < wedges.size(); ++t) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::uint32_t place = raw(triangles[t][c]);
+      require(wedges[t][c] <= copies.first_of(place + 1) - copies.first_of(place),
+              "wedges are of their place");
+    }
+  }
+}
+
+void check_copies(const TileMesh& mesh) {
+  const Copies& copies = mesh.copies;
+  require(copies.vertices.size() == copies.size(), "a place a copy");
+  require(copies.vertices.attributes.size() ==
+              copies.size() * static_cast<std::size_t>(mesh.vertices.channels),
+          "each copy has its attributes");
+  require(std::ranges::is_sorted(copies.places), "copies ascend");
+  for (std::size_t i = 0; i < copies.size(); ++i) {
+    require(copies.places[i] < mesh.vertices.size(), "copies are of places");
+    require(copies.vertices.positions[i] == mesh.vertices.positions[copies.places[i]],
+            "copies lie at their places");
+  }
+  check_wedges(mesh, mesh.interior, mesh.interior_wedges);
+  check_wedges(mesh, mesh.border, mesh.border_wedges);
 }
 
 void check_triangles(const TileMesh& mesh) {
@@ -179,6 +215,7 @@ void check_tile(const PublishedTile& tile, const Place& place) {
     require(are_tile_vertices(tile.chains[i]), "chains are of tiles' vertices");
   }
   check_triangles(mesh);
+  check_copies(mesh);
 }
 
 /// Nothing is lost but what glTF cannot say above the partitions; that goes the first time.

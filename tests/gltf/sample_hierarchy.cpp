@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 namespace meshhier::tests {
 namespace {
@@ -205,6 +206,74 @@ class SampleBuilder {
   std::vector<LevelMap> levels_;
 };
 
+/// Gives own place p p modulo 4 copies, and some ghosts one.
+class CopyMaker {
+ public:
+  CopyMaker(TileMesh& mesh, const AttributeLayout& layout) : mesh_(mesh), layout_(layout) {}
+
+  void run(bool is_partition) {
+    choose_wedges(mesh_.interior, mesh_.interior_wedges);
+    choose_wedges(mesh_.border, mesh_.border_wedges);
+    if (is_partition)
+      add_flat_triangles();
+    normalize_triangles(mesh_.interior, mesh_.interior_wedges, false);
+    normalize_triangles(mesh_.border, mesh_.border_wedges, false);
+    add_copies();
+  }
+
+ private:
+  std::uint32_t copies_of(std::uint32_t place) const {
+    return place < mesh_.own_count ? place % 4
+                                   : static_cast<std::uint32_t>(used_ghosts_.count(place));
+  }
+
+  void choose_wedges(const std::vector<TileTriangle>& triangles,
+                     std::vector<CornerWedges>& wedges) {
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      CornerWedges& chosen = wedges.emplace_back();
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::uint32_t place = raw(triangles[t][c]);
+        const bool own = place < mesh_.own_count;
+        chosen[c] = static_cast<std::uint32_t>(t + c) % (own ? place % 4 + 1 : 1 + place % 2);
+        if (!own && chosen[c] > 0)
+          used_ghosts_.insert(place);
+      }
+    }
+  }
+
+  void add_flat_triangles() {
+    if (mesh_.own_count < 2)
+      return;
+    mesh_.interior.push_back({TileVertex{1}, TileVertex{1}, TileVertex{0}});
+    mesh_.interior_wedges.push_back({1, 0, 0});
+    if (mesh_.boundary_count < 2 || mesh_.ghosts.empty())
+      return;
+    mesh_.border.push_back(
+        {TileVertex{1}, static_cast<TileVertex>(mesh_.own_count), TileVertex{1}});
+    mesh_.border_wedges.push_back({1, 0, 0});
+  }
+
+  void add_copies() {
+    mesh_.copies.vertices.channels = mesh_.vertices.channels;
+    for (std::uint32_t place = 0; place < mesh_.vertices.size(); ++place) {
+      const Vec3f p = mesh_.vertices.positions[place];
+      const Vec3f same{p.x == 0 ? -p.x : p.x, p.y == 0 ? -p.y : p.y, p.z == 0 ? -p.z : p.z};
+      for (std::uint32_t k = 0; k < copies_of(place); ++k) {
+        mesh_.copies.vertices.append(same, sample_attributes(layout_, 1000 * place + k));
+        mesh_.copies.places.push_back(place);
+      }
+    }
+    if (!mesh_.copies.empty())
+      return;
+    mesh_.interior_wedges.clear();
+    mesh_.border_wedges.clear();
+  }
+
+  TileMesh& mesh_;
+  const AttributeLayout& layout_;
+  std::set<std::uint32_t> used_ghosts_;
+};
+
 }  // namespace
 
 const PublishedTile& SampleHierarchy::tile(NodeId node) const {
@@ -221,13 +290,21 @@ SampleHierarchy make_sample(const TestMesh& mesh, std::uint32_t partitions,
   return sample;
 }
 
+SampleHierarchy with_copies(SampleHierarchy sample) {
+  for (PublishedTile& tile : sample.tiles)
+    CopyMaker(tile.mesh, sample.format.attributes).run(sample.tree.is_partition(tile.node));
+  return sample;
+}
+
 SampleHierarchy quantized(SampleHierarchy sample, int bits) {
   Bounds bounds;
   for (const PublishedTile& tile : sample.tiles)
     bounds.add(bounds_of(tile.mesh.vertices.positions));
   sample.format.lattice = make_lattice(bounds, bits);
-  for (PublishedTile& tile : sample.tiles)
+  for (PublishedTile& tile : sample.tiles) {
     round_to(*sample.format.lattice, tile.mesh.vertices.positions);
+    round_to(*sample.format.lattice, tile.mesh.copies.vertices.positions);
+  }
   return sample;
 }
 
@@ -236,7 +313,8 @@ std::vector<float> sample_attributes(const AttributeLayout& layout, std::uint64_
   if (layout.normals) {
     const Vec3d n{hash_noise(vertex, 1) + 2.0, hash_noise(vertex, 2), hash_noise(vertex, 3)};
     const Vec3f unit = to_float(n * (1 / length(n)));
-    channels.insert(channels.end(), {unit.x, unit.y, unit.z});
+    for (const float axis : {unit.x, unit.y, unit.z})
+      channels.push_back(axis);
   }
   const float top = layout.colour == ColourType::u8    ? 255.0F
                     : layout.colour == ColourType::u16 ? 65535.0F

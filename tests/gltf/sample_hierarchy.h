@@ -27,6 +27,11 @@ struct SampleHierarchy {
 SampleHierarchy make_sample(const TestMesh& mesh, std::uint32_t partitions,
                             const storage::TileFormat& format = {});
 
+/// The same with copies of many places, own ones and ghosts, which have attributes of their own
+/// and other signs of zeros. Triangles use them; partitions also have triangles with two vertices
+/// at one place.
+SampleHierarchy with_copies(SampleHierarchy sample);
+
 /// The same with its positions rounded to a lattice of so many bits over all of them.
 SampleHierarchy quantized(SampleHierarchy sample, int bits);
 

@@ -139,6 +139,22 @@ TEST_F(GltfValidator, AcceptsCompressedAndQuantizedTilesOfEveryLayout) {
   expect_clean();
 }
 
+TEST_F(GltfValidator, AcceptsTilesWithCopies) {
+  int number = 0;
+  for (const AttributeLayout& layout : sample_layouts()) {
+    const SampleHierarchy sample = with_copies(make_sample(open_grid(11, 13), 3, {layout, {}}));
+    for (const auto compression : {storage::Compression::none, storage::Compression::meshopt}) {
+      for (const int bits : {0, 12}) {
+        SampleHierarchy stored = bits > 0 ? quantized(sample, bits) : sample;
+        stored.format.compression = compression;
+        write_tiles(fmt::format("copies{}", number++), stored);
+      }
+    }
+  }
+  write_tiles("points", with_copies(make_sample(points(50), 2)));
+  expect_clean();
+}
+
 /// meshoptimizer's own decoder on compressed tiles, against their plain twins.
 class MeshoptDecoder : public GltfFiles {
  protected:
@@ -163,6 +179,7 @@ TEST_F(MeshoptDecoder, GivesThePlainTilesBitForBit) {
     }
   }
   write_twins("soup", make_sample(soup(60), 3), storage::Compression::meshopt);
+  write_twins("copies", with_copies(make_sample(torus(300), 3)), storage::Compression::meshopt);
   write_twins("points", make_sample(points(50), 2), storage::Compression::meshopt);
   expect_code(compare(), 0);
 }

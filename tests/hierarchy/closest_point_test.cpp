@@ -53,6 +53,34 @@ TEST(ClosestPointTest, IsAsNearAsTheNearestOfManyPointsOfTheTriangle) {
   }
 }
 
+TEST(ClosestPointTest, ItsPartsOfTheEdgesLeadToIt) {
+  for (std::uint64_t i = 0; i < 300; ++i) {
+    const TriangleFrame t = random_triangle(i);
+    const ClosestPoint closest = closest_point(random_point(10000 + i), t);
+    EXPECT_EQ(t.a + (t.ab * closest.on_b + t.ac * closest.on_c), closest.point);
+    EXPECT_GE(closest.on_b, 0);
+    EXPECT_GE(closest.on_c, 0);
+    EXPECT_LE(closest.on_b + closest.on_c, 1 + 1e-15);
+  }
+}
+
+TEST(ClosestPointTest, AtACornerThePartsAreExact) {
+  for (std::uint64_t i = 0; i < 300; ++i) {
+    // As coordinates of vertices are: floats.
+    const auto corner = [&](std::uint64_t k) {
+      return to_double(to_float(random_point(3 * i + k)));
+    };
+    const TriangleFrame t(corner(0), corner(1), corner(2));
+    const auto parts = [&](std::uint64_t k) {
+      const ClosestPoint closest = closest_point(corner(k), t);
+      return std::array{closest.squared_distance, closest.on_b, closest.on_c};
+    };
+    EXPECT_EQ(parts(0), (std::array{0.0, 0.0, 0.0}));
+    EXPECT_EQ(parts(1), (std::array{0.0, 1.0, 0.0}));
+    EXPECT_EQ(parts(2), (std::array{0.0, 0.0, 1.0}));
+  }
+}
+
 TEST(ClosestPointTest, IsInsideOnAnEdgeOrACorner) {
   const TriangleFrame t({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
   EXPECT_EQ(closest_point({1, 1, 3}, t).point, (Vec3d{1, 1, 0}));

@@ -21,6 +21,12 @@ TEST(PlainText, IsCutBetweenCharacters) {
   EXPECT_EQ(plain_text("\x80\x80\x80", 2), "...");
 }
 
+TEST(Counted, VerticesSayWhereTheyLieIfSomeLieTogether) {
+  EXPECT_EQ(counted_vertices(600, 600), "600 vertices");
+  EXPECT_EQ(counted_vertices(600, 578), "600 vertices at 578 places");
+  EXPECT_EQ(counted_vertices(2, 1), "2 vertices at 1 place");
+}
+
 TEST(Counted, HasTheSingularForOne) {
   EXPECT_EQ(counted(0, "vertices"), "0 vertices");
   EXPECT_EQ(counted(1, "vertices"), "1 vertex");

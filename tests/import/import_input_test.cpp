@@ -305,10 +305,12 @@ std::vector<std::string> vertices_of_root(storage::FileSystem& files, const fs::
   const storage::HierarchyReader reader(files, hierarchy);
   const TileMesh mesh = reader.read_tile({Level{0}, 0}).mesh;
   std::vector<std::string> all;
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    all.push_back(point_text(mesh.vertices.positions[v]));
-    for (const float value : mesh.vertices.attributes_of(v))
-      all.back() += fmt::format(" {}", value);
+  for (const VertexArray* vertices : {&mesh.vertices, &mesh.copies.vertices}) {
+    for (std::size_t v = 0; v < vertices->size(); ++v) {
+      all.push_back(point_text(vertices->positions[v]));
+      for (const float value : vertices->attributes_of(v))
+        all.back() += fmt::format(" {}", value);
+    }
   }
   std::ranges::sort(all);
   return all;

@@ -2,18 +2,23 @@
 
 #include "hierarchy/cut.h"
 #include "hierarchy/error.h"
+#include "inspection/cut_mesh.h"
 #include "mesh_io/mesh_source.h"
 #include "storage/format/layout.h"
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/meshes.h"
+#include "tests/support/sample_copies.h"
 #include "tests/support/sample_hierarchy.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -269,6 +274,154 @@ TEST_F(ExportTest, ABrokenTileIsToldAndNothingWritten) {
   EXPECT_EQ(error.code(), ErrorCode::corrupt);
   EXPECT_THAT(error.what(), HasSubstr("000001.glb"));
   EXPECT_THAT(names(), testing::ElementsAre("a.hier"));
+}
+
+// Places with several vertices.
+
+/// Without triangles that have no area.
+std::vector<std::vector<double>> shown_surface(const Loaded& mesh) {
+  Loaded shown = mesh;
+  std::erase_if(shown.triangles, [&](const tests::MeshTriangle& t) {
+    return mesh.positions[t[0]] == mesh.positions[t[1]] ||
+           mesh.positions[t[1]] == mesh.positions[t[2]] ||
+           mesh.positions[t[2]] == mesh.positions[t[0]];
+  });
+  return surface(shown);
+}
+
+class ExportCopiesTest : public ExportTest {
+ protected:
+  tests::WedgedInput publish_copies(const tests::TestMesh& mesh, std::uint32_t partitions,
+                                    const tests::CopiesOptions& copies = {false, true}) {
+    sample_.emplace(tests::make_sample(mesh, {partitions, 30, false, true, {}}));
+    tests::WedgedInput input = tests::add_copies(*sample_, copies);
+    fs::remove_all(hierarchy());
+    tests::write_sample(*files_, hierarchy(), *sample_);
+    return input;
+  }
+
+  std::optional<tests::Sample> sample_;
+};
+
+TEST_F(ExportCopiesTest, TheLastLevelIsTheInput) {
+  for (const auto& mesh : {tests::sphere(900), tests::duplicates(700), tests::non_manifold(400)}) {
+    for (const tests::CopiesOptions copies : {tests::CopiesOptions{false, true}, {true, true}}) {
+      const tests::WedgedInput wedged = publish_copies(mesh, 8, copies);
+      ASSERT_GT(wedged.mesh.positions.size(), mesh.positions.size());
+      Loaded input{{}, wedged.attributes, wedged.mesh.triangles};
+      for (Vec3f p : wedged.mesh.positions)
+        input.positions.push_back(to_double(p));
+      run(sample_->tree.depth());
+      const Loaded exported = load(*files_, output());
+      EXPECT_EQ(exported.positions, input.positions);
+      EXPECT_EQ(exported.attributes, input.attributes);
+      // Corners too, where a place's vertices are alike.
+      for (tests::MeshTriangle& t : input.triangles)
+        t = canonical(t);
+      std::sort(input.triangles.begin(), input.triangles.end());
+      EXPECT_EQ(exported.triangles, input.triangles);
+    }
+  }
+}
+
+TEST_F(ExportCopiesTest, EveryCutShowsTheSurfaceOfItsPlaces) {
+  const tests::TestMesh torus = tests::torus(3000);
+  for (const std::string cut : {"0/0", "1/0\n1/1", "1/0\n2/2\n2/3", "2/0\n3/2\n3/3\n1/1"}) {
+    publish(torus, {8, 30, false, true, {}});
+    run(write_cut(cut));
+    const auto plain = shown_surface(load(*files_, output()));
+    fs::remove_all(hierarchy());
+    publish_copies(torus, 8);
+    run(write_cut(cut));
+    EXPECT_EQ(shown_surface(load(*files_, output())), plain) << cut;
+  }
+}
+
+/// The corners of what tile 2/2 draws in the cut 1/0, 2/2, 2/3: of those in 1/0 the vertex that is
+/// most like the tile's own there.
+std::vector<std::vector<double>> expected_seam(tests::Sample& sample, const DrawnTile& drawn) {
+  const PublishedTile& tile = sample.tile(node(2, 2));
+  const TileMesh& coarse = sample.tile(node(1, 0)).mesh;
+  Loaded expected;
+  const auto add = [&](Vec3f position, std::span<const float> attributes) {
+    expected.positions.push_back(to_double(position));
+    expected.attributes.insert(expected.attributes.end(), attributes.begin(), attributes.end());
+  };
+  const auto attributes_of = [](const TileMesh& mesh, std::uint32_t place, std::uint32_t wedge) {
+    return wedge == 0 ? mesh.vertices.attributes_of(place)
+                      : mesh.copies.vertices.attributes_of(mesh.copies.first_of(place) + wedge - 1);
+  };
+  const auto add_corner = [&](std::uint32_t place, std::uint32_t wedge) {
+    const auto own = attributes_of(tile.mesh, place, wedge);
+    const std::size_t ghost = place - tile.mesh.own_count;
+    if (place < tile.mesh.own_count || tile.mesh.ghosts[ghost].tile > 1)
+      return add(tile.mesh.vertices.positions[place], own);
+    const std::uint32_t there = tile.chains[ghost][1];
+    const auto count = static_cast<std::uint32_t>(1 + coarse.copies.first_of(there + 1) -
+                                                  coarse.copies.first_of(there));
+    std::span<const float> nearest;
+    double least = 1e30;
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const auto candidate = attributes_of(coarse, there, k);
+      double away = 0;
+      for (std::size_t c = 0; c < 3; ++c)
+        away += std::pow(double{candidate[c]} - double{own[c]}, 2);
+      if (away < least)
+        nearest = candidate;
+      least = std::min(least, away);
+    }
+    add(coarse.vertices.positions[there], nearest);
+  };
+  for (const std::uint32_t i : drawn.border) {
+    const auto first = static_cast<std::uint32_t>(expected.positions.size());
+    for (std::size_t c = 0; c < 3; ++c)
+      add_corner(raw(tile.mesh.border[i][c]), tile.mesh.border_wedges[i][c]);
+    expected.triangles.push_back({first, first + 1, first + 2});
+  }
+  return surface(expected, 3);
+}
+
+TEST_F(ExportCopiesTest, BesideACoarserTileACornerIsTheVertexMostLikeIt) {
+  publish_copies(tests::torus(3000), 4);
+  run(write_cut("1/0\n2/2\n2/3\n"));
+  const auto exported = surface(load(*files_, output()), 3);
+  const storage::HierarchyReader reader(*files_, hierarchy());
+  const auto numbered =
+      number_vertices(reader, Cut(reader.tree(), {node(1, 0), node(2, 2), node(2, 3)}));
+  const auto expected =
+      expected_seam(*sample_, draw_tile(reader.tree(), numbered, 1, reader.read_tile(node(2, 2))));
+  EXPECT_GT(expected.size(), 20U);
+  EXPECT_TRUE(std::includes(exported.begin(), exported.end(), expected.begin(), expected.end()));
+}
+
+TEST_F(ExportCopiesTest, ANodesTileComesWithTheCopiesOfItsFile) {
+  publish_copies(tests::sphere(900), 4);
+  for (NodeId wanted : {node(0, 0), node(1, 1), node(2, 2)}) {
+    run(wanted);
+    const Loaded mesh = load(*files_, output());
+    const TileMesh& tile = sample_->tile(wanted).mesh;
+    EXPECT_EQ(mesh.positions.size(), tile.vertices.size() + tile.copies.size());
+    EXPECT_EQ(mesh.triangles.size(), tile.interior.size() + tile.border.size());
+    std::uint32_t corners_at_copies = 0;
+    for (const auto& t : mesh.triangles)
+      corners_at_copies += static_cast<std::uint32_t>(
+          std::count_if(t.begin(), t.end(), [&](auto v) { return v >= tile.vertices.size(); }));
+    EXPECT_GT(corners_at_copies, 50U);
+  }
+}
+
+TEST_F(ExportCopiesTest, ACopyThatItsTileHasNotIsTold) {
+  publish_copies(tests::sphere(900), 4);
+  PublishedTile& tile = sample_->tile(node(2, 1));
+  Copies& copies = tile.mesh.copies;
+  ASSERT_EQ(tile.mesh.ghosts.front().tile, 0U);
+  for (std::size_t i = copies.first_of(tile.mesh.own_count); i < copies.size(); ++i)
+    copies.vertices.attributes[3 * i + 1] += 1;
+  fs::remove_all(hierarchy());
+  tests::write_sample(*files_, hierarchy(), *sample_);
+  const Error error = error_of(static_cast<Level>(2));
+  EXPECT_EQ(error.code(), ErrorCode::corrupt);
+  EXPECT_THAT(error.what(), HasSubstr("tile 2/1: a copy at the place of ghost"));
 }
 
 }  // namespace

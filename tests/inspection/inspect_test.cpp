@@ -56,6 +56,32 @@ TEST_F(InspectTest, JsonTellsTheSource) {
   EXPECT_EQ(json["parameters"]["partition"]["count"], 6);
 }
 
+TEST_F(InspectTest, PlacesAreToldBesideVertices) {
+  EXPECT_EQ(json()["source"]["places"], 578);
+  EXPECT_THAT(text(), Not(HasSubstr("places")));
+  sample_.manifest.source.vertices = 600;
+  const std::string manifest = storage::to_json_text(sample_.manifest);
+  storage::write_file(*files_, storage::manifest_path(path()), std::as_bytes(std::span(manifest)));
+  EXPECT_EQ(json()["source"]["vertices"], 600);
+  EXPECT_EQ(json()["source"]["places"], 578);
+  EXPECT_THAT(text(), HasSubstr("600 vertices at 578 places (0 of no triangle)"));
+}
+
+TEST_F(InspectTest, CopiesAreToldOfLevelsAndTiles) {
+  EXPECT_EQ(json()["levels"][3]["copies_total"], 0);
+  EXPECT_THAT(text({.level = {}, .node = node(3, 2)}), Not(HasSubstr("copies")));
+  sample_.record(node(3, 2)).copy_count = 12;
+  sample_.record(node(3, 4)).copy_count = 1;
+  fs::remove_all(path());
+  tests::write_sample(*files_, path(), sample_);
+  EXPECT_EQ(json()["levels"][3]["copies_total"], 13);
+  EXPECT_EQ(json()["levels"][2]["copies_total"], 0);
+  EXPECT_EQ(json({.level = {}, .node = node(3, 2)})["tile"]["copies"], 12);
+  EXPECT_THAT(text({.level = {}, .node = node(3, 2)}), HasSubstr(" ghosts, 12 copies; "));
+  EXPECT_THAT(text({.level = {}, .node = node(3, 4)}), HasSubstr(" ghosts, 1 copy; "));
+  EXPECT_THAT(text(), HasSubstr("|        13 |"));
+}
+
 TEST_F(InspectTest, JsonTellsThePartitions) {
   const auto partitions = json()["partitions"];
   EXPECT_EQ(partitions["count"], 6);

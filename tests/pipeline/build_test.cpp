@@ -7,9 +7,11 @@
 #include "hierarchy/cut.h"
 #include "hierarchy/error.h"
 #include "inspection/verify.h"
+#include "pipeline/estimate.h"
 #include "storage/format/hierarchy_reader.h"
 #include "storage/format/layout.h"
 #include "tests/support/faulty_file_system.h"
+#include "tests/support/interrupter.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/simplify_methods.h"
@@ -133,9 +135,21 @@ class BuildTest : public testing::Test {
     }
   }
 
+  /// What an estimate says of the budget; empty if it is enough.
+  std::string refusal(config::Config config) {
+    config.output += ".none";
+    try {
+      pipeline::estimate_build(config, true, files_);
+      return "";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::budget) << error.what();
+      return error.what();
+    }
+  }
+
   std::uint64_t named_budget(config::Config config) {
     config.memory_budget = 1;
-    const std::string message = failure(config).what();
+    const std::string message = refusal(config);
     const std::string before = "at least ";
     const std::size_t at = message.find(before);
     EXPECT_NE(at, std::string::npos) << message;
@@ -146,17 +160,9 @@ class BuildTest : public testing::Test {
   std::uint64_t tight_budget(config::Config config) {
     std::uint64_t accepted = named_budget(config);  // rounded up
     std::uint64_t refused = accepted - kMiB;
-    execution::CancelToken cancel;
-    cancel.cancel();  // a build that is let through ends at once
-    execution::NoProgress progress;
     while (accepted - refused > 1) {
       config.memory_budget = (refused + accepted) / 2;
-      try {
-        pipeline::build_hierarchy(config, {.force = true}, {files_, progress, cancel});
-      } catch (const Error& error) {
-        const bool is_refused = error.code() == ErrorCode::budget;
-        (is_refused ? refused : accepted) = config.memory_budget;
-      }
+      (refusal(config).empty() ? accepted : refused) = config.memory_budget;
     }
     return accepted;
   }
@@ -663,8 +669,7 @@ class DiskTest : public BuildTest {
   /// Whether a disk with that much room is let through.
   bool is_accepted(const config::Config& config, std::uint64_t room) {
     execution::CancelToken cancel;
-    cancel.cancel();  // the build ends as soon as it has begun
-    execution::NoProgress progress;
+    tests::StageInterrupter progress(cancel, "ingest");  // the first one that a plan is needed for
     tests::FaultyFileSystem files;
     files.limit_room(room);
     try {

@@ -121,10 +121,23 @@ TEST_F(EstimateTest, TheLargestTileOfAnyLevelDecidesTheMemory) {
 TEST_F(EstimateTest, ReadsTheHeaderAndWritesNothing) {
   write_mesh(tests::sphere(60'000));
   const std::set<fs::path> before = listing();
-  pipeline::estimate_build(config(), false, files_);
+  config::Config by_index = config();
+  by_index.topology = Topology::index;
+  pipeline::estimate_build(by_index, false, files_);
   EXPECT_EQ(listing(), before);
   EXPECT_LT(files_.counters().bytes_read, fs::file_size(config().input.front()) / 2);
   EXPECT_EQ(files_.counters().bytes_written, 0U);
+}
+
+TEST_F(EstimateTest, CountsPlacesWithoutTheFaces) {
+  write_mesh(tests::duplicates(60'000));
+  const std::set<fs::path> before = listing();
+  const BuildEstimate estimate = pipeline::estimate_build(config(), false, files_);
+  EXPECT_EQ(listing(), before);
+  EXPECT_LT(files_.counters().bytes_read, fs::file_size(config().input.front()) * 3 / 4);
+  EXPECT_EQ(files_.counters().bytes_written, 0U);
+  EXPECT_LT(estimate.mesh.places(), estimate.mesh.vertex_count);
+  EXPECT_EQ(estimate.plan.tree.vertex_count(), estimate.mesh.places());
 }
 
 TEST_F(EstimateTest, RefusesWhatABuildRefusesInTheSameWords) {
@@ -141,6 +154,7 @@ TEST_F(EstimateTest, RefusesWhatABuildRefusesInTheSameWords) {
   inside.output = directory_.path();
   expect_refused_alike(inside, ErrorCode::usage);
   files_.limit_room(100'000);
+  fs::create_directories(config().output.parent_path());  // both name it
   expect_refused_alike(config(), ErrorCode::budget);
 }
 

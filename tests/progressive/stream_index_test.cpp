@@ -31,6 +31,7 @@ progressive::ProgressiveIndex some_index() {
   index.generator = "meshhier 0.1.0";
   index.source.file_name = "a \"b\".ply";
   index.source.vertices = 10;
+  index.source.places = 9;
   index.source.triangles = 12;
   index.source.bounds = {{-1, 0.1, 2}, {3, 4, 5}};
   index.source.attributes = {true, ColourType::u16, false, true};
@@ -103,7 +104,7 @@ TEST(ProgressiveIndex, GivesEveryValueBack) {
 TEST(ProgressiveIndex, IsReadable) {
   const std::string text = to_json_text(some_index());
   EXPECT_THAT(text,
-              StartsWith("{\n  \"format\": \"meshhier-progressive\",\n  \"format_version\": 1,\n"));
+              StartsWith("{\n  \"format\": \"meshhier-progressive\",\n  \"format_version\": 2,\n"));
   EXPECT_THAT(text, HasSubstr("\"file\": \"base.bin\""));
   EXPECT_THAT(text, HasSubstr("\"file\": \"detail_01.bin\""));
   EXPECT_EQ(resealed(IndexJson::parse(text)), text);
@@ -128,11 +129,13 @@ TEST(ProgressiveIndex, TruncationAtEveryByteIsRefused) {
 
 TEST(ProgressiveIndex, OtherFormatsAndVersionsAreRefusedByTheirNumber) {
   IndexJson document = IndexJson::parse(to_json_text(some_index()));
-  document["format_version"] = 2;
+  document["format_version"] = 3;
   EXPECT_THAT(index_flaw(document.dump()),
-              HasSubstr("format version 2 is newer than 1, the newest known"));
-  document["format_version"] = 0;
-  EXPECT_THAT(index_flaw(document.dump()), HasSubstr("format version is 0, expected 1"));
+              HasSubstr("format version 3 is newer than 2, the newest known"));
+  document["format_version"] = 1;
+  EXPECT_THAT(index_flaw(document.dump()),
+              HasSubstr("was made with format version 1, this program reads 2: make it again from "
+                        "its hierarchy"));
   document["format"] = "meshhier";
   EXPECT_THAT(index_flaw(document.dump()), HasSubstr("\"format\" is wrong"));
 }
@@ -183,7 +186,8 @@ TEST(ProgressiveIndex, EveryWrongValueIsNamed) {
       {"/files/0/bytes", 897, "\"files.bytes\" is wrong, expected an integer from 0 to 896"},
       {"/files/1/bytes", -1, "\"files.bytes\" is wrong"},
       {"/files/1/checksum", "FEDCBA9876543210", "\"files.checksum\" is wrong"},
-      {"/source/vertices", 0, "\"source.vertices\" is wrong"}};
+      {"/source/vertices", 0, "\"source.vertices\" is wrong"},
+      {"/source/places", 11, "\"source.places\" is wrong"}};
   const IndexJson good = IndexJson::parse(to_json_text(some_index()));
   for (const Damage& damage : damages) {
     IndexJson changed = good;

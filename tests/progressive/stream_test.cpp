@@ -12,6 +12,7 @@
 #include "storage/format/layout.h"
 #include "tests/support/half_edge_hierarchy.h"
 #include "tests/support/memory_files.h"
+#include "tests/support/sample_copies.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/sizes.h"
 
@@ -448,6 +449,26 @@ TEST_F(ProgressiveTest, ASectorIsWhatItsTilesShowTogether) {
 }
 
 // ---- the same bytes --------------------------------------------------------------------------
+
+TEST_F(ProgressiveTest, SeveralVerticesAtAPlaceAreRefusedBeforeAnyWork) {
+  tests::Sample sample = tests::make_sample(tests::sphere(900), {4, 30, false, true, {}});
+  tests::add_copies(sample);
+  sample.manifest.config["simplify"]["method"] = "half_edge";
+  hierarchy_ = "/models/copies.hier";
+  tests::write_sample(files_, hierarchy_, sample);
+  const std::uint64_t written = files_.counters().bytes_written;
+  try {
+    stream();
+    FAIL() << "expected an error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::usage);
+    EXPECT_THAT(error.what(),
+                testing::StartsWith("/models/copies.hier has several vertices at one place"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("\"topology\": \"index\""));
+  }
+  EXPECT_EQ(files_.counters().bytes_written, written);
+  EXPECT_FALSE(files_.exists(kStream));
+}
 
 TEST_F(ProgressiveTest, ThreadsAndMemoryDoNotMatter) {
   build(tests::attributed(tests::torus(2500, 0.02F), {true, ColourType::u8, false, false}), 40, 50);

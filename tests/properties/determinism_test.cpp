@@ -1,16 +1,20 @@
 // Promise 6: the output is byte-identical for any thread count, any memory budget, and any form of
 // the same input.
+#include "bench/split.h"
 #include "execution/size_text.h"
 #include "hierarchy/error.h"
 #include "mesh_io/ply_writer.h"
 #include "partition/top_tree.h"
 #include "pipeline/build.h"
+#include "pipeline/estimate.h"
 #include "storage/format/layout.h"
 #include "storage/io/hash.h"
+#include "tests/support/loaded_mesh.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/simplify_methods.h"
 #include "tests/support/sizes.h"
+#include "tests/support/tight_budget.h"
 
 #include <algorithm>
 #include <array>
@@ -26,6 +30,7 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -52,6 +57,15 @@ struct RichMesh {
 
 RichMesh plain(TestMesh shape) {
   return {std::move(shape), {}, {}};
+}
+
+/// Several vertices at each place, as bench::split() makes them.
+RichMesh split(const TestMesh& shape, std::string_view name) {
+  const bench::LoadedMesh mesh = bench::split(tests::loaded(shape), name, 40);
+  RichMesh result{{{}, mesh.triangles}, mesh.attributes, mesh.channels};
+  for (const Vec3d& p : mesh.positions)
+    result.shape.positions.push_back(to_float(p));
+  return result;
 }
 
 RichMesh rich(TestMesh shape) {
@@ -181,31 +195,6 @@ class DeterminismTest : public testing::Test {
     return hashes;
   }
 
-  /// Whether a budget is let through.
-  bool is_enough(config::Config config, std::uint64_t budget) {
-    config.memory_budget = budget;
-    execution::CancelToken cancel;
-    cancel.cancel();  // a build that is let through ends at once
-    execution::NoProgress progress;
-    try {
-      pipeline::build_hierarchy(config, {.force = true}, {*files_, progress, cancel});
-    } catch (const Error& error) {
-      return error.code() != ErrorCode::budget;
-    }
-    return true;
-  }
-
-  /// The least budget to the byte: nothing is left for scratch data, all of it goes to the disk.
-  std::uint64_t tight_budget(const config::Config& config) {
-    std::uint64_t refused = 0;
-    std::uint64_t accepted = kGiB;
-    while (accepted - refused > 1) {
-      const std::uint64_t middle = (refused + accepted) / 2;
-      (is_enough(config, middle) ? accepted : refused) = middle;
-    }
-    return accepted;
-  }
-
   /// Bytes that a build of two threads reads; its result must be as expected.
   std::uint64_t read_by(const config::Config& config, std::uint64_t budget,
                         const FileHashes& expected) {
@@ -218,15 +207,16 @@ class DeterminismTest : public testing::Test {
   /// Builds under all conditions, each once, and expects one result.
   void expect_one_result(const config::Config& config,
                          const std::vector<std::uint32_t>& threads = {1, 2, 5}) {
-    const std::uint64_t tight = tight_budget(config);
+    const std::uint64_t tight = tests::tight_budget(config, *files_);
     const FileHashes expected = build(config, {1, 4 * kGiB});
     EXPECT_GE(expected.size(), 4U);
     const std::uint64_t in_memory = read_by(config, 4 * kGiB, expected);
     const std::uint64_t on_disk = read_by(config, tight, expected);
     EXPECT_GT(on_disk, in_memory * 5 / 4) << "the least budget did not use the disk";
-    for (const std::uint64_t budget : {4 * kGiB, 64 * kMiB, tight}) {
+    const std::uint64_t middle = std::max(64 * kMiB, tight + tight / 2);
+    for (const std::uint64_t budget : {4 * kGiB, middle, tight}) {
       for (const std::uint32_t count : threads) {
-        const bool is_done = budget != 64 * kMiB && (count == 2 || (count == 1 && budget != tight));
+        const bool is_done = budget != middle && (count == 2 || (count == 1 && budget != tight));
         if (is_done)
           continue;
         EXPECT_EQ(build(config, {count, budget}), expected)
@@ -255,6 +245,8 @@ const std::vector<Case>& cases() {
       {"points", [] { return plain(tests::points(3000)); }},
       {"torus with attributes", [] { return rich(tests::torus(6000, 0.01F)); }},
       {"points with attributes", [] { return rich(tests::points(3000)); }},
+      {"split, without attributes", [] { return split(tests::sphere(4000, 0.01F), "soup"); }},
+      {"split by all attributes", [] { return split(tests::torus(6000, 0.02F), "mixed"); }},
   };
   return all;
 }
@@ -305,7 +297,7 @@ TEST_F(DeterminismTest, TheFormOfTheFileDoesNotMatter) {
     EXPECT_GE(expected.size(), 4U);
     for (const bool is_text : {true, false}) {
       is_text ? write_text(mesh) : write_big_endian(mesh);
-      for (const std::uint64_t budget : {4 * kGiB, tight_budget(with)}) {
+      for (const std::uint64_t budget : {4 * kGiB, tests::tight_budget(with, *files_)}) {
         FileHashes found = build(with, {2, budget});
         EXPECT_EQ(found.erase("hierarchy.json"), 1U);
         EXPECT_EQ(found, expected) << (is_text ? "text" : "big endian");
@@ -315,19 +307,21 @@ TEST_F(DeterminismTest, TheFormOfTheFileDoesNotMatter) {
 }
 
 TEST_F(DeterminismTest, TheOrderOfTheTrianglesDoesNotMatter) {
-  RichMesh mesh = plain(tests::sphere(6000, 0.01F));
-  config::Config with = config();
-  with.partition.vertices = 200;
-  write_binary(mesh);
-  FileHashes expected = build(with, {});
-  std::ranges::reverse(mesh.shape.triangles);
-  for (std::size_t i = 0; i < mesh.shape.triangles.size(); i += 2)
-    std::ranges::rotate(mesh.shape.triangles[i], mesh.shape.triangles[i].begin() + 1);
-  write_binary(mesh);
-  FileHashes found = build(with, {});
-  expected.erase("hierarchy.json");
-  found.erase("hierarchy.json");
-  EXPECT_EQ(found, expected);
+  for (RichMesh mesh :
+       {plain(tests::sphere(6000, 0.01F)), split(tests::torus(6000, 0.02F), "mixed")}) {
+    config::Config with = config();
+    with.partition.vertices = 200;
+    write_binary(mesh);
+    FileHashes expected = build(with, {});
+    std::ranges::reverse(mesh.shape.triangles);
+    for (std::size_t i = 0; i < mesh.shape.triangles.size(); i += 2)
+      std::ranges::rotate(mesh.shape.triangles[i], mesh.shape.triangles[i].begin() + 1);
+    write_binary(mesh);
+    FileHashes found = build(with, {});
+    expected.erase("hierarchy.json");
+    found.erase("hierarchy.json");
+    EXPECT_EQ(found, expected);
+  }
 }
 
 TEST_F(DeterminismTest, AnotherConfigGivesAnotherResult) {
@@ -352,6 +346,15 @@ TEST_F(LargeDeterminismTest, AMeshOfSeveralChunks) {
   ASSERT_GT(mesh.shape.positions.size(), partition::kChunkVertices);
   write_binary(mesh);
   expect_one_result(config(), {1, 5});
+}
+
+TEST_F(LargeDeterminismTest, AMeshOfSeveralChunksWithSeveralVerticesAtEachPlace) {
+  const TestMesh sphere = tests::shuffled(tests::sphere(500'000, 0.002F), 9);
+  ASSERT_GT(sphere.positions.size(), partition::kChunkVertices);
+  write_binary(split(sphere, "charts"));
+  expect_one_result(config(), {5});
+  write_binary(split(sphere, "soup"));
+  expect_one_result(config(), {5});
 }
 
 TEST_F(LargeDeterminismTest, AMeshOfManyEqualCoordinates) {

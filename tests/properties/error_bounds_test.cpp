@@ -81,7 +81,7 @@ std::vector<std::pair<std::string, tests::TestMesh>> meshes() {
   append(specks, tests::soup(100), {0.5F, 0, 0}, 2);
   tests::TestMesh line = tests::open_grid(60, 5);
   for (Vec3f& p : line.positions)
-    p.y = p.z = 0;
+    p = {p.x + p.y / 8, 0, 0};  // no two at one place
   return {{"torus", tests::torus(2400, 0.01F)},
           {"nested shells", tests::nested_shells(2000, 0.01F)},
           {"terrain", tests::open_grid(30, 30, 0.3F)},

@@ -1,5 +1,8 @@
 // Promise 7: whatever fails, and whenever, an output is there complete or not at all, one that is
 // to be replaced stays until then, and the next build goes on and makes the same bytes.
+#include "bench/generator.h"
+#include "bench/split.h"
+#include "bench/stress.h"
 #include "hierarchy/error.h"
 #include "pipeline/build.h"
 #include "storage/format/layout.h"
@@ -7,8 +10,10 @@
 #include "storage/io/hash.h"
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/interrupter.h"
+#include "tests/support/loaded_mesh.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_hierarchy.h"
+#include "tests/support/tight_budget.h"
 #include "tests/support/try_build.h"
 
 #include <cstdint>
@@ -33,28 +38,12 @@ using testing::HasSubstr;
 using tests::Call;
 using tests::FaultyFileSystem;
 using tests::Interrupter;
+using tests::StageInterrupter;
 
 constexpr std::uint64_t kForever = std::numeric_limits<std::uint32_t>::max();
 
 /// Files by path, with the hashes of their content; directories with 0.
 using Snapshot = std::map<std::string, std::uint64_t>;
-
-/// Sets the token at the beginning of the stage of that name.
-class StageInterrupter final : public execution::Progress {
- public:
-  StageInterrupter(execution::CancelToken& token, std::string stage)
-      : token_(token), stage_(std::move(stage)) {}
-  void stage(std::string_view name, std::uint64_t, std::string_view) override {
-    if (name == stage_)
-      token_.cancel();
-  }
-  void advance(std::uint64_t) override {}
-  void finish(std::string_view) override {}
-
- private:
-  execution::CancelToken& token_;
-  std::string stage_;
-};
 
 constexpr auto kInMemory = tests::TemporaryDirectory::Place::memory;
 
@@ -69,22 +58,7 @@ class FaultsTest : public testing::TestWithParam<config::Container> {
     config_.storage.container = GetParam();
     config_.threads = 2;
     config_.partition.vertices = 80;
-    config_.memory_budget = tight_budget();
-  }
-
-  /// The least budget to the byte: nothing is left for scratch data, all of it goes to the disk.
-  std::uint64_t tight_budget() {
-    std::uint64_t refused = 0;
-    std::uint64_t accepted = std::uint64_t{1} << 30;
-    execution::CancelToken cancel;
-    cancel.cancel();  // a build that is let through ends at once
-    execution::NoProgress progress;
-    while (accepted - refused > 1) {
-      config_.memory_budget = (refused + accepted) / 2;
-      const std::optional<ErrorCode> code = run(*real_, progress, cancel);
-      (code == ErrorCode::budget ? refused : accepted) = config_.memory_budget;
-    }
-    return accepted;
+    config_.memory_budget = tests::tight_budget(config_, *real_);
   }
 
   Snapshot snapshot() {
@@ -194,6 +168,29 @@ class FaultsTest : public testing::TestWithParam<config::Container> {
     }
   }
 
+  /// Interrupts builds at many times; each must be gone on with to the same bytes.
+  void interrupt_anywhere() {
+    const Snapshot after = expected();
+    FaultyFileSystem files;
+    execution::CancelToken never;
+    Interrupter measuring(never, kForever);
+    ASSERT_EQ(run(files, measuring, execution::CancelToken()), std::nullopt);
+    fs::remove_all(config_.output);
+    const std::uint64_t total = measuring.done();
+    ASSERT_GT(total, 1000U);
+    for (std::uint64_t step = 0; step < 24; ++step) {
+      SCOPED_TRACE(step);
+      execution::CancelToken cancel;
+      Interrupter progress(cancel, 1 + total * step / 24);
+      ASSERT_EQ(run(files, progress, cancel), ErrorCode::interrupted) << message_;
+      EXPECT_FALSE(fs::exists(config_.output));
+      ASSERT_EQ(run(files), std::nullopt) << message_;
+      EXPECT_EQ(output(), after);
+      EXPECT_EQ(names(), only_output());
+      fs::remove_all(config_.output);
+    }
+  }
+
   static int stride() { return GetParam() == storage::Container::files ? 1 : 4; }
 
   tests::TemporaryDirectory directory_{kInMemory};  ///< looked at as a whole
@@ -284,25 +281,15 @@ TEST_P(FaultsTest, ShortTransfersChangeNothing) {
 // ---- interruption --------------------------------------------------------------------------
 
 TEST_P(FaultsTest, AnInterruptionAtAnyTimeIsGoneOnFrom) {
-  const Snapshot after = expected();
-  FaultyFileSystem files;
-  execution::CancelToken never;
-  Interrupter measuring(never, kForever);
-  ASSERT_EQ(run(files, measuring, execution::CancelToken()), std::nullopt);
-  fs::remove_all(config_.output);
-  const std::uint64_t total = measuring.done();
-  ASSERT_GT(total, 1000U);
-  for (std::uint64_t step = 0; step < 24; ++step) {
-    SCOPED_TRACE(step);
-    execution::CancelToken cancel;
-    Interrupter progress(cancel, 1 + total * step / 24);
-    ASSERT_EQ(run(files, progress, cancel), ErrorCode::interrupted) << message_;
-    EXPECT_FALSE(fs::exists(config_.output));
-    ASSERT_EQ(run(files), std::nullopt) << message_;
-    EXPECT_EQ(output(), after);
-    EXPECT_EQ(names(), only_output());
-    fs::remove_all(config_.output);
-  }
+  interrupt_anywhere();
+}
+
+TEST_P(FaultsTest, AnInterruptionIsGoneOnFromWithSeveralVerticesAtAPlace) {
+  const bench::LoadedMesh mesh =
+      bench::split(tests::loaded(tests::sphere(600, 0.01F)), "mixed", 20);
+  bench::write_ply(*real_, {directory_.path() / "mesh.ply", true}, *bench::as_generated(mesh));
+  config_.memory_budget = tests::tight_budget(config_, *real_);
+  interrupt_anywhere();
 }
 
 // One build, interrupted again and again, always goes on where it was.

@@ -1,5 +1,6 @@
 #include "tests/support/half_edge_hierarchy.h"
 
+#include "hierarchy/topology.h"
 #include "mesh_io/ply_writer.h"
 #include "pipeline/build.h"
 
@@ -48,6 +49,7 @@ config::Config half_edge_config(const std::filesystem::path& directory, std::uin
   config.output = directory / "mesh.hier";
   config.threads = 1;
   config.partition.count = partitions;
+  config.topology = Topology::index;  // a stream has one vertex at a place
   config.simplify.method = config::SimplifyMethod::half_edge;
   config.simplify.vertices = tile_vertices;
   return config;

@@ -46,4 +46,21 @@ class Interrupter final : public execution::Progress {
   std::set<std::string> stages_;
 };
 
+/// Sets the token at the beginning of the stage of that name.
+class StageInterrupter final : public execution::Progress {
+ public:
+  StageInterrupter(execution::CancelToken& token, std::string stage)
+      : token_(token), stage_(std::move(stage)) {}
+  void stage(std::string_view name, std::uint64_t, std::string_view) override {
+    if (name == stage_)
+      token_.cancel();
+  }
+  void advance(std::uint64_t) override {}
+  void finish(std::string_view) override {}
+
+ private:
+  execution::CancelToken& token_;
+  std::string stage_;
+};
+
 }  // namespace meshhier::tests

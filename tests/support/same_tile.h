@@ -38,6 +38,15 @@ inline void expect_same_mesh(const PublishedTile& a, const PublishedTile& b) {
   EXPECT_EQ(a.mesh.border, b.mesh.border);
   EXPECT_EQ(a.parent_map, b.parent_map);
   EXPECT_EQ(a.chains, b.chains);
+  EXPECT_EQ(bits_of(a.mesh.copies.vertices.positions), bits_of(b.mesh.copies.vertices.positions));
+  EXPECT_EQ(a.mesh.copies.places, b.mesh.copies.places);
+  EXPECT_EQ(a.mesh.interior_wedges, b.mesh.interior_wedges);
+  EXPECT_EQ(a.mesh.border_wedges, b.mesh.border_wedges);
+}
+
+inline void expect_same_attributes(const PublishedTile& a, const PublishedTile& b) {
+  EXPECT_EQ(bits_of(a.mesh.vertices.attributes), bits_of(b.mesh.vertices.attributes));
+  EXPECT_EQ(bits_of(a.mesh.copies.vertices.attributes), bits_of(b.mesh.copies.vertices.attributes));
 }
 
 }  // namespace meshhier::tests

@@ -306,6 +306,7 @@ TileRecord make_record(const Tree& tree, const PublishedTile& tile, const Sample
   record.own_count = tile.mesh.own_count;
   record.boundary_count = tile.mesh.boundary_count;
   record.ghost_count = static_cast<std::uint32_t>(tile.mesh.ghosts.size());
+  record.copy_count = static_cast<std::uint32_t>(tile.mesh.copies.size());
   record.interior_count = static_cast<std::uint32_t>(tile.mesh.interior.size());
   record.border_count = static_cast<std::uint32_t>(tile.mesh.border.size());
   record.drawn_border_count = drawn_count(tree, tile);
@@ -344,6 +345,7 @@ storage::Manifest make_manifest(const Sample& sample, const fs::path& source) {
     manifest.source.checksum = checksum.complete(*file, [] {});
   }
   manifest.source.vertices = sample.ranked.positions.size();
+  manifest.source.places = manifest.source.vertices;
   manifest.source.triangles = sample.ranked.triangles.size();
   manifest.source.faces = sample.ranked.triangles.size();
   manifest.source.attributes = sample.format.attributes;

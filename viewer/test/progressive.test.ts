@@ -30,7 +30,7 @@ const BASE = baseOf([3, VERTICES], [1, TRIANGLE]);
 function indexText(change: object = {}, file: object = {}): string {
   const base = { file: NAME, level: 0, vertices: 3, triangles: 1, merges: 0, shown_vertices: 3, shown_triangles: 1, bytes: BASE.length };
   return JSON.stringify({
-    format: 'meshhier-progressive', format_version: 1, vertices: 3, own_vertices: 3, triangles: 1, origin: [0, 0, 0], up: 'y', licence: '',
+    format: 'meshhier-progressive', format_version: 2, vertices: 3, own_vertices: 3, triangles: 1, origin: [0, 0, 0], up: 'y', licence: '',
     source: {
       file_name: 'a.ply',
       attributes: { normals: false, colours: 'none', alpha: false, texcoords: false },

@@ -119,9 +119,13 @@ describe.skipIf(!hasProgram)('TileIndex', () => {
 });
 
 describe('readManifest', () => {
-  const hostile = ['', '[]', 'null', '{}', '{"format":"meshhier"}', '{"format":"meshhier","format_version":5}',
-    '{"format":"meshhier","format_version":4,"source":[]}', '{"__proto__":{"format":"meshhier"}}'];
+  const hostile = ['', '[]', 'null', '{}', '{"format":"meshhier"}', '{"format":"meshhier","format_version":6}',
+    '{"format":"meshhier","format_version":5,"source":[]}', '{"__proto__":{"format":"meshhier"}}'];
   it.each(hostile)('refuses %s', (text) => {
     expect(() => readManifest(text)).toThrow(HierarchyProblem);
+  });
+
+  it('says what to do about a hierarchy of an older version', () => {
+    expect(() => readManifest('{"format":"meshhier","format_version":4}')).toThrow('build the hierarchy again');
   });
 });

@@ -19,6 +19,7 @@ using tests::kMiB;
 JobSize job_of(std::uint64_t vertices, std::uint32_t tile) {
   JobSize job;
   job.vertex_count = vertices;
+  job.place_count = job.vertex_count;
   job.face_count = 2 * vertices;
   job.partition_count = static_cast<std::uint32_t>((vertices + tile - 1) / tile);
   job.largest_tile = tile;

@@ -23,6 +23,7 @@ using tests::kMiB;
 JobSize job_of(std::uint64_t vertices, std::uint32_t tile, int channels, std::size_t threads) {
   JobSize job;
   job.vertex_count = vertices;
+  job.place_count = job.vertex_count;
   job.face_count = 2 * vertices;
   job.channels = channels;
   job.partition_count = static_cast<std::uint32_t>((vertices + tile - 1) / tile);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -35,7 +36,7 @@ class ChunksTest : public testing::Test {
   std::unique_ptr<storage::FileSystem> files_ = storage::make_posix_file_system();
   storage::MemoryPool pool_{0};
   storage::ScratchFile scratch_{*files_, directory_.path() / "scratch", pool_};
-  Chunks chunks_{tree_, 1, scratch_, 4096};
+  Chunks chunks_{tree_, 1, false, scratch_, 4096};
 };
 
 TEST_F(ChunksTest, VerticesKeepTheirOrderWithinTheirChunk) {
@@ -109,6 +110,162 @@ TEST_F(ChunksTest, ATriangleGoesToEachChunkItTouches) {
   EXPECT_THAT(triangles(1), UnorderedElementsAre(inner, inner, two, three));
   EXPECT_THAT(triangles(2), ElementsAre(three));
   EXPECT_THAT(triangles(3), ElementsAre(two_apart));
+}
+
+// ---- copies --------------------------------------------------------------------------------
+
+/// What a triangle's corners are: their ranks, and their wedges there.
+using Corners = std::pair<RankTriangle, CornerWedges>;
+
+class CopiedChunksTest : public ChunksTest {
+ protected:
+  CopiedChunksTest() {
+    // Every place (p, 1, 2) of rank p, and an attribute; chunks begin at multiples of 75,000.
+    ChunkedVertices block;
+    for (std::uint32_t rank = 0; rank < 300'000; ++rank) {
+      positions_.push_back({static_cast<float>(rank), 1, 2});
+      attributes_.push_back(static_cast<float>(rank) + 0.5F);
+      block.chunk_of.push_back(rank / 75'000);
+    }
+    block.sort(4, positions_, attributes_);
+    copied_.append(block);
+  }
+
+  /// A copy of that place, with an attribute of its own.
+  void copy(std::uint32_t rank, float attribute) {
+    copied_.append_copy(rank, positions_[rank], std::span<const float>(&attribute, 1));
+  }
+  void add(const std::vector<RankTriangle>& triangles, const std::vector<Corners>& named) {
+    std::vector<WedgedTriangle> wedged;
+    for (const auto& [ranks, wedges] : named)
+      wedged.push_back({ranks, wedges});
+    triangles_.sort(triangles, copied_.map());
+    triangles_.sort_wedged(wedged, copied_.map());
+    copied_.append(triangles_);
+  }
+
+  std::vector<Vec3f> positions_;
+  std::vector<float> attributes_;
+  ChunkedTriangles triangles_;
+  Chunks copied_{tree_, 1, true, scratch_, 4096};
+};
+
+/// The triangles of a chunk that name copies.
+std::vector<Corners> wedged_of(const partition::ChunkMesh& mesh) {
+  std::vector<Corners> wedged;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    if (mesh.wedges_of(i) != CornerWedges{})
+      wedged.emplace_back(mesh.triangles[i], mesh.wedges_of(i));
+  }
+  return wedged;
+}
+
+TEST_F(CopiedChunksTest, CopiesComeByPlaceInTheirOrder) {
+  copy(80'000, 1);
+  copy(75'001, 2);
+  copy(80'000, 3);
+  copy(299'999, 4);
+  copy(75'001, 5);
+  copy(75'000, 6);
+  EXPECT_EQ(copied_.copy_count(1), 5U);
+  EXPECT_EQ(copied_.copy_bytes(1), 5 * (4 + 12 + 4U));
+  EXPECT_EQ(copied_.copy_count(0), 0U);
+  const Copies second = copied_.take(1).copies;
+  EXPECT_THAT(second.places, ElementsAre(0, 1, 1, 5000, 5000));
+  EXPECT_THAT(second.vertices.attributes, ElementsAre(6, 2, 5, 1, 3));
+  EXPECT_EQ(second.vertices.channels, 1);
+  for (std::size_t i = 0; i < second.size(); ++i)
+    EXPECT_EQ(second.vertices.positions[i], positions_[75'000 + second.places[i]]);
+  EXPECT_THAT(copied_.take(3).copies.places, ElementsAre(74'999));
+  EXPECT_TRUE(copied_.take(0).copies.empty());
+}
+
+TEST_F(CopiedChunksTest, MoreCopiesThanAreReadAtATime) {
+  for (std::uint32_t i = 0; i < 40'000; ++i)
+    copy(74'999 - i, static_cast<float>(i));
+  const Copies copies = copied_.take(0).copies;
+  ASSERT_EQ(copies.size(), 40'000U);
+  for (std::uint32_t i = 0; i < 40'000; ++i) {
+    ASSERT_EQ(copies.places[i], 35'000 + i);
+    ASSERT_EQ(copies.vertices.attributes[i], static_cast<float>(39'999 - i));
+  }
+}
+
+TEST_F(CopiedChunksTest, TrianglesThatNameCopiesComeLastInEachChunkTheyTouch) {
+  const RankTriangle plain{75'000, 75'001, 75'002};
+  const Corners inner{{75'000, 149'999, 80'000}, {0, 2, 0}};
+  const Corners flat{{80'000, 80'000, 75'000}, {0, 1, 0}};
+  const Corners two{{74'999, 75'000, 0}, {1, 0, 3}}, two_apart{{299'999, 1, 0}, {1, 0, 0}};
+  const Corners three{{1, 75'001, 150'001}, {0, 0, 4}};
+  add({plain}, {inner, two, flat});
+  add({}, {two_apart, three});
+  add({plain}, {});  // nothing of the last block stays
+  EXPECT_EQ(copied_.triangle_count(1), 6U);
+  EXPECT_EQ(copied_.triangle_bytes(1), 6 * sizeof(RankTriangle) + 4 * sizeof(CornerWedges));
+  const partition::ChunkMesh second = copied_.take(1);
+  EXPECT_EQ(second.triangles.size(), 6U);
+  EXPECT_EQ(second.triangles[0], plain);
+  EXPECT_EQ(second.triangles[1], plain);
+  EXPECT_EQ(second.wedges.size(), 4U);
+  EXPECT_THAT(wedged_of(second), UnorderedElementsAre(inner, two, flat, three));
+  EXPECT_THAT(wedged_of(copied_.take(0)), UnorderedElementsAre(two, two_apart, three));
+  EXPECT_THAT(wedged_of(copied_.take(2)), ElementsAre(three));
+  EXPECT_THAT(wedged_of(copied_.take(3)), ElementsAre(two_apart));
+}
+
+TEST_F(CopiedChunksTest, TrianglesThatReachAcrossCountWhetherTheyNameCopiesOrNot) {
+  const RankTriangle three{0, 80'000, 160'000}, two{160'000, 0, 160'001};
+  add({three, two}, {{three, {0, 1, 0}}, {two, {1, 0, 0}}, {{0, 0, 80'000}, {0, 1, 0}}});
+  EXPECT_EQ(copied_.wide_triangles(copied_.level()), 2U);
+  EXPECT_EQ(copied_.wide_triangles(Level{1}), 0U);
+}
+
+TEST_F(CopiedChunksTest, WhatIsStoredIsThereInAnotherProcess) {
+  copy(80'000, 1);
+  copy(75'001, 2);
+  add({{75'000, 75'001, 75'002}}, {{{75'000, 149'999, 80'000}, {0, 2, 0}}});
+  std::vector<nlohmann::json> stored;
+  for (std::uint32_t c = 0; c < 4; ++c)
+    stored.push_back(copied_.store(c));
+  Chunks restored(tree_, 1, true, scratch_, 4096);
+  for (std::uint32_t c = 0; c < 4; ++c) {
+    ASSERT_TRUE(restored.restore(c, stored[c])) << c;
+    EXPECT_TRUE(restored.is_as_stored(c)) << c;
+    const partition::ChunkMesh before = copied_.take(c), after = restored.take(c);
+    EXPECT_EQ(after.vertices.positions, before.vertices.positions);
+    EXPECT_EQ(after.triangles, before.triangles);
+    EXPECT_EQ(after.wedges, before.wedges);
+    EXPECT_EQ(after.copies.places, before.copies.places);
+    EXPECT_EQ(after.copies.vertices.positions, before.copies.vertices.positions);
+    EXPECT_EQ(after.copies.vertices.attributes, before.copies.vertices.attributes);
+    EXPECT_EQ(after.copies.empty(), c != 1);
+  }
+}
+
+TEST_F(CopiedChunksTest, CopiesAndTheirTrianglesThatChangedOnDiskAreNotAsStored) {
+  copy(80'000, 1);
+  add({}, {{{75'000, 149'999, 80'000}, {0, 2, 0}}});
+  const nlohmann::json stored = copied_.store(1);
+  ASSERT_EQ(stored.size(), 5U);
+  for (const std::size_t spool : {0, 3, 4}) {  // the others are empty
+    nlohmann::json other = stored;
+    other[spool][1] = other[spool][1].get<std::uint64_t>() ^ 1;  // the checksum
+    Chunks restored(tree_, 1, true, scratch_, 4096);
+    ASSERT_TRUE(restored.restore(1, other));
+    EXPECT_FALSE(restored.is_as_stored(1)) << spool;
+  }
+  nlohmann::json short_of_copies = stored;
+  short_of_copies.erase(3);
+  EXPECT_THROW((void)Chunks(tree_, 1, true, scratch_, 4096).restore(1, short_of_copies),
+               nlohmann::json::exception);
+}
+
+TEST_F(CopiedChunksTest, WhatIsDroppedIsForgotten) {
+  copy(80'000, 1);
+  add({}, {{{75'000, 149'999, 80'000}, {0, 2, 0}}});
+  copied_.drop(1);
+  EXPECT_EQ(copied_.triangle_count(1), 0U);
+  EXPECT_EQ(copied_.triangle_bytes(1), 0U);
 }
 
 }  // namespace

@@ -182,7 +182,7 @@ class Grove {
   Tree tree_;
   Forest forest_;
   TileErrors errors_{tree_};
-  Chunks chunks_{tree_, numbering().channels(), scratch_, 4096};
+  Chunks chunks_{tree_, numbering().channels(), false, scratch_, 4096};
   execution::CancelToken never_;
   BuildJournal journal_{*files_, directory_.path(), {},    pool_.scratch_use(),
                         forest_, chunks_,           never_};

@@ -39,7 +39,7 @@ const char* const kTileName = "some/tile.glb";
 
 void expect_same(const PublishedTile& a, const PublishedTile& b) {
   expect_same_mesh(a, b);
-  EXPECT_EQ(bits_of(a.mesh.vertices.attributes), bits_of(b.mesh.vertices.attributes));
+  expect_same_attributes(a, b);
 }
 
 /// Every tile, compressed in each way, is read as its plain twin is, and written again the same.
@@ -93,6 +93,16 @@ TEST(CompressedTile, QuantizedOnesAreTwinsToo) {
     expect_twins(quantized(make_sample(torus(250, 0.05F), 5), bits));
     expect_twins(quantized(make_sample(points(30), 2), bits));
   }
+}
+
+TEST(CompressedTile, WithCopiesOnesAreTwinsToo) {
+  for (const AttributeLayout& layout : sample_layouts()) {
+    for (const std::uint32_t partitions : {1U, 3U, 8U})
+      expect_twins(with_copies(make_sample(torus(250, 0.05F), partitions, {layout, {}})));
+  }
+  for (const int bits : {8, 12, 16, 17, 24})
+    expect_twins(quantized(with_copies(make_sample(open_grid(9, 9), 5)), bits));
+  expect_twins(with_copies(make_sample(points(40), 3)));
 }
 
 TEST(CompressedTile, KeepsEveryBitOfAwkwardNumbers) {
@@ -198,6 +208,20 @@ TEST(CompressedTile, RandomFlipsInTheSectionsAreRefusedOrHarmless) {
   EXPECT_GT(refused, 1000U);
 }
 
+TEST(CompressedTile, RandomFlipsInSectionsWithCopiesAreRefusedOrHarmless) {
+  const SampleHierarchy sample = with_copies(full_sample(storage::Compression::meshopt));
+  std::mt19937 random(9);
+  std::size_t refused = 0;
+  for (int round = 0; round < 4000; ++round) {
+    const PublishedTile& tile = sample.tiles[random() % sample.tiles.size()];
+    Bytes bytes = encode_tile(tile, sample.tree, sample.format);
+    const std::size_t bin = storage::split_glb(bytes, kTileName).bin.size();
+    bytes[bytes.size() - 1 - random() % bin] ^= static_cast<std::byte>(1U << random() % 8);
+    refused += failure(bytes, tile, sample).empty() ? 0 : 1;
+  }
+  EXPECT_GT(refused, 1000U);
+}
+
 TEST(CompressedTile, RandomNumbersInTheJsonAreRefused) {
   for (const storage::Compression compression :
        {storage::Compression::meshopt, storage::Compression::meshopt_zlib}) {
@@ -248,8 +272,13 @@ TEST(CompressedTile, LyingSizesAreRefusedByName) {
        [&](Json& j) { j["extensions"]["MESHHIER_tile"]["interiorCount"] = 1000000000U; },
        "interior of 6000000000 bytes cannot come from"},
       {"many ghosts",
-       [&](Json& j) { j["extensions"]["MESHHIER_tile"]["ghostCount"] = 4294967295U; },
+       [&](Json& j) { j["extensions"]["MESHHIER_tile"]["ghostCount"] = 4000000000U; },
        "cannot come from"},
+      {"many copies", [&](Json& j) { j["extensions"]["MESHHIER_tile"]["copyCount"] = 4000000000U; },
+       "cannot come from"},
+      {"so many copies that numbers end",
+       [&](Json& j) { j["extensions"]["MESHHIER_tile"]["copyCount"] = 4294967295U; },
+       "expected less than 2^32"},
       {"many chains",
        [&](Json& j) { j["extensions"]["MESHHIER_tile"]["chainEntryCount"] = 4294967295U; },
        "ghostChains of 8589934590 bytes cannot come from"},
@@ -292,6 +321,10 @@ TEST(MeshoptCodec, TheFilterIsForPositionsThatComeBackBitForBit) {
   EXPECT_FALSE(filtered({-0.0F, 1, 1}));
   EXPECT_FALSE(filtered({1e-38F, 1, 1}));
   EXPECT_TRUE(filtered({0, 0, 1}));
+  for (const float odd :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+        -std::numeric_limits<float>::infinity()})
+    EXPECT_FALSE(filtered({1, odd, 1}));
 }
 
 TEST(MeshoptCodec, ExponentsThatDecodersDifferOnAreRefused) {

@@ -47,6 +47,7 @@ class HierarchyReaderTest : public testing::Test {
     const Bytes index = storage::encode_index(records);
     const Bytes outline = storage::encode_outline(outline_, sample.format.frame);
     manifest.source.vertices = sample.tree.vertex_count();
+    manifest.source.places = sample.tree.vertex_count();
     manifest.source.bounds = {{0, 0, 0}, {1, 1, 1}};
     manifest.source.attributes = sample.format.attributes;
     manifest.origin = sample.format.frame.origin;
@@ -73,6 +74,7 @@ class HierarchyReaderTest : public testing::Test {
     record.own_count = tile.mesh.own_count;
     record.boundary_count = tile.mesh.boundary_count;
     record.ghost_count = static_cast<std::uint32_t>(tile.mesh.ghosts.size());
+    record.copy_count = static_cast<std::uint32_t>(tile.mesh.copies.size());
     record.interior_count = static_cast<std::uint32_t>(tile.mesh.interior.size());
     record.border_count = static_cast<std::uint32_t>(tile.mesh.border.size());
     record.bounds = bounds_of(tile.mesh.vertices.positions);
@@ -275,20 +277,61 @@ TEST_F(HierarchyReaderTest, DamagedManifestsAndIndexesAreRefused) {
 }
 
 TEST_F(HierarchyReaderTest, ATileThatIsNotTheIndexedOneIsRefused) {
-  SampleHierarchy sample = make_sample(torus(300), 4);
-  write(sample);
-  auto records = reader().records();
-  records.back().interior_count += 1;
-  const Bytes index = storage::encode_index(records);
-  Manifest manifest = reader().manifest();
-  manifest.index_checksum = storage::checksum(index);
-  const std::string text = storage::to_json_text(manifest);
-  storage::write_file(*files_, storage::index_path(directory_), index);
-  storage::write_file(*files_, storage::manifest_path(directory_), std::as_bytes(std::span(text)));
+  write(with_copies(make_sample(torus(300), 4)));
+  const std::vector<TileRecord> records = reader().records();
   const NodeId node = records.back().node;
-  const HierarchyReader read = reader();
-  expect_failure(ErrorCode::corrupt, storage::tile_path(directory_, node),
-                 "interior triangles are not those of the index", [&] { read.read_tile(node); });
+  const auto refuse_with = [&](std::uint32_t TileRecord::*count, const char* what) {
+    std::vector<TileRecord> changed = records;
+    changed.back().*count += 1;
+    const Bytes index = storage::encode_index(changed);
+    Manifest manifest = reader().manifest();
+    manifest.index_checksum = storage::checksum(index);
+    const std::string text = storage::to_json_text(manifest);
+    storage::write_file(*files_, storage::index_path(directory_), index);
+    storage::write_file(*files_, storage::manifest_path(directory_),
+                        std::as_bytes(std::span(text)));
+    const HierarchyReader read = reader();
+    expect_failure(ErrorCode::corrupt, storage::tile_path(directory_, node), what,
+                   [&] { read.read_tile(node); });
+  };
+  refuse_with(&TileRecord::interior_count, "interior triangles are not those of the index");
+  refuse_with(&TileRecord::copy_count, "copies are not those of the index");
+}
+
+/// The text of a changed manifest, with its checksum.
+std::string with_new_seal(nlohmann::ordered_json document) {
+  document["checksum"] = std::string(16, '0');
+  std::string text = document.dump(2) + "\n";
+  const auto sum = storage::checksum(std::as_bytes(std::span(text)));
+  return text.replace(text.size() - 20, 16, fmt::format("{:016x}", sum));
+}
+
+TEST_F(HierarchyReaderTest, AHierarchyOfAnEarlierFormatIsRefusedWithWhatToDo) {
+  write(make_sample(torus(300), 4));
+  const fs::path path = storage::manifest_path(directory_);
+  std::ifstream in(path);
+  auto document = nlohmann::ordered_json::parse(in);
+  document["format_version"] = 4;
+  document["source"].erase("places");
+  const std::string text = with_new_seal(document);
+  storage::write_file(*files_, path, std::as_bytes(std::span(text)));
+  expect_failure(ErrorCode::corrupt, path,
+                 "was made with format version 4, this program reads 5: build it again from the "
+                 "mesh",
+                 [&] { reader(); });
+}
+
+TEST_F(HierarchyReaderTest, TheTreeCountsPlaces) {
+  const SampleHierarchy sample = make_sample(torus(300), 4);
+  write(sample);
+  const fs::path path = storage::manifest_path(directory_);
+  std::ifstream in(path);
+  auto document = nlohmann::ordered_json::parse(in);
+  document["source"]["vertices"] = 1000;
+  const std::string text = with_new_seal(document);
+  storage::write_file(*files_, path, std::as_bytes(std::span(text)));
+  EXPECT_EQ(reader().tree().vertex_count(), sample.tree.vertex_count());
+  EXPECT_EQ(reader().manifest().source.vertices, 1000U);
 }
 
 }  // namespace

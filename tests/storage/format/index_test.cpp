@@ -21,7 +21,7 @@ using Bytes = std::vector<std::byte>;
 
 const char* const kIndexName = "some/tiles.bin";
 constexpr std::size_t kHeaderBytes = 32;
-constexpr std::size_t kRecordBytes = 96;
+constexpr std::size_t kRecordBytes = 104;
 
 /// Every tile of the tree, with values that differ from field to field and from tile to tile.
 std::vector<TileRecord> make_records(const Tree& tree) {
@@ -39,6 +39,7 @@ std::vector<TileRecord> make_records(const Tree& tree) {
           static_cast<std::uint32_t>(tree.is_partition(node) ? tree.ranks(node).size() : 100 + k);
       record.boundary_count = record.own_count / 3;
       record.ghost_count = 10 * k + 1;
+      record.copy_count = 10 * k + 7;
       record.interior_count = 10 * k + 2;
       record.border_count = 10 * k + 3;
       record.drawn_border_count = 10 * k;
@@ -62,6 +63,7 @@ void expect_same(const TileRecord& a, const TileRecord& b) {
   EXPECT_EQ(a.own_count, b.own_count);
   EXPECT_EQ(a.boundary_count, b.boundary_count);
   EXPECT_EQ(a.ghost_count, b.ghost_count);
+  EXPECT_EQ(a.copy_count, b.copy_count);
   EXPECT_EQ(a.interior_count, b.interior_count);
   EXPECT_EQ(a.border_count, b.border_count);
   EXPECT_EQ(a.drawn_border_count, b.drawn_border_count);
@@ -115,6 +117,7 @@ TEST(Index, TheBytesAreThoseOfTheDocument) {
   TileRecord record;
   record.own_count = 7;
   record.boundary_count = 5;
+  record.copy_count = 258;
   record.error = 1.0F;
   record.bounds = {{0, 0, 0}, {1, 1, 1}};
   record.file_bytes = 0x0102030405060708;
@@ -122,15 +125,17 @@ TEST(Index, TheBytesAreThoseOfTheDocument) {
   const auto byte = [&](std::size_t offset) { return static_cast<int>(bytes.at(offset)); };
   EXPECT_EQ(byte(0), 'M');
   EXPECT_EQ(byte(7), '\n');
-  EXPECT_EQ(byte(8), 2);
-  EXPECT_EQ(byte(12), 96);
+  EXPECT_EQ(byte(8), 3);
+  EXPECT_EQ(byte(12), 104);
   EXPECT_EQ(byte(16), 1);
   EXPECT_EQ(byte(kHeaderBytes + 8), 7);
   EXPECT_EQ(byte(kHeaderBytes + 12), 5);
-  EXPECT_EQ(byte(kHeaderBytes + 47), 0x3F);  // 1.0F is 3F800000
-  EXPECT_EQ(byte(kHeaderBytes + 46), 0x80);
-  EXPECT_EQ(byte(kHeaderBytes + 80), 8);
-  EXPECT_EQ(byte(kHeaderBytes + 87), 1);
+  EXPECT_EQ(byte(kHeaderBytes + 20), 2);
+  EXPECT_EQ(byte(kHeaderBytes + 21), 1);
+  EXPECT_EQ(byte(kHeaderBytes + 51), 0x3F);  // 1.0F is 3F800000
+  EXPECT_EQ(byte(kHeaderBytes + 50), 0x80);
+  EXPECT_EQ(byte(kHeaderBytes + 88), 8);
+  EXPECT_EQ(byte(kHeaderBytes + 95), 1);
 }
 
 TEST(Index, TruncationAndExtraBytesAreRefused) {
@@ -141,7 +146,7 @@ TEST(Index, TruncationAndExtraBytesAreRefused) {
     EXPECT_NE(failure(cut, tree), "") << size;
   }
   bytes.push_back(std::byte{0});
-  EXPECT_THAT(failure(bytes, tree), HasSubstr("expected 896"));
+  EXPECT_THAT(failure(bytes, tree), HasSubstr("expected 968"));
 }
 
 TEST(Index, EveryFlippedBitIsFound) {
@@ -186,11 +191,12 @@ TEST(Index, ImpossibleValuesAreRefusedByName) {
         RecordDamage{8, 0, "impossible own vertices"},
         RecordDamage{8, 32769, "impossible own vertices"},
         RecordDamage{12, 101, "impossible boundary vertices"},
-        RecordDamage{28, 4, "impossible drawn border"}, RecordDamage{44, kNan, "impossible error"},
-        RecordDamage{48, kMinusOne, "impossible bound"},
-        RecordDamage{52, kNan, "impossible compactness"},
-        RecordDamage{56, 0x7F800000, "impossible bounds"},
-        RecordDamage{68, 0xC0000000, "impossible bounds"}}) {
+        RecordDamage{32, 4, "impossible drawn border"}, RecordDamage{48, kNan, "impossible error"},
+        RecordDamage{52, kMinusOne, "impossible bound"},
+        RecordDamage{56, kNan, "impossible compactness"},
+        RecordDamage{60, 0x7F800000, "impossible bounds"},
+        RecordDamage{72, 0xC0000000, "impossible bounds"},
+        RecordDamage{84, 1, "bytes 84 to 87 of its record are not 0"}}) {
     Bytes bytes = good;
     storage::store_little(damage.value, bytes.data() + kHeaderBytes + damage.offset);
     EXPECT_THAT(failure(sealed(bytes), tree), HasSubstr(damage.message));
@@ -204,8 +210,10 @@ TEST(Index, OtherFilesAndVersionsAreRefused) {
   const Tree tree(50, 5);
   const Bytes good = encode_index(make_records(tree));
   Bytes bytes = good;
-  bytes[8] = std::byte{3};
-  EXPECT_THAT(failure(bytes, tree), HasSubstr("version is 3, expected 2 (written by a newer"));
+  bytes[8] = std::byte{4};
+  EXPECT_THAT(failure(bytes, tree), HasSubstr("version is 4, expected 3 (written by a newer"));
+  bytes[8] = std::byte{2};
+  EXPECT_THAT(failure(bytes, tree), HasSubstr("version is 2, expected 3"));
   bytes = good;
   bytes[0] = std::byte{'P'};
   EXPECT_THAT(failure(bytes, tree), HasSubstr("not an index"));

@@ -29,6 +29,7 @@ Manifest make_manifest() {
   manifest.source.file_bytes = 0xFFFFFFFFFFFFFFFF;
   manifest.source.checksum = 0x00000000000000AB;
   manifest.source.vertices = 1000;
+  manifest.source.places = 900;
   manifest.source.triangles = 1990;
   manifest.source.faces = 995;
   manifest.source.degenerate_triangles = 3;
@@ -67,6 +68,7 @@ void expect_same(const Manifest& a, const Manifest& b) {
   EXPECT_EQ(a.source.file_bytes, b.source.file_bytes);
   EXPECT_EQ(a.source.checksum, b.source.checksum);
   EXPECT_EQ(a.source.vertices, b.source.vertices);
+  EXPECT_EQ(a.source.places, b.source.places);
   EXPECT_EQ(a.source.triangles, b.source.triangles);
   EXPECT_EQ(a.source.faces, b.source.faces);
   EXPECT_EQ(a.source.degenerate_triangles, b.source.degenerate_triangles);
@@ -213,7 +215,7 @@ TEST(Manifest, WrongWordsOfAnImportAreNamed) {
 
 TEST(Manifest, IsReadable) {
   const std::string text = to_json_text(make_manifest());
-  EXPECT_THAT(text, StartsWith("{\n  \"format\": \"meshhier\",\n  \"format_version\": 4,\n"));
+  EXPECT_THAT(text, StartsWith("{\n  \"format\": \"meshhier\",\n  \"format_version\": 5,\n"));
   EXPECT_THAT(text, HasSubstr("\"checksum\": \"fedcba9876543210\""));
   EXPECT_THAT(text, HasSubstr("\"checksum\": \"00000000000000ab\""));
   EXPECT_THAT(text, HasSubstr("\"colours\": \"u16\""));
@@ -249,6 +251,7 @@ TEST(Manifest, EveryMissingKeyIsNamed) {
   const std::vector<std::string> pointers{"/generator",
                                           "/source",
                                           "/source/vertices",
+                                          "/source/places",
                                           "/source/bounds/max",
                                           "/source/attributes/alpha",
                                           "/origin",
@@ -281,6 +284,10 @@ TEST(Manifest, EveryWrongValueIsNamed) {
       {"/source/vertices", 0, "\"source.vertices\" is wrong, expected at least 1"},
       {"/source/vertices", 4294967296ULL, "\"source.vertices\""},
       {"/source/vertices", -1, "\"source.vertices\""},
+      {"/source/vertices", 899, "\"source.places\" is wrong, expected an integer from 0 to 899"},
+      {"/source/places", 0, "\"source.places\" is wrong, expected at least 1"},
+      {"/source/places", 1001, "\"source.places\" is wrong, expected an integer from 0 to 1000"},
+      {"/source/places", "900", "\"source.places\""},
       {"/source/triangles", 1.5, "\"source.triangles\""},
       {"/source/unreferenced_vertices", 1001, "\"source.unreferenced_vertices\""},
       {"/source/checksum", "AB", "16 hexadecimal digits"},
@@ -296,7 +303,7 @@ TEST(Manifest, EveryWrongValueIsNamed) {
       {"/licence", 3, "\"licence\" is wrong"},
       {"/tileset/checksum", "x", "\"tileset.checksum\""},
       {"/partitions", 0, "\"partitions\""},
-      {"/partitions", 1001, "\"partitions\""},
+      {"/partitions", 901, "\"partitions\""},
       {"/config", Json::array(), "\"config\" is wrong, expected an object"},
       {"/outline/tolerance", "x", "\"outline.tolerance\""},
       {"/outline/sectors", 4294967296ULL, "\"outline.sectors\""},
@@ -313,10 +320,15 @@ TEST(Manifest, EveryWrongValueIsNamed) {
 
 TEST(Manifest, OtherFormatsAndVersionsAreRefusedByTheirNumber) {
   Json document = Json::parse(to_json_text(make_manifest()));
-  document["format_version"] = 5;
-  EXPECT_THAT(failure(document.dump()), HasSubstr("format version 5 is newer than 4"));
-  document["format_version"] = 0;
-  EXPECT_THAT(failure(document.dump()), HasSubstr("format version is 0, expected 4"));
+  document["format_version"] = 6;
+  EXPECT_THAT(failure(document.dump()), HasSubstr("format version 6 is newer than 5"));
+  for (const int earlier : {0, 4}) {
+    document["format_version"] = earlier;
+    EXPECT_EQ(failure(document.dump()),
+              fmt::format("{}: was made with format version {}, this program reads 5: build it "
+                          "again from the mesh",
+                          kManifestName, earlier));
+  }
   document["format"] = "nexus";
   EXPECT_THAT(failure(document.dump()), HasSubstr("\"format\" is wrong"));
 }

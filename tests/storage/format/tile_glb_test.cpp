@@ -70,6 +70,31 @@ std::string failure(const Bytes& bytes, NodeId node, const SampleHierarchy& samp
   return {};
 }
 
+void expect_wedges_there(const std::vector<TileTriangle>& triangles,
+                         const std::vector<CornerWedges>& wedges, const Copies& copies) {
+  ASSERT_EQ(wedges.size(), copies.empty() ? 0 : triangles.size());
+  for (std::size_t t = 0; t < wedges.size(); ++t) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::uint32_t place = raw(triangles[t][c]);
+      ASSERT_LE(wedges[t][c], copies.first_of(place + 1) - copies.first_of(place));
+    }
+  }
+}
+
+void expect_consistent_copies(const TileMesh& mesh) {
+  const Copies& copies = mesh.copies;
+  ASSERT_EQ(copies.vertices.size(), copies.size());
+  ASSERT_EQ(copies.vertices.attributes.size(),
+            copies.size() * static_cast<std::size_t>(mesh.vertices.channels));
+  ASSERT_TRUE(std::is_sorted(copies.places.begin(), copies.places.end()));
+  for (std::size_t i = 0; i < copies.size(); ++i) {
+    ASSERT_LT(copies.places[i], mesh.vertices.size());
+    ASSERT_EQ(copies.vertices.positions[i], mesh.vertices.positions[copies.places[i]]);
+  }
+  expect_wedges_there(mesh.interior, mesh.interior_wedges, copies);
+  expect_wedges_there(mesh.border, mesh.border_wedges, copies);
+}
+
 /// What the contract of TileMesh and PublishedTile promises of any tile.
 void expect_consistent(const PublishedTile& tile, const Tree& tree) {
   const TileMesh& mesh = tile.mesh;
@@ -92,6 +117,7 @@ void expect_consistent(const PublishedTile& tile, const Tree& tree) {
         ASSERT_LT(raw(v), mesh.vertices.size());
     }
   }
+  expect_consistent_copies(mesh);
 }
 
 SampleHierarchy full_sample(std::uint32_t partitions = 5) {
@@ -116,6 +142,54 @@ TEST(TileGlb, GivesEveryTileBackForAnyLayoutAndTree) {
       }
     }
   }
+}
+
+TEST(TileGlb, GivesBackCopiesForAnyLayoutAndTree) {
+  for (const AttributeLayout& layout : sample_layouts()) {
+    for (const std::uint32_t partitions : {1U, 2U, 3U, 8U}) {
+      const SampleHierarchy sample =
+          with_copies(make_sample(torus(250, 0.05F), partitions, {layout, {}}));
+      for (const PublishedTile& tile : sample.tiles) {
+        const Bytes bytes = encode_tile(tile, sample.tree, sample.format);
+        const PublishedTile back =
+            decode_tile(bytes, tile.node, sample.tree, sample.format, kTileName);
+        expect_same_mesh(tile, back);
+        expect_consistent(back, sample.tree);
+        if (sample.tree.is_partition(tile.node) || layout.colour == ColourType::none)
+          expect_same_attributes(tile, back);
+        EXPECT_EQ(encode_tile(back, sample.tree, sample.format), bytes);
+      }
+    }
+  }
+}
+
+TEST(TileGlb, CopiesMayDifferInTheSignOfAZero) {
+  SampleHierarchy sample = with_copies(make_sample(open_grid(9, 9), 3));
+  const PublishedTile& tile = sample.tiles.back();
+  const auto& copies = tile.mesh.copies;
+  const auto differs = [&](std::size_t i) {
+    return bits_of(std::vector{copies.vertices.positions[i]}) !=
+           bits_of(std::vector{tile.mesh.vertices.positions[copies.places[i]]});
+  };
+  std::size_t others = 0;
+  for (std::size_t i = 0; i < copies.size(); ++i)
+    others += differs(i) ? 1 : 0;
+  ASSERT_GT(others, 0U);
+  const Bytes bytes = encode_tile(tile, sample.tree, sample.format);
+  expect_same_mesh(tile, decode_tile(bytes, tile.node, sample.tree, sample.format, kTileName));
+}
+
+TEST(TileGlb, RawAttributesOfCopiesAreKept) {
+  SampleHierarchy sample = with_copies(full_sample());
+  PublishedTile& tile = sample.tiles.back();
+  ASSERT_FALSE(tile.mesh.copies.empty());
+  tile.mesh.copies.vertices.attributes[0] *= 1.01F;
+  const Bytes bytes = encode_tile(tile, sample.tree, sample.format);
+  OpenGlb scaled(bytes);
+  EXPECT_NE(scaled.extension()["rawNormals"], -1);
+  EXPECT_EQ(scaled.extension()["rawColours"], -1);
+  expect_same_attributes(tile,
+                         decode_tile(bytes, tile.node, sample.tree, sample.format, kTileName));
 }
 
 TEST(TileGlb, GivesBackMeshesOfEveryKind) {
@@ -257,6 +331,38 @@ TEST(TileGlb, IndicesTake32BitsFrom65536VerticesOn) {
   }
 }
 
+/// With so many copies of its last own vertex, the last of which a triangle uses.
+PublishedTile wide_tile_with_copies(std::uint32_t ghosts, std::uint32_t copies) {
+  PublishedTile tile = wide_tile(ghosts);
+  TileMesh& mesh = tile.mesh;
+  const TileVertex last{mesh.own_count - 1};
+  mesh.copies.places.assign(copies, raw(last));
+  mesh.copies.vertices.positions.resize(copies);
+  mesh.border_wedges.resize(mesh.border.size());
+  mesh.interior = {{TileVertex{0}, TileVertex{1}, last}};
+  mesh.interior_wedges = {{0, 0, copies}};
+  return tile;
+}
+
+TEST(TileGlb, CopiesCountForTheWidthOfIndicesNotForThatOfCopyOf) {
+  const Tree tree(4 * 32768, 4);
+  const TileFormat format;
+  struct Case {
+    std::uint32_t ghosts, copies;
+    int index, copy_of;
+  };
+  for (const Case& c : {Case{20000, 12767, 5123, 2}, Case{20000, 12768, 5125, 2},
+                        Case{32767, 1, 5125, 2}, Case{32768, 1, 5125, 4}}) {
+    const PublishedTile tile = wide_tile_with_copies(c.ghosts, c.copies);
+    const Bytes bytes = encode_tile(tile, tree, format);
+    OpenGlb glb(bytes);
+    EXPECT_EQ(glb.json["accessors"][1]["componentType"], c.index);
+    const Json& view = glb.json["bufferViews"][glb.extension()["copyOf"].get<std::size_t>()];
+    EXPECT_EQ(view["byteLength"], static_cast<std::uint32_t>(c.copy_of) * c.copies);
+    expect_same_mesh(tile, decode_tile(bytes, tile.node, tree, format, kTileName));
+  }
+}
+
 TEST(TileGlb, TilesWithoutTrianglesShowTheirVertices) {
   const SampleHierarchy sample = make_sample(points(5), 1);
   OpenGlb glb(encode_tile(sample.tiles[0], sample.tree, sample.format));
@@ -276,26 +382,44 @@ TEST(TileGlb, TheJsonIsThatOfTheDocument) {
   EXPECT_EQ(glb.json["accessors"][0].dump(),
             R"({"bufferView":0,"componentType":5126,"count":4,"type":"VEC3",)"
             R"("min":[0.0,0.0,0.0],"max":[1.0,1.0,0.10000000149011612]})");
-  EXPECT_EQ(glb.extension().dump(),
-            R"({"version":1,"level":1,"index":0,"ownCount":2,"rimCount":2,"ghostCount":2,)"
-            R"("neighbourCount":1,"chainEntryCount":2,"interiorCount":0,"borderCount":2,)"
-            R"("interiorPrimitive":-1,"borderPrimitive":0,"parentMap":2,"neighbours":3,)"
-            R"("ghostStarts":4,"ghostChains":5,"rawNormals":-1,"rawColours":-1,)"
-            R"("rawTexcoords":-1})");
+  EXPECT_EQ(
+      glb.extension().dump(),
+      R"({"version":2,"level":1,"index":0,"ownCount":2,"rimCount":2,"ghostCount":2,)"
+      R"("copyCount":0,"neighbourCount":1,"chainEntryCount":2,"interiorCount":0,"borderCount":2,)"
+      R"("interiorPrimitive":-1,"borderPrimitive":0,"parentMap":2,"neighbours":3,)"
+      R"("ghostStarts":4,"ghostChains":5,"copyOf":-1,"rawNormals":-1,"rawColours":-1,)"
+      R"("rawTexcoords":-1})");
   EXPECT_EQ(glb.json["extensionsUsed"].dump(), R"(["MESHHIER_tile"])");
   EXPECT_FALSE(glb.json.contains("extensionsRequired"));
 }
 
 // A failure here says that files of the same version have other bytes than before: existing
 // hierarchies no longer match. Raise the version (docs/file_format.md), then the number here.
-TEST(TileGlb, TheBytesOfVersion1StayTheSame) {
+TEST(TileGlb, TheBytesOfVersion2StayTheSame) {
+  const AttributeLayout layout{.normals = true, .colour = ColourType::u8, .texcoords = true};
+  const SampleHierarchy sample = make_sample(open_grid(7, 6), 3, {layout, {0.5, 0, 0}});
+  const auto sum_of = [](const SampleHierarchy& tiles) {
+    storage::Checksum sum;
+    for (const PublishedTile& tile : tiles.tiles)
+      sum.add(encode_tile(tile, tiles.tree, tiles.format));
+    return sum.value();
+  };
+  EXPECT_EQ(sum_of(sample), 5822304370812334388ULL);
+  EXPECT_EQ(sum_of(with_copies(sample)), 2053820992464844989ULL);
+}
+
+TEST(TileGlb, WithoutCopiesTheBytesAreThoseOfVersion1ButForTheNewKeys) {
   const AttributeLayout layout{.normals = true, .colour = ColourType::u8, .texcoords = true};
   const SampleHierarchy sample = make_sample(open_grid(7, 6), 3, {layout, {0.5, 0, 0}});
   storage::Checksum sum;
   for (const PublishedTile& tile : sample.tiles) {
-    sum.add(encode_tile(tile, sample.tree, sample.format));
+    OpenGlb glb(encode_tile(tile, sample.tree, sample.format));
+    glb.extension()["version"] = 1;
+    glb.extension().erase("copyCount");
+    glb.extension().erase("copyOf");
+    sum.add(glb.close());
   }
-  EXPECT_EQ(sum.value(), 8496102127265295638ULL);
+  EXPECT_EQ(sum.value(), 8496102127265295638ULL);  // as version 1 had it
 }
 
 TEST(TileGlb, TruncationAtEveryByteIsRefused) {
@@ -391,7 +515,9 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         TileDamage{"no_extension", [](OpenGlb& g) { g.json.erase("extensions"); },
                    "extension MESHHIER_tile is missing"},
-        TileDamage{"newer", [](OpenGlb& g) { g.extension()["version"] = 2; }, "newer meshhier"},
+        TileDamage{"newer", [](OpenGlb& g) { g.extension()["version"] = 3; }, "newer meshhier"},
+        TileDamage{"older", [](OpenGlb& g) { g.extension()["version"] = 1; },
+                   "version of MESHHIER_tile is 1, expected 2"},
         TileDamage{"other_level", [](OpenGlb& g) { g.extension()["level"] = 1; }, "level is 1"},
         TileDamage{"other_index", [](OpenGlb& g) { g.extension()["index"] = 3; }, "index is 3"},
         TileDamage{"missing_count", [](OpenGlb& g) { g.extension().erase("ghostCount"); },
@@ -420,7 +546,7 @@ INSTANTIATE_TEST_SUITE_P(
         TileDamage{"index", [](OpenGlb& g) { store_u16(g.indices(0), 60000); },
                    "index 60000 of interior triangle 0"},
         TileDamage{"degenerate", [](OpenGlb& g) { std::copy_n(g.indices(0), 2, g.indices(0) + 2); },
-                   "interior triangle 0"},
+                   "has a vertex twice"},
         TileDamage{
             "order",
             [](OpenGlb& g) { std::swap_ranges(g.indices(0), g.indices(0) + 6, g.indices(0) + 6); },
@@ -449,6 +575,162 @@ INSTANTIATE_TEST_SUITE_P(
         TileDamage{"ghost_order", [](OpenGlb& g) { store_u16(g.view("ghostChains"), 32767); },
                    "do not ascend"}),
     [](const auto& test) { return std::string(test.param.name); });
+
+unsigned load_u16(const std::byte* at) {
+  return storage::load_little<std::uint16_t>(at);
+}
+
+/// The first copy of a vertex, as index.
+unsigned first_copy_of(OpenGlb& glb, unsigned vertex) {
+  const auto count = glb.extension()["copyCount"].get<unsigned>();
+  const unsigned places =
+      glb.extension()["ownCount"].get<unsigned>() + glb.extension()["ghostCount"].get<unsigned>();
+  for (unsigned i = 0; i < count; ++i) {
+    if (load_u16(glb.view("copyOf") + 2 * i) == vertex)
+      return places + i;
+  }
+  ADD_FAILURE() << "vertex " << vertex << " has no copy";
+  return places;
+}
+
+void store_triangle(std::byte* at, std::array<unsigned, 3> corners) {
+  for (std::size_t c = 0; c < 3; ++c)
+    store_u16(at + 2 * c, corners[c]);
+}
+
+/// One change to a good file with copies, of a partition.
+class DamagedCopies : public testing::TestWithParam<TileDamage> {};
+
+TEST_P(DamagedCopies, AreRefusedByName) {
+  const SampleHierarchy sample = with_copies(full_sample());
+  const PublishedTile& tile = sample.tiles.back();
+  const Bytes bytes = encode_tile(tile, sample.tree, sample.format);
+  ASSERT_EQ(failure(bytes, tile.node, sample), "");
+  OpenGlb glb(bytes);
+  GetParam().apply(glb);
+  EXPECT_THAT(failure(glb.close(), tile.node, sample), HasSubstr(GetParam().message));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, DamagedCopies,
+    testing::Values(
+        TileDamage{"no_count", [](OpenGlb& g) { g.extension().erase("copyCount"); },
+                   "\"copyCount\" is missing"},
+        TileDamage{"negative_count", [](OpenGlb& g) { g.extension()["copyCount"] = -1; },
+                   "\"copyCount\" is -1"},
+        TileDamage{"one_less",
+                   [](OpenGlb& g) {
+                     g.extension()["copyCount"] = g.extension()["copyCount"].get<int>() - 1;
+                   },
+                   "the BIN chunk has"},
+        TileDamage{"huge_count", [](OpenGlb& g) { g.extension()["copyCount"] = 4294967295U; },
+                   "expected less than 2^32"},
+        TileDamage{"no_view", [](OpenGlb& g) { g.extension()["copyOf"] = -1; }, "/copyOf"},
+        TileDamage{"of_a_copy",
+                   [](OpenGlb& g) {
+                     const auto last = g.extension()["copyCount"].get<unsigned>() - 1;
+                     store_u16(g.view("copyOf") + 2 * last, first_copy_of(g, 1));
+                   },
+                   "expected one of the first"},
+        TileDamage{"of_none", [](OpenGlb& g) { store_u16(g.view("copyOf"), 65535); },
+                   "copy 0 is of vertex 65535"},
+        TileDamage{"order", [](OpenGlb& g) { store_u16(g.view("copyOf") + 2, 0); },
+                   "copy 1 is of vertex 0, expected one of the first"},
+        TileDamage{"elsewhere",
+                   [](OpenGlb& g) {
+                     const unsigned copy = first_copy_of(g, 1);
+                     std::copy_n(g.attribute("POSITION"), 12, g.attribute("POSITION") + 12 * copy);
+                   },
+                   "copy 0 does not lie where its vertex 1 does"},
+        TileDamage{
+            "position",
+            [](OpenGlb& g) { store_nan(g.attribute("POSITION") + 12 * first_copy_of(g, 2)); },
+            "is not finite"},
+        TileDamage{"same_copy_twice",
+                   [](OpenGlb& g) {
+                     const unsigned copy = first_copy_of(g, 2);
+                     store_triangle(g.indices(0), {0, copy, copy});
+                   },
+                   "interior triangle 0 (0, "},
+        TileDamage{"index_behind_the_copies",
+                   [](OpenGlb& g) {
+                     const auto count = g.extension()["copyCount"].get<unsigned>();
+                     store_u16(g.indices(0), first_copy_of(g, 1) + count);
+                   },
+                   "is not below the"},
+        TileDamage{"turned",
+                   [](OpenGlb& g) {
+                     store_triangle(g.indices(0), {first_copy_of(g, 1), 0, 1});
+                   },
+                   "interior triangle 0 (1, 0, 1) is turned or out of order"},
+        TileDamage{"turned_wedges",
+                   [](OpenGlb& g) {
+                     store_triangle(g.indices(0), {first_copy_of(g, 1), 2, 1});
+                   },
+                   "interior triangle 0 (1, 2, 1) is turned or out of order"},
+        TileDamage{"order_of_wedges",
+                   [](OpenGlb& g) {
+                     store_triangle(g.indices(0), {0, 1, first_copy_of(g, 2) + 1});
+                     store_triangle(g.indices(0) + 6, {0, 1, first_copy_of(g, 2)});
+                   },
+                   "interior triangle 1 (0, 1, 2) is turned or out of order"},
+        TileDamage{"copy_of_a_ghost_inside",
+                   [](OpenGlb& g) {
+                     const auto count = g.extension()["copyCount"].get<unsigned>();
+                     store_triangle(g.indices(0), {0, 1, first_copy_of(g, 1) + count - 1});
+                   },
+                   "interior triangle 0 has 2 own corners"},
+        TileDamage{"copy_behind_the_boundary",
+                   [](OpenGlb& g) {
+                     auto inner = g.extension()["rimCount"].get<unsigned>();
+                     while (inner % 4 == 0)
+                       ++inner;
+                     const auto own = g.extension()["ownCount"].get<unsigned>();
+                     store_triangle(g.indices(1), {0, first_copy_of(g, inner), own});
+                   },
+                   "border triangle 0 has 2 own corners, 1 of them on the boundary"}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+TEST(TileGlb, APlaceTwiceInATriangleIsRefusedAboveThePartitions) {
+  const SampleHierarchy sample = with_copies(full_sample());
+  const PublishedTile& root = sample.tiles.front();
+  OpenGlb glb(encode_tile(root, sample.tree, sample.format));
+  store_triangle(glb.indices(0), {0, 1, first_copy_of(glb, 1)});
+  EXPECT_THAT(failure(glb.close(), root.node, sample),
+              HasSubstr("interior triangle 0 (0, 1, 1) has a place twice, above the partitions"));
+}
+
+TEST(TileGlb, AQuantizedCopyElsewhereIsRefused) {
+  for (const int bits : {12, 20}) {
+    const SampleHierarchy sample = quantized(with_copies(make_sample(torus(200), 3)), bits);
+    const PublishedTile& tile = sample.tiles.back();
+    OpenGlb glb(encode_tile(tile, sample.tree, sample.format));
+    const std::size_t stride = bits <= 16 ? 8 : 12;
+    std::copy_n(glb.attribute("POSITION"), stride,
+                glb.attribute("POSITION") + stride * first_copy_of(glb, 1));
+    EXPECT_THAT(failure(glb.close(), tile.node, sample),
+                HasSubstr("copy 0 does not lie where its vertex 1 does"));
+  }
+}
+
+TEST(TileGlb, RandomFlipsInTilesWithCopiesAreRefusedOrHarmless) {
+  const SampleHierarchy sample = with_copies(full_sample());
+  std::mt19937 random(11);
+  std::size_t refused = 0;
+  for (int round = 0; round < 3000; ++round) {
+    const PublishedTile& tile = sample.tiles[random() % sample.tiles.size()];
+    Bytes bytes = encode_tile(tile, sample.tree, sample.format);
+    bytes[random() % bytes.size()] ^= static_cast<std::byte>(1U << random() % 8);
+    try {
+      expect_consistent(decode_tile(bytes, tile.node, sample.tree, sample.format, kTileName),
+                        sample.tree);
+    } catch (const Error& error) {
+      ++refused;
+      EXPECT_EQ(error.code(), ErrorCode::corrupt);
+    }
+  }
+  EXPECT_GT(refused, 1000U);
+}
 
 TEST(TileGlb, AChainThroughAnEarlyNodeKeepsTheNumber) {
   // Of three partitions the last is the whole second half: it has no parent tile.

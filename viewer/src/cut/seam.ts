@@ -1,4 +1,5 @@
 // What a tile draws along its seams in a cut (docs/file_format.md, sections 4.5 and 4.6).
+import { firstCopy, placeOf } from '../hierarchy/copies.js';
 import { HierarchyProblem } from '../hierarchy/problem.js';
 import type { Tile } from '../hierarchy/tile.js';
 import { keyOf, tilePath, type Tree } from '../hierarchy/tree.js';
@@ -10,6 +11,26 @@ export type ShownTiles = ReadonlyMap<number, Tile>;
 const FINER = -1;
 const UNKNOWN = -2;
 
+type Values = Float32Array | Int16Array | Uint8Array;
+
+/// Of a vertex to another one, `width` each.
+function copyValues<Kind extends Values>(from: Kind, source: number, to: Kind, target: number, width: number): void {
+  for (let k = 0; k < width; ++k) to[width * target + k] = from[width * source + k];
+}
+
+/// Of two vertices, four values each: the square of their distance.
+function difference<Kind extends Values>(a: Kind, i: number, b: Kind, j: number): number {
+  let sum = 0;
+  for (let k = 0; k < 4; ++k) sum += (a[4 * i + k] - b[4 * j + k]) ** 2;
+  return sum;
+}
+
+/// The first, then its copies.
+function* verticesAt({ own, ghosts, copyOf }: Tile, place: number): Iterable<number> {
+  yield place;
+  for (let copy = firstCopy(copyOf, place); copyOf[copy] === place; ++copy) yield own + ghosts + copy;
+}
+
 export class Seam {
   /// Of neighbour i: keys of it and its ancestors up to below the common one, at `keyStarts[i]` and after.
   private readonly keys: Float64Array;
@@ -20,6 +41,9 @@ export class Seam {
   private readonly shown: (Tile | null)[];
   /// Of each ghost: the vertex of `shown` that it is.
   private readonly vertices: Uint16Array;
+  /// Of ghosts and all behind them, as in the file: what moves and comes back. Null where the file has none.
+  private readonly givenNormals: Int16Array | null;
+  private readonly givenColours: Uint8Array | null;
   /// A ghost was no vertex of its tile: the last one stood in, so that the surface stays whole.
   isDamaged = false;
 
@@ -35,6 +59,8 @@ export class Seam {
     this.coarser = new Int8Array(count).fill(UNKNOWN);
     this.shown = new Array<Tile | null>(count).fill(null);
     this.vertices = new Uint16Array(tile.ghosts);
+    this.givenNormals = tile.hasNormals ? tile.normals.slice(4 * tile.own) : null;
+    this.givenColours = tile.colours?.slice(4 * tile.own) ?? null;
     this.keys = this.placeChains(tree);
     if (this.chainStarts[count] !== tile.chains.length) this.fail('its chains are not all there');
   }
@@ -42,7 +68,8 @@ export class Seam {
   /// Bytes that this holds besides the tile.
   get bytes(): number {
     const starts = this.keyStarts.byteLength + this.chainStarts.byteLength;
-    return this.keys.byteLength + starts + 9 * this.coarser.length + 6 * this.vertices.length;
+    const given = (this.givenNormals?.byteLength ?? 0) + (this.givenColours?.byteLength ?? 0);
+    return this.keys.byteLength + starts + given + 9 * this.coarser.length + 6 * this.vertices.length;
   }
 
   private fail(what: string): never {
@@ -100,7 +127,7 @@ export class Seam {
     const { border, indices, interiorCount } = this.tile;
     let end = 3 * interiorCount;
     for (let t = 0; t < border.length; t += 3) {
-      if (!this.isDrawn(border[t], border[t + 1], border[t + 2])) continue;
+      if (!this.isDrawn(this.place(border[t]), this.place(border[t + 1]), this.place(border[t + 2]))) continue;
       for (let corner = 0; corner < 3; ++corner) indices[end++] = border[t + corner];
     }
     return end / 3 - interiorCount;
@@ -109,22 +136,48 @@ export class Seam {
   private resolveGhosts(neighbour: number): void {
     const from = this.shown[neighbour];
     if (from === null) return;
-    const { ghostStarts, chains } = this.tile;
+    const { own, ghosts, copyOf, ghostStarts, chains } = this.tile;
     const levels = this.keyStarts[neighbour + 1] - this.keyStarts[neighbour];
+    const isCoarser = this.coarser[neighbour] > 0;
     let entry = this.chainStarts[neighbour] + this.coarser[neighbour];
     for (let ghost = ghostStarts[neighbour]; ghost < ghostStarts[neighbour + 1]; ++ghost, entry += levels) {
       const vertex = Math.min(chains[entry], from.own - 1);
       this.isDamaged ||= vertex !== chains[entry];
       this.vertices[ghost] = vertex;
-      this.copyVertex(from, vertex, this.tile.own + ghost);
+      const place = own + ghost;
+      this.moveVertex(from, vertex, place, isCoarser);
+      for (let copy = firstCopy(copyOf, place); copyOf[copy] === place; ++copy) this.moveVertex(from, vertex, own + ghosts + copy, isCoarser);
     }
   }
 
-  private copyVertex(from: Tile, source: number, target: number): void {
-    const { positions, normals, colours } = this.tile;
-    for (let k = 0; k < 3; ++k) positions[3 * target + k] = from.positions[3 * source + k];
-    for (let k = 0; k < 4; ++k) normals[4 * target + k] = from.normals[4 * source + k];
-    if (colours && from.colours) for (let k = 0; k < 4; ++k) colours[4 * target + k] = from.colours[4 * source + k];
+  /// A texture coordinate stays the tile's own.
+  private moveVertex(from: Tile, place: number, target: number, isCoarser: boolean): void {
+    const { own, positions, normals, colours } = this.tile;
+    const source = isCoarser ? this.nearest(from, place, target) : place;
+    copyValues(from.positions, place, positions, target, 3);
+    if (isCoarser || !this.givenNormals) copyValues(from.normals, source, normals, target, 4);
+    else copyValues(this.givenNormals, target - own, normals, target, 4);
+    if (!colours) return;
+    if (isCoarser && from.colours) copyValues(from.colours, source, colours, target, 4);
+    else if (this.givenColours) copyValues(this.givenColours, target - own, colours, target, 4);
+  }
+
+  /// The vertex at a place of another tile that looks most like ours: by its normal, then its colour.
+  private nearest(from: Tile, place: number, target: number): number {
+    let nearest = place;
+    let least = Infinity;
+    let leastColour = Infinity;
+    for (const vertex of verticesAt(from, place)) {
+      const normal = this.givenNormals ? difference(this.givenNormals, target - this.tile.own, from.normals, vertex) : 0;
+      const colour = this.givenColours && from.colours ? difference(this.givenColours, target - this.tile.own, from.colours, vertex) : 0;
+      if (normal > least || (normal === least && colour >= leastColour)) continue;
+      [nearest, least, leastColour] = [vertex, normal, colour];
+    }
+    return nearest;
+  }
+
+  private place(vertex: number): number {
+    return placeOf(vertex, this.tile.own + this.tile.ghosts, this.tile.copyOf);
   }
 
   private isDrawn(a: number, b: number, c: number): boolean {

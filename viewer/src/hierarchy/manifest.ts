@@ -28,7 +28,7 @@ export interface Manifest {
 }
 
 const FILE = 'hierarchy.json';
-const FORMAT_VERSION = 4;
+const FORMAT_VERSION = 5;
 const MOST_BYTES = 2 ** 20;
 
 const MOST_SHORT_BITS = 16;
@@ -64,6 +64,7 @@ export function readManifest(text: string): Manifest {
   const root = JsonValue.parse(text, refuse);
   root.at('format').oneOf('meshhier');
   const version = root.at('format_version').number();
+  if (version < FORMAT_VERSION) refuse(`format version ${version}, made by an older meshhier: build the hierarchy again`);
   if (version !== FORMAT_VERSION) refuse(`format version ${version}; this viewer knows ${FORMAT_VERSION}`);
   const partitions = root.at('partitions').count(1, 2 ** 32 - 1);
   const indexBytes = indexSize(2 * partitions - 1);

@@ -20,14 +20,14 @@ export interface Directory {
 }
 
 /// Bytes of a tile's file, out of its gzip, at the most: with all attributes, raw ones too, and the widest indices.
-function mostBytes({ own, ghosts, interior, border }: TileRecord, level: number): number {
+function mostBytes({ own, ghosts, copies, interior, border }: TileRecord, level: number): number {
   const perVertex = 2 * (12 + 16 + 8) + 12;
   const perGhost = 2 * level + 8;
-  return perVertex * (own + ghosts) + 12 * (interior + border) + 2 * own + perGhost * ghosts + 2 * 65536;
+  return perVertex * (own + ghosts + copies) + 4 * copies + 12 * (interior + border) + 2 * own + perGhost * ghosts + 2 * 65536;
 }
 
-function expectedOf({ level, index }: Node, { own, ghosts, interior, border }: TileRecord): ExpectedCounts {
-  return { level, index, own, ghosts, interior, border };
+function expectedOf({ level, index }: Node, { own, ghosts, copies, interior, border }: TileRecord): ExpectedCounts {
+  return { level, index, own, ghosts, copies, interior, border };
 }
 
 export class RemoteHierarchy {

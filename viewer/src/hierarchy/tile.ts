@@ -3,21 +3,27 @@ import { Glb, type Gltf } from './glb.js';
 import { MeshoptDecoder } from 'meshoptimizer/decoder';
 import { MOST_ELEMENTS, MOST_OWN, MOST_ROOT_TRIANGLES } from './limits.js';
 import { normalCone, vertexNormals, type Cone } from './normals.js';
+import { toPlaces } from './copies.js';
 import { isClosed, isInsideOut } from './closed.js';
 
 export type Indices = Uint16Array | Uint32Array;
 
-/// Vertices 0 … own - 1 are the tile's; behind them its ghosts. All positions are exact.
+/// Vertices 0 … own - 1 are the tile's; behind them its ghosts, then copies: further vertices at places of these. All
+/// positions are exact.
 export interface Tile {
   readonly level: number;
   readonly index: number;
   readonly own: number;
   readonly ghosts: number;
+  /// Of each copy the vertex whose place it shares, own or ghost; ascending.
+  readonly copyOf: Indices;
   /// x, y, z of each vertex, relative to the place that all tiles of a hierarchy share.
   readonly positions: Float32Array;
   /// x, y, z, 0 of each vertex, in parts of 32767: of the file, else made from the triangles. Of ghosts only the
   /// file's are right: else the tile that owns the vertex knows.
   readonly normals: Int16Array;
+  /// They are the file's.
+  readonly hasNormals: boolean;
   /// r, g, b, a of each vertex as in the input (not linear); or null.
   readonly colours: Uint8Array | null;
   /// Corners: of the interior triangles, then room for the border triangles that are drawn.
@@ -45,9 +51,12 @@ export interface ExpectedCounts {
   readonly index: number;
   readonly own: number;
   readonly ghosts: number;
+  readonly copies: number;
   readonly interior: number;
   readonly border: number;
 }
+
+const VERSION = 2;
 
 interface Counts extends ExpectedCounts {
   readonly neighbours: number;
@@ -56,7 +65,7 @@ interface Counts extends ExpectedCounts {
 
 /// Before anything is sized by them.
 function checkCounts(glb: Glb, counts: Counts, expected: ExpectedCounts | null): void {
-  const keys = ['level', 'index', 'own', 'ghosts', 'interior', 'border'] as const;
+  const keys = ['level', 'index', 'own', 'ghosts', 'copies', 'interior', 'border'] as const;
   if (expected !== null && keys.some((key) => counts[key] !== expected[key])) glb.fail('not the tile that the index tells of');
   if (counts.level === 0 && (counts.ghosts > 0 || counts.border > 0 || counts.interior > MOST_ROOT_TRIANGLES)) glb.fail('not a root');
   if (counts.neighbours > counts.ghosts || counts.chains > counts.ghosts * counts.level) glb.fail('more neighbours or chains than ghosts allow');
@@ -69,12 +78,13 @@ function count(glb: Glb, values: Record<string, number>, key: string, least: num
 }
 
 function readCounts(glb: Glb, values: Record<string, number>): Counts {
-  if (values.version !== 1) glb.fail(`version ${values.version} of MESHHIER_tile is not known`);
+  if (values.version !== VERSION) glb.fail(`version ${values.version} of MESHHIER_tile is not known; this viewer knows ${VERSION}`);
   return {
     level: count(glb, values, 'level', 0, 32),
     index: count(glb, values, 'index', 0, 2 ** 32 - 1),
     own: count(glb, values, 'ownCount', 1, MOST_OWN),
     ghosts: count(glb, values, 'ghostCount', 0, MOST_ELEMENTS),
+    copies: count(glb, values, 'copyCount', 0, MOST_ELEMENTS),
     neighbours: count(glb, values, 'neighbourCount', 0, MOST_ELEMENTS),
     chains: count(glb, values, 'chainEntryCount', 0, MOST_ELEMENTS),
     interior: count(glb, values, 'interiorCount', 0, MOST_ELEMENTS),
@@ -83,12 +93,12 @@ function readCounts(glb: Glb, values: Record<string, number>): Counts {
 }
 
 /// A copy, so that it is aligned and holds nothing else alive.
-function copyOf(bytes: Uint8Array): ArrayBuffer {
+function detached(bytes: Uint8Array): ArrayBuffer {
   return bytes.slice().buffer;
 }
 
 function floats(bytes: Uint8Array): Float32Array {
-  return new Float32Array(copyOf(bytes));
+  return new Float32Array(detached(bytes));
 }
 
 function stepOf(node: Gltf['nodes'][number]): number {
@@ -98,7 +108,7 @@ function stepOf(node: Gltf['nodes'][number]): number {
 function readPositions(glb: Glb, accessor: Gltf['accessors'][number], vertices: number): Float32Array {
   if (accessor.componentType === 5126) return floats(glb.section(accessor.bufferView, 12 * vertices));
   if (accessor.componentType !== 5123) glb.fail('positions of an unknown type');
-  const points = new Uint16Array(copyOf(glb.section(accessor.bufferView, 8 * vertices)));
+  const points = new Uint16Array(detached(glb.section(accessor.bufferView, 8 * vertices)));
   const step = stepOf(glb.gltf.nodes[0]);
   const positions = new Float32Array(3 * vertices);
   for (let v = 0; v < vertices; ++v)
@@ -117,7 +127,7 @@ function readColours(glb: Glb, accessor: Gltf['accessors'][number], vertices: nu
   const width = accessor.type === 'VEC4' ? 4 : 3;
   if (type === undefined) glb.fail('colours of an unknown type');
   const stride = Math.ceil((width * type.bytes) / 4) * 4;
-  const bytes = copyOf(glb.section(accessor.bufferView, stride * vertices));
+  const bytes = detached(glb.section(accessor.bufferView, stride * vertices));
   const values = type.bytes === 1 ? new Uint8Array(bytes) : type.bytes === 2 ? new Uint16Array(bytes) : new Float32Array(bytes);
   const colours = new Uint8ClampedArray(4 * vertices).fill(255);
   for (let v = 0; v < vertices; ++v)
@@ -141,10 +151,31 @@ function readIndices(glb: Glb, primitive: number, triangles: number, end: number
   const accessor = glb.gltf.accessors[number];
   if (accessor === undefined) glb.fail('triangles are missing');
   const wide = accessor.componentType === 5125;
-  const bytes = copyOf(glb.section(accessor.bufferView, 3 * triangles * (wide ? 4 : 2)));
+  const bytes = detached(glb.section(accessor.bufferView, 3 * triangles * (wide ? 4 : 2)));
   const indices = wide ? new Uint32Array(bytes) : new Uint16Array(bytes);
   for (const index of indices) if (index >= end) glb.fail('a triangle names a vertex that is not there');
   return indices;
+}
+
+/// Of copies, the vertices whose places they share.
+function readCopyOf(glb: Glb, number: number, { own, ghosts, copies }: Counts): Indices {
+  const places = own + ghosts;
+  const wide = places > 65535;
+  const bytes = detached(glb.section(number, copies * (wide ? 4 : 2)));
+  const copyOf = wide ? new Uint32Array(bytes) : new Uint16Array(bytes);
+  let before = 0;
+  for (const place of copyOf) {
+    if (place < before || place >= places) glb.fail('copies are not in order');
+    before = place;
+  }
+  return copyOf;
+}
+
+/// Alike at all vertices of a place.
+function normalsByPlace(positions: Float32Array, places: number, copyOf: Indices, interior: Indices, border: Indices): Int16Array {
+  const normals = vertexNormals(positions, interior, border);
+  copyOf.forEach((place, copy) => normals.copyWithin(4 * (places + copy), 4 * place, 4 * place + 4));
+  return normals;
 }
 
 function checkStarts(glb: Glb, starts: Uint32Array, { neighbours, ghosts }: Counts): void {
@@ -185,31 +216,37 @@ function decode(glb: Glb, expected: ExpectedCounts | null): Tile {
   const counts = readCounts(glb, values);
   checkCounts(glb, counts, expected);
   const { own, ghosts, interior: interiorCount } = counts;
-  const vertices = own + ghosts;
+  const places = own + ghosts;
+  const vertices = places + counts.copies;
   const attribute = (name: string): Gltf['accessors'][number] | undefined => gltf.accessors?.[primitive.attributes?.[name]];
   const place = attribute('POSITION') ?? glb.fail('no positions');
   const positions = readPositions(glb, place, vertices);
-  const interior = readIndices(glb, values.interiorPrimitive, interiorCount, own);
+  const copyOf = readCopyOf(glb, values.copyOf, counts);
+  const interior = readIndices(glb, values.interiorPrimitive, interiorCount, vertices);
   const border = readIndices(glb, values.borderPrimitive, counts.border, vertices);
+  const surface = toPlaces(interior, places, copyOf);
+  if (surface.some((place) => place >= own)) glb.fail('an interior triangle names a ghost');
   const normals = attribute('NORMAL');
   const colours = attribute('COLOR_0');
-  const starts = new Uint32Array(copyOf(glb.section(values.ghostStarts, counts.neighbours === 0 ? 0 : 4 * (counts.neighbours + 1))));
+  const starts = new Uint32Array(detached(glb.section(values.ghostStarts, counts.neighbours === 0 ? 0 : 4 * (counts.neighbours + 1))));
   checkStarts(glb, starts, counts);
-  const closed = counts.level === 0 && isClosed(interior);
+  const closed = counts.level === 0 && isClosed(surface);
   return {
     level: counts.level,
     index: counts.index,
     own,
     ghosts,
+    copyOf,
     positions,
-    normals: normals ? readNormals(glb, normals, vertices) : vertexNormals(positions, interior, border),
+    normals: normals ? readNormals(glb, normals, vertices) : normalsByPlace(positions, places, copyOf, surface, toPlaces(border, places, copyOf)),
+    hasNormals: normals !== undefined,
     colours: colours ? readColours(glb, colours, vertices) : null,
     indices: withRoom(interior, border),
     interiorCount,
     border,
-    neighbours: new Uint32Array(copyOf(glb.section(values.neighbours, 4 * counts.neighbours))),
+    neighbours: new Uint32Array(detached(glb.section(values.neighbours, 4 * counts.neighbours))),
     ghostStarts: starts,
-    chains: new Uint16Array(copyOf(glb.section(values.ghostChains, 2 * counts.chains))),
+    chains: new Uint16Array(detached(glb.section(values.ghostChains, 2 * counts.chains))),
     cone: normalCone(positions, interior, border),
     closed,
     insideOut: closed && isInsideOut(positions, interior),
@@ -233,7 +270,7 @@ export async function readTile(bytes: Uint8Array, name: string, expected: Expect
 
 /// The arrays that a tile holds, each once: what moves when it is handed over.
 export function buffersOf(tile: Tile): ArrayBuffer[] {
-  const { positions, normals, colours, indices, border, neighbours, ghostStarts, chains } = tile;
-  const arrays = [positions, normals, colours, indices, border, neighbours, ghostStarts, chains];
+  const { copyOf, positions, normals, colours, indices, border, neighbours, ghostStarts, chains } = tile;
+  const arrays = [copyOf, positions, normals, colours, indices, border, neighbours, ghostStarts, chains];
   return arrays.flatMap((array) => (array ? [array.buffer as ArrayBuffer] : []));
 }

@@ -9,6 +9,7 @@ type Triple = readonly [number, number, number];
 export interface TileRecord {
   readonly own: number;
   readonly ghosts: number;
+  readonly copies: number;
   readonly interior: number;
   readonly border: number;
   /// Estimated distance to the input, in its units; 0 of partitions.
@@ -26,10 +27,10 @@ export type ReadRange = (first: number, end: number) => Promise<Uint8Array>;
 
 const FILE = 'tiles.bin';
 const MAGIC = 'MHTILES\n';
-const VERSION = 2;
+const VERSION = 3;
 const HEADER_BYTES = 32;
-const RECORD_BYTES = 96;
-const PAGE_RECORDS = 682; // a page is just below 64 KiB
+const RECORD_BYTES = 104;
+const PAGE_RECORDS = 629; // a page is just below 64 KiB
 /// A page that failed is asked for again after this time.
 const RETRY_MS = 2000;
 
@@ -41,24 +42,25 @@ export function indexSize(tiles: number): number {
 function readRecord(view: DataView, at: number, place: Triple): TileRecord {
   const u32 = (offset: number): number => view.getUint32(at + offset, true);
   const f32 = (offset: number): number => view.getFloat32(at + offset, true);
-  const bound = f32(48);
+  const bound = f32(52);
   const corner = (offset: number, more: number): Triple =>
     [0, 1, 2].map((axis) => f32(offset + 4 * axis) - place[axis] + more) as unknown as Triple;
   return {
     own: u32(8),
     ghosts: u32(16),
-    interior: u32(20),
-    border: u32(24),
-    error: f32(44),
-    min: corner(56, -bound),
-    max: corner(68, bound),
-    bytes: Number(view.getBigUint64(at + 80, true)),
+    copies: u32(20),
+    interior: u32(24),
+    border: u32(28),
+    error: f32(48),
+    min: corner(60, -bound),
+    max: corner(72, bound),
+    bytes: Number(view.getBigUint64(at + 88, true)),
   };
 }
 
 /// No more than the format allows: sizes are computed from these.
-function isSound({ own, ghosts, interior, border, min, max, error }: TileRecord): boolean {
-  const counts = own >= 1 && own <= MOST_OWN && [ghosts, interior, border].every((count) => count <= MOST_ELEMENTS);
+function isSound({ own, ghosts, copies, interior, border, min, max, error }: TileRecord): boolean {
+  const counts = own >= 1 && own <= MOST_OWN && [ghosts, copies, interior, border].every((count) => count <= MOST_ELEMENTS);
   return counts && error >= 0 && [...min, ...max, error].every(Number.isFinite);
 }
 

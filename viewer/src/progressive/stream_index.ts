@@ -40,7 +40,7 @@ export interface StreamIndex {
 }
 
 const FORMAT = 'meshhier-progressive';
-const VERSION = 1;
+const VERSION = 2;
 /// Bytes of each of the client's arrays, and of a file: 2 GiB, which some browsers do not exceed.
 const MOST_BYTES = 2 ** 31 - 1;
 
@@ -77,6 +77,7 @@ export function parseStreamIndex(text: string, name: string): StreamIndex {
   const root = JsonValue.parse(text, refuse);
   root.at('format').oneOf(FORMAT);
   const version = root.at('format_version').number();
+  if (version < VERSION) refuse(`format version ${version}, made by an older meshhier: make the stream again`);
   if (version !== VERSION) refuse(`format version is ${version}, expected ${VERSION}`);
   const files = root.at('files').items().map(readFile);
   if (files.length === 0) refuse('it has no files');

@@ -9,25 +9,25 @@ import type { Look } from './settings.js';
 
 /// Bytes of a tile with what draws it: each array here and on the GPU, but for what only seams need.
 export function memoryOf(tile: Tile, seam: Seam, wires: boolean): number {
-  const { positions, normals, colours, indices, border, neighbours, ghostStarts, chains } = tile;
+  const { copyOf, positions, normals, colours, indices, border, neighbours, ghostStarts, chains } = tile;
   const drawn = positions.byteLength + normals.byteLength + (colours?.byteLength ?? 0) + indices.byteLength;
-  const seams = border.byteLength + neighbours.byteLength + ghostStarts.byteLength + chains.byteLength + seam.bytes;
+  const seams = copyOf.byteLength + border.byteLength + neighbours.byteLength + ghostStarts.byteLength + chains.byteLength + seam.bytes;
   return 2 * (drawn + (wires ? 2 * indices.byteLength : 0)) + seams;
 }
 
 /// The same from counts alone; not less.
 export function mostMemory(
-  { own, ghosts, interior, border }: { own: number; ghosts: number; interior: number; border: number },
+  { own, ghosts, copies, interior, border }: { own: number; ghosts: number; copies: number; interior: number; border: number },
   level: number,
   hasColours: boolean,
   wires: boolean,
 ): number {
-  const vertices = own + ghosts;
+  const vertices = own + ghosts + copies;
   const width = vertices > 65535 ? 4 : 2;
   const indices = 3 * (interior + border) * width;
   const drawn = vertices * (hasColours ? 24 : 20) + indices;
-  // Of a ghost: its chain, its neighbour's number, start and keys, and what the seam keeps of it.
-  const seams = 3 * border * width + ghosts * (10 * level + 40) + 64;
+  // Of a ghost: its chain, its neighbour's number, start and keys, and what the seam keeps of it, of copies too.
+  const seams = 3 * border * width + ghosts * (10 * level + 48) + copies * 12 + 64;
   return 2 * (drawn + (wires ? 2 * indices : 0)) + seams;
 }
 

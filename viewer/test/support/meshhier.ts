@@ -29,6 +29,17 @@ export class Workshop {
     return this.buildMesh(name, mesh, config);
   }
 
+  /// The same of a mesh that `meshgen` makes and then splits.
+  buildSplit(name: string, meshgen: readonly string[], by: string, config: object): string {
+    const mesh = path.join(this.directory, `${name}.ply`);
+    const whole = path.join(this.directory, `${name}_whole.ply`);
+    if (!existsSync(mesh)) {
+      execFileSync(MESHGEN, [...meshgen, '-o', whole]);
+      execFileSync(MESHGEN, ['split', whole, '--by', by, '-o', mesh]);
+    }
+    return this.buildMesh(name, mesh, config);
+  }
+
   buildMesh(name: string, mesh: string, config: object): string {
     const output = path.join(this.directory, `${name}.hier`);
     if (existsSync(output)) return output;

@@ -1,0 +1,88 @@
+#include "cluster_simplify/attribute_seams.h"
+
+#include "cluster_simplify/attribute_kind.h"
+#include "cluster_simplify/texture_charts.h"
+#include "cluster_simplify/tile_wedges.h"
+
+#include <algorithm>
+#include <compare>
+#include <cstddef>
+#include <utility>
+
+namespace meshhier::cluster_simplify {
+namespace {
+
+/// A triangle's side, from the lower place to the higher.
+struct Side {
+  PlaceEdge places;
+  std::array<std::uint32_t, 2> wedges;
+  friend auto operator<=>(const Side&, const Side&) = default;
+};
+
+/// The sides between own places at which triangles may differ, ascending.
+std::vector<Side> sides_of(const TileWedges& wedges) {
+  std::vector<Side> sides;
+  const auto may_differ = [&](std::uint32_t a, std::uint32_t b) {
+    return wedges.is_own(a) && wedges.is_own(b) &&
+           (wedges.count_at(wedges.place_of(a)) > 1 || wedges.count_at(wedges.place_of(b)) > 1);
+  };
+  for (const WedgeTriangle& t : wedges.triangles()) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::array<std::uint32_t, 2> ends{t[k], t[(k + 1) % 3]};
+      if (!may_differ(ends[0], ends[1]))
+        continue;
+      if (wedges.place_of(ends[1]) < wedges.place_of(ends[0]))
+        std::swap(ends[0], ends[1]);
+      sides.push_back({{wedges.place_of(ends[0]), wedges.place_of(ends[1])}, ends});
+    }
+  }
+  std::sort(sides.begin(), sides.end());
+  return sides;
+}
+
+/// Tells wedges of one place apart.
+class WedgeDifference {
+ public:
+  WedgeDifference(const TileWedges& wedges, const AttributeLayout& layout,
+                  const WedgeOptions& options)
+      : wedges_(wedges),
+        class_of_(texture_classes(wedges, layout)),
+        normals_(AttributeKind::normals(layout, options)),
+        colours_(AttributeKind::colours(layout, options)) {}
+
+  bool operator()(std::uint32_t a, std::uint32_t b) const {
+    return a != b &&
+           (class_of_[a] != class_of_[b] || are_apart(normals_, a, b) || are_apart(colours_, a, b));
+  }
+
+ private:
+  bool are_apart(const AttributeKind& kind, std::uint32_t a, std::uint32_t b) const {
+    return kind.are_apart(kind.part(wedges_.attributes_of(a)), kind.part(wedges_.attributes_of(b)));
+  }
+
+  const TileWedges& wedges_;
+  std::vector<std::uint32_t> class_of_;
+  AttributeKind normals_, colours_;
+};
+
+}  // namespace
+
+std::vector<PlaceEdge> attribute_seams(const BuildTile& joined, const AttributeLayout& layout,
+                                       const WedgeOptions& options) {
+  if (joined.mesh.copies.empty())
+    return {};
+  const TileWedges wedges(joined.mesh);
+  const WedgeDifference differ(wedges, layout, options);
+  const std::vector<Side> sides = sides_of(wedges);
+  std::vector<PlaceEdge> seams;
+  for (std::size_t i = 1; i < sides.size(); ++i) {
+    const Side& a = sides[i - 1];
+    const Side& b = sides[i];
+    if (a.places == b.places && (seams.empty() || seams.back() != a.places) &&
+        (differ(a.wedges[0], b.wedges[0]) || differ(a.wedges[1], b.wedges[1])))
+      seams.push_back(a.places);
+  }
+  return seams;
+}
+
+}  // namespace meshhier::cluster_simplify

@@ -1,0 +1,41 @@
+// Texture coordinates of a contracted tile: continuous inside of charts, never blended across
+// seams.
+//
+// Cf. Hoppe, New Quadric Metric for Simplifying Meshes with Appearance Attributes, 1999: wedges
+// that the ends of a collapsed edge have in one triangle become one.
+#pragma once
+
+#include "cluster_simplify/tile_wedges.h"
+#include "cluster_simplify/wedge_clusters.h"
+#include "hierarchy/attributes.h"
+#include "hierarchy/vec.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace meshhier::cluster_simplify {
+
+/// Of each wedge the first one of its place that has the same texture coordinates, but for the sign
+/// of a zero: on one side of a seam they are equal. O(n log n).
+std::vector<std::uint32_t> texture_classes(const TileWedges& wedges, const AttributeLayout& layout);
+
+/// Of each wedge the chart that it has in its cluster: a set of wedges, named by one of them.
+/// Wedges of one texture class, and wedges at the ends of an edge of a triangle, are in one.
+/// Without texture coordinates charts are the pieces of surface that come together. O(n log n).
+std::vector<std::uint32_t> texture_charts(const TileWedges& wedges, const WedgeClusters& clusters,
+                                          const AttributeLayout& layout);
+
+using TextureCoordinates = std::array<float, 2>;
+
+/// Of each chart (by the wedge that names it) the texture coordinates of the point nearest to where
+/// its cluster comes to lie, `positions`, among all triangles with a corner in the chart: those of
+/// a wedge of the chart exactly if it lies there, and always within those of some triangle.
+/// `wanted`: the clusters whose charts are asked for, one entry each. O(t): each triangle is asked
+/// once for a chart, so none needs to be left out where very many meet.
+std::vector<TextureCoordinates> chart_coordinates(
+    const TileWedges& wedges, const WedgeClusters& clusters, std::span<const std::uint32_t> charts,
+    std::span<const Vec3f> positions, std::span<const char> wanted, const AttributeLayout& layout);
+
+}  // namespace meshhier::cluster_simplify

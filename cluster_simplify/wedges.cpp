@@ -1,0 +1,324 @@
+#include "cluster_simplify/wedges.h"
+
+#include "cluster_simplify/attribute_groups.h"
+#include "cluster_simplify/attribute_kind.h"
+#include "cluster_simplify/texture_charts.h"
+#include "cluster_simplify/tile_wedges.h"
+#include "cluster_simplify/wedge_clusters.h"
+#include "hierarchy/vec.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+#include <numeric>
+#include <span>
+#include <vector>
+
+namespace meshhier::cluster_simplify {
+namespace {
+
+// New wedges that an old one without a triangle is compared with: no more, where a place has very
+// many.
+constexpr std::size_t kMostCompared = 64;
+
+/// How triangles use wedges.
+struct WedgeUse {
+  std::vector<double> areas;   ///< of the triangles around each, twice
+  std::vector<char> survives;  ///< whether one of them does
+};
+
+double doubled_area(const TileWedges& wedges, const WedgeTriangle& t) {
+  const Vec3d a = to_double(wedges.position_of(t[0]));
+  const Vec3d b = to_double(wedges.position_of(t[1]));
+  const Vec3d c = to_double(wedges.position_of(t[2]));
+  return length(cross(b - a, c - a));
+}
+
+WedgeUse use_of(const TileWedges& wedges, const WedgeClusters& clusters) {
+  WedgeUse use{std::vector<double>(wedges.count()), std::vector<char>(wedges.count())};
+  for (const WedgeTriangle& t : wedges.triangles()) {
+    const double area = doubled_area(wedges, t);
+    const bool survives = clusters.survives(t);
+    for (const std::uint32_t wedge : t) {
+      use.areas[wedge] += area;
+      use.survives[wedge] |= static_cast<char>(survives);
+    }
+  }
+  return use;
+}
+
+/// Of each cluster whether its wedges are looked at: not if all it has is one wedge a place, in one
+/// chart; the method knew all there is.
+std::vector<char> wanted_clusters(const TileWedges& wedges, const WedgeClusters& clusters,
+                                  const WedgeUse& use, std::span<const std::uint32_t> charts) {
+  constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  std::vector<char> wanted(clusters.count());
+  std::vector<std::uint32_t> shown(clusters.count(), kNone);  // a chart that survives
+  for (std::uint32_t place = 0; place < wedges.own_place_count(); ++place) {
+    const std::uint32_t cluster = clusters.of(place);
+    if (wedges.count_at(place) > 1)
+      wanted[cluster] = 1;
+    if (use.survives[place] == 0)
+      continue;
+    if (shown[cluster] != kNone && shown[cluster] != charts[place])
+      wanted[cluster] = 1;
+    shown[cluster] = charts[place];
+  }
+  return wanted;
+}
+
+/// What a corner shows: one of each.
+struct Combination {
+  std::uint32_t chart, normal, colour;
+  friend auto operator<=>(const Combination&, const Combination&) = default;
+};
+
+/// The combination of a cluster's wedge.
+struct Shown {
+  Combination what;
+  std::uint32_t member;  ///< which wedge of the cluster
+  friend auto operator<=>(const Shown&, const Shown&) = default;
+};
+
+/// The first of each combination; `shown` ascends.
+std::vector<Shown> firsts_of(std::span<const Shown> shown) {
+  std::vector<Shown> firsts;
+  std::unique_copy(shown.begin(), shown.end(), std::back_inserter(firsts),
+                   [](const Shown& a, const Shown& b) { return a.what == b.what; });
+  return firsts;
+}
+
+bool has_lesser_bits(std::span<const float> a, std::span<const float> b) {
+  const auto x = std::as_bytes(a);
+  const auto y = std::as_bytes(b);
+  return std::lexicographical_compare(x.begin(), x.end(), y.begin(), y.end());
+}
+
+/// For each combination the first one with equal attributes, bit for bit, `first` the one with the
+/// least member.
+std::vector<std::uint32_t> equal_firsts(std::span<const Shown> combinations,
+                                        const VertexArray& attributes) {
+  std::vector<std::uint32_t> order(combinations.size());
+  std::iota(order.begin(), order.end(), 0U);
+  const auto is_less = [&](std::uint32_t a, std::uint32_t b) {
+    return has_lesser_bits(attributes.attributes_of(a), attributes.attributes_of(b));
+  };
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return is_less(a, b) || (!is_less(b, a) && combinations[a].member < combinations[b].member);
+  });
+  std::vector<std::uint32_t> firsts(order.size());
+  std::uint32_t first = order[0];
+  for (const std::uint32_t i : order) {
+    if (is_less(first, i))
+      first = i;
+    firsts[i] = first;
+  }
+  return firsts;
+}
+
+/// Combinations in the order of their members, those of equal attributes as one.
+struct Numbering {
+  std::vector<std::uint32_t> number_of;     ///< of each combination
+  std::vector<std::uint32_t> combinations;  ///< of each number, the first
+};
+
+Numbering number(std::span<const Shown> combinations, const VertexArray& attributes) {
+  const std::vector<std::uint32_t> firsts = equal_firsts(combinations, attributes);
+  Numbering numbering{std::vector<std::uint32_t>(combinations.size()), {}};
+  for (std::uint32_t i = 0; i < combinations.size(); ++i) {
+    if (firsts[i] == i)
+      numbering.combinations.push_back(i);
+  }
+  std::ranges::sort(numbering.combinations, {},
+                    [&](std::uint32_t i) { return combinations[i].member; });
+  for (std::uint32_t k = 0; k < numbering.combinations.size(); ++k)
+    numbering.number_of[numbering.combinations[k]] = k;
+  for (std::uint32_t i = 0; i < combinations.size(); ++i)
+    numbering.number_of[i] = numbering.number_of[firsts[i]];
+  return numbering;
+}
+
+/// The wedges of one new place.
+struct NewWedges {
+  VertexArray vertices;                  ///< empty if no triangle shows any
+  std::vector<std::uint32_t> number_of;  ///< which of them stands for each wedge of the cluster
+};
+
+class WedgeContraction {
+ public:
+  WedgeContraction(const BuildTile& joined, const Contraction& contraction,
+                   const AttributeLayout& layout, const WedgeOptions& options)
+      : representatives_(contraction.representatives),
+        layout_(layout),
+        normals_(AttributeKind::normals(layout, options)),
+        colours_(AttributeKind::colours(layout, options)),
+        wedges_(joined.mesh),
+        clusters_(wedges_, contraction),
+        use_(use_of(wedges_, clusters_)),
+        charts_(texture_charts(wedges_, clusters_, layout)),
+        wanted_(wanted_clusters(wedges_, clusters_, use_, charts_)),
+        coordinates_(chart_coordinates(wedges_, clusters_, charts_, representatives_.positions,
+                                       wanted_, layout)) {}
+
+  ContractedWedges run() const {
+    ContractedWedges result;
+    result.attributes = representatives_.attributes;
+    result.copies.vertices.channels = representatives_.channels;
+    std::vector<std::uint32_t> number_of(wedges_.count());
+    for (std::uint32_t c = 0; c < clusters_.count(); ++c) {
+      if (wanted_[c] == 0)
+        continue;
+      const std::vector<ClusterWedge> cluster = wedges_of(c);
+      const NewWedges made = new_wedges(cluster, c);
+      put(made.vertices, c, result);
+      for (std::size_t i = 0; i < made.number_of.size(); ++i)
+        number_of[cluster[i].wedge] = made.number_of[i];
+    }
+    result.map = map_of(number_of);
+    return result;
+  }
+
+ private:
+  /// By place, then number.
+  std::vector<ClusterWedge> wedges_of(std::uint32_t c) const {
+    std::vector<ClusterWedge> cluster;
+    for (const std::uint32_t place : clusters_.places(c)) {
+      const bool at_place = wedges_.position_of(place) == representatives_.positions[c];
+      for (std::uint32_t k = 0; k < wedges_.count_at(place); ++k) {
+        const std::uint32_t wedge = wedges_.at(place, k);
+        cluster.push_back({wedge, use_.areas[wedge], use_.survives[wedge] != 0, at_place});
+      }
+    }
+    return cluster;
+  }
+
+  /// Those that survive, by descending area: what shows most leads its group.
+  static std::vector<std::uint32_t> largest_first(std::span<const ClusterWedge> cluster) {
+    std::vector<std::uint32_t> order;
+    for (std::uint32_t i = 0; i < cluster.size(); ++i) {
+      if (cluster[i].survives)
+        order.push_back(i);
+    }
+    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return cluster[a].area > cluster[b].area;
+    });
+    return order;
+  }
+
+  NewWedges new_wedges(std::span<const ClusterWedge> cluster, std::uint32_t c) const {
+    const std::vector<std::uint32_t> order = largest_first(cluster);
+    if (order.empty())
+      return {};
+    const AttributeGroups normals = group_attributes(normals_, wedges_, cluster, order);
+    const AttributeGroups colours = group_attributes(colours_, wedges_, cluster, order);
+    std::vector<Shown> shown;
+    for (const std::uint32_t i : order)
+      shown.push_back({{charts_[cluster[i].wedge], normals.group_of[i], colours.group_of[i]}, i});
+    std::sort(shown.begin(), shown.end());
+    const std::vector<Shown> combinations = firsts_of(shown);
+    VertexArray vertices{{}, {}, representatives_.channels};
+    for (const auto& [what, member] : combinations)
+      vertices.append(
+          representatives_.positions[c],
+          combined(what.chart, normals.values[what.normal], colours.values[what.colour]));
+    return numbered(cluster, shown, combinations, vertices);
+  }
+
+  /// The attributes of a combination, as many of the floats as the layout has.
+  std::vector<float> combined(std::uint32_t chart, const std::array<float, 4>& normal,
+                              const std::array<float, 4>& colour) const {
+    std::vector<float> attributes;
+    attributes.insert(attributes.end(), normal.begin(), normal.begin() + layout_.colour_offset());
+    attributes.insert(attributes.end(), colour.begin(), colour.begin() + layout_.colour_channels());
+    if (layout_.texcoords)
+      attributes.insert(attributes.end(), coordinates_[chart].begin(), coordinates_[chart].end());
+    return attributes;
+  }
+
+  NewWedges numbered(std::span<const ClusterWedge> cluster, std::span<const Shown> shown,
+                     std::span<const Shown> combinations, const VertexArray& vertices) const {
+    const Numbering numbering = number(combinations, vertices);
+    NewWedges made{{{}, {}, vertices.channels}, std::vector<std::uint32_t>(cluster.size())};
+    made.vertices.append(vertices, numbering.combinations);
+    std::size_t i = 0;
+    for (const Shown& s : shown) {
+      i += std::size_t{s.what != combinations[i].what};
+      made.number_of[s.member] = numbering.number_of[i];
+    }
+    for (std::uint32_t m = 0; m < cluster.size(); ++m) {
+      if (!cluster[m].survives)
+        made.number_of[m] = numbering.number_of[nearest(cluster[m].wedge, combinations, vertices)];
+    }
+    return made;
+  }
+
+  /// The combination nearest to an old wedge: of its chart, or of all if that shows nothing.
+  std::size_t nearest(std::uint32_t wedge, std::span<const Shown> combinations,
+                      const VertexArray& vertices) const {
+    const auto of_chart = std::ranges::equal_range(combinations, charts_[wedge], {},
+                                                   [](const Shown& s) { return s.what.chart; });
+    const auto compared = of_chart.empty() ? combinations : std::span(of_chart);
+    const auto first = static_cast<std::size_t>(compared.data() - combinations.data());
+    std::size_t best = first;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = first; i < first + std::min(compared.size(), kMostCompared); ++i) {
+      const double difference =
+          squared_difference(layout_, wedges_.attributes_of(wedge), vertices.attributes_of(i));
+      if (difference < least) {
+        least = difference;
+        best = i;
+      }
+    }
+    return best;
+  }
+
+  /// The first wedge of a place, and its copies.
+  static void put(const VertexArray& vertices, std::uint32_t place, ContractedWedges& result) {
+    if (vertices.size() == 0)
+      return;
+    const auto first = vertices.attributes_of(0);
+    std::copy(first.begin(), first.end(),
+              result.attributes.begin() + static_cast<std::ptrdiff_t>(place * first.size()));
+    result.copies.vertices.append(vertices, 1, vertices.size());
+    result.copies.places.insert(result.copies.places.end(), vertices.size() - 1, place);
+  }
+
+  /// `number_of`: of each wedge.
+  WedgeMap map_of(std::span<const std::uint32_t> number_of) const {
+    WedgeMap map;
+    const std::uint32_t own_count = wedges_.own_place_count();
+    map.firsts.assign(number_of.begin(), number_of.begin() + own_count);
+    for (std::uint32_t place = 0; place < own_count; ++place) {
+      for (std::uint32_t k = 1; k < wedges_.count_at(place); ++k) {
+        map.copies.push_back(number_of[wedges_.at(place, k)]);
+        map.places.push_back(place);
+      }
+    }
+    return map;
+  }
+
+  const VertexArray& representatives_;
+  const AttributeLayout& layout_;
+  AttributeKind normals_, colours_;
+  TileWedges wedges_;
+  WedgeClusters clusters_;
+  WedgeUse use_;
+  std::vector<std::uint32_t> charts_;            ///< of each wedge
+  std::vector<char> wanted_;                     ///< of each cluster
+  std::vector<TextureCoordinates> coordinates_;  ///< of each chart
+};
+
+}  // namespace
+
+ContractedWedges contract_wedges(const BuildTile& joined, const Contraction& contraction,
+                                 const AttributeLayout& layout, const WedgeOptions& options) {
+  assert(!joined.mesh.copies.empty());
+  return WedgeContraction(joined, contraction, layout, options).run();
+}
+
+}  // namespace meshhier::cluster_simplify

@@ -1,0 +1,117 @@
+#include "inspection/copy_claims.h"
+
+#include "inspection/tile_vertices.h"
+
+#include <algorithm>
+
+namespace meshhier::inspection {
+
+/// Goes through the claims in order.
+class CopyClaims::Judge {
+ public:
+  explicit Judge(const std::function<void(const WrongCopies&)>& visit) : visit_(visit) {}
+
+  void hear(const Claim& claim) {
+    if (!is_of_same(claim, last_))
+      begin(claim);
+    if (claim.by_neighbour == 0) {
+      owned_.push_back(claim.vertex);
+    } else {
+      if (last_.by_neighbour == 0 || claim.tile != last_.tile)
+        next_ = 0;
+      judge(claim);
+    }
+    last_ = claim;
+  }
+
+  /// Tells of the owner whose claims have all been heard.
+  void finish() {
+    for (const auto& [tile, wrong] : wrong_)
+      visit_(wrong);
+    wrong_.clear();
+  }
+
+ private:
+  static bool is_of_same(const Claim& a, const Claim& b) {
+    return std::tuple(a.level, a.owner, a.place) == std::tuple(b.level, b.owner, b.place);
+  }
+
+  void begin(const Claim& claim) {
+    if (claim.level != last_.level || claim.owner != last_.owner)
+      finish();
+    owned_.clear();
+    next_ = 0;
+  }
+
+  void judge(const Claim& claim) {
+    const auto from = owned_.begin() + static_cast<std::ptrdiff_t>(next_);
+    const auto found = std::find(from, owned_.end(), claim.vertex);
+    if (found != owned_.end()) {
+      next_ = static_cast<std::size_t>(found - owned_.begin()) + 1;
+      return;
+    }
+    next_ = owned_.size();  // what follows is in no order either; linear, however many there are
+    const auto level = static_cast<Level>(claim.level);
+    const WrongCopies first{{level, claim.tile}, {level, claim.owner}, 0, claim.place};
+    ++wrong_.try_emplace(claim.tile, first).first->second.count;
+  }
+
+  const std::function<void(const WrongCopies&)>& visit_;
+  Claim last_;
+  std::vector<std::uint64_t> owned_;            ///< of the place being heard
+  std::size_t next_ = 0;                        ///< of owned_, behind what the tile has claimed
+  std::map<std::uint32_t, WrongCopies> wrong_;  ///< of one owner, by tile
+};
+
+void CopyClaims::add(const PublishedTile& tile) {
+  add_own(tile, tile.node);
+  if (tree_.stands_for_parent(tile.node))
+    add_own(tile, tree_.parent(tile.node));
+  add_ghosts(tile);
+}
+
+void CopyClaims::add_own(const PublishedTile& tile, NodeId node) {
+  const TileMesh& mesh = tile.mesh;
+  const std::size_t end = mesh.copies.first_of(mesh.boundary_count);
+  for (std::size_t copy = 0; copy < end; ++copy) {
+    Claim claim = claim_of(tile, node, copy);
+    claim.place = mesh.copies.places[copy];
+    claim.tile = node.index;
+    claims_.add(claim);
+  }
+}
+
+void CopyClaims::add_ghosts(const PublishedTile& tile) {
+  const TileMesh& mesh = tile.mesh;
+  for (std::size_t copy = own_copy_count(mesh); copy < mesh.copies.size(); ++copy) {
+    const GhostRef& ghost = mesh.ghosts[mesh.copies.places[copy] - mesh.own_count];
+    Claim claim = claim_of(tile, {tile.node.level, ghost.tile}, copy);
+    claim.place = ghost.index;
+    claim.by_neighbour = 1;
+    claim.tile = tile.node.index;
+    claims_.add(claim);
+  }
+}
+
+/// A simplified tile may store attributes more coarsely than the partition beside it does, which
+/// stands for an early node: then the position alone counts.
+CopyClaims::Claim CopyClaims::claim_of(const PublishedTile& tile, NodeId owner, std::size_t copy) {
+  Claim claim;
+  claim.level = raw(owner.level);
+  claim.owner = owner.index;
+  claim.wedge = static_cast<std::uint32_t>(copy);
+  claim.vertex = hash_({}, {tile.mesh.copies.vertices, copy}, !tree_.is_early(owner));
+  return claim;
+}
+
+void CopyClaims::finish(const std::function<void(const WrongCopies&)>& visit) {
+  claims_.sort();
+  Judge judge(visit);
+  claims_.for_each_block([&](std::span<const Claim> claims) {
+    for (const Claim& claim : claims)
+      judge.hear(claim);
+  });
+  judge.finish();
+}
+
+}  // namespace meshhier::inspection

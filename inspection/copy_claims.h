@@ -1,0 +1,69 @@
+// Whether tiles know the copies at their ghosts' places as the tiles do that own them.
+//
+// A tile has of a neighbour's copies only those that its own border triangles use, so the two do
+// not say the same: what the one says must be among what the other says, in the same order. All of
+// it meets in one sort, as in border_pairs.h; tiles without copies say nothing.
+#pragma once
+
+#include "hierarchy/published.h"
+#include "hierarchy/tree.h"
+#include "inspection/vertex_hash.h"
+#include "partition/external_sort.h"
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <span>
+#include <tuple>
+#include <vector>
+
+namespace meshhier::inspection {
+
+/// Copies that a tile has of places of a neighbour, but not as the neighbour has them.
+struct WrongCopies {
+  NodeId tile, neighbour;
+  std::uint64_t count = 0;
+  std::uint32_t first_place = 0;  ///< the neighbour's
+};
+
+class CopyClaims {
+ public:
+  /// `tree` must outlive it. `memory_bytes`: of the sort.
+  CopyClaims(const Tree& tree, storage::ScratchFile& scratch, std::uint64_t memory_bytes)
+      : tree_(tree), claims_(scratch, memory_bytes) {}
+
+  /// What a tile says of its own copies and of its neighbours'; for a partition also for the early
+  /// node above it, if there is one. O(copies).
+  void add(const PublishedTile& tile);
+
+  /// Visits what is wrong, ascending by neighbour, then tile. Call it once, after all tiles.
+  void finish(const std::function<void(const WrongCopies&)>& visit);
+
+ private:
+  /// That a place has a copy. The owner's claims come first, then those of one tile after the
+  /// other.
+  struct Claim {
+    std::uint32_t level = 0, owner = 0, place = 0;
+    std::uint32_t by_neighbour = 0;  ///< 0: the owner says it
+    std::uint32_t tile = 0;          ///< who says it
+    std::uint32_t wedge = 0;         ///< as that tile numbers it
+    std::uint64_t vertex = 0;        ///< its hash
+  };
+  struct ClaimKey {
+    auto operator()(const Claim& c) const {
+      return std::tuple(c.level, c.owner, c.place, c.by_neighbour, c.tile, c.wedge);
+    }
+  };
+  static_assert(sizeof(Claim) == 32, "sorted by bytes: no padding");
+  class Judge;
+
+  void add_own(const PublishedTile& tile, NodeId node);
+  void add_ghosts(const PublishedTile& tile);
+  Claim claim_of(const PublishedTile& tile, NodeId owner, std::size_t copy);
+
+  const Tree& tree_;
+  VertexHash hash_;
+  partition::ExternalSort<Claim, ClaimKey> claims_;
+};
+
+}  // namespace meshhier::inspection
