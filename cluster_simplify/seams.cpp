@@ -281,10 +281,9 @@ ContractedTile apply(const BuildTile& joined, Contraction contraction, Contracte
       return raw(v) < count ? static_cast<TileVertex>(place[raw(v)]) : v;
     });
   }
-  const auto new_place = [&](TileVertex v) {
+  tile.interior = images(mesh.interior, [&](TileVertex v) {
     return static_cast<TileVertex>(result.parent_map[raw(v)]);
-  };
-  tile.interior = images(mesh.interior, new_place);
+  });
   tile.foreign = one_level_up(mesh.ghosts);
   if (!mesh.copies.empty()) {
     tile.copies = renumbered(wedges.copies, place);

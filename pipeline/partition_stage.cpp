@@ -119,19 +119,14 @@ struct DistributedBlock {
   BlockPlaces places;
   std::vector<float> copy_rows;
 
-  void sort(const SourceVertices& block, const partition::ChunkSearch& search,
-            std::uint32_t chunk_count) {
-    sorted.chunk_of.resize(block.positions.size());
-    search.find(block.positions, static_cast<std::uint32_t>(block.first), sorted.chunk_of);
-    sorted.sort(chunk_count, block.positions, block.attributes);
-  }
-
   void sort(const SourceVertices& block, const importing::CopyList& list,
             const partition::ChunkSearch& search, std::uint32_t chunk_count) {
     first = block.first;
     copy_rows.clear();
     if (!places.pick(block, list)) {
-      sort(block, search, chunk_count);
+      sorted.chunk_of.resize(block.positions.size());
+      search.find(block.positions, static_cast<std::uint32_t>(block.first), sorted.chunk_of);
+      sorted.sort(chunk_count, block.positions, block.attributes);
       return;
     }
     sorted.chunk_of.resize(places.positions.size());
@@ -172,32 +167,15 @@ class Ranker {
   std::vector<std::uint32_t> next_;
 };
 
-/// Distributes the vertices of a mesh without copies, and fills the table of their ranks.
-void distribute_vertices(const SourceMesh& mesh, const TopTree& top, Chunks& chunks,
-                         RankTable<std::uint32_t>& table, const StageContext& context) {
-  const partition::ChunkSearch search(top, mesh.stored_bounds());
-  Ranker ranker(chunks);
-  std::vector<std::uint32_t> ranks;
-  for_each_block<DistributedBlock>(
-      mesh, context,
-      [&](const SourceVertices& block, DistributedBlock& distributed) {
-        distributed.sort(block, search, chunks.count());
-      },
-      [&](const DistributedBlock& distributed) {
-        ranker.rank(distributed.sorted, ranks);
-        table.append(ranks);
-        chunks.append(distributed.sorted);
-      });
-}
-
-/// Likewise with copies: these wait until their places' ranks are known.
+/// Distributes the places' first vertices and fills the table of ranks. Copies wait in `copy_rows`
+/// until their places' ranks are known.
+template <class Rank>
 void distribute_vertices(const SourceMesh& mesh, const importing::CopyList& copies,
-                         const TopTree& top, Chunks& chunks, RankTable<WedgeRank>& table,
-                         storage::ScratchFile& scratch, const StageContext& context) {
+                         const TopTree& top, Chunks& chunks, RankTable<Rank>& table,
+                         storage::RecordSpool<float>& copy_rows, const StageContext& context) {
   const partition::ChunkSearch search(top, mesh.stored_bounds());
   Ranker ranker(chunks);
-  std::vector<WedgeRank> ranks;
-  storage::RecordSpool<float> rows(scratch, 1 << 18);
+  std::vector<Rank> ranks;
   for_each_block<DistributedBlock>(
       mesh, context,
       [&](const SourceVertices& block, DistributedBlock& distributed) {
@@ -207,20 +185,24 @@ void distribute_vertices(const SourceMesh& mesh, const importing::CopyList& copi
         ranker.rank(distributed.sorted, ranks);
         table.append(ranks, distributed.first, distributed.places.copies);
         chunks.append(distributed.sorted);
-        rows.append(std::span<const float>(distributed.copy_rows));
+        copy_rows.append(std::span<const float>(distributed.copy_rows));
       });
-  execution::SpoolCursor row(rows, context.cancel);
-  const std::size_t width = 3 + static_cast<std::size_t>(mesh.summary().attributes.channels());
-  std::vector<float> values(width);
+}
+
+/// Gives copies the ranks of their places, and their rows to the chunks.
+void distribute_copies(const importing::CopyList& copies,
+                       const storage::RecordSpool<float>& copy_rows, std::size_t row_width,
+                       Chunks& chunks, RankTable<WedgeRank>& table, const StageContext& context) {
+  execution::SpoolCursor values(copy_rows, context.cancel);
+  std::vector<float> row(row_width);
   std::uint64_t next = 0;
   const auto check = [&] { context.cancel.check(); };
-  table.settle(
-      [&](const auto& visit) { copies.for_each(check, visit); },
-      [&](std::uint32_t rank) {
-        for (float& value : values)
-          value = row.at(next++);
-        chunks.append_copy(rank, {values[0], values[1], values[2]}, std::span(values).subspan(3));
-      });
+  table.settle([&](const auto& visit) { copies.for_each(check, visit); },
+               [&](std::uint32_t rank) {
+                 for (float& value : row)
+                   value = values.at(next++);
+                 chunks.append_copy(rank, row);
+               });
 }
 
 /// A block of triangles on its way to the chunks.
@@ -298,13 +280,16 @@ mesh_io::FaceCounts distribute(SourceMesh& mesh, const importing::CopyList& copi
     execution::release_free_memory();
     return distribute_triangles<Slot>(mesh, table.renumberer(), chunks, context);
   };
+  storage::RecordSpool<float> copy_rows(passing, 1 << 18);
   if (copies.empty()) {
     RankTable<std::uint32_t> table(count, context.memory().table_bytes, passing);
-    distribute_vertices(mesh, top, chunks, table, context);
+    distribute_vertices(mesh, copies, top, chunks, table, copy_rows, context);
     return triangles(table, TrianglesByRank{});
   }
   RankTable<WedgeRank> table(count, context.memory().table_bytes, passing);
-  distribute_vertices(mesh, copies, top, chunks, table, passing, context);
+  distribute_vertices(mesh, copies, top, chunks, table, copy_rows, context);
+  distribute_copies(copies, copy_rows, chunks.row_width(), chunks, table, context);
+  copy_rows.clear();
   return triangles(table, TrianglesByWedge{});
 }
 

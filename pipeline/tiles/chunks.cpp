@@ -172,13 +172,11 @@ void Chunks::append(const ChunkedTriangles& block) {
     wide_[k] += block.wide[k];
 }
 
-void Chunks::append_copy(std::uint32_t rank, Vec3f position, std::span<const float> attributes) {
+void Chunks::append_copy(std::uint32_t rank, std::span<const float> row) {
   const std::uint32_t chunk = map_.chunk_of(rank);
   storage::RecordSpool<float>& spool = copies_[chunk];
   spool.append(std::bit_cast<float>(rank - map_.first_rank(chunk)));
-  for (const float coordinate : {position.x, position.y, position.z})
-    spool.append(coordinate);
-  spool.append(attributes);
+  spool.append(row);
 }
 
 std::uint64_t Chunks::wide_triangles(Level level) const {

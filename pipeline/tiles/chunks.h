@@ -129,12 +129,15 @@ class Chunks {
   const partition::ChunkMap& map() const { return map_; }
   std::uint32_t count() const { return map_.count(); }
   bool has_copies() const { return !copies_.empty(); }
+  /// Numbers that a vertex has: its position and attributes.
+  std::size_t row_width() const { return 3 + static_cast<std::size_t>(channels_); }
 
   /// Blocks in the order of ids.
   void append(const ChunkedVertices& block);
   void append(const ChunkedTriangles& block);
   /// A copy of the place that has this provisional rank, after all copies before it.
-  void append_copy(std::uint32_t rank, Vec3f position, std::span<const float> attributes);
+  /// `row`: its position and attributes, row_width() numbers.
+  void append_copy(std::uint32_t rank, std::span<const float> row);
 
   /// Reads a chunk and forgets it. Thread-safe for different chunks.
   partition::ChunkMesh take(std::uint32_t chunk);
@@ -165,7 +168,6 @@ class Chunks {
   std::uint64_t wide_triangles(Level level) const;
 
  private:
-  std::size_t row_width() const { return 3 + static_cast<std::size_t>(channels_); }
   void read_vertices(std::uint32_t chunk, VertexArray& vertices) const;
   Copies read_copies(std::uint32_t chunk) const;
 

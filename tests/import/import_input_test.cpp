@@ -36,23 +36,6 @@ using testing::Not;
 using tests::MeshTriangle;
 using tests::TestMesh;
 
-/// The same mesh with vertices in the order in which triangles name them, as an STL is welded.
-TestMesh by_first_appearance(const TestMesh& mesh) {
-  std::vector<std::uint32_t> number(mesh.positions.size(), UINT32_MAX);
-  TestMesh renumbered;
-  for (MeshTriangle t : mesh.triangles) {
-    for (std::uint32_t& corner : t) {
-      if (number[corner] == UINT32_MAX) {
-        number[corner] = static_cast<std::uint32_t>(renumbered.positions.size());
-        renumbered.positions.push_back(mesh.positions[corner]);
-      }
-      corner = number[corner];
-    }
-    renumbered.triangles.push_back(t);
-  }
-  return renumbered;
-}
-
 /// Three vertices of its own for every triangle.
 TestMesh as_soup(const TestMesh& mesh) {
   TestMesh soup;
@@ -230,7 +213,7 @@ constexpr ImportMemory kTight{0, 1};  // all is spooled and merged in many runs
 // ---- formats -------------------------------------------------------------------------------
 
 TEST_F(ImportTest, EveryFormatOfAMeshGivesTheSameTiles) {
-  const TestMesh mesh = by_first_appearance(tests::torus(5000, 0.01F));
+  const TestMesh mesh = tests::by_first_appearance(tests::torus(5000, 0.01F));
   put_ply("mesh.ply", mesh);
   put("mesh.obj", obj_text(mesh));
   put("mesh.off", off_text(mesh));
@@ -362,7 +345,7 @@ TEST_F(ImportTest, WhatAnObjHoldsBesidesIsCounted) {
 // ---- welding -------------------------------------------------------------------------------
 
 TEST_F(ImportTest, AWeldedSoupIsTheMeshItWasMadeOf) {
-  const TestMesh mesh = by_first_appearance(tests::torus(5000, 0.01F));
+  const TestMesh mesh = tests::by_first_appearance(tests::torus(5000, 0.01F));
   put_ply("mesh.ply", mesh);
   put_ply("soup.ply", as_soup(mesh));
   const auto expected = made(config({"mesh.ply"}));
@@ -414,8 +397,8 @@ TEST_F(ImportTest, FacetsThatVanishInAnStlAreCounted) {
 // ---- several files -------------------------------------------------------------------------
 
 TEST_F(ImportTest, SeveralFilesAreOneMesh) {
-  const TestMesh one = by_first_appearance(tests::sphere(2000));
-  TestMesh other = by_first_appearance(tests::torus(2000));
+  const TestMesh one = tests::by_first_appearance(tests::sphere(2000));
+  TestMesh other = tests::by_first_appearance(tests::torus(2000));
   for (Vec3f& p : other.positions)
     p.x += 3;
   TestMesh both = one;

@@ -187,14 +187,21 @@ void expect_leaves(const tests::TestMesh& source, std::uint32_t partitions, Leve
   EXPECT_EQ(unreferenced, source.positions.size() - used.size());
 }
 
-TEST(LeafTiles, AreWhatTheDefinitionsSayForEveryKindOfMesh) {
+std::vector<tests::TestMesh> kinds_of_meshes() {
   tests::TestMesh with_loose = tests::shuffled(tests::sphere(2000, 0.02F), 5);
   for (const Vec3f& p : tests::points(100).positions)
     with_loose.positions.push_back(p);
-  for (const tests::TestMesh& mesh :
-       {tests::shuffled(tests::torus(3000, 0.02F), 1), tests::open_grid(40, 30),
-        tests::non_manifold(2000), tests::duplicates(2000, 0.02F), tests::soup(500),
-        tests::points(300), with_loose}) {
+  return {tests::shuffled(tests::torus(3000, 0.02F), 1),
+          tests::open_grid(40, 30),
+          tests::non_manifold(2000),
+          tests::duplicates(2000, 0.02F),
+          tests::soup(500),
+          tests::points(300),
+          with_loose};
+}
+
+TEST(LeafTiles, AreWhatTheDefinitionsSayForEveryKindOfMesh) {
+  for (const tests::TestMesh& mesh : kinds_of_meshes()) {
     expect_leaves(mesh, 13, Level{2});
     expect_leaves(mesh, 13, Level{0});
   }
@@ -458,13 +465,7 @@ void expect_copied_leaves(const tests::TestMesh& source, std::uint32_t partition
 }
 
 TEST(CopiedLeafTiles, AreWhatTheDefinitionsSayForEveryKindOfMesh) {
-  tests::TestMesh with_loose = tests::shuffled(tests::sphere(2000, 0.02F), 5);
-  for (const Vec3f& p : tests::points(100).positions)
-    with_loose.positions.push_back(p);
-  for (const tests::TestMesh& mesh :
-       {tests::shuffled(tests::torus(3000, 0.02F), 1), tests::open_grid(40, 30),
-        tests::non_manifold(2000), tests::duplicates(2000, 0.02F), tests::soup(500),
-        tests::points(300), with_loose}) {
+  for (const tests::TestMesh& mesh : kinds_of_meshes()) {
     expect_copied_leaves(mesh, 13, Level{2});
     expect_copied_leaves(mesh, 13, Level{0});
   }

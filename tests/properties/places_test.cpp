@@ -39,23 +39,6 @@ using tests::loaded;
 using Point = std::array<float, 3>;
 using PointEdge = std::array<Point, 2>;
 
-/// The same with vertices in the order in which triangles name them.
-tests::TestMesh by_first_appearance(const tests::TestMesh& mesh) {
-  std::vector<std::uint32_t> number(mesh.positions.size(), UINT32_MAX);
-  tests::TestMesh renumbered;
-  for (tests::MeshTriangle t : mesh.triangles) {
-    for (std::uint32_t& corner : t) {
-      if (number[corner] == UINT32_MAX) {
-        number[corner] = static_cast<std::uint32_t>(renumbered.positions.size());
-        renumbered.positions.push_back(mesh.positions[corner]);
-      }
-      corner = number[corner];
-    }
-    renumbered.triangles.push_back(t);
-  }
-  return renumbered;
-}
-
 /// Edges with exactly one triangle, told by positions alone.
 class OpenEdges {
  public:
@@ -204,7 +187,7 @@ TEST(Places, NoCutOfAnOpenSurfaceIsMoreOpenThanIt) {
 
 // Without attributes there is nothing to tell vertices of a place apart by.
 TEST(Places, SoupBecomesWhatItsWeldedTwinBecomes) {
-  const tests::TestMesh twin = by_first_appearance(tests::sphere(3000, 0.02F));
+  const tests::TestMesh twin = tests::by_first_appearance(tests::sphere(3000, 0.02F));
   const LoadedMesh mesh = bench::split(loaded(twin), "soup", kDegrees);
   ASSERT_EQ(mesh.positions.size(), 3 * twin.triangles.size());
   for (const auto& [name, method] : tests::all_simplify_methods()) {

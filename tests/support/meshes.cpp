@@ -230,6 +230,22 @@ void shuffle(std::vector<Value>& values, std::uint64_t seed) {
 
 }  // namespace
 
+TestMesh by_first_appearance(const TestMesh& mesh) {
+  std::vector<std::uint32_t> number(mesh.positions.size(), UINT32_MAX);
+  TestMesh renumbered;
+  for (MeshTriangle t : mesh.triangles) {
+    for (std::uint32_t& corner : t) {
+      if (number[corner] == UINT32_MAX) {
+        number[corner] = static_cast<std::uint32_t>(renumbered.positions.size());
+        renumbered.positions.push_back(mesh.positions[corner]);
+      }
+      corner = number[corner];
+    }
+    renumbered.triangles.push_back(t);
+  }
+  return renumbered;
+}
+
 float hash_noise(std::uint64_t index, std::uint64_t stream) {
   const std::uint64_t bits = mix(index ^ mix(stream)) >> 40;  // 24 bits: exact as a float
   return static_cast<float>(bits) / 8388608.0f - 1.0f;

@@ -65,6 +65,10 @@ TestMesh duplicates(std::size_t triangles, float noise = 0);
 /// The same surface with vertices and triangles in a pseudo-random order that depends on `seed`.
 TestMesh shuffled(const TestMesh& mesh, std::uint64_t seed);
 
+/// The same surface with vertices in the order in which triangles name them, as an STL is welded;
+/// those that none names are gone.
+TestMesh by_first_appearance(const TestMesh& mesh);
+
 /// A number in [-1, 1) that is a pure function of the two: white noise.
 float hash_noise(std::uint64_t index, std::uint64_t stream);
 

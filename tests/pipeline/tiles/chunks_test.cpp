@@ -4,6 +4,7 @@
 #include "tests/support/sample_hierarchy.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <utility>
@@ -133,7 +134,8 @@ class CopiedChunksTest : public ChunksTest {
 
   /// A copy of that place, with an attribute of its own.
   void copy(std::uint32_t rank, float attribute) {
-    copied_.append_copy(rank, positions_[rank], std::span<const float>(&attribute, 1));
+    const Vec3f& p = positions_[rank];
+    copied_.append_copy(rank, std::array{p.x, p.y, p.z, attribute});
   }
   void add(const std::vector<RankTriangle>& triangles, const std::vector<Corners>& named) {
     std::vector<WedgedTriangle> wedged;
