@@ -260,13 +260,15 @@ class WedgeContraction {
   /// The combination nearest to an old wedge: of its chart, or of all if that shows nothing.
   std::size_t nearest(std::uint32_t wedge, std::span<const Shown> combinations,
                       const VertexArray& vertices) const {
-    const auto of_chart = std::ranges::equal_range(combinations, charts_[wedge], {},
-                                                   [](const Shown& s) { return s.what.chart; });
-    const auto compared = of_chart.empty() ? combinations : std::span(of_chart);
-    const auto first = static_cast<std::size_t>(compared.data() - combinations.data());
+    const auto chart_of = [](const Shown& shown) { return shown.what.chart; };
+    const auto begin = std::ranges::lower_bound(combinations, charts_[wedge], {}, chart_of);
+    const auto end = std::ranges::upper_bound(combinations, charts_[wedge], {}, chart_of);
+    const bool any = begin != end;
+    const auto first = any ? static_cast<std::size_t>(begin - combinations.begin()) : 0;
+    const auto count = any ? static_cast<std::size_t>(end - begin) : combinations.size();
     std::size_t best = first;
     double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = first; i < first + std::min(compared.size(), kMostCompared); ++i) {
+    for (std::size_t i = first; i < first + std::min(count, kMostCompared); ++i) {
       const double difference =
           squared_difference(layout_, wedges_.attributes_of(wedge), vertices.attributes_of(i));
       if (difference < least) {
