@@ -88,7 +88,7 @@ std::optional<RequestHead> parse_head(std::string_view raw) {
   if (!has_only_whole_lines(raw))
     return std::nullopt;
   const std::string_view request_line = take_line(raw);
-  if (request_line.empty() || request_line.front() == ' ' || has_controls(request_line) ||
+  if (!is_token(request_line.substr(0, request_line.find(' '))) || has_controls(request_line) ||
       request_line.find('\t') != std::string_view::npos)
     return std::nullopt;
   RequestHead head{.text = std::string(request_line).append(kLineEnd)};

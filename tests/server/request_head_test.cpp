@@ -81,7 +81,7 @@ TEST(RequestHeadTest, LinesThatOthersWouldSeeOtherwiseAreRefused) {
   for (const std::string& raw :
        {"GET / HTTP/1.1\r\nX: a\nRange: bytes=0-1\r\n\r\n"s, "GET / HTTP/1.1\nHost: a\n\n"s,
         "GET / HTTP/1.1\r\nX: a\rb\r\n\r\n"s, "GET /\0 HTTP/1.1\r\n\r\n"s, "GET / HTTP/1.1\r\n\r"s,
-        "\n\r\n"s, "GET"s})
+        "\n\r\n"s, "GET"s, "Range: bytes=0-1\r\n\r\n"s, "G(T / HTTP/1.1\r\n\r\n"s})
     EXPECT_EQ(parse_head(raw), std::nullopt) << raw;
 }
 
