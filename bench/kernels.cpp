@@ -117,7 +117,7 @@ void resolve(benchmark::State& state) {
     state.PauseTiming();
     LeafTile copy = work;
     state.ResumeTiming();
-    benchmark::DoNotOptimize(cluster_simplify::resolve(std::move(copy), mapped, true));
+    benchmark::DoNotOptimize(cluster_simplify::resolve(std::move(copy), mapped, true, 0));
   }
   count_triangles(state, static_cast<std::int64_t>(work.interior.size() + work.border.size()));
 }

@@ -47,7 +47,7 @@ std::vector<GhostRef> SampleTiles::mapped(std::uint32_t partition) const {
 }
 
 BuildTile SampleTiles::resolved(std::uint32_t partition) const {
-  BuildTile tile = cluster_simplify::resolve(work(partition), mapped(partition), false);
+  BuildTile tile = cluster_simplify::resolve(work(partition), mapped(partition), false, partition);
   for (std::uint32_t neighbour = 0; neighbour < count(); ++neighbour) {
     const LeafTile& other = work(neighbour);
     Boundary boundary;

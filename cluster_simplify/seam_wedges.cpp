@@ -4,6 +4,8 @@
 #include "hierarchy/error.h"
 
 #include <algorithm>
+#include <array>
+#include <tuple>
 
 namespace meshhier::cluster_simplify {
 namespace {
@@ -187,6 +189,52 @@ void drop_degenerate(std::vector<TileTriangle>& triangles, std::vector<CornerWed
     kept += std::size_t{!is_degenerate(triangles[i])};
   }
   triangles.resize(kept);
+  wedges.resize(kept);
+}
+
+void keep_one_of_places(std::vector<TileTriangle>& triangles, std::vector<CornerWedges>& wedges,
+                        const std::function<GhostRef(TileVertex)>& ref) {
+  struct Named {
+    TileTriangle places;
+    CornerWedges named;   ///< from the corner on whose name is the least
+    CornerWedges wedges;  ///< from the first place on
+  };
+  std::vector<Named> sorted;
+  sorted.reserve(triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const TileTriangle& t = triangles[i];
+    if (is_degenerate(t))
+      continue;
+    const std::array<GhostRef, 3> names{ref(t[0]), ref(t[1]), ref(t[2])};
+    const auto least = std::min_element(names.begin(), names.end()) - names.begin();
+    const std::size_t first = smallest_corner(t);
+    sorted.push_back({turned(t, first), turned(wedges[i], static_cast<std::size_t>(least)),
+                      turned(wedges[i], first)});
+  }
+  std::sort(sorted.begin(), sorted.end(), [](const Named& a, const Named& b) {
+    return std::tie(a.places, a.named) < std::tie(b.places, b.named);
+  });
+  sorted.erase(std::unique(sorted.begin(), sorted.end(),
+                           [](const Named& a, const Named& b) { return a.places == b.places; }),
+               sorted.end());
+  triangles.resize(sorted.size());
+  wedges.resize(sorted.size());
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    triangles[i] = sorted[i].places;
+    wedges[i] = sorted[i].wedges;
+  }
+}
+
+void drop_equal(std::vector<TileTriangle>& triangles, std::vector<CornerWedges>& wedges) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < wedges.size(); ++i) {
+    if (kept > 0 && triangles[kept - 1] == triangles[i] && wedges[kept - 1] == wedges[i])
+      continue;
+    triangles[kept] = triangles[i];
+    wedges[kept++] = wedges[i];
+  }
+  if (!wedges.empty())
+    triangles.resize(kept);
   wedges.resize(kept);
 }
 

@@ -7,6 +7,7 @@
 #include "hierarchy/build_tile.h"
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -48,5 +49,14 @@ std::vector<CornerWedges> wedges_of_images(const TileMesh& joined,
                                            std::span<const TileTriangle> triangles,
                                            std::span<const CornerWedges> wedges,
                                            const ContractedTile& contracted);
+
+/// Of triangles of the same places keeps one, and drops and sorts as normalize_triangles() does.
+/// Which one stays does not depend on how a tile numbers its vertices: the wedges are compared in
+/// the order of the corners' names in their own tiles, `ref`. O(n log n).
+void keep_one_of_places(std::vector<TileTriangle>& triangles, std::vector<CornerWedges>& wedges,
+                        const std::function<GhostRef(TileVertex)>& ref);
+
+/// Of neighbours that are equal, wedges and all, keeps one.
+void drop_equal(std::vector<TileTriangle>& triangles, std::vector<CornerWedges>& wedges);
 
 }  // namespace meshhier::cluster_simplify

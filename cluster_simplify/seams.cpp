@@ -85,7 +85,8 @@ FallbackCounts& FallbackCounts::operator+=(const FallbackCounts& other) {
 }
 
 template <class Corner>
-BuildTile resolve(WorkTile<Corner> tile, std::span<const GhostRef> mapped_refs, bool unique) {
+BuildTile resolve(WorkTile<Corner> tile, std::span<const GhostRef> mapped_refs, bool unique,
+                  std::uint32_t own_index) {
   assert(mapped_refs.size() == tile.foreign.size());
   const auto own_count = static_cast<std::uint32_t>(tile.vertices.size());
   std::vector<GhostRef> ghosts(mapped_refs.begin(), mapped_refs.end());
@@ -96,7 +97,13 @@ BuildTile resolve(WorkTile<Corner> tile, std::span<const GhostRef> mapped_refs, 
                                 : static_cast<TileVertex>(own_count + place[raw(v) - own_count]);
     });
   }
-  normalize_triangles(tile.border, tile.border_wedges, unique);
+  if (unique && !tile.border_wedges.empty()) {
+    keep_one_of_places(tile.border, tile.border_wedges, [&](TileVertex v) {
+      return raw(v) < own_count ? GhostRef{own_index, raw(v)} : ghosts[raw(v) - own_count];
+    });
+  } else {
+    normalize_triangles(tile.border, tile.border_wedges, unique);
+  }
   drop_unused(tile.border, ghosts, own_count);  // order-preserving: the triangles stay sorted
 
   BuildTile result;
@@ -115,8 +122,8 @@ BuildTile resolve(WorkTile<Corner> tile, std::span<const GhostRef> mapped_refs, 
   return result;
 }
 
-template BuildTile resolve(LeafTile tile, std::span<const GhostRef> mapped, bool unique);
-template BuildTile resolve(SimplifiedTile tile, std::span<const GhostRef> mapped, bool unique);
+template BuildTile resolve(LeafTile, std::span<const GhostRef>, bool, std::uint32_t);
+template BuildTile resolve(SimplifiedTile, std::span<const GhostRef>, bool, std::uint32_t);
 
 void fill_ghosts(BuildTile& tile, std::uint32_t neighbour, const Boundary& boundary) {
   const auto& ghosts = tile.mesh.ghosts;
@@ -292,7 +299,9 @@ ContractedTile apply(const BuildTile& joined, Contraction contraction, Contracte
     tile.border_wedges = wedges_of_images(mesh, mesh.border, mesh.border_wedges, result);
     tile.interior_wedges = wedges_of_images(mesh, mesh.interior, mesh.interior_wedges, result);
   }
-  normalize_triangles(tile.border, tile.border_wedges, true);
+  // Of triangles that differ by their wedges one stays when all corners are known: resolve().
+  normalize_triangles(tile.border, tile.border_wedges, tile.border_wedges.empty());
+  drop_equal(tile.border, tile.border_wedges);
   drop_unused(tile.border, tile.foreign, count);
   normalize_triangles(tile.interior, tile.interior_wedges, true);
 

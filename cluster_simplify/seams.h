@@ -19,10 +19,12 @@ namespace meshhier::cluster_simplify {
 /// `Corner`: ChunkVertex or FinerGhost.
 /// `mapped`: one entry per tile.foreign, at the tile's level, as are the wedges of foreign corners.
 /// Corners that became one place become one ghost, triangles that became degenerate go; of exact
-/// duplicates one stays if `unique` (simplified tiles; partitions keep the input's duplicates). The
-/// ghosts' positions and attributes are left for fill_ghosts(). O(n log n).
+/// duplicates one stays if `unique` (simplified tiles; partitions keep the input's duplicates),
+/// with the same wedges in all tiles that have it: `own_index` is the tile's. The ghosts' positions
+/// and attributes are left for fill_ghosts(). O(n log n).
 template <class Corner>
-BuildTile resolve(WorkTile<Corner> tile, std::span<const GhostRef> mapped, bool unique);
+BuildTile resolve(WorkTile<Corner> tile, std::span<const GhostRef> mapped, bool unique,
+                  std::uint32_t own_index);
 
 /// Appends the ghosts of one neighbour to the tile's vertices; call in ascending order of
 /// `neighbour`. Throws Error(internal) if a ghost lies outside the boundary.

@@ -92,11 +92,20 @@ using Container = storage::Container;
 inline constexpr std::array kContainers{NamedValue{"files", Container::files},
                                         NamedValue{"3tz", Container::archive}};
 
+/// What tiles get if the mesh has no normals.
+enum class Normals {
+  smooth,  ///< computed ones, smooth but for creases
+  none
+};
+inline constexpr std::array kNormals{NamedValue{"smooth", Normals::smooth},
+                                     NamedValue{"none", Normals::none}};
+
 struct StorageConfig {
   Container container = Container::files;  ///< decides nothing of the files themselves
   Compression compression = Compression::none;
   std::optional<std::uint32_t>
       position_bits;  ///< of the lattice that positions are rounded to, 8 to 24; not set: exact
+  Normals normals = Normals::smooth;  ///< no effect on a mesh that has normals
   friend bool operator==(const StorageConfig&, const StorageConfig&) = default;
 };
 

@@ -314,6 +314,12 @@ std::vector<ConfigKey> make_config_keys() {
           {Lattice::kFewestBits, Lattice::kMostBits},
           [](auto& c) -> auto& { return c.storage.position_bits; })),
       deciding(choice(
+          {.path = "storage.normals",
+           .meaning = "of a mesh without normals: tiles get computed ones, `smooth` but for "
+                      "creases, in 4 bytes a vertex, or `none`; normals that a mesh has stay as "
+                      "they are"},
+          kNormals, [](auto& c) -> auto& { return c.storage.normals; })),
+      deciding(choice(
           {.path = "up",
            .meaning = "which axis of the input points up: `y` as in glTF, `z` as in maps and "
                       "medical images"},

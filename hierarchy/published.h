@@ -3,6 +3,7 @@
 
 #include "hierarchy/bounds.h"
 #include "hierarchy/ghost_chains.h"
+#include "hierarchy/shading.h"
 #include "hierarchy/tile_mesh.h"
 #include "hierarchy/tree.h"
 
@@ -19,6 +20,7 @@ struct TileRecord {
   std::uint32_t boundary_count = 0;
   std::uint32_t ghost_count = 0;
   std::uint32_t copy_count = 0;      ///< vertices at places that have one already
+  std::uint32_t split_count = 0;     ///< further normals of vertices
   std::uint32_t interior_count = 0;  ///< triangles
   std::uint32_t border_count = 0;    ///< triangles, each also listed in the tiles of its ghosts
   std::uint32_t drawn_border_count =
@@ -45,6 +47,7 @@ struct PublishedTile {
   std::vector<std::uint16_t>
       parent_map;      ///< own vertex -> vertex of the parent's tile; empty for the root
   GhostChains chains;  ///< one per ghost
+  Shading shading;     ///< if the build computed normals, else empty
 };
 
 /// A file that was imported.

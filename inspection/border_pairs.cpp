@@ -11,6 +11,13 @@
 namespace meshhier::inspection {
 namespace {
 
+/// Of its corners, and of their normals if `with_normals`.
+std::uint64_t hash_of(const ShadedTriangle& triangle, bool with_normals) {
+  const ShadedTriangle known{triangle.corners,
+                             with_normals ? triangle.normals : Triangle<std::uint64_t>{}};
+  return storage::checksum(std::as_bytes(std::span(&known, 1)));
+}
+
 /// Calls visit(tile) for each other tile that a triangle of `own` touches, once.
 template <class Visit>
 void for_each_other(const CornerTriangle& triangle, std::uint32_t own, Visit visit) {
@@ -68,10 +75,10 @@ void BorderPairs::add(const PublishedTile& tile) {
   }
 }
 
-void BorderPairs::add_sides(const Node& node, std::span<const CornerTriangle> border,
+void BorderPairs::add_sides(const Node& node, std::span<const ShadedTriangle> border,
                             const PublishedTile* ghosts_of) {
   SumsByOther sums;
-  std::vector<Use> uses = add_triangles(node.id().index, border, sums);
+  std::vector<Use> uses = add_triangles(node.id(), border, sums);
   add_own(node, std::move(uses), sums);
   if (ghosts_of != nullptr)
     add_ghosts(*ghosts_of, sums);
@@ -85,16 +92,15 @@ void BorderPairs::add_sides(const Node& node, std::span<const CornerTriangle> bo
 }
 
 /// Returns which own vertices are in triangles that touch which others, with repeats.
-std::vector<BorderPairs::Use> BorderPairs::add_triangles(std::uint32_t own,
-                                                         std::span<const CornerTriangle> border,
-                                                         SumsByOther& sums) {
+std::vector<BorderPairs::Use> BorderPairs::add_triangles(NodeId node,
+                                                         std::span<const ShadedTriangle> border,
+                                                         SumsByOther& sums) const {
   std::vector<Use> uses;
-  for (const CornerTriangle& triangle : border) {
-    const std::uint64_t hash = storage::checksum(std::as_bytes(std::span(triangle)));
-    for_each_other(triangle, own, [&](std::uint32_t other) {
-      sums[other].triangles += hash;
-      for (const Corner corner : triangle) {
-        if (tile_index(corner) == own)
+  for (const ShadedTriangle& triangle : border) {
+    for_each_other(triangle.corners, node.index, [&](std::uint32_t other) {
+      sums[other].triangles += hash_of(triangle, compare_attributes(node, {node.level, other}));
+      for (const Corner corner : triangle.corners) {
+        if (tile_index(corner) == node.index)
           uses.push_back({other, vertex_index(corner)});
       }
     });
@@ -110,8 +116,10 @@ void BorderPairs::add_own(const Node& node, std::vector<Use> uses, SumsByOther& 
   for (const Use& use : uses) {
     const NodeId other{node.id().level, use.other};
     node.find_chain(use.vertex, other, chain);
+    const PublishedTile& tile = node.tile();
     sums[use.other].own +=
-        hash(chain, {node.tile().mesh.vertices, use.vertex}, compare_attributes(node.id(), other));
+        hash(chain, {tile.mesh.vertices, use.vertex}, normal_of(tile.shading, use.vertex),
+             compare_attributes(node.id(), other));
   }
 }
 
@@ -120,8 +128,10 @@ void BorderPairs::add_ghosts(const PublishedTile& tile, SumsByOther& sums) const
   VertexHash hash;
   for (std::size_t i = 0; i < mesh.ghosts.size(); ++i) {
     const NodeId other{tile.node.level, mesh.ghosts[i].tile};
-    sums[other.index].other += hash(tile.chains[i], {mesh.vertices, mesh.own_count + i},
-                                    compare_attributes(tile.node, other));
+    const std::size_t vertex = mesh.own_count + i;
+    sums[other.index].other +=
+        hash(tile.chains[i], {mesh.vertices, vertex}, normal_of(tile.shading, vertex),
+             compare_attributes(tile.node, other));
   }
 }
 

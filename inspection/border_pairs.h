@@ -1,11 +1,12 @@
 // What two neighbouring nodes of a level say of each other, summed up.
 //
-// Neighbours agree if both list the same border triangles between them, and if each has the other's
-// places there as they are: number, chain, position, attributes of the first vertex (copy_claims.h
-// sees to the others). To look into every neighbour's
-// tile would be quadratic where all tiles are neighbours (a soup of long triangles). So each node
-// sums up what it says of every pair it is in, and the two sums of a pair meet in one sort: every
-// tile is read once, whatever the mesh. Only pairs that differ need to be looked into.
+// Neighbours agree if both list the same border triangles between them, with the same normals if
+// these are computed, and if each has the other's places there as they are: number, chain,
+// position, attributes and normal of the first vertex (copy_claims.h sees to the others). To look
+// into every neighbour's tile would be quadratic where all tiles are neighbours (a soup of long
+// triangles). So each node sums up what it says of every pair it is in, and the two sums of a pair
+// meet in one sort: every tile is read once, whatever the mesh. Only pairs that differ need to be
+// looked into.
 //
 // The sums are of 64-bit hashes (vertex_hash.h), so their order does not matter.
 #pragma once
@@ -74,10 +75,10 @@ class BorderPairs {
   };
   class Node;
 
-  void add_sides(const Node& node, std::span<const CornerTriangle> border,
+  void add_sides(const Node& node, std::span<const ShadedTriangle> border,
                  const PublishedTile* ghosts_of);
-  static std::vector<Use> add_triangles(std::uint32_t own, std::span<const CornerTriangle> border,
-                                        SumsByOther& sums);
+  std::vector<Use> add_triangles(NodeId node, std::span<const ShadedTriangle> border,
+                                 SumsByOther& sums) const;
   void add_own(const Node& node, std::vector<Use> uses, SumsByOther& sums) const;
   void add_ghosts(const PublishedTile& tile, SumsByOther& sums) const;
   bool compare_attributes(NodeId a, NodeId b) const;

@@ -3,6 +3,7 @@
 #include "inspection/tile_vertices.h"
 
 #include <algorithm>
+#include <array>
 
 namespace meshhier::inspection {
 
@@ -68,6 +69,7 @@ void CopyClaims::add(const PublishedTile& tile) {
   if (tree_.stands_for_parent(tile.node))
     add_own(tile, tree_.parent(tile.node));
   add_ghosts(tile);
+  add_splits(tile);
 }
 
 void CopyClaims::add_own(const PublishedTile& tile, NodeId node) {
@@ -93,6 +95,37 @@ void CopyClaims::add_ghosts(const PublishedTile& tile) {
   }
 }
 
+void CopyClaims::add_splits(const PublishedTile& tile) {
+  const TileMesh& mesh = tile.mesh;
+  const VertexNumbers numbers = vertex_numbers(mesh);
+  for (std::size_t split = 0; split < tile.shading.split_of.size(); ++split) {
+    const std::uint32_t vertex = tile.shading.split_of[split];
+    const std::uint32_t place = numbers[vertex].place;
+    if (place >= mesh.boundary_count && place < mesh.own_count)
+      continue;
+    const bool own = place < mesh.own_count;
+    const GhostRef owner =
+        own ? GhostRef{tile.node.index, place} : mesh.ghosts[place - mesh.own_count];
+    const NodeId node{tile.node.level, owner.tile};
+    if (tree_.is_early(node))
+      continue;  // its partition has normals of its own level
+    claims_.add(Claim{raw(node.level), owner.tile, owner.index, own ? 0U : 1U, tile.node.index,
+                      static_cast<std::uint32_t>(mesh.copies.size() + split),
+                      split_hash(tile, vertex, split)});
+  }
+}
+
+/// Unlike that of any copy.
+std::uint64_t CopyClaims::split_hash(const PublishedTile& tile, std::uint32_t vertex,
+                                     std::size_t split) {
+  constexpr std::array<std::uint16_t, 1> kNoChain{};
+  const TileMesh& mesh = tile.mesh;
+  const std::size_t places = mesh.vertices.size();
+  const VertexAt at = vertex < places ? VertexAt{mesh.vertices, vertex}
+                                      : VertexAt{mesh.copies.vertices, vertex - places};
+  return hash_(kNoChain, at, normal_of(tile.shading, places + mesh.copies.size() + split), true);
+}
+
 /// A simplified tile may store attributes more coarsely than the partition beside it does, which
 /// stands for an early node: then the position alone counts.
 CopyClaims::Claim CopyClaims::claim_of(const PublishedTile& tile, NodeId owner, std::size_t copy) {
@@ -100,7 +133,9 @@ CopyClaims::Claim CopyClaims::claim_of(const PublishedTile& tile, NodeId owner, 
   claim.level = raw(owner.level);
   claim.owner = owner.index;
   claim.wedge = static_cast<std::uint32_t>(copy);
-  claim.vertex = hash_({}, {tile.mesh.copies.vertices, copy}, !tree_.is_early(owner));
+  claim.vertex =
+      hash_({}, {tile.mesh.copies.vertices, copy},
+            normal_of(tile.shading, tile.mesh.vertices.size() + copy), !tree_.is_early(owner));
   return claim;
 }
 

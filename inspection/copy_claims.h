@@ -1,8 +1,9 @@
-// Whether tiles know the copies at their ghosts' places as the tiles do that own them.
+// Whether tiles know the copies at their ghosts' places, and the splits of vertices there, as the
+// tiles do that own them.
 //
-// A tile has of a neighbour's copies only those that its own border triangles use, so the two do
-// not say the same: what the one says must be among what the other says, in the same order. All of
-// it meets in one sort, as in border_pairs.h; tiles without copies say nothing.
+// A tile has of a neighbour's copies and splits only those that its own border triangles use, so
+// the two do not say the same: what the one says must be among what the other says, in the same
+// order. All of it meets in one sort, as in border_pairs.h; tiles without either say nothing.
 #pragma once
 
 #include "hierarchy/published.h"
@@ -19,7 +20,7 @@
 
 namespace meshhier::inspection {
 
-/// Copies that a tile has of places of a neighbour, but not as the neighbour has them.
+/// Copies and splits that a tile has at places of a neighbour, but not as the neighbour has them.
 struct WrongCopies {
   NodeId tile, neighbour;
   std::uint64_t count = 0;
@@ -32,21 +33,21 @@ class CopyClaims {
   CopyClaims(const Tree& tree, storage::ScratchFile& scratch, std::uint64_t memory_bytes)
       : tree_(tree), claims_(scratch, memory_bytes) {}
 
-  /// What a tile says of its own copies and of its neighbours'; for a partition also for the early
-  /// node above it, if there is one. O(copies).
+  /// What a tile says of its own copies and splits and of its neighbours'; for a partition also of
+  /// copies for the early node above it, if there is one. O(copies and splits).
   void add(const PublishedTile& tile);
 
   /// Visits what is wrong, ascending by neighbour, then tile. Call it once, after all tiles.
   void finish(const std::function<void(const WrongCopies&)>& visit);
 
  private:
-  /// That a place has a copy. The owner's claims come first, then those of one tile after the
-  /// other.
+  /// That a place has a copy, or a vertex there a split. The owner's claims come first, then those
+  /// of one tile after the other.
   struct Claim {
     std::uint32_t level = 0, owner = 0, place = 0;
     std::uint32_t by_neighbour = 0;  ///< 0: the owner says it
     std::uint32_t tile = 0;          ///< who says it
-    std::uint32_t wedge = 0;         ///< as that tile numbers it
+    std::uint32_t wedge = 0;         ///< as that tile numbers it; splits come after all copies
     std::uint64_t vertex = 0;        ///< its hash
   };
   struct ClaimKey {
@@ -59,7 +60,9 @@ class CopyClaims {
 
   void add_own(const PublishedTile& tile, NodeId node);
   void add_ghosts(const PublishedTile& tile);
+  void add_splits(const PublishedTile& tile);
   Claim claim_of(const PublishedTile& tile, NodeId owner, std::size_t copy);
+  std::uint64_t split_hash(const PublishedTile& tile, std::uint32_t vertex, std::size_t split);
 
   const Tree& tree_;
   VertexHash hash_;

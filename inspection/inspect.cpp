@@ -47,8 +47,7 @@ std::span<const TileRecord> records_of(const HierarchyReader& reader, Level leve
 }
 
 storage::SizeSummary partition_sizes(const HierarchyReader& reader) {
-  return storage::summarize_sizes(records_of(reader, reader.tree().depth()),
-                                  reader.manifest().source.attributes);
+  return storage::summarize_sizes(records_of(reader, reader.tree().depth()), reader.tile_format());
 }
 
 storage::ForcedCollapses forced_collapses_of(const HierarchyReader& reader) {
@@ -56,7 +55,7 @@ storage::ForcedCollapses forced_collapses_of(const HierarchyReader& reader) {
 }
 
 storage::SizeSummary all_sizes(const HierarchyReader& reader) {
-  return storage::summarize_sizes(reader.records(), reader.manifest().source.attributes);
+  return storage::summarize_sizes(reader.records(), reader.tile_format());
 }
 
 std::uint64_t tile_bytes(std::span<const storage::LevelSummary> levels) {
@@ -107,6 +106,13 @@ std::string vertices_text(const SourceSummary& source) {
              : fmt::format("{} at {}", vertices, grouped(source.places, "places"));
 }
 
+/// Where the tiles' normals come from.
+std::string_view normals_of(const storage::Manifest& manifest) {
+  return manifest.source.attributes.normals ? "given"
+         : manifest.computed_normals        ? "computed"
+                                            : "none";
+}
+
 std::string source_text(const storage::Manifest& manifest) {
   const SourceSummary& s = manifest.source;
   const BoundsD& b = s.bounds;
@@ -122,6 +128,8 @@ std::string source_text(const storage::Manifest& manifest) {
     text += fmt::format("origin       {} {} {}\n", o.x, o.y, o.z);
   }
   text += fmt::format("attributes   {}\n", attribute_names(s.attributes));
+  text += fmt::format("normals      {}{}\n", normals_of(manifest),
+                      manifest.computed_normals ? ", 8 bits" : "");
   for (const SourceFile& file : s.files) {
     text += fmt::format("imported     {}: {}, {}\n", shown(file.name), shown(file.format),
                         execution::rounded_size_text(file.bytes));
@@ -165,15 +173,16 @@ std::string range_text(const storage::CountRange& range) {
 
 std::string level_table(std::span<const storage::LevelSummary> levels, std::optional<Level> only) {
   std::string text = fmt::format(
-      "{:>5} {:>7} |{:^29} | {:>9} |{:^29} |{:^33} | {:>6} {:>10} {:>10} | {:>6} {:>8} {:>8} | "
+      "{:>5} {:>7} |{:^29} | {:>9} {:>9} |{:^29} |{:^33} | {:>6} {:>10} {:>10} | {:>6} {:>8} {:>8} "
+      "| "
       "{:>13}\n",
-      "", "", "vertices a tile", "", "triangles a tile", "bytes a file", "", "", "", "off",
+      "", "", "vertices a tile", "", "", "triangles a tile", "bytes a file", "", "", "", "off",
       "vertices", "vertices", "triangles");
   constexpr std::string_view kRange = "   min     mean    max spread";
   text += fmt::format(
-      "{:>5} {:>7} |{} | {:>9} |{} |{} | {:>6} {:>10} {:>10} | {:>6} {:>8} {:>8} | {:>13}\n",
-      "level", "tiles", kRange, "copies", kRange, "     min     mean      max spread", "border",
-      "error", "bound", "target", "torn", "forced", "shown");
+      "{:>5} {:>7} |{} | {:>9} {:>9} |{} |{} | {:>6} {:>10} {:>10} | {:>6} {:>8} {:>8} | {:>13}\n",
+      "level", "tiles", kRange, "copies", "splits", kRange, "     min     mean      max spread",
+      "border", "error", "bound", "target", "torn", "forced", "shown");
   for (const storage::LevelSummary& s : levels) {
     if (only && s.level != *only)
       continue;
@@ -181,15 +190,17 @@ std::string level_table(std::span<const storage::LevelSummary> levels, std::opti
         fmt::format("{:>8} {:>8.0f} {:>8} {:>6}", s.bytes.min, s.bytes.mean, s.bytes.max,
                     fmt::format("{:.0f}%", 100 * s.bytes.spread()));
     text += fmt::format(
-        "{:>5} {:>7} |{} | {:>9} |{} |{} | {:>6} {:>10.4g} {:>10.4g} | {:>6} {:>8} {:>8} | "
+        "{:>5} {:>7} |{} | {:>9} {:>9} |{} |{} | {:>6} {:>10.4g} {:>10.4g} | {:>6} {:>8} {:>8} | "
         "{:>13}\n",
-        raw(s.level), s.tiles, range_text(s.vertices), s.copies_total, range_text(s.triangles),
-        bytes, fmt::format("{:.1f}%", 100 * s.border_ratio), s.error_max, s.bound_max, s.off_target,
-        s.torn_total, s.forced_total, (s.shown_exact ? "" : "<=") + grouped(s.shown_triangles));
+        raw(s.level), s.tiles, range_text(s.vertices), s.copies_total, s.splits_total,
+        range_text(s.triangles), bytes, fmt::format("{:.1f}%", 100 * s.border_ratio), s.error_max,
+        s.bound_max, s.off_target, s.torn_total, s.forced_total,
+        (s.shown_exact ? "" : "<=") + grouped(s.shown_triangles));
   }
   return text +
          "spread: (max - min) / mean; copies: further vertices where one lies already, with other "
-         "attributes\nborder: share of border triangles; error, bound: the "
+         "attributes; splits: further normals of vertices, at creases\nborder: share of border "
+         "triangles; error, bound: the "
          "largest, in input units\ntorn: vertices that went by changing the surface's topology; "
          "forced: without care for the surface, to reach the count\n";
 }
@@ -246,11 +257,12 @@ std::string totals_text(const storage::Manifest& manifest,
 
 std::string tile_text(const TileRecord& r) {
   return fmt::format(
-      "tile {}: {} (asked for {}), {} of them on the boundary, {}{}; {} interior and {}, {} of "
+      "tile {}: {} (asked for {}), {} of them on the boundary, {}{}{}; {} interior and {}, {} of "
       "them drawn here; error {:.4g}, bound {:.4g}{}; {}; box {} {} {} to {} {} {}\n",
       to_text(r.node), counted(r.own_count, "vertices"), r.target_count, r.boundary_count,
       counted(r.ghost_count, "ghosts"),
-      r.copy_count > 0 ? ", " + counted(r.copy_count, "copies") : "", r.interior_count,
+      r.copy_count > 0 ? ", " + counted(r.copy_count, "copies") : "",
+      r.split_count > 0 ? ", " + counted(r.split_count, "splits") : "", r.interior_count,
       counted(r.border_count, "border triangles"), r.drawn_border_count, r.error, r.bound,
       r.compactness > 0 ? fmt::format(", compactness {:.3f}", r.compactness) : "",
       counted(r.file_bytes, "bytes"), r.bounds.min.x, r.bounds.min.y, r.bounds.min.z,
@@ -297,7 +309,9 @@ Json partitions_json(const storage::LevelSummary& last,
 }
 
 Json storage_json(const storage::Manifest& manifest) {
-  Json json = {{"compression", storage::name_of(manifest.compression)}, {"positions", nullptr}};
+  Json json = {{"compression", storage::name_of(manifest.compression)},
+               {"positions", nullptr},
+               {"normals", normals_of(manifest)}};
   if (const auto& q = manifest.quantization) {
     json["positions"] = {{"bits", q->lattice.bits},
                          {"step", q->lattice.step},

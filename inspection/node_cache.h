@@ -17,6 +17,12 @@ inline std::uint64_t memory_bytes(const VertexArray& vertices) {
   return vertices.positions.size() * sizeof(Vec3f) + vertices.attributes.size() * sizeof(float);
 }
 
+inline std::uint64_t memory_bytes(const Shading& shading) {
+  return shading.normals.size() * sizeof(NormalCode) +
+         shading.split_of.size() * sizeof(std::uint32_t) +
+         (shading.interior.size() + shading.border.size()) * sizeof(TileTriangle);
+}
+
 /// Bytes a tile holds in memory.
 inline std::uint64_t memory_bytes(const PublishedTile& tile) {
   const TileMesh& mesh = tile.mesh;
@@ -24,7 +30,7 @@ inline std::uint64_t memory_bytes(const PublishedTile& tile) {
          mesh.copies.size() * sizeof(std::uint32_t) + mesh.ghosts.size() * sizeof(GhostRef) +
          (mesh.interior.size() + mesh.border.size()) * sizeof(TileTriangle) +
          (mesh.interior_wedges.size() + mesh.border_wedges.size()) * sizeof(CornerWedges) +
-         tile.parent_map.size() * sizeof(std::uint16_t) +
+         tile.parent_map.size() * sizeof(std::uint16_t) + memory_bytes(tile.shading) +
          tile.chains.size() * sizeof(std::uint32_t) + tile.chains.entries().size_bytes();
 }
 

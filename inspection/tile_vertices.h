@@ -1,6 +1,7 @@
 // Vertices of tiles, one at a time.
 #pragma once
 
+#include "hierarchy/shading.h"
 #include "hierarchy/tile_mesh.h"
 #include "hierarchy/vertex_numbers.h"
 
@@ -20,6 +21,12 @@ inline std::size_t own_copy_count(const TileMesh& mesh) {
 /// As the tile's file has them.
 inline VertexNumbers vertex_numbers(const TileMesh& mesh) {
   return {static_cast<std::uint32_t>(mesh.vertices.size()), mesh.copies.places};
+}
+
+/// The computed normal of a vertex or split, by its number; none if there are none.
+inline std::span<const NormalCode> normal_of(const Shading& shading, std::size_t number) {
+  return shading.empty() ? std::span<const NormalCode>()
+                         : std::span(shading.normals).subspan(number, 1);
 }
 
 /// Of a triangle; `all` is empty where there are no copies.

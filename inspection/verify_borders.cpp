@@ -55,7 +55,7 @@ void check_ghosts(const VerifyJob& job, const PublishedTile& tile, const GhostGr
   const Tree& tree = job.tree();
   // A simplified tile may store attributes more coarsely than the partition beside it does.
   const bool same_kind = tree.is_partition(tile.node) == tree.is_partition(neighbour.node);
-  GhostTally missing, moved, recoloured;
+  GhostTally missing, moved, recoloured, shaded;
   for (std::size_t i = group.begin; i < group.end; ++i) {
     const std::size_t vertex = tile.mesh.ghosts[i].index;
     missing.require(vertex < neighbour.mesh.boundary_count, i);
@@ -64,12 +64,17 @@ void check_ghosts(const VerifyJob& job, const PublishedTile& tile, const GhostGr
     const VertexAt own{neighbour.mesh.vertices, vertex};
     const VertexAt seen{tile.mesh.vertices, tile.mesh.own_count + i};
     moved.require(has_same_position(seen, own), i);
-    if (same_kind)
-      recoloured.require(has_same_attributes(seen, own), i);
+    if (!same_kind)
+      continue;
+    recoloured.require(has_same_attributes(seen, own), i);
+    shaded.require(std::ranges::equal(normal_of(tile.shading, tile.mesh.own_count + i),
+                                      normal_of(neighbour.shading, vertex)),
+                   i);
   }
   missing.report(job, tile.node, neighbour.node, "are not vertices of its boundary");
   moved.report(job, tile.node, neighbour.node, "have not its position");
   recoloured.report(job, tile.node, neighbour.node, "have not its attributes");
+  shaded.report(job, tile.node, neighbour.node, "have not its normal");
 }
 
 /// Entry k of a chain is entry k-1 through the parent map of the tile that k-1 is a vertex of. A
@@ -107,32 +112,40 @@ void check_chains(const VerifyJob& job, const PublishedTile& tile, const GhostGr
   wrong.report(job, tile.node, group.node, "have chains that are not its parent maps'");
 }
 
-std::vector<CornerTriangle> border_triangles(const VerifyJob& job, const PublishedTile& tile,
+std::vector<ShadedTriangle> border_triangles(const VerifyJob& job, const PublishedTile& tile,
                                              NodeId node) {
   return tile.node == node ? border_of(tile, job.tree()) : early_border_of(tile, job.tree());
 }
 
 /// Those of `border` that touch another tile.
-std::vector<CornerTriangle> touching(const std::vector<CornerTriangle>& border,
+std::vector<ShadedTriangle> touching(const std::vector<ShadedTriangle>& border,
                                      std::uint32_t other) {
-  std::vector<CornerTriangle> met;
+  std::vector<ShadedTriangle> met;
   std::copy_if(border.begin(), border.end(), std::back_inserter(met), [&](const auto& triangle) {
-    return std::any_of(triangle.begin(), triangle.end(),
+    return std::any_of(triangle.corners.begin(), triangle.corners.end(),
                        [&](Corner corner) { return tile_index(corner) == other; });
   });
   return met;
 }
 
-/// Every triangle of `tile` that touches the neighbour is in the neighbour's list, as often.
+/// Every triangle of `tile` that touches the neighbour is in the neighbour's list, as often, with
+/// the same normals.
 void check_lists(const VerifyJob& job, NodeId node, const PublishedTile& tile, NodeId other,
                  const PublishedTile& neighbour) {
   const auto here = touching(border_triangles(job, tile, node), other.index);
   const auto there = border_triangles(job, neighbour, other);
-  if (!std::includes(there.begin(), there.end(), here.begin(), here.end())) {
-    job.problems.add(
-        fmt::format("tile {}: some of its {} border triangles with tile {} are not listed there",
-                    to_text(node), here.size(), to_text(other)));
-  }
+  const auto told = [&](const char* what) {
+    job.problems.add(fmt::format("tile {}: some of its {} border triangles with tile {} {} there",
+                                 to_text(node), here.size(), to_text(other), what));
+  };
+  const bool are_listed =
+      std::ranges::includes(there, here, {}, &ShadedTriangle::corners, &ShadedTriangle::corners);
+  if (!are_listed)
+    told("are not listed");
+  // An early node's triangles have no normals of their own.
+  const bool have_normals = tile.node == node && neighbour.node == other;
+  if (are_listed && have_normals && !std::ranges::includes(there, here))
+    told("have other normals");
 }
 
 /// What the first of two neighbours says of the second. The tiles stand for the nodes.
@@ -165,9 +178,11 @@ void explain_difference(const VerifyJob& job, NodeId a, NodeId b) {
 
 void tell_wrong_copies(const VerifyJob& job, const WrongCopies& wrong) {
   job.problems.add(fmt::format(
-      "tile {}: of its copies of vertices in tile {}, {} are not there, or in another order (the "
+      "tile {}: of its {} of vertices in tile {}, {} are not there, or in another order (the "
       "first: of vertex {})",
-      to_text(wrong.tile), to_text(wrong.neighbour), wrong.count, wrong.first_place));
+      to_text(wrong.tile),
+      job.reader.tile_format().computed_normals ? "copies and splits" : "copies",
+      to_text(wrong.neighbour), wrong.count, wrong.first_place));
 }
 
 }  // namespace meshhier::inspection

@@ -88,7 +88,9 @@ bool add_image(const Tree& tree, const PublishedTile& child, const PublishedTile
 }
 
 std::vector<CornerTriangle> all_triangles(const PublishedTile& tile, const Tree& tree) {
-  std::vector<CornerTriangle> triangles = border_of(tile, tree);
+  std::vector<CornerTriangle> triangles;
+  for (const ShadedTriangle& t : border_of(tile, tree))
+    triangles.push_back(t.corners);
   for (const TileTriangle& t : tile.mesh.interior) {
     triangles.push_back({make_corner(tile.node.index, raw(t[0])),
                          make_corner(tile.node.index, raw(t[1])),

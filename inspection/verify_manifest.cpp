@@ -89,6 +89,15 @@ void check_config_against_rest(const storage::Manifest& manifest, const config::
     problems.compare("storage.compression", storage::name_of(manifest.compression),
                      storage::name_of(config.storage.compression));
   }
+  problems.require(!manifest.computed_normals || config.storage.normals == config::Normals::smooth,
+                   "\"storage.normals\" are computed, but \"config\" asks for none");
+  if (says("/storage/normals")) {
+    const SourceSummary& source = manifest.source;
+    const bool needs_normals = config.storage.normals == config::Normals::smooth &&
+                               !source.attributes.normals && source.triangles > 0;
+    problems.require(manifest.computed_normals || !needs_normals,
+                     "\"config\" asks for normals, but \"storage.normals\" are not computed");
+  }
   if (says("/up"))
     problems.compare("up", name_of(manifest.up), name_of(config.up));
   if (says("/placement")) {

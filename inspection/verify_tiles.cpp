@@ -89,6 +89,24 @@ bool uses_ghost_copies(const TileMesh& mesh) {
   return count_unused(used, mesh.vertices.size() + own, mesh.copies.size() - own) == 0;
 }
 
+/// Nor more of their splits.
+bool uses_ghost_splits(const PublishedTile& tile) {
+  const Shading& shading = tile.shading;
+  const TileMesh& mesh = tile.mesh;
+  std::vector<bool> used(shading.normals.size());
+  for (const TileTriangle& t : shading.border) {
+    for (const TileVertex v : t)
+      used[raw(v)] = true;
+  }
+  const VertexNumbers numbers = vertex_numbers(mesh);
+  const std::size_t first = shading.normals.size() - shading.split_of.size();
+  for (std::size_t i = 0; i < shading.split_of.size(); ++i) {
+    if (numbers[shading.split_of[i]].place >= mesh.own_count && !used[first + i])
+      return false;
+  }
+  return true;
+}
+
 /// Own places of border triangles are on the boundary (which may hold more: triangles that a
 /// neighbour's contraction made degenerate are gone); every ghost is in a border triangle.
 bool has_sound_boundary(const TileMesh& mesh) {
@@ -207,6 +225,7 @@ void verify_tile(const VerifyJob& job, const TileRecord& record, const Published
                        has_order(mesh.border, mesh.border_wedges, !partition),
                    "triangles are not in order, degenerate or repeated");
   problems.require(uses_ghost_copies(mesh), "a copy of a ghost has no border triangle");
+  problems.require(uses_ghost_splits(tile), "a split of a ghost has no border triangle");
   problems.require(
       has_sound_boundary(mesh),
       "a border triangle has an own corner off the boundary, or a ghost has no border triangle");

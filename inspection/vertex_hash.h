@@ -15,13 +15,17 @@ namespace meshhier::inspection {
 
 class VertexHash {
  public:
+  /// Of chain and position, and of attributes and normal if `with_attributes`. `normal`: one or
+  /// none.
   std::uint64_t operator()(std::span<const std::uint16_t> chain, const VertexAt& vertex,
-                           bool with_attributes) {
+                           std::span<const NormalCode> normal, bool with_attributes) {
     bytes_.clear();
     append(chain);
     append(std::span(&vertex.position(), 1));
-    if (with_attributes)
+    if (with_attributes) {
       append(vertex.attributes());
+      append(normal);
+    }
     return storage::checksum(bytes_);
   }
 

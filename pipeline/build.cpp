@@ -34,8 +34,8 @@ void read_input(importing::MeshInput& input, const storage::WorkDirectory& work,
                 storage::MemoryPool& pool, Workshop& workshop, const StageContext& context);
 
 /// The stages from leaves to publish, as far as the journal does not have their work: all files of
-/// the hierarchy in `directory`. Returns how much disk they need, as it is known after leaves, and
-/// throws Error(budget) then if there is less.
+/// the hierarchy in `directory`. Returns how much disk they need, as it is known after leaves and
+/// simplify, and throws Error(budget) then if there is less.
 DiskNeed make_hierarchy(Workshop& workshop, const std::filesystem::path& directory,
                         const StageContext& context);
 
@@ -184,10 +184,15 @@ DiskNeed make_hierarchy(Workshop& workshop, const std::filesystem::path& directo
   });
   const TileErrors errors = simplify(forest, journal, source, context);
   settled.get();
+  DiskNeed need = refined.value_or(context.plan.disk);
+  if (const std::uint64_t splits = forest.split_count(); splits > 0) {
+    need = with_splits(context.plan, need, splits);
+    check_disk(need, context.config.output, context.files);
+  }
   const OutlineStageResult outline = make_outline(forest, source.diagonal(), context);
   publish(forest, journal, {source, journal.source()->origin, errors, outline}, directory, context);
   journal.note_complete();
-  return refined.value_or(context.plan.disk);
+  return need;
 }
 
 Error with_resume_hint(const Error& error, const storage::WorkDirectory& work) {

@@ -7,6 +7,7 @@
 #include "partition/compactness.h"
 #include "pipeline/plan/tile_room.h"
 #include "pipeline/tiles/vertex_order.h"
+#include "shading/tile_shading.h"
 #include "storage/format/index.h"
 #include "storage/format/layout.h"
 #include "storage/format/level_summary.h"
@@ -72,7 +73,8 @@ struct TileWriter {
   const StageContext& context;
 };
 
-TileRecord describe(const TileWriter& to, NodeId node, const TileMesh& mesh) {
+TileRecord describe(const TileWriter& to, NodeId node, const TileMesh& mesh,
+                    const Shading& shading) {
   const Tree& tree = to.context.tree();
   TileRecord record;
   record.node = node;
@@ -80,6 +82,7 @@ TileRecord describe(const TileWriter& to, NodeId node, const TileMesh& mesh) {
   record.boundary_count = mesh.boundary_count;
   record.ghost_count = static_cast<std::uint32_t>(mesh.ghosts.size());
   record.copy_count = static_cast<std::uint32_t>(mesh.copies.size());
+  record.split_count = static_cast<std::uint32_t>(shading.split_of.size());
   record.interior_count = static_cast<std::uint32_t>(mesh.interior.size());
   record.border_count = static_cast<std::uint32_t>(mesh.border.size());
   record.drawn_border_count = drawn_border_count(tree, node, mesh);
@@ -100,21 +103,46 @@ TileRecord describe(const TileWriter& to, NodeId node, const TileMesh& mesh) {
   return record;
 }
 
+/// A tile with all that its file has of vertices and triangles.
+struct FinishedMesh {
+  TileMesh mesh;
+  Shading shading;
+  std::vector<std::uint16_t> parent_map;
+};
+
+/// Orders a partition's vertices, and gives all vertices their normals.
+FinishedMesh finish(const Forest& forest, NodeId node, TileMesh mesh) {
+  FinishedMesh finished{std::move(mesh), {}, forest.published_parent_map(node)};
+  OwnShading normals;
+  if (forest.computes_normals())
+    normals = forest.normals(node);
+  if (forest.tree().is_partition(node)) {
+    const std::vector<std::uint32_t> copy_places = finished.mesh.copies.places;
+    const std::vector<std::uint32_t> place =
+        order_inner_vertices(finished.mesh, finished.parent_map);
+    if (forest.computes_normals())
+      normals = shading::renumbered(normals, copy_places, place, finished.mesh.own_count);
+  }
+  if (forest.computes_normals()) {
+    finished.shading = shading::shade_tile(finished.mesh, normals, [&](std::uint32_t tile) {
+      return forest.boundary_normals({node.level, tile});
+    });
+  }
+  return finished;
+}
+
 /// Writes one tile, returns its index entry.
 TileRecord write_tile(const TileWriter& to, NodeId node) {
   const Forest& forest = to.forest;
   const Tree& tree = forest.tree();
   storage::FileSystem& files = to.context.files;
-  BuildTile tile = forest.load(node);
+  auto [mesh, shading, parent_map] = finish(forest, node, forest.load(node).mesh);
   if (to.quantization)
-    round_to(to.quantization->lattice, tile.mesh);
-  std::vector<std::uint16_t> parent_map = forest.published_parent_map(node);
-  if (tree.is_partition(node))
-    order_inner_vertices(tile.mesh, parent_map);
-  TileRecord record = describe(to, node, tile.mesh);
-  const std::vector<std::uint16_t> chains = forest.chains(node, tile.mesh.ghosts);
-  const std::vector<std::byte> bytes =
-      storage::encode_tile({node, tile.mesh, record.bounds, parent_map, chains}, tree, to.format);
+    round_to(to.quantization->lattice, mesh);
+  TileRecord record = describe(to, node, mesh, shading);
+  const std::vector<std::uint16_t> chains = forest.chains(node, mesh.ghosts);
+  const std::vector<std::byte> bytes = storage::encode_tile(
+      {node, mesh, shading, record.bounds, parent_map, chains}, tree, to.format);
   const auto file = files.create(storage::tile_path(to.directory, node));
   file->write_at(0, bytes);
   if (to.context.config.storage.container == storage::Container::files)
@@ -146,6 +174,7 @@ void write_account(const TileWriter& to, const PublishInput& input,
   manifest.partition_count = tree.partition_count();
   manifest.compression = to.format.compression;
   manifest.quantization = to.quantization;
+  manifest.computed_normals = to.format.computed_normals;
   manifest.config = config::resolved_json(context.config);
   manifest.index_bytes = index.size();
   manifest.index_checksum = storage::checksum(index);
@@ -197,6 +226,7 @@ void publish(Forest& forest, BuildJournal& journal, const PublishInput& input,
   const TileRoom room = room_for(forest, context.memory(), heaviest_written(forest, storage));
   storage::TileFormat format = {
       input.source.attributes, {input.origin, context.config.up}, storage.compression, {}};
+  format.computed_normals = forest.computes_normals();
   std::optional<storage::Quantization> quantization;
   if (storage.position_bits) {
     quantization = quantize(forest, nodes, input, room.in_flight(), context);
@@ -232,7 +262,14 @@ OutputCost publish_output(const JobSize& job, const TilePopulation& tiles) {
   };
   const double plain =
       bytes_of(tiles.partitions) + bytes_of(tiles.simplified) - bytes_of(tiles.early);
-  return {plain, plain * job.published_ratio, tiles.files() * kFileSlack};
+  // Room for a split of every other vertex, as very rough surfaces have them.
+  constexpr double kMostSplits = 0.5;
+  const double vertices = tiles.partitions.vertices + tiles.simplified.vertices;
+  const double splits =
+      job.computes_normals
+          ? kMostSplits * vertices * storage::expected_split_bytes(job.published_attribute_bytes)
+          : 0;
+  return {plain, plain * job.published_ratio, tiles.files() * kFileSlack + splits};
 }
 
 }  // namespace meshhier::pipeline

@@ -7,6 +7,7 @@
 #include "execution/parallel.h"
 #include "pipeline/plan/tile_room.h"
 #include "pipeline/tiles/bound_chain.h"
+#include "shading/own_normals.h"
 #include "storage/format/work_tile.h"
 
 #include <algorithm>
@@ -92,11 +93,15 @@ class Simplifier {
     return steps;
   }
 
-  /// Loads a tile of the level that begin() named.
+  /// Loads a tile of the level that begin() named: this is when all of it is known, its neighbours'
+  /// places too, so its step is measured and its normals are made.
   BuildTile load(NodeId node) {
     LoadedTile loaded = forest_.load_with_mapped(node);
+    const TileMesh& mesh = loaded.tile.mesh;
     if (!forest_.tree().is_partition(node))
       steps_[node.index] = measure_step(forest_, node, loaded);
+    if (forest_.computes_normals() && !forest_.tree().is_early(node))
+      forest_.put_normals(node, shading::shade(mesh), mesh);
     return std::move(loaded.tile);
   }
 
@@ -191,10 +196,9 @@ TileErrors simplify(Forest& forest, BuildJournal& journal, const SourceSummary& 
       chain.add(finer(level), simplifier.steps());
     simplifier.begin(level, journal.take_steps(level));
   }
-  if (tree.depth() > Level{0}) {
-    simplifier.load({Level{0}, 0});
+  simplifier.load(tree.root());
+  if (tree.depth() > Level{0})
     chain.add(Level{0}, simplifier.steps());
-  }
   return chain.errors();
 }
 
@@ -216,9 +220,11 @@ StageTime simplify_time(const JobSize& job, const TilePopulation& tiles) {
   // Of each vertex that is joined to be contracted, with its two triangles.
   constexpr double kCollapsed = 1.12e-6;
   constexpr double kClustered = 0.62e-6;
+  constexpr double kShaded = 0.1e-6;
   const double vertices = tiles.partitions.vertices + tiles.simplified.vertices;
   return {"simplify", "tiles", static_cast<std::uint64_t>(tiles.simplified.count),
-          vertices * (job.clustered ? kClustered : kCollapsed)};
+          vertices *
+              ((job.clustered ? kClustered : kCollapsed) + (job.computes_normals ? kShaded : 0))};
 }
 
 DiskVolumes simplify_disk(const JobSize& job, const TilePopulation& tiles) {
@@ -230,6 +236,9 @@ DiskVolumes simplify_disk(const JobSize& job, const TilePopulation& tiles) {
   constexpr double kParent = sizeof(std::uint16_t);
   double bytes = storage::expected_work_tile_bytes(tiles.simplified, job.vertex_bytes()) +
                  (tiles.partitions.vertices + tiles.simplified.vertices) * kParent;
+  if (job.computes_normals)
+    bytes += storage::expected_shading_bytes(tiles.partitions) +
+             storage::expected_shading_bytes(tiles.simplified);
   bytes += (tiles.counted ? storage::long_seam_strip_bytes(tiles.simplified)
                           : storage::expected_seam_strip_bytes(tiles.simplified)) +
            tiles.steep_boundary * kSteepBytes;

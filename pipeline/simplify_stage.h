@@ -18,7 +18,8 @@ DiskVolumes simplify_disk(const JobSize& job, const TilePopulation& tiles);
 
 /// Contracts all levels, from the partitions to one root tile, and returns error and bound of every
 /// tile, from the partitions (0) to the root, each more than its children's. Tiles that the journal
-/// has are not made again.
+/// has are not made again. If normals are computed, every tile gets those of its own surface
+/// (shading/own_normals.h).
 ///
 /// How far a contraction moves the surface is measured while it is carried out (deviation.h), and
 /// at the seams when its level is complete (seam_strip.h). `bound` sums the certain distances of

@@ -9,15 +9,16 @@
 #include "pipeline/publish_stage.h"
 #include "pipeline/simplify_stage.h"
 #include "storage/format/archive_writer.h"
+#include "storage/format/tile_plan.h"
 
 namespace meshhier::pipeline {
 namespace {
 
 /// What several stages know of each tile until the end, and the archive's index.
 std::uint64_t bookkeeping_bytes(const JobSize& job) {
-  // Four blob entries, what is known of it, its record, its statistics, its step and the sums of
+  // Six blob entries, what is known of it, its record, its statistics, its step and the sums of
   // steps with some twenty neighbours each.
-  constexpr std::uint64_t kTileBytes = 480;
+  constexpr std::uint64_t kTileBytes = 528;
   const std::uint64_t tiles = 2 * std::uint64_t{job.partition_count};
   return tiles * (kTileBytes + (job.packed ? storage::ArchiveWriter::kFileMemory : 0));
 }
@@ -89,6 +90,22 @@ std::optional<DiskNeed> refine_disk(const BuildPlan& plan, const storage::TileSu
   if (leaves_bytes(counted) <= kFarMore * leaves_bytes(expected))
     return std::nullopt;
   return predict_disk(disk_costs(job, plan.memory, counted), plan.memory.pool_bytes);
+}
+
+DiskNeed with_splits(const BuildPlan& plan, const DiskNeed& need, std::uint64_t splits) {
+  const JobSize& job = plan.job;
+  const storage::TileSums sums = expected_tiles(job).partitions;
+  // Ghosts have them too: more than others, as measured.
+  constexpr double kGhostSplits = 1.5;
+  const double tiles_per_vertex =
+      1 + kGhostSplits * sums.boundary * sums.ghosts_per_boundary / sums.vertices;
+  const auto plain =
+      static_cast<std::uint64_t>(static_cast<double>(splits) * tiles_per_vertex *
+                                 storage::expected_split_bytes(job.published_attribute_bytes));
+  DiskNeed all = need;
+  all.output_bytes += static_cast<std::uint64_t>(static_cast<double>(plain) * job.published_ratio);
+  all.room_bytes += plain * (job.packed ? 2 : 1);
+  return all;
 }
 
 }  // namespace meshhier::pipeline

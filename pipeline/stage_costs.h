@@ -12,7 +12,7 @@
 //   of chunks
 //   partition tiles         leaves         the end
 //   simplified tiles, maps  simplify       the end
-//   seam strips             simplify       the end
+//   seam strips, normals    simplify       the end
 //   published files         publish        for good            if they are the output
 //                                          the end             if they are packed, the data above
 //                                          being gone
@@ -56,6 +56,10 @@ std::vector<StageTime> wall_times(const config::Config& config, const BuildPlan&
 /// What the disk needs when all partitions are there, if these take far more than was expected from
 /// the header: around vertices of very many triangles, or in a soup. Else none.
 std::optional<DiskNeed> refine_disk(const BuildPlan& plan, const storage::TileSums& partitions);
+
+/// What the disk needs when all normals are there: `need` did not count vertices that are split at
+/// creases.
+DiskNeed with_splits(const BuildPlan& plan, const DiskNeed& need, std::uint64_t splits);
 
 /// The plan for a mesh of which the header was read; `imported_bytes` as in job_size(). Throws as
 /// plan_tree(), and Error(budget) if the memory budget is too small.

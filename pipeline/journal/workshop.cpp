@@ -43,7 +43,8 @@ Workshop::Workshop(const std::filesystem::path& work, const BuildIdentity& ident
       tile_scratch(context.files, work / "tiles", pool, storage::ScratchFile::Stays::yes),
       chunks(context.tree(), channels, context.plan.job.has_copies(), mesh_scratch,
              context.memory().spool_block_bytes),
-      forest(context.tree(), chunks.level(), channels, tile_scratch),
+      forest(context.tree(), chunks.level(), channels, tile_scratch,
+             context.plan.job.computes_normals),
       journal(context.files, work, identity, pool.scratch_use(), forest, chunks, context.cancel) {}
 
 OpenWorkshop open_workshop(storage::WorkDirectory& work, importing::MeshInput& input,

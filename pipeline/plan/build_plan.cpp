@@ -2,6 +2,7 @@
 
 #include "execution/size_text.h"
 #include "hierarchy/error.h"
+#include "hierarchy/normal_code.h"
 #include "hierarchy/plain_text.h"
 #include "storage/format/layout.h"
 #include "storage/format/tile_glb.h"
@@ -83,7 +84,10 @@ JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& m
   job.largest_tile =
       std::max(largest_partition(tree), job.target_vertex_counts.largest_above(tree.depth()));
   job.clustered = config.simplify.method == config::SimplifyMethod::cluster;
-  job.published_attribute_bytes = storage::published_attribute_bytes(mesh.attributes);
+  job.computes_normals = config.storage.normals == config::Normals::smooth &&
+                         !mesh.attributes.normals && mesh.face_count > 0;
+  job.published_attribute_bytes = storage::published_attribute_bytes(mesh.attributes) +
+                                  (job.computes_normals ? sizeof(NormalCode) : 0);
   job.published_ratio = storage::expected_ratio(config.storage.compression);
   job.packed = config.storage.container == storage::Container::archive;
   return job;

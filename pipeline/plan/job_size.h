@@ -15,6 +15,7 @@ struct JobSize {
   std::uint64_t place_count = 0;  ///< where they lie: what the tree counts
   std::uint64_t face_count = 0;
   int channels = 0;                  ///< attribute floats per vertex
+  bool computes_normals = false;     ///< tiles get normals, which the mesh does not have
   std::uint64_t imported_bytes = 0;  ///< of the PLY that the input was imported to, if it was
   bool vertices_in_place = true;     ///< else the vertices are spooled once more
   bool wide_coordinates = false;     ///< spooled as doubles

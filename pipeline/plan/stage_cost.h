@@ -52,7 +52,7 @@ using DiskVolumes = std::vector<DiskVolume>;
 struct OutputCost {
   double plain_bytes = 0;  ///< if no tile compresses
   double bytes = 0;        ///< about, as they are compressed
-  double slack_bytes = 0;  ///< what the last disk block of each file leaves empty
+  double slack_bytes = 0;  ///< what the last disk block of each file leaves empty, and splits
 };
 
 struct DiskCosts {

@@ -1,6 +1,7 @@
 #include "pipeline/tiles/forest.h"
 
 #include "cluster_simplify/seams.h"
+#include "shading/tile_shading.h"
 #include "storage/format/work_tile.h"
 
 #include <algorithm>
@@ -39,15 +40,19 @@ bool restore(storage::BlobStore& store, std::size_t index, const nlohmann::json&
 
 }  // namespace
 
-Forest::Forest(const Tree& tree, Level chunks, int channels, storage::ScratchFile& scratch)
+Forest::Forest(const Tree& tree, Level chunks, int channels, storage::ScratchFile& scratch,
+               bool computes_normals)
     : tree_(tree),
       chunks_(chunks),
       channels_(channels),
+      computes_normals_(computes_normals),
       pool_(scratch.pool()),
       places_(scratch, tree.node_count(chunks)) {
   for (int level = 0; level <= raw(tree.depth()); ++level) {
     const std::uint32_t count = tree.node_count(static_cast<Level>(level));
     levels_.push_back({{scratch, count},
+                       {scratch, count},
+                       {scratch, count},
                        {scratch, count},
                        {scratch, count},
                        {scratch, count},
@@ -71,6 +76,13 @@ void Forest::put_work_tile(NodeId node, const WorkTile<Corner>& tile) {
 
 template void Forest::put_work_tile(NodeId node, const LeafTile& tile);
 template void Forest::put_work_tile(NodeId node, const SimplifiedTile& tile);
+
+void Forest::put_normals(NodeId node, const OwnShading& normals, const TileMesh& mesh) {
+  LevelStore& level = levels_[raw(node.level)];
+  level.normals.put(node.index, storage::encode_own_shading(normals));
+  level.boundary_normals.put(node.index,
+                             storage::encode_boundary_shading(shading::boundary_of(normals, mesh)));
+}
 
 void Forest::put_parent_map(NodeId child, std::span<const std::uint16_t> parent_map) {
   levels_[raw(child.level)].parent_maps.put(child.index, std::as_bytes(parent_map));
@@ -98,11 +110,22 @@ storage::TileSums Forest::partition_sums() const {
   return sums;
 }
 
+std::uint64_t Forest::split_count() const {
+  std::uint64_t splits = 0;
+  for (const NodeId node : computes_normals_ ? tree_.tile_nodes() : std::vector<NodeId>{}) {
+    std::array<std::byte, storage::kShadingHeadBytes> head;
+    levels_[raw(node.level)].normals.read(node.index, 0, head);
+    splits += storage::encoded_split_count(head);
+  }
+  return splits;
+}
+
 void Forest::drop_copies(std::uint64_t free_bytes) {
   for (std::size_t level = levels_.size(); level-- > 0;) {
     for (storage::BlobStore* store :
          {&levels_[level].tiles, &levels_[level].boundaries, &levels_[level].seam_strips,
-          &levels_[level].parent_maps, &levels_[level].wedge_maps}) {
+          &levels_[level].parent_maps, &levels_[level].wedge_maps, &levels_[level].normals,
+          &levels_[level].boundary_normals}) {
       if (pool_.free_bytes() >= free_bytes)
         return;
       store->drop_copies();
@@ -118,8 +141,8 @@ LoadedTile Forest::resolved(NodeId node) const {
   LoadedTile loaded;
   loaded.mapped = mapped(node, work.foreign);
   map_wedges(node, work);
-  loaded.tile =
-      cluster_simplify::resolve(std::move(work), loaded.mapped, !tree_.is_partition(node));
+  loaded.tile = cluster_simplify::resolve(std::move(work), loaded.mapped, !tree_.is_partition(node),
+                                          node.index);
   return loaded;
 }
 
@@ -136,6 +159,16 @@ LoadedTile Forest::load_with_mapped(NodeId node) const {
         storage::decode_boundary(level.boundaries.view(neighbour).bytes(), channels_));
   });
   return loaded;
+}
+
+OwnShading Forest::normals(NodeId node) const {
+  return storage::decode_own_shading(levels_[raw(node.level)].normals.view(node.index).bytes());
+}
+
+BoundaryShading Forest::boundary_normals(NodeId node) const {
+  node = tree_.tile_node(node);
+  return storage::decode_boundary_shading(
+      levels_[raw(node.level)].boundary_normals.view(node.index).bytes());
 }
 
 void Forest::put_seam_strip(NodeId node, const SeamStrip& seam_strip) {
@@ -284,6 +317,11 @@ nlohmann::json Forest::stored_tile(NodeId node) const {
   nlohmann::json wedge_maps = nlohmann::json::array();
   for (const NodeId child : children.span())
     wedge_maps.push_back(to_json(levels_[raw(child.level)].wedge_maps.stored(child.index)));
+  nlohmann::json normals = nlohmann::json::array();
+  for (const NodeId child : children.span()) {
+    if (has_normals(child))
+      normals.push_back(stored_normals(child));
+  }
   const Fallbacks& fallbacks = level.fallbacks[node.index];
   return {{"own", level.own_counts[node.index]},
           {"torn", fallbacks.torn_count},
@@ -292,7 +330,24 @@ nlohmann::json Forest::stored_tile(NodeId node) const {
           {"boundary", to_json(level.boundaries.stored(node.index))},
           {"seam_strip", to_json(level.seam_strips.stored(node.index))},
           {"maps", std::move(maps)},
-          {"wedge_maps", std::move(wedge_maps)}};
+          {"wedge_maps", std::move(wedge_maps)},
+          {"normals", std::move(normals)}};
+}
+
+bool Forest::has_normals(NodeId node) const {
+  return computes_normals_ && !tree_.is_early(node);
+}
+
+nlohmann::json Forest::stored_normals(NodeId node) const {
+  const LevelStore& level = levels_[raw(node.level)];
+  return {to_json(level.normals.stored(node.index)),
+          to_json(level.boundary_normals.stored(node.index))};
+}
+
+bool Forest::restore_normals(NodeId node, const nlohmann::json& stored) {
+  LevelStore& level = levels_[raw(node.level)];
+  return restore(level.normals, node.index, stored.at(0)) &&
+         restore(level.boundary_normals, node.index, stored.at(1));
 }
 
 bool Forest::restore_tile(NodeId node, const nlohmann::json& stored) {
@@ -301,11 +356,14 @@ bool Forest::restore_tile(NodeId node, const nlohmann::json& stored) {
   level.fallbacks[node.index].torn_count = stored.at("torn");
   level.fallbacks[node.index].forced_count = stored.at("forced");
   std::size_t map = 0;
+  std::size_t normals = 0;
   const Tree::Children children = tree_.children(node);
   for (const NodeId child : children.span()) {
     LevelStore& below = levels_[raw(child.level)];
     if (!restore(below.parent_maps, child.index, stored.at("maps").at(map)) ||
         !restore(below.wedge_maps, child.index, stored.at("wedge_maps").at(map)))
+      return false;
+    if (has_normals(child) && !restore_normals(child, stored.at("normals").at(normals++)))
       return false;
     ++map;
   }

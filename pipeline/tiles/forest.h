@@ -36,13 +36,17 @@ struct LoadedTile {
 /// An early node has a tile here too: its partition's, kept as it is.
 class Forest {
  public:
-  Forest(const Tree& tree, Level chunks, int channels, storage::ScratchFile& scratch);
+  Forest(const Tree& tree, Level chunks, int channels, storage::ScratchFile& scratch,
+         bool computes_normals = false);
 
   const Tree& tree() const { return tree_; }
+  bool computes_normals() const { return computes_normals_; }
 
   void put_places(std::uint32_t chunk, std::span<const partition::LeafPlace> places);
   void put_tile(NodeId node, const LeafTile& tile) { put_work_tile(node, tile); }
   void put_tile(NodeId node, const SimplifiedTile& tile) { put_work_tile(node, tile); }
+  /// The normals of a tile, which `mesh` is; not of an early node: it has its partition's.
+  void put_normals(NodeId node, const OwnShading& normals, const TileMesh& mesh);
   /// What the neighbours of a simplified tile may see of it.
   void put_seam_strip(NodeId node, const SeamStrip& seam_strip);
   /// The map from `child` to its parent's tile.
@@ -67,6 +71,8 @@ class Forest {
   static constexpr std::uint64_t kCopyShare = 4;
   /// Of all partitions; ask when all are there.
   storage::TileSums partition_sums() const;
+  /// Splits of the own vertices of all tiles that will be published; ask when all have normals.
+  std::uint64_t split_count() const;
   /// What is kept in memory counts against it.
   storage::MemoryPool& pool() const { return pool_; }
 
@@ -76,6 +82,9 @@ class Forest {
 
   LoadedTile load_with_mapped(NodeId node) const;
   BuildTile load(NodeId node) const { return load_with_mapped(node).tile; }
+  OwnShading normals(NodeId node) const;
+  /// What neighbours see of a tile's normals; of an early node what they see of its partition's.
+  BoundaryShading boundary_normals(NodeId node) const;
   SeamStrip seam_strip(NodeId node) const;
   /// The map from `child` to its parent's tile.
   std::vector<std::uint16_t> parent_map(NodeId child) const;
@@ -88,7 +97,8 @@ class Forest {
 
   /// Of a chunk: its places, and all its partitions.
   nlohmann::json stored_chunk(std::uint32_t chunk) const;
-  /// Of a simplified tile: all that was put when it was made, the maps to it included.
+  /// Of a simplified tile: all that was put when it was made, the maps to it and the normals of its
+  /// children included.
   nlohmann::json stored_tile(NodeId node) const;
   /// False if the scratch file does not hold it as it was. Throws nlohmann::json::exception if
   /// `stored` is nothing of the kind.
@@ -97,10 +107,14 @@ class Forest {
 
  private:
   struct LevelStore {
-    storage::BlobStore tiles, boundaries, seam_strips, parent_maps, wedge_maps;
+    storage::BlobStore tiles, boundaries, seam_strips, parent_maps, wedge_maps, normals,
+        boundary_normals;
     std::vector<Fallbacks> fallbacks;
     std::vector<std::uint32_t> own_counts;
   };
+  bool has_normals(NodeId node) const;
+  nlohmann::json stored_normals(NodeId node) const;
+  bool restore_normals(NodeId node, const nlohmann::json& stored);
   template <class Corner>
   void put_work_tile(NodeId node, const WorkTile<Corner>& tile);
   template <class Corner>
@@ -116,6 +130,7 @@ class Forest {
   Tree tree_;
   Level chunks_;
   int channels_;
+  bool computes_normals_;
   storage::MemoryPool& pool_;
   storage::BlobStore places_;
   std::vector<LevelStore> levels_;

@@ -38,7 +38,8 @@ std::vector<std::uint32_t> new_order(const TileMesh& mesh) {
 
 }  // namespace
 
-void order_inner_vertices(TileMesh& mesh, std::vector<std::uint16_t>& parent_map) {
+std::vector<std::uint32_t> order_inner_vertices(TileMesh& mesh,
+                                                std::vector<std::uint16_t>& parent_map) {
   assert(parent_map.empty() || parent_map.size() == mesh.own_count);
   const std::vector<std::uint32_t> order = new_order(mesh);
   std::vector<std::uint32_t> place(order.size(), kNowhere);
@@ -59,6 +60,7 @@ void order_inner_vertices(TileMesh& mesh, std::vector<std::uint16_t>& parent_map
   normalize_triangles(mesh.interior, mesh.interior_wedges, false);
   if (!mesh.copies.empty())
     mesh.copies = renumbered(mesh.copies, place);
+  return place;
 }
 
 }  // namespace meshhier::pipeline

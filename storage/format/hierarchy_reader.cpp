@@ -30,11 +30,16 @@ std::vector<TileRecord> load_index(FileSystem& files, const std::filesystem::pat
   const auto path = index_path(directory);
   const auto bytes =
       read_sealed(files, path, {manifest.index_bytes, manifest.index_checksum}, index_bytes(tree));
-  return decode_index(bytes, tree, path.string());
+  std::vector<TileRecord> records = decode_index(bytes, tree, path.string());
+  const auto has_splits = [](const TileRecord& record) { return record.split_count > 0; };
+  if (!manifest.computed_normals && std::ranges::any_of(records, has_splits))
+    throw Error(ErrorCode::corrupt, path.string() + ": splits without computed normals");
+  return records;
 }
 
 /// The name of the first count in which tile and record differ; null if they agree.
-const char* difference(const TileMesh& mesh, const TileRecord& record) {
+const char* difference(const PublishedTile& tile, const TileRecord& record) {
+  const TileMesh& mesh = tile.mesh;
   if (mesh.own_count != record.own_count)
     return "own vertices";
   if (mesh.boundary_count != record.boundary_count)
@@ -43,6 +48,8 @@ const char* difference(const TileMesh& mesh, const TileRecord& record) {
     return "ghosts";
   if (mesh.copies.size() != record.copy_count)
     return "copies";
+  if (tile.shading.split_of.size() != record.split_count)
+    return "splits";
   if (mesh.interior.size() != record.interior_count)
     return "interior triangles";
   if (mesh.border.size() != record.border_count)
@@ -57,6 +64,7 @@ TileFormat format_of(const Manifest& manifest) {
       manifest.source.attributes, {manifest.origin, manifest.up}, manifest.compression, {}};
   if (manifest.quantization)
     format.lattice = manifest.quantization->lattice;
+  format.computed_normals = manifest.computed_normals;
   return format;
 }
 
@@ -81,7 +89,7 @@ PublishedTile HierarchyReader::read_tile(NodeId node) const {
   const auto bytes =
       read_sealed(files_, path, {expected.file_bytes, expected.checksum}, kMaxGlbBytes);
   PublishedTile tile = decode_tile(bytes, expected.node, tree_, format_, path.string());
-  if (const char* what = difference(tile.mesh, expected)) {
+  if (const char* what = difference(tile, expected)) {
     throw Error(ErrorCode::corrupt,
                 fmt::format("{}: its {} are not those of the index", path.string(), what));
   }

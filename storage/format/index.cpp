@@ -34,7 +34,7 @@ namespace {
 //                                                  52      4  f32 bound
 //                                                  56      4  f32 compactness
 //                                                  60     24  f32 min x y z, max x y z
-//                                                  84      4  0
+//                                                  84      4  splits
 //                                                  88      8  bytes of the file
 //                                                  96      8  XXH3-64 of the file
 constexpr std::string_view kIndexMagic = "MHTILES\n";
@@ -42,8 +42,6 @@ constexpr std::uint32_t kIndexVersion = 3;
 constexpr std::size_t kIndexHeaderBytes = 32;
 constexpr std::size_t kCheckedHeaderBytes = 24;
 constexpr std::size_t kRecordBytes = 104;
-constexpr std::size_t kFillingOffset = 84;
-constexpr std::uint32_t kFilling = 0;
 
 void append_record(std::vector<std::byte>& bytes, const TileRecord& record) {
   for (const std::uint32_t value :
@@ -58,7 +56,7 @@ void append_record(std::vector<std::byte>& bytes, const TileRecord& record) {
                             box.min.z, box.max.x, box.max.y, box.max.z}) {
     append_little(bytes, value);
   }
-  append_little(bytes, kFilling);
+  append_little(bytes, record.split_count);
   append_little(bytes, record.file_bytes);
   append_little(bytes, record.checksum);
 }
@@ -90,6 +88,7 @@ TileRecord load_record(const std::byte* from) {
   record.bound = real(52);
   record.compactness = real(56);
   record.bounds = {{real(60), real(64), real(68)}, {real(72), real(76), real(80)}};
+  record.split_count = count(84);
   record.file_bytes = load_little<std::uint64_t>(from + 88);
   record.checksum = load_little<std::uint64_t>(from + 96);
   return record;
@@ -111,6 +110,8 @@ const char* flaw_of(const TileRecord& record, const Tree& tree) {
     return "boundary vertices (more than own)";
   if (record.drawn_border_count > record.border_count)
     return "drawn border triangles";
+  if (record.split_count > most_splits(record.interior_count, record.border_count))
+    return "splits (more than corners of triangles)";
   if (!is_measure(record.error))
     return "error";
   if (!is_measure(record.bound))
@@ -185,9 +186,6 @@ class IndexReader {
       fail(fmt::format("record {} is of tile {}/{}, expected {}/{}", number, level, index,
                        raw(node.level), node.index));
     }
-    if (load_little<std::uint32_t>(from + kFillingOffset) != kFilling)
-      fail(fmt::format("tile {}/{}: bytes {} to {} of its record are not 0", level, index,
-                       kFillingOffset, kFillingOffset + 3));
     const TileRecord record = load_record(from);
     if (const char* flaw = flaw_of(record, tree_)) {
       fail(fmt::format("tile {}/{}: impossible {}", level, index, flaw));

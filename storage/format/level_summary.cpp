@@ -57,6 +57,7 @@ LevelSummary summarize(Level level, Level last, std::span<const TileRecord> reco
     bytes.add(record.file_bytes);
     border += record.border_count;
     summary.copies_total += record.copy_count;
+    summary.splits_total += record.split_count;
     summary.triangles_total += drawn_count(record);
     summary.error_max = std::max(summary.error_max, record.error);
     summary.bound_max = std::max(summary.bound_max, record.bound);
@@ -126,7 +127,7 @@ double SizeSummary::raw_ratio() const {
   return quotient(bytes, raw_bytes);
 }
 
-SizeSummary summarize_sizes(std::span<const TileRecord> records, const AttributeLayout& layout) {
+SizeSummary summarize_sizes(std::span<const TileRecord> records, const TileFormat& format) {
   using storage::Part;
   SizeSummary sizes;
   for (const TileRecord& record : records) {
@@ -134,9 +135,11 @@ SizeSummary summarize_sizes(std::span<const TileRecord> records, const Attribute
     shape.own = record.own_count;
     shape.ghosts = record.ghost_count;
     shape.copies = record.copy_count;
+    shape.splits = record.split_count;
+    shape.computed_normals = format.computed_normals;
     shape.interior = record.interior_count;
     shape.border = record.border_count;
-    const storage::TilePlan plan(shape, layout);
+    const storage::TilePlan plan(shape, format.attributes);
     for (const Part part :
          {Part::position, Part::normal, Part::colour, Part::texcoord, Part::interior, Part::border})
       sizes.raw_bytes += plan[part].bytes();
@@ -202,6 +205,7 @@ nlohmann::ordered_json to_json(const LevelSummary& s) {
           {"vertices_max", s.vertices.max},
           {"vertices_total", s.vertices_total},
           {"copies_total", s.copies_total},
+          {"splits_total", s.splits_total},
           {"triangles_min", s.triangles.min},
           {"triangles_mean", s.triangles.mean},
           {"triangles_max", s.triangles.max},
@@ -229,6 +233,7 @@ nlohmann::ordered_json to_json(const TileRecord& r) {
           {"boundary_vertices", r.boundary_count},
           {"ghosts", r.ghost_count},
           {"copies", r.copy_count},
+          {"splits", r.split_count},
           {"interior_triangles", r.interior_count},
           {"border_triangles", r.border_count},
           {"drawn_border_triangles", r.drawn_border_count},

@@ -3,6 +3,7 @@
 
 #include "hierarchy/published.h"
 #include "hierarchy/tree.h"
+#include "storage/format/tile_glb.h"
 
 #include <cstdint>
 #include <span>
@@ -32,6 +33,7 @@ struct LevelSummary {
   CountRange bytes;      ///< of the files
   std::uint64_t vertices_total = 0;
   std::uint64_t copies_total = 0;     ///< further vertices at places, those of ghosts included
+  std::uint64_t splits_total = 0;     ///< further normals of vertices, those of ghosts included
   std::uint64_t triangles_total = 0;  ///< each once: interior, and border ones where they are drawn
   std::uint64_t bytes_total = 0;
   double border_ratio = 0;         ///< border triangles of all triangles, summed over the tiles
@@ -55,7 +57,8 @@ std::vector<LevelSummary> summarize_levels(const Tree& tree, std::span<const Til
 /// What tiles take, against floats and indices as they are.
 struct SizeSummary {
   std::uint64_t bytes = 0;      ///< of the files
-  std::uint64_t raw_bytes = 0;  ///< positions as f32, attributes, indices of 16 or 32 bits, plain
+  std::uint64_t raw_bytes = 0;  ///< positions as f32, attributes, computed normals, indices of 16
+                                ///< or 32 bits, plain
   std::uint64_t vertices = 0;   ///< own, without copies
   std::uint64_t triangles = 0;  ///< each once
 
@@ -66,7 +69,7 @@ struct SizeSummary {
 
 /// Of these tiles together. Ghosts, and border triangles that other tiles draw, are in both numbers
 /// of bytes. O(tiles).
-SizeSummary summarize_sizes(std::span<const TileRecord> records, const AttributeLayout& layout);
+SizeSummary summarize_sizes(std::span<const TileRecord> records, const TileFormat& format);
 
 /// How compact the partitions are: p^2 / (4 pi w), 1 for a flat disc, more for ragged borders.
 struct CompactnessSummary {

@@ -21,6 +21,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr SealedFormat kFormat{"meshhier", kFormatVersion, "build it again from the mesh"};
 
+constexpr const char* kComputedNormals = "computed";
+
 // ---- writing -------------------------------------------------------------------------------
 
 Json storage_json(const Manifest& manifest) {
@@ -31,6 +33,8 @@ Json storage_json(const Manifest& manifest) {
                             {"corner", point_json(quantization->lattice.corner)},
                             {"worst_rounding", quantization->worst_rounding}};
   }
+  if (manifest.computed_normals)
+    storage["normals"] = kComputedNormals;
   return storage;
 }
 
@@ -108,6 +112,17 @@ std::optional<Quantization> read_quantization(const JsonObject& object) {
   if (quantization.worst_rounding < 0)
     positions.wrong("worst_rounding", "at least 0");
   return quantization;
+}
+
+/// `source`: what the input has.
+bool read_computed_normals(const JsonObject& object, const AttributeLayout& source) {
+  if (!object.has("normals"))
+    return false;
+  if (object.text("normals") != kComputedNormals)
+    object.wrong("normals", fmt::format("\"{}\", or no such key", kComputedNormals));
+  if (source.normals)
+    object.wrong("normals", "no such key, as the source has normals");
+  return true;
 }
 
 void read_import(const JsonObject& object, SourceSummary& source) {
@@ -206,6 +221,8 @@ Manifest parse_manifest(const std::string& text, const std::string& name) {
     object.wrong("partitions", "at least 1");
   manifest.compression = read_compression(object.object("storage"));
   manifest.quantization = read_quantization(object.object("storage"));
+  manifest.computed_normals =
+      read_computed_normals(object.object("storage"), manifest.source.attributes);
   manifest.config = object.at("config");
   if (!manifest.config.is_object())
     object.wrong("config", "an object");

@@ -36,6 +36,7 @@ struct Manifest {
   std::uint32_t partition_count = 0;
   Compression compression = Compression::none;
   std::optional<Quantization> quantization;  ///< none: positions are exact
+  bool computed_normals = false;  ///< tiles have normals that the build computed; the source none
   /// An object: the resolved config, what decides the result (not budget, threads, paths).
   nlohmann::ordered_json config;
   std::uint64_t index_bytes = 0;

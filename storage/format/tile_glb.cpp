@@ -41,7 +41,8 @@ float showable_colour(float value, ColourType type) {
     return 0;
   if (type == ColourType::f32)
     return std::clamp(value, 0.0F, 1.0F);
-  return std::clamp(std::round(value), 0.0F, type == ColourType::u8 ? 255.0F : 65535.0F);
+  // A number of the type has no -0.
+  return std::clamp(std::round(value), 0.0F, type == ColourType::u8 ? 255.0F : 65535.0F) + 0.0F;
 }
 
 /// One vertex's attributes as the standard glTF accessors hold them.
@@ -112,7 +113,7 @@ class Writer {
     const Section& section = plan_[part];
     const auto channels = static_cast<std::size_t>(plan_.layout().channels());
     for (std::size_t v = 0; v < section.count; ++v) {
-      for (std::size_t c = 0; c < section.components; ++c) {
+      for (std::size_t c = 0; c < group.channels; ++c) {
         const float value = attributes[v * channels + group.offset + c];
         if (section.component == kU8)
           put(section, v, c, static_cast<std::uint8_t>(value));
@@ -122,6 +123,10 @@ class Writer {
           put(section, v, c, value);
       }
     }
+  }
+
+  void put_normals(std::span<const NormalCode> normals) {
+    std::ranges::copy(std::as_bytes(normals), at(plan_[Part::normal]));
   }
 
   void put_triangles(Part part, std::span<const TileTriangle> triangles) {
@@ -135,12 +140,12 @@ class Writer {
     store_all_little(values, at(plan_[part]));
   }
 
-  void put_copies(std::span<const std::uint32_t> places) {
-    const Section& section = plan_[Part::copy_of];
-    if (section.component == kU32)
-      return put_list(Part::copy_of, places);
-    const std::vector<std::uint16_t> narrowed(places.begin(), places.end());
-    put_list<std::uint16_t>(Part::copy_of, narrowed);
+  /// Numbers of vertices, in as many bytes as they need.
+  void put_vertices(Part part, std::span<const std::uint32_t> vertices) {
+    if (plan_[part].component == kU32)
+      return put_list(part, vertices);
+    const std::vector<std::uint16_t> narrowed(vertices.begin(), vertices.end());
+    put_list<std::uint16_t>(part, narrowed);
   }
 
  private:
@@ -176,21 +181,36 @@ class Writer {
 };
 
 /// All of a tile, in the order of its file.
-VertexArray with_copies(const TileMesh& mesh) {
+VertexArray with_copies(const TileMesh& mesh, const Shading& shading) {
   VertexArray vertices = mesh.vertices;
   vertices.append(mesh.copies.vertices, 0, mesh.copies.size());
+  vertices.append(vertices, shading.split_of);
   return vertices;
 }
 
-void put_triangles(const TileMesh& mesh, Writer& writer) {
-  if (mesh.copies.empty()) {
-    writer.put_triangles(Part::interior, mesh.interior);
-    writer.put_triangles(Part::border, mesh.border);
+void put_triangles(const TileMesh& mesh, const Shading& shading, Writer& writer) {
+  const bool split = !shading.split_of.empty();
+  if (split || mesh.copies.empty()) {
+    writer.put_triangles(Part::interior, split ? shading.interior : mesh.interior);
+    writer.put_triangles(Part::border, split ? shading.border : mesh.border);
     return;
   }
   const VertexNumbers numbers(static_cast<std::uint32_t>(mesh.vertices.size()), mesh.copies.places);
   writer.put_triangles(Part::interior, numbers.numbered(mesh.interior, mesh.interior_wedges));
   writer.put_triangles(Part::border, numbers.numbered(mesh.border, mesh.border_wedges));
+}
+
+/// What Shading promises of its sizes.
+[[maybe_unused]] bool has_sound_size(const Shading& shading, const TileMesh& mesh,
+                                     const TileFormat& format) {
+  if (!format.computed_normals)
+    return shading == Shading{};
+  const std::size_t splits = shading.split_of.size();
+  const bool split = splits > 0;
+  return !format.attributes.normals &&
+         shading.normals.size() == mesh.vertices.size() + mesh.copies.size() + splits &&
+         shading.interior.size() == (split ? mesh.interior.size() : 0) &&
+         shading.border.size() == (split ? mesh.border.size() : 0);
 }
 
 /// The ghosts by neighbour: those of tiles[i] are [starts[i], starts[i + 1]).
@@ -230,11 +250,16 @@ TileShape read_shape(const Json& extension, NodeId node, const Tree& tree, const
   shape.interior = count("interiorCount");
   shape.border = count("borderCount");
   shape.copies = count("copyCount");
+  shape.computed_normals = format.computed_normals;
+  if (shape.computed_normals)
+    shape.splits = count("splitCount");
   if (shape.own == 0)
     throw Error(ErrorCode::corrupt, name + ": a tile without vertices");
-  if (shape.vertices() > UINT32_MAX)
+  if (shape.with_splits() > UINT32_MAX)
     throw Error(ErrorCode::corrupt,
-                fmt::format("{}: {} vertices, expected less than 2^32", name, shape.vertices()));
+                fmt::format("{}: {} vertices, expected less than 2^32", name, shape.with_splits()));
+  if (shape.splits > most_splits(shape.interior, shape.border))
+    throw Error(ErrorCode::corrupt, name + ": more splits than corners of triangles");
   const auto groups = groups_of(format.attributes);
   for (std::size_t i = 0; tree.is_partition(node) && i < groups.size(); ++i) {
     const char* key = key_of(groups[i].raw);
@@ -303,10 +328,13 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
   assert(tile.parent_map.size() == (tile.node == tree.root() ? 0 : mesh.own_count));
   assert(mesh.vertices.channels == format.attributes.channels());
   assert(mesh.copies.vertices.size() == mesh.copies.size());
+  const Shading& shading = tile.shading;
+  assert(has_sound_size(shading, mesh, format));
 
   const GhostGroups neighbours = group_ghosts(mesh.ghosts);
-  const VertexArray joined = mesh.copies.empty() ? VertexArray{} : with_copies(mesh);
-  const VertexArray& vertices = mesh.copies.empty() ? mesh.vertices : joined;
+  const bool places_only = mesh.copies.empty() && shading.split_of.empty();
+  const VertexArray joined = places_only ? VertexArray{} : with_copies(mesh, shading);
+  const VertexArray& vertices = places_only ? mesh.vertices : joined;
   const std::vector<float> shown = showable_attributes(format.attributes, vertices);
   const auto groups = groups_of(format.attributes);
 
@@ -319,7 +347,9 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
                   mesh.interior.size(),
                   mesh.border.size(),
                   mesh.copies.size(),
-                  {}};
+                  shading.split_of.size(),
+                  {},
+                  format.computed_normals};
   for (std::size_t i = 0; tree.is_partition(tile.node) && i < groups.size(); ++i) {
     shape.raw[i] = differs(shown, vertices.attributes, groups[i], vertices.channels);
   }
@@ -332,16 +362,18 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
              : begin_glb(plan.document(tile.bounds, format.frame).dump(), plan.bytes());
   Writer writer(plan, std::span(bytes).last(plan.bytes()));
   writer.put_positions(vertices.positions);
+  writer.put_normals(shading.normals);
   for (std::size_t i = 0; i < groups.size(); ++i) {
     writer.put_group(groups[i].part, groups[i], shown);
     writer.put_group(groups[i].raw, groups[i], vertices.attributes);
   }
-  put_triangles(mesh, writer);
+  put_triangles(mesh, shading, writer);
   writer.put_list<std::uint16_t>(Part::parent_map, tile.parent_map);
   writer.put_list<std::uint32_t>(Part::neighbours, neighbours.tiles);
   writer.put_list<std::uint32_t>(Part::ghost_starts, neighbours.starts);
   writer.put_list<std::uint16_t>(Part::ghost_chains, tile.chains);
-  writer.put_copies(mesh.copies.places);
+  writer.put_vertices(Part::copy_of, mesh.copies.places);
+  writer.put_vertices(Part::split_of, shading.split_of);
   if (packed) {
     const PackedBin bin = pack_bin(plan, bytes);
     bytes = join_glb(plan.document(tile.bounds, format.frame, &bin.packing).dump(), bin.bin);
@@ -352,7 +384,7 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
 std::vector<std::byte> encode_tile(const PublishedTile& tile, const Tree& tree,
                                    const TileFormat& format) {
   assert(tile.chains.size() == tile.mesh.ghosts.size());
-  return encode_tile({tile.node, tile.mesh, bounds_of(tile.mesh.vertices.positions),
+  return encode_tile({tile.node, tile.mesh, tile.shading, bounds_of(tile.mesh.vertices.positions),
                       tile.parent_map, tile.chains.entries()},
                      tree, format);
 }

@@ -52,6 +52,7 @@ struct TileFormat {
   Frame frame;  ///< the node's; its origin is 0 for float input
   Compression compression = Compression::none;
   std::optional<Lattice> lattice{};  ///< what all positions lie on, if they are quantized
+  bool computed_normals = false;     ///< tiles have a Shading; `attributes` has no normals then
 };
 
 /// True if glTF lets `normal` stand as it is: its length differs from 1 by 0.001 at most (the
@@ -62,6 +63,7 @@ bool is_unit_normal(Vec3f normal);
 struct TileView {
   NodeId node;
   const TileMesh& mesh;
+  const Shading& shading;                     ///< empty unless the format has computed normals
   Bounds bounds;                              ///< of the mesh's positions
   std::span<const std::uint16_t> parent_map;  ///< as PublishedTile's
   std::span<const std::uint16_t> chains;      ///< the ghosts' chains, one after another
@@ -69,7 +71,8 @@ struct TileView {
 
 /// Deterministic, O(size). Requires a consistent tile (see PublishedTile) with finite positions, on
 /// the lattice if there is one, at most kMaxOwnVertices own vertices and boundary vertices below
-/// that. Compressed files depend on the versions of zlib and meshoptimizer.
+/// that, and a shading if and only if the format has computed normals, equal of equal triangles.
+/// Compressed files depend on the versions of zlib and meshoptimizer.
 ///
 /// A partition keeps every attribute bit for bit, NaN included. Other tiles keep what glTF can say:
 /// u8 and u16 colours rounded to the nearest number of their type, float colours clamped to [0, 1],

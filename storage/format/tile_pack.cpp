@@ -62,7 +62,7 @@ std::vector<std::byte> pack_section(const TilePlan& plan, Part part,
       return encode_attributes(plain, section.stride);
     case ViewMode::triangles:
       return encode_triangles(numbers_in(section, plain),
-                              {plan.shape().vertices(), plan.shape().boundary});
+                              {plan.shape().with_splits(), plan.shape().boundary});
     case ViewMode::indices:
       return encode_indices(numbers_in(section, plain));
     case ViewMode::raw:

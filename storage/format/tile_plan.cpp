@@ -14,12 +14,12 @@ constexpr unsigned kPoints = 0;
 constexpr unsigned kTriangles = 4;
 
 constexpr std::array<const char*, kPartCount> kKeys{
-    "POSITION", "NORMAL",     "COLOR_0",    "TEXCOORD_0",  "interior",
-    "border",   "parentMap",  "neighbours", "ghostStarts", "ghostChains",
-    "copyOf",   "rawNormals", "rawColours", "rawTexcoords"};
+    "POSITION", "NORMAL",    "COLOR_0",    "TEXCOORD_0",  "interior",
+    "border",   "parentMap", "neighbours", "ghostStarts", "ghostChains",
+    "copyOf",   "splitOf",   "rawNormals", "rawColours",  "rawTexcoords"};
 
 std::uint64_t component_bytes(unsigned component) {
-  return component == kU8 ? 1 : component == kU16 ? 2 : 4;
+  return component == kI8 || component == kU8 ? 1 : component == kU16 ? 2 : 4;
 }
 
 /// In the order of ViewMode.
@@ -77,7 +77,8 @@ Json accessor_json(const TilePlan& plan, Part part, const Bounds& bounds) {
                    {"componentType", section.component},
                    {"count", section.count},
                    {"type", kTypes[section.components]}};
-  if (part == Part::colour && section.component != kF32)
+  const bool is_number = section.component != kF32;
+  if (is_number && (part == Part::normal || part == Part::colour))
     accessor["normalized"] = true;
   if (part == Part::position) {
     accessor["min"] = corner_json(plan, bounds.min);
@@ -132,8 +133,12 @@ Json extension_json(const TilePlan& plan) {
                     {"borderCount", shape.border},
                     {"interiorPrimitive", interior ? 0 : -1},
                     {"borderPrimitive", border ? (interior ? 1 : 0) : -1}};
+  if (shape.computed_normals)
+    extension["splitCount"] = shape.splits;
   for (std::size_t i = static_cast<std::size_t>(Part::parent_map); i < kPartCount; ++i) {
-    extension[kKeys[i]] = plan[static_cast<Part>(i)].view;
+    const auto part = static_cast<Part>(i);
+    if (part != Part::split_of || shape.computed_normals)
+      extension[kKeys[i]] = plan[part].view;
   }
   return extension;
 }
@@ -158,7 +163,7 @@ Json required_extensions(const TilePlan& plan, const Packing* packing) {
   Json names = Json::array();
   if (packing != nullptr)
     names.push_back(kMeshoptExtension);
-  if (plan.has_short_positions())
+  if (plan.has_short_positions() || plan.shape().computed_normals)
     names.push_back(kQuantizationExtension);
   return names;
 }
@@ -173,6 +178,7 @@ ViewMode mode_of(Part part) {
     case Part::parent_map:
     case Part::ghost_chains:
     case Part::copy_of:
+    case Part::split_of:
       return ViewMode::indices;
     case Part::neighbours:
     case Part::ghost_starts:
@@ -214,10 +220,12 @@ TilePlan::TilePlan(const TileShape& shape, const AttributeLayout& layout,
   const auto index_below = [](std::uint64_t count) {
     return count <= kMaxShortVertices ? kU16 : kU32;
   };
-  const unsigned index = index_below(shape.vertices());
-  add(Part::position, has_short_positions() ? kU16 : kF32, 3, shape.vertices());
+  const unsigned index = index_below(shape.with_splits());
+  add(Part::position, has_short_positions() ? kU16 : kF32, 3, shape.with_splits());
+  if (shape.computed_normals)
+    add(Part::normal, kI8, 3, shape.with_splits());
   for (const ChannelGroup& group : groups) {
-    add(group.part, component_of(group), group.channels, shape.vertices());
+    add(group.part, component_of(group), group.channels, shape.with_splits());
   }
   add(Part::interior, index, 1, 3 * shape.interior);
   add(Part::border, index, 1, 3 * shape.border);
@@ -226,6 +234,7 @@ TilePlan::TilePlan(const TileShape& shape, const AttributeLayout& layout,
   add(Part::ghost_starts, kU32, 1, shape.neighbours > 0 ? shape.neighbours + 1 : 0);
   add(Part::ghost_chains, kU16, 1, shape.chain_entries);
   add(Part::copy_of, index_below(shape.places()), 1, shape.copies);
+  add(Part::split_of, index_below(shape.vertices()), 1, shape.splits);
   for (std::size_t i = 0; i < groups.size(); ++i) {
     add(groups[i].raw, kF32, groups[i].channels, shape.raw[i] ? shape.vertices() : 0);
   }
@@ -293,8 +302,9 @@ std::uint64_t published_attribute_bytes(const AttributeLayout& layout) {
 }
 
 double expected_tile_bytes(const TileSums& tiles, std::uint64_t attribute_bytes) {
-  constexpr double kOverhead = 1600;  // JSON and headers
-  constexpr double kChain = 6;        // two or three indices of 16 bits on average
+  // JSON and headers.
+  const double overhead = attribute_bytes > 0 ? 1850 : 1600;
+  constexpr double kChain = 6;  // two or three indices of 16 bits on average
   constexpr double kParent = sizeof(std::uint16_t);
   constexpr double kTriangle = 3 * sizeof(std::uint16_t);
   constexpr double kCopyOf = sizeof(std::uint16_t);
@@ -303,7 +313,11 @@ double expected_tile_bytes(const TileSums& tiles, std::uint64_t attribute_bytes)
   const double copies = tiles.copies + ghosts * tiles.copies_per_vertex();
   return tiles.vertices * (vertex + kParent) + ghosts * (vertex + kChain) +
          copies * (vertex + kCopyOf) + (tiles.triangles + tiles.wide_triangles) * kTriangle +
-         tiles.count * kOverhead;
+         tiles.count * overhead;
+}
+
+double expected_split_bytes(std::uint64_t attribute_bytes) {
+  return 12 + static_cast<double>(attribute_bytes) + sizeof(std::uint16_t);
 }
 
 }  // namespace meshhier::storage

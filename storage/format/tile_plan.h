@@ -24,20 +24,22 @@ inline constexpr const char* kQuantizationExtension = "KHR_mesh_quantization";
 
 // The BIN chunk: one section, and one buffer view, for each of these that is not empty, in this
 // order, each starting at a multiple of 4. o, g: own places, ghosts; c: copies at either; n = o + g
-// + c: vertices, in this order; m: neighbours.
+// + c: vertices, in this order; s: splits of vertices, which have computed normals alone of their
+// own; N = n + s; m: neighbours.
 //
 //   section        elements          of
-//   position       n                 3 f32; 3 u16, stride 8, on a lattice of up to 16 bits
-//   normal         n                 3 f32
-//   colour         n                 3 or 4 u8, u16 or f32; the stride is rounded up to 4
-//   texcoord       n                 2 f32
-//   interior       3 a triangle      u16 if n <= 65535, else u32
+//   position       N                 3 f32; 3 u16, stride 8, on a lattice of up to 16 bits
+//   normal         N                 3 f32; computed ones 3 i8, stride 4
+//   colour         N                 3 or 4 u8, u16 or f32; the stride is rounded up to 4
+//   texcoord       N                 2 f32
+//   interior       3 a triangle      u16 if N <= 65535, else u32
 //   border         3 a triangle      the same
 //   parent_map     o, root: none     u16
 //   neighbours     m                 u32, ascending
 //   ghost_starts   m + 1, m = 0: 0   u32
 //   ghost_chains   a chain a ghost   u16, Tree::chain_length entries a chain
 //   copy_of        c                 u16 if o + g <= 65535, else u32; ascending
+//   split_of       s                 u16 if n <= 65535, else u32; ascending
 //   raw_normals    n or none         3 f32
 //   raw_colours    n or none         3 or 4 f32
 //   raw_texcoords  n or none         2 f32
@@ -53,11 +55,12 @@ enum class Part : std::size_t {
   ghost_starts,
   ghost_chains,
   copy_of,
+  split_of,
   raw_normals,
   raw_colours,
   raw_texcoords
 };
-inline constexpr std::size_t kPartCount = 14;
+inline constexpr std::size_t kPartCount = 15;
 
 /// The key of a part in the extension (from parent_map on), or the name of its attribute (up to
 /// texcoord).
@@ -95,11 +98,14 @@ std::array<ChannelGroup, 3> groups_of(const AttributeLayout& layout);
 struct TileShape {
   NodeId node;
   std::uint64_t own = 0, boundary = 0, ghosts = 0, neighbours = 0, chain_entries = 0;
-  std::uint64_t interior = 0, border = 0, copies = 0;
-  std::array<bool, 3> raw{};  ///< per ChannelGroup: whether its raw part is there
+  std::uint64_t interior = 0, border = 0, copies = 0, splits = 0;
+  std::array<bool, 3> raw{};      ///< per ChannelGroup: whether its raw part is there
+  bool computed_normals = false;  ///< no splits otherwise
 
   std::uint64_t places() const { return own + ghosts; }
   std::uint64_t vertices() const { return places() + copies; }
+  /// What corners of triangles are numbers of.
+  std::uint64_t with_splits() const { return vertices() + splits; }
 };
 
 struct Section {
@@ -149,5 +155,7 @@ std::uint64_t published_attribute_bytes(const AttributeLayout& layout);
 /// Bytes of the tiles' files, not compressed. `attribute_bytes`: published_attribute_bytes().
 /// Attributes that glTF cannot hold as they are count once.
 double expected_tile_bytes(const TileSums& tiles, std::uint64_t attribute_bytes);
+/// Likewise of a split.
+double expected_split_bytes(std::uint64_t attribute_bytes);
 
 }  // namespace meshhier::storage

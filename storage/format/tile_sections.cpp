@@ -26,6 +26,58 @@ Copies take_copies(VertexArray& vertices, std::vector<std::uint32_t> places) {
   return copies;
 }
 
+/// Triangles one for one: their places, the wedges there if there are copies, and themselves with
+/// splits if there are any.
+struct TriangleLists {
+  std::vector<TileTriangle>& places;
+  std::vector<CornerWedges>& wedges;
+  std::vector<TileTriangle>& shaded;
+
+  CornerWedges wedges_at(std::size_t t) const {
+    return wedges.empty() ? CornerWedges{} : wedges[t];
+  }
+  Wedge corner(std::size_t t, std::size_t c) const { return {raw(places[t][c]), wedges_at(t)[c]}; }
+  std::pair<TileTriangle, CornerWedges> key(std::size_t t) const {
+    return {places[t], wedges_at(t)};
+  }
+};
+
+/// One of them.
+struct ShadedTriangle {
+  TileTriangle places;
+  CornerWedges wedges;
+  TileTriangle shaded;
+  friend auto operator<=>(const ShadedTriangle&, const ShadedTriangle&) = default;
+};
+
+/// Beginning with the smallest corner. Requires that no vertex is there twice.
+ShadedTriangle smallest_first(const TriangleLists& lists, std::size_t t) {
+  Triangle<std::uint64_t> corners;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Wedge corner = lists.corner(t, c);
+    corners[c] = std::uint64_t{corner.place} << 32 | corner.wedge;
+  }
+  const std::size_t first = smallest_corner(corners);
+  return {turned(lists.places[t], first), turned(lists.wedges_at(t), first),
+          turned(lists.shaded[t], first)};
+}
+
+/// normalize_triangles(), which turns and moves all lists alike.
+void normalize(const TriangleLists& lists) {
+  if (lists.shaded.empty())
+    return normalize_triangles(lists.places, lists.wedges, false);
+  std::vector<ShadedTriangle> sorted;
+  for (std::size_t t = 0; t < lists.places.size(); ++t)
+    sorted.push_back(smallest_first(lists, t));
+  std::sort(sorted.begin(), sorted.end());
+  for (std::size_t t = 0; t < sorted.size(); ++t) {
+    lists.places[t] = sorted[t].places;
+    lists.shaded[t] = sorted[t].shaded;
+    if (!lists.wedges.empty())
+      lists.wedges[t] = sorted[t].wedges;
+  }
+}
+
 class Reader {
  public:
   Reader(const TileSections& sections, const Tree& tree, const std::string& name)
@@ -37,7 +89,7 @@ class Reader {
 
   std::vector<Vec3f> positions() const {
     const Section& section = plan_[Part::position];
-    std::vector<Vec3f> positions(section.count);
+    std::vector<Vec3f> positions(plan_.shape().vertices());
     for (std::size_t v = 0; v < positions.size(); ++v) {
       positions[v] = position(section, v);
       if (!std::isfinite(positions[v].x) || !std::isfinite(positions[v].y) ||
@@ -59,9 +111,13 @@ class Reader {
     mesh.own_count = static_cast<std::uint32_t>(shape.own);
     mesh.boundary_count = static_cast<std::uint32_t>(shape.boundary);
     mesh.copies = take_copies(mesh.vertices, copy_places(mesh.vertices.positions));
+    Shading& shading = tile.shading;
+    shading = {normals(), splits(), {}, {}};
     const VertexNumbers numbers(static_cast<std::uint32_t>(shape.places()), mesh.copies.places);
-    read_triangles(Part::interior, numbers, mesh.interior, mesh.interior_wedges);
-    read_triangles(Part::border, numbers, mesh.border, mesh.border_wedges);
+    read_triangles(Part::interior, numbers, shading.split_of,
+                   {mesh.interior, mesh.interior_wedges, shading.interior});
+    read_triangles(Part::border, numbers, shading.split_of,
+                   {mesh.border, mesh.border_wedges, shading.border});
     tile.parent_map = parent_map();
     read_ghosts(tile);
     return tile;
@@ -91,35 +147,84 @@ class Reader {
     return attributes;
   }
 
+  /// The vertices that the elements of a section repeat, below `limit`, ascending.
+  std::vector<std::uint32_t> repeated_vertices(Part part, std::uint64_t limit,
+                                               const char* what) const {
+    const Section& section = plan_[part];
+    std::vector<std::uint32_t> vertices(section.count);
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      vertices[i] = number(section, i);
+      if (vertices[i] >= limit || (i > 0 && vertices[i] < vertices[i - 1])) {
+        fail(fmt::format("{} {} is of vertex {}, expected one of the first {}, ascending", what, i,
+                         vertices[i], limit));
+      }
+    }
+    return vertices;
+  }
+
   /// Where the copies lie. `positions`: of all vertices.
   std::vector<std::uint32_t> copy_places(std::span<const Vec3f> positions) const {
-    const Section& section = plan_[Part::copy_of];
     const std::uint64_t place_count = plan_.shape().places();
-    std::vector<std::uint32_t> places(section.count);
+    std::vector<std::uint32_t> places = repeated_vertices(Part::copy_of, place_count, "copy");
     for (std::size_t i = 0; i < places.size(); ++i) {
-      places[i] = number(section, i);
-      if (places[i] >= place_count || (i > 0 && places[i] < places[i - 1])) {
-        fail(fmt::format("copy {} is of vertex {}, expected one of the first {}, ascending", i,
-                         places[i], place_count));
-      }
       if (positions[place_count + i] != positions[places[i]])
         fail(fmt::format("copy {} does not lie where its vertex {} does", i, places[i]));
     }
     return places;
   }
 
-  /// Triangles of places, which begin with their smallest corner and ascend, and their wedges if
-  /// there are copies. They must be so in the file, unless it is packed.
-  void read_triangles(Part part, const VertexNumbers& numbers, std::vector<TileTriangle>& triangles,
-                      std::vector<CornerWedges>& wedges) const {
-    triangles = numbered_triangles(part);
+  /// Computed ones, of vertices and splits.
+  std::vector<NormalCode> normals() const {
+    const Section& section = plan_[Part::normal];
+    std::vector<NormalCode> normals(plan_.shape().computed_normals ? section.count : 0);
+    for (std::size_t v = 0; v < normals.size(); ++v) {
+      for (std::size_t i = 0; i < 4; ++i)
+        normals[v][i] = static_cast<std::int8_t>(get<std::uint8_t>(section, v, i));
+      if (!is_normal_code(normals[v])) {
+        fail(fmt::format("the normal of vertex {} is ({}, {}, {}, {}), expected unit length and 0",
+                         v, normals[v][0], normals[v][1], normals[v][2], normals[v][3]));
+      }
+    }
+    return normals;
+  }
+
+  /// Of which vertices they are; all but their normals is the same.
+  std::vector<std::uint32_t> splits() const {
+    const std::uint64_t vertex_count = plan_.shape().vertices();
+    const auto vertices = repeated_vertices(Part::split_of, vertex_count, "split");
+    for (const Part part : {Part::position, Part::colour, Part::texcoord}) {
+      for (std::size_t i = 0; i < vertices.size(); ++i) {
+        if (!std::ranges::equal(element(part, vertices[i]), element(part, vertex_count + i)))
+          fail(fmt::format("split {} has not the {} of its vertex {}", i, key_of(part),
+                           vertices[i]));
+      }
+    }
+    return vertices;
+  }
+
+  /// Its bytes; none if the section is not there.
+  std::span<const std::byte> element(Part part, std::uint64_t number) const {
+    const Section& section = plan_[part];
+    return section.count == 0
+               ? std::span<const std::byte>()
+               : bin_.subspan(section.offset + number * section.stride, section.stride);
+  }
+
+  /// Triangles begin with their smallest corner and ascend, by place and wedge. They must be so in
+  /// the file, unless it is packed.
+  void read_triangles(Part part, const VertexNumbers& numbers,
+                      std::span<const std::uint32_t> split_of, const TriangleLists& lists) const {
+    lists.shaded = numbered_triangles(part);
+    lists.places = without_splits(part, lists.shaded, split_of);
+    if (split_of.empty())
+      lists.shaded.clear();
     if (plan_.shape().copies > 0)
-      wedges = numbers.split(triangles);
+      lists.wedges = numbers.split(lists.places);
     if (is_packed_)
-      normalize_triangles(triangles, wedges, false);
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-      check_order(part, t, triangles, wedges);
-      check_corners(part, t, triangles[t]);
+      normalize(lists);
+    for (std::size_t t = 0; t < lists.places.size(); ++t) {
+      check_order(part, t, lists);
+      check_corners(part, t, lists.places[t]);
     }
   }
 
@@ -195,8 +300,9 @@ class Reader {
                   std::span<float> attributes) const {
     const Section& section = plan_[part];
     const auto channels = static_cast<std::size_t>(plan_.layout().channels());
-    for (std::size_t v = 0; v < section.count; ++v) {
-      for (std::size_t c = 0; c < section.components; ++c) {
+    const std::uint64_t count = std::min(section.count, plan_.shape().vertices());
+    for (std::size_t v = 0; v < count; ++v) {
+      for (std::size_t c = 0; c < group.channels; ++c) {
         float& value = attributes[v * channels + group.offset + c];
         value = section.component == kU8    ? get<std::uint8_t>(section, v, c)
                 : section.component == kU16 ? get<std::uint16_t>(section, v, c)
@@ -213,18 +319,31 @@ class Reader {
                                      : get<std::uint32_t>(section, element);
   }
 
-  /// Of three different vertices each.
+  /// Of vertices and splits.
   std::vector<TileTriangle> numbered_triangles(Part part) const {
     const Section& section = plan_[part];
     std::vector<TileTriangle> triangles(section.count / 3);
     for (std::size_t t = 0; t < triangles.size(); ++t) {
       for (std::size_t c = 0; c < 3; ++c) {
         const std::uint32_t index = number(section, 3 * t + c);
-        if (index >= plan_.shape().vertices()) {
+        if (index >= plan_.shape().with_splits()) {
           fail(fmt::format("index {} of {} triangle {} is not below the {} vertices", index,
-                           key_of(part), t, plan_.shape().vertices()));
+                           key_of(part), t, plan_.shape().with_splits()));
         }
         triangles[t][c] = static_cast<TileVertex>(index);
+      }
+    }
+    return triangles;
+  }
+
+  /// Of three different vertices each.
+  std::vector<TileTriangle> without_splits(Part part, std::vector<TileTriangle> triangles,
+                                           std::span<const std::uint32_t> split_of) const {
+    const std::uint64_t vertex_count = plan_.shape().vertices();
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      for (TileVertex& corner : triangles[t]) {
+        if (raw(corner) >= vertex_count)
+          corner = static_cast<TileVertex>(split_of[raw(corner) - vertex_count]);
       }
       if (is_degenerate(triangles[t]))
         fail_triangle(part, t, triangles[t], "has a vertex twice");
@@ -232,15 +351,13 @@ class Reader {
     return triangles;
   }
 
-  void check_order(Part part, std::size_t t, std::span<const TileTriangle> triangles,
-                   std::span<const CornerWedges> wedges) const {
-    const auto wedges_at = [&](std::size_t i) {
-      return wedges.empty() ? CornerWedges{} : wedges[i];
-    };
-    const auto corner = [&](std::size_t c) { return Wedge{raw(triangles[t][c]), wedges_at(t)[c]}; };
-    const auto key = [&](std::size_t i) { return std::pair(triangles[i], wedges_at(i)); };
-    if (corner(1) < corner(0) || corner(2) < corner(0) || (t > 0 && key(t) < key(t - 1)))
-      fail_triangle(part, t, triangles[t], "is turned or out of order");
+  void check_order(Part part, std::size_t t, const TriangleLists& lists) const {
+    if (lists.corner(t, 1) < lists.corner(t, 0) || lists.corner(t, 2) < lists.corner(t, 0) ||
+        (t > 0 && lists.key(t) < lists.key(t - 1)))
+      fail_triangle(part, t, lists.places[t], "is turned or out of order");
+    if (t > 0 && !lists.shaded.empty() && lists.key(t) == lists.key(t - 1) &&
+        lists.shaded[t] != lists.shaded[t - 1])
+      fail_triangle(part, t, lists.places[t], "has other splits than the equal one before it");
   }
 
   void check_corners(Part part, std::size_t t, const TileTriangle& triangle) const {

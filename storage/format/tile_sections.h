@@ -22,7 +22,7 @@ struct TileSections {
 
 // Both throw Error(corrupt) that starts with `name`.
 
-/// Of all vertices, copies last: finite, and on the lattice if there is one.
+/// Of all vertices, copies last, without splits: finite, and on the lattice if there is one.
 std::vector<Vec3f> read_positions(const TileSections& sections, const Tree& tree,
                                   const std::string& name);
 /// All of the tile. `positions`: read_positions().

@@ -360,6 +360,78 @@ Boundary decode_boundary(std::span<const std::byte> bytes, int channels) {
   return boundary;
 }
 
+// A shading: u32 normals, u32 splits, the normals, the splits' vertices as numbers.
+namespace {
+
+void put_shading(Packer& packer, const OwnShading& shading) {
+  const std::array<std::uint32_t, 2> counts{static_cast<std::uint32_t>(shading.normals.size()),
+                                            static_cast<std::uint32_t>(shading.split_of.size())};
+  packer.put(std::span<const std::uint32_t>(counts));
+  packer.put(std::span<const NormalCode>(shading.normals));
+  if (!shading.split_of.empty())
+    put_numbers(packer, shading.split_of);
+}
+
+OwnShading get_shading(Unpacker& unpacker) {
+  const std::vector<std::uint32_t> counts = unpacker.get<std::uint32_t>(2);
+  OwnShading shading;
+  shading.normals = unpacker.get<NormalCode>(counts[0]);
+  if (counts[1] > 0)
+    shading.split_of = get_numbers(unpacker, counts[1]);
+  return shading;
+}
+
+std::size_t most_bytes(const OwnShading& shading) {
+  return kShadingHeadBytes + sizeof(NormalCode) * shading.normals.size() +
+         sizeof(std::uint32_t) * shading.split_of.size() + 1;
+}
+
+}  // namespace
+
+std::vector<std::byte> encode_own_shading(const OwnShading& shading) {
+  Packer packer(most_bytes(shading));
+  put_shading(packer, shading);
+  return packer.take();
+}
+
+OwnShading decode_own_shading(std::span<const std::byte> bytes) {
+  Unpacker unpacker(bytes);
+  OwnShading shading = get_shading(unpacker);
+  unpacker.finish();
+  return shading;
+}
+
+std::uint32_t encoded_split_count(std::span<const std::byte> head) {
+  std::array<std::uint32_t, 2> counts;
+  static_assert(sizeof counts == kShadingHeadBytes);
+  std::memcpy(counts.data(), head.data(), sizeof counts);
+  return counts[1];
+}
+
+// A boundary's: the shading, then u32 places, u32 copies, the copies' places as numbers.
+std::vector<std::byte> encode_boundary_shading(const BoundaryShading& boundary) {
+  const std::array<std::uint32_t, 2> counts{
+      boundary.boundary_count, static_cast<std::uint32_t>(boundary.copy_places.size())};
+  Packer packer(most_bytes(boundary.shading) + sizeof counts + 4 * counts[1] + 1);
+  put_shading(packer, boundary.shading);
+  packer.put(std::span<const std::uint32_t>(counts));
+  if (counts[1] > 0)
+    put_numbers(packer, boundary.copy_places);
+  return packer.take();
+}
+
+BoundaryShading decode_boundary_shading(std::span<const std::byte> bytes) {
+  Unpacker unpacker(bytes);
+  BoundaryShading boundary;
+  boundary.shading = get_shading(unpacker);
+  const std::vector<std::uint32_t> counts = unpacker.get<std::uint32_t>(2);
+  boundary.boundary_count = counts[0];
+  if (counts[1] > 0)
+    boundary.copy_places = get_numbers(unpacker, counts[1]);
+  unpacker.finish();
+  return boundary;
+}
+
 // A wedge map: u32 places, u32 copies, then wedges of the places, of the copies, and the copies'
 // places, as numbers. Nothing if it is empty.
 std::vector<std::byte> encode_wedge_map(const WedgeMap& map) {
@@ -464,6 +536,14 @@ double expected_work_tile_bytes(const TileSums& tiles, std::uint32_t vertex_byte
          (tiles.copies + boundary_copies) * (vertex_bytes + kCopyPlace) +
          boundary_copies * tiles.foreign_per_boundary * kForeignWedge +
          (tiles.triangles + tiles.wide_triangles) * kTriangle;
+}
+
+double expected_shading_bytes(const TileSums& tiles) {
+  constexpr double kHeads = 24;
+  constexpr double kSplits = 1.05;  // with those of surfaces that are not too rough
+  const double vertices = tiles.vertices + tiles.copies;
+  const double boundary = tiles.boundary * (1 + tiles.copies_per_vertex());
+  return tiles.count * kHeads + (vertices + boundary) * sizeof(NormalCode) * kSplits;
 }
 
 double expected_seam_strip_bytes(const TileSums& tiles) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "hierarchy/build_tile.h"
+#include "hierarchy/shading.h"
 #include "storage/format/tile_sums.h"
 
 #include <cstddef>
@@ -34,6 +35,14 @@ template <class Corner>
 std::vector<std::byte> encode_boundary(const WorkTile<Corner>& tile);
 Boundary decode_boundary(std::span<const std::byte> bytes, int channels);
 
+std::vector<std::byte> encode_own_shading(const OwnShading& shading);
+OwnShading decode_own_shading(std::span<const std::byte> bytes);
+/// The first bytes of an encoded shading, and how many splits they tell.
+constexpr std::size_t kShadingHeadBytes = 8;
+std::uint32_t encoded_split_count(std::span<const std::byte> head);
+std::vector<std::byte> encode_boundary_shading(const BoundaryShading& boundary);
+BoundaryShading decode_boundary_shading(std::span<const std::byte> bytes);
+
 /// No bytes if the map is empty.
 std::vector<std::byte> encode_wedge_map(const WedgeMap& map);
 WedgeMap decode_wedge_map(std::span<const std::byte> bytes);
@@ -44,6 +53,9 @@ SeamStrip decode_seam_strip(std::span<const std::byte> bytes);
 /// Bytes of the encoded tiles, and of their boundaries, which are encoded once more.
 /// `vertex_bytes`: of a position and its attributes.
 double expected_work_tile_bytes(const TileSums& tiles, std::uint32_t vertex_bytes);
+/// Bytes of the encoded shadings of the tiles and of their boundaries, on a surface without
+/// creases.
+double expected_shading_bytes(const TileSums& tiles);
 /// Bytes of the encoded seam strips of simplified tiles, as surfaces have them.
 double expected_seam_strip_bytes(const TileSums& tiles);
 /// Likewise where borders are far longer: foreign corners outweigh the tile.

@@ -42,18 +42,20 @@ const std::map<std::string, std::set<std::string>>& allowed_rooms() {
       {"partition", {"hierarchy", "storage/io"}},
       {"cluster_simplify", {"hierarchy"}},
       {"outline", {"hierarchy"}},
+      {"render", {"hierarchy"}},
+      {"shading", {"hierarchy"}},
       {"config",
        with_storage({"cluster_simplify", "execution", "hierarchy", "mesh_io", "partition"})},
       {"import", {"execution", "hierarchy", "mesh_io", "partition", "storage/io"}},
-      {"pipeline/tiles", with_storage({"cluster_simplify", "hierarchy", "partition"})},
+      {"pipeline/tiles", with_storage({"cluster_simplify", "hierarchy", "partition", "shading"})},
       {"pipeline/plan",
        with_storage({"cluster_simplify", "config", "execution", "hierarchy", "import", "mesh_io",
-                     "outline", "partition", "pipeline/tiles"})},
+                     "outline", "partition", "pipeline/tiles", "shading"})},
       {"pipeline/journal", with_storage({"config", "execution", "hierarchy", "import", "mesh_io",
                                          "pipeline/plan", "pipeline/tiles"})},
       {"pipeline", with_storage({"cluster_simplify", "config", "execution", "hierarchy", "import",
                                  "mesh_io", "outline", "partition", "pipeline/journal",
-                                 "pipeline/plan", "pipeline/tiles"})},
+                                 "pipeline/plan", "pipeline/tiles", "shading"})},
       {"inspection",
        with_storage({"config", "execution", "hierarchy", "import", "mesh_io", "partition"})},
       {"progressive", with_storage({"execution", "hierarchy", "mesh_io"})},
@@ -63,7 +65,7 @@ const std::map<std::string, std::set<std::string>>& allowed_rooms() {
         "pipeline/plan", "progressive", "server", "storage/io"}},
       {"bench",
        {"cluster_simplify", "execution", "hierarchy", "inspection", "mesh_io", "partition",
-        "storage/io"}}};
+        "render", "storage/format", "storage/io"}}};
   return rules;
 }
 
@@ -203,8 +205,9 @@ const std::vector<ThirdParty>& third_parties() {
   const auto of = [](std::set<std::string> paths) {
     return [paths](const Source& source) { return paths.contains(source.path); };
   };
-  static const std::set<std::string> without_text = {"cluster_simplify", "hierarchy", "outline",
-                                                     "partition", "pipeline/tiles"};
+  static const std::set<std::string> without_text = {
+      "cluster_simplify", "hierarchy", "outline", "partition",
+      "pipeline/tiles",   "render",    "shading"};
   static const std::vector<ThirdParty> rules = {
       {"tbb/",
        [](const Source& s) {
@@ -221,6 +224,7 @@ const std::vector<ThirdParty>& third_parties() {
       {"benchmark/", in({"bench"})},
       {"md5.h", of({"storage/io/hash.cpp"})},
       {"xxhash.h", of({"storage/io/hash.cpp"})},
+      {"png.h", of({"render/png.cpp"})},
       {"zlib.h", of({"mesh_io/gzip_stream.cpp", "storage/format/gzip.cpp"})},
       {"meshoptimizer.h", of({"storage/format/meshopt_codec.cpp"})},
       {"fmt/", [](const Source& s) { return !s.is_in(without_text); }}};
@@ -275,8 +279,8 @@ std::string check_kernel(const Source& source, const Include& include) {
   static const std::set<std::string> effects = {"thread",     "mutex",   "atomic",
                                                 "future",     "fstream", "iostream",
                                                 "filesystem", "random",  "chrono"};
-  if (!source.is_in({"cluster_simplify", "hierarchy", "outline"}) || include.quoted ||
-      !effects.contains(include.name))
+  if (!source.is_in({"cluster_simplify", "hierarchy", "outline", "render", "shading"}) ||
+      include.quoted || !effects.contains(include.name))
     return "";
   return "<" + include.name + "> has no place in a kernel";
 }

@@ -141,7 +141,7 @@ class Level {
 
   void draw(std::uint32_t t) {
     const SimplifiedTile& work = contracted_[t].tile;
-    BuildTile tile = resolve(work, mapped(work.foreign), true);
+    BuildTile tile = resolve(work, mapped(work.foreign), true, 0);
     for (std::uint32_t other = 0; other < contracted_.size(); ++other) {
       const SimplifiedTile& neighbour = contracted_[other].tile;
       Boundary boundary;

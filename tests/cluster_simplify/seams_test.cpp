@@ -184,7 +184,7 @@ void fill_all(BuildTile& tile, const World& world) {
 BuildTile build_tile(const World& world, std::uint32_t tile) {
   SimplifiedTile work = work_tile(world, tile);
   const std::vector<GhostRef> same = refs_of(work.foreign);
-  BuildTile built = resolve(std::move(work), same, true);
+  BuildTile built = resolve(std::move(work), same, true, 0);
   fill_all(built, world);
   return built;
 }
@@ -255,7 +255,7 @@ TEST(ResolveTest, ForeignCornersThatBecameOneVertexBecomeOneGhost) {
   SimplifiedTile tile = small_tile();
   tile.border = {triangle(0, 2, 4), triangle(0, 3, 5)};
   const std::vector<GhostRef> mapped = {{1, 3}, {1, 3}, {1, 9}, {1, 3}};
-  const BuildTile built = resolve(tile, mapped, true);
+  const BuildTile built = resolve(tile, mapped, true, 0);
   EXPECT_THAT(built.mesh.ghosts, ElementsAre(GhostRef{1, 3}, GhostRef{1, 9}));
   EXPECT_THAT(built.mesh.border, ElementsAre(triangle(0, 2, 3)));  // the other lost its area
 }
@@ -264,7 +264,7 @@ TEST(ResolveTest, AGhostThatNoTriangleUsesAnyMoreGoes) {
   SimplifiedTile tile = small_tile();
   tile.border = {triangle(0, 2, 3), triangle(0, 1, 5)};
   const std::vector<GhostRef> mapped = {{1, 4}, {1, 4}, {1, 0}, {3, 7}};
-  const BuildTile built = resolve(tile, mapped, true);
+  const BuildTile built = resolve(tile, mapped, true, 0);
   EXPECT_THAT(built.mesh.ghosts, ElementsAre(GhostRef{3, 7}));
   EXPECT_THAT(built.mesh.border, ElementsAre(triangle(0, 1, 2)));
 }
@@ -274,9 +274,9 @@ TEST(ResolveTest, OnlyExactDuplicatesGoAndOnlyIfAskedTo) {
   // The same triangle, turned; and its mirror image, which must stay.
   tile.border = {triangle(0, 1, 2), triangle(3, 0, 1), triangle(1, 0, 2)};
   const std::vector<GhostRef> mapped = {{1, 4}, {1, 4}, {1, 4}, {1, 4}};
-  EXPECT_THAT(resolve(tile, mapped, true).mesh.border,
+  EXPECT_THAT(resolve(tile, mapped, true, 0).mesh.border,
               ElementsAre(triangle(0, 1, 2), triangle(0, 2, 1)));
-  EXPECT_THAT(resolve(tile, mapped, false).mesh.border,
+  EXPECT_THAT(resolve(tile, mapped, false, 0).mesh.border,
               ElementsAre(triangle(0, 1, 2), triangle(0, 1, 2), triangle(0, 2, 1)));
 }
 
@@ -284,7 +284,7 @@ TEST(FillGhostsTest, AGhostOutsideTheBoundaryIsADefect) {
   SimplifiedTile work = small_tile();
   work.border = {triangle(0, 1, 4)};
   const std::vector<GhostRef> mapped = refs_of(work.foreign);
-  BuildTile tile = resolve(work, mapped, true);
+  BuildTile tile = resolve(work, mapped, true, 0);
   Boundary boundary;
   boundary.vertices.positions = {{7, 7, 7}, {8, 8, 8}};  // the ghost is number 2
   try {
@@ -450,7 +450,7 @@ TEST(ApplyTest, TheTilesOfALevelShowTheImageOfTheMeshUnderOneMap) {
           const auto first = static_cast<std::uint32_t>(above.own[above.tile_of[v]].front());
           mapped.push_back({above.tile_of[v], v - first});
         }
-        BuildTile tile = resolve(std::move(work), mapped, true);
+        BuildTile tile = resolve(std::move(work), mapped, true, 0);
         fill_all(tile, above);  // throws if a ghost is not in its tile's boundary
         EXPECT_EQ(above.global(tile.mesh, pair, tile.mesh.interior), above.interior(pair));
         EXPECT_EQ(above.global(tile.mesh, pair, tile.mesh.border), above.border(pair));

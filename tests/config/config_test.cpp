@@ -72,7 +72,7 @@ TEST(Config, EveryKeyIsRead) {
       "simplify": {"method": "cluster", "vertices": 4096, "representative": "vertex",
                    "cost": "melax"},
       "outline": {"sectors": 64, "tolerance": 0.01},
-      "storage": {"compression": "meshopt", "positions": {"bits": 14}})"));
+      "storage": {"compression": "meshopt", "positions": {"bits": 14}, "normals": "none"})"));
   EXPECT_EQ(config.memory_budget, 64u << 20);
   EXPECT_EQ(config.threads, 3u);
   EXPECT_EQ(config.partition.count, 128u);
@@ -85,6 +85,7 @@ TEST(Config, EveryKeyIsRead) {
   EXPECT_EQ(config.outline.tolerance, 0.01);
   EXPECT_EQ(config.storage.compression, storage::Compression::meshopt);
   EXPECT_EQ(config.storage.position_bits, 14u);
+  EXPECT_EQ(config.storage.normals, config::Normals::none);
   EXPECT_EQ(parse(with(R"("simplify": {"representative": "mean"})")).simplify.representative,
             config::Representative::mean);
 }
@@ -102,7 +103,7 @@ TEST(Config, KeysTwoLevelsDeepAreOverriddenAndResolved) {
       parse_config(with(R"("storage": {"positions": {"bits": 12}})"), {"a.json", {}}, overrides);
   EXPECT_EQ(config.storage.position_bits, 16u);
   EXPECT_EQ(resolved_json(config)["storage"].dump(),
-            R"({"compression":"zlib","positions":{"bits":16}})");
+            R"({"compression":"zlib","positions":{"bits":16},"normals":"smooth"})");
   EXPECT_EQ(parse_config(with(""), {"a.json", {}}, overrides), config);
   const std::vector<std::string> whole{R"(storage={"positions": {"bits": 4}})"};
   try {
@@ -590,13 +591,13 @@ TEST(ResolvedJson, HoldsWhatDecidesTheResultAndNothingElse) {
       "simplify": {"method": "edge_collapse", "vertices": 8192, "representative": "quadric",
                    "cost": "quadric"},
       "outline": {"sectors": 128, "tolerance": 0.002},
-      "storage": {"compression": "none"}, "up": "y"})"));
+      "storage": {"compression": "none", "normals": "smooth"}, "up": "y"})"));
   EXPECT_EQ(resolved_json(parse(with(R"("partition": {"count": 9})"))), Json::parse(R"({
       "weld": false, "topology": "place",
       "partition": {"count": 9, "axis": "compactness"},
       "simplify": {"method": "edge_collapse", "representative": "quadric", "cost": "quadric"},
       "outline": {"sectors": 128, "tolerance": 0.002},
-      "storage": {"compression": "none"}, "up": "y"})"));
+      "storage": {"compression": "none", "normals": "smooth"}, "up": "y"})"));
 }
 
 TEST(ResolvedJson, DoesNotDependOnPathsBudgetAndThreads) {

@@ -17,6 +17,7 @@ void check_record(const TileRecord& record, const Tree& tree) {
   require(record.own_count >= 1 && record.own_count <= storage::kMaxOwnVertices, "own vertices");
   require(record.boundary_count <= record.own_count, "the boundary is of the own");
   require(record.drawn_border_count <= record.border_count, "what is drawn is there");
+  require(record.split_count <= most_splits(record.interior_count, record.border_count), "splits");
   require(!record.bounds.empty(), "a box");
 }
 

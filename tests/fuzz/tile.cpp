@@ -4,17 +4,20 @@
 //   u8  level             of the node, modulo what there can be
 //   u32 index             likewise
 //   u8  format            1 normals, 2 alpha, 4 texcoords, 8 an origin; 16, 32: the colours' type;
-//                         64, 128: the compression; with 64 and 8, positions are on a lattice
+//                         64, 128: the compression; with 64 and 8, positions are on a lattice;
+//                         2 without 1 and colours: computed normals
 //
 // and then a GLB (put into a gzip stream where one is wanted), or a gzip stream, or, if it begins
 // like neither, what makes a GLB: counts whose JSON is written as it must be, so that all the rest
 // of the input lies behind the comparison of the JSON:
 //
-//   u16 own, boundary, ghosts, neighbours, chain entries, interior, border, copies
+//   u16 own, boundary, ghosts, neighbours, chain entries, interior, border, copies; splits only if
+//       there are computed normals
 //   u8  which attributes have raw values: 1, 2, 4
 //   the BIN chunk before it is compressed, cut or filled up with zeros to its size
 #include "fuzz/target.h"
 #include "fuzz/targets.h"
+#include "hierarchy/vertex_numbers.h"
 #include "storage/format/glb.h"
 #include "storage/format/gzip.h"
 #include "storage/format/tile_glb.h"
@@ -47,8 +50,10 @@ Place take_place(Take& take) {
   place.node.level = static_cast<Level>(take.upto<std::uint8_t>(raw(place.tree.depth())));
   place.node.index = take.upto<std::uint32_t>(place.tree.node_count(place.node.level) - 1);
   const auto bits = take.number<std::uint8_t>();
+  const bool computed = (bits & 51) == 2;
   place.format.attributes = {(bits & 1) != 0, static_cast<ColourType>(bits >> 4 & 3),
-                             (bits & 2) != 0, (bits & 4) != 0};
+                             (bits & 2) != 0 && !computed, (bits & 4) != 0};
+  place.format.computed_normals = computed;
   if ((bits & 8) != 0)
     place.format.frame.origin = {1e6, -0.1, 3};
   place.format.compression = static_cast<storage::Compression>(bits >> 6);
@@ -59,7 +64,7 @@ Place take_place(Take& take) {
 
 /// The box of the positions in the BIN chunk; false if one is not finite: no box has a JSON.
 bool bounds_in(Bytes bin, const storage::TilePlan& plan, Bounds& bounds) {
-  for (std::size_t v = 0; v < plan.shape().vertices(); ++v) {
+  for (std::size_t v = 0; v < plan.shape().with_splits(); ++v) {
     if (plan.has_short_positions()) {
       Take numbers(bin.subspan(8 * v));
       const auto x = numbers.number<std::uint16_t>();
@@ -79,7 +84,7 @@ bool bounds_in(Bytes bin, const storage::TilePlan& plan, Bounds& bounds) {
   return true;
 }
 
-/// Whether all corners of triangles are vertices, as the encoder requires.
+/// Whether all corners of triangles are vertices or splits, as the encoder requires.
 bool has_vertices_below(const storage::TilePlan& plan, Bytes bin) {
   for (const storage::Part part : {storage::Part::interior, storage::Part::border}) {
     const storage::Section& section = plan[part];
@@ -87,7 +92,7 @@ bool has_vertices_below(const storage::TilePlan& plan, Bytes bin) {
     for (std::uint64_t i = 0; i < section.count; ++i) {
       const std::uint32_t corner =
           section.stride == 2 ? take.number<std::uint16_t>() : take.number<std::uint32_t>();
-      if (corner >= plan.shape().vertices())
+      if (corner >= plan.shape().with_splits())
         return false;
     }
   }
@@ -103,6 +108,9 @@ std::vector<std::byte> make_glb(Take take, const Place& place) {
   for (std::uint64_t* field : {&shape.own, &shape.boundary, &shape.ghosts, &shape.neighbours,
                                &shape.chain_entries, &shape.interior, &shape.border, &shape.copies})
     *field = count();
+  shape.computed_normals = place.format.computed_normals;
+  if (shape.computed_normals)
+    shape.splits = count();
   const auto raw_bits = take.number<std::uint8_t>();
   const auto groups = storage::groups_of(place.format.attributes);
   for (std::size_t i = 0; i < groups.size(); ++i)
@@ -130,7 +138,7 @@ bool same_but_attributes(const PublishedTile& a, const PublishedTile& b) {
          a.mesh.copies.vertices.positions == b.mesh.copies.vertices.positions &&
          a.mesh.copies.places == b.mesh.copies.places &&
          a.mesh.interior_wedges == b.mesh.interior_wedges &&
-         a.mesh.border_wedges == b.mesh.border_wedges;
+         a.mesh.border_wedges == b.mesh.border_wedges && a.shading == b.shading;
 }
 
 bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
@@ -170,6 +178,38 @@ void check_copies(const TileMesh& mesh) {
   }
   check_wedges(mesh, mesh.interior, mesh.interior_wedges);
   check_wedges(mesh, mesh.border, mesh.border_wedges);
+}
+
+/// Triangles are the mesh's with splits.
+void check_shaded(const Shading& shading, const std::vector<TileTriangle>& triangles,
+                  const std::vector<TileTriangle>& numbered) {
+  const std::size_t vertices = shading.normals.size() - shading.split_of.size();
+  require(triangles.size() == (shading.split_of.empty() ? 0 : numbered.size()),
+          "a shaded triangle of each");
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::uint32_t number = raw(triangles[t][c]);
+      require(number < shading.normals.size(), "corners have normals");
+      require(
+          (number < vertices ? number : shading.split_of[number - vertices]) == raw(numbered[t][c]),
+          "splits are of their corners");
+    }
+  }
+}
+
+void check_shading(const PublishedTile& tile, const Place& place) {
+  const Shading& shading = tile.shading;
+  const TileMesh& mesh = tile.mesh;
+  require(shading.empty() != place.format.computed_normals, "normals where they are computed");
+  if (shading.empty())
+    return;
+  const VertexNumbers numbers(static_cast<std::uint32_t>(mesh.vertices.size()), mesh.copies.places);
+  require(
+      shading.normals.size() == mesh.vertices.size() + mesh.copies.size() + shading.split_of.size(),
+      "a normal each");
+  require(std::ranges::is_sorted(shading.split_of), "splits ascend");
+  check_shaded(shading, shading.interior, numbers.numbered(mesh.interior, mesh.interior_wedges));
+  check_shaded(shading, shading.border, numbers.numbered(mesh.border, mesh.border_wedges));
 }
 
 void check_triangles(const TileMesh& mesh) {
@@ -216,6 +256,7 @@ void check_tile(const PublishedTile& tile, const Place& place) {
   }
   check_triangles(mesh);
   check_copies(mesh);
+  check_shading(tile, place);
 }
 
 /// Nothing is lost but what glTF cannot say above the partitions; that goes the first time.

@@ -1,6 +1,7 @@
 #include "gltf/sample_hierarchy.h"
 
 #include "hierarchy/bounds.h"
+#include "support/sample_shading.h"
 
 #include <algorithm>
 #include <cmath>
@@ -296,6 +297,13 @@ SampleHierarchy with_copies(SampleHierarchy sample) {
   return sample;
 }
 
+SampleHierarchy shaded(SampleHierarchy sample) {
+  sample.format.computed_normals = true;
+  for (PublishedTile& tile : sample.tiles)
+    tile.shading = sample_shading(tile);
+  return sample;
+}
+
 SampleHierarchy quantized(SampleHierarchy sample, int bits) {
   Bounds bounds;
   for (const PublishedTile& tile : sample.tiles)
@@ -336,6 +344,14 @@ std::vector<AttributeLayout> sample_layouts() {
       layouts.push_back({.normals = true, .colour = type, .alpha = alpha, .texcoords = true});
     }
   }
+  return layouts;
+}
+
+std::vector<AttributeLayout> sample_layouts_without_normals() {
+  std::vector<AttributeLayout> layouts = sample_layouts();
+  std::erase_if(layouts, [](const AttributeLayout& layout) { return layout.normals; });
+  for (const ColourType type : {ColourType::u8, ColourType::f32})
+    layouts.push_back({.colour = type, .texcoords = true});
   return layouts;
 }
 

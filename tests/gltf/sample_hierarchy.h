@@ -32,6 +32,10 @@ SampleHierarchy make_sample(const TestMesh& mesh, std::uint32_t partitions,
 /// at one place.
 SampleHierarchy with_copies(SampleHierarchy sample);
 
+/// The same with computed normals. Requires a layout without normals. Comes last: a tile's shading
+/// follows from its mesh.
+SampleHierarchy shaded(SampleHierarchy sample);
+
 /// The same with its positions rounded to a lattice of so many bits over all of them.
 SampleHierarchy quantized(SampleHierarchy sample, int bits);
 
@@ -41,5 +45,7 @@ std::vector<float> sample_attributes(const AttributeLayout& layout, std::uint64_
 
 /// Layouts of every kind of attribute, alone and together; the first has none.
 std::vector<AttributeLayout> sample_layouts();
+/// Those without normals.
+std::vector<AttributeLayout> sample_layouts_without_normals();
 
 }  // namespace meshhier::tests

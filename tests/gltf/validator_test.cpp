@@ -117,6 +117,24 @@ TEST_F(GltfValidator, AcceptsAttributesThatGltfCannotSay) {
   expect_clean();
 }
 
+TEST_F(GltfValidator, AcceptsComputedNormalsAndSplits) {
+  int number = 0;
+  for (const AttributeLayout& layout : sample_layouts_without_normals()) {
+    for (const auto compression : {storage::Compression::none, storage::Compression::meshopt}) {
+      for (const int bits : {0, 12, 20}) {
+        SampleHierarchy sample = with_copies(make_sample(torus(150, 0.05F), 3, {layout, {}}));
+        if (bits > 0)
+          sample = quantized(sample, bits);
+        sample = shaded(sample);
+        sample.format.compression = compression;
+        write_tiles(fmt::format("shaded{}", number++), sample);
+      }
+    }
+  }
+  write_tiles("points", shaded(make_sample(points(50), 2)));
+  expect_clean();
+}
+
 TEST_F(GltfValidator, AcceptsCompressedAndQuantizedTilesOfEveryLayout) {
   int number = 0;
   for (const AttributeLayout& layout : sample_layouts()) {

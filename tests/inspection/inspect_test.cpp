@@ -79,7 +79,38 @@ TEST_F(InspectTest, CopiesAreToldOfLevelsAndTiles) {
   EXPECT_EQ(json({.level = {}, .node = node(3, 2)})["tile"]["copies"], 12);
   EXPECT_THAT(text({.level = {}, .node = node(3, 2)}), HasSubstr(" ghosts, 12 copies; "));
   EXPECT_THAT(text({.level = {}, .node = node(3, 4)}), HasSubstr(" ghosts, 1 copy; "));
-  EXPECT_THAT(text(), HasSubstr("|        13 |"));
+  EXPECT_THAT(text(), HasSubstr("|        13         0 |"));
+}
+
+TEST_F(InspectTest, SplitsAreToldOfLevelsAndTiles) {
+  EXPECT_EQ(json()["levels"][3]["splits_total"], 0);
+  EXPECT_THAT(text({.level = {}, .node = node(3, 2)}), Not(HasSubstr("splits")));
+  sample_.manifest.computed_normals = true;
+  sample_.record(node(3, 2)).split_count = 12;
+  sample_.record(node(3, 4)).split_count = 1;
+  fs::remove_all(path());
+  tests::write_sample(*files_, path(), sample_);
+  EXPECT_EQ(json()["levels"][3]["splits_total"], 13);
+  EXPECT_EQ(json()["levels"][2]["splits_total"], 0);
+  EXPECT_EQ(json({.level = {}, .node = node(3, 2)})["tile"]["splits"], 12);
+  EXPECT_THAT(text({.level = {}, .node = node(3, 2)}), HasSubstr(" ghosts, 12 splits; "));
+  EXPECT_THAT(text({.level = {}, .node = node(3, 4)}), HasSubstr(" ghosts, 1 split; "));
+  EXPECT_THAT(text(), HasSubstr("|         0        13 |"));
+}
+
+TEST_F(InspectTest, RawBytesCountComputedNormals) {
+  const auto raw_bytes = [&] { return json()["sizes"]["all"]["raw_bytes"].get<std::uint64_t>(); };
+  const std::uint64_t before = raw_bytes();
+  std::uint64_t vertices = 0;
+  for (const PublishedTile& tile : sample_.tiles)
+    vertices += tile.mesh.vertices.size();
+  constexpr std::uint64_t kSplits = 5;
+  sample_.manifest.computed_normals = true;
+  sample_.record(node(3, 2)).split_count = kSplits;
+  fs::remove_all(path());
+  tests::write_sample(*files_, path(), sample_);
+  constexpr std::uint64_t kNormal = 4, kPosition = 12, kColour = 4;
+  EXPECT_EQ(raw_bytes(), before + kNormal * vertices + (kNormal + kPosition + kColour) * kSplits);
 }
 
 TEST_F(InspectTest, JsonTellsThePartitions) {
@@ -158,7 +189,8 @@ TEST_F(InspectTest, SizesAreToldAgainstRawFloatsAndIndices) {
 }
 
 TEST_F(InspectTest, TheStorageIsTold) {
-  EXPECT_EQ(json()["storage"].dump(), R"({"compression":"none","positions":null})");
+  EXPECT_EQ(json()["storage"].dump(),
+            R"({"compression":"none","positions":null,"normals":"none"})");
   EXPECT_THAT(text(), HasSubstr("storage      none, positions exact"));
   sample_.manifest.compression = storage::Compression::meshopt;
   sample_.manifest.quantization =
@@ -169,6 +201,24 @@ TEST_F(InspectTest, TheStorageIsTold) {
             R"({"bits":8,"step":0.015625,"worst_rounding":0.01})");
   EXPECT_THAT(text(), HasSubstr("storage      meshopt, positions on a lattice of 8 bits, step "
                                 "0.01562, off by 0.01 at most"));
+}
+
+TEST_F(InspectTest, ItIsToldWhereNormalsComeFrom) {
+  const auto rewrite = [&] {
+    const std::string manifest = storage::to_json_text(sample_.manifest);
+    storage::write_file(*files_, storage::manifest_path(path()),
+                        std::as_bytes(std::span(manifest)));
+  };
+  EXPECT_THAT(text(), HasSubstr("\nnormals      none\n"));
+  sample_.manifest.computed_normals = true;
+  rewrite();
+  EXPECT_EQ(json()["storage"]["normals"], "computed");
+  EXPECT_THAT(text(), HasSubstr("\nnormals      computed, 8 bits\n"));
+  sample_.manifest.computed_normals = false;
+  sample_.manifest.source.attributes.normals = true;
+  rewrite();
+  EXPECT_EQ(json()["storage"]["normals"], "given");
+  EXPECT_THAT(text(), HasSubstr("\nnormals      given\n"));
 }
 
 TEST_F(InspectTest, ALevelIsToldTileByTile) {

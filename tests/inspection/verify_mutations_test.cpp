@@ -290,6 +290,7 @@ std::vector<Field> fields() {
           count("boundary", &TileRecord::boundary_count),
           count("ghosts", &TileRecord::ghost_count),
           count("copies", &TileRecord::copy_count),
+          count("splits", &TileRecord::split_count),
           count("interior", &TileRecord::interior_count),
           count("border", &TileRecord::border_count),
           count("drawn", &TileRecord::drawn_border_count),

@@ -134,6 +134,7 @@ TEST_F(StageCostsTest, ThePublishedFilesAreAsLargeAsTold) {
     config::Config with = config(300);
     with.storage.container = container;
     with.storage.compression = storage::Compression::none;
+    with.storage.normals = config::Normals::none;  // a rough mesh has splits, told later
     const BuildPlan plan = plan_of(with);
     const TilePopulation tiles = expected_tiles(plan.job);
     execution::NoProgress progress;

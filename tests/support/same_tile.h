@@ -42,6 +42,7 @@ inline void expect_same_mesh(const PublishedTile& a, const PublishedTile& b) {
   EXPECT_EQ(a.mesh.copies.places, b.mesh.copies.places);
   EXPECT_EQ(a.mesh.interior_wedges, b.mesh.interior_wedges);
   EXPECT_EQ(a.mesh.border_wedges, b.mesh.border_wedges);
+  EXPECT_TRUE(a.shading == b.shading);
 }
 
 inline void expect_same_attributes(const PublishedTile& a, const PublishedTile& b) {

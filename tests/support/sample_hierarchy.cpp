@@ -307,6 +307,7 @@ TileRecord make_record(const Tree& tree, const PublishedTile& tile, const Sample
   record.boundary_count = tile.mesh.boundary_count;
   record.ghost_count = static_cast<std::uint32_t>(tile.mesh.ghosts.size());
   record.copy_count = static_cast<std::uint32_t>(tile.mesh.copies.size());
+  record.split_count = static_cast<std::uint32_t>(tile.shading.split_of.size());
   record.interior_count = static_cast<std::uint32_t>(tile.mesh.interior.size());
   record.border_count = static_cast<std::uint32_t>(tile.mesh.border.size());
   record.drawn_border_count = drawn_count(tree, tile);

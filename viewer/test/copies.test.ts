@@ -1,11 +1,11 @@
 // Places with several vertices: seams of texture coordinates, hard edges.
 import { describe, expect, it } from 'vitest';
 import { Seam } from '../src/cut/seam.js';
-import { firstCopy, toPlaces } from '../src/hierarchy/copies.js';
+import { firstOf, toPlaces } from '../src/hierarchy/copies.js';
 import { HierarchyProblem } from '../src/hierarchy/problem.js';
 import { readTile, type ExpectedCounts, type Tile } from '../src/hierarchy/tile.js';
 import { Tree, keyOf } from '../src/hierarchy/tree.js';
-import { memoryOf, mostMemory } from '../src/scene/tile_object.js';
+import { memoryOf, mostMemory, vertexBytesOf } from '../src/scene/tile_object.js';
 import { tileBytes, type TileParts } from './support/tile_bytes.js';
 
 async function read(parts: TileParts, change: Record<string, number> = {}, expected: ExpectedCounts | null = null): Promise<Tile> {
@@ -25,8 +25,8 @@ const TETRAHEDRON: TileParts = {
 describe('copies', () => {
   it('finds the copies of a place', () => {
     const copyOf = Uint16Array.from([0, 2, 2, 5]);
-    expect([0, 1, 2, 3, 5, 6].map((place) => firstCopy(copyOf, place))).toEqual([0, 1, 1, 3, 3, 4]);
-    expect(toPlaces(Uint16Array.from([1, 6, 9]), 6, copyOf)).toEqual(Uint16Array.from([1, 0, 5]));
+    expect([0, 1, 2, 3, 5, 6].map((place) => firstOf(copyOf, place))).toEqual([0, 1, 1, 3, 3, 4]);
+    expect(toPlaces({ own: 6, ghosts: 0, copyOf, splitOf: new Uint16Array(0) }, Uint16Array.from([1, 6, 9]))).toEqual(Uint16Array.from([1, 0, 5]));
   });
 });
 
@@ -46,7 +46,7 @@ describe('readTile', () => {
   it("keeps the file's normals of each vertex", async () => {
     const normals = TETRAHEDRON.positions.map((_, i) => ((i % 7) - 3) / 3);
     const tile = await read({ ...TETRAHEDRON, normals });
-    expect(tile.hasNormals).toBe(true);
+    expect(tile.normalsFrom).toBe('input');
     normals.forEach((value, i) => {
       expect(tile.normals[4 * Math.floor(i / 3) + (i % 3)]).toBe(Math.round(32767 * value));
     });
@@ -66,7 +66,7 @@ describe('readTile', () => {
   });
 
   it('refuses a tile with other copies than the index tells of', async () => {
-    const expected = { level: 0, index: 0, own: 4, ghosts: 0, copies: 8, interior: 4, border: 0 };
+    const expected = { level: 0, index: 0, own: 4, ghosts: 0, copies: 8, splits: 0, interior: 4, border: 0 };
     await expect(read(TETRAHEDRON, {}, expected)).resolves.toBeDefined();
     await expect(read(TETRAHEDRON, {}, { ...expected, copies: 7 })).rejects.toThrow('not the tile that the index tells of');
   });
@@ -148,11 +148,20 @@ describe('Seam', () => {
     expect([...fine.indices.subarray(0, 3)]).toEqual([0, 1, 2]);
   });
 
+  it('takes no more memory than the index says, though all it has are copies', async () => {
+    const copies = Array<number>(40).fill(0);
+    const each = (values: readonly number[]): number[] => [0, ...copies].flatMap(() => values);
+    const tile = await read({ own: 1, copyOf: copies, positions: each([0, 0, 0]), normals: each(UP), colours: each([9, 9, 9, 255]), interior: [0, 1, 2] });
+    const counts = { own: 1, ghosts: 0, copies: 40, splits: 0, interior: 1, border: 0 };
+    const most = mostMemory(counts, { level: 0, vertexBytes: vertexBytesOf(tile), wires: false });
+    expect(memoryOf(tile, new Seam(tile, new Tree(1)), false)).toBeLessThanOrEqual(most);
+  });
+
   it('takes no more memory than the index says', async () => {
     const fine = await read(FINE);
     const seam = new Seam(fine, tree);
-    const counts = { own: 2, ghosts: 2, copies: 3, interior: 0, border: 2 };
-    expect(memoryOf(fine, seam, true)).toBeLessThanOrEqual(mostMemory(counts, 2, false, true));
+    const counts = { own: 2, ghosts: 2, copies: 3, splits: 0, interior: 0, border: 2 };
+    expect(memoryOf(fine, seam, true)).toBeLessThanOrEqual(mostMemory(counts, { level: 2, vertexBytes: vertexBytesOf(fine), wires: true }));
     expect(memoryOf(fine, seam, true)).toBeGreaterThan(memoryOf(await read({ ...FINE, copyOf: [], border: [0, 1, 2, 0, 3, 2], positions: FINE.positions.slice(0, 12), normals: FINE.normals!.slice(0, 12) }), seam, true));
   });
 });

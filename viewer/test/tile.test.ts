@@ -40,11 +40,12 @@ function withCount(bytes: Uint8Array, key: string, count: number): Uint8Array {
 }
 
 /// What a tile may never be, whatever its bytes are: what is drawn of it would read outside of it.
-function isSound({ own, ghosts, copyOf, positions, indices, border, ghostStarts, interiorCount, normals }: Tile): boolean {
-  const vertices = own + ghosts + copyOf.length;
+function isSound({ own, ghosts, copyOf, splitOf, positions, indices, border, ghostStarts, interiorCount, normals }: Tile): boolean {
+  const unsplit = own + ghosts + copyOf.length;
+  const vertices = unsplit + splitOf.length;
   return positions.length === 3 * vertices && normals.length === 4 * vertices && positions.every(Number.isFinite) &&
     indices.length === 3 * interiorCount + border.length && indices.every((v) => v < vertices) && border.every((v) => v < vertices) &&
-    ghostStarts.every((start) => start <= ghosts);
+    ghostStarts.every((start) => start <= ghosts) && splitOf.every((v) => v < unsplit);
 }
 
 describe.skipIf(!hasProgram)('readTile', () => {

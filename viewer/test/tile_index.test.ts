@@ -84,14 +84,17 @@ describe.skipIf(!hasProgram)('TileIndex', () => {
     expect(index.record(last)!.error).toBe(0);
   });
 
-  it('tells of a damaged record, and goes on with the others', async () => {
+  it.each<[string, number, number]>([
+    ['an error that is no number', 48, 0x7fc00000],
+    ['more splits than corners', 84, 2 ** 20],
+  ])('tells of a damaged record, with %s, and goes on with the others', async (_, offset, value) => {
     const hierarchy = large();
     const known = fetchFrom(hierarchy);
     const from = remote(async (url, init) => {
       const response = await known(url, init);
       if (!url.endsWith('tiles.bin')) return response;
       const bytes = new Uint8Array(await response.arrayBuffer());
-      new DataView(bytes.buffer).setFloat32(32 + 2 * 96 + 44, NaN, true);
+      new DataView(bytes.buffer).setUint32(32 + 2 * 104 + offset, value, true);
       return new Response(bytes, { status: response.status });
     });
     const problems: unknown[] = [];

@@ -50,6 +50,7 @@ class HierarchyReaderTest : public testing::Test {
     manifest.source.places = sample.tree.vertex_count();
     manifest.source.bounds = {{0, 0, 0}, {1, 1, 1}};
     manifest.source.attributes = sample.format.attributes;
+    manifest.computed_normals = sample.format.computed_normals;
     manifest.origin = sample.format.frame.origin;
     manifest.partition_count = sample.tree.partition_count();
     manifest.config = nlohmann::ordered_json::object();
@@ -75,6 +76,7 @@ class HierarchyReaderTest : public testing::Test {
     record.boundary_count = tile.mesh.boundary_count;
     record.ghost_count = static_cast<std::uint32_t>(tile.mesh.ghosts.size());
     record.copy_count = static_cast<std::uint32_t>(tile.mesh.copies.size());
+    record.split_count = static_cast<std::uint32_t>(tile.shading.split_of.size());
     record.interior_count = static_cast<std::uint32_t>(tile.mesh.interior.size());
     record.border_count = static_cast<std::uint32_t>(tile.mesh.border.size());
     record.bounds = bounds_of(tile.mesh.vertices.positions);
@@ -277,11 +279,11 @@ TEST_F(HierarchyReaderTest, DamagedManifestsAndIndexesAreRefused) {
 }
 
 TEST_F(HierarchyReaderTest, ATileThatIsNotTheIndexedOneIsRefused) {
-  write(with_copies(make_sample(torus(300), 4)));
-  const std::vector<TileRecord> records = reader().records();
-  const NodeId node = records.back().node;
+  const SampleHierarchy sample = with_copies(make_sample(torus(300), 4));
   const auto refuse_with = [&](std::uint32_t TileRecord::*count, const char* what) {
-    std::vector<TileRecord> changed = records;
+    write(shaded(sample));
+    std::vector<TileRecord> changed = reader().records();
+    const NodeId node = changed.back().node;
     changed.back().*count += 1;
     const Bytes index = storage::encode_index(changed);
     Manifest manifest = reader().manifest();
@@ -296,6 +298,17 @@ TEST_F(HierarchyReaderTest, ATileThatIsNotTheIndexedOneIsRefused) {
   };
   refuse_with(&TileRecord::interior_count, "interior triangles are not those of the index");
   refuse_with(&TileRecord::copy_count, "copies are not those of the index");
+  refuse_with(&TileRecord::split_count, "splits are not those of the index");
+}
+
+TEST_F(HierarchyReaderTest, SplitsWithoutComputedNormalsAreRefused) {
+  write(shaded(make_sample(torus(300), 4)));
+  Manifest manifest = reader().manifest();
+  manifest.computed_normals = false;
+  const std::string text = storage::to_json_text(manifest);
+  storage::write_file(*files_, storage::manifest_path(directory_), std::as_bytes(std::span(text)));
+  expect_failure(ErrorCode::corrupt, storage::index_path(directory_),
+                 "splits without computed normals", [&] { reader(); });
 }
 
 /// The text of a changed manifest, with its checksum.

@@ -40,6 +40,7 @@ std::vector<TileRecord> make_records(const Tree& tree) {
       record.boundary_count = record.own_count / 3;
       record.ghost_count = 10 * k + 1;
       record.copy_count = 10 * k + 7;
+      record.split_count = 10 * k + 8;
       record.interior_count = 10 * k + 2;
       record.border_count = 10 * k + 3;
       record.drawn_border_count = 10 * k;
@@ -64,6 +65,7 @@ void expect_same(const TileRecord& a, const TileRecord& b) {
   EXPECT_EQ(a.boundary_count, b.boundary_count);
   EXPECT_EQ(a.ghost_count, b.ghost_count);
   EXPECT_EQ(a.copy_count, b.copy_count);
+  EXPECT_EQ(a.split_count, b.split_count);
   EXPECT_EQ(a.interior_count, b.interior_count);
   EXPECT_EQ(a.border_count, b.border_count);
   EXPECT_EQ(a.drawn_border_count, b.drawn_border_count);
@@ -118,6 +120,8 @@ TEST(Index, TheBytesAreThoseOfTheDocument) {
   record.own_count = 7;
   record.boundary_count = 5;
   record.copy_count = 258;
+  record.interior_count = 100;
+  record.split_count = 259;
   record.error = 1.0F;
   record.bounds = {{0, 0, 0}, {1, 1, 1}};
   record.file_bytes = 0x0102030405060708;
@@ -134,6 +138,8 @@ TEST(Index, TheBytesAreThoseOfTheDocument) {
   EXPECT_EQ(byte(kHeaderBytes + 21), 1);
   EXPECT_EQ(byte(kHeaderBytes + 51), 0x3F);  // 1.0F is 3F800000
   EXPECT_EQ(byte(kHeaderBytes + 50), 0x80);
+  EXPECT_EQ(byte(kHeaderBytes + 84), 3);
+  EXPECT_EQ(byte(kHeaderBytes + 85), 1);
   EXPECT_EQ(byte(kHeaderBytes + 88), 8);
   EXPECT_EQ(byte(kHeaderBytes + 95), 1);
 }
@@ -196,7 +202,7 @@ TEST(Index, ImpossibleValuesAreRefusedByName) {
         RecordDamage{56, kNan, "impossible compactness"},
         RecordDamage{60, 0x7F800000, "impossible bounds"},
         RecordDamage{72, 0xC0000000, "impossible bounds"},
-        RecordDamage{84, 1, "bytes 84 to 87 of its record are not 0"}}) {
+        RecordDamage{84, 3 * (2 + 3) + 1, "impossible splits"}}) {
     Bytes bytes = good;
     storage::store_little(damage.value, bytes.data() + kHeaderBytes + damage.offset);
     EXPECT_THAT(failure(sealed(bytes), tree), HasSubstr(damage.message));

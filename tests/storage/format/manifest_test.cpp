@@ -17,6 +17,7 @@ using storage::parse_manifest;
 using storage::to_json_text;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 using Json = nlohmann::ordered_json;
 
@@ -63,6 +64,7 @@ void expect_same(const Manifest& a, const Manifest& b) {
     EXPECT_EQ(a.quantization->lattice, b.quantization->lattice);
     EXPECT_EQ(a.quantization->worst_rounding, b.quantization->worst_rounding);
   }
+  EXPECT_EQ(a.computed_normals, b.computed_normals);
   EXPECT_EQ(a.generator, b.generator);
   EXPECT_EQ(a.source.file_name, b.source.file_name);
   EXPECT_EQ(a.source.file_bytes, b.source.file_bytes);
@@ -166,6 +168,30 @@ TEST(Manifest, UnsoundStorageIsRefused) {
   EXPECT_THAT(with("/storage/positions/corner", Json::array({0, 0, 1e-9})),
               HasSubstr("a lattice of 8 to 24 bits"));
   EXPECT_THAT(with("/storage/positions/worst_rounding", -1), HasSubstr("worst_rounding"));
+}
+
+TEST(Manifest, TellsOfComputedNormals) {
+  Manifest manifest = make_quantized();
+  manifest.source.attributes.normals = false;
+  EXPECT_THAT(to_json_text(manifest), Not(HasSubstr("computed")));
+  manifest.computed_normals = true;
+  EXPECT_THAT(to_json_text(manifest), HasSubstr("\"normals\": \"computed\"\n"));
+  expect_same(manifest, parse_manifest(to_json_text(manifest), kManifestName));
+}
+
+TEST(Manifest, UnknownNormalsAreRefused) {
+  Manifest manifest = make_quantized();
+  manifest.source.attributes.normals = false;
+  const auto with = [&](const Json& value) {
+    Json changed = Json::parse(to_json_text(manifest));
+    changed["storage"]["normals"] = value;
+    return failure(sealed(changed));
+  };
+  EXPECT_EQ(with("computed"), "");
+  for (const Json& unknown : {Json("smooth"), Json("none"), Json(true), Json()})
+    EXPECT_THAT(with(unknown), HasSubstr("\"storage.normals\" is wrong"));
+  manifest.source.attributes.normals = true;
+  EXPECT_THAT(with("computed"), HasSubstr("as the source has normals"));
 }
 
 TEST(Manifest, GivesBackWhatWasImported) {

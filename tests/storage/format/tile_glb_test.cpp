@@ -4,6 +4,7 @@
 #include "hierarchy/error.h"
 #include "storage/format/glb.h"
 #include "storage/io/hash.h"
+#include "support/open_glb.h"
 #include "support/same_tile.h"
 
 #include <algorithm>
@@ -32,31 +33,6 @@ using Bytes = std::vector<std::byte>;
 using Json = nlohmann::ordered_json;
 
 const char* const kTileName = "some/tile.glb";
-
-/// What the GLB says of itself, and its parts, to be changed and put together again.
-struct OpenGlb {
-  explicit OpenGlb(const Bytes& bytes) {
-    const auto view = storage::split_glb(bytes, kTileName);
-    json = Json::parse(view.json);
-    bin.assign(view.bin.begin(), view.bin.end());
-  }
-  Bytes close() const { return storage::join_glb(json.dump(), bin); }
-  Json& extension() { return json["extensions"]["MESHHIER_tile"]; }
-  /// First byte of the buffer view that the extension names so.
-  std::byte* view(const char* key) { return bytes_of_view(extension()[key].get<int>()); }
-  std::byte* attribute(const char* key) {
-    return bytes_of_view(json["meshes"][0]["primitives"][0]["attributes"][key].get<int>());
-  }
-  std::byte* indices(int primitive) {
-    return bytes_of_view(json["meshes"][0]["primitives"][primitive]["indices"].get<int>());
-  }
-  std::byte* bytes_of_view(int view) {
-    return bin.data() + json["bufferViews"][view]["byteOffset"].get<std::size_t>();
-  }
-
-  Json json;
-  Bytes bin;
-};
 
 /// The message with which decoding fails; empty if it does not.
 std::string failure(const Bytes& bytes, NodeId node, const SampleHierarchy& sample) {
@@ -500,16 +476,6 @@ TEST_P(DamagedTile, IsRefusedByName) {
   EXPECT_THAT(failure(glb.close(), tile.node, sample), HasSubstr(GetParam().message));
 }
 
-void store_u16(std::byte* at, unsigned value) {
-  storage::store_little(static_cast<std::uint16_t>(value), at);
-}
-void store_u32(std::byte* at, std::uint32_t value) {
-  storage::store_little(value, at);
-}
-void store_nan(std::byte* at) {
-  storage::store_little(std::numeric_limits<float>::infinity(), at);
-}
-
 INSTANTIATE_TEST_SUITE_P(
     All, DamagedTile,
     testing::Values(
@@ -576,10 +542,6 @@ INSTANTIATE_TEST_SUITE_P(
                    "do not ascend"}),
     [](const auto& test) { return std::string(test.param.name); });
 
-unsigned load_u16(const std::byte* at) {
-  return storage::load_little<std::uint16_t>(at);
-}
-
 /// The first copy of a vertex, as index.
 unsigned first_copy_of(OpenGlb& glb, unsigned vertex) {
   const auto count = glb.extension()["copyCount"].get<unsigned>();
@@ -591,11 +553,6 @@ unsigned first_copy_of(OpenGlb& glb, unsigned vertex) {
   }
   ADD_FAILURE() << "vertex " << vertex << " has no copy";
   return places;
-}
-
-void store_triangle(std::byte* at, std::array<unsigned, 3> corners) {
-  for (std::size_t c = 0; c < 3; ++c)
-    store_u16(at + 2 * c, corners[c]);
 }
 
 /// One change to a good file with copies, of a partition.

@@ -1,8 +1,9 @@
 // What a tile draws along its seams in a cut (docs/file_format.md, sections 4.5 and 4.6).
-import { firstCopy, placeOf } from '../hierarchy/copies.js';
+import { placeOf, verticesAt } from '../hierarchy/copies.js';
 import { HierarchyProblem } from '../hierarchy/problem.js';
 import type { Tile } from '../hierarchy/tile.js';
 import { keyOf, tilePath, type Tree } from '../hierarchy/tree.js';
+import type { Normals } from '../hierarchy/vertex_values.js';
 
 /// The tiles of a cut, by key.
 export type ShownTiles = ReadonlyMap<number, Tile>;
@@ -11,7 +12,7 @@ export type ShownTiles = ReadonlyMap<number, Tile>;
 const FINER = -1;
 const UNKNOWN = -2;
 
-type Values = Float32Array | Int16Array | Uint8Array;
+type Values = Float32Array | Normals | Uint8Array;
 
 /// Of a vertex to another one, `width` each.
 function copyValues<Kind extends Values>(from: Kind, source: number, to: Kind, target: number, width: number): void {
@@ -25,10 +26,18 @@ function difference<Kind extends Values>(a: Kind, i: number, b: Kind, j: number)
   return sum;
 }
 
-/// The first, then its copies.
-function* verticesAt({ own, ghosts, copyOf }: Tile, place: number): Iterable<number> {
-  yield place;
-  for (let copy = firstCopy(copyOf, place); copyOf[copy] === place; ++copy) yield own + ghosts + copy;
+/// Of a vertex, from what is looked for.
+type Distance = (vertex: number) => number;
+
+/// Of several vertices: the second distance decides between those of the least first one; then the first in order.
+function nearest(vertices: readonly number[], first: Distance, second: Distance = () => 0): number {
+  let [found, least, leastSecond] = [-1, Infinity, Infinity];
+  for (const vertex of vertices) {
+    const [distance, further] = [first(vertex), second(vertex)];
+    if (distance > least || (distance === least && further >= leastSecond)) continue;
+    [found, least, leastSecond] = [vertex, distance, further];
+  }
+  return found;
 }
 
 export class Seam {
@@ -42,7 +51,7 @@ export class Seam {
   /// Of each ghost: the vertex of `shown` that it is.
   private readonly vertices: Uint16Array;
   /// Of ghosts and all behind them, as in the file: what moves and comes back. Null where the file has none.
-  private readonly givenNormals: Int16Array | null;
+  private readonly givenNormals: Normals | null;
   private readonly givenColours: Uint8Array | null;
   /// A ghost was no vertex of its tile: the last one stood in, so that the surface stays whole.
   isDamaged = false;
@@ -59,7 +68,7 @@ export class Seam {
     this.coarser = new Int8Array(count).fill(UNKNOWN);
     this.shown = new Array<Tile | null>(count).fill(null);
     this.vertices = new Uint16Array(tile.ghosts);
-    this.givenNormals = tile.hasNormals ? tile.normals.slice(4 * tile.own) : null;
+    this.givenNormals = tile.normalsFrom === 'viewer' ? null : tile.normals.slice(4 * tile.own);
     this.givenColours = tile.colours?.slice(4 * tile.own) ?? null;
     this.keys = this.placeChains(tree);
     if (this.chainStarts[count] !== tile.chains.length) this.fail('its chains are not all there');
@@ -136,7 +145,7 @@ export class Seam {
   private resolveGhosts(neighbour: number): void {
     const from = this.shown[neighbour];
     if (from === null) return;
-    const { own, ghosts, copyOf, ghostStarts, chains } = this.tile;
+    const { own, ghostStarts, chains } = this.tile;
     const levels = this.keyStarts[neighbour + 1] - this.keyStarts[neighbour];
     const isCoarser = this.coarser[neighbour] > 0;
     let entry = this.chainStarts[neighbour] + this.coarser[neighbour];
@@ -144,40 +153,42 @@ export class Seam {
       const vertex = Math.min(chains[entry], from.own - 1);
       this.isDamaged ||= vertex !== chains[entry];
       this.vertices[ghost] = vertex;
-      const place = own + ghost;
-      this.moveVertex(from, vertex, place, isCoarser);
-      for (let copy = firstCopy(copyOf, place); copyOf[copy] === place; ++copy) this.moveVertex(from, vertex, own + ghosts + copy, isCoarser);
+      for (const target of verticesAt(this.tile, own + ghost)) this.moveVertex(from, vertex, target, isCoarser);
     }
   }
 
   /// A texture coordinate stays the tile's own.
   private moveVertex(from: Tile, place: number, target: number, isCoarser: boolean): void {
-    const { own, positions, normals, colours } = this.tile;
-    const source = isCoarser ? this.nearest(from, place, target) : place;
-    copyValues(from.positions, place, positions, target, 3);
-    if (isCoarser || !this.givenNormals) copyValues(from.normals, source, normals, target, 4);
-    else copyValues(this.givenNormals, target - own, normals, target, 4);
-    if (!colours) return;
-    if (isCoarser && from.colours) copyValues(from.colours, source, colours, target, 4);
-    else if (this.givenColours) copyValues(this.givenColours, target - own, colours, target, 4);
+    copyValues(from.positions, place, this.tile.positions, target, 3);
+    if (isCoarser) this.takeLook(from, place, target);
+    else this.keepLook(from, place, target);
   }
 
-  /// The vertex at a place of another tile that looks most like ours: by its normal, then its colour.
-  private nearest(from: Tile, place: number, target: number): number {
-    let nearest = place;
-    let least = Infinity;
-    let leastColour = Infinity;
-    for (const vertex of verticesAt(from, place)) {
-      const normal = this.givenNormals ? difference(this.givenNormals, target - this.tile.own, from.normals, vertex) : 0;
-      const colour = this.givenColours && from.colours ? difference(this.givenColours, target - this.tile.own, from.colours, vertex) : 0;
-      if (normal > least || (normal === least && colour >= leastColour)) continue;
-      [nearest, least, leastColour] = [vertex, normal, colour];
-    }
-    return nearest;
+  /// That of the file, where it has one.
+  private keepLook(from: Tile, place: number, target: number): void {
+    const { own, normals, colours } = this.tile;
+    if (this.givenNormals) copyValues(this.givenNormals, target - own, normals, target, 4);
+    else copyValues(from.normals, place, normals, target, 4);
+    if (colours && this.givenColours) copyValues(this.givenColours, target - own, colours, target, 4);
+  }
+
+  /// That of the vertices there that look most like ours: by normal, then colour. Normals of a build do not choose the colour: it
+  /// is the one that there would be without them.
+  private takeLook(from: Tile, place: number, target: number): void {
+    const { givenNormals, givenColours } = this;
+    const { own, normals, normalsFrom, colours } = this.tile;
+    const normalTo: Distance = (vertex) => (givenNormals ? difference(givenNormals, target - own, from.normals, vertex) : 0);
+    const colourTo: Distance = (vertex) => (givenColours && from.colours ? difference(givenColours, target - own, from.colours, vertex) : 0);
+    const source = nearest(verticesAt(from, place), normalTo, colourTo);
+    copyValues(from.normals, source, normals, target, 4);
+    if (!colours || !givenColours) return;
+    const painter = normalsFrom === 'build' ? nearest(verticesAt(from, place), colourTo) : source;
+    if (from.colours) copyValues(from.colours, painter, colours, target, 4);
+    else copyValues(givenColours, target - own, colours, target, 4);
   }
 
   private place(vertex: number): number {
-    return placeOf(vertex, this.tile.own + this.tile.ghosts, this.tile.copyOf);
+    return placeOf(this.tile, vertex);
   }
 
   private isDrawn(a: number, b: number, c: number): boolean {

@@ -1,24 +1,59 @@
-// Vertices at one place: its first has the place's number, the others, its copies, come behind all places.
+// Vertices at one place: its first has the place's number. Behind all places come further vertices of places, copies,
+// and behind those splits: vertices once more, with another normal.
 import type { Indices } from './tile.js';
 
-/// The first copy of the first place from `place` on; `copyOf`: the places of copies, ascending. O(log n).
-export function firstCopy(copyOf: Indices, place: number): number {
+/// A tile has these.
+export interface Places {
+  readonly own: number;
+  readonly ghosts: number;
+  /// Of each copy its place, own or ghost; ascending.
+  readonly copyOf: Indices;
+  /// Of each split its vertex, a place or a copy; ascending.
+  readonly splitOf: Indices;
+}
+
+/// Where values from `value` on begin; `ascending`: copyOf or splitOf. O(log n).
+export function firstOf(ascending: Indices, value: number): number {
   let low = 0;
-  let high = copyOf.length;
+  let high = ascending.length;
   while (low < high) {
     const middle = (low + high) >> 1;
-    if (copyOf[middle] < place) low = middle + 1;
+    if (ascending[middle] < value) low = middle + 1;
     else high = middle;
   }
   return low;
 }
 
-/// Where a vertex is; `places`: their number.
-export function placeOf(vertex: number, places: number, copyOf: Indices): number {
-  return vertex < places ? vertex : copyOf[vertex - places];
+/// The number of vertices that are no splits.
+export function unsplitOf({ own, ghosts, copyOf }: Places): number {
+  return own + ghosts + copyOf.length;
+}
+
+function addWithSplits(of: Places, vertex: number, to: number[]): void {
+  const { splitOf } = of;
+  to.push(vertex);
+  for (let split = firstOf(splitOf, vertex); splitOf[split] === vertex; ++split) to.push(unsplitOf(of) + split);
+}
+
+/// The place's first, then its copies, each with its splits behind it.
+export function verticesAt(of: Places, place: number): readonly number[] {
+  const { own, ghosts, copyOf } = of;
+  const vertices: number[] = [];
+  addWithSplits(of, place, vertices);
+  for (let copy = firstOf(copyOf, place); copyOf[copy] === place; ++copy) addWithSplits(of, own + ghosts + copy, vertices);
+  return vertices;
+}
+
+/// Where a vertex is.
+export function placeOf(of: Places, vertex: number): number {
+  const places = of.own + of.ghosts;
+  const unsplit = unsplitOf(of);
+  const whole = vertex < unsplit ? vertex : of.splitOf[vertex - unsplit];
+  return whole < places ? whole : of.copyOf[whole - places];
 }
 
 /// Triangles of places.
-export function toPlaces(triangles: Indices, places: number, copyOf: Indices): Indices {
-  return copyOf.length === 0 ? triangles : triangles.map((vertex) => placeOf(vertex, places, copyOf));
+export function toPlaces(of: Places, triangles: Indices): Indices {
+  const isPlain = of.copyOf.length === 0 && of.splitOf.length === 0;
+  return isPlain ? triangles : triangles.map((vertex) => placeOf(of, vertex));
 }

@@ -22,7 +22,7 @@ interface BufferView {
 export interface Gltf {
   nodes: { matrix?: number[]; translation?: number[]; scale?: number[] }[];
   meshes: { primitives: { attributes: Record<string, number>; indices?: number; mode: number }[] }[];
-  accessors: { bufferView: number; componentType: number; count: number; type: string; min?: number[]; max?: number[] }[];
+  accessors: { bufferView: number; componentType: number; normalized?: boolean; count: number; type: string; min?: number[]; max?: number[] }[];
   bufferViews: BufferView[];
   extensions: Record<string, Record<string, number>>;
 }

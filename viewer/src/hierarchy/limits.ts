@@ -6,3 +6,8 @@ export const MOST_OWN = 32768;
 export const MOST_ELEMENTS = 2 ** 26;
 /// Of a root, which nothing else tells of: more than its largest file has room for without compression.
 export const MOST_ROOT_TRIANGLES = 2 ** 22;
+
+/// Each is at a triangle's corner.
+export function mostSplits({ interior, border }: { interior: number; border: number }): number {
+  return 3 * (interior + border);
+}

@@ -3,7 +3,7 @@ import { fetchBytes, fetchRange, withoutLastSlashes, type Fetch } from './bytes.
 import { fetchManifest, type Manifest } from './manifest.js';
 import { fetchOutline, type Outline } from './outline.js';
 import { HierarchyProblem } from './problem.js';
-import type { ExpectedCounts, Tile } from './tile.js';
+import type { ExpectedCounts, NormalSource, Tile } from './tile.js';
 import type { TileDecoder } from './tile_decoder.js';
 import { TileIndex, type TileRecord } from './tile_index.js';
 import { Tree, tilePath, type Node } from './tree.js';
@@ -20,18 +20,21 @@ export interface Directory {
 }
 
 /// Bytes of a tile's file, out of its gzip, at the most: with all attributes, raw ones too, and the widest indices.
-function mostBytes({ own, ghosts, copies, interior, border }: TileRecord, level: number): number {
+function mostBytes({ own, ghosts, copies, splits, interior, border }: TileRecord, level: number): number {
   const perVertex = 2 * (12 + 16 + 8) + 12;
   const perGhost = 2 * level + 8;
-  return perVertex * (own + ghosts + copies) + 4 * copies + 12 * (interior + border) + 2 * own + perGhost * ghosts + 2 * 65536;
+  const perSplit = 12 + 4 + 16 + 8 + 4; // nothing raw
+  const vertices = perVertex * (own + ghosts + copies) + 4 * copies + perSplit * splits;
+  return vertices + 12 * (interior + border) + 2 * own + perGhost * ghosts + 2 * 65536;
 }
 
-function expectedOf({ level, index }: Node, { own, ghosts, copies, interior, border }: TileRecord): ExpectedCounts {
-  return { level, index, own, ghosts, copies, interior, border };
+function expectedOf({ level, index }: Node, { own, ghosts, copies, splits, interior, border }: TileRecord): ExpectedCounts {
+  return { level, index, own, ghosts, copies, splits, interior, border };
 }
 
 export class RemoteHierarchy {
   private readonly base: string;
+  private normalsFrom: NormalSource | null = null;
 
   /// `signal`: ends all that is under way.
   constructor(
@@ -48,14 +51,17 @@ export class RemoteHierarchy {
     const bytes = await fetchBytes(this.fetch, this.base + path, path, MOST_ROOT, { priority: 'high', signal: this.signal });
     const tile = await this.decoder.decode(bytes, path, null);
     if (tile.level !== 0 || tile.index !== 0 || tile.ghosts !== 0) throw new HierarchyProblem(path, 'not a root');
+    this.normalsFrom = tile.normalsFrom;
     return tile;
   }
 
-  /// `record`: what the index says of it; a tile that is another one is refused.
+  /// After the root. `record`: what the index says of it; a tile that is another one is refused.
   async tile(node: Node, record: TileRecord, signal: AbortSignal): Promise<Tile> {
     const path = tilePath(node);
     const bytes = await fetchBytes(this.fetch, this.base + path, path, mostBytes(record, node.level), { signal });
-    return this.decoder.decode(bytes, path, expectedOf(node, record));
+    const tile = await this.decoder.decode(bytes, path, expectedOf(node, record));
+    if (tile.normalsFrom !== this.normalsFrom) throw new HierarchyProblem(path, 'its normals are not of the kind that the root has');
+    return tile;
   }
 
   async outline(): Promise<Outline> {

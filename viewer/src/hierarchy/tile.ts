@@ -1,29 +1,27 @@
 // A tile as it is drawn: what its file (docs/file_format.md, section 4) holds for that, in arrays of its own.
-import { Glb, type Gltf } from './glb.js';
+import { Glb } from './glb.js';
 import { MeshoptDecoder } from 'meshoptimizer/decoder';
-import { MOST_ELEMENTS, MOST_OWN, MOST_ROOT_TRIANGLES } from './limits.js';
+import { MOST_ELEMENTS, MOST_OWN, MOST_ROOT_TRIANGLES, mostSplits } from './limits.js';
 import { normalCone, vertexNormals, type Cone } from './normals.js';
-import { toPlaces } from './copies.js';
+import { toPlaces, unsplitOf, type Places } from './copies.js';
 import { isClosed, isInsideOut } from './closed.js';
+import { detached, readColours, readNormals, readPositions, type Accessor, type Normals } from './vertex_values.js';
 
 export type Indices = Uint16Array | Uint32Array;
 
-/// Vertices 0 … own - 1 are the tile's; behind them its ghosts, then copies: further vertices at places of these. All
-/// positions are exact.
-export interface Tile {
+/// Who made the normals. The viewer makes them from the triangles where the file has none, and those of ghosts are not right:
+/// the tile that owns the vertex knows.
+export type NormalSource = 'input' | 'build' | 'viewer';
+
+/// Vertices 0 … own - 1 are the tile's; behind them its ghosts, then copies: further vertices at places of these; then splits:
+/// any of these once more, with another normal. All positions are exact.
+export interface Tile extends Places {
   readonly level: number;
   readonly index: number;
-  readonly own: number;
-  readonly ghosts: number;
-  /// Of each copy the vertex whose place it shares, own or ghost; ascending.
-  readonly copyOf: Indices;
   /// x, y, z of each vertex, relative to the place that all tiles of a hierarchy share.
   readonly positions: Float32Array;
-  /// x, y, z, 0 of each vertex, in parts of 32767: of the file, else made from the triangles. Of ghosts only the
-  /// file's are right: else the tile that owns the vertex knows.
-  readonly normals: Int16Array;
-  /// They are the file's.
-  readonly hasNormals: boolean;
+  readonly normals: Normals;
+  readonly normalsFrom: NormalSource;
   /// r, g, b, a of each vertex as in the input (not linear); or null.
   readonly colours: Uint8Array | null;
   /// Corners: of the interior triangles, then room for the border triangles that are drawn.
@@ -52,11 +50,14 @@ export interface ExpectedCounts {
   readonly own: number;
   readonly ghosts: number;
   readonly copies: number;
+  readonly splits: number;
   readonly interior: number;
   readonly border: number;
 }
 
 const VERSION = 2;
+/// Tiles without computed normals need not say so.
+const NO_SPLITS = { splitCount: 0, splitOf: -1 };
 
 interface Counts extends ExpectedCounts {
   readonly neighbours: number;
@@ -65,10 +66,11 @@ interface Counts extends ExpectedCounts {
 
 /// Before anything is sized by them.
 function checkCounts(glb: Glb, counts: Counts, expected: ExpectedCounts | null): void {
-  const keys = ['level', 'index', 'own', 'ghosts', 'copies', 'interior', 'border'] as const;
+  const keys = ['level', 'index', 'own', 'ghosts', 'copies', 'splits', 'interior', 'border'] as const;
   if (expected !== null && keys.some((key) => counts[key] !== expected[key])) glb.fail('not the tile that the index tells of');
   if (counts.level === 0 && (counts.ghosts > 0 || counts.border > 0 || counts.interior > MOST_ROOT_TRIANGLES)) glb.fail('not a root');
   if (counts.neighbours > counts.ghosts || counts.chains > counts.ghosts * counts.level) glb.fail('more neighbours or chains than ghosts allow');
+  if (counts.splits > mostSplits(counts)) glb.fail('more splits than corners of triangles');
 }
 
 function count(glb: Glb, values: Record<string, number>, key: string, least: number, most: number): number {
@@ -85,64 +87,12 @@ function readCounts(glb: Glb, values: Record<string, number>): Counts {
     own: count(glb, values, 'ownCount', 1, MOST_OWN),
     ghosts: count(glb, values, 'ghostCount', 0, MOST_ELEMENTS),
     copies: count(glb, values, 'copyCount', 0, MOST_ELEMENTS),
+    splits: count(glb, values, 'splitCount', 0, MOST_ELEMENTS),
     neighbours: count(glb, values, 'neighbourCount', 0, MOST_ELEMENTS),
     chains: count(glb, values, 'chainEntryCount', 0, MOST_ELEMENTS),
     interior: count(glb, values, 'interiorCount', 0, MOST_ELEMENTS),
     border: count(glb, values, 'borderCount', 0, MOST_ELEMENTS),
   };
-}
-
-/// A copy, so that it is aligned and holds nothing else alive.
-function detached(bytes: Uint8Array): ArrayBuffer {
-  return bytes.slice().buffer;
-}
-
-function floats(bytes: Uint8Array): Float32Array {
-  return new Float32Array(detached(bytes));
-}
-
-function stepOf(node: Gltf['nodes'][number]): number {
-  return node.matrix ? Math.hypot(node.matrix[0], node.matrix[1], node.matrix[2]) : (node.scale?.[0] ?? 1);
-}
-
-function readPositions(glb: Glb, accessor: Gltf['accessors'][number], vertices: number): Float32Array {
-  if (accessor.componentType === 5126) return floats(glb.section(accessor.bufferView, 12 * vertices));
-  if (accessor.componentType !== 5123) glb.fail('positions of an unknown type');
-  const points = new Uint16Array(detached(glb.section(accessor.bufferView, 8 * vertices)));
-  const step = stepOf(glb.gltf.nodes[0]);
-  const positions = new Float32Array(3 * vertices);
-  for (let v = 0; v < vertices; ++v)
-    for (let axis = 0; axis < 3; ++axis) positions[3 * v + axis] = step * points[4 * v + axis];
-  return positions;
-}
-
-const COLOUR_TYPES: Record<number, { bytes: number; most: number }> = {
-  5121: { bytes: 1, most: 255 },
-  5123: { bytes: 2, most: 65535 },
-  5126: { bytes: 4, most: 1 },
-};
-
-function readColours(glb: Glb, accessor: Gltf['accessors'][number], vertices: number): Uint8Array {
-  const type = COLOUR_TYPES[accessor.componentType];
-  const width = accessor.type === 'VEC4' ? 4 : 3;
-  if (type === undefined) glb.fail('colours of an unknown type');
-  const stride = Math.ceil((width * type.bytes) / 4) * 4;
-  const bytes = detached(glb.section(accessor.bufferView, stride * vertices));
-  const values = type.bytes === 1 ? new Uint8Array(bytes) : type.bytes === 2 ? new Uint16Array(bytes) : new Float32Array(bytes);
-  const colours = new Uint8ClampedArray(4 * vertices).fill(255);
-  for (let v = 0; v < vertices; ++v)
-    for (let c = 0; c < width; ++c) colours[4 * v + c] = (255 * values[(v * stride) / type.bytes + c]) / type.most;
-  return new Uint8Array(colours.buffer);
-}
-
-/// The file's own normals, in parts of 32767.
-function readNormals(glb: Glb, accessor: Gltf['accessors'][number], vertices: number): Int16Array {
-  if (accessor.componentType !== 5126) glb.fail('normals of an unknown type');
-  const given = floats(glb.section(accessor.bufferView, 12 * vertices));
-  const normals = new Int16Array(4 * vertices);
-  for (let v = 0; v < vertices; ++v)
-    for (let axis = 0; axis < 3; ++axis) normals[4 * v + axis] = Math.max(-32767, Math.min(32767, Math.round(32767 * given[3 * v + axis])));
-  return normals;
 }
 
 function readIndices(glb: Glb, primitive: number, triangles: number, end: number): Indices {
@@ -157,23 +107,37 @@ function readIndices(glb: Glb, primitive: number, triangles: number, end: number
   return indices;
 }
 
-/// Of copies, the vertices whose places they share.
-function readCopyOf(glb: Glb, number: number, { own, ghosts, copies }: Counts): Indices {
-  const places = own + ghosts;
-  const wide = places > 65535;
-  const bytes = detached(glb.section(number, copies * (wide ? 4 : 2)));
-  const copyOf = wide ? new Uint32Array(bytes) : new Uint16Array(bytes);
+/// Of further vertices those that they repeat, below `end`; `what`: they are called.
+function readRepeated(glb: Glb, number: number, length: number, end: number, what: string): Indices {
+  const wide = end > 65535;
+  const bytes = detached(glb.section(number, length * (wide ? 4 : 2)));
+  const repeated = wide ? new Uint32Array(bytes) : new Uint16Array(bytes);
   let before = 0;
-  for (const place of copyOf) {
-    if (place < before || place >= places) glb.fail('copies are not in order');
-    before = place;
+  for (const vertex of repeated) {
+    if (vertex < before || vertex >= end) glb.fail(`${what} are not in order`);
+    before = vertex;
   }
-  return copyOf;
+  return repeated;
 }
 
-/// Alike at all vertices of a place.
-function normalsByPlace(positions: Float32Array, places: number, copyOf: Indices, interior: Indices, border: Indices): Int16Array {
+function readPlaces(glb: Glb, values: Record<string, number>, { own, ghosts, copies, splits }: Counts): Places {
+  const copyOf = readRepeated(glb, values.copyOf, copies, own + ghosts, 'copies');
+  return { own, ghosts, copyOf, splitOf: readRepeated(glb, values.splitOf, splits, own + ghosts + copies, 'splits') };
+}
+
+/// A split has the values of its vertex, `width` each.
+function checkSplits(glb: Glb, places: Places, values: Float32Array | Uint8Array, width: number): void {
+  const unsplit = unsplitOf(places);
+  places.splitOf.forEach((vertex, split) => {
+    for (let k = 0; k < width; ++k)
+      if (values[width * (unsplit + split) + k] !== values[width * vertex + k]) glb.fail('a split differs from its vertex by more than the normal');
+  });
+}
+
+/// Alike at all vertices of a place; triangles of places.
+function normalsByPlace(positions: Float32Array, { own, ghosts, copyOf }: Places, interior: Indices, border: Indices): Normals {
   const normals = vertexNormals(positions, interior, border);
+  const places = own + ghosts;
   copyOf.forEach((place, copy) => normals.copyWithin(4 * (places + copy), 4 * place, 4 * place + 4));
   return normals;
 }
@@ -210,39 +174,41 @@ function boxOf(glb: Glb, positions: Float32Array): number[] {
 
 function decode(glb: Glb, expected: ExpectedCounts | null): Tile {
   const { gltf } = glb;
-  const values = gltf.extensions?.MESHHIER_tile;
+  const extension = gltf.extensions?.MESHHIER_tile;
   const primitive = gltf.meshes?.[0]?.primitives?.[0];
-  if (values === undefined || primitive === undefined || gltf.nodes?.[0] === undefined) glb.fail('not a tile of meshhier');
+  if (extension === undefined || primitive === undefined || gltf.nodes?.[0] === undefined) glb.fail('not a tile of meshhier');
+  const values: Record<string, number> = { ...NO_SPLITS, ...extension };
   const counts = readCounts(glb, values);
   checkCounts(glb, counts, expected);
-  const { own, ghosts, interior: interiorCount } = counts;
-  const places = own + ghosts;
-  const vertices = places + counts.copies;
-  const attribute = (name: string): Gltf['accessors'][number] | undefined => gltf.accessors?.[primitive.attributes?.[name]];
-  const place = attribute('POSITION') ?? glb.fail('no positions');
-  const positions = readPositions(glb, place, vertices);
-  const copyOf = readCopyOf(glb, values.copyOf, counts);
-  const interior = readIndices(glb, values.interiorPrimitive, interiorCount, vertices);
+  const places = readPlaces(glb, values, counts);
+  const vertices = unsplitOf(places) + counts.splits;
+  const attribute = (name: string): Accessor | undefined => gltf.accessors?.[primitive.attributes?.[name]];
+  const positions = readPositions(glb, attribute('POSITION') ?? glb.fail('no positions'), vertices);
+  const interior = readIndices(glb, values.interiorPrimitive, counts.interior, vertices);
   const border = readIndices(glb, values.borderPrimitive, counts.border, vertices);
-  const surface = toPlaces(interior, places, copyOf);
-  if (surface.some((place) => place >= own)) glb.fail('an interior triangle names a ghost');
-  const normals = attribute('NORMAL');
-  const colours = attribute('COLOR_0');
+  const surface = toPlaces(places, interior);
+  if (surface.some((place) => place >= counts.own)) glb.fail('an interior triangle names a ghost');
+  const given = attribute('NORMAL');
+  const normals = given ? readNormals(glb, given, vertices) : normalsByPlace(positions, places, surface, toPlaces(places, border));
+  const colour = attribute('COLOR_0');
+  const colours = colour ? readColours(glb, colour, vertices) : null;
+  const normalsFrom = given === undefined ? 'viewer' : normals instanceof Int8Array ? 'build' : 'input';
+  if (counts.splits > 0 && normalsFrom !== 'build') glb.fail('splits without computed normals');
+  checkSplits(glb, places, positions, 3);
+  if (colours) checkSplits(glb, places, colours, 4);
   const starts = new Uint32Array(detached(glb.section(values.ghostStarts, counts.neighbours === 0 ? 0 : 4 * (counts.neighbours + 1))));
   checkStarts(glb, starts, counts);
   const closed = counts.level === 0 && isClosed(surface);
   return {
     level: counts.level,
     index: counts.index,
-    own,
-    ghosts,
-    copyOf,
+    ...places,
     positions,
-    normals: normals ? readNormals(glb, normals, vertices) : normalsByPlace(positions, places, copyOf, surface, toPlaces(border, places, copyOf)),
-    hasNormals: normals !== undefined,
-    colours: colours ? readColours(glb, colours, vertices) : null,
+    normals,
+    normalsFrom,
+    colours,
     indices: withRoom(interior, border),
-    interiorCount,
+    interiorCount: counts.interior,
     border,
     neighbours: new Uint32Array(detached(glb.section(values.neighbours, 4 * counts.neighbours))),
     ghostStarts: starts,
@@ -270,7 +236,7 @@ export async function readTile(bytes: Uint8Array, name: string, expected: Expect
 
 /// The arrays that a tile holds, each once: what moves when it is handed over.
 export function buffersOf(tile: Tile): ArrayBuffer[] {
-  const { copyOf, positions, normals, colours, indices, border, neighbours, ghostStarts, chains } = tile;
-  const arrays = [copyOf, positions, normals, colours, indices, border, neighbours, ghostStarts, chains];
+  const { copyOf, splitOf, positions, normals, colours, indices, border, neighbours, ghostStarts, chains } = tile;
+  const arrays = [copyOf, splitOf, positions, normals, colours, indices, border, neighbours, ghostStarts, chains];
   return arrays.flatMap((array) => (array ? [array.buffer as ArrayBuffer] : []));
 }

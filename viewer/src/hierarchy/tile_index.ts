@@ -1,6 +1,6 @@
 // The index, tiles.bin (docs/file_format.md, section 3), in pages: of a large one only those that are looked
 // into are fetched.
-import { MOST_ELEMENTS, MOST_OWN } from './limits.js';
+import { MOST_ELEMENTS, MOST_OWN, mostSplits } from './limits.js';
 import { HierarchyProblem } from './problem.js';
 import { keyOf, type Node, type Tree } from './tree.js';
 
@@ -10,6 +10,7 @@ export interface TileRecord {
   readonly own: number;
   readonly ghosts: number;
   readonly copies: number;
+  readonly splits: number;
   readonly interior: number;
   readonly border: number;
   /// Estimated distance to the input, in its units; 0 of partitions.
@@ -49,6 +50,7 @@ function readRecord(view: DataView, at: number, place: Triple): TileRecord {
     own: u32(8),
     ghosts: u32(16),
     copies: u32(20),
+    splits: u32(84),
     interior: u32(24),
     border: u32(28),
     error: f32(48),
@@ -59,9 +61,9 @@ function readRecord(view: DataView, at: number, place: Triple): TileRecord {
 }
 
 /// No more than the format allows: sizes are computed from these.
-function isSound({ own, ghosts, copies, interior, border, min, max, error }: TileRecord): boolean {
+function isSound({ own, ghosts, copies, splits, interior, border, min, max, error }: TileRecord): boolean {
   const counts = own >= 1 && own <= MOST_OWN && [ghosts, copies, interior, border].every((count) => count <= MOST_ELEMENTS);
-  return counts && error >= 0 && [...min, ...max, error].every(Number.isFinite);
+  return counts && splits <= mostSplits({ interior, border }) && error >= 0 && [...min, ...max, error].every(Number.isFinite);
 }
 
 /// Of a page that is not there: on its way, or when to ask for it again.

@@ -19,7 +19,7 @@ import { modeOf } from './mode.js';
 import { OutlineObject } from './outline_object.js';
 import { Motion, REST_MS, viewpointOf, type Viewport } from './motion.js';
 import { changedSettings, DEFAULT_LOOK, type Look, type Mode, type Settings, type Stats } from './settings.js';
-import { memoryOf, mostMemory } from './tile_object.js';
+import { memoryOf, mostMemory, vertexBytesOf } from './tile_object.js';
 import { TileScene } from './tile_scene.js';
 
 export interface ViewOptions {
@@ -202,10 +202,11 @@ export class HierarchyView extends Group<ViewEvents> {
   /// Without it there is the root and no more. `early`: the manifest was asked for already.
   private async openDirectory(root: Tile, early: Promise<Manifest>): Promise<void> {
     try {
-      this.begin(await this.persist('directory', async (tries) => {
+      const directory = await this.persist('directory', async (tries) => {
         const manifest = await (tries === 1 ? early : this.remote.manifest());
         return this.remote.directory(manifest, root, () => { this.recover('index'); this.changed(); }, (problem) => { this.tell('index', problem); });
-      }));
+      });
+      this.begin(directory, root);
     } catch (problem) {
       this.tell('directory', problem);
       this.isRootAll = true;
@@ -213,15 +214,16 @@ export class HierarchyView extends Group<ViewEvents> {
     }
   }
 
-  private begin(directory: Directory): void {
+  private begin(directory: Directory, root: Tile): void {
     if (this.ending.signal.aborted) return;
     const { manifest, tree, index } = directory;
     this.directory = directory;
     this.manifest = manifest;
     const corner = (from: readonly number[]): number[] => from.map((x, axis) => x - manifest.origin[axis] - manifest.place[axis]);
     this.setBox([...corner(manifest.source.min), ...corner(manifest.source.max)]);
-    this.refinement = new Refinement(tree, index, this.store, (record, node) =>
-      mostMemory(record, node.level, manifest.source.hasColours, this.look.wires));
+    const vertexBytes = vertexBytesOf(root);
+    this.refinement = new Refinement(tree, index, this.store, (record, { level }) =>
+      mostMemory(record, { level, vertexBytes, wires: this.look.wires }));
     this.account.fetched(index.record(ROOT)!.bytes);
     this.showOutline();
     this.changed();

@@ -3,31 +3,42 @@ import { Box3, BufferAttribute, BufferGeometry, Color, DynamicDrawUsage, LineSeg
 import type { Intersection, MeshStandardMaterial, Raycaster } from 'three';
 import type { ResidentTile } from '../cut/tile_store.js';
 import type { Indices, Tile } from '../hierarchy/tile.js';
+import type { TileRecord } from '../hierarchy/tile_index.js';
 import type { Seam } from '../cut/seam.js';
 import { surfaceKey, surfaceMaterial, type SharedMaterials } from './materials.js';
 import type { Look } from './settings.js';
 
 /// Bytes of a tile with what draws it: each array here and on the GPU, but for what only seams need.
 export function memoryOf(tile: Tile, seam: Seam, wires: boolean): number {
-  const { copyOf, positions, normals, colours, indices, border, neighbours, ghostStarts, chains } = tile;
+  const { copyOf, splitOf, positions, normals, colours, indices, border, neighbours, ghostStarts, chains } = tile;
   const drawn = positions.byteLength + normals.byteLength + (colours?.byteLength ?? 0) + indices.byteLength;
-  const seams = copyOf.byteLength + border.byteLength + neighbours.byteLength + ghostStarts.byteLength + chains.byteLength + seam.bytes;
+  const seams = copyOf.byteLength + splitOf.byteLength + border.byteLength + neighbours.byteLength + ghostStarts.byteLength + chains.byteLength + seam.bytes;
   return 2 * (drawn + (wires ? 2 * indices.byteLength : 0)) + seams;
+}
+
+/// What is drawn of a vertex: its position, normal and colour, if any.
+export function vertexBytesOf({ normals, colours }: Tile): number {
+  return 12 + 4 * normals.BYTES_PER_ELEMENT + (colours ? 4 : 0);
+}
+
+/// What a tile's record does not tell.
+export interface Extent {
+  readonly level: number;
+  readonly vertexBytes: number;
+  readonly wires: boolean;
 }
 
 /// The same from counts alone; not less.
 export function mostMemory(
-  { own, ghosts, copies, interior, border }: { own: number; ghosts: number; copies: number; interior: number; border: number },
-  level: number,
-  hasColours: boolean,
-  wires: boolean,
+  { own, ghosts, copies, splits, interior, border }: Pick<TileRecord, 'own' | 'ghosts' | 'copies' | 'splits' | 'interior' | 'border'>,
+  { level, vertexBytes, wires }: Extent,
 ): number {
-  const vertices = own + ghosts + copies;
+  const vertices = own + ghosts + copies + splits;
   const width = vertices > 65535 ? 4 : 2;
   const indices = 3 * (interior + border) * width;
-  const drawn = vertices * (hasColours ? 24 : 20) + indices;
-  // Of a ghost: its chain, its neighbour's number, start and keys, and what the seam keeps of it, of copies too.
-  const seams = 3 * border * width + ghosts * (10 * level + 48) + copies * 12 + 64;
+  const drawn = vertices * vertexBytes + indices;
+  // Of a ghost: its chain, its neighbour's number, start and keys, and what the seam keeps of it; of what is behind ghosts that, and its number.
+  const seams = 3 * border * width + ghosts * (10 * level + 48) + (copies + splits) * 16 + 64;
   return 2 * (drawn + (wires ? 2 * indices : 0)) + seams;
 }
 

@@ -1,14 +1,22 @@
 // Tiles as bytes (docs/file_format.md, section 4), made by hand.
+import { MeshoptEncoder } from 'meshoptimizer/encoder';
 
 export interface TileParts {
   readonly own: number;
   readonly ghosts?: number;
   /// x, y, z of each vertex.
   readonly positions: readonly number[];
+  /// The input's, x, y, z of each vertex.
   readonly normals?: readonly number[];
+  /// Computed ones, in parts of 127; and what is different in their accessor.
+  readonly codes?: readonly number[];
+  readonly codeAccessor?: object;
+  /// r, g, b, a of each vertex.
+  readonly colours?: readonly number[];
   readonly interior: readonly number[];
   readonly border?: readonly number[];
   readonly copyOf?: readonly number[];
+  readonly splitOf?: readonly number[];
   readonly level?: number;
   readonly index?: number;
   readonly neighbours?: readonly number[];
@@ -16,23 +24,67 @@ export interface TileParts {
   readonly chains?: readonly number[];
 }
 
+/// How a section is compressed, if it is.
+interface Packing {
+  readonly stride: number;
+  readonly mode: 'ATTRIBUTES' | 'INDICES';
+}
+
+/// x, y, z, 0 of each.
+function coded(codes: readonly number[]): Int8Array {
+  return Int8Array.from({ length: (4 * codes.length) / 3 }, (_, i) => (i % 4 === 3 ? 0 : codes[3 * (i >> 2) + (i % 4)]));
+}
+
+function pack(bytes: Uint8Array, { stride, mode }: Packing): { packed: Uint8Array; compression: object } {
+  const count = bytes.length / stride;
+  const packed = MeshoptEncoder.encodeGltfBuffer(bytes, count, stride, mode);
+  return { packed, compression: { buffer: 0, byteLength: packed.length, byteStride: stride, count, mode } };
+}
+
 /// glTF binary; `change`: what is different in MESHHIER_tile.
 export function tileBytes(parts: TileParts, change: Record<string, number> = {}): Uint8Array {
-  const { own, ghosts = 0, positions, normals, interior, border = [], copyOf = [], neighbours = [], ghostStarts = [], chains = [] } = parts;
+  return written(parts, change, false);
+}
+
+/// The same, compressed: all but triangles and neighbours.
+export async function packedTileBytes(parts: TileParts): Promise<Uint8Array> {
+  await MeshoptEncoder.ready;
+  return written(parts, {}, true);
+}
+
+function written(parts: TileParts, change: Record<string, number>, isPacked: boolean): Uint8Array {
+  const { own, ghosts = 0, positions, normals, codes, colours, interior, border = [] } = parts;
+  const { copyOf = [], splitOf = [], neighbours = [], ghostStarts = [], chains = [] } = parts;
   const chunks: Uint8Array[] = [];
   const bufferViews: object[] = [];
   let end = 0;
-  const section = (values: ArrayBufferView): number => {
+  const store = (bytes: Uint8Array): number => {
+    const begin = end;
+    chunks.push(bytes, new Uint8Array(-bytes.length & 3));
+    end += bytes.length + (-bytes.length & 3);
+    return begin;
+  };
+  const section = (values: ArrayBufferView, packing: Packing | null = null): number => {
     if (values.byteLength === 0) return -1;
     const bytes = new Uint8Array(values.buffer, values.byteOffset, values.byteLength);
-    chunks.push(bytes, new Uint8Array(-bytes.length & 3));
-    bufferViews.push({ byteOffset: end, byteLength: bytes.length });
-    end += bytes.length + (-bytes.length & 3);
-    return bufferViews.length - 1;
+    const byteLength = bytes.length;
+    if (!isPacked || packing === null) return bufferViews.push({ byteOffset: store(bytes), byteLength }) - 1;
+    const { packed, compression } = pack(bytes, packing);
+    return bufferViews.push({ byteLength, extensions: { EXT_meshopt_compression: { ...compression, byteOffset: store(packed) } } }) - 1;
   };
-  const accessors = [{ bufferView: section(Float32Array.from(positions)), componentType: 5126, count: positions.length / 3, type: 'VEC3' }];
-  const attributes: Record<string, number> = { POSITION: 0 };
-  if (normals) attributes.NORMAL = accessors.push({ bufferView: section(Float32Array.from(normals)), componentType: 5126, count: normals.length / 3, type: 'VEC3' }) - 1;
+  const vertices = positions.length / 3;
+  const accessors: object[] = [];
+  const attributes: Record<string, number> = {};
+  const attribute = (name: string, values: ArrayBufferView, rest: object): void => {
+    const stride = values.byteLength / vertices;
+    const packing = Number.isInteger(stride) ? { stride, mode: 'ATTRIBUTES' as const } : null;
+    attributes[name] = accessors.push({ bufferView: section(values, packing), count: vertices, ...rest }) - 1;
+  };
+  attribute('POSITION', Float32Array.from(positions), { componentType: 5126, type: 'VEC3' });
+  if (normals) attribute('NORMAL', Float32Array.from(normals), { componentType: 5126, type: 'VEC3' });
+  if (codes) attribute('NORMAL', coded(codes), { componentType: 5120, normalized: true, type: 'VEC3', ...parts.codeAccessor });
+  if (colours) attribute('COLOR_0', Uint8Array.from(colours), { componentType: 5121, normalized: true, type: 'VEC4' });
+  const numbers = (values: readonly number[]): number => section(Uint16Array.from(values), { stride: 2, mode: 'INDICES' });
   const primitives: object[] = [];
   const primitive = (corners: readonly number[]): number => {
     if (corners.length === 0) return -1;
@@ -40,10 +92,10 @@ export function tileBytes(parts: TileParts, change: Record<string, number> = {})
     return primitives.push({ attributes, indices, mode: 4 }) - 1;
   };
   const extension = {
-    version: 2, level: parts.level ?? 0, index: parts.index ?? 0, ownCount: own, rimCount: own, ghostCount: ghosts, copyCount: copyOf.length,
+    version: 2, level: parts.level ?? 0, index: parts.index ?? 0, ownCount: own, rimCount: own, ghostCount: ghosts, copyCount: copyOf.length, splitCount: splitOf.length,
     neighbourCount: neighbours.length, chainEntryCount: chains.length, interiorCount: interior.length / 3, borderCount: border.length / 3,
     interiorPrimitive: primitive(interior), borderPrimitive: primitive(border), neighbours: section(Uint32Array.from(neighbours)),
-    ghostStarts: section(Uint32Array.from(ghostStarts)), ghostChains: section(Uint16Array.from(chains)), copyOf: section(Uint16Array.from(copyOf)), ...change,
+    ghostStarts: section(Uint32Array.from(ghostStarts)), ghostChains: numbers(chains), copyOf: numbers(copyOf), splitOf: numbers(splitOf), ...change,
   };
   const text = JSON.stringify({ nodes: [{}], meshes: [{ primitives }], accessors, bufferViews, extensions: { MESHHIER_tile: extension } });
   return container(text.padEnd(Math.ceil(text.length / 4) * 4), chunks, end);

@@ -1,0 +1,272 @@
+#include "bench/shading_comparison.h"
+
+#include "bench/level_surface.h"
+#include "execution/cancel.h"
+#include "execution/parallel.h"
+#include "hierarchy/angle.h"
+#include "hierarchy/attributes.h"
+#include "hierarchy/cut.h"
+#include "hierarchy/frame.h"
+#include "inspection/cut_surface.h"
+#include "render/directions.h"
+#include "render/png.h"
+#include "render/raster.h"
+#include "render/shade.h"
+#include "render/tile_facets.h"
+
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace meshhier::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using render::NormalKind;
+
+// ---- differences ---------------------------------------------------------------------------
+
+/// Of directions of length 1.
+double degrees_between(Vec3f a, Vec3f b) {
+  constexpr double kDegrees = 57.29577951308232;
+  const Vec3d u = to_double(a), v = to_double(b);
+  return kDegrees * angle_of(dot(u, v), length(cross(u, v)));
+}
+
+/// Of screen values, by the shares of ITU-R BT.709.
+double luminance(const std::uint8_t* rgba) {
+  return 0.2126 * rgba[0] + 0.7152 * rgba[1] + 0.0722 * rgba[2];
+}
+
+struct DrawnPicture {
+  render::Raster raster;
+  render::Picture picture;
+};
+
+class DifferenceSum {
+ public:
+  void add(const DrawnPicture& a, const DrawnPicture& b) {
+    add_normals(a.raster, b.raster);
+    add_pixels(a.picture, b.picture);
+  }
+
+  void add(const DifferenceSum& other) {
+    degrees_ += other.degrees_;
+    samples_ += other.samples_;
+    squares_ += other.squares_;
+    pixels_ += other.pixels_;
+  }
+
+  /// 0 if there is nothing to compare.
+  ShadingDifference mean() const {
+    ShadingDifference result;
+    if (samples_ > 0)
+      result.degrees = degrees_ / static_cast<double>(samples_);
+    if (pixels_ > 0)
+      result.luminance = std::sqrt(squares_ / static_cast<double>(pixels_));
+    return result;
+  }
+
+ private:
+  void add_normals(const render::Raster& a, const render::Raster& b) {
+    for (std::size_t i = 0; i < a.samples().size(); ++i) {
+      const render::Sample &one = a.samples()[i], &other = b.samples()[i];
+      if (one.covered() && other.covered()) {
+        degrees_ += degrees_between(one.normal, other.normal);
+        ++samples_;
+      }
+    }
+  }
+
+  void add_pixels(const render::Picture& a, const render::Picture& b) {
+    for (std::size_t i = 0; i < a.rgba.size(); i += 4) {
+      if (a.rgba[i + 3] == 255 && b.rgba[i + 3] == 255) {
+        const double off = luminance(&a.rgba[i]) - luminance(&b.rgba[i]);
+        squares_ += off * off;
+        ++pixels_;
+      }
+    }
+  }
+
+  double degrees_ = 0, squares_ = 0;
+  std::uint64_t samples_ = 0, pixels_ = 0;
+};
+
+// ---- one view ------------------------------------------------------------------------------
+
+struct LevelSums {
+  std::uint64_t triangles = 0;
+  DifferenceSum own, facets;
+
+  void add(const LevelSums& other) {
+    own.add(other.own);
+    facets.add(other.facets);
+  }
+};
+
+struct ViewResult {
+  std::vector<LevelSums> levels;
+  std::vector<NamedPicture> pictures;
+};
+
+/// One level, drawn in both ways.
+struct DrawnLevel {
+  std::uint64_t triangles = 0;
+  DrawnPicture own, facets;
+};
+
+DrawnPicture shaded(render::Raster raster) {
+  render::Picture picture = render::shade(raster);
+  return {std::move(raster), std::move(picture)};
+}
+
+DrawnLevel draw_level(const storage::HierarchyReader& reader, const render::Camera& camera,
+                      Level level) {
+  const AttributeLayout without_colours{.normals = reader.tile_format().attributes.normals};
+  LevelSurface surface(reader, level);
+  render::Raster own(camera), facets(camera);
+  std::uint64_t triangles = 0;
+  for (std::size_t i = 0; i < surface.size(); ++i) {
+    const ShownTile shown = surface.load(i);
+    const auto draw = [&](render::Raster& raster, NormalKind kind) {
+      raster.draw(render::facets_of(shown.tile, without_colours, shown.border, kind));
+    };
+    draw(own, NormalKind::own);
+    draw(facets, NormalKind::facets);
+    triangles += shown.tile.mesh.interior.size() + shown.border.size();
+  }
+  return {triangles, shaded(std::move(own)), shaded(std::move(facets))};
+}
+
+/// Of the input's box; the stored positions are relative to the origin.
+render::Camera camera_of(const storage::HierarchyReader& reader, const render::View& view,
+                         std::uint32_t size) {
+  const storage::Manifest& manifest = reader.manifest();
+  const BoundsD& box = manifest.source.bounds;
+  return {view, BoundsD{box.min - manifest.origin, box.max - manifest.origin},
+          render::Framing{.width = size, .height = size}};
+}
+
+Vec3d up_of(const storage::Manifest& manifest) {
+  return manifest.up == UpAxis::z ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0};
+}
+
+/// What all views have in common.
+struct Job {
+  const storage::HierarchyReader& reader;
+  const ShadingOptions& options;
+  std::vector<Level> levels;
+  std::vector<render::View> views;
+  bool pictures = false;
+};
+
+ViewResult measure_view(const Job& job, std::size_t number) {
+  const render::Camera camera = camera_of(job.reader, job.views[number], job.options.size);
+  ViewResult result;
+  const auto keep = [&](const std::string& what, const DrawnPicture& drawn) {
+    if (job.pictures) {
+      result.pictures.push_back(
+          {fmt::format("view{}_{}.png", number + 1, what), render::encode_png(drawn.picture)});
+    }
+  };
+  const DrawnPicture original = draw_level(job.reader, camera, job.reader.tree().depth()).own;
+  keep("original", original);
+  for (const Level level : job.levels) {
+    const DrawnLevel drawn = draw_level(job.reader, camera, level);
+    keep(fmt::format("level{}_own", raw(level)), drawn.own);
+    keep(fmt::format("level{}_facets", raw(level)), drawn.facets);
+    LevelSums& sums = result.levels.emplace_back();
+    sums.triangles = drawn.triangles;
+    sums.own.add(original, drawn.own);
+    sums.facets.add(original, drawn.facets);
+  }
+  return result;
+}
+
+// ---- all views -----------------------------------------------------------------------------
+
+std::vector<Level> levels_of(const Tree& tree, const std::optional<Level>& asked) {
+  if (asked) {
+    require_level(tree, *asked);
+    return {*asked};
+  }
+  std::vector<Level> levels(std::size_t{raw(tree.depth())} + 1);
+  for (std::size_t i = 0; i < levels.size(); ++i)
+    levels[i] = static_cast<Level>(i);
+  return levels;
+}
+
+std::string kind_of_normals(const storage::HierarchyReader& reader) {
+  const Tree& tree = reader.tree();
+  if (!reader.read_tile(tree.tile_node(tree.root())).shading.empty())
+    return "computed";
+  return reader.tile_format().attributes.normals ? "given" : "none";
+}
+
+Json json_of(const ShadingDifference& difference) {
+  return {{"degrees", difference.degrees}, {"luminance", difference.luminance}};
+}
+
+}  // namespace
+
+ShadingComparison compare_shading(const storage::HierarchyReader& reader,
+                                  const ShadingOptions& options,
+                                  const std::function<void(const NamedPicture&)>& sink) {
+  const Job job{reader, options, levels_of(reader.tree(), options.level),
+                render::views_around(options.views, up_of(reader.manifest())),
+                static_cast<bool>(sink)};
+  std::vector<LevelSums> sums(job.levels.size());
+  execution::ordered_for(
+      job.views.size(), inspection::tiles_in_flight(), execution::CancelToken{},
+      [&](std::size_t view) { return measure_view(job, view); },
+      [&](std::size_t, const ViewResult& result) {
+        for (const NamedPicture& picture : result.pictures)
+          sink(picture);
+        for (std::size_t i = 0; i < sums.size(); ++i) {
+          sums[i].triangles = result.levels[i].triangles;
+          sums[i].add(result.levels[i]);
+        }
+      });
+  ShadingComparison comparison{kind_of_normals(reader), options, {}};
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    comparison.rows.push_back(
+        {job.levels[i], sums[i].triangles, sums[i].own.mean(), sums[i].facets.mean()});
+  }
+  return comparison;
+}
+
+std::string markdown(const std::string& name, const ShadingComparison& comparison) {
+  const ShadingOptions& options = comparison.options;
+  std::string text = fmt::format(
+      "### {}: {} views of {} x {} pixels, normals: {}\n\n"
+      "| level | triangles | degrees, own normals | facets | luminance, own normals | facets |\n"
+      "|---:|---:|---:|---:|---:|---:|\n",
+      name, options.views, options.size, options.size, comparison.normals);
+  for (const ShadingRow& row : comparison.rows) {
+    text += fmt::format("| {} | {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} |\n", raw(row.level),
+                        row.triangles, row.own.degrees, row.facets.degrees, row.own.luminance,
+                        row.facets.luminance);
+  }
+  return text;
+}
+
+std::string json_text(const std::string& name, const ShadingComparison& comparison) {
+  Json levels = Json::array();
+  for (const ShadingRow& row : comparison.rows) {
+    levels.push_back({{"level", raw(row.level)},
+                      {"triangles", row.triangles},
+                      {"own", json_of(row.own)},
+                      {"facets", json_of(row.facets)}});
+  }
+  const Json object{{"hierarchy", name},
+                    {"normals", comparison.normals},
+                    {"views", comparison.options.views},
+                    {"size", comparison.options.size},
+                    {"levels", std::move(levels)}};
+  return object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace meshhier::bench

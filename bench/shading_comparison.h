@@ -1,0 +1,61 @@
+// How far the shading of each level is from that of the original, in pictures (as Lindstrom & Turk,
+// Image-driven simplification, 2000, measure meshes).
+#pragma once
+
+#include "hierarchy/ids.h"
+#include "storage/format/hierarchy_reader.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace meshhier::bench {
+
+struct ShadingOptions {
+  std::optional<Level> level{};  ///< none: all
+  std::uint32_t size = 512;      ///< of a picture, pixels, 1 to render::kMostPixels
+  std::uint32_t views = 6;       ///< from all around, at least one
+};
+
+/// Between pictures of a level and of the original, over what both of them cover.
+struct ShadingDifference {
+  double degrees = 0;    ///< mean angle between the normals of a sample
+  double luminance = 0;  ///< root mean square difference of pixels, in steps of 0 to 255
+};
+
+struct ShadingRow {
+  Level level{};
+  std::uint64_t triangles = 0;
+  ShadingDifference own;     ///< drawn with the tiles' own normals
+  ShadingDifference facets;  ///< drawn with those of facets
+};
+
+struct ShadingComparison {
+  /// Whose normals the original and the levels have: "computed", "given", or "none", facets.
+  std::string normals;
+  ShadingOptions options;
+  std::vector<ShadingRow> rows;
+};
+
+struct NamedPicture {
+  std::string name;  ///< "view1_level3_own.png"
+  std::vector<std::byte> png;
+};
+
+/// Compares each level with the last one, the partitions, drawn with its own normals. Colours are
+/// left out. `sink`, if there is one, gets the pictures view by view. Parallel by views, with 100
+/// bytes a sample and four samples a pixel for each that is in flight; a pure function of hierarchy
+/// and options. Throws Error(usage) if there is no such level, Error(io | corrupt).
+ShadingComparison compare_shading(const storage::HierarchyReader& reader,
+                                  const ShadingOptions& options,
+                                  const std::function<void(const NamedPicture&)>& sink = {});
+
+/// A table in Markdown below a heading.
+std::string markdown(const std::string& name, const ShadingComparison& comparison);
+/// One object, for programs.
+std::string json_text(const std::string& name, const ShadingComparison& comparison);
+
+}  // namespace meshhier::bench

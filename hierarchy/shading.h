@@ -1,0 +1,48 @@
+// The normals that a build computes for a mesh that has none.
+//
+// They are kept apart from the tile's mesh: at a crease a vertex has several normals, and who asks
+// for the mesh (verify --input, export, streams) gets it as if there were none. The vertex itself
+// has the first of its normals; for each further one it is split.
+#pragma once
+
+#include "hierarchy/normal_code.h"
+#include "hierarchy/tile_mesh.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace meshhier {
+
+/// Of a tile. Vertices have the numbers of VertexNumbers, [0, n): places, then copies. Split i has
+/// the number n + i.
+struct Shading {
+  std::vector<NormalCode> normals;      ///< of vertices, then of splits; empty: no computed normals
+  std::vector<std::uint32_t> split_of;  ///< of each split its vertex, < n; ascending
+  /// The triangles of the mesh, one for one and corner for corner, with numbers of vertices and
+  /// splits. Empty if there are no splits: each corner has the normal of its vertex then.
+  std::vector<TileTriangle> interior, border;
+
+  bool empty() const { return normals.empty(); }
+  friend bool operator==(const Shading&, const Shading&) = default;
+};
+
+/// A tile of so many triangles has no more splits: each is at a corner.
+constexpr std::uint64_t most_splits(std::uint64_t interior_count, std::uint64_t border_count) {
+  return 3 * (interior_count + border_count);
+}
+
+/// What a tile knows of its own vertices: places, then their copies.
+struct OwnShading {
+  std::vector<NormalCode> normals;      ///< of own places, of their copies, of splits
+  std::vector<std::uint32_t> split_of;  ///< number of an own place, or own_count + copy; ascending
+};
+
+/// What a tile shows its neighbours of that: its boundary. Numbers are those of the boundary:
+/// place v has the number v, copy i the number boundary_count + i.
+struct BoundaryShading {
+  std::uint32_t boundary_count = 0;
+  std::vector<std::uint32_t> copy_places;  ///< of the copies on the boundary, ascending
+  OwnShading shading;
+};
+
+}  // namespace meshhier

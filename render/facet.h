@@ -1,0 +1,32 @@
+// What is drawn: triangles in space.
+#pragma once
+
+#include "hierarchy/vec.h"
+
+#include <array>
+#include <cmath>
+
+namespace meshhier::render {
+
+/// Of surfaces without colours, in linear light.
+inline constexpr Vec3f kPlainColour{0.6F, 0.6F, 0.6F};
+
+struct FacetCorner {
+  Vec3f position;
+  Vec3f normal;                 ///< of any length; without direction (0, not finite): the facet's
+  Vec3f colour = kPlainColour;  ///< linear light, 0 to 1
+};
+
+/// Both of its sides are seen. As with materials of glTF that are two-sided, normals are those of
+/// the side from which the corners turn counter-clockwise; from the other side they are turned
+/// round.
+using Facet = std::array<FacetCorner, 3>;
+
+/// Of length 1; 0 of what has no direction.
+inline Vec3f unit_or_zero(Vec3f vector) {
+  const Vec3d wide = to_double(vector);
+  const double size = length(wide);  // squares of floats are in range
+  return size > 0 && std::isfinite(size) ? to_float(wide * (1 / size)) : Vec3f{};
+}
+
+}  // namespace meshhier::render

@@ -1,0 +1,94 @@
+#include "render/raster.h"
+
+#include "render/coverage.h"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+namespace meshhier::render {
+namespace {
+
+bool is_finite(Vec3d p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+Vec3f blend(const Weights& weights, Vec3f a, Vec3f b, Vec3f c) {
+  return to_float(to_double(a) * weights[0] + to_double(b) * weights[1] +
+                  to_double(c) * weights[2]);
+}
+
+/// A facet as the camera sees it.
+struct SeenFacet {
+  std::array<Vec3d, 3> places;  ///< on the grid
+  Vec3f flat;                   ///< its own normal
+  std::array<Vec3f, 3> normals, colours;
+
+  void turn_round() {
+    flat = flat * -1;
+    for (Vec3f& normal : normals)
+      normal = normal * -1;
+  }
+
+  double depth(const Weights& w) const {
+    return places[0].z * w[0] + places[1].z * w[1] + places[2].z * w[2];
+  }
+  Vec3f normal(const Weights& w) const {
+    const Vec3f unit = unit_or_zero(blend(w, normals[0], normals[1], normals[2]));
+    return unit == Vec3f{} ? flat : unit;
+  }
+  Vec3f colour(const Weights& w) const { return blend(w, colours[0], colours[1], colours[2]); }
+};
+
+/// Of the side from which the corners turn counter-clockwise, by the view's axes. The grid's y goes
+/// down and its z away: both turn.
+Vec3f flat_normal(const std::array<Vec3d, 3>& places) {
+  const Vec3d across = cross(places[1] - places[0], places[2] - places[0]);
+  const double size = length(across);
+  if (!(size > 0) || !std::isfinite(size))
+    return {0, 0, 1};
+  return to_float(Vec3d{across.x, -across.y, -across.z} * (1 / size));
+}
+
+std::optional<SeenFacet> seen(const Camera& camera, const Facet& facet) {
+  SeenFacet result;
+  for (std::size_t i = 0; i < 3; ++i) {
+    result.places[i] = camera.on_grid(facet[i].position);
+    if (!is_finite(result.places[i]))
+      return std::nullopt;
+    result.normals[i] = camera.turned(unit_or_zero(facet[i].normal));
+    result.colours[i] = facet[i].colour;
+  }
+  result.flat = flat_normal(result.places);
+  if (result.flat.z < 0)
+    result.turn_round();
+  return result;
+}
+
+}  // namespace
+
+Raster::Raster(const Camera& camera)
+    : camera_(camera), samples_(std::size_t{camera.columns()} * camera.rows()) {}
+
+void Raster::draw(const Facet& facet) {
+  const std::optional<SeenFacet> there = seen(camera_, facet);
+  if (!there)
+    return;
+  const auto& [a, b, c] = there->places;
+  const GridTriangle triangle({snapped(a), snapped(b), snapped(c)});
+  triangle.visit(columns(), rows(),
+                 [&](std::int64_t column, std::int64_t row, const Weights& weights) {
+                   Sample& sample = samples_[static_cast<std::size_t>(row * columns() + column)];
+                   const auto depth = static_cast<float>(there->depth(weights));
+                   if (depth < sample.depth)
+                     sample = {depth, there->normal(weights), there->colour(weights)};
+                 });
+}
+
+void Raster::draw(std::span<const Facet> facets) {
+  for (const Facet& facet : facets)
+    draw(facet);
+}
+
+}  // namespace meshhier::render

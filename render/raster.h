@@ -1,0 +1,48 @@
+// Draws triangles into a grid of samples, each of which keeps what is nearest (a z-buffer).
+#pragma once
+
+#include "hierarchy/vec.h"
+#include "render/camera.h"
+#include "render/facet.h"
+
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace meshhier::render {
+
+/// What is seen of the surface at one place.
+struct Sample {
+  float depth = std::numeric_limits<float>::infinity();  ///< of Camera::on_grid()
+  Vec3f normal;  ///< of length 1, by the view's axes, of the side that is seen; 0: nothing there
+  Vec3f colour;  ///< linear light
+
+  bool covered() const { return depth < std::numeric_limits<float>::infinity(); }
+};
+
+/// A pure function of the camera and of the facets in their order; 28 bytes a sample. Not
+/// thread-safe.
+class Raster {
+ public:
+  explicit Raster(const Camera& camera);
+
+  /// The nearest facet is seen, of equally near ones the first. Depths, normals and colours are
+  /// interpolated; normals are those of the side that is seen. Nothing is seen of a facet that is
+  /// not finite. What reaches beyond the grid by more than 2^20 samples is moved there.
+  void draw(const Facet& facet);
+  void draw(std::span<const Facet> facets);
+
+  const Framing& framing() const { return camera_.framing(); }
+  std::uint32_t columns() const { return camera_.columns(); }
+  std::uint32_t rows() const { return camera_.rows(); }
+  /// Row by row, from the top left.
+  std::span<const Sample> samples() const& { return samples_; }
+  void samples() const&& = delete;  ///< it would outlive its array
+
+ private:
+  Camera camera_;
+  std::vector<Sample> samples_;
+};
+
+}  // namespace meshhier::render

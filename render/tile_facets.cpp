@@ -1,0 +1,104 @@
+#include "render/tile_facets.h"
+
+#include "hierarchy/vertex_numbers.h"
+#include "render/srgb.h"
+
+#include <array>
+#include <cstddef>
+
+namespace meshhier::render {
+namespace {
+
+/// The number that a colour's full light has.
+double full_light(ColourType type) {
+  switch (type) {
+    case ColourType::u8:
+      return 255;
+    case ColourType::u16:
+      return 65535;
+    default:
+      return 1;
+  }
+}
+
+/// The corners that a tile's vertices are, each by its number in the file.
+class TileCorners {
+ public:
+  TileCorners(const PublishedTile& tile, const AttributeLayout& layout, NormalKind normals)
+      : tile_(tile), layout_(layout), normals_(normals) {}
+
+  Facet facet(const TileTriangle& t) const { return {corner(t[0]), corner(t[1]), corner(t[2])}; }
+
+ private:
+  /// A vertex among the first ones of places, or among copies.
+  struct Source {
+    const VertexArray& array;
+    std::size_t index;
+  };
+
+  std::size_t vertex_count() const { return tile_.mesh.vertices.size() + tile_.mesh.copies.size(); }
+
+  Source source(std::size_t vertex) const {
+    const std::size_t places = tile_.mesh.vertices.size();
+    return vertex < places ? Source{tile_.mesh.vertices, vertex}
+                           : Source{tile_.mesh.copies.vertices, vertex - places};
+  }
+
+  FacetCorner corner(TileVertex number) const {
+    const std::size_t n = vertex_count();
+    const std::size_t vertex =
+        raw(number) < n ? raw(number) : tile_.shading.split_of[raw(number) - n];
+    const Source from = source(vertex);
+    const auto attributes = from.array.attributes_of(from.index);
+    return {from.array.positions[from.index], normal(raw(number), attributes), colour(attributes)};
+  }
+
+  Vec3f normal(std::size_t number, std::span<const float> attributes) const {
+    if (normals_ == NormalKind::facets)
+      return {};
+    if (!tile_.shading.empty())
+      return normal_of(tile_.shading.normals[number]);
+    return layout_.normals ? channels(attributes, layout_.normal_offset()) : Vec3f{};
+  }
+
+  Vec3f colour(std::span<const float> attributes) const {
+    if (layout_.colour == ColourType::none)
+      return kPlainColour;
+    const double full = full_light(layout_.colour);
+    const Vec3f stored = channels(attributes, layout_.colour_offset());
+    return to_float(
+        {light_of(stored.x / full), light_of(stored.y / full), light_of(stored.z / full)});
+  }
+
+  static Vec3f channels(std::span<const float> attributes, int offset) {
+    const auto three = attributes.subspan(static_cast<std::size_t>(offset), 3);
+    return {three[0], three[1], three[2]};
+  }
+
+  const PublishedTile& tile_;
+  const AttributeLayout& layout_;
+  NormalKind normals_;
+};
+
+}  // namespace
+
+std::vector<Facet> facets_of(const PublishedTile& tile, const AttributeLayout& layout,
+                             std::span<const std::uint32_t> border, NormalKind normals) {
+  const TileMesh& mesh = tile.mesh;
+  const bool split = !tile.shading.split_of.empty();
+  const VertexNumbers numbers(static_cast<std::uint32_t>(mesh.vertices.size()), mesh.copies.places);
+  const auto interior =
+      split ? tile.shading.interior : numbers.numbered(mesh.interior, mesh.interior_wedges);
+  const auto all_border =
+      split ? tile.shading.border : numbers.numbered(mesh.border, mesh.border_wedges);
+  const TileCorners corners(tile, layout, normals);
+  std::vector<Facet> facets;
+  facets.reserve(interior.size() + border.size());
+  for (const TileTriangle& triangle : interior)
+    facets.push_back(corners.facet(triangle));
+  for (const std::uint32_t i : border)
+    facets.push_back(corners.facet(all_border[i]));
+  return facets;
+}
+
+}  // namespace meshhier::render

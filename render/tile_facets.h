@@ -1,0 +1,24 @@
+// The triangles of a tile, as they are drawn.
+#pragma once
+
+#include "hierarchy/attributes.h"
+#include "hierarchy/published.h"
+#include "render/facet.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace meshhier::render {
+
+/// Which normals a tile is drawn with. `own`: the computed ones, else those of the input, else
+/// facets.
+enum class NormalKind { own, facets };
+
+/// The interior triangles of a tile, then the border triangles asked for. `layout`: of its
+/// attributes; colours are those of a screen. `border`: which of tile.mesh.border, each below its
+/// size. Requires a tile that is consistent by itself, as storage::decode_tile checks it. Linear.
+std::vector<Facet> facets_of(const PublishedTile& tile, const AttributeLayout& layout,
+                             std::span<const std::uint32_t> border, NormalKind normals);
+
+}  // namespace meshhier::render

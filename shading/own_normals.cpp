@@ -1,0 +1,195 @@
+#include "shading/own_normals.h"
+
+#include "shading/crease.h"
+#include "shading/fan_groups.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <utility>
+
+namespace meshhier::shading {
+namespace {
+
+/// The triangles of a tile, interior first, with the wedges of their corners.
+class Corners {
+ public:
+  explicit Corners(const TileMesh& mesh) : mesh_(mesh) {}
+
+  std::size_t count() const { return mesh_.interior.size() + mesh_.border.size(); }
+  const TileTriangle& operator[](std::size_t t) const {
+    return is_interior(t) ? mesh_.interior[t] : mesh_.border[t - mesh_.interior.size()];
+  }
+  std::uint32_t wedge(std::size_t t, std::size_t corner) const {
+    const auto& wedges = is_interior(t) ? mesh_.interior_wedges : mesh_.border_wedges;
+    return wedges.empty() ? 0 : wedges[is_interior(t) ? t : t - mesh_.interior.size()][corner];
+  }
+  /// Along the triangle's normal, twice its area long.
+  Vec3d area(std::size_t t) const {
+    const auto& triangle = (*this)[t];
+    const Vec3d a = to_double(mesh_.vertices.positions[raw(triangle[0])]);
+    const Vec3d b = to_double(mesh_.vertices.positions[raw(triangle[1])]);
+    const Vec3d c = to_double(mesh_.vertices.positions[raw(triangle[2])]);
+    return cross(b - a, c - a);
+  }
+
+ private:
+  bool is_interior(std::size_t t) const { return t < mesh_.interior.size(); }
+  const TileMesh& mesh_;
+};
+
+/// The sum of the areas around each own place.
+std::vector<Vec3d> smooth_normals(const TileMesh& mesh, const Corners& corners) {
+  std::vector<Vec3d> sums(mesh.own_count);
+  for (std::size_t t = 0; t < corners.count(); ++t) {
+    const Vec3d area = corners.area(t);
+    for (const TileVertex v : corners[t]) {
+      if (mesh.is_own(v))
+        sums[raw(v)] = sums[raw(v)] + area;
+    }
+  }
+  return sums;
+}
+
+/// Of own places, whether a triangle is so far from the mean that two may be a crease apart.
+std::vector<char> find_rough_places(const TileMesh& mesh, const Corners& corners,
+                                    const std::vector<Vec3d>& sums) {
+  const double cosine = crease_cosine(0.5);
+  std::vector<double> limits(sums.size());
+  for (std::size_t v = 0; v < sums.size(); ++v)
+    limits[v] = cosine * length(sums[v]);
+  std::vector<char> is_rough(sums.size());
+  for (std::size_t t = 0; t < corners.count(); ++t) {
+    const Vec3d area = corners.area(t);
+    const double size = length(area);
+    for (const TileVertex v : corners[t]) {
+      if (mesh.is_own(v))
+        is_rough[raw(v)] |= static_cast<char>(dot(area, sums[raw(v)]) < limits[raw(v)] * size);
+    }
+  }
+  return is_rough;
+}
+
+/// A triangle's corner at a rough place.
+struct RoughCorner {
+  std::uint32_t place = 0;
+  std::uint32_t triangle = 0;
+  std::uint32_t corner = 0;
+};
+
+/// By their places; those of a place in the order of the triangles.
+std::vector<RoughCorner> rough_corners(const TileMesh& mesh, const Corners& corners,
+                                       const std::vector<char>& is_rough) {
+  std::vector<std::uint32_t> ends(mesh.own_count + 1);
+  const auto for_each = [&](const auto& visit) {
+    for (std::uint32_t t = 0; t < corners.count(); ++t) {
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const TileVertex v = corners[t][k];
+        if (mesh.is_own(v) && is_rough[raw(v)] != 0)
+          visit(RoughCorner{raw(v), t, k});
+      }
+    }
+  };
+  for_each([&](const RoughCorner& corner) { ++ends[corner.place + 1]; });
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  std::vector<RoughCorner> found(ends.back());
+  for_each([&](const RoughCorner& corner) { found[ends[corner.place]++] = corner; });
+  return found;
+}
+
+/// Makes the normals of one place after another.
+class Shader {
+ public:
+  explicit Shader(const TileMesh& mesh)
+      : mesh_(mesh), corners_(mesh), copy_count_(mesh.copies.first_of(mesh.own_count)) {}
+
+  OwnShading operator()() && {
+    const std::vector<Vec3d> sums = smooth_normals(mesh_, corners_);
+    const std::vector<char> is_rough = find_rough_places(mesh_, corners_, sums);
+    shading_.normals.reserve(mesh_.own_count + copy_count_);
+    for (const Vec3d& sum : sums)
+      shading_.normals.push_back(normal_code(sum));
+    for (std::size_t i = 0; i < copy_count_; ++i)
+      shading_.normals.push_back(shading_.normals[mesh_.copies.places[i]]);
+    const std::vector<RoughCorner> rough = rough_corners(mesh_, corners_, is_rough);
+    for (std::size_t begin = 0, end = 0; begin < rough.size(); begin = end) {
+      while (end < rough.size() && rough[end].place == rough[begin].place)
+        ++end;
+      shade_place(std::span(rough).subspan(begin, end - begin));
+    }
+    add_splits();
+    return std::move(shading_);
+  }
+
+ private:
+  struct Split {
+    std::uint32_t vertex = 0;
+    NormalCode normal{};
+  };
+  /// A normal that a vertex has, by the number of its group.
+  struct Shown {
+    std::uint32_t vertex = 0;
+    std::uint32_t group = 0;
+    friend constexpr auto operator<=>(const Shown&, const Shown&) = default;
+  };
+
+  std::uint32_t vertex_of(const RoughCorner& corner) const {
+    const std::uint32_t wedge = corners_.wedge(corner.triangle, corner.corner);
+    const auto first = static_cast<std::uint32_t>(mesh_.copies.first_of(corner.place));
+    return wedge == 0 ? corner.place : mesh_.own_count + first + wedge - 1;
+  }
+
+  void shade_place(std::span<const RoughCorner> rough) {
+    std::vector<FanCorner> fan(rough.size());
+    for (std::size_t i = 0; i < rough.size(); ++i) {
+      const TileTriangle& t = corners_[rough[i].triangle];
+      fan[i] = {raw(t[(rough[i].corner + 1) % 3]), raw(t[(rough[i].corner + 2) % 3]),
+                corners_.area(rough[i].triangle)};
+    }
+    const FanGroups groups = group_fans(fan);
+    std::vector<Shown> shown(rough.size());
+    for (std::size_t i = 0; i < rough.size(); ++i)
+      shown[i] = {vertex_of(rough[i]), groups.group_of[i]};
+    std::sort(shown.begin(), shown.end());
+    shown.erase(std::unique(shown.begin(), shown.end()), shown.end());
+    set_all(rough[0].place, normal_code(groups.normals[0]));
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+      const NormalCode normal = normal_code(groups.normals[shown[i].group]);
+      if (i == 0 || shown[i].vertex != shown[i - 1].vertex)
+        shading_.normals[shown[i].vertex] = normal;
+      else
+        splits_.push_back({shown[i].vertex, normal});
+    }
+  }
+
+  /// Of the vertices that no triangle has.
+  void set_all(std::uint32_t place, const NormalCode& normal) {
+    shading_.normals[place] = normal;
+    for (std::size_t i = mesh_.copies.first_of(place);
+         i < copy_count_ && mesh_.copies.places[i] == place; ++i)
+      shading_.normals[mesh_.own_count + i] = normal;
+  }
+
+  void add_splits() {
+    std::stable_sort(splits_.begin(), splits_.end(),
+                     [](const Split& a, const Split& b) { return a.vertex < b.vertex; });
+    for (const Split& split : splits_) {
+      shading_.split_of.push_back(split.vertex);
+      shading_.normals.push_back(split.normal);
+    }
+  }
+
+  const TileMesh& mesh_;
+  Corners corners_;
+  std::size_t copy_count_;  ///< of own places
+  OwnShading shading_;
+  std::vector<Split> splits_;
+};
+
+}  // namespace
+
+OwnShading shade(const TileMesh& mesh) {
+  return Shader(mesh)();
+}
+
+}  // namespace meshhier::shading

@@ -1,0 +1,71 @@
+// What the vertices of a tile have (docs/file_format.md, section 4.3), as it is drawn.
+import type { Glb, Gltf } from './glb.js';
+
+export type Accessor = Gltf['accessors'][number];
+
+/// x, y, z, 0 of each vertex: in parts of 127 if they come from the build, else of 32767.
+export type Normals = Int8Array | Int16Array;
+
+/// A copy, so that it is aligned and holds nothing else alive.
+export function detached(bytes: Uint8Array): ArrayBuffer {
+  return bytes.slice().buffer;
+}
+
+function floats(bytes: Uint8Array): Float32Array {
+  return new Float32Array(detached(bytes));
+}
+
+function stepOf(node: Gltf['nodes'][number]): number {
+  return node.matrix ? Math.hypot(node.matrix[0], node.matrix[1], node.matrix[2]) : (node.scale?.[0] ?? 1);
+}
+
+export function readPositions(glb: Glb, accessor: Accessor, vertices: number): Float32Array {
+  if (accessor.componentType === 5126) return floats(glb.section(accessor.bufferView, 12 * vertices));
+  if (accessor.componentType !== 5123) glb.fail('positions of an unknown type');
+  const points = new Uint16Array(detached(glb.section(accessor.bufferView, 8 * vertices)));
+  const step = stepOf(glb.gltf.nodes[0]);
+  const positions = new Float32Array(3 * vertices);
+  for (let v = 0; v < vertices; ++v)
+    for (let axis = 0; axis < 3; ++axis) positions[3 * v + axis] = step * points[4 * v + axis];
+  return positions;
+}
+
+const COLOUR_TYPES: Record<number, { bytes: number; most: number }> = {
+  5121: { bytes: 1, most: 255 },
+  5123: { bytes: 2, most: 65535 },
+  5126: { bytes: 4, most: 1 },
+};
+
+export function readColours(glb: Glb, accessor: Accessor, vertices: number): Uint8Array {
+  const type = COLOUR_TYPES[accessor.componentType];
+  const width = accessor.type === 'VEC4' ? 4 : 3;
+  if (type === undefined) glb.fail('colours of an unknown type');
+  const stride = Math.ceil((width * type.bytes) / 4) * 4;
+  const bytes = detached(glb.section(accessor.bufferView, stride * vertices));
+  const values = type.bytes === 1 ? new Uint8Array(bytes) : type.bytes === 2 ? new Uint16Array(bytes) : new Float32Array(bytes);
+  const colours = new Uint8ClampedArray(4 * vertices).fill(255);
+  for (let v = 0; v < vertices; ++v)
+    for (let c = 0; c < width; ++c) colours[4 * v + c] = (255 * values[(v * stride) / type.bytes + c]) / type.most;
+  return new Uint8Array(colours.buffer);
+}
+
+/// Bytes of what a build computed.
+function codedNormals(glb: Glb, { bufferView, normalized, type }: Accessor, vertices: number): Int8Array {
+  if (normalized !== true || type !== 'VEC3') glb.fail('normals of an unknown type');
+  return new Int8Array(detached(glb.section(bufferView, 4 * vertices)));
+}
+
+/// The input's own.
+function givenNormals(glb: Glb, { bufferView }: Accessor, vertices: number): Int16Array {
+  const given = floats(glb.section(bufferView, 12 * vertices));
+  const normals = new Int16Array(4 * vertices);
+  for (let v = 0; v < vertices; ++v)
+    for (let axis = 0; axis < 3; ++axis) normals[4 * v + axis] = Math.max(-32767, Math.min(32767, Math.round(32767 * given[3 * v + axis])));
+  return normals;
+}
+
+export function readNormals(glb: Glb, accessor: Accessor, vertices: number): Normals {
+  if (accessor.componentType === 5120) return codedNormals(glb, accessor, vertices);
+  if (accessor.componentType === 5126) return givenNormals(glb, accessor, vertices);
+  return glb.fail('normals of an unknown type');
+}
