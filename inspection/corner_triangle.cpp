@@ -1,6 +1,6 @@
 #include "inspection/corner_triangle.h"
 
-#include "inspection/tile_vertices.h"
+#include "hierarchy/shown_corners.h"
 
 #include <algorithm>
 #include <bit>
@@ -47,15 +47,8 @@ void normalize_all(std::vector<Cornered>& triangles, bool unique) {
   triangles.erase(std::unique(triangles.begin(), triangles.end(), equal), triangles.end());
 }
 
-/// Of each corner the number that the tile's shading has for it.
-std::vector<TileTriangle> shading_corners(const PublishedTile& tile) {
-  return tile.shading.split_of.empty()
-             ? vertex_numbers(tile.mesh).numbered(tile.mesh.border, tile.mesh.border_wedges)
-             : tile.shading.border;
-}
-
 void add_normals(const PublishedTile& tile, std::vector<ShadedTriangle>& border) {
-  const std::vector<TileTriangle> numbers = shading_corners(tile);
+  const std::vector<TileTriangle> numbers = shown_border(tile);
   for (std::size_t t = 0; t < border.size(); ++t) {
     for (std::size_t c = 0; c < 3; ++c)
       border[t].normals[c] = std::bit_cast<std::uint32_t>(tile.shading.normals[raw(numbers[t][c])]);

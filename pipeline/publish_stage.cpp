@@ -113,9 +113,7 @@ struct FinishedMesh {
 /// Orders a partition's vertices, and gives all vertices their normals.
 FinishedMesh finish(const Forest& forest, NodeId node, TileMesh mesh) {
   FinishedMesh finished{std::move(mesh), {}, forest.published_parent_map(node)};
-  OwnShading normals;
-  if (forest.computes_normals())
-    normals = forest.normals(node);
+  OwnShading normals = forest.computes_normals() ? forest.normals(node) : OwnShading{};
   if (forest.tree().is_partition(node)) {
     const std::vector<std::uint32_t> copy_places = finished.mesh.copies.places;
     const std::vector<std::uint32_t> place =

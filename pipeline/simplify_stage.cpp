@@ -100,7 +100,7 @@ class Simplifier {
     const TileMesh& mesh = loaded.tile.mesh;
     if (!forest_.tree().is_partition(node))
       steps_[node.index] = measure_step(forest_, node, loaded);
-    if (forest_.computes_normals() && !forest_.tree().is_early(node))
+    if (forest_.has_normals(node))
       forest_.put_normals(node, shading::shade(mesh), mesh);
     return std::move(loaded.tile);
   }

@@ -1,6 +1,6 @@
 #include "render/tile_facets.h"
 
-#include "hierarchy/vertex_numbers.h"
+#include "hierarchy/shown_corners.h"
 #include "render/srgb.h"
 
 #include <array>
@@ -84,13 +84,8 @@ class TileCorners {
 
 std::vector<Facet> facets_of(const PublishedTile& tile, const AttributeLayout& layout,
                              std::span<const std::uint32_t> border, NormalKind normals) {
-  const TileMesh& mesh = tile.mesh;
-  const bool split = !tile.shading.split_of.empty();
-  const VertexNumbers numbers(static_cast<std::uint32_t>(mesh.vertices.size()), mesh.copies.places);
-  const auto interior =
-      split ? tile.shading.interior : numbers.numbered(mesh.interior, mesh.interior_wedges);
-  const auto all_border =
-      split ? tile.shading.border : numbers.numbered(mesh.border, mesh.border_wedges);
+  const std::vector<TileTriangle> interior = shown_interior(tile);
+  const std::vector<TileTriangle> all_border = shown_border(tile);
   const TileCorners corners(tile, layout, normals);
   std::vector<Facet> facets;
   facets.reserve(interior.size() + border.size());

@@ -111,8 +111,10 @@ storage::TileSums Forest::partition_sums() const {
 }
 
 std::uint64_t Forest::split_count() const {
+  if (!computes_normals_)
+    return 0;
   std::uint64_t splits = 0;
-  for (const NodeId node : computes_normals_ ? tree_.tile_nodes() : std::vector<NodeId>{}) {
+  for (const NodeId node : tree_.tile_nodes()) {
     std::array<std::byte, storage::kShadingHeadBytes> head;
     levels_[raw(node.level)].normals.read(node.index, 0, head);
     splits += storage::encoded_split_count(head);
@@ -332,10 +334,6 @@ nlohmann::json Forest::stored_tile(NodeId node) const {
           {"maps", std::move(maps)},
           {"wedge_maps", std::move(wedge_maps)},
           {"normals", std::move(normals)}};
-}
-
-bool Forest::has_normals(NodeId node) const {
-  return computes_normals_ && !tree_.is_early(node);
 }
 
 nlohmann::json Forest::stored_normals(NodeId node) const {

@@ -45,7 +45,9 @@ class Forest {
   void put_places(std::uint32_t chunk, std::span<const partition::LeafPlace> places);
   void put_tile(NodeId node, const LeafTile& tile) { put_work_tile(node, tile); }
   void put_tile(NodeId node, const SimplifiedTile& tile) { put_work_tile(node, tile); }
-  /// The normals of a tile, which `mesh` is; not of an early node: it has its partition's.
+  /// Whether a tile gets normals of its own: an early node has its partition's.
+  bool has_normals(NodeId node) const { return computes_normals_ && !tree_.is_early(node); }
+  /// The normals of such a tile, which `mesh` is.
   void put_normals(NodeId node, const OwnShading& normals, const TileMesh& mesh);
   /// What the neighbours of a simplified tile may see of it.
   void put_seam_strip(NodeId node, const SeamStrip& seam_strip);
@@ -112,7 +114,6 @@ class Forest {
     std::vector<Fallbacks> fallbacks;
     std::vector<std::uint32_t> own_counts;
   };
-  bool has_normals(NodeId node) const;
   nlohmann::json stored_normals(NodeId node) const;
   bool restore_normals(NodeId node, const nlohmann::json& stored);
   template <class Corner>
