@@ -23,7 +23,7 @@ SurfaceTriangle corners_of(const PlainMesh& mesh, const MeshTriangle& t) {
 }
 
 double area_of(const SurfaceTriangle& corners) {
-  return length(inspection::area_vector(corners)) / 2;
+  return inspection::doubled_area(corners) / 2;
 }
 
 std::vector<SurfaceTriangle> triangles_of(const PlainMesh& mesh) {

@@ -183,4 +183,13 @@ void CollapseMesh::join_stars(std::uint32_t from, std::uint32_t to,
   stars_[from].count = 0;
 }
 
+Bounds surface_bounds(const CollapseMesh& mesh, std::span<const Vec3f> positions) {
+  Bounds bounds;
+  for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
+    if (mesh.most_triangles(v) > 0)
+      bounds.add(positions[v]);
+  }
+  return bounds;
+}
+
 }  // namespace meshhier::cluster_simplify

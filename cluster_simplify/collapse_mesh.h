@@ -1,6 +1,7 @@
 // The connectivity of a joined tile while edges collapse in it.
 #pragma once
 
+#include "hierarchy/bounds.h"
 #include "hierarchy/tile_mesh.h"
 #include "hierarchy/triangle.h"
 
@@ -184,5 +185,8 @@ void CollapseMesh::collapse(std::uint32_t from, std::uint32_t to, std::span<cons
   join_stars(from, to, around_from, around_to);
   parents_[from] = to;
 }
+
+/// The box of the vertices that have triangles, before the first collapse; may be empty. O(n).
+Bounds surface_bounds(const CollapseMesh& mesh, std::span<const Vec3f> positions);
 
 }  // namespace meshhier::cluster_simplify

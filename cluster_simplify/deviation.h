@@ -14,9 +14,9 @@ struct Deviation {
       around;          ///< representative -> the largest deviation of the triangles around it
   float interior = 0;  ///< the largest deviation of triangles without ghosts
   float lost = 0;      ///< of pieces that are drawn no more: the largest distance to what still is
-  double squared_sum = 0;  ///< over own vertices that have triangles: weight times squared distance
-                           ///< to the surface; infinite if nothing is drawn where something was
-  double weight_sum = 0;   ///< over the same vertices
+  double mean_square = 0;  ///< of distances, over own vertices that have triangles or over area,
+                           ///< whichever is larger (area_mean.h); infinite if nothing is drawn
+                           ///< where something was
 };
 
 }  // namespace meshhier::cluster_simplify

@@ -31,7 +31,9 @@ float rounded_up(double value) {
 }  // namespace
 
 DeviationMeter::DeviationMeter(const CollapseMesh& mesh, std::span<const float> weights)
-    : deviations_(mesh.faces().size()), weights_(weights.begin(), weights.end()) {
+    : deviations_(mesh.faces().size()),
+      weights_(weights.begin(), weights.end()),
+      moved_(weights.size()) {
   for (std::uint32_t v = 0; v < weights_.size(); ++v) {
     if (mesh.most_triangles(v) == 0)
       weights_[v] = 0;
@@ -79,6 +81,7 @@ void DeviationMeter::set_deviation(std::uint32_t triangle, float deviation) {
 
 void DeviationMeter::add_square(std::uint32_t vertex, float distance) {
   squared_sum_ += double{weights_[vertex]} * double{distance} * double{distance};
+  moved_[vertex] = std::max(moved_[vertex], distance);
 }
 
 /// All triangles around the edge are at the edge.
@@ -92,7 +95,7 @@ void DeviationMeter::note_lost(std::span<const Vec3f> positions, const StarColla
 }
 
 void DeviationMeter::lose(std::span<const Vec3f> positions, std::uint32_t vertex) {
-  lost_vertices_.push_back({positions[vertex], std::exchange(weights_[vertex], 0.0F)});
+  lost_vertices_.push_back({vertex, positions[vertex], std::exchange(weights_[vertex], 0.0F)});
 }
 
 /// Gives the triangles around the edge as places among points: 0 and 1 its ends, 2 the new vertex.

@@ -33,8 +33,9 @@ class DeviationMeter {
   std::span<const LostTriangle> lost_triangles() const { return lost_triangles_; }
 
   /// An end of an edge that was lost with all around it, where it was, and for how many original
-  /// vertices it stood: squared_sum() knows nothing of it.
+  /// vertices it stood: squared_sum() and moved() know nothing of it.
   struct LostVertex {
+    std::uint32_t vertex = 0;
     Vec3f position;
     float weight = 0;
   };
@@ -48,6 +49,9 @@ class DeviationMeter {
   double squared_sum() const { return squared_sum_; }
   /// Of own vertices that had triangles from the start.
   double weight_sum() const { return weight_sum_; }
+  /// The farthest that each own vertex, or what it stood for by then, was from the surface after
+  /// one collapse.
+  std::span<const float> moved() const { return moved_; }
 
  private:
   /// A triangle around the edge, its corners as places in points_.
@@ -72,6 +76,7 @@ class DeviationMeter {
   CoverDistance cover_distance_;
   std::vector<float> deviations_;  ///< per triangle
   std::vector<float> weights_;     ///< per own vertex
+  std::vector<float> moved_;       ///< likewise
   std::vector<LostTriangle> lost_triangles_;
   std::vector<LostVertex> lost_vertices_;
   // Around one edge:

@@ -173,7 +173,7 @@ Contraction edge_collapse(const BuildTile& joined, std::uint32_t target,
                           const AttributeLayout& layout, std::span<const PlaceEdge> seams) {
   CollapseMesh mesh(joined.mesh);
   VertexArray vertices = joined.mesh.vertices;
-  const LocalFrame frame(vertices.positions);
+  const LocalFrame frame(surface_bounds(mesh, vertices.positions));
   OptimalPlacement costs(mesh, frame.to_local(vertices.positions), seams, vertices);
   DeviationMeter deviation(mesh, joined.history.weights);
   const FallbackCounts fallbacks = collapse_edges(mesh, costs, deviation, target);
@@ -182,8 +182,8 @@ Contraction edge_collapse(const BuildTile& joined, std::uint32_t target,
     if (root != v)  // one that never moved keeps its place bit for bit
       vertices.positions[root] = frame.to_global(costs.positions()[root]);
   }
-  Contraction result =
-      choose_representatives({mesh, vertices, costs.positions(), frame, deviation}, target);
+  Contraction result = choose_representatives(
+      {joined.mesh, mesh, vertices, costs.positions(), frame, deviation}, target);
   result.fallbacks += fallbacks;
   const auto channels = static_cast<std::size_t>(vertices.channels);
   for (std::size_t i = 0; i < result.representatives.size(); ++i) {

@@ -174,12 +174,12 @@ Contraction contract_with(const BuildTile& joined, std::uint32_t target,
                           std::span<const PlaceEdge> seams) {
   CollapseMesh mesh(joined.mesh);
   const VertexArray& vertices = joined.mesh.vertices;
-  const LocalFrame frame(vertices.positions);
+  const LocalFrame frame(surface_bounds(mesh, vertices.positions));
   Costs costs(mesh, frame.to_local(vertices.positions), seams);
   DeviationMeter deviation(mesh, joined.history.weights);
   const FallbackCounts fallbacks = collapse_edges(mesh, costs, deviation, target);
-  Contraction result =
-      choose_representatives({mesh, vertices, costs.positions(), frame, deviation}, target);
+  Contraction result = choose_representatives(
+      {joined.mesh, mesh, vertices, costs.positions(), frame, deviation}, target);
   result.fallbacks += fallbacks;
   return result;
 }

@@ -8,10 +8,9 @@
 
 namespace meshhier::cluster_simplify {
 
-LocalFrame::LocalFrame(std::span<const Vec3f> positions) {
-  if (positions.empty())
+LocalFrame::LocalFrame(const Bounds& bounds) {
+  if (bounds.empty())
     return;
-  const Bounds bounds = bounds_of(positions);
   middle_ = (to_double(bounds.min) + to_double(bounds.max)) * 0.5;
   const Vec3d half = to_double(bounds.max) - middle_;
   const double size = std::max({half.x, half.y, half.z});

@@ -1,6 +1,7 @@
 // A tile's own coordinates: single precision, about its middle, of size one.
 #pragma once
 
+#include "hierarchy/bounds.h"
 #include "hierarchy/vec.h"
 
 #include <span>
@@ -12,8 +13,9 @@ namespace meshhier::cluster_simplify {
 /// digits far from zero. Scaled by a power of two and shifted, they do neither.
 class LocalFrame {
  public:
-  /// `positions`: finite, may be empty.
-  explicit LocalFrame(std::span<const Vec3f> positions);
+  /// `surface`: the box of what has triangles; may be empty. What lies far outside loses nothing
+  /// that matters, and must not take the digits of what is drawn.
+  explicit LocalFrame(const Bounds& surface);
 
   Vec3f to_local(Vec3f position) const;
   std::vector<Vec3f> to_local(std::span<const Vec3f> positions) const;

@@ -1,6 +1,8 @@
 #include "cluster_simplify/motion.h"
 
+#include "cluster_simplify/area_mean.h"
 #include "cluster_simplify/nearest.h"
+#include "hierarchy/area.h"
 #include "hierarchy/triangle.h"
 
 #include <algorithm>
@@ -70,6 +72,10 @@ class EdgeSet {
   std::vector<std::uint32_t> at_;  ///< the first triangle at a vertex
 };
 
+// Much of the motion is within the surface: on scans its mean is 10 to 100 times the measured
+// distance. Over area half of it counts, so that theirs stays what their vertices say.
+constexpr double kAcross = 0.5;
+
 class Motion {
  public:
   Motion(const BuildTile& joined, const Contraction& contraction)
@@ -86,14 +92,15 @@ class Motion {
       moved_[v] = length(to_double(mesh_.vertices.positions[v]) -
                          to_double(places_[contraction.parent_of[v]]));
     }
+    weigh(mesh_.interior, joined.history.weights);
+    weigh(mesh_.border, joined.history.weights);
+    drawn_mean_ = DrawnMean(over_vertices());
     for (const TileTriangle& t : mesh_.interior)
       deviation_.interior = std::max(deviation_.interior, add(t));
     for (const TileTriangle& t : mesh_.border)
       add(t);
-    weigh(mesh_.interior, joined.history.weights);
-    weigh(mesh_.border, joined.history.weights);
     measure_lost();
-    sum_up();
+    deviation_.mean_square = mean_square();
   }
 
   Deviation take() { return std::move(deviation_); }
@@ -111,6 +118,12 @@ class Motion {
     return static_cast<float>(farthest * (1 + kRounding));
   }
 
+  void show(const Triangle<std::uint32_t>& images, float deviation) {
+    shown_.push_back(images);
+    drawn_mean_.add(double{deviation},
+                    {places_[images[0]], places_[images[1]], places_[images[2]]});
+  }
+
   void raise(std::uint32_t image, float deviation) {
     if (image < deviation_.around.size())
       deviation_.around[image] = std::max(deviation_.around[image], deviation);
@@ -122,7 +135,7 @@ class Motion {
     const bool is_drawn =
         images[0] != images[1] && images[1] != images[2] && images[2] != images[0];
     if (is_drawn)
-      shown_.push_back(images);
+      show(images, deviation);
     else
       folded_.push_back(t);
     for (const std::uint32_t v : images) {
@@ -153,6 +166,13 @@ class Motion {
     for (const std::uint32_t v : shown_[onto])
       raise(v, deviation);
     return true;
+  }
+
+  /// Takes note of a triangle that is drawn no more, and how far it is from what is; returns that.
+  double lose(const TileTriangle& t, double away) {
+    const auto at = [&](TileVertex v) { return mesh_.vertices.positions[raw(v)]; };
+    lost_areas_.push_back({doubled_area(at(t[0]), at(t[1]), at(t[2])), away});
+    return away;
   }
 
   double farthest_corner(const TileTriangle& t, std::uint32_t from) const {
@@ -199,7 +219,7 @@ class Motion {
           least = std::min(least, farthest_corner(t, image(v)));
       }
       if (std::isfinite(least))
-        farthest = std::max(farthest, least);
+        farthest = std::max(farthest, lose(t, least));
       else
         lost.push_back(t);
     }
@@ -216,9 +236,9 @@ class Motion {
     if (!triangles.empty() || !vertices.empty()) {
       const NearestDrawn nearest(places_, drawn_images());
       for (const TileTriangle& t : triangles) {
-        farthest = std::max(farthest, nearest.from(places_[image(t[0])], [&](std::uint32_t drawn) {
-          return farthest_corner(t, drawn);
-        }));
+        const double away = nearest.from(
+            places_[image(t[0])], [&](std::uint32_t drawn) { return farthest_corner(t, drawn); });
+        farthest = std::max(farthest, lose(t, away));
       }
       for (const std::uint32_t v : vertices) {
         moved_[v] = nearest.from(places_[contraction_.parent_of[v]], [&](std::uint32_t drawn) {
@@ -229,14 +249,24 @@ class Motion {
     deviation_.lost = static_cast<float>(farthest * (1 + kRounding));
   }
 
-  /// Weight times squared distance from each vertex to its image.
-  void sum_up() {
+  /// Of the distances from vertices to their images.
+  double over_vertices() const {
+    double sum = 0;
+    double whole = 0;
     for (std::uint32_t v = 0; v < mesh_.own_count; ++v) {
       if (weights_[v] > 0) {
-        deviation_.squared_sum += double{weights_[v]} * moved_[v] * moved_[v];
-        deviation_.weight_sum += double{weights_[v]};
+        sum += double{weights_[v]} * moved_[v] * moved_[v];
+        whole += double{weights_[v]};
       }
     }
+    return whole > 0 ? sum / whole : 0;
+  }
+
+  /// As large as the vertices, the surface as it was, or as it is drawn have it.
+  double mean_square() const {
+    const double vertices = over_vertices();
+    const double joined = mean_over_joined(mesh_, moved_, lost_areas_, vertices);
+    return std::max({vertices, kAcross * kAcross * joined, drawn_mean_.value()});
   }
 
   const TileMesh& mesh_;
@@ -247,6 +277,8 @@ class Motion {
   std::vector<char> drawn_;     ///< image: has a triangle
   std::vector<Triangle<std::uint32_t>> shown_;
   std::vector<TileTriangle> folded_;  ///< whose images have no area
+  std::vector<LostArea> lost_areas_;
+  DrawnMean drawn_mean_{0};
   Deviation deviation_;
 };
 

@@ -1,7 +1,9 @@
 #include "cluster_simplify/representatives.h"
 
+#include "cluster_simplify/area_mean.h"
 #include "cluster_simplify/kd_cells.h"
 #include "cluster_simplify/nearest.h"
+#include "hierarchy/area.h"
 #include "hierarchy/closest_point.h"
 #include "hierarchy/triangle.h"
 
@@ -77,7 +79,13 @@ class DeviationSum {
  public:
   DeviationSum(const CollapsedTile& tile, const std::vector<std::uint32_t>& alive,
                const std::vector<std::uint32_t>& into)
-      : tile_(tile), into_(into), around_(tile.places.size(), kNowhere) {
+      : tile_(tile),
+        into_(into),
+        around_(tile.places.size(), kNowhere),
+        squared_sum_(tile.deviation.squared_sum()),
+        moved_(tile.places.size()),
+        drawn_(over_vertices()) {
+    std::ranges::copy(tile.deviation.moved(), moved_.begin());
     const auto lost = tile.deviation.lost_triangles();
     lost_triangles_.assign(lost.begin(), lost.end());
     for (const std::uint32_t t : alive)
@@ -85,16 +93,15 @@ class DeviationSum {
   }
 
   /// `chosen`: the vertices that are representatives.
-  Deviation result(const std::vector<std::uint32_t>& chosen) const {
-    const Loss loss = measure_loss();
+  Deviation result(const std::vector<std::uint32_t>& chosen) {
+    add_joined();
+    const double farthest_lost = measure_lost();
+    const double unit = tile_.frame.to_global(1.0);
     Deviation deviation;
     deviation.around.reserve(chosen.size());
     deviation.interior = certain(interior_);
-    deviation.lost = certain(static_cast<float>(loss.farthest));
-    deviation.squared_sum =
-        (tile_.deviation.squared_sum() + (joined_squares() + loss.squared_sum)) *
-        tile_.frame.to_global(1.0) * tile_.frame.to_global(1.0);
-    deviation.weight_sum = tile_.deviation.weight_sum();
+    deviation.lost = certain(static_cast<float>(farthest_lost));
+    deviation.mean_square = mean_square() * unit * unit;
     for (const std::uint32_t v : chosen)
       deviation.around.push_back(certain(around_[v]));
     return deviation;
@@ -131,6 +138,29 @@ class DeviationSum {
     }
     if (is_interior)
       interior_ = std::max(interior_, deviation);
+    drawn_.add(double{deviation},
+               {tile_.places[ends[0]], tile_.places[ends[1]], tile_.places[ends[2]]});
+  }
+
+  /// In the area of the mesh.
+  LostArea lost_area(const LostTriangle& lost, double farthest) const {
+    const double local = doubled_area(lost.corners[0], lost.corners[1], lost.corners[2]);
+    return {tile_.frame.to_global(tile_.frame.to_global(local)), farthest};
+  }
+
+  void add_square(std::uint32_t vertex, float weight, double square) {
+    squared_sum_ += double{weight} * square;
+    moved_[vertex] = std::max(moved_[vertex], std::sqrt(square));
+  }
+  double over_vertices() const {
+    const double whole = tile_.deviation.weight_sum();
+    return whole > 0 ? squared_sum_ / whole : 0;
+  }
+  /// As large as the vertices, the surface as it was, or as it is drawn have it.
+  double mean_square() const {
+    const double vertices = over_vertices();
+    return std::max(
+        {vertices, mean_over_joined(tile_.joined, moved_, lost_areas_, vertices), drawn_.value()});
   }
 
   /// How far a triangle's corners went by joining.
@@ -144,29 +174,27 @@ class DeviationSum {
     return std::sqrt(squared);
   }
 
-  /// What is drawn no more, held against what still is. Infinite where nothing is.
-  struct Loss {
-    double farthest = 0;     ///< of lost triangles
-    double squared_sum = 0;  ///< of lost vertices: weight times squared distance
-  };
-
-  Loss measure_loss() const {
+  /// Holds what is drawn no more against what still is, and returns how far the farthest triangle
+  /// is from it. Infinite where nothing is drawn.
+  double measure_lost() {
     const std::vector<LostVertex> vertices = lost_vertices();
-    Loss loss;
+    double farthest = 0;
     if (lost_triangles_.empty() && vertices.empty())
-      return loss;
+      return farthest;
     const NearestDrawn nearest(tile_.places, drawn_vertices());
     for (const LostTriangle& lost : lost_triangles_) {
       const double away = nearest.from(lost.corners[0], [&](std::uint32_t drawn) {
         return std::sqrt(squared_distance_to_star(lost.corners, drawn)) + double{lost.deviation};
       });
-      loss.farthest = std::max(loss.farthest, away);
+      farthest = std::max(farthest, away);
+      lost_areas_.push_back(lost_area(lost, away));
     }
     for (const LostVertex& lost : vertices) {
-      loss.squared_sum += nearest.from(
-          lost.position, [&](std::uint32_t drawn) { return square_to_star(lost, drawn); });
+      add_square(lost.vertex, lost.weight, nearest.from(lost.position, [&](std::uint32_t drawn) {
+        return square_to_star(lost.position, drawn);
+      }));
     }
-    return loss;
+    return farthest;
   }
 
   std::vector<std::uint32_t> drawn_vertices() const {
@@ -192,24 +220,22 @@ class DeviationSum {
     std::vector<LostVertex> lost(known.begin(), known.end());
     for_each_weight([&](std::uint32_t v, float weight, std::uint32_t representative) {
       if (!is_shown(representative))
-        lost.push_back({tile_.places[v], weight});
+        lost.push_back({v, tile_.places[v], weight});
     });
     return lost;
   }
 
-  /// Of vertices that were joined with others: weight times squared distance to what is drawn
-  /// around the one that stands for them.
-  double joined_squares() const {
-    double sum = 0;
+  /// Of vertices that were joined with others: the distance to what is drawn around the one that
+  /// stands for them.
+  void add_joined() {
     for_each_weight([&](std::uint32_t v, float weight, std::uint32_t representative) {
       if (is_shown(representative) && into_[v] != v)
-        sum += square_to_star({tile_.places[v], weight}, representative);
+        add_square(v, weight, square_to_star(tile_.places[v], representative));
     });
-    return sum;
   }
 
-  double square_to_star(const LostVertex& lost, std::uint32_t vertex) const {
-    return double{lost.weight} * squared_distance_to_star(std::span(&lost.position, 1), vertex);
+  double square_to_star(Vec3f from, std::uint32_t vertex) const {
+    return squared_distance_to_star(std::span(&from, 1), vertex);
   }
 
   /// From all of some points to the nearest of the triangles that are drawn around a vertex.
@@ -246,7 +272,11 @@ class DeviationSum {
   const std::vector<std::uint32_t>& into_;  ///< own vertex -> the one it was joined with, or itself
   std::vector<float> around_;               ///< per vertex: the deviation of what is drawn there
   std::vector<LostTriangle> lost_triangles_;
+  std::vector<LostArea> lost_areas_;
   float interior_ = 0;
+  double squared_sum_;         ///< over vertices: weight times squared distance
+  std::vector<double> moved_;  ///< per vertex; ghosts: 0
+  DrawnMean drawn_;
 };
 
 /// Own vertices that are left after the collapses, ascending, all and by whether they show

@@ -12,6 +12,7 @@ namespace meshhier::cluster_simplify {
 
 /// A joined tile after its edges have collapsed.
 struct CollapsedTile {
+  const TileMesh& joined;
   CollapseMesh& mesh;
   const VertexArray& vertices;  ///< own; those that others were collapsed into at their new places
   std::span<const Vec3f> places;  ///< the same and ghosts', in `frame`

@@ -52,8 +52,7 @@ SeamStrip make_seam_strip(const BuildTile& joined, const ContractedTile& contrac
   }
   seam_strip.interior_deviation = contracted.deviation.interior;
   seam_strip.lost = contracted.deviation.lost;
-  seam_strip.squared_sum = contracted.deviation.squared_sum;
-  seam_strip.weight_sum = contracted.deviation.weight_sum;
+  seam_strip.mean_square = contracted.deviation.mean_square;
   return seam_strip;
 }
 

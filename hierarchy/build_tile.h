@@ -97,8 +97,7 @@ struct SeamStrip {
   std::vector<TileTriangle> border;
   float interior_deviation = 0;  ///< the largest of all interior triangles of the tile
   float lost = 0;                ///< see cluster_simplify::Deviation
-  double squared_sum = 0;        ///< likewise
-  double weight_sum = 0;         ///< likewise
+  double mean_square = 0;        ///< likewise
 };
 
 }  // namespace meshhier

@@ -23,7 +23,7 @@ TileSurfaceFacts facts_of(const TileSurface& tile) {
   TileSurfaceFacts facts;
   facts.triangles = tile.triangles.size();
   for (const SurfaceTriangle& triangle : tile.triangles) {
-    const double doubled = length(area_vector(triangle));
+    const double doubled = doubled_area(triangle);
     facts.area += doubled / 2;
     facts.flat += doubled > 0 ? 0 : 1;
     for (Vec3f corner : triangle)

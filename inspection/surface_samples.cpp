@@ -98,7 +98,7 @@ std::vector<SurfaceSample> SurfaceSampler::draw(std::size_t position, const Tile
     ++sample;
   };
   for (std::uint32_t i = 0; i < tile.triangles.size() && sample < range.end; ++i) {
-    const double area = length(area_vector(tile.triangles[i])) / 2;
+    const double area = doubled_area(tile.triangles[i]) / 2;
     if (!(area > 0))
       continue;
     with_area = i;

@@ -81,11 +81,6 @@ class Descent {
 
 }  // namespace
 
-Vec3d area_vector(const SurfaceTriangle& triangle) {
-  const Vec3d a = to_double(triangle[0]);
-  return cross(to_double(triangle[1]) - a, to_double(triangle[2]) - a);
-}
-
 double squared_distance(Vec3d point, const SurfaceTriangle& triangle) {
   return squared_distance(
       point, TriangleFrame(to_double(triangle[0]), to_double(triangle[1]), to_double(triangle[2])));

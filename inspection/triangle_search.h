@@ -1,6 +1,7 @@
 // The distance of points to a set of triangles, by CGAL's tree of axis-aligned boxes.
 #pragma once
 
+#include "hierarchy/area.h"
 #include "hierarchy/vec.h"
 
 #include <array>
@@ -13,9 +14,9 @@ namespace meshhier::inspection {
 /// Corners of a triangle; may have no area.
 using SurfaceTriangle = std::array<Vec3f, 3>;
 
-/// Twice the triangle's area times its unit normal. Zero only if the corners are on one line (the
-/// differences of floats of like size and their products are exact in double).
-Vec3d area_vector(const SurfaceTriangle& triangle);
+inline double doubled_area(const SurfaceTriangle& triangle) {
+  return meshhier::doubled_area(triangle[0], triangle[1], triangle[2]);
+}
 
 /// Square of the distance of `point` to the triangle, borders included. A triangle without area is
 /// the segment or point that its corners span.

@@ -31,8 +31,8 @@ constexpr std::size_t kBatchSamples = 131072;
 /// Positions and bounds are floats, rounded by up to 2^-24 of the coordinate in each axis at every
 /// level, and measured in doubles. 1e-6 of the largest coordinate is 17 such roundings.
 constexpr double kRounding = 1e-6;
-/// An error is an estimate of the root of the mean square, counted by vertices: means by area are a
-/// half of it as a rule.
+/// An error is an estimate of the root of the mean square, counted by vertices, or by area if that
+/// is far more: means by area are a half of it as a rule.
 constexpr double kMostMean = 2;
 /// Distances of vertices make it: where all of them lie on the new surface and its triangles do
 /// not, as along the lines of a ruled one, it is too small. A mean of less than this part of the

@@ -44,7 +44,7 @@ Step measure_step(const Forest& forest, NodeId node, const LoadedTile& loaded) {
   step.certain = std::max(double{seam_strip.interior_deviation}, seam);
   if (seam_strip.lost > 0)
     step.certain = std::max(step.certain, double{seam_strip.lost} + seam);
-  step.mean_square = seam_strip.weight_sum > 0 ? seam_strip.squared_sum / seam_strip.weight_sum : 0;
+  step.mean_square = seam_strip.mean_square;
   return step;
 }
 

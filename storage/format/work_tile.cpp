@@ -474,8 +474,7 @@ struct SeamStripHead {
   float interior_deviation = 0;
   float lost = 0;
   std::uint32_t padding = 0;
-  double squared_sum = 0;
-  double weight_sum = 0;
+  double mean_square = 0;
 };
 
 }  // namespace
@@ -491,8 +490,7 @@ std::vector<std::byte> encode_seam_strip(const SeamStrip& seam_strip) {
                  0};
   head.interior_deviation = seam_strip.interior_deviation;
   head.lost = seam_strip.lost;
-  head.squared_sum = seam_strip.squared_sum;
-  head.weight_sum = seam_strip.weight_sum;
+  head.mean_square = seam_strip.mean_square;
   Packer packer(sizeof head + seam_strip.positions.size() * 12 + seam_strip.deviations.size() * 4 +
                 seam_strip.foreign.size() * 8 + triangle_bytes(head.counts));
   packer.put(std::span<const SeamStripHead>(&head, 1));
@@ -516,8 +514,7 @@ SeamStrip decode_seam_strip(std::span<const std::byte> bytes) {
   get_triangles(unpacker, counts, seam_strip.interior, seam_strip.border);
   seam_strip.interior_deviation = head.interior_deviation;
   seam_strip.lost = head.lost;
-  seam_strip.squared_sum = head.squared_sum;
-  seam_strip.weight_sum = head.weight_sum;
+  seam_strip.mean_square = head.mean_square;
   unpacker.finish();
   return seam_strip;
 }

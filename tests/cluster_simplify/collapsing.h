@@ -26,8 +26,9 @@ inline std::vector<std::uint32_t> live_edges(const cluster_simplify::CollapseMes
 class Collapsing {
  public:
   explicit Collapsing(const BuildTile& tile)
-      : mesh_(tile.mesh),
-        frame_(tile.mesh.vertices.positions),
+      : joined_(tile.mesh),
+        mesh_(joined_),
+        frame_(cluster_simplify::surface_bounds(mesh_, tile.mesh.vertices.positions)),
         places_(frame_.to_local(tile.mesh.vertices.positions)),
         vertices_(tile.mesh.vertices),
         deviation_(mesh_, tile.history.weights) {}
@@ -58,11 +59,12 @@ class Collapsing {
   }
 
   cluster_simplify::Contraction choose(std::uint32_t target) {
-    return cluster_simplify::choose_representatives({mesh_, vertices_, places_, frame_, deviation_},
-                                                    target);
+    return cluster_simplify::choose_representatives(
+        {joined_, mesh_, vertices_, places_, frame_, deviation_}, target);
   }
 
  private:
+  TileMesh joined_;
   cluster_simplify::CollapseMesh mesh_;
   cluster_simplify::LocalFrame frame_;
   std::vector<Vec3f> places_;

@@ -33,7 +33,7 @@ std::vector<Vec3f> scaled(std::vector<Vec3f> positions, float factor, Vec3f shif
 TEST(LocalFrameTest, TheLongestHalfIsBetweenOneHalfAndOne) {
   for (const float unit : {1.0F, 0.3F, 1e-30F, 1e30F, 7e-42F, 3e38F}) {
     const std::vector<Vec3f> positions = scaled(tests::sphere(200, 0.1F).positions, unit);
-    const float size = largest(LocalFrame(positions).to_local(positions));
+    const float size = largest(LocalFrame(bounds_of(positions)).to_local(positions));
     EXPECT_GE(size, 0.5F) << unit;
     EXPECT_LE(size, 1.0F) << unit;
   }
@@ -41,7 +41,7 @@ TEST(LocalFrameTest, TheLongestHalfIsBetweenOneHalfAndOne) {
 
 TEST(LocalFrameTest, LiesAboutTheMiddleOfTheBox) {
   const std::vector<Vec3f> positions = {{10, 20, 30}, {16, 22, 31}, {11, 21, 30}};
-  const LocalFrame frame(positions);
+  const LocalFrame frame(bounds_of(positions));
   const std::vector<Vec3f> local = frame.to_local(positions);
   EXPECT_EQ(local[0], (Vec3f{-0.75F, -0.25F, -0.125F}));
   EXPECT_EQ(local[1], (Vec3f{0.75F, 0.25F, 0.125F}));
@@ -52,7 +52,7 @@ TEST(LocalFrameTest, LiesAboutTheMiddleOfTheBox) {
 TEST(LocalFrameTest, ThereAndBackIsTheSamePlaceUpToALocalRounding) {
   for (const Vec3f shift : {Vec3f{}, Vec3f{1000, -3, 0.5F}}) {
     const std::vector<Vec3f> positions = scaled(tests::torus(300, 0.1F).positions, 0.7F, shift);
-    const LocalFrame frame(positions);
+    const LocalFrame frame(bounds_of(positions));
     const std::vector<Vec3f> local = frame.to_local(positions);
     for (std::size_t i = 0; i < positions.size(); ++i) {
       // Half a unit in the last place of 1, once in the frame and once in the coordinate.
@@ -64,10 +64,10 @@ TEST(LocalFrameTest, ThereAndBackIsTheSamePlaceUpToALocalRounding) {
 
 TEST(LocalFrameTest, PowersOfTwoChangeNothing) {
   const std::vector<Vec3f> positions = tests::sphere(200, 0.1F).positions;
-  const std::vector<Vec3f> local = LocalFrame(positions).to_local(positions);
+  const std::vector<Vec3f> local = LocalFrame(bounds_of(positions)).to_local(positions);
   for (const int power : {-80, -1, 1, 3, 90}) {
     const std::vector<Vec3f> others = scaled(positions, std::exp2(static_cast<float>(power)));
-    EXPECT_EQ(LocalFrame(others).to_local(others), local) << power;
+    EXPECT_EQ(LocalFrame(bounds_of(others)).to_local(others), local) << power;
   }
 }
 
@@ -76,7 +76,7 @@ TEST(LocalFrameTest, LosesNoDigitsFarFromZero) {
   std::vector<Vec3f> positions;
   for (int i = 0; i <= 96; ++i)
     positions.push_back({1e6F + static_cast<float>(i) / 16, -1e6F, 5e5F});
-  const LocalFrame frame(positions);
+  const LocalFrame frame(bounds_of(positions));
   const std::vector<Vec3f> local = frame.to_local(positions);
   for (int i = 0; i <= 96; ++i) {
     EXPECT_EQ(local[i], (Vec3f{(static_cast<float>(i) / 16 - 3) / 4, 0, 0}));
@@ -88,21 +88,21 @@ TEST(LocalFrameTest, OnePlaceIsItsOwnMiddle) {
   for (const Vec3f p : {Vec3f{3, 4, 5}, Vec3f{}, Vec3f{Limits::max(), -Limits::max(), 1},
                         Vec3f{Limits::denorm_min(), 0, 0}}) {
     const std::vector<Vec3f> positions(5, p);
-    const LocalFrame frame(positions);
+    const LocalFrame frame(bounds_of(positions));
     EXPECT_THAT(frame.to_local(positions), testing::Each(Vec3f{}));
     EXPECT_EQ(frame.to_global(Vec3f{}), p);
   }
 }
 
 TEST(LocalFrameTest, NoPlacesNeedNoFrame) {
-  const LocalFrame frame({});
+  const LocalFrame frame(Bounds{});
   EXPECT_TRUE(frame.to_local(std::span<const Vec3f>{}).empty());
   EXPECT_EQ(frame.to_global(Vec3f{1, 2, 3}), (Vec3f{1, 2, 3}));
 }
 
 TEST(LocalFrameTest, TheEndsOfFloatAreWithinReach) {
   const std::vector<Vec3f> positions = {{-Limits::max(), 0, 0}, {Limits::max(), 1, 0}};
-  const LocalFrame frame(positions);
+  const LocalFrame frame(bounds_of(positions));
   const std::vector<Vec3f> local = frame.to_local(positions);
   EXPECT_LE(largest(local), 1);
   EXPECT_EQ(frame.to_global(local[0]).x, -Limits::max());

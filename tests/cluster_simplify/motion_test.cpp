@@ -85,7 +85,7 @@ void expect_joined_near(const BuildTile& tile, const Contraction& found,
 
 void expect_deviation_holds(const BuildTile& tile, const Contraction& found) {
   ASSERT_EQ(found.deviation.around.size(), found.representatives.size());
-  EXPECT_GE(found.deviation.squared_sum, 0);
+  EXPECT_GE(found.deviation.mean_square, 0);
   const tests::TestMesh image = tests::image_of(tile, found);
   const double slack = kSlack * size_of(tile);
   expect_drawn_near(tile, found, image, slack);
@@ -152,6 +152,45 @@ INSTANTIATE_TEST_SUITE_P(Methods, ContractionDeviationTest,
                          testing::Range(std::size_t{0}, std::size_t{6}),
                          [](const auto& tested) { return all_methods()[tested.param].first; });
 
+// ---- means ---------------------------------------------------------------------------------
+
+/// The mean over area of the joined surface's distance to what is drawn.
+double mean_distance(const BuildTile& tile, const Contraction& found) {
+  const std::vector<Corners> after = surface_of(tests::image_of(tile, found));
+  double sum = 0;
+  double whole = 0;
+  for (const Corners& corners : surface_of(tile.mesh)) {
+    const std::vector<Vec3d> samples = samples_of(corners, kSteps);
+    const double area = length(cross(corners[1] - corners[0], corners[2] - corners[0]));
+    for (const Vec3d p : samples)
+      sum += area / static_cast<double>(samples.size()) * distance_to_surface(p, after);
+    whole += area;
+  }
+  return sum / whole;
+}
+
+/// A flat grid with one vertex far above it.
+tests::TestMesh spiked_grid(float height) {
+  tests::TestMesh mesh = tests::open_grid(12, 12);
+  mesh.positions[13 * 6 + 6].z = height;
+  return mesh;
+}
+
+TEST(MeanSquareTest, OneSpikeHoldsMostOfTheArea) {
+  constexpr double kFoot = 1e-4;  // where a spike stays, its foot changes
+  for (const auto& [method, options] : all_methods()) {
+    for (const float height : {30.0F, 1000.0F}) {
+      SCOPED_TRACE(method + ", height " + std::to_string(height));
+      const BuildTile tile = tests::tile_of(spiked_grid(height));
+      for (const std::uint32_t target : {42U, 10U}) {
+        const Contraction found = contract(tile, target, {}, options);
+        const double told = std::sqrt(found.deviation.mean_square);
+        EXPECT_LE(mean_distance(tile, found), 2 * told + kFoot * double{height});
+      }
+    }
+  }
+}
+
 // ---- pieces that are drawn no more ---------------------------------------------------------
 
 /// A square of two triangles, and a triangle that touches it in a corner alone.
@@ -192,8 +231,9 @@ TEST(LostPiecesTest, ALonePieceIsLost) {
   const Contraction found = collapsing.choose(first);
   EXPECT_GE(found.deviation.lost, 3.5);
   EXPECT_LE(found.deviation.lost, 6.5);
-  EXPECT_GE(found.deviation.squared_sum, 3 * 3.5 * 3.5);  // of its three vertices
-  EXPECT_LE(found.deviation.squared_sum, 3 * 6.5 * 6.5);
+  const auto count = static_cast<double>(mesh.positions.size());
+  EXPECT_GE(found.deviation.mean_square * count, 3 * 3.5 * 3.5);  // of its three vertices
+  EXPECT_LE(found.deviation.mean_square * count, 3 * 6.5 * 6.5);
   expect_deviation_holds(tile, found);
 }
 
@@ -202,8 +242,7 @@ TEST(LostPiecesTest, VerticesThatNeverShowedAnythingLoseNothing) {
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
   mesh.positions.insert(mesh.positions.end(), {{9, 9, 9}, {8, 8, 8}});
   const Contraction found = tests::Collapsing(tests::tile_of(mesh)).choose(first);
-  EXPECT_EQ(found.deviation.squared_sum, 0);
-  EXPECT_EQ(found.deviation.weight_sum, first);
+  EXPECT_EQ(found.deviation.mean_square, 0);
 }
 
 // ---- motion --------------------------------------------------------------------------------
@@ -220,8 +259,7 @@ TEST(MotionTest, IsHowFarTheCornersWent) {
   EXPECT_FLOAT_EQ(deviation.around[5], 0.5F);
   EXPECT_EQ(deviation.around[0], 0);
   EXPECT_EQ(deviation.lost, 0);
-  EXPECT_DOUBLE_EQ(deviation.squared_sum, 6 * 0.25);
-  EXPECT_EQ(deviation.weight_sum, 21);
+  EXPECT_DOUBLE_EQ(deviation.mean_square, 6 * 0.25 / 21);
 }
 
 TEST(MotionTest, GhostsStayAndBorderTrianglesAreNotInterior) {
@@ -246,7 +284,7 @@ TEST(MotionTest, APieceInOnePlaceIsLost) {
   contraction.representatives.positions.assign(mesh.positions.begin(), mesh.positions.begin() + 5);
   const Deviation deviation = motion_of(tile, contraction);
   EXPECT_FLOAT_EQ(deviation.around[4], 1);
-  EXPECT_DOUBLE_EQ(deviation.squared_sum, 4 + 5 + 9);  // of (3, 0, 0), (3, 1, 0) and (4, 0, 0)
+  EXPECT_DOUBLE_EQ(deviation.mean_square * 7, 4 + 5 + 9);  // of (3, 0, 0), (3, 1, 0), (4, 0, 0)
   EXPECT_FLOAT_EQ(deviation.lost, 3);  // to (1, 0, 0), and once more as far as its corners went
   expect_deviation_holds(tile, {contraction.parent_of, contraction.representatives, deviation, {}});
 }
@@ -257,7 +295,7 @@ TEST(MotionTest, NothingDrawnIsInfinitelyFar) {
   contraction.parent_of = {0, 0, 0, 0, 0, 0};
   contraction.representatives.positions = {{0, 0, 0}};
   EXPECT_TRUE(std::isinf(motion_of(tile, contraction).lost));
-  EXPECT_TRUE(std::isinf(motion_of(tile, contraction).squared_sum));
+  EXPECT_TRUE(std::isinf(motion_of(tile, contraction).mean_square));
 }
 
 TEST(MotionTest, ABridgeThatIsDrawnNoMoreIsAsFarAsItsMiddle) {

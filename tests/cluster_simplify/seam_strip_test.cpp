@@ -336,8 +336,7 @@ tests::TestMesh with_loose_vertices(tests::TestMesh mesh) {
 }
 
 double mean_square(const BuildTile& joined, const Contraction& contraction) {
-  const SeamStrip seam_strip = make_seam_strip(joined, apply(joined, contraction));
-  return seam_strip.squared_sum / seam_strip.weight_sum;
+  return make_seam_strip(joined, apply(joined, contraction)).mean_square;
 }
 
 TEST(SeamStripTest, LooseVerticesDoNotDiluteTheErrorOfCollapses) {
@@ -374,7 +373,7 @@ TEST(SeamStripTest, ShowsTheSeamAndWhatIsBesideIt) {
   EXPECT_EQ(seam_strip.foreign, tile.foreign);
   EXPECT_EQ(seam_strip.interior_deviation, contracted.deviation.interior);
   EXPECT_EQ(seam_strip.lost, contracted.deviation.lost);
-  EXPECT_EQ(seam_strip.weight_sum, joined.mesh.own_count);
+  EXPECT_EQ(seam_strip.mean_square, contracted.deviation.mean_square);
   ASSERT_EQ(seam_strip.deviations.size(), seam_strip.own_count);
   ASSERT_EQ(seam_strip.positions.size(), seam_strip.own_count + seam_strip.foreign.size());
   for (std::uint32_t v = 0; v < seam_strip.boundary_count; ++v) {

@@ -512,8 +512,7 @@ TEST(ApplyTest, DeviationsFollowTheirRepresentatives) {
   Contraction contraction = wild_contraction(joined, 80, 5);
   contraction.deviation.interior = 7;
   contraction.deviation.lost = 8;
-  contraction.deviation.squared_sum = 9;
-  contraction.deviation.weight_sum = 10;
+  contraction.deviation.mean_square = 9;
   const ContractedTile result = apply(joined, contraction);
   ASSERT_THAT(result.deviation.around, SizeIs(80));
   for (std::uint32_t i = 0; i < joined.mesh.own_count; ++i) {
@@ -522,8 +521,7 @@ TEST(ApplyTest, DeviationsFollowTheirRepresentatives) {
   }
   EXPECT_EQ(result.deviation.interior, 7);
   EXPECT_EQ(result.deviation.lost, 8);
-  EXPECT_EQ(result.deviation.squared_sum, 9);
-  EXPECT_EQ(result.deviation.weight_sum, 10);
+  EXPECT_EQ(result.deviation.mean_square, 9);
 }
 
 TEST(ApplyTest, AttributesFollowTheirRepresentatives) {

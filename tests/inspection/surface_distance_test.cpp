@@ -98,7 +98,7 @@ TEST(TriangleDistanceTest, NoPointOfTheTriangleIsNearer) {
 
 TEST(TriangleDistanceTest, SliversAreAsGoodAsTheirLongEdge) {
   const SurfaceTriangle sliver{{{0, 0, 0}, {1, 1e-7F, 0}, {0.5F, 1e-7F, 0}}};
-  EXPECT_GT(length(area_vector(sliver)), 0);
+  EXPECT_GT(doubled_area(sliver), 0);
   EXPECT_NEAR(std::sqrt(squared_distance({0.25, 2, 1}, sliver)), std::sqrt(5.0), 1e-6);
   EXPECT_NEAR(std::sqrt(squared_distance({0.25, -2, 1}, sliver)), std::sqrt(5.0), 1e-6);
 }
@@ -306,7 +306,7 @@ TEST_F(SurfaceTest, EveryTriangleHasItsShareOfTheSamples) {
     for (const SurfaceSample& sample : sampler.draw(i, tile, sampler.on_tile(i)))
       found[sample.triangle] += 1;
     for (std::size_t t = 0; t < found.size(); ++t) {
-      const double area = length(area_vector(tile.triangles[t])) / 2;
+      const double area = doubled_area(tile.triangles[t]) / 2;
       EXPECT_NEAR(found[t], area / surface.total().area * kCount, 2);
     }
   }

@@ -76,6 +76,25 @@ tests::TestMesh hung_on_corners() {
   return mesh;
 }
 
+/// A sheet with one vertex far above it, which spans nearly all of the area.
+tests::TestMesh spike() {
+  tests::TestMesh mesh = tests::open_grid(30, 30, 0.2F);
+  mesh.positions[31 * 15 + 15].z = 1e6F;
+  return mesh;
+}
+
+/// A sphere, and far away vertices that no triangle uses.
+tests::TestMesh far_loose_vertices() {
+  tests::TestMesh mesh = tests::sphere(1200, 0.01F);
+  for (const float far : {1e9F, -1e9F, 1e30F})
+    mesh.positions.insert(mesh.positions.begin() + 600, {far, far, far});
+  for (tests::MeshTriangle& t : mesh.triangles) {
+    for (std::uint32_t& v : t)
+      v += v >= 600 ? 3 : 0;
+  }
+  return mesh;
+}
+
 std::vector<std::pair<std::string, tests::TestMesh>> meshes() {
   tests::TestMesh specks = tests::sphere(1200, 0.01F);
   append(specks, tests::soup(100), {0.5F, 0, 0}, 2);
@@ -91,7 +110,8 @@ std::vector<std::pair<std::string, tests::TestMesh>> meshes() {
           {"duplicates", tests::duplicates(1500, 0.01F)},
           {"specks", specks},
           {"hung on corners", hung_on_corners()},
-          {"without area", line}};
+          {"without area", line},
+          {"spike", spike()}};
 }
 
 TEST_F(ErrorBoundsTest, NoSampleIsBeyondItsTilesBound) {
@@ -100,6 +120,16 @@ TEST_F(ErrorBoundsTest, NoSampleIsBeyondItsTilesBound) {
       SCOPED_TRACE(method + " of " + name);
       expect_bounds_hold(measure(mesh, simplify));
     }
+  }
+}
+
+/// A cluster's mean is of all its vertices, and so may be far from the surface.
+TEST_F(ErrorBoundsTest, FarLooseVerticesTakeNoDigitsFromCollapses) {
+  for (const auto& [method, simplify] : tests::all_simplify_methods()) {
+    if (simplify.method == config::SimplifyMethod::cluster)
+      continue;
+    SCOPED_TRACE(method);
+    expect_bounds_hold(measure(far_loose_vertices(), simplify));
   }
 }
 
