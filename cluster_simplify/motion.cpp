@@ -2,8 +2,8 @@
 
 #include "cluster_simplify/area_mean.h"
 #include "cluster_simplify/nearest.h"
-#include "hierarchy/area.h"
 #include "hierarchy/triangle.h"
+#include "hierarchy/widest_corner.h"
 
 #include <algorithm>
 #include <cmath>

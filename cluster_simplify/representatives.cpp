@@ -3,9 +3,9 @@
 #include "cluster_simplify/area_mean.h"
 #include "cluster_simplify/kd_cells.h"
 #include "cluster_simplify/nearest.h"
-#include "hierarchy/area.h"
 #include "hierarchy/closest_point.h"
 #include "hierarchy/triangle.h"
+#include "hierarchy/widest_corner.h"
 
 #include <algorithm>
 #include <cmath>

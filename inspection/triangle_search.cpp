@@ -1,6 +1,7 @@
 #include "inspection/triangle_search.h"
 
 #include "hierarchy/closest_point.h"
+#include "hierarchy/widest_corner.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -82,8 +83,8 @@ class Descent {
 }  // namespace
 
 double squared_distance(Vec3d point, const SurfaceTriangle& triangle) {
-  return squared_distance(
-      point, TriangleFrame(to_double(triangle[0]), to_double(triangle[1]), to_double(triangle[2])));
+  const auto [a, b, c] = widest_first(triangle[0], triangle[1], triangle[2]);
+  return squared_distance(point, TriangleFrame(a, b, c));
 }
 
 struct TriangleSearch::Tree {

@@ -1,8 +1,8 @@
 // The distance of points to a set of triangles, by CGAL's tree of axis-aligned boxes.
 #pragma once
 
-#include "hierarchy/area.h"
 #include "hierarchy/vec.h"
+#include "hierarchy/widest_corner.h"
 
 #include <array>
 #include <cstdint>

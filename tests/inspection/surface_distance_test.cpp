@@ -103,6 +103,19 @@ TEST(TriangleDistanceTest, SliversAreAsGoodAsTheirLongEdge) {
   EXPECT_NEAR(std::sqrt(squared_distance({0.25, -2, 1}, sliver)), std::sqrt(5.0), 1e-6);
 }
 
+TEST(TriangleDistanceTest, OfPointsOfANeedleIsRounding) {
+  const SurfaceTriangle needle{{{2, 4, 0.58F}, {3, 5, -0.204F}, {84800, 61400, 58400}}};
+  const auto at = [&](std::size_t k) { return to_double(needle[k % 3]); };
+  for (std::size_t k = 0; k < 3; ++k) {
+    const SurfaceTriangle turned{{needle[k], needle[(k + 1) % 3], needle[(k + 2) % 3]}};
+    for (const double along : {0.1, 0.5, 0.9}) {
+      const Vec3d between = (at(0) + at(1)) * 0.5;
+      const Vec3d point = between * (1 - along) + at(2) * along;
+      EXPECT_LE(std::sqrt(squared_distance(point, turned)), 1e-9) << k << ", " << along;
+    }
+  }
+}
+
 // ---- many
 
 TEST(TriangleSearchTest, FindsWhatTryingAllFinds) {

@@ -1,4 +1,4 @@
-#include "hierarchy/area.h"
+#include "hierarchy/widest_corner.h"
 
 #include <array>
 
@@ -7,13 +7,13 @@
 namespace meshhier {
 namespace {
 
-TEST(AreaTest, IsTwiceThatOfATriangle) {
+TEST(DoubledAreaTest, IsTwiceThatOfATriangle) {
   EXPECT_DOUBLE_EQ(doubled_area(Vec3f{1, 1, 5}, Vec3f{4, 1, 5}, Vec3f{1, 3, 5}), 6);
   EXPECT_EQ(doubled_area(Vec3f{1, 1, 1}, Vec3f{2, 2, 2}, Vec3f{4, 4, 4}), 0);
   EXPECT_EQ(doubled_area(Vec3f{1, 1, 1}, Vec3f{1, 1, 1}, Vec3f{1, 1, 1}), 0);
 }
 
-TEST(AreaTest, OfANeedleIsThatOfItsShortSide) {
+TEST(DoubledAreaTest, OfANeedleIsThatOfItsShortSide) {
   const std::array<Vec3f, 3> needle = {{{0, 0, 0}, {0, 1, 0}, {1e25F, 2e25F, 3e25F}}};
   const double area = length(cross(Vec3d{0, 1, 0}, to_double(needle[2])));
   for (std::size_t k = 0; k < 3; ++k) {
