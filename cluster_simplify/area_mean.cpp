@@ -11,14 +11,10 @@ namespace {
 // A corner that is no farther than so many times the mean is near: one in 50 of scans is farther.
 constexpr double kFar = 3;
 
-// Of a certain distance, a sum of largest ones. With a tenth of them, the steps of five scans have
-// a larger mean over vertices, but for one in 40.
-constexpr double kTypical = 0.1;
-
 void add_moved(AreaMean& mean, const TileMesh& mesh, const TileTriangle& t,
                std::span<const double> moved) {
   const double a = moved[raw(t[0])], b = moved[raw(t[1])], c = moved[raw(t[2])];
-  mean.add(std::max({a, b, c}), [&] {
+  mean.add(std::max(std::max(a, b), c), [&] {
     const auto at = [&](TileVertex v) { return mesh.vertices.positions[raw(v)]; };
     return AreaMean::Patch{doubled_area(at(t[0]), at(t[1]), at(t[2])), (a * a + b * b + c * c) / 3};
   });
@@ -49,11 +45,8 @@ double mean_over_joined(const TileMesh& joined, std::span<const double> moved,
 
 DrawnMean::DrawnMean(double over_vertices) : mean_(std::sqrt(over_vertices)) {}
 
-void DrawnMean::add(double farthest, const std::array<Vec3f, 3>& corners) {
-  const double typical = kTypical * farthest;
-  mean_.add(typical, [&] {
-    return AreaMean::Patch{doubled_area(corners[0], corners[1], corners[2]), typical * typical};
-  });
+AreaMean::Patch DrawnMean::patch(const std::array<Vec3f, 3>& corners, double distance) {
+  return {doubled_area(corners[0], corners[1], corners[2]), distance * distance};
 }
 
 }  // namespace meshhier::cluster_simplify

@@ -66,10 +66,21 @@ class DrawnMean {
   /// `over_vertices`: the mean of the squares of vertices; nothing below it is of interest.
   explicit DrawnMean(double over_vertices);
 
-  void add(double farthest, const std::array<Vec3f, 3>& corners);
+  /// `corners()`: those of the triangle, asked for if need be.
+  template <class Corners>
+  void add(double farthest, const Corners& corners) {
+    const double typical = kTypical * farthest;
+    mean_.add(typical, [&] { return patch(corners(), typical); });
+  }
   double value() const { return mean_.value(); }
 
  private:
+  // Of a certain distance, a sum of largest ones. With a tenth of them, the steps of five scans
+  // have a larger mean over vertices, but for one in 40.
+  static constexpr double kTypical = 0.1;
+
+  static AreaMean::Patch patch(const std::array<Vec3f, 3>& corners, double distance);
+
   AreaMean mean_;
 };
 

@@ -6,6 +6,7 @@
 #include "hierarchy/widest_corner.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -120,8 +121,9 @@ class Motion {
 
   void show(const Triangle<std::uint32_t>& images, float deviation) {
     shown_.push_back(images);
-    drawn_mean_.add(double{deviation},
-                    {places_[images[0]], places_[images[1]], places_[images[2]]});
+    drawn_mean_.add(double{deviation}, [&] {
+      return std::array{places_[images[0]], places_[images[1]], places_[images[2]]};
+    });
   }
 
   void raise(std::uint32_t image, float deviation) {

@@ -8,6 +8,7 @@
 #include "hierarchy/widest_corner.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -138,8 +139,9 @@ class DeviationSum {
     }
     if (is_interior)
       interior_ = std::max(interior_, deviation);
-    drawn_.add(double{deviation},
-               {tile_.places[ends[0]], tile_.places[ends[1]], tile_.places[ends[2]]});
+    drawn_.add(double{deviation}, [&] {
+      return std::array{tile_.places[ends[0]], tile_.places[ends[1]], tile_.places[ends[2]]};
+    });
   }
 
   /// In the area of the mesh.

@@ -2,6 +2,7 @@
 
 #include "tests/cluster_simplify/test_tiles.h"
 
+#include <array>
 #include <limits>
 #include <vector>
 
@@ -57,9 +58,10 @@ TEST(AreaMeanTest, AVertexHasAThirdOfItsTriangles) {
 
 TEST(AreaMeanTest, ATenthOfWhatIsCertainIsTypicalOfWhatIsDrawn) {
   DrawnMean mean(1);
-  mean.add(20, {{{0, 0, 0}, {3, 0, 0}, {0, 3, 0}}});
+  const auto corners = [] { return std::array{Vec3f{0, 0, 0}, Vec3f{3, 0, 0}, Vec3f{0, 3, 0}}; };
+  mean.add(20, corners);
   EXPECT_DOUBLE_EQ(mean.value(), 4);
-  mean.add(9, {{{0, 0, 0}, {3, 0, 0}, {0, 3, 0}}});
+  mean.add(9, corners);
   EXPECT_DOUBLE_EQ(mean.value(), 4.0 / 33);
 }
 
