@@ -64,24 +64,22 @@ double mean_over_joined(const TileMesh& joined, std::span<const double> moved,
 class DrawnMean {
  public:
   /// `over_vertices`: the mean of the squares of vertices; nothing below it is of interest.
-  explicit DrawnMean(double over_vertices);
+  /// `careless`: the share of vertices that went by tearing the surface or without care for it.
+  explicit DrawnMean(double over_vertices, double careless = 0);
 
   /// `corners()`: those of the triangle, asked for if need be.
   template <class Corners>
   void add(double farthest, const Corners& corners) {
-    const double typical = kTypical * farthest;
+    const double typical = typical_ * farthest;
     mean_.add(typical, [&] { return patch(corners(), typical); });
   }
   double value() const { return mean_.value(); }
 
  private:
-  // Of a certain distance, a sum of largest ones. With a tenth of them, the steps of five scans
-  // have a larger mean over vertices, but for one in 40.
-  static constexpr double kTypical = 0.1;
-
   static AreaMean::Patch patch(const std::array<Vec3f, 3>& corners, double distance);
 
   AreaMean mean_;
+  double typical_;  ///< part of a certain distance, which is a sum of largest ones
 };
 
 }  // namespace meshhier::cluster_simplify

@@ -183,7 +183,7 @@ Contraction edge_collapse(const BuildTile& joined, std::uint32_t target,
       vertices.positions[root] = frame.to_global(costs.positions()[root]);
   }
   Contraction result = choose_representatives(
-      {joined.mesh, mesh, vertices, costs.positions(), frame, deviation}, target);
+      {joined.mesh, mesh, vertices, costs.positions(), frame, deviation, fallbacks}, target);
   result.fallbacks += fallbacks;
   const auto channels = static_cast<std::size_t>(vertices.channels);
   for (std::size_t i = 0; i < result.representatives.size(); ++i) {

@@ -179,7 +179,7 @@ Contraction contract_with(const BuildTile& joined, std::uint32_t target,
   DeviationMeter deviation(mesh, joined.history.weights);
   const FallbackCounts fallbacks = collapse_edges(mesh, costs, deviation, target);
   Contraction result = choose_representatives(
-      {joined.mesh, mesh, vertices, costs.positions(), frame, deviation}, target);
+      {joined.mesh, mesh, vertices, costs.positions(), frame, deviation, fallbacks}, target);
   result.fallbacks += fallbacks;
   return result;
 }

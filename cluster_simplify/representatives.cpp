@@ -85,7 +85,7 @@ class DeviationSum {
         around_(tile.places.size(), kNowhere),
         squared_sum_(tile.deviation.squared_sum()),
         moved_(tile.places.size()),
-        drawn_(over_vertices()) {
+        drawn_(over_vertices(), careless()) {
     std::ranges::copy(tile.deviation.moved(), moved_.begin());
     const auto lost = tile.deviation.lost_triangles();
     lost_triangles_.assign(lost.begin(), lost.end());
@@ -157,6 +157,10 @@ class DeviationSum {
   double over_vertices() const {
     const double whole = tile_.deviation.weight_sum();
     return whole > 0 ? squared_sum_ / whole : 0;
+  }
+  double careless() const {
+    const auto count = static_cast<double>(tile_.fallbacks.torn + tile_.fallbacks.without_care());
+    return std::min(1.0, count / std::max(1.0, static_cast<double>(into_.size())));
   }
   /// As large as the vertices, the surface as it was, or as it is drawn have it.
   double mean_square() const {

@@ -18,6 +18,7 @@ struct CollapsedTile {
   std::span<const Vec3f> places;  ///< the same and ghosts', in `frame`
   const LocalFrame& frame;
   const DeviationMeter& deviation;
+  FallbackCounts fallbacks = {};
 };
 
 /// Makes the contraction out of the collapses carried out in a tile.

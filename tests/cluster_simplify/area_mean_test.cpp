@@ -56,6 +56,12 @@ TEST(AreaMeanTest, AVertexHasAThirdOfItsTriangles) {
                    (27 * triangles / (triangles + 32) + 300) / 2);
 }
 
+TEST(AreaMeanTest, HalfOfWhatIsCertainIsTypicalWithoutCare) {
+  DrawnMean mean(1, 1);
+  mean.add(20, [] { return std::array{Vec3f{0, 0, 0}, Vec3f{3, 0, 0}, Vec3f{0, 3, 0}}; });
+  EXPECT_DOUBLE_EQ(mean.value(), 100);
+}
+
 TEST(AreaMeanTest, ATenthOfWhatIsCertainIsTypicalOfWhatIsDrawn) {
   DrawnMean mean(1);
   const auto corners = [] { return std::array{Vec3f{0, 0, 0}, Vec3f{3, 0, 0}, Vec3f{0, 3, 0}}; };
