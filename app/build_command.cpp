@@ -56,7 +56,7 @@ void give_back_files(BuildArguments& arguments) {
 /// The account must not take the place of what the build reads or makes.
 storage::OutputRequest stats_request(const BuildArguments& arguments,
                                      const config::Config& config) {
-  storage::OutputRequest request{arguments.stats, arguments.force, config.input};
+  storage::OutputRequest request{arguments.stats, arguments.force, config::read_by(config)};
   request.inputs.push_back(config.output);
   request.inputs.insert(request.inputs.end(), arguments.named.begin(), arguments.named.end());
   return request;
@@ -133,7 +133,7 @@ const std::map<std::string, std::string (*)()>& references() {
 }
 
 std::string footer() {
-  return R"(FILE is a mesh: a PLY, OBJ, STL or OFF, perhaps in gzip. The hierarchy of scan.ply is made beside
+  return R"(FILE is a mesh: a PLY, OBJ, glTF, STL or OFF, perhaps in gzip. The hierarchy of scan.ply is made beside
 it, as scan.hier, unless -o names another. Several meshes are joined. --set changes the keys of a
 config; `meshhier build --help-config` says what they mean.
 

@@ -58,6 +58,7 @@ Examples:
   meshhier export david.hier --node 3/5 -o sector.ply
   meshhier export david.hier --cut view.txt -o view.ply
   meshhier export david.hier --outline -o outline.ply
+  meshhier export church.hier --level 3 -o church.glb
   meshhier export david.hier --level 2 -o - | gzip > level2.ply.gz
 )";
 
@@ -65,7 +66,8 @@ Examples:
 
 void add_export_command(CLI::App& parser, Invocation& invocation) {
   const auto arguments = std::make_shared<ExportArguments>();
-  CLI::App* command = parser.add_subcommand("export", "Write part of a hierarchy as a PLY file");
+  CLI::App* command =
+      parser.add_subcommand("export", "Write part of a hierarchy as a PLY, GLB or OBJ file");
   command->add_option("HIERARCHY", arguments->directory, "A directory or a 3tz archive")
       ->required();
 
@@ -79,7 +81,8 @@ void add_export_command(CLI::App& parser, Invocation& invocation) {
   what->add_flag("--outline", arguments->outline, "The shape-outline, as edges");
   what->require_option(1);
 
-  add_file_output_options(*command, "The PLY to write", arguments->output, arguments->force);
+  add_file_output_options(*command, "What to write: .glb or .obj, with textures, or else a PLY",
+                          arguments->output, arguments->force);
   add_memory_budget_option(*command, arguments->memory_budget);
   add_progress_option(*command, invocation.progress);
   command->footer(kExportFooter);

@@ -3,6 +3,7 @@
 #include "bench/program.h"
 #include "bench/split.h"
 #include "bench/stress.h"
+#include "bench/textured_files.h"
 
 #include <map>
 #include <string>
@@ -17,6 +18,8 @@ using namespace meshhier;
 
 struct Arguments {
   bench::SurfaceOptions surface;
+  bench::AtlasOptions atlas;
+  bench::TexturedFileOptions textured;
   bench::AmplifyOptions amplify;
   std::string stress_case;
   std::uint64_t stress_size = 100'000;
@@ -28,9 +31,7 @@ struct Arguments {
   bool force = false;
 };
 
-void add_surface(CLI::App& app, Arguments& arguments) {
-  bench::SurfaceOptions& options = arguments.surface;
-  CLI::App* command = app.add_subcommand("surface", "A closed surface with fractal relief");
+void add_shape(CLI::App* command, bench::SurfaceOptions& options) {
   const std::map<std::string, std::uint64_t> units{
       {"k", 1'000}, {"m", 1'000'000}, {"g", 1'000'000'000}};
   command->add_option("--triangles", options.triangles, "How many, at least; k, M or G may follow")
@@ -52,9 +53,6 @@ void add_surface(CLI::App& app, Arguments& arguments) {
       ->capture_default_str();
   command->add_option("--noise", options.noise, "Measurement noise in grid steps, 0 to 1")
       ->capture_default_str();
-  command->add_flag("--normals", options.normals, "With a normal a vertex");
-  command->add_flag("--colours", options.colours, "With red, green and blue a vertex");
-  command->add_flag("--alpha", options.alpha, "With a fourth colour channel");
   command->add_flag("--double", options.double_coordinates, "With double coordinates");
   command
       ->add_option_function<std::vector<double>>(
@@ -64,6 +62,51 @@ void add_surface(CLI::App& app, Arguments& arguments) {
           },
           "Added to every position: X Y Z")
       ->expected(3);
+}
+
+void add_surface(CLI::App& app, Arguments& arguments) {
+  bench::SurfaceOptions& options = arguments.surface;
+  CLI::App* command = app.add_subcommand("surface", "A closed surface with fractal relief");
+  add_shape(command, options);
+  command->add_flag("--normals", options.normals, "With a normal a vertex");
+  command->add_flag("--colours", options.colours, "With red, green and blue a vertex");
+  command->add_flag("--alpha", options.alpha, "With a fourth colour channel");
+}
+
+void add_textured(CLI::App& app, Arguments& arguments) {
+  bench::AtlasOptions& atlas = arguments.atlas;
+  bench::TexturedFileOptions& options = arguments.textured;
+  CLI::App* command = app.add_subcommand(
+      "textured", "Such a surface with texture charts, scattered over pictures beside the mesh");
+  add_shape(command, arguments.surface);
+  command->add_option("--images", atlas.images, "Pictures, 1 to 10000")->capture_default_str();
+  command->add_option("--side", atlas.side, "Of a picture, texels, 64 to 65500")
+      ->capture_default_str();
+  command->add_option("--charts", atlas.charts, "Of a picture, about, 1 to 65536")
+      ->capture_default_str();
+  command
+      ->add_option("--gutter", atlas.gutter,
+                   "Texels around a chart that have the colour of its border, 0 to 64")
+      ->capture_default_str();
+  command
+      ->add_option_function<std::string>(
+          "--format",
+          [&options](const std::string& name) {
+            options.mesh = name == "ply" ? bench::MeshFileFormat::ply : bench::MeshFileFormat::obj;
+          },
+          "obj, with a material library, or ply, as MeshLab writes it")
+      ->check(CLI::IsMember({"obj", "ply"}))
+      ->default_str("obj");
+  command
+      ->add_option_function<std::string>(
+          "--image-format",
+          [&options](const std::string& name) {
+            options.image = name == "png" ? ImageFormat::png : ImageFormat::jpeg;
+          },
+          "Of the pictures")
+      ->check(CLI::IsMember({"jpeg", "png"}))
+      ->default_str("jpeg");
+  command->add_option("--quality", options.quality, "Of JPEG, 1 to 100")->capture_default_str();
 }
 
 void add_amplify(CLI::App& app, Arguments& arguments) {
@@ -145,8 +188,25 @@ std::unique_ptr<bench::GeneratedMesh> generate(const CLI::App& app, Arguments& a
   return bench::shuffle(load(files, arguments.input), arguments.seed);
 }
 
+void run_textured(storage::FileSystem& files, Arguments& arguments) {
+  arguments.surface.seed = arguments.atlas.seed = arguments.seed;
+  const bench::TexturedSurface surface({arguments.surface, arguments.atlas});
+  const bench::TexturedFileSizes sizes = bench::write_textured(
+      files, {arguments.output, arguments.force, {}}, surface, arguments.textured);
+  const bench::ChartAtlas& atlas = surface.atlas();
+  fmt::print("{}: {} vertices, {} triangles, {} bytes\n", arguments.output,
+             surface.grid().vertex_count(), surface.grid().triangle_count(), sizes.mesh_bytes);
+  fmt::print("{} pictures of {} x {} texels, {} charts of {} x {}, {} bytes\n",
+             atlas.options().images, atlas.options().side, atlas.options().side,
+             atlas.chart_count(), atlas.chart_side(), atlas.chart_side(), sizes.image_bytes);
+}
+
 void run(const CLI::App& app, Arguments& arguments) {
   const auto files = storage::make_posix_file_system();
+  if (app.got_subcommand("textured")) {
+    run_textured(*files, arguments);
+    return;
+  }
   const auto mesh = generate(app, arguments, *files);
   storage::OutputRequest request{arguments.output, arguments.force, {}};
   if (!arguments.input.empty())
@@ -163,6 +223,7 @@ int main(int argc, char** argv) {
   CLI::App app("Makes meshes for tests and measurements; equal arguments give equal bytes");
   Arguments arguments;
   add_surface(app, arguments);
+  add_textured(app, arguments);
   add_amplify(app, arguments);
   add_shuffle(app, arguments);
   add_split(app, arguments);
@@ -172,9 +233,12 @@ int main(int argc, char** argv) {
     command->add_option("--seed", arguments.seed, "Another seed, another mesh")
         ->capture_default_str();
     command
-        ->add_option("-o,--output", arguments.output, "The PLY to write; \"-\" is standard output")
+        ->add_option("-o,--output", arguments.output,
+                     command->get_name() == "textured"
+                         ? "The mesh to write; materials and pictures go beside it"
+                         : "The PLY to write; \"-\" is standard output")
         ->required();
-    command->add_flag("--force", arguments.force, "Replace an existing file");
+    command->add_flag("--force", arguments.force, "Replace existing files");
   }
   return bench::run_program("meshgen", app, argc, argv, [&] { run(app, arguments); });
 }

@@ -5,11 +5,10 @@
 #include "execution/parallel.h"
 #include "hierarchy/angle.h"
 #include "hierarchy/attributes.h"
-#include "hierarchy/cut.h"
 #include "hierarchy/frame.h"
+#include "images/image_codec.h"
 #include "inspection/cut_surface.h"
 #include "render/directions.h"
-#include "render/png.h"
 #include "render/raster.h"
 #include "render/shade.h"
 #include "render/tile_facets.h"
@@ -43,7 +42,7 @@ double luminance(const std::uint8_t* rgba) {
 
 struct DrawnPicture {
   render::Raster raster;
-  render::Picture picture;
+  images::Image picture;
 };
 
 class DifferenceSum {
@@ -81,10 +80,10 @@ class DifferenceSum {
     }
   }
 
-  void add_pixels(const render::Picture& a, const render::Picture& b) {
-    for (std::size_t i = 0; i < a.rgba.size(); i += 4) {
-      if (a.rgba[i + 3] == 255 && b.rgba[i + 3] == 255) {
-        const double off = luminance(&a.rgba[i]) - luminance(&b.rgba[i]);
+  void add_pixels(const images::Image& a, const images::Image& b) {
+    for (std::size_t i = 0; i < a.texels.size(); i += 4) {
+      if (a.texels[i + 3] == 255 && b.texels[i + 3] == 255) {
+        const double off = luminance(&a.texels[i]) - luminance(&b.texels[i]);
         squares_ += off * off;
         ++pixels_;
       }
@@ -119,7 +118,7 @@ struct DrawnLevel {
 };
 
 DrawnPicture shaded(render::Raster raster) {
-  render::Picture picture = render::shade(raster);
+  images::Image picture = render::shade(raster);
   return {std::move(raster), std::move(picture)};
 }
 
@@ -141,17 +140,9 @@ DrawnLevel draw_level(const storage::HierarchyReader& reader, const render::Came
   return {triangles, shaded(std::move(own)), shaded(std::move(facets))};
 }
 
-/// Of the input's box; the stored positions are relative to the origin.
 render::Camera camera_of(const storage::HierarchyReader& reader, const render::View& view,
                          std::uint32_t size) {
-  const storage::Manifest& manifest = reader.manifest();
-  const BoundsD& box = manifest.source.bounds;
-  return {view, BoundsD{box.min - manifest.origin, box.max - manifest.origin},
-          render::Framing{.width = size, .height = size}};
-}
-
-Vec3d up_of(const storage::Manifest& manifest) {
-  return manifest.up == UpAxis::z ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0};
+  return {view, stored_box(reader.manifest()), render::Framing{.width = size, .height = size}};
 }
 
 /// What all views have in common.
@@ -168,8 +159,8 @@ ViewResult measure_view(const Job& job, std::size_t number) {
   ViewResult result;
   const auto keep = [&](const std::string& what, const DrawnPicture& drawn) {
     if (job.pictures) {
-      result.pictures.push_back(
-          {fmt::format("view{}_{}.png", number + 1, what), render::encode_png(drawn.picture)});
+      result.pictures.push_back({fmt::format("view{}_{}.png", number + 1, what),
+                                 images::encode_image(drawn.picture, ImageFormat::png, 100)});
     }
   };
   const DrawnPicture original = draw_level(job.reader, camera, job.reader.tree().depth()).own;
@@ -188,20 +179,9 @@ ViewResult measure_view(const Job& job, std::size_t number) {
 
 // ---- all views -----------------------------------------------------------------------------
 
-std::vector<Level> levels_of(const Tree& tree, const std::optional<Level>& asked) {
-  if (asked) {
-    require_level(tree, *asked);
-    return {*asked};
-  }
-  std::vector<Level> levels(std::size_t{raw(tree.depth())} + 1);
-  for (std::size_t i = 0; i < levels.size(); ++i)
-    levels[i] = static_cast<Level>(i);
-  return levels;
-}
-
 std::string kind_of_normals(const storage::HierarchyReader& reader) {
   const Tree& tree = reader.tree();
-  if (!reader.read_tile(tree.tile_node(tree.root())).shading.empty())
+  if (!reader.read_tile(tree.tile_node(tree.root())).shading.normals.empty())
     return "computed";
   return reader.tile_format().attributes.normals ? "given" : "none";
 }

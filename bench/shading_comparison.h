@@ -2,10 +2,10 @@
 // Image-driven simplification, 2000, measure meshes).
 #pragma once
 
+#include "bench/level_pictures.h"
 #include "hierarchy/ids.h"
 #include "storage/format/hierarchy_reader.h"
 
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -38,11 +38,6 @@ struct ShadingComparison {
   std::string normals;
   ShadingOptions options;
   std::vector<ShadingRow> rows;
-};
-
-struct NamedPicture {
-  std::string name;  ///< "view1_level3_own.png"
-  std::vector<std::byte> png;
 };
 
 /// Compares each level with the last one, the partitions, drawn with its own normals. Colours are

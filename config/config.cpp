@@ -1,11 +1,11 @@
 #include "config/config.h"
 
 #include "config/config_schema.h"
+#include "config/placement.h"
 #include "config/suggest.h"
 #include "hierarchy/error.h"
 #include "hierarchy/mesh_name.h"
 #include "hierarchy/plain_text.h"
-#include "storage/format/tileset.h"
 #include "storage/io/paths.h"
 
 #include <algorithm>
@@ -354,7 +354,7 @@ void check_output(const Config& config, const Draft& draft) {
     refuse(draft.origin_of("output"),
            "expected the path of a directory to make, found " + in_quotes(config.output.string()));
   }
-  for (const std::filesystem::path& input : config.input) {
+  for (const std::filesystem::path& input : read_by(config)) {
     if (storage::is_within(input, config.output)) {
       refuse(draft.origin_of("output"),
              fmt::format("{} is or holds the input {}; choose another directory",
@@ -363,16 +363,25 @@ void check_output(const Config& config, const Draft& draft) {
   }
 }
 
-/// A place on the globe has longitude and latitude; a transform stands alone.
+/// There are three ways to place a model; each stands alone.
 void check_placement(const Config& config, const Draft& draft) {
   const PlacementConfig& place = config.placement;
-  const bool on_globe = place.longitude || place.latitude || place.height || place.anchor;
-  if (place.transform && on_globe) {
-    refuse(draft.origin_of("placement"),
-           "expected either \"transform\", or \"longitude\" and \"latitude\", found both");
+  const bool by_degrees = place.longitude || place.latitude || place.height;
+  const bool by_map = place.crs || !place.metadata.empty();
+  const int ways = int{by_degrees} + int{by_map} + int{place.transform.has_value()};
+  const std::string where = draft.origin_of("placement");
+  if (ways > 1) {
+    refuse(where,
+           "expected one of \"longitude\" and \"latitude\", \"crs\" or \"metadata\", or "
+           "\"transform\", found more than one; remove the others");
   }
-  if (on_globe && !(place.longitude && place.latitude))
-    refuse(draft.origin_of("placement"), "expected both \"longitude\" and \"latitude\"");
+  if (by_degrees && !(place.longitude && place.latitude))
+    refuse(where, "expected both \"longitude\" and \"latitude\"");
+  if (place.offset && !by_map)
+    refuse(where, "\"offset\" needs \"crs\" or \"metadata\", found neither");
+  if (place.anchor && !by_degrees && !by_map) {
+    refuse(where, "\"anchor\" needs \"longitude\" and \"latitude\", \"crs\" or \"metadata\"");
+  }
 }
 
 constexpr const char* kMeshWords = "the mesh on the command line";
@@ -425,6 +434,11 @@ std::string read_text(storage::FileSystem& files, const std::filesystem::path& p
   return text;
 }
 
+/// What lies at a path decides, not the path.
+bool is_of_paths(const ConfigKey& key) {
+  return key.kind == KeyKind::path || key.kind == KeyKind::paths;
+}
+
 }  // namespace
 
 Config parse_config(std::string_view text, const ConfigOrigin& origin, const CommandLine& words) {
@@ -441,6 +455,8 @@ Config parse_config(std::string_view text, const ConfigOrigin& origin, const Com
   for (std::filesystem::path& input : config.input)
     input = resolved_path(draft, "input", input, origin.directory);
   config.output = resolved_path(draft, "output", config.output, origin.directory);
+  if (std::filesystem::path& file = config.placement.metadata; !file.empty())
+    file = resolved_path(draft, "placement.metadata", file, origin.directory);
   check_output(config, draft);
   check_placement(config, draft);
   return config;
@@ -448,16 +464,15 @@ Config parse_config(std::string_view text, const ConfigOrigin& origin, const Com
 
 Config load_config(storage::FileSystem& files, const std::filesystem::path& file,
                    const CommandLine& words) {
-  return parse_config(read_text(files, file), {file.string(), file.parent_path()}, words);
+  return with_map(files,
+                  parse_config(read_text(files, file), {file.string(), file.parent_path()}, words));
 }
 
-std::optional<Transform> tileset_transform(const Config& config) {
-  const PlacementConfig& place = config.placement;
-  if (!place.longitude)
-    return place.transform;
-  const auto [x, y, z] = place.anchor.value_or(std::array<double, 3>{});
-  return storage::globe_transform(*place.longitude, *place.latitude, place.height.value_or(0),
-                                  {x, y, z}, config.up);
+std::vector<std::filesystem::path> read_by(const Config& config) {
+  std::vector<std::filesystem::path> files = config.input;
+  if (!config.placement.metadata.empty())
+    files.push_back(config.placement.metadata);
+  return files;
 }
 
 Json resolved_json(const Config& config) {
@@ -467,7 +482,7 @@ Json resolved_json(const Config& config) {
   }
   Json result = Json::object();
   for (const ConfigKey& key : config_keys()) {
-    const bool is_told = key.decides_result && key.kind != KeyKind::paths;
+    const bool is_told = key.decides_result && !is_of_paths(key);
     Json value = is_told ? key.show(resolved) : Json();
     if (!value.is_null())
       result[json_pointer_to(key.path)] = std::move(value);

@@ -6,6 +6,7 @@
 #include "cluster_simplify/contraction.h"
 #include "hierarchy/frame.h"
 #include "hierarchy/target_vertex_counts.h"
+#include "hierarchy/texture.h"
 #include "hierarchy/topology.h"
 #include "mesh_io/input_paths.h"
 #include "partition/direction.h"
@@ -109,6 +110,28 @@ struct StorageConfig {
   friend bool operator==(const StorageConfig&, const StorageConfig&) = default;
 };
 
+using ImageFormat = meshhier::ImageFormat;
+inline constexpr std::array kImageFormats{NamedValue{kImageFormatNames[0], ImageFormat::jpeg},
+                                          NamedValue{kImageFormatNames[1], ImageFormat::png},
+                                          NamedValue{kImageFormatNames[2], ImageFormat::webp}};
+
+/// What becomes of the pictures of a textured mesh.
+struct TextureConfig {
+  bool use = true;  ///< else textures are left out, and coordinates kept as attributes
+  std::uint32_t texels =
+      512;               ///< a simplified tile's picture has at most so many squared, 64 to 4096
+  TextureFormat format;  ///< of tiles' pictures
+  friend bool operator==(const TextureConfig&, const TextureConfig&) = default;
+};
+
+/// What a picture that cannot be decoded does.
+enum class MissingImages {
+  warn,   ///< one that is not there is a warning, a broken one an error
+  ignore  ///< both are warnings
+};
+inline constexpr std::array kMissingImages{NamedValue{"warn", MissingImages::warn},
+                                           NamedValue{"ignore", MissingImages::ignore}};
+
 inline constexpr std::array kUpAxes{NamedValue{name_of(UpAxis::y), UpAxis::y},
                                     NamedValue{name_of(UpAxis::z), UpAxis::z}};
 
@@ -116,8 +139,14 @@ inline constexpr std::array kUpAxes{NamedValue{name_of(UpAxis::y), UpAxis::y},
 /// particular.
 struct PlacementConfig {
   std::optional<double> longitude, latitude, height;  ///< degrees, degrees, metres
-  std::optional<std::array<double, 3>> anchor;  ///< which point is there, input coordinates; else 0
-  std::optional<Transform> transform;           ///< instead of all these
+  /// Instead: of the map that the z-up coordinates of the model belong to, for PROJ.
+  std::optional<std::string> crs;
+  std::optional<std::array<double, 3>> offset;  ///< from z-up coordinates to the map's; else 0
+  std::filesystem::path metadata;               ///< the file that crs and offset are in, or empty
+  /// Which point is there, input coordinates; else 0. Of a map: where the transform is exact; else
+  /// the middle of the input.
+  std::optional<std::array<double, 3>> anchor;
+  std::optional<Transform> transform;  ///< instead of all these
   friend bool operator==(const PlacementConfig&, const PlacementConfig&) = default;
 };
 
@@ -135,6 +164,8 @@ struct Config {
   SimplifyConfig simplify;
   OutlineConfig outline;
   StorageConfig storage;
+  TextureConfig texture;
+  MissingImages missing_images = MissingImages::warn;
   UpAxis up = UpAxis::y;
   PlacementConfig placement;
   std::string licence;  ///< of the model; for the tileset; may be empty
@@ -170,16 +201,17 @@ struct CommandLine {
 /// key.
 Config parse_config(std::string_view text, const ConfigOrigin& origin, const CommandLine& words);
 
-/// parse_config() of a file; its paths are relative to the file's directory. Throws also Error(io).
+/// parse_config() of a file, whole; its paths are relative to the file's directory. Throws also
+/// Error(io).
 Config load_config(storage::FileSystem& files, const std::filesystem::path& file,
                    const CommandLine& words);
 
-/// What `placement` comes to: of the tileset's root, or none.
-std::optional<Transform> tileset_transform(const Config& config);
+/// All files that a build of that config reads.
+std::vector<std::filesystem::path> read_by(const Config& config);
 
-/// What decides the result: weld, topology, partition, simplify, outline, storage; not paths,
-/// budget, threads, container. All defaults are filled in, except that simplify.vertices is absent
-/// if it follows partition.count.
+/// What decides the result: weld, topology, partition, simplify, outline, storage, texture; not
+/// paths, budget, threads, container. All defaults are filled in, except that simplify.vertices is
+/// absent if it follows partition.count.
 nlohmann::ordered_json resolved_json(const Config& config);
 
 }  // namespace meshhier::config

@@ -2,6 +2,7 @@
 
 #include "config/config_schema.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <cstddef>
@@ -94,10 +95,18 @@ Json key_schema(const ConfigKey& key) {
   return schema;
 }
 
+/// Without the key `name`, or with one of `others`.
+Json needs_one(const std::string& name, const std::vector<std::string>& others) {
+  Json ways = Json::array({{{"not", {{"required", Json::array({name})}}}}});
+  for (const std::string& other : others)
+    ways.push_back({{"required", Json::array({other})}});
+  return {{"anyOf", ways}};
+}
+
 /// An object without description; `prefix`: of its keys' paths, "" or "partition.".
 Json object_schema(const std::string& prefix) {
   Json required = Json::array();
-  Json exclusions = Json::array();
+  Json rules = Json::array();
   Json needs = Json::object();
   Json properties = Json::object();
   for (const ConfigKey& key : config_keys()) {
@@ -107,10 +116,12 @@ Json object_schema(const std::string& prefix) {
     properties[name] = key_schema(key);
     if (key.required)
       required.push_back(name);
-    if (!key.excludes.empty())
-      exclusions.push_back({{"not", {{"required", Json::array({key.excludes, name})}}}});
-    if (!key.needs.empty())
-      needs[name] = Json::array({key.needs});
+    for (const std::string& other : key.excludes)
+      rules.push_back({{"not", {{"required", Json::array({other, name})}}}});
+    if (key.needs.size() == 1)
+      needs[name] = key.needs;
+    else if (!key.needs.empty())
+      rules.push_back(needs_one(name, key.needs));
   }
   for (const ConfigSection& section : config_sections()) {
     if (!section.path.starts_with(prefix) ||
@@ -123,8 +134,8 @@ Json object_schema(const std::string& prefix) {
   Json schema{{"type", "object"}, {"additionalProperties", false}};
   if (!required.empty())
     schema["required"] = required;
-  if (!exclusions.empty())
-    schema["allOf"] = exclusions;
+  if (!rules.empty())
+    schema["allOf"] = rules;
   if (!needs.empty())
     schema["dependentRequired"] = needs;
   schema["properties"] = properties;
@@ -133,19 +144,30 @@ Json object_schema(const std::string& prefix) {
 
 // ---- texts
 
+bool has(const std::vector<std::string>& names, const std::string& name) {
+  return std::ranges::find(names, name) != names.end();
+}
+
+/// Both keys are of the section `section`, which ends in a dot or is empty.
+bool exclude_each_other(const ConfigKey& one, const ConfigKey& other, const std::string& section) {
+  const auto leaf = [&](const ConfigKey& key) { return key.path.substr(section.size()); };
+  return other.path.starts_with(section) &&
+         (has(one.excludes, leaf(other)) || has(other.excludes, leaf(one)));
+}
+
 /// The meaning, with the keys that it excludes or needs.
 std::string whole_meaning(const ConfigKey& key) {
-  const std::size_t leaf = key.path.rfind('.') + 1;
-  const std::string section = key.path.substr(0, leaf);
+  const std::string section = key.path.substr(0, key.path.rfind('.') + 1);
   std::string text = key.meaning;
   for (const ConfigKey& other : config_keys()) {
-    if ((!key.excludes.empty() && other.path == section + key.excludes) ||
-        (!other.excludes.empty() && other.path.starts_with(section) &&
-         other.excludes == key.path.substr(leaf)))
+    if (exclude_each_other(key, other, section))
       text += fmt::format("; excludes `{}`", other.path);
   }
-  if (!key.needs.empty())
-    text += fmt::format("; needs `{}{}`", section, key.needs);
+  std::vector<std::string> needed;
+  for (const std::string& name : key.needs)
+    needed.push_back('`' + section + name + '`');
+  if (!needed.empty())
+    text += fmt::format("; needs {}", fmt::join(needed, " or "));
   return text;
 }
 

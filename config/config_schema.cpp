@@ -44,6 +44,10 @@ struct Limits {
   double maximum;
 };
 
+/// The picture of a simplified tile: smaller ones show nothing, larger ones are no tile's.
+constexpr Limits kTexels{64, 4096};
+constexpr double kBestQuality = 100;
+
 constexpr Limits kTileVertices{kFewestTileVertices, kMostTileVertices};
 
 template <class Field>
@@ -75,9 +79,8 @@ ConfigKey ignored_text(ConfigKey key) {
 }
 
 template <class Field>
-ConfigKey required_path(ConfigKey key, Field field) {
+ConfigKey path(ConfigKey key, Field field) {
   key.kind = KeyKind::path;
-  key.required = true;
   key.assign = [field](Config& config, const Json& value) {
     field(config) = value.get<std::string>();
   };
@@ -156,6 +159,17 @@ ConfigKey text(ConfigKey key, Field field) {
   return key;
 }
 
+/// Of an optional string, for which an empty one is a value.
+template <class Field>
+ConfigKey optional_text(ConfigKey key, Field field) {
+  key.kind = KeyKind::text;
+  key.assign = [field](Config& config, const Json& value) {
+    field(config) = value.get<std::string>();
+  };
+  key.show = [field](const Config& config) { return shown(field(config)); };
+  return key;
+}
+
 /// Of an optional array.
 template <class Field>
 ConfigKey numbers(ConfigKey key, Field field) {
@@ -223,14 +237,16 @@ std::vector<ConfigKey> make_config_keys() {
           {.path = "$schema", .meaning = "where the JSON schema is, for editors; no other effect"}),
       required_paths(
           {.path = "input",
-           .meaning = "the mesh: a PLY, OBJ, STL or OFF file, perhaps in gzip; the files of a list "
-                      "are joined in its order, and must have the same vertex attributes",
+           .meaning =
+               "the mesh: a PLY, OBJ, glTF, STL or OFF file, perhaps in gzip; the files of a "
+               "list are joined in its order, and must have the same vertex attributes",
            .decides_result = true},
           kMostInputs, [](auto& c) -> auto& { return c.input; }),
-      required_path(
+      path(
           {.path = "output",
            .meaning = "the hierarchy to make: a directory, or a file if `storage.container` is "
-                      "`3tz`; missing parent directories are made"},
+                      "`3tz`; missing parent directories are made",
+           .required = true},
           [](auto& c) -> auto& { return c.output; }),
       bytes(
           {.path = "memory_budget", .meaning = "peak resident memory of the build"},
@@ -254,7 +270,7 @@ std::vector<ConfigKey> make_config_keys() {
       deciding(number(
           {.path = "partition.count",
            .meaning = "number of partitions, any",
-           .excludes = "vertices"},
+           .excludes = {"vertices"}},
           {1, kMostPartitions}, [](auto& c) -> auto& { return c.partition.count; })),
       deciding(choice(
           {.path = "partition.axis",
@@ -319,35 +335,86 @@ std::vector<ConfigKey> make_config_keys() {
                       "creases, in 4 bytes a vertex, or `none`; normals that a mesh has stay as "
                       "they are"},
           kNormals, [](auto& c) -> auto& { return c.storage.normals; })),
+      deciding(boolean(
+          {.path = "texture.use",
+           .meaning =
+               "tiles show the pictures of a textured mesh; `false` leaves them out and keeps "
+               "texture coordinates as they are"},
+          [](auto& c) -> auto& { return c.texture.use; })),
+      deciding(number(
+          {.path = "texture.texels",
+           .meaning = "side of the picture of a simplified tile, at most; partitions have the "
+                      "input's texels"},
+          kTexels, [](auto& c) -> auto& { return c.texture.texels; })),
+      deciding(choice(
+          {.path = "texture.format",
+           .meaning =
+               "how pictures of tiles are stored; with `jpeg`, those with transparent texels "
+               "are PNG"},
+          kImageFormats, [](auto& c) -> auto& { return c.texture.format.format; })),
+      deciding(number(
+          {.path = "texture.quality",
+           .meaning = "of `jpeg` and `webp`; WebP with 100 loses nothing, PNG never does"},
+          {1, kBestQuality}, [](auto& c) -> auto& { return c.texture.format.quality; })),
+      deciding(boolean(
+          {.path = "texture.unlit",
+           .meaning = "viewers show the pictures as they are (`KHR_materials_unlit`): those of "
+                      "photogrammetry have their light already"},
+          [](auto& c) -> auto& { return c.texture.format.unlit; })),
+      deciding(choice(
+          {.path = "missing_images",
+           .meaning =
+               "a picture that is not there is a warning, and its material's colour is shown; "
+               "a broken one is an error (`warn`) or likewise a warning (`ignore`)"},
+          kMissingImages, [](auto& c) -> auto& { return c.missing_images; })),
       deciding(choice(
           {.path = "up",
            .meaning = "which axis of the input points up: `y` as in glTF, `z` as in maps and "
                       "medical images"},
           kUpAxes, [](auto& c) -> auto& { return c.up; })),
       deciding(number(
-          {.path = "placement.longitude", .meaning = "degrees east", .needs = "latitude"},
+          {.path = "placement.longitude", .meaning = "degrees east", .needs = {"latitude"}},
           {-kHalfTurn, kHalfTurn}, [](auto& c) -> auto& { return c.placement.longitude; })),
       deciding(number(
-          {.path = "placement.latitude", .meaning = "degrees north", .needs = "longitude"},
+          {.path = "placement.latitude", .meaning = "degrees north", .needs = {"longitude"}},
           {-kHalfTurn / 2, kHalfTurn / 2}, [](auto& c) -> auto& { return c.placement.latitude; })),
       deciding(number(
           {.path = "placement.height",
            .meaning = "metres above the ellipsoid",
            .unset = "0",
-           .needs = "longitude"},
+           .needs = {"longitude"}},
           {-kMostMetres, kMostMetres}, [](auto& c) -> auto& { return c.placement.height; })),
+      deciding(optional_text(
+          {.path = "placement.crs",
+           .meaning = "instead of a place: the reference system (CRS) of a model in map "
+                      "coordinates, as PROJ takes it: `EPSG:25832`, `EPSG:32633+5773`, WKT, a "
+                      "PROJ string",
+           .excludes = {"longitude", "transform"}},
+          [](auto& c) -> auto& { return c.placement.crs; })),
+      deciding(numbers(
+          {.path = "placement.offset",
+           .meaning = "what makes map coordinates when it is added to the model's z-up coordinates",
+           .unset = "[0, 0, 0]",
+           .needs = {"crs", "metadata"}},
+          [](auto& c) -> auto& { return c.placement.offset; })),
+      deciding(path(
+          {.path = "placement.metadata",
+           .meaning = "a file that crs and offset are read from, unless they are given: "
+                      "`metadata.xml`, `coords.txt`, `offset.xyz`, a `.prj`",
+           .excludes = {"longitude", "transform"}},
+          [](auto& c) -> auto& { return c.placement.metadata; })),
       deciding(numbers(
           {.path = "placement.anchor",
-           .meaning = "the point of the model, in input coordinates, that stands at "
-                      "that place",
-           .unset = "[0, 0, 0]",
-           .needs = "longitude"},
+           .meaning = "the point of the model, in input coordinates, that stands at that place; "
+                      "with a map, the point where the transform is exact",
+           .unset = "[0, 0, 0]; with a map, the middle of the bounding box",
+           .needs = {"longitude", "crs", "metadata"}},
           [](auto& c) -> auto& { return c.placement.anchor; })),
       deciding(numbers(
           {.path = "placement.transform",
            .meaning = "instead of a place: the matrix of the tileset's root, column "
                       "by column, from z-up coordinates",
-           .excludes = "longitude"},
+           .excludes = {"longitude"}},
           [](auto& c) -> auto& { return c.placement.transform; })),
       deciding(text(
           {.path = "licence", .meaning = "the licence of the model, a text in the tileset"},
@@ -405,9 +472,10 @@ const std::vector<ConfigSection>& config_sections() {
       {"outline", "the shape-outline, the lines that are shown first"},
       {"storage", "how tiles are stored"},
       {"storage.positions", "how positions are rounded; without it they keep every bit"},
+      {"texture", "what becomes of the pictures of a textured mesh"},
       {"placement",
-       "where the tileset puts the model: on the globe (WGS 84), x to the east, or "
-       "anywhere by a transform"}};
+       "where the tileset puts the model: on the globe (WGS 84), x to the east; where its map "
+       "coordinates are; or anywhere by a transform"}};
   return sections;
 }
 

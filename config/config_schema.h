@@ -32,8 +32,8 @@ struct ConfigKey {
   std::string path;            ///< dotted
   std::string meaning;         ///< for people: no capital, no full stop, names in `backticks`
   std::string unset = "none";  ///< for people: what holds if there is neither value nor default
-  std::string excludes{};      ///< the key of the same section that must not be there too
-  std::string needs{};         ///< the key of the same section that must be there too
+  std::vector<std::string> excludes{};  ///< keys of the same section that must not be there too
+  std::vector<std::string> needs{};     ///< keys of the same section of which one must be there too
   bool required = false;
   bool decides_result = false;
   KeyKind kind{};

@@ -1,5 +1,6 @@
 #include "config/named_files.h"
 
+#include "config/placement.h"
 #include "hierarchy/error.h"
 #include "hierarchy/mesh_name.h"
 #include "mesh_io/input_error.h"
@@ -47,8 +48,8 @@ bool is_config(storage::FileSystem& files, const fs::path& path) {
     return false;
   throw Error(
       ErrorCode::usage,
-      fmt::format("{}: expected a mesh (PLY, OBJ, STL or OFF, perhaps in gzip) or a config "
-                  "(JSON), found {}",
+      fmt::format("{}: expected a mesh (PLY, OBJ, glTF, STL or OFF, perhaps in gzip) or a "
+                  "config (JSON), found {}",
                   path.string(), start.empty() ? "an empty file" : mesh_io::in_quotes(start)));
 }
 
@@ -60,7 +61,7 @@ Config load_named(storage::FileSystem& files, const std::vector<fs::path>& named
       std::ranges::find_if(named, [&](const fs::path& path) { return is_config(files, path); });
   if (config == named.end()) {
     words.meshes.assign(named.begin(), named.end());
-    return parse_config("{}", {"--set", {}}, words);
+    return with_map(files, parse_config("{}", {"--set", {}}, words));
   }
   if (named.size() == 1)
     return load_config(files, *config, words);

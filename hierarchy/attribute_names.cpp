@@ -17,7 +17,8 @@ std::string attribute_names(const AttributeLayout& layout) {
   add(layout.colour != ColourType::none,
       std::string(kTypes[static_cast<std::size_t>(layout.colour)]) + " colours" +
           (layout.alpha ? " with alpha" : ""));
-  add(layout.texcoords, "texture coordinates");
+  add(layout.texcoords && !layout.material, "texture coordinates");
+  add(layout.material, "textures");
   return names.empty() ? "none" : names;
 }
 

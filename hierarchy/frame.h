@@ -23,6 +23,12 @@ struct Frame {
   friend bool operator==(const Frame&, const Frame&) = default;
 };
 
+/// From input coordinates to those of 3D Tiles, where z is up. Viewers turn glTF's content, which
+/// is y-up, in the same way.
+constexpr Vec3d to_z_up(Vec3d p, UpAxis up) {
+  return up == UpAxis::z ? p : Vec3d{p.x, -p.z, p.y};
+}
+
 /// A 4 x 4 matrix, column by column.
 using Transform = std::array<double, 16>;
 

@@ -19,7 +19,7 @@ bool has_ending(std::string_view name, std::string_view ending) {
 std::size_t stem_length(std::string_view name) {
   if (has_ending(name, ".gz"))
     name.remove_suffix(3);
-  for (const std::string_view ending : {".ply", ".obj", ".stl", ".off"}) {
+  for (const std::string_view ending : {".ply", ".obj", ".stl", ".off", ".gltf", ".glb"}) {
     if (has_ending(name, ending))
       return name.size() - ending.size();
   }

@@ -4,10 +4,12 @@
 #include "hierarchy/bounds.h"
 #include "hierarchy/ghost_chains.h"
 #include "hierarchy/shading.h"
+#include "hierarchy/texture.h"
 #include "hierarchy/tile_mesh.h"
 #include "hierarchy/tree.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,7 +22,7 @@ struct TileRecord {
   std::uint32_t boundary_count = 0;
   std::uint32_t ghost_count = 0;
   std::uint32_t copy_count = 0;      ///< vertices at places that have one already
-  std::uint32_t split_count = 0;     ///< further normals of vertices
+  std::uint32_t split_count = 0;     ///< further normals and texture coordinates of vertices
   std::uint32_t interior_count = 0;  ///< triangles
   std::uint32_t border_count = 0;    ///< triangles, each also listed in the tiles of its ghosts
   std::uint32_t drawn_border_count =
@@ -36,6 +38,8 @@ struct TileRecord {
                     ///< input units; grows likewise; 0 for partitions
   float compactness =
       0;  ///< p^2 / (4 pi w) of a partition; 0 if it has no area, and for other tiles
+  std::uint32_t image_width = 0, image_height = 0;  ///< of its picture, texels; 0: it has none
+  float texel = 0;  ///< mean size of the picture's texels on the surface, input units; 0 without
   std::uint64_t file_bytes = 0;
   std::uint64_t checksum = 0;  ///< XXH3-64 of the tile's file
 };
@@ -47,7 +51,8 @@ struct PublishedTile {
   std::vector<std::uint16_t>
       parent_map;      ///< own vertex -> vertex of the parent's tile; empty for the root
   GhostChains chains;  ///< one per ghost
-  Shading shading;     ///< if the build computed normals, else empty
+  Shading shading;     ///< if the build computed normals or the tile has a picture, else empty
+  TileImage image;     ///< empty unless the mesh is textured
 };
 
 /// A file that was imported.
@@ -64,6 +69,15 @@ struct SourceCount {
   std::uint64_t count = 0;
 };
 
+/// What the input has of textures.
+struct SourceTextures {
+  std::uint64_t materials = 0;       ///< that triangles use
+  std::uint64_t images = 0;          ///< of these
+  std::uint64_t missing_images = 0;  ///< of these, shown by their material's colour
+  std::uint64_t texels = 0;          ///< of all images that are there
+  friend bool operator==(const SourceTextures&, const SourceTextures&) = default;
+};
+
 /// What the input was.
 struct SourceSummary {
   std::string file_name;         ///< of several files, with ", " between them
@@ -76,9 +90,10 @@ struct SourceSummary {
   std::uint64_t faces = 0;      ///< as the file counts them
   std::uint64_t degenerate_triangles = 0;  ///< dropped: two corners are the same vertex
   std::uint64_t unreferenced_vertices = 0;
-  BoundsD bounds;                 ///< input coordinates
-  bool double_precision = false;  ///< coordinates do not fit float exactly
-  AttributeLayout attributes;
+  BoundsD bounds;                          ///< input coordinates
+  bool double_precision = false;           ///< coordinates do not fit float exactly
+  AttributeLayout attributes;              ///< without texture coordinates if it has textures
+  std::optional<SourceTextures> textures;  ///< none: no picture, or the build was to ignore them
   std::vector<SourceFile> files;    ///< in their order; empty: one PLY that was read in place
   std::vector<SourceCount> counts;  ///< of an import, those that are not 0; by name
 

@@ -1,11 +1,14 @@
-// The normals that a build computes for a mesh that has none.
+// What a build adds to the vertices of tiles: normals for a mesh that has none, and coordinates in
+// the tile's own picture for a mesh with textures.
 //
-// They are kept apart from the tile's mesh: at a crease a vertex has several normals, and who asks
-// for the mesh (verify --input, export, streams) gets it as if there were none. The vertex itself
-// has the first of its normals; for each further one it is split.
+// They are kept apart from the tile's mesh: at a crease a vertex has several normals, at the border
+// of a chart several coordinates, and who asks for the mesh (verify --input, export, streams) gets
+// it as if there were none. The vertex itself has the first of them; for each further one it is
+// split.
 #pragma once
 
 #include "hierarchy/normal_code.h"
+#include "hierarchy/texture.h"
 #include "hierarchy/tile_mesh.h"
 
 #include <cstdint>
@@ -17,12 +20,13 @@ namespace meshhier {
 /// the number n + i.
 struct Shading {
   std::vector<NormalCode> normals;      ///< of vertices, then of splits; empty: no computed normals
+  std::vector<Vec2f> texcoords;         ///< likewise, in the tile's picture; empty: it has none
   std::vector<std::uint32_t> split_of;  ///< of each split its vertex, < n; ascending
   /// The triangles of the mesh, one for one and corner for corner, with numbers of vertices and
   /// splits. Empty if there are no splits: each corner has the normal of its vertex then.
   std::vector<TileTriangle> interior, border;
 
-  bool empty() const { return normals.empty(); }
+  bool empty() const { return normals.empty() && texcoords.empty(); }
   friend bool operator==(const Shading&, const Shading&) = default;
 };
 

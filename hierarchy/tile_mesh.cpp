@@ -42,6 +42,18 @@ void VertexArray::append(const VertexArray& other, std::span<const std::uint32_t
                       attributes.begin() + static_cast<std::ptrdiff_t>((first + i) * width));
 }
 
+void VertexArray::keep_channels(int count) {
+  if (count == channels)
+    return;
+  const auto from = static_cast<std::size_t>(channels);
+  const auto to = static_cast<std::size_t>(count);
+  for (std::size_t i = 0; i < size(); ++i)
+    std::copy_n(attributes.begin() + static_cast<std::ptrdiff_t>(i * from), to,
+                attributes.begin() + static_cast<std::ptrdiff_t>(i * to));
+  attributes.resize(size() * to);
+  channels = count;
+}
+
 Copies sorted_by_place(const Copies& copies) {
   std::vector<std::uint32_t> order(copies.size());
   std::iota(order.begin(), order.end(), 0U);

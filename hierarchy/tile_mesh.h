@@ -43,6 +43,8 @@ struct VertexArray {
   void append(const VertexArray& other, std::size_t begin, std::size_t end);
   /// Appends those of another array, with the same channels, in the order they are named.
   void append(const VertexArray& other, std::span<const std::uint32_t> vertices);
+  /// Drops all channels but the first `count`. O(n).
+  void keep_channels(int count);
 };
 
 /// A vertex of another tile of the same level.

@@ -3,7 +3,9 @@
 #include "hierarchy/attribute_names.h"
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
+#include "import/gltf_import.h"
 #include "import/obj_import.h"
+#include "import/ply_import.h"
 #include "import/raw_mesh.h"
 #include "import/weld.h"
 #include "mesh_io/input_error.h"
@@ -35,6 +37,7 @@ class Import {
       : input_(input),
         env_(environment),
         room_{environment.scratch, environment.sort_bytes, environment.cancel},
+        named_(environment.files),
         mesh_(environment.scratch) {}
 
   ImportFacts run(TemporaryFile& ply) {
@@ -48,6 +51,7 @@ class Import {
       write(input_.weld() ? weld() : mesh_, ply);
     }
     input_.check_unchanged();
+    note_textures();
     std::ranges::sort(facts_.counts, {}, &SourceCount::name);
     return std::move(facts_);
   }
@@ -89,6 +93,31 @@ class Import {
   void note(const InputFileFacts& facts, std::uint64_t bytes, std::uint64_t checksum) {
     facts_.files.push_back(
         {facts.path.filename().string(), name_of(facts.format), bytes, checksum});
+    for (const CompanionFile& companion : facts.companions)
+      note_companion(companion.path);
+  }
+
+  void note_companion(const std::filesystem::path& path) {
+    const auto file = env_.files.open(path);
+    facts_.files.push_back({path.filename().string(), "buffer", file->size(), checksum_of(*file)});
+    env_.progress.advance(file->size());
+  }
+
+  std::uint64_t checksum_of(const storage::File& file) const {
+    return storage::FileChecksum(file.size()).complete(file, [this] { env_.cancel.check(); });
+  }
+
+  void note_textures() {
+    const MaterialTable& table = mesh_.materials;
+    count("missing_images", table.missing());
+    if (table.missing() > 0)
+      env_.progress.warn(table.warning(mesh_.layout.material));
+    if (!mesh_.layout.material)
+      return;
+    facts_.materials = table.list();
+    facts_.textures = {.materials = facts_.materials.materials.size(),
+                       .images = facts_.materials.images.size() + table.missing(),
+                       .missing_images = table.missing()};
   }
 
   void unpack(const InputFileFacts& facts, TemporaryFile& to) {
@@ -124,6 +153,10 @@ class Import {
         break;
       case MeshKind::off:
         read_stream(facts, [&](InputStream& stream) { added = add_off(stream, facts.path); });
+        break;
+      case MeshKind::gltf:
+      case MeshKind::glb:
+        added = add_gltf(facts, ply.path());
         break;
     }
     if (is_first)
@@ -170,9 +203,19 @@ class Import {
     return add_plain_ply(*source, facts.path);
   }
 
-  Added add_plain_ply(mesh_io::MeshSource& source, const std::filesystem::path& path) {
+  Added add_textured_ply(mesh_io::PlySource& source, const std::filesystem::path& path) {
+    const PlyImport import = import_textured_ply(source, path, mesh_, named_, room_);
+    checked_base(path, 0);
+    count("split_vertices", import.split_vertices);
+    return {import.layout, import.fits_float, import.counts.faces,
+            import.counts.degenerate_triangles};
+  }
+
+  Added add_plain_ply(mesh_io::PlySource& source, const std::filesystem::path& path) {
     const mesh_io::MeshDescription& description = source.description();
     const std::uint32_t base = checked_base(path, description.vertex_count);
+    if (input_.textures() == Textures::use && !source.texture_files().empty())
+      return add_textured_ply(source, path);
     Added added{.layout = description.attributes};
     source.read_vertices([&](const mesh_io::VertexBlock& block) {
       env_.cancel.check();
@@ -189,14 +232,44 @@ class Import {
     return added;
   }
 
+  Added add_gltf(const InputFileFacts& facts, const std::filesystem::path& room) {
+    if (!facts.format.is_gzip) {
+      const Added added = add_plain_gltf(facts, env_.files.open(facts.path));
+      const auto file = env_.files.open(facts.path);
+      note(facts, file->size(), checksum_of(*file));
+      env_.progress.advance(facts.identity.bytes);
+      return added;
+    }
+    TemporaryFile unpacked(env_.files, room, env_.scratch.pool().scratch_use());
+    unpack(facts, unpacked);
+    return add_plain_gltf(facts, mesh_io::renamed(env_.files.open(room), facts.unpacked_name()));
+  }
+
+  Added add_plain_gltf(const InputFileFacts& facts, std::shared_ptr<const storage::File> content) {
+    // While the reader decodes no sort runs.
+    constexpr std::uint64_t kLeast = 4 * kImportMiB;
+    mesh_io::GltfFile file(
+        std::move(content), facts.path.parent_path(),
+        {env_.files, env_.scratch, std::max(2 * room_.sort_bytes, kLeast),
+         facts.format.is_gzip ? mesh_io::GltfContent::temporary : mesh_io::GltfContent::lasting,
+         [this] { env_.cancel.check(); }});
+    const GltfImport import = import_gltf(file, mesh_, input_.textures(), room_);
+    for (const SourceCount& one : import.counts)
+      count(one.name, one.count);
+    return {import.layout, import.fits_float, import.triangles, import.degenerate_triangles};
+  }
+
   Added add_obj(InputStream& stream, const std::filesystem::path& path) {
-    const ObjImport import = import_obj(stream, path, mesh_, room_);
+    const ObjImport import = import_obj(stream, path, mesh_, named_, input_.textures(), room_);
     checked_base(path, 0);
     const mesh_io::ObjCounts& counts = import.counts;
     count("split_vertices", import.split_vertices);
     count("vertices_made_white", import.filled_colours);
     count("vertices_without_texcoord", import.filled_texcoords);
     count("vertices_without_normal", import.filled_normals);
+    count("missing_material_libraries", import.missing_libraries);
+    count("undefined_materials", import.undefined_materials);
+    count("ignored_alpha_images", import.other_alphas);
     count("groups", counts.groups);
     count("objects", counts.objects);
     count("material_uses", counts.materials);
@@ -291,6 +364,7 @@ class Import {
   const InputFiles& input_;
   const ImportEnvironment& env_;
   ImportRoom room_;
+  mesh_io::NamedFiles named_;
   RawMesh mesh_;
   std::optional<RawMesh> welded_;
   std::uint64_t faces_ = 0;
@@ -324,6 +398,7 @@ void ImportFacts::complete(SourceSummary& summary) const {
   summary.checksum = joined_checksum(checksums);
   summary.files = files;
   summary.counts = counts;
+  summary.textures = textures;
   if (faces)
     summary.faces = *faces;
   summary.degenerate_triangles += degenerate_triangles;
@@ -353,14 +428,21 @@ ImportMemory plan_import(std::uint64_t memory_budget) {
 std::uint64_t predict_import(const InputFiles& input, const ImportMemory& memory) {
   // The PLY has at most the size of the text or soup. What lies in spools and sorts beside it, up
   // to the pool in memory: once the size of a text of floats, three times where corners have
-  // attributes, and three times that of an STL, whose corners are sorted. Gzip packs such files to
-  // a third or a quarter.
+  // attributes, and three times that of an STL, whose corners are sorted. Five times that of a
+  // textured PLY: its corners are sorted twice, 40 bytes each, and a face has 17. Gzip packs such
+  // files to a third or a quarter.
   constexpr std::uint64_t kSpools = 3;
+  constexpr std::uint64_t kTexturedSpools = 5;
   constexpr std::uint64_t kPacked = 4;
-  std::uint64_t content = 0;
-  for (const InputFileFacts& file : input.all())
-    content += file.identity.bytes * (file.format.is_gzip ? kPacked : 1);
-  const std::uint64_t spools = input.is_unpacked_only() ? 0 : kSpools * content;
+  std::uint64_t content = input.bytes();
+  std::uint64_t textured = 0;
+  for (const InputFileFacts& file : input.all()) {
+    const std::uint64_t bytes = file.identity.bytes * (file.format.is_gzip ? kPacked : 1);
+    content += bytes - file.identity.bytes;
+    textured += file.names_textures ? bytes : 0;
+  }
+  const std::uint64_t spools =
+      input.is_unpacked_only() ? 0 : kSpools * content + (kTexturedSpools - kSpools) * textured;
   return content + spools - std::min(spools, memory.pool_bytes);
 }
 

@@ -1,13 +1,18 @@
 // The stage `import`: input that cannot be read where it lies becomes one PLY that can.
 //
-// A PLY that is packed and nothing else is unpacked. All other input (OBJ, STL, OFF, several files,
-// vertices to be welded) is read once as a stream into spools and written from there as a binary
-// little endian PLY: coordinates as float, or as double if one of them does not fit; attributes in
-// the types they have inside (hierarchy/attributes.h).
+// A PLY that is packed and nothing else is unpacked. All other input (OBJ, glTF, STL, OFF, several
+// files, vertices to be welded) is read once as a stream into spools and written from there as a
+// binary little endian PLY: coordinates as float, or as double if one of them does not fit;
+// attributes in the types they have inside (hierarchy/attributes.h).
+//
+// A mesh is textured if a triangle's material names a picture that is there. Its vertices have the
+// number of their material behind the texture coordinates, which are glTF's. A mesh of which all
+// pictures are missing is imported as one that names none, with a warning.
 #pragma once
 
 #include "execution/cancel.h"
 #include "execution/progress.h"
+#include "images/material_list.h"
 #include "import/input_files.h"
 #include "mesh_io/mesh_source.h"
 #include "storage/io/file.h"
@@ -50,6 +55,11 @@ struct ImportFacts {
   std::vector<SourceCount> counts;
   std::optional<std::uint64_t> faces;  ///< none: as many as the PLY has
   std::uint64_t degenerate_triangles = 0;
+  /// Those that triangles use, as AttributeLayout::material of the PLY numbers them; empty unless
+  /// the mesh is textured.
+  images::MaterialList materials;
+  /// Of a textured mesh. Its texels are not counted: nothing is decoded here.
+  std::optional<SourceTextures> textures;
 
   /// What a mesh that was read from the PLY is a summary of.
   void complete(SourceSummary& summary) const;

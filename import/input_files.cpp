@@ -1,6 +1,10 @@
 #include "import/input_files.h"
 
 #include "hierarchy/error.h"
+#include "mesh_io/gltf_buffer_files.h"
+#include "mesh_io/input_stream.h"
+#include "mesh_io/ply_header.h"
+#include "mesh_io/ply_source.h"
 #include "storage/io/file_checksum.h"
 #include "storage/io/hash.h"
 
@@ -10,14 +14,43 @@
 
 namespace meshhier::importing {
 
-InputFiles::InputFiles(storage::FileSystem& files, const mesh_io::InputPaths& paths, bool weld)
-    : files_(files), weld_(weld) {
+namespace {
+
+bool names_textures(const storage::File& file, const mesh_io::MeshFormat& format) {
+  if (format.kind != mesh_io::MeshKind::ply)
+    return false;
+  std::string start(mesh_io::kMaxHeaderBytes, '\0');
+  const auto stream = mesh_io::open_stream({file, file.size()}, {});
+  start.resize(stream->read(std::as_writable_bytes(std::span(start))));
+  return mesh_io::ply_names_textures(start, file.path());
+}
+
+}  // namespace
+
+InputFiles::InputFiles(storage::FileSystem& files, const mesh_io::InputPaths& paths, bool weld,
+                       Textures textures)
+    : files_(files), weld_(weld), textures_(textures) {
   for (const std::filesystem::path& path : paths) {
     if (files.is_directory(path)) {
-      throw Error(ErrorCode::io,
-                  path.string() + " is a folder; name the mesh in it (PLY, OBJ, STL or OFF)");
+      throw Error(ErrorCode::io, path.string() +
+                                     " is a folder; name the mesh in it (PLY, OBJ, glTF, STL "
+                                     "or OFF)");
     }
-    all_.push_back({path, mesh_io::detect_format(*files.open(path)), files.identity(path)});
+    const auto file = files.open(path);
+    const mesh_io::MeshFormat format = mesh_io::detect_format(*file);
+    InputFileFacts facts{path, format, files.identity(path)};
+    facts.names_textures = textures == Textures::use && names_textures(*file, format);
+    all_.push_back(std::move(facts));
+    find_companions(all_.back(), *file);
+  }
+}
+
+void InputFiles::find_companions(InputFileFacts& file, const storage::File& content) const {
+  if (file.format.kind != mesh_io::MeshKind::gltf && file.format.kind != mesh_io::MeshKind::glb)
+    return;
+  for (const std::filesystem::path& path : mesh_io::gltf_buffer_files(content)) {
+    if (files_.kind(path) == storage::FileKind::regular)
+      file.companions.push_back({path, files_.identity(path)});
   }
 }
 
@@ -41,34 +74,34 @@ std::string InputFiles::imported_name() const {
 
 std::uint64_t InputFiles::bytes() const {
   std::uint64_t bytes = 0;
-  for (const InputFileFacts& file : all_)
-    bytes += file.identity.bytes;
+  for_each_file([&](const auto&, const storage::FileIdentity& file) { bytes += file.bytes; });
   return bytes;
 }
 
 std::int64_t InputFiles::times() const {
   std::vector<std::int64_t> times;
-  for (const InputFileFacts& file : all_)
-    times.insert(times.end(), {file.identity.modified_ns, file.identity.changed_ns});
+  for_each_file([&](const auto&, const storage::FileIdentity& file) {
+    times.insert(times.end(), {file.modified_ns, file.changed_ns});
+  });
   return std::bit_cast<std::int64_t>(storage::checksum(std::as_bytes(std::span(times))));
 }
 
 void InputFiles::check_unchanged() const {
-  for (const InputFileFacts& file : all_) {
-    if (files_.identity(file.path) != file.identity) {
+  for_each_file([&](const std::filesystem::path& path, const storage::FileIdentity& identity) {
+    if (files_.identity(path) != identity) {
       throw Error(ErrorCode::input,
-                  file.path.string() + " was changed while it was read; build it again");
+                  path.string() + " was changed while it was read; build it again");
     }
-  }
+  });
 }
 
 std::uint64_t InputFiles::checksum(const execution::CancelToken& cancel) const {
   std::vector<std::uint64_t> checksums;
-  for (const InputFileFacts& input : all_) {
-    const auto file = files_.open(input.path);
+  for_each_file([&](const std::filesystem::path& path, const auto&) {
+    const auto file = files_.open(path);
     checksums.push_back(
         storage::FileChecksum(file->size()).complete(*file, [&] { cancel.check(); }));
-  }
+  });
   return joined_checksum(checksums);
 }
 

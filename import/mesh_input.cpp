@@ -9,8 +9,9 @@
 
 namespace meshhier::importing {
 
-MeshInput::MeshInput(const mesh_io::InputPaths& paths, bool weld, storage::FileSystem& files)
-    : system_(files), input_(files, paths, weld) {
+MeshInput::MeshInput(const mesh_io::InputPaths& paths, bool weld, storage::FileSystem& files,
+                     Textures textures)
+    : system_(files), input_(files, paths, weld, textures) {
   if (needs_import())
     return;
   in_place_ = mesh_io::open_mesh(files, paths[0]);
@@ -57,7 +58,8 @@ std::unique_ptr<mesh_io::MeshSource> MeshInput::open() {
 
 std::unique_ptr<mesh_io::MeshSource> MeshInput::open_imported() {
   return mesh_io::make_ply_source(
-      mesh_io::renamed(system_.open(ply_->path()), input_.imported_name()));
+      mesh_io::renamed(system_.open(ply_->path()), input_.imported_name()),
+      facts_.textures ? mesh_io::PlyMaterials::read : mesh_io::PlyMaterials::skipped);
 }
 
 std::uint64_t MeshInput::checksum(const execution::CancelToken& cancel) {

@@ -29,7 +29,8 @@ class MeshInput {
 
   /// Opens the files and finds out what they are; reads the header if they are read in place.
   /// Throws as mesh_io::open_mesh and mesh_io::detect_format.
-  MeshInput(const mesh_io::InputPaths& paths, bool weld, storage::FileSystem& files);
+  MeshInput(const mesh_io::InputPaths& paths, bool weld, storage::FileSystem& files,
+            Textures textures = Textures::use);
 
   const InputFiles& files() const { return input_; }
   bool needs_import() const { return input_.needs_import(); }
@@ -54,6 +55,8 @@ class MeshInput {
   /// Whether there is something to read: not if it was recalled.
   bool can_be_read() const { return !needs_import() || ply_; }
   std::unique_ptr<mesh_io::MeshSource> open();
+  /// What AttributeLayout::material of the description numbers; empty if it was recalled.
+  const images::MaterialList& materials() const { return facts_.materials; }
   /// Adds what the PLY does not say.
   void complete(SourceSummary& summary) const { facts_.complete(summary); }
   void drop();

@@ -1,9 +1,14 @@
 #include "import/obj_import.h"
 
 #include "execution/spool_cursor.h"
-#include "hierarchy/error.h"
+#include "import/obj_textures.h"
+#include "import/split_corners.h"
+#include "mesh_io/input_error.h"
 #include "partition/external_sort.h"
 
+#include <algorithm>
+#include <memory>
+#include <optional>
 #include <utility>
 
 namespace meshhier::importing {
@@ -16,15 +21,27 @@ using Texcoord = std::array<float, 2>;
 
 constexpr ObjColour kWhite{1, 1, 1};
 
+// CornerParts::parts of an OBJ file, each from 1 on.
+constexpr std::size_t kTexcoord = 0;
+constexpr std::size_t kNormal = 1;
+
+bool has_texcoords(const ObjTriangle& triangle) {
+  return std::ranges::all_of(
+      triangle, [](const ObjCorner& corner) { return corner.texcoord != ObjCorner::kNone; });
+}
+
 /// All that a file holds, as it stands there.
 class ObjParts final : public mesh_io::ObjVisitor {
  public:
-  explicit ObjParts(storage::ScratchFile& scratch)
-      : positions(scratch, kImportSpoolBytes),
+  ObjParts(storage::ScratchFile& scratch, const std::filesystem::path& path, Textures use)
+      : names(path),
+        positions(scratch, kImportSpoolBytes),
         colours(scratch, kImportSpoolBytes),
         texcoords(scratch, kImportSpoolBytes),
         normals(scratch, kImportSpoolBytes),
-        triangles(scratch, kImportSpoolBytes) {}
+        triangles(scratch, kImportSpoolBytes),
+        materials(scratch, kImportSpoolBytes),
+        keeps_materials_(use == Textures::use) {}
 
   void add_position(Vec3d position, const std::optional<ObjColour>& colour) override {
     positions.append(position);
@@ -37,32 +54,30 @@ class ObjParts final : public mesh_io::ObjVisitor {
   }
   void add_texcoord(Texcoord texcoord) override { texcoords.append(texcoord); }
   void add_normal(Vec3f normal) override { normals.append(normal); }
-  void add_triangle(const ObjTriangle& triangle) override { triangles.append(triangle); }
+  void use_material(const std::string& name) override {
+    if (keeps_materials_)
+      names.begin(name);
+  }
+  void use_libraries(const std::string& statement) override {
+    if (keeps_materials_)
+      names.add_libraries(statement);
+  }
+  void add_triangle(const ObjTriangle& triangle) override {
+    triangles.append(triangle);
+    if (keeps_materials_)
+      materials.append(names.use(has_texcoords(triangle)));
+  }
 
+  MaterialNames names;
   storage::RecordSpool<Vec3d> positions;
   storage::RecordSpool<ObjColour> colours;  ///< none, or one a position
   storage::RecordSpool<Texcoord> texcoords;
   storage::RecordSpool<Vec3f> normals;
   storage::RecordSpool<ObjTriangle> triangles;
-};
+  storage::RecordSpool<std::uint32_t> materials;  ///< number in `names`, one a triangle; or none
 
-/// A corner of a triangle with what it refers to: the position from 0 on, the others from 1 on, 0
-/// being none.
-struct CornerUse {
-  std::uint32_t position, texcoord, normal;
-  std::uint32_t corner_high, corner_low;  ///< not a u64, so that nothing is padded
-
-  std::uint64_t corner() const { return std::uint64_t{corner_high} << 32 | corner_low; }
-  bool is_same_vertex(const CornerUse& other) const {
-    return position == other.position && texcoord == other.texcoord && normal == other.normal;
-  }
-};
-/// By position, texture coordinate, normal; of equal ones the corner does not matter.
-struct UseKey {
-  using Key = std::pair<std::uint64_t, std::uint32_t>;
-  Key operator()(const CornerUse& use) const {
-    return {std::uint64_t{use.position} << 32 | use.texcoord, use.normal};
-  }
+ private:
+  bool keeps_materials_;
 };
 
 struct Reference {
@@ -83,16 +98,6 @@ struct PlaceKey {
     return placed.place;
   }
 };
-
-struct CornerVertex {
-  std::uint64_t corner, vertex;
-};
-struct CornerKey {
-  std::uint64_t operator()(const CornerVertex& c) const { return c.corner; }
-};
-using CornerSort = partition::ExternalSort<CornerVertex, CornerKey>;
-
-using References = storage::RecordSpool<std::uint32_t>;  // of each vertex, from 1 on; 0: none
 
 /// What each vertex refers to, in the vertices' order; what refers to nothing gets Value{}. Two
 /// sorts, however the references jump.
@@ -127,78 +132,150 @@ void gather(const References& references, const storage::RecordSpool<Value>& val
     gathered.append(Value{});
 }
 
-/// Vertices, one for each combination that corners use, as references to the parts.
-struct SplitVertices {
-  explicit SplitVertices(storage::ScratchFile& scratch)
-      : positions(scratch, kImportSpoolBytes),
-        texcoords(scratch, kImportSpoolBytes),
-        normals(scratch, kImportSpoolBytes) {}
+/// The square of each triangle whose material has a picture for each; 0: the whole picture, or no
+/// square has one. Finds the pictures.
+class TileFinder {
+ public:
+  TileFinder(const ObjParts& parts, ObjTextures& textures, const ImportRoom& room)
+      : parts_(parts),
+        textures_(textures),
+        room_(room),
+        texcoords_(room.scratch, kImportSpoolBytes) {}
 
-  void add(std::uint32_t position, std::uint32_t texcoord, std::uint32_t normal) {
-    if (positions.size() + 1 >= UINT32_MAX)
-      throw Error(ErrorCode::input, "the input has 2^32 vertices or more; split it");
-    positions.append(position);
-    texcoords.append(texcoord);
-    normals.append(normal);
-    without_texcoord += texcoord == 0 ? 1 : 0;
-    without_normal += normal == 0 ? 1 : 0;
+  void find(storage::RecordSpool<std::uint32_t>& tiles) {
+    gather_texcoords();
+    execution::SpoolCursor triangles(parts_.triangles, room_.cancel);
+    execution::SpoolCursor names(parts_.materials, room_.cancel);
+    execution::SpoolCursor texcoords(texcoords_, room_.cancel);
+    for (std::uint64_t i = 0; i < triangles.size(); ++i) {
+      std::uint32_t tile = 0;
+      if (is_tiled(names.at(i), triangles.at(i))) {
+        const Texcoord a = texcoords.at(3 * i), b = texcoords.at(3 * i + 1);
+        tile = find_tile(names.at(i), {a, b, texcoords.at(3 * i + 2)});
+      }
+      tiles.append(tile);
+    }
   }
-  std::uint64_t count() const { return positions.size(); }
 
-  References positions;  ///< from 0 on: all have one
-  References texcoords;
-  References normals;
-  std::uint64_t without_texcoord = 0;
-  std::uint64_t without_normal = 0;
+ private:
+  bool is_tiled(std::uint32_t name, const ObjTriangle& triangle) const {
+    return textures_.is_tiled(name) && has_texcoords(triangle);
+  }
+
+  std::uint32_t find_tile(std::uint32_t name, const std::array<Texcoord, 3>& corners) {
+    const auto tile = textures_.tile_of(name, corners);
+    return tile && textures_.find_picture(name, *tile) ? tile->number() : 0;
+  }
+
+  /// Of all corners, so that they come in the triangles' order.
+  void gather_texcoords() {
+    if (3 * parts_.triangles.size() >= UINT32_MAX) {
+      mesh_io::fail_file(parts_.names.obj(),
+                         "has more triangles than textures of several pictures (<UDIM>) allow");
+    }
+    References corners(room_.scratch, kImportSpoolBytes);
+    execution::SpoolCursor triangles(parts_.triangles, room_.cancel);
+    for (std::uint64_t i = 0; i < triangles.size(); ++i) {
+      for (const ObjCorner& corner : triangles.at(i))
+        corners.append(corner.texcoord + 1);
+    }
+    gather(corners, parts_.texcoords, texcoords_, room_);
+  }
+
+  const ObjParts& parts_;
+  ObjTextures& textures_;
+  const ImportRoom& room_;
+  storage::RecordSpool<Texcoord> texcoords_;
 };
 
-/// `corners`: gets the vertex of each corner.
-void split_corners(const ObjParts& parts, SplitVertices& vertices, CornerSort& corners,
-                   const ImportRoom& room) {
-  partition::ExternalSort<CornerUse, UseKey> uses(room.scratch, room.sort_bytes);
-  execution::SpoolCursor triangles(parts.triangles, room.cancel);
-  for (std::uint64_t i = 0; i < triangles.size(); ++i) {
-    for (std::uint64_t k = 0; k < 3; ++k) {
-      const ObjCorner& c = triangles.at(i)[k];
-      const std::uint64_t corner = 3 * i + k;
-      // kNone + 1 is 0.
-      uses.add({c.position, c.texcoord + 1, c.normal + 1, static_cast<std::uint32_t>(corner >> 32),
-                static_cast<std::uint32_t>(corner)});
-    }
+/// What the triangles of a textured file show.
+struct ObjSurface {
+  ObjSurface(std::vector<LibraryMaterial> materials, mesh_io::NamedFiles& files, RawMesh& mesh,
+             const ImportRoom& room)
+      : textures(std::move(materials), files, mesh.materials),
+        tiles(room.scratch, kImportSpoolBytes) {}
+
+  /// Of triangle `i`. Pictures of squares that are not there were none when they were looked for.
+  std::optional<PictureTile> tile(std::uint32_t name, std::uint64_t i,
+                                  execution::SpoolCursor<std::uint32_t>& all_tiles) const {
+    if (!textures.is_tiled(name))
+      return PictureTile();
+    const std::uint32_t number = all_tiles.at(i);
+    return number == 0 ? std::nullopt : std::optional(PictureTile::from(number));
   }
-  uses.sort();
-  std::uint32_t next = 0;  // position
-  CornerUse last{};
-  uses.for_each_block([&](std::span<const CornerUse> block) {
-    room.cancel.check();
-    for (const CornerUse& use : block) {
-      const bool is_first = next <= use.position;
-      while (next < use.position)
-        vertices.add(next++, 0, 0);
-      if (is_first || !use.is_same_vertex(last))
-        vertices.add(use.position, use.texcoord, use.normal);
-      next = use.position + 1;
-      last = use;
-      corners.add({use.corner(), vertices.count() - 1});
+
+  ObjTextures textures;
+  storage::RecordSpool<std::uint32_t> tiles;  ///< one a triangle if a material has them
+};
+
+/// Looks for the pictures that triangles show; none if there are none.
+std::unique_ptr<ObjSurface> find_surface(const ObjParts& parts, ObjImport& import, RawMesh& mesh,
+                                         mesh_io::NamedFiles& files, const ImportRoom& room) {
+  Libraries libraries = read_libraries(parts.names, files, room.cancel);
+  import.missing_libraries = libraries.missing;
+  const std::vector<MaterialNames::Use>& uses = parts.names.all();
+  for (std::size_t i = 0; i < uses.size(); ++i) {
+    const LibraryMaterial& material = libraries.materials[i];
+    import.undefined_materials += uses[i].name && !material.is_defined ? 1 : 0;
+    import.other_alphas += material.has_other_alpha ? 1 : 0;
+  }
+  auto surface = std::make_unique<ObjSurface>(std::move(libraries.materials), files, mesh, room);
+  ObjTextures& textures = surface->textures;
+  bool is_tiled = false;
+  for (std::uint32_t name = 0; name < uses.size(); ++name) {
+    if (!uses[name].has_texcoords)
+      continue;
+    if (textures.is_tiled(name))
+      is_tiled = true;
+    else
+      textures.find_picture(name, {});
+  }
+  if (is_tiled)
+    TileFinder(parts, textures, room).find(surface->tiles);
+  return textures.has_pictures() ? std::move(surface) : nullptr;
+}
+
+/// `surface`: of a textured file, else null.
+void add_corners(const ObjParts& parts, ObjSurface* surface, CornerSplitter& splitter,
+                 const ImportRoom& room) {
+  execution::SpoolCursor triangles(parts.triangles, room.cancel);
+  execution::SpoolCursor names(parts.materials, room.cancel);
+  std::optional<execution::SpoolCursor<std::uint32_t>> tiles;
+  if (surface != nullptr)
+    tiles.emplace(surface->tiles, room.cancel);
+  for (std::uint64_t i = 0; i < triangles.size(); ++i) {
+    const ObjTriangle& triangle = triangles.at(i);
+    bool shows_texcoords = true;
+    std::uint32_t material = 0;
+    if (surface != nullptr) {
+      const std::uint32_t name = names.at(i);
+      const auto tile = has_texcoords(triangle) ? surface->tile(name, i, *tiles) : std::nullopt;
+      const ObjTextures::Shown shown = surface->textures.show(name, tile);
+      shows_texcoords = shown.has_picture;
+      material = shown.number + 1;
     }
-  });
-  while (next < parts.positions.size())
-    vertices.add(next++, 0, 0);
+    // kNone + 1 is 0.
+    for (const ObjCorner& c : triangle)
+      splitter.add({c.position, {shows_texcoords ? c.texcoord + 1 : 0, c.normal + 1, material}});
+  }
 }
 
 void append_vertices(const ObjParts& parts, const SplitVertices& vertices,
-                     const AttributeLayout& layout, RawMesh& mesh, const ImportRoom& room) {
+                     const ObjSurface* surface, const AttributeLayout& layout, RawMesh& mesh,
+                     const ImportRoom& room) {
   storage::RecordSpool<Texcoord> texcoords(room.scratch, kImportSpoolBytes);
   storage::RecordSpool<Vec3f> normals(room.scratch, kImportSpoolBytes);
   if (layout.texcoords)
-    gather(vertices.texcoords, parts.texcoords, texcoords, room);
+    gather(vertices.parts[kTexcoord], parts.texcoords, texcoords, room);
   if (layout.normals)
-    gather(vertices.normals, parts.normals, normals, room);
+    gather(vertices.parts[kNormal], parts.normals, normals, room);
   execution::SpoolCursor places(vertices.positions, room.cancel);
   execution::SpoolCursor positions(parts.positions, room.cancel);
   execution::SpoolCursor colours(parts.colours, room.cancel);
   execution::SpoolCursor all_texcoords(texcoords, room.cancel);
   execution::SpoolCursor all_normals(normals, room.cancel);
+  execution::SpoolCursor shown(vertices.parts[kTexcoord], room.cancel);
+  execution::SpoolCursor materials(vertices.parts[CornerParts::kMaterial], room.cancel);
   for (std::uint64_t i = 0; i < vertices.count(); ++i) {
     const std::uint32_t position = places.at(i);
     mesh.positions.append(positions.at(position));
@@ -208,8 +285,15 @@ void append_vertices(const ObjParts& parts, const SplitVertices& vertices,
     }
     if (layout.colour != ColourType::none)
       mesh.attributes.append(colours.at(position));
-    if (layout.texcoords)
+    if (layout.texcoords && !layout.material)
       mesh.attributes.append(all_texcoords.at(i));
+    if (layout.material) {
+      // A position that no triangle uses has no material: any will do.
+      const std::uint32_t material = std::max(materials.at(i), std::uint32_t{1}) - 1;
+      const Vec2f at =
+          shown.at(i) == 0 ? Vec2f{} : surface->textures.texcoord(material, all_texcoords.at(i));
+      mesh.attributes.append(std::array{at.u, at.v, static_cast<float>(material)});
+    }
   }
 }
 
@@ -231,25 +315,11 @@ void append_plain(const ObjParts& parts, RawMesh& mesh, const ImportRoom& room) 
   }
 }
 
-void append_triangles(CornerSort& corners, std::uint64_t base, RawMesh& mesh,
-                      const ImportRoom& room) {
-  corners.sort();
-  Triangle<std::uint32_t> triangle{};
-  corners.for_each_block([&](std::span<const CornerVertex> block) {
-    room.cancel.check();
-    for (const auto& [corner, vertex] : block) {
-      triangle[corner % 3] = static_cast<std::uint32_t>(base + vertex);
-      if (corner % 3 == 2)
-        mesh.triangles.append(triangle);
-    }
-  });
-}
-
 }  // namespace
 
 ObjImport import_obj(mesh_io::InputStream& stream, const std::filesystem::path& path, RawMesh& mesh,
-                     const ImportRoom& room) {
-  ObjParts parts(room.scratch);
+                     mesh_io::NamedFiles& files, Textures textures, const ImportRoom& room) {
+  ObjParts parts(room.scratch, path, textures);
   ObjImport import;
   import.counts = mesh_io::read_obj(stream, path, parts);
   import.fits_float = import.counts.fits_float;
@@ -263,16 +333,19 @@ ObjImport import_obj(mesh_io::InputStream& stream, const std::filesystem::path& 
     append_plain(parts, mesh, room);
     return import;
   }
-  const std::uint64_t base = mesh.vertex_count();
+  std::unique_ptr<ObjSurface> surface;
+  if (textures == Textures::use && import.layout.texcoords)
+    surface = find_surface(parts, import, mesh, files, room);
+  import.layout.material = surface != nullptr;
   SplitVertices vertices(room.scratch);
-  CornerSort corners(room.scratch, room.sort_bytes);
-  split_corners(parts, vertices, corners, room);
+  CornerSplitter splitter(room);
+  add_corners(parts, surface.get(), splitter, room);
   parts.triangles.clear();
-  append_triangles(corners, base, mesh, room);
-  append_vertices(parts, vertices, import.layout, mesh, room);
+  splitter.split(parts.positions.size(), vertices, mesh);
+  append_vertices(parts, vertices, surface.get(), import.layout, mesh, room);
   import.split_vertices = vertices.count() - parts.positions.size();
-  import.filled_texcoords = import.layout.texcoords ? vertices.without_texcoord : 0;
-  import.filled_normals = import.layout.normals ? vertices.without_normal : 0;
+  import.filled_texcoords = import.layout.texcoords ? vertices.without[kTexcoord] : 0;
+  import.filled_normals = import.layout.normals ? vertices.without[kNormal] : 0;
   return import;
 }
 

@@ -2,7 +2,9 @@
 // vertices.
 #pragma once
 
+#include "import/input_files.h"
 #include "import/raw_mesh.h"
+#include "mesh_io/named_files.h"
 #include "mesh_io/obj_reader.h"
 
 #include <cstdint>
@@ -16,16 +18,25 @@ struct ObjImport {
   bool fits_float = true;
   std::uint64_t split_vertices = 0;  ///< that a position has beyond one
   std::uint64_t filled_colours = 0;  ///< positions without a colour in a file that has some: white
-  std::uint64_t filled_texcoords = 0;  ///< vertices without one in a file that has some: 0 0
-  std::uint64_t filled_normals = 0;    ///< likewise: 0 0 0
+  std::uint64_t filled_texcoords = 0;     ///< vertices without one in a file that has some: 0 0
+  std::uint64_t filled_normals = 0;       ///< likewise: 0 0 0
+  std::uint64_t missing_libraries = 0;    ///< that a file with texture coordinates names
+  std::uint64_t undefined_materials = 0;  ///< likewise; they are white
+  std::uint64_t other_alphas = 0;  ///< materials whose map_d is another picture than map_Kd: unused
 };
 
 /// Appends the mesh of a file to `mesh`, but for its layout. Attributes that no corner refers to
 /// are no attributes. Without texture coordinates and normals vertices are the file's positions, in
 /// their order; else there is one for each position that no triangle uses and for each combination
 /// that is used, ordered by position, then texture coordinate, then normal, none being first.
-/// Throws as mesh_io::read_obj.
+///
+/// If a triangle's material has a picture that is there, the file is textured, its layout says so,
+/// and the last part of a combination is the material's number in the mesh's table; texture
+/// coordinates are glTF's. Triangles without a picture or without texture coordinates show the
+/// material's colour, with 0 0 as coordinates. Pictures that triangles should show and that are not
+/// there are noted in the table in any case. `files`: of the file system that has the libraries and
+/// pictures. Throws as mesh_io::read_obj and read_libraries.
 ObjImport import_obj(mesh_io::InputStream& stream, const std::filesystem::path& path, RawMesh& mesh,
-                     const ImportRoom& room);
+                     mesh_io::NamedFiles& files, Textures textures, const ImportRoom& room);
 
 }  // namespace meshhier::importing

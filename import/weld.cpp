@@ -163,8 +163,8 @@ std::uint64_t weld_into(const RawMesh& mesh, RawMesh& welded,
     return weld_into<6>(mesh, welded, table, room);
   if (words <= 9)
     return weld_into<9>(mesh, welded, table, room);
-  static_assert(6 + kMaxChannels <= 15);
-  return weld_into<15>(mesh, welded, table, room);
+  static_assert(6 + kMaxChannels <= 16);
+  return weld_into<16>(mesh, welded, table, room);
 }
 
 /// Translates triangles and drops those that became degenerate; returns how many did.

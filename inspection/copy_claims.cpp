@@ -96,6 +96,8 @@ void CopyClaims::add_ghosts(const PublishedTile& tile) {
 }
 
 void CopyClaims::add_splits(const PublishedTile& tile) {
+  if (!tile.shading.texcoords.empty())
+    return;  // those differ from tile to tile
   const TileMesh& mesh = tile.mesh;
   const VertexNumbers numbers = vertex_numbers(mesh);
   for (std::size_t split = 0; split < tile.shading.split_of.size(); ++split) {

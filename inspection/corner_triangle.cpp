@@ -75,7 +75,7 @@ std::vector<ShadedTriangle> border_of(const PublishedTile& tile, const Tree& tre
                                      : make_corner(mesh.ghost(t[i]).tile, mesh.ghost(t[i]).index);
     }
   }
-  if (!tile.shading.empty())
+  if (!tile.shading.normals.empty())
     add_normals(tile, triangles);
   // All of the input's triangles stay; simplified tiles have none to drop, or it is told elsewhere.
   normalize(triangles, !tree.is_partition(tile.node));

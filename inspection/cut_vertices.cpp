@@ -1,6 +1,7 @@
 #include "inspection/cut_vertices.h"
 
 #include "hierarchy/error.h"
+#include "inspection/nearest_vertex.h"
 #include "inspection/tile_vertices.h"
 
 #include <algorithm>
@@ -14,40 +15,6 @@
 #include <fmt/format.h>
 
 namespace meshhier::inspection {
-namespace {
-
-double squared_difference(std::span<const float> a, std::span<const float> b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i)
-    sum += (double{a[i]} - double{b[i]}) * (double{a[i]} - double{b[i]});
-  return sum;
-}
-
-/// How unlike two vertices are: by normal, colour, texture coordinate.
-std::array<double, 3> difference(const AttributeLayout& layout, const VertexAt& a,
-                                 const VertexAt& b) {
-  const auto between = [&](int begin, int end) {
-    const auto first = static_cast<std::size_t>(begin),
-               count = static_cast<std::size_t>(end) - first;
-    return squared_difference(a.attributes().subspan(first, count),
-                              b.attributes().subspan(first, count));
-  };
-  return {between(layout.normal_offset(), layout.colour_offset()),
-          between(layout.colour_offset(), layout.texcoord_offset()),
-          between(layout.texcoord_offset(), layout.channels())};
-}
-
-/// All vertices at a place.
-std::vector<VertexAt> vertices_at(const VertexArray& vertices, const Copies& copies,
-                                  std::uint32_t place) {
-  std::vector<VertexAt> all{VertexAt(vertices, place)};
-  for (std::size_t i = copies.first_of(place); i < copies.size() && copies.places[i] == place; ++i)
-    all.push_back(VertexAt(copies.vertices, i));
-  return all;
-}
-
-}  // namespace
-
 CutVertices::CutVertices(const storage::HierarchyReader& reader, const NumberedCut& numbered,
                          std::uint64_t cache_bytes, const execution::CancelToken& cancel)
     : reader_(reader),
@@ -188,13 +155,8 @@ class CutVertices::TileVertices {
   Wedges nearest_wedges(const std::vector<VertexAt>& here, const std::vector<VertexAt>& all) const {
     const AttributeLayout& layout = cut_.reader_.tile_format().attributes;
     Wedges wedges;
-    for (const VertexAt& vertex : here) {
-      const auto nearest =
-          std::min_element(all.begin(), all.end(), [&](const auto& a, const auto& b) {
-            return difference(layout, vertex, a) < difference(layout, vertex, b);
-          });
-      wedges.push_back(static_cast<std::uint32_t>(nearest - all.begin()));
-    }
+    for (const VertexAt& vertex : here)
+      wedges.push_back(static_cast<std::uint32_t>(nearest_vertex(layout, vertex, all)));
     return wedges;
   }
 

@@ -6,6 +6,7 @@
 #include "inspection/cut_file.h"
 #include "inspection/cut_mesh.h"
 #include "inspection/cut_vertices.h"
+#include "inspection/export_parts.h"
 #include "inspection/tile_vertices.h"
 #include "mesh_io/ply_writer.h"
 #include "storage/format/archive_files.h"
@@ -150,6 +151,11 @@ std::string export_tile(const ExportJob& job, NodeId node) {
                      counted(content.triangle_count, "triangles"), mesh.border.size());
 }
 
+/// Whether a PLY leaves them out.
+bool loses_textures(const storage::HierarchyReader& reader, const ExportSelection& selection) {
+  return reader.manifest().textures && !std::holds_alternative<OutlineSelection>(selection);
+}
+
 std::string export_outline(const ExportJob& job) {
   job.progress.stage("export", 1, "outlines");
   const Outline outline = job.reader.read_outline();
@@ -173,6 +179,71 @@ std::string export_outline(const ExportJob& job) {
   return fmt::format("outline: {}, {}, {}", counted(outline.polyline_count(), "lines"),
                      counted(content.vertex_count, "vertices"),
                      counted(content.edge_count, "edges"));
+}
+
+/// By the ending of its name.
+enum class ExportFormat { ply, glb, obj };
+
+ExportFormat format_of(const fs::path& output) {
+  std::string ending = output.extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char letter) {
+    return static_cast<char>(letter >= 'A' && letter <= 'Z' ? letter - 'A' + 'a' : letter);
+  });
+  return ending == ".glb"   ? ExportFormat::glb
+         : ending == ".obj" ? ExportFormat::obj
+                            : ExportFormat::ply;
+}
+
+VertexArray first_vertices(const VertexArray& from, std::size_t count) {
+  VertexArray vertices;
+  vertices.channels = from.channels;
+  vertices.append(from, 0, count);
+  return vertices;
+}
+
+std::string write_parts(const PartsJob& job, const ExportedParts& parts, ExportFormat format) {
+  return format == ExportFormat::glb ? write_glb(job, parts) : write_obj(job, parts);
+}
+
+std::string export_parts_of_cut(const PartsJob& job, Cut cut, std::uint64_t memory_budget,
+                                ExportFormat format) {
+  CutParts parts(job.reader, std::move(cut), memory_budget / 4);
+  const ExportedParts exported{parts.size(), [&](std::size_t i) { return parts.cut()[i]; },
+                               [&](std::size_t i) { return parts.load(i); },
+                               [&](std::size_t i) {
+                                 const PublishedTile tile = job.reader.read_tile(parts.cut()[i]);
+                                 return first_vertices(tile.mesh.vertices, tile.mesh.own_count);
+                               }};
+  return counted(parts.size(), "tiles") + ", " + write_parts(job, exported, format);
+}
+
+std::string export_parts_of_tile(const PartsJob& job, NodeId node, ExportFormat format) {
+  require_node(job.reader.tree(), node);
+  const NodeId tile_node = job.reader.record(node).node;
+  const ExportedParts exported{
+      1, [&](std::size_t) { return tile_node; },
+      [&](std::size_t) { return part_of_tile(job.reader.read_tile(node)); },
+      [&](std::size_t) { return job.reader.read_tile(node).mesh.vertices; }};
+  return write_parts(job, exported, format);
+}
+
+/// As GLB or OBJ, published.
+std::string export_parts(const PartsJob& job, const ExportOptions& options, ExportFormat format) {
+  const Tree& tree = job.reader.tree();
+  if (const auto* level = std::get_if<Level>(&options.selection)) {
+    require_level(tree, *level);
+    return fmt::format(
+        "level {}: {}", raw(*level),
+        export_parts_of_cut(job, Cut::of_level(tree, *level), options.memory_budget, format));
+  }
+  if (const auto* node = std::get_if<NodeId>(&options.selection))
+    return fmt::format("tile {}: {}", to_text(*node), export_parts_of_tile(job, *node, format));
+  if (const auto* path = std::get_if<fs::path>(&options.selection)) {
+    return "cut: " + export_parts_of_cut(job, read_cut(job.files, tree, *path),
+                                         options.memory_budget, format);
+  }
+  throw Error(ErrorCode::usage, options.output.string() +
+                                    ": the outline is lines, which are exported as a PLY alone");
 }
 
 std::string export_selection(const ExportJob& job, const ExportSelection& selection) {
@@ -200,10 +271,18 @@ std::string export_mesh(storage::FileSystem& files, const fs::path& hierarchy,
   const storage::HierarchyFiles place(files, hierarchy);
   const storage::HierarchyReader reader(place.files(), hierarchy);
   storage::OutputFile output(files, request, [&] { cancel.check(); });
+  const ExportFormat format = format_of(options.output);
+  if (format != ExportFormat::ply) {
+    const PartsJob job{files, reader, request, output, progress, cancel};
+    return fmt::format("{}: {}", options.output.string(), export_parts(job, options, format));
+  }
   const ExportJob job{files, reader, output, options.memory_budget, progress, cancel};
   const std::string summary = export_selection(job, options.selection);
   output.publish();
-  return fmt::format("{}: {}", options.output.string(), summary);
+  return fmt::format("{}: {}{}", options.output.string(), summary,
+                     loses_textures(reader, options.selection)
+                         ? "; without textures, which a .glb or an .obj has"
+                         : "");
 }
 
 }  // namespace meshhier::inspection

@@ -1,4 +1,4 @@
-// Writes parts of a hierarchy as an ordinary PLY mesh.
+// Writes parts of a hierarchy as an ordinary mesh: PLY, or with pictures GLB or OBJ.
 #pragma once
 
 #include "execution/cancel.h"
@@ -22,12 +22,19 @@ using ExportSelection = std::variant<Level, NodeId, std::filesystem::path, Outli
 
 struct ExportOptions {
   ExportSelection selection;
-  std::filesystem::path output;            ///< PLY; a file or a stream (storage::OutputFile)
+  /// A file or a stream (storage::OutputFile); .glb and .obj by its ending, all else is PLY.
+  std::filesystem::path output;
   std::uint64_t memory_budget = 1U << 30;  ///< bytes
   bool replace = false;                    ///< a file that is there
 };
 
-/// Assembles the selection seamlessly, tile by tile, into options.output. Vertices are shared
+/// Assembles the selection seamlessly, tile by tile, into options.output.
+///
+/// GLB and OBJ have the pictures of a textured hierarchy, and a primitive or group a tile: what the
+/// tile draws, at vertices of its own in a GLB, at common positions in an OBJ. The outline goes
+/// into a PLY alone.
+///
+/// A PLY has no textures. Vertices are shared
 /// between tiles; coordinates are doubles if the hierarchy has an origin. Triangles of the input
 /// come with all their copies, of coarser ones exact duplicates (same corners, same orientation)
 /// come once. Vertices of a level or cut are those of CutVertices, of a node they come as in its

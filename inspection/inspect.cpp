@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -113,6 +114,14 @@ std::string_view normals_of(const storage::Manifest& manifest) {
                                             : "none";
 }
 
+/// What the input has of them.
+std::string textures_text(const SourceTextures& t) {
+  const std::string missing =
+      t.missing_images > 0 ? fmt::format(" ({} missing)", grouped(t.missing_images)) : "";
+  return fmt::format("{}, {}{}, {}", grouped(t.materials, "materials"),
+                     grouped(t.images, "pictures"), missing, grouped(t.texels, "texels"));
+}
+
 std::string source_text(const storage::Manifest& manifest) {
   const SourceSummary& s = manifest.source;
   const BoundsD& b = s.bounds;
@@ -130,6 +139,8 @@ std::string source_text(const storage::Manifest& manifest) {
   text += fmt::format("attributes   {}\n", attribute_names(s.attributes));
   text += fmt::format("normals      {}{}\n", normals_of(manifest),
                       manifest.computed_normals ? ", 8 bits" : "");
+  if (s.textures)
+    text += "textures     " + textures_text(*s.textures) + '\n';
   for (const SourceFile& file : s.files) {
     text += fmt::format("imported     {}: {}, {}\n", shown(file.name), shown(file.format),
                         execution::rounded_size_text(file.bytes));
@@ -199,10 +210,27 @@ std::string level_table(std::span<const storage::LevelSummary> levels, std::opti
   }
   return text +
          "spread: (max - min) / mean; copies: further vertices where one lies already, with other "
-         "attributes; splits: further normals of vertices, at creases\nborder: share of border "
+         "attributes; splits: further normals of vertices, at creases, and texture "
+         "coordinates\nborder: share of border "
          "triangles; error, bound: the "
          "largest, in input units\ntorn: vertices that went by changing the surface's topology; "
          "forced: without care for the surface, to reach the count\n";
+}
+
+/// Those of all tiles.
+std::string pictures_text(const TextureFormat& format, const storage::PictureSummary& pictures) {
+  const bool has_quality = format.format != ImageFormat::png;
+  return fmt::format("pictures     {}{}, {}: {} of {:.0f} x {:.0f} texels on average\n",
+                     kImageFormatNames[static_cast<std::size_t>(format.format)],
+                     has_quality ? fmt::format(" of quality {}", format.quality) : "",
+                     format.unlit ? "unlit" : "lit", grouped(pictures.tiles), pictures.width,
+                     pictures.height);
+}
+
+std::string tile_sizes_text(const storage::CountRange& bytes) {
+  return fmt::format("tiles        {} on average, standard deviation {:.2f} of the mean\n",
+                     grouped(static_cast<std::uint64_t>(std::llround(bytes.mean)), "bytes"),
+                     bytes.variation());
 }
 
 std::string storage_text(const storage::Manifest& manifest) {
@@ -255,21 +283,37 @@ std::string totals_text(const storage::Manifest& manifest,
       ratio(triangles, s.triangles));
 }
 
+std::string picture_text(const TileRecord& r) {
+  if (r.image_width == 0)
+    return "";
+  return fmt::format("; a picture of {} x {} texels of {:.4g}", r.image_width, r.image_height,
+                     r.texel);
+}
+
 std::string tile_text(const TileRecord& r) {
   return fmt::format(
       "tile {}: {} (asked for {}), {} of them on the boundary, {}{}{}; {} interior and {}, {} of "
-      "them drawn here; error {:.4g}, bound {:.4g}{}; {}; box {} {} {} to {} {} {}\n",
+      "them drawn here; error {:.4g}, bound {:.4g}{}{}; {}; box {} {} {} to {} {} {}\n",
       to_text(r.node), counted(r.own_count, "vertices"), r.target_count, r.boundary_count,
       counted(r.ghost_count, "ghosts"),
       r.copy_count > 0 ? ", " + counted(r.copy_count, "copies") : "",
       r.split_count > 0 ? ", " + counted(r.split_count, "splits") : "", r.interior_count,
       counted(r.border_count, "border triangles"), r.drawn_border_count, r.error, r.bound,
-      r.compactness > 0 ? fmt::format(", compactness {:.3f}", r.compactness) : "",
+      r.compactness > 0 ? fmt::format(", compactness {:.3f}", r.compactness) : "", picture_text(r),
       counted(r.file_bytes, "bytes"), r.bounds.min.x, r.bounds.min.y, r.bounds.min.z,
       r.bounds.max.x, r.bounds.max.y, r.bounds.max.z);
 }
 
 // As JSON.
+
+Json textures_json(const std::optional<SourceTextures>& t) {
+  if (!t)
+    return nullptr;
+  return {{"materials", t->materials},
+          {"images", t->images},
+          {"missing_images", t->missing_images},
+          {"texels", t->texels}};
+}
 
 Json source_json(const storage::Manifest& manifest) {
   const SourceSummary& s = manifest.source;
@@ -292,6 +336,7 @@ Json source_json(const storage::Manifest& manifest) {
           {"double_precision", s.double_precision},
           {"origin", corner(manifest.origin)},
           {"attributes", attribute_names(s.attributes)},
+          {"textures", textures_json(s.textures)},
           {"imported_files", files},
           {"counts", counts}};
 }
@@ -311,7 +356,13 @@ Json partitions_json(const storage::LevelSummary& last,
 Json storage_json(const storage::Manifest& manifest) {
   Json json = {{"compression", storage::name_of(manifest.compression)},
                {"positions", nullptr},
-               {"normals", normals_of(manifest)}};
+               {"normals", normals_of(manifest)},
+               {"texture", nullptr}};
+  if (const auto& textures = manifest.textures) {
+    json["texture"] = {{"format", kImageFormatNames[static_cast<std::size_t>(textures->format)]},
+                       {"quality", textures->quality},
+                       {"unlit", textures->unlit}};
+  }
   if (const auto& q = manifest.quantization) {
     json["positions"] = {{"bits", q->lattice.bits},
                          {"step", q->lattice.step},
@@ -360,6 +411,9 @@ std::string inspect_text(storage::FileSystem& files, const std::filesystem::path
   text += storage_text(manifest);
   text += fmt::format("sizes        {}; {}\n", sizes_text("partitions", partition_sizes(reader)),
                       sizes_text("all tiles", all_sizes(reader)));
+  text += tile_sizes_text(all_sizes(reader).tile_bytes);
+  if (manifest.textures)
+    text += pictures_text(*manifest.textures, storage::summarize_pictures(reader.records()));
   text += partitions_text(levels.back(),
                           storage::summarize_compactness(reader.tree(), reader.records()));
   text += outline_text(manifest);
@@ -387,6 +441,7 @@ Json inspect_json(storage::FileSystem& files, const std::filesystem::path& direc
        {{"partitions", to_json(partition_sizes(reader))}, {"all", to_json(all_sizes(reader))}}},
       {"outline", outline_json(manifest)},
       {"tileset", tileset_json(manifest)},
+      {"pictures", storage::to_json(storage::summarize_pictures(reader.records()))},
       {"forced_collapses", storage::to_json(forced_collapses_of(reader))},
       {"tile_bytes", tile_bytes(levels)},
       {"total_bytes", bytes_on_disk(place, reader)}};

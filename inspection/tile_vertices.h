@@ -23,10 +23,12 @@ inline VertexNumbers vertex_numbers(const TileMesh& mesh) {
   return {static_cast<std::uint32_t>(mesh.vertices.size()), mesh.copies.places};
 }
 
-/// The computed normal of a vertex or split, by its number; none if there are none.
+/// The computed normal of a vertex or split, by its number, as neighbours have it too; none if
+/// there are none. In a tile with texture coordinates they tell which normal of a vertex is its
+/// first, so that neighbours have the same normals at corners of triangles alone.
 inline std::span<const NormalCode> normal_of(const Shading& shading, std::size_t number) {
-  return shading.empty() ? std::span<const NormalCode>()
-                         : std::span(shading.normals).subspan(number, 1);
+  const bool is_common = !shading.normals.empty() && shading.texcoords.empty();
+  return is_common ? std::span(shading.normals).subspan(number, 1) : std::span<const NormalCode>();
 }
 
 /// Of a triangle; `all` is empty where there are no copies.

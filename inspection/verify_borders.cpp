@@ -177,11 +177,12 @@ void explain_difference(const VerifyJob& job, NodeId a, NodeId b) {
 }
 
 void tell_wrong_copies(const VerifyJob& job, const WrongCopies& wrong) {
+  const storage::TileFormat& format = job.reader.tile_format();
+  const bool has_common_splits = format.computed_normals && !format.textures;
   job.problems.add(fmt::format(
       "tile {}: of its {} of vertices in tile {}, {} are not there, or in another order (the "
       "first: of vertex {})",
-      to_text(wrong.tile),
-      job.reader.tile_format().computed_normals ? "copies and splits" : "copies",
+      to_text(wrong.tile), has_common_splits ? "copies and splits" : "copies",
       to_text(wrong.neighbour), wrong.count, wrong.first_place));
 }
 

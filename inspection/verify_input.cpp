@@ -4,7 +4,8 @@
 // Both sides become sums over multisets: a vertex is hashed from the bits of its position (as
 // stored) and attributes, a triangle from the hashes of its corners in their order around it. The
 // sums are of two independent 64-bit hashes: two different multisets have the same sums with a
-// chance of 2^-128. Nothing is kept but one 64-bit hash per input vertex, in a spool.
+// chance of 2^-128. Of each input vertex one 64-bit hash is kept, in a spool,
+// with its position and texture coordinate for the texels (verify_texels.h).
 //
 // Where vertices of equal coordinates are one place, the input's distinct coordinates are counted,
 // by sorting them. Copies lie where their places do (decode_tile), so if there are as many places
@@ -17,6 +18,7 @@
 #include "import/mesh_input.h"
 #include "inspection/tile_vertices.h"
 #include "inspection/verify_parts.h"
+#include "inspection/verify_texels.h"
 #include "mesh_io/mesh_source.h"
 #include "partition/external_sort.h"
 #include "partition/renumber.h"
@@ -200,13 +202,38 @@ bool has_topology_by_place(const VerifyJob& job) {
   return topology != config.end() && *topology == "place";
 }
 
-InputSums sum_input(const VerifyJob& job, mesh_io::MeshSource& source) {
-  const auto channels = static_cast<std::size_t>(source.description().attributes.channels());
+/// What tiles have of an input's attributes, besides coordinates in their own pictures.
+AttributeLayout kept_layout(const AttributeLayout& layout) {
+  return layout.material ? layout.without_texcoords() : layout;
+}
+
+/// What of a vertex goes to the corners of triangles.
+struct CornerFacts {
+  std::uint64_t hash = 0;
+  InputCorner corner;
+};
+
+CornerFacts facts_of(std::uint64_t hash, Vec3f position, std::span<const float> attributes,
+                     const AttributeLayout& layout) {
+  CornerFacts facts{hash, {position, {}, 0}};
+  if (layout.material) {
+    const float* texcoord = attributes.data() + layout.texcoord_offset();
+    facts.corner.texcoord = {texcoord[0], texcoord[1]};
+    facts.corner.material = static_cast<std::uint32_t>(attributes[layout.material_offset()]);
+  }
+  return facts;
+}
+
+/// `texels`: takes the triangles of a textured input; else null.
+InputSums sum_input(const VerifyJob& job, mesh_io::MeshSource& source, TexelCheck* texels) {
+  const AttributeLayout& layout = source.description().attributes;
+  const auto all_channels = static_cast<std::size_t>(layout.channels());
+  const auto channels = static_cast<std::size_t>(kept_layout(layout).channels());
   const Vec3d origin = job.reader.manifest().origin;
   const auto& quantization = job.reader.manifest().quantization;
   InputSums result;
   MeshSums& sums = result.mesh;
-  storage::RecordSpool<std::uint64_t> table(job.scratch, kSpoolBlockBytes);
+  storage::RecordSpool<CornerFacts> table(job.scratch, kSpoolBlockBytes);
   std::optional<PlaceCount> places;
   if (has_topology_by_place(job))
     places.emplace(job.scratch, job.options.memory_budget / 4);
@@ -219,26 +246,30 @@ InputSums sum_input(const VerifyJob& job, mesh_io::MeshSource& source) {
       const double worst = round_to(quantization->lattice, positions);
       result.worst_rounding = std::max(result.worst_rounding, worst);
     }
-    std::vector<std::uint64_t> hashes;
+    std::vector<CornerFacts> facts;
     for (std::size_t i = 0; i < positions.size(); ++i) {
-      const auto attributes = block.attributes.subspan(i * channels, channels);
+      const auto all = block.attributes.subspan(i * all_channels, all_channels);
+      const auto attributes = all.first(channels);
       sums.add_vertex(positions[i], attributes);
-      hashes.push_back(hash_vertex(kVertexTable, positions[i], attributes));
+      facts.push_back(
+          facts_of(hash_vertex(kVertexTable, positions[i], attributes), positions[i], all, layout));
     }
-    table.append(hashes);
+    table.append(facts);
   });
   if (places)
     result.places = places->finish();
   places.reset();
-  partition::Renumberer<std::uint64_t> renumberer(
+  partition::Renumberer<CornerFacts> renumberer(
       table,
-      partition::plan_renumbering(table.size(), sizeof(std::uint64_t),
-                                  job.options.memory_budget / 4),
+      partition::plan_renumbering(table.size(), sizeof(CornerFacts), job.options.memory_budget / 4),
       job.scratch);
-  partition::Renumbered<std::uint64_t> renumbered;
+  partition::Renumbered<CornerFacts> renumbered;
   const auto add = [&] {
-    for (const Triangle<std::uint64_t>& t : renumbered.finished)
-      sums.add_triangle(t);
+    for (const Triangle<CornerFacts>& t : renumbered.finished) {
+      sums.add_triangle({t[0].hash, t[1].hash, t[2].hash});
+      if (texels != nullptr)
+        texels->add({t[0].corner, t[1].corner, t[2].corner});
+    }
     renumberer.keep(renumbered);
   };
   source.read_triangles([&](std::span<const Triangle<VertexId>> triangles) {
@@ -313,7 +344,9 @@ void compare_sums(const MeshSums& input, const MeshSums& partitions,
 void verify_input(const VerifyJob& job) {
   const InputProblems problems(job);
   const SourceSummary& expected = job.reader.manifest().source;
-  importing::MeshInput files(job.options.input, was_welded(job), job.files);
+  importing::MeshInput files(
+      job.options.input, was_welded(job), job.files,
+      expected.textures ? importing::Textures::use : importing::Textures::ignore);
   if (files.needs_import()) {
     files.import({job.scratch.path().string() + "-import", job.scratch.path().string() + "-sorts",
                   job.scratch.pool(), job.options.memory_budget / 8, job.progress, job.cancel});
@@ -321,11 +354,16 @@ void verify_input(const VerifyJob& job) {
   job.progress.stage("input", job.tree().partition_count(), "partitions");
   compare_files(job, files.files(), problems);
   const auto source = files.open();
-  if (source->description().attributes != expected.attributes) {
+  const AttributeLayout& layout = source->description().attributes;
+  if (kept_layout(layout) != expected.attributes ||
+      layout.material != expected.textures.has_value()) {
     problems.add("has other vertex attributes than the mesh the hierarchy was made of");
     return;
   }
-  const InputSums sums = sum_input(job, *source);
+  std::optional<TexelCheck> texels;
+  if (layout.material)
+    texels.emplace(job, files);
+  const InputSums sums = sum_input(job, *source, texels ? &*texels : nullptr);
   const MeshSums& input = sums.mesh;
   problems.compare("vertices", expected.vertices, input.vertices.count);
   problems.compare("triangles", expected.triangles, input.triangles.count);
@@ -342,6 +380,8 @@ void verify_input(const VerifyJob& job) {
       "input: {}{} and {} compared with those of the partitions, bit for bit",
       counted(input.vertices.count, "vertices"), quantization ? ", rounded to the lattice," : "",
       counted(input.triangles.count, "triangles")));
+  if (texels)
+    texels->compare();
 }
 
 }  // namespace meshhier::inspection

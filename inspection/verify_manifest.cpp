@@ -1,5 +1,7 @@
 // What the manifest says, against what follows from tiles, index and itself.
 #include "config/config.h"
+#include "config/partition_size.h"
+#include "config/placement.h"
 #include "hierarchy/bounds.h"
 #include "hierarchy/error.h"
 #include "inspection/verify_parts.h"
@@ -81,8 +83,10 @@ void check_config_against_rest(const storage::Manifest& manifest, const config::
                                const ManifestProblems& problems) {
   const Json& told = manifest.config;
   const auto says = [&](const char* pointer) { return told.contains(Json::json_pointer(pointer)); };
-  const std::uint64_t partitions =
-      config.partition.count.value_or((manifest.source.places - 1) / config.partition.vertices + 1);
+  const SourceSummary& source = manifest.source;
+  const std::uint64_t most = config::partition_vertices(
+      config, source.places, source.textures ? source.textures->texels : 0);
+  const std::uint64_t partitions = config.partition.count.value_or((source.places - 1) / most + 1);
   if (says("/partition/count") || says("/partition/vertices"))
     problems.compare("partitions", std::uint64_t{manifest.partition_count}, partitions);
   if (says("/storage/compression")) {
@@ -92,17 +96,28 @@ void check_config_against_rest(const storage::Manifest& manifest, const config::
   problems.require(!manifest.computed_normals || config.storage.normals == config::Normals::smooth,
                    "\"storage.normals\" are computed, but \"config\" asks for none");
   if (says("/storage/normals")) {
-    const SourceSummary& source = manifest.source;
+    const bool is_unlit = manifest.textures && manifest.textures->unlit;
     const bool needs_normals = config.storage.normals == config::Normals::smooth &&
-                               !source.attributes.normals && source.triangles > 0;
+                               !source.attributes.normals && source.triangles > 0 && !is_unlit;
     problems.require(manifest.computed_normals || !needs_normals,
                      "\"config\" asks for normals, but \"storage.normals\" are not computed");
   }
+  if (says("/texture/format")) {
+    problems.require(!manifest.textures || *manifest.textures == config.texture.format,
+                     "\"storage.texture\" is not that of \"config.texture\"");
+    problems.require(!manifest.textures || config.texture.use,
+                     "there are textures, but \"config\" asks for none");
+  }
   if (says("/up"))
     problems.compare("up", name_of(manifest.up), name_of(config.up));
-  if (says("/placement")) {
-    problems.require(manifest.transform == config::tileset_transform(config),
-                     "\"transform\" is not that of \"config.placement\"");
+  if (config.placement.crs) {
+    problems.require(
+        manifest.transform && config::fits_map(config, manifest.source.bounds, *manifest.transform),
+        "\"transform\" is not near that of \"config.placement\"");
+  } else if (says("/placement")) {
+    problems.require(
+        manifest.transform == config::tileset_transform(config, manifest.source.bounds),
+        "\"transform\" is not that of \"config.placement\"");
   }
   problems.compare("licence", manifest.licence, config.licence);
 }

@@ -95,6 +95,9 @@ void verify_tiles(const VerifyJob& job);
 /// Counts, bounds, errors, order, boundary, copies of one tile against its record and its parent's.
 void verify_tile(const VerifyJob& job, const TileRecord& record, const PublishedTile& tile);
 
+/// Splits and picture of a tile of a textured hierarchy.
+void verify_texture(const VerifyJob& job, const PublishedTile& tile);
+
 /// `job` must outlive it.
 ParentMaps make_parent_maps(const VerifyJob& job);
 

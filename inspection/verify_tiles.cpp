@@ -93,13 +93,13 @@ bool uses_ghost_copies(const TileMesh& mesh) {
 bool uses_ghost_splits(const PublishedTile& tile) {
   const Shading& shading = tile.shading;
   const TileMesh& mesh = tile.mesh;
-  std::vector<bool> used(shading.normals.size());
+  const std::size_t first = mesh.vertices.size() + mesh.copies.size();
+  std::vector<bool> used(first + shading.split_of.size());
   for (const TileTriangle& t : shading.border) {
     for (const TileVertex v : t)
       used[raw(v)] = true;
   }
   const VertexNumbers numbers = vertex_numbers(mesh);
-  const std::size_t first = shading.normals.size() - shading.split_of.size();
   for (std::size_t i = 0; i < shading.split_of.size(); ++i) {
     if (numbers[shading.split_of[i]].place >= mesh.own_count && !used[first + i])
       return false;
@@ -253,6 +253,8 @@ void verify_tiles(const VerifyJob& job) {
     job.cancel.check();
     if (const auto tile = job.tiles.find(record.node)) {
       verify_tile(job, record, *tile);
+      if (!tile->image.empty())
+        verify_texture(job, *tile);
       pairs.add(*tile);
       claims.add(*tile);
       if (!job.tree().is_partition(record.node)) {

@@ -6,6 +6,7 @@
 #include "mesh_io/stl_reader.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <optional>
 #include <span>
@@ -26,6 +27,8 @@ constexpr std::string_view kBlanks = " \t\v\f\r\n";
 
 /// The first word that is in no comment.
 std::string_view first_word(std::string_view text) {
+  if (text.starts_with("\xEF\xBB\xBF"))  // the byte order mark of UTF-8
+    text.remove_prefix(3);
   for (;;) {
     const std::size_t begin = text.find_first_not_of(kBlanks);
     if (begin == std::string_view::npos)
@@ -58,6 +61,29 @@ bool is_ply(std::string_view start) {
   return start.starts_with("ply") && start.size() > 3 && kBlanks.find(start[3]) != kBlanks.npos;
 }
 
+/// An object of JSON that begins as a glTF's.
+bool is_gltf(std::string_view start) {
+  static constexpr std::array<std::string_view, 19> kKeys{
+      "accessors",      "animations", "asset",      "bufferViews", "buffers",
+      "cameras",        "extras",     "extensions", "images",      "extensionsRequired",
+      "extensionsUsed", "materials",  "meshes",     "nodes",       "samplers",
+      "scene",          "scenes",     "skins",      "textures"};
+  const auto skip_blanks = [&] {
+    start.remove_prefix(std::min(start.find_first_not_of(kBlanks), start.size()));
+  };
+  const auto take = [&](std::string_view word) {
+    skip_blanks();
+    const bool is_there = start.starts_with(word);
+    start.remove_prefix(is_there ? word.size() : 0);
+    return is_there;
+  };
+  take("\xef\xbb\xbf");
+  if (!take("{") || !take("\""))
+    return false;
+  const std::string_view key = start.substr(0, start.find('"'));
+  return std::ranges::find(kKeys, key) != kKeys.end();
+}
+
 std::optional<MeshKind> kind_of(std::string_view start, std::uint64_t file_bytes, bool is_gzip) {
   if (is_ply(start))
     return MeshKind::ply;
@@ -65,6 +91,10 @@ std::optional<MeshKind> kind_of(std::string_view start, std::uint64_t file_bytes
   if (!is_gzip && size == file_bytes)
     return MeshKind::stl_binary;
   const std::string_view word = first_word(start);
+  if (start.starts_with("glTF"))
+    return MeshKind::glb;
+  if (is_gltf(start))
+    return MeshKind::gltf;
   if (is_text(start)) {
     if (is_stl_keyword(word, "solid"))
       return MeshKind::stl_text;
@@ -100,7 +130,8 @@ std::optional<MeshFormat> format_of(std::uint64_t file_bytes, bool is_gzip,
 }  // namespace
 
 std::string name_of(const MeshFormat& format) {
-  static constexpr const char* kNames[] = {"PLY", "OBJ", "binary STL", "ASCII STL", "OFF"};
+  static constexpr const char* kNames[] = {"PLY", "OBJ",  "binary STL", "ASCII STL",
+                                           "OFF", "glTF", "GLB"};
   return std::string(kNames[static_cast<std::size_t>(format.kind)]) +
          (format.is_gzip ? " (gzip)" : "");
 }
@@ -120,8 +151,8 @@ MeshFormat detect_format(const storage::File& file) {
     hint = fmt::format("; as a binary STL it would have {} bytes, it has {} (truncated?)", *size,
                        bytes);
   }
-  fail_file(file.path(), fmt::format("expected a mesh (PLY, OBJ, STL or OFF, or one of them packed "
-                                     "by gzip), found {}{}",
+  fail_file(file.path(), fmt::format("expected a mesh (PLY, OBJ, glTF, STL or OFF, or one of "
+                                     "them packed by gzip), found {}{}",
                                      start.empty() ? "an empty file" : in_quotes(start), hint));
 }
 

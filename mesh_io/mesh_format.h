@@ -9,7 +9,7 @@
 
 namespace meshhier::mesh_io {
 
-enum class MeshKind : std::uint8_t { ply, obj, stl_binary, stl_text, off };
+enum class MeshKind : std::uint8_t { ply, obj, stl_binary, stl_text, off, gltf, glb };
 
 struct MeshFormat {
   MeshKind kind{};
@@ -21,7 +21,8 @@ std::string name_of(const MeshFormat& format);
 
 /// Looks at the first 64 KiB of the content, and of a binary STL at the file's size: one that
 /// begins with "solid", as texts do, is binary if its size says so or (where it is packed) if the
-/// first bytes are no text. Throws Error(input) if it is none of these, Error(io).
+/// first bytes are no text. A glTF is an object of JSON whose first
+/// key is one of glTF's. Throws Error(input) if it is none of these, Error(io).
 MeshFormat detect_format(const storage::File& file);
 
 /// The same; nothing if it is none of these.

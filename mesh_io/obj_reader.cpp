@@ -61,8 +61,22 @@ class ObjReader {
       return read_normal();
     if (word == "f" || word == "fo")
       return read_face();
+    if (word == "usemtl")
+      return read_material();
+    if (word == "mtllib")
+      return read_libraries();
     count_statement(word);
     words_.skip_line();
+  }
+
+  void read_material() {
+    ++counts_.materials;
+    visitor_.use_material(words_.take_rest());
+  }
+
+  void read_libraries() {
+    ++counts_.libraries;
+    visitor_.use_libraries(words_.take_rest());
   }
 
   void count_statement(std::string_view word) {
@@ -70,10 +84,6 @@ class ObjReader {
       ++counts_.groups;
     else if (word == "o")
       ++counts_.objects;
-    else if (word == "usemtl")
-      ++counts_.materials;
-    else if (word == "mtllib")
-      ++counts_.libraries;
     else if (word == "p" || word == "l")
       ++counts_.points_and_lines;
     else if (is_one_of(word, kIgnored))

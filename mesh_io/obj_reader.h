@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace meshhier::mesh_io {
@@ -29,6 +30,10 @@ class ObjVisitor {
   virtual void add_position(Vec3d position, const std::optional<ObjColour>& colour) = 0;
   virtual void add_texcoord(std::array<float, 2> texcoord) = 0;
   virtual void add_normal(Vec3f normal) = 0;
+  /// usemtl: of the triangles from here on; the rest of the line.
+  virtual void use_material(const std::string& /*name*/) {}
+  /// mtllib: the rest of the line, which is one name or several.
+  virtual void use_libraries(const std::string& /*names*/) {}
   /// Three different positions.
   virtual void add_triangle(const ObjTriangle& triangle) = 0;
 };
@@ -63,6 +68,7 @@ bool is_obj_statement(std::string_view word);
 ///   vn x y z
 ///   f corner corner corner ...           corner: v | v/vt | v//vn | v/vt/vn, from 1 on, or from -1
 ///                                        back; polygons become fans
+///   usemtl NAME | mtllib NAME [NAME ...]
 ///
 /// and counts all other statements. Indices may be of what comes later; all are looked at. Numbers
 /// are finite. Less than 2^32 - 1 of each. Throws Error(input) naming the line, Error(io).

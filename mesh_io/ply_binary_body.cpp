@@ -27,6 +27,8 @@ class BinaryBody final : public PlyBody {
   void skip(const PlyElementPlan& plan) override;
   void read_vertices(const PlyElementPlan& plan, VertexBlocks& blocks) override;
   void read_faces(const PlyElementPlan& plan, std::uint64_t first, TriangleBlocks& blocks) override;
+  void read_textured_faces(const PlyElementPlan& plan, std::size_t textures,
+                           const PlyFaceVisitor& visit) override;
   void expect_end() override;
 
  private:
@@ -46,6 +48,12 @@ class BinaryBody final : public PlyBody {
                                    std::uint64_t count, TriangleBlocks& blocks);
   void read_face_row(const Row& row, TriangleBlocks& blocks);
   void take_corners(const Row& row, const PlyProperty& property, TriangleBlocks& blocks);
+  template <class Take>
+  void take_list(const Row& row, const PlyProperty& property, std::uint64_t count,
+                 const Take& take);
+  std::uint64_t take_face_count(const Row& row, const PlyProperty& property, std::uint64_t most);
+  std::int64_t take_textured_row(const Row& row, PlyFace& face);
+  std::int64_t load_integer(PlyType type) const;
 
   ByteWindow window_;
   bool check_colours_;
@@ -181,11 +189,8 @@ void BinaryBody<Swap>::take_corners(const Row& row, const PlyProperty& property,
   const bool strip = row.plan.role == Role::strips;
   const std::uint64_t count = take_count(row, property);
   strip ? blocks.begin_strip() : blocks.begin_polygon();
-  for (std::uint64_t i = 0; i < count; ++i) {
-    require(row, property, size_of(property.type));
-    const auto index = with_type(property.type, [&](auto zero) {
-      return static_cast<std::int64_t>(load<decltype(zero), Swap>(window_.begin()));
-    });
+  take_list(row, property, count, [&] {
+    const std::int64_t index = load_integer(property.type);
     if (index >= 0 && static_cast<std::uint64_t>(index) < vertex_count_) {
       const auto corner = static_cast<std::uint32_t>(index);
       strip ? blocks.add_strip_corner(corner) : blocks.add_polygon_corner(corner);
@@ -194,9 +199,82 @@ void BinaryBody<Swap>::take_corners(const Row& row, const PlyProperty& property,
     } else {
       fail(window_.offset(), index_text(row.plan, row.number, index, vertex_count_));
     }
+  });
+  strip ? blocks.end_strip() : blocks.end_polygon();
+}
+
+/// Calls `take` with each item at the window's beginning.
+template <bool Swap>
+template <class Take>
+void BinaryBody<Swap>::take_list(const Row& row, const PlyProperty& property, std::uint64_t count,
+                                 const Take& take) {
+  for (std::uint64_t i = 0; i < count; ++i) {
+    require(row, property, size_of(property.type));
+    take();
     window_.advance(size_of(property.type));
   }
-  strip ? blocks.end_strip() : blocks.end_polygon();
+}
+
+/// Of an integer type.
+template <bool Swap>
+std::int64_t BinaryBody<Swap>::load_integer(PlyType type) const {
+  return with_type(type, [&](auto zero) {
+    return static_cast<std::int64_t>(load<decltype(zero), Swap>(window_.begin()));
+  });
+}
+
+template <bool Swap>
+void BinaryBody<Swap>::read_textured_faces(const PlyElementPlan& plan, std::size_t textures,
+                                           const PlyFaceVisitor& visit) {
+  PlyFace face;
+  for (std::uint64_t i = 0; i < plan.element.count; ++i) {
+    const std::uint64_t start = window_.offset();
+    face.clear();
+    const std::int64_t number = take_textured_row({plan, i}, face);
+    const std::string defect = texture_defect(plan, i, face, number, textures);
+    if (!defect.empty())
+      fail(start, defect);
+    face.texture = static_cast<std::int32_t>(number);
+    visit(face);
+  }
+}
+
+/// Returns the number of the texture.
+template <bool Swap>
+std::int64_t BinaryBody<Swap>::take_textured_row(const Row& row, PlyFace& face) {
+  std::int64_t number = 0;
+  for (std::size_t i = 0; i < row.plan.element.properties.size(); ++i) {
+    const PlyProperty& property = row.plan.element.properties[i];
+    if (i == row.plan.corners) {
+      take_list(row, property, take_face_count(row, property, PlyFace::kMostCorners), [&] {
+        const std::int64_t index = load_integer(property.type);
+        if (index < 0 || static_cast<std::uint64_t>(index) >= vertex_count_)
+          fail(window_.offset(), index_text(row.plan, row.number, index, vertex_count_));
+        face.corners.push_back(static_cast<std::uint32_t>(index));
+      });
+    } else if (i == row.plan.texcoords) {
+      take_list(row, property, take_face_count(row, property, 2 * PlyFace::kMostCorners), [&] {
+        face.texcoords.push_back(with_type(property.type, [&](auto zero) {
+          return static_cast<float>(load<decltype(zero), Swap>(window_.begin()));
+        }));
+      });
+    } else if (i == row.plan.texnumber) {
+      take_list(row, property, 1, [&] { number = load_integer(property.type); });
+    } else {
+      skip_property(row, property);
+    }
+  }
+  return number;
+}
+
+template <bool Swap>
+std::uint64_t BinaryBody<Swap>::take_face_count(const Row& row, const PlyProperty& property,
+                                                std::uint64_t most) {
+  const std::uint64_t start = window_.offset();
+  const std::uint64_t count = take_count(row, property);
+  if (count > most)
+    fail(start, corners_text(row.plan, row.number, count));
+  return count;
 }
 
 /// Some writers end every file with a line end, also behind zeros that fill up to a multiple of

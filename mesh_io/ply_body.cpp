@@ -33,6 +33,33 @@ std::string defect_text(const PlyElementPlan& plan, std::uint64_t row, int slot,
                      row_name(plan, row), value);
 }
 
+std::string texture_defect(const PlyElementPlan& plan, std::uint64_t row, const PlyFace& face,
+                           std::int64_t number, std::size_t textures) {
+  if (number < -1 || number >= static_cast<std::int64_t>(textures)) {
+    return fmt::format(
+        "expected the number of one of {} texture files, from 0 on, or -1 for none, "
+        "as 'texnumber' in {}, found {}",
+        textures, row_name(plan, row), number);
+  }
+  const std::size_t expected = 2 * face.corners.size();
+  if (!face.texcoords.empty() && face.texcoords.size() != expected) {
+    return fmt::format(
+        "expected {} numbers or none, two a corner, in list 'texcoord' of {}, found "
+        "{}",
+        expected, row_name(plan, row), face.texcoords.size());
+  }
+  if (!std::ranges::all_of(face.texcoords, [](float value) { return std::isfinite(value); }))
+    return fmt::format("expected finite numbers in list 'texcoord' of {}", row_name(plan, row));
+  return {};
+}
+
+std::string corners_text(const PlyElementPlan& plan, std::uint64_t row, std::uint64_t count) {
+  return fmt::format(
+      "expected at most {} corners with texture coordinates in {}, found a list of "
+      "{}",
+      PlyFace::kMostCorners, row_name(plan, row), count);
+}
+
 std::string index_text(const PlyElementPlan& plan, std::uint64_t row, std::int64_t index,
                        std::uint64_t vertex_count) {
   return fmt::format("expected a vertex index below {}, the number of vertices, in {}, found {}",

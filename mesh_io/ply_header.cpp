@@ -75,6 +75,7 @@ class HeaderParser {
   void check_magic();
   std::string_view next_line();
   bool parse_line(std::string_view line);
+  void parse_comment(std::string_view rest);
   void parse_format(std::string_view rest);
   void parse_element(std::string_view rest);
   void parse_property(std::string_view rest);
@@ -130,8 +131,12 @@ std::string_view HeaderParser::next_line() {
 bool HeaderParser::parse_line(std::string_view line) {
   std::string_view rest = line;
   const std::string_view keyword = take_word(rest);
-  if (keyword.empty() || keyword == "comment" || keyword == "obj_info")
+  if (keyword.empty() || keyword == "obj_info")
     return false;
+  if (keyword == "comment") {
+    parse_comment(rest);
+    return false;
+  }
   if (keyword == "format") {
     parse_format(rest);
   } else if (keyword == "element") {
@@ -149,6 +154,11 @@ bool HeaderParser::parse_line(std::string_view line) {
         in_quotes(keyword));
   }
   return false;
+}
+
+void HeaderParser::parse_comment(std::string_view rest) {
+  if (take_word(rest) == "TextureFile" && !rest.empty())
+    header_.texture_files.emplace_back(rest);
 }
 
 void HeaderParser::parse_format(std::string_view rest) {

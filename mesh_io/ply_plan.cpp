@@ -17,8 +17,9 @@ using Role = PlyElementPlan::Role;
 
 class Planner {
  public:
-  Planner(const PlyHeader& header, std::uint64_t file_bytes, const std::filesystem::path& path)
-      : header_(header), file_bytes_(file_bytes), path_(path) {}
+  Planner(const PlyHeader& header, std::uint64_t file_bytes, const std::filesystem::path& path,
+          PlyMaterials materials)
+      : header_(header), file_bytes_(file_bytes), path_(path), materials_(materials) {}
 
   PlyPlan plan() {
     plan_.encoding = header_.encoding;
@@ -27,6 +28,7 @@ class Planner {
     plan_vertices();
     for (PlyElementPlan& element : plan_.elements)
       plan_faces(element);
+    plan_textures();
     check_range_grid();
     check_sizes();
     return std::move(plan_);
@@ -39,7 +41,10 @@ class Planner {
   void plan_vertices();
   void plan_attributes(PlyElementPlan& vertices);
   void plan_colours(PlyElementPlan& vertices);
+  void plan_materials(PlyElementPlan& vertices);
   void plan_faces(PlyElementPlan& plan) const;
+  void plan_textures();
+  void plan_face_textures(PlyElementPlan& plan) const;
   void check_range_grid() const;
   void check_sizes() const;
 
@@ -52,6 +57,7 @@ class Planner {
   const PlyHeader& header_;
   std::uint64_t file_bytes_;
   const std::filesystem::path& path_;
+  PlyMaterials materials_;
   PlyPlan plan_;
 };
 
@@ -151,6 +157,16 @@ void Planner::plan_attributes(PlyElementPlan& vertices) {
     assign_slots(vertices, std::span(found).first(2), layout.texcoord_offset());
     break;
   }
+  if (layout.texcoords && materials_ == PlyMaterials::read)
+    plan_materials(vertices);
+}
+
+void Planner::plan_materials(PlyElementPlan& vertices) {
+  const int found = find_scalar(vertices.element, "material");
+  if (found < 0)
+    return;
+  plan_.attributes.material = true;
+  assign_slots(vertices, std::span(&found, 1), plan_.attributes.material_offset());
 }
 
 ColourType colour_type(PlyType type) {
@@ -216,6 +232,30 @@ void Planner::plan_faces(PlyElementPlan& plan) const {
   plan.role = element.name == "face" ? Role::polygons : Role::strips;
 }
 
+void Planner::plan_textures() {
+  if (header_.texture_files.empty())
+    return;
+  bool has_coordinates = plan_.attributes.texcoords;
+  for (PlyElementPlan& plan : plan_.elements) {
+    if (plan.role == Role::polygons)
+      plan_face_textures(plan);
+    has_coordinates = has_coordinates || plan.texcoords;
+  }
+  if (has_coordinates)
+    plan_.texture_files = header_.texture_files;
+}
+
+void Planner::plan_face_textures(PlyElementPlan& plan) const {
+  const std::vector<PlyProperty>& properties = plan.element.properties;
+  for (std::size_t i = 0; i < properties.size(); ++i) {
+    const PlyProperty& property = properties[i];
+    if (property.is_list() && property.name == "texcoord" && i != plan.corners && !plan.texcoords)
+      plan.texcoords = i;
+    if (!property.is_list() && property.name == "texnumber" && is_integer(property.type))
+      plan.texnumber = i;
+  }
+}
+
 /// A raw scan's grid is no list of faces, and to take such a file for a cloud of points would lose
 /// what its owner sees in it.
 void Planner::check_range_grid() const {
@@ -255,8 +295,8 @@ void Planner::check_sizes() const {
 }  // namespace
 
 PlyPlan make_ply_plan(const PlyHeader& header, std::uint64_t file_bytes,
-                      const std::filesystem::path& path) {
-  return Planner(header, file_bytes, path).plan();
+                      const std::filesystem::path& path, PlyMaterials materials) {
+  return Planner(header, file_bytes, path, materials).plan();
 }
 
 }  // namespace meshhier::mesh_io

@@ -22,6 +22,8 @@ struct PlyElementPlan {
   Role role = Role::skipped;
   std::vector<int> slots;   ///< one per property: kSkipped or where a vertex property goes
   std::size_t corners = 0;  ///< of polygons and strips: the property with the vertex indices
+  std::optional<std::size_t> texcoords;  ///< of polygons: the property with those of the corners
+  std::optional<std::size_t> texnumber;  ///< of polygons: the property with the texture's number
   std::uint64_t min_row_bytes = 0;  ///< of a row, all lists empty; in text the fewest characters
   std::optional<std::uint64_t> stride;  ///< bytes of every row: binary, and no property is a list
 
@@ -33,9 +35,14 @@ struct PlyPlan {
   std::vector<PlyElementPlan> elements;  ///< in the order of the file
   std::size_t vertex_element = 0;
   AttributeLayout attributes;
-  bool wide_coordinates = false;  ///< a coordinate is double, int or uint
+  bool wide_coordinates = false;           ///< a coordinate is double, int or uint
+  std::vector<std::string> texture_files;  ///< empty if nothing has coordinates in them
   bool check_colours = false;  ///< the stored type holds values that `attributes.colour` does not
 };
+
+/// Whether the vertices' property `material` is read as AttributeLayout::material. No file can ask
+/// for it: only who wrote the file knows that its numbers are those of a MaterialList.
+enum class PlyMaterials : std::uint8_t { skipped, read };
 
 /// Decides what is read:
 ///
@@ -43,8 +50,15 @@ struct PlyPlan {
 ///                        nx ny nz                        any scalar type, as given
 ///                        red green blue [alpha]          or r g b [a], or diffuse_red ... [alpha]
 ///                        s t | u v | texture_u texture_v | texture_s texture_t
+///                        material                        behind the coordinates, if it is asked
+///                        for
 ///   element face         list vertex_indices | vertex_index
 ///   element tristrips    list vertex_indices | vertex_index
+///
+/// and, if comments name texture files (TextureFile NAME), of polygons also
+///
+///   list texcoord        u v of each corner, or nothing; any scalar type
+///   texnumber            the texture file, from 0 on; -1: none; an integer type
 ///
 /// Attributes of which not all parts are there are skipped. The parts of a colour must be of one
 /// type, else they are skipped: uchar is u8, ushort is u16, float and double are f32; the other
@@ -53,6 +67,7 @@ struct PlyPlan {
 /// there are 2^32 vertices or more, or if the declared counts do not fit into `file_bytes`.
 /// Allocates nothing that a count sizes.
 PlyPlan make_ply_plan(const PlyHeader& header, std::uint64_t file_bytes,
-                      const std::filesystem::path& path);
+                      const std::filesystem::path& path,
+                      PlyMaterials materials = PlyMaterials::skipped);
 
 }  // namespace meshhier::mesh_io

@@ -1,5 +1,6 @@
 #include "mesh_io/ply_source.h"
 
+#include "hierarchy/error.h"
 #include "mesh_io/ply_body.h"
 #include "mesh_io/ply_fixed_rows.h"
 #include "mesh_io/ply_header.h"
@@ -16,12 +17,12 @@
 namespace meshhier::mesh_io {
 namespace {
 
-class PlySource final : public MeshSource {
+class PlyFileSource final : public PlySource {
  public:
-  explicit PlySource(std::unique_ptr<storage::File> file)
+  PlyFileSource(std::unique_ptr<storage::File> file, PlyMaterials materials)
       : file_(std::move(file)), file_bytes_(file_->size()), checksum_(file_bytes_) {
     const PlyHeader header = read_header();
-    plan_ = make_ply_plan(header, file_bytes_, file_->path());
+    plan_ = make_ply_plan(header, file_bytes_, file_->path(), materials);
     starts_.resize(plan_.elements.size() + 1);
     starts_[0] = PlyPosition{header.data_offset, header.data_line};
     locate_fixed_elements();
@@ -48,6 +49,12 @@ class PlySource final : public MeshSource {
     return triangle_blocks_->read(input(), index, memory);
   }
   FaceCounts read_triangles_from(std::uint64_t face, const TriangleVisitor& visit) override;
+  const std::vector<std::string>& texture_files() const override { return plan_.texture_files; }
+  bool has_face_texcoords() const override {
+    return std::ranges::any_of(
+        plan_.elements, [](const PlyElementPlan& plan) { return plan.texcoords.has_value(); });
+  }
+  FaceCounts read_textured_faces(const PlyFaceVisitor& visit) override;
   std::uint64_t checksum(const std::function<void()>& check) override {
     return checksum_.complete(*file_, check);
   }
@@ -72,7 +79,7 @@ class PlySource final : public MeshSource {
   std::optional<PlyTriangleBlocks> triangle_blocks_;  ///< of the first element with faces
 };
 
-PlyHeader PlySource::read_header() const {
+PlyHeader PlyFileSource::read_header() const {
   std::string start(std::min<std::uint64_t>(file_bytes_, kMaxHeaderBytes), '\0');
   start.resize(file_->read_at(0, std::as_writable_bytes(std::span(start))));
   checksum_.add(0, std::as_bytes(std::span(start)));
@@ -80,7 +87,7 @@ PlyHeader PlySource::read_header() const {
 }
 
 /// No overflow: make_ply_plan has checked that the rows fit the file.
-void PlySource::locate_fixed_elements() {
+void PlyFileSource::locate_fixed_elements() {
   for (std::size_t i = 0; i < plan_.elements.size() && starts_[i]; ++i) {
     const PlyElementPlan& element = plan_.elements[i];
     if (!element.stride)
@@ -89,7 +96,7 @@ void PlySource::locate_fixed_elements() {
   }
 }
 
-void PlySource::describe() {
+void PlyFileSource::describe() {
   const PlyElementPlan& vertices = plan_.elements[plan_.vertex_element];
   description_.format = "PLY " + std::string(name_of(plan_.encoding));
   description_.file_bytes = file_bytes_;
@@ -104,7 +111,7 @@ void PlySource::describe() {
       vertices.stride.has_value() && starts_[plan_.vertex_element].has_value();
 }
 
-void PlySource::plan_blocks() {
+void PlyFileSource::plan_blocks() {
   if (description_.vertices_in_place)
     vertex_blocks_.emplace(plan_, description_, starts_[plan_.vertex_element]->offset);
   const std::size_t first = first_face_element();
@@ -116,7 +123,7 @@ void PlySource::plan_blocks() {
 
 /// A body at the start of an element, or at the end of the data: from the last known start before
 /// it.
-std::unique_ptr<PlyBody> PlySource::body_at(std::size_t element) {
+std::unique_ptr<PlyBody> PlyFileSource::body_at(std::size_t element) {
   std::size_t known = element;
   while (!starts_[known])
     --known;
@@ -130,13 +137,13 @@ std::unique_ptr<PlyBody> PlySource::body_at(std::size_t element) {
   return body;
 }
 
-std::size_t PlySource::first_face_element() const {
+std::size_t PlyFileSource::first_face_element() const {
   const auto found = std::find_if(plan_.elements.begin(), plan_.elements.end(),
                                   [](const PlyElementPlan& plan) { return plan.has_faces(); });
   return static_cast<std::size_t>(found - plan_.elements.begin());
 }
 
-void PlySource::read_vertices(const VertexVisitor& visit) {
+void PlyFileSource::read_vertices(const VertexVisitor& visit) {
   const std::size_t element = plan_.vertex_element;
   const auto body = body_at(element);
   if (const auto stride = plan_.elements[element].stride) {
@@ -155,7 +162,7 @@ void PlySource::read_vertices(const VertexVisitor& visit) {
   blocks.finish();
 }
 
-FaceCounts PlySource::read_triangles_from(std::uint64_t face, const TriangleVisitor& visit) {
+FaceCounts PlyFileSource::read_triangles_from(std::uint64_t face, const TriangleVisitor& visit) {
   const std::size_t first = first_face_element();
   auto body = body_at(first);
   if (face > 0)
@@ -173,10 +180,57 @@ FaceCounts PlySource::read_triangles_from(std::uint64_t face, const TriangleVisi
   return blocks.finish();
 }
 
+/// What strips need of blocks: each triangle is a face.
+FaceCounts read_strips(PlyBody& body, const PlyElementPlan& plan, const PlyFaceVisitor& visit) {
+  PlyFace face;
+  const TriangleVisitor each = [&](std::span<const Triangle<VertexId>> triangles) {
+    for (const Triangle<VertexId>& t : triangles) {
+      face.corners = {raw(t[0]), raw(t[1]), raw(t[2])};
+      visit(face);
+    }
+  };
+  TriangleBlocks blocks(each);
+  body.read_faces(plan, 0, blocks);
+  return blocks.finish();
+}
+
+FaceCounts PlyFileSource::read_textured_faces(const PlyFaceVisitor& visit) {
+  const std::size_t first = first_face_element();
+  const auto body = body_at(first);
+  FaceCounts counts;
+  for (std::size_t i = first; i < plan_.elements.size(); ++i) {
+    const PlyElementPlan& element = plan_.elements[i];
+    if (element.role == PlyElementPlan::Role::strips) {
+      const FaceCounts strips = read_strips(*body, element, visit);
+      counts.faces += strips.faces;
+      counts.degenerate_triangles += strips.degenerate_triangles;
+    } else if (element.has_faces()) {
+      body->read_textured_faces(element, plan_.texture_files.size(), visit);
+      counts.faces += element.element.count;
+    } else {
+      body->skip(element);
+    }
+    starts_[i + 1] = body->position();
+  }
+  body->expect_end();
+  return counts;
+}
+
 }  // namespace
 
-std::unique_ptr<MeshSource> make_ply_source(std::unique_ptr<storage::File> file) {
-  return std::make_unique<PlySource>(std::move(file));
+bool ply_names_textures(std::string_view start, const std::filesystem::path& path) {
+  try {
+    const PlyHeader header = parse_ply_header(start, path);
+    return !header.texture_files.empty() &&
+           !make_ply_plan(header, UINT64_MAX, path).texture_files.empty();
+  } catch (const Error&) {
+    return false;  // who reads it says why it cannot be read
+  }
+}
+
+std::unique_ptr<PlySource> make_ply_source(std::unique_ptr<storage::File> file,
+                                           PlyMaterials materials) {
+  return std::make_unique<PlyFileSource>(std::move(file), materials);
 }
 
 }  // namespace meshhier::mesh_io

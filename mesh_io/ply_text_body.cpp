@@ -40,6 +40,8 @@ class TextBody final : public PlyBody {
   void skip(const PlyElementPlan& plan) override;
   void read_vertices(const PlyElementPlan& plan, VertexBlocks& blocks) override;
   void read_faces(const PlyElementPlan& plan, std::uint64_t first, TriangleBlocks& blocks) override;
+  void read_textured_faces(const PlyElementPlan& plan, std::size_t textures,
+                           const PlyFaceVisitor& visit) override;
   void expect_end() override;
 
  private:
@@ -61,6 +63,9 @@ class TextBody final : public PlyBody {
   std::uint64_t take_count(const Row& row, const PlyProperty& property);
   void skip_property(const Row& row, const PlyProperty& property);
   void take_corners(const Row& row, const PlyProperty& property, TriangleBlocks& blocks);
+  std::int64_t take_index(const Row& row, const PlyProperty& property);
+  std::uint64_t take_face_count(const Row& row, const PlyProperty& property, std::uint64_t most);
+  std::int64_t take_textured_row(const Row& row, PlyFace& face);
 
   TextCursor cursor_;
   std::uint64_t vertex_count_;
@@ -203,20 +208,75 @@ void TextBody::take_corners(const Row& row, const PlyProperty& property, Triangl
   const std::uint64_t count = take_count(row, property);
   strip ? blocks.begin_strip() : blocks.begin_polygon();
   for (std::uint64_t i = 0; i < count; ++i) {
-    const std::string_view word = take_word(row, property);
-    const auto index = parse_integer(word);
-    if (!index)
-      fail_number(row, property, property.type, word);
-    if (*index >= 0 && static_cast<std::uint64_t>(*index) < vertex_count_) {
-      const auto corner = static_cast<std::uint32_t>(*index);
+    const std::int64_t index = take_index(row, property);
+    if (index >= 0 && static_cast<std::uint64_t>(index) < vertex_count_) {
+      const auto corner = static_cast<std::uint32_t>(index);
       strip ? blocks.add_strip_corner(corner) : blocks.add_polygon_corner(corner);
-    } else if (strip && is_strip_restart(*index, property.type)) {
+    } else if (strip && is_strip_restart(index, property.type)) {
       blocks.restart_strip();
     } else {
-      fail(index_text(row.plan, row.number, *index, vertex_count_));
+      fail(index_text(row.plan, row.number, index, vertex_count_));
     }
   }
   strip ? blocks.end_strip() : blocks.end_polygon();
+}
+
+/// A vertex, or what else an integer says there.
+std::int64_t TextBody::take_index(const Row& row, const PlyProperty& property) {
+  const std::string_view word = take_word(row, property);
+  const auto index = parse_integer(word);
+  if (!index)
+    fail_number(row, property, property.type, word);
+  return *index;
+}
+
+void TextBody::read_textured_faces(const PlyElementPlan& plan, std::size_t textures,
+                                   const PlyFaceVisitor& visit) {
+  PlyFace face;
+  for (std::uint64_t i = 0; i < plan.element.count; ++i) {
+    const Row row{plan, i};
+    begin_row(row);
+    face.clear();
+    const std::int64_t number = take_textured_row(row, face);
+    end_row(row);
+    const std::string defect = texture_defect(plan, i, face, number, textures);
+    if (!defect.empty())
+      fail(defect);
+    face.texture = static_cast<std::int32_t>(number);
+    visit(face);
+  }
+}
+
+/// Returns the number of the texture.
+std::int64_t TextBody::take_textured_row(const Row& row, PlyFace& face) {
+  std::int64_t number = 0;
+  for (std::size_t k = 0; k < row.plan.element.properties.size(); ++k) {
+    const PlyProperty& property = row.plan.element.properties[k];
+    if (k == row.plan.corners) {
+      for (std::uint64_t n = take_face_count(row, property, PlyFace::kMostCorners); n > 0; --n) {
+        const std::int64_t index = take_index(row, property);
+        if (index < 0 || static_cast<std::uint64_t>(index) >= vertex_count_)
+          fail(index_text(row.plan, row.number, index, vertex_count_));
+        face.corners.push_back(static_cast<std::uint32_t>(index));
+      }
+    } else if (k == row.plan.texcoords) {
+      for (std::uint64_t n = take_face_count(row, property, 2 * PlyFace::kMostCorners); n > 0; --n)
+        face.texcoords.push_back(static_cast<float>(take_number(row, property)));
+    } else if (k == row.plan.texnumber) {
+      number = take_integer(row, property, property.type);
+    } else {
+      skip_property(row, property);
+    }
+  }
+  return number;
+}
+
+std::uint64_t TextBody::take_face_count(const Row& row, const PlyProperty& property,
+                                        std::uint64_t most) {
+  const std::uint64_t count = take_count(row, property);
+  if (count > most)
+    fail(corners_text(row.plan, row.number, count));
+  return count;
 }
 
 void TextBody::expect_end() {

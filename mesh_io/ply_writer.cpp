@@ -42,6 +42,8 @@ std::string attribute_lines(const AttributeLayout& layout) {
     for (const std::string_view name : {"s", "t"})
       add("float", name);
   }
+  if (layout.material)
+    add("float", "material");
   return lines;
 }
 

@@ -3,6 +3,7 @@
 #include "mesh_io/coordinate_range.h"
 #include "mesh_io/input_error.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -14,6 +15,7 @@
 namespace meshhier::mesh_io {
 namespace {
 
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::size_t kCapacity = std::size_t{1} << 18;
 
 bool is_line_end(char c) {
@@ -29,7 +31,15 @@ WordStream::WordStream(InputStream& stream, std::filesystem::path path, Rules ru
     : stream_(stream),
       path_(std::move(path)),
       rules_(rules),
-      buffer_(std::make_unique_for_overwrite<char[]>(kCapacity)) {}
+      buffer_(std::make_unique_for_overwrite<char[]>(kCapacity)) {
+  skip_byte_order_mark();
+}
+
+void WordStream::skip_byte_order_mark() {
+  look_ahead(kByteOrderMark.size());
+  if (std::string_view(buffer_.get(), end_).starts_with(kByteOrderMark))
+    begin_ = kByteOrderMark.size();
+}
 
 /// Makes `bytes` available, or all there is; false if there is nothing.
 bool WordStream::look_ahead(std::size_t bytes) {
@@ -114,6 +124,29 @@ void WordStream::skip_line() {
     if (!skip_joint())
       ++begin_;
   }
+}
+
+std::string WordStream::take_rest() {
+  std::string rest;
+  std::size_t blanks = 0;  // not known yet whether something follows them
+  while (look_ahead(3) && !is_line_end(buffer_[begin_])) {
+    if (skip_joint()) {
+      ++blanks;
+      continue;
+    }
+    const char c = buffer_[begin_++];
+    if (is_blank(c)) {
+      ++blanks;
+      continue;
+    }
+    if (!rest.empty())
+      rest.append(std::min(blanks, kMaxWordBytes), ' ');
+    blanks = 0;
+    rest += c;
+    if (rest.size() > kMaxWordBytes)
+      fail(fmt::format("found a line of more than {} bytes behind its first word", kMaxWordBytes));
+  }
+  return rest;
 }
 
 DecimalNumber WordStream::take_number(const char* what) {

@@ -15,7 +15,8 @@
 namespace meshhier::mesh_io {
 
 /// Lines end with LF, CRLF or CR; words are separated by blanks and tabs; '#' where a word could
-/// begin begins a comment, up to the end of the line. Memory: one buffer, however long a line is.
+/// begin begins a comment, up to the end of the line. A byte order mark of UTF-8 at the start is
+/// passed over. Memory: one buffer, however long a line is.
 class WordStream {
  public:
   /// What differs from format to format.
@@ -38,6 +39,9 @@ class WordStream {
   /// before. A word that is too long is an error.
   std::string_view take_word();
   void skip_line();
+  /// The rest of this line but for blanks around it, comments too; lines that are joined have a
+  /// blank between them. One that is too long is an error.
+  std::string take_rest();
 
   /// The next word of this line as a finite number; `what`: it is for messages.
   DecimalNumber take_number(const char* what);
@@ -50,6 +54,7 @@ class WordStream {
   [[noreturn]] void fail(const std::string& message) const;
 
  private:
+  void skip_byte_order_mark();
   bool look_ahead(std::size_t bytes);
   std::size_t joint_at(std::size_t place);
   bool skip_joint();

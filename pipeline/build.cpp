@@ -1,7 +1,9 @@
 #include "pipeline/build.h"
 
+#include "config/placement.h"
 #include "execution/allocator.h"
 #include "hierarchy/error.h"
+#include "pipeline/images_stage.h"
 #include "pipeline/import_stage.h"
 #include "pipeline/ingest_stage.h"
 #include "pipeline/journal/workshop.h"
@@ -12,6 +14,7 @@
 #include "pipeline/publish_stage.h"
 #include "pipeline/simplify_stage.h"
 #include "pipeline/stage_costs.h"
+#include "pipeline/texture_stage.h"
 #include "storage/format/layout.h"
 
 #include <future>
@@ -60,7 +63,9 @@ BuildReport build_hierarchy(const config::Config& asked, const BuildOptions& opt
   // Everything that can be refused is refused before anything is written.
   check_apart(config, files);
   storage::MemoryPool pool(0);
-  importing::MeshInput input(config.input, config.weld, files);
+  importing::MeshInput input(
+      config.input, config.weld, files,
+      config.texture.use ? importing::Textures::use : importing::Textures::ignore);
   std::optional<BuildPlan> plan;
   if (!is_read_before_plan(input, config))
     plan = plan_build(config, input.description());
@@ -117,6 +122,8 @@ SourceSummary summarize(SourceMesh& mesh, const mesh_io::FaceCounts& counts,
     summary.checksum = mesh.checksum(cancel);
     input.files().check_unchanged();
   }
+  if (summary.attributes.material)
+    summary.attributes = summary.attributes.without_texcoords();  // tiles have their own
   return summary;
 }
 
@@ -163,15 +170,21 @@ void read_input(importing::MeshInput& input, const storage::WorkDirectory& work,
     import_again(input, work, pool, context);
   storage::ScratchFile vertices = workshop.mesh_scratch.beside("vertices");
   SourceMesh mesh = ingest(input.open(), input.files().name(), vertices, context);
+  config::tileset_transform(context.config, mesh.summary().bounds);  // refused now, if at all
   const mesh_io::FaceCounts counts =
       partition_mesh(mesh, input.copies(), workshop.chunks, workshop.mesh_scratch, context);
-  workshop.journal.note_source(summarize(mesh, counts, input, context.cancel), mesh.origin());
+  workshop.journal.note_source(
+      {summarize(mesh, counts, input, context.cancel), mesh.origin(), input.materials()});
 }
 
 DiskNeed make_hierarchy(Workshop& workshop, const std::filesystem::path& directory,
                         const StageContext& context) {
-  auto& [mesh_scratch, tile_scratch, chunks, forest, journal] = workshop;
+  auto& [mesh_scratch, tile_scratch, picture_scratch, chunks, forest, textures, pictures, journal] =
+      workshop;
   SourceSummary source = journal.source()->summary;
+  images::MaterialList materials;
+  if (context.plan.textures.is_textured())
+    materials = decode_images(pictures, journal, context);
   source.unreferenced_vertices = make_leaves(chunks, forest, journal, context);
   const std::optional<DiskNeed> refined = refine_disk(context.plan, forest.partition_sums());
   if (refined)
@@ -182,15 +195,22 @@ DiskNeed make_hierarchy(Workshop& workshop, const std::filesystem::path& directo
     workshop.journal.sync();
     workshop.mesh_scratch.remove();
   });
-  const TileErrors errors = simplify(forest, journal, source, context);
+  TileErrors errors = simplify(forest, journal, source, context);
   settled.get();
+  if (source.textures) {
+    make_textures(forest, {materials, pictures}, textures, journal, context);
+    picture_scratch.remove();
+    errors = with_texels(std::move(errors), context.tree(), textures);
+    source.textures->texels = context.plan.textures.texels();
+  }
   DiskNeed need = refined.value_or(context.plan.disk);
   if (const std::uint64_t splits = forest.split_count(); splits > 0) {
     need = with_splits(context.plan, need, splits);
     check_disk(need, context.config.output, context.files);
   }
   const OutlineStageResult outline = make_outline(forest, source.diagonal(), context);
-  publish(forest, journal, {source, journal.source()->origin, errors, outline}, directory, context);
+  publish(forest, textures, journal, {source, journal.source()->origin, errors, outline}, directory,
+          context);
   journal.note_complete();
   return need;
 }

@@ -1,6 +1,7 @@
 #include "pipeline/build_report.h"
 
 #include "config/config_schema.h"
+#include "config/placement.h"
 #include "execution/size_text.h"
 #include "hierarchy/plain_text.h"
 #include "import/import_input.h"
@@ -82,6 +83,10 @@ std::string report_text(const config::Config& config, const SourceSummary& sourc
   return text + warning_text(source);
 }
 
+std::string placement_text(const storage::Manifest& made, const config::Config& config) {
+  return made.transform ? config::placement_text(config, made.source.bounds, *made.transform) : "";
+}
+
 std::string account_text(const SourceSummary& source, const BuildStats& stats) {
   std::string text;
   for (const SourceFile& file : source.files) {
@@ -107,6 +112,7 @@ BuildReport make_report(const storage::HierarchyReader& made, const BuildOutcome
   report.stats.total = meter.total();
   const SourceSummary& source = made.manifest().source;
   report.text = report_text(context.config, source, outcome.found, report.stats) +
+                placement_text(made.manifest(), context.config) +
                 storage::forced_collapses_text(
                     storage::summarize_forced_collapses(made.records(), source.places));
   report.account = account_text(source, report.stats);

@@ -85,16 +85,21 @@ BuildPlan import_and_plan(importing::MeshInput& input, storage::WorkDirectory& w
   work.keep(earlier.has_value());
   const auto recalled =
       earlier ? recall_import(*earlier, input, config, environment.cancel) : std::nullopt;
+  images::MaterialList materials;
   if (recalled) {
     input.recall(*recalled);
+    materials = earlier->materials;
   } else {
     const importing::ImportMemory memory = importing::plan_import(config.memory_budget);
     pool.set_capacity(memory.pool_bytes);
     environment.progress.expect(import_time(input, config));
     read_once(input, config, place_of(work, pool, memory.sort_bytes, environment));
     execution::release_free_memory();
+    materials = input.materials();
   }
-  BuildPlan plan = plan_build(config, input.description(), input.imported_bytes());
+  BuildPlan plan =
+      plan_build(config, input.description(), input.imported_bytes(),
+                 plan_textures(std::move(materials), config.missing_images, environment.files));
   plan.disk.temporary_bytes = std::max(plan.disk.temporary_bytes, import_disk(input, config));
   check_disk(plan.disk, config.output, environment.files);
   return plan;

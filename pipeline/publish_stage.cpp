@@ -1,11 +1,14 @@
 #include "pipeline/publish_stage.h"
 
+#include "config/placement.h"
 #include "execution/parallel.h"
 #include "hierarchy/bounds.h"
 #include "hierarchy/drawing_rule.h"
 #include "hierarchy/lattice.h"
 #include "partition/compactness.h"
 #include "pipeline/plan/tile_room.h"
+#include "pipeline/texture_stage.h"
+#include "pipeline/tiles/texture_store.h"
 #include "pipeline/tiles/vertex_order.h"
 #include "shading/tile_shading.h"
 #include "storage/format/index.h"
@@ -16,6 +19,7 @@
 #include "storage/format/tile_plan.h"
 #include "storage/format/tileset.h"
 #include "storage/io/hash.h"
+#include "texture/corners.h"
 
 #include <algorithm>
 #include <cmath>
@@ -66,6 +70,7 @@ float with_rounding(float bound, double rounding, int levels_below) {
 /// What writes tiles.
 struct TileWriter {
   const Forest& forest;
+  const TextureStore& textures;
   const TileErrors& errors;
   const storage::TileFormat format;
   const std::optional<storage::Quantization> quantization;
@@ -107,12 +112,14 @@ TileRecord describe(const TileWriter& to, NodeId node, const TileMesh& mesh,
 struct FinishedMesh {
   TileMesh mesh;
   Shading shading;
+  TileImage image;
   std::vector<std::uint16_t> parent_map;
 };
 
-/// Orders a partition's vertices, and gives all vertices their normals.
-FinishedMesh finish(const Forest& forest, NodeId node, TileMesh mesh) {
-  FinishedMesh finished{std::move(mesh), {}, forest.published_parent_map(node)};
+/// Orders a partition's vertices, and gives all vertices their normals and texture coordinates.
+FinishedMesh finish(const TileWriter& to, NodeId node, TileMesh mesh) {
+  const Forest& forest = to.forest;
+  FinishedMesh finished{std::move(mesh), {}, {}, forest.published_parent_map(node)};
   OwnShading normals = forest.computes_normals() ? forest.normals(node) : OwnShading{};
   if (forest.tree().is_partition(node)) {
     const std::vector<std::uint32_t> copy_places = finished.mesh.copies.places;
@@ -126,6 +133,14 @@ FinishedMesh finish(const Forest& forest, NodeId node, TileMesh mesh) {
       return forest.boundary_normals({node.level, tile});
     });
   }
+  if (to.format.textures) {
+    TileTexture texture = to.textures.texture(node);
+    finished.mesh.vertices.keep_channels(to.format.attributes.channels());
+    finished.mesh.copies.vertices.keep_channels(to.format.attributes.channels());
+    if (!texture.image.empty())
+      finished.shading = texture::with_texcoords(finished.mesh, finished.shading, texture.corners);
+    finished.image = std::move(texture.image);
+  }
   return finished;
 }
 
@@ -134,13 +149,18 @@ TileRecord write_tile(const TileWriter& to, NodeId node) {
   const Forest& forest = to.forest;
   const Tree& tree = forest.tree();
   storage::FileSystem& files = to.context.files;
-  auto [mesh, shading, parent_map] = finish(forest, node, forest.load(node).mesh);
+  auto [mesh, shading, image, parent_map] = finish(to, node, forest.load(node).mesh);
   if (to.quantization)
     round_to(to.quantization->lattice, mesh);
   TileRecord record = describe(to, node, mesh, shading);
+  if (!image.empty()) {
+    record.image_width = image.width;
+    record.image_height = image.height;
+    record.texel = to.textures.texels(node).own;
+  }
   const std::vector<std::uint16_t> chains = forest.chains(node, mesh.ghosts);
   const std::vector<std::byte> bytes = storage::encode_tile(
-      {node, mesh, shading, record.bounds, parent_map, chains}, tree, to.format);
+      {node, mesh, shading, image, record.bounds, parent_map, chains}, tree, to.format);
   const auto file = files.create(storage::tile_path(to.directory, node));
   file->write_at(0, bytes);
   if (to.context.config.storage.container == storage::Container::files)
@@ -167,13 +187,18 @@ void write_account(const TileWriter& to, const PublishInput& input,
   manifest.source = input.source;
   manifest.origin = to.format.frame.origin;
   manifest.up = to.format.frame.up;
-  manifest.transform = config::tileset_transform(context.config);
+  manifest.transform = config::tileset_transform(context.config, input.source.bounds);
   manifest.licence = context.config.licence;
   manifest.partition_count = tree.partition_count();
   manifest.compression = to.format.compression;
   manifest.quantization = to.quantization;
   manifest.computed_normals = to.format.computed_normals;
+  manifest.textures = to.format.textures;
   manifest.config = config::resolved_json(context.config);
+  if (!input.source.textures) {
+    manifest.config.erase("texture");  // what decided nothing
+    manifest.config.erase("missing_images");
+  }
   manifest.index_bytes = index.size();
   manifest.index_checksum = storage::checksum(index);
   manifest.outline_bytes = outline.size();
@@ -204,8 +229,9 @@ std::uint64_t heaviest_written(const Forest& forest, const config::StorageConfig
 
 }  // namespace
 
-void publish(Forest& forest, BuildJournal& journal, const PublishInput& input,
-             const std::filesystem::path& directory, const StageContext& context) {
+void publish(Forest& forest, const TextureStore& textures, BuildJournal& journal,
+             const PublishInput& input, const std::filesystem::path& directory,
+             const StageContext& context) {
   const Tree& tree = context.tree();
   const config::StorageConfig& storage = context.config.storage;
   for (int l = 0; l <= raw(tree.depth()); ++l) {
@@ -225,12 +251,14 @@ void publish(Forest& forest, BuildJournal& journal, const PublishInput& input,
   storage::TileFormat format = {
       input.source.attributes, {input.origin, context.config.up}, storage.compression, {}};
   format.computed_normals = forest.computes_normals();
+  if (input.source.textures)
+    format.textures = context.config.texture.format;
   std::optional<storage::Quantization> quantization;
   if (storage.position_bits) {
     quantization = quantize(forest, nodes, input, room.in_flight(), context);
     format.lattice = quantization->lattice;
   }
-  const TileWriter writer{forest, input.errors, format, quantization, directory, context};
+  const TileWriter writer{forest, textures, input.errors, format, quantization, directory, context};
   execution::ordered_for(
       left.size(), room.in_flight(), context.cancel,
       [&](std::size_t i) { return write_tile(writer, nodes[left[i]]); },
@@ -264,10 +292,12 @@ OutputCost publish_output(const JobSize& job, const TilePopulation& tiles) {
   constexpr double kMostSplits = 0.5;
   const double vertices = tiles.partitions.vertices + tiles.simplified.vertices;
   const double splits =
-      job.computes_normals
+      job.computes_normals || job.textured
           ? kMostSplits * vertices * storage::expected_split_bytes(job.published_attribute_bytes)
           : 0;
-  return {plain, plain * job.published_ratio, tiles.files() * kFileSlack + splits};
+  const double pictures = published_picture_bytes(job, tiles);
+  return {plain + pictures, plain * job.published_ratio + pictures,
+          tiles.files() * kFileSlack + splits};
 }
 
 }  // namespace meshhier::pipeline

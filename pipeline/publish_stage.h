@@ -27,7 +27,8 @@ struct PublishInput {
 };
 
 /// Writes the whole hierarchy into `directory`, but for tiles that the journal has there.
-void publish(Forest& forest, BuildJournal& journal, const PublishInput& input,
-             const std::filesystem::path& directory, const StageContext& context);
+void publish(Forest& forest, const TextureStore& textures, BuildJournal& journal,
+             const PublishInput& input, const std::filesystem::path& directory,
+             const StageContext& context);
 
 }  // namespace meshhier::pipeline

@@ -102,6 +102,8 @@ class Simplifier {
       steps_[node.index] = measure_step(forest_, node, loaded);
     if (forest_.has_normals(node))
       forest_.put_normals(node, shading::shade(mesh), mesh);
+    if (forest_.tree().is_partition(node))
+      drop_texcoords(loaded.tile.mesh);
     return std::move(loaded.tile);
   }
 
@@ -124,6 +126,12 @@ class Simplifier {
   }
 
  private:
+  /// Tiles above the partitions get coordinates of their own, if those are a texture's.
+  void drop_texcoords(TileMesh& mesh) const {
+    mesh.vertices.keep_channels(attributes_.channels());
+    mesh.copies.vertices.keep_channels(attributes_.channels());
+  }
+
   BuildTile load_joined(const Tree::Children& children) {
     BuildTile first = load(children.nodes[0]);
     if (children.count == 1)

@@ -1,5 +1,7 @@
 #include "pipeline/stage_costs.h"
 
+#include "config/placement.h"
+#include "pipeline/images_stage.h"
 #include "pipeline/import_stage.h"
 #include "pipeline/ingest_stage.h"
 #include "pipeline/leaves_stage.h"
@@ -8,33 +10,35 @@
 #include "pipeline/partition_stage.h"
 #include "pipeline/publish_stage.h"
 #include "pipeline/simplify_stage.h"
+#include "pipeline/texture_stage.h"
 #include "storage/format/archive_writer.h"
 #include "storage/format/tile_plan.h"
 
 namespace meshhier::pipeline {
 namespace {
 
-/// What several stages know of each tile until the end, and the archive's index.
+/// What several stages know of each tile until the end, the archive's index, and PROJ.
 std::uint64_t bookkeeping_bytes(const JobSize& job) {
   // Six blob entries, what is known of it, its record, its statistics, its step and the sums of
   // steps with some twenty neighbours each.
   constexpr std::uint64_t kTileBytes = 528;
   const std::uint64_t tiles = 2 * std::uint64_t{job.partition_count};
-  return tiles * (kTileBytes + (job.packed ? storage::ArchiveWriter::kFileMemory : 0));
+  return tiles * (kTileBytes + (job.packed ? storage::ArchiveWriter::kFileMemory : 0)) +
+         (job.has_map ? config::kMapMemoryBytes : 0);
 }
 
 }  // namespace
 
 MemoryCosts memory_costs(const JobSize& job) {
-  return {bookkeeping_bytes(job), ingest_memory(job),   partition_memory(job),
-          leaves_memory(job),     simplify_memory(job), chunk_spools(job)};
+  return {bookkeeping_bytes(job), ingest_memory(job), partition_memory(job), leaves_memory(job),
+          simplify_memory(job),   images_memory(job), texture_memory(job),   chunk_spools(job)};
 }
 
 DiskCosts disk_costs(const JobSize& job, const MemoryPlan& memory, const TilePopulation& tiles) {
   DiskCosts costs;
   for (const DiskVolumes& stage :
        {imported_disk(job), ingest_disk(job), partition_disk(job, memory), leaves_disk(job, tiles),
-        simplify_disk(job, tiles)}) {
+        simplify_disk(job, tiles), texture_disk(job, tiles)}) {
     costs.volumes.insert(costs.volumes.end(), stage.begin(), stage.end());
   }
   costs.output = publish_output(job, tiles);
@@ -44,13 +48,18 @@ DiskCosts disk_costs(const JobSize& job, const MemoryPlan& memory, const TilePop
 }
 
 BuildPlan plan_build(const config::Config& config, const mesh_io::MeshDescription& mesh,
-                     std::uint64_t imported_bytes) {
-  const Tree tree = plan_tree(config, mesh.places());
-  const JobSize job = job_size(config, mesh, imported_bytes, tree);
+                     std::uint64_t imported_bytes, TexturePlan textures) {
+  const Tree tree = plan_tree(config, mesh.places(), textures);
+  const JobSize job = job_size(config, mesh, imported_bytes, tree, textures);
   const MemoryPlan memory = plan_memory(config.memory_budget, memory_costs(job));
   const DiskCosts disk = disk_costs(job, memory, expected_tiles(job));
-  return {tree, job.threads, job.target_vertex_counts,
-          job,  memory,      predict_disk(disk, memory.pool_bytes)};
+  return {tree,
+          job.threads,
+          job.target_vertex_counts,
+          job,
+          memory,
+          predict_disk(disk, memory.pool_bytes),
+          std::move(textures)};
 }
 
 std::vector<StageTime> cpu_times(const config::Config& config, const BuildPlan& plan) {
@@ -58,8 +67,12 @@ std::vector<StageTime> cpu_times(const config::Config& config, const BuildPlan& 
   const TilePopulation tiles = expected_tiles(job);
   std::vector<StageTime> times = partition_time(job);
   times.insert(times.begin(), ingest_time(job));
-  times.insert(times.end(), {leaves_time(job), simplify_time(job, tiles),
-                             outline_time(config, tiles), publish_time(job, tiles)});
+  if (job.textured)
+    times.push_back(images_time(job));
+  times.insert(times.end(), {leaves_time(job), simplify_time(job, tiles)});
+  if (job.textured)
+    times.push_back(texture_time(job, tiles));
+  times.insert(times.end(), {outline_time(config, tiles), publish_time(job, tiles)});
   return times;
 }
 

@@ -64,6 +64,6 @@ DiskNeed with_splits(const BuildPlan& plan, const DiskNeed& need, std::uint64_t 
 /// The plan for a mesh of which the header was read; `imported_bytes` as in job_size(). Throws as
 /// plan_tree(), and Error(budget) if the memory budget is too small.
 BuildPlan plan_build(const config::Config& config, const mesh_io::MeshDescription& mesh,
-                     std::uint64_t imported_bytes = 0);
+                     std::uint64_t imported_bytes = 0, TexturePlan textures = {});
 
 }  // namespace meshhier::pipeline

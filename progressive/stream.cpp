@@ -32,6 +32,15 @@ namespace {
 namespace fs = std::filesystem;
 using progressive::Sector;
 
+void require_no_textures(const storage::HierarchyReader& reader) {
+  if (!reader.manifest().textures)
+    return;
+  throw Error(ErrorCode::usage,
+              reader.directory().string() +
+                  " has textures, which a progressive stream cannot show: make it of a hierarchy "
+                  "that was built without them");
+}
+
 void require_half_edge(const storage::HierarchyReader& reader) {
   const auto& config = reader.manifest().config;
   const auto simplify = config.find("simplify");
@@ -262,6 +271,7 @@ std::string write_progressive(storage::FileSystem& files, const fs::path& hierar
   execution::configure_allocator(options.memory_budget);
   const storage::HierarchyFiles place(files, hierarchy);
   const storage::HierarchyReader reader(place.files(), hierarchy);
+  require_no_textures(reader);
   require_half_edge(reader);
   require_one_vertex_a_place(reader);
   const NodeId asked = options.node.value_or(NodeId{});

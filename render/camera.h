@@ -15,7 +15,7 @@ struct View {
 
 struct Framing {
   std::uint32_t width = 512, height = 512;  ///< pixels, 1 to kMostPixels
-  std::uint32_t samples = 2;                ///< a pixel has samples x samples, 1 to 4
+  std::uint32_t samples = 2;                ///< a pixel has samples x samples, 1 or more
   double margin = 0.04;  ///< left free on each side, of the shorter side; below 0.5
 };
 inline constexpr std::uint32_t kMostPixels = 8192;
@@ -24,6 +24,13 @@ inline constexpr std::uint32_t kMostPixels = 8192;
 struct ViewAxes {
   Vec3d right, up, back;  ///< back: to the viewer
 };
+ViewAxes axes_of(const View& view);
+
+/// How far a box reaches in a view.
+struct ViewExtent {
+  double across = 0, upright = 0;
+};
+ViewExtent extent_of(const BoundsD& box, const ViewAxes& axes);
 
 /// Maps space to the grid of samples: x to the right, y down, sample (i, j) in the middle of
 /// [i, i + 1] x [j, j + 1]; z away from the viewer, in the same unit.
@@ -31,6 +38,9 @@ class Camera {
  public:
   /// Shows all of the box, as large as the frame takes it. Requires a finite box, not empty.
   Camera(const View& view, const BoundsD& box, const Framing& framing);
+
+  /// Shows what is around `centre`; `pixel`: its size, above 0. The margin does not count.
+  Camera(const View& view, Vec3d centre, double pixel, const Framing& framing);
 
   const Framing& framing() const { return framing_; }
   std::uint32_t columns() const { return framing_.width * framing_.samples; }

@@ -1,6 +1,7 @@
 // What is drawn: triangles in space.
 #pragma once
 
+#include "hierarchy/texture.h"
 #include "hierarchy/vec.h"
 
 #include <array>
@@ -21,6 +22,14 @@ struct FacetCorner {
 /// the side from which the corners turn counter-clockwise; from the other side they are turned
 /// round.
 using Facet = std::array<FacetCorner, 3>;
+
+class MipTexture;
+
+/// What a facet has in place of its corners' colours.
+struct Skin {
+  const MipTexture* texture = nullptr;  ///< none: colours stay
+  std::array<Vec2f, 3> texcoords{};     ///< of the corners
+};
 
 /// Of length 1; 0 of what has no direction.
 inline Vec3f unit_or_zero(Vec3f vector) {

@@ -1,6 +1,7 @@
 #include "render/raster.h"
 
 #include "render/coverage.h"
+#include "render/mip_texture.h"
 
 #include <array>
 #include <cmath>
@@ -24,6 +25,8 @@ struct SeenFacet {
   std::array<Vec3d, 3> places;  ///< on the grid
   Vec3f flat;                   ///< its own normal
   std::array<Vec3f, 3> normals, colours;
+  Skin skin;
+  double level = 0;  ///< of its texture
 
   void turn_round() {
     flat = flat * -1;
@@ -38,7 +41,15 @@ struct SeenFacet {
     const Vec3f unit = unit_or_zero(blend(w, normals[0], normals[1], normals[2]));
     return unit == Vec3f{} ? flat : unit;
   }
-  Vec3f colour(const Weights& w) const { return blend(w, colours[0], colours[1], colours[2]); }
+  Vec3f colour(const Weights& w) const {
+    return skin.texture == nullptr ? blend(w, colours[0], colours[1], colours[2])
+                                   : skin.texture->light_at(texcoord(w), level);
+  }
+  Vec2f texcoord(const Weights& w) const {
+    const auto& [a, b, c] = skin.texcoords;
+    return {static_cast<float>(a.u * w[0] + b.u * w[1] + c.u * w[2]),
+            static_cast<float>(a.v * w[0] + b.v * w[1] + c.v * w[2])};
+  }
 };
 
 /// Of the side from which the corners turn counter-clockwise, by the view's axes. The grid's y goes
@@ -51,8 +62,24 @@ Vec3f flat_normal(const std::array<Vec3d, 3>& places) {
   return to_float(Vec3d{across.x, -across.y, -across.z} * (1 / size));
 }
 
-std::optional<SeenFacet> seen(const Camera& camera, const Facet& facet) {
+/// Twice that of the triangle (a, b, c).
+double area(double ab_x, double ab_y, double ac_x, double ac_y) {
+  return std::abs(ab_x * ac_y - ab_y * ac_x);
+}
+
+/// The camera's lines are parallel: it is the same all over a facet.
+double level_of(const Skin& skin, const std::array<Vec3d, 3>& places) {
+  const auto& [a, b, c] = places;
+  const auto& [s, t, r] = skin.texcoords;
+  const double texels =
+      double{1} * skin.texture->width() * skin.texture->height() *
+      area(double{t.u} - s.u, double{t.v} - s.v, double{r.u} - s.u, double{r.v} - s.v);
+  return level_for(texels / area(b.x - a.x, b.y - a.y, c.x - a.x, c.y - a.y));
+}
+
+std::optional<SeenFacet> seen(const Camera& camera, const Facet& facet, const Skin& skin) {
   SeenFacet result;
+  result.skin = skin;
   for (std::size_t i = 0; i < 3; ++i) {
     result.places[i] = camera.on_grid(facet[i].position);
     if (!is_finite(result.places[i]))
@@ -60,6 +87,8 @@ std::optional<SeenFacet> seen(const Camera& camera, const Facet& facet) {
     result.normals[i] = camera.turned(unit_or_zero(facet[i].normal));
     result.colours[i] = facet[i].colour;
   }
+  if (skin.texture != nullptr)
+    result.level = level_of(skin, result.places);
   result.flat = flat_normal(result.places);
   if (result.flat.z < 0)
     result.turn_round();
@@ -71,8 +100,8 @@ std::optional<SeenFacet> seen(const Camera& camera, const Facet& facet) {
 Raster::Raster(const Camera& camera)
     : camera_(camera), samples_(std::size_t{camera.columns()} * camera.rows()) {}
 
-void Raster::draw(const Facet& facet) {
-  const std::optional<SeenFacet> there = seen(camera_, facet);
+void Raster::draw(const Facet& facet, const Skin& skin) {
+  const std::optional<SeenFacet> there = seen(camera_, facet, skin);
   if (!there)
     return;
   const auto& [a, b, c] = there->places;

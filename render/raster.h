@@ -30,7 +30,9 @@ class Raster {
   /// The nearest facet is seen, of equally near ones the first. Depths, normals and colours are
   /// interpolated; normals are those of the side that is seen. Nothing is seen of a facet that is
   /// not finite. What reaches beyond the grid by more than 2^20 samples is moved there.
-  void draw(const Facet& facet);
+  void draw(const Facet& facet) { draw(facet, Skin{}); }
+  /// Shows the texture, filtered for the area of a sample on it. It must live as long as the call.
+  void draw(const Facet& facet, const Skin& skin);
   void draw(std::span<const Facet> facets);
 
   const Framing& framing() const { return camera_.framing(); }

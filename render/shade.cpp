@@ -1,6 +1,6 @@
 #include "render/shade.h"
 
-#include "render/srgb.h"
+#include "images/srgb.h"
 
 #include <algorithm>
 
@@ -34,41 +34,42 @@ struct PixelSum {
   Vec3d light;
   std::uint32_t covered = 0;
 
-  void add(const Sample& sample) {
+  void add(const Sample& sample, Light kind) {
     if (!sample.covered())
       return;
-    light = light + to_double(sample.colour) * light_on(to_double(sample.normal));
+    const double share = kind == Light::lamps ? light_on(to_double(sample.normal)) : 1;
+    light = light + to_double(sample.colour) * share;
     ++covered;
   }
 };
 
-PixelSum sum_of_pixel(const Raster& raster, std::size_t column, std::size_t row) {
+PixelSum sum_of_pixel(const Raster& raster, std::size_t column, std::size_t row, Light light) {
   const std::size_t side = raster.framing().samples;
   PixelSum sum;
   for (std::size_t y = 0; y < side; ++y) {
     const std::size_t first = (row * side + y) * raster.columns() + column * side;
     for (const Sample& sample : raster.samples().subspan(first, side))
-      sum.add(sample);
+      sum.add(sample, light);
   }
   return sum;
 }
 
-void append(std::vector<std::uint8_t>& rgba, const PixelSum& sum, std::uint32_t samples) {
+void put(const PixelSum& sum, std::uint32_t samples, std::uint8_t* texel) {
   const Vec3d mean = sum.covered > 0 ? sum.light * (1.0 / sum.covered) : Vec3d{};
   for (const double light : {mean.x, mean.y, mean.z})
-    rgba.push_back(screen_value(light));
-  rgba.push_back(static_cast<std::uint8_t>((255 * sum.covered + samples / 2) / samples));
+    *texel++ = images::screen_value(light);
+  *texel = static_cast<std::uint8_t>((255 * sum.covered + samples / 2) / samples);
 }
 
 }  // namespace
 
-Picture shade(const Raster& raster) {
+images::Image shade(const Raster& raster, Light light) {
   const Framing& framing = raster.framing();
-  Picture picture{framing.width, framing.height, {}};
-  picture.rgba.reserve(std::size_t{4} * framing.width * framing.height);
+  images::Image picture(framing.width, framing.height, 4);
   for (std::uint32_t row = 0; row < framing.height; ++row) {
     for (std::uint32_t column = 0; column < framing.width; ++column)
-      append(picture.rgba, sum_of_pixel(raster, column, row), framing.samples * framing.samples);
+      put(sum_of_pixel(raster, column, row, light), framing.samples * framing.samples,
+          picture.at(column, row));
   }
   return picture;
 }

@@ -1,21 +1,17 @@
 // Turns what a raster holds into a picture.
 #pragma once
 
+#include "images/image.h"
 #include "render/raster.h"
-
-#include <cstdint>
-#include <vector>
 
 namespace meshhier::render {
 
-struct Picture {
-  std::uint32_t width = 0, height = 0;
-  std::vector<std::uint8_t> rgba;  ///< 4 width height: sRGB, alpha not multiplied in; row by row
-};
+/// What falls on a surface. `none`: colours have their light already.
+enum class Light { lamps, none };
 
-/// Light from a soft lamp at the upper left, a weaker one at the right, and a sky above a floor;
-/// the lights move with the viewer. The samples of a pixel are averaged as light; alpha is the
-/// share of those that the surface covers, and 0, 0, 0, 0 where there is none.
-Picture shade(const Raster& raster);
+/// Lamps: light from a soft lamp at the upper left, a weaker one at the right, and a sky above a
+/// floor; the lights move with the viewer. The samples of a pixel are averaged as light; alpha is
+/// the share of those that the surface covers, and 0, 0, 0, 0 where there is none. 4 channels.
+images::Image shade(const Raster& raster, Light light = Light::lamps);
 
 }  // namespace meshhier::render

@@ -1,7 +1,7 @@
 #include "render/tile_facets.h"
 
 #include "hierarchy/shown_corners.h"
-#include "render/srgb.h"
+#include "images/srgb.h"
 
 #include <array>
 #include <cstddef>
@@ -56,7 +56,7 @@ class TileCorners {
   Vec3f normal(std::size_t number, std::span<const float> attributes) const {
     if (normals_ == NormalKind::facets)
       return {};
-    if (!tile_.shading.empty())
+    if (!tile_.shading.normals.empty())
       return normal_of(tile_.shading.normals[number]);
     return layout_.normals ? channels(attributes, layout_.normal_offset()) : Vec3f{};
   }
@@ -66,8 +66,8 @@ class TileCorners {
       return kPlainColour;
     const double full = full_light(layout_.colour);
     const Vec3f stored = channels(attributes, layout_.colour_offset());
-    return to_float(
-        {light_of(stored.x / full), light_of(stored.y / full), light_of(stored.z / full)});
+    return to_float({images::light_of(stored.x / full), images::light_of(stored.y / full),
+                     images::light_of(stored.z / full)});
   }
 
   static Vec3f channels(std::span<const float> attributes, int offset) {
@@ -80,20 +80,34 @@ class TileCorners {
   NormalKind normals_;
 };
 
+/// The interior triangles, then the border triangles asked for, with numbers of the file.
+std::vector<TileTriangle> drawn_triangles(const PublishedTile& tile,
+                                          std::span<const std::uint32_t> border) {
+  std::vector<TileTriangle> triangles = shown_interior(tile);
+  const std::vector<TileTriangle> all_border = shown_border(tile);
+  for (const std::uint32_t i : border)
+    triangles.push_back(all_border[i]);
+  return triangles;
+}
+
 }  // namespace
 
 std::vector<Facet> facets_of(const PublishedTile& tile, const AttributeLayout& layout,
                              std::span<const std::uint32_t> border, NormalKind normals) {
-  const std::vector<TileTriangle> interior = shown_interior(tile);
-  const std::vector<TileTriangle> all_border = shown_border(tile);
   const TileCorners corners(tile, layout, normals);
   std::vector<Facet> facets;
-  facets.reserve(interior.size() + border.size());
-  for (const TileTriangle& triangle : interior)
+  for (const TileTriangle& triangle : drawn_triangles(tile, border))
     facets.push_back(corners.facet(triangle));
-  for (const std::uint32_t i : border)
-    facets.push_back(corners.facet(all_border[i]));
   return facets;
+}
+
+std::vector<Skin> skins_of(const PublishedTile& tile, const MipTexture& texture,
+                           std::span<const std::uint32_t> border) {
+  const auto at = [&](TileVertex number) { return tile.shading.texcoords[raw(number)]; };
+  std::vector<Skin> skins;
+  for (const TileTriangle& t : drawn_triangles(tile, border))
+    skins.push_back({&texture, {at(t[0]), at(t[1]), at(t[2])}});
+  return skins;
 }
 
 }  // namespace meshhier::render

@@ -1,6 +1,7 @@
 #include "pipeline/journal/build_journal.h"
 
 #include "hierarchy/error.h"
+#include "pipeline/journal/material_json.h"
 #include "storage/format/index.h"
 #include "storage/format/layout.h"
 #include "storage/format/manifest.h"
@@ -34,6 +35,27 @@ Value to_json(const IndexedStep& indexed) {
 IndexedStep indexed_step(const Value& json) {
   return {json.at(0),
           {json.at(1), json.at(2), TileSet(json.at(3).get<std::vector<std::uint32_t>>())}};
+}
+
+Value to_json(const images::StoredImage& image) {
+  const images::ImageInfo& info = image.info;
+  Value strips = Value::array();
+  for (const images::StoredStrip& strip : image.strips)
+    strips.push_back({strip.offset, strip.checksum});
+  return {{"info", {info.format, info.width, info.height, info.channels, info.decoder_bytes}},
+          {"strips", std::move(strips)}};
+}
+
+images::StoredImage stored_image(const Value& json) {
+  const Value& info = json.at("info");
+  images::StoredImage image{{info.at(0), info.at(1), info.at(2), info.at(3), info.at(4)}, {}};
+  for (const Value& strip : json.at("strips"))
+    image.strips.push_back({strip.at(0), strip.at(1)});
+  return image;
+}
+
+NodeId node_of(const Value& json) {
+  return {static_cast<Level>(json.at(0).get<std::uint8_t>()), json.at(1)};
 }
 
 /// What is no object, lists as a whole, by its dotted path.
@@ -85,6 +107,7 @@ std::optional<EarlierBuild> find_earlier_build(storage::FileSystem& files,
     } else if (entry.contains("ingest")) {
       earlier.source = storage::parse_source(
           nlohmann::ordered_json(entry.at("ingest").at("summary")), "journal");
+      earlier.materials = material_list(entry.at("ingest").at("materials"));
       is_whole = earlier.decides_result.is_object();
     }
   };
@@ -103,19 +126,22 @@ std::optional<EarlierBuild> find_earlier_build(storage::FileSystem& files,
 }
 
 BuildJournal::BuildJournal(storage::FileSystem& files, const std::filesystem::path& work,
-                           const BuildIdentity& identity, storage::ScratchUse& use, Forest& forest,
-                           Chunks& chunks, const execution::CancelToken& cancel)
+                           const BuildIdentity& identity, storage::ScratchUse& use,
+                           Workpieces pieces, const execution::CancelToken& cancel)
     : files_(files),
       built_(storage::built_path(work)),
       identity_(identity),
-      forest_(forest),
-      chunks_(chunks),
+      forest_(pieces.forest),
+      chunks_(pieces.chunks),
+      textures_(pieces.textures),
+      pictures_(pieces.pictures),
       cancel_(cancel) {
-  const Tree& tree = forest.tree();
-  has_leaves_.resize(chunks.count());
+  const Tree& tree = forest_.tree();
+  has_leaves_.resize(chunks_.count());
   steps_.resize(static_cast<std::size_t>(raw(tree.depth())) + 1);
   for (int l = 0; l <= raw(tree.depth()); ++l)
     has_tile_.emplace_back(tree.node_count(static_cast<Level>(l)));
+  has_texture_ = has_tile_;
 
   look_ahead(storage::journal_path(work), use);
   std::optional<Value> build;  // whose journal is there
@@ -151,7 +177,7 @@ BuildJournal::BuildJournal(storage::FileSystem& files, const std::filesystem::pa
   if (is_complete_)
     is_sound_ = is_same && published_.size() == tree.tile_count();
   else
-    is_sound_ = is_same && source_ && can_make_all_leaves();
+    is_sound_ = is_same && source_ && can_make_all_leaves() && can_make_all_textures();
 }
 
 /// Of a build that was complete the scratch files are gone: entries of what lay there say nothing.
@@ -177,16 +203,28 @@ bool BuildJournal::take(const Entry& entry) {
     return take_source(value);
   if (kind == "leaves")
     return take_leaves(value);
+  if (kind == "image")
+    return take_image(value);
   if (kind == "simplify")
     return take_tile(value);
+  if (kind == "texture")
+    return take_texture(value);
   return kind == "publish" && take_published(value);
 }
 
 bool BuildJournal::take_source(const Entry& source) {
   source_ = DistributedSource{
       storage::parse_source(nlohmann::ordered_json(source.at("summary")), "journal"),
-      point(source.at("origin"))};
+      point(source.at("origin")), material_list(source.at("materials"))};
   return true;
+}
+
+bool BuildJournal::take_image(const Entry& image) {
+  images_.push_back(stored_image(image.at("stored")));
+  const std::string why = image.at("broken");
+  if (!why.empty())
+    broken_images_.emplace_back(static_cast<std::uint32_t>(images_.size() - 1), why);
+  return pictures_ != nullptr;
 }
 
 bool BuildJournal::take_leaves(const Entry& leaves) {
@@ -202,19 +240,35 @@ bool BuildJournal::take_leaves(const Entry& leaves) {
   return true;
 }
 
+char* BuildJournal::flag_of(const Entry& node, std::vector<std::vector<char>>& flags) const {
+  const std::size_t level = node.at(0);
+  const std::size_t index = node.at(1);
+  return level < flags.size() && index < flags[level].size() ? &flags[level][index] : nullptr;
+}
+
 bool BuildJournal::take_tile(const Entry& tile) {
-  const std::uint8_t level = tile.at("node").at(0);
-  const std::uint32_t index = tile.at("node").at(1);
-  if (level >= raw(forest_.tree().depth()) || index >= has_tile_[level].size() ||
-      has_tile_[level][index] != 0)
+  const NodeId node = node_of(tile.at("node"));
+  char* const has = flag_of(tile.at("node"), has_tile_);
+  if (has == nullptr || *has != 0 || forest_.tree().is_partition(node))
     return false;
   std::vector<IndexedStep> steps;
   for (const Entry& step : tile.at("steps"))
     steps.push_back(indexed_step(step));
-  if (!forest_.restore_tile({static_cast<Level>(level), index}, tile.at("stored")))
+  if (!forest_.restore_tile(node, tile.at("stored")))
     return false;
-  std::move(steps.begin(), steps.end(), std::back_inserter(steps_[level + std::size_t{1}]));
-  has_tile_[level][index] = 1;
+  std::move(steps.begin(), steps.end(),
+            std::back_inserter(steps_[raw(node.level) + std::size_t{1}]));
+  *has = 1;
+  ++found_;
+  return true;
+}
+
+bool BuildJournal::take_texture(const Entry& texture) {
+  char* const has = flag_of(texture.at("node"), has_texture_);
+  if (textures_ == nullptr || has == nullptr || *has != 0 ||
+      !textures_->restore(node_of(texture.at("node")), texture.at("stored")))
+    return false;
+  *has = 1;
   ++found_;
   return true;
 }
@@ -247,11 +301,19 @@ bool BuildJournal::can_make_all_leaves() const {
   return true;
 }
 
+/// Pictures are needed as long as a partition has none of its own.
+bool BuildJournal::can_make_all_textures() {
+  const auto left = [](char has) { return has == 0; };
+  return textures_ == nullptr || std::ranges::none_of(has_texture_.back(), left) ||
+         pictures_->restore(images_);
+}
+
 std::uint64_t BuildJournal::steps() const {
   std::uint64_t tiles = 0;
   for (int l = 0; l < raw(forest_.tree().depth()); ++l)
     tiles += has_tile_[static_cast<std::size_t>(l)].size();
-  return chunks_.count() + tiles + forest_.tree().tile_count();
+  const std::uint64_t published = forest_.tree().tile_count();
+  return chunks_.count() + tiles + published + (textures_ != nullptr ? published : 0);
 }
 
 std::vector<IndexedStep> BuildJournal::take_steps(Level level) {
@@ -263,14 +325,28 @@ const TileRecord* BuildJournal::published(NodeId node) const {
   return found == published_.end() ? nullptr : &found->second;
 }
 
-void BuildJournal::note_source(const SourceSummary& summary, Vec3d origin) {
+void BuildJournal::note_source(const DistributedSource& source) {
   journal_->append({{"build", identity_.decides_result}, {"times", identity_.input_times}});
   for (std::uint32_t chunk = 0; chunk < chunks_.count(); ++chunk)
     journal_->append({{"partition", {chunk, chunks_.store(chunk)}}});
+  journal_->append({{"ingest",
+                     {{"summary", Value(storage::source_json(source.summary))},
+                      {"origin", to_json(source.origin)},
+                      {"materials", to_json(source.materials)}}}});
+  source_ = source;
+}
+
+void BuildJournal::note_image(const images::StoredImage& stored, const std::string& why) {
+  journal_->append({{"image", {{"stored", to_json(stored)}, {"broken", why}}}});
+  if (!why.empty())
+    broken_images_.emplace_back(static_cast<std::uint32_t>(images_.size()), why);
+  images_.push_back(stored);
+}
+
+void BuildJournal::note_texture(NodeId node) {
   journal_->append(
-      {{"ingest",
-        {{"summary", Value(storage::source_json(summary))}, {"origin", to_json(origin)}}}});
-  source_ = DistributedSource{summary, origin};
+      {{"texture",
+        {{"node", {raw(node.level), node.index}}, {"stored", textures_->stored(node)}}}});
 }
 
 void BuildJournal::note_leaves(std::uint32_t chunk, std::uint64_t unreferenced_vertices) {

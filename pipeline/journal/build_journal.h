@@ -5,8 +5,10 @@
 //   build      what decides the result: input, config, tree, version
 //   partition  where a chunk's spools are, when all triangles are distributed
 //   ingest     what was learnt of the input; with it the stages up to partition are done
+//   image      a decoded picture of a textured mesh
 //   leaves     a chunk's partitions
 //   simplify   a simplified tile, the maps to it, and how far its children had moved
+//   texture    a tile's picture
 //   publish    a tile's file
 //   complete   all files of the hierarchy; the scratch files are not needed any more
 //
@@ -16,9 +18,12 @@
 
 #include "execution/cancel.h"
 #include "hierarchy/published.h"
+#include "images/image_store.h"
+#include "images/material_list.h"
 #include "pipeline/tiles/bound_chain.h"
 #include "pipeline/tiles/chunks.h"
 #include "pipeline/tiles/forest.h"
+#include "pipeline/tiles/texture_store.h"
 #include "storage/io/file.h"
 #include "storage/io/journal.h"
 
@@ -27,6 +32,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -38,6 +44,7 @@ namespace meshhier::pipeline {
 struct DistributedSource {
   SourceSummary summary;
   Vec3d origin;
+  images::MaterialList materials;  ///< empty unless the mesh is textured
 };
 
 /// Whose journal it is.
@@ -51,11 +58,23 @@ struct EarlierBuild {
   nlohmann::json decides_result;
   std::int64_t input_times = 0;
   SourceSummary source;
+  images::MaterialList materials;
 };
 /// Of the journal in the directory `work`, unless the input was not read as a whole. Whether all
 /// else is there is not looked at. Throws Error(io).
 std::optional<EarlierBuild> find_earlier_build(storage::FileSystem& files,
                                                const std::filesystem::path& work);
+
+/// What is restored.
+struct Workpieces {
+  Forest& forest;
+  Chunks& chunks;
+  TextureStore* textures = nullptr;  ///< null, both, if the mesh has none
+  images::ImageStore* pictures = nullptr;
+};
+
+/// A picture that could not be decoded, and why.
+using BrokenImage = std::pair<std::uint32_t, std::string>;
 
 /// The step of a tile whose index on its level is known.
 using IndexedStep = std::pair<std::uint32_t, Step>;
@@ -66,8 +85,8 @@ class BuildJournal {
   /// done; of published tiles, those whose files are whole. What the journal moves counts in `use`.
   /// Throws Error(exists) if something is done towards another result, telling what differs.
   BuildJournal(storage::FileSystem& files, const std::filesystem::path& work,
-               const BuildIdentity& identity, storage::ScratchUse& use, Forest& forest,
-               Chunks& chunks, const execution::CancelToken& cancel);
+               const BuildIdentity& identity, storage::ScratchUse& use, Workpieces pieces,
+               const execution::CancelToken& cancel);
 
   /// Whether what is there can be gone on with: something is done, and the disk has kept it.
   bool is_sound() const { return is_sound_; }
@@ -85,6 +104,9 @@ class BuildJournal {
   bool has_tile(NodeId node) const { return has_tile_[raw(node.level)][node.index] != 0; }
   /// Steps of tiles of a level that went into tiles that are done.
   std::vector<IndexedStep> take_steps(Level level);
+  /// Of the pictures that are decoded.
+  const std::vector<BrokenImage>& broken_images() const { return broken_images_; }
+  bool has_texture(NodeId node) const { return has_texture_[raw(node.level)][node.index] != 0; }
   /// The record of a published tile, null if it is not done.
   const TileRecord* published(NodeId node) const;
 
@@ -92,10 +114,13 @@ class BuildJournal {
   bool is_complete() const { return is_complete_; }
 
   // Each notes what is done now; one call at a time. Throws Error(io).
-  void note_source(const SourceSummary& summary, Vec3d origin);
+  void note_source(const DistributedSource& source);
+  /// `why`: empty unless the picture is broken.
+  void note_image(const images::StoredImage& stored, const std::string& why);
   void note_leaves(std::uint32_t chunk, std::uint64_t unreferenced_vertices);
   /// `steps`: of the tile's children, if those are simplified tiles.
   void note_tile(NodeId node, std::span<const IndexedStep> steps);
+  void note_texture(NodeId node);
   void note_published(const TileRecord& record);
   void note_complete();
   void sync() { journal_->sync(); }
@@ -106,19 +131,28 @@ class BuildJournal {
   bool take(const Entry& entry);
   bool take_source(const Entry& source);
   bool take_leaves(const Entry& leaves);
+  bool take_image(const Entry& image);
   bool take_tile(const Entry& tile);
+  bool take_texture(const Entry& texture);
   bool take_published(const Entry& published);
   bool can_make_all_leaves() const;
+  bool can_make_all_textures();
+  /// The flag of a node that an entry names; null if there is none.
+  char* flag_of(const Entry& node, std::vector<std::vector<char>>& flags) const;
 
   storage::FileSystem& files_;
   std::filesystem::path built_;
   BuildIdentity identity_;
   Forest& forest_;
   Chunks& chunks_;
+  TextureStore* textures_;
+  images::ImageStore* pictures_;
   const execution::CancelToken& cancel_;
   std::optional<DistributedSource> source_;
   std::vector<char> has_leaves_;
-  std::vector<std::vector<char>> has_tile_;
+  std::vector<std::vector<char>> has_tile_, has_texture_;
+  std::vector<images::StoredImage> images_;
+  std::vector<BrokenImage> broken_images_;
   std::vector<std::vector<IndexedStep>> steps_;  ///< by level
   std::map<std::pair<Level, std::uint32_t>, TileRecord> published_;
   std::uint64_t unreferenced_ = 0;

@@ -11,7 +11,8 @@ namespace meshhier::pipeline {
 namespace {
 
 BuildIdentity identity_of(const config::Config& config, const importing::MeshInput& input,
-                          const Tree& tree) {
+                          const BuildPlan& plan) {
+  const Tree& tree = plan.tree;
   const mesh_io::MeshDescription& mesh = input.description();
   return {{{"program", "meshhier " MESHHIER_VERSION},
            {"format_version", storage::kFormatVersion},
@@ -22,7 +23,7 @@ BuildIdentity identity_of(const config::Config& config, const importing::MeshInp
            {"faces", mesh.face_count},
            {"partitions", tree.partition_count()},
            {"config", config::resolved_json(config)}},
-          input.files().times()};
+          input.files().times() + plan.textures.file_times};
 }
 
 /// But for the tiles.
@@ -37,24 +38,31 @@ bool is_whole(storage::FileSystem& files, const std::filesystem::path& hierarchy
 
 }  // namespace
 
-Workshop::Workshop(const std::filesystem::path& work, const BuildIdentity& identity, int channels,
-                   storage::MemoryPool& pool, const StageContext& context)
+Workshop::Workshop(const std::filesystem::path& work, const BuildIdentity& identity,
+                   const AttributeLayout& layout, storage::MemoryPool& pool,
+                   const StageContext& context)
     : mesh_scratch(context.files, work / "mesh", pool, storage::ScratchFile::Stays::yes),
       tile_scratch(context.files, work / "tiles", pool, storage::ScratchFile::Stays::yes),
-      chunks(context.tree(), channels, context.plan.job.has_copies(), mesh_scratch,
+      picture_scratch(context.files, work / "pictures", pool, storage::ScratchFile::Stays::yes),
+      chunks(context.tree(), layout.channels(), context.plan.job.has_copies(), mesh_scratch,
              context.memory().spool_block_bytes),
-      forest(context.tree(), chunks.level(), channels, tile_scratch,
+      forest(context.tree(), chunks.level(), layout, tile_scratch,
              context.plan.job.computes_normals),
-      journal(context.files, work, identity, pool.scratch_use(), forest, chunks, context.cancel) {}
+      textures(context.tree(), tile_scratch),
+      pictures(picture_scratch, kPictureCacheBytes),
+      journal(context.files, work, identity, pool.scratch_use(),
+              context.plan.textures.is_textured() ? Workpieces{forest, chunks, &textures, &pictures}
+                                                  : Workpieces{forest, chunks},
+              context.cancel) {}
 
 OpenWorkshop open_workshop(storage::WorkDirectory& work, importing::MeshInput& input,
                            storage::MemoryPool& pool, const StageContext& context) {
   storage::FileSystem& files = context.files;
-  const BuildIdentity identity = identity_of(context.config, input, context.tree());
+  const BuildIdentity identity = identity_of(context.config, input, context.plan);
   OpenWorkshop open;
   const auto make = [&] {
-    open.workshop = std::make_unique<Workshop>(
-        work.path(), identity, input.description().attributes.channels(), pool, context);
+    open.workshop = std::make_unique<Workshop>(work.path(), identity,
+                                               input.description().attributes, pool, context);
   };
   const auto begin_anew = [&](std::string why) {
     open.workshop.reset();
@@ -75,7 +83,8 @@ OpenWorkshop open_workshop(storage::WorkDirectory& work, importing::MeshInput& i
   } else if (!journal.is_sound() || (journal.is_complete() && !is_whole(files, work.built()))) {
     begin_anew("what an earlier build left has been damaged: this one began anew");
   } else if (journal.input_was_touched() &&
-             input.checksum(context.cancel) != journal.source()->summary.checksum) {
+             (context.plan.textures.is_textured() ||
+              input.checksum(context.cancel) != journal.source()->summary.checksum)) {
     begin_anew("the input was changed since an earlier build was stopped: this one began anew");
   } else {
     open.found =
@@ -98,15 +107,20 @@ std::optional<mesh_io::MeshDescription> recall_import(const EarlierBuild& earlie
   const auto config = made_of.find("config");
   if (!is(made_of, "input", files.name()) || !is(made_of, "input_bytes", files.bytes()) ||
       config == made_of.end() || !is(*config, "weld", files.weld()) ||
-      !is(*config, "topology", config::resolved_json(asked).at("topology")))
+      !is(*config, "topology", config::resolved_json(asked).at("topology")) ||
+      !is(config->value("texture", nlohmann::json::object()), "use", asked.texture.use))
     return std::nullopt;
-  if (earlier.input_times != files.times() && input.checksum(cancel) != earlier.source.checksum)
+  const bool is_textured = !earlier.materials.empty();
+  if ((is_textured || earlier.input_times != files.times()) &&
+      input.checksum(cancel) != earlier.source.checksum)
     return std::nullopt;
   mesh_io::MeshDescription mesh;
   mesh.vertex_count = earlier.source.vertices;
   mesh.place_count = earlier.source.places;
   mesh.face_count = made_of.value("faces", std::uint64_t{0});
   mesh.attributes = earlier.source.attributes;
+  if (!earlier.materials.empty())
+    mesh.attributes.texcoords = mesh.attributes.material = true;
   mesh.vertices_in_place = true;
   return mesh;
 }

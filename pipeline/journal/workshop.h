@@ -17,13 +17,16 @@
 namespace meshhier::pipeline {
 
 struct Workshop {
-  Workshop(const std::filesystem::path& work, const BuildIdentity& identity, int channels,
-           storage::MemoryPool& pool, const StageContext& context);
+  Workshop(const std::filesystem::path& work, const BuildIdentity& identity,
+           const AttributeLayout& layout, storage::MemoryPool& pool, const StageContext& context);
 
   storage::ScratchFile mesh_scratch;  ///< what is needed until the leaves are done
   storage::ScratchFile tile_scratch;
+  storage::ScratchFile picture_scratch;  ///< what is needed until the textures are done
   Chunks chunks;
   Forest forest;
+  TextureStore textures;
+  images::ImageStore pictures;
   BuildJournal journal;
 };
 

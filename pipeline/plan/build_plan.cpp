@@ -1,5 +1,6 @@
 #include "pipeline/plan/build_plan.h"
 
+#include "config/partition_size.h"
 #include "execution/size_text.h"
 #include "hierarchy/error.h"
 #include "hierarchy/normal_code.h"
@@ -30,23 +31,35 @@ std::uint64_t bytes_left(const std::filesystem::path& output, storage::FileSyste
   return files.exists(work) ? storage::bytes_below(files, work) : 0;
 }
 
-TargetVertexCounts target_vertex_counts(const config::Config& config, const Tree& tree) {
+void add_textures(const config::Config& config, const TexturePlan& textures, JobSize& job) {
+  job.textured = textures.is_textured();
+  job.picture_format = config.texture.format.format;
+  job.picture_side = config.texture.texels;
+  job.source_texels = textures.texels();
+  job.picture_bytes = textures.stored_bytes();
+  job.decoder_bytes = textures.decoder_bytes();
+  job.adding_bytes = textures.adding_bytes();
+}
+
+TargetVertexCounts target_vertex_counts(const config::Config& config, const Tree& tree,
+                                        const TexturePlan& textures) {
   if (config.simplify.vertices)
     return *config.simplify.vertices;
-  return config.partition.count ? std::max(4U, largest_partition(tree)) : config.partition.vertices;
+  const bool is_counted = config.partition.count.has_value() || textures.is_textured();
+  return is_counted ? std::max(4U, largest_partition(tree)) : config.partition.vertices;
 }
 
 }  // namespace
 
-Tree plan_tree(const config::Config& config, std::uint64_t vertex_count) {
+Tree plan_tree(const config::Config& config, std::uint64_t vertex_count,
+               const TexturePlan& textures) {
   if (vertex_count == 0) {
     throw Error(ErrorCode::input, fmt::format("{} has no vertices: there is nothing to build",
                                               config.input.string()));
   }
+  const std::uint64_t most = config::partition_vertices(config, vertex_count, textures.texels());
   const std::uint64_t count =
-      config.partition.count
-          ? *config.partition.count
-          : (vertex_count + config.partition.vertices - 1) / config.partition.vertices;
+      config.partition.count ? *config.partition.count : (vertex_count + most - 1) / most;
   if (count > vertex_count) {
     throw Error(ErrorCode::usage,
                 fmt::format("partition.count is {}, but {} has only {}", count,
@@ -69,7 +82,7 @@ std::size_t thread_count(const config::Config& config) {
 }
 
 JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& mesh,
-                 std::uint64_t imported_bytes, const Tree& tree) {
+                 std::uint64_t imported_bytes, const Tree& tree, const TexturePlan& textures) {
   JobSize job;
   job.vertex_count = mesh.vertex_count;
   job.place_count = tree.vertex_count();
@@ -80,16 +93,19 @@ JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& m
   job.wide_coordinates = mesh.wide_coordinates;
   job.partition_count = tree.partition_count();
   job.threads = thread_count(config);
-  job.target_vertex_counts = target_vertex_counts(config, tree);
+  job.target_vertex_counts = target_vertex_counts(config, tree, textures);
   job.largest_tile =
       std::max(largest_partition(tree), job.target_vertex_counts.largest_above(tree.depth()));
   job.clustered = config.simplify.method == config::SimplifyMethod::cluster;
   job.computes_normals = config.storage.normals == config::Normals::smooth &&
-                         !mesh.attributes.normals && mesh.face_count > 0;
+                         !mesh.attributes.normals && mesh.face_count > 0 &&
+                         !(textures.is_textured() && config.texture.format.unlit);
   job.published_attribute_bytes = storage::published_attribute_bytes(mesh.attributes) +
                                   (job.computes_normals ? sizeof(NormalCode) : 0);
   job.published_ratio = storage::expected_ratio(config.storage.compression);
+  job.has_map = config.placement.crs.has_value();
   job.packed = config.storage.container == storage::Container::archive;
+  add_textures(config, textures, job);
   return job;
 }
 
@@ -148,7 +164,7 @@ void check_disk(const DiskNeed& need, const std::filesystem::path& output,
 
 void check_apart(const config::Config& config, storage::FileSystem& files) {
   const std::filesystem::path output = files.canonical(config.output);
-  for (const std::filesystem::path& path : config.input) {
+  for (const std::filesystem::path& path : config::read_by(config)) {
     const std::filesystem::path input = files.canonical(path);
     if (storage::is_within(input, output)) {
       throw Error(ErrorCode::usage, fmt::format("the input {} lies in the output {}",

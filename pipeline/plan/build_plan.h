@@ -9,6 +9,7 @@
 #include "pipeline/plan/disk_need.h"
 #include "pipeline/plan/job_size.h"
 #include "pipeline/plan/memory_plan.h"
+#include "pipeline/plan/texture_plan.h"
 #include "storage/io/file.h"
 
 #include <cstddef>
@@ -24,15 +25,17 @@ struct BuildPlan {
   JobSize job{};
   MemoryPlan memory{};
   DiskNeed disk{};
+  TexturePlan textures{};
 };
 
 /// The partitions of a mesh. Throws Error(usage | input) if those asked for cannot be.
-Tree plan_tree(const config::Config& config, std::uint64_t vertex_count);
+Tree plan_tree(const config::Config& config, std::uint64_t vertex_count,
+               const TexturePlan& textures = {});
 
 /// Of a mesh of which the header was read; `imported_bytes`: of the PLY, if it is one that the
 /// input was imported to.
 JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& mesh,
-                 std::uint64_t imported_bytes, const Tree& tree);
+                 std::uint64_t imported_bytes, const Tree& tree, const TexturePlan& textures = {});
 
 /// Threads that a build of that config uses.
 std::size_t thread_count(const config::Config& config);

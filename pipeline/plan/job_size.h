@@ -2,6 +2,7 @@
 #pragma once
 
 #include "hierarchy/target_vertex_counts.h"
+#include "hierarchy/texture.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -27,6 +28,14 @@ struct JobSize {
   std::uint64_t published_attribute_bytes = 0;  ///< of a vertex in a published tile
   double published_ratio = 1;                   ///< of a published tile, about, to a plain one
   bool packed = false;                          ///< published files become one archive
+  bool textured = false;
+  ImageFormat picture_format = ImageFormat::jpeg;
+  std::uint32_t picture_side = 0;   ///< of a simplified tile, texels at most
+  std::uint64_t source_texels = 0;  ///< of all pictures of the input
+  std::uint64_t picture_bytes = 0;  ///< of these, decoded into scratch space
+  std::uint64_t decoder_bytes = 0;  ///< what decoding the hungriest of them holds
+  std::uint64_t adding_bytes = 0;   ///< what storing the widest of them holds
+  bool has_map = false;             ///< PROJ places the model
 
   /// Vertices at places that have one already, for each place.
   double copies_per_place() const {

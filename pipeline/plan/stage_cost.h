@@ -23,7 +23,7 @@ struct StageMemory {
 /// Outline and publish hold less than simplify, with as many tiles in flight.
 struct MemoryCosts {
   std::uint64_t bookkeeping_bytes = 0;  ///< held all the time
-  StageMemory ingest, partition, leaves, simplify;
+  StageMemory ingest, partition, leaves, simplify, images, texture;
   ChunkSpools chunk_spools;
 };
 

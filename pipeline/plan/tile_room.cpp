@@ -16,15 +16,15 @@ namespace {
 constexpr std::uint64_t kBytesBetweenReleases = std::uint64_t{640} << 20;
 constexpr std::uint64_t kMostBetweenReleases = 64;
 
-constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+constexpr std::uint64_t kBudgetStep = std::uint64_t{1} << 20;
 
 /// So much more budget has room for what lacks. Of more budget a part is the allocator's
 /// (kAllocatorParts), which may lack its part of this one.
 std::uint64_t more_budget(const MemoryPlan& plan, std::uint64_t lacking) {
   return ((lacking + plan.budget_bytes / kAllocatorParts) / (kAllocatorParts - 1) *
-              kAllocatorParts / kMiB +
+              kAllocatorParts / kBudgetStep +
           1) *
-         kMiB;
+         kBudgetStep;
 }
 
 [[noreturn]] void refuse(const MemoryPlan& plan, const storage::MemoryPool& pool,

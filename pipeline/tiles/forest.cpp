@@ -1,6 +1,7 @@
 #include "pipeline/tiles/forest.h"
 
 #include "cluster_simplify/seams.h"
+#include "pipeline/tiles/blob_json.h"
 #include "shading/tile_shading.h"
 #include "storage/format/work_tile.h"
 
@@ -30,21 +31,14 @@ void for_each_owner(std::span<const Ref> refs, const Visit& visit) {
   }
 }
 
-nlohmann::json to_json(const storage::StoredBlob& blob) {
-  return {blob.offset, blob.bytes, blob.checksum};
-}
-
-bool restore(storage::BlobStore& store, std::size_t index, const nlohmann::json& stored) {
-  return store.restore(index, {stored.at(0), stored.at(1), stored.at(2)});
-}
-
 }  // namespace
 
-Forest::Forest(const Tree& tree, Level chunks, int channels, storage::ScratchFile& scratch,
-               bool computes_normals)
+Forest::Forest(const Tree& tree, Level chunks, const AttributeLayout& layout,
+               storage::ScratchFile& scratch, bool computes_normals)
     : tree_(tree),
       chunks_(chunks),
-      channels_(channels),
+      layout_(layout),
+      layout_above_(layout.material ? layout.without_texcoords() : layout),
       computes_normals_(computes_normals),
       pool_(scratch.pool()),
       places_(scratch, tree.node_count(chunks)) {
@@ -96,7 +90,7 @@ std::uint64_t Forest::triangle_bytes(NodeId node) const {
   std::array<std::byte, storage::kWorkTileHeadBytes> head;
   levels_[raw(node.level)].tiles.read(node.index, 0, head);
   return storage::work_triangle_bytes(head) +
-         storage::work_copy_bytes(head, channels_) / kCopyShare;
+         storage::work_copy_bytes(head, channels(node)) / kCopyShare;
 }
 
 storage::TileSums Forest::partition_sums() const {
@@ -139,7 +133,7 @@ void Forest::drop_copies(std::uint64_t free_bytes) {
 template <class Corner>
 LoadedTile Forest::resolved(NodeId node) const {
   const storage::BlobStore& tiles = levels_[raw(node.level)].tiles;
-  auto work = storage::decode_work_tile<Corner>(tiles.view(node.index).bytes(), channels_);
+  auto work = storage::decode_work_tile<Corner>(tiles.view(node.index).bytes(), channels(node));
   LoadedTile loaded;
   loaded.mapped = mapped(node, work.foreign);
   map_wedges(node, work);
@@ -158,7 +152,7 @@ LoadedTile Forest::load_with_mapped(NodeId node) const {
     const std::uint32_t neighbour = tile.mesh.ghosts[begin].tile;
     cluster_simplify::fill_ghosts(
         tile, neighbour,
-        storage::decode_boundary(level.boundaries.view(neighbour).bytes(), channels_));
+        storage::decode_boundary(level.boundaries.view(neighbour).bytes(), channels(node)));
   });
   return loaded;
 }

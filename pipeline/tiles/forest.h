@@ -2,6 +2,7 @@
 // space.
 #pragma once
 
+#include "hierarchy/attributes.h"
 #include "hierarchy/build_tile.h"
 #include "hierarchy/published.h"
 #include "hierarchy/tree.h"
@@ -36,10 +37,15 @@ struct LoadedTile {
 /// An early node has a tile here too: its partition's, kept as it is.
 class Forest {
  public:
-  Forest(const Tree& tree, Level chunks, int channels, storage::ScratchFile& scratch,
-         bool computes_normals = false);
+  /// `layout`: of partitions; tiles above them have no texture coordinates if those name materials.
+  Forest(const Tree& tree, Level chunks, const AttributeLayout& layout,
+         storage::ScratchFile& scratch, bool computes_normals = false);
 
   const Tree& tree() const { return tree_; }
+  /// Of the tiles of a level.
+  const AttributeLayout& layout(Level level) const {
+    return level == tree_.depth() ? layout_ : layout_above_;
+  }
   bool computes_normals() const { return computes_normals_; }
 
   void put_places(std::uint32_t chunk, std::span<const partition::LeafPlace> places);
@@ -128,9 +134,11 @@ class Forest {
   WedgeMap wedge_map(NodeId child) const;
   std::vector<std::uint16_t> parent_map(NodeId child, std::size_t count) const;
 
+  int channels(NodeId node) const { return layout(node.level).channels(); }
+
   Tree tree_;
   Level chunks_;
-  int channels_;
+  AttributeLayout layout_, layout_above_;
   bool computes_normals_;
   storage::MemoryPool& pool_;
   storage::BlobStore places_;

@@ -1,6 +1,7 @@
 #include "storage/format/hierarchy_reader.h"
 
 #include "hierarchy/bounds.h"
+#include "hierarchy/cut.h"
 #include "hierarchy/error.h"
 #include "storage/format/index.h"
 #include "storage/format/layout.h"
@@ -25,15 +26,31 @@ Manifest load_manifest(FileSystem& files, const std::filesystem::path& directory
   return parse_manifest(read_sealed_text(*files.open(path)), path.string());
 }
 
+/// That the records have splits and pictures only where the manifest says so.
+void check_shading(std::span<const TileRecord> records, const Manifest& manifest,
+                   const std::string& name) {
+  const auto has_splits = [](const TileRecord& record) { return record.split_count > 0; };
+  if (!manifest.computed_normals && !manifest.textures && std::ranges::any_of(records, has_splits))
+    throw Error(ErrorCode::corrupt, name + ": splits without computed normals or textures");
+  for (const TileRecord& record : records) {
+    const bool has_triangles = record.interior_count > 0 || record.border_count > 0;
+    const bool has_image = record.image_width > 0;
+    if (has_image != (manifest.textures && has_triangles)) {
+      throw Error(
+          ErrorCode::corrupt,
+          fmt::format("{}: tile {} has {} picture, but the mesh has {}", name, to_text(record.node),
+                      has_image ? "a" : "no", manifest.textures ? "textures" : "no textures"));
+    }
+  }
+}
+
 std::vector<TileRecord> load_index(FileSystem& files, const std::filesystem::path& directory,
                                    const Manifest& manifest, const Tree& tree) {
   const auto path = index_path(directory);
   const auto bytes =
       read_sealed(files, path, {manifest.index_bytes, manifest.index_checksum}, index_bytes(tree));
   std::vector<TileRecord> records = decode_index(bytes, tree, path.string());
-  const auto has_splits = [](const TileRecord& record) { return record.split_count > 0; };
-  if (!manifest.computed_normals && std::ranges::any_of(records, has_splits))
-    throw Error(ErrorCode::corrupt, path.string() + ": splits without computed normals");
+  check_shading(records, manifest, path.string());
   return records;
 }
 
@@ -54,6 +71,8 @@ const char* difference(const PublishedTile& tile, const TileRecord& record) {
     return "interior triangles";
   if (mesh.border.size() != record.border_count)
     return "border triangles";
+  if (tile.image.width != record.image_width || tile.image.height != record.image_height)
+    return "picture's sides";
   if (bounds_of(mesh.vertices.positions) != record.bounds)
     return "bounds";
   return nullptr;
@@ -65,6 +84,7 @@ TileFormat format_of(const Manifest& manifest) {
   if (manifest.quantization)
     format.lattice = manifest.quantization->lattice;
   format.computed_normals = manifest.computed_normals;
+  format.textures = manifest.textures;
   return format;
 }
 

@@ -19,8 +19,8 @@ namespace {
 //   header                                     record
 //   offset  bytes  what                        offset  bytes  what
 //        0      8  magic "MHTILES\n"                0      4  level
-//        8      4  version, 3                       4      4  index
-//       12      4  bytes of a record, 104           8      4  own places
+//        8      4  version, 4                       4      4  index
+//       12      4  bytes of a record, 120           8      4  own places
 //       16      8  number of records               12      4  boundary places
 //       24      8  XXH3-64 of bytes 0 to 23        16      4  ghosts
 //                  and all records                 20      4  copies
@@ -35,13 +35,18 @@ namespace {
 //                                                  56      4  f32 compactness
 //                                                  60     24  f32 min x y z, max x y z
 //                                                  84      4  splits
-//                                                  88      8  bytes of the file
-//                                                  96      8  XXH3-64 of the file
+//                                                  88      4  width of the picture
+//                                                  92      4  height of the picture
+//                                                  96      4  f32 texel
+//                                                 100      4  0
+//                                                 104      8  bytes of the file
+//                                                 112      8  XXH3-64 of the file
 constexpr std::string_view kIndexMagic = "MHTILES\n";
-constexpr std::uint32_t kIndexVersion = 3;
+constexpr std::uint32_t kIndexVersion = 4;
 constexpr std::size_t kIndexHeaderBytes = 32;
 constexpr std::size_t kCheckedHeaderBytes = 24;
-constexpr std::size_t kRecordBytes = 104;
+constexpr std::size_t kPaddingOffset = 100;
+constexpr std::size_t kRecordBytes = 120;
 
 void append_record(std::vector<std::byte>& bytes, const TileRecord& record) {
   for (const std::uint32_t value :
@@ -56,7 +61,10 @@ void append_record(std::vector<std::byte>& bytes, const TileRecord& record) {
                             box.min.z, box.max.x, box.max.y, box.max.z}) {
     append_little(bytes, value);
   }
-  append_little(bytes, record.split_count);
+  for (const std::uint32_t value : {record.split_count, record.image_width, record.image_height})
+    append_little(bytes, value);
+  append_little(bytes, record.texel);
+  append_little(bytes, std::uint32_t{0});
   append_little(bytes, record.file_bytes);
   append_little(bytes, record.checksum);
 }
@@ -89,14 +97,32 @@ TileRecord load_record(const std::byte* from) {
   record.compactness = real(56);
   record.bounds = {{real(60), real(64), real(68)}, {real(72), real(76), real(80)}};
   record.split_count = count(84);
-  record.file_bytes = load_little<std::uint64_t>(from + 88);
-  record.checksum = load_little<std::uint64_t>(from + 96);
+  record.image_width = count(88);
+  record.image_height = count(92);
+  record.texel = real(96);
+  record.file_bytes = load_little<std::uint64_t>(from + 104);
+  record.checksum = load_little<std::uint64_t>(from + 112);
   return record;
+}
+
+bool is_measure(float value) {
+  return std::isfinite(value) && value >= 0;
+}
+
+/// What is wrong with what a record says of the tile's picture; null if nothing is.
+const char* image_flaw_of(const TileRecord& record) {
+  const auto [least, most] = std::minmax({record.image_width, record.image_height});
+  if (most > kMaxImageSide || (least == 0 && most > 0))
+    return "size of the picture";
+  if (most > 0 && record.interior_count == 0 && record.border_count == 0)
+    return "picture (of no triangle)";
+  if (!is_measure(record.texel) || (most == 0 && record.texel > 0))
+    return "texel";
+  return nullptr;
 }
 
 /// What is wrong with the values of a record; null if nothing is.
 const char* flaw_of(const TileRecord& record, const Tree& tree) {
-  const auto is_measure = [](float value) { return std::isfinite(value) && value >= 0; };
   const Bounds& box = record.bounds;
   const bool finite = std::isfinite(box.min.x) && std::isfinite(box.min.y) &&
                       std::isfinite(box.min.z) && std::isfinite(box.max.x) &&
@@ -123,7 +149,7 @@ const char* flaw_of(const TileRecord& record, const Tree& tree) {
   }
   if (record.file_bytes == 0)
     return "bytes of the file";
-  return nullptr;
+  return image_flaw_of(record);
 }
 
 class IndexReader {
@@ -186,6 +212,8 @@ class IndexReader {
       fail(fmt::format("record {} is of tile {}/{}, expected {}/{}", number, level, index,
                        raw(node.level), node.index));
     }
+    if (load_little<std::uint32_t>(from + kPaddingOffset) != 0)
+      fail(fmt::format("tile {}/{}: bytes that have to be 0 are not", level, index));
     const TileRecord record = load_record(from);
     if (const char* flaw = flaw_of(record, tree_)) {
       fail(fmt::format("tile {}/{}: impossible {}", level, index, flaw));

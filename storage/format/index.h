@@ -18,7 +18,7 @@ std::vector<std::byte> encode_index(std::span<const TileRecord> records);
 std::vector<TileRecord> decode_index(std::span<const std::byte> bytes, const Tree& tree,
                                      const std::string& name);
 
-/// One record as it is in the index: 104 bytes.
+/// One record as it is in the index: 120 bytes.
 std::vector<std::byte> encode_record(const TileRecord& record);
 /// The inverse. Throws Error(corrupt) if `bytes` has another size or names no level.
 TileRecord decode_record(std::span<const std::byte> bytes);

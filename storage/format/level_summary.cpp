@@ -12,25 +12,36 @@
 namespace meshhier::storage {
 namespace {
 
-/// Collects a CountRange.
-class Range {
- public:
-  void add(std::uint64_t count) {
-    min_ = std::min(min_, count);
-    max_ = std::max(max_, count);
-    sum_ += count;
-    ++n_;
+/// Of one count a record. Two passes: the squares of large counts would not fit.
+template <class Count>
+CountRange range_of(std::span<const TileRecord> records, const Count& count) {
+  if (records.empty())
+    return {};
+  CountRange range{UINT64_MAX, 0};
+  std::uint64_t sum = 0;
+  for (const TileRecord& record : records) {
+    range.min = std::min<std::uint64_t>(range.min, count(record));
+    range.max = std::max<std::uint64_t>(range.max, count(record));
+    sum += count(record);
   }
-  std::uint64_t sum() const { return sum_; }
-  CountRange range() const {
-    if (n_ == 0)
-      return {};
-    return {min_, max_, static_cast<double>(sum_) / static_cast<double>(n_)};
+  const auto n = static_cast<double>(records.size());
+  range.mean = static_cast<double>(sum) / n;
+  double squares = 0;
+  for (const TileRecord& record : records) {
+    const double off = static_cast<double>(count(record)) - range.mean;
+    squares += off * off;
   }
+  range.deviation = std::sqrt(squares / n);
+  return range;
+}
 
- private:
-  std::uint64_t min_ = UINT64_MAX, max_ = 0, sum_ = 0, n_ = 0;
-};
+std::uint64_t vertex_count(const TileRecord& record) {
+  return record.own_count;
+}
+
+std::uint64_t file_bytes(const TileRecord& record) {
+  return record.file_bytes;
+}
 
 std::uint64_t triangle_count(const TileRecord& record) {
   return std::uint64_t{record.interior_count} + record.border_count;
@@ -38,6 +49,10 @@ std::uint64_t triangle_count(const TileRecord& record) {
 
 std::uint64_t drawn_count(const TileRecord& record) {
   return std::uint64_t{record.interior_count} + record.drawn_border_count;
+}
+
+std::uint64_t texel_count(const TileRecord& record) {
+  return std::uint64_t{record.image_width} * record.image_height;
 }
 
 /// 0 of nothing.
@@ -49,13 +64,12 @@ LevelSummary summarize(Level level, Level last, std::span<const TileRecord> reco
   LevelSummary summary;
   summary.level = level;
   summary.tiles = static_cast<std::uint32_t>(records.size());
-  Range vertices, triangles, bytes;
-  std::uint64_t border = 0;
+  std::uint64_t triangles = 0, border = 0;
   for (const TileRecord& record : records) {
-    vertices.add(record.own_count);
-    triangles.add(triangle_count(record));
-    bytes.add(record.file_bytes);
+    triangles += triangle_count(record);
     border += record.border_count;
+    summary.vertices_total += record.own_count;
+    summary.bytes_total += record.file_bytes;
     summary.copies_total += record.copy_count;
     summary.splits_total += record.split_count;
     summary.triangles_total += drawn_count(record);
@@ -66,14 +80,11 @@ LevelSummary summarize(Level level, Level last, std::span<const TileRecord> reco
     if (level != last && record.own_count != record.target_count)
       ++summary.off_target;
   }
-  summary.vertices = vertices.range();
-  summary.triangles = triangles.range();
-  summary.bytes = bytes.range();
-  summary.vertices_total = vertices.sum();
-  summary.bytes_total = bytes.sum();
-  if (triangles.sum() > 0) {
-    summary.border_ratio = static_cast<double>(border) / static_cast<double>(triangles.sum());
-  }
+  summary.vertices = range_of(records, vertex_count);
+  summary.triangles = range_of(records, triangle_count);
+  summary.bytes = range_of(records, file_bytes);
+  summary.border_ratio = quotient(border, triangles);
+  summary.pictures = summarize_pictures(records);
   summary.shown_tiles = summary.tiles;
   summary.shown_triangles = summary.triangles_total;
   return summary;
@@ -130,6 +141,7 @@ double SizeSummary::raw_ratio() const {
 SizeSummary summarize_sizes(std::span<const TileRecord> records, const TileFormat& format) {
   using storage::Part;
   SizeSummary sizes;
+  sizes.tile_bytes = range_of(records, file_bytes);
   for (const TileRecord& record : records) {
     storage::TileShape shape;
     shape.own = record.own_count;
@@ -137,11 +149,13 @@ SizeSummary summarize_sizes(std::span<const TileRecord> records, const TileForma
     shape.copies = record.copy_count;
     shape.splits = record.split_count;
     shape.computed_normals = format.computed_normals;
+    shape.textures = format.textures;
+    shape.image.bytes = texel_count(record) * 3;
     shape.interior = record.interior_count;
     shape.border = record.border_count;
     const storage::TilePlan plan(shape, format.attributes);
-    for (const Part part :
-         {Part::position, Part::normal, Part::colour, Part::texcoord, Part::interior, Part::border})
+    for (const Part part : {Part::position, Part::normal, Part::colour, Part::texcoord,
+                            Part::interior, Part::border, Part::image})
       sizes.raw_bytes += plan[part].bytes();
     sizes.bytes += record.file_bytes;
     sizes.vertices += record.own_count;
@@ -152,10 +166,39 @@ SizeSummary summarize_sizes(std::span<const TileRecord> records, const TileForma
 
 nlohmann::ordered_json to_json(const SizeSummary& s) {
   return {{"bytes", s.bytes},
+          {"bytes_mean", s.tile_bytes.mean},
+          {"bytes_deviation", s.tile_bytes.deviation},
           {"raw_bytes", s.raw_bytes},
           {"bytes_per_vertex", s.bytes_per_vertex()},
           {"bytes_per_triangle", s.bytes_per_triangle()},
           {"raw_ratio", s.raw_ratio()}};
+}
+
+PictureSummary summarize_pictures(std::span<const TileRecord> records) {
+  PictureSummary pictures;
+  std::uint64_t width = 0, height = 0, measured = 0;
+  double texel = 0;
+  for (const TileRecord& record : records) {
+    pictures.tiles += record.image_width > 0 ? 1 : 0;
+    pictures.texels += texel_count(record);
+    width += record.image_width;
+    height += record.image_height;
+    measured += record.texel > 0 ? 1 : 0;
+    texel += double{record.texel};
+  }
+  pictures.width = quotient(width, pictures.tiles);
+  pictures.height = quotient(height, pictures.tiles);
+  pictures.texel = measured > 0 ? texel / static_cast<double>(measured) : 0;
+  return pictures;
+}
+
+double PictureSummary::texels_mean() const {
+  return quotient(texels, tiles);
+}
+
+nlohmann::ordered_json to_json(const PictureSummary& s) {
+  return {{"tiles", s.tiles},      {"texels", s.texels},      {"texels_mean", s.texels_mean()},
+          {"width_mean", s.width}, {"height_mean", s.height}, {"texel_mean", s.texel}};
 }
 
 CompactnessSummary summarize_compactness(const Tree& tree, std::span<const TileRecord> records) {
@@ -198,31 +241,35 @@ nlohmann::ordered_json to_json(const ForcedCollapses& forced) {
 }
 
 nlohmann::ordered_json to_json(const LevelSummary& s) {
-  return {{"level", raw(s.level)},
-          {"tiles", s.tiles},
-          {"vertices_min", s.vertices.min},
-          {"vertices_mean", s.vertices.mean},
-          {"vertices_max", s.vertices.max},
-          {"vertices_total", s.vertices_total},
-          {"copies_total", s.copies_total},
-          {"splits_total", s.splits_total},
-          {"triangles_min", s.triangles.min},
-          {"triangles_mean", s.triangles.mean},
-          {"triangles_max", s.triangles.max},
-          {"triangles_total", s.triangles_total},
-          {"bytes_min", s.bytes.min},
-          {"bytes_mean", s.bytes.mean},
-          {"bytes_max", s.bytes.max},
-          {"bytes_total", s.bytes_total},
-          {"border_ratio", s.border_ratio},
-          {"error_max", s.error_max},
-          {"bound_max", s.bound_max},
-          {"torn_vertices", s.torn_total},
-          {"forced_vertices", s.forced_total},
-          {"off_target", s.off_target},
-          {"shown_tiles", s.shown_tiles},
-          {"shown_triangles", s.shown_triangles},
-          {"shown_triangles_exact", s.shown_exact}};
+  nlohmann::ordered_json json{{"level", raw(s.level)},
+                              {"tiles", s.tiles},
+                              {"vertices_min", s.vertices.min},
+                              {"vertices_mean", s.vertices.mean},
+                              {"vertices_max", s.vertices.max},
+                              {"vertices_total", s.vertices_total},
+                              {"copies_total", s.copies_total},
+                              {"splits_total", s.splits_total},
+                              {"triangles_min", s.triangles.min},
+                              {"triangles_mean", s.triangles.mean},
+                              {"triangles_max", s.triangles.max},
+                              {"triangles_total", s.triangles_total},
+                              {"bytes_min", s.bytes.min},
+                              {"bytes_mean", s.bytes.mean},
+                              {"bytes_deviation", s.bytes.deviation},
+                              {"bytes_max", s.bytes.max},
+                              {"bytes_total", s.bytes_total},
+                              {"border_ratio", s.border_ratio},
+                              {"error_max", s.error_max},
+                              {"bound_max", s.bound_max},
+                              {"torn_vertices", s.torn_total},
+                              {"forced_vertices", s.forced_total},
+                              {"off_target", s.off_target},
+                              {"shown_tiles", s.shown_tiles},
+                              {"shown_triangles", s.shown_triangles},
+                              {"shown_triangles_exact", s.shown_exact}};
+  if (s.pictures.tiles > 0)
+    json["pictures"] = to_json(s.pictures);
+  return json;
 }
 
 nlohmann::ordered_json to_json(const TileRecord& r) {
@@ -243,6 +290,9 @@ nlohmann::ordered_json to_json(const TileRecord& r) {
           {"error", r.error},
           {"bound", r.bound},
           {"compactness", r.compactness},
+          {"image_width", r.image_width},
+          {"image_height", r.image_height},
+          {"texel", r.texel},
           {"bytes", r.file_bytes}};
 }
 

@@ -19,9 +19,22 @@ struct CountRange {
   std::uint64_t min = 0;
   std::uint64_t max = 0;
   double mean = 0;
+  double deviation = 0;  ///< standard deviation
 
   /// (max - min) / mean: 0 if all are equal.
   double spread() const { return mean > 0 ? static_cast<double>(max - min) / mean : 0; }
+  /// deviation / mean
+  double variation() const { return mean > 0 ? deviation / mean : 0; }
+};
+
+/// The pictures of tiles.
+struct PictureSummary {
+  std::uint32_t tiles = 0;       ///< that have one
+  std::uint64_t texels = 0;      ///< of them together
+  double width = 0, height = 0;  ///< mean
+  double texel = 0;  ///< mean size of their texels on the surface, input units, of those with area
+
+  double texels_mean() const;
 };
 
 /// The tiles of one level: simplified ones, or on the last level all partitions.
@@ -32,8 +45,9 @@ struct LevelSummary {
   CountRange triangles;  ///< interior and border
   CountRange bytes;      ///< of the files
   std::uint64_t vertices_total = 0;
-  std::uint64_t copies_total = 0;     ///< further vertices at places, those of ghosts included
-  std::uint64_t splits_total = 0;     ///< further normals of vertices, those of ghosts included
+  std::uint64_t copies_total = 0;  ///< further vertices at places, those of ghosts included
+  std::uint64_t splits_total = 0;  ///< further normals and texture coordinates of vertices, those
+                                   ///< of ghosts included
   std::uint64_t triangles_total = 0;  ///< each once: interior, and border ones where they are drawn
   std::uint64_t bytes_total = 0;
   double border_ratio = 0;         ///< border triangles of all triangles, summed over the tiles
@@ -42,6 +56,7 @@ struct LevelSummary {
   std::uint64_t torn_total = 0;    ///< vertices that went by changing topology
   std::uint64_t forced_total = 0;  ///< vertices that went without care for the surface
   std::uint32_t off_target = 0;    ///< simplified tiles whose vertex count is not the one asked for
+  PictureSummary pictures;
 
   // What the cut of this level shows (Cut::of_level).
   std::uint32_t shown_tiles = 0;
@@ -57,8 +72,10 @@ std::vector<LevelSummary> summarize_levels(const Tree& tree, std::span<const Til
 /// What tiles take, against floats and indices as they are.
 struct SizeSummary {
   std::uint64_t bytes = 0;      ///< of the files
-  std::uint64_t raw_bytes = 0;  ///< positions as f32, attributes, computed normals, indices of 16
-                                ///< or 32 bits, plain
+  CountRange tile_bytes;        ///< of one
+  std::uint64_t raw_bytes = 0;  ///< positions as f32, attributes, computed normals, texture
+                                ///< coordinates, indices of 16 or 32 bits, pictures of 24 bits a
+                                ///< texel, plain
   std::uint64_t vertices = 0;   ///< own, without copies
   std::uint64_t triangles = 0;  ///< each once
 
@@ -70,6 +87,9 @@ struct SizeSummary {
 /// Of these tiles together. Ghosts, and border triangles that other tiles draw, are in both numbers
 /// of bytes. O(tiles).
 SizeSummary summarize_sizes(std::span<const TileRecord> records, const TileFormat& format);
+
+/// Of these tiles together. O(tiles).
+PictureSummary summarize_pictures(std::span<const TileRecord> records);
 
 /// How compact the partitions are: p^2 / (4 pi w), 1 for a flat disc, more for ragged borders.
 struct CompactnessSummary {
@@ -101,6 +121,8 @@ std::string forced_collapses_text(const ForcedCollapses& forced);
 nlohmann::ordered_json to_json(const LevelSummary& summary);
 
 nlohmann::ordered_json to_json(const SizeSummary& summary);
+
+nlohmann::ordered_json to_json(const PictureSummary& summary);
 
 nlohmann::ordered_json to_json(const ForcedCollapses& forced);
 

@@ -25,6 +25,12 @@ constexpr const char* kComputedNormals = "computed";
 
 // ---- writing -------------------------------------------------------------------------------
 
+Json texture_storage_json(const TextureFormat& textures) {
+  return {{"format", kImageFormatNames[static_cast<std::size_t>(textures.format)]},
+          {"quality", textures.quality},
+          {"unlit", textures.unlit}};
+}
+
 Json storage_json(const Manifest& manifest) {
   Json storage = {{"compression", name_of(manifest.compression)}, {"positions", nullptr}};
   if (const auto& quantization = manifest.quantization) {
@@ -35,7 +41,16 @@ Json storage_json(const Manifest& manifest) {
   }
   if (manifest.computed_normals)
     storage["normals"] = kComputedNormals;
+  if (manifest.textures)
+    storage["texture"] = texture_storage_json(*manifest.textures);
   return storage;
+}
+
+Json source_textures_json(const SourceTextures& textures) {
+  return {{"materials", textures.materials},
+          {"images", textures.images},
+          {"missing_images", textures.missing_images},
+          {"texels", textures.texels}};
 }
 
 Json import_json(const SourceSummary& source) {
@@ -90,12 +105,14 @@ Json manifest_json(const Manifest& manifest) {
 
 // ---- reading -------------------------------------------------------------------------------
 
-Compression read_compression(const JsonObject& object) {
-  const std::string name = object.text("compression");
-  const auto found = std::find(kCompressionNames.begin(), kCompressionNames.end(), name);
-  if (found == kCompressionNames.end())
-    object.wrong("compression", fmt::format("one of {}", fmt::join(kCompressionNames, ", ")));
-  return static_cast<Compression>(found - kCompressionNames.begin());
+/// One of `names`, by its place among them.
+template <class Choice, std::size_t N>
+Choice read_choice(const JsonObject& object, const char* key,
+                   const std::array<std::string_view, N>& names) {
+  const auto found = std::find(names.begin(), names.end(), object.text(key));
+  if (found == names.end())
+    object.wrong(key, fmt::format("one of {}", fmt::join(names, ", ")));
+  return static_cast<Choice>(found - names.begin());
 }
 
 std::optional<Quantization> read_quantization(const JsonObject& object) {
@@ -123,6 +140,31 @@ bool read_computed_normals(const JsonObject& object, const AttributeLayout& sour
   if (source.normals)
     object.wrong("normals", "no such key, as the source has normals");
   return true;
+}
+
+/// `source`: what the input has.
+std::optional<TextureFormat> read_textures(const JsonObject& object, const SourceSummary& source) {
+  if (object.has("texture") != source.textures.has_value())
+    object.wrong("texture", "to be there if and only if \"source.textures\" is");
+  if (!source.textures)
+    return std::nullopt;
+  const JsonObject texture = object.object("texture");
+  TextureFormat textures;
+  textures.format = read_choice<ImageFormat>(texture, "format", kImageFormatNames);
+  textures.quality = static_cast<int>(texture.count("quality", 100));
+  if (textures.quality == 0)
+    texture.wrong("quality", "at least 1");
+  textures.unlit = texture.boolean("unlit");
+  return textures;
+}
+
+SourceTextures read_source_textures(const JsonObject& object) {
+  SourceTextures textures;
+  textures.materials = object.count("materials");
+  textures.images = object.count("images");
+  textures.missing_images = object.count("missing_images", textures.images);
+  textures.texels = object.count("texels");
+  return textures;
 }
 
 void read_import(const JsonObject& object, SourceSummary& source) {
@@ -158,6 +200,10 @@ SourceSummary read_source(const JsonObject& object) {
     object.wrong("bounds", "min <= max");
   source.double_precision = object.boolean("double_precision");
   source.attributes = object.attributes("attributes");
+  if (object.has("textures"))
+    source.textures = read_source_textures(object.object("textures"));
+  if (source.textures && source.attributes.texcoords)
+    object.wrong("attributes", "no texture coordinates beside textures");
   if (object.has("import"))
     read_import(object.object("import"), source);
   return source;
@@ -189,6 +235,8 @@ Json source_json(const SourceSummary& source) {
       {"bounds", {{"min", point_json(source.bounds.min)}, {"max", point_json(source.bounds.max)}}},
       {"double_precision", source.double_precision},
       {"attributes", attributes_json(source.attributes)}};
+  if (source.textures)
+    json["textures"] = source_textures_json(*source.textures);
   if (!source.files.empty())
     json["import"] = import_json(source);
   return json;
@@ -219,10 +267,11 @@ Manifest parse_manifest(const std::string& text, const std::string& name) {
       static_cast<std::uint32_t>(object.count("partitions", manifest.source.places));
   if (manifest.partition_count == 0)
     object.wrong("partitions", "at least 1");
-  manifest.compression = read_compression(object.object("storage"));
-  manifest.quantization = read_quantization(object.object("storage"));
-  manifest.computed_normals =
-      read_computed_normals(object.object("storage"), manifest.source.attributes);
+  const JsonObject storage = object.object("storage");
+  manifest.compression = read_choice<Compression>(storage, "compression", kCompressionNames);
+  manifest.quantization = read_quantization(storage);
+  manifest.computed_normals = read_computed_normals(storage, manifest.source.attributes);
+  manifest.textures = read_textures(storage, manifest.source);
   manifest.config = object.at("config");
   if (!manifest.config.is_object())
     object.wrong("config", "an object");

@@ -16,7 +16,7 @@
 
 namespace meshhier::storage {
 
-inline constexpr int kFormatVersion = 5;
+inline constexpr int kFormatVersion = 6;
 
 /// What rounding to a lattice did.
 struct Quantization {
@@ -37,6 +37,7 @@ struct Manifest {
   Compression compression = Compression::none;
   std::optional<Quantization> quantization;  ///< none: positions are exact
   bool computed_normals = false;  ///< tiles have normals that the build computed; the source none
+  std::optional<TextureFormat> textures;  ///< of tiles' pictures; if and only if the source has any
   /// An object: the resolved config, what decides the result (not budget, threads, paths).
   nlohmann::ordered_json config;
   std::uint64_t index_bytes = 0;

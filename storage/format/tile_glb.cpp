@@ -4,6 +4,7 @@
 #include "hierarchy/vertex_numbers.h"
 #include "storage/format/glb.h"
 #include "storage/format/gzip.h"
+#include "storage/format/showable.h"
 #include "storage/format/tile_pack.h"
 #include "storage/format/tile_plan.h"
 #include "storage/format/tile_sections.h"
@@ -23,56 +24,6 @@ namespace meshhier::storage {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// ---- attributes ----------------------------------------------------------------------------
-
-Vec3f showable_normal(Vec3f normal) {
-  if (is_unit_normal(normal))
-    return normal;
-  const Vec3d wide = to_double(normal);
-  const double size = length(wide);
-  if (!(size > 0) || !std::isfinite(size))
-    return {0, 0, 1};
-  return to_float(wide * (1 / size));
-}
-
-float showable_colour(float value, ColourType type) {
-  if (std::isnan(value))
-    return 0;
-  if (type == ColourType::f32)
-    return std::clamp(value, 0.0F, 1.0F);
-  // A number of the type has no -0.
-  return std::clamp(std::round(value), 0.0F, type == ColourType::u8 ? 255.0F : 65535.0F) + 0.0F;
-}
-
-/// One vertex's attributes as the standard glTF accessors hold them.
-void make_showable(const AttributeLayout& layout, std::span<float> channels) {
-  if (layout.normals) {
-    float* n = channels.data() + layout.normal_offset();
-    const Vec3f normal = showable_normal({n[0], n[1], n[2]});
-    n[0] = normal.x;
-    n[1] = normal.y;
-    n[2] = normal.z;
-  }
-  for (int i = 0; i < layout.colour_channels(); ++i) {
-    float& value = channels[static_cast<std::size_t>(layout.colour_offset() + i)];
-    value = showable_colour(value, layout.colour);
-  }
-  for (int i = 0; layout.texcoords && i < 2; ++i) {
-    float& value = channels[static_cast<std::size_t>(layout.texcoord_offset() + i)];
-    if (!std::isfinite(value))
-      value = 0;
-  }
-}
-
-std::vector<float> showable_attributes(const AttributeLayout& layout, const VertexArray& vertices) {
-  std::vector<float> shown = vertices.attributes;
-  const auto channels = static_cast<std::size_t>(layout.channels());
-  for (std::size_t v = 0; channels > 0 && v < vertices.size(); ++v) {
-    make_showable(layout, std::span(shown).subspan(v * channels, channels));
-  }
-  return shown;
-}
 
 /// Whether the group's channels of any vertex changed by as much as a bit.
 bool differs(std::span<const float> a, std::span<const float> b, const ChannelGroup& group,
@@ -127,6 +78,18 @@ class Writer {
 
   void put_normals(std::span<const NormalCode> normals) {
     std::ranges::copy(std::as_bytes(normals), at(plan_[Part::normal]));
+  }
+
+  void put_texcoords(std::span<const Vec2f> texcoords) {
+    const Section& section = plan_[Part::texcoord];
+    for (std::size_t v = 0; v < texcoords.size(); ++v) {
+      put(section, v, 0, texcoords[v].u);
+      put(section, v, 1, texcoords[v].v);
+    }
+  }
+
+  void put_image(std::span<const std::byte> bytes) {
+    std::ranges::copy(bytes, at(plan_[Part::image]));
   }
 
   void put_triangles(Part part, std::span<const TileTriangle> triangles) {
@@ -200,17 +163,36 @@ void put_triangles(const TileMesh& mesh, const Shading& shading, Writer& writer)
   writer.put_triangles(Part::border, numbers.numbered(mesh.border, mesh.border_wedges));
 }
 
+/// Whether the tile has texture coordinates and a picture.
+[[maybe_unused]] bool is_textured(const TileMesh& mesh, const TileFormat& format) {
+  return format.textures && !(mesh.interior.empty() && mesh.border.empty());
+}
+
 /// What Shading promises of its sizes.
 [[maybe_unused]] bool has_sound_size(const Shading& shading, const TileMesh& mesh,
                                      const TileFormat& format) {
-  if (!format.computed_normals)
-    return shading == Shading{};
   const std::size_t splits = shading.split_of.size();
+  const std::size_t all = mesh.vertices.size() + mesh.copies.size() + splits;
   const bool split = splits > 0;
-  return !format.attributes.normals &&
-         shading.normals.size() == mesh.vertices.size() + mesh.copies.size() + splits &&
+  return shading.normals.size() == (format.computed_normals ? all : 0) &&
+         shading.texcoords.size() == (is_textured(mesh, format) ? all : 0) &&
+         (!split || format.computed_normals || format.textures) &&
          shading.interior.size() == (split ? mesh.interior.size() : 0) &&
          shading.border.size() == (split ? mesh.border.size() : 0);
+}
+
+[[maybe_unused]] bool has_sound_image(const TileImage& image, const TileMesh& mesh,
+                                      const TileFormat& format) {
+  if (!is_textured(mesh, format))
+    return image == TileImage{};
+  return image.format == stored_format(*format.textures, image.alpha) && !image.bytes.empty() &&
+         std::min(image.width, image.height) >= 1 &&
+         std::max(image.width, image.height) <= kMaxImageSide;
+}
+
+[[maybe_unused]] bool has_sound_layout(const TileFormat& format) {
+  return !(format.computed_normals && format.attributes.normals) &&
+         !(format.textures && format.attributes.texcoords) && !format.attributes.material;
 }
 
 /// The ghosts by neighbour: those of tiles[i] are [starts[i], starts[i + 1]).
@@ -234,9 +216,34 @@ GhostGroups group_ghosts(std::span<const GhostRef> ghosts) {
 
 // ---- reading -------------------------------------------------------------------------------
 
+AlphaMode read_alpha(const Json& document) {
+  const Json::json_pointer place("/materials/0/alphaMode");
+  const Json mode = document.contains(place) ? document[place] : Json();
+  return mode == "MASK" ? AlphaMode::mask : mode == "BLEND" ? AlphaMode::blend : AlphaMode::opaque;
+}
+
+/// Of a textured tile that has triangles.
+ImageShape read_image_shape(const Json& document, const Json& extension, const std::string& name) {
+  const auto count = [&](const Json& object, const char* key, std::uint64_t max) {
+    const std::uint64_t found = require_count(object, key, max, name);
+    if (found == 0)
+      throw Error(ErrorCode::corrupt, fmt::format("{}: a picture whose {} is 0", name, key));
+    return found;
+  };
+  const auto side = [&](const char* key) {
+    return static_cast<std::uint32_t>(count(extension, key, kMaxImageSide));
+  };
+  const std::uint64_t number = count(extension, "image", kPartCount);
+  const Json::json_pointer place("/bufferViews/" + std::to_string(number));
+  const Json view = document.contains(place) ? document[place] : Json();
+  return {count(view, "byteLength", UINT32_MAX), side("imageWidth"), side("imageHeight"),
+          read_alpha(document)};
+}
+
 /// Counts are bounded by 2^32, so that no product or sum of sizes overflows 64 bits.
-TileShape read_shape(const Json& extension, NodeId node, const Tree& tree, const TileFormat& format,
+TileShape read_shape(const Json& document, NodeId node, const Tree& tree, const TileFormat& format,
                      const std::string& name) {
+  const Json& extension = require_extension(document, kTileExtension, kTileExtensionVersion, name);
   const auto count = [&](const char* key, std::uint64_t max = UINT32_MAX) {
     return require_count(extension, key, max, name);
   };
@@ -251,8 +258,11 @@ TileShape read_shape(const Json& extension, NodeId node, const Tree& tree, const
   shape.border = count("borderCount");
   shape.copies = count("copyCount");
   shape.computed_normals = format.computed_normals;
-  if (shape.computed_normals)
+  shape.textures = format.textures;
+  if (shape.is_shaded())
     shape.splits = count("splitCount");
+  if (shape.textures && shape.interior + shape.border > 0)
+    shape.image = read_image_shape(document, extension, name);
   if (shape.own == 0)
     throw Error(ErrorCode::corrupt, name + ": a tile without vertices");
   if (shape.with_splits() > UINT32_MAX)
@@ -272,8 +282,7 @@ PublishedTile decode_glb(std::span<const std::byte> bytes, NodeId node, const Tr
                          const TileFormat& format, const std::string& name) {
   const GlbView glb = split_glb(bytes, name);
   const Json document = parse_json(glb.json, name);
-  const Json& extension = require_extension(document, kTileExtension, kTileExtensionVersion, name);
-  const TilePlan plan(read_shape(extension, node, tree, format, name), format.attributes,
+  const TilePlan plan(read_shape(document, node, tree, format, name), format.attributes,
                       format.lattice);
   const bool is_packed = has_packed_sections(format.compression);
   if (!is_packed && plan.bytes() != glb.bin.size()) {
@@ -315,11 +324,6 @@ std::string_view name_of(Compression compression) {
   return kCompressionNames[static_cast<std::size_t>(compression)];
 }
 
-bool is_unit_normal(Vec3f normal) {
-  constexpr double kTolerance = 0.001;  // the validator's is 0.00674, in single precision
-  return std::abs(length(to_double(normal)) - 1) <= kTolerance;
-}
-
 std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
                                    const TileFormat& format) {
   const TileMesh& mesh = tile.mesh;
@@ -329,7 +333,9 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
   assert(mesh.vertices.channels == format.attributes.channels());
   assert(mesh.copies.vertices.size() == mesh.copies.size());
   const Shading& shading = tile.shading;
+  assert(has_sound_layout(format));
   assert(has_sound_size(shading, mesh, format));
+  assert(has_sound_image(tile.image, mesh, format));
 
   const GhostGroups neighbours = group_ghosts(mesh.ghosts);
   const bool places_only = mesh.copies.empty() && shading.split_of.empty();
@@ -349,7 +355,9 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
                   mesh.copies.size(),
                   shading.split_of.size(),
                   {},
-                  format.computed_normals};
+                  format.computed_normals,
+                  format.textures,
+                  {tile.image.bytes.size(), tile.image.width, tile.image.height, tile.image.alpha}};
   for (std::size_t i = 0; tree.is_partition(tile.node) && i < groups.size(); ++i) {
     shape.raw[i] = differs(shown, vertices.attributes, groups[i], vertices.channels);
   }
@@ -363,6 +371,7 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
   Writer writer(plan, std::span(bytes).last(plan.bytes()));
   writer.put_positions(vertices.positions);
   writer.put_normals(shading.normals);
+  writer.put_texcoords(shading.texcoords);
   for (std::size_t i = 0; i < groups.size(); ++i) {
     writer.put_group(groups[i].part, groups[i], shown);
     writer.put_group(groups[i].raw, groups[i], vertices.attributes);
@@ -374,6 +383,7 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
   writer.put_list<std::uint16_t>(Part::ghost_chains, tile.chains);
   writer.put_vertices(Part::copy_of, mesh.copies.places);
   writer.put_vertices(Part::split_of, shading.split_of);
+  writer.put_image(tile.image.bytes);
   if (packed) {
     const PackedBin bin = pack_bin(plan, bytes);
     bytes = join_glb(plan.document(tile.bounds, format.frame, &bin.packing).dump(), bin.bin);
@@ -384,9 +394,10 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
 std::vector<std::byte> encode_tile(const PublishedTile& tile, const Tree& tree,
                                    const TileFormat& format) {
   assert(tile.chains.size() == tile.mesh.ghosts.size());
-  return encode_tile({tile.node, tile.mesh, tile.shading, bounds_of(tile.mesh.vertices.positions),
-                      tile.parent_map, tile.chains.entries()},
-                     tree, format);
+  return encode_tile(
+      {tile.node, tile.mesh, tile.shading, tile.image, bounds_of(tile.mesh.vertices.positions),
+       tile.parent_map, tile.chains.entries()},
+      tree, format);
 }
 
 PublishedTile decode_tile(std::span<const std::byte> bytes, NodeId node, const Tree& tree,

@@ -6,6 +6,7 @@
 #include "hierarchy/frame.h"
 #include "hierarchy/lattice.h"
 #include "hierarchy/published.h"
+#include "hierarchy/texture.h"
 #include "hierarchy/tree.h"
 
 #include <array>
@@ -52,18 +53,18 @@ struct TileFormat {
   Frame frame;  ///< the node's; its origin is 0 for float input
   Compression compression = Compression::none;
   std::optional<Lattice> lattice{};  ///< what all positions lie on, if they are quantized
-  bool computed_normals = false;     ///< tiles have a Shading; `attributes` has no normals then
+  bool computed_normals = false;     ///< Shading has normals; `attributes` has none then
+  /// Tiles with triangles have a picture and a Shading with texture coordinates; `attributes` has
+  /// none then.
+  std::optional<TextureFormat> textures{};
 };
-
-/// True if glTF lets `normal` stand as it is: its length differs from 1 by 0.001 at most (the
-/// Khronos validator allows 0.00674).
-bool is_unit_normal(Vec3f normal);
 
 /// What a tile's file is made of.
 struct TileView {
   NodeId node;
   const TileMesh& mesh;
-  const Shading& shading;                     ///< empty unless the format has computed normals
+  const Shading& shading;                     ///< as far as the format says
+  const TileImage& image;                     ///< likewise
   Bounds bounds;                              ///< of the mesh's positions
   std::span<const std::uint16_t> parent_map;  ///< as PublishedTile's
   std::span<const std::uint16_t> chains;      ///< the ghosts' chains, one after another
@@ -71,8 +72,9 @@ struct TileView {
 
 /// Deterministic, O(size). Requires a consistent tile (see PublishedTile) with finite positions, on
 /// the lattice if there is one, at most kMaxOwnVertices own vertices and boundary vertices below
-/// that, and a shading if and only if the format has computed normals, equal of equal triangles.
-/// Compressed files depend on the versions of zlib and meshoptimizer.
+/// that, and normals and texture coordinates in its shading, and a picture, if and only if the
+/// format says so, equal of equal triangles. Compressed files depend on the versions of zlib and
+/// meshoptimizer.
 ///
 /// A partition keeps every attribute bit for bit, NaN included. Other tiles keep what glTF can say:
 /// u8 and u16 colours rounded to the nearest number of their type, float colours clamped to [0, 1],
@@ -83,8 +85,9 @@ std::vector<std::byte> encode_tile(const PublishedTile& tile, const Tree& tree,
                                    const TileFormat& format);
 
 /// The inverse of encode_tile, on bytes nobody vouches for: every count, offset and index is
-/// checked before it is used, every size before memory is taken for it. Requires
-/// tree.contains(node). Throws Error(corrupt) that starts with `name` and says what was expected.
+/// checked before it is used, every size before memory is taken for it; but for what is in the
+/// picture, which is not decoded. Requires tree.contains(node). Throws Error(corrupt) that starts
+/// with `name` and says what was expected.
 PublishedTile decode_tile(std::span<const std::byte> bytes, NodeId node, const Tree& tree,
                           const TileFormat& format, const std::string& name);
 

@@ -1,6 +1,7 @@
 #include "storage/format/tile_plan.h"
 
 #include "storage/format/glb.h"
+#include "storage/format/glb_material.h"
 
 #include <nlohmann/json.hpp>
 
@@ -14,9 +15,12 @@ constexpr unsigned kPoints = 0;
 constexpr unsigned kTriangles = 4;
 
 constexpr std::array<const char*, kPartCount> kKeys{
-    "POSITION", "NORMAL",    "COLOR_0",    "TEXCOORD_0",  "interior",
-    "border",   "parentMap", "neighbours", "ghostStarts", "ghostChains",
-    "copyOf",   "splitOf",   "rawNormals", "rawColours",  "rawTexcoords"};
+    "POSITION",   "NORMAL",     "COLOR_0",      "TEXCOORD_0",  "interior", "border",
+    "parentMap",  "neighbours", "ghostStarts",  "ghostChains", "copyOf",   "splitOf",
+    "rawNormals", "rawColours", "rawTexcoords", "image"};
+
+/// Colours that glTF does not multiply with the texture.
+constexpr const char* kHiddenColour = "_COLOR_0";
 
 std::uint64_t component_bytes(unsigned component) {
   return component == kI8 || component == kU8 ? 1 : component == kU16 ? 2 : 4;
@@ -87,12 +91,16 @@ Json accessor_json(const TilePlan& plan, Part part, const Bounds& bounds) {
   return accessor;
 }
 
+const char* attribute_name(const TilePlan& plan, Part part) {
+  return part == Part::colour && plan.shape().textures ? kHiddenColour : key_of(part);
+}
+
 /// Accessors have the numbers of their buffer views: the parts with an accessor come first.
 Json primitives_json(const TilePlan& plan) {
   Json attributes = Json::object();
   for (const Part part : {Part::position, Part::normal, Part::colour, Part::texcoord}) {
     if (plan[part].view >= 0)
-      attributes[key_of(part)] = plan[part].view;
+      attributes[attribute_name(plan, part)] = plan[part].view;
   }
   Json primitives = Json::array();
   for (const Part part : {Part::interior, Part::border}) {
@@ -110,10 +118,28 @@ Json primitives_json(const TilePlan& plan) {
   return primitives;
 }
 
-/// Neither metal, which is black without surroundings to mirror, nor one-sided, as scans are open.
-Json material_json() {
-  return {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 1}}},
-          {"doubleSided", true}};
+ImageFormat image_format(const TileShape& shape) {
+  return stored_format(*shape.textures, shape.image.alpha);
+}
+
+Json material_of(const TileShape& shape) {
+  return shape.has_image() ? material_json(0, shape.image.alpha, shape.textures->unlit)
+                           : material_json();
+}
+
+/// What leads from the material to the picture.
+void add_image(const TilePlan& plan, Json& document) {
+  const ImageFormat format = image_format(plan.shape());
+  document["textures"] = Json::array({texture_json(0, format)});
+  document["samplers"] = Json::array({sampler_json()});
+  document["images"] = Json::array({image_json(plan[Part::image].view, format)});
+}
+
+/// Whether the extension has the key of a part.
+bool is_told(Part part, const TileShape& shape) {
+  if (part == Part::split_of)
+    return shape.is_shaded();
+  return part != Part::image || shape.textures;
 }
 
 Json extension_json(const TilePlan& plan) {
@@ -133,12 +159,15 @@ Json extension_json(const TilePlan& plan) {
                     {"borderCount", shape.border},
                     {"interiorPrimitive", interior ? 0 : -1},
                     {"borderPrimitive", border ? (interior ? 1 : 0) : -1}};
-  if (shape.computed_normals)
+  if (shape.is_shaded())
     extension["splitCount"] = shape.splits;
+  if (shape.textures) {
+    extension["imageWidth"] = shape.image.width;
+    extension["imageHeight"] = shape.image.height;
+  }
   for (std::size_t i = static_cast<std::size_t>(Part::parent_map); i < kPartCount; ++i) {
-    const auto part = static_cast<Part>(i);
-    if (part != Part::split_of || shape.computed_normals)
-      extension[kKeys[i]] = plan[part].view;
+    if (is_told(static_cast<Part>(i), shape))
+      extension[kKeys[i]] = plan[static_cast<Part>(i)].view;
   }
   return extension;
 }
@@ -165,6 +194,8 @@ Json required_extensions(const TilePlan& plan, const Packing* packing) {
     names.push_back(kMeshoptExtension);
   if (plan.has_short_positions() || plan.shape().computed_normals)
     names.push_back(kQuantizationExtension);
+  if (plan.shape().has_image() && image_format(plan.shape()) == ImageFormat::webp)
+    names.push_back(kWebpExtension);
   return names;
 }
 
@@ -182,6 +213,7 @@ ViewMode mode_of(Part part) {
       return ViewMode::indices;
     case Part::neighbours:
     case Part::ghost_starts:
+    case Part::image:
       return ViewMode::raw;
     default:
       return ViewMode::attributes;
@@ -227,6 +259,8 @@ TilePlan::TilePlan(const TileShape& shape, const AttributeLayout& layout,
   for (const ChannelGroup& group : groups) {
     add(group.part, component_of(group), group.channels, shape.with_splits());
   }
+  if (shape.has_image())
+    add(Part::texcoord, kF32, 2, shape.with_splits());
   add(Part::interior, index, 1, 3 * shape.interior);
   add(Part::border, index, 1, 3 * shape.border);
   add(Part::parent_map, kU16, 1, shape.node == NodeId{} ? 0 : shape.own);
@@ -238,6 +272,7 @@ TilePlan::TilePlan(const TileShape& shape, const AttributeLayout& layout,
   for (std::size_t i = 0; i < groups.size(); ++i) {
     add(groups[i].raw, kF32, groups[i].channels, shape.raw[i] ? shape.vertices() : 0);
   }
+  add(Part::image, kU8, 1, shape.image.bytes);
 }
 
 unsigned TilePlan::component_of(const ChannelGroup& group) const {
@@ -274,6 +309,8 @@ Json TilePlan::document(const Bounds& bounds, const Frame& frame, const Packing*
   const Json scene = {{"nodes", Json::array({0})}};
   Json required = required_extensions(*this, packing);
   Json used = required;
+  if (shape_.has_image() && shape_.textures->unlit)
+    used.push_back(kUnlitExtension);
   used.push_back(kTileExtension);
 
   Json document;
@@ -285,7 +322,9 @@ Json TilePlan::document(const Bounds& bounds, const Frame& frame, const Packing*
   document["scenes"] = Json::array({scene});
   document["nodes"] = Json::array({node_json(*this, frame)});
   document["meshes"] = Json::array({mesh});
-  document["materials"] = Json::array({material_json()});
+  document["materials"] = Json::array({material_of(shape_)});
+  if (shape_.has_image())
+    add_image(*this, document);
   document["accessors"] = std::move(accessors);
   document["bufferViews"] = std::move(views);
   document["buffers"] = buffers_json(*this, packing);

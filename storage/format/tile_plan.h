@@ -6,6 +6,7 @@
 #include "hierarchy/frame.h"
 #include "hierarchy/ids.h"
 #include "hierarchy/lattice.h"
+#include "hierarchy/texture.h"
 #include "storage/format/tile_sums.h"
 
 #include <array>
@@ -18,20 +19,20 @@
 namespace meshhier::storage {
 
 inline constexpr const char* kTileExtension = "MESHHIER_tile";
-inline constexpr unsigned kTileExtensionVersion = 2;
+inline constexpr unsigned kTileExtensionVersion = 3;
 inline constexpr const char* kMeshoptExtension = "EXT_meshopt_compression";
 inline constexpr const char* kQuantizationExtension = "KHR_mesh_quantization";
 
 // The BIN chunk: one section, and one buffer view, for each of these that is not empty, in this
 // order, each starting at a multiple of 4. o, g: own places, ghosts; c: copies at either; n = o + g
-// + c: vertices, in this order; s: splits of vertices, which have computed normals alone of their
-// own; N = n + s; m: neighbours.
+// + c: vertices, in this order; s: splits of vertices, which have computed normals and coordinates
+// in the tile's picture of their own; N = n + s; m: neighbours.
 //
 //   section        elements          of
 //   position       N                 3 f32; 3 u16, stride 8, on a lattice of up to 16 bits
 //   normal         N                 3 f32; computed ones 3 i8, stride 4
 //   colour         N                 3 or 4 u8, u16 or f32; the stride is rounded up to 4
-//   texcoord       N                 2 f32
+//   texcoord       N                 2 f32; of textured tiles those in their picture
 //   interior       3 a triangle      u16 if N <= 65535, else u32
 //   border         3 a triangle      the same
 //   parent_map     o, root: none     u16
@@ -43,6 +44,7 @@ inline constexpr const char* kQuantizationExtension = "KHR_mesh_quantization";
 //   raw_normals    n or none         3 f32
 //   raw_colours    n or none         3 or 4 f32
 //   raw_texcoords  n or none         2 f32
+//   image          its bytes         u8, a picture as it is
 enum class Part : std::size_t {
   position,
   normal,
@@ -58,12 +60,13 @@ enum class Part : std::size_t {
   split_of,
   raw_normals,
   raw_colours,
-  raw_texcoords
+  raw_texcoords,
+  image
 };
-inline constexpr std::size_t kPartCount = 15;
+inline constexpr std::size_t kPartCount = 16;
 
 /// The key of a part in the extension (from parent_map on), or the name of its attribute (up to
-/// texcoord).
+/// texcoord) where it is shown.
 const char* key_of(Part part);
 
 /// The channels of one attribute within a vertex, and where they are written.
@@ -75,7 +78,7 @@ struct ChannelGroup {
 };
 
 /// How a part is stored in a tile of compressed sections: as it is, or in a mode of
-/// EXT_meshopt_compression. The two raw ones have a few bytes.
+/// EXT_meshopt_compression. The raw ones have a few bytes, or are compressed already.
 enum class ViewMode { raw, attributes, triangles, indices };
 ViewMode mode_of(Part part);
 
@@ -93,15 +96,27 @@ struct Packing {
 /// Normals, colours, texture coordinates; those the layout lacks have no channels.
 std::array<ChannelGroup, 3> groups_of(const AttributeLayout& layout);
 
+/// The picture of a textured tile that has triangles.
+struct ImageShape {
+  std::uint64_t bytes = 0;  ///< 0: there is none
+  std::uint32_t width = 0, height = 0;
+  AlphaMode alpha = AlphaMode::opaque;
+};
+
 /// The numbers from which the place of everything in the file follows; each below 2^32, so that no
 /// size overflows 64 bits.
 struct TileShape {
   NodeId node;
   std::uint64_t own = 0, boundary = 0, ghosts = 0, neighbours = 0, chain_entries = 0;
   std::uint64_t interior = 0, border = 0, copies = 0, splits = 0;
-  std::array<bool, 3> raw{};      ///< per ChannelGroup: whether its raw part is there
-  bool computed_normals = false;  ///< no splits otherwise
+  std::array<bool, 3> raw{};  ///< per ChannelGroup: whether its raw part is there
+  bool computed_normals = false;
+  std::optional<TextureFormat> textures{};  ///< of the hierarchy
+  ImageShape image{};
 
+  /// Whether there can be splits.
+  bool is_shaded() const { return computed_normals || textures; }
+  bool has_image() const { return image.bytes > 0; }
   std::uint64_t places() const { return own + ghosts; }
   std::uint64_t vertices() const { return places() + copies; }
   /// What corners of triangles are numbers of.

@@ -112,13 +112,16 @@ class Reader {
     mesh.boundary_count = static_cast<std::uint32_t>(shape.boundary);
     mesh.copies = take_copies(mesh.vertices, copy_places(mesh.vertices.positions));
     Shading& shading = tile.shading;
-    shading = {normals(), splits(), {}, {}};
+    shading.normals = normals();
+    shading.texcoords = texcoords();
+    shading.split_of = splits();
     const VertexNumbers numbers(static_cast<std::uint32_t>(shape.places()), mesh.copies.places);
     read_triangles(Part::interior, numbers, shading.split_of,
                    {mesh.interior, mesh.interior_wedges, shading.interior});
     read_triangles(Part::border, numbers, shading.split_of,
                    {mesh.border, mesh.border_wedges, shading.border});
     tile.parent_map = parent_map();
+    tile.image = image();
     read_ghosts(tile);
     return tile;
   }
@@ -188,11 +191,49 @@ class Reader {
     return normals;
   }
 
-  /// Of which vertices they are; all but their normals is the same.
+  /// In the tile's picture, of vertices and splits.
+  std::vector<Vec2f> texcoords() const {
+    const Section& section = plan_[Part::texcoord];
+    std::vector<Vec2f> texcoords(plan_.shape().has_image() ? section.count : 0);
+    const auto is_inside = [](float value) { return value >= 0 && value <= 1; };
+    for (std::size_t v = 0; v < texcoords.size(); ++v) {
+      texcoords[v] = {get<float>(section, v, 0), get<float>(section, v, 1)};
+      if (!is_inside(texcoords[v].u) || !is_inside(texcoords[v].v)) {
+        fail(fmt::format("the texture coordinate of vertex {} is ({}, {}), expected 0 to 1", v,
+                         texcoords[v].u, texcoords[v].v));
+      }
+    }
+    return texcoords;
+  }
+
+  TileImage image() const {
+    const TileShape& shape = plan_.shape();
+    if (!shape.has_image())
+      return {};
+    const Section& section = plan_[Part::image];
+    const auto bytes = bin_.subspan(section.offset, section.bytes());
+    return {stored_format(*shape.textures, shape.image.alpha),
+            shape.image.alpha,
+            shape.image.width,
+            shape.image.height,
+            {bytes.begin(), bytes.end()}};
+  }
+
+  /// What a split has as its vertex has it.
+  std::vector<Part> common_parts() const {
+    std::vector<Part> parts{Part::position, Part::colour};
+    if (!plan_.shape().computed_normals)
+      parts.push_back(Part::normal);
+    if (!plan_.shape().has_image())
+      parts.push_back(Part::texcoord);
+    return parts;
+  }
+
+  /// Of which vertices they are; all but what was computed is the same.
   std::vector<std::uint32_t> splits() const {
     const std::uint64_t vertex_count = plan_.shape().vertices();
     const auto vertices = repeated_vertices(Part::split_of, vertex_count, "split");
-    for (const Part part : {Part::position, Part::colour, Part::texcoord}) {
+    for (const Part part : common_parts()) {
       for (std::size_t i = 0; i < vertices.size(); ++i) {
         if (!std::ranges::equal(element(part, vertices[i]), element(part, vertex_count + i)))
           fail(fmt::format("split {} has not the {} of its vertex {}", i, key_of(part),

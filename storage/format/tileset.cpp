@@ -21,12 +21,6 @@ using Json = nlohmann::ordered_json;
 /// Viewers divide by the lengths of a box's axes: none is shorter than this part of the model.
 constexpr double kThinnest = 1e-6;
 
-/// From input coordinates to those of 3D Tiles, where z is up. Viewers turn glTF's content, which
-/// is y-up, in the same way.
-Vec3d turned(Vec3d p, UpAxis up) {
-  return up == UpAxis::z ? p : Vec3d{p.x, -p.z, p.y};
-}
-
 /// The boxes that hold a node's tile and all below it, relative to the origin.
 class Boxes {
  public:
@@ -139,8 +133,8 @@ class TilesetWriter {
   Json box_json(const Bounds& bounds) const {
     const Vec3d low = to_double(bounds.min) + manifest_.origin;
     const Vec3d high = to_double(bounds.max) + manifest_.origin;
-    const Vec3d centre = turned((low + high) * 0.5, manifest_.up);
-    const Vec3d extent = turned((high - low) * 0.5, manifest_.up);
+    const Vec3d centre = to_z_up((low + high) * 0.5, manifest_.up);
+    const Vec3d extent = to_z_up((high - low) * 0.5, manifest_.up);
     const auto half = [&](double x) { return std::max(std::abs(x), thinnest_); };
     return {centre.x, centre.y, centre.z, half(extent.x), 0, 0, 0, half(extent.y),
             0,        0,        0,        half(extent.z)};
@@ -194,7 +188,7 @@ Transform globe_transform(double longitude, double latitude, double height, Vec3
   const Vec3d away{phi.cosine * lambda.cosine, phi.cosine * lambda.sine, phi.sine};
   const Vec3d place{(normal + height) * away.x, (normal + height) * away.y,
                     (normal * (1 - kEccentricity2) + height) * away.z};
-  const Vec3d a = turned(anchor, up);
+  const Vec3d a = to_z_up(anchor, up);
   const Vec3d shift = place - (east * a.x + north * a.y + away * a.z);
   return {east.x, east.y, east.z, 0, north.x, north.y, north.z, 0,
           away.x, away.y, away.z, 0, shift.x, shift.y, shift.z, 1};

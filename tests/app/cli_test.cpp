@@ -342,6 +342,72 @@ TEST_F(CommandLine, BuildThatFailsKeepsTheOutputItWasToReplace) {
   EXPECT_EQ(names(), (std::set<std::string>{"a.hier", "a.json", "a.ply"}));
 }
 
+TEST_F(CommandLine, AModelInMapCoordinatesStandsOnTheGlobe) {
+  write_mesh("a.ply");
+  write_text(work() / "metadata.xml",
+             "<M><SRS>EPSG:32633</SRS><SRSOrigin>500000,5300000,0</SRSOrigin></M>");
+  const std::string config = write_config(
+      R"(, "up": "z", "placement": {"metadata": "metadata.xml", "anchor": [0, 0, 300]})");
+  const Outcome outcome = run({"build", config});
+  ASSERT_EQ(outcome.code, 0) << outcome.messages;
+  EXPECT_THAT(outcome.out, HasSubstr("placed by WGS 84 / UTM zone 33N at longitude 15.0000"));
+  const std::string tileset = text_of(Path(hierarchy()) / "tileset.json");
+  EXPECT_THAT(tileset, HasSubstr("\"transform\":[-0.258"));
+  EXPECT_THAT(text_of(Path(hierarchy()) / "hierarchy.json"),
+              AllOf(HasSubstr("\"crs\": \"EPSG:32633\""), Not(HasSubstr("metadata.xml"))));
+  EXPECT_EQ(run({"verify", hierarchy(), "--input", work() / "a.ply"}).code, 0);
+}
+
+// It and what it needs take as much memory as all the rest of the program at rest.
+TEST_F(CommandLine, PROJIsLoadedForACrsOnly) {
+  write_mesh("a.ply");
+  const auto loaded = [&](const std::string& more) {
+    ::setenv("LD_DEBUG", "files", 1);  // the system's loader tells what it loads
+    const Outcome outcome = run({"build", write_config(more), "--force"});
+    ::unsetenv("LD_DEBUG");
+    EXPECT_EQ(outcome.code, 0) << more;
+    EXPECT_THAT(outcome.messages, HasSubstr("file=libc.so"));
+    return outcome.messages;
+  };
+  EXPECT_THAT(loaded(""), Not(HasSubstr("libproj")));
+  EXPECT_THAT(loaded(R"(, "placement": {"longitude": 15, "latitude": 47})"),
+              Not(HasSubstr("libproj")));
+  EXPECT_THAT(loaded(R"(, "placement": {"crs": "EPSG:32633", "offset": [500000, 5300000, 0]})"),
+              HasSubstr("file=libproj"));
+}
+
+TEST_F(CommandLine, TheFileOfAMapStaysAsItIs) {
+  write_mesh("a.ply");
+  const Path map = work() / "metadata.xml";
+  write_text(map, "<M><SRS>EPSG:32633</SRS></M>");
+  const std::string config = write_config(R"(, "placement": {"metadata": "metadata.xml"})");
+  const Outcome stats = run({"build", config, "--force", "--stats", map.string()});
+  EXPECT_EQ(stats.code, kUsage) << stats.messages;
+  std::filesystem::create_directory_symlink(work(), work() / "link");
+  const Outcome output =
+      run({"build", config, "--force", "-o", (work() / "link" / "metadata.xml").string()});
+  EXPECT_EQ(output.code, kUsage) << output.messages;
+  EXPECT_EQ(text_of(map), "<M><SRS>EPSG:32633</SRS></M>");
+}
+
+TEST_F(CommandLine, AMapThatCannotBeUsedIsRefusedAndNothingIsLeft) {
+  write_mesh("a.ply");
+  const auto refused = [&](const std::string& placement) {
+    const Outcome outcome = run({"build", write_config(R"(, "placement": {)" + placement + '}')});
+    EXPECT_EQ(outcome.code, kUsage) << outcome.messages;
+    EXPECT_EQ(names(), (std::set<std::string>{"a.json", "a.ply"})) << placement;
+    return outcome.messages;
+  };
+  EXPECT_THAT(refused(R"("crs": "EPSG:99999")"), HasSubstr("PROJ knows no CRS"));
+  EXPECT_THAT(refused(R"("crs": "EPSG:4326")"), HasSubstr("degrees"));
+  EXPECT_THAT(refused(R"("crs": "EPSG:32633", "longitude": 1, "latitude": 2)"),
+              HasSubstr("found more than one"));
+  EXPECT_THAT(refused(R"("offset": [1, 2, 3])"), HasSubstr("needs \"crs\""));
+  // Known only when the mesh was read.
+  EXPECT_THAT(refused(R"("crs": "EPSG:32633", "offset": [5e9, 0, 0])"),
+              HasSubstr("has no place on the globe"));
+}
+
 TEST_F(CommandLine, BuildRefusesABudgetThatCannotDo) {
   write_mesh("a.ply");
   const Outcome outcome = run({"build", write_config(), "--set", "memory_budget=1KiB"});
@@ -541,8 +607,9 @@ TEST_F(CommandLine, WhatIsNeitherAMeshNorAConfigIsToldSo) {
   write_text(work() / "a.txt", "Dear Sir,");
   const Outcome letter = run({"build", (work() / "a.txt").string()});
   EXPECT_EQ(letter.code, kUsage);
-  EXPECT_THAT(letter.messages, HasSubstr("expected a mesh (PLY, OBJ, STL or OFF, perhaps in gzip) "
-                                         "or a config (JSON), found 'Dear Sir,'"));
+  EXPECT_THAT(letter.messages,
+              HasSubstr("expected a mesh (PLY, OBJ, glTF, STL or OFF, perhaps in gzip) "
+                        "or a config (JSON), found 'Dear Sir,'"));
   write_text(work() / "a.ply", "Dear Sir,");
   const Outcome ply = run({"build", (work() / "a.ply").string()});
   EXPECT_EQ(ply.code, kInput);

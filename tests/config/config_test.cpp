@@ -324,7 +324,7 @@ TEST(ConfigErrors, HalfAPlaceAndTwoPlacesAreRefused) {
   EXPECT_THAT(refusal(with(R"("placement": {"height": 1})")), HasSubstr("expected both"));
   EXPECT_THAT(refusal(with(R"("placement": {"longitude": 1, "latitude": 2,
                                "transform": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]})")),
-              HasSubstr("found both"));
+              HasSubstr("found more than one"));
   EXPECT_THAT(refusal(with(R"("placement": {"transform": [1, 2]})")),
               HasSubstr("expected a list of 16 numbers, found a list"));
   EXPECT_THAT(refusal(with(R"("placement": {"longitude": 181, "latitude": 2})")),
@@ -591,13 +591,17 @@ TEST(ResolvedJson, HoldsWhatDecidesTheResultAndNothingElse) {
       "simplify": {"method": "edge_collapse", "vertices": 8192, "representative": "quadric",
                    "cost": "quadric"},
       "outline": {"sectors": 128, "tolerance": 0.002},
-      "storage": {"compression": "none", "normals": "smooth"}, "up": "y"})"));
+      "storage": {"compression": "none", "normals": "smooth"},
+      "texture": {"use": true, "texels": 512, "format": "jpeg", "quality": 90, "unlit": true},
+      "missing_images": "warn", "up": "y"})"));
   EXPECT_EQ(resolved_json(parse(with(R"("partition": {"count": 9})"))), Json::parse(R"({
       "weld": false, "topology": "place",
       "partition": {"count": 9, "axis": "compactness"},
       "simplify": {"method": "edge_collapse", "representative": "quadric", "cost": "quadric"},
       "outline": {"sectors": 128, "tolerance": 0.002},
-      "storage": {"compression": "none", "normals": "smooth"}, "up": "y"})"));
+      "storage": {"compression": "none", "normals": "smooth"},
+      "texture": {"use": true, "texels": 512, "format": "jpeg", "quality": 90, "unlit": true},
+      "missing_images": "warn", "up": "y"})"));
 }
 
 TEST(ResolvedJson, DoesNotDependOnPathsBudgetAndThreads) {
@@ -748,10 +752,18 @@ TEST(ConfigSchema, KnowsWhichKeysExcludeAndNeedEachOther) {
   EXPECT_EQ(properties.at("partition").at("allOf"),
             Json::parse(R"([{"not": {"required": ["vertices", "count"]}}])"));
   EXPECT_EQ(properties.at("placement").at("allOf"),
-            Json::parse(R"([{"not": {"required": ["longitude", "transform"]}}])"));
+            Json::parse(R"([{"not": {"required": ["longitude", "crs"]}},
+                            {"not": {"required": ["transform", "crs"]}},
+                            {"anyOf": [{"not": {"required": ["offset"]}},
+                                       {"required": ["crs"]}, {"required": ["metadata"]}]},
+                            {"not": {"required": ["longitude", "metadata"]}},
+                            {"not": {"required": ["transform", "metadata"]}},
+                            {"anyOf": [{"not": {"required": ["anchor"]}}, {"required": ["longitude"]},
+                                       {"required": ["crs"]}, {"required": ["metadata"]}]},
+                            {"not": {"required": ["longitude", "transform"]}}])"));
   EXPECT_EQ(properties.at("placement").at("dependentRequired"),
             Json::parse(R"({"longitude": ["latitude"], "latitude": ["longitude"],
-                            "height": ["longitude"], "anchor": ["longitude"]})"));
+                            "height": ["longitude"]})"));
 }
 
 // ---- what is told of the keys

@@ -85,7 +85,7 @@ void apply(Bytes changes, const Contents& sound, MemoryFiles& files) {
 
 /// Sizes never change: `apply` replaces.
 void seal(const Contents& sound, MemoryFiles& files) {
-  constexpr std::size_t kHeaderBytes = 32, kRecordBytes = 104, kChecksumPlace = 96;
+  constexpr std::size_t kHeaderBytes = 32, kRecordBytes = 120, kChecksumPlace = 112;
   std::vector<std::byte>& index = files.bytes(storage::index_path(kHierarchy));
   std::size_t record = kHeaderBytes;
   for (const auto& [path, unchanged] : sound) {

@@ -1,54 +1,113 @@
 // Input of the formats that are imported, packed or not.
 //
 // First a byte: whether vertices are welded. The content decides which reader gets it, as in a
-// build; what it becomes is read again.
+// build; what it becomes is read again. Pictures and a library of materials lie beside it. Of glTF
+// the byte also tells whether textures are ignored; a buffer, "a.bin", and a picture, "b.png", lie
+// beside it.
+#include "fuzz/import_reading.h"
 #include "fuzz/target.h"
 #include "fuzz/targets.h"
 #include "import/import_input.h"
-#include "support/memory_files.h"
+#include "mesh_io/ply_source.h"
 
 #include <string>
 
 namespace meshhier::tests::fuzz {
 namespace {
 
-/// Imports "mesh" and returns the PLY; with little memory, so that all is spooled and merged.
-std::string imported(MemoryFiles& files, bool weld) {
+constexpr const char* kLibrary =
+    "newmtl m\nmap_Kd a.png\nnewmtl n\nKd 1 0 0\nnewmtl t\nmap_Kd -o 0.5 t.<UDIM>.png\n";
+
+/// Materials of vertices are some of the list.
+void check_materials(const mesh_io::VertexBlock& block, const AttributeLayout& layout,
+                     std::size_t materials) {
+  const auto channels = static_cast<std::size_t>(layout.channels());
+  for (std::size_t i = 0; layout.material && i < block.attributes.size(); i += channels) {
+    const float number = block.attributes[i + static_cast<std::size_t>(layout.material_offset())];
+    require(number >= 0 && number < static_cast<float>(materials) &&
+                number == static_cast<float>(static_cast<std::size_t>(number)),
+            "a vertex has a material of the list");
+  }
+}
+
+void check(MemoryFiles& files, const importing::ImportFacts& facts) {
+  const auto source = mesh_io::make_ply_source(
+      files.open("imported.ply"),
+      facts.textures ? mesh_io::PlyMaterials::read : mesh_io::PlyMaterials::skipped);
+  const mesh_io::MeshDescription& mesh = source->description();
+  require(mesh.attributes.material == facts.textures.has_value() &&
+              mesh.attributes.material == !facts.materials.empty(),
+          "a textured mesh has materials");
+  std::uint64_t vertices = 0;
+  source->read_vertices([&](const mesh_io::VertexBlock& block) {
+    vertices += block.positions.size() + block.exact.size();
+    check_materials(block, mesh.attributes, facts.materials.materials.size());
+  });
+  const mesh_io::FaceCounts counts = source->read_triangles([](const auto&) {});
+  require(vertices == mesh.vertex_count, "all vertices are there");
+  require(counts.degenerate_triangles == 0, "degenerate triangles are gone");
+  for (const images::ImageSource& image : facts.materials.images)
+    require(image.file.empty() || files.kind(image.file) == storage::FileKind::regular,
+            "pictures are there");
+  for (const images::Material& material : facts.materials.materials)
+    require(!material.image || *material.image < facts.materials.images.size(),
+            "pictures of materials are in the list");
+}
+
+void import_twice(MemoryFiles& files, bool weld, importing::Textures textures) {
+  std::string first;
+  const std::string message = refusal({ErrorCode::input, ErrorCode::budget}, "mesh",
+                                      [&] { first = imported(files, weld, textures); });
+  require(!files.exists("imported.ply") && !files.exists("scratch"), "nothing is left behind");
+  if (message.empty())
+    require(imported(files, weld, textures) == first, "the same once more");
+}
+
+}  // namespace
+
+void put_pictures(MemoryFiles& files) {
+  for (const char* name : {"a.png", "t.1001.png", "b/C d.png"})
+    files.put(name, "a picture");
+}
+
+std::string imported(MemoryFiles& files, bool weld, importing::Textures textures) {
   storage::MemoryPool pool(0);
   storage::ScratchFile scratch(files, "scratch", pool);
   importing::TemporaryFile ply(files, "imported.ply", pool.scratch_use());
   execution::NoProgress progress;
   const execution::CancelToken cancel;
-  const importing::InputFiles input(files, std::filesystem::path("mesh"), weld);
+  const importing::InputFiles input(files, std::filesystem::path("mesh"), weld, textures);
   const importing::ImportFacts facts =
       importing::import_input(input, ply, {files, scratch, 1, progress, cancel});
-  require(facts.files.size() == 1 && facts.files[0].bytes == files.bytes("mesh").size(),
+  require(!facts.files.empty() && facts.files[0].bytes == files.bytes("mesh").size(),
           "the file is noted");
-  if (!facts.faces)
-    return files.content("imported.ply");  // unpacked, and read by nobody yet
-  const auto source = mesh_io::open_mesh(files, "imported.ply");
-  std::uint64_t vertices = 0;
-  source->read_vertices(
-      [&](const mesh_io::VertexBlock& b) { vertices += b.positions.size() + b.exact.size(); });
-  const mesh_io::FaceCounts counts = source->read_triangles([](const auto&) {});
-  require(vertices == source->description().vertex_count, "all vertices are there");
-  require(counts.degenerate_triangles == 0, "degenerate triangles are gone");
+  if (facts.faces)  // else unpacked, and read by nobody yet
+    check(files, facts);
   return files.content("imported.ply");
 }
-
-}  // namespace
 
 void mesh(Bytes input) {
   Take take(input);
   const bool weld = take.upto<std::uint8_t>(1) != 0;
   MemoryFiles files;
   files.put("mesh", text_of(take.rest()));
-  std::string first;
-  const std::string message =
-      refusal({ErrorCode::input}, "mesh", [&] { first = imported(files, weld); });
-  require(!files.exists("imported.ply") && !files.exists("scratch"), "nothing is left behind");
-  if (message.empty())
-    require(imported(files, weld) == first, "the same once more");
+  files.put("a.mtl", kLibrary);
+  put_pictures(files);
+  import_twice(files, weld, importing::Textures::use);
+}
+
+void gltf(Bytes input) {
+  Take take(input);
+  const auto flags = take.number<std::uint8_t>();
+  MemoryFiles files;
+  files.put("mesh", text_of(take.rest()));
+  files.put("b.png", "a picture");
+  std::string buffer;
+  for (int i = 0; i < 1024; ++i)
+    buffer.append({static_cast<char>(i % 5), 0, static_cast<char>(i % 7), 0});
+  files.put("a.bin", buffer);
+  import_twice(files, (flags & 1) != 0,
+               (flags & 2) != 0 ? importing::Textures::ignore : importing::Textures::use);
 }
 
 }  // namespace meshhier::tests::fuzz

@@ -18,6 +18,9 @@ void check_record(const TileRecord& record, const Tree& tree) {
   require(record.boundary_count <= record.own_count, "the boundary is of the own");
   require(record.drawn_border_count <= record.border_count, "what is drawn is there");
   require(record.split_count <= most_splits(record.interior_count, record.border_count), "splits");
+  require((record.image_width == 0) == (record.image_height == 0), "a picture has two sides");
+  require(std::max(record.image_width, record.image_height) <= kMaxImageSide, "a small picture");
+  require(record.texel >= 0 && (record.texel == 0 || record.image_width > 0), "its texels");
   require(!record.bounds.empty(), "a box");
 }
 

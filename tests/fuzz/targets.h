@@ -19,8 +19,14 @@ void ply_text(std::span<const std::byte> input);
 void ply_binary(std::span<const std::byte> input);
 /// Whether vertices are welded, then a file of any format, packed or not, to be imported.
 void mesh(std::span<const std::byte> input);
+/// A material library, of a mesh that is always the same.
+void mtl(std::span<const std::byte> input);
+/// The same for glTF, JSON or GLB: two bits, then the file.
+void gltf(std::span<const std::byte> input);
 /// Lines that begin with "--set " are overrides, the others the config.
 void config(std::span<const std::byte> input);
+/// A file for placement.metadata.
+void map_file(std::span<const std::byte> input);
 /// A tree (take_tree()), then a list of nodes.
 void cut(std::span<const std::byte> input);
 /// A hierarchy.json; also with the right checksum at its end.
@@ -43,6 +49,8 @@ void hierarchy(std::span<const std::byte> input);
 void stream(std::span<const std::byte> input);
 /// The head of an HTTP request.
 void request(std::span<const std::byte> input);
+/// A JPEG, PNG or WebP file.
+void image(std::span<const std::byte> input);
 /// A small mesh of any shape and how it is to be built.
 void build(std::span<const std::byte> input);
 
@@ -52,11 +60,14 @@ struct Target {
 };
 
 /// Names are those of the folders in corpus/, the dictionaries, and the programs (fuzz_NAME).
-inline constexpr std::array<Target, 17> kTargets{{{"ply_header", ply_header},
+inline constexpr std::array<Target, 21> kTargets{{{"ply_header", ply_header},
                                                   {"ply_text", ply_text},
                                                   {"ply_binary", ply_binary},
                                                   {"mesh", mesh},
+                                                  {"mtl", mtl},
+                                                  {"gltf", gltf},
                                                   {"config", config},
+                                                  {"map_file", map_file},
                                                   {"cut", cut},
                                                   {"manifest", manifest},
                                                   {"index", index},
@@ -68,6 +79,7 @@ inline constexpr std::array<Target, 17> kTargets{{{"ply_header", ply_header},
                                                   {"stream", stream},
                                                   {"hierarchy", hierarchy},
                                                   {"request", request},
+                                                  {"image", image},
                                                   {"build", build}}};
 
 }  // namespace meshhier::tests::fuzz

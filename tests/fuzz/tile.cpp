@@ -5,15 +5,20 @@
 //   u32 index             likewise
 //   u8  format            1 normals, 2 alpha, 4 texcoords, 8 an origin; 16, 32: the colours' type;
 //                         64, 128: the compression; with 64 and 8, positions are on a lattice;
-//                         2 without 1 and colours: computed normals
+//                         2 without 1 and colours: computed normals; 1 and 2 without colours: a
+//                         textured tile, of which one more byte tells:
+//   u8  textures          1, 2: the pictures' format; 4 unlit, 8 colours; 16 normals, computed with
+//                         32
 //
 // and then a GLB (put into a gzip stream where one is wanted), or a gzip stream, or, if it begins
 // like neither, what makes a GLB: counts whose JSON is written as it must be, so that all the rest
 // of the input lies behind the comparison of the JSON:
 //
 //   u16 own, boundary, ghosts, neighbours, chain entries, interior, border, copies; splits only if
-//       there are computed normals
+//       there are computed normals or textures
 //   u8  which attributes have raw values: 1, 2, 4
+//   u16 bytes of the picture, u8 width, u8 height, u8 alpha, all one less and modulo what they can
+//       be: only of a textured tile with triangles
 //   the BIN chunk before it is compressed, cut or filled up with zeros to its size
 #include "fuzz/target.h"
 #include "fuzz/targets.h"
@@ -45,6 +50,14 @@ struct Place {
   TileFormat format;
 };
 
+void take_textures(Take& take, TileFormat& format) {
+  const auto bits = take.number<std::uint8_t>();
+  const bool computed = (bits & 48) == 48;
+  format.textures = TextureFormat{static_cast<ImageFormat>((bits & 3) % 3), 90, (bits & 4) != 0};
+  format.attributes = {(bits & 48) == 16, (bits & 8) != 0 ? ColourType::u8 : ColourType::none};
+  format.computed_normals = computed;
+}
+
 Place take_place(Take& take) {
   Place place{take_tree(take), {}, {}};
   place.node.level = static_cast<Level>(take.upto<std::uint8_t>(raw(place.tree.depth())));
@@ -54,6 +67,8 @@ Place take_place(Take& take) {
   place.format.attributes = {(bits & 1) != 0, static_cast<ColourType>(bits >> 4 & 3),
                              (bits & 2) != 0 && !computed, (bits & 4) != 0};
   place.format.computed_normals = computed;
+  if ((bits & 51) == 3)
+    take_textures(take, place.format);
   if ((bits & 8) != 0)
     place.format.frame.origin = {1e6, -0.1, 3};
   place.format.compression = static_cast<storage::Compression>(bits >> 6);
@@ -99,6 +114,15 @@ bool has_vertices_below(const storage::TilePlan& plan, Bytes bin) {
   return true;
 }
 
+storage::ImageShape take_image(Take& take) {
+  storage::ImageShape image;
+  image.bytes = take.number<std::uint16_t>() + std::uint64_t{1};
+  image.width = take.number<std::uint8_t>() + 1U;
+  image.height = take.number<std::uint8_t>() + 1U;
+  image.alpha = static_cast<AlphaMode>(take.upto<std::uint8_t>(2));
+  return image;
+}
+
 /// A GLB of the counts at the front; empty if they ask for more than an input can fill.
 std::vector<std::byte> make_glb(Take take, const Place& place) {
   constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 17;
@@ -109,12 +133,15 @@ std::vector<std::byte> make_glb(Take take, const Place& place) {
                                &shape.chain_entries, &shape.interior, &shape.border, &shape.copies})
     *field = count();
   shape.computed_normals = place.format.computed_normals;
-  if (shape.computed_normals)
+  shape.textures = place.format.textures;
+  if (shape.is_shaded())
     shape.splits = count();
   const auto raw_bits = take.number<std::uint8_t>();
   const auto groups = storage::groups_of(place.format.attributes);
   for (std::size_t i = 0; i < groups.size(); ++i)
     shape.raw[i] = groups[i].channels > 0 && (raw_bits >> i & 1) != 0;
+  if (shape.textures && shape.interior + shape.border > 0)
+    shape.image = take_image(take);
   const storage::TilePlan plan(shape, place.format.attributes, place.format.lattice);
   if (plan.bytes() > kMostBytes)
     return {};
@@ -138,7 +165,8 @@ bool same_but_attributes(const PublishedTile& a, const PublishedTile& b) {
          a.mesh.copies.vertices.positions == b.mesh.copies.vertices.positions &&
          a.mesh.copies.places == b.mesh.copies.places &&
          a.mesh.interior_wedges == b.mesh.interior_wedges &&
-         a.mesh.border_wedges == b.mesh.border_wedges && a.shading == b.shading;
+         a.mesh.border_wedges == b.mesh.border_wedges && a.shading == b.shading &&
+         a.image == b.image;
 }
 
 bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
@@ -182,14 +210,13 @@ void check_copies(const TileMesh& mesh) {
 
 /// Triangles are the mesh's with splits.
 void check_shaded(const Shading& shading, const std::vector<TileTriangle>& triangles,
-                  const std::vector<TileTriangle>& numbered) {
-  const std::size_t vertices = shading.normals.size() - shading.split_of.size();
+                  const std::vector<TileTriangle>& numbered, std::size_t vertices) {
   require(triangles.size() == (shading.split_of.empty() ? 0 : numbered.size()),
           "a shaded triangle of each");
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (std::size_t c = 0; c < 3; ++c) {
       const std::uint32_t number = raw(triangles[t][c]);
-      require(number < shading.normals.size(), "corners have normals");
+      require(number < vertices + shading.split_of.size(), "corners are there");
       require(
           (number < vertices ? number : shading.split_of[number - vertices]) == raw(numbered[t][c]),
           "splits are of their corners");
@@ -197,19 +224,29 @@ void check_shaded(const Shading& shading, const std::vector<TileTriangle>& trian
   }
 }
 
+bool is_in_picture(const Vec2f& texcoord) {
+  return texcoord.u >= 0 && texcoord.u <= 1 && texcoord.v >= 0 && texcoord.v <= 1;
+}
+
 void check_shading(const PublishedTile& tile, const Place& place) {
   const Shading& shading = tile.shading;
   const TileMesh& mesh = tile.mesh;
-  require(shading.empty() != place.format.computed_normals, "normals where they are computed");
+  const bool textured = place.format.textures && !(mesh.interior.empty() && mesh.border.empty());
+  const std::size_t vertices = mesh.vertices.size() + mesh.copies.size();
+  const std::size_t all = vertices + shading.split_of.size();
+  require(shading.normals.size() == (place.format.computed_normals ? all : 0),
+          "normals where they are computed");
+  require(shading.texcoords.size() == (textured ? all : 0), "texture coordinates of textured ones");
+  require(std::ranges::all_of(shading.texcoords, is_in_picture), "within the picture");
+  require(tile.image.empty() != textured && tile.image.bytes.empty() != textured, "a picture");
   if (shading.empty())
     return;
   const VertexNumbers numbers(static_cast<std::uint32_t>(mesh.vertices.size()), mesh.copies.places);
-  require(
-      shading.normals.size() == mesh.vertices.size() + mesh.copies.size() + shading.split_of.size(),
-      "a normal each");
   require(std::ranges::is_sorted(shading.split_of), "splits ascend");
-  check_shaded(shading, shading.interior, numbers.numbered(mesh.interior, mesh.interior_wedges));
-  check_shaded(shading, shading.border, numbers.numbered(mesh.border, mesh.border_wedges));
+  check_shaded(shading, shading.interior, numbers.numbered(mesh.interior, mesh.interior_wedges),
+               vertices);
+  check_shaded(shading, shading.border, numbers.numbered(mesh.border, mesh.border_wedges),
+               vertices);
 }
 
 void check_triangles(const TileMesh& mesh) {

@@ -2,6 +2,7 @@
 
 #include "hierarchy/bounds.h"
 #include "support/sample_shading.h"
+#include "support/sample_texture.h"
 
 #include <algorithm>
 #include <cmath>
@@ -297,6 +298,13 @@ SampleHierarchy with_copies(SampleHierarchy sample) {
   return sample;
 }
 
+SampleHierarchy textured(SampleHierarchy sample, const TextureFormat& format, AlphaMode alpha) {
+  sample.format.textures = format;
+  for (PublishedTile& tile : sample.tiles)
+    add_texture(tile, sample_image(stored_format(format, alpha), alpha));
+  return sample;
+}
+
 SampleHierarchy shaded(SampleHierarchy sample) {
   sample.format.computed_normals = true;
   for (PublishedTile& tile : sample.tiles)
@@ -344,6 +352,14 @@ std::vector<AttributeLayout> sample_layouts() {
       layouts.push_back({.normals = true, .colour = type, .alpha = alpha, .texcoords = true});
     }
   }
+  return layouts;
+}
+
+std::vector<AttributeLayout> sample_layouts_without_texcoords() {
+  std::vector<AttributeLayout> layouts = sample_layouts();
+  std::erase_if(layouts, [](const AttributeLayout& layout) { return layout.texcoords; });
+  for (const ColourType type : {ColourType::u8, ColourType::f32})
+    layouts.push_back({.normals = true, .colour = type, .alpha = true});
   return layouts;
 }
 

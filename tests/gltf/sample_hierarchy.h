@@ -36,6 +36,11 @@ SampleHierarchy with_copies(SampleHierarchy sample);
 /// follows from its mesh.
 SampleHierarchy shaded(SampleHierarchy sample);
 
+/// The same with texture coordinates and pictures. Requires a layout without texture coordinates.
+/// Comes last, behind shaded().
+SampleHierarchy textured(SampleHierarchy sample, const TextureFormat& format = {},
+                         AlphaMode alpha = AlphaMode::opaque);
+
 /// The same with its positions rounded to a lattice of so many bits over all of them.
 SampleHierarchy quantized(SampleHierarchy sample, int bits);
 
@@ -45,6 +50,8 @@ std::vector<float> sample_attributes(const AttributeLayout& layout, std::uint64_
 
 /// Layouts of every kind of attribute, alone and together; the first has none.
 std::vector<AttributeLayout> sample_layouts();
+/// Those without texture coordinates.
+std::vector<AttributeLayout> sample_layouts_without_texcoords();
 /// Those without normals.
 std::vector<AttributeLayout> sample_layouts_without_normals();
 

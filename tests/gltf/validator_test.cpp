@@ -2,8 +2,13 @@
 // decoder on compressed ones. MESHHIER_GLTF_DIR is the directory of their scripts; skipped where
 // node or the package is not installed.
 #include "gltf/sample_hierarchy.h"
+#include "inspection/export.h"
 #include "storage/format/outline_glb.h"
 #include "storage/format/tile_glb.h"
+#include "support/sample_copies.h"
+#include "support/sample_hierarchy.h"
+#include "support/sample_shading.h"
+#include "support/sample_texture.h"
 
 #include <array>
 #include <cmath>
@@ -135,6 +140,29 @@ TEST_F(GltfValidator, AcceptsComputedNormalsAndSplits) {
   expect_clean();
 }
 
+TEST_F(GltfValidator, AcceptsTexturedTiles) {
+  int number = 0;
+  for (const AttributeLayout& layout : sample_layouts_without_texcoords()) {
+    for (const auto compression : {storage::Compression::none, storage::Compression::meshopt}) {
+      SampleHierarchy sample = with_copies(make_sample(torus(150, 0.05F), 3, {layout, {}}));
+      sample = textured(layout.normals ? sample : shaded(sample));
+      sample.format.compression = compression;
+      write_tiles(fmt::format("textured{}", number++), sample);
+    }
+  }
+  for (const ImageFormat format : {ImageFormat::jpeg, ImageFormat::png, ImageFormat::webp}) {
+    for (const AlphaMode alpha : {AlphaMode::opaque, AlphaMode::mask, AlphaMode::blend}) {
+      for (const bool unlit : {false, true}) {
+        write_tiles(
+            fmt::format("picture{}", number++),
+            textured(quantized(make_sample(torus(100, 0.05F), 2), 12), {format, 90, unlit}, alpha));
+      }
+    }
+  }
+  write_tiles("points", textured(make_sample(points(50), 2)));
+  expect_clean();
+}
+
 TEST_F(GltfValidator, AcceptsCompressedAndQuantizedTilesOfEveryLayout) {
   int number = 0;
   for (const AttributeLayout& layout : sample_layouts()) {
@@ -210,6 +238,35 @@ TEST_F(MeshoptDecoder, SeesOneChangedPosition) {
   sample.format.compression = storage::Compression::meshopt;
   write_tiles("packed", "a", sample);
   expect_code(compare(), 1);
+}
+
+TEST_F(GltfValidator, AcceptsExportedCuts) {
+  const auto files = storage::make_posix_file_system();
+  execution::NoProgress progress;
+  int number = 0;
+  const auto export_levels = [&](Sample& sample) {
+    const fs::path hierarchy = path(fmt::format("{}.hier", number));
+    write_sample(*files, hierarchy, sample);
+    for (const int level : {0, 1, 2}) {
+      inspection::export_mesh(*files, hierarchy,
+                              {static_cast<Level>(level), path(fmt::format("cut{}.glb", number++))},
+                              progress, {});
+    }
+    fs::remove_all(hierarchy);
+  };
+  for (const ImageFormat format : {ImageFormat::jpeg, ImageFormat::png, ImageFormat::webp}) {
+    for (const AlphaMode alpha : {AlphaMode::opaque, AlphaMode::mask, AlphaMode::blend}) {
+      Sample sample = make_sample(torus(300), SampleOptions{4, 40, false, true, {1, 2, 3}});
+      add_copies(sample);
+      add_shading(sample);
+      add_textures(sample, {format, 90, alpha != AlphaMode::blend}, alpha);
+      export_levels(sample);
+    }
+  }
+  Sample plain = make_sample(torus(300), SampleOptions{4, 40, false, true, {}});
+  add_copies(plain);
+  export_levels(plain);
+  expect_clean();
 }
 
 TEST_F(GltfValidator, AcceptsOutlines) {

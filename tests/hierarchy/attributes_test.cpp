@@ -30,7 +30,14 @@ TEST(Attributes, ChannelsOfEveryLayoutFollowEachOther) {
       }
     }
   }
-  EXPECT_EQ((AttributeLayout{true, ColourType::f32, true, true}.channels()), kMaxChannels);
+  EXPECT_EQ((AttributeLayout{true, ColourType::f32, true, true}.material_offset()), 9);
+  EXPECT_EQ((AttributeLayout{true, ColourType::f32, true, true, true}.channels()), kMaxChannels);
+}
+
+TEST(Attributes, NormalsAndColoursLieBeforeTexcoords) {
+  const AttributeLayout layout{true, ColourType::u8, true, true, true};
+  EXPECT_EQ(layout.without_texcoords(), (AttributeLayout{true, ColourType::u8, true}));
+  EXPECT_EQ(layout.without_texcoords().channels(), layout.texcoord_offset());
 }
 
 TEST(Attributes, AlphaWithoutColoursHasNoChannel) {

@@ -6,8 +6,8 @@ namespace meshhier {
 namespace {
 
 TEST(MeshNameTest, MeshesAreKnownByTheirEndings) {
-  for (const char* name :
-       {"a.ply", "a.obj", "a.stl", "a.off", "a.PLY", "a.Ply.GZ", "a.b.obj.gz", "ä ö.stl"})
+  for (const char* name : {"a.ply", "a.obj", "a.stl", "a.off", "a.gltf", "a.glb.gz", "a.PLY",
+                           "a.Ply.GZ", "a.b.obj.gz", "ä ö.stl"})
     EXPECT_TRUE(is_mesh_name(name)) << name;
   for (const char* name : {"a", "a.txt", ".a.ply", ".ply", "a.ply.part", "a.ply.tmp",
                            "a.ply.crdownload", "a.ply~", "a.gz", "a.ply.bz2", "a.hier", "ply"})

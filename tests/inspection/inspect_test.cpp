@@ -190,7 +190,7 @@ TEST_F(InspectTest, SizesAreToldAgainstRawFloatsAndIndices) {
 
 TEST_F(InspectTest, TheStorageIsTold) {
   EXPECT_EQ(json()["storage"].dump(),
-            R"({"compression":"none","positions":null,"normals":"none"})");
+            R"({"compression":"none","positions":null,"normals":"none","texture":null})");
   EXPECT_THAT(text(), HasSubstr("storage      none, positions exact"));
   sample_.manifest.compression = storage::Compression::meshopt;
   sample_.manifest.quantization =

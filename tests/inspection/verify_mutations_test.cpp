@@ -270,6 +270,23 @@ TEST_F(VerifyMutationsTest, NoValueOfAnImportedRoundedAndPlacedOneMayBeAnother) 
   EXPECT_THAT(undetected_in_manifest(), IsEmpty());
 }
 
+TEST_F(VerifyMutationsTest, AModelOnAMapStandsWhereTheMapSays) {
+  config::Config config = small();
+  config.input = mesh("mesh.ply");
+  config.placement.crs = "EPSG:32633";
+  config.placement.offset = {500000, 5300000, 0};
+  build(config);
+  ASSERT_THAT(problems(), IsEmpty());
+  const auto moved_by = [&](double metres) {
+    Json manifest = Json::parse(original_);
+    manifest["transform"][12] = manifest["transform"][12].get<double>() + metres;
+    write_manifest(sealed(manifest));
+    return problems();
+  };
+  EXPECT_THAT(moved_by(1), testing::Not(testing::Contains(HasSubstr("not near"))));
+  EXPECT_THAT(moved_by(20), testing::Contains(HasSubstr("\"transform\" is not near")));
+}
+
 /// A member of a record; errors and bounds are estimates and bounds, which verify --error measures.
 struct Field {
   std::string name;

@@ -58,9 +58,10 @@ TEST(MeshFormat, IsKnownInGzip) {
 }
 
 TEST(MeshFormat, WhatIsNoMeshIsRefused) {
-  EXPECT_EQ(refusal(""),
-            "mesh: expected a mesh (PLY, OBJ, STL or OFF, or one of them packed by gzip), found an "
-            "empty file");
+  EXPECT_EQ(
+      refusal(""),
+      "mesh: expected a mesh (PLY, OBJ, glTF, STL or OFF, or one of them packed by gzip), found an "
+      "empty file");
   EXPECT_THAT(refusal("hello world"), HasSubstr("found 'hello world'"));
   EXPECT_THAT(refusal("plyx"), HasSubstr("found 'plyx'"));
   EXPECT_THAT(refusal(gzip("hello world")), HasSubstr("found 'hello world'"));

@@ -1,6 +1,7 @@
 #include "mesh_io/ply_writer.h"
 
 #include "hierarchy/error.h"
+#include "mesh_io/ply_source.h"
 #include "ply_samples.h"
 
 #include <string>
@@ -89,6 +90,25 @@ TEST(PlyWriter, DoubleCoordinatesAreExact) {
   const ReadMesh mesh = read_mesh(*open_mesh(files, "out.ply"));
   EXPECT_TRUE(mesh.description.wide_coordinates);
   EXPECT_EQ(mesh.positions, (std::vector<Vec3d>{exact[0], to_double(single[0])}));
+}
+
+/// Any file may have a property of this name, whose numbers are those of no list of ours.
+TEST(PlyWriter, MaterialsAreReadOnlyByWhoAsksForThem) {
+  PlyContent content;
+  content.vertex_count = 2;
+  content.attributes = {.texcoords = true, .material = true};
+  MemoryFiles files;
+  PlyWriter writer(files.create("out.ply"), content);
+  const std::vector<Vec3f> positions{{1, 2, 3}, {4, 5, 6}};
+  const std::vector<float> attributes{0.5F, 0.25F, 7, 1, 0, 16777215};
+  writer.write_vertices(positions, attributes);
+  writer.finish();
+  const ReadMesh asked = read_mesh(*make_ply_source(files.open("out.ply"), PlyMaterials::read));
+  EXPECT_EQ(asked.description.attributes, content.attributes);
+  EXPECT_EQ(asked.attributes, attributes);
+  const ReadMesh other = read_mesh(*open_mesh(files, "out.ply"));
+  EXPECT_EQ(other.description.attributes, AttributeLayout{.texcoords = true});
+  EXPECT_EQ(other.attributes, (std::vector<float>{0.5F, 0.25F, 1, 0}));
 }
 
 TEST(PlyWriter, HeaderAndBytes) {

@@ -247,6 +247,14 @@ TEST_F(MemoryTest, AttributesAndDoubleCoordinatesInTheLeastBudget) {
   expect_within(least_budget());
 }
 
+// PROJ is loaded for it, and takes what the plan counts for it.
+TEST_F(MemoryTest, AModelInMapCoordinatesInTheLeastBudget) {
+  write_mesh(million_vertices());
+  const std::vector<std::string> settings{"up=z", "placement.crs=\"EPSG:23032+5773\"",
+                                          "placement.offset=[500000,5300000,0]"};
+  expect_within(least_budget(settings), settings);
+}
+
 // Every tile is the neighbour of all others; a tile has many more triangles than the plan counts
 // with.
 TEST_F(MemoryTest, TrianglesBetweenAnyVerticesIn64MiB) {

@@ -92,5 +92,22 @@ TEST(ViewsAroundTest, AreSpreadOverTheSphere) {
   }
 }
 
+TEST(CameraTest, APixelIsAsLargeAsItIsToBe) {
+  const Camera camera(View{}, {10, 20, 30}, 0.5,
+                      Framing{.width = 8, .height = 4, .samples = 3, .margin = 0.4});
+  EXPECT_EQ(camera.on_grid({10, 20, 30}), (Vec3d{12, 6, 0}));
+  EXPECT_EQ(camera.on_grid({10.5F, 20, 30}), (Vec3d{15, 6, 0}));
+  EXPECT_EQ(camera.on_grid({10, 20.5F, 29}), (Vec3d{12, 3, 6}));
+}
+
+TEST(CameraTest, ABoxReachesAsFarAsItsCorners) {
+  const BoundsD box{{0, 0, 0}, {1, 2, 3}};
+  const ViewExtent front = extent_of(box, axes_of(View{}));
+  EXPECT_EQ(front.across, 1);
+  EXPECT_EQ(front.upright, 2);
+  const ViewExtent side = extent_of(box, axes_of(View{{-1, 0, 0}, {0, 1, 0}}));
+  EXPECT_EQ(side.across, 3);
+}
+
 }  // namespace
 }  // namespace meshhier::render

@@ -1,6 +1,7 @@
 #include "render/tile_facets.h"
 
-#include "render/srgb.h"
+#include "images/srgb.h"
+#include "render/mip_texture.h"
 
 #include <array>
 #include <vector>
@@ -109,9 +110,25 @@ TEST(TileFacetsTest, ColoursAreLight) {
     const AttributeLayout layout{.normals = true, .colour = type, .alpha = true};
     const auto facets = facets_of(sample_tile(layout), layout, {}, NormalKind::own);
     const Vec3f colour = facets[0][0].colour;
-    EXPECT_EQ(colour.x, static_cast<float>(light_of(13 / full)));
-    EXPECT_EQ(colour.z, static_cast<float>(light_of(15 / full)));
+    EXPECT_EQ(colour.x, static_cast<float>(images::light_of(13 / full)));
+    EXPECT_EQ(colour.z, static_cast<float>(images::light_of(15 / full)));
   }
+}
+
+TEST(TileFacetsTest, SkinsHaveTheCoordinatesOfCornersAndOfSplits) {
+  PublishedTile tile = sample_tile({});
+  tile.shading.split_of = {1};
+  for (int i = 0; i < 7; ++i)
+    tile.shading.texcoords.push_back({static_cast<float>(i), 0});
+  tile.shading.interior = {triangle(0, 6, 2)};
+  tile.shading.border = {triangle(0, 1, 3), triangle(4, 5, 3)};
+  const MipTexture texture(images::Image(1, 1, 3));
+  const std::vector<std::uint32_t> border{1};
+  const auto skins = skins_of(tile, texture, border);
+  ASSERT_EQ(skins.size(), facets_of(tile, {}, border, NormalKind::facets).size());
+  EXPECT_EQ(skins[0].texcoords, (std::array{Vec2f{0, 0}, Vec2f{6, 0}, Vec2f{2, 0}}));
+  EXPECT_EQ(skins[1].texcoords, (std::array{Vec2f{4, 0}, Vec2f{5, 0}, Vec2f{3, 0}}));
+  EXPECT_EQ(skins[1].texture, &texture);
 }
 
 }  // namespace

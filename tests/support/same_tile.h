@@ -43,6 +43,7 @@ inline void expect_same_mesh(const PublishedTile& a, const PublishedTile& b) {
   EXPECT_EQ(a.mesh.interior_wedges, b.mesh.interior_wedges);
   EXPECT_EQ(a.mesh.border_wedges, b.mesh.border_wedges);
   EXPECT_TRUE(a.shading == b.shading);
+  EXPECT_TRUE(a.image == b.image);
 }
 
 inline void expect_same_attributes(const PublishedTile& a, const PublishedTile& b) {

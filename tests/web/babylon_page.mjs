@@ -10,6 +10,8 @@ import { Scene } from '@babylonjs/core/scene.js';
 import '@babylonjs/loaders/glTF/glTFFileLoader.js';
 import '@babylonjs/loaders/glTF/2.0/glTFLoader.js';
 import '@babylonjs/loaders/glTF/2.0/Extensions/EXT_meshopt_compression.js';
+import '@babylonjs/loaders/glTF/2.0/Extensions/EXT_texture_webp.js';
+import '@babylonjs/loaders/glTF/2.0/Extensions/KHR_materials_unlit.js';
 import '@babylonjs/loaders/glTF/2.0/Extensions/KHR_mesh_quantization.js';
 import { pixelsOf } from './pixels.mjs';
 

@@ -72,6 +72,16 @@ export function call(page, name, argument) {
   return page.evaluate(([f, x]) => window.view[f](x), [name, argument]);
 }
 
+/// RGBA of a picture, decoded by a page: the uppermost row first.
+export async function decodePicture(decoder, picture) {
+  return decoder.evaluate(async (data) => {
+    const bitmap = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
+    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
+    context.drawImage(bitmap, 0, 0);
+    return Array.from(context.getImageData(0, 0, bitmap.width, bitmap.height).data);
+  }, picture.toString('base64'));
+}
+
 /// One page of a viewer: `show(page)` works with it, with `directories` below its server; an error on
 /// its console is a problem.
 export async function withPage(browser, report, { viewer, name, directories }, show) {

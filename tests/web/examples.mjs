@@ -7,7 +7,7 @@
 import { cpSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { collectComplaints, inChromium, SIZE } from './browser.mjs';
+import { collectComplaints, decodePicture, inChromium, SIZE } from './browser.mjs';
 import { startServer } from './meshhier_server.mjs';
 import { serve } from './server.mjs';
 
@@ -42,16 +42,6 @@ function checkVersions(report) {
   report.line('examples packages', others.length === 0, others.map(([name, version]) => `${name} ${version} is not the tested ${tested[name]}`).join('; ') || 'of the tested versions');
 }
 
-/// RGBA of a picture, the uppermost row first.
-async function pixelsOf(decoder, picture) {
-  return decoder.evaluate(async (data) => {
-    const bitmap = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
-    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
-    context.drawImage(bitmap, 0, 0);
-    return Array.from(context.getImageData(0, 0, bitmap.width, bitmap.height).data);
-  }, picture.toString('base64'));
-}
-
 /// What is not background: which part of the picture, how far from its middle, whether it reaches the edge, and its contrast.
 function measure(pixels) {
   const places = [...Array(SIZE * SIZE).keys()].filter((i) => BACKGROUND.some((value, k) => Math.abs(pixels[4 * i + k] - value) > 8));
@@ -74,7 +64,7 @@ async function settledPicture(page, decoder) {
     const picture = await page.screenshot();
     same.count = last?.equals(picture) ? same.count + 1 : 0;
     last = picture;
-    if (same.count >= 4 && measure(await pixelsOf(decoder, picture)).covered > 0) break;
+    if (same.count >= 4 && measure(await decodePicture(decoder, picture)).covered > 0) break;
     await page.waitForTimeout(250);
   }
   return last;
@@ -95,7 +85,7 @@ async function checkPicture(browser, report, { decoder, pages, models, pictures 
   const message = await page.locator('#message').innerText();
   await page.screenshot({ path: path.join(pictures, `example-${viewer}-${name}.png`) });
   await page.close();
-  const { covered, offCentre, isWhole, contrast } = measure(await pixelsOf(decoder, picture));
+  const { covered, offCentre, isWhole, contrast } = measure(await decodePicture(decoder, picture));
   const isGood = covered >= COVERED[0] && covered <= COVERED[1] && isWhole && offCentre <= OFF_CENTRE && contrast >= LEAST_CONTRAST;
   report.line(`examples ${viewer} ${name}`, isGood && message === '' && complaints.length === 0,
     `covers ${(100 * covered).toFixed(1)} %, ${isWhole ? 'whole' : 'CUT OFF'}, ${(100 * offCentre).toFixed(1)} % off the middle, contrast ${contrast.toFixed(0)} ${[message, ...complaints].join(' ')}`);

@@ -58,6 +58,7 @@ function readSettings(stored: Json): Settings {
 function readLook(stored: Json): Look {
   return {
     colours: oneOf(stored.colours, COLOURS, DEFAULT_LOOK.colours),
+    texture: stored.texture !== false,
     shading: oneOf(stored.shading, ['smooth', 'flat'], DEFAULT_LOOK.shading),
     wires: stored.wires === true,
     points: stored.points === true,

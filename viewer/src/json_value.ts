@@ -30,6 +30,10 @@ export class JsonValue {
     return new JsonValue(below, this.path === '' ? String(key) : `${this.path}.${key}`, this.refuse);
   }
 
+  has(key: string): boolean {
+    return this.at(key).value !== undefined;
+  }
+
   items(): JsonValue[] {
     if (!Array.isArray(this.value)) this.fail('an array');
     return this.value.map((_, i) => this.at(i));

@@ -3,7 +3,8 @@ import { describe, expect, it } from 'vitest';
 import { Seam } from '../src/cut/seam.js';
 import { firstOf, toPlaces } from '../src/hierarchy/copies.js';
 import { HierarchyProblem } from '../src/hierarchy/problem.js';
-import { readTile, type ExpectedCounts, type Tile } from '../src/hierarchy/tile.js';
+import { readTile, type Tile } from '../src/hierarchy/tile.js';
+import type { ExpectedCounts } from '../src/hierarchy/tile_counts.js';
 import { Tree, keyOf } from '../src/hierarchy/tree.js';
 import { memoryOf, mostMemory, vertexBytesOf } from '../src/scene/tile_object.js';
 import { tileBytes, type TileParts } from './support/tile_bytes.js';
@@ -66,7 +67,7 @@ describe('readTile', () => {
   });
 
   it('refuses a tile with other copies than the index tells of', async () => {
-    const expected = { level: 0, index: 0, own: 4, ghosts: 0, copies: 8, splits: 0, interior: 4, border: 0 };
+    const expected = { level: 0, index: 0, own: 4, ghosts: 0, copies: 8, splits: 0, interior: 4, border: 0, pictureWidth: 0, pictureHeight: 0 };
     await expect(read(TETRAHEDRON, {}, expected)).resolves.toBeDefined();
     await expect(read(TETRAHEDRON, {}, { ...expected, copies: 7 })).rejects.toThrow('not the tile that the index tells of');
   });
@@ -152,7 +153,7 @@ describe('Seam', () => {
     const copies = Array<number>(40).fill(0);
     const each = (values: readonly number[]): number[] => [0, ...copies].flatMap(() => values);
     const tile = await read({ own: 1, copyOf: copies, positions: each([0, 0, 0]), normals: each(UP), colours: each([9, 9, 9, 255]), interior: [0, 1, 2] });
-    const counts = { own: 1, ghosts: 0, copies: 40, splits: 0, interior: 1, border: 0 };
+    const counts = { own: 1, ghosts: 0, copies: 40, splits: 0, interior: 1, border: 0, pictureWidth: 0, pictureHeight: 0 };
     const most = mostMemory(counts, { level: 0, vertexBytes: vertexBytesOf(tile), wires: false });
     expect(memoryOf(tile, new Seam(tile, new Tree(1)), false)).toBeLessThanOrEqual(most);
   });
@@ -160,7 +161,7 @@ describe('Seam', () => {
   it('takes no more memory than the index says', async () => {
     const fine = await read(FINE);
     const seam = new Seam(fine, tree);
-    const counts = { own: 2, ghosts: 2, copies: 3, splits: 0, interior: 0, border: 2 };
+    const counts = { own: 2, ghosts: 2, copies: 3, splits: 0, interior: 0, border: 2, pictureWidth: 0, pictureHeight: 0 };
     expect(memoryOf(fine, seam, true)).toBeLessThanOrEqual(mostMemory(counts, { level: 2, vertexBytes: vertexBytesOf(fine), wires: true }));
     expect(memoryOf(fine, seam, true)).toBeGreaterThan(memoryOf(await read({ ...FINE, copyOf: [], border: [0, 1, 2, 0, 3, 2], positions: FINE.positions.slice(0, 12), normals: FINE.normals!.slice(0, 12) }), seam, true));
   });

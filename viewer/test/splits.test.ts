@@ -4,7 +4,8 @@ import { Seam } from '../src/cut/seam.js';
 import { placeOf, verticesAt } from '../src/hierarchy/copies.js';
 import { HierarchyProblem } from '../src/hierarchy/problem.js';
 import { RemoteHierarchy } from '../src/hierarchy/remote_hierarchy.js';
-import { readTile, type ExpectedCounts, type Tile } from '../src/hierarchy/tile.js';
+import { readTile, type Tile } from '../src/hierarchy/tile.js';
+import type { ExpectedCounts } from '../src/hierarchy/tile_counts.js';
 import { TileDecoder } from '../src/hierarchy/tile_decoder.js';
 import type { TileRecord } from '../src/hierarchy/tile_index.js';
 import { Tree, keyOf } from '../src/hierarchy/tree.js';
@@ -99,7 +100,7 @@ describe('readTile', () => {
   });
 
   it('refuses a tile with other splits than the index tells of', async () => {
-    const expected = { level: 0, index: 0, own: 4, ghosts: 0, copies: 2, splits: 6, interior: 4, border: 0 };
+    const expected = { level: 0, index: 0, own: 4, ghosts: 0, copies: 2, splits: 6, interior: 4, border: 0, pictureWidth: 0, pictureHeight: 0 };
     await expect(read(TETRAHEDRON, {}, expected)).resolves.toBeDefined();
     await expect(read(TETRAHEDRON, {}, { ...expected, splits: 5 })).rejects.toThrow('not the tile that the index tells of');
   });
@@ -220,7 +221,7 @@ describe('Seam', () => {
     const [fine, given] = [await read(FINE), await read({ ...FINE, splitOf: [], codes: undefined, copyOf: [0, 2, 2, 2, 3], border: [0, 1, 2, 4, 8, 7], normals: FINE.codes!.map((value) => value / 127) })];
     const bytes = memoryOf(fine, new Seam(fine, tree), true);
     const most = (splits: number): number =>
-      mostMemory({ own: 2, ghosts: 2, copies: 1, splits, interior: 0, border: 2 }, { level: 2, vertexBytes: vertexBytesOf(fine), wires: true });
+      mostMemory({ own: 2, ghosts: 2, copies: 1, splits, interior: 0, border: 2, pictureWidth: 0, pictureHeight: 0 }, { level: 2, vertexBytes: vertexBytesOf(fine), wires: true });
     expect(vertexBytesOf(fine)).toBe(20);
     expect(bytes).toBeLessThanOrEqual(most(4));
     expect(most(4) - most(3)).toBeGreaterThanOrEqual(2 * 20);
@@ -246,7 +247,7 @@ describe('RemoteHierarchy', () => {
     const remote = new RemoteHierarchy('here', fetch, new TileDecoder(undefined, 0), signal);
     await remote.root();
     const record = ({ own, copyOf = [], splitOf = [], interior }: TileParts): TileRecord =>
-      ({ own, ghosts: 0, copies: copyOf.length, splits: splitOf.length, interior: interior.length / 3, border: 0, error: 0, min: [0, 0, 0], max: [1, 1, 1], bytes: 1 });
+      ({ own, ghosts: 0, copies: copyOf.length, splits: splitOf.length, interior: interior.length / 3, border: 0, pictureWidth: 0, pictureHeight: 0, error: 0, min: [0, 0, 0], max: [1, 1, 1], bytes: 1 });
     await expect(remote.tile({ level: 1, index: 0 }, record(computed), signal)).resolves.toBeDefined();
     await expect(remote.tile({ level: 1, index: 1 }, record(none), signal)).rejects.toThrow('tiles/01/000001.glb: its normals are not of the kind that the root has');
   });

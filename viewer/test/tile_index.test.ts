@@ -87,6 +87,7 @@ describe.skipIf(!hasProgram)('TileIndex', () => {
   it.each<[string, number, number]>([
     ['an error that is no number', 48, 0x7fc00000],
     ['more splits than corners', 84, 2 ** 20],
+    ['a picture with one side', 88, 512],
   ])('tells of a damaged record, with %s, and goes on with the others', async (_, offset, value) => {
     const hierarchy = large();
     const known = fetchFrom(hierarchy);
@@ -94,7 +95,7 @@ describe.skipIf(!hasProgram)('TileIndex', () => {
       const response = await known(url, init);
       if (!url.endsWith('tiles.bin')) return response;
       const bytes = new Uint8Array(await response.arrayBuffer());
-      new DataView(bytes.buffer).setUint32(32 + 2 * 104 + offset, value, true);
+      new DataView(bytes.buffer).setUint32(32 + 2 * 120 + offset, value, true);
       return new Response(bytes, { status: response.status });
     });
     const problems: unknown[] = [];
@@ -122,13 +123,34 @@ describe.skipIf(!hasProgram)('TileIndex', () => {
 });
 
 describe('readManifest', () => {
-  const hostile = ['', '[]', 'null', '{}', '{"format":"meshhier"}', '{"format":"meshhier","format_version":6}',
-    '{"format":"meshhier","format_version":5,"source":[]}', '{"__proto__":{"format":"meshhier"}}'];
+  const hostile = ['', '[]', 'null', '{}', '{"format":"meshhier"}', '{"format":"meshhier","format_version":7}',
+    '{"format":"meshhier","format_version":6,"source":[]}', '{"__proto__":{"format":"meshhier"}}'];
   it.each(hostile)('refuses %s', (text) => {
     expect(() => readManifest(text)).toThrow(HierarchyProblem);
   });
 
+  const textured = (textures: unknown, texture: unknown): string => {
+    const source = { file_name: 'a.obj', file_bytes: 1, vertices: 3, triangles: 1, attributes: { colours: 'none', normals: false }, bounds: { min: [0, 0, 0], max: [1, 1, 1] }, textures };
+    return JSON.stringify({ format: 'meshhier', format_version: 6, source, origin: [0, 0, 0], up: 'y', licence: '', partitions: 1, total_bytes: 1,
+      storage: { positions: null, texture }, index: { file: 'tiles.bin', bytes: 152 } });
+  };
+  const stored = { format: 'webp', quality: 90, unlit: true };
+
+  it('tells of pictures', () => {
+    expect(readManifest(textured(undefined, undefined)).source.textures).toBeNull();
+    expect(readManifest(textured({ images: 3, missing_images: 1 }, stored)).source.textures).toEqual({ images: 3, missingImages: 1 });
+  });
+
+  it.each<[string, unknown, unknown, string]>([
+    ['pictures of which nobody says how they are stored', { images: 1, missing_images: 0 }, undefined, '"storage.texture" is not an object'],
+    ['stored pictures that nobody has', undefined, stored, '"source.textures" is not an object'],
+    ['pictures of another kind', { images: 1, missing_images: 0 }, { ...stored, format: 'bmp' }, 'one of jpeg, png, webp'],
+    ['more missing pictures than there are', { images: 1, missing_images: 2 }, stored, 'from 0 to 1'],
+  ])('refuses %s', (_, textures, texture, problem) => {
+    expect(() => readManifest(textured(textures, texture))).toThrow(problem);
+  });
+
   it('says what to do about a hierarchy of an older version', () => {
-    expect(() => readManifest('{"format":"meshhier","format_version":4}')).toThrow('build the hierarchy again');
+    expect(() => readManifest('{"format":"meshhier","format_version":5}')).toThrow('build the hierarchy again');
   });
 });

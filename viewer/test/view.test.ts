@@ -1,13 +1,14 @@
 // The whole library on real hierarchies, from files instead of a host, without a GPU.
 import { writeFileSync } from 'node:fs';
 import path from 'node:path';
-import { PerspectiveCamera, Vector3, type Mesh } from 'three';
+import { MeshBasicMaterial, PerspectiveCamera, Vector3, type Mesh } from 'three';
 import { afterAll, afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import type { Fetch } from '../src/hierarchy/bytes.js';
 import { HierarchyView, type ViewOptions } from '../src/index.js';
 import { unsplitOf } from '../src/hierarchy/copies.js';
 import { readTile, type Indices } from '../src/hierarchy/tile.js';
 import { fetchFrom, hasProgram, Workshop } from './support/meshhier.js';
+import { FakeBitmap, fakeDecode, png } from './support/pictures.js';
 import { tileBytes } from './support/tile_bytes.js';
 
 const VIEWPORT = { width: 800, height: 600 };
@@ -85,7 +86,7 @@ function troubled(known: Fetch, hurt: (url: string, times: number) => Promise<Re
 async function withSplits(answer: Response, times: number): Promise<Response> {
   const bytes = new Uint8Array(await answer.arrayBuffer());
   const view = new DataView(bytes.buffer);
-  for (let at = 32; at < bytes.length; at += 104) {
+  for (let at = 32; at < bytes.length; at += 120) {
     const [own, ghosts, copies] = [8, 16, 20].map((offset) => view.getUint32(at + offset, true));
     view.setUint32(at + 84, times * (own + ghosts + copies), true);
   }
@@ -107,7 +108,7 @@ function split(known: Fetch, times: number): Fetch {
     const arrays = { copyOf: [...tile.copyOf], border: whole(tile.border), neighbours: [...tile.neighbours], ghostStarts: [...tile.ghostStarts], chains: [...tile.chains] };
     const positions = at.flatMap((vertex) => [...tile.positions.subarray(3 * vertex, 3 * vertex + 3)]);
     const interior = whole(tile.indices.subarray(0, 3 * tile.interiorCount));
-    return new Response(tileBytes({ ...tile, ...arrays, interior, splitOf, positions, codes: at.flatMap(() => [0, 0, 127]), colours: undefined, normals: undefined }) as Uint8Array<ArrayBuffer>);
+    return new Response(tileBytes({ ...tile, ...arrays, interior, splitOf, positions, codes: at.flatMap(() => [0, 0, 127]), colours: undefined, normals: undefined, picture: undefined }) as Uint8Array<ArrayBuffer>);
   };
 }
 
@@ -124,6 +125,7 @@ describe.skipIf(!hasProgram)('HierarchyView', () => {
   afterEach(() => {
     for (const { view } of sessions.splice(0)) view.dispose();
     vi.useRealTimers();
+    vi.unstubAllGlobals();
   });
   afterAll(() => {
     workshop.remove();
@@ -405,6 +407,51 @@ describe.skipIf(!hasProgram)('HierarchyView', () => {
     expect(session.view.stats().peakBytes).toBeLessThanOrEqual(memoryBudget);
   });
 
+  const textured = (): string => {
+    const mesh = path.join(workshop.directory, 'textured.obj');
+    writeFileSync(mesh, texturedObj(40));
+    writeFileSync(path.join(workshop.directory, 'textured.mtl'), 'newmtl one\nmap_Kd textured.png\n');
+    writeFileSync(path.join(workshop.directory, 'textured.png'), png(1024, 1024));
+    return workshop.buildMesh('textured', mesh, { partition: { vertices: 100 }, texture: { texels: 128 } });
+  };
+
+  it('keeps to that memory with pictures too, shows no tile without its own, and closes all', async () => {
+    vi.stubGlobal('createImageBitmap', fakeDecode);
+    FakeBitmap.open = 0;
+    const hierarchy = textured();
+    const wide = begin(fetchFrom(hierarchy), { settings: { threshold: 0.05 } });
+    await wide.view.opened;
+    wide.look([0.5, 1, 0.5], [0.5, 0, 0.5001]);
+    for (const end = { frames: 600 }; end.frames > 0 && !wide.view.stats().settled; --end.frames) {
+      await wide.frame();
+      for (const { material } of wide.meshes()) expect(material).toMatchObject({ map: { image: { isClosed: false } } });
+    }
+    expect(wide.view.manifest?.source.textures).toEqual({ images: 1, missingImages: 0 });
+    expect(wide.meshes().length).toBeGreaterThan(4);
+    expect(wide.meshes().every(({ material }) => material instanceof MeshBasicMaterial)).toBe(true);
+    expect(FakeBitmap.open).toBe(wide.view.stats().residentTiles);
+    const memoryBudget = Math.max(1e6, Math.round(wide.view.stats().residentBytes / 2));
+    const tight = begin(fetchFrom(hierarchy), { settings: { memoryBudget, threshold: 0.05 } });
+    await tight.view.opened;
+    tight.look([0.5, 1, 0.5], [0.5, 0, 0.5001]);
+    expect(await tight.settle()).toBe(true);
+    expect(tight.view.stats().peakBytes).toBeLessThanOrEqual(memoryBudget);
+    expect(tight.view.stats().residentTiles).toBeLessThan(wide.view.stats().residentTiles);
+    for (const { view } of [wide, tight]) view.dispose();
+    expect(FakeBitmap.open).toBe(0);
+  });
+
+  it('goes on without a tile whose picture cannot be decoded, and tells', async () => {
+    let pictures = 0;
+    vi.stubGlobal('createImageBitmap', async (file: Blob) => (++pictures > 1 ? Promise.reject(new Error('no')) : fakeDecode(file)));
+    const session = begin(fetchFrom(textured()), { settings: { threshold: 0.05 } });
+    await session.view.opened;
+    session.look([0.5, 1, 0.5], [0.5, 0, 0.5001]);
+    expect(await session.settle(60)).toBe(true);
+    expect(session.view.stats().tiles).toBe(1);
+    expect(session.problems[0]).toMatch(/tiles\/.*\.glb: its picture cannot be decoded/);
+  });
+
   it('finds what sticks out of the coarse shape', async () => {
     const mesh = path.join(workshop.directory, 'antenna.ply');
     writeFileSync(mesh, antenna());
@@ -436,6 +483,18 @@ describe.skipIf(!hasProgram)('HierarchyView', () => {
     expect(() => { session.view.setSettings({ framesPerSecond: 0 }); }).toThrow(RangeError);
   });
 });
+
+/// A wavy square that a picture covers.
+function texturedObj(size: number): string {
+  const numbers = Array.from({ length: (size + 1) ** 2 }, (_, i) => i);
+  const at = (i: number): [number, number] => [(i % (size + 1)) / size, Math.floor(i / (size + 1)) / size];
+  const places = numbers.map((i) => { const [x, z] = at(i); return `v ${x} ${0.05 * Math.sin(9 * x) * Math.sin(7 * z)} ${z}\nvt ${x} ${z}`; });
+  const faces = numbers.filter((i) => i % (size + 1) < size && i < size * (size + 1)).map((i) => {
+    const [a, b, c, d] = [i, i + size + 1, i + size + 2, i + 1].map((v) => `${v + 1}/${v + 1}`);
+    return `f ${a} ${b} ${c}\nf ${a} ${c} ${d}`;
+  });
+  return ['mtllib textured.mtl', ...places, 'usemtl one', ...faces, ''].join('\n');
+}
 
 /// A rough square of 40 x 40 around a thin pole, 60 high.
 function antenna(): string {

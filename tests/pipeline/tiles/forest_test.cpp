@@ -84,7 +84,7 @@ class Grove {
         pool_(setting.pool_bytes),
         scratch_(*files_, directory_.path() / "scratch", pool_),
         tree_(mesh_.positions.size(), setting.partitions),
-        forest_(tree_, static_cast<Level>(setting.chunk_level), numbering().channels(), scratch_) {
+        forest_(tree_, static_cast<Level>(setting.chunk_level), numbering(), scratch_) {
     const auto chunks = static_cast<Level>(setting.chunk_level);
     const partition::ChunkMap map(tree_, chunks);
     for (std::uint32_t c = 0; c < map.count(); ++c)
@@ -184,8 +184,8 @@ class Grove {
   TileErrors errors_{tree_};
   Chunks chunks_{tree_, numbering().channels(), false, scratch_, 4096};
   execution::CancelToken never_;
-  BuildJournal journal_{*files_, directory_.path(), {},    pool_.scratch_use(),
-                        forest_, chunks_,           never_};
+  BuildJournal journal_{*files_, directory_.path(), {}, pool_.scratch_use(), {forest_, chunks_},
+                        never_};
   std::vector<std::vector<Place>> places_;  ///< [level][vertex]
 };
 

@@ -324,12 +324,12 @@ TEST_F(HierarchyReaderTest, AHierarchyOfAnEarlierFormatIsRefusedWithWhatToDo) {
   const fs::path path = storage::manifest_path(directory_);
   std::ifstream in(path);
   auto document = nlohmann::ordered_json::parse(in);
-  document["format_version"] = 4;
+  document["format_version"] = 5;
   document["source"].erase("places");
   const std::string text = with_new_seal(document);
   storage::write_file(*files_, path, std::as_bytes(std::span(text)));
   expect_failure(ErrorCode::corrupt, path,
-                 "was made with format version 4, this program reads 5: build it again from the "
+                 "was made with format version 5, this program reads 6: build it again from the "
                  "mesh",
                  [&] { reader(); });
 }

@@ -21,7 +21,7 @@ using Bytes = std::vector<std::byte>;
 
 const char* const kIndexName = "some/tiles.bin";
 constexpr std::size_t kHeaderBytes = 32;
-constexpr std::size_t kRecordBytes = 104;
+constexpr std::size_t kRecordBytes = 120;
 
 /// Every tile of the tree, with values that differ from field to field and from tile to tile.
 std::vector<TileRecord> make_records(const Tree& tree) {
@@ -50,6 +50,9 @@ std::vector<TileRecord> make_records(const Tree& tree) {
       record.error = real + 0.1F;
       record.bound = real + 0.2F;
       record.compactness = real + 0.3F;
+      record.image_width = k % 3 * 4096;
+      record.image_height = k % 3 * (k + 1);
+      record.texel = k % 3 == 1 ? real + 0.4F : 0;
       record.bounds = {{-real, -2, -3}, {1, real + 2, 3}};
       record.file_bytes = 1000000007ULL * (k + 1);
       record.checksum = 0x0123456789abcdefULL * (k + 1);
@@ -75,6 +78,9 @@ void expect_same(const TileRecord& a, const TileRecord& b) {
   EXPECT_EQ(a.error, b.error);
   EXPECT_EQ(a.bound, b.bound);
   EXPECT_EQ(a.compactness, b.compactness);
+  EXPECT_EQ(a.image_width, b.image_width);
+  EXPECT_EQ(a.image_height, b.image_height);
+  EXPECT_EQ(a.texel, b.texel);
   EXPECT_EQ(a.bounds, b.bounds);
   EXPECT_EQ(a.file_bytes, b.file_bytes);
   EXPECT_EQ(a.checksum, b.checksum);
@@ -122,6 +128,9 @@ TEST(Index, TheBytesAreThoseOfTheDocument) {
   record.copy_count = 258;
   record.interior_count = 100;
   record.split_count = 259;
+  record.image_width = 0x1234;
+  record.image_height = 0x102;
+  record.texel = 0.5F;
   record.error = 1.0F;
   record.bounds = {{0, 0, 0}, {1, 1, 1}};
   record.file_bytes = 0x0102030405060708;
@@ -129,8 +138,8 @@ TEST(Index, TheBytesAreThoseOfTheDocument) {
   const auto byte = [&](std::size_t offset) { return static_cast<int>(bytes.at(offset)); };
   EXPECT_EQ(byte(0), 'M');
   EXPECT_EQ(byte(7), '\n');
-  EXPECT_EQ(byte(8), 3);
-  EXPECT_EQ(byte(12), 104);
+  EXPECT_EQ(byte(8), 4);
+  EXPECT_EQ(byte(12), 120);
   EXPECT_EQ(byte(16), 1);
   EXPECT_EQ(byte(kHeaderBytes + 8), 7);
   EXPECT_EQ(byte(kHeaderBytes + 12), 5);
@@ -140,8 +149,11 @@ TEST(Index, TheBytesAreThoseOfTheDocument) {
   EXPECT_EQ(byte(kHeaderBytes + 50), 0x80);
   EXPECT_EQ(byte(kHeaderBytes + 84), 3);
   EXPECT_EQ(byte(kHeaderBytes + 85), 1);
-  EXPECT_EQ(byte(kHeaderBytes + 88), 8);
-  EXPECT_EQ(byte(kHeaderBytes + 95), 1);
+  EXPECT_EQ(byte(kHeaderBytes + 88), 0x34);
+  EXPECT_EQ(byte(kHeaderBytes + 92), 2);
+  EXPECT_EQ(byte(kHeaderBytes + 99), 0x3F);
+  EXPECT_EQ(byte(kHeaderBytes + 104), 8);
+  EXPECT_EQ(byte(kHeaderBytes + 111), 1);
 }
 
 TEST(Index, TruncationAndExtraBytesAreRefused) {
@@ -152,7 +164,7 @@ TEST(Index, TruncationAndExtraBytesAreRefused) {
     EXPECT_NE(failure(cut, tree), "") << size;
   }
   bytes.push_back(std::byte{0});
-  EXPECT_THAT(failure(bytes, tree), HasSubstr("expected 968"));
+  EXPECT_THAT(failure(bytes, tree), HasSubstr("expected 1112"));
 }
 
 TEST(Index, EveryFlippedBitIsFound) {
@@ -179,6 +191,18 @@ TEST(Index, FlipsBehindAFittingChecksumNeverCrash) {
   }
 }
 
+TEST(Index, APictureNeedsTriangles) {
+  const Tree tree(7, 1);
+  TileRecord record;
+  record.own_count = 7;
+  record.bounds = {{0, 0, 0}, {1, 1, 1}};
+  record.file_bytes = 1;
+  record.image_width = record.image_height = 64;
+  EXPECT_THAT(failure(encode_index(std::vector{record}), tree), HasSubstr("of no triangle"));
+  record.border_count = 1;
+  EXPECT_EQ(failure(encode_index(std::vector{record}), tree), "");
+}
+
 struct RecordDamage {
   std::size_t offset;  ///< in the first record
   std::uint32_t value;
@@ -202,10 +226,26 @@ TEST(Index, ImpossibleValuesAreRefusedByName) {
         RecordDamage{56, kNan, "impossible compactness"},
         RecordDamage{60, 0x7F800000, "impossible bounds"},
         RecordDamage{72, 0xC0000000, "impossible bounds"},
-        RecordDamage{84, 3 * (2 + 3) + 1, "impossible splits"}}) {
+        RecordDamage{84, 3 * (2 + 3) + 1, "impossible splits"},
+        RecordDamage{88, 1, "impossible size of the picture"},
+        RecordDamage{92, 1, "impossible size of the picture"},
+        RecordDamage{96, 1, "impossible texel"}, RecordDamage{96, kNan, "impossible texel"},
+        RecordDamage{100, 1, "bytes that have to be 0 are not"}}) {
     Bytes bytes = good;
     storage::store_little(damage.value, bytes.data() + kHeaderBytes + damage.offset);
     EXPECT_THAT(failure(sealed(bytes), tree), HasSubstr(damage.message));
+  }
+  for (const RecordDamage& damage :
+       {RecordDamage{88, 0, "impossible size of the picture"},
+        RecordDamage{92, 0, "impossible size of the picture"},
+        RecordDamage{88, kMaxImageSide + 1, "impossible size of the picture"},
+        RecordDamage{92, kMaxImageSide + 1, "impossible size of the picture"},
+        RecordDamage{96, kMinusOne, "impossible texel"}, RecordDamage{88, kMaxImageSide, ""},
+        RecordDamage{96, 0, ""}}) {
+    Bytes bytes = good;
+    storage::store_little(damage.value, bytes.data() + kHeaderBytes + kRecordBytes + damage.offset);
+    EXPECT_THAT(failure(sealed(bytes), tree), HasSubstr(damage.message));
+    EXPECT_EQ(failure(sealed(bytes), tree).empty(), *damage.message == '\0');
   }
   Bytes partition = good;
   storage::store_little(11U, partition.data() + partition.size() - kRecordBytes + 8);
@@ -216,10 +256,10 @@ TEST(Index, OtherFilesAndVersionsAreRefused) {
   const Tree tree(50, 5);
   const Bytes good = encode_index(make_records(tree));
   Bytes bytes = good;
-  bytes[8] = std::byte{4};
-  EXPECT_THAT(failure(bytes, tree), HasSubstr("version is 4, expected 3 (written by a newer"));
-  bytes[8] = std::byte{2};
-  EXPECT_THAT(failure(bytes, tree), HasSubstr("version is 2, expected 3"));
+  bytes[8] = std::byte{5};
+  EXPECT_THAT(failure(bytes, tree), HasSubstr("version is 5, expected 4 (written by a newer"));
+  bytes[8] = std::byte{3};
+  EXPECT_THAT(failure(bytes, tree), HasSubstr("version is 3, expected 4"));
   bytes = good;
   bytes[0] = std::byte{'P'};
   EXPECT_THAT(failure(bytes, tree), HasSubstr("not an index"));

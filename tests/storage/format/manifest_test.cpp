@@ -65,6 +65,8 @@ void expect_same(const Manifest& a, const Manifest& b) {
     EXPECT_EQ(a.quantization->worst_rounding, b.quantization->worst_rounding);
   }
   EXPECT_EQ(a.computed_normals, b.computed_normals);
+  EXPECT_EQ(a.textures, b.textures);
+  EXPECT_EQ(a.source.textures, b.source.textures);
   EXPECT_EQ(a.generator, b.generator);
   EXPECT_EQ(a.source.file_name, b.source.file_name);
   EXPECT_EQ(a.source.file_bytes, b.source.file_bytes);
@@ -194,6 +196,53 @@ TEST(Manifest, UnknownNormalsAreRefused) {
   EXPECT_THAT(with("computed"), HasSubstr("as the source has normals"));
 }
 
+Manifest make_textured() {
+  Manifest manifest = make_manifest();
+  manifest.source.attributes.texcoords = false;
+  manifest.source.textures = SourceTextures{5, 4, 1, 1ULL << 40};
+  manifest.textures = TextureFormat{ImageFormat::webp, 75, false};
+  return manifest;
+}
+
+TEST(Manifest, TellsOfTextures) {
+  Manifest manifest = make_textured();
+  for (const ImageFormat format : {ImageFormat::jpeg, ImageFormat::png, ImageFormat::webp}) {
+    manifest.textures->format = format;
+    manifest.textures->unlit = !manifest.textures->unlit;
+    expect_same(manifest, parse_manifest(to_json_text(manifest), kManifestName));
+  }
+  const Json json = Json::parse(to_json_text(manifest));
+  EXPECT_EQ(json["storage"]["texture"].dump(), R"({"format":"webp","quality":75,"unlit":true})");
+  EXPECT_EQ(json["source"]["textures"].dump(),
+            R"({"materials":5,"images":4,"missing_images":1,"texels":1099511627776})");
+  EXPECT_FALSE(Json::parse(to_json_text(make_manifest()))["storage"].contains("texture"));
+  EXPECT_FALSE(Json::parse(to_json_text(make_manifest()))["source"].contains("textures"));
+}
+
+TEST(Manifest, UnsoundTexturesAreRefused) {
+  const Json good = Json::parse(to_json_text(make_textured()));
+  const auto with = [&](const char* pointer, const Json& value) {
+    Json changed = good;
+    changed[Json::json_pointer(pointer)] = value;
+    return failure(sealed(changed));
+  };
+  EXPECT_EQ(with("/storage/texture/quality", 1), "");
+  EXPECT_THAT(with("/storage/texture/quality", 0), HasSubstr("\"storage.texture.quality\""));
+  EXPECT_THAT(with("/storage/texture/quality", 101), HasSubstr("\"storage.texture.quality\""));
+  EXPECT_THAT(with("/storage/texture/format", "gif"), HasSubstr("one of jpeg, png, webp"));
+  EXPECT_THAT(with("/storage/texture/unlit", 1), HasSubstr("\"storage.texture.unlit\""));
+  EXPECT_THAT(with("/storage/texture", nullptr), HasSubstr("\"storage.texture\" is wrong"));
+  EXPECT_THAT(with("/source/textures", nullptr), HasSubstr("\"source.textures\" is wrong"));
+  EXPECT_THAT(with("/source/textures/missing_images", 5), HasSubstr("an integer from 0 to 4"));
+  EXPECT_THAT(with("/source/attributes/texcoords", true), HasSubstr("\"source.attributes\""));
+  for (const char* pointer : {"/storage/texture", "/source/textures"}) {
+    Json changed = good;
+    const Json::json_pointer place(pointer);
+    changed[place.parent_pointer()].erase(place.back());
+    EXPECT_THAT(failure(sealed(changed)), HasSubstr("\"storage.texture\" is wrong")) << pointer;
+  }
+}
+
 TEST(Manifest, GivesBackWhatWasImported) {
   SourceSummary source = make_manifest().source;
   EXPECT_FALSE(storage::source_json(source).contains("import"));
@@ -241,7 +290,7 @@ TEST(Manifest, WrongWordsOfAnImportAreNamed) {
 
 TEST(Manifest, IsReadable) {
   const std::string text = to_json_text(make_manifest());
-  EXPECT_THAT(text, StartsWith("{\n  \"format\": \"meshhier\",\n  \"format_version\": 5,\n"));
+  EXPECT_THAT(text, StartsWith("{\n  \"format\": \"meshhier\",\n  \"format_version\": 6,\n"));
   EXPECT_THAT(text, HasSubstr("\"checksum\": \"fedcba9876543210\""));
   EXPECT_THAT(text, HasSubstr("\"checksum\": \"00000000000000ab\""));
   EXPECT_THAT(text, HasSubstr("\"colours\": \"u16\""));
@@ -346,12 +395,12 @@ TEST(Manifest, EveryWrongValueIsNamed) {
 
 TEST(Manifest, OtherFormatsAndVersionsAreRefusedByTheirNumber) {
   Json document = Json::parse(to_json_text(make_manifest()));
-  document["format_version"] = 6;
-  EXPECT_THAT(failure(document.dump()), HasSubstr("format version 6 is newer than 5"));
-  for (const int earlier : {0, 4}) {
+  document["format_version"] = 7;
+  EXPECT_THAT(failure(document.dump()), HasSubstr("format version 7 is newer than 6"));
+  for (const int earlier : {0, 5}) {
     document["format_version"] = earlier;
     EXPECT_EQ(failure(document.dump()),
-              fmt::format("{}: was made with format version {}, this program reads 5: build it "
+              fmt::format("{}: was made with format version {}, this program reads 6: build it "
                           "again from the mesh",
                           kManifestName, earlier));
   }

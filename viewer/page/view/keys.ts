@@ -6,7 +6,7 @@ export interface Commands {
   home(): void;
   back(): void;
   colours(number: number): void;
-  toggle(what: 'wires' | 'points' | 'outline' | 'flat' | 'panel' | 'settings' | 'help'): void;
+  toggle(what: 'texture' | 'wires' | 'points' | 'outline' | 'flat' | 'panel' | 'settings' | 'help'): void;
 }
 
 const TURN = 0.16; // radians
@@ -33,7 +33,7 @@ const ACTS: Record<string, Act> = {
   '+': closer, '=': closer, '-': farther, _: farther,
   Home: home, '0': home, Escape: back, Backspace: back,
   '1': colours(0), '2': colours(1), '3': colours(2), '4': colours(3),
-  w: toggle('wires'), p: toggle('points'), o: toggle('outline'), f: toggle('flat'),
+  t: toggle('texture'), w: toggle('wires'), p: toggle('points'), o: toggle('outline'), f: toggle('flat'),
   s: toggle('panel'), l: toggle('settings'), '?': toggle('help'), h: toggle('help'),
 };
 
@@ -44,8 +44,8 @@ export const KEY_HELP: readonly (readonly [string, string])[] = [
   ['+ −', 'closer, farther'],
   ['Home, 0', 'the whole model'],
   ['Esc, Backspace', 'back'],
-  ['1 2 3 4', 'colours: plain, vertices, partitions, error'],
-  ['W P O F', 'wires, points, outline, flat shading'],
+  ['1 2 3 4', "colours: plain, the input's, partitions, error"],
+  ['T W P O F', 'texture, wires, points, outline, flat shading'],
   ['L', 'look and settings'],
   ['S', 'figures'],
   ['?', 'this help'],

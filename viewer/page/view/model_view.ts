@@ -298,7 +298,7 @@ export class ModelView {
   private toggle(what: Parameters<Commands['toggle']>[0]): void {
     const { look } = this.view;
     if (what === 'flat') this.setLook({ shading: look.shading === 'flat' ? 'smooth' : 'flat' });
-    else if (what === 'wires' || what === 'points' || what === 'outline') this.setLook({ [what]: !look[what] });
+    else if (what === 'texture' || what === 'wires' || what === 'points' || what === 'outline') this.setLook({ [what]: !look[what] });
     else this.chrome[what].toggle();
   }
 }

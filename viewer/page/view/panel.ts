@@ -14,6 +14,13 @@ function saved({ savedBytes, wholeViewBytes }: Stats): string {
   return `${formatBytes(savedBytes)}${part}`;
 }
 
+/// Nothing of a mesh without pictures.
+function pictures({ textures }: Manifest['source']): string {
+  if (textures === null) return '';
+  const missing = textures.missingImages > 0 ? `, ${formatCount(textures.missingImages)} of them missing` : '';
+  return ` ${formatCount(textures.images)} ${textures.images === 1 ? 'picture' : 'pictures'}${missing}.`;
+}
+
 /// What was never measured is no figure.
 function rate({ framesPerSecond }: Stats, wanted: number): string {
   return framesPerSecond > 0 ? `${formatDecimal(framesPerSecond)} of ${wanted}` : `– of ${wanted}`;
@@ -59,7 +66,7 @@ export class Panel {
   /// What the model was made from, and its licence.
   tellSource({ source, licence }: Manifest): void {
     const counts = `${formatCount(source.vertices)} vertices and ${formatCount(source.triangles)} triangles`;
-    this.source.textContent = `${source.fileName}: ${counts}.${licence === '' ? '' : ` ${licence}`}`;
+    this.source.textContent = `${source.fileName}: ${counts}.${pictures(source)}${licence === '' ? '' : ` ${licence}`}`;
   }
 
   /// `wanted`: frames per second.

@@ -10,20 +10,21 @@ export interface Choices {
   theme: (theme: Theme) => void;
 }
 
-const COLOUR_NAMES: readonly (readonly [Colours, string])[] = [['plain', 'Plain'], ['vertex', 'Vertices'], ['partition', 'Partitions'], ['error', 'Error']];
+const COLOUR_NAMES: readonly (readonly [Colours, string])[] = [['plain', 'Plain'], ['vertex', 'Input'], ['partition', 'Partitions'], ['error', 'Error']];
 const THEME_NAMES: readonly (readonly [Theme, string])[] = [['auto', 'Auto'], ['light', 'Light'], ['dark', 'Dark']];
 
 export class SettingsForm {
   readonly root: HTMLElement;
   private readonly colours: Control<Colours>;
   private readonly theme: Control<Theme>;
-  private readonly toggles: Record<'flat' | 'wires' | 'points' | 'outline', Control<boolean>>;
+  private readonly toggles: Record<'texture' | 'flat' | 'wires' | 'points' | 'outline', Control<boolean>>;
   private readonly sliders: Record<keyof Settings, Control<number>>;
 
   constructor({ look, settings, theme }: Choices) {
     this.colours = choice('Colours', COLOUR_NAMES, (colours) => { look({ colours }); });
     this.theme = choice('Theme', THEME_NAMES, theme);
     this.toggles = {
+      texture: checkbox('Texture', 'T', (texture) => { look({ texture }); }),
       wires: checkbox('Wires', 'W', (wires) => { look({ wires }); }),
       points: checkbox('Points', 'P', (points) => { look({ points }); }),
       outline: checkbox('Outline', 'O', (outline) => { look({ outline }); }),
@@ -43,7 +44,7 @@ export class SettingsForm {
     this.colours.show(look.colours);
     this.theme.show(theme);
     this.toggles.flat.show(look.shading === 'flat');
-    for (const key of ['wires', 'points', 'outline'] as const) this.toggles[key].show(look[key]);
+    for (const key of ['texture', 'wires', 'points', 'outline'] as const) this.toggles[key].show(look[key]);
     this.sliders.framesPerSecond.show(settings.framesPerSecond);
     this.sliders.threshold.show(settings.threshold);
     this.sliders.memoryBudget.show(Math.round(settings.memoryBudget / MEGABYTE));

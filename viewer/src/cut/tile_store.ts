@@ -1,6 +1,6 @@
 // The tiles in memory and on their way: a tree from the root down, within a budget of bytes.
 import { Seam } from './seam.js';
-import type { Tile } from '../hierarchy/tile.js';
+import { letGo, type Tile } from '../hierarchy/tile.js';
 import type { TileRecord } from '../hierarchy/tile_index.js';
 import { keyOf, type Node, type Tree } from '../hierarchy/tree.js';
 
@@ -157,7 +157,7 @@ export class TileStore {
   dispose(): void {
     this.isOver = true;
     for (const entry of this.entries.values()) entry.abort.abort();
-    for (const resident of this.residents()) this.host.gone(resident);
+    for (const resident of this.residents()) this.lose(resident);
     this.entries.clear();
   }
 
@@ -197,7 +197,12 @@ export class TileStore {
   private evict(entry: Entry): void {
     this.remove(entry);
     ++this.evicted;
-    if (entry.resident) this.host.gone(entry.resident);
+    if (entry.resident) this.lose(entry.resident);
+  }
+
+  private lose(resident: ResidentTile): void {
+    this.host.gone(resident);
+    letGo(resident.tile);
   }
 
   private start({ node, record, loadingBytes }: Wanted, now: number): boolean {
@@ -218,11 +223,15 @@ export class TileStore {
   }
 
   private finish(entry: Entry, tile: Tile): void {
-    if (this.isOver || entry.abort.signal.aborted) return;
+    if (this.isOver || entry.abort.signal.aborted) {
+      letGo(tile);
+      return;
+    }
     let resident: ResidentTile;
     try {
       resident = this.arrive(entry, tile, this.tree());
     } catch (problem) {
+      letGo(tile);
       this.fail(entry, problem);
       return;
     }

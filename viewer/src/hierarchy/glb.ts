@@ -24,6 +24,9 @@ export interface Gltf {
   meshes: { primitives: { attributes: Record<string, number>; indices?: number; mode: number }[] }[];
   accessors: { bufferView: number; componentType: number; normalized?: boolean; count: number; type: string; min?: number[]; max?: number[] }[];
   bufferViews: BufferView[];
+  /// Of a tile with a picture.
+  images?: { mimeType?: unknown }[];
+  materials?: { alphaMode?: unknown; extensions?: Record<string, unknown> }[];
   extensions: Record<string, Record<string, number>>;
 }
 
@@ -50,6 +53,13 @@ export class Glb {
     if (view?.byteLength !== length) this.fail(`section ${number} has not the ${length} bytes that its counts say`);
     const compressed = view.extensions?.EXT_meshopt_compression;
     return compressed ? this.decompress(compressed, length) : this.slice(view.byteOffset ?? 0, length);
+  }
+
+  /// The bytes of a section that is a file of its own, however long.
+  file(number: number): Uint8Array {
+    const view = this.gltf.bufferViews?.[number];
+    if (view === undefined || view.extensions?.EXT_meshopt_compression) this.fail(`section ${number} is no file`);
+    return this.slice(view.byteOffset ?? 0, view.byteLength);
   }
 
   private decompress(of: Compressed, length: number): Uint8Array {

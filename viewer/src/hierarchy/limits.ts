@@ -7,6 +7,9 @@ export const MOST_ELEMENTS = 2 ** 26;
 /// Of a root, which nothing else tells of: more than its largest file has room for without compression.
 export const MOST_ROOT_TRIANGLES = 2 ** 22;
 
+/// Of a picture, texels.
+export const MOST_SIDE = 8192;
+
 /// Each is at a triangle's corner.
 export function mostSplits({ interior, border }: { interior: number; border: number }): number {
   return 3 * (interior + border);

@@ -12,6 +12,8 @@ export interface Manifest {
     readonly triangles: number;
     readonly hasColours: boolean;
     readonly hasNormals: boolean;
+    /// Its pictures, and those of them that were not there; null: the mesh is not textured.
+    readonly textures: { readonly images: number; readonly missingImages: number } | null;
     /// In input coordinates.
     readonly min: readonly [number, number, number];
     readonly max: readonly [number, number, number];
@@ -28,7 +30,7 @@ export interface Manifest {
 }
 
 const FILE = 'hierarchy.json';
-const FORMAT_VERSION = 5;
+const FORMAT_VERSION = 6;
 const MOST_BYTES = 2 ** 20;
 
 const MOST_SHORT_BITS = 16;
@@ -38,7 +40,16 @@ function readPlace(positions: JsonValue): [number, number, number] {
   return positions.at('corner').triple();
 }
 
-function readSource(source: JsonValue): Manifest['source'] {
+/// With how they are stored, which is there if and only if they are.
+function readTextures(source: JsonValue, storage: JsonValue): Manifest['source']['textures'] {
+  if (!source.has('textures') && !storage.has('texture')) return null;
+  storage.at('texture').at('format').oneOf('jpeg', 'png', 'webp');
+  const textures = source.at('textures');
+  const images = textures.at('images').count();
+  return { images, missingImages: textures.at('missing_images').count(0, images) };
+}
+
+function readSource(source: JsonValue, storage: JsonValue): Manifest['source'] {
   const attributes = source.at('attributes');
   return {
     fileName: source.at('file_name').text(),
@@ -47,6 +58,7 @@ function readSource(source: JsonValue): Manifest['source'] {
     triangles: source.at('triangles').count(),
     hasColours: attributes.at('colours').oneOf('none', 'u8', 'u16', 'f32') !== 'none',
     hasNormals: attributes.at('normals').flag(),
+    textures: readTextures(source, storage),
     min: source.at('bounds').at('min').triple(),
     max: source.at('bounds').at('max').triple(),
   };
@@ -69,7 +81,7 @@ export function readManifest(text: string): Manifest {
   const partitions = root.at('partitions').count(1, 2 ** 32 - 1);
   const indexBytes = indexSize(2 * partitions - 1);
   return {
-    source: readSource(root.at('source')),
+    source: readSource(root.at('source'), root.at('storage')),
     origin: root.at('origin').triple(),
     place: readPlace(root.at('storage').at('positions')),
     up: root.at('up').oneOf('y', 'z'),

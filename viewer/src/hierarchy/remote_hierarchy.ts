@@ -3,13 +3,16 @@ import { fetchBytes, fetchRange, withoutLastSlashes, type Fetch } from './bytes.
 import { fetchManifest, type Manifest } from './manifest.js';
 import { fetchOutline, type Outline } from './outline.js';
 import { HierarchyProblem } from './problem.js';
-import type { ExpectedCounts, NormalSource, Tile } from './tile.js';
+import { MOST_SIDE } from './limits.js';
+import { mostPictureBytes } from './picture.js';
+import { letGo, type NormalSource, type Tile } from './tile.js';
+import type { ExpectedCounts } from './tile_counts.js';
 import type { TileDecoder } from './tile_decoder.js';
 import { TileIndex, type TileRecord } from './tile_index.js';
 import { Tree, tilePath, type Node } from './tree.js';
 
-/// A root has 32,768 vertices at the most, and seldom more than twice as many triangles.
-const MOST_ROOT = 2 ** 25;
+/// A root has 32,768 vertices at the most, seldom more than twice as many triangles, and a picture.
+const MOST_ROOT = 2 ** 25 + mostPictureBytes({ width: MOST_SIDE, height: MOST_SIDE });
 const ROOT: Node = { level: 0, index: 0 };
 
 /// What all tiles but the root need.
@@ -20,16 +23,18 @@ export interface Directory {
 }
 
 /// Bytes of a tile's file, out of its gzip, at the most: with all attributes, raw ones too, and the widest indices.
-function mostBytes({ own, ghosts, copies, splits, interior, border }: TileRecord, level: number): number {
+function mostBytes(record: TileRecord, level: number): number {
+  const { own, ghosts, copies, splits, interior, border, pictureWidth: width, pictureHeight: height } = record;
   const perVertex = 2 * (12 + 16 + 8) + 12;
   const perGhost = 2 * level + 8;
-  const perSplit = 12 + 4 + 16 + 8 + 4; // nothing raw
+  const perSplit = 12 + 12 + 16 + 8 + 4; // nothing raw
   const vertices = perVertex * (own + ghosts + copies) + 4 * copies + perSplit * splits;
-  return vertices + 12 * (interior + border) + 2 * own + perGhost * ghosts + 2 * 65536;
+  return vertices + 12 * (interior + border) + 2 * own + perGhost * ghosts + 2 * 65536 + mostPictureBytes({ width, height });
 }
 
-function expectedOf({ level, index }: Node, { own, ghosts, copies, splits, interior, border }: TileRecord): ExpectedCounts {
-  return { level, index, own, ghosts, copies, splits, interior, border };
+function expectedOf({ level, index }: Node, record: TileRecord): ExpectedCounts {
+  const { own, ghosts, copies, splits, interior, border, pictureWidth, pictureHeight } = record;
+  return { level, index, own, ghosts, copies, splits, interior, border, pictureWidth, pictureHeight };
 }
 
 export class RemoteHierarchy {
@@ -60,8 +65,9 @@ export class RemoteHierarchy {
     const path = tilePath(node);
     const bytes = await fetchBytes(this.fetch, this.base + path, path, mostBytes(record, node.level), { signal });
     const tile = await this.decoder.decode(bytes, path, expectedOf(node, record));
-    if (tile.normalsFrom !== this.normalsFrom) throw new HierarchyProblem(path, 'its normals are not of the kind that the root has');
-    return tile;
+    if (tile.normalsFrom === this.normalsFrom) return tile;
+    letGo(tile);
+    throw new HierarchyProblem(path, 'its normals are not of the kind that the root has');
   }
 
   async outline(): Promise<Outline> {
@@ -80,7 +86,7 @@ export class RemoteHierarchy {
     const index = new TileIndex(tree, manifest.place, read, onPage, onProblem);
     await index.open();
     const record = index.record(ROOT);
-    if (record?.own !== root.own || record.interior !== root.interiorCount)
+    if (record?.own !== root.own || record.interior !== root.interiorCount || record.pictureWidth !== (root.picture?.bitmap.width ?? 0))
       throw new HierarchyProblem(tilePath(ROOT), 'not the tile that the index tells of');
     return { manifest, tree, index };
   }

@@ -1,11 +1,12 @@
 // A tile as it is drawn: what its file (docs/file_format.md, section 4) holds for that, in arrays of its own.
 import { Glb } from './glb.js';
 import { MeshoptDecoder } from 'meshoptimizer/decoder';
-import { MOST_ELEMENTS, MOST_OWN, MOST_ROOT_TRIANGLES, mostSplits } from './limits.js';
 import { normalCone, vertexNormals, type Cone } from './normals.js';
-import { toPlaces, unsplitOf, type Places } from './copies.js';
+import { decodePicture, findPicture, type Picture } from './picture.js';
+import { placeOf, toPlaces, unsplitOf, type Places } from './copies.js';
 import { isClosed, isInsideOut } from './closed.js';
-import { detached, readColours, readNormals, readPositions, type Accessor, type Normals } from './vertex_values.js';
+import { readCounts, withAbsent, type Counts, type ExpectedCounts, type TileValues } from './tile_counts.js';
+import { detached, readColours, readNormals, readPositions, readTexcoords, type Accessor, type Normals } from './vertex_values.js';
 
 export type Indices = Uint16Array | Uint32Array;
 
@@ -14,7 +15,7 @@ export type Indices = Uint16Array | Uint32Array;
 export type NormalSource = 'input' | 'build' | 'viewer';
 
 /// Vertices 0 … own - 1 are the tile's; behind them its ghosts, then copies: further vertices at places of these; then splits:
-/// any of these once more, with another normal. All positions are exact.
+/// any of these once more, with another normal or texture coordinate. All positions are exact.
 export interface Tile extends Places {
   readonly level: number;
   readonly index: number;
@@ -24,6 +25,9 @@ export interface Tile extends Places {
   readonly normalsFrom: NormalSource;
   /// r, g, b, a of each vertex as in the input (not linear); or null.
   readonly colours: Uint8Array | null;
+  /// u, v of each vertex in the picture; both or none. Whoever drops the tile lets go of the picture: see letGo().
+  readonly texcoords: Float32Array | null;
+  readonly picture: Picture | null;
   /// Corners: of the interior triangles, then room for the border triangles that are drawn.
   readonly indices: Indices;
   readonly interiorCount: number;
@@ -41,58 +45,6 @@ export interface Tile extends Places {
   readonly box: readonly number[];
   /// The mesh lies with its z axis up.
   readonly zUp: boolean;
-}
-
-/// What the index says of a tile.
-export interface ExpectedCounts {
-  readonly level: number;
-  readonly index: number;
-  readonly own: number;
-  readonly ghosts: number;
-  readonly copies: number;
-  readonly splits: number;
-  readonly interior: number;
-  readonly border: number;
-}
-
-const VERSION = 2;
-/// Tiles without computed normals need not say so.
-const NO_SPLITS = { splitCount: 0, splitOf: -1 };
-
-interface Counts extends ExpectedCounts {
-  readonly neighbours: number;
-  readonly chains: number;
-}
-
-/// Before anything is sized by them.
-function checkCounts(glb: Glb, counts: Counts, expected: ExpectedCounts | null): void {
-  const keys = ['level', 'index', 'own', 'ghosts', 'copies', 'splits', 'interior', 'border'] as const;
-  if (expected !== null && keys.some((key) => counts[key] !== expected[key])) glb.fail('not the tile that the index tells of');
-  if (counts.level === 0 && (counts.ghosts > 0 || counts.border > 0 || counts.interior > MOST_ROOT_TRIANGLES)) glb.fail('not a root');
-  if (counts.neighbours > counts.ghosts || counts.chains > counts.ghosts * counts.level) glb.fail('more neighbours or chains than ghosts allow');
-  if (counts.splits > mostSplits(counts)) glb.fail('more splits than corners of triangles');
-}
-
-function count(glb: Glb, values: Record<string, number>, key: string, least: number, most: number): number {
-  const value = values[key];
-  if (!Number.isInteger(value) || value < least || value > most) glb.fail(`"${key}" is not from ${least} to ${most}`);
-  return value;
-}
-
-function readCounts(glb: Glb, values: Record<string, number>): Counts {
-  if (values.version !== VERSION) glb.fail(`version ${values.version} of MESHHIER_tile is not known; this viewer knows ${VERSION}`);
-  return {
-    level: count(glb, values, 'level', 0, 32),
-    index: count(glb, values, 'index', 0, 2 ** 32 - 1),
-    own: count(glb, values, 'ownCount', 1, MOST_OWN),
-    ghosts: count(glb, values, 'ghostCount', 0, MOST_ELEMENTS),
-    copies: count(glb, values, 'copyCount', 0, MOST_ELEMENTS),
-    splits: count(glb, values, 'splitCount', 0, MOST_ELEMENTS),
-    neighbours: count(glb, values, 'neighbourCount', 0, MOST_ELEMENTS),
-    chains: count(glb, values, 'chainEntryCount', 0, MOST_ELEMENTS),
-    interior: count(glb, values, 'interiorCount', 0, MOST_ELEMENTS),
-    border: count(glb, values, 'borderCount', 0, MOST_ELEMENTS),
-  };
 }
 
 function readIndices(glb: Glb, primitive: number, triangles: number, end: number): Indices {
@@ -120,25 +72,27 @@ function readRepeated(glb: Glb, number: number, length: number, end: number, wha
   return repeated;
 }
 
-function readPlaces(glb: Glb, values: Record<string, number>, { own, ghosts, copies, splits }: Counts): Places {
+function readPlaces(glb: Glb, values: TileValues, { own, ghosts, copies, splits }: Counts): Places {
   const copyOf = readRepeated(glb, values.copyOf, copies, own + ghosts, 'copies');
   return { own, ghosts, copyOf, splitOf: readRepeated(glb, values.splitOf, splits, own + ghosts + copies, 'splits') };
 }
 
 /// A split has the values of its vertex, `width` each.
-function checkSplits(glb: Glb, places: Places, values: Float32Array | Uint8Array, width: number): void {
+function checkSplits(glb: Glb, places: Places, values: Float32Array | Uint8Array | Normals, width: number): void {
   const unsplit = unsplitOf(places);
   places.splitOf.forEach((vertex, split) => {
     for (let k = 0; k < width; ++k)
-      if (values[width * (unsplit + split) + k] !== values[width * vertex + k]) glb.fail('a split differs from its vertex by more than the normal');
+      if (values[width * (unsplit + split) + k] !== values[width * vertex + k]) glb.fail('a split differs from its vertex by more than the build may');
   });
 }
 
 /// Alike at all vertices of a place; triangles of places.
-function normalsByPlace(positions: Float32Array, { own, ghosts, copyOf }: Places, interior: Indices, border: Indices): Normals {
+function normalsByPlace(positions: Float32Array, of: Places, interior: Indices, border: Indices): Normals {
   const normals = vertexNormals(positions, interior, border);
-  const places = own + ghosts;
-  copyOf.forEach((place, copy) => normals.copyWithin(4 * (places + copy), 4 * place, 4 * place + 4));
+  for (let vertex = of.own + of.ghosts; 4 * vertex < normals.length; ++vertex) {
+    const place = placeOf(of, vertex);
+    normals.copyWithin(4 * vertex, 4 * place, 4 * place + 4);
+  }
   return normals;
 }
 
@@ -172,14 +126,11 @@ function boxOf(glb: Glb, positions: Float32Array): number[] {
   return box;
 }
 
-function decode(glb: Glb, expected: ExpectedCounts | null): Tile {
+/// All but the picture.
+function decode(glb: Glb, values: TileValues, counts: Counts): Omit<Tile, 'picture'> {
   const { gltf } = glb;
-  const extension = gltf.extensions?.MESHHIER_tile;
   const primitive = gltf.meshes?.[0]?.primitives?.[0];
-  if (extension === undefined || primitive === undefined || gltf.nodes?.[0] === undefined) glb.fail('not a tile of meshhier');
-  const values: Record<string, number> = { ...NO_SPLITS, ...extension };
-  const counts = readCounts(glb, values);
-  checkCounts(glb, counts, expected);
+  if (primitive === undefined || gltf.nodes?.[0] === undefined) glb.fail('not a tile of meshhier');
   const places = readPlaces(glb, values, counts);
   const vertices = unsplitOf(places) + counts.splits;
   const attribute = (name: string): Accessor | undefined => gltf.accessors?.[primitive.attributes?.[name]];
@@ -190,12 +141,14 @@ function decode(glb: Glb, expected: ExpectedCounts | null): Tile {
   if (surface.some((place) => place >= counts.own)) glb.fail('an interior triangle names a ghost');
   const given = attribute('NORMAL');
   const normals = given ? readNormals(glb, given, vertices) : normalsByPlace(positions, places, surface, toPlaces(places, border));
-  const colour = attribute('COLOR_0');
+  const colour = attribute('COLOR_0') ?? attribute('_COLOR_0');
   const colours = colour ? readColours(glb, colour, vertices) : null;
   const normalsFrom = given === undefined ? 'viewer' : normals instanceof Int8Array ? 'build' : 'input';
-  if (counts.splits > 0 && normalsFrom !== 'build') glb.fail('splits without computed normals');
+  const texcoords = counts.pictureWidth > 0 ? readTexcoords(glb, attribute('TEXCOORD_0') ?? glb.fail('a picture without texture coordinates'), vertices) : null;
+  if (counts.splits > 0 && normalsFrom !== 'build' && !texcoords) glb.fail('splits without computed normals or a picture');
   checkSplits(glb, places, positions, 3);
   if (colours) checkSplits(glb, places, colours, 4);
+  if (normalsFrom === 'input') checkSplits(glb, places, normals, 4);
   const starts = new Uint32Array(detached(glb.section(values.ghostStarts, counts.neighbours === 0 ? 0 : 4 * (counts.neighbours + 1))));
   checkStarts(glb, starts, counts);
   const closed = counts.level === 0 && isClosed(surface);
@@ -207,6 +160,7 @@ function decode(glb: Glb, expected: ExpectedCounts | null): Tile {
     normals,
     normalsFrom,
     colours,
+    texcoords,
     indices: withRoom(interior, border),
     interiorCount: counts.interior,
     border,
@@ -221,12 +175,22 @@ function decode(glb: Glb, expected: ExpectedCounts | null): Tile {
   };
 }
 
+async function readWhole(glb: Glb, expected: ExpectedCounts | null): Promise<Tile> {
+  const extension = glb.gltf.extensions?.MESHHIER_tile;
+  if (extension === undefined) glb.fail('not a tile of meshhier');
+  const values = withAbsent(extension);
+  const counts = readCounts(glb, values, expected);
+  const tile = decode(glb, values, counts);
+  const stored = findPicture(glb, values.image, { width: counts.pictureWidth, height: counts.pictureHeight });
+  return { ...tile, picture: stored && (await decodePicture(glb, stored)) };
+}
+
 /// A tile's file, out of its gzip; `expected`: null of a root of which nothing is known yet. Everything in it is checked, so that what is made of it can be used without.
 export async function readTile(bytes: Uint8Array, name: string, expected: ExpectedCounts | null): Promise<Tile> {
   await MeshoptDecoder.ready;
   const glb = Glb.read(bytes, name);
   try {
-    return decode(glb, expected);
+    return await readWhole(glb, expected);
   } catch (problem) {
     // JSON of another shape than a tile's, which no check above knows.
     if (problem instanceof TypeError || problem instanceof RangeError) glb.fail('its JSON is not that of a tile');
@@ -234,9 +198,15 @@ export async function readTile(bytes: Uint8Array, name: string, expected: Expect
   }
 }
 
-/// The arrays that a tile holds, each once: what moves when it is handed over.
-export function buffersOf(tile: Tile): ArrayBuffer[] {
-  const { copyOf, splitOf, positions, normals, colours, indices, border, neighbours, ghostStarts, chains } = tile;
-  const arrays = [copyOf, splitOf, positions, normals, colours, indices, border, neighbours, ghostStarts, chains];
-  return arrays.flatMap((array) => (array ? [array.buffer as ArrayBuffer] : []));
+/// What a tile holds, each once: what moves when it is handed over.
+export function partsOf(tile: Tile): Transferable[] {
+  const { copyOf, splitOf, positions, normals, colours, texcoords, picture, indices, border, neighbours, ghostStarts, chains } = tile;
+  const arrays = [copyOf, splitOf, positions, normals, colours, texcoords, indices, border, neighbours, ghostStarts, chains];
+  const buffers = arrays.flatMap((array) => (array ? [array.buffer as ArrayBuffer] : []));
+  return picture ? [...buffers, picture.bitmap] : buffers;
+}
+
+/// Frees the picture of a tile that nothing draws any longer: collectors of garbage know little of its size.
+export function letGo({ picture }: Tile): void {
+  picture?.bitmap.close();
 }

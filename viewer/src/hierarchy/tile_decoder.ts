@@ -1,6 +1,7 @@
 // Tiles out of their files, in workers if there are any, else where it is called.
 import { HierarchyProblem } from './problem.js';
-import { readTile, type ExpectedCounts, type Tile } from './tile.js';
+import { readTile, type Tile } from './tile.js';
+import type { ExpectedCounts } from './tile_counts.js';
 
 interface Answer {
   id: number;

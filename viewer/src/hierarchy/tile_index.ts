@@ -1,6 +1,6 @@
 // The index, tiles.bin (docs/file_format.md, section 3), in pages: of a large one only those that are looked
 // into are fetched.
-import { MOST_ELEMENTS, MOST_OWN, mostSplits } from './limits.js';
+import { MOST_ELEMENTS, MOST_OWN, MOST_SIDE, mostSplits } from './limits.js';
 import { HierarchyProblem } from './problem.js';
 import { keyOf, type Node, type Tree } from './tree.js';
 
@@ -13,7 +13,10 @@ export interface TileRecord {
   readonly splits: number;
   readonly interior: number;
   readonly border: number;
-  /// Estimated distance to the input, in its units; 0 of partitions.
+  /// Of the tile's picture, texels; 0: there is none.
+  readonly pictureWidth: number;
+  readonly pictureHeight: number;
+  /// Estimated distance to the input, in its units, and no less than a texel that is coarser than the input's; 0 of partitions.
   readonly error: number;
   /// Box of all of the input that the tile stands for, in the coordinates of decoded tiles: that of its vertices, larger by
   /// its bound.
@@ -28,10 +31,10 @@ export type ReadRange = (first: number, end: number) => Promise<Uint8Array>;
 
 const FILE = 'tiles.bin';
 const MAGIC = 'MHTILES\n';
-const VERSION = 3;
+const VERSION = 4;
 const HEADER_BYTES = 32;
-const RECORD_BYTES = 104;
-const PAGE_RECORDS = 629; // a page is just below 64 KiB
+const RECORD_BYTES = 120;
+const PAGE_RECORDS = 545; // a page is just below 64 KiB
 /// A page that failed is asked for again after this time.
 const RETRY_MS = 2000;
 
@@ -53,17 +56,21 @@ function readRecord(view: DataView, at: number, place: Triple): TileRecord {
     splits: u32(84),
     interior: u32(24),
     border: u32(28),
+    pictureWidth: u32(88),
+    pictureHeight: u32(92),
     error: f32(48),
     min: corner(60, -bound),
     max: corner(72, bound),
-    bytes: Number(view.getBigUint64(at + 88, true)),
+    bytes: Number(view.getBigUint64(at + 104, true)),
   };
 }
 
 /// No more than the format allows: sizes are computed from these.
-function isSound({ own, ghosts, copies, splits, interior, border, min, max, error }: TileRecord): boolean {
+function isSound(record: TileRecord): boolean {
+  const { own, ghosts, copies, splits, interior, border, pictureWidth, pictureHeight, min, max, error } = record;
   const counts = own >= 1 && own <= MOST_OWN && [ghosts, copies, interior, border].every((count) => count <= MOST_ELEMENTS);
-  return counts && splits <= mostSplits({ interior, border }) && error >= 0 && [...min, ...max, error].every(Number.isFinite);
+  const picture = pictureWidth <= MOST_SIDE && pictureHeight <= MOST_SIDE && (pictureWidth === 0) === (pictureHeight === 0);
+  return counts && picture && splits <= mostSplits({ interior, border }) && error >= 0 && [...min, ...max, error].every(Number.isFinite);
 }
 
 /// Of a page that is not there: on its way, or when to ask for it again.

@@ -1,6 +1,7 @@
 // Decodes tiles beside the page: {id, bytes, name, expected} in, {id, tile} or {id, what} out, `what`: is wrong with the file; {id, defect} of anything else.
 import { HierarchyProblem } from './problem.js';
-import { buffersOf, readTile, type ExpectedCounts } from './tile.js';
+import { partsOf, readTile } from './tile.js';
+import type { ExpectedCounts } from './tile_counts.js';
 
 interface Task {
   id: number;
@@ -14,7 +15,7 @@ addEventListener('message', (event: MessageEvent<Task>) => {
   const began = performance.now();
   readTile(bytes, name, expected).then(
     (tile) => {
-      postMessage({ id, tile, milliseconds: performance.now() - began }, { transfer: buffersOf(tile) });
+      postMessage({ id, tile, milliseconds: performance.now() - began }, { transfer: partsOf(tile) });
     },
     (problem: unknown) => {
       postMessage(problem instanceof HierarchyProblem ? { id, what: problem.what } : { id, defect: String(problem) });

@@ -49,6 +49,14 @@ export function readColours(glb: Glb, accessor: Accessor, vertices: number): Uin
   return new Uint8Array(colours.buffer);
 }
 
+/// Of a tile's picture: within it.
+export function readTexcoords(glb: Glb, { bufferView, componentType, type }: Accessor, vertices: number): Float32Array {
+  if (componentType !== 5126 || type !== 'VEC2') glb.fail('texture coordinates of an unknown type');
+  const texcoords = floats(glb.section(bufferView, 8 * vertices));
+  if (!texcoords.every((value) => value >= 0 && value <= 1)) glb.fail('a texture coordinate outside the picture');
+  return texcoords;
+}
+
 /// Bytes of what a build computed.
 function codedNormals(glb: Glb, { bufferView, normalized, type }: Accessor, vertices: number): Int8Array {
   if (normalized !== true || type !== 'VEC3') glb.fail('normals of an unknown type');

@@ -1,5 +1,6 @@
 // The materials of tiles: three's own, so that any scene's lights do.
-import { Color, DoubleSide, LineBasicMaterial, MeshStandardMaterial, PointsMaterial, type Material } from 'three';
+import { Color, DoubleSide, LineBasicMaterial, MeshBasicMaterial, MeshStandardMaterial, PointsMaterial, type Material, type Texture } from 'three';
+import type { Alpha, Picture } from '../hierarchy/picture.js';
 import type { Look } from './settings.js';
 
 const PLAIN = 0xb9b4ab;
@@ -31,8 +32,8 @@ const TO_LINEAR = `#include <color_vertex>
 #endif`;
 
 /// Looks of one key have the same surfaces.
-export function surfaceKey({ colours, shading, wires, points }: Look): string {
-  return [colours, shading, wires || points].join();
+export function surfaceKey({ colours, texture, shading, wires, points }: Look): string {
+  return [colours, texture, shading, wires || points].join();
 }
 
 /// What the materials of a model's tiles have in common.
@@ -43,27 +44,64 @@ export interface SharedMaterials {
   readonly outwards: { value: number };
 }
 
-/// One tile's: programs are shared by all of a look.
-export function surfaceMaterial(look: Look, hasColours: boolean, { outwards }: SharedMaterials): MeshStandardMaterial {
+/// What of a tile its surface shows.
+export interface Painting {
+  readonly hasColours: boolean;
+  readonly picture: Picture | null;
+  /// The picture's.
+  readonly texture: Texture | null;
+}
+
+export type SurfaceMaterial = MeshStandardMaterial | MeshBasicMaterial;
+
+/// Where a texel counts as a hole. Of what blends it is none at all: tiles hide what lies behind them, in whatever order they are drawn.
+const HOLES: Readonly<Record<Alpha, number>> = { OPAQUE: 0, MASK: 0.5, BLEND: 1 / 512 };
+
+/// The picture's part in a material; nothing where there is none.
+function picturing(picture: Picture | null, map: Texture | null): { map?: Texture; alphaTest?: number; transparent?: boolean } {
+  if (picture === null || map === null) return {};
+  return { map, alphaTest: HOLES[picture.alpha], transparent: picture.alpha === 'BLEND' };
+}
+
+function standing({ wires, points }: Look): { polygonOffset: boolean; polygonOffsetFactor: number; polygonOffsetUnits: number } {
+  return { polygonOffset: wires || points, polygonOffsetFactor: BEHIND.slopes, polygonOffsetUnits: BEHIND.units };
+}
+
+/// The picture's colours, no others.
+function unlitMaterial(look: Look, { picture, texture }: Painting): MeshBasicMaterial {
+  return new MeshBasicMaterial({ side: DoubleSide, toneMapped: false, ...standing(look), ...picturing(picture, texture) });
+}
+
+function litMaterial(look: Look, { picture, texture, hasColours }: Painting, { outwards }: SharedMaterials): MeshStandardMaterial {
+  const vertexColors = look.colours === 'vertex' && hasColours && texture === null;
   const material = new MeshStandardMaterial({
-    color: PLAIN,
-    roughness: 0.75,
+    color: vertexColors || texture ? 0xffffff : PLAIN,
+    roughness: texture ? 1 : 0.75,
     metalness: 0,
     side: DoubleSide,
     flatShading: look.shading === 'flat',
-    vertexColors: look.colours === 'vertex' && hasColours,
-    polygonOffset: look.wires || look.points,
-    polygonOffsetFactor: BEHIND.slopes,
-    polygonOffsetUnits: BEHIND.units,
+    vertexColors,
+    ...standing(look),
+    ...picturing(picture, texture),
   });
-  if (material.vertexColors) material.color.set(0xffffff);
   material.onBeforeCompile = (shader) => {
     shader.uniforms.outwards = outwards;
     shader.fragmentShader = `uniform float outwards;\n${shader.fragmentShader.replace('#include <normal_fragment_begin>', BACKS)}`;
-    if (material.vertexColors) shader.vertexShader = shader.vertexShader.replace('#include <color_vertex>', TO_LINEAR);
+    if (vertexColors) shader.vertexShader = shader.vertexShader.replace('#include <color_vertex>', TO_LINEAR);
   };
-  material.customProgramCacheKey = () => `meshhier-${material.vertexColors ? 'coloured' : 'plain'}`;
+  material.customProgramCacheKey = () => `meshhier-${vertexColors ? 'coloured' : 'plain'}`;
   return material;
+}
+
+/// Whether tiles with pictures show them.
+export function showsPictures({ colours, texture }: Look): boolean {
+  return colours === 'vertex' && texture;
+}
+
+/// One tile's: programs are shared by all of a look.
+export function surfaceMaterial(look: Look, painting: Painting, shared: SharedMaterials): SurfaceMaterial {
+  const shown = showsPictures(look) ? painting : { ...painting, texture: null };
+  return shown.texture !== null && shown.picture?.unlit ? unlitMaterial(look, shown) : litMaterial(look, shown, shared);
 }
 
 export function partitionColour(level: number, index: number): Color {

@@ -1,11 +1,13 @@
 // What a user of the library may set, and what it tells.
 
-/// Tiles' colours: one for all; those of the vertices; one for each tile; by the error on screen.
+/// Tiles' colours: one for all; those of the input; one for each tile; by the error on screen.
 export type Colours = 'plain' | 'vertex' | 'partition' | 'error';
 
 export interface Look {
-  /// `vertex` where the mesh has no colours is `plain`.
+  /// `vertex`: the input's pictures, else its vertices' colours; where the mesh has neither it is `plain`.
   colours: Colours;
+  /// False: no pictures.
+  texture: boolean;
   /// `flat`: each triangle its own normal.
   shading: 'smooth' | 'flat';
   wires: boolean;
@@ -24,7 +26,7 @@ export interface Settings {
 }
 
 /// What a view looks like if nothing is said.
-export const DEFAULT_LOOK: Look = { colours: 'vertex', shading: 'smooth', wires: false, points: false, outline: false };
+export const DEFAULT_LOOK: Look = { colours: 'vertex', texture: true, shading: 'smooth', wires: false, points: false, outline: false };
 
 const DEFAULTS: Settings = { framesPerSecond: 30, threshold: 1, memoryBudget: 256e6 };
 const RANGES: Record<keyof Settings, readonly [number, number]> = {

@@ -1,22 +1,25 @@
 // A tile in a three scene: its triangles, and on request its edges and vertices.
 import { Box3, BufferAttribute, BufferGeometry, Color, DynamicDrawUsage, LineSegments, Mesh, Points, Sphere, Vector3 } from 'three';
-import type { Intersection, MeshStandardMaterial, Raycaster } from 'three';
+import type { Intersection, Raycaster, Texture } from 'three';
 import type { ResidentTile } from '../cut/tile_store.js';
 import type { Indices, Tile } from '../hierarchy/tile.js';
 import type { TileRecord } from '../hierarchy/tile_index.js';
 import type { Seam } from '../cut/seam.js';
-import { surfaceKey, surfaceMaterial, type SharedMaterials } from './materials.js';
+import { surfaceKey, surfaceMaterial, type Painting, type SharedMaterials, type SurfaceMaterial } from './materials.js';
 import type { Look } from './settings.js';
+import { pictureMemory, tileTexture } from './tile_texture.js';
+
+const TEXCOORD_BYTES = 8;
 
 /// Bytes of a tile with what draws it: each array here and on the GPU, but for what only seams need.
 export function memoryOf(tile: Tile, seam: Seam, wires: boolean): number {
-  const { copyOf, splitOf, positions, normals, colours, indices, border, neighbours, ghostStarts, chains } = tile;
-  const drawn = positions.byteLength + normals.byteLength + (colours?.byteLength ?? 0) + indices.byteLength;
+  const { copyOf, splitOf, positions, normals, colours, texcoords, picture, indices, border, neighbours, ghostStarts, chains } = tile;
+  const drawn = positions.byteLength + normals.byteLength + (colours?.byteLength ?? 0) + (texcoords?.byteLength ?? 0) + indices.byteLength;
   const seams = copyOf.byteLength + splitOf.byteLength + border.byteLength + neighbours.byteLength + ghostStarts.byteLength + chains.byteLength + seam.bytes;
-  return 2 * (drawn + (wires ? 2 * indices.byteLength : 0)) + seams;
+  return 2 * (drawn + (wires ? 2 * indices.byteLength : 0)) + seams + (picture ? pictureMemory(picture.bitmap) : 0);
 }
 
-/// What is drawn of a vertex: its position, normal and colour, if any.
+/// What is drawn of a vertex: its position, normal and colour, if any; not its texture coordinate, which is there if there is a picture.
 export function vertexBytesOf({ normals, colours }: Tile): number {
   return 12 + 4 * normals.BYTES_PER_ELEMENT + (colours ? 4 : 0);
 }
@@ -30,16 +33,17 @@ export interface Extent {
 
 /// The same from counts alone; not less.
 export function mostMemory(
-  { own, ghosts, copies, splits, interior, border }: Pick<TileRecord, 'own' | 'ghosts' | 'copies' | 'splits' | 'interior' | 'border'>,
+  record: Omit<TileRecord, 'error' | 'min' | 'max' | 'bytes'>,
   { level, vertexBytes, wires }: Extent,
 ): number {
+  const { own, ghosts, copies, splits, interior, border, pictureWidth: width, pictureHeight: height } = record;
   const vertices = own + ghosts + copies + splits;
-  const width = vertices > 65535 ? 4 : 2;
-  const indices = 3 * (interior + border) * width;
-  const drawn = vertices * vertexBytes + indices;
+  const indexBytes = vertices > 65535 ? 4 : 2;
+  const indices = 3 * (interior + border) * indexBytes;
+  const drawn = vertices * (vertexBytes + (width > 0 ? TEXCOORD_BYTES : 0)) + indices;
   // Of a ghost: its chain, its neighbour's number, start and keys, and what the seam keeps of it; of what is behind ghosts that, and its number.
-  const seams = 3 * border * width + ghosts * (10 * level + 48) + (copies + splits) * 16 + 64;
-  return 2 * (drawn + (wires ? 2 * indices : 0)) + seams;
+  const seams = 3 * border * indexBytes + ghosts * (10 * level + 48) + (copies + splits) * 16 + 64;
+  return 2 * (drawn + (wires ? 2 * indices : 0)) + seams + pictureMemory({ width, height });
 }
 
 function edgesOf(triangles: Indices, corners: number): Indices {
@@ -52,10 +56,16 @@ function edgesOf(triangles: Indices, corners: number): Indices {
   return edges;
 }
 
-export class TileObject extends Mesh<BufferGeometry, MeshStandardMaterial> {
+function paintingOf({ colours, picture }: Tile): Painting {
+  const texture: Texture | null = picture && tileTexture(picture);
+  return { hasColours: colours !== null, picture, texture };
+}
+
+export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
   triangles: number;
   private wires: LineSegments | null = null;
   private points: Points | null = null;
+  private readonly painting: Painting;
 
   /// To be drawn once it is resolved; wires and points come with setLook().
   constructor(
@@ -63,11 +73,14 @@ export class TileObject extends Mesh<BufferGeometry, MeshStandardMaterial> {
     private look: Look,
     private readonly shared: SharedMaterials,
   ) {
-    super(new BufferGeometry(), surfaceMaterial(look, resident.tile.colours !== null, shared));
     const { tile } = resident;
+    const painting = paintingOf(tile);
+    super(new BufferGeometry(), surfaceMaterial(look, painting, shared));
+    this.painting = painting;
     this.geometry.setAttribute('position', new BufferAttribute(tile.positions, 3));
     this.geometry.setAttribute('normal', new BufferAttribute(tile.normals, 4, true));
     if (tile.colours) this.geometry.setAttribute('color', new BufferAttribute(tile.colours, 4, true));
+    if (tile.texcoords) this.geometry.setAttribute('uv', new BufferAttribute(tile.texcoords, 2));
     this.geometry.setIndex(new BufferAttribute(tile.indices, 1));
     for (const attribute of this.attributes()) attribute.setUsage(DynamicDrawUsage);
     this.triangles = tile.interiorCount;
@@ -76,6 +89,7 @@ export class TileObject extends Mesh<BufferGeometry, MeshStandardMaterial> {
     this.renderOrder = resident.key / Number.MAX_SAFE_INTEGER;
   }
 
+  /// Those that seams change; texture coordinates are the tile's own.
   private *attributes(): Iterable<BufferAttribute> {
     const { position, normal, color } = this.geometry.attributes as Record<string, BufferAttribute>;
     yield* [position, normal, ...(color ? [color] : [])];
@@ -131,7 +145,7 @@ export class TileObject extends Mesh<BufferGeometry, MeshStandardMaterial> {
     this.look = look;
     if (surfaceKey(before) !== surfaceKey(look)) {
       this.material.dispose();
-      this.material = surfaceMaterial(look, this.resident.tile.colours !== null, this.shared);
+      this.material = surfaceMaterial(look, this.painting, this.shared);
     }
     if (look.wires !== (this.wires !== null)) this.setWires(look.wires);
     if (look.points !== (this.points !== null)) this.setPoints(look.points);
@@ -184,6 +198,7 @@ export class TileObject extends Mesh<BufferGeometry, MeshStandardMaterial> {
     this.setPoints(false);
     this.geometry.dispose();
     this.material.dispose();
+    this.painting.texture?.dispose();
     this.removeFromParent();
   }
 }

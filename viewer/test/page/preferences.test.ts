@@ -21,7 +21,7 @@ describe('preferences', () => {
       theme: 'dark',
       panel: true,
       settings: { framesPerSecond: 60, threshold: 2.5, memoryBudget: 512e6 },
-      look: { colours: 'error', shading: 'flat', wires: true, points: true, outline: true },
+      look: { colours: 'error', texture: false, shading: 'flat', wires: true, points: true, outline: true },
     };
     expect(parsePreferences(JSON.stringify(chosen))).toEqual(chosen);
   });

@@ -1,6 +1,15 @@
 // Tiles as bytes (docs/file_format.md, section 4), made by hand.
 import { MeshoptEncoder } from 'meshoptimizer/encoder';
 
+export interface PictureParts {
+  readonly file: Uint8Array;
+  readonly mimeType: string;
+  readonly width: number;
+  readonly height: number;
+  readonly alphaMode?: string;
+  readonly unlit?: boolean;
+}
+
 export interface TileParts {
   readonly own: number;
   readonly ghosts?: number;
@@ -13,6 +22,9 @@ export interface TileParts {
   readonly codeAccessor?: object;
   /// r, g, b, a of each vertex.
   readonly colours?: readonly number[];
+  /// u, v of each vertex, and what they are in.
+  readonly texcoords?: readonly number[] | Float32Array | null;
+  readonly picture?: PictureParts;
   readonly interior: readonly number[];
   readonly border?: readonly number[];
   readonly copyOf?: readonly number[];
@@ -83,7 +95,8 @@ function written(parts: TileParts, change: Record<string, number>, isPacked: boo
   attribute('POSITION', Float32Array.from(positions), { componentType: 5126, type: 'VEC3' });
   if (normals) attribute('NORMAL', Float32Array.from(normals), { componentType: 5126, type: 'VEC3' });
   if (codes) attribute('NORMAL', coded(codes), { componentType: 5120, normalized: true, type: 'VEC3', ...parts.codeAccessor });
-  if (colours) attribute('COLOR_0', Uint8Array.from(colours), { componentType: 5121, normalized: true, type: 'VEC4' });
+  if (colours) attribute(parts.picture ? '_COLOR_0' : 'COLOR_0', Uint8Array.from(colours), { componentType: 5121, normalized: true, type: 'VEC4' });
+  if (parts.texcoords) attribute('TEXCOORD_0', Float32Array.from(parts.texcoords), { componentType: 5126, type: 'VEC2' });
   const numbers = (values: readonly number[]): number => section(Uint16Array.from(values), { stride: 2, mode: 'INDICES' });
   const primitives: object[] = [];
   const primitive = (corners: readonly number[]): number => {
@@ -92,13 +105,24 @@ function written(parts: TileParts, change: Record<string, number>, isPacked: boo
     return primitives.push({ attributes, indices, mode: 4 }) - 1;
   };
   const extension = {
-    version: 2, level: parts.level ?? 0, index: parts.index ?? 0, ownCount: own, rimCount: own, ghostCount: ghosts, copyCount: copyOf.length, splitCount: splitOf.length,
+    version: 3, level: parts.level ?? 0, index: parts.index ?? 0, ownCount: own, rimCount: own, ghostCount: ghosts, copyCount: copyOf.length, splitCount: splitOf.length,
     neighbourCount: neighbours.length, chainEntryCount: chains.length, interiorCount: interior.length / 3, borderCount: border.length / 3,
     interiorPrimitive: primitive(interior), borderPrimitive: primitive(border), neighbours: section(Uint32Array.from(neighbours)),
-    ghostStarts: section(Uint32Array.from(ghostStarts)), ghostChains: numbers(chains), copyOf: numbers(copyOf), splitOf: numbers(splitOf), ...change,
+    ghostStarts: section(Uint32Array.from(ghostStarts)), ghostChains: numbers(chains), copyOf: numbers(copyOf), splitOf: numbers(splitOf),
+    ...pictured(parts.picture, section), ...change,
   };
-  const text = JSON.stringify({ nodes: [{}], meshes: [{ primitives }], accessors, bufferViews, extensions: { MESHHIER_tile: extension } });
+  const text = JSON.stringify({ nodes: [{}], meshes: [{ primitives }], ...materialOf(parts.picture), accessors, bufferViews, extensions: { MESHHIER_tile: extension } });
   return container(text.padEnd(Math.ceil(text.length / 4) * 4), chunks, end);
+}
+
+function pictured(picture: PictureParts | undefined, section: (bytes: Uint8Array) => number): object {
+  return picture ? { imageWidth: picture.width, imageHeight: picture.height, image: section(picture.file) } : {};
+}
+
+function materialOf(picture: PictureParts | undefined): object {
+  if (picture === undefined) return {};
+  const { mimeType, alphaMode, unlit } = picture;
+  return { images: [{ mimeType }], materials: [{ alphaMode, ...(unlit ? { extensions: { KHR_materials_unlit: {} } } : {}) }] };
 }
 
 function container(text: string, chunks: readonly Uint8Array[], binBytes: number): Uint8Array {

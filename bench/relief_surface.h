@@ -1,0 +1,67 @@
+// Where the vertices of a generated surface are: a base shape, cut into a grid, displaced by
+// fractal relief and by noise.
+#pragma once
+
+#include "bench/base_surface.h"
+#include "bench/generator.h"
+#include "bench/noise.h"
+#include "bench/patch_grid.h"
+#include "hierarchy/vec.h"
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace meshhier::bench {
+
+struct ReliefVertex {
+  SurfacePoint base;  ///< on the shape below the relief
+  Vec3d slope;        ///< the relief's gradient
+  Vec3d moved;        ///< where the vertex is, before the offset
+};
+
+/// The two triangles of a grid's cell; each triangle's corners turn counter-clockwise seen from
+/// outside.
+using CellTriangles = std::array<std::array<GridPoint, 3>, 2>;
+
+/// Whether a cell is cut from (column, row) to (column + 1, row + 1), else from (column + 1, row)
+/// to (column, row + 1). Cuts alternate, as a checkerboard: no direction is preferred.
+constexpr bool is_cut_upwards(GridPoint cell) {
+  return (cell.column + cell.row) % 2 == 0;
+}
+
+/// Requires that `cell`, the lowest point of a cell, is no last one of its row or column.
+CellTriangles triangles_of(GridPoint cell);
+
+/// Of what a surface is made, for a comment in its file.
+std::string description_of(const SurfaceOptions& options);
+
+/// A pure function of the options; immutable, thread-safe.
+class ReliefSurface {
+ public:
+  /// Throws Error(usage) as make_surface().
+  explicit ReliefSurface(const SurfaceOptions& options);
+
+  const BaseSurface& base() const { return base_; }
+  const PatchGrid& grid() const { return grid_; }
+  /// Mean distance of neighbouring grid points, roughly.
+  double step() const { return step_; }
+
+  ReliefVertex vertex(GridPoint at) const { return vertex(at, grid_.index(at)); }
+  /// What a file holds of its position.
+  Vec3d stored(const ReliefVertex& vertex) const;
+  /// Every vertex once, by ascending number.
+  void visit_vertices(const std::function<void(const ReliefVertex&)>& visit) const;
+
+ private:
+  ReliefVertex vertex(GridPoint at, std::uint64_t index) const;
+
+  SurfaceOptions options_;
+  BaseSurface base_;
+  PatchGrid grid_;
+  double step_;
+  FractalNoise relief_;
+};
+
+}  // namespace meshhier::bench

@@ -1,0 +1,162 @@
+#include "config/placement.h"
+
+#include "config/map_file.h"
+#include "geodesy/map_projection.h"
+#include "geodesy/map_transform.h"
+#include "hierarchy/error.h"
+#include "storage/format/tileset.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace meshhier::config {
+namespace {
+
+/// What these files have to say stands at their beginning; some list all pictures after it.
+constexpr std::uint64_t kLookedAtBytes = std::uint64_t{1} << 16;
+
+Vec3d to_vec(const std::array<double, 3>& p) {
+  return {p[0], p[1], p[2]};
+}
+
+/// `work`, whose failures are told with the key that they are about.
+template <class Work>
+auto about(const char* key, const Work& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    throw error.within(key);
+  }
+}
+
+MapFile read_map_file(storage::FileSystem& files, const std::filesystem::path& path) {
+  const std::unique_ptr<storage::File> file = files.open(path);
+  std::string text(kLookedAtBytes, '\0');
+  text.resize(file->read_at(0, std::as_writable_bytes(std::span(text))));
+  return about(path.c_str(), [&] { return parse_map_file(text); });
+}
+
+void take_map_file(storage::FileSystem& files, PlacementConfig& place) {
+  MapFile file = read_map_file(files, place.metadata);
+  if (!place.crs)
+    place.crs = std::move(file.crs);
+  if (!place.offset)
+    place.offset = file.offset;
+  if (!place.crs) {
+    throw Error(ErrorCode::usage,
+                place.metadata.string() + ": has an offset, but no CRS; give it by \"crs\"");
+  }
+}
+
+geodesy::MapProjection projection_of(const PlacementConfig& place) {
+  return about("placement.crs", [&] { return geodesy::MapProjection(*place.crs); });
+}
+
+/// Of z-up coordinates.
+BoundsD z_up_box(const BoundsD& bounds, UpAxis up) {
+  BoundsD box;
+  box.add(to_z_up(bounds.min, up));
+  box.add(to_z_up(bounds.max, up));
+  return box;
+}
+
+geodesy::MappedModel mapped_model(const Config& config, const BoundsD& bounds) {
+  const PlacementConfig& place = config.placement;
+  const Vec3d anchor =
+      place.anchor ? to_vec(*place.anchor) : bounds.min + (bounds.max - bounds.min) * 0.5;
+  return {to_vec(place.offset.value_or(std::array<double, 3>{})), to_z_up(anchor, config.up)};
+}
+
+/// The projection as it is where the model lies.
+geodesy::MapProjection settled(const PlacementConfig& place, const geodesy::MappedModel& model) {
+  geodesy::MapProjection projection = projection_of(place);
+  about("placement", [&] { projection.settle_at(model.anchor + model.offset); });
+  return projection;
+}
+
+Transform map_transform(const Config& config, const BoundsD& bounds) {
+  const geodesy::MappedModel model = mapped_model(config, bounds);
+  const geodesy::MapProjection projection = settled(config.placement, model);
+  return about("placement", [&] { return geodesy::map_transform(projection, model); });
+}
+
+/// Rounded up.
+std::string length_text(double metres) {
+  return metres < 1 ? fmt::format("{:.0f} cm", std::max(1.0, std::ceil(metres * 100)))
+                    : fmt::format("{:.1f} m", std::ceil(metres * 10) / 10);
+}
+
+std::string exactness_text(const geodesy::MapProjection& projection, double largest_error) {
+  std::string text = "at most " + length_text(largest_error) + " off at the corners of its box";
+  if (projection.takes_datum_as_wgs84())
+    text += "; the datum of the CRS is not known and was taken as WGS 84";
+  else if (projection.accuracy() > 0)
+    text += fmt::format("; the change of datum is good to {}", length_text(projection.accuracy()));
+  return text;
+}
+
+}  // namespace
+
+Config with_map(storage::FileSystem& files, Config config) {
+  PlacementConfig& place = config.placement;
+  if (!place.metadata.empty())
+    about("placement.metadata", [&] { take_map_file(files, place); });
+  if (place.crs)
+    projection_of(place);
+  return config;
+}
+
+std::optional<Transform> tileset_transform(const Config& config, const BoundsD& bounds) {
+  const PlacementConfig& place = config.placement;
+  if (place.crs)
+    return map_transform(config, bounds);
+  if (!place.longitude)
+    return place.transform;
+  return storage::globe_transform(*place.longitude, *place.latitude, place.height.value_or(0),
+                                  to_vec(place.anchor.value_or(std::array<double, 3>{})),
+                                  config.up);
+}
+
+bool fits_map(const Config& config, const BoundsD& bounds, const Transform& transform) try {
+  constexpr double kVersionsApart = 10;
+  const geodesy::MappedModel model = mapped_model(config, bounds);
+  const geodesy::MapProjection projection = settled(config.placement, model);
+  const auto error_of = [&](const Transform& one) {
+    return geodesy::largest_error(projection, model, one, z_up_box(bounds, config.up));
+  };
+  return error_of(transform) <=
+         error_of(geodesy::map_transform(projection, model)) + kVersionsApart;
+} catch (const Error&) {
+  return true;
+}
+
+std::string placement_text(const Config& config, const BoundsD& bounds,
+                           const Transform& transform) {
+  if (!config.placement.crs)
+    return "";
+  const geodesy::MappedModel model = mapped_model(config, bounds);
+  const geodesy::MapProjection projection = settled(config.placement, model);
+  const geodesy::Geodetic place =
+      projection.to_geodetic(projection.to_geocentric(model.anchor + model.offset));
+  const double off =
+      geodesy::largest_error(projection, model, transform, z_up_box(bounds, config.up));
+  std::string text = fmt::format(
+      "placed by {} at longitude {:.6f}, latitude {:.6f}, height {:.1f} m: {}\n", projection.name(),
+      place.longitude, place.latitude, place.height, exactness_text(projection, off));
+  if (!projection.is_meant_for(place)) {
+    text += fmt::format(
+        "warning: the model lies outside the area that {} is meant for; look at "
+        "\"crs\", \"offset\" and \"up\"\n",
+        projection.name());
+  }
+  return text;
+}
+
+}  // namespace meshhier::config

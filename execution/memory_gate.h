@@ -1,0 +1,52 @@
+// Memory that items at work take, kept below a limit.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+
+namespace meshhier::execution {
+
+/// Lets items in as long as all that is held stays within the limit; others wait. An item holds one
+/// share at a time, so that none waits for another one that waits. Thread-safe.
+class MemoryGate {
+ public:
+  explicit MemoryGate(std::uint64_t limit_bytes) : limit_(limit_bytes) {}
+
+  /// Held as long as the object is there.
+  class Share {
+   public:
+    Share(MemoryGate& gate, std::uint64_t bytes) : gate_(gate), bytes_(bytes) {}
+    Share(const Share&) = delete;
+    Share& operator=(const Share&) = delete;
+    ~Share() { gate_.leave(bytes_); }
+
+   private:
+    MemoryGate& gate_;
+    std::uint64_t bytes_;
+  };
+
+  /// Waits until there is room. What exceeds the limit by itself goes in when nothing else is held.
+  [[nodiscard]] Share enter(std::uint64_t bytes) {
+    std::unique_lock lock(mutex_);
+    freed_.wait(lock, [&] { return held_ == 0 || held_ + bytes <= limit_; });
+    held_ += bytes;
+    return {*this, bytes};
+  }
+
+ private:
+  void leave(std::uint64_t bytes) {
+    {
+      const std::lock_guard lock(mutex_);
+      held_ -= bytes;
+    }
+    freed_.notify_all();
+  }
+
+  const std::uint64_t limit_;
+  std::uint64_t held_ = 0;
+  std::mutex mutex_;
+  std::condition_variable freed_;
+};
+
+}  // namespace meshhier::execution

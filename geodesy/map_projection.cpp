@@ -1,0 +1,291 @@
+#include "geodesy/map_projection.h"
+
+#include "geodesy/proj_library.h"
+#include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace meshhier::geodesy {
+
+// Not in a nameless namespace: MapProjection::Parts is made of it.
+namespace proj {
+
+struct Destroy {
+  void operator()(PJ_CONTEXT* context) const { library().context_destroy(context); }
+  void operator()(PJ* object) const { library().destroy(object); }
+};
+using Context = std::unique_ptr<PJ_CONTEXT, Destroy>;
+using Object = std::unique_ptr<PJ, Destroy>;
+
+struct Axes {
+  PJ_COORDINATE_SYSTEM_TYPE type = PJ_CS_TYPE_UNKNOWN;
+  int count = 0;
+  double metres = 1;  ///< of the first axis' unit
+};
+
+}  // namespace proj
+
+namespace {
+
+using proj::Axes;
+using proj::Context;
+using proj::library;
+using proj::Object;
+
+/// The WKT of a compound CRS has some 5,000 bytes.
+constexpr std::size_t kLongestCrs = std::size_t{1} << 16;
+constexpr std::size_t kLongestQuote = 80;
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw Error(ErrorCode::usage, what);
+}
+
+std::string in_quotes(std::string_view text) {
+  return '"' + plain_text(text, kLongestQuote) + '"';
+}
+
+// ---- the text
+
+bool contains(std::string_view text, std::string_view part) {
+  return std::ranges::search(text, part, {}, [](char c) {
+           return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+         }).begin() != text.end();
+}
+
+/// "+geoidgrids=/tmp/x.gtx".
+bool is_path_parameter(std::string_view word) {
+  const std::size_t sign = word.find('=');
+  return sign != std::string_view::npos &&
+         word.find_first_of("/\\~", sign) != std::string_view::npos;
+}
+
+/// Whether PROJ would open a file that the text chooses. Grids by their plain names are those of
+/// PROJ's own folders.
+bool names_files(std::string_view text) {
+  if (contains(text, "parameterfile") || contains(text, "init="))
+    return true;
+  constexpr std::string_view kBetweenWords = " \t\r\n\"";
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find_first_of(kBetweenWords, begin), text.size());
+    if (is_path_parameter(text.substr(begin, end - begin)))
+      return true;
+    begin = end + 1;
+  }
+  return false;
+}
+
+void check_text(const std::string& crs) {
+  if (crs.size() > kLongestCrs)
+    refuse(fmt::format("expected a CRS of at most {} bytes, found {}", kLongestCrs, crs.size()));
+  if (crs.starts_with('{') || crs.find('\0') != std::string::npos)
+    refuse("expected an EPSG code, WKT or a PROJ string, found " + in_quotes(crs));
+  if (names_files(crs)) {
+    refuse(in_quotes(crs) +
+           " names files; use an EPSG code, or grids by their plain names from PROJ's folders");
+  }
+  if (crs.starts_with("ENU:")) {
+    refuse(in_quotes(crs) +
+           " is a local frame, no map: give its \"longitude\" and \"latitude\" instead");
+  }
+}
+
+/// A PROJ string is a step of a computation unless it says that it is a CRS.
+std::string as_crs(const std::string& text) {
+  const bool is_step = text.find("+proj=") != std::string::npos &&
+                       text.find('[') == std::string::npos &&
+                       text.find("+type=") == std::string::npos;
+  return is_step ? text + " +type=crs" : text;
+}
+
+// ---- objects of PROJ
+
+Context make_context() {
+  Context context(library().context_create());
+  library().context_set_enable_network(context.get(), 0);
+  library().log_level(context.get(), PJ_LOG_NONE);
+  const char* database = library().context_get_database_path(context.get());
+  if (database == nullptr || *database == '\0') {
+    throw Error(ErrorCode::io,
+                "PROJ's database proj.db is not there: install the package proj-data, or set "
+                "PROJ_DATA to the folder that has it");
+  }
+  return context;
+}
+
+Object make_crs(PJ_CONTEXT* context, const std::string& text) {
+  Object crs(library().create(context, as_crs(text).c_str()));
+  if (!crs || library().is_crs(crs.get()) == 0) {
+    refuse("PROJ knows no CRS " + in_quotes(text) +
+           "; expected an EPSG code (\"EPSG:32633\"), WKT or a PROJ string");
+  }
+  return crs;
+}
+
+/// The part with easting and northing.
+Object horizontal_part(PJ_CONTEXT* context, const PJ* crs) {
+  Object part(library().clone(context, crs));
+  for (;;) {
+    const PJ_TYPE type = library().get_type(part.get());
+    if (type == PJ_TYPE_COMPOUND_CRS)
+      part.reset(library().crs_get_sub_crs(context, part.get(), 0));
+    else if (type == PJ_TYPE_BOUND_CRS)
+      part.reset(library().get_source_crs(context, part.get()));
+    else
+      return part;
+  }
+}
+
+Axes axes_of(PJ_CONTEXT* context, const PJ* part) {
+  const Object system(library().crs_get_coordinate_system(context, part));
+  if (!system)
+    return {};
+  Axes axes{library().cs_get_type(context, system.get()),
+            library().cs_get_axis_count(context, system.get())};
+  library().cs_get_axis_info(context, system.get(), 0, nullptr, nullptr, nullptr, &axes.metres,
+                             nullptr, nullptr, nullptr);
+  return axes;
+}
+
+void check_axes(const Axes& axes, const std::string& text) {
+  if (axes.type == PJ_CS_TYPE_ELLIPSOIDAL || axes.type == PJ_CS_TYPE_SPHERICAL) {
+    refuse(in_quotes(text) +
+           " has degrees as coordinates, and a model in degrees is no shape; export the model in "
+           "a projected CRS, such as UTM (\"EPSG:32633\"), or in a local one");
+  }
+}
+
+/// Null if PROJ has none. `ballpark`: also such that leave out what PROJ does not know.
+Object to_wgs84(PJ_CONTEXT* context, const PJ* crs, bool ballpark) {
+  const Object target(library().create(context, "EPSG:4978"));
+  const char* options[] = {ballpark ? "ALLOW_BALLPARK=YES" : "ALLOW_BALLPARK=NO", nullptr};
+  const Object operation(
+      library().create_crs_to_crs_from_pj(context, crs, target.get(), nullptr, options));
+  return Object(operation ? library().normalize_for_visualization(context, operation.get())
+                          : nullptr);
+}
+
+/// Without the grid for its heights PROJ would leave out the datum of a compound CRS, too, which
+/// may be a hundred metres.
+Object make_operation(PJ_CONTEXT* context, const PJ* crs, const std::string& text) {
+  const bool has_heights = library().get_type(crs) == PJ_TYPE_COMPOUND_CRS;
+  Object operation = to_wgs84(context, crs, false);
+  if (!operation && has_heights) {
+    refuse("PROJ has no grid for the heights of " + in_quotes(text) +
+           "; put the grid into PROJ's folder (projsync gets them), or give the horizontal CRS "
+           "alone and add the geoid's height to the third number of \"offset\"");
+  }
+  if (!operation)
+    operation = to_wgs84(context, crs, true);
+  if (!operation)
+    refuse(in_quotes(text) + " is a CRS without places on the globe; PROJ cannot transform it");
+  return operation;
+}
+
+Object make_geodetic(PJ_CONTEXT* context) {
+  const Object operation(library().create_crs_to_crs(context, "EPSG:4978", "EPSG:4979", nullptr));
+  return Object(library().normalize_for_visualization(context, operation.get()));
+}
+
+bool is_finite(Vec3d p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+}  // namespace
+
+struct MapProjection::Parts {
+  Context context;
+  Object crs;
+  Axes axes;         ///< of its horizontal part
+  Object operation;  ///< to geocentric coordinates
+  Object geodetic;   ///< from them
+  std::string name;
+
+  /// What PROJ takes as metres is in the map's unit.
+  double height_metres() const {
+    const bool is_flat = axes.type == PJ_CS_TYPE_CARTESIAN && axes.count == 2 &&
+                         library().get_type(crs.get()) != PJ_TYPE_COMPOUND_CRS;
+    return is_flat ? axes.metres : 1;
+  }
+};
+
+MapProjection::MapProjection(const std::string& crs) : parts_(std::make_unique<Parts>()) {
+  Parts& parts = *parts_;
+  check_text(crs);
+  parts.context = make_context();
+  PJ_CONTEXT* context = parts.context.get();
+  parts.crs = make_crs(context, crs);
+  parts.axes = axes_of(context, horizontal_part(context, parts.crs.get()).get());
+  check_axes(parts.axes, crs);
+  parts.operation = make_operation(context, parts.crs.get(), crs);
+  parts.geodetic = make_geodetic(context);
+  parts.name = plain_text(library().get_name(parts.crs.get()), kLongestQuote);
+}
+
+MapProjection::~MapProjection() = default;
+MapProjection::MapProjection(MapProjection&&) noexcept = default;
+MapProjection& MapProjection::operator=(MapProjection&&) noexcept = default;
+
+void MapProjection::settle_at(Vec3d map) {
+  to_geocentric(map);
+  Object used(library().trans_get_last_used_operation(parts_->operation.get()));
+  if (used)
+    parts_->operation = std::move(used);
+}
+
+Vec3d MapProjection::to_geocentric(Vec3d map) const {
+  PJ* operation = parts_->operation.get();
+  library().errno_reset(operation);
+  const PJ_COORD from = library().coord(map.x, map.y, map.z * parts_->height_metres(), 0);
+  const PJ_COORD to = library().trans(operation, PJ_FWD, from);
+  const Vec3d place{to.xyz.x, to.xyz.y, to.xyz.z};
+  if (!is_finite(place)) {
+    refuse(fmt::format(
+        "the point {} {} {} of {} has no place on the globe, as far as PROJ can tell; is an "
+        "\"offset\" missing, or \"up\": \"z\"?",
+        map.x, map.y, map.z, parts_->name));
+  }
+  return place;
+}
+
+Geodetic MapProjection::to_geodetic(Vec3d p) const {
+  const PJ_COORD to =
+      library().trans(parts_->geodetic.get(), PJ_FWD, library().coord(p.x, p.y, p.z, 0));
+  return {to.xyz.x, to.xyz.y, to.xyz.z};
+}
+
+double MapProjection::unit_metres() const {
+  return parts_->axes.metres;
+}
+
+const std::string& MapProjection::name() const {
+  return parts_->name;
+}
+
+double MapProjection::accuracy() const {
+  return library().pj_info(parts_->operation.get()).accuracy;
+}
+
+bool MapProjection::takes_datum_as_wgs84() const {
+  return library().coordoperation_has_ballpark_transformation(parts_->context.get(),
+                                                              parts_->operation.get()) != 0;
+}
+
+bool MapProjection::is_meant_for(const Geodetic& place) const {
+  double west = 0, south = 0, east = 0, north = 0;
+  const int known = library().get_area_of_use(parts_->context.get(), parts_->crs.get(), &west,
+                                              &south, &east, &north, nullptr);
+  if (known == 0 || west < -180)  // -1000: not known
+    return true;
+  const bool in_longitude = west <= east ? place.longitude >= west && place.longitude <= east
+                                         : place.longitude >= west || place.longitude <= east;
+  return in_longitude && place.latitude >= south && place.latitude <= north;
+}
+
+}  // namespace meshhier::geodesy

@@ -1,0 +1,58 @@
+// Textures: coordinates, and the picture that a tile shows on its triangles.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+namespace meshhier {
+
+/// A texture coordinate as glTF has it: (0, 0) is the upper left corner of a picture, (1, 1) the
+/// lower right one.
+struct Vec2f {
+  float u = 0, v = 0;
+  friend constexpr bool operator==(const Vec2f&, const Vec2f&) = default;
+};
+static_assert(sizeof(Vec2f) == 8);
+
+/// How a picture goes on beyond 0 ... 1.
+enum class Wrap : std::uint8_t { repeat, mirrored, clamp };
+
+/// What alpha means. Ordered: of several in one tile, the last one counts.
+enum class AlphaMode : std::uint8_t { opaque, mask, blend };
+inline constexpr std::array<std::string_view, 3> kAlphaModeNames{"opaque", "mask", "blend"};
+
+/// How pictures of tiles are stored.
+enum class ImageFormat : std::uint8_t { jpeg, png, webp };
+inline constexpr std::array<std::string_view, 3> kImageFormatNames{"jpeg", "png", "webp"};
+
+/// The picture of a tile, as its file has it.
+struct TileImage {
+  ImageFormat format = ImageFormat::jpeg;
+  AlphaMode alpha = AlphaMode::opaque;  ///< other than opaque: `format` is png or webp
+  std::uint32_t width = 0, height = 0;  ///< texels, 1 ... kMaxImageSide; 0: there is none
+  std::vector<std::byte> bytes;         ///< encoded
+
+  bool empty() const { return width == 0; }
+  friend bool operator==(const TileImage&, const TileImage&) = default;
+};
+/// No picture of a tile is larger: WebP has no larger ones, and many GPUs neither.
+inline constexpr std::uint32_t kMaxImageSide = 8192;
+
+/// What a hierarchy says of all its tiles' pictures.
+struct TextureFormat {
+  ImageFormat format = ImageFormat::jpeg;  ///< of opaque ones; others are png unless it is webp
+  int quality = 90;                        ///< 1 ... 100, of jpeg and webp; 100 of webp: lossless
+  bool unlit = true;                       ///< colours have their light already
+  friend constexpr bool operator==(const TextureFormat&, const TextureFormat&) = default;
+};
+
+/// How a picture of that alpha is stored.
+constexpr ImageFormat stored_format(const TextureFormat& textures, AlphaMode alpha) {
+  const bool needs_alpha = alpha != AlphaMode::opaque && textures.format == ImageFormat::jpeg;
+  return needs_alpha ? ImageFormat::png : textures.format;
+}
+
+}  // namespace meshhier

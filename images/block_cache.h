@@ -1,0 +1,59 @@
+// Blocks of texels that were read lately.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+namespace meshhier::images {
+
+/// The least recently used blocks go first. Thread-safe: keys are spread over parts with a lock
+/// each.
+class BlockCache {
+ public:
+  /// `most_bytes`: of blocks and what finds them.
+  explicit BlockCache(std::uint64_t most_bytes);
+
+  /// Calls `use` with the block's bytes; false if it is not there. `use` is quick: others wait.
+  template <class Use>
+  bool use(std::uint64_t key, const Use& use) {
+    Part& part = part_of(key);
+    const std::lock_guard lock(part.mutex);
+    const std::byte* block = part.find(key);
+    if (block != nullptr)
+      use(block);
+    return block != nullptr;
+  }
+
+  /// Keeps a copy, unless there is one or there is no room at all.
+  void put(std::uint64_t key, std::span<const std::byte> block);
+
+ private:
+  struct Block {
+    std::uint64_t key = 0;
+    std::vector<std::byte> bytes;
+  };
+  struct Part {
+    /// Null if it is not there; then it is the last to go.
+    const std::byte* find(std::uint64_t key);
+    void put(std::uint64_t key, std::span<const std::byte> bytes, std::uint64_t most_bytes);
+    void drop_oldest();
+
+    std::mutex mutex;         ///< of what follows
+    std::list<Block> blocks;  ///< the one used last comes first
+    std::unordered_map<std::uint64_t, std::list<Block>::iterator> places;
+    std::uint64_t held_bytes = 0;
+  };
+  Part& part_of(std::uint64_t key);
+
+  std::size_t part_count_;
+  std::uint64_t most_bytes_of_part_;
+  std::unique_ptr<Part[]> parts_;
+};
+
+}  // namespace meshhier::images

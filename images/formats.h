@@ -1,0 +1,30 @@
+// One format each, for image_codec.cpp.
+#pragma once
+
+#include "images/image.h"
+#include "images/image_codec.h"
+#include "images/row_writer.h"
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace meshhier::images {
+
+std::unique_ptr<ImageReader> open_jpeg(ByteSource source, const std::string& name);
+std::unique_ptr<ImageReader> open_png(ByteSource source, const std::string& name);
+std::unique_ptr<ImageReader> open_webp(ByteSource source, const std::string& name);
+
+/// The best codes for a picture are known after its last row: all of its coefficients wait for
+/// them.
+enum class JpegCodes { standard, best };
+std::unique_ptr<RowWriter> open_jpeg_writer(const WrittenImage& image, JpegCodes codes,
+                                            ByteSink sink);
+std::unique_ptr<RowWriter> open_png_writer(const WrittenImage& image, ByteSink sink);
+
+std::vector<std::byte> encode_jpeg(const Image& image, int quality);
+std::vector<std::byte> encode_png(const Image& image);
+std::vector<std::byte> encode_webp(const Image& image, int quality);
+
+}  // namespace meshhier::images

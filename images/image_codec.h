@@ -1,0 +1,64 @@
+// Pictures in the formats of files: JPEG (libjpeg-turbo), PNG (libpng), WebP (libwebp).
+#pragma once
+
+#include "hierarchy/texture.h"
+#include "images/image.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace meshhier::images {
+
+/// Where encoded bytes come from: reads up to `into.size()` bytes at `offset`, returns how many
+/// there were; 0 only at the end. May throw.
+using ByteSource = std::function<std::size_t(std::uint64_t offset, std::span<std::byte> into)>;
+
+/// No side of a picture that is read is longer.
+inline constexpr std::uint32_t kMaxSourceSide = 65535;
+
+/// What the head of a picture says, before anything is decoded.
+struct ImageInfo {
+  ImageFormat format = ImageFormat::jpeg;
+  std::uint32_t width = 0, height = 0;  ///< 1 ... kMaxSourceSide each
+  std::uint32_t channels = 3;           ///< that come out: 3, or 4 if it may have alpha
+  /// What decoding holds at once, besides the rows that are read: little if the format gives its
+  /// rows one by one (baseline JPEG, PNG without interlace), else the whole picture or all of its
+  /// coefficients (progressive JPEG, interlaced PNG, WebP).
+  std::uint64_t decoder_bytes = 0;
+  friend bool operator==(const ImageInfo&, const ImageInfo&) = default;
+};
+
+/// Gives the rows of a picture from the top. CMYK and YCCK, greys, palettes, transparency, 1 to 16
+/// bits a channel become 8 bits red, green, blue [, alpha]; orientation marks and colour profiles
+/// are ignored.
+class ImageReader {
+ public:
+  virtual ~ImageReader() = default;
+  virtual const ImageInfo& info() const = 0;
+  /// The next `count` rows, each width * channels bytes. Throws Error(input) that starts with the
+  /// picture's name if it is broken or ends early, and what the source throws.
+  virtual void read_rows(std::uint8_t* rows, std::uint32_t count) = 0;
+};
+
+/// Reads the head; the format is known by its content. Nothing is sized by what the head says
+/// before it is checked. Throws Error(input) that starts with `name` if it is no picture of these
+/// formats, broken, or larger than kMaxSourceSide on a side (JPEG 65500, WebP 16383).
+std::unique_ptr<ImageReader> open_image(ByteSource source, const std::string& name);
+
+/// All of a picture that is in memory. Throws as open_image() and read_rows(), and Error(input) if
+/// it has more than `most_texels`.
+Image decode_image(std::span<const std::byte> bytes, const std::string& name,
+                   std::uint64_t most_texels);
+
+/// Deterministic for one version of the library. `quality`: 1 ... 100, of jpeg (4:4:4 from 90 on,
+/// below it 4:2:0) and webp (lossless at 100); without effect on png. Requires sides of 1 ...
+/// kMaxImageSide, and no alpha for jpeg. Besides the picture it holds the encoded bytes, and a
+/// texel takes up to 6 bytes of jpeg (all coefficients), 4 of webp, 21 of lossless webp.
+std::vector<std::byte> encode_image(const Image& image, ImageFormat format, int quality);
+
+}  // namespace meshhier::images

@@ -1,0 +1,45 @@
+// The materials of a mesh, and where their pictures are.
+#pragma once
+
+#include "hierarchy/texture.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace meshhier::images {
+
+/// A picture that a mesh file names or holds.
+struct ImageSource {
+  std::string name;               ///< as the mesh names it, for messages
+  std::filesystem::path file;     ///< where it lies; empty if `data` holds it
+  std::uint64_t offset = 0;       ///< of its first byte in that file
+  std::uint64_t bytes = 0;        ///< 0: to the end of the file
+  std::vector<std::byte> data{};  ///< the encoded picture, decoded from a data URI
+  friend bool operator==(const ImageSource&, const ImageSource&) = default;
+};
+
+struct Material {
+  std::string name;
+  std::array<float, 4> colour{1, 1, 1, 1};  ///< sRGB and alpha, 0 ... 1; if it has no picture
+  std::optional<std::uint32_t> image;       ///< in MaterialList::images
+  Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+  AlphaMode alpha = AlphaMode::opaque;
+  float alpha_cutoff = 0.5f;
+  friend bool operator==(const Material&, const Material&) = default;
+};
+
+/// Of a mesh. Corners of its triangles name a material by its number; a number beyond the last one
+/// is refused by who reads it.
+struct MaterialList {
+  std::vector<ImageSource> images;
+  std::vector<Material> materials;
+  bool empty() const { return materials.empty(); }
+  friend bool operator==(const MaterialList&, const MaterialList&) = default;
+};
+
+}  // namespace meshhier::images

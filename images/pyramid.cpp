@@ -1,0 +1,78 @@
+#include "images/pyramid.h"
+
+#include "images/srgb.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+namespace meshhier::images {
+namespace {
+
+using Four = std::array<const std::uint8_t*, 4>;
+
+void mean_of_opaque(const LightTable& table, const Four& texels, std::uint8_t* mean) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    std::uint32_t sum = 0;
+    for (const std::uint8_t* texel : texels)
+      sum += table.light(texel[c]);
+    mean[c] = table.value((sum + 2) / 4);
+  }
+}
+
+/// Where all is transparent, colours count alike.
+void mean_of_transparent(const LightTable& table, const Four& texels, std::uint8_t* mean) {
+  std::uint32_t alpha = 0;
+  for (const std::uint8_t* texel : texels)
+    alpha += texel[3];
+  mean_of_opaque(table, texels, mean);
+  mean[3] = static_cast<std::uint8_t>((alpha + 2) / 4);
+  for (std::size_t c = 0; c < 3 && alpha > 0; ++c) {
+    std::uint32_t sum = alpha / 2;
+    for (const std::uint8_t* texel : texels)
+      sum += table.light(texel[c]) * texel[3];
+    mean[c] = table.value(sum / alpha);
+  }
+}
+
+template <std::size_t kChannels, class Mean>
+void halve(const std::uint8_t* above, const std::uint8_t* below, std::uint32_t width,
+           std::uint8_t* means, const Mean& mean) {
+  for (std::size_t x = 0; x < width; x += 2) {
+    const std::size_t left = kChannels * x;
+    const std::size_t right = kChannels * std::min<std::size_t>(x + 1, width - 1);
+    mean(Four{above + left, above + right, below + left, below + right},
+         means + kChannels * (x / 2));
+  }
+}
+
+}  // namespace
+
+std::uint32_t level_count(TexelSize picture) {
+  return static_cast<std::uint32_t>(std::bit_width(std::max(picture.width, picture.height) - 1)) +
+         1;
+}
+
+TexelSize level_size(TexelSize picture, std::uint32_t level) {
+  const auto halved = [level](std::uint64_t side) {
+    return static_cast<std::uint32_t>((side + (std::uint64_t{1} << level) - 1) >> level);
+  };
+  return {halved(picture.width), halved(picture.height)};
+}
+
+void halve_rows(const std::uint8_t* above, const std::uint8_t* below, std::uint32_t width,
+                std::uint32_t channels, std::uint8_t* means) {
+  const LightTable& table = LightTable::get();
+  if (channels == 4) {
+    halve<4>(above, below, width, means, [&](const Four& texels, std::uint8_t* mean) {
+      mean_of_transparent(table, texels, mean);
+    });
+  } else {
+    halve<3>(above, below, width, means,
+             [&](const Four& texels, std::uint8_t* mean) { mean_of_opaque(table, texels, mean); });
+  }
+}
+
+}  // namespace meshhier::images

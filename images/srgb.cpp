@@ -1,0 +1,65 @@
+#include "images/srgb.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+namespace meshhier::images {
+namespace {
+
+/// Of a number from 0.001 to 1, by Newton's method: 20 steps reach the last bits from above.
+constexpr double fifth_root(double x) {
+  double root = 1;
+  for (int step = 0; step < 20; ++step) {
+    const double squared = root * root;
+    root = (4 * root + x / (squared * squared)) / 5;
+  }
+  return root;
+}
+
+/// Of a value from 0 to 1.
+constexpr double light(double value) {
+  if (value <= 0.04045)
+    return value / 12.92;
+  const double base = (value + 0.055) / 1.055;
+  return base * base * fifth_root(base * base);  // to the power of 2.4
+}
+
+/// The least light of each value from 1 to 255: that of the value half a step below.
+constexpr std::array<double, 255> kLeastLight = [] {
+  std::array<double, 255> least{};
+  for (int i = 0; i < 255; ++i)
+    least[static_cast<std::size_t>(i)] = light((i + 0.5) / 255);
+  return least;
+}();
+
+constexpr int kFullLight = 65535;
+
+}  // namespace
+
+double light_of(double value) {
+  return value > 0 ? light(std::min(value, 1.0)) : 0;
+}
+
+std::uint8_t screen_value(double light) {
+  if (!(light > 0))
+    return 0;
+  const auto above = std::upper_bound(kLeastLight.begin(), kLeastLight.end(), light);
+  return static_cast<std::uint8_t>(above - kLeastLight.begin());
+}
+
+LightTable::LightTable() : values_(kFullLight + 1) {
+  for (std::size_t value = 0; value < lights_.size(); ++value) {
+    const double full = light_of(static_cast<double>(value) / 255) * kFullLight;
+    lights_[value] = static_cast<std::uint16_t>(full + 0.5);
+  }
+  for (std::size_t light = 0; light < values_.size(); ++light)
+    values_[light] = screen_value(static_cast<double>(light) / kFullLight);
+}
+
+const LightTable& LightTable::get() {
+  static const LightTable table;
+  return table;
+}
+
+}  // namespace meshhier::images

@@ -1,0 +1,32 @@
+// Between light and the numbers of a screen (IEC 61966-2-1, sRGB), by exact arithmetic.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace meshhier::images {
+
+/// The light, 0 to 1, of a screen's value; what is below 0 or no number is 0, above 1 is 1.
+double light_of(double value);
+
+/// The 8-bit value nearest to a light, which is cut to 0 to 1; 0 of what is no number.
+std::uint8_t screen_value(double light);
+
+/// The same in whole numbers: light of 8-bit values from 0 to 65535, for sums that are exact. Each
+/// value's light is nearest to that value.
+class LightTable {
+ public:
+  LightTable();
+  static const LightTable& get();
+
+  std::uint32_t light(std::uint8_t value) const { return lights_[value]; }
+  /// Requires light <= 65535.
+  std::uint8_t value(std::uint32_t light) const { return values_[light]; }
+
+ private:
+  std::array<std::uint16_t, 256> lights_{};
+  std::vector<std::uint8_t> values_;  ///< of each light
+};
+
+}  // namespace meshhier::images

@@ -1,0 +1,447 @@
+#include "import/gltf_import.h"
+
+#include "execution/spool_cursor.h"
+#include "hierarchy/angle.h"
+#include "import/gltf_materials.h"
+#include "import/used_vertices.h"
+#include "mesh_io/coordinate_range.h"
+#include "mesh_io/gltf_draco.h"
+#include "mesh_io/gltf_elements.h"
+#include "mesh_io/gltf_scene.h"
+#include "mesh_io/mesh_blocks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace meshhier::importing {
+namespace {
+
+using mesh_io::GltfComponent;
+using mesh_io::GltfElements;
+using mesh_io::GltfElementSource;
+using mesh_io::GltfFile;
+using mesh_io::GltfPrimitive;
+using mesh_io::GltfTransform;
+
+/// The largest number of a colour channel, which is white.
+float white(ColourType type) {
+  return type == ColourType::u8 ? 255.0F : type == ColourType::u16 ? 65535.0F : 1.0F;
+}
+
+ColourType colour_type(GltfComponent component) {
+  return component == GltfComponent::u8    ? ColourType::u8
+         : component == GltfComponent::u16 ? ColourType::u16
+                                           : ColourType::f32;
+}
+
+/// What the primitives of a file have together.
+class CommonLayout {
+ public:
+  void add(const GltfFile& file, const GltfPrimitive& primitive, const std::string& texcoords) {
+    layout_.normals = layout_.normals || primitive.attribute("NORMAL");
+    layout_.texcoords = layout_.texcoords || primitive.attribute(texcoords);
+    if (const auto colour = primitive.attribute("COLOR_0"))
+      add_colour(file.document().accessors[*colour]);
+  }
+  const AttributeLayout& layout() const { return layout_; }
+
+ private:
+  /// One type for all: floats hold the others.
+  void add_colour(const mesh_io::GltfAccessor& accessor) {
+    const ColourType type = colour_type(accessor.component);
+    layout_.colour =
+        layout_.colour == ColourType::none || layout_.colour == type ? type : ColourType::f32;
+    layout_.alpha = layout_.alpha || accessor.components == 4;
+  }
+
+  AttributeLayout layout_;
+};
+
+/// A primitive's accessors, or what a codec made of them.
+class PrimitiveSources {
+ public:
+  PrimitiveSources(GltfFile& file, const GltfPrimitive& primitive)
+      : file_(file), primitive_(primitive) {
+    if (primitive.draco)
+      draco_ = decode_draco(file, primitive);
+  }
+
+  /// The attribute, of the types that it may have; nothing if the primitive does not have it.
+  std::optional<GltfElementSource> attribute(const std::string& name, std::uint32_t least,
+                                             std::uint32_t most) const {
+    const auto accessor = primitive_.attribute(name);
+    if (!accessor)
+      return std::nullopt;
+    const auto decoded = draco_.attributes.find(name);
+    GltfElementSource source =
+        decoded != draco_.attributes.end() ? decoded->second : gltf_elements_of(file_, *accessor);
+    if (source.components < least || source.components > most ||
+        source.component == GltfComponent::u32)
+      file_.fail(fmt::format("{} is of no type that {} may have", source.name, name));
+    return source;
+  }
+
+  std::optional<GltfElementSource> indices() const {
+    if (primitive_.draco)
+      return draco_.indices;
+    if (!primitive_.indices)
+      return std::nullopt;
+    GltfElementSource source = gltf_elements_of(file_, *primitive_.indices);
+    const bool is_unsigned = source.component == GltfComponent::u8 ||
+                             source.component == GltfComponent::u16 ||
+                             source.component == GltfComponent::u32;
+    if (!is_unsigned || source.components != 1)
+      file_.fail(source.name + " is of no type that indices may have");
+    source.normalized = false;
+    return source;
+  }
+
+  /// Draco's triangles are a list of them, even if they were a strip.
+  GltfPrimitive::Mode mode() const {
+    return primitive_.draco ? GltfPrimitive::Mode::triangles : primitive_.mode;
+  }
+
+ private:
+  GltfFile& file_;
+  const GltfPrimitive& primitive_;
+  mesh_io::GltfDracoMesh draco_;
+};
+
+/// A texture coordinate of the picture; rotations are counter-clockwise with v pointing down, as
+/// viewers have them.
+std::array<double, 2> transformed(const mesh_io::GltfTextureTransform& t, double u, double v) {
+  const UnitTurn turn = turn_by(std::remainder(t.rotation, 2 * std::numbers::pi));
+  const double x = t.scale[0] * u, y = t.scale[1] * v;
+  return {t.offset[0] + turn.cosine * x + turn.sine * y,
+          t.offset[1] + turn.cosine * y - turn.sine * x};
+}
+
+class GltfImporter {
+ public:
+  GltfImporter(GltfFile& file, RawMesh& mesh, Textures textures, const ImportRoom& room)
+      : file_(file),
+        mesh_(mesh),
+        textures_(textures),
+        room_(room),
+        scene_(gltf_scene(file.document(), file.path())),
+        materials_(file) {}
+
+  GltfImport run() {
+    look();
+    materials_.tell_missing(mesh_.materials);
+    if (is_textured())
+      materials_.add_to(mesh_.materials);
+    for (const mesh_io::GltfInstance& instance : scene_.instances) {
+      for (const GltfPrimitive& primitive : primitives(instance))
+        append(primitive, instance.transform);
+    }
+    return finish();
+  }
+
+ private:
+  const std::vector<GltfPrimitive>& primitives(const mesh_io::GltfInstance& instance) const {
+    return file_.document().meshes[instance.mesh].primitives;
+  }
+
+  static bool is_shown(const GltfPrimitive& primitive) {
+    return primitive.has_triangles() && primitive.attribute("POSITION");
+  }
+
+  /// Those that the material's texture takes.
+  std::string texcoords_of(const GltfPrimitive& primitive) const {
+    const std::uint32_t set =
+        primitive.material ? file_.document().materials[*primitive.material].texcoord : 0;
+    return fmt::format("TEXCOORD_{}", set);
+  }
+
+  bool is_textured() const { return textures_ == Textures::use && materials_.is_textured(); }
+
+  /// What all primitives have, before any is read.
+  void look() {
+    std::set<std::uint32_t> meshes;
+    CommonLayout layout;
+    for (const mesh_io::GltfInstance& instance : scene_.instances) {
+      if (!meshes.insert(instance.mesh).second) {
+        ++repeated_;
+        continue;
+      }
+      for (const GltfPrimitive& primitive : primitives(instance))
+        look_at(primitive, layout);
+    }
+    import_.layout = layout.layout();
+    if (is_textured())
+      import_.layout.texcoords = import_.layout.material = true;
+  }
+
+  void look_at(const GltfPrimitive& primitive, CommonLayout& layout) {
+    morph_targets_ += primitive.morph_targets;
+    if (!is_shown(primitive)) {
+      ++ignored_primitives_;
+      return;
+    }
+    const std::string texcoords = texcoords_of(primitive);
+    layout.add(file_, primitive, texcoords);
+    if (textures_ == Textures::use)
+      materials_.use(primitive.material, primitive.attribute(texcoords).has_value());
+  }
+
+  void append(const GltfPrimitive& primitive, const GltfTransform& transform) {
+    if (!is_shown(primitive))
+      return;
+    const PrimitiveSources sources(file_, primitive);
+    const GltfElementSource position = *sources.attribute("POSITION", 3, 3);
+    storage::RecordSpool<std::uint32_t> used(room_.scratch, kImportSpoolBytes);
+    append_used(read_triangles(sources, position), position.count, is_mirrored(transform), mesh_,
+                used, room_);
+    left_out_ += position.count - used.size();
+    append_vertices(primitive, sources, position, used, transform);
+  }
+
+  using Triangles = storage::RecordSpool<Triangle<std::uint32_t>>;
+
+  std::unique_ptr<Triangles> read_triangles(const PrimitiveSources& sources,
+                                            const GltfElementSource& position) {
+    auto triangles = std::make_unique<Triangles>(room_.scratch, kImportSpoolBytes);
+    const mesh_io::TriangleVisitor take = [&](std::span<const Triangle<VertexId>> block) {
+      room_.cancel.check();
+      for (const Triangle<VertexId>& t : block)
+        triangles->append(Triangle<std::uint32_t>{raw(t[0]), raw(t[1]), raw(t[2])});
+    };
+    mesh_io::TriangleBlocks blocks(take);
+    if (const auto source = sources.indices()) {
+      GltfElements indices(file_, *source);
+      assemble(sources.mode(), *source, blocks, [&](std::uint64_t i) {
+        const double index = indices.at(i)[0];
+        if (!(index < static_cast<double>(position.count))) {
+          file_.fail(fmt::format("{}: element {} is {}, but there are {} vertices", source->name, i,
+                                 index, position.count));
+        }
+        return static_cast<std::uint32_t>(index);
+      });
+    } else {
+      assemble(sources.mode(), position, blocks,
+               [](std::uint64_t i) { return static_cast<std::uint32_t>(i); });
+    }
+    const mesh_io::FaceCounts counts = blocks.finish();
+    import_.triangles += counts.triangles + counts.degenerate_triangles;
+    import_.degenerate_triangles += counts.degenerate_triangles;
+    return triangles;
+  }
+
+  template <class Corner>
+  void assemble(GltfPrimitive::Mode mode, const GltfElementSource& corners,
+                mesh_io::TriangleBlocks& blocks, const Corner& corner) const {
+    const std::uint64_t count = corners.count;
+    if (mode == GltfPrimitive::Mode::triangles) {
+      if (count % 3 != 0) {
+        file_.fail(fmt::format("{} has {} elements for a list of triangles, expected three each",
+                               corners.name, count));
+      }
+      for (std::uint64_t i = 0; i < count; i += 3) {
+        const std::uint32_t a = corner(i), b = corner(i + 1);
+        blocks.add_triangle_face(a, b, corner(i + 2));
+      }
+    } else if (mode == GltfPrimitive::Mode::strip) {
+      blocks.begin_strip();
+      for (std::uint64_t i = 0; i < count; ++i)
+        blocks.add_strip_corner(corner(i));
+    } else {
+      blocks.begin_polygon();
+      for (std::uint64_t i = 0; i < count; ++i)
+        blocks.add_polygon_corner(corner(i));
+    }
+  }
+
+  /// Reads an attribute of as many elements as there are vertices.
+  std::optional<GltfElements> elements(const PrimitiveSources& sources, const std::string& name,
+                                       std::uint32_t least, std::uint32_t most, std::uint64_t count,
+                                       bool stored = false) const {
+    auto source = sources.attribute(name, least, most);
+    if (!source)
+      return std::nullopt;
+    if (source->count != count) {
+      file_.fail(fmt::format("{} has {} elements for {}, POSITION has {}", source->name,
+                             source->count, name, count));
+    }
+    source->normalized = source->normalized || name == "COLOR_0";
+    return GltfElements(
+        file_, *std::move(source),
+        stored ? GltfElements::Integers::stored : GltfElements::Integers::fractions);
+  }
+
+  /// The attributes of a primitive that the mesh has.
+  struct Attributes {
+    std::optional<GltfElements> normals, colours, texcoords;
+    float material = 0;
+    const mesh_io::GltfTextureTransform* texture = nullptr;
+  };
+
+  Attributes attributes(const GltfPrimitive& primitive, const PrimitiveSources& sources,
+                        std::uint64_t count) const {
+    const AttributeLayout& layout = import_.layout;
+    Attributes attributes;
+    if (layout.normals)
+      attributes.normals = elements(sources, "NORMAL", 3, 3, count);
+    if (layout.colour != ColourType::none)
+      attributes.colours =
+          elements(sources, "COLOR_0", 3, 4, count, layout.colour != ColourType::f32);
+    if (layout.texcoords)
+      attributes.texcoords = elements(sources, texcoords_of(primitive), 2, 2, count);
+    if (layout.material) {
+      attributes.material = static_cast<float>(materials_.number(primitive.material));
+      if (primitive.material)
+        attributes.texture = &file_.document().materials[*primitive.material].transform;
+    }
+    return attributes;
+  }
+
+  void append_vertices(const GltfPrimitive& primitive, const PrimitiveSources& sources,
+                       const GltfElementSource& position,
+                       const storage::RecordSpool<std::uint32_t>& used,
+                       const GltfTransform& transform) {
+    Attributes all = attributes(primitive, sources, position.count);
+    count_filled(all, used.size());
+    GltfElements positions(file_, position);
+    execution::SpoolCursor vertices(used, room_.cancel);
+    std::vector<float> channels;
+    for (std::uint64_t i = 0; i < used.size(); ++i) {
+      const std::uint32_t vertex = vertices.at(i);
+      append_position(positions, vertex, transform);
+      channels.clear();
+      add_normal(all, vertex, transform, channels);
+      add_colour(all, vertex, channels);
+      add_texcoord(all, vertex, channels);
+      mesh_.attributes.append(channels);
+    }
+  }
+
+  void count_filled(const Attributes& all, std::uint64_t vertices) {
+    const AttributeLayout& layout = import_.layout;
+    without_normal_ += layout.normals && !all.normals ? vertices : 0;
+    made_white_ += layout.colour != ColourType::none && !all.colours ? vertices : 0;
+    without_texcoord_ += layout.texcoords && !all.texcoords ? vertices : 0;
+  }
+
+  void append_position(GltfElements& positions, std::uint32_t vertex,
+                       const GltfTransform& transform) {
+    const std::span<const double> at = positions.at(vertex);
+    Vec3d p{at[0], at[1], at[2]};
+    if (transform != GltfTransform{})
+      p = mesh_io::transformed(transform, p);
+    for (const double coordinate : {p.x, p.y, p.z}) {
+      if (!mesh_io::is_coordinate(coordinate))
+        fail_at(positions, vertex, coordinate, mesh_io::kCoordinateRange);
+    }
+    import_.fits_float = import_.fits_float && fits_float(p);
+    mesh_.positions.append(p);
+  }
+
+  [[noreturn]] void fail_at(const GltfElements& elements, std::uint32_t vertex, double value,
+                            std::string_view expected) const {
+    file_.fail(fmt::format("{}: element {} has {}, expected {}", elements.source().name, vertex,
+                           value, expected));
+  }
+
+  /// Finite as a float.
+  float checked(const GltfElements& elements, std::uint32_t vertex, double value) const {
+    const auto number = static_cast<float>(value);
+    if (!std::isfinite(number))
+      fail_at(elements, vertex, value, "a finite number");
+    return number;
+  }
+
+  void add_normal(Attributes& all, std::uint32_t vertex, const GltfTransform& transform,
+                  std::vector<float>& channels) const {
+    if (!import_.layout.normals)
+      return;
+    Vec3d normal;
+    if (all.normals) {
+      const std::span<const double> n = all.normals->at(vertex);
+      for (const double value : n)
+        checked(*all.normals, vertex, value);
+      normal = turned_normal({n[0], n[1], n[2]}, transform);
+    }
+    channels.insert(channels.end(), {static_cast<float>(normal.x), static_cast<float>(normal.y),
+                                     static_cast<float>(normal.z)});
+  }
+
+  static Vec3d turned_normal(Vec3d normal, const GltfTransform& transform) {
+    if (transform.rows == GltfTransform{}.rows)
+      return normal;
+    const std::array<Vec3d, 3> rows = normal_rows(transform);
+    const Vec3d n{dot(rows[0], normal), dot(rows[1], normal), dot(rows[2], normal)};
+    const double size = length(n);
+    return std::isfinite(size) && size > 0 ? n * (1 / size) : Vec3d{};
+  }
+
+  void add_colour(Attributes& all, std::uint32_t vertex, std::vector<float>& channels) const {
+    const AttributeLayout& layout = import_.layout;
+    const auto size = static_cast<std::size_t>(layout.colour_channels());
+    const std::size_t end = channels.size() + size;
+    if (size > 0 && all.colours) {
+      for (const double value : all.colours->at(vertex)) {
+        if (channels.size() < end)
+          channels.push_back(checked(*all.colours, vertex, value));
+      }
+    }
+    channels.resize(end, white(layout.colour));
+  }
+
+  void add_texcoord(Attributes& all, std::uint32_t vertex, std::vector<float>& channels) const {
+    if (!import_.layout.texcoords)
+      return;
+    std::array<double, 2> uv{};
+    if (all.texcoords) {
+      std::ranges::copy(all.texcoords->at(vertex), uv.begin());
+      if (all.texture != nullptr && *all.texture != mesh_io::GltfTextureTransform{})
+        uv = transformed(*all.texture, uv[0], uv[1]);
+      for (const double value : uv)
+        checked(*all.texcoords, vertex, value);
+    }
+    channels.insert(channels.end(), {static_cast<float>(uv[0]), static_cast<float>(uv[1])});
+    if (import_.layout.material)
+      channels.push_back(all.material);
+  }
+
+  GltfImport finish() {
+    import_.counts = {{"ignored_animations", file_.document().animations},
+                      {"ignored_cameras", scene_.cameras},
+                      {"ignored_points_and_lines", ignored_primitives_},
+                      {"ignored_morph_targets", morph_targets_},
+                      {"repeated_meshes", repeated_},
+                      {"ignored_skins", scene_.skinned},
+                      {"tinted_pictures", materials_.tinted()},
+                      {"vertices_left_out", left_out_},
+                      {"vertices_made_white", made_white_},
+                      {"vertices_without_normal", without_normal_},
+                      {"vertices_without_texcoord", without_texcoord_}};
+    return std::move(import_);
+  }
+
+  GltfFile& file_;
+  RawMesh& mesh_;
+  Textures textures_;
+  const ImportRoom& room_;
+  mesh_io::GltfScene scene_;
+  GltfMaterials materials_;
+  GltfImport import_;
+  std::uint64_t repeated_ = 0, morph_targets_ = 0, ignored_primitives_ = 0, left_out_ = 0;
+  std::uint64_t made_white_ = 0, without_normal_ = 0, without_texcoord_ = 0;
+};
+
+}  // namespace
+
+GltfImport import_gltf(mesh_io::GltfFile& file, RawMesh& mesh, Textures textures,
+                       const ImportRoom& room) {
+  return GltfImporter(file, mesh, textures, room).run();
+}
+
+}  // namespace meshhier::importing

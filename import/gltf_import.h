@@ -1,0 +1,29 @@
+// glTF files as meshes: the triangles of all primitives that the scene shows, at their places.
+#pragma once
+
+#include "import/input_files.h"
+#include "import/raw_mesh.h"
+#include "mesh_io/gltf_file.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace meshhier::importing {
+
+struct GltfImport {
+  AttributeLayout layout;
+  bool fits_float = true;
+  std::uint64_t triangles = 0;  ///< as primitives declare them
+  std::uint64_t degenerate_triangles = 0;
+  std::vector<SourceCount> counts;  ///< of what was filled in, left out or ignored
+};
+
+/// Appends the mesh of a file to `mesh`, but for its layout: primitive by primitive in the order of
+/// the scene, of each the vertices that its triangles use, in their order. The mesh is textured if
+/// `textures` are used and a primitive's base colour has a picture that is there and coordinates.
+/// Attributes that a primitive does not have, but another has, are filled in and counted. Throws
+/// Error(input) naming the accessor, node or view; as GltfFile.
+GltfImport import_gltf(mesh_io::GltfFile& file, RawMesh& mesh, Textures textures,
+                       const ImportRoom& room);
+
+}  // namespace meshhier::importing

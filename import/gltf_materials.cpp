@@ -1,0 +1,82 @@
+#include "import/gltf_materials.h"
+
+#include "images/srgb.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace meshhier::importing {
+namespace {
+
+/// A linear value as that of a screen, as fine as pictures have it.
+float srgb(double linear) {
+  constexpr float kWhite = 255;
+  return static_cast<float>(images::screen_value(linear)) / kWhite;
+}
+
+bool is_tinting(const std::array<double, 4>& factor) {
+  return factor[0] != 1 || factor[1] != 1 || factor[2] != 1;
+}
+
+}  // namespace
+
+GltfMaterials::Use GltfMaterials::look_up(const mesh_io::GltfMaterial& material) {
+  Use use;
+  if (!material.texture)
+    return use;
+  const auto image = file_.document().textures[*material.texture].image;
+  use.picture = image ? file_.picture(*image) : mesh_io::GltfPicture{.name = "a picture"};
+  tinted_ += use.has_picture() && is_tinting(material.factor) ? 1 : 0;
+  return use;
+}
+
+void GltfMaterials::use(std::optional<std::uint32_t> material, bool has_texcoords) {
+  auto found = uses_.find(key(material));
+  if (found == uses_.end()) {
+    Use use = material ? look_up(file_.document().materials[*material]) : Use{};
+    found = uses_.emplace(key(material), std::move(use)).first;
+  }
+  is_textured_ = is_textured_ || (has_texcoords && found->second.has_picture());
+}
+
+images::Material GltfMaterials::material(std::int64_t key, Use& use, MaterialTable& table) const {
+  if (key == kDefault)
+    return {};
+  const mesh_io::GltfDocument& document = file_.document();
+  const mesh_io::GltfMaterial& from = document.materials[static_cast<std::size_t>(key)];
+  images::Material to;
+  to.name = from.name;
+  to.colour = {srgb(from.factor[0]), srgb(from.factor[1]), srgb(from.factor[2]),
+               static_cast<float>(std::clamp(from.factor[3], 0.0, 1.0))};
+  to.alpha = from.alpha;
+  to.alpha_cutoff = static_cast<float>(std::clamp(from.alpha_cutoff, 0.0, 1.0));
+  if (!use.has_picture())
+    return to;
+  to.image =
+      table.add_picture({use.picture->name, use.picture->file.value_or(""), use.picture->offset,
+                         use.picture->bytes, std::move(use.picture->data)});
+  const auto sampler = document.textures[*from.texture].sampler;
+  if (sampler) {
+    to.wrap_u = document.samplers[*sampler].wrap_u;
+    to.wrap_v = document.samplers[*sampler].wrap_v;
+  }
+  return to;
+}
+
+void GltfMaterials::add_to(MaterialTable& table) {
+  for (auto& [key, use] : uses_)
+    use.number = table.add(material(key, use, table));
+}
+
+void GltfMaterials::tell_missing(MaterialTable& table) const {
+  for (const auto& [key, use] : uses_) {
+    if (use.picture && !use.has_picture())
+      table.miss(use.picture->name, file_.path().string());
+  }
+}
+
+std::uint32_t GltfMaterials::number(std::optional<std::uint32_t> material) const {
+  return uses_.at(key(material)).number;
+}
+
+}  // namespace meshhier::importing

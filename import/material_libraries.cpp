@@ -1,0 +1,182 @@
+#include "import/material_libraries.h"
+
+#include "mesh_io/input_error.h"
+
+#include <algorithm>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace meshhier::importing {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kTileMark = "<UDIM>";
+/// A library of 100,000 materials has less than half of it.
+constexpr std::uint64_t kMostLibraryBytes = std::uint64_t{1} << 26;
+
+/// Without what follows " #", which may be a comment or belong to the name.
+std::string without_comment(const std::string& name) {
+  std::string cut = name.substr(0, name.find(" #"));
+  cut.resize(cut.find_last_not_of(' ') + 1);
+  return cut;
+}
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::vector<std::string> words;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find(' ', at), text.size());
+    if (end > at)
+      words.push_back(text.substr(at, end - at));
+    at = end + 1;
+  }
+  return words;
+}
+
+class LibraryReader {
+ public:
+  LibraryReader(const MaterialNames& names, mesh_io::NamedFiles& files,
+                const execution::CancelToken& cancel)
+      : folder_(names.obj().parent_path()), files_(files), cancel_(cancel) {
+    read_.materials.resize(names.all().size());
+    for (std::size_t i = 0; i < names.all().size(); ++i) {
+      if (const auto& name = names.all()[i].name)
+        wanted_[*name].push_back(i);
+    }
+    add_names_without_comments();
+  }
+
+  Libraries read(const std::vector<std::string>& statements) {
+    for (const std::string& statement : statements)
+      read_statement(statement);
+    return std::move(read_);
+  }
+
+ private:
+  /// Only those that are no name of their own.
+  void add_names_without_comments() {
+    std::map<std::string, std::vector<std::size_t>> more;
+    for (const auto& [name, numbers] : wanted_) {
+      const std::string cut = without_comment(name);
+      if (!wanted_.contains(cut))
+        more[cut].insert(more[cut].end(), numbers.begin(), numbers.end());
+    }
+    wanted_.merge(more);
+  }
+
+  /// One name with spaces, or several names.
+  void read_statement(const std::string& statement) {
+    if (const auto whole = files_.find(folder_, statement))
+      return read_file(*whole);
+    for (const std::string& word : words_of(without_comment(statement))) {
+      if (const auto file = files_.find(folder_, word))
+        read_file(*file);
+      else
+        ++read_.missing;
+    }
+  }
+
+  void read_file(const fs::path& path) {
+    if (!done_.insert(path).second)
+      return;
+    const auto file = files_.files().open(path);
+    if (file->size() > kMostLibraryBytes) {
+      mesh_io::fail_file(path, fmt::format("expected a material library of at most {} bytes, found "
+                                           "{}",
+                                           kMostLibraryBytes, file->size()));
+    }
+    const auto stream =
+        mesh_io::open_stream({*file, file->size()}, [this](std::uint64_t) { cancel_.check(); });
+    mesh_io::read_mtl(*stream, path,
+                      [&](const mesh_io::MtlMaterial& material) { define(material, path); });
+  }
+
+  void define(const mesh_io::MtlMaterial& read, const fs::path& library) {
+    const auto wanted = wanted_.find(read.name);
+    if (wanted == wanted_.end())
+      return;
+    for (const std::size_t number : wanted->second) {
+      LibraryMaterial& material = read_.materials[number];
+      if (!material.is_defined)
+        material = made_of(read, library);
+    }
+  }
+
+  static LibraryMaterial made_of(const mesh_io::MtlMaterial& read, const fs::path& library) {
+    LibraryMaterial made;
+    made.is_defined = true;
+    made.library = library;
+    made.map = read.picture;
+    const auto& [red, green, blue] = read.colour;
+    made.material.name = read.name;
+    made.material.colour = {red, green, blue, read.opacity};
+    if (read.picture && read.picture->clamp)
+      made.material.wrap_u = made.material.wrap_v = Wrap::clamp;
+    const bool is_own_alpha = read.alpha && read.picture && read.alpha->file == read.picture->file;
+    made.has_other_alpha = read.alpha && !is_own_alpha;
+    made.material.alpha = read.opacity < 1 ? AlphaMode::blend
+                          : is_own_alpha   ? AlphaMode::mask
+                                           : AlphaMode::opaque;
+    return made;
+  }
+
+  fs::path folder_;
+  mesh_io::NamedFiles& files_;
+  const execution::CancelToken& cancel_;
+  std::map<std::string, std::vector<std::size_t>> wanted_;  ///< numbers of each name
+  std::set<fs::path> done_;
+  Libraries read_;
+};
+
+}  // namespace
+
+void MaterialNames::limit(std::size_t count, std::size_t more_bytes) {
+  bytes_ += more_bytes;
+  if (count == kMost || bytes_ > kMostBytes) {
+    mesh_io::fail_file(obj_, fmt::format("expected at most {} materials and as many libraries, "
+                                         "with names of {} bytes together, found more",
+                                         kMost, kMostBytes));
+  }
+}
+
+void MaterialNames::add_libraries(const std::string& statement) {
+  if (!known_libraries_.insert(statement).second)
+    return;
+  limit(libraries_.size(), statement.size());
+  libraries_.push_back(statement);
+}
+
+std::uint32_t MaterialNames::use(bool has_texcoords) {
+  if (!number_) {
+    const auto next = static_cast<std::uint32_t>(uses_.size());
+    const auto [known, is_new] = numbers_.emplace(current_, next);
+    if (is_new) {
+      limit(uses_.size(), current_ ? current_->size() : 0);
+      uses_.push_back({current_});
+    }
+    number_ = known->second;
+  }
+  uses_[*number_].has_texcoords |= has_texcoords;
+  return *number_;
+}
+
+bool LibraryMaterial::is_tiled() const {
+  return map && map->file.find(kTileMark) != std::string::npos;
+}
+
+std::string LibraryMaterial::file_of(std::uint32_t tile) const {
+  std::string name = map->file;
+  if (const std::size_t at = name.find(kTileMark); at != std::string::npos)
+    name.replace(at, kTileMark.size(), std::to_string(tile));
+  return name;
+}
+
+Libraries read_libraries(const MaterialNames& names, mesh_io::NamedFiles& files,
+                         const execution::CancelToken& cancel) {
+  return LibraryReader(names, files, cancel).read(names.libraries());
+}
+
+}  // namespace meshhier::importing

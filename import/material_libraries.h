@@ -1,0 +1,88 @@
+// The materials that the triangles of an OBJ file use, from the MTL files that it names.
+#pragma once
+
+#include "execution/cancel.h"
+#include "images/material_list.h"
+#include "mesh_io/mtl_reader.h"
+#include "mesh_io/named_files.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace meshhier::importing {
+
+/// The names of materials, as the triangles of a file use them.
+class MaterialNames {
+ public:
+  /// Different ones of one file, and the bytes of all names and statements.
+  static constexpr std::size_t kMost = std::size_t{1} << 16;
+  static constexpr std::size_t kMostBytes = std::size_t{1} << 24;
+
+  /// `obj`: for messages.
+  explicit MaterialNames(std::filesystem::path obj) : obj_(std::move(obj)) {}
+
+  /// What stands behind an mtllib. Throws Error(input) beyond the limits, as use().
+  void add_libraries(const std::string& statement);
+  /// Different ones, in their order.
+  const std::vector<std::string>& libraries() const { return libraries_; }
+
+  /// Of the triangles from here on.
+  void begin(std::string name) {
+    current_ = std::move(name);
+    number_.reset();
+  }
+  /// Of one more triangle: the number of its name, by first use. A triangle before the first name
+  /// has one like any other.
+  std::uint32_t use(bool has_texcoords);
+
+  struct Use {
+    std::optional<std::string> name;
+    bool has_texcoords = false;  ///< of a triangle at least
+  };
+  const std::vector<Use>& all() const { return uses_; }
+  const std::filesystem::path& obj() const { return obj_; }
+
+ private:
+  void limit(std::size_t count, std::size_t more_bytes);
+
+  std::filesystem::path obj_;
+  std::size_t bytes_ = 0;
+  std::vector<std::string> libraries_;
+  std::set<std::string> known_libraries_;
+  std::optional<std::string> current_;
+  std::optional<std::uint32_t> number_;  ///< of current_, once it was used
+  std::map<std::optional<std::string>, std::uint32_t> numbers_;
+  std::vector<Use> uses_;
+};
+
+/// What one of these names means.
+struct LibraryMaterial {
+  images::Material material;           ///< as it is without a picture
+  std::optional<mesh_io::MtlMap> map;  ///< of its picture
+  std::filesystem::path library;       ///< that defines it
+  bool is_defined = false;             ///< else white
+  bool has_other_alpha = false;        ///< map_d names another picture
+
+  /// The picture's name has "<UDIM>" in it: a picture for each square of texture coordinates.
+  bool is_tiled() const;
+  /// What it is in a tile.
+  std::string file_of(std::uint32_t tile) const;
+};
+
+struct Libraries {
+  std::vector<LibraryMaterial> materials;  ///< of each name in MaterialNames::all()
+  std::uint64_t missing = 0;               ///< libraries that are not there
+};
+
+/// Reads the libraries that an OBJ file names. The first definition of a name counts. Throws as
+/// mesh_io::read_mtl, and Error(input) if a library is too large.
+Libraries read_libraries(const MaterialNames& names, mesh_io::NamedFiles& files,
+                         const execution::CancelToken& cancel);
+
+}  // namespace meshhier::importing

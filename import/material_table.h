@@ -1,0 +1,44 @@
+// The materials of a mesh while files add theirs.
+#pragma once
+
+#include "images/material_list.h"
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <tuple>
+#include <utility>
+
+namespace meshhier::importing {
+
+class MaterialTable {
+ public:
+  /// Vertices hold the numbers as floats, which are exact below.
+  static constexpr std::size_t kMost = std::size_t{1} << 24;
+
+  /// Returns the picture's number for Material::image. Those in the same bytes of a file are one;
+  /// those that are held in memory are not compared.
+  std::uint32_t add_picture(images::ImageSource picture);
+  /// Returns the material's number. Throws Error(input) beyond kMost.
+  std::uint32_t add(images::Material material);
+  /// Notes that triangles should show a picture that is not there. One of the same name and place
+  /// counts once. `name`: as `place`, a file, names it.
+  void miss(const std::string& name, const std::string& place);
+
+  const images::MaterialList& list() const { return list_; }
+  std::uint64_t missing() const { return missing_.size(); }
+  /// What all should know of missing pictures, in one line; empty if there are none.
+  /// `is_textured`: others are there.
+  std::string warning(bool is_textured) const;
+
+ private:
+  using Place = std::tuple<std::string, std::uint64_t, std::uint64_t>;
+
+  images::MaterialList list_;
+  std::map<Place, std::uint32_t> known_;
+  std::set<std::pair<std::string, std::string>> missing_;
+  std::string first_missing_;
+};
+
+}  // namespace meshhier::importing

@@ -1,0 +1,31 @@
+// PLY files that name pictures as meshes: corners that show another picture, or another place of
+// it, are other vertices.
+#pragma once
+
+#include "import/raw_mesh.h"
+#include "mesh_io/named_files.h"
+#include "mesh_io/ply_source.h"
+
+#include <cstdint>
+#include <filesystem>
+
+namespace meshhier::importing {
+
+struct PlyImport {
+  AttributeLayout layout;
+  bool fits_float = true;
+  mesh_io::FaceCounts counts;
+  std::uint64_t split_vertices = 0;  ///< that a vertex of the file has beyond one
+};
+
+/// Appends the mesh of `source` to `mesh`, but for its layout. `path`: of the file, whose folder
+/// has the pictures. If a triangle shows a picture that is there, the file is textured: vertices
+/// are ordered as in the file, then by the bits of their texture coordinates, which are glTF's,
+/// then by their material. There is one material for each texture file that triangles use, by first
+/// use; triangles without a picture are white. Else the mesh is that of the vertices and triangles
+/// alone. Pictures that triangles should show and that are not there are noted in the mesh's table.
+/// Throws as PlySource. Requires that the file has texture files.
+PlyImport import_textured_ply(mesh_io::PlySource& source, const std::filesystem::path& path,
+                              RawMesh& mesh, mesh_io::NamedFiles& files, const ImportRoom& room);
+
+}  // namespace meshhier::importing

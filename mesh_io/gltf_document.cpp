@@ -1,0 +1,339 @@
+#include "mesh_io/gltf_document.h"
+
+#include "hierarchy/plain_text.h"
+#include "mesh_io/gltf_json.h"
+
+#include <algorithm>
+#include <limits>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace meshhier::mesh_io {
+namespace {
+
+/// Offsets and sizes: sums of two or three are still numbers.
+constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 53;
+constexpr std::uint64_t kMostGltfElements = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint64_t kMostStride = 256;
+constexpr std::size_t kLongestGltfName = 255;
+
+/// Extensions that a document may require: those that are read, and those that change neither
+/// geometry nor base colour. Other materials' extensions (kMaterialExtensions) are of these, too.
+constexpr std::array<std::string_view, 13> kKnownExtensions{
+    "EXT_meshopt_compression", "EXT_texture_webp",         "KHR_draco_mesh_compression",
+    "KHR_mesh_quantization",   "KHR_texture_transform",    "KHR_lights_punctual",
+    "KHR_animation_pointer",   "KHR_node_visibility",      "KHR_xmp",
+    "KHR_xmp_json_ld",         "CESIUM_primitive_outline", "EXT_mesh_features",
+    "EXT_structural_metadata"};
+constexpr std::string_view kMaterialExtensions = "KHR_materials_";
+
+bool is_known(std::string_view extension) {
+  return extension.starts_with(kMaterialExtensions) ||
+         std::ranges::find(kKnownExtensions, extension) != kKnownExtensions.end();
+}
+
+/// The number of `text` in `names`.
+template <std::size_t size>
+std::size_t choice(const GltfObject& object, const char* key, const std::string& text,
+                   const std::array<std::string_view, size>& names) {
+  const auto found = std::ranges::find(names, text);
+  if (found == names.end())
+    object.fail(fmt::format("has the unknown {} \"{}\"", key, plain_text(text, kLongestGltfName)));
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+template <std::size_t size>
+std::array<double, size> numbers(const GltfObject& object, const char* key,
+                                 const std::array<double, size>& otherwise) {
+  const auto found = object.numbers(key, size);
+  std::array<double, size> numbers = otherwise;
+  if (found)
+    std::ranges::copy(*found, numbers.begin());
+  return numbers;
+}
+
+Vec3d as_vector(const std::array<double, 3>& v) {
+  return {v[0], v[1], v[2]};
+}
+
+GltfComponent read_component(const GltfObject& object) {
+  static const std::map<std::uint64_t, GltfComponent> kComponents{
+      {5120, GltfComponent::i8},  {5121, GltfComponent::u8},  {5122, GltfComponent::i16},
+      {5123, GltfComponent::u16}, {5125, GltfComponent::u32}, {5126, GltfComponent::f32}};
+  const auto found = kComponents.find(object.require_count("componentType", kMostGltfElements));
+  if (found == kComponents.end())
+    object.fail("has an unknown componentType");
+  return found->second;
+}
+
+std::uint32_t read_components(const GltfObject& object) {
+  static constexpr std::array<std::string_view, 7> kTypes{"SCALAR", "VEC2", "VEC3", "VEC4",
+                                                          "MAT2",   "MAT3", "MAT4"};
+  static constexpr std::array<std::uint32_t, 7> kSizes{1, 2, 3, 4, 4, 9, 16};
+  return kSizes[choice(object, "type", object.text("type").value_or(""), kTypes)];
+}
+
+/// `name` of the object; of hostile length, or with control characters, not.
+std::string read_name(const GltfObject& object) {
+  return plain_text(object.text("name").value_or(""), kLongestGltfName);
+}
+
+/// One reading of a document.
+class DocumentReader {
+ public:
+  explicit DocumentReader(const GltfObject& root) : root_(root) {}
+
+  GltfDocument read() {
+    check_version();
+    check_extensions();
+    root_.for_each("buffers", [&](const GltfObject& o) { read_buffer(o); });
+    root_.for_each("bufferViews", [&](const GltfObject& o) { read_view(o); });
+    root_.for_each("accessors", [&](const GltfObject& o) { read_accessor(o); });
+    read_pictures();
+    root_.for_each("materials", [&](const GltfObject& o) { read_material(o); });
+    root_.for_each("meshes", [&](const GltfObject& o) { read_mesh(o); });
+    root_.for_each("nodes", [&](const GltfObject& o) { read_node(o); });
+    read_roots();
+    document_.animations = root_.item_count("animations");
+    return std::move(document_);
+  }
+
+ private:
+  void check_version() const {
+    const auto asset = root_.object("asset");
+    if (!asset || !asset->has_text("version", "2."))
+      root_.fail(
+          "is no glTF 2.0, which has an asset.version \"2.0\"; convert the file to glTF 2.0");
+  }
+
+  void check_extensions() const {
+    for (const std::string& name : root_.texts("extensionsRequired")) {
+      if (!is_known(name)) {
+        root_.fail(
+            fmt::format("requires the extension {}, which is not read; export the mesh "
+                        "without it",
+                        plain_text(name, kLongestGltfName)));
+      }
+    }
+  }
+
+  void read_buffer(const GltfObject& o) {
+    document_.buffers.push_back({o.require_count("byteLength", kMostBytes), o.text("uri")});
+  }
+
+  GltfMeshopt read_meshopt(const GltfObject& o) const {
+    static constexpr std::array<std::string_view, 3> kModes{"ATTRIBUTES", "TRIANGLES", "INDICES"};
+    static constexpr std::array<std::string_view, 4> kFilters{"NONE", "OCTAHEDRAL", "QUATERNION",
+                                                              "EXPONENTIAL"};
+    return {.buffer = o.require_index("buffer", document_.buffers.size()),
+            .offset = o.count("byteOffset", kMostBytes).value_or(0),
+            .bytes = o.require_count("byteLength", kMostBytes),
+            .stride = o.require_count("byteStride", kMostStride),
+            .count = o.require_count("count", kMostGltfElements),
+            .mode = static_cast<GltfMeshopt::Mode>(
+                choice(o, "mode", o.text("mode").value_or(""), kModes)),
+            .filter = static_cast<GltfMeshopt::Filter>(
+                choice(o, "filter", o.text("filter").value_or("NONE"), kFilters))};
+  }
+
+  void read_view(const GltfObject& o) {
+    GltfView view{.buffer = o.require_index("buffer", document_.buffers.size()),
+                  .offset = o.count("byteOffset", kMostBytes).value_or(0),
+                  .bytes = o.require_count("byteLength", kMostBytes),
+                  .stride = o.count("byteStride", kMostStride).value_or(0)};
+    if (const auto meshopt = o.extension("EXT_meshopt_compression"))
+      view.meshopt = read_meshopt(*meshopt);
+    document_.views.push_back(view);
+  }
+
+  GltfSparse read_sparse(const GltfObject& o) const {
+    const GltfObject indices = o.require_object("indices");
+    const GltfObject values = o.require_object("values");
+    return {.count = o.require_count("count", kMostGltfElements),
+            .index_view = indices.require_index("bufferView", document_.views.size()),
+            .index_offset = indices.count("byteOffset", kMostBytes).value_or(0),
+            .index_component = read_component(indices),
+            .value_view = values.require_index("bufferView", document_.views.size()),
+            .value_offset = values.count("byteOffset", kMostBytes).value_or(0)};
+  }
+
+  void read_accessor(const GltfObject& o) {
+    GltfAccessor accessor{.view = o.index("bufferView", document_.views.size()),
+                          .offset = o.count("byteOffset", kMostBytes).value_or(0),
+                          .count = o.require_count("count", kMostGltfElements),
+                          .component = read_component(o),
+                          .components = read_components(o),
+                          .normalized = o.flag("normalized")};
+    if (const auto sparse = o.object("sparse"))
+      accessor.sparse = read_sparse(*sparse);
+    document_.accessors.push_back(accessor);
+  }
+
+  static Wrap read_wrap(const GltfObject& o, const char* key) {
+    constexpr std::uint64_t kRepeat = 10497, kClamp = 33071, kMirrored = 33648;
+    switch (o.count(key, kMostGltfElements).value_or(kRepeat)) {
+      case kRepeat:
+        return Wrap::repeat;
+      case kClamp:
+        return Wrap::clamp;
+      case kMirrored:
+        return Wrap::mirrored;
+      default:
+        o.fail(fmt::format("has an unknown {}", key));
+    }
+  }
+
+  void read_pictures() {
+    root_.for_each("images", [&](const GltfObject& o) {
+      document_.images.push_back(
+          {read_name(o), o.text("uri"), o.index("bufferView", document_.views.size())});
+    });
+    root_.for_each("samplers", [&](const GltfObject& o) {
+      document_.samplers.push_back({read_wrap(o, "wrapS"), read_wrap(o, "wrapT")});
+    });
+    root_.for_each("textures", [&](const GltfObject& o) {
+      GltfTexture texture{o.index("source", document_.images.size()),
+                          o.index("sampler", document_.samplers.size())};
+      if (const auto webp = o.extension("EXT_texture_webp"))
+        texture.image = webp->require_index("source", document_.images.size());
+      document_.textures.push_back(texture);
+    });
+  }
+
+  void read_texture_use(const GltfObject& o, GltfMaterial& material) const {
+    material.texture = o.require_index("index", document_.textures.size());
+    material.texcoord =
+        static_cast<std::uint32_t>(o.count("texCoord", kMostGltfElements).value_or(0));
+    const auto transform = o.extension("KHR_texture_transform");
+    if (!transform)
+      return;
+    material.transform = {numbers<2>(*transform, "offset", {0, 0}),
+                          transform->number("rotation", 0),
+                          numbers<2>(*transform, "scale", {1, 1})};
+    if (const auto texcoord = transform->count("texCoord", kMostGltfElements))
+      material.texcoord = static_cast<std::uint32_t>(*texcoord);
+  }
+
+  void read_colour(const GltfObject& o, const char* factor, const char* texture,
+                   GltfMaterial& material) const {
+    material.factor = numbers<4>(o, factor, {1, 1, 1, 1});
+    if (const auto use = o.object(texture))
+      read_texture_use(*use, material);
+  }
+
+  void read_material(const GltfObject& o) {
+    constexpr std::array<std::string_view, 3> kAlphaModes{"OPAQUE", "MASK", "BLEND"};
+    GltfMaterial material{.name = read_name(o)};
+    if (const auto metallic = o.object("pbrMetallicRoughness")) {
+      read_colour(*metallic, "baseColorFactor", "baseColorTexture", material);
+    } else if (const auto glossy = o.extension("KHR_materials_pbrSpecularGlossiness")) {
+      read_colour(*glossy, "diffuseFactor", "diffuseTexture", material);
+    }
+    material.alpha = static_cast<AlphaMode>(
+        choice(o, "alphaMode", o.text("alphaMode").value_or("OPAQUE"), kAlphaModes));
+    material.alpha_cutoff = o.number("alphaCutoff", material.alpha_cutoff);
+    document_.materials.push_back(std::move(material));
+  }
+
+  static GltfAttributes read_attributes(const GltfObject& o, std::size_t size) {
+    GltfAttributes attributes;
+    o.for_each_index(size, [&](const std::string& name, std::uint32_t number) {
+      if (name == "POSITION" || name == "NORMAL" || name == "COLOR_0" ||
+          name.starts_with("TEXCOORD_"))
+        attributes.emplace(name, number);
+    });
+    return attributes;
+  }
+
+  GltfPrimitive read_primitive(const GltfObject& o) const {
+    constexpr auto kLastMode = static_cast<std::uint64_t>(GltfPrimitive::Mode::fan);
+    constexpr auto kTriangles = static_cast<std::uint64_t>(GltfPrimitive::Mode::triangles);
+    const std::size_t accessors = document_.accessors.size();
+    GltfPrimitive primitive{
+        .mode = static_cast<GltfPrimitive::Mode>(o.count("mode", kLastMode).value_or(kTriangles)),
+        .attributes = read_attributes(o.require_object("attributes"), accessors),
+        .indices = o.index("indices", accessors),
+        .material = o.index("material", document_.materials.size()),
+        .morph_targets = o.item_count("targets")};
+    if (const auto draco = o.extension("KHR_draco_mesh_compression")) {
+      primitive.draco = {draco->require_index("bufferView", document_.views.size()),
+                         read_attributes(draco->require_object("attributes"), kMostGltfElements)};
+    }
+    return primitive;
+  }
+
+  void read_mesh(const GltfObject& o) {
+    GltfMesh mesh;
+    o.for_each("primitives",
+               [&](const GltfObject& p) { mesh.primitives.push_back(read_primitive(p)); });
+    document_.meshes.push_back(std::move(mesh));
+  }
+
+  static GltfTransform read_transform(const GltfObject& o) {
+    if (o.has("matrix"))
+      return gltf_matrix(numbers<16>(o, "matrix", {}));
+    const auto rotation = numbers<4>(o, "rotation", {0, 0, 0, 1});
+    if (rotation == std::array<double, 4>{})
+      o.fail("has a rotation of zeros");
+    return gltf_placement(as_vector(numbers<3>(o, "translation", {0, 0, 0})), rotation,
+                          as_vector(numbers<3>(o, "scale", {1, 1, 1})));
+  }
+
+  void read_node(const GltfObject& o) {
+    if (o.extension("EXT_mesh_gpu_instancing"))
+      o.fail("has EXT_mesh_gpu_instancing, which is not read; export the instances as nodes");
+    document_.nodes.push_back({o.index("mesh", document_.meshes.size()),
+                               o.indices("children", root_.item_count("nodes")), read_transform(o),
+                               o.has("skin"), o.has("camera")});
+  }
+
+  void read_roots() {
+    const auto scene = root_.index("scene", root_.item_count("scenes"));
+    std::uint32_t number = 0;
+    root_.for_each("scenes", [&](const GltfObject& o) {
+      if (number++ == scene.value_or(0))
+        document_.roots = o.indices("nodes", document_.nodes.size());
+    });
+    if (number == 0)
+      document_.roots = parentless_nodes();
+  }
+
+  std::vector<std::uint32_t> parentless_nodes() const {
+    std::vector<bool> is_child(document_.nodes.size());
+    for (const GltfNode& node : document_.nodes) {
+      for (const std::uint32_t child : node.children)
+        is_child[child] = true;
+    }
+    std::vector<std::uint32_t> roots;
+    for (std::uint32_t i = 0; i < is_child.size(); ++i) {
+      if (!is_child[i])
+        roots.push_back(i);
+    }
+    return roots;
+  }
+
+  const GltfObject& root_;
+  GltfDocument document_;
+};
+
+}  // namespace
+
+std::size_t bytes_of(GltfComponent component) {
+  constexpr std::array<std::size_t, 6> kBytes{1, 1, 2, 2, 4, 4};
+  return kBytes[static_cast<std::size_t>(component)];
+}
+
+std::optional<std::uint32_t> GltfPrimitive::attribute(const std::string& name) const {
+  const auto found = attributes.find(name);
+  return found == attributes.end() ? std::nullopt : std::optional(found->second);
+}
+
+GltfDocument read_gltf_document(std::string json, const std::filesystem::path& path,
+                                std::uint64_t most_bytes) {
+  const nlohmann::json parsed = parse_gltf_json(std::move(json), path, most_bytes);
+  return DocumentReader(GltfObject(parsed, path)).read();
+}
+
+}  // namespace meshhier::mesh_io

@@ -1,0 +1,156 @@
+// What a glTF 2.0 document says (Khronos, glTF 2.0 specification), as far as meshes and their base
+// colours go: values that are checked one by one. Whether ranges fit into buffers is looked at by
+// who reads them (gltf_elements.h).
+#pragma once
+
+#include "hierarchy/texture.h"
+#include "hierarchy/vec.h"
+#include "mesh_io/gltf_transform.h"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace meshhier::mesh_io {
+
+struct GltfBuffer {
+  std::uint64_t bytes = 0;
+  std::optional<std::string> uri;
+};
+
+/// EXT_meshopt_compression: where a view's bytes come from.
+struct GltfMeshopt {
+  enum class Mode : std::uint8_t { attributes, triangles, indices };
+  enum class Filter : std::uint8_t { none, octahedral, quaternion, exponential };
+  std::uint32_t buffer = 0;
+  std::uint64_t offset = 0, bytes = 0;
+  std::uint64_t stride = 0, count = 0;
+  Mode mode = Mode::attributes;
+  Filter filter = Filter::none;
+};
+
+struct GltfView {
+  std::uint32_t buffer = 0;
+  std::uint64_t offset = 0, bytes = 0;
+  std::uint64_t stride = 0;  ///< 0: elements are packed
+  std::optional<GltfMeshopt> meshopt{};
+};
+
+enum class GltfComponent : std::uint8_t { i8, u8, i16, u16, u32, f32 };
+std::size_t bytes_of(GltfComponent component);
+
+/// Values that replace some elements of an accessor.
+struct GltfSparse {
+  std::uint64_t count = 0;
+  std::uint32_t index_view = 0;
+  std::uint64_t index_offset = 0;
+  GltfComponent index_component = GltfComponent::u32;
+  std::uint32_t value_view = 0;
+  std::uint64_t value_offset = 0;
+};
+
+struct GltfAccessor {
+  std::optional<std::uint32_t> view;  ///< none: zeros
+  std::uint64_t offset = 0;
+  std::uint64_t count = 0;  ///< < 2^32
+  GltfComponent component = GltfComponent::f32;
+  std::uint32_t components = 1;  ///< of an element: 1 to 4; 9 and 16 are matrices
+  bool normalized = false;
+  std::optional<GltfSparse> sparse{};
+
+  std::uint64_t element_bytes() const { return components * bytes_of(component); }
+};
+
+/// Names of attributes, and the numbers of what holds them.
+using GltfAttributes = std::map<std::string, std::uint32_t>;
+
+/// KHR_draco_mesh_compression.
+struct GltfDraco {
+  std::uint32_t view = 0;
+  GltfAttributes ids;
+};
+
+struct GltfPrimitive {
+  enum class Mode : std::uint8_t { points, lines, line_loop, line_strip, triangles, strip, fan };
+  Mode mode = Mode::triangles;
+  GltfAttributes attributes;  ///< accessors
+  std::optional<std::uint32_t> indices;
+  std::optional<std::uint32_t> material;
+  std::optional<GltfDraco> draco{};
+  std::uint64_t morph_targets = 0;
+
+  bool has_triangles() const { return mode >= Mode::triangles; }
+  std::optional<std::uint32_t> attribute(const std::string& name) const;
+};
+
+struct GltfMesh {
+  std::vector<GltfPrimitive> primitives;
+};
+
+struct GltfNode {
+  std::optional<std::uint32_t> mesh;
+  std::vector<std::uint32_t> children;
+  GltfTransform transform;
+  bool is_skinned = false;
+  bool is_camera = false;
+};
+
+/// KHR_texture_transform: offset + rotation * (scale * coordinate).
+struct GltfTextureTransform {
+  std::array<double, 2> offset{0, 0};
+  double rotation = 0;
+  std::array<double, 2> scale{1, 1};
+  friend bool operator==(const GltfTextureTransform&, const GltfTextureTransform&) = default;
+};
+
+struct GltfMaterial {
+  std::string name;
+  std::array<double, 4> factor{1, 1, 1, 1};  ///< linear, and alpha
+  std::optional<std::uint32_t> texture{};    ///< of the base colour
+  std::uint32_t texcoord = 0;                ///< that it takes
+  GltfTextureTransform transform{};
+  AlphaMode alpha = AlphaMode::opaque;
+  double alpha_cutoff = 0.5;
+};
+
+struct GltfSampler {
+  Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+};
+
+struct GltfTexture {
+  std::optional<std::uint32_t> image;  ///< none: of a format that is not read
+  std::optional<std::uint32_t> sampler;
+};
+
+struct GltfImage {
+  std::string name;
+  std::optional<std::string> uri;
+  std::optional<std::uint32_t> view;
+};
+
+struct GltfDocument {
+  std::vector<GltfBuffer> buffers;
+  std::vector<GltfView> views;
+  std::vector<GltfAccessor> accessors;
+  std::vector<GltfMesh> meshes;
+  std::vector<GltfNode> nodes;
+  std::vector<GltfMaterial> materials;
+  std::vector<GltfTexture> textures;
+  std::vector<GltfSampler> samplers;
+  std::vector<GltfImage> images;
+  std::vector<std::uint32_t> roots;  ///< of the scene that is shown
+  std::uint64_t animations = 0;
+};
+
+/// The document of a JSON text. The scene is the one that it names, else the first; if there is
+/// none, all nodes that are no children are roots. Throws Error(input) naming file and place if it
+/// is no glTF 2.x, if a value is not what the specification says, or if it requires an extension
+/// that is not known; and as parse_gltf_json().
+GltfDocument read_gltf_document(std::string json, const std::filesystem::path& path,
+                                std::uint64_t most_bytes);
+
+}  // namespace meshhier::mesh_io

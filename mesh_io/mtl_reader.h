@@ -1,0 +1,46 @@
+// MTL files (Wavefront's material libraries of OBJ files): what of a material a textured mesh
+// shows.
+#pragma once
+
+#include "mesh_io/input_stream.h"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace meshhier::mesh_io {
+
+/// A picture on a surface: a coordinate c shows the picture at c * scale + offset.
+struct MtlMap {
+  std::string file;  ///< as the line has it, not empty
+  std::array<double, 2> scale{1, 1}, offset{0, 0};
+  bool clamp = false;  ///< -clamp on: the picture does not repeat
+};
+
+struct MtlMaterial {
+  std::string name;                      ///< the rest of the line of newmtl; may be empty
+  std::array<float, 3> colour{1, 1, 1};  ///< Kd, 0 ... 1
+  float opacity = 1;                     ///< d, else 1 - Tr, up to 1; 1 if that is 0
+  std::optional<MtlMap> picture;         ///< map_Kd
+  std::optional<MtlMap> alpha;           ///< map_d
+};
+
+/// Visits the materials of a library in their order. Reads
+///
+///   newmtl NAME                 NAME may have spaces
+///   Kd r [g b]                  numbers beyond 0 ... 1 become 0 or 1
+///   d [-halo] a | Tr a
+///   map_Kd [options] FILE       FILE may have spaces, and stand in quotes
+///   map_d [options] FILE
+///
+/// with words in any case, and passes all other statements over, as well as those before the first
+/// newmtl. Of a statement that comes twice the last one counts, of maps the first. Options: -o and
+/// -s are used, and -clamp; -blendu, -blendv, -bm, -boost, -cc, -imfchan, -mm, -t, -texres and
+/// -type are passed over. Throws Error(input) naming the line, Error(io).
+void read_mtl(InputStream& stream, const std::filesystem::path& path,
+              const std::function<void(const MtlMaterial&)>& visit);
+
+}  // namespace meshhier::mesh_io

@@ -1,0 +1,73 @@
+#include "pipeline/images_stage.h"
+
+#include "hierarchy/error.h"
+#include "images/open_source.h"
+#include "pipeline/tiles/texture_store.h"
+
+#include <algorithm>
+
+namespace meshhier::pipeline {
+namespace {
+
+/// A picture of one texel in the place of one that is broken: numbers stay what they are.
+class NoPicture final : public images::ImageReader {
+ public:
+  const images::ImageInfo& info() const override { return info_; }
+  void read_rows(std::uint8_t* rows, std::uint32_t count) override {
+    std::fill_n(rows, std::size_t{count} * info_.channels, std::uint8_t{0});
+  }
+
+ private:
+  images::ImageInfo info_{ImageFormat::png, 1, 1, 3, 0};
+};
+
+}  // namespace
+
+images::MaterialList decode_images(images::ImageStore& pictures, BuildJournal& journal,
+                                   const StageContext& context) {
+  const TexturePlan& plan = context.plan.textures;
+  images::MaterialList materials = plan.materials;
+  std::uint64_t left = 0;
+  for (std::size_t i = 0; i < plan.heads.size(); ++i) {
+    if (i >= pictures.size())
+      left += std::uint64_t{plan.heads[i].width} * plan.heads[i].height;
+  }
+  context.progress.stage("images", left, "texels");
+  for (std::size_t i = pictures.size(); i < plan.heads.size(); ++i) {
+    const auto step = [&](std::uint64_t texels) {
+      context.cancel.check();
+      context.progress.advance(texels);
+    };
+    std::string why;
+    try {
+      const auto reader = images::open_source(materials.images[i], context.files);
+      pictures.add(*reader, step);
+    } catch (const Error& error) {
+      if (context.config.missing_images != config::MissingImages::ignore ||
+          error.code() != ErrorCode::input)
+        throw;
+      why = error.what();
+      NoPicture none;
+      pictures.add(none, step);
+    }
+    journal.note_image(pictures.stored(static_cast<std::uint32_t>(i)), why);
+  }
+  for (const auto& [image, why] : journal.broken_images())
+    leave_out(image, materials);
+  return materials;
+}
+
+StageMemory images_memory(const JobSize& job) {
+  if (!job.textured)
+    return {};
+  const std::uint64_t item = job.decoder_bytes + job.adding_bytes + kPictureCacheBytes;
+  return {item, 1, item, item};
+}
+
+StageTime images_time(const JobSize& job) {
+  constexpr double kTexelSeconds = 20e-9;
+  return {"images", "texels", job.source_texels,
+          static_cast<double>(job.source_texels) * kTexelSeconds};
+}
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,21 @@
+// The stage `images`: all pictures of the input, decoded into scratch space.
+#pragma once
+
+#include "images/image_store.h"
+#include "images/material_list.h"
+#include "pipeline/journal/build_journal.h"
+#include "pipeline/plan/stage_context.h"
+
+namespace meshhier::pipeline {
+
+/// One picture is decoded at a time, beside the store's cache. None if there are no textures.
+StageMemory images_memory(const JobSize& job);
+StageTime images_time(const JobSize& job);
+
+/// Decodes all pictures that the journal does not have. Returns the materials with the pictures
+/// that are there: with `missing_images` ignore, those that turn out to be broken are left out, and
+/// the journal has why; else throws Error(input) that names one.
+images::MaterialList decode_images(images::ImageStore& pictures, BuildJournal& journal,
+                                   const StageContext& context);
+
+}  // namespace meshhier::pipeline

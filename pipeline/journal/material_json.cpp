@@ -1,0 +1,87 @@
+#include "pipeline/journal/material_json.h"
+
+#include <span>
+#include <string>
+
+namespace meshhier::pipeline {
+namespace {
+
+/// Names may have any bytes.
+nlohmann::json::binary_t to_binary(std::span<const std::byte> bytes) {
+  const auto* first = reinterpret_cast<const std::uint8_t*>(bytes.data());
+  return nlohmann::json::binary_t({first, first + bytes.size()});
+}
+nlohmann::json::binary_t to_binary(const std::string& text) {
+  return to_binary(std::as_bytes(std::span(text)));
+}
+
+std::string text_of(const nlohmann::json& json) {
+  const nlohmann::json::binary_t& bytes = json.get_binary();
+  return {bytes.begin(), bytes.end()};
+}
+
+nlohmann::json to_json(const images::ImageSource& image) {
+  return {{"name", to_binary(image.name)},
+          {"file", to_binary(image.file.string())},
+          {"offset", image.offset},
+          {"bytes", image.bytes},
+          {"data", to_binary(image.data)}};
+}
+
+images::ImageSource image_source(const nlohmann::json& json) {
+  images::ImageSource image;
+  image.name = text_of(json.at("name"));
+  image.file = text_of(json.at("file"));
+  image.offset = json.at("offset");
+  image.bytes = json.at("bytes");
+  const auto data = std::as_bytes(std::span(json.at("data").get_binary()));
+  image.data.assign(data.begin(), data.end());
+  return image;
+}
+
+nlohmann::json to_json(const images::Material& material) {
+  nlohmann::json json{{"name", to_binary(material.name)},
+                      {"colour", material.colour},
+                      {"wraps", {material.wrap_u, material.wrap_v}},
+                      {"alpha", material.alpha},
+                      {"cutoff", material.alpha_cutoff}};
+  if (material.image)
+    json["image"] = *material.image;
+  return json;
+}
+
+images::Material material_of(const nlohmann::json& json) {
+  images::Material material;
+  material.name = text_of(json.at("name"));
+  material.colour = json.at("colour");
+  material.wrap_u = json.at("wraps").at(0);
+  material.wrap_v = json.at("wraps").at(1);
+  material.alpha = json.at("alpha");
+  material.alpha_cutoff = json.at("cutoff");
+  if (json.contains("image"))
+    material.image = json.at("image").get<std::uint32_t>();
+  return material;
+}
+
+}  // namespace
+
+nlohmann::json to_json(const images::MaterialList& list) {
+  nlohmann::json images = nlohmann::json::array();
+  for (const images::ImageSource& image : list.images)
+    images.push_back(to_json(image));
+  nlohmann::json materials = nlohmann::json::array();
+  for (const images::Material& material : list.materials)
+    materials.push_back(to_json(material));
+  return {{"images", std::move(images)}, {"materials", std::move(materials)}};
+}
+
+images::MaterialList material_list(const nlohmann::json& json) {
+  images::MaterialList list;
+  for (const nlohmann::json& image : json.at("images"))
+    list.images.push_back(image_source(image));
+  for (const nlohmann::json& material : json.at("materials"))
+    list.materials.push_back(material_of(material));
+  return list;
+}
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,89 @@
+#include "pipeline/plan/texture_plan.h"
+
+#include "hierarchy/error.h"
+#include "images/image_store.h"
+#include "images/open_source.h"
+#include "storage/io/hash.h"
+
+#include <algorithm>
+#include <span>
+
+namespace meshhier::pipeline {
+namespace {
+
+/// As long as it stays, so does what is in the files.
+std::int64_t file_times(const images::MaterialList& materials, storage::FileSystem& files) {
+  std::vector<std::uint64_t> all;
+  for (const images::ImageSource& image : materials.images) {
+    if (image.file.empty())
+      continue;
+    const storage::FileIdentity identity = files.identity(image.file);
+    all.push_back(identity.bytes);
+    all.push_back(static_cast<std::uint64_t>(identity.modified_ns));
+  }
+  return all.empty() ? 0
+                     : static_cast<std::int64_t>(storage::checksum(std::as_bytes(std::span(all))));
+}
+
+}  // namespace
+
+std::uint64_t TexturePlan::texels() const {
+  std::uint64_t sum = 0;
+  for (const images::ImageInfo& head : heads)
+    sum += std::uint64_t{head.width} * head.height;
+  return sum;
+}
+
+std::uint64_t TexturePlan::stored_bytes() const {
+  std::uint64_t sum = 0;
+  for (const images::ImageInfo& head : heads)
+    sum += images::ImageStore::stored_bytes(head.width, head.height, head.channels);
+  return sum;
+}
+
+std::uint64_t TexturePlan::decoder_bytes() const {
+  std::uint64_t most = 0;
+  for (const images::ImageInfo& head : heads)
+    most = std::max(most, head.decoder_bytes);
+  return most;
+}
+
+std::uint64_t TexturePlan::adding_bytes() const {
+  std::uint64_t most = 0;
+  for (const images::ImageInfo& head : heads)
+    most = std::max(most, images::ImageStore::adding_bytes(head.width, head.height, head.channels));
+  return most;
+}
+
+void leave_out(std::uint32_t image, images::MaterialList& materials) {
+  for (images::Material& material : materials.materials) {
+    if (material.image == image)
+      material.image.reset();
+  }
+}
+
+TexturePlan plan_textures(images::MaterialList materials, config::MissingImages missing,
+                          storage::FileSystem& files) {
+  TexturePlan plan;
+  plan.file_times = file_times(materials, files);
+  plan.materials.materials = std::move(materials.materials);
+  for (std::uint32_t i = 0; i < materials.images.size(); ++i) {
+    try {
+      plan.heads.push_back(images::open_source(materials.images[i], files)->info());
+    } catch (const Error& error) {
+      if (missing != config::MissingImages::ignore || error.code() != ErrorCode::input)
+        throw;
+      plan.broken.emplace_back(error.what());
+      leave_out(static_cast<std::uint32_t>(plan.heads.size()), plan.materials);
+      for (images::Material& material : plan.materials.materials) {
+        if (material.image && *material.image > plan.heads.size())
+          --*material.image;  // the pictures behind it move up
+      }
+      continue;
+    }
+    plan.materials.images.push_back(std::move(materials.images[i]));
+  }
+  return plan;
+}
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,39 @@
+// What a build will do with the pictures of its input, known from their heads.
+#pragma once
+
+#include "config/config.h"
+#include "images/image_codec.h"
+#include "images/material_list.h"
+#include "storage/io/file.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace meshhier::pipeline {
+
+struct TexturePlan {
+  images::MaterialList materials;        ///< empty: no textures
+  std::vector<images::ImageInfo> heads;  ///< of each picture in `materials`
+  std::vector<std::string> broken;       ///< why pictures are left out, a sentence each
+  std::int64_t file_times = 0;           ///< one number for sizes and times of all pictures' files
+
+  bool is_textured() const { return !materials.empty(); }
+  std::uint64_t texels() const;
+  /// Of the scratch space that all pictures take, decoded.
+  std::uint64_t stored_bytes() const;
+  /// The most that decoding one of them holds.
+  std::uint64_t decoder_bytes() const;
+  /// The most that storing one of them holds besides.
+  std::uint64_t adding_bytes() const;
+};
+
+/// Leaves a picture out: its materials show their colours.
+void leave_out(std::uint32_t image, images::MaterialList& materials);
+
+/// Looks at the heads of all pictures. One that is broken is left out with `missing_images` ignore;
+/// else throws Error(input) that names it.
+TexturePlan plan_textures(images::MaterialList materials, config::MissingImages missing,
+                          storage::FileSystem& files);
+
+}  // namespace meshhier::pipeline

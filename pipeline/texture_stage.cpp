@@ -1,0 +1,482 @@
+#include "pipeline/texture_stage.h"
+
+#include "execution/memory_gate.h"
+#include "execution/parallel.h"
+#include "hierarchy/bounds.h"
+#include "hierarchy/vertex_numbers.h"
+#include "images/image_codec.h"
+#include "pipeline/plan/tile_room.h"
+#include "pipeline/tiles/vertex_order.h"
+#include "texture/leaf_atlas.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <set>
+#include <span>
+
+namespace meshhier::pipeline {
+namespace {
+
+using images::Image;
+using images::Material;
+
+/// Interior triangles, then border ones.
+template <class T>
+std::vector<T> joined(std::vector<T> interior, std::span<const T> border) {
+  interior.insert(interior.end(), border.begin(), border.end());
+  return interior;
+}
+
+// ---- partitions ----------------------------------------------------------------------------
+
+/// Texture coordinates and materials of a partition's vertices, copies last, and its triangles by
+/// vertices' numbers.
+struct LeafCorners {
+  std::vector<Vec2f> texcoords;
+  std::vector<std::uint32_t> materials;
+  std::vector<TileTriangle> triangles;
+};
+
+void append_corners(const VertexArray& vertices, const AttributeLayout& layout, LeafCorners& to) {
+  const auto texcoord = static_cast<std::size_t>(layout.texcoord_offset());
+  const auto material = static_cast<std::size_t>(layout.material_offset());
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const std::span<const float> a = vertices.attributes_of(i);
+    to.texcoords.push_back({a[texcoord], a[texcoord + 1]});
+    to.materials.push_back(static_cast<std::uint32_t>(a[material]));
+  }
+}
+
+LeafCorners corners_of(const TileMesh& mesh, const AttributeLayout& layout) {
+  LeafCorners corners;
+  append_corners(mesh.vertices, layout, corners);
+  append_corners(mesh.copies.vertices, layout, corners);
+  const VertexNumbers numbers(static_cast<std::uint32_t>(mesh.vertices.size()), mesh.copies.places);
+  const std::vector<TileTriangle> border = numbers.numbered(mesh.border, mesh.border_wedges);
+  corners.triangles = joined(numbers.numbered(mesh.interior, mesh.interior_wedges),
+                             std::span<const TileTriangle>(border));
+  return corners;
+}
+
+texture::MaterialTexels texels_of(const Material& material, const images::ImageStore& pictures) {
+  if (!material.image)
+    return {};
+  const images::ImageInfo& info = pictures.info(*material.image);
+  return {info.width, info.height, pictures.levels(*material.image)};
+}
+
+std::vector<texture::MaterialTexels> texels_of(const TexturedInput& input) {
+  std::vector<texture::MaterialTexels> all;
+  for (const Material& material : input.materials.materials)
+    all.push_back(texels_of(material, input.pictures));
+  return all;
+}
+
+std::uint8_t to_byte(float value) {
+  return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255));
+}
+
+void fill(const texture::AtlasPiece& piece, const std::array<float, 4>& colour, Image& image) {
+  for (std::uint32_t y = 0; y < piece.height; ++y) {
+    for (std::uint32_t x = 0; x < piece.width; ++x) {
+      std::uint8_t* texel = image.at(piece.atlas_x + x, piece.atlas_y + y);
+      for (std::uint32_t c = 0; c < image.channels; ++c)
+        texel[c] = to_byte(colour[c]);
+    }
+  }
+}
+
+/// The strongest of the materials that the atlas shows.
+AlphaMode alpha_of(const texture::LeafAtlas& atlas, const TexturedInput& input) {
+  AlphaMode alpha = AlphaMode::opaque;
+  for (const texture::AtlasPiece& piece : atlas.pieces)
+    alpha = std::max(alpha, input.materials.materials[piece.material].alpha);
+  return alpha;
+}
+
+Image painted(const texture::LeafAtlas& atlas, AlphaMode alpha, const TexturedInput& input) {
+  Image image(atlas.width, atlas.height, alpha == AlphaMode::opaque ? 3 : 4);
+  for (const texture::AtlasPiece& piece : atlas.pieces) {
+    const Material& material = input.materials.materials[piece.material];
+    if (material.image) {
+      input.pictures.read({*material.image, piece.level, piece.x, piece.y, piece.width,
+                           piece.height, material.wrap_u, material.wrap_v},
+                          image, piece.atlas_x, piece.atlas_y);
+    } else {
+      fill(piece, material.colour, image);
+    }
+  }
+  return image;
+}
+
+/// By how much a partition's picture is reduced to be baked from: it keeps at least the texels that
+/// the tile above has for it, which saves reducing it again for each tile that is baked from it.
+std::uint32_t reduction(const Image& image, std::uint32_t side) {
+  const std::uint64_t texels = std::uint64_t{image.width} * image.height;
+  const std::uint64_t wanted = std::uint64_t{side} * side / 2;
+  std::uint32_t factor = 1;
+  while (factor < texture::kLeafAlignment &&
+         texels / (4 * std::uint64_t{factor} * factor) >= wanted)
+    factor *= 2;
+  return factor;
+}
+
+// ---- simplified tiles ----------------------------------------------------------------------
+
+/// The cells of a grid that the border triangles of a tile reach: what of the neighbours' surfaces
+/// may be near them.
+class BorderCells {
+ public:
+  explicit BorderCells(const TileMesh& mesh) {
+    for (const TileTriangle& t : mesh.border)
+      bounds_.add(bounds_of_triangle(mesh.vertices.positions, t));
+    const Vec3f size = bounds_.max - bounds_.min;
+    cell_ = std::max({size.x, size.y, size.z}) / kCells;
+    for (const TileTriangle& t : mesh.border)
+      for_each_cell(grown(bounds_of_triangle(mesh.vertices.positions, t)),
+                    [&](std::size_t cell) { reached_[cell] = true; });
+  }
+
+  bool reaches(std::span<const Vec3f> positions, const TileTriangle& triangle) const {
+    const Bounds box = bounds_of_triangle(positions, triangle);
+    if (!overlaps(box))
+      return false;
+    bool found = false;
+    for_each_cell(box, [&](std::size_t cell) { found = found || reached_[cell]; });
+    return found;
+  }
+
+ private:
+  static constexpr int kCells = 32;
+  static constexpr std::size_t kSide = kCells + 1;
+
+  static Bounds bounds_of_triangle(std::span<const Vec3f> positions, const TileTriangle& t) {
+    Bounds box;
+    for (const TileVertex corner : t)
+      box.add(positions[raw(corner)]);
+    return box;
+  }
+  Bounds grown(Bounds box) const {
+    const Vec3f step{cell_, cell_, cell_};
+    return {box.min - step, box.max + step};
+  }
+  bool overlaps(const Bounds& box) const {
+    const Bounds all = grown(bounds_);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (box.max[axis] < all.min[axis] || box.min[axis] > all.max[axis])
+        return false;
+    }
+    return true;
+  }
+  std::size_t index(float value, int axis) const {
+    if (!(cell_ > 0))
+      return 0;
+    const float at = (value - bounds_.min[axis]) / cell_;
+    return static_cast<std::size_t>(std::clamp(at, 0.0f, static_cast<float>(kCells)));
+  }
+  template <class Visit>
+  void for_each_cell(const Bounds& box, const Visit& visit) const {
+    for (std::size_t x = index(box.min.x, 0); x <= index(box.max.x, 0); ++x) {
+      for (std::size_t y = index(box.min.y, 1); y <= index(box.max.y, 1); ++y) {
+        for (std::size_t z = index(box.min.z, 2); z <= index(box.max.z, 2); ++z)
+          visit((x * kSide + y) * kSide + z);
+      }
+    }
+  }
+
+  Bounds bounds_;
+  float cell_ = 0;
+  std::vector<bool> reached_ = std::vector<bool>(kSide * kSide * kSide);
+};
+
+/// A finer surface, or what of it lies near the border.
+struct Finer {
+  std::shared_ptr<const BakeSource> source;
+  std::vector<TileTriangle> triangles;  ///< empty: all
+  std::vector<texture::CornerTexcoords> corners;
+
+  texture::TexturedSurface surface() const {
+    return triangles.empty()
+               ? source->surface()
+               : texture::TexturedSurface{source->positions, triangles, corners, &source->image};
+  }
+};
+
+Finer near(const BorderCells& border, std::shared_ptr<const BakeSource> source) {
+  Finer part;
+  for (std::size_t t = 0; t < source->triangles.size(); ++t) {
+    if (border.reaches(source->positions, source->triangles[t])) {
+      part.triangles.push_back(source->triangles[t]);
+      part.corners.push_back(source->corners[t]);
+    }
+  }
+  if (!part.triangles.empty())
+    part.source = std::move(source);
+  return part;
+}
+
+// ---- all tiles -----------------------------------------------------------------------------
+
+/// Of a triangle at work: its corners, positions, and coordinates before and after.
+constexpr std::uint64_t kTriangleBytes = 300;
+
+/// A partition's picture: painted, as the encoder has it, and encoded.
+std::uint64_t cut_bytes(std::uint32_t width, std::uint32_t height) {
+  constexpr std::uint64_t kTexelBytes = 4 + 6 + 1;
+  return std::uint64_t{width} * height * kTexelBytes;
+}
+
+/// A simplified tile's picture, and the finer ones that it is baked from.
+std::uint64_t bake_bytes(std::uint32_t side) {
+  constexpr std::uint64_t kBakedBytes = 64;
+  constexpr std::uint64_t kSources = 16;
+  constexpr std::uint64_t kSourceTexels = 2;
+  return std::uint64_t{side} * side * (kBakedBytes + kSources * kSourceTexels * 3);
+}
+
+class TextureMaker {
+ public:
+  TextureMaker(const Forest& forest, const TexturedInput& input, TextureStore& textures,
+               const StageContext& context)
+      : forest_(forest),
+        input_(input),
+        materials_(texels_of(input)),
+        textures_(textures),
+        format_(context.config.texture.format),
+        side_(context.config.texture.texels / texture::kBakeAlignment * texture::kBakeAlignment),
+        gate_(gate_bytes(context.memory().work_bytes)) {}
+
+  void make(NodeId node) {
+    if (forest_.tree().is_partition(node))
+      cut(node);
+    else
+      bake(node);
+  }
+
+ private:
+  /// The picture of a partition.
+  void cut(NodeId node) {
+    TileMesh mesh = forest_.load(node).mesh;
+    std::vector<std::uint16_t> parent_map;
+    order_inner_vertices(mesh, parent_map);
+    const LeafCorners leaf = corners_of(mesh, forest_.layout(node.level));
+    texture::LeafAtlas atlas = texture::plan_leaf_atlas(
+        {leaf.triangles, leaf.texcoords, leaf.materials}, materials_, kLeafSide);
+    const execution::MemoryGate::Share share = gate_.enter(cut_bytes(atlas.width, atlas.height));
+    BakeSource source;
+    source.alpha = alpha_of(atlas, input_);
+    source.image = painted(atlas, source.alpha, input_);
+    source.corners = std::move(atlas.corners);
+    add_triangles(mesh, source);
+    TileTexture texture = encoded(source);
+    const float texel = texel_of(source);
+    const std::uint32_t factor = reduction(source.image, side_);
+    if (factor > 1)
+      source.image = texture::reduced(source.image, source.corners, factor);
+    textures_.put(node, texture, source, {texel, texel});
+  }
+
+  void bake(NodeId node) {
+    const TileMesh mesh = forest_.load(node).mesh;
+    BakeSource source;
+    add_triangles(mesh, source);
+    const float finest = finest_below(node);
+    const execution::MemoryGate::Share share = gate_.enter(bake_bytes(side_));
+    if (!source.triangles.empty()) {
+      const std::vector<Finer> finer = finer_surfaces(node, mesh);
+      std::vector<texture::TexturedSurface> surfaces;
+      for (const Finer& one : finer) {
+        surfaces.push_back(one.surface());
+        source.alpha = std::max(source.alpha, one.source->alpha);
+      }
+      texture::BakedTexture baked = texture::bake({source.positions, source.triangles, {}, nullptr},
+                                                  surfaces, {side_, finest});
+      source.image = std::move(baked.image);
+      source.corners = std::move(baked.corners);
+    }
+    textures_.put(node, encoded(source), source, {texel_of(source), finest});
+  }
+
+  static std::uint64_t gate_bytes(std::uint64_t work_bytes) {
+    constexpr std::uint64_t kCaches = kPictureCacheBytes + kSourceCacheBytes;
+    return work_bytes - std::min(work_bytes, kCaches);
+  }
+
+  static void add_triangles(const TileMesh& mesh, BakeSource& source) {
+    source.positions = mesh.vertices.positions;
+    source.triangles = joined(mesh.interior, std::span<const TileTriangle>(mesh.border));
+  }
+
+  TileTexture encoded(const BakeSource& source) const {
+    TileTexture texture;
+    texture.corners = source.corners;
+    if (source.triangles.empty())
+      return texture;
+    const bool is_opaque = source.image.channels == 3;
+    TileImage& image = texture.image;
+    image.format =
+        is_opaque || format_.format == ImageFormat::webp ? format_.format : ImageFormat::png;
+    image.alpha = is_opaque ? AlphaMode::opaque : source.alpha;
+    image.width = source.image.width;
+    image.height = source.image.height;
+    image.bytes = images::encode_image(source.image, image.format, format_.quality);
+    return texture;
+  }
+
+  static float texel_of(const BakeSource& source) {
+    return texture::texel_size(source.surface(), source.image.width, source.image.height);
+  }
+
+  float finest_below(NodeId node) const {
+    float finest = 0;
+    const Tree::Children children = forest_.tree().children(node);
+    for (const NodeId child : children.span()) {
+      const float below = textures_.texels(forest_.tree().tile_node(child)).finest;
+      finest = finest == 0 || (below > 0 && below < finest) ? below : finest;
+    }
+    return finest;
+  }
+
+  /// The node's children, then those of its neighbours, as far as they are near the border.
+  std::vector<Finer> finer_surfaces(NodeId node, const TileMesh& mesh) const {
+    std::vector<Finer> surfaces;
+    const Tree& tree = forest_.tree();
+    const auto add = [&](NodeId parent, const auto& choose) {
+      const Tree::Children children = tree.children(parent);
+      for (const NodeId child : children.span()) {
+        Finer one = choose(textures_.source(tree.tile_node(child)));
+        if (one.source && !one.source->triangles.empty())
+          surfaces.push_back(std::move(one));
+      }
+    };
+    add(node, [](auto source) { return Finer{std::move(source), {}, {}}; });
+    const BorderCells border(mesh);
+    std::set<std::uint32_t> neighbours;
+    for (const GhostRef& ghost : mesh.ghosts)
+      neighbours.insert(ghost.tile);
+    for (const std::uint32_t neighbour : neighbours)
+      add({node.level, neighbour}, [&](auto source) { return near(border, std::move(source)); });
+    return surfaces;
+  }
+
+  const Forest& forest_;
+  const TexturedInput& input_;
+  const std::vector<texture::MaterialTexels> materials_;
+  TextureStore& textures_;
+  const TextureFormat format_;
+  const std::uint32_t side_;
+  execution::MemoryGate gate_;
+};
+
+std::vector<NodeId> textures_left(const Tree& tree, Level level, const BuildJournal& journal) {
+  std::vector<NodeId> left;
+  for (std::uint32_t i = 0; i < tree.node_count(level); ++i) {
+    const NodeId node{level, i};
+    if (!tree.is_early(node) && !journal.has_texture(node))
+      left.push_back(node);
+  }
+  return left;
+}
+
+}  // namespace
+
+void make_textures(const Forest& forest, const TexturedInput& input, TextureStore& textures,
+                   BuildJournal& journal, const StageContext& context) {
+  const Tree& tree = context.tree();
+  std::vector<std::vector<NodeId>> left;  // by level
+  std::uint64_t total = 0;
+  for (int l = 0; l <= raw(tree.depth()); ++l) {
+    left.push_back(textures_left(tree, static_cast<Level>(l), journal));
+    total += left.back().size();
+  }
+  context.progress.stage("texture", total, "tiles");
+  textures.set_cache_bytes(kSourceCacheBytes);
+  TextureMaker maker(forest, input, textures, context);
+  for (int l = raw(tree.depth()); l >= 0; --l) {
+    execution::ordered_for(
+        left[l].size(), context.plan.threads + 1, context.cancel,
+        [&](std::size_t i) {
+          maker.make(left[l][i]);
+          return left[l][i];
+        },
+        [&](std::size_t, NodeId node) {
+          journal.note_texture(node);
+          context.progress.advance(1);
+        });
+  }
+}
+
+TileErrors with_texels(TileErrors errors, const Tree& tree, const TextureStore& textures) {
+  const std::vector<NodeId> nodes = tree.tile_nodes();
+  // The finest first: a tile's parent comes before it in the list.
+  for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) {
+    TileError& own = errors[*node];
+    const TexelSizes& texels = textures.texels(*node);
+    if (!tree.is_partition(*node) && texels.own > texels.finest)
+      own.error = std::max(own.error, texels.own);
+    if (node->level == Level{0})
+      continue;
+    TileError& parent = errors[tree.parent_tile(*node)];
+    if (parent.error <= own.error)
+      parent.error = std::nextafter(own.error, std::numeric_limits<float>::infinity());
+  }
+  return errors;
+}
+
+StageMemory texture_memory(const JobSize& job) {
+  if (!job.textured)
+    return {};
+  constexpr std::uint64_t kCaches = kPictureCacheBytes + kSourceCacheBytes;
+  const std::uint64_t largest =
+      std::max(cut_bytes(kLeafSide, kLeafSide), bake_bytes(job.picture_side));
+  // Geometry of the items that wait for room: read, ordered, cut into charts.
+  const std::uint64_t waiting =
+      (job.threads + 1) * job.part_triangles(job.largest_tile) * kTriangleBytes;
+  return {largest, job.threads + 1, kCaches + waiting + largest,
+          kCaches + waiting + (job.threads + 1) * largest};
+}
+
+StageTime texture_time(const JobSize& job, const TilePopulation& tiles) {
+  constexpr double kTexelSeconds = 60e-9;
+  constexpr double kBakedSeconds = 500e-9;
+  const double side = job.picture_side;
+  return {"texture", "tiles",
+          static_cast<std::uint64_t>(tiles.partitions.count + tiles.simplified.count -
+                                     tiles.early.count),
+          static_cast<double>(job.source_texels) * kTexelSeconds +
+              tiles.simplified.count * side * side * kBakedSeconds};
+}
+
+double published_picture_bytes(const JobSize& job, const TilePopulation& tiles) {
+  if (!job.textured)
+    return 0;
+  // Of a texel, with a quality of 90; most of an atlas is covered, and little of the input's
+  // pictures is not.
+  const double texel = job.picture_format == ImageFormat::png    ? 1.5
+                       : job.picture_format == ImageFormat::jpeg ? 0.4
+                                                                 : 0.3;
+  const double baked = (tiles.simplified.count - tiles.early.count) *
+                       static_cast<double>(job.picture_side) * job.picture_side;
+  return (static_cast<double>(job.source_texels) * 0.8 + baked) * texel;
+}
+
+DiskVolumes texture_disk(const JobSize& job, const TilePopulation& tiles) {
+  if (!job.textured)
+    return {};
+  const double side = job.picture_side;
+  // What is baked from a partition has up to twice the texels of a simplified tile's picture, and
+  // no more than it shows.
+  const double cut = std::min(tiles.partitions.count * 2 * side * side,
+                              static_cast<double>(job.source_texels) * 1.3);
+  const double pictures =
+      (tiles.simplified.count * side * side + cut) * 3 + published_picture_bytes(job, tiles);
+  const double triangles = tiles.partitions.triangles + tiles.simplified.triangles;
+  constexpr double kTriangle = 3 * sizeof(Vec2f) * 2 + 12 + 6;
+  return {{static_cast<double>(job.picture_bytes), DiskMoment::leaves, DiskMoment::simplify},
+          {pictures + triangles * kTriangle, DiskMoment::simplify, DiskMoment::simplify}};
+}
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,46 @@
+// The stage `texture`: a picture for each tile of a textured mesh.
+//
+// Partitions get the input's texels; tiles above them are baked, level by level, from the tiles
+// that they and their neighbours were made of.
+#pragma once
+
+#include "images/image_store.h"
+#include "images/material_list.h"
+#include "pipeline/journal/build_journal.h"
+#include "pipeline/plan/stage_context.h"
+#include "pipeline/plan/tile_population.h"
+#include "pipeline/tiles/bound_chain.h"
+#include "pipeline/tiles/forest.h"
+#include "pipeline/tiles/texture_store.h"
+
+#include <vector>
+
+namespace meshhier::pipeline {
+
+/// The largest side of a partition's picture. Where the input has more texels, as of pictures that
+/// repeat, a coarser level of them is shown.
+inline constexpr std::uint32_t kLeafSide = 4096;
+
+/// Items are tiles, with their pictures. None if the mesh has no textures.
+StageMemory texture_memory(const JobSize& job);
+/// Bytes of the published pictures, about.
+double published_picture_bytes(const JobSize& job, const TilePopulation& tiles);
+StageTime texture_time(const JobSize& job, const TilePopulation& tiles);
+/// Pictures of tiles, until the end.
+DiskVolumes texture_disk(const JobSize& job, const TilePopulation& tiles);
+
+/// Materials, and their pictures as the store numbers them.
+struct TexturedInput {
+  const images::MaterialList& materials;
+  const images::ImageStore& pictures;
+};
+
+/// Makes the pictures of all tiles that the journal does not have.
+void make_textures(const Forest& forest, const TexturedInput& input, TextureStore& textures,
+                   BuildJournal& journal, const StageContext& context);
+
+/// Errors that are no smaller than the texels of the tiles, where those are larger than the
+/// input's.
+TileErrors with_texels(TileErrors errors, const Tree& tree, const TextureStore& textures);
+
+}  // namespace meshhier::pipeline

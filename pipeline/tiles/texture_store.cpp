@@ -1,0 +1,168 @@
+#include "pipeline/tiles/texture_store.h"
+
+#include "pipeline/tiles/blob_json.h"
+#include "storage/format/work_bytes.h"
+
+#include <array>
+#include <span>
+#include <utility>
+
+namespace meshhier::pipeline {
+namespace {
+
+template <class T>
+std::span<const T> all_of(const std::vector<T>& values) {
+  return values;
+}
+
+std::vector<std::byte> encode(const TileTexture& texture) {
+  const TileImage& image = texture.image;
+  const std::array<std::uint64_t, 6> head{static_cast<std::uint64_t>(image.format),
+                                          static_cast<std::uint64_t>(image.alpha),
+                                          image.width,
+                                          image.height,
+                                          image.bytes.size(),
+                                          texture.corners.size()};
+  storage::Packer packer(sizeof head + image.bytes.size() +
+                         texture.corners.size() * sizeof(texture::CornerTexcoords));
+  packer.put(std::span<const std::uint64_t>(head));
+  packer.put(all_of(texture.corners));
+  packer.put(all_of(image.bytes));
+  return packer.take();
+}
+
+TileTexture decode_texture(std::span<const std::byte> bytes) {
+  storage::Unpacker unpacker(bytes);
+  const auto head = unpacker.get<std::uint64_t>(6);
+  TileTexture texture;
+  texture.image.format = static_cast<ImageFormat>(head[0]);
+  texture.image.alpha = static_cast<AlphaMode>(head[1]);
+  texture.image.width = static_cast<std::uint32_t>(head[2]);
+  texture.image.height = static_cast<std::uint32_t>(head[3]);
+  texture.corners = unpacker.get<texture::CornerTexcoords>(head[5]);
+  texture.image.bytes = unpacker.get<std::byte>(head[4]);
+  unpacker.finish();
+  return texture;
+}
+
+std::vector<std::byte> encode(const BakeSource& source) {
+  const std::array<std::uint64_t, 6> head{
+      source.positions.size(), source.triangles.size(), source.image.width,
+      source.image.height,     source.image.channels,   static_cast<std::uint64_t>(source.alpha)};
+  storage::Packer packer(sizeof head + source.bytes());
+  packer.put(std::span<const std::uint64_t>(head));
+  packer.put(all_of(source.positions));
+  packer.put(all_of(source.triangles));
+  packer.put(all_of(source.corners));
+  packer.put(all_of(source.image.texels));
+  return packer.take();
+}
+
+BakeSource decode_source(std::span<const std::byte> bytes) {
+  storage::Unpacker unpacker(bytes);
+  const auto head = unpacker.get<std::uint64_t>(6);
+  BakeSource source;
+  source.positions = unpacker.get<Vec3f>(head[0]);
+  source.triangles = unpacker.get<TileTriangle>(head[1]);
+  source.corners = unpacker.get<texture::CornerTexcoords>(head[1]);
+  source.image.width = static_cast<std::uint32_t>(head[2]);
+  source.image.height = static_cast<std::uint32_t>(head[3]);
+  source.image.channels = static_cast<std::uint32_t>(head[4]);
+  source.image.texels = unpacker.get<std::uint8_t>(head[2] * head[3] * head[4]);
+  source.alpha = static_cast<AlphaMode>(head[5]);
+  unpacker.finish();
+  return source;
+}
+
+}  // namespace
+
+std::uint64_t BakeSource::bytes() const {
+  return positions.size() * sizeof(Vec3f) + triangles.size() * sizeof(TileTriangle) +
+         corners.size() * sizeof(texture::CornerTexcoords) + image.texels.size();
+}
+
+TextureStore::TextureStore(const Tree& tree, storage::ScratchFile& scratch) {
+  for (int level = 0; level <= raw(tree.depth()); ++level) {
+    const std::uint32_t count = tree.node_count(static_cast<Level>(level));
+    levels_.push_back({{scratch, count}, {scratch, count}, std::vector<TexelSizes>(count)});
+  }
+}
+
+void TextureStore::put(NodeId node, const TileTexture& texture, const BakeSource& source,
+                       const TexelSizes& texels) {
+  LevelStore& level = levels_[raw(node.level)];
+  level.textures.put(node.index, encode(texture));
+  level.sources.put(node.index, encode(source));
+  level.texels[node.index] = texels;
+}
+
+TileTexture TextureStore::texture(NodeId node) const {
+  return decode_texture(levels_[raw(node.level)].textures.view(node.index).bytes());
+}
+
+std::shared_ptr<const BakeSource> TextureStore::source(NodeId node) const {
+  const Key key{node.level, node.index};
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto found = found_.find(key); found != found_.end()) {
+      cached_.splice(cached_.begin(), cached_, found->second);
+      return found->second->source;
+    }
+  }
+  const auto source = std::make_shared<const BakeSource>(
+      decode_source(levels_[raw(node.level)].sources.view(node.index).bytes()));
+  const std::lock_guard lock(mutex_);
+  if (found_.contains(key))
+    return source;
+  cached_.push_front({key, source});
+  found_[key] = cached_.begin();
+  cached_bytes_ += source->bytes();
+  while (cached_bytes_ > cache_bytes_) {
+    cached_bytes_ -= cached_.back().source->bytes();
+    found_.erase(cached_.back().key);
+    cached_.pop_back();
+  }
+  return source;
+}
+
+std::uint64_t TextureStore::image_bytes() const {
+  std::uint64_t sum = 0;
+  for (const LevelStore& level : levels_) {
+    for (std::size_t i = 0; i < level.textures.count(); ++i) {
+      if (level.textures.size(i) == 0)
+        continue;  // an early node
+      std::array<std::uint64_t, 6> head{};
+      level.textures.read(i, 0, std::as_writable_bytes(std::span(head)));
+      sum += head[4];
+    }
+  }
+  return sum;
+}
+
+nlohmann::json TextureStore::stored(NodeId node) const {
+  const LevelStore& level = levels_[raw(node.level)];
+  const TexelSizes& texels = level.texels[node.index];
+  return {{"texture", to_json(level.textures.stored(node.index))},
+          {"source", to_json(level.sources.stored(node.index))},
+          {"texels", {texels.own, texels.finest}}};
+}
+
+bool TextureStore::restore(NodeId node, const nlohmann::json& stored) {
+  LevelStore& level = levels_[raw(node.level)];
+  level.texels[node.index] = {stored.at("texels").at(0), stored.at("texels").at(1)};
+  return pipeline::restore(level.textures, node.index, stored.at("texture")) &&
+         pipeline::restore(level.sources, node.index, stored.at("source"));
+}
+
+void TextureStore::drop_copies() {
+  const std::lock_guard lock(mutex_);
+  for (LevelStore& level : levels_) {
+    level.textures.drop_copies();
+    level.sources.drop_copies();
+  }
+  cached_.clear();
+  found_.clear();
+  cached_bytes_ = 0;
+}
+
+}  // namespace meshhier::pipeline

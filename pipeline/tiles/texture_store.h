@@ -1,0 +1,94 @@
+// Pictures of the tiles under construction, in scratch space.
+#pragma once
+
+#include "hierarchy/texture.h"
+#include "hierarchy/tile_mesh.h"
+#include "hierarchy/tree.h"
+#include "images/image.h"
+#include "storage/io/blob_store.h"
+#include "texture/bake.h"
+#include "texture/corners.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <list>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace meshhier::pipeline {
+
+/// What is held of pictures of the input and of finer tiles that were read, at most.
+inline constexpr std::uint64_t kPictureCacheBytes = std::uint64_t{24} << 20;
+inline constexpr std::uint64_t kSourceCacheBytes = std::uint64_t{24} << 20;
+
+/// What a tile is published with. Its triangles are those that Forest::load() gives, interior ones
+/// first, of a partition once its vertices are ordered.
+struct TileTexture {
+  TileImage image;                                ///< empty if the tile has no triangles
+  std::vector<texture::CornerTexcoords> corners;  ///< one a triangle
+};
+
+/// What the pictures of coarser tiles are made of: a tile with its picture, perhaps reduced.
+struct BakeSource {
+  std::vector<Vec3f> positions;  ///< of its places
+  std::vector<TileTriangle> triangles;
+  std::vector<texture::CornerTexcoords> corners;
+  images::Image image;
+  AlphaMode alpha = AlphaMode::opaque;
+
+  texture::TexturedSurface surface() const { return {positions, triangles, corners, &image}; }
+  std::uint64_t bytes() const;
+};
+
+/// How large texels are on the surface.
+struct TexelSizes {
+  float own = 0;     ///< of the tile's picture
+  float finest = 0;  ///< of the pictures of the partitions below it, the finest of them
+};
+
+/// Of each tile node. Putting and loading are thread-safe.
+class TextureStore {
+ public:
+  TextureStore(const Tree& tree, storage::ScratchFile& scratch);
+
+  /// Of recently read sources so many bytes stay in memory at most.
+  void set_cache_bytes(std::uint64_t bytes) { cache_bytes_ = bytes; }
+  void put(NodeId node, const TileTexture& texture, const BakeSource& source,
+           const TexelSizes& texels);
+  TileTexture texture(NodeId node) const;
+  std::shared_ptr<const BakeSource> source(NodeId node) const;
+  const TexelSizes& texels(NodeId node) const {
+    return levels_[raw(node.level)].texels[node.index];
+  }
+  /// Of all published pictures.
+  std::uint64_t image_bytes() const;
+
+  /// For the journal, as Forest's.
+  nlohmann::json stored(NodeId node) const;
+  bool restore(NodeId node, const nlohmann::json& stored);
+  void drop_copies();
+
+ private:
+  struct LevelStore {
+    storage::BlobStore textures, sources;
+    std::vector<TexelSizes> texels;
+  };
+  using Key = std::pair<Level, std::uint32_t>;
+  struct Cached {
+    Key key;
+    std::shared_ptr<const BakeSource> source;
+  };
+
+  std::vector<LevelStore> levels_;
+  std::uint64_t cache_bytes_ = 0;
+  mutable std::mutex mutex_;
+  mutable std::list<Cached> cached_;  ///< the latest first
+  mutable std::map<Key, std::list<Cached>::iterator> found_;
+  mutable std::uint64_t cached_bytes_ = 0;
+};
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,58 @@
+#include "storage/format/glb_material.h"
+
+#include <array>
+
+#include <nlohmann/json.hpp>
+
+namespace meshhier::storage {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// In the order of ImageFormat and AlphaMode.
+constexpr std::array<const char*, 3> kMimeTypes{"image/jpeg", "image/png", "image/webp"};
+constexpr std::array<const char*, 3> kAlphaModes{"OPAQUE", "MASK", "BLEND"};
+
+// Filters and wrap modes of the glTF 2.0 specification.
+constexpr unsigned kLinear = 9729;
+constexpr unsigned kLinearMipmapLinear = 9987;
+constexpr unsigned kClampToEdge = 33071;
+
+}  // namespace
+
+Json material_json() {
+  return {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 1}}},
+          {"doubleSided", true}};
+}
+
+Json material_json(std::size_t texture, AlphaMode alpha, bool unlit) {
+  Json material = material_json();
+  material["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", texture}};
+  if (alpha != AlphaMode::opaque)
+    material["alphaMode"] = kAlphaModes[static_cast<std::size_t>(alpha)];
+  if (unlit)
+    material["extensions"][kUnlitExtension] = Json::object();
+  return material;
+}
+
+Json texture_json(std::size_t image, ImageFormat format) {
+  Json texture = {{"sampler", 0}};
+  if (format == ImageFormat::webp)
+    texture["extensions"][kWebpExtension] = {{"source", image}};
+  else
+    texture["source"] = image;
+  return texture;
+}
+
+Json sampler_json() {
+  return {{"magFilter", kLinear},
+          {"minFilter", kLinearMipmapLinear},
+          {"wrapS", kClampToEdge},
+          {"wrapT", kClampToEdge}};
+}
+
+Json image_json(std::size_t view, ImageFormat format) {
+  return {{"bufferView", view}, {"mimeType", kMimeTypes[static_cast<std::size_t>(format)]}};
+}
+
+}  // namespace meshhier::storage

@@ -1,0 +1,27 @@
+// Materials and pictures of a GLB.
+#pragma once
+
+#include "hierarchy/texture.h"
+
+#include <cstddef>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace meshhier::storage {
+
+inline constexpr const char* kWebpExtension = "EXT_texture_webp";
+inline constexpr const char* kUnlitExtension = "KHR_materials_unlit";
+
+/// Neither metal, which is black without surroundings to mirror, nor one-sided, as scans are open.
+nlohmann::ordered_json material_json();
+/// The same with a texture, by its number; if `unlit`, the document uses kUnlitExtension.
+nlohmann::ordered_json material_json(std::size_t texture, AlphaMode alpha, bool unlit);
+
+/// Of an image, by its number, with the sampler 0; of a WebP the document requires kWebpExtension.
+nlohmann::ordered_json texture_json(std::size_t image, ImageFormat format);
+/// Linear, with mipmaps, without repeats.
+nlohmann::ordered_json sampler_json();
+/// In the buffer view of that number.
+nlohmann::ordered_json image_json(std::size_t view, ImageFormat format);
+
+}  // namespace meshhier::storage

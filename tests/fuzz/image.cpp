@@ -1,0 +1,56 @@
+// The input is a file with a picture. One that is read is read alike row by row from a source that
+// gives little at a time, and comes back from a PNG file of our own.
+#include "fuzz/target.h"
+#include "fuzz/targets.h"
+#include "images/image_codec.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+namespace meshhier::tests::fuzz {
+namespace {
+
+using images::Image;
+using images::ImageInfo;
+
+constexpr std::uint64_t kMostTexels = 1 << 16;
+constexpr std::size_t kLittle = 7;
+const std::string kName = "picture";
+
+Image read_by_rows(Bytes input) {
+  const std::unique_ptr<images::ImageReader> reader = images::open_image(
+      [input](std::uint64_t offset, std::span<std::byte> into) {
+        const Bytes rest = input.subspan(std::min<std::uint64_t>(offset, input.size()));
+        const std::size_t count = std::min({rest.size(), into.size(), kLittle});
+        std::copy_n(rest.begin(), count, into.begin());
+        return count;
+      },
+      kName);
+  const ImageInfo info = reader->info();
+  require(info.channels == 3 || info.channels == 4, "a picture has 3 or 4 channels");
+  Image image(info.width, info.height, info.channels);
+  for (std::uint32_t y = 0; y < image.height; ++y)
+    reader->read_rows(image.at(0, y), 1);
+  return image;
+}
+
+}  // namespace
+
+void image(Bytes input) {
+  Image whole;
+  const std::string message = refusal(
+      {ErrorCode::input}, kName, [&] { whole = images::decode_image(input, kName, kMostTexels); });
+  if (!message.empty())
+    return;
+  require(read_by_rows(input) == whole, "a picture is the same row by row");
+  if (std::max(whole.width, whole.height) > kMaxImageSide)
+    return;
+  const auto png = images::encode_image(whole, ImageFormat::png, 100);
+  require(images::decode_image(png, kName, kMostTexels) == whole, "PNG is exact");
+}
+
+}  // namespace meshhier::tests::fuzz

@@ -1,0 +1,637 @@
+// glTF and GLB files: what they become.
+#include "hierarchy/error.h"
+#include "import/imported.h"
+#include "storage/format/tile_glb.h"
+#include "support/gltf_builder.h"
+#include "tests/gltf/sample_hierarchy.h"
+#include "tests/support/gzip.h"
+#include "tests/support/memory_files.h"
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace meshhier::importing {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using tests::GltfBuilder;
+using tests::GltfJson;
+using tests::Imported;
+using tests::ImportHow;
+using Triangle3 = std::array<std::uint32_t, 3>;
+
+const std::vector<float> kSquare{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+const std::vector<float> kSquareUv{0, 1, 1, 1, 1, 0, 0, 0};
+const std::vector<std::uint16_t> kSquareCorners{0, 1, 2, 0, 2, 3};
+
+class GltfImportTest : public testing::Test {
+ protected:
+  void put(const std::string& name, const std::string& content) {
+    files_.put(fs::path("w") / name, content);
+  }
+  Imported import(const std::string& name, const ImportHow& how = {}) {
+    return tests::import_files(files_, fs::path("w") / name, how);
+  }
+  Imported import(const GltfBuilder& gltf, const ImportHow& how = {}) {
+    put("a.glb", gltf.glb());
+    return import("a.glb", how);
+  }
+  std::string failure(const GltfBuilder& gltf, ErrorCode code = ErrorCode::input) {
+    put("a.glb", gltf.glb());
+    return failure("a.glb", code);
+  }
+  std::string failure(const std::string& name, ErrorCode code = ErrorCode::input) {
+    try {
+      import(name);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), code) << error.what();
+      return error.what();
+    }
+    return {};
+  }
+
+  tests::MemoryFiles files_;
+};
+
+/// The square's positions and corners.
+GltfJson square(GltfBuilder& gltf) {
+  return {{"attributes", {{"POSITION", gltf.accessor(kSquare, "VEC3")}}},
+          {"indices", gltf.accessor(kSquareCorners, "SCALAR")}};
+}
+
+GltfJson textured_square(GltfBuilder& gltf, std::size_t material) {
+  GltfJson primitive = square(gltf);
+  primitive["attributes"]["TEXCOORD_0"] = gltf.accessor(kSquareUv, "VEC2");
+  primitive["material"] = material;
+  return primitive;
+}
+
+TEST_F(GltfImportTest, AGlbIsImportedBitForBit) {
+  GltfBuilder gltf;
+  GltfJson primitive = square(gltf);
+  const std::vector<float> normals{0, 0, 1, 0, 0, 2, 0.1F, 0, 1, 0, 0, 0};
+  primitive["attributes"]["NORMAL"] = gltf.accessor(normals, "VEC3");
+  gltf.show(primitive);
+  const Imported mesh = import(gltf);
+  EXPECT_EQ(mesh.layout, AttributeLayout{.normals = true});
+  EXPECT_EQ(mesh.attributes, normals);
+  EXPECT_THAT(mesh.positions,
+              ElementsAre(Vec3d{0, 0, 0}, Vec3d{1, 0, 0}, Vec3d{1, 1, 0}, Vec3d{0, 1, 0}));
+  EXPECT_THAT(mesh.triangles, ElementsAre(Triangle3{0, 1, 2}, Triangle3{0, 2, 3}));
+  EXPECT_EQ(mesh.summary.files[0].format, "GLB");
+  EXPECT_EQ(mesh.summary.faces, 2U);
+}
+
+TEST_F(GltfImportTest, BuffersAreFilesOrData) {
+  GltfBuilder gltf;
+  gltf.show(square(gltf));
+  put("data/the buffer.bin", gltf.bin);
+  put("a.gltf", gltf.text("data/the%20buffer.bin"));
+  const Imported external = import("a.gltf");
+  EXPECT_EQ(external.positions.size(), 4U);
+  ASSERT_EQ(external.summary.files.size(), 2U);
+  EXPECT_EQ(external.summary.files[1].name, "the buffer.bin");
+  EXPECT_EQ(external.summary.files[1].bytes, gltf.bin.size());
+
+  GltfBuilder embedded;
+  embedded.bin =
+      std::string("\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x80?\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x80?\0\0\0\0", 36);
+  embedded.add("bufferViews", {{"buffer", 0}, {"byteLength", 36}});
+  embedded.add("accessors",
+               {{"bufferView", 0}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}});
+  embedded.show({{"attributes", {{"POSITION", 0}}}});
+  put("b.gltf", embedded.text("data:application/octet-stream;base64,"
+                              "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"));
+  EXPECT_THAT(import("b.gltf").positions,
+              ElementsAre(Vec3d{0, 0, 0}, Vec3d{1, 0, 0}, Vec3d{0, 1, 0}));
+}
+
+TEST_F(GltfImportTest, FilesBesideAreLookedForOnlyBelowTheFolder) {
+  GltfBuilder gltf;
+  gltf.show(square(gltf));
+  put("a.bin", gltf.bin);
+  files_.put("b.bin", gltf.bin);
+  for (const char* uri : {"../b.bin", "sub/../../b.bin", "/b.bin", "http://x/b.bin", "file:b.bin",
+                          "%2e%2e/b.bin", "%2Fb.bin", "b%00.bin", "%zz", ""}) {
+    put("a.gltf", gltf.text(uri));
+    EXPECT_THAT(failure("a.gltf"), HasSubstr("a.gltf: buffers[0]")) << uri;
+  }
+  put("a.gltf", gltf.text("none.bin"));
+  EXPECT_THAT(failure("a.gltf"), HasSubstr("w/none.bin is not there"));
+  put("a.bin", gltf.bin.substr(1));
+  put("a.gltf", gltf.text("a.bin"));
+  EXPECT_THAT(failure("a.gltf"), HasSubstr("buffers[0] has 59 bytes, expected 60"));
+}
+
+TEST_F(GltfImportTest, AChangedBufferIsAnotherInput) {
+  GltfBuilder gltf;
+  gltf.show(square(gltf));
+  put("a.bin", gltf.bin);
+  put("a.gltf", gltf.text("a.bin"));
+  const InputFiles input(files_, fs::path("w/a.gltf"), false);
+  EXPECT_EQ(input.bytes(), gltf.bin.size() + files_.bytes("w/a.gltf").size());
+  const std::uint64_t before = input.checksum(execution::CancelToken());
+  EXPECT_EQ(import("a.gltf").summary.checksum, before);
+  gltf.bin[5] = 'x';
+  put("a.bin", gltf.bin);
+  EXPECT_NE(input.checksum(execution::CancelToken()), before);
+  put("a.bin", gltf.bin + "longer");
+  EXPECT_THROW(input.check_unchanged(), Error);
+}
+
+TEST_F(GltfImportTest, StripsAndFansAreTurnedAsTheSpecificationSays) {
+  const std::vector<float> five{0, 0, 0, 0, 1, 0, 1, 0, 0, 1, 1, 0, 2, 0, 0};
+  for (const bool indexed : {false, true}) {
+    for (const int mode : {4, 5, 6}) {
+      GltfBuilder gltf;
+      GltfJson primitive{{"attributes", {{"POSITION", gltf.accessor(five, "VEC3")}}},
+                         {"mode", mode}};
+      const std::vector<std::uint8_t> corners{0, 1, 2, 3, 4};
+      if (indexed)
+        primitive["indices"] = gltf.accessor(corners, "SCALAR");
+      gltf.show(primitive);
+      if (mode == 4) {
+        EXPECT_THAT(failure(gltf), HasSubstr("has 5 elements for a list of triangles"));
+        continue;
+      }
+      const Imported mesh = import(gltf);
+      if (mode == 5) {
+        EXPECT_THAT(mesh.triangles,
+                    ElementsAre(Triangle3{0, 1, 2}, Triangle3{2, 1, 3}, Triangle3{2, 3, 4}));
+      } else {
+        EXPECT_THAT(mesh.triangles,
+                    ElementsAre(Triangle3{0, 1, 2}, Triangle3{0, 2, 3}, Triangle3{0, 3, 4}));
+      }
+    }
+  }
+}
+
+TEST_F(GltfImportTest, PointsAndLinesAreCounted) {
+  GltfBuilder gltf;
+  const GltfJson shown = square(gltf);
+  gltf.show(shown);
+  for (int mode = 0; mode < 4; ++mode) {
+    GltfJson other = shown;
+    other["mode"] = mode;
+    gltf.show(other);
+  }
+  const Imported mesh = import(gltf);
+  EXPECT_EQ(mesh.triangles.size(), 2U);
+  EXPECT_EQ(mesh.count("ignored_points_and_lines"), 4U);
+}
+
+TEST_F(GltfImportTest, NodesPlaceTurnAndMirrorMeshes) {
+  GltfBuilder gltf;
+  GltfJson primitive = square(gltf);
+  primitive["attributes"]["NORMAL"] =
+      gltf.accessor(std::vector<float>{0, 0, 1, 0, 0, 1, 0, 1, 1, 0, 0, 1}, "VEC3");
+  const std::size_t mesh_number = gltf.mesh(primitive);
+  // A quarter turn around z, then the parent doubles and mirrors x.
+  gltf.node({{"children", {1}}, {"scale", {-2, 1, 1}}, {"translation", {10, 0, 0}}});
+  gltf.node({{"mesh", mesh_number}, {"rotation", {0, 0, std::sqrt(0.5), std::sqrt(0.5)}}});
+  const Imported mesh = import(gltf);
+  ASSERT_EQ(mesh.positions.size(), 4U);
+  EXPECT_NEAR(mesh.positions[1].x, 10, 1e-12);
+  EXPECT_NEAR(mesh.positions[1].y, 1, 1e-12);
+  EXPECT_NEAR(mesh.positions[2].x, 12, 1e-12);
+  EXPECT_THAT(mesh.triangles, ElementsAre(Triangle3{0, 2, 1}, Triangle3{0, 3, 2}));
+  // (0, 1, 1) turns to (-1, 0, 1); by the inverse transpose x is divided by -2.
+  EXPECT_NEAR(mesh.attributes[6], 0.5 / std::sqrt(1.25), 1e-6);
+  EXPECT_NEAR(mesh.attributes[8], 1 / std::sqrt(1.25), 1e-6);
+}
+
+TEST_F(GltfImportTest, AMatrixIsColumnByColumnAndPositionsBecomeDoublesIfNeeded) {
+  GltfBuilder gltf;
+  const std::size_t number = gltf.mesh(square(gltf));
+  gltf.node({{"mesh", number}, {"matrix", {1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0.1, 0, 5, 1}}});
+  const Imported mesh = import(gltf);
+  EXPECT_EQ(mesh.positions[2], (Vec3d{1.1, 0, 6}));
+}
+
+TEST_F(GltfImportTest, AMeshOfSeveralNodesIsThereSeveralTimes) {
+  GltfBuilder gltf;
+  const std::size_t number = gltf.mesh(square(gltf));
+  gltf.node({{"mesh", number}});
+  gltf.node({{"mesh", number}, {"translation", {4, 0, 0}}});
+  const Imported mesh = import(gltf);
+  EXPECT_EQ(mesh.positions.size(), 8U);
+  EXPECT_EQ(mesh.positions[5], (Vec3d{5, 0, 0}));
+  EXPECT_EQ(mesh.triangles.size(), 4U);
+  EXPECT_EQ(mesh.triangles[2], (Triangle3{4, 5, 6}));
+  EXPECT_EQ(mesh.count("repeated_meshes"), 1U);
+}
+
+TEST_F(GltfImportTest, TheSceneIsTheOneThatIsNamed) {
+  GltfBuilder gltf;
+  const std::size_t number = gltf.mesh(square(gltf));
+  gltf.node({{"mesh", number}});
+  gltf.node({{"mesh", number}, {"translation", {4, 0, 0}}});
+  gltf.json["scenes"] = {{{"nodes", {0, 1}}}, {{"nodes", {1}}}};
+  EXPECT_EQ(import(gltf).positions.size(), 8U);
+  gltf.json["scene"] = 1;
+  EXPECT_EQ(import(gltf).positions[0], (Vec3d{4, 0, 0}));
+}
+
+TEST_F(GltfImportTest, NodesThatAreReachedTwiceAreRefused) {
+  GltfBuilder gltf;
+  gltf.node({{"mesh", gltf.mesh(square(gltf))}, {"children", {1}}});
+  gltf.node({{"children", {0}}});
+  gltf.json["scenes"] = {{{"nodes", {0}}}};
+  EXPECT_THAT(failure(gltf), HasSubstr("nodes[0] is reached twice"));
+  gltf.json["nodes"][1]["children"] = {1};
+  EXPECT_THAT(failure(gltf), HasSubstr("nodes[1] is reached twice"));
+  gltf.json["nodes"][1] = GltfJson::object();
+  gltf.json["scenes"][0]["nodes"] = {0, 0};
+  EXPECT_THAT(failure(gltf), HasSubstr("nodes[0] is reached twice"));
+}
+
+TEST_F(GltfImportTest, ADeepTreeIsNoProblem) {
+  GltfBuilder gltf;
+  constexpr int kDepth = 20000;
+  for (int i = 1; i < kDepth; ++i)
+    gltf.node({{"children", {i}}});
+  gltf.node({{"mesh", gltf.mesh(square(gltf))}});
+  EXPECT_EQ(import(gltf).positions.size(), 4U);
+}
+
+/// Whatever the memory: in parts of a few thousand vertices, or all at once.
+TEST_F(GltfImportTest, OnlyVerticesThatTrianglesUseAreThere) {
+  constexpr std::uint32_t kVertices = 30000;
+  std::vector<float> positions;
+  for (std::uint32_t i = 0; i < kVertices; ++i)
+    positions.insert(positions.end(), {static_cast<float>(i), static_cast<float>(i % 7), 0});
+  std::vector<std::uint32_t> corners;
+  for (std::uint32_t i = 0; i + 20 < kVertices; i += 10)
+    corners.insert(corners.end(), {kVertices - 1 - i, i + 1, (i * 13) % kVertices});
+  GltfBuilder gltf;
+  gltf.show({{"attributes", {{"POSITION", gltf.accessor(positions, "VEC3")}}},
+             {"indices", gltf.accessor(corners, "SCALAR")}});
+  const Imported mesh = import(gltf);
+  const Imported tight = import(gltf, {.memory = tests::kTight});
+  EXPECT_EQ(mesh.positions, tight.positions);
+  EXPECT_EQ(mesh.triangles, tight.triangles);
+  const std::set<std::uint32_t> used(corners.begin(), corners.end());
+  ASSERT_EQ(mesh.positions.size(), used.size());
+  EXPECT_EQ(mesh.count("vertices_left_out"), kVertices - used.size());
+  EXPECT_TRUE(std::ranges::is_sorted(mesh.positions, {}, [](Vec3d p) { return p.x; }));
+  std::size_t next = 0;
+  for (const Triangle3& t : mesh.triangles) {
+    while (corners[next] == corners[next + 1] || corners[next + 1] == corners[next + 2] ||
+           corners[next + 2] == corners[next])
+      next += 3;
+    for (const std::uint32_t corner : t)
+      ASSERT_EQ(mesh.positions[corner].x, corners[next++]);
+  }
+}
+
+TEST_F(GltfImportTest, IntegersAreFractionsWhereTheyAreNormalized) {
+  GltfBuilder gltf;
+  const std::vector<std::int16_t> positions{0, 0, 0, 0, 32767, 0, 0, 0, -32768, 16384, 0, 0};
+  GltfJson primitive{
+      {"attributes",
+       {{"POSITION", gltf.accessor(positions, "VEC4", {{"type", "VEC3"}, {"count", 3}})},
+        {"NORMAL", gltf.accessor(std::vector<std::int8_t>{127, 0, 0, 0, -128, 0, 0, 0, -127},
+                                 "VEC3", {{"normalized", true}})}}}};
+  gltf.json["bufferViews"][0]["byteStride"] = 8;
+  gltf.show(primitive);
+  Imported mesh = import(gltf);
+  EXPECT_THAT(mesh.positions,
+              ElementsAre(Vec3d{0, 0, 0}, Vec3d{32767, 0, 0}, Vec3d{-32768, 16384, 0}));
+  EXPECT_THAT(mesh.attributes, ElementsAre(1, 0, 0, 0, -1, 0, 0, 0, -1));
+  gltf.json["accessors"][0]["normalized"] = true;
+  mesh = import(gltf);
+  EXPECT_EQ(mesh.positions[1], (Vec3d{1, 0, 0}));
+  EXPECT_EQ(mesh.positions[2], (Vec3d{-1, 16384.0F / 32767.0F, 0}));
+}
+
+TEST_F(GltfImportTest, SparseAccessorsReplaceElements) {
+  GltfBuilder gltf;
+  GltfJson primitive = square(gltf);
+  const std::size_t indices = gltf.view(GltfBuilder::bytes_of(std::vector<std::uint8_t>{1, 3}));
+  const std::size_t values = gltf.view(GltfBuilder::bytes_of(std::vector<float>{7, 8, 9, 4, 5, 6}));
+  gltf.json["accessors"][0]["sparse"] = {
+      {"count", 2},
+      {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
+      {"values", {{"bufferView", values}}}};
+  gltf.show(primitive);
+  EXPECT_THAT(import(gltf).positions,
+              ElementsAre(Vec3d{0, 0, 0}, Vec3d{7, 8, 9}, Vec3d{1, 1, 0}, Vec3d{4, 5, 6}));
+  gltf.json["accessors"][0].erase("bufferView");
+  EXPECT_THAT(import(gltf).positions,
+              ElementsAre(Vec3d{0, 0, 0}, Vec3d{7, 8, 9}, Vec3d{0, 0, 0}, Vec3d{4, 5, 6}));
+  gltf.bin[gltf.json["bufferViews"][indices]["byteOffset"].get<std::size_t>()] = 3;
+  EXPECT_THAT(failure(gltf), HasSubstr("accessors[0].sparse.indices: item 1 is 3"));
+}
+
+TEST_F(GltfImportTest, ColoursKeepTheirTypeIfAllHaveIt) {
+  const std::vector<std::uint8_t> bytes{0, 128, 255, 9, 1, 2, 3, 9, 4, 5, 6, 9, 7, 8, 9, 9};
+  GltfBuilder gltf;
+  GltfJson primitive = square(gltf);
+  primitive["attributes"]["COLOR_0"] = gltf.accessor(bytes, "VEC4", {{"normalized", true}});
+  gltf.show(primitive);
+  Imported mesh = import(gltf);
+  EXPECT_EQ(mesh.layout, (AttributeLayout{.colour = ColourType::u8, .alpha = true}));
+  EXPECT_EQ(mesh.attributes, std::vector<float>(bytes.begin(), bytes.end()));
+
+  GltfJson other = square(gltf);
+  other["attributes"]["COLOR_0"] =
+      gltf.accessor(std::vector<float>{.1F, .2F, .3F, 0, 0, 0, 1, 1, 1, 2, 0, 0}, "VEC3");
+  gltf.show(other);
+  gltf.show(square(gltf));
+  mesh = import(gltf);
+  EXPECT_EQ(mesh.layout, (AttributeLayout{.colour = ColourType::f32, .alpha = true}));
+  EXPECT_EQ(mesh.attributes[1], 128.0F / 255.0F);
+  EXPECT_EQ(mesh.attributes[16], .1F);
+  EXPECT_EQ(mesh.attributes[19], 1);  // alpha
+  EXPECT_EQ(mesh.attributes[32], 1);
+  EXPECT_EQ(mesh.count("vertices_made_white"), 4U);
+}
+
+TEST_F(GltfImportTest, WhatAPrimitiveDoesNotHaveIsFilledInAndCounted) {
+  GltfBuilder gltf;
+  GltfJson full = textured_square(gltf, gltf.add("materials", GltfJson::object()));
+  full["attributes"]["NORMAL"] = gltf.accessor(std::vector<float>(12, 1), "VEC3");
+  gltf.show(full);
+  gltf.show(square(gltf));
+  const Imported mesh = import(gltf);
+  EXPECT_EQ(mesh.layout, (AttributeLayout{.normals = true, .texcoords = true}));
+  EXPECT_EQ(mesh.count("vertices_without_normal"), 4U);
+  EXPECT_EQ(mesh.count("vertices_without_texcoord"), 4U);
+  EXPECT_THAT(mesh.warnings, IsEmpty());
+}
+
+TEST_F(GltfImportTest, PicturesAreFilesRangesOrData) {
+  GltfBuilder gltf;
+  const std::size_t in_glb = gltf.view("the picture");
+  gltf.show(textured_square(gltf, gltf.textured_material({{"uri", "b.png"}})));
+  gltf.show(textured_square(
+      gltf, gltf.textured_material({{"bufferView", in_glb}, {"mimeType", "image/png"}})));
+  gltf.show(
+      textured_square(gltf, gltf.textured_material({{"uri", "data:image/png;base64,cGl4ZWxz"}})));
+  put("b.png", "x");
+  const Imported mesh = import(gltf);
+  EXPECT_EQ(mesh.layout, (AttributeLayout{.texcoords = true, .material = true}));
+  ASSERT_EQ(mesh.materials.images.size(), 3U);
+  EXPECT_EQ(mesh.materials.images[0].file, fs::path("w/b.png"));
+  EXPECT_EQ(mesh.materials.images[0].bytes, 0U);
+  const images::ImageSource& range = mesh.materials.images[1];
+  EXPECT_EQ(range.file, fs::path("w/a.glb"));
+  EXPECT_EQ(files_.content("w/a.glb").substr(range.offset, range.bytes), "the picture");
+  const std::vector<std::byte>& data = mesh.materials.images[2].data;
+  EXPECT_EQ(std::string(reinterpret_cast<const char*>(data.data()), data.size()), "pixels");
+  EXPECT_EQ(mesh.material_of(0), 0U);
+  EXPECT_EQ(mesh.material_of(2), 1U);
+  EXPECT_EQ(mesh.material_of(5), 2U);
+  EXPECT_EQ(mesh.texcoord(0, 0), (Vec2f{0, 1}));
+  EXPECT_EQ(mesh.count("missing_images"), 0U);
+  ASSERT_TRUE(mesh.summary.textures);
+  EXPECT_EQ(mesh.summary.textures->images, 3U);
+}
+
+TEST_F(GltfImportTest, AMissingPictureShowsItsMaterialsColour) {
+  GltfBuilder gltf;
+  const std::size_t missing = gltf.textured_material({{"uri", "none.png"}});
+  gltf.json["materials"][missing]["pbrMetallicRoughness"]["baseColorFactor"] = {0.5, 0, 1, 0.25};
+  gltf.show(textured_square(gltf, missing));
+  Imported mesh = import(gltf);
+  EXPECT_EQ(mesh.layout, AttributeLayout{.texcoords = true});
+  ASSERT_EQ(mesh.warnings.size(), 1U);
+  EXPECT_THAT(mesh.warnings[0], HasSubstr("none.png"));
+
+  gltf.show(textured_square(gltf, gltf.textured_material({{"uri", "b.png"}})));
+  gltf.show(square(gltf));  // of the default material
+  put("b.png", "x");
+  mesh = import(gltf);
+  ASSERT_EQ(mesh.materials.materials.size(), 3U);
+  EXPECT_EQ(mesh.materials.materials[mesh.material_of(5)], images::Material{});
+  const images::Material& colour = mesh.materials.materials[mesh.material_of(0)];
+  EXPECT_FALSE(colour.image);
+  EXPECT_EQ(colour.colour[0], 188 / 255.0F);  // sRGB of 0.5
+  EXPECT_EQ(colour.colour[3], 0.25F);
+  EXPECT_EQ(mesh.count("missing_images"), 1U);
+  const Imported ignored = import(gltf, {.textures = Textures::ignore});
+  EXPECT_EQ(ignored.layout, AttributeLayout{.texcoords = true});
+  EXPECT_THAT(ignored.warnings, IsEmpty());
+}
+
+TEST_F(GltfImportTest, MaterialsHaveWrapsAlphaAndOtherCoordinates) {
+  GltfBuilder gltf;
+  put("b.webp", "x");
+  put("b.png", "x");
+  const std::size_t number = gltf.textured_material({{"uri", "b.png"}}, {{"texCoord", 1}});
+  gltf.add("images", {{"uri", "b.webp"}});
+  gltf.json["textures"][0]["extensions"]["EXT_texture_webp"]["source"] = 1;
+  gltf.json["textures"][0]["sampler"] = 0;
+  gltf.add("samplers", {{"wrapS", 33071}, {"wrapT", 33648}});
+  GltfJson& material = gltf.json["materials"][number];
+  material["alphaMode"] = "MASK";
+  material["alphaCutoff"] = 0.25;
+  material["pbrMetallicRoughness"]["baseColorFactor"] = {1, 0.5, 1, 1};
+  GltfJson primitive = textured_square(gltf, number);
+  primitive["attributes"]["TEXCOORD_1"] = gltf.accessor(
+      std::vector<std::uint8_t>{255, 0, 0, 51, 0, 0, 0, 0}, "VEC2", {{"normalized", true}});
+  gltf.show(primitive);
+  const Imported mesh = import(gltf);
+  ASSERT_EQ(mesh.materials.materials.size(), 1U);
+  const images::Material& found = mesh.materials.materials[0];
+  EXPECT_EQ(found.wrap_u, Wrap::clamp);
+  EXPECT_EQ(found.wrap_v, Wrap::mirrored);
+  EXPECT_EQ(found.alpha, AlphaMode::mask);
+  EXPECT_EQ(found.alpha_cutoff, 0.25F);
+  EXPECT_EQ(mesh.materials.images[0].file, fs::path("w/b.webp"));
+  EXPECT_EQ(mesh.count("tinted_pictures"), 1U);
+  EXPECT_EQ(mesh.texcoord(0, 0), (Vec2f{1, 0}));
+  EXPECT_EQ(mesh.texcoord(0, 1), (Vec2f{0, 0.2F}));
+}
+
+TEST_F(GltfImportTest, TextureTransformsAreAppliedToCoordinates) {
+  GltfBuilder gltf;
+  put("b.png", "x");
+  const GltfJson transform{{"offset", {10, 20}}, {"rotation", std::acos(0.0)}, {"scale", {2, 4}}};
+  gltf.show(textured_square(
+      gltf, gltf.textured_material({{"uri", "b.png"}},
+                                   {{"extensions", {{"KHR_texture_transform", transform}}}})));
+  const Imported mesh = import(gltf);
+  // (1, 1) is scaled to (2, 4), turned to (4, -2), moved.
+  EXPECT_NEAR(mesh.texcoord(0, 1).u, 14, 1e-6);
+  EXPECT_NEAR(mesh.texcoord(0, 1).v, 18, 1e-6);
+}
+
+TEST_F(GltfImportTest, GlossyMaterialsHaveADiffusePicture) {
+  GltfBuilder gltf;
+  put("b.png", "x");
+  const std::size_t number = gltf.textured_material({{"uri", "b.png"}});
+  gltf.json["materials"][number] = {
+      {"extensions",
+       {{"KHR_materials_pbrSpecularGlossiness", {{"diffuseTexture", {{"index", 0}}}}}}}};
+  gltf.show(textured_square(gltf, number));
+  EXPECT_TRUE(import(gltf).layout.material);
+}
+
+TEST_F(GltfImportTest, PackedFilesAreUnpackedUnlessTheirPicturesAreNeeded) {
+  GltfBuilder gltf;
+  gltf.show(square(gltf));
+  put("a.glb.gz", tests::gzip(gltf.glb()));
+  EXPECT_EQ(import("a.glb.gz").positions.size(), 4U);
+  put("a.bin", gltf.bin);
+  put("a.gltf.gz", tests::gzip(gltf.text("a.bin")));
+  EXPECT_EQ(import("a.gltf.gz").summary.files.size(), 2U);
+  gltf.show(textured_square(gltf, gltf.textured_material({{"bufferView", gltf.view("picture")}})));
+  put("b.glb.gz", tests::gzip(gltf.glb()));
+  EXPECT_THAT(failure("b.glb.gz"), HasSubstr("images[0] lies in a packed GLB; unpack"));
+}
+
+TEST_F(GltfImportTest, FilesOfSeveralFormatsAreJoined) {
+  GltfBuilder gltf;
+  gltf.show(square(gltf));
+  put("a.glb", gltf.glb());
+  put("b.obj", "v 5 0 0\nv 6 0 0\nv 6 1 0\nf 1 2 3\n");
+  mesh_io::InputPaths paths;
+  paths.push_back("w/b.obj");
+  paths.push_back("w/a.glb");
+  const Imported mesh = tests::import_files(files_, paths);
+  EXPECT_EQ(mesh.positions.size(), 7U);
+  EXPECT_EQ(mesh.triangles[1], (Triangle3{3, 4, 5}));
+}
+
+TEST_F(GltfImportTest, NumbersThatAreNoneNameTheirAccessor) {
+  for (const float bad : {std::nanf(""), std::numeric_limits<float>::infinity(), 3e38F}) {
+    GltfBuilder gltf;
+    std::vector<float> positions = kSquare;
+    positions[7] = bad;
+    gltf.show({{"attributes", {{"POSITION", gltf.accessor(positions, "VEC3")}}},
+               {"indices", gltf.accessor(kSquareCorners, "SCALAR")}});
+    EXPECT_THAT(failure(gltf), HasSubstr("accessors[0]: element 2 has"));
+  }
+  GltfBuilder gltf;
+  GltfJson primitive = square(gltf);
+  primitive["attributes"]["NORMAL"] = gltf.accessor(std::vector<float>(12, std::nanf("")), "VEC3");
+  gltf.show(primitive);
+  EXPECT_THAT(failure(gltf), HasSubstr("accessors[2]: element 0 has nan, expected a finite"));
+}
+
+TEST_F(GltfImportTest, UnknownRequiredExtensionsAreRefusedByName) {
+  GltfBuilder gltf;
+  gltf.show(square(gltf));
+  gltf.json["extensionsRequired"] = {"KHR_materials_unlit", "VENDOR_other"};
+  EXPECT_THAT(failure(gltf), HasSubstr("requires the extension VENDOR_other"));
+  gltf.json["extensionsRequired"] = {"KHR_materials_unlit", "KHR_mesh_quantization"};
+  EXPECT_EQ(failure(gltf), "");
+  gltf.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = GltfJson::object();
+  EXPECT_THAT(failure(gltf), HasSubstr("nodes[0] has EXT_mesh_gpu_instancing"));
+}
+
+TEST_F(GltfImportTest, OtherVersionsAreRefused) {
+  for (const char* asset :
+       {R"({"version":"1.0"})", R"({"version":1})", "{}", R"({"version":"3.0"})"}) {
+    put("a.gltf", std::string(R"({"asset":)") + asset + "}");
+    EXPECT_THAT(failure("a.gltf"), HasSubstr("convert the file to glTF 2.0")) << asset;
+  }
+  put("a.glb", "glTF" + tests::little(1) + tests::little(20) + std::string(8, 'x'));
+  EXPECT_THAT(failure("a.glb"), HasSubstr("GLB of version 1, expected 2"));
+}
+
+/// Each number of each accessor, view and primitive, one after another.
+TEST_F(GltfImportTest, LyingNumbersAreRefused) {
+  GltfBuilder gltf;
+  GltfJson primitive = square(gltf);
+  primitive["attributes"]["NORMAL"] = gltf.accessor(kSquare, "VEC3");
+  primitive["attributes"]["TEXCOORD_0"] = gltf.accessor(kSquareUv, "VEC2");
+  gltf.show(primitive);
+  gltf.json["buffers"] = {{{"byteLength", gltf.bin.size()}}};
+  for (GltfJson& view : gltf.json["bufferViews"])
+    view["byteStride"] = 0;
+  for (GltfJson& accessor : gltf.json["accessors"])
+    accessor["byteOffset"] = 0;
+  ASSERT_EQ(failure(gltf), "");
+  const GltfJson flat = gltf.json.flatten();
+  std::size_t refused = 0;
+  for (const auto& [place, value] : flat.items()) {
+    if (!value.is_number())
+      continue;
+    for (const GltfJson& lie :
+         {GltfJson(-1), GltfJson(1.5), GltfJson(4294967295U), GltfJson(4294967296U),
+          GltfJson(UINT64_MAX), GltfJson(std::uint64_t{1} << 53), GltfJson(1e300), GltfJson("x"),
+          GltfJson(nullptr), GltfJson::array(), GltfJson::object()}) {
+      GltfBuilder lying = gltf;
+      lying.json[GltfJson::json_pointer(place)] = lie;
+      const std::string message = failure(lying);
+      EXPECT_THAT(message, HasSubstr("w/a.glb: ")) << place << " " << lie;
+      EXPECT_LT(message.size(), 300U);
+      refused += message.empty() ? 0 : 1;
+    }
+  }
+  EXPECT_GE(refused, 200U);
+}
+
+TEST_F(GltfImportTest, ATruncatedGlbIsRefused) {
+  GltfBuilder gltf;
+  gltf.show(textured_square(gltf, gltf.textured_material({{"bufferView", gltf.view("picture")}})));
+  const std::string whole = gltf.glb();
+  put("a.glb", whole);
+  ASSERT_EQ(failure("a.glb"), "");
+  for (std::size_t size = 4; size < whole.size(); ++size) {
+    put("a.glb", whole.substr(0, size));
+    EXPECT_THAT(failure("a.glb"), HasSubstr("a.glb")) << size;
+    if (size > 16) {
+      put("a.glb", whole.substr(0, 8) + tests::little(static_cast<std::uint32_t>(size)) +
+                       whole.substr(12, size - 12));
+      EXPECT_THAT(failure("a.glb"), HasSubstr("a.glb")) << size;
+    }
+  }
+}
+
+TEST_F(GltfImportTest, ZerosWithoutBytesAreFew) {
+  GltfBuilder gltf;
+  gltf.add("accessors", {{"componentType", 5126}, {"count", 4000000000U}, {"type", "VEC3"}});
+  gltf.show({{"attributes", {{"POSITION", 0}}}});
+  EXPECT_THAT(failure(gltf), HasSubstr("accessors[0] has no bufferView for its 4000000000"));
+}
+
+TEST_F(GltfImportTest, JsonBeyondTheMemoryIsRefused) {
+  std::string json = R"({"asset":{"version":"2.0"},"extras":[)";
+  for (int i = 0; i < 100000; ++i)
+    json += "{},";
+  put("a.gltf", json + "{}]}");
+  ImportHow tight{.memory = tests::kTight};
+  try {
+    import("a.gltf", tight);
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::budget);
+    EXPECT_THAT(error.what(), HasSubstr("give a larger memory_budget"));
+  }
+  put("b.gltf", R"({"asset":{"version":"2.0"},"extras":)" + std::string(100000, '['));
+  EXPECT_THAT(failure("b.gltf"), HasSubstr("nested deeper than 64 levels"));
+}
+
+/// What a hierarchy is made of is a mesh itself.
+TEST_F(GltfImportTest, TilesOfAHierarchyAreMeshes) {
+  for (const storage::Compression compression :
+       {storage::Compression::none, storage::Compression::meshopt}) {
+    storage::TileFormat format;
+    format.attributes = {.normals = true, .colour = ColourType::u8};
+    format.compression = compression;
+    const tests::SampleHierarchy sample = tests::make_sample(tests::sphere(500), 4, format);
+    for (const PublishedTile& tile : sample.tiles) {
+      const auto bytes = storage::encode_tile(tile, sample.tree, format);
+      put("tile.glb", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+      const Imported mesh = import("tile.glb");
+      EXPECT_EQ(mesh.layout, format.attributes);
+      EXPECT_EQ(mesh.triangles.size() + mesh.summary.degenerate_triangles,
+                tile.mesh.interior.size() + tile.mesh.border.size());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace meshhier::importing

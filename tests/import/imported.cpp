@@ -1,0 +1,110 @@
+#include "import/imported.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace meshhier::tests {
+namespace {
+
+class Warnings final : public execution::Progress {
+ public:
+  void stage(std::string_view, std::uint64_t, std::string_view) override {}
+  void advance(std::uint64_t) override {}
+  void finish(std::string_view) override {}
+  void warn(std::string_view message) override { all.emplace_back(message); }
+
+  std::vector<std::string> all;
+};
+
+void read(mesh_io::MeshSource& source, Imported& into) {
+  source.read_vertices([&](const mesh_io::VertexBlock& block) {
+    for (const Vec3f& p : block.positions)
+      into.positions.push_back(to_double(p));
+    into.positions.insert(into.positions.end(), block.exact.begin(), block.exact.end());
+    into.attributes.insert(into.attributes.end(), block.attributes.begin(), block.attributes.end());
+  });
+  source.read_triangles([&](std::span<const Triangle<VertexId>> triangles) {
+    for (const auto& t : triangles)
+      into.triangles.push_back({raw(t[0]), raw(t[1]), raw(t[2])});
+  });
+}
+
+std::string colour_text(const std::array<float, 4>& colour) {
+  std::string text = "#";
+  for (std::size_t i = 0; i < (colour[3] < 1 ? 4U : 3U); ++i)
+    text += fmt::format("{:02x}", std::lround(255 * colour[i]));
+  return text;
+}
+
+}  // namespace
+
+std::uint64_t Imported::count(const std::string& name) const {
+  const auto found = std::ranges::find(summary.counts, name, &SourceCount::name);
+  return found == summary.counts.end() ? 0 : found->count;
+}
+
+std::uint32_t Imported::material_of(std::size_t triangle) const {
+  const auto channels = static_cast<std::size_t>(layout.channels());
+  const auto offset = static_cast<std::size_t>(layout.material_offset());
+  std::array<float, 3> all{};
+  for (std::size_t k = 0; k < 3; ++k)
+    all[k] = attributes.at(triangles.at(triangle)[k] * channels + offset);
+  if (all[0] != all[1] || all[1] != all[2] || !(all[0] < float(materials.materials.size())))
+    throw std::logic_error("the corners of a triangle name no material, or several");
+  return static_cast<std::uint32_t>(all[0]);
+}
+
+Vec2f Imported::texcoord(std::size_t triangle, std::size_t corner) const {
+  const std::size_t first =
+      triangles.at(triangle)[corner] * static_cast<std::size_t>(layout.channels()) +
+      static_cast<std::size_t>(layout.texcoord_offset());
+  return {attributes.at(first), attributes.at(first + 1)};
+}
+
+std::string Imported::shown(std::size_t triangle) const {
+  std::string text;
+  if (layout.material) {
+    const images::Material& material = materials.materials[material_of(triangle)];
+    if (!material.image)
+      return colour_text(material.colour);
+    text = materials.images[*material.image].file.filename().string() + ' ';
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec2f at = texcoord(triangle, k);
+    text += fmt::format("{}{} {}", k > 0 ? ", " : "", at.u, at.v);
+  }
+  return text;
+}
+
+std::vector<std::string> Imported::all_shown() const {
+  std::vector<std::string> all;
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    all.push_back(shown(t));
+  return all;
+}
+
+Imported import_files(storage::FileSystem& files, const mesh_io::InputPaths& inputs,
+                      const ImportHow& how) {
+  storage::MemoryPool pool(how.memory.pool_bytes);
+  Warnings warnings;
+  const execution::CancelToken cancel;
+  importing::MeshInput input(inputs, how.weld, files, how.textures);
+  if (input.needs_import()) {
+    input.import({how.folder / "imported.ply", how.folder / "import", pool, how.memory.sort_bytes,
+                  warnings, cancel});
+  }
+  Imported result;
+  result.layout = input.description().attributes;
+  result.materials = input.materials();
+  read(*input.open(), result);
+  input.complete(result.summary);
+  result.warnings = warnings.all;
+  result.disk_bytes = pool.scratch_use().peak_bytes_on_disk();
+  result.predicted_bytes = importing::predict_import(input.files(), how.memory);
+  return result;
+}
+
+}  // namespace meshhier::tests

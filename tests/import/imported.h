@@ -1,0 +1,52 @@
+// What files become by an import, read back as a build reads it.
+#pragma once
+
+#include "hierarchy/published.h"
+#include "images/material_list.h"
+#include "import/mesh_input.h"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace meshhier::tests {
+
+struct Imported {
+  AttributeLayout layout;
+  images::MaterialList materials;
+  SourceSummary summary;
+  std::vector<std::string> warnings;
+  std::uint64_t disk_bytes = 0;       ///< temporary, at most at once
+  std::uint64_t predicted_bytes = 0;  ///< as importing::predict_import
+  std::vector<Vec3d> positions;
+  std::vector<float> attributes;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+
+  std::uint64_t count(const std::string& name) const;  ///< of the summary's; 0 if it is not there
+  /// The number of a triangle's material, which all of its corners must name.
+  std::uint32_t material_of(std::size_t triangle) const;
+  /// Texture coordinates of a corner.
+  Vec2f texcoord(std::size_t triangle, std::size_t corner) const;
+  /// "a.png 0 1, 0.5 1, 1 0" or "#ff0000" of what it shows; "0 1, ..." if nothing is textured.
+  std::string shown(std::size_t triangle) const;
+  /// Of all triangles.
+  std::vector<std::string> all_shown() const;
+};
+
+inline constexpr importing::ImportMemory kRoomy{64 << 20, 64 << 20};
+/// All is spooled and merged in many runs.
+inline constexpr importing::ImportMemory kTight{0, 1};
+
+struct ImportHow {
+  bool weld = false;
+  importing::Textures textures = importing::Textures::use;
+  importing::ImportMemory memory = kRoomy;
+  std::filesystem::path folder = "w";  ///< for temporary files
+};
+
+/// Throws as importing::MeshInput.
+Imported import_files(storage::FileSystem& files, const mesh_io::InputPaths& inputs,
+                      const ImportHow& how = {});
+
+}  // namespace meshhier::tests

@@ -1,0 +1,315 @@
+// OBJ files with material libraries and pictures.
+#include "hierarchy/error.h"
+#include "import/imported.h"
+#include "tests/support/memory_files.h"
+
+#include <filesystem>
+#include <string>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace meshhier::importing {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+using tests::Imported;
+using tests::ImportHow;
+
+/// Four positions and texture coordinates of a square.
+constexpr const char* kSquare =
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
+
+class TexturedObjTest : public testing::Test {
+ protected:
+  void put(const std::string& name, const std::string& content) {
+    files_.put(fs::path("w") / name, content);
+  }
+  void put_pictures(std::initializer_list<std::string> names) {
+    for (const std::string& name : names)
+      put(name, "a picture");
+  }
+  Imported import(const ImportHow& how = {}) { return import_of({"a.obj"}, how); }
+  Imported import_of(const std::vector<std::string>& names, const ImportHow& how = {}) {
+    mesh_io::InputPaths paths;
+    for (const std::string& name : names)
+      paths.push_back(fs::path("w") / name);
+    return tests::import_files(files_, paths, how);
+  }
+  /// Imports a triangle of the material m, which is `definition`.
+  Imported import_with(const std::string& definition) {
+    put("a.mtl", "newmtl m\n" + definition + '\n');
+    put("a.obj", std::string("mtllib a.mtl\nusemtl m\n") + kSquare + "f 1/1 2/2 3/3\n");
+    return import();
+  }
+  std::string shown_with(const std::string& definition) { return import_with(definition).shown(0); }
+  std::string failure() {
+    try {
+      import();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::input);
+      return error.what();
+    }
+    return {};
+  }
+
+  tests::MemoryFiles files_;
+};
+
+TEST_F(TexturedObjTest, CornersNameTheirMaterialAndCoordinatesFromTheTop) {
+  put_pictures({"a.png", "b.png"});
+  put("a.mtl", "newmtl one\nmap_Kd a.png\nnewmtl two\nmap_Kd b.png\nnewmtl unused\nmap_Kd c.png\n");
+  put("a.obj", std::string("mtllib a.mtl\n") + kSquare +
+                   "usemtl two\nf 1/1 2/2 3/3\nusemtl one\nf 1/1 3/3 4/4\n");
+  const Imported mesh = import();
+  EXPECT_EQ(mesh.layout, (AttributeLayout{.texcoords = true, .material = true}));
+  EXPECT_THAT(mesh.all_shown(), ElementsAre("b.png 0 1, 1 1, 1 0", "a.png 0 1, 1 0, 0 0"));
+  EXPECT_THAT(mesh.positions, SizeIs(6)) << "two lie at the border of the materials";
+  ASSERT_THAT(mesh.materials.materials, SizeIs(2)) << "in the order of first use";
+  EXPECT_EQ(mesh.materials.materials[0].name, "two");
+  EXPECT_EQ(mesh.materials.images[0].name, "b.png");
+  EXPECT_EQ(mesh.summary.textures, (SourceTextures{.materials = 2, .images = 2}));
+  EXPECT_THAT(mesh.warnings, IsEmpty());
+}
+
+TEST_F(TexturedObjTest, WithoutAnyPictureAllIsAsIfThereWereNoMaterials) {
+  const std::string faces = "usemtl one\nf 1/1 2/2 3/3\nusemtl two\nf 1/1 3/3 4/4\n";
+  put("a.obj", std::string(kSquare) + faces);
+  const Imported plain = import();
+  put("a.mtl", "newmtl one\nmap_Kd a.png\nnewmtl two\nmap_Kd b.png\n");
+  put("a.obj", "mtllib a.mtl\n" + std::string(kSquare) + faces);
+  const Imported missing = import();
+  EXPECT_EQ(missing.layout, AttributeLayout{.texcoords = true});
+  EXPECT_EQ(missing.attributes, plain.attributes);
+  EXPECT_EQ(missing.triangles, plain.triangles);
+  EXPECT_TRUE(missing.materials.empty());
+  EXPECT_FALSE(missing.summary.textures);
+  EXPECT_EQ(missing.count("missing_images"), 2U);
+  ASSERT_THAT(missing.warnings, SizeIs(1));
+  EXPECT_EQ(missing.warnings[0],
+            "2 pictures of the mesh are missing (the first is a.png of w/a.mtl): "
+            "the mesh is read as one without textures");
+}
+
+TEST_F(TexturedObjTest, TexturesCanBeIgnored) {
+  put_pictures({"a.png"});
+  import_with("map_Kd a.png");
+  const Imported mesh = import({.textures = Textures::ignore});
+  EXPECT_EQ(mesh.layout, AttributeLayout{.texcoords = true});
+  EXPECT_THAT(mesh.all_shown(), ElementsAre("0 0, 1 0, 1 1"));
+  EXPECT_TRUE(mesh.materials.empty());
+}
+
+TEST_F(TexturedObjTest, AMissingPictureShowsTheColourOfItsMaterial) {
+  put_pictures({"a.png"});
+  put("a.mtl", "newmtl one\nmap_Kd a.png\nnewmtl two\nKd 1 0 0.5\nmap_Kd b.png\n");
+  put("a.obj", std::string("mtllib a.mtl\n") + kSquare +
+                   "usemtl one\nf 1/1 2/2 3/3\nusemtl two\nf 1/1 3/3 4/4\n");
+  const Imported mesh = import();
+  EXPECT_THAT(mesh.all_shown(), ElementsAre("a.png 0 1, 1 1, 1 0", "#ff0080"));
+  EXPECT_EQ(mesh.summary.textures,
+            (SourceTextures{.materials = 2, .images = 2, .missing_images = 1}));
+  ASSERT_THAT(mesh.warnings, SizeIs(1));
+  EXPECT_EQ(mesh.warnings[0],
+            "1 picture of the mesh is missing (b.png of w/a.mtl): triangles show "
+            "the colour of their material instead");
+}
+
+TEST_F(TexturedObjTest, FacesWithoutCoordinatesShowTheColour) {
+  put_pictures({"a.png"});
+  put("a.mtl", "newmtl m\nKd 0 1 0\nmap_Kd a.png\n");
+  put("a.obj", std::string("mtllib a.mtl\nusemtl m\n") + kSquare +
+                   "f 1/1 2/2 3/3\nf 1 3 4\nf 1/1 2/2 4\nv 9 9 9\n");
+  const Imported mesh = import();
+  EXPECT_THAT(mesh.all_shown(), ElementsAre("a.png 0 1, 1 1, 1 0", "#00ff00", "#00ff00"));
+  ASSERT_THAT(mesh.materials.materials, SizeIs(2));
+  EXPECT_EQ(mesh.materials.materials[0].colour, (std::array<float, 4>{1, 1, 1, 1}));
+  EXPECT_EQ(mesh.positions.back(), (Vec3d{9, 9, 9}));
+  EXPECT_EQ(mesh.attributes.back(), 0.0F) << "a vertex of no triangle has a material, too";
+}
+
+TEST_F(TexturedObjTest, MaterialsThatNobodyDefinesAreWhite) {
+  put_pictures({"a.png"});
+  put("a.mtl", "newmtl m\nmap_Kd a.png\n");
+  put("a.obj", std::string("mtllib a.mtl\nmtllib gone.mtl\n") + kSquare +
+                   "f 1/1 2/2 4/4\nusemtl nobody\nf 1/1 2/2 3/3\nusemtl m\nf 1/1 3/3 4/4\n");
+  const Imported mesh = import();
+  EXPECT_THAT(mesh.all_shown(), ElementsAre("#ffffff", "#ffffff", "a.png 0 1, 1 0, 0 0"));
+  EXPECT_EQ(mesh.count("undefined_materials"), 1U);
+  EXPECT_EQ(mesh.count("missing_material_libraries"), 1U);
+}
+
+TEST_F(TexturedObjTest, LibrariesAreNamedInManyWays) {
+  put_pictures({"a.png"});
+  const std::string mtl = "newmtl m\nmap_Kd a.png\n";
+  const auto shows = [&](const std::string& statement) {
+    put("a.obj", statement + "\nusemtl m\n" + kSquare + "f 1/1 2/2 3/3\n");
+    return import().layout.material;
+  };
+  put("with space.mtl", mtl);
+  EXPECT_TRUE(shows("mtllib with space.mtl"));
+  put("b.mtl", mtl);
+  EXPECT_TRUE(shows("mtllib x.mtl b.mtl"));
+  EXPECT_TRUE(shows("mtllib B.MTL"));
+  EXPECT_TRUE(shows("mtllib b.mtl # comment"));
+  EXPECT_TRUE(shows("mtllib \\\n b.mtl\r"));
+  EXPECT_FALSE(shows("mtllib c.mtl"));
+  put("sub/c.mtl", "newmtl m\nmap_Kd ..\\a.png\n");
+  EXPECT_TRUE(shows("mtllib sub\\c.mtl"));
+  EXPECT_TRUE(shows("mtllib .\\sub\\\\c.mtl"));
+  EXPECT_TRUE(shows("\xEF\xBB\xBFmtllib Sub/C.Mtl"));
+}
+
+TEST_F(TexturedObjTest, TheFirstDefinitionCountsAndStatementsMayComeLater) {
+  put_pictures({"a.png", "b.png"});
+  put("a.mtl", "newmtl m\nmap_Kd a.png\nnewmtl m\nmap_Kd b.png\n");
+  put("b.mtl", "newmtl m\nmap_Kd b.png\n");
+  put("a.obj", std::string("usemtl m\n") + kSquare + "f 1/1 2/2 3/3\nmtllib a.mtl b.mtl\n");
+  EXPECT_THAT(import().all_shown(), ElementsAre("a.png 0 1, 1 1, 1 0"));
+}
+
+TEST_F(TexturedObjTest, NamesOfMaterialsMayHaveSpacesAndBeEmpty) {
+  put_pictures({"a.png", "b.png", "c.png"});
+  put("a.mtl",
+      "newmtl  red wall #1 \r\nmap_Kd a.png\r\nnewmtl\r\nmap_Kd b.png\r\n"
+      "newmtl plain\nmap_Kd c.png\n");
+  put("a.obj", std::string("mtllib a.mtl\r\n") + kSquare +
+                   "usemtl red wall #1\t\nf 1/1 2/2 3/3\nusemtl\nf 1/1 2/2 3/3\n"
+                   "usemtl plain # it is\nf 1/1 2/2 3/3\n");
+  EXPECT_THAT(import().all_shown(),
+              ElementsAre("a.png 0 1, 1 1, 1 0", "b.png 0 1, 1 1, 1 0", "c.png 0 1, 1 1, 1 0"));
+}
+
+TEST_F(TexturedObjTest, PicturesAreFoundAsTheyWereMeant) {
+  put_pictures({"a b.png", "sub/Deep/c.png", "Twice.png", "twice.PNG", "d.png"});
+  const auto finds = [&](const std::string& name) {
+    return import_with("map_Kd " + name).layout.material;
+  };
+  EXPECT_TRUE(finds("a b.png"));
+  EXPECT_TRUE(finds("\"a b.png\""));
+  EXPECT_TRUE(finds("a b.png  # the wall"));
+  EXPECT_TRUE(finds("A B.PNG"));
+  EXPECT_TRUE(finds("sub\\Deep\\c.png"));
+  EXPECT_TRUE(finds("./SUB//deep/./C.png"));
+  EXPECT_TRUE(finds("sub/../d.png"));
+  EXPECT_TRUE(finds("C:\\maps\\d.png")) << "by its last part";
+  EXPECT_TRUE(finds("/home/else/d.png"));
+  EXPECT_TRUE(finds("gone/d.png"));
+  EXPECT_TRUE(finds("Twice.png"));
+  EXPECT_FALSE(finds("TWICE.png")) << "two could be meant";
+  EXPECT_FALSE(finds("sub")) << "a folder";
+  EXPECT_FALSE(finds("b.png"));
+  EXPECT_FALSE(finds(std::string(3000, 'x')));
+}
+
+TEST_F(TexturedObjTest, OptionsOfMapsAreUnderstood) {
+  put_pictures({"a.png", "1 2.png"});
+  EXPECT_EQ(shown_with("map_Kd -o 0.5 0.25 -s 2 4 1 a.png"), "a.png 0.5 0.75, 2.5 0.75, 2.5 -3.25");
+  EXPECT_EQ(shown_with("map_Kd -s 2 a.png"), "a.png 0 1, 2 1, 2 0");
+  EXPECT_EQ(shown_with("map_kd -blendu on -blendv off -mm 0 1 -t 1 1 -bm 0.5 -cc on -boost 1 "
+                       "-texres 9 -imfchan l -type sphere 1 2.png"),
+            "1 2.png 0 1, 1 1, 1 0");
+  EXPECT_EQ(shown_with("map_Kd -o 1 1 1 1 2.png"), "1 2.png 1 0, 2 0, 2 -1");
+  EXPECT_EQ(import_with("map_Kd a.png").materials.materials[0].wrap_u, Wrap::repeat);
+  const Imported clamped = import_with("map_Kd -clamp on a.png");
+  EXPECT_EQ(clamped.materials.materials[0].wrap_u, Wrap::clamp);
+  EXPECT_EQ(clamped.materials.materials[0].wrap_v, Wrap::clamp);
+  EXPECT_EQ(import_with("map_Kd -clamp off a.png").materials.materials[0].wrap_v, Wrap::repeat);
+}
+
+TEST_F(TexturedObjTest, AlphaComesFromTheOpacityOrThePicture) {
+  put_pictures({"a.png", "b.png"});
+  const auto alpha = [&](const std::string& definition) {
+    return import_with("map_Kd a.png\n" + definition).materials.materials.at(0).alpha;
+  };
+  EXPECT_EQ(alpha(""), AlphaMode::opaque);
+  EXPECT_EQ(alpha("d 1\nTr 0"), AlphaMode::opaque);
+  EXPECT_EQ(alpha("d 0.5"), AlphaMode::blend);
+  EXPECT_EQ(alpha("Tr 0.25"), AlphaMode::blend);
+  EXPECT_EQ(alpha("d 1\nTr 1"), AlphaMode::opaque) << "d counts";
+  EXPECT_EQ(alpha("map_d a.png"), AlphaMode::mask);
+  EXPECT_EQ(alpha("map_d b.png"), AlphaMode::opaque);
+  EXPECT_EQ(import_with("map_Kd a.png\nmap_d b.png").count("ignored_alpha_images"), 1U);
+}
+
+TEST_F(TexturedObjTest, EachSquareOfCoordinatesMayHaveItsPicture) {
+  put_pictures({"t.1001.png", "t.1012.png"});
+  put("a.mtl", "newmtl m\nKd 0 0 1\nmap_Kd t.<UDIM>.png\n");
+  put("a.obj",
+      "mtllib a.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n"
+      "vt 1.25 1\nvt 2 1\nvt 1.5 1.5\nvt 5 5\nvt -1 0\n"
+      "f 1/1 2/2 3/3\nf 1/4 2/5 3/6\nf 1/7 2/7 3/7\nf 1/8 2/2 3/3\nf 1 2 3\n");
+  const Imported mesh = import();
+  EXPECT_THAT(mesh.all_shown(),
+              ElementsAre("t.1001.png 0 1, 1 1, 0 0", "t.1012.png 0.25 1, 1 1, 0.5 0.5", "#0000ff",
+                          "#0000ff", "#0000ff"));
+  EXPECT_EQ(mesh.count("missing_images"), 1U);
+  EXPECT_THAT(mesh.warnings[0], HasSubstr("t.1056.png"));
+  EXPECT_EQ(import({.memory = tests::kTight}).attributes, mesh.attributes);
+}
+
+TEST_F(TexturedObjTest, SeveralFilesShareTheNumbers) {
+  put_pictures({"a.png", "b.png"});
+  for (const std::string name : {"a", "b"}) {
+    put(name + ".mtl", "newmtl m\nmap_Kd " + name + ".png\nnewmtl also\nmap_Kd a.png\n");
+    put(name + ".obj", "mtllib " + name + ".mtl\nusemtl m\n" + kSquare +
+                           "f 1/1 2/2 3/3\nusemtl also\nf 1/1 3/3 4/4\n");
+  }
+  const Imported mesh = import_of({"a.obj", "b.obj"});
+  EXPECT_THAT(mesh.all_shown(), ElementsAre("a.png 0 1, 1 1, 1 0", "a.png 0 1, 1 0, 0 0",
+                                            "b.png 0 1, 1 1, 1 0", "a.png 0 1, 1 0, 0 0"));
+  EXPECT_THAT(mesh.materials.materials, SizeIs(4));
+  EXPECT_THAT(mesh.materials.images, SizeIs(2)) << "a file is one picture";
+}
+
+TEST_F(TexturedObjTest, ResultsDoNotDependOnTheMemory) {
+  put_pictures({"0.png", "1.png", "2.png"});
+  std::string mtl, obj = "mtllib a.mtl\n";
+  for (int i = 0; i < 4; ++i)
+    mtl += fmt::format("newmtl m{}\nKd 0.{} 0 0\nmap_Kd {}.png\n", i, i, i);
+  put("a.mtl", mtl);
+  for (int i = 0; i < 3000; ++i)
+    obj += fmt::format("v {} {} {}\nvt 0.{} 0.{}\nvn 0 {} 1\n", i, i % 7, i % 11, i, i % 13, i);
+  for (int i = 0; i < 20'000; ++i) {
+    if (i % 100 == 0)
+      obj += fmt::format("usemtl m{}\n", i / 100 % 5);
+    const int a = i * 7 % 2998 + 1;
+    obj += fmt::format("f {0}/{3}/{0} {1}/{0}/{1} {2}/{1}/{2}\n", a, a + 1, a + 2, i % 3000 + 1);
+  }
+  put("a.obj", obj);
+  const Imported roomy = import();
+  const Imported tight = import({.memory = tests::kTight});
+  EXPECT_EQ(roomy.attributes, tight.attributes);
+  EXPECT_EQ(roomy.triangles, tight.triangles);
+  EXPECT_EQ(roomy.materials, tight.materials);
+  EXPECT_THAT(import({.weld = true}).materials.materials, SizeIs(5));
+}
+
+TEST_F(TexturedObjTest, FailuresNameFileAndLine) {
+  put_pictures({"a.png"});
+  put("a.obj", std::string("mtllib a.mtl\nusemtl m\n") + kSquare + "f 1/1 2/2 3/3\n");
+  const auto failure_of = [&](const std::string& line) {
+    put("a.mtl", "newmtl m\n" + line);
+    return failure();
+  };
+  EXPECT_EQ(failure_of("Kd 1 x 0\n"),
+            "w/a.mtl: line 2: expected a finite number for a colour, found 'x'");
+  EXPECT_EQ(failure_of("Kd\n"), "w/a.mtl: line 2: expected a finite number for a colour, found ''");
+  EXPECT_EQ(failure_of("Kd 1 2\n"),
+            "w/a.mtl: line 2: expected a finite number for a colour, found ''");
+  EXPECT_EQ(failure_of("\nd nan\n"),
+            "w/a.mtl: line 3: expected a finite number for an opacity, found 'nan'");
+  EXPECT_EQ(failure_of("Tr inf\n"),
+            "w/a.mtl: line 2: expected a finite number for a transparency, found 'inf'");
+  EXPECT_THAT(failure_of("map_Kd -s x.png\n"), HasSubstr("w/a.mtl: line 2: expected numbers"));
+  EXPECT_THAT(failure_of("map_Kd " + std::string(5000, 'x')), HasSubstr("more than 4096 bytes"));
+  EXPECT_EQ(failure_of("Kd 1e300 -2 0.5\nnonsense\nmap_Kd\nPr 0.5"), "");
+}
+
+}  // namespace
+}  // namespace meshhier::importing

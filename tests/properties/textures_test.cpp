@@ -1,0 +1,292 @@
+// Textured hierarchies: partitions show the input's texels, coarser tiles their means.
+#include "config/config.h"
+#include "hierarchy/error.h"
+#include "hierarchy/shown_corners.h"
+#include "images/image_codec.h"
+#include "inspection/verify.h"
+#include "pipeline/build.h"
+#include "storage/format/hierarchy_reader.h"
+#include "tests/support/sample_hierarchy.h"
+#include "tests/support/textured_torus.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace meshhier::pipeline {
+namespace {
+
+using images::Image;
+using testing::IsEmpty;
+using tests::TexturedTorus;
+using tests::TexturedTriangle;
+
+/// A triangle as a tile shows it.
+struct ShownTriangle {
+  std::array<Vec3f, 3> positions;
+  std::array<Vec2f, 3> texcoords;
+};
+
+std::vector<ShownTriangle> shown_triangles(const PublishedTile& tile) {
+  std::vector<ShownTriangle> all;
+  const std::uint32_t place_count = static_cast<std::uint32_t>(tile.mesh.vertices.size());
+  const std::size_t vertices = place_count + tile.mesh.copies.size();
+  const auto position = [&](std::uint32_t v) {
+    if (v >= vertices)
+      v = tile.shading.split_of[v - vertices];
+    return v < place_count ? tile.mesh.vertices.positions[v]
+                           : tile.mesh.vertices.positions[tile.mesh.copies.places[v - place_count]];
+  };
+  const auto add = [&](const std::vector<TileTriangle>& triangles) {
+    for (const TileTriangle& t : triangles) {
+      ShownTriangle shown;
+      for (std::size_t k = 0; k < 3; ++k) {
+        shown.positions[k] = position(raw(t[k]));
+        shown.texcoords[k] = tile.shading.texcoords.at(raw(t[k]));
+      }
+      all.push_back(shown);
+    }
+  };
+  add(shown_interior(tile));
+  add(shown_border(tile));
+  return all;
+}
+
+struct BuiltTile {
+  TileRecord record;
+  PublishedTile tile;
+  Image image;
+};
+
+class TexturesTest : public testing::Test {
+ protected:
+  std::filesystem::path write(const TexturedTorus& torus) const {
+    return tests::write_obj(torus, directory_.path());
+  }
+
+  config::Config config(const std::filesystem::path& mesh) const {
+    config::Config config;
+    config.input = mesh;
+    config.output = directory_.path() / "torus.hier";
+    config.partition.count = 7;
+    config.simplify.vertices = 300;
+    config.texture.texels = 128;
+    config.texture.format.format = ImageFormat::png;
+    return config;
+  }
+
+  void build(const config::Config& config) {
+    execution::NoProgress progress;
+    BuildOptions options;
+    options.force = true;
+    build_hierarchy(config, options, {*files_, progress, execution::CancelToken()});
+  }
+
+  std::vector<BuiltTile> tiles(const config::Config& config) const {
+    const storage::HierarchyReader reader(*files_, config.output);
+    std::vector<BuiltTile> all;
+    for (const TileRecord& record : reader.records()) {
+      BuiltTile built{record, reader.read_tile(record.node), {}};
+      built.image = images::decode_image(built.tile.image.bytes, "tile", 1 << 26);
+      all.push_back(std::move(built));
+    }
+    return all;
+  }
+
+  std::vector<std::string> problems(const config::Config& config) const {
+    execution::NoProgress progress;
+    return inspection::verify_hierarchy(*files_, config.output, {.input = config.input, .cuts = 3},
+                                        progress, execution::CancelToken())
+        .problems;
+  }
+
+  tests::TemporaryDirectory directory_;
+  std::unique_ptr<storage::FileSystem> files_ = storage::make_posix_file_system();
+};
+
+using CornerKey = std::array<std::array<float, 3>, 3>;
+
+/// Corners in the turn that begins with the least; `first` is where it was.
+CornerKey key_of(std::array<Vec3f, 3> corners, std::size_t& first) {
+  const auto flat = [](Vec3f p) { return std::array{p.x, p.y, p.z}; };
+  first = 0;
+  for (std::size_t k = 1; k < 3; ++k) {
+    if (flat(corners[k]) < flat(corners[first]))
+      first = k;
+  }
+  return {flat(corners[first]), flat(corners[(first + 1) % 3]), flat(corners[(first + 2) % 3])};
+}
+
+/// Calls visit(x, y) for each texel whose centre lies in the triangle, away from its edges.
+template <class Visit>
+void for_each_texel(const std::array<Vec2f, 3>& texcoords, const Image& image, const Visit& visit) {
+  std::array<std::array<double, 2>, 3> p;
+  for (std::size_t k = 0; k < 3; ++k)
+    p[k] = {texcoords[k].u * static_cast<double>(image.width),
+            texcoords[k].v * static_cast<double>(image.height)};
+  const auto side = [&](std::size_t k, double x, double y) {
+    const auto& a = p[k];
+    const auto& b = p[(k + 1) % 3];
+    return (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0]);
+  };
+  const auto [left, right] = std::minmax({p[0][0], p[1][0], p[2][0]});
+  const auto [top, bottom] = std::minmax({p[0][1], p[1][1], p[2][1]});
+  for (double y = std::floor(top) + 0.5; y < bottom; ++y) {
+    for (double x = std::floor(left) + 0.5; x < right; ++x) {
+      const double a = side(0, x, y), b = side(1, x, y), c = side(2, x, y);
+      if (std::min({a, b, c}) > 1e-3 || std::max({a, b, c}) < -1e-3)
+        visit(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
+    }
+  }
+}
+
+TEST_F(TexturesTest, PartitionsShowTheInputsTexels) {
+  const TexturedTorus torus = tests::make_textured_torus(6, 3);
+  const config::Config job = config(write(torus));
+  build(job);
+  std::map<CornerKey, std::pair<const TexturedTriangle*, std::size_t>> input;
+  for (const TexturedTriangle& t : torus.triangles) {
+    std::size_t first = 0;
+    const CornerKey key =
+        key_of({t.corners[0].position, t.corners[1].position, t.corners[2].position}, first);
+    input[key] = {&t, first};
+  }
+  std::size_t texels = 0;
+  for (const BuiltTile& built : tiles(job)) {
+    if (built.record.error > 0)
+      continue;  // simplified
+    for (const ShownTriangle& shown : shown_triangles(built.tile)) {
+      std::size_t first = 0;
+      const auto found = input.find(key_of(shown.positions, first));
+      ASSERT_NE(found, input.end());
+      const TexturedTriangle& source = *found->second.first;
+      const Image& picture = torus.pictures[source.picture];
+      const Vec2f there = source.corners[found->second.second].texcoord;
+      const Vec2f here = shown.texcoords[first];
+      const double dx = there.u * static_cast<double>(picture.width) -
+                        here.u * static_cast<double>(built.image.width);
+      const double dy = there.v * static_cast<double>(picture.height) -
+                        here.v * static_cast<double>(built.image.height);
+      EXPECT_NEAR(dx, std::round(dx), 0.01);
+      EXPECT_NEAR(dy, std::round(dy), 0.01);
+      for_each_texel(shown.texcoords, built.image, [&](std::uint32_t x, std::uint32_t y) {
+        const std::uint8_t* a = built.image.at(x, y);
+        const std::uint8_t* b = picture.at(x + static_cast<std::uint32_t>(std::lround(dx)),
+                                           y + static_cast<std::uint32_t>(std::lround(dy)));
+        ASSERT_TRUE(std::equal(a, a + 3, b)) << x << " " << y;
+        ++texels;
+      });
+    }
+  }
+  EXPECT_GT(texels, torus.triangles.size() * 10);
+  EXPECT_THAT(problems(job), IsEmpty());
+}
+
+double mean_square_error(const BuiltTile& built) {
+  double sum = 0;
+  std::size_t count = 0;
+  for (const ShownTriangle& t : shown_triangles(built.tile)) {
+    for_each_texel(t.texcoords, built.image, [&](std::uint32_t x, std::uint32_t y) {
+      // The point of the surface at the texel's centre.
+      const auto at = [&](std::size_t k) {
+        return std::array<double, 2>{t.texcoords[k].u * static_cast<double>(built.image.width),
+                                     t.texcoords[k].v * static_cast<double>(built.image.height)};
+      };
+      const auto a = at(0), b = at(1), c = at(2);
+      const double area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+      const double px = x + 0.5 - a[0], py = y + 0.5 - a[1];
+      const double wb = (px * (c[1] - a[1]) - py * (c[0] - a[0])) / area;
+      const double wc = ((b[0] - a[0]) * py - (b[1] - a[1]) * px) / area;
+      const Vec3d point = to_double(t.positions[0]) * (1 - wb - wc) +
+                          to_double(t.positions[1]) * wb + to_double(t.positions[2]) * wc;
+      const std::array<double, 3> expected = tests::torus_colour(point);
+      for (std::size_t channel = 0; channel < 3; ++channel) {
+        const double off = built.image.at(x, y)[channel] - expected[channel];
+        sum += off * off;
+        ++count;
+      }
+    });
+  }
+  return count > 0 ? sum / static_cast<double>(count) : 0;
+}
+
+TEST_F(TexturesTest, CoarserTilesShowTheSurfacesColours) {
+  const TexturedTorus torus = tests::make_textured_torus(6, 3);
+  const config::Config job = config(write(torus));
+  build(job);
+  for (const BuiltTile& built : tiles(job)) {
+    const double psnr = 10 * std::log10(255 * 255 / mean_square_error(built));
+    EXPECT_GT(psnr, 30) << raw(built.record.node.level) << "/" << built.record.node.index;
+    EXPECT_EQ(built.record.image_width, built.image.width);
+    EXPECT_GT(built.record.texel, 0);
+  }
+}
+
+TEST_F(TexturesTest, ErrorsAreNoSmallerThanTexels) {
+  const TexturedTorus torus = tests::make_textured_torus(6, 3, 12);
+  config::Config job = config(write(torus));
+  job.texture.texels = 64;
+  build(job);
+  std::size_t coarse = 0;
+  float finest = 1e9f;
+  for (const BuiltTile& built : tiles(job)) {
+    if (built.record.error == 0)
+      finest = std::min(finest, built.record.texel);
+  }
+  for (const BuiltTile& built : tiles(job)) {
+    if (built.record.error > 0 && built.record.texel > 1.5f * finest) {
+      EXPECT_GE(built.record.error, built.record.texel);
+      ++coarse;
+    }
+  }
+  EXPECT_GT(coarse, 0U);
+}
+
+std::map<std::string, std::string> files_of(const std::filesystem::path& directory) {
+  std::map<std::string, std::string> contents;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(directory)) {
+    if (entry.is_regular_file()) {
+      std::ifstream stream(entry.path(), std::ios::binary);
+      contents[entry.path().lexically_relative(directory).string()] =
+          std::string(std::istreambuf_iterator<char>(stream), {});
+    }
+  }
+  return contents;
+}
+
+TEST_F(TexturesTest, ThreadsAndBudgetDecideNothing) {
+  config::Config job = config(write(tests::make_textured_torus(6, 3)));
+  build(job);
+  const auto expected = files_of(job.output);
+  for (const std::uint32_t threads : {1U, 3U}) {
+    job.threads = threads;
+    job.memory_budget = threads == 1 ? std::uint64_t{400} << 20 : std::uint64_t{2} << 30;
+    build(job);
+    EXPECT_EQ(files_of(job.output), expected) << threads;
+  }
+}
+
+TEST_F(TexturesTest, ABuildMayLeaveThemOut) {
+  config::Config job = config(write(tests::make_textured_torus(4, 2)));
+  job.texture.use = false;
+  build(job);
+  const storage::HierarchyReader reader(*files_, job.output);
+  EXPECT_FALSE(reader.manifest().source.textures);
+  EXPECT_TRUE(reader.manifest().source.attributes.texcoords);
+  EXPECT_TRUE(reader.read_tile({}).image.empty());
+  EXPECT_THAT(problems(job), IsEmpty());
+}
+
+}  // namespace
+}  // namespace meshhier::pipeline

@@ -1,0 +1,64 @@
+// The picture of a simplified tile: new charts, texels from the surface that the tile was made of.
+//
+// Charts are grown by normal (Sander et al. 2001 merge faces so), cut where they fill little of
+// their rectangles, projected to a plane, freed of triangles that cover others, and packed. Each
+// texel takes its colour from the nearest point of the finer surface that faces alike, averaged
+// over the texel's size in linear light.
+#pragma once
+
+#include "hierarchy/texture.h"
+#include "hierarchy/tile_mesh.h"
+#include "hierarchy/vec.h"
+#include "images/image.h"
+#include "texture/corners.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace meshhier::texture {
+
+/// A tile with its picture. `corners` of its triangles; each triangle has texels of its own chart
+/// around it, as far as the charts' alignment says.
+struct TexturedSurface {
+  std::span<const Vec3f> positions;
+  std::span<const TileTriangle> triangles;  ///< numbers of positions
+  std::span<const CornerTexcoords> corners;
+  const images::Image* image = nullptr;  ///< null: the surface has no triangles
+};
+
+struct BakeSize {
+  std::uint32_t side = 512;  ///< of the picture, texels; a multiple of kBakeAlignment, 64 ... 4096
+  float least_texel = 0;     ///< no smaller texels than these are made: the finer ones' size
+};
+
+inline constexpr std::uint32_t kBakeGutter = 2;
+inline constexpr std::uint32_t kBakeAlignment = 4;
+
+struct BakedTexture {
+  images::Image image;                   ///< 3 channels, 4 if one of the finer ones has
+  std::vector<CornerTexcoords> corners;  ///< one a triangle
+  float texel = 0;                       ///< size of a texel on the surface
+  std::uint32_t charts = 0;
+};
+
+/// Pure, deterministic, single-threaded. `tile`: positions and triangles of the coarse tile, its
+/// `corners` and `image` unused. `finer`: what it was made of and what lies around it, in a fixed
+/// order: of equally near points that of the first surface counts. The picture has at most side *
+/// side texels, fewer if `least_texel` allows. No texel is empty: those between charts have colours
+/// of the nearest chart; all are black if no finer surface has triangles. Equal triangles get equal
+/// corners. O(t log t + texels log t) for surfaces that lie near each other.
+BakedTexture bake(const TexturedSurface& tile, std::span<const TexturedSurface> finer,
+                  const BakeSize& size);
+
+/// The picture with 1 / factor of its width and height (multiples of it), for bake() on the next
+/// level: means in linear light of those texels that triangles show, so that charts do not mix.
+/// Requires charts aligned to `factor`, a power of two.
+images::Image reduced(const images::Image& image, std::span<const CornerTexcoords> corners,
+                      std::uint32_t factor);
+
+/// Mean size of a texel on the surface: sqrt(area / texels that the triangles cover); 0 if there is
+/// no area in either.
+float texel_size(const TexturedSurface& surface, std::uint32_t width, std::uint32_t height);
+
+}  // namespace meshhier::texture

@@ -1,0 +1,227 @@
+#include "texture/chart_layout.h"
+
+#include "texture/rect_packing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+namespace meshhier::texture {
+namespace {
+
+constexpr double kHuge = std::numeric_limits<double>::max();
+
+/// Directions that a box may have, over a quarter of a circle.
+constexpr int kTurns = 12;
+
+Vec3d mean_normal(const Faces& faces, std::span<const std::uint32_t> chart) {
+  Vec3d sum;
+  for (const std::uint32_t t : chart)
+    sum = sum + faces.normals[t] * faces.areas[t];
+  const double size = length(sum);
+  return size > 0 ? sum * (1 / size) : Vec3d{0, 0, 1};
+}
+
+/// Any two directions with it at right angles.
+std::pair<Vec3d, Vec3d> across(const Vec3d& normal) {
+  const double x = std::abs(normal.x), y = std::abs(normal.y), z = std::abs(normal.z);
+  const Vec3d axis = x <= y && x <= z ? Vec3d{1, 0, 0} : y <= z ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
+  const Vec3d other = cross(axis, normal);
+  const Vec3d u = other * (1 / length(other));
+  return {u, cross(normal, u)};
+}
+
+struct PlaneBox {
+  double low_x = kHuge, low_y = kHuge, high_x = -kHuge, high_y = -kHuge;
+
+  void add(double x, double y) {
+    low_x = std::min(low_x, x);
+    low_y = std::min(low_y, y);
+    high_x = std::max(high_x, x);
+    high_y = std::max(high_y, y);
+  }
+  double width() const { return high_x - low_x; }
+  double height() const { return high_y - low_y; }
+};
+
+/// The box of points in a plane once they are turned.
+PlaneBox turned_box(std::span<const TexelPoint> points, double cosine, double sine) {
+  PlaneBox box;
+  for (const TexelPoint& p : points)
+    box.add(cosine * p.x + sine * p.y, cosine * p.y - sine * p.x);
+  return box;
+}
+
+/// Rectangles of charts, in units of the alignment.
+class Fitter {
+ public:
+  Fitter(std::vector<ChartPlane> planes, const BakeSize& size)
+      : planes_(std::move(planes)), units_(size.side / kBakeAlignment) {
+    choose_points();
+    for (const ChartPlane& plane : planes_) {
+      longest_ = std::max({longest_, plane.width, plane.height});
+      area_ += plane.width * plane.height;
+    }
+    const double room = size.side - 2 * kBakeGutter;
+    most_density_ = longest_ > 0 ? room / longest_ : 1;
+    if (size.least_texel > 0)
+      most_density_ = std::min(most_density_, 1 / double(size.least_texel));
+  }
+
+  ChartLayout operator()() && {
+    double density = most_density_;
+    std::optional<Packing> packing = pack_tightly(sizes(density), units_);
+    if (!packing)
+      std::tie(density, packing) = search();
+    return placed(density, *packing);
+  }
+
+ private:
+  /// The smallest charts are points if the others would have no room else. Points beyond a part of
+  /// the picture share a place.
+  void choose_points() {
+    const double cells = double(units_) * units_;
+    const double count = static_cast<double>(planes_.size());
+    if (kCellsOfChart * count <= kCells * cells)
+      return;
+    const double left = (kCells * cells - count) / (kCellsOfChart - 1);
+    const auto charts = static_cast<std::size_t>(std::max(left, cells / 16));
+    std::vector<std::uint32_t> order(planes_.size());
+    std::iota(order.begin(), order.end(), 0U);
+    const auto size = [&](std::uint32_t c) {
+      return std::pair(planes_[c].width * planes_[c].height, planes_[c].width);
+    };
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return size(a) > size(b); });
+    const std::size_t places = charts + static_cast<std::size_t>(kCells * cells);
+    for (std::size_t i = charts; i < order.size(); ++i) {
+      ChartPlane& plane = planes_[order[i]];
+      plane.is_point = true;
+      plane.width = plane.height = 0;
+      if (i >= places)
+        shared_.push_back(order[i]);
+    }
+    std::sort(shared_.begin(), shared_.end());
+  }
+
+  std::uint32_t units(double length, double density) const {
+    const double texels = std::ceil(length * density) + 2 * kBakeGutter;
+    return static_cast<std::uint32_t>(std::ceil(texels / kBakeAlignment));
+  }
+  std::vector<RectSize> sizes(double density) const {
+    std::vector<RectSize> sizes;
+    sizes.reserve(planes_.size());
+    for (const ChartPlane& plane : planes_)
+      sizes.push_back({units(plane.width, density), units(plane.height, density)});
+    for (const std::uint32_t chart : shared_)
+      sizes[chart] = {0, 0};
+    return sizes;
+  }
+
+  /// Between a density at which all fit and one at which they do not. At the lowest one no chart
+  /// has more than 2 * 2 units.
+  std::pair<double, Packing> search() const {
+    constexpr double kClose = 1.01, kFull = 0.75;
+    const double side = units_ * kBakeAlignment;
+    double low = kBakeAlignment / longest_, high = most_density_;
+    Packing best = pack_into({units_, units_}, sizes(low)).value();
+    double next = area_ > 0 ? side * std::sqrt(kFull / area_) : 0;
+    while (high > low * kClose) {
+      if (!(next > low && next < high))
+        next = std::sqrt(low * high);
+      if (std::optional<Packing> packing = pack_into({units_, units_}, sizes(next))) {
+        low = next;
+        best = *std::move(packing);
+      } else {
+        high = next;
+      }
+    }
+    return {low, std::move(best)};
+  }
+
+  ChartLayout placed(double density, const Packing& packing) {
+    ChartLayout layout{
+        packing.width * kBakeAlignment, packing.height * kBakeAlignment, density, {}};
+    for (std::size_t c = 0; c < planes_.size(); ++c) {
+      ChartPlane& plane = planes_[c];
+      plane.left = packing.places[c].x * kBakeAlignment;
+      plane.top = packing.places[c].y * kBakeAlignment;
+      plane.right = plane.left + units(plane.width, density) * kBakeAlignment;
+      plane.bottom = plane.top + units(plane.height, density) * kBakeAlignment;
+    }
+    const auto first = std::ranges::find(planes_, true, &ChartPlane::is_point);
+    for (const std::uint32_t chart : shared_) {
+      planes_[chart].left = first->left;
+      planes_[chart].top = first->top;
+      planes_[chart].right = first->right;
+      planes_[chart].bottom = first->bottom;
+    }
+    layout.planes = std::move(planes_);
+    return layout;
+  }
+
+  /// Of the cells of the picture, units squared: those that the smallest charts have at most.
+  static constexpr double kCells = 0.6;
+  static constexpr double kCellsOfChart = 4;
+
+  std::vector<ChartPlane> planes_;
+  std::uint32_t units_;
+  std::vector<std::uint32_t> shared_;  ///< points without a place of their own
+  double longest_ = 0, area_ = 0, most_density_ = 1;
+};
+
+}  // namespace
+
+TexelPoint ChartLayout::texel_of(const ChartPlane& plane, const Vec3d& position) const {
+  if (plane.is_point)
+    return {plane.left + kBakeAlignment / 2.0, plane.top + kBakeAlignment / 2.0};
+  return {plane.left + kBakeGutter + density * (dot(position, plane.x) - plane.low_x),
+          plane.top + kBakeGutter + density * (dot(position, plane.y) - plane.low_y)};
+}
+
+ChartPlane project(std::span<const Vec3f> positions, std::span<const TileTriangle> triangles,
+                   const Faces& faces, std::span<const std::uint32_t> chart) {
+  ChartPlane plane;
+  plane.normal = mean_normal(faces, chart);
+  const auto [u, v] = across(plane.normal);
+  std::vector<TexelPoint> points;
+  points.reserve(3 * chart.size());
+  for (const std::uint32_t t : chart) {
+    for (const TileVertex corner : triangles[t]) {
+      const Vec3d p = to_double(positions[raw(corner)]);
+      points.push_back({dot(p, u), dot(p, v)});
+    }
+  }
+  double least = kHuge;
+  for (int turn = 0; turn < kTurns; ++turn) {
+    const double half = turn / double(kTurns);  // the tangent of half of the angle
+    const double cosine = (1 - half * half) / (1 + half * half);
+    const double sine = 2 * half / (1 + half * half);
+    const PlaneBox box = turned_box(points, cosine, sine);
+    if (const double area = box.width() * box.height(); area < least) {
+      least = area;
+      plane.x = u * cosine + v * sine;
+      plane.y = v * cosine + u * -sine;
+      plane.low_x = box.low_x;
+      plane.low_y = box.low_y;
+      plane.width = box.width();
+      plane.height = box.height();
+    }
+  }
+  if (plane.height > plane.width) {  // lying charts pack better: a quarter of a turn
+    const PlaneBox box = turned_box(points, dot(plane.y, u), dot(plane.y, v));
+    plane = {plane.y, plane.x * -1, plane.normal, box.low_x, box.low_y, box.width(), box.height()};
+  }
+  return plane;
+}
+
+ChartLayout lay_out(std::vector<ChartPlane> planes, const BakeSize& size) {
+  return Fitter(std::move(planes), size)();
+}
+
+}  // namespace meshhier::texture

@@ -1,0 +1,27 @@
+// Triangles with their normals and neighbours.
+#pragma once
+
+#include "hierarchy/tile_mesh.h"
+#include "hierarchy/vec.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace meshhier::texture {
+
+inline constexpr std::uint32_t kNoFace = ~std::uint32_t{0};
+
+struct Faces {
+  std::vector<Vec3d> normals;  ///< of length 1; 0 if there is no area
+  std::vector<double> areas;
+  std::vector<std::array<std::uint32_t, 3>> across;  ///< at the edge from corner k to the next one
+                                                     ///< the other triangle there; kNoFace if there
+                                                     ///< is none, or several
+};
+
+/// O(t log t).
+Faces faces_of(std::span<const Vec3f> positions, std::span<const TileTriangle> triangles);
+
+}  // namespace meshhier::texture

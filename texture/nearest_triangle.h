@@ -1,0 +1,71 @@
+// The nearest of many triangles to a point.
+//
+// A tree of boxes, four children each, over triangles sorted by halves; in its leaves four
+// triangles are measured at once. Who asks for points side by side begins with the last answer: it
+// is near, so that few boxes are nearer.
+#pragma once
+
+#include "hierarchy/vec.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace meshhier::texture {
+
+class NearestTriangle {
+ public:
+  using Corners = std::array<Vec3f, 3>;
+
+  struct Found {
+    std::uint32_t triangle = kNone;
+    double on_b = 0, on_c = 0;  ///< a + on_b * (b - a) + on_c * (c - a) is the nearest point
+  };
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+
+  /// Points and triangles are measured from `centre`, in units of `unit`, in single precision.
+  /// O(n log n).
+  NearestTriangle(const std::vector<Corners>& triangles, const Vec3d& centre, double unit);
+
+  /// Of those that face as `facing` and lie within `reach`, else of all. Of equally near ones, the
+  /// one of the lowest number. O(log n) for points near the triangles.
+  Found operator()(const Vec3d& point, const Vec3d& facing, double reach);
+
+ private:
+  static constexpr std::uint32_t kIsLeaf = std::uint32_t{1} << 31;
+  using Four = float __attribute__((vector_size(16)));
+  struct Node {
+    Four low_x, low_y, low_z, high_x, high_y, high_z;
+    std::array<std::uint32_t, 4> children;  ///< nodes, or leaves with kIsLeaf; kNone
+  };
+  /// Corner a and edges to b and c.
+  struct Leaf {
+    Four ax, ay, az, bx, by, bz, cx, cy, cz;
+    std::array<std::uint32_t, 4> triangles;
+  };
+  Vec3f moved(const Vec3d& point) const { return to_float((point - centre_) * scale_); }
+  struct Query {
+    Four x, y, z, facing_x, facing_y, facing_z;
+    bool any = false;
+    float nearest = std::numeric_limits<float>::infinity();
+    std::uint32_t triangle = kNone;
+    std::uint32_t leaf = kNone;
+  };
+
+  class Builder;
+  void measure(std::uint32_t leaf, Query& query) const;
+  void search(Query& query) const;
+
+  Vec3d centre_;
+  double scale_;
+  std::vector<Node> nodes_;
+  std::vector<Leaf> leaves_;
+  std::vector<Corners> corners_;  ///< from the centre
+  std::uint32_t root_ = kNone;
+  std::uint32_t last_leaf_ = kNone;
+};
+
+}  // namespace meshhier::texture

@@ -1,0 +1,48 @@
+// Texels as light, to make means of them.
+#pragma once
+
+#include "texture/light.h"
+#include "texture/texel_raster.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace meshhier::texture {
+
+/// Light of red, green and blue times alpha, and alpha.
+using Light = std::array<float, 4>;
+
+/// Adds `weight` times a texel of 3 or 4 channels.
+inline void add_texel(Light& sum, const std::uint8_t* texel, std::uint32_t channels, float weight) {
+  if (channels == 4)
+    weight *= static_cast<float>(texel[3]) / 255;
+  for (std::size_t k = 0; k < 3; ++k)
+    sum[k] += weight * kLight[texel[k]];
+  sum[3] += weight;
+}
+
+/// Stores a mean; what is not there at all is black.
+inline void store_texel(const Light& mean, std::uint8_t* texel, std::uint32_t channels) {
+  const float scale = mean[3] > 0 ? 1 / mean[3] : 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    texel[k] = value_of_light(mean[k] * scale);
+  if (channels == 4)
+    texel[3] = value_of_part(std::min(mean[3], 1.0f));
+}
+
+inline TexelPoint middle_of(const std::array<TexelPoint, 3>& corners) {
+  return {(corners[0].x + corners[1].x + corners[2].x) / 3,
+          (corners[0].y + corners[1].y + corners[2].y) / 3};
+}
+
+/// The number of the texel at a point, or of the nearest one in the picture.
+inline std::size_t texel_at(const TexelPoint& at, std::uint32_t width, std::uint32_t height) {
+  const auto inside = [](double place, std::uint32_t side) {
+    return place > 0 ? static_cast<std::size_t>(std::min(place, side - 1.0)) : 0;
+  };
+  return inside(at.y, height) * width + inside(at.x, width);
+}
+
+}  // namespace meshhier::texture

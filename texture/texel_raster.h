@@ -1,0 +1,116 @@
+// Which texels a triangle covers.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+namespace meshhier::texture {
+
+/// In texels; the middle of the first one is (0.5, 0.5).
+struct TexelPoint {
+  double x = 0, y = 0;
+};
+
+/// A triangle in 1/256 of a texel: there whole numbers tell exactly on which side of an edge a
+/// middle is, so triangles that share an edge never cover the same texel, and leave none out.
+class RasterTriangle {
+ public:
+  explicit RasterTriangle(const std::array<TexelPoint, 3>& corners) {
+    for (std::size_t k = 0; k < 3; ++k)
+      corners_[k] = {fixed(corners[k].x), fixed(corners[k].y)};
+    const Fixed &a = corners_[0], &b = corners_[1], &c = corners_[2];
+    twice_area_ = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
+  }
+
+  /// Of 1/256 texels squared; below 0: turned the other way.
+  std::int64_t twice_area() const { return twice_area_; }
+
+  /// Calls visit(x, y, part of the second corner, part of the third) for each texel whose middle is
+  /// inside, in a picture of that size. O(rows + texels).
+  template <class Visit>
+  void for_each(std::uint32_t width, std::uint32_t height, const Visit& visit) const {
+    for_each_span(width, height, [&](std::uint32_t y, std::uint32_t begin, std::uint32_t end) {
+      const double scale = 1 / static_cast<double>(std::abs(twice_area_));
+      const Edge to_b = edge(2, 0), to_c = edge(0, 1);
+      std::int64_t b = to_b.at(middle(begin), middle(y));
+      std::int64_t c = to_c.at(middle(begin), middle(y));
+      for (std::uint32_t x = begin; x < end; ++x) {
+        visit(x, y, static_cast<double>(b) * scale, static_cast<double>(c) * scale);
+        b += to_b.dx * kOne;
+        c += to_c.dx * kOne;
+      }
+    });
+  }
+
+  /// Calls visit(y, begin, end) for each row that has texels, x in [begin, end).
+  template <class Visit>
+  void for_each_span(std::uint32_t width, std::uint32_t height, const Visit& visit) const {
+    if (twice_area_ == 0)
+      return;
+    const std::array<std::int64_t, 2> columns = range(width, &Fixed::x);
+    const std::array<std::int64_t, 2> rows = range(height, &Fixed::y);
+    const std::array<Edge, 3> edges = {edge(1, 2), edge(2, 0), edge(0, 1)};
+    for (std::int64_t y = rows[0]; y <= rows[1]; ++y) {
+      std::array<std::int64_t, 2> inside = columns;
+      for (const Edge& side : edges)
+        side.cut(y, inside);
+      if (inside[0] <= inside[1])
+        visit(static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(inside[0]),
+              static_cast<std::uint32_t>(inside[1] + 1));
+    }
+  }
+
+ private:
+  static constexpr std::int64_t kOne = 256;
+  struct Fixed {
+    std::int64_t x, y;
+  };
+  /// dx * x + dy * y + offset is twice the area on it: >= least on its inner side.
+  struct Edge {
+    std::int64_t dx, dy, offset, least;
+    std::int64_t at(std::int64_t x, std::int64_t y) const { return dx * x + dy * y + offset; }
+    /// Takes the texels of a row from `columns`, first and last, that are beyond.
+    void cut(std::int64_t row, std::array<std::int64_t, 2>& columns) const {
+      const std::int64_t missing = least - at(kOne / 2, middle(row));
+      if (dx > 0)
+        columns[0] = std::max(columns[0], -floor_divided(-missing, dx * kOne));
+      else if (dx < 0)
+        columns[1] = std::min(columns[1], floor_divided(-missing, -dx * kOne));
+      else if (missing > 0)
+        columns[1] = columns[0] - 1;
+    }
+  };
+
+  static std::int64_t fixed(double at) {
+    constexpr double kMost = 1 << 16;
+    return static_cast<std::int64_t>(std::floor(std::clamp(at, -kMost, kMost) * kOne + 0.5));
+  }
+  /// `by` > 0.
+  static std::int64_t floor_divided(std::int64_t what, std::int64_t by) {
+    return what >= 0 ? what / by : -((by - 1 - what) / by);
+  }
+  static std::int64_t middle(std::int64_t texel) { return texel * kOne + kOne / 2; }
+
+  /// The texels whose middles are not left of all corners, nor right of all.
+  std::array<std::int64_t, 2> range(std::uint32_t side, std::int64_t Fixed::*axis) const {
+    const auto [low, high] = std::minmax({corners_[0].*axis, corners_[1].*axis, corners_[2].*axis});
+    return {std::max<std::int64_t>(floor_divided(low + kOne / 2 - 1, kOne), 0),
+            std::min<std::int64_t>(floor_divided(high - kOne / 2, kOne), std::int64_t{side} - 1)};
+  }
+
+  /// Middles on it belong to the triangle that it is the upper or the left edge of.
+  Edge edge(std::size_t from, std::size_t to) const {
+    const std::int64_t turn = twice_area_ < 0 ? -1 : 1;
+    const Fixed &a = corners_[from], &b = corners_[to];
+    const std::int64_t dx = (a.y - b.y) * turn, dy = (b.x - a.x) * turn;
+    const bool is_own = dx > 0 || (dx == 0 && dy > 0);
+    return {dx, dy, -(dx * a.x + dy * a.y), is_own ? 0 : 1};
+  }
+
+  std::array<Fixed, 3> corners_;
+  std::int64_t twice_area_ = 0;
+};
+
+}  // namespace meshhier::texture

@@ -1,0 +1,100 @@
+#include "texture/texel_sampler.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace meshhier::texture {
+namespace {
+
+/// Pictures are taken at a half and a quarter, as far as charts are aligned for sure.
+constexpr std::uint32_t kHalvings = 2;
+constexpr float kMostRadius = 4;
+constexpr std::size_t kMostTaps = 2 * static_cast<std::size_t>(kMostRadius) + 1;
+
+/// The texels of a row that a tent has, with their weights.
+struct Taps {
+  std::uint32_t first = 0, count = 0;
+  std::array<float, kMostTaps> weights;
+
+  Taps(float at, float radius, std::uint32_t side) {
+    const auto most = static_cast<float>(side - 1);
+    at = at > 0.5f ? std::min(at - 0.5f, most) : 0;
+    first = static_cast<std::uint32_t>(std::max(std::ceil(at - radius), 0.0f));
+    const auto last = static_cast<std::uint32_t>(std::min(std::floor(at + radius), most));
+    float sum = 0;
+    for (std::uint32_t i = first; i <= last && count < kMostTaps; ++i) {
+      const float weight = std::max(radius - std::abs(static_cast<float>(i) - at), 0.0f);
+      weights[count++] = weight;
+      sum += weight;
+    }
+    for (std::uint32_t i = 0; i < count; ++i)
+      weights[i] /= sum;
+  }
+};
+
+Light mean(const images::Image& picture, const Taps& columns, const Taps& rows) {
+  Light sum{};
+  for (std::uint32_t j = 0; j < rows.count; ++j) {
+    const std::uint8_t* texel = picture.at(columns.first, rows.first + j);
+    for (std::uint32_t i = 0; i < columns.count; ++i, texel += picture.channels)
+      add_texel(sum, texel, picture.channels, rows.weights[j] * columns.weights[i]);
+  }
+  return sum;
+}
+
+}  // namespace
+
+TexelSampler::TexelSampler(std::span<const TexturedSurface> surfaces, double texel) {
+  std::size_t count = 0;
+  for (const TexturedSurface& surface : surfaces)
+    count += surface.triangles.size();
+  spots_.reserve(count);
+  smaller_.reserve(surfaces.size() * kHalvings);
+  for (const TexturedSurface& surface : surfaces) {
+    if (surface.triangles.empty())
+      continue;
+    const images::Image& picture = *surface.image;
+    std::array<std::uint32_t, kHalvings + 1> levels;
+    levels.fill(~std::uint32_t{0});
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+      const CornerTexcoords& at = surface.corners[t];
+      const auto corner = [&](std::size_t k) {
+        return to_double(surface.positions[raw(surface.triangles[t][k])]);
+      };
+      const Vec3d normal = cross(corner(1) - corner(0), corner(2) - corner(0));
+      const double covered = area_of(at) * picture.width * picture.height;
+      const double size = length(normal) / 2;
+      double radius = std::max(1.0, size > 0 ? texel * std::sqrt(covered / size) : 1);
+      std::uint32_t level = 0;
+      while (radius >= 2 && level < kHalvings && picture.width % (2U << level) == 0 &&
+             picture.height % (2U << level) == 0) {
+        radius /= 2;
+        ++level;
+      }
+      if (levels[level] == ~std::uint32_t{0}) {
+        levels[level] = static_cast<std::uint32_t>(pictures_.size());
+        if (level > 0)
+          smaller_.push_back(reduced(picture, surface.corners, 1U << level));
+        pictures_.push_back(level > 0 ? &smaller_.back() : &picture);
+      }
+      const images::Image& used = *pictures_[levels[level]];
+      const auto x = [&](std::size_t k) { return float(double(at[k].u) * used.width); };
+      const auto y = [&](std::size_t k) { return float(double(at[k].v) * used.height); };
+      spots_.push_back({x(0), y(0), x(1) - x(0), y(1) - y(0), x(2) - x(0), y(2) - y(0),
+                        static_cast<float>(std::min<double>(radius, kMostRadius)), levels[level]});
+    }
+  }
+}
+
+Light TexelSampler::operator()(std::uint32_t triangle, double on_b, double on_c) const {
+  const Spot& spot = spots_[triangle];
+  const images::Image& picture = *pictures_[spot.picture];
+  const auto b = static_cast<float>(on_b), c = static_cast<float>(on_c);
+  const Taps columns(spot.x + b * spot.bx + c * spot.cx, spot.radius, picture.width);
+  const Taps rows(spot.y + b * spot.by + c * spot.cy, spot.radius, picture.height);
+  return mean(picture, columns, rows);
+}
+
+}  // namespace meshhier::texture

@@ -1,0 +1,74 @@
+// The counts of a tile (docs/file_format.md, section 4.4), checked before anything is sized by them.
+import type { Glb } from './glb.js';
+import { MOST_ELEMENTS, MOST_OWN, MOST_ROOT_TRIANGLES, MOST_SIDE, mostSplits } from './limits.js';
+
+/// What the index says of a tile.
+export interface ExpectedCounts {
+  readonly level: number;
+  readonly index: number;
+  readonly own: number;
+  readonly ghosts: number;
+  readonly copies: number;
+  readonly splits: number;
+  readonly interior: number;
+  readonly border: number;
+  /// 0: there is no picture.
+  readonly pictureWidth: number;
+  readonly pictureHeight: number;
+}
+
+export interface Counts extends ExpectedCounts {
+  readonly neighbours: number;
+  readonly chains: number;
+}
+
+const VERSION = 3;
+const KEYS = ['level', 'index', 'own', 'ghosts', 'copies', 'splits', 'interior', 'border', 'pictureWidth', 'pictureHeight'] as const;
+/// What tiles without splits or pictures need not say.
+const ABSENT = { splitCount: 0, splitOf: -1, imageWidth: 0, imageHeight: 0, image: -1 };
+
+/// MESHHIER_tile.
+export type TileValues = Record<string, number>;
+
+export function withAbsent(extension: TileValues): TileValues {
+  return { ...ABSENT, ...extension };
+}
+
+function count(glb: Glb, values: TileValues, key: string, least: number, most: number): number {
+  const value = values[key];
+  if (!Number.isInteger(value) || value < least || value > most) glb.fail(`"${key}" is not from ${least} to ${most}`);
+  return value;
+}
+
+function parse(glb: Glb, values: TileValues): Counts {
+  if (values.version !== VERSION) glb.fail(`version ${values.version} of MESHHIER_tile is not known; this viewer knows ${VERSION}`);
+  return {
+    level: count(glb, values, 'level', 0, 32),
+    index: count(glb, values, 'index', 0, 2 ** 32 - 1),
+    own: count(glb, values, 'ownCount', 1, MOST_OWN),
+    ghosts: count(glb, values, 'ghostCount', 0, MOST_ELEMENTS),
+    copies: count(glb, values, 'copyCount', 0, MOST_ELEMENTS),
+    splits: count(glb, values, 'splitCount', 0, MOST_ELEMENTS),
+    neighbours: count(glb, values, 'neighbourCount', 0, MOST_ELEMENTS),
+    chains: count(glb, values, 'chainEntryCount', 0, MOST_ELEMENTS),
+    interior: count(glb, values, 'interiorCount', 0, MOST_ELEMENTS),
+    border: count(glb, values, 'borderCount', 0, MOST_ELEMENTS),
+    pictureWidth: count(glb, values, 'imageWidth', 0, MOST_SIDE),
+    pictureHeight: count(glb, values, 'imageHeight', 0, MOST_SIDE),
+  };
+}
+
+function check(glb: Glb, counts: Counts, expected: ExpectedCounts | null): void {
+  if (expected !== null && KEYS.some((key) => counts[key] !== expected[key])) glb.fail('not the tile that the index tells of');
+  if (counts.level === 0 && (counts.ghosts > 0 || counts.border > 0 || counts.interior > MOST_ROOT_TRIANGLES)) glb.fail('not a root');
+  if (counts.neighbours > counts.ghosts || counts.chains > counts.ghosts * counts.level) glb.fail('more neighbours or chains than ghosts allow');
+  if (counts.splits > mostSplits(counts)) glb.fail('more splits than corners of triangles');
+  if ((counts.pictureWidth === 0) !== (counts.pictureHeight === 0)) glb.fail('a picture with one side only');
+}
+
+/// `expected`: null of a root of which nothing is known yet.
+export function readCounts(glb: Glb, values: TileValues, expected: ExpectedCounts | null): Counts {
+  const counts = parse(glb, values);
+  check(glb, counts, expected);
+  return counts;
+}
