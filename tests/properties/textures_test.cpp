@@ -18,7 +18,10 @@
 #include <iterator>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -67,6 +70,32 @@ struct BuiltTile {
   TileRecord record;
   PublishedTile tile;
   Image image;
+};
+
+/// Cancels after so many steps, of all stages or of one.
+class StoppedStage final : public execution::Progress {
+ public:
+  StoppedStage(execution::CancelToken& cancel, std::uint64_t after, std::string only = "")
+      : cancel_(cancel), after_(after), only_(std::move(only)) {}
+
+  void stage(std::string_view name, std::uint64_t, std::string_view) override {
+    stage_name = name;
+    step();
+  }
+  void advance(std::uint64_t) override { step(); }
+  void finish(std::string_view) override {}
+
+  std::string stage_name;
+
+ private:
+  void step() {
+    if ((only_.empty() || only_ == stage_name) && steps_++ >= after_)
+      cancel_.cancel();
+  }
+
+  execution::CancelToken& cancel_;
+  std::uint64_t after_, steps_ = 0;
+  std::string only_;
 };
 
 class TexturesTest : public testing::Test {
@@ -275,6 +304,45 @@ TEST_F(TexturesTest, ThreadsAndBudgetDecideNothing) {
     build(job);
     EXPECT_EQ(files_of(job.output), expected) << threads;
   }
+}
+
+TEST_F(TexturesTest, AStoppedBuildGoesOnToTheSameBytes) {
+  const config::Config job = config(write(tests::make_textured_torus(6, 3)));
+  build(job);
+  const auto expected = files_of(job.output);
+  std::set<std::string> stages;
+  for (std::uint64_t after = 0; after < 60; after += 2) {
+    std::filesystem::remove_all(job.output);
+    execution::CancelToken cancel;
+    StoppedStage progress(cancel, after);
+    try {
+      build_hierarchy(job, {}, {*files_, progress, cancel});
+      break;  // all steps were counted
+    } catch (const Error& error) {
+      ASSERT_EQ(error.code(), ErrorCode::interrupted) << error.what();
+      stages.insert(progress.stage_name);
+    }
+    build(job);
+    ASSERT_EQ(files_of(job.output), expected) << progress.stage_name << " " << after;
+  }
+  EXPECT_THAT(stages,
+              testing::IsSupersetOf({"images", "leaves", "simplify", "texture", "publish"}));
+}
+
+TEST_F(TexturesTest, AChangedPictureIsNotGoneOnWith) {
+  const std::filesystem::path mesh = write(tests::make_textured_torus(6, 3));
+  const config::Config job = config(mesh);
+  execution::CancelToken cancel;
+  StoppedStage progress(cancel, 0, "texture");
+  EXPECT_THROW(build_hierarchy(job, {}, {*files_, progress, cancel}), Error);
+  TexturedTorus other = tests::make_textured_torus(6, 3);
+  for (Image& picture : other.pictures)
+    std::ranges::fill(picture.texels, std::uint8_t{200});
+  write(other);
+  build(job);
+  for (const BuiltTile& built : tiles(job))
+    ASSERT_EQ(built.image.at(0, 0)[0], 200);
+  EXPECT_THAT(problems(job), IsEmpty());
 }
 
 TEST_F(TexturesTest, ABuildMayLeaveThemOut) {
