@@ -10,6 +10,11 @@
 namespace meshhier::pipeline {
 namespace {
 
+/// Sums of hashes wrap around.
+std::int64_t joined_times(std::int64_t a, std::int64_t b) {
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
+}
+
 BuildIdentity identity_of(const config::Config& config, const importing::MeshInput& input,
                           const BuildPlan& plan) {
   const Tree& tree = plan.tree;
@@ -23,7 +28,7 @@ BuildIdentity identity_of(const config::Config& config, const importing::MeshInp
            {"faces", mesh.face_count},
            {"partitions", tree.partition_count()},
            {"config", config::resolved_json(config)}},
-          input.files().times() + plan.textures.file_times};
+          joined_times(input.files().times(), plan.textures.file_times)};
 }
 
 /// But for the tiles.
