@@ -53,10 +53,14 @@ std::string in_quotes(std::string_view text) {
 
 // ---- the text
 
+char lower(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+/// In any case; `part` is in lower case.
 bool contains(std::string_view text, std::string_view part) {
-  return std::ranges::search(text, part, {}, [](char c) {
-           return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-         }).begin() != text.end();
+  return std::search(text.begin(), text.end(), part.begin(), part.end(),
+                     [](char a, char b) { return lower(a) == b; }) != text.end();
 }
 
 /// "+geoidgrids=/tmp/x.gtx".

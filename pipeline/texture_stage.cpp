@@ -65,7 +65,8 @@ texture::MaterialTexels texels_of(const Material& material, const images::ImageS
   if (!material.image)
     return {};
   const images::ImageInfo& info = pictures.info(*material.image);
-  return {info.width, info.height, pictures.levels(*material.image)};
+  return {info.width, info.height, pictures.levels(*material.image), material.wrap_u,
+          material.wrap_v};
 }
 
 std::vector<texture::MaterialTexels> texels_of(const TexturedInput& input) {

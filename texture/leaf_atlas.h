@@ -2,7 +2,8 @@
 //
 // A chart is a connected piece of the tile in the coordinates of one material. Its rectangle of
 // texels, with a gutter around it, is copied as it is: a texel of the atlas is a texel of the
-// input. A chart that fills little of its rectangle is cut in two.
+// input. A chart that fills little of its rectangle is cut in two, and so is one in which its
+// picture repeats. Charts that show the same texels share them.
 #pragma once
 
 #include "hierarchy/texture.h"
@@ -24,6 +25,7 @@ inline constexpr std::uint32_t kLeafAlignment = 8;
 struct MaterialTexels {
   std::uint32_t width = 0, height = 0;  ///< of its picture; 0: a colour alone
   std::uint32_t levels = 1;             ///< of the picture's pyramid
+  Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
 };
 
 /// Vertices have the numbers of VertexNumbers: places, then copies.

@@ -18,6 +18,8 @@ namespace {
 constexpr double kFull = 1.0 / 3;
 /// Pieces may have so much of the texels of the whole.
 constexpr double kPays = 0.75;
+/// A chart that is longer than so many periods of its picture is cut.
+constexpr double kManyPeriods = 1.5;
 
 struct Point {
   double u = 0, v = 0;
@@ -29,6 +31,16 @@ constexpr TexcoordBox kNowhere{kInfinite, kInfinite, -kInfinite, -kInfinite};
 void add(TexcoordBox& box, const Point& p) {
   box = {std::min(box.u0, p.u), std::min(box.v0, p.v), std::max(box.u1, p.u),
          std::max(box.v1, p.v)};
+}
+
+/// Near the middle of two triple coordinates, where the picture begins again if it does between
+/// them.
+double cut_line(double low, double high, double period) {
+  const double middle = low + (high - low) / 2;
+  if (period == 0)
+    return middle;
+  const double begin = 3 * period * std::round(middle / (3 * period));
+  return begin > low && begin <= high ? begin : middle;
 }
 
 std::int64_t aligned(std::int64_t length) {
@@ -120,6 +132,15 @@ class Cutter {
     return covered * picture.width * picture.height >= kFull * box.area();
   }
 
+  bool is_repeated(const ChartPiece& chart) const {
+    const auto is_long = [](double length, double period) {
+      return period > 0 && length > kManyPeriods * period;
+    };
+    const MaterialTexels& picture = materials_[chart.material];
+    return is_long(chart.box.u1 - chart.box.u0, period(picture, picture.wrap_u)) ||
+           is_long(chart.box.v1 - chart.box.v0, period(picture, picture.wrap_v));
+  }
+
   /// Sorts the triangles by the side of a line on which their middles are, and returns where the
   /// second side begins; the end if that is not worth a cut.
   std::uint32_t divide(const ChartPiece& whole) {
@@ -131,7 +152,8 @@ class Cutter {
     const double height = (middles.v1 - middles.v0) * picture.height;
     if (!(std::max(width, height) > 3))
       return whole.end;  // less than a texel
-    const double u = (middles.u0 + middles.u1) / 2, v = (middles.v0 + middles.v1) / 2;
+    const double u = cut_line(middles.u0, middles.u1, period(picture, picture.wrap_u));
+    const double v = cut_line(middles.v0, middles.v1, period(picture, picture.wrap_v));
     const auto is_first = [&](std::uint32_t t) {
       const Point at = middle(t);
       return width >= height ? at.u < u : at.v < v;
@@ -147,7 +169,7 @@ class Cutter {
     const MaterialTexels& picture = materials_[whole.material];
     const std::size_t first = result_.pieces.size();
     const TexelBox box = texels_around(whole.box, picture, 0);
-    const bool fits = std::max(box.width, box.height) <= most_side_;
+    const bool fits = std::max(box.width, box.height) <= most_side_ && !is_repeated(whole);
     const bool stays = picture.width == 0 || (fits && is_full(whole, box));
     if (const std::uint32_t second = stays ? end : divide(whole); second < end) {
       const double texels = cut(begin, second) + cut(second, end);
@@ -170,6 +192,12 @@ class Cutter {
 double clamped_texcoord(float value) {
   return value > -kFarthestTexcoord ? std::min<double>(value, kFarthestTexcoord)
                                     : -kFarthestTexcoord;
+}
+
+double period(const MaterialTexels& material, Wrap wrap) {
+  if (material.width == 0 || wrap == Wrap::clamp)
+    return 0;
+  return wrap == Wrap::mirrored ? 2 : 1;
 }
 
 std::uint32_t level_side(std::uint32_t side, std::uint32_t level) {

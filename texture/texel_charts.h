@@ -22,7 +22,7 @@ struct TexcoordBox {
 struct ChartPiece {
   std::uint32_t material = 0;
   std::uint32_t begin = 0, end = 0;
-  TexcoordBox box{};
+  TexcoordBox box{};  ///< as its triangles have it
 };
 
 struct ChartPieces {
@@ -46,10 +46,13 @@ TexelBox texels_around(const TexcoordBox& box, const MaterialTexels& material, s
 
 double clamped_texcoord(float value);
 
+/// After how many pictures a picture repeats: 1, mirrored 2; 0 if it never does.
+double period(const MaterialTexels& material, Wrap wrap);
+
 /// Triangles that share a vertex, or a material's coordinates to the bit, are one chart. A chart is
-/// cut in two by its triangles' middles as long as it is larger than `most_side`, or little of it
-/// is covered and the cut saves a fourth of its texels. Equal triangles stay together. O(t log t),
-/// times at most twice the bits of a texel's number for cuts.
+/// cut in two by its triangles' middles as long as it is larger than `most_side`, its picture
+/// repeats in it, or little of it is covered and the cut saves a fourth of its texels. Equal
+/// triangles stay together. O(t log t), times at most twice the bits of a texel's number for cuts.
 ChartPieces cut_charts(const LeafTriangles& leaf, std::span<const MaterialTexels> materials,
                        std::uint32_t most_side);
 

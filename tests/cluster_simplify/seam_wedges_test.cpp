@@ -384,9 +384,10 @@ std::vector<NewTriangle> normalized(std::vector<NewTriangle> triangles, bool of_
     return std::array{place_of(t[0]), place_of(t[1]), place_of(t[2])};
   };
   std::ranges::sort(triangles, {}, [&](const NewTriangle& t) { return std::pair(by_place(t), t); });
-  const auto repeats =
-      of_places ? std::ranges::unique(triangles, {}, by_place) : std::ranges::unique(triangles);
-  triangles.erase(repeats.begin(), repeats.end());
+  const auto are_equal = [&](const NewTriangle& a, const NewTriangle& b) {
+    return of_places ? by_place(a) == by_place(b) : a == b;
+  };
+  triangles.erase(std::unique(triangles.begin(), triangles.end(), are_equal), triangles.end());
   return triangles;
 }
 

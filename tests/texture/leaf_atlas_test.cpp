@@ -72,12 +72,18 @@ std::uint32_t level_side_of(std::uint32_t side, std::uint32_t level) {
   return side;
 }
 
-/// Any value for any texel of a picture that repeats.
+std::uint64_t wrapped(std::int64_t at, std::int64_t side, Wrap wrap) {
+  const std::int64_t period = wrap == Wrap::mirrored ? 2 * side : side;
+  const std::int64_t in = (at % period + period) % period;
+  if (wrap == Wrap::clamp)
+    return static_cast<std::uint64_t>(std::clamp<std::int64_t>(at, 0, side - 1));
+  return static_cast<std::uint64_t>(in < side ? in : period - 1 - in);
+}
+
+/// Any value for any texel of a picture.
 double texel(const MaterialTexels& of, std::uint32_t level, std::int64_t x, std::int64_t y) {
-  const std::int64_t width = level_side_of(of.width, level);
-  const std::int64_t height = level_side_of(of.height, level);
-  const auto at_x = static_cast<std::uint64_t>((x % width + width) % width);
-  const auto at_y = static_cast<std::uint64_t>((y % height + height) % height);
+  const std::uint64_t at_x = wrapped(x, level_side_of(of.width, level), of.wrap_u);
+  const std::uint64_t at_y = wrapped(y, level_side_of(of.height, level), of.wrap_v);
   const std::uint64_t mixed = (at_x * 0x9E3779B97F4A7C15U ^ at_y * 0xC2B2AE3D27D4EB4FU ^ level);
   return static_cast<double>((mixed * 0xD6E8FEB86659FD93U) >> 56);
 }
@@ -250,8 +256,8 @@ TEST(LeafAtlas, AFullChartStaysWhole) {
 
 TEST(LeafAtlas, AChartThatIsTooWideIsCutBeforeItGetsCoarser) {
   Leaf leaf;
-  leaf.grid({0, 0}, {4, 0.125f}, 32);
-  const std::vector<MaterialTexels> materials = {picture(256, 256)};
+  leaf.grid({0, 0}, {1, 0.03f}, 32);
+  const std::vector<MaterialTexels> materials = {picture(1024, 1024)};
   const LeafAtlas atlas = plan_leaf_atlas(leaf, materials, 512);
   EXPECT_GE(atlas.pieces.size(), 2U);
   EXPECT_EQ(atlas.reduced, 0U);
@@ -362,6 +368,77 @@ TEST(LeafAtlas, AllCoordinatesAreOne) {
   EXPECT_EQ(atlas.pieces.size(), 1U);
   expect_gutters(atlas, materials);
   expect_input_texels(leaf, atlas, materials);
+}
+
+std::size_t texels_of(const LeafAtlas& atlas) {
+  return std::size_t{atlas.width} * atlas.height;
+}
+
+TEST(LeafAtlas, APictureThatRepeatsInAChartIsThereOnce) {
+  Leaf leaf;
+  leaf.grid({-3.3f, 0.1f}, {8.4f, 5.7f}, 96);
+  const std::vector<MaterialTexels> materials = {picture(100, 60)};
+  const LeafAtlas atlas = plan_leaf_atlas(leaf, materials, 4096);
+  EXPECT_EQ(atlas.reduced, 0U);
+  // Triangles have up to an eighth of a picture; 11.7 x 5.6 pictures are 393,000 texels.
+  EXPECT_LT(texels_of(atlas), 20000U);
+  expect_gutters(atlas, materials);
+  expect_input_texels(leaf, atlas, materials);
+}
+
+TEST(LeafAtlas, ChartsOfTheSameTexelsShareThem) {
+  Leaf leaf;
+  for (int i = 0; i < 50; ++i) {
+    const auto by = static_cast<float>(i % 7), down = static_cast<float>(i % 3);
+    leaf.grid({by + 0.25f, down + 0.125f}, {by + 0.75f, down + 0.5f}, 1 + i % 5);
+  }
+  const std::vector<MaterialTexels> materials = {picture(256, 256)};
+  const LeafAtlas atlas = plan_leaf_atlas(leaf, materials, 4096);
+  EXPECT_EQ(atlas.pieces.size(), 1U);
+  EXPECT_LE(texels_of(atlas), (128U + 16) * (96 + 16));
+  expect_gutters(atlas, materials);
+  expect_input_texels(leaf, atlas, materials);
+}
+
+TEST(LeafAtlas, ChartsThatLieApartShareNothing) {
+  Leaf leaf;
+  leaf.grid({0.1f, 0.1f}, {0.2f, 0.2f}, 2);
+  leaf.grid({0.6f, 0.7f}, {0.7f, 0.8f}, 2);
+  leaf.grid({0.1f, 0.1f}, {0.2f, 0.2f}, 2, 1);
+  const std::vector<MaterialTexels> materials = {picture(512, 512), picture(512, 512)};
+  EXPECT_EQ(plan_leaf_atlas(leaf, materials, 4096).pieces.size(), 3U);
+}
+
+TEST(LeafAtlas, MirroredAndClampedPicturesAreSharedWhereTheyAreTheSame) {
+  Leaf leaf;
+  leaf.grid({0.1f, 0.2f}, {0.4f, 0.6f}, 3);
+  leaf.grid({1.1f, 0.2f}, {1.4f, 0.6f}, 3);    // mirrored
+  leaf.grid({-1.9f, 0.2f}, {-1.6f, 0.6f}, 3);  // two periods of one: the same
+  leaf.grid({0.1f, 5.2f}, {0.4f, 5.6f}, 3);    // the last row again and again
+  MaterialTexels mirrored = picture(200, 100);
+  mirrored.wrap_u = Wrap::mirrored;
+  mirrored.wrap_v = Wrap::clamp;
+  const std::vector<MaterialTexels> materials = {mirrored};
+  const LeafAtlas atlas = plan_leaf_atlas(leaf, materials, 4096);
+  EXPECT_EQ(atlas.pieces.size(), 3U);
+  expect_gutters(atlas, materials);
+  expect_input_texels(leaf, atlas, materials);
+}
+
+TEST(LeafAtlas, WhatIsSharedHasNoLimitOfCharts) {
+  RandomNumbers random(5);
+  Leaf leaf;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec2f at{float(random.below(1 << 20)) / 4096, float(random.below(1 << 20)) / 4096};
+    leaf.triangle(at, {at.u + 0.11f, at.v}, {at.u, at.v + 0.07f});
+  }
+  const std::vector<MaterialTexels> materials = {picture(1024, 1024)};
+  const LeafAtlas atlas = plan_leaf_atlas(leaf, materials, 4096);
+  EXPECT_EQ(atlas.charts, 20000U);
+  // Apart they would have 20,000 * 120 * 80 = 192 M texels.
+  EXPECT_LT(texels_of(atlas), 5'000'000U);
+  EXPECT_EQ(atlas.reduced, 0U);
+  expect_gutters(atlas, materials);
 }
 
 TEST(LeafAtlas, IsTheSameEachTime) {
