@@ -27,6 +27,8 @@ struct Material {
   std::string name;
   std::array<float, 4> colour{1, 1, 1, 1};  ///< sRGB and alpha, 0 ... 1; if it has no picture
   std::optional<std::uint32_t> image;       ///< in MaterialList::images
+  /// What the light and the alpha of its picture are multiplied by, 0 ... 1.
+  std::array<float, 4> factor{1, 1, 1, 1};
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
   AlphaMode alpha = AlphaMode::opaque;
   float alpha_cutoff = 0.5f;

@@ -418,7 +418,6 @@ class GltfImporter {
                       {"ignored_morph_targets", morph_targets_},
                       {"repeated_meshes", repeated_},
                       {"ignored_skins", scene_.skinned},
-                      {"tinted_pictures", materials_.tinted()},
                       {"vertices_left_out", left_out_},
                       {"vertices_made_white", made_white_},
                       {"vertices_without_normal", without_normal_},

@@ -14,19 +14,16 @@ float srgb(double linear) {
   return static_cast<float>(images::screen_value(linear)) / kWhite;
 }
 
-bool is_tinting(const std::array<double, 4>& factor) {
-  return factor[0] != 1 || factor[1] != 1 || factor[2] != 1;
-}
-
 }  // namespace
 
 GltfMaterials::Use GltfMaterials::look_up(const mesh_io::GltfMaterial& material) {
   Use use;
   if (!material.texture)
     return use;
-  const auto image = file_.document().textures[*material.texture].image;
-  use.picture = image ? file_.picture(*image) : mesh_io::GltfPicture{.name = "a picture"};
-  tinted_ += use.has_picture() && is_tinting(material.factor) ? 1 : 0;
+  const mesh_io::GltfTexture& texture = file_.document().textures[*material.texture];
+  const char* unknown = texture.is_ktx2 ? "one in KTX2, which cannot be read," : "a picture";
+  use.picture =
+      texture.image ? file_.picture(*texture.image) : mesh_io::GltfPicture{.name = unknown};
   return use;
 }
 
@@ -52,6 +49,8 @@ images::Material GltfMaterials::material(std::int64_t key, Use& use, MaterialTab
   to.alpha_cutoff = static_cast<float>(std::clamp(from.alpha_cutoff, 0.0, 1.0));
   if (!use.has_picture())
     return to;
+  for (std::size_t c = 0; c < to.factor.size(); ++c)
+    to.factor[c] = static_cast<float>(std::clamp(from.factor[c], 0.0, 1.0));
   to.image =
       table.add_picture({use.picture->name, use.picture->file.value_or(""), use.picture->offset,
                          use.picture->bytes, std::move(use.picture->data)});

@@ -20,8 +20,6 @@ class GltfMaterials {
 
   /// Whether a picture is there for any triangle.
   bool is_textured() const { return is_textured_; }
-  /// Pictures whose material would tint them, which is ignored.
-  std::uint64_t tinted() const { return tinted_; }
 
   /// Tells `table` which pictures are not there.
   void tell_missing(MaterialTable& table) const;
@@ -48,7 +46,6 @@ class GltfMaterials {
   mesh_io::GltfFile& file_;
   std::map<std::int64_t, Use> uses_;
   bool is_textured_ = false;
-  std::uint64_t tinted_ = 0;
 };
 
 }  // namespace meshhier::importing

@@ -8,6 +8,7 @@
 #include "hierarchy/plain_text.h"
 #include "hierarchy/shown_corners.h"
 #include "images/image_store.h"
+#include "images/material_texels.h"
 #include "images/open_source.h"
 #include "import/mesh_input.h"
 #include "partition/external_sort.h"
@@ -16,6 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -304,7 +306,7 @@ struct TexelCheck::Impl {
     }
   }
 
-  void compare(const Expected& one, const Image& image, Comparison& result) const {
+  void compare(const Expected& one, const Image& image, Comparison& result) {
     const Material& material = materials.materials.at(one.material);
     const auto shown = in_texels(one.shown, image.width, image.height);
     if (!material.image || !store_of[*material.image])
@@ -326,9 +328,9 @@ struct TexelCheck::Impl {
     const double x0 = std::floor(left), y0 = std::floor(top);
     Image texels(static_cast<std::uint32_t>(std::ceil(right) - x0) + 1,
                  static_cast<std::uint32_t>(std::ceil(bottom) - y0) + 1, 3);
-    pictures.read({picture, 0, static_cast<std::int64_t>(x0), static_cast<std::int64_t>(y0),
-                   texels.width, texels.height, material.wrap_u, material.wrap_v},
-                  texels, 0, 0);
+    shown_texels(one.material, picture)
+        .read(0, static_cast<std::int64_t>(x0), static_cast<std::int64_t>(y0), texels.width,
+              texels.height, texels, 0, 0);
     for (std::uint32_t y = 0; y < texels.height; ++y) {
       for (std::uint32_t x = 0; x < texels.width; ++x) {
         const auto w = weights_at(source, area, x0 + x + 0.5, y0 + y + 0.5);
@@ -339,6 +341,16 @@ struct TexelCheck::Impl {
         result.add(texel_at(image, sx, sy), texels.at(x, y));
       }
     }
+  }
+
+  /// Of a material whose picture has that number in the store.
+  const images::MaterialTexels& shown_texels(std::uint32_t number, std::uint32_t picture) {
+    const auto found = texels_of_material.find(number);
+    if (found != texels_of_material.end())
+      return found->second;
+    Material material = materials.materials.at(number);
+    material.image = picture;
+    return texels_of_material.try_emplace(number, material, pictures).first->second;
   }
 
   static void compare_colour(const Material& material, const std::array<Point, 3>& shown,
@@ -373,6 +385,7 @@ struct TexelCheck::Impl {
   storage::ScratchFile picture_scratch;
   images::ImageStore pictures;
   std::vector<std::optional<std::uint32_t>> store_of;  ///< of each picture its number in the store
+  std::map<std::uint32_t, images::MaterialTexels> texels_of_material;
   partition::ExternalSort<EitherTriangle, ByKey> triangles;
   Comparison all;
 };

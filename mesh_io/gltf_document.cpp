@@ -198,6 +198,7 @@ class DocumentReader {
                           o.index("sampler", document_.samplers.size())};
       if (const auto webp = o.extension("EXT_texture_webp"))
         texture.image = webp->require_index("source", document_.images.size());
+      texture.is_ktx2 = o.extension("KHR_texture_basisu").has_value();
       document_.textures.push_back(texture);
     });
   }
@@ -230,6 +231,11 @@ class DocumentReader {
       read_colour(*metallic, "baseColorFactor", "baseColorTexture", material);
     } else if (const auto glossy = o.extension("KHR_materials_pbrSpecularGlossiness")) {
       read_colour(*glossy, "diffuseFactor", "diffuseTexture", material);
+    }
+    if (const auto light = o.object("emissiveTexture"); light && !material.texture) {
+      const auto factor = numbers<3>(o, "emissiveFactor", {0, 0, 0});
+      material.factor = {factor[0], factor[1], factor[2], material.factor[3]};
+      read_texture_use(*light, material);
     }
     material.alpha = static_cast<AlphaMode>(
         choice(o, "alphaMode", o.text("alphaMode").value_or("OPAQUE"), kAlphaModes));

@@ -124,6 +124,7 @@ struct GltfSampler {
 struct GltfTexture {
   std::optional<std::uint32_t> image;  ///< none: of a format that is not read
   std::optional<std::uint32_t> sampler;
+  bool is_ktx2 = false;  ///< KHR_texture_basisu, which is not read, has a picture for it
 };
 
 struct GltfImage {

@@ -5,6 +5,7 @@
 #include "hierarchy/bounds.h"
 #include "hierarchy/vertex_numbers.h"
 #include "images/image_codec.h"
+#include "images/material_texels.h"
 #include "pipeline/plan/tile_room.h"
 #include "pipeline/tiles/vertex_order.h"
 #include "texture/leaf_atlas.h"
@@ -103,9 +104,9 @@ Image painted(const texture::LeafAtlas& atlas, AlphaMode alpha, const TexturedIn
   for (const texture::AtlasPiece& piece : atlas.pieces) {
     const Material& material = input.materials.materials[piece.material];
     if (material.image) {
-      input.pictures.read({*material.image, piece.level, piece.x, piece.y, piece.width,
-                           piece.height, material.wrap_u, material.wrap_v},
-                          image, piece.atlas_x, piece.atlas_y);
+      const images::MaterialTexels texels(material, input.pictures);
+      texels.read(piece.level, piece.x, piece.y, piece.width, piece.height, image, piece.atlas_x,
+                  piece.atlas_y);
     } else {
       fill(piece, material.colour, image);
     }

@@ -42,6 +42,7 @@ images::ImageSource image_source(const nlohmann::json& json) {
 nlohmann::json to_json(const images::Material& material) {
   nlohmann::json json{{"name", to_binary(material.name)},
                       {"colour", material.colour},
+                      {"factor", material.factor},
                       {"wraps", {material.wrap_u, material.wrap_v}},
                       {"alpha", material.alpha},
                       {"cutoff", material.alpha_cutoff}};
@@ -54,6 +55,7 @@ images::Material material_of(const nlohmann::json& json) {
   images::Material material;
   material.name = text_of(json.at("name"));
   material.colour = json.at("colour");
+  material.factor = json.at("factor");
   material.wrap_u = json.at("wraps").at(0);
   material.wrap_v = json.at("wraps").at(1);
   material.alpha = json.at("alpha");

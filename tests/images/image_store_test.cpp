@@ -1,7 +1,9 @@
 #include "images/image_store.h"
 
 #include "hierarchy/error.h"
+#include "images/material_texels.h"
 #include "images/pyramid.h"
+#include "images/srgb.h"
 #include "storage/io/file.h"
 #include "support/memory_files.h"
 #include "tests/images/samples.h"
@@ -339,6 +341,38 @@ TEST_F(RestoredStoreTest, WhatContradictsItselfIsNotTaken) {
   EXPECT_TRUE(refused([](StoredImage& image) { image.strips.emplace_back(); }));
   EXPECT_TRUE(refused([](StoredImage& image) { image.strips[1].offset = UINT64_MAX; }));
   EXPECT_TRUE(refused([](StoredImage& image) { image.strips[1].checksum ^= 1; }));
+}
+
+TEST_F(ImageStoreTest, AMaterialMultipliesLightAndAlpha) {
+  const Image picture = noise(70, 70, 4);
+  add(picture);
+  Material material;
+  material.image = 0;
+  material.factor = {0.25F, 1, 0, 0.5F};
+  Image shown(8, 8, 4);
+  MaterialTexels(material, store).read(0, 60, 60, 8, 8, shown, 0, 0);
+  for (std::uint32_t y = 0; y < 8; ++y) {
+    for (std::uint32_t x = 0; x < 8; ++x) {
+      const std::uint8_t* from = picture.at(60 + x, 60 + y);
+      const std::uint8_t* to = shown.at(x, y);
+      EXPECT_EQ(to[0], screen_value(0.25 * light_of(from[0] / 255.0)));
+      EXPECT_EQ(to[1], from[1]);
+      EXPECT_EQ(to[2], 0);
+      EXPECT_NEAR(to[3], from[3] / 2.0, 0.5);
+    }
+  }
+}
+
+TEST_F(ImageStoreTest, AMaterialWithoutFactorShowsThePictureWithItsWraps) {
+  const Image picture = noise(20, 30);
+  add(picture);
+  Material material;
+  material.image = 0;
+  material.wrap_u = Wrap::mirrored;
+  Image shown(40, 1, 3);
+  MaterialTexels(material, store).read(0, 0, 30, 40, 1, shown, 0, 0);
+  for (std::uint32_t x = 0; x < 40; ++x)
+    EXPECT_EQ(*shown.at(x, 0), *picture.at(x < 20 ? x : 39 - x, 0));
 }
 
 }  // namespace

@@ -423,6 +423,32 @@ TEST_F(GltfImportTest, AMissingPictureShowsItsMaterialsColour) {
   EXPECT_THAT(ignored.warnings, IsEmpty());
 }
 
+TEST_F(GltfImportTest, WithoutABaseColoursPictureTheEmissiveOneIsShown) {
+  GltfBuilder gltf;
+  put("b.png", "x");
+  const std::size_t number = gltf.textured_material({{"uri", "b.png"}});
+  GltfJson& material = gltf.json["materials"][number];
+  material["emissiveTexture"] = material["pbrMetallicRoughness"]["baseColorTexture"];
+  material["emissiveFactor"] = {1, 1, 0.5};
+  material["pbrMetallicRoughness"] = {{"baseColorFactor", {0, 0, 0, 1}}};
+  gltf.show(textured_square(gltf, number));
+  const Imported mesh = import(gltf);
+  ASSERT_EQ(mesh.materials.materials.size(), 1U);
+  EXPECT_TRUE(mesh.materials.materials[0].image);
+  EXPECT_EQ(mesh.materials.materials[0].factor, (std::array<float, 4>{1, 1, 0.5F, 1}));
+}
+
+TEST_F(GltfImportTest, APictureInKtx2IsToldToBeUnreadable) {
+  GltfBuilder gltf;
+  const std::size_t number = gltf.textured_material({{"uri", "b.ktx2"}});
+  gltf.json["textures"][0].erase("source");
+  gltf.json["textures"][0]["extensions"]["KHR_texture_basisu"]["source"] = 0;
+  gltf.show(textured_square(gltf, number));
+  const Imported mesh = import(gltf);
+  ASSERT_EQ(mesh.warnings.size(), 1U);
+  EXPECT_THAT(mesh.warnings[0], HasSubstr("KTX2, which cannot be read"));
+}
+
 TEST_F(GltfImportTest, MaterialsHaveWrapsAlphaAndOtherCoordinates) {
   GltfBuilder gltf;
   put("b.webp", "x");
@@ -448,7 +474,7 @@ TEST_F(GltfImportTest, MaterialsHaveWrapsAlphaAndOtherCoordinates) {
   EXPECT_EQ(found.alpha, AlphaMode::mask);
   EXPECT_EQ(found.alpha_cutoff, 0.25F);
   EXPECT_EQ(mesh.materials.images[0].file, fs::path("w/b.webp"));
-  EXPECT_EQ(mesh.count("tinted_pictures"), 1U);
+  EXPECT_EQ(found.factor, (std::array<float, 4>{1, 0.5F, 1, 1}));
   EXPECT_EQ(mesh.texcoord(0, 0), (Vec2f{1, 0}));
   EXPECT_EQ(mesh.texcoord(0, 1), (Vec2f{0, 0.2F}));
 }
