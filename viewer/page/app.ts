@@ -6,38 +6,33 @@ import { ListingWatch } from './listing_watch.js';
 import { modelOfPath, type Listing, type Model } from './listing.js';
 import { ModelEntry } from './model_entry.js';
 import { element } from './parts/element.js';
-import { ModeBadge } from './parts/mode_badge.js';
+import { languageSelect } from './parts/language_select.js';
 import { themeButton } from './parts/theme_button.js';
 import { loadPreferences, savePreferences, type Theme } from './preferences.js';
-import { NO_WEBGL } from './parts/no_webgl.js';
 import { Problems } from './problems.js';
 import { readQuery, shortened } from './query.js';
 import { watchInput } from './parts/input.js';
 import { applyTheme, watchSystemTheme } from './theme.js';
+import type { Language } from './words/languages.js';
+import { language, words } from './words/words.js';
 import type { ModelView, Surroundings } from './view/model_view.js';
 
-/// What a folder without a model says, of a listing that knows where it lies.
-function emptyText({ folder, inbox }: Listing): string {
-  const how = inbox === null ? 'Hierarchies that "meshhier build" puts there appear here' : `Mesh files that are put into ${inbox} become some`;
-  return `There are no hierarchies in ${folder} yet. ${how}.`;
+/// What a listing without a model says; `url`: its own.
+function emptyText({ folder, inbox }: Listing, url: string): string {
+  const { gallery } = words;
+  if (folder === null) return `${gallery.emptyListing(url)} ${gallery.howToList}`;
+  return inbox === null ? gallery.emptyFolder(folder) : gallery.emptyFolderWithInbox(folder, inbox);
 }
-
-const HOW_TO = 'Put a file models.json beside this page, {"models": [{"path": "NAME.hier"}]}, or let "meshhier serve" do it, ' +
-  'or name a hierarchy in the address: ?model=NAME.hier';
 
 /// A browser's word for code that did not come says nothing to people.
 function messageOf(error: unknown): string {
-  if (error instanceof TypeError) return "the page's code could not be fetched";
+  if (error instanceof TypeError) return words.problems.noCode;
   return error instanceof Error ? error.message : String(error);
 }
 
 /// The view's code: once, when it is likely to be wanted.
 function loadView(): Promise<typeof import('./view/model_view.js')> {
   return import('./view/model_view.js');
-}
-
-function unreachable(path: string): string {
-  return `The link names "${shortened(path)}", which cannot be fetched.`;
 }
 
 export class App {
@@ -54,8 +49,9 @@ export class App {
     this.watch = new ListingWatch(
       this.query.listing,
       (listing) => { this.listed(listing); },
-      (message) => { this.gallery?.tell(`There are no models to show: ${message}. ${HOW_TO}`); },
+      (message) => { this.gallery?.tell(`${words.gallery.nothingToShow(message)} ${words.gallery.howToList}`); },
     );
+    document.documentElement.lang = language;
     root.append(this.problems.root);
     applyTheme(this.preferences.theme);
     watchSystemTheme(() => { this.setTheme(this.preferences.theme); });
@@ -77,7 +73,7 @@ export class App {
       return;
     }
     this.showGallery();
-    if (address !== null) this.problems.tell(unreachable(address.path));
+    if (address !== null) this.problems.tell(words.problems.unfetchable(shortened(address.path)));
   }
 
   /// Opens a model of the listing by its name or path. False if there is none.
@@ -102,6 +98,16 @@ export class App {
     this.view?.themeChanged();
   }
 
+  /// The words hold as long as the page: it is loaded again, without the language that its address asks for.
+  setLanguage(chosen: Language): void {
+    this.preferences.language = chosen;
+    savePreferences(this.preferences);
+    const address = new URL(location.href);
+    address.searchParams.delete('lang');
+    history.replaceState(history.state, '', address);
+    location.reload();
+  }
+
   private get galleryAddress(): string {
     return location.pathname + location.search;
   }
@@ -114,7 +120,7 @@ export class App {
   private listed(listing: Listing): void {
     this.gallery?.update(listing);
     const isEmpty = listing.models.length + (listing.jobs?.length ?? 0) === 0;
-    if (isEmpty) this.gallery?.tell(listing.folder === null ? `The listing ${this.query.listing} is empty. ${HOW_TO}` : emptyText(listing));
+    if (isEmpty) this.gallery?.tell(emptyText(listing, this.query.listing));
   }
 
   private showGallery(): void {
@@ -127,14 +133,13 @@ export class App {
   }
 
   private makeGallery(): Gallery {
-    const badge = new ModeBadge();
-    badge.show('TP');
     const theme = themeButton(() => this.preferences.theme, (chosen) => { this.setTheme(chosen); });
-    const gallery = new Gallery(element('header', { class: 'gallery-header' }, element('h1', {}, 'meshhier'), badge.root, theme));
+    const language = languageSelect((chosen) => { this.setLanguage(chosen); });
+    const gallery = new Gallery(element('header', { class: 'gallery-header' }, element('h1', {}, 'meshhier'), language, theme));
     this.root.prepend(gallery.root);
     for (const sign of ['pointerdown', 'pointerover', 'focusin'] as const)
       gallery.root.addEventListener(sign, () => { loadView().catch(() => undefined); }, { once: true });
-    if (!gallery.works) this.problems.tell(NO_WEBGL);
+    if (!gallery.works) this.problems.tell(words.problems.noWebGl);
     return gallery;
   }
 
@@ -150,7 +155,7 @@ export class App {
     entry.arrive(this.gallery?.shown ?? false);
     this.gallery?.hide();
     this.watch.stop();
-    document.title = `${model.name} – meshhier`;
+    document.title = words.title(model.name);
     this.load(entry, pose).catch((error: unknown) => { if (entry === this.entry) this.refuse(entry, messageOf(error), pose); });
   }
 
@@ -177,7 +182,8 @@ export class App {
     history.replaceState(null, '', this.galleryAddress);
     this.showGallery();
     const retry = (): void => { location.hash = formatAddress({ path: model.path, pose }); };
-    this.problems.tell(why === NO_WEBGL ? why : `${model.name} cannot be shown: ${why}.`, { retry: why === NO_WEBGL ? null : retry });
+    const { noWebGl, notShown } = words.problems;
+    this.problems.tell(why === noWebGl ? why : notShown(model.name, why), { retry: why === noWebGl ? null : retry });
   }
 
   private surroundings(entry: ModelEntry, pose: Pose | null, { fetch, createWorker }: EarlyStart): Surroundings {
@@ -188,6 +194,7 @@ export class App {
       preferences: this.preferences,
       chosen: () => { savePreferences(this.preferences); },
       setTheme: (theme) => { this.setTheme(theme); },
+      setLanguage: (chosen) => { this.setLanguage(chosen); },
       leave: this.query.only === null ? () => { this.close(); } : null,
       rested: (rest) => { entry.write(rest); },
       failed: (message, telling) => this.problems.tell(message, telling),

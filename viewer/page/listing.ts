@@ -1,6 +1,7 @@
 // models.json: what there is to show, and what is being made. Whatever it holds, what comes out of
 // here is as the types say.
 import { withoutLastSlashes } from '../src/hierarchy/bytes.js';
+import { words } from './words/words.js';
 
 export interface Model {
   name: string;
@@ -98,7 +99,7 @@ function readJob(value: unknown): Job | null {
   if (state !== 'waiting' && state !== 'building' && state !== 'failed') return null;
   const progress = countOf(value.progress);
   return {
-    name: textOf(value.name) || 'a mesh without a name',
+    name: textOf(value.name) || words.listing.namelessMesh,
     state,
     stage: textOf(value.stage),
     progress: progress === null ? null : Math.min(progress, 1),
@@ -124,9 +125,9 @@ export function parseListing(text: string, url: string): Listing {
   try {
     document = JSON.parse(text);
   } catch {
-    throw new ListingError(`${url} is not JSON`);
+    throw new ListingError(words.listing.notJson(url));
   }
-  if (!isObject(document) || !Array.isArray(document.models)) throw new ListingError(`${url} has no list "models"`);
+  if (!isObject(document) || !Array.isArray(document.models)) throw new ListingError(words.listing.noModels(url));
   const models = readAll(document.models, (value) => readModel(value, url), (model) => model.path);
   const jobs = Array.isArray(document.jobs) ? readAll(document.jobs, readJob, (job) => job.name) : null;
   return { models, jobs, folder: textOf(document.folder) || null, inbox: textOf(document.inbox) || null };

@@ -3,6 +3,7 @@ import { drain } from '../src/hierarchy/bytes.js';
 import { HierarchyProblem } from '../src/hierarchy/problem.js';
 import { ListingError, parseListing, type Listing } from './listing.js';
 import { follow } from './signals.js';
+import { words } from './words/words.js';
 
 const PAUSE = 2000; // milliseconds
 const PATIENCE = 30_000; // milliseconds, with a host that says nothing or little
@@ -23,7 +24,7 @@ async function fetchText(url: string, ended: AbortSignal): Promise<string> {
     return await receive(url, ending.signal);
   } catch (problem) {
     if (problem instanceof ListingError) throw problem;
-    throw new ListingError(problem instanceof HierarchyProblem ? problem.message : `${url} cannot be reached`);
+    throw new ListingError(problem instanceof HierarchyProblem ? problem.message : words.listing.unreachable(url));
   } finally {
     window.clearTimeout(timer);
     ending.abort(); // what is left of it is not read

@@ -1,55 +1,76 @@
-// Numbers for people. Every function takes any number, and what is no number becomes a dash.
+// Numbers for people, as their language writes them. Every function takes any number, and what is no number becomes a dash.
+import { locale } from './words/words.js';
 
 const DASH = '–';
-const plain = new Intl.NumberFormat('en');
-const UNITS = ['B', 'kB', 'MB', 'GB', 'TB', 'PB'] as const;
+const UNITS = ['byte', 'kilobyte', 'megabyte', 'gigabyte', 'terabyte', 'petabyte'] as const;
+const THREE_DIGITS = { minimumSignificantDigits: 3, maximumSignificantDigits: 3 } as const;
+
+type Unit = (typeof UNITS)[number] | 'millisecond' | 'second' | 'minute' | 'hour';
+
+export interface Numbers {
+  /// 28,184,526.
+  readonly formatCount: (value: number) => string;
+  /// 28.2M.
+  readonly formatRough: (value: number) => string;
+  /// 23.5 MB, in powers of 1000.
+  readonly formatBytes: (value: number) => string;
+  /// 820 ms, 4.25 sec.
+  readonly formatMilliseconds: (value: number) => string;
+  /// 12 sec, 3 min, 2 hr 5 min.
+  readonly formatDuration: (seconds: number) => string;
+  /// 0.83, 12.5; large ones without a fraction.
+  readonly formatDecimal: (value: number) => string;
+  /// Of a part from 0 to 1: 42%.
+  readonly formatPercent: (value: number) => string;
+}
 
 function isSize(value: number): boolean {
   return Number.isFinite(value) && value >= 0;
 }
 
-/// Three digits: 1.23, 12.3, 123.
-function threeDigits(value: number): string {
-  return value.toFixed(value < 9.995 ? 2 : value < 99.95 ? 1 : 0);
+/// 1.23, 12.3, 123.
+function fractionDigits(value: number): number {
+  return value < 9.995 ? 2 : value < 99.95 ? 1 : 0;
 }
 
-/// 28,184,526.
-export function formatCount(value: number): string {
-  return isSize(value) ? plain.format(Math.round(value)) : DASH;
+/// As a language writes them.
+export function numbersOf(locale: string): Numbers {
+  const formats = (options: Intl.NumberFormatOptions = {}): ((value: number) => string) => {
+    const format = new Intl.NumberFormat(locale, options);
+    return (value) => format.format(value);
+  };
+  const unit = (name: Unit, options: Intl.NumberFormatOptions = {}) => formats({ style: 'unit', unit: name, ...options });
+  const count = formats({ maximumFractionDigits: 0 });
+  const compact = formats({ notation: 'compact', ...THREE_DIGITS });
+  const percent = formats({ style: 'percent', maximumFractionDigits: 0 });
+  const decimals = [0, 1, 2].map((digits) => formats({ minimumFractionDigits: digits, maximumFractionDigits: digits }));
+  const bytes = UNITS.map((name, i) => unit(name, i === 0 ? { maximumFractionDigits: 0 } : THREE_DIGITS));
+  const [milliseconds, wholeSeconds, minutes, hours] = (['millisecond', 'second', 'minute', 'hour'] as const).map(
+    (name) => unit(name, { maximumFractionDigits: 0 }));
+  const seconds = unit('second', THREE_DIGITS);
+
+  function sized(value: number): string {
+    let power = 0;
+    for (; value >= 999.5 && power < UNITS.length - 1; ++power) value /= 1000;
+    return bytes[power](value);
+  }
+
+  function duration(value: number): string {
+    if (value < 99.5) return wholeSeconds(value);
+    const whole = Math.round(value / 60);
+    return whole < 60 ? minutes(whole) : `${hours(Math.floor(whole / 60))} ${minutes(whole % 60)}`;
+  }
+
+  const orDash = (format: (value: number) => string) => (value: number): string => (isSize(value) ? format(value) : DASH);
+  return {
+    formatCount: orDash(count),
+    formatRough: orDash((value) => (value < 10_000 ? count(value) : compact(value))),
+    formatBytes: orDash(sized),
+    formatMilliseconds: orDash((value) => (value < 999.5 ? milliseconds(value) : seconds(value / 1000))),
+    formatDuration: orDash(duration),
+    formatDecimal: orDash((value) => (value >= 1000 ? count(value) : decimals[fractionDigits(value)](value))),
+    formatPercent: orDash(percent),
+  };
 }
 
-/// 28.2 M.
-export function formatRough(value: number): string {
-  if (!isSize(value)) return DASH;
-  if (value < 10_000) return plain.format(Math.round(value));
-  if (value < 999_500) return `${threeDigits(value / 1e3)} k`;
-  return value < 999_500_000 ? `${threeDigits(value / 1e6)} M` : `${threeDigits(value / 1e9)} G`;
-}
-
-/// 23.5 MB, in powers of 1000.
-export function formatBytes(value: number): string {
-  if (!isSize(value)) return DASH;
-  let unit = 0;
-  for (; value >= 999.5 && unit < UNITS.length - 1; ++unit) value /= 1000;
-  return `${unit === 0 ? String(Math.round(value)) : threeDigits(value)} ${UNITS[unit]}`;
-}
-
-/// 820 ms, 4.25 s.
-export function formatMilliseconds(value: number): string {
-  if (!isSize(value)) return DASH;
-  return value < 999.5 ? `${value.toFixed(0)} ms` : `${threeDigits(value / 1000)} s`;
-}
-
-/// 12 s, 3 min, 2 h 5 min.
-export function formatDuration(seconds: number): string {
-  if (!isSize(seconds)) return DASH;
-  if (seconds < 99.5) return `${Math.round(seconds)} s`;
-  const minutes = Math.round(seconds / 60);
-  return minutes < 60 ? `${minutes} min` : `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
-}
-
-/// 0.83, 12.5; large ones without a fraction.
-export function formatDecimal(value: number): string {
-  if (!isSize(value)) return DASH;
-  return value >= 1000 ? formatCount(value) : threeDigits(value);
-}
+export const { formatCount, formatRough, formatBytes, formatMilliseconds, formatDuration, formatDecimal, formatPercent } = numbersOf(locale);

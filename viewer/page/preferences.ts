@@ -1,10 +1,13 @@
 // What the user chose, kept in the browser. Whatever is stored there, what comes out is sound.
 import { changedSettings, DEFAULT_LOOK, type Colours, type Look, type Settings } from '../src/scene/settings.js';
+import { LANGUAGES, type Language } from './words/languages.js';
 
 export type Theme = 'auto' | 'light' | 'dark';
 
 export interface Preferences {
   theme: Theme;
+  /// Null: as the browser wants it.
+  language: Language | null;
   panel: boolean;
   settings: Settings;
   look: Look;
@@ -37,7 +40,7 @@ function asObject(value: unknown): Json {
   return typeof value === 'object' && value !== null ? (value as Json) : {};
 }
 
-function oneOf<T>(value: unknown, choices: readonly T[], otherwise: T): T {
+function oneOf<T, Otherwise>(value: unknown, choices: readonly T[], otherwise: Otherwise): T | Otherwise {
   return choices.find((choice) => choice === value) ?? otherwise;
 }
 
@@ -76,6 +79,7 @@ export function parsePreferences(text: string | null): Preferences {
   }
   return {
     theme: oneOf(stored.theme, THEMES, 'auto'),
+    language: oneOf(stored.language, LANGUAGES, null),
     panel: stored.panel === true,
     settings: readSettings(asObject(stored.settings)),
     look: readLook(asObject(stored.look)),

@@ -1,6 +1,7 @@
 // What failed and what to do: one message at a time, the newest, in a region that can be dismissed.
 import { element, iconButton } from './parts/element.js';
 import { ICONS } from './parts/icons.js';
+import { words } from './words/words.js';
 
 interface Told {
   message: string;
@@ -21,11 +22,11 @@ export class Problems {
   private readonly dismissed = new Set<string>();
   private readonly text = element('p');
   private readonly box = element('div', { class: 'problem' }, this.text);
-  private readonly retry = element('button', { type: 'button', class: 'button problem-retry' }, 'Retry');
+  private readonly retry = element('button', { type: 'button', class: 'button problem-retry' }, words.parts.retry);
 
   constructor() {
     this.retry.addEventListener('click', () => { this.newest()?.[1].retry?.(); });
-    this.box.append(this.retry, iconButton('Dismiss', ICONS.close, () => { this.dismiss(); }));
+    this.box.append(this.retry, iconButton(words.parts.dismiss, ICONS.close, () => { this.dismiss(); }));
   }
 
   /// What was dismissed is not told again until it was taken away, which is what the result does.

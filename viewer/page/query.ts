@@ -1,6 +1,7 @@
 // What the page's address says beside the link to a view: `?models=URL` another listing, `?model=URL` one
-// hierarchy without a listing.
+// hierarchy without a listing. The language, `?lang=`, is chosen by words/words.ts.
 import { modelOfPath, resolveUrl, type Model } from './listing.js';
+import { words } from './words/words.js';
 
 export interface Query {
   listing: string;
@@ -18,10 +19,6 @@ export function shortened(text: string): string {
   return text.length > MOST_SHOWN ? `${text.slice(0, MOST_SHOWN)}…` : text;
 }
 
-function unusable(key: string, value: string, more = ''): string {
-  return `?${key}=${shortened(value)} is no address that can be fetched. It must be relative to this page, or start with http or https${more}.`;
-}
-
 /// `base`: the page's own address.
 export function readQuery(search: string, base: string): Query {
   const parameters = new URLSearchParams(search);
@@ -29,8 +26,8 @@ export function readQuery(search: string, base: string): Query {
   const listing = new URL(LISTING, base).href;
   if (model !== null) {
     const only = modelOfPath(model, base);
-    return { listing, only, problem: only === null ? unusable('model', model, ', and have no query or fragment') : null };
+    return { listing, only, problem: only === null ? words.problems.badModel(shortened(model)) : null };
   }
   const other = models === null ? listing : resolveUrl(models, base);
-  return { listing: other ?? listing, only: null, problem: other === null ? unusable('models', models ?? '') : null };
+  return { listing: other ?? listing, only: null, problem: other === null ? words.problems.badListing(shortened(models ?? '')) : null };
 }

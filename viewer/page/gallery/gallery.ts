@@ -2,6 +2,7 @@
 import type { Job, Listing, Model } from '../listing.js';
 import { formatCount } from '../numbers.js';
 import { element } from '../parts/element.js';
+import { words } from '../words/words.js';
 import { JobCell } from './job_cell.js';
 import { ModelCell } from './model_cell.js';
 import { Painter } from './painter.js';
@@ -87,7 +88,7 @@ export class Gallery {
     this.updateModels(models);
     const cells = [...(jobs ?? []).map(({ name }) => this.jobs.get(name)!), ...models.map(({ path }) => this.cells.get(path)!)];
     arrange(this.list, cells.map(({ root }) => root));
-    this.tell(models.length === 1 ? '1 model' : `${formatCount(models.length)} models`);
+    this.tell(words.counts.models(models.length, formatCount(models.length)));
     this.ask();
   }
 

@@ -1,7 +1,8 @@
 // A mesh that is being made into a hierarchy: how far it is, or why it failed.
 import type { Job } from '../listing.js';
-import { formatDuration } from '../numbers.js';
+import { formatDuration, formatPercent } from '../numbers.js';
 import { element } from '../parts/element.js';
+import { words } from '../words/words.js';
 
 /// Without the name where it begins with that: it stands above.
 function messageOf({ name, message }: Job): string {
@@ -9,19 +10,25 @@ function messageOf({ name, message }: Job): string {
   return message.startsWith(start) ? message.slice(start.length).trim() : message;
 }
 
+/// One that these words do not know is called as the build calls it.
+function stageName(stage: string): string {
+  const names: Readonly<Record<string, string>> = words.jobs.stages;
+  return Object.hasOwn(names, stage) ? names[stage] : stage || words.jobs.building;
+}
+
 export function stateText(job: Job): string {
   const { state, stage, progress, secondsLeft } = job;
-  if (state === 'failed') return messageOf(job) || 'failed, without saying why';
-  if (state === 'waiting') return messageOf(job) || 'waiting for its turn';
-  const part = progress === null ? '' : ` ${Math.round(100 * progress)} %`;
-  const left = secondsLeft === null ? '' : `, ${formatDuration(secondsLeft)} left`;
-  return `${stage || 'building'}${part}${left}`;
+  if (state === 'failed') return messageOf(job) || words.jobs.failed;
+  if (state === 'waiting') return messageOf(job) || words.jobs.waiting;
+  const part = progress === null ? '' : ` ${formatPercent(progress)}`;
+  const what = `${stageName(stage)}${part}`;
+  return secondsLeft === null ? what : words.jobs.left(what, formatDuration(secondsLeft));
 }
 
 function bar({ name, state, progress }: Job): HTMLElement | null {
   if (state === 'failed') return null;
   const value = state === 'building' && progress !== null ? String(progress) : null;
-  return element('progress', { max: '1', value, 'aria-label': `${name}: progress` });
+  return element('progress', { max: '1', value, 'aria-label': words.jobs.progress(name) });
 }
 
 export class JobCell {

@@ -3,6 +3,7 @@ import { formatAddress } from '../address.js';
 import type { Model } from '../listing.js';
 import { formatBytes, formatCount, formatRough } from '../numbers.js';
 import { element } from '../parts/element.js';
+import { words } from '../words/words.js';
 import type { Turn } from './layout.js';
 import { ModelSource, type Sizes } from './model_source.js';
 import type { Shape } from './shape.js';
@@ -11,17 +12,17 @@ import { Turning } from './turning.js';
 /// As people read them.
 function roughSizes({ vertices, triangles, bytes }: Sizes): string[] {
   const parts = [];
-  if (vertices !== null) parts.push(`${formatRough(vertices)} vertices`);
-  if (triangles !== null) parts.push(`${formatRough(triangles)} triangles`);
+  if (vertices !== null) parts.push(words.counts.vertices(vertices, formatRough(vertices)));
+  if (triangles !== null) parts.push(words.counts.triangles(triangles, formatRough(triangles)));
   if (bytes !== null) parts.push(formatBytes(bytes));
   return parts;
 }
 
 function exactText({ name, source }: Model, { vertices, triangles, bytes }: Sizes): string {
   const parts = [source ?? name];
-  if (vertices !== null) parts.push(`${formatCount(vertices)} vertices`);
-  if (triangles !== null) parts.push(`${formatCount(triangles)} triangles`);
-  if (bytes !== null) parts.push(`${formatCount(bytes)} bytes`);
+  if (vertices !== null) parts.push(words.counts.vertices(vertices, formatCount(vertices)));
+  if (triangles !== null) parts.push(words.counts.triangles(triangles, formatCount(triangles)));
+  if (bytes !== null) parts.push(words.counts.bytes(bytes, formatCount(bytes)));
   return parts.join('\n');
 }
 
@@ -98,13 +99,13 @@ export class ModelCell {
   private show(shape: Shape): void {
     this.stage.classList.remove('waiting');
     this.shape = shape;
-    if (shape.ends.length === 0) this.stage.append(element('span', { class: 'cell-note' }, 'one piece, without an outline'));
+    if (shape.ends.length === 0) this.stage.append(element('span', { class: 'cell-note' }, words.gallery.onePiece));
     this.changed();
   }
 
   private tell(problem: string): void {
     if (this.source.ended) return;
     this.stage.classList.remove('waiting');
-    this.stage.append(element('span', { class: 'cell-note cell-problem' }, `No outline: ${problem}`));
+    this.stage.append(element('span', { class: 'cell-note cell-problem' }, words.gallery.noOutline(problem)));
   }
 }

@@ -4,6 +4,7 @@ import { element, iconButton } from '../parts/element.js';
 import { ICONS } from '../parts/icons.js';
 import { ModeBadge } from '../parts/mode_badge.js';
 import type { Preferences } from '../preferences.js';
+import { words } from '../words/words.js';
 import { help } from './help.js';
 import { Panel } from './panel.js';
 import { SettingsForm, type Choices } from './settings_form.js';
@@ -33,9 +34,9 @@ export class Chrome {
   /// `surface`: what the picture is drawn on.
   constructor(name: string, surface: HTMLElement, orders: Orders, signal: AbortSignal) {
     this.form = new SettingsForm(orders);
-    this.settings = new Sheet('Look and settings', ICONS.sliders, [this.form.root]);
-    this.panel = new Sheet('Figures', ICONS.chart, [this.figures.root]);
-    this.help = new Sheet('Help', ICONS.help, [help()]);
+    this.settings = new Sheet('settings', words.view.settings, ICONS.sliders, [this.form.root]);
+    this.panel = new Sheet('figures', words.view.figures, ICONS.chart, [this.figures.root]);
+    this.help = new Sheet('help', words.view.help, ICONS.help, [help()]);
     const all = [this.settings, this.panel, this.help];
     this.sheets = new Sheets(all, [this.settings, this.help], (sheet, open) => { this.sheetChanged(sheet, open, orders); }, signal);
     this.root = element(
@@ -65,16 +66,16 @@ export class Chrome {
   }
 
   private topBar(name: string, { back, home }: Orders, buttons: readonly HTMLElement[]): HTMLElement {
-    const leave = back === null ? null : iconButton('Back', ICONS.back, back);
+    const leave = back === null ? null : iconButton(words.view.back, ICONS.back, back);
     const title = element('h1', { title: name }, name);
-    const whole = iconButton('Whole model', ICONS.home, home);
+    const whole = iconButton(words.view.whole, ICONS.home, home);
     const bar = element('div', { class: 'bar' }, whole, ...buttons);
     return element('header', { class: 'top-bar' }, element('div', { class: 'top-row' }, leave, title, bar), this.badge.root);
   }
 
   private zoomBar({ zoom }: Orders): HTMLElement {
-    const closer = iconButton('Closer', ICONS.plus, () => { zoom(-ZOOM_STEP); });
-    const farther = iconButton('Farther', ICONS.minus, () => { zoom(ZOOM_STEP); });
+    const closer = iconButton(words.view.closer, ICONS.plus, () => { zoom(-ZOOM_STEP); });
+    const farther = iconButton(words.view.farther, ICONS.minus, () => { zoom(ZOOM_STEP); });
     return element('div', { class: 'bar zoom-bar' }, closer, farther);
   }
 

@@ -37,20 +37,6 @@ const ACTS: Record<string, Act> = {
   s: toggle('panel'), l: toggle('settings'), '?': toggle('help'), h: toggle('help'),
 };
 
-/// What people are told: keys, and what they do.
-export const KEY_HELP: readonly (readonly [string, string])[] = [
-  ['Arrows', 'turn'],
-  ['Shift + arrows', 'move'],
-  ['+ −', 'closer, farther'],
-  ['Home, 0', 'the whole model'],
-  ['Esc, Backspace', 'back'],
-  ['1 2 3 4', "colours: plain, the input's, partitions, error"],
-  ['T W P O F', 'texture, wires, points, outline, flat shading'],
-  ['L', 'look and settings'],
-  ['S', 'figures'],
-  ['?', 'this help'],
-];
-
 /// Whether an input of that type needs the key for itself; what is written in needs them all.
 export function needsKey(type: string, key: string): boolean {
   if (type === 'checkbox' || type === 'button') return key === ' ';

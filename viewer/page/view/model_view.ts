@@ -4,6 +4,7 @@ import { HierarchyProblem, HierarchyView, type Look, type Settings, type Stats, 
 import { roundedPose, type Pose } from '../address.js';
 import type { Model } from '../listing.js';
 import { element } from '../parts/element.js';
+import { formatCount } from '../numbers.js';
 import type { Telling } from '../problems.js';
 import { COLOURS, type Preferences, type Theme } from '../preferences.js';
 import { CameraPose } from './camera_pose.js';
@@ -14,6 +15,8 @@ import { listenToKeys, type Commands } from './keys.js';
 import { Navigation } from './navigation.js';
 import { Sharpness } from './sharpness.js';
 import { Stage } from './stage.js';
+import type { Language } from '../words/languages.js';
+import { words } from '../words/words.js';
 import '../style/view.css';
 
 export interface Surroundings extends Pick<ViewOptions, 'fetch' | 'createWorker'> {
@@ -22,6 +25,7 @@ export interface Surroundings extends Pick<ViewOptions, 'fetch' | 'createWorker'
   /// Preferences have changed.
   chosen(): void;
   setTheme(theme: Theme): void;
+  setLanguage(language: Language): void;
   /// To the gallery; null: there is none.
   leave: (() => void) | null;
   /// The camera stands still, elsewhere than before; null: it sees all of the model, whatever the window's size.
@@ -37,8 +41,6 @@ const FIRST_PICTURE = 'meshhier: first picture';
 const REST = 300; // milliseconds without movement
 const REPORT = 250; // milliseconds between two reports
 const UNKNOWN = new Box3(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
-
-const LOST = 'The graphics card gave the picture up. It comes back as soon as the browser allows; else load the page again.';
 
 export class ModelView {
   readonly root: HTMLElement;
@@ -127,7 +129,7 @@ export class ModelView {
   }
 
   private makeSurface(): HTMLElement {
-    const name = `${this.model.name} in three dimensions. Arrows turn, plus and minus zoom, question mark helps.`;
+    const name = words.view.surface(this.model.name);
     const surface = element('div', { class: 'surface', tabindex: '0', role: 'application', 'aria-label': name });
     surface.append(this.stage.canvas);
     return surface;
@@ -139,15 +141,16 @@ export class ModelView {
     this.view.addEventListener('change', this.loop.wake);
     this.view.addEventListener('problem', ({ message, files }) => { this.miss(message, files); });
     this.view.addEventListener('recovered', () => { this.missing?.(); });
-    canvas.addEventListener('webglcontextlost', () => { this.lost = this.around.failed(LOST); }, { signal });
+    canvas.addEventListener('webglcontextlost', () => { this.lost = this.around.failed(words.problems.pictureLost); }, { signal });
     canvas.addEventListener('webglcontextrestored', () => { this.restored(); }, { signal });
     document.addEventListener('visibilitychange', () => { this.redraw(); }, { signal });
   }
 
   /// However many files are missing, they are one message.
   private miss(message: string, files: number): void {
-    const more = files > 1 ? ` ${files} files are missing in all.` : '';
-    const text = `${this.model.name}: ${message.replace(/[.?!]$/, '')}.${more} The view goes on with what it has.`;
+    const { missing, missingFiles } = words.problems;
+    const why = message.replace(/[.?!]$/, '');
+    const text = files > 1 ? missingFiles(this.model.name, why, formatCount(files)) : missing(this.model.name, why);
     this.missing = this.around.failed(text, { subject: 'missing', retry: () => { this.view.retry(); } });
   }
 
@@ -175,9 +178,10 @@ export class ModelView {
     this.redraw();
     const why = error instanceof Error ? error.message : String(error);
     const passes = error instanceof HierarchyProblem && error.mayPass;
-    const hint = passes ? '' : `. Is ${this.model.url} a hierarchy made by "meshhier build"? "meshhier verify" says what is wrong with one`;
+    const { notOpened, notAHierarchy } = words.problems;
+    const hint = passes ? '' : notAHierarchy(this.model.url);
     this.missing?.();
-    this.around.failed(`${this.model.name} cannot be opened: ${why}${hint}`, { subject: 'refused', retry: () => { this.around.again(); } });
+    this.around.failed(notOpened(this.model.name, why) + hint, { subject: 'refused', retry: () => { this.around.again(); } });
   }
 
   private redraw(): void {
@@ -271,6 +275,7 @@ export class ModelView {
       look: (change) => { this.setLook(change); },
       settings: (change) => { this.setSettings(change); },
       theme: (theme) => { this.around.setTheme(theme); },
+      language: (language) => { this.around.setLanguage(language); },
     };
   }
 

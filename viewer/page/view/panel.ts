@@ -1,57 +1,61 @@
 // The figures of a view.
 import type { Manifest, Stats } from '../../src/index.js';
-import { formatBytes, formatCount, formatDecimal, formatMilliseconds } from '../numbers.js';
+import { formatBytes, formatCount, formatDecimal, formatMilliseconds, formatPercent } from '../numbers.js';
 import { element } from '../parts/element.js';
+import { words } from '../words/words.js';
+
+const text = words.figures;
 
 function levels({ tiles, coarsestLevel, finestLevel }: Stats): string {
-  if (tiles === 0) return '0';
-  const range = coarsestLevel === finestLevel ? `level ${finestLevel}` : `levels ${coarsestLevel} to ${finestLevel}`;
-  return `${formatCount(tiles)}, ${range}`;
+  const count = formatCount(tiles);
+  if (tiles === 0) return count;
+  return coarsestLevel === finestLevel ? text.level(count, finestLevel) : text.levels(count, coarsestLevel, finestLevel);
 }
 
 function saved({ savedBytes, wholeViewBytes }: Stats): string {
-  const part = wholeViewBytes > 0 ? ` (${Math.round((100 * savedBytes) / wholeViewBytes)} %)` : '';
+  const part = wholeViewBytes > 0 ? ` (${formatPercent(savedBytes / wholeViewBytes)})` : '';
   return `${formatBytes(savedBytes)}${part}`;
 }
 
 /// Nothing of a mesh without pictures.
 function pictures({ textures }: Manifest['source']): string {
   if (textures === null) return '';
-  const missing = textures.missingImages > 0 ? `, ${formatCount(textures.missingImages)} of them missing` : '';
-  return ` ${formatCount(textures.images)} ${textures.images === 1 ? 'picture' : 'pictures'}${missing}.`;
+  const count = words.counts.pictures(textures.images, formatCount(textures.images));
+  return ` ${textures.missingImages > 0 ? text.missingPictures(count, formatCount(textures.missingImages)) : count}.`;
 }
 
 /// What was never measured is no figure.
 function rate({ framesPerSecond }: Stats, wanted: number): string {
-  return framesPerSecond > 0 ? `${formatDecimal(framesPerSecond)} of ${wanted}` : `– of ${wanted}`;
+  return text.of(formatDecimal(framesPerSecond > 0 ? framesPerSecond : NaN), formatCount(wanted));
 }
 
 function fetched({ fetchedBytes, fetchedFiles }: Stats): string {
-  return `${formatBytes(fetchedBytes)}, ${formatCount(fetchedFiles)} ${fetchedFiles === 1 ? 'tile' : 'tiles'}`;
+  return `${formatBytes(fetchedBytes)}, ${words.counts.tiles(fetchedFiles, formatCount(fetchedFiles))}`;
 }
 
-interface Row {
-  name: string;
-  tip: string;
-  text: (stats: Stats, wanted: number) => string;
+function onTheWay({ pending, aborted, failed }: Stats): string {
+  return text.onTheWay(formatCount(pending), formatCount(aborted), formatCount(failed));
 }
 
-const ROWS: readonly Row[] = [
-  { name: 'Frames per second', tip: 'while the camera moves, and the goal', text: rate },
-  { name: 'Triangles', tip: 'in view', text: ({ triangles }) => formatCount(triangles) },
-  { name: 'Vertices', tip: 'in view', text: ({ vertices }) => formatCount(vertices) },
-  { name: 'Vertices in motion', tip: 'the most that the frame rate allows', text: ({ vertexBudget }) => `at most ${formatCount(vertexBudget)}` },
-  { name: 'Tiles', tip: 'in view', text: levels },
-  { name: 'Largest error', tip: 'on screen, of what is shown', text: ({ worstError }) => (Number.isFinite(worstError) ? `${formatDecimal(worstError)} px` : '–') },
-  { name: 'Fetched', tip: 'bytes of tiles, and their number', text: fetched },
-  { name: 'Saved', tip: 'against sending each view whole', text: saved },
-  { name: 'Hits', tip: 'tiles of views that were there already', text: ({ hits }) => formatCount(hits) },
-  { name: 'Decoding', tip: 'of all tiles together', text: ({ decodeMilliseconds }) => formatMilliseconds(decodeMilliseconds) },
-  { name: 'Memory', tip: 'of tiles, and the budget', text: ({ residentBytes, memoryBudget }) => `${formatBytes(residentBytes)} of ${formatBytes(memoryBudget)}` },
-  { name: 'Most memory', tip: 'of tiles so far', text: ({ peakBytes }) => formatBytes(peakBytes) },
-  { name: 'In memory', tip: 'tiles, and those that made room for others', text: ({ residentTiles, evicted }) => `${formatCount(residentTiles)}, ${formatCount(evicted)} dropped` },
-  { name: 'On their way', tip: 'files asked for; given up because the view went elsewhere; failed', text: ({ pending, aborted, failed }) => `${pending}, ${aborted} given up, ${failed} failed` },
-];
+/// The figure of each row, in the order shown.
+const FIGURES: Readonly<Record<keyof typeof text.rows, (stats: Stats, wanted: number) => string>> = {
+  rate,
+  triangles: ({ triangles }) => formatCount(triangles),
+  vertices: ({ vertices }) => formatCount(vertices),
+  vertexBudget: ({ vertexBudget }) => text.atMost(formatCount(vertexBudget)),
+  tiles: levels,
+  error: ({ worstError }) => (Number.isFinite(worstError) ? `${formatDecimal(worstError)} ${words.settings.pixels}` : formatDecimal(NaN)),
+  fetched,
+  saved,
+  hits: ({ hits }) => formatCount(hits),
+  decoding: ({ decodeMilliseconds }) => formatMilliseconds(decodeMilliseconds),
+  memory: ({ residentBytes, memoryBudget }) => text.of(formatBytes(residentBytes), formatBytes(memoryBudget)),
+  peak: ({ peakBytes }) => formatBytes(peakBytes),
+  resident: ({ residentTiles, evicted }) => text.dropped(formatCount(residentTiles), formatCount(evicted)),
+  pending: onTheWay,
+};
+
+const ROWS = (Object.keys(FIGURES) as (keyof typeof FIGURES)[]).map((key) => ({ name: text.rows[key][0], tip: text.rows[key][1], figure: FIGURES[key] }));
 
 export class Panel {
   readonly root: HTMLElement;
@@ -65,14 +69,14 @@ export class Panel {
 
   /// What the model was made from, and its licence.
   tellSource({ source, licence }: Manifest): void {
-    const counts = `${formatCount(source.vertices)} vertices and ${formatCount(source.triangles)} triangles`;
-    this.source.textContent = `${source.fileName}: ${counts}.${pictures(source)}${licence === '' ? '' : ` ${licence}`}`;
+    const [vertices, triangles] = (['vertices', 'triangles'] as const).map((what) => words.counts[what](source[what], formatCount(source[what])));
+    this.source.textContent = `${text.source(source.fileName, vertices, triangles)}${pictures(source)}${licence === '' ? '' : ` ${licence}`}`;
   }
 
   /// `wanted`: frames per second.
   show(stats: Stats, wanted: number): void {
-    ROWS.forEach(({ text }, i) => {
-      const value = text(stats, wanted);
+    ROWS.forEach(({ figure }, i) => {
+      const value = figure(stats, wanted);
       if (this.values[i].textContent !== value) this.values[i].textContent = value;
     });
   }

@@ -2,16 +2,22 @@
 import type { Colours, Look, Settings } from '../../src/scene/settings.js';
 import { checkbox, choice, slider, type Control } from '../parts/controls.js';
 import { element } from '../parts/element.js';
-import { MEGABYTE, RANGES, type Preferences, type Theme } from '../preferences.js';
+import { languageSelect } from '../parts/language_select.js';
+import { COLOURS, MEGABYTE, RANGES, THEMES, type Preferences, type Theme } from '../preferences.js';
+import type { Language } from '../words/languages.js';
+import { words } from '../words/words.js';
 
 export interface Choices {
   look: (change: Partial<Look>) => void;
   settings: (change: Partial<Settings>) => void;
   theme: (theme: Theme) => void;
+  language: (language: Language) => void;
 }
 
-const COLOUR_NAMES: readonly (readonly [Colours, string])[] = [['plain', 'Plain'], ['vertex', 'Input'], ['partition', 'Partitions'], ['error', 'Error']];
-const THEME_NAMES: readonly (readonly [Theme, string])[] = [['auto', 'Auto'], ['light', 'Light'], ['dark', 'Dark']];
+/// Values in their order, with their names.
+function named<Value extends string>(values: readonly Value[], names: Readonly<Record<Value, string>>): (readonly [Value, string])[] {
+  return values.map((value) => [value, names[value]]);
+}
 
 export class SettingsForm {
   readonly root: HTMLElement;
@@ -20,24 +26,26 @@ export class SettingsForm {
   private readonly toggles: Record<'texture' | 'flat' | 'wires' | 'points' | 'outline', Control<boolean>>;
   private readonly sliders: Record<keyof Settings, Control<number>>;
 
-  constructor({ look, settings, theme }: Choices) {
-    this.colours = choice('Colours', COLOUR_NAMES, (colours) => { look({ colours }); });
-    this.theme = choice('Theme', THEME_NAMES, theme);
+  constructor({ look, settings, theme, language }: Choices) {
+    const text = words.settings;
+    this.colours = choice(text.colours, named(COLOURS, text.colourNames), (colours) => { look({ colours }); });
+    this.theme = choice(text.theme, named(THEMES, words.themes), theme);
     this.toggles = {
-      texture: checkbox('Texture', 'T', (texture) => { look({ texture }); }),
-      wires: checkbox('Wires', 'W', (wires) => { look({ wires }); }),
-      points: checkbox('Points', 'P', (points) => { look({ points }); }),
-      outline: checkbox('Outline', 'O', (outline) => { look({ outline }); }),
-      flat: checkbox('Flat', 'F', (flat) => { look({ shading: flat ? 'flat' : 'smooth' }); }),
+      texture: checkbox(text.texture, 'T', (texture) => { look({ texture }); }),
+      wires: checkbox(text.wires, 'W', (wires) => { look({ wires }); }),
+      points: checkbox(text.points, 'P', (points) => { look({ points }); }),
+      outline: checkbox(text.outline, 'O', (outline) => { look({ outline }); }),
+      flat: checkbox(text.flat, 'F', (flat) => { look({ shading: flat ? 'flat' : 'smooth' }); }),
     };
     this.sliders = {
-      framesPerSecond: slider('Frame rate to hold', 'fps', RANGES.framesPerSecond, (framesPerSecond) => { settings({ framesPerSecond }); }),
-      threshold: slider('Error allowed', 'px', RANGES.threshold, (threshold) => { settings({ threshold }); }),
-      memoryBudget: slider('Memory', 'MB', RANGES.memoryBudget, (megabytes) => { settings({ memoryBudget: megabytes * MEGABYTE }); }),
+      framesPerSecond: slider(text.frameRate, text.frameRateUnit, RANGES.framesPerSecond, (framesPerSecond) => { settings({ framesPerSecond }); }),
+      threshold: slider(text.threshold, text.pixels, RANGES.threshold, (threshold) => { settings({ threshold }); }),
+      memoryBudget: slider(text.memory, text.megabytes, RANGES.memoryBudget, (megabytes) => { settings({ memoryBudget: megabytes * MEGABYTE }); }),
     };
     const toggles = element('div', { class: 'checks' }, ...Object.values(this.toggles).map(({ root }) => root));
     const sliders = Object.values(this.sliders).map(({ root }) => root);
-    this.root = element('div', { class: 'settings' }, this.colours.root, toggles, ...sliders, this.theme.root);
+    const languages = element('label', { class: 'language-row' }, words.parts.language, languageSelect(language));
+    this.root = element('div', { class: 'settings' }, this.colours.root, toggles, ...sliders, this.theme.root, languages);
   }
 
   show({ look, settings, theme }: Preferences): void {

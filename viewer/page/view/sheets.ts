@@ -1,6 +1,7 @@
 // What opens beside the picture, or over its lower part where it is narrow: one at a time there.
 import { element, iconButton } from '../parts/element.js';
 import { ICONS } from '../parts/icons.js';
+import { words } from '../words/words.js';
 
 const narrow = matchMedia('(max-width: 719px)');
 
@@ -10,13 +11,15 @@ export class Sheet {
   /// Told of each opening and closing.
   changed: (open: boolean) => void = () => undefined;
 
+  /// `key`: of its style, the same in all languages.
   constructor(
+    key: string,
     readonly name: string,
     drawing: string,
     content: readonly HTMLElement[],
   ) {
-    const id = `sheet-${name.toLowerCase().replace(/\W+/g, '-')}`;
-    const close = iconButton(`Close ${name.toLowerCase()}`, ICONS.close, () => { this.close(); });
+    const id = `sheet-${key}`;
+    const close = iconButton(words.parts.close(name), ICONS.close, () => { this.close(); });
     const head = element('div', { class: 'sheet-head' }, element('h2', {}, name), close);
     this.root = element('section', { class: `sheet ${id}`, id, 'aria-label': name, hidden: true }, head, element('div', { class: 'sheet-body' }, ...content));
     this.button = iconButton(name, drawing, () => { this.toggle(); });

@@ -1,6 +1,6 @@
 // What draws: canvas, scene, camera and light.
 import { Box3, DirectionalLight, Group, HemisphereLight, NeutralToneMapping, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer, type Object3D } from 'three';
-import { NO_WEBGL } from '../parts/no_webgl.js';
+import { words } from '../words/words.js';
 import { depthRange, VIEW_ANGLE, type CameraPose } from './camera_pose.js';
 
 const MOST_RATIO = 2;
@@ -19,7 +19,7 @@ function makeRenderer(): WebGLRenderer {
   try {
     return new WebGLRenderer({ antialias: true, alpha: true, powerPreference: 'high-performance' });
   } catch {
-    throw new Error(NO_WEBGL);
+    throw new Error(words.problems.noWebGl);
   }
 }
 

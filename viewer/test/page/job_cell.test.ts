@@ -18,6 +18,7 @@ describe('what a job says', () => {
   it('is its stage, as far as that is known', () => {
     expect(stateText(job({ state: 'waiting' }))).toBe('waiting for its turn');
     expect(stateText(job({ state: 'building' }))).toBe('building');
-    expect(stateText(job({ state: 'building', stage: 'simplify', progress: 0.5 }))).toBe('simplify 50 %');
+    expect(stateText(job({ state: 'building', stage: 'simplify', progress: 0.5 }))).toBe('simplifying 50%');
+    expect(stateText(job({ state: 'building', stage: 'toString', secondsLeft: 5 }))).toBe('toString, 5 sec left');
   });
 });

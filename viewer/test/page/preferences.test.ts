@@ -7,7 +7,7 @@ const DEFAULTS = parsePreferences(null);
 describe('preferences', () => {
   it('have defaults', () => {
     expect(DEFAULTS.settings).toEqual({ framesPerSecond: 30, threshold: 1, memoryBudget: 256e6 });
-    expect(DEFAULTS.theme).toBe('auto');
+    expect(DEFAULTS).toMatchObject({ theme: 'auto', language: null });
   });
 
   it("have the library's defaults", () => {
@@ -19,6 +19,7 @@ describe('preferences', () => {
   it('come back as they were stored', () => {
     const chosen = {
       theme: 'dark',
+      language: 'es',
       panel: true,
       settings: { framesPerSecond: 60, threshold: 2.5, memoryBudget: 512e6 },
       look: { colours: 'error', texture: false, shading: 'flat', wires: true, points: true, outline: true },
@@ -26,7 +27,7 @@ describe('preferences', () => {
     expect(parsePreferences(JSON.stringify(chosen))).toEqual(chosen);
   });
 
-  it.each(['', 'x', 'null', '[]', '7', '{"settings":null,"look":[]}', '{"theme":"pink","settings":{"framesPerSecond":-1,"threshold":"1","memoryBudget":1e99},"look":{"colours":7,"wires":"yes"}}'])(
+  it.each(['', 'x', 'null', '[]', '7', '{"settings":null,"look":[]}', '{"theme":"pink","language":"tlh","settings":{"framesPerSecond":-1,"threshold":"1","memoryBudget":1e99},"look":{"colours":7,"wires":"yes"}}'])(
     'are the defaults where %s is stored',
     (text) => { expect(parsePreferences(text)).toEqual(DEFAULTS); },
   );
