@@ -1,7 +1,7 @@
 // The whole library on real hierarchies, from files instead of a host, without a GPU.
 import { writeFileSync } from 'node:fs';
 import path from 'node:path';
-import { MeshBasicMaterial, PerspectiveCamera, Vector3, type Mesh } from 'three';
+import { MeshBasicMaterial, PerspectiveCamera, Vector3, type Mesh, type WebGLRenderer } from 'three';
 import { afterAll, afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import type { Fetch } from '../src/hierarchy/bytes.js';
 import { HierarchyView, type ViewOptions } from '../src/index.js';
@@ -69,6 +69,19 @@ class Session {
     const meshes = this.meshes().sort((a, b) => a.renderOrder - b.renderOrder);
     return meshes.map(({ geometry: { attributes: { position }, drawRange } }) =>
       [drawRange.count, position.count, ...position.array.slice(0, 3)].join());
+  }
+}
+
+/// What draws: tells whom it draws, and that pictures have come to the GPU.
+class Device {
+  readonly canvas = new EventTarget();
+
+  draw(meshes: readonly Mesh[]): void {
+    for (const mesh of meshes) {
+      const { map } = mesh.material as MeshBasicMaterial;
+      mesh.onBeforeRender({ domElement: this.canvas } as unknown as WebGLRenderer, null!, null!, null!, null!, null!);
+      map?.onUpdate?.(map);
+    }
   }
 }
 
@@ -438,6 +451,32 @@ describe.skipIf(!hasProgram)('HierarchyView', () => {
     expect(tight.view.stats().peakBytes).toBeLessThanOrEqual(memoryBudget);
     expect(tight.view.stats().residentTiles).toBeLessThan(wide.view.stats().residentTiles);
     for (const { view } of [wide, tight]) view.dispose();
+    expect(FakeBitmap.open).toBe(0);
+  });
+
+  it('holds no picture twice once it is drawn, and asks again for those that went with the device', async () => {
+    vi.stubGlobal('createImageBitmap', fakeDecode);
+    FakeBitmap.open = 0;
+    const asked: string[] = [];
+    const session = begin(fetchFrom(textured(), asked), { settings: { threshold: 0.05 } });
+    await session.view.opened;
+    session.look([0.5, 1, 0.5], [0.5, 0, 0.5001]);
+    await session.settle();
+    const device = new Device();
+    device.draw(session.meshes());
+    const { tiles, residentTiles } = session.view.stats();
+    expect(tiles).toBeGreaterThan(4);
+    expect(FakeBitmap.open).toBeLessThanOrEqual(residentTiles - tiles);
+    const [there, before] = [session.cut(), asked.length];
+    device.canvas.dispatchEvent(new Event('webglcontextrestored'));
+    await session.frame();
+    expect(session.meshes().length).toBeLessThan(there.length);
+    for (const { material } of session.meshes()) expect(material).toMatchObject({ map: { image: { isClosed: false } } });
+    expect(await session.settle()).toBe(true);
+    expect(session.cut()).toEqual(there);
+    expect(asked.length).toBeGreaterThanOrEqual(before + tiles);
+    for (const { material } of session.meshes()) expect(material).toMatchObject({ map: { image: { isClosed: false } } });
+    session.view.dispose();
     expect(FakeBitmap.open).toBe(0);
   });
 

@@ -21,6 +21,7 @@ import { Motion, REST_MS, viewpointOf, type Viewport } from './motion.js';
 import { changedSettings, DEFAULT_LOOK, type Look, type Mode, type Settings, type Stats } from './settings.js';
 import { memoryOf, mostMemory, vertexBytesOf } from './tile_object.js';
 import { TileScene } from './tile_scene.js';
+import { isOnlyOnGpu } from './tile_texture.js';
 
 export interface ViewOptions {
   settings?: Partial<Settings>;
@@ -65,7 +66,7 @@ export class HierarchyView extends Group<ViewEvents> {
   private readonly decoder: TileDecoder;
   private readonly remote: RemoteHierarchy;
   private readonly store: TileStore;
-  private readonly tiles = new TileScene();
+  private readonly tiles = new TileScene(() => { this.askAgain(); });
   private readonly account = new Account();
   private readonly rate: FrameRate;
   private readonly motion = new Motion();
@@ -258,6 +259,12 @@ export class HierarchyView extends Group<ViewEvents> {
       void this.openDirectory(this.root, this.remote.manifest());
     }
     this.showOutline();
+    this.changed();
+  }
+
+  /// For what went with the device.
+  private askAgain(): void {
+    this.store.dropLost(isOnlyOnGpu);
     this.changed();
   }
 
