@@ -168,6 +168,51 @@ describe.skipIf(!hasProgram)('HierarchyView', () => {
     expect(failed).toBe(0);
   });
 
+  it('becomes finer at rest, step by step, each at once and as a whole', async () => {
+    const session = begin(fetchFrom(largeTorus()), { settings: { threshold: 1, restDetail: 4 } });
+    await session.view.opened;
+    closeUp(session);
+    const errors: number[] = [];
+    for (let frames = 0; frames < 200 && !session.view.stats().settled; ++frames) {
+      await session.frame();
+      const { worstError } = session.view.stats();
+      if (Number.isFinite(worstError) && worstError !== errors.at(-1)) errors.push(worstError);
+    }
+    const steps = errors.filter((error) => error <= 1);
+    expect(steps).toHaveLength(3);
+    for (const [step, most] of [1, 0.5, 0.25].entries()) expect(steps[step]).toBeLessThanOrEqual(most);
+    expect(session.view.stats().settled).toBe(true);
+  });
+
+  it('keeps what became finer at rest while the camera moves, and asks for no more of it', async () => {
+    const session = begin(fetchFrom(largeTorus()), { settings: { threshold: 1 } });
+    await session.view.opened;
+    closeUp(session);
+    await session.settle();
+    const { tiles, fetchedFiles, pending } = session.view.stats();
+    session.camera.position.x += 1e-4;
+    await session.frame();
+    expect(session.view.stats()).toMatchObject({ moving: true, tiles, fetchedFiles, pending });
+    for (let frames = 0; frames < 12; ++frames) {
+      await session.frame();
+      expect(session.view.stats().tiles).toBe(tiles); // nor does it become coarse when it comes to rest
+    }
+  });
+
+  it('stays at the error that was asked for where no more is wanted', async () => {
+    const [plain, finer] = [1, 4].map((restDetail) => begin(fetchFrom(largeTorus()), { settings: { threshold: 1, restDetail } }));
+    for (const session of [plain, finer]) {
+      await session.view.opened;
+      closeUp(session);
+      expect(await session.settle()).toBe(true);
+    }
+    expect(plain.view.stats().worstError).toBeGreaterThan(0.5);
+    expect(finer.view.stats().tiles).toBeGreaterThan(plain.view.stats().tiles);
+    finer.view.setSettings({ restDetail: 1 });
+    expect(await finer.settle()).toBe(true);
+    expect(finer.cut()).toEqual(plain.cut());
+  });
+
   it('draws the root before it asks for more of the mesh', async () => {
     const asked: string[] = [];
     const session = begin(fetchFrom(torus(), asked), { settings: { threshold: 0.05 } });
