@@ -6,7 +6,7 @@
 // PAGE: the directory that `npm run build` of viewer/ makes, dist/page. The first hierarchy should have some
 // partitions. Pictures go to the directory PICTURES. Exit code 2: wrong use; else see browser.mjs.
 import path from 'node:path';
-import { inChromium, readHierarchy } from './browser.mjs';
+import { inChromium, loseDevice, readHierarchy } from './browser.mjs';
 import { withSite } from './site.mjs';
 
 const WIDE = { viewport: { width: 1280, height: 800 } };
@@ -340,16 +340,7 @@ async function checkRest(visitor, name) {
   });
   visitor.check('rest', frames === 0, `${frames} frames in a second`);
   const before = await picture(page);
-  await page.evaluate(async () => {
-    const canvas = document.querySelector('.surface canvas');
-    const loss = canvas.getContext('webgl2').getExtension('WEBGL_lose_context');
-    const told = (what) => new Promise((done) => { canvas.addEventListener(what, () => setTimeout(done), { once: true }); });
-    const [lost, restored] = [told('webglcontextlost'), told('webglcontextrestored')];
-    loss.loseContext();
-    await lost;
-    loss.restoreContext();
-    await restored;
-  });
+  await loseDevice(page);
   await settle(page);
   page.complaints = page.complaints.filter((text) => !text.includes('Context'));
   visitor.check('context restored', before.equals(await picture(page)), 'the same picture');

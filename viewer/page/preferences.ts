@@ -48,12 +48,18 @@ function within(value: unknown, { least, most }: Range, otherwise: number): numb
   return typeof value === 'number' && value >= least && value <= most ? value : otherwise;
 }
 
+/// Whether the browser was told to fetch little.
+function savesData(): boolean {
+  return (globalThis.navigator as { connection?: { saveData?: boolean } } | undefined)?.connection?.saveData === true;
+}
+
 function readSettings(stored: Json): Settings {
   const defaults = changedSettings({});
   const budget = typeof stored.memoryBudget === 'number' ? stored.memoryBudget / MEGABYTE : null;
   return {
     framesPerSecond: within(stored.framesPerSecond, RANGES.framesPerSecond, defaults.framesPerSecond),
     threshold: within(stored.threshold, RANGES.threshold, defaults.threshold),
+    restDetail: oneOf(stored.restDetail, [1, defaults.restDetail], savesData() ? 1 : defaults.restDetail),
     memoryBudget: within(budget, RANGES.memoryBudget, defaults.memoryBudget / MEGABYTE) * MEGABYTE,
   };
 }

@@ -1,5 +1,5 @@
 // Look, quality and theme.
-import type { Colours, Look, Settings } from '../../src/scene/settings.js';
+import { changedSettings, type Colours, type Look, type Settings } from '../../src/scene/settings.js';
 import { checkbox, choice, slider, type Control } from '../parts/controls.js';
 import { element } from '../parts/element.js';
 import { languageSelect } from '../parts/language_select.js';
@@ -14,6 +14,8 @@ export interface Choices {
   language: (language: Language) => void;
 }
 
+const FINER = changedSettings({}).restDetail;
+
 /// Values in their order, with their names.
 function named<Value extends string>(values: readonly Value[], names: Readonly<Record<Value, string>>): (readonly [Value, string])[] {
   return values.map((value) => [value, names[value]]);
@@ -24,7 +26,8 @@ export class SettingsForm {
   private readonly colours: Control<Colours>;
   private readonly theme: Control<Theme>;
   private readonly toggles: Record<'texture' | 'flat' | 'wires' | 'points' | 'outline', Control<boolean>>;
-  private readonly sliders: Record<keyof Settings, Control<number>>;
+  private readonly finer: Control<boolean>;
+  private readonly sliders: Record<Exclude<keyof Settings, 'restDetail'>, Control<number>>;
 
   constructor({ look, settings, theme, language }: Choices) {
     const text = words.settings;
@@ -37,6 +40,7 @@ export class SettingsForm {
       outline: checkbox(text.outline, 'O', (outline) => { look({ outline }); }),
       flat: checkbox(text.flat, 'F', (flat) => { look({ shading: flat ? 'flat' : 'smooth' }); }),
     };
+    this.finer = checkbox(text.finer, null, (finer) => { settings({ restDetail: finer ? FINER : 1 }); });
     this.sliders = {
       framesPerSecond: slider(text.frameRate, text.frameRateUnit, RANGES.framesPerSecond, (framesPerSecond) => { settings({ framesPerSecond }); }),
       threshold: slider(text.threshold, text.pixels, RANGES.threshold, (threshold) => { settings({ threshold }); }),
@@ -45,7 +49,7 @@ export class SettingsForm {
     const toggles = element('div', { class: 'checks' }, ...Object.values(this.toggles).map(({ root }) => root));
     const sliders = Object.values(this.sliders).map(({ root }) => root);
     const languages = element('label', { class: 'language-row' }, words.parts.language, languageSelect(language));
-    this.root = element('div', { class: 'settings' }, this.colours.root, toggles, ...sliders, this.theme.root, languages);
+    this.root = element('div', { class: 'settings' }, this.colours.root, toggles, ...sliders, this.finer.root, this.theme.root, languages);
   }
 
   show({ look, settings, theme }: Preferences): void {
@@ -53,6 +57,7 @@ export class SettingsForm {
     this.theme.show(theme);
     this.toggles.flat.show(look.shading === 'flat');
     for (const key of ['texture', 'wires', 'points', 'outline'] as const) this.toggles[key].show(look[key]);
+    this.finer.show(settings.restDetail > 1);
     this.sliders.framesPerSecond.show(settings.framesPerSecond);
     this.sliders.threshold.show(settings.threshold);
     this.sliders.memoryBudget.show(Math.round(settings.memoryBudget / MEGABYTE));

@@ -104,6 +104,7 @@ export const de: Words = {
     pixels: 'px',
     memory: 'Speicher',
     megabytes: 'MB',
+    finer: 'Feiner im Stillstand',
     theme: 'Farbschema',
   },
   figures: {

@@ -109,6 +109,7 @@ export const en = {
     pixels: 'px',
     memory: 'Memory',
     megabytes: 'MB',
+    finer: 'Finer at rest',
     theme: 'Theme',
   },
   figures: {

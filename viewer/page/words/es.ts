@@ -104,6 +104,7 @@ export const es: Words = {
     pixels: 'px',
     memory: 'Memoria',
     megabytes: 'MB',
+    finer: 'Más fino en reposo',
     theme: 'Tema',
   },
   figures: {

@@ -3,6 +3,7 @@ import { Box3, Group, Matrix4, Vector3, type Object3DEventMap, type PerspectiveC
 import type { ChosenNode } from '../cut/choose_cut.js';
 import { FrameRate } from '../cut/frame_rate.js';
 import { Refinement, type Refined } from '../cut/refinement.js';
+import { PAUSE_MS } from '../cut/rest_detail.js';
 import { TileStore, type ResidentTile } from '../cut/tile_store.js';
 import type { Viewpoint } from '../cut/viewpoint.js';
 import type { Fetch } from '../hierarchy/bytes.js';
@@ -21,6 +22,7 @@ import { Motion, REST_MS, viewpointOf, type Viewport } from './motion.js';
 import { changedSettings, DEFAULT_LOOK, type Look, type Mode, type Settings, type Stats } from './settings.js';
 import { memoryOf, mostMemory, vertexBytesOf } from './tile_object.js';
 import { TileScene } from './tile_scene.js';
+import { isOnlyOnGpu } from './tile_texture.js';
 
 export interface ViewOptions {
   settings?: Partial<Settings>;
@@ -65,7 +67,7 @@ export class HierarchyView extends Group<ViewEvents> {
   private readonly decoder: TileDecoder;
   private readonly remote: RemoteHierarchy;
   private readonly store: TileStore;
-  private readonly tiles = new TileScene();
+  private readonly tiles = new TileScene(() => { this.askAgain(); });
   private readonly account = new Account();
   private readonly rate: FrameRate;
   private readonly motion = new Motion();
@@ -261,6 +263,12 @@ export class HierarchyView extends Group<ViewEvents> {
     this.changed();
   }
 
+  /// For what went with the device.
+  private askAgain(): void {
+    this.store.dropLost(isOnlyOnGpu);
+    this.changed();
+  }
+
   private changed(): void {
     this.isDirty = true;
     if (!this.ending.signal.aborted) this.dispatchEvent({ type: 'change' });
@@ -291,7 +299,7 @@ export class HierarchyView extends Group<ViewEvents> {
   /// Something may be due although nothing happens.
   private setAlarm(): void {
     if (this.motion.isMoving) this.alarm.in(REST_MS);
-    else if (this.state?.isComplete === false) this.alarm.in(RETRY_MS);
+    else if (this.state?.isComplete === false) this.alarm.in(this.state.isPausing ? PAUSE_MS : RETRY_MS);
     else this.alarm.stop();
   }
 
@@ -312,7 +320,7 @@ export class HierarchyView extends Group<ViewEvents> {
   private refine(viewpoint: Viewpoint, now: number): boolean {
     const vertices = this.motion.isMoving ? this.rate.budget : Infinity;
     const refinement = this.isFirstFrame ? null : this.refinement;
-    this.state = refinement?.refine(viewpoint, { threshold: this.settings.threshold, vertices, atRest: !this.motion.isMoving }, now) ?? null;
+    this.state = refinement?.refine(viewpoint, { ...this.settings, vertices, atRest: !this.motion.isMoving }, now) ?? null;
     this.drawn = this.state?.drawn ?? [];
     this.store.keepWithin(now);
     const keys = this.state === null ? [ROOT_KEY] : this.drawn.map(({ key }) => key);

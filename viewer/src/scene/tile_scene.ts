@@ -4,6 +4,7 @@ import type { ChosenNode } from '../cut/choose_cut.js';
 import type { ResidentTile } from '../cut/tile_store.js';
 import type { Tile } from '../hierarchy/tile.js';
 import { keyOf, type Node } from '../hierarchy/tree.js';
+import { ContextWatch } from './context_watch.js';
 import { errorColour, partitionColour, sharedMaterials } from './materials.js';
 import type { Look } from './settings.js';
 import { TileObject } from './tile_object.js';
@@ -15,6 +16,13 @@ export class TileScene extends Group {
   private readonly damaged: Node[] = [];
   private readonly told = new Set<number>();
   private readonly materials = sharedMaterials();
+  private readonly contexts: ContextWatch;
+
+  /// `restored`: a lost device is back, without the pictures that only it had.
+  constructor(restored: () => void) {
+    super();
+    this.contexts = new ContextWatch(restored);
+  }
 
   /// Of the whole model: its triangles show their backs to the outside.
   set insideOut(is: boolean) {
@@ -49,6 +57,7 @@ export class TileScene extends Group {
 
   private make(resident: ResidentTile, look: Look): TileObject {
     const object = new TileObject(resident, look, this.materials);
+    object.onBeforeRender = ({ domElement }) => { this.contexts.drawnOn(domElement); };
     this.objects.set(resident.key, object);
     this.add(object);
     return object;
@@ -86,6 +95,7 @@ export class TileScene extends Group {
   }
 
   dispose(): void {
+    this.contexts.stop();
     for (const object of this.objects.values()) object.dispose();
     this.objects.clear();
     this.materials.wires.dispose();

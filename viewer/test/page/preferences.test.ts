@@ -6,7 +6,7 @@ const DEFAULTS = parsePreferences(null);
 
 describe('preferences', () => {
   it('have defaults', () => {
-    expect(DEFAULTS.settings).toEqual({ framesPerSecond: 30, threshold: 1, memoryBudget: 256e6 });
+    expect(DEFAULTS.settings).toEqual({ framesPerSecond: 30, threshold: 1, restDetail: 8, memoryBudget: 256e6 });
     expect(DEFAULTS).toMatchObject({ theme: 'auto', language: null });
   });
 
@@ -21,7 +21,7 @@ describe('preferences', () => {
       theme: 'dark',
       language: 'es',
       panel: true,
-      settings: { framesPerSecond: 60, threshold: 2.5, memoryBudget: 512e6 },
+      settings: { framesPerSecond: 60, threshold: 2.5, restDetail: 1, memoryBudget: 512e6 },
       look: { colours: 'error', texture: false, shading: 'flat', wires: true, points: true, outline: true },
     };
     expect(parsePreferences(JSON.stringify(chosen))).toEqual(chosen);
