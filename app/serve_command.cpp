@@ -249,7 +249,7 @@ killed, goes on where it was when it is started again.
 
   GET /                            the page
   GET /models.json                 what there is
-  GET /models/NAME.hier/FILE       hierarchy.json, tiles.bin, outline.glb, tileset.json, tiles/LL/NNNNNN.glb, ...
+  GET /models/NAME.hier/FILE       hierarchy.json, tiles.bin, outline.glb, preview.webp, tiles/LL/NNNNNN.glb, ...
 
 Examples:
   meshhier serve models

@@ -1,6 +1,7 @@
 #include "server/gallery.h"
 
 #include "server/url_path.h"
+#include "storage/format/layout.h"
 
 #include <utility>
 
@@ -14,6 +15,15 @@ std::string url_of(const Model& model) {
   return model.path.empty() ? "models" : "models/" + encode_path(model.path);
 }
 
+nlohmann::ordered_json json_of(const Model& model) {
+  nlohmann::ordered_json json{{"name", model.name},         {"path", url_of(model)},
+                              {"vertices", model.vertices}, {"triangles", model.triangles},
+                              {"bytes", model.bytes},       {"source", model.source}};
+  if (model.has_preview)
+    json["preview"] = url_of(model) + '/' + storage::preview_path({}).string();
+  return json;
+}
+
 }  // namespace
 
 std::string gallery_json(const std::vector<Model>& models,
@@ -21,12 +31,7 @@ std::string gallery_json(const std::vector<Model>& models,
                          const PlaceNames& places) {
   nlohmann::ordered_json document{{"models", nlohmann::ordered_json::array()}};
   for (const Model& model : models) {
-    document["models"].push_back({{"name", model.name},
-                                  {"path", url_of(model)},
-                                  {"vertices", model.vertices},
-                                  {"triangles", model.triangles},
-                                  {"bytes", model.bytes},
-                                  {"source", model.source}});
+    document["models"].push_back(json_of(model));
   }
   if (jobs)
     document["jobs"] = *jobs;

@@ -229,7 +229,8 @@ Model Hierarchies::model_of(const std::string& path, const storage::File& file) 
           manifest.source.triangles,
           manifest.total_bytes,
           manifest.source.file_bytes,
-          manifest.source.checksum};
+          manifest.source.checksum,
+          manifest.preview.has_value()};
 }
 
 void Hierarchies::tell_left_out(const std::string& cause) {

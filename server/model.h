@@ -15,6 +15,7 @@ struct Model {
   std::uint64_t bytes = 0;  ///< of its files
   std::uint64_t source_bytes = 0;
   std::uint64_t source_checksum = 0;  ///< as in the manifest
+  bool has_preview = false;           ///< a picture of it is one of its files
 
   friend bool operator==(const Model&, const Model&) = default;
 };
