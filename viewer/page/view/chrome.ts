@@ -17,6 +17,7 @@ export interface Orders extends Choices {
   back: (() => void) | null;
   home: () => void;
   zoom: (logarithm: number) => void;
+  tools: () => void;
   panelShown: (open: boolean) => void;
 }
 
@@ -65,11 +66,11 @@ export class Chrome {
     this.figures.tellSource(manifest);
   }
 
-  private topBar(name: string, { back, home }: Orders, buttons: readonly HTMLElement[]): HTMLElement {
+  private topBar(name: string, { back, home, tools }: Orders, buttons: readonly HTMLElement[]): HTMLElement {
     const leave = back === null ? null : iconButton(words.view.back, ICONS.back, back);
     const title = element('h1', { title: name }, name);
     const whole = iconButton(words.view.whole, ICONS.home, home);
-    const bar = element('div', { class: 'bar' }, whole, ...buttons);
+    const bar = element('div', { class: 'bar' }, whole, iconButton(words.view.tools, ICONS.tools, tools), ...buttons);
     return element('header', { class: 'top-bar' }, element('div', { class: 'top-row' }, leave, title, bar), this.badge.root);
   }
 

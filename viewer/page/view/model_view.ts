@@ -6,6 +6,7 @@ import type { Model } from '../listing.js';
 import { element } from '../parts/element.js';
 import { formatCount } from '../numbers.js';
 import type { Telling } from '../problems.js';
+import type { Bench, ToolName, Tools } from '../tools/bench.js';
 import { COLOURS, type Preferences, type Theme } from '../preferences.js';
 import { CameraPose } from './camera_pose.js';
 import { Chrome } from './chrome.js';
@@ -45,6 +46,7 @@ const UNKNOWN = new Box3(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
 export class ModelView {
   readonly root: HTMLElement;
   readonly view: HierarchyView;
+  private tools: Tools | null = null;
   private readonly stage: Stage;
   private readonly navigation: Navigation;
   private readonly loop = new FrameLoop((now) => this.frame(now));
@@ -75,7 +77,7 @@ export class ModelView {
     const surface = this.makeSurface();
     this.chrome = new Chrome(model.name, surface, this.orders(), this.ending.signal);
     this.root = this.chrome.root;
-    new Gestures(surface, this.navigation);
+    new Gestures(surface, this.navigation, (right, up) => this.tools?.tapped(right, up) ?? false);
     listenToKeys(this.commands(), this.ending.signal);
     this.listen();
   }
@@ -206,6 +208,7 @@ export class ModelView {
 
   private draw(): void {
     this.stage.draw();
+    this.tools?.drawn();
     if (this.opened && !this.shown) performance.mark(FIRST_PICTURE);
     this.shown = this.opened;
   }
@@ -271,12 +274,40 @@ export class ModelView {
       back: this.around.leave === null ? null : this.back,
       home: () => { this.navigation.goHome(); },
       zoom: (logarithm) => { this.zoomMiddle(logarithm); },
+      tools: () => void this.useTools(null),
       panelShown: (open) => { this.panelShown(open); },
       look: (change) => { this.setLook(change); },
       settings: (change) => { this.setSettings(change); },
       theme: (theme) => { this.around.setTheme(theme); },
       language: (language) => { this.around.setLanguage(language); },
     };
+  }
+
+  private bench(): Bench {
+    return {
+      name: this.model.name,
+      view: this.view,
+      camera: this.stage.camera,
+      root: this.root,
+      surface: this.stage.canvas.parentElement!,
+      signal: this.ending.signal,
+      pose: () => this.navigation.pose,
+      redraw: () => { this.redraw(); },
+      tell: (message) => this.around.failed(message, { subject: 'tools', retry: null }),
+    };
+  }
+
+  /// Loads the tools when they are first asked for.
+  private async useTools(name: ToolName | null): Promise<void> {
+    if (this.view.manifest === null) return; // nothing is known of the model yet
+    try {
+      const { Toolbox } = await import('../tools/toolbox.js');
+      if (this.closed) return;
+      this.tools ??= new Toolbox(this.bench());
+      this.tools.toggle(name);
+    } catch {
+      this.around.failed(words.problems.noCode, { subject: 'tools', retry: () => void this.useTools(name) });
+    }
   }
 
   private zoomMiddle(logarithm: number): void {
@@ -288,7 +319,8 @@ export class ModelView {
     return {
       move: (moves) => { this.moveByKey(moves); },
       home: () => { this.navigation.goHome(); },
-      back: () => { if (!this.chrome.sheets.closeAside()) this.back(); },
+      back: () => { if (!this.chrome.sheets.closeAside() && this.tools?.back() !== true) this.back(); },
+      tool: (name) => void this.useTools(name),
       colours: (number) => { this.setLook({ colours: COLOURS[number] }); },
       toggle: (what) => { this.toggle(what); },
     };

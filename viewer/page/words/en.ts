@@ -89,6 +89,7 @@ export const en = {
     surface: (model: string) => `${model} in three dimensions. Arrows turn, plus and minus zoom, question mark helps.`,
     back: 'Back',
     whole: 'Whole model',
+    tools: 'Tools',
     closer: 'Closer',
     farther: 'Farther',
     settings: 'Look and settings',
@@ -157,6 +158,8 @@ export const en = {
       ['T W P O F', 'texture, wires, points, outline, flat shading'],
       ['L', 'look and settings'],
       ['S', 'figures'],
+      ['I M', 'tools: pick a point, measure'],
+      ['Enter, V, Backspace', 'in a tool: take the middle of the picture, snap to vertices, a step back'],
       ['?', 'this help'],
     ],
     /// What the modes are called in the literature.

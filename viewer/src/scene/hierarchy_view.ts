@@ -21,6 +21,7 @@ import { OutlineObject } from './outline_object.js';
 import { Motion, REST_MS, viewpointOf, type Viewport } from './motion.js';
 import { changedSettings, DEFAULT_LOOK, type Look, type Mode, type Settings, type Stats } from './settings.js';
 import { memoryOf, mostMemory, vertexBytesOf } from './tile_object.js';
+import type { DrawnTile, TileSource } from './surface.js';
 import { TileScene } from './tile_scene.js';
 import { isOnlyOnGpu } from './tile_texture.js';
 
@@ -355,6 +356,21 @@ export class HierarchyView extends Group<ViewEvents> {
   /// The tiles of the cut that are in view.
   get shown(): Node[] {
     return this.inView().map(({ node }) => node);
+  }
+
+  /// The triangles that are drawn, in view or not, in coordinates that `surfaceMatrix` brings into the world.
+  get surface(): readonly DrawnTile[] {
+    return this.tiles.drawn();
+  }
+
+  get surfaceMatrix(): Readonly<Matrix4> {
+    return this.tiles.matrixWorld;
+  }
+
+  /// Null until `manifest` is there.
+  get source(): TileSource | null {
+    const { directory } = this;
+    return directory && { ...directory, load: (node, record, signal) => this.remote.tile(node, record, signal) };
   }
 
   private mode(shown: readonly ChosenNode[]): Mode {

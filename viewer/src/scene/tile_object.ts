@@ -7,6 +7,7 @@ import type { TileRecord } from '../hierarchy/tile_index.js';
 import type { Seam } from '../cut/seam.js';
 import { surfaceKey, surfaceMaterial, type Painting, type SharedMaterials, type SurfaceMaterial } from './materials.js';
 import type { Look } from './settings.js';
+import type { DrawnTile } from './surface.js';
 import { pictureMemory, tileTexture } from './tile_texture.js';
 
 const TEXCOORD_BYTES = 8;
@@ -126,6 +127,12 @@ export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
     if (tile.ghosts > 0) this.uploadGhosts();
     this.setBounds();
     if (this.wires) this.setWires(true);
+  }
+
+  /// Once resolved.
+  drawn(): DrawnTile {
+    const { node, tile } = this.resident;
+    return { node, tile, triangles: this.triangles, sphere: this.geometry.boundingSphere! };
   }
 
   private uploadGhosts(): void {

@@ -7,6 +7,7 @@ import { keyOf, type Node } from '../hierarchy/tree.js';
 import { ContextWatch } from './context_watch.js';
 import { errorColour, partitionColour, sharedMaterials } from './materials.js';
 import type { Look } from './settings.js';
+import type { DrawnTile } from './surface.js';
 import { TileObject } from './tile_object.js';
 
 export class TileScene extends Group {
@@ -88,6 +89,10 @@ export class TileScene extends Group {
       if (look.colours === 'partition') object?.paint(partitionColour(node.level, node.index));
       if (look.colours === 'error') object?.paint(errorColour(pixels, threshold));
     }
+  }
+
+  drawn(): DrawnTile[] {
+    return [...this.objects.values()].filter(({ visible }) => visible).map((object) => object.drawn());
   }
 
   trianglesOf(key: number): number {
