@@ -2,10 +2,10 @@
 import { formatAddress, parseAddress, type Pose } from './address.js';
 import { EarlyStart } from './early_start.js';
 import { Gallery } from './gallery/gallery.js';
+import type { Order } from './gallery/orders.js';
 import { ListingWatch } from './listing_watch.js';
 import { modelOfPath, type Listing, type Model } from './listing.js';
 import { ModelEntry } from './model_entry.js';
-import { element } from './parts/element.js';
 import { languageSelect } from './parts/language_select.js';
 import { themeButton } from './parts/theme_button.js';
 import { loadPreferences, savePreferences, type Theme } from './preferences.js';
@@ -98,6 +98,11 @@ export class App {
     this.view?.themeChanged();
   }
 
+  private setOrder(order: Order): void {
+    this.preferences.order = order;
+    savePreferences(this.preferences);
+  }
+
   /// The words hold as long as the page: it is loaded again, without the language that its address asks for.
   setLanguage(chosen: Language): void {
     this.preferences.language = chosen;
@@ -135,11 +140,10 @@ export class App {
   private makeGallery(): Gallery {
     const theme = themeButton(() => this.preferences.theme, (chosen) => { this.setTheme(chosen); });
     const language = languageSelect((chosen) => { this.setLanguage(chosen); });
-    const gallery = new Gallery(element('header', { class: 'gallery-header' }, element('h1', {}, 'meshhier'), language, theme));
+    const gallery = new Gallery(this.preferences.order, (order) => { this.setOrder(order); }, [language, theme]);
     this.root.prepend(gallery.root);
     for (const sign of ['pointerdown', 'pointerover', 'focusin'] as const)
       gallery.root.addEventListener(sign, () => { loadView().catch(() => undefined); }, { once: true });
-    if (!gallery.works) this.problems.tell(words.problems.noWebGl);
     return gallery;
   }
 

@@ -27,6 +27,11 @@ export const de: Words = {
     pictures: (count, text) => counted(count, text, 'Bild', 'Bilder'),
   },
   gallery: {
+    search: 'Suchen',
+    order: 'Reihenfolge',
+    orders: { folder: 'Nach Ordner', name: 'Nach Name', newest: 'Neueste zuerst', size: 'Größte zuerst', triangles: 'Meiste Dreiecke zuerst' },
+    found: (found, all) => `${found} von ${all}`,
+    nothingFound: (search) => `Kein Modell hat „${search}“ im Namen oder Ordner.`,
     onePiece: 'ein einziges Stück, ohne Umrisslinien',
     noOutline: (why) => `Keine Umrisslinien: ${why}`,
     emptyFolder: (folder) => `In ${folder} gibt es noch keine Hierarchien. Was „meshhier build“ dort ablegt, erscheint hier.`,

@@ -29,6 +29,11 @@ export const en = {
     pictures: (count: number, text: string) => counted(count, text, 'picture', 'pictures'),
   },
   gallery: {
+    search: 'Search',
+    order: 'Order',
+    orders: { folder: 'By folder', name: 'By name', newest: 'Newest first', size: 'Largest first', triangles: 'Most triangles first' },
+    found: (found: string, all: string) => `${found} of ${all}`,
+    nothingFound: (search: string) => `No model has “${search}” in its name or folder.`,
     onePiece: 'one piece, without an outline',
     noOutline: (why: string) => `No outline: ${why}`,
     emptyFolder: (folder: string) => `There are no hierarchies in ${folder} yet. Hierarchies that "meshhier build" puts there appear here.`,

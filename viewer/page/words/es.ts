@@ -27,6 +27,11 @@ export const es: Words = {
     pictures: (count, text) => counted(count, text, 'imagen', 'imágenes'),
   },
   gallery: {
+    search: 'Buscar',
+    order: 'Orden',
+    orders: { folder: 'Por carpeta', name: 'Por nombre', newest: 'Más recientes primero', size: 'Más grandes primero', triangles: 'Más triángulos primero' },
+    found: (found, all) => `${found} de ${all}`,
+    nothingFound: (search) => `Ningún modelo tiene «${search}» en su nombre o carpeta.`,
     onePiece: 'una sola pieza, sin contorno',
     noOutline: (why) => `Sin contorno: ${why}`,
     emptyFolder: (folder) => `Todavía no hay jerarquías en ${folder}. Las que «meshhier build» deje allí aparecerán aquí.`,
