@@ -7,6 +7,7 @@ export const ICONS = {
   minus: 'M5 12h14',
   sliders: 'M4 7h9M17 7h3M4 17h3M11 17h9M15 4.5v5M9 14.5v5',
   chart: 'M5 20V11M12 20V4M19 20v-6',
+  share: 'M12 14V4M8 7.5L12 3.5l4 4M6 11H5v9h14v-9h-1',
   help: 'M9 9a3 3 0 1 1 4.2 2.7c-.8.4-1.2 1-1.2 1.9v.4M12 17.5v.1',
   close: 'M6 6l12 12M18 6L6 18',
   auto: 'M12 4a8 8 0 1 0 0 16zM12 4a8 8 0 0 1 0 16',

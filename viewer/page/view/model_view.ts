@@ -7,6 +7,7 @@ import { element } from '../parts/element.js';
 import { formatCount } from '../numbers.js';
 import type { Telling } from '../problems.js';
 import { COLOURS, type Preferences, type Theme } from '../preferences.js';
+import type { Shared } from '../share/embed_code.js';
 import { CameraPose } from './camera_pose.js';
 import { Chrome } from './chrome.js';
 import { FrameLoop, type Pace } from './frame_loop.js';
@@ -73,7 +74,7 @@ export class ModelView {
     this.stage.show(this.view);
     this.navigation = new Navigation((right, up) => this.stage.pick(right, up), () => { this.redraw(); });
     const surface = this.makeSurface();
-    this.chrome = new Chrome(model.name, surface, this.orders(), this.ending.signal);
+    this.chrome = new Chrome(model, surface, this.orders(), this.ending.signal);
     this.root = this.chrome.root;
     new Gestures(surface, this.navigation);
     listenToKeys(this.commands(), this.ending.signal);
@@ -272,11 +273,19 @@ export class ModelView {
       home: () => { this.navigation.goHome(); },
       zoom: (logarithm) => { this.zoomMiddle(logarithm); },
       panelShown: (open) => { this.panelShown(open); },
+      shared: () => this.shared(),
       look: (change) => { this.setLook(change); },
       settings: (change) => { this.setSettings(change); },
       theme: (theme) => { this.around.setTheme(theme); },
       language: (language) => { this.around.setLanguage(language); },
     };
+  }
+
+  /// The address tells of the camera as it is, even before it has come to rest.
+  private shared(): Shared {
+    this.rest();
+    const { name, url } = this.model;
+    return { page: location.origin + location.pathname, name, url, pose: this.navigation.atHome ? null : this.pose() };
   }
 
   private zoomMiddle(logarithm: number): void {

@@ -100,6 +100,33 @@ export const en = {
     figures: 'Figures',
     help: 'Help',
   },
+  info: {
+    title: 'About this model',
+    vertexColours: 'of its vertices',
+    /// For those who do not see it; `extent`: three lengths.
+    summary: (model: string, triangles: string, extent: string) => `${model}: ${triangles}, ${extent} in size.`,
+    rows: {
+      source: 'Source',
+      licence: 'Licence',
+      triangles: 'Triangles',
+      vertices: 'Vertices',
+      colours: 'Colours',
+      extent: 'Extent',
+      sourceBytes: 'Source file',
+      bytes: 'Hierarchy',
+      modified: 'Made',
+    },
+  },
+  share: {
+    title: 'Share',
+    link: 'Link to this view',
+    frame: 'Frame for another page',
+    element: 'Element for another page',
+    elementHint: 'The element needs no frame, but this host must allow that page to fetch from it (CORS).',
+    copy: 'Copy',
+    copied: 'Copied.',
+    selected: 'Selected: press Ctrl + C to copy.',
+  },
   settings: {
     colours: 'Colours',
     colourNames: { plain: 'Plain', vertex: 'Input', partition: 'Partitions', error: 'Error' },
