@@ -1,5 +1,6 @@
 // What the user chose, kept in the browser. Whatever is stored there, what comes out is sound.
 import { changedSettings, DEFAULT_LOOK, type Colours, type Look, type Settings } from '../src/scene/settings.js';
+import { ORDERS, type Order } from './gallery/orders.js';
 import { LANGUAGES, type Language } from './words/languages.js';
 
 export type Theme = 'auto' | 'light' | 'dark';
@@ -8,6 +9,8 @@ export interface Preferences {
   theme: Theme;
   /// Null: as the browser wants it.
   language: Language | null;
+  /// Of the gallery.
+  order: Order;
   panel: boolean;
   settings: Settings;
   look: Look;
@@ -86,6 +89,7 @@ export function parsePreferences(text: string | null): Preferences {
   return {
     theme: oneOf(stored.theme, THEMES, 'auto'),
     language: oneOf(stored.language, LANGUAGES, null),
+    order: oneOf(stored.order, ORDERS, 'folder'),
     panel: stored.panel === true,
     settings: readSettings(asObject(stored.settings)),
     look: readLook(asObject(stored.look)),

@@ -8,6 +8,7 @@ import { formatCount } from '../numbers.js';
 import type { Telling } from '../problems.js';
 import type { Bench, ToolName, Tools } from '../tools/bench.js';
 import { COLOURS, type Preferences, type Theme } from '../preferences.js';
+import type { Shared } from '../share/embed_code.js';
 import { CameraPose } from './camera_pose.js';
 import { Chrome } from './chrome.js';
 import { FrameLoop, type Pace } from './frame_loop.js';
@@ -75,7 +76,7 @@ export class ModelView {
     this.stage.show(this.view);
     this.navigation = new Navigation((right, up) => this.stage.pick(right, up), () => { this.redraw(); });
     const surface = this.makeSurface();
-    this.chrome = new Chrome(model.name, surface, this.orders(), this.ending.signal);
+    this.chrome = new Chrome(model, surface, this.orders(), this.ending.signal);
     this.root = this.chrome.root;
     new Gestures(surface, this.navigation, (right, up) => this.tools?.tapped(right, up) ?? false);
     listenToKeys(this.commands(), this.ending.signal);
@@ -276,6 +277,7 @@ export class ModelView {
       zoom: (logarithm) => { this.zoomMiddle(logarithm); },
       tools: () => void this.useTools(null),
       panelShown: (open) => { this.panelShown(open); },
+      shared: () => this.shared(),
       look: (change) => { this.setLook(change); },
       settings: (change) => { this.setSettings(change); },
       theme: (theme) => { this.around.setTheme(theme); },
@@ -308,6 +310,11 @@ export class ModelView {
     } catch {
       this.around.failed(words.problems.noCode, { subject: 'tools', retry: () => void this.useTools(name) });
     }
+  /// The address tells of the camera as it is, even before it has come to rest.
+  private shared(): Shared {
+    this.rest();
+    const { name, url } = this.model;
+    return { page: location.origin + location.pathname, name, url, pose: this.navigation.atHome ? null : this.pose() };
   }
 
   private zoomMiddle(logarithm: number): void {

@@ -32,6 +32,8 @@ export interface Manifest {
   readonly licence: string;
   readonly partitions: number;
   readonly totalBytes: number;
+  /// The file of the model's picture; null: it has none.
+  readonly preview: string | null;
   readonly index: { readonly file: string; readonly bytes: number };
 }
 
@@ -102,6 +104,7 @@ export function readManifest(text: string): Manifest {
     licence: root.at('licence').text(),
     partitions,
     totalBytes: root.at('total_bytes').count(),
+    preview: root.has('preview') ? root.at('preview').at('file').fileName() : null,
     index: readFile(root.at('index'), indexBytes, indexBytes),
   };
 }
