@@ -13,6 +13,7 @@ import { Problems } from './problems.js';
 import { readQuery, shortened } from './query.js';
 import { watchInput } from './parts/input.js';
 import { applyTheme, watchSystemTheme } from './theme.js';
+import { UploadPlace } from './upload/upload_place.js';
 import type { Language } from './words/languages.js';
 import { language, words } from './words/words.js';
 import type { ModelView, Surroundings } from './view/model_view.js';
@@ -42,6 +43,7 @@ export class App {
   private readonly query = readQuery(location.search, document.baseURI);
   private readonly watch: ListingWatch;
   private gallery: Gallery | null = null;
+  private uploads: UploadPlace | null = null;
   private entry: ModelEntry | null = null; // of the model that is shown: what was loaded for an earlier one is of no use
   private left: string | null = null;
 
@@ -119,6 +121,7 @@ export class App {
 
   private listed(listing: Listing): void {
     this.gallery?.update(listing);
+    this.uploads?.offer(listing.upload);
     const isEmpty = listing.models.length + (listing.jobs?.length ?? 0) === 0;
     if (isEmpty) this.gallery?.tell(emptyText(listing, this.query.listing));
   }
@@ -135,8 +138,15 @@ export class App {
   private makeGallery(): Gallery {
     const theme = themeButton(() => this.preferences.theme, (chosen) => { this.setTheme(chosen); });
     const language = languageSelect((chosen) => { this.setLanguage(chosen); });
-    const gallery = new Gallery(element('header', { class: 'gallery-header' }, element('h1', {}, 'meshhier'), language, theme));
+    const header = element('header', { class: 'gallery-header' }, element('h1', {}, 'meshhier'), language, theme);
+    const gallery = new Gallery(header);
     this.root.prepend(gallery.root);
+    this.uploads = new UploadPlace(header, {
+      place: gallery.root,
+      inbox: new URL('inbox/', this.query.listing).href,
+      problems: this.problems,
+      stored: () => { if (gallery.shown) this.watch.start(); },
+    });
     for (const sign of ['pointerdown', 'pointerover', 'focusin'] as const)
       gallery.root.addEventListener(sign, () => { loadView().catch(() => undefined); }, { once: true });
     if (!gallery.works) this.problems.tell(words.problems.noWebGl);
