@@ -31,10 +31,11 @@ struct TargetFolder {
 
 /// For the file `name` of that version, among all `inbox` files. "a.ply" goes to "a.hier"; to
 /// "a.ply.hier" if a.hier was made from something else, or an inbox file earlier in the alphabet
-/// has the same stem. A hierarchy of a file of its name and size is made of it if `checksum_for`
-/// that hierarchy, which is asked for no other, is the one it was made of; if it is not known, it
-/// is made of another version. No time is compared: a file may be replaced while it is built, and
-/// by an older one. Throws Error(io), and what `checksum_for` throws.
+/// has the same stem. "house/a.obj" goes to "house.hier", or "house.a.obj.hier". A hierarchy of a
+/// file of its name and size is made of it if `checksum_for` that hierarchy, which is asked for no
+/// other, is the one it was made of; if it is not known, it is made of another version. No time is
+/// compared: a file may be replaced while it is built, and by an older one. Throws Error(io), and
+/// what `checksum_for` throws.
 BuildTarget find_target(
     TargetFolder target, const std::string& name, std::uint64_t bytes,
     const std::vector<std::string>& inbox,

@@ -28,7 +28,7 @@ nlohmann::ordered_json json_of(const Model& model) {
 
 std::string gallery_json(const std::vector<Model>& models,
                          const std::optional<nlohmann::ordered_json>& jobs,
-                         const PlaceNames& places) {
+                         const PlaceNames& places, const std::optional<UploadOffer>& offer) {
   nlohmann::ordered_json document{{"models", nlohmann::ordered_json::array()}};
   for (const Model& model : models) {
     document["models"].push_back(json_of(model));
@@ -39,6 +39,8 @@ std::string gallery_json(const std::vector<Model>& models,
     document["folder"] = places.folder;
   if (!places.inbox.empty())
     document["inbox"] = places.inbox;
+  if (offer)
+    document["upload"] = {{"limit", offer->limit_bytes}, {"token", offer->needs_token}};
   // Names of files may hold any bytes, JSON may not.
   return document.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
 }

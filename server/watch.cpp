@@ -44,7 +44,7 @@ Watch::Watch(WatchOptions options, storage::FileSystem& files, Hierarchies& hier
       tell_(std::move(tell)),
       folder_(storage::open_folder(options_.folder)),
       notes_(files_, folder_),
-      inbox_(options_.inbox, options_.settle) {}
+      inbox_(options_.inbox, options_.settle, options_.folders) {}
 
 Watch::~Watch() {
   stop();

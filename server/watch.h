@@ -33,6 +33,7 @@ struct WatchOptions {
   std::filesystem::path config;  ///< absolute; empty: all defaults
   std::string suffix = ".hier";  ///< of the hierarchies' names
   std::string program;           ///< meshhier
+  Inbox::Folders folders = Inbox::Folders::ignored;
   std::chrono::milliseconds settle{2000};
   std::chrono::milliseconds look_every{1000};
   /// Until a build is tried again that another process has in hand.

@@ -51,6 +51,7 @@ class WatchTest : public testing::Test {
     options.folder = models();
     options.config = config_;
     options.program = program_.string();
+    options.folders = Inbox::Folders::taken;
     options.settle = std::chrono::milliseconds(100);
     options.look_every = std::chrono::milliseconds(50);
     options.try_again = std::chrono::milliseconds(100);
@@ -257,6 +258,23 @@ TEST_F(WatchTest, TwoOfOneStemHaveHierarchiesOfTheirOwn) {
   wait_until([&] { return is_there("a.off.hier") && is_idle(); });
   EXPECT_EQ(hierarchies_->look("a.hier")->source, "a.ply");
   EXPECT_EQ(hierarchies_->look("a.off.hier")->source, "a.off");
+}
+
+TEST_F(WatchTest, AFolderIsBuiltAsOneModelAndNotAgain) {
+  start();
+  fs::create_directories(directory_.path() / "house");
+  tests::write_text(directory_.path() / "house/a.obj",
+                    "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  tests::write_text(directory_.path() / "house/a.mtl", "newmtl a\n");
+  fs::rename(directory_.path() / "house", inbox() / "house");
+  wait_until([&] { return is_there("house.hier") && is_idle(); });
+  EXPECT_EQ(hierarchies_->look("house.hier")->source, "a.obj");
+  EXPECT_THAT(told(), ElementsAre("house/a.obj: building house.hier", "house/a.obj: done"));
+  const auto manifest = folder_->open("house.hier/hierarchy.json")->version();
+  start();
+  drop("b.ply");
+  wait_until([&] { return is_there("b.hier") && is_idle(); });
+  EXPECT_EQ(folder_->open("house.hier/hierarchy.json")->version(), manifest);
 }
 
 TEST_F(WatchTest, ARestartBuildsNothingAgain) {

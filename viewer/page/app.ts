@@ -14,6 +14,7 @@ import { readQuery, shortened } from './query.js';
 import { watchInput } from './parts/input.js';
 import { applyTheme, watchSystemTheme } from './theme.js';
 import { leavesEntries, showAddress, visit, watchLinks } from './visits.js';
+import { UploadPlace } from './upload/upload_place.js';
 import type { Language } from './words/languages.js';
 import { language, words } from './words/words.js';
 import type { ModelView, Surroundings } from './view/model_view.js';
@@ -43,6 +44,7 @@ export class App {
   private readonly query = readQuery(location.search, document.baseURI);
   private readonly watch: ListingWatch;
   private gallery: Gallery | null = null;
+  private uploads: UploadPlace | null = null;
   private entry: ModelEntry | null = null; // of the model that is shown: what was loaded for an earlier one is of no use
   private left: string | null = null;
 
@@ -125,6 +127,7 @@ export class App {
 
   private listed(listing: Listing): void {
     this.gallery?.update(listing);
+    this.uploads?.offer(listing.upload);
     const isEmpty = listing.models.length + (listing.jobs?.length ?? 0) === 0;
     if (isEmpty) this.gallery?.tell(emptyText(listing, this.query.listing));
   }
@@ -144,6 +147,12 @@ export class App {
     const gallery = new Gallery(this.preferences.order, (order) => { this.setOrder(order); }, [language, theme]);
     this.root.prepend(gallery.root);
     watchLinks(gallery.root);
+    this.uploads = new UploadPlace(gallery.header, {
+      place: gallery.root,
+      inbox: new URL('inbox/', this.query.listing).href,
+      problems: this.problems,
+      stored: () => { if (gallery.shown) this.watch.start(); },
+    });
     for (const sign of ['pointerdown', 'pointerover', 'focusin'] as const)
       gallery.root.addEventListener(sign, () => { loadView().catch(() => undefined); }, { once: true });
     return gallery;

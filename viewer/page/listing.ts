@@ -37,6 +37,15 @@ export interface Listing {
   /// Where the models lie, and where meshes are put; null: it does not say so.
   folder: string | null;
   inbox: string | null;
+  /// Null: the server takes no meshes.
+  upload: UploadOffer | null;
+}
+
+export interface UploadOffer {
+  /// The most bytes of one upload.
+  limit: number;
+  /// Whether the server asks for a word.
+  token: boolean;
 }
 
 export class ListingError extends Error {}
@@ -122,6 +131,12 @@ function readJob(value: unknown, base: string): Job | null {
   };
 }
 
+function readUpload(value: unknown): UploadOffer | null {
+  if (!isObject(value)) return null;
+  const limit = countOf(value.limit);
+  return limit === null ? null : { limit, token: value.token === true };
+}
+
 /// What `read` makes of the entries, without what it refuses; of several with one key the first.
 function readAll<T>(values: unknown[], read: (value: unknown) => T | null, key: (item: T) => string): T[] {
   const found = new Map<string, T>();
@@ -144,5 +159,5 @@ export function parseListing(text: string, url: string): Listing {
   if (!isObject(document) || !Array.isArray(document.models)) throw new ListingError(words.listing.noModels(url));
   const models = readAll(document.models, (value) => readModel(value, url), (model) => model.path);
   const jobs = Array.isArray(document.jobs) ? readAll(document.jobs, (value) => readJob(value, url), (job) => job.name) : null;
-  return { models, jobs, folder: textOf(document.folder) || null, inbox: textOf(document.inbox) || null };
+  return { models, jobs, folder: textOf(document.folder) || null, inbox: textOf(document.inbox) || null, upload: readUpload(document.upload) };
 }

@@ -32,6 +32,7 @@ function entryOf(model: Model): ModelEntry {
 
 export class Gallery {
   readonly root: HTMLElement;
+  readonly header: HTMLElement;
   private readonly note = element('p', { class: 'gallery-note', 'aria-live': 'polite' });
   private readonly toolbar: Toolbar;
   private readonly visible = new VisibleCells<ModelEntry | JobEntry>((entry) => ('model' in entry ? this.modelCell(entry) : this.jobCell(entry)));
@@ -50,8 +51,8 @@ export class Gallery {
       ordered(this.toolbar.wish.order);
       this.arrange();
     });
-    const header = element('header', { class: 'gallery-header' }, element('h1', {}, 'meshhier'), this.toolbar.root, ...controls);
-    this.root = element('main', { class: 'gallery', hidden: true }, header, this.note, this.visible.root);
+    this.header = element('header', { class: 'gallery-header' }, element('h1', {}, 'meshhier'), this.toolbar.root, ...controls);
+    this.root = element('main', { class: 'gallery', hidden: true }, this.header, this.note, this.visible.root);
     for (const type of ['scroll', 'resize'] as const) window.addEventListener(type, () => { if (this.open) this.visible.follow(); }, { passive: true });
     this.toolbar.root.hidden = true;
   }

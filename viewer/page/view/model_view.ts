@@ -310,6 +310,8 @@ export class ModelView {
     } catch {
       this.around.failed(words.problems.noCode, { subject: 'tools', retry: () => void this.useTools(name) });
     }
+  }
+
   /// The address tells of the camera as it is, even before it has come to rest.
   private shared(): Shared {
     this.rest();

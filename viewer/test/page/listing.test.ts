@@ -33,7 +33,13 @@ describe('a listing', () => {
   it('leaves out entries that are none', () => {
     const bad = [null, 5, 'x', [], {}, { path: 5 }, { path: '' }, { path: 'javascript:alert(1)' }, { path: 'http://[' },
       { path: 'data:text/html,x' }, { path: { toString: 'x' } }];
-    expect(parse({ models: bad, jobs: [null, {}, { state: 'done' }, 7] })).toEqual({ models: [], jobs: [], folder: null, inbox: null });
+    expect(parse({ models: bad, jobs: [null, {}, { state: 'done' }, 7] })).toEqual({ models: [], jobs: [], folder: null, inbox: null, upload: null });
+  });
+
+  it('says whether meshes are taken', () => {
+    expect(parse({ models: [], upload: { limit: 1000, token: true } }).upload).toEqual({ limit: 1000, token: true });
+    expect(parse({ models: [], upload: { limit: 0 } }).upload).toEqual({ limit: 0, token: false });
+    for (const upload of [true, 5, [], {}, { limit: -1 }, { limit: '5' }, { token: true }]) expect(parse({ models: [], upload }).upload).toBeNull();
   });
 
   it('says where the models lie', () => {
