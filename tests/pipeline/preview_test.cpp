@@ -5,6 +5,7 @@
 #include "pipeline/build.h"
 #include "storage/format/hierarchy_reader.h"
 #include "storage/format/layout.h"
+#include "storage/io/hash.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/sizes.h"
@@ -48,7 +49,9 @@ class PreviewTest : public testing::Test {
 
   std::vector<std::string> problems() {
     execution::NoProgress progress;
-    return inspection::verify_hierarchy(*files_, hierarchy(), {.cuts = 1}, progress,
+    inspection::VerifyOptions options;
+    options.cuts = 1;
+    return inspection::verify_hierarchy(*files_, hierarchy(), options, progress,
                                         execution::CancelToken())
         .problems;
   }
