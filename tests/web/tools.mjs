@@ -4,6 +4,7 @@
 //
 // PAGE: the directory that `npm run build` of viewer/ makes, dist/page. The hierarchy must be closed, and should have some
 // partitions. The pages of examples/ that use the library's tools are used, too. Pictures go to the directory PICTURES. Exit code 2: wrong use; else see browser.mjs.
+import { readFileSync } from 'node:fs';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { collectComplaints, inChromium, readHierarchy } from './browser.mjs';
@@ -16,6 +17,7 @@ const ROOT = path.join(HERE, '../..');
 const WIDE = { viewport: { width: 1000, height: 700 } };
 const NARROW = { viewport: { width: 360, height: 640 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true };
 const MIDDLE = { x: 500, y: 350 };
+const CAP = [0xd9, 0x82, 0x5b]; // src/tools/caps.ts
 const PATIENCE = 120_000; // milliseconds
 const LEAST_TARGET = 40; // CSS pixels
 
@@ -147,6 +149,59 @@ async function checkScale(visitor, page) {
   visitor.check('scale bar', Math.abs(told.length / Number.parseFloat(told.text) - 1) < 0.01, `${told.text} is ${told.length.toFixed(2)} mm`);
 }
 
+/// Pixels of a surface that are of the cap's colour.
+async function capPixels(page, surface = '.surface') {
+  const picture = await page.locator(surface).screenshot();
+  return page.evaluate(async ([data, cap]) => {
+    const bitmap = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
+    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
+    context.drawImage(bitmap, 0, 0);
+    const pixels = context.getImageData(0, 0, bitmap.width, bitmap.height).data;
+    let count = 0;
+    for (let i = 0; i < pixels.length; i += 4) if (cap.every((value, k) => Math.abs(pixels[i + k] - value) <= 3)) ++count;
+    return count;
+  }, [picture.toString('base64'), CAP]);
+}
+
+async function checkClip(visitor) {
+  const page = await visitor.open();
+  const whole = await capPixels(page);
+  await openTool(page, 'Cut open');
+  await settle(page);
+  const cut = await capPixels(page);
+  visitor.check('caps', whole === 0 && cut > 2000, `${cut} pixels, ${whole} of the whole model`);
+  await visitor.picture(page, 'clip-plane');
+  await page.getByLabel('Caps').uncheck();
+  visitor.check('no caps', (await capPixels(page)) === 0, 'the inside is seen');
+  await page.getByLabel('Caps').check();
+  await checkSection(visitor, page);
+  await page.getByRole('radio', { name: 'Box' }).check();
+  for (const [side, part] of [['x to', 0.6], ['y to', 0.2]]) {
+    await page.getByRole('slider', { name: side }).evaluate((one, p) => {
+      one.value = String(Number(one.min) + p * (Number(one.max) - Number(one.min)));
+      one.dispatchEvent(new Event('input'));
+    }, part);
+  }
+  await settle(page);
+  const boxed = await capPixels(page);
+  visitor.check('box', boxed > 2000, `${boxed} pixels of caps`);
+  await visitor.picture(page, 'clip-box');
+  await page.getByRole('radio', { name: 'Off' }).check();
+  await settle(page);
+  visitor.check('off', (await capPixels(page)) === 0, 'whole again');
+  await visitor.close(page, 'clip');
+}
+
+/// Of the ring, in the middle: closed lines, as wide and high as the model is there.
+async function checkSection(visitor, page) {
+  const [file] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Section as SVG' }).click()]);
+  const svg = readFileSync(await file.path(), 'utf8');
+  const paths = [...svg.matchAll(/ d="([^"]*)"/g)].map((match) => match[1]);
+  const [width, height] = /viewBox="0 0 (\S+) (\S+)"/.exec(svg).slice(1).map(Number);
+  const isGood = paths.length > 0 && paths.every((path) => /^M[^M]*Z$/.test(path)) && width > 0 && height > 0;
+  visitor.check('section', isGood, `${paths.length} closed lines, ${width.toFixed(3)} x ${height.toFixed(3)}, ${file.suggestedFilename()}`);
+}
+
 async function checkNarrow(visitor) {
   const page = await visitor.open(NARROW);
   const { x, y } = await placeOnModel(page);
@@ -186,6 +241,19 @@ async function checkPickExample(visitor, server) {
   await page.close();
 }
 
+async function checkSectionExample(visitor, server) {
+  const page = await openExample(visitor.browser, server, 'section');
+  for (let tries = 0; (await capPixels(page, 'canvas')) < 2000; ++tries) {
+    if (tries === 20) throw new Error('the example shows no cap');
+    await page.waitForTimeout(100);
+  }
+  const [file] = await Promise.all([page.waitForEvent('download'), page.mouse.click(MIDDLE.x, MIDDLE.y)]);
+  const paths = [...readFileSync(await file.path(), 'utf8').matchAll(/ d="M[^"]*Z"/g)];
+  await visitor.picture(page, 'example-section');
+  visitor.check('example section', paths.length > 0 && page.complaints.length === 0, `${paths.length} closed lines ${page.complaints.join('; ')}`);
+  await page.close();
+}
+
 /// Clicks at a place, and nearer and nearer to the middle, until it is enough.
 async function clickUntil(page, { x, y }, isEnough) {
   for (let part = 1; part > 0; part -= 0.1) {
@@ -207,6 +275,7 @@ async function checkExamples(visitor, directory) {
     '/hierarchy': directory,
   });
   await checkPickExample(visitor, server);
+  await checkSectionExample(visitor, server);
   server.close();
 }
 
@@ -214,6 +283,7 @@ async function checkAll(browser, report, pictures, hierarchy, origin) {
   const visitor = new Visitor(browser, origin, report, { name: hierarchy.name, pictures });
   await checkPick(visitor);
   await checkMeasure(visitor);
+  await checkClip(visitor);
   await checkNarrow(visitor);
   await checkExamples(visitor, hierarchy.directory);
 }

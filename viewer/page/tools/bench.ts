@@ -2,8 +2,9 @@
 import type { PerspectiveCamera } from 'three';
 import type { HierarchyView } from '../../src/index.js';
 import type { CameraPose } from '../view/camera_pose.js';
+import type { Painter } from '../view/stage.js';
 
-export type ToolName = 'pick' | 'measure';
+export type ToolName = 'pick' | 'measure' | 'clip';
 
 export interface Bench {
   readonly name: string;
@@ -17,6 +18,8 @@ export interface Bench {
   readonly signal: AbortSignal;
   pose(): CameraPose;
   redraw(): void;
+  /// Draws instead of the view, until null is given.
+  setPainter(painter: Painter | null): void;
   /// What it returns takes the message away.
   tell(message: string): () => void;
 }

@@ -21,6 +21,7 @@ type Load = () => Promise<{ makeTool: (shop: Workshop) => Tool }>;
 const LOADS: Readonly<Record<ToolName, Load>> = {
   pick: () => import('./pick_tool.js'),
   measure: () => import('./measure_tool.js'),
+  clip: () => import('./clip_tool.js'),
 };
 const NAMES = Object.keys(LOADS) as readonly ToolName[];
 

@@ -295,6 +295,7 @@ export class ModelView {
       signal: this.ending.signal,
       pose: () => this.navigation.pose,
       redraw: () => { this.redraw(); },
+      setPainter: (painter) => { this.stage.painter = painter; },
       tell: (message) => this.around.failed(message, { subject: 'tools', retry: null }),
     };
   }

@@ -207,7 +207,7 @@ export const de: Words = {
       ['T W P O F', 'Textur, Gitter, Punkte, Umriss, kantig'],
       ['L', 'Aussehen und Einstellungen'],
       ['S', 'Messwerte'],
-      ['I M', 'Werkzeuge: Punkt wählen, messen'],
+      ['I M X', 'Werkzeuge: Punkt wählen, messen, aufschneiden'],
       ['Enter, V, Rücktaste', 'im Werkzeug: Bildmitte nehmen, an Eckpunkten einrasten, ein Schritt zurück'],
       ['?', 'diese Hilfe'],
     ],

@@ -215,7 +215,7 @@ export const en = {
       ['T W P O F', 'texture, wires, points, outline, flat shading'],
       ['L', 'look and settings'],
       ['S', 'figures'],
-      ['I M', 'tools: pick a point, measure'],
+      ['I M X', 'tools: pick a point, measure, cut open'],
       ['Enter, V, Backspace', 'in a tool: take the middle of the picture, snap to vertices, a step back'],
       ['?', 'this help'],
     ],

@@ -207,7 +207,7 @@ export const es: Words = {
       ['T W P O F', 'textura, aristas, puntos, contorno, facetas'],
       ['L', 'aspecto y ajustes'],
       ['S', 'cifras'],
-      ['I M', 'herramientas: elegir un punto, medir'],
+      ['I M X', 'herramientas: elegir un punto, medir, cortar'],
       ['Intro, V, Retroceso', 'en una herramienta: tomar el centro de la imagen, ajustar a los vértices, un paso atrás'],
       ['?', 'esta ayuda'],
     ],

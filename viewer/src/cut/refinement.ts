@@ -48,6 +48,8 @@ const NONE: ReadonlySet<number> = new Set();
 const OUTSIDE = 0.25;
 
 export class Refinement {
+  /// Backs are seen from outside, too: the model is cut open.
+  showsInside = false;
   private refined: ReadonlySet<number> = NONE;
   /// What the last drawing showed finer.
   private shown = new Set<number>();
@@ -116,7 +118,7 @@ export class Refinement {
   /// From outside of a closed surface none of its back is seen.
   private isOutside(eye: Vector): boolean {
     const root = this.store.get(ROOT)?.tile;
-    if (!root?.closed) return false;
+    if (!root?.closed || this.showsInside) return false;
     const inBox = eye.every((value, axis) => value >= root.box[axis] && value <= root.box[axis + 3]);
     return !inBox || Math.abs(windingNumber(root, eye)) < OUTSIDE;
   }

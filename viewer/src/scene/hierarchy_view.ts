@@ -75,6 +75,7 @@ export class HierarchyView extends Group<ViewEvents> {
   private readonly epochs = new Map<number, number>();
   private directory: Directory | null = null;
   private refinement: Refinement | null = null;
+  private isCutOpen = false;
   private drawn: readonly ChosenNode[] = [];
   private viewpoint: Viewpoint | null = null;
   private pixels = 1;
@@ -227,6 +228,7 @@ export class HierarchyView extends Group<ViewEvents> {
     const vertexBytes = vertexBytesOf(root);
     this.refinement = new Refinement(tree, index, this.store, (record, { level }) =>
       mostMemory(record, { level, vertexBytes, wires: this.look.wires }));
+    this.refinement.showsInside = this.isCutOpen;
     this.account.fetched(index.record(ROOT)!.bytes);
     this.showOutline();
     this.changed();
@@ -365,6 +367,22 @@ export class HierarchyView extends Group<ViewEvents> {
 
   get surfaceMatrix(): Readonly<Matrix4> {
     return this.tiles.matrixWorld;
+  }
+
+  /// No open border: it has an inside.
+  get closed(): boolean {
+    return this.root?.closed ?? false;
+  }
+
+  /// Whether the inside is in view, as of a model that is cut open: backs are then refined as fronts are.
+  get showsInside(): boolean {
+    return this.isCutOpen;
+  }
+
+  set showsInside(shows: boolean) {
+    this.isCutOpen = shows;
+    if (this.refinement) this.refinement.showsInside = shows;
+    this.changed();
   }
 
   /// Null until `manifest` is there.
