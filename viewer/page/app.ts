@@ -138,10 +138,9 @@ export class App {
   private makeGallery(): Gallery {
     const theme = themeButton(() => this.preferences.theme, (chosen) => { this.setTheme(chosen); });
     const language = languageSelect((chosen) => { this.setLanguage(chosen); });
-    const header = element('header', { class: 'gallery-header' }, element('h1', {}, 'meshhier'), language, theme);
-    const gallery = new Gallery(header);
+    const gallery = new Gallery(element('header', { class: 'gallery-header' }, element('h1', {}, 'meshhier'), language, theme));
     this.root.prepend(gallery.root);
-    this.uploads = new UploadPlace(header, {
+    this.uploads = new UploadPlace((section) => { gallery.insert(section); }, {
       place: gallery.root,
       inbox: new URL('inbox/', this.query.listing).href,
       problems: this.problems,

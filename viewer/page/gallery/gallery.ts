@@ -26,6 +26,7 @@ export class Gallery {
   private readonly note = element('p', { class: 'gallery-note', 'aria-live': 'polite' });
   private readonly painter: Painter;
   private readonly near: IntersectionObserver;
+  private readonly above = new ResizeObserver(() => { this.ask(); }); // the canvas does not move with the cells
   private readonly cells = new Map<string, ModelCell>();
   private readonly jobs = new Map<string, JobCell>();
   private readonly byRoot = new WeakMap<Element, ModelCell>();
@@ -52,6 +53,12 @@ export class Gallery {
   /// False: the browser has no WebGL 2, and cells stay empty.
   get works(): boolean {
     return this.painter.works;
+  }
+
+  /// Puts something above the models, of whatever height.
+  insert(section: HTMLElement): void {
+    this.note.before(section);
+    this.above.observe(section);
   }
 
   show(): void {
