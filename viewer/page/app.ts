@@ -147,7 +147,7 @@ export class App {
     const gallery = new Gallery(this.preferences.order, (order) => { this.setOrder(order); }, [language, theme]);
     this.root.prepend(gallery.root);
     watchLinks(gallery.root);
-    this.uploads = new UploadPlace(gallery.header, {
+    this.uploads = new UploadPlace((section) => { gallery.insert(section); }, {
       place: gallery.root,
       inbox: new URL('inbox/', this.query.listing).href,
       problems: this.problems,
