@@ -186,7 +186,7 @@ TEST_F(CommandLine, HelpTeaches) {
 
 TEST_F(CommandLine, EveryCommandHasHelpWithExamples) {
   for (const char* command :
-       {"build", "inspect", "verify", "export", "progressive", "reconstruct", "serve"}) {
+       {"build", "inspect", "verify", "export", "preview", "progressive", "reconstruct", "serve"}) {
     const Outcome outcome = run({command, "--help"});
     EXPECT_EQ(outcome.code, 0) << command;
     EXPECT_THAT(outcome.out,
@@ -819,7 +819,7 @@ TEST_F(CommandLine, PreviewDrawsPictures) {
   };
   const Outcome made = with({png, "--view", "30,20", "--level", "0"});
   EXPECT_EQ(made.code, 0) << made.messages;
-  EXPECT_THAT(made.output, HasSubstr("64 x 48 pixels, 1 tile"));
+  EXPECT_THAT(made.out, HasSubstr("64 x 48 pixels, 1 tile"));
   EXPECT_THAT(text_of(png), StartsWith("\x89PNG"));
   EXPECT_EQ(with({webp, "--view", "top", "--background", "#ffffff"}).code, 0);
   EXPECT_THAT(text_of(webp), StartsWith("RIFF"));
