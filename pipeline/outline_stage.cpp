@@ -26,10 +26,13 @@ constexpr std::size_t kMostSegments = 2 * kMostEdges;
 // Level 0 is outlined anyhow.
 constexpr std::uint64_t kEdgeBytes = 100;
 
-/// The finest level with no more than `sectors` nodes.
+/// A tile has vertices enough for so many sectors; finer tiles cost more and show no more.
+constexpr std::uint32_t kTileSectors = 8;
+
+/// The finest level with no more nodes than the sectors need.
 Level sector_level(const Tree& tree, std::uint32_t sectors) {
   Level level{0};
-  while (level < tree.depth() && tree.node_count(finer(level)) <= sectors)
+  while (level < tree.depth() && tree.node_count(finer(level)) <= sectors / kTileSectors)
     level = finer(level);
   return level;
 }
