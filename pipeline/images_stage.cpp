@@ -50,6 +50,7 @@ images::MaterialList decode_images(images::ImageStore& pictures, BuildJournal& j
       NoPicture none;
       pictures.add(none, step);
     }
+    plan.check_unchanged(i, context.files);
     journal.note_image(pictures.stored(static_cast<std::uint32_t>(i)), why);
   }
   for (const auto& [image, why] : journal.broken_images())

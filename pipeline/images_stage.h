@@ -12,9 +12,10 @@ namespace meshhier::pipeline {
 StageMemory images_memory(const JobSize& job);
 StageTime images_time(const JobSize& job);
 
-/// Decodes all pictures that the journal does not have. Returns the materials with the pictures
-/// that are there: with `missing_images` ignore, those that turn out to be broken are left out, and
-/// the journal has why; else throws Error(input) that names one.
+/// Decodes all pictures that the journal does not have; throws Error(input) if one is not what it
+/// was when the input was read. Returns the materials with the pictures that are there: with
+/// `missing_images` ignore, those that turn out to be broken are left out, and the journal has why;
+/// else throws Error(input) that names one.
 images::MaterialList decode_images(images::ImageStore& pictures, BuildJournal& journal,
                                    const StageContext& context);
 

@@ -4,6 +4,7 @@
 #include "storage/io/file.h"
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -13,9 +14,16 @@
 
 namespace meshhier::server {
 
+/// What tells a mesh with all that belongs to it from what it was before.
+struct InputVersion {
+  storage::FileVersion mesh;
+  std::uint64_t companions = 0;  ///< Companions::mark()
+  friend bool operator==(const InputVersion&, const InputVersion&) = default;
+};
+
 struct InboxFile {
   std::string name;
-  storage::FileVersion version;
+  InputVersion version;
   bool is_whole = false;
 };
 
@@ -23,12 +31,16 @@ struct InboxFile {
 class Inbox {
  public:
   using Clock = std::function<std::chrono::steady_clock::time_point()>;
+  /// InputVersion::companions of a mesh, as far as they are known.
+  using Mark = std::function<std::uint64_t(const std::string& name)>;
 
   /// `settle`: a file that was as it is for so long is whole. Copies of others often say so by
   /// their names as well: with the endings that browsers and programs give unfinished ones, they
   /// are no meshes' names.
-  Inbox(std::filesystem::path directory, std::chrono::milliseconds settle,
-        Clock clock = std::chrono::steady_clock::now);
+  Inbox(
+      std::filesystem::path directory, std::chrono::milliseconds settle,
+      Mark mark = [](const std::string&) { return 0; },
+      Clock clock = std::chrono::steady_clock::now);
 
   /// The mesh files that are there now, by name. Links are left out. Throws Error(io).
   std::vector<InboxFile> look();
@@ -39,12 +51,13 @@ class Inbox {
 
  private:
   struct Seen {
-    storage::FileVersion version;
+    InputVersion version;
     std::chrono::steady_clock::time_point since;
   };
 
   std::filesystem::path directory_;  ///< opened anew each time: it may be another one by then
   std::chrono::milliseconds settle_;
+  Mark mark_;
   Clock clock_;
   std::map<std::string, Seen> seen_;
 };

@@ -11,10 +11,12 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <memory>
@@ -31,7 +33,11 @@ namespace meshhier::pipeline {
 namespace {
 
 using images::Image;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using tests::TexturedTorus;
 using tests::TexturedTriangle;
 
@@ -98,6 +104,23 @@ class StoppedStage final : public execution::Progress {
   std::string only_;
 };
 
+/// Does something when a stage begins.
+class AtStage final : public execution::Progress {
+ public:
+  AtStage(std::string stage, std::function<void()> act)
+      : stage_(std::move(stage)), act_(std::move(act)) {}
+  void stage(std::string_view name, std::uint64_t, std::string_view) override {
+    if (name == stage_)
+      act_();
+  }
+  void advance(std::uint64_t) override {}
+  void finish(std::string_view) override {}
+
+ private:
+  std::string stage_;
+  std::function<void()> act_;
+};
+
 class TexturesTest : public testing::Test {
  protected:
   std::filesystem::path write(const TexturedTorus& torus) const {
@@ -115,11 +138,28 @@ class TexturesTest : public testing::Test {
     return config;
   }
 
-  void build(const config::Config& config) {
+  /// Returns the report.
+  std::string build(const config::Config& config) {
     execution::NoProgress progress;
     BuildOptions options;
     options.force = true;
-    build_hierarchy(config, options, {*files_, progress, execution::CancelToken()});
+    return build_hierarchy(config, options, {*files_, progress, execution::CancelToken()}).text;
+  }
+
+  void stop(const config::Config& config, const std::string& stage) {
+    execution::CancelToken cancel;
+    StoppedStage progress(cancel, 0, stage);
+    EXPECT_THROW(build_hierarchy(config, {}, {*files_, progress, cancel}), Error);
+  }
+  /// Of a torus whose pictures have at least so many bytes.
+  config::Config stopped(const std::string& stage, std::uintmax_t bytes) {
+    const config::Config job = config(write(tests::make_textured_torus(6, 3)));
+    for (const char* name : {"picture_0.png", "picture_1.png"}) {
+      const std::filesystem::path path = directory_.path() / name;
+      std::filesystem::resize_file(path, std::max(bytes, std::filesystem::file_size(path)));
+    }
+    stop(job, stage);
+    return job;
   }
 
   std::vector<BuiltTile> tiles(const config::Config& config) const {
@@ -329,20 +369,99 @@ TEST_F(TexturesTest, AStoppedBuildGoesOnToTheSameBytes) {
               testing::IsSupersetOf({"images", "leaves", "simplify", "texture", "publish"}));
 }
 
-TEST_F(TexturesTest, AChangedPictureIsNotGoneOnWith) {
-  const std::filesystem::path mesh = write(tests::make_textured_torus(6, 3));
-  const config::Config job = config(mesh);
-  execution::CancelToken cancel;
-  StoppedStage progress(cancel, 0, "texture");
-  EXPECT_THROW(build_hierarchy(job, {}, {*files_, progress, cancel}), Error);
-  TexturedTorus other = tests::make_textured_torus(6, 3);
-  for (Image& picture : other.pictures)
+/// Writes pictures that are all grey, of at least so many bytes.
+void write_grey(const std::filesystem::path& directory, std::uintmax_t bytes) {
+  TexturedTorus grey = tests::make_textured_torus(6, 3);
+  for (Image& picture : grey.pictures)
     std::ranges::fill(picture.texels, std::uint8_t{200});
-  write(other);
-  build(job);
+  tests::write_obj(grey, directory);
+  for (const char* name : {"picture_0.png", "picture_1.png"}) {
+    const std::filesystem::path path = directory / name;
+    std::filesystem::resize_file(path, std::max(bytes, std::filesystem::file_size(path)));
+  }
+}
+
+TEST_F(TexturesTest, AChangedPictureIsNotGoneOnWith) {
+  const config::Config job = stopped("texture", 100'000);
+  write_grey(directory_.path(), 100'000);
+  EXPECT_THAT(build(job), HasSubstr("the input was changed since an earlier build was stopped"));
   for (const BuiltTile& built : tiles(job))
     ASSERT_EQ(built.image.at(0, 0)[0], 200);
   EXPECT_THAT(problems(job), IsEmpty());
+}
+
+TEST_F(TexturesTest, APictureOfAnotherSizeIsRefusedAsAnotherMeshIs) {
+  const config::Config job = stopped("texture", 100'000);
+  write_grey(directory_.path(), 100'001);
+  try {
+    build(job);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::exists);
+    EXPECT_THAT(error.what(), HasSubstr("input_bytes was "));
+  }
+}
+
+TEST_F(TexturesTest, APictureThatAppearedIsAnotherInput) {
+  const std::filesystem::path mesh = write(tests::make_textured_torus(6, 3));
+  const std::filesystem::path picture = directory_.path() / "picture_1.png";
+  std::filesystem::rename(picture, directory_.path() / "away.png");
+  stop(config(mesh), "texture");
+  std::filesystem::rename(directory_.path() / "away.png", picture);
+  EXPECT_THROW(build(config(mesh)), Error);
+}
+
+TEST_F(TexturesTest, FilesThatWereOnlyTouchedAreGoneOnWith) {
+  const config::Config job = stopped("texture", 0);
+  for (const char* name : {"picture_0.png", "torus.mtl", "torus.obj"}) {
+    const std::filesystem::path path = directory_.path() / name;
+    std::filesystem::last_write_time(
+        path, std::filesystem::last_write_time(path) + std::chrono::hours(1));
+  }
+  EXPECT_THAT(build(job), HasSubstr("went on where an earlier build was stopped"));
+  EXPECT_THAT(problems(job), IsEmpty());
+}
+
+TEST_F(TexturesTest, APictureThatChangesBeforeItIsDecodedIsRefused) {
+  const config::Config job = config(write(tests::make_textured_torus(6, 3)));
+  AtStage progress("images", [&] {
+    std::filesystem::resize_file(directory_.path() / "picture_1.png", 100'000);
+  });
+  try {
+    build_hierarchy(job, {}, {*files_, progress, execution::CancelToken()});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::input);
+    EXPECT_THAT(error.what(), HasSubstr("picture_1.png was changed while it was read"));
+  }
+}
+
+TEST_F(TexturesTest, VerifyNamesTheFilesThatChanged) {
+  const config::Config job = config(write(tests::make_textured_torus(6, 3)));
+  build(job);
+  std::ofstream(directory_.path() / "picture_1.png", std::ios::app) << "more";
+  EXPECT_THAT(problems(job), Contains(HasSubstr("picture_0.png and 1 more (picture): not what the "
+                                                "hierarchy was made of")));
+  EXPECT_THAT(problems(job), Not(Contains(HasSubstr("torus.mtl"))));
+  std::ofstream(directory_.path() / "torus.mtl", std::ios::app) << "# more\n";
+  EXPECT_THAT(problems(job), Contains(HasSubstr("torus.mtl (material library): not what")));
+}
+
+TEST_F(TexturesTest, TheReportNamesAllThatWasReadAndWhatWasMissing) {
+  const std::filesystem::path mesh = write(tests::make_textured_torus(6, 3));
+  std::filesystem::remove(directory_.path() / "picture_1.png");
+  const config::Config job = config(mesh);
+  execution::NoProgress progress;
+  const storage::InputNote note =
+      build_hierarchy(job, {}, {*files_, progress, execution::CancelToken()}).input;
+  std::vector<std::string> names;
+  for (const storage::NotedFile& file : note.files) {
+    names.push_back(file.path.string());
+    EXPECT_EQ(file.identity, files_->identity(directory_.path() / file.path));
+  }
+  EXPECT_THAT(names, ElementsAre("torus.obj", "torus.mtl", "picture_0.png"));
+  EXPECT_THAT(note.awaited, ElementsAre("picture_1.png"));
+  EXPECT_EQ(note.content, storage::HierarchyReader(*files_, job.output).manifest().source.checksum);
 }
 
 TEST_F(TexturesTest, ABuildMayLeaveThemOut) {

@@ -31,7 +31,9 @@ class InboxTest : public testing::Test {
 
   tests::TemporaryDirectory directory_;
   std::chrono::steady_clock::time_point now_;
-  Inbox inbox_{directory_.path(), milliseconds(2000), [this] { return now_; }};
+  std::uint64_t companions_ = 0;
+  Inbox inbox_{directory_.path(), milliseconds(2000),
+               [this](const std::string&) { return companions_; }, [this] { return now_; }};
 };
 
 TEST_F(InboxTest, AFileIsWholeWhenItHasSettled) {
@@ -50,6 +52,14 @@ TEST_F(InboxTest, AFileThatGrowsBeginsAnew) {
   EXPECT_THAT(whole_after(milliseconds(1500)), IsEmpty());
   EXPECT_THAT(whole_after(milliseconds(500)), ElementsAre("b.ply"));
   EXPECT_THAT(whole_after(milliseconds(1500)), ElementsAre("a.ply", "b.ply"));
+}
+
+TEST_F(InboxTest, AFileWhoseCompanionsChangeBeginsAnew) {
+  write_text(directory_.path() / "a.obj", "1");
+  EXPECT_THAT(whole_after(milliseconds(0)), IsEmpty());
+  companions_ = 7;
+  EXPECT_THAT(whole_after(milliseconds(2000)), IsEmpty());
+  EXPECT_THAT(whole_after(milliseconds(2000)), ElementsAre("a.obj"));
 }
 
 TEST_F(InboxTest, AFileThatCameBackIsANewOne) {
