@@ -1,9 +1,9 @@
 #include "import/import_input.h"
 
-#include "hierarchy/attribute_names.h"
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
 #include "import/gltf_import.h"
+#include "import/join_layouts.h"
 #include "import/obj_import.h"
 #include "import/ply_import.h"
 #include "import/raw_mesh.h"
@@ -48,6 +48,7 @@ class Import {
       for (const InputFileFacts& file : input_.all())
         add(file, ply);
       facts_.faces = faces_;
+      count("untextured_files", join_layouts(joined_, mesh_, room_));
       write(input_.weld() ? weld() : mesh_, ply);
     }
     note_files();
@@ -136,7 +137,7 @@ class Import {
   }
 
   void add(const InputFileFacts& facts, TemporaryFile& ply) {
-    const bool is_first = checksums_.empty();
+    const std::uint64_t vertices = mesh_.vertex_count();
     Added added;
     switch (facts.format.kind) {
       case MeshKind::ply:
@@ -161,15 +162,8 @@ class Import {
         added = add_gltf(facts, ply.path());
         break;
     }
-    if (is_first)
-      mesh_.layout = added.layout;
-    if (added.layout != mesh_.layout) {
-      mesh_io::fail_file(
-          facts.path,
-          fmt::format("has attributes: {}; {} has: {}. Files that are joined must have the same",
-                      attribute_names(added.layout), input_.all()[0].path.string(),
-                      attribute_names(mesh_.layout)));
-    }
+    joined_.push_back({facts.path, added.layout, mesh_.vertex_count() - vertices});
+    require_joinable(joined_);
     mesh_.fits_float = mesh_.fits_float && added.fits_float;
     faces_ += added.faces;
     facts_.degenerate_triangles += added.degenerate_triangles;
@@ -370,6 +364,7 @@ class Import {
   RawMesh mesh_;
   std::optional<RawMesh> welded_;
   std::uint64_t faces_ = 0;
+  std::vector<JoinedFile> joined_;
   std::vector<std::uint64_t> checksums_;  ///< of the meshes that are read
   ImportFacts facts_;
 };

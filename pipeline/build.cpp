@@ -204,6 +204,7 @@ DiskNeed make_hierarchy(Workshop& workshop, const std::filesystem::path& directo
     picture_scratch.remove();
     errors = with_texels(std::move(errors), context.tree(), textures);
     source.textures->texels = context.plan.textures.texels();
+    source.textures->missing_images += broken_pictures(context.plan.textures, journal).size();
   }
   DiskNeed need = refined.value_or(context.plan.disk);
   if (const std::uint64_t splits = forest.split_count(); splits > 0) {

@@ -464,6 +464,49 @@ TEST_F(TexturesTest, TheReportNamesAllThatWasReadAndWhatWasMissing) {
   EXPECT_EQ(note.content, storage::HierarchyReader(*files_, job.output).manifest().source.checksum);
 }
 
+/// Keeps warnings.
+class Warnings final : public execution::Progress {
+ public:
+  void stage(std::string_view, std::uint64_t, std::string_view) override {}
+  void advance(std::uint64_t) override {}
+  void finish(std::string_view) override {}
+  void warn(std::string_view message) override { all.emplace_back(message); }
+
+  std::vector<std::string> all;
+};
+
+TEST_F(TexturesTest, BrokenPicturesThatAreToBeIgnoredGiveOneWarning) {
+  config::Config job = config(write(tests::make_textured_torus(6, 3)));
+  std::filesystem::resize_file(directory_.path() / "picture_0.png", 10);   // no head
+  std::filesystem::resize_file(directory_.path() / "picture_1.png", 200);  // no end
+  job.missing_images = config::MissingImages::ignore;
+  Warnings progress;
+  build_hierarchy(job, {}, {*files_, progress, execution::CancelToken()});
+  ASSERT_EQ(progress.all.size(), 1U);
+  EXPECT_THAT(progress.all[0], HasSubstr("2 pictures of the mesh are broken (the first: "));
+  EXPECT_THAT(progress.all[0], HasSubstr("picture_0.png"));
+  const SourceTextures textures =
+      storage::HierarchyReader(*files_, job.output).manifest().source.textures.value();
+  EXPECT_EQ(textures.images, 2U);
+  EXPECT_EQ(textures.missing_images, 2U);
+  EXPECT_THAT(problems(job), IsEmpty());
+}
+
+TEST_F(TexturesTest, AListMayMixTexturedAndUntexturedFiles) {
+  const std::filesystem::path torus = write(tests::make_textured_torus(6, 3));
+  const std::filesystem::path plain = directory_.path() / "plain.obj";
+  std::ofstream(plain) << "v 9 0 0\nv 10 0 0\nv 9 1 0\nvt 0 0\nf 1/1 2/1 3/1\nf 3/1 2/1 1/1\n";
+  for (const auto& inputs : {std::vector{plain, torus}, std::vector{torus, plain}}) {
+    config::Config job = config(torus);
+    job.input = mesh_io::InputPaths();
+    job.input.assign(inputs.begin(), inputs.end());
+    build(job);
+    EXPECT_THAT(problems(job), IsEmpty());
+    const SourceSummary source = storage::HierarchyReader(*files_, job.output).manifest().source;
+    EXPECT_EQ(source.textures->materials, 3U);
+  }
+}
+
 TEST_F(TexturesTest, ABuildMayLeaveThemOut) {
   config::Config job = config(write(tests::make_textured_torus(4, 2)));
   job.texture.use = false;
