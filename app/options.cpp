@@ -89,18 +89,22 @@ void require_no_terminal(const Environment& environment, const std::filesystem::
   }
 }
 
-void add_memory_budget_option(CLI::App& command, std::uint64_t& bytes) {
-  const auto store = [&bytes](const std::string& text) {
+CLI::Option* add_size_option(CLI::App& command, const std::string& name, const char* help,
+                             std::uint64_t& bytes) {
+  const auto store = [name, &bytes](const std::string& text) {
     const std::optional<std::uint64_t> parsed = execution::parse_size(text);
     if (!parsed || *parsed == 0)
-      refuse("--memory-budget", execution::kSizeSyntax, text);
+      refuse(name.c_str(), execution::kSizeSyntax, text);
     bytes = *parsed;
   };
-  command
+  return command
       .add_option_function<std::string>(
-          "--memory-budget", store,
-          fmt::format("Memory it may use [{}]", execution::exact_size_text(bytes)))
+          name, store, fmt::format("{} [{}]", help, execution::exact_size_text(bytes)))
       ->type_name("SIZE");
+}
+
+void add_memory_budget_option(CLI::App& command, std::uint64_t& bytes) {
+  add_size_option(command, "--memory-budget", "Memory it may use", bytes);
 }
 
 CLI::Option* add_integer_option(CLI::App& command, const IntegerOption& option,

@@ -36,6 +36,9 @@ std::ostream& account_stream(const Environment& environment, const std::filesyst
 /// Throws Error(usage) if a mesh would be shown on a terminal.
 void require_no_terminal(const Environment& environment, const std::filesystem::path& output);
 
+/// An option whose value is a size, not 0. `bytes` is its default.
+CLI::Option* add_size_option(CLI::App& command, const std::string& name, const char* help,
+                             std::uint64_t& bytes);
 /// --memory-budget SIZE
 void add_memory_budget_option(CLI::App& command, std::uint64_t& bytes);
 

@@ -1,11 +1,13 @@
 #include "app/command.h"
 #include "app/options.h"
+#include "app/upload_token.h"
 #include "app/viewer_place.h"
 #include "config/config.h"
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
 #include "server/http_server.h"
 #include "server/site.h"
+#include "server/uploads.h"
 #include "server/watch.h"
 #include "storage/io/child_process.h"
 
@@ -36,6 +38,9 @@ struct ServeArguments {
   std::string viewer;
   std::string cors;
   std::string inbox;
+  bool takes_uploads = false;
+  std::uint64_t upload_limit = server::UploadOptions().limit_bytes;
+  std::string token_file;
   std::string config;
   double settle_seconds = 2;
   bool verbose = false;
@@ -105,8 +110,20 @@ server::WatchOptions watch_options(const ServeArguments& arguments, Environment&
       arguments.config.empty() ? std::filesystem::path() : files.canonical(arguments.config);
   options.suffix = suffix_of(arguments.config, environment);
   options.program = storage::own_program();
+  if (arguments.takes_uploads)
+    options.folders = server::Inbox::Folders::taken;
   options.settle = std::chrono::milliseconds(std::llround(arguments.settle_seconds * 1000));
   options.look_every = std::min(options.look_every, std::max(options.settle, kShortestLook));
+  return options;
+}
+
+server::UploadOptions upload_options(const ServeArguments& arguments, Environment& environment) {
+  server::UploadOptions options;
+  options.inbox = environment.files.canonical(arguments.inbox);
+  options.limit_bytes = arguments.upload_limit;
+  options.is_loopback = server::is_loopback_host(arguments.server.host);
+  if (!arguments.token_file.empty())
+    options.token = read_upload_token(environment.files, arguments.token_file);
   return options;
 }
 
@@ -161,6 +178,10 @@ std::string empty_text(const ServeArguments& arguments) {
       plain_text(arguments.inbox, kLongestTarget));
 }
 
+constexpr const char* kNoUploads =
+    "no meshes are taken over the network: --host lets other machines in, and there is no "
+    "--upload-token-file; files that are put into the inbox are built as ever";
+
 /// All that runs. What others use comes before them: it ends after them.
 class Service {
  public:
@@ -177,9 +198,15 @@ class Service {
       options.on_new = [this] { site_->refresh(); };
       watch_.emplace(std::move(options), environment.files, hierarchies_, tell_);
     }
+    if (arguments.takes_uploads) {
+      uploads_.emplace(upload_options(arguments, environment), environment.files, tell_);
+      if (!uploads_->offer())
+        console_.tell(kNoUploads);
+    }
     site_.emplace(server::SiteOptions{std::move(viewer.folder), page_without_viewer(),
                                       server::is_loopback_host(arguments.server.host),
-                                      arguments.cors, place_names(arguments, environment.files)},
+                                      arguments.cors, place_names(arguments, environment.files),
+                                      uploads_ ? &*uploads_ : nullptr},
                   hierarchies_, watch_ ? [this] { return watch_->jobs(); } : server::Site::Jobs(),
                   tell_);
     const auto log = [this](const server::Served& served) { console_.print(log_line(served)); };
@@ -222,13 +249,14 @@ class Service {
   server::Hierarchies hierarchies_;
   std::optional<server::Site> site_;  ///< asks watch_ for jobs, but only for http_
   std::optional<server::Watch> watch_;
+  std::optional<server::Uploads> uploads_;
   std::optional<server::HttpServer> http_;
 };
 
 int run_serve(const ServeArguments& arguments, Environment& environment) {
   check_folder("FOLDER", arguments.folder, environment);
   if (!arguments.inbox.empty())
-    check_folder("--watch", arguments.inbox, environment);
+    check_folder(arguments.takes_uploads ? "--inbox" : "--watch", arguments.inbox, environment);
   Service service(arguments, environment);
   service.run(arguments);
   return 0;
@@ -247,15 +275,25 @@ is in the gallery with its progress until then. One at a time is built, by the c
 tried again when it changes. Files in INBOX are never changed, moved or removed. A server that was stopped, or
 killed, goes on where it was when it is started again.
 
+With --inbox instead of --watch, meshes may also be sent: dropped onto the page, or by PUT. Several files that belong
+together, as an OBJ with its MTL and pictures, are sent as one form; they become a folder in INBOX, and one model.
+A folder in INBOX with one mesh in it is built, too. Only this machine may send; with --host and --upload-token-file
+everybody who knows the token. Nothing in INBOX is replaced.
+
   GET /                            the page
   GET /models.json                 what there is
-  GET /models/NAME.hier/FILE       hierarchy.json, tiles.bin, outline.glb, tileset.json, tiles/LL/NNNNNN.glb, ...
+  GET /models/NAME.hier/FILE       hierarchy.json, tiles.bin, outline.glb, preview.webp, tiles/LL/NNNNNN.glb, ...
+  PUT /inbox/NAME.ply              with --inbox: a mesh
+  POST /inbox/NAME                 with --inbox: a form of files, one of which is a mesh
 
 Examples:
   meshhier serve models
   meshhier serve models --port 0 --open
   meshhier serve models --watch inbox --config scans.json
   meshhier serve models --host 0.0.0.0 --cors '*'
+  meshhier serve models --inbox inbox &
+  curl -T scan.ply http://localhost:8080/inbox/scan.ply
+  curl -F f=@house.obj -F f=@house.mtl -F f=@wall.jpg http://localhost:8080/inbox/house
 )";
 
 std::string check_cors(const std::string& text) {
@@ -283,19 +321,49 @@ void add_network_options(CLI::App& command, ServeArguments& arguments) {
       ->check(check_cors);
 }
 
+void add_upload_options(CLI::App& command, CLI::Option& inbox, ServeArguments& arguments) {
+  add_size_option(command, "--upload-limit", "With --inbox: larger uploads are refused",
+                  arguments.upload_limit)
+      ->needs(&inbox);
+  command
+      .add_option("--upload-token-file", arguments.token_file,
+                  "With --inbox: who sends meshes must know the word in this file")
+      ->type_name("FILE")
+      ->needs(&inbox);
+}
+
 void add_watch_options(CLI::App& command, ServeArguments& arguments) {
   CLI::Option* watch =
       command.add_option("--watch", arguments.inbox, "Build what is put into this directory")
           ->type_name("INBOX");
-  command.add_option("--config", arguments.config, "With --watch: how; default: all defaults")
-      ->type_name("CONFIG")
-      ->needs(watch);
+  CLI::Option* inbox = command
+                           .add_option_function<std::string>(
+                               "--inbox",
+                               [&arguments](const std::string& folder) {
+                                 arguments.inbox = folder;
+                                 arguments.takes_uploads = true;
+                               },
+                               "The same, and take meshes that are dropped onto the page")
+                           ->type_name("INBOX")
+                           ->excludes(watch);
+  command.add_option("--config", arguments.config, "How to build; default: all defaults")
+      ->type_name("CONFIG");
   command
       .add_option("--settle", arguments.settle_seconds,
-                  "With --watch: a file that has not changed for so long is whole [2]")
+                  "A file in INBOX that has not changed for so long is whole [2]")
       ->type_name("SECONDS")
-      ->check(CLI::Range(0.0, 86400.0))
-      ->needs(watch);
+      ->check(CLI::Range(0.0, 86400.0));
+  add_upload_options(command, *inbox, arguments);
+}
+
+/// Options that say how INBOX is looked after are for nothing without one.
+void check_needs(const CLI::App& command) {
+  if (command.count("--watch") + command.count("--inbox") > 0)
+    return;
+  for (const char* option : {"--config", "--settle"}) {
+    if (command.count(option) > 0)
+      throw CLI::RequiresError(option, "--watch or --inbox");
+  }
 }
 
 }  // namespace
@@ -316,7 +384,8 @@ void add_serve_command(CLI::App& parser, Invocation& invocation) {
   command->add_flag("--quiet", arguments->quiet, "Print nothing but the URL and what is missing")
       ->excludes(verbose);
   command->footer(kServeFooter);
-  command->callback([arguments, &invocation] {
+  command->callback([arguments, command, &invocation] {
+    check_needs(*command);
     invocation.run = [arguments](Environment& environment) {
       return run_serve(*arguments, environment);
     };

@@ -135,13 +135,13 @@ images::Image picture_of_level(const TextureJob& job, const render::Camera& came
   LevelSurface surface(job.reader, level);
   for (std::size_t i = 0; i < surface.size(); ++i)
     draw_tile(surface.load(i), raster);
-  return render::shade(raster, render::Light::none);
+  return render::shade(raster, {.kind = render::Light::none});
 }
 
 images::Image picture_of_input(const TextureJob& job, const render::Camera& camera) {
   render::Raster raster(camera);
   job.input.draw(raster);
-  return render::shade(raster, render::Light::none);
+  return render::shade(raster, {.kind = render::Light::none});
 }
 
 // ---- one view ------------------------------------------------------------------------------

@@ -163,6 +163,7 @@ struct Config {
   PartitionConfig partition;
   SimplifyConfig simplify;
   OutlineConfig outline;
+  bool preview = true;  ///< the hierarchy has a picture of the whole model
   StorageConfig storage;
   TextureConfig texture;
   MissingImages missing_images = MissingImages::warn;

@@ -311,6 +311,11 @@ std::vector<ConfigKey> make_config_keys() {
            .meaning = "how far a line may move to have fewer points, as a part of the "
                       "bounding-box diagonal"},
           {0, 1}, [](auto& c) -> auto& { return c.outline.tolerance; })),
+      deciding(boolean(
+          {.path = "preview",
+           .meaning =
+               "`preview.webp`, a picture of the whole model for galleries and file managers"},
+          [](auto& c) -> auto& { return c.preview; })),
       choice(
           {.path = "storage.container",
            .meaning = "a directory (`files`), or one file, a 3D Tiles archive with the same "

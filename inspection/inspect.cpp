@@ -258,6 +258,14 @@ std::string outline_text(const storage::Manifest& manifest) {
       o.tolerance, grouped(o.polylines_found, "lines"), grouped(o.polylines_dropped));
 }
 
+std::string preview_text(const storage::Manifest& manifest) {
+  if (!manifest.preview)
+    return "preview      none\n";
+  const storage::Preview& p = *manifest.preview;
+  return fmt::format("preview      {}, {} x {} pixels\n", grouped(p.bytes, "bytes"), p.width,
+                     p.height);
+}
+
 std::string tileset_text(const storage::Manifest& manifest) {
   return fmt::format("tileset      {} in {}, {} up{}{}\n", grouped(manifest.tileset_bytes, "bytes"),
                      grouped(manifest.tileset_files, "files"), name_of(manifest.up),
@@ -378,6 +386,13 @@ Json outline_json(const storage::Manifest& manifest) {
           {"polylines_found", o.polylines_found}, {"polylines_dropped", o.polylines_dropped}};
 }
 
+Json preview_json(const storage::Manifest& manifest) {
+  if (!manifest.preview)
+    return nullptr;
+  const storage::Preview& p = *manifest.preview;
+  return {{"bytes", p.bytes}, {"width", p.width}, {"height", p.height}};
+}
+
 Json tileset_json(const storage::Manifest& manifest) {
   return {{"files", manifest.tileset_files},
           {"bytes", manifest.tileset_bytes},
@@ -417,6 +432,7 @@ std::string inspect_text(storage::FileSystem& files, const std::filesystem::path
   text += partitions_text(levels.back(),
                           storage::summarize_compactness(reader.tree(), reader.records()));
   text += outline_text(manifest);
+  text += preview_text(manifest);
   text += tileset_text(manifest);
   text += totals_text(manifest, levels, bytes_on_disk(place, reader));
   text += "\n" + level_table(levels, std::nullopt);
@@ -440,6 +456,7 @@ Json inspect_json(storage::FileSystem& files, const std::filesystem::path& direc
       {"sizes",
        {{"partitions", to_json(partition_sizes(reader))}, {"all", to_json(all_sizes(reader))}}},
       {"outline", outline_json(manifest)},
+      {"preview", preview_json(manifest)},
       {"tileset", tileset_json(manifest)},
       {"pictures", storage::to_json(storage::summarize_pictures(reader.records()))},
       {"forced_collapses", storage::to_json(forced_collapses_of(reader))},

@@ -45,10 +45,12 @@ bool is_tile_file(const Tree& tree, const fs::path& relative) {
          storage::tile_path({}, node) == relative;
 }
 
-bool is_known(const Tree& tree, const std::set<fs::path>& tilesets, const fs::path& relative) {
+bool is_known(const VerifyJob& job, const std::set<fs::path>& tilesets, const fs::path& relative) {
+  const bool has_preview = job.reader.manifest().preview.has_value();
   return relative == storage::manifest_path({}) || relative == storage::index_path({}) ||
-         relative == storage::outline_path({}) || is_tile_file(tree, relative) ||
-         tilesets.contains(relative);
+         relative == storage::outline_path({}) ||
+         (has_preview && relative == storage::preview_path({})) ||
+         is_tile_file(job.tree(), relative) || tilesets.contains(relative);
 }
 
 /// The directories that hold the hierarchy's files, as names in it.
@@ -88,7 +90,7 @@ std::uint64_t find_extra_files(const VerifyJob& job, const std::set<fs::path>& t
   const fs::path& directory = job.reader.directory();
   const std::vector<fs::path> found = job.files.list(directory);
   for (const fs::path& path : found) {
-    if (is_known(job.tree(), tilesets, path.lexically_relative(directory)))
+    if (is_known(job, tilesets, path.lexically_relative(directory)))
       continue;
     job.problems.add(fmt::format("{}: not a file of this hierarchy; remove it", path.string()));
   }
@@ -161,6 +163,7 @@ std::set<fs::path> check_tilesets(const VerifyJob& job) {
 void verify_files(const VerifyJob& job) {
   const std::uint64_t count = find_extra_files(job, check_tilesets(job));
   check_outline(job);
+  verify_preview(job);
   job.checks.push_back(fmt::format("files: {} found, {} in the index", count,
                                    counted(job.reader.records().size(), "tiles")));
 }

@@ -108,6 +108,8 @@ void check_config_against_rest(const storage::Manifest& manifest, const config::
     problems.require(!manifest.textures || config.texture.use,
                      "there are textures, but \"config\" asks for none");
   }
+  if (says("/preview"))
+    problems.compare("the existence of \"preview\"", manifest.preview.has_value(), config.preview);
   if (says("/up"))
     problems.compare("up", name_of(manifest.up), name_of(config.up));
   if (config.placement.crs) {
@@ -170,7 +172,8 @@ void check_bounds(const VerifyJob& job, const ManifestProblems& problems) {
 
 void check_totals(const VerifyJob& job, const ManifestProblems& problems) {
   const storage::Manifest& manifest = job.reader.manifest();
-  std::uint64_t bytes = manifest.index_bytes + manifest.outline_bytes + manifest.tileset_bytes;
+  std::uint64_t bytes = manifest.index_bytes + manifest.outline_bytes + manifest.tileset_bytes +
+                        (manifest.preview ? manifest.preview->bytes : 0);
   std::uint64_t triangles = 0;
   for (const TileRecord& record : job.reader.records()) {
     bytes += record.file_bytes;

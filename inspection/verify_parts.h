@@ -76,6 +76,9 @@ struct VerifyJob {
 /// No file missing, none extra, no link; outline readable.
 void verify_files(const VerifyJob& job);
 
+/// The preview, if there is one, is the picture that the manifest tells of.
+void verify_preview(const VerifyJob& job);
+
 /// Every value of the manifest that follows from the rest is what it should be, and nothing else is
 /// there.
 void verify_manifest(const VerifyJob& job);

@@ -17,6 +17,8 @@ void for_each_name(const storage::HierarchyReader& made,
   visit(storage::manifest_path({}));
   visit(storage::index_path({}));
   visit(storage::outline_path({}));
+  if (made.manifest().preview)
+    visit(storage::preview_path({}));
   storage::for_each_tileset(made.manifest(), made.tree(), made.records(),
                             [&](const storage::TilesetFile& file) { visit(file.path); });
   for (const TileRecord& record : made.records())
@@ -28,9 +30,9 @@ void for_each_name(const storage::HierarchyReader& made,
 std::uint64_t pack(const storage::HierarchyReader& made, const fs::path& file,
                    storage::ScratchUse& use, const StageContext& context) {
   storage::FileSystem& files = context.files;
-  constexpr std::uint64_t kOtherFiles = 3;  // manifest, index, outline
-  context.progress.stage(
-      "pack", kOtherFiles + made.manifest().tileset_files + made.records().size(), "files");
+  const storage::Manifest& manifest = made.manifest();
+  const std::uint64_t others = manifest.preview ? 4 : 3;  // manifest, index, outline
+  context.progress.stage("pack", others + manifest.tileset_files + made.records().size(), "files");
   const std::unique_ptr<storage::File> archive = files.create(file);
   storage::ArchiveWriter writer(*archive, [&] { context.cancel.check(); });
   for_each_name(made, [&](const fs::path& name) {

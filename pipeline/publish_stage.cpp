@@ -7,6 +7,7 @@
 #include "hierarchy/lattice.h"
 #include "partition/compactness.h"
 #include "pipeline/plan/tile_room.h"
+#include "pipeline/preview.h"
 #include "pipeline/texture_stage.h"
 #include "pipeline/tiles/texture_store.h"
 #include "pipeline/tiles/vertex_order.h"
@@ -25,6 +26,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <span>
 
 namespace meshhier::pipeline {
@@ -182,6 +184,12 @@ void write_account(const TileWriter& to, const PublishInput& input,
       storage::encode_outline(input.outline.outline, to.format.frame);
   storage::write_file(files, storage::outline_path(to.directory), outline);
 
+  std::optional<MadePreview> preview;
+  if (context.config.preview) {
+    preview = make_preview({to.directory, to.format, records}, context);
+    storage::write_file(files, storage::preview_path(to.directory), preview->file);
+  }
+
   storage::Manifest manifest;
   manifest.generator = "meshhier " MESHHIER_VERSION;
   manifest.source = input.source;
@@ -204,11 +212,14 @@ void write_account(const TileWriter& to, const PublishInput& input,
   manifest.outline_bytes = outline.size();
   manifest.outline_checksum = storage::checksum(outline);
   manifest.outline = input.outline.report;
+  if (preview)
+    manifest.preview = preview->facts;
   manifest.levels = nlohmann::ordered_json::array();
   for (const storage::LevelSummary& level : storage::summarize_levels(tree, records))
     manifest.levels.push_back(storage::to_json(level));
   manifest.total_bytes = std::accumulate(
-      records.begin(), records.end(), std::uint64_t{index.size() + outline.size()},
+      records.begin(), records.end(),
+      index.size() + outline.size() + (preview ? preview->file.size() : 0),
       [](std::uint64_t sum, const TileRecord& record) { return sum + record.file_bytes; });
   storage::write_tilesets(files, to.directory, tree, records, manifest);
   const std::string text = storage::to_json_text(manifest);
@@ -225,6 +236,12 @@ std::uint64_t heaviest_written(const Forest& forest, const config::StorageConfig
         std::max(heaviest, packed ? heaviest_packed(forest, level) : heaviest_read(forest, level));
   }
   return heaviest;
+}
+
+/// What is drawn takes as much as what is packed.
+std::uint64_t heaviest_item(const Forest& forest, const config::Config& config) {
+  const std::uint64_t written = heaviest_written(forest, config.storage);
+  return config.preview ? std::max(written, heaviest_packed(forest, Level{0})) : written;
 }
 
 }  // namespace
@@ -247,7 +264,7 @@ void publish(Forest& forest, const TextureStore& textures, BuildJournal& journal
       left.push_back(i);
   }
   context.progress.stage("publish", left.size(), "tiles");
-  const TileRoom room = room_for(forest, context.memory(), heaviest_written(forest, storage));
+  const TileRoom room = room_for(forest, context.memory(), heaviest_item(forest, context.config));
   storage::TileFormat format = {
       input.source.attributes, {input.origin, context.config.up}, storage.compression, {}};
   format.computed_normals = forest.computes_normals();
@@ -278,7 +295,8 @@ StageTime publish_time(const JobSize& job, const TilePopulation& tiles) {
   return {"publish", "tiles",
           static_cast<std::uint64_t>(tiles.partitions.count + tiles.simplified.count -
                                      tiles.early.count),
-          vertices * kVertexSeconds + packed * kPackedByteSeconds};
+          vertices * kVertexSeconds + packed * kPackedByteSeconds +
+              (job.draws_preview ? kPreviewSeconds : 0)};
 }
 
 OutputCost publish_output(const JobSize& job, const TilePopulation& tiles) {
@@ -297,7 +315,8 @@ OutputCost publish_output(const JobSize& job, const TilePopulation& tiles) {
           : 0;
   const double pictures = published_picture_bytes(job, tiles);
   return {plain + pictures, plain * job.published_ratio + pictures,
-          tiles.files() * kFileSlack + splits};
+          tiles.files() * kFileSlack + splits +
+              (job.draws_preview ? double{storage::kMostPreviewBytes} + kFileSlack : 0)};
 }
 
 }  // namespace meshhier::pipeline

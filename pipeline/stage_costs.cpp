@@ -8,6 +8,7 @@
 #include "pipeline/outline_stage.h"
 #include "pipeline/pack_stage.h"
 #include "pipeline/partition_stage.h"
+#include "pipeline/preview.h"
 #include "pipeline/publish_stage.h"
 #include "pipeline/simplify_stage.h"
 #include "pipeline/texture_stage.h"
@@ -30,8 +31,11 @@ std::uint64_t bookkeeping_bytes(const JobSize& job) {
 }  // namespace
 
 MemoryCosts memory_costs(const JobSize& job) {
-  return {bookkeeping_bytes(job), ingest_memory(job), partition_memory(job), leaves_memory(job),
-          simplify_memory(job),   images_memory(job), texture_memory(job),   chunk_spools(job)};
+  return {bookkeeping_bytes(job), ingest_memory(job),
+          partition_memory(job),  leaves_memory(job),
+          simplify_memory(job),   images_memory(job),
+          texture_memory(job),    job.draws_preview ? preview_memory(job) : 0,
+          chunk_spools(job)};
 }
 
 DiskCosts disk_costs(const JobSize& job, const MemoryPlan& memory, const TilePopulation& tiles) {

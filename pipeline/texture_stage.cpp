@@ -239,6 +239,10 @@ std::uint64_t bake_bytes(std::uint32_t side) {
   return std::uint64_t{side} * side * (kBakedBytes + kSources * kSourceTexels * 3);
 }
 
+float root_of_squares(double a, double b) {
+  return static_cast<float>(std::sqrt(a * a + b * b));
+}
+
 class TextureMaker {
  public:
   TextureMaker(const Forest& forest, const TexturedInput& input, TextureStore& textures,
@@ -278,14 +282,14 @@ class TextureMaker {
     const std::uint32_t factor = reduction(source.image, side_);
     if (factor > 1)
       source.image = texture::reduced(source.image, source.corners, factor);
-    textures_.put(node, texture, source, {texel, texel});
+    textures_.put(node, texture, source, {texel, texel, 0});
   }
 
   void bake(NodeId node) {
     const TileMesh mesh = forest_.load(node).mesh;
     BakeSource source;
     add_triangles(mesh, source);
-    const float finest = finest_below(node);
+    TexelSizes texels = texels_below(node);
     const execution::MemoryGate::Share share = gate_.enter(bake_bytes(side_));
     if (!source.triangles.empty()) {
       const std::vector<Finer> finer = finer_surfaces(node, mesh);
@@ -295,11 +299,13 @@ class TextureMaker {
         source.alpha = std::max(source.alpha, one.source->alpha);
       }
       texture::BakedTexture baked = texture::bake({source.positions, source.triangles, {}, nullptr},
-                                                  surfaces, {side_, finest});
+                                                  surfaces, {side_, texels.finest});
+      texels.lost = root_of_squares(texels.lost, baked.lost);
       source.image = std::move(baked.image);
       source.corners = std::move(baked.corners);
     }
-    textures_.put(node, encoded(source), source, {texel_of(source), finest});
+    texels.own = texel_of(source);
+    textures_.put(node, encoded(source), source, texels);
   }
 
   static std::uint64_t gate_bytes(std::uint64_t work_bytes) {
@@ -332,14 +338,20 @@ class TextureMaker {
     return texture::texel_size(source.surface(), source.image.width, source.image.height);
   }
 
-  float finest_below(NodeId node) const {
-    float finest = 0;
+  /// The finest of the children's, and the mean square of what they have lost.
+  TexelSizes texels_below(NodeId node) const {
+    TexelSizes below;
+    double squares = 0;
     const Tree::Children children = forest_.tree().children(node);
     for (const NodeId child : children.span()) {
-      const float below = textures_.texels(forest_.tree().tile_node(child)).finest;
-      finest = finest == 0 || (below > 0 && below < finest) ? below : finest;
+      const TexelSizes& texels = textures_.texels(forest_.tree().tile_node(child));
+      if (texels.finest > 0 && (below.finest == 0 || texels.finest < below.finest))
+        below.finest = texels.finest;
+      squares += double(texels.lost) * texels.lost;
     }
-    return finest;
+    below.lost =
+        static_cast<float>(std::sqrt(squares / static_cast<double>(children.span().size())));
+    return below;
   }
 
   /// The node's children, then those of its neighbours, as far as they are near the border.
@@ -417,8 +429,8 @@ TileErrors with_texels(TileErrors errors, const Tree& tree, const TextureStore& 
   for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) {
     TileError& own = errors[*node];
     const TexelSizes& texels = textures.texels(*node);
-    if (!tree.is_partition(*node) && texels.own > texels.finest)
-      own.error = std::max(own.error, texels.own);
+    if (!tree.is_partition(*node) && std::max(texels.own, texels.lost) > texels.finest)
+      own.error = std::max({own.error, texels.own, texels.lost});
     if (node->level == Level{0})
       continue;
     TileError& parent = errors[tree.parent_tile(*node)];

@@ -1,14 +1,12 @@
 #include "render/camera.h"
 
+#include "render/space.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace meshhier::render {
 namespace {
-
-Vec3d unit(Vec3d vector) {
-  return vector * (1 / length(vector));
-}
 
 /// The axis of space along which `direction` goes least.
 Vec3d least_axis(Vec3d direction) {
@@ -60,6 +58,13 @@ Camera::Camera(const View& view, const BoundsD& box, const Framing& framing)
     scale_ = std::min(across, upright);
   else if (across > 0 || upright > 0)
     scale_ = std::max(across, upright);
+}
+
+Camera Camera::with(const Framing& framing) const {
+  Camera other = *this;
+  other.framing_ = framing;
+  other.scale_ = scale_ * other.rows() / rows();
+  return other;
 }
 
 Vec3d Camera::on_grid(Vec3f position) const {

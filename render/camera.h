@@ -42,6 +42,9 @@ class Camera {
   /// Shows what is around `centre`; `pixel`: its size, above 0. The margin does not count.
   Camera(const View& view, Vec3d centre, double pixel, const Framing& framing);
 
+  /// The same view in another frame; the part of space that the rows show stays.
+  Camera with(const Framing& framing) const;
+
   const Framing& framing() const { return framing_; }
   std::uint32_t columns() const { return framing_.width * framing_.samples; }
   std::uint32_t rows() const { return framing_.height * framing_.samples; }

@@ -1,7 +1,7 @@
 #include "render/raster.h"
 
-#include "render/coverage.h"
 #include "render/mip_texture.h"
+#include "render/space.h"
 
 #include <array>
 #include <cmath>
@@ -10,10 +10,6 @@
 
 namespace meshhier::render {
 namespace {
-
-bool is_finite(Vec3d p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
 
 Vec3f blend(const Weights& weights, Vec3f a, Vec3f b, Vec3f c) {
   return to_float(to_double(a) * weights[0] + to_double(b) * weights[1] +
@@ -97,15 +93,25 @@ std::optional<SeenFacet> seen(const Camera& camera, const Facet& facet, const Sk
 
 }  // namespace
 
-Raster::Raster(const Camera& camera)
-    : camera_(camera), samples_(std::size_t{camera.columns()} * camera.rows()) {}
+Raster::Raster(const Camera& camera) : Raster(camera, {0, camera.framing().height}) {}
+
+Raster::Raster(const Camera& camera, PixelRows rows)
+    : camera_(camera),
+      rows_(rows),
+      samples_(std::size_t{camera.columns()} * rows.count * camera.framing().samples) {}
+
+GridPoint Raster::in_rows(Vec3d place) const {
+  GridPoint point = snapped(place);
+  point.y -= kSteps * rows_.first * framing().samples;
+  return point;
+}
 
 void Raster::draw(const Facet& facet, const Skin& skin) {
   const std::optional<SeenFacet> there = seen(camera_, facet, skin);
   if (!there)
     return;
   const auto& [a, b, c] = there->places;
-  const GridTriangle triangle({snapped(a), snapped(b), snapped(c)});
+  const GridTriangle triangle({in_rows(a), in_rows(b), in_rows(c)});
   triangle.visit(columns(), rows(),
                  [&](std::int64_t column, std::int64_t row, const Weights& weights) {
                    Sample& sample = samples_[static_cast<std::size_t>(row * columns() + column)];

@@ -3,9 +3,11 @@
 
 #include "hierarchy/vec.h"
 #include "render/camera.h"
+#include "render/coverage.h"
 #include "render/facet.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
@@ -21,11 +23,19 @@ struct Sample {
   bool covered() const { return depth < std::numeric_limits<float>::infinity(); }
 };
 
+/// Rows of a picture's pixels, from the top.
+struct PixelRows {
+  std::uint32_t first = 0, count = 0;
+};
+
 /// A pure function of the camera and of the facets in their order; 28 bytes a sample. Not
 /// thread-safe.
 class Raster {
  public:
   explicit Raster(const Camera& camera);
+  /// Of these rows of the picture only, the same as they are in the whole. Requires that it has
+  /// them.
+  Raster(const Camera& camera, PixelRows rows);
 
   /// The nearest facet is seen, of equally near ones the first. Depths, normals and colours are
   /// interpolated; normals are those of the side that is seen. Nothing is seen of a facet that is
@@ -37,13 +47,19 @@ class Raster {
 
   const Framing& framing() const { return camera_.framing(); }
   std::uint32_t columns() const { return camera_.columns(); }
-  std::uint32_t rows() const { return camera_.rows(); }
+  /// Of samples: those of pixel_rows().
+  std::uint32_t rows() const { return rows_.count * framing().samples; }
+  PixelRows pixel_rows() const { return rows_; }
   /// Row by row, from the top left.
   std::span<const Sample> samples() const& { return samples_; }
   void samples() const&& = delete;  ///< it would outlive its array
 
  private:
+  /// Of a place on the grid, from the first row that is here.
+  GridPoint in_rows(Vec3d place) const;
+
   Camera camera_;
+  PixelRows rows_;
   std::vector<Sample> samples_;
 };
 

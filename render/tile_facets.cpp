@@ -4,6 +4,7 @@
 #include "images/srgb.h"
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 namespace meshhier::render {
@@ -19,6 +20,18 @@ double full_light(ColourType type) {
     default:
       return 1;
   }
+}
+
+/// Of a channel whose full light has the number `full`.
+double light(float value, double full) {
+  static const std::array<double, 256> bytes = [] {
+    std::array<double, 256> lights{};
+    for (std::size_t i = 0; i < lights.size(); ++i)
+      lights[i] = images::light_of(static_cast<double>(i) / 255);
+    return lights;
+  }();
+  const bool is_byte = full == 255 && value >= 0 && value <= 255 && value == std::floor(value);
+  return is_byte ? bytes[static_cast<std::size_t>(value)] : images::light_of(value / full);
 }
 
 /// The corners that a tile's vertices are, each by its number in the file.
@@ -66,8 +79,7 @@ class TileCorners {
       return kPlainColour;
     const double full = full_light(layout_.colour);
     const Vec3f stored = channels(attributes, layout_.colour_offset());
-    return to_float({images::light_of(stored.x / full), images::light_of(stored.y / full),
-                     images::light_of(stored.z / full)});
+    return to_float({light(stored.x, full), light(stored.y, full), light(stored.z, full)});
   }
 
   static Vec3f channels(std::span<const float> attributes, int offset) {

@@ -29,8 +29,9 @@ struct TargetFolder {
 
 /// For the file `name`, among all `inbox` files. "a.ply" goes to "a.hier"; to "a.ply.hier" if
 /// a.hier was made from something else, or an inbox file earlier in the alphabet has the same stem.
-/// `is_made_of` says whether a hierarchy of a file of that name is one of this very file, and is
-/// asked for no other. Throws Error(io), and what `is_made_of` throws.
+/// "house/a.obj" goes to "house.hier", or "house.a.obj.hier". `is_made_of` says whether a hierarchy
+/// of a file of that name is one of this very file, and is asked for no other. Throws Error(io),
+/// and what `is_made_of` throws.
 BuildTarget find_target(TargetFolder target, const std::string& name,
                         const std::vector<std::string>& inbox,
                         const std::function<bool(const Model&)>& is_made_of);

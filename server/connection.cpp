@@ -1,6 +1,7 @@
 #include "server/connection.h"
 
 #include "server/client_key.h"
+#include "server/text.h"
 
 #include <algorithm>
 #include <array>
@@ -15,8 +16,6 @@
 
 namespace meshhier::server {
 namespace {
-
-constexpr std::string_view kHeadEnd = "\r\n\r\n";
 
 /// How long a thread may not notice that the server stops, or that others wait.
 constexpr std::chrono::milliseconds kSlice{100};
@@ -92,13 +91,13 @@ bool Connection::read_available() {
   return true;
 }
 
-void Connection::begin_reply() {
-  reply_start_ = Clock::now();
-  reply_bytes_ = 0;
+void Connection::begin_exchange() {
+  exchange_start_ = Clock::now();
+  exchanged_bytes_ = 0;
 }
 
 Connection::Next Connection::next_request() {
-  begin_reply();  // which may be that there is no request
+  begin_exchange();  // which may be that there is no request
   has_unread_ = has_begun();
   const std::size_t found = received_.find(kHeadEnd);
   const std::size_t bytes = found == std::string::npos ? 0 : found + kHeadEnd.size();
@@ -112,9 +111,10 @@ Connection::Next Connection::next_request() {
   head_ = std::move(*head);
   received_.erase(0, bytes);
   has_unread_ = head_.has_body || has_begun();
+  body_left_ = head_.body_bytes.value_or(0);
   place_ = 0;
   ++requests_;
-  begin_reply();
+  begin_exchange();
   return Next::request;
 }
 
@@ -125,11 +125,56 @@ ssize_t Connection::read(char* bytes, std::size_t count) {
   return static_cast<ssize_t>(taken);
 }
 
+std::size_t Connection::take_received(std::span<std::byte> bytes) {
+  const std::size_t taken = std::min(bytes.size(), received_.size());
+  std::memcpy(bytes.data(), received_.data(), taken);
+  received_.erase(0, taken);
+  return taken;
+}
+
+bool Connection::invite_body() {
+  if (!std::exchange(head_.expects_continue, false))
+    return true;
+  constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
+  return write(kContinue.data(), kContinue.size()) == static_cast<ssize_t>(kContinue.size());
+}
+
+Connection::Piece Connection::receive_body(std::span<std::byte> bytes) {
+  if (!invite_body())
+    return {0, Body::End::lost};
+  for (;;) {
+    if (is_too_slow() || !wait(POLLIN, Clock::now() + limits_.stall, is_stopping_))
+      return {0, is_stopping_() ? Body::End::stopping : Body::End::slow};
+    const ssize_t count = ::recv(socket_, bytes.data(), bytes.size(), MSG_DONTWAIT);
+    if (count > 0)
+      return {static_cast<std::size_t>(count)};
+    if (count == 0 || (errno != EAGAIN && errno != EINTR))
+      return {0, Body::End::lost};
+  }
+}
+
+Connection::Piece Connection::take_body(std::span<std::byte> bytes) {
+  const auto most = static_cast<std::size_t>(std::min<std::uint64_t>(bytes.size(), body_left_));
+  if (most == 0)
+    return {};
+  Piece piece{take_received(bytes.first(most))};
+  if (piece.bytes == 0)
+    piece = receive_body(bytes.first(most));
+  body_left_ -= piece.bytes;
+  exchanged_bytes_ += piece.bytes;
+  if (body_left_ == 0) {
+    has_unread_ = has_begun();
+    begin_exchange();
+  }
+  return piece;
+}
+
 bool Connection::is_too_slow() const {
-  const auto time = Clock::now() - reply_start_;
+  const auto time = Clock::now() - exchange_start_;
   const double seconds = std::chrono::duration<double>(time).count();
   return time > limits_.grace &&
-         static_cast<double>(reply_bytes_) < seconds * static_cast<double>(limits_.least_rate) &&
+         static_cast<double>(exchanged_bytes_) <
+             seconds * static_cast<double>(limits_.least_rate) &&
          must_yield_(client_);
 }
 
@@ -142,7 +187,7 @@ ssize_t Connection::write(const char* bytes, std::size_t count) {
   if (sent < 0 && (errno == EAGAIN || errno == EINTR))
     return 0;
   is_broken_ = sent < 0;
-  reply_bytes_ += is_broken_ ? 0 : static_cast<std::size_t>(sent);
+  exchanged_bytes_ += is_broken_ ? 0 : static_cast<std::size_t>(sent);
   return sent;
 }
 

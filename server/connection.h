@@ -4,12 +4,15 @@
 #pragma once
 
 #include "server/connection_limits.h"
+#include "server/http.h"
 #include "server/request_head.h"
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 
 #include <httplib.h>
@@ -51,13 +54,23 @@ class Connection final : public httplib::Stream {
   Next next_request();
   const RequestHead& head() const { return head_; }
 
+  /// What came of the body.
+  struct Piece {
+    std::size_t bytes = 0;             ///< 0: none comes any more,
+    Body::End end = Body::End::whole;  ///< because of this
+  };
+  /// The next bytes behind the head, as far as Content-Length announced some: what is there, or
+  /// what comes first. A client that waits for it is told to go on.
+  Piece take_body(std::span<std::byte> bytes);
+  bool is_stopping() const { return is_stopping_(); }
+
   /// Nothing more is said. If the client may still be speaking, what it says is dropped for a
   /// moment: it could not read the reply otherwise.
   void finish();
 
   bool is_readable() const override { return place_ < head_.text.size(); }
   bool is_writable() const override { return !is_broken_; }
-  /// From the head, and nothing behind it: bodies are refused.
+  /// From the head, and nothing behind it: the library reads no bodies.
   ssize_t read(char* bytes, std::size_t count) override;
   /// -1 if the client takes too long.
   ssize_t write(const char* bytes, std::size_t count) override;
@@ -71,7 +84,10 @@ class Connection final : public httplib::Stream {
   /// Whether the socket is ready for `event` before `end`; false, too, if `is_over` says so.
   bool wait(short event, Clock::time_point end, const std::function<bool()>& is_over) const;
   bool has_head() const;
-  void begin_reply();
+  void begin_exchange();
+  std::size_t take_received(std::span<std::byte> bytes);
+  Piece receive_body(std::span<std::byte> bytes);
+  bool invite_body();
   /// Appends what has come to received_.
   enum class Received { something, nothing_yet, end };
   Received receive();
@@ -87,8 +103,9 @@ class Connection final : public httplib::Stream {
   RequestHead head_;
   std::size_t place_ = 0;  ///< what was read of the head
   std::size_t requests_ = 0;
-  Clock::time_point reply_start_;
-  std::size_t reply_bytes_ = 0;
+  std::uint64_t body_left_ = 0;  ///< of what was announced
+  Clock::time_point exchange_start_;
+  std::size_t exchanged_bytes_ = 0;  ///< of the body, then of the reply
   bool is_broken_ = false;
   bool has_ended_ = false;   ///< the client says no more
   bool has_unread_ = false;  ///< what was not taken as a request

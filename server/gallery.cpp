@@ -1,6 +1,7 @@
 #include "server/gallery.h"
 
 #include "server/url_path.h"
+#include "storage/format/layout.h"
 
 #include <utility>
 
@@ -14,19 +15,23 @@ std::string url_of(const Model& model) {
   return model.path.empty() ? "models" : "models/" + encode_path(model.path);
 }
 
+nlohmann::ordered_json json_of(const Model& model) {
+  nlohmann::ordered_json json{{"name", model.name},         {"path", url_of(model)},
+                              {"vertices", model.vertices}, {"triangles", model.triangles},
+                              {"bytes", model.bytes},       {"source", model.source}};
+  if (model.has_preview)
+    json["preview"] = url_of(model) + '/' + storage::preview_path({}).string();
+  return json;
+}
+
 }  // namespace
 
 std::string gallery_json(const std::vector<Model>& models,
                          const std::optional<nlohmann::ordered_json>& jobs,
-                         const PlaceNames& places) {
+                         const PlaceNames& places, const std::optional<UploadOffer>& offer) {
   nlohmann::ordered_json document{{"models", nlohmann::ordered_json::array()}};
   for (const Model& model : models) {
-    document["models"].push_back({{"name", model.name},
-                                  {"path", url_of(model)},
-                                  {"vertices", model.vertices},
-                                  {"triangles", model.triangles},
-                                  {"bytes", model.bytes},
-                                  {"source", model.source}});
+    document["models"].push_back(json_of(model));
   }
   if (jobs)
     document["jobs"] = *jobs;
@@ -34,6 +39,8 @@ std::string gallery_json(const std::vector<Model>& models,
     document["folder"] = places.folder;
   if (!places.inbox.empty())
     document["inbox"] = places.inbox;
+  if (offer)
+    document["upload"] = {{"limit", offer->limit_bytes}, {"token", offer->needs_token}};
   // Names of files may hold any bytes, JSON may not.
   return document.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
 }

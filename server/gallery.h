@@ -4,6 +4,7 @@
 #include "server/hierarchies.h"
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <mutex>
 #include <optional>
@@ -20,11 +21,17 @@ struct PlaceNames {
   std::string inbox{};
 };
 
-/// `jobs`: of a watched folder; none if none is watched. Paths are relative to the document, as a
-/// URL has them.
+/// What a page may send to the inbox.
+struct UploadOffer {
+  std::uint64_t limit_bytes = 0;
+  bool needs_token = false;
+};
+
+/// `jobs`: of a watched folder; none if none is watched. `offer`: none if no uploads are taken.
+/// Paths are relative to the document, as a URL has them.
 std::string gallery_json(const std::vector<Model>& models,
                          const std::optional<nlohmann::ordered_json>& jobs,
-                         const PlaceNames& places);
+                         const PlaceNames& places, const std::optional<UploadOffer>& offer = {});
 
 /// Thread-safe.
 class Gallery {

@@ -231,7 +231,8 @@ Model Hierarchies::model_of(const std::string& path, const storage::File& file) 
           manifest.total_bytes,
           is_alone ? manifest.source.file_bytes : manifest.source.files[0].bytes,
           is_alone ? manifest.source.checksum : manifest.source.files[0].checksum,
-          manifest.source.checksum};
+          manifest.source.checksum,
+          manifest.preview.has_value()};
 }
 
 void Hierarchies::tell_left_out(const std::string& cause) {

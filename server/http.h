@@ -3,15 +3,40 @@
 
 #include "storage/io/file.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 namespace meshhier::server {
+
+/// The bytes behind a head, from the first to the last, each once.
+class Body {
+ public:
+  enum class End {
+    whole,     ///< all that were announced have come
+    lost,      ///< the client has gone
+    slow,      ///< it took too long
+    stopping,  ///< the server ends
+  };
+
+  Body() = default;
+  Body(const Body&) = delete;
+  Body& operator=(const Body&) = delete;
+  virtual ~Body() = default;
+
+  /// As announced.
+  virtual std::uint64_t bytes() const = 0;
+  /// Up to bytes.size() of them, at least one; 0: none comes any more, and end() says why.
+  virtual std::size_t read(std::span<std::byte> bytes) = 0;
+  virtual End end() const = 0;
+  virtual bool is_stopping() const = 0;
+};
 
 /// What a client sent; nobody vouches for any of it.
 struct Request {
@@ -22,7 +47,11 @@ struct Request {
   std::optional<std::string> if_none_match{};
   std::optional<std::string> if_range{};
   std::optional<std::string> range{};
+  std::optional<std::string> origin{};  ///< "" if there are several
+  std::optional<std::string> authorization{};
+  std::optional<std::string> content_type{};
   bool has_body = false;  ///< more than 0 bytes are announced behind the head
+  Body* body = nullptr;   ///< null if no Content-Length tells how long it is
 };
 
 /// A part of a file, sent piece by piece.
@@ -42,6 +71,11 @@ struct Reply {
   /// The header's value, "" if it is not there; names are as they were put in.
   std::string_view header(std::string_view name) const;
 };
+
+/// One line for people.
+inline Reply text_reply(int status, const std::string& text) {
+  return {status, {{"Content-Type", "text/plain; charset=utf-8"}}, text + '\n', {}};
+}
 
 inline std::string_view Reply::header(std::string_view name) const {
   for (const auto& [key, value] : headers) {

@@ -3,6 +3,7 @@
 #include "hierarchy/error.h"
 #include "server/conditions.h"
 #include "server/connection.h"
+#include "server/connection_body.h"
 #include "server/connection_queue.h"
 
 #include <algorithm>
@@ -45,7 +46,14 @@ bool announces_body(const httplib::Request& request) {
          request.get_header_value("Content-Length").find_first_not_of('0') != std::string::npos;
 }
 
-Request request_of(const httplib::Request& request) {
+/// "" if there are several, which is nobody's origin.
+std::optional<std::string> origin_of(const httplib::Request& request) {
+  if (!request.has_header("Origin"))
+    return std::nullopt;
+  return header(request, "Origin").value_or("");
+}
+
+Request request_of(const httplib::Request& request, Body* body) {
   return {request.method,
           request.target,
           header(request, "Host"),
@@ -53,7 +61,11 @@ Request request_of(const httplib::Request& request) {
           header(request, "If-None-Match"),
           header(request, "If-Range"),
           header(request, "Range"),
-          announces_body(request)};
+          origin_of(request),
+          header(request, "Authorization"),
+          header(request, "Content-Type"),
+          announces_body(request),
+          body};
 }
 
 /// Sends a file piece by piece. The library has no place for exceptions here: a file that cannot be
@@ -120,8 +132,12 @@ class InlineTaskQueue final : public httplib::TaskQueue {
   void shutdown() override {}
 };
 
-/// Whether the reply that this thread writes ends its connection: the library tells nobody.
-thread_local bool ends_connection = false;
+/// What this thread has in hand, which the library passes on to nobody.
+struct Exchange {
+  Body* body = nullptr;          ///< of the request
+  bool ends_connection = false;  ///< with the reply
+};
+thread_local Exchange exchange;
 
 }  // namespace
 
@@ -201,14 +217,14 @@ class HttpServer::Library final : public httplib::Server {
       ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
     });
     set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
-      put(answer_(request_of(request)), response);
+      put(answer_(request_of(request, exchange.body)), response);
       return HandlerResponse::Handled;
     });
     set_post_routing_handler([](const httplib::Request&, httplib::Response& response) {
       response.headers.erase("Keep-Alive");
       // Where one request ends and the next one begins is not certain any more.
-      ends_connection = response.status == 400;
-      if (ends_connection && !response.has_header("Connection"))
+      exchange.ends_connection = response.status == 400;
+      if (exchange.ends_connection && !response.has_header("Connection"))
         response.set_header("Connection", "close");
       if (response.status == 304 || response.status == 204)
         response.headers.erase("Content-Length");
@@ -272,8 +288,10 @@ class HttpServer::Library final : public httplib::Server {
       if (head.range)
         request.set_header("Range", *head.range);
     };
+    ConnectionBody body(connection, head.body_bytes.value_or(0));
+    exchange = {.body = head.body_bytes ? &body : nullptr};
     const bool is_sent = process_request(connection, closes, client_closes, add_range);
-    return is_sent && !closes && !client_closes && !ends_connection && !is_stopping_;
+    return is_sent && !closes && !client_closes && !exchange.ends_connection && !is_stopping_;
   }
 
   /// What is no request is not shown in the log: "-" stands for it.

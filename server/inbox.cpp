@@ -1,34 +1,71 @@
 #include "server/inbox.h"
 
+#include "hierarchy/error.h"
 #include "hierarchy/mesh_name.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace meshhier::server {
 
-Inbox::Inbox(std::filesystem::path directory, std::chrono::milliseconds settle, Mark mark,
-             Clock clock)
-    : directory_(std::move(directory)),
-      settle_(settle),
-      mark_(std::move(mark)),
-      clock_(std::move(clock)) {}
+Inbox::Inbox(std::filesystem::path directory, Options options)
+    : directory_(std::move(directory)), options_(std::move(options)) {}
 
 std::vector<InboxFile> Inbox::look() {
-  const auto now = clock_();
-  std::map<std::string, Seen> seen;
+  const Time now = options_.clock();
+  SeenFiles seen;
   std::vector<InboxFile> files;
-  for (const storage::FolderEntry& entry : storage::open_folder(directory_)->entries("")) {
-    if (entry.is_directory || !is_mesh_name(entry.name))
-      continue;
-    const InputVersion version{entry.version, mark_(entry.name)};
-    const auto before = seen_.find(entry.name);
-    const bool is_same = before != seen_.end() && before->second.version == version;
-    const auto since = is_same ? before->second.since : now;
-    seen[entry.name] = {version, since};
-    files.push_back({entry.name, version, now - since >= settle_});
+  const auto inbox = storage::open_folder(directory_);
+  for (const storage::FolderEntry& entry : inbox->entries("")) {
+    if (entry.is_directory) {
+      if (auto file = look_into(*inbox, entry.name, now, seen))
+        files.push_back(std::move(*file));
+    } else if (is_mesh_name(entry.name)) {
+      const InputVersion version{entry.version, options_.mark(entry.name)};
+      const Time since = note(entry.name, version, now, seen);
+      files.push_back({entry.name, version, now - since >= options_.settle});
+    }
   }
   seen_ = std::move(seen);
   return files;
+}
+
+/// Since when it is as it is.
+Inbox::Time Inbox::note(const std::string& name, const InputVersion& version, Time now,
+                        SeenFiles& seen) const {
+  const auto before = seen_.find(name);
+  const bool is_same = before != seen_.end() && before->second.version == version;
+  const Time since = is_same ? before->second.since : now;
+  seen[name] = {version, since};
+  return since;
+}
+
+/// Nothing if it is no mesh's. What may not be read (lost+found) must not hide the rest.
+std::optional<InboxFile> Inbox::look_into(const storage::Folder& inbox, const std::string& folder,
+                                          Time now, SeenFiles& seen) const {
+  if (options_.folders == Folders::ignored || folder.starts_with('.'))
+    return std::nullopt;
+  std::vector<InboxFile> meshes;
+  Time since = Time::min();
+  try {
+    for (const storage::FolderEntry& entry : inbox.entries(folder)) {
+      if (entry.is_directory)
+        continue;
+      const std::string name = folder + '/' + entry.name;
+      InputVersion version{entry.version};
+      if (is_mesh_name(entry.name)) {
+        version.companions = options_.mark(name);
+        meshes.push_back({name, version, false});
+      }
+      since = std::max(since, note(name, version, now, seen));
+    }
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+  if (meshes.size() != 1)
+    return std::nullopt;
+  meshes.front().is_whole = now - since >= options_.settle;
+  return meshes.front();
 }
 
 std::unique_ptr<storage::File> Inbox::open(const std::string& name,

@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,7 @@ struct InputVersion {
 };
 
 struct InboxFile {
-  std::string name;
+  std::string name;  ///< "scan.ply", "house/scan.obj"
   InputVersion version;
   bool is_whole = false;
 };
@@ -30,19 +31,26 @@ struct InboxFile {
 /// Of one thread. Files are looked at, never changed.
 class Inbox {
  public:
-  using Clock = std::function<std::chrono::steady_clock::time_point()>;
-  /// InputVersion::companions of a mesh, as far as they are known.
-  using Mark = std::function<std::uint64_t(const std::string& name)>;
+  using Time = std::chrono::steady_clock::time_point;
+  /// A folder with one mesh file in it is a mesh, with all that belongs to it.
+  enum class Folders { ignored, taken };
+  struct Options {
+    /// A file that was as it is for so long is whole. Copies of others often say so by their names
+    /// as well: with the endings that browsers and programs give unfinished ones, they are no
+    /// meshes' names.
+    std::chrono::milliseconds settle{2000};
+    Folders folders = Folders::ignored;
+    /// InputVersion::companions of a mesh, as far as they are known.
+    std::function<std::uint64_t(const std::string& name)> mark = [](const std::string&) {
+      return 0;
+    };
+    std::function<Time()> clock = std::chrono::steady_clock::now;
+  };
 
-  /// `settle`: a file that was as it is for so long is whole. Copies of others often say so by
-  /// their names as well: with the endings that browsers and programs give unfinished ones, they
-  /// are no meshes' names.
-  Inbox(
-      std::filesystem::path directory, std::chrono::milliseconds settle,
-      Mark mark = [](const std::string&) { return 0; },
-      Clock clock = std::chrono::steady_clock::now);
+  Inbox(std::filesystem::path directory, Options options);
 
-  /// The mesh files that are there now, by name. Links are left out. Throws Error(io).
+  /// The mesh files that are there now. One in a folder is whole when all files there are. Links
+  /// are left out. Throws Error(io).
   std::vector<InboxFile> look();
   /// That file as it is now, not followed if it has become a link. Null if it is not there, or of
   /// another version. Throws Error(io).
@@ -52,14 +60,17 @@ class Inbox {
  private:
   struct Seen {
     InputVersion version;
-    std::chrono::steady_clock::time_point since;
+    Time since;
   };
+  using SeenFiles = std::map<std::string, Seen>;
+
+  Time note(const std::string& name, const InputVersion& version, Time now, SeenFiles& seen) const;
+  std::optional<InboxFile> look_into(const storage::Folder& inbox, const std::string& folder,
+                                     Time now, SeenFiles& seen) const;
 
   std::filesystem::path directory_;  ///< opened anew each time: it may be another one by then
-  std::chrono::milliseconds settle_;
-  Mark mark_;
-  Clock clock_;
-  std::map<std::string, Seen> seen_;
+  Options options_;
+  SeenFiles seen_;
 };
 
 }  // namespace meshhier::server

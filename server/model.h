@@ -16,6 +16,7 @@ struct Model {
   std::uint64_t mesh_bytes = 0;       ///< of the mesh file alone, without its pictures
   std::uint64_t mesh_checksum = 0;    ///< likewise
   std::uint64_t source_checksum = 0;  ///< as in the manifest
+  bool has_preview = false;           ///< a picture of it is one of its files
 
   friend bool operator==(const Model&, const Model&) = default;
 };

@@ -3,11 +3,10 @@
 #include "server/text.h"
 
 #include <algorithm>
+#include <string>
 
 namespace meshhier::server {
 namespace {
-
-constexpr std::string_view kLineEnd = "\r\n";
 
 /// RFC 9110, section 5.6.2.
 bool is_token(std::string_view text) {
@@ -65,15 +64,24 @@ class Framing {
       has_body_ = true;
     else
       return true;
-    const bool is_clear = header.name == "content-length" ? is_length(header.value)
+    const bool is_clear = header.name == "content-length" ? take_length(header.value)
                                                           : lower_case(header.value) == "chunked";
     return is_clear && ++lengths_ == 1;
   }
   bool has_body() const { return has_body_; }
+  std::optional<std::uint64_t> body_bytes() const { return body_bytes_; }
 
  private:
+  bool take_length(std::string_view text) {
+    if (!is_length(text))
+      return false;
+    body_bytes_ = std::stoull(std::string(text));
+    return true;
+  }
+
   int hosts_ = 0, lengths_ = 0;
   bool has_body_ = false;
+  std::optional<std::uint64_t> body_bytes_;
 };
 
 std::string_view take_line(std::string_view& rest) {
@@ -102,12 +110,15 @@ std::optional<RequestHead> parse_head(std::string_view raw) {
     if (header->name == "range") {
       head.range = header->value;
       ++ranges;
+    } else if (header->name == "expect" && lower_case(header->value) == "100-continue") {
+      head.expects_continue = true;
     } else {
       head.text.append(line).append(kLineEnd);
     }
   }
   head.text += kLineEnd;
   head.has_body = framing.has_body();
+  head.body_bytes = framing.body_bytes();
   if (ranges > 1)
     head.range.reset();
   return head;

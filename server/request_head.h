@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,6 +19,10 @@ struct RequestHead {
   std::string text;
   std::optional<std::string> range{};  ///< the value, if there is one such header and no more
   bool has_body = false;               ///< of more than 0 bytes, as announced
+  std::optional<std::uint64_t> body_bytes{};  ///< Content-Length, if there is one
+  /// Expect: 100-continue, which is not in `text`: the library would answer it before anybody has
+  /// looked at the request.
+  bool expects_continue = false;
 
   friend bool operator==(const RequestHead&, const RequestHead&) = default;
 };

@@ -13,8 +13,10 @@ namespace meshhier::server {
 namespace {
 
 constexpr std::string_view kModels = "models/";
+constexpr std::string_view kInbox = "/inbox/";
 constexpr std::string_view kAssets = "assets/";
 constexpr const char* kMethods = "GET, HEAD, OPTIONS";
+constexpr const char* kMethodsWithUploads = "GET, HEAD, OPTIONS, POST, PUT";
 
 // A hierarchy is never changed, but `build --force` puts another one in its place, under the same
 // names: a client that mixed tiles of the two would show cracks. So it asks each time, and is told
@@ -22,10 +24,6 @@ constexpr const char* kMethods = "GET, HEAD, OPTIONS";
 constexpr const char* kRevalidate = "no-cache";
 // The viewer's build names these after their content.
 constexpr const char* kForever = "public, max-age=31536000, immutable";
-
-Reply text_reply(int status, const std::string& text) {
-  return {status, {{"Content-Type", "text/plain; charset=utf-8"}}, text + '\n', {}};
-}
 
 Reply not_found() {
   return text_reply(404, "There is no such file.");
@@ -64,11 +62,13 @@ Reply Site::route(const Request& request) {
                       "--host to be reached by other names.");
   }
   if (request.method == "OPTIONS") {
-    return {.status = 204, .headers = {{"Allow", kMethods}}};
+    return {.status = 204, .headers = {{"Allow", methods()}}};
   }
+  if (is_upload(request))
+    return options_.uploads->take(request, request.target.substr(kInbox.size() - 1));
   if (request.method != "GET" && request.method != "HEAD") {
     Reply reply = text_reply(405, "Files are read here, nothing else.");
-    reply.headers.emplace_back("Allow", kMethods);
+    reply.headers.emplace_back("Allow", methods());
     return reply;
   }
   if (request.has_body)
@@ -83,9 +83,19 @@ Reply Site::route(const Request& request) {
   return viewer_file(request, *path);
 }
 
+const char* Site::methods() const {
+  return options_.uploads == nullptr ? kMethods : kMethodsWithUploads;
+}
+
+bool Site::is_upload(const Request& request) const {
+  return options_.uploads != nullptr && (request.method == "PUT" || request.method == "POST") &&
+         request.target.starts_with(kInbox);
+}
+
 Reply Site::models_json(const Request& request) {
   const auto jobs = jobs_ ? std::optional(jobs_()) : std::nullopt;
-  const std::string text = gallery_json(gallery_.models(), jobs, options_.places);
+  const auto offer = options_.uploads == nullptr ? std::nullopt : options_.uploads->offer();
+  const std::string text = gallery_json(gallery_.models(), jobs, options_.places, offer);
   const std::string tag = text_tag(text);
   const bool is_known = request.if_none_match && names_tag(*request.if_none_match, tag);
   Reply reply{.headers = {{"ETag", tag}, {"Cache-Control", kRevalidate}}, .text = text};

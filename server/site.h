@@ -4,6 +4,7 @@
 #include "server/gallery.h"
 #include "server/hierarchies.h"
 #include "server/http.h"
+#include "server/uploads.h"
 #include "storage/io/file.h"
 
 #include <functional>
@@ -21,6 +22,7 @@ struct SiteOptions {
   bool is_loopback = true;  ///< requests must name this machine by its loopback
   std::string cors{};       ///< an origin, or "*"; empty: pages of others may not read
   PlaceNames places{};
+  Uploads* uploads = nullptr;  ///< null: none are taken; must outlive the site
 };
 
 /// Thread-safe.
@@ -41,6 +43,8 @@ class Site {
 
  private:
   Reply route(const Request& request);
+  const char* methods() const;
+  bool is_upload(const Request& request) const;
   Reply models_json(const Request& request);
   Reply model_file(const Request& request, std::string_view path);
   Reply viewer_file(const Request& request, const std::string& path);

@@ -6,6 +6,10 @@
 
 namespace meshhier::server {
 
+/// Of HTTP's lines, and of the last one of a head with the empty one behind it.
+inline constexpr std::string_view kLineEnd = "\r\n";
+inline constexpr std::string_view kHeadEnd = "\r\n\r\n";
+
 /// Without the blanks and tabs around it.
 inline std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 namespace meshhier::server {
 namespace {
@@ -37,13 +38,9 @@ std::optional<std::string> decode_part(std::string_view part) {
       c = static_cast<char>(high * 16 + low);
       i += 2;
     }
-    if (!is_plain(c))
-      return std::nullopt;
     name += c;
   }
-  if (name.empty() || name.front() == '.' || name.size() > kLongestPart)
-    return std::nullopt;
-  return name;
+  return is_plain_name(name) ? std::optional(std::move(name)) : std::nullopt;
 }
 
 bool is_unreserved(char c) {
@@ -52,6 +49,11 @@ bool is_unreserved(char c) {
 }
 
 }  // namespace
+
+bool is_plain_name(std::string_view name) {
+  return !name.empty() && name.front() != '.' && name.size() <= kLongestPart &&
+         std::all_of(name.begin(), name.end(), is_plain);
+}
 
 std::optional<std::string> decode_path(std::string_view target) {
   target = target.substr(0, target.find('?'));

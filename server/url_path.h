@@ -14,6 +14,9 @@ namespace meshhier::server {
 /// It is decoded once: what is escaped twice is a name with a '%' in it.
 std::optional<std::string> decode_path(std::string_view target);
 
+/// Whether `name` is a file's name that a path may have as a part.
+bool is_plain_name(std::string_view name);
+
 /// The inverse of one or several parts: bytes other than letters, digits, "-._~/" become %XX.
 std::string encode_path(std::string_view path);
 

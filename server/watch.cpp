@@ -44,11 +44,9 @@ Watch::Watch(WatchOptions options, storage::FileSystem& files, Hierarchies& hier
       tell_(std::move(tell)),
       folder_(storage::open_folder(options_.folder)),
       notes_(files_, folder_),
-      companions_(files_, options_.inbox),
-      inbox_(options_.inbox, options_.settle, [this](const std::string& name) {
-        const auto known = known_.find(name);
-        return known == known_.end() ? 0 : companions_.mark(known->second.note);
-      }) {}
+      inbox_(options_.inbox, {.settle = options_.settle,
+                              .folders = options_.folders,
+                              .mark = [this](const std::string& name) { return mark_of(name); }}) {}
 
 Watch::~Watch() {
   stop();
@@ -216,25 +214,39 @@ BuildTarget Watch::target_of(const std::string& name, Unknown unknown) {
 }
 
 /// Of a hierarchy that was built by hand only the mesh is known.
-storage::InputNote Watch::note_of(const std::string& name, const Model& model) const {
+storage::InputNote Watch::note_of(const Model& model) const {
   auto note = notes_.find(model.path);
   if (note && note->content == model.source_checksum)
     return *std::move(note);
-  return {model.source_checksum, {{name, {.bytes = model.mesh_bytes}, model.mesh_checksum}}, {}};
+  return {model.source_checksum,
+          {{model.source, {.bytes = model.mesh_bytes}, model.mesh_checksum}},
+          {}};
 }
 
 bool Watch::is_made_of(const std::string& name, const Model& model, Unknown unknown) {
-  storage::InputNote note = note_of(name, model);
+  storage::InputNote note = note_of(model);
   Known& known = known_[name];
-  known = {note, companions_.mark(note)};
+  const Companions companions = companions_of(name);
+  known = {note, companions.mark(note)};
   const storage::FileIdentity noted = note.files[0].identity;
   if (!is_mesh_of(name, note.files[0], unknown))
     return false;
   const Companions::Comparison others =
-      companions_.compare(note, unknown == Unknown::is_read, [&] { cancel_.check(); });
+      companions.compare(note, unknown == Unknown::is_read, [&] { cancel_.check(); });
   if (others.is_same && (others.was_read || !is_untouched(noted, note.files[0].identity)))
     keep_note(model.path, note);
   return others.is_same;
+}
+
+/// They lie from the folder of their mesh.
+Companions Watch::companions_of(const std::string& name) const {
+  return {files_, (options_.inbox / name).parent_path()};
+}
+
+/// 0 until a hierarchy of it was looked at.
+std::uint64_t Watch::mark_of(const std::string& name) const {
+  const auto known = known_.find(name);
+  return known == known_.end() ? 0 : companions_of(name).mark(known->second.note);
 }
 
 /// `noted` gets the file's times if it is the one.

@@ -34,6 +34,7 @@ struct WatchOptions {
   std::filesystem::path config;  ///< absolute; empty: all defaults
   std::string suffix = ".hier";  ///< of the hierarchies' names
   std::string program;           ///< meshhier
+  Inbox::Folders folders = Inbox::Folders::ignored;
   std::chrono::milliseconds settle{2000};
   std::chrono::milliseconds look_every{1000};
   /// Until a build is tried again that another process has in hand.
@@ -92,9 +93,11 @@ class Watch {
   enum class Unknown { is_read, is_another };
   BuildTarget target_of(const std::string& name, Unknown unknown);
   /// What the hierarchy was made of, as far as anybody has noted it.
-  storage::InputNote note_of(const std::string& name, const Model& model) const;
+  storage::InputNote note_of(const Model& model) const;
   bool is_made_of(const std::string& name, const Model& model, Unknown unknown);
   bool is_mesh_of(const std::string& name, storage::NotedFile& noted, Unknown unknown);
+  Companions companions_of(const std::string& name) const;
+  std::uint64_t mark_of(const std::string& name) const;
   std::uint64_t read_checksum(const std::string& name, const storage::FileVersion& version);
   InputVersion version_of(const std::string& name) const;
   bool is_still(const std::string& name, const storage::FileVersion& version) const;
@@ -123,7 +126,6 @@ class Watch {
   Hierarchies::Tell tell_;
   std::shared_ptr<const storage::Folder> folder_;
   InputNotes notes_;
-  Companions companions_;
   /// By mesh: what the hierarchy was made of that was looked at last, and what of it was like then.
   struct Known {
     storage::InputNote note;

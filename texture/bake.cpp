@@ -1,15 +1,11 @@
 #include "texture/bake.h"
 
-#include "texture/chart_growing.h"
-#include "texture/chart_layout.h"
-#include "texture/chart_refining.h"
-#include "texture/faces.h"
 #include "texture/fill.h"
 #include "texture/nearest_triangle.h"
+#include "texture/texel_fit.h"
 #include "texture/texel_light.h"
-#include "texture/texel_raster.h"
 #include "texture/texel_sampler.h"
-#include "texture/texel_segment.h"
+#include "texture/texel_samples.h"
 
 #include <algorithm>
 #include <array>
@@ -24,137 +20,6 @@ namespace {
 /// How far a surface that faces alike may be, in texels, so that it is taken before a nearer one
 /// that does not.
 constexpr double kReach = 32;
-
-/// The point of the surface that a texel shows.
-struct Sample {
-  Vec3d point;
-  std::uint32_t triangle = kNoFace;
-  float distance = 0;  ///< from the triangle, texels squared
-};
-
-/// The charts of a tile in a picture, and the points that its texels show.
-class Sampling {
- public:
-  Sampling(const TexturedSurface& tile, const BakeSize& size)
-      : tile_(tile),
-        faces_(faces_of(tile.positions, tile.triangles)),
-        corners_(tile.triangles.size()) {
-    place(size);
-    cover();
-    for_each_triangle([&](const ChartPlane& plane, std::uint32_t t) { mark_middle(plane, t); });
-    cover_borders();
-  }
-
-  const ChartLayout& layout() const { return layout_; }
-  const std::vector<Sample>& samples() const { return samples_; }
-
-  Vec3d facing(const ChartPlane& plane, std::uint32_t triangle) const {
-    return faces_.areas[triangle] > 0 ? faces_.normals[triangle] : plane.normal;
-  }
-  std::vector<CornerTexcoords> texcoords() const {
-    std::vector<CornerTexcoords> texcoords(corners_.size());
-    for (std::size_t t = 0; t < corners_.size(); ++t) {
-      for (std::size_t k = 0; k < 3; ++k)
-        texcoords[t][k] = {static_cast<float>(corners_[t][k].x / layout_.width),
-                           static_cast<float>(corners_[t][k].y / layout_.height)};
-    }
-    return texcoords;
-  }
-
- private:
-  template <class Visit>
-  void for_each_triangle(const Visit& visit) {
-    for (std::uint32_t c = 0; c < charts_.ends.size(); ++c) {
-      for (std::uint32_t i = charts_.begin_of(c); i < charts_.ends[c]; ++i)
-        visit(layout_.planes[c], charts_.triangles[i]);
-    }
-  }
-  Vec3d position(std::uint32_t triangle, std::size_t corner) const {
-    return to_double(tile_.positions[raw(tile_.triangles[triangle][corner % 3])]);
-  }
-  Sample& sample(std::uint32_t x, std::uint32_t y) {
-    return samples_[std::size_t{y} * layout_.width + x];
-  }
-
-  void place(const BakeSize& size) {
-    PlaneCharts refined_charts =
-        refined(tile_.positions, tile_.triangles, faces_, grow_charts(faces_), size.side);
-    charts_ = std::move(refined_charts.charts);
-    layout_ = lay_out(std::move(refined_charts.planes), size);
-    for_each_triangle([&](const ChartPlane& plane, std::uint32_t t) {
-      for (std::size_t k = 0; k < 3; ++k)
-        corners_[t][k] = layout_.texel_of(plane, position(t, k));
-    });
-  }
-
-  /// Gives the texels within triangles their samples.
-  void cover() {
-    samples_.assign(std::size_t{layout_.width} * layout_.height, {});
-    for_each_triangle([&](const ChartPlane&, std::uint32_t t) {
-      const Vec3d a = position(t, 0), b = position(t, 1) - a, c = position(t, 2) - a;
-      RasterTriangle(corners_[t])
-          .for_each(layout_.width, layout_.height,
-                    [&](std::uint32_t x, std::uint32_t y, double on_b, double on_c) {
-                      Sample& texel = sample(x, y);
-                      if (texel.triangle == kNoFace)
-                        texel = {a + b * on_b + c * on_c, t, 0};
-                    });
-    });
-  }
-
-  /// The texel around the middle of a triangle that covers none.
-  void mark_middle(const ChartPlane&, std::uint32_t t) {
-    Sample& texel = samples_[texel_at(middle_of(corners_[t]), layout_.width, layout_.height)];
-    if (texel.triangle == kNoFace)
-      texel = {(position(t, 0) + position(t, 1) + position(t, 2)) * (1.0 / 3), t, 0};
-  }
-
-  /// Gives the texels that are seen from within a chart, though they are outside, their samples: on
-  /// the nearest triangle, extended beyond its edge.
-  void cover_borders() {
-    std::vector<std::uint32_t> chart_of(corners_.size());
-    for (std::uint32_t c = 0, i = 0; c < charts_.ends.size(); ++c) {
-      for (; i < charts_.ends[c]; ++i)
-        chart_of[charts_.triangles[i]] = c;
-    }
-    for_each_triangle([&](const ChartPlane& plane, std::uint32_t t) {
-      for (std::size_t k = 0; k < 3 && !plane.is_point; ++k) {
-        const std::uint32_t other = faces_.across[t][k];
-        if (other == kNoFace || chart_of[other] != chart_of[t])
-          cover_beyond(plane, t, k);
-      }
-    });
-  }
-
-  void cover_beyond(const ChartPlane& plane, std::uint32_t t, std::size_t k) {
-    const TexelSegment edge(corners_[t][k], corners_[t][(k + 1) % 3]);
-    const Vec3d start = position(t, k), along = position(t, k + 1) - start;
-    edge.for_each_near({plane.left, plane.top, plane.right, plane.bottom},
-                       [&](std::uint32_t x, std::uint32_t y, const TexelSegment::Foot& foot) {
-                         Sample& texel = sample(x, y);
-                         if (texel.triangle == kNoFace || foot.distance < texel.distance)
-                           texel = {
-                               start + along * foot.part + beyond(plane, t, foot.off_x, foot.off_y),
-                               t, static_cast<float>(foot.distance)};
-                       });
-  }
-
-  /// The way in a triangle's plane that is so many texels long in the picture.
-  Vec3d beyond(const ChartPlane& plane, std::uint32_t t, double x, double y) const {
-    const double scale = 1 / layout_.density;
-    const Vec3d flat = plane.x * (x * scale) + plane.y * (y * scale);
-    constexpr double kSteepest = 0.3;
-    const double seen = std::max(dot(faces_.normals[t], plane.normal), kSteepest);
-    return flat + plane.normal * (-dot(faces_.normals[t], flat) / seen);
-  }
-
-  const TexturedSurface& tile_;
-  Faces faces_;
-  SurfaceCharts charts_;
-  ChartLayout layout_;
-  std::vector<std::array<TexelPoint, 3>> corners_;  ///< of triangles, texels
-  std::vector<Sample> samples_;                     ///< of texels
-};
 
 /// The triangles of several surfaces, numbered through.
 NearestTriangle joined(std::span<const TexturedSurface> surfaces, std::span<const Vec3f> tile) {
@@ -221,37 +86,121 @@ class DistinctTriangles {
   std::vector<TileTriangle> triangles_;
 };
 
-/// The colours of the samples.
-images::Image colour(const Sampling& sampling, std::span<const TexturedSurface> finer,
-                     std::span<const Vec3f> tile) {
-  const ChartLayout& layout = sampling.layout();
-  const double texel = 1 / layout.density;
-  NearestTriangle nearest = joined(finer, tile);
-  const TexelSampler sampler(finer, texel);
-  images::Image image(layout.width, layout.height, channels_of(finer));
-  std::vector<std::uint8_t> is_known(sampling.samples().size());
-  for (const ChartPlane& plane : layout.planes) {
+/// Takes the colours of samples from finer surfaces.
+class Painter {
+ public:
+  Painter(const TexelSamples& samples, std::span<const TexturedSurface> finer,
+          std::span<const Vec3f> tile)
+      : samples_(samples),
+        texel_(1 / samples.layout().density),
+        nearest_(joined(finer, tile)),
+        sampler_(finer, texel_),
+        channels_(channels_of(finer)) {}
+
+  images::Image paint() {
+    const ChartLayout& layout = samples_.layout();
+    TexelMeans means(layout.width, layout.height);
+    for (const ChartPlane& plane : layout.planes) {
+      measure(plane, means);
+      if (!plane.is_point)
+        fit_texels(means, range_of(plane));
+    }
+    return stored(means, layout.height);
+  }
+
+  /// How large a pixel is that shows what the finer surfaces do, but for the least visible
+  /// difference.
+  double lost(const images::Image& image) {
+    Difference difference;
+    for (const ChartPlane& plane : samples_.layout().planes) {
+      for (std::uint32_t y = plane.top + kBakeGutter; y + 1 < plane.bottom; y += kLostStep) {
+        for (std::uint32_t x = plane.left + kBakeGutter; x + 1 < plane.right; x += kLostStep)
+          compare(plane, x, y, image, difference);
+      }
+    }
+    return texel_ * difference.mean() / kLeastVisible;
+  }
+
+ private:
+  /// What is compared of a picture: one in so many texels along each side.
+  static constexpr std::uint32_t kLostStep = 4;
+  /// Of 8-bit values: 32 decibels.
+  static constexpr double kLeastVisible = 6.4;
+
+  /// Of values, the mean square.
+  struct Difference {
+    double squares = 0, count = 0;
+    void add(const std::uint8_t* a, const std::uint8_t* b) {
+      for (std::size_t k = 0; k < 3; ++k)
+        squares += double(a[k] - b[k]) * (a[k] - b[k]);
+      count += 3;
+    }
+    double mean() const { return count > 0 ? std::sqrt(squares / count) : 0; }
+  };
+
+  static TexelRange range_of(const ChartPlane& plane) {
+    return {plane.left, plane.top, plane.right, plane.bottom};
+  }
+
+  void measure(const ChartPlane& plane, TexelMeans& means) {
     for (std::uint32_t y = plane.top; y < plane.bottom; ++y) {
       for (std::uint32_t i = plane.left; i < plane.right; ++i) {
         // To and fro: each texel is beside the last one.
         const std::uint32_t x = (y - plane.top) % 2 == 0 ? i : plane.left + plane.right - 1 - i;
-        const std::size_t number = std::size_t{y} * layout.width + x;
-        const Sample& sample = sampling.samples()[number];
-        if (sample.triangle == kNoFace || is_known[number] != 0)
+        const std::size_t number = std::size_t{y} * means.width + x;
+        const TexelSample& sample = samples_.at(x, y);
+        if (sample.triangle == kNoFace || means.is_known[number] != 0)
           continue;
-        const NearestTriangle::Found found =
-            nearest(sample.point, sampling.facing(plane, sample.triangle), kReach * texel);
-        if (found.triangle == NearestTriangle::kNone)
-          continue;
-        store_texel(sampler(found.triangle, found.on_b, found.on_c), image.at(x, y),
-                    image.channels);
-        is_known[number] = 1;
+        if (const NearestTriangle::Found found = find(plane, sample, sample.point);
+            found.triangle != NearestTriangle::kNone) {
+          means.lights[number] = sampler_.around(found);
+          means.is_known[number] = 1;
+        }
       }
     }
   }
-  fill_unknown(image, is_known);
-  return image;
-}
+
+  NearestTriangle::Found find(const ChartPlane& plane, const TexelSample& sample,
+                              const Vec3d& point) {
+    return nearest_(point, samples_.facing(plane, sample), kReach * texel_);
+  }
+
+  images::Image stored(const TexelMeans& means, std::uint32_t height) const {
+    images::Image image(means.width, height, channels_);
+    for (std::size_t i = 0; i < means.lights.size(); ++i) {
+      if (means.is_known[i] != 0)
+        store_texel(means.lights[i], image.texels.data() + i * channels_, channels_);
+    }
+    fill_unknown(image, means.is_known);
+    return image;
+  }
+
+  /// A pixel amid four texels shows the mean of them.
+  void compare(const ChartPlane& plane, std::uint32_t x, std::uint32_t y,
+               const images::Image& image, Difference& difference) {
+    Vec3d point;
+    Light shown{};
+    for (const auto& [i, j] : {std::pair(x, y), {x + 1, y}, {x, y + 1}, {x + 1, y + 1}}) {
+      if (!samples_.at(i, j).is_inside())
+        return;
+      point = point + samples_.at(i, j).point * 0.25;
+      add_texel(shown, image.at(i, j), channels_, 0.25f);
+    }
+    const NearestTriangle::Found found = find(plane, samples_.at(x, y), point);
+    if (found.triangle == NearestTriangle::kNone)
+      return;
+    std::array<std::uint8_t, 4> own{}, finer{};
+    store_texel(shown, own.data(), channels_);
+    store_texel(sampler_.pixel(found), finer.data(), channels_);
+    difference.add(own.data(), finer.data());
+  }
+
+  const TexelSamples& samples_;
+  double texel_;
+  NearestTriangle nearest_;
+  TexelSampler sampler_;
+  std::uint32_t channels_;
+};
 
 }  // namespace
 
@@ -262,12 +211,14 @@ BakedTexture bake(const TexturedSurface& tile, std::span<const TexturedSurface> 
   const DistinctTriangles distinct(tile.triangles);
   TexturedSurface surface = tile;
   surface.triangles = distinct.triangles();
-  const Sampling sampling(surface, size);
+  const TexelSamples samples(surface, size);
+  Painter painter(samples, finer, tile.positions);
   BakedTexture baked;
-  baked.image = colour(sampling, finer, tile.positions);
-  baked.corners = distinct.expanded(sampling.texcoords());
-  baked.texel = static_cast<float>(1 / sampling.layout().density);
-  baked.charts = static_cast<std::uint32_t>(sampling.layout().planes.size());
+  baked.image = painter.paint();
+  baked.corners = distinct.expanded(samples.texcoords());
+  baked.texel = static_cast<float>(1 / samples.layout().density);
+  baked.lost = static_cast<float>(painter.lost(baked.image));
+  baked.charts = static_cast<std::uint32_t>(samples.layout().planes.size());
   return baked;
 }
 

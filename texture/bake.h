@@ -2,8 +2,9 @@
 //
 // Charts are grown by normal (Sander et al. 2001 merge faces so), cut where they fill little of
 // their rectangles, projected to a plane, freed of triangles that cover others, and packed. Each
-// texel takes its colour from the nearest point of the finer surface that faces alike, averaged
-// over the texel's size in linear light.
+// texel takes its colour from the nearest point of the finer surface that faces alike, as a mean
+// over the texel's size in linear light, then from all means those texels are made that look like
+// the finer surface once they are filtered.
 #pragma once
 
 #include "hierarchy/texture.h"
@@ -39,6 +40,9 @@ struct BakedTexture {
   images::Image image;                   ///< 3 channels, 4 if one of the finer ones has
   std::vector<CornerTexcoords> corners;  ///< one a triangle
   float texel = 0;                       ///< size of a texel on the surface
+  /// The size of pixels that differ from the finer surfaces' by 32 decibels, about, as far as the
+  /// difference halves with twice the size; larger than a texel where there is much to see.
+  float lost = 0;
   std::uint32_t charts = 0;
 };
 

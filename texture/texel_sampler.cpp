@@ -10,8 +10,15 @@ namespace {
 
 /// Pictures are taken at a half and a quarter, as far as charts are aligned for sure.
 constexpr std::uint32_t kHalvings = 2;
-constexpr float kMostRadius = 4;
-constexpr std::size_t kMostTaps = 2 * static_cast<std::size_t>(kMostRadius) + 1;
+constexpr float kMostSize = 4;
+constexpr std::size_t kMostTaps = 2 * static_cast<std::size_t>(kMostSize) + 1;
+
+/// The radius of a tent over a picture whose texels are tents as well: squares add up. But beyond
+/// two texels, which charts have around them, it is no wider than it must be.
+float with_own_filter(float radius) {
+  constexpr float kGutter = 2;
+  return std::max(radius, std::min(std::sqrt(radius * radius + 1), kGutter));
+}
 
 /// The texels of a row that a tent has, with their weights.
 struct Taps {
@@ -34,7 +41,7 @@ struct Taps {
   }
 };
 
-Light mean(const images::Image& picture, const Taps& columns, const Taps& rows) {
+Light mix(const images::Image& picture, const Taps& columns, const Taps& rows) {
   Light sum{};
   for (std::uint32_t j = 0; j < rows.count; ++j) {
     const std::uint8_t* texel = picture.at(columns.first, rows.first + j);
@@ -66,11 +73,11 @@ TexelSampler::TexelSampler(std::span<const TexturedSurface> surfaces, double tex
       const Vec3d normal = cross(corner(1) - corner(0), corner(2) - corner(0));
       const double covered = area_of(at) * picture.width * picture.height;
       const double size = length(normal) / 2;
-      double radius = std::max(1.0, size > 0 ? texel * std::sqrt(covered / size) : 1);
+      double wide = std::max(1.0, size > 0 ? texel * std::sqrt(covered / size) : 1);
       std::uint32_t level = 0;
-      while (radius >= 2 && level < kHalvings && picture.width % (2U << level) == 0 &&
+      while (wide >= 2 && level < kHalvings && picture.width % (2U << level) == 0 &&
              picture.height % (2U << level) == 0) {
-        radius /= 2;
+        wide /= 2;
         ++level;
       }
       if (levels[level] == ~std::uint32_t{0}) {
@@ -83,18 +90,20 @@ TexelSampler::TexelSampler(std::span<const TexturedSurface> surfaces, double tex
       const auto x = [&](std::size_t k) { return float(double(at[k].u) * used.width); };
       const auto y = [&](std::size_t k) { return float(double(at[k].v) * used.height); };
       spots_.push_back({x(0), y(0), x(1) - x(0), y(1) - y(0), x(2) - x(0), y(2) - y(0),
-                        static_cast<float>(std::min<double>(radius, kMostRadius)), levels[level]});
+                        static_cast<float>(std::min<double>(wide, kMostSize)), levels[level]});
     }
   }
 }
 
-Light TexelSampler::operator()(std::uint32_t triangle, double on_b, double on_c) const {
-  const Spot& spot = spots_[triangle];
+/// `part`: of what is asked for.
+Light TexelSampler::mean(const NearestTriangle::Found& at, float part) const {
+  const Spot& spot = spots_[at.triangle];
   const images::Image& picture = *pictures_[spot.picture];
-  const auto b = static_cast<float>(on_b), c = static_cast<float>(on_c);
-  const Taps columns(spot.x + b * spot.bx + c * spot.cx, spot.radius, picture.width);
-  const Taps rows(spot.y + b * spot.by + c * spot.cy, spot.radius, picture.height);
-  return mean(picture, columns, rows);
+  const auto b = static_cast<float>(at.on_b), c = static_cast<float>(at.on_c);
+  const float radius = with_own_filter(part * spot.size);
+  const Taps columns(spot.x + b * spot.bx + c * spot.cx, radius, picture.width);
+  const Taps rows(spot.y + b * spot.by + c * spot.cy, radius, picture.height);
+  return mix(picture, columns, rows);
 }
 
 }  // namespace meshhier::texture

@@ -3,6 +3,7 @@
 
 #include "images/image.h"
 #include "texture/bake.h"
+#include "texture/nearest_triangle.h"
 #include "texture/texel_light.h"
 
 #include <cstdint>
@@ -17,16 +18,19 @@ class TexelSampler {
   /// `texel`: the size, on the surface, of what is asked for.
   TexelSampler(std::span<const TexturedSurface> surfaces, double texel);
 
-  /// A mean around a + on_b * (b - a) + on_c * (c - a), weighted by a tent as wide as a texel of
-  /// the larger of both sizes.
-  Light operator()(std::uint32_t triangle, double on_b, double on_c) const;
+  /// A mean around a point, weighted by a tent that ends a texel of the larger of both sizes away.
+  Light around(const NearestTriangle::Found& at) const { return mean(at, 1); }
+  /// Of a pixel around it that is as large as a texel: a tent of as much spread, about.
+  Light pixel(const NearestTriangle::Found& at) const { return mean(at, 0.7f); }
 
  private:
   struct Spot {
     float x, y, bx, by, cx, cy;  ///< texels of corner a, and from it to b and c
-    float radius;                ///< of the tent, texels
+    float size;                  ///< of what is asked for, texels; at least 1
     std::uint32_t picture;
   };
+
+  Light mean(const NearestTriangle::Found& at, float part) const;
 
   std::vector<Spot> spots_;
   std::vector<images::Image> smaller_;

@@ -5,7 +5,7 @@ import type { Plugin } from 'vite';
 import { defineConfig } from 'vitest/config';
 
 /// Beside each script and style a copy in gzip, for hosts that send those.
-function packedCopies(): Plugin {
+export function packedCopies(): Plugin {
   return {
     name: 'packed-copies',
     writeBundle({ dir }, bundle) {

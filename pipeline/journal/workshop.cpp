@@ -29,7 +29,10 @@ BuildIdentity identity_of(const config::Config& config, const importing::MeshInp
 /// But for the tiles.
 bool is_whole(storage::FileSystem& files, const std::filesystem::path& hierarchy) {
   try {
-    storage::HierarchyReader(files, hierarchy).read_outline();
+    const storage::HierarchyReader made(files, hierarchy);
+    made.read_outline();
+    if (made.manifest().preview)
+      made.read_preview();
     return true;
   } catch (const Error&) {
     return false;

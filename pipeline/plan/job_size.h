@@ -35,7 +35,8 @@ struct JobSize {
   std::uint64_t picture_bytes = 0;  ///< of these, decoded into scratch space
   std::uint64_t decoder_bytes = 0;  ///< what decoding the hungriest of them holds
   std::uint64_t adding_bytes = 0;   ///< what storing the widest of them holds
-  bool has_map = false;             ///< PROJ places the model
+  bool draws_preview = false;
+  bool has_map = false;  ///< PROJ places the model
 
   /// Vertices at places that have one already, for each place.
   double copies_per_place() const {

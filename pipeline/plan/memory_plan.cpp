@@ -25,8 +25,8 @@ constexpr std::uint64_t kLeastTableBytes = 4 * kMiB;
 /// What the hungriest stage holds with one item in flight.
 std::uint64_t least_work_bytes(const MemoryCosts& costs) {
   return std::max({costs.ingest.least_bytes, costs.partition.least_bytes, costs.leaves.least_bytes,
-                   costs.simplify.least_bytes, costs.images.least_bytes,
-                   costs.texture.least_bytes});
+                   costs.simplify.least_bytes, costs.images.least_bytes, costs.texture.least_bytes,
+                   costs.preview_bytes});
 }
 
 std::uint64_t wanted_work_bytes(const MemoryCosts& costs) {

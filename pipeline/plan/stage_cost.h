@@ -20,10 +20,11 @@ struct StageMemory {
   std::uint64_t wanted_bytes = 0;  ///< all of the stage; more gains nothing
 };
 
-/// Outline and publish hold less than simplify, with as many tiles in flight.
+/// Outline and publish hold less than simplify, with as many tiles in flight, but for the preview.
 struct MemoryCosts {
   std::uint64_t bookkeeping_bytes = 0;  ///< held all the time
   StageMemory ingest, partition, leaves, simplify, images, texture;
+  std::uint64_t preview_bytes = 0;
   ChunkSpools chunk_spools;
 };
 

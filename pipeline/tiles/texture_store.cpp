@@ -144,12 +144,13 @@ nlohmann::json TextureStore::stored(NodeId node) const {
   const TexelSizes& texels = level.texels[node.index];
   return {{"texture", to_json(level.textures.stored(node.index))},
           {"source", to_json(level.sources.stored(node.index))},
-          {"texels", {texels.own, texels.finest}}};
+          {"texels", {texels.own, texels.finest, texels.lost}}};
 }
 
 bool TextureStore::restore(NodeId node, const nlohmann::json& stored) {
   LevelStore& level = levels_[raw(node.level)];
-  level.texels[node.index] = {stored.at("texels").at(0), stored.at("texels").at(1)};
+  const nlohmann::json& texels = stored.at("texels");
+  level.texels[node.index] = {texels.at(0), texels.at(1), texels.at(2)};
   return pipeline::restore(level.textures, node.index, stored.at("texture")) &&
          pipeline::restore(level.sources, node.index, stored.at("source"));
 }

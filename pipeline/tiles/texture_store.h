@@ -48,6 +48,7 @@ struct BakeSource {
 struct TexelSizes {
   float own = 0;     ///< of the tile's picture
   float finest = 0;  ///< of the pictures of the partitions below it, the finest of them
+  float lost = 0;    ///< of pixels that hardly differ from the input's (see BakedTexture)
 };
 
 /// Of each tile node. Putting and loading are thread-safe.

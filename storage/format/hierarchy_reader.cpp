@@ -123,4 +123,10 @@ Outline HierarchyReader::read_outline() const {
   return decode_outline(bytes, path.string());
 }
 
+std::vector<std::byte> HierarchyReader::read_preview() const {
+  assert(manifest_.preview);
+  return read_sealed(files_, preview_path(directory_),
+                     {manifest_.preview->bytes, manifest_.preview->checksum}, kMostPreviewBytes);
+}
+
 }  // namespace meshhier::storage

@@ -35,6 +35,9 @@ class HierarchyReader {
   PublishedTile read_tile(NodeId node) const;
   /// Reads the outline, checks its size and checksum.
   Outline read_outline() const;
+  /// Reads the preview, checks its size and checksum; does not decode it. Requires that the
+  /// manifest names one.
+  std::vector<std::byte> read_preview() const;
 
  private:
   FileSystem& files_;

@@ -46,6 +46,10 @@ std::filesystem::path outline_path(const std::filesystem::path& hierarchy) {
   return hierarchy / "outline.glb";
 }
 
+std::filesystem::path preview_path(const std::filesystem::path& hierarchy) {
+  return hierarchy / "preview.webp";
+}
+
 std::filesystem::path tileset_path(const std::filesystem::path& hierarchy) {
   return hierarchy / "tileset.json";
 }
@@ -77,7 +81,8 @@ bool is_tile_file(std::string_view name) {
 
 bool is_hierarchy_file(std::string_view name) {
   return name == manifest_path({}) || name == index_path({}) || name == outline_path({}) ||
-         name == tileset_path({}) || is_tile_file(name) || is_node_file(name, "tilesets/", ".json");
+         name == preview_path({}) || name == tileset_path({}) || is_tile_file(name) ||
+         is_node_file(name, "tilesets/", ".json");
 }
 
 bool is_stream_file(std::string_view name) {

@@ -5,6 +5,7 @@
 //   NAME.hier/hierarchy.json
 //   NAME.hier/tiles.bin
 //   NAME.hier/outline.glb
+//   NAME.hier/preview.webp                   unless the config says no
 //   NAME.hier/tileset.json
 //   NAME.hier/tilesets/LL/NNNNNN.json        of the nodes below that one, where the tree is too large for one file
 //   NAME.hier/tiles/LL/NNNNNN.glb            level (two digits or more), index in it (six or more)
@@ -42,6 +43,7 @@ namespace meshhier::storage {
 std::filesystem::path manifest_path(const std::filesystem::path& hierarchy);
 std::filesystem::path index_path(const std::filesystem::path& hierarchy);
 std::filesystem::path outline_path(const std::filesystem::path& hierarchy);
+std::filesystem::path preview_path(const std::filesystem::path& hierarchy);
 std::filesystem::path tileset_path(const std::filesystem::path& hierarchy);
 /// The file that tells of `node` and what is below it. Requires node.level > 0.
 std::filesystem::path tileset_path(const std::filesystem::path& hierarchy, NodeId node);

@@ -79,6 +79,14 @@ Json outline_json(const Manifest& manifest) {
           {"polylines_dropped", outline.polylines_dropped}};
 }
 
+Json preview_json(const Preview& preview) {
+  return {{"file", preview_path({}).string()},
+          {"bytes", preview.bytes},
+          {"checksum", hex_digits(preview.checksum)},
+          {"width", preview.width},
+          {"height", preview.height}};
+}
+
 Json manifest_json(const Manifest& manifest) {
   Json document;
   document["generator"] = manifest.generator;
@@ -94,6 +102,8 @@ Json manifest_json(const Manifest& manifest) {
                        {"bytes", manifest.index_bytes},
                        {"checksum", hex_digits(manifest.index_checksum)}};
   document["outline"] = outline_json(manifest);
+  if (manifest.preview)
+    document["preview"] = preview_json(*manifest.preview);
   document["tileset"] = {{"file", tileset_path({}).string()},
                          {"files", manifest.tileset_files},
                          {"bytes", manifest.tileset_bytes},
@@ -219,6 +229,21 @@ void read_outline(const JsonObject& object, Manifest& manifest) {
   manifest.outline.polylines_dropped = object.count("polylines_dropped");
 }
 
+std::uint32_t read_side(const JsonObject& object, const char* key) {
+  const std::uint64_t side = object.count(key, kMostPreviewSide);
+  if (side == 0)
+    object.wrong(key, "at least 1");
+  return static_cast<std::uint32_t>(side);
+}
+
+std::optional<Preview> read_preview(const JsonObject& object) {
+  if (!object.has("preview"))
+    return std::nullopt;
+  const JsonObject preview = object.object("preview");
+  return Preview{read_side(preview, "width"), read_side(preview, "height"),
+                 preview.count("bytes", kMostPreviewBytes), preview.hash("checksum")};
+}
+
 }  // namespace
 
 Json source_json(const SourceSummary& source) {
@@ -278,6 +303,7 @@ Manifest parse_manifest(const std::string& text, const std::string& name) {
   manifest.index_bytes = object.object("index").count("bytes");
   manifest.index_checksum = object.object("index").hash("checksum");
   read_outline(object.object("outline"), manifest);
+  manifest.preview = read_preview(object);
   const JsonObject tileset = object.object("tileset");
   manifest.tileset_files = tileset.count("files");
   manifest.tileset_bytes = tileset.count("bytes");

@@ -25,6 +25,17 @@ struct Quantization {
       0;  ///< the largest distance that a position of any tile went, input units
 };
 
+/// The picture of the whole model, preview.webp.
+struct Preview {
+  std::uint32_t width = 0, height = 0;  ///< pixels, 1 to kMostPreviewSide each
+  std::uint64_t bytes = 0;              ///< at most kMostPreviewBytes
+  std::uint64_t checksum = 0;           ///< XXH3-64
+  friend bool operator==(const Preview&, const Preview&) = default;
+};
+inline constexpr std::uint32_t kMostPreviewSide = 512;
+/// A gallery of a hundred models is loaded in a few seconds.
+inline constexpr std::uint64_t kMostPreviewBytes = 40000;
+
 struct Manifest {
   std::string generator;  ///< "meshhier 0.1.0"
   SourceSummary source;
@@ -45,12 +56,13 @@ struct Manifest {
   std::uint64_t outline_bytes = 0;
   std::uint64_t outline_checksum = 0;  ///< XXH3-64 of outline.glb
   OutlineReport outline;
+  std::optional<Preview> preview;  ///< none: the build was to make none, or is an older one's
   /// An array: the level table, for people and scripts; derived from tiles.bin.
   nlohmann::ordered_json levels;
   std::uint64_t tileset_files = 0;
   std::uint64_t tileset_bytes = 0;     ///< of all of them
   std::uint64_t tileset_checksum = 0;  ///< XXH3-64 of all, one after another, tileset.json first
-  std::uint64_t total_bytes = 0;       ///< of tiles, index, outline and tilesets
+  std::uint64_t total_bytes = 0;       ///< of all files but this one
 };
 
 /// What the manifest says of the input, on its own. File names keep their bytes, UTF-8 or not.

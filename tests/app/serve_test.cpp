@@ -1,6 +1,7 @@
 // `meshhier serve` as a process: what it says, how it ends, and that nothing is lost when it is
 // killed.
 #include "storage/io/file.h"
+#include "tests/server/form_text.h"
 #include "tests/server/raw_client.h"
 #include "tests/server/served_folder.h"
 #include "tests/server/wait_until.h"
@@ -10,6 +11,7 @@
 #include <csignal>
 #include <cstdint>
 #include <cstdlib>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
@@ -191,6 +193,17 @@ TEST_F(ServeTest, WhatIsWrongIsToldBeforeAnythingBegins) {
   fails({folder, "--port", "65536"}, 2, "0 to 65535");
   fails({folder, "--cors", "example.org"}, 2, "expected an origin");
   fails({folder, "--config", "x.json"}, 2, "--watch");
+  fails({folder, "--settle", "1"}, 2, "--inbox");
+  fails({folder, "--inbox", "nowhere"}, 4, "--inbox nowhere");
+  fails({folder, "--inbox", folder, "--watch", folder}, 2, "excludes");
+  fails({folder, "--watch", folder, "--upload-limit", "1G"}, 2, "requires --inbox");
+  fails({folder, "--inbox", folder, "--upload-limit", "much"}, 2, "expected a size");
+  fails({folder, "--inbox", folder, "--upload-token-file", "nowhere"}, 4, "nowhere");
+  for (const char* token : {"", "short\n", "0123456789 abcdefgh\n", "0123456789abcd\xc3\xa4\n"}) {
+    tests::write_text(folder_.path() / "token", token);
+    fails({folder, "--inbox", folder, "--upload-token-file", (folder_.path() / "token").string()},
+          2, "openssl rand");
+  }
   tests::write_text(folder_.path() / "wrong.json", R"({"partition": {"vertces": 5}})");
   fails({folder, "--watch", folder, "--config", (folder_.path() / "wrong.json").string()}, 2,
         "did you mean");
@@ -241,6 +254,78 @@ TEST_F(ServeTest, WhatIsDroppedAppearsWithItsProgressThenAsAModel) {
   EXPECT_EQ(tests::RawClient(process_->port()).get("/models/new.hier/tiles/00/000000.glb").status,
             200);
   EXPECT_EQ(process_->end(SIGTERM), 0);
+}
+
+/// A mesh as it is sent.
+std::string put_request(const std::string& name, const std::string& text,
+                        const std::string& more_headers = "") {
+  return "PUT /inbox/" + name +
+         " HTTP/1.1\r\nHost: localhost\r\nContent-Length: " + std::to_string(text.size()) + "\r\n" +
+         more_headers + "\r\n" + text;
+}
+
+TEST_F(ServeTest, WhatIsSentBecomesAModel) {
+  drop("new.ply", 600);
+  const std::string mesh = text_of(inbox() / "new.ply");
+  fs::remove(inbox() / "new.ply");
+  const std::uint16_t port = serve({"--inbox", inbox().string(), "--settle", "0.1"}).port();
+  tests::RawClient client(port);
+  client.send(put_request("sent.ply", mesh));
+  EXPECT_EQ(client.receive().status, 201);
+  const std::string form = tests::form_text(
+      {{"a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"}, {"a.mtl", "newmtl a\n"}});
+  tests::RawClient other(port);
+  other.send(
+      "POST /inbox/house HTTP/1.1\r\nHost: localhost\r\nContent-Type: multipart/form-data; "
+      "boundary=" +
+      tests::kBoundary + "\r\nContent-Length: " + std::to_string(form.size()) + "\r\n\r\n" + form);
+  EXPECT_EQ(other.receive().status, 201);
+  wait_until([&] { return list()["models"].size() == 5 && list()["jobs"].empty(); });
+  EXPECT_TRUE(fs::exists(models() / "sent.hier"));
+  EXPECT_TRUE(fs::exists(models() / "house.hier"));
+  EXPECT_EQ(process_->end(SIGTERM), 0);
+}
+
+TEST_F(ServeTest, AWatchedFolderAloneTakesNothing) {
+  fs::create_directories(inbox());
+  tests::RawClient client(serve({"--watch", inbox().string()}).port());
+  client.send(put_request("sent.ply", "ply"));
+  EXPECT_EQ(client.receive().status, 405);
+  EXPECT_FALSE(list().contains("upload"));
+}
+
+TEST_F(ServeTest, FromElsewhereATokenIsNeeded) {
+  fs::create_directories(inbox());
+  const auto status_of = [&](const std::string& headers) {
+    tests::RawClient client(process_->port());
+    client.send(put_request("sent.ply", "ply", headers));
+    return client.receive().status;
+  };
+  serve({"--inbox", inbox().string(), "--host", "0.0.0.0"});
+  EXPECT_EQ(status_of(""), 403);
+  EXPECT_FALSE(list().contains("upload"));
+  process_->end(SIGTERM);
+  EXPECT_THAT(process_->messages(), HasSubstr("--upload-token-file"));
+  const fs::path token = folder_.path() / "token";
+  tests::write_text(token, "0123456789abcdef\n");
+  serve({"--inbox", inbox().string(), "--host", "0.0.0.0", "--upload-token-file", token.string()});
+  EXPECT_EQ(status_of(""), 401);
+  EXPECT_EQ(status_of("Authorization: Bearer 0123456789abcdef\r\n"), 201);
+  EXPECT_EQ(list()["upload"]["token"], true);
+}
+
+TEST_F(ServeTest, KilledInTheMiddleOfAnUploadItLeavesNothing) {
+  fs::create_directories(inbox());
+  const auto count = [&] {
+    return std::distance(fs::directory_iterator(inbox()), fs::directory_iterator());
+  };
+  tests::RawClient client(serve({"--inbox", inbox().string()}).port());
+  client.send("PUT /inbox/a.ply HTTP/1.1\r\nHost: localhost\r\nContent-Length: 100\r\n\r\nhalf");
+  wait_until([&] { return count() == 2; });
+  process_->end(SIGKILL);
+  EXPECT_EQ(count(), 2) << "the part and its lock";
+  serve({"--inbox", inbox().string()}).port();
+  EXPECT_EQ(count(), 0);
 }
 
 TEST_F(ServeTest, KilledInTheMiddleOfABuildItGoesOnWhenItIsStartedAgain) {

@@ -179,7 +179,7 @@ class TexturedMeshTest : public testing::Test {
     render::Raster raster(render::Camera(view, BoundsD{{-1.3, -1.3, -1.3}, {1.3, 1.3, 1.3}},
                                          render::Framing{.width = 256, .height = 256}));
     mesh.draw(raster);
-    return render::shade(raster, render::Light::none);
+    return render::shade(raster, {.kind = render::Light::none});
   }
 
   std::unique_ptr<storage::FileSystem> files_ = storage::make_posix_file_system();

@@ -590,7 +590,7 @@ TEST(ResolvedJson, HoldsWhatDecidesTheResultAndNothingElse) {
       "partition": {"vertices": 8192, "axis": "compactness"},
       "simplify": {"method": "edge_collapse", "vertices": 8192, "representative": "quadric",
                    "cost": "quadric"},
-      "outline": {"sectors": 128, "tolerance": 0.002},
+      "outline": {"sectors": 128, "tolerance": 0.002}, "preview": true,
       "storage": {"compression": "none", "normals": "smooth"},
       "texture": {"use": true, "texels": 512, "format": "jpeg", "quality": 90, "unlit": true},
       "missing_images": "warn", "up": "y"})"));
@@ -598,7 +598,7 @@ TEST(ResolvedJson, HoldsWhatDecidesTheResultAndNothingElse) {
       "weld": false, "topology": "place",
       "partition": {"count": 9, "axis": "compactness"},
       "simplify": {"method": "edge_collapse", "representative": "quadric", "cost": "quadric"},
-      "outline": {"sectors": 128, "tolerance": 0.002},
+      "outline": {"sectors": 128, "tolerance": 0.002}, "preview": true,
       "storage": {"compression": "none", "normals": "smooth"},
       "texture": {"use": true, "texels": 512, "format": "jpeg", "quality": 90, "unlit": true},
       "missing_images": "warn", "up": "y"})"));

@@ -76,6 +76,7 @@ void check_lines(std::string_view text) {
     require(line.find_first_of(std::string_view("\r\n\0", 3)) == std::string_view::npos,
             "a line is one for everybody");
     require(!is_range_line(line), "Range is taken out");
+    require(line != "Expect: 100-continue", "the library answers no expectation");
     const std::size_t colon = line.find(": ");
     check_headers(colon == std::string_view::npos ? line : line.substr(colon + 2));
     text.remove_prefix(end + 2);
@@ -97,6 +98,8 @@ void request(Bytes input) {
   check_lines(head->text);
   if (head->range)
     check_range(*head->range);
+  if (head->body_bytes)
+    require(head->has_body == (*head->body_bytes > 0), "a body has as many bytes as it is said to");
 }
 
 }  // namespace meshhier::tests::fuzz

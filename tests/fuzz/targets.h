@@ -49,6 +49,8 @@ void hierarchy(std::span<const std::byte> input);
 void stream(std::span<const std::byte> input);
 /// The head of an HTTP request.
 void request(std::span<const std::byte> input);
+/// A form of files, as it is sent.
+void form(std::span<const std::byte> input);
 /// A JPEG, PNG or WebP file.
 void image(std::span<const std::byte> input);
 /// A small mesh of any shape and how it is to be built.
@@ -60,7 +62,7 @@ struct Target {
 };
 
 /// Names are those of the folders in corpus/, the dictionaries, and the programs (fuzz_NAME).
-inline constexpr std::array<Target, 21> kTargets{{{"ply_header", ply_header},
+inline constexpr std::array<Target, 22> kTargets{{{"ply_header", ply_header},
                                                   {"ply_text", ply_text},
                                                   {"ply_binary", ply_binary},
                                                   {"mesh", mesh},
@@ -79,6 +81,7 @@ inline constexpr std::array<Target, 21> kTargets{{{"ply_header", ply_header},
                                                   {"stream", stream},
                                                   {"hierarchy", hierarchy},
                                                   {"request", request},
+                                                  {"form", form},
                                                   {"image", image},
                                                   {"build", build}}};
 

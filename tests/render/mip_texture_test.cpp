@@ -47,7 +47,7 @@ void draw_square(Raster& raster, float size, const MipTexture& texture) {
 images::Image drawn_square(std::uint32_t size, std::uint32_t samples, const MipTexture& texture) {
   Raster raster(square_camera(size, samples));
   draw_square(raster, static_cast<float>(size), texture);
-  return shade(raster, Light::none);
+  return shade(raster, {.kind = Light::none});
 }
 
 // ---- lookups -------------------------------------------------------------------------------
@@ -178,9 +178,9 @@ TEST(TexturedRasterTest, OfTwoFacetsTheNearestIsSeenWithItsSkin) {
   Raster raster(square_camera(4));
   raster.draw(flat_facet({-9, -9, -1}, {9, -9, -1}, {0, 20, -1}), {&white, {}});
   raster.draw(flat_facet({-9, -9, -2}, {9, -9, -2}, {0, 20, -2}));
-  EXPECT_EQ(shade(raster, Light::none).at(1, 1)[0], 255);
+  EXPECT_EQ(shade(raster, {.kind = Light::none}).at(1, 1)[0], 255);
   raster.draw(flat_facet({-9, -9, 0}, {9, -9, 0}, {0, 20, 0}));
-  EXPECT_EQ(shade(raster, Light::none).at(1, 1)[0], images::screen_value(kPlainColour.x));
+  EXPECT_EQ(shade(raster, {.kind = Light::none}).at(1, 1)[0], images::screen_value(kPlainColour.x));
 }
 
 }  // namespace

@@ -250,5 +250,23 @@ TEST(RasterTest, AClosedSurfaceHasNoHolesInItsDisc) {
   }
 }
 
+TEST(RasterTest, RowsOfAPictureAreThoseOfTheWhole) {
+  const std::vector<Facet> facets = facets_around_origin(tests::soup(500));
+  const Camera camera(View{{-1, -2, -3}, {0, 0, 1}}, BoundsD{{-1, -1, -1}, {1, 1, 1}},
+                      Framing{.width = 40, .height = 30, .samples = 3});
+  const Raster whole = drawn(camera, facets);
+  for (const PixelRows rows : {PixelRows{0, 30}, PixelRows{0, 1}, PixelRows{7, 11}}) {
+    Raster part(camera, rows);
+    part.draw(facets);
+    ASSERT_EQ(part.rows(), rows.count * 3);
+    for (std::size_t i = 0; i < part.samples().size(); ++i) {
+      const Sample &here = part.samples()[i],
+                   &there = whole.samples()[i + std::size_t{rows.first} * 3 * whole.columns()];
+      ASSERT_EQ(here.depth, there.depth);
+      ASSERT_EQ(here.normal, there.normal);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace meshhier::render

@@ -50,6 +50,19 @@ TEST_F(BuildTargetTest, WhoWasThereFirstKeepsItsName) {
   EXPECT_EQ(target("plain.ply").name, "plain.hier");
 }
 
+TEST_F(BuildTargetTest, AMeshInAFolderIsCalledAsTheFolder) {
+  inbox_ = {"house/scan.obj", "scan.ply"};
+  expect(target("house/scan.obj"), Kind::build, "house.hier");
+  inbox_ = {"house.ply", "house/scan.obj"};
+  expect(target("house.ply"), Kind::build, "house.hier");
+  expect(target("house/scan.obj"), Kind::build, "house.scan.obj.hier");
+}
+
+TEST_F(BuildTargetTest, AMeshInAFolderKnowsItsHierarchy) {
+  inbox_ = {"plain/plain.ply"};
+  expect(target("plain/plain.ply", true), Kind::done, "plain.hier");
+}
+
 TEST_F(BuildTargetTest, WhatIsNoHierarchyOfOursIsLeftAlone) {
   fs::create_directory(served_.models() / "new.hier");
   expect(target("new.ply"), Kind::build, "new.ply.hier");

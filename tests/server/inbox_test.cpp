@@ -32,8 +32,11 @@ class InboxTest : public testing::Test {
   tests::TemporaryDirectory directory_;
   std::chrono::steady_clock::time_point now_;
   std::uint64_t companions_ = 0;
-  Inbox inbox_{directory_.path(), milliseconds(2000),
-               [this](const std::string&) { return companions_; }, [this] { return now_; }};
+  Inbox inbox_{directory_.path(),
+               {.settle = milliseconds(2000),
+                .folders = Inbox::Folders::taken,
+                .mark = [this](const std::string&) { return companions_; },
+                .clock = [this] { return now_; }}};
 };
 
 TEST_F(InboxTest, AFileIsWholeWhenItHasSettled) {
@@ -62,6 +65,15 @@ TEST_F(InboxTest, AFileWhoseCompanionsChangeBeginsAnew) {
   EXPECT_THAT(whole_after(milliseconds(2000)), ElementsAre("a.obj"));
 }
 
+TEST_F(InboxTest, AFolderWhoseCompanionsChangeBeginsAnew) {
+  std::filesystem::create_directory(directory_.path() / "house");
+  write_text(directory_.path() / "house/a.obj", "1");
+  EXPECT_THAT(whole_after(milliseconds(0)), IsEmpty());
+  companions_ = 7;
+  EXPECT_THAT(whole_after(milliseconds(2000)), IsEmpty());
+  EXPECT_THAT(whole_after(milliseconds(2000)), ElementsAre("house/a.obj"));
+}
+
 TEST_F(InboxTest, AFileThatCameBackIsANewOne) {
   write_text(directory_.path() / "a.ply", "1");
   EXPECT_THAT(whole_after(milliseconds(0)), IsEmpty());
@@ -69,6 +81,36 @@ TEST_F(InboxTest, AFileThatCameBackIsANewOne) {
   EXPECT_THAT(whole_after(milliseconds(2000)), IsEmpty());
   write_text(directory_.path() / "a.ply", "1");
   EXPECT_THAT(whole_after(milliseconds(2000)), IsEmpty());
+}
+
+TEST_F(InboxTest, AFolderWithOneMeshIsWholeWhenAllOfItHasSettled) {
+  const auto house = directory_.path() / "house";
+  std::filesystem::create_directory(house);
+  write_text(house / "a.obj", "1");
+  write_text(house / "wall.png", "1");
+  EXPECT_THAT(whole_after(milliseconds(0)), IsEmpty());
+  write_text(house / "wall.png", "12");
+  EXPECT_THAT(whole_after(milliseconds(1500)), IsEmpty());
+  EXPECT_THAT(whole_after(milliseconds(1000)), IsEmpty()) << "the picture has not settled";
+  EXPECT_THAT(whole_after(milliseconds(1000)), ElementsAre("house/a.obj"));
+  write_text(house / "b.ply", "1");
+  EXPECT_THAT(whole_after(milliseconds(5000)), IsEmpty()) << "it is no longer one mesh";
+}
+
+TEST_F(InboxTest, OnlyFoldersThatAreOneMeshAreLookedAt) {
+  for (const char* folder : {".hidden", "none", "two", "deep", "deep/er"})
+    std::filesystem::create_directory(directory_.path() / folder);
+  for (const char* file :
+       {".hidden/a.obj", "none/a.mtl", "two/a.obj", "two/b.obj", "deep/er/a.obj"})
+    write_text(directory_.path() / file, "1");
+  EXPECT_THAT(inbox_.look(), IsEmpty());
+}
+
+TEST_F(InboxTest, FoldersMayBeIgnored) {
+  std::filesystem::create_directory(directory_.path() / "house");
+  write_text(directory_.path() / "house/a.obj", "1");
+  EXPECT_EQ(inbox_.look().size(), 1U);
+  EXPECT_THAT(Inbox(directory_.path(), {.settle = milliseconds(0)}).look(), IsEmpty());
 }
 
 TEST_F(InboxTest, LinksAndDirectoriesAreLeftAlone) {

@@ -1,5 +1,6 @@
 #include "server/request_head.h"
 
+#include <optional>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -29,6 +30,24 @@ TEST(RequestHeadTest, AnEmptyRangeIsOne) {
   const auto head = parse_head("GET / HTTP/1.1\r\nRange:\r\n\r\n");
   ASSERT_TRUE(head);
   EXPECT_EQ(head->range, "");
+}
+
+TEST(RequestHeadTest, WhoWaitsForTheGoAheadIsNoticed) {
+  const auto head = parse_head("PUT / HTTP/1.1\r\nexpect: 100-Continue\r\nHost: a\r\n\r\n");
+  ASSERT_TRUE(head);
+  EXPECT_TRUE(head->expects_continue);
+  EXPECT_EQ(head->text, "PUT / HTTP/1.1\r\nHost: a\r\n\r\n") << "the library does not answer it";
+  EXPECT_FALSE(parse_head("PUT / HTTP/1.1\r\nExpect: much\r\n\r\n")->expects_continue);
+}
+
+TEST(RequestHeadTest, TheLengthOfABodyIsToldIfItIsKnown) {
+  const auto length_of = [](const std::string& line) {
+    return parse_head("PUT / HTTP/1.1\r\n" + line + "\r\n\r\n")->body_bytes;
+  };
+  EXPECT_EQ(length_of("Content-Length: 9999999999999999999"), 9999999999999999999U);
+  EXPECT_EQ(length_of("Content-Length: 0"), 0U);
+  EXPECT_EQ(length_of("Transfer-Encoding: chunked"), std::nullopt);
+  EXPECT_EQ(length_of("X: y"), std::nullopt);
 }
 
 TEST(RequestHeadTest, BodiesAreAnnounced) {

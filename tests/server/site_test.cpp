@@ -100,6 +100,11 @@ TEST_F(SiteTest, TheListHasAllHierarchiesByPath) {
   const json manifest = json::parse(text_of(folder_.models() / "plain.hier/hierarchy.json"));
   EXPECT_EQ(model["vertices"], manifest["source"]["vertices"]);
   EXPECT_EQ(model["triangles"], manifest["source"]["triangles"]);
+  const std::string preview = model["preview"];
+  EXPECT_EQ(preview, std::string(model["path"]) + "/preview.webp");
+  const Reply picture = get("/" + preview);
+  EXPECT_EQ(picture.header("Content-Type"), "image/webp");
+  EXPECT_EQ(picture.body_bytes(), manifest["preview"]["bytes"]);
   EXPECT_EQ(model["bytes"], manifest["total_bytes"]);
 }
 

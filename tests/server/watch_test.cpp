@@ -54,6 +54,7 @@ class WatchTest : public testing::Test {
     options.folder = models();
     options.config = config_;
     options.program = program_.string();
+    options.folders = Inbox::Folders::taken;
     options.settle = std::chrono::milliseconds(100);
     options.look_every = std::chrono::milliseconds(50);
     options.try_again = std::chrono::milliseconds(100);
@@ -97,6 +98,14 @@ class WatchTest : public testing::Test {
     drop_library("textures/wall.png");
     drop_obj();
   }
+  /// The same, all in the folder "house".
+  void drop_textured_folder() {
+    drop_textured();
+    fs::create_directory(directory_.path() / "house");
+    for (const char* name : {"a.obj", "a.mtl", "textures"})
+      fs::rename(inbox() / name, directory_.path() / "house" / name);
+    fs::rename(directory_.path() / "house", inbox() / "house");
+  }
   void drop_obj() {
     tests::write_text(inbox() / "a.obj",
                       "mtllib a.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n"
@@ -115,9 +124,9 @@ class WatchTest : public testing::Test {
             "bufferViews": [{"buffer": 0, "byteLength": 36}],
             "buffers": [{"uri": "t.bin", "byteLength": 36}]})");
   }
-  /// Of the pictures that a.hier was made of.
-  std::uint64_t texels() const {
-    const auto manifest = nlohmann::json::parse(text_of(models() / "a.hier/hierarchy.json"));
+  /// Of the pictures that it was made of.
+  std::uint64_t texels(const std::string& name = "a.hier") const {
+    const auto manifest = nlohmann::json::parse(text_of(models() / name / "hierarchy.json"));
     return manifest["source"].contains("textures")
                ? manifest["source"]["textures"]["texels"].get<std::uint64_t>()
                : 0;
@@ -309,6 +318,37 @@ TEST_F(WatchTest, TwoOfOneStemHaveHierarchiesOfTheirOwn) {
   wait_until([&] { return is_there("a.off.hier") && is_idle(); });
   EXPECT_EQ(hierarchies_->look("a.hier")->source, "a.ply");
   EXPECT_EQ(hierarchies_->look("a.off.hier")->source, "a.off");
+}
+
+TEST_F(WatchTest, AFolderIsBuiltAsOneModelAndNotAgain) {
+  start();
+  fs::create_directories(directory_.path() / "house");
+  tests::write_text(directory_.path() / "house/a.obj",
+                    "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  tests::write_text(directory_.path() / "house/a.mtl", "newmtl a\n");
+  fs::rename(directory_.path() / "house", inbox() / "house");
+  wait_until([&] { return is_there("house.hier") && is_idle(); });
+  EXPECT_EQ(hierarchies_->look("house.hier")->source, "a.obj");
+  EXPECT_THAT(told(), ElementsAre("house/a.obj: building house.hier", "house/a.obj: done"));
+  const auto manifest = folder_->open("house.hier/hierarchy.json")->version();
+  start();
+  drop("b.ply");
+  wait_until([&] { return is_there("b.hier") && is_idle(); });
+  EXPECT_EQ(folder_->open("house.hier/hierarchy.json")->version(), manifest);
+}
+
+TEST_F(WatchTest, AFolderWhosePictureChangesIsBuiltAgain) {
+  drop_textured_folder();
+  start();
+  wait_until([&] { return is_there("house.hier") && is_idle(); });
+  ASSERT_EQ(texels("house.hier"), 16U * 16U);
+  put_picture("house/textures/wall.png", 32);
+  wait_until([&] { return texels("house.hier") == 32 * 32 && is_idle(); });
+  EXPECT_EQ(builds_of("house/a.obj"), 2);
+  start();
+  drop("b.ply");
+  wait_until([&] { return is_there("b.hier") && is_idle(); });
+  EXPECT_EQ(builds_of("house/a.obj"), 2) << "its files were noted";
 }
 
 TEST_F(WatchTest, ARestartBuildsNothingAgain) {

@@ -1,6 +1,7 @@
 #include "tests/texture/painted.h"
 
 #include "tests/texture/random_numbers.h"
+#include "texture/fill.h"
 #include "texture/light.h"
 #include "texture/texel_raster.h"
 
@@ -66,6 +67,7 @@ Painted painted(const Mesh& mesh, std::uint32_t side, const Paint& paint) {
   BakedTexture charts = bake({mesh.positions, mesh.triangles, {}, nullptr}, {}, {side, 0});
   Painted result{mesh, charts.corners, images::Image(charts.image.width, charts.image.height, 3),
                  charts.texel};
+  std::vector<std::uint8_t> is_known(charts.image.texels.size() / charts.image.channels);
   // Texels beside a triangle are painted first, then those within.
   for (const double grown : {1.5, 0.0}) {
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -89,6 +91,7 @@ Painted painted(const Mesh& mesh, std::uint32_t side, const Paint& paint) {
           if (grown == 0 && std::min({b, c, 1 - b - c}) < -1e-9)
             continue;
           const Colour colour = paint(point_of(mesh, t, b, c));
+          is_known[std::size_t(y) * result.image.width + std::size_t(x)] = 1;
           for (std::size_t k = 0; k < 3; ++k)
             result.image.at(std::uint32_t(x), std::uint32_t(y))[k] =
                 static_cast<std::uint8_t>(std::clamp(colour[k] + 0.5, 0.0, 255.0));
@@ -96,6 +99,7 @@ Painted painted(const Mesh& mesh, std::uint32_t side, const Paint& paint) {
       }
     }
   }
+  fill_unknown(result.image, is_known);
   return result;
 }
 
@@ -106,7 +110,7 @@ Painted baked(const Mesh& mesh, const std::vector<const Painted*>& finer, std::u
     surfaces.push_back(surface->surface());
   BakedTexture texture =
       bake({mesh.positions, mesh.triangles, {}, nullptr}, surfaces, {side, least_texel});
-  return {mesh, texture.corners, texture.image, texture.texel};
+  return {mesh, texture.corners, texture.image, texture.texel, texture.lost};
 }
 
 Vec3d point_of(const Mesh& mesh, std::size_t triangle, double on_b, double on_c) {

@@ -32,6 +32,7 @@ struct Painted {
   std::vector<CornerTexcoords> corners;
   images::Image image;
   float texel = 0;
+  float lost = 0;
 
   TexturedSurface surface() const { return {mesh.positions, mesh.triangles, corners, &image}; }
 };

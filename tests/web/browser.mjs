@@ -72,6 +72,20 @@ export function call(page, name, argument) {
   return page.evaluate(([f, x]) => window.view[f](x), [name, argument]);
 }
 
+/// The page of viewer/ loses its graphics device, and gets it back with nothing on it.
+export function loseDevice(page) {
+  return page.evaluate(async () => {
+    const canvas = document.querySelector('.surface canvas');
+    const loss = canvas.getContext('webgl2').getExtension('WEBGL_lose_context');
+    const told = (what) => new Promise((done) => { canvas.addEventListener(what, () => setTimeout(done), { once: true }); });
+    const [lost, restored] = [told('webglcontextlost'), told('webglcontextrestored')];
+    loss.loseContext();
+    await lost;
+    loss.restoreContext();
+    await restored;
+  });
+}
+
 /// RGBA of a picture, decoded by a page: the uppermost row first.
 export async function decodePicture(decoder, picture) {
   return decoder.evaluate(async (data) => {

@@ -5,7 +5,7 @@
 //
 // PAGE: of viewer/, dist/page. Pictures go to the directory PICTURES. Exit code 2: wrong use; else see browser.mjs.
 import path from 'node:path';
-import { call, decodePicture, inChromium, readHierarchy, SIZE, withPage } from './browser.mjs';
+import { call, decodePicture, inChromium, loseDevice, readHierarchy, SIZE, withPage } from './browser.mjs';
 import { withSite } from './site.mjs';
 import { CORNERS } from './textured_square.mjs';
 
@@ -81,6 +81,11 @@ async function showInPage(browser, decoder, pagePath, hierarchy, { pictures, rep
       const { tiles } = await page.evaluate(() => window.meshhier.stats());
       judgeCorners(report, `${hierarchy.name} page ${what}`, await decodePicture(decoder, picture), tiles);
     }
+    await loseDevice(page);
+    await settled(page);
+    const { tiles, fetchedFiles } = await page.evaluate(() => window.meshhier.stats());
+    const again = await decodePicture(decoder, await page.screenshot());
+    judgeCorners(report, `${hierarchy.name} page with the device lost and back, ${fetchedFiles} files`, again, tiles);
     await page.keyboard.press('t');
     await settled(page);
     const plain = await decodePicture(decoder, await page.screenshot());

@@ -2,10 +2,10 @@
 import { formatAddress, parseAddress, type Pose } from './address.js';
 import { EarlyStart } from './early_start.js';
 import { Gallery } from './gallery/gallery.js';
+import type { Order } from './gallery/orders.js';
 import { ListingWatch } from './listing_watch.js';
 import { modelOfPath, type Listing, type Model } from './listing.js';
 import { ModelEntry } from './model_entry.js';
-import { element } from './parts/element.js';
 import { languageSelect } from './parts/language_select.js';
 import { themeButton } from './parts/theme_button.js';
 import { loadPreferences, savePreferences, type Theme } from './preferences.js';
@@ -13,6 +13,8 @@ import { Problems } from './problems.js';
 import { readQuery, shortened } from './query.js';
 import { watchInput } from './parts/input.js';
 import { applyTheme, watchSystemTheme } from './theme.js';
+import { leavesEntries, showAddress, visit, watchLinks } from './visits.js';
+import { UploadPlace } from './upload/upload_place.js';
 import type { Language } from './words/languages.js';
 import { language, words } from './words/words.js';
 import type { ModelView, Surroundings } from './view/model_view.js';
@@ -42,6 +44,7 @@ export class App {
   private readonly query = readQuery(location.search, document.baseURI);
   private readonly watch: ListingWatch;
   private gallery: Gallery | null = null;
+  private uploads: UploadPlace | null = null;
   private entry: ModelEntry | null = null; // of the model that is shown: what was loaded for an earlier one is of no use
   private left: string | null = null;
 
@@ -57,7 +60,7 @@ export class App {
     watchSystemTheme(() => { this.setTheme(this.preferences.theme); });
     watchInput();
     window.addEventListener('hashchange', () => { this.route(); });
-    if (this.query.problem !== null) this.problems.tell(this.query.problem);
+    if (this.query.problem !== null) this.problems.tell(this.query.problem.message, this.query.problem);
   }
 
   get models(): readonly Model[] {
@@ -79,14 +82,14 @@ export class App {
   /// Opens a model of the listing by its name or path. False if there is none.
   open(name: string): boolean {
     const model = this.models.find((one) => one.name === name || one.path === name);
-    if (model !== undefined) location.hash = formatAddress({ path: model.path, pose: null });
+    if (model !== undefined) visit(formatAddress({ path: model.path, pose: null }));
     return model !== undefined;
   }
 
   /// From a model to the gallery.
   close(): void {
     if (this.query.only !== null || this.entry === null || this.entry.leave()) return;
-    history.pushState(null, '', this.galleryAddress);
+    showAddress(this.galleryAddress);
     this.route();
   }
 
@@ -96,6 +99,11 @@ export class App {
     applyTheme(theme);
     this.gallery?.themeChanged();
     this.view?.themeChanged();
+  }
+
+  private setOrder(order: Order): void {
+    this.preferences.order = order;
+    savePreferences(this.preferences);
   }
 
   /// The words hold as long as the page: it is loaded again, without the language that its address asks for.
@@ -119,6 +127,7 @@ export class App {
 
   private listed(listing: Listing): void {
     this.gallery?.update(listing);
+    this.uploads?.offer(listing.upload);
     const isEmpty = listing.models.length + (listing.jobs?.length ?? 0) === 0;
     if (isEmpty) this.gallery?.tell(emptyText(listing, this.query.listing));
   }
@@ -135,11 +144,17 @@ export class App {
   private makeGallery(): Gallery {
     const theme = themeButton(() => this.preferences.theme, (chosen) => { this.setTheme(chosen); });
     const language = languageSelect((chosen) => { this.setLanguage(chosen); });
-    const gallery = new Gallery(element('header', { class: 'gallery-header' }, element('h1', {}, 'meshhier'), language, theme));
+    const gallery = new Gallery(this.preferences.order, (order) => { this.setOrder(order); }, [language, theme]);
     this.root.prepend(gallery.root);
+    watchLinks(gallery.root);
+    this.uploads = new UploadPlace((section) => { gallery.insert(section); }, {
+      place: gallery.root,
+      inbox: new URL('inbox/', this.query.listing).href,
+      problems: this.problems,
+      stored: () => { if (gallery.shown) this.watch.start(); },
+    });
     for (const sign of ['pointerdown', 'pointerover', 'focusin'] as const)
       gallery.root.addEventListener(sign, () => { loadView().catch(() => undefined); }, { once: true });
-    if (!gallery.works) this.problems.tell(words.problems.noWebGl);
     return gallery;
   }
 
@@ -152,7 +167,7 @@ export class App {
     this.closeView();
     const entry = new ModelEntry(model, this.query.only === null ? model.path : '');
     this.entry = entry;
-    entry.arrive(this.gallery?.shown ?? false);
+    entry.arrive(leavesEntries && (this.gallery?.shown ?? false));
     this.gallery?.hide();
     this.watch.stop();
     document.title = words.title(model.name);
@@ -181,9 +196,10 @@ export class App {
     }
     history.replaceState(null, '', this.galleryAddress);
     this.showGallery();
-    const retry = (): void => { location.hash = formatAddress({ path: model.path, pose }); };
-    const { noWebGl, notShown } = words.problems;
-    this.problems.tell(why === noWebGl ? why : notShown(model.name, why), { retry: why === noWebGl ? null : retry });
+    const retry = (): void => { visit(formatAddress({ path: model.path, pose })); };
+    const { noWebGl, noWebGlMore, notShown } = words.problems;
+    if (why === noWebGl) this.problems.tell(why, { more: noWebGlMore });
+    else this.problems.tell(notShown(model.name), { more: why, retry });
   }
 
   private surroundings(entry: ModelEntry, pose: Pose | null, { fetch, createWorker }: EarlyStart): Surroundings {

@@ -12,6 +12,10 @@ export interface Model {
   triangles: number | null;
   bytes: number | null;
   source: string | null;
+  /// When it was made, in seconds since 1970.
+  modified: number | null;
+  /// Its picture's address.
+  preview: string | null;
 }
 
 export interface Job {
@@ -22,6 +26,8 @@ export interface Job {
   progress: number | null;
   secondsLeft: number | null;
   message: string;
+  /// The address of a picture of what is there so far.
+  preview: string | null;
 }
 
 export interface Listing {
@@ -31,6 +37,15 @@ export interface Listing {
   /// Where the models lie, and where meshes are put; null: it does not say so.
   folder: string | null;
   inbox: string | null;
+  /// Null: the server takes no meshes.
+  upload: UploadOffer | null;
+}
+
+export interface UploadOffer {
+  /// The most bytes of one upload.
+  limit: number;
+  /// Whether the server asks for a word.
+  token: boolean;
 }
 
 export class ListingError extends Error {}
@@ -78,7 +93,12 @@ function resolveDirectory(path: string, base: string): string | null {
 export function modelOfPath(path: string, base: string): Model | null {
   const url = path === '' || path.length > MOST_TEXT ? null : resolveDirectory(path, base);
   if (url === null) return null;
-  return { name: nameOfPath(path), path, url, vertices: null, triangles: null, bytes: null, source: null };
+  return { name: nameOfPath(path), path, url, vertices: null, triangles: null, bytes: null, source: null, modified: null, preview: null };
+}
+
+/// Null of what is none, or cannot be fetched.
+function pictureOf(value: unknown, base: string): string | null {
+  return textOf(value) === '' ? null : resolveUrl(textOf(value), base);
 }
 
 function readModel(value: unknown, base: string): Model | null {
@@ -90,10 +110,12 @@ function readModel(value: unknown, base: string): Model | null {
   model.triangles = countOf(value.triangles);
   model.bytes = countOf(value.bytes);
   model.source = textOf(value.source) || null;
+  model.modified = countOf(value.modified);
+  model.preview = pictureOf(value.preview, base);
   return model;
 }
 
-function readJob(value: unknown): Job | null {
+function readJob(value: unknown, base: string): Job | null {
   if (!isObject(value)) return null;
   const { state } = value;
   if (state !== 'waiting' && state !== 'building' && state !== 'failed') return null;
@@ -105,7 +127,14 @@ function readJob(value: unknown): Job | null {
     progress: progress === null ? null : Math.min(progress, 1),
     secondsLeft: countOf(value.seconds_left),
     message: textOf(value.message),
+    preview: pictureOf(value.preview, base),
   };
+}
+
+function readUpload(value: unknown): UploadOffer | null {
+  if (!isObject(value)) return null;
+  const limit = countOf(value.limit);
+  return limit === null ? null : { limit, token: value.token === true };
 }
 
 /// What `read` makes of the entries, without what it refuses; of several with one key the first.
@@ -129,6 +158,6 @@ export function parseListing(text: string, url: string): Listing {
   }
   if (!isObject(document) || !Array.isArray(document.models)) throw new ListingError(words.listing.noModels(url));
   const models = readAll(document.models, (value) => readModel(value, url), (model) => model.path);
-  const jobs = Array.isArray(document.jobs) ? readAll(document.jobs, readJob, (job) => job.name) : null;
-  return { models, jobs, folder: textOf(document.folder) || null, inbox: textOf(document.inbox) || null };
+  const jobs = Array.isArray(document.jobs) ? readAll(document.jobs, (value) => readJob(value, url), (job) => job.name) : null;
+  return { models, jobs, folder: textOf(document.folder) || null, inbox: textOf(document.inbox) || null, upload: readUpload(document.upload) };
 }

@@ -3,6 +3,7 @@ import { locale } from './words/words.js';
 
 const DASH = '–';
 const UNITS = ['byte', 'kilobyte', 'megabyte', 'gigabyte', 'terabyte', 'petabyte'] as const;
+const LAST_SECOND = 8.64e12; // since 1970, that dates know
 const THREE_DIGITS = { minimumSignificantDigits: 3, maximumSignificantDigits: 3 } as const;
 
 type Unit = (typeof UNITS)[number] | 'millisecond' | 'second' | 'minute' | 'hour';
@@ -20,8 +21,12 @@ export interface Numbers {
   readonly formatDuration: (seconds: number) => string;
   /// 0.83, 12.5; large ones without a fraction.
   readonly formatDecimal: (value: number) => string;
+  /// Four digits: 0.001235, 12.35, 123,500.
+  readonly formatLength: (value: number) => string;
   /// Of a part from 0 to 1: 42%.
   readonly formatPercent: (value: number) => string;
+  /// Of seconds since 1970 the day: Nov 24, 2026.
+  readonly formatDate: (seconds: number) => string;
 }
 
 function isSize(value: number): boolean {
@@ -42,6 +47,8 @@ export function numbersOf(locale: string): Numbers {
   const unit = (name: Unit, options: Intl.NumberFormatOptions = {}) => formats({ style: 'unit', unit: name, ...options });
   const count = formats({ maximumFractionDigits: 0 });
   const compact = formats({ notation: 'compact', ...THREE_DIGITS });
+  const day = new Intl.DateTimeFormat(locale, { dateStyle: 'medium' });
+  const length = formats({ maximumSignificantDigits: 4 });
   const percent = formats({ style: 'percent', maximumFractionDigits: 0 });
   const decimals = [0, 1, 2].map((digits) => formats({ minimumFractionDigits: digits, maximumFractionDigits: digits }));
   const bytes = UNITS.map((name, i) => unit(name, i === 0 ? { maximumFractionDigits: 0 } : THREE_DIGITS));
@@ -69,8 +76,10 @@ export function numbersOf(locale: string): Numbers {
     formatMilliseconds: orDash((value) => (value < 999.5 ? milliseconds(value) : seconds(value / 1000))),
     formatDuration: orDash(duration),
     formatDecimal: orDash((value) => (value >= 1000 ? count(value) : decimals[fractionDigits(value)](value))),
+    formatLength: orDash(length),
     formatPercent: orDash(percent),
+    formatDate: orDash((seconds) => (seconds < LAST_SECOND ? day.format(1000 * seconds) : DASH)),
   };
 }
 
-export const { formatCount, formatRough, formatBytes, formatMilliseconds, formatDuration, formatDecimal, formatPercent } = numbersOf(locale);
+export const { formatCount, formatRough, formatBytes, formatMilliseconds, formatDuration, formatDecimal, formatLength, formatPercent, formatDate } = numbersOf(locale);

@@ -1,5 +1,6 @@
 // What the user chose, kept in the browser. Whatever is stored there, what comes out is sound.
 import { changedSettings, DEFAULT_LOOK, type Colours, type Look, type Settings } from '../src/scene/settings.js';
+import { ORDERS, type Order } from './gallery/orders.js';
 import { LANGUAGES, type Language } from './words/languages.js';
 
 export type Theme = 'auto' | 'light' | 'dark';
@@ -8,6 +9,8 @@ export interface Preferences {
   theme: Theme;
   /// Null: as the browser wants it.
   language: Language | null;
+  /// Of the gallery.
+  order: Order;
   panel: boolean;
   settings: Settings;
   look: Look;
@@ -48,12 +51,18 @@ function within(value: unknown, { least, most }: Range, otherwise: number): numb
   return typeof value === 'number' && value >= least && value <= most ? value : otherwise;
 }
 
+/// Whether the browser was told to fetch little.
+function savesData(): boolean {
+  return (globalThis.navigator as { connection?: { saveData?: boolean } } | undefined)?.connection?.saveData === true;
+}
+
 function readSettings(stored: Json): Settings {
   const defaults = changedSettings({});
   const budget = typeof stored.memoryBudget === 'number' ? stored.memoryBudget / MEGABYTE : null;
   return {
     framesPerSecond: within(stored.framesPerSecond, RANGES.framesPerSecond, defaults.framesPerSecond),
     threshold: within(stored.threshold, RANGES.threshold, defaults.threshold),
+    restDetail: oneOf(stored.restDetail, [1, defaults.restDetail], savesData() ? 1 : defaults.restDetail),
     memoryBudget: within(budget, RANGES.memoryBudget, defaults.memoryBudget / MEGABYTE) * MEGABYTE,
   };
 }
@@ -80,6 +89,7 @@ export function parsePreferences(text: string | null): Preferences {
   return {
     theme: oneOf(stored.theme, THEMES, 'auto'),
     language: oneOf(stored.language, LANGUAGES, null),
+    order: oneOf(stored.order, ORDERS, 'folder'),
     panel: stored.panel === true,
     settings: readSettings(asObject(stored.settings)),
     look: readLook(asObject(stored.look)),

@@ -16,10 +16,3 @@ export function nextTheme(theme: Theme): Theme {
 export function watchSystemTheme(changed: () => void): void {
   dark.addEventListener('change', changed);
 }
-
-/// The colour of a custom property of the page, as numbers from 0 to 1.
-export function themeColour(property: string): [number, number, number] {
-  const text = getComputedStyle(document.documentElement).getPropertyValue(property).trim();
-  const value = Number.parseInt(text.replace('#', ''), 16);
-  return [((value >> 16) & 255) / 255, ((value >> 8) & 255) / 255, (value & 255) / 255];
-}

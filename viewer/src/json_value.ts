@@ -69,6 +69,11 @@ export class JsonValue {
     return [this.at(0).number(), this.at(1).number(), this.at(2).number()];
   }
 
+  /// So many of them.
+  numbers(count: number): number[] {
+    return Array.from({ length: count }, (_, i) => this.at(i).number());
+  }
+
   /// Of a file that lies beside the one that names it.
   fileName(): string {
     const name = this.text();

@@ -27,9 +27,10 @@ const sources: Sources = {
   isHidden: () => false,
   isLost: () => false,
   wasRefined: () => false,
+  mayBeFine: () => true,
 };
 
-const ALL: Limits = { threshold: 1, vertices: Infinity, bytes: Infinity };
+const ALL: Limits = { threshold: 1, fine: Infinity, vertices: Infinity, bytes: Infinity };
 
 function leaves(chosen: ChosenNode): ChosenNode[] {
   return chosen.children.length === 0 ? [chosen] : chosen.children.flatMap(leaves);
@@ -40,6 +41,28 @@ function cutOf(view: Viewpoint, limits: Limits, given = sources): ChosenNode[] {
 }
 
 describe('chooseCut', () => {
+  const finer = { ...ALL, fine: 0.25 };
+
+  it('goes on to the finer error while triangles are larger than a pixel', () => {
+    const few = cutOf(look(20, 22), finer);
+    for (const { pixels } of few) expect(pixels).toBeLessThanOrEqual(0.25);
+    const many = cutOf(look(20, 22), finer, { ...sources, record: (node) => ({ ...record(node), interior: 1e9 }) });
+    expect(many).toEqual(cutOf(look(20, 22), ALL, { ...sources, record: (node) => ({ ...record(node), interior: 1e9 }) }));
+  });
+
+  it('goes on so only with what may be finer', () => {
+    const [fine, coarse] = [cutOf(look(0, 64), finer), cutOf(look(0, 64), ALL)];
+    expect(fine.length).toBeGreaterThan(coarse.length);
+    expect(cutOf(look(0, 64), finer, { ...sources, mayBeFine: () => false })).toEqual(coarse);
+  });
+
+  it('shows at least as much of all as without the finer error, where room is what limits it', () => {
+    for (let bytes = 3 * BYTES; bytes < 60 * BYTES; bytes += BYTES) {
+      const [more, less] = [{ ...finer, bytes }, { ...ALL, bytes }].map((limits) => chooseCut(sources, look(0, 64), limits).refined.map(({ key }) => key));
+      expect(more.slice(0, less.length)).toEqual(less);
+    }
+  });
+
   it('refines what is in view to the threshold, and covers all else coarsely', () => {
     const cut = cutOf(look(20, 22), ALL);
     expect(cut.reduce((sum, { node }) => sum + 64 / 2 ** node.level, 0)).toBe(64);

@@ -153,7 +153,8 @@ describe('Seam', () => {
 describe('TileObject', () => {
   const made = async (parts: TileParts, look: Partial<Look> = {}): Promise<TileObject> => {
     const tile = await read(parts);
-    const resident = { node: { level: 0, index: 0 }, key: keyOf(0, 0), tile, seam: new Seam(tile, new Tree(1)) };
+    const { level, index } = tile;
+    const resident = { node: { level, index }, key: keyOf(level, index), tile, seam: new Seam(tile, new Tree(level + 2)) };
     return new TileObject(resident, { ...DEFAULT_LOOK, ...look }, sharedMaterials());
   };
   const lit = { ...SQUARE, picture: { ...PICTURE, unlit: false } };
@@ -208,13 +209,31 @@ describe('TileObject', () => {
     expect(freed).toHaveBeenCalledOnce();
   });
 
+  it.each([['is there once, on the GPU', COARSE, 0], ['stays, of the root', SQUARE, 1]])('closes the bitmap as soon as it was uploaded, so that it %s', async (_, parts, left) => {
+    const object = await made(parts);
+    const { map } = object.material;
+    expect(FakeBitmap.open).toBe(1);
+    map!.onUpdate?.(map!);
+    expect(FakeBitmap.open).toBe(left);
+  });
+
+  it('counts the picture once, and the same after it was uploaded; of the root the bitmap too', async () => {
+    const [tile, root] = [await read(COARSE), await read(SQUARE)];
+    const ofPicture = (one: Tile): number => memoryOf(one, new Seam(one, new Tree(4)), false) - memoryOf({ ...one, picture: null }, new Seam(one, new Tree(4)), false);
+    const onGpu = Math.ceil((4 / 3) * 4 * 64 * 32);
+    expect(ofPicture(tile)).toBe(onGpu);
+    tile.picture!.bitmap.close();
+    expect(ofPicture(tile)).toBe(onGpu);
+    expect(ofPicture(root)).toBe(onGpu + 4 * 64 * 32);
+  });
+
   it('takes as much memory as the index says, of the picture the very bytes', async () => {
     const tile = await read(FINE);
     const [bare, tree] = [{ ...tile, picture: null, texcoords: null }, new Tree(4)];
     const most = (pictureWidth: number, pictureHeight: number): number =>
       mostMemory({ own: 2, ghosts: 2, copies: 0, splits: 1, interior: 0, border: 2, pictureWidth, pictureHeight }, { level: 2, vertexBytes: vertexBytesOf(tile), wires: true });
     const bytes = memoryOf(tile, new Seam(tile, tree), true);
-    const picture = 4 * 64 * 32 + Math.ceil((4 / 3) * 4 * 64 * 32); // the bitmap, and on the GPU with what is made smaller of it
+    const picture = Math.ceil((4 / 3) * 4 * 64 * 32); // on the GPU with what is made smaller of it
     expect(bytes - memoryOf(bare, new Seam(bare, tree), true)).toBe(picture + 2 * 8 * 5);
     expect(bytes).toBeLessThanOrEqual(most(64, 32));
     expect(most(64, 32) - most(0, 0)).toBe(picture + 2 * 8 * 5);

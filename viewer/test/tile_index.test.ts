@@ -130,8 +130,8 @@ describe('readManifest', () => {
   });
 
   const textured = (textures: unknown, texture: unknown): string => {
-    const source = { file_name: 'a.obj', file_bytes: 1, vertices: 3, triangles: 1, attributes: { colours: 'none', normals: false }, bounds: { min: [0, 0, 0], max: [1, 1, 1] }, textures };
-    return JSON.stringify({ format: 'meshhier', format_version: 6, source, origin: [0, 0, 0], up: 'y', licence: '', partitions: 1, total_bytes: 1,
+    const source = { file_name: 'a.obj', file_bytes: 1, vertices: 3, triangles: 1, attributes: { colours: 'none', normals: false }, bounds: { min: [0, 0, 0], max: [1, 1, 1] }, double_precision: false, textures };
+    return JSON.stringify({ format: 'meshhier', format_version: 6, source, origin: [0, 0, 0], up: 'y', transform: null, licence: '', partitions: 1, total_bytes: 1,
       storage: { positions: null, texture }, index: { file: 'tiles.bin', bytes: 152 } });
   };
   const stored = { format: 'webp', quality: 90, unlit: true };
@@ -148,6 +148,15 @@ describe('readManifest', () => {
     ['more missing pictures than there are', { images: 1, missing_images: 2 }, stored, 'from 0 to 1'],
   ])('refuses %s', (_, textures, texture, problem) => {
     expect(() => readManifest(textured(textures, texture))).toThrow(problem);
+  });
+
+  it('tells where the model stands, and refuses what is no transform', () => {
+    const placed = (transform: unknown): string => textured(undefined, undefined).replace('"transform":null', `"transform":${JSON.stringify(transform)}`);
+    const transform = Array.from({ length: 16 }, (_, i) => i);
+    expect(readManifest(placed(transform)).transform).toEqual(transform);
+    expect(readManifest(placed(null))).toMatchObject({ transform: null, worstRounding: 0, source: { doublePrecision: false } });
+    expect(() => readManifest(placed(transform.slice(1)))).toThrow('"transform.15" is not a number');
+    expect(() => readManifest(placed(['x']))).toThrow('"transform.0" is not a number');
   });
 
   it('says what to do about a hierarchy of an older version', () => {

@@ -175,6 +175,21 @@ describe('TileStore', () => {
     expect(tiles.peakBytes).toBe(5.5 * BYTES);
   });
 
+  it('drops what was lost with all below it, and asks again', async () => {
+    const host = new SlowHost();
+    const tiles = store(host, 1e6, 8);
+    const below = tree.children(LEFT);
+    tiles.want(wanted(LEFT, RIGHT), 1);
+    await host.answerAll();
+    tiles.want(wanted(LEFT, RIGHT, ...below), 2);
+    await host.answerAll();
+    tiles.dropLost(({ level, index }) => level === 1 && index === LEFT.index);
+    expect([...host.held].sort((a, b) => a - b)).toEqual([keyOf(0, 0), key(RIGHT)]);
+    expect(tiles.usedBytes).toBe(2 * BYTES);
+    expect(tiles.want(wanted(LEFT, RIGHT, ...below), 3)).toBe(3);
+    expect(host.calls.map(({ node }) => node)).toEqual([LEFT, ...below]);
+  });
+
   it('holds nothing after its end', async () => {
     const host = new SlowHost();
     const tiles = store(host, 1e6);

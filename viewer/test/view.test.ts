@@ -1,7 +1,7 @@
 // The whole library on real hierarchies, from files instead of a host, without a GPU.
 import { writeFileSync } from 'node:fs';
 import path from 'node:path';
-import { MeshBasicMaterial, PerspectiveCamera, Vector3, type Mesh } from 'three';
+import { MeshBasicMaterial, PerspectiveCamera, Vector3, type Mesh, type WebGLRenderer } from 'three';
 import { afterAll, afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import type { Fetch } from '../src/hierarchy/bytes.js';
 import { HierarchyView, type ViewOptions } from '../src/index.js';
@@ -69,6 +69,19 @@ class Session {
     const meshes = this.meshes().sort((a, b) => a.renderOrder - b.renderOrder);
     return meshes.map(({ geometry: { attributes: { position }, drawRange } }) =>
       [drawRange.count, position.count, ...position.array.slice(0, 3)].join());
+  }
+}
+
+/// What draws: tells whom it draws, and that pictures have come to the GPU.
+class Device {
+  readonly canvas = new EventTarget();
+
+  draw(meshes: readonly Mesh[]): void {
+    for (const mesh of meshes) {
+      const { map } = mesh.material as MeshBasicMaterial;
+      mesh.onBeforeRender({ domElement: this.canvas } as unknown as WebGLRenderer, null!, null!, null!, null!, null!);
+      map?.onUpdate?.(map);
+    }
   }
 }
 
@@ -153,6 +166,51 @@ describe.skipIf(!hasProgram)('HierarchyView', () => {
     expect(worstError).toBeLessThanOrEqual(1);
     expect(tiles).toBeGreaterThan(4);
     expect(failed).toBe(0);
+  });
+
+  it('becomes finer at rest, step by step, each at once and as a whole', async () => {
+    const session = begin(fetchFrom(largeTorus()), { settings: { threshold: 1, restDetail: 4 } });
+    await session.view.opened;
+    closeUp(session);
+    const errors: number[] = [];
+    for (let frames = 0; frames < 200 && !session.view.stats().settled; ++frames) {
+      await session.frame();
+      const { worstError } = session.view.stats();
+      if (Number.isFinite(worstError) && worstError !== errors.at(-1)) errors.push(worstError);
+    }
+    const steps = errors.filter((error) => error <= 1);
+    expect(steps).toHaveLength(3);
+    for (const [step, most] of [1, 0.5, 0.25].entries()) expect(steps[step]).toBeLessThanOrEqual(most);
+    expect(session.view.stats().settled).toBe(true);
+  });
+
+  it('keeps what became finer at rest while the camera moves, and asks for no more of it', async () => {
+    const session = begin(fetchFrom(largeTorus()), { settings: { threshold: 1 } });
+    await session.view.opened;
+    closeUp(session);
+    await session.settle();
+    const { tiles, fetchedFiles, pending } = session.view.stats();
+    session.camera.position.x += 1e-4;
+    await session.frame();
+    expect(session.view.stats()).toMatchObject({ moving: true, tiles, fetchedFiles, pending });
+    for (let frames = 0; frames < 12; ++frames) {
+      await session.frame();
+      expect(session.view.stats().tiles).toBe(tiles); // nor does it become coarse when it comes to rest
+    }
+  });
+
+  it('stays at the error that was asked for where no more is wanted', async () => {
+    const [plain, finer] = [1, 4].map((restDetail) => begin(fetchFrom(largeTorus()), { settings: { threshold: 1, restDetail } }));
+    for (const session of [plain, finer]) {
+      await session.view.opened;
+      closeUp(session);
+      expect(await session.settle()).toBe(true);
+    }
+    expect(plain.view.stats().worstError).toBeGreaterThan(0.5);
+    expect(finer.view.stats().tiles).toBeGreaterThan(plain.view.stats().tiles);
+    finer.view.setSettings({ restDetail: 1 });
+    expect(await finer.settle()).toBe(true);
+    expect(finer.cut()).toEqual(plain.cut());
   });
 
   it('draws the root before it asks for more of the mesh', async () => {
@@ -438,6 +496,32 @@ describe.skipIf(!hasProgram)('HierarchyView', () => {
     expect(tight.view.stats().peakBytes).toBeLessThanOrEqual(memoryBudget);
     expect(tight.view.stats().residentTiles).toBeLessThan(wide.view.stats().residentTiles);
     for (const { view } of [wide, tight]) view.dispose();
+    expect(FakeBitmap.open).toBe(0);
+  });
+
+  it('holds no picture twice once it is drawn, and asks again for those that went with the device', async () => {
+    vi.stubGlobal('createImageBitmap', fakeDecode);
+    FakeBitmap.open = 0;
+    const asked: string[] = [];
+    const session = begin(fetchFrom(textured(), asked), { settings: { threshold: 0.05 } });
+    await session.view.opened;
+    session.look([0.5, 1, 0.5], [0.5, 0, 0.5001]);
+    await session.settle();
+    const device = new Device();
+    device.draw(session.meshes());
+    const { tiles, residentTiles } = session.view.stats();
+    expect(tiles).toBeGreaterThan(4);
+    expect(FakeBitmap.open).toBeLessThanOrEqual(residentTiles - tiles);
+    const [there, before] = [session.cut(), asked.length];
+    device.canvas.dispatchEvent(new Event('webglcontextrestored'));
+    await session.frame();
+    expect(session.meshes().length).toBeLessThan(there.length);
+    for (const { material } of session.meshes()) expect(material).toMatchObject({ map: { image: { isClosed: false } } });
+    expect(await session.settle()).toBe(true);
+    expect(session.cut()).toEqual(there);
+    expect(asked.length).toBeGreaterThanOrEqual(before + tiles);
+    for (const { material } of session.meshes()) expect(material).toMatchObject({ map: { image: { isClosed: false } } });
+    session.view.dispose();
     expect(FakeBitmap.open).toBe(0);
   });
 

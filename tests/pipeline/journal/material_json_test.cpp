@@ -10,8 +10,14 @@ TEST(MaterialJsonTest, AListComesBack) {
   list.images.push_back({"a b.jpg", "/scans/\xff/a b.jpg", 0, 0, {}});
   list.images.push_back({"inside", "/scans/one.glb", 1000, 77, {}});
   list.images.push_back({"data", {}, 0, 0, {std::byte{1}, std::byte{255}}});
-  images::Material wall{"wall \xc3\xa4", {0.25f, 1, 0, 0.5f}, 1,    Wrap::mirrored,
-                        Wrap::clamp,     AlphaMode::blend,    0.25f};
+  images::Material wall{.name = "wall \xc3\xa4",
+                        .colour = {0.25f, 1, 0, 0.5f},
+                        .image = 1,
+                        .factor = {1, 0.5f, 0.25f, 0},
+                        .wrap_u = Wrap::mirrored,
+                        .wrap_v = Wrap::clamp,
+                        .alpha = AlphaMode::blend,
+                        .alpha_cutoff = 0.25f};
   list.materials = {wall, images::Material{}};
   EXPECT_EQ(material_list(to_json(list)), list);
   EXPECT_EQ(material_list(to_json(images::MaterialList{})), images::MaterialList{});

@@ -45,7 +45,7 @@ class TextureStoreTest : public testing::Test {
   NodeId leaf(std::uint32_t i) const { return {tree_.depth(), i}; }
   void put_all(TextureStore& store) const {
     for (std::uint32_t i = 0; i < kTiles; ++i)
-      store.put(leaf(i), texture_of(i), source_of(i), {1.5f, 0.5f});
+      store.put(leaf(i), texture_of(i), source_of(i), {1.5f, 0.5f, 2.5f});
   }
 
   tests::TemporaryDirectory directory_;
@@ -88,6 +88,7 @@ TEST_F(TextureStoreTest, AnotherProcessRestoresIt) {
   EXPECT_EQ(store.texture(leaf(2)).image, texture_of(2).image);
   expect_equal(*store.source(leaf(2)), source_of(2));
   EXPECT_EQ(store.texels(leaf(2)).finest, 0.5f);
+  EXPECT_EQ(store.texels(leaf(2)).lost, 2.5f);
   stored["source"][2] = 1;  // its checksum
   EXPECT_FALSE(store.restore(leaf(1), stored));
 }

@@ -15,6 +15,7 @@ TEST(Layout, FilesOfAHierarchyHaveTheirDocumentedNames) {
   EXPECT_EQ(manifest_path(hierarchy), "some/where/david.hier/hierarchy.json");
   EXPECT_EQ(index_path(hierarchy), "some/where/david.hier/tiles.bin");
   EXPECT_EQ(outline_path(hierarchy), "some/where/david.hier/outline.glb");
+  EXPECT_EQ(preview_path(hierarchy), "some/where/david.hier/preview.webp");
   EXPECT_EQ(level_directory(hierarchy, Level{7}), "some/where/david.hier/tiles/07");
   EXPECT_EQ(tile_path(hierarchy, {Level{7}, 42}), "some/where/david.hier/tiles/07/000042.glb");
 }
@@ -59,7 +60,7 @@ TEST(Layout, NamesOfWhatWasLeftAreKnownAgain) {
 
 TEST(Layout, FilesOfAHierarchyAreKnownByTheirNames) {
   for (const auto& path :
-       {manifest_path({}), index_path({}), outline_path({}), tileset_path({}),
+       {manifest_path({}), index_path({}), outline_path({}), preview_path({}), tileset_path({}),
         tileset_path({}, {static_cast<Level>(7), 3}), tile_path({}, {static_cast<Level>(0), 0}),
         tile_path({}, {static_cast<Level>(32), 4294967295U})}) {
     EXPECT_TRUE(is_hierarchy_file(path.string())) << path;
@@ -107,8 +108,9 @@ TEST(Layout, NoOtherNameIsAFileOfAHierarchy) {
 }
 
 TEST(Layout, NoTwoThingsShareAName) {
-  std::set<std::filesystem::path> names{manifest_path("h"), index_path("h"),   outline_path("h"),
-                                        lock_path("h"),     journal_path("h"), built_path("h")};
+  std::set<std::filesystem::path> names{manifest_path("h"), index_path("h"), outline_path("h"),
+                                        preview_path("h"),  lock_path("h"),  journal_path("h"),
+                                        built_path("h")};
   std::size_t count = names.size();
   EXPECT_EQ(count, 6U);
   for (int level = 0; level < 4; ++level) {

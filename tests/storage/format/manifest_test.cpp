@@ -49,6 +49,7 @@ Manifest make_manifest() {
   manifest.outline_bytes = 2222;
   manifest.outline_checksum = 0x1;
   manifest.outline = {3, 7, 0.004, 55, 6};
+  manifest.preview = storage::Preview{512, 511, 39999, 0xABC};
   manifest.tileset_files = 5;
   manifest.tileset_bytes = 4321;
   manifest.tileset_checksum = 0xFFFFFFFFFFFFFFFE;
@@ -98,6 +99,7 @@ void expect_same(const Manifest& a, const Manifest& b) {
   EXPECT_EQ(a.outline.tolerance, b.outline.tolerance);
   EXPECT_EQ(a.outline.polylines_found, b.outline.polylines_found);
   EXPECT_EQ(a.outline.polylines_dropped, b.outline.polylines_dropped);
+  EXPECT_EQ(a.preview, b.preview);
   EXPECT_EQ(a.levels, b.levels);
   EXPECT_EQ(a.total_bytes, b.total_bytes);
 }
@@ -336,6 +338,8 @@ TEST(Manifest, EveryMissingKeyIsNamed) {
                                           "/index/checksum",
                                           "/outline",
                                           "/outline/tolerance",
+                                          "/preview/height",
+                                          "/preview/checksum",
                                           "/levels",
                                           "/total_bytes"};
   for (const std::string& pointer : pointers) {
@@ -347,6 +351,14 @@ TEST(Manifest, EveryMissingKeyIsNamed) {
       c = c == '/' ? '.' : c;
     EXPECT_THAT(failure(sealed(changed)), HasSubstr("\"" + key + "\" is missing"));
   }
+}
+
+TEST(Manifest, WithoutAPreviewIsThatOfAnOlderHierarchy) {
+  Manifest manifest = make_manifest();
+  manifest.preview.reset();
+  const std::string text = to_json_text(manifest);
+  EXPECT_THAT(text, testing::Not(HasSubstr("preview")));
+  EXPECT_EQ(parse_manifest(text, kManifestName).preview, std::nullopt);
 }
 
 TEST(Manifest, EveryWrongValueIsNamed) {
@@ -382,6 +394,12 @@ TEST(Manifest, EveryWrongValueIsNamed) {
       {"/config", Json::array(), "\"config\" is wrong, expected an object"},
       {"/outline/tolerance", "x", "\"outline.tolerance\""},
       {"/outline/sectors", 4294967296ULL, "\"outline.sectors\""},
+      {"/preview", 3, "\"preview\" is wrong, expected an object"},
+      {"/preview/width", 0, "\"preview.width\" is wrong, expected at least 1"},
+      {"/preview/width", 513, "\"preview.width\" is wrong, expected an integer from 0 to 512"},
+      {"/preview/height", -1, "\"preview.height\""},
+      {"/preview/bytes", 40001, "\"preview.bytes\" is wrong, expected an integer from 0 to 40000"},
+      {"/preview/checksum", "x", "\"preview.checksum\""},
       {"/levels", 3, "\"levels\" is wrong, expected an array"},
       {"/index", 3, "\"index\" is wrong, expected an object"},
       {"/generator", 3, "\"generator\" is wrong, expected a text"}};

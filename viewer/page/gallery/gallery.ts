@@ -1,80 +1,95 @@
-// The thumbnail preview: all models as outlines that turn.
+// The thumbnail preview: all models as pictures, in groups, and the meshes that are becoming some.
 import type { Job, Listing, Model } from '../listing.js';
 import { formatCount } from '../numbers.js';
 import { element } from '../parts/element.js';
 import { words } from '../words/words.js';
+import { Animation } from './animation.js';
+import { arrangeModels, findJobs, type Group } from './arrangement.js';
+import type { Cell } from './cell.js';
+import { DrawingQueue } from './drawing_queue.js';
 import { JobCell } from './job_cell.js';
 import { ModelCell } from './model_cell.js';
-import { Painter } from './painter.js';
+import type { Order } from './orders.js';
+import { Toolbar } from './toolbar.js';
+import { VisibleCells } from './visible_cells.js';
 
-const RADIANS_A_MILLISECOND = 0.00035;
-const LONGEST_STEP = 100; // milliseconds
-const NEAR = '300px';
+const MOST_KEPT = 400; // cells of models, of which the window shows a few dozen: what was seen comes back as it was
+const LEAST_SEARCHED = 2; // models
 
-const still = matchMedia('(prefers-reduced-motion: reduce)');
+interface ModelEntry {
+  key: string;
+  model: Model;
+}
 
-/// Makes `children` the first children of `parent`; those that are in place are not touched, and keep the focus.
-function arrange(parent: Element, children: readonly Element[]): void {
-  children.forEach((child, i) => {
-    if (parent.children[i] !== child) parent.insertBefore(child, parent.children[i] ?? null);
-  });
+interface JobEntry {
+  key: string;
+  job: Job;
+}
+
+function entryOf(model: Model): ModelEntry {
+  return { key: `model ${model.path}`, model };
 }
 
 export class Gallery {
   readonly root: HTMLElement;
-  private readonly list = element('ul', { class: 'cells', role: 'list' });
   private readonly note = element('p', { class: 'gallery-note', 'aria-live': 'polite' });
-  private readonly painter: Painter;
-  private readonly near: IntersectionObserver;
-  private readonly cells = new Map<string, ModelCell>();
-  private readonly jobs = new Map<string, JobCell>();
-  private readonly byRoot = new WeakMap<Element, ModelCell>();
-  private readonly visible = new Set<ModelCell>();
-  private frame = 0;
-  private before = 0;
+  private readonly toolbar: Toolbar;
+  private readonly visible = new VisibleCells<ModelEntry | JobEntry>((entry) => ('model' in entry ? this.modelCell(entry) : this.jobCell(entry)));
+  private readonly above = new ResizeObserver(() => { if (this.open) this.visible.follow(); }); // cells move with what is above
+  private readonly animation = new Animation();
+  private readonly stills = new DrawingQueue();
+  private readonly cells = new Map<string, ModelCell>(); // the last one was used last
+  private readonly jobCells = new Map<string, JobCell>();
+  private listing: Pick<Listing, 'models' | 'jobs'> = { models: [], jobs: null };
+  private groups: readonly Group<Model>[] = [];
   private open = false;
   private scrolled = 0;
 
-  constructor(header: HTMLElement) {
-    const canvas = element('canvas', { class: 'gallery-canvas', 'aria-hidden': 'true' });
-    this.root = element('main', { class: 'gallery', hidden: true }, header, this.note, this.list, canvas);
-    this.painter = new Painter(canvas, () => { this.ask(); });
-    this.near = new IntersectionObserver((entries) => { this.seen(entries); }, { rootMargin: NEAR });
-    for (const type of ['scroll', 'resize'] as const) window.addEventListener(type, () => { this.ask(); }, { passive: true });
-    document.addEventListener('visibilitychange', () => { this.ask(); });
-    still.addEventListener('change', () => { this.ask(); });
+  /// `ordered`: the user chose another order. `controls`: of the page as a whole.
+  constructor(order: Order, ordered: (order: Order) => void, controls: readonly HTMLElement[]) {
+    this.toolbar = new Toolbar(order, () => {
+      ordered(this.toolbar.wish.order);
+      this.arrange();
+    });
+    const header = element('header', { class: 'gallery-header' }, element('h1', {}, 'meshhier'), this.toolbar.root, ...controls);
+    this.root = element('main', { class: 'gallery', hidden: true }, header, this.note, this.visible.root);
+    for (const type of ['scroll', 'resize'] as const) window.addEventListener(type, () => { if (this.open) this.visible.follow(); }, { passive: true });
+    this.toolbar.root.hidden = true;
   }
 
   get shown(): boolean {
     return this.open;
   }
 
-  /// False: the browser has no WebGL 2, and cells stay empty.
-  get works(): boolean {
-    return this.painter.works;
+  /// Puts something above the models, of whatever height.
+  insert(section: HTMLElement): void {
+    this.note.before(section);
+    this.above.observe(section);
   }
 
   show(): void {
     this.open = true;
     this.root.hidden = false;
+    this.visible.follow();
     window.scrollTo(0, this.scrolled);
-    this.ask();
+    this.visible.follow();
   }
 
   hide(): void {
     if (this.open) this.scrolled = window.scrollY;
     this.open = false;
     this.root.hidden = true;
+    this.animation.stopAll();
   }
 
   /// Focuses the cell of that path, if there is one.
   focus(path: string): void {
-    this.cells.get(path)?.root.querySelector('a')?.focus({ preventScroll: true });
+    const cell = this.visible.reveal(`model ${path}`);
+    if (cell instanceof ModelCell) cell.focus();
   }
 
   themeChanged(): void {
-    this.painter.themeChanged();
-    this.ask();
+    this.visible.redraw();
   }
 
   /// A text in the place of the models, or above them. The same one again is not read out again.
@@ -82,83 +97,72 @@ export class Gallery {
     if (this.note.textContent !== text) this.note.textContent = text;
   }
 
-  /// Shows what the listing has; cells of models that stay keep their outlines.
+  /// Shows what the listing has; cells of models that stay keep what they show.
   update({ models, jobs }: Listing): void {
+    const isSame = JSON.stringify(models) === JSON.stringify(this.listing.models);
+    this.listing = { models: isSame ? this.listing.models : models, jobs };
+    this.toolbar.root.hidden = models.length < LEAST_SEARCHED;
+    if (!isSame) this.dropOthers(models);
     this.updateJobs(jobs ?? []);
-    this.updateModels(models);
-    const cells = [...(jobs ?? []).map(({ name }) => this.jobs.get(name)!), ...models.map(({ path }) => this.cells.get(path)!)];
-    arrange(this.list, cells.map(({ root }) => root));
-    this.tell(words.counts.models(models.length, formatCount(models.length)));
-    this.ask();
+    if (isSame) this.showGroups();
+    else this.arrange();
   }
 
-  private updateModels(models: readonly Model[]): void {
-    const kept = new Set(models.map((model) => this.cellOf(model)));
-    for (const cell of this.cells.values()) if (!kept.has(cell)) this.drop(cell);
+  private arrange(): void {
+    this.groups = arrangeModels(this.listing.models, this.toolbar.wish);
+    this.showGroups();
+  }
+
+  private showGroups(): void {
+    const jobs = findJobs(this.listing.jobs ?? [], this.toolbar.wish);
+    const underWay = { key: 'jobs', name: '', items: jobs.map((job) => ({ key: `job ${job.name}`, job })) };
+    const models = this.groups.map(({ key, name, items }) => ({ key, name, items: items.map(entryOf) }));
+    this.visible.show([underWay, ...models].filter(({ items }) => items.length > 0));
+    this.tell(this.summary());
+  }
+
+  private summary(): string {
+    const { search } = this.toolbar.wish;
+    const all = this.listing.models.length;
+    const found = this.groups.reduce((sum, { items }) => sum + items.length, 0);
+    const total = words.counts.models(all, formatCount(all));
+    if (search === '') return total;
+    return found === 0 ? words.gallery.nothingFound(search) : words.gallery.found(formatCount(found), total);
   }
 
   /// The model's cell; a new one if it is not as it was.
-  private cellOf(model: Model): ModelCell {
-    const before = this.cells.get(model.path);
-    if (before !== undefined && JSON.stringify(before.model) === JSON.stringify(model)) return before;
-    if (before !== undefined) this.drop(before);
-    const cell = new ModelCell(model, () => { this.ask(); });
-    this.cells.set(model.path, cell);
-    this.byRoot.set(cell.root, cell);
-    this.near.observe(cell.root);
+  private modelCell({ key, model }: ModelEntry): Cell {
+    const cell = this.cells.get(key) ?? new ModelCell(model, { stills: this.stills, animation: this.animation });
+    this.cells.delete(key);
+    this.cells.set(key, cell);
+    if (this.cells.size > MOST_KEPT) this.drop(this.cells.keys().next().value!);
     return cell;
   }
 
-  private drop(cell: ModelCell): void {
-    this.near.unobserve(cell.root);
-    this.visible.delete(cell);
-    cell.close();
-    this.cells.delete(cell.model.path);
+  private drop(key: string): void {
+    this.cells.get(key)?.close();
+    this.cells.delete(key);
+  }
+
+  /// Cells of models that are gone, or others by now.
+  private dropOthers(models: readonly Model[]): void {
+    const now = new Map(models.map((model) => [entryOf(model).key, model]));
+    for (const [key, { model }] of [...this.cells]) if (JSON.stringify(model) !== JSON.stringify(now.get(key))) this.drop(key);
+  }
+
+  private jobCell({ job }: JobEntry): Cell {
+    const cell = this.jobCells.get(job.name) ?? new JobCell(job.name);
+    this.jobCells.set(job.name, cell);
+    cell.update(job);
+    return cell;
   }
 
   private updateJobs(jobs: readonly Job[]): void {
     const names = new Set(jobs.map(({ name }) => name));
-    for (const [name, { root }] of this.jobs) {
+    for (const [name, cell] of [...this.jobCells]) {
       if (names.has(name)) continue;
-      root.remove();
-      this.jobs.delete(name);
+      cell.close();
+      this.jobCells.delete(name);
     }
-    for (const job of jobs) {
-      const cell = this.jobs.get(job.name) ?? new JobCell(job.name);
-      this.jobs.set(job.name, cell);
-      cell.update(job);
-    }
-  }
-
-  private seen(entries: readonly IntersectionObserverEntry[]): void {
-    for (const { target, isIntersecting } of entries) {
-      const cell = this.byRoot.get(target);
-      if (cell === undefined) continue;
-      if (isIntersecting) {
-        this.visible.add(cell);
-        cell.load();
-      } else this.visible.delete(cell);
-    }
-    this.ask();
-  }
-
-  private ask(): void {
-    if (this.frame === 0 && this.open && !document.hidden) this.frame = requestAnimationFrame((now) => { this.draw(now); });
-  }
-
-  private draw(now: number): void {
-    this.frame = 0;
-    if (!this.open) return;
-    const angle = still.matches ? 0 : Math.min(now - this.before, LONGEST_STEP) * RADIANS_A_MILLISECOND;
-    this.before = now;
-    for (const cell of this.cells.values()) cell.advance(angle);
-    const drawn = [...this.visible].filter(({ shape }) => shape !== null);
-    this.painter.paint(drawn.map((cell) => ({
-      shape: cell.shape!,
-      place: cell.stage.getBoundingClientRect(),
-      turn: cell.turn,
-      lively: cell.lively,
-    })));
-    if (!still.matches && drawn.length > 0) this.ask();
   }
 }

@@ -1,8 +1,9 @@
-// A mesh that is being made into a hierarchy: how far it is, or why it failed.
+// A mesh that is being made into a hierarchy: what it looks like, how far it is, or why it failed.
 import type { Job } from '../listing.js';
 import { formatDuration, formatPercent } from '../numbers.js';
 import { element } from '../parts/element.js';
 import { words } from '../words/words.js';
+import type { Cell } from './cell.js';
 
 /// Without the name where it begins with that: it stands above.
 function messageOf({ name, message }: Job): string {
@@ -31,24 +32,43 @@ function bar({ name, state, progress }: Job): HTMLElement | null {
   return element('progress', { max: '1', value, 'aria-label': words.jobs.progress(name) });
 }
 
-export class JobCell {
+export class JobCell implements Cell {
   readonly root: HTMLLIElement;
-  private readonly body = element('div', { class: 'cell job' });
+  private readonly picture = element('img', { class: 'cell-picture', alt: '', decoding: 'async', draggable: 'false', hidden: true });
+  private readonly state = element('span', { class: 'cell-state' });
+  private readonly size = element('span', { class: 'cell-size' });
+  private readonly body: HTMLElement;
   private shown = '';
 
-  constructor(readonly name: string) {
+  constructor(name: string) {
+    const stage = element('span', { class: 'cell-stage' }, this.picture, this.state);
+    this.body = element('div', { class: 'cell job' }, stage, element('span', { class: 'cell-name', title: name }, name), this.size);
     this.root = element('li', {}, this.body);
+    this.picture.addEventListener('load', () => { this.picture.hidden = false; });
+    this.picture.addEventListener('error', () => { this.picture.hidden = true; });
   }
 
   update(job: Job): void {
     const text = JSON.stringify(job);
     if (text === this.shown) return;
     this.shown = text;
-    this.body.classList.toggle('job-failed', job.state === 'failed');
-    this.body.replaceChildren(
-      element('span', { class: 'cell-stage' }, bar(job)),
-      element('span', { class: 'cell-name' }, job.name),
-      element('span', { class: `cell-size${job.state === 'failed' ? ' cell-problem' : ''}` }, stateText(job)),
-    );
+    const failed = job.state === 'failed';
+    this.body.classList.toggle('job-failed', failed);
+    this.size.classList.toggle('cell-problem', failed);
+    this.state.replaceChildren(...[bar(job)].filter((one) => one !== null));
+    this.size.textContent = this.size.title = stateText(job);
+    if (job.preview !== null && job.preview !== this.picture.getAttribute('src')) this.picture.src = job.preview;
+  }
+
+  load(): void {
+    // its picture comes with the listing
+  }
+
+  redraw(): void {
+    // nothing of it is drawn
+  }
+
+  close(): void {
+    this.root.remove();
   }
 }

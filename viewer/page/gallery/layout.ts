@@ -1,19 +1,4 @@
-// Where a cell's outline goes on the canvas that all of them share, and how it is turned.
-
-export interface Rectangle {
-  left: number;
-  top: number;
-  width: number;
-  height: number;
-}
-
-/// Pixels of the canvas, from its lower left corner, as WebGL counts them.
-export interface Port {
-  x: number;
-  y: number;
-  width: number;
-  height: number;
-}
+// How an outline is turned and seen in its cell.
 
 /// Radians: about the upright axis, then towards the viewer.
 export interface Turn {
@@ -33,16 +18,6 @@ export type Matrix = readonly number[];
 const MOST_PITCH = 1.4;
 const FOCUS = 3.2; // cotangent of half the angle of view
 const MARGIN = 0.98;
-
-/// The cell's place on a canvas at the given rectangle, both in CSS pixels. Null if none of it is to be seen.
-export function portOf(cell: Rectangle, canvas: Rectangle, ratio: number): Port | null {
-  const left = cell.left - canvas.left;
-  const below = canvas.top + canvas.height - cell.top - cell.height;
-  const seen = left < canvas.width && left + cell.width > 0 && below < canvas.height && below + cell.height > 0;
-  if (!seen || cell.width <= 0 || cell.height <= 0) return null;
-  const round = (value: number): number => Math.round(value * ratio);
-  return { x: round(left), y: round(below), width: round(cell.width), height: round(cell.height) };
-}
 
 function reachOf(positions: Float32Array, [x, y, z]: readonly [number, number, number]): number {
   let most = 0;

@@ -1,44 +1,58 @@
-// A model in the gallery: a link with its outline, its name and its size.
+// A model in the gallery: a link with its picture, its name and its size. The picture is the hierarchy's own; where it has none,
+// its outline stands still. What is pointed at or focused shows its outline, which turns.
 import { formatAddress } from '../address.js';
 import type { Model } from '../listing.js';
-import { formatBytes, formatCount, formatRough } from '../numbers.js';
+import { formatBytes, formatCount, formatDate, formatRough } from '../numbers.js';
 import { element } from '../parts/element.js';
 import { words } from '../words/words.js';
-import type { Turn } from './layout.js';
-import { ModelSource, type Sizes } from './model_source.js';
+import type { Animation } from './animation.js';
+import type { Cell } from './cell.js';
+import { drawOutline } from './drawing.js';
+import type { DrawingQueue } from './drawing_queue.js';
+import { ModelSource, type Facts } from './model_source.js';
 import type { Shape } from './shape.js';
 import { Turning } from './turning.js';
 
+type Sizes = Pick<Facts, 'vertices' | 'triangles' | 'bytes'>;
+
 /// As people read them.
-function roughSizes({ vertices, triangles, bytes }: Sizes): string[] {
+function roughSizes({ triangles, bytes }: Sizes): string[] {
   const parts = [];
-  if (vertices !== null) parts.push(words.counts.vertices(vertices, formatRough(vertices)));
   if (triangles !== null) parts.push(words.counts.triangles(triangles, formatRough(triangles)));
   if (bytes !== null) parts.push(formatBytes(bytes));
   return parts;
 }
 
-function exactText({ name, source }: Model, { vertices, triangles, bytes }: Sizes): string {
+function exactText({ name, source, modified }: Model, { vertices, triangles, bytes }: Sizes): string {
   const parts = [source ?? name];
   if (vertices !== null) parts.push(words.counts.vertices(vertices, formatCount(vertices)));
   if (triangles !== null) parts.push(words.counts.triangles(triangles, formatCount(triangles)));
   if (bytes !== null) parts.push(words.counts.bytes(bytes, formatCount(bytes)));
+  if (modified !== null) parts.push(formatDate(modified));
   return parts.join('\n');
 }
 
-export class ModelCell {
+/// What all cells draw with.
+export interface Studio {
+  stills: DrawingQueue;
+  animation: Animation;
+}
+
+export class ModelCell implements Cell {
   readonly root: HTMLLIElement;
-  readonly stage: HTMLSpanElement;
-  shape: Shape | null = null;
+  private readonly picture = element('img', { class: 'cell-picture', alt: '', decoding: 'async', draggable: 'false', hidden: true });
+  private readonly canvas = element('canvas', { class: 'cell-outline', 'aria-hidden': 'true', hidden: true });
+  private readonly note = element('span', { class: 'cell-note', hidden: true });
+  private readonly stage = element('span', { class: 'cell-stage' }, this.picture, this.canvas, this.note);
+  private readonly sizes = element('span', { class: 'cell-size' });
+  private readonly link: HTMLAnchorElement;
   private readonly turning: Turning;
   private readonly source: ModelSource;
-  private readonly link: HTMLAnchorElement;
-  private readonly sizes = element('span', { class: 'cell-size' });
+  private shape: Shape | null = null;
+  private pictured: 'unknown' | 'yes' | 'no' = 'unknown';
 
-  /// `changed`: there is something new to draw.
-  constructor(readonly model: Model, private readonly changed: () => void) {
+  constructor(readonly model: Model, private readonly studio: Studio) {
     this.source = new ModelSource(model.url);
-    this.stage = element('span', { class: 'cell-stage' });
     this.link = element(
       'a',
       { class: 'cell', href: formatAddress({ path: model.path, pose: null }), draggable: 'false' },
@@ -48,7 +62,36 @@ export class ModelCell {
     );
     this.showSizes(model);
     this.root = element('li', {}, this.link);
-    this.turning = new Turning(this.link, this.stage, changed);
+    this.turning = new Turning(this.link, this.stage, { enlivened: (lively) => { this.enlivened(lively); }, turned: () => { this.turned(); } });
+  }
+
+  load(): void {
+    if (this.pictured === 'unknown') void this.loadPicture();
+    else if (this.pictured === 'no') this.askOutline();
+    this.redraw();
+  }
+
+  redraw(): void {
+    if (this.shape !== null && !this.canvas.hidden) this.studio.stills.add(this);
+  }
+
+  draw(): void {
+    if (this.shape !== null) drawOutline(this.canvas, this.shape, this.turning.turn, getComputedStyle(this.canvas).color);
+  }
+
+  advance(angle: number): void {
+    this.turning.advance(angle);
+    if (!this.canvas.hidden) this.draw();
+  }
+
+  close(): void {
+    this.studio.animation.stop(this);
+    this.source.close();
+    this.root.remove();
+  }
+
+  focus(): void {
+    this.link.focus({ preventScroll: true });
   }
 
   private showSizes(sizes: Sizes): void {
@@ -56,56 +99,76 @@ export class ModelCell {
     this.sizes.replaceChildren(...roughSizes(sizes).flatMap((text) => [element('span', {}, text), ' ']));
   }
 
-  get turn(): Turn {
-    return this.turning.turn;
+  /// The hierarchy's own picture; where there is none, or it does not come, the outline.
+  private async loadPicture(): Promise<void> {
+    this.pictured = 'no';
+    const url = await this.findPicture();
+    if (url !== null && (await this.takePicture(url))) this.pictured = 'yes';
+    else this.askOutline();
+    this.arrange();
   }
 
-  get lively(): boolean {
-    return this.turning.lively;
+  /// Of a model whose listing tells nothing but its path, the manifest tells it, and the sizes.
+  private async findPicture(): Promise<string | null> {
+    if (this.model.preview !== null || this.model.vertices !== null) return this.model.preview;
+    const facts = await this.source.facts().catch(() => null);
+    if (facts !== null) this.showSizes(facts);
+    return facts?.preview ?? null;
   }
 
-  /// Turns it on by itself, unless it is held.
-  advance(angle: number): void {
-    this.turning.advance(angle);
+  private async takePicture(url: string): Promise<boolean> {
+    this.picture.src = url;
+    return this.picture.decode().then(() => true, () => false);
   }
 
-  /// Fetches the outline, and the sizes if the listing has none; again, once, if that failed and the cell comes into view again.
-  load(): void {
+  /// Nothing happens while it is on its way, once it is there, and where it failed too often.
+  private askOutline(): void {
     const asked = this.source.outline();
     if (asked === null) return;
-    this.stage.replaceChildren();
-    this.stage.classList.add('waiting');
+    this.note.hidden = true;
+    this.stage.classList.toggle('waiting', this.pictured === 'no');
     asked
-      .then((shape) => {
-        this.show(shape);
-        return this.loadSizes();
-      })
-      .catch((error: unknown) => { this.tell(error instanceof Error ? error.message : String(error)); });
+      .then((shape) => { this.take(shape); }, (error: unknown) => { this.tell(error instanceof Error ? error.message : String(error)); })
+      .finally(() => { this.stage.classList.remove('waiting'); });
   }
 
-  /// Without them the cell is as good.
-  private async loadSizes(): Promise<void> {
-    if (this.model.vertices !== null) return;
-    const sizes = await this.source.sizes().catch(() => null);
-    if (sizes !== null && !this.source.ended) this.showSizes(sizes);
-  }
-
-  /// It is gone from the gallery for good.
-  close(): void {
-    this.source.close();
-    this.root.remove();
-  }
-
-  private show(shape: Shape): void {
-    this.stage.classList.remove('waiting');
+  private take(shape: Shape): void {
     this.shape = shape;
-    if (shape.ends.length === 0) this.stage.append(element('span', { class: 'cell-note' }, words.gallery.onePiece));
-    this.changed();
+    if (shape.ends.length === 0) this.say(words.gallery.onePiece, false);
+    this.arrange();
   }
 
   private tell(problem: string): void {
-    if (this.source.ended) return;
-    this.stage.classList.remove('waiting');
-    this.stage.append(element('span', { class: 'cell-note cell-problem' }, words.gallery.noOutline(problem)));
+    if (!this.source.ended) this.say(words.gallery.noOutline(problem), true);
+    this.arrange();
+  }
+
+  private say(text: string, isProblem: boolean): void {
+    this.note.textContent = text;
+    this.note.classList.toggle('cell-problem', isProblem);
+    this.note.hidden = false;
+  }
+
+  private enlivened(lively: boolean): void {
+    if (lively) this.askOutline();
+    if (lively) this.studio.animation.start(this);
+    else this.studio.animation.stop(this);
+    this.arrange();
+  }
+
+  private turned(): void {
+    this.askOutline();
+    this.redraw();
+  }
+
+  /// Which of picture, outline and note is to be seen.
+  private arrange(): void {
+    const hasPicture = this.pictured === 'yes';
+    const outlined = this.shape !== null && this.shape.ends.length > 0 && (this.turning.lively || !hasPicture);
+    this.stage.classList.toggle('lively', this.turning.lively);
+    this.picture.hidden = !hasPicture || outlined;
+    this.canvas.hidden = !outlined;
+    if (hasPicture) this.note.hidden = true;
+    this.redraw();
   }
 }

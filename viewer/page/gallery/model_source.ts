@@ -6,11 +6,13 @@ import { shapeOf, type Shape } from './shape.js';
 
 const MOST_TRIES = 2;
 
-export interface Sizes {
+export interface Facts {
   readonly vertices: number | null;
   readonly triangles: number | null;
   /// Of all files of the hierarchy.
   readonly bytes: number | null;
+  /// Its picture's address, if it has one.
+  readonly preview: string | null;
 }
 
 export class ModelSource {
@@ -33,9 +35,9 @@ export class ModelSource {
   }
 
   /// From the manifest. Rejects with an Error that names the file.
-  async sizes(): Promise<Sizes> {
-    const { source, totalBytes } = await fetchManifest(this.fetch, `${this.url}/`, this.ending.signal);
-    return { vertices: source.vertices, triangles: source.triangles, bytes: totalBytes };
+  async facts(): Promise<Facts> {
+    const { source, totalBytes, preview } = await fetchManifest(this.fetch, `${this.url}/`, this.ending.signal);
+    return { vertices: source.vertices, triangles: source.triangles, bytes: totalBytes, preview: preview === null ? null : `${this.url}/${preview}` };
   }
 
   get ended(): boolean {

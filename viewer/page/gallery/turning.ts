@@ -1,41 +1,58 @@
-// Turns an outline: by itself, by a drag across it, and by the arrow keys.
+// How an outline is turned: by itself, by a drag across it, and by the arrow keys; and when there is one to be turned.
 import { dragged, type Turn } from './layout.js';
 
 const FIRST: Turn = { yaw: -0.6, pitch: 0.25 };
 const CLICK_REACH = 6; // pixels that a click may move
 const KEY_STEP = 0.2;
 const KEYS: Record<string, [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+const INTENT = 120; // milliseconds that a pointer stays: one that passes by means nothing
+
+export interface Turned {
+  /// It is pointed at or focused, or no longer.
+  enlivened(lively: boolean): void;
+  /// It is to be drawn from another side.
+  turned(): void;
+}
 
 export class Turning {
   turn: Turn = FIRST;
   private held: { pointer: number; x: number; y: number } | null = null;
   private distance = 0; // of the last drag, in pixels
-  private over = false;
+  private readonly reasons = new Set<'pointer' | 'focus'>();
+  private timer = 0;
 
   /// A drag on `link` is no click.
-  constructor(link: HTMLElement, private readonly stage: HTMLElement, private readonly changed: () => void) {
+  constructor(link: HTMLElement, private readonly stage: HTMLElement, private readonly turned: Turned) {
     link.addEventListener('pointerdown', (event) => { this.grab(event, link); });
     link.addEventListener('pointermove', (event) => { this.drag(event, link); });
     for (const type of ['pointerup', 'pointercancel'] as const) link.addEventListener(type, () => { this.release(); });
     link.addEventListener('click', (event) => { this.click(event); });
     link.addEventListener('dragstart', (event) => { event.preventDefault(); });
     link.addEventListener('keydown', (event) => { this.key(event); });
-    for (const type of ['pointerenter', 'focus'] as const) link.addEventListener(type, () => { this.enliven(true); });
-    for (const type of ['pointerleave', 'blur'] as const) link.addEventListener(type, () => { this.enliven(false); });
+    link.addEventListener('pointerenter', () => { this.timer = window.setTimeout(() => { this.enliven('pointer'); }, INTENT); });
+    link.addEventListener('pointerleave', () => { this.calm('pointer'); });
+    link.addEventListener('focus', () => { this.enliven('focus'); });
+    link.addEventListener('blur', () => { this.calm('focus'); });
   }
 
   /// Pointed at, or focused.
   get lively(): boolean {
-    return this.over;
+    return this.reasons.size > 0;
   }
 
+  /// Unless it is held.
   advance(angle: number): void {
     if (this.held === null) this.turn = { ...this.turn, yaw: this.turn.yaw + angle };
   }
 
-  private enliven(over: boolean): void {
-    this.over = over;
-    this.changed();
+  private enliven(reason: 'pointer' | 'focus'): void {
+    this.reasons.add(reason);
+    this.turned.enlivened(true);
+  }
+
+  private calm(reason: 'pointer' | 'focus'): void {
+    window.clearTimeout(this.timer);
+    if (this.reasons.delete(reason)) this.turned.enlivened(this.lively);
   }
 
   private grab(event: PointerEvent, link: HTMLElement): void {
@@ -53,7 +70,7 @@ export class Turning {
     this.distance += Math.hypot(x, y);
     if (this.distance > CLICK_REACH) link.setPointerCapture(event.pointerId);
     this.turn = dragged(this.turn, x, y, this.stage.clientWidth);
-    this.changed();
+    this.turned.turned();
   }
 
   private release(): void {
@@ -70,6 +87,6 @@ export class Turning {
     if (step === undefined || event.ctrlKey || event.altKey || event.metaKey) return;
     event.preventDefault();
     this.turn = dragged(this.turn, step[0] * KEY_STEP, step[1] * KEY_STEP, Math.PI);
-    this.changed();
+    this.turned.turned();
   }
 }

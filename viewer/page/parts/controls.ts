@@ -43,7 +43,8 @@ export function slider(name: string, unit: string, { least, most, step }: Range,
     chosen(Number(range.value));
   });
   number.addEventListener('change', () => {
-    const value = Math.min(Math.max(Number(number.value) || least, least), most);
+    const given = number.valueAsNumber;
+    const value = Math.min(Math.max(Number.isNaN(given) ? least : given, least), most);
     show(value);
     chosen(value);
   });

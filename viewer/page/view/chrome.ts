@@ -1,9 +1,14 @@
 // Everything around the picture: bars, badge, sheets.
 import type { Manifest, Stats } from '../../src/index.js';
+import { summaryOf } from '../info/facts.js';
+import { InfoSheet } from '../info/info_sheet.js';
+import type { Model } from '../listing.js';
 import { element, iconButton } from '../parts/element.js';
 import { ICONS } from '../parts/icons.js';
 import { ModeBadge } from '../parts/mode_badge.js';
 import type { Preferences } from '../preferences.js';
+import { ShareSheet } from '../share/share_sheet.js';
+import type { Shared } from '../share/embed_code.js';
 import { words } from '../words/words.js';
 import { help } from './help.js';
 import { Panel } from './panel.js';
@@ -17,7 +22,10 @@ export interface Orders extends Choices {
   back: (() => void) | null;
   home: () => void;
   zoom: (logarithm: number) => void;
+  tools: () => void;
   panelShown: (open: boolean) => void;
+  /// What is to be shared, as it is now.
+  shared: () => Shared;
 }
 
 export class Chrome {
@@ -26,25 +34,35 @@ export class Chrome {
   readonly settings: Sheet;
   readonly help: Sheet;
   readonly panel: Sheet;
+  readonly share: Sheet;
+  readonly info: Sheet;
   private readonly badge = new ModeBadge();
   private readonly busy = element('div', { class: 'busy', 'aria-hidden': 'true' });
   private readonly form: SettingsForm;
   private readonly figures = new Panel();
+  private readonly summary = element('p', { class: 'unseen', id: 'model-summary' });
+  private readonly sharing = new ShareSheet();
+  private readonly about = new InfoSheet();
 
   /// `surface`: what the picture is drawn on.
-  constructor(name: string, surface: HTMLElement, orders: Orders, signal: AbortSignal) {
+  constructor(private readonly model: Model, surface: HTMLElement, orders: Orders, signal: AbortSignal) {
     this.form = new SettingsForm(orders);
     this.settings = new Sheet('settings', words.view.settings, ICONS.sliders, [this.form.root]);
     this.panel = new Sheet('figures', words.view.figures, ICONS.chart, [this.figures.root]);
     this.help = new Sheet('help', words.view.help, ICONS.help, [help()]);
-    const all = [this.settings, this.panel, this.help];
-    this.sheets = new Sheets(all, [this.settings, this.help], (sheet, open) => { this.sheetChanged(sheet, open, orders); }, signal);
+    this.share = new Sheet('share', words.share.title, ICONS.share, [this.sharing.root]);
+    this.info = new Sheet('info', words.info.title, ICONS.help, [this.about.root]);
+    const buttons = [this.share, this.settings, this.panel, this.help].map(({ button }) => button);
+    const all = [this.info, this.share, this.settings, this.panel, this.help];
+    this.sheets = new Sheets(all, [this.info, this.share, this.settings, this.help], (sheet, open) => { this.sheetChanged(sheet, open, orders); }, signal);
+    surface.setAttribute('aria-describedby', this.summary.id);
     this.root = element(
       'main',
       { class: 'view' },
       surface,
+      this.summary,
       this.busy,
-      this.topBar(name, orders, all.map(({ button }) => button)),
+      this.topBar(orders, buttons),
       this.zoomBar(orders),
       ...all.map(({ root }) => root),
     );
@@ -63,14 +81,27 @@ export class Chrome {
 
   tellSource(manifest: Manifest): void {
     this.figures.tellSource(manifest);
+    this.about.show(this.model, manifest);
+    const summary = summaryOf(this.model, manifest);
+    if (this.summary.textContent !== summary) this.summary.textContent = summary;
   }
 
-  private topBar(name: string, { back, home }: Orders, buttons: readonly HTMLElement[]): HTMLElement {
+  private topBar({ back, home, tools }: Orders, buttons: readonly HTMLElement[]): HTMLElement {
     const leave = back === null ? null : iconButton(words.view.back, ICONS.back, back);
-    const title = element('h1', { title: name }, name);
+    const title = element('h1', {}, this.titleButton());
     const whole = iconButton(words.view.whole, ICONS.home, home);
-    const bar = element('div', { class: 'bar' }, whole, ...buttons);
+    const bar = element('div', { class: 'bar' }, whole, iconButton(words.view.tools, ICONS.tools, tools), ...buttons);
     return element('header', { class: 'top-bar' }, element('div', { class: 'top-row' }, leave, title, bar), this.badge.root);
+  }
+
+  /// The model's name, which tells more of it.
+  private titleButton(): HTMLButtonElement {
+    const { button } = this.info;
+    button.replaceChildren(this.model.name);
+    button.className = 'title-button';
+    button.title = `${this.model.name}: ${words.info.title}`;
+    button.setAttribute('aria-label', button.title);
+    return button;
   }
 
   private zoomBar({ zoom }: Orders): HTMLElement {
@@ -82,5 +113,12 @@ export class Chrome {
   private sheetChanged(sheet: Sheet, open: boolean, orders: Orders): void {
     this.root.classList.toggle('with-sheet', this.sheets.anyOpen);
     if (sheet === this.panel) orders.panelShown(open);
+    if (sheet === this.share && open) this.showShared(orders);
+  }
+
+  /// The address is written when the view is asked.
+  private showShared(orders: Orders): void {
+    const shared = orders.shared();
+    this.sharing.show(location.href, shared);
   }
 }

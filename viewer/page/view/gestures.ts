@@ -28,6 +28,8 @@ export class Gestures {
   constructor(
     private readonly surface: HTMLElement,
     private readonly navigation: Navigation,
+    /// A place of the picture was tapped, from -1 to 1; true: that is all.
+    private readonly takes: (right: number, up: number) => boolean = () => false,
   ) {
     surface.addEventListener('pointerdown', (event) => { this.down(event); });
     surface.addEventListener('pointermove', (event) => { this.drag(event); });
@@ -100,6 +102,7 @@ export class Gestures {
 
   /// The second one at a place flies there.
   private tapped({ timeStamp, clientX: x, clientY: y }: PointerEvent): void {
+    if (this.takes(...this.placeOf({ x, y }))) return;
     const again = timeStamp - this.tap.at < TAP.pause && Math.hypot(x - this.tap.x, y - this.tap.y) < TAP.reach;
     this.tap = { at: again ? -Infinity : timeStamp, x, y };
     if (again) this.navigation.approach(...this.placeOf({ x, y }));

@@ -1,4 +1,6 @@
 // The keyboard, as movements and commands.
+import type { ToolName } from '../tools/bench.js';
+import { TOOL_KEYS } from '../tools/keys.js';
 import type { Moves } from './glide.js';
 
 export interface Commands {
@@ -6,6 +8,7 @@ export interface Commands {
   home(): void;
   back(): void;
   colours(number: number): void;
+  tool(name: ToolName): void;
   toggle(what: 'texture' | 'wires' | 'points' | 'outline' | 'flat' | 'panel' | 'settings' | 'help'): void;
 }
 
@@ -28,7 +31,10 @@ const back: Act = (commands) => { commands.back(); };
 const colours = (number: number): Act => (commands) => { commands.colours(number); };
 const toggle = (what: Parameters<Commands['toggle']>[0]): Act => (commands) => { commands.toggle(what); };
 
+const TOOLS = Object.entries(TOOL_KEYS).map(([name, key]): [string, Act] => [key.toLowerCase(), (commands) => { commands.tool(name as ToolName); }]);
+
 const ACTS: Record<string, Act> = {
+  ...Object.fromEntries(TOOLS),
   ArrowLeft: arrow(-1, 0), ArrowRight: arrow(1, 0), ArrowUp: arrow(0, 1), ArrowDown: arrow(0, -1),
   '+': closer, '=': closer, '-': farther, _: farther,
   Home: home, '0': home, Escape: back, Backspace: back,

@@ -6,7 +6,9 @@ import type { Model } from '../listing.js';
 import { element } from '../parts/element.js';
 import { formatCount } from '../numbers.js';
 import type { Telling } from '../problems.js';
+import type { Bench, ToolName, Tools } from '../tools/bench.js';
 import { COLOURS, type Preferences, type Theme } from '../preferences.js';
+import type { Shared } from '../share/embed_code.js';
 import { CameraPose } from './camera_pose.js';
 import { Chrome } from './chrome.js';
 import { FrameLoop, type Pace } from './frame_loop.js';
@@ -45,6 +47,7 @@ const UNKNOWN = new Box3(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
 export class ModelView {
   readonly root: HTMLElement;
   readonly view: HierarchyView;
+  private tools: Tools | null = null;
   private readonly stage: Stage;
   private readonly navigation: Navigation;
   private readonly loop = new FrameLoop((now) => this.frame(now));
@@ -73,9 +76,9 @@ export class ModelView {
     this.stage.show(this.view);
     this.navigation = new Navigation((right, up) => this.stage.pick(right, up), () => { this.redraw(); });
     const surface = this.makeSurface();
-    this.chrome = new Chrome(model.name, surface, this.orders(), this.ending.signal);
+    this.chrome = new Chrome(model, surface, this.orders(), this.ending.signal);
     this.root = this.chrome.root;
-    new Gestures(surface, this.navigation);
+    new Gestures(surface, this.navigation, (right, up) => this.tools?.tapped(right, up) ?? false);
     listenToKeys(this.commands(), this.ending.signal);
     this.listen();
   }
@@ -141,17 +144,15 @@ export class ModelView {
     this.view.addEventListener('change', this.loop.wake);
     this.view.addEventListener('problem', ({ message, files }) => { this.miss(message, files); });
     this.view.addEventListener('recovered', () => { this.missing?.(); });
-    canvas.addEventListener('webglcontextlost', () => { this.lost = this.around.failed(words.problems.pictureLost); }, { signal });
+    canvas.addEventListener('webglcontextlost', () => { this.lost = this.around.failed(words.problems.pictureLost, { more: words.problems.pictureLostMore }); }, { signal });
     canvas.addEventListener('webglcontextrestored', () => { this.restored(); }, { signal });
     document.addEventListener('visibilitychange', () => { this.redraw(); }, { signal });
   }
 
   /// However many files are missing, they are one message.
   private miss(message: string, files: number): void {
-    const { missing, missingFiles } = words.problems;
-    const why = message.replace(/[.?!]$/, '');
-    const text = files > 1 ? missingFiles(this.model.name, why, formatCount(files)) : missing(this.model.name, why);
-    this.missing = this.around.failed(text, { subject: 'missing', retry: () => { this.view.retry(); } });
+    const text = words.problems.missing(this.model.name, files, formatCount(files));
+    this.missing = this.around.failed(text, { more: message, subject: 'missing', retry: () => { this.view.retry(); } });
   }
 
   private restored(): void {
@@ -179,9 +180,9 @@ export class ModelView {
     const why = error instanceof Error ? error.message : String(error);
     const passes = error instanceof HierarchyProblem && error.mayPass;
     const { notOpened, notAHierarchy } = words.problems;
-    const hint = passes ? '' : notAHierarchy(this.model.url);
+    const more = passes ? why : `${why}. ${notAHierarchy(this.model.url)}`;
     this.missing?.();
-    this.around.failed(notOpened(this.model.name, why) + hint, { subject: 'refused', retry: () => { this.around.again(); } });
+    this.around.failed(notOpened(this.model.name), { more, subject: 'refused', retry: () => { this.around.again(); } });
   }
 
   private redraw(): void {
@@ -206,6 +207,7 @@ export class ModelView {
 
   private draw(): void {
     this.stage.draw();
+    this.tools?.drawn();
     if (this.opened && !this.shown) performance.mark(FIRST_PICTURE);
     this.shown = this.opened;
   }
@@ -245,6 +247,7 @@ export class ModelView {
     this.view.setSettings(change);
     Object.assign(this.around.preferences.settings, change);
     this.around.chosen();
+    this.chrome.show(this.around.preferences);
     this.redraw();
   }
 
@@ -271,12 +274,49 @@ export class ModelView {
       back: this.around.leave === null ? null : this.back,
       home: () => { this.navigation.goHome(); },
       zoom: (logarithm) => { this.zoomMiddle(logarithm); },
+      tools: () => void this.useTools(null),
       panelShown: (open) => { this.panelShown(open); },
+      shared: () => this.shared(),
       look: (change) => { this.setLook(change); },
       settings: (change) => { this.setSettings(change); },
       theme: (theme) => { this.around.setTheme(theme); },
       language: (language) => { this.around.setLanguage(language); },
     };
+  }
+
+  private bench(): Bench {
+    return {
+      name: this.model.name,
+      view: this.view,
+      camera: this.stage.camera,
+      root: this.root,
+      surface: this.stage.canvas.parentElement!,
+      signal: this.ending.signal,
+      pose: () => this.navigation.pose,
+      redraw: () => { this.redraw(); },
+      setPainter: (painter) => { this.stage.painter = painter; },
+      tell: (message) => this.around.failed(message, { subject: 'tools', retry: null }),
+    };
+  }
+
+  /// Loads the tools when they are first asked for.
+  private async useTools(name: ToolName | null): Promise<void> {
+    if (this.view.manifest === null) return; // nothing is known of the model yet
+    try {
+      const { Toolbox } = await import('../tools/toolbox.js');
+      if (this.closed) return;
+      this.tools ??= new Toolbox(this.bench());
+      this.tools.toggle(name);
+    } catch {
+      this.around.failed(words.problems.noCode, { subject: 'tools', retry: () => void this.useTools(name) });
+    }
+  }
+
+  /// The address tells of the camera as it is, even before it has come to rest.
+  private shared(): Shared {
+    this.rest();
+    const { name, url } = this.model;
+    return { page: location.origin + location.pathname, name, url, pose: this.navigation.atHome ? null : this.pose() };
   }
 
   private zoomMiddle(logarithm: number): void {
@@ -288,7 +328,8 @@ export class ModelView {
     return {
       move: (moves) => { this.moveByKey(moves); },
       home: () => { this.navigation.goHome(); },
-      back: () => { if (!this.chrome.sheets.closeAside()) this.back(); },
+      back: () => { if (!this.chrome.sheets.closeAside() && this.tools?.back() !== true) this.back(); },
+      tool: (name) => void this.useTools(name),
       colours: (number) => { this.setLook({ colours: COLOURS[number] }); },
       toggle: (what) => { this.toggle(what); },
     };

@@ -5,6 +5,13 @@ import { depthRange, VIEW_ANGLE, type CameraPose } from './camera_pose.js';
 
 const MOST_RATIO = 2;
 
+/// Draws the scene in its own way.
+export interface Painter {
+  paint(renderer: WebGLRenderer, scene: Scene, camera: PerspectiveCamera): void;
+  /// Whether a point of the world is drawn.
+  keeps(point: Vector3): boolean;
+}
+
 /// From above, and from a lamp that goes with the camera.
 function lights(camera: PerspectiveCamera): HemisphereLight {
   const key = new DirectionalLight(0xfff6ea, 2.9);
@@ -17,7 +24,7 @@ function lights(camera: PerspectiveCamera): HemisphereLight {
 
 function makeRenderer(): WebGLRenderer {
   try {
-    return new WebGLRenderer({ antialias: true, alpha: true, powerPreference: 'high-performance' });
+    return new WebGLRenderer({ antialias: true, alpha: true, stencil: true, powerPreference: 'high-performance' });
   } catch {
     throw new Error(words.problems.noWebGl);
   }
@@ -30,6 +37,8 @@ export class Stage {
   private readonly scene = new Scene();
   private readonly shown = new Group();
   private readonly raycaster = new Raycaster();
+  /// Null: as it is.
+  painter: Painter | null = null;
   private nominal = new Vector2();
   private sharpness = 1;
 
@@ -79,13 +88,15 @@ export class Stage {
   }
 
   draw(): void {
-    this.renderer.render(this.scene, this.camera);
+    if (this.painter) this.painter.paint(this.renderer, this.scene, this.camera);
+    else this.renderer.render(this.scene, this.camera);
   }
 
   /// The point of the drawn triangles at a place of the picture, from -1 to 1.
   pick(right: number, up: number): Vector3 | null {
     this.raycaster.setFromCamera(new Vector2(right, up), this.camera);
-    return this.raycaster.intersectObject(this.shown, true)[0]?.point ?? null;
+    const hits = this.raycaster.intersectObject(this.shown, true);
+    return hits.find(({ point }) => this.painter?.keeps(point) ?? true)?.point ?? null;
   }
 
   dispose(): void {

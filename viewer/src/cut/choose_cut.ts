@@ -8,6 +8,8 @@ import { isInView, pixelsOf, type Viewpoint } from './viewpoint.js';
 export interface Limits {
   /// Error on screen, in pixels, up to which a tile will do.
   readonly threshold: number;
+  /// The same of tiles that may be finer, as long as their triangles are larger than a pixel; if it is less.
+  readonly fine: number;
   /// Of all tiles in view.
   readonly vertices: number;
   /// Of all tiles of the cut and above it, in memory, with room for the largest of them on its way.
@@ -25,6 +27,8 @@ export interface Sources {
   readonly isLost: (node: Node) => boolean;
   /// Whether the node was refined in the last cut, and is to stay so for a while.
   readonly wasRefined: (key: number) => boolean;
+  /// Whether the node may be finer than the threshold.
+  readonly mayBeFine: (key: number) => boolean;
 }
 
 export interface ChosenNode {
@@ -53,6 +57,13 @@ export interface Choice {
 const HYSTERESIS = 1.3;
 /// A tile takes so many times its bytes on its way: its file, packed and unpacked, is in memory as well until it is decoded.
 export const LOADING = 2;
+
+/// The side of a tile's triangles, in pixels: two of them to a square, on a surface as large as half the box's sides together, which
+/// it is if it lies along the axes, and nearly if it is round.
+function trianglePixels(view: Viewpoint, record: TileRecord): number {
+  const [a, b, c] = record.max.map((max, axis) => max - record.min[axis]);
+  return pixelsOf(view, record, Math.sqrt((2 * (a * b + b * c + c * a)) / Math.max(1, record.interior + record.border)));
+}
 
 class Chooser {
   readonly refined: ChosenNode[] = [];
@@ -86,7 +97,12 @@ class Chooser {
     this.bytes += bytes;
     this.largest = Math.max(this.largest, bytes);
     const deserved = chosen.pixels * (this.sources.wasRefined(chosen.key) ? HYSTERESIS : 1);
-    if (deserved > this.limits.threshold) this.queue.push(chosen, deserved);
+    if (deserved > this.allowed(chosen)) this.queue.push(chosen, deserved);
+  }
+
+  private allowed({ key, record }: ChosenNode): number {
+    const { threshold, fine } = this.limits;
+    return fine < threshold && this.sources.mayBeFine(key) && trianglePixels(this.view, record) > 1 ? fine : threshold;
   }
 
   private refine(chosen: ChosenNode): void {

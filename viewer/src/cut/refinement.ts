@@ -2,13 +2,16 @@
 import type { Cone } from '../hierarchy/normals.js';
 import type { TileIndex, TileRecord } from '../hierarchy/tile_index.js';
 import { keyOf, type Node, type Tree } from '../hierarchy/tree.js';
-import { chooseCut, LOADING, type Choice, type ChosenNode, type Sources } from './choose_cut.js';
+import { chooseCut, LOADING, type ChosenNode, type Sources } from './choose_cut.js';
+import { RestDetail } from './rest_detail.js';
 import type { TileStore, Wanted } from './tile_store.js';
 import { looksAway, type Vector, type Viewpoint } from './viewpoint.js';
 import { windingNumber } from './winding.js';
 
 export interface RefinementLimits {
   readonly threshold: number;
+  /// Of it, at rest: see RestDetail.
+  readonly restDetail: number;
   readonly vertices: number;
   /// The camera stands still.
   readonly atRest: boolean;
@@ -17,12 +20,12 @@ export interface RefinementLimits {
 export interface Refined {
   /// A cut of tiles that are all there: as the view asks for, or coarser.
   readonly drawn: readonly ChosenNode[];
-  /// Tiles of the cut asked for, or above it, that will come.
-  readonly missing: number;
   /// More would be drawn if more vertices were allowed.
   readonly limited: boolean;
   /// Nothing is missing that the view asks for.
   readonly isComplete: boolean;
+  /// More is asked for after a while.
+  readonly isPausing: boolean;
 }
 
 /// Bytes that a tile may take, by its record.
@@ -45,7 +48,12 @@ const NONE: ReadonlySet<number> = new Set();
 const OUTSIDE = 0.25;
 
 export class Refinement {
+  /// Backs are seen from outside, too: the model is cut open.
+  showsInside = false;
   private refined: ReadonlySet<number> = NONE;
+  /// What the last drawing showed finer.
+  private shown = new Set<number>();
+  private readonly detail = new RestDetail();
 
   constructor(
     private readonly tree: Tree,
@@ -56,14 +64,40 @@ export class Refinement {
 
   /// null: not even the root is known.
   refine(view: Viewpoint, limits: RefinementLimits, now: number): Refined | null {
-    const choice = chooseCut(this.sources(view, limits.atRest, now), view, { ...limits, bytes: this.store.budget });
+    const { threshold, restDetail, atRest } = limits;
+    const divisor = this.detail.step(now, atRest, restDetail);
+    const choice = chooseCut(this.sources(view, atRest, now), view, { ...limits, fine: threshold / restDetail, bytes: this.store.budget });
     if (choice.root === null) return null;
-    this.refined = new Set(choice.refined.map(({ key }) => key));
-    const missing = this.store.want(this.wanted(choice), now);
+    const asked = choice.refined.filter((chosen) => chosen.pixels > threshold / divisor || this.isThere(chosen) || !atRest);
+    const isStepComplete = this.store.want(this.wanted(asked), now) === 0 && !choice.incomplete;
+    this.detail.saw(now, atRest && isStepComplete);
+    const isComplete = isStepComplete && asked.length === choice.refined.length;
+    const shown = Math.min(threshold, threshold / (isStepComplete ? divisor : divisor / 2));
+    const drawn = this.draw(choice.root, atRest && !isComplete ? shown : 0);
+    this.refined = atRest ? this.shown : new Set(choice.refined.map(({ key }) => key));
+    return { drawn, limited: choice.limited.vertices, isComplete, isPausing: isStepComplete && !isComplete };
+  }
+
+  /// Finer than `shown`, an error in pixels, is drawn only what was before: all else at once, when its step is complete.
+  private draw(root: ChosenNode, shown: number): ChosenNode[] {
     const drawn: ChosenNode[] = [];
-    this.collect(choice.root, drawn);
-    const { limited, incomplete } = choice;
-    return { drawn, missing, limited: limited.vertices, isComplete: missing === 0 && !incomplete };
+    const before = this.shown;
+    this.shown = new Set();
+    const collect = (chosen: ChosenNode): void => {
+      if (!this.isThere(chosen) || (chosen.pixels <= shown && !before.has(chosen.key))) {
+        drawn.push(chosen);
+        return;
+      }
+      this.shown.add(chosen.key);
+      for (const child of chosen.children) collect(child);
+    };
+    collect(root);
+    return drawn;
+  }
+
+  /// Whether it can be drawn finer.
+  private isThere({ children }: ChosenNode): boolean {
+    return children.length > 0 && children.every(({ key }) => this.store.has(key));
   }
 
   private sources(view: Viewpoint, atRest: boolean, now: number): Sources {
@@ -77,13 +111,14 @@ export class Refinement {
       isLost: (node) => this.index.isDamaged(node) || this.store.isGivenUp(keyOf(node.level, node.index), now),
       isHidden: (key, record) => culls && this.isHidden(view, key, record, margin + (before.has(key) ? HYSTERESIS_MARGIN : 0)),
       wasRefined: (key) => before.has(key),
+      mayBeFine: (key) => atRest || before.has(key),
     };
   }
 
   /// From outside of a closed surface none of its back is seen.
   private isOutside(eye: Vector): boolean {
     const root = this.store.get(ROOT)?.tile;
-    if (!root?.closed) return false;
+    if (!root?.closed || this.showsInside) return false;
     const inBox = eye.every((value, axis) => value >= root.box[axis] && value <= root.box[axis + 3]);
     return !inBox || Math.abs(windingNumber(root, eye)) < OUTSIDE;
   }
@@ -94,17 +129,9 @@ export class Refinement {
     return looksAway(view, record, this.store.get(ROOT)!.tile.insideOut ? opposite(cone) : cone, margin);
   }
 
-  private wanted({ refined }: Choice): Wanted[] {
+  private wanted(refined: readonly ChosenNode[]): Wanted[] {
     return refined.flatMap(({ children }) =>
       children.map(({ node, record }) => ({ node, record, loadingBytes: LOADING * this.mostMemory(record, node) })),
     );
   }
-
-  private collect(chosen: ChosenNode, drawn: ChosenNode[]): void {
-    const { children } = chosen;
-    if (children.length > 0 && children.every(({ key }) => this.store.has(key)))
-      for (const child of children) this.collect(child, drawn);
-    else drawn.push(chosen);
-  }
 }
-

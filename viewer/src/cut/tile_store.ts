@@ -154,6 +154,12 @@ export class TileStore {
     return candidates.length > 0 && this.makeRoom(bytes, now);
   }
 
+  /// Drops what the host has lost a part of, and all below it: it comes again as it is wanted.
+  dropLost(isLost: (tile: Tile) => boolean): void {
+    for (const entry of [...this.entries.values()])
+      if (this.entries.has(entry.key) && entry.resident !== null && isLost(entry.resident.tile)) this.drop(entry);
+  }
+
   dispose(): void {
     this.isOver = true;
     for (const entry of this.entries.values()) entry.abort.abort();

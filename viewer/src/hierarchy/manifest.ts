@@ -17,15 +17,23 @@ export interface Manifest {
     /// In input coordinates.
     readonly min: readonly [number, number, number];
     readonly max: readonly [number, number, number];
+    /// Its coordinates did not fit 32-bit floats: what is stored is rounded, relative to the origin.
+    readonly doublePrecision: boolean;
   };
   /// Add to stored positions for input coordinates.
   readonly origin: readonly [number, number, number];
   /// What decoded tiles' positions are relative to, itself relative to the origin: not 0 on a lattice of 16-bit numbers.
   readonly place: readonly [number, number, number];
+  /// The largest distance that a position was moved to the lattice of a quantized hierarchy; 0 of others.
+  readonly worstRounding: number;
   readonly up: 'y' | 'z';
+  /// 4 x 4, column by column: from 3D Tiles' coordinates, z up, to the earth's; null: the model has no place.
+  readonly transform: readonly number[] | null;
   readonly licence: string;
   readonly partitions: number;
   readonly totalBytes: number;
+  /// The file of the model's picture; null: it has none.
+  readonly preview: string | null;
   readonly index: { readonly file: string; readonly bytes: number };
 }
 
@@ -38,6 +46,10 @@ const MOST_SHORT_BITS = 16;
 function readPlace(positions: JsonValue): [number, number, number] {
   if (positions.isNull() || positions.at('bits').count(8, 24) > MOST_SHORT_BITS) return [0, 0, 0];
   return positions.at('corner').triple();
+}
+
+function readTransform(value: JsonValue): readonly number[] | null {
+  return value.isNull() ? null : value.numbers(16);
 }
 
 /// With how they are stored, which is there if and only if they are.
@@ -61,6 +73,7 @@ function readSource(source: JsonValue, storage: JsonValue): Manifest['source'] {
     textures: readTextures(source, storage),
     min: source.at('bounds').at('min').triple(),
     max: source.at('bounds').at('max').triple(),
+    doublePrecision: source.at('double_precision').flag(),
   };
 }
 
@@ -80,14 +93,18 @@ export function readManifest(text: string): Manifest {
   if (version !== FORMAT_VERSION) refuse(`format version ${version}; this viewer knows ${FORMAT_VERSION}`);
   const partitions = root.at('partitions').count(1, 2 ** 32 - 1);
   const indexBytes = indexSize(2 * partitions - 1);
+  const positions = root.at('storage').at('positions');
   return {
     source: readSource(root.at('source'), root.at('storage')),
     origin: root.at('origin').triple(),
-    place: readPlace(root.at('storage').at('positions')),
+    place: readPlace(positions),
+    worstRounding: positions.isNull() ? 0 : positions.at('worst_rounding').number(),
     up: root.at('up').oneOf('y', 'z'),
+    transform: readTransform(root.at('transform')),
     licence: root.at('licence').text(),
     partitions,
     totalBytes: root.at('total_bytes').count(),
+    preview: root.has('preview') ? root.at('preview').at('file').fileName() : null,
     index: readFile(root.at('index'), indexBytes, indexBytes),
   };
 }

@@ -4,8 +4,9 @@ import { pictureSize, type Size } from './picture_size.js';
 
 export type Alpha = 'OPAQUE' | 'MASK' | 'BLEND';
 
-export interface Picture {
-  /// Its upper left corner is (0, 0) of the tile's texture coordinates; sRGB, alpha not multiplied in.
+export interface Picture extends Size {
+  /// Its upper left corner is (0, 0) of the tile's texture coordinates; sRGB, alpha not multiplied in. Closed, and without a size of
+  /// its own, as soon as it is on the GPU: see tile_texture.ts.
   readonly bitmap: ImageBitmap;
   readonly alpha: Alpha;
   /// The colours have their light already.
@@ -13,7 +14,7 @@ export interface Picture {
 }
 
 /// As it is in the file.
-interface StoredPicture extends Size, Omit<Picture, 'bitmap'> {
+interface StoredPicture extends Omit<Picture, 'bitmap'> {
   readonly file: Blob;
 }
 
@@ -51,7 +52,7 @@ export async function decodePicture(glb: Glb, { file, alpha, unlit, width, heigh
   } catch {
     return glb.fail('its picture cannot be decoded');
   }
-  if (bitmap.width === width && bitmap.height === height) return { bitmap, alpha, unlit };
+  if (bitmap.width === width && bitmap.height === height) return { width, height, bitmap, alpha, unlit };
   bitmap.close();
   return glb.fail('its picture has another size than it says');
 }

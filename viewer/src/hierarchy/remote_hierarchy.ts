@@ -86,7 +86,7 @@ export class RemoteHierarchy {
     const index = new TileIndex(tree, manifest.place, read, onPage, onProblem);
     await index.open();
     const record = index.record(ROOT);
-    if (record?.own !== root.own || record.interior !== root.interiorCount || record.pictureWidth !== (root.picture?.bitmap.width ?? 0))
+    if (record?.own !== root.own || record.interior !== root.interiorCount || record.pictureWidth !== (root.picture?.width ?? 0))
       throw new HierarchyProblem(tilePath(ROOT), 'not the tile that the index tells of');
     return { manifest, tree, index };
   }

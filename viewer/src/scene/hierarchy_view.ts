@@ -3,6 +3,7 @@ import { Box3, Group, Matrix4, Vector3, type Object3DEventMap, type PerspectiveC
 import type { ChosenNode } from '../cut/choose_cut.js';
 import { FrameRate } from '../cut/frame_rate.js';
 import { Refinement, type Refined } from '../cut/refinement.js';
+import { PAUSE_MS } from '../cut/rest_detail.js';
 import { TileStore, type ResidentTile } from '../cut/tile_store.js';
 import type { Viewpoint } from '../cut/viewpoint.js';
 import type { Fetch } from '../hierarchy/bytes.js';
@@ -20,7 +21,9 @@ import { OutlineObject } from './outline_object.js';
 import { Motion, REST_MS, viewpointOf, type Viewport } from './motion.js';
 import { changedSettings, DEFAULT_LOOK, type Look, type Mode, type Settings, type Stats } from './settings.js';
 import { memoryOf, mostMemory, vertexBytesOf } from './tile_object.js';
+import type { DrawnTile, TileSource } from './surface.js';
 import { TileScene } from './tile_scene.js';
+import { isOnlyOnGpu } from './tile_texture.js';
 
 export interface ViewOptions {
   settings?: Partial<Settings>;
@@ -65,13 +68,14 @@ export class HierarchyView extends Group<ViewEvents> {
   private readonly decoder: TileDecoder;
   private readonly remote: RemoteHierarchy;
   private readonly store: TileStore;
-  private readonly tiles = new TileScene();
+  private readonly tiles = new TileScene(() => { this.askAgain(); });
   private readonly account = new Account();
   private readonly rate: FrameRate;
   private readonly motion = new Motion();
   private readonly epochs = new Map<number, number>();
   private directory: Directory | null = null;
   private refinement: Refinement | null = null;
+  private isCutOpen = false;
   private drawn: readonly ChosenNode[] = [];
   private viewpoint: Viewpoint | null = null;
   private pixels = 1;
@@ -224,6 +228,7 @@ export class HierarchyView extends Group<ViewEvents> {
     const vertexBytes = vertexBytesOf(root);
     this.refinement = new Refinement(tree, index, this.store, (record, { level }) =>
       mostMemory(record, { level, vertexBytes, wires: this.look.wires }));
+    this.refinement.showsInside = this.isCutOpen;
     this.account.fetched(index.record(ROOT)!.bytes);
     this.showOutline();
     this.changed();
@@ -261,6 +266,12 @@ export class HierarchyView extends Group<ViewEvents> {
     this.changed();
   }
 
+  /// For what went with the device.
+  private askAgain(): void {
+    this.store.dropLost(isOnlyOnGpu);
+    this.changed();
+  }
+
   private changed(): void {
     this.isDirty = true;
     if (!this.ending.signal.aborted) this.dispatchEvent({ type: 'change' });
@@ -291,7 +302,7 @@ export class HierarchyView extends Group<ViewEvents> {
   /// Something may be due although nothing happens.
   private setAlarm(): void {
     if (this.motion.isMoving) this.alarm.in(REST_MS);
-    else if (this.state?.isComplete === false) this.alarm.in(RETRY_MS);
+    else if (this.state?.isComplete === false) this.alarm.in(this.state.isPausing ? PAUSE_MS : RETRY_MS);
     else this.alarm.stop();
   }
 
@@ -312,7 +323,7 @@ export class HierarchyView extends Group<ViewEvents> {
   private refine(viewpoint: Viewpoint, now: number): boolean {
     const vertices = this.motion.isMoving ? this.rate.budget : Infinity;
     const refinement = this.isFirstFrame ? null : this.refinement;
-    this.state = refinement?.refine(viewpoint, { threshold: this.settings.threshold, vertices, atRest: !this.motion.isMoving }, now) ?? null;
+    this.state = refinement?.refine(viewpoint, { ...this.settings, vertices, atRest: !this.motion.isMoving }, now) ?? null;
     this.drawn = this.state?.drawn ?? [];
     this.store.keepWithin(now);
     const keys = this.state === null ? [ROOT_KEY] : this.drawn.map(({ key }) => key);
@@ -347,6 +358,37 @@ export class HierarchyView extends Group<ViewEvents> {
   /// The tiles of the cut that are in view.
   get shown(): Node[] {
     return this.inView().map(({ node }) => node);
+  }
+
+  /// The triangles that are drawn, in view or not, in coordinates that `surfaceMatrix` brings into the world.
+  get surface(): readonly DrawnTile[] {
+    return this.tiles.drawn();
+  }
+
+  get surfaceMatrix(): Readonly<Matrix4> {
+    return this.tiles.matrixWorld;
+  }
+
+  /// No open border: it has an inside.
+  get closed(): boolean {
+    return this.root?.closed ?? false;
+  }
+
+  /// Whether the inside is in view, as of a model that is cut open: backs are then refined as fronts are.
+  get showsInside(): boolean {
+    return this.isCutOpen;
+  }
+
+  set showsInside(shows: boolean) {
+    this.isCutOpen = shows;
+    if (this.refinement) this.refinement.showsInside = shows;
+    this.changed();
+  }
+
+  /// Null until `manifest` is there.
+  get source(): TileSource | null {
+    const { directory } = this;
+    return directory && { ...directory, load: (node, record, signal) => this.remote.tile(node, record, signal) };
   }
 
   private mode(shown: readonly ChosenNode[]): Mode {

@@ -19,8 +19,10 @@ export interface Look {
 export interface Settings {
   /// Frames per second to hold while the camera moves, 1 … 240.
   framesPerSecond: number;
-  /// Largest error on screen of a settled view, in pixels (of the viewport given to `update`).
+  /// Largest error on screen, in pixels (of the viewport given to `update`).
   threshold: number;
+  /// What a view at rest divides that by once all is there, step by step, as long as triangles are larger than a pixel: 1 … 16.
+  restDetail: number;
   /// Bytes of all tiles in memory, those in GPU buffers included: never exceeded, but that the root stays.
   memoryBudget: number;
 }
@@ -28,10 +30,11 @@ export interface Settings {
 /// What a view looks like if nothing is said.
 export const DEFAULT_LOOK: Look = { colours: 'vertex', texture: true, shading: 'smooth', wires: false, points: false, outline: false };
 
-const DEFAULTS: Settings = { framesPerSecond: 30, threshold: 1, memoryBudget: 256e6 };
+const DEFAULTS: Settings = { framesPerSecond: 30, threshold: 1, restDetail: 8, memoryBudget: 256e6 };
 const RANGES: Record<keyof Settings, readonly [number, number]> = {
   framesPerSecond: [1, 240],
   threshold: [0.01, 1000],
+  restDetail: [1, 16],
   memoryBudget: [1e6, 2 ** 40],
 };
 

@@ -7,16 +7,17 @@ import type { TileRecord } from '../hierarchy/tile_index.js';
 import type { Seam } from '../cut/seam.js';
 import { surfaceKey, surfaceMaterial, type Painting, type SharedMaterials, type SurfaceMaterial } from './materials.js';
 import type { Look } from './settings.js';
+import type { DrawnTile } from './surface.js';
 import { pictureMemory, tileTexture } from './tile_texture.js';
 
 const TEXCOORD_BYTES = 8;
 
-/// Bytes of a tile with what draws it: each array here and on the GPU, but for what only seams need.
+/// Bytes of a tile with what draws it: each array here and on the GPU, but for what only seams need; of its picture one copy.
 export function memoryOf(tile: Tile, seam: Seam, wires: boolean): number {
-  const { copyOf, splitOf, positions, normals, colours, texcoords, picture, indices, border, neighbours, ghostStarts, chains } = tile;
+  const { level, copyOf, splitOf, positions, normals, colours, texcoords, picture, indices, border, neighbours, ghostStarts, chains } = tile;
   const drawn = positions.byteLength + normals.byteLength + (colours?.byteLength ?? 0) + (texcoords?.byteLength ?? 0) + indices.byteLength;
   const seams = copyOf.byteLength + splitOf.byteLength + border.byteLength + neighbours.byteLength + ghostStarts.byteLength + chains.byteLength + seam.bytes;
-  return 2 * (drawn + (wires ? 2 * indices.byteLength : 0)) + seams + (picture ? pictureMemory(picture.bitmap) : 0);
+  return 2 * (drawn + (wires ? 2 * indices.byteLength : 0)) + seams + (picture ? pictureMemory(picture, level) : 0);
 }
 
 /// What is drawn of a vertex: its position, normal and colour, if any; not its texture coordinate, which is there if there is a picture.
@@ -43,7 +44,7 @@ export function mostMemory(
   const drawn = vertices * (vertexBytes + (width > 0 ? TEXCOORD_BYTES : 0)) + indices;
   // Of a ghost: its chain, its neighbour's number, start and keys, and what the seam keeps of it; of what is behind ghosts that, and its number.
   const seams = 3 * border * indexBytes + ghosts * (10 * level + 48) + (copies + splits) * 16 + 64;
-  return 2 * (drawn + (wires ? 2 * indices : 0)) + seams + pictureMemory({ width, height });
+  return 2 * (drawn + (wires ? 2 * indices : 0)) + seams + pictureMemory({ width, height }, level);
 }
 
 function edgesOf(triangles: Indices, corners: number): Indices {
@@ -56,8 +57,8 @@ function edgesOf(triangles: Indices, corners: number): Indices {
   return edges;
 }
 
-function paintingOf({ colours, picture }: Tile): Painting {
-  const texture: Texture | null = picture && tileTexture(picture);
+function paintingOf({ level, colours, picture }: Tile): Painting {
+  const texture: Texture | null = picture && tileTexture(picture, level);
   return { hasColours: colours !== null, picture, texture };
 }
 
@@ -126,6 +127,12 @@ export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
     if (tile.ghosts > 0) this.uploadGhosts();
     this.setBounds();
     if (this.wires) this.setWires(true);
+  }
+
+  /// Once resolved.
+  drawn(): DrawnTile {
+    const { node, tile } = this.resident;
+    return { node, tile, triangles: this.triangles, sphere: this.geometry.boundingSphere! };
   }
 
   private uploadGhosts(): void {

@@ -4,8 +4,10 @@ import type { ChosenNode } from '../cut/choose_cut.js';
 import type { ResidentTile } from '../cut/tile_store.js';
 import type { Tile } from '../hierarchy/tile.js';
 import { keyOf, type Node } from '../hierarchy/tree.js';
+import { ContextWatch } from './context_watch.js';
 import { errorColour, partitionColour, sharedMaterials } from './materials.js';
 import type { Look } from './settings.js';
+import type { DrawnTile } from './surface.js';
 import { TileObject } from './tile_object.js';
 
 export class TileScene extends Group {
@@ -15,6 +17,13 @@ export class TileScene extends Group {
   private readonly damaged: Node[] = [];
   private readonly told = new Set<number>();
   private readonly materials = sharedMaterials();
+  private readonly contexts: ContextWatch;
+
+  /// `restored`: a lost device is back, without the pictures that only it had.
+  constructor(restored: () => void) {
+    super();
+    this.contexts = new ContextWatch(restored);
+  }
 
   /// Of the whole model: its triangles show their backs to the outside.
   set insideOut(is: boolean) {
@@ -49,6 +58,7 @@ export class TileScene extends Group {
 
   private make(resident: ResidentTile, look: Look): TileObject {
     const object = new TileObject(resident, look, this.materials);
+    object.onBeforeRender = ({ domElement }) => { this.contexts.drawnOn(domElement); };
     this.objects.set(resident.key, object);
     this.add(object);
     return object;
@@ -81,11 +91,16 @@ export class TileScene extends Group {
     }
   }
 
+  drawn(): DrawnTile[] {
+    return [...this.objects.values()].filter(({ visible }) => visible).map((object) => object.drawn());
+  }
+
   trianglesOf(key: number): number {
     return this.objects.get(key)?.triangles ?? 0;
   }
 
   dispose(): void {
+    this.contexts.stop();
     for (const object of this.objects.values()) object.dispose();
     this.objects.clear();
     this.materials.wires.dispose();

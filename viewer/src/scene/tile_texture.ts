@@ -2,22 +2,34 @@
 import { LinearFilter, LinearMipmapLinearFilter, SRGBColorSpace, Texture } from 'three';
 import { bitmapBytes, type Picture } from '../hierarchy/picture.js';
 import type { Size } from '../hierarchy/picture_size.js';
+import type { Tile } from '../hierarchy/tile.js';
 
 /// Samples at the most where the surface is seen at a slant; a device may take fewer.
 const ANISOTROPY = 4;
 
-/// Its bytes: the bitmap, which comes back from here if the device is lost, and on the GPU the same with smaller and smaller ones.
-export function pictureMemory(size: Size): number {
-  return bitmapBytes(size) + Math.ceil((4 / 3) * bitmapBytes(size));
+/// The root is never fetched again: its bitmap stays, and comes back from here if the device is lost.
+function keepsBitmap(level: number): boolean {
+  return level === 0;
 }
 
-export function tileTexture({ bitmap }: Picture): Texture {
+/// Its bytes on the GPU, with smaller and smaller ones; before it is there, its bitmap takes less.
+export function pictureMemory(size: Size, level: number): number {
+  return Math.ceil((4 / 3) * bitmapBytes(size)) + (keepsBitmap(level) ? bitmapBytes(size) : 0);
+}
+
+/// Whether only the GPU has the tile's picture: it is lost with the device.
+export function isOnlyOnGpu({ picture }: Tile): boolean {
+  return picture !== null && picture.bitmap.width === 0;
+}
+
+export function tileTexture({ bitmap }: Picture, level: number): Texture {
   const texture = new Texture(bitmap);
   texture.colorSpace = SRGBColorSpace;
   texture.flipY = false;
   texture.magFilter = LinearFilter;
   texture.minFilter = LinearMipmapLinearFilter;
   texture.anisotropy = ANISOTROPY;
+  if (!keepsBitmap(level)) texture.onUpdate = () => { bitmap.close(); };
   texture.needsUpdate = true;
   return texture;
 }

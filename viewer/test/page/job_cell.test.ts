@@ -3,7 +3,7 @@ import { stateText } from '../../page/gallery/job_cell.js';
 import type { Job } from '../../page/listing.js';
 
 function job(change: Partial<Job>): Job {
-  return { name: 'a.ply', state: 'failed', stage: '', progress: null, secondsLeft: null, message: '', ...change };
+  return { name: 'a.ply', state: 'failed', stage: '', progress: null, secondsLeft: null, message: '', preview: null, ...change };
 }
 
 describe('what a job says', () => {

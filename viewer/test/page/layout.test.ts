@@ -1,30 +1,10 @@
 import { describe, expect, it } from 'vitest';
-import { ballOf, cellMatrix, dragged, multiply, portOf, type Matrix } from '../../page/gallery/layout.js';
-
-const CANVAS = { left: 0, top: 100, width: 400, height: 300 };
+import { ballOf, cellMatrix, dragged, multiply, type Matrix } from '../../page/gallery/layout.js';
 
 function project(matrix: Matrix, [x, y, z]: number[]): number[] {
   const at = (row: number): number => matrix[row] * x + matrix[4 + row] * y + matrix[8 + row] * z + matrix[12 + row];
   return [at(0) / at(3), at(1) / at(3), at(2) / at(3)];
 }
-
-describe('a cell', () => {
-  it('has its place from the lower left corner of the canvas', () => {
-    expect(portOf({ left: 10, top: 120, width: 50, height: 60 }, CANVAS, 2)).toEqual({ x: 20, y: 440, width: 100, height: 120 });
-  });
-
-  it('may lie half outside', () => {
-    expect(portOf({ left: -10, top: 60, width: 50, height: 60 }, CANVAS, 1)).toEqual({ x: -10, y: 280, width: 50, height: 60 });
-  });
-
-  it.each([
-    { left: 0, top: 40, width: 50, height: 60 },
-    { left: 0, top: 400, width: 50, height: 60 },
-    { left: 400, top: 200, width: 50, height: 60 },
-    { left: -50, top: 200, width: 50, height: 60 },
-    { left: 0, top: 200, width: 0, height: 0 },
-  ])('is not drawn at $left, $top', (cell) => { expect(portOf(cell, CANVAS, 1)).toBeNull(); });
-});
 
 describe('a ball', () => {
   it('holds the box', () => {

@@ -9,11 +9,11 @@ function parse(document: unknown) {
 
 describe('a listing', () => {
   it('gives its models and jobs', () => {
-    const david = { name: 'david', path: 'models/sub/david.hier', vertices: 5, triangles: 8, bytes: 900, source: 'david.ply' };
-    const job = { name: 'x.ply', state: 'building', stage: 'partition', progress: 0.42, seconds_left: 12 };
+    const david = { name: 'david', path: 'models/sub/david.hier', vertices: 5, triangles: 8, bytes: 900, source: 'david.ply', modified: 1_790_000_000, preview: 'models/sub/david.hier/preview.webp' };
+    const job = { name: 'x.ply', state: 'building', stage: 'partition', progress: 0.42, seconds_left: 12, preview: '/x.webp' };
     const { models, jobs } = parse({ models: [david], jobs: [job] });
-    expect(models).toEqual([{ ...david, url: 'http://host/dir/models/sub/david.hier' }]);
-    expect(jobs).toEqual([{ name: 'x.ply', state: 'building', stage: 'partition', progress: 0.42, secondsLeft: 12, message: '' }]);
+    expect(models).toEqual([{ ...david, url: 'http://host/dir/models/sub/david.hier', preview: 'http://host/dir/models/sub/david.hier/preview.webp' }]);
+    expect(jobs).toEqual([{ name: 'x.ply', state: 'building', stage: 'partition', progress: 0.42, secondsLeft: 12, message: '', preview: 'http://host/x.webp' }]);
   });
 
   it('needs no more than paths', () => {
@@ -33,7 +33,13 @@ describe('a listing', () => {
   it('leaves out entries that are none', () => {
     const bad = [null, 5, 'x', [], {}, { path: 5 }, { path: '' }, { path: 'javascript:alert(1)' }, { path: 'http://[' },
       { path: 'data:text/html,x' }, { path: { toString: 'x' } }];
-    expect(parse({ models: bad, jobs: [null, {}, { state: 'done' }, 7] })).toEqual({ models: [], jobs: [], folder: null, inbox: null });
+    expect(parse({ models: bad, jobs: [null, {}, { state: 'done' }, 7] })).toEqual({ models: [], jobs: [], folder: null, inbox: null, upload: null });
+  });
+
+  it('says whether meshes are taken', () => {
+    expect(parse({ models: [], upload: { limit: 1000, token: true } }).upload).toEqual({ limit: 1000, token: true });
+    expect(parse({ models: [], upload: { limit: 0 } }).upload).toEqual({ limit: 0, token: false });
+    for (const upload of [true, 5, [], {}, { limit: -1 }, { limit: '5' }, { token: true }]) expect(parse({ models: [], upload }).upload).toBeNull();
   });
 
   it('says where the models lie', () => {
@@ -41,10 +47,10 @@ describe('a listing', () => {
   });
 
   it('leaves out values that are none', () => {
-    const [model] = parse({ models: [{ path: 'a', name: { x: 1 }, vertices: '7', triangles: -3, bytes: null, source: 4 }] }).models;
-    expect(model).toMatchObject({ name: 'a', vertices: null, triangles: null, bytes: null, source: null });
-    const [job] = parse({ models: [], jobs: [{ state: 'failed', progress: 7, stage: [], seconds_left: 'soon', message: {} }] }).jobs!;
-    expect(job).toEqual({ name: 'a mesh without a name', state: 'failed', stage: '', progress: 1, secondsLeft: null, message: '' });
+    const [model] = parse({ models: [{ path: 'a', name: { x: 1 }, vertices: '7', triangles: -3, bytes: null, source: 4, modified: '1', preview: 'javascript:1' }] }).models;
+    expect(model).toMatchObject({ name: 'a', vertices: null, triangles: null, bytes: null, source: null, modified: null, preview: null });
+    const [job] = parse({ models: [], jobs: [{ state: 'failed', progress: 7, stage: [], seconds_left: 'soon', message: {}, preview: 'data:image/png,x' }] }).jobs!;
+    expect(job).toEqual({ name: 'a mesh without a name', state: 'failed', stage: '', progress: 1, secondsLeft: null, message: '', preview: null });
   });
 
   it('is kept within bounds', () => {

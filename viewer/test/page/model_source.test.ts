@@ -75,7 +75,7 @@ describe('the source of a model', () => {
     const workshop = new Workshop();
     const hierarchy = workshop.build('small', ['surface', '--triangles', '2000'], {});
     const fetch = fetchFrom(hierarchy);
-    const { vertices, triangles, bytes } = await new ModelSource('.', fetch).sizes();
+    const { vertices, triangles, bytes } = await new ModelSource('.', fetch).facts();
     expect(triangles).toBeGreaterThan(1000);
     expect(vertices).toBeGreaterThan(500);
     expect(bytes).toBe(readdirSync(hierarchy, { recursive: true, withFileTypes: true }).reduce(
@@ -85,6 +85,6 @@ describe('the source of a model', () => {
 
   it('says what is wrong with a manifest', async () => {
     const { source } = sourceOf(new Response('{}'));
-    await expect(source.sizes()).rejects.toThrow('hierarchy.json');
+    await expect(source.facts()).rejects.toThrow('hierarchy.json');
   });
 });

@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { formatBytes, formatCount, formatDecimal, formatDuration, formatMilliseconds, formatPercent, formatRough, numbersOf } from '../../page/numbers.js';
+import { formatBytes, formatCount, formatDate, formatDecimal, formatDuration, formatMilliseconds, formatPercent, formatRough, numbersOf } from '../../page/numbers.js';
 
 describe('numbers', () => {
   it.each([[0, '0 byte'], [999, '999 byte'], [1000, '1.00 kB'], [32768, '32.8 kB'], [999_499, '999 kB'], [999_500, '1.00 MB'],
@@ -34,8 +34,13 @@ describe('numbers', () => {
     expect(spanish.formatBytes(23.5e6)).toMatch(/^23,5\sMB$/);
   });
 
+  it('are days', () => {
+    expect(formatDate(1_790_000_000)).toMatch(/Sep 2\d, 2026/);
+  });
+
   it('are a dash where there are none', () => {
-    for (const format of [formatBytes, formatCount, formatDecimal, formatDuration, formatMilliseconds, formatPercent, formatRough])
+    for (const format of [formatDate, formatBytes, formatCount, formatDecimal, formatDuration, formatMilliseconds, formatPercent, formatRough])
       for (const value of [NaN, Infinity, -1]) expect(format(value)).toBe('–');
+    expect(formatDate(1e300)).toBe('–');
   });
 });

@@ -6,7 +6,7 @@ const DEFAULTS = parsePreferences(null);
 
 describe('preferences', () => {
   it('have defaults', () => {
-    expect(DEFAULTS.settings).toEqual({ framesPerSecond: 30, threshold: 1, memoryBudget: 256e6 });
+    expect(DEFAULTS.settings).toEqual({ framesPerSecond: 30, threshold: 1, restDetail: 8, memoryBudget: 256e6 });
     expect(DEFAULTS).toMatchObject({ theme: 'auto', language: null });
   });
 
@@ -20,14 +20,15 @@ describe('preferences', () => {
     const chosen = {
       theme: 'dark',
       language: 'es',
+      order: 'newest',
       panel: true,
-      settings: { framesPerSecond: 60, threshold: 2.5, memoryBudget: 512e6 },
+      settings: { framesPerSecond: 60, threshold: 2.5, restDetail: 1, memoryBudget: 512e6 },
       look: { colours: 'error', texture: false, shading: 'flat', wires: true, points: true, outline: true },
     };
     expect(parsePreferences(JSON.stringify(chosen))).toEqual(chosen);
   });
 
-  it.each(['', 'x', 'null', '[]', '7', '{"settings":null,"look":[]}', '{"theme":"pink","language":"tlh","settings":{"framesPerSecond":-1,"threshold":"1","memoryBudget":1e99},"look":{"colours":7,"wires":"yes"}}'])(
+  it.each(['', 'x', 'null', '[]', '7', '{"settings":null,"look":[]}', '{"theme":"pink","language":"tlh","order":"toString","settings":{"framesPerSecond":-1,"threshold":"1","memoryBudget":1e99},"look":{"colours":7,"wires":"yes"}}'])(
     'are the defaults where %s is stored',
     (text) => { expect(parsePreferences(text)).toEqual(DEFAULTS); },
   );

@@ -1,5 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import { chooseLanguage, LANGUAGES, localeOf } from '../../page/words/languages.js';
+import { TOOL_TABLES } from '../../page/tools/words/words.js';
 import { TABLES } from '../../page/words/words.js';
 
 /// Every word of a table with its place in it; functions are given their arguments' names, and numbers more than one.
@@ -18,10 +19,10 @@ function argumentsIn(text: string): string[] {
   return (text.match(/<\d>/g) ?? []).sort();
 }
 
-const ENGLISH = new Map(entries(TABLES.en));
+const ALL = LANGUAGES.map((language) => [language, new Map(entries({ page: TABLES[language], tools: TOOL_TABLES[language] }))] as const);
+const ENGLISH = new Map(ALL).get('en')!;
 
-describe.each(LANGUAGES)('the words in %s', (language) => {
-  const table = new Map(entries(TABLES[language]));
+describe.each(ALL)('the words in %s', (language, table) => {
 
   it('have the same keys as in English, in lists too', () => {
     expect([...table.keys()].sort()).toEqual([...ENGLISH.keys()].sort());

@@ -39,10 +39,18 @@ export class FakeBitmap {
   isClosed = false;
 
   constructor(
-    readonly width: number,
-    readonly height: number,
+    private readonly openWidth: number,
+    private readonly openHeight: number,
   ) {
     ++FakeBitmap.open;
+  }
+
+  get width(): number {
+    return this.isClosed ? 0 : this.openWidth;
+  }
+
+  get height(): number {
+    return this.isClosed ? 0 : this.openHeight;
   }
 
   close(): void {

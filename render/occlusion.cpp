@@ -1,0 +1,144 @@
+#include "render/occlusion.h"
+
+#include "hierarchy/angle.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+
+namespace meshhier::render {
+namespace {
+
+constexpr std::size_t kDirections = 12;
+/// Of the shorter side of the picture: wide enough for the hollows of a body, and fine ones are in
+/// the nearer steps.
+constexpr double kReach = 0.12;
+/// Each step is so much farther than the one before; the first is one and a half samples.
+constexpr double kStep = 1.7, kFirstStep = 1.5;
+/// How dark full shadow is made: more than the light that it takes away shows where things touch.
+constexpr double kStrength = 1.5;
+/// Surfaces that are seen from the side have no more slope than this.
+constexpr double kLeastFacing = 0.08;
+
+struct Direction {
+  double x = 0, y = 0;
+};
+
+std::array<Direction, kDirections> directions() {
+  constexpr double kFullTurn = 6.283185307179586;
+  std::array<Direction, kDirections> all;
+  for (std::size_t i = 0; i < kDirections; ++i) {
+    const UnitTurn turn = turn_by(kFullTurn * (static_cast<double>(i) + 0.5) / kDirections);
+    all[i] = {turn.cosine, turn.sine};
+  }
+  return all;
+}
+
+/// Of the angle at which something rises so far, at a distance whose square is `squared`.
+double sine(double rise, double squared) {
+  return rise / std::sqrt(squared + rise * rise);
+}
+
+class Horizons {
+ public:
+  Horizons(const Raster& raster, double relief)
+      : samples_(raster.samples()),
+        columns_(raster.columns()),
+        rows_(raster.rows()),
+        relief_(relief),
+        reach_(kReach * std::min(raster.columns(), raster.rows())) {}
+
+  float sky_from(std::int64_t column, std::int64_t row) const {
+    static const std::array<Direction, kDirections> all = directions();
+    const Sample& here = at(column, row);
+    if (!here.covered())
+      return 1;
+    double hidden = 0;
+    for (const Direction& direction : all)
+      hidden += hidden_towards(here, column, row, direction);
+    return static_cast<float>(std::max(0.0, 1 - kStrength * hidden / kDirections));
+  }
+
+ private:
+  const Sample& at(std::int64_t column, std::int64_t row) const {
+    return samples_[static_cast<std::size_t>(row * columns_ + column)];
+  }
+
+  /// How far the horizon stands above the surface itself; what is farther counts less.
+  double hidden_towards(const Sample& here, std::int64_t column, std::int64_t row,
+                        const Direction& direction) const {
+    double highest = 0, hidden = 0;
+    for (double far = kFirstStep; far < reach_; far *= kStep) {
+      const auto across = static_cast<std::int64_t>(std::floor(far * direction.x + 0.5));
+      const auto down = static_cast<std::int64_t>(std::floor(far * direction.y + 0.5));
+      const std::int64_t x = column + across, y = row + down;
+      if (x < 0 || y < 0 || x >= columns_ || y >= rows_)
+        break;
+      const Sample& there = at(x, y);
+      if (!there.covered())
+        continue;
+      const Rise rise =
+          rise_to(here, there, static_cast<double>(across), static_cast<double>(down));
+      if (rise.share > 0 && rise.above > highest) {
+        hidden += (rise.above - highest) * rise.share;
+        highest = rise.above;
+      }
+    }
+    return hidden;
+  }
+
+  struct Rise {
+    double above = 0;  ///< what is a horizon: its sine, less that of the surface's own slope there
+    double share = 0;  ///< how near it is, 1 to below 0
+  };
+
+  Rise rise_to(const Sample& here, const Sample& there, double across, double down) const {
+    const double facing = std::max<double>(here.normal.z, kLeastFacing);
+    const double own = relief_ * (here.normal.y * down - here.normal.x * across) / facing;
+    const double rise = relief_ * (double{here.depth} - there.depth);
+    const double far = across * across + down * down;
+    return {sine(rise, far) - sine(own, far), 1 - (far + rise * rise) / (reach_ * reach_)};
+  }
+
+  std::span<const Sample> samples_;
+  std::int64_t columns_, rows_;
+  double relief_, reach_;
+};
+
+/// The sample before a place of an axis, and the share of the one behind it.
+struct Between {
+  std::size_t first = 0, second = 0;
+  double share = 0;
+};
+
+Between between(double place, std::uint32_t count) {
+  const double at = std::clamp(place * count - 0.5, 0.0, count - 1.0);
+  const auto first = static_cast<std::size_t>(at);
+  return {first, std::min<std::size_t>(first + 1, count - 1), at - static_cast<double>(first)};
+}
+
+}  // namespace
+
+Occlusion::Occlusion(const Raster& raster, double relief)
+    : columns_(raster.columns()), rows_(raster.rows()) {
+  const Horizons horizons(raster, relief);
+  sky_.reserve(raster.samples().size());
+  for (std::uint32_t row = 0; row < rows_; ++row) {
+    for (std::uint32_t column = 0; column < columns_; ++column)
+      sky_.push_back(horizons.sky_from(column, row));
+  }
+}
+
+double Occlusion::sky_at(double across, double down) const {
+  const Between x = between(across, columns_), y = between(down, rows_);
+  const auto row = [&](std::size_t r) {
+    const double first = sky_[r * columns_ + x.first], second = sky_[r * columns_ + x.second];
+    return first + (second - first) * x.share;
+  };
+  const double above = row(y.first), below = row(y.second);
+  return above + (below - above) * y.share;
+}
+
+}  // namespace meshhier::render

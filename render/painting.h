@@ -1,0 +1,31 @@
+// A picture of a scene, in a memory that does not grow with the scene or the picture's rows.
+#pragma once
+
+#include "images/image.h"
+#include "render/camera.h"
+#include "render/scene.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+
+namespace meshhier::render {
+
+struct PaintingOptions {
+  /// Of samples at a time; one row of pixels at least. What is painted does not depend on it.
+  std::uint64_t band_bytes = std::uint64_t{8} << 20;
+  /// Called for each tile that is looked at, `count` of them or fewer; may throw, to end it all.
+  std::function<void()> step = [] {};
+};
+
+/// How often tiles are looked at, at most.
+std::uint64_t painting_steps(const Scene& scene, const Camera& camera,
+                             const PaintingOptions& options);
+
+/// Light with shadows where the surface is hollow; where hardly anything is steep, as in terrain
+/// from above, slopes are lit as if they were steeper. Alpha is how much of a pixel is covered.
+/// First the whole is drawn with one sample a pixel, then rows of it with all samples. Throws what
+/// scene.load throws.
+images::Image paint(const Scene& scene, const Camera& camera, const PaintingOptions& options);
+
+}  // namespace meshhier::render

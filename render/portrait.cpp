@@ -1,0 +1,180 @@
+#include "render/portrait.h"
+
+#include "hierarchy/angle.h"
+#include "hierarchy/bounds.h"
+#include "render/raster.h"
+#include "render/space.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace meshhier::render {
+namespace {
+
+constexpr double kFullTurn = 6.283185307179586;
+
+/// From this on a surface is open: its area faces one side by so much. Of closed ones it is 0.
+constexpr double kOpen = 0.4;
+/// The cosine of how far from `up` it may face and is ground: 40 degrees.
+constexpr double kUpright = 0.77;
+
+/// Candidates: around the model, and how far above its equator.
+constexpr int kAround = 16;
+constexpr std::array kElevations{0.22, 0.45};  // radians: 13 and 26 degrees
+constexpr std::array kFromAbove{0.65};         // 37 degrees: roofs and streets are seen
+/// A surface that hides nothing of itself from above, whatever its height.
+constexpr double kMap = 0.8;
+/// What is open above and lower than this part of its width is a map.
+constexpr double kFlat = 0.15;
+/// How much more than the back the front counts.
+constexpr double kFrontFavour = 0.25;
+/// Their pictures' side. What is smaller than a pixel of it is no form but roughness.
+constexpr std::uint32_t kTrialPixels = 80;
+
+/// Of length twice the facet's area.
+Vec3d area_of(const Facet& facet) {
+  const Vec3d a = to_double(facet[0].position);
+  return cross(to_double(facet[1].position) - a, to_double(facet[2].position) - a);
+}
+
+/// Where the surface faces, as a part of its area.
+Vec3d facing_of(std::span<const Facet> facets) {
+  Vec3d sum;
+  double area = 0;
+  for (const Facet& facet : facets) {
+    const Vec3d twice = area_of(facet);
+    if (!is_finite(twice))
+      continue;
+    sum = sum + twice;
+    area += length(twice);
+  }
+  return area > 0 ? sum * (1 / area) : Vec3d{};
+}
+
+/// Two axes that are level, as `up` has it: the second is the first one, turned left.
+struct Level2d {
+  Vec3d first, second;
+};
+
+/// From above a map has its x to the right: the second axis points up in the picture.
+Level2d level_axes(Vec3d up) {
+  const Vec3d x = std::abs(up.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
+  const Vec3d first = unit(x - up * dot(x, up));
+  return {first, cross(up, first)};
+}
+
+/// By a view's axes. Empty if no corner is finite.
+BoundsD seen_box(std::span<const Facet> facets, const ViewAxes& axes) {
+  BoundsD box;
+  for (const Facet& facet : facets) {
+    for (const FacetCorner& corner : facet) {
+      const Vec3d p = to_double(corner.position);
+      if (is_finite(p))
+        box.add(Vec3d{dot(axes.right, p), dot(axes.up, p), dot(axes.back, p)});
+    }
+  }
+  return box;
+}
+
+/// How high the facets reach, as a part of how wide they do. Requires finite ones.
+double height_of(std::span<const Facet> facets, Vec3d up) {
+  const auto [first, second] = level_axes(up);
+  const BoundsD box = seen_box(facets, {first, up, second});
+  const Vec3d size = box.max - box.min;
+  return size.y / std::max({size.x, size.z, std::numeric_limits<double>::min()});
+}
+
+/// What shows of a model's form in a picture of it.
+double form_in(const Raster& raster) {
+  const auto samples = raster.samples();
+  const std::size_t columns = raster.columns();
+  // The least depth step that stands out, in pixels; what is larger counts no more.
+  constexpr double kDepthStep = 3, kMostTurn = 0.7, kSilhouette = 0.35;
+  const auto pair = [&](const Sample& a, const Sample& b) {
+    if (!a.covered() || !b.covered())
+      return a.covered() != b.covered() ? kSilhouette : 0;
+    if (std::abs(double{a.depth} - b.depth) > kDepthStep)
+      return kMostTurn;
+    return std::min(kMostTurn, 1 - dot(to_double(a.normal), to_double(b.normal)));
+  };
+  double form = 0;
+  std::size_t covered = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    covered += samples[i].covered() ? 1 : 0;
+    if (i % columns + 1 < columns)
+      form += pair(samples[i], samples[i + 1]);
+    if (i + columns < samples.size())
+      form += pair(samples[i], samples[i + columns]);
+  }
+  return form + 0.06 * static_cast<double>(covered);
+}
+
+/// What a front is worth: a model's face is where glTF's +z is, or where y is least if z is up,
+/// more often than not.
+double favour(const View& view, Vec3d front) {
+  return 1 + kFrontFavour * dot(view.direction, front * -1);
+}
+
+std::vector<View> candidates(Vec3d up, std::span<const double> elevations) {
+  const auto [first, second] = level_axes(up);
+  std::vector<View> views;
+  for (int i = 0; i < kAround; ++i) {
+    const UnitTurn around = turn_by(kFullTurn * (i + 0.5) / kAround);
+    const Vec3d level = first * around.cosine + second * around.sine;
+    for (const double elevation : elevations) {
+      const UnitTurn raised = turn_by(elevation);
+      views.push_back({(level * raised.cosine + up * raised.sine) * -1, up});
+    }
+  }
+  return views;
+}
+
+View best_of(const std::vector<View>& views, std::span<const Facet> facets, Vec3d up) {
+  const Vec3d front = level_axes(up).second * -1;
+  View best;
+  double most = -1;
+  for (const View& view : views) {
+    Raster raster(portrait_camera(facets, view,
+                                  {.width = kTrialPixels, .height = kTrialPixels, .samples = 1}));
+    raster.draw(facets);
+    const double worth = form_in(raster) * favour(view, front);
+    if (worth > most) {
+      most = worth;
+      best = view;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+View portrait_view(std::span<const Facet> facets, Vec3d up) {
+  const Vec3d upward = unit(up), facing = facing_of(facets);
+  if (length(facing) <= kOpen)
+    return best_of(candidates(upward, kElevations), facets, upward);
+  if (dot(unit(facing), upward) <= kUpright)
+    return {unit(facing) * -1, upward};
+  if (length(facing) < kMap && height_of(facets, upward) > kFlat)
+    return best_of(candidates(upward, kFromAbove), facets, upward);
+  return {upward * -1, level_axes(upward).second};
+}
+
+Camera portrait_camera(std::span<const Facet> facets, const View& view, const Framing& framing) {
+  const ViewAxes axes = axes_of(view);
+  const BoundsD seen = seen_box(facets, axes);
+  if (seen.empty())
+    return {view, Vec3d{}, 1, framing};
+  const Vec3d middle = (seen.min + seen.max) * 0.5;
+  const Vec3d size = seen.max - seen.min;
+  const double free = 1 - 2 * framing.margin;
+  const double pixel = std::max(size.x / (framing.width * free), size.y / (framing.height * free));
+  const Vec3d centre = axes.right * middle.x + axes.up * middle.y + axes.back * middle.z;
+  return {view, centre, pixel > 0 ? pixel : 1, framing};
+}
+
+}  // namespace meshhier::render

@@ -1,0 +1,48 @@
+#include "render/scene.h"
+
+#include "hierarchy/cut.h"
+#include "images/image_codec.h"
+#include "render/tile_facets.h"
+
+#include <numeric>
+
+namespace meshhier::render {
+
+void SceneTile::draw(Raster& raster) const {
+  if (skins.empty())
+    return raster.draw(facets);
+  for (std::size_t i = 0; i < facets.size(); ++i)
+    raster.draw(facets[i], skins[i]);
+}
+
+SceneTile scene_tile(const PublishedTile& tile, const AttributeLayout& layout,
+                     std::span<const std::uint32_t> border) {
+  SceneTile result;
+  result.facets = facets_of(tile, layout, border, NormalKind::own);
+  const TileImage& image = tile.image;
+  if (image.empty())
+    return result;
+  const std::uint64_t texels = std::uint64_t{image.width} * image.height;
+  result.texture = std::make_unique<const MipTexture>(
+      images::decode_image(image.bytes, "the picture of tile " + to_text(tile.node), texels),
+      Wraps{Wrap::clamp, Wrap::clamp});
+  result.skins = skins_of(tile, *result.texture, border);
+  return result;
+}
+
+SceneTile scene_tile(const PublishedTile& tile, const AttributeLayout& layout) {
+  std::vector<std::uint32_t> border(tile.mesh.border.size());
+  std::iota(border.begin(), border.end(), 0U);
+  return scene_tile(tile, layout, border);
+}
+
+BoundsD Scene::box() const {
+  BoundsD box;
+  for (const Bounds& tile : boxes) {
+    if (!tile.empty())
+      box.add(BoundsD{to_double(tile.min), to_double(tile.max)});
+  }
+  return box;
+}
+
+}  // namespace meshhier::render

@@ -1,0 +1,46 @@
+// What a picture shows, tile by tile: more than memory holds.
+#pragma once
+
+#include "hierarchy/attributes.h"
+#include "hierarchy/bounds.h"
+#include "hierarchy/published.h"
+#include "render/facet.h"
+#include "render/mip_texture.h"
+#include "render/raster.h"
+#include "render/shade.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace meshhier::render {
+
+/// A tile, ready to be drawn.
+struct SceneTile {
+  std::vector<Facet> facets;
+  std::vector<Skin> skins;                    ///< of the facets; empty: they have their colours
+  std::unique_ptr<const MipTexture> texture;  ///< what the skins show
+
+  void draw(Raster& raster) const;
+};
+
+/// The interior triangles of a tile, and the border triangles asked for: which of tile.mesh.border.
+/// `layout`: of its attributes. Decodes its picture, and throws Error(input) if that is broken.
+/// Requires as facets_of().
+SceneTile scene_tile(const PublishedTile& tile, const AttributeLayout& layout,
+                     std::span<const std::uint32_t> border);
+/// The same with all of its border.
+SceneTile scene_tile(const PublishedTile& tile, const AttributeLayout& layout);
+
+struct Scene {
+  std::vector<Bounds> boxes;                        ///< of the tiles; all that they draw is there
+  std::function<SceneTile(std::size_t tile)> load;  ///< the same whenever it is asked
+  Light light = Light::lamps;                       ///< that falls on them
+
+  BoundsD box() const;
+};
+
+}  // namespace meshhier::render

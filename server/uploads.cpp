@@ -1,0 +1,272 @@
+#include "server/uploads.h"
+
+#include "execution/size_text.h"
+#include "hierarchy/error.h"
+#include "hierarchy/mesh_name.h"
+#include "server/multipart.h"
+#include "server/staged_upload.h"
+#include "server/text.h"
+#include "server/url_path.h"
+
+#include <memory>
+#include <set>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace meshhier::server {
+namespace {
+
+constexpr std::size_t kStoreBytes = 256 * 1024;
+/// After so many the disk is asked to begin, so that the sync at the end has little left to do.
+constexpr std::uint64_t kSyncEvery = 64 * 1024 * 1024;
+/// A photo scan has some hundred pictures.
+constexpr std::size_t kMostFiles = 4096;
+
+using Source = std::function<std::size_t(std::span<std::byte>)>;
+
+/// Null if all has come.
+std::optional<Reply> refuse_end(const Body& body) {
+  switch (body.end()) {
+    case Body::End::whole:
+      return std::nullopt;
+    case Body::End::lost:
+      return text_reply(400, "The request has ended before its body.");
+    case Body::End::slow:
+      return text_reply(408, "The upload was too slow.");
+    case Body::End::stopping:
+      return text_reply(503, "The server ends.");
+  }
+  return std::nullopt;
+}
+
+/// Writes what comes, and forces it to the disk. Throws Error(io), and Error(interrupted) if the
+/// server ends.
+void store(storage::File& file, const Body& body, const Source& source) {
+  std::vector<std::byte> buffer(kStoreBytes);
+  std::uint64_t written = 0, unsynced = 0;
+  while (const std::size_t count = source(buffer)) {
+    file.write_at(written, std::span(buffer).first(count));
+    written += count;
+    unsynced += count;
+    if (unsynced >= kSyncEvery) {
+      file.start_sync();
+      unsynced = 0;
+    }
+  }
+  if (refuse_end(body))
+    return;
+  file.sync([&] {
+    if (body.is_stopping())
+      throw Error(ErrorCode::interrupted, "the server ends");
+  });
+}
+
+/// The files of a form, in a folder that is being made.
+class FolderFiles {
+ public:
+  FolderFiles(storage::FileSystem& files, std::filesystem::path folder)
+      : files_(files), folder_(std::move(folder)) {
+    files_.make_directories(folder_);
+  }
+
+  /// Why not all could be taken, or nothing. Throws as store().
+  std::optional<Reply> take(Body& body, MultipartReader& form) {
+    auto next = form.next();
+    for (; next == MultipartReader::Next::file; next = form.next()) {
+      if (auto refused = refuse_name(form.name()))
+        return refused;
+      const auto file = files_.create(folder_ / form.name());
+      store(*file, body, [&](std::span<std::byte> bytes) { return form.read(bytes); });
+      if (auto refused = refuse_end(body))
+        return refused;
+    }
+    if (auto refused = refuse_end(body))
+      return refused;
+    if (next == MultipartReader::Next::malformed)
+      return text_reply(400, "The body is no form of files.");
+    if (meshes_ == 0)
+      return text_reply(400,
+                        "There is no mesh among the files: .ply, .obj, .gltf, .glb, .stl or .off.");
+    files_.sync_directory(folder_);
+    return std::nullopt;
+  }
+
+ private:
+  std::optional<Reply> refuse_name(const std::string& name) {
+    if (!is_plain_name(name))
+      return text_reply(400, "A file has a name that cannot be taken: rename it.");
+    meshes_ += is_mesh_name(name) ? 1 : 0;
+    if (meshes_ > 1)
+      return text_reply(400, "There are several meshes among the files: send them one by one.");
+    if (!names_.insert(lower_case(name)).second)
+      return text_reply(400, "Two files have the same name.");
+    if (names_.size() > kMostFiles)
+      return text_reply(400, fmt::format("There are more than {} files.", kMostFiles));
+    return std::nullopt;
+  }
+
+  storage::FileSystem& files_;
+  std::filesystem::path folder_;
+  std::set<std::string> names_;  ///< in small letters: some disks make no difference
+  std::size_t meshes_ = 0;
+};
+
+Reply taken(const std::string& name) {
+  return text_reply(409, fmt::format("{} is in the inbox already: rename yours.", name));
+}
+
+Reply publish(StagedUpload& staged, const std::string& name) {
+  if (!staged.publish(name))
+    return taken(name);
+  return text_reply(201, fmt::format("{} is in the inbox.", name));
+}
+
+/// Browsers send the origin of the page with each request that is not just for reading; curl sends
+/// none.
+bool is_of_own_page(const Request& request) {
+  if (!request.origin)
+    return true;
+  const std::string host = request.host.value_or("");
+  return *request.origin == "http://" + host || *request.origin == "https://" + host;
+}
+
+std::string_view bearer_of(const Request& request) {
+  constexpr std::string_view kScheme = "bearer ";
+  const std::string_view value =
+      request.authorization ? std::string_view(*request.authorization) : std::string_view();
+  return lower_case(value.substr(0, kScheme.size())) == kScheme
+             ? trimmed(value.substr(kScheme.size()))
+             : std::string_view();
+}
+
+}  // namespace
+
+/// One of those that may be under way at once.
+class Uploads::Slot {
+ public:
+  explicit Slot(std::atomic<std::size_t>& count) : count_(count), number_(++count) {}
+  Slot(const Slot&) = delete;
+  Slot& operator=(const Slot&) = delete;
+  ~Slot() { --count_; }
+  std::size_t number() const { return number_; }
+
+ private:
+  std::atomic<std::size_t>& count_;
+  std::size_t number_;
+};
+
+bool is_same_secret(std::string_view a, std::string_view b) {
+  unsigned difference = a.size() == b.size() ? 0 : 1;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    difference |= static_cast<unsigned char>(a[i]) ^
+                  static_cast<unsigned char>(b.empty() ? ~a[i] : b[i % b.size()]);
+  return difference == 0;
+}
+
+Uploads::Uploads(UploadOptions options, storage::FileSystem& files, Tell tell)
+    : options_(std::move(options)), files_(files), tell_(std::move(tell)) {
+  remove_stale_uploads(files_, options_.inbox);
+}
+
+std::optional<UploadOffer> Uploads::offer() const {
+  if (!options_.is_loopback && options_.token.empty())
+    return std::nullopt;
+  return UploadOffer{options_.limit_bytes, !options_.token.empty()};
+}
+
+std::optional<Reply> Uploads::refuse_sender(const Request& request) const {
+  if (!is_of_own_page(request))
+    return text_reply(403, "Pages of others may not send meshes here.");
+  if (!offer()) {
+    return text_reply(403,
+                      "Meshes are taken from this machine only: start the server with "
+                      "--upload-token-file to send them from others.");
+  }
+  if (options_.token.empty() || is_same_secret(bearer_of(request), options_.token))
+    return std::nullopt;
+  Reply reply = text_reply(401, "The token is missing or wrong (Authorization: Bearer TOKEN).");
+  reply.headers.emplace_back("WWW-Authenticate", "Bearer");
+  return reply;
+}
+
+std::optional<Reply> Uploads::refuse_size(const Request& request) const {
+  if (request.body == nullptr)
+    return text_reply(411, "The request must say how long its body is (Content-Length).");
+  if (request.body->bytes() > options_.limit_bytes) {
+    return text_reply(413, fmt::format("It is larger than {}, the limit (--upload-limit).",
+                                       execution::exact_size_text(options_.limit_bytes)));
+  }
+  if (request.body->bytes() > files_.free_bytes(options_.inbox))
+    return text_reply(507, "The disk of the inbox has no room for it.");
+  return std::nullopt;
+}
+
+std::optional<Reply> Uploads::refuse_name(const std::string& name) const {
+  const std::filesystem::path path = options_.inbox / name;
+  if (files_.exists(path) || files_.is_link(path))
+    return taken(name);
+  return std::nullopt;
+}
+
+Reply Uploads::take(const Request& request, std::string_view place) {
+  if (auto refused = refuse_sender(request))
+    return std::move(*refused);
+  const std::optional<std::string> name = decode_path(place);
+  if (!name || !is_plain_name(*name))
+    return text_reply(400,
+                      "The name cannot be taken: one part, no dot in front, at most 255 bytes.");
+  try {
+    return take_whole(request, *name);
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::interrupted)
+      return text_reply(503, "The server ends.");
+    tell_(fmt::format("{}: {}", *name, error.what()));
+    return text_reply(507, "It could not be stored; the server's terminal says why.");
+  }
+}
+
+Reply Uploads::take_whole(const Request& request, const std::string& name) {
+  const bool is_file = request.method == "PUT";
+  if (is_file && !is_mesh_name(name)) {
+    return text_reply(400,
+                      "A mesh ends in .ply, .obj, .gltf, .glb, .stl or .off; what belongs to it is "
+                      "sent with it, as a form.");
+  }
+  const std::string type = request.content_type.value_or("");
+  const auto boundary = is_file ? std::string() : form_boundary(type);
+  if (!boundary)
+    return text_reply(415, "The files of a folder are sent as a form (multipart/form-data).");
+  if (auto refused = refuse_size(request))
+    return std::move(*refused);
+  if (auto refused = refuse_name(name))
+    return std::move(*refused);
+  const Slot slot(at_once_);
+  if (slot.number() > options_.most_at_once) {
+    Reply reply = text_reply(503, "Too many uploads are under way: try again later.");
+    reply.headers.emplace_back("Retry-After", "10");
+    return reply;
+  }
+  return is_file ? take_file(*request.body, name) : take_folder(*request.body, *boundary, name);
+}
+
+Reply Uploads::take_file(Body& body, const std::string& name) {
+  StagedUpload staged(files_, options_.inbox);
+  store(*files_.create(staged.path()), body,
+        [&](std::span<std::byte> bytes) { return body.read(bytes); });
+  if (auto refused = refuse_end(body))
+    return std::move(*refused);
+  return publish(staged, name);
+}
+
+Reply Uploads::take_folder(Body& body, const std::string& boundary, const std::string& name) {
+  StagedUpload staged(files_, options_.inbox);
+  MultipartReader form(body, boundary);
+  if (auto refused = FolderFiles(files_, staged.path()).take(body, form))
+    return std::move(*refused);
+  return publish(staged, name);
+}
+
+}  // namespace meshhier::server

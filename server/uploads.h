@@ -1,0 +1,67 @@
+// Meshes that clients send into a watched inbox: who may, and what becomes of them.
+//
+//   PUT /inbox/scan.ply       a mesh file
+//   POST /inbox/house         a form of files (multipart.h): one mesh with all that belongs to it,
+//                             which becomes a folder of that name
+//
+// The inbox has it whole or not at all, and nothing in it is ever replaced.
+#pragma once
+
+#include "server/gallery.h"
+#include "server/http.h"
+#include "storage/io/file.h"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace meshhier::server {
+
+struct UploadOptions {
+  std::filesystem::path inbox;                          ///< absolute
+  std::uint64_t limit_bytes = std::uint64_t{20} << 30;  ///< of a request
+  std::string token{};      ///< who sends must know it; empty: there is none
+  bool is_loopback = true;  ///< only this machine reaches the server; else nobody sends without a
+                            ///< token
+  std::size_t most_at_once = 8;  ///< each holds a thread
+};
+
+/// Thread-safe.
+class Uploads {
+ public:
+  using Tell = std::function<void(const std::string& message)>;
+
+  /// Removes what a killed server left. `files` must outlive this. `tell` hears why a file could
+  /// not be stored. Throws Error(io).
+  Uploads(UploadOptions options, storage::FileSystem& files, Tell tell);
+
+  /// What pages are told; nothing if nobody may send.
+  std::optional<UploadOffer> offer() const;
+  /// `place`: the target below /inbox, "/scan.ply". 201, or why not, in one line. Never throws.
+  Reply take(const Request& request, std::string_view place);
+
+ private:
+  class Slot;
+
+  std::optional<Reply> refuse_sender(const Request& request) const;
+  std::optional<Reply> refuse_size(const Request& request) const;
+  std::optional<Reply> refuse_name(const std::string& name) const;
+  Reply take_whole(const Request& request, const std::string& name);
+  Reply take_file(Body& body, const std::string& name);
+  Reply take_folder(Body& body, const std::string& boundary, const std::string& name);
+
+  UploadOptions options_;
+  storage::FileSystem& files_;
+  Tell tell_;
+  std::atomic<std::size_t> at_once_{0};
+};
+
+/// Whether they are equal; how long it takes does not depend on where they differ.
+bool is_same_secret(std::string_view a, std::string_view b);
+
+}  // namespace meshhier::server

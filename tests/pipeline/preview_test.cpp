@@ -1,0 +1,163 @@
+// The picture that a build makes of its hierarchy.
+#include "hierarchy/error.h"
+#include "images/image_codec.h"
+#include "inspection/verify.h"
+#include "pipeline/build.h"
+#include "storage/format/hierarchy_reader.h"
+#include "storage/format/layout.h"
+#include "storage/io/hash.h"
+#include "tests/support/meshes.h"
+#include "tests/support/sample_hierarchy.h"
+#include "tests/support/sizes.h"
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace meshhier::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class PreviewTest : public testing::Test {
+ protected:
+  fs::path hierarchy() const { return directory_.path() / "mesh.hier"; }
+  fs::path preview() const { return storage::preview_path(hierarchy()); }
+
+  config::Config config() const {
+    config::Config config;
+    config.input = directory_.path() / "mesh.ply";
+    config.output = hierarchy();
+    config.partition.vertices = 200;
+    return config;
+  }
+
+  void build(const tests::TestMesh& mesh, const config::Config& config) {
+    tests::write_ply(mesh, directory_.path() / "mesh.ply");
+    execution::NoProgress progress;
+    build_hierarchy(config, {.force = true}, {*files_, progress, execution::CancelToken()});
+  }
+
+  std::vector<std::byte> bytes() { return storage::read_file(*files_, preview(), 1 << 20); }
+
+  std::vector<std::string> problems() {
+    execution::NoProgress progress;
+    inspection::VerifyOptions options;
+    options.cuts = 1;
+    return inspection::verify_hierarchy(*files_, hierarchy(), options, progress,
+                                        execution::CancelToken())
+        .problems;
+  }
+
+  tests::TemporaryDirectory directory_;
+  std::unique_ptr<storage::FileSystem> files_ = storage::make_posix_file_system();
+};
+
+/// The part of a picture that something covers.
+double coverage(const images::Image& picture) {
+  std::size_t covered = 0;
+  for (std::size_t i = 3; i < picture.texels.size(); i += 4)
+    covered += picture.texels[i] > 127 ? 1 : 0;
+  return static_cast<double>(covered) / (static_cast<double>(picture.width) * picture.height);
+}
+
+TEST_F(PreviewTest, ShowsTheModelOnATransparentGround) {
+  build(tests::sphere(3000), config());
+  const storage::HierarchyReader reader(*files_, hierarchy());
+  ASSERT_TRUE(reader.manifest().preview);
+  EXPECT_EQ(reader.manifest().preview->bytes, fs::file_size(preview()));
+  EXPECT_LE(fs::file_size(preview()), storage::kMostPreviewBytes);
+  const images::Image picture = images::decode_image(reader.read_preview(), "preview", 1 << 20);
+  EXPECT_EQ(picture.width, 512U);
+  EXPECT_EQ(picture.height, 512U);
+  ASSERT_EQ(picture.channels, 4U);
+  EXPECT_NEAR(coverage(picture), 0.92 * 0.92 * 3.1416 / 4, 0.02);
+  EXPECT_EQ(picture.at(3, 3)[3], 0);
+  EXPECT_GT(picture.at(160, 160)[0], picture.at(350, 370)[0] + 40) << "lit from the upper left";
+}
+
+TEST_F(PreviewTest, IsTheSameForAnyThreadsAndBudget) {
+  config::Config one = config();
+  one.threads = 1;
+  one.memory_budget = 64 * tests::kMiB;
+  build(tests::torus(20000, 0.1F), one);
+  const auto expected = bytes();
+  config::Config other = config();
+  other.threads = 4;
+  other.memory_budget = 4096 * tests::kMiB;
+  build(tests::torus(20000, 0.1F), other);
+  EXPECT_EQ(bytes(), expected);
+}
+
+TEST_F(PreviewTest, APreviewIsLeftOutIfNobodyWantsIt) {
+  config::Config without = config();
+  without.preview = false;
+  build(tests::sphere(300), without);
+  EXPECT_FALSE(fs::exists(preview()));
+  EXPECT_EQ(storage::HierarchyReader(*files_, hierarchy()).manifest().preview, std::nullopt);
+  EXPECT_THAT(problems(), IsEmpty());
+}
+
+TEST_F(PreviewTest, PointsAloneHaveAnEmptyOne) {
+  build(tests::points(50), config());
+  const images::Image picture = images::decode_image(bytes(), "preview", 1 << 20);
+  EXPECT_EQ(coverage(picture), 0);
+  EXPECT_THAT(problems(), IsEmpty());
+}
+
+TEST_F(PreviewTest, VerifyNamesAPreviewThatIsMissingCutOrAnother) {
+  build(tests::sphere(1000), config());
+  ASSERT_THAT(problems(), IsEmpty());
+  const auto whole = bytes();
+  fs::remove(preview());
+  EXPECT_THAT(problems(), Contains(HasSubstr(preview().string())));
+  storage::write_file(*files_, preview(), std::span(whole).first(whole.size() - 1));
+  EXPECT_THAT(problems(), Contains(HasSubstr(preview().string())));
+  auto changed = whole;
+  changed[whole.size() / 2] ^= std::byte{1};
+  storage::write_file(*files_, preview(), changed);
+  EXPECT_THAT(problems(), Contains(HasSubstr(preview().string())));
+}
+
+/// A file that the manifest seals, but no picture or one of another size, is a problem too.
+TEST_F(PreviewTest, VerifyDecodesIt) {
+  build(tests::sphere(1000), config());
+  const auto with_preview = [&](std::vector<std::byte> file, std::uint32_t width) {
+    const auto path = storage::manifest_path(hierarchy());
+    storage::Manifest manifest = storage::HierarchyReader(*files_, hierarchy()).manifest();
+    manifest.total_bytes += file.size() - manifest.preview->bytes;
+    manifest.preview = storage::Preview{width, 512, file.size(), storage::checksum(file)};
+    const std::string text = storage::to_json_text(manifest);
+    storage::write_file(*files_, preview(), file);
+    storage::write_file(*files_, path, std::as_bytes(std::span(text)));
+    return problems();
+  };
+  const auto good = bytes();
+  EXPECT_THAT(with_preview(good, 512), IsEmpty());
+  EXPECT_THAT(with_preview(good, 511), Contains(HasSubstr("the manifest says 511 x 512")));
+  EXPECT_THAT(with_preview(std::vector<std::byte>(100), 512),
+              Contains(HasSubstr(preview().string())));
+  EXPECT_THAT(with_preview({}, 512), Contains(HasSubstr(preview().string())));
+}
+
+TEST_F(PreviewTest, VerifyMissesOneThatTheConfigAskedFor) {
+  build(tests::sphere(1000), config());
+  storage::Manifest manifest = storage::HierarchyReader(*files_, hierarchy()).manifest();
+  manifest.total_bytes -= manifest.preview->bytes;
+  manifest.preview.reset();
+  const std::string text = storage::to_json_text(manifest);
+  storage::write_file(*files_, storage::manifest_path(hierarchy()), std::as_bytes(std::span(text)));
+  const std::vector<std::string> found = problems();
+  EXPECT_THAT(found, Contains(HasSubstr("preview\" is false, expected true")));
+  EXPECT_THAT(found, Contains(HasSubstr("not a file of this hierarchy")));
+}
+
+}  // namespace
+}  // namespace meshhier::pipeline

@@ -1,0 +1,301 @@
+// Checks the tools of viewer/'s page in headless Chromium: each is used by mouse, touch and keys, on a small model.
+//
+//   node tools.mjs PICTURES PAGE HIERARCHY
+//
+// PAGE: the directory that `npm run build` of viewer/ makes, dist/page. The hierarchy must be closed, and should have some
+// partitions. The pages of examples/ that use the library's tools are used, too. Pictures go to the directory PICTURES. Exit code 2: wrong use; else see browser.mjs.
+import { readFileSync } from 'node:fs';
+import path from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { collectComplaints, inChromium, readHierarchy } from './browser.mjs';
+import { serve } from './server.mjs';
+import { withSite } from './site.mjs';
+
+const HERE = path.dirname(fileURLToPath(import.meta.url));
+const ROOT = path.join(HERE, '../..');
+
+const WIDE = { viewport: { width: 1000, height: 700 } };
+const NARROW = { viewport: { width: 360, height: 640 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true };
+const MIDDLE = { x: 500, y: 350 };
+const CAP = [0xd9, 0x82, 0x5b]; // src/tools/caps.ts
+const PATIENCE = 120_000; // milliseconds
+const LEAST_TARGET = 40; // CSS pixels
+
+class Visitor {
+  constructor(browser, origin, report, { name, pictures }) {
+    Object.assign(this, { browser, origin, report, name, pictures });
+  }
+
+  async open(options = WIDE) {
+    const page = await this.browser.newPage({ reducedMotion: 'reduce', ...options });
+    page.complaints = [];
+    page.asked = [];
+    page.on('request', (request) => page.asked.push(request.url().replace(`${this.origin}/`, '')));
+    page.on('console', (message) => {
+      if (['error', 'warning'].includes(message.type())) page.complaints.push(message.text());
+    });
+    page.on('pageerror', (error) => page.complaints.push(String(error)));
+    await page.goto(`${this.origin}/index.html#models/${this.name}.hier`);
+    await settle(page);
+    return page;
+  }
+
+  async close(page, what) {
+    this.check(`${what} console`, page.complaints.length === 0, page.complaints.join('; ') || 'no complaints');
+    await page.close();
+  }
+
+  check(what, good, text) {
+    this.report.line(`tools ${what}`, good, text);
+  }
+
+  picture(page, what) {
+    return page.screenshot({ path: path.join(this.pictures, `tools-${what}.png`) });
+  }
+}
+
+async function settle(page) {
+  await page.waitForFunction(() => window.meshhier?.settled(), null, { timeout: PATIENCE });
+}
+
+/// A tool of the bar is open.
+async function openTool(page, tool) {
+  const button = page.getByRole('button', { name: tool, exact: true });
+  if (!(await button.isVisible())) await page.getByRole('button', { name: 'Tools', exact: true }).click();
+  await button.click();
+  await page.locator('.tool-card', { hasText: tool }).waitFor();
+}
+
+async function figuresOf(page) {
+  const rows = await page.locator('.tool-figures > div').all();
+  return Object.fromEntries(await Promise.all(rows.map(async (row) => [await row.locator('dt').innerText(), await row.locator('dd').innerText()])));
+}
+
+/// A place of the window where the model is: the picture's middle sees through a ring.
+async function placeOnModel(page) {
+  const { width, height } = page.viewportSize();
+  await page.evaluate(() => {
+    const { box } = window.meshhier.view;
+    const [x, y, z] = ['x', 'y', 'z'].map((axis) => (box.min[axis] + box.max[axis]) / 2);
+    const far = box.max.y - box.min.y + box.max.x - box.min.x;
+    const rim = box.max.x - 0.15 * (box.max.x - box.min.x);
+    window.meshhier.setCamera({ position: [rim, y + 0.3 * far, z + 0.8 * far], target: [rim, y, z] });
+  });
+  await settle(page);
+  return { x: width / 2, y: height / 2 };
+}
+
+// ---- the tools, one after the other
+
+async function checkPick(visitor) {
+  const page = await visitor.open();
+  visitor.check('loaded on use', !page.asked.some((url) => /toolbox|_tool/.test(url)), 'nothing of them at first');
+  const { x, y } = await placeOnModel(page);
+  await openTool(page, 'Pick a point');
+  await page.mouse.click(x, y);
+  await page.locator('.tool-figures', { hasText: 'the original' }).waitFor();
+  const free = await figuresOf(page);
+  await page.locator('.surface').focus();
+  await page.keyboard.press('v');
+  await page.locator('.tool-note', { hasText: 'exact to the bit' }).waitFor();
+  const snapped = await figuresOf(page);
+  const isFloat = ['x', 'y', 'z'].every((axis) => Math.fround(Number(snapped[axis])) === Number(snapped[axis]));
+  visitor.check('pick a vertex', isFloat && free.x !== snapped.x, `${snapped.x}, ${snapped.y}, ${snapped.z}`);
+  visitor.check('pick marks it', (await page.locator('.tool-overlay circle').count()) === 1, 'one point');
+  await visitor.picture(page, 'pick');
+  await page.keyboard.press('Backspace');
+  visitor.check('pick taken back', (await page.locator('.tool-overlay circle').count()) === 0, 'no point');
+  await page.keyboard.press('Enter');
+  await page.locator('.tool-figures', { hasText: 'the original' }).waitFor();
+  const byKey = await figuresOf(page);
+  visitor.check('pick by key', byKey.x === snapped.x, 'the middle of the picture');
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('Escape');
+  visitor.check('Escape leads out of the tools', !(await page.locator('.tools').isVisible()) && page.url().includes('#models'), page.url());
+  await visitor.close(page, 'pick');
+}
+
+async function checkMeasure(visitor) {
+  const page = await visitor.open();
+  const { x, y } = await placeOnModel(page);
+  await page.keyboard.press('m');
+  await page.locator('.tool-card', { hasText: 'Measure' }).waitFor();
+  for (const up of [0, 80, 160]) await page.mouse.click(x, y - up);
+  const figures = await figuresOf(page);
+  const number = (text) => Number.parseFloat(text);
+  const [length, straight] = [number(figures.Length), number(figures.Straight)];
+  visitor.check('measure', figures.Points === '3' && length >= straight && straight > 0, JSON.stringify(figures));
+  visitor.check('measure marks', (await page.locator('.tool-overlay line').count()) === 4 && (await page.locator('.tool-overlay text').count()) === 2, 'two parts');
+  await page.getByLabel('The model is in').selectOption('m');
+  await page.getByLabel('Show').selectOption('mm');
+  const inMillimetres = await figuresOf(page);
+  const ratio = number(inMillimetres.Length) / length;
+  visitor.check('measure in mm', Math.abs(ratio - 1000) < 1 && inMillimetres.Length.endsWith(' mm'), inMillimetres.Length);
+  await checkScale(visitor, page);
+  await visitor.picture(page, 'measure');
+  await visitor.close(page, 'measure');
+}
+
+/// The bar, measured with the camera: as long as it says at the target's depth.
+async function checkScale(visitor, page) {
+  await settle(page);
+  const told = await page.evaluate(() => {
+    const bar = document.querySelector('.scale-line');
+    const { position, target } = window.meshhier.camera();
+    const distance = Math.hypot(...position.map((value, axis) => value - target[axis]));
+    const perPixel = (2 * distance * Math.tan(Math.PI / 8)) / window.innerHeight;
+    return { text: bar.textContent, length: bar.getBoundingClientRect().width * perPixel * 1000 };
+  });
+  visitor.check('scale bar', Math.abs(told.length / Number.parseFloat(told.text) - 1) < 0.01, `${told.text} is ${told.length.toFixed(2)} mm`);
+}
+
+/// Pixels of a surface that are of the cap's colour.
+async function capPixels(page, surface = '.surface') {
+  const picture = await page.locator(surface).screenshot();
+  return page.evaluate(async ([data, cap]) => {
+    const bitmap = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
+    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
+    context.drawImage(bitmap, 0, 0);
+    const pixels = context.getImageData(0, 0, bitmap.width, bitmap.height).data;
+    let count = 0;
+    for (let i = 0; i < pixels.length; i += 4) if (cap.every((value, k) => Math.abs(pixels[i + k] - value) <= 3)) ++count;
+    return count;
+  }, [picture.toString('base64'), CAP]);
+}
+
+async function checkClip(visitor) {
+  const page = await visitor.open();
+  const whole = await capPixels(page);
+  await openTool(page, 'Cut open');
+  await settle(page);
+  const cut = await capPixels(page);
+  visitor.check('caps', whole === 0 && cut > 2000, `${cut} pixels, ${whole} of the whole model`);
+  await visitor.picture(page, 'clip-plane');
+  await page.getByLabel('Caps').uncheck();
+  visitor.check('no caps', (await capPixels(page)) === 0, 'the inside is seen');
+  await page.getByLabel('Caps').check();
+  await checkSection(visitor, page);
+  await page.getByRole('radio', { name: 'Box' }).check();
+  for (const [side, part] of [['x to', 0.6], ['y to', 0.2]]) {
+    await page.getByRole('slider', { name: side }).evaluate((one, p) => {
+      one.value = String(Number(one.min) + p * (Number(one.max) - Number(one.min)));
+      one.dispatchEvent(new Event('input'));
+    }, part);
+  }
+  await settle(page);
+  const boxed = await capPixels(page);
+  visitor.check('box', boxed > 2000, `${boxed} pixels of caps`);
+  await visitor.picture(page, 'clip-box');
+  await page.getByRole('radio', { name: 'Off' }).check();
+  await settle(page);
+  visitor.check('off', (await capPixels(page)) === 0, 'whole again');
+  await visitor.close(page, 'clip');
+}
+
+/// Of the ring, in the middle: closed lines, as wide and high as the model is there.
+async function checkSection(visitor, page) {
+  const [file] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Section as SVG' }).click()]);
+  const svg = readFileSync(await file.path(), 'utf8');
+  const paths = [...svg.matchAll(/ d="([^"]*)"/g)].map((match) => match[1]);
+  const [width, height] = /viewBox="0 0 (\S+) (\S+)"/.exec(svg).slice(1).map(Number);
+  const isGood = paths.length > 0 && paths.every((path) => /^M[^M]*Z$/.test(path)) && width > 0 && height > 0;
+  visitor.check('section', isGood, `${paths.length} closed lines, ${width.toFixed(3)} x ${height.toFixed(3)}, ${file.suggestedFilename()}`);
+}
+
+async function checkNarrow(visitor) {
+  const page = await visitor.open(NARROW);
+  const { x, y } = await placeOnModel(page);
+  await page.getByRole('button', { name: 'Tools', exact: true }).tap();
+  await page.getByRole('button', { name: 'Pick a point', exact: true }).tap();
+  await page.locator('.tool-card').waitFor();
+  await page.touchscreen.tap(x, y - 60);
+  await page.locator('.tool-figures', { hasText: 'the original' }).waitFor();
+  const small = await page.evaluate((least) => [...document.querySelectorAll('.tools button, .tools label.check, .tools select')]
+    .filter((one) => one.checkVisibility() && !one.closest('[hidden]'))
+    .filter((one) => { const { width, height } = one.getBoundingClientRect(); return width < least || height < least; })
+    .map((one) => one.getAttribute('aria-label') ?? one.textContent), LEAST_TARGET);
+  visitor.check('by touch', small.length === 0, small.join(', ') || 'a point, and targets of 40 pixels');
+  await visitor.picture(page, 'narrow');
+  await visitor.close(page, 'narrow');
+}
+
+// ---- the same with the library alone
+
+/// A page of examples/, with what its console complained of.
+async function openExample(browser, { origin }, example) {
+  const page = await browser.newPage(WIDE);
+  page.complaints = [];
+  collectComplaints(page, page.complaints, ['error', 'warning']);
+  await page.goto(`${origin}/examples/${example}.html?url=/hierarchy`);
+  return page;
+}
+
+async function checkPickExample(visitor, server) {
+  const page = await openExample(visitor.browser, server, 'pick');
+  const told = page.locator('#told');
+  await page.keyboard.down('Shift');
+  for (let count = 1; count <= 2; ++count) {
+    await clickUntil(page, { x: MIDDLE.x + 150 * count, y: MIDDLE.y }, () => told.innerText().then((text) => text.includes(`${count} points`)));
+  }
+  visitor.check('example pick', page.complaints.length === 0 && (await told.innerText()).includes("the input's own numbers"), [await told.innerText(), ...page.complaints].join('; ').replaceAll('\n', ' '));
+  await page.close();
+}
+
+async function checkSectionExample(visitor, server) {
+  const page = await openExample(visitor.browser, server, 'section');
+  for (let tries = 0; (await capPixels(page, 'canvas')) < 2000; ++tries) {
+    if (tries === 20) throw new Error('the example shows no cap');
+    await page.waitForTimeout(100);
+  }
+  const [file] = await Promise.all([page.waitForEvent('download'), page.mouse.click(MIDDLE.x, MIDDLE.y)]);
+  const paths = [...readFileSync(await file.path(), 'utf8').matchAll(/ d="M[^"]*Z"/g)];
+  await visitor.picture(page, 'example-section');
+  visitor.check('example section', paths.length > 0 && page.complaints.length === 0, `${paths.length} closed lines ${page.complaints.join('; ')}`);
+  await page.close();
+}
+
+/// Clicks at a place, and nearer and nearer to the middle, until it is enough.
+async function clickUntil(page, { x, y }, isEnough) {
+  for (let part = 1; part > 0; part -= 0.1) {
+    await page.mouse.click(MIDDLE.x + (x - MIDDLE.x) * part, y);
+    for (let tries = 0; tries < 10; ++tries) {
+      if (await isEnough()) return;
+      await page.waitForTimeout(100);
+    }
+  }
+  throw new Error('nothing was picked');
+}
+
+async function checkExamples(visitor, directory) {
+  const server = await serve({
+    '/examples/node_modules/meshoptimizer': path.join(ROOT, 'viewer/node_modules/meshoptimizer'),
+    '/examples/node_modules': path.join(HERE, 'node_modules'),
+    '/examples': path.join(ROOT, 'examples'),
+    '/viewer/dist': path.join(ROOT, 'viewer/dist'),
+    '/hierarchy': directory,
+  });
+  await checkPickExample(visitor, server);
+  await checkSectionExample(visitor, server);
+  server.close();
+}
+
+async function checkAll(browser, report, pictures, hierarchy, origin) {
+  const visitor = new Visitor(browser, origin, report, { name: hierarchy.name, pictures });
+  await checkPick(visitor);
+  await checkMeasure(visitor);
+  await checkClip(visitor);
+  await checkNarrow(visitor);
+  await checkExamples(visitor, hierarchy.directory);
+}
+
+async function serveAndCheck(browser, report, [pictures, page, directory]) {
+  const hierarchy = readHierarchy(directory);
+  await withSite(page, [hierarchy], (origin) => checkAll(browser, report, pictures, hierarchy, origin));
+}
+
+const [pictures, ...others] = process.argv.slice(2);
+if (others.length !== 2) {
+  console.log('usage: node tools.mjs PICTURES PAGE HIERARCHY');
+  process.exit(2);
+}
+process.exit(await inChromium(pictures, (browser, report) => serveAndCheck(browser, report, [pictures, ...others])));

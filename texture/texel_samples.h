@@ -1,0 +1,73 @@
+// The charts of a tile in a picture, and the points of the surface that its texels show.
+#pragma once
+
+#include "hierarchy/vec.h"
+#include "texture/bake.h"
+#include "texture/chart_growing.h"
+#include "texture/chart_layout.h"
+#include "texture/corners.h"
+#include "texture/faces.h"
+#include "texture/texel_raster.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace meshhier::texture {
+
+/// The point of the surface that a texel shows.
+struct TexelSample {
+  Vec3d point;
+  std::uint32_t triangle = kNoFace;
+  float distance = 0;  ///< from the triangle, texels squared
+
+  bool is_inside() const { return triangle != kNoFace && distance == 0; }
+};
+
+class TexelSamples {
+ public:
+  /// `tile` must outlive it: positions and triangles of it are used, no triangle is there twice.
+  TexelSamples(const TexturedSurface& tile, const BakeSize& size);
+
+  const ChartLayout& layout() const { return layout_; }
+  const TexelSample& at(std::uint32_t x, std::uint32_t y) const { return samples_[index(x, y)]; }
+
+  /// Where the surface looks to at a sample of a chart.
+  Vec3d facing(const ChartPlane& plane, const TexelSample& sample) const {
+    return faces_.areas[sample.triangle] > 0 ? faces_.normals[sample.triangle] : plane.normal;
+  }
+  /// One a triangle.
+  std::vector<CornerTexcoords> texcoords() const;
+
+ private:
+  template <class Visit>
+  void for_each_triangle(const Visit& visit) {
+    for (std::uint32_t c = 0; c < charts_.ends.size(); ++c) {
+      for (std::uint32_t i = charts_.begin_of(c); i < charts_.ends[c]; ++i)
+        visit(layout_.planes[c], charts_.triangles[i]);
+    }
+  }
+  Vec3d position(std::uint32_t triangle, std::size_t corner) const {
+    return to_double(tile_.positions[raw(tile_.triangles[triangle][corner % 3])]);
+  }
+  std::size_t index(std::uint32_t x, std::uint32_t y) const {
+    return std::size_t{y} * layout_.width + x;
+  }
+
+  void place(const BakeSize& size);
+  void cover();
+  void mark_middle(std::uint32_t t);
+  void cover_borders();
+  void cover_beyond(const ChartPlane& plane, std::uint32_t t, std::size_t k);
+  Vec3d beyond(const ChartPlane& plane, std::uint32_t t, double x, double y) const;
+
+  const TexturedSurface& tile_;
+  Faces faces_;
+  SurfaceCharts charts_;
+  ChartLayout layout_;
+  std::vector<std::array<TexelPoint, 3>> corners_;  ///< of triangles, texels
+  std::vector<TexelSample> samples_;                ///< of texels
+};
+
+}  // namespace meshhier::texture

@@ -1,0 +1,41 @@
+// What is known of a model, for people: of what is not known there is no line.
+import type { Manifest } from '../../src/index.js';
+import type { Model } from '../listing.js';
+import { formatBytes, formatCount, formatDate, formatLength } from '../numbers.js';
+import { words } from '../words/words.js';
+
+export type Fact = readonly [name: string, text: string];
+
+/// Along the axes of the input.
+function extentOf({ min, max }: Manifest['source']): string {
+  return max.map((value, axis) => formatLength(value - min[axis])).join(' × ');
+}
+
+function colours({ source: { textures, hasColours } }: Manifest): string | null {
+  if (textures === null) return hasColours ? words.info.vertexColours : null;
+  const count = words.counts.pictures(textures.images, formatCount(textures.images));
+  return textures.missingImages > 0 ? words.figures.missingPictures(count, formatCount(textures.missingImages)) : count;
+}
+
+export function factsOf(model: Model, manifest: Manifest): Fact[] {
+  const { source, licence, totalBytes } = manifest;
+  const names = words.info.rows;
+  const facts: (readonly [string, string | null])[] = [
+    [names.source, source.fileName],
+    [names.licence, licence.trim()],
+    [names.triangles, formatCount(source.triangles)],
+    [names.vertices, formatCount(source.vertices)],
+    [names.colours, colours(manifest)],
+    [names.extent, extentOf(source)],
+    [names.sourceBytes, formatBytes(source.fileBytes)],
+    [names.bytes, formatBytes(totalBytes)],
+    [names.modified, model.modified === null ? null : formatDate(model.modified)],
+  ];
+  return facts.flatMap(([name, text]) => (text === null || text === '' ? [] : [[name, text] as const]));
+}
+
+/// In a sentence or two, for those who do not see the model.
+export function summaryOf(model: Model, { source }: Manifest): string {
+  const triangles = words.counts.triangles(source.triangles, formatCount(source.triangles));
+  return words.info.summary(model.name, triangles, extentOf(source));
+}

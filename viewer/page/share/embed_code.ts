@@ -1,0 +1,42 @@
+// What another page is given to show a model, or this one to show it again.
+import { formatAddress, type Pose } from '../address.js';
+
+export interface Shared {
+  /// The page's address, without query and hash.
+  page: string;
+  name: string;
+  /// Of the hierarchy.
+  url: string;
+  /// Null: all of the model.
+  pose: Pose | null;
+}
+
+const ESCAPES: Readonly<Record<string, string>> = { '&': '&amp;', '"': '&quot;', '<': '&lt;', '>': '&gt;' };
+
+function escaped(text: string): string {
+  return text.replace(/[&"<>]/g, (sign) => ESCAPES[sign]);
+}
+
+/// Relative to the page where it lies below it: the page may be called by several names.
+function modelParameter({ page, url }: Shared): string {
+  const folder = new URL('.', page).href;
+  return encodeURIComponent(url.startsWith(folder) ? url.slice(folder.length) : url).replace(/%2F/g, '/').replace(/%3A/g, ':');
+}
+
+/// A page that shows the model alone.
+export function addressAlone(shared: Shared): string {
+  const hash = shared.pose === null ? '' : formatAddress({ path: '', pose: shared.pose });
+  return `${shared.page}?model=${modelParameter(shared)}${hash}`;
+}
+
+export function frameCode(shared: Shared): string {
+  const address = escaped(addressAlone(shared));
+  return `<iframe src="${address}" title="${escaped(shared.name)}" width="640" height="480" style="border: 0" loading="lazy" allow="fullscreen"></iframe>`;
+}
+
+/// With the script that lies beside the page.
+export function elementCode({ page, name, url, pose }: Shared): string {
+  const camera = pose === null ? '' : ` camera="${[...pose.position, ...pose.target].join(',')}"`;
+  return `<script type="module" src="${escaped(new URL('meshhier-viewer.js', page).href)}"></script>\n` +
+    `<meshhier-viewer src="${escaped(url)}" label="${escaped(name)}"${camera} style="height: 480px"></meshhier-viewer>`;
+}

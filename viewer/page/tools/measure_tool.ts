@@ -1,0 +1,97 @@
+// Distances along points of the surface.
+import { measuresOf, type Measures } from '../../src/tools/measure.js';
+import type { PickedPoint } from '../../src/tools/picked_point.js';
+import { checkbox } from '../parts/controls.js';
+import { element } from '../parts/element.js';
+import { figureList, figures, textButton } from './figures.js';
+import type { Mark } from './overlay.js';
+import type { Tool } from './tool.js';
+import { unitsForm } from './units_form.js';
+import { words } from './words/words.js';
+import type { Workshop } from './workshop.js';
+
+const MOST_POINTS = 500;
+const SNAP_KEY = 'V';
+
+export class MeasureTool implements Tool {
+  readonly root: HTMLElement;
+  private readonly list = figureList();
+  private readonly clear = textButton(words.measure.clear, () => { this.drop(0); });
+  private readonly snap = checkbox(words.pick.snap, SNAP_KEY, (on) => { this.setSnap(on); });
+  private points: PickedPoint[] = [];
+  private readonly ending = new AbortController();
+
+  constructor(private readonly shop: Workshop) {
+    const units = unitsForm(shop, () => { this.show(); });
+    this.snap.show(shop.settings.snaps);
+    this.root = element('div', {}, element('p', { class: 'tool-note' }, words.measure.hint), this.list, units, this.snap.root, this.clear);
+    this.show();
+  }
+
+  choose(right: number, up: number): void {
+    if (this.points.length >= MOST_POINTS) return;
+    const pointed = this.shop.pointing.at(right, up, this.shop.settings.snaps, this.ending.signal);
+    if (pointed === null) return;
+    this.points.push(pointed.shown);
+    this.show();
+    pointed.original.then((original) => { if (original) this.replace(pointed.shown, original); }, () => undefined);
+  }
+
+  key(key: string): boolean {
+    if (key === 'Delete') this.drop(0);
+    else if (key.toUpperCase() === SNAP_KEY) this.setSnap(!this.shop.settings.snaps);
+    else return false;
+    return true;
+  }
+
+  undo(): boolean {
+    if (this.points.length === 0) return false;
+    this.drop(this.points.length - 1);
+    return true;
+  }
+
+  marks(): readonly Mark[] {
+    const scale = this.shop.scale();
+    const { parts } = this.measures();
+    const lines = this.points.slice(1).map(({ local }, i) => ({ at: this.points[i].local, to: local, text: scale.format(parts[i]) }));
+    return [...lines, ...this.points.map(({ local }) => ({ at: local }))];
+  }
+
+  close(): void {
+    this.ending.abort();
+  }
+
+  private setSnap(on: boolean): void {
+    this.shop.settings.snaps = on;
+    this.shop.chosen();
+    this.snap.show(on);
+  }
+
+  private measures(): Measures {
+    return measuresOf(this.points.map(({ point }) => point), this.shop.bench.view.manifest?.up === 'z' ? 2 : 1);
+  }
+
+  private drop(from: number): void {
+    this.points = this.points.slice(0, from);
+    this.show();
+  }
+
+  private replace(shown: PickedPoint, original: PickedPoint): void {
+    this.points = this.points.map((point) => (point === shown ? original : point));
+    this.show();
+  }
+
+  private show(): void {
+    const { length, level, straight, rise } = this.measures();
+    const scale = this.shop.scale();
+    const { measure } = words;
+    const rows = [[measure.points, String(this.points.length)], [measure.length, scale.format(length)], [measure.level, scale.format(level)],
+      [measure.straight, scale.format(straight)], [measure.rise, scale.format(rise)]] as const;
+    this.list.replaceChildren(...figures(rows));
+    this.shop.bench.redraw();
+  }
+}
+
+export function makeTool(shop: Workshop): Tool {
+  return new MeasureTool(shop);
+}

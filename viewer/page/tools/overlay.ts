@@ -1,0 +1,74 @@
+// Marks over the picture: points, lines and texts, at their places in each frame.
+import { Vector4, type Matrix4, type PerspectiveCamera } from 'three';
+import type { Vector } from '../../src/tools/vectors.js';
+
+/// In the tiles' coordinates; a line has an end.
+export interface Mark {
+  readonly at: Vector;
+  readonly to?: Vector;
+  readonly text?: string;
+}
+
+const SVG = 'http://www.w3.org/2000/svg';
+const POINT_RADIUS = 5; // pixels
+const TEXT_OFF = 9;
+const LEAST_LINE = 60; // pixels: the text of a shorter one would cover others
+
+function make(tag: string, to: Element, attributes: Readonly<Record<string, number | string>>): SVGElement {
+  const made = document.createElementNS(SVG, tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, String(value));
+  to.append(made);
+  return made;
+}
+
+interface Place {
+  readonly x: number;
+  readonly y: number;
+}
+
+export class Overlay {
+  readonly root = document.createElementNS(SVG, 'svg');
+
+  constructor() {
+    this.root.setAttribute('class', 'tool-overlay');
+    this.root.setAttribute('aria-hidden', 'true'); // cards tell the same in words
+  }
+
+  show(marks: readonly Mark[], camera: PerspectiveCamera, matrix: Readonly<Matrix4>): void {
+    if (marks.length === 0 && this.root.childElementCount === 0) return;
+    this.root.replaceChildren();
+    const clipOf = ([x, y, z]: Vector): Vector4 =>
+      new Vector4(x, y, z, 1).applyMatrix4(matrix).applyMatrix4(camera.matrixWorldInverse).applyMatrix4(camera.projectionMatrix);
+    for (const mark of marks) {
+      if (mark.to) this.line(clipOf(mark.at), clipOf(mark.to), mark.text);
+      else this.point(clipOf(mark.at), mark.text);
+    }
+  }
+
+  private placeOf({ x, y, w }: Vector4): Place {
+    const { clientWidth, clientHeight } = this.root;
+    return { x: ((x / w + 1) / 2) * clientWidth, y: ((1 - y / w) / 2) * clientHeight };
+  }
+
+  private point(clip: Vector4, text: string | undefined): void {
+    if (clip.w <= 0) return;
+    const { x, y } = this.placeOf(clip);
+    make('circle', this.root, { cx: x, cy: y, r: POINT_RADIUS });
+    this.text({ x: x + TEXT_OFF, y: y - TEXT_OFF }, text);
+  }
+
+  /// Of what lies behind the camera nothing is drawn.
+  private line(a: Vector4, b: Vector4, text: string | undefined): void {
+    const near = Math.max(a.w, b.w) * 1e-6;
+    if (near <= 0) return;
+    const cut = (from: Vector4, to: Vector4): Vector4 => (from.w >= near ? from : from.clone().lerp(to, (near - from.w) / (to.w - from.w)));
+    const [one, other] = [this.placeOf(cut(a, b)), this.placeOf(cut(b, a))];
+    make('line', this.root, { class: 'under', x1: one.x, y1: one.y, x2: other.x, y2: other.y });
+    make('line', this.root, { x1: one.x, y1: one.y, x2: other.x, y2: other.y });
+    if (Math.hypot(one.x - other.x, one.y - other.y) >= LEAST_LINE) this.text({ x: (one.x + other.x) / 2 + TEXT_OFF, y: (one.y + other.y) / 2 - TEXT_OFF }, text);
+  }
+
+  private text({ x, y }: Place, text: string | undefined): void {
+    if (text !== undefined) make('text', this.root, { x, y }).textContent = text;
+  }
+}

@@ -1,0 +1,35 @@
+// From a place of the picture to a point of the model: at once as it is shown, then as it is in the original.
+import { pickOriginal } from '../../src/tools/original.js';
+import { Picker, rayThrough, type Hit, type Keeps } from '../../src/tools/pick.js';
+import { pickedPoint, type PickedPoint } from '../../src/tools/picked_point.js';
+import type { Bench } from './bench.js';
+
+export interface Pointed {
+  readonly shown: PickedPoint;
+  /// Null: it cannot be had; rejects when a later point was asked for.
+  readonly original: Promise<PickedPoint | null>;
+}
+
+export class Pointing {
+  private readonly picker = new Picker();
+  keeps: Keeps = () => true;
+
+  constructor(private readonly bench: Bench) {}
+
+  /// Null: nothing of the model is there. `signal`: ends the way to the original.
+  at(right: number, up: number, snaps: boolean, signal: AbortSignal): Pointed | null {
+    const { view, camera } = this.bench;
+    const { manifest, source } = view;
+    const ray = rayThrough(camera, right, up, view.surfaceMatrix);
+    const hit = this.picker.pick(view.surface, ray, this.keeps);
+    if (hit === null || manifest === null || source === null) return null;
+    const tell = (found: Hit): PickedPoint => pickedPoint(found, manifest, snaps);
+    const original = pickOriginal(source, ray, { signal, keeps: this.keeps }).then((found) => found && tell(found), (problem: unknown) => {
+      signal.throwIfAborted();
+      console.debug(problem); // the view goes on with what is shown
+      return null;
+    });
+    original.catch(() => undefined); // whoever waits is told; nobody must
+    return { shown: tell(hit), original };
+  }
+}

@@ -1,0 +1,26 @@
+// The scale bar below the picture.
+import { scaleBar, unitsPerPixel } from '../../src/tools/scale_bar.js';
+import { element } from '../parts/element.js';
+import { words } from './words/words.js';
+import type { Workshop } from './workshop.js';
+
+const MOST_PIXELS = 140;
+
+export class ScaleLine {
+  readonly root = element('div', { class: 'scale-line', role: 'img', hidden: true });
+
+  constructor(private readonly shop: Workshop) {}
+
+  /// For the camera as it is.
+  show(): void {
+    const { bench } = this.shop;
+    const perPixel = unitsPerPixel(bench.pose().distance, bench.camera.projectionMatrix.elements[5], bench.surface.clientHeight);
+    const bar = scaleBar(perPixel, MOST_PIXELS, this.shop.scale());
+    this.root.hidden = bar === null;
+    if (bar === null) return;
+    this.root.style.width = `${bar.pixels}px`;
+    if (this.root.textContent === bar.text) return;
+    this.root.textContent = bar.text;
+    this.root.setAttribute('aria-label', words.scale(bar.text));
+  }
+}

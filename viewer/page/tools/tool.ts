@@ -1,0 +1,16 @@
+// A tool of the bar.
+import type { Mark } from './overlay.js';
+
+export interface Tool {
+  /// What its card holds.
+  readonly root: HTMLElement;
+  /// A place of the picture, from -1 to 1 to the right and up.
+  choose?(right: number, up: number): void;
+  /// False: it is none of the tool's keys.
+  key?(key: string): boolean;
+  /// One step back. False: there is none.
+  undo?(): boolean;
+  marks?(): readonly Mark[];
+  /// It is put away.
+  close?(): void;
+}

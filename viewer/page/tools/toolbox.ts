@@ -1,0 +1,165 @@
+// The tools' bar, and the one that is in use. All of it is loaded when it is first asked for.
+import { Coordinates } from '../../src/tools/coordinates.js';
+import { LengthScale, unitOfMetres } from '../../src/tools/units.js';
+import { element, iconButton } from '../parts/element.js';
+import { ICONS } from '../parts/icons.js';
+import type { Bench, ToolName, Tools } from './bench.js';
+import { TOOL_ICONS } from './icons.js';
+import { TOOL_KEYS } from './keys.js';
+import { Overlay } from './overlay.js';
+import { Pointing } from './pointing.js';
+import { ScaleLine } from './scale_line.js';
+import { loadToolSettings, saveToolSettings } from './tool_settings.js';
+import type { Tool } from './tool.js';
+import { words as pageWords } from '../words/words.js';
+import { words } from './words/words.js';
+import type { Workshop } from './workshop.js';
+import './tools.css';
+
+type Load = () => Promise<{ makeTool: (shop: Workshop) => Tool }>;
+
+const LOADS: Readonly<Record<ToolName, Load>> = {
+  pick: () => import('./pick_tool.js'),
+  measure: () => import('./measure_tool.js'),
+  clip: () => import('./clip_tool.js'),
+};
+const NAMES = Object.keys(LOADS) as readonly ToolName[];
+
+function makeShop(bench: Bench): Workshop {
+  const { manifest } = bench.view;
+  const settings = loadToolSettings(unitOfMetres(manifest && new Coordinates(manifest).metresPerUnit));
+  return {
+    bench,
+    pointing: new Pointing(bench),
+    settings,
+    scale: () => new LengthScale(settings.modelUnit, settings.shownUnit, words.units.unit),
+    chosen: () => {
+      saveToolSettings(settings);
+      bench.redraw();
+    },
+  };
+}
+
+export class Toolbox implements Tools {
+  private readonly shop: Workshop;
+  private readonly overlay = new Overlay();
+  private readonly scaleLine: ScaleLine;
+  private readonly bar: HTMLElement;
+  private readonly buttons: Readonly<Record<ToolName, HTMLButtonElement>>;
+  private readonly title = element('h2', {});
+  private readonly body = element('div', { class: 'tool-body' });
+  private readonly card: HTMLElement;
+  private readonly cross = element('div', { class: 'tool-cross', 'aria-hidden': 'true' });
+  private readonly root: HTMLElement;
+  private readonly made = new Map<ToolName, Tool>();
+  private active: ToolName | null = null;
+
+  constructor(private readonly bench: Bench) {
+    this.shop = makeShop(bench);
+    this.scaleLine = new ScaleLine(this.shop);
+    const entries = NAMES.map((name) => [name, this.makeButton(name)] as const);
+    this.buttons = Object.fromEntries(entries) as Record<ToolName, HTMLButtonElement>;
+    this.bar = element('div', { class: 'bar tool-bar', role: 'toolbar', 'aria-label': words.title, 'aria-orientation': 'vertical' }, ...entries.map(([, button]) => button));
+    const close = iconButton(words.close(words.title), ICONS.close, () => { this.put(null); });
+    this.card = element('section', { class: 'tool-card', hidden: true }, element('div', { class: 'sheet-head' }, this.title, close), this.body);
+    this.root = element('div', { class: 'tools', hidden: true }, this.cross, this.bar, this.card, this.scaleLine.root);
+    bench.root.append(this.overlay.root, this.root);
+    // Ahead of the view: what a tool takes is taken.
+    window.addEventListener('keydown', (event) => { this.keyed(event); }, { signal: bench.signal, capture: true });
+    bench.signal.addEventListener('abort', () => { for (const tool of this.made.values()) tool.close?.(); });
+  }
+
+  toggle(name: ToolName | null): void {
+    if (name === null) this.setOpen(this.root.hidden);
+    else this.put(name === this.active ? null : name);
+  }
+
+  tapped(right: number, up: number): boolean {
+    const tool = this.tool;
+    if (tool?.choose === undefined) return false;
+    tool.choose(right, up);
+    return true;
+  }
+
+  drawn(): void {
+    if (this.root.hidden) return;
+    const marks = [...this.made.values()].flatMap((tool) => tool.marks?.() ?? []);
+    this.overlay.show(marks, this.bench.camera, this.bench.view.surfaceMatrix);
+    this.scaleLine.show();
+  }
+
+  back(): boolean {
+    if (this.root.hidden) return false;
+    if (this.active !== null) this.put(null);
+    else this.setOpen(false);
+    return true;
+  }
+
+  private get tool(): Tool | null {
+    return this.active === null ? null : (this.made.get(this.active) ?? null);
+  }
+
+  private makeButton(name: ToolName): HTMLButtonElement {
+    const button = iconButton(`${words.names[name]} (${TOOL_KEYS[name]})`, TOOL_ICONS[name], () => { this.toggle(name); });
+    button.setAttribute('aria-label', words.names[name]);
+    button.setAttribute('aria-keyshortcuts', TOOL_KEYS[name]);
+    button.setAttribute('aria-pressed', 'false');
+    return button;
+  }
+
+  /// What tools have marked stays until they are opened again.
+  private setOpen(open: boolean): void {
+    this.root.hidden = !open;
+    if (!open) {
+      this.put(null);
+      this.overlay.show([], this.bench.camera, this.bench.view.surfaceMatrix);
+    }
+    this.bench.redraw();
+  }
+
+  private put(name: ToolName | null): void {
+    const inside = this.card.contains(document.activeElement);
+    if (inside) (this.active === null ? this.bench.surface : this.buttons[this.active]).focus();
+    this.active = name;
+    if (name !== null) this.root.hidden = false;
+    for (const each of NAMES) this.buttons[each].setAttribute('aria-pressed', String(each === name));
+    this.root.classList.toggle('working', name !== null);
+    this.card.hidden = true;
+    if (name !== null) void this.open(name);
+    this.bench.redraw();
+  }
+
+  private async open(name: ToolName): Promise<void> {
+    try {
+      const { makeTool } = await LOADS[name]();
+      if (this.active !== name || this.bench.signal.aborted) return;
+      if (!this.made.has(name)) this.made.set(name, makeTool(this.shop));
+    } catch {
+      this.bench.tell(pageWords.problems.noCode);
+      this.put(null);
+      return;
+    }
+    this.title.textContent = words.names[name];
+    this.card.setAttribute('aria-label', words.names[name]);
+    this.body.replaceChildren(this.made.get(name)!.root);
+    this.card.hidden = false;
+    this.bench.redraw();
+  }
+
+  private keyed(event: KeyboardEvent): void {
+    const tool = this.tool;
+    const { target } = event;
+    if (tool === null || event.ctrlKey || event.altKey || event.metaKey) return;
+    if (target instanceof HTMLElement && target.matches(event.key === 'Enter' ? 'button, a, input, select, textarea' : 'input, select, textarea')) return;
+    if (!this.acts(tool, event.key)) return;
+    event.preventDefault();
+    event.stopImmediatePropagation();
+  }
+
+  /// Enter takes the middle of the picture, Backspace a step back; other keys are the tool's. False: nobody's.
+  private acts(tool: Tool, key: string): boolean {
+    if (key === 'Enter') return this.tapped(0, 0);
+    if (key === 'Backspace') return tool.undo?.() ?? false;
+    return tool.key?.(key) ?? false;
+  }
+}

@@ -1,0 +1,15 @@
+// What tools share.
+import type { LengthScale } from '../../src/tools/units.js';
+import type { Bench } from './bench.js';
+import type { Pointing } from './pointing.js';
+import type { ToolSettings } from './tool_settings.js';
+
+export interface Workshop {
+  readonly bench: Bench;
+  readonly pointing: Pointing;
+  readonly settings: ToolSettings;
+  /// In which lengths are told.
+  readonly scale: () => LengthScale;
+  /// Settings have changed.
+  readonly chosen: () => void;
+}

@@ -1,0 +1,11 @@
+// What the page says of an upload that the server did not take.
+import { words } from '../words/words.js';
+import type { Answer } from './send.js';
+
+export function refusalText(name: string, { status, text }: Answer): string {
+  const { upload } = words;
+  if (status === 0) return upload.lost(name);
+  if (status === 409) return upload.taken(name);
+  if (status === 507) return upload.noRoom(name);
+  return upload.refused(name, text === '' ? String(status) : text);
+}

@@ -1,0 +1,43 @@
+// Sends an upload to the server. XMLHttpRequest tells how much has gone; fetch does not.
+import type { Upload } from './plan.js';
+
+export interface Answer {
+  /// 0: there was none.
+  status: number;
+  /// What the server said, in one line.
+  text: string;
+}
+
+export interface Sending {
+  /// Of the inbox, with a slash at its end.
+  inbox: string;
+  token: string | null;
+  /// Bytes of the request that have gone; all of `total` before the answer comes.
+  told: (sent: number, total: number) => void;
+  ended: AbortSignal;
+}
+
+export function requestOf({ name, files, isFolder }: Upload): { method: string; path: string; body: Blob | FormData } {
+  const path = encodeURIComponent(name);
+  if (!isFolder) return { method: 'PUT', path, body: files[0].file };
+  const body = new FormData();
+  for (const { name: each, file } of files) body.append('file', file, each);
+  return { method: 'POST', path, body };
+}
+
+/// Null if it was ended.
+export function send(upload: Upload, { inbox, token, told, ended }: Sending): Promise<Answer | null> {
+  const { method, path, body } = requestOf(upload);
+  return new Promise((resolve) => {
+    const request = new XMLHttpRequest();
+    request.open(method, inbox + path);
+    if (token !== null) request.setRequestHeader('Authorization', `Bearer ${token}`);
+    request.upload.addEventListener('progress', ({ loaded, total }) => { told(loaded, total); });
+    request.addEventListener('load', () => { resolve({ status: request.status, text: request.responseText.trim() }); });
+    request.addEventListener('error', () => { resolve({ status: 0, text: '' }); });
+    request.addEventListener('abort', () => { resolve(null); });
+    ended.addEventListener('abort', () => { request.abort(); });
+    if (ended.aborted) resolve(null);
+    else request.send(body);
+  });
+}

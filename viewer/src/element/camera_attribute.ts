@@ -1,0 +1,18 @@
+// Where a camera stands and what it looks at, as an attribute: px,py,pz,tx,ty,tz.
+
+export interface CameraPlace {
+  readonly position: readonly [number, number, number];
+  readonly target: readonly [number, number, number];
+}
+
+/// Null of what is none.
+export function parseCamera(text: string | null): CameraPlace | null {
+  const parts = (text ?? '').split(',');
+  const [a, b, c, d, e, f] = parts.map((part) => (part.trim() === '' ? NaN : Number(part)));
+  const distance = Math.hypot(a - d, b - e, c - f);
+  return parts.length === 6 && distance > 0 && Number.isFinite(distance) ? { position: [a, b, c], target: [d, e, f] } : null;
+}
+
+export function formatCamera({ position, target }: CameraPlace): string {
+  return [...position, ...target].map((value) => Number(value.toPrecision(12))).join(',');
+}

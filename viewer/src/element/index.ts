@@ -1,0 +1,6 @@
+// Importing this makes `<meshhier-viewer>` known to the page.
+import { defineViewer } from './viewer_element.js';
+
+export { defineViewer, MeshhierViewerElement } from './viewer_element.js';
+
+defineViewer();

@@ -1,0 +1,20 @@
+// What tools may know of a view: the triangles that it draws, and where finer ones come from.
+import type { Sphere } from 'three';
+import type { Directory } from '../hierarchy/remote_hierarchy.js';
+import type { Tile } from '../hierarchy/tile.js';
+import type { TileRecord } from '../hierarchy/tile_index.js';
+import type { Node } from '../hierarchy/tree.js';
+
+/// Its first `triangles` are drawn, of `tile.indices`; the interior ones never change.
+export interface DrawnTile {
+  readonly node: Node;
+  readonly tile: Tile;
+  readonly triangles: number;
+  /// Around all of them, in the tiles' coordinates.
+  readonly sphere: Sphere;
+}
+
+export interface TileSource extends Directory {
+  /// As it is in its file: whoever asks owns it, and lets go of its picture.
+  load(node: Node, record: TileRecord, signal: AbortSignal): Promise<Tile>;
+}

@@ -1,0 +1,99 @@
+// Draws a closed model cut open by planes, with caps where it is full: the stencil counts backs less fronts behind a plane.
+// The renderer needs a stencil buffer: `new WebGLRenderer({ stencil: true })`.
+import {
+  AlwaysStencilFunc, BackSide, DecrementWrapStencilOp, DoubleSide, FrontSide, IncrementWrapStencilOp, Mesh, MeshBasicMaterial, NotEqualStencilFunc,
+  PlaneGeometry, Scene, Vector3, type Camera, type ColorRepresentation, type Object3D, type Plane, type Side, type StencilOp, type WebGLRenderer,
+} from 'three';
+
+const COLOUR = 0xd9825b;
+
+function counting(side: Side, op: StencilOp): MeshBasicMaterial {
+  return new MeshBasicMaterial({
+    side, colorWrite: false, depthWrite: false, depthTest: false,
+    stencilWrite: true, stencilFunc: AlwaysStencilFunc, stencilFail: op, stencilZFail: op, stencilZPass: op,
+  });
+}
+
+/// What only decorates the surface does not count.
+function isSurface(object: Object3D): boolean {
+  return 'isMesh' in object || !('isLine' in object || 'isPoints' in object);
+}
+
+export class ClippedPainter {
+  /// In the world.
+  planes: readonly Plane[] = [];
+  isCapped = true;
+  private readonly backs = counting(BackSide, IncrementWrapStencilOp);
+  private readonly fronts = counting(FrontSide, DecrementWrapStencilOp);
+  private readonly cap: Mesh<PlaneGeometry, MeshBasicMaterial>;
+  private readonly capScene = new Scene();
+
+  /// `reach`: of the model, in the world, from its middle to its farthest point.
+  constructor(
+    private readonly model: Object3D,
+    private readonly extent: () => { readonly middle: Vector3; readonly reach: number },
+    colour: ColorRepresentation = COLOUR,
+  ) {
+    this.cap = new Mesh(new PlaneGeometry(2, 2), new MeshBasicMaterial({
+      color: colour, side: DoubleSide, toneMapped: false, stencilWrite: true, stencilRef: 0, stencilFunc: NotEqualStencilFunc,
+    }));
+    this.capScene.add(this.cap);
+  }
+
+  /// Instead of `renderer.render(scene, camera)`.
+  paint(renderer: WebGLRenderer, scene: Scene, camera: Camera): void {
+    const { autoClear, clippingPlanes } = renderer;
+    renderer.clippingPlanes = [...this.planes];
+    renderer.render(scene, camera);
+    renderer.autoClear = false;
+    const eye = new Vector3().setFromMatrixPosition(camera.matrixWorld);
+    // From its kept side no cap is seen.
+    if (this.isCapped) for (const plane of this.planes) if (plane.distanceToPoint(eye) < 0) this.paintCap(renderer, scene, camera, plane);
+    Object.assign(renderer, { autoClear, clippingPlanes });
+  }
+
+  private paintCap(renderer: WebGLRenderer, scene: Scene, camera: Camera, plane: Plane): void {
+    renderer.clearStencil();
+    renderer.clippingPlanes = [plane];
+    this.count(renderer, scene, camera);
+    renderer.clippingPlanes = this.planes.filter((other) => other !== plane);
+    this.place(plane);
+    renderer.render(this.capScene, camera);
+  }
+
+  private count(renderer: WebGLRenderer, scene: Scene, camera: Camera): void {
+    const hidden = this.hideAllButSurface(scene);
+    const { overrideMaterial, background } = scene;
+    scene.background = null;
+    for (const material of [this.backs, this.fronts]) {
+      scene.overrideMaterial = material;
+      renderer.render(scene, camera);
+    }
+    Object.assign(scene, { overrideMaterial, background });
+    for (const object of hidden) object.visible = true;
+  }
+
+  private hideAllButSurface(scene: Scene): Object3D[] {
+    const within = new Set<Object3D>();
+    this.model.traverse((object) => within.add(object));
+    const hidden: Object3D[] = [];
+    scene.traverseVisible((object) => {
+      const isDrawn = 'isMesh' in object || 'isLine' in object || 'isPoints' in object || 'isSprite' in object;
+      if (isDrawn && !(within.has(object) && isSurface(object))) hidden.push(object);
+    });
+    for (const object of hidden) object.visible = false;
+    return hidden;
+  }
+
+  private place(plane: Plane): void {
+    const { middle, reach } = this.extent();
+    plane.projectPoint(middle, this.cap.position);
+    this.cap.quaternion.setFromUnitVectors(new Vector3(0, 0, 1), plane.normal);
+    this.cap.scale.setScalar(reach);
+  }
+
+  dispose(): void {
+    for (const material of [this.backs, this.fronts, this.cap.material]) material.dispose();
+    this.cap.geometry.dispose();
+  }
+}

@@ -1,0 +1,121 @@
+// The point of the drawn surface that a ray meets first.
+import type { PerspectiveCamera, Matrix4 } from 'three';
+import { Vector3 } from 'three';
+import type { Tile } from '../hierarchy/tile.js';
+import type { Node } from '../hierarchy/tree.js';
+import type { DrawnTile } from '../scene/surface.js';
+import { RayProbe, type Ray } from './ray.js';
+import { TriangleTree } from './triangle_tree.js';
+import { add, cross, distanceOf, scale, subtract, unit, vertexAt, type Vector } from './vectors.js';
+
+export interface Hit {
+  readonly node: Node;
+  /// In the tiles' coordinates.
+  readonly point: Vector;
+  /// Of the triangle, of length 1; (0, 0, 0) if it has no area.
+  readonly normal: Vector;
+  /// Of the corners that one which is nearest to the point.
+  readonly corner: Vector;
+  /// From the ray's beginning, in units of the model.
+  readonly distance: number;
+}
+
+/// Whether a point may be hit: what is cut away may not.
+export type Keeps = (point: Vector) => boolean;
+
+const KEEPS_ALL: Keeps = () => true;
+
+/// From the camera's eye through a place of the picture, from -1 to 1 to the right and up, in the coordinates that `matrix` brings into
+/// the world. Matrices are up to date.
+export function rayThrough(camera: PerspectiveCamera, right: number, up: number, matrix: Readonly<Matrix4>): Ray {
+  const { elements: e } = camera.projectionMatrix;
+  const toLocal = matrix.clone().invert();
+  const eye = new Vector3().setFromMatrixPosition(camera.matrixWorld).applyMatrix4(toLocal);
+  const ahead = new Vector3((right + e[8]) / e[0], (up + e[9]) / e[5], -1).transformDirection(camera.matrixWorld).transformDirection(toLocal);
+  return { from: eye.toArray(), direction: ahead.toArray() };
+}
+
+/// The nearest of the triangles that are looked at.
+export class Search {
+  hit: Hit | null = null;
+  limit = Infinity;
+
+  constructor(
+    readonly probe: RayProbe,
+    private readonly keeps: Keeps = KEEPS_ALL,
+  ) {}
+
+  /// The corners a, b, c of a tile. Returns the limit.
+  readonly look = (node: Node, positions: Float32Array, [a, b, c]: Vector): number => {
+    const distance = this.probe.hits(positions, a, b, c);
+    if (!(distance < this.limit)) return this.limit;
+    const corners = [a, b, c].map((vertex) => vertexAt(positions, vertex));
+    const point = corners.map((corner, k) => scale(corner, this.probe.weights[k])).reduce(add);
+    if (!this.keeps(point)) return this.limit;
+    const normal = unit(cross(subtract(corners[1], corners[0]), subtract(corners[2], corners[0])));
+    const corner = corners.reduce((best, other) => (distanceOf(other, point) < distanceOf(best, point) ? other : best));
+    this.hit = { node, point, normal, corner, distance };
+    this.limit = distance;
+    return this.limit;
+  };
+}
+
+/// Distance at which a sphere is entered, 0 inside; Infinity: it is missed.
+function entersSphere({ ray, direction }: RayProbe, { sphere: { center, radius } }: DrawnTile): number {
+  const to = subtract(center.toArray(), ray.from);
+  const along = to[0] * direction[0] + to[1] * direction[1] + to[2] * direction[2];
+  const aside = distanceOf(to, scale(direction, along));
+  const reach = radius * (1 + 1e-6); // three rounds
+  return aside > reach || along < -reach ? Infinity : Math.max(0, along - reach);
+}
+
+/// Picks on what is drawn; keeps the trees of tiles that rays have met, while they are drawn and fit.
+export class Picker {
+  private readonly trees = new Map<Tile, TriangleTree>();
+  private usedBytes = 0;
+
+  /// `mostBytes`: of trees.
+  constructor(private readonly mostBytes = 32e6) {}
+
+  get bytes(): number {
+    return this.usedBytes;
+  }
+
+  /// Null: the ray meets nothing.
+  pick(surface: readonly DrawnTile[], ray: Ray, keeps: Keeps = KEEPS_ALL): Hit | null {
+    this.forgetAllBut(surface);
+    const search = new Search(new RayProbe(ray), keeps);
+    const met = surface.map((drawn) => ({ drawn, entry: entersSphere(search.probe, drawn) })).filter(({ entry }) => entry < Infinity);
+    for (const { drawn, entry } of met.sort((a, b) => a.entry - b.entry)) if (entry < search.limit) this.searchTile(search, drawn);
+    return search.hit;
+  }
+
+  /// Border triangles change with the cut: they are looked at one by one.
+  private searchTile(search: Search, { node, tile, triangles }: DrawnTile): void {
+    const { positions, indices, interiorCount } = tile;
+    const look = (triangle: number): number =>
+      search.look(node, positions, [indices[3 * triangle], indices[3 * triangle + 1], indices[3 * triangle + 2]]);
+    this.treeOf(tile).visit(search.probe, search.limit, look);
+    for (let triangle = interiorCount; triangle < triangles; ++triangle) look(triangle);
+  }
+
+  private treeOf(tile: Tile): TriangleTree {
+    const known = this.trees.get(tile);
+    if (known) return known;
+    const tree = new TriangleTree(tile.positions, tile.indices, tile.interiorCount);
+    for (const each of this.trees.keys()) if (this.usedBytes + tree.bytes > this.mostBytes) this.forget(each);
+    this.trees.set(tile, tree);
+    this.usedBytes += tree.bytes;
+    return tree;
+  }
+
+  private forgetAllBut(surface: readonly DrawnTile[]): void {
+    const drawn = new Set(surface.map(({ tile }) => tile));
+    for (const tile of this.trees.keys()) if (!drawn.has(tile)) this.forget(tile);
+  }
+
+  private forget(tile: Tile): void {
+    this.usedBytes -= this.trees.get(tile)?.bytes ?? 0;
+    this.trees.delete(tile);
+  }
+}

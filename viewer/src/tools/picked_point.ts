@@ -1,0 +1,45 @@
+// What is told of a point that was picked.
+import type { Manifest } from '../hierarchy/manifest.js';
+import { Coordinates, type GlobePlace } from './coordinates.js';
+import type { Hit } from './pick.js';
+import type { Vector } from './vectors.js';
+
+export interface PickedPoint {
+  /// In the input's coordinates.
+  readonly point: Vector;
+  /// Of the triangle, by the order of its corners; of length 1, or (0, 0, 0) if it has no area.
+  readonly normal: Vector;
+  /// In the tiles' coordinates.
+  readonly local: Vector;
+  /// Of the tile that it came from.
+  readonly level: number;
+  readonly index: number;
+  /// It is a vertex of that tile.
+  readonly isVertex: boolean;
+  /// The tile is a partition: its triangles are the input's.
+  readonly isOriginal: boolean;
+  /// The vertex is one of the input, and these are its coordinates to the bit.
+  readonly isExact: boolean;
+  readonly globe: GlobePlace | null;
+}
+
+type Stored = Pick<Manifest, 'origin' | 'place' | 'up' | 'transform' | 'worstRounding' | 'partitions'> & { readonly source: { readonly doublePrecision: boolean } };
+
+/// `snaps`: to the nearest corner of the triangle.
+export function pickedPoint(hit: Hit, manifest: Stored, snaps: boolean): PickedPoint {
+  const coordinates = new Coordinates(manifest);
+  const local = snaps ? hit.corner : hit.point;
+  const point = coordinates.toInput(local);
+  const isOriginal = hit.node.level === Math.ceil(Math.log2(manifest.partitions));
+  return {
+    point,
+    normal: hit.normal,
+    local,
+    level: hit.node.level,
+    index: hit.node.index,
+    isVertex: snaps,
+    isOriginal,
+    isExact: snaps && isOriginal && manifest.worstRounding === 0 && !manifest.source.doublePrecision,
+    globe: coordinates.toGlobe(point),
+  };
+}

@@ -1,0 +1,40 @@
+// Planes that cut a model open: what lies behind any of them is cut away.
+import { Matrix4, Plane, Vector3 } from 'three';
+import { dot, type Vector } from './vectors.js';
+
+/// Kept is where normal · point + constant >= 0.
+export interface CutPlane {
+  /// Of length 1.
+  readonly normal: Vector;
+  readonly constant: number;
+}
+
+export function sideOf({ normal, constant }: CutPlane, point: Vector): number {
+  return dot(normal, point) + constant;
+}
+
+export function isKept(planes: readonly CutPlane[], point: Vector): boolean {
+  return planes.every((plane) => sideOf(plane, point) >= 0);
+}
+
+export function planeThrough(point: Vector, normal: Vector): CutPlane {
+  return { normal, constant: -dot(normal, point) };
+}
+
+export function flipped({ normal: [x, y, z], constant }: CutPlane): CutPlane {
+  return { normal: [-x, -y, -z], constant: -constant };
+}
+
+/// Of a box the six sides: its inside is kept.
+export function boxPlanes(min: Vector, max: Vector): CutPlane[] {
+  const along = (axis: number, sign: number): Vector => [0, 1, 2].map((each) => (each === axis ? sign : 0)) as unknown as Vector;
+  return [0, 1, 2].flatMap((axis) => [
+    { normal: along(axis, 1), constant: -min[axis] },
+    { normal: along(axis, -1), constant: max[axis] },
+  ]);
+}
+
+/// In the world that `matrix` brings the plane's coordinates into.
+export function worldPlane({ normal, constant }: CutPlane, matrix: Readonly<Matrix4>): Plane {
+  return new Plane(new Vector3(...normal), constant).applyMatrix4(matrix);
+}

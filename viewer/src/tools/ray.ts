@@ -1,0 +1,72 @@
+// Rays against boxes and triangles, in double precision. No ray passes between two triangles that share an edge
+// (Woop, Benthin & Wald 2013, "Watertight ray/triangle intersection").
+import { unit, type Vector } from './vectors.js';
+
+export interface Ray {
+  readonly from: Vector;
+  /// Of any length but 0.
+  readonly direction: Vector;
+}
+
+/// Exits are put off by what products round: a box is never missed for that.
+const SLACK = 1e-15;
+
+export class RayProbe {
+  /// Of length 1.
+  readonly direction: Vector;
+  /// Of the last triangle hit: what part of the point each corner has.
+  weights: Vector = [0, 0, 0];
+  private readonly axes: readonly [number, number, number];
+  private readonly shear: Vector;
+
+  constructor(readonly ray: Ray) {
+    this.direction = unit(ray.direction);
+    const sizes = this.direction.map(Math.abs);
+    const along = sizes.indexOf(Math.max(...sizes));
+    this.axes = [(along + 1) % 3, (along + 2) % 3, along];
+    const [x, y, z] = this.axes.map((axis) => this.direction[axis]);
+    this.shear = [x / z, y / z, 1 / z];
+  }
+
+  /// Distance at which a box is entered, 0 inside; Infinity: it is missed. Six numbers from `at`: least, then most.
+  enters(box: ArrayLike<number>, at = 0): number {
+    const { from } = this.ray;
+    let [entry, exit] = [0, Infinity];
+    for (let axis = 0; axis < 3; ++axis) {
+      const [least, most] = [box[at + axis] - from[axis], box[at + 3 + axis] - from[axis]];
+      const way = this.direction[axis];
+      if (way === 0) {
+        if (!(least <= 0 && most >= 0)) return Infinity;
+        continue;
+      }
+      entry = Math.max(entry, (way > 0 ? least : most) / way);
+      exit = Math.min(exit, (way > 0 ? most : least) / way);
+    }
+    return entry <= exit + SLACK * Math.abs(exit) ? entry : Infinity;
+  }
+
+  /// Distance at which a triangle is hit from either side, and `weights`; Infinity: it is missed.
+  hits(positions: ArrayLike<number>, a: number, b: number, c: number): number {
+    const [ax, ay, az] = this.sheared(positions, a);
+    const [bx, by, bz] = this.sheared(positions, b);
+    const [cx, cy, cz] = this.sheared(positions, c);
+    const u = cx * by - cy * bx;
+    const v = ax * cy - ay * cx;
+    const w = bx * ay - by * ax;
+    if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return Infinity;
+    const sum = u + v + w;
+    const distance = (u * az + v * bz + w * cz) / sum;
+    if (!(distance >= 0)) return Infinity; // behind the eye, or no area
+    this.weights = [u / sum, v / sum, w / sum];
+    return distance;
+  }
+
+  /// A vertex where the ray goes from 0 along the third axis.
+  private sheared(positions: ArrayLike<number>, vertex: number): Vector {
+    const { from } = this.ray;
+    const [kx, ky, kz] = this.axes;
+    const at = 3 * vertex;
+    const z = positions[at + kz] - from[kz];
+    return [positions[at + kx] - from[kx] - this.shear[0] * z, positions[at + ky] - from[ky] - this.shear[1] * z, this.shear[2] * z];
+  }
+}
