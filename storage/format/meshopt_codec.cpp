@@ -22,7 +22,7 @@ constexpr std::int32_t kMantissaEnd = 1 << 23;  // 24 bits, signed
 // Of steps_by_score() a corner: 6 of scans, and 128 still take a million triangles 2 s. A few
 // vertices with many triangles, or with copies of a few, would take the square of their number.
 constexpr std::uint64_t kMostSteps = 128;
-constexpr unsigned kCachedVertices = 16;  // of the order that takes linear time
+constexpr unsigned kCachedVertices = 16;
 
 /// The library's versions of the streams are global; the extension knows these alone. Called before
 /// each encoding: the first caller sets them, the others wait.
@@ -111,6 +111,17 @@ std::uint64_t steps_by_score(std::span<const std::uint32_t> corners, std::size_t
   return std::inner_product(valences.begin(), valences.end(), valences.begin(), std::uint64_t{0});
 }
 
+/// Packs best of all, and takes ten times as long as vertex_cache_order(), or quadratic time where
+/// vertices have many triangles: then it is that order.
+std::vector<std::uint32_t> order_by_score(std::span<const std::uint32_t> corners,
+                                          std::size_t vertex_count) {
+  if (steps_by_score(corners, vertex_count) > kMostSteps * corners.size())
+    return vertex_cache_order(corners, vertex_count);
+  std::vector<std::uint32_t> ordered(corners.size());
+  meshopt_optimizeVertexCache(ordered.data(), corners.data(), corners.size(), vertex_count);
+  return ordered;
+}
+
 std::vector<std::byte> encode_in_order(std::span<const std::uint32_t> corners,
                                        const VertexCounts& counts) {
   use_extension_versions();
@@ -140,7 +151,7 @@ bool decode_attributes(std::span<const std::byte> packed, std::size_t stride,
 
 std::vector<std::byte> encode_triangles(std::span<const std::uint32_t> corners,
                                         const VertexCounts& counts) {
-  std::vector<std::byte> packed = encode_in_order(vertex_cache_order(corners, counts.all), counts);
+  std::vector<std::byte> packed = encode_in_order(order_by_score(corners, counts.all), counts);
   std::vector<std::byte> other = encode_in_order(completion_order(corners, counts), counts);
   return other.size() < packed.size() ? other : packed;
 }
@@ -153,14 +164,9 @@ bool decode_triangles(std::span<const std::byte> packed, std::span<std::uint32_t
 std::vector<std::uint32_t> vertex_cache_order(std::span<const std::uint32_t> corners,
                                               std::size_t vertex_count) {
   std::vector<std::uint32_t> ordered(corners.size());
-  if (ordered.empty())
-    return ordered;
-  if (steps_by_score(corners, vertex_count) <= kMostSteps * corners.size()) {
-    meshopt_optimizeVertexCache(ordered.data(), corners.data(), corners.size(), vertex_count);
-  } else {
+  if (!ordered.empty())
     meshopt_optimizeVertexCacheFifo(ordered.data(), corners.data(), corners.size(), vertex_count,
                                     kCachedVertices);
-  }
   return ordered;
 }
 

@@ -29,18 +29,16 @@ struct VertexCounts {
 };
 
 /// Mode TRIANGLES: decoding gives the same triangles in another order, turned. Of two orders that
-/// are good for the GPU's vertex cache, that of vertex_cache_order() and the one in which vertices
-/// are numbered, it takes the one that packs better. `corners`: 3 a triangle, each below
-/// `counts.all`; not empty.
+/// are good for the GPU's vertex cache, one by scores (meshoptimizer's variant of Forsyth 2006) and
+/// the one in which vertices are numbered, it takes the one that packs better. `corners`: 3 a
+/// triangle, each below `counts.all`; not empty.
 std::vector<std::byte> encode_triangles(std::span<const std::uint32_t> corners,
                                         const VertexCounts& counts);
 /// Corners may be any numbers.
 bool decode_triangles(std::span<const std::byte> packed, std::span<std::uint32_t> corners);
 
-/// The triangles in an order for the GPU's vertex cache: by scores (meshoptimizer's variant of
-/// Forsyth 2006), or, where vertices have so many triangles that this would take quadratic time, by
-/// fans (Sander, Nehab & Barczak 2007). Requires corners below `vertex_count`. Deterministic for
-/// one version of the library. O(n).
+/// The triangles in an order for the GPU's vertex cache, by fans (Sander, Nehab & Barczak 2007).
+/// Requires corners below `vertex_count`. Deterministic for one version of the library. O(n).
 std::vector<std::uint32_t> vertex_cache_order(std::span<const std::uint32_t> corners,
                                               std::size_t vertex_count);
 

@@ -60,20 +60,23 @@ async function checkFolder(page, report, { inbox, work, pictures }) {
   await page.waitForFunction(() => window.meshhier.settled());
   const { failed, tiles } = await page.evaluate(() => window.meshhier.stats());
   await page.screenshot({ path: path.join(pictures, 'uploads-textured.png') });
-  const { textures } = await page.evaluate(async () => (await fetch('models/textured.hier/hierarchy.json')).json());
-  report.line('uploads picture', failed === 0 && textures !== undefined, `${tiles} tiles with pictures`);
+  const { source } = await page.evaluate(async () => (await fetch('models/textured.hier/hierarchy.json')).json());
+  report.line('uploads picture', failed === 0 && source.textures !== undefined, `${tiles} tiles with pictures`);
   await page.evaluate(() => window.meshhier.close());
 }
 
 async function checkCancel(page, report, { inbox, work, pictures, mesh }) {
   const slow = path.join(work, 'slow.ply');
   writeFileSync(slow, readFileSync(mesh));
+  const outline = () => page.locator('.cell-stage', { hasNotText: /./ }).first().screenshot();
+  const before = await outline();
   const session = await page.context().newCDPSession(page);
   await session.send('Network.emulateNetworkConditions', { offline: false, latency: 0, downloadThroughput: -1, uploadThroughput: SLOWLY });
   await page.setInputFiles('.upload input:not([webkitdirectory])', slow);
   const row = page.locator('.upload-row', { hasText: 'slow.ply' });
   await row.filter({ hasText: /\/s, .* left/ }).waitFor();
   report.line('uploads progress', true, (await row.innerText()).replace(/\s+/g, ' '));
+  report.line('uploads outlines', (await outline()).equals(before), 'they go along when the models move down');
   await page.screenshot({ path: path.join(pictures, 'uploads-row.png') });
   await row.getByRole('button').click();
   await session.send('Network.emulateNetworkConditions', { offline: false, latency: 0, downloadThroughput: -1, uploadThroughput: -1 });
@@ -88,10 +91,11 @@ async function checkToken(browser, report, { meshhier, models, inbox, work, comp
   try {
     const page = await openPage(browser, await server.url, complaints);
     await page.setInputFiles('.upload input:not([webkitdirectory])', { name: 'small.off', mimeType: '', buffer: Buffer.from('OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n') });
-    for (const word of ['a wrong one', TOKEN]) {
+    for (const [word, status] of [['a wrong one', 401], [TOKEN, 201]]) {
       await page.locator('dialog input').fill(word);
+      const answered = page.waitForResponse((response) => response.url().endsWith('/inbox/small.off') && response.status() === status);
       await page.locator('dialog input').press('Enter');
-      await page.locator('dialog').waitFor({ state: 'detached' });
+      await answered;
     }
     await page.locator('a.cell', { hasText: 'small' }).waitFor();
     report.line('uploads token', true, 'asked for until it is right');

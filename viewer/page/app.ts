@@ -60,7 +60,7 @@ export class App {
     watchSystemTheme(() => { this.setTheme(this.preferences.theme); });
     watchInput();
     window.addEventListener('hashchange', () => { this.route(); });
-    if (this.query.problem !== null) this.problems.tell(this.query.problem);
+    if (this.query.problem !== null) this.problems.tell(this.query.problem.message, this.query.problem);
   }
 
   get models(): readonly Model[] {
@@ -147,7 +147,7 @@ export class App {
     const gallery = new Gallery(this.preferences.order, (order) => { this.setOrder(order); }, [language, theme]);
     this.root.prepend(gallery.root);
     watchLinks(gallery.root);
-    this.uploads = new UploadPlace(gallery.header, {
+    this.uploads = new UploadPlace((section) => { gallery.insert(section); }, {
       place: gallery.root,
       inbox: new URL('inbox/', this.query.listing).href,
       problems: this.problems,
@@ -197,8 +197,9 @@ export class App {
     history.replaceState(null, '', this.galleryAddress);
     this.showGallery();
     const retry = (): void => { visit(formatAddress({ path: model.path, pose })); };
-    const { noWebGl, notShown } = words.problems;
-    this.problems.tell(why === noWebGl ? why : notShown(model.name, why), { retry: why === noWebGl ? null : retry });
+    const { noWebGl, noWebGlMore, notShown } = words.problems;
+    if (why === noWebGl) this.problems.tell(why, { more: noWebGlMore });
+    else this.problems.tell(notShown(model.name), { more: why, retry });
   }
 
   private surroundings(entry: ModelEntry, pose: Pose | null, { fetch, createWorker }: EarlyStart): Surroundings {

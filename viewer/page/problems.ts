@@ -5,12 +5,15 @@ import { words } from './words/words.js';
 
 interface Told {
   message: string;
+  more: string;
   retry: (() => void) | null;
 }
 
 export interface Telling {
   /// What the button Retry does; null: there is none.
   retry?: (() => void) | null;
+  /// Why, and what to do: shown when it is asked for.
+  more?: string;
   /// What the message is about: a later one about the same takes its place.
   subject?: string;
 }
@@ -20,8 +23,10 @@ export class Problems {
 
   private readonly told = new Map<string, Told>();
   private readonly dismissed = new Set<string>();
-  private readonly text = element('p');
-  private readonly box = element('div', { class: 'problem' }, this.text);
+  private readonly text = element('p', { class: 'problem-text' });
+  private readonly more = element('p', { class: 'problem-more' });
+  private readonly details = element('details', {}, element('summary', {}, words.parts.details), this.more);
+  private readonly box = element('div', { class: 'problem' }, element('div', { class: 'problem-said' }, this.text, this.details));
   private readonly retry = element('button', { type: 'button', class: 'button problem-retry' }, words.parts.retry);
 
   constructor() {
@@ -30,10 +35,10 @@ export class Problems {
   }
 
   /// What was dismissed is not told again until it was taken away, which is what the result does.
-  tell(message: string, { retry = null, subject = message }: Telling = {}): () => void {
+  tell(message: string, { retry = null, more = '', subject = message }: Telling = {}): () => void {
     if (!this.dismissed.has(subject)) {
       this.told.delete(subject);
-      this.told.set(subject, { message, retry });
+      this.told.set(subject, { message, more, retry });
       this.show();
     }
     return () => {
@@ -68,8 +73,10 @@ export class Problems {
       this.box.remove();
       return;
     }
-    const [, { message, retry }] = newest;
+    const [, { message, more, retry }] = newest;
     if (this.text.textContent !== message) this.text.textContent = message;
+    if (this.more.textContent !== more) this.more.textContent = more;
+    this.details.hidden = more === '';
     this.retry.hidden = retry === null;
     if (this.box.parentNode === null) this.root.append(this.box);
   }

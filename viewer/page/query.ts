@@ -8,7 +8,7 @@ export interface Query {
   /// The one model; then there is no listing.
   only: Model | null;
   /// Why what it says cannot be shown.
-  problem: string | null;
+  problem: { message: string; more: string } | null;
 }
 
 const LISTING = 'models.json';
@@ -19,6 +19,11 @@ export function shortened(text: string): string {
   return text.length > MOST_SHOWN ? `${text.slice(0, MOST_SHOWN)}…` : text;
 }
 
+function badAddress(key: 'model' | 'models', value: string): Query['problem'] {
+  const { badAddress, badModel, badListing } = words.problems;
+  return { message: badAddress(`?${key}=${shortened(value)}`), more: key === 'model' ? badModel : badListing };
+}
+
 /// `base`: the page's own address.
 export function readQuery(search: string, base: string): Query {
   const parameters = new URLSearchParams(search);
@@ -26,8 +31,8 @@ export function readQuery(search: string, base: string): Query {
   const listing = new URL(LISTING, base).href;
   if (model !== null) {
     const only = modelOfPath(model, base);
-    return { listing, only, problem: only === null ? words.problems.badModel(shortened(model)) : null };
+    return { listing, only, problem: only === null ? badAddress('model', model) : null };
   }
   const other = models === null ? listing : resolveUrl(models, base);
-  return { listing: other ?? listing, only: null, problem: other === null ? words.problems.badListing(shortened(models ?? '')) : null };
+  return { listing: other ?? listing, only: null, problem: other === null ? badAddress('models', models ?? '') : null };
 }

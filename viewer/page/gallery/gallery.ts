@@ -32,10 +32,10 @@ function entryOf(model: Model): ModelEntry {
 
 export class Gallery {
   readonly root: HTMLElement;
-  readonly header: HTMLElement;
   private readonly note = element('p', { class: 'gallery-note', 'aria-live': 'polite' });
   private readonly toolbar: Toolbar;
   private readonly visible = new VisibleCells<ModelEntry | JobEntry>((entry) => ('model' in entry ? this.modelCell(entry) : this.jobCell(entry)));
+  private readonly above = new ResizeObserver(() => { if (this.open) this.visible.follow(); }); // cells move with what is above
   private readonly animation = new Animation();
   private readonly stills = new DrawingQueue();
   private readonly cells = new Map<string, ModelCell>(); // the last one was used last
@@ -51,14 +51,20 @@ export class Gallery {
       ordered(this.toolbar.wish.order);
       this.arrange();
     });
-    this.header = element('header', { class: 'gallery-header' }, element('h1', {}, 'meshhier'), this.toolbar.root, ...controls);
-    this.root = element('main', { class: 'gallery', hidden: true }, this.header, this.note, this.visible.root);
+    const header = element('header', { class: 'gallery-header' }, element('h1', {}, 'meshhier'), this.toolbar.root, ...controls);
+    this.root = element('main', { class: 'gallery', hidden: true }, header, this.note, this.visible.root);
     for (const type of ['scroll', 'resize'] as const) window.addEventListener(type, () => { if (this.open) this.visible.follow(); }, { passive: true });
     this.toolbar.root.hidden = true;
   }
 
   get shown(): boolean {
     return this.open;
+  }
+
+  /// Puts something above the models, of whatever height.
+  insert(section: HTMLElement): void {
+    this.note.before(section);
+    this.above.observe(section);
   }
 
   show(): void {

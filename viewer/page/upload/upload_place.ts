@@ -5,8 +5,8 @@ import type { Surroundings, Uploader } from './uploader.js';
 export class UploadPlace {
   private uploader: Promise<Uploader> | null = null;
 
-  /// `header`: what it stands below.
-  constructor(private readonly header: HTMLElement, private readonly around: Surroundings) {}
+  /// `insert` puts it into the gallery.
+  constructor(private readonly insert: (section: HTMLElement) => void, private readonly around: Surroundings) {}
 
   /// Pages of other origins are refused by the server, and are not offered anything.
   offer(offer: UploadOffer | null): void {
@@ -19,7 +19,7 @@ export class UploadPlace {
   private async load(): Promise<Uploader> {
     const { Uploader } = await import('./uploader.js');
     const uploader = new Uploader(this.around);
-    this.header.after(uploader.root);
+    this.insert(uploader.root);
     return uploader;
   }
 }

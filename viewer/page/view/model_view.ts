@@ -144,17 +144,15 @@ export class ModelView {
     this.view.addEventListener('change', this.loop.wake);
     this.view.addEventListener('problem', ({ message, files }) => { this.miss(message, files); });
     this.view.addEventListener('recovered', () => { this.missing?.(); });
-    canvas.addEventListener('webglcontextlost', () => { this.lost = this.around.failed(words.problems.pictureLost); }, { signal });
+    canvas.addEventListener('webglcontextlost', () => { this.lost = this.around.failed(words.problems.pictureLost, { more: words.problems.pictureLostMore }); }, { signal });
     canvas.addEventListener('webglcontextrestored', () => { this.restored(); }, { signal });
     document.addEventListener('visibilitychange', () => { this.redraw(); }, { signal });
   }
 
   /// However many files are missing, they are one message.
   private miss(message: string, files: number): void {
-    const { missing, missingFiles } = words.problems;
-    const why = message.replace(/[.?!]$/, '');
-    const text = files > 1 ? missingFiles(this.model.name, why, formatCount(files)) : missing(this.model.name, why);
-    this.missing = this.around.failed(text, { subject: 'missing', retry: () => { this.view.retry(); } });
+    const text = words.problems.missing(this.model.name, files, formatCount(files));
+    this.missing = this.around.failed(text, { more: message, subject: 'missing', retry: () => { this.view.retry(); } });
   }
 
   private restored(): void {
@@ -182,9 +180,9 @@ export class ModelView {
     const why = error instanceof Error ? error.message : String(error);
     const passes = error instanceof HierarchyProblem && error.mayPass;
     const { notOpened, notAHierarchy } = words.problems;
-    const hint = passes ? '' : notAHierarchy(this.model.url);
+    const more = passes ? why : `${why}. ${notAHierarchy(this.model.url)}`;
     this.missing?.();
-    this.around.failed(notOpened(this.model.name, why) + hint, { subject: 'refused', retry: () => { this.around.again(); } });
+    this.around.failed(notOpened(this.model.name), { more, subject: 'refused', retry: () => { this.around.again(); } });
   }
 
   private redraw(): void {
@@ -249,6 +247,7 @@ export class ModelView {
     this.view.setSettings(change);
     Object.assign(this.around.preferences.settings, change);
     this.around.chosen();
+    this.chrome.show(this.around.preferences);
     this.redraw();
   }
 

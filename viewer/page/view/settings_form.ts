@@ -6,6 +6,7 @@ import { languageSelect } from '../parts/language_select.js';
 import { COLOURS, MEGABYTE, RANGES, THEMES, type Preferences, type Theme } from '../preferences.js';
 import type { Language } from '../words/languages.js';
 import { words } from '../words/words.js';
+import { PRESETS, QUALITIES, qualityOf, type Quality } from './quality.js';
 
 export interface Choices {
   look: (change: Partial<Look>) => void;
@@ -25,6 +26,7 @@ export class SettingsForm {
   readonly root: HTMLElement;
   private readonly colours: Control<Colours>;
   private readonly theme: Control<Theme>;
+  private readonly quality: Control<Quality | ''>;
   private readonly toggles: Record<'texture' | 'flat' | 'wires' | 'points' | 'outline', Control<boolean>>;
   private readonly finer: Control<boolean>;
   private readonly sliders: Record<Exclude<keyof Settings, 'restDetail'>, Control<number>>;
@@ -33,6 +35,7 @@ export class SettingsForm {
     const text = words.settings;
     this.colours = choice(text.colours, named(COLOURS, text.colourNames), (colours) => { look({ colours }); });
     this.theme = choice(text.theme, named(THEMES, words.themes), theme);
+    this.quality = choice<Quality | ''>(text.quality, named(QUALITIES, text.qualities), (quality) => { if (quality !== '') settings(PRESETS[quality]); });
     this.toggles = {
       texture: checkbox(text.texture, 'T', (texture) => { look({ texture }); }),
       wires: checkbox(text.wires, 'W', (wires) => { look({ wires }); }),
@@ -48,13 +51,15 @@ export class SettingsForm {
     };
     const toggles = element('div', { class: 'checks' }, ...Object.values(this.toggles).map(({ root }) => root));
     const sliders = Object.values(this.sliders).map(({ root }) => root);
+    const numbers = element('details', { class: 'numbers' }, element('summary', {}, text.numbers), ...sliders, this.finer.root);
     const languages = element('label', { class: 'language-row' }, words.parts.language, languageSelect(language));
-    this.root = element('div', { class: 'settings' }, this.colours.root, toggles, ...sliders, this.finer.root, this.theme.root, languages);
+    this.root = element('div', { class: 'settings' }, this.colours.root, toggles, this.quality.root, numbers, this.theme.root, languages);
   }
 
   show({ look, settings, theme }: Preferences): void {
     this.colours.show(look.colours);
     this.theme.show(theme);
+    this.quality.show(qualityOf(settings) ?? '');
     this.toggles.flat.show(look.shading === 'flat');
     for (const key of ['texture', 'wires', 'points', 'outline'] as const) this.toggles[key].show(look[key]);
     this.finer.show(settings.restDetail > 1);

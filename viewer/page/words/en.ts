@@ -13,6 +13,7 @@ export const en = {
   title: (name: string) => `${name} – meshhier`,
   parts: {
     close: (what: string) => `Close ${what.toLowerCase()}`,
+    details: 'Details',
     dismiss: 'Dismiss',
     language: 'Language',
     retry: 'Retry',
@@ -98,22 +99,20 @@ export const en = {
     go: 'Send',
   },
   problems: {
-    noWebGl:
-      'This browser has no WebGL 2, which the page draws with. Another browser may have it, or this one with its graphics acceleration on.',
+    noWebGl: 'This browser has no WebGL 2, which models are drawn with.',
+    noWebGlMore: 'Another browser may have it, or this one with its graphics acceleration on.',
     noCode: "the page's code could not be fetched",
     unfetchable: (path: string) => `The link names "${path}", which cannot be fetched.`,
-    notShown: (model: string, why: string) => `${model} cannot be shown: ${why}.`,
-    notOpened: (model: string, why: string) => `${model} cannot be opened: ${why}`,
-    notAHierarchy: (url: string) =>
-      `. Is ${url} a hierarchy made by "meshhier build"? "meshhier verify" says what is wrong with one`,
-    pictureLost: 'The graphics card gave the picture up. It comes back as soon as the browser allows; else load the page again.',
-    missing: (model: string, why: string) => `${model}: ${why}. The view goes on with what it has.`,
-    missingFiles: (model: string, why: string, files: string) =>
-      `${model}: ${why}. ${files} files are missing in all. The view goes on with what it has.`,
-    badModel: (value: string) =>
-      `?model=${value} is no address that can be fetched. It must be relative to this page, or start with http or https, and have no query or fragment.`,
-    badListing: (value: string) =>
-      `?models=${value} is no address that can be fetched. It must be relative to this page, or start with http or https.`,
+    notShown: (model: string) => `${model} cannot be shown.`,
+    notOpened: (model: string) => `${model} cannot be opened.`,
+    notAHierarchy: (url: string) => `Is ${url} a hierarchy made by "meshhier build"? "meshhier verify" says what is wrong with one.`,
+    pictureLost: 'The graphics card gave the picture up.',
+    pictureLostMore: 'It comes back as soon as the browser allows; else load the page again.',
+    missing: (model: string, count: number, text: string) =>
+      `${model}: ${counted(count, text, 'file is', 'files are')} missing. You see what is there.`,
+    badAddress: (given: string) => `${given} is no address that can be fetched.`,
+    badModel: 'It must be relative to this page, or start with http or https, and have no query or fragment.',
+    badListing: 'It must be relative to this page, or start with http or https.',
   },
   view: {
     surface: (model: string) => `${model} in three dimensions. Arrows turn, plus and minus zoom, question mark helps.`,
@@ -161,6 +160,9 @@ export const en = {
     points: 'Points',
     outline: 'Outline',
     flat: 'Flat',
+    numbers: 'Numbers',
+    quality: 'Quality',
+    qualities: { fast: 'Fast', balanced: 'Balanced', fine: 'Fine' },
     frameRate: 'Frame rate to hold',
     frameRateUnit: 'fps',
     threshold: 'Error allowed',
