@@ -144,6 +144,7 @@ int run(int argc, char** argv) {
   add_inspect_command(parser, invocation);
   add_verify_command(parser, invocation);
   add_export_command(parser, invocation);
+  add_preview_command(parser, invocation);
   add_progressive_command(parser, invocation);
   add_reconstruct_command(parser, invocation);
   add_serve_command(parser, invocation);

@@ -85,7 +85,7 @@ std::ostream& account_stream(const Environment& environment, const std::filesyst
 void require_no_terminal(const Environment& environment, const std::filesystem::path& output) {
   if (storage::is_standard_output(environment.files, output) && output_is_terminal()) {
     throw Error(ErrorCode::usage,
-                "a terminal cannot show a mesh; send standard output to a file or a program");
+                "a terminal cannot show this; send standard output to a file or a program");
   }
 }
 

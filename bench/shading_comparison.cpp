@@ -1,13 +1,14 @@
 #include "bench/shading_comparison.h"
 
-#include "bench/level_surface.h"
 #include "execution/cancel.h"
 #include "execution/parallel.h"
 #include "hierarchy/angle.h"
 #include "hierarchy/attributes.h"
+#include "hierarchy/cut.h"
 #include "hierarchy/frame.h"
 #include "images/image_codec.h"
 #include "inspection/cut_surface.h"
+#include "inspection/shown_tiles.h"
 #include "render/directions.h"
 #include "render/raster.h"
 #include "render/shade.h"
@@ -125,11 +126,11 @@ DrawnPicture shaded(render::Raster raster) {
 DrawnLevel draw_level(const storage::HierarchyReader& reader, const render::Camera& camera,
                       Level level) {
   const AttributeLayout without_colours{.normals = reader.tile_format().attributes.normals};
-  LevelSurface surface(reader, level);
+  inspection::ShownTiles surface(reader, Cut::of_level(reader.tree(), level));
   render::Raster own(camera), facets(camera);
   std::uint64_t triangles = 0;
   for (std::size_t i = 0; i < surface.size(); ++i) {
-    const ShownTile shown = surface.load(i);
+    const inspection::ShownTile shown = surface.load(i);
     const auto draw = [&](render::Raster& raster, NormalKind kind) {
       raster.draw(render::facets_of(shown.tile, without_colours, shown.border, kind));
     };

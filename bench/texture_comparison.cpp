@@ -1,12 +1,12 @@
 #include "bench/texture_comparison.h"
 
-#include "bench/level_surface.h"
 #include "execution/cancel.h"
 #include "execution/parallel.h"
 #include "hierarchy/cut.h"
 #include "hierarchy/error.h"
 #include "images/image_codec.h"
 #include "inspection/cut_surface.h"
+#include "inspection/shown_tiles.h"
 #include "render/camera.h"
 #include "render/directions.h"
 #include "render/mip_texture.h"
@@ -116,7 +116,7 @@ render::Camera camera_for(const TextureJob& job, const render::View& view, doubl
           framing};
 }
 
-void draw_tile(const ShownTile& shown, render::Raster& raster) {
+void draw_tile(const inspection::ShownTile& shown, render::Raster& raster) {
   const TileImage& image = shown.tile.image;
   if (image.empty())
     return;
@@ -132,7 +132,7 @@ void draw_tile(const ShownTile& shown, render::Raster& raster) {
 
 images::Image picture_of_level(const TextureJob& job, const render::Camera& camera, Level level) {
   render::Raster raster(camera);
-  LevelSurface surface(job.reader, level);
+  inspection::ShownTiles surface(job.reader, Cut::of_level(job.reader.tree(), level));
   for (std::size_t i = 0; i < surface.size(); ++i)
     draw_tile(surface.load(i), raster);
   return render::shade(raster, {.kind = render::Light::none});

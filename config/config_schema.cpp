@@ -303,8 +303,8 @@ std::vector<ConfigKey> make_config_keys() {
           kHalfEdgeCosts, [](auto& c) -> auto& { return c.simplify.cost; })),
       deciding(number(
           {.path = "outline.sectors",
-           .meaning = "number of sectors whose boundaries the outline draws; the "
-                      "nearest level of the tree is taken"},
+           .meaning = "about how many sectors the outline draws the boundaries of: tiles of one "
+                      "level, or parts of these"},
           {1, kMostSectors}, [](auto& c) -> auto& { return c.outline.sectors; })),
       deciding(number(
           {.path = "outline.tolerance",

@@ -18,9 +18,17 @@ struct Outline {
   std::size_t polyline_count() const { return starts.size() - 1; }
 };
 
+/// How many sectors the tiles of a level make, if about `wanted` are to: a tile is one, or, of a
+/// few tiles, each is divided into equally many.
+constexpr std::uint32_t outline_sectors(std::uint32_t tiles, std::uint32_t wanted) {
+  constexpr std::uint32_t kMostDivided = 128;  // what each vertex belongs to is in memory
+  const std::uint32_t parts = tiles <= kMostDivided ? (wanted + tiles / 2) / tiles : 1;
+  return tiles * (parts > 0 ? parts : 1);
+}
+
 /// How the outline came about, for the manifest.
 struct OutlineReport {
-  std::uint32_t sector_level = 0;  ///< level whose nodes are the sectors
+  std::uint32_t sector_level = 0;  ///< level whose nodes are the sectors, or divided into them
   std::uint32_t sector_count = 0;
   double tolerance = 0;  ///< used, as a part of the bounding-box diagonal
   std::uint64_t polylines_found = 0;

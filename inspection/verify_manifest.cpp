@@ -195,6 +195,16 @@ void check_import(const VerifyJob& job, const ManifestProblems& problems) {
   problems.compare("source.file_bytes", source.file_bytes, bytes);
 }
 
+/// As a config may say it; else the default.
+std::uint32_t wanted_sectors(const Json& config) {
+  constexpr std::uint64_t kMost = 65536;
+  const Json::json_pointer place("/outline/sectors");
+  const bool is_told = config.contains(place) && config.at(place).is_number_unsigned();
+  const std::uint64_t told = is_told ? config.at(place).get<std::uint64_t>() : 0;
+  return told > 0 && told <= kMost ? static_cast<std::uint32_t>(told)
+                                   : config::OutlineConfig{}.sectors;
+}
+
 }  // namespace
 
 void verify_manifest(const VerifyJob& job) {
@@ -209,11 +219,17 @@ void verify_manifest(const VerifyJob& job) {
 
 void verify_outline(const VerifyJob& job, const Outline& outline) {
   const ManifestProblems problems(job);
-  const OutlineReport& told = job.reader.manifest().outline;
-  const bool is_level = told.sector_level <= raw(job.tree().depth());
-  problems.require(
-      is_level && told.sector_count == job.tree().node_count(static_cast<Level>(told.sector_level)),
-      "the outline's sectors are not the nodes of their level");
+  const storage::Manifest& manifest = job.reader.manifest();
+  const OutlineReport& told = manifest.outline;
+  if (told.sector_level > raw(job.tree().depth())) {
+    problems.require(false, "the outline's sectors are of a level that is not there");
+  } else {
+    const std::uint32_t nodes = job.tree().node_count(static_cast<Level>(told.sector_level));
+    const std::uint32_t wanted = wanted_sectors(manifest.config);
+    problems.require(
+        told.sector_count == nodes || told.sector_count == outline_sectors(nodes, wanted),
+        "the outline's sectors are not the nodes of their level, nor equal parts of these");
+  }
   problems.require(
       told.polylines_dropped <= told.polylines_found &&
           told.polylines_found - told.polylines_dropped == outline.polyline_count(),

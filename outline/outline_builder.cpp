@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <numeric>
 #include <span>
 #include <string>
@@ -15,17 +16,22 @@
 namespace meshhier::outline {
 namespace {
 
-/// A vertex over all sectors: sector << 32 | index in it.
+/// A vertex over all tiles: tile << 32 | index in it.
 using VertexKey = std::uint64_t;
 
-std::uint32_t sector_of(VertexKey vertex) {
+std::uint32_t tile_of(VertexKey vertex) {
   return static_cast<std::uint32_t>(vertex >> 32);
 }
 
 struct Corner {
   VertexKey key;
   Vec3f position;
+  std::uint32_t part;  ///< of the tile
 };
+
+bool in_one_sector(const Corner& a, const Corner& b) {
+  return tile_of(a.key) == tile_of(b.key) && a.part == b.part;
+}
 
 /// Corners by ascending key: both sides of a line compute its points from the same order.
 using PlacedTriangle = std::array<Corner, 3>;
@@ -34,11 +40,15 @@ using PlacedTriangle = std::array<Corner, 3>;
 constexpr std::array<std::array<std::size_t, 2>, 3> kEdges{{{0, 1}, {0, 2}, {1, 2}}};
 
 bool is_crossing(const PlacedTriangle& t, std::size_t edge) {
-  return sector_of(t[kEdges[edge][0]].key) != sector_of(t[kEdges[edge][1]].key);
+  return !in_one_sector(t[kEdges[edge][0]], t[kEdges[edge][1]]);
 }
 
 bool touches_three(const PlacedTriangle& t) {
-  return is_crossing(t, 0) && is_crossing(t, 2);  // corners ascend by sector
+  return is_crossing(t, 0) && is_crossing(t, 1) && is_crossing(t, 2);
+}
+
+bool touches_one(const PlacedTriangle& t) {
+  return !is_crossing(t, 0) && !is_crossing(t, 1);
 }
 
 Triangle<VertexKey> key_of(const PlacedTriangle& t) {
@@ -49,36 +59,44 @@ bool before(const PlacedTriangle& a, const PlacedTriangle& b) {
   return key_of(a) < key_of(b);
 }
 
-// Up to so many numbers are compared with each other: quicker than sorting them.
-constexpr std::size_t kFew = 16;
+/// Pairs of vertices: (lower, higher).
+using Edges = std::vector<std::array<std::uint32_t, 2>>;
 
-/// Appends the numbers that are there exactly once, ascending. `numbers`: may be reordered.
-void append_lonely(std::span<std::uint32_t> numbers, std::vector<std::uint32_t>& lonely) {
-  if (numbers.size() <= kFew) {
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-      std::size_t same = 0;
-      for (const std::uint32_t other : numbers)
-        same += other == numbers[i] ? 1 : 0;
-      if (same == 1)
-        lonely.push_back(numbers[i]);
-    }
-    if (lonely.size() > 1)
-      std::sort(lonely.begin(), lonely.end());
-    return;
-  }
-  std::sort(numbers.begin(), numbers.end());
-  for (auto run = numbers.begin(); run != numbers.end();) {
-    const auto run_end = std::upper_bound(run, numbers.end(), *run);
-    if (run_end - run == 1)
-      lonely.push_back(*run);
-    run = run_end;
-  }
+/// Of a tile's edges between own vertices. All their triangles are in the tile, as interior or
+/// border triangles.
+struct OwnEdges {
+  Edges borders;  ///< exactly one triangle has them
+  Edges creases;  ///< exactly two have them, which meet at an angle
+};
+
+/// Where two triangles turn by more than 45 degrees, the surface has an edge, not a bend.
+constexpr double kCreaseCosine = 0.7071067811865476;
+
+/// An edge of a triangle.
+struct Side {
+  const TileTriangle* triangle = nullptr;
+  bool is_ascending = true;  ///< from the lower vertex to the higher one
+};
+
+bool meet_at_an_angle(const TileMesh& tile, const Side& a, const Side& b) {
+  const auto normal = [&](const TileTriangle& t) {
+    const auto at = [&](std::size_t i) { return to_double(tile.vertices.positions[raw(t[i])]); };
+    return cross(at(1) - at(0), at(2) - at(0));
+  };
+  const Vec3d n = normal(*a.triangle);
+  // Neighbours that face alike have their common edge in opposite directions.
+  const Vec3d m = normal(*b.triangle) * (a.is_ascending == b.is_ascending ? -1 : 1);
+  const double sizes = length(n) * length(m);
+  return sizes > 0 && std::isfinite(sizes) && dot(n, m) < kCreaseCosine * sizes;
 }
 
-/// Edges (lower, higher) of two own vertices that exactly one triangle of the tile has. All their
-/// triangles are in the tile, as interior or border triangles. By counting sort: O(triangles) where
-/// vertices have bounded degree.
-std::vector<std::array<std::uint32_t, 2>> own_border_edges(const TileMesh& tile) {
+/// By counting sort: O(triangles) where vertices have bounded degree.
+OwnEdges own_edges(const TileMesh& tile) {
+  struct End {
+    std::uint32_t high = 0;
+    Side side{};
+    bool operator<(const End& other) const { return high < other.high; }
+  };
   std::vector<std::uint32_t> first(tile.own_count + 1, 0);
   const auto visit_edges = [&tile](auto&& visit) {
     for (const std::vector<TileTriangle>* triangles : {&tile.interior, &tile.border}) {
@@ -89,78 +107,96 @@ std::vector<std::array<std::uint32_t, 2>> own_border_edges(const TileMesh& tile)
           const std::uint32_t a = raw(t[i]), b = raw(t[(i + 1) % 3]);
           const std::uint32_t low = std::min(a, b), high = std::max(a, b);
           if (high < tile.own_count)
-            visit(low, high);
+            visit(low, End{high, {&t, a < b}});
         }
       }
     }
   };
-  visit_edges([&](std::uint32_t low, std::uint32_t) { ++first[low + 1]; });
+  visit_edges([&](std::uint32_t low, const End&) { ++first[low + 1]; });
   std::partial_sum(first.begin(), first.end(), first.begin());
-  std::vector<std::uint32_t> ends(first.back()), next(first.begin(), first.end() - 1);
-  visit_edges([&](std::uint32_t low, std::uint32_t high) { ends[next[low]++] = high; });
+  std::vector<End> ends(first.back());
+  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+  visit_edges([&](std::uint32_t low, const End& end) { ends[next[low]++] = end; });
 
-  std::vector<std::array<std::uint32_t, 2>> result;
-  std::vector<std::uint32_t> lonely;
+  OwnEdges edges;
   for (std::uint32_t low = 0; low < tile.own_count; ++low) {
-    lonely.clear();
-    append_lonely(std::span(ends).subspan(first[low], first[low + 1] - first[low]), lonely);
-    for (const std::uint32_t high : lonely)
-      result.push_back({low, high});
+    const auto begin = ends.begin() + first[low], end = ends.begin() + first[low + 1];
+    std::sort(begin, end);
+    for (auto run = begin; run != end;) {
+      const auto run_end = std::upper_bound(run, end, *run);
+      if (run_end - run == 1)
+        edges.borders.push_back({low, run->high});
+      else if (run_end - run == 2 && meet_at_an_angle(tile, run->side, run[1].side))
+        edges.creases.push_back({low, run->high});
+      run = run_end;
+    }
   }
-  return result;
+  return edges;
 }
 
-/// A sector's part of the mesh's own borders, small for soups that are nothing but borders: the
-/// boundary (where crossing borders end), then the other vertices on own border edges, ascending.
-struct SectorBorder {
-  std::uint32_t sector = 0;
+/// A tile's part of the mesh's own borders and creases, small for soups that are nothing but
+/// borders: the boundary (where crossing borders end), then the other vertices on own borders and
+/// creases, ascending.
+struct TileLines {
+  std::uint32_t tile = 0;
   std::uint32_t boundary_count = 0;
+  std::vector<std::uint32_t> inner;  ///< of the other vertices, which they are
   std::vector<Vec3f> positions;
-  std::vector<std::array<std::uint32_t, 2>> edges;  ///< of positions
+  Edges borders, creases;  ///< of positions, without those that cross from sector to sector
 };
 
-SectorBorder border_of(std::uint32_t sector, const TileMesh& tile) {
-  SectorBorder border{sector, tile.boundary_count, {}, own_border_edges(tile)};
+/// `is_crossing(a, b)`: of own vertices.
+template <class IsCrossing>
+TileLines lines_of(std::uint32_t tile_index, const TileMesh& tile, const IsCrossing& is_crossing) {
+  OwnEdges edges = own_edges(tile);
   std::vector<std::uint32_t> number(tile.own_count, 0);
-  for (const auto& edge : border.edges) {
-    for (const std::uint32_t vertex : edge)
-      number[vertex] = 1;
+  for (const Edges* list : {&edges.borders, &edges.creases}) {
+    for (const auto& [a, b] : *list)
+      number[a] = number[b] = 1;
   }
+  TileLines lines{tile_index, tile.boundary_count, {}, {}, {}, {}};
   for (std::uint32_t vertex = 0; vertex < tile.own_count; ++vertex) {
     if (number[vertex] == 0 && vertex >= tile.boundary_count)
       continue;
-    number[vertex] = static_cast<std::uint32_t>(border.positions.size());
-    border.positions.push_back(tile.vertices.positions[vertex]);
+    if (vertex >= tile.boundary_count)
+      lines.inner.push_back(vertex);
+    number[vertex] = static_cast<std::uint32_t>(lines.positions.size());
+    lines.positions.push_back(tile.vertices.positions[vertex]);
   }
-  for (auto& [a, b] : border.edges) {
-    a = number[a];
-    b = number[b];
-  }
-  return border;
+  const auto keep = [&](const Edges& from, Edges& to) {
+    for (const auto& [a, b] : from) {
+      if (!is_crossing(a, b))
+        to.push_back({number[a], number[b]});
+    }
+  };
+  keep(edges.borders, lines.borders);
+  keep(edges.creases, lines.creases);
+  return lines;
 }
 
 struct SectorContent {
-  std::vector<PlacedTriangle> triangles;  ///< border triangles of which it is the first, sorted
-  SectorBorder border;
+  /// Those in several sectors, sorted; of those in several tiles if it is the first.
+  std::vector<PlacedTriangle> triangles;
+  TileLines lines;
 };
 
-/// Segments of numbered points: first the vertices by sector and index, then the points of sector
+/// Segments of numbered points: first the vertices by tile and index, then the points of sector
 /// lines by the corners they lie between: an edge's midpoint (a, b, b), a triangle's centroid
 /// (a, b, c).
 class Network {
  public:
-  /// Takes what sectors hold, by ascending sector, and leaves nothing there. Without the segments.
+  /// Takes what tiles hold, by ascending tile, and leaves nothing there. Without the segments.
   explicit Network(std::span<SectorContent*> sectors) {
     std::size_t triangle_count = 0, edge_count = 0;
     for (const SectorContent* sector : sectors) {
       triangle_count += sector->triangles.size();
-      edge_count += sector->border.edges.size();
+      edge_count += sector->lines.borders.size();
     }
     triangles_.reserve(triangle_count);
     segments_.reserve(edge_count);
     for (SectorContent* sector : sectors) {
       triangles_.insert(triangles_.end(), sector->triangles.begin(), sector->triangles.end());
-      add_border(sector->border);
+      add_lines(sector->lines);
       *sector = {};
     }
     vertex_count_ = count();
@@ -169,14 +205,14 @@ class Network {
 
   /// How many there will be.
   std::size_t segment_count() const {
-    std::size_t count = segments_.size() + 2 * lonely_.size();
+    std::size_t count = segments_.size() + creases_.size() + 2 * lonely_.size();
     for (std::size_t t = 0; t < triangles_.size(); ++t)
       count += is_repeated(t) ? 0U : touches_three(triangles_[t]) ? 3U : 1U;
     return count;
   }
 
   void make_segments() {
-    segments_.reserve(segment_count());
+    segments_.reserve(segment_count() - creases_.size());
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
       if (!is_repeated(t))
         add_line(triangles_[t], points_[t]);
@@ -195,10 +231,12 @@ class Network {
   std::uint32_t count() const { return static_cast<std::uint32_t>(positions_.size()); }
   std::span<const Vec3f> positions() const { return positions_; }
   std::span<const std::array<std::uint32_t, 2>> segments() const { return segments_; }
+  std::span<const std::array<std::uint32_t, 2>> creases() const { return creases_; }
 
  private:
-  struct Sector {
-    std::uint32_t sector, boundary_count, base;
+  struct Tile {
+    std::uint32_t tile, boundary_count, base;
+    std::vector<std::uint32_t> inner;
   };
   /// Numbers of a triangle's points, as far as it has them.
   struct Points {
@@ -212,12 +250,14 @@ class Network {
     friend constexpr auto operator<=>(const CrossingEdge&, const CrossingEdge&) = default;
   };
 
-  void add_border(const SectorBorder& border) {
+  void add_lines(TileLines& lines) {
     const std::uint32_t base = count();
-    sectors_.push_back({border.sector, border.boundary_count, base});
-    positions_.insert(positions_.end(), border.positions.begin(), border.positions.end());
-    for (const auto& [a, b] : border.edges)
+    tiles_.push_back({lines.tile, lines.boundary_count, base, std::move(lines.inner)});
+    positions_.insert(positions_.end(), lines.positions.begin(), lines.positions.end());
+    for (const auto& [a, b] : lines.borders)
       segments_.push_back({base + a, base + b});
+    for (const auto& [a, b] : lines.creases)
+      creases_.push_back({base + a, base + b});
   }
 
   std::vector<CrossingEdge> crossing_edges() const {
@@ -289,26 +329,30 @@ class Network {
       segments_.push_back({crossing, points.centroid});
   }
 
-  /// Of a vertex that a border triangle uses: its sector's boundary has it.
+  /// Of a vertex on the mesh's border that a triangle in several sectors uses.
   std::uint32_t number_of(VertexKey vertex) const {
     const auto found =
-        std::lower_bound(sectors_.begin(), sectors_.end(), sector_of(vertex),
-                         [](const Sector& s, std::uint32_t sector) { return s.sector < sector; });
+        std::lower_bound(tiles_.begin(), tiles_.end(), tile_of(vertex),
+                         [](const Tile& t, std::uint32_t tile) { return t.tile < tile; });
     const auto index = static_cast<std::uint32_t>(vertex);
-    if (found != sectors_.end() && found->sector == sector_of(vertex) &&
-        index < found->boundary_count) {
-      return found->base + index;
+    if (found != tiles_.end() && found->tile == tile_of(vertex)) {
+      if (index < found->boundary_count)
+        return found->base + index;
+      const auto inner = std::lower_bound(found->inner.begin(), found->inner.end(), index);
+      if (inner != found->inner.end() && *inner == index)
+        return found->base + found->boundary_count +
+               static_cast<std::uint32_t>(inner - found->inner.begin());
     }
     throw Error(ErrorCode::internal,
-                "outline: a border triangle uses vertex " + std::to_string(index) + " of sector " +
-                    std::to_string(sector_of(vertex)) + ", which is not in that sector's boundary");
+                "outline: a border triangle uses vertex " + std::to_string(index) + " of tile " +
+                    std::to_string(tile_of(vertex)) + ", which is not in that tile's boundary");
   }
 
   static constexpr Triangle<VertexKey> kAfterAll{~VertexKey{0}, ~VertexKey{0}, ~VertexKey{0}};
 
-  std::vector<Sector> sectors_;
+  std::vector<Tile> tiles_;
   std::vector<Vec3f> positions_;
-  std::vector<std::array<std::uint32_t, 2>> segments_;
+  Edges segments_, creases_;
   std::uint32_t vertex_count_ = 0;
   // Until segments are made:
   std::vector<PlacedTriangle> triangles_;  ///< sorted: a sector's come before the next one's
@@ -319,15 +363,16 @@ class Network {
 /// All chains with the significance of their points, to be cut to any tolerance.
 class Lines {
  public:
-  /// `least`: the smallest tolerance that will be asked for, input units. `network` must outlive
-  /// it.
-  Lines(const Network& network, double least)
+  /// `least`: the smallest tolerance that will be asked for, `crease`: creases that are shorter are
+  /// left out; both in input units. `network` must outlive it.
+  Lines(const Network& network, double least, double crease)
       : positions_(network.positions()),
         chains_(trace_chains(network.count(), network.segments())) {
+    add_long_ones(trace_chains(network.count(), network.creases()), crease);
     significance_.reserve(chains_.nodes.size());
     for (std::size_t chain = 0; chain < chains_.size(); ++chain) {
       const std::span<const std::uint32_t> nodes = chains_[chain];
-      const std::vector<Vec3f> points = points_of(chain);
+      const std::vector<Vec3f> points = points_of(nodes);
       const std::vector<double> values = significance(points, nodes.front() == nodes.back(), least);
       lengths_.push_back(length_of(points));
       significance_.insert(significance_.end(), values.begin(), values.end());
@@ -366,12 +411,21 @@ class Lines {
   }
 
  private:
-  std::vector<Vec3f> points_of(std::size_t chain) const {
+  std::vector<Vec3f> points_of(std::span<const std::uint32_t> nodes) const {
     std::vector<Vec3f> points;
-    points.reserve(chains_[chain].size());
-    for (const std::uint32_t node : chains_[chain])
+    points.reserve(nodes.size());
+    for (const std::uint32_t node : nodes)
       points.push_back(positions_[node]);
     return points;
+  }
+
+  void add_long_ones(const Chains& creases, double least) {
+    for (std::size_t chain = 0; chain < creases.size(); ++chain) {
+      if (length_of(points_of(creases[chain])) < least)
+        continue;
+      chains_.nodes.insert(chains_.nodes.end(), creases[chain].begin(), creases[chain].end());
+      chains_.starts.push_back(static_cast<std::uint32_t>(chains_.nodes.size()));
+    }
   }
 
   std::span<const Vec3f> positions_;
@@ -425,23 +479,31 @@ Selection select(const Lines& lines, const OutlineOptions& options) {
 
 struct OutlineBuilder::Sector::Content : SectorContent {};
 
-OutlineBuilder::Sector::Sector(std::uint32_t index, const TileMesh& tile)
-    : content_(new Content{{{}, border_of(index, tile)}}) {
+OutlineBuilder::Sector::Sector(std::uint32_t index, const TileMesh& tile, const Sectors& sectors)
+    : content_(new Content) {
+  const auto part = [&](std::uint32_t owner, std::uint32_t own) -> std::uint32_t {
+    return sectors.empty() ? 0 : sectors.at(owner).at(own);
+  };
   const auto corner = [&](std::uint32_t vertex) -> Corner {
     const TileVertex v{vertex};
-    const std::uint32_t sector = tile.is_own(v) ? index : tile.ghost(v).tile;
+    const std::uint32_t owner = tile.is_own(v) ? index : tile.ghost(v).tile;
     const std::uint32_t own = tile.is_own(v) ? vertex : tile.ghost(v).index;
-    return {VertexKey{sector} << 32 | own, tile.vertices.positions[vertex]};
+    return {VertexKey{owner} << 32 | own, tile.vertices.positions[vertex], part(owner, own)};
   };
-  for (const TileTriangle& t : tile.border) {
-    if (is_degenerate(t))
-      continue;
-    PlacedTriangle triangle = {corner(raw(t[0])), corner(raw(t[1])), corner(raw(t[2]))};
-    std::sort(triangle.begin(), triangle.end(),
-              [](const Corner& a, const Corner& b) { return a.key < b.key; });
-    // Every tile it touches has it; the lowest brings it.
-    if (sector_of(triangle[0].key) == index)
-      content_->triangles.push_back(triangle);
+  content_->lines = lines_of(index, tile, [&](std::uint32_t a, std::uint32_t b) {
+    return !in_one_sector(corner(a), corner(b));
+  });
+  for (const std::vector<TileTriangle>* triangles : {&tile.interior, &tile.border}) {
+    for (const TileTriangle& t : *triangles) {
+      if (is_degenerate(t))
+        continue;
+      PlacedTriangle triangle = {corner(raw(t[0])), corner(raw(t[1])), corner(raw(t[2]))};
+      std::sort(triangle.begin(), triangle.end(),
+                [](const Corner& a, const Corner& b) { return a.key < b.key; });
+      // Every tile it touches has it; the lowest brings it.
+      if (tile_of(triangle[0].key) == index && !touches_one(triangle))
+        content_->triangles.push_back(triangle);
+    }
   }
   std::sort(content_->triangles.begin(), content_->triangles.end(), before);
 }
@@ -461,7 +523,8 @@ OutlineBuilder& OutlineBuilder::operator=(OutlineBuilder&&) noexcept = default;
 OutlineBuilder::~OutlineBuilder() = default;
 
 void OutlineBuilder::add(Sector sector) {
-  parts_->edge_count += sector.content_->triangles.size() + sector.content_->border.edges.size();
+  parts_->edge_count += sector.content_->triangles.size() + sector.content_->lines.borders.size() +
+                        sector.content_->lines.creases.size();
   parts_->sectors.push_back(std::move(*sector.content_));
 }
 
@@ -475,12 +538,13 @@ std::optional<OutlineResult> OutlineBuilder::finish(const OutlineOptions& option
   for (SectorContent& sector : parts_->sectors)
     sectors.push_back(&sector);
   std::sort(sectors.begin(), sectors.end(),
-            [](const auto* a, const auto* b) { return a->border.sector < b->border.sector; });
+            [](const auto* a, const auto* b) { return a->lines.tile < b->lines.tile; });
   Network network(sectors);
   if (network.segment_count() > options.max_segments)
     return std::nullopt;
   network.make_segments();
-  const Lines lines(network, options.tolerance * options.diagonal);
+  const Lines lines(network, options.tolerance * options.diagonal,
+                    kShortestCrease * options.diagonal);
   const Selection selection = select(lines, options);
   OutlineResult result;
   result.tolerance = selection.tolerance;

@@ -1,11 +1,13 @@
-// The shape-outline: the simplified lines along which sectors meet, and the mesh's own borders.
+// The shape-outline: the simplified lines along which sectors meet, and the mesh's own borders and
+// creases.
 //
-// Sectors are the nodes of one level. Where two meet, the line runs through the border triangles,
-// from the midpoint of one crossing edge (corners in different sectors) to the midpoint of the
-// other; in a triangle with corners in three sectors three lines meet at the centroid. The mesh's
-// own borders, edges with exactly one triangle, are lines too; a crossing one goes over its
-// midpoint, where the sectors' line ends. Lines between junctions are simplified once, so both
-// sectors share them (Douglas & Peucker 1973).
+// Sectors are the tiles of one level, or parts of these. Where two meet, the line runs through the
+// triangles with corners in both, from the midpoint of one crossing edge (corners in different
+// sectors) to the midpoint of the other; in a triangle with corners in three sectors three lines
+// meet at the centroid. The mesh's own borders, edges with exactly one triangle, are lines too; a
+// crossing one goes over its midpoint, where the sectors' line ends. Lines between junctions are
+// simplified once, so both sectors share them (Douglas & Peucker 1973). Creases are edges within a
+// sector whose two triangles meet at an angle.
 #pragma once
 
 #include "hierarchy/ids.h"
@@ -17,6 +19,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace meshhier::outline {
 
@@ -52,16 +55,23 @@ inline constexpr double kSpeckLength = 4;
 /// fine ones, and straightening the long ones further would not make room: the short ones go.
 inline constexpr double kCoarsestTolerance = 1.0 / 64;
 
+/// As a part of the diagonal: shorter creases are roughness, not form.
+inline constexpr double kShortestCrease = 0.03;
+
+/// The sector within its tile of each own vertex, by the tile's NodeId::index; empty: each tile is
+/// one sector.
+using Sectors = std::vector<std::vector<std::uint16_t>>;
+
 /// Collects sectors one by one, then makes the outline. Pure: no I/O, no threads; the result does
 /// not depend on the order of add().
 class OutlineBuilder {
  public:
-  /// What makes lines of one sector.
+  /// What makes lines of one tile.
   class Sector {
    public:
-    /// `index`: the NodeId::index of the sector's tile; ghosts refer to others by theirs. O(t log
-    /// b), t its triangles, b those on its border.
-    Sector(std::uint32_t index, const TileMesh& tile);
+    /// `index`: the NodeId::index of the tile; ghosts refer to others by theirs. `sectors`: the
+    /// same for all tiles. O(t log b), t its triangles, b those in several sectors.
+    Sector(std::uint32_t index, const TileMesh& tile, const Sectors& sectors = {});
     Sector(Sector&&) noexcept;
     Sector& operator=(Sector&&) noexcept;
     ~Sector();
@@ -80,13 +90,13 @@ class OutlineBuilder {
   /// All sectors must be of one level, each added once.
   void add(Sector sector);
 
-  /// What is held so far: border triangles, and the sectors' edges with one triangle. Of a border
+  /// What is held so far: triangles in several sectors, borders and creases. Of such a
   /// triangle finish() holds up to 220 bytes.
   std::size_t edge_count() const;
 
   /// Nothing if there are more than options.max_segments. Leaves no sector here.
   /// First come the polylines between junctions, then the closed ones without, both ordered by the
-  /// sector and index of the vertices at their start. Closed ones keep at least a triangle, others
+  /// tile and index of the vertices at their start. Closed ones keep at least a triangle, others
   /// their ends. O(s log s) in the number of line segments.
   /// Throws Error(internal) if a border triangle's ghost is in no added sector's boundary.
   std::optional<OutlineResult> finish(const OutlineOptions& options);

@@ -2,11 +2,13 @@
 
 #include "execution/parallel.h"
 #include "outline/outline_builder.h"
+#include "outline/subdivision.h"
 #include "pipeline/plan/tile_room.h"
 #include "storage/format/outline_glb.h"
 
 #include <algorithm>
 #include <atomic>
+#include <cstdint>
 #include <optional>
 
 namespace meshhier::pipeline {
@@ -31,21 +33,35 @@ Level sector_level(const Tree& tree, std::uint32_t sectors) {
   return level;
 }
 
+/// Of the level's tiles; none if each is one sector.
+outline::Sectors divide(const Forest& forest, Level level, std::uint32_t parts,
+                        const StageContext& context) {
+  outline::Sectors sectors;
+  if (parts == 1)
+    return sectors;
+  for (std::uint32_t i = 0; i < forest.tree().node_count(level); ++i) {
+    context.cancel.check();
+    sectors.push_back(outline::divide(forest.load({level, i}).mesh, parts));
+  }
+  return sectors;
+}
+
 /// Adds all sectors of a level; false if their lines are too many and there is a coarser level.
-bool collect(Forest& forest, Level level, outline::OutlineBuilder& builder,
+bool collect(Forest& forest, Level level, outline::OutlineBuilder& builder, std::uint32_t parts,
              const StageContext& context) {
   using Collected = std::optional<outline::OutlineBuilder::Sector>;
   const std::uint32_t count = forest.tree().node_count(level);
   context.progress.stage("outline", count, "sectors");
   std::atomic<bool> too_many{false};
   const TileRoom room = room_for(forest, context.memory(), heaviest_read(forest, level));
+  const outline::Sectors sectors = divide(forest, level, parts, context);
   execution::ordered_for(
       count, room.in_flight(), context.cancel,
       [&](std::size_t i) -> Collected {
         if (too_many)
           return std::nullopt;
         const auto index = static_cast<std::uint32_t>(i);
-        return Collected(std::in_place, index, forest.load({level, index}).mesh);
+        return Collected(std::in_place, index, forest.load({level, index}).mesh, sectors);
       },
       [&](std::size_t, Collected sector) {
         if (too_many)
@@ -76,15 +92,17 @@ OutlineStageResult make_outline(Forest& forest, double diagonal, const StageCont
   options.max_bytes = kOutlineBytes;
   options.file_bytes = storage::outline_bytes;
   for (Level level = sector_level(forest.tree(), config.sectors);; level = coarser(level)) {
+    const std::uint32_t tiles = forest.tree().node_count(level);
+    const std::uint32_t sectors = outline_sectors(tiles, config.sectors);
     outline::OutlineBuilder builder;
-    if (!collect(forest, level, builder, context))
+    if (!collect(forest, level, builder, sectors / tiles, context))
       continue;
     options.max_segments = level > Level{0} ? kMostSegments : SIZE_MAX;
     const TileRoom room = room_for(forest, context.memory(), builder.edge_count() * kEdgeBytes);
     if (auto result = builder.finish(options)) {
       return {std::move(result->outline),
-              {raw(level), forest.tree().node_count(level), result->tolerance,
-               result->polylines_found, result->polylines_dropped}};
+              {raw(level), sectors, result->tolerance, result->polylines_found,
+               result->polylines_dropped}};
     }
   }
 }

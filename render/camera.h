@@ -49,6 +49,9 @@ class Camera {
   std::uint32_t columns() const { return framing_.width * framing_.samples; }
   std::uint32_t rows() const { return framing_.height * framing_.samples; }
 
+  /// Its size, in units of space.
+  double pixel() const { return framing_.samples / scale_; }
+
   Vec3d on_grid(Vec3f position) const;
   /// A direction by the view's axes: x to the right, y up, z to the viewer.
   Vec3f turned(Vec3f direction) const;

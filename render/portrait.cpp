@@ -164,6 +164,16 @@ View portrait_view(std::span<const Facet> facets, Vec3d up) {
   return {upward * -1, level_axes(upward).second};
 }
 
+View view_from(double azimuth, double elevation, Vec3d up) {
+  const Vec3d upward = unit(up);
+  const auto [right, behind] = level_axes(upward);
+  const UnitTurn around = turn_by(azimuth / 360 * kFullTurn);
+  const UnitTurn raised = turn_by(elevation / 360 * kFullTurn);
+  const Vec3d level = right * around.sine - behind * around.cosine;
+  return {(level * raised.cosine + upward * raised.sine) * -1,
+          upward * raised.cosine - level * raised.sine};
+}
+
 Camera portrait_camera(std::span<const Facet> facets, const View& view, const Framing& framing) {
   const ViewAxes axes = axes_of(view);
   const BoundsD seen = seen_box(facets, axes);

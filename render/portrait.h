@@ -15,6 +15,10 @@ namespace meshhier::render {
 /// the facets, which may be a coarse version of the model.
 View portrait_view(std::span<const Facet> facets, Vec3d up);
 
+/// From a side of the model: `azimuth` from its front to its right, `elevation` above its equator,
+/// both in degrees, -360 to 360 and -90 to 90. The front is where +z is if y is up, and -y if z is.
+View view_from(double azimuth, double elevation, Vec3d up);
+
 /// Shows all of the facets, as large as the frame takes them.
 Camera portrait_camera(std::span<const Facet> facets, const View& view, const Framing& framing);
 

@@ -19,6 +19,8 @@ nlohmann::ordered_json json_of(const Model& model) {
   nlohmann::ordered_json json{{"name", model.name},         {"path", url_of(model)},
                               {"vertices", model.vertices}, {"triangles", model.triangles},
                               {"bytes", model.bytes},       {"source", model.source}};
+  if (model.modified > 0)
+    json["modified"] = model.modified;
   if (model.has_preview)
     json["preview"] = url_of(model) + '/' + storage::preview_path({}).string();
   return json;

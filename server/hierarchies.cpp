@@ -20,6 +20,8 @@ namespace {
 /// Each holds 32 bytes a file of its own and an open file: a screenful of models.
 constexpr std::size_t kMostOpenArchives = 16;
 
+constexpr std::int64_t kNanoseconds = 1'000'000'000;  // of a second
+
 /// Clients may ask for names without end in a directory that cannot be read: each is a message.
 constexpr std::size_t kMostTold = 1000;
 
@@ -188,6 +190,7 @@ std::optional<Model> Hierarchies::remember(const std::string& path,
   Known known{version, std::nullopt};
   try {
     known.model = read();
+    known.model->modified = version.modified_ns / kNanoseconds;
   } catch (const Error& error) {
     tell_left_out(error.what());
     if (error.code() == ErrorCode::io)

@@ -16,6 +16,7 @@ struct Model {
   std::uint64_t source_bytes = 0;
   std::uint64_t source_checksum = 0;  ///< as in the manifest
   bool has_preview = false;           ///< a picture of it is one of its files
+  std::int64_t modified = 0;          ///< when it was made: seconds since 1970; 0: not known
 
   friend bool operator==(const Model&, const Model&) = default;
 };

@@ -40,12 +40,10 @@ images::ImageSource image_source(const nlohmann::json& json) {
 }
 
 nlohmann::json to_json(const images::Material& material) {
-  nlohmann::json json{{"name", to_binary(material.name)},
-                      {"colour", material.colour},
-                      {"factor", material.factor},
-                      {"wraps", {material.wrap_u, material.wrap_v}},
-                      {"alpha", material.alpha},
-                      {"cutoff", material.alpha_cutoff}};
+  nlohmann::json json{
+      {"name", to_binary(material.name)}, {"colour", material.colour},
+      {"factor", material.factor},        {"wraps", {material.wrap_u, material.wrap_v}},
+      {"alpha", material.alpha},          {"cutoff", material.alpha_cutoff}};
   if (material.image)
     json["image"] = *material.image;
   return json;

@@ -186,7 +186,7 @@ TEST_F(CommandLine, HelpTeaches) {
 
 TEST_F(CommandLine, EveryCommandHasHelpWithExamples) {
   for (const char* command :
-       {"build", "inspect", "verify", "export", "progressive", "reconstruct", "serve"}) {
+       {"build", "inspect", "verify", "export", "preview", "progressive", "reconstruct", "serve"}) {
     const Outcome outcome = run({command, "--help"});
     EXPECT_EQ(outcome.code, 0) << command;
     EXPECT_THAT(outcome.out,
@@ -255,6 +255,20 @@ TEST_F(CommandLine, MistakesExitWithUsageAndSayWhatIsWrong) {
       {{"export", "x", "-o", "y.ply"}, "--outline"},
       {{"export", "x", "--level", "1", "--outline", "-o", "y.ply"}, "--outline"},
       {{"export", "x", "--cut", "", "-o", "y.ply"}, "--cut"},
+      {{"preview", "x"}, "--output"},
+      {{"preview", "x", "-o", "y.jpg"}, ".png or .webp"},
+      {{"preview", "x", "-o", "-"}, "--format"},
+      {{"preview", "x", "-o", "y.png", "--size", "0x5"}, "WIDTHxHEIGHT"},
+      {{"preview", "x", "-o", "y.png", "--size", "8193x5"}, "1 to 8192"},
+      {{"preview", "x", "-o", "y.png", "--size", "80"}, "WIDTHxHEIGHT"},
+      {{"preview", "x", "-o", "y.png", "--view", "behind"}, "iso, or AZ,EL"},
+      {{"preview", "x", "-o", "y.png", "--view", "10,91"}, "AZ,EL"},
+      {{"preview", "x", "-o", "y.png", "--view", "nan,0"}, "AZ,EL"},
+      {{"preview", "x", "-o", "y.png", "--up", "x"}, "y or z"},
+      {{"preview", "x", "-o", "y.png", "--background", "#12345"}, "#rrggbb"},
+      {{"preview", "x", "-o", "y.png", "--error", "-1"}, "--error"},
+      {{"preview", "x", "-o", "y.png", "--error", "nan"}, "--error"},
+      {{"preview", "x", "-o", "y.png", "--level", "1", "--error", "2"}, "--error"},
       {{"progressive"}, "HIERARCHY is required"},
       {{"progressive", "x"}, "--output"},
       {{"progressive", "x", "-o", "y", "--steps", "0"}, "--steps"},
@@ -792,6 +806,25 @@ TEST_F(CommandLine, ExportWritesPlyFiles) {
     EXPECT_EQ(text_of(ply).find("element edge") != std::string::npos, selection[0] == "--outline");
     std::filesystem::remove(ply);
   }
+}
+
+TEST_F(CommandLine, PreviewDrawsPictures) {
+  build();
+  const std::string png = (work() / "x.png").string(), webp = (work() / "x.WEBP").string();
+  const Arguments basic{"preview", hierarchy(), "--size", "64x48", "-o"};
+  const auto with = [&](Arguments more) {
+    Arguments arguments = basic;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  };
+  const Outcome made = with({png, "--view", "30,20", "--level", "0"});
+  EXPECT_EQ(made.code, 0) << made.messages;
+  EXPECT_THAT(made.out, HasSubstr("64 x 48 pixels, 1 tile"));
+  EXPECT_THAT(text_of(png), StartsWith("\x89PNG"));
+  EXPECT_EQ(with({webp, "--view", "top", "--background", "#ffffff"}).code, 0);
+  EXPECT_THAT(text_of(webp), StartsWith("RIFF"));
+  EXPECT_EQ(with({png}).code, kExists);
+  EXPECT_EQ(with({png, "--force"}).code, 0);
 }
 
 TEST_F(CommandLine, ExportReplacesNothingUnasked) {

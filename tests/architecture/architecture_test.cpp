@@ -62,7 +62,7 @@ const std::map<std::string, std::set<std::string>>& allowed_rooms() {
                      "mesh_io", "outline", "partition", "pipeline/journal", "pipeline/plan",
                      "pipeline/tiles", "render", "shading", "texture"})},
       {"inspection", with_storage({"config", "execution", "hierarchy", "images", "import",
-                                   "mesh_io", "partition", "texture"})},
+                                   "mesh_io", "partition", "render", "texture"})},
       {"progressive", with_storage({"execution", "hierarchy", "mesh_io"})},
       {"server", with_storage({"execution", "hierarchy", "progressive"})},
       {"app",

@@ -267,6 +267,70 @@ TEST(OutlineBuilder, OnAClosedSurfaceNoLineEndsLoose) {
   EXPECT_GT(junctions, 40u);  // 2 (30 - 2) for cells that meet in threes
 }
 
+/// Each vertex in the sector that its place names.
+Sectors sectors_of(const std::vector<TileMesh>& tiles,
+                   const std::function<std::uint32_t(Vec3f)>& sector_at) {
+  Sectors sectors;
+  for (const TileMesh& tile : tiles) {
+    auto& parts = sectors.emplace_back();
+    for (std::uint32_t v = 0; v < tile.own_count; ++v)
+      parts.push_back(static_cast<std::uint16_t>(sector_at(tile.vertices.positions[v])));
+  }
+  return sectors;
+}
+
+OutlineResult outline_of(const std::vector<TileMesh>& tiles, const Sectors& sectors,
+                         const OutlineOptions& options) {
+  OutlineBuilder builder;
+  for (std::size_t i = 0; i < tiles.size(); ++i)
+    builder.add({static_cast<std::uint32_t>(i), tiles[i], sectors});
+  return builder.finish(options).value();
+}
+
+double total_length(const Outline& outline) {
+  double sum = 0;
+  for (std::size_t i = 0; i < outline.polyline_count(); ++i)
+    sum += length_of(polyline(outline, i));
+  return sum;
+}
+
+TEST(OutlineBuilder, SectorsAreTheSameWhetherTheyAreTilesOrPartsOfThem) {
+  for (const TestMesh& mesh : {tests::sphere(5000, 0.01f), tests::open_grid(30, 30, 0.01f)}) {
+    const auto sector_at = nearest_of(20);
+    const OutlineOptions options = unlimited(options_for(mesh, 1e-9));
+    const OutlineResult tiles = outline_of(cut(mesh, sectors_by(mesh, sector_at)), options);
+    const std::vector<TileMesh> one = cut(mesh, std::vector<std::uint32_t>(mesh.positions.size()));
+    const OutlineResult parts = outline_of(one, sectors_of(one, sector_at), options);
+    EXPECT_EQ(parts.polylines_found, tiles.polylines_found);
+    EXPECT_NEAR(total_length(parts.outline), total_length(tiles.outline), 1e-3);
+    // Tiles by one rule, sectors in them by another: lines of both.
+    const auto half_at = [](Vec3f p) { return p.x > 0.3F ? 1U : 0U; };
+    const std::vector<TileMesh> halves = cut(mesh, sectors_by(mesh, half_at));
+    const OutlineResult both = outline_of(halves, sectors_of(halves, sector_at), options);
+    const OutlineResult fine = outline_of(
+        cut(mesh, sectors_by(mesh, [&](Vec3f p) { return 20 * half_at(p) + sector_at(p); })),
+        options);
+    EXPECT_EQ(both.polylines_found, fine.polylines_found);
+    EXPECT_NEAR(total_length(both.outline), total_length(fine.outline), 1e-3);
+  }
+}
+
+TEST(OutlineBuilder, CreasesAreLinesAndBendsAreNot) {
+  // A roof: two sheets of 6 x 3 that meet at the ridge.
+  const auto ridge_of = [](float height) {
+    TestMesh mesh = tests::open_grid(6, 6);
+    for (Vec3f& p : mesh.positions)
+      p.z = p.x <= 3 ? height * p.x : height * (6 - p.x);
+    return mesh;
+  };
+  const auto found = [&](const TestMesh& mesh) {
+    const auto tiles = cut(mesh, std::vector<std::uint32_t>(mesh.positions.size()));
+    return outline_of(tiles, unlimited(options_for(mesh, 1e-9))).outline;
+  };
+  EXPECT_EQ(found(ridge_of(0.2F)).polyline_count(), 1U) << "the border alone";
+  EXPECT_EQ(found(ridge_of(1)).polyline_count(), 2U);
+}
+
 TEST(OutlineBuilder, TheOrderOfSectorsDoesNotMatter) {
   for (const TestMesh& mesh : {tests::sphere(5000, 0.01f), tests::moebius(5000, 0.005f),
                                tests::duplicates(3000, 0.01f), tests::soup(300)}) {

@@ -7,6 +7,7 @@
 #include "tests/server/served_folder.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -106,6 +107,20 @@ TEST_F(SiteTest, TheListHasAllHierarchiesByPath) {
   EXPECT_EQ(picture.header("Content-Type"), "image/webp");
   EXPECT_EQ(picture.body_bytes(), manifest["preview"]["bytes"]);
   EXPECT_EQ(model["bytes"], manifest["total_bytes"]);
+}
+
+TEST_F(SiteTest, TheListTellsWhenHierarchiesWereMade) {
+  using namespace std::chrono_literals;
+  const auto long_ago = fs::file_time_type::clock::now() - 1000h;
+  const std::int64_t now = std::chrono::duration_cast<std::chrono::seconds>(
+                               std::chrono::system_clock::now().time_since_epoch())
+                               .count();
+  fs::last_write_time(folder_.models() / "plain.hier/hierarchy.json", long_ago);
+  fs::last_write_time(folder_.models() / "packed.3tz", long_ago - 1h);
+  const json models = json::parse(get("/models.json").text)["models"];
+  EXPECT_NEAR(models[1]["modified"].get<double>(), static_cast<double>(now - 1000 * 3600), 600);
+  EXPECT_EQ(models[1]["modified"].get<std::int64_t>() - models[0]["modified"].get<std::int64_t>(),
+            3600);
 }
 
 TEST_F(SiteTest, AHierarchyThatCannotBeReadIsToldOnce) {

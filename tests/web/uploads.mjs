@@ -37,7 +37,7 @@ async function drop(page, files) {
     }
     return transfer;
   }, contents);
-  for (const event of ['dragover', 'drop']) await page.dispatchEvent('.gallery', event, { dataTransfer: transfer });
+  for (const event of ['dragover', 'drop']) await page.dispatchEvent('body', event, { dataTransfer: transfer });
 }
 
 async function checkMesh(page, report, { inbox, mesh }) {

@@ -1,5 +1,5 @@
-// Links: `#MODEL&px,py,pz,tx,ty,tz`. MODEL is the path of the hierarchy relative to the listing, and
-// empty for the one model that the query names; the camera may be missing.
+// Links: `#MODEL&px,py,pz,tx,ty,tz&NAME=VALUE…`. MODEL is the path of the hierarchy relative to the listing, and
+// empty for the one model that the query names; the camera and what was chosen (appearance.ts) may be missing.
 
 export type Triple = readonly [number, number, number];
 
@@ -9,10 +9,19 @@ export interface Pose {
   target: Triple;
 }
 
-export interface Address {
-  path: string;
+/// What of a view a link keeps.
+export interface Spot {
+  /// Null: all of the model.
   pose: Pose | null;
+  /// NAME=VALUE of what was chosen, with & between.
+  choices: string;
 }
+
+export interface Address extends Spot {
+  path: string;
+}
+
+export const NOWHERE: Spot = { pose: null, choices: '' };
 
 const DIGITS = 12;
 
@@ -63,14 +72,15 @@ function parsePose(text: string): Pose | null {
 export function parseAddress(hash: string): Address | null {
   const text = hash.startsWith('#') ? hash.slice(1) : hash;
   if (text === '') return null;
-  const end = text.indexOf('&');
-  const path = parsePath(end < 0 ? text : text.slice(0, end));
-  return path === null ? null : { path, pose: end < 0 ? null : parsePose(text.slice(end + 1)) };
+  const [first, ...others] = text.split('&');
+  const path = parsePath(first);
+  const pose = others.find((part) => !part.includes('='));
+  return path === null ? null : { path, pose: pose === undefined ? null : parsePose(pose), choices: others.filter((part) => part.includes('=')).join('&') };
 }
 
 /// What `parseAddress` reads again, with twelve digits a number.
-export function formatAddress({ path, pose }: Address): string {
-  if (pose === null) return `#${formatPath(path)}`;
-  const { position, target } = roundedPose(pose);
-  return `#${formatPath(path)}&${[...position, ...target].join(',')}`;
+export function formatAddress({ path, pose, choices }: Address): string {
+  const rounded = pose === null ? null : roundedPose(pose);
+  const camera = rounded === null ? '' : `&${[...rounded.position, ...rounded.target].join(',')}`;
+  return `#${formatPath(path)}${camera}${choices === '' ? '' : `&${choices}`}`;
 }

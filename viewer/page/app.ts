@@ -1,5 +1,5 @@
 // Shows what the address says: the gallery, or a model.
-import { formatAddress, parseAddress, type Pose } from './address.js';
+import { formatAddress, NOWHERE, parseAddress, type Spot } from './address.js';
 import { EarlyStart } from './early_start.js';
 import { Gallery } from './gallery/gallery.js';
 import type { Order } from './gallery/orders.js';
@@ -72,7 +72,7 @@ export class App {
     const address = parseAddress(location.hash);
     const model = this.query.only ?? (address === null ? null : this.modelAt(address.path));
     if (model !== null) {
-      this.showModel(model, address?.pose ?? null);
+      this.showModel(model, address ?? NOWHERE);
       return;
     }
     this.showGallery();
@@ -82,7 +82,7 @@ export class App {
   /// Opens a model of the listing by its name or path. False if there is none.
   open(name: string): boolean {
     const model = this.models.find((one) => one.name === name || one.path === name);
-    if (model !== undefined) visit(formatAddress({ path: model.path, pose: null }));
+    if (model !== undefined) visit(formatAddress({ path: model.path, ...NOWHERE }));
     return model !== undefined;
   }
 
@@ -158,10 +158,10 @@ export class App {
     return gallery;
   }
 
-  private showModel(model: Model, pose: Pose | null): void {
+  private showModel(model: Model, spot: Spot): void {
     if (this.entry?.model.url === model.url) {
       this.entry.arrive(false);
-      this.view?.setPose(pose);
+      this.view?.setSpot(spot);
       return;
     }
     this.closeView();
@@ -171,16 +171,16 @@ export class App {
     this.gallery?.hide();
     this.watch.stop();
     document.title = words.title(model.name);
-    this.load(entry, pose).catch((error: unknown) => { if (entry === this.entry) this.refuse(entry, messageOf(error), pose); });
+    this.load(entry, spot).catch((error: unknown) => { if (entry === this.entry) this.refuse(entry, messageOf(error), spot); });
   }
 
-  private async load(entry: ModelEntry, pose: Pose | null): Promise<void> {
+  private async load(entry: ModelEntry, spot: Spot): Promise<void> {
     const { model } = entry;
     const early = new EarlyStart(model.url);
     try {
       const { ModelView } = await loadView();
       if (entry !== this.entry) return;
-      this.view = new ModelView(model, this.surroundings(entry, pose, early));
+      this.view = new ModelView(model, this.surroundings(entry, spot, early));
     } finally {
       early.close();
     }
@@ -189,24 +189,24 @@ export class App {
   }
 
   /// Back to the gallery, where the model's link can be followed again; a visitor who is elsewhere by now stays there.
-  private refuse({ model, current }: ModelEntry, why: string, pose: Pose | null): void {
+  private refuse({ model, current }: ModelEntry, why: string, spot: Spot): void {
     if (!current) {
       this.closeView();
       return;
     }
     history.replaceState(null, '', this.galleryAddress);
     this.showGallery();
-    const retry = (): void => { visit(formatAddress({ path: model.path, pose })); };
+    const retry = (): void => { visit(formatAddress({ path: model.path, ...spot })); };
     const { noWebGl, noWebGlMore, notShown } = words.problems;
     if (why === noWebGl) this.problems.tell(why, { more: noWebGlMore });
     else this.problems.tell(notShown(model.name), { more: why, retry });
   }
 
-  private surroundings(entry: ModelEntry, pose: Pose | null, { fetch, createWorker }: EarlyStart): Surroundings {
+  private surroundings(entry: ModelEntry, spot: Spot, { fetch, createWorker }: EarlyStart): Surroundings {
     return {
       fetch,
       createWorker,
-      pose,
+      spot,
       preferences: this.preferences,
       chosen: () => { savePreferences(this.preferences); },
       setTheme: (theme) => { this.setTheme(theme); },

@@ -1,5 +1,5 @@
 // The history entry of an open model: what the page writes into it, and the way back from it.
-import { formatAddress, type Pose } from './address.js';
+import { formatAddress, type Spot } from './address.js';
 import type { Model } from './listing.js';
 
 /// What an entry keeps of how it was reached. From the gallery: going back leads there.
@@ -32,11 +32,11 @@ export class ModelEntry {
     this.leaving = false;
   }
 
-  /// Keeps where the camera is; of a model that was left, nothing.
-  write(pose: Pose | null): void {
+  /// Keeps what is seen; of a model that was left, nothing.
+  write(spot: Spot): void {
     if (!this.current) return;
     const { history, location } = this.page;
-    history.replaceState(history.state, '', formatAddress({ path: this.path, pose }));
+    history.replaceState(history.state, '', formatAddress({ path: this.path, ...spot }));
     this.hash = location.hash;
   }
 

@@ -1,5 +1,6 @@
 // What the user chose, kept in the browser. Whatever is stored there, what comes out is sound.
-import { changedSettings, DEFAULT_LOOK, type Colours, type Look, type Settings } from '../src/scene/settings.js';
+import { changedSettings, type Look, type Settings } from '../src/scene/settings.js';
+import { oneOf, readLight, readLook, readStandings, type Light, type Standings } from './appearance.js';
 import { ORDERS, type Order } from './gallery/orders.js';
 import { LANGUAGES, type Language } from './words/languages.js';
 
@@ -14,10 +15,11 @@ export interface Preferences {
   panel: boolean;
   settings: Settings;
   look: Look;
+  light: Light;
+  standings: Standings;
 }
 
 export const THEMES: readonly Theme[] = ['auto', 'light', 'dark'];
-export const COLOURS: readonly Colours[] = ['plain', 'vertex', 'partition', 'error'];
 
 /// Bytes of a MB, as the memory budget is counted.
 export const MEGABYTE = 1e6;
@@ -43,10 +45,6 @@ function asObject(value: unknown): Json {
   return typeof value === 'object' && value !== null ? (value as Json) : {};
 }
 
-function oneOf<T, Otherwise>(value: unknown, choices: readonly T[], otherwise: Otherwise): T | Otherwise {
-  return choices.find((choice) => choice === value) ?? otherwise;
-}
-
 function within(value: unknown, { least, most }: Range, otherwise: number): number {
   return typeof value === 'number' && value >= least && value <= most ? value : otherwise;
 }
@@ -67,17 +65,6 @@ function readSettings(stored: Json): Settings {
   };
 }
 
-function readLook(stored: Json): Look {
-  return {
-    colours: oneOf(stored.colours, COLOURS, DEFAULT_LOOK.colours),
-    texture: stored.texture !== false,
-    shading: oneOf(stored.shading, ['smooth', 'flat'], DEFAULT_LOOK.shading),
-    wires: stored.wires === true,
-    points: stored.points === true,
-    outline: stored.outline === true,
-  };
-}
-
 /// The preferences in a stored text, with defaults for whatever is missing or unsound.
 export function parsePreferences(text: string | null): Preferences {
   let stored: Json = {};
@@ -92,7 +79,9 @@ export function parsePreferences(text: string | null): Preferences {
     order: oneOf(stored.order, ORDERS, 'folder'),
     panel: stored.panel === true,
     settings: readSettings(asObject(stored.settings)),
-    look: readLook(asObject(stored.look)),
+    look: readLook(stored.look),
+    light: readLight(stored.light),
+    standings: readStandings(stored.standings),
   };
 }
 

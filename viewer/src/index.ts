@@ -1,6 +1,8 @@
 export { HierarchyView, type ViewEvents, type ViewOptions } from './scene/hierarchy_view.js';
 export type { DrawnTile, TileSource } from './scene/surface.js';
 export type { Colours, Look, Mode, Settings, Stats } from './scene/settings.js';
+export { MOST_STRETCH, UPS, type Standing, type Up } from './scene/standing.js';
+export type { Terrain } from './scene/terrain.js';
 export type { Manifest } from './hierarchy/manifest.js';
 export { HierarchyProblem } from './hierarchy/problem.js';
 export { readOutline, type Outline } from './hierarchy/outline.js';

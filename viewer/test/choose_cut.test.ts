@@ -17,7 +17,7 @@ function record({ level, index }: Node): TileRecord {
 
 /// Sees the strip's x from `from` to `to`, from 10 before its middle.
 function look(from: number, to: number): Viewpoint {
-  return { eye: [(from + to) / 2, 0.5, 10], planes: [[1, 0, 0, -from], [-1, 0, 0, to]], pixels: 1000, near: 0.1 };
+  return { eye: [(from + to) / 2, 0.5, 10], planes: [[1, 0, 0, -from], [-1, 0, 0, to]], pixels: 1000, near: 0.1, stretch: [1, 1, 1] };
 }
 
 const sources: Sources = {

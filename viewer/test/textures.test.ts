@@ -1,5 +1,5 @@
 // Tiles with pictures.
-import { MeshBasicMaterial, MeshStandardMaterial, SRGBColorSpace, type Texture } from 'three';
+import { MeshBasicMaterial, MeshMatcapMaterial, MeshStandardMaterial, SRGBColorSpace, type Texture } from 'three';
 import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import { Seam } from '../src/cut/seam.js';
 import { TileStore } from '../src/cut/tile_store.js';
@@ -174,6 +174,30 @@ describe('TileObject', () => {
     expect(material.map).not.toBeNull();
     expect(material.vertexColors).toBe(false);
     expect(material.color.getHex()).toBe(0xffffff);
+  });
+
+  it('lights pictures that have their light where that is wanted', async () => {
+    const { material } = await made(SQUARE, { relight: true });
+    expect(material).toBeInstanceOf(MeshStandardMaterial);
+    expect(material.map).not.toBeNull();
+  });
+
+  it.each<[Partial<Look>, number]>([[{}, 0xffffff], [{ texture: false, colours: 'plain' }, 0xd99a76], [{ texture: false, colours: 'height' }, 0xffffff]])('shows clay: %j', async (look, colour) => {
+    const { material } = await made(lit, { material: 'matcap', ...look });
+    expect(material).toBeInstanceOf(MeshMatcapMaterial);
+    expect(material.color.getHex()).toBe(colour);
+  });
+
+  it('makes programs anew for another look, and only then', async () => {
+    const object = await made(lit);
+    const { material } = object;
+    object.setLook({ ...DEFAULT_LOOK, relief: 9 });
+    expect(object.material).toBe(material);
+    for (const change of [{ cavities: false }, { material: 'matcap' }, { colours: 'height' }, { relight: true }] as const) {
+      const before = object.material;
+      object.setLook({ ...DEFAULT_LOOK, ...change });
+      expect(object.material).not.toBe(before);
+    }
   });
 
   it.each([['MASK', 0.5, false], ['BLEND', 1 / 512, true]])('shows holes: %s', async (alphaMode, alphaTest, transparent) => {

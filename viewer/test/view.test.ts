@@ -184,6 +184,26 @@ describe.skipIf(!hasProgram)('HierarchyView', () => {
     expect(session.view.stats().settled).toBe(true);
   });
 
+  it('is drawn anew only when another cut is', async () => {
+    const session = begin(fetchFrom(largeTorus()), { settings: { threshold: 1 } });
+    await session.view.opened;
+    closeUp(session);
+    await session.frame();
+    await session.frame();
+    let before = session.cut();
+    let [came, drawn] = [0, 0];
+    session.view.addEventListener('change', () => { ++came; });
+    for (let frames = 0; frames < 100; ++frames) {
+      const news = await session.frame();
+      const now = session.cut();
+      if (!session.view.stats().moving && session.view.manifest !== null && frames > 10) expect(news).toBe(now.join() !== before.join());
+      drawn += news ? 1 : 0;
+      before = now;
+    }
+    expect(session.view.stats().settled).toBe(true);
+    expect(came).toBeGreaterThan(2 * drawn);
+  });
+
   it('keeps what became finer at rest while the camera moves, and asks for no more of it', async () => {
     const session = begin(fetchFrom(largeTorus()), { settings: { threshold: 1 } });
     await session.view.opened;
@@ -211,6 +231,27 @@ describe.skipIf(!hasProgram)('HierarchyView', () => {
     finer.view.setSettings({ restDetail: 1 });
     expect(await finer.settle()).toBe(true);
     expect(finer.cut()).toEqual(plain.cut());
+  });
+
+  it('stands as it is wished, is refined for it, and stands again as it did', async () => {
+    const session = begin(fetchFrom(largeTorus()), { standing: { up: 'z' } });
+    await session.view.opened;
+    closeUp(session);
+    expect(await session.settle()).toBe(true);
+    const expectSize = (...wanted: readonly number[]): void => {
+      session.view.box.getSize(new Vector3()).toArray().forEach((length, axis) => { expect(length).toBeCloseTo(wanted[axis], 9); });
+    };
+    const [there, [width, height, depth]] = [session.cut(), session.view.box.getSize(new Vector3()).toArray()];
+    session.view.setStanding({ stretch: 4 });
+    expectSize(width, 4 * height, depth);
+    expect(await session.settle()).toBe(true);
+    expect(session.cut().length).toBeGreaterThan(there.length);
+    session.view.setStanding({ up: 'y', stretch: 1 });
+    expectSize(width, depth, height);
+    session.view.setStanding({ up: 'z' });
+    expect(await session.settle()).toBe(true);
+    expect(session.cut()).toEqual(there);
+    expect(() => { session.view.setStanding({ stretch: 0 }); }).toThrow(RangeError);
   });
 
   it('draws the root before it asks for more of the mesh', async () => {

@@ -1,6 +1,6 @@
 // A model in the gallery: a link with its picture, its name and its size. The picture is the hierarchy's own; where it has none,
 // its outline stands still. What is pointed at or focused shows its outline, which turns.
-import { formatAddress } from '../address.js';
+import { formatAddress, NOWHERE } from '../address.js';
 import type { Model } from '../listing.js';
 import { formatBytes, formatCount, formatDate, formatRough } from '../numbers.js';
 import { element } from '../parts/element.js';
@@ -55,7 +55,7 @@ export class ModelCell implements Cell {
     this.source = new ModelSource(model.url);
     this.link = element(
       'a',
-      { class: 'cell', href: formatAddress({ path: model.path, pose: null }), draggable: 'false' },
+      { class: 'cell', href: formatAddress({ path: model.path, ...NOWHERE }), draggable: 'false' },
       this.stage,
       element('span', { class: 'cell-name' }, model.name),
       this.sizes,

@@ -1,14 +1,12 @@
 // What another page is given to show a model, or this one to show it again.
-import { formatAddress, type Pose } from '../address.js';
+import { formatAddress, type Spot } from '../address.js';
 
-export interface Shared {
+export interface Shared extends Spot {
   /// The page's address, without query and hash.
   page: string;
   name: string;
   /// Of the hierarchy.
   url: string;
-  /// Null: all of the model.
-  pose: Pose | null;
 }
 
 const ESCAPES: Readonly<Record<string, string>> = { '&': '&amp;', '"': '&quot;', '<': '&lt;', '>': '&gt;' };
@@ -25,7 +23,8 @@ function modelParameter({ page, url }: Shared): string {
 
 /// A page that shows the model alone.
 export function addressAlone(shared: Shared): string {
-  const hash = shared.pose === null ? '' : formatAddress({ path: '', pose: shared.pose });
+  const { pose, choices } = shared;
+  const hash = pose === null && choices === '' ? '' : formatAddress({ path: '', pose, choices });
   return `${shared.page}?model=${modelParameter(shared)}${hash}`;
 }
 

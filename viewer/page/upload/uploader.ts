@@ -21,7 +21,7 @@ interface Waiting {
 }
 
 export interface Surroundings {
-  /// Where files may be dropped.
+  /// What is marked while files are held over the page, and must be shown.
   place: HTMLElement;
   /// Of the inbox, with a slash at its end.
   inbox: string;
@@ -84,17 +84,19 @@ export class Uploader {
     return element('span', {}, button, input);
   }
 
+  /// Anywhere on the page while the gallery is shown: beside it the browser would leave the page for the file.
   private watchDrops(): void {
     const { place } = this.around;
-    const takes = ({ dataTransfer }: DragEvent): boolean => this.offer !== null && (dataTransfer?.types.includes('Files') ?? false);
+    const takes = ({ dataTransfer }: DragEvent): boolean =>
+      this.offer !== null && !place.hidden && (dataTransfer?.types.includes('Files') ?? false);
     const mark = (on: boolean): void => { place.classList.toggle('upload-target', on); };
-    place.addEventListener('dragover', (event) => {
+    window.addEventListener('dragover', (event) => {
       if (!takes(event)) return;
       event.preventDefault();
       mark(true);
     });
-    place.addEventListener('dragleave', ({ relatedTarget }) => { mark(relatedTarget instanceof Node && place.contains(relatedTarget)); });
-    place.addEventListener('drop', (event) => {
+    window.addEventListener('dragleave', ({ relatedTarget }) => { if (relatedTarget === null) mark(false); });
+    window.addEventListener('drop', (event) => {
       mark(false);
       if (!takes(event)) return;
       event.preventDefault();

@@ -6,12 +6,15 @@ import type { Model } from '../listing.js';
 import { element, iconButton } from '../parts/element.js';
 import { ICONS } from '../parts/icons.js';
 import { ModeBadge } from '../parts/mode_badge.js';
+import type { Appearance } from '../appearance.js';
 import type { Preferences } from '../preferences.js';
 import { ShareSheet } from '../share/share_sheet.js';
 import type { Shared } from '../share/embed_code.js';
 import { words } from '../words/words.js';
 import { help } from './help.js';
+import type { Angles } from './lighting.js';
 import { Panel } from './panel.js';
+import type { Shown } from './presentation.js';
 import { SettingsForm, type Choices } from './settings_form.js';
 import { Sheet, Sheets } from './sheets.js';
 
@@ -68,8 +71,14 @@ export class Chrome {
     );
   }
 
-  show(preferences: Preferences): void {
-    this.form.show(preferences);
+  /// `key`: where the light comes from.
+  show(preferences: Preferences & Appearance, key: Angles): void {
+    this.form.show(preferences, key);
+  }
+
+  /// How a terrain is shown; null: it is none.
+  tellTerrain(shown: Shown | null): void {
+    this.figures.tellTerrain(shown);
   }
 
   /// `working`: something is on its way.

@@ -30,6 +30,8 @@ export class Gestures {
     private readonly navigation: Navigation,
     /// A place of the picture was tapped, from -1 to 1; true: that is all.
     private readonly takes: (right: number, up: number) => boolean = () => false,
+    /// A drag, in radians; true: it is none of the camera.
+    private readonly takesDrag: (right: number, up: number) => boolean = () => false,
   ) {
     surface.addEventListener('pointerdown', (event) => { this.down(event); });
     surface.addEventListener('pointermove', (event) => { this.drag(event); });
@@ -81,6 +83,7 @@ export class Gestures {
     const now = this.middle();
     const height = this.surface.clientHeight;
     const [right, up] = [(now.x - middle.x) / height, (middle.y - now.y) / height];
+    if (this.takesDrag(right * TURN, up * TURN)) return;
     if (!this.panning) this.navigation.move({ turnRight: -right * TURN, turnUp: -up * TURN });
     else this.navigation.move({ panRight: -right, panUp: -up, zoom: zoomOfSpread(spread, this.spread()) });
   }

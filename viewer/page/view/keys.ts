@@ -9,7 +9,10 @@ export interface Commands {
   back(): void;
   colours(number: number): void;
   tool(name: ToolName): void;
-  toggle(what: 'texture' | 'wires' | 'points' | 'outline' | 'flat' | 'panel' | 'settings' | 'help'): void;
+  /// L went down.
+  light(): void;
+  nextLight(): void;
+  toggle(what: 'texture' | 'wires' | 'points' | 'outline' | 'cavities' | 'flat' | 'panel' | 'settings' | 'help'): void;
 }
 
 const TURN = 0.16; // radians
@@ -38,9 +41,9 @@ const ACTS: Record<string, Act> = {
   ArrowLeft: arrow(-1, 0), ArrowRight: arrow(1, 0), ArrowUp: arrow(0, 1), ArrowDown: arrow(0, -1),
   '+': closer, '=': closer, '-': farther, _: farther,
   Home: home, '0': home, Escape: back, Backspace: back,
-  '1': colours(0), '2': colours(1), '3': colours(2), '4': colours(3),
+  '1': colours(0), '2': colours(1), '3': colours(2), '4': colours(3), '5': colours(4),
   t: toggle('texture'), w: toggle('wires'), p: toggle('points'), o: toggle('outline'), f: toggle('flat'),
-  s: toggle('panel'), l: toggle('settings'), '?': toggle('help'), h: toggle('help'),
+  s: toggle('panel'), l: (commands) => { commands.light(); }, g: (commands) => { commands.nextLight(); }, c: toggle('cavities'), '?': toggle('help'), h: toggle('help'),
 };
 
 /// Whether an input of that type needs the key for itself; what is written in needs them all.

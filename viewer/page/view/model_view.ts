@@ -1,20 +1,24 @@
 // A model, as large as the window, and all that can be done with it.
 import { Box3, Vector3 } from 'three';
-import { HierarchyProblem, HierarchyView, type Look, type Settings, type Stats, type ViewOptions } from '../../src/index.js';
-import { roundedPose, type Pose } from '../address.js';
+import { HierarchyProblem, HierarchyView, type Look, type Settings, type Standing, type Stats, type ViewOptions } from '../../src/index.js';
+import { roundedPose, type Pose, type Spot } from '../address.js';
+import { COLOURS, formatChoices, keepStanding, readStanding, withChoices, type Appearance, type Light } from '../appearance.js';
 import type { Model } from '../listing.js';
 import { element } from '../parts/element.js';
 import { formatCount } from '../numbers.js';
 import type { Telling } from '../problems.js';
 import type { Bench, ToolName, Tools } from '../tools/bench.js';
-import { COLOURS, type Preferences, type Theme } from '../preferences.js';
+import type { Preferences, Theme } from '../preferences.js';
 import type { Shared } from '../share/embed_code.js';
 import { CameraPose } from './camera_pose.js';
 import { Chrome } from './chrome.js';
 import { FrameLoop, type Pace } from './frame_loop.js';
 import { Gestures } from './gestures.js';
+import { LightDrag } from './light_drag.js';
+import type { Angles } from './lighting.js';
 import { listenToKeys, type Commands } from './keys.js';
 import { Navigation } from './navigation.js';
+import { nextLight, Presentation } from './presentation.js';
 import { Sharpness } from './sharpness.js';
 import { Stage } from './stage.js';
 import type { Language } from '../words/languages.js';
@@ -22,7 +26,7 @@ import { words } from '../words/words.js';
 import '../style/view.css';
 
 export interface Surroundings extends Pick<ViewOptions, 'fetch' | 'createWorker'> {
-  pose: Pose | null;
+  spot: Spot;
   preferences: Preferences;
   /// Preferences have changed.
   chosen(): void;
@@ -30,8 +34,8 @@ export interface Surroundings extends Pick<ViewOptions, 'fetch' | 'createWorker'
   setLanguage(language: Language): void;
   /// To the gallery; null: there is none.
   leave: (() => void) | null;
-  /// The camera stands still, elsewhere than before; null: it sees all of the model, whatever the window's size.
-  rested(pose: Pose | null): void;
+  /// The camera stands still, elsewhere than before, or something else was chosen.
+  rested(spot: Spot): void;
   /// What it returns takes the message away; one about the same subject takes its place.
   failed(message: string, telling?: Telling): () => void;
   /// Opens the model anew.
@@ -49,6 +53,7 @@ export class ModelView {
   readonly view: HierarchyView;
   private tools: Tools | null = null;
   private readonly stage: Stage;
+  private readonly presentation: Presentation;
   private readonly navigation: Navigation;
   private readonly loop = new FrameLoop((now) => this.frame(now));
   private readonly chrome: Chrome;
@@ -70,24 +75,27 @@ export class ModelView {
     readonly model: Model,
     private readonly around: Surroundings,
   ) {
-    const { fetch, createWorker, preferences: { settings, look } } = around;
+    const { fetch, createWorker, preferences: { settings } } = around;
     this.stage = new Stage();
-    this.view = new HierarchyView(model.url, { fetch, createWorker, settings, look });
+    this.view = new HierarchyView(model.url, { fetch, createWorker, settings });
+    this.presentation = new Presentation(this.view, this.stage.lighting, this.wished(around.spot));
+    this.presentation.apply();
     this.stage.show(this.view);
     this.navigation = new Navigation((right, up) => this.stage.pick(right, up), () => { this.redraw(); });
     const surface = this.makeSurface();
     this.chrome = new Chrome(model, surface, this.orders(), this.ending.signal);
     this.root = this.chrome.root;
-    new Gestures(surface, this.navigation, (right, up) => this.tools?.tapped(right, up) ?? false);
-    listenToKeys(this.commands(), this.ending.signal);
+    const light = this.lightDrag();
+    new Gestures(surface, this.navigation, (right, up) => this.tools?.tapped(right, up) ?? false, (right, up) => light.drag(right, up));
+    listenToKeys(this.commands(light), this.ending.signal);
     this.listen();
   }
 
   /// Once it is on the page.
   start(): void {
-    this.chrome.show(this.around.preferences);
+    this.showChosen();
     if (this.around.preferences.panel) this.chrome.panel.open();
-    if (this.around.pose !== null) this.setPose(this.around.pose);
+    if (this.around.spot.pose !== null) this.setPose(this.around.spot.pose);
     this.sizes.observe(this.stage.canvas);
     this.stage.canvas.parentElement?.focus({ preventScroll: true });
     this.view.opened.then(() => { this.begin(); }, (error: unknown) => { this.refuse(error); });
@@ -104,6 +112,19 @@ export class ModelView {
     else this.navigation.jump(CameraPose.from(pose));
   }
 
+  /// As a link says.
+  setSpot(spot: Spot): void {
+    this.setPose(spot.pose);
+    this.presentation.chosen = this.wished(spot);
+    this.present();
+  }
+
+  /// What is kept of this browser's wishes, and what a link says instead.
+  private wished({ choices }: Spot): Appearance {
+    const { look, light, standings } = this.around.preferences;
+    return withChoices(choices, { look, light, standing: readStanding(standings[this.model.url]) });
+  }
+
   stats(): Stats {
     return this.view.stats();
   }
@@ -113,7 +134,7 @@ export class ModelView {
   }
 
   themeChanged(): void {
-    this.chrome.show(this.around.preferences);
+    this.showChosen();
     this.redraw();
   }
 
@@ -164,6 +185,8 @@ export class ModelView {
   private begin(): void {
     if (this.closed) return;
     this.opened = true;
+    this.presentation.apply(); // what the model is may choose for it
+    this.showChosen();
     this.reframe();
     this.redraw();
   }
@@ -232,22 +255,49 @@ export class ModelView {
 
   private rest(): void {
     window.clearTimeout(this.restTimer);
-    this.around.rested(this.navigation.atHome ? null : this.pose());
+    const pose = this.navigation.atHome ? null : this.pose();
+    this.around.rested({ pose, choices: formatChoices(this.presentation.chosen) });
   }
 
-  private setLook(change: Partial<Look>): void {
-    this.view.setLook(change);
-    Object.assign(this.around.preferences.look, change);
+  /// Kept for other models too; but not how this one stands.
+  private choose({ look, light, standing }: { look?: Partial<Look>; light?: Partial<Light>; standing?: Partial<Standing> }): void {
+    const { preferences } = this.around;
+    const { chosen } = this.presentation;
+    this.presentation.chosen = {
+      look: { ...chosen.look, ...look },
+      light: { ...chosen.light, ...light },
+      standing: { ...chosen.standing, ...standing },
+    };
+    Object.assign(preferences.look, look);
+    Object.assign(preferences.light, light);
+    if (standing !== undefined) preferences.standings = keepStanding(preferences.standings, this.model.url, this.presentation.chosen.standing);
     this.around.chosen();
-    this.chrome.show(this.around.preferences);
+    this.present();
+    this.startRest();
+  }
+
+  private present(): void {
+    this.presentation.apply();
+    this.showChosen();
     this.redraw();
+  }
+
+  private showChosen(): void {
+    const { chosen, shown } = this.presentation;
+    this.chrome.show({ ...this.around.preferences, ...chosen }, shown.key);
+    this.chrome.tellTerrain(this.view.terrain === null ? null : shown);
+  }
+
+  private lightDrag(): LightDrag {
+    const turn = (by: Angles): void => { this.choose({ light: this.presentation.turnedLight(by) }); };
+    return new LightDrag(turn, () => { this.chrome.settings.toggle(); }, this.ending.signal);
   }
 
   private setSettings(change: Partial<Settings>): void {
     this.view.setSettings(change);
     Object.assign(this.around.preferences.settings, change);
     this.around.chosen();
-    this.chrome.show(this.around.preferences);
+    this.showChosen();
     this.redraw();
   }
 
@@ -277,7 +327,9 @@ export class ModelView {
       tools: () => void this.useTools(null),
       panelShown: (open) => { this.panelShown(open); },
       shared: () => this.shared(),
-      look: (change) => { this.setLook(change); },
+      look: (look) => { this.choose({ look }); },
+      light: (light) => { this.choose({ light }); },
+      standing: (standing) => { this.choose({ standing }); },
       settings: (change) => { this.setSettings(change); },
       theme: (theme) => { this.around.setTheme(theme); },
       language: (language) => { this.around.setLanguage(language); },
@@ -316,7 +368,7 @@ export class ModelView {
   private shared(): Shared {
     this.rest();
     const { name, url } = this.model;
-    return { page: location.origin + location.pathname, name, url, pose: this.navigation.atHome ? null : this.pose() };
+    return { page: location.origin + location.pathname, name, url, pose: this.navigation.atHome ? null : this.pose(), choices: formatChoices(this.presentation.chosen) };
   }
 
   private zoomMiddle(logarithm: number): void {
@@ -324,13 +376,15 @@ export class ModelView {
     this.navigation.move({ zoom: logarithm });
   }
 
-  private commands(): Commands {
+  private commands(light: LightDrag): Commands {
     return {
+      light: () => { light.hold(); },
+      nextLight: () => { this.choose({ light: nextLight(this.presentation.chosen.light) }); },
       move: (moves) => { this.moveByKey(moves); },
       home: () => { this.navigation.goHome(); },
       back: () => { if (!this.chrome.sheets.closeAside() && this.tools?.back() !== true) this.back(); },
       tool: (name) => void this.useTools(name),
-      colours: (number) => { this.setLook({ colours: COLOURS[number] }); },
+      colours: (number) => { this.choose({ look: { colours: COLOURS[number] } }); },
       toggle: (what) => { this.toggle(what); },
     };
   }
@@ -342,9 +396,9 @@ export class ModelView {
   }
 
   private toggle(what: Parameters<Commands['toggle']>[0]): void {
-    const { look } = this.view;
-    if (what === 'flat') this.setLook({ shading: look.shading === 'flat' ? 'smooth' : 'flat' });
-    else if (what === 'texture' || what === 'wires' || what === 'points' || what === 'outline') this.setLook({ [what]: !look[what] });
+    const { look } = this.presentation.chosen;
+    if (what === 'flat') this.choose({ look: { shading: look.shading === 'flat' ? 'smooth' : 'flat' } });
+    else if (what === 'texture' || what === 'wires' || what === 'points' || what === 'outline' || what === 'cavities') this.choose({ look: { [what]: !look[what] } });
     else this.chrome[what].toggle();
   }
 }

@@ -2,6 +2,7 @@
 import type { Manifest, Stats } from '../../src/index.js';
 import { formatBytes, formatCount, formatDecimal, formatMilliseconds, formatPercent } from '../numbers.js';
 import { element } from '../parts/element.js';
+import type { Shown } from './presentation.js';
 import { words } from '../words/words.js';
 
 const text = words.figures;
@@ -60,17 +61,27 @@ const ROWS = (Object.keys(FIGURES) as (keyof typeof FIGURES)[]).map((key) => ({ 
 export class Panel {
   readonly root: HTMLElement;
   private readonly source = element('p', { class: 'source' });
+  private readonly terrain = element('p', { class: 'source' });
   private readonly values = ROWS.map(() => element('dd', {}));
 
   constructor() {
     const rows = ROWS.map(({ name, tip }, i) => element('div', { title: tip }, element('dt', {}, name), this.values[i]));
-    this.root = element('div', {}, this.source, element('dl', { class: 'figures' }, ...rows));
+    this.root = element('div', {}, this.source, this.terrain, element('dl', { class: 'figures' }, ...rows));
   }
 
   /// What the model was made from, and its licence.
   tellSource({ source, licence }: Manifest): void {
     const [vertices, triangles] = (['vertices', 'triangles'] as const).map((what) => words.counts[what](source[what], formatCount(source[what])));
     this.source.textContent = `${text.source(source.fileName, vertices, triangles)}${pictures(source)}${licence === '' ? '' : ` ${licence}`}`;
+  }
+
+  /// Null: the model is no terrain.
+  tellTerrain(shown: Shown | null): void {
+    this.terrain.hidden = shown === null;
+    if (shown === null) return;
+    const { terrain, byHeight, sunlit } = words.light;
+    const { look, rig } = shown;
+    this.terrain.textContent = [terrain, ...(look.colours === 'height' ? [byHeight] : []), ...(rig === 'sun' ? [sunlit(formatDecimal(look.relief))] : [])].join(' ');
   }
 
   /// `wanted`: frames per second.

@@ -1,6 +1,7 @@
 // What draws: canvas, scene, camera and light.
-import { Box3, DirectionalLight, Group, HemisphereLight, NeutralToneMapping, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer, type Object3D } from 'three';
+import { Box3, Group, NeutralToneMapping, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer, type Object3D } from 'three';
 import { words } from '../words/words.js';
+import { Lighting } from './lighting.js';
 import { depthRange, VIEW_ANGLE, type CameraPose } from './camera_pose.js';
 
 const MOST_RATIO = 2;
@@ -10,16 +11,6 @@ export interface Painter {
   paint(renderer: WebGLRenderer, scene: Scene, camera: PerspectiveCamera): void;
   /// Whether a point of the world is drawn.
   keeps(point: Vector3): boolean;
-}
-
-/// From above, and from a lamp that goes with the camera.
-function lights(camera: PerspectiveCamera): HemisphereLight {
-  const key = new DirectionalLight(0xfff6ea, 2.9);
-  key.position.set(-0.6, 0.9, 1);
-  const rim = new DirectionalLight(0xcfe0ff, 0.9);
-  rim.position.set(1, 0.1, -0.6);
-  for (const light of [key, rim]) camera.add(light, light.target);
-  return new HemisphereLight(0xeaf1ff, 0x857d74, 1.15);
 }
 
 function makeRenderer(): WebGLRenderer {
@@ -36,6 +27,7 @@ export class Stage {
   private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
   private readonly shown = new Group();
+  readonly lighting = new Lighting(this.scene, this.camera);
   private readonly raycaster = new Raycaster();
   /// Null: as it is.
   painter: Painter | null = null;
@@ -48,7 +40,7 @@ export class Stage {
     this.renderer.setClearAlpha(0);
     this.renderer.toneMapping = NeutralToneMapping;
     this.canvas = this.renderer.domElement;
-    this.scene.add(this.camera, this.shown, lights(this.camera));
+    this.scene.add(this.camera, this.shown);
   }
 
   show(object: Object3D): void {

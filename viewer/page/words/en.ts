@@ -154,7 +154,7 @@ export const en = {
   },
   settings: {
     colours: 'Colours',
-    colourNames: { plain: 'Plain', vertex: 'Input', partition: 'Partitions', error: 'Error' },
+    colourNames: { plain: 'Plain', vertex: 'Input', partition: 'Partitions', error: 'Error', height: 'Height' },
     texture: 'Texture',
     wires: 'Wires',
     points: 'Points',
@@ -171,6 +171,20 @@ export const en = {
     megabytes: 'MB',
     finer: 'Finer at rest',
     theme: 'Theme',
+  },
+  light: {
+    light: 'Light',
+    names: { auto: 'Auto', studio: 'Studio', raking: 'Raking', flat: 'Flat', sun: 'Sun', matcap: 'Clay' },
+    around: 'Light from the side',
+    above: 'Light from above',
+    up: 'Up',
+    asStored: 'As stored',
+    stretch: 'Heights',
+    relight: 'Lit pictures',
+    cavities: 'Creases',
+    terrain: 'This is a terrain.',
+    byHeight: 'Its colours tell the height.',
+    sunlit: (times: string) => `The sun is in the northwest; slopes are shaded ${times} times steeper than they are.`,
   },
   figures: {
     source: (file: string, vertices: string, triangles: string) => `${file}: ${vertices} and ${triangles}.`,
@@ -202,6 +216,7 @@ export const en = {
   help: {
     /// What hands or keys do, and what comes of it.
     hands: [
+      ['L + drag', 'turn the light'],
       ['Drag', 'turn'],
       ['Right drag, Shift + drag, two fingers', 'move'],
       ['Wheel, pinch', 'closer, farther, to where the pointer is'],
@@ -213,8 +228,9 @@ export const en = {
       ['+ −', 'closer, farther'],
       ['Home, 0', 'the whole model'],
       ['Esc, Backspace', 'back'],
-      ['1 2 3 4', "colours: plain, the input's, partitions, error"],
-      ['T W P O F', 'texture, wires, points, outline, flat shading'],
+      ['1 2 3 4 5', "colours: plain, the input's, partitions, error, height"],
+      ['T W P O C F', 'texture, wires, points, outline, creases, flat shading'],
+      ['G', 'next light'],
       ['L', 'look and settings'],
       ['S', 'figures'],
       ['I M X', 'tools: pick a point, measure, cut open'],

@@ -3,7 +3,7 @@
 import type { TileRecord } from '../hierarchy/tile_index.js';
 import { keyOf, type Node, type Tree } from '../hierarchy/tree.js';
 import { PriorityQueue } from './priority_queue.js';
-import { isInView, pixelsOf, type Viewpoint } from './viewpoint.js';
+import { isInView, pixelsOf, squarePixels, type Viewpoint } from './viewpoint.js';
 
 export interface Limits {
   /// Error on screen, in pixels, up to which a tile will do.
@@ -58,11 +58,9 @@ const HYSTERESIS = 1.3;
 /// A tile takes so many times its bytes on its way: its file, packed and unpacked, is in memory as well until it is decoded.
 export const LOADING = 2;
 
-/// The side of a tile's triangles, in pixels: two of them to a square, on a surface as large as half the box's sides together, which
-/// it is if it lies along the axes, and nearly if it is round.
+/// Two triangles make up a square.
 function trianglePixels(view: Viewpoint, record: TileRecord): number {
-  const [a, b, c] = record.max.map((max, axis) => max - record.min[axis]);
-  return pixelsOf(view, record, Math.sqrt((2 * (a * b + b * c + c * a)) / Math.max(1, record.interior + record.border)));
+  return squarePixels(view, record, Math.max(1, record.interior + record.border) / 2);
 }
 
 class Chooser {

@@ -11,6 +11,8 @@ export interface Viewpoint {
   readonly pixels: number;
   /// Nothing closer is drawn; above 0.
   readonly near: number;
+  /// How many times longer a length along each axis is seen than along the one that is seen shortest: 1 or more.
+  readonly stretch: Vector;
 }
 
 export interface Box {
@@ -38,25 +40,37 @@ export function isWhollyInView({ planes }: Viewpoint, { min, max }: Box): boolea
   });
 }
 
-/// From the eye to the box; 0 inside.
-export function distance({ eye }: Viewpoint, { min, max }: Box): number {
+/// From the eye to the box, as it is seen; 0 inside.
+export function distance({ eye, stretch }: Viewpoint, { min, max }: Box): number {
   let squared = 0;
   for (let axis = 0; axis < 3; ++axis) {
-    const outside = Math.max(min[axis] - eye[axis], 0, eye[axis] - max[axis]);
+    const outside = stretch[axis] * Math.max(min[axis] - eye[axis], 0, eye[axis] - max[axis]);
     squared += outside * outside;
   }
   return Math.sqrt(squared);
 }
 
-/// Pixels that a length in the box takes, at most.
-export function pixelsOf(view: Viewpoint, box: Box, length: number): number {
+/// Pixels that a length in the box takes, at most, along the axis that is seen shortest.
+function leastPixels(view: Viewpoint, box: Box, length: number): number {
   return (length * view.pixels) / Math.max(distance(view, box), view.near);
 }
 
+/// Pixels that a length in the box takes, at most.
+export function pixelsOf(view: Viewpoint, box: Box, length: number): number {
+  return Math.max(...view.stretch) * leastPixels(view, box, length);
+}
+
+/// Pixels along the side of a square, if `squares` of them make up a surface as large as half the box's sides together: it is as
+/// large if it lies along the axes, and nearly if it is round.
+export function squarePixels(view: Viewpoint, box: Box, squares: number): number {
+  const [a, b, c] = box.max.map((max, axis) => view.stretch[axis] * (max - box.min[axis]));
+  return leastPixels(view, box, Math.sqrt((a * b + b * c + c * a) / squares));
+}
+
 /// Whether all directions of the cone look away from the eye, from anywhere in the box, by `margin` radians more
-/// than they must.
-export function looksAway({ eye }: Viewpoint, { min, max }: Box, { axis, cosine }: Cone, margin: number): boolean {
-  if (cosine <= 0) return false;
+/// than they must. Of what is stretched nobody knows.
+export function looksAway({ eye, stretch }: Viewpoint, { min, max }: Box, { axis, cosine }: Cone, margin: number): boolean {
+  if (cosine <= 0 || Math.max(...stretch) > 1) return false;
   const to = [0, 1, 2].map((k) => eye[k] - (min[k] + max[k]) / 2);
   const radius = Math.hypot(max[0] - min[0], max[1] - min[1], max[2] - min[2]) / 2;
   const far = Math.hypot(to[0], to[1], to[2]);

@@ -1,5 +1,5 @@
 // A hierarchy as an object of a three scene: loads what the view needs, draws one cut without cracks.
-import { Box3, Group, Matrix4, Vector3, type Object3DEventMap, type PerspectiveCamera } from 'three';
+import { Box3, Group, Vector3, type Matrix4, type Object3DEventMap, type PerspectiveCamera } from 'three';
 import type { ChosenNode } from '../cut/choose_cut.js';
 import { FrameRate } from '../cut/frame_rate.js';
 import { Refinement, type Refined } from '../cut/refinement.js';
@@ -20,6 +20,8 @@ import { modeOf } from './mode.js';
 import { OutlineObject } from './outline_object.js';
 import { Motion, REST_MS, viewpointOf, type Viewport } from './motion.js';
 import { changedSettings, DEFAULT_LOOK, type Look, type Mode, type Settings, type Stats } from './settings.js';
+import { changedStanding, DEFAULT_STANDING, upwards, type Standing } from './standing.js';
+import { terrainOf, type Terrain } from './terrain.js';
 import { memoryOf, mostMemory, vertexBytesOf } from './tile_object.js';
 import type { DrawnTile, TileSource } from './surface.js';
 import { TileScene } from './tile_scene.js';
@@ -28,6 +30,7 @@ import { isOnlyOnGpu } from './tile_texture.js';
 export interface ViewOptions {
   settings?: Partial<Settings>;
   look?: Partial<Look>;
+  standing?: Partial<Standing>;
   /// Makes a worker of the module `tile_worker`; without it tiles are decoded where the view is.
   createWorker?: () => Worker;
   workers?: number;
@@ -53,8 +56,6 @@ const RETRY_MS = 1000; // of what all tiles need; twice as long each time
 const MOST_TRIES = 5;
 const ROOT: Node = { level: 0, index: 0 };
 const ROOT_KEY = keyOf(0, 0);
-/// (x, y, z) to (x, z, -y).
-const UPRIGHT = new Matrix4().set(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
 
 export class HierarchyView extends Group<ViewEvents> {
   /// Resolves when the root can be drawn: after one request. Rejects with an Error that names the file.
@@ -62,9 +63,14 @@ export class HierarchyView extends Group<ViewEvents> {
   /// Of the model, upright, in the coordinates of this group.
   readonly box = new Box3();
   manifest: Manifest | null = null;
+  /// What the mesh is like as a terrain, as it stands; null: it is none, or not known yet.
+  terrain: Terrain | null = null;
 
   private currentSettings: Settings;
   private currentLook: Look;
+  private currentStanding: Standing;
+  /// Of the model, in the tiles' coordinates: smallest, then largest.
+  private corners: readonly number[] = [];
   private readonly decoder: TileDecoder;
   private readonly remote: RemoteHierarchy;
   private readonly store: TileStore;
@@ -81,11 +87,12 @@ export class HierarchyView extends Group<ViewEvents> {
   private pixels = 1;
   private state: Refined | null = null;
   private isDirty = false;
+  private isAwake = false;
   private wasMoving = false;
   private lastFrame = 0;
   private failed = 0;
   private readonly missing = new Set<string | number>(); // files that failed and have not come since; tiles by their keys
-  private readonly alarm = new Alarm(() => { this.changed(); });
+  private readonly alarm = new Alarm(() => { this.wake(); });
   private readonly ending = new AbortController();
   private root: Tile | null = null;
   /// Nothing else will come.
@@ -98,6 +105,7 @@ export class HierarchyView extends Group<ViewEvents> {
     super();
     this.currentSettings = changedSettings(options.settings ?? {});
     this.currentLook = { ...DEFAULT_LOOK, ...options.look };
+    this.currentStanding = changedStanding(options.standing ?? {}, DEFAULT_STANDING);
     this.decoder = new TileDecoder(options.createWorker, options.workers ?? WORKERS);
     const fetch: Fetch = options.fetch ?? ((input, init) => globalThis.fetch(input, init));
     this.remote = new RemoteHierarchy(url, fetch, this.decoder, this.ending.signal);
@@ -128,6 +136,22 @@ export class HierarchyView extends Group<ViewEvents> {
     this.store.recount();
     this.showOutline();
     this.changed();
+  }
+
+  get standing(): Readonly<Standing> {
+    return this.currentStanding;
+  }
+
+  /// `box` is another one afterwards.
+  setStanding(change: Partial<Standing>): void {
+    this.currentStanding = changedStanding(change, this.currentStanding);
+    if (this.root !== null) this.stand(this.root);
+    this.changed();
+  }
+
+  /// Whether the mesh has colours or pictures of its own; null: not known yet.
+  get hasColours(): boolean | null {
+    return this.root && (this.root.colours !== null || this.root.picture !== null);
   }
 
   /// Fetched when it is first asked for, and where it belongs is known.
@@ -174,9 +198,9 @@ export class HierarchyView extends Group<ViewEvents> {
     const root = await this.persist('root', () => this.remote.root());
     this.ending.signal.throwIfAborted();
     this.root = root;
-    if (root.zUp) this.tiles.applyMatrix4(UPRIGHT);
     this.tiles.insideOut = root.insideOut;
-    this.setBox(root.box);
+    this.corners = root.box;
+    this.stand(root);
     this.tiles.show([this.store.addRoot(root, new Tree(1))], this.look);
     this.changed();
     void this.openDirectory(root, manifest);
@@ -199,7 +223,15 @@ export class HierarchyView extends Group<ViewEvents> {
     }
   }
 
-  private setBox([a, b, c, d, e, f]: readonly number[]): void {
+  /// Upright, as it is wished.
+  private stand(root: Tile): void {
+    this.terrain = terrainOf(root, upwards(this.standing.up, root.zUp));
+    this.tiles.stand(this.standing, root);
+    this.setBox();
+  }
+
+  private setBox(): void {
+    const [a, b, c, d, e, f] = this.corners;
     this.box.set(new Vector3(a, b, c), new Vector3(d, e, f)).applyMatrix4(this.tiles.matrix);
   }
 
@@ -224,7 +256,8 @@ export class HierarchyView extends Group<ViewEvents> {
     this.directory = directory;
     this.manifest = manifest;
     const corner = (from: readonly number[]): number[] => from.map((x, axis) => x - manifest.origin[axis] - manifest.place[axis]);
-    this.setBox([...corner(manifest.source.min), ...corner(manifest.source.max)]);
+    this.corners = [...corner(manifest.source.min), ...corner(manifest.source.max)];
+    this.setBox();
     const vertexBytes = vertexBytesOf(root);
     this.refinement = new Refinement(tree, index, this.store, (record, { level }) =>
       mostMemory(record, { level, vertexBytes, wires: this.look.wires }));
@@ -239,7 +272,7 @@ export class HierarchyView extends Group<ViewEvents> {
     this.recover(key);
     const record = this.directory?.index.record(node);
     if (record) this.account.fetched(record.bytes);
-    this.changed();
+    this.wake();
   }
 
   private tell(file: string | number, problem: unknown): void {
@@ -272,8 +305,15 @@ export class HierarchyView extends Group<ViewEvents> {
     this.changed();
   }
 
+  /// The picture is another one.
   private changed(): void {
     this.isDirty = true;
+    this.wake();
+  }
+
+  /// It may be another one.
+  private wake(): void {
+    this.isAwake = true;
     if (!this.ending.signal.aborted) this.dispatchEvent({ type: 'change' });
   }
 
@@ -287,11 +327,11 @@ export class HierarchyView extends Group<ViewEvents> {
     this.tiles.updateWorldMatrix(true, false);
     const seesElse = this.motion.see(camera, this.tiles, viewport, now);
     this.measure(now);
-    const isDue = seesElse || this.isDirty || this.motion.isMoving !== this.wasMoving;
+    const isDue = seesElse || this.isAwake || this.motion.isMoving !== this.wasMoving;
     this.wasMoving = this.motion.isMoving;
     if (!isDue) return false;
     const isDirty = this.isDirty;
-    this.isDirty = false;
+    this.isDirty = this.isAwake = false;
     this.viewpoint = viewpointOf(camera, this.tiles, viewport);
     this.pixels = viewport.width * viewport.height;
     const isElse = this.refine(this.viewpoint, now);

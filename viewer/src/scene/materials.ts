@@ -1,9 +1,14 @@
 // The materials of tiles: three's own, so that any scene's lights do.
-import { Color, DoubleSide, LineBasicMaterial, MeshBasicMaterial, MeshStandardMaterial, PointsMaterial, type Material, type Texture } from 'three';
+import {
+  Color, DoubleSide, LineBasicMaterial, MeshBasicMaterial, MeshMatcapMaterial, MeshStandardMaterial, PointsMaterial, Vector2, Vector3, type Material, type Texture,
+  type WebGLProgramParametersWithUniforms as Shader,
+} from 'three';
 import type { Alpha, Picture } from '../hierarchy/picture.js';
+import { makeMatcap } from './matcap.js';
 import type { Look } from './settings.js';
 
 const PLAIN = 0xb9b4ab;
+const CLAY = 0xd99a76;
 const WIRES = 0x101418;
 const POINTS = 0xd04a1e;
 const POINT_SIZE = 7; // pixels of the page
@@ -31,9 +36,33 @@ const TO_LINEAR = `#include <color_vertex>
   vColor.rgb = mix(vColor.rgb / 12.92, pow((vColor.rgb + 0.055) / 1.055, vec3(2.4)), step(0.04045, vColor.rgb));
 #endif`;
 
+/// Slopes as steep as they are to be shaded.
+const RELIEF = `#include <beginnormal_vertex>
+vec3 along = dot(objectNormal, upwards) * upwards;
+objectNormal = (objectNormal - along) * relief + along;`;
+
+const HEIGHT = `#include <begin_vertex>
+vHeight = (dot(position, upwards) - heights.x) / max(heights.y - heights.x, 1e-30);`;
+
+/// Lowland green, straw, ochre, rock, snow: of a screen, at equal steps.
+const HEIGHT_COLOURS = [0x4f8a63, 0xb9c28a, 0xd8b878, 0x9c7b62, 0xf4f2ee];
+
+function linear(hex: number): string {
+  return `vec3(${new Color(hex).toArray().map((value) => value.toFixed(5)).join(', ')})`;
+}
+
+const RAMP = `#include <color_fragment>
+float step_ = clamp(vHeight, 0.0, 1.0) * ${(HEIGHT_COLOURS.length - 1).toFixed(1)};
+diffuseColor.rgb *= ${HEIGHT_COLOURS.slice(1).reduce((below, hex, i) => `mix(${below}, ${linear(hex)}, clamp(step_ - ${i.toFixed(1)}, 0.0, 1.0))`, linear(HEIGHT_COLOURS[0]))};`;
+
+/// How the normal turns from one pixel to the next: away from itself over an edge, towards itself in a hollow.
+const CAVITIES = `#include <normal_fragment_maps>
+float bend = dFdx(normal).x + dFdy(normal).y;
+diffuseColor.rgb *= clamp(1.0 + 1.8 * bend, 0.5, 1.4);`;
+
 /// Looks of one key have the same surfaces.
-export function surfaceKey({ colours, texture, shading, wires, points }: Look): string {
-  return [colours, texture, shading, wires || points].join();
+export function surfaceKey({ colours, texture, relight, material, cavities, shading, wires, points }: Look): string {
+  return [colours, texture, relight, material, cavities, shading, wires || points].join();
 }
 
 /// What the materials of a model's tiles have in common.
@@ -42,6 +71,11 @@ export interface SharedMaterials {
   readonly points: Material;
   /// Which side of triangles is outside: 1: the front, -1: the back.
   readonly outwards: { value: number };
+  /// Which way is up in the tiles' coordinates, what lies low and high along it, and how many times steeper slopes are shaded.
+  readonly upwards: { value: Vector3 };
+  readonly heights: { value: Vector2 };
+  readonly relief: { value: number };
+  readonly matcap: Texture;
 }
 
 /// What of a tile its surface shows.
@@ -52,7 +86,7 @@ export interface Painting {
   readonly texture: Texture | null;
 }
 
-export type SurfaceMaterial = MeshStandardMaterial | MeshBasicMaterial;
+export type SurfaceMaterial = MeshStandardMaterial | MeshMatcapMaterial | MeshBasicMaterial;
 
 /// Where a texel counts as a hole. Of what blends it is none at all: tiles hide what lies behind them, in whatever order they are drawn.
 const HOLES: Readonly<Record<Alpha, number>> = { OPAQUE: 0, MASK: 0.5, BLEND: 1 / 512 };
@@ -72,24 +106,35 @@ function unlitMaterial(look: Look, { picture, texture }: Painting): MeshBasicMat
   return new MeshBasicMaterial({ side: DoubleSide, toneMapped: false, ...standing(look), ...picturing(picture, texture) });
 }
 
-function litMaterial(look: Look, { picture, texture, hasColours }: Painting, { outwards }: SharedMaterials): MeshStandardMaterial {
-  const vertexColors = look.colours === 'vertex' && hasColours && texture === null;
-  const material = new MeshStandardMaterial({
-    color: vertexColors || texture ? 0xffffff : PLAIN,
-    roughness: texture ? 1 : 0.75,
-    metalness: 0,
-    side: DoubleSide,
-    flatShading: look.shading === 'flat',
-    vertexColors,
-    ...standing(look),
-    ...picturing(picture, texture),
-  });
+/// What three's shaders are changed by, for a look.
+function edit(shader: Shader, { colours, cavities }: Look, vertexColors: boolean): void {
+  const change = (where: 'vertexShader' | 'fragmentShader', chunk: string, by: string): void => { shader[where] = shader[where].replace(`#include <${chunk}>`, by); };
+  const height = colours === 'height' ? 'varying float vHeight;\n' : '';
+  change('vertexShader', 'beginnormal_vertex', RELIEF);
+  change('fragmentShader', 'normal_fragment_begin', BACKS);
+  if (vertexColors) change('vertexShader', 'color_vertex', TO_LINEAR);
+  if (cavities) change('fragmentShader', 'normal_fragment_maps', CAVITIES);
+  if (height !== '') change('vertexShader', 'begin_vertex', HEIGHT);
+  if (height !== '') change('fragmentShader', 'color_fragment', RAMP);
+  shader.vertexShader = `uniform vec3 upwards;\nuniform vec2 heights;\nuniform float relief;\n${height}${shader.vertexShader}`;
+  shader.fragmentShader = `uniform float outwards;\n${height}${shader.fragmentShader}`;
+}
+
+function litMaterial(look: Look, { picture, texture, hasColours }: Painting, shared: SharedMaterials): MeshStandardMaterial | MeshMatcapMaterial {
+  const { colours, cavities, shading } = look;
+  const vertexColors = colours === 'vertex' && hasColours && texture === null;
+  const plain = look.material === 'matcap' ? CLAY : PLAIN;
+  const own = { color: vertexColors || texture || colours === 'height' ? 0xffffff : plain, side: DoubleSide, flatShading: shading === 'flat', vertexColors };
+  const parameters = { ...own, ...standing(look), ...picturing(picture, texture) };
+  const material = look.material === 'matcap'
+    ? new MeshMatcapMaterial({ ...parameters, matcap: shared.matcap })
+    : new MeshStandardMaterial({ ...parameters, roughness: texture ? 1 : 0.75, metalness: 0 });
+  const { outwards, upwards, heights, relief } = shared;
   material.onBeforeCompile = (shader) => {
-    shader.uniforms.outwards = outwards;
-    shader.fragmentShader = `uniform float outwards;\n${shader.fragmentShader.replace('#include <normal_fragment_begin>', BACKS)}`;
-    if (vertexColors) shader.vertexShader = shader.vertexShader.replace('#include <color_vertex>', TO_LINEAR);
+    Object.assign(shader.uniforms, { outwards, upwards, heights, relief });
+    edit(shader, look, vertexColors);
   };
-  material.customProgramCacheKey = () => `meshhier-${vertexColors ? 'coloured' : 'plain'}`;
+  material.customProgramCacheKey = () => `meshhier-${[vertexColors, colours === 'height', cavities].join('-')}`;
   return material;
 }
 
@@ -101,7 +146,7 @@ export function showsPictures({ colours, texture }: Look): boolean {
 /// One tile's: programs are shared by all of a look.
 export function surfaceMaterial(look: Look, painting: Painting, shared: SharedMaterials): SurfaceMaterial {
   const shown = showsPictures(look) ? painting : { ...painting, texture: null };
-  return shown.texture !== null && shown.picture?.unlit ? unlitMaterial(look, shown) : litMaterial(look, shown, shared);
+  return shown.texture !== null && shown.picture?.unlit && !look.relight ? unlitMaterial(look, shown) : litMaterial(look, shown, shared);
 }
 
 export function partitionColour(level: number, index: number): Color {
@@ -129,5 +174,6 @@ function pointMaterial(): Material {
 }
 
 export function sharedMaterials(): SharedMaterials {
-  return { wires: wireMaterial(), points: pointMaterial(), outwards: { value: 1 } };
+  const uniforms = { outwards: { value: 1 }, upwards: { value: new Vector3(0, 1, 0) }, heights: { value: new Vector2(0, 1) }, relief: { value: 1 } };
+  return { wires: wireMaterial(), points: pointMaterial(), matcap: makeMatcap(), ...uniforms };
 }

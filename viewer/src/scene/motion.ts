@@ -9,6 +9,8 @@ export interface Viewport {
 
 /// A camera that has not changed for this long stands still.
 export const REST_MS = 200;
+/// What rounding may make of equal lengths.
+const EVEN = 1 + 1e-6;
 
 export class Motion {
   isMoving = false;
@@ -33,7 +35,15 @@ function planeIn(local: Matrix4, plane: Plane): readonly [number, number, number
   return [normal.x, normal.y, normal.z, constant];
 }
 
-/// `object`: what holds the tiles; its matrices and the camera's are up to date. Scaled alike in all directions.
+/// Lengths of the axes of an object that has no shear, in parts of the shortest; 1 where rounding alone tells them apart.
+function stretchOf(object: Object3D): Viewpoint['stretch'] {
+  const lengths = new Vector3().setFromMatrixScale(object.matrixWorld).toArray();
+  const shortest = Math.min(...lengths);
+  const [x, y, z] = lengths.map((length) => (length < EVEN * shortest ? 1 : length / shortest));
+  return [x, y, z];
+}
+
+/// `object`: what holds the tiles; its matrices and the camera's are up to date. Scaled along its axes only.
 export function viewpointOf(camera: PerspectiveCamera, object: Object3D, { height }: Viewport): Viewpoint {
   const toLocal = object.matrixWorld.clone().invert();
   const frustum = new Frustum().setFromProjectionMatrix(
@@ -46,5 +56,6 @@ export function viewpointOf(camera: PerspectiveCamera, object: Object3D, { heigh
     planes: frustum.planes.map((plane) => planeIn(toLocal, plane)),
     pixels: (height * camera.projectionMatrix.elements[5]) / 2,
     near: camera.near * scale,
+    stretch: stretchOf(object),
   };
 }

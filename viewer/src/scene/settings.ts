@@ -1,13 +1,21 @@
 // What a user of the library may set, and what it tells.
 
-/// Tiles' colours: one for all; those of the input; one for each tile; by the error on screen.
-export type Colours = 'plain' | 'vertex' | 'partition' | 'error';
+/// Tiles' colours: one for all; those of the input; one for each tile; by the error on screen; by height.
+export type Colours = 'plain' | 'vertex' | 'partition' | 'error' | 'height';
 
 export interface Look {
   /// `vertex`: the input's pictures, else its vertices' colours; where the mesh has neither it is `plain`.
   colours: Colours;
   /// False: no pictures.
   texture: boolean;
+  /// Pictures that have their light already are lit all the same.
+  relight: boolean;
+  /// `matcap`: like a ball of clay in a bright room, whatever lights there are.
+  material: 'lit' | 'matcap';
+  /// So many times steeper slopes are shaded than they are, 1 … 1000; each triangle's own normal stays.
+  relief: number;
+  /// Hollows darker, edges lighter.
+  cavities: boolean;
   /// `flat`: each triangle its own normal.
   shading: 'smooth' | 'flat';
   wires: boolean;
@@ -28,7 +36,9 @@ export interface Settings {
 }
 
 /// What a view looks like if nothing is said.
-export const DEFAULT_LOOK: Look = { colours: 'vertex', texture: true, shading: 'smooth', wires: false, points: false, outline: false };
+export const DEFAULT_LOOK: Look = {
+  colours: 'vertex', texture: true, relight: false, material: 'lit', relief: 1, cavities: true, shading: 'smooth', wires: false, points: false, outline: false,
+};
 
 const DEFAULTS: Settings = { framesPerSecond: 30, threshold: 1, restDetail: 8, memoryBudget: 256e6 };
 const RANGES: Record<keyof Settings, readonly [number, number]> = {

@@ -8,6 +8,8 @@ import { ContextWatch } from './context_watch.js';
 import { errorColour, partitionColour, sharedMaterials } from './materials.js';
 import type { Look } from './settings.js';
 import type { DrawnTile } from './surface.js';
+import { upwards, uprightRows, type Standing } from './standing.js';
+import { heightsOf } from './terrain.js';
 import { TileObject } from './tile_object.js';
 
 export class TileScene extends Group {
@@ -30,12 +32,24 @@ export class TileScene extends Group {
     this.materials.outwards.value = is ? -1 : 1;
   }
 
+  /// `root`: whose heights count.
+  stand(standing: Standing, root: Tile): void {
+    const up = upwards(standing.up, root.zUp);
+    const [[a, b, c], [d, e, f], [g, h, i]] = uprightRows(standing, root.zUp);
+    this.materials.upwards.value.set(...up);
+    this.materials.heights.value.set(...heightsOf(root, up));
+    this.matrixAutoUpdate = false;
+    this.matrix.set(a, b, c, 0, d, e, f, 0, g, h, i, 0, 0, 0, 0, 1);
+    this.matrixWorldNeedsUpdate = true;
+  }
+
   /// Shows a cut instead of the one before; true if that changes the picture.
   show(residents: readonly ResidentTile[], look: Look): boolean {
     const isSameCut = residents.length === this.cut.size && residents.every(({ key, tile }) => this.cut.get(key) === tile);
     if (isSameCut && look === this.look) return false;
     this.cut = new Map(residents.map(({ key, tile }) => [key, tile]));
     this.look = look;
+    this.materials.relief.value = look.relief;
     for (const key of this.objects.keys()) if (!this.cut.has(key)) this.hide(key);
     for (const resident of residents) this.join(resident, look);
     return true;
@@ -105,5 +119,6 @@ export class TileScene extends Group {
     this.objects.clear();
     this.materials.wires.dispose();
     this.materials.points.dispose();
+    this.materials.matcap.dispose();
   }
 }

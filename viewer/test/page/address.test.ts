@@ -1,24 +1,27 @@
 import { describe, expect, it } from 'vitest';
-import { formatAddress, parseAddress, roundedPose } from '../../page/address.js';
+import { formatAddress, NOWHERE, parseAddress, roundedPose } from '../../page/address.js';
 
 const POSE = { position: [1.25, -3e-7, 123456.789], target: [0, 1e20, -0.333333333333] } as const;
 
 describe('a link', () => {
   it.each(['horse.hier', 'models/sub/a b.hier', 'ä&#?%,/ü.hier', '', '漢字/🐎.hier'])('to %s comes back', (path) => {
-    const hash = formatAddress({ path, pose: POSE });
+    const hash = formatAddress({ path, pose: POSE, choices: 'up=z' });
     expect(parseAddress(new URL(hash, 'http://a/').hash)?.path).toBe(path);
     expect(parseAddress(hash)?.pose?.position).toEqual(POSE.position);
+    expect(parseAddress(hash)?.choices).toBe('up=z');
   });
 
   it('keeps a rounded pose as it is', () => {
     const pose = roundedPose({ position: [1 / 3, Math.PI * 1e-9, -Math.E * 1e9], target: [0, 1e-300, 2 / 3] });
     expect(Math.abs(pose.position[0] * 3 - 1)).toBeLessThan(1e-11);
-    expect(parseAddress(formatAddress({ path: 'x', pose }))!.pose).toEqual(pose);
+    expect(parseAddress(formatAddress({ path: 'x', pose, choices: '' }))!.pose).toEqual(pose);
   });
 
   it('may have no camera', () => {
-    expect(parseAddress('#a/b.hier')).toEqual({ path: 'a/b.hier', pose: null });
-    expect(formatAddress({ path: 'a/b.hier', pose: null })).toBe('#a/b.hier');
+    expect(parseAddress('#a/b.hier')).toEqual({ path: 'a/b.hier', ...NOWHERE });
+    expect(formatAddress({ path: 'a/b.hier', ...NOWHERE })).toBe('#a/b.hier');
+    expect(parseAddress('#a&up=z&light=flat')).toEqual({ path: 'a', pose: null, choices: 'up=z&light=flat' });
+    expect(formatAddress({ path: 'a', pose: null, choices: 'up=z&light=flat' })).toBe('#a&up=z&light=flat');
   });
 
   it('names no model if it is empty or broken', () => {
@@ -27,6 +30,6 @@ describe('a link', () => {
 
   it.each(['1,2,3', '1,2,3,4,5,x', '1,2,3,4,5,', '1,2,3,4,5,1e999', '1,2,3,1,2,3', '1,2,3,4,5,6,7', ''])(
     'drops the camera %s',
-    (pose) => { expect(parseAddress(`#a&${pose}`)).toEqual({ path: 'a', pose: null }); },
+    (pose) => { expect(parseAddress(`#a&${pose}`)).toEqual({ path: 'a', ...NOWHERE }); },
   );
 });

@@ -6,14 +6,14 @@ import { addressAlone, elementCode, frameCode, type Shared } from '../../page/sh
 const POSE = { position: [1.5, -2, 3e9], target: [0, 0.25, 1] } as const;
 
 function shared(change: Partial<Shared> = {}): Shared {
-  return { page: 'http://host/show/index.html', name: 'david', url: 'http://host/show/models/david.hier', pose: null, ...change };
+  return { page: 'http://host/show/index.html', name: 'david', url: 'http://host/show/models/david.hier', pose: null, choices: '', ...change };
 }
 
 describe('the address of a model alone', () => {
   it.each(['http://host/show/models/david.hier', 'http://host/elsewhere/a%20b%26c.hier', 'https://other:8080/%25/x.hier', 'http://host/show/a%2Fb.hier'])('shows %s', (url) => {
-    const address = new URL(addressAlone(shared({ url, pose: POSE })));
+    const address = new URL(addressAlone(shared({ url, pose: POSE, choices: 'light=flat' })));
     expect(readQuery(address.search, address.href).only!.url).toBe(url);
-    expect(parseAddress(address.hash)).toEqual({ path: '', pose: POSE });
+    expect(parseAddress(address.hash)).toEqual({ path: '', pose: POSE, choices: 'light=flat' });
   });
 
   it('is short where the model lies below the page, and needs no camera', () => {

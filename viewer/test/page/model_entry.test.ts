@@ -55,10 +55,10 @@ function opened(): { page: FakeHistory; entry: ModelEntry } {
 describe('the history entry of a model', () => {
   it('keeps where the camera is', () => {
     const { page, entry } = opened();
-    entry.write(POSE);
+    entry.write({ pose: POSE, choices: '' });
     expect(page.hashes).toEqual([GALLERY, `${A}&1,2,3,0,0,0`]);
-    entry.write(null);
-    expect(page.hashes).toEqual([GALLERY, A]);
+    entry.write({ pose: null, choices: 'light=flat' });
+    expect(page.hashes).toEqual([GALLERY, `${A}&light=flat`]);
     expect(entry.current).toBe(true);
   });
 
@@ -66,7 +66,7 @@ describe('the history entry of a model', () => {
     const { page, entry } = opened();
     page.go(-1);
     expect(entry.current).toBe(false);
-    entry.write(pose);
+    entry.write({ pose, choices: '' });
     expect(entry.leave()).toBe(true);
     expect(page.hashes).toEqual([GALLERY, A]);
     expect(page.asked).toBe(0);
@@ -76,11 +76,11 @@ describe('the history entry of a model', () => {
     const { page, entry } = opened();
     for (const hash of [B, `${A}&4,5,6,0,0,0`]) {
       page.push(hash);
-      entry.write(POSE);
+      entry.write({ pose: POSE, choices: '' });
       expect(page.hashes).toEqual([GALLERY, A, hash]);
       page.go(-1);
     }
-    entry.write(POSE);
+    entry.write({ pose: POSE, choices: '' });
     expect(page.hashes[1]).toBe(`${A}&1,2,3,0,0,0`);
   });
 
@@ -89,9 +89,9 @@ describe('the history entry of a model', () => {
     expect(entry.leave()).toBe(true);
     expect(entry.leave()).toBe(true);
     expect(page.asked).toBe(1);
-    entry.write(POSE);
+    entry.write({ pose: POSE, choices: '' });
     page.go(-1);
-    entry.write(POSE);
+    entry.write({ pose: POSE, choices: '' });
     expect(page.hashes).toEqual([GALLERY, A]);
   });
 
@@ -109,7 +109,7 @@ describe('the history entry of a model', () => {
     page.push(`${A}&4,5,6,0,0,0`);
     entry.arrive(false);
     expect(entry.leave()).toBe(false);
-    entry.write(POSE);
+    entry.write({ pose: POSE, choices: '' });
     expect(page.hashes).toEqual([GALLERY, A, `${A}&1,2,3,0,0,0`]);
     page.go(-1);
     entry.arrive(false);
@@ -121,7 +121,7 @@ describe('the history entry of a model', () => {
     const { page, entry } = opened();
     entry.leave();
     entry.arrive(false);
-    entry.write(POSE);
+    entry.write({ pose: POSE, choices: '' });
     expect(page.hashes[1]).toBe(`${A}&1,2,3,0,0,0`);
     entry.leave();
     expect(page.asked).toBe(2);

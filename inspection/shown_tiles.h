@@ -1,7 +1,7 @@
-// The surface of one level, tile by tile, as viewers draw it.
+// The surface of a cut, tile by tile, as viewers draw it.
 #pragma once
 
-#include "hierarchy/ids.h"
+#include "hierarchy/cut.h"
 #include "hierarchy/published.h"
 #include "inspection/cut_mesh.h"
 #include "inspection/node_cache.h"
@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace meshhier::bench {
+namespace meshhier::inspection {
 
 /// A tile of a cut. Ghosts lie where the cut shows them; they keep their normals.
 struct ShownTile {
@@ -20,22 +20,26 @@ struct ShownTile {
 };
 
 /// Not thread-safe.
-class LevelSurface {
+class ShownTiles {
  public:
-  /// `reader` must outlive it. Requires a level of the tree.
-  LevelSurface(const storage::HierarchyReader& reader, Level level);
+  /// `reader` must outlive it; `cache_bytes`: for neighbours.
+  ShownTiles(const storage::HierarchyReader& reader, Cut cut,
+             std::uint64_t cache_bytes = kCacheBytes);
 
   /// How many tiles there are.
   std::size_t size() const { return numbered_.cut.size(); }
+  const Cut& cut() const { return numbered_.cut; }
   /// Throws Error(io | corrupt).
   ShownTile load(std::size_t position);
 
  private:
+  static constexpr std::uint64_t kCacheBytes = std::uint64_t{16} << 20;
+
   void move_ghosts(PublishedTile& tile);
 
   const storage::HierarchyReader& reader_;
-  inspection::NumberedCut numbered_;
-  inspection::NodeCache<std::vector<Vec3f>> positions_;  ///< of places, of coarser neighbours
+  NumberedCut numbered_;
+  NodeCache<std::vector<Vec3f>> positions_;  ///< of places, of coarser neighbours
 };
 
-}  // namespace meshhier::bench
+}  // namespace meshhier::inspection

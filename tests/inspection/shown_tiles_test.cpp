@@ -1,4 +1,4 @@
-#include "bench/level_surface.h"
+#include "inspection/shown_tiles.h"
 
 #include "render/tile_facets.h"
 #include "tests/bench/built_surface.h"
@@ -23,9 +23,9 @@ Point point(Vec3f p) {
 std::map<std::pair<Point, Point>, int> edge_balance(const storage::HierarchyReader& reader,
                                                     Level level) {
   std::map<std::pair<Point, Point>, int> balance;
-  LevelSurface surface(reader, level);
+  inspection::ShownTiles surface(reader, Cut::of_level(reader.tree(), level));
   for (std::size_t i = 0; i < surface.size(); ++i) {
-    const ShownTile shown = surface.load(i);
+    const inspection::ShownTile shown = surface.load(i);
     for (const render::Facet& facet :
          render::facets_of(shown.tile, {}, shown.border, render::NormalKind::own)) {
       for (std::size_t c = 0; c < 3; ++c) {
@@ -37,7 +37,7 @@ std::map<std::pair<Point, Point>, int> edge_balance(const storage::HierarchyRead
   return balance;
 }
 
-TEST(LevelSurfaceTest, EachLevelOfAClosedSurfaceIsClosed) {
+TEST(ShownTilesTest, EachLevelOfAClosedSurfaceIsClosed) {
   const BuiltSurface built({.triangles = 8000});
   const storage::HierarchyReader& reader = built.reader();
   const Level above = coarser(reader.tree().depth());

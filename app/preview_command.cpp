@@ -1,0 +1,250 @@
+#include "app/command.h"
+#include "app/options.h"
+#include "hierarchy/error.h"
+#include "inspection/preview.h"
+#include "storage/io/output_file.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+namespace meshhier::app {
+namespace {
+
+using inspection::PreviewOptions;
+using inspection::Standpoint;
+
+struct PreviewArguments {
+  std::string directory;
+  std::string output;
+  PreviewOptions options;
+  std::optional<Level> level;
+  std::optional<ImageFormat> format;
+};
+
+constexpr std::array<std::pair<std::string_view, Standpoint>, 7> kViews{
+    {{"front", {0, 0}},
+     {"right", {90, 0}},
+     {"back", {180, 0}},
+     {"left", {270, 0}},
+     {"top", {0, 90}},
+     {"bottom", {0, -90}},
+     {"iso", {45, 35.26438968}}}};
+
+/// All of a text; nothing if it is no number.
+template <class Number>
+std::optional<Number> parse_number(std::string_view text) {
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool is_whole = error == std::errc{} && end == text.data() + text.size();
+  return is_whole ? std::optional(number) : std::nullopt;
+}
+
+/// What stands before and behind the first separator.
+std::pair<std::string_view, std::string_view> halves(std::string_view text, char separator) {
+  const std::size_t at = std::min(text.find(separator), text.size());
+  return {text.substr(0, at), text.substr(std::min(at + 1, text.size()))};
+}
+
+std::optional<Standpoint> parse_view(std::string_view text) {
+  for (const auto& [name, standpoint] : kViews) {
+    if (text == name)
+      return standpoint;
+  }
+  const auto [around, above] = halves(text, ',');
+  const auto azimuth = parse_number<double>(around), elevation = parse_number<double>(above);
+  const bool is_there = azimuth && elevation && *azimuth >= -360 && *azimuth <= 360 &&
+                        *elevation >= -90 && *elevation <= 90;
+  return is_there ? std::optional(Standpoint{*azimuth, *elevation}) : std::nullopt;
+}
+
+bool parse_size(std::string_view text, PreviewOptions& options) {
+  const auto [across, down] = halves(text, 'x');
+  const auto width = parse_number<std::uint32_t>(across),
+             height = parse_number<std::uint32_t>(down);
+  const auto fits = [](const std::optional<std::uint32_t>& side) {
+    return side && *side >= 1 && *side <= inspection::kMostPreviewPixels;
+  };
+  if (!fits(width) || !fits(height))
+    return false;
+  options.width = *width;
+  options.height = *height;
+  return true;
+}
+
+std::optional<std::array<std::uint8_t, 3>> parse_colour(std::string_view text) {
+  if (text == "white")
+    return std::array<std::uint8_t, 3>{255, 255, 255};
+  if (text == "black")
+    return std::array<std::uint8_t, 3>{};
+  std::uint32_t number = 0;
+  if (text.size() != 7 || text[0] != '#')
+    return std::nullopt;
+  const auto [end, error] = std::from_chars(text.data() + 1, text.data() + 7, number, 16);
+  if (error != std::errc{} || end != text.data() + 7)
+    return std::nullopt;
+  return std::array<std::uint8_t, 3>{static_cast<std::uint8_t>(number >> 16),
+                                     static_cast<std::uint8_t>(number >> 8),
+                                     static_cast<std::uint8_t>(number)};
+}
+
+std::optional<ImageFormat> format_named(std::string_view name) {
+  if (name == "png")
+    return ImageFormat::png;
+  return name == "webp" ? std::optional(ImageFormat::webp) : std::nullopt;
+}
+
+/// By the ending of the output's name, unless it is given.
+ImageFormat format_of(const PreviewArguments& arguments) {
+  if (arguments.format)
+    return *arguments.format;
+  std::string ending = std::filesystem::path(arguments.output).extension().string();
+  std::ranges::transform(ending, ending.begin(), [](char letter) {
+    return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
+  });
+  const auto format = format_named(ending.empty() ? "" : std::string_view(ending).substr(1));
+  if (!format) {
+    throw Error(ErrorCode::usage,
+                fmt::format("{}: expected a name that ends in .png or .webp, or --format png or "
+                            "--format webp",
+                            arguments.output));
+  }
+  return *format;
+}
+
+int run_preview(const PreviewArguments& arguments, execution::ProgressMode mode,
+                Environment& environment) {
+  const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
+  PreviewOptions options = arguments.options;
+  options.output = arguments.output;
+  options.format = format_of(arguments);
+  if (arguments.level)
+    options.selection = *arguments.level;
+  require_no_terminal(environment, arguments.output);
+  std::ostream& account = account_stream(environment, arguments.output);
+  const std::string line = inspection::make_picture(environment.files, arguments.directory, options,
+                                                    *progress, environment.cancel);
+  progress->finish(arguments.output);
+  account << line << '\n';
+  return 0;
+}
+
+/// An option whose text `store` takes, or refuses by returning false.
+template <class Store>
+CLI::Option* add_parsed_option(CLI::App& command, const char* name, const char* help,
+                               const char* type, const char* expected, const Store& store) {
+  return command
+      .add_option_function<std::string>(
+          name,
+          [=](const std::string& text) {
+            if (!store(text))
+              throw CLI::ValidationError(name,
+                                         fmt::format("expected {}, found \"{}\"", expected, text));
+          },
+          help)
+      ->type_name(type);
+}
+
+void add_what(CLI::App& command, PreviewArguments& arguments) {
+  CLI::App* what = command.add_option_group("What", "At most one of these");
+  PreviewOptions& options = arguments.options;
+  add_integer_option(
+      *what, {"--level", "All tiles of this level; the root is 0", 0, kDeepestLevel},
+      [&arguments](std::uint64_t level) { arguments.level = static_cast<Level>(level); });
+  add_parsed_option(*what, "--cut", "The cut that this file lists, as for export", "FILE", "a file",
+                    [&options](const std::string& text) {
+                      options.selection = std::filesystem::path(text);
+                      return !text.empty();
+                    });
+  add_parsed_option(*what, "--error",
+                    "The coarsest tiles that are no farther than this from the original", "LENGTH",
+                    "a number of 0 or more, in the units of the input",
+                    [&options](const std::string& text) {
+                      const auto error = parse_number<double>(text);
+                      if (error && *error >= 0)
+                        options.selection = inspection::LargestError{*error};
+                      return error && *error >= 0;
+                    });
+  what->require_option(0, 1);
+}
+
+void add_look(CLI::App& command, PreviewArguments& arguments) {
+  PreviewOptions& options = arguments.options;
+  add_parsed_option(command, "--size", "Pixels of the picture [1600x1000]", "WIDTHxHEIGHT",
+                    "WIDTHxHEIGHT, 1 to 8192 each",
+                    [&options](const std::string& text) { return parse_size(text, options); });
+  add_parsed_option(command, "--view",
+                    "front, back, left, right, top, bottom, iso, or degrees from the front to the "
+                    "right and above the equator; if not given, from where the model is recognised",
+                    "NAME|AZ,EL", "front, back, left, right, top, bottom, iso, or AZ,EL in degrees",
+                    [&options](const std::string& text) {
+                      options.view = parse_view(text);
+                      return options.view.has_value();
+                    });
+  add_parsed_option(command, "--up",
+                    "Which axis of the input points up; if not given, as the "
+                    "hierarchy says",
+                    "y|z", "y or z", [&options](const std::string& text) {
+                      options.up = text == "z" ? UpAxis::z : UpAxis::y;
+                      return text == "y" || text == "z";
+                    });
+  add_parsed_option(command, "--background",
+                    "white, black, or #rrggbb; if not given, the ground is transparent", "COLOUR",
+                    "white, black, or #rrggbb", [&options](const std::string& text) {
+                      options.background = parse_colour(text);
+                      return options.background.has_value();
+                    });
+  add_parsed_option(command, "--format", "What to write, whatever the name: -o - needs it",
+                    "png|webp", "png or webp", [&arguments](const std::string& text) {
+                      arguments.format = format_named(text);
+                      return arguments.format.has_value();
+                    });
+}
+
+constexpr const char* kPreviewFooter =
+    R"(Without --level, --cut or --error the tiles are at most a quarter of a pixel off. They are drawn
+one by one, so memory holds the picture and one tile. The front is where +z is, or -y if z points
+up; --view 90,20 looks at the right side from 20 degrees above it.
+
+Every hierarchy has a small picture already, preview.webp, unless its config says "preview": false.
+
+Examples:
+  meshhier preview david.hier -o david.png
+  meshhier preview david.hier --view front --size 800x1200 --background white -o david.webp
+  meshhier preview town.3tz --up z --view top --error 0.5 -o map.png
+  meshhier preview david.hier --level 0 --size 640x480 --format png -o - | display
+)";
+
+}  // namespace
+
+void add_preview_command(CLI::App& parser, Invocation& invocation) {
+  const auto arguments = std::make_shared<PreviewArguments>();
+  CLI::App* command =
+      parser.add_subcommand("preview", "Draw a picture of a hierarchy, a level or a cut of it");
+  command->add_option("HIERARCHY", arguments->directory, "A directory or a 3tz archive")
+      ->required();
+  add_what(*command, *arguments);
+  add_look(*command, *arguments);
+  add_file_output_options(*command, "The picture: .png or .webp", arguments->output,
+                          arguments->options.replace);
+  add_memory_budget_option(*command, arguments->options.memory_budget);
+  add_progress_option(*command, invocation.progress);
+  command->footer(kPreviewFooter);
+  command->callback([arguments, &invocation] {
+    invocation.run = [arguments, &invocation](Environment& environment) {
+      return run_preview(*arguments, invocation.progress, environment);
+    };
+  });
+}
+
+}  // namespace meshhier::app

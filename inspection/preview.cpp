@@ -1,0 +1,170 @@
+#include "inspection/preview.h"
+
+#include "execution/size_text.h"
+#include "hierarchy/bounds.h"
+#include "hierarchy/cut.h"
+#include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
+#include "images/image_codec.h"
+#include "inspection/cut_file.h"
+#include "inspection/shown_tiles.h"
+#include "render/painting.h"
+#include "render/portrait.h"
+#include "storage/format/archive_files.h"
+#include "storage/format/hierarchy_reader.h"
+#include "storage/io/output_file.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace meshhier::inspection {
+namespace {
+
+using storage::HierarchyReader;
+
+constexpr int kQuality = 90;
+
+Vec3d up_of(const HierarchyReader& reader, const PreviewOptions& options) {
+  const UpAxis up = options.up.value_or(reader.manifest().up);
+  return up == UpAxis::z ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0};
+}
+
+/// Framed by the root tile, which has the extent of the whole.
+render::Camera camera_for(const HierarchyReader& reader, const PreviewOptions& options) {
+  PublishedTile root = reader.read_tile({});
+  root.image = {};
+  root.shading.texcoords.clear();
+  const std::vector<render::Facet> facets =
+      render::scene_tile(root, reader.tile_format().attributes).facets;
+  const Vec3d up = up_of(reader, options);
+  const render::View view =
+      options.view ? render::view_from(options.view->azimuth, options.view->elevation, up)
+                   : render::portrait_view(facets, up);
+  return render::portrait_camera(facets, view,
+                                 {.width = options.width, .height = options.height, .samples = 2});
+}
+
+/// The coarsest nodes with errors of at most that.
+Cut cut_by_error(const HierarchyReader& reader, double error) {
+  const Tree& tree = reader.tree();
+  std::vector<NodeId> left{NodeId{}}, nodes;
+  while (!left.empty()) {
+    const NodeId node = left.back();
+    left.pop_back();
+    if (tree.is_partition(node) || tree.is_early(node) || reader.record(node).error <= error) {
+      nodes.push_back(node);
+      continue;
+    }
+    const Tree::Children children = tree.children(node);
+    left.insert(left.end(), children.span().begin(), children.span().end());
+  }
+  return {tree, std::move(nodes)};
+}
+
+Cut cut_for(storage::FileSystem& files, const HierarchyReader& reader,
+            const PreviewOptions& options, double pixel) {
+  const PreviewSelection selection = options.selection.value_or(LargestError{pixel / 4});
+  if (const auto* level = std::get_if<Level>(&selection)) {
+    require_level(reader.tree(), *level);
+    return Cut::of_level(reader.tree(), *level);
+  }
+  if (const auto* path = std::get_if<std::filesystem::path>(&selection))
+    return read_cut(files, reader.tree(), *path);
+  return cut_by_error(reader, std::get<LargestError>(selection).error);
+}
+
+/// Where levels meet, a tile reaches to the vertices of its coarser neighbour: then it may draw
+/// anywhere.
+std::vector<Bounds> boxes_of(const HierarchyReader& reader, const Cut& cut) {
+  const auto level_of = [&](NodeId node) { return reader.record(node).node.level; };
+  const auto same = [&](NodeId node) { return level_of(node) == level_of(cut[0]); };
+  const bool is_even = std::ranges::all_of(cut.nodes(), same);
+  std::vector<Bounds> boxes;
+  Bounds all;
+  for (const NodeId node : cut.nodes()) {
+    boxes.push_back(reader.record(node).bounds);
+    all.add(boxes.back());
+  }
+  if (!is_even)
+    std::ranges::fill(boxes, all);
+  return boxes;
+}
+
+/// Of a picture, its file, and what encodes it.
+std::uint64_t picture_bytes(const PreviewOptions& options) {
+  constexpr std::uint64_t kPixelBytes = 16;
+  return kPixelBytes * options.width * options.height;
+}
+
+void require_room(const PreviewOptions& options) {
+  constexpr std::uint64_t kOther = std::uint64_t{64} << 20;  // tiles, and samples for some rows
+  const std::uint64_t needed = picture_bytes(options) + kOther;
+  if (options.memory_budget < needed) {
+    throw Error(ErrorCode::budget,
+                fmt::format("a picture of {} x {} pixels needs --memory-budget {} or more",
+                            options.width, options.height, execution::exact_size_text(needed)));
+  }
+}
+
+void lay_on(const std::array<std::uint8_t, 3>& ground, images::Image& picture) {
+  for (std::size_t i = 0; i < picture.texels.size(); i += 4) {
+    const std::uint32_t alpha = picture.texels[i + 3];
+    for (std::size_t c = 0; c < 3; ++c) {
+      picture.texels[i + c] = static_cast<std::uint8_t>(
+          (alpha * picture.texels[i + c] + (255 - alpha) * ground[c] + 127) / 255);
+    }
+    picture.texels[i + 3] = 255;
+  }
+}
+
+}  // namespace
+
+std::string make_picture(storage::FileSystem& files, const std::filesystem::path& hierarchy,
+                         const PreviewOptions& options, execution::Progress& progress,
+                         const execution::CancelToken& cancel) {
+  storage::OutputRequest request{options.output, options.replace, {hierarchy}};
+  if (options.selection) {
+    if (const auto* cut = std::get_if<std::filesystem::path>(&*options.selection))
+      request.inputs.push_back(*cut);
+  }
+  require_room(options);
+  const storage::HierarchyFiles place(files, hierarchy);
+  const HierarchyReader reader(place.files(), hierarchy);
+  storage::OutputFile output(files, request, [&] { cancel.check(); });
+
+  const render::Camera camera = camera_for(reader, options);
+  ShownTiles tiles(reader, cut_for(files, reader, options, camera.pixel()),
+                   options.memory_budget / 8);
+  std::uint64_t triangles = 0;
+  for (const NodeId node : tiles.cut().nodes())
+    triangles +=
+        std::uint64_t{reader.record(node).interior_count} + reader.record(node).drawn_border_count;
+  render::Scene scene{
+      boxes_of(reader, tiles.cut()),
+      [&](std::size_t i) {
+        const ShownTile shown = tiles.load(i);
+        return render::scene_tile(shown.tile, reader.tile_format().attributes, shown.border);
+      },
+      reader.manifest().textures && reader.manifest().textures->unlit ? render::Light::none
+                                                                      : render::Light::lamps};
+  const render::PaintingOptions painting{
+      .band_bytes = (options.memory_budget - picture_bytes(options)) / 2, .step = [&] {
+        cancel.check();
+        progress.advance(1);
+      }};
+  progress.stage("preview", render::painting_steps(scene, camera, painting), "tiles");
+  images::Image picture = render::paint(scene, camera, painting);
+  if (options.background)
+    lay_on(*options.background, picture);
+  output.publish(images::encode_image(picture, options.format, kQuality));
+  return fmt::format("{}: {} x {} pixels, {}, {}", options.output.string(), options.width,
+                     options.height, counted(tiles.size(), "tiles"),
+                     counted(triangles, "triangles"));
+}
+
+}  // namespace meshhier::inspection

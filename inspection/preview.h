@@ -1,0 +1,54 @@
+// A picture of a hierarchy: of any level or cut, tile by tile.
+#pragma once
+
+#include "execution/cancel.h"
+#include "execution/progress.h"
+#include "hierarchy/frame.h"
+#include "hierarchy/ids.h"
+#include "hierarchy/texture.h"
+#include "storage/io/file.h"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+
+namespace meshhier::inspection {
+
+/// From where the model is looked at, in degrees (render::view_from).
+struct Standpoint {
+  double azimuth = 0, elevation = 0;
+};
+
+/// Tiles that are no farther from the original than this, input units; the coarsest that do.
+struct LargestError {
+  double error = 0;
+};
+
+/// A level, the cut in a text file, or tiles by their error.
+using PreviewSelection = std::variant<Level, std::filesystem::path, LargestError>;
+
+inline constexpr std::uint32_t kMostPreviewPixels = 8192;  ///< of a side
+
+struct PreviewOptions {
+  std::filesystem::path output;
+  bool replace = false;
+  ImageFormat format = ImageFormat::png;      ///< png or webp
+  std::uint32_t width = 1600, height = 1000;  ///< 1 to kMostPreviewPixels
+  /// None: errors of a quarter of a pixel at most.
+  std::optional<PreviewSelection> selection;
+  std::optional<Standpoint> view;                         ///< none: from where it is recognised
+  std::optional<UpAxis> up;                               ///< none: as the hierarchy says
+  std::optional<std::array<std::uint8_t, 3>> background;  ///< none: transparent
+  std::uint64_t memory_budget = std::uint64_t{1} << 30;
+};
+
+/// Writes the picture and says what it shows. Throws Error(usage | exists | io | corrupt), and
+/// Error(budget) if the picture does not fit the memory.
+std::string make_picture(storage::FileSystem& files, const std::filesystem::path& hierarchy,
+                         const PreviewOptions& options, execution::Progress& progress,
+                         const execution::CancelToken& cancel);
+
+}  // namespace meshhier::inspection

@@ -1,0 +1,130 @@
+// How a model is shown: its colours and surface, its light, how it stands. What of it a link and the browser keep.
+import { DEFAULT_LOOK, type Colours, type Look } from '../src/scene/settings.js';
+import { DEFAULT_STANDING, MOST_STRETCH, UPS, type Standing } from '../src/scene/standing.js';
+
+/// `auto`: the sun over terrains, a studio around all else. `matcap`: no light, the form alone.
+export type LightName = 'auto' | 'studio' | 'raking' | 'flat' | 'sun' | 'matcap';
+
+export interface Light {
+  name: LightName;
+  /// Where the key light comes from instead, radians to the right and up; null: as the name says.
+  key: readonly [number, number] | null;
+}
+
+export interface Appearance {
+  look: Look;
+  light: Light;
+  standing: Standing;
+}
+
+export const LIGHTS: readonly LightName[] = ['auto', 'studio', 'raking', 'flat', 'sun', 'matcap'];
+export const COLOURS: readonly Colours[] = ['plain', 'vertex', 'partition', 'error', 'height'];
+export const DEFAULT_LIGHT: Light = { name: 'auto', key: null };
+
+type Json = Record<string, unknown>;
+
+function asObject(value: unknown): Json {
+  return typeof value === 'object' && value !== null ? (value as Json) : {};
+}
+
+export function oneOf<T, Otherwise>(value: unknown, choices: readonly T[], otherwise: Otherwise): T | Otherwise {
+  return choices.find((choice) => choice === value) ?? otherwise;
+}
+
+// ---- kept in the browser
+
+/// `relief` follows from the rest.
+export function readLook(stored: unknown): Look {
+  const look = asObject(stored);
+  return {
+    colours: oneOf(look.colours, COLOURS, DEFAULT_LOOK.colours),
+    texture: look.texture !== false,
+    relight: look.relight === true,
+    material: DEFAULT_LOOK.material,
+    relief: DEFAULT_LOOK.relief,
+    cavities: look.cavities !== false,
+    shading: oneOf(look.shading, ['smooth', 'flat'], DEFAULT_LOOK.shading),
+    wires: look.wires === true,
+    points: look.points === true,
+    outline: look.outline === true,
+  };
+}
+
+function readKey(stored: unknown): Light['key'] {
+  if (!Array.isArray(stored) || stored.length !== 2) return null;
+  const [right, up] = stored as unknown[];
+  return isAngle(right) && isAngle(up) ? [right, up] : null;
+}
+
+function isAngle(value: unknown): value is number {
+  return typeof value === 'number' && Math.abs(value) <= Math.PI;
+}
+
+export function readLight(stored: unknown): Light {
+  const { name, key } = asObject(stored);
+  const known = oneOf(name, LIGHTS, null);
+  return known === null ? { ...DEFAULT_LIGHT } : { name: known, key: readKey(key) };
+}
+
+export function readStanding(stored: unknown): Standing {
+  const { up, stretch } = asObject(stored);
+  const isStretch = typeof stretch === 'number' && stretch >= 1 && stretch <= MOST_STRETCH;
+  return { up: oneOf(up, UPS, DEFAULT_STANDING.up), stretch: isStretch ? stretch : DEFAULT_STANDING.stretch };
+}
+
+/// How models stand that do not stand as their files say, by their addresses; the last chosen last.
+export type Standings = Record<string, Standing>;
+
+const MOST_STANDINGS = 100;
+
+export function readStandings(stored: unknown): Standings {
+  const entries = Object.entries(asObject(stored)).slice(-MOST_STANDINGS);
+  return Object.fromEntries(entries.map(([url, standing]) => [url, readStanding(standing)]));
+}
+
+export function keepStanding(standings: Standings, url: string, standing: Standing): Standings {
+  const others = Object.entries(standings).filter(([each]) => each !== url);
+  const isDefault = standing.up === DEFAULT_STANDING.up && standing.stretch === DEFAULT_STANDING.stretch;
+  return Object.fromEntries([...others, ...(isDefault ? [] : [[url, standing] as const])].slice(-MOST_STANDINGS));
+}
+
+// ---- in links
+
+const DIGITS = 4;
+const SWITCHES = ['texture', 'relight', 'cavities', 'wires', 'points', 'outline'] as const;
+
+function onOff(is: boolean): string {
+  return is ? 'on' : 'off';
+}
+
+function formatLight({ name, key }: Light): string {
+  return [name, ...(key ?? []).map((angle) => String(Number(angle.toPrecision(DIGITS))))].join(',');
+}
+
+function parseLight(text: string): Light {
+  const [name, ...key] = text.split(',');
+  return readLight({ name, key: key.map(Number) });
+}
+
+/// `name=value` of all that is not as it is without a choice, with & between.
+export function formatChoices({ look, light, standing }: Appearance): string {
+  const choices: string[] = [];
+  const add = (name: string, value: string, otherwise: string): void => { if (value !== otherwise) choices.push(`${name}=${value}`); };
+  add('colours', look.colours, DEFAULT_LOOK.colours);
+  add('shading', look.shading, DEFAULT_LOOK.shading);
+  for (const name of SWITCHES) add(name, onOff(look[name]), onOff(DEFAULT_LOOK[name]));
+  add('light', formatLight(light), formatLight(DEFAULT_LIGHT));
+  add('up', standing.up, DEFAULT_STANDING.up);
+  add('stretch', String(standing.stretch), String(DEFAULT_STANDING.stretch));
+  return choices.join('&');
+}
+
+/// What a link chooses, on top of what is given; a link that chooses anything of look and light chooses all of it.
+export function withChoices(text: string, given: Appearance): Appearance {
+  const choices = new URLSearchParams(text);
+  const standing = { ...given.standing, ...(choices.has('up') || choices.has('stretch') ? readStanding({ up: choices.get('up'), stretch: Number(choices.get('stretch') ?? 1) }) : {}) };
+  if (!['colours', 'shading', 'light', ...SWITCHES].some((name) => choices.has(name))) return { ...given, standing };
+  const switches = Object.fromEntries(SWITCHES.map((name) => [name, oneOf(choices.get(name), ['on', 'off'], onOff(DEFAULT_LOOK[name])) === 'on']));
+  const look = readLook({ ...switches, colours: choices.get('colours'), shading: choices.get('shading') });
+  return { look, light: parseLight(choices.get('light') ?? DEFAULT_LIGHT.name), standing };
+}

@@ -1,0 +1,69 @@
+// Shows a model as it was chosen; what was left to the page is chosen here, by what the model is.
+import type { HierarchyView, Look, Terrain } from '../../src/index.js';
+import { LIGHTS, type Appearance, type Light } from '../appearance.js';
+import { keyOf, turned, type Angles, type Lighting, type Rig } from './lighting.js';
+
+/// Slopes that show well: those of hills are shaded so steep.
+const SHOWN_SLOPE = 0.5;
+const MOST_RELIEF = 1000;
+
+/// What is shown of what was chosen.
+export interface Shown {
+  look: Look;
+  rig: Rig;
+  key: Angles;
+}
+
+type Model = Pick<HierarchyView, 'terrain' | 'hasColours'>;
+
+function rigOf({ name }: Light, terrain: Terrain | null): Rig {
+  if (name === 'matcap') return 'studio';
+  return name === 'auto' ? (terrain === null ? 'studio' : 'sun') : name;
+}
+
+function reliefOf({ slope }: Terrain, stretch: number): number {
+  return Math.min(Math.max(SHOWN_SLOPE / Math.max(slope * stretch, 1e-9), 1), MOST_RELIEF);
+}
+
+/// Terrains without colours of their own are coloured by height, and under the sun their slopes are shaded steeper.
+export function shownOf({ look, light, standing }: Appearance, { terrain, hasColours }: Model): Shown {
+  const rig = rigOf(light, terrain);
+  const colours = look.colours === 'vertex' && terrain !== null && hasColours === false ? 'height' : look.colours;
+  const relief = terrain !== null && rig === 'sun' ? reliefOf(terrain, standing.stretch) : 1;
+  const key = light.key === null ? keyOf(rig) : { right: light.key[0], up: light.key[1] };
+  return { look: { ...look, colours, relief, material: light.name === 'matcap' ? 'matcap' : 'lit' }, rig, key };
+}
+
+function isSame(a: object, b: object): boolean {
+  return JSON.stringify(a) === JSON.stringify(b);
+}
+
+export function nextLight({ name }: Light): Light {
+  return { name: LIGHTS[(LIGHTS.indexOf(name) + 1) % LIGHTS.length], key: null };
+}
+
+export class Presentation {
+  constructor(
+    private readonly view: HierarchyView,
+    private readonly lighting: Lighting,
+    public chosen: Appearance,
+  ) {}
+
+  get shown(): Shown {
+    return shownOf(this.chosen, this.view);
+  }
+
+  /// Also when more is known of the model than before.
+  apply(): void {
+    const { look, rig, key } = this.shown;
+    if (!isSame(look, this.view.look)) this.view.setLook(look);
+    if (!isSame(this.chosen.standing, this.view.standing)) this.view.setStanding(this.chosen.standing);
+    this.lighting.set(rig, key);
+  }
+
+  /// The chosen light, its key turned by radians to the right and up.
+  turnedLight(by: Angles): Light {
+    const { right, up } = turned(this.shown.key, by);
+    return { name: this.chosen.light.name, key: [right, up] };
+  }
+}

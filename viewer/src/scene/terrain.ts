@@ -1,0 +1,67 @@
+// Whether a mesh is a terrain: seen from above, no part of it hides another one.
+import type { Tile } from '../hierarchy/tile.js';
+import type { Vector } from '../cut/viewpoint.js';
+
+export interface Terrain {
+  /// Along the direction that is up, in the tiles' coordinates: what few vertices lie below and above of.
+  readonly low: number;
+  readonly high: number;
+  /// Mean slope: rise over run.
+  readonly slope: number;
+}
+
+/// Part of the surface that may look down: holes that were closed, a skirt.
+const MOST_DOWN = 0.03;
+/// Of the extent across.
+const MOST_HEIGHT = 0.35;
+/// Vertices on each side that do not count: outliers would take all colours.
+const OUTLIERS = 0.01;
+
+function dot(a: Vector, b: Vector): number {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+function vertexOf({ positions }: Tile, vertex: number): Vector {
+  return [positions[3 * vertex], positions[3 * vertex + 1], positions[3 * vertex + 2]];
+}
+
+function minus(a: Vector, b: Vector): Vector {
+  return [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+}
+
+function cross(a: Vector, b: Vector): Vector {
+  return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+}
+
+/// Twice the area of the interior triangles that look up, and down, and of their shadows on the ground.
+function areasOf(tile: Tile, up: Vector): { above: number; below: number; ground: number } {
+  const areas = { above: 0, below: 0, ground: 0 };
+  for (let corner = 0; corner < 3 * tile.interiorCount; corner += 3) {
+    const [a, b, c] = [0, 1, 2].map((k) => vertexOf(tile, tile.indices[corner + k]));
+    const normal = cross(minus(b, a), minus(c, a));
+    const shadow = dot(normal, up);
+    areas[shadow > 0 ? 'above' : 'below'] += Math.hypot(...normal);
+    areas.ground += Math.abs(shadow);
+  }
+  return areas;
+}
+
+/// Between the outliers, of all own vertices; `up`: along an axis, of length 1.
+export function heightsOf(tile: Tile, up: Vector): readonly [number, number] {
+  const heights = Float64Array.from({ length: tile.own }, (_, vertex) => dot(vertexOf(tile, vertex), up)).sort();
+  const outside = Math.floor(OUTLIERS * heights.length);
+  return heights.length === 0 ? [0, 0] : [heights[outside], heights[heights.length - 1 - outside]];
+}
+
+function extentAcross({ box }: Tile, up: Vector): number {
+  return Math.max(...[0, 1, 2].map((axis) => (up[axis] === 0 ? box[axis + 3] - box[axis] : 0)));
+}
+
+/// `root`: all of the mesh. Which way its triangles are wound is of no matter. O(n log n).
+export function terrainOf(root: Tile, up: Vector): Terrain | null {
+  const [low, high] = heightsOf(root, up);
+  const { above, below, ground } = areasOf(root, up);
+  const isFlat = high > low && high - low < MOST_HEIGHT * extentAcross(root, up);
+  if (!isFlat || Math.min(above, below) > MOST_DOWN * (above + below) || ground === 0) return null;
+  return { low, high, slope: Math.sqrt(Math.max(0, ((above + below) / ground) ** 2 - 1)) };
+}

@@ -1,0 +1,54 @@
+import { describe, expect, it } from 'vitest';
+import { DEFAULT_LOOK } from '../../src/scene/settings.js';
+import { DEFAULT_STANDING } from '../../src/scene/standing.js';
+import { DEFAULT_LIGHT, formatChoices, keepStanding, readLight, readStanding, readStandings, withChoices, type Appearance, type Standings } from '../../page/appearance.js';
+
+const PLAIN: Appearance = { look: DEFAULT_LOOK, light: DEFAULT_LIGHT, standing: DEFAULT_STANDING };
+const OTHER: Appearance = {
+  look: { ...DEFAULT_LOOK, colours: 'height', texture: false, relight: true, cavities: false, shading: 'flat', wires: true, points: true, outline: true },
+  light: { name: 'raking', key: [-1.25, 0.5] },
+  standing: { up: '-x', stretch: 12 },
+};
+
+describe('the choices of a link', () => {
+  it('are none where nothing was chosen', () => {
+    expect(formatChoices(PLAIN)).toBe('');
+    expect(withChoices('', OTHER)).toEqual(OTHER);
+  });
+
+  it('come back, whatever the reader has chosen', () => {
+    expect(withChoices(formatChoices(OTHER), PLAIN)).toEqual(OTHER);
+    const one = { ...PLAIN, light: { name: 'flat', key: null } as const };
+    expect(formatChoices(one)).toBe('light=flat');
+    expect(withChoices('light=flat', OTHER)).toEqual({ ...one, standing: OTHER.standing });
+  });
+
+  it('of how it stands leave the look alone', () => {
+    expect(withChoices('up=z', OTHER)).toEqual({ ...OTHER, standing: { up: 'z', stretch: 1 } });
+  });
+
+  it.each(['colours=pink', 'light=', 'light=moon,1,2', 'light=auto,1', 'light=auto,x,y', 'light=auto,1e9,0', 'up=up', 'stretch=0', 'stretch=1e9', 'stretch=x', 'texture', '&&==&'])(
+    'are nothing where they are unsound: %s',
+    (text) => { expect(withChoices(text, PLAIN)).toEqual(PLAIN); },
+  );
+});
+
+describe('what the browser keeps', () => {
+  it('is sound', () => {
+    expect(readLight({ name: 'sun', key: [1, 2] })).toEqual({ name: 'sun', key: [1, 2] });
+    for (const key of [7, [1], [1, 'x'], [1, 2, 3], [NaN, 0], null]) expect(readLight({ name: 'sun', key })).toEqual({ name: 'sun', key: null });
+    expect(readStanding({ up: 'q', stretch: 'x' })).toEqual(DEFAULT_STANDING);
+    expect(readStandings({ a: { up: 'z', stretch: 2 }, b: 7 })).toEqual({ a: { up: 'z', stretch: 2 }, b: DEFAULT_STANDING });
+  });
+
+  it('of how models stand is the last hundred, without those that stand as they are', () => {
+    let standings: Standings = {};
+    for (let i = 0; i < 150; ++i) standings = keepStanding(standings, `m${i}`, { up: 'z', stretch: 1 });
+    expect(Object.keys(standings)).toHaveLength(100);
+    expect(standings.m149).toEqual({ up: 'z', stretch: 1 });
+    standings = keepStanding(standings, 'm149', DEFAULT_STANDING);
+    expect(standings.m149).toBeUndefined();
+    standings = keepStanding(standings, 'm100', { up: 'x', stretch: 1 });
+    expect(Object.keys(standings).at(-1)).toBe('m100');
+  });
+});

@@ -1,0 +1,53 @@
+import { describe, expect, it } from 'vitest';
+import { DEFAULT_LIGHT, LIGHTS, type Appearance, type Light } from '../../page/appearance.js';
+import { keyOf, turned } from '../../page/view/lighting.js';
+import { nextLight, shownOf } from '../../page/view/presentation.js';
+import { DEFAULT_LOOK } from '../../src/scene/settings.js';
+import { DEFAULT_STANDING } from '../../src/scene/standing.js';
+
+const PLAIN: Appearance = { look: DEFAULT_LOOK, light: DEFAULT_LIGHT, standing: DEFAULT_STANDING };
+const HILLS = { terrain: { low: 0, high: 10, slope: 0.05 }, hasColours: false };
+const FORM = { terrain: null, hasColours: false };
+
+describe('what is shown', () => {
+  it('is a terrain by height and under the sun, with slopes that show', () => {
+    expect(shownOf(PLAIN, HILLS)).toMatchObject({ look: { colours: 'height', relief: 10, material: 'lit' }, rig: 'sun', key: keyOf('sun') });
+  });
+
+  it('keeps the colours of a terrain that has some, and those that were chosen', () => {
+    expect(shownOf(PLAIN, { ...HILLS, hasColours: true }).look.colours).toBe('vertex');
+    expect(shownOf({ ...PLAIN, look: { ...DEFAULT_LOOK, colours: 'plain' } }, HILLS).look.colours).toBe('plain');
+  });
+
+  it('counts heights that are stretched already', () => {
+    const relief = (stretch: number): number => shownOf({ ...PLAIN, standing: { up: 'file', stretch } }, HILLS).look.relief;
+    expect(relief(5)).toBe(2);
+    expect(relief(50)).toBe(1);
+  });
+
+  it('is any other form as it is, in a studio', () => {
+    expect(shownOf(PLAIN, FORM)).toEqual({ look: DEFAULT_LOOK, rig: 'studio', key: keyOf('studio') });
+  });
+
+  it.each<[Light, object]>([
+    [{ name: 'studio', key: null }, { rig: 'studio', look: { relief: 1 } }],
+    [{ name: 'matcap', key: null }, { look: { material: 'matcap', relief: 1 } }],
+    [{ name: 'auto', key: [0.1, 0.2] }, { rig: 'sun', key: { right: 0.1, up: 0.2 } }],
+  ])('follows the light that was chosen: %j', (light, shown) => {
+    expect(shownOf({ ...PLAIN, light }, HILLS)).toMatchObject(shown);
+  });
+});
+
+describe('the light', () => {
+  it('comes around to the first', () => {
+    let light: Light = { name: 'auto', key: [1, 1] };
+    const names = LIGHTS.map(() => (light = nextLight(light)).name);
+    expect(names).toEqual([...LIGHTS.slice(1), 'auto']);
+    expect(light.key).toBeNull();
+  });
+
+  it('is turned no further than to where it is of use', () => {
+    expect(turned({ right: 1, up: 1 }, { right: 0.5, up: -3 })).toEqual({ right: 1.5, up: -1.5 });
+    expect(turned({ right: 3, up: 0 }, { right: 9, up: 0 }).right).toBe(Math.PI);
+  });
+});
