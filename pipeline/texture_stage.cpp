@@ -272,7 +272,7 @@ class TextureMaker {
       textures_.put(node, {}, source, {});
       return;
     }
-    const LeafPicture picture(atlas, input_);
+    const LeafPicture picture(atlas, source.corners, input_);
     source.alpha = picture.alpha();
     const images::WrittenImage written = written_as(source.alpha, atlas.width, atlas.height);
     const execution::MemoryGate::Share share = gate_.enter(cut_bytes(written, side_));

@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace meshhier::pipeline {
@@ -20,12 +21,15 @@ struct TexturedInput {
   const images::ImageStore& pictures;
 };
 
-/// Between the pieces of the atlas each block has about the colour of the nearest one of a piece:
-/// smaller pictures that viewers make of it have no black in them.
+/// Blocks of kLeafAlignment * kLeafAlignment texels that triangles and their gutters reach are the
+/// input's. All others, between pieces or in them, have about the colour of the nearest of those:
+/// smaller pictures that viewers make of it have no black in them, and encoders nothing to do.
 class LeafPicture {
  public:
-  /// `atlas`, which has a piece or more, and `input` must outlive it.
-  LeafPicture(const texture::LeafAtlas& atlas, const TexturedInput& input);
+  /// `atlas`, which has a piece or more, and `input` must outlive it. `corners`: of all triangles,
+  /// in the atlas.
+  LeafPicture(const texture::LeafAtlas& atlas, std::span<const texture::CornerTexcoords> corners,
+              const TexturedInput& input);
 
   /// The strongest of the materials that are shown.
   AlphaMode alpha() const { return alpha_; }
@@ -41,15 +45,17 @@ class LeafPicture {
     return input_.materials.materials[piece.material];
   }
   void read_materials();
+  void find_shown(std::span<const texture::CornerTexcoords> corners);
   void paint_background();
-  void paint_block_rows(images::Image& band, std::uint32_t top) const;
   void paint(const texture::AtlasPiece& piece, images::Image& band, std::uint32_t top) const;
+  void cover_rest(images::Image& band, std::uint32_t top) const;
 
   const texture::LeafAtlas& atlas_;
   const TexturedInput& input_;
   AlphaMode alpha_ = AlphaMode::opaque;
   std::vector<std::optional<images::MaterialTexels>> texels_;  ///< of materials with pictures
-  images::Image background_;  ///< a texel for each block of kLeafAlignment * kLeafAlignment
+  images::Image background_;                                   ///< a texel for each block
+  std::vector<std::uint8_t> is_shown_;  ///< of blocks: a triangle or its gutter reaches it
 };
 
 }  // namespace meshhier::pipeline

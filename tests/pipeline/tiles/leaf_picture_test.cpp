@@ -36,6 +36,26 @@ Colour colour_at(const Image& image, std::uint32_t x, std::uint32_t y) {
   return {image.at(x, y)[0], image.at(x, y)[1], image.at(x, y)[2]};
 }
 
+texture::CornerTexcoords triangle(const texture::LeafAtlas& atlas,
+                                  const std::array<std::array<std::uint32_t, 2>, 3>& texels) {
+  texture::CornerTexcoords corners;
+  for (std::size_t k = 0; k < 3; ++k) {
+    corners[k] = {static_cast<float>(texels[k][0]) / static_cast<float>(atlas.width),
+                  static_cast<float>(texels[k][1]) / static_cast<float>(atlas.height)};
+  }
+  return corners;
+}
+
+/// All of the piece but the gutter.
+void add_triangles(const texture::AtlasPiece& piece, texture::LeafAtlas& atlas) {
+  const std::uint32_t left = piece.atlas_x + texture::kLeafGutter;
+  const std::uint32_t top = piece.atlas_y + texture::kLeafGutter;
+  const std::uint32_t right = piece.atlas_x + piece.width - texture::kLeafGutter;
+  const std::uint32_t bottom = piece.atlas_y + piece.height - texture::kLeafGutter;
+  atlas.corners.push_back(triangle(atlas, {{{left, top}, {right, top}, {right, bottom}}}));
+  atlas.corners.push_back(triangle(atlas, {{{left, top}, {right, bottom}, {left, bottom}}}));
+}
+
 class LeafPictureTest : public testing::Test {
  protected:
   /// A material that shows it.
@@ -57,9 +77,14 @@ class LeafPictureTest : public testing::Test {
     materials_.materials.push_back(material);
     return static_cast<std::uint32_t>(materials_.materials.size() - 1);
   }
-  Image painted(const texture::LeafAtlas& atlas) const {
+  Image painted(texture::LeafAtlas atlas) const {
+    for (const texture::AtlasPiece& piece : atlas.pieces)
+      add_triangles(piece, atlas);
+    return painted_for(atlas);
+  }
+  Image painted_for(const texture::LeafAtlas& atlas) const {
     const TexturedInput input{materials_, store_};
-    const LeafPicture leaf(atlas, input);
+    const LeafPicture leaf(atlas, atlas.corners, input);
     Image whole(atlas.width, atlas.height, leaf.channels());
     bands_ = 0;
     for (std::uint32_t top = 0; top < atlas.height; ++bands_) {
@@ -121,6 +146,43 @@ TEST_F(LeafPictureTest, BandsHaveEachTexelOfThePieces) {
                   colour_at(input, static_cast<std::uint32_t>(piece.x) + x,
                             static_cast<std::uint32_t>(piece.y) + y));
     }
+  }
+}
+
+// Charts are no rectangles: what is beside them in the input may be black, or another chart.
+TEST_F(LeafPictureTest, OfAPieceWhatItsTrianglesShowIsKept) {
+  const auto is_beside = [](std::uint32_t x, std::uint32_t y) { return x > y + 12; };
+  const Image input = picture(128, 128, [&](std::uint32_t x, std::uint32_t y) {
+    return is_beside(x, y) ? Colour{} : kRed;
+  });
+  texture::LeafAtlas atlas{128, 128, {}, {}, 1, 0};
+  atlas.pieces = {{add(input), 0, 0, 0, 0, 0, 128, 128}};
+  atlas.corners = {triangle(atlas, {{{4, 4}, {124, 124}, {4, 124}}})};
+  const Image image = painted_for(atlas);
+  for (std::uint32_t y = 0; y < image.height; ++y) {
+    for (std::uint32_t x = 0; x < image.width; ++x) {
+      if (x <= y + 4) {
+        ASSERT_EQ(colour_at(image, x, y), kRed) << x << ", " << y;
+      } else if (x > y + 24) {
+        ASSERT_GT(colour_at(image, x, y)[0], 100) << x << ", " << y;
+      }
+    }
+  }
+}
+
+// It has no texel's middle, and still a bilinear lookup sees texels beside it.
+TEST_F(LeafPictureTest, ThinTrianglesKeepTheirGutter) {
+  const Image input = picture(128, 64, [](std::uint32_t x, std::uint32_t y) {
+    return Colour{static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y), 99};
+  });
+  texture::LeafAtlas atlas{128, 64, {}, {}, 1, 0};
+  atlas.pieces = {{add(input), 0, 0, 0, 0, 0, 128, 64}};
+  atlas.corners = {triangle(atlas, {{{4, 4}, {124, 60}, {64, 32}}})};
+  const Image image = painted_for(atlas);
+  for (std::uint32_t x = 4; x < 124; ++x) {
+    const std::uint32_t middle = 4 + (x - 4) * 56 / 120;
+    for (std::uint32_t y = middle - 4; y < middle + 4; ++y)
+      ASSERT_EQ(colour_at(image, x, y), colour_at(input, x, y)) << x << ", " << y;
   }
 }
 
