@@ -82,7 +82,7 @@ images::MaterialList decode_images(images::ImageStore& pictures, BuildJournal& j
 StageMemory images_memory(const JobSize& job) {
   if (!job.textured)
     return {};
-  const std::uint64_t item = job.decoder_bytes + job.adding_bytes + kPictureCacheBytes;
+  const std::uint64_t item = job.decoder_bytes + job.adding_bytes;
   return {item, 1, item, item};
 }
 

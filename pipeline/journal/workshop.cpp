@@ -52,7 +52,7 @@ Workshop::Workshop(const std::filesystem::path& work, const BuildIdentity& ident
       forest(context.tree(), chunks.level(), layout, tile_scratch,
              context.plan.job.computes_normals),
       textures(context.tree(), tile_scratch),
-      pictures(picture_scratch, kPictureCacheBytes),
+      pictures(picture_scratch, picture_cache_bytes(context.memory().work_bytes)),
       journal(context.files, work, identity, pool.scratch_use(),
               context.plan.textures.is_textured() ? Workpieces{forest, chunks, &textures, &pictures}
                                                   : Workpieces{forest, chunks},

@@ -7,6 +7,7 @@
 #include "pipeline/build.h"
 #include "storage/format/hierarchy_reader.h"
 #include "tests/support/sample_hierarchy.h"
+#include "tests/support/sizes.h"
 #include "tests/support/textured_torus.h"
 
 #include <algorithm>
@@ -38,6 +39,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
+using tests::kMiB;
 using tests::TexturedTorus;
 using tests::TexturedTriangle;
 
@@ -262,6 +264,42 @@ TEST_F(TexturesTest, PartitionsShowTheInputsTexels) {
   EXPECT_THAT(problems(job), IsEmpty());
 }
 
+/// Half as large, as viewers make it.
+Image halved(const Image& image) {
+  Image half((image.width + 1) / 2, (image.height + 1) / 2, image.channels);
+  for (std::uint32_t y = 0; y < half.height; ++y) {
+    for (std::uint32_t x = 0; x < half.width; ++x) {
+      const std::uint32_t right = std::min(2 * x + 1, image.width - 1);
+      const std::uint32_t below = std::min(2 * y + 1, image.height - 1);
+      for (std::uint32_t c = 0; c < image.channels; ++c) {
+        const unsigned sum = image.at(2 * x, 2 * y)[c] + image.at(right, 2 * y)[c] +
+                             image.at(2 * x, below)[c] + image.at(right, below)[c];
+        half.at(x, y)[c] = static_cast<std::uint8_t>(sum / 4);
+      }
+    }
+  }
+  return half;
+}
+
+// Black between charts would darken their borders there.
+TEST_F(TexturesTest, SmallVersionsOfPicturesAreNoDarkerThanTheInput) {
+  constexpr std::uint8_t kDarkest = 28;  // of torus_colour()
+  TexturedTorus torus = tests::make_textured_torus(7, 3);
+  for (Image& picture : torus.pictures)  // between its charts there is black
+    std::ranges::replace_if(
+        picture.texels, [](auto value) { return value < kDarkest; }, kDarkest);
+  const config::Config job = config(write(torus));
+  build(job);
+  for (const BuiltTile& built : tiles(job)) {
+    if (built.record.error > 0)
+      continue;  // simplified
+    for (Image small = built.image; small.width > 1 || small.height > 1; small = halved(small)) {
+      ASSERT_GE(*std::ranges::min_element(small.texels), kDarkest)
+          << built.record.node.index << ": " << small.width << " x " << small.height;
+    }
+  }
+}
+
 double mean_square_error(const BuiltTile& built) {
   double sum = 0;
   std::size_t count = 0;
@@ -336,11 +374,32 @@ std::map<std::string, std::string> files_of(const std::filesystem::path& directo
 
 TEST_F(TexturesTest, ThreadsAndBudgetDecideNothing) {
   config::Config job = config(write(tests::make_textured_torus(6, 3)));
+  for (const ImageFormat format : {ImageFormat::png, ImageFormat::jpeg}) {
+    job.texture.format.format = format;
+    build(job);
+    const auto expected = files_of(job.output);
+    for (const std::uint32_t threads : {1U, 3U}) {
+      config::Config other = job;
+      other.threads = threads;
+      other.memory_budget = threads == 1 ? 136 * kMiB : 2048 * kMiB;
+      build(other);
+      EXPECT_EQ(files_of(job.output), expected) << threads;
+    }
+  }
+}
+
+// Their pictures are painted, reduced and encoded in several bands.
+TEST_F(TexturesTest, ThreadsAndBudgetDecideNothingOfLargePictures) {
+  config::Config job = config(write(tests::make_textured_torus(6, 3, 30)));
+  job.partition.count = 1;
+  job.texture.format.format = ImageFormat::jpeg;
   build(job);
   const auto expected = files_of(job.output);
+  const Image image = tiles(job).front().image;
+  ASSERT_GT(std::uint64_t{image.width} * image.height, kMiB);
   for (const std::uint32_t threads : {1U, 3U}) {
     job.threads = threads;
-    job.memory_budget = threads == 1 ? std::uint64_t{400} << 20 : std::uint64_t{2} << 30;
+    job.memory_budget = threads == 1 ? 96 * kMiB : 2048 * kMiB;
     build(job);
     EXPECT_EQ(files_of(job.output), expected) << threads;
   }
