@@ -1,7 +1,9 @@
 // A model, as large as the window, and all that can be done with it.
 import { Box3, Vector3 } from 'three';
 import { HierarchyProblem, HierarchyView, type Look, type Settings, type Standing, type Stats, type ViewOptions } from '../../src/index.js';
-import { roundedPose, type Pose, type Spot } from '../address.js';
+import type { Manifest } from '../../src/hierarchy/manifest.js';
+import type { PictureSize } from '../../src/tools/screenshot.js';
+import { choiceOf, problemOfPose, roundedPose, type Pose, type Spot } from '../address.js';
 import { COLOURS, formatChoices, keepStanding, readStanding, withChoices, type Appearance, type Light } from '../appearance.js';
 import type { Model } from '../listing.js';
 import { element } from '../parts/element.js';
@@ -52,6 +54,11 @@ export class ModelView {
   readonly root: HTMLElement;
   readonly view: HierarchyView;
   private tools: Tools | null = null;
+  /// As links have them.
+  private notes: string | null = null;
+  private hasNewNotes = false;
+  /// While a picture is taken.
+  private frozen: CameraPose | null = null;
   private readonly stage: Stage;
   private readonly presentation: Presentation;
   private readonly navigation: Navigation;
@@ -76,6 +83,7 @@ export class ModelView {
     private readonly around: Surroundings,
   ) {
     const { fetch, createWorker, preferences: { settings } } = around;
+    this.takeNotes(around.spot);
     this.stage = new Stage();
     this.view = new HierarchyView(model.url, { fetch, createWorker, settings });
     this.presentation = new Presentation(this.view, this.stage.lighting, this.wished(around.spot));
@@ -117,6 +125,7 @@ export class ModelView {
     this.setPose(spot.pose);
     this.presentation.chosen = this.wished(spot);
     this.present();
+    this.takeNotes(spot);
   }
 
   /// What is kept of this browser's wishes, and what a link says instead.
@@ -215,13 +224,13 @@ export class ModelView {
 
   private frame(now: number): Pace {
     if (this.lost !== null) return 'rest';
-    const moved = this.navigation.step(now);
+    const moved = this.frozen === null && this.navigation.step(now);
     if (moved) this.startRest();
     const { framesPerSecond } = this.view.settings;
     const resized = this.stage.fit(this.sharpness.at(now, moved, framesPerSecond));
     // The manifest knows the box better than the root.
     if (this.opened && (resized || !this.framed.equals(this.view.box))) this.reframe();
-    this.stage.aim(CameraPose.from(this.pose()), this.opened ? this.view.box : UNKNOWN);
+    this.stage.aim(this.frozen ?? CameraPose.from(this.pose()), this.opened ? this.view.box : UNKNOWN);
     const news = this.view.update(this.stage.camera, this.stage.size, now);
     if (moved || news || resized || this.dirty) this.draw();
     this.dirty = false;
@@ -229,6 +238,7 @@ export class ModelView {
   }
 
   private draw(): void {
+    if (this.frozen !== null) return; // a picture is being taken: the page's waits
     this.stage.draw();
     this.tools?.drawn();
     if (this.opened && !this.shown) performance.mark(FIRST_PICTURE);
@@ -240,7 +250,7 @@ export class ModelView {
     if (busy && !due) return 'busy';
     const stats = this.view.stats();
     const working = !this.refused && !(stats.settled && this.opened);
-    if (this.view.manifest !== null) this.chrome.tellSource(this.view.manifest);
+    if (this.view.manifest !== null) this.known(this.view.manifest);
     this.reportedAt = now;
     this.chrome.report(stats, this.view.settings.framesPerSecond, working);
     if (busy) return 'busy';
@@ -255,8 +265,13 @@ export class ModelView {
 
   private rest(): void {
     window.clearTimeout(this.restTimer);
-    const pose = this.navigation.atHome ? null : this.pose();
-    this.around.rested({ pose, choices: formatChoices(this.presentation.chosen) });
+    this.around.rested(this.spot());
+  }
+
+  private spot(): Spot {
+    const choices = formatChoices(this.presentation.chosen);
+    const notes = this.notes === null ? '' : `notes=${this.notes}`;
+    return { pose: this.navigation.atHome ? null : this.pose(), choices: [choices, notes].filter((text) => text !== '').join('&') };
   }
 
   /// Kept for other models too; but not how this one stands.
@@ -345,10 +360,48 @@ export class ModelView {
       surface: this.stage.canvas.parentElement!,
       signal: this.ending.signal,
       pose: () => this.navigation.pose,
+      jump: (pose) => { this.navigation.jump(pose); },
+      fly: (pose) => { this.flyTo(pose); },
+      notes: this.notes,
+      setNotes: (notes) => { this.noted(notes); },
+      freeze: (size) => this.freeze(size),
       redraw: () => { this.redraw(); },
       setPainter: (painter) => { this.stage.painter = painter; },
       tell: (message) => this.around.failed(message, { subject: 'tools', retry: null }),
     };
+  }
+
+  private noted(notes: string | null): void {
+    this.notes = notes;
+    this.rest();
+  }
+
+  private takeNotes(spot: Spot): void {
+    this.notes = choiceOf(spot, 'notes');
+    this.hasNewNotes = this.notes !== null && this.tools === null;
+    this.tools?.follow(this.notes);
+  }
+
+  private known(manifest: Manifest): void {
+    this.chrome.tellSource(manifest);
+    if (this.hasNewNotes) void this.useTools('notes');
+    this.hasNewNotes = false;
+  }
+
+  /// Places may be from a file.
+  private flyTo(pose: CameraPose): void {
+    const { position, target } = pose.toPose();
+    if (problemOfPose(position, target) === null) this.navigation.fly(pose);
+  }
+
+  private freeze(size: PictureSize): ReturnType<Bench['freeze']> {
+    const hold = (asked: PictureSize | null): void => {
+      this.frozen = asked && CameraPose.from(this.pose());
+      this.stage.asked = asked;
+      this.redraw();
+    };
+    hold(size);
+    return { draw: this.stage.drawPart, release: () => { hold(null); } };
   }
 
   /// Loads the tools when they are first asked for.
@@ -368,7 +421,7 @@ export class ModelView {
   private shared(): Shared {
     this.rest();
     const { name, url } = this.model;
-    return { page: location.origin + location.pathname, name, url, pose: this.navigation.atHome ? null : this.pose(), choices: formatChoices(this.presentation.chosen) };
+    return { page: location.origin + location.pathname, name, url, ...this.spot() };
   }
 
   private zoomMiddle(logarithm: number): void {
