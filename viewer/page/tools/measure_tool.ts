@@ -68,7 +68,7 @@ export class MeasureTool implements Tool {
   }
 
   private measures(): Measures {
-    return measuresOf(this.points.map(({ point }) => point), this.shop.bench.view.manifest?.up === 'z' ? 2 : 1);
+    return measuresOf(this.points.map(({ point }) => point), this.shop.bench.view.upwards);
   }
 
   private drop(from: number): void {
