@@ -1,9 +1,10 @@
 // Checks the tools of viewer/'s page in headless Chromium: each is used by mouse, touch and keys, on a small model.
 //
-//   node tools.mjs PICTURES PAGE HIERARCHY
+//   node tools.mjs PICTURES PAGE HIERARCHY [CHECK...]
 //
 // PAGE: the directory that `npm run build` of viewer/ makes, dist/page. The hierarchy must be closed, and should have some
-// partitions. The pages of examples/ that use the library's tools are used, too. Pictures go to the directory PICTURES. Exit code 2: wrong use; else see browser.mjs.
+// partitions. The pages of examples/ that use the library's tools are used, too. Pictures go to the directory PICTURES.
+// CHECK: one of the tools, memory, narrow, or examples; all without any. Exit code 2: wrong use; else see browser.mjs.
 import { readFileSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -28,6 +29,7 @@ class Visitor {
 
   async open(options = WIDE) {
     const page = await this.browser.newPage({ reducedMotion: 'reduce', ...options });
+    page.setDefaultTimeout(PATIENCE);
     page.complaints = [];
     page.asked = [];
     page.on('request', (request) => page.asked.push(request.url().replace(`${this.origin}/`, '')));
@@ -222,6 +224,15 @@ async function checkNotes(visitor) {
   await page.reload();
   await page.locator('.tool-overlay text', { hasText: 'crack' }).waitFor({ timeout: PATIENCE });
   visitor.check('notes in the link', true, `${page.url().length} letters`);
+  await page.evaluate(() => { location.hash = location.hash.replace(/&notes=[^&]*/, ''); });
+  await page.locator('.tool-overlay text').waitFor({ state: 'detached' });
+  await page.goBack();
+  await page.locator('.tool-overlay text', { hasText: 'crack' }).waitFor();
+  visitor.check('notes of another link', true, 'the address tells');
+  await page.getByRole('button', { name: 'Share' }).click();
+  const link = await page.getByLabel('Link to this view').inputValue();
+  visitor.check('notes are shared', link === page.url() && link.includes('notes='), link);
+  await page.keyboard.press('Escape');
   await page.locator('.tool-file').setInputFiles({ name: 'bad.json', mimeType: 'application/json', buffer: Buffer.from('{"notes": 1}') });
   await page.locator('.tool-note', { hasText: 'bad.json' }).waitFor();
   await page.locator('.tool-file').setInputFiles(await file.path());
@@ -415,26 +426,23 @@ async function checkExamples(visitor, directory) {
   server.close();
 }
 
-async function checkAll(browser, report, pictures, hierarchy, origin) {
+const CHECKS = {
+  pick: checkPick, measure: checkMeasure, clip: checkClip, notes: checkNotes, camera: checkCamera, memory: checkMemory, narrow: checkNarrow, examples: checkExamples,
+};
+
+async function checkAll(browser, report, { pictures, hierarchy, origin, checks }) {
   const visitor = new Visitor(browser, origin, report, { name: hierarchy.name, pictures });
-  await checkPick(visitor);
-  await checkMeasure(visitor);
-  await checkClip(visitor);
-  await checkNotes(visitor);
-  await checkCamera(visitor);
-  await checkMemory(visitor);
-  await checkNarrow(visitor);
-  await checkExamples(visitor, hierarchy.directory);
+  for (const check of checks) await CHECKS[check](visitor, hierarchy.directory);
 }
 
-async function serveAndCheck(browser, report, [pictures, page, directory]) {
+async function serveAndCheck(browser, report, [pictures, page, directory, ...checks]) {
   const hierarchy = readHierarchy(directory);
-  await withSite(page, [hierarchy], (origin) => checkAll(browser, report, pictures, hierarchy, origin));
+  await withSite(page, [hierarchy], (origin) => checkAll(browser, report, { pictures, hierarchy, origin, checks: checks.length > 0 ? checks : Object.keys(CHECKS) }));
 }
 
 const [pictures, ...others] = process.argv.slice(2);
-if (others.length !== 2) {
-  console.log('usage: node tools.mjs PICTURES PAGE HIERARCHY');
+if (others.length < 2 || !others.slice(2).every((check) => check in CHECKS)) {
+  console.log('usage: node tools.mjs PICTURES PAGE HIERARCHY [CHECK...]');
   process.exit(2);
 }
 process.exit(await inChromium(pictures, (browser, report) => serveAndCheck(browser, report, [pictures, ...others])));

@@ -1,15 +1,14 @@
 // A model, as large as the window, and all that can be done with it.
 import { Box3, Vector3 } from 'three';
 import { HierarchyProblem, HierarchyView, type Look, type Settings, type Standing, type Stats, type ViewOptions } from '../../src/index.js';
-import type { Manifest } from '../../src/hierarchy/manifest.js';
 import type { PictureSize } from '../../src/tools/screenshot.js';
-import { choiceOf, problemOfPose, roundedPose, type Pose, type Spot } from '../address.js';
+import { problemOfPose, roundedPose, type Pose, type Spot } from '../address.js';
 import { COLOURS, formatChoices, keepStanding, readStanding, withChoices, type Appearance, type Light } from '../appearance.js';
 import type { Model } from '../listing.js';
 import { element } from '../parts/element.js';
 import { formatCount } from '../numbers.js';
 import type { Telling } from '../problems.js';
-import type { Bench, ToolName, Tools } from '../tools/bench.js';
+import type { Bench } from '../tools/bench.js';
 import type { Preferences, Theme } from '../preferences.js';
 import type { Shared } from '../share/embed_code.js';
 import { CameraPose } from './camera_pose.js';
@@ -23,6 +22,7 @@ import { Navigation } from './navigation.js';
 import { nextLight, Presentation } from './presentation.js';
 import { Sharpness } from './sharpness.js';
 import { Stage } from './stage.js';
+import { ToolHost } from './tool_host.js';
 import type { Language } from '../words/languages.js';
 import { words } from '../words/words.js';
 import '../style/view.css';
@@ -53,10 +53,11 @@ const UNKNOWN = new Box3(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
 export class ModelView {
   readonly root: HTMLElement;
   readonly view: HierarchyView;
-  private tools: Tools | null = null;
-  /// As links have them.
-  private notes: string | null = null;
-  private hasNewNotes = false;
+  private readonly tools = new ToolHost({
+    bench: () => (this.view.manifest === null ? null : this.bench()),
+    noted: () => { this.rest(); },
+    failed: (retry) => { this.around.failed(words.problems.noCode, { subject: 'tools', retry }); },
+  });
   /// While a picture is taken.
   private frozen: CameraPose | null = null;
   private readonly stage: Stage;
@@ -83,7 +84,7 @@ export class ModelView {
     private readonly around: Surroundings,
   ) {
     const { fetch, createWorker, preferences: { settings } } = around;
-    this.takeNotes(around.spot);
+    this.tools.follow(around.spot);
     this.stage = new Stage();
     this.view = new HierarchyView(model.url, { fetch, createWorker, settings });
     this.presentation = new Presentation(this.view, this.stage.lighting, this.wished(around.spot));
@@ -94,7 +95,7 @@ export class ModelView {
     this.chrome = new Chrome(model, surface, this.orders(), this.ending.signal);
     this.root = this.chrome.root;
     const light = this.lightDrag();
-    new Gestures(surface, this.navigation, (right, up) => this.tools?.tapped(right, up) ?? false, (right, up) => light.drag(right, up));
+    new Gestures(surface, this.navigation, (right, up) => this.tools.tapped(right, up), (right, up) => light.drag(right, up));
     listenToKeys(this.commands(light), this.ending.signal);
     this.listen();
   }
@@ -125,7 +126,7 @@ export class ModelView {
     this.setPose(spot.pose);
     this.presentation.chosen = this.wished(spot);
     this.present();
-    this.takeNotes(spot);
+    this.tools.follow(spot);
   }
 
   /// What is kept of this browser's wishes, and what a link says instead.
@@ -240,7 +241,7 @@ export class ModelView {
   private draw(): void {
     if (this.frozen !== null) return; // a picture is being taken: the page's waits
     this.stage.draw();
-    this.tools?.drawn();
+    this.tools.drawn();
     if (this.opened && !this.shown) performance.mark(FIRST_PICTURE);
     this.shown = this.opened;
   }
@@ -250,7 +251,10 @@ export class ModelView {
     if (busy && !due) return 'busy';
     const stats = this.view.stats();
     const working = !this.refused && !(stats.settled && this.opened);
-    if (this.view.manifest !== null) this.known(this.view.manifest);
+    if (this.view.manifest !== null) {
+      this.chrome.tellSource(this.view.manifest);
+      this.tools.showNews();
+    }
     this.reportedAt = now;
     this.chrome.report(stats, this.view.settings.framesPerSecond, working);
     if (busy) return 'busy';
@@ -270,7 +274,7 @@ export class ModelView {
 
   private spot(): Spot {
     const choices = formatChoices(this.presentation.chosen);
-    const notes = this.notes === null ? '' : `notes=${this.notes}`;
+    const notes = this.tools.notes === null ? '' : `notes=${this.tools.notes}`;
     return { pose: this.navigation.atHome ? null : this.pose(), choices: [choices, notes].filter((text) => text !== '').join('&') };
   }
 
@@ -339,7 +343,7 @@ export class ModelView {
       back: this.around.leave === null ? null : this.back,
       home: () => { this.navigation.goHome(); },
       zoom: (logarithm) => { this.zoomMiddle(logarithm); },
-      tools: () => void this.useTools(null),
+      tools: () => void this.tools.use(null),
       panelShown: (open) => { this.panelShown(open); },
       shared: () => this.shared(),
       look: (look) => { this.choose({ look }); },
@@ -351,7 +355,7 @@ export class ModelView {
     };
   }
 
-  private bench(): Bench {
+  private bench(): Omit<Bench, 'notes' | 'setNotes'> {
     return {
       name: this.model.name,
       view: this.view,
@@ -362,30 +366,11 @@ export class ModelView {
       pose: () => this.navigation.pose,
       jump: (pose) => { this.navigation.jump(pose); },
       fly: (pose) => { this.flyTo(pose); },
-      notes: this.notes,
-      setNotes: (notes) => { this.noted(notes); },
       freeze: (size) => this.freeze(size),
       redraw: () => { this.redraw(); },
       setPainter: (painter) => { this.stage.painter = painter; },
       tell: (message) => this.around.failed(message, { subject: 'tools', retry: null }),
     };
-  }
-
-  private noted(notes: string | null): void {
-    this.notes = notes;
-    this.rest();
-  }
-
-  private takeNotes(spot: Spot): void {
-    this.notes = choiceOf(spot, 'notes');
-    this.hasNewNotes = this.notes !== null && this.tools === null;
-    this.tools?.follow(this.notes);
-  }
-
-  private known(manifest: Manifest): void {
-    this.chrome.tellSource(manifest);
-    if (this.hasNewNotes) void this.useTools('notes');
-    this.hasNewNotes = false;
   }
 
   /// Places may be from a file.
@@ -402,19 +387,6 @@ export class ModelView {
     };
     hold(size);
     return { draw: this.stage.drawPart, release: () => { hold(null); } };
-  }
-
-  /// Loads the tools when they are first asked for.
-  private async useTools(name: ToolName | null): Promise<void> {
-    if (this.view.manifest === null) return; // nothing is known of the model yet
-    try {
-      const { Toolbox } = await import('../tools/toolbox.js');
-      if (this.closed) return;
-      this.tools ??= new Toolbox(this.bench());
-      this.tools.toggle(name);
-    } catch {
-      this.around.failed(words.problems.noCode, { subject: 'tools', retry: () => void this.useTools(name) });
-    }
   }
 
   /// The address tells of the camera as it is, even before it has come to rest.
@@ -435,8 +407,8 @@ export class ModelView {
       nextLight: () => { this.choose({ light: nextLight(this.presentation.chosen.light) }); },
       move: (moves) => { this.moveByKey(moves); },
       home: () => { this.navigation.goHome(); },
-      back: () => { if (!this.chrome.sheets.closeAside() && this.tools?.back() !== true) this.back(); },
-      tool: (name) => void this.useTools(name),
+      back: () => { if (!this.chrome.sheets.closeAside() && !this.tools.back()) this.back(); },
+      tool: (name) => void this.tools.use(name),
       colours: (number) => { this.choose({ look: { colours: COLOURS[number] } }); },
       toggle: (what) => { this.toggle(what); },
     };
