@@ -1,10 +1,11 @@
 // Checks the tools of viewer/'s page in headless Chromium: each is used by mouse, touch and keys, on a small model.
 //
-//   node tools.mjs PICTURES PAGE HIERARCHY
+//   node tools.mjs PICTURES PAGE HIERARCHY [CHECK...]
 //
 // PAGE: the directory that `npm run build` of viewer/ makes, dist/page. The hierarchy must be closed, and should have some
-// partitions. The pages of examples/ that use the library's tools are used, too. Pictures go to the directory PICTURES. Exit code 2: wrong use; else see browser.mjs.
-import { readFileSync } from 'node:fs';
+// partitions. The pages of examples/ that use the library's tools are used, too. Pictures go to the directory PICTURES.
+// CHECK: one of the tools, memory, narrow, or examples; all without any. Exit code 2: wrong use; else see browser.mjs.
+import { readFileSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { collectComplaints, inChromium, readHierarchy } from './browser.mjs';
@@ -28,6 +29,7 @@ class Visitor {
 
   async open(options = WIDE) {
     const page = await this.browser.newPage({ reducedMotion: 'reduce', ...options });
+    page.setDefaultTimeout(PATIENCE);
     page.complaints = [];
     page.asked = [];
     page.on('request', (request) => page.asked.push(request.url().replace(`${this.origin}/`, '')));
@@ -99,6 +101,7 @@ async function checkPick(visitor) {
   await page.keyboard.press('v');
   await page.locator('.tool-note', { hasText: 'exact to the bit' }).waitFor();
   const snapped = await figuresOf(page);
+  await settle(page);
   const isFloat = ['x', 'y', 'z'].every((axis) => Math.fround(Number(snapped[axis])) === Number(snapped[axis]));
   visitor.check('pick a vertex', isFloat && free.x !== snapped.x, `${snapped.x}, ${snapped.y}, ${snapped.z}`);
   visitor.check('pick marks it', (await page.locator('.tool-overlay circle').count()) === 1, 'one point');
@@ -121,6 +124,7 @@ async function checkMeasure(visitor) {
   await page.keyboard.press('m');
   await page.locator('.tool-card', { hasText: 'Measure' }).waitFor();
   for (const up of [0, 80, 160]) await page.mouse.click(x, y - up);
+  await settle(page);
   const figures = await figuresOf(page);
   const number = (text) => Number.parseFloat(text);
   const [length, straight] = [number(figures.Length), number(figures.Straight)];
@@ -202,6 +206,136 @@ async function checkSection(visitor, page) {
   visitor.check('section', isGood, `${paths.length} closed lines, ${width.toFixed(3)} x ${height.toFixed(3)}, ${file.suggestedFilename()}`);
 }
 
+async function checkNotes(visitor) {
+  const page = await visitor.open();
+  const { x, y } = await placeOnModel(page);
+  await page.keyboard.press('n');
+  await page.locator('.tool-card', { hasText: 'Notes' }).waitFor();
+  await page.mouse.click(x, y);
+  await page.locator('.tool-list input').fill('a <b>crack</b>');
+  await page.locator('.tool-list input').press('Enter');
+  await page.waitForFunction(() => location.hash.includes('notes='));
+  await settle(page);
+  visitor.check('note', (await page.locator('.tool-overlay text').innerHTML()) === 'a &lt;b&gt;crack&lt;/b&gt;', 'its text at its point');
+  const [file] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Save as a file' }).click()]);
+  const saved = JSON.parse(readFileSync(await file.path(), 'utf8'));
+  visitor.check('notes saved', saved.notes.length === 1 && saved.notes[0].text === 'a <b>crack</b>' && saved.notes[0].at.length === 3, JSON.stringify(saved.notes));
+  await page.waitForTimeout(500); // the camera has come to rest
+  await page.reload();
+  await page.locator('.tool-overlay text', { hasText: 'crack' }).waitFor({ timeout: PATIENCE });
+  visitor.check('notes in the link', true, `${page.url().length} letters`);
+  await page.evaluate(() => { location.hash = location.hash.replace(/&notes=[^&]*/, ''); });
+  await page.locator('.tool-overlay text').waitFor({ state: 'detached' });
+  await page.goBack();
+  await page.locator('.tool-overlay text', { hasText: 'crack' }).waitFor();
+  visitor.check('notes of another link', true, 'the address tells');
+  await page.getByRole('button', { name: 'Share' }).click();
+  const link = await page.getByLabel('Link to this view').inputValue();
+  visitor.check('notes are shared', link === page.url() && link.includes('notes='), link);
+  await page.keyboard.press('Escape');
+  await page.locator('.tool-file').setInputFiles({ name: 'bad.json', mimeType: 'application/json', buffer: Buffer.from('{"notes": 1}') });
+  await page.locator('.tool-note', { hasText: 'bad.json' }).waitFor();
+  await page.locator('.tool-file').setInputFiles(await file.path());
+  await page.locator('.tool-list li').nth(1).waitFor();
+  await page.getByRole('button', { name: 'Go to Note 2' }).click();
+  await settle(page);
+  await page.getByRole('button', { name: 'Remove Note 2' }).click();
+  await page.getByRole('button', { name: 'Remove Note 1' }).click();
+  await page.waitForFunction(() => !location.hash.includes('notes='));
+  visitor.check('notes loaded and removed', (await page.locator('.tool-list li').count()) === 0, 'none is left');
+  await visitor.picture(page, 'notes');
+  await visitor.close(page, 'notes');
+}
+
+async function checkCamera(visitor) {
+  const page = await visitor.open();
+  await openTool(page, 'Camera and pictures');
+  await page.locator('.surface').focus();
+  await page.keyboard.press('b');
+  const before = await page.evaluate(() => window.meshhier.camera());
+  await page.getByRole('button', { name: 'Look from top' }).dispatchEvent('click');
+  await settle(page);
+  const above = await page.evaluate(() => window.meshhier.camera());
+  visitor.check('cube', above.position[1] - above.target[1] > 0.99 * Math.hypot(...above.position.map((value, axis) => value - above.target[axis])), 'from the top');
+  await visitor.picture(page, 'camera');
+  await page.getByRole('button', { name: 'Go to View 1' }).click();
+  await settle(page);
+  const again = await page.evaluate(() => window.meshhier.camera());
+  visitor.check('bookmark', JSON.stringify(again) === JSON.stringify(before), 'the same camera');
+  await page.keyboard.press('r');
+  await settle(page);
+  const stepped = await page.evaluate(() => window.meshhier.camera());
+  await page.waitForTimeout(300);
+  const rests = await page.evaluate(() => window.meshhier.camera());
+  visitor.check('turntable with less motion', JSON.stringify(stepped) !== JSON.stringify(again) && JSON.stringify(stepped) === JSON.stringify(rests), 'a step, and rest');
+  await checkShot(visitor, page);
+  await visitor.close(page, 'camera');
+  const moving = await visitor.open({ ...WIDE, reducedMotion: 'no-preference' });
+  await openTool(moving, 'Camera and pictures');
+  await moving.locator('.surface').focus();
+  await moving.keyboard.press('r');
+  const positionOf = () => moving.evaluate(() => window.meshhier.camera().position.join());
+  const turned = async () => moving.waitForFunction((before) => window.meshhier.camera().position.join() !== before, await positionOf(), { timeout: PATIENCE });
+  for (let i = 0; i < 3; ++i) await turned();
+  await moving.keyboard.press('Escape');
+  await moving.keyboard.press('Escape'); // the tools are closed: it goes on
+  await turned();
+  await moving.mouse.click(MIDDLE.x, MIDDLE.y);
+  await settle(moving);
+  const stands = await positionOf();
+  await moving.waitForTimeout(300);
+  visitor.check('turntable', (await positionOf()) === stands, 'turns until it is touched');
+  await visitor.close(moving, 'turntable');
+}
+
+/// Larger than the window and than a part of it is drawn at once.
+async function checkShot(visitor, page) {
+  await page.getByLabel('Width, pixels').fill('1500');
+  await page.getByLabel('Height, pixels').fill('1100');
+  const [file] = await Promise.all([page.waitForEvent('download', { timeout: PATIENCE }), page.getByRole('button', { name: 'Save a picture' }).click()]);
+  const bytes = readFileSync(await file.path());
+  writeFileSync(path.join(visitor.pictures, 'tools-shot.png'), bytes);
+  const { width, height, seam, covered } = await page.evaluate(async (data) => {
+    const bitmap = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
+    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d', { willReadFrequently: true });
+    context.drawImage(bitmap, 0, 0);
+    const brightness = (x, y) => context.getImageData(x, y, 1, 1).data.slice(0, 3).reduce((a, b) => a + b, 0);
+    const rows = Array.from({ length: 100 }, (_, i) => Math.floor((i * bitmap.height) / 100));
+    const step = (x) => rows.reduce((sum, y) => sum + Math.abs(brightness(x, y) - brightness(x + 1, y)), 0) / rows.length;
+    return { width: bitmap.width, height: bitmap.height, seam: step(1023) / Math.max(3, step(1010), step(1040)), covered: rows.filter((y) => brightness(750, y) < 740).length };
+  }, bytes.toString('base64'));
+  visitor.check('picture', width === 1500 && height === 1100 && seam < 3 && covered > 10, `${width} x ${height}, ${covered} % of a column covered, seam ${seam.toFixed(2)}`);
+  await settle(page);
+  visitor.check('picture leaves the page as it was', (await page.evaluate(() => document.querySelector('canvas').width)) === WIDE.viewport.width, 'the canvas has its size');
+}
+
+/// Each tool, over and over: what is kept of it does not grow.
+async function checkMemory(visitor) {
+  const page = await visitor.open();
+  const { x, y } = await placeOnModel(page);
+  const round = async () => {
+    for (const key of ['i', 'm', 'x', 'n', 'k']) {
+      await page.keyboard.press(key);
+      await page.locator('.tool-card').waitFor();
+      if (key === 'i' || key === 'm') for (const aside of [0, 20]) await page.mouse.click(x, y - aside);
+      await settle(page);
+      await page.locator('.surface').focus();
+      for (let back = 0; key === 'm' && back < 2; ++back) await page.keyboard.press('Backspace');
+      await page.keyboard.press('Escape');
+    }
+  };
+  const used = () => page.evaluate(() => {
+    window.gc();
+    return performance.memory.usedJSHeapSize;
+  });
+  for (let i = 0; i < 3; ++i) await round();
+  const before = await used();
+  for (let i = 0; i < 6; ++i) await round();
+  const after = await used();
+  visitor.check('memory', after - before < 2e6, `${((after - before) / 1e6).toFixed(2)} MB more after six rounds`);
+  await visitor.close(page, 'memory');
+}
+
 async function checkNarrow(visitor) {
   const page = await visitor.open(NARROW);
   const { x, y } = await placeOnModel(page);
@@ -211,7 +345,7 @@ async function checkNarrow(visitor) {
   await page.touchscreen.tap(x, y - 60);
   await page.locator('.tool-figures', { hasText: 'the original' }).waitFor();
   const small = await page.evaluate((least) => [...document.querySelectorAll('.tools button, .tools label.check, .tools select')]
-    .filter((one) => one.checkVisibility() && !one.closest('[hidden]'))
+    .filter((one) => one.checkVisibility() && !one.closest('[hidden], .cube')) // a cube's faces are as they are turned
     .filter((one) => { const { width, height } = one.getBoundingClientRect(); return width < least || height < least; })
     .map((one) => one.getAttribute('aria-label') ?? one.textContent), LEAST_TARGET);
   visitor.check('by touch', small.length === 0, small.join(', ') || 'a point, and targets of 40 pixels');
@@ -254,6 +388,18 @@ async function checkSectionExample(visitor, server) {
   await page.close();
 }
 
+async function checkPictureExample(visitor, server) {
+  const page = await openExample(visitor.browser, server, 'picture');
+  await page.locator('canvas').waitFor();
+  await page.locator('#message').waitFor({ state: 'hidden' });
+  await page.waitForTimeout(1000); // it turns
+  const [file] = await Promise.all([page.waitForEvent('download', { timeout: PATIENCE }), page.mouse.click(MIDDLE.x, MIDDLE.y)]);
+  const bytes = readFileSync(await file.path());
+  const [width, height] = [bytes.readUInt32BE(16), bytes.readUInt32BE(20)];
+  visitor.check('example picture', width === 6000 && height === 4000 && page.complaints.length === 0, `${width} x ${height}, ${bytes.length} bytes ${page.complaints.join('; ')}`);
+  await page.close();
+}
+
 /// Clicks at a place, and nearer and nearer to the middle, until it is enough.
 async function clickUntil(page, { x, y }, isEnough) {
   for (let part = 1; part > 0; part -= 0.1) {
@@ -276,26 +422,27 @@ async function checkExamples(visitor, directory) {
   });
   await checkPickExample(visitor, server);
   await checkSectionExample(visitor, server);
+  await checkPictureExample(visitor, server);
   server.close();
 }
 
-async function checkAll(browser, report, pictures, hierarchy, origin) {
+const CHECKS = {
+  pick: checkPick, measure: checkMeasure, clip: checkClip, notes: checkNotes, camera: checkCamera, memory: checkMemory, narrow: checkNarrow, examples: checkExamples,
+};
+
+async function checkAll(browser, report, { pictures, hierarchy, origin, checks }) {
   const visitor = new Visitor(browser, origin, report, { name: hierarchy.name, pictures });
-  await checkPick(visitor);
-  await checkMeasure(visitor);
-  await checkClip(visitor);
-  await checkNarrow(visitor);
-  await checkExamples(visitor, hierarchy.directory);
+  for (const check of checks) await CHECKS[check](visitor, hierarchy.directory);
 }
 
-async function serveAndCheck(browser, report, [pictures, page, directory]) {
+async function serveAndCheck(browser, report, [pictures, page, directory, ...checks]) {
   const hierarchy = readHierarchy(directory);
-  await withSite(page, [hierarchy], (origin) => checkAll(browser, report, pictures, hierarchy, origin));
+  await withSite(page, [hierarchy], (origin) => checkAll(browser, report, { pictures, hierarchy, origin, checks: checks.length > 0 ? checks : Object.keys(CHECKS) }));
 }
 
 const [pictures, ...others] = process.argv.slice(2);
-if (others.length !== 2) {
-  console.log('usage: node tools.mjs PICTURES PAGE HIERARCHY');
+if (others.length < 2 || !others.slice(2).every((check) => check in CHECKS)) {
+  console.log('usage: node tools.mjs PICTURES PAGE HIERARCHY [CHECK...]');
   process.exit(2);
 }
 process.exit(await inChromium(pictures, (browser, report) => serveAndCheck(browser, report, [pictures, ...others])));

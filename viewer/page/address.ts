@@ -21,6 +21,11 @@ export interface Address extends Spot {
   path: string;
 }
 
+/// What a choice of that name is; null: it is not among them.
+export function choiceOf({ choices }: Spot, name: string): string | null {
+  return new URLSearchParams(choices).get(name);
+}
+
 export const NOWHERE: Spot = { pose: null, choices: '' };
 
 const DIGITS = 12;

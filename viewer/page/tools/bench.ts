@@ -1,10 +1,11 @@
 // What the tools need of the view, and the view of the tools.
 import type { PerspectiveCamera } from 'three';
 import type { HierarchyView } from '../../src/index.js';
+import type { DrawPart, PictureSize } from '../../src/tools/screenshot.js';
 import type { CameraPose } from '../view/camera_pose.js';
 import type { Painter } from '../view/stage.js';
 
-export type ToolName = 'pick' | 'measure' | 'clip';
+export type ToolName = 'pick' | 'measure' | 'clip' | 'notes' | 'camera';
 
 export interface Bench {
   readonly name: string;
@@ -17,6 +18,14 @@ export interface Bench {
   /// Aborts with the view.
   readonly signal: AbortSignal;
   pose(): CameraPose;
+  /// At once, or on a way that is seen unless less motion is asked for, and only to where a camera can stand.
+  jump(pose: CameraPose): void;
+  fly(pose: CameraPose): void;
+  /// What the address has of notes; null takes it away.
+  readonly notes: string | null;
+  setNotes(notes: string | null): void;
+  /// From now on the camera stands, the view refines for a picture of that size, and the page shows what it shows, until it is released.
+  freeze(size: PictureSize): { readonly draw: DrawPart; release(): void };
   redraw(): void;
   /// Draws instead of the view, until null is given.
   setPainter(painter: Painter | null): void;
@@ -34,4 +43,6 @@ export interface Tools {
   drawn(): void;
   /// Puts away the tool, then the bar. False: nothing is there.
   back(): boolean;
+  /// Another link is followed, with these notes.
+  follow(notes: string | null): void;
 }

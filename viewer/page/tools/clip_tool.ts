@@ -1,9 +1,9 @@
 // Cuts the model open by a plane or a box, and draws the section.
 import { Coordinates } from '../../src/tools/coordinates.js';
-import { boxPlanes, flipped, isKept, type CutPlane } from '../../src/tools/planes.js';
+import { boxPlanes, flipped, isKept, localNormal, type CutPlane } from '../../src/tools/planes.js';
 import { lengthOf, sectionOf } from '../../src/tools/section.js';
 import { drawingAxes, sectionSvg } from '../../src/tools/section_svg.js';
-import { dot, unit, type Vector } from '../../src/tools/vectors.js';
+import { dot, type Vector } from '../../src/tools/vectors.js';
 import { checkbox, choice, slider, type Control } from '../parts/controls.js';
 import { element } from '../parts/element.js';
 import { CutPainter } from './cut_painter.js';
@@ -120,7 +120,8 @@ export class ClipTool implements Tool {
   }
 
   private viewDirection(): Vector {
-    return unit(this.coordinates.fromUpright(this.shop.bench.pose().forward.toArray()));
+    const { bench } = this.shop;
+    return localNormal(bench.pose().forward.toArray(), bench.view.surfaceMatrix);
   }
 
   /// In the input's coordinates.
@@ -160,7 +161,7 @@ export class ClipTool implements Tool {
     const told = words.clip.section(bench.name, String(lines.length), length);
     const levels = view.surface.map(({ node }) => node.level);
     const from = words.clip.levels(String(Math.min(...levels)), String(Math.max(...levels)), String(view.source!.tree.lastLevel));
-    const axes = drawingAxes(this.normal, view.manifest!.up === 'z' ? 2 : 1);
+    const axes = drawingAxes(this.normal, view.upwards);
     download(new Blob([sectionSvg(lines, { axes, unit: settings.modelUnit, title: `${told}; ${from}` })], { type: 'image/svg+xml' }), `${bench.name}-section.svg`);
     this.note.textContent = told;
   }

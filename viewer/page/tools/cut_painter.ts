@@ -7,6 +7,7 @@ import type { Painter } from '../view/stage.js';
 
 export class CutPainter implements Painter {
   private readonly clipped: ClippedPainter;
+  private planes: readonly CutPlane[] = [];
 
   constructor(private readonly view: HierarchyView) {
     this.clipped = new ClippedPainter(view, () => {
@@ -17,11 +18,13 @@ export class CutPainter implements Painter {
 
   /// In the tiles' coordinates.
   set(planes: readonly CutPlane[], isCapped: boolean): void {
-    this.clipped.planes = planes.map((plane) => worldPlane(plane, this.view.surfaceMatrix));
+    this.planes = planes;
     this.clipped.isCapped = isCapped;
   }
 
+  /// However the model stands now.
   paint(renderer: WebGLRenderer, scene: Scene, camera: PerspectiveCamera): void {
+    this.clipped.planes = this.planes.map((plane) => worldPlane(plane, this.view.surfaceMatrix));
     this.clipped.paint(renderer, scene, camera);
   }
 

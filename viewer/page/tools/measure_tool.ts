@@ -4,6 +4,7 @@ import type { PickedPoint } from '../../src/tools/picked_point.js';
 import { checkbox } from '../parts/controls.js';
 import { element } from '../parts/element.js';
 import { figureList, figures, textButton } from './figures.js';
+import { INNER_KEYS, isKey } from './keys.js';
 import type { Mark } from './overlay.js';
 import type { Tool } from './tool.js';
 import { unitsForm } from './units_form.js';
@@ -11,13 +12,12 @@ import { words } from './words/words.js';
 import type { Workshop } from './workshop.js';
 
 const MOST_POINTS = 500;
-const SNAP_KEY = 'V';
 
 export class MeasureTool implements Tool {
   readonly root: HTMLElement;
   private readonly list = figureList();
   private readonly clear = textButton(words.measure.clear, () => { this.drop(0); });
-  private readonly snap = checkbox(words.pick.snap, SNAP_KEY, (on) => { this.setSnap(on); });
+  private readonly snap = checkbox(words.pick.snap, INNER_KEYS.snap, (on) => { this.setSnap(on); });
   private points: PickedPoint[] = [];
   private readonly ending = new AbortController();
 
@@ -39,7 +39,7 @@ export class MeasureTool implements Tool {
 
   key(key: string): boolean {
     if (key === 'Delete') this.drop(0);
-    else if (key.toUpperCase() === SNAP_KEY) this.setSnap(!this.shop.settings.snaps);
+    else if (isKey(key, 'snap')) this.setSnap(!this.shop.settings.snaps);
     else return false;
     return true;
   }
@@ -68,7 +68,7 @@ export class MeasureTool implements Tool {
   }
 
   private measures(): Measures {
-    return measuresOf(this.points.map(({ point }) => point), this.shop.bench.view.manifest?.up === 'z' ? 2 : 1);
+    return measuresOf(this.points.map(({ point }) => point), this.shop.bench.view.upwards);
   }
 
   private drop(from: number): void {

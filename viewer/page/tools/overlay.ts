@@ -51,8 +51,8 @@ export class Overlay {
   }
 
   private point(clip: Vector4, text: string | undefined): void {
-    if (clip.w <= 0) return;
     const { x, y } = this.placeOf(clip);
+    if (clip.w <= 0 || !Number.isFinite(x + y)) return; // notes may be anywhere
     make('circle', this.root, { cx: x, cy: y, r: POINT_RADIUS });
     this.text({ x: x + TEXT_OFF, y: y - TEXT_OFF }, text);
   }

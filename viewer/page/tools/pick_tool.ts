@@ -3,12 +3,12 @@ import type { PickedPoint } from '../../src/tools/picked_point.js';
 import { checkbox } from '../parts/controls.js';
 import { element } from '../parts/element.js';
 import { figureList, figures, textButton } from './figures.js';
+import { INNER_KEYS, isKey } from './keys.js';
 import type { Mark } from './overlay.js';
 import type { Tool } from './tool.js';
 import { words } from './words/words.js';
 import type { Workshop } from './workshop.js';
 
-const SNAP_KEY = 'V';
 const NORMAL_DIGITS = 5;
 const DEGREE_DIGITS = 9;
 
@@ -45,7 +45,7 @@ export class PickTool implements Tool {
   readonly root: HTMLElement;
   private readonly list = figureList();
   private readonly note = element('p', { class: 'tool-note' }, words.pick.hint);
-  private readonly snap = checkbox(words.pick.snap, SNAP_KEY, (on) => { this.setSnap(on); });
+  private readonly snap = checkbox(words.pick.snap, INNER_KEYS.snap, (on) => { this.setSnap(on); });
   private readonly copy = textButton(words.pick.copy, () => void this.copyPoint());
   private picked: PickedPoint | null = null;
   private place: readonly [number, number] | null = null;
@@ -63,7 +63,7 @@ export class PickTool implements Tool {
   }
 
   key(key: string): boolean {
-    if (key.toUpperCase() !== SNAP_KEY) return false;
+    if (!isKey(key, 'snap')) return false;
     this.setSnap(!this.shop.settings.snaps);
     return true;
   }

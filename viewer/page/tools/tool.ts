@@ -11,6 +11,8 @@ export interface Tool {
   /// One step back. False: there is none.
   undo?(): boolean;
   marks?(): readonly Mark[];
+  /// After each frame.
+  drawn?(): void;
   /// It is put away.
   close?(): void;
 }

@@ -4,13 +4,16 @@ import { LengthScale, unitOfMetres } from '../../src/tools/units.js';
 import { element, iconButton } from '../parts/element.js';
 import { ICONS } from '../parts/icons.js';
 import type { Bench, ToolName, Tools } from './bench.js';
+import { Cube } from './cube.js';
 import { TOOL_ICONS } from './icons.js';
 import { TOOL_KEYS } from './keys.js';
+import { NotebookStore } from './notebook.js';
 import { Overlay } from './overlay.js';
 import { Pointing } from './pointing.js';
 import { ScaleLine } from './scale_line.js';
 import { loadToolSettings, saveToolSettings } from './tool_settings.js';
 import type { Tool } from './tool.js';
+import { isTaken } from '../view/keys.js';
 import { words as pageWords } from '../words/words.js';
 import { words } from './words/words.js';
 import type { Workshop } from './workshop.js';
@@ -22,6 +25,8 @@ const LOADS: Readonly<Record<ToolName, Load>> = {
   pick: () => import('./pick_tool.js'),
   measure: () => import('./measure_tool.js'),
   clip: () => import('./clip_tool.js'),
+  notes: () => import('./notes_tool.js'),
+  camera: () => import('./camera_tool.js'),
 };
 const NAMES = Object.keys(LOADS) as readonly ToolName[];
 
@@ -32,6 +37,7 @@ function makeShop(bench: Bench): Workshop {
     bench,
     pointing: new Pointing(bench),
     settings,
+    notebook: new NotebookStore(bench.notes, (notes) => { bench.setNotes(notes); }),
     scale: () => new LengthScale(settings.modelUnit, settings.shownUnit, words.units.unit),
     chosen: () => {
       saveToolSettings(settings);
@@ -44,6 +50,7 @@ export class Toolbox implements Tools {
   private readonly shop: Workshop;
   private readonly overlay = new Overlay();
   private readonly scaleLine: ScaleLine;
+  private readonly cube: Cube;
   private readonly bar: HTMLElement;
   private readonly buttons: Readonly<Record<ToolName, HTMLButtonElement>>;
   private readonly title = element('h2', {});
@@ -57,12 +64,13 @@ export class Toolbox implements Tools {
   constructor(private readonly bench: Bench) {
     this.shop = makeShop(bench);
     this.scaleLine = new ScaleLine(this.shop);
+    this.cube = new Cube(bench);
     const entries = NAMES.map((name) => [name, this.makeButton(name)] as const);
     this.buttons = Object.fromEntries(entries) as Record<ToolName, HTMLButtonElement>;
     this.bar = element('div', { class: 'bar tool-bar', role: 'toolbar', 'aria-label': words.title, 'aria-orientation': 'vertical' }, ...entries.map(([, button]) => button));
     const close = iconButton(words.close(words.title), ICONS.close, () => { this.put(null); });
     this.card = element('section', { class: 'tool-card', hidden: true }, element('div', { class: 'sheet-head' }, this.title, close), this.body);
-    this.root = element('div', { class: 'tools', hidden: true }, this.cross, this.bar, this.card, this.scaleLine.root);
+    this.root = element('div', { class: 'tools', hidden: true }, this.cross, this.bar, this.card, this.cube.root, this.scaleLine.root);
     bench.root.append(this.overlay.root, this.root);
     // Ahead of the view: what a tool takes is taken.
     window.addEventListener('keydown', (event) => { this.keyed(event); }, { signal: bench.signal, capture: true });
@@ -82,10 +90,12 @@ export class Toolbox implements Tools {
   }
 
   drawn(): void {
+    for (const tool of this.made.values()) tool.drawn?.();
     if (this.root.hidden) return;
     const marks = [...this.made.values()].flatMap((tool) => tool.marks?.() ?? []);
     this.overlay.show(marks, this.bench.camera, this.bench.view.surfaceMatrix);
     this.scaleLine.show();
+    this.cube.show();
   }
 
   back(): boolean {
@@ -93,6 +103,10 @@ export class Toolbox implements Tools {
     if (this.active !== null) this.put(null);
     else this.setOpen(false);
     return true;
+  }
+
+  follow(notes: string | null): void {
+    this.shop.notebook.follow(notes);
   }
 
   private get tool(): Tool | null {
@@ -148,10 +162,10 @@ export class Toolbox implements Tools {
 
   private keyed(event: KeyboardEvent): void {
     const tool = this.tool;
-    const { target } = event;
-    if (tool === null || event.ctrlKey || event.altKey || event.metaKey) return;
-    if (target instanceof HTMLElement && target.matches(event.key === 'Enter' ? 'button, a, input, select, textarea' : 'input, select, textarea')) return;
-    if (!this.acts(tool, event.key)) return;
+    const { target, key } = event;
+    if (tool === null || event.ctrlKey || event.altKey || event.metaKey || isTaken(event)) return;
+    if (key === 'Enter' && target instanceof HTMLElement && target.matches('button, a, summary, input')) return;
+    if (!this.acts(tool, key)) return;
     event.preventDefault();
     event.stopImmediatePropagation();
   }

@@ -1,6 +1,7 @@
 // What tools share.
 import type { LengthScale } from '../../src/tools/units.js';
 import type { Bench } from './bench.js';
+import type { NotebookStore } from './notebook.js';
 import type { Pointing } from './pointing.js';
 import type { ToolSettings } from './tool_settings.js';
 
@@ -8,6 +9,7 @@ export interface Workshop {
   readonly bench: Bench;
   readonly pointing: Pointing;
   readonly settings: ToolSettings;
+  readonly notebook: NotebookStore;
   /// In which lengths are told.
   readonly scale: () => LengthScale;
   /// Settings have changed.

@@ -36,8 +36,7 @@ const toggle = (what: Parameters<Commands['toggle']>[0]): Act => (commands) => {
 
 const TOOLS = Object.entries(TOOL_KEYS).map(([name, key]): [string, Act] => [key.toLowerCase(), (commands) => { commands.tool(name as ToolName); }]);
 
-const ACTS: Record<string, Act> = {
-  ...Object.fromEntries(TOOLS),
+const VIEW: Record<string, Act> = {
   ArrowLeft: arrow(-1, 0), ArrowRight: arrow(1, 0), ArrowUp: arrow(0, 1), ArrowDown: arrow(0, -1),
   '+': closer, '=': closer, '-': farther, _: farther,
   Home: home, '0': home, Escape: back, Backspace: back,
@@ -45,6 +44,9 @@ const ACTS: Record<string, Act> = {
   t: toggle('texture'), w: toggle('wires'), p: toggle('points'), o: toggle('outline'), f: toggle('flat'),
   s: toggle('panel'), l: (commands) => { commands.light(); }, g: (commands) => { commands.nextLight(); }, c: toggle('cavities'), '?': toggle('help'), h: toggle('help'),
 };
+
+export const VIEW_KEYS = Object.keys(VIEW);
+const ACTS: Record<string, Act> = { ...Object.fromEntries(TOOLS), ...VIEW };
 
 /// Whether an input of that type needs the key for itself; what is written in needs them all.
 export function needsKey(type: string, key: string): boolean {
@@ -54,7 +56,7 @@ export function needsKey(type: string, key: string): boolean {
 }
 
 /// Keys that an element under the focus needs for itself.
-function isTaken(event: KeyboardEvent): boolean {
+export function isTaken(event: KeyboardEvent): boolean {
   const { target, key } = event;
   if (key === 'Escape') return false;
   if (target instanceof HTMLInputElement) return needsKey(target.type, key);

@@ -1,13 +1,14 @@
 // A model, as large as the window, and all that can be done with it.
 import { Box3, Vector3 } from 'three';
 import { HierarchyProblem, HierarchyView, type Look, type Settings, type Standing, type Stats, type ViewOptions } from '../../src/index.js';
-import { roundedPose, type Pose, type Spot } from '../address.js';
+import type { PictureSize } from '../../src/tools/screenshot.js';
+import { problemOfPose, roundedPose, type Pose, type Spot } from '../address.js';
 import { COLOURS, formatChoices, keepStanding, readStanding, withChoices, type Appearance, type Light } from '../appearance.js';
 import type { Model } from '../listing.js';
 import { element } from '../parts/element.js';
 import { formatCount } from '../numbers.js';
 import type { Telling } from '../problems.js';
-import type { Bench, ToolName, Tools } from '../tools/bench.js';
+import type { Bench } from '../tools/bench.js';
 import type { Preferences, Theme } from '../preferences.js';
 import type { Shared } from '../share/embed_code.js';
 import { CameraPose } from './camera_pose.js';
@@ -21,6 +22,7 @@ import { Navigation } from './navigation.js';
 import { nextLight, Presentation } from './presentation.js';
 import { Sharpness } from './sharpness.js';
 import { Stage } from './stage.js';
+import { ToolHost } from './tool_host.js';
 import type { Language } from '../words/languages.js';
 import { words } from '../words/words.js';
 import '../style/view.css';
@@ -51,7 +53,13 @@ const UNKNOWN = new Box3(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
 export class ModelView {
   readonly root: HTMLElement;
   readonly view: HierarchyView;
-  private tools: Tools | null = null;
+  private readonly tools = new ToolHost({
+    bench: () => (this.view.manifest === null ? null : this.bench()),
+    noted: () => { this.rest(); },
+    failed: (retry) => { this.around.failed(words.problems.noCode, { subject: 'tools', retry }); },
+  });
+  /// While a picture is taken.
+  private frozen: CameraPose | null = null;
   private readonly stage: Stage;
   private readonly presentation: Presentation;
   private readonly navigation: Navigation;
@@ -76,6 +84,7 @@ export class ModelView {
     private readonly around: Surroundings,
   ) {
     const { fetch, createWorker, preferences: { settings } } = around;
+    this.tools.follow(around.spot);
     this.stage = new Stage();
     this.view = new HierarchyView(model.url, { fetch, createWorker, settings });
     this.presentation = new Presentation(this.view, this.stage.lighting, this.wished(around.spot));
@@ -86,7 +95,7 @@ export class ModelView {
     this.chrome = new Chrome(model, surface, this.orders(), this.ending.signal);
     this.root = this.chrome.root;
     const light = this.lightDrag();
-    new Gestures(surface, this.navigation, (right, up) => this.tools?.tapped(right, up) ?? false, (right, up) => light.drag(right, up));
+    new Gestures(surface, this.navigation, (right, up) => this.tools.tapped(right, up), (right, up) => light.drag(right, up));
     listenToKeys(this.commands(light), this.ending.signal);
     this.listen();
   }
@@ -117,6 +126,7 @@ export class ModelView {
     this.setPose(spot.pose);
     this.presentation.chosen = this.wished(spot);
     this.present();
+    this.tools.follow(spot);
   }
 
   /// What is kept of this browser's wishes, and what a link says instead.
@@ -215,13 +225,13 @@ export class ModelView {
 
   private frame(now: number): Pace {
     if (this.lost !== null) return 'rest';
-    const moved = this.navigation.step(now);
+    const moved = this.frozen === null && this.navigation.step(now);
     if (moved) this.startRest();
     const { framesPerSecond } = this.view.settings;
     const resized = this.stage.fit(this.sharpness.at(now, moved, framesPerSecond));
     // The manifest knows the box better than the root.
     if (this.opened && (resized || !this.framed.equals(this.view.box))) this.reframe();
-    this.stage.aim(CameraPose.from(this.pose()), this.opened ? this.view.box : UNKNOWN);
+    this.stage.aim(this.frozen ?? CameraPose.from(this.pose()), this.opened ? this.view.box : UNKNOWN);
     const news = this.view.update(this.stage.camera, this.stage.size, now);
     if (moved || news || resized || this.dirty) this.draw();
     this.dirty = false;
@@ -229,8 +239,9 @@ export class ModelView {
   }
 
   private draw(): void {
+    if (this.frozen !== null) return; // a picture is being taken: the page's waits
     this.stage.draw();
-    this.tools?.drawn();
+    this.tools.drawn();
     if (this.opened && !this.shown) performance.mark(FIRST_PICTURE);
     this.shown = this.opened;
   }
@@ -240,7 +251,10 @@ export class ModelView {
     if (busy && !due) return 'busy';
     const stats = this.view.stats();
     const working = !this.refused && !(stats.settled && this.opened);
-    if (this.view.manifest !== null) this.chrome.tellSource(this.view.manifest);
+    if (this.view.manifest !== null) {
+      this.chrome.tellSource(this.view.manifest);
+      this.tools.showNews();
+    }
     this.reportedAt = now;
     this.chrome.report(stats, this.view.settings.framesPerSecond, working);
     if (busy) return 'busy';
@@ -255,8 +269,13 @@ export class ModelView {
 
   private rest(): void {
     window.clearTimeout(this.restTimer);
-    const pose = this.navigation.atHome ? null : this.pose();
-    this.around.rested({ pose, choices: formatChoices(this.presentation.chosen) });
+    this.around.rested(this.spot());
+  }
+
+  private spot(): Spot {
+    const choices = formatChoices(this.presentation.chosen);
+    const notes = this.tools.notes === null ? '' : `notes=${this.tools.notes}`;
+    return { pose: this.navigation.atHome ? null : this.pose(), choices: [choices, notes].filter((text) => text !== '').join('&') };
   }
 
   /// Kept for other models too; but not how this one stands.
@@ -324,7 +343,7 @@ export class ModelView {
       back: this.around.leave === null ? null : this.back,
       home: () => { this.navigation.goHome(); },
       zoom: (logarithm) => { this.zoomMiddle(logarithm); },
-      tools: () => void this.useTools(null),
+      tools: () => void this.tools.use(null),
       panelShown: (open) => { this.panelShown(open); },
       shared: () => this.shared(),
       look: (look) => { this.choose({ look }); },
@@ -336,7 +355,7 @@ export class ModelView {
     };
   }
 
-  private bench(): Bench {
+  private bench(): Omit<Bench, 'notes' | 'setNotes'> {
     return {
       name: this.model.name,
       view: this.view,
@@ -345,30 +364,36 @@ export class ModelView {
       surface: this.stage.canvas.parentElement!,
       signal: this.ending.signal,
       pose: () => this.navigation.pose,
+      jump: (pose) => { this.navigation.jump(pose); },
+      fly: (pose) => { this.flyTo(pose); },
+      freeze: (size) => this.freeze(size),
       redraw: () => { this.redraw(); },
       setPainter: (painter) => { this.stage.painter = painter; },
       tell: (message) => this.around.failed(message, { subject: 'tools', retry: null }),
     };
   }
 
-  /// Loads the tools when they are first asked for.
-  private async useTools(name: ToolName | null): Promise<void> {
-    if (this.view.manifest === null) return; // nothing is known of the model yet
-    try {
-      const { Toolbox } = await import('../tools/toolbox.js');
-      if (this.closed) return;
-      this.tools ??= new Toolbox(this.bench());
-      this.tools.toggle(name);
-    } catch {
-      this.around.failed(words.problems.noCode, { subject: 'tools', retry: () => void this.useTools(name) });
-    }
+  /// Places may be from a file.
+  private flyTo(pose: CameraPose): void {
+    const { position, target } = pose.toPose();
+    if (problemOfPose(position, target) === null) this.navigation.fly(pose);
+  }
+
+  private freeze(size: PictureSize): ReturnType<Bench['freeze']> {
+    const hold = (asked: PictureSize | null): void => {
+      this.frozen = asked && CameraPose.from(this.pose());
+      this.stage.asked = asked;
+      this.redraw();
+    };
+    hold(size);
+    return { draw: this.stage.drawPart, release: () => { hold(null); } };
   }
 
   /// The address tells of the camera as it is, even before it has come to rest.
   private shared(): Shared {
     this.rest();
     const { name, url } = this.model;
-    return { page: location.origin + location.pathname, name, url, pose: this.navigation.atHome ? null : this.pose(), choices: formatChoices(this.presentation.chosen) };
+    return { page: location.origin + location.pathname, name, url, ...this.spot() };
   }
 
   private zoomMiddle(logarithm: number): void {
@@ -382,8 +407,8 @@ export class ModelView {
       nextLight: () => { this.choose({ light: nextLight(this.presentation.chosen.light) }); },
       move: (moves) => { this.moveByKey(moves); },
       home: () => { this.navigation.goHome(); },
-      back: () => { if (!this.chrome.sheets.closeAside() && this.tools?.back() !== true) this.back(); },
-      tool: (name) => void this.useTools(name),
+      back: () => { if (!this.chrome.sheets.closeAside() && !this.tools.back()) this.back(); },
+      tool: (name) => void this.tools.use(name),
       colours: (number) => { this.choose({ look: { colours: COLOURS[number] } }); },
       toggle: (what) => { this.toggle(what); },
     };

@@ -1,8 +1,10 @@
 // What draws: canvas, scene, camera and light.
 import { Box3, Group, NeutralToneMapping, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer, type Object3D } from 'three';
 import { words } from '../words/words.js';
-import { Lighting } from './lighting.js';
+import { partDrawer } from '../../src/tools/draw_part.js';
+import type { DrawPart, PictureSize } from '../../src/tools/screenshot.js';
 import { depthRange, VIEW_ANGLE, type CameraPose } from './camera_pose.js';
+import { Lighting } from './lighting.js';
 
 const MOST_RATIO = 2;
 
@@ -29,6 +31,8 @@ export class Stage {
   private readonly shown = new Group();
   readonly lighting = new Lighting(this.scene, this.camera);
   private readonly raycaster = new Raycaster();
+  /// Null: as large as the canvas.
+  asked: PictureSize | null = null;
   /// Null: as it is.
   painter: Painter | null = null;
   private nominal = new Vector2();
@@ -47,13 +51,14 @@ export class Stage {
     this.shown.add(object);
   }
 
+  /// Of the canvas.
   get aspect(): number {
-    return this.camera.aspect;
+    return this.nominal.x / Math.max(this.nominal.y, 1);
   }
 
   /// Pixels of a picture of full sharpness.
   get size(): { width: number; height: number } {
-    return { width: this.nominal.x, height: this.nominal.y };
+    return this.asked ?? { width: this.nominal.x, height: this.nominal.y };
   }
 
   /// Takes over the size that the canvas has on the page, with a part of the pixels on each axis. False: nothing has changed.
@@ -67,13 +72,13 @@ export class Stage {
     this.sharpness = sharpness;
     this.renderer.setPixelRatio(ratio * sharpness);
     this.renderer.setSize(clientWidth, clientHeight, false);
-    this.camera.aspect = clientWidth / clientHeight;
     return true;
   }
 
   aim(pose: CameraPose, box: Box3): void {
     this.camera.position.copy(pose.position);
     this.camera.lookAt(pose.target);
+    this.camera.aspect = this.asked ? this.asked.width / this.asked.height : this.aspect;
     Object.assign(this.camera, depthRange(pose, box));
     this.camera.updateProjectionMatrix();
     this.camera.updateMatrixWorld();
@@ -82,6 +87,11 @@ export class Stage {
   draw(): void {
     if (this.painter) this.painter.paint(this.renderer, this.scene, this.camera);
     else this.renderer.render(this.scene, this.camera);
+  }
+
+  /// Of a picture as it is aimed at.
+  get drawPart(): DrawPart {
+    return partDrawer(this.renderer, this.camera, () => { this.draw(); });
   }
 
   /// The point of the drawn triangles at a place of the picture, from -1 to 1.

@@ -233,8 +233,9 @@ export const en = {
       ['G', 'next light'],
       ['L', 'look and settings'],
       ['S', 'figures'],
-      ['I M X', 'tools: pick a point, measure, cut open'],
+      ['I M X N K', 'tools: pick a point, measure, cut open, notes, camera and pictures'],
       ['Enter, V, Backspace', 'in a tool: take the middle of the picture, snap to vertices, a step back'],
+      ['B R E', 'with the camera: bookmark, turntable, full screen'],
       ['?', 'this help'],
     ],
     /// What the modes are called in the literature.

@@ -5,7 +5,7 @@ import { FrameRate } from '../cut/frame_rate.js';
 import { Refinement, type Refined } from '../cut/refinement.js';
 import { PAUSE_MS } from '../cut/rest_detail.js';
 import { TileStore, type ResidentTile } from '../cut/tile_store.js';
-import type { Viewpoint } from '../cut/viewpoint.js';
+import type { Vector, Viewpoint } from '../cut/viewpoint.js';
 import type { Fetch } from '../hierarchy/bytes.js';
 import type { Manifest } from '../hierarchy/manifest.js';
 import { HierarchyProblem } from '../hierarchy/problem.js';
@@ -147,6 +147,11 @@ export class HierarchyView extends Group<ViewEvents> {
     this.currentStanding = changedStanding(change, this.currentStanding);
     if (this.root !== null) this.stand(this.root);
     this.changed();
+  }
+
+  /// Which way is up as the mesh stands, in its own coordinates.
+  get upwards(): Vector {
+    return upwards(this.standing.up, this.root?.zUp ?? false);
   }
 
   /// Whether the mesh has colours or pictures of its own; null: not known yet.

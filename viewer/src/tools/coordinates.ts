@@ -57,20 +57,6 @@ export class Coordinates {
     return map(point, (value, axis) => shifted(value, -origin[axis], -place[axis]));
   }
 
-  /// From the input's axes to those of the view, where y is up; a direction, or a point of the tiles.
-  toUpright([x, y, z]: Vector): Vector {
-    return this.placement.up === 'z' ? [x, z, -y] : [x, y, z];
-  }
-
-  fromUpright([x, y, z]: Vector): Vector {
-    return this.placement.up === 'z' ? [x, -z, y] : [x, y, z];
-  }
-
-  /// How far up a point of the input is.
-  heightOf(point: Vector): number {
-    return this.placement.up === 'z' ? point[2] : point[1];
-  }
-
   /// Metres that one unit of the input is; null where the model has no place.
   get metresPerUnit(): number | null {
     const { transform } = this.placement;

@@ -1,5 +1,5 @@
 // Lengths along points of the input.
-import { distanceOf, subtract, type Vector } from './vectors.js';
+import { add, distanceOf, dot, scale, subtract, type Vector } from './vectors.js';
 
 export interface Measures {
   /// Of each part, from point to point.
@@ -13,9 +13,10 @@ export interface Measures {
   readonly rise: number;
 }
 
-/// `heightAxis`: 1 or 2, the one that points up.
-export function measuresOf(points: readonly Vector[], heightAxis: 1 | 2): Measures {
-  const levelOf = (a: Vector, b: Vector): number => Math.hypot(...subtract(a, b).filter((_, axis) => axis !== heightAxis));
+/// `up`: of length 1, as `HierarchyView.upwards`.
+export function measuresOf(points: readonly Vector[], up: Vector): Measures {
+  const riseOf = (a: Vector, b: Vector): number => dot(subtract(b, a), up);
+  const levelOf = (a: Vector, b: Vector): number => distanceOf(b, add(a, scale(up, riseOf(a, b))));
   const pairs = points.slice(1).map((point, i) => [points[i], point] as const);
   const parts = pairs.map(([a, b]) => distanceOf(a, b));
   const sum = (values: readonly number[]): number => values.reduce((total, value) => total + value, 0);
@@ -26,6 +27,6 @@ export function measuresOf(points: readonly Vector[], heightAxis: 1 | 2): Measur
     level: sum(pairs.map(([a, b]) => levelOf(a, b))),
     straight: distanceOf(first, last),
     straightLevel: levelOf(first, last),
-    rise: last[heightAxis] - first[heightAxis],
+    rise: riseOf(first, last),
   };
 }

@@ -1,6 +1,6 @@
 // Planes that cut a model open: what lies behind any of them is cut away.
 import { Matrix4, Plane, Vector3 } from 'three';
-import { dot, type Vector } from './vectors.js';
+import { dot, unit, type Vector } from './vectors.js';
 
 /// Kept is where normal · point + constant >= 0.
 export interface CutPlane {
@@ -37,4 +37,9 @@ export function boxPlanes(min: Vector, max: Vector): CutPlane[] {
 /// In the world that `matrix` brings the plane's coordinates into.
 export function worldPlane({ normal, constant }: CutPlane, matrix: Readonly<Matrix4>): Plane {
   return new Plane(new Vector3(...normal), constant).applyMatrix4(matrix);
+}
+
+/// Of a plane across a direction of that world, the normal in the coordinates that `matrix` brings into it.
+export function localNormal(direction: Vector, { elements: e }: Readonly<Matrix4>): Vector {
+  return unit([dot([e[0], e[1], e[2]], direction), dot([e[4], e[5], e[6]], direction), dot([e[8], e[9], e[10]], direction)]);
 }

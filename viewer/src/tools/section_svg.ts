@@ -8,12 +8,12 @@ export type Axes = readonly [Vector, Vector];
 
 const AXES: readonly Vector[] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 
-/// Of a plane in the input's coordinates; `heightAxis`: the one that points up. Across an axis the drawing has the two others' own numbers.
-export function drawingAxes(normal: Vector, heightAxis: 1 | 2): Axes {
+/// Of a plane in the input's coordinates; `up`: as `HierarchyView.upwards`. Across an axis the drawing has the two others' own numbers.
+export function drawingAxes(normal: Vector, up: Vector): Axes {
   const along = normal.findIndex((value) => Math.abs(value) > 1 - 1e-12);
   const [one, other] = AXES.filter((_, axis) => axis !== along);
-  if (along >= 0) return one === AXES[heightAxis] ? [other, one] : [one, other];
-  const right = unit(cross(AXES[heightAxis], normal));
+  if (along >= 0) return Math.abs(dot(one, up)) > Math.abs(dot(other, up)) ? [other, one] : [one, other];
+  const right = unit(cross(up, normal));
   return [right, cross(normal, right)];
 }
 

@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { formatAddress, NOWHERE, parseAddress, roundedPose } from '../../page/address.js';
+import { choiceOf, formatAddress, NOWHERE, parseAddress, roundedPose } from '../../page/address.js';
 
 const POSE = { position: [1.25, -3e-7, 123456.789], target: [0, 1e20, -0.333333333333] } as const;
 
@@ -22,6 +22,11 @@ describe('a link', () => {
     expect(formatAddress({ path: 'a/b.hier', ...NOWHERE })).toBe('#a/b.hier');
     expect(parseAddress('#a&up=z&light=flat')).toEqual({ path: 'a', pose: null, choices: 'up=z&light=flat' });
     expect(formatAddress({ path: 'a', pose: null, choices: 'up=z&light=flat' })).toBe('#a&up=z&light=flat');
+  });
+
+  it('tells a choice by its name', () => {
+    const spot = parseAddress('#a&1,2,3,4,5,6&up=z&notes=x-_9')!;
+    expect([choiceOf(spot, 'notes'), choiceOf(spot, 'up'), choiceOf(spot, 'note')]).toEqual(['x-_9', 'z', null]);
   });
 
   it('names no model if it is empty or broken', () => {

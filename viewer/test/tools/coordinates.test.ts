@@ -19,12 +19,6 @@ describe('the coordinates of the input', () => {
     expect(coordinates.fromInput([690993.5, 5335002.25, 13])).toEqual([1.5, 2.25, -3]);
   });
 
-  it('stand upright as the view does, by the axis that is up', () => {
-    const upright = new Coordinates({ ...PLAIN, up: 'z' });
-    expect(upright.toUpright([1, 2, 3])).toEqual([1, 3, -2]);
-    expect(upright.fromUpright([1, 3, -2])).toEqual([1, 2, 3]);
-    expect([upright.heightOf([1, 2, 3]), new Coordinates(PLAIN).heightOf([1, 2, 3])]).toEqual([3, 2]);
-  });
 });
 
 describe('the place on the globe', () => {

@@ -8,18 +8,19 @@ describe('measuresOf', () => {
   const steps: Vector[] = [[0, 0, 0], [3, 0, 4], [3, 12, 4], [3, 12, 0]];
 
   it('adds the parts up, in space and in plan, by the axis that is up', () => {
-    expect(measuresOf(steps, 1)).toEqual({ parts: [5, 12, 4], length: 21, level: 9, straight: Math.hypot(3, 12), straightLevel: 3, rise: 12 });
-    expect(measuresOf(steps, 2)).toMatchObject({ length: 21, level: 3 + 12, rise: 0, straightLevel: Math.hypot(3, 12) });
+    expect(measuresOf(steps, [0, 1, 0])).toEqual({ parts: [5, 12, 4], length: 21, level: 9, straight: Math.hypot(3, 12), straightLevel: 3, rise: 12 });
+    expect(measuresOf(steps, [0, 0, 1])).toMatchObject({ length: 21, level: 3 + 12, rise: 0, straightLevel: Math.hypot(3, 12) });
+    expect(measuresOf(steps, [0, -1, 0])).toMatchObject({ length: 21, level: 9, rise: -12 });
   });
 
   it('of one point, and of none, are 0', () => {
     for (const points of [[], steps.slice(1, 2)])
-      expect(measuresOf(points, 1)).toEqual({ parts: [], length: 0, level: 0, straight: 0, straightLevel: 0, rise: 0 });
+      expect(measuresOf(points, [0, 1, 0])).toEqual({ parts: [], length: 0, level: 0, straight: 0, straightLevel: 0, rise: 0 });
   });
 
   it('keeps small lengths far from the origin', () => {
     const far: Vector[] = [[691000.25, 5335000.5, 500], [691000.25, 5335000.5, 500.0009765625]];
-    expect(measuresOf(far, 2).length).toBe(0.0009765625);
+    expect(measuresOf(far, [0, 0, 1]).length).toBe(0.0009765625);
   });
 });
 

@@ -4,7 +4,9 @@ import path from 'node:path';
 import { PerspectiveCamera, Vector3 } from 'three';
 import { afterAll, describe, expect, it } from 'vitest';
 import type { Fetch } from '../../src/hierarchy/bytes.js';
+import { Places } from '../../page/tools/places.js';
 import { HierarchyView } from '../../src/index.js';
+import { UPS } from '../../src/scene/standing.js';
 import { Coordinates } from '../../src/tools/coordinates.js';
 import { pickOriginal } from '../../src/tools/original.js';
 import { Picker, rayThrough } from '../../src/tools/pick.js';
@@ -83,6 +85,26 @@ describe.skipIf(!hasProgram)('picking', () => {
       expect(pickedPoint(hit, view.manifest!, false)).toMatchObject({ isExact: false, isVertex: false });
     }
     expect(hits).toBeGreaterThan(10);
+    view.dispose();
+  });
+
+  it.each(UPS)('finds the same vertices where the model stands otherwise and is stretched (up: %s)', async (up) => {
+    const { view, camera } = await settledView(fetchFrom(torus('z')), [1, 2, 4]);
+    view.setStanding({ up, stretch: 7 });
+    const middle = view.box.getCenter(new Vector3());
+    camera.position.set(0.6, 0.5, 0.6).multiplyScalar(view.box.min.distanceTo(view.box.max)).add(middle);
+    camera.lookAt(middle);
+    view.update(camera, VIEWPORT, 1e6);
+    const known = vertexBits(meshOf('torus_z'));
+    const found = await Promise.all(places(60, 5).map(([right, height]) => pickOriginal(view.source!, rayThrough(camera, right, height, view.surfaceMatrix), { signal })));
+    const picked = found.filter((hit) => hit !== null).map((hit) => pickedPoint(hit, view.manifest!, true));
+    expect(picked.length).toBeGreaterThan(3);
+    for (const { point, isExact } of picked) expect([isExact, known.has(bitsOf(point))]).toEqual([true, true]);
+    const world = new Places(view);
+    const [{ point, local }] = picked;
+    expect(world.toWorld(point).distanceTo(new Vector3(...local).applyMatrix4(view.surfaceMatrix))).toBe(0);
+    expect(distanceOf(world.toInput(world.toWorld(point)), point)).toBeLessThan(1e-12);
+    expect(world.toWorld(add(point, view.upwards)).sub(world.toWorld(point)).toArray()).toEqual([0, 7, 0].map((value) => expect.closeTo(value, 9) as number));
     view.dispose();
   });
 

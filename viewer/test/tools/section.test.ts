@@ -1,13 +1,14 @@
-import { PerspectiveCamera, Vector3 } from 'three';
+import { Matrix4, PerspectiveCamera, Vector3 } from 'three';
 import { afterAll, describe, expect, it } from 'vitest';
 import { HierarchyView } from '../../src/index.js';
-import { boxPlanes, flipped, isKept, planeThrough, sideOf, worldPlane, type CutPlane } from '../../src/tools/planes.js';
+import { boxPlanes, flipped, isKept, localNormal, planeThrough, sideOf, worldPlane, type CutPlane } from '../../src/tools/planes.js';
 import { lengthOf, sectionOf, type Polyline } from '../../src/tools/section.js';
 import { drawingAxes, sectionSvg } from '../../src/tools/section_svg.js';
 import { unit, type Vector } from '../../src/tools/vectors.js';
 import { cube, drawnTile } from '../support/drawn.js';
 import { fetchFrom, hasProgram, Workshop } from '../support/meshhier.js';
 
+const [UP_Y, UP_Z]: Vector[] = [[0, 1, 0], [0, 0, 1]];
 const at = (height: number): CutPlane => ({ normal: [0, 0, 1], constant: -height });
 const total = (lines: readonly Polyline[]): number => lines.reduce((sum, line) => sum + lengthOf(line), 0);
 
@@ -25,6 +26,15 @@ describe('planes', () => {
     const { matrixWorld } = new PerspectiveCamera();
     matrixWorld.makeRotationZ(Math.PI / 2).setPosition(5, 0, 0);
     expect(worldPlane({ normal: [1, 0, 0], constant: -1 }, matrixWorld).distanceToPoint(view.set(5, 3, 0))).toBeCloseTo(2, 12);
+  });
+
+  it('across a direction of the world are so, also where heights are stretched', () => {
+    const matrix = new Matrix4().set(1, 0, 0, 0, 0, 0, 7, 0, 0, -1, 0, 0, 0, 0, 0, 1);
+    for (const direction of [[1, 0, 0], [0, -1, 0], unit([1, 2, 3])] as Vector[]) {
+      const plane = worldPlane(planeThrough([1, 2, 3], localNormal(direction, matrix)), matrix);
+      plane.normal.toArray().forEach((value, axis) => { expect(value).toBeCloseTo(direction[axis], 12); });
+      expect(plane.distanceToPoint(new Vector3(1, 2, 3).applyMatrix4(matrix))).toBeCloseTo(0, 12);
+    }
   });
 });
 
@@ -128,16 +138,17 @@ describe('the drawing of a section', () => {
   const square: Polyline = { isClosed: true, points: [[10, 20, 5], [12, 20, 5], [12, 23, 5], [10, 23, 5]] };
 
   it('across an axis has the two others, up where there is one', () => {
-    expect(drawingAxes([0, 0, 1], 2)).toEqual([[1, 0, 0], [0, 1, 0]]);
-    expect(drawingAxes([-1, 0, 0], 2)).toEqual([[0, 1, 0], [0, 0, 1]]);
-    expect(drawingAxes([1, 0, 0], 1)).toEqual([[0, 0, 1], [0, 1, 0]]);
-    expect(drawingAxes([0, 1, 0], 1)).toEqual([[1, 0, 0], [0, 0, 1]]);
-    const [right, up] = drawingAxes(unit([1, 1, 0]), 2);
+    expect(drawingAxes([0, 0, 1], UP_Z)).toEqual([[1, 0, 0], [0, 1, 0]]);
+    expect(drawingAxes([-1, 0, 0], UP_Z)).toEqual([[0, 1, 0], [0, 0, 1]]);
+    expect(drawingAxes([1, 0, 0], UP_Y)).toEqual([[0, 0, 1], [0, 1, 0]]);
+    expect(drawingAxes([0, 1, 0], UP_Y)).toEqual([[1, 0, 0], [0, 0, 1]]);
+    const [right, up] = drawingAxes(unit([1, 1, 0]), UP_Z);
+    expect(drawingAxes([-1, 0, 0], [0, 0, -1])).toEqual([[0, 1, 0], [0, 0, 1]]); // their own numbers
     expect([Math.abs(right[2]), up[2]]).toEqual([0, expect.closeTo(1, 12)]);
   });
 
   it('is in true size, upright, and tells where it was', () => {
-    const svg = sectionSvg([square], { axes: drawingAxes([0, 0, 1], 2), unit: 'm', title: 'a <b> & "c"' });
+    const svg = sectionSvg([square], { axes: drawingAxes([0, 0, 1], UP_Z), unit: 'm', title: 'a <b> & "c"' });
     expect(svg).toContain('width="2000mm" height="3000mm" viewBox="0 0 2 3"');
     expect(svg).toContain('d="M0 3L2 3L2 0L0 0Z"');
     expect(svg).toContain('To the right 1 0 0 + 10, up 0 1 0 + 20');
@@ -145,7 +156,7 @@ describe('the drawing of a section', () => {
   });
 
   it('of an unknown unit has its numbers, and of nothing no size', () => {
-    const drawing = { axes: drawingAxes([0, 0, 1], 2), unit: 'unit', title: '' } as const;
+    const drawing = { axes: drawingAxes([0, 0, 1], UP_Z), unit: 'unit', title: '' } as const;
     expect(sectionSvg([{ ...square, isClosed: false }], drawing)).toMatch(/width="2" height="3" [^]*0L0 0"/);
     expect(sectionSvg([], drawing)).toContain('viewBox="0 0 0 0"');
   });

@@ -4,7 +4,7 @@ import type { ToolWords } from './en.js';
 export const de: ToolWords = {
   title: 'Werkzeuge',
   close: (name) => `${name} schließen`,
-  names: { pick: 'Punkt wählen', measure: 'Messen', clip: 'Aufschneiden' },
+  names: { pick: 'Punkt wählen', measure: 'Messen', clip: 'Aufschneiden', notes: 'Notizen', camera: 'Kamera und Bilder' },
   pick: {
     hint: 'Klicken oder tippen Sie auf die Oberfläche; Enter nimmt die Mitte des Bildes.',
     snap: 'An Eckpunkten einrasten',
@@ -30,6 +30,34 @@ export const de: ToolWords = {
     straight: 'Luftlinie',
     rise: 'Höhe',
     points: 'Punkte',
+  },
+  notes: {
+    hint: 'Klicken oder tippen Sie auf die Oberfläche, um dort etwas zu notieren.',
+    one: (number) => `Notiz ${number}`,
+    save: 'Als Datei sichern',
+    load: 'Aus einer Datei dazunehmen',
+    tooLong: 'Für einen Link ist es zu viel: Sichern Sie die Notizen als Datei.',
+    bad: (file, why) => `${file} hat keine Notizen für diese Seite: ${why}.`,
+  },
+  list: { go: (name) => `Zu ${name}`, remove: (name) => `${name} entfernen` },
+  camera: {
+    add: 'Diese Ansicht merken (B)',
+    bookmark: (number) => `Ansicht ${number}`,
+    spin: 'Drehteller (R)',
+    fullScreen: 'Ganzer Bildschirm (E)',
+    noFullScreen: 'Der Browser erlaubt es nicht',
+    width: 'Breite, Pixel',
+    height: 'Höhe, Pixel',
+    transparent: 'Durchsichtiger Grund',
+    shot: 'Bild sichern',
+    working: 'Das Bild entsteht…',
+    badSize: (most) => `Seiten haben 1 bis ${most} Pixel.`,
+    failed: (why) => `Das Bild ließ sich nicht machen: ${why}.`,
+  },
+  cube: {
+    title: 'Seiten des Modells',
+    look: (side) => `Ansicht: ${side}`,
+    sides: { front: 'Vorn', back: 'Hinten', left: 'Links', right: 'Rechts', top: 'Oben', bottom: 'Unten' },
   },
   clip: {
     mode: 'Schnitt',

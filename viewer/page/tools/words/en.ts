@@ -3,7 +3,7 @@
 export const en = {
   title: 'Tools',
   close: (name: string) => `Close ${name.toLowerCase()}`,
-  names: { pick: 'Pick a point', measure: 'Measure', clip: 'Cut open' },
+  names: { pick: 'Pick a point', measure: 'Measure', clip: 'Cut open', notes: 'Notes', camera: 'Camera and pictures' },
   pick: {
     hint: 'Click or tap the surface; Enter takes the middle of the picture.',
     snap: 'Snap to vertices',
@@ -29,6 +29,34 @@ export const en = {
     straight: 'Straight',
     rise: 'Height',
     points: 'Points',
+  },
+  notes: {
+    hint: 'Click or tap the surface to put a note there.',
+    one: (number: string) => `Note ${number}`,
+    save: 'Save as a file',
+    load: 'Add from a file',
+    tooLong: 'There is too much for a link: save the notes as a file.',
+    bad: (file: string, why: string) => `${file} has no notes for this page: ${why}.`,
+  },
+  list: { go: (name: string) => `Go to ${name}`, remove: (name: string) => `Remove ${name}` },
+  camera: {
+    add: 'Bookmark this view (B)',
+    bookmark: (number: string) => `View ${number}`,
+    spin: 'Turntable (R)',
+    fullScreen: 'Full screen (E)',
+    noFullScreen: 'The browser does not allow it',
+    width: 'Width, pixels',
+    height: 'Height, pixels',
+    transparent: 'Transparent ground',
+    shot: 'Save a picture',
+    working: 'The picture is being made…',
+    badSize: (most: string) => `Sides are from 1 to ${most} pixels.`,
+    failed: (why: string) => `No picture could be made: ${why}.`,
+  },
+  cube: {
+    title: 'Sides of the model',
+    look: (side: string) => `Look from ${side.toLowerCase()}`,
+    sides: { front: 'Front', back: 'Back', left: 'Left', right: 'Right', top: 'Top', bottom: 'Bottom' },
   },
   clip: {
     mode: 'Cut',

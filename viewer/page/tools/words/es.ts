@@ -4,7 +4,7 @@ import type { ToolWords } from './en.js';
 export const es: ToolWords = {
   title: 'Herramientas',
   close: (name) => `Cerrar ${name.toLowerCase()}`,
-  names: { pick: 'Elegir un punto', measure: 'Medir', clip: 'Cortar' },
+  names: { pick: 'Elegir un punto', measure: 'Medir', clip: 'Cortar', notes: 'Notas', camera: 'Cámara e imágenes' },
   pick: {
     hint: 'Haga clic o toque la superficie; Intro toma el centro de la imagen.',
     snap: 'Ajustar a los vértices',
@@ -30,6 +30,34 @@ export const es: ToolWords = {
     straight: 'En línea recta',
     rise: 'Altura',
     points: 'Puntos',
+  },
+  notes: {
+    hint: 'Haga clic o toque la superficie para poner una nota.',
+    one: (number) => `Nota ${number}`,
+    save: 'Guardar en un archivo',
+    load: 'Añadir de un archivo',
+    tooLong: 'Es demasiado para un enlace: guarde las notas en un archivo.',
+    bad: (file, why) => `${file} no tiene notas para esta página: ${why}.`,
+  },
+  list: { go: (name) => `Ir a ${name}`, remove: (name) => `Quitar ${name}` },
+  camera: {
+    add: 'Recordar esta vista (B)',
+    bookmark: (number) => `Vista ${number}`,
+    spin: 'Plato giratorio (R)',
+    fullScreen: 'Pantalla completa (E)',
+    noFullScreen: 'El navegador no lo permite',
+    width: 'Ancho, píxeles',
+    height: 'Alto, píxeles',
+    transparent: 'Fondo transparente',
+    shot: 'Guardar una imagen',
+    working: 'Se hace la imagen…',
+    badSize: (most) => `Los lados tienen de 1 a ${most} píxeles.`,
+    failed: (why) => `No se pudo hacer la imagen: ${why}.`,
+  },
+  cube: {
+    title: 'Lados del modelo',
+    look: (side) => `Ver desde: ${side.toLowerCase()}`,
+    sides: { front: 'Frente', back: 'Atrás', left: 'Izq.', right: 'Der.', top: 'Arriba', bottom: 'Abajo' },
   },
   clip: {
     mode: 'Corte',

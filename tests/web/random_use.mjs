@@ -1,0 +1,111 @@
+// Uses the viewer's page at random in headless Chromium: keys, clicks, drags, turns of the wheel, and buttons. Nothing may reach the console.
+//
+//   node random_use.mjs PICTURES PAGE SECONDS HIERARCHY...
+//
+// PAGE: the directory that `npm run build` of viewer/ makes, dist/page. Each hierarchy is used for SECONDS. What is done is the same each
+// time, as far as the time goes. A picture of the end goes to the directory PICTURES. Exit code 2: wrong use; else see browser.mjs.
+import path from 'node:path';
+import { collectComplaints, inChromium, readHierarchy } from './browser.mjs';
+import { random } from './random.mjs';
+import { withSite } from './site.mjs';
+
+const VIEWPORT = { width: 640, height: 480 };
+const PATIENCE = 120_000; // milliseconds
+const KEYS = [...'abcdefghijklmnopqrstuvwxyz0123456789+-?', 'Enter', 'Escape', 'Backspace', 'Delete', 'Tab', ' ', 'Home',
+  'ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', 'Shift+ArrowLeft', 'Shift+Tab'];
+const TOOLS = ['i', 'm', 'x', 'n', 'k'];
+
+class Hand {
+  constructor(page, seed) {
+    Object.assign(this, { page, next: random(seed), done: 0 });
+  }
+
+  one(list) {
+    return list[Math.floor(this.next() * list.length)];
+  }
+
+  place() {
+    return [this.next() * VIEWPORT.width, this.next() * VIEWPORT.height];
+  }
+
+  async key() {
+    await this.page.keyboard.press(this.one(KEYS));
+  }
+
+  async tool() {
+    await this.page.keyboard.press(this.one(TOOLS));
+    await this.page.mouse.click(...this.place());
+    await this.page.keyboard.press('Enter');
+  }
+
+  async click() {
+    await this.page.mouse.click(...this.place());
+  }
+
+  async drag() {
+    await this.page.mouse.move(...this.place());
+    await this.page.mouse.down({ button: this.one(['left', 'left', 'right']) });
+    for (let i = 0; i < 3; ++i) await this.page.mouse.move(...this.place());
+    await this.page.mouse.up({ button: 'left' });
+    await this.page.mouse.up({ button: 'right' });
+  }
+
+  async wheel() {
+    await this.page.mouse.move(...this.place());
+    await this.page.mouse.wheel(0, 800 * (this.next() - 0.5));
+  }
+
+  /// A button, a choice, or a slider that is there, whatever lies over it.
+  async control() {
+    await this.page.evaluate((part) => {
+      const all = [...document.querySelectorAll('button, input, select, summary')].filter((one) => one.checkVisibility() && one.type !== 'file');
+      const one = all[Math.floor(part * all.length)];
+      if (one === undefined) return;
+      if (one.type === 'range' || one.type === 'number') one.value = String(Math.min(Number(one.min) + part * (Number(one.max) - Number(one.min)), 1000)); // larger pictures take long
+      else if (one instanceof HTMLSelectElement) one.selectedIndex = Math.floor(part * 97) % one.options.length;
+      else one.click();
+      for (const type of ['input', 'change']) if (!(one instanceof HTMLButtonElement)) one.dispatchEvent(new Event(type, { bubbles: true }));
+    }, this.next());
+  }
+
+  async act() {
+    await this[this.one(['key', 'key', 'key', 'tool', 'tool', 'click', 'drag', 'wheel', 'control', 'control'])]();
+    ++this.done;
+  }
+}
+
+async function opened(page, address) {
+  await page.goto(address);
+  await page.waitForFunction(() => window.meshhier?.settled(), null, { timeout: PATIENCE });
+}
+
+async function use(browser, report, { pictures, seconds, origin, name, seed }) {
+  const page = await browser.newPage({ viewport: VIEWPORT });
+  page.setDefaultTimeout(PATIENCE);
+  const complaints = [];
+  collectComplaints(page, complaints);
+  const address = `${origin}/index.html#models/${name}.hier`;
+  await opened(page, address);
+  const hand = new Hand(page, seed);
+  for (const end = Date.now() + 1000 * seconds; Date.now() < end; ) {
+    await hand.act();
+    if (!page.url().includes(`#models/${name}`)) await opened(page, address); // it went to the gallery
+  }
+  await page.screenshot({ path: path.join(pictures, `random-use-${name}.png`) });
+  report.line(`random use ${name}`, complaints.length === 0, `${hand.done} acts; ${[...new Set(complaints)].join('; ') || 'no complaints'}`);
+  await page.close();
+}
+
+async function useAll(browser, report, [pictures, page, seconds, ...directories]) {
+  const hierarchies = directories.map(readHierarchy);
+  await withSite(page, hierarchies, async (origin) => {
+    for (const [seed, { name }] of hierarchies.entries()) await use(browser, report, { pictures, seconds, origin, name, seed });
+  });
+}
+
+const given = process.argv.slice(2);
+if (given.length < 4 || !(Number(given[2]) > 0)) {
+  console.log('usage: node random_use.mjs PICTURES PAGE SECONDS HIERARCHY...');
+  process.exit(2);
+}
+process.exit(await inChromium(given[0], (browser, report) => useAll(browser, report, given)));

@@ -1,0 +1,26 @@
+// Between the input's coordinates and the world of the picture, however the model stands.
+import { Vector3 } from 'three';
+import type { HierarchyView } from '../../src/index.js';
+import { Coordinates } from '../../src/tools/coordinates.js';
+import type { Vector } from '../../src/tools/vectors.js';
+
+export class Places {
+  private readonly coordinates: Coordinates;
+
+  constructor(private readonly view: Pick<HierarchyView, 'manifest' | 'surfaceMatrix'>) {
+    this.coordinates = new Coordinates(view.manifest!);
+  }
+
+  /// In the tiles' coordinates.
+  toLocal(at: Vector): Vector {
+    return this.coordinates.fromInput(at);
+  }
+
+  toWorld(at: Vector): Vector3 {
+    return new Vector3(...this.toLocal(at)).applyMatrix4(this.view.surfaceMatrix);
+  }
+
+  toInput(point: Vector3): Vector {
+    return this.coordinates.toInput(point.clone().applyMatrix4(this.view.surfaceMatrix.clone().invert()).toArray());
+  }
+}

@@ -1,0 +1,54 @@
+import { describe, expect, it } from 'vitest';
+import { formatNotes, MOST_ENTRIES, MOST_TEXT, NotesProblem, packNotes, readNotes, unpackNotes, type Notebook } from '../../src/tools/notes.js';
+
+const NOTEBOOK: Notebook = {
+  notes: [{ at: [0.1, -691000.123456789, 5e-324], text: 'Riß <b>„hier“</b> 裂け目' }],
+  bookmarks: [{ name: 'from above', position: [0, 10, 0.1], target: [0, 0, 0] }],
+};
+
+function changed(change: (json: { notes: unknown; bookmarks: unknown; version: unknown; format: unknown }) => void): string {
+  const json = JSON.parse(formatNotes(NOTEBOOK, 'a')) as Parameters<typeof change>[0];
+  change(json);
+  return JSON.stringify(json);
+}
+
+describe('notes', () => {
+  it('come back from their file, to the bit', () => {
+    expect(readNotes(formatNotes(NOTEBOOK, 'model'))).toEqual(NOTEBOOK);
+  });
+
+  it('come back from a link, whose letters need no escape', () => {
+    const packed = packNotes(NOTEBOOK)!;
+    expect(packed).toMatch(/^[\w-]+$/);
+    expect(unpackNotes(packed)).toEqual(NOTEBOOK);
+  });
+
+  it('that are too long are in no link', () => {
+    expect(packNotes({ notes: [{ at: [0, 0, 0], text: 'x'.repeat(1400) }], bookmarks: [] })).toBeNull();
+    expect(packNotes({ notes: [{ at: [0, 0, 0], text: 'x'.repeat(1e6) }], bookmarks: [] })).toBeNull();
+    expect(packNotes({ notes: [{ at: [0, 0, 0], text: 'x'.repeat(200) }], bookmarks: [] })).not.toBeNull();
+  });
+
+  it.each([
+    ['no JSON', '{'],
+    ['another format', changed((json) => { json.format = 'x'; })],
+    ['another version', changed((json) => { json.version = 2; })],
+    ['no list', changed((json) => { json.notes = {}; })],
+    ['no number', changed((json) => { json.notes = [{ at: [1, 2, 'x'], text: '' }]; })],
+    ['a number too large', formatNotes(NOTEBOOK, '').replace('0.1,', '1e999,')],
+    ['too few numbers', changed((json) => { json.bookmarks = [{ name: '', position: [1, 2], target: [0, 0, 0] }]; })],
+    ['too many', changed((json) => { json.notes = Array.from({ length: MOST_ENTRIES + 1 }, () => NOTEBOOK.notes[0]); })],
+    ['too long', ' '.repeat(2 ** 22 + 1)],
+  ])('refuse %s', (_, text) => {
+    expect(() => readNotes(text)).toThrow(NotesProblem);
+  });
+
+  it('cut texts that are longer than they may be', () => {
+    const long = formatNotes({ notes: [{ at: [0, 0, 0], text: 'x'.repeat(MOST_TEXT + 1) }], bookmarks: [] }, '');
+    expect(readNotes(long).notes[0].text).toHaveLength(MOST_TEXT);
+  });
+
+  it.each(['', '!', 'bm90IGpzb24', '%%%', 'x'.repeat(9999)])('of the link "%.10s" are none', (packed) => {
+    expect(unpackNotes(packed)).toBeNull();
+  });
+});
