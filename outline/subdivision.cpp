@@ -30,7 +30,7 @@ class Neighbours {
     visit(tile, [&](std::uint32_t a, std::uint32_t b) { all_[next[a]++] = b; });
   }
 
-  /// Once for each triangle and side.
+  /// Those behind it on the sides of its triangles: inside an oriented surface each one once.
   std::span<const std::uint32_t> operator[](std::uint32_t vertex) const {
     return std::span(all_).subspan(first_[vertex], first_[vertex + 1] - first_[vertex]);
   }
@@ -42,10 +42,8 @@ class Neighbours {
       for (const TileTriangle& t : *triangles) {
         for (std::size_t i = 0; i < 3; ++i) {
           const std::uint32_t a = raw(t[i]), b = raw(t[(i + 1) % 3]);
-          if (a != b && a < tile.own_count && b < tile.own_count) {
+          if (a != b && a < tile.own_count && b < tile.own_count)
             visit(a, b);
-            visit(b, a);
-          }
         }
       }
     }

@@ -10,6 +10,7 @@
 #include <atomic>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 namespace meshhier::pipeline {
 namespace {
@@ -25,24 +26,32 @@ constexpr std::size_t kMostSegments = 2 * kMostEdges;
 // Level 0 is outlined anyhow.
 constexpr std::uint64_t kEdgeBytes = 100;
 
-/// The finest level with no more than `sectors` nodes.
+/// A tile has vertices enough for so many sectors; finer tiles cost more and show no more.
+constexpr std::uint32_t kTileSectors = 8;
+
+/// The finest level with no more nodes than the sectors need.
 Level sector_level(const Tree& tree, std::uint32_t sectors) {
   Level level{0};
-  while (level < tree.depth() && tree.node_count(finer(level)) <= sectors)
+  while (level < tree.depth() && tree.node_count(finer(level)) <= sectors / kTileSectors)
     level = finer(level);
   return level;
 }
 
 /// Of the level's tiles; none if each is one sector.
-outline::Sectors divide(const Forest& forest, Level level, std::uint32_t parts,
+outline::Sectors divide(Forest& forest, Level level, std::uint32_t parts, const TileRoom& room,
                         const StageContext& context) {
   outline::Sectors sectors;
   if (parts == 1)
     return sectors;
-  for (std::uint32_t i = 0; i < forest.tree().node_count(level); ++i) {
-    context.cancel.check();
-    sectors.push_back(outline::divide(forest.load({level, i}).mesh, parts));
-  }
+  execution::ordered_for(
+      forest.tree().node_count(level), room.in_flight(), context.cancel,
+      [&](std::size_t i) {
+        const NodeId node{level, static_cast<std::uint32_t>(i)};
+        return outline::divide(forest.load(node).mesh, parts);
+      },
+      [&](std::size_t, outline::Sectors::value_type sector) {
+        sectors.push_back(std::move(sector));
+      });
   return sectors;
 }
 
@@ -54,7 +63,7 @@ bool collect(Forest& forest, Level level, outline::OutlineBuilder& builder, std:
   context.progress.stage("outline", count, "sectors");
   std::atomic<bool> too_many{false};
   const TileRoom room = room_for(forest, context.memory(), heaviest_read(forest, level));
-  const outline::Sectors sectors = divide(forest, level, parts, context);
+  const outline::Sectors sectors = divide(forest, level, parts, room, context);
   execution::ordered_for(
       count, room.in_flight(), context.cancel,
       [&](std::size_t i) -> Collected {

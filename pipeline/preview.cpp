@@ -15,7 +15,7 @@ namespace meshhier::pipeline {
 namespace {
 
 /// A level with more triangles shows no more in so few pixels, and takes longer to draw.
-constexpr std::uint64_t kMostTriangles = 120'000;
+constexpr std::uint64_t kMostTriangles = 60'000;
 
 /// The same of the texels of its pictures, which are decoded a few times.
 constexpr std::uint64_t kMostTexels = 2048 * 2048;

@@ -91,6 +91,8 @@ class GridTriangle {
     const auto [top, bottom] = std::minmax({a.y, b.y, c.y});
     const SampleSpan across = samples_between(left, right, columns);
     const SampleSpan down = samples_between(top, bottom, rows);
+    if (across.begin >= across.end)
+      return;
     for (std::int64_t row = down.begin; row < down.end; ++row)
       visit_row(row, across, visit);
   }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
+#include <vector>
 
 namespace meshhier::render {
 namespace {
@@ -22,16 +23,26 @@ constexpr double kStrength = 1.5;
 /// Surfaces that are seen from the side have no more slope than this.
 constexpr double kLeastFacing = 0.08;
 
-struct Direction {
-  double x = 0, y = 0;
+/// Where a horizon is looked for, from a sample.
+struct Step {
+  std::int64_t across = 0, down = 0;  ///< samples
+  double squared = 0;                 ///< the distance's square
 };
 
-std::array<Direction, kDirections> directions() {
+/// The nearest first.
+using Direction = std::vector<Step>;
+
+std::array<Direction, kDirections> directions(double reach) {
   constexpr double kFullTurn = 6.283185307179586;
   std::array<Direction, kDirections> all;
   for (std::size_t i = 0; i < kDirections; ++i) {
     const UnitTurn turn = turn_by(kFullTurn * (static_cast<double>(i) + 0.5) / kDirections);
-    all[i] = {turn.cosine, turn.sine};
+    for (double far = kFirstStep; far < reach; far *= kStep) {
+      const double across = std::floor(far * turn.cosine + 0.5);
+      const double down = std::floor(far * turn.sine + 0.5);
+      all[i].push_back({static_cast<std::int64_t>(across), static_cast<std::int64_t>(down),
+                        across * across + down * down});
+    }
   }
   return all;
 }
@@ -48,63 +59,61 @@ class Horizons {
         columns_(raster.columns()),
         rows_(raster.rows()),
         relief_(relief),
-        reach_(kReach * std::min(raster.columns(), raster.rows())) {}
+        reach_(kReach * std::min(raster.columns(), raster.rows())),
+        directions_(directions(reach_)) {}
 
   float sky_from(std::int64_t column, std::int64_t row) const {
-    static const std::array<Direction, kDirections> all = directions();
     const Sample& here = at(column, row);
     if (!here.covered())
       return 1;
+    const double facing = std::max<double>(here.normal.z, kLeastFacing);
+    const Place place{column, row, here.depth, -here.normal.x / facing, here.normal.y / facing};
     double hidden = 0;
-    for (const Direction& direction : all)
-      hidden += hidden_towards(here, column, row, direction);
+    for (const Direction& direction : directions_)
+      hidden += hidden_towards(place, direction);
     return static_cast<float>(std::max(0.0, 1 - kStrength * hidden / kDirections));
   }
 
  private:
+  struct Place {
+    std::int64_t column = 0, row = 0;
+    double depth = 0;
+    double rise_across = 0, rise_down = 0;  ///< of the surface, for each sample
+  };
+
   const Sample& at(std::int64_t column, std::int64_t row) const {
     return samples_[static_cast<std::size_t>(row * columns_ + column)];
   }
 
   /// How far the horizon stands above the surface itself; what is farther counts less.
-  double hidden_towards(const Sample& here, std::int64_t column, std::int64_t row,
-                        const Direction& direction) const {
+  double hidden_towards(const Place& place, const Direction& direction) const {
     double highest = 0, hidden = 0;
-    for (double far = kFirstStep; far < reach_; far *= kStep) {
-      const auto across = static_cast<std::int64_t>(std::floor(far * direction.x + 0.5));
-      const auto down = static_cast<std::int64_t>(std::floor(far * direction.y + 0.5));
-      const std::int64_t x = column + across, y = row + down;
+    for (const Step& step : direction) {
+      const std::int64_t x = place.column + step.across, y = place.row + step.down;
       if (x < 0 || y < 0 || x >= columns_ || y >= rows_)
         break;
       const Sample& there = at(x, y);
       if (!there.covered())
         continue;
-      const Rise rise =
-          rise_to(here, there, static_cast<double>(across), static_cast<double>(down));
-      if (rise.share > 0 && rise.above > highest) {
-        hidden += (rise.above - highest) * rise.share;
-        highest = rise.above;
+      const auto across = static_cast<double>(step.across), down = static_cast<double>(step.down);
+      const double own = relief_ * (place.rise_across * across + place.rise_down * down);
+      const double rise = relief_ * (place.depth - there.depth);
+      const double share = 1 - (step.squared + rise * rise) / (reach_ * reach_);
+      if (rise <= own || share <= 0)
+        continue;
+      const double above = sine(rise, step.squared) - sine(own, step.squared);
+      if (above > highest) {
+        hidden += (above - highest) * share;
+        highest = above;
       }
     }
     return hidden;
   }
 
-  struct Rise {
-    double above = 0;  ///< what is a horizon: its sine, less that of the surface's own slope there
-    double share = 0;  ///< how near it is, 1 to below 0
-  };
-
-  Rise rise_to(const Sample& here, const Sample& there, double across, double down) const {
-    const double facing = std::max<double>(here.normal.z, kLeastFacing);
-    const double own = relief_ * (here.normal.y * down - here.normal.x * across) / facing;
-    const double rise = relief_ * (double{here.depth} - there.depth);
-    const double far = across * across + down * down;
-    return {sine(rise, far) - sine(own, far), 1 - (far + rise * rise) / (reach_ * reach_)};
-  }
-
   std::span<const Sample> samples_;
   std::int64_t columns_, rows_;
   double relief_, reach_;
+  std::array<Direction, kDirections> directions_;
 };
 
 /// The sample before a place of an axis, and the share of the one behind it.

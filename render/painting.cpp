@@ -11,7 +11,9 @@
 namespace meshhier::render {
 namespace {
 
-/// Shadows need no more than this; the longer side of what they are made of.
+/// Shadows are soft: they are made of a picture with so many times fewer pixels a side,
+constexpr std::uint32_t kShadowParts = 2;
+/// and need no more than this; its longer side.
 constexpr std::uint32_t kMostShadowPixels = 1024;
 
 /// Slopes are made so steep on the average, as far as kMostRelief lets them.
@@ -22,7 +24,8 @@ constexpr double kExposure = 0.82;
 
 Framing coarser(Framing framing) {
   const std::uint32_t longer = std::max(framing.width, framing.height);
-  const std::uint32_t parts = (longer + kMostShadowPixels - 1) / kMostShadowPixels;
+  const std::uint32_t parts =
+      std::max(kShadowParts, (longer + kMostShadowPixels - 1) / kMostShadowPixels);
   framing.width = std::max(framing.width / parts, 1U);
   framing.height = std::max(framing.height / parts, 1U);
   framing.samples = 1;

@@ -11,7 +11,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <vector>
 
 namespace meshhier::render {
 namespace {
@@ -120,35 +119,52 @@ double favour(const View& view, Vec3d front) {
   return 1 + kFrontFavour * dot(view.direction, front * -1);
 }
 
-std::vector<View> candidates(Vec3d up, std::span<const double> elevations) {
+struct Angles {
+  double around = 0, elevation = 0;
+};
+
+View view_at(Vec3d up, const Angles& angles) {
   const auto [first, second] = level_axes(up);
-  std::vector<View> views;
-  for (int i = 0; i < kAround; ++i) {
-    const UnitTurn around = turn_by(kFullTurn * (i + 0.5) / kAround);
-    const Vec3d level = first * around.cosine + second * around.sine;
-    for (const double elevation : elevations) {
-      const UnitTurn raised = turn_by(elevation);
-      views.push_back({(level * raised.cosine + up * raised.sine) * -1, up});
-    }
-  }
-  return views;
+  const UnitTurn around = turn_by(angles.around), raised = turn_by(angles.elevation);
+  const Vec3d level = first * around.cosine + second * around.sine;
+  return {(level * raised.cosine + up * raised.sine) * -1, up};
 }
 
-View best_of(const std::vector<View>& views, std::span<const Facet> facets, Vec3d up) {
-  const Vec3d front = level_axes(up).second * -1;
-  View best;
-  double most = -1;
-  for (const View& view : views) {
-    Raster raster(portrait_camera(facets, view,
+class BestView {
+ public:
+  BestView(std::span<const Facet> facets, Vec3d up)
+      : facets_(facets), up_(up), front_(level_axes(up).second * -1) {}
+
+  void consider(const Angles& angles) {
+    const View view = view_at(up_, angles);
+    Raster raster(portrait_camera(facets_, view,
                                   {.width = kTrialPixels, .height = kTrialPixels, .samples = 1}));
-    raster.draw(facets);
-    const double worth = form_in(raster) * favour(view, front);
-    if (worth > most) {
-      most = worth;
-      best = view;
+    raster.draw(facets_);
+    const double worth = form_in(raster) * favour(view, front_);
+    if (worth > most_) {
+      most_ = worth;
+      best_ = angles;
     }
   }
-  return best;
+
+  const Angles& angles() const { return best_; }
+  View view() const { return view_at(up_, best_); }
+
+ private:
+  std::span<const Facet> facets_;
+  Vec3d up_, front_;
+  double most_ = -1;
+  Angles best_;
+};
+
+/// How far around shows more than how far above: that is tried from where it is best.
+View best_view(std::span<const Facet> facets, Vec3d up, std::span<const double> elevations) {
+  BestView best(facets, up);
+  for (int i = 0; i < kAround; ++i)
+    best.consider({kFullTurn * (i + 0.5) / kAround, elevations[0]});
+  for (const double elevation : elevations.subspan(1))
+    best.consider({best.angles().around, elevation});
+  return best.view();
 }
 
 }  // namespace
@@ -156,11 +172,11 @@ View best_of(const std::vector<View>& views, std::span<const Facet> facets, Vec3
 View portrait_view(std::span<const Facet> facets, Vec3d up) {
   const Vec3d upward = unit(up), facing = facing_of(facets);
   if (length(facing) <= kOpen)
-    return best_of(candidates(upward, kElevations), facets, upward);
+    return best_view(facets, upward, kElevations);
   if (dot(unit(facing), upward) <= kUpright)
     return {unit(facing) * -1, upward};
   if (length(facing) < kMap && height_of(facets, upward) > kFlat)
-    return best_of(candidates(upward, kFromAbove), facets, upward);
+    return best_view(facets, upward, kFromAbove);
   return {upward * -1, level_axes(upward).second};
 }
 

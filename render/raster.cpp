@@ -16,41 +16,11 @@ Vec3f blend(const Weights& weights, Vec3f a, Vec3f b, Vec3f c) {
                   to_double(c) * weights[2]);
 }
 
-/// A facet as the camera sees it.
-struct SeenFacet {
-  std::array<Vec3d, 3> places;  ///< on the grid
-  Vec3f flat;                   ///< its own normal
-  std::array<Vec3f, 3> normals, colours;
-  Skin skin;
-  double level = 0;  ///< of its texture
-
-  void turn_round() {
-    flat = flat * -1;
-    for (Vec3f& normal : normals)
-      normal = normal * -1;
-  }
-
-  double depth(const Weights& w) const {
-    return places[0].z * w[0] + places[1].z * w[1] + places[2].z * w[2];
-  }
-  Vec3f normal(const Weights& w) const {
-    const Vec3f unit = unit_or_zero(blend(w, normals[0], normals[1], normals[2]));
-    return unit == Vec3f{} ? flat : unit;
-  }
-  Vec3f colour(const Weights& w) const {
-    return skin.texture == nullptr ? blend(w, colours[0], colours[1], colours[2])
-                                   : skin.texture->light_at(texcoord(w), level);
-  }
-  Vec2f texcoord(const Weights& w) const {
-    const auto& [a, b, c] = skin.texcoords;
-    return {static_cast<float>(a.u * w[0] + b.u * w[1] + c.u * w[2]),
-            static_cast<float>(a.v * w[0] + b.v * w[1] + c.v * w[2])};
-  }
-};
+using Places = std::array<Vec3d, 3>;  ///< of a facet's corners, on the grid
 
 /// Of the side from which the corners turn counter-clockwise, by the view's axes. The grid's y goes
 /// down and its z away: both turn.
-Vec3f flat_normal(const std::array<Vec3d, 3>& places) {
+Vec3f flat_normal(const Places& places) {
   const Vec3d across = cross(places[1] - places[0], places[2] - places[0]);
   const double size = length(across);
   if (!(size > 0) || !std::isfinite(size))
@@ -64,7 +34,7 @@ double area(double ab_x, double ab_y, double ac_x, double ac_y) {
 }
 
 /// The camera's lines are parallel: it is the same all over a facet.
-double level_of(const Skin& skin, const std::array<Vec3d, 3>& places) {
+double level_of(const Skin& skin, const Places& places) {
   const auto& [a, b, c] = places;
   const auto& [s, t, r] = skin.texcoords;
   const double texels =
@@ -73,22 +43,58 @@ double level_of(const Skin& skin, const std::array<Vec3d, 3>& places) {
   return level_for(texels / area(b.x - a.x, b.y - a.y, c.x - a.x, c.y - a.y));
 }
 
-std::optional<SeenFacet> seen(const Camera& camera, const Facet& facet, const Skin& skin) {
-  SeenFacet result;
-  result.skin = skin;
-  for (std::size_t i = 0; i < 3; ++i) {
-    result.places[i] = camera.on_grid(facet[i].position);
-    if (!is_finite(result.places[i]))
-      return std::nullopt;
-    result.normals[i] = camera.turned(unit_or_zero(facet[i].normal));
-    result.colours[i] = facet[i].colour;
+/// What a facet shows of itself, as the camera sees it.
+class SeenSurface {
+ public:
+  SeenSurface(const Camera& camera, const Facet& facet, const Skin& skin, const Places& places)
+      : skin_(skin), flat_(flat_normal(places)) {
+    const bool is_behind = flat_.z < 0;
+    if (is_behind)
+      flat_ = flat_ * -1;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3f normal = camera.turned(unit_or_zero(facet[i].normal));
+      normals_[i] = is_behind ? normal * -1 : normal;
+      colours_[i] = facet[i].colour;
+    }
+    if (skin.texture != nullptr)
+      level_ = level_of(skin, places);
   }
-  if (skin.texture != nullptr)
-    result.level = level_of(skin, result.places);
-  result.flat = flat_normal(result.places);
-  if (result.flat.z < 0)
-    result.turn_round();
-  return result;
+
+  Vec3f normal(const Weights& w) const {
+    const Vec3f unit = unit_or_zero(blend(w, normals_[0], normals_[1], normals_[2]));
+    return unit == Vec3f{} ? flat_ : unit;
+  }
+  Vec3f colour(const Weights& w) const {
+    return skin_.texture == nullptr ? blend(w, colours_[0], colours_[1], colours_[2])
+                                    : skin_.texture->light_at(texcoord(w), level_);
+  }
+
+ private:
+  Vec2f texcoord(const Weights& w) const {
+    const auto& [a, b, c] = skin_.texcoords;
+    return {static_cast<float>(a.u * w[0] + b.u * w[1] + c.u * w[2]),
+            static_cast<float>(a.v * w[0] + b.v * w[1] + c.v * w[2])};
+  }
+
+  Skin skin_;
+  Vec3f flat_;  ///< the facet's own normal
+  std::array<Vec3f, 3> normals_, colours_;
+  double level_ = 0;  ///< of its texture
+};
+
+/// Nothing if one of them is not finite.
+std::optional<Places> places_of(const Camera& camera, const Facet& facet) {
+  Places places;
+  for (std::size_t i = 0; i < 3; ++i) {
+    places[i] = camera.on_grid(facet[i].position);
+    if (!is_finite(places[i]))
+      return std::nullopt;
+  }
+  return places;
+}
+
+float depth_at(const Places& places, const Weights& w) {
+  return static_cast<float>(places[0].z * w[0] + places[1].z * w[1] + places[2].z * w[2]);
 }
 
 }  // namespace
@@ -107,17 +113,21 @@ GridPoint Raster::in_rows(Vec3d place) const {
 }
 
 void Raster::draw(const Facet& facet, const Skin& skin) {
-  const std::optional<SeenFacet> there = seen(camera_, facet, skin);
-  if (!there)
+  const std::optional<Places> places = places_of(camera_, facet);
+  if (!places)
     return;
-  const auto& [a, b, c] = there->places;
+  const auto& [a, b, c] = *places;
   const GridTriangle triangle({in_rows(a), in_rows(b), in_rows(c)});
+  std::optional<SeenSurface> surface;  // many facets lie between samples, or behind others
   triangle.visit(columns(), rows(),
                  [&](std::int64_t column, std::int64_t row, const Weights& weights) {
                    Sample& sample = samples_[static_cast<std::size_t>(row * columns() + column)];
-                   const auto depth = static_cast<float>(there->depth(weights));
-                   if (depth < sample.depth)
-                     sample = {depth, there->normal(weights), there->colour(weights)};
+                   const float depth = depth_at(*places, weights);
+                   if (!(depth < sample.depth))
+                     return;
+                   if (!surface)
+                     surface.emplace(camera_, facet, skin, *places);
+                   sample = {depth, surface->normal(weights), surface->colour(weights)};
                  });
 }
 

@@ -70,6 +70,7 @@ const std::map<std::string, std::string>& free_values() {
       {"/config/outline/tolerance", kAsked},
       {"/config/storage/positions/bits", kAsked},
       {"/config/weld", kAsked},
+      {"/outline/sector_level", "tiles of another level may be divided into as many sectors"},
       {"/outline/tolerance", "what the search for an outline that fits ended with"},
       {"/outline/polylines_found", "found and dropped may both be others"},
       {"/storage/positions/worst_rounding", "a bound; bounds of partitions contain it"}};
