@@ -30,7 +30,8 @@ struct BuildArguments {
   std::vector<std::string> named;  ///< a config, or meshes
   std::string output;
   std::vector<std::string> settings;
-  std::string stats;  ///< file for the account; empty: none
+  std::string stats;       ///< file for the account; empty: none
+  std::string input_note;  ///< file for the names of what was read; empty: none
   bool force = false;
   bool restart = false;
   bool verbose = false;  ///< also the account
@@ -53,13 +54,22 @@ void give_back_files(BuildArguments& arguments) {
     throw CLI::RequiredError("A mesh or a config");
 }
 
-/// The account must not take the place of what the build reads or makes.
-storage::OutputRequest stats_request(const BuildArguments& arguments,
-                                     const config::Config& config) {
-  storage::OutputRequest request{arguments.stats, arguments.force, config::read_by(config)};
+/// Which must not take the place of what the build reads or makes.
+storage::OutputRequest output_request(const std::string& path, const BuildArguments& arguments,
+                                      const config::Config& config) {
+  storage::OutputRequest request{path, arguments.force, config::read_by(config)};
   request.inputs.push_back(config.output);
   request.inputs.insert(request.inputs.end(), arguments.named.begin(), arguments.named.end());
   return request;
+}
+
+/// When all is done: a build that is killed leaves none that is not finished.
+void write_input_note(const BuildArguments& arguments, const config::Config& config,
+                      const storage::InputNote& note, Environment& environment) {
+  storage::OutputRequest request = output_request(arguments.input_note, arguments, config);
+  request.replace = true;  // it says which hierarchy it belongs to
+  const std::string text = to_json_text(note);
+  storage::OutputFile(environment.files, request).publish(std::as_bytes(std::span(text)));
 }
 
 void write_stats(storage::OutputFile& file, const pipeline::BuildStats& stats) {
@@ -106,7 +116,7 @@ int run_build(const BuildArguments& arguments, execution::ProgressMode mode,
     return run_estimate(config, arguments, environment);
   std::optional<storage::OutputFile> stats;
   if (!arguments.stats.empty()) {
-    stats.emplace(environment.files, stats_request(arguments, config),
+    stats.emplace(environment.files, output_request(arguments.stats, arguments, config),
                   [&] { environment.cancel.check(); });
   }
   const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
@@ -116,6 +126,8 @@ int run_build(const BuildArguments& arguments, execution::ProgressMode mode,
   progress->finish(config.output.string());
   if (stats)
     write_stats(*stats, report.stats);
+  if (!arguments.input_note.empty())
+    write_input_note(arguments, config, report.input, environment);
   std::ostream& out = stats ? account_stream(environment, arguments.stats) : environment.out;
   out << report.text;
   if (arguments.verbose)
@@ -187,6 +199,12 @@ void add_build_command(CLI::App& parser, Invocation& invocation) {
   command
       ->add_option("--stats", arguments->stats,
                    "Write what each stage took of time, memory and disk, as JSON")
+      ->type_name("FILE")
+      ->excludes(dry_run);
+  command
+      ->add_option("--input-note", arguments->input_note,
+                   "Write which files were read, with sizes, times and checksums, and which were "
+                   "missing, as JSON")
       ->type_name("FILE")
       ->excludes(dry_run);
   command

@@ -35,4 +35,10 @@ class RowWriter {
 /// some percent: its codes are the standard's.
 std::unique_ptr<RowWriter> open_row_writer(const WrittenImage& image, ByteSink sink);
 
+/// In any format. What has no rows, and pictures in jpeg that are small enough, are held whole and
+/// written at the end, as encode_image() does.
+std::unique_ptr<RowWriter> open_picture_writer(const WrittenImage& image, ByteSink sink);
+/// What it holds at most, besides the sink's bytes.
+std::uint64_t held_bytes(const WrittenImage& image);
+
 }  // namespace meshhier::images

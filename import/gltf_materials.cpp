@@ -70,7 +70,7 @@ void GltfMaterials::add_to(MaterialTable& table) {
 void GltfMaterials::tell_missing(MaterialTable& table) const {
   for (const auto& [key, use] : uses_) {
     if (use.picture && !use.has_picture())
-      table.miss(use.picture->name, file_.path().string());
+      table.miss(use.picture->name, file_.path().string(), use.picture->sought);
   }
 }
 

@@ -1,9 +1,9 @@
 #include "import/import_input.h"
 
-#include "hierarchy/attribute_names.h"
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
 #include "import/gltf_import.h"
+#include "import/join_layouts.h"
 #include "import/obj_import.h"
 #include "import/ply_import.h"
 #include "import/raw_mesh.h"
@@ -33,7 +33,7 @@ constexpr std::uint64_t kImportMiB = std::uint64_t{1} << 20;
 /// One build's import.
 class Import {
  public:
-  Import(const InputFiles& input, const ImportEnvironment& environment)
+  Import(InputFiles& input, const ImportEnvironment& environment)
       : input_(input),
         env_(environment),
         room_{environment.scratch, environment.sort_bytes, environment.cancel},
@@ -48,9 +48,10 @@ class Import {
       for (const InputFileFacts& file : input_.all())
         add(file, ply);
       facts_.faces = faces_;
+      count("untextured_files", join_layouts(joined_, mesh_, room_));
       write(input_.weld() ? weld() : mesh_, ply);
     }
-    input_.check_unchanged();
+    note_files();
     note_textures();
     std::ranges::sort(facts_.counts, {}, &SourceCount::name);
     return std::move(facts_);
@@ -87,24 +88,26 @@ class Import {
           env_.progress.advance(count);
         });
     read(*stream);
-    note(facts, bytes, checksum.complete(*file, [this] { env_.cancel.check(); }));
+    checksums_.push_back(checksum.complete(*file, [this] { env_.cancel.check(); }));
   }
 
-  void note(const InputFileFacts& facts, std::uint64_t bytes, std::uint64_t checksum) {
-    facts_.files.push_back(
-        {facts.path.filename().string(), name_of(facts.format), bytes, checksum});
-    for (const CompanionFile& companion : facts.companions)
-      note_companion(companion.path);
-  }
-
-  void note_companion(const std::filesystem::path& path) {
-    const auto file = env_.files.open(path);
-    facts_.files.push_back({path.filename().string(), "buffer", file->size(), checksum_of(*file)});
-    env_.progress.advance(file->size());
-  }
-
-  std::uint64_t checksum_of(const storage::File& file) const {
-    return storage::FileChecksum(file.size()).complete(file, [this] { env_.cancel.check(); });
+  /// When all is read. Pictures are read for their checksums, which is little beside decoding them.
+  void note_files() {
+    Companions all = input_.companions();
+    for (const CompanionFile& library : mesh_.materials.companions().files())
+      all.add(library);
+    for (const images::ImageSource& picture : mesh_.materials.list().images) {
+      if (!picture.file.empty() && picture.bytes == 0)
+        all.add({picture.file, InputPart::picture, env_.files.identity(picture.file)});
+    }
+    all.await(mesh_.materials.companions().awaited());
+    input_.set_companions(std::move(all));
+    facts_.record = input_.record(checksums_, env_.cancel, [this](const CompanionFile& file) {
+      if (file.part == InputPart::buffer)  // the others were not known when the stage began
+        env_.progress.advance(file.identity.bytes);
+    });
+    facts_.files = input_.describe(facts_.record);
+    input_.check_unchanged();
   }
 
   void note_textures() {
@@ -134,7 +137,7 @@ class Import {
   }
 
   void add(const InputFileFacts& facts, TemporaryFile& ply) {
-    const bool is_first = facts_.files.empty();
+    const std::uint64_t vertices = mesh_.vertex_count();
     Added added;
     switch (facts.format.kind) {
       case MeshKind::ply:
@@ -159,15 +162,8 @@ class Import {
         added = add_gltf(facts, ply.path());
         break;
     }
-    if (is_first)
-      mesh_.layout = added.layout;
-    if (added.layout != mesh_.layout) {
-      mesh_io::fail_file(
-          facts.path,
-          fmt::format("has attributes: {}; {} has: {}. Files that are joined must have the same",
-                      attribute_names(added.layout), input_.all()[0].path.string(),
-                      attribute_names(mesh_.layout)));
-    }
+    joined_.push_back({facts.path, added.layout, mesh_.vertex_count() - vertices});
+    require_joinable(joined_);
     mesh_.fits_float = mesh_.fits_float && added.fits_float;
     faces_ += added.faces;
     facts_.degenerate_triangles += added.degenerate_triangles;
@@ -191,8 +187,7 @@ class Import {
     if (!facts.format.is_gzip) {
       const auto source = mesh_io::make_ply_source(env_.files.open(facts.path));
       const Added added = add_plain_ply(*source, facts.path);
-      note(facts, source->description().file_bytes,
-           source->checksum([this] { env_.cancel.check(); }));
+      checksums_.push_back(source->checksum([this] { env_.cancel.check(); }));
       env_.progress.advance(facts.identity.bytes);
       return added;
     }
@@ -236,7 +231,8 @@ class Import {
     if (!facts.format.is_gzip) {
       const Added added = add_plain_gltf(facts, env_.files.open(facts.path));
       const auto file = env_.files.open(facts.path);
-      note(facts, file->size(), checksum_of(*file));
+      checksums_.push_back(
+          storage::FileChecksum(file->size()).complete(*file, [this] { env_.cancel.check(); }));
       env_.progress.advance(facts.identity.bytes);
       return added;
     }
@@ -361,13 +357,15 @@ class Import {
     ply.counted();
   }
 
-  const InputFiles& input_;
+  InputFiles& input_;
   const ImportEnvironment& env_;
   ImportRoom room_;
   mesh_io::NamedFiles named_;
   RawMesh mesh_;
   std::optional<RawMesh> welded_;
   std::uint64_t faces_ = 0;
+  std::vector<JoinedFile> joined_;
+  std::vector<std::uint64_t> checksums_;  ///< of the meshes that are read
   ImportFacts facts_;
 };
 
@@ -390,12 +388,9 @@ void TemporaryFile::counted() {
 
 void ImportFacts::complete(SourceSummary& summary) const {
   summary.file_bytes = 0;
-  std::vector<std::uint64_t> checksums;
-  for (const SourceFile& file : files) {
+  for (const SourceFile& file : files)
     summary.file_bytes += file.bytes;
-    checksums.push_back(file.checksum);
-  }
-  summary.checksum = joined_checksum(checksums);
+  summary.checksum = joined_checksum(files);
   summary.files = files;
   summary.counts = counts;
   summary.textures = textures;
@@ -434,7 +429,7 @@ std::uint64_t predict_import(const InputFiles& input, const ImportMemory& memory
   constexpr std::uint64_t kSpools = 3;
   constexpr std::uint64_t kTexturedSpools = 5;
   constexpr std::uint64_t kPacked = 4;
-  std::uint64_t content = input.bytes();
+  std::uint64_t content = input.geometry_bytes();
   std::uint64_t textured = 0;
   for (const InputFileFacts& file : input.all()) {
     const std::uint64_t bytes = file.identity.bytes * (file.format.is_gzip ? kPacked : 1);
@@ -446,7 +441,7 @@ std::uint64_t predict_import(const InputFiles& input, const ImportMemory& memory
   return content + spools - std::min(spools, memory.pool_bytes);
 }
 
-ImportFacts import_input(const InputFiles& input, TemporaryFile& ply,
+ImportFacts import_input(InputFiles& input, TemporaryFile& ply,
                          const ImportEnvironment& environment) {
   return Import(input, environment).run(ply);
 }

@@ -51,7 +51,8 @@ class TemporaryFile {
 
 /// What was learnt of the files, and is not in the PLY.
 struct ImportFacts {
-  std::vector<SourceFile> files;
+  InputRecord record;             ///< of the files that were read, and those that were not there
+  std::vector<SourceFile> files;  ///< the same as the hierarchy tells it
   std::vector<SourceCount> counts;
   std::optional<std::uint64_t> faces;  ///< none: as many as the PLY has
   std::uint64_t degenerate_triangles = 0;
@@ -86,10 +87,11 @@ struct ImportEnvironment {
   const execution::CancelToken& cancel;
 };
 
-/// Writes the PLY. Parallel only within sorts; the result depends on the files alone, but for the
-/// order of triangles if they are welded. Throws Error(input) naming file and line or byte, also if
-/// files that are joined have not the same attributes, Error(io), Error(interrupted).
-ImportFacts import_input(const InputFiles& input, TemporaryFile& ply,
+/// Writes the PLY, and tells `input` which companions it has. Parallel only within sorts; the
+/// result depends on the files alone, but for the order of triangles if they are welded. Throws
+/// Error(input) naming file and line or byte, also if files that are joined have not the same
+/// attributes, Error(io), Error(interrupted).
+ImportFacts import_input(InputFiles& input, TemporaryFile& ply,
                          const ImportEnvironment& environment);
 
 }  // namespace meshhier::importing

@@ -8,9 +8,10 @@
 #include "storage/io/file_checksum.h"
 #include "storage/io/hash.h"
 
-#include <array>
+#include <algorithm>
 #include <bit>
 #include <span>
+#include <utility>
 
 namespace meshhier::importing {
 
@@ -41,17 +42,36 @@ InputFiles::InputFiles(storage::FileSystem& files, const mesh_io::InputPaths& pa
     InputFileFacts facts{path, format, files.identity(path)};
     facts.names_textures = textures == Textures::use && names_textures(*file, format);
     all_.push_back(std::move(facts));
-    find_companions(all_.back(), *file);
+    find_buffers(all_.back(), *file);
   }
 }
 
-void InputFiles::find_companions(InputFileFacts& file, const storage::File& content) const {
+void InputFiles::find_buffers(const InputFileFacts& file, const storage::File& content) {
   if (file.format.kind != mesh_io::MeshKind::gltf && file.format.kind != mesh_io::MeshKind::glb)
     return;
   for (const std::filesystem::path& path : mesh_io::gltf_buffer_files(content)) {
     if (files_.kind(path) == storage::FileKind::regular)
-      file.companions.push_back({path, files_.identity(path)});
+      companions_.add({path, InputPart::buffer, files_.identity(path)});
   }
+}
+
+bool InputFiles::recall(const InputRecord& earlier) {
+  const auto is_there = [this](const std::filesystem::path& path) {
+    return files_.kind(path) == storage::FileKind::regular;
+  };
+  if (std::ranges::any_of(earlier.awaited, is_there))
+    return false;
+  Companions now;
+  now.await(earlier.awaited);
+  for (const ReadFile& file : earlier.files) {
+    if (file.part == InputPart::mesh)
+      continue;
+    if (!is_there(file.path))
+      return false;
+    now.add({file.path, file.part, files_.identity(file.path)});
+  }
+  companions_ = std::move(now);
+  return true;
 }
 
 std::string InputFiles::name() const {
@@ -74,20 +94,28 @@ std::string InputFiles::imported_name() const {
 
 std::uint64_t InputFiles::bytes() const {
   std::uint64_t bytes = 0;
-  for_each_file([&](const auto&, const storage::FileIdentity& file) { bytes += file.bytes; });
+  for_each_file([&](const auto&, InputPart, const auto& file) { bytes += file.bytes; });
+  return bytes;
+}
+
+std::uint64_t InputFiles::geometry_bytes() const {
+  std::uint64_t bytes = 0;
+  for_each_file([&](const auto&, InputPart part, const auto& file) {
+    bytes += part <= InputPart::buffer ? file.bytes : 0;
+  });
   return bytes;
 }
 
 std::int64_t InputFiles::times() const {
   std::vector<std::int64_t> times;
-  for_each_file([&](const auto&, const storage::FileIdentity& file) {
+  for_each_file([&](const auto&, InputPart, const storage::FileIdentity& file) {
     times.insert(times.end(), {file.modified_ns, file.changed_ns});
   });
   return std::bit_cast<std::int64_t>(storage::checksum(std::as_bytes(std::span(times))));
 }
 
 void InputFiles::check_unchanged() const {
-  for_each_file([&](const std::filesystem::path& path, const storage::FileIdentity& identity) {
+  for_each_file([&](const std::filesystem::path& path, InputPart, const auto& identity) {
     if (files_.identity(path) != identity) {
       throw Error(ErrorCode::input,
                   path.string() + " was changed while it was read; build it again");
@@ -96,28 +124,37 @@ void InputFiles::check_unchanged() const {
 }
 
 std::uint64_t InputFiles::checksum(const execution::CancelToken& cancel) const {
-  std::vector<std::uint64_t> checksums;
-  for_each_file([&](const std::filesystem::path& path, const auto&) {
-    const auto file = files_.open(path);
-    checksums.push_back(
-        storage::FileChecksum(file->size()).complete(*file, [&] { cancel.check(); }));
-  });
-  return joined_checksum(checksums);
+  std::vector<std::uint64_t> meshes;
+  for (const InputFileFacts& file : all_)
+    meshes.push_back(checksum_of(file.path, cancel));
+  return joined_checksum(describe(record(meshes, cancel, [](const CompanionFile&) {})));
 }
 
-std::uint64_t joined_checksum(const std::vector<std::uint64_t>& checksums) {
-  if (checksums.size() == 1)
-    return checksums[0];
-  storage::Checksum sum;
-  for (std::uint64_t checksum : checksums) {
-    std::array<std::byte, 8> bytes{};
-    for (std::byte& byte : bytes) {
-      byte = static_cast<std::byte>(checksum);
-      checksum >>= 8;
-    }
-    sum.add(bytes);
+std::uint64_t InputFiles::checksum_of(const std::filesystem::path& path,
+                                      const execution::CancelToken& cancel) const {
+  const auto file = files_.open(path);
+  return storage::FileChecksum(file->size()).complete(*file, [&] { cancel.check(); });
+}
+
+InputRecord InputFiles::record(const std::vector<std::uint64_t>& meshes,
+                               const execution::CancelToken& cancel,
+                               const std::function<void(const CompanionFile&)>& visit) const {
+  InputRecord record{{}, companions_.awaited()};
+  for (std::size_t i = 0; i < all_.size(); ++i)
+    record.files.push_back({all_[i].path, InputPart::mesh, all_[i].identity, meshes[i]});
+  for (const CompanionFile& file : companions_.files()) {
+    record.files.push_back({file.path, file.part, file.identity, checksum_of(file.path, cancel)});
+    visit(file);
   }
-  return sum.value();
+  std::ranges::stable_sort(record.files, {}, &ReadFile::part);
+  return record;
+}
+
+std::vector<SourceFile> InputFiles::describe(const InputRecord& record) const {
+  std::vector<std::string> formats;
+  for (const InputFileFacts& file : all_)
+    formats.push_back(name_of(file.format));
+  return source_files(record.files, formats);
 }
 
 }  // namespace meshhier::importing

@@ -3,6 +3,7 @@
 
 #include "execution/cancel.h"
 #include "hierarchy/published.h"
+#include "import/input_record.h"
 #include "mesh_io/input_paths.h"
 #include "mesh_io/mesh_format.h"
 #include "mesh_io/mesh_source.h"
@@ -10,6 +11,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,18 +21,11 @@ namespace meshhier::importing {
 /// Whether textures that a mesh names are used, or passed over as if there were none.
 enum class Textures : std::uint8_t { use, ignore };
 
-/// A file that another one is not whole without: a buffer of a glTF.
-struct CompanionFile {
-  std::filesystem::path path;
-  storage::FileIdentity identity;
-};
-
 struct InputFileFacts {
   std::filesystem::path path;
   mesh_io::MeshFormat format;
   storage::FileIdentity identity;
-  std::vector<CompanionFile> companions{};  ///< those that are there
-  bool names_textures = false;              ///< a PLY that is read with its pictures
+  bool names_textures = false;  ///< a PLY that is read with its pictures
 
   bool is_plain_ply() const { return format.kind == mesh_io::MeshKind::ply && !format.is_gzip; }
   /// What its content is called in messages when it is no longer packed.
@@ -43,7 +38,15 @@ class InputFiles {
   InputFiles(storage::FileSystem& files, const mesh_io::InputPaths& paths, bool weld,
              Textures textures = Textures::use);
 
+  /// The meshes.
   const std::vector<InputFileFacts>& all() const { return all_; }
+  /// What belongs to them: buffers of glTF files that are there; libraries and pictures as well
+  /// once it is known which, from an import or from an earlier build.
+  const Companions& companions() const { return companions_; }
+  void set_companions(Companions companions) { companions_ = std::move(companions); }
+  /// Takes those of an earlier build, as they are now. False if one is not there any more, or if
+  /// one that was not there is; then nothing is changed.
+  bool recall(const InputRecord& earlier);
   bool weld() const { return weld_; }
   Textures textures() const { return textures_; }
   /// Not one PLY that is read in place as it is.
@@ -63,32 +66,39 @@ class InputFiles {
   std::string imported_name() const;
   /// Of all files, companions among them.
   std::uint64_t bytes() const;
+  /// Of meshes and buffers.
+  std::uint64_t geometry_bytes() const;
   /// One number for the times of all files: as long as it stays, so does what is in them.
   std::int64_t times() const;
   /// Throws Error(input) if a file is not what it was any more.
   void check_unchanged() const;
   /// As SourceSummary's. Reads all files.
   std::uint64_t checksum(const execution::CancelToken& cancel) const;
+  /// Of all files, each with its checksum; `meshes`: those of the meshes. Reads the companions, and
+  /// calls `visit` for each.
+  InputRecord record(const std::vector<std::uint64_t>& meshes, const execution::CancelToken& cancel,
+                     const std::function<void(const CompanionFile&)>& visit) const;
+  /// One entry a mesh, as SourceSummary has them, and one for the files of each other part.
+  std::vector<SourceFile> describe(const InputRecord& record) const;
 
  private:
-  void find_companions(InputFileFacts& file, const storage::File& content) const;
-  /// Calls `visit(path, identity)` for each file, its companions behind it.
+  void find_buffers(const InputFileFacts& file, const storage::File& content);
+  std::uint64_t checksum_of(const std::filesystem::path& path,
+                            const execution::CancelToken& cancel) const;
+  /// Calls `visit(path, part, identity)` for each file, companions behind the meshes.
   template <class Visit>
   void for_each_file(const Visit& visit) const {
-    for (const InputFileFacts& file : all_) {
-      visit(file.path, file.identity);
-      for (const CompanionFile& companion : file.companions)
-        visit(companion.path, companion.identity);
-    }
+    for (const InputFileFacts& file : all_)
+      visit(file.path, InputPart::mesh, file.identity);
+    for (const CompanionFile& companion : companions_.files())
+      visit(companion.path, companion.part, companion.identity);
   }
 
   storage::FileSystem& files_;
   std::vector<InputFileFacts> all_;
+  Companions companions_;
   bool weld_;
   Textures textures_;
 };
-
-/// Of several files from their checksums; of one it is its own.
-std::uint64_t joined_checksum(const std::vector<std::uint64_t>& checksums);
 
 }  // namespace meshhier::importing

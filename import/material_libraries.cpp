@@ -38,9 +38,12 @@ std::vector<std::string> words_of(const std::string& text) {
 
 class LibraryReader {
  public:
-  LibraryReader(const MaterialNames& names, mesh_io::NamedFiles& files,
+  LibraryReader(const MaterialNames& names, mesh_io::NamedFiles& files, Companions& companions,
                 const execution::CancelToken& cancel)
-      : folder_(names.obj().parent_path()), files_(files), cancel_(cancel) {
+      : folder_(names.obj().parent_path()),
+        files_(files),
+        companions_(companions),
+        cancel_(cancel) {
     read_.materials.resize(names.all().size());
     for (std::size_t i = 0; i < names.all().size(); ++i) {
       if (const auto& name = names.all()[i].name)
@@ -75,13 +78,20 @@ class LibraryReader {
       if (const auto file = files_.find(folder_, word))
         read_file(*file);
       else
-        ++read_.missing;
+        miss(statement, word);
     }
+  }
+
+  void miss(const std::string& statement, const std::string& word) {
+    ++read_.missing;
+    companions_.await(mesh_io::sought_places(folder_, statement));
+    companions_.await(mesh_io::sought_places(folder_, word));
   }
 
   void read_file(const fs::path& path) {
     if (!done_.insert(path).second)
       return;
+    companions_.add({path, InputPart::library, files_.files().identity(path)});
     const auto file = files_.files().open(path);
     if (file->size() > kMostLibraryBytes) {
       mesh_io::fail_file(path, fmt::format("expected a material library of at most {} bytes, found "
@@ -125,6 +135,7 @@ class LibraryReader {
 
   fs::path folder_;
   mesh_io::NamedFiles& files_;
+  Companions& companions_;
   const execution::CancelToken& cancel_;
   std::map<std::string, std::vector<std::size_t>> wanted_;  ///< numbers of each name
   std::set<fs::path> done_;
@@ -175,8 +186,8 @@ std::string LibraryMaterial::file_of(std::uint32_t tile) const {
 }
 
 Libraries read_libraries(const MaterialNames& names, mesh_io::NamedFiles& files,
-                         const execution::CancelToken& cancel) {
-  return LibraryReader(names, files, cancel).read(names.libraries());
+                         Companions& companions, const execution::CancelToken& cancel) {
+  return LibraryReader(names, files, companions, cancel).read(names.libraries());
 }
 
 }  // namespace meshhier::importing

@@ -3,6 +3,7 @@
 
 #include "execution/cancel.h"
 #include "images/material_list.h"
+#include "import/input_record.h"
 #include "mesh_io/mtl_reader.h"
 #include "mesh_io/named_files.h"
 
@@ -81,8 +82,8 @@ struct Libraries {
 };
 
 /// Reads the libraries that an OBJ file names. The first definition of a name counts. Throws as
-/// mesh_io::read_mtl, and Error(input) if a library is too large.
+/// mesh_io::read_mtl, and Error(input) if a library is too large. `companions` gets the libraries.
 Libraries read_libraries(const MaterialNames& names, mesh_io::NamedFiles& files,
-                         const execution::CancelToken& cancel);
+                         Companions& companions, const execution::CancelToken& cancel);
 
 }  // namespace meshhier::importing

@@ -33,10 +33,12 @@ std::uint32_t MaterialTable::add(images::Material material) {
   return static_cast<std::uint32_t>(list_.materials.size() - 1);
 }
 
-void MaterialTable::miss(const std::string& name, const std::string& place) {
+void MaterialTable::miss(const std::string& name, const std::string& place,
+                         const std::vector<std::filesystem::path>& sought) {
   if (missing_.empty())
     first_missing_ = plain_text(name, kLongestName) + " of " + plain_text(place, kLongestName);
   missing_.emplace(name, place);
+  companions_.await(sought);
 }
 
 std::string MaterialTable::warning(bool is_textured) const {

@@ -2,13 +2,16 @@
 #pragma once
 
 #include "images/material_list.h"
+#include "import/input_record.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <set>
 #include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 namespace meshhier::importing {
 
@@ -23,8 +26,12 @@ class MaterialTable {
   /// Returns the material's number. Throws Error(input) beyond kMost.
   std::uint32_t add(images::Material material);
   /// Notes that triangles should show a picture that is not there. One of the same name and place
-  /// counts once. `name`: as `place`, a file, names it.
-  void miss(const std::string& name, const std::string& place);
+  /// counts once. `name`: as `place`, a file, names it; `sought`: where it would have been found.
+  void miss(const std::string& name, const std::string& place,
+            const std::vector<std::filesystem::path>& sought);
+
+  /// Files that the materials come from, but for the pictures, and where missing ones would be.
+  Companions& companions() { return companions_; }
 
   const images::MaterialList& list() const { return list_; }
   std::uint64_t missing() const { return missing_.size(); }
@@ -38,6 +45,7 @@ class MaterialTable {
   images::MaterialList list_;
   std::map<Place, std::uint32_t> known_;
   std::set<std::pair<std::string, std::string>> missing_;
+  Companions companions_;
   std::string first_missing_;
 };
 

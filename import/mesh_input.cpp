@@ -62,7 +62,16 @@ std::unique_ptr<mesh_io::MeshSource> MeshInput::open_imported() {
       facts_.textures ? mesh_io::PlyMaterials::read : mesh_io::PlyMaterials::skipped);
 }
 
+InputRecord MeshInput::record(std::uint64_t checksum) const {
+  if (needs_import())
+    return facts_.record;
+  const InputFileFacts& file = input_.all()[0];
+  return {{{file.path, InputPart::mesh, file.identity, checksum}}, {}};
+}
+
 std::uint64_t MeshInput::checksum(const execution::CancelToken& cancel) {
+  if (!facts_.files.empty())
+    return joined_checksum(facts_.files);
   return in_place_ ? in_place_->checksum([&] { cancel.check(); }) : input_.checksum(cancel);
 }
 

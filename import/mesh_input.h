@@ -45,6 +45,8 @@ class MeshInput {
   /// Whether find_copies() was called.
   bool was_looked_at() const { return copy_scratch_.has_value(); }
 
+  /// Takes the companions of an earlier build, as InputFiles::recall.
+  bool recall_files(const InputRecord& earlier) { return input_.recall(earlier); }
   /// Takes what import() and find_copies() would find out from an earlier build of the same files.
   void recall(const mesh_io::MeshDescription& found);
 
@@ -59,6 +61,8 @@ class MeshInput {
   const images::MaterialList& materials() const { return facts_.materials; }
   /// Adds what the PLY does not say.
   void complete(SourceSummary& summary) const { facts_.complete(summary); }
+  /// Of the files; `checksum`: of a mesh that is read in place.
+  InputRecord record(std::uint64_t checksum) const;
   void drop();
 
   /// The files' as in SourceSummary. Reads what was not read so far.

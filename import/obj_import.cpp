@@ -211,7 +211,8 @@ struct ObjSurface {
 /// Looks for the pictures that triangles show; none if there are none.
 std::unique_ptr<ObjSurface> find_surface(const ObjParts& parts, ObjImport& import, RawMesh& mesh,
                                          mesh_io::NamedFiles& files, const ImportRoom& room) {
-  Libraries libraries = read_libraries(parts.names, files, room.cancel);
+  Libraries libraries =
+      read_libraries(parts.names, files, mesh.materials.companions(), room.cancel);
   import.missing_libraries = libraries.missing;
   const std::vector<MaterialNames::Use>& uses = parts.names.all();
   for (std::size_t i = 0; i < uses.size(); ++i) {

@@ -37,9 +37,10 @@ bool ObjTextures::find_picture(std::uint32_t name, PictureTile tile) {
   std::optional<std::filesystem::path>& picture = known->second;
   if (is_new) {
     const std::string file = material.file_of(tile.number());
-    picture = files_.find(material.library.parent_path(), file);
+    const std::filesystem::path folder = material.library.parent_path();
+    picture = files_.find(folder, file);
     if (!picture)
-      table_.miss(file, material.library.string());
+      table_.miss(file, material.library.string(), mesh_io::sought_places(folder, file));
   }
   has_pictures_ |= picture.has_value();
   return picture.has_value();

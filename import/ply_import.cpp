@@ -98,9 +98,11 @@ class PlyImporter {
       if (texture < 0)
         continue;
       const auto i = static_cast<std::size_t>(texture);
-      pictures_[i] = files_.find(path_.parent_path(), names[i]);
-      if (!pictures_[i])
-        mesh_.materials.miss(names[i], path_.string());
+      const std::filesystem::path folder = path_.parent_path();
+      pictures_[i] = files_.find(folder, names[i]);
+      if (!pictures_[i]) {
+        mesh_.materials.miss(names[i], path_.string(), mesh_io::sought_places(folder, names[i]));
+      }
     }
     return std::ranges::any_of(pictures_, [](const auto& picture) { return picture.has_value(); });
   }

@@ -40,6 +40,7 @@ namespace meshhier::inspection {
 namespace {
 
 constexpr std::size_t kSpoolBlockBytes = std::size_t{1} << 20;
+constexpr std::size_t kLongestName = 255;
 
 /// XXH3 of a salt and some bytes: another salt is another, independent hash.
 class SaltedHash {
@@ -306,15 +307,41 @@ class InputProblems {
   const VerifyJob& job_;
 };
 
-void compare_files(const VerifyJob& job, const importing::InputFiles& input,
+std::string described(const SourceFile& file) {
+  return fmt::format("{} ({})", plain_text(file.name, kLongestName), file.format);
+}
+
+/// Which of several files are others.
+void compare_each(const std::vector<SourceFile>& expected, const std::vector<SourceFile>& found,
+                  const InputProblems& problems) {
+  const auto is_in = [](const SourceFile& file, const std::vector<SourceFile>& all) {
+    return std::ranges::any_of(all, [&](const SourceFile& one) {
+      return one.checksum == file.checksum && one.format == file.format;
+    });
+  };
+  for (const SourceFile& file : found) {
+    if (!is_in(file, expected))
+      problems.add(described(file) + ": not what the hierarchy was made of");
+  }
+  for (const SourceFile& file : expected) {
+    if (std::ranges::find(found, file.format, &SourceFile::format) == found.end())
+      problems.add(described(file) + ": the hierarchy was made of it, but the input has none");
+  }
+}
+
+void compare_files(const VerifyJob& job, importing::MeshInput& input,
                    const InputProblems& problems) {
   const SourceSummary& expected = job.reader.manifest().source;
-  problems.compare("bytes", expected.file_bytes, input.bytes());
+  problems.compare("bytes", expected.file_bytes, input.files().bytes());
   const std::uint64_t checksum = input.checksum(job.cancel);
-  if (checksum != expected.checksum) {
-    problems.add(fmt::format("checksum {:016x}, but the hierarchy was made of a file with {:016x}",
-                             checksum, expected.checksum));
-  }
+  if (checksum == expected.checksum)
+    return;
+  problems.add(fmt::format("checksum {:016x}, but the hierarchy was made of a file with {:016x}",
+                           checksum, expected.checksum));
+  SourceSummary found;
+  input.complete(found);
+  if (found.files.size() > 1 || expected.files.size() > 1)
+    compare_each(expected.files, found.files, problems);
 }
 
 /// Whether vertices were welded, as the manifest's config says.
@@ -352,7 +379,7 @@ void verify_input(const VerifyJob& job) {
                   job.scratch.pool(), job.options.memory_budget / 8, job.progress, job.cancel});
   }
   job.progress.stage("input", job.tree().partition_count(), "partitions");
-  compare_files(job, files.files(), problems);
+  compare_files(job, files, problems);
   const auto source = files.open();
   const AttributeLayout& layout = source->description().attributes;
   if (kept_layout(layout) != expected.attributes ||

@@ -34,6 +34,7 @@ struct GltfPicture {
   std::optional<std::filesystem::path> file{};  ///< none: it cannot be had, or `data` has it
   std::uint64_t offset = 0, bytes = 0;          ///< in the file; 0 bytes: all of it
   std::vector<std::byte> data{};
+  std::vector<std::filesystem::path> sought{};  ///< where a file that is not there would be
 };
 
 class GltfFile {

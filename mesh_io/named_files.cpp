@@ -12,6 +12,15 @@ std::filesystem::path tidy(const std::filesystem::path& name) {
   return std::ranges::find(name, "..") == name.end() ? name.lexically_normal() : name;
 }
 
+/// With slashes, and without a comment.
+std::vector<std::string> spellings(std::string_view name) {
+  std::vector<std::string> all{std::string(name)};
+  std::ranges::replace(all[0], '\\', '/');
+  if (const std::size_t comment = all[0].find(" #"); comment != std::string::npos)
+    all.push_back(all[0].substr(0, all[0].find_last_not_of(' ', comment) + 1));
+  return all;
+}
+
 }  // namespace
 
 bool is_possible(const std::filesystem::path& path) {
@@ -23,16 +32,26 @@ bool is_possible(const std::filesystem::path& path) {
          });
 }
 
+std::vector<std::filesystem::path> sought_places(const std::filesystem::path& folder,
+                                                 std::string_view name) {
+  std::vector<std::filesystem::path> places;
+  for (const std::string& spelling : spellings(name)) {
+    for (const std::filesystem::path& place :
+         {folder / tidy(spelling), folder / std::filesystem::path(spelling).filename()}) {
+      if (!spelling.empty() && is_possible(place) &&
+          std::ranges::find(places, place) == places.end())
+        places.push_back(place);
+    }
+  }
+  return places;
+}
+
 std::optional<std::filesystem::path> NamedFiles::find(const Path& folder, std::string_view name) {
-  std::string slashed(name);
-  std::ranges::replace(slashed, '\\', '/');
-  if (auto found = find_written(folder, slashed))
-    return found;
-  const std::size_t comment = slashed.find(" #");
-  if (comment == std::string::npos)
-    return std::nullopt;
-  slashed.resize(slashed.find_last_not_of(' ', comment) + 1);
-  return find_written(folder, slashed);
+  for (const std::string& spelling : spellings(name)) {
+    if (auto found = find_written(folder, spelling))
+      return found;
+  }
+  return std::nullopt;
 }
 
 std::optional<std::filesystem::path> NamedFiles::find_written(const Path& folder,

@@ -21,6 +21,11 @@ namespace meshhier::mesh_io {
 /// Whether the system can have a file of that path; what asks for another one fails.
 bool is_possible(const std::filesystem::path& path);
 
+/// Where NamedFiles::find() looks, as the name is written: there, and beside the file that names
+/// it.
+std::vector<std::filesystem::path> sought_places(const std::filesystem::path& folder,
+                                                 std::string_view name);
+
 class NamedFiles {
  public:
   explicit NamedFiles(storage::FileSystem& files) : files_(files) {}

@@ -147,7 +147,8 @@ BuildReport run_stages(importing::MeshInput& input, storage::WorkDirectory& work
   if (!workshop.journal.is_complete())
     predicted = make_hierarchy(workshop, work.built(), context);
   const storage::HierarchyReader made(files, work.built());
-  BuildOutcome outcome{open.found, bytes_of(made, files), 0, predicted};
+  BuildOutcome outcome{open.found, bytes_of(made, files), 0, predicted,
+                       workshop.journal.source()->input};
   context.cancel.check();
   if (context.config.storage.container == storage::Container::archive) {
     use.add_written(written_for_good(files, use) - before);
@@ -173,8 +174,9 @@ void read_input(importing::MeshInput& input, const storage::WorkDirectory& work,
   config::tileset_transform(context.config, mesh.summary().bounds);  // refused now, if at all
   const mesh_io::FaceCounts counts =
       partition_mesh(mesh, input.copies(), workshop.chunks, workshop.mesh_scratch, context);
+  const SourceSummary summary = summarize(mesh, counts, input, context.cancel);
   workshop.journal.note_source(
-      {summarize(mesh, counts, input, context.cancel), mesh.origin(), input.materials()});
+      {summary, mesh.origin(), input.materials(), input.record(summary.checksum)});
 }
 
 DiskNeed make_hierarchy(Workshop& workshop, const std::filesystem::path& directory,
@@ -202,6 +204,7 @@ DiskNeed make_hierarchy(Workshop& workshop, const std::filesystem::path& directo
     picture_scratch.remove();
     errors = with_texels(std::move(errors), context.tree(), textures);
     source.textures->texels = context.plan.textures.texels();
+    source.textures->missing_images += broken_pictures(context.plan.textures, journal).size();
   }
   DiskNeed need = refined.value_or(context.plan.disk);
   if (const std::uint64_t splits = forest.split_count(); splits > 0) {

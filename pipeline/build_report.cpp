@@ -98,6 +98,21 @@ std::string account_text(const SourceSummary& source, const BuildStats& stats) {
   return text + stats_text(stats);
 }
 
+/// Paths from the folder of the first mesh: the folder may move.
+storage::InputNote note_of(const importing::InputRecord& input, std::uint64_t content) {
+  const std::filesystem::path folder = input.files[0].path.parent_path();
+  const auto from_folder = [&](const std::filesystem::path& path) {
+    const std::filesystem::path relative = path.lexically_relative(folder);
+    return relative.empty() ? path : relative;
+  };
+  storage::InputNote note{.content = content, .files = {}, .awaited = {}};
+  for (const importing::ReadFile& file : input.files)
+    note.files.push_back({from_folder(file.path), file.identity, file.checksum});
+  for (const std::filesystem::path& place : input.awaited)
+    note.awaited.push_back(from_folder(place));
+  return note;
+}
+
 }  // namespace
 
 BuildReport make_report(const storage::HierarchyReader& made, const BuildOutcome& outcome,
@@ -116,6 +131,7 @@ BuildReport make_report(const storage::HierarchyReader& made, const BuildOutcome
                 storage::forced_collapses_text(
                     storage::summarize_forced_collapses(made.records(), source.places));
   report.account = account_text(source, report.stats);
+  report.input = note_of(outcome.input, source.checksum);
   return report;
 }
 

@@ -1,10 +1,12 @@
 // What a build says of itself when it is done.
 #pragma once
 
+#include "import/input_record.h"
 #include "pipeline/plan/build_stats.h"
 #include "pipeline/plan/disk_need.h"
 #include "pipeline/plan/stage_context.h"
 #include "storage/format/hierarchy_reader.h"
+#include "storage/format/input_note.h"
 
 #include <cstdint>
 #include <string>
@@ -15,6 +17,7 @@ struct BuildReport {
   std::string text;     ///< for people: what was made, how long it took, what is to be known of it
   std::string account;  ///< for people: what was imported, and a table of the stages
   BuildStats stats;
+  storage::InputNote input;  ///< which files the hierarchy was made of
 };
 
 /// What of a build neither its plan nor its hierarchy tells.
@@ -23,6 +26,7 @@ struct BuildOutcome {
   std::uint64_t output_bytes = 0;  ///< of the published files, or of the archive
   std::uint64_t peak_temporary_bytes = 0;
   DiskNeed predicted;  ///< from the header, or from the partitions if it was far off
+  importing::InputRecord input;
 };
 
 /// Of the hierarchy `made`, when the last stage of `meter` has ended.

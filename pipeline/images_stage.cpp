@@ -1,10 +1,13 @@
 #include "pipeline/images_stage.h"
 
 #include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
 #include "images/open_source.h"
 #include "pipeline/tiles/texture_store.h"
 
 #include <algorithm>
+
+#include <fmt/format.h>
 
 namespace meshhier::pipeline {
 namespace {
@@ -21,7 +24,24 @@ class NoPicture final : public images::ImageReader {
   images::ImageInfo info_{ImageFormat::png, 1, 1, 3, 0};
 };
 
+/// In one line.
+void warn_of_broken(const std::vector<std::string>& why, execution::Progress& progress) {
+  if (why.empty())
+    return;
+  const bool is_one = why.size() == 1;
+  progress.warn(fmt::format(
+      "{} of the mesh {} broken ({}{}): triangles show the colour of their material instead",
+      counted(why.size(), "pictures"), is_one ? "is" : "are", is_one ? "" : "the first: ", why[0]));
+}
+
 }  // namespace
+
+std::vector<std::string> broken_pictures(const TexturePlan& plan, const BuildJournal& journal) {
+  std::vector<std::string> why = plan.broken;
+  for (const BrokenImage& image : journal.broken_images())
+    why.push_back(image.second);
+  return why;
+}
 
 images::MaterialList decode_images(images::ImageStore& pictures, BuildJournal& journal,
                                    const StageContext& context) {
@@ -50,17 +70,19 @@ images::MaterialList decode_images(images::ImageStore& pictures, BuildJournal& j
       NoPicture none;
       pictures.add(none, step);
     }
+    plan.check_unchanged(i, context.files);
     journal.note_image(pictures.stored(static_cast<std::uint32_t>(i)), why);
   }
   for (const auto& [image, why] : journal.broken_images())
     leave_out(image, materials);
+  warn_of_broken(broken_pictures(plan, journal), context.progress);
   return materials;
 }
 
 StageMemory images_memory(const JobSize& job) {
   if (!job.textured)
     return {};
-  const std::uint64_t item = job.decoder_bytes + job.adding_bytes + kPictureCacheBytes;
+  const std::uint64_t item = job.decoder_bytes + job.adding_bytes;
   return {item, 1, item, item};
 }
 

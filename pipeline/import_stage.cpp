@@ -100,6 +100,7 @@ BuildPlan import_and_plan(importing::MeshInput& input, storage::WorkDirectory& w
   BuildPlan plan =
       plan_build(config, input.description(), input.imported_bytes(),
                  plan_textures(std::move(materials), config.missing_images, environment.files));
+  input.files().check_unchanged();
   plan.disk.temporary_bytes = std::max(plan.disk.temporary_bytes, import_disk(input, config));
   check_disk(plan.disk, config.output, environment.files);
   return plan;

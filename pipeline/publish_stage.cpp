@@ -264,7 +264,10 @@ void publish(Forest& forest, const TextureStore& textures, BuildJournal& journal
       left.push_back(i);
   }
   context.progress.stage("publish", left.size(), "tiles");
-  const TileRoom room = room_for(forest, context.memory(), heaviest_item(forest, context.config));
+  // A picture as it was stored, on its own, and in the tile's file.
+  const std::uint64_t heaviest =
+      heaviest_item(forest, context.config) + 3 * textures.heaviest_bytes();
+  const TileRoom room = room_for(forest, context.memory(), heaviest);
   storage::TileFormat format = {
       input.source.attributes, {input.origin, context.config.up}, storage.compression, {}};
   format.computed_normals = forest.computes_normals();

@@ -5,10 +5,11 @@
 #include "hierarchy/bounds.h"
 #include "hierarchy/vertex_numbers.h"
 #include "images/image_codec.h"
-#include "images/material_texels.h"
+#include "images/row_writer.h"
 #include "pipeline/plan/tile_room.h"
 #include "pipeline/tiles/vertex_order.h"
 #include "texture/leaf_atlas.h"
+#include "texture/reduction.h"
 
 #include <algorithm>
 #include <cmath>
@@ -77,47 +78,9 @@ std::vector<texture::MaterialTexels> texels_of(const TexturedInput& input) {
   return all;
 }
 
-std::uint8_t to_byte(float value) {
-  return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255));
-}
-
-void fill(const texture::AtlasPiece& piece, const std::array<float, 4>& colour, Image& image) {
-  for (std::uint32_t y = 0; y < piece.height; ++y) {
-    for (std::uint32_t x = 0; x < piece.width; ++x) {
-      std::uint8_t* texel = image.at(piece.atlas_x + x, piece.atlas_y + y);
-      for (std::uint32_t c = 0; c < image.channels; ++c)
-        texel[c] = to_byte(colour[c]);
-    }
-  }
-}
-
-/// The strongest of the materials that the atlas shows.
-AlphaMode alpha_of(const texture::LeafAtlas& atlas, const TexturedInput& input) {
-  AlphaMode alpha = AlphaMode::opaque;
-  for (const texture::AtlasPiece& piece : atlas.pieces)
-    alpha = std::max(alpha, input.materials.materials[piece.material].alpha);
-  return alpha;
-}
-
-Image painted(const texture::LeafAtlas& atlas, AlphaMode alpha, const TexturedInput& input) {
-  Image image(atlas.width, atlas.height, alpha == AlphaMode::opaque ? 3 : 4);
-  for (const texture::AtlasPiece& piece : atlas.pieces) {
-    const Material& material = input.materials.materials[piece.material];
-    if (material.image) {
-      const images::MaterialTexels texels(material, input.pictures);
-      texels.read(piece.level, piece.x, piece.y, piece.width, piece.height, image, piece.atlas_x,
-                  piece.atlas_y);
-    } else {
-      fill(piece, material.colour, image);
-    }
-  }
-  return image;
-}
-
 /// By how much a partition's picture is reduced to be baked from: it keeps at least the texels that
 /// the tile above has for it, which saves reducing it again for each tile that is baked from it.
-std::uint32_t reduction(const Image& image, std::uint32_t side) {
-  const std::uint64_t texels = std::uint64_t{image.width} * image.height;
+std::uint32_t reduction(std::uint64_t texels, std::uint32_t side) {
   const std::uint64_t wanted = std::uint64_t{side} * side / 2;
   std::uint32_t factor = 1;
   while (factor < texture::kLeafAlignment &&
@@ -125,6 +88,33 @@ std::uint32_t reduction(const Image& image, std::uint32_t side) {
     factor *= 2;
   return factor;
 }
+
+/// That picture, from the bands of the partition's.
+class SourcePicture {
+ public:
+  SourcePicture(const images::WrittenImage& whole,
+                std::span<const texture::CornerTexcoords> corners, std::uint32_t side) {
+    const std::uint32_t factor = reduction(std::uint64_t{whole.width} * whole.height, side);
+    if (factor > 1)
+      reduction_.emplace(whole.width, whole.height, whole.channels, corners, factor);
+    else
+      image_ = Image(whole.width, whole.height, whole.channels);
+  }
+
+  void add(const Image& band) {
+    if (reduction_)
+      reduction_->add(band);
+    else
+      std::ranges::copy(band.texels, image_.at(0, rows_));
+    rows_ += band.height;
+  }
+  Image take() && { return reduction_ ? (*std::move(reduction_))() : std::move(image_); }
+
+ private:
+  std::optional<texture::Reduction> reduction_;
+  Image image_;  ///< unless it is reduced
+  std::uint32_t rows_ = 0;
+};
 
 // ---- simplified tiles ----------------------------------------------------------------------
 
@@ -225,10 +215,14 @@ Finer near(const BorderCells& border, std::shared_ptr<const BakeSource> source) 
 /// Of a triangle at work: its corners, positions, and coordinates before and after.
 constexpr std::uint64_t kTriangleBytes = 300;
 
-/// A partition's picture: painted, as the encoder has it, and encoded.
-std::uint64_t cut_bytes(std::uint32_t width, std::uint32_t height) {
-  constexpr std::uint64_t kTexelBytes = 4 + 6 + 1;
-  return std::uint64_t{width} * height * kTexelBytes;
+/// A partition's picture: a band of it, what the encoder holds and what has come from it, twice,
+/// and the smaller picture that others are baked from.
+std::uint64_t cut_bytes(const images::WrittenImage& picture, std::uint32_t side) {
+  const std::uint64_t texels = std::uint64_t{picture.width} * picture.height;
+  const std::uint64_t encoded = picture.format == ImageFormat::png ? 4 : 1;
+  const std::uint64_t factor = reduction(texels, side);
+  return LeafPicture::bytes(picture.width, picture.height) + images::held_bytes(picture) +
+         texels * encoded + texture::Reduction::bytes(texels, texels / (factor * factor));
 }
 
 /// A simplified tile's picture, and the finer ones that it is baked from.
@@ -271,18 +265,42 @@ class TextureMaker {
     const LeafCorners leaf = corners_of(mesh, forest_.layout(node.level));
     texture::LeafAtlas atlas = texture::plan_leaf_atlas(
         {leaf.triangles, leaf.texcoords, leaf.materials}, materials_, kLeafSide);
-    const execution::MemoryGate::Share share = gate_.enter(cut_bytes(atlas.width, atlas.height));
     BakeSource source;
-    source.alpha = alpha_of(atlas, input_);
-    source.image = painted(atlas, source.alpha, input_);
     source.corners = std::move(atlas.corners);
     add_triangles(mesh, source);
-    TileTexture texture = encoded(source);
-    const float texel = texel_of(source);
-    const std::uint32_t factor = reduction(source.image, side_);
-    if (factor > 1)
-      source.image = texture::reduced(source.image, source.corners, factor);
+    if (atlas.pieces.empty()) {
+      textures_.put(node, {}, source, {});
+      return;
+    }
+    const LeafPicture picture(atlas, source.corners, input_);
+    source.alpha = picture.alpha();
+    const images::WrittenImage written = written_as(source.alpha, atlas.width, atlas.height);
+    const execution::MemoryGate::Share share = gate_.enter(cut_bytes(written, side_));
+    const TileTexture texture = painted(picture, written, source);
+    const float texel = texture::texel_size(source.surface(), atlas.width, atlas.height);
     textures_.put(node, texture, source, {texel, texel, 0});
+  }
+
+  /// Encodes the picture, and gives the source a smaller one.
+  TileTexture painted(const LeafPicture& picture, const images::WrittenImage& written,
+                      BakeSource& source) const {
+    TileTexture texture{tile_image(written, source.alpha), source.corners};
+    // Address space is no memory yet: the bytes need not move while they grow.
+    texture.image.bytes.reserve(std::size_t{written.width} * written.height);
+    const auto writer = images::open_picture_writer(written, [&](std::span<const std::byte> bytes) {
+      texture.image.bytes.insert(texture.image.bytes.end(), bytes.begin(), bytes.end());
+    });
+    SourcePicture smaller(written, source.corners, side_);
+    for (std::uint32_t top = 0; top < written.height;) {
+      const Image band = picture.band(top);
+      for (std::uint32_t y = 0; y < band.height; ++y)
+        writer->write_row(band.at(0, y));
+      smaller.add(band);
+      top += band.height;
+    }
+    writer->finish();
+    source.image = std::move(smaller).take();
+    return texture;
   }
 
   void bake(NodeId node) {
@@ -309,8 +327,7 @@ class TextureMaker {
   }
 
   static std::uint64_t gate_bytes(std::uint64_t work_bytes) {
-    constexpr std::uint64_t kCaches = kPictureCacheBytes + kSourceCacheBytes;
-    return work_bytes - std::min(work_bytes, kCaches);
+    return work_bytes - std::min(work_bytes, 2 * picture_cache_bytes(work_bytes));
   }
 
   static void add_triangles(const TileMesh& mesh, BakeSource& source) {
@@ -318,19 +335,22 @@ class TextureMaker {
     source.triangles = joined(mesh.interior, std::span<const TileTriangle>(mesh.border));
   }
 
+  images::WrittenImage written_as(AlphaMode alpha, std::uint32_t width,
+                                  std::uint32_t height) const {
+    return {stored_format(format_, alpha), format_.quality, width, height,
+            alpha == AlphaMode::opaque ? 3U : 4U};
+  }
+  static TileImage tile_image(const images::WrittenImage& written, AlphaMode alpha) {
+    return {written.format, alpha, written.width, written.height, {}};
+  }
+
   TileTexture encoded(const BakeSource& source) const {
-    TileTexture texture;
-    texture.corners = source.corners;
     if (source.triangles.empty())
-      return texture;
-    const bool is_opaque = source.image.channels == 3;
-    TileImage& image = texture.image;
-    image.format =
-        is_opaque || format_.format == ImageFormat::webp ? format_.format : ImageFormat::png;
-    image.alpha = is_opaque ? AlphaMode::opaque : source.alpha;
-    image.width = source.image.width;
-    image.height = source.image.height;
-    image.bytes = images::encode_image(source.image, image.format, format_.quality);
+      return {{}, source.corners};
+    const AlphaMode alpha = source.image.channels == 3 ? AlphaMode::opaque : source.alpha;
+    const images::WrittenImage written = written_as(alpha, source.image.width, source.image.height);
+    TileTexture texture{tile_image(written, alpha), source.corners};
+    texture.image.bytes = images::encode_image(source.image, written.format, written.quality);
     return texture;
   }
 
@@ -407,7 +427,7 @@ void make_textures(const Forest& forest, const TexturedInput& input, TextureStor
     total += left.back().size();
   }
   context.progress.stage("texture", total, "tiles");
-  textures.set_cache_bytes(kSourceCacheBytes);
+  textures.set_cache_bytes(picture_cache_bytes(context.memory().work_bytes));
   TextureMaker maker(forest, input, textures, context);
   for (int l = raw(tree.depth()); l >= 0; --l) {
     execution::ordered_for(
@@ -443,14 +463,15 @@ TileErrors with_texels(TileErrors errors, const Tree& tree, const TextureStore& 
 StageMemory texture_memory(const JobSize& job) {
   if (!job.textured)
     return {};
-  constexpr std::uint64_t kCaches = kPictureCacheBytes + kSourceCacheBytes;
+  const images::WrittenImage leaf{stored_format(job.pictures, job.alpha), job.pictures.quality,
+                                  kLeafSide, kLeafSide, 4};
   const std::uint64_t largest =
-      std::max(cut_bytes(kLeafSide, kLeafSide), bake_bytes(job.picture_side));
+      std::max(cut_bytes(leaf, job.picture_side), bake_bytes(job.picture_side));
   // Geometry of the items that wait for room: read, ordered, cut into charts.
   const std::uint64_t waiting =
       (job.threads + 1) * job.part_triangles(job.largest_tile) * kTriangleBytes;
-  return {largest, job.threads + 1, kCaches + waiting + largest,
-          kCaches + waiting + (job.threads + 1) * largest};
+  return {largest, job.threads + 1, 2 * kLeastPictureCache + waiting + largest,
+          2 * kMostPictureCache + waiting + (job.threads + 1) * largest};
 }
 
 StageTime texture_time(const JobSize& job, const TilePopulation& tiles) {
@@ -469,9 +490,9 @@ double published_picture_bytes(const JobSize& job, const TilePopulation& tiles) 
     return 0;
   // Of a texel, with a quality of 90; most of an atlas is covered, and little of the input's
   // pictures is not.
-  const double texel = job.picture_format == ImageFormat::png    ? 1.5
-                       : job.picture_format == ImageFormat::jpeg ? 0.4
-                                                                 : 0.3;
+  const double texel = job.pictures.format == ImageFormat::png    ? 1.5
+                       : job.pictures.format == ImageFormat::jpeg ? 0.4
+                                                                  : 0.3;
   const double baked = (tiles.simplified.count - tiles.early.count) *
                        static_cast<double>(job.picture_side) * job.picture_side;
   return (static_cast<double>(job.source_texels) * 0.8 + baked) * texel;

@@ -4,13 +4,12 @@
 // that they and their neighbours were made of.
 #pragma once
 
-#include "images/image_store.h"
-#include "images/material_list.h"
 #include "pipeline/journal/build_journal.h"
 #include "pipeline/plan/stage_context.h"
 #include "pipeline/plan/tile_population.h"
 #include "pipeline/tiles/bound_chain.h"
 #include "pipeline/tiles/forest.h"
+#include "pipeline/tiles/leaf_picture.h"
 #include "pipeline/tiles/texture_store.h"
 
 #include <vector>
@@ -28,12 +27,6 @@ double published_picture_bytes(const JobSize& job, const TilePopulation& tiles);
 StageTime texture_time(const JobSize& job, const TilePopulation& tiles);
 /// Pictures of tiles, until the end.
 DiskVolumes texture_disk(const JobSize& job, const TilePopulation& tiles);
-
-/// Materials, and their pictures as the store numbers them.
-struct TexturedInput {
-  const images::MaterialList& materials;
-  const images::ImageStore& pictures;
-};
 
 /// Makes the pictures of all tiles that the journal does not have.
 void make_textures(const Forest& forest, const TexturedInput& input, TextureStore& textures,

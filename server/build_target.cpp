@@ -42,10 +42,9 @@ bool is_taken(const storage::Folder& folder, const std::string& name) {
 
 }  // namespace
 
-BuildTarget find_target(
-    TargetFolder target, const std::string& name, std::uint64_t bytes,
-    const std::vector<std::string>& inbox,
-    const std::function<std::optional<std::uint64_t>(const std::string&)>& checksum_for) {
+BuildTarget find_target(TargetFolder target, const std::string& name,
+                        const std::vector<std::string>& inbox,
+                        const std::function<bool(const Model&)>& is_made_of) {
   using Kind = BuildTarget::Kind;
   const std::string by_stem = stem_of(name) + target.suffix;
   const std::string by_name = full_name_of(name) + target.suffix;
@@ -53,9 +52,7 @@ BuildTarget find_target(
   for (const std::string& output : {by_stem, by_name}) {
     const std::optional<Model> model = target.hierarchies.look(output);
     if (model && as_text(model->source) == as_text(source)) {
-      const bool is_done =
-          model->source_bytes == bytes && checksum_for(output) == model->source_checksum;
-      return {is_done ? Kind::done : Kind::replace, output};
+      return {is_made_of(*model) ? Kind::done : Kind::replace, output};
     }
     const bool may_use = output == by_name || is_first_of_its_stem(name, inbox);
     if (!model && may_use && !is_taken(target.folder, output))

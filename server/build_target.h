@@ -4,9 +4,7 @@
 #include "server/hierarchies.h"
 #include "storage/io/file.h"
 
-#include <cstdint>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,16 +27,13 @@ struct TargetFolder {
   std::string suffix;  ///< ".hier"
 };
 
-/// For the file `name` of that version, among all `inbox` files. "a.ply" goes to "a.hier"; to
-/// "a.ply.hier" if a.hier was made from something else, or an inbox file earlier in the alphabet
-/// has the same stem. "house/a.obj" goes to "house.hier", or "house.a.obj.hier". A hierarchy of a
-/// file of its name and size is made of it if `checksum_for` that hierarchy, which is asked for no
-/// other, is the one it was made of; if it is not known, it is made of another version. No time is
-/// compared: a file may be replaced while it is built, and by an older one. Throws Error(io), and
-/// what `checksum_for` throws.
-BuildTarget find_target(
-    TargetFolder target, const std::string& name, std::uint64_t bytes,
-    const std::vector<std::string>& inbox,
-    const std::function<std::optional<std::uint64_t>(const std::string&)>& checksum_for);
+/// For the file `name`, among all `inbox` files. "a.ply" goes to "a.hier"; to "a.ply.hier" if
+/// a.hier was made from something else, or an inbox file earlier in the alphabet has the same stem.
+/// "house/a.obj" goes to "house.hier", or "house.a.obj.hier". `is_made_of` says whether a hierarchy
+/// of a file of that name is one of this very file, and is asked for no other. Throws Error(io),
+/// and what `is_made_of` throws.
+BuildTarget find_target(TargetFolder target, const std::string& name,
+                        const std::vector<std::string>& inbox,
+                        const std::function<bool(const Model&)>& is_made_of);
 
 }  // namespace meshhier::server

@@ -225,13 +225,15 @@ std::shared_ptr<const storage::Archive> Hierarchies::archive(const std::string& 
 Model Hierarchies::model_of(const std::string& path, const storage::File& file) const {
   const storage::Manifest manifest =
       storage::parse_manifest(storage::read_sealed_text(file), file.path().string());
+  const bool is_alone = manifest.source.files.empty();
   return {path,
           name_of(path.empty() ? folder_->path() : std::filesystem::path(path)),
           manifest.source.file_name,
           manifest.source.vertices,
           manifest.source.triangles,
           manifest.total_bytes,
-          manifest.source.file_bytes,
+          is_alone ? manifest.source.file_bytes : manifest.source.files[0].bytes,
+          is_alone ? manifest.source.checksum : manifest.source.files[0].checksum,
           manifest.source.checksum,
           manifest.preview.has_value()};
 }

@@ -8,15 +8,11 @@
 
 namespace meshhier::server {
 
-Inbox::Inbox(std::filesystem::path directory, std::chrono::milliseconds settle, Folders folders,
-             Clock clock)
-    : directory_(std::move(directory)),
-      settle_(settle),
-      folders_(folders),
-      clock_(std::move(clock)) {}
+Inbox::Inbox(std::filesystem::path directory, Options options)
+    : directory_(std::move(directory)), options_(std::move(options)) {}
 
 std::vector<InboxFile> Inbox::look() {
-  const Time now = clock_();
+  const Time now = options_.clock();
   SeenFiles seen;
   std::vector<InboxFile> files;
   const auto inbox = storage::open_folder(directory_);
@@ -25,8 +21,9 @@ std::vector<InboxFile> Inbox::look() {
       if (auto file = look_into(*inbox, entry.name, now, seen))
         files.push_back(std::move(*file));
     } else if (is_mesh_name(entry.name)) {
-      const Time since = note(entry.name, entry.version, now, seen);
-      files.push_back({entry.name, entry.version, now - since >= settle_});
+      const InputVersion version{entry.version, options_.mark(entry.name)};
+      const Time since = note(entry.name, version, now, seen);
+      files.push_back({entry.name, version, now - since >= options_.settle});
     }
   }
   seen_ = std::move(seen);
@@ -34,7 +31,7 @@ std::vector<InboxFile> Inbox::look() {
 }
 
 /// Since when it is as it is.
-Inbox::Time Inbox::note(const std::string& name, const storage::FileVersion& version, Time now,
+Inbox::Time Inbox::note(const std::string& name, const InputVersion& version, Time now,
                         SeenFiles& seen) const {
   const auto before = seen_.find(name);
   const bool is_same = before != seen_.end() && before->second.version == version;
@@ -46,7 +43,7 @@ Inbox::Time Inbox::note(const std::string& name, const storage::FileVersion& ver
 /// Nothing if it is no mesh's. What may not be read (lost+found) must not hide the rest.
 std::optional<InboxFile> Inbox::look_into(const storage::Folder& inbox, const std::string& folder,
                                           Time now, SeenFiles& seen) const {
-  if (folders_ == Folders::ignored || folder.starts_with('.'))
+  if (options_.folders == Folders::ignored || folder.starts_with('.'))
     return std::nullopt;
   std::vector<InboxFile> meshes;
   Time since = Time::min();
@@ -55,16 +52,19 @@ std::optional<InboxFile> Inbox::look_into(const storage::Folder& inbox, const st
       if (entry.is_directory)
         continue;
       const std::string name = folder + '/' + entry.name;
-      since = std::max(since, note(name, entry.version, now, seen));
-      if (is_mesh_name(entry.name))
-        meshes.push_back({name, entry.version, false});
+      InputVersion version{entry.version};
+      if (is_mesh_name(entry.name)) {
+        version.companions = options_.mark(name);
+        meshes.push_back({name, version, false});
+      }
+      since = std::max(since, note(name, version, now, seen));
     }
   } catch (const Error&) {
     return std::nullopt;
   }
   if (meshes.size() != 1)
     return std::nullopt;
-  meshes.front().is_whole = now - since >= settle_;
+  meshes.front().is_whole = now - since >= options_.settle;
   return meshes.front();
 }
 

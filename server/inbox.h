@@ -4,6 +4,7 @@
 #include "storage/io/file.h"
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -14,9 +15,16 @@
 
 namespace meshhier::server {
 
+/// What tells a mesh with all that belongs to it from what it was before.
+struct InputVersion {
+  storage::FileVersion mesh;
+  std::uint64_t companions = 0;  ///< Companions::mark()
+  friend bool operator==(const InputVersion&, const InputVersion&) = default;
+};
+
 struct InboxFile {
   std::string name;  ///< "scan.ply", "house/scan.obj"
-  storage::FileVersion version;
+  InputVersion version;
   bool is_whole = false;
 };
 
@@ -24,15 +32,22 @@ struct InboxFile {
 class Inbox {
  public:
   using Time = std::chrono::steady_clock::time_point;
-  using Clock = std::function<Time()>;
   /// A folder with one mesh file in it is a mesh, with all that belongs to it.
   enum class Folders { ignored, taken };
+  struct Options {
+    /// A file that was as it is for so long is whole. Copies of others often say so by their names
+    /// as well: with the endings that browsers and programs give unfinished ones, they are no
+    /// meshes' names.
+    std::chrono::milliseconds settle{2000};
+    Folders folders = Folders::ignored;
+    /// InputVersion::companions of a mesh, as far as they are known.
+    std::function<std::uint64_t(const std::string& name)> mark = [](const std::string&) {
+      return 0;
+    };
+    std::function<Time()> clock = std::chrono::steady_clock::now;
+  };
 
-  /// `settle`: a file that was as it is for so long is whole. Copies of others often say so by
-  /// their names as well: with the endings that browsers and programs give unfinished ones, they
-  /// are no meshes' names.
-  Inbox(std::filesystem::path directory, std::chrono::milliseconds settle,
-        Folders folders = Folders::ignored, Clock clock = std::chrono::steady_clock::now);
+  Inbox(std::filesystem::path directory, Options options);
 
   /// The mesh files that are there now. One in a folder is whole when all files there are. Links
   /// are left out. Throws Error(io).
@@ -44,20 +59,17 @@ class Inbox {
 
  private:
   struct Seen {
-    storage::FileVersion version;
+    InputVersion version;
     Time since;
   };
   using SeenFiles = std::map<std::string, Seen>;
 
-  Time note(const std::string& name, const storage::FileVersion& version, Time now,
-            SeenFiles& seen) const;
+  Time note(const std::string& name, const InputVersion& version, Time now, SeenFiles& seen) const;
   std::optional<InboxFile> look_into(const storage::Folder& inbox, const std::string& folder,
                                      Time now, SeenFiles& seen) const;
 
   std::filesystem::path directory_;  ///< opened anew each time: it may be another one by then
-  std::chrono::milliseconds settle_;
-  Folders folders_;
-  Clock clock_;
+  Options options_;
   SeenFiles seen_;
 };
 

@@ -44,7 +44,9 @@ Watch::Watch(WatchOptions options, storage::FileSystem& files, Hierarchies& hier
       tell_(std::move(tell)),
       folder_(storage::open_folder(options_.folder)),
       notes_(files_, folder_),
-      inbox_(options_.inbox, options_.settle, options_.folders) {}
+      inbox_(options_.inbox, {.settle = options_.settle,
+                              .folders = options_.folders,
+                              .mark = [this](const std::string& name) { return mark_of(name); }}) {}
 
 Watch::~Watch() {
   stop();
@@ -99,12 +101,14 @@ void Watch::look() {
   last_look_ = Clock::now();
   try {
     const std::vector<InboxFile> files = inbox_.look();
+    const auto is_gone = [&](const auto& entry) {
+      return std::none_of(files.begin(), files.end(),
+                          [&](const InboxFile& file) { return file.name == entry.first; });
+    };
+    std::erase_if(known_, is_gone);
     {
       const std::lock_guard lock(mutex_);
-      std::erase_if(entries_, [&](const auto& entry) {
-        return std::none_of(files.begin(), files.end(),
-                            [&](const InboxFile& file) { return file.name == entry.first; });
-      });
+      std::erase_if(entries_, is_gone);
     }
     for (const InboxFile& file : files)
       note(file);
@@ -124,6 +128,8 @@ void Watch::drop_what_is_done() {
     try {
       const BuildTarget target = target_of(name, Unknown::is_another);
       const bool is_done = target.kind == BuildTarget::Kind::done;
+      if (is_done)
+        keep_mark(name);
       leave_fresh(name, is_done ? State::done : State::growing);
     } catch (const std::exception& error) {
       keep_fresh(name, error.what());
@@ -186,8 +192,10 @@ std::string Watch::next_waiting() const {
 void Watch::handle(const std::string& name) {
   try {
     const BuildTarget target = target_of(name, Unknown::is_read);
-    if (target.kind == BuildTarget::Kind::done)
+    if (target.kind == BuildTarget::Kind::done) {
+      keep_mark(name);
       return set_state(name, State::done, "");
+    }
     check_target(name, target);
     if (is_in_hand(target))
       return put_off(name, "waits for another build that is at work on " + target.name);
@@ -201,19 +209,66 @@ void Watch::handle(const std::string& name) {
 }
 
 BuildTarget Watch::target_of(const std::string& name, Unknown unknown) {
-  const storage::FileVersion version = version_of(name);
-  std::optional<std::uint64_t> read;
-  const auto checksum_for = [&](const std::string& hierarchy) {
-    const auto noted = notes_.find(hierarchy, version);
-    if (!noted && unknown == Unknown::is_read)
-      read = read_checksum(name, version);
-    return noted ? noted : read;
-  };
-  const BuildTarget target = find_target({hierarchies_, *folder_, options_.suffix}, name,
-                                         version.bytes, names_in(std::nullopt), checksum_for);
-  if (read && target.kind == BuildTarget::Kind::done)
-    note_input(target, version, *read);
-  return target;
+  return find_target({hierarchies_, *folder_, options_.suffix}, name, names_in(std::nullopt),
+                     [&](const Model& model) { return is_made_of(name, model, unknown); });
+}
+
+/// Of a hierarchy that was built by hand only the mesh is known.
+storage::InputNote Watch::note_of(const Model& model) const {
+  auto note = notes_.find(model.path);
+  if (note && note->content == model.source_checksum)
+    return *std::move(note);
+  return {model.source_checksum,
+          {{model.source, {.bytes = model.mesh_bytes}, model.mesh_checksum}},
+          {}};
+}
+
+bool Watch::is_made_of(const std::string& name, const Model& model, Unknown unknown) {
+  storage::InputNote note = note_of(model);
+  Known& known = known_[name];
+  const Companions companions = companions_of(name);
+  known = {note, companions.mark(note)};
+  const storage::FileIdentity noted = note.files[0].identity;
+  if (!is_mesh_of(name, note.files[0], unknown))
+    return false;
+  const Companions::Comparison others =
+      companions.compare(note, unknown == Unknown::is_read, [&] { cancel_.check(); });
+  if (others.is_same && (others.was_read || !is_untouched(noted, note.files[0].identity)))
+    keep_note(model.path, note);
+  return others.is_same;
+}
+
+/// They lie from the folder of their mesh.
+Companions Watch::companions_of(const std::string& name) const {
+  return {files_, (options_.inbox / name).parent_path()};
+}
+
+/// 0 until a hierarchy of it was looked at.
+std::uint64_t Watch::mark_of(const std::string& name) const {
+  const auto known = known_.find(name);
+  return known == known_.end() ? 0 : companions_of(name).mark(known->second.note);
+}
+
+/// `noted` gets the file's times if it is the one.
+bool Watch::is_mesh_of(const std::string& name, storage::NotedFile& noted, Unknown unknown) {
+  const storage::FileVersion version = version_of(name).mesh;
+  const storage::FileIdentity now{version.bytes, version.modified_ns, version.changed_ns};
+  if (is_untouched(now, noted.identity))
+    return true;
+  if (unknown == Unknown::is_another || now.bytes != noted.identity.bytes ||
+      read_checksum(name, version) != noted.checksum)
+    return false;
+  noted.identity = now;
+  return true;
+}
+
+/// From here on, only what changes after this look counts.
+void Watch::keep_mark(const std::string& name) {
+  const auto known = known_.find(name);
+  const std::lock_guard lock(mutex_);
+  const auto entry = entries_.find(name);
+  if (known != known_.end() && entry != entries_.end())
+    entry->second.version.companions = known->second.mark;
 }
 
 /// That of one file as it lies there, as builds know it.
@@ -226,10 +281,10 @@ std::uint64_t Watch::read_checksum(const std::string& name, const storage::FileV
   return checksum;
 }
 
-storage::FileVersion Watch::version_of(const std::string& name) const {
+InputVersion Watch::version_of(const std::string& name) const {
   const std::lock_guard lock(mutex_);
   const auto found = entries_.find(name);
-  return found == entries_.end() ? storage::FileVersion() : found->second.version;
+  return found == entries_.end() ? InputVersion() : found->second.version;
 }
 
 /// Not if nobody can tell.
@@ -241,11 +296,10 @@ bool Watch::is_still(const std::string& name, const storage::FileVersion& versio
   }
 }
 
-/// Without the note, the file is only read once more.
-void Watch::note_input(const BuildTarget& target, const storage::FileVersion& version,
-                       std::uint64_t checksum) {
+/// Without the note, files are only read once more.
+void Watch::keep_note(const std::string& hierarchy, const storage::InputNote& note) {
   try {
-    notes_.write(target.name, version, checksum);
+    notes_.write(hierarchy, note);
   } catch (const Error& error) {
     tell_(error.what());
   }
@@ -279,7 +333,7 @@ void Watch::put_off(const std::string& name, const std::string& message) {
 }
 
 void Watch::build(const std::string& name, const BuildTarget& target) {
-  const storage::FileVersion version = version_of(name);
+  const InputVersion version = version_of(name);
   {
     const std::lock_guard lock(mutex_);
     Entry& entry = entries_[name];
@@ -310,7 +364,8 @@ std::vector<std::string> Watch::words(const std::string& name, const BuildTarget
   std::vector<std::string> list{options_.program, "build"};
   if (!options_.config.empty())
     list.push_back(options_.config.string());
-  list.insert(list.end(), {"--progress", "json", "--no-links"});
+  list.insert(list.end(), {"--progress", "json", "--no-links", "--input-note",
+                           notes_.path(target.name).string()});
   if (target.kind == BuildTarget::Kind::replace)
     list.emplace_back("--force");
   if (restart)
@@ -345,8 +400,8 @@ Job Watch::hear(storage::ChildProcess& child, const std::string& name) {
   return job;
 }
 
-void Watch::settle(const std::string& name, const BuildTarget& target,
-                   const storage::FileVersion& version, const Outcome& outcome) {
+void Watch::settle(const std::string& name, const BuildTarget& target, const InputVersion& version,
+                   const Outcome& outcome) {
   if (is_stopping())
     return;
   if (outcome.code == 0)
@@ -360,14 +415,14 @@ void Watch::settle(const std::string& name, const BuildTarget& target,
     set_state(name, State::failed, outcome.message);
 }
 
-/// A file that is now as it was before the build is what was built: whoever changes it, or puts
-/// another one in its place and it back again, changes one of its times.
+/// Files that are now as they were when the build read them are what was built: whoever changes
+/// one, or puts another one in its place and it back again, changes one of its times.
 void Watch::settle_built(const std::string& name, const BuildTarget& target,
-                         const storage::FileVersion& version) {
+                         const InputVersion& version) {
   options_.on_new();
   const std::optional<Model> model = hierarchies_.look(target.name);
-  if (model && is_still(name, version)) {
-    note_input(target, version, model->source_checksum);
+  if (model && is_still(name, version.mesh) && is_made_of(name, *model, Unknown::is_another)) {
+    keep_mark(name);
     tell_(name + ": done");
     return set_state(name, State::done, "");
   }

@@ -3,6 +3,7 @@
 
 #include "execution/cancel.h"
 #include "server/build_target.h"
+#include "server/companions.h"
 #include "server/hierarchies.h"
 #include "server/inbox.h"
 #include "server/input_notes.h"
@@ -68,7 +69,7 @@ class Watch {
   /// fresh: not yet looked for in the folder, or what is there cannot be read.
   enum class State { fresh, growing, waiting, building, failed, done };
   struct Entry {
-    storage::FileVersion version;
+    InputVersion version;
     State state = State::fresh;
     Job job;
     Time not_before;  ///< another process was at work on the output
@@ -88,24 +89,30 @@ class Watch {
   void leave_fresh(const std::string& name, State state);
   void keep_fresh(const std::string& name, const std::string& cause);
   std::vector<std::string> names_in(std::optional<State> state) const;
-  /// Whether a file is read whose checksum nobody has noted.
+  /// Whether a file is read whose times are not those that were noted.
   enum class Unknown { is_read, is_another };
   BuildTarget target_of(const std::string& name, Unknown unknown);
+  /// What the hierarchy was made of, as far as anybody has noted it.
+  storage::InputNote note_of(const Model& model) const;
+  bool is_made_of(const std::string& name, const Model& model, Unknown unknown);
+  bool is_mesh_of(const std::string& name, storage::NotedFile& noted, Unknown unknown);
+  Companions companions_of(const std::string& name) const;
+  std::uint64_t mark_of(const std::string& name) const;
   std::uint64_t read_checksum(const std::string& name, const storage::FileVersion& version);
-  storage::FileVersion version_of(const std::string& name) const;
+  InputVersion version_of(const std::string& name) const;
   bool is_still(const std::string& name, const storage::FileVersion& version) const;
-  void note_input(const BuildTarget& target, const storage::FileVersion& version,
-                  std::uint64_t checksum);
+  void keep_note(const std::string& hierarchy, const storage::InputNote& note);
+  void keep_mark(const std::string& name);
   void check_target(const std::string& name, const BuildTarget& target) const;
   bool is_in_hand(const BuildTarget& target);
   void put_off(const std::string& name, const std::string& message);
   void build(const std::string& name, const BuildTarget& target);
   Outcome run_build(const std::string& name, const BuildTarget& target, bool restart);
   Job hear(storage::ChildProcess& child, const std::string& name);
-  void settle(const std::string& name, const BuildTarget& target,
-              const storage::FileVersion& version, const Outcome& outcome);
+  void settle(const std::string& name, const BuildTarget& target, const InputVersion& version,
+              const Outcome& outcome);
   void settle_built(const std::string& name, const BuildTarget& target,
-                    const storage::FileVersion& version);
+                    const InputVersion& version);
   void set_state(const std::string& name, State state, const std::string& message);
   std::string shown_text(const std::string& message) const;
   std::vector<std::string> words(const std::string& name, const BuildTarget& target,
@@ -119,6 +126,12 @@ class Watch {
   Hierarchies::Tell tell_;
   std::shared_ptr<const storage::Folder> folder_;
   InputNotes notes_;
+  /// By mesh: what the hierarchy was made of that was looked at last, and what of it was like then.
+  struct Known {
+    storage::InputNote note;
+    std::uint64_t mark = 0;
+  };
+  std::map<std::string, Known> known_;
   Inbox inbox_;
   Time last_look_;
   std::string trouble_;  ///< the failure of the last look, told once

@@ -13,6 +13,10 @@ struct TexelPoint {
   double x = 0, y = 0;
 };
 
+struct RowRange {
+  std::uint32_t begin = 0, end = 0;
+};
+
 /// A triangle in 1/256 of a texel: there whole numbers tell exactly on which side of an edge a
 /// middle is, so triangles that share an edge never cover the same texel, and leave none out.
 class RasterTriangle {
@@ -31,7 +35,7 @@ class RasterTriangle {
   /// inside, in a picture of that size. O(rows + texels).
   template <class Visit>
   void for_each(std::uint32_t width, std::uint32_t height, const Visit& visit) const {
-    for_each_span(width, height, [&](std::uint32_t y, std::uint32_t begin, std::uint32_t end) {
+    for_each_span(width, {0, height}, [&](std::uint32_t y, std::uint32_t begin, std::uint32_t end) {
       const double scale = 1 / static_cast<double>(std::abs(twice_area_));
       const Edge to_b = edge(2, 0), to_c = edge(0, 1);
       std::int64_t b = to_b.at(middle(begin), middle(y));
@@ -44,15 +48,15 @@ class RasterTriangle {
     });
   }
 
-  /// Calls visit(y, begin, end) for each row that has texels, x in [begin, end).
+  /// Calls visit(y, begin, end) for each of those rows that has texels, x in [begin, end).
   template <class Visit>
-  void for_each_span(std::uint32_t width, std::uint32_t height, const Visit& visit) const {
+  void for_each_span(std::uint32_t width, const RowRange& rows, const Visit& visit) const {
     if (twice_area_ == 0)
       return;
-    const std::array<std::int64_t, 2> columns = range(width, &Fixed::x);
-    const std::array<std::int64_t, 2> rows = range(height, &Fixed::y);
+    const std::array<std::int64_t, 2> columns = range({0, width}, &Fixed::x);
+    const std::array<std::int64_t, 2> lines = range(rows, &Fixed::y);
     const std::array<Edge, 3> edges = {edge(1, 2), edge(2, 0), edge(0, 1)};
-    for (std::int64_t y = rows[0]; y <= rows[1]; ++y) {
+    for (std::int64_t y = lines[0]; y <= lines[1]; ++y) {
       std::array<std::int64_t, 2> inside = columns;
       for (const Edge& side : edges)
         side.cut(y, inside);
@@ -94,10 +98,11 @@ class RasterTriangle {
   static std::int64_t middle(std::int64_t texel) { return texel * kOne + kOne / 2; }
 
   /// The texels whose middles are not left of all corners, nor right of all.
-  std::array<std::int64_t, 2> range(std::uint32_t side, std::int64_t Fixed::*axis) const {
+  std::array<std::int64_t, 2> range(const RowRange& all, std::int64_t Fixed::*axis) const {
     const auto [low, high] = std::minmax({corners_[0].*axis, corners_[1].*axis, corners_[2].*axis});
-    return {std::max<std::int64_t>(floor_divided(low + kOne / 2 - 1, kOne), 0),
-            std::min<std::int64_t>(floor_divided(high - kOne / 2, kOne), std::int64_t{side} - 1)};
+    return {
+        std::max<std::int64_t>(floor_divided(low + kOne / 2 - 1, kOne), all.begin),
+        std::min<std::int64_t>(floor_divided(high - kOne / 2, kOne), std::int64_t{all.end} - 1)};
   }
 
   /// Middles on it belong to the triangle that it is the upper or the left edge of.

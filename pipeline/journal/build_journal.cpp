@@ -2,6 +2,7 @@
 
 #include "hierarchy/error.h"
 #include "pipeline/journal/material_json.h"
+#include "pipeline/journal/record_json.h"
 #include "storage/format/index.h"
 #include "storage/format/layout.h"
 #include "storage/format/manifest.h"
@@ -108,6 +109,7 @@ std::optional<EarlierBuild> find_earlier_build(storage::FileSystem& files,
       earlier.source = storage::parse_source(
           nlohmann::ordered_json(entry.at("ingest").at("summary")), "journal");
       earlier.materials = material_list(entry.at("ingest").at("materials"));
+      earlier.input = input_record(entry.at("ingest").at("input"));
       is_whole = earlier.decides_result.is_object();
     }
   };
@@ -215,7 +217,8 @@ bool BuildJournal::take(const Entry& entry) {
 bool BuildJournal::take_source(const Entry& source) {
   source_ = DistributedSource{
       storage::parse_source(nlohmann::ordered_json(source.at("summary")), "journal"),
-      point(source.at("origin")), material_list(source.at("materials"))};
+      point(source.at("origin")), material_list(source.at("materials")),
+      input_record(source.at("input"))};
   return true;
 }
 
@@ -332,7 +335,8 @@ void BuildJournal::note_source(const DistributedSource& source) {
   journal_->append({{"ingest",
                      {{"summary", Value(storage::source_json(source.summary))},
                       {"origin", to_json(source.origin)},
-                      {"materials", to_json(source.materials)}}}});
+                      {"materials", to_json(source.materials)},
+                      {"input", to_json(source.input)}}}});
   source_ = source;
 }
 

@@ -20,6 +20,7 @@
 #include "hierarchy/published.h"
 #include "images/image_store.h"
 #include "images/material_list.h"
+#include "import/input_record.h"
 #include "pipeline/tiles/bound_chain.h"
 #include "pipeline/tiles/chunks.h"
 #include "pipeline/tiles/forest.h"
@@ -45,6 +46,7 @@ struct DistributedSource {
   SourceSummary summary;
   Vec3d origin;
   images::MaterialList materials;  ///< empty unless the mesh is textured
+  importing::InputRecord input;
 };
 
 /// Whose journal it is.
@@ -59,6 +61,7 @@ struct EarlierBuild {
   std::int64_t input_times = 0;
   SourceSummary source;
   images::MaterialList materials;
+  importing::InputRecord input;
 };
 /// Of the journal in the directory `work`, unless the input was not read as a whole. Whether all
 /// else is there is not looked at. Throws Error(io).

@@ -1,24 +1,12 @@
 #include "pipeline/journal/material_json.h"
 
+#include "pipeline/journal/binary_text.h"
+
 #include <span>
 #include <string>
 
 namespace meshhier::pipeline {
 namespace {
-
-/// Names may have any bytes.
-nlohmann::json::binary_t to_binary(std::span<const std::byte> bytes) {
-  const auto* first = reinterpret_cast<const std::uint8_t*>(bytes.data());
-  return nlohmann::json::binary_t({first, first + bytes.size()});
-}
-nlohmann::json::binary_t to_binary(const std::string& text) {
-  return to_binary(std::as_bytes(std::span(text)));
-}
-
-std::string text_of(const nlohmann::json& json) {
-  const nlohmann::json::binary_t& bytes = json.get_binary();
-  return {bytes.begin(), bytes.end()};
-}
 
 nlohmann::json to_json(const images::ImageSource& image) {
   return {{"name", to_binary(image.name)},

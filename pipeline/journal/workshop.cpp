@@ -10,11 +10,6 @@
 namespace meshhier::pipeline {
 namespace {
 
-/// Sums of hashes wrap around.
-std::int64_t joined_times(std::int64_t a, std::int64_t b) {
-  return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
-}
-
 BuildIdentity identity_of(const config::Config& config, const importing::MeshInput& input,
                           const BuildPlan& plan) {
   const Tree& tree = plan.tree;
@@ -28,7 +23,7 @@ BuildIdentity identity_of(const config::Config& config, const importing::MeshInp
            {"faces", mesh.face_count},
            {"partitions", tree.partition_count()},
            {"config", config::resolved_json(config)}},
-          joined_times(input.files().times(), plan.textures.file_times)};
+          input.files().times()};
 }
 
 /// But for the tiles.
@@ -57,7 +52,7 @@ Workshop::Workshop(const std::filesystem::path& work, const BuildIdentity& ident
       forest(context.tree(), chunks.level(), layout, tile_scratch,
              context.plan.job.computes_normals),
       textures(context.tree(), tile_scratch),
-      pictures(picture_scratch, kPictureCacheBytes),
+      pictures(picture_scratch, picture_cache_bytes(context.memory().work_bytes)),
       journal(context.files, work, identity, pool.scratch_use(),
               context.plan.textures.is_textured() ? Workpieces{forest, chunks, &textures, &pictures}
                                                   : Workpieces{forest, chunks},
@@ -91,8 +86,7 @@ OpenWorkshop open_workshop(storage::WorkDirectory& work, importing::MeshInput& i
   } else if (!journal.is_sound() || (journal.is_complete() && !is_whole(files, work.built()))) {
     begin_anew("what an earlier build left has been damaged: this one began anew");
   } else if (journal.input_was_touched() &&
-             (context.plan.textures.is_textured() ||
-              input.checksum(context.cancel) != journal.source()->summary.checksum)) {
+             input.checksum(context.cancel) != journal.source()->summary.checksum) {
     begin_anew("the input was changed since an earlier build was stopped: this one began anew");
   } else {
     open.found =
@@ -113,14 +107,13 @@ std::optional<mesh_io::MeshDescription> recall_import(const EarlierBuild& earlie
   const nlohmann::json& made_of = earlier.decides_result;
   const importing::InputFiles& files = input.files();
   const auto config = made_of.find("config");
-  if (!is(made_of, "input", files.name()) || !is(made_of, "input_bytes", files.bytes()) ||
-      config == made_of.end() || !is(*config, "weld", files.weld()) ||
+  if (!input.recall_files(earlier.input) || !is(made_of, "input", files.name()) ||
+      !is(made_of, "input_bytes", files.bytes()) || config == made_of.end() ||
+      !is(*config, "weld", files.weld()) ||
       !is(*config, "topology", config::resolved_json(asked).at("topology")) ||
       !is(config->value("texture", nlohmann::json::object()), "use", asked.texture.use))
     return std::nullopt;
-  const bool is_textured = !earlier.materials.empty();
-  if ((is_textured || earlier.input_times != files.times()) &&
-      input.checksum(cancel) != earlier.source.checksum)
+  if (earlier.input_times != files.times() && input.checksum(cancel) != earlier.source.checksum)
     return std::nullopt;
   mesh_io::MeshDescription mesh;
   mesh.vertex_count = earlier.source.vertices;

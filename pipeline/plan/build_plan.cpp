@@ -33,7 +33,9 @@ std::uint64_t bytes_left(const std::filesystem::path& output, storage::FileSyste
 
 void add_textures(const config::Config& config, const TexturePlan& textures, JobSize& job) {
   job.textured = textures.is_textured();
-  job.picture_format = config.texture.format.format;
+  job.pictures = config.texture.format;
+  for (const images::Material& material : textures.materials.materials)
+    job.alpha = std::max(job.alpha, material.alpha);
   job.picture_side = config.texture.texels;
   job.source_texels = textures.texels();
   job.picture_bytes = textures.stored_bytes();

@@ -29,12 +29,13 @@ struct JobSize {
   double published_ratio = 1;                   ///< of a published tile, about, to a plain one
   bool packed = false;                          ///< published files become one archive
   bool textured = false;
-  ImageFormat picture_format = ImageFormat::jpeg;
-  std::uint32_t picture_side = 0;   ///< of a simplified tile, texels at most
-  std::uint64_t source_texels = 0;  ///< of all pictures of the input
-  std::uint64_t picture_bytes = 0;  ///< of these, decoded into scratch space
-  std::uint64_t decoder_bytes = 0;  ///< what decoding the hungriest of them holds
-  std::uint64_t adding_bytes = 0;   ///< what storing the widest of them holds
+  TextureFormat pictures;               ///< as tiles have them
+  AlphaMode alpha = AlphaMode::opaque;  ///< the strongest of the materials
+  std::uint32_t picture_side = 0;       ///< of a simplified tile, texels at most
+  std::uint64_t source_texels = 0;      ///< of all pictures of the input
+  std::uint64_t picture_bytes = 0;      ///< of these, decoded into scratch space
+  std::uint64_t decoder_bytes = 0;      ///< what decoding the hungriest of them holds
+  std::uint64_t adding_bytes = 0;       ///< what storing the widest of them holds
   bool draws_preview = false;
   bool has_map = false;  ///< PROJ places the model
 

@@ -3,30 +3,11 @@
 #include "hierarchy/error.h"
 #include "images/image_store.h"
 #include "images/open_source.h"
-#include "storage/io/hash.h"
 
 #include <algorithm>
-#include <span>
+#include <utility>
 
 namespace meshhier::pipeline {
-namespace {
-
-/// As long as it stays, so does what is in the files.
-std::int64_t file_times(const images::MaterialList& materials, storage::FileSystem& files) {
-  std::vector<std::uint64_t> all;
-  for (const images::ImageSource& image : materials.images) {
-    if (image.file.empty())
-      continue;
-    const storage::FileIdentity identity = files.identity(image.file);
-    all.push_back(identity.bytes);
-    all.push_back(static_cast<std::uint64_t>(identity.modified_ns));
-  }
-  return all.empty() ? 0
-                     : static_cast<std::int64_t>(storage::checksum(std::as_bytes(std::span(all))));
-}
-
-}  // namespace
-
 std::uint64_t TexturePlan::texels() const {
   std::uint64_t sum = 0;
   for (const images::ImageInfo& head : heads)
@@ -55,6 +36,14 @@ std::uint64_t TexturePlan::adding_bytes() const {
   return most;
 }
 
+void TexturePlan::check_unchanged(std::size_t image, storage::FileSystem& files) const {
+  const images::ImageSource& source = materials.images[image];
+  if (!source.file.empty() && files.identity(source.file) != identities[image]) {
+    throw Error(ErrorCode::input,
+                source.file.string() + " was changed while it was read; build it again");
+  }
+}
+
 void leave_out(std::uint32_t image, images::MaterialList& materials) {
   for (images::Material& material : materials.materials) {
     if (material.image == image)
@@ -65,7 +54,6 @@ void leave_out(std::uint32_t image, images::MaterialList& materials) {
 TexturePlan plan_textures(images::MaterialList materials, config::MissingImages missing,
                           storage::FileSystem& files) {
   TexturePlan plan;
-  plan.file_times = file_times(materials, files);
   plan.materials.materials = std::move(materials.materials);
   for (std::uint32_t i = 0; i < materials.images.size(); ++i) {
     try {
@@ -81,6 +69,8 @@ TexturePlan plan_textures(images::MaterialList materials, config::MissingImages 
       }
       continue;
     }
+    const std::filesystem::path& file = materials.images[i].file;
+    plan.identities.push_back(file.empty() ? storage::FileIdentity() : files.identity(file));
     plan.materials.images.push_back(std::move(materials.images[i]));
   }
   return plan;

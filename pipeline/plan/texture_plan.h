@@ -13,10 +13,10 @@
 namespace meshhier::pipeline {
 
 struct TexturePlan {
-  images::MaterialList materials;        ///< empty: no textures
-  std::vector<images::ImageInfo> heads;  ///< of each picture in `materials`
-  std::vector<std::string> broken;       ///< why pictures are left out, a sentence each
-  std::int64_t file_times = 0;           ///< one number for sizes and times of all pictures' files
+  images::MaterialList materials;                 ///< empty: no textures
+  std::vector<images::ImageInfo> heads;           ///< of each picture in `materials`
+  std::vector<std::string> broken;                ///< why pictures are left out, a sentence each
+  std::vector<storage::FileIdentity> identities;  ///< of each picture's file
 
   bool is_textured() const { return !materials.empty(); }
   std::uint64_t texels() const;
@@ -26,6 +26,8 @@ struct TexturePlan {
   std::uint64_t decoder_bytes() const;
   /// The most that storing one of them holds besides.
   std::uint64_t adding_bytes() const;
+  /// Throws Error(input) if the picture's file is not what it was.
+  void check_unchanged(std::size_t image, storage::FileSystem& files) const;
 };
 
 /// Leaves a picture out: its materials show their colours.

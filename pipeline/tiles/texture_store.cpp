@@ -3,6 +3,7 @@
 #include "pipeline/tiles/blob_json.h"
 #include "storage/format/work_bytes.h"
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <utility>
@@ -137,6 +138,15 @@ std::uint64_t TextureStore::image_bytes() const {
     }
   }
   return sum;
+}
+
+std::uint64_t TextureStore::heaviest_bytes() const {
+  std::uint64_t heaviest = 0;
+  for (const LevelStore& level : levels_) {
+    for (std::size_t i = 0; i < level.textures.count(); ++i)
+      heaviest = std::max(heaviest, level.textures.size(i));
+  }
+  return heaviest;
 }
 
 nlohmann::json TextureStore::stored(NodeId node) const {

@@ -9,6 +9,7 @@
 #include "texture/bake.h"
 #include "texture/corners.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <list>
@@ -21,9 +22,15 @@
 
 namespace meshhier::pipeline {
 
-/// What is held of pictures of the input and of finer tiles that were read, at most.
-inline constexpr std::uint64_t kPictureCacheBytes = std::uint64_t{24} << 20;
-inline constexpr std::uint64_t kSourceCacheBytes = std::uint64_t{24} << 20;
+/// What is held of the input's pictures that were read, and as much of finer tiles'. More than the
+/// most saves no time worth it.
+inline constexpr std::uint64_t kLeastPictureCache = std::uint64_t{6} << 20;
+inline constexpr std::uint64_t kMostPictureCache = std::uint64_t{24} << 20;
+
+/// Of what a stage may hold.
+constexpr std::uint64_t picture_cache_bytes(std::uint64_t work_bytes) {
+  return std::clamp(work_bytes / 16, kLeastPictureCache, kMostPictureCache);
+}
 
 /// What a tile is published with. Its triangles are those that Forest::load() gives, interior ones
 /// first, of a partition once its vertices are ordered.
@@ -67,6 +74,8 @@ class TextureStore {
   }
   /// Of all published pictures.
   std::uint64_t image_bytes() const;
+  /// Of what the largest tile is published with.
+  std::uint64_t heaviest_bytes() const;
 
   /// For the journal, as Forest's.
   nlohmann::json stored(NodeId node) const;

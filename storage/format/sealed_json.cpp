@@ -22,9 +22,6 @@ constexpr std::string_view kAfterSeal = "\"\n}\n";
 constexpr std::size_t kDigits = 16;
 constexpr std::string_view kZeros = "0000000000000000";
 
-/// About 40 levels of 300 bytes, a config and 30 more lines make 20 kB.
-constexpr std::size_t kMaxTextBytes = 1024 * 1024;
-
 /// In the order of ColourType.
 constexpr std::array<std::string_view, 4> kColourTypes{"none", "u8", "u16", "f32"};
 
@@ -86,15 +83,15 @@ std::string sealed_text(const SealedFormat& format, const Json& document) {
   return text;
 }
 
-std::string read_sealed_text(const File& file) {
-  const std::vector<std::byte> bytes = read_file(file, kMaxTextBytes);
+std::string read_sealed_text(const File& file, std::size_t most_bytes) {
+  const std::vector<std::byte> bytes = read_file(file, most_bytes);
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 Json parse_sealed(const std::string& text, const SealedFormat& format, const std::string& name) {
-  if (text.size() > kMaxTextBytes) {
+  if (text.size() > format.most_bytes) {
     throw Error(ErrorCode::corrupt, fmt::format("{}: has {} bytes, expected at most {}", name,
-                                                text.size(), kMaxTextBytes));
+                                                text.size(), format.most_bytes));
   }
   Json document = parse_json(text, name);
   const JsonObject object(document, "", name);

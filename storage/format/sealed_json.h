@@ -8,6 +8,7 @@
 #include "hierarchy/frame.h"
 #include "hierarchy/vec.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -20,20 +21,23 @@ namespace meshhier::storage {
 
 class File;
 
+/// About 40 levels of 300 bytes, a config and 30 more lines make 20 kB.
+inline constexpr std::size_t kMostSealedBytes = std::size_t{1024} * 1024;
+
 /// What a file says that it is.
 struct SealedFormat {
   std::string_view name;                       ///< `format`
   int version = 0;                             ///< `format_version`, the only one that is read
   std::string_view way_out = "make it again";  ///< from an older version: what to do
+  std::size_t most_bytes = kMostSealedBytes;
 };
 
 /// `document`, an object without these keys, between `format` and `checksum`. Deterministic; what
 /// is no UTF-8 in texts becomes U+FFFD. Requires finite numbers.
 std::string sealed_text(const SealedFormat& format, const nlohmann::ordered_json& document);
 
-/// All of such a file. Throws Error(io), or Error(corrupt) if it is longer than parse_sealed()
-/// takes.
-std::string read_sealed_text(const File& file);
+/// All of such a file. Throws Error(io), or Error(corrupt) if it is longer than `most_bytes`.
+std::string read_sealed_text(const File& file, std::size_t most_bytes = kMostSealedBytes);
 
 /// The document of a text nobody vouches for. Throws Error(corrupt) that starts with `name`: it is
 /// too long, no JSON, of another format or version (a newer one is refused by its number), or was

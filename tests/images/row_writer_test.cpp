@@ -18,9 +18,10 @@ WrittenImage like(const Image& image, ImageFormat format) {
   return {format, 90, image.width, image.height, image.channels};
 }
 
-Bytes written(const Image& image, ImageFormat format) {
+Bytes written(const Image& image, ImageFormat format,
+              std::unique_ptr<RowWriter> (*open)(const WrittenImage&, ByteSink) = open_row_writer) {
   Bytes bytes;
-  const auto writer = open_row_writer(like(image, format), [&](std::span<const std::byte> more) {
+  const auto writer = open(like(image, format), [&](std::span<const std::byte> more) {
     bytes.insert(bytes.end(), more.begin(), more.end());
   });
   for (std::uint32_t y = 0; y < image.height; ++y)
@@ -43,6 +44,24 @@ TEST(RowWriterTest, AJpegShowsTheSamePicture) {
     EXPECT_EQ(decoded(bytes), decoded(whole));
     EXPECT_GE(bytes.size(), whole.size());
   }
+}
+
+TEST(RowWriterTest, ASmallPictureIsThatOfTheWhole) {
+  const Image image = waves(131, 67);
+  for (const ImageFormat format : {ImageFormat::jpeg, ImageFormat::png, ImageFormat::webp}) {
+    EXPECT_EQ(written(image, format, open_picture_writer), encode_image(image, format, 90));
+    EXPECT_GT(held_bytes(like(image, format)), std::size_t{131 * 67});
+  }
+}
+
+// However large a picture is, rows of it are held.
+TEST(RowWriterTest, OfALargeJpegLittleIsHeld) {
+  const Image image = waves(1025, 1024);
+  EXPECT_EQ(written(image, ImageFormat::jpeg, open_picture_writer),
+            written(image, ImageFormat::jpeg));
+  EXPECT_EQ(held_bytes(like(image, ImageFormat::jpeg)),
+            held_bytes({ImageFormat::jpeg, 90, 8192, 8192, 3}));
+  EXPECT_LT(held_bytes({ImageFormat::jpeg, 90, 8192, 8192, 3}), std::uint64_t{2} << 20);
 }
 
 TEST(RowWriterTest, BytesComeWithTheRows) {

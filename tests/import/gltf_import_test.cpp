@@ -395,6 +395,7 @@ TEST_F(GltfImportTest, PicturesAreFilesRangesOrData) {
   EXPECT_EQ(mesh.count("missing_images"), 0U);
   ASSERT_TRUE(mesh.summary.textures);
   EXPECT_EQ(mesh.summary.textures->images, 3U);
+  EXPECT_THAT(mesh.companions(), ElementsAre("w/b.png"));
 }
 
 TEST_F(GltfImportTest, AMissingPictureShowsItsMaterialsColour) {
@@ -406,6 +407,7 @@ TEST_F(GltfImportTest, AMissingPictureShowsItsMaterialsColour) {
   EXPECT_EQ(mesh.layout, AttributeLayout{.texcoords = true});
   ASSERT_EQ(mesh.warnings.size(), 1U);
   EXPECT_THAT(mesh.warnings[0], HasSubstr("none.png"));
+  EXPECT_THAT(mesh.companions(), ElementsAre("no w/none.png"));
 
   gltf.show(textured_square(gltf, gltf.textured_material({{"uri", "b.png"}})));
   gltf.show(square(gltf));  // of the default material
@@ -421,6 +423,7 @@ TEST_F(GltfImportTest, AMissingPictureShowsItsMaterialsColour) {
   const Imported ignored = import(gltf, {.textures = Textures::ignore});
   EXPECT_EQ(ignored.layout, AttributeLayout{.texcoords = true});
   EXPECT_THAT(ignored.warnings, IsEmpty());
+  EXPECT_THAT(ignored.companions(), IsEmpty());
 }
 
 TEST_F(GltfImportTest, WithoutABaseColoursPictureTheEmissiveOneIsShown) {

@@ -199,8 +199,8 @@ class ImportTest : public testing::Test {
     TemporaryFile ply(files_, "w/imported.ply", pool.scratch_use());
     execution::NoProgress progress;
     const execution::CancelToken cancel;
-    import_input(InputFiles(files_, inputs(names), weld), ply,
-                 {files_, scratch, memory.sort_bytes, progress, cancel});
+    InputFiles input(files_, inputs(names), weld);
+    import_input(input, ply, {files_, scratch, memory.sort_bytes, progress, cancel});
     return files_.content("w/imported.ply");
   }
 

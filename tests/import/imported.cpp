@@ -46,6 +46,17 @@ std::uint64_t Imported::count(const std::string& name) const {
   return found == summary.counts.end() ? 0 : found->count;
 }
 
+std::vector<std::string> Imported::companions() const {
+  std::vector<std::string> all;
+  for (const importing::ReadFile& file : record.files) {
+    if (file.part != importing::InputPart::mesh)
+      all.push_back(file.path.generic_string());
+  }
+  for (const std::filesystem::path& place : record.awaited)
+    all.push_back("no " + place.generic_string());
+  return all;
+}
+
 std::uint32_t Imported::material_of(std::size_t triangle) const {
   const auto channels = static_cast<std::size_t>(layout.channels());
   const auto offset = static_cast<std::size_t>(layout.material_offset());
@@ -101,6 +112,7 @@ Imported import_files(storage::FileSystem& files, const mesh_io::InputPaths& inp
   result.materials = input.materials();
   read(*input.open(), result);
   input.complete(result.summary);
+  result.record = input.record(0);
   result.warnings = warnings.all;
   result.disk_bytes = pool.scratch_use().peak_bytes_on_disk();
   result.predicted_bytes = importing::predict_import(input.files(), how.memory);

@@ -16,6 +16,7 @@ struct Imported {
   AttributeLayout layout;
   images::MaterialList materials;
   SourceSummary summary;
+  importing::InputRecord record;
   std::vector<std::string> warnings;
   std::uint64_t disk_bytes = 0;       ///< temporary, at most at once
   std::uint64_t predicted_bytes = 0;  ///< as importing::predict_import
@@ -24,6 +25,8 @@ struct Imported {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 
   std::uint64_t count(const std::string& name) const;  ///< of the summary's; 0 if it is not there
+  /// What belongs to the meshes: "w/a.png", and "no w/b.png" for what is not there.
+  std::vector<std::string> companions() const;
   /// The number of a triangle's material, which all of its corners must name.
   std::uint32_t material_of(std::size_t triangle) const;
   /// Texture coordinates of a corner.

@@ -120,6 +120,31 @@ TEST_F(TexturedObjTest, AMissingPictureShowsTheColourOfItsMaterial) {
             "the colour of their material instead");
 }
 
+TEST_F(TexturedObjTest, LibrariesAndPicturesBelongToTheInput) {
+  put_pictures({"a.png", "tex/b.png"});
+  put("a.mtl",
+      "newmtl one\nmap_Kd a.png\nnewmtl two\nmap_Kd tex\\b.png\nnewmtl three\n"
+      "map_Kd C:\\x\\c.png\nnewmtl unused\nmap_Kd d.png\n");
+  put("a.obj", std::string("mtllib a.mtl other.mtl\n") + kSquare +
+                   "usemtl one\nf 1/1 2/2 3/3\nusemtl two\nf 1/1 3/3 4/4\n"
+                   "usemtl three\nf 1/1 3/3 4/4\n");
+  const Imported mesh = import();
+  EXPECT_THAT(mesh.companions(),
+              ElementsAre("w/a.mtl", "w/a.png", "w/tex/b.png", "no w/a.mtl other.mtl",
+                          "no w/other.mtl", "no w/C:/x/c.png", "no w/c.png"));
+  const std::vector<SourceFile>& files = mesh.summary.files;
+  ASSERT_THAT(files, SizeIs(3));
+  EXPECT_EQ(files[0].name, "a.obj");
+  EXPECT_EQ(files[1].name + ", " + files[1].format, "a.mtl, material library");
+  EXPECT_EQ(files[2].name + ", " + files[2].format, "a.png and 1 more, picture");
+  EXPECT_EQ(files[2].bytes, 2 * std::string("a picture").size());
+  put("tex/b.png", "b picture");
+  EXPECT_EQ(import().summary.files[1].checksum, files[1].checksum);
+  EXPECT_NE(import().summary.files[2].checksum, files[2].checksum);
+  EXPECT_NE(import().summary.checksum, mesh.summary.checksum);
+  EXPECT_THAT(import({.textures = Textures::ignore}).companions(), IsEmpty());
+}
+
 TEST_F(TexturedObjTest, FacesWithoutCoordinatesShowTheColour) {
   put_pictures({"a.png"});
   put("a.mtl", "newmtl m\nKd 0 1 0\nmap_Kd a.png\n");
@@ -265,6 +290,27 @@ TEST_F(TexturedObjTest, SeveralFilesShareTheNumbers) {
                                             "b.png 0 1, 1 1, 1 0", "a.png 0 1, 1 0, 0 0"));
   EXPECT_THAT(mesh.materials.materials, SizeIs(4));
   EXPECT_THAT(mesh.materials.images, SizeIs(2)) << "a file is one picture";
+}
+
+TEST_F(TexturedObjTest, UntexturedFilesOfAListBecomeWhite) {
+  put_pictures({"a.png"});
+  put("a.mtl", "newmtl m\nmap_Kd a.png\nnewmtl red\nKd 1 0 0\n");
+  put("a.obj", std::string("mtllib a.mtl\nusemtl m\n") + kSquare + "f 1/1 2/2 3/3\n");
+  put("red.obj", std::string("mtllib a.mtl\nusemtl red\n") + kSquare + "f 1/1 2/2 3/3\n");
+  put("bare.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
+  put("normals.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n");
+  const std::string textured = "a.png 0 1, 1 1, 1 0";
+  Imported mesh = import_of({"bare.obj", "a.obj", "red.obj"});
+  EXPECT_THAT(mesh.all_shown(), ElementsAre("#ffffff", textured, "#ffffff"));
+  EXPECT_EQ(mesh.count("untextured_files"), 2U);
+  EXPECT_THAT(mesh.materials.materials, SizeIs(2));
+  mesh = import_of({"a.obj", "bare.obj"}, {.memory = tests::kTight});
+  EXPECT_THAT(mesh.all_shown(), ElementsAre(textured, "#ffffff"));
+  EXPECT_EQ(mesh.positions.size(), 4U + 3U);
+  mesh = import_of({"bare.obj", "a.obj", "bare.obj"}, {.weld = true});
+  EXPECT_THAT(mesh.all_shown(), ElementsAre("#ffffff", textured, "#ffffff"));
+  EXPECT_THROW(import_of({"a.obj", "normals.obj"}), Error);
+  EXPECT_THROW(import_of({"bare.obj", "red.obj"}), Error) << "none is textured";
 }
 
 TEST_F(TexturedObjTest, ResultsDoNotDependOnTheMemory) {

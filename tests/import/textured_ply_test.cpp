@@ -127,7 +127,17 @@ TEST_F(TexturedPlyTest, VerticesHaveCoordinatesAndFacesNumbers) {
     EXPECT_THAT(mesh.all_shown(), ElementsAre("b c.png 0 1, 1 1, 1 0", "b c.png 0 1, 1 0, 0 0",
                                               "a.png 0 1, 1 1, 1 0", "#ffffff"));
     EXPECT_EQ(mesh.summary.degenerate_triangles, 2U);
+    EXPECT_THAT(mesh.companions(), ElementsAre("w/b c.png", "w/a.png"));
   }
+}
+
+TEST_F(TexturedPlyTest, PicturesBelongToTheInput) {
+  put("a.ply", with_vertex_texcoords("s t", "3 0 1 2 0\n3 0 1 2 1\n", 2));
+  put("a.png", "one");
+  const Imported before = import();
+  EXPECT_THAT(before.companions(), ElementsAre("w/a.png", "no w/b c.png"));
+  put("a.png", "two");
+  EXPECT_NE(import().summary.checksum, before.summary.checksum);
 }
 
 TEST_F(TexturedPlyTest, PackedFilesAreTextured) {

@@ -3,6 +3,7 @@
 #include "bench/generator.h"
 #include "bench/split.h"
 #include "bench/stress.h"
+#include "bench/textured_files.h"
 #include "execution/size_text.h"
 #include "import/import_input.h"
 #include "pipeline/estimate.h"
@@ -85,6 +86,22 @@ class MemoryTest : public testing::Test {
     const pid_t child = fork();
     if (child == 0) {
       write_mesh(make());
+      _exit(0);
+    }
+    int status = -1;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    ASSERT_EQ(status, 0);
+  }
+
+  void write_textured(const bench::AtlasOptions& atlas) {
+    const pid_t child = fork();
+    if (child == 0) {
+      const auto files = storage::make_posix_file_system();
+      bench::TexturedOptions options;
+      options.surface.triangles = 20'000;
+      options.atlas = atlas;
+      bench::write_textured(*files, {path("mesh.ply"), true}, bench::TexturedSurface(options),
+                            {.mesh = bench::MeshFileFormat::ply});
       _exit(0);
     }
     int status = -1;
@@ -245,6 +262,17 @@ TEST_F(MemoryTest, AttributesAndDoubleCoordinatesInTheLeastBudget) {
   options.offset = {500123.25, 5812345.5, 100};
   write_mesh(options);
   expect_within(least_budget());
+}
+
+// Pictures of partitions have up to 4096 x 4096 texels, whatever the budget.
+TEST_F(MemoryTest, LargePicturesInTheLeastBudget) {
+  write_textured({.images = 2, .side = 4096, .charts = 64});
+  const std::string least = least_budget();
+  EXPECT_LE(execution::parse_size(least).value(), 128 * kMiB);
+  expect_within(least);
+  expect_within("512MiB", {"threads=4"});
+  fs::remove_all(path("mesh.hier"));
+  expect_within(least_budget({"texture.format=png"}), {"texture.format=png"});
 }
 
 // PROJ is loaded for it, and takes what the plan counts for it.

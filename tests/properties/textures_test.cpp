@@ -7,14 +7,17 @@
 #include "pipeline/build.h"
 #include "storage/format/hierarchy_reader.h"
 #include "tests/support/sample_hierarchy.h"
+#include "tests/support/sizes.h"
 #include "tests/support/textured_torus.h"
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <memory>
@@ -31,7 +34,12 @@ namespace meshhier::pipeline {
 namespace {
 
 using images::Image;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
+using tests::kMiB;
 using tests::TexturedTorus;
 using tests::TexturedTriangle;
 
@@ -98,6 +106,23 @@ class StoppedStage final : public execution::Progress {
   std::string only_;
 };
 
+/// Does something when a stage begins.
+class AtStage final : public execution::Progress {
+ public:
+  AtStage(std::string stage, std::function<void()> act)
+      : stage_(std::move(stage)), act_(std::move(act)) {}
+  void stage(std::string_view name, std::uint64_t, std::string_view) override {
+    if (name == stage_)
+      act_();
+  }
+  void advance(std::uint64_t) override {}
+  void finish(std::string_view) override {}
+
+ private:
+  std::string stage_;
+  std::function<void()> act_;
+};
+
 class TexturesTest : public testing::Test {
  protected:
   std::filesystem::path write(const TexturedTorus& torus) const {
@@ -115,11 +140,28 @@ class TexturesTest : public testing::Test {
     return config;
   }
 
-  void build(const config::Config& config) {
+  /// Returns the report.
+  std::string build(const config::Config& config) {
     execution::NoProgress progress;
     BuildOptions options;
     options.force = true;
-    build_hierarchy(config, options, {*files_, progress, execution::CancelToken()});
+    return build_hierarchy(config, options, {*files_, progress, execution::CancelToken()}).text;
+  }
+
+  void stop(const config::Config& config, const std::string& stage) {
+    execution::CancelToken cancel;
+    StoppedStage progress(cancel, 0, stage);
+    EXPECT_THROW(build_hierarchy(config, {}, {*files_, progress, cancel}), Error);
+  }
+  /// Of a torus whose pictures have at least so many bytes.
+  config::Config stopped(const std::string& stage, std::uintmax_t bytes) {
+    const config::Config job = config(write(tests::make_textured_torus(6, 3)));
+    for (const char* name : {"picture_0.png", "picture_1.png"}) {
+      const std::filesystem::path path = directory_.path() / name;
+      std::filesystem::resize_file(path, std::max(bytes, std::filesystem::file_size(path)));
+    }
+    stop(job, stage);
+    return job;
   }
 
   std::vector<BuiltTile> tiles(const config::Config& config) const {
@@ -222,6 +264,42 @@ TEST_F(TexturesTest, PartitionsShowTheInputsTexels) {
   EXPECT_THAT(problems(job), IsEmpty());
 }
 
+/// Half as large, as viewers make it.
+Image halved(const Image& image) {
+  Image half((image.width + 1) / 2, (image.height + 1) / 2, image.channels);
+  for (std::uint32_t y = 0; y < half.height; ++y) {
+    for (std::uint32_t x = 0; x < half.width; ++x) {
+      const std::uint32_t right = std::min(2 * x + 1, image.width - 1);
+      const std::uint32_t below = std::min(2 * y + 1, image.height - 1);
+      for (std::uint32_t c = 0; c < image.channels; ++c) {
+        const unsigned sum = image.at(2 * x, 2 * y)[c] + image.at(right, 2 * y)[c] +
+                             image.at(2 * x, below)[c] + image.at(right, below)[c];
+        half.at(x, y)[c] = static_cast<std::uint8_t>(sum / 4);
+      }
+    }
+  }
+  return half;
+}
+
+// Black between charts would darken their borders there.
+TEST_F(TexturesTest, SmallVersionsOfPicturesAreNoDarkerThanTheInput) {
+  constexpr std::uint8_t kDarkest = 28;  // of torus_colour()
+  TexturedTorus torus = tests::make_textured_torus(7, 3);
+  for (Image& picture : torus.pictures)  // between its charts there is black
+    std::ranges::replace_if(
+        picture.texels, [](auto value) { return value < kDarkest; }, kDarkest);
+  const config::Config job = config(write(torus));
+  build(job);
+  for (const BuiltTile& built : tiles(job)) {
+    if (built.record.error > 0)
+      continue;  // simplified
+    for (Image small = built.image; small.width > 1 || small.height > 1; small = halved(small)) {
+      ASSERT_GE(*std::ranges::min_element(small.texels), kDarkest)
+          << built.record.node.index << ": " << small.width << " x " << small.height;
+    }
+  }
+}
+
 double mean_square_error(const BuiltTile& built) {
   double sum = 0;
   std::size_t count = 0;
@@ -296,11 +374,32 @@ std::map<std::string, std::string> files_of(const std::filesystem::path& directo
 
 TEST_F(TexturesTest, ThreadsAndBudgetDecideNothing) {
   config::Config job = config(write(tests::make_textured_torus(6, 3)));
+  for (const ImageFormat format : {ImageFormat::png, ImageFormat::jpeg}) {
+    job.texture.format.format = format;
+    build(job);
+    const auto expected = files_of(job.output);
+    for (const std::uint32_t threads : {1U, 3U}) {
+      config::Config other = job;
+      other.threads = threads;
+      other.memory_budget = threads == 1 ? 136 * kMiB : 2048 * kMiB;
+      build(other);
+      EXPECT_EQ(files_of(job.output), expected) << threads;
+    }
+  }
+}
+
+// Their pictures are painted, reduced and encoded in several bands.
+TEST_F(TexturesTest, ThreadsAndBudgetDecideNothingOfLargePictures) {
+  config::Config job = config(write(tests::make_textured_torus(6, 3, 30)));
+  job.partition.count = 1;
+  job.texture.format.format = ImageFormat::jpeg;
   build(job);
   const auto expected = files_of(job.output);
+  const Image image = tiles(job).front().image;
+  ASSERT_GT(std::uint64_t{image.width} * image.height, kMiB);
   for (const std::uint32_t threads : {1U, 3U}) {
     job.threads = threads;
-    job.memory_budget = threads == 1 ? std::uint64_t{400} << 20 : std::uint64_t{2} << 30;
+    job.memory_budget = threads == 1 ? 96 * kMiB : 2048 * kMiB;
     build(job);
     EXPECT_EQ(files_of(job.output), expected) << threads;
   }
@@ -329,20 +428,142 @@ TEST_F(TexturesTest, AStoppedBuildGoesOnToTheSameBytes) {
               testing::IsSupersetOf({"images", "leaves", "simplify", "texture", "publish"}));
 }
 
-TEST_F(TexturesTest, AChangedPictureIsNotGoneOnWith) {
-  const std::filesystem::path mesh = write(tests::make_textured_torus(6, 3));
-  const config::Config job = config(mesh);
-  execution::CancelToken cancel;
-  StoppedStage progress(cancel, 0, "texture");
-  EXPECT_THROW(build_hierarchy(job, {}, {*files_, progress, cancel}), Error);
-  TexturedTorus other = tests::make_textured_torus(6, 3);
-  for (Image& picture : other.pictures)
+/// Writes pictures that are all grey, of at least so many bytes.
+void write_grey(const std::filesystem::path& directory, std::uintmax_t bytes) {
+  TexturedTorus grey = tests::make_textured_torus(6, 3);
+  for (Image& picture : grey.pictures)
     std::ranges::fill(picture.texels, std::uint8_t{200});
-  write(other);
-  build(job);
+  tests::write_obj(grey, directory);
+  for (const char* name : {"picture_0.png", "picture_1.png"}) {
+    const std::filesystem::path path = directory / name;
+    std::filesystem::resize_file(path, std::max(bytes, std::filesystem::file_size(path)));
+  }
+}
+
+TEST_F(TexturesTest, AChangedPictureIsNotGoneOnWith) {
+  const config::Config job = stopped("texture", 100'000);
+  write_grey(directory_.path(), 100'000);
+  EXPECT_THAT(build(job), HasSubstr("the input was changed since an earlier build was stopped"));
   for (const BuiltTile& built : tiles(job))
     ASSERT_EQ(built.image.at(0, 0)[0], 200);
   EXPECT_THAT(problems(job), IsEmpty());
+}
+
+TEST_F(TexturesTest, APictureOfAnotherSizeIsRefusedAsAnotherMeshIs) {
+  const config::Config job = stopped("texture", 100'000);
+  write_grey(directory_.path(), 100'001);
+  try {
+    build(job);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::exists);
+    EXPECT_THAT(error.what(), HasSubstr("input_bytes was "));
+  }
+}
+
+TEST_F(TexturesTest, APictureThatAppearedIsAnotherInput) {
+  const std::filesystem::path mesh = write(tests::make_textured_torus(6, 3));
+  const std::filesystem::path picture = directory_.path() / "picture_1.png";
+  std::filesystem::rename(picture, directory_.path() / "away.png");
+  stop(config(mesh), "texture");
+  std::filesystem::rename(directory_.path() / "away.png", picture);
+  EXPECT_THROW(build(config(mesh)), Error);
+}
+
+TEST_F(TexturesTest, FilesThatWereOnlyTouchedAreGoneOnWith) {
+  const config::Config job = stopped("texture", 0);
+  for (const char* name : {"picture_0.png", "torus.mtl", "torus.obj"}) {
+    const std::filesystem::path path = directory_.path() / name;
+    std::filesystem::last_write_time(
+        path, std::filesystem::last_write_time(path) + std::chrono::hours(1));
+  }
+  EXPECT_THAT(build(job), HasSubstr("went on where an earlier build was stopped"));
+  EXPECT_THAT(problems(job), IsEmpty());
+}
+
+TEST_F(TexturesTest, APictureThatChangesBeforeItIsDecodedIsRefused) {
+  const config::Config job = config(write(tests::make_textured_torus(6, 3)));
+  AtStage progress("images", [&] {
+    std::filesystem::resize_file(directory_.path() / "picture_1.png", 100'000);
+  });
+  try {
+    build_hierarchy(job, {}, {*files_, progress, execution::CancelToken()});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::input);
+    EXPECT_THAT(error.what(), HasSubstr("picture_1.png was changed while it was read"));
+  }
+}
+
+TEST_F(TexturesTest, VerifyNamesTheFilesThatChanged) {
+  const config::Config job = config(write(tests::make_textured_torus(6, 3)));
+  build(job);
+  std::ofstream(directory_.path() / "picture_1.png", std::ios::app) << "more";
+  EXPECT_THAT(problems(job), Contains(HasSubstr("picture_0.png and 1 more (picture): not what the "
+                                                "hierarchy was made of")));
+  EXPECT_THAT(problems(job), Not(Contains(HasSubstr("torus.mtl"))));
+  std::ofstream(directory_.path() / "torus.mtl", std::ios::app) << "# more\n";
+  EXPECT_THAT(problems(job), Contains(HasSubstr("torus.mtl (material library): not what")));
+}
+
+TEST_F(TexturesTest, TheReportNamesAllThatWasReadAndWhatWasMissing) {
+  const std::filesystem::path mesh = write(tests::make_textured_torus(6, 3));
+  std::filesystem::remove(directory_.path() / "picture_1.png");
+  const config::Config job = config(mesh);
+  execution::NoProgress progress;
+  const storage::InputNote note =
+      build_hierarchy(job, {}, {*files_, progress, execution::CancelToken()}).input;
+  std::vector<std::string> names;
+  for (const storage::NotedFile& file : note.files) {
+    names.push_back(file.path.string());
+    EXPECT_EQ(file.identity, files_->identity(directory_.path() / file.path));
+  }
+  EXPECT_THAT(names, ElementsAre("torus.obj", "torus.mtl", "picture_0.png"));
+  EXPECT_THAT(note.awaited, ElementsAre("picture_1.png"));
+  EXPECT_EQ(note.content, storage::HierarchyReader(*files_, job.output).manifest().source.checksum);
+}
+
+/// Keeps warnings.
+class Warnings final : public execution::Progress {
+ public:
+  void stage(std::string_view, std::uint64_t, std::string_view) override {}
+  void advance(std::uint64_t) override {}
+  void finish(std::string_view) override {}
+  void warn(std::string_view message) override { all.emplace_back(message); }
+
+  std::vector<std::string> all;
+};
+
+TEST_F(TexturesTest, BrokenPicturesThatAreToBeIgnoredGiveOneWarning) {
+  config::Config job = config(write(tests::make_textured_torus(6, 3)));
+  std::filesystem::resize_file(directory_.path() / "picture_0.png", 10);   // no head
+  std::filesystem::resize_file(directory_.path() / "picture_1.png", 200);  // no end
+  job.missing_images = config::MissingImages::ignore;
+  Warnings progress;
+  build_hierarchy(job, {}, {*files_, progress, execution::CancelToken()});
+  ASSERT_EQ(progress.all.size(), 1U);
+  EXPECT_THAT(progress.all[0], HasSubstr("2 pictures of the mesh are broken (the first: "));
+  EXPECT_THAT(progress.all[0], HasSubstr("picture_0.png"));
+  const SourceTextures textures =
+      storage::HierarchyReader(*files_, job.output).manifest().source.textures.value();
+  EXPECT_EQ(textures.images, 2U);
+  EXPECT_EQ(textures.missing_images, 2U);
+  EXPECT_THAT(problems(job), IsEmpty());
+}
+
+TEST_F(TexturesTest, AListMayMixTexturedAndUntexturedFiles) {
+  const std::filesystem::path torus = write(tests::make_textured_torus(6, 3));
+  const std::filesystem::path plain = directory_.path() / "plain.obj";
+  std::ofstream(plain) << "v 9 0 0\nv 10 0 0\nv 9 1 0\nvt 0 0\nf 1/1 2/1 3/1\nf 3/1 2/1 1/1\n";
+  for (const auto& inputs : {std::vector{plain, torus}, std::vector{torus, plain}}) {
+    config::Config job = config(torus);
+    job.input = mesh_io::InputPaths();
+    job.input.assign(inputs.begin(), inputs.end());
+    build(job);
+    EXPECT_THAT(problems(job), IsEmpty());
+    const SourceSummary source = storage::HierarchyReader(*files_, job.output).manifest().source;
+    EXPECT_EQ(source.textures->materials, 3U);
+  }
 }
 
 TEST_F(TexturesTest, ABuildMayLeaveThemOut) {

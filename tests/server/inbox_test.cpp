@@ -31,8 +31,12 @@ class InboxTest : public testing::Test {
 
   tests::TemporaryDirectory directory_;
   std::chrono::steady_clock::time_point now_;
-  Inbox inbox_{directory_.path(), milliseconds(2000), Inbox::Folders::taken,
-               [this] { return now_; }};
+  std::uint64_t companions_ = 0;
+  Inbox inbox_{directory_.path(),
+               {.settle = milliseconds(2000),
+                .folders = Inbox::Folders::taken,
+                .mark = [this](const std::string&) { return companions_; },
+                .clock = [this] { return now_; }}};
 };
 
 TEST_F(InboxTest, AFileIsWholeWhenItHasSettled) {
@@ -51,6 +55,23 @@ TEST_F(InboxTest, AFileThatGrowsBeginsAnew) {
   EXPECT_THAT(whole_after(milliseconds(1500)), IsEmpty());
   EXPECT_THAT(whole_after(milliseconds(500)), ElementsAre("b.ply"));
   EXPECT_THAT(whole_after(milliseconds(1500)), ElementsAre("a.ply", "b.ply"));
+}
+
+TEST_F(InboxTest, AFileWhoseCompanionsChangeBeginsAnew) {
+  write_text(directory_.path() / "a.obj", "1");
+  EXPECT_THAT(whole_after(milliseconds(0)), IsEmpty());
+  companions_ = 7;
+  EXPECT_THAT(whole_after(milliseconds(2000)), IsEmpty());
+  EXPECT_THAT(whole_after(milliseconds(2000)), ElementsAre("a.obj"));
+}
+
+TEST_F(InboxTest, AFolderWhoseCompanionsChangeBeginsAnew) {
+  std::filesystem::create_directory(directory_.path() / "house");
+  write_text(directory_.path() / "house/a.obj", "1");
+  EXPECT_THAT(whole_after(milliseconds(0)), IsEmpty());
+  companions_ = 7;
+  EXPECT_THAT(whole_after(milliseconds(2000)), IsEmpty());
+  EXPECT_THAT(whole_after(milliseconds(2000)), ElementsAre("house/a.obj"));
 }
 
 TEST_F(InboxTest, AFileThatCameBackIsANewOne) {
@@ -89,7 +110,7 @@ TEST_F(InboxTest, FoldersMayBeIgnored) {
   std::filesystem::create_directory(directory_.path() / "house");
   write_text(directory_.path() / "house/a.obj", "1");
   EXPECT_EQ(inbox_.look().size(), 1U);
-  EXPECT_THAT(Inbox(directory_.path(), milliseconds(0)).look(), IsEmpty());
+  EXPECT_THAT(Inbox(directory_.path(), {.settle = milliseconds(0)}).look(), IsEmpty());
 }
 
 TEST_F(InboxTest, LinksAndDirectoriesAreLeftAlone) {

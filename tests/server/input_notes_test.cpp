@@ -7,8 +7,9 @@
 namespace meshhier::server {
 namespace {
 
-constexpr storage::FileVersion kVersion{
-    .device = 1, .inode = 2, .bytes = 3, .modified_ns = -4, .changed_ns = 5};
+const storage::InputNote kNote{UINT64_MAX,
+                               {{"a.obj", {3, -4, 5}, 42}, {"b\xFF \xC3\xA4.png", {6, 7, 8}, 9}},
+                               {"../c\xFF.png"}};
 
 class InputNotesTest : public testing::Test {
  protected:
@@ -17,35 +18,37 @@ class InputNotesTest : public testing::Test {
   InputNotes notes_{*files_, storage::open_folder(directory_.path())};
 };
 
-TEST_F(InputNotesTest, ANoteIsFoundForItsVersionAlone) {
-  EXPECT_EQ(notes_.find("a.hier", kVersion), std::nullopt);
-  notes_.write("a.hier", kVersion, 42);
-  EXPECT_EQ(notes_.find("a.hier", kVersion), 42U);
-  EXPECT_EQ(notes_.find("b.hier", kVersion), std::nullopt);
-  for (const auto& change : std::vector<std::function<void(storage::FileVersion&)>>{
-           [](auto& v) { ++v.inode; }, [](auto& v) { ++v.bytes; }, [](auto& v) { --v.modified_ns; },
-           [](auto& v) { --v.changed_ns; }}) {
-    storage::FileVersion other = kVersion;
-    change(other);
-    EXPECT_EQ(notes_.find("a.hier", other), std::nullopt);
+TEST_F(InputNotesTest, ANoteComesBackWithNamesOfAnyBytes) {
+  EXPECT_FALSE(notes_.find("a.hier"));
+  notes_.write("a.hier", kNote);
+  EXPECT_FALSE(notes_.find("b.hier"));
+  const storage::InputNote note = notes_.find("a.hier").value();
+  EXPECT_EQ(note.content, kNote.content);
+  ASSERT_EQ(note.files.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(note.files[i].path, kNote.files[i].path);
+    EXPECT_EQ(note.files[i].identity, kNote.files[i].identity);
+    EXPECT_EQ(note.files[i].identity.changed_ns, kNote.files[i].identity.changed_ns);
+    EXPECT_EQ(note.files[i].checksum, kNote.files[i].checksum);
   }
+  EXPECT_EQ(note.awaited, kNote.awaited);
 }
 
-TEST_F(InputNotesTest, ADeviceMayGetAnotherNumber) {
-  notes_.write("a.hier", kVersion, 42);
-  storage::FileVersion mounted_again = kVersion;
-  mounted_again.device = 9;
-  EXPECT_EQ(notes_.find("a.hier", mounted_again), 42U);
+TEST_F(InputNotesTest, ManyPicturesAreNoHindrance) {
+  storage::InputNote note = kNote;
+  note.files.resize(20'000, kNote.files[1]);
+  notes_.write("a.hier", note);
+  EXPECT_EQ(notes_.find("a.hier").value().files.size(), note.files.size());
 }
 
 TEST_F(InputNotesTest, ADamagedNoteIsNone) {
-  notes_.write("a.hier", kVersion, 42);
+  notes_.write("a.hier", kNote);
   const auto path = directory_.path() / ".a.hier.meshhier-input";
   std::string text = tests::text_of(path);
-  text[text.find("\"content\": \"") + 14] = '1';
+  text[text.find("\"content\": ") + 12] = '2';
   for (const std::string& damaged : {text, std::string("{}"), std::string()}) {
     tests::write_text(path, damaged);
-    EXPECT_EQ(notes_.find("a.hier", kVersion), std::nullopt) << damaged;
+    EXPECT_FALSE(notes_.find("a.hier")) << damaged;
   }
 }
 

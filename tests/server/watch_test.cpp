@@ -1,13 +1,16 @@
 // A watched folder with the real program.
 #include "server/watch.h"
 
+#include "pipeline/build.h"
 #include "storage/io/file_checksum.h"
 #include "tests/server/refusing_folder.h"
 #include "tests/server/served_folder.h"
 #include "tests/server/wait_until.h"
 #include "tests/support/meshes.h"
+#include "tests/support/sample_texture.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <map>
 #include <memory>
@@ -76,6 +79,63 @@ class WatchTest : public testing::Test {
     mesh.positions[0].x += 1;
     tests::write_ply(mesh, directory_.path() / "made.ply");
     fs::rename(directory_.path() / "made.ply", inbox() / name);
+  }
+  /// A square picture of so many texels a side.
+  void put_picture(const std::string& name, std::uint32_t side) {
+    const std::vector<std::byte> png = tests::sample_png(side, side, false);
+    fs::create_directories((inbox() / name).parent_path());
+    tests::write_text(directory_.path() / "made.png",
+                      {reinterpret_cast<const char*>(png.data()), png.size()});
+    fs::rename(directory_.path() / "made.png", inbox() / name);
+  }
+  void drop_library(const std::string& picture) {
+    tests::write_text(directory_.path() / "made.mtl", "newmtl m\nmap_Kd " + picture + '\n');
+    fs::rename(directory_.path() / "made.mtl", inbox() / "a.mtl");
+  }
+  /// A triangle that shows textures/wall.png.
+  void drop_textured() {
+    put_picture("textures/wall.png", 16);
+    drop_library("textures/wall.png");
+    drop_obj();
+  }
+  /// The same, all in the folder "house".
+  void drop_textured_folder() {
+    drop_textured();
+    fs::create_directory(directory_.path() / "house");
+    for (const char* name : {"a.obj", "a.mtl", "textures"})
+      fs::rename(inbox() / name, directory_.path() / "house" / name);
+    fs::rename(directory_.path() / "house", inbox() / "house");
+  }
+  void drop_obj() {
+    tests::write_text(inbox() / "a.obj",
+                      "mtllib a.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n"
+                      "f 1/1 2/2 3/3\n");
+  }
+  void drop_gltf() {
+    const std::array<float, 9> corners{0, 0, 0, 1, 0, 0, 0, 1, 0};
+    tests::write_text(inbox() / "t.bin",
+                      {reinterpret_cast<const char*>(corners.data()), sizeof corners});
+    tests::write_text(
+        inbox() / "t.gltf",
+        R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+            "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                           "min": [0, 0, 0], "max": [1, 1, 0]}],
+            "bufferViews": [{"buffer": 0, "byteLength": 36}],
+            "buffers": [{"uri": "t.bin", "byteLength": 36}]})");
+  }
+  /// Of the pictures that it was made of.
+  std::uint64_t texels(const std::string& name = "a.hier") const {
+    const auto manifest = nlohmann::json::parse(text_of(models() / name / "hierarchy.json"));
+    return manifest["source"].contains("textures")
+               ? manifest["source"]["textures"]["texels"].get<std::uint64_t>()
+               : 0;
+  }
+  std::ptrdiff_t builds_of(const std::string& name) {
+    const std::vector<std::string> all = told();
+    return std::count_if(all.begin(), all.end(), [&](const std::string& text) {
+      return text.starts_with(name + ": building");
+    });
   }
   fs::path other() const { return directory_.path() / "other.ply"; }
 
@@ -277,6 +337,20 @@ TEST_F(WatchTest, AFolderIsBuiltAsOneModelAndNotAgain) {
   EXPECT_EQ(folder_->open("house.hier/hierarchy.json")->version(), manifest);
 }
 
+TEST_F(WatchTest, AFolderWhosePictureChangesIsBuiltAgain) {
+  drop_textured_folder();
+  start();
+  wait_until([&] { return is_there("house.hier") && is_idle(); });
+  ASSERT_EQ(texels("house.hier"), 16U * 16U);
+  put_picture("house/textures/wall.png", 32);
+  wait_until([&] { return texels("house.hier") == 32 * 32 && is_idle(); });
+  EXPECT_EQ(builds_of("house/a.obj"), 2);
+  start();
+  drop("b.ply");
+  wait_until([&] { return is_there("b.hier") && is_idle(); });
+  EXPECT_EQ(builds_of("house/a.obj"), 2) << "its files were noted";
+}
+
 TEST_F(WatchTest, ARestartBuildsNothingAgain) {
   start();
   drop("a.ply");
@@ -367,6 +441,94 @@ TEST_F(WatchTest, WhatAnotherBuildHasInHandWaits) {
   wait_until([&] { return is_there("b.hier"); });
   lock.reset();
   wait_until([&] { return is_there("a.hier") && is_idle(); });
+}
+
+TEST_F(WatchTest, AChangedPictureOrLibraryBuildsAgain) {
+  start();
+  drop_textured();
+  wait_until([&] { return is_there("a.hier") && is_idle(); });
+  put_picture("textures/wall.png", 32);
+  wait_until([&] { return texels() == 32 * 32 && is_idle(); });
+  put_picture("textures/other.png", 8);
+  drop_library("textures/other.png");
+  wait_until([&] { return texels() == 8 * 8 && is_idle(); });
+}
+
+TEST_F(WatchTest, AMissingPictureOrLibraryThatAppearsBuildsAgain) {
+  start();
+  drop_obj();
+  wait_until([&] { return is_there("a.hier") && is_idle(); });
+  ASSERT_EQ(texels(), 0U);
+  drop_library("textures/wall.png");
+  wait_until([&] { return builds_of("a.obj") == 2 && is_idle(); });
+  put_picture("wall.png", 8);  // beside the library is as good
+  wait_until([&] { return texels() == 8 * 8 && is_idle(); });
+  EXPECT_EQ(builds_of("a.obj"), 3);
+}
+
+TEST_F(WatchTest, APictureThatIsTouchedOrGoneBuildsNothing) {
+  start();
+  drop_textured();
+  wait_until([&] { return is_there("a.hier") && is_idle(); });
+  const fs::path picture = inbox() / "textures/wall.png";
+  const fs::path note = models() / ".a.hier.meshhier-input";
+  const std::string noted = text_of(note);
+  fs::last_write_time(picture, fs::last_write_time(picture) + std::chrono::hours(1));
+  wait_until([&] { return text_of(note) != noted && is_idle(); });
+  fs::remove(picture);
+  drop("b.ply");  // a round goes by
+  wait_until([&] { return is_there("b.hier") && is_idle(); });
+  EXPECT_EQ(builds_of("a.obj"), 1);
+}
+
+TEST_F(WatchTest, ARestartBuildsNothingWithCompanionsAgain) {
+  start();
+  drop_textured();
+  drop_gltf();
+  wait_until([&] { return is_there("a.hier") && is_there("t.hier") && is_idle(); });
+  start();
+  drop("z.ply");
+  wait_until([&] { return is_there("z.hier") && is_idle(); });
+  EXPECT_EQ(builds_of("a.obj"), 1);
+  EXPECT_EQ(builds_of("t.gltf"), 1);
+  watch_->stop();
+  put_picture("textures/wall.png", 32);
+  start();
+  wait_until([&] { return texels() == 32 * 32 && is_idle(); });
+}
+
+TEST_F(WatchTest, AChangedBufferBuildsAgain) {
+  start();
+  drop_gltf();
+  wait_until([&] { return is_there("t.hier") && is_idle(); });
+  const std::uint64_t before = hierarchies_->look("t.hier")->source_checksum;
+  tests::write_text(inbox() / "t.bin", std::string(35, '\0') + '\x40');
+  wait_until([&] { return hierarchies_->look("t.hier")->source_checksum != before; });
+}
+
+TEST_F(WatchTest, APictureThatIsReplacedAtTheEndOfItsBuildBuildsAgain) {
+  put_picture("textures/wall.png", 32);
+  fs::rename(inbox() / "textures/wall.png", directory_.path() / "other.png");
+  run_before_the_end("test -e " + (directory_.path() / "other.png").string() + " && mv " +
+                     (directory_.path() / "other.png").string() + " " +
+                     (inbox() / "textures/wall.png").string());
+  start();
+  drop_textured();
+  wait_until([&] { return is_there("a.hier") && texels() == 32 * 32 && is_idle(); });
+  EXPECT_THAT(told(), Contains("a.obj: it was changed while it was built; it is looked at again"));
+}
+
+TEST_F(WatchTest, ATexturedHierarchyMadeByHandIsLeftAsItIs) {
+  drop_textured();
+  config::Config by_hand;
+  by_hand.input = inbox() / "a.obj";
+  by_hand.output = models() / "a.hier";
+  execution::NoProgress progress;
+  pipeline::build_hierarchy(by_hand, {}, {*files_, progress, execution::CancelToken()});
+  const auto manifest = storage::open_folder(models())->open("a.hier/hierarchy.json")->version();
+  start();
+  wait_until([&] { return is_idle() && fs::exists(models() / ".a.hier.meshhier-input"); });
+  EXPECT_EQ(folder_->open("a.hier/hierarchy.json")->version(), manifest);
 }
 
 TEST_F(WatchTest, AnInboxThatGoesAwayIsToldOnceAndComesBack) {

@@ -3,6 +3,8 @@
 #include "tests/texture/painted.h"
 #include "tests/texture/random_numbers.h"
 #include "texture/light.h"
+#include "texture/reduction.h"
+#include "texture/shown_texels.h"
 #include "texture/texel_raster.h"
 
 #include <algorithm>
@@ -11,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -49,6 +52,47 @@ TEST(Bake, AConstantColourStaysInEachTexel) {
     EXPECT_EQ(smaller.width, coarse.image.width / factor);
     expect_plain(smaller);
   }
+}
+
+// One of them has triangles that begin in one band and end in another.
+TEST(Reduction, BandsMakeThePictureOfTheWhole) {
+  for (const Mesh& mesh : {make_torus(60, 30), make_torus(6, 4)}) {
+    const Painted fine = painted(mesh, kSide, checker(0.3, 0.12));
+    const images::Image& image = fine.image;
+    for (const std::uint32_t factor : {2U, 4U}) {
+      Reduction bands(image.width, image.height, image.channels, fine.corners, factor);
+      for (std::uint32_t top = 0; top < image.height; top += factor) {
+        images::Image band(image.width, factor, image.channels);
+        std::copy_n(image.at(0, top), band.texels.size(), band.texels.begin());
+        bands.add(band);
+      }
+      EXPECT_EQ(std::move(bands)(), reduced(image, fine.corners, factor));
+    }
+  }
+}
+
+/// Rows of a picture that is looked at in several parts.
+TEST(Reduction, ShownTexelsOfLargePicturesAreThoseOfTheirParts) {
+  const std::array<CornerTexcoords, 3> corners = {
+      {{{{0.1f, 0.05f}, {0.9f, 0.5f}, {0.2f, 0.95f}}},
+       {{{0.8f, 0.8f}, {0.9f, 0.8f}, {0.8f, 0.81f}}},
+       {{{0.95f, 0.9f}, {0.95f, 0.9f}, {0.95f, 0.9f}}}}};
+  constexpr std::uint32_t kWidth = 2048, kHeight = 1536;  // three parts
+  const ShownTexels shown(kWidth, kHeight, corners);
+  std::size_t count = 0;
+  for (const CornerTexcoords& triangle : corners) {
+    RasterTriangle(in_texels(triangle, kWidth, kHeight))
+        .for_each(kWidth, kHeight, [&](std::uint32_t x, std::uint32_t y, double, double) {
+          ASSERT_TRUE(shown(x, y)) << x << ", " << y;
+          ++count;
+        });
+  }
+  std::size_t all = 0;
+  for (std::uint32_t y = 0; y < kHeight; ++y) {
+    for (std::uint32_t x = 0; x < kWidth; ++x)
+      all += shown(x, y) ? 1 : 0;
+  }
+  EXPECT_EQ(all, count + 1);  // that of the triangle without an area
 }
 
 /// Edges are six texels of the coarsest picture wide: what it can show.

@@ -112,7 +112,7 @@ TEST(Layout, NoTwoThingsShareAName) {
                                         preview_path("h"),  lock_path("h"),  journal_path("h"),
                                         built_path("h")};
   std::size_t count = names.size();
-  EXPECT_EQ(count, 6U);
+  EXPECT_EQ(count, 7U);
   for (int level = 0; level < 4; ++level) {
     for (std::uint32_t i = 0; i < 4; ++i, ++count)
       names.insert(tile_path("h", {static_cast<Level>(level), i}));

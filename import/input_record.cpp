@@ -1,0 +1,85 @@
+#include "import/input_record.h"
+
+#include "storage/io/hash.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace meshhier::importing {
+namespace {
+
+constexpr std::array<const char*, 4> kPartNames{"mesh", "buffer", "material library", "picture"};
+
+/// Of all files of a part.
+SourceFile joined(const std::vector<ReadFile>& files, InputPart part) {
+  SourceFile all;
+  all.format = kPartNames[static_cast<std::size_t>(part)];
+  std::vector<std::uint64_t> checksums;
+  for (const ReadFile& file : files) {
+    if (file.part != part)
+      continue;
+    if (checksums.empty())
+      all.name = file.path.filename().string();
+    all.bytes += file.identity.bytes;
+    checksums.push_back(file.checksum);
+  }
+  if (checksums.size() > 1)
+    all.name += fmt::format(" and {} more", checksums.size() - 1);
+  all.checksum = joined_checksum(checksums);
+  return all;
+}
+
+}  // namespace
+
+void Companions::add(CompanionFile file) {
+  if (known_.insert(file.path).second)
+    files_.push_back(std::move(file));
+}
+
+void Companions::await(const std::vector<std::filesystem::path>& places) {
+  for (const std::filesystem::path& place : places) {
+    if (known_places_.insert(place).second)
+      awaited_.push_back(place);
+  }
+}
+
+std::vector<SourceFile> source_files(const std::vector<ReadFile>& files,
+                                     const std::vector<std::string>& formats) {
+  std::vector<SourceFile> all;
+  for (std::size_t i = 0; i < formats.size(); ++i) {
+    const ReadFile& mesh = files[i];
+    all.push_back({mesh.path.filename().string(), formats[i], mesh.identity.bytes, mesh.checksum});
+  }
+  for (const InputPart part : {InputPart::buffer, InputPart::library, InputPart::picture}) {
+    if (std::ranges::find(files, part, &ReadFile::part) != files.end())
+      all.push_back(joined(files, part));
+  }
+  return all;
+}
+
+std::uint64_t joined_checksum(const std::vector<std::uint64_t>& checksums) {
+  if (checksums.size() == 1)
+    return checksums[0];
+  storage::Checksum sum;
+  for (std::uint64_t checksum : checksums) {
+    std::array<std::byte, 8> bytes{};
+    for (std::byte& byte : bytes) {
+      byte = static_cast<std::byte>(checksum);
+      checksum >>= 8;
+    }
+    sum.add(bytes);
+  }
+  return sum.value();
+}
+
+std::uint64_t joined_checksum(const std::vector<SourceFile>& files) {
+  std::vector<std::uint64_t> checksums;
+  for (const SourceFile& file : files)
+    checksums.push_back(file.checksum);
+  return joined_checksum(checksums);
+}
+
+}  // namespace meshhier::importing

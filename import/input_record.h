@@ -1,0 +1,62 @@
+// Which files an input was made of: the meshes, and what they are not whole without.
+#pragma once
+
+#include "hierarchy/published.h"
+#include "storage/io/file.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace meshhier::importing {
+
+/// What a file is to the input, in the order in which checksums are joined.
+enum class InputPart : std::uint8_t { mesh, buffer, library, picture };
+
+/// A file that meshes are not whole without.
+struct CompanionFile {
+  std::filesystem::path path;
+  InputPart part = InputPart::buffer;
+  storage::FileIdentity identity;
+};
+
+/// Each once, in the order in which they were added.
+class Companions {
+ public:
+  void add(CompanionFile file);
+  /// Notes where a file would have been: what appears at any of these places belongs to the input.
+  void await(const std::vector<std::filesystem::path>& places);
+
+  const std::vector<CompanionFile>& files() const { return files_; }
+  const std::vector<std::filesystem::path>& awaited() const { return awaited_; }
+
+ private:
+  std::vector<CompanionFile> files_;
+  std::vector<std::filesystem::path> awaited_;
+  std::set<std::filesystem::path> known_, known_places_;
+};
+
+struct ReadFile {
+  std::filesystem::path path;
+  InputPart part = InputPart::mesh;
+  storage::FileIdentity identity;  ///< before it was read
+  std::uint64_t checksum = 0;      ///< storage::FileChecksum
+};
+
+struct InputRecord {
+  std::vector<ReadFile> files;  ///< by part, meshes first
+  std::vector<std::filesystem::path> awaited;
+};
+
+/// As SourceSummary has them: one entry a mesh, and one for all files of each other part.
+/// `formats`: of the meshes, for people.
+std::vector<SourceFile> source_files(const std::vector<ReadFile>& files,
+                                     const std::vector<std::string>& formats);
+
+/// Of several files from their checksums; of one it is its own.
+std::uint64_t joined_checksum(const std::vector<std::uint64_t>& checksums);
+std::uint64_t joined_checksum(const std::vector<SourceFile>& files);
+
+}  // namespace meshhier::importing

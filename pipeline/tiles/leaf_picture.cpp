@@ -1,0 +1,161 @@
+#include "pipeline/tiles/leaf_picture.h"
+
+#include "texture/fill.h"
+#include "texture/shown_texels.h"
+#include "texture/texel_raster.h"
+#include "texture/texel_segment.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+
+namespace meshhier::pipeline {
+namespace {
+
+using images::Image;
+using texture::AtlasPiece;
+using texture::kLeafAlignment;
+
+constexpr std::uint32_t kBandTexels = std::uint32_t{1} << 20;
+
+/// Of rows of blocks, as large a number as a band may have; at least one.
+std::uint32_t band_rows(std::uint32_t width) {
+  return std::max(kBandTexels / width / kLeafAlignment, 1U) * kLeafAlignment;
+}
+
+std::uint8_t to_byte(float value) {
+  return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255));
+}
+
+void fill(const std::array<float, 4>& colour, Image& image, std::uint32_t left, std::uint32_t top,
+          std::uint32_t width, std::uint32_t height) {
+  for (std::uint32_t y = top; y < top + height; ++y) {
+    for (std::uint32_t x = left; x < left + width; ++x) {
+      for (std::uint32_t c = 0; c < image.channels; ++c)
+        image.at(x, y)[c] = to_byte(colour[c]);
+    }
+  }
+}
+
+/// Of each block whether it belongs to a piece.
+std::vector<std::uint8_t> blocks_of(const texture::LeafAtlas& atlas) {
+  const std::size_t width = atlas.width / kLeafAlignment;
+  std::vector<std::uint8_t> is_piece(width * (atlas.height / kLeafAlignment));
+  for (const AtlasPiece& piece : atlas.pieces) {
+    for (std::uint32_t y = 0; y < piece.height; y += kLeafAlignment) {
+      const std::size_t begin =
+          (piece.atlas_y + y) / kLeafAlignment * width + piece.atlas_x / kLeafAlignment;
+      std::fill_n(is_piece.begin() + static_cast<std::ptrdiff_t>(begin),
+                  piece.width / kLeafAlignment, std::uint8_t{1});
+    }
+  }
+  return is_piece;
+}
+
+void fill_block(const std::uint8_t* texel, Image& image, std::uint32_t left, std::uint32_t top) {
+  for (std::uint32_t y = top; y < top + kLeafAlignment; ++y) {
+    for (std::uint32_t x = left; x < left + kLeafAlignment; ++x)
+      std::copy_n(texel, image.channels, image.at(x, y));
+  }
+}
+
+}  // namespace
+
+LeafPicture::LeafPicture(const texture::LeafAtlas& atlas,
+                         std::span<const texture::CornerTexcoords> corners,
+                         const TexturedInput& input)
+    : atlas_(atlas), input_(input), texels_(input.materials.materials.size()) {
+  read_materials();
+  background_ = Image(atlas.width / kLeafAlignment, atlas.height / kLeafAlignment,
+                      alpha_ == AlphaMode::opaque ? 3 : 4);
+  find_shown(corners);
+  paint_background();
+}
+
+void LeafPicture::read_materials() {
+  for (const AtlasPiece& piece : atlas_.pieces) {
+    const images::Material& material = material_of(piece);
+    alpha_ = std::max(alpha_, material.alpha);
+    if (material.image && !texels_[piece.material])
+      texels_[piece.material].emplace(material, input_.pictures);
+  }
+}
+
+void LeafPicture::find_shown(std::span<const texture::CornerTexcoords> corners) {
+  // A block that the gutter reaches has its middle no farther than a block from the triangle.
+  static_assert(2 * texture::kLeafGutter <= kLeafAlignment);
+  const std::uint32_t width = background_.width, height = background_.height;
+  const std::vector<std::uint8_t> is_piece = blocks_of(atlas_);
+  is_shown_.resize(is_piece.size());
+  const auto show = [&](std::uint32_t x, std::uint32_t y, const auto&...) {
+    const std::size_t block = std::size_t{y} * width + x;
+    is_shown_[block] = is_piece[block];
+  };
+  for (const texture::CornerTexcoords& triangle : corners) {
+    const std::array<texture::TexelPoint, 3> at = texture::in_texels(triangle, width, height);
+    texture::RasterTriangle(at).for_each(width, height, show);
+    for (std::size_t k = 0; k < 3; ++k)
+      texture::TexelSegment(at[k], at[(k + 1) % 3]).for_each_near({0, 0, width, height}, show);
+  }
+}
+
+/// Of an eighth of the size, from a level of the pictures' pyramids; then all around.
+void LeafPicture::paint_background() {
+  constexpr std::uint32_t kUp = std::countr_zero(kLeafAlignment);
+  for (const AtlasPiece& piece : atlas_.pieces) {
+    const images::Material& material = material_of(piece);
+    const std::uint32_t left = piece.atlas_x / kLeafAlignment, width = piece.width / kLeafAlignment;
+    const std::uint32_t top = piece.atlas_y / kLeafAlignment,
+                        height = piece.height / kLeafAlignment;
+    if (material.image) {
+      const std::uint32_t last = input_.pictures.levels(*material.image) - 1;
+      const std::uint32_t up = std::min(kUp, last - std::min(piece.level, last));
+      texels_[piece.material]->read(piece.level + up, piece.x >> up, piece.y >> up, width, height,
+                                    background_, left, top);
+    } else {
+      fill(material.colour, background_, left, top, width, height);
+    }
+  }
+  texture::fill_unknown(background_, is_shown_);
+}
+
+Image LeafPicture::band(std::uint32_t top) const {
+  Image band(atlas_.width, std::min(band_rows(atlas_.width), atlas_.height - top), channels());
+  for (const AtlasPiece& piece : atlas_.pieces)
+    paint(piece, band, top);
+  cover_rest(band, top);
+  return band;
+}
+
+void LeafPicture::paint(const AtlasPiece& piece, Image& band, std::uint32_t top) const {
+  const std::uint32_t begin = std::max(piece.atlas_y, top);
+  const std::uint32_t end = std::min(piece.atlas_y + piece.height, top + band.height);
+  if (begin >= end)
+    return;
+  if (const auto& texels = texels_[piece.material]; texels)
+    texels->read(piece.level, piece.x, piece.y + (begin - piece.atlas_y), piece.width, end - begin,
+                 band, piece.atlas_x, begin - top);
+  else
+    fill(material_of(piece).colour, band, piece.atlas_x, begin - top, piece.width, end - begin);
+}
+
+void LeafPicture::cover_rest(Image& band, std::uint32_t top) const {
+  for (std::uint32_t y = 0; y < band.height; y += kLeafAlignment) {
+    const std::uint32_t row = (top + y) / kLeafAlignment;
+    for (std::uint32_t x = 0; x < background_.width; ++x) {
+      if (is_shown_[std::size_t{row} * background_.width + x] == 0)
+        fill_block(background_.at(x, row), band, x * kLeafAlignment, y);
+    }
+  }
+}
+
+std::uint64_t LeafPicture::bytes(std::uint32_t width, std::uint32_t height) {
+  constexpr std::uint64_t kChannels = 4, kFilling = 2 * sizeof(std::uint32_t) + 1;
+  const std::uint64_t blocks = std::uint64_t{width} * height / (kLeafAlignment * kLeafAlignment);
+  return std::uint64_t{width} * std::min(band_rows(width), height) * kChannels +
+         blocks * (kChannels + kFilling);
+}
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,82 @@
+#include "storage/format/input_note.h"
+
+#include "hierarchy/error.h"
+#include "storage/format/sealed_json.h"
+
+#include <cstddef>
+#include <string_view>
+
+namespace meshhier::storage {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A hundred thousand pictures make 15 MB.
+constexpr SealedFormat kNoteFormat{
+    .name = "meshhier-input", .version = 2, .most_bytes = std::size_t{1} << 26};
+
+/// A path may have any bytes, JSON has characters: each byte becomes the one of its number.
+std::string bytes_text(const std::filesystem::path& path) {
+  std::string text;
+  for (const char c : path.string()) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x80)
+      text += static_cast<char>(0xC0 | (byte >> 6));
+    text += static_cast<char>(byte >= 0x80 ? 0x80 | (byte & 0x3F) : byte);
+  }
+  return text;
+}
+
+std::filesystem::path bytes_path(std::string_view text) {
+  std::string path;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    auto byte = static_cast<unsigned char>(text[i]);
+    if (byte >= 0x80 && i + 1 < text.size())
+      byte = static_cast<unsigned char>((byte << 6) | (text[++i] & 0x3F));
+    path += static_cast<char>(byte);
+  }
+  return path;
+}
+
+InputNote read_note(const Json& document) {
+  InputNote note{.content = document.at("content"), .files = {}, .awaited = {}};
+  for (const Json& file : document.at("files")) {
+    note.files.push_back({bytes_path(file.at(0).get_ref<const std::string&>()),
+                          {file.at(1), file.at(2), file.at(3)},
+                          file.at(4)});
+  }
+  for (const Json& place : document.at("awaited"))
+    note.awaited.push_back(bytes_path(place.get_ref<const std::string&>()));
+  return note;
+}
+
+}  // namespace
+
+std::string to_json_text(const InputNote& note) {
+  Json files = Json::array(), awaited = Json::array();
+  for (const NotedFile& file : note.files) {
+    const FileIdentity& identity = file.identity;
+    files.push_back({bytes_text(file.path), identity.bytes, identity.modified_ns,
+                     identity.changed_ns, file.checksum});
+  }
+  for (const std::filesystem::path& place : note.awaited)
+    awaited.push_back(bytes_text(place));
+  return sealed_text(
+      kNoteFormat,
+      {{"content", note.content}, {"files", std::move(files)}, {"awaited", std::move(awaited)}});
+}
+
+InputNote read_input_note(const File& file, const std::string& name) {
+  const Json document =
+      parse_sealed(read_sealed_text(file, kNoteFormat.most_bytes), kNoteFormat, name);
+  try {
+    InputNote note = read_note(document);
+    if (note.files.empty())
+      throw Error(ErrorCode::corrupt, name + ": names no file");
+    return note;
+  } catch (const Json::exception&) {
+    throw Error(ErrorCode::corrupt, name + ": is no list of files");
+  }
+}
+
+}  // namespace meshhier::storage

@@ -1,0 +1,30 @@
+// Which files a hierarchy was made of, for whoever watches them: beside it, as input_note_path().
+#pragma once
+
+#include "storage/io/file.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace meshhier::storage {
+
+struct NotedFile {
+  std::filesystem::path path;  ///< from the folder of the first one
+  FileIdentity identity;       ///< when it was read
+  std::uint64_t checksum = 0;  ///< FileChecksum
+};
+
+struct InputNote {
+  std::uint64_t content = 0;                   ///< `source.checksum` of the hierarchy's manifest
+  std::vector<NotedFile> files;                ///< the mesh, and what belongs to it
+  std::vector<std::filesystem::path> awaited;  ///< what was looked for there, and was not there
+};
+
+/// JSON that carries its own checksum.
+std::string to_json_text(const InputNote& note);
+/// All of such a file. Throws Error(io), Error(corrupt) that starts with `name`.
+InputNote read_input_note(const File& file, const std::string& name);
+
+}  // namespace meshhier::storage
