@@ -2,14 +2,15 @@
 //
 //   node random_use.mjs PICTURES PAGE SECONDS HIERARCHY...
 //
-// PAGE: the directory that `npm run build` of viewer/ makes, dist/page. Each hierarchy is used for SECONDS. What is done is the same each
-// time, as far as the time goes. A picture of the end goes to the directory PICTURES. Exit code 2: wrong use; else see browser.mjs.
+// PAGE: the directory that `npm run build` of viewer/ makes, dist/page. Each hierarchy is used for SECONDS. What is done is chosen by
+// the same numbers each time. A picture of the end goes to the directory PICTURES. Exit code 2: wrong use; else see browser.mjs.
 import path from 'node:path';
 import { collectComplaints, inChromium, readHierarchy } from './browser.mjs';
 import { random } from './random.mjs';
 import { withSite } from './site.mjs';
 
-const VIEWPORT = { width: 640, height: 480 };
+const VIEWPORT = { width: 480, height: 360 };
+const BURST = 8; // acts at once: the page has no time to rest
 const PATIENCE = 120_000; // milliseconds
 const KEYS = [...'abcdefghijklmnopqrstuvwxyz0123456789+-?', 'Enter', 'Escape', 'Backspace', 'Delete', 'Tab', ' ', 'Home',
   'ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', 'Shift+ArrowLeft', 'Shift+Tab'];
@@ -88,7 +89,7 @@ async function use(browser, report, { pictures, seconds, origin, name, seed }) {
   await opened(page, address);
   const hand = new Hand(page, seed);
   for (const end = Date.now() + 1000 * seconds; Date.now() < end; ) {
-    await hand.act();
+    await Promise.all(Array.from({ length: BURST }, () => hand.act()));
     if (!page.url().includes(`#models/${name}`)) await opened(page, address); // it went to the gallery
   }
   await page.screenshot({ path: path.join(pictures, `random-use-${name}.png`) });
