@@ -27,7 +27,7 @@ constexpr std::size_t kMostSegments = 2 * kMostEdges;
 constexpr std::uint64_t kEdgeBytes = 100;
 
 /// A tile has vertices enough for so many sectors; finer tiles cost more and show no more.
-constexpr std::uint32_t kTileSectors = 8;
+constexpr std::uint32_t kTileSectors = 32;
 
 /// The finest level with no more nodes than the sectors need.
 Level sector_level(const Tree& tree, std::uint32_t sectors) {
