@@ -1,0 +1,55 @@
+// Which lines an outline is made of: chains of the network's segments, as many as fit into its
+// file.
+#pragma once
+
+#include "outline/network.h"
+#include "outline/outline_builder.h"
+#include "outline/polyline.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace meshhier::outline {
+
+/// All chains with the significance of their points, to be cut to any tolerance.
+class Lines {
+ public:
+  /// `least`: the smallest tolerance that will be asked for, `crease`: creases that are shorter are
+  /// left out; both in input units. `network` must outlive it. O(s log s) for s segments.
+  Lines(const Network& network, double least, double crease);
+
+  std::size_t size() const { return chains_.size(); }
+
+  /// Vertices of a chain that are left with a tolerance in input units.
+  std::size_t vertex_count(std::size_t chain, double tolerance) const;
+
+  void append_to(Outline& outline, std::size_t chain, double tolerance) const;
+
+  /// Before simplification, input units.
+  double length(std::size_t chain) const { return lengths_[chain]; }
+
+  /// Chains by length, the longest first, equal ones in order.
+  std::vector<std::uint32_t> by_length() const;
+
+ private:
+  std::vector<Vec3f> points_of(std::span<const std::uint32_t> nodes) const;
+  void add_long_ones(const Chains& creases, double least);
+
+  std::span<const Vec3f> positions_;
+  Chains chains_;
+  std::vector<double> significance_;  ///< of chains_.nodes
+  std::vector<double> lengths_;       ///< of the chains
+};
+
+/// Which chains an outline is made of, with which tolerance.
+struct Selection {
+  std::vector<std::uint32_t> chains;  ///< ascending
+  double tolerance = 0;               ///< part of the diagonal
+};
+
+/// The finest tolerance with which all but specks fit; then whatever fits, the longest first.
+Selection select(const Lines& lines, const OutlineOptions& options);
+
+}  // namespace meshhier::outline
