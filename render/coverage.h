@@ -46,6 +46,9 @@ struct SampleSpan {
   std::int64_t begin = 0, end = 0;
 };
 
+/// A row's samples are looked at by runs of so many: run i is [i * kRunSamples, ...).
+inline constexpr std::int64_t kRunSamples = 64;
+
 /// Those of [0, count) whose middles lie from step `least` to step `most`.
 constexpr SampleSpan samples_between(std::int64_t least, std::int64_t most, std::int64_t count) {
   // The first sample whose middle is at `step` or behind it; before sample 0 any negative one.
@@ -81,9 +84,11 @@ class GridTriangle {
     }
   }
 
-  /// Calls visit(column, row, weights) for each sample that it covers, row by row.
-  template <class Visit>
-  void visit(std::int64_t columns, std::int64_t rows, const Visit& visit) const {
+  /// Calls visit(column, row, weights) for each sample that it covers, row by row, but for the runs
+  /// of which is_wanted(run, row) is false; it is asked of runs that the triangle may cover only.
+  template <class IsWanted, class Visit>
+  void visit(std::int64_t columns, std::int64_t rows, const IsWanted& is_wanted,
+             const Visit& visit) const {
     if (area_ == 0)
       return;
     const auto& [a, b, c] = corners_;
@@ -94,22 +99,42 @@ class GridTriangle {
     if (across.begin >= across.end)
       return;
     for (std::int64_t row = down.begin; row < down.end; ++row)
-      visit_row(row, across, visit);
+      visit_row(row, across, is_wanted, visit);
   }
 
  private:
   using Values = std::array<std::int64_t, 3>;
 
-  template <class Visit>
-  void visit_row(std::int64_t row, SampleSpan across, const Visit& visit) const {
+  template <class IsWanted, class Visit>
+  void visit_row(std::int64_t row, SampleSpan across, const IsWanted& is_wanted,
+                 const Visit& visit) const {
+    for (std::int64_t begin = across.begin; begin < across.end;) {
+      const std::int64_t run = begin / kRunSamples;
+      const std::int64_t end = std::min(across.end, (run + 1) * kRunSamples);
+      visit_run(
+          row, {begin, end}, [&] { return is_wanted(run, row); }, visit);
+      begin = end;
+    }
+  }
+
+  template <class IsWanted, class Visit>
+  void visit_run(std::int64_t row, SampleSpan run, const IsWanted& is_wanted,
+                 const Visit& visit) const {
     // Each edge is that opposite to a corner, and its value that corner's share of the area.
     const auto& [a, b, c] = corners_;
     const std::array<EdgeFunction, 3> edges{EdgeFunction{b, c}, EdgeFunction{c, a},
                                             EdgeFunction{a, b}};
-    const GridPoint start{middle_of(across.begin), middle_of(row)};
+    const GridPoint start{middle_of(run.begin), middle_of(row)};
     Values values{edges[0](start), edges[1](start), edges[2](start)};
     const Values least{edges[0].least(), edges[1].least(), edges[2].least()};
-    for (std::int64_t column = across.begin; column < across.end; ++column) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::int64_t last = values[i] + (run.end - 1 - run.begin) * edges[i].step_right();
+      if (values[i] < least[i] && last < least[i])
+        return;  // all beyond one edge
+    }
+    if (!is_wanted())
+      return;
+    for (std::int64_t column = run.begin; column < run.end; ++column) {
       if (values[0] >= least[0] && values[1] >= least[1] && values[2] >= least[2])
         visit(column, row, weights(values));
       for (std::size_t i = 0; i < 3; ++i)

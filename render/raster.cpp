@@ -3,6 +3,7 @@
 #include "render/mip_texture.h"
 #include "render/space.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -93,6 +94,14 @@ std::optional<Places> places_of(const Camera& camera, const Facet& facet) {
   return places;
 }
 
+/// No depth within the facet is less, however it was rounded.
+float least_depth(const Places& places) {
+  constexpr double kRounding = 1e-12;  // a few thousand times that of depth_at()
+  const auto& [a, b, c] = places;
+  return static_cast<float>(std::min({a.z, b.z, c.z}) -
+                            kRounding * (std::abs(a.z) + std::abs(b.z) + std::abs(c.z)));
+}
+
 float depth_at(const Places& places, const Weights& w) {
   return static_cast<float>(places[0].z * w[0] + places[1].z * w[1] + places[2].z * w[2]);
 }
@@ -104,7 +113,8 @@ Raster::Raster(const Camera& camera) : Raster(camera, {0, camera.framing().heigh
 Raster::Raster(const Camera& camera, PixelRows rows)
     : camera_(camera),
       rows_(rows),
-      samples_(std::size_t{camera.columns()} * rows.count * camera.framing().samples) {}
+      samples_(std::size_t{camera.columns()} * rows.count * camera.framing().samples),
+      run_depths_(camera.columns(), rows.count * camera.framing().samples) {}
 
 GridPoint Raster::in_rows(Vec3d place) const {
   GridPoint point = snapped(place);
@@ -119,7 +129,11 @@ void Raster::draw(const Facet& facet, const Skin& skin) {
   const auto& [a, b, c] = *places;
   const GridTriangle triangle({in_rows(a), in_rows(b), in_rows(c)});
   std::optional<SeenSurface> surface;  // many facets lie between samples, or behind others
-  triangle.visit(columns(), rows(),
+  const float least = least_depth(*places);
+  const auto is_seen = [&](std::int64_t run, std::int64_t row) {
+    return !run_depths_.hides(run, row, least, [&](std::size_t i) { return samples_[i].depth; });
+  };
+  triangle.visit(columns(), rows(), is_seen,
                  [&](std::int64_t column, std::int64_t row, const Weights& weights) {
                    Sample& sample = samples_[static_cast<std::size_t>(row * columns() + column)];
                    const float depth = depth_at(*places, weights);

@@ -5,6 +5,7 @@
 #include "render/camera.h"
 #include "render/coverage.h"
 #include "render/facet.h"
+#include "render/run_depths.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -28,8 +29,8 @@ struct PixelRows {
   std::uint32_t first = 0, count = 0;
 };
 
-/// A pure function of the camera and of the facets in their order; 28 bytes a sample. Not
-/// thread-safe.
+/// A pure function of the camera and of the facets in their order; 29 bytes a sample. Many facets
+/// behind others, as soup has them, cost little each. Not thread-safe.
 class Raster {
  public:
   explicit Raster(const Camera& camera);
@@ -61,6 +62,7 @@ class Raster {
   Camera camera_;
   PixelRows rows_;
   std::vector<Sample> samples_;
+  RunDepths run_depths_;
 };
 
 }  // namespace meshhier::render
