@@ -2,6 +2,7 @@
 #pragma once
 
 #include "storage/io/file.h"
+#include "storage/io/folder.h"
 
 #include <filesystem>
 #include <memory>

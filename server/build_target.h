@@ -2,7 +2,7 @@
 #pragma once
 
 #include "server/hierarchies.h"
-#include "storage/io/file.h"
+#include "storage/io/folder.h"
 
 #include <functional>
 #include <string>

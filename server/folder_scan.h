@@ -1,7 +1,7 @@
 // Where hierarchies lie below a folder.
 #pragma once
 
-#include "storage/io/file.h"
+#include "storage/io/folder.h"
 
 #include <string>
 #include <string_view>

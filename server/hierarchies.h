@@ -4,6 +4,7 @@
 #include "server/model.h"
 #include "storage/format/archive.h"
 #include "storage/io/file.h"
+#include "storage/io/folder.h"
 
 #include <cstdint>
 #include <functional>

@@ -4,6 +4,7 @@
 
 #include "storage/format/input_note.h"
 #include "storage/io/file.h"
+#include "storage/io/folder.h"
 
 #include <filesystem>
 #include <memory>

@@ -5,7 +5,7 @@
 #include "server/hierarchies.h"
 #include "server/http.h"
 #include "server/uploads.h"
-#include "storage/io/file.h"
+#include "storage/io/folder.h"
 
 #include <functional>
 #include <memory>

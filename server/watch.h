@@ -10,6 +10,7 @@
 #include "server/job.h"
 #include "storage/io/child_process.h"
 #include "storage/io/file.h"
+#include "storage/io/folder.h"
 
 #include <chrono>
 #include <condition_variable>

@@ -1,6 +1,7 @@
 #include "storage/io/file.h"
 
 #include "hierarchy/error.h"
+#include "storage/io/posix_file.h"
 #include "storage/io/stream.h"
 #include "storage/io/system_failure.h"
 
@@ -11,7 +12,6 @@
 #include <system_error>
 #include <utility>
 
-#include <dirent.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
@@ -28,76 +28,6 @@ void fail_system(const char* action, const std::filesystem::path& path, int erro
 }
 
 namespace {
-
-std::int64_t nanoseconds(const timespec& time) {
-  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
-}
-
-FileVersion version_of(const struct stat& status) {
-  return {status.st_dev, status.st_ino, static_cast<std::uint64_t>(status.st_size),
-          nanoseconds(status.st_mtim), nanoseconds(status.st_ctim)};
-}
-
-class PosixFile final : public File {
- public:
-  PosixFile(std::filesystem::path path, int descriptor, std::shared_ptr<IoCounters> counters)
-      : File(std::move(path)), descriptor_(descriptor), counters_(std::move(counters)) {}
-  ~PosixFile() override { ::close(descriptor_); }
-
-  std::uint64_t size() const override {
-    struct stat status {};
-    if (::fstat(descriptor_, &status) != 0)
-      fail_system("inspect", path(), errno);
-    return static_cast<std::uint64_t>(status.st_size);
-  }
-
-  FileVersion version() const override {
-    struct stat status {};
-    if (::fstat(descriptor_, &status) != 0)
-      fail_system("inspect", path(), errno);
-    return version_of(status);
-  }
-
-  void sync() override {
-    if (::fsync(descriptor_) != 0)
-      fail_system("sync", path(), errno);
-  }
-  using File::sync;
-
- protected:
-  std::size_t read_some(std::uint64_t offset, std::span<std::byte> bytes) const override {
-    ssize_t count = 0;
-    do {
-      count = ::pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-    } while (count < 0 && errno == EINTR);
-    if (count < 0)
-      fail_system("read", path(), errno);
-    counters_->bytes_read += static_cast<std::uint64_t>(count);
-    return static_cast<std::size_t>(count);
-  }
-
-  std::size_t write_some(std::uint64_t offset, std::span<const std::byte> bytes) override {
-    ssize_t count = 0;
-    do {
-      count = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-    } while (count < 0 && errno == EINTR);
-    if (count < 0)
-      fail_system("write", path(), errno);
-    counters_->bytes_written += static_cast<std::uint64_t>(count);
-    return static_cast<std::size_t>(count);
-  }
-
-  void write_out(std::uint64_t offset, std::uint64_t bytes, Wait wait) override {
-    unsigned flags = SYNC_FILE_RANGE_WRITE;
-    if (wait == Wait::yes)
-      flags |= SYNC_FILE_RANGE_WAIT_BEFORE | SYNC_FILE_RANGE_WAIT_AFTER;
-    ::sync_file_range(descriptor_, static_cast<off_t>(offset), static_cast<off_t>(bytes), flags);
-  }
-
- private:
-  int descriptor_;
-  std::shared_ptr<IoCounters> counters_;
-};
 
 bool is_same_file(int descriptor, const std::filesystem::path& path) {
   struct stat held {};
@@ -346,119 +276,6 @@ class PosixFileSystem final : public FileSystem {
   Links links_;
 };
 
-/// A descriptor that is closed with its object; below 0: none.
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  Descriptor(Descriptor&& other) noexcept : number_(other.release()) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    std::swap(number_, other.number_);
-    return *this;
-  }
-  ~Descriptor() {
-    if (number_ >= 0)
-      ::close(number_);
-  }
-  int number() const { return number_; }
-  int release() { return std::exchange(number_, -1); }
-
- private:
-  int number_;
-};
-
-/// What opening a name fails with if there is simply nothing of that name and kind.
-bool is_absence(int error) {
-  return error == ENOENT || error == ENOTDIR || error == ELOOP || error == ENAMETOOLONG ||
-         error == ENXIO;
-}
-
-bool is_folder_part(std::string_view part) {
-  return !part.empty() && part != "." && part != ".." && part.find('\0') == std::string_view::npos;
-}
-
-class PosixFolder final : public Folder {
- public:
-  PosixFolder(std::filesystem::path path, Descriptor descriptor)
-      : Folder(std::move(path)), descriptor_(std::move(descriptor)) {}
-
-  std::unique_ptr<File> open(std::string_view name) const override {
-    Descriptor file = walk(name, O_RDONLY | O_NONBLOCK);
-    if (file.number() < 0)
-      return nullptr;
-    struct stat status {};
-    if (::fstat(file.number(), &status) != 0)
-      fail_system("inspect", path() / name, errno);
-    if (!S_ISREG(status.st_mode))
-      return nullptr;
-    return std::make_unique<PosixFile>(path() / name, file.release(), counters_);
-  }
-
-  std::vector<FolderEntry> entries(std::string_view name) const override {
-    Descriptor directory =
-        name.empty() ? again(O_RDONLY | O_DIRECTORY) : walk(name, O_RDONLY | O_DIRECTORY);
-    if (directory.number() < 0)
-      return {};
-    const std::unique_ptr<DIR, int (*)(DIR*)> listing(::fdopendir(directory.number()), ::closedir);
-    if (!listing)
-      fail_system("list", path() / name, errno);
-    directory.release();  // closed with the listing
-    return read_entries(*listing, path() / name);
-  }
-
- private:
-  Descriptor again(int flags) const {
-    Descriptor opened(::openat(descriptor_.number(), ".", flags | O_CLOEXEC));
-    if (opened.number() < 0)
-      fail_system("open", path(), errno);
-    return opened;
-  }
-
-  /// Part by part, no link followed; none if there is nothing.
-  Descriptor walk(std::string_view name, int flags) const {
-    Descriptor here(-1);
-    for (std::string_view rest = name;;) {
-      const std::size_t slash = rest.find('/');
-      const std::string part(rest.substr(0, slash));
-      if (!is_folder_part(part))
-        return Descriptor(-1);
-      const bool is_last = slash == std::string_view::npos;
-      const int start = here.number() < 0 ? descriptor_.number() : here.number();
-      Descriptor next(::openat(start, part.c_str(),
-                               (is_last ? flags : O_PATH | O_DIRECTORY) | O_NOFOLLOW | O_CLOEXEC));
-      if (next.number() < 0 && !is_absence(errno))
-        fail_system("open", path() / name, errno);
-      if (is_last || next.number() < 0)
-        return next;
-      here = std::move(next);
-      rest.remove_prefix(slash + 1);
-    }
-  }
-
-  static std::vector<FolderEntry> read_entries(DIR& listing, const std::filesystem::path& path) {
-    std::vector<FolderEntry> found;
-    for (;;) {
-      errno = 0;
-      const dirent* entry = ::readdir(&listing);
-      if (entry == nullptr && errno != 0)
-        fail_system("list", path, errno);
-      if (entry == nullptr)
-        break;
-      struct stat status {};
-      const bool is_there =
-          ::fstatat(::dirfd(&listing), entry->d_name, &status, AT_SYMLINK_NOFOLLOW) == 0;
-      const bool is_directory = is_there && S_ISDIR(status.st_mode);
-      if (is_folder_part(entry->d_name) && is_there && (is_directory || S_ISREG(status.st_mode)))
-        found.push_back({entry->d_name, is_directory, version_of(status)});
-    }
-    std::sort(found.begin(), found.end(),
-              [](const FolderEntry& a, const FolderEntry& b) { return a.name < b.name; });
-    return found;
-  }
-
-  Descriptor descriptor_;
-  std::shared_ptr<IoCounters> counters_ = std::make_shared<IoCounters>();
-};
-
 }  // namespace
 
 void File::sync(const std::function<void()>& check) {
@@ -504,13 +321,6 @@ void File::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
 
 std::unique_ptr<FileSystem> make_posix_file_system(Links links) {
   return std::make_unique<PosixFileSystem>(links);
-}
-
-std::unique_ptr<Folder> open_folder(const std::filesystem::path& path) {
-  Descriptor descriptor(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (descriptor.number() < 0)
-    fail_system("open the directory", path, errno);
-  return std::make_unique<PosixFolder>(path, std::move(descriptor));
 }
 
 std::uint64_t bytes_below(FileSystem& files, const std::filesystem::path& directory) {

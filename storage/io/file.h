@@ -1,4 +1,5 @@
-// The one I/O seam: every system call of meshhier is behind these two classes.
+// The one I/O seam: every system call for files is behind these two classes, and behind Folder
+// (folder.h).
 //
 // Tests derive from them to inject a full disk, a short write or a failed sync.
 #pragma once
@@ -172,41 +173,6 @@ enum class Links { followed, refused };
 
 /// The real one.
 std::unique_ptr<FileSystem> make_posix_file_system(Links links = Links::followed);
-
-/// A file or directory in a folder.
-struct FolderEntry {
-  std::string name;
-  bool is_directory = false;
-  FileVersion version;
-};
-
-/// A directory that is held open, and what is below it, for reading. No link is followed below it,
-/// whoever makes one at whatever moment: nothing outside can be reached. Names are relative, with
-/// '/' between their parts, of which none may be empty, "." or "..". Thread-safe.
-class Folder {
- public:
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  virtual ~Folder() = default;
-
-  const std::filesystem::path& path() const { return path_; }
-
-  /// Null if there is no regular file of that name. Throws Error(io).
-  virtual std::unique_ptr<File> open(std::string_view name) const = 0;
-  /// Regular files and directories directly in the directory of that name ("": this one),
-  /// ascending; all else, links too, is left out. None if there is no such directory. Throws
-  /// Error(io).
-  virtual std::vector<FolderEntry> entries(std::string_view name) const = 0;
-
- protected:
-  explicit Folder(std::filesystem::path path) : path_(std::move(path)) {}
-
- private:
-  std::filesystem::path path_;
-};
-
-/// `path` itself may be a link. Throws Error(io) if it is no directory.
-std::unique_ptr<Folder> open_folder(const std::filesystem::path& path);
 
 /// Of all files below `directory`. Throws Error(io).
 std::uint64_t bytes_below(FileSystem& files, const std::filesystem::path& directory);

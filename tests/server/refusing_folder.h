@@ -3,6 +3,7 @@
 
 #include "hierarchy/error.h"
 #include "storage/io/file.h"
+#include "storage/io/folder.h"
 
 #include <memory>
 #include <set>

@@ -1,5 +1,5 @@
 #include "hierarchy/error.h"
-#include "storage/io/file.h"
+#include "storage/io/folder.h"
 #include "tests/support/sample_hierarchy.h"
 
 #include <filesystem>
