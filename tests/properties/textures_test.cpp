@@ -545,6 +545,21 @@ class Warnings final : public execution::Progress {
   std::vector<std::string> all;
 };
 
+TEST_F(TexturesTest, ABrokenPictureIsRefusedWithWhatCanBeDone) {
+  const config::Config job = config(write(tests::make_textured_torus(4, 2)));
+  for (const std::uintmax_t bytes : {200U, 10U}) {  // no end, no head
+    std::filesystem::resize_file(directory_.path() / "picture_1.png", bytes);
+    try {
+      build(job);
+      FAIL();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::input);
+      EXPECT_THAT(error.what(), HasSubstr("picture_1.png"));
+      EXPECT_THAT(error.what(), HasSubstr("\"missing_images\": \"ignore\""));
+    }
+  }
+}
+
 TEST_F(TexturesTest, BrokenPicturesThatAreToBeIgnoredGiveOneWarning) {
   config::Config job = config(write(tests::make_textured_torus(6, 3)));
   std::filesystem::resize_file(directory_.path() / "picture_0.png", 10);   // no head
