@@ -23,6 +23,7 @@ class MipTexture {
 
   std::uint32_t width() const { return levels_.front().width; }
   std::uint32_t height() const { return levels_.front().height; }
+  bool is_opaque() const { return alpha_ == AlphaMode::opaque; }
 
   /// Linear light, 0 to 1: mixed from four texels of each of two levels of the pyramid. `level`: 0
   /// is the picture itself, each further one has half of its width and height. What is no number is

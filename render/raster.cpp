@@ -77,8 +77,9 @@ class SeenSurface {
     return skin_.texture == nullptr ? blend(w, colours_[0], colours_[1], colours_[2])
                                     : skin_.texture->light_at(texcoord(w), level_);
   }
+  bool is_opaque() const { return skin_.texture == nullptr || skin_.texture->is_opaque(); }
   bool is_seen(const Weights& w, double threshold) const {
-    return skin_.texture == nullptr || skin_.texture->is_seen_at(texcoord(w), level_, threshold);
+    return skin_.texture->is_seen_at(texcoord(w), level_, threshold);
   }
 
  private:
@@ -139,7 +140,8 @@ void Raster::draw(const Facet& facet, const Skin& skin) {
                      return;
                    if (!surface)
                      surface.emplace(camera_, facet, skin, *places);
-                   if (!surface->is_seen(weights, threshold_at(column, row, framing().samples)))
+                   if (!surface->is_opaque() &&
+                       !surface->is_seen(weights, threshold_at(column, row, framing().samples)))
                      return;
                    sample = {depth, surface->normal(weights), surface->colour(weights)};
                  });
