@@ -10,7 +10,9 @@
 
 namespace meshhier::images {
 
-/// Reads part of a picture with a material's wraps and factor. Requires a material with a picture.
+/// Reads part of a picture with a material's wraps and factor. Alpha is full where the material is
+/// opaque; that of a mask is scaled so that its cutoff becomes 0.5, glTF's own. Requires a material
+/// with a picture.
 class MaterialTexels {
  public:
   MaterialTexels(const Material& material, const ImageStore& pictures);
@@ -21,15 +23,13 @@ class MaterialTexels {
             std::uint32_t height, Image& into, std::uint32_t at_x, std::uint32_t at_y) const;
 
  private:
-  void tint(std::uint8_t* texel, std::uint32_t channels) const {
-    for (std::uint32_t c = 0; c < channels; ++c)
-      texel[c] = tinted_[c][texel[c]];
-  }
+  void tint(Image& image, std::uint32_t x, std::uint32_t y, std::uint32_t width,
+            std::uint32_t height) const;
 
   const ImageStore& pictures_;
   std::uint32_t image_;
   Wrap wrap_u_, wrap_v_;
-  bool is_tinted_;
+  std::uint32_t tinted_channels_ = 0;                      ///< a bit each
   std::array<std::array<std::uint8_t, 256>, 4> tinted_{};  ///< by channel and value
 };
 

@@ -11,6 +11,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -40,6 +41,7 @@ class PngReader final : public ImageReader {
   std::size_t row_bytes() const { return std::size_t{info_.width} * info_.channels; }
   void copy_bytes(std::uint8_t* into, std::size_t count);
   void read_passes();
+  [[noreturn]] void fail(std::string_view message);
 
   LibraryCall call_;
   SourceBuffer input_;
@@ -50,6 +52,7 @@ class PngReader final : public ImageReader {
   int passes_ = 1;                   ///< over the picture; more than 1 if it is interlaced
   std::uint32_t next_row_ = 0;       ///< to be handed out
   std::vector<std::uint8_t> whole_;  ///< of an interlaced one
+  std::string warning_;              ///< the last one
 };
 
 void PngReader::read_head() {
@@ -57,9 +60,11 @@ void PngReader::read_head() {
     png_ = png_create_read_struct(
         PNG_LIBPNG_VER_STRING, this,
         [](png_structp png, png_const_charp message) {
-          static_cast<PngReader*>(png_get_error_ptr(png))->call_.fail(message);
+          static_cast<PngReader*>(png_get_error_ptr(png))->fail(message);
         },
-        [](png_structp, png_const_charp) {});
+        [](png_structp png, png_const_charp warning) {
+          static_cast<PngReader*>(png_get_error_ptr(png))->warning_ = warning;
+        });
     head_ = png_ == nullptr ? nullptr : png_create_info_struct(png_);
     if (head_ == nullptr)
       call_.fail("there is no memory to read the picture");
@@ -70,6 +75,11 @@ void PngReader::read_head() {
     png_read_info(png_, head_);
     set_output();
   });
+}
+
+/// What is wrong with a head the library tells as a warning.
+void PngReader::fail(std::string_view message) {
+  call_.fail(message == "Invalid IHDR data" && !warning_.empty() ? warning_ : message);
 }
 
 /// What changes no texel is neither unpacked nor kept, and nothing that is broken is passed over.

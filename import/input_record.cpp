@@ -60,6 +60,15 @@ std::vector<SourceFile> source_files(const std::vector<ReadFile>& files,
   return all;
 }
 
+bool names_materials(const std::vector<SourceFile>& files) {
+  const auto is_of = [](const SourceFile& file, InputPart part) {
+    return file.format == kPartNames[static_cast<std::size_t>(part)];
+  };
+  return std::ranges::any_of(files, [&](const SourceFile& file) {
+    return is_of(file, InputPart::library) || is_of(file, InputPart::picture);
+  });
+}
+
 std::uint64_t joined_checksum(const std::vector<std::uint64_t>& checksums) {
   if (checksums.size() == 1)
     return checksums[0];

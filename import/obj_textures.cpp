@@ -18,15 +18,13 @@ std::optional<PictureTile> PictureTile::at(double column, double row) {
 std::optional<PictureTile> ObjTextures::tile_of(std::uint32_t name,
                                                 const std::array<Texcoord, 3>& corners) const {
   const mesh_io::MtlMap& map = *materials_[name].map;
-  std::array<double, 2> least{};
+  // Corners on the border of a square may be rounded to the other side of it: the middle is not.
+  std::array<double, 2> middle{};
   for (std::size_t axis = 0; axis < 2; ++axis) {
-    const auto on_picture = [&](const Texcoord& corner) {
-      return corner[axis] * map.scale[axis] + map.offset[axis];
-    };
-    least[axis] = std::floor(
-        std::min({on_picture(corners[0]), on_picture(corners[1]), on_picture(corners[2])}));
+    for (const Texcoord& corner : corners)
+      middle[axis] += (corner[axis] * map.scale[axis] + map.offset[axis]) / 3;
   }
-  return PictureTile::at(least[0], least[1]);
+  return PictureTile::at(std::floor(middle[0]), std::floor(middle[1]));
 }
 
 bool ObjTextures::find_picture(std::uint32_t name, PictureTile tile) {
@@ -63,7 +61,7 @@ ObjTextures::Shown ObjTextures::make(std::uint32_t name, std::optional<PictureTi
   images::Material material = known.material;
   Mapping mapping;
   if (picture) {
-    material.colour = {1, 1, 1, material.colour[3]};
+    material.factor[3] = material.colour[3];
     material.image = table_.add_picture({known.file_of(tile->number()), *picture});
     mapping = {known.map->scale, known.map->offset};
     mapping.offset[0] -= tile->column();

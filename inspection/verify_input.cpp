@@ -15,6 +15,7 @@
 #include "hierarchy/error.h"
 #include "hierarchy/lattice.h"
 #include "hierarchy/plain_text.h"
+#include "import/input_record.h"
 #include "import/mesh_input.h"
 #include "inspection/tile_vertices.h"
 #include "inspection/verify_parts.h"
@@ -351,6 +352,13 @@ bool was_welded(const VerifyJob& job) {
   return weld != config.end() && weld->is_boolean() && weld->get<bool>();
 }
 
+/// As the build did. Where it found libraries but no picture, the input is untextured and names
+/// them.
+importing::Textures textures_of(const SourceSummary& source) {
+  return source.textures || importing::names_materials(source.files) ? importing::Textures::use
+                                                                     : importing::Textures::ignore;
+}
+
 void compare_sums(const MeshSums& input, const MeshSums& partitions,
                   const InputProblems& problems) {
   const auto compare = [&](std::string_view what, const MultisetSum& in, const MultisetSum& out) {
@@ -371,9 +379,7 @@ void compare_sums(const MeshSums& input, const MeshSums& partitions,
 void verify_input(const VerifyJob& job) {
   const InputProblems problems(job);
   const SourceSummary& expected = job.reader.manifest().source;
-  importing::MeshInput files(
-      job.options.input, was_welded(job), job.files,
-      expected.textures ? importing::Textures::use : importing::Textures::ignore);
+  importing::MeshInput files(job.options.input, was_welded(job), job.files, textures_of(expected));
   if (files.needs_import()) {
     files.import({job.scratch.path().string() + "-import", job.scratch.path().string() + "-sorts",
                   job.scratch.pool(), job.options.memory_budget / 8, job.progress, job.cancel});

@@ -254,7 +254,9 @@ GltfPicture GltfFile::picture(std::uint32_t index) {
     } else {
       picture.name = plain_text(*image.uri, kLongestUri);
       picture.file = file_of_uri(*image.uri, folder_);
-      if (picture.file && !is_regular(*picture.file)) {
+      if (!picture.file) {
+        picture.name += ", which is no path below the folder,";
+      } else if (!is_regular(*picture.file)) {
         picture.sought.push_back(*std::move(picture.file));
         picture.file.reset();
       }

@@ -63,9 +63,10 @@ images::MaterialList decode_images(images::ImageStore& pictures, BuildJournal& j
       const auto reader = images::open_source(materials.images[i], context.files);
       pictures.add(*reader, step);
     } catch (const Error& error) {
-      if (context.config.missing_images != config::MissingImages::ignore ||
-          error.code() != ErrorCode::input)
+      if (error.code() != ErrorCode::input)
         throw;
+      if (context.config.missing_images != config::MissingImages::ignore)
+        throw with_picture_hint(error);
       why = error.what();
       NoPicture none;
       pictures.add(none, step);

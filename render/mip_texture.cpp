@@ -4,7 +4,6 @@
 #include "images/srgb.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -24,10 +23,11 @@ images::Image without_alpha(images::Image picture) {
 }
 
 images::Image halved(const images::Image& picture) {
-  images::Image half((picture.width + 1) / 2, (picture.height + 1) / 2, 3);
+  images::Image half((picture.width + 1) / 2, (picture.height + 1) / 2, picture.channels);
   for (std::uint32_t y = 0; y < half.height; ++y) {
     const std::uint32_t below = std::min(2 * y + 1, picture.height - 1);
-    images::halve_rows(picture.at(0, 2 * y), picture.at(0, below), picture.width, 3, half.at(0, y));
+    images::halve_rows(picture.at(0, 2 * y), picture.at(0, below), picture.width, picture.channels,
+                       half.at(0, y));
   }
   return half;
 }
@@ -50,14 +50,8 @@ std::uint32_t wrapped(std::int64_t texel, std::uint32_t count, Wrap wrap) {
   return static_cast<std::uint32_t>(std::clamp<std::int64_t>(texel, 0, count - std::int64_t{1}));
 }
 
-/// Two texels side by side, and the share of the second one.
-struct TexelPair {
-  std::array<std::uint32_t, 2> texels{};
-  double share = 0;
-};
-
 /// `size`: of the whole picture in texels of the level, whose last one may reach beyond it.
-TexelPair pair_at(double coordinate, double size, std::uint32_t count, Wrap wrap) {
+MipTexture::TexelPair pair_at(double coordinate, double size, std::uint32_t count, Wrap wrap) {
   const double at = coordinate * size - 0.5, first = std::floor(at);
   const auto texel = static_cast<std::int64_t>(first);
   return {{wrapped(texel, count, wrap), wrapped(texel + 1, count, wrap)}, at - first};
@@ -68,40 +62,77 @@ Vec3d light_of_texel(const images::LightTable& table, const std::uint8_t* texel)
   return {light(0), light(1), light(2)};
 }
 
-Vec3d mix(Vec3d a, Vec3d b, double share) {
+template <class Value>
+Value mix(Value a, Value b, double share) {
   return a + (b - a) * share;
+}
+
+/// A texture's levels on both sides of one that is no whole number.
+struct LevelPair {
+  std::uint32_t finer = 0;
+  double share = 0;  ///< of the next one
+};
+
+LevelPair levels_at(double level, std::size_t count) {
+  const double most = static_cast<double>(count - 1);
+  const double at = std::isfinite(level) ? std::clamp(level, 0.0, most) : 0;
+  const auto finer = static_cast<std::uint32_t>(at);
+  return {finer, at - finer};
 }
 
 }  // namespace
 
-MipTexture::MipTexture(images::Image picture, Wraps wraps) : wraps_(wraps) {
-  levels_.push_back(without_alpha(std::move(picture)));
+MipTexture::MipTexture(images::Image picture, Wraps wraps, AlphaMode alpha)
+    : wraps_(wraps), alpha_(picture.channels == 4 ? alpha : AlphaMode::opaque) {
+  levels_.push_back(alpha_ == AlphaMode::opaque ? without_alpha(std::move(picture))
+                                                : std::move(picture));
   while (levels_.back().width > 1 || levels_.back().height > 1)
     levels_.push_back(halved(levels_.back()));
 }
 
 Vec3f MipTexture::light_at(Vec2f texcoord, double level) const {
-  const double most = static_cast<double>(levels_.size() - 1);
-  const double at = std::isfinite(level) ? std::clamp(level, 0.0, most) : 0;
-  const auto finer = static_cast<std::uint32_t>(at);
+  const auto [finer, share] = levels_at(level, levels_.size());
   const Vec3d light = light_on(finer, texcoord);
-  const double share = at - finer;
   return to_float(share > 0 ? mix(light, light_on(finer + 1, texcoord), share) : light);
+}
+
+bool MipTexture::is_seen_at(Vec2f texcoord, double level, double threshold) const {
+  constexpr double kCutoff = 0.5;  // of glTF, unless a material says another one
+  if (alpha_ == AlphaMode::opaque)
+    return true;
+  const auto [finer, share] = levels_at(level, levels_.size());
+  double alpha = alpha_on(finer, texcoord);
+  if (share > 0)
+    alpha = mix(alpha, alpha_on(finer + 1, texcoord), share);
+  return alpha_ == AlphaMode::mask ? alpha >= kCutoff : alpha > threshold;
+}
+
+MipTexture::TexelSquare MipTexture::square_on(std::uint32_t level, Vec2f texcoord) const {
+  const images::Image& image = levels_[level];
+  const double scale = 1.0 / static_cast<double>(std::uint64_t{1} << level);
+  return {pair_at(within_picture(texcoord.u, wraps_.u), width() * scale, image.width, wraps_.u),
+          pair_at(within_picture(texcoord.v, wraps_.v), height() * scale, image.height, wraps_.v)};
 }
 
 Vec3d MipTexture::light_on(std::uint32_t level, Vec2f texcoord) const {
   const images::Image& image = levels_[level];
   const images::LightTable& table = images::LightTable::get();
-  const double scale = 1.0 / static_cast<double>(std::uint64_t{1} << level);
-  const TexelPair across =
-      pair_at(within_picture(texcoord.u, wraps_.u), width() * scale, image.width, wraps_.u);
-  const TexelPair down =
-      pair_at(within_picture(texcoord.v, wraps_.v), height() * scale, image.height, wraps_.v);
-  const auto row = [&](std::uint32_t y) {
+  const auto [across, down] = square_on(level, texcoord);
+  const auto row = [&, &across = across](std::uint32_t y) {
     return mix(light_of_texel(table, image.at(across.texels[0], y)),
                light_of_texel(table, image.at(across.texels[1], y)), across.share);
   };
   return mix(row(down.texels[0]), row(down.texels[1]), down.share) * (1.0 / 65535);
+}
+
+double MipTexture::alpha_on(std::uint32_t level, Vec2f texcoord) const {
+  const images::Image& image = levels_[level];
+  const auto [across, down] = square_on(level, texcoord);
+  const auto row = [&, &across = across](std::uint32_t y) {
+    return mix<double>(image.at(across.texels[0], y)[3], image.at(across.texels[1], y)[3],
+                       across.share);
+  };
+  return mix(row(down.texels[0]), row(down.texels[1]), down.share) * (1.0 / 255);
 }
 
 double level_for(double texels_a_sample) {

@@ -5,6 +5,7 @@
 #include "hierarchy/vec.h"
 #include "images/image.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -17,22 +18,40 @@ struct Wraps {
 /// The picture and its pyramid, 8 bits a channel, all in memory. Immutable, thread-safe.
 class MipTexture {
  public:
-  /// Alpha is left out. Requires a picture of a texel or more. O(texels).
-  explicit MipTexture(images::Image picture, Wraps wraps = {});
+  /// Alpha is left out if it is opaque. Requires a picture of a texel or more. O(texels).
+  explicit MipTexture(images::Image picture, Wraps wraps = {}, AlphaMode alpha = AlphaMode::opaque);
 
   std::uint32_t width() const { return levels_.front().width; }
   std::uint32_t height() const { return levels_.front().height; }
+  bool is_opaque() const { return alpha_ == AlphaMode::opaque; }
 
   /// Linear light, 0 to 1: mixed from four texels of each of two levels of the pyramid. `level`: 0
   /// is the picture itself, each further one has half of its width and height. What is no number is
   /// looked up at 0.
   Vec3f light_at(Vec2f texcoord, double level) const;
 
+  /// Whether a sample is seen at a place: of a mask where alpha is 0.5 or more, of what is to blend
+  /// where alpha is more than `threshold`, 0 to 1, different for each sample of a pixel.
+  bool is_seen_at(Vec2f texcoord, double level, double threshold) const;
+
+  /// Two texels side by side, and the share of the second one.
+  struct TexelPair {
+    std::array<std::uint32_t, 2> texels{};
+    double share = 0;
+  };
+
  private:
+  /// The four around a place.
+  struct TexelSquare {
+    TexelPair across, down;
+  };
+  TexelSquare square_on(std::uint32_t level, Vec2f texcoord) const;
+  double alpha_on(std::uint32_t level, Vec2f texcoord) const;
   Vec3d light_on(std::uint32_t level, Vec2f texcoord) const;
 
   std::vector<images::Image> levels_;
   Wraps wraps_;
+  AlphaMode alpha_;
 };
 
 /// Level at which a texel has as much area as a sample, of a facet on which a sample covers so many

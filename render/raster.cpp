@@ -44,6 +44,15 @@ double level_of(const Skin& skin, const Places& places) {
   return level_for(texels / area(b.x - a.x, b.y - a.y, c.x - a.x, c.y - a.y));
 }
 
+/// Of a sample of a pixel, from 0 to 1: those of a pixel have all different ones, evenly spread.
+double threshold_at(std::int64_t column, std::int64_t row, std::uint32_t samples) {
+  // Neighbours in a row or column are far from each other in the order.
+  constexpr std::int64_t kStride = 7;
+  const std::int64_t side = samples, count = side * side;
+  const std::int64_t place = row % side * side + column % side;
+  return (static_cast<double>(place * kStride % count) + 0.5) / static_cast<double>(count);
+}
+
 /// What a facet shows of itself, as the camera sees it.
 class SeenSurface {
  public:
@@ -68,6 +77,10 @@ class SeenSurface {
   Vec3f colour(const Weights& w) const {
     return skin_.texture == nullptr ? blend(w, colours_[0], colours_[1], colours_[2])
                                     : skin_.texture->light_at(texcoord(w), level_);
+  }
+  bool is_opaque() const { return skin_.texture == nullptr || skin_.texture->is_opaque(); }
+  bool is_seen(const Weights& w, double threshold) const {
+    return skin_.texture->is_seen_at(texcoord(w), level_, threshold);
   }
 
  private:
@@ -141,6 +154,9 @@ void Raster::draw(const Facet& facet, const Skin& skin) {
                      return;
                    if (!surface)
                      surface.emplace(camera_, facet, skin, *places);
+                   if (!surface->is_opaque() &&
+                       !surface->is_seen(weights, threshold_at(column, row, framing().samples)))
+                     return;
                    sample = {depth, surface->normal(weights), surface->colour(weights)};
                  });
 }

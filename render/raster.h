@@ -43,6 +43,8 @@ class Raster {
   /// not finite. What reaches beyond the grid by more than 2^20 samples is moved there.
   void draw(const Facet& facet) { draw(facet, Skin{}); }
   /// Shows the texture, filtered for the area of a sample on it. It must live as long as the call.
+  /// Where it is transparent, what is behind is seen; of what is to blend, in a share of a pixel's
+  /// samples.
   void draw(const Facet& facet, const Skin& skin);
   void draw(std::span<const Facet> facets);
 

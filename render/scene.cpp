@@ -25,7 +25,7 @@ SceneTile scene_tile(const PublishedTile& tile, const AttributeLayout& layout,
   const std::uint64_t texels = std::uint64_t{image.width} * image.height;
   result.texture = std::make_unique<const MipTexture>(
       images::decode_image(image.bytes, "the picture of tile " + to_text(tile.node), texels),
-      Wraps{Wrap::clamp, Wrap::clamp});
+      Wraps{Wrap::clamp, Wrap::clamp}, image.alpha);
   result.skins = skins_of(tile, *result.texture, border);
   return result;
 }

@@ -51,6 +51,12 @@ void leave_out(std::uint32_t image, images::MaterialList& materials) {
   }
 }
 
+Error with_picture_hint(const Error& broken) {
+  return {broken.code(), std::string(broken.what()) +
+                             "; convert the picture, or leave out what is broken by "
+                             "\"missing_images\": \"ignore\""};
+}
+
 TexturePlan plan_textures(images::MaterialList materials, config::MissingImages missing,
                           storage::FileSystem& files) {
   TexturePlan plan;
@@ -59,8 +65,10 @@ TexturePlan plan_textures(images::MaterialList materials, config::MissingImages 
     try {
       plan.heads.push_back(images::open_source(materials.images[i], files)->info());
     } catch (const Error& error) {
-      if (missing != config::MissingImages::ignore || error.code() != ErrorCode::input)
+      if (error.code() != ErrorCode::input)
         throw;
+      if (missing != config::MissingImages::ignore)
+        throw with_picture_hint(error);
       plan.broken.emplace_back(error.what());
       leave_out(static_cast<std::uint32_t>(plan.heads.size()), plan.materials);
       for (images::Material& material : plan.materials.materials) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "config/config.h"
+#include "hierarchy/error.h"
 #include "images/image_codec.h"
 #include "images/material_list.h"
 #include "storage/io/file.h"
@@ -32,6 +33,9 @@ struct TexturePlan {
 
 /// Leaves a picture out: its materials show their colours.
 void leave_out(std::uint32_t image, images::MaterialList& materials);
+
+/// The same failure, with what can be done about it.
+Error with_picture_hint(const Error& broken);
 
 /// Looks at the heads of all pictures. One that is broken is left out with `missing_images` ignore;
 /// else throws Error(input) that names it.

@@ -29,8 +29,19 @@ std::uint8_t to_byte(float value) {
   return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255));
 }
 
-void fill(const std::array<float, 4>& colour, Image& image, std::uint32_t left, std::uint32_t top,
+/// Of a material without a picture. Alpha is that of the tile's picture, whose cutoff is 0.5.
+std::array<float, 4> shown_colour(const images::Material& material) {
+  std::array<float, 4> colour = material.colour;
+  if (material.alpha == AlphaMode::opaque)
+    colour[3] = 1;
+  else if (material.alpha == AlphaMode::mask)
+    colour[3] = colour[3] >= material.alpha_cutoff ? 1.0F : 0.0F;
+  return colour;
+}
+
+void fill(const images::Material& material, Image& image, std::uint32_t left, std::uint32_t top,
           std::uint32_t width, std::uint32_t height) {
+  const std::array<float, 4> colour = shown_colour(material);
   for (std::uint32_t y = top; y < top + height; ++y) {
     for (std::uint32_t x = left; x < left + width; ++x) {
       for (std::uint32_t c = 0; c < image.channels; ++c)
@@ -115,7 +126,7 @@ void LeafPicture::paint_background() {
       texels_[piece.material]->read(piece.level + up, piece.x >> up, piece.y >> up, width, height,
                                     background_, left, top);
     } else {
-      fill(material.colour, background_, left, top, width, height);
+      fill(material, background_, left, top, width, height);
     }
   }
   texture::fill_unknown(background_, is_shown_);
@@ -138,7 +149,7 @@ void LeafPicture::paint(const AtlasPiece& piece, Image& band, std::uint32_t top)
     texels->read(piece.level, piece.x, piece.y + (begin - piece.atlas_y), piece.width, end - begin,
                  band, piece.atlas_x, begin - top);
   else
-    fill(material_of(piece).colour, band, piece.atlas_x, begin - top, piece.width, end - begin);
+    fill(material_of(piece), band, piece.atlas_x, begin - top, piece.width, end - begin);
 }
 
 void LeafPicture::cover_rest(Image& band, std::uint32_t top) const {

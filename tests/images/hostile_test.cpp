@@ -146,7 +146,7 @@ TEST(HostileImageTest, NothingIsSizedByALyingHead) {
     EXPECT_EQ(reader->info().decoder_bytes > 20'000'000'000, progressive);
   }
   EXPECT_THAT(refused(png_of_size(65535, 65535)), HasSubstr("65535 x 65535"));
-  EXPECT_THAT(refused(png_of_size(65536, 1)), StartsWith("a.img: "));
+  EXPECT_EQ(refused(png_of_size(65536, 1)), "a.img: Image width exceeds user limit in IHDR");
   EXPECT_THAT(refused(png_of_size(0, 1)), StartsWith("a.img: "));
 }
 

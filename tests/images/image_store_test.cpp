@@ -349,6 +349,7 @@ TEST_F(ImageStoreTest, AMaterialMultipliesLightAndAlpha) {
   Material material;
   material.image = 0;
   material.factor = {0.25F, 1, 0, 0.5F};
+  material.alpha = AlphaMode::blend;
   Image shown(8, 8, 4);
   MaterialTexels(material, store).read(0, 60, 60, 8, 8, shown, 0, 0);
   for (std::uint32_t y = 0; y < 8; ++y) {
@@ -359,6 +360,40 @@ TEST_F(ImageStoreTest, AMaterialMultipliesLightAndAlpha) {
       EXPECT_EQ(to[1], from[1]);
       EXPECT_EQ(to[2], 0);
       EXPECT_NEAR(to[3], from[3] / 2.0, 0.5);
+    }
+  }
+}
+
+TEST_F(ImageStoreTest, AnOpaqueMaterialHasNoUseForAlpha) {
+  const Image picture = noise(20, 30, 4);
+  add(picture);
+  Material material;
+  material.image = 0;
+  material.factor[3] = 0.5F;
+  Image shown(20, 1, 4);
+  MaterialTexels(material, store).read(0, 0, 0, 20, 1, shown, 0, 0);
+  for (std::uint32_t x = 0; x < 20; ++x) {
+    EXPECT_EQ(shown.at(x, 0)[0], picture.at(x, 0)[0]);
+    EXPECT_EQ(shown.at(x, 0)[3], 255);
+  }
+}
+
+TEST_F(ImageStoreTest, TheCutoffOfAMaskBecomesHalf) {
+  const Image picture = noise(64, 64, 4);
+  add(picture);
+  for (const float cutoff : {0.0F, 0.1F, 0.5F, 0.9F, 1.0F}) {
+    Material material;
+    material.image = 0;
+    material.alpha = AlphaMode::mask;
+    material.alpha_cutoff = cutoff;
+    Image shown(64, 64, 4);
+    MaterialTexels(material, store).read(0, 0, 0, 64, 64, shown, 0, 0);
+    for (std::size_t i = 3; i < shown.texels.size(); i += 4) {
+      const double alpha = picture.texels[i] / 255.0;
+      ASSERT_EQ(shown.texels[i] / 255.0 >= 0.5, alpha >= cutoff) << cutoff << " " << alpha;
+      if (cutoff == 0.5F) {
+        ASSERT_EQ(shown.texels[i], picture.texels[i]);
+      }
     }
   }
 }

@@ -426,6 +426,16 @@ TEST_F(GltfImportTest, AMissingPictureShowsItsMaterialsColour) {
   EXPECT_THAT(ignored.companions(), IsEmpty());
 }
 
+TEST_F(GltfImportTest, APictureThatIsNotLookedForIsToldToBeElsewhere) {
+  for (const char* uri : {"../b.png", "/b.png", "a/../../b.png"}) {
+    GltfBuilder gltf;
+    gltf.show(textured_square(gltf, gltf.textured_material({{"uri", uri}})));
+    const Imported mesh = import(gltf);
+    ASSERT_EQ(mesh.warnings.size(), 1U);
+    EXPECT_THAT(mesh.warnings[0], HasSubstr(std::string(uri) + ", which is no path below the"));
+  }
+}
+
 TEST_F(GltfImportTest, WithoutABaseColoursPictureTheEmissiveOneIsShown) {
   GltfBuilder gltf;
   put("b.png", "x");

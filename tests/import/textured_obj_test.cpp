@@ -153,7 +153,6 @@ TEST_F(TexturedObjTest, FacesWithoutCoordinatesShowTheColour) {
   const Imported mesh = import();
   EXPECT_THAT(mesh.all_shown(), ElementsAre("a.png 0 1, 1 1, 1 0", "#00ff00", "#00ff00"));
   ASSERT_THAT(mesh.materials.materials, SizeIs(2));
-  EXPECT_EQ(mesh.materials.materials[0].colour, (std::array<float, 4>{1, 1, 1, 1}));
   EXPECT_EQ(mesh.positions.back(), (Vec3d{9, 9, 9}));
   EXPECT_EQ(mesh.attributes.back(), 0.0F) << "a vertex of no triangle has a material, too";
 }
@@ -262,6 +261,19 @@ TEST_F(TexturedObjTest, AlphaComesFromTheOpacityOrThePicture) {
   EXPECT_EQ(import_with("map_Kd a.png\nmap_d b.png").count("ignored_alpha_images"), 1U);
 }
 
+TEST_F(TexturedObjTest, TheOpacityIsThatOfThePictureToo) {
+  put_pictures({"a.png"});
+  const images::Material half = import_with("map_Kd a.png\nd 0.5").materials.materials.at(0);
+  EXPECT_THAT(half.factor, ElementsAre(1, 1, 1, 0.5F));
+}
+
+TEST_F(TexturedObjTest, TheColourIsKeptForAPictureThatProvesBroken) {
+  put_pictures({"a.png"});
+  const images::Material red = import_with("map_Kd a.png\nKd 1 0 0").materials.materials.at(0);
+  EXPECT_TRUE(red.image);
+  EXPECT_THAT(red.colour, ElementsAre(1, 0, 0, 1));
+}
+
 TEST_F(TexturedObjTest, EachSquareOfCoordinatesMayHaveItsPicture) {
   put_pictures({"t.1001.png", "t.1012.png"});
   put("a.mtl", "newmtl m\nKd 0 0 1\nmap_Kd t.<UDIM>.png\n");
@@ -272,10 +284,23 @@ TEST_F(TexturedObjTest, EachSquareOfCoordinatesMayHaveItsPicture) {
   const Imported mesh = import();
   EXPECT_THAT(mesh.all_shown(),
               ElementsAre("t.1001.png 0 1, 1 1, 0 0", "t.1012.png 0.25 1, 1 1, 0.5 0.5", "#0000ff",
-                          "#0000ff", "#0000ff"));
+                          "t.1001.png -1 1, 1 1, 0 0", "#0000ff"));
   EXPECT_EQ(mesh.count("missing_images"), 1U);
   EXPECT_THAT(mesh.warnings[0], HasSubstr("t.1056.png"));
   EXPECT_EQ(import({.memory = tests::kTight}).attributes, mesh.attributes);
+}
+
+TEST_F(TexturedObjTest, CornersBesideASquareMayBeRounded) {
+  put_pictures({"t.1001.png", "t.1002.png"});
+  put("a.mtl", "newmtl m\nmap_Kd t.<UDIM>.png\n");
+  put("a.obj",
+      "mtllib a.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt -1e-7 -1e-7\nvt 1 0\nvt 0 1\n"
+      "vt 0.9999999 0\nvt 2 0\nvt 1 1\nf 1/1 2/2 3/3\nf 1/4 2/5 3/6\n");
+  const Imported mesh = import();
+  EXPECT_EQ(mesh.count("missing_images"), 0U);
+  ASSERT_THAT(mesh.all_shown(), SizeIs(2));
+  EXPECT_THAT(mesh.all_shown()[0], HasSubstr("t.1001.png"));
+  EXPECT_THAT(mesh.all_shown()[1], HasSubstr("t.1002.png"));
 }
 
 TEST_F(TexturedObjTest, SeveralFilesShareTheNumbers) {

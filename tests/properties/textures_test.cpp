@@ -506,6 +506,17 @@ TEST_F(TexturesTest, VerifyNamesTheFilesThatChanged) {
   EXPECT_THAT(problems(job), Contains(HasSubstr("torus.mtl (material library): not what")));
 }
 
+TEST_F(TexturesTest, LibrariesWithoutPicturesAreVerifiedToo) {
+  const std::filesystem::path mesh = write(tests::make_textured_torus(4, 2));
+  std::ofstream(directory_.path() / "torus.mtl") << "newmtl material_0\nKd 1 0 0\n";
+  const config::Config job = config(mesh);
+  build(job);
+  EXPECT_FALSE(storage::HierarchyReader(*files_, job.output).manifest().source.textures);
+  EXPECT_THAT(problems(job), IsEmpty());
+  std::ofstream(directory_.path() / "torus.mtl", std::ios::app) << "# more\n";
+  EXPECT_THAT(problems(job), Contains(HasSubstr("torus.mtl (material library): not what")));
+}
+
 TEST_F(TexturesTest, TheReportNamesAllThatWasReadAndWhatWasMissing) {
   const std::filesystem::path mesh = write(tests::make_textured_torus(6, 3));
   std::filesystem::remove(directory_.path() / "picture_1.png");
@@ -533,6 +544,21 @@ class Warnings final : public execution::Progress {
 
   std::vector<std::string> all;
 };
+
+TEST_F(TexturesTest, ABrokenPictureIsRefusedWithWhatCanBeDone) {
+  const config::Config job = config(write(tests::make_textured_torus(4, 2)));
+  for (const std::uintmax_t bytes : {200U, 10U}) {  // no end, no head
+    std::filesystem::resize_file(directory_.path() / "picture_1.png", bytes);
+    try {
+      build(job);
+      FAIL();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::input);
+      EXPECT_THAT(error.what(), HasSubstr("picture_1.png"));
+      EXPECT_THAT(error.what(), HasSubstr("\"missing_images\": \"ignore\""));
+    }
+  }
+}
 
 TEST_F(TexturesTest, BrokenPicturesThatAreToBeIgnoredGiveOneWarning) {
   config::Config job = config(write(tests::make_textured_torus(6, 3)));

@@ -173,6 +173,42 @@ TEST(TexturedRasterTest, NoSeamIsSeenBetweenFacetsOfOneTexture) {
   }
 }
 
+/// Red; the left half has one alpha, the right half another.
+images::Image two_alphas(std::uint8_t left, std::uint8_t right) {
+  images::Image image(64, 64, 4);
+  for (std::uint32_t y = 0; y < 64; ++y) {
+    for (std::uint32_t x = 0; x < 64; ++x) {
+      image.at(x, y)[0] = 255;
+      image.at(x, y)[3] = x < 32 ? left : right;
+    }
+  }
+  return image;
+}
+
+TEST(TexturedRasterTest, WhereAPictureIsTransparentThereIsWhatIsBehind) {
+  for (const AlphaMode alpha : {AlphaMode::mask, AlphaMode::blend}) {
+    const images::Image picture = drawn_square(64, 2, MipTexture(two_alphas(255, 0), {}, alpha));
+    EXPECT_EQ(picture.at(8, 32)[3], 255);
+    EXPECT_EQ(picture.at(8, 32)[0], 255);
+    EXPECT_EQ(picture.at(56, 32)[3], 0);
+  }
+  const images::Image opaque = drawn_square(64, 2, MipTexture(two_alphas(255, 0)));
+  EXPECT_EQ(opaque.at(56, 32)[3], 255);
+}
+
+TEST(TexturedRasterTest, HalfOfAPixelIsSeenOfWhatIsHalfTransparent) {
+  const images::Image halves = two_alphas(64, 128);
+  const images::Image blended = drawn_square(64, 2, MipTexture(halves, {}, AlphaMode::blend));
+  EXPECT_NEAR(blended.at(8, 32)[3], 64, 1);
+  EXPECT_NEAR(blended.at(56, 32)[3], 128, 1);
+  const images::Image masked = drawn_square(64, 2, MipTexture(halves, {}, AlphaMode::mask));
+  EXPECT_EQ(masked.at(8, 32)[3], 0);
+  EXPECT_EQ(masked.at(56, 32)[3], 255);
+  // From afar, too.
+  const images::Image small = drawn_square(4, 2, MipTexture(halves, {}, AlphaMode::blend));
+  EXPECT_NEAR(small.at(0, 2)[3], 64, 1);
+}
+
 TEST(TexturedRasterTest, OfTwoFacetsTheNearestIsSeenWithItsSkin) {
   const MipTexture white(checker(8, 8));
   Raster raster(square_camera(4));

@@ -186,6 +186,30 @@ TEST_F(LeafPictureTest, ThinTrianglesKeepTheirGutter) {
   }
 }
 
+// Pictures of opaque materials may have alpha, which nobody sees.
+TEST_F(LeafPictureTest, OpaqueMaterialsHaveNoHolesBesideOthers) {
+  Image clear(16, 16, 4);  // all alpha is 0
+  const std::uint32_t opaque = add(clear);
+  images::Material colour, blend, mask;
+  colour.colour[3] = 0.25F;
+  blend.alpha = AlphaMode::blend;
+  blend.colour[3] = 0.5F;
+  mask.alpha = AlphaMode::mask;
+  mask.alpha_cutoff = 0.1F;
+  mask.colour[3] = 0.25F;
+  texture::LeafAtlas atlas{64, 16, {}, {}, 4, 0};
+  atlas.pieces = {{opaque, 0, 0, 0, 0, 0, 16, 16},
+                  {add(colour), 0, 0, 0, 16, 0, 16, 16},
+                  {add(blend), 0, 0, 0, 32, 0, 16, 16},
+                  {add(mask), 0, 0, 0, 48, 0, 16, 16}};
+  const Image image = painted(atlas);
+  ASSERT_EQ(image.channels, 4U);
+  EXPECT_EQ(image.at(8, 8)[3], 255);
+  EXPECT_EQ(image.at(24, 8)[3], 255);
+  EXPECT_EQ(image.at(40, 8)[3], 128);
+  EXPECT_EQ(image.at(56, 8)[3], 255);
+}
+
 TEST_F(LeafPictureTest, AlphaIsThatOfTheStrongestMaterialShown) {
   images::Material blend;
   blend.alpha = AlphaMode::blend;
