@@ -27,6 +27,8 @@ import type { Language } from '../words/languages.js';
 import { words } from '../words/words.js';
 import '../style/view.css';
 
+export { RootPicture } from './root_picture.js'; // for the gallery, which has loaded this by then
+
 export interface Surroundings extends Pick<ViewOptions, 'fetch' | 'createWorker'> {
   spot: Spot;
   preferences: Preferences;

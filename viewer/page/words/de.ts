@@ -74,7 +74,7 @@ export const de: Words = {
     title: 'Sendungen',
     addFiles: 'Netze hinzufügen',
     addFolder: 'Ordner hinzufügen',
-    hint: 'oder hier ablegen; OBJ oder glTF mit allem, was dazugehört',
+    hint: 'oder hier ablegen. OBJ oder glTF brauchen ihre Materialien und Bilder dabei.',
     waiting: 'wartet, bis es an der Reihe ist',
     sent: (done, total) => `${done} von ${total}`,
     rate: (what, rate, left) => `${what}, ${rate}/s, noch ${left}`,

@@ -77,7 +77,7 @@ export const en = {
     title: 'Uploads',
     addFiles: 'Add meshes',
     addFolder: 'Add a folder',
-    hint: 'or drop them here; an OBJ or glTF with all that belongs to it',
+    hint: 'or drop them here. An OBJ or glTF needs its materials and pictures beside it.',
     waiting: 'waits for its turn',
     sent: (done: string, total: string) => `${done} of ${total}`,
     rate: (what: string, rate: string, left: string) => `${what}, ${rate}/s, ${left} left`,

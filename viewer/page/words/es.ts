@@ -74,7 +74,7 @@ export const es: Words = {
     title: 'Envíos',
     addFiles: 'Añadir mallas',
     addFolder: 'Añadir una carpeta',
-    hint: 'o suéltelas aquí; un OBJ o glTF con todo lo que le pertenece',
+    hint: 'o suéltelas aquí. Un OBJ o glTF necesita sus materiales e imágenes al lado.',
     waiting: 'espera su turno',
     sent: (done, total) => `${done} de ${total}`,
     rate: (what, rate, left) => `${what}, ${rate}/s, faltan ${left}`,

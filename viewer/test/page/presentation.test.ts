@@ -26,7 +26,12 @@ describe('what is shown', () => {
   });
 
   it('is any other form as it is, in a studio', () => {
-    expect(shownOf(PLAIN, FORM)).toEqual({ look: DEFAULT_LOOK, rig: 'studio', key: keyOf('studio') });
+    expect(shownOf(PLAIN, { ...FORM, hasColours: true })).toEqual({ look: DEFAULT_LOOK, rig: 'studio', key: keyOf('studio') });
+    expect(shownOf(PLAIN, { ...FORM, hasColours: null }).look.colours).toBe('vertex');
+  });
+
+  it('is plain where the input says no colour: white would hide the form', () => {
+    expect(shownOf(PLAIN, FORM).look.colours).toBe('plain');
   });
 
   it.each<[Light, object]>([
