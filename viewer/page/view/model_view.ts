@@ -58,7 +58,7 @@ export class ModelView {
   private readonly tools = new ToolHost({
     bench: () => (this.view.manifest === null ? null : this.bench()),
     noted: () => { this.rest(); },
-    failed: (retry) => { this.around.failed(words.problems.noCode, { subject: 'tools', retry }); },
+    failed: (retry) => { this.missCode(retry); },
   });
   /// While a picture is taken.
   private frozen: CameraPose | null = null;
@@ -186,6 +186,14 @@ export class ModelView {
   private miss(message: string, files: number): void {
     const text = words.problems.missing(this.model.name, files, formatCount(files));
     this.missing = this.around.failed(text, { more: message, subject: 'missing', retry: () => { this.view.retry(); } });
+  }
+
+  private missCode(again: () => void): void {
+    const retry = (): void => {
+      done();
+      again();
+    };
+    const done = this.around.failed(words.problems.noCode, { more: words.problems.noCodeMore, subject: 'tools', retry });
   }
 
   private restored(): void {
@@ -371,7 +379,7 @@ export class ModelView {
       freeze: (size) => this.freeze(size),
       redraw: () => { this.redraw(); },
       setPainter: (painter) => { this.stage.painter = painter; },
-      tell: (message) => this.around.failed(message, { subject: 'tools', retry: null }),
+      tell: (message, telling) => this.around.failed(message, { ...telling, subject: 'tools' }),
     };
   }
 

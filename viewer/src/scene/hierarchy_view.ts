@@ -163,6 +163,11 @@ export class HierarchyView extends Group<ViewEvents> {
     return this.root && (this.root.picture !== null || saysColour(this.root));
   }
 
+  /// Whether the mesh has triangles, and not only points; null: not known yet.
+  get hasTriangles(): boolean | null {
+    return this.root && this.root.indices.length > 0;
+  }
+
   /// Fetched when it is first asked for, and where it belongs is known.
   private showOutline(): void {
     if (this.outline === null && this.look.outline && this.manifest !== null) this.outline = this.loadOutline(this.manifest);
