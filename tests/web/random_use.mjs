@@ -18,7 +18,7 @@ const TOOLS = ['i', 'm', 'x', 'n', 'k'];
 
 class Hand {
   constructor(page, seed) {
-    Object.assign(this, { page, next: random(seed), done: 0 });
+    Object.assign(this, { page, next: random(seed), done: 0, doing: new Set() });
   }
 
   one(list) {
@@ -70,8 +70,23 @@ class Hand {
   }
 
   async act() {
-    await this[this.one(['key', 'key', 'key', 'tool', 'tool', 'click', 'drag', 'wheel', 'control', 'control'])]();
+    const name = this.one(['key', 'key', 'key', 'tool', 'tool', 'click', 'drag', 'wheel', 'control', 'control']);
+    const doing = { name };
+    this.doing.add(doing);
+    await this[name]();
+    this.doing.delete(doing);
     ++this.done;
+  }
+
+  /// Several acts at once. Throws where the browser does not come back from them: input has no patience of its own.
+  async burst() {
+    const acts = Promise.all(Array.from({ length: BURST }, () => this.act()));
+    acts.catch(() => undefined);
+    let timer;
+    const late = new Promise((_, reject) => {
+      timer = setTimeout(() => { reject(new Error(`after ${this.done} acts these do not end: ${[...this.doing].map(({ name }) => name)}`)); }, PATIENCE);
+    });
+    await Promise.race([acts, late]).finally(() => { clearTimeout(timer); });
   }
 }
 
@@ -89,7 +104,7 @@ async function use(browser, report, { pictures, seconds, origin, name, seed }) {
   await opened(page, address);
   const hand = new Hand(page, seed);
   for (const end = Date.now() + 1000 * seconds; Date.now() < end; ) {
-    await Promise.all(Array.from({ length: BURST }, () => hand.act()));
+    await hand.burst();
     if (!page.url().includes(`#models/${name}`)) await opened(page, address); // it went to the gallery
   }
   await page.screenshot({ path: path.join(pictures, `random-use-${name}.png`) });

@@ -95,7 +95,7 @@ async function checkPick(visitor) {
   const { x, y } = await placeOnModel(page);
   await openTool(page, 'Pick a point');
   await page.mouse.click(x, y);
-  await page.locator('.tool-figures', { hasText: 'the original' }).waitFor();
+  await page.locator('.tool-figures', { hasText: 'the original, partition' }).waitFor();
   const free = await figuresOf(page);
   await page.locator('.surface').focus();
   await page.keyboard.press('v');
@@ -109,7 +109,7 @@ async function checkPick(visitor) {
   await page.keyboard.press('Backspace');
   visitor.check('pick taken back', (await page.locator('.tool-overlay circle').count()) === 0, 'no point');
   await page.keyboard.press('Enter');
-  await page.locator('.tool-figures', { hasText: 'the original' }).waitFor();
+  await page.locator('.tool-figures', { hasText: 'the original, partition' }).waitFor();
   const byKey = await figuresOf(page);
   visitor.check('pick by key', byKey.x === snapped.x, 'the middle of the picture');
   await page.keyboard.press('Escape');
@@ -343,7 +343,7 @@ async function checkNarrow(visitor) {
   await page.getByRole('button', { name: 'Pick a point', exact: true }).tap();
   await page.locator('.tool-card').waitFor();
   await page.touchscreen.tap(x, y - 60);
-  await page.locator('.tool-figures', { hasText: 'the original' }).waitFor();
+  await page.locator('.tool-figures', { hasText: 'the original, partition' }).waitFor();
   const small = await page.evaluate((least) => [...document.querySelectorAll('.tools button, .tools label.check, .tools select')]
     .filter((one) => one.checkVisibility() && !one.closest('[hidden], .cube')) // a cube's faces are as they are turned
     .filter((one) => { const { width, height } = one.getBoundingClientRect(); return width < least || height < least; })

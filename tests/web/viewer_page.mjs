@@ -229,6 +229,9 @@ async function checkFarCells(visitor, page) {
   await pictured.focus();
   await pictured.locator('.cell-outline:visible').waitFor();
   visitor.check('gallery picture', !(await pictured.locator('.cell-picture').isVisible()), 'becomes an outline under the focus');
+  await pictured.locator('.solid > canvas.cell-solid').waitFor();
+  const tiles = await page.evaluate(() => performance.getEntriesByType('resource').filter(({ name }) => name.includes('/tiles/')).map(({ name }) => name));
+  visitor.check('gallery root', tiles.length > 0 && tiles.every((name) => name.endsWith('/tiles/00/000000.glb')), `shaded where one stays: ${tiles.length} tiles, all of them roots`);
   await page.evaluate(() => scrollTo(0, 0));
   await page.locator('a.cell', { hasText: 'model 0' }).first().waitFor();
   visitor.check('gallery focus', await pictured.evaluate((one) => document.activeElement === one), 'stays where it was');

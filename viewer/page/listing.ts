@@ -67,9 +67,18 @@ function countOf(value: unknown): number | null {
   return typeof value === 'number' && Number.isFinite(value) && value >= 0 ? value : null;
 }
 
-/// `models/sub/david.hier` to `david`.
+/// A part of an address as people read it: `a b` of `a%20b`.
+export function readable(text: string): string {
+  try {
+    return decodeURIComponent(text);
+  } catch {
+    return text;
+  }
+}
+
+/// `models/sub/david%202.hier` to `david 2`.
 export function nameOfPath(path: string): string {
-  const file = withoutLastSlashes(path).replace(/^.*\//, '');
+  const file = readable(withoutLastSlashes(path).replace(/^.*\//, ''));
   return file.replace(/(.)\.[^.]*$/, '$1') || path;
 }
 

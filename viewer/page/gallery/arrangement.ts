@@ -1,6 +1,6 @@
 // What of the listing is shown, in which order and in which groups.
 import { withoutLastSlashes } from '../../src/hierarchy/bytes.js';
-import type { Job, Model } from '../listing.js';
+import { readable, type Job, type Model } from '../listing.js';
 import { locale } from '../words/words.js';
 import type { Order } from './orders.js';
 
@@ -26,12 +26,7 @@ function plain(text: string): string {
 
 /// As people read it: of `models/a%20b/c.hier` it is `models/a b`.
 function folderOf({ path }: Model): string {
-  const folder = path.slice(0, Math.max(withoutLastSlashes(path).lastIndexOf('/'), 0));
-  try {
-    return decodeURIComponent(folder);
-  } catch {
-    return folder;
-  }
+  return readable(path.slice(0, Math.max(withoutLastSlashes(path).lastIndexOf('/'), 0)));
 }
 
 /// Whether a text has all the words of a search.

@@ -16,8 +16,10 @@ export interface Ball {
 export type Matrix = readonly number[];
 
 const MOST_PITCH = 1.4;
-const FOCUS = 3.2; // cotangent of half the angle of view
+export const FOCUS = 3.2; // cotangent of half the angle of view
 const MARGIN = 0.98;
+/// From the eye to the ball's centre, in its radii.
+export const DISTANCE = MARGIN * Math.hypot(FOCUS, 1);
 
 function reachOf(positions: Float32Array, [x, y, z]: readonly [number, number, number]): number {
   let most = 0;
@@ -72,11 +74,10 @@ function turned({ yaw, pitch }: Turn): Matrix {
 /// Sees the unit ball, but for a rim that outlines seldom reach; depth from -1 at its near end to 1 at its far end.
 function projection(aspect: number): Matrix {
   const narrow = Math.min(aspect, 1);
-  const distance = MARGIN * Math.hypot(FOCUS, 1);
-  const [near, far] = [distance - 1, distance + 1];
+  const [near, far] = [DISTANCE - 1, DISTANCE + 1];
   const [a, b] = [(far + near) / (near - far), (2 * far * near) / (near - far)];
   const focus = FOCUS * narrow;
-  return [focus / aspect, 0, 0, 0, 0, focus, 0, 0, 0, 0, a, -1, 0, 0, b - a * distance, distance];
+  return [focus / aspect, 0, 0, 0, 0, focus, 0, 0, 0, 0, a, -1, 0, 0, b - a * DISTANCE, DISTANCE];
 }
 
 /// From stored positions to the clip space of a cell of that width by height.

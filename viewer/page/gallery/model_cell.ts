@@ -1,5 +1,5 @@
 // A model in the gallery: a link with its picture, its name and its size. The picture is the hierarchy's own; where it has none,
-// its outline stands still. What is pointed at or focused shows its outline, which turns.
+// its outline stands still. What is pointed at or focused shows its outline, which turns; if that stays so, its root tile does, shaded.
 import { formatAddress, NOWHERE } from '../address.js';
 import type { Model } from '../listing.js';
 import { formatBytes, formatCount, formatDate, formatRough } from '../numbers.js';
@@ -11,6 +11,7 @@ import { drawOutline } from './drawing.js';
 import type { DrawingQueue } from './drawing_queue.js';
 import { ModelSource, type Facts } from './model_source.js';
 import type { Shape } from './shape.js';
+import { Solid } from './solid.js';
 import { Turning } from './turning.js';
 
 type Sizes = Pick<Facts, 'vertices' | 'triangles' | 'bytes'>;
@@ -48,6 +49,7 @@ export class ModelCell implements Cell {
   private readonly link: HTMLAnchorElement;
   private readonly turning: Turning;
   private readonly source: ModelSource;
+  private readonly solid: Solid;
   private shape: Shape | null = null;
   private pictured: 'unknown' | 'yes' | 'no' = 'unknown';
 
@@ -62,6 +64,7 @@ export class ModelCell implements Cell {
     );
     this.showSizes(model);
     this.root = element('li', {}, this.link);
+    this.solid = new Solid(model.url, this.stage);
     this.turning = new Turning(this.link, this.stage, { enlivened: (lively) => { this.enlivened(lively); }, turned: () => { this.turned(); } });
   }
 
@@ -82,10 +85,12 @@ export class ModelCell implements Cell {
   advance(angle: number): void {
     this.turning.advance(angle);
     if (!this.canvas.hidden) this.draw();
+    this.solid.show(this.turning.turn);
   }
 
   close(): void {
     this.studio.animation.stop(this);
+    this.solid.end();
     this.source.close();
     this.root.remove();
   }
@@ -134,6 +139,7 @@ export class ModelCell implements Cell {
 
   private take(shape: Shape): void {
     this.shape = shape;
+    if (this.turning.lively) this.solid.await(shape.ball, this.turning.turn);
     if (shape.ends.length === 0) this.say(words.gallery.onePiece, false);
     this.arrange();
   }
@@ -151,6 +157,8 @@ export class ModelCell implements Cell {
 
   private enlivened(lively: boolean): void {
     if (lively) this.askOutline();
+    if (!lively) this.solid.end();
+    else if (this.shape !== null) this.solid.await(this.shape.ball, this.turning.turn);
     if (lively) this.studio.animation.start(this);
     else this.studio.animation.stop(this);
     this.arrange();
@@ -158,6 +166,7 @@ export class ModelCell implements Cell {
 
   private turned(): void {
     this.askOutline();
+    this.solid.show(this.turning.turn);
     this.redraw();
   }
 

@@ -10,7 +10,7 @@ const NARROW = 480;
 
 function metricsOf(width: number): Metrics {
   const narrow = width < NARROW;
-  return { width, leastWidth: narrow ? 150 : 220, gap: narrow ? 10 : 14, textHeight: 78, headingHeight: 48 };
+  return { width, leastWidth: narrow ? 150 : 220, gap: narrow ? 10 : 14, textHeight: narrow ? 78 : 60, headingHeight: 48 };
 }
 
 /// Makes `children` the children of `parent`; those that are in place are not touched, and keep the focus.

@@ -2,6 +2,7 @@
 import type { PerspectiveCamera } from 'three';
 import type { HierarchyView } from '../../src/index.js';
 import type { DrawPart, PictureSize } from '../../src/tools/screenshot.js';
+import type { Telling } from '../problems.js';
 import type { CameraPose } from '../view/camera_pose.js';
 import type { Painter } from '../view/stage.js';
 
@@ -30,7 +31,7 @@ export interface Bench {
   /// Draws instead of the view, until null is given.
   setPainter(painter: Painter | null): void;
   /// What it returns takes the message away.
-  tell(message: string): () => void;
+  tell(message: string, telling?: Pick<Telling, 'more' | 'retry'>): () => void;
 }
 
 /// Places of the picture are from -1 to 1 to the right and up.

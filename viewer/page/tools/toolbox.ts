@@ -149,7 +149,14 @@ export class Toolbox implements Tools {
       if (this.active !== name || this.bench.signal.aborted) return;
       if (!this.made.has(name)) this.made.set(name, makeTool(this.shop));
     } catch {
-      this.bench.tell(pageWords.problems.noCode);
+      const { noCode, noCodeMore } = pageWords.problems;
+      const done = this.bench.tell(noCode, {
+        more: noCodeMore,
+        retry: () => {
+          done();
+          this.put(name);
+        },
+      });
       this.put(null);
       return;
     }

@@ -81,7 +81,7 @@ export class Uploader {
     });
     const button = element('button', { type: 'button', class: 'button upload-text' }, name);
     button.addEventListener('click', () => { input.click(); });
-    return element('span', {}, button, input);
+    return element('span', { class: folder ? 'upload-folder' : null }, button, input);
   }
 
   /// Anywhere on the page while the gallery is shown: beside it the browser would leave the page for the file.

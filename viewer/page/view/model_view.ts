@@ -27,6 +27,8 @@ import type { Language } from '../words/languages.js';
 import { words } from '../words/words.js';
 import '../style/view.css';
 
+export { RootPicture } from './root_picture.js'; // for the gallery, which has loaded this by then
+
 export interface Surroundings extends Pick<ViewOptions, 'fetch' | 'createWorker'> {
   spot: Spot;
   preferences: Preferences;
@@ -56,7 +58,7 @@ export class ModelView {
   private readonly tools = new ToolHost({
     bench: () => (this.view.manifest === null ? null : this.bench()),
     noted: () => { this.rest(); },
-    failed: (retry) => { this.around.failed(words.problems.noCode, { subject: 'tools', retry }); },
+    failed: (retry) => { this.missCode(retry); },
   });
   /// While a picture is taken.
   private frozen: CameraPose | null = null;
@@ -184,6 +186,14 @@ export class ModelView {
   private miss(message: string, files: number): void {
     const text = words.problems.missing(this.model.name, files, formatCount(files));
     this.missing = this.around.failed(text, { more: message, subject: 'missing', retry: () => { this.view.retry(); } });
+  }
+
+  private missCode(again: () => void): void {
+    const retry = (): void => {
+      done();
+      again();
+    };
+    const done = this.around.failed(words.problems.noCode, { more: words.problems.noCodeMore, subject: 'tools', retry });
   }
 
   private restored(): void {
@@ -369,7 +379,7 @@ export class ModelView {
       freeze: (size) => this.freeze(size),
       redraw: () => { this.redraw(); },
       setPainter: (painter) => { this.stage.painter = painter; },
-      tell: (message) => this.around.failed(message, { subject: 'tools', retry: null }),
+      tell: (message, telling) => this.around.failed(message, { ...telling, subject: 'tools' }),
     };
   }
 

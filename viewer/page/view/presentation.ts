@@ -14,7 +14,7 @@ export interface Shown {
   key: Angles;
 }
 
-type Model = Pick<HierarchyView, 'terrain' | 'hasColours'>;
+type Model = Pick<HierarchyView, 'terrain' | 'hasColours' | 'hasTriangles'>;
 
 function rigOf({ name }: Light, terrain: Terrain | null): Rig {
   if (name === 'matcap') return 'studio';
@@ -25,13 +25,14 @@ function reliefOf({ slope }: Terrain, stretch: number): number {
   return Math.min(Math.max(SHOWN_SLOPE / Math.max(slope * stretch, 1e-9), 1), MOST_RELIEF);
 }
 
-/// Terrains without colours of their own are coloured by height, and under the sun their slopes are shaded steeper.
-export function shownOf({ look, light, standing }: Appearance, { terrain, hasColours }: Model): Shown {
+/// What has no colours of its own is plain: white shows no form. But terrains are coloured by height, and under the sun their slopes are shaded steeper.
+export function shownOf({ look, light, standing }: Appearance, { terrain, hasColours, hasTriangles }: Model): Shown {
   const rig = rigOf(light, terrain);
-  const colours = look.colours === 'vertex' && terrain !== null && hasColours === false ? 'height' : look.colours;
+  const colours = look.colours === 'vertex' && hasColours === false ? (terrain === null ? 'plain' : 'height') : look.colours;
   const relief = terrain !== null && rig === 'sun' ? reliefOf(terrain, standing.stretch) : 1;
   const key = light.key === null ? keyOf(rig) : { right: light.key[0], up: light.key[1] };
-  return { look: { ...look, colours, relief, material: light.name === 'matcap' ? 'matcap' : 'lit' }, rig, key };
+  const points = look.points || hasTriangles === false; // nothing else shows those
+  return { look: { ...look, colours, points, relief, material: light.name === 'matcap' ? 'matcap' : 'lit' }, rig, key };
 }
 
 function isSame(a: object, b: object): boolean {

@@ -74,7 +74,7 @@ export const de: Words = {
     title: 'Sendungen',
     addFiles: 'Netze hinzufügen',
     addFolder: 'Ordner hinzufügen',
-    hint: 'oder hier ablegen; OBJ oder glTF mit allem, was dazugehört',
+    hint: 'oder hier ablegen. OBJ oder glTF brauchen ihre Materialien und Bilder dabei.',
     waiting: 'wartet, bis es an der Reihe ist',
     sent: (done, total) => `${done} von ${total}`,
     rate: (what, rate, left) => `${what}, ${rate}/s, noch ${left}`,
@@ -98,7 +98,8 @@ export const de: Words = {
   problems: {
     noWebGl: 'Dieser Browser hat kein WebGL 2, mit dem Modelle gezeichnet werden.',
     noWebGlMore: 'Ein anderer hat es vielleicht, oder dieser mit eingeschalteter Grafikbeschleunigung.',
-    noCode: 'der Programmcode der Seite konnte nicht geladen werden',
+    noCode: 'Der Programmcode der Seite konnte nicht geladen werden.',
+    noCodeMore: 'Falls die Seite erneuert wurde, seit sie offen ist, laden Sie sie neu: Ihre Adresse behält, was Sie sehen.',
     unfetchable: (path) => `Der Link nennt „${path}“, was nicht geladen werden kann.`,
     notShown: (model) => `${model} kann nicht gezeigt werden.`,
     notOpened: (model) => `${model} kann nicht geöffnet werden.`,

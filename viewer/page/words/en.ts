@@ -77,7 +77,7 @@ export const en = {
     title: 'Uploads',
     addFiles: 'Add meshes',
     addFolder: 'Add a folder',
-    hint: 'or drop them here; an OBJ or glTF with all that belongs to it',
+    hint: 'or drop them here. An OBJ or glTF needs its materials and pictures beside it.',
     waiting: 'waits for its turn',
     sent: (done: string, total: string) => `${done} of ${total}`,
     rate: (what: string, rate: string, left: string) => `${what}, ${rate}/s, ${left} left`,
@@ -101,7 +101,8 @@ export const en = {
   problems: {
     noWebGl: 'This browser has no WebGL 2, which models are drawn with.',
     noWebGlMore: 'Another browser may have it, or this one with its graphics acceleration on.',
-    noCode: "the page's code could not be fetched",
+    noCode: "The page's code could not be fetched.",
+    noCodeMore: 'If the page was renewed since it was opened, load it again: its address keeps what you see.',
     unfetchable: (path: string) => `The link names "${path}", which cannot be fetched.`,
     notShown: (model: string) => `${model} cannot be shown.`,
     notOpened: (model: string) => `${model} cannot be opened.`,

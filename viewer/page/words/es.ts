@@ -74,7 +74,7 @@ export const es: Words = {
     title: 'Envíos',
     addFiles: 'Añadir mallas',
     addFolder: 'Añadir una carpeta',
-    hint: 'o suéltelas aquí; un OBJ o glTF con todo lo que le pertenece',
+    hint: 'o suéltelas aquí. Un OBJ o glTF necesita sus materiales e imágenes al lado.',
     waiting: 'espera su turno',
     sent: (done, total) => `${done} de ${total}`,
     rate: (what, rate, left) => `${what}, ${rate}/s, faltan ${left}`,
@@ -98,7 +98,8 @@ export const es: Words = {
   problems: {
     noWebGl: 'Este navegador no tiene WebGL 2, con el que se dibujan los modelos.',
     noWebGlMore: 'Quizá otro navegador lo tenga, o este con la aceleración gráfica activada.',
-    noCode: 'no se ha podido cargar el código de la página',
+    noCode: 'No se ha podido cargar el código de la página.',
+    noCodeMore: 'Si la página se ha renovado desde que se abrió, vuelva a cargarla: su dirección conserva lo que ve.',
     unfetchable: (path) => `El enlace indica «${path}», que no se puede cargar.`,
     notShown: (model) => `No se puede mostrar ${model}.`,
     notOpened: (model) => `No se puede abrir ${model}.`,

@@ -57,6 +57,10 @@ const MOST_TRIES = 5;
 const ROOT: Node = { level: 0, index: 0 };
 const ROOT_KEY = keyOf(0, 0);
 
+function saysColour({ colours }: Tile): boolean {
+  return colours?.some((value) => value < 255) ?? false;
+}
+
 export class HierarchyView extends Group<ViewEvents> {
   /// Resolves when the root can be drawn: after one request. Rejects with an Error that names the file.
   readonly opened: Promise<void>;
@@ -154,9 +158,14 @@ export class HierarchyView extends Group<ViewEvents> {
     return upwards(this.standing.up, this.root?.zUp ?? false);
   }
 
-  /// Whether the mesh has colours or pictures of its own; null: not known yet.
+  /// Whether the mesh has colours or pictures of its own; those that are white everywhere say nothing. Null: not known yet.
   get hasColours(): boolean | null {
-    return this.root && (this.root.colours !== null || this.root.picture !== null);
+    return this.root && (this.root.picture !== null || saysColour(this.root));
+  }
+
+  /// Whether the mesh has triangles, and not only points; null: not known yet.
+  get hasTriangles(): boolean | null {
+    return this.root && this.root.indices.length > 0;
   }
 
   /// Fetched when it is first asked for, and where it belongs is known.

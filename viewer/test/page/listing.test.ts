@@ -65,8 +65,13 @@ describe('a listing', () => {
 });
 
 describe('a path', () => {
-  it.each([['a.hier', 'a'], ['x/y.z.hier/', 'y.z'], ['http://h/q%3F.hier', 'q%3F'], ['.hier', '.hier'], ['/', '/']])('%s is named %s', (path, name) => {
+  it.each([['a.hier', 'a'], ['x/y.z.hier/', 'y.z'], ['http://h/q%3F.hier', 'q?'], ['.hier', '.hier'], ['/', '/']])('%s is named %s', (path, name) => {
     expect(nameOfPath(path)).toBe(name);
+  });
+
+  it('is called as people read it, in links too', () => {
+    expect(modelOfPath('a/x%3Fy%20%C3%BC.hier', URL_)).toMatchObject({ name: 'x?y ü', url: 'http://host/dir/a/x%3Fy%20%C3%BC.hier' });
+    expect(nameOfPath('100%.hier')).toBe('100%');
   });
 
   it('may lead to another host, and nowhere but to hosts', () => {

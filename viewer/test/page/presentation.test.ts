@@ -6,8 +6,8 @@ import { DEFAULT_LOOK } from '../../src/scene/settings.js';
 import { DEFAULT_STANDING } from '../../src/scene/standing.js';
 
 const PLAIN: Appearance = { look: DEFAULT_LOOK, light: DEFAULT_LIGHT, standing: DEFAULT_STANDING };
-const HILLS = { terrain: { low: 0, high: 10, slope: 0.05 }, hasColours: false };
-const FORM = { terrain: null, hasColours: false };
+const HILLS = { terrain: { low: 0, high: 10, slope: 0.05 }, hasColours: false, hasTriangles: true };
+const FORM = { terrain: null, hasColours: false, hasTriangles: true };
 
 describe('what is shown', () => {
   it('is a terrain by height and under the sun, with slopes that show', () => {
@@ -26,7 +26,17 @@ describe('what is shown', () => {
   });
 
   it('is any other form as it is, in a studio', () => {
-    expect(shownOf(PLAIN, FORM)).toEqual({ look: DEFAULT_LOOK, rig: 'studio', key: keyOf('studio') });
+    expect(shownOf(PLAIN, { ...FORM, hasColours: true })).toEqual({ look: DEFAULT_LOOK, rig: 'studio', key: keyOf('studio') });
+    expect(shownOf(PLAIN, { ...FORM, hasColours: null }).look.colours).toBe('vertex');
+  });
+
+  it('is the points of a mesh without triangles', () => {
+    expect(shownOf(PLAIN, { ...FORM, hasTriangles: false }).look.points).toBe(true);
+    expect(shownOf(PLAIN, FORM).look.points).toBe(false);
+  });
+
+  it('is plain where the input says no colour: white would hide the form', () => {
+    expect(shownOf(PLAIN, FORM).look.colours).toBe('plain');
   });
 
   it.each<[Light, object]>([

@@ -1,0 +1,94 @@
+// A model in a cell of the gallery: its root tile, shaded, turned as its outline is. Comes with the view's code.
+import { Group, MathUtils, NeutralToneMapping, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from 'three';
+import TileWorker from '../../src/hierarchy/tile_worker.js?worker';
+import { HierarchyView } from '../../src/index.js';
+import { DEFAULT_LOOK } from '../../src/scene/settings.js';
+import { DEFAULT_STANDING } from '../../src/scene/standing.js';
+import { DEFAULT_LIGHT } from '../appearance.js';
+import { DISTANCE, FOCUS, type Turn } from '../gallery/layout.js';
+import { Lighting } from './lighting.js';
+import { Presentation } from './presentation.js';
+
+const MOST_RATIO = 2;
+/// Nothing but the root is refined to.
+const ROOT_ONLY = { threshold: 1000, restDetail: 1 };
+
+export class RootPicture {
+  readonly canvas: HTMLCanvasElement;
+  private readonly renderer = new WebGLRenderer({ antialias: true, alpha: true });
+  private readonly scene = new Scene();
+  private readonly camera = new PerspectiveCamera();
+  private readonly raised = new Group();
+  private readonly view: HierarchyView;
+  private readonly presentation: Presentation;
+  private opened = false;
+  private frame = 0;
+
+  /// `url`: of the hierarchy; `radius`: of a ball around the model. `drawn`: after the first picture. Throws where there is no WebGL 2.
+  constructor(url: string, private readonly radius: number, private turn: Turn, private readonly drawn: () => void) {
+    this.canvas = this.renderer.domElement;
+    this.canvas.className = 'cell-solid';
+    this.canvas.setAttribute('aria-hidden', 'true');
+    this.renderer.toneMapping = NeutralToneMapping;
+    this.view = new HierarchyView(url, { createWorker: () => new TileWorker(), workers: 1, settings: ROOT_ONLY });
+    this.presentation = new Presentation(this.view, new Lighting(this.scene, this.camera), { look: DEFAULT_LOOK, light: DEFAULT_LIGHT, standing: DEFAULT_STANDING });
+    this.raised.add(this.view);
+    this.scene.add(this.camera, this.raised);
+    this.view.addEventListener('change', () => { this.ask(); });
+    this.view.opened.then(() => { this.begin(); }, () => undefined); // the outline stays
+  }
+
+  show(turn: Turn): void {
+    this.turn = turn;
+    this.ask();
+  }
+
+  close(): void {
+    cancelAnimationFrame(this.frame);
+    this.opened = false;
+    this.view.dispose();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
+    this.canvas.remove();
+  }
+
+  private begin(): void {
+    this.opened = true;
+    this.ask();
+  }
+
+  private ask(): void {
+    if (this.frame === 0 && this.opened) this.frame = requestAnimationFrame((now) => { this.draw(now); });
+  }
+
+  private draw(now: number): void {
+    this.frame = 0;
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    if (!this.opened || width === 0 || height === 0) return;
+    this.presentation.apply(); // what the model is may choose for it
+    this.fit(width, height);
+    this.aim(width / height);
+    this.view.update(this.camera, { width, height }, now);
+    this.renderer.render(this.scene, this.camera);
+    this.drawn();
+  }
+
+  private fit(width: number, height: number): void {
+    const ratio = Math.min(devicePixelRatio, MOST_RATIO);
+    if (this.canvas.width === Math.floor(width * ratio) && this.canvas.height === Math.floor(height * ratio)) return;
+    this.renderer.setPixelRatio(ratio);
+    this.renderer.setSize(width, height, false);
+  }
+
+  /// As layout.ts sees the outline.
+  private aim(aspect: number): void {
+    const { camera, radius, raised, view, turn: { yaw, pitch } } = this;
+    camera.fov = MathUtils.radToDeg(2 * Math.atan(1 / (FOCUS * Math.min(aspect, 1))));
+    Object.assign(camera, { aspect, near: (DISTANCE - 1) * radius * 0.9, far: (DISTANCE + 1) * radius * 1.1 });
+    camera.position.set(0, 0, DISTANCE * radius);
+    camera.updateProjectionMatrix();
+    raised.rotation.set(pitch, yaw, 0); // first about the upright axis
+    view.position.copy(view.box.getCenter(new Vector3())).negate();
+    this.scene.updateMatrixWorld();
+  }
+}
