@@ -15,6 +15,7 @@
 #include "hierarchy/error.h"
 #include "hierarchy/lattice.h"
 #include "hierarchy/plain_text.h"
+#include "import/input_record.h"
 #include "import/mesh_input.h"
 #include "inspection/tile_vertices.h"
 #include "inspection/verify_parts.h"
@@ -366,14 +367,18 @@ void compare_sums(const MeshSums& input, const MeshSums& partitions,
   compare("triangles", input.triangles, partitions.triangles);
 }
 
+/// Materials are part of the input even where none of their pictures was there.
+importing::Textures textures_of(const SourceSummary& source) {
+  return source.textures || importing::has_materials(source.files) ? importing::Textures::use
+                                                                   : importing::Textures::ignore;
+}
+
 }  // namespace
 
 void verify_input(const VerifyJob& job) {
   const InputProblems problems(job);
   const SourceSummary& expected = job.reader.manifest().source;
-  importing::MeshInput files(
-      job.options.input, was_welded(job), job.files,
-      expected.textures ? importing::Textures::use : importing::Textures::ignore);
+  importing::MeshInput files(job.options.input, was_welded(job), job.files, textures_of(expected));
   if (files.needs_import()) {
     files.import({job.scratch.path().string() + "-import", job.scratch.path().string() + "-sorts",
                   job.scratch.pool(), job.options.memory_budget / 8, job.progress, job.cancel});
