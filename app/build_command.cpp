@@ -63,13 +63,29 @@ storage::OutputRequest output_request(const std::string& path, const BuildArgume
   return request;
 }
 
+/// Only an older note, or what --force may replace; checked before the build, and after it.
+storage::OutputRequest note_request(const BuildArguments& arguments, const config::Config& config,
+                                    storage::FileSystem& files) {
+  storage::OutputRequest request = output_request(arguments.input_note, arguments, config);
+  if (request.replace || files.kind(request.path) != storage::FileKind::regular)
+    return request;
+  storage::require_apart(files, request.path, request.inputs);
+  try {
+    storage::read_input_note(*files.open(request.path), arguments.input_note);
+    request.replace = true;  // it says which hierarchy it belongs to
+  } catch (const Error&) {
+    throw Error(ErrorCode::exists, arguments.input_note + " is already there, and is no note of " +
+                                       "a build; --force replaces it");
+  }
+  return request;
+}
+
 /// When all is done: a build that is killed leaves none that is not finished.
 void write_input_note(const BuildArguments& arguments, const config::Config& config,
                       const storage::InputNote& note, Environment& environment) {
-  storage::OutputRequest request = output_request(arguments.input_note, arguments, config);
-  request.replace = true;  // it says which hierarchy it belongs to
   const std::string text = to_json_text(note);
-  storage::OutputFile(environment.files, request).publish(std::as_bytes(std::span(text)));
+  storage::OutputFile(environment.files, note_request(arguments, config, environment.files))
+      .publish(std::as_bytes(std::span(text)));
 }
 
 void write_stats(storage::OutputFile& file, const pipeline::BuildStats& stats) {
@@ -119,6 +135,8 @@ int run_build(const BuildArguments& arguments, execution::ProgressMode mode,
     stats.emplace(environment.files, output_request(arguments.stats, arguments, config),
                   [&] { environment.cancel.check(); });
   }
+  if (!arguments.input_note.empty())
+    note_request(arguments, config, environment.files);
   const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
   const pipeline::BuildReport report =
       pipeline::build_hierarchy(config, {arguments.force, arguments.restart},
@@ -176,7 +194,8 @@ void add_build_command(CLI::App& parser, Invocation& invocation) {
   command
       ->add_option("-o,--output", arguments->output,
                    "The hierarchy to make: a directory, or one file if it ends in .3tz")
-      ->type_name("PATH");
+      ->type_name("PATH")
+      ->check(name_fault);
   command
       ->add_option("--set", arguments->settings,
                    "Set keys of the config, dotted: partition.vertices=4096. Paths given here "
@@ -200,12 +219,14 @@ void add_build_command(CLI::App& parser, Invocation& invocation) {
       ->add_option("--stats", arguments->stats,
                    "Write what each stage took of time, memory and disk, as JSON")
       ->type_name("FILE")
+      ->check(name_fault)
       ->excludes(dry_run);
   command
       ->add_option("--input-note", arguments->input_note,
                    "Write which files were read, with sizes, times and checksums, and which were "
                    "missing, as JSON")
       ->type_name("FILE")
+      ->check(name_fault)
       ->excludes(dry_run);
   command
       ->add_flag("--help-config{text}", arguments->help_config,

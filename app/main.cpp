@@ -6,6 +6,7 @@
 #include "hierarchy/plain_text.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
@@ -13,7 +14,9 @@
 #include <memory>
 #include <new>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -22,6 +25,8 @@
 namespace meshhier::app {
 
 namespace {
+
+using namespace std::string_view_literals;
 
 constexpr const char* kDescription =
     R"(meshhier makes a hierarchy from one huge triangle mesh: a directory, or one file, of tiles of
@@ -69,13 +74,9 @@ bool is_unknown_command(const std::string& word, const std::vector<std::string>&
   return !word.starts_with('-') && std::find(names.begin(), names.end(), word) == names.end();
 }
 
-int report_unknown_command(const std::string& word, const std::vector<std::string>& names) {
+std::string unknown_command(const std::string& word, const std::vector<std::string>& names) {
   const std::optional<std::string> near = config::nearest_word(word, names);
-  std::cerr << "meshhier: unknown command \"" << word << '"';
-  if (near)
-    std::cerr << "; did you mean \"" << *near << "\"?";
-  std::cerr << "\nRun with --help for more.\n";
-  return exit_code(ErrorCode::usage);
+  return "unknown command \"" + word + '"' + (near ? "; did you mean \"" + *near + "\"?" : "");
 }
 
 /// Programs that read the progress get the end of it in the same form.
@@ -89,6 +90,23 @@ int report_failure(ErrorCode code, const std::string& message, execution::Progre
     std::cerr << "meshhier: " << message << '\n';
   }
   return exit_code(code);
+}
+
+/// Whether mistakes in the arguments are for a program, too: they are found before the options are
+/// known.
+bool asks_for_json(std::span<char* const> arguments) {
+  for (std::size_t i = 1; i < arguments.size(); ++i) {
+    const std::string_view word = arguments[i];
+    if (word == "--progress=json" || (word == "json" && arguments[i - 1] == "--progress"sv))
+      return true;
+  }
+  return false;
+}
+
+int report_mistake(const std::string& message, bool as_json) {
+  const std::string hint = as_json ? "" : "\nRun with --help for more.";
+  return report_failure(ErrorCode::usage, message + hint,
+                        as_json ? execution::ProgressMode::json : execution::ProgressMode::none);
 }
 
 /// A result that did not arrive is a failure, as when the disk behind a redirection is full.
@@ -137,9 +155,6 @@ int run(int argc, char** argv) {
   parser.set_version_flag("--version", "meshhier " MESHHIER_VERSION);
   parser.require_subcommand(1);
   parser.footer(kFooter);
-  parser.failure_message([](const CLI::App*, const CLI::Error& error) {
-    return std::string("meshhier: ") + error.what() + "\nRun with --help for more.\n";
-  });
   add_build_command(parser, invocation);
   add_inspect_command(parser, invocation);
   add_verify_command(parser, invocation);
@@ -153,13 +168,14 @@ int run(int argc, char** argv) {
   add_manual_command(parser, invocation);
 
   const std::vector<std::string> names = command_names(parser);
+  const bool as_json = asks_for_json({argv, static_cast<std::size_t>(argc)});
   if (argc > 1 && is_unknown_command(argv[1], names))
-    return report_unknown_command(argv[1], names);
+    return report_mistake(unknown_command(argv[1], names), as_json);
   try {
     parser.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     // --help and --version arrive here too, with code 0.
-    return parser.exit(error) == 0 ? EXIT_SUCCESS : exit_code(ErrorCode::usage);
+    return error.get_exit_code() == 0 ? parser.exit(error) : report_mistake(error.what(), as_json);
   }
   return execute_guarded(invocation);
 }

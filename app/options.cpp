@@ -69,10 +69,15 @@ void add_progress_option(CLI::App& command, execution::ProgressMode& mode) {
       ->type_name("auto|bar|json|none");
 }
 
+std::string name_fault(const std::string& text) {
+  return text.empty() ? "expected a name, found nothing" : "";
+}
+
 void add_file_output_options(CLI::App& command, const std::string& help, std::string& output,
                              bool& replace) {
   command.add_option("-o,--output", output, help + "; \"-\" is standard output")
       ->type_name("FILE")
+      ->check(name_fault)
       ->required();
   command.add_flag("--force", replace, "Replace an existing file");
 }

@@ -25,6 +25,9 @@ inline constexpr std::uint8_t kDeepestLevel = 32;
 /// --progress auto|bar|json|none
 void add_progress_option(CLI::App& command, execution::ProgressMode& mode);
 
+/// What is wrong with the name of a file or directory, for CLI::Option::check(): that it is empty.
+std::string name_fault(const std::string& text);
+
 /// -o FILE and --force, of commands that make one file.
 void add_file_output_options(CLI::App& command, const std::string& help, std::string& output,
                              bool& replace);

@@ -3,6 +3,7 @@
 #include "hierarchy/error.h"
 #include "inspection/preview.h"
 #include "storage/io/output_file.h"
+#include "storage/io/paths.h"
 
 #include <algorithm>
 #include <array>
@@ -108,10 +109,7 @@ std::optional<ImageFormat> format_named(std::string_view name) {
 ImageFormat format_of(const PreviewArguments& arguments) {
   if (arguments.format)
     return *arguments.format;
-  std::string ending = std::filesystem::path(arguments.output).extension().string();
-  std::ranges::transform(ending, ending.begin(), [](char letter) {
-    return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
-  });
+  const std::string ending = storage::lower_extension(arguments.output);
   const auto format = format_named(ending.empty() ? "" : std::string_view(ending).substr(1));
   if (!format) {
     throw Error(ErrorCode::usage,

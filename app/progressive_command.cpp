@@ -57,6 +57,7 @@ void add_progressive_command(CLI::App& parser, Invocation& invocation) {
                      });
   command->add_option("-o,--output", arguments->output, "The directory to make")
       ->type_name("DIR")
+      ->check(name_fault)
       ->required();
   command->add_flag("--force", arguments->options.replace, "Replace a stream that is there");
   add_memory_budget_option(*command, arguments->options.memory_budget);

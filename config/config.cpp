@@ -408,7 +408,7 @@ std::filesystem::path beside(const std::filesystem::path& mesh, const std::strin
 void put_output(Draft& draft, const CommandLine& words) {
   if (!words.output.empty()) {
     draft.put("output", words.output.string(), kOutputWord);
-    if (words.output.extension() == ".3tz" && !draft.has(kContainerKey))
+    if (storage::lower_extension(words.output) == ".3tz" && !draft.has(kContainerKey))
       draft.put(kContainerKey, "3tz", kOutputWord);
   }
   if (words.meshes.empty() || draft.has("output"))

@@ -11,7 +11,9 @@
 #include "mesh_io/ply_writer.h"
 #include "storage/format/archive_files.h"
 #include "storage/format/hierarchy_reader.h"
+#include "storage/format/work_directory.h"
 #include "storage/io/output_file.h"
+#include "storage/io/paths.h"
 #include "storage/io/spool.h"
 
 #include <algorithm>
@@ -185,10 +187,7 @@ std::string export_outline(const ExportJob& job) {
 enum class ExportFormat { ply, glb, obj };
 
 ExportFormat format_of(const fs::path& output) {
-  std::string ending = output.extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char letter) {
-    return static_cast<char>(letter >= 'A' && letter <= 'Z' ? letter - 'A' + 'a' : letter);
-  });
+  const std::string ending = storage::lower_extension(output);
   return ending == ".glb"   ? ExportFormat::glb
          : ending == ".obj" ? ExportFormat::obj
                             : ExportFormat::ply;
@@ -270,6 +269,8 @@ std::string export_mesh(storage::FileSystem& files, const fs::path& hierarchy,
     request.inputs.push_back(*cut);
   const storage::HierarchyFiles place(files, hierarchy);
   const storage::HierarchyReader reader(place.files(), hierarchy);
+  if (!storage::is_standard_output(files, options.output))
+    storage::require_outside(files, options.output);
   storage::OutputFile output(files, request, [&] { cancel.check(); });
   const ExportFormat format = format_of(options.output);
   if (format != ExportFormat::ply) {

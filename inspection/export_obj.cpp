@@ -5,10 +5,13 @@
 #include "inspection/export_parts.h"
 #include "storage/format/showable.h"
 
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -24,6 +27,19 @@ std::string file_name_of(NodeId node) {
   return fmt::format("{:02}_{:06}", raw(node.level), node.index);
 }
 
+/// Of a tile: "02_000017.jpg".
+bool is_picture_name(std::string_view name) {
+  const std::size_t low = name.find('_'), dot = name.find('.');
+  if (low == std::string_view::npos || dot == std::string_view::npos || low > dot)
+    return false;
+  const auto are_digits = [](std::string_view text, std::size_t least) {
+    return text.size() >= least && text.find_first_not_of("0123456789") == std::string_view::npos;
+  };
+  const std::string_view ending = name.substr(dot);
+  return are_digits(name.substr(0, low), 2) && are_digits(name.substr(low + 1, dot - low - 1), 6) &&
+         (ending == ".jpg" || ending == ".png");
+}
+
 /// The material file and the pictures, which are there when they are published, or not at all.
 class ObjPictures {
  public:
@@ -37,10 +53,7 @@ class ObjPictures {
         materials_(job.files, {beside(job.request.path, ".mtl"), replace_, job.request.inputs},
                    [&job] { job.cancel.check(); }),
         text_(*materials_.file()) {
-    if (!replace_ && files_.exists(folder_)) {
-      throw Error(ErrorCode::exists,
-                  folder_.string() + " is already there (to replace it, use --force)");
-    }
+    require_free();
     files_.remove_all(unfinished_);
     files_.make_directories(unfinished_);
   }
@@ -70,6 +83,7 @@ class ObjPictures {
 
   void publish() {
     text_.flush();
+    require_free();
     if (replace_)
       files_.remove_all(folder_);
     if (!files_.rename_new(unfinished_, folder_))
@@ -78,6 +92,26 @@ class ObjPictures {
   }
 
  private:
+  /// Nothing lies where the pictures go, or they may replace it: a folder of such pictures.
+  void require_free() {
+    if (!files_.exists(folder_) && !files_.is_link(folder_))
+      return;
+    if (!replace_) {
+      throw Error(ErrorCode::exists,
+                  folder_.string() + " is already there (to replace it, use --force)");
+    }
+    const auto refuse = [&](const std::string& why) {
+      throw Error(ErrorCode::exists,
+                  fmt::format("{} {}, so --force does not replace it", folder_.string(), why));
+    };
+    if (files_.is_link(folder_) || !files_.is_directory(folder_))
+      refuse("is no folder");
+    for (const fs::path& child : files_.children(folder_)) {
+      if (!is_picture_name(child.filename().string()))
+        refuse("holds " + child.filename().string() + ", which no export made");
+    }
+  }
+
   static fs::path beside(const fs::path& obj, const std::string& ending) {
     return obj.parent_path() / (obj.stem().string() + ending);
   }

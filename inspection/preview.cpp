@@ -12,6 +12,7 @@
 #include "render/portrait.h"
 #include "storage/format/archive_files.h"
 #include "storage/format/hierarchy_reader.h"
+#include "storage/format/work_directory.h"
 #include "storage/io/output_file.h"
 
 #include <algorithm>
@@ -135,6 +136,8 @@ std::string make_picture(storage::FileSystem& files, const std::filesystem::path
   require_room(options);
   const storage::HierarchyFiles place(files, hierarchy);
   const HierarchyReader reader(place.files(), hierarchy);
+  if (!storage::is_standard_output(files, options.output))
+    storage::require_outside(files, options.output);
   storage::OutputFile output(files, request, [&] { cancel.check(); });
 
   const render::Camera camera = camera_for(reader, options);

@@ -2,6 +2,7 @@
 
 #include "hierarchy/cut.h"
 #include "images/fitted.h"
+#include "render/drawing_cost.h"
 #include "render/painting.h"
 #include "render/portrait.h"
 #include "storage/format/index.h"
@@ -19,6 +20,11 @@ constexpr std::uint64_t kMostTriangles = 60'000;
 
 /// The same of the texels of its pictures, which are decoded a few times.
 constexpr std::uint64_t kMostTexels = 2048 * 2048;
+
+/// Large triangles may lie on each other in any number. With more samples to look at, seconds, the
+/// picture is smaller.
+constexpr std::uint64_t kMostSamples = std::uint64_t{1} << 28;
+constexpr std::uint32_t kLeastSide = 16;
 
 /// Of samples at a time: as many as one for each pixel, which shadows are made of.
 constexpr std::uint64_t kBandBytes =
@@ -69,6 +75,27 @@ render::Scene scene_of(const PreviewInput& input, const Cut& cut, const StageCon
   return scene;
 }
 
+std::uint64_t samples_of(const render::Scene& scene, const render::Camera& camera,
+                         const StageContext& context) {
+  std::uint64_t sum = 0;
+  for (std::size_t tile = 0; tile < scene.boxes.size(); ++tile) {
+    context.cancel.check();
+    sum += render::samples_to_draw(scene.load(tile).facets, camera);
+  }
+  return sum;
+}
+
+/// The same view, with fewer pixels if that is too much to draw.
+render::Camera affordable(const render::Camera& camera, std::uint64_t samples) {
+  render::Framing framing = camera.framing();
+  for (; samples > kMostSamples && framing.width > kLeastSide && framing.height > kLeastSide;
+       samples /= 4) {
+    framing.width /= 2;
+    framing.height /= 2;
+  }
+  return camera.with(framing);
+}
+
 }  // namespace
 
 MadePreview make_preview(const PreviewInput& input, const StageContext& context) {
@@ -82,8 +109,9 @@ MadePreview make_preview(const PreviewInput& input, const StageContext& context)
         whole.facets, view,
         {.width = storage::kMostPreviewSide, .height = storage::kMostPreviewSide, .samples = 2});
   }();
+  const render::Scene scene = scene_of(input, cut, context);
   images::FittedImage picture = images::encode_to_fit(
-      render::paint(scene_of(input, cut, context), camera,
+      render::paint(scene, affordable(camera, samples_of(scene, camera, context)),
                     {.band_bytes = kBandBytes, .step = [&] { context.cancel.check(); }}),
       storage::kMostPreviewBytes);
   const storage::Preview facts{picture.width, picture.height, picture.file.size(),

@@ -9,6 +9,7 @@
 #include "progressive/reconstruction.h"
 #include "progressive/stream_index.h"
 #include "storage/format/layout.h"
+#include "storage/format/work_directory.h"
 #include "storage/io/output_file.h"
 
 #include <algorithm>
@@ -184,6 +185,8 @@ ReconstructReport reconstruct(storage::FileSystem& files, const fs::path& stream
   const std::uint32_t details = details_wanted(index, options);
   const StreamSize size{index.vertices, index.own_vertices, index.triangles};
   require_memory(size, index.source.attributes, options.memory_budget);
+  if (!storage::is_standard_output(files, options.output))
+    storage::require_outside(files, options.output);
   storage::OutputFile output(files, {options.output, options.replace, {stream}},
                              [&] { cancel.check(); });
 

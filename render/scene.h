@@ -28,8 +28,9 @@ struct SceneTile {
 };
 
 /// The interior triangles of a tile, and the border triangles asked for: which of tile.mesh.border.
-/// `layout`: of its attributes. Decodes its picture, and throws Error(input) if that is broken.
-/// Requires as facets_of().
+/// `layout`: of its attributes. Those that hide exactly behind another are left out
+/// (drop_repeated()). Decodes its picture, and throws Error(input) if that is broken. Requires as
+/// facets_of().
 SceneTile scene_tile(const PublishedTile& tile, const AttributeLayout& layout,
                      std::span<const std::uint32_t> border);
 /// The same with all of its border.

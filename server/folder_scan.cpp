@@ -3,6 +3,7 @@
 #include "hierarchy/error.h"
 #include "server/url_path.h"
 #include "storage/format/layout.h"
+#include "storage/io/paths.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -74,7 +75,7 @@ FolderScan scan_folder(const storage::Folder& folder) {
 }
 
 bool is_archive_name(std::string_view path) {
-  return path.ends_with(".3tz");
+  return storage::lower_extension(path) == ".3tz";
 }
 
 }  // namespace meshhier::server

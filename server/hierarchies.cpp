@@ -30,7 +30,7 @@ std::string joined(const std::string& directory, const std::string& name) {
 }
 
 std::string name_of(const std::filesystem::path& path) {
-  const bool is_usual = path.extension() == ".hier" || path.extension() == ".3tz";
+  const bool is_usual = path.extension() == ".hier" || is_archive_name(path.native());
   return (is_usual ? path.stem() : path.filename()).string();
 }
 
@@ -144,7 +144,22 @@ std::optional<Model> Hierarchies::look_at_directory(const std::string& path) {
   const auto manifest = folder_->open(joined(path, storage::manifest_path({}).string()));
   if (!manifest)
     return std::nullopt;
-  return remember(path, manifest->version(), [&] { return model_of(path, *manifest); });
+  return remember(path, manifest->version(), [&] {
+    Model model = model_of(path, *manifest);
+    require_tiles(path);
+    return model;
+  });
+}
+
+// As a copy is without them that is not complete. All of them would be too many to look at.
+void Hierarchies::require_tiles(const std::string& path) const {
+  for (const auto& file : {storage::index_path({}), storage::tile_path({}, NodeId{Level{0}, 0})}) {
+    const std::string name = joined(path, file.generic_string());
+    if (!folder_->open(name)) {
+      throw Error(ErrorCode::io, fmt::format("{} is not there: the hierarchy is not complete",
+                                             (folder_->path() / name).string()));
+    }
+  }
 }
 
 std::optional<Model> Hierarchies::look_at_archive(const std::string& path) {

@@ -68,6 +68,8 @@ class Hierarchies {
   bool is_published(const std::string& hierarchy, const std::string& name);
   std::optional<Model> look_at_directory(const std::string& path);
   std::optional<Model> look_at_archive(const std::string& path);
+  /// Throws Error(io) if there is no index, or no tile of the root.
+  void require_tiles(const std::string& path) const;
   bool is_stream(const std::string& path);
   std::optional<Model> remember(const std::string& path, const storage::FileVersion& version,
                                 const Read& read);

@@ -52,7 +52,8 @@ std::string objection(FileSystem& files, const Output& output) {
   return foreign.empty() ? "" : fmt::format("holds {}, which is no file of a {}", foreign, what);
 }
 
-/// A hierarchy in another one would be damage to it, and go when it is replaced.
+}  // namespace
+
 void require_outside(FileSystem& files, const fs::path& output) {
   fs::path place = files.canonical(output);
   for (fs::path parent = place.parent_path(); parent != place; parent = place.parent_path()) {
@@ -64,8 +65,6 @@ void require_outside(FileSystem& files, const fs::path& output) {
     place = parent;
   }
 }
-
-}  // namespace
 
 fs::path followed(FileSystem& files, const fs::path& output) {
   const fs::path parent = output.parent_path();

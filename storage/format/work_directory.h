@@ -34,6 +34,10 @@ struct Output {
 /// Where a link of that name leads to; the name itself if it is none.
 std::filesystem::path followed(FileSystem& files, const std::filesystem::path& output);
 
+/// Throws Error(usage) if the output lies in a hierarchy: it would be damage to that, and go when
+/// it is replaced. Not for standard output.
+void require_outside(FileSystem& files, const std::filesystem::path& output);
+
 /// Whether there is an output. Throws Error(exists) if there is and `replace` is false, or if it is
 /// not of the same content and container; `state` says how it comes to be there.
 bool check_output(FileSystem& files, const Output& output, bool replace,

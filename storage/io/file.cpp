@@ -52,6 +52,17 @@ class PosixLock final : public FileLock {
 };
 
 /// Whether a file system or kernel lacks what was asked for.
+/// What replaces a regular file gets its mode; where that fails, it has its own.
+void keep_mode(const std::filesystem::path& by, const std::filesystem::path& replaced) {
+  struct stat before {};
+  struct stat after {};
+  if (::lstat(replaced.c_str(), &before) == 0 && S_ISREG(before.st_mode) &&
+      ::lstat(by.c_str(), &after) == 0 && S_ISREG(after.st_mode) &&
+      ((before.st_mode ^ after.st_mode) & 0777) != 0) {
+    static_cast<void>(::chmod(by.c_str(), before.st_mode & 0777));
+  }
+}
+
 bool is_inability(int error) {
   return error == EINVAL || error == ENOSYS || error == EOPNOTSUPP;
 }
@@ -214,6 +225,7 @@ class PosixFileSystem final : public FileSystem {
   }
 
   void rename(const std::filesystem::path& from, const std::filesystem::path& to) override {
+    keep_mode(from, to);
     std::error_code error;
     std::filesystem::rename(from, to, error);
     if (error)
@@ -234,6 +246,7 @@ class PosixFileSystem final : public FileSystem {
   }
 
   bool exchange(const std::filesystem::path& a, const std::filesystem::path& b) override {
+    keep_mode(a, b);
     if (::renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0)
       return true;
     if (!is_inability(errno))

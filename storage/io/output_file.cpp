@@ -22,6 +22,16 @@ void require_parent(FileSystem& files, const OutputRequest& request, const fs::p
                                          request.path.string(), directory.string()));
 }
 
+/// Files beside it have longer names.
+void require_short_name(const OutputRequest& request, const fs::path& target) {
+  constexpr std::size_t kLongestName = 255;  // of Linux's file systems
+  const std::size_t length = scratch_path(target).filename().native().size();
+  if (length > kLongestName) {
+    throw Error(ErrorCode::io, fmt::format("cannot write {}: its name is too long, by {} bytes",
+                                           request.path.string(), length - kLongestName));
+  }
+}
+
 [[noreturn]] void refuse_kind(const OutputRequest& request, const char* what) {
   throw Error(ErrorCode::usage, fmt::format("cannot write {}: it is {}, and the output is one file",
                                             request.path.string(), what));
@@ -104,6 +114,7 @@ void OutputFile::open_stream(const fs::path& path) {
 void OutputFile::open_regular(const OutputRequest& request) {
   const fs::path target = files_.canonical(request.path);
   require_parent(files_, request, target);
+  require_short_name(request, target);
   lock_ = files_.try_lock(output_lock_path(target));
   if (!lock_) {
     throw Error(ErrorCode::exists,

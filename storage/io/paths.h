@@ -3,12 +3,22 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <string>
 
 namespace meshhier::storage {
 
 /// Whether `path` is `place` or lies below it, both as they are written.
 inline bool is_within(const std::filesystem::path& path, const std::filesystem::path& place) {
   return std::mismatch(place.begin(), place.end(), path.begin(), path.end()).first == place.end();
+}
+
+/// ".glb" of "a.GLB": the ending of its name, with letters of ASCII small.
+inline std::string lower_extension(const std::filesystem::path& path) {
+  std::string ending = path.extension().string();
+  std::ranges::transform(ending, ending.begin(), [](char letter) {
+    return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
+  });
+  return ending;
 }
 
 }  // namespace meshhier::storage

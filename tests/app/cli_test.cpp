@@ -269,6 +269,13 @@ TEST_F(CommandLine, MistakesExitWithUsageAndSayWhatIsWrong) {
       {{"preview", "x", "-o", "y.png", "--error", "-1"}, "--error"},
       {{"preview", "x", "-o", "y.png", "--error", "nan"}, "--error"},
       {{"preview", "x", "-o", "y.png", "--level", "1", "--error", "2"}, "--error"},
+      {{"build", "a.ply", "-o", ""}, "--output: expected a name"},
+      {{"build", "a.ply", "--stats", ""}, "--stats: expected a name"},
+      {{"build", "a.ply", "--input-note", ""}, "--input-note: expected a name"},
+      {{"export", "x", "--outline", "-o", ""}, "--output: expected a name"},
+      {{"preview", "x", "-o", ""}, "--output: expected a name"},
+      {{"progressive", "x", "-o", ""}, "--output: expected a name"},
+      {{"reconstruct", "x", "-o", ""}, "--output: expected a name"},
       {{"progressive"}, "HIERARCHY is required"},
       {{"progressive", "x"}, "--output"},
       {{"progressive", "x", "-o", "y", "--steps", "0"}, "--steps"},
@@ -710,6 +717,22 @@ TEST_F(CommandLine, FailureIsAJsonLineTooIfProgressIs) {
   EXPECT_THAT(last.at("message").get<std::string>(), HasSubstr("a.ply"));
 }
 
+TEST_F(CommandLine, AMistakeInTheArgumentsIsAJsonLineToo) {
+  const std::vector<std::pair<Arguments, std::string>> mistakes{
+      {{"build", "a.ply", "--bogus", "--progress", "json"}, "--bogus"},
+      {{"verify", "--progress=json"}, "HIERARCHY is required"},
+      {{"bild", "a.ply", "--progress", "json"}, "did you mean \"build\"?"},
+  };
+  for (const auto& [arguments, expected] : mistakes) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, kUsage);
+    const json event = json::parse(outcome.messages);
+    EXPECT_EQ(event.at("event"), "error");
+    EXPECT_EQ(event.at("code"), kUsage);
+    EXPECT_THAT(event.at("message").get<std::string>(), HasSubstr(expected));
+  }
+}
+
 TEST_F(CommandLine, ProgressIsSilentWhereThereIsNoTerminal) {
   write_mesh("a.ply");
   EXPECT_THAT(run({"build", write_config()}).messages, IsEmpty());
@@ -780,6 +803,22 @@ TEST_F(CommandLine, VerifyFindsAFlippedBit) {
   EXPECT_THAT(plain.out, AllOf(HasSubstr("PROBLEM: "), Not(HasSubstr("No problem found."))));
 }
 
+TEST_F(CommandLine, VerifyKnowsAnInputWhosePicturesAreMissing) {
+  const std::string mesh = (work() / "m.obj").string();
+  write_text(mesh,
+             "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl a\n"
+             "f 1/1 2/2 3/3\n");
+  write_text(work() / "m.mtl", "newmtl a\nmap_Kd lost.jpg\n");
+  ASSERT_EQ(run({"build", mesh}).code, 0);
+  const Arguments verify{"verify", (work() / "m.hier").string(), "--input", mesh};
+  const Outcome same = run(verify);
+  EXPECT_EQ(same.code, 0) << same.out;
+  write_text(work() / "m.mtl", "newmtl a\nmap_Kd gone.jpg\n");
+  const Outcome another = run(verify);
+  EXPECT_EQ(another.code, kCorrupt);
+  EXPECT_THAT(another.out, HasSubstr("m.mtl (material library)"));
+}
+
 TEST_F(CommandLine, VerifyFindsThatTheInputIsAnother) {
   build();
   const Path other = write_mesh("other.ply", 2499, 0.5);
@@ -848,6 +887,76 @@ TEST_F(CommandLine, ExportReplacesNothingUnasked) {
   EXPECT_EQ(run({"export", hierarchy(), "--outline", "-o", made, "--force"}).code, 0);
   EXPECT_THAT(text_of(made), StartsWith("ply\n"));
   EXPECT_EQ(names(), (std::set<std::string>{"a.hier", "a.json", "a.ply", "cut.txt", "x.ply"}));
+}
+
+TEST_F(CommandLine, NothingIsWrittenIntoOtherHierarchies) {
+  build();
+  const std::string other = (work() / "b.hier").string();
+  std::filesystem::copy(hierarchy(), other, std::filesystem::copy_options::recursive);
+  const auto before = contents(other);
+  for (const char* name : {"tiles/00/000000.glb", "hierarchy.json", "new.ply"}) {
+    const std::string place = other + '/' + name;
+    const Outcome of_mesh = run({"export", hierarchy(), "--level", "0", "-o", place, "--force"});
+    EXPECT_EQ(of_mesh.code, kUsage) << name;
+    EXPECT_THAT(of_mesh.messages, HasSubstr("in the hierarchy " + other));
+    EXPECT_EQ(
+        run({"preview", hierarchy(), "--size", "9x9", "--format", "png", "-o", place, "--force"})
+            .code,
+        kUsage);
+  }
+  EXPECT_EQ(contents(other), before);
+}
+
+TEST_F(CommandLine, WhatIsReplacedKeepsItsMode) {
+  using std::filesystem::perms;
+  build();
+  const Path made = work() / "x.ply", packed = work() / "a.3tz";
+  write_text(made, "old");
+  ASSERT_EQ(run({"build", (work() / "a.ply").string(), "-o", packed.string()}).code, 0);
+  for (const Path& file : {made, packed})
+    std::filesystem::permissions(file, perms::owner_read | perms::owner_write | perms::group_read);
+  EXPECT_EQ(run({"export", hierarchy(), "--outline", "-o", made.string(), "--force"}).code, 0);
+  EXPECT_EQ(run({"build", (work() / "a.ply").string(), "-o", packed.string(), "--force"}).code, 0);
+  for (const Path& file : {made, packed})
+    EXPECT_EQ(std::filesystem::status(file).permissions(),
+              perms::owner_read | perms::owner_write | perms::group_read)
+        << file;
+}
+
+TEST_F(CommandLine, ANameThatIsTooLongIsToldByTheNameThatWasGiven) {
+  build();
+  const std::string name = (work() / std::string(255, 'x')).string();
+  const Outcome outcome = run({"export", hierarchy(), "--level", "0", "-o", name});
+  EXPECT_EQ(outcome.code, kIo);
+  EXPECT_THAT(outcome.messages,
+              HasSubstr("cannot write " + name + ": its name is too long, by 18 bytes"));
+}
+
+TEST_F(CommandLine, AnArchiveIsNamedInCapitalsToo) {
+  write_mesh("a.ply");
+  const Path packed = work() / "A.3TZ";
+  ASSERT_EQ(run({"build", (work() / "a.ply").string(), "-o", packed.string()}).code, 0);
+  EXPECT_TRUE(std::filesystem::is_regular_file(packed));
+  EXPECT_EQ(run({"verify", packed.string()}).code, 0);
+}
+
+TEST_F(CommandLine, ANoteReplacesNotesAlone) {
+  write_mesh("a.ply");
+  const std::string note = (work() / "note.json").string();
+  const Arguments build{"build", write_config(), "--input-note", note};
+  write_text(note, "{\"mine\": true}\n");
+  const Outcome refused = run(build);
+  EXPECT_EQ(refused.code, kExists);
+  EXPECT_THAT(refused.messages, HasSubstr("note.json is already there"));
+  EXPECT_EQ(text_of(note), "{\"mine\": true}\n");
+  EXPECT_FALSE(std::filesystem::exists(hierarchy())) << "it is told before the work";
+
+  Arguments forced = build;
+  forced.push_back("--force");
+  EXPECT_EQ(run(forced).code, 0);
+  EXPECT_THAT(text_of(note), HasSubstr("a.ply"));
+  std::filesystem::remove_all(hierarchy());
+  EXPECT_EQ(run(build).code, 0);
 }
 
 TEST_F(CommandLine, ExportWritesToStandardOutput) {

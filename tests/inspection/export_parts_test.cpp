@@ -402,6 +402,26 @@ TEST_F(ExportPartsTest, WhatIsThereIsNotReplacedUnasked) {
   EXPECT_TRUE(fs::exists(at("a_textures/01_000001.jpg")));
 }
 
+TEST_F(ExportPartsTest, AFolderOfOthersIsNotReplaced) {
+  publish_textured();
+  fs::create_directory(at("a_textures"));
+  for (const std::string name : {"scan.jpg", "2_000001.jpg", "02_000001.jpg.bak"}) {
+    const fs::path mine = at("a_textures") / name;
+    std::ofstream(mine) << "mine";
+    const Error error = error_of(Level{1}, "a.obj", true);
+    EXPECT_EQ(error.code(), ErrorCode::exists);
+    EXPECT_THAT(error.what(), HasSubstr("holds " + name + ", which no export made"));
+    EXPECT_EQ(text_of(mine), "mine");
+    EXPECT_FALSE(fs::exists(at("a.obj")) || fs::exists(at("a.mtl")));
+    fs::remove(mine);
+  }
+  fs::remove(at("a_textures"));
+  fs::create_directory(at("elsewhere"));
+  fs::create_directory_symlink(at("elsewhere"), at("a_textures"));
+  EXPECT_EQ(error_of(Level{1}, "a.obj", true).code(), ErrorCode::exists);
+  EXPECT_TRUE(fs::is_symlink(at("a_textures")));
+}
+
 TEST_F(ExportPartsTest, AFailureLeavesNothing) {
   publish_textured();
   std::string tile = text_of(hierarchy() / "tiles/03/000007.glb");

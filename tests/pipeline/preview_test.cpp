@@ -10,7 +10,10 @@
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/sizes.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -96,6 +99,34 @@ TEST_F(PreviewTest, IsTheSameForAnyThreadsAndBudget) {
   other.memory_budget = 4096 * tests::kMiB;
   build(tests::torus(20000, 0.1F), other);
   EXPECT_EQ(bytes(), expected);
+}
+
+TEST_F(PreviewTest, EqualTrianglesAreDrawnOnce) {
+  tests::TestMesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.triangles.assign(200'000, {0, 1, 2});
+  build(mesh, config());  // a minute and more if each covers the picture again
+  const images::Image picture = images::decode_image(bytes(), "preview", 1 << 20);
+  EXPECT_EQ(std::max(picture.width, picture.height), 512U);
+}
+
+TEST_F(PreviewTest, LargeTrianglesWithoutNumberMakeItSmaller) {
+  tests::TestMesh mesh;
+  constexpr std::uint32_t kCorners = 60;
+  for (std::uint32_t i = 0; i < kCorners; ++i) {
+    const float angle = 0.1F * static_cast<float>(i);
+    mesh.positions.push_back({std::cos(angle), std::sin(angle), 0.01F * static_cast<float>(i)});
+  }
+  for (std::uint32_t a = 0; a < kCorners; ++a)
+    for (std::uint32_t b = 0; b < a; ++b)
+      for (std::uint32_t c = 0; c < b; ++c)
+        mesh.triangles.push_back({a, b, c});
+  build(mesh, config());
+  const images::Image picture = images::decode_image(bytes(), "preview", 1 << 20);
+  EXPECT_LT(picture.width, 512U);
+  EXPECT_GE(picture.width, 16U);
+  EXPECT_GT(coverage(picture), 0.3);
+  EXPECT_THAT(problems(), IsEmpty());
 }
 
 TEST_F(PreviewTest, APreviewIsLeftOutIfNobodyWantsIt) {

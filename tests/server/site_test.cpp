@@ -123,6 +123,26 @@ TEST_F(SiteTest, TheListTellsWhenHierarchiesWereMade) {
             3600);
 }
 
+TEST_F(SiteTest, AHierarchyThatIsNotCompleteIsListedWhenItIs) {
+  get("/models.json");
+  for (const char* name : {"tiles.bin", "tiles/00/000000.glb"}) {
+    const fs::path file = folder_.models() / "plain.hier" / name, away = folder_.models() / "away";
+    fs::rename(file, away);
+    open({});
+    told_.clear();
+    EXPECT_THAT(listed(), ElementsAre("models/packed.3tz", "models/sub%20dir/zipped.hier"));
+    EXPECT_THAT(told_, testing::Contains(HasSubstr(file.string() + " is not there")));
+    fs::rename(away, file);
+    EXPECT_THAT(listed(), testing::Contains("models/plain.hier"));
+  }
+}
+
+TEST_F(SiteTest, AnArchiveIsListedInCapitalsToo) {
+  fs::rename(folder_.models() / "packed.3tz", folder_.models() / "PACKED.3TZ");
+  EXPECT_THAT(listed(), testing::Contains("models/PACKED.3TZ"));
+  EXPECT_EQ(get("/models/PACKED.3TZ/tiles.bin").status, 200);
+}
+
 TEST_F(SiteTest, AHierarchyThatCannotBeReadIsToldOnce) {
   get("/models.json");
   open({});
@@ -365,15 +385,15 @@ TEST_F(SiteTest, LinksLeadNowhere) {
   fs::create_directory_symlink(folder_.path() / "outside.hier", models / "plain.hier");
   fs::create_directory_symlink("sub dir/zipped.hier", models / "inside.hier");
   fs::create_directory_symlink("/", models / "sub dir/root");
-  fs::remove(models / "sub dir/zipped.hier/tiles.bin");
-  fs::create_symlink(folder_.path() / "secret.txt", models / "sub dir/zipped.hier/tiles.bin");
+  fs::remove(models / "sub dir/zipped.hier/outline.glb");
+  fs::create_symlink(folder_.path() / "secret.txt", models / "sub dir/zipped.hier/outline.glb");
   fs::rename(models / "packed.3tz", folder_.path() / "packed.3tz");
   fs::create_symlink(folder_.path() / "packed.3tz", models / "packed.3tz");
   fs::remove(folder_.viewer() / "assets/page-1a2b.js");
   fs::create_symlink(folder_.path() / "secret.txt", folder_.viewer() / "assets/page-1a2b.js");
   for (const char* target :
        {"/models/plain.hier/hierarchy.json", "/models/inside.hier/hierarchy.json",
-        "/models/sub%20dir/zipped.hier/tiles.bin", "/models/packed.3tz/hierarchy.json",
+        "/models/sub%20dir/zipped.hier/outline.glb", "/models/packed.3tz/hierarchy.json",
         "/models/sub%20dir/root/hierarchy.json", "/assets/page-1a2b.js"})
     EXPECT_EQ(get(target).status, 404) << target;
   EXPECT_EQ(get("/models/sub%20dir/zipped.hier/hierarchy.json").status, 200);
