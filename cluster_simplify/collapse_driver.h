@@ -111,7 +111,7 @@ class CollapseDriver {
   void recount_high_valences() {
     for (std::uint32_t v = 0; v < mesh_.own_count(); ++v) {
       if (mesh_.has_high_valence(v))
-        mesh_.gather(v, around_);
+        mesh_.star_of(v, around_);
     }
   }
 
@@ -150,6 +150,8 @@ class CollapseDriver {
     std::array<Collapse, kAtOnce> collapses;
     for (auto edges = queue_.pop(room); !edges.empty(); edges = queue_.pop(room)) {
       const std::uint32_t bucket = queue_.lowest();
+      for (const std::uint32_t e : edges)
+        mesh_.fetch_edge(e);
       costs_.best(edges, collapses);
       fetch(std::span(collapses).first(edges.size()), bucket);
       moved_.clear();
@@ -163,12 +165,17 @@ class CollapseDriver {
 
   /// Asks for what those whose turn it is will need.
   void fetch(std::span<const Collapse> collapses, std::uint32_t bucket) const {
+    const auto is_dearer = [&](const Collapse& collapse) {
+      return CollapseQueue::bucket_of(collapse.cost) > bucket;
+    };
     for (const Collapse& collapse : collapses) {
+      if (is_dearer(collapse))
+        continue;
       mesh_.fetch_star(collapse.from);
       mesh_.fetch_star(collapse.to);
     }
     for (const Collapse& collapse : collapses) {
-      if (CollapseQueue::bucket_of(collapse.cost) > bucket)
+      if (is_dearer(collapse))
         continue;
       mesh_.fetch_faces(collapse.from);
       mesh_.fetch_faces(collapse.to);
@@ -245,8 +252,7 @@ class CollapseDriver {
   /// What was impossible may be possible now.
   void ask_again(std::uint32_t vertex, Care care) {
     refused_[vertex] = 0;
-    mesh_.gather(vertex, around_);
-    for (const CollapseMesh::Fan& fan : around_) {
+    for (const CollapseMesh::Fan& fan : mesh_.star_of(vertex, around_)) {
       push(fan.next_edge, care);
       push(fan.previous_edge, care);
     }
