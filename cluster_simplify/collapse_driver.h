@@ -88,7 +88,7 @@ class CollapseDriver {
   }
 
   void push_all(Care care) {
-    recount_high_valences();
+    const bool any_high_valence = recount_high_valences();
     const auto count = static_cast<std::uint32_t>(mesh_.edges().size());
     std::array<float, kBlock> costs;
     for (std::uint32_t first = 0; first < count; first += kBlock) {
@@ -97,7 +97,7 @@ class CollapseDriver {
       for (std::uint32_t i = 0; i < block.size(); ++i) {
         const std::uint32_t e = first + i;
         if (mesh_.edge(e).triangle_count > 0 && !queue_.contains(e) && mesh_.is_own_edge(e) &&
-            !has_high_valence(e))
+            !(any_high_valence && has_high_valence(e)))
           push(e, care, cost(e, block[i]));
       }
     }
@@ -107,12 +107,17 @@ class CollapseDriver {
     return mesh_.has_high_valence(mesh_.edge(e).a) || mesh_.has_high_valence(mesh_.edge(e).b);
   }
 
-  /// Of what is left at of high valence vertices the mesh knows an upper bound only.
-  void recount_high_valences() {
+  /// Of what is left at of high valence vertices the mesh knows an upper bound only. Returns
+  /// whether there are any.
+  bool recount_high_valences() {
+    bool any = false;
     for (std::uint32_t v = 0; v < mesh_.own_count(); ++v) {
-      if (mesh_.has_high_valence(v))
+      if (mesh_.has_high_valence(v)) {
         mesh_.star_of(v, around_);
+        any = any || mesh_.has_high_valence(v);
+      }
     }
+    return any;
   }
 
   /// `plain`: without what a change of topology costs.

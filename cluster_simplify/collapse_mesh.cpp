@@ -36,7 +36,7 @@ void CollapseMesh::collect_stars() {
     star.begin = begin;
     begin += std::exchange(star.count, 0);
   }
-  corners_.reserve(begin + begin / 2);  // what is joined on the way to half the vertices
+  corners_.reserve(2 * std::size_t{begin});  // as much as make_room() lets it grow to
   corners_.resize(begin);
   for (std::uint32_t t = 0; t < faces_.size(); ++t) {
     for (std::uint32_t k = 0; k < 3; ++k) {

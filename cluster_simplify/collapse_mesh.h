@@ -94,8 +94,11 @@ class CollapseMesh {
   }
   void fetch_faces(std::uint32_t vertex) const {
     const Star star = stars_[vertex];
-    for (std::uint32_t i = 0; i < std::min(star.count, kMostFetched); ++i)
-      __builtin_prefetch(&faces_[corners_[star.begin + i] / 4]);
+    for (std::uint32_t i = 0; i < std::min(star.count, kMostFetched); ++i) {
+      const Face& face = faces_[corners_[star.begin + i] / 4];
+      __builtin_prefetch(&face);
+      __builtin_prefetch(&face.edges[2]);  // a fourth of them lie in two cache lines
+    }
   }
 
   /// Collects the triangles around a vertex at the beginning of `room`, which grows if it must.
