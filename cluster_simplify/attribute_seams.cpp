@@ -69,7 +69,7 @@ class WedgeDifference {
 
 std::vector<PlaceEdge> attribute_seams(const BuildTile& joined, const AttributeLayout& layout,
                                        const WedgeOptions& options) {
-  if (joined.mesh.copies.empty())
+  if (joined.mesh.copies.empty() || layout.channels() == 0)  // copies without attributes are equal
     return {};
   const TileWedges wedges(joined.mesh);
   const WedgeDifference differ(wedges, layout, options);

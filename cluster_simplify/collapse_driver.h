@@ -88,7 +88,7 @@ class CollapseDriver {
   }
 
   void push_all(Care care) {
-    recount_high_valences();
+    const bool any_high_valence = recount_high_valences();
     const auto count = static_cast<std::uint32_t>(mesh_.edges().size());
     std::array<float, kBlock> costs;
     for (std::uint32_t first = 0; first < count; first += kBlock) {
@@ -97,7 +97,7 @@ class CollapseDriver {
       for (std::uint32_t i = 0; i < block.size(); ++i) {
         const std::uint32_t e = first + i;
         if (mesh_.edge(e).triangle_count > 0 && !queue_.contains(e) && mesh_.is_own_edge(e) &&
-            !has_high_valence(e))
+            !(any_high_valence && has_high_valence(e)))
           push(e, care, cost(e, block[i]));
       }
     }
@@ -107,12 +107,17 @@ class CollapseDriver {
     return mesh_.has_high_valence(mesh_.edge(e).a) || mesh_.has_high_valence(mesh_.edge(e).b);
   }
 
-  /// Of what is left at of high valence vertices the mesh knows an upper bound only.
-  void recount_high_valences() {
+  /// Of what is left at of high valence vertices the mesh knows an upper bound only. Returns
+  /// whether there are any.
+  bool recount_high_valences() {
+    bool any = false;
     for (std::uint32_t v = 0; v < mesh_.own_count(); ++v) {
-      if (mesh_.has_high_valence(v))
-        mesh_.gather(v, around_);
+      if (mesh_.has_high_valence(v)) {
+        mesh_.star_of(v, around_);
+        any = any || mesh_.has_high_valence(v);
+      }
     }
+    return any;
   }
 
   /// `plain`: without what a change of topology costs.
@@ -150,6 +155,8 @@ class CollapseDriver {
     std::array<Collapse, kAtOnce> collapses;
     for (auto edges = queue_.pop(room); !edges.empty(); edges = queue_.pop(room)) {
       const std::uint32_t bucket = queue_.lowest();
+      for (const std::uint32_t e : edges)
+        mesh_.fetch_edge(e);
       costs_.best(edges, collapses);
       fetch(std::span(collapses).first(edges.size()), bucket);
       moved_.clear();
@@ -163,12 +170,17 @@ class CollapseDriver {
 
   /// Asks for what those whose turn it is will need.
   void fetch(std::span<const Collapse> collapses, std::uint32_t bucket) const {
+    const auto is_dearer = [&](const Collapse& collapse) {
+      return CollapseQueue::bucket_of(collapse.cost) > bucket;
+    };
     for (const Collapse& collapse : collapses) {
+      if (is_dearer(collapse))
+        continue;
       mesh_.fetch_star(collapse.from);
       mesh_.fetch_star(collapse.to);
     }
     for (const Collapse& collapse : collapses) {
-      if (CollapseQueue::bucket_of(collapse.cost) > bucket)
+      if (is_dearer(collapse))
         continue;
       mesh_.fetch_faces(collapse.from);
       mesh_.fetch_faces(collapse.to);
@@ -245,8 +257,7 @@ class CollapseDriver {
   /// What was impossible may be possible now.
   void ask_again(std::uint32_t vertex, Care care) {
     refused_[vertex] = 0;
-    mesh_.gather(vertex, around_);
-    for (const CollapseMesh::Fan& fan : around_) {
+    for (const CollapseMesh::Fan& fan : mesh_.star_of(vertex, around_)) {
       push(fan.next_edge, care);
       push(fan.previous_edge, care);
     }

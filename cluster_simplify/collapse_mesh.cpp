@@ -36,7 +36,7 @@ void CollapseMesh::collect_stars() {
     star.begin = begin;
     begin += std::exchange(star.count, 0);
   }
-  corners_.reserve(begin + begin / 2);  // what is joined on the way to half the vertices
+  corners_.reserve(2 * std::size_t{begin});  // as much as make_room() lets it grow to
   corners_.resize(begin);
   for (std::uint32_t t = 0; t < faces_.size(); ++t) {
     for (std::uint32_t k = 0; k < 3; ++k) {
@@ -47,10 +47,8 @@ void CollapseMesh::collect_stars() {
 }
 
 void CollapseMesh::collect_edges() {
-  // The sides of all triangles, by the lower of their ends.
-  struct Side {
-    std::uint32_t low, high, corner;
-  };
+  // The sides of all triangles, by the lower of their ends, lie where the edges come to lie: an
+  // edge is written at or before its side. A side has its corner, 4 t + k, in place of a count.
   std::vector<std::uint32_t> ends(vertex_count() + 1);  // of the sides at each vertex
   const auto at_every_side = [&](const auto& visit) {
     for (std::uint32_t t = 0; t < faces_.size(); ++t) {
@@ -58,30 +56,30 @@ void CollapseMesh::collect_edges() {
       for (std::uint32_t k = 0; k < 3; ++k) {
         const std::uint32_t a = corners[k];
         const std::uint32_t b = corners[after(k)];
-        visit(Side{std::min(a, b), std::max(a, b), 4 * t + k});
+        visit(Edge{std::min(a, b), std::max(a, b), 4 * t + k});
       }
     }
   };
-  at_every_side([&](const Side& side) { ++ends[side.low + 1]; });
+  at_every_side([&](const Edge& side) { ++ends[side.a + 1]; });
   std::partial_sum(ends.begin(), ends.end(), ends.begin());
-  std::vector<Side> sides(3 * faces_.size());
-  at_every_side([&](const Side& side) { sides[ends[side.low]++] = side; });
+  edges_.resize(3 * faces_.size());
+  at_every_side([&](const Edge& side) { edges_[ends[side.a]++] = side; });
 
   // Nothing here can be guessed, so that nothing is asked: every side writes its edge.
   struct Met {
     std::uint32_t low, edge;
   };
   std::vector<Met> last_met(vertex_count(), {kNone, 0});  // by its higher end
-  edges_.resize(sides.size());
   std::uint32_t count = 0;
-  for (const Side& side : sides) {
-    Met& met = last_met[side.high];
-    const bool is_new = met.low != side.low;
-    const std::uint32_t e = met.edge + (count - met.edge) * static_cast<std::uint32_t>(is_new);
-    count += static_cast<std::uint32_t>(is_new);
-    met = {side.low, e};
-    faces_[side.corner / 4].edges[side.corner % 4] = e;
-    edges_[e] = {side.low, side.high, edges_[e].triangle_count + 1};
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
+    const auto [low, high, corner] = edges_[i];
+    Met& met = last_met[high];
+    const auto is_new = static_cast<std::uint32_t>(met.low != low);
+    const std::uint32_t e = met.edge + (count - met.edge) * is_new;
+    count += is_new;
+    met = {low, e};
+    faces_[corner / 4].edges[corner % 4] = e;
+    edges_[e] = {low, high, edges_[e].triangle_count * (1 - is_new) + 1};
   }
   edges_.resize(count);
 }
@@ -93,17 +91,12 @@ bool CollapseMesh::is_isolated(std::uint32_t vertex) {
   return star.count == 0;
 }
 
-std::uint32_t CollapseMesh::representative(std::uint32_t vertex) {
-  while (parents_[vertex] != vertex) {
-    parents_[vertex] = parents_[parents_[vertex]];
-    vertex = parents_[vertex];
-  }
-  return vertex;
-}
-
-void CollapseMesh::gather(std::uint32_t vertex, std::vector<Fan>& fans) {
+std::span<const CollapseMesh::Fan> CollapseMesh::star_of(std::uint32_t vertex,
+                                                         std::vector<Fan>& room) {
   Star& star = stars_[vertex];
-  fans.resize(star.count);
+  if (room.size() < star.count)
+    room.resize(star.count);
+  Fan* const fans = room.data();
   std::uint32_t* const corners = corners_.data() + star.begin;
   std::uint32_t alive = 0;
   for (std::uint32_t i = 0; i < star.count; ++i) {
@@ -118,7 +111,7 @@ void CollapseMesh::gather(std::uint32_t vertex, std::vector<Fan>& fans) {
     alive += static_cast<std::uint32_t>(face.is_alive());
   }
   star.count = alive;
-  fans.resize(alive);
+  return {fans, alive};
 }
 
 std::array<std::uint32_t, 3> CollapseMesh::collapse_disc(const EdgeStar& star) {

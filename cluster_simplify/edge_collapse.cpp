@@ -79,6 +79,10 @@ class OptimalPlacement {
   std::span<const Vec3f> positions() const { return positions_; }
 
   void best(std::span<const std::uint32_t> edges, std::span<Collapse> collapses) const {
+    for (const std::uint32_t e : edges) {
+      __builtin_prefetch(&placed_[mesh_.edge(e).a]);
+      __builtin_prefetch(&placed_[mesh_.edge(e).b]);
+    }
     for (std::size_t i = 0; i < edges.size(); i += 4) {
       const auto some = edges.subspan(i, std::min<std::size_t>(4, edges.size() - i));
       const FourEdges four = look_up([&](std::size_t lane) { return some[lane % some.size()]; });

@@ -1,48 +1,15 @@
 #include "cluster_simplify/edge_star.h"
 
-#include "cluster_simplify/four_floats.h"
-
-#include <bit>
 #include <cstddef>
 
 namespace meshhier::cluster_simplify {
-namespace {
-
-/// Vertices, and where among them one is found: bit i for the i-th.
-class Wanted {
- public:
-  template <class VertexOf>
-  Wanted(std::size_t count, const VertexOf& vertex_of) : count_(count) {
-    for (std::size_t i = 0; i < count; ++i)
-      vertices_[i] = vertex_of(i);
-    store_four(&vertices_[count], FourInts{} + static_cast<std::int32_t>(CollapseMesh::kNone));
-  }
-  std::uint32_t places_of(std::uint32_t vertex) const {
-    FourInts places{};
-    FourInts bits{1, 2, 4, 8};
-    for (std::size_t i = 0; i < count_; i += 4, bits <<= 4)
-      places |= (load_four<FourInts>(&vertices_[i]) == static_cast<std::int32_t>(vertex)) & bits;
-    return static_cast<std::uint32_t>(places[0] | places[1] | places[2] | places[3]);
-  }
-
- private:
-  /// After the last, none up to a whole group of four.
-  alignas(16) std::array<std::uint32_t, EdgeStar::kMostLinks + 4> vertices_;
-  std::size_t count_;
-};
-
-/// Neither none nor several.
-bool is_one(std::uint32_t places) {
-  return places != 0 && (places & (places - 1)) == 0;
-}
-
-}  // namespace
-
 void EdgeStar::gather(CollapseMesh& mesh, std::uint32_t from, std::uint32_t to) {
   from_ = from;
   to_ = to;
-  mesh.gather(from, around_from_);
-  mesh.gather(to, around_to_);
+  if (place_.size() < mesh.vertex_count())
+    place_.resize(mesh.vertex_count());
+  around_from_ = mesh.star_of(from, from_room_);
+  around_to_ = mesh.star_of(to, to_room_);
   is_disc_ = around_from_.size() + around_to_.size() <= kMostLinks && trace();
 }
 
@@ -61,31 +28,38 @@ bool EdgeStar::trace() {
 /// the one whose next corner is `other` first. False unless there are two, and links between them.
 bool EdgeStar::append_links(Fans fans, std::uint32_t other,
                             std::array<const CollapseMesh::Fan*, 2>& ends) {
-  if (fans.size() < 3)
+  const auto count = static_cast<std::uint32_t>(fans.size());
+  if (count < 3)
     return false;
-  const Wanted next(fans.size(), [&](std::size_t i) { return fans[i].next; });
+  for (std::uint32_t i = 0; i < count; ++i)
+    place_[fans[i].next] = static_cast<std::uint8_t>(i);
   std::uint32_t vertex = other;
-  for (std::size_t k = 0; k < fans.size(); ++k) {
-    const std::uint32_t places = next.places_of(vertex);
-    if (!is_one(places))
-      return false;
-    const CollapseMesh::Fan* fan = &fans[static_cast<std::size_t>(std::countr_zero(places))];
-    if (k == 0)
-      ends[0] = fan;
-    else
-      links_[size_++] = fan;
-    vertex = fan->previous;
+  std::uint32_t met = 0;  // bit i for the i-th
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const std::uint32_t i = place_[vertex];
+    if (i >= count || fans[i].next != vertex)
+      return false;  // left by another star
+    met |= 1U << i;
+    links_[size_ + k] = &fans[i];
+    vertex = fans[i].previous;
   }
-  ends[1] = links_[--size_];
-  return vertex == other;
+  // Of those with one next corner only the last is met.
+  if (vertex != other || met != (std::uint32_t{1} << count) - 1)
+    return false;
+  ends = {links_[size_], links_[size_ + count - 1]};
+  for (std::uint32_t k = 1; k + 1 < count; ++k)
+    links_[size_ + k - 1] = links_[size_ + k];
+  size_ += count - 2;
+  return true;
 }
 
 /// Whether no vertex is on the ring twice.
-bool EdgeStar::meets_all_once() const {
-  const Wanted ring(size_, [&](std::size_t i) { return links_[i]->next; });
+bool EdgeStar::meets_all_once() {
+  for (std::uint32_t i = 0; i < size_; ++i)
+    place_[vertex(i)] = static_cast<std::uint8_t>(i);
   bool once = true;
   for (std::uint32_t i = 0; i < size_; ++i)
-    once &= is_one(ring.places_of(vertex(i)));
+    once &= place_[vertex(i)] == i;
   return once;
 }
 

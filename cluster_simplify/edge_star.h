@@ -61,10 +61,12 @@ class EdgeStar {
  private:
   bool trace();
   bool append_links(Fans fans, std::uint32_t other, std::array<const CollapseMesh::Fan*, 2>& ends);
-  bool meets_all_once() const;
+  bool meets_all_once();
 
   std::uint32_t from_ = 0, to_ = 0;
-  std::vector<CollapseMesh::Fan> around_from_, around_to_;
+  std::vector<CollapseMesh::Fan> from_room_, to_room_;
+  Fans around_from_, around_to_;
+  std::vector<std::uint8_t> place_;  ///< per vertex: where it was last seen in a star or ring
   bool is_disc_ = false;
   std::uint32_t size_ = 0, to_begin_ = 0;
   std::array<const CollapseMesh::Fan*, kMostLinks> links_;

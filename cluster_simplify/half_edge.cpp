@@ -108,7 +108,7 @@ class MelaxCosts {
     if (mesh_.has_high_valence(
             from))  // it will not go; its triangles would be gone through for each
       return {from, to, std::numeric_limits<float>::infinity(), positions_[to]};
-    mesh_.gather(from, around_);
+    around_ = mesh_.star_of(from, room_);
     const float bend = std::max(surface_bend(to), border_bend(from, to));
     return {from, to, size * (bend + kFlat), positions_[to]};
   }
@@ -165,7 +165,8 @@ class MelaxCosts {
   CollapseMesh& mesh_;
   std::vector<Vec3f> positions_;
   TopologyPrices prices_;
-  std::vector<CollapseMesh::Fan> around_;
+  std::vector<CollapseMesh::Fan> room_;
+  Fans around_;
   std::vector<Vec3f> normals_, at_edge_;
 };
 

@@ -256,9 +256,8 @@ class DeviationSum {
     double least = farthest({at(vertex), at(vertex), at(vertex)});
     if (tile_.mesh.most_triangles(vertex) > kMostAround)
       return least;
-    std::vector<CollapseMesh::Fan> fans;
-    tile_.mesh.gather(vertex, fans);
-    for (const CollapseMesh::Fan& fan : fans) {
+    std::vector<CollapseMesh::Fan> room;
+    for (const CollapseMesh::Fan& fan : tile_.mesh.star_of(vertex, room)) {
       const Triangle<std::uint32_t> ends = roots({vertex, fan.next, fan.previous});
       if (is_drawn(ends))
         least = std::min(least, farthest({at(ends[0]), at(ends[1]), at(ends[2])}));

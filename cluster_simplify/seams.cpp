@@ -297,13 +297,16 @@ ContractedTile apply(const BuildTile& joined, Contraction contraction, Contracte
     contraction.representatives.attributes = std::move(wedges.attributes);
     result.wedge_map = std::move(wedges.map);
     tile.border_wedges = wedges_of_images(mesh, mesh.border, mesh.border_wedges, result);
-    tile.interior_wedges = wedges_of_images(mesh, mesh.interior, mesh.interior_wedges, result);
+    if (!tile.copies.empty())
+      tile.interior_wedges = wedges_of_images(mesh, mesh.interior, mesh.interior_wedges, result);
   }
   // Of triangles that differ by their wedges one stays when all corners are known: resolve().
   normalize_triangles(tile.border, tile.border_wedges, tile.border_wedges.empty());
   drop_equal(tile.border, tile.border_wedges);
   drop_unused(tile.border, tile.foreign, count);
   normalize_triangles(tile.interior, tile.interior_wedges, true);
+  if (!mesh.copies.empty())
+    tile.interior_wedges.resize(tile.interior.size());  // without copies the first of each place
 
   tile.vertices.channels = contraction.representatives.channels;
   tile.copies.vertices.channels = tile.vertices.channels;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 
 namespace meshhier::cluster_simplify {
 namespace {
@@ -155,8 +156,13 @@ std::vector<VertexQuadric> vertex_quadrics(const CollapseMesh& mesh,
                                            std::span<const Vec3f> positions,
                                            std::span<const PlaceEdge> seams) {
   std::vector<VertexQuadric> quadrics(mesh.vertex_count());
-  std::vector<FourFloats> normals(mesh.edges().size());  // of the triangle last met at an edge
-  for (const CollapseMesh::Face& face : mesh.faces()) {
+  const auto faces = mesh.faces();
+  const auto normals = std::make_unique_for_overwrite<FourFloats[]>(faces.size() + 1);
+  normals[faces.size()] = FourFloats{};  // where no triangle was met yet
+  std::vector<std::uint32_t> last_met(mesh.edges().size(),
+                                      static_cast<std::uint32_t>(faces.size()));  // at each edge
+  for (std::uint32_t t = 0; t < faces.size(); ++t) {
+    const CollapseMesh::Face& face = faces[t];
     const auto& corners = face.corners;
     const Vec3f& p = positions[corners[0]];
     const Vec3f doubled = cross(positions[corners[1]] - p, positions[corners[2]] - p);
@@ -168,10 +174,10 @@ std::vector<VertexQuadric> vertex_quadrics(const CollapseMesh& mesh,
     const TrianglePlane plane(padded_normal, doubled_area);
     for (const std::uint32_t v : corners)
       plane.add_to(quadrics[v]);
+    normals[t] = padded_normal;
     const auto meet = [&](std::uint32_t e, std::uint32_t a, std::uint32_t b) {
-      // At the first triangle there is no normal yet.
-      const bool folds_back = dot(normals[e], padded_normal) < kFoldCosine;
-      normals[e] = padded_normal;
+      const bool folds_back = dot(normals[last_met[e]], padded_normal) < kFoldCosine;
+      last_met[e] = t;
       const float weight = upright_weight(mesh.edge(e).triangle_count, folds_back);
       if (weight > 0)
         hold_edge({a, b}, positions, normal, weight, quadrics);

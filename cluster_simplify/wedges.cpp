@@ -315,11 +315,24 @@ class WedgeContraction {
   std::vector<TextureCoordinates> coordinates_;  ///< of each chart
 };
 
+/// Without attributes all wedges of a place are equal: one of them stays.
+ContractedWedges one_wedge_a_place(const TileMesh& joined) {
+  const std::size_t own_copies = joined.copies.first_of(joined.own_count);
+  ContractedWedges result;
+  result.map.firsts.resize(joined.own_count);
+  result.map.copies.resize(own_copies);
+  result.map.places.assign(joined.copies.places.begin(),
+                           joined.copies.places.begin() + static_cast<std::ptrdiff_t>(own_copies));
+  return result;
+}
+
 }  // namespace
 
 ContractedWedges contract_wedges(const BuildTile& joined, const Contraction& contraction,
                                  const AttributeLayout& layout, const WedgeOptions& options) {
   assert(!joined.mesh.copies.empty());
+  if (contraction.representatives.channels == 0)
+    return one_wedge_a_place(joined.mesh);
   return WedgeContraction(joined, contraction, layout, options).run();
 }
 

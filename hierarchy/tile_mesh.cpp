@@ -130,13 +130,34 @@ namespace {
 struct Wedged {
   TileTriangle places;
   CornerWedges wedges;
-  friend auto operator<=>(const Wedged&, const Wedged&) = default;
 };
 
 void sort(std::vector<Wedged>& triangles) {
   sort_by_first_corner(
       triangles, [](const Wedged& t) { return raw(t.places[0]); },
-      [](std::span<Wedged> group) { std::sort(group.begin(), group.end()); });
+      [](std::span<Wedged> group) {
+        sort_few(group, [](const Wedged& t) {
+          return std::pair(std::uint64_t{raw(t.places[1])} << 32 | raw(t.places[2]), t.wedges);
+        });
+      });
+}
+
+/// The smallest corner by place and wedge.
+std::size_t smallest_wedge(const Wedged& t) {
+  if (!is_degenerate(t.places))
+    return smallest_corner(t.places);
+  const auto corner = [&](std::size_t k) { return std::pair(t.places[k], t.wedges[k]); };
+  return corner(1) < std::min(corner(0), corner(2))   ? 1
+         : corner(2) < std::min(corner(0), corner(1)) ? 2
+                                                      : 0;
+}
+
+/// Whether two corners are equal; by their places alone if `unique`.
+bool is_degenerate(const Wedged& t, bool unique) {
+  return is_degenerate(t.places) &&
+         (unique || (t.places[0] == t.places[1] && t.wedges[0] == t.wedges[1]) ||
+          (t.places[1] == t.places[2] && t.wedges[1] == t.wedges[2]) ||
+          (t.places[2] == t.places[0] && t.wedges[2] == t.wedges[0]));
 }
 
 }  // namespace
@@ -145,21 +166,15 @@ void normalize_triangles(std::vector<TileTriangle>& triangles, std::vector<Corne
                          bool unique) {
   if (wedges.empty())
     return normalize_triangles(triangles, unique);
-  const auto equal = [&](const Wedged& t, std::size_t a, std::size_t b) {
-    return t.places[a] == t.places[b] && (unique || t.wedges[a] == t.wedges[b]);
-  };
-  std::vector<Wedged> sorted;
-  sorted.reserve(triangles.size());
+  std::vector<Wedged> sorted(triangles.size());
+  std::size_t count = 0;
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     const Wedged t{triangles[i], wedges[i]};
-    if (equal(t, 0, 1) || equal(t, 1, 2) || equal(t, 2, 0))
-      continue;
-    const auto corner = [&](std::size_t k) { return std::pair(t.places[k], t.wedges[k]); };
-    const std::size_t first = corner(1) < std::min(corner(0), corner(2))   ? 1
-                              : corner(2) < std::min(corner(0), corner(1)) ? 2
-                                                                           : 0;
-    sorted.push_back({turned(t.places, first), turned(t.wedges, first)});
+    const std::size_t first = smallest_wedge(t);
+    sorted[count] = {turned(t.places, first), turned(t.wedges, first)};
+    count += std::size_t{!is_degenerate(t, unique)};
   }
+  sorted.resize(count);
   sort(sorted);
   if (unique) {
     sorted.erase(std::unique(sorted.begin(), sorted.end(),

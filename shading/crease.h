@@ -11,8 +11,13 @@ namespace meshhier::shading {
 inline constexpr double kCreaseAngle = 60;
 
 /// The cosine of a part of it.
-inline double crease_cosine(double part = 1) {
+inline double crease_cosine(double part) {
   return turn_by(part * kCreaseAngle * std::numbers::pi / 180).cosine;
+}
+/// Its cosine, which many places ask for.
+inline double crease_cosine() {
+  static const double cosine = crease_cosine(1);
+  return cosine;
 }
 
 }  // namespace meshhier::shading

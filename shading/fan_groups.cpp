@@ -5,6 +5,7 @@
 #include "shading/crease.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <numeric>
 
@@ -12,6 +13,9 @@ namespace meshhier::shading {
 namespace {
 
 constexpr std::size_t kMostGroups = 32;
+
+/// Around most places there are no more corners.
+constexpr std::size_t kFew = 16;
 
 double cosine_between(const Vec3d& a, const Vec3d& b) {
   const double size = length(a) * length(b);
@@ -54,6 +58,41 @@ std::vector<std::uint32_t> find_fans(std::span<const FanCorner> corners, double 
   return fan_of;
 }
 
+/// The same of a few corners, without memory of its own: whether all are one fan.
+bool are_one_fan(std::span<const FanCorner> corners, double cosine) {
+  std::array<Side, 2 * kFew> room;
+  std::array<double, kFew> sizes;
+  std::array<std::size_t, kFew> fan_of;
+  const auto sides = std::span(room).first(2 * corners.size());
+  for (std::uint32_t i = 0; i < corners.size(); ++i) {
+    sides[2 * i] = {corners[i].next, i};
+    sides[2 * i + 1] = {corners[i].previous, i};
+    sizes[i] = length(corners[i].area);
+    fan_of[i] = i;
+  }
+  sort_few(sides,
+           [](const Side& side) { return std::uint64_t{side.far_place} << 32 | side.corner; });
+  std::size_t count = corners.size();
+  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+    while (end < sides.size() && sides[end].far_place == sides[begin].far_place)
+      ++end;
+    if (end - begin != 2)
+      continue;
+    const std::uint32_t a = sides[begin].corner;
+    const std::uint32_t b = sides[begin + 1].corner;
+    const double size = sizes[a] * sizes[b];
+    const bool meet = (size > 0 ? dot(corners[a].area, corners[b].area) / size : -1) >= cosine;
+    const std::size_t gone = fan_of[b];
+    const std::size_t stays = fan_of[a];
+    if (!meet || gone == stays)
+      continue;
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      fan_of[i] = fan_of[i] == gone ? stays : fan_of[i];
+    --count;
+  }
+  return count <= 1;
+}
+
 /// The fans, the one of the longest sum first.
 std::vector<std::uint32_t> by_size(const std::vector<std::uint32_t>& fan_of,
                                    const std::vector<Vec3d>& sums) {
@@ -92,6 +131,11 @@ FanGroups one_group(std::span<const FanCorner> corners) {
 }
 
 }  // namespace
+
+bool is_one_fan(std::span<const FanCorner> corners) {
+  const double cosine = crease_cosine();
+  return corners.size() <= kFew ? are_one_fan(corners, cosine) : find_fans(corners, cosine).empty();
+}
 
 FanGroups group_fans(std::span<const FanCorner> corners) {
   const double cosine = crease_cosine();

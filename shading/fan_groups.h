@@ -27,4 +27,8 @@ struct FanGroups {
 /// without area go to the first group. At least one group. O(n log n).
 FanGroups group_fans(std::span<const FanCorner> corners);
 
+/// Whether all of them are one fan: one group then, whose normal is the sum of all areas. Cheaper
+/// than the groups, for most places have one.
+bool is_one_fan(std::span<const FanCorner> corners);
+
 }  // namespace meshhier::shading

@@ -5,16 +5,33 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <numeric>
+#include <span>
 #include <utility>
+#include <vector>
 
 namespace meshhier::shading {
 namespace {
 
-/// The triangles of a tile, interior first, with the wedges of their corners.
+/// Along the triangle's normal, twice its area long.
+Vec3d area_of(std::span<const Vec3f> positions, const TileTriangle& triangle) {
+  const Vec3d a = to_double(positions[raw(triangle[0])]);
+  const Vec3d b = to_double(positions[raw(triangle[1])]);
+  const Vec3d c = to_double(positions[raw(triangle[2])]);
+  return cross(b - a, c - a);
+}
+
+/// The triangles of a tile, interior first, with their areas and the wedges of their corners.
 class Corners {
  public:
-  explicit Corners(const TileMesh& mesh) : mesh_(mesh) {}
+  explicit Corners(const TileMesh& mesh) : mesh_(mesh) {
+    areas_.reserve(count());
+    for (const auto* triangles : {&mesh.interior, &mesh.border}) {
+      for (const TileTriangle& t : *triangles)
+        areas_.push_back(area_of(mesh.vertices.positions, t));
+    }
+  }
 
   std::size_t count() const { return mesh_.interior.size() + mesh_.border.size(); }
   const TileTriangle& operator[](std::size_t t) const {
@@ -25,48 +42,50 @@ class Corners {
     return wedges.empty() ? 0 : wedges[is_interior(t) ? t : t - mesh_.interior.size()][corner];
   }
   /// Along the triangle's normal, twice its area long.
-  Vec3d area(std::size_t t) const {
-    const auto& triangle = (*this)[t];
-    const Vec3d a = to_double(mesh_.vertices.positions[raw(triangle[0])]);
-    const Vec3d b = to_double(mesh_.vertices.positions[raw(triangle[1])]);
-    const Vec3d c = to_double(mesh_.vertices.positions[raw(triangle[2])]);
-    return cross(b - a, c - a);
+  const Vec3d& area(std::size_t t) const { return areas_[t]; }
+
+  /// Calls visit(t, triangle) for each.
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    std::uint32_t t = 0;
+    for (const auto* triangles : {&mesh_.interior, &mesh_.border}) {
+      for (const TileTriangle& triangle : *triangles)
+        visit(t++, triangle);
+    }
   }
 
  private:
   bool is_interior(std::size_t t) const { return t < mesh_.interior.size(); }
   const TileMesh& mesh_;
+  std::vector<Vec3d> areas_;
 };
 
-/// The sum of the areas around each own place.
+/// The sum of the areas around each place; of those of ghosts, around as much as the tile has.
 std::vector<Vec3d> smooth_normals(const TileMesh& mesh, const Corners& corners) {
-  std::vector<Vec3d> sums(mesh.own_count);
-  for (std::size_t t = 0; t < corners.count(); ++t) {
+  std::vector<Vec3d> sums(mesh.vertices.size());
+  corners.for_each([&](std::uint32_t t, const TileTriangle& triangle) {
     const Vec3d area = corners.area(t);
-    for (const TileVertex v : corners[t]) {
-      if (mesh.is_own(v))
-        sums[raw(v)] = sums[raw(v)] + area;
-    }
-  }
+    for (const TileVertex v : triangle)
+      sums[raw(v)] = sums[raw(v)] + area;
+  });
   return sums;
 }
 
-/// Of own places, whether a triangle is so far from the mean that two may be a crease apart.
+/// Of each place, whether it is an own one with a triangle so far from the mean that two may be a
+/// crease apart.
 std::vector<char> find_rough_places(const TileMesh& mesh, const Corners& corners,
                                     const std::vector<Vec3d>& sums) {
   const double cosine = crease_cosine(0.5);
-  std::vector<double> limits(sums.size());
-  for (std::size_t v = 0; v < sums.size(); ++v)
+  std::vector<double> limits(sums.size(), -std::numeric_limits<double>::infinity());
+  for (std::size_t v = 0; v < mesh.own_count; ++v)
     limits[v] = cosine * length(sums[v]);
   std::vector<char> is_rough(sums.size());
-  for (std::size_t t = 0; t < corners.count(); ++t) {
+  corners.for_each([&](std::uint32_t t, const TileTriangle& triangle) {
     const Vec3d area = corners.area(t);
     const double size = length(area);
-    for (const TileVertex v : corners[t]) {
-      if (mesh.is_own(v))
-        is_rough[raw(v)] |= static_cast<char>(dot(area, sums[raw(v)]) < limits[raw(v)] * size);
-    }
-  }
+    for (const TileVertex v : triangle)
+      is_rough[raw(v)] |= static_cast<char>(dot(area, sums[raw(v)]) < limits[raw(v)] * size);
+  });
   return is_rough;
 }
 
@@ -82,13 +101,15 @@ std::vector<RoughCorner> rough_corners(const TileMesh& mesh, const Corners& corn
                                        const std::vector<char>& is_rough) {
   std::vector<std::uint32_t> ends(mesh.own_count + 1);
   const auto for_each = [&](const auto& visit) {
-    for (std::uint32_t t = 0; t < corners.count(); ++t) {
+    corners.for_each([&](std::uint32_t t, const TileTriangle& triangle) {
+      if ((is_rough[raw(triangle[0])] | is_rough[raw(triangle[1])] | is_rough[raw(triangle[2])]) ==
+          0)
+        return;
       for (std::uint32_t k = 0; k < 3; ++k) {
-        const TileVertex v = corners[t][k];
-        if (mesh.is_own(v) && is_rough[raw(v)] != 0)
-          visit(RoughCorner{raw(v), t, k});
+        if (is_rough[raw(triangle[k])] != 0)
+          visit(RoughCorner{raw(triangle[k]), t, k});
       }
-    }
+    });
   };
   for_each([&](const RoughCorner& corner) { ++ends[corner.place + 1]; });
   std::partial_sum(ends.begin(), ends.end(), ends.begin());
@@ -107,8 +128,8 @@ class Shader {
     const std::vector<Vec3d> sums = smooth_normals(mesh_, corners_);
     const std::vector<char> is_rough = find_rough_places(mesh_, corners_, sums);
     shading_.normals.reserve(mesh_.own_count + copy_count_);
-    for (const Vec3d& sum : sums)
-      shading_.normals.push_back(normal_code(sum));
+    for (std::size_t v = 0; v < mesh_.own_count; ++v)
+      shading_.normals.push_back(normal_code(sums[v]));
     for (std::size_t i = 0; i < copy_count_; ++i)
       shading_.normals.push_back(shading_.normals[mesh_.copies.places[i]]);
     const std::vector<RoughCorner> rough = rough_corners(mesh_, corners_, is_rough);
@@ -140,13 +161,15 @@ class Shader {
   }
 
   void shade_place(std::span<const RoughCorner> rough) {
-    std::vector<FanCorner> fan(rough.size());
+    fan_.resize(rough.size());
     for (std::size_t i = 0; i < rough.size(); ++i) {
       const TileTriangle& t = corners_[rough[i].triangle];
-      fan[i] = {raw(t[(rough[i].corner + 1) % 3]), raw(t[(rough[i].corner + 2) % 3]),
-                corners_.area(rough[i].triangle)};
+      fan_[i] = {raw(t[(rough[i].corner + 1) % 3]), raw(t[(rough[i].corner + 2) % 3]),
+                 corners_.area(rough[i].triangle)};
     }
-    const FanGroups groups = group_fans(fan);
+    if (is_one_fan(fan_))
+      return;  // the sum of all areas is its normal
+    const FanGroups groups = group_fans(fan_);
     std::vector<Shown> shown(rough.size());
     for (std::size_t i = 0; i < rough.size(); ++i)
       shown[i] = {vertex_of(rough[i]), groups.group_of[i]};
@@ -184,6 +207,7 @@ class Shader {
   std::size_t copy_count_;  ///< of own places
   OwnShading shading_;
   std::vector<Split> splits_;
+  std::vector<FanCorner> fan_;  ///< of the place at hand
 };
 
 }  // namespace

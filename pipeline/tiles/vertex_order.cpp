@@ -3,6 +3,8 @@
 #include "storage/format/meshopt_codec.h"
 
 #include <cassert>
+#include <cstddef>
+#include <numeric>
 #include <span>
 
 namespace meshhier::pipeline {
@@ -17,13 +19,13 @@ std::vector<std::uint32_t> new_order(const TileMesh& mesh) {
   corners.reserve(3 * mesh.interior.size());
   for (const TileTriangle& t : mesh.interior)
     corners.insert(corners.end(), {raw(t[0]), raw(t[1]), raw(t[2])});
-  std::vector<bool> placed(mesh.own_count);
-  std::vector<std::uint32_t> order;
-  order.reserve(mesh.vertices.size());
-  const auto place = [&](std::uint32_t v) {
-    if (!placed[v])
-      order.push_back(v);
-    placed[v] = true;
+  std::vector<char> is_placed(mesh.own_count);
+  std::vector<std::uint32_t> order(mesh.vertices.size() + 1);  // one more is written, and not kept
+  std::size_t count = 0;
+  const auto place = [&](std::uint32_t v) {  // which are new no processor can predict: no branch
+    order[count] = v;
+    count += std::size_t{is_placed[v] == 0};
+    is_placed[v] = 1;
   };
   for (std::uint32_t v = 0; v < mesh.boundary_count; ++v)
     place(v);
@@ -31,8 +33,8 @@ std::vector<std::uint32_t> new_order(const TileMesh& mesh) {
     place(v);
   for (std::uint32_t v = 0; v < mesh.own_count; ++v)
     place(v);
-  for (std::size_t v = mesh.own_count; v < mesh.vertices.size(); ++v)
-    order.push_back(static_cast<std::uint32_t>(v));
+  order.pop_back();
+  std::iota(order.begin() + mesh.own_count, order.end(), mesh.own_count);
   return order;
 }
 

@@ -104,6 +104,33 @@ TEST(FanGroups, WhatHasNoAreaLeadsNoGroup) {
   EXPECT_THAT(group_fans({}).group_of, IsEmpty());
 }
 
+TEST(FanGroups, OneFanIsOneGroupOfAllAreas) {
+  std::size_t found = 0;
+  for (std::uint32_t seed = 0; seed < 500; ++seed) {
+    std::vector<Vec3d> areas;
+    for (std::uint32_t i = 0; i < 3 + seed % 20; ++i)  // more than are few, too
+      areas.push_back(tilted(std::fmod(37.0 * seed * i, 10.0 + seed % 120), 1 + seed % 3));
+    std::vector<FanCorner> corners = closed_fan(areas);
+    if (seed % 5 == 0)
+      corners.pop_back();  // open
+    if (seed % 7 == 0)
+      corners.push_back({1, 99, tilted(80)});  // an edge of three
+    if (!is_one_fan(corners))
+      continue;
+    ++found;
+    Vec3d sum;
+    for (const FanCorner& corner : corners)
+      sum = sum + corner.area;
+    const FanGroups groups = group_fans(corners);
+    EXPECT_THAT(groups.normals, ElementsAre(sum));
+    EXPECT_THAT(groups.group_of, Each(0));
+  }
+  EXPECT_GT(found, 100U);
+  EXPECT_LT(found, 450U);
+  EXPECT_FALSE(is_one_fan(closed_fan({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}})));
+  EXPECT_TRUE(is_one_fan(closed_fan({tilted(-10, 3), tilted(0), tilted(10)})));
+}
+
 TEST(FanGroups, ManyTrianglesMakeFewGroups) {
   std::vector<FanCorner> corners;
   for (std::uint32_t i = 0; i < 200'000; ++i) {
