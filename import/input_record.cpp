@@ -46,13 +46,6 @@ void Companions::await(const std::vector<std::filesystem::path>& places) {
   }
 }
 
-bool has_materials(const std::vector<SourceFile>& files) {
-  return std::ranges::any_of(files, [](const SourceFile& file) {
-    return file.format == kPartNames[static_cast<std::size_t>(InputPart::library)] ||
-           file.format == kPartNames[static_cast<std::size_t>(InputPart::picture)];
-  });
-}
-
 std::vector<SourceFile> source_files(const std::vector<ReadFile>& files,
                                      const std::vector<std::string>& formats) {
   std::vector<SourceFile> all;

@@ -54,12 +54,9 @@ struct InputRecord {
 /// `formats`: of the meshes, for people.
 std::vector<SourceFile> source_files(const std::vector<ReadFile>& files,
                                      const std::vector<std::string>& formats);
+
 /// Whether a library or a picture is among them: then the import looked for textures, found or not.
 bool names_materials(const std::vector<SourceFile>& files);
-
-/// Whether libraries or pictures are among them: of a textured input, or of one whose pictures are
-/// all missing.
-bool has_materials(const std::vector<SourceFile>& files);
 
 /// Of several files from their checksums; of one it is its own.
 std::uint64_t joined_checksum(const std::vector<std::uint64_t>& checksums);

@@ -374,12 +374,6 @@ void compare_sums(const MeshSums& input, const MeshSums& partitions,
   compare("triangles", input.triangles, partitions.triangles);
 }
 
-/// Materials are part of the input even where none of their pictures was there.
-importing::Textures textures_of(const SourceSummary& source) {
-  return source.textures || importing::has_materials(source.files) ? importing::Textures::use
-                                                                   : importing::Textures::ignore;
-}
-
 }  // namespace
 
 void verify_input(const VerifyJob& job) {
