@@ -10,6 +10,7 @@
 #include "inspection/shown_tiles.h"
 #include "render/painting.h"
 #include "render/portrait.h"
+#include "render/tile_facets.h"
 #include "storage/format/archive_files.h"
 #include "storage/format/hierarchy_reader.h"
 #include "storage/format/work_directory.h"
@@ -35,18 +36,21 @@ Vec3d up_of(const HierarchyReader& reader, const PreviewOptions& options) {
   return up == UpAxis::z ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0};
 }
 
-/// Framed by the root tile, which has the extent of the whole.
-render::Camera camera_for(const HierarchyReader& reader, const PreviewOptions& options) {
+/// Of the root tile, which has the extent of the whole.
+std::vector<render::Facet> root_facets(const HierarchyReader& reader) {
   PublishedTile root = reader.read_tile({});
   root.image = {};
   root.shading.texcoords.clear();
-  const std::vector<render::Facet> facets =
-      render::scene_tile(root, reader.tile_format().attributes).facets;
+  return render::scene_tile(root, reader.tile_format().attributes).facets;
+}
+
+render::Camera camera_for(const HierarchyReader& reader, std::span<const render::Facet> root,
+                          const PreviewOptions& options) {
   const Vec3d up = up_of(reader, options);
   const render::View view =
       options.view ? render::view_from(options.view->azimuth, options.view->elevation, up)
-                   : render::portrait_view(facets, up);
-  return render::portrait_camera(facets, view,
+                   : render::portrait_view(root, up);
+  return render::portrait_camera(root, view,
                                  {.width = options.width, .height = options.height, .samples = 2});
 }
 
@@ -140,21 +144,26 @@ std::string make_picture(storage::FileSystem& files, const std::filesystem::path
     storage::require_outside(files, options.output);
   storage::OutputFile output(files, request, [&] { cancel.check(); });
 
-  const render::Camera camera = camera_for(reader, options);
+  AttributeLayout layout = reader.tile_format().attributes;
+  const render::Camera camera = [&] {
+    const std::vector<render::Facet> root = root_facets(reader);
+    layout = render::drawn_layout(root, layout);
+    return camera_for(reader, root, options);
+  }();
   ShownTiles tiles(reader, cut_for(files, reader, options, camera.pixel()),
                    options.memory_budget / 8);
   std::uint64_t triangles = 0;
   for (const NodeId node : tiles.cut().nodes())
     triangles +=
         std::uint64_t{reader.record(node).interior_count} + reader.record(node).drawn_border_count;
-  render::Scene scene{
-      boxes_of(reader, tiles.cut()),
-      [&](std::size_t i) {
-        const ShownTile shown = tiles.load(i);
-        return render::scene_tile(shown.tile, reader.tile_format().attributes, shown.border);
-      },
-      reader.manifest().textures && reader.manifest().textures->unlit ? render::Light::none
-                                                                      : render::Light::lamps};
+  render::Scene scene{boxes_of(reader, tiles.cut()),
+                      [&](std::size_t i) {
+                        const ShownTile shown = tiles.load(i);
+                        return render::scene_tile(shown.tile, layout, shown.border);
+                      },
+                      reader.manifest().textures && reader.manifest().textures->unlit
+                          ? render::Light::none
+                          : render::Light::lamps};
   const render::PaintingOptions painting{
       .band_bytes = (options.memory_budget - picture_bytes(options)) / 2, .step = [&] {
         cancel.check();

@@ -5,6 +5,7 @@
 #include "render/drawing_cost.h"
 #include "render/painting.h"
 #include "render/portrait.h"
+#include "render/tile_facets.h"
 #include "storage/format/index.h"
 #include "storage/format/layout.h"
 #include "storage/io/hash.h"
@@ -57,20 +58,21 @@ Cut shown_cut(const Tree& tree, std::span<const TileRecord> records) {
 }
 
 /// Tiles draw all of their border: twice what lies between two of them, and nothing is missing.
-render::Scene scene_of(const PreviewInput& input, const Cut& cut, const StageContext& context) {
+render::Scene scene_of(const PreviewInput& input, const Cut& cut, const AttributeLayout& layout,
+                       const StageContext& context) {
   render::Scene scene;
   if (input.format.textures && input.format.textures->unlit)
     scene.light = render::Light::none;
   for (const NodeId node : cut.nodes())
     scene.boxes.push_back(storage::record_of(input.records, node).bounds);
-  scene.load = [&input, &context, nodes = cut.nodes()](std::size_t i) {
+  scene.load = [&input, &context, layout, nodes = cut.nodes()](std::size_t i) {
     const TileRecord& record = storage::record_of(input.records, nodes[i]);
     const auto path = storage::tile_path(input.directory, record.node);
     const auto bytes = storage::read_sealed(
         context.files, path, {record.file_bytes, record.checksum}, record.file_bytes);
     return render::scene_tile(
         storage::decode_tile(bytes, record.node, context.tree(), input.format, path.string()),
-        input.format.attributes);
+        layout);
   };
   return scene;
 }
@@ -102,14 +104,16 @@ MadePreview make_preview(const PreviewInput& input, const StageContext& context)
   const Tree& tree = context.tree();
   const Cut root = Cut::of_level(tree, Level{0}), cut = shown_cut(tree, input.records);
   const Vec3d up = input.format.frame.up == UpAxis::z ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0};
+  AttributeLayout layout = input.format.attributes;
   const render::Camera camera = [&] {
-    const render::SceneTile whole = scene_of(input, root, context).load(0);
+    const render::SceneTile whole = scene_of(input, root, layout, context).load(0);
+    layout = render::drawn_layout(whole.facets, layout);
     const render::View view = render::portrait_view(whole.facets, up);
     return render::portrait_camera(
         whole.facets, view,
         {.width = storage::kMostPreviewSide, .height = storage::kMostPreviewSide, .samples = 2});
   }();
-  const render::Scene scene = scene_of(input, cut, context);
+  const render::Scene scene = scene_of(input, cut, layout, context);
   images::FittedImage picture = images::encode_to_fit(
       render::paint(scene, affordable(camera, samples_of(scene, camera, context)),
                     {.band_bytes = kBandBytes, .step = [&] { context.cancel.check(); }}),

@@ -3,6 +3,7 @@
 #include "hierarchy/shown_corners.h"
 #include "images/srgb.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -120,6 +121,17 @@ std::vector<Skin> skins_of(const PublishedTile& tile, const MipTexture& texture,
   for (const TileTriangle& t : drawn_triangles(tile, border))
     skins.push_back({&texture, {at(t[0]), at(t[1]), at(t[2])}});
   return skins;
+}
+
+AttributeLayout drawn_layout(std::span<const Facet> root, AttributeLayout layout) {
+  const auto is_white = [](const Facet& facet) {
+    return std::ranges::all_of(facet, [](const FacetCorner& corner) {
+      return corner.colour == Vec3f{1, 1, 1};
+    });
+  };
+  if (std::ranges::all_of(root, is_white))
+    layout.colour = ColourType::none;
+  return layout;
 }
 
 }  // namespace meshhier::render

@@ -26,4 +26,8 @@ std::vector<Facet> facets_of(const PublishedTile& tile, const AttributeLayout& l
 std::vector<Skin> skins_of(const PublishedTile& tile, const MipTexture& texture,
                            std::span<const std::uint32_t> border);
 
+/// `layout` as it is drawn where the root tile has these facets: without colours if all of them are
+/// white. Such colours say nothing, and would hide the form.
+AttributeLayout drawn_layout(std::span<const Facet> root, AttributeLayout layout);
+
 }  // namespace meshhier::render

@@ -131,5 +131,18 @@ TEST(TileFacetsTest, SkinsHaveTheCoordinatesOfCornersAndOfSplits) {
   EXPECT_EQ(skins[1].texture, &texture);
 }
 
+TEST(TileFacetsTest, ColoursThatAreWhiteEverywhereAreNone) {
+  AttributeLayout layout;
+  layout.colour = ColourType::u8;
+  std::vector<Facet> root(2);
+  for (Facet& facet : root) {
+    for (FacetCorner& corner : facet)
+      corner.colour = {1, 1, 1};
+  }
+  EXPECT_EQ(drawn_layout(root, layout).colour, ColourType::none);
+  root[1][2].colour = {1, 1, 0.9F};
+  EXPECT_EQ(drawn_layout(root, layout).colour, ColourType::u8);
+}
+
 }  // namespace
 }  // namespace meshhier::render
