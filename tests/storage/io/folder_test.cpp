@@ -1,5 +1,6 @@
-#include "hierarchy/error.h"
 #include "storage/io/folder.h"
+
+#include "hierarchy/error.h"
 #include "tests/support/sample_hierarchy.h"
 
 #include <filesystem>
