@@ -267,6 +267,8 @@ std::string check_system(const Source& source, const Include& include) {
       {"server/http_server.cpp", {"sys/socket.h", "unistd.h"}},
       {"storage/io/child_process.cpp",
        {"csignal", "fcntl.h", "poll.h", "sys/prctl.h", "sys/wait.h", "unistd.h"}},
+      {"storage/io/folder.cpp", {"dirent.h", "fcntl.h", "sys/stat.h", "unistd.h"}},
+      {"storage/io/posix_file.h", {"fcntl.h", "sys/stat.h", "unistd.h"}},
       {"storage/io/process.cpp", {"fcntl.h", "sys/resource.h", "unistd.h"}},
       {"storage/io/shared_library.cpp", {"dlfcn.h"}},
       {"storage/io/stream.cpp", {"csignal", "fcntl.h", "poll.h", "sys/stat.h", "unistd.h"}}};
