@@ -55,9 +55,10 @@ const RAMP = `#include <color_fragment>
 float step_ = clamp(vHeight, 0.0, 1.0) * ${(HEIGHT_COLOURS.length - 1).toFixed(1)};
 diffuseColor.rgb *= ${HEIGHT_COLOURS.slice(1).reduce((below, hex, i) => `mix(${below}, ${linear(hex)}, clamp(step_ - ${i.toFixed(1)}, 0.0, 1.0))`, linear(HEIGHT_COLOURS[0]))};`;
 
-/// How the normal turns from one pixel to the next: away from itself over an edge, towards itself in a hollow.
+/// How the normal turns from one pixel to the next: away from itself over an edge, towards itself in a hollow. Along silhouettes it turns
+/// from a surface to the one behind it, which is neither.
 const CAVITIES = `#include <normal_fragment_maps>
-float bend = dFdx(normal).x + dFdy(normal).y;
+float bend = (dFdx(normal).x + dFdy(normal).y) * smoothstep(0.15, 0.5, abs(normal.z));
 diffuseColor.rgb *= clamp(1.0 + 1.8 * bend, 0.5, 1.4);`;
 
 /// Looks of one key have the same surfaces.
