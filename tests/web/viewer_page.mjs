@@ -165,6 +165,8 @@ async function checkTurning(visitor, page) {
   const calm = await steady(stage);
   await page.mouse.move(middleX, middleY);
   visitor.check('gallery pointed at', await changes(stage, calm), 'has another colour');
+  await stage.locator('canvas.cell-solid').waitFor();
+  await page.waitForTimeout(300); // the outline gives way to it
   const still = await steady(stage);
   await page.waitForTimeout(300);
   visitor.check('gallery reduced motion', still.equals(await stage.screenshot()), 'outlines stand still');

@@ -38,7 +38,7 @@ export class Solid {
   private async begin(radius: number, epoch: number): Promise<void> {
     try {
       const { RootPicture } = await import('../view/model_view.js');
-      if (epoch !== this.epoch || this.turn === null) return;
+      if (epoch !== this.epoch || this.turn === null || !this.stage.checkVisibility()) return; // a model may have been opened meanwhile
       this.picture = new RootPicture(this.url, radius, this.turn, () => { this.stage.classList.add('solid'); });
       this.stage.append(this.picture.canvas);
     } catch {
