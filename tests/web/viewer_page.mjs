@@ -441,7 +441,7 @@ async function checkLateCode(visitor, name) {
   await cell.click();
   release();
   await settle(page);
-  const views = await page.evaluate(() => document.querySelectorAll('main.view, canvas:not(.gallery-canvas)').length);
+  const views = await page.evaluate(() => document.querySelectorAll('main.view, canvas:not(.cell-outline)').length);
   visitor.check('late code', views === 2, 'one view, with one canvas');
   await visitor.close(page, 'late code');
 }
