@@ -1,8 +1,8 @@
 #include "mesh_io/mtl_reader.h"
 
+#include "hierarchy/small_letters.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/number_text.h"
-#include "mesh_io/small_letters.h"
 #include "mesh_io/word_stream.h"
 
 #include <algorithm>

@@ -57,6 +57,20 @@ Cut shown_cut(const Tree& tree, std::span<const TileRecord> records) {
   return shown;
 }
 
+PublishedTile tile_of(const PreviewInput& input, NodeId node, const StageContext& context) {
+  const TileRecord& record = storage::record_of(input.records, node);
+  const auto path = storage::tile_path(input.directory, record.node);
+  const auto bytes = storage::read_sealed(context.files, path, {record.file_bytes, record.checksum},
+                                          record.file_bytes);
+  return storage::decode_tile(bytes, record.node, context.tree(), input.format, path.string());
+}
+
+/// Without its picture, which need not be decoded to see where they lie.
+std::vector<render::Facet> facets_of(PublishedTile tile, const AttributeLayout& layout) {
+  tile.image = {};
+  return render::scene_tile(tile, layout).facets;
+}
+
 /// Tiles draw all of their border: twice what lies between two of them, and nothing is missing.
 render::Scene scene_of(const PreviewInput& input, const Cut& cut, const AttributeLayout& layout,
                        const StageContext& context) {
@@ -66,23 +80,17 @@ render::Scene scene_of(const PreviewInput& input, const Cut& cut, const Attribut
   for (const NodeId node : cut.nodes())
     scene.boxes.push_back(storage::record_of(input.records, node).bounds);
   scene.load = [&input, &context, layout, nodes = cut.nodes()](std::size_t i) {
-    const TileRecord& record = storage::record_of(input.records, nodes[i]);
-    const auto path = storage::tile_path(input.directory, record.node);
-    const auto bytes = storage::read_sealed(
-        context.files, path, {record.file_bytes, record.checksum}, record.file_bytes);
-    return render::scene_tile(
-        storage::decode_tile(bytes, record.node, context.tree(), input.format, path.string()),
-        layout);
+    return render::scene_tile(tile_of(input, nodes[i], context), layout);
   };
   return scene;
 }
 
-std::uint64_t samples_of(const render::Scene& scene, const render::Camera& camera,
-                         const StageContext& context) {
+std::uint64_t samples_of(const PreviewInput& input, const Cut& cut, const AttributeLayout& layout,
+                         const render::Camera& camera, const StageContext& context) {
   std::uint64_t sum = 0;
-  for (std::size_t tile = 0; tile < scene.boxes.size(); ++tile) {
+  for (const NodeId node : cut.nodes()) {
     context.cancel.check();
-    sum += render::samples_to_draw(scene.load(tile).facets, camera);
+    sum += render::samples_to_draw(facets_of(tile_of(input, node, context), layout), camera);
   }
   return sum;
 }
@@ -102,20 +110,20 @@ render::Camera affordable(const render::Camera& camera, std::uint64_t samples) {
 
 MadePreview make_preview(const PreviewInput& input, const StageContext& context) {
   const Tree& tree = context.tree();
-  const Cut root = Cut::of_level(tree, Level{0}), cut = shown_cut(tree, input.records);
+  const Cut cut = shown_cut(tree, input.records);
   const Vec3d up = input.format.frame.up == UpAxis::z ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0};
   AttributeLayout layout = input.format.attributes;
   const render::Camera camera = [&] {
-    const render::SceneTile whole = scene_of(input, root, layout, context).load(0);
-    layout = render::drawn_layout(whole.facets, layout);
-    const render::View view = render::portrait_view(whole.facets, up);
+    const std::vector<render::Facet> whole = facets_of(tile_of(input, NodeId{}, context), layout);
+    layout = render::drawn_layout(whole, layout);
+    const render::View view = render::portrait_view(whole, up);
     return render::portrait_camera(
-        whole.facets, view,
+        whole, view,
         {.width = storage::kMostPreviewSide, .height = storage::kMostPreviewSide, .samples = 2});
   }();
-  const render::Scene scene = scene_of(input, cut, layout, context);
+  const std::uint64_t samples = samples_of(input, cut, layout, camera, context);
   images::FittedImage picture = images::encode_to_fit(
-      render::paint(scene, affordable(camera, samples_of(scene, camera, context)),
+      render::paint(scene_of(input, cut, layout, context), affordable(camera, samples),
                     {.band_bytes = kBandBytes, .step = [&] { context.cancel.check(); }}),
       storage::kMostPreviewBytes);
   const storage::Preview facts{picture.width, picture.height, picture.file.size(),

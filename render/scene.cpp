@@ -21,15 +21,13 @@ SceneTile scene_tile(const PublishedTile& tile, const AttributeLayout& layout,
   SceneTile result;
   result.facets = facets_of(tile, layout, border, NormalKind::own);
   const TileImage& image = tile.image;
-  if (image.empty()) {
-    drop_repeated(result.facets, result.skins);
-    return result;
+  if (!image.empty()) {
+    const std::uint64_t texels = std::uint64_t{image.width} * image.height;
+    result.texture = std::make_unique<const MipTexture>(
+        images::decode_image(image.bytes, "the picture of tile " + to_text(tile.node), texels),
+        Wraps{Wrap::clamp, Wrap::clamp}, image.alpha);
+    result.skins = skins_of(tile, *result.texture, border);
   }
-  const std::uint64_t texels = std::uint64_t{image.width} * image.height;
-  result.texture = std::make_unique<const MipTexture>(
-      images::decode_image(image.bytes, "the picture of tile " + to_text(tile.node), texels),
-      Wraps{Wrap::clamp, Wrap::clamp}, image.alpha);
-  result.skins = skins_of(tile, *result.texture, border);
   drop_repeated(result.facets, result.skins);
   return result;
 }

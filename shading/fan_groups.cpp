@@ -28,6 +28,19 @@ struct Side {
   std::uint32_t corner = 0;
 };
 
+/// Sorts the sides, and calls visit(a, b) for the corners at each edge that exactly two have.
+template <class Visit>
+void visit_neighbours(std::span<Side> sides, const Visit& visit) {
+  sort_few(sides,
+           [](const Side& side) { return std::uint64_t{side.far_place} << 32 | side.corner; });
+  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+    while (end < sides.size() && sides[end].far_place == sides[begin].far_place)
+      ++end;
+    if (end - begin == 2)
+      visit(sides[begin].corner, sides[begin + 1].corner);
+  }
+}
+
 /// Of each corner the least one of its fan; none if all are one fan.
 std::vector<std::uint32_t> find_fans(std::span<const FanCorner> corners, double cosine) {
   std::vector<Side> sides;
@@ -36,20 +49,12 @@ std::vector<std::uint32_t> find_fans(std::span<const FanCorner> corners, double 
     sides.push_back({corners[i].next, i});
     sides.push_back({corners[i].previous, i});
   }
-  sort_few(std::span(sides),
-           [](const Side& side) { return std::uint64_t{side.far_place} << 32 | side.corner; });
   UnionFind fans(static_cast<std::uint32_t>(corners.size()));
   std::size_t count = corners.size();
-  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
-    while (end < sides.size() && sides[end].far_place == sides[begin].far_place)
-      ++end;
-    if (end - begin != 2)
-      continue;
-    const std::uint32_t a = sides[begin].corner;
-    const std::uint32_t b = sides[begin + 1].corner;
+  visit_neighbours(std::span(sides), [&](std::uint32_t a, std::uint32_t b) {
     if (cosine_between(corners[a].area, corners[b].area) >= cosine)
       count -= std::size_t{fans.join(a, b)};
-  }
+  });
   if (count <= 1)
     return {};
   std::vector<std::uint32_t> fan_of(corners.size());
@@ -70,26 +75,18 @@ bool are_one_fan(std::span<const FanCorner> corners, double cosine) {
     sizes[i] = length(corners[i].area);
     fan_of[i] = i;
   }
-  sort_few(sides,
-           [](const Side& side) { return std::uint64_t{side.far_place} << 32 | side.corner; });
   std::size_t count = corners.size();
-  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
-    while (end < sides.size() && sides[end].far_place == sides[begin].far_place)
-      ++end;
-    if (end - begin != 2)
-      continue;
-    const std::uint32_t a = sides[begin].corner;
-    const std::uint32_t b = sides[begin + 1].corner;
+  visit_neighbours(sides, [&](std::uint32_t a, std::uint32_t b) {
     const double size = sizes[a] * sizes[b];
     const bool meet = (size > 0 ? dot(corners[a].area, corners[b].area) / size : -1) >= cosine;
     const std::size_t gone = fan_of[b];
     const std::size_t stays = fan_of[a];
     if (!meet || gone == stays)
-      continue;
+      return;
     for (std::size_t i = 0; i < corners.size(); ++i)
       fan_of[i] = fan_of[i] == gone ? stays : fan_of[i];
     --count;
-  }
+  });
   return count <= 1;
 }
 

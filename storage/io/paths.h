@@ -1,6 +1,8 @@
 // Arithmetic of paths; looks at no file.
 #pragma once
 
+#include "hierarchy/small_letters.h"
+
 #include <algorithm>
 #include <filesystem>
 #include <string>
@@ -14,11 +16,7 @@ inline bool is_within(const std::filesystem::path& path, const std::filesystem::
 
 /// ".glb" of "a.GLB": the ending of its name, with letters of ASCII small.
 inline std::string lower_extension(const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  std::ranges::transform(ending, ending.begin(), [](char letter) {
-    return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
-  });
-  return ending;
+  return small_letters(path.extension().string());
 }
 
 }  // namespace meshhier::storage

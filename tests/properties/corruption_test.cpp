@@ -161,7 +161,7 @@ class CorruptionTest : public testing::TestWithParam<Victim> {
   struct Strides {
     std::size_t small = 1;  ///< manifest, index, outline
     std::size_t close = 1;  ///< the root, a tile between, a partition
-    std::size_t rest = 1;   ///< other tiles, and the preview: a picture is known by its checksum
+    std::size_t rest = 1;
   };
 
   /// Calls damage(bytes, at) for positions of each file.
@@ -183,8 +183,6 @@ class CorruptionTest : public testing::TestWithParam<Victim> {
 
   static std::size_t stride_of(const fs::path& path, const Strides& strides) {
     const std::string name = relative(path);
-    if (name == "preview.webp")
-      return strides.rest;
     if (!name.starts_with("tiles/"))
       return strides.small;
     const bool is_close = name == "tiles/00/000000.glb" || name == "tiles/01/000000.glb" ||

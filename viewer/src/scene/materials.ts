@@ -26,7 +26,7 @@ if (outwards * faceDirection < 0.0) {
   vec3 eye = isOrthographic ? vec3(0.0, 0.0, 1.0) : normalize(vViewPosition);
   float facing = dot(normal, eye);
   vec3 aside = normal - facing * eye;
-  normal = normalize(mix(-aside, aside, smoothstep(0.25, 0.75, facing)) + max(facing, 0.001) * eye);
+  normal = normalize(mix(-aside, aside, smoothstep(0.6, 0.98, facing)) + max(facing, 0.001) * eye);
 }
 #endif`;
 
@@ -58,7 +58,7 @@ diffuseColor.rgb *= ${HEIGHT_COLOURS.slice(1).reduce((below, hex, i) => `mix(${b
 /// How the normal turns from one pixel to the next: away from itself over an edge, towards itself in a hollow. Along silhouettes it turns
 /// from a surface to the one behind it, which is neither.
 const CAVITIES = `#include <normal_fragment_maps>
-float bend = (dFdx(normal).x + dFdy(normal).y) * smoothstep(0.15, 0.5, abs(normal.z));
+float bend = (dFdx(normal).x + dFdy(normal).y) * smoothstep(0.4, 0.8, abs(normal.z));
 diffuseColor.rgb *= clamp(1.0 + 1.8 * bend, 0.5, 1.4);`;
 
 /// Looks of one key have the same surfaces.

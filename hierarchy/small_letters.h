@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace meshhier::mesh_io {
+namespace meshhier {
 
 /// A to Z as a to z, whatever the locale; all else as it is.
 inline std::string small_letters(std::string_view text) {
@@ -14,4 +14,4 @@ inline std::string small_letters(std::string_view text) {
   return small;
 }
 
-}  // namespace meshhier::mesh_io
+}  // namespace meshhier
