@@ -24,6 +24,19 @@ function modeOf(page) {
   return page.evaluate(() => window.meshhier.stats()?.mode ?? 'TP');
 }
 
+/// Remembers each picture's mode: a small model shows its original triangles wherever a view rests, and others on the way only.
+function watchModes(page) {
+  return page.addInitScript(() => {
+    window.modesShown = new Set();
+    const look = () => {
+      const mode = window.meshhier?.stats()?.mode;
+      if (mode !== undefined) window.modesShown.add(mode);
+      requestAnimationFrame(look);
+    };
+    look();
+  });
+}
+
 /// Parts of the picture's width and height where the model may be hit: first the middle.
 const PLACES = [[0.5, 0.5], [0.5, 0.6], [0.56, 0.5], [0.44, 0.5], [0.5, 0.42], [0.6, 0.58], [0.4, 0.58], [0.5, 0.66]];
 
@@ -39,7 +52,8 @@ async function closer(page) {
   }
 }
 
-/// Down to the surface in the middle of the picture, as a double click does; each mode's first settled picture is kept.
+/// Down to the surface in the middle of the picture, as a double click does; each mode's first settled picture is kept. The modes
+/// that were shown.
 async function goDown(page, keep) {
   const seen = new Set();
   for (let step = 0; step < MOST_STEPS && !seen.has('DZM'); ++step) {
@@ -49,12 +63,13 @@ async function goDown(page, keep) {
     seen.add(mode);
     await closer(page);
   }
-  return seen;
+  return page.evaluate(() => [...window.modesShown]);
 }
 
-async function visit(browser, report, { origin, pictures, screen, index, name, strip }) {
+async function visit(browser, report, { origin, pictures, screen, name, isFirst, strip }) {
   const page = await browser.newPage({ reducedMotion: 'reduce', ...SCREENS[screen] });
   page.setDefaultTimeout(PATIENCE);
+  await watchModes(page);
   const complaints = [];
   page.on('console', (message) => ['error', 'warning'].includes(message.type()) && complaints.push(message.text()));
   page.on('pageerror', (error) => complaints.push(String(error)));
@@ -63,11 +78,11 @@ async function visit(browser, report, { origin, pictures, screen, index, name, s
   await page.waitForFunction(() => document.querySelector('a.cell') !== null && document.querySelector('.cell-stage.waiting') === null, null, { timeout: PATIENCE });
   await page.waitForLoadState('networkidle');
   await page.waitForFunction(() => document.querySelector('.cell-stage.waiting') === null);
-  if (index === 0) await shoot(`modes-${screen}-TP`);
+  if (isFirst) await shoot(`modes-${screen}-TP`);
   if (strip) await shoot('strip-00-TP');
-  await page.locator('a.cell').nth(index).click();
-  const seen = await goDown(page, async (mode, step, isFirst) => {
-    if (isFirst) await shoot(`modes-${screen}-${name}-${mode}`);
+  await page.locator('a.cell', { has: page.getByText(name, { exact: true }) }).click();
+  const seen = await goDown(page, async (mode, step, isNew) => {
+    if (isNew) await shoot(`modes-${screen}-${name}-${mode}`);
     if (strip) await shoot(`strip-${String(step + 1).padStart(2, '0')}-${mode}`);
   });
   const stats = await page.evaluate(() => window.meshhier.stats());
@@ -75,7 +90,7 @@ async function visit(browser, report, { origin, pictures, screen, index, name, s
   await page.keyboard.press('p');
   await settle(page);
   await shoot(`modes-${screen}-${name}-DZM-wires`);
-  const good = ['CWV', 'ZSV', 'DZM'].every((mode) => seen.has(mode)) && complaints.length === 0;
+  const good = ['CWV', 'ZSV', 'DZM'].every((mode) => seen.includes(mode)) && complaints.length === 0;
   report.line(`modes ${screen} ${name}`, good,
     `${['TP', ...seen].join(' ')}; ${stats.fetchedFiles} tiles, ${stats.fetchedBytes} bytes, ${stats.savedBytes} saved; ${complaints.join('; ') || 'no complaints'}`);
   await page.close();
@@ -86,7 +101,7 @@ async function visitAll(browser, report, [pictures, page, ...directories]) {
   await withSite(page, hierarchies, async (origin) => {
     for (const screen of Object.keys(SCREENS))
       for (const [index, { name }] of hierarchies.entries())
-        await visit(browser, report, { origin, pictures, screen, index, name, strip: screen === 'desktop' && index === 0 });
+        await visit(browser, report, { origin, pictures, screen, name, isFirst: index === 0, strip: screen === 'desktop' && index === 0 });
   });
 }
 

@@ -25,10 +25,11 @@ vi.mock('../../page/view/model_view.js', () => ({
 const BALL = { centre: [0, 0, 0] as const, radius: 2 };
 const [FIRST, NEXT] = [{ yaw: 0, pitch: 0 }, { yaw: 1, pitch: 0 }];
 
-function makeStage(): { stage: HTMLElement; classes: Set<string> } {
+function makeStage(isVisible = true): { stage: HTMLElement; classes: Set<string> } {
   const classes = new Set<string>();
   const classList = { add: (name: string) => { classes.add(name); }, remove: (name: string) => { classes.delete(name); } };
-  return { stage: { classList, append: () => undefined } as unknown as HTMLElement, classes };
+  const stage = { classList, append: () => undefined, checkVisibility: () => isVisible };
+  return { stage: stage as unknown as HTMLElement, classes };
 }
 
 describe('the shaded root of a cell', () => {
@@ -65,5 +66,14 @@ describe('the shaded root of a cell', () => {
     solid.end();
     await vi.advanceTimersByTimeAsync(5000);
     expect(made).toHaveLength(0);
+  });
+
+  it('draws nothing in a cell that was left while its code came', async () => {
+    const solid = new Solid('a.hier', makeStage(false).stage);
+    solid.await(BALL, FIRST);
+    await vi.advanceTimersByTimeAsync(2000);
+    await vi.dynamicImportSettled();
+    expect(made).toHaveLength(0);
+    solid.end();
   });
 });
