@@ -5,6 +5,7 @@
 #include "partition/top_tree.h"
 #include "storage/io/file.h"
 #include "storage/io/file_checksum.h"
+#include "tests/support/interrupter.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_hierarchy.h"
 
@@ -54,25 +55,6 @@ AllTriangles read_triangles(SourceMesh& mesh, std::size_t in_flight = kInFlight)
 Triangles triangles_of(SourceMesh& mesh) {
   return read_triangles(mesh).triangles;
 }
-
-/// Cancels when the given number of units is done.
-class CancellingProgress final : public execution::Progress {
- public:
-  CancellingProgress(execution::CancelToken& token, std::uint64_t after)
-      : token_(token), after_(after) {}
-  void stage(std::string_view, std::uint64_t, std::string_view) override {}
-  void advance(std::uint64_t count) override {
-    done_ += count;
-    if (done_ >= after_)
-      token_.cancel();
-  }
-  void finish(std::string_view) override {}
-
- private:
-  execution::CancelToken& token_;
-  std::uint64_t after_;
-  std::uint64_t done_ = 0;
-};
 
 class SourceMeshTest : public testing::Test {
  protected:
@@ -382,7 +364,7 @@ TEST_F(SourceMeshTest, ABrokenVertexIsNamed) {
 
 TEST_F(SourceMeshTest, ACancelledJobEndsWhileReading) {
   tests::write_ply(tests::points(200'000), path());
-  CancellingProgress progress(cancel_, 1);
+  tests::Interrupter progress(cancel_, 1);
   try {
     open(path(), kInFlight, progress);
     FAIL() << "read to the end";

@@ -35,6 +35,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using tests::AtStage;
 using tests::Call;
 using tests::FaultyFileSystem;
 using tests::Interrupter;
@@ -56,8 +57,7 @@ class FaultsTest : public testing::TestWithParam<config::Container> {
     config_.output =
         directory_.path() / (GetParam() == storage::Container::files ? "mesh.hier" : "mesh.3tz");
     config_.storage.container = GetParam();
-    // A preview takes most of the time of so small a build, and is a file as any other.
-    config_.preview = GetParam() == storage::Container::archive;
+    config_.preview = false;  // it takes most of the time of so small a build
     config_.threads = 2;
     config_.partition.vertices = 80;
     config_.memory_budget = tests::tight_budget(config_, *real_);
@@ -208,6 +208,29 @@ TEST_P(FaultsTest, AnyCallMayFail) {
 
 TEST_P(FaultsTest, AnyCallMayFailWhileAnOutputIsReplaced) {
   EXPECT_GT(fail_every_call(1, true) * stride(), 200);
+}
+
+TEST_P(FaultsTest, AnyCallOfTheStageThatMakesThePreviewMayFail) {
+  config_.preview = true;
+  const Snapshot after = expected();
+  execution::CancelToken never;
+  for (std::uint64_t n = 1;; ++n) {
+    SCOPED_TRACE("call " + std::to_string(n));
+    FaultyFileSystem files;
+    AtStage progress("publish", [&] { files.fail(Call::any, n); });
+    const std::optional<ErrorCode> code = run(files, progress, never);
+    const bool failed = code.has_value();
+    EXPECT_EQ(code.value_or(ErrorCode::io), ErrorCode::io) << message_;
+    EXPECT_EQ(output(), failed ? Snapshot() : after);
+    EXPECT_EQ(run(files, true), std::nullopt) << message_;
+    ASSERT_EQ(output(), after);
+    EXPECT_EQ(names(), only_output());
+    fs::remove_all(config_.output);
+    if (!failed) {
+      EXPECT_GT(n, 20U);
+      return;
+    }
+  }
 }
 
 // Nothing is tidied up then: it is as if the process had been killed.

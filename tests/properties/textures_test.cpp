@@ -6,6 +6,7 @@
 #include "inspection/verify.h"
 #include "pipeline/build.h"
 #include "storage/format/hierarchy_reader.h"
+#include "tests/support/interrupter.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/sizes.h"
 #include "tests/support/textured_torus.h"
@@ -17,7 +18,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <fstream>
-#include <functional>
 #include <iterator>
 #include <map>
 #include <memory>
@@ -39,6 +39,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
+using tests::AtStage;
 using tests::kMiB;
 using tests::TexturedTorus;
 using tests::TexturedTriangle;
@@ -104,23 +105,6 @@ class StoppedStage final : public execution::Progress {
   execution::CancelToken& cancel_;
   std::uint64_t after_, steps_ = 0;
   std::string only_;
-};
-
-/// Does something when a stage begins.
-class AtStage final : public execution::Progress {
- public:
-  AtStage(std::string stage, std::function<void()> act)
-      : stage_(std::move(stage)), act_(std::move(act)) {}
-  void stage(std::string_view name, std::uint64_t, std::string_view) override {
-    if (name == stage_)
-      act_();
-  }
-  void advance(std::uint64_t) override {}
-  void finish(std::string_view) override {}
-
- private:
-  std::string stage_;
-  std::function<void()> act_;
 };
 
 class TexturesTest : public testing::Test {

@@ -46,21 +46,28 @@ class Interrupter final : public execution::Progress {
   std::set<std::string> stages_;
 };
 
-/// Sets the token at the beginning of the stage of that name.
-class StageInterrupter final : public execution::Progress {
+/// Calls a function at the beginning of the stage of that name.
+class AtStage : public execution::Progress {
  public:
-  StageInterrupter(execution::CancelToken& token, std::string stage)
-      : token_(token), stage_(std::move(stage)) {}
+  AtStage(std::string stage, std::function<void()> begins)
+      : stage_(std::move(stage)), begins_(std::move(begins)) {}
   void stage(std::string_view name, std::uint64_t, std::string_view) override {
     if (name == stage_)
-      token_.cancel();
+      begins_();
   }
   void advance(std::uint64_t) override {}
   void finish(std::string_view) override {}
 
  private:
-  execution::CancelToken& token_;
   std::string stage_;
+  std::function<void()> begins_;
+};
+
+/// Sets the token at the beginning of the stage of that name.
+class StageInterrupter final : public AtStage {
+ public:
+  StageInterrupter(execution::CancelToken& token, std::string stage)
+      : AtStage(std::move(stage), [&token] { token.cancel(); }) {}
 };
 
 }  // namespace meshhier::tests
