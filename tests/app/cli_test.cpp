@@ -134,11 +134,12 @@ class CommandLine : public ::testing::Test {
     return work() / name;
   }
 
-  /// A config for five partitions of 500 vertices; `more` adds keys.
+  /// A config for five partitions of 500 vertices, without a preview, which takes most of so small
+  /// a build; `more` adds keys.
   std::string write_config(const std::string& more = "") const {
     write_text(work() / "a.json",
                "// a comment\n{\"input\": \"a.ply\", \"output\": \"a.hier\",\n"
-               " \"partition\": {\"vertices\": 500}" +
+               " \"partition\": {\"vertices\": 500}, \"preview\": false" +
                    more + "}\n");
     return (work() / "a.json").string();
   }
@@ -210,7 +211,8 @@ TEST_F(CommandLine, HelpOfABuildShowsTheDefaultsAndHelpOfTheConfigAllKeys) {
 TEST_F(CommandLine, ABuildNeedsNoConfigIfAllIsSet) {
   const std::string input = "input=" + write_mesh("a.ply").string();
   const std::string output = "output=" + hierarchy();
-  const Outcome outcome = run({"build", "--set", input, output, "partition.vertices=500"});
+  const Outcome outcome =
+      run({"build", "--set", input, output, "partition.vertices=500", "preview=false"});
   EXPECT_EQ(outcome.code, 0) << outcome.messages;
   const auto without = contents(hierarchy());
   EXPECT_EQ(run({"build", write_config(), "--force"}).code, 0);
@@ -569,7 +571,7 @@ TEST_F(CommandLine, AMeshIsEnough) {
   EXPECT_EQ(names(), (std::set<std::string>{"a.hier", "a.ply"}));
   const auto by_mesh = contents(hierarchy());
   EXPECT_EQ(run({"build", mesh}).code, kExists);
-  EXPECT_EQ(run({"build", write_config(), "--force"}).code, 0);
+  EXPECT_EQ(run({"build", write_config(), "--force", "--set", "preview=true"}).code, 0);
   EXPECT_EQ(contents(hierarchy()), by_mesh);
   EXPECT_EQ(run({"build", "--set", "partition.vertices=500", "--force", mesh}).code, 0);
   EXPECT_EQ(run({"build", "--force", "--set", "partition.vertices=500", mesh}).code, 0);

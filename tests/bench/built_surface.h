@@ -7,6 +7,7 @@
 #include "execution/progress.h"
 #include "pipeline/build.h"
 #include "storage/format/hierarchy_reader.h"
+#include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
 
 #include <memory>
@@ -20,7 +21,7 @@ class BuiltSurface {
                         config::Normals normals = config::Normals::smooth) {
     const auto path = directory_.path() / "mesh.ply";
     write_ply(*files_, {path}, *make_surface(surface));
-    config::Config config;
+    config::Config config = tests::quick_config();
     config.input = path;
     config.output = directory_.path() / "mesh.hier";
     config.partition.count = 11;

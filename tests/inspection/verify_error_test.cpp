@@ -7,6 +7,7 @@
 #include "pipeline/build.h"
 #include "storage/format/layout.h"
 #include "tests/support/meshes.h"
+#include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
 
 #include <algorithm>
@@ -233,7 +234,7 @@ TEST_F(VerifyErrorTest, ASoupSaysHowFarItIsOff) {
   tests::write_ply(soup, input);
   for (const auto method : {config::SimplifyMethod::edge_collapse,
                             config::SimplifyMethod::half_edge, config::SimplifyMethod::cluster}) {
-    config::Config config;
+    config::Config config = tests::quick_config();
     config.input = input;
     config.output = path();
     config.partition.vertices = 500;
@@ -429,7 +430,7 @@ TEST_P(VerifyErrorModelTest, BoundsHoldForEveryTileOfAScan) {
   const fs::path model = fs::path(MESHHIER_MODELS_DIR) / GetParam();
   if (!fs::exists(model))
     GTEST_SKIP() << "no " << model << ": real scans are not there";
-  config::Config config;
+  config::Config config = tests::quick_config();
   config.input = model;
   config.output = path();
   config.partition.vertices = 1024;

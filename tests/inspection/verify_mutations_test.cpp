@@ -252,6 +252,7 @@ TEST_F(VerifyMutationsTest, NoValueOfTheManifestMayBeAnother) {
 
 TEST_F(VerifyMutationsTest, NoValueOfAnImportedRoundedAndPlacedOneMayBeAnother) {
   config::Config config = small();
+  config.preview = false;
   const fs::path input = directory_.path() / "mesh.obj";
   std::ofstream stream(input);
   const tests::TestMesh sphere = tests::duplicates(2000);
@@ -332,6 +333,7 @@ std::vector<Field> fields() {
 
 TEST_F(VerifyMutationsTest, NoValueOfTheIndexMayBeAnother) {
   config::Config config = small();
+  config.preview = false;
   config.input = mesh("mesh.ply");
   build(config);
   const std::vector<TileRecord> records = storage::HierarchyReader(*files_, path()).records();

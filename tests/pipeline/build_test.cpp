@@ -13,6 +13,7 @@
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/interrupter.h"
 #include "tests/support/meshes.h"
+#include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/simplify_methods.h"
 #include "tests/support/sizes.h"
@@ -56,7 +57,7 @@ class BuildTest : public testing::Test {
   fs::path output_path() const { return directory_.path() / "mesh.hier"; }
 
   config::Config config(std::uint32_t partition_vertices = 100) const {
-    config::Config config;
+    config::Config config = tests::quick_config();
     config.input = mesh_path();
     config.output = output_path();
     config.threads = 2;

@@ -5,6 +5,7 @@
 #include "pipeline/build.h"
 #include "storage/format/hierarchy_reader.h"
 #include "tests/support/meshes.h"
+#include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
 
 #include <algorithm>
@@ -36,7 +37,7 @@ class AttributesTest : public testing::Test {
   void build(const mesh_io::PlyContent& content, const auto& positions,
              const std::vector<float>& attributes, const TestMesh& mesh,
              config::Representative kind) {
-    config::Config config;
+    config::Config config = tests::quick_config();
     config.input = directory_.path() / "mesh.ply";
     config.output = directory_.path() / "mesh.hier";
     config.threads = 2;

@@ -11,6 +11,7 @@
 #include "tests/cluster_simplify/test_tiles.h"
 #include "tests/support/loaded_mesh.h"
 #include "tests/support/meshes.h"
+#include "tests/support/quick_config.h"
 #include "tests/support/same_tile.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/simplify_methods.h"
@@ -45,7 +46,7 @@ ShadedHierarchy build_shaded(const LoadedMesh& mesh, const config::SimplifyConfi
                              Normals normals) {
   const tests::TemporaryDirectory directory;
   const auto files = storage::make_posix_file_system();
-  config::Config config;
+  config::Config config = tests::quick_config();
   config.input = directory.path() / "mesh.ply";
   config.output = directory.path() / "mesh.hier";
   bench::write_ply(*files, {directory.path() / "mesh.ply"}, *bench::as_generated(mesh));

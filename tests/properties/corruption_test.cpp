@@ -86,13 +86,22 @@ class CorruptionTest : public testing::TestWithParam<Victim> {
   static constexpr const char* kDirectory = "/models/mesh.hier";
   static constexpr const char* kExported = "/models/out.ply";
 
-  void SetUp() override {
+  void SetUp() override { begin(); }
+
+  void begin() {
     build(GetParam().surface, kDirectory);
     paths_ = files_.list(kDirectory);
     ASSERT_GE(paths_.size(), 10U);
     ASSERT_EQ(complaint(), "");
     for (const auto& [name, command] : commands_)
       expected_[name] = outcome_of(command).text;
+  }
+
+  /// To look at a preview takes longer than all else together.
+  void begin_without_preview() {
+    files_.remove_all(kDirectory);
+    preview_ = false;
+    begin();
   }
 
   void TearDown() override { RecordProperty("damages", std::to_string(damages_)); }
@@ -102,6 +111,7 @@ class CorruptionTest : public testing::TestWithParam<Victim> {
     config.input = "/models/mesh.ply";
     config.output = to;
     config.threads = 1;
+    config.preview = preview_;
     config.partition.count = 5;  // with early nodes
     config.simplify.vertices = 12;
     bench::write_ply(files_, {config.input.front(), true}, *bench::make_surface(surface));
@@ -167,18 +177,22 @@ class CorruptionTest : public testing::TestWithParam<Victim> {
   /// Calls damage(bytes, at) for positions of each file.
   template <class Damage>
   void damage_each(const Strides& strides, const Damage& damage) {
-    for (const fs::path& path : paths_) {
-      SCOPED_TRACE(relative(path));
-      const Bytes whole = files_.bytes(path);
-      const std::size_t step = stride_of(path, strides);
-      for (std::size_t at = 0; at < whole.size() && !HasFailure(); at += step) {
-        SCOPED_TRACE(fmt::format("at byte {} of {}", at, whole.size()));
-        damage(files_.bytes(path), at);
-        expect_noticed({relative(path)}, at % 64 == 0);
-        files_.bytes(path) = whole;
-      }
-    }
+    for (const fs::path& path : paths_)
+      damage_file(path, stride_of(path, strides), damage);
     EXPECT_EQ(complaint(), "");
+  }
+
+  template <class Damage>
+  void damage_file(const fs::path& path, std::size_t stride, const Damage& damage) {
+    SCOPED_TRACE(relative(path));
+    const Bytes whole = files_.bytes(path);
+    ASSERT_FALSE(whole.empty());
+    for (std::size_t at = 0; at < whole.size() && !HasFailure(); at += stride) {
+      SCOPED_TRACE(fmt::format("at byte {} of {}", at, whole.size()));
+      damage(files_.bytes(path), at);
+      expect_noticed({relative(path)}, at % 64 == 0);
+      files_.bytes(path) = whole;
+    }
   }
 
   static std::size_t stride_of(const fs::path& path, const Strides& strides) {
@@ -190,6 +204,7 @@ class CorruptionTest : public testing::TestWithParam<Victim> {
     return is_close ? strides.close : strides.rest;
   }
 
+  bool preview_ = true;
   tests::MemoryFiles files_;
   execution::NoProgress progress_;
   execution::CancelToken cancel_;
@@ -212,17 +227,29 @@ class CorruptionTest : public testing::TestWithParam<Victim> {
   std::uint64_t damages_ = 0;
 };
 
+void flip_bit(Bytes& bytes, std::size_t at) {
+  bytes[at] ^= std::byte{1} << (at % 8);
+}
+
 TEST_P(CorruptionTest, AFlippedBitAtAnyByteIsFoundAndNamed) {
-  damage_each({1, 1, 101},
-              [](Bytes& bytes, std::size_t at) { bytes[at] ^= std::byte{1} << (at % 8); });
+  begin_without_preview();
+  damage_each({1, 1, 101}, flip_bit);
 }
 
 TEST_P(CorruptionTest, AnInvertedByteIsFoundAndNamed) {
+  begin_without_preview();
   damage_each({5, 5, 103}, [](Bytes& bytes, std::size_t at) { bytes[at] = ~bytes[at]; });
 }
 
 TEST_P(CorruptionTest, AnyTruncationIsFoundAndNamed) {
+  begin_without_preview();
   damage_each({1, 7, 107}, [](Bytes& bytes, std::size_t at) { bytes.resize(at); });
+}
+
+TEST_P(CorruptionTest, ADamagedPreviewIsFoundAndNamed) {
+  const fs::path preview = storage::preview_path(kDirectory);
+  damage_file(preview, 17, flip_bit);
+  damage_file(preview, 19, [](Bytes& bytes, std::size_t at) { bytes.resize(at); });
 }
 
 TEST_P(CorruptionTest, MoreBytesAreFoundAndNamed) {

@@ -6,6 +6,7 @@
 #include "pipeline/build.h"
 #include "storage/format/hierarchy_reader.h"
 #include "tests/support/meshes.h"
+#include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/simplify_methods.h"
 
@@ -47,7 +48,7 @@ class Built {
  public:
   explicit Built(const Case& c) {
     tests::write_ply(c.mesh, directory_.path() / "mesh.ply");
-    config::Config config;
+    config::Config config = tests::quick_config();
     config.input = directory_.path() / "mesh.ply";
     config.output = directory_.path() / "mesh.hier";
     config.partition.count = c.partitions;

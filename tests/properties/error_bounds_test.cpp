@@ -4,6 +4,7 @@
 #include "inspection/verify_error.h"
 #include "pipeline/build.h"
 #include "tests/support/meshes.h"
+#include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/simplify_methods.h"
 
@@ -30,7 +31,7 @@ class ErrorBoundsTest : public testing::Test {
                                                     const config::SimplifyConfig& simplify) {
     const fs::path input = directory_.path() / "mesh.ply";
     tests::write_ply(mesh, input);
-    config::Config config;
+    config::Config config = tests::quick_config();
     config.input = input;
     config.output = directory_.path() / "mesh.hier";
     config.partition.vertices = 150;

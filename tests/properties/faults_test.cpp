@@ -12,6 +12,7 @@
 #include "tests/support/interrupter.h"
 #include "tests/support/loaded_mesh.h"
 #include "tests/support/meshes.h"
+#include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/tight_budget.h"
 #include "tests/support/try_build.h"
@@ -57,7 +58,6 @@ class FaultsTest : public testing::TestWithParam<config::Container> {
     config_.output =
         directory_.path() / (GetParam() == storage::Container::files ? "mesh.hier" : "mesh.3tz");
     config_.storage.container = GetParam();
-    config_.preview = false;  // it takes most of the time of so small a build
     config_.threads = 2;
     config_.partition.vertices = 80;
     config_.memory_budget = tests::tight_budget(config_, *real_);
@@ -198,7 +198,7 @@ class FaultsTest : public testing::TestWithParam<config::Container> {
   tests::TemporaryDirectory directory_{kInMemory};  ///< looked at as a whole
   tests::TemporaryDirectory kept_{kInMemory};
   std::unique_ptr<storage::FileSystem> real_ = storage::make_posix_file_system();
-  config::Config config_;
+  config::Config config_ = tests::quick_config();
   std::string message_;
 };
 
@@ -212,6 +212,7 @@ TEST_P(FaultsTest, AnyCallMayFailWhileAnOutputIsReplaced) {
 
 TEST_P(FaultsTest, AnyCallOfTheStageThatMakesThePreviewMayFail) {
   config_.preview = true;
+  config_.partition.vertices = 1000;  // one tile: few calls besides
   const Snapshot after = expected();
   execution::CancelToken never;
   for (std::uint64_t n = 1;; ++n) {
@@ -227,7 +228,7 @@ TEST_P(FaultsTest, AnyCallOfTheStageThatMakesThePreviewMayFail) {
     EXPECT_EQ(names(), only_output());
     fs::remove_all(config_.output);
     if (!failed) {
-      EXPECT_GT(n, 20U);
+      EXPECT_GT(n, 10U);
       return;
     }
   }

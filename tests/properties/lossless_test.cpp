@@ -5,6 +5,7 @@
 #include "inspection/verify.h"
 #include "pipeline/build.h"
 #include "tests/support/meshes.h"
+#include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
 
 #include <filesystem>
@@ -26,7 +27,7 @@ class LosslessTest : public testing::Test {
   /// Builds and expects what every hierarchy must keep.
   void expect_promises(const fs::path& input, const config::PartitionConfig& partition,
                        std::uint32_t tile_vertices) {
-    config::Config config;
+    config::Config config = tests::quick_config();
     config.input = input;
     config.output = directory_.path() / "mesh.hier";
     config.partition = partition;

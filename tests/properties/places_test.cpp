@@ -12,6 +12,7 @@
 #include "storage/format/hierarchy_reader.h"
 #include "tests/support/loaded_mesh.h"
 #include "tests/support/meshes.h"
+#include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/simplify_methods.h"
 
@@ -130,7 +131,7 @@ class BuiltMesh {
  private:
   tests::TemporaryDirectory directory_;
   std::unique_ptr<storage::FileSystem> files_ = storage::make_posix_file_system();
-  config::Config config_;
+  config::Config config_ = tests::quick_config();
   std::unique_ptr<storage::HierarchyReader> reader_;
   std::map<NodeId, PublishedTile> tiles_;
 };

@@ -10,6 +10,7 @@
 #include "pipeline/build.h"
 #include "storage/format/hierarchy_reader.h"
 #include "tests/support/memory_files.h"
+#include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/simplify_methods.h"
 #include "tests/support/sizes.h"
@@ -86,7 +87,7 @@ class StressTest : public testing::Test {
   tests::MemoryFiles files_;
   execution::NoProgress progress_;
   execution::CancelToken cancel_;
-  config::Config config_;
+  config::Config config_ = tests::quick_config();
 };
 
 /// Every case there is.
@@ -121,6 +122,7 @@ TEST_P(StressCaseTest, IsSoundInOnePartitionLargerThanTheMesh) {
   write(mesh(1000));
   use_tiles_of(32768);
   config_.memory_budget = 128 * tests::kMiB;  // tiles so large would take more
+  config_.preview = true;
   expect_sound();
 }
 

@@ -3,6 +3,7 @@
 #include "hierarchy/topology.h"
 #include "mesh_io/ply_writer.h"
 #include "pipeline/build.h"
+#include "tests/support/quick_config.h"
 
 #include <span>
 #include <utility>
@@ -44,7 +45,7 @@ AttributedMesh far_away(TestMesh shape) {
 
 config::Config half_edge_config(const std::filesystem::path& directory, std::uint32_t partitions,
                                 std::uint32_t tile_vertices) {
-  config::Config config;
+  config::Config config = quick_config();
   config.input = directory / "mesh.ply";
   config.output = directory / "mesh.hier";
   config.threads = 1;
