@@ -29,6 +29,17 @@ class Report {
   }
 }
 
+const MOST_WAIT = 120_000; // milliseconds
+
+/// Whether it comes to that.
+export async function until(page, holds) {
+  for (const began = Date.now(); !(await holds()); ) {
+    if (Date.now() - began > MOST_WAIT) return false;
+    await page.waitForTimeout(20);
+  }
+  return true;
+}
+
 export function readHierarchy(directory) {
   const manifest = JSON.parse(readFileSync(path.join(directory, 'hierarchy.json'), 'utf8'));
   return {
@@ -61,7 +72,7 @@ async function openPage(browser, url, errors) {
     if (reason !== 'net::ERR_ABORTED') errors.push(`${request.url()}: ${reason}`); // that is the page's own wish
   });
   await page.goto(url);
-  await page.waitForFunction(() => window.view !== undefined, null, { timeout: 120_000 }).catch((error) => {
+  await page.waitForFunction(() => window.view !== undefined, null, { timeout: MOST_WAIT }).catch((error) => {
     throw new Error(`${url} does not start: ${errors.join('; ') || error.message}`);
   });
   return page;

@@ -8,7 +8,7 @@
 import { readFileSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { collectComplaints, inChromium, readHierarchy } from './browser.mjs';
+import { collectComplaints, inChromium, readHierarchy, until } from './browser.mjs';
 import { serve } from './server.mjs';
 import { withSite } from './site.mjs';
 
@@ -87,6 +87,11 @@ async function placeOnModel(page) {
   return { x: width / 2, y: height / 2 };
 }
 
+/// Whether the page comes to show so many of them: what lies over the picture follows with its next frame.
+function shows(page, selector, count) {
+  return until(page, async () => (await page.locator(selector).count()) === count);
+}
+
 // ---- the tools, one after the other
 
 async function checkPick(visitor) {
@@ -104,17 +109,17 @@ async function checkPick(visitor) {
   await settle(page);
   const isFloat = ['x', 'y', 'z'].every((axis) => Math.fround(Number(snapped[axis])) === Number(snapped[axis]));
   visitor.check('pick a vertex', isFloat && free.x !== snapped.x, `${snapped.x}, ${snapped.y}, ${snapped.z}`);
-  visitor.check('pick marks it', (await page.locator('.tool-overlay circle').count()) === 1, 'one point');
+  visitor.check('pick marks it', await shows(page, '.tool-overlay circle', 1), 'one point');
   await visitor.picture(page, 'pick');
   await page.keyboard.press('Backspace');
-  visitor.check('pick taken back', (await page.locator('.tool-overlay circle').count()) === 0, 'no point');
+  visitor.check('pick taken back', await shows(page, '.tool-overlay circle', 0), 'no point');
   await page.keyboard.press('Enter');
   await page.locator('.tool-figures', { hasText: 'the original, partition' }).waitFor();
   const byKey = await figuresOf(page);
   visitor.check('pick by key', byKey.x === snapped.x, 'the middle of the picture');
   await page.keyboard.press('Escape');
   await page.keyboard.press('Escape');
-  visitor.check('Escape leads out of the tools', !(await page.locator('.tools').isVisible()) && page.url().includes('#models'), page.url());
+  visitor.check('Escape leads out of the tools', (await until(page, async () => !(await page.locator('.tools').isVisible()))) && page.url().includes('#models'), page.url());
   await visitor.close(page, 'pick');
 }
 
@@ -129,7 +134,7 @@ async function checkMeasure(visitor) {
   const number = (text) => Number.parseFloat(text);
   const [length, straight] = [number(figures.Length), number(figures.Straight)];
   visitor.check('measure', figures.Points === '3' && length >= straight && straight > 0, JSON.stringify(figures));
-  visitor.check('measure marks', (await page.locator('.tool-overlay line').count()) === 4 && (await page.locator('.tool-overlay text').count()) === 2, 'two parts');
+  visitor.check('measure marks', (await shows(page, '.tool-overlay line', 4)) && (await shows(page, '.tool-overlay text', 2)), 'two parts');
   await page.getByLabel('The model is in').selectOption('m');
   await page.getByLabel('Show').selectOption('mm');
   const inMillimetres = await figuresOf(page);
@@ -242,7 +247,7 @@ async function checkNotes(visitor) {
   await page.getByRole('button', { name: 'Remove Note 2' }).click();
   await page.getByRole('button', { name: 'Remove Note 1' }).click();
   await page.waitForFunction(() => !location.hash.includes('notes='));
-  visitor.check('notes loaded and removed', (await page.locator('.tool-list li').count()) === 0, 'none is left');
+  visitor.check('notes loaded and removed', await shows(page, '.tool-list li', 0), 'none is left');
   await visitor.picture(page, 'notes');
   await visitor.close(page, 'notes');
 }

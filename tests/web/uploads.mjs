@@ -47,7 +47,7 @@ async function checkMesh(page, report, { inbox, mesh }) {
   report.line('uploads mesh', same, 'it is in the inbox as it was, and is a model');
   await drop(page, [mesh]);
   await page.locator('.problem', { hasText: 'mesh.ply is in the inbox already' }).waitFor();
-  report.line('uploads taken', true, await page.locator('.problem p').innerText());
+  report.line('uploads taken', true, await page.locator('.problem-text').innerText());
 }
 
 async function checkFolder(page, report, { inbox, work, pictures }) {

@@ -6,7 +6,7 @@
 // PAGE: the directory that `npm run build` of viewer/ makes, dist/page. The first hierarchy should have some
 // partitions. Pictures go to the directory PICTURES. Exit code 2: wrong use; else see browser.mjs.
 import path from 'node:path';
-import { inChromium, loseDevice, readHierarchy } from './browser.mjs';
+import { inChromium, loseDevice, readHierarchy, until } from './browser.mjs';
 import { withSite } from './site.mjs';
 
 const WIDE = { viewport: { width: 1280, height: 800 } };
@@ -69,15 +69,6 @@ class Visitor {
   check(what, good, text = '') {
     this.report.line(what, good, text);
   }
-}
-
-/// Whether it comes to that.
-async function until(page, holds) {
-  for (const began = Date.now(); !(await holds()); ) {
-    if (Date.now() - began > PATIENCE) return false;
-    await page.waitForTimeout(20);
-  }
-  return true;
 }
 
 /// Whether the picture of a part of the page becomes another one.
