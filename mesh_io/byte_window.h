@@ -1,9 +1,10 @@
-// A file read forwards through one buffer of fixed size.
+// A file read forwards through one buffer of fixed size, or of its own if that is smaller.
 #pragma once
 
 #include "storage/io/file.h"
 #include "storage/io/file_checksum.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -32,7 +33,9 @@ class ByteWindow {
   static constexpr std::size_t kCapacity = std::size_t{1} << 20;
 
   explicit ByteWindow(const InputFile& input)
-      : input_(input), buffer_(std::make_unique_for_overwrite<std::byte[]>(kCapacity)) {}
+      : input_(input),
+        buffer_(std::make_unique_for_overwrite<std::byte[]>(
+            static_cast<std::size_t>(std::min<std::uint64_t>(kCapacity, input.bytes)))) {}
 
   /// Offset in the file of begin(), and what follows from there.
   std::uint64_t offset() const { return base_ + begin_; }
@@ -58,7 +61,7 @@ class ByteWindow {
   bool refill(std::size_t bytes);
 
   InputFile input_;
-  std::unique_ptr<std::byte[]> buffer_;  ///< kCapacity
+  std::unique_ptr<std::byte[]> buffer_;  ///< kCapacity, or the whole file
   std::uint64_t base_ = 0;               ///< offset in the file of buffer_[0]
   std::size_t begin_ = 0;
   std::size_t end_ = 0;
