@@ -134,39 +134,57 @@ class FaultsTest : public testing::TestWithParam<config::Container> {
     return output();
   }
 
+  struct Failures {
+    std::uint64_t times = 1;   ///< so many calls, one after the other
+    bool replaces = false;     ///< an output that is there
+    bool can_exchange = true;  ///< else by two renames
+    std::string from;  ///< the stage whose calls are counted, and those after it; empty: all
+  };
+
   /// Lets the n-th call fail, and `times` - 1 after it, for all n that a build gets to. Every time
   /// the output must be the old one or the new one, and the next build must make the new one and
   /// leave nothing else. Returns how many builds failed.
-  /// Of archives, which are made the same way but for the last calls, every fourth.
-  int fail_every_call(std::uint64_t times, bool replaces, bool can_exchange = true) {
+  /// Of archives, which are made the same way but for the last calls, every fourth, unless a stage
+  /// is asked for.
+  int fail_every_call(const Failures& failures) {
+    const auto& [times, replaces, can_exchange, from] = failures;
     const Snapshot after = expected();
-    int failures = 0;
-    for (std::uint64_t n = 1;; n += static_cast<std::uint64_t>(stride())) {
+    const std::uint64_t step = from.empty() ? static_cast<std::uint64_t>(stride()) : 1;
+    int failed = 0;
+    for (std::uint64_t n = 1;; n += step) {
       SCOPED_TRACE("call " + std::to_string(n));
       const Snapshot before = replaces ? place_old_output() : Snapshot();
       FaultyFileSystem files;
-      files.fail(Call::any, n, times);
       if (!can_exchange)
         files.deny_exchange();
+      std::uint64_t failing = kForever;  // among all calls
+      const auto begin = [&, times = times] {
+        failing = files.calls(Call::any) + n;
+        files.fail(Call::any, n, times);
+      };
+      if (from.empty())
+        begin();
+      AtStage progress(from, begin);
       message_.clear();
-      const std::optional<ErrorCode> code = run(files, replaces);
+      const std::optional<ErrorCode> code =
+          run(files, progress, execution::CancelToken(), replaces);
       if (code)
         EXPECT_EQ(code, ErrorCode::io) << message_;
       else
         EXPECT_EQ(output(), after);
-      failures += code ? 1 : 0;
+      failed += code ? 1 : 0;
       const Snapshot found = output();
       const bool displaced =
           !can_exchange && found.empty() && fs::exists(storage::replaced_path(config_.output));
       EXPECT_TRUE(found == before || found == after || displaced) << message_;
-      const bool reached = files.calls(Call::any) >= n;
+      const bool reached = files.calls(Call::any) >= failing;
       FaultyFileSystem sound;
       EXPECT_EQ(run(sound, true), std::nullopt) << message_;
       EXPECT_EQ(output(), after);
       EXPECT_EQ(names(), only_output());
       fs::remove_all(config_.output);
       if (!reached || HasFailure())
-        return failures;
+        return failed;
     }
   }
 
@@ -203,48 +221,33 @@ class FaultsTest : public testing::TestWithParam<config::Container> {
 };
 
 TEST_P(FaultsTest, AnyCallMayFail) {
-  EXPECT_GT(fail_every_call(1, false) * stride(), 200);
+  EXPECT_GT(fail_every_call({}) * stride(), 200);
 }
 
 TEST_P(FaultsTest, AnyCallMayFailWhileAnOutputIsReplaced) {
-  EXPECT_GT(fail_every_call(1, true) * stride(), 200);
+  EXPECT_GT(fail_every_call({.replaces = true}) * stride(), 200);
 }
 
 TEST_P(FaultsTest, AnyCallOfTheStageThatMakesThePreviewMayFail) {
   config_.preview = true;
   config_.partition.vertices = 1000;  // one tile: few calls besides
-  const Snapshot after = expected();
-  execution::CancelToken never;
-  for (std::uint64_t n = 1;; ++n) {
-    SCOPED_TRACE("call " + std::to_string(n));
-    FaultyFileSystem files;
-    AtStage progress("publish", [&] { files.fail(Call::any, n); });
-    const std::optional<ErrorCode> code = run(files, progress, never);
-    const bool failed = code.has_value();
-    EXPECT_EQ(code.value_or(ErrorCode::io), ErrorCode::io) << message_;
-    EXPECT_EQ(output(), failed ? Snapshot() : after);
-    EXPECT_EQ(run(files, true), std::nullopt) << message_;
-    ASSERT_EQ(output(), after);
-    EXPECT_EQ(names(), only_output());
-    fs::remove_all(config_.output);
-    if (!failed) {
-      EXPECT_GT(n, 10U);
-      return;
-    }
-  }
+  EXPECT_GT(fail_every_call({.from = "publish"}), 10);
+  EXPECT_GT(fail_every_call({.times = kForever, .from = "publish"}), 10);
 }
 
 // Nothing is tidied up then: it is as if the process had been killed.
 TEST_P(FaultsTest, AnyCallMayBeTheLast) {
-  EXPECT_GT(fail_every_call(kForever, false) * stride(), 200);
+  EXPECT_GT(fail_every_call({.times = kForever}) * stride(), 200);
 }
 
 TEST_P(FaultsTest, AnyCallMayBeTheLastWhileAnOutputIsReplaced) {
-  EXPECT_GT(fail_every_call(kForever, true) * stride(), 200);
+  EXPECT_GT(fail_every_call({.times = kForever, .replaces = true}) * stride(), 200);
 }
 
 TEST_P(FaultsTest, AnyCallMayBeTheLastWhileAnOutputIsReplacedByTwoRenames) {
-  EXPECT_GT(fail_every_call(kForever, true, false) * stride(), 200);
+  EXPECT_GT(
+      fail_every_call({.times = kForever, .replaces = true, .can_exchange = false}) * stride(),
+      200);
 }
 
 TEST_P(FaultsTest, TheMessageNamesTheFile) {

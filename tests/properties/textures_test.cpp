@@ -81,11 +81,11 @@ struct BuiltTile {
   Image image;
 };
 
-/// Cancels after so many steps, of all stages or of one.
+/// Cancels after so many steps.
 class StoppedStage final : public execution::Progress {
  public:
-  StoppedStage(execution::CancelToken& cancel, std::uint64_t after, std::string only = "")
-      : cancel_(cancel), after_(after), only_(std::move(only)) {}
+  StoppedStage(execution::CancelToken& cancel, std::uint64_t after)
+      : cancel_(cancel), after_(after) {}
 
   void stage(std::string_view name, std::uint64_t, std::string_view) override {
     stage_name = name;
@@ -98,13 +98,12 @@ class StoppedStage final : public execution::Progress {
 
  private:
   void step() {
-    if ((only_.empty() || only_ == stage_name) && steps_++ >= after_)
+    if (steps_++ >= after_)
       cancel_.cancel();
   }
 
   execution::CancelToken& cancel_;
   std::uint64_t after_, steps_ = 0;
-  std::string only_;
 };
 
 class TexturesTest : public testing::Test {
@@ -134,7 +133,7 @@ class TexturesTest : public testing::Test {
 
   void stop(const config::Config& config, const std::string& stage) {
     execution::CancelToken cancel;
-    StoppedStage progress(cancel, 0, stage);
+    tests::StageInterrupter progress(cancel, stage);
     EXPECT_THROW(build_hierarchy(config, {}, {*files_, progress, cancel}), Error);
   }
   /// Of a torus whose pictures have at least so many bytes.
