@@ -1,4 +1,4 @@
-// A file read forwards through one buffer of fixed size, or of its own if that is smaller.
+// A file read forwards through one buffer: of fixed size, or of the file's if that is smaller.
 #pragma once
 
 #include "storage/io/file.h"
