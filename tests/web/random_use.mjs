@@ -14,6 +14,7 @@ const BURST = 8; // acts at once: the page has no time to rest
 const PATIENCE = 120_000; // milliseconds
 const KEYS = [...'abcdefghijklmnopqrstuvwxyz0123456789+-?', 'Enter', 'Escape', 'Backspace', 'Delete', 'Tab', ' ', 'Home',
   'ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', 'Shift+ArrowLeft', 'Shift+Tab'];
+const ACTS = ['key', 'key', 'key', 'tool', 'tool', 'click', 'drag', 'wheel', 'control', 'control'];
 const TOOLS = ['i', 'm', 'x', 'n', 'k'];
 
 class Hand {
@@ -51,9 +52,10 @@ class Hand {
     await this.page.mouse.up({ button: 'right' });
   }
 
+  /// The browser's answer to a turn of the wheel is not waited for: it is lost where what would scroll goes away before.
   async wheel() {
     await this.page.mouse.move(...this.place());
-    await this.page.mouse.wheel(0, 800 * (this.next() - 0.5));
+    this.page.mouse.wheel(0, 800 * (this.next() - 0.5)).catch(() => undefined);
   }
 
   /// A button, a choice, or a slider that is there, whatever lies over it.
@@ -69,8 +71,7 @@ class Hand {
     }, this.next());
   }
 
-  async act() {
-    const name = this.one(['key', 'key', 'key', 'tool', 'tool', 'click', 'drag', 'wheel', 'control', 'control']);
+  async act(name = this.one(ACTS)) {
     const doing = { name };
     this.doing.add(doing);
     await this[name]();
@@ -78,9 +79,14 @@ class Hand {
     ++this.done;
   }
 
-  /// Several acts at once. Throws where the browser does not come back from them: input has no patience of its own.
+  async frame() {
+    await this.page.evaluate(() => new Promise((done) => { requestAnimationFrame(done); }));
+  }
+
+  /// Several acts at once, and a frame after them. Throws where the page does not come back from them: input has no patience
+  /// of its own.
   async burst() {
-    const acts = Promise.all(Array.from({ length: BURST }, () => this.act()));
+    const acts = Promise.all(Array.from({ length: BURST }, () => this.act())).then(() => this.act('frame'));
     acts.catch(() => undefined);
     let timer;
     const late = new Promise((_, reject) => {
