@@ -1,8 +1,11 @@
 #include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
 #include "images/image_codec.h"
 #include "inspection/verify_parts.h"
 #include "storage/format/layout.h"
 
+#include <cstddef>
+#include <span>
 #include <string>
 
 #include <fmt/format.h>

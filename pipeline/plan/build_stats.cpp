@@ -86,7 +86,10 @@ void StageMeter::begin(std::string_view name) {
 }
 
 void StageMeter::end() {
-  const Reading now = read();
+  Reading now = read();
+  // A peak never falls, but the system's count of it does, by some 100 KiB.
+  now.usage.peak_resident_bytes =
+      std::max(now.usage.peak_resident_bytes, last_.usage.peak_resident_bytes);
   if (current_ < stages_.size())
     add_difference(last_, now, stages_[current_]);
   last_ = now;
@@ -115,8 +118,7 @@ void StageMeter::add_difference(const Reading& from, const Reading& to, StageSta
   stage.wall_seconds += to.clock - from.clock;
   stage.user_seconds += to.usage.user_seconds - from.usage.user_seconds;
   stage.system_seconds += to.usage.system_seconds - from.usage.system_seconds;
-  stage.peak_resident_bytes =
-      std::max(from.usage.peak_resident_bytes, to.usage.peak_resident_bytes);
+  stage.peak_resident_bytes = to.usage.peak_resident_bytes;
   const auto add = [&](std::uint64_t Traffic::*count) {
     stage.bytes.*count += difference(to.bytes.*count, from.bytes.*count);
   };

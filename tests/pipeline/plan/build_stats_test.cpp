@@ -85,6 +85,18 @@ TEST_F(StageMeterTest, AStageThatComesAgainGoesOn) {
   EXPECT_EQ(meter.stages()[1].peak_resident_bytes, 1100U);
 }
 
+TEST_F(StageMeterTest, APeakNeverFalls) {
+  StageMeter meter = make_meter();
+  meter.begin("partition");
+  usage_.peak_resident_bytes = 2000;
+  meter.begin("leaves");
+  usage_.peak_resident_bytes = 1900;
+  meter.end();
+  EXPECT_EQ(meter.stages()[0].peak_resident_bytes, 2000U);
+  EXPECT_EQ(meter.stages()[1].peak_resident_bytes, 2000U);
+  EXPECT_EQ(meter.total().peak_resident_bytes, 2000U);
+}
+
 TEST_F(StageMeterTest, ScratchBytesAreToldApartFromInputAndOutput) {
   StageMeter meter = make_meter();
   meter.stage("leaves", 0, "partitions");
