@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace meshhier::pipeline {
 namespace {
@@ -127,15 +128,16 @@ void SourceMesh::choose_origin() {
              round_origin(b.min.z, b.max.z)};
 }
 
-std::vector<partition::IdPoint> SourceMesh::sample(const importing::CopyList& copies) const {
+std::vector<partition::IdPoint> SourceMesh::take_sample(const importing::CopyList& copies) {
   const partition::SampleIds ids(summary_.vertices);
+  const std::vector<Vec3d> positions = std::exchange(sample_positions_, {});
   std::vector<partition::IdPoint> sample;
-  sample.reserve(sample_positions_.size());
+  sample.reserve(positions.size());
   importing::CopyCursor cursor(copies);
-  for (std::size_t i = 0; i < sample_positions_.size(); ++i) {
+  for (std::size_t i = 0; i < positions.size(); ++i) {
     const auto id = static_cast<std::uint32_t>(ids[i]);
     if (!cursor.is_copy(id))
-      sample.push_back({to_float(sample_positions_[i] - origin_), id});
+      sample.push_back({to_float(positions[i] - origin_), id});
   }
   return sample;
 }
@@ -182,8 +184,8 @@ std::uint64_t input_block_bytes(const JobSize& job) {
 }
 
 std::uint64_t sample_bytes(const JobSize& job) {
-  // The sample, its keys and its positions.
-  return std::min(job.vertex_count, partition::kSampleVertices) * (16 + 16 + 12 + 8);
+  // While the sample is sorted: its points, as they were and in order, and their keys.
+  return std::min(job.vertex_count, partition::kSampleVertices) * (16 + 16 + 16);
 }
 
 StageMemory ingest_memory(const JobSize& job) {

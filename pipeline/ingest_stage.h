@@ -59,8 +59,9 @@ class SourceMesh {
     return {to_float(summary_.bounds.min - origin_), to_float(summary_.bounds.max - origin_)};
   }
 
-  /// The vertices that partition::SampleIds names, but for copies.
-  std::vector<partition::IdPoint> sample(const importing::CopyList& copies) const;
+  /// The vertices that partition::SampleIds names, but for copies. Once: what ingest kept of them
+  /// goes.
+  std::vector<partition::IdPoint> take_sample(const importing::CopyList& copies);
 
   /// All vertices in blocks of at most MeshSource::kBlockSize, in the order of ids.
   std::uint64_t vertex_blocks() const;

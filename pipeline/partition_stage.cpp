@@ -82,10 +82,10 @@ struct BlockPlaces {
   }
 };
 
-TopTree find_splits(const SourceMesh& mesh, const importing::CopyList& copies,
+TopTree find_splits(SourceMesh& mesh, const importing::CopyList& copies,
                     storage::ScratchFile& scratch, const StageContext& context) {
   const Tree& tree = context.tree();
-  TopPlan plan = partition::plan_top(mesh.sample(copies), tree, context.config.partition.axis);
+  TopPlan plan = partition::plan_top(mesh.take_sample(copies), tree, context.config.partition.axis);
   if (plan.splits.empty())
     return {plan.chunks, {}};
   for (;;) {

@@ -222,7 +222,7 @@ TEST_F(SourceMeshTest, CoordinatesBeyondFloatAreRefused) {
 TEST_F(SourceMeshTest, TheSampleIsWhatItsIdsName) {
   const tests::TestMesh points = tests::points(3000);
   tests::write_ply(points, path());
-  const std::vector<partition::IdPoint> sample = open(path()).sample({});
+  const std::vector<partition::IdPoint> sample = open(path()).take_sample({});
   const partition::SampleIds ids(3000);
   ASSERT_EQ(sample.size(), ids.count());
   for (std::size_t i = 0; i < sample.size(); ++i) {
@@ -235,7 +235,7 @@ TEST_F(SourceMeshTest, ASampleOfManyVerticesIsSpreadOverAll) {
   const std::size_t count = partition::kSampleVertices + 100'000;
   const tests::TestMesh points = tests::points(count);
   tests::write_ply(points, path());
-  const std::vector<partition::IdPoint> sample = open(path()).sample({});
+  const std::vector<partition::IdPoint> sample = open(path()).take_sample({});
   ASSERT_EQ(sample.size(), partition::kSampleVertices);
   for (std::size_t i = 0; i < sample.size(); ++i) {
     ASSERT_EQ(sample[i].position, points.positions[sample[i].id]);
