@@ -39,17 +39,27 @@ export function roundedPose({ position: [a, b, c], target: [d, e, f] }: Pose): P
   return { position: [rounded(a), rounded(b), rounded(c)], target: [rounded(d), rounded(e), rounded(f)] };
 }
 
-function formatPath(path: string): string {
-  return path.split('/').map(encodeURIComponent).join('/');
+function decoded(part: string): string {
+  try {
+    return decodeURIComponent(part);
+  } catch {
+    return part;
+  }
+}
+
+/// A model's path as links write it. Listings may escape more or less of it: it is the same model then.
+export function linkPath(path: string): string {
+  return path.split('/').map((part) => encodeURIComponent(decoded(part))).join('/');
 }
 
 /// Null of what is no path.
 function parsePath(text: string): string | null {
   try {
-    return decodeURIComponent(text);
+    decodeURIComponent(text);
   } catch {
     return null;
   }
+  return linkPath(text);
 }
 
 function parseTriple(values: readonly number[]): Triple {
@@ -73,7 +83,7 @@ function parsePose(text: string): Pose | null {
   return problemOfPose(position, target) === null ? { position: parseTriple(position), target: parseTriple(target) } : null;
 }
 
-/// `hash` as `location.hash` has it. Null if it names no model.
+/// `hash` as `location.hash` has it; the path is as linkPath() has it. Null if it names no model.
 export function parseAddress(hash: string): Address | null {
   const text = hash.startsWith('#') ? hash.slice(1) : hash;
   if (text === '') return null;
@@ -87,5 +97,5 @@ export function parseAddress(hash: string): Address | null {
 export function formatAddress({ path, pose, choices }: Address): string {
   const rounded = pose === null ? null : roundedPose(pose);
   const camera = rounded === null ? '' : `&${[...rounded.position, ...rounded.target].join(',')}`;
-  return `#${formatPath(path)}${camera}${choices === '' ? '' : `&${choices}`}`;
+  return `#${linkPath(path)}${camera}${choices === '' ? '' : `&${choices}`}`;
 }

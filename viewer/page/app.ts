@@ -1,5 +1,5 @@
 // Shows what the address says: the gallery, or a model.
-import { formatAddress, NOWHERE, parseAddress, type Spot } from './address.js';
+import { formatAddress, linkPath, NOWHERE, parseAddress, type Spot } from './address.js';
 import { EarlyStart } from './early_start.js';
 import { Gallery } from './gallery/gallery.js';
 import type { Order } from './gallery/orders.js';
@@ -76,7 +76,7 @@ export class App {
       return;
     }
     this.showGallery();
-    if (address !== null) this.problems.tell(words.problems.unfetchable(shortened(address.path)));
+    if (address !== null) this.problems.tell(words.problems.unfetchable(shortened(decodeURIComponent(address.path))));
   }
 
   /// Opens a model of the listing by its name or path. False if there is none.
@@ -120,9 +120,9 @@ export class App {
     return location.pathname + location.search;
   }
 
-  /// Null of a path that cannot be fetched.
+  /// `path`: as linkPath() has it. Null if it cannot be fetched.
   private modelAt(path: string): Model | null {
-    return this.models.find((one) => one.path === path) ?? modelOfPath(path, this.query.listing);
+    return this.models.find((one) => linkPath(one.path) === path) ?? modelOfPath(path, this.query.listing);
   }
 
   private listed(listing: Listing): void {

@@ -1,14 +1,27 @@
 import { describe, expect, it } from 'vitest';
-import { choiceOf, formatAddress, NOWHERE, parseAddress, roundedPose } from '../../page/address.js';
+import { choiceOf, formatAddress, linkPath, NOWHERE, parseAddress, roundedPose } from '../../page/address.js';
 
 const POSE = { position: [1.25, -3e-7, 123456.789], target: [0, 1e20, -0.333333333333] } as const;
 
 describe('a link', () => {
   it.each(['horse.hier', 'models/sub/a b.hier', 'ä&#?%,/ü.hier', '', '漢字/🐎.hier'])('to %s comes back', (path) => {
     const hash = formatAddress({ path, pose: POSE, choices: 'up=z' });
-    expect(parseAddress(new URL(hash, 'http://a/').hash)?.path).toBe(path);
+    expect(parseAddress(new URL(hash, 'http://a/').hash)?.path).toBe(linkPath(path));
+    expect(decodeURIComponent(linkPath(path))).toBe(path);
     expect(parseAddress(hash)?.pose?.position).toEqual(POSE.position);
     expect(parseAddress(hash)?.choices).toBe('up=z');
+  });
+
+  it.each([
+    ['models/a%20b.hier', 'models/a%20b.hier'],
+    ['models/a b.hier', 'models/a%20b.hier'],
+    ['%C3%A9,(1).hier', '%C3%A9%2C(1).hier'],
+    ['100%25.hier', '100%25.hier'],
+    ['100%.hier', '100%25.hier'],
+    ['a%2Fb%26.hier', 'a%2Fb%26.hier'],
+  ])('to %s escapes it once', (path, escaped) => {
+    expect(formatAddress({ path, ...NOWHERE })).toBe(`#${escaped}`);
+    expect(formatAddress(parseAddress(`#${escaped}`)!)).toBe(`#${escaped}`);
   });
 
   it('keeps a rounded pose as it is', () => {
