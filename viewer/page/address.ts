@@ -47,9 +47,9 @@ function decoded(part: string): string {
   }
 }
 
-/// A model's path as links write it. Listings may escape more or less of it: it is the same model then.
+/// A model's path as links write it, an absolute one too. Listings may escape more or less of it: it is the same model then.
 export function linkPath(path: string): string {
-  return path.split('/').map((part) => encodeURIComponent(decoded(part))).join('/');
+  return path.split(/([/:])/).map((part, i) => (i % 2 === 1 ? part : encodeURIComponent(decoded(part)))).join('');
 }
 
 /// Null of what is no path.

@@ -18,7 +18,8 @@ describe('a link', () => {
     ['%C3%A9,(1).hier', '%C3%A9%2C(1).hier'],
     ['100%25.hier', '100%25.hier'],
     ['100%.hier', '100%25.hier'],
-    ['a%2Fb%26.hier', 'a%2Fb%26.hier'],
+    ['a%2Fb%26%3A.hier', 'a%2Fb%26%3A.hier'],
+    ['https://other:8080/a%20b.hier', 'https://other:8080/a%20b.hier'],
   ])('to %s escapes it once', (path, escaped) => {
     expect(formatAddress({ path, ...NOWHERE })).toBe(`#${escaped}`);
     expect(formatAddress(parseAddress(`#${escaped}`)!)).toBe(`#${escaped}`);
