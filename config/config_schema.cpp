@@ -343,8 +343,8 @@ std::vector<ConfigKey> make_config_keys() {
       deciding(boolean(
           {.path = "texture.use",
            .meaning =
-               "tiles show the pictures of a textured mesh; `false` leaves them out and keeps "
-               "texture coordinates as they are"},
+               "tiles show the pictures or colours of the mesh's materials; `false` leaves both "
+               "out and keeps texture coordinates as they are"},
           [](auto& c) -> auto& { return c.texture.use; })),
       deciding(number(
           {.path = "texture.texels",

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -177,8 +178,12 @@ class GltfImporter {
         look_at(primitive, layout);
     }
     import_.layout = layout.layout();
-    if (is_textured())
+    if (is_textured()) {
       import_.layout.texcoords = import_.layout.material = true;
+    } else if (import_.layout.colour == ColourType::none && materials_.colours().are_seen()) {
+      import_.layout.colour = PlainColours::kType;
+      import_.material_colours = materials_.colours().count();
+    }
   }
 
   void look_at(const GltfPrimitive& primitive, CommonLayout& layout) {
@@ -280,6 +285,7 @@ class GltfImporter {
   /// The attributes of a primitive that the mesh has.
   struct Attributes {
     std::optional<GltfElements> normals, colours, texcoords;
+    std::optional<PlainColour> colour;  ///< of the material, if vertices have it
     float material = 0;
     const mesh_io::GltfTextureTransform* texture = nullptr;
   };
@@ -290,7 +296,9 @@ class GltfImporter {
     Attributes attributes;
     if (layout.normals)
       attributes.normals = elements(sources, "NORMAL", 3, 3, count);
-    if (layout.colour != ColourType::none)
+    if (import_.material_colours > 0)
+      attributes.colour = materials_.colour(primitive.material);
+    else if (layout.colour != ColourType::none)
       attributes.colours =
           elements(sources, "COLOR_0", 3, 4, count, layout.colour != ColourType::f32);
     if (layout.texcoords)
@@ -326,7 +334,7 @@ class GltfImporter {
   void count_filled(const Attributes& all, std::uint64_t vertices) {
     const AttributeLayout& layout = import_.layout;
     without_normal_ += layout.normals && !all.normals ? vertices : 0;
-    made_white_ += layout.colour != ColourType::none && !all.colours ? vertices : 0;
+    made_white_ += layout.colour != ColourType::none && !all.colours && !all.colour ? vertices : 0;
     without_texcoord_ += layout.texcoords && !all.texcoords ? vertices : 0;
   }
 
@@ -386,7 +394,9 @@ class GltfImporter {
     const AttributeLayout& layout = import_.layout;
     const auto size = static_cast<std::size_t>(layout.colour_channels());
     const std::size_t end = channels.size() + size;
-    if (size > 0 && all.colours) {
+    if (all.colour) {
+      std::ranges::copy(all.colour->values(), std::back_inserter(channels));
+    } else if (size > 0 && all.colours) {
       for (const double value : all.colours->at(vertex)) {
         if (channels.size() < end)
           channels.push_back(checked(*all.colours, vertex, value));

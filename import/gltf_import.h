@@ -13,7 +13,8 @@ namespace meshhier::importing {
 struct GltfImport {
   AttributeLayout layout;
   bool fits_float = true;
-  std::uint64_t triangles = 0;  ///< as primitives declare them
+  std::uint64_t material_colours = 0;  ///< that vertices have
+  std::uint64_t triangles = 0;         ///< as primitives declare them
   std::uint64_t degenerate_triangles = 0;
   std::vector<SourceCount> counts;  ///< of what was filled in, left out or ignored
 };
@@ -21,8 +22,9 @@ struct GltfImport {
 /// Appends the mesh of a file to `mesh`, but for its layout: primitive by primitive in the order of
 /// the scene, of each the vertices that its triangles use, in their order. The mesh is textured if
 /// `textures` are used and a primitive's base colour has a picture that is there and coordinates.
-/// Attributes that a primitive does not have, but another has, are filled in and counted. Throws
-/// Error(input) naming the accessor, node or view; as GltfFile.
+/// If it is not, and no primitive has vertex colours, the vertices have the base colours, if they
+/// are to be seen (PlainColours). Attributes that a primitive does not have, but another has, are
+/// filled in and counted. Throws Error(input) naming the accessor, node or view; as GltfFile.
 GltfImport import_gltf(mesh_io::GltfFile& file, RawMesh& mesh, Textures textures,
                        const ImportRoom& room);
 

@@ -14,6 +14,17 @@ float srgb(double linear) {
   return static_cast<float>(images::screen_value(linear)) / kWhite;
 }
 
+/// What it shows without a picture.
+images::Material plain_material(const mesh_io::GltfMaterial& from) {
+  images::Material to;
+  to.name = from.name;
+  to.colour = {srgb(from.factor[0]), srgb(from.factor[1]), srgb(from.factor[2]),
+               static_cast<float>(std::clamp(from.factor[3], 0.0, 1.0))};
+  to.alpha = from.alpha;
+  to.alpha_cutoff = static_cast<float>(std::clamp(from.alpha_cutoff, 0.0, 1.0));
+  return to;
+}
+
 }  // namespace
 
 GltfMaterials::Use GltfMaterials::look_up(const mesh_io::GltfMaterial& material) {
@@ -32,6 +43,7 @@ void GltfMaterials::use(std::optional<std::uint32_t> material, bool has_texcoord
   if (found == uses_.end()) {
     Use use = material ? look_up(file_.document().materials[*material]) : Use{};
     found = uses_.emplace(key(material), std::move(use)).first;
+    colours_.add(colour(material));
   }
   is_textured_ = is_textured_ || (has_texcoords && found->second.has_picture());
 }
@@ -41,12 +53,7 @@ images::Material GltfMaterials::material(std::int64_t key, Use& use, MaterialTab
     return {};
   const mesh_io::GltfDocument& document = file_.document();
   const mesh_io::GltfMaterial& from = document.materials[static_cast<std::size_t>(key)];
-  images::Material to;
-  to.name = from.name;
-  to.colour = {srgb(from.factor[0]), srgb(from.factor[1]), srgb(from.factor[2]),
-               static_cast<float>(std::clamp(from.factor[3], 0.0, 1.0))};
-  to.alpha = from.alpha;
-  to.alpha_cutoff = static_cast<float>(std::clamp(from.alpha_cutoff, 0.0, 1.0));
+  images::Material to = plain_material(from);
   if (!use.has_picture())
     return to;
   for (std::size_t c = 0; c < to.factor.size(); ++c)
@@ -60,6 +67,11 @@ images::Material GltfMaterials::material(std::int64_t key, Use& use, MaterialTab
     to.wrap_v = document.samplers[*sampler].wrap_v;
   }
   return to;
+}
+
+PlainColour GltfMaterials::colour(std::optional<std::uint32_t> material) const {
+  return material ? PlainColour::of(plain_material(file_.document().materials[*material]))
+                  : PlainColour();
 }
 
 void GltfMaterials::add_to(MaterialTable& table) {

@@ -1,6 +1,7 @@
 // Materials of a glTF file as those of a mesh.
 #pragma once
 
+#include "import/material_colours.h"
 #include "import/material_table.h"
 #include "mesh_io/gltf_file.h"
 
@@ -20,6 +21,9 @@ class GltfMaterials {
 
   /// Whether a picture is there for any triangle.
   bool is_textured() const { return is_textured_; }
+  /// The base colours of all, without pictures.
+  const PlainColours& colours() const { return colours_; }
+  PlainColour colour(std::optional<std::uint32_t> material) const;
 
   /// Tells `table` which pictures are not there.
   void tell_missing(MaterialTable& table) const;
@@ -46,6 +50,7 @@ class GltfMaterials {
   mesh_io::GltfFile& file_;
   std::map<std::int64_t, Use> uses_;
   bool is_textured_ = false;
+  PlainColours colours_;
 };
 
 }  // namespace meshhier::importing

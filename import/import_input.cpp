@@ -64,6 +64,7 @@ class Import {
     bool fits_float = true;
     std::uint64_t faces = 0;
     std::uint64_t degenerate_triangles = 0;
+    std::uint64_t material_colours = 0;  ///< that vertices have
   };
 
   void count(std::string_view name, std::uint64_t count) {
@@ -162,7 +163,9 @@ class Import {
         added = add_gltf(facts, ply.path());
         break;
     }
-    joined_.push_back({facts.path, added.layout, mesh_.vertex_count() - vertices});
+    count(kMaterialColours, added.material_colours);
+    joined_.push_back(
+        {facts.path, added.layout, mesh_.vertex_count() - vertices, added.material_colours > 0});
     require_joinable(joined_);
     mesh_.fits_float = mesh_.fits_float && added.fits_float;
     faces_ += added.faces;
@@ -252,7 +255,8 @@ class Import {
     const GltfImport import = import_gltf(file, mesh_, input_.textures(), room_);
     for (const SourceCount& one : import.counts)
       count(one.name, one.count);
-    return {import.layout, import.fits_float, import.triangles, import.degenerate_triangles};
+    return {import.layout, import.fits_float, import.triangles, import.degenerate_triangles,
+            import.material_colours};
   }
 
   Added add_obj(InputStream& stream, const std::filesystem::path& path) {
@@ -272,7 +276,8 @@ class Import {
     count("material_libraries", counts.libraries);
     count("ignored_points_and_lines", counts.points_and_lines);
     count("ignored_statements", counts.others);
-    return {import.layout, import.fits_float, counts.faces, counts.degenerate_triangles};
+    return {import.layout, import.fits_float, counts.faces, counts.degenerate_triangles,
+            import.material_colours};
   }
 
   /// Binary files hold floats.

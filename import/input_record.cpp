@@ -60,11 +60,15 @@ std::vector<SourceFile> source_files(const std::vector<ReadFile>& files,
   return all;
 }
 
-bool names_materials(const std::vector<SourceFile>& files) {
+bool shows_materials(const SourceSummary& source) {
+  if (source.textures || std::ranges::any_of(source.counts, [](const SourceCount& one) {
+        return one.name == kMaterialColours;
+      }))
+    return true;
   const auto is_of = [](const SourceFile& file, InputPart part) {
     return file.format == kPartNames[static_cast<std::size_t>(part)];
   };
-  return std::ranges::any_of(files, [&](const SourceFile& file) {
+  return std::ranges::any_of(source.files, [&](const SourceFile& file) {
     return is_of(file, InputPart::library) || is_of(file, InputPart::picture);
   });
 }

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace meshhier::importing {
@@ -55,8 +56,12 @@ struct InputRecord {
 std::vector<SourceFile> source_files(const std::vector<ReadFile>& files,
                                      const std::vector<std::string>& formats);
 
-/// Whether a library or a picture is among them: then the import looked for textures, found or not.
-bool names_materials(const std::vector<SourceFile>& files);
+/// SourceCount of the colours of materials that vertices have.
+inline constexpr std::string_view kMaterialColours = "material_colours";
+
+/// Whether the import looked for materials, as Textures::use makes it: there are textures or
+/// colours of materials, or a library or a picture is among the files.
+bool shows_materials(const SourceSummary& source);
 
 /// Of several files from their checksums; of one it is its own.
 std::uint64_t joined_checksum(const std::vector<std::uint64_t>& checksums);

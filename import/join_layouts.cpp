@@ -1,10 +1,13 @@
 #include "import/join_layouts.h"
 
 #include "hierarchy/attribute_names.h"
+#include "import/material_colours.h"
 #include "mesh_io/input_error.h"
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -22,27 +25,87 @@ constexpr std::uint64_t kBlockVertices = 4096;
                                  attribute_names(first.layout)));
 }
 
-/// Appends the vertices of a file from `channel` on, as a textured mesh has them.
-void append_textured(const JoinedFile& file, const storage::RecordSpool<float>& from,
-                     std::uint64_t channel, float plain, storage::RecordSpool<float>& to,
-                     const ImportRoom& room) {
+/// But for texture coordinates and colours of materials: what all files must have.
+AttributeLayout kept_layout(const JoinedFile& file) {
+  AttributeLayout layout = file.layout.without_texcoords();
+  if (file.is_painted)
+    layout.colour = ColourType::none;
+  return layout;
+}
+
+/// Materials without pictures, one for each colour.
+class PlainMaterials {
+ public:
+  explicit PlainMaterials(MaterialTable& table) : table_(table) {}
+
+  float number(PlainColour colour) {
+    const auto [known, is_new] = numbers_.emplace(colour, 0);
+    if (is_new) {
+      images::Material material;
+      for (std::size_t c = 0; c < colour.channels.size(); ++c)
+        material.colour[c] = static_cast<float>(colour.channels[c]) / 255;
+      known->second = table_.add(std::move(material));
+    }
+    return static_cast<float>(known->second);
+  }
+
+ private:
+  MaterialTable& table_;
+  std::map<PlainColour, std::uint32_t> numbers_;
+};
+
+/// Calls `append` for each vertex of a file, from `channel` on, with its channels.
+template <class Append>
+void for_each_row(const JoinedFile& file, const storage::RecordSpool<float>& from,
+                  std::uint64_t channel, const ImportRoom& room, const Append& append) {
   const auto channels = static_cast<std::size_t>(file.layout.channels());
-  const auto kept = static_cast<std::size_t>(file.layout.without_texcoords().channels());
   std::vector<float> block;
   for (std::uint64_t first = 0; first < file.vertices; first += kBlockVertices) {
     room.cancel.check();
-    block.resize(std::min(kBlockVertices, file.vertices - first) * channels);
-    from.read(channel + first * channels, block);
-    if (file.layout.material) {
-      to.append(block);
-      continue;
-    }
     const std::uint64_t count = std::min(kBlockVertices, file.vertices - first);
-    for (std::uint64_t i = 0; i < count; ++i) {
-      to.append(std::span(block).subspan(i * channels, kept));
-      to.append(std::array{0.0F, 0.0F, plain});
-    }
+    block.resize(count * channels);
+    from.read(channel + first * channels, block);
+    for (std::uint64_t i = 0; i < count; ++i)
+      append(std::span<const float>(block).subspan(i * channels, channels));
   }
+}
+
+PlainColour colour_of(const JoinedFile& file, std::span<const float> row) {
+  PlainColour colour;
+  if (file.is_painted) {
+    const auto values = row.subspan(static_cast<std::size_t>(file.layout.colour_offset()));
+    for (std::size_t c = 0; c < colour.channels.size(); ++c)
+      colour.channels[c] = static_cast<std::uint8_t>(values[c]);
+  }
+  return colour;
+}
+
+/// Appends the vertices of a file as a textured mesh has them.
+void append_textured(const JoinedFile& file, const storage::RecordSpool<float>& from,
+                     std::uint64_t channel, PlainMaterials& plain, storage::RecordSpool<float>& to,
+                     const ImportRoom& room) {
+  const auto kept = static_cast<std::size_t>(kept_layout(file).channels());
+  for_each_row(file, from, channel, room, [&](std::span<const float> row) {
+    if (file.layout.material) {
+      to.append(row);
+      return;
+    }
+    to.append(row.first(kept));
+    to.append(std::array{0.0F, 0.0F, plain.number(colour_of(file, row))});
+  });
+}
+
+/// Appends the vertices of a file with a colour, which is white if they have none.
+void append_painted(const JoinedFile& file, const storage::RecordSpool<float>& from,
+                    std::uint64_t channel, storage::RecordSpool<float>& to,
+                    const ImportRoom& room) {
+  const auto before = static_cast<std::size_t>(file.layout.colour_offset());
+  for_each_row(file, from, channel, room, [&](std::span<const float> row) {
+    to.append(row.first(before));
+    if (!file.is_painted)
+      to.append(PlainColour().values());
+    to.append(row.subspan(before));
+  });
 }
 
 void copy(const storage::RecordSpool<float>& from, storage::RecordSpool<float>& to,
@@ -59,33 +122,44 @@ void copy(const storage::RecordSpool<float>& from, storage::RecordSpool<float>& 
 }  // namespace
 
 void require_joinable(std::span<const JoinedFile> files) {
-  const JoinedFile& last = files.back();
-  if (last.layout.without_texcoords() != files[0].layout.without_texcoords())
-    fail(files[0], last);
+  if (kept_layout(files.back()) != kept_layout(files[0]))
+    fail(files[0], files.back());
 }
 
 std::uint64_t join_layouts(std::span<const JoinedFile> files, RawMesh& mesh,
                            const ImportRoom& room) {
   const auto is_textured = [](const JoinedFile& file) { return file.layout.material; };
-  const auto other = std::ranges::find_if(
-      files, [&](const JoinedFile& file) { return file.layout != files[0].layout; });
   mesh.layout = files.empty() ? AttributeLayout() : files[0].layout;
-  if (other == files.end())
+  if (std::ranges::all_of(files,
+                          [&](const JoinedFile& file) { return file.layout == files[0].layout; }))
     return 0;
-  if (std::ranges::none_of(files, is_textured))
-    fail(files[0], *other);
-  mesh.layout = std::ranges::find_if(files, is_textured)->layout;
-  const auto plain = static_cast<float>(mesh.materials.add({}));
+  const auto textured = std::ranges::find_if(files, is_textured);
+  const bool has_textures = textured != files.end();
+  if (has_textures) {
+    mesh.layout = textured->layout;
+  } else {
+    const auto other = std::ranges::find_if(files, [&](const JoinedFile& file) {
+      return file.layout.texcoords != files[0].layout.texcoords;
+    });
+    if (other != files.end())
+      fail(files[0], *other);
+    mesh.layout = std::ranges::find_if(files, &JoinedFile::is_painted)->layout;
+  }
+  PlainMaterials plain(mesh.materials);
   storage::RecordSpool<float> joined(room.scratch, kImportSpoolBytes);
   std::uint64_t channel = 0;
   for (const JoinedFile& file : files) {
-    append_textured(file, mesh.attributes, channel, plain, joined, room);
+    if (has_textures)
+      append_textured(file, mesh.attributes, channel, plain, joined, room);
+    else
+      append_painted(file, mesh.attributes, channel, joined, room);
     channel += file.vertices * static_cast<std::uint64_t>(file.layout.channels());
   }
   mesh.attributes.clear();
   copy(joined, mesh.attributes, room);
-  return static_cast<std::uint64_t>(files.size()) -
-         static_cast<std::uint64_t>(std::ranges::count_if(files, is_textured));
+  return has_textures ? static_cast<std::uint64_t>(files.size()) -
+                            static_cast<std::uint64_t>(std::ranges::count_if(files, is_textured))
+                      : 0;
 }
 
 }  // namespace meshhier::importing

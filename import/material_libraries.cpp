@@ -174,6 +174,10 @@ std::uint32_t MaterialNames::use(bool has_texcoords) {
   return *number_;
 }
 
+bool MaterialNames::are_used() const {
+  return std::ranges::any_of(uses_, [](const Use& use) { return use.name.has_value(); });
+}
+
 bool LibraryMaterial::is_tiled() const {
   return map && map->file.find(kTileMark) != std::string::npos;
 }

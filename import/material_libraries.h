@@ -47,6 +47,8 @@ class MaterialNames {
     bool has_texcoords = false;  ///< of a triangle at least
   };
   const std::vector<Use>& all() const { return uses_; }
+  /// A triangle has a name.
+  bool are_used() const;
   const std::filesystem::path& obj() const { return obj_; }
 
  private:

@@ -1,6 +1,7 @@
 #include "import/obj_import.h"
 
 #include "execution/spool_cursor.h"
+#include "import/material_colours.h"
 #include "import/obj_textures.h"
 #include "import/split_corners.h"
 #include "mesh_io/input_error.h"
@@ -10,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 namespace meshhier::importing {
 namespace {
@@ -208,9 +210,9 @@ struct ObjSurface {
   storage::RecordSpool<std::uint32_t> tiles;  ///< one a triangle if a material has them
 };
 
-/// Looks for the pictures that triangles show; none if there are none.
-std::unique_ptr<ObjSurface> find_surface(const ObjParts& parts, ObjImport& import, RawMesh& mesh,
-                                         mesh_io::NamedFiles& files, const ImportRoom& room) {
+/// Of each name in `parts`.
+std::vector<LibraryMaterial> find_materials(const ObjParts& parts, ObjImport& import, RawMesh& mesh,
+                                            mesh_io::NamedFiles& files, const ImportRoom& room) {
   Libraries libraries =
       read_libraries(parts.names, files, mesh.materials.companions(), room.cancel);
   import.missing_libraries = libraries.missing;
@@ -220,7 +222,15 @@ std::unique_ptr<ObjSurface> find_surface(const ObjParts& parts, ObjImport& impor
     import.undefined_materials += uses[i].name && !material.is_defined ? 1 : 0;
     import.other_alphas += material.has_other_alpha ? 1 : 0;
   }
-  auto surface = std::make_unique<ObjSurface>(std::move(libraries.materials), files, mesh, room);
+  return std::move(libraries.materials);
+}
+
+/// Looks for the pictures that triangles show; none if there are none.
+std::unique_ptr<ObjSurface> find_surface(const ObjParts& parts,
+                                         std::vector<LibraryMaterial> materials, RawMesh& mesh,
+                                         mesh_io::NamedFiles& files, const ImportRoom& room) {
+  const std::vector<MaterialNames::Use>& uses = parts.names.all();
+  auto surface = std::make_unique<ObjSurface>(std::move(materials), files, mesh, room);
   ObjTextures& textures = surface->textures;
   bool is_tiled = false;
   for (std::uint32_t name = 0; name < uses.size(); ++name) {
@@ -236,9 +246,55 @@ std::unique_ptr<ObjSurface> find_surface(const ObjParts& parts, ObjImport& impor
   return textures.has_pictures() ? std::move(surface) : nullptr;
 }
 
-/// `surface`: of a textured file, else null.
-void add_corners(const ObjParts& parts, ObjSurface* surface, CornerSplitter& splitter,
+/// The colours of a file without pictures.
+class ObjPaint {
+ public:
+  explicit ObjPaint(const std::vector<LibraryMaterial>& materials) {
+    for (const LibraryMaterial& material : materials) {
+      of_names_.push_back(PlainColour::of(material.material));
+      all_.add(of_names_.back());
+    }
+  }
+
+  bool is_seen() const { return all_.are_seen(); }
+  std::size_t count() const { return all_.count(); }
+
+  /// CornerParts::kMaterial of a triangle of that name.
+  std::uint32_t part(std::uint32_t name) const { return of_names_[name].number() + 1; }
+  /// Of a vertex with that part; white of one that no triangle uses.
+  static PlainColour colour(std::uint32_t part) {
+    return part == 0 ? PlainColour() : PlainColour::from(part - 1);
+  }
+
+ private:
+  std::vector<PlainColour> of_names_;
+  PlainColours all_;
+};
+
+/// What the materials of a file are to be seen by: pictures, their colours, or nothing.
+struct ObjLook {
+  std::unique_ptr<ObjSurface> surface;
+  std::optional<ObjPaint> paint;
+};
+
+ObjLook find_look(const ObjParts& parts, ObjImport& import, RawMesh& mesh,
+                  mesh_io::NamedFiles& files, const ImportRoom& room) {
+  const bool has_colours = import.layout.colour != ColourType::none;
+  ObjLook look;
+  if (!import.layout.texcoords && (has_colours || !parts.names.are_used()))
+    return look;
+  std::vector<LibraryMaterial> materials = find_materials(parts, import, mesh, files, room);
+  ObjPaint paint(materials);
+  if (import.layout.texcoords)
+    look.surface = find_surface(parts, std::move(materials), mesh, files, room);
+  if (!look.surface && !has_colours && paint.is_seen())
+    look.paint = std::move(paint);
+  return look;
+}
+
+void add_corners(const ObjParts& parts, const ObjLook& look, CornerSplitter& splitter,
                  const ImportRoom& room) {
+  ObjSurface* const surface = look.surface.get();
   execution::SpoolCursor triangles(parts.triangles, room.cancel);
   execution::SpoolCursor names(parts.materials, room.cancel);
   std::optional<execution::SpoolCursor<std::uint32_t>> tiles;
@@ -254,6 +310,8 @@ void add_corners(const ObjParts& parts, ObjSurface* surface, CornerSplitter& spl
       const ObjTextures::Shown shown = surface->textures.show(name, tile);
       shows_texcoords = shown.has_picture;
       material = shown.number + 1;
+    } else if (look.paint) {
+      material = look.paint->part(names.at(i));
     }
     // kNone + 1 is 0.
     for (const ObjCorner& c : triangle)
@@ -261,9 +319,8 @@ void add_corners(const ObjParts& parts, ObjSurface* surface, CornerSplitter& spl
   }
 }
 
-void append_vertices(const ObjParts& parts, const SplitVertices& vertices,
-                     const ObjSurface* surface, const AttributeLayout& layout, RawMesh& mesh,
-                     const ImportRoom& room) {
+void append_vertices(const ObjParts& parts, const SplitVertices& vertices, const ObjLook& look,
+                     const AttributeLayout& layout, RawMesh& mesh, const ImportRoom& room) {
   storage::RecordSpool<Texcoord> texcoords(room.scratch, kImportSpoolBytes);
   storage::RecordSpool<Vec3f> normals(room.scratch, kImportSpoolBytes);
   if (layout.texcoords)
@@ -284,15 +341,18 @@ void append_vertices(const ObjParts& parts, const SplitVertices& vertices,
       const Vec3f n = all_normals.at(i);
       mesh.attributes.append(std::array{n.x, n.y, n.z});
     }
-    if (layout.colour != ColourType::none)
+    if (look.paint)
+      mesh.attributes.append(ObjPaint::colour(materials.at(i)).values());
+    else if (layout.colour != ColourType::none)
       mesh.attributes.append(colours.at(position));
     if (layout.texcoords && !layout.material)
       mesh.attributes.append(all_texcoords.at(i));
     if (layout.material) {
       // A position that no triangle uses has no material: any will do.
       const std::uint32_t material = std::max(materials.at(i), std::uint32_t{1}) - 1;
-      const Vec2f at =
-          shown.at(i) == 0 ? Vec2f{} : surface->textures.texcoord(material, all_texcoords.at(i));
+      const Vec2f at = shown.at(i) == 0
+                           ? Vec2f{}
+                           : look.surface->textures.texcoord(material, all_texcoords.at(i));
       mesh.attributes.append(std::array{at.u, at.v, static_cast<float>(material)});
     }
   }
@@ -330,20 +390,24 @@ ObjImport import_obj(mesh_io::InputStream& stream, const std::filesystem::path& 
     import.layout.colour = ColourType::f32;
     import.filled_colours = import.counts.positions - import.counts.coloured;
   }
-  if (!import.layout.texcoords && !import.layout.normals) {
+  ObjLook look;
+  if (textures == Textures::use)
+    look = find_look(parts, import, mesh, files, room);
+  import.layout.material = look.surface != nullptr;
+  if (look.paint) {
+    import.layout.colour = PlainColours::kType;
+    import.material_colours = look.paint->count();
+  }
+  if (!import.layout.texcoords && !import.layout.normals && !look.paint) {
     append_plain(parts, mesh, room);
     return import;
   }
-  std::unique_ptr<ObjSurface> surface;
-  if (textures == Textures::use && import.layout.texcoords)
-    surface = find_surface(parts, import, mesh, files, room);
-  import.layout.material = surface != nullptr;
   SplitVertices vertices(room.scratch);
   CornerSplitter splitter(room);
-  add_corners(parts, surface.get(), splitter, room);
+  add_corners(parts, look, splitter, room);
   parts.triangles.clear();
   splitter.split(parts.positions.size(), vertices, mesh);
-  append_vertices(parts, vertices, surface.get(), import.layout, mesh, room);
+  append_vertices(parts, vertices, look, import.layout, mesh, room);
   import.split_vertices = vertices.count() - parts.positions.size();
   import.filled_texcoords = import.layout.texcoords ? vertices.without[kTexcoord] : 0;
   import.filled_normals = import.layout.normals ? vertices.without[kNormal] : 0;

@@ -352,11 +352,10 @@ bool was_welded(const VerifyJob& job) {
   return weld != config.end() && weld->is_boolean() && weld->get<bool>();
 }
 
-/// As the build did. Where it found libraries but no picture, the input is untextured and names
-/// them.
+/// As the build did.
 importing::Textures textures_of(const SourceSummary& source) {
-  return source.textures || importing::names_materials(source.files) ? importing::Textures::use
-                                                                     : importing::Textures::ignore;
+  return importing::shows_materials(source) ? importing::Textures::use
+                                            : importing::Textures::ignore;
 }
 
 void compare_sums(const MeshSums& input, const MeshSums& partitions,

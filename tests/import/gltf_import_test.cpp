@@ -404,7 +404,8 @@ TEST_F(GltfImportTest, AMissingPictureShowsItsMaterialsColour) {
   gltf.json["materials"][missing]["pbrMetallicRoughness"]["baseColorFactor"] = {0.5, 0, 1, 0.25};
   gltf.show(textured_square(gltf, missing));
   Imported mesh = import(gltf);
-  EXPECT_EQ(mesh.layout, AttributeLayout{.texcoords = true});
+  EXPECT_EQ(mesh.layout, (AttributeLayout{.colour = ColourType::u8, .texcoords = true}));
+  EXPECT_EQ(mesh.attributes[0], 188);  // sRGB of 0.5
   ASSERT_EQ(mesh.warnings.size(), 1U);
   EXPECT_THAT(mesh.warnings[0], HasSubstr("none.png"));
   EXPECT_THAT(mesh.companions(), ElementsAre("no w/none.png"));

@@ -317,7 +317,7 @@ TEST_F(TexturedObjTest, SeveralFilesShareTheNumbers) {
   EXPECT_THAT(mesh.materials.images, SizeIs(2)) << "a file is one picture";
 }
 
-TEST_F(TexturedObjTest, UntexturedFilesOfAListBecomeWhite) {
+TEST_F(TexturedObjTest, UntexturedFilesOfAListShowTheirColoursOrAreWhite) {
   put_pictures({"a.png"});
   put("a.mtl", "newmtl m\nmap_Kd a.png\nnewmtl red\nKd 1 0 0\n");
   put("a.obj", std::string("mtllib a.mtl\nusemtl m\n") + kSquare + "f 1/1 2/2 3/3\n");
@@ -326,9 +326,9 @@ TEST_F(TexturedObjTest, UntexturedFilesOfAListBecomeWhite) {
   put("normals.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n");
   const std::string textured = "a.png 0 1, 1 1, 1 0";
   Imported mesh = import_of({"bare.obj", "a.obj", "red.obj"});
-  EXPECT_THAT(mesh.all_shown(), ElementsAre("#ffffff", textured, "#ffffff"));
+  EXPECT_THAT(mesh.all_shown(), ElementsAre("#ffffff", textured, "#ff0000"));
   EXPECT_EQ(mesh.count("untextured_files"), 2U);
-  EXPECT_THAT(mesh.materials.materials, SizeIs(2));
+  EXPECT_THAT(mesh.materials.materials, SizeIs(3));
   mesh = import_of({"a.obj", "bare.obj"}, {.memory = tests::kTight});
   EXPECT_THAT(mesh.all_shown(), ElementsAre(textured, "#ffffff"));
   EXPECT_EQ(mesh.positions.size(), 4U + 3U);

@@ -1,0 +1,249 @@
+// Materials without pictures: their colours are those of the vertices.
+#include "hierarchy/error.h"
+#include "import/imported.h"
+#include "tests/support/gltf_builder.h"
+#include "tests/support/memory_files.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace meshhier::importing {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Each;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+using tests::GltfBuilder;
+using tests::GltfJson;
+using tests::Imported;
+using tests::ImportHow;
+
+constexpr AttributeLayout kColoured{.colour = ColourType::u8};
+constexpr const char* kCorners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+constexpr const char* kRedAndBlue = "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 0.5\n";
+
+class MaterialColoursTest : public testing::Test {
+ protected:
+  void put(const std::string& name, const std::string& content) {
+    files_.put(fs::path("w") / name, content);
+  }
+  Imported import_of(const std::vector<std::string>& names, const ImportHow& how = {}) {
+    mesh_io::InputPaths paths;
+    for (const std::string& name : names)
+      paths.push_back(fs::path("w") / name);
+    return tests::import_files(files_, paths, how);
+  }
+  /// A square, one triangle of each material.
+  Imported import_square(const std::string& library, const ImportHow& how = {}) {
+    put("a.mtl", library);
+    put("a.obj",
+        std::string("mtllib a.mtl\n") + kCorners + "usemtl red\nf 1 2 3\nusemtl blue\nf 1 3 4\n");
+    return import_of({"a.obj"}, how);
+  }
+
+  tests::MemoryFiles files_;
+};
+
+/// Of each corner of a triangle, "255 0 0".
+std::vector<std::string> corner_colours(const Imported& mesh, std::size_t triangle) {
+  std::vector<std::string> colours;
+  for (const std::uint32_t vertex : mesh.triangles[triangle]) {
+    const float* c = mesh.attributes.data() +
+                     vertex * static_cast<std::size_t>(mesh.layout.channels()) +
+                     static_cast<std::size_t>(mesh.layout.colour_offset());
+    colours.push_back(fmt::format("{} {} {}", c[0], c[1], c[2]));
+  }
+  return colours;
+}
+
+// ---- OBJ -----------------------------------------------------------------------------------
+
+TEST_F(MaterialColoursTest, VerticesAtABorderHaveBothColours) {
+  const Imported mesh = import_square(kRedAndBlue);
+  EXPECT_EQ(mesh.layout, kColoured);
+  EXPECT_THAT(mesh.positions, SizeIs(6));
+  EXPECT_THAT(corner_colours(mesh, 0), Each("255 0 0"));
+  EXPECT_THAT(corner_colours(mesh, 1), Each("0 0 128"));
+  EXPECT_EQ(mesh.count("material_colours"), 2U);
+  EXPECT_EQ(mesh.count("split_vertices"), 2U);
+  EXPECT_THAT(mesh.companions(), ElementsAre("w/a.mtl"));
+  EXPECT_TRUE(mesh.materials.empty());
+  EXPECT_FALSE(mesh.summary.textures);
+}
+
+TEST_F(MaterialColoursTest, MaterialsOfOneColourSplitNothing) {
+  const Imported mesh = import_square("newmtl red\nKd 1 0 0\nnewmtl blue\nKd 1 0 0\n");
+  EXPECT_EQ(mesh.layout, kColoured);
+  EXPECT_THAT(mesh.positions, SizeIs(4));
+  EXPECT_EQ(mesh.count("material_colours"), 1U);
+}
+
+TEST_F(MaterialColoursTest, OneShadeOfGreyIsNoColour) {
+  for (const char* grey : {"0.8 0.8 0.8", "1 1 1", "0"}) {
+    const Imported mesh =
+        import_square(fmt::format("newmtl red\nKd {0}\nnewmtl blue\nKd {0}\n", grey));
+    EXPECT_EQ(mesh.layout, AttributeLayout());
+    EXPECT_THAT(mesh.positions, SizeIs(4));
+  }
+  EXPECT_EQ(import_square("newmtl red\nKd 0.8 0.8 0.8\nnewmtl blue\nKd 0.2 0.2 0.2\n").layout,
+            kColoured)
+      << "two shades are";
+}
+
+TEST_F(MaterialColoursTest, TrianglesWithoutAMaterialAreWhite) {
+  put("a.mtl", kRedAndBlue);
+  put("a.obj", std::string("mtllib a.mtl\n") + kCorners +
+                   "v 9 9 9\nf 1 2 3\nusemtl red\nf 1 3 4\nusemtl none\nf 2 3 4\n");
+  const Imported mesh = import_of({"a.obj"});
+  EXPECT_THAT(corner_colours(mesh, 0), Each("255 255 255"));
+  EXPECT_THAT(corner_colours(mesh, 1), Each("255 0 0"));
+  EXPECT_THAT(corner_colours(mesh, 2), Each("255 255 255"));
+  EXPECT_EQ(mesh.count("undefined_materials"), 1U);
+  EXPECT_EQ(mesh.positions.back(), (Vec3d{9, 9, 9}));
+  EXPECT_EQ(mesh.attributes.back(), 255) << "a vertex of no triangle has a colour, too";
+}
+
+TEST_F(MaterialColoursTest, OtherAttributesStay) {
+  put("a.mtl", kRedAndBlue);
+  put("a.obj", std::string("mtllib a.mtl\n") + kCorners +
+                   "vt 0.25 0.5\nvn 0 0 1\nusemtl red\nf 1/1/1 2/1/1 3/1/1\n"
+                   "usemtl blue\nf 1/1/1 3/1/1 4/1/1\n");
+  const Imported mesh = import_of({"a.obj"});
+  EXPECT_EQ(mesh.layout,
+            (AttributeLayout{.normals = true, .colour = ColourType::u8, .texcoords = true}));
+  EXPECT_THAT(corner_colours(mesh, 1), Each("0 0 128"));
+  EXPECT_THAT(std::vector(mesh.attributes.begin(), mesh.attributes.begin() + 8),
+              ElementsAre(0, 0, 1, 0, 0, 128, 0.25F, 0.5F));
+}
+
+TEST_F(MaterialColoursTest, ColoursOfVerticesComeFirst) {
+  put("a.mtl", kRedAndBlue);
+  put("a.obj", "mtllib a.mtl\nv 0 0 0 0 1 0\nv 1 0 0 0 1 0\nv 1 1 0 0 1 0\nusemtl red\nf 1 2 3\n");
+  const Imported mesh = import_of({"a.obj"});
+  EXPECT_EQ(mesh.layout, AttributeLayout{.colour = ColourType::f32});
+  EXPECT_THAT(corner_colours(mesh, 0), Each("0 1 0"));
+  EXPECT_THAT(mesh.companions(), IsEmpty()) << "nobody needs the library";
+}
+
+TEST_F(MaterialColoursTest, CanBeIgnored) {
+  const Imported mesh = import_square(kRedAndBlue, {.textures = Textures::ignore});
+  EXPECT_EQ(mesh.layout, AttributeLayout());
+  EXPECT_THAT(mesh.companions(), IsEmpty());
+}
+
+TEST_F(MaterialColoursTest, AMissingLibraryLeavesThePlainMesh) {
+  put("a.obj", std::string("mtllib a.mtl\n") + kCorners + "usemtl red\nf 1 2 3\n");
+  const Imported mesh = import_of({"a.obj"});
+  EXPECT_EQ(mesh.layout, AttributeLayout());
+  EXPECT_EQ(mesh.count("missing_material_libraries"), 1U);
+  EXPECT_THAT(mesh.companions(), ElementsAre("no w/a.mtl"));
+}
+
+TEST_F(MaterialColoursTest, ResultsDoNotDependOnTheMemory) {
+  std::string library, mesh = "mtllib a.mtl\n";
+  for (int i = 0; i < 9; ++i)
+    library += fmt::format("newmtl m{0}\nKd 0.{0} 0 0.5\n", i);
+  put("a.mtl", library);
+  for (int i = 0; i < 3000; ++i)
+    mesh += fmt::format("v {} {} {}\nvn 0 {} 1\n", i, i % 7, i % 11, i);
+  for (int i = 0; i < 20'000; ++i) {
+    if (i % 100 == 0)
+      mesh += fmt::format("usemtl m{}\n", i / 100 % 9);
+    const int a = i * 7 % 2998 + 1;
+    mesh += fmt::format("f {0}//{0} {1}//{0} {2}//{1}\n", a, a + 1, a + 2);
+  }
+  put("a.obj", mesh);
+  const Imported roomy = import_of({"a.obj"});
+  const Imported tight = import_of({"a.obj"}, {.memory = tests::kTight});
+  EXPECT_EQ(roomy.attributes, tight.attributes);
+  EXPECT_EQ(roomy.triangles, tight.triangles);
+  EXPECT_EQ(roomy.count("material_colours"), 9U);
+}
+
+// ---- lists ---------------------------------------------------------------------------------
+
+TEST_F(MaterialColoursTest, PlainFilesBesideColouredOnesAreWhite) {
+  import_square(kRedAndBlue);
+  put("bare.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
+  for (const ImportHow& how : {ImportHow{}, ImportHow{.memory = tests::kTight}}) {
+    const Imported mesh = import_of({"bare.obj", "a.obj", "bare.obj"}, how);
+    EXPECT_EQ(mesh.layout, kColoured);
+    EXPECT_THAT(mesh.positions, SizeIs(3 + 6 + 3));
+    EXPECT_THAT(corner_colours(mesh, 0), Each("255 255 255"));
+    EXPECT_THAT(corner_colours(mesh, 1), Each("255 0 0"));
+    EXPECT_THAT(corner_colours(mesh, 3), Each("255 255 255"));
+    EXPECT_EQ(mesh.count("untextured_files"), 0U);
+  }
+}
+
+TEST_F(MaterialColoursTest, FilesWithColoursOfVerticesAreNotJoinedWithOthers) {
+  import_square(kRedAndBlue);
+  put("own.obj", "v 0 0 0 0 1 0\nv 1 0 0 0 1 0\nv 1 1 0 0 1 0\nf 1 2 3\n");
+  try {
+    import_of({"a.obj", "own.obj"});
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::input);
+    EXPECT_THAT(error.what(), HasSubstr("own.obj"));
+  }
+}
+
+TEST_F(MaterialColoursTest, BesideTexturesTheyAreMaterials) {
+  put("b.png", "a picture");
+  put("b.mtl", "newmtl m\nmap_Kd b.png\n");
+  put("b.obj", std::string("mtllib b.mtl\nusemtl m\nvt 0 0\n") + kCorners + "f 1/1 2/1 3/1\n");
+  import_square(kRedAndBlue);
+  const Imported mesh = import_of({"a.obj", "b.obj", "a.obj"});
+  EXPECT_EQ(mesh.layout, (AttributeLayout{.texcoords = true, .material = true}));
+  EXPECT_THAT(mesh.all_shown(),
+              ElementsAre("#ff0000", "#000080", "b.png 0 1, 0 1, 0 1", "#ff0000", "#000080"));
+  EXPECT_THAT(mesh.materials.materials, SizeIs(3)) << "one for each colour";
+  EXPECT_EQ(mesh.count("untextured_files"), 2U);
+}
+
+// ---- glTF ----------------------------------------------------------------------------------
+
+GltfJson primitive(GltfBuilder& gltf, std::optional<std::size_t> material) {
+  GltfJson made{
+      {"attributes", {{"POSITION", gltf.accessor<float>({0, 0, 0, 1, 0, 0, 1, 1, 0}, "VEC3")}}}};
+  if (material)
+    made["material"] = *material;
+  return made;
+}
+
+std::size_t material(GltfBuilder& gltf, const GltfJson& factor) {
+  return gltf.add("materials", {{"pbrMetallicRoughness", {{"baseColorFactor", factor}}}});
+}
+
+TEST_F(MaterialColoursTest, BaseColoursAreThoseOfAScreen) {
+  GltfBuilder gltf;
+  gltf.show(primitive(gltf, material(gltf, {0.5, 0, 1, 0.25})));
+  gltf.show(primitive(gltf, std::nullopt));
+  put("a.glb", gltf.glb());
+  const Imported mesh = import_of({"a.glb"});
+  EXPECT_EQ(mesh.layout, kColoured);
+  EXPECT_THAT(corner_colours(mesh, 0), Each("188 0 255"));
+  EXPECT_THAT(corner_colours(mesh, 1), Each("255 255 255"));
+  EXPECT_EQ(mesh.count("material_colours"), 2U);
+  EXPECT_EQ(mesh.count("vertices_made_white"), 0U);
+  EXPECT_EQ(import_of({"a.glb"}, {.textures = Textures::ignore}).layout, AttributeLayout());
+}
+
+TEST_F(MaterialColoursTest, TheGreyOfProgramsIsNoBaseColour) {
+  GltfBuilder gltf;
+  gltf.show(primitive(gltf, material(gltf, {0.8, 0.8, 0.8, 1})));
+  put("a.glb", gltf.glb());
+  EXPECT_EQ(import_of({"a.glb"}).layout, AttributeLayout());
+}
+
+}  // namespace
+}  // namespace meshhier::importing
