@@ -114,8 +114,11 @@ class Import {
   void note_textures() {
     const MaterialTable& table = mesh_.materials;
     count("missing_images", table.missing());
-    if (table.missing() > 0)
-      env_.progress.warn(table.warning(mesh_.layout.material));
+    for (const std::string& warning :
+         {table.library_warning(), table.warning(mesh_.layout.material)}) {
+      if (!warning.empty())
+        env_.progress.warn(warning);
+    }
     if (!mesh_.layout.material)
       return;
     facts_.materials = table.list();

@@ -25,12 +25,19 @@ std::string without_comment(const std::string& name) {
   return cut;
 }
 
-std::vector<std::string> words_of(const std::string& text) {
-  std::vector<std::string> words;
+/// A name that spaces may be in has at most so many.
+constexpr std::size_t kMostSpaces = 15;
+
+struct Word {
+  std::size_t begin, end;  ///< in its text
+};
+
+std::vector<Word> words_of(std::string_view text) {
+  std::vector<Word> words;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find(' ', at), text.size());
     if (end > at)
-      words.push_back(text.substr(at, end - at));
+      words.push_back({at, end});
     at = end + 1;
   }
   return words;
@@ -70,20 +77,38 @@ class LibraryReader {
     wanted_.merge(more);
   }
 
-  /// One name with spaces, or several names.
+  /// One name with spaces, or several names, which may have some too.
   void read_statement(const std::string& statement) {
     if (const auto whole = files_.find(folder_, statement))
       return read_file(*whole);
-    for (const std::string& word : words_of(without_comment(statement))) {
-      if (const auto file = files_.find(folder_, word))
-        read_file(*file);
-      else
-        miss(statement, word);
+    const std::string text = without_comment(statement);
+    const std::vector<Word> words = words_of(text);
+    for (std::size_t first = 0; first < words.size();) {
+      const std::size_t next = read_name(text, words, first);
+      if (next == first)
+        miss(statement, text.substr(words[first].begin, words[first].end - words[first].begin));
+      first = std::max(next, first + 1);
     }
   }
 
+  /// Reads the file whose name begins with a word, and has the fewest. Returns what comes behind
+  /// it, `first` if there is none.
+  std::size_t read_name(const std::string& text, const std::vector<Word>& words,
+                        std::size_t first) {
+    const std::size_t most = std::min(words.size(), first + 1 + kMostSpaces);
+    for (std::size_t next = first + 1; next <= most; ++next) {
+      const std::size_t begin = words[first].begin;
+      if (const auto file = files_.find(folder_, text.substr(begin, words[next - 1].end - begin))) {
+        read_file(*file);
+        return next;
+      }
+    }
+    return first;
+  }
+
   void miss(const std::string& statement, const std::string& word) {
-    ++read_.missing;
+    if (++read_.missing == 1)
+      read_.first_missing = statement;
     companions_.await(mesh_io::sought_places(folder_, statement));
     companions_.await(mesh_io::sought_places(folder_, word));
   }

@@ -81,6 +81,7 @@ struct LibraryMaterial {
 struct Libraries {
   std::vector<LibraryMaterial> materials;  ///< of each name in MaterialNames::all()
   std::uint64_t missing = 0;               ///< libraries that are not there
+  std::string first_missing;               ///< as the file names it
 };
 
 /// Reads the libraries that an OBJ file names. The first definition of a name counts. Throws as

@@ -3,6 +3,7 @@
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
 
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,6 +12,20 @@ namespace meshhier::importing {
 namespace {
 
 constexpr std::size_t kLongestName = 255;
+
+std::string named(const std::string& name, const std::string& place) {
+  return plain_text(name, kLongestName) + " of " + plain_text(place, kLongestName);
+}
+
+/// Empty if none is missing.
+std::string missing_text(std::uint64_t count, std::string_view what, const std::string& first,
+                         std::string_view consequence) {
+  if (count == 0)
+    return {};
+  return fmt::format("{} of the mesh {} missing ({}{}): {}", counted(count, what),
+                     count == 1 ? "is" : "are", count == 1 ? "" : "the first is ", first,
+                     consequence);
+}
 
 }  // namespace
 
@@ -36,19 +51,25 @@ std::uint32_t MaterialTable::add(images::Material material) {
 void MaterialTable::miss(const std::string& name, const std::string& place,
                          const std::vector<std::filesystem::path>& sought) {
   if (missing_.empty())
-    first_missing_ = plain_text(name, kLongestName) + " of " + plain_text(place, kLongestName);
+    first_missing_ = named(name, place);
   missing_.emplace(name, place);
   companions_.await(sought);
 }
 
+void MaterialTable::miss_library(const std::string& name, const std::filesystem::path& obj) {
+  if (++missing_libraries_ == 1)
+    first_missing_library_ = named(name, obj.string());
+}
+
 std::string MaterialTable::warning(bool is_textured) const {
-  if (missing_.empty())
-    return {};
-  const bool is_one = missing_.size() == 1;
-  return fmt::format("{} of the mesh {} missing ({}{}): {}", counted(missing_.size(), "pictures"),
-                     is_one ? "is" : "are", is_one ? "" : "the first is ", first_missing_,
-                     is_textured ? "triangles show the colour of their material instead"
-                                 : "the mesh is read as one without textures");
+  return missing_text(missing_.size(), "pictures", first_missing_,
+                      is_textured ? "triangles show the colour of their material instead"
+                                  : "the mesh is read as one without textures");
+}
+
+std::string MaterialTable::library_warning() const {
+  return missing_text(missing_libraries_, "material libraries", first_missing_library_,
+                      "the colours and pictures of its materials are not shown");
 }
 
 }  // namespace meshhier::importing

@@ -30,6 +30,9 @@ class MaterialTable {
   void miss(const std::string& name, const std::string& place,
             const std::vector<std::filesystem::path>& sought);
 
+  /// Notes that a library is not there which defines materials that triangles have. `obj` names it.
+  void miss_library(const std::string& name, const std::filesystem::path& obj);
+
   /// Files that the materials come from, but for the pictures, and where missing ones would be.
   Companions& companions() { return companions_; }
 
@@ -38,6 +41,8 @@ class MaterialTable {
   /// What all should know of missing pictures, in one line; empty if there are none.
   /// `is_textured`: others are there.
   std::string warning(bool is_textured) const;
+  /// The same of missing libraries.
+  std::string library_warning() const;
 
  private:
   using Place = std::tuple<std::string, std::uint64_t, std::uint64_t>;
@@ -47,6 +52,8 @@ class MaterialTable {
   std::set<std::pair<std::string, std::string>> missing_;
   Companions companions_;
   std::string first_missing_;
+  std::uint64_t missing_libraries_ = 0;
+  std::string first_missing_library_;
 };
 
 }  // namespace meshhier::importing

@@ -222,6 +222,8 @@ std::vector<LibraryMaterial> find_materials(const ObjParts& parts, ObjImport& im
     import.undefined_materials += uses[i].name && !material.is_defined ? 1 : 0;
     import.other_alphas += material.has_other_alpha ? 1 : 0;
   }
+  if (libraries.missing > 0 && import.undefined_materials > 0)
+    mesh.materials.miss_library(libraries.first_missing, parts.names.obj());
   return std::move(libraries.materials);
 }
 

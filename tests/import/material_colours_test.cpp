@@ -146,6 +146,31 @@ TEST_F(MaterialColoursTest, AMissingLibraryLeavesThePlainMesh) {
   EXPECT_EQ(mesh.layout, AttributeLayout());
   EXPECT_EQ(mesh.count("missing_material_libraries"), 1U);
   EXPECT_THAT(mesh.companions(), ElementsAre("no w/a.mtl"));
+  ASSERT_THAT(mesh.warnings, SizeIs(1));
+  EXPECT_EQ(
+      mesh.warnings[0],
+      "1 material library of the mesh is missing (a.mtl of w/a.obj): the colours and pictures "
+      "of its materials are not shown");
+}
+
+TEST_F(MaterialColoursTest, NamesOfSeveralLibrariesMayHaveSpaces) {
+  put("my red one.mtl", "newmtl red\nKd 1 0 0\n");
+  put("my  blue.mtl", "newmtl blue\nKd 0 0 1\n");
+  put("b.mtl", "newmtl green\nKd 0 1 0\n");
+  put("a.obj", std::string("mtllib b.mtl my red one.mtl none my  blue.mtl\n") + kCorners +
+                   "usemtl red\nf 1 2 3\nusemtl blue\nf 1 3 4\nusemtl green\nf 2 3 4\n");
+  const Imported mesh = import_of({"a.obj"});
+  EXPECT_EQ(mesh.count("material_colours"), 3U);
+  EXPECT_EQ(mesh.count("missing_material_libraries"), 1U);
+  EXPECT_THAT(corner_colours(mesh, 1), Each("0 0 255"));
+}
+
+TEST_F(MaterialColoursTest, ALibraryThatNobodyNeedsMayBeMissing) {
+  put("a.mtl", kRedAndBlue);
+  put("a.obj", std::string("mtllib a.mtl other.mtl\n") + kCorners + "usemtl red\nf 1 2 3\n");
+  const Imported mesh = import_of({"a.obj"});
+  EXPECT_EQ(mesh.count("missing_material_libraries"), 1U);
+  EXPECT_THAT(mesh.warnings, IsEmpty());
 }
 
 TEST_F(MaterialColoursTest, ResultsDoNotDependOnTheMemory) {
