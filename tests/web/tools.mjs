@@ -172,6 +172,23 @@ async function capPixels(page, surface = '.surface') {
   }, [picture.toString('base64'), CAP]);
 }
 
+/// Of a cut whose card is closed, the tools too: a sign says so, and ends it.
+async function checkLasting(visitor, page) {
+  await page.getByRole('radio', { name: 'Plane' }).check();
+  const sign = page.getByRole('button', { name: 'The model is cut open' });
+  const before = await sign.isVisible();
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('Escape');
+  await sign.waitFor();
+  await settle(page);
+  await visitor.picture(page, 'clip-closed');
+  const cut = await capPixels(page);
+  await sign.click();
+  await sign.waitFor({ state: 'hidden' });
+  await settle(page);
+  visitor.check('lasting cut', !before && cut > 2000 && (await capPixels(page)) === 0, `${cut} pixels of caps until its sign is pressed`);
+}
+
 async function checkClip(visitor) {
   const page = await visitor.open();
   const whole = await capPixels(page);
@@ -198,6 +215,7 @@ async function checkClip(visitor) {
   await page.getByRole('radio', { name: 'Off' }).check();
   await settle(page);
   visitor.check('off', (await capPixels(page)) === 0, 'whole again');
+  await checkLasting(visitor, page);
   await visitor.close(page, 'clip');
 }
 

@@ -44,6 +44,7 @@ export class ClipTool implements Tool {
   private readonly boxForm: HTMLElement;
   private readonly note = element('p', { class: 'tool-note', 'aria-live': 'polite' });
   private readonly caps: Control<boolean>;
+  private readonly modes: Control<Mode>;
   private position = element('div', {});
   private mode: Mode = 'off';
   private normal: Vector = UNIT_AXES[0];
@@ -61,17 +62,15 @@ export class ClipTool implements Tool {
     this.extent = { min, max };
     this.sides = { min: [...min], max: [...max] };
     const { clip } = words;
-    const modes = choice(clip.mode, Object.entries(clip.modes) as [Mode, string][], (mode) => { this.setMode(mode); });
-    modes.show(this.mode);
+    this.modes = choice(clip.mode, Object.entries(clip.modes) as [Mode, string][], (mode) => { this.setMode(mode); });
     this.caps = checkbox(clip.caps, null, (on) => { this.isCapped = on; this.apply(); });
     this.caps.show(view.closed);
     this.caps.root.hidden = !view.closed;
     this.makePlaneForm();
     this.boxForm = this.makeBoxForm();
     const open = view.closed ? null : element('p', { class: 'tool-note' }, clip.noCaps);
-    this.root = element('div', {}, modes.root, this.planeForm, this.boxForm, this.caps.root, open, this.note);
+    this.root = element('div', {}, this.modes.root, this.planeForm, this.boxForm, this.caps.root, open, this.note);
     this.setMode('plane');
-    modes.show('plane');
   }
 
   private makePlaneForm(): void {
@@ -99,6 +98,7 @@ export class ClipTool implements Tool {
 
   private setMode(mode: Mode): void {
     this.mode = mode;
+    this.modes.show(mode);
     this.planeForm.hidden = mode !== 'plane';
     this.boxForm.hidden = mode !== 'box';
     this.shop.bench.view.showsInside = mode !== 'off';
@@ -164,6 +164,14 @@ export class ClipTool implements Tool {
     const axes = drawingAxes(this.normal, view.upwards);
     download(new Blob([sectionSvg(lines, { axes, unit: settings.modelUnit, title: `${told}; ${from}` })], { type: 'image/svg+xml' }), `${bench.name}-section.svg`);
     this.note.textContent = told;
+  }
+
+  lasting(): string | null {
+    return this.mode === 'off' ? null : words.clip.lasting;
+  }
+
+  end(): void {
+    this.setMode('off');
   }
 
   close(): void {

@@ -13,6 +13,10 @@ export interface Tool {
   marks?(): readonly Mark[];
   /// After each frame.
   drawn?(): void;
+  /// What goes on when its card is closed, in a few words; null: nothing does.
+  lasting?(): string | null;
+  /// Ends that.
+  end?(): void;
   /// It is put away.
   close?(): void;
 }

@@ -7,6 +7,7 @@ import type { Bench, ToolName, Tools } from './bench.js';
 import { Cube } from './cube.js';
 import { TOOL_ICONS } from './icons.js';
 import { TOOL_KEYS } from './keys.js';
+import { LastingSign } from './lasting_sign.js';
 import { NotebookStore } from './notebook.js';
 import { Overlay } from './overlay.js';
 import { Pointing } from './pointing.js';
@@ -51,6 +52,7 @@ export class Toolbox implements Tools {
   private readonly overlay = new Overlay();
   private readonly scaleLine: ScaleLine;
   private readonly cube: Cube;
+  private readonly lasting: LastingSign;
   private readonly bar: HTMLElement;
   private readonly buttons: Readonly<Record<ToolName, HTMLButtonElement>>;
   private readonly title = element('h2', {});
@@ -65,13 +67,14 @@ export class Toolbox implements Tools {
     this.shop = makeShop(bench);
     this.scaleLine = new ScaleLine(this.shop);
     this.cube = new Cube(bench);
+    this.lasting = new LastingSign(bench.surface);
     const entries = NAMES.map((name) => [name, this.makeButton(name)] as const);
     this.buttons = Object.fromEntries(entries) as Record<ToolName, HTMLButtonElement>;
     this.bar = element('div', { class: 'bar tool-bar', role: 'toolbar', 'aria-label': words.title, 'aria-orientation': 'vertical' }, ...entries.map(([, button]) => button));
     const close = iconButton(words.close(words.title), ICONS.close, () => { this.put(null); });
     this.card = element('section', { class: 'tool-card', hidden: true }, element('div', { class: 'sheet-head' }, this.title, close), this.body);
     this.root = element('div', { class: 'tools', hidden: true }, this.cross, this.bar, this.card, this.cube.root, this.scaleLine.root);
-    bench.root.append(this.overlay.root, this.root);
+    bench.root.append(this.overlay.root, this.root, this.lasting.root);
     // Ahead of the view: what a tool takes is taken.
     window.addEventListener('keydown', (event) => { this.keyed(event); }, { signal: bench.signal, capture: true });
     bench.signal.addEventListener('abort', () => { for (const tool of this.made.values()) tool.close?.(); });
@@ -91,6 +94,7 @@ export class Toolbox implements Tools {
 
   drawn(): void {
     for (const tool of this.made.values()) tool.drawn?.();
+    this.lasting.show([...this.made.values()].find((tool) => tool !== this.tool && (tool.lasting?.() ?? null) !== null) ?? null);
     if (this.root.hidden) return;
     const marks = [...this.made.values()].flatMap((tool) => tool.marks?.() ?? []);
     this.overlay.show(marks, this.bench.camera, this.bench.view.surfaceMatrix);

@@ -4,6 +4,7 @@ import type { ToolWords } from './en.js';
 export const de: ToolWords = {
   title: 'Werkzeuge',
   close: (name) => `${name} schließen`,
+  end: (what: string) => `${what}: beenden`,
   names: { pick: 'Punkt wählen', measure: 'Messen', clip: 'Aufschneiden', notes: 'Notizen', camera: 'Kamera und Bilder' },
   pick: {
     hint: 'Klicken oder tippen Sie auf die Oberfläche; Enter nimmt die Mitte des Bildes.',
@@ -60,6 +61,7 @@ export const de: ToolWords = {
     sides: { front: 'Vorn', back: 'Hinten', left: 'Links', right: 'Rechts', top: 'Oben', bottom: 'Unten' },
   },
   clip: {
+    lasting: 'Das Modell ist aufgeschnitten',
     mode: 'Schnitt',
     modes: { off: 'Aus', plane: 'Ebene', box: 'Quader' },
     direction: 'Quer zu',

@@ -3,6 +3,7 @@
 export const en = {
   title: 'Tools',
   close: (name: string) => `Close ${name.toLowerCase()}`,
+  end: (what: string) => `${what}: end this`,
   names: { pick: 'Pick a point', measure: 'Measure', clip: 'Cut open', notes: 'Notes', camera: 'Camera and pictures' },
   pick: {
     hint: 'Click or tap the surface; Enter takes the middle of the picture.',
@@ -59,6 +60,7 @@ export const en = {
     sides: { front: 'Front', back: 'Back', left: 'Left', right: 'Right', top: 'Top', bottom: 'Bottom' },
   },
   clip: {
+    lasting: 'The model is cut open',
     mode: 'Cut',
     modes: { off: 'Off', plane: 'Plane', box: 'Box' },
     direction: 'Across',

@@ -4,6 +4,7 @@ import type { ToolWords } from './en.js';
 export const es: ToolWords = {
   title: 'Herramientas',
   close: (name) => `Cerrar ${name.toLowerCase()}`,
+  end: (what: string) => `${what}: terminar`,
   names: { pick: 'Elegir un punto', measure: 'Medir', clip: 'Cortar', notes: 'Notas', camera: 'Cámara e imágenes' },
   pick: {
     hint: 'Haga clic o toque la superficie; Intro toma el centro de la imagen.',
@@ -60,6 +61,7 @@ export const es: ToolWords = {
     sides: { front: 'Frente', back: 'Atrás', left: 'Izq.', right: 'Der.', top: 'Arriba', bottom: 'Abajo' },
   },
   clip: {
+    lasting: 'El modelo está cortado',
     mode: 'Corte',
     modes: { off: 'No', plane: 'Plano', box: 'Caja' },
     direction: 'A través de',
