@@ -116,7 +116,8 @@ MultipartReader::Next MultipartReader::finish() {
 /// The name of the file, of a head with its empty line. There must be exactly one.
 std::optional<std::string> MultipartReader::take_headers() {
   std::size_t end = held().find(kHeadEnd);
-  while (end == std::string_view::npos && held().size() < kMostPartHeadBytes && fill())
+  while (end == std::string_view::npos && held().size() < kMostPartHeadBytes + kHeadEnd.size() &&
+         fill())
     end = held().find(kHeadEnd);
   if (end == std::string_view::npos || end > kMostPartHeadBytes)
     return std::nullopt;

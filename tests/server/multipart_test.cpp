@@ -48,6 +48,22 @@ TEST(MultipartTest, FilesComeOutAsTheyWentInHoweverTheyArrive) {
   }
 }
 
+TEST(MultipartTest, TheLongestHeadIsTheSameHoweverItArrives) {
+  const std::string head = "Content-Disposition: form-data; name=\"f\"; filename=\"a.obj\"\r\nX: ";
+  std::size_t longest = 0;
+  for (std::size_t bytes = 4000; bytes < 4200; ++bytes) {
+    const std::string text = "--" + kBoundary + "\r\n" + head +
+                             std::string(bytes - head.size(), 'x') + "\r\n\r\nmesh\r\n--" +
+                             kBoundary + "--\r\n";
+    const std::optional<FormFiles> whole = read_form(text);
+    EXPECT_EQ(read_form(text, 1), whole) << bytes;
+    EXPECT_EQ(read_form(text, 41), whole) << bytes;
+    if (whole)
+      longest = bytes;
+  }
+  EXPECT_EQ(longest, 4096U);
+}
+
 TEST(MultipartTest, TheLastLineEndMayBeMissing) {
   std::string text = form_text({{"a.obj", "o"}});
   text.resize(text.size() - 2);
