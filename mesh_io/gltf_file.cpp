@@ -127,7 +127,8 @@ bool GltfFile::is_regular(const std::filesystem::path& path) const {
 GltfFile::Buffer GltfFile::open_file(const std::filesystem::path& path,
                                      const std::string& name) const {
   if (!is_regular(path))
-    fail(fmt::format("{}: {} is not there, or no regular file", name, path.string()));
+    fail(fmt::format("{}: {} is not there, or no regular file", name,
+                     plain_text(path.string(), kLongestUri)));
   std::shared_ptr<const storage::File> file = room_.files.open(path);
   const std::uint64_t bytes = file->size();
   return {std::make_unique<GltfFileBytes>(std::move(file), 0, bytes), path, 0};

@@ -1,13 +1,18 @@
 #include "mesh_io/input_error.h"
 
 #include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
+
+#include <cstddef>
 
 #include <fmt/format.h>
 
 namespace meshhier::mesh_io {
 
 void fail_file(const std::filesystem::path& path, const std::string& message) {
-  throw Error(ErrorCode::input, fmt::format("{}: {}", path.string(), message));
+  constexpr std::size_t kLongestPath = 4096;
+  throw Error(ErrorCode::input,
+              fmt::format("{}: {}", plain_text(path.string(), kLongestPath), message));
 }
 
 void fail_at_byte(const std::filesystem::path& path, std::uint64_t offset,

@@ -60,7 +60,7 @@ class Hand {
 
   /// A button, a choice, or a slider that is there, whatever lies over it.
   async control() {
-    await this.page.evaluate((part) => {
+    await this.evaluate((part) => {
       const all = [...document.querySelectorAll('button, input, select, summary')].filter((one) => one.checkVisibility() && one.type !== 'file');
       const one = all[Math.floor(part * all.length)];
       if (one === undefined) return;
@@ -80,7 +80,15 @@ class Hand {
   }
 
   async frame() {
-    await this.page.evaluate(() => new Promise((done) => { requestAnimationFrame(done); }));
+    await this.evaluate(() => new Promise((done) => { requestAnimationFrame(done); }));
+  }
+
+  /// Another act may lead to another page before the answer is there.
+  async evaluate(asked, argument) {
+    await this.page.evaluate(asked, argument).catch((error) => {
+      if (!String(error).includes('navigation')) throw error;
+      return this.page.waitForLoadState();
+    });
   }
 
   /// Several acts at once, and a frame after them. Throws where the page does not come back from them: input has no patience
