@@ -104,8 +104,15 @@ class Hand {
   }
 }
 
+/// What was done before may still lead to another page.
 async function opened(page, address) {
-  await page.goto(address);
+  for (let interrupted = true; interrupted; ) {
+    interrupted = false;
+    await page.goto(address).catch((error) => {
+      if (!String(error).includes('interrupted')) throw error;
+      interrupted = true;
+    });
+  }
   await page.waitForFunction(() => window.meshhier?.settled(), null, { timeout: PATIENCE });
 }
 
