@@ -35,7 +35,7 @@ class Names {
   std::string image(std::uint32_t image) const {
     return fmt::format("{}.{}", material(image), extension_);
   }
-  std::string library() const { return mesh_.stem().string() + ".mtl"; }
+  std::string mtl_name() const { return mesh_.stem().string() + ".mtl"; }
   std::filesystem::path beside(const std::string& name) const { return mesh_.parent_path() / name; }
 
  private:
@@ -74,7 +74,7 @@ class ObjFile {
 
   std::uint64_t write() {
     out_.print("# meshgen textured: {}\nmtllib {}\n", description_of(surface_.options().surface),
-               names_.library());
+               names_.mtl_name());
     surface_.surface().visit_vertices([&](const ReliefVertex& v) { write_position(v); });
     surface_.visit_charts([&](const PlacedChart& chart) { write_chart(chart); });
     out_.flush();
@@ -140,7 +140,7 @@ std::string library_text(const TexturedSurface& surface, const Names& names) {
 
 void write_library(storage::FileSystem& files, const storage::OutputRequest& request,
                    const TexturedSurface& surface, const Names& names) {
-  storage::OutputFile output(files, {names.beside(names.library()), request.replace, {}});
+  storage::OutputFile output(files, {names.beside(names.mtl_name()), request.replace, {}});
   const std::string text = library_text(surface, names);
   output.publish(std::as_bytes(std::span(text)));
 }

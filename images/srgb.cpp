@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 namespace meshhier::images {
@@ -46,6 +47,10 @@ std::uint8_t screen_value(double light) {
     return 0;
   const auto above = std::upper_bound(kLeastLight.begin(), kLeastLight.end(), light);
   return static_cast<std::uint8_t>(above - kLeastLight.begin());
+}
+
+std::uint8_t screen_byte(float value) {
+  return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0F, 1.0F) * 255));
 }
 
 LightTable::LightTable() : values_(kFullLight + 1) {

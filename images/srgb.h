@@ -13,6 +13,9 @@ double light_of(double value);
 /// The 8-bit value nearest to a light, which is cut to 0 to 1; 0 of what is no number.
 std::uint8_t screen_value(double light);
 
+/// The 8-bit value nearest to a screen's value from 0 to 1, to which it is cut.
+std::uint8_t screen_byte(float value);
+
 /// The same in whole numbers: light of 8-bit values from 0 to 65535, for sums that are exact. Each
 /// value's light is nearest to that value.
 class LightTable {

@@ -115,7 +115,7 @@ class Import {
     const MaterialTable& table = mesh_.materials;
     count("missing_images", table.missing());
     for (const std::string& warning :
-         {table.library_warning(), table.warning(mesh_.layout.material)}) {
+         {table.warning_of_libraries(), table.warning(mesh_.layout.material)}) {
       if (!warning.empty())
         env_.progress.warn(warning);
     }

@@ -80,41 +80,36 @@ PlainColour colour_of(const JoinedFile& file, std::span<const float> row) {
   return colour;
 }
 
-/// Appends the vertices of a file as a textured mesh has them.
+/// Appends the vertices of an untextured file as a textured mesh has them.
 void append_textured(const JoinedFile& file, const storage::RecordSpool<float>& from,
                      std::uint64_t channel, PlainMaterials& plain, storage::RecordSpool<float>& to,
                      const ImportRoom& room) {
   const auto kept = static_cast<std::size_t>(kept_layout(file).channels());
   for_each_row(file, from, channel, room, [&](std::span<const float> row) {
-    if (file.layout.material) {
-      to.append(row);
-      return;
-    }
     to.append(row.first(kept));
     to.append(std::array{0.0F, 0.0F, plain.number(colour_of(file, row))});
   });
 }
 
-/// Appends the vertices of a file with a colour, which is white if they have none.
-void append_painted(const JoinedFile& file, const storage::RecordSpool<float>& from,
-                    std::uint64_t channel, storage::RecordSpool<float>& to,
-                    const ImportRoom& room) {
+/// Appends the vertices of a file without colours as white ones.
+void append_white(const JoinedFile& file, const storage::RecordSpool<float>& from,
+                  std::uint64_t channel, storage::RecordSpool<float>& to, const ImportRoom& room) {
   const auto before = static_cast<std::size_t>(file.layout.colour_offset());
   for_each_row(file, from, channel, room, [&](std::span<const float> row) {
     to.append(row.first(before));
-    if (!file.is_painted)
-      to.append(PlainColour().values());
+    to.append(PlainColour().values());
     to.append(row.subspan(before));
   });
 }
 
-void copy(const storage::RecordSpool<float>& from, storage::RecordSpool<float>& to,
-          const ImportRoom& room) {
+/// So many channels from `first` on.
+void copy(const storage::RecordSpool<float>& from, std::uint64_t first, std::uint64_t count,
+          storage::RecordSpool<float>& to, const ImportRoom& room) {
   std::vector<float> block;
-  for (std::uint64_t i = 0; i < from.size(); i += block.size()) {
+  for (std::uint64_t i = 0; i < count; i += block.size()) {
     room.cancel.check();
-    block.resize(std::min<std::uint64_t>(kBlockVertices * kMaxChannels, from.size() - i));
-    from.read(i, block);
+    block.resize(std::min<std::uint64_t>(kBlockVertices * kMaxChannels, count - i));
+    from.read(first + i, block);
     to.append(block);
   }
 }
@@ -133,10 +128,9 @@ std::uint64_t join_layouts(std::span<const JoinedFile> files, RawMesh& mesh,
   if (std::ranges::all_of(files,
                           [&](const JoinedFile& file) { return file.layout == files[0].layout; }))
     return 0;
-  const auto textured = std::ranges::find_if(files, is_textured);
-  const bool has_textures = textured != files.end();
-  if (has_textures) {
-    mesh.layout = textured->layout;
+  const auto textured = static_cast<std::uint64_t>(std::ranges::count_if(files, is_textured));
+  if (textured > 0) {
+    mesh.layout = std::ranges::find_if(files, is_textured)->layout;
   } else {
     const auto other = std::ranges::find_if(files, [&](const JoinedFile& file) {
       return file.layout.texcoords != files[0].layout.texcoords;
@@ -149,17 +143,18 @@ std::uint64_t join_layouts(std::span<const JoinedFile> files, RawMesh& mesh,
   storage::RecordSpool<float> joined(room.scratch, kImportSpoolBytes);
   std::uint64_t channel = 0;
   for (const JoinedFile& file : files) {
-    if (has_textures)
+    const std::uint64_t count = file.vertices * static_cast<std::uint64_t>(file.layout.channels());
+    if (file.layout == mesh.layout)
+      copy(mesh.attributes, channel, count, joined, room);
+    else if (textured > 0)
       append_textured(file, mesh.attributes, channel, plain, joined, room);
     else
-      append_painted(file, mesh.attributes, channel, joined, room);
-    channel += file.vertices * static_cast<std::uint64_t>(file.layout.channels());
+      append_white(file, mesh.attributes, channel, joined, room);
+    channel += count;
   }
   mesh.attributes.clear();
-  copy(joined, mesh.attributes, room);
-  return has_textures ? static_cast<std::uint64_t>(files.size()) -
-                            static_cast<std::uint64_t>(std::ranges::count_if(files, is_textured))
-                      : 0;
+  copy(joined, 0, joined.size(), mesh.attributes, room);
+  return textured > 0 ? files.size() - textured : 0;
 }
 
 }  // namespace meshhier::importing

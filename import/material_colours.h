@@ -3,6 +3,7 @@
 
 #include "hierarchy/attributes.h"
 #include "images/material_list.h"
+#include "images/srgb.h"
 
 #include <array>
 #include <compare>
@@ -16,7 +17,10 @@ namespace meshhier::importing {
 struct PlainColour {
   std::array<std::uint8_t, 3> channels{255, 255, 255};
 
-  static PlainColour of(const images::Material& material);
+  static PlainColour of(const images::Material& material) {
+    const auto& [red, green, blue, alpha] = material.colour;
+    return {{images::screen_byte(red), images::screen_byte(green), images::screen_byte(blue)}};
+  }
 
   bool is_grey() const { return channels[0] == channels[1] && channels[1] == channels[2]; }
   /// As attributes have it.

@@ -143,7 +143,7 @@ class LibraryReader {
   static LibraryMaterial made_of(const mesh_io::MtlMaterial& read, const fs::path& library) {
     LibraryMaterial made;
     made.is_defined = true;
-    made.library = library;
+    made.defined_in = library;
     made.map = read.picture;
     const auto& [red, green, blue] = read.colour;
     made.material.name = read.name;

@@ -68,7 +68,7 @@ class MaterialNames {
 struct LibraryMaterial {
   images::Material material;           ///< as it is without a picture
   std::optional<mesh_io::MtlMap> map;  ///< of its picture
-  std::filesystem::path library;       ///< that defines it
+  std::filesystem::path defined_in;    ///< its file
   bool is_defined = false;             ///< else white
   bool has_other_alpha = false;        ///< map_d names another picture
 

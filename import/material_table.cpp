@@ -67,7 +67,7 @@ std::string MaterialTable::warning(bool is_textured) const {
                                   : "the mesh is read as one without textures");
 }
 
-std::string MaterialTable::library_warning() const {
+std::string MaterialTable::warning_of_libraries() const {
   return missing_text(missing_libraries_, "material libraries", first_missing_library_,
                       "the colours and pictures of its materials are not shown");
 }

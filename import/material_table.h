@@ -42,7 +42,7 @@ class MaterialTable {
   /// `is_textured`: others are there.
   std::string warning(bool is_textured) const;
   /// The same of missing libraries.
-  std::string library_warning() const;
+  std::string warning_of_libraries() const;
 
  private:
   using Place = std::tuple<std::string, std::uint64_t, std::uint64_t>;

@@ -35,10 +35,10 @@ bool ObjTextures::find_picture(std::uint32_t name, PictureTile tile) {
   std::optional<std::filesystem::path>& picture = known->second;
   if (is_new) {
     const std::string file = material.file_of(tile.number());
-    const std::filesystem::path folder = material.library.parent_path();
+    const std::filesystem::path folder = material.defined_in.parent_path();
     picture = files_.find(folder, file);
     if (!picture)
-      table_.miss(file, material.library.string(), mesh_io::sought_places(folder, file));
+      table_.miss(file, material.defined_in.string(), mesh_io::sought_places(folder, file));
   }
   has_pictures_ |= picture.has_value();
   return picture.has_value();

@@ -1,5 +1,6 @@
 #include "pipeline/tiles/leaf_picture.h"
 
+#include "images/srgb.h"
 #include "texture/fill.h"
 #include "texture/shown_texels.h"
 #include "texture/texel_raster.h"
@@ -8,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 
 namespace meshhier::pipeline {
@@ -23,10 +23,6 @@ constexpr std::uint32_t kBandTexels = std::uint32_t{1} << 20;
 /// Of rows of blocks, as large a number as a band may have; at least one.
 std::uint32_t band_rows(std::uint32_t width) {
   return std::max(kBandTexels / width / kLeafAlignment, 1U) * kLeafAlignment;
-}
-
-std::uint8_t to_byte(float value) {
-  return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255));
 }
 
 /// Of a material without a picture. Alpha is that of the tile's picture, whose cutoff is 0.5.
@@ -45,7 +41,7 @@ void fill(const images::Material& material, Image& image, std::uint32_t left, st
   for (std::uint32_t y = top; y < top + height; ++y) {
     for (std::uint32_t x = left; x < left + width; ++x) {
       for (std::uint32_t c = 0; c < image.channels; ++c)
-        image.at(x, y)[c] = to_byte(colour[c]);
+        image.at(x, y)[c] = images::screen_byte(colour[c]);
     }
   }
 }

@@ -156,7 +156,7 @@ struct Obj {
   std::vector<std::vector<double>> places, texcoords;
   std::vector<Facet> facets;                              ///< positions
   std::map<std::string, std::vector<Facet>> by_material;  ///< texture coordinates behind them
-  std::string library;
+  std::string mtllib;
 
   static Obj read(const fs::path& path) {
     Obj obj;
@@ -170,7 +170,7 @@ struct Obj {
       if (word == "vt")
         obj.texcoords.push_back(numbers(words));
       if (word == "mtllib")
-        words >> obj.library;
+        words >> obj.mtllib;
       if (word == "usemtl")
         words >> material;
       if (word == "f")
@@ -332,7 +332,7 @@ TEST_F(ExportPartsTest, EachTileHasItsPictureAndItsTexcoordsInAnObj) {
   tests::Sample sample = publish_textured({}, AlphaMode::mask);
   run(mixed_cut(), "a.obj");
   const Obj obj = Obj::read(at("a.obj"));
-  EXPECT_EQ(obj.library, "a.mtl");
+  EXPECT_EQ(obj.mtllib, "a.mtl");
   const std::string materials = text_of(at("a.mtl"));
   EXPECT_EQ(obj.by_material.size(), 4U);
   for (const NodeId id : {node(1, 0), node(2, 2), node(3, 6), node(3, 7)}) {

@@ -1,5 +1,6 @@
 // Links: `#MODEL&px,py,pz,tx,ty,tz&NAME=VALUE…`. MODEL is the path of the hierarchy relative to the listing, and
 // empty for the one model that the query names; the camera and what was chosen (appearance.ts) may be missing.
+import { readable } from './listing.js';
 
 export type Triple = readonly [number, number, number];
 
@@ -39,17 +40,9 @@ export function roundedPose({ position: [a, b, c], target: [d, e, f] }: Pose): P
   return { position: [rounded(a), rounded(b), rounded(c)], target: [rounded(d), rounded(e), rounded(f)] };
 }
 
-function decoded(part: string): string {
-  try {
-    return decodeURIComponent(part);
-  } catch {
-    return part;
-  }
-}
-
 /// A model's path as links write it, an absolute one too. Listings may escape more or less of it: it is the same model then.
 export function linkPath(path: string): string {
-  return path.split(/([/:])/).map((part, i) => (i % 2 === 1 ? part : encodeURIComponent(decoded(part)))).join('');
+  return path.split(/([/:])/).map((part, i) => (i % 2 === 1 ? part : encodeURIComponent(readable(part)))).join('');
 }
 
 /// Null of what is no path.

@@ -4,7 +4,7 @@ import { EarlyStart } from './early_start.js';
 import { Gallery } from './gallery/gallery.js';
 import type { Order } from './gallery/orders.js';
 import { ListingWatch } from './listing_watch.js';
-import { modelOfPath, type Listing, type Model } from './listing.js';
+import { modelOfPath, readable, type Listing, type Model } from './listing.js';
 import { ModelEntry } from './model_entry.js';
 import { languageSelect } from './parts/language_select.js';
 import { themeButton } from './parts/theme_button.js';
@@ -76,7 +76,7 @@ export class App {
       return;
     }
     this.showGallery();
-    if (address !== null) this.problems.tell(words.problems.unfetchable(shortened(decodeURIComponent(address.path))));
+    if (address !== null) this.problems.tell(words.problems.unfetchable(shortened(readable(address.path))));
   }
 
   /// Opens a model of the listing by its name or path. False if there is none.

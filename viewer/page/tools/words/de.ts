@@ -4,7 +4,7 @@ import type { ToolWords } from './en.js';
 export const de: ToolWords = {
   title: 'Werkzeuge',
   close: (name) => `${name} schließen`,
-  end: (what: string) => `${what}: beenden`,
+  end: (what) => `${what}: beenden`,
   names: { pick: 'Punkt wählen', measure: 'Messen', clip: 'Aufschneiden', notes: 'Notizen', camera: 'Kamera und Bilder' },
   pick: {
     hint: 'Klicken oder tippen Sie auf die Oberfläche; Enter nimmt die Mitte des Bildes.',

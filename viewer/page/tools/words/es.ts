@@ -4,7 +4,7 @@ import type { ToolWords } from './en.js';
 export const es: ToolWords = {
   title: 'Herramientas',
   close: (name) => `Cerrar ${name.toLowerCase()}`,
-  end: (what: string) => `${what}: terminar`,
+  end: (what) => `${what}: terminar`,
   names: { pick: 'Elegir un punto', measure: 'Medir', clip: 'Cortar', notes: 'Notas', camera: 'Cámara e imágenes' },
   pick: {
     hint: 'Haga clic o toque la superficie; Intro toma el centro de la imagen.',
