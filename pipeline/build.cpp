@@ -1,17 +1,15 @@
 #include "pipeline/build.h"
 
-#include "config/placement.h"
 #include "execution/allocator.h"
 #include "hierarchy/error.h"
 #include "pipeline/images_stage.h"
 #include "pipeline/import_stage.h"
-#include "pipeline/ingest_stage.h"
 #include "pipeline/journal/workshop.h"
 #include "pipeline/leaves_stage.h"
 #include "pipeline/outline_stage.h"
 #include "pipeline/pack_stage.h"
-#include "pipeline/partition_stage.h"
 #include "pipeline/publish_stage.h"
+#include "pipeline/read_stage.h"
 #include "pipeline/simplify_stage.h"
 #include "pipeline/stage_costs.h"
 #include "pipeline/texture_stage.h"
@@ -31,10 +29,6 @@ namespace {
 /// All stages but import, then the hierarchy gets its name.
 BuildReport run_stages(importing::MeshInput& input, storage::WorkDirectory& work,
                        storage::MemoryPool& pool, StageMeter& meter, const StageContext& context);
-
-/// Import again if need be, ingest and partition: they are one step, and noted together.
-void read_input(importing::MeshInput& input, const storage::WorkDirectory& work,
-                storage::MemoryPool& pool, Workshop& workshop, const StageContext& context);
 
 /// The stages from leaves to publish, as far as the journal does not have their work: all files of
 /// the hierarchy in `directory`. Returns how much disk they need, as it is known after leaves and
@@ -109,24 +103,6 @@ std::uint64_t bytes_of(const storage::HierarchyReader& made, storage::FileSystem
   return made.manifest().total_bytes + files.open(storage::manifest_path(made.directory()))->size();
 }
 
-/// What ingest and partition learnt of the input, and import before them.
-SourceSummary summarize(SourceMesh& mesh, const mesh_io::FaceCounts& counts,
-                        const importing::MeshInput& input, const execution::CancelToken& cancel) {
-  SourceSummary summary = mesh.summary();
-  summary.faces = counts.faces;
-  summary.triangles = counts.triangles;
-  summary.degenerate_triangles = counts.degenerate_triangles;
-  if (input.needs_import()) {
-    input.complete(summary);
-  } else {
-    summary.checksum = mesh.checksum(cancel);
-    input.files().check_unchanged();
-  }
-  if (summary.attributes.material)
-    summary.attributes = summary.attributes.without_texcoords();  // tiles have their own
-  return summary;
-}
-
 BuildReport run_stages(importing::MeshInput& input, storage::WorkDirectory& work,
                        storage::MemoryPool& pool, StageMeter& meter, const StageContext& context) {
   storage::FileSystem& files = context.files;
@@ -137,8 +113,11 @@ BuildReport run_stages(importing::MeshInput& input, storage::WorkDirectory& work
     meter.stage("resume", 0, "entries");
   const OpenWorkshop open = open_workshop(work, input, pool, context);
   Workshop& workshop = *open.workshop;
-  if (!workshop.journal.source())
-    read_input(input, work, pool, workshop, context);
+  if (!workshop.journal.source()) {
+    if (!can_be_read(input, context.config))
+      import_again(input, work, pool, context);
+    read_mesh(input, workshop, context);
+  }
   input.drop();
   work.keep(true);
 
@@ -165,29 +144,15 @@ BuildReport run_stages(importing::MeshInput& input, storage::WorkDirectory& work
   return make_report(made, outcome, meter, context);
 }
 
-void read_input(importing::MeshInput& input, const storage::WorkDirectory& work,
-                storage::MemoryPool& pool, Workshop& workshop, const StageContext& context) {
-  if (!can_be_read(input, context.config))
-    import_again(input, work, pool, context);
-  storage::ScratchFile vertices = workshop.mesh_scratch.beside("vertices");
-  SourceMesh mesh = ingest(input.open(), input.files().name(), vertices, context);
-  config::tileset_transform(context.config, mesh.summary().bounds);  // refused now, if at all
-  const mesh_io::FaceCounts counts =
-      partition_mesh(mesh, input.copies(), workshop.chunks, workshop.mesh_scratch, context);
-  const SourceSummary summary = summarize(mesh, counts, input, context.cancel);
-  workshop.journal.note_source(
-      {summary, mesh.origin(), input.materials(), input.record(summary.checksum)});
-}
-
 DiskNeed make_hierarchy(Workshop& workshop, const std::filesystem::path& directory,
                         const StageContext& context) {
   auto& [mesh_scratch, tile_scratch, picture_scratch, chunks, forest, textures, pictures, journal] =
       workshop;
-  SourceSummary source = journal.source()->summary;
+  const SourceSummary& source = journal.source()->summary;
   images::MaterialList materials;
   if (context.plan.textures.is_textured())
     materials = decode_images(pictures, journal, context);
-  source.unreferenced_vertices = make_leaves(chunks, forest, journal, context);
+  make_leaves(chunks, forest, journal, {}, context);
   const std::optional<DiskNeed> refined = refine_disk(context.plan, forest.partition_sums());
   if (refined)
     check_disk(*refined, context.config.output, context.files);
@@ -197,14 +162,12 @@ DiskNeed make_hierarchy(Workshop& workshop, const std::filesystem::path& directo
     workshop.journal.sync();
     workshop.mesh_scratch.remove();
   });
-  TileErrors errors = simplify(forest, journal, source, context);
+  const int depth = raw(context.tree().depth());
+  simplify(forest, journal, source.attributes, {0, depth}, context);
   settled.get();
   if (source.textures) {
-    make_textures(forest, {materials, pictures}, textures, journal, context);
+    make_textures(forest, {materials, pictures}, textures, journal, {0, depth + 1}, context);
     picture_scratch.remove();
-    errors = with_texels(std::move(errors), context.tree(), textures);
-    source.textures->texels = context.plan.textures.texels();
-    source.textures->missing_images += broken_pictures(context.plan.textures, journal).size();
   }
   DiskNeed need = refined.value_or(context.plan.disk);
   if (const std::uint64_t splits = forest.split_count(); splits > 0) {
@@ -212,8 +175,8 @@ DiskNeed make_hierarchy(Workshop& workshop, const std::filesystem::path& directo
     check_disk(need, context.config.output, context.files);
   }
   const OutlineStageResult outline = make_outline(forest, source.diagonal(), context);
-  publish(forest, textures, journal, {source, journal.source()->origin, errors, outline}, directory,
-          context);
+  publish(forest, textures, journal, directory, context);
+  write_account(forest, textures, journal, outline, directory, context);
   journal.note_complete();
   return need;
 }

@@ -57,19 +57,19 @@ ChunkReport put_leaves(Chunks& chunks, std::uint32_t index, partition::Axis axis
 
 }  // namespace
 
-std::uint64_t make_leaves(Chunks& chunks, Forest& forest, BuildJournal& journal,
-                          const StageContext& context) {
+void make_leaves(Chunks& chunks, Forest& forest, BuildJournal& journal, const Share& share,
+                 const StageContext& context) {
   const Tree& tree = context.tree();
   std::vector<std::uint32_t> left;
   std::uint64_t partitions = 0;
-  for (std::uint32_t chunk = 0; chunk < chunks.count(); ++chunk) {
+  for (std::uint64_t i = share.begin(chunks.count()); i < share.end(chunks.count()); ++i) {
+    const auto chunk = static_cast<std::uint32_t>(i);
     if (journal.has_leaves(chunk))
       continue;
     left.push_back(chunk);
     partitions += tree.partitions({chunks.level(), chunk}).size();
   }
   context.progress.stage("leaves", partitions, "partitions");
-  std::uint64_t unreferenced = journal.unreferenced_vertices();
   execution::ordered_for(
       left.size(), context.memory().chunks_in_flight, context.cancel,
       [&](std::size_t i) {
@@ -78,12 +78,10 @@ std::uint64_t make_leaves(Chunks& chunks, Forest& forest, BuildJournal& journal,
       },
       [&](std::size_t i, const ChunkReport& report) {
         journal.note_leaves(left[i], report.unreferenced_vertices);
-        unreferenced += report.unreferenced_vertices;
         context.progress.advance(report.partitions);
         if (i % kChunksBetweenReleases == kChunksBetweenReleases - 1)
           execution::release_free_memory();
       });
-  return unreferenced;
 }
 
 StageMemory leaves_memory(const JobSize& job) {

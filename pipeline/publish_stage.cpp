@@ -6,8 +6,10 @@
 #include "hierarchy/drawing_rule.h"
 #include "hierarchy/lattice.h"
 #include "partition/compactness.h"
+#include "pipeline/images_stage.h"
 #include "pipeline/plan/tile_room.h"
 #include "pipeline/preview.h"
+#include "pipeline/simplify_stage.h"
 #include "pipeline/texture_stage.h"
 #include "pipeline/tiles/texture_store.h"
 #include "pipeline/tiles/vertex_order.h"
@@ -23,6 +25,7 @@
 #include "texture/corners.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -38,26 +41,27 @@ double round_to(const Lattice& lattice, TileMesh& mesh) {
                   meshhier::round_to(lattice, mesh.copies.vertices.positions));
 }
 
-/// The lattice over the input's bounds as they are stored, and how far positions go to it: all
-/// tiles are looked at, since simplified ones may have vertices beyond the input's bounds.
-storage::Quantization quantize(const Forest& forest, std::span<const NodeId> nodes,
-                               const PublishInput& input, std::size_t in_flight,
-                               const StageContext& context) {
-  const BoundsD& bounds = input.source.bounds;
-  const Vec3d& origin = input.origin;
-  storage::Quantization result;
-  result.lattice = make_lattice({to_float(bounds.min - origin), to_float(bounds.max - origin)},
-                                static_cast<int>(*context.config.storage.position_bits));
-  execution::ordered_for(
-      nodes.size(), in_flight, context.cancel,
-      [&](std::size_t i) {
-        BuildTile tile = forest.load(nodes[i]);
-        return round_to(result.lattice, tile.mesh);
-      },
-      [&](std::size_t, double worst) {
-        result.worst_rounding = std::max(result.worst_rounding, worst);
-      });
-  return result;
+/// Over the input's bounds as they are stored.
+std::optional<Lattice> lattice_of(const DistributedSource& source, const StageContext& context) {
+  const std::optional<std::uint32_t>& bits = context.config.storage.position_bits;
+  if (!bits)
+    return std::nullopt;
+  const BoundsD& bounds = source.summary.bounds;
+  return make_lattice({to_float(bounds.min - source.origin), to_float(bounds.max - source.origin)},
+                      static_cast<int>(*bits));
+}
+
+storage::TileFormat format_of(const DistributedSource& source, bool computed_normals,
+                              const StageContext& context) {
+  storage::TileFormat format = {source.summary.attributes,
+                                {source.origin, context.config.up},
+                                context.config.storage.compression,
+                                {}};
+  format.computed_normals = computed_normals;
+  if (source.summary.textures)
+    format.textures = context.config.texture.format;
+  format.lattice = lattice_of(source, context);
+  return format;
 }
 
 /// A bound of exact positions as one of rounded ones. Where rounding is nearly all of it, the
@@ -73,9 +77,7 @@ float with_rounding(float bound, double rounding, int levels_below) {
 struct TileWriter {
   const Forest& forest;
   const TextureStore& textures;
-  const TileErrors& errors;
   const storage::TileFormat format;
-  const std::optional<storage::Quantization> quantization;
   const std::filesystem::path& directory;
   const StageContext& context;
 };
@@ -99,12 +101,6 @@ TileRecord describe(const TileWriter& to, NodeId node, const TileMesh& mesh,
   record.bounds = bounds_of(mesh.vertices.positions);
   record.torn_count = to.forest.fallbacks(node).torn_count;
   record.forced_count = to.forest.fallbacks(node).forced_count;
-  record.error = to.errors[node].error;
-  record.bound = to.errors[node].bound;
-  if (to.quantization) {
-    record.bound = with_rounding(record.bound, to.quantization->worst_rounding,
-                                 raw(tree.depth()) - raw(node.level));
-  }
   if (tree.is_partition(node))
     record.compactness = partition::published_compactness(mesh);
   return record;
@@ -146,15 +142,14 @@ FinishedMesh finish(const TileWriter& to, NodeId node, TileMesh mesh) {
   return finished;
 }
 
-/// Writes one tile, returns its index entry.
-TileRecord write_tile(const TileWriter& to, NodeId node) {
+Published write_tile(const TileWriter& to, NodeId node) {
   const Forest& forest = to.forest;
-  const Tree& tree = forest.tree();
-  storage::FileSystem& files = to.context.files;
   auto [mesh, shading, image, parent_map] = finish(to, node, forest.load(node).mesh);
-  if (to.quantization)
-    round_to(to.quantization->lattice, mesh);
-  TileRecord record = describe(to, node, mesh, shading);
+  Published published;
+  if (to.format.lattice)
+    published.rounding = round_to(*to.format.lattice, mesh);
+  TileRecord& record = published.record;
+  record = describe(to, node, mesh, shading);
   if (!image.empty()) {
     record.image_width = image.width;
     record.image_height = image.height;
@@ -162,56 +157,148 @@ TileRecord write_tile(const TileWriter& to, NodeId node) {
   }
   const std::vector<std::uint16_t> chains = forest.chains(node, mesh.ghosts);
   const std::vector<std::byte> bytes = storage::encode_tile(
-      {node, mesh, shading, image, record.bounds, parent_map, chains}, tree, to.format);
-  const auto file = files.create(storage::tile_path(to.directory, node));
+      {node, mesh, shading, image, record.bounds, parent_map, chains}, forest.tree(), to.format);
+  const auto file = to.context.files.create(storage::tile_path(to.directory, node));
   file->write_at(0, bytes);
   if (to.context.config.storage.container == storage::Container::files)
     file->start_sync();
   record.file_bytes = bytes.size();
   record.checksum = storage::checksum(bytes);
-  return record;
+  return published;
 }
 
-/// Everything but the tiles.
-void write_account(const TileWriter& to, const PublishInput& input,
-                   const std::vector<TileRecord>& records) {
-  const StageContext& context = to.context;
+/// With their errors and bounds, which count the rounding of positions.
+std::vector<TileRecord> complete_records(std::span<const Published> tiles, const TileErrors& errors,
+                                         const std::optional<storage::Quantization>& rounded,
+                                         const Tree& tree) {
+  std::vector<TileRecord> records;
+  records.reserve(tiles.size());
+  for (const Published& tile : tiles) {
+    TileRecord& record = records.emplace_back(tile.record);
+    const TileError& error = errors[record.node];
+    record.error = error.error;
+    record.bound = error.bound;
+    if (rounded) {
+      record.bound = with_rounding(error.bound, rounded->worst_rounding,
+                                   raw(tree.depth()) - raw(record.node.level));
+    }
+  }
+  return records;
+}
+
+/// What the heaviest of the nodes takes while it is written.
+std::uint64_t heaviest_written(const Forest& forest, std::span<const NodeId> nodes,
+                               const config::StorageConfig& storage) {
+  return storage.compression != storage::Compression::none ? heaviest_packed(forest, nodes)
+                                                           : heaviest_read(forest, nodes);
+}
+
+}  // namespace
+
+void publish(Forest& forest, const TextureStore& textures, BuildJournal& journal,
+             const std::filesystem::path& directory, const StageContext& context) {
+  const Tree& tree = context.tree();
+  for (int l = 0; l <= raw(tree.depth()); ++l) {
+    context.files.make_directories(storage::level_directory(directory, static_cast<Level>(l)));
+  }
+  std::vector<NodeId> left;
+  for (const NodeId node : tree.tile_nodes()) {
+    if (!journal.is_published(node))
+      left.push_back(node);
+  }
+  context.progress.stage("publish", left.size(), "tiles");
+  // A picture as it was stored, on its own, and in the tile's file.
+  const std::uint64_t heaviest =
+      heaviest_written(forest, left, context.config.storage) + 3 * textures.heaviest_bytes();
+  const TileRoom room = room_for(forest, context.memory(), heaviest);
+  const TileWriter writer{forest, textures,
+                          format_of(*journal.source(), forest.computes_normals(), context),
+                          directory, context};
+  execution::ordered_for(
+      left.size(), room.in_flight(), context.cancel,
+      [&](std::size_t i) { return write_tile(writer, left[i]); },
+      [&](std::size_t, const Published& tile) {
+        journal.note_published(tile);
+        context.progress.advance(1);
+      });
+}
+
+namespace {
+
+/// What the whole tells of its input.
+SourceSummary complete_source(const BuildJournal& journal, const StageContext& context) {
+  SourceSummary source = journal.source()->summary;
+  source.unreferenced_vertices = journal.unreferenced_vertices();
+  if (source.textures) {
+    source.textures->texels = context.plan.textures.texels();
+    source.textures->missing_images += broken_pictures(context.plan.textures, journal).size();
+  }
+  return source;
+}
+
+TileErrors complete_errors(const TextureStore& textures, BuildJournal& journal,
+                           const StageContext& context) {
+  const SourceSummary& source = journal.source()->summary;
+  TileErrors errors = add_up(journal, context.tree(), source.diagonal());
+  return source.textures ? with_texels(std::move(errors), context.tree(), textures) : errors;
+}
+
+}  // namespace
+
+void write_account(Forest& forest, const TextureStore& textures, BuildJournal& journal,
+                   const OutlineStageResult& outline, const std::filesystem::path& directory,
+                   const StageContext& context) {
   storage::FileSystem& files = context.files;
   const Tree& tree = context.tree();
+  const SourceSummary source = complete_source(journal, context);
+  const std::vector<Published> tiles = journal.published();
+  storage::TileFormat format = format_of(*journal.source(), forest.computes_normals(), context);
+  std::optional<storage::Quantization> quantization;
+  if (format.lattice) {
+    quantization.emplace();
+    quantization->lattice = *format.lattice;
+    for (const Published& tile : tiles)
+      quantization->worst_rounding = std::max(quantization->worst_rounding, tile.rounding);
+  }
+  const std::vector<TileRecord> records =
+      complete_records(tiles, complete_errors(textures, journal, context), quantization, tree);
   const std::vector<std::byte> index = storage::encode_index(records);
-  storage::write_file(files, storage::index_path(to.directory), index);
-  const std::vector<std::byte> outline =
-      storage::encode_outline(input.outline.outline, to.format.frame);
-  storage::write_file(files, storage::outline_path(to.directory), outline);
+  storage::write_file(files, storage::index_path(directory), index);
+  const std::vector<std::byte> outline_file =
+      storage::encode_outline(outline.outline, format.frame);
+  storage::write_file(files, storage::outline_path(directory), outline_file);
 
   std::optional<MadePreview> preview;
   if (context.config.preview) {
-    preview = make_preview({to.directory, to.format, records}, context);
-    storage::write_file(files, storage::preview_path(to.directory), preview->file);
+    // What is drawn takes as much as what is packed.
+    const std::array root{tree.root()};
+    const TileRoom room = room_for(forest, context.memory(), heaviest_packed(forest, root));
+    preview = make_preview({directory, format, records}, context);
+    storage::write_file(files, storage::preview_path(directory), preview->file);
   }
 
   storage::Manifest manifest;
   manifest.generator = "meshhier " MESHHIER_VERSION;
-  manifest.source = input.source;
-  manifest.origin = to.format.frame.origin;
-  manifest.up = to.format.frame.up;
-  manifest.transform = config::tileset_transform(context.config, input.source.bounds);
+  manifest.source = source;
+  manifest.origin = format.frame.origin;
+  manifest.up = format.frame.up;
+  manifest.transform = config::tileset_transform(context.config, source.bounds);
   manifest.licence = context.config.licence;
   manifest.partition_count = tree.partition_count();
-  manifest.compression = to.format.compression;
-  manifest.quantization = to.quantization;
-  manifest.computed_normals = to.format.computed_normals;
-  manifest.textures = to.format.textures;
+  manifest.compression = format.compression;
+  manifest.quantization = quantization;
+  manifest.computed_normals = format.computed_normals;
+  manifest.textures = format.textures;
   manifest.config = config::resolved_json(context.config);
-  if (!input.source.textures) {
+  if (!source.textures) {
     manifest.config.erase("texture");  // what decided nothing
     manifest.config.erase("missing_images");
   }
   manifest.index_bytes = index.size();
   manifest.index_checksum = storage::checksum(index);
-  manifest.outline_bytes = outline.size();
-  manifest.outline_checksum = storage::checksum(outline);
-  manifest.outline = input.outline.report;
+  manifest.outline_bytes = outline_file.size();
+  manifest.outline_checksum = storage::checksum(outline_file);
+  manifest.outline = outline.report;
   if (preview)
     manifest.preview = preview->facts;
   manifest.levels = nlohmann::ordered_json::array();
@@ -219,75 +306,11 @@ void write_account(const TileWriter& to, const PublishInput& input,
     manifest.levels.push_back(storage::to_json(level));
   manifest.total_bytes = std::accumulate(
       records.begin(), records.end(),
-      index.size() + outline.size() + (preview ? preview->file.size() : 0),
+      index.size() + outline_file.size() + (preview ? preview->file.size() : 0),
       [](std::uint64_t sum, const TileRecord& record) { return sum + record.file_bytes; });
-  storage::write_tilesets(files, to.directory, tree, records, manifest);
+  storage::write_tilesets(files, directory, tree, records, manifest);
   const std::string text = storage::to_json_text(manifest);
-  storage::write_file(files, storage::manifest_path(to.directory), std::as_bytes(std::span(text)));
-}
-
-/// Of all levels, what the heaviest tile takes while it is written.
-std::uint64_t heaviest_written(const Forest& forest, const config::StorageConfig& storage) {
-  const bool packed = storage.compression != storage::Compression::none;
-  std::uint64_t heaviest = 0;
-  for (int l = 0; l <= raw(forest.tree().depth()); ++l) {
-    const auto level = static_cast<Level>(l);
-    heaviest =
-        std::max(heaviest, packed ? heaviest_packed(forest, level) : heaviest_read(forest, level));
-  }
-  return heaviest;
-}
-
-/// What is drawn takes as much as what is packed.
-std::uint64_t heaviest_item(const Forest& forest, const config::Config& config) {
-  const std::uint64_t written = heaviest_written(forest, config.storage);
-  return config.preview ? std::max(written, heaviest_packed(forest, Level{0})) : written;
-}
-
-}  // namespace
-
-void publish(Forest& forest, const TextureStore& textures, BuildJournal& journal,
-             const PublishInput& input, const std::filesystem::path& directory,
-             const StageContext& context) {
-  const Tree& tree = context.tree();
-  const config::StorageConfig& storage = context.config.storage;
-  for (int l = 0; l <= raw(tree.depth()); ++l) {
-    context.files.make_directories(storage::level_directory(directory, static_cast<Level>(l)));
-  }
-  const std::vector<NodeId> nodes = tree.tile_nodes();
-  std::vector<TileRecord> records(nodes.size());
-  std::vector<std::size_t> left;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (const TileRecord* done = journal.published(nodes[i]))
-      records[i] = *done;
-    else
-      left.push_back(i);
-  }
-  context.progress.stage("publish", left.size(), "tiles");
-  // A picture as it was stored, on its own, and in the tile's file.
-  const std::uint64_t heaviest =
-      heaviest_item(forest, context.config) + 3 * textures.heaviest_bytes();
-  const TileRoom room = room_for(forest, context.memory(), heaviest);
-  storage::TileFormat format = {
-      input.source.attributes, {input.origin, context.config.up}, storage.compression, {}};
-  format.computed_normals = forest.computes_normals();
-  if (input.source.textures)
-    format.textures = context.config.texture.format;
-  std::optional<storage::Quantization> quantization;
-  if (storage.position_bits) {
-    quantization = quantize(forest, nodes, input, room.in_flight(), context);
-    format.lattice = quantization->lattice;
-  }
-  const TileWriter writer{forest, textures, input.errors, format, quantization, directory, context};
-  execution::ordered_for(
-      left.size(), room.in_flight(), context.cancel,
-      [&](std::size_t i) { return write_tile(writer, nodes[left[i]]); },
-      [&](std::size_t i, const TileRecord& record) {
-        journal.note_published(record);
-        records[left[i]] = record;
-        context.progress.advance(1);
-      });
-  write_account(writer, input, records);
+  storage::write_file(files, storage::manifest_path(directory), std::as_bytes(std::span(text)));
 }
 
 StageTime publish_time(const JobSize& job, const TilePopulation& tiles) {

@@ -1,14 +1,12 @@
-// The stage `publish`: tiles as GLB, the index, the outline and the manifest.
+// The stage `publish`: tiles as GLB, then the index, the outline and the manifest.
 #pragma once
 
-#include "hierarchy/frame.h"
-#include "hierarchy/published.h"
 #include "pipeline/journal/build_journal.h"
 #include "pipeline/outline_stage.h"
 #include "pipeline/plan/stage_context.h"
 #include "pipeline/plan/tile_population.h"
-#include "pipeline/tiles/bound_chain.h"
 #include "pipeline/tiles/forest.h"
+#include "pipeline/tiles/texture_store.h"
 
 #include <filesystem>
 
@@ -18,17 +16,14 @@ namespace meshhier::pipeline {
 OutputCost publish_output(const JobSize& job, const TilePopulation& tiles);
 StageTime publish_time(const JobSize& job, const TilePopulation& tiles);
 
-/// What earlier stages learnt and the published files tell.
-struct PublishInput {
-  SourceSummary source;
-  Vec3d origin;  ///< add to positions to get input coordinates
-  TileErrors errors;
-  OutlineStageResult outline;
-};
-
-/// Writes the whole hierarchy into `directory`, but for tiles that the journal has there.
+/// Writes the files of all tiles into `directory`, but for those the journal has.
 void publish(Forest& forest, const TextureStore& textures, BuildJournal& journal,
-             const PublishInput& input, const std::filesystem::path& directory,
-             const StageContext& context);
+             const std::filesystem::path& directory, const StageContext& context);
+
+/// Writes all other files of the hierarchy, once all tiles are there, and adds up their errors and
+/// bounds.
+void write_account(Forest& forest, const TextureStore& textures, BuildJournal& journal,
+                   const OutlineStageResult& outline, const std::filesystem::path& directory,
+                   const StageContext& context);
 
 }  // namespace meshhier::pipeline

@@ -66,40 +66,20 @@ WedgeMap part_of(const WedgeMap& map, std::size_t begin, std::size_t count) {
   return part;
 }
 
-/// Makes the levels one by one, finest first; a level's steps are measured while the next is made
-/// of it.
+/// Makes tiles of one level out of those of the level below.
 class Simplifier {
  public:
   Simplifier(Forest& forest, const AttributeLayout& attributes, const StageContext& context)
       : forest_(forest), attributes_(attributes), context_(context) {}
 
-  /// `known`: steps of the level that need not be measured again.
-  void begin(Level level, std::vector<IndexedStep> known) {
-    steps_.clear();
-    steps_.resize(level < forest_.tree().depth() ? forest_.tree().node_count(level) : 0);
-    for (IndexedStep& step : known)
-      steps_.at(step.first) = std::move(step.second);
-  }
-  /// Of the level that begin() named, once all tiles above it are made.
-  const std::vector<Step>& steps() const { return steps_; }
-  /// Of the node's children, as far as they are simplified tiles.
-  std::vector<IndexedStep> steps_below(NodeId node) const {
-    std::vector<IndexedStep> steps;
-    const Tree::Children children = forest_.tree().children(node);
-    for (const NodeId child : children.span()) {
-      if (!forest_.tree().is_partition(child))
-        steps.emplace_back(child.index, steps_[child.index]);
-    }
-    return steps;
-  }
-
-  /// Loads a tile of the level that begin() named: this is when all of it is known, its neighbours'
-  /// places too, so its step is measured and its normals are made.
-  BuildTile load(NodeId node) {
+  /// Loads a tile of the level below, or the root: this is when all of its level is known, its
+  /// neighbours' places too, so its step is measured, unless it is a partition, and its normals are
+  /// made.
+  BuildTile load(NodeId node, std::vector<IndexedStep>& steps) {
     LoadedTile loaded = forest_.load_with_mapped(node);
     const TileMesh& mesh = loaded.tile.mesh;
     if (!forest_.tree().is_partition(node))
-      steps_[node.index] = measure_step(forest_, node, loaded);
+      steps.emplace_back(node.index, measure_step(forest_, node, loaded));
     if (forest_.has_normals(node))
       forest_.put_normals(node, shading::shade(mesh), mesh);
     if (forest_.tree().is_partition(node))
@@ -107,10 +87,11 @@ class Simplifier {
     return std::move(loaded.tile);
   }
 
-  /// Makes a node's tile out of its children's, and their maps to it.
-  void make_tile(NodeId node) {
+  /// Makes a node's tile out of its children's, and their maps to it. Returns their steps.
+  std::vector<IndexedStep> make_tile(NodeId node) {
     const Tree::Children children = forest_.tree().children(node);
-    const BuildTile joined = load_joined(children);
+    std::vector<IndexedStep> steps;
+    const BuildTile joined = load_joined(children, steps);
     const ContractedTile contracted = contract(joined, node);
     std::size_t begin = 0;
     for (const NodeId child : children.span()) {
@@ -123,6 +104,7 @@ class Simplifier {
     forest_.put_tile(node, contracted.tile);
     forest_.put_seam_strip(node, cluster_simplify::make_seam_strip(joined, contracted));
     forest_.put_fallbacks(node, {contracted.fallbacks.torn, contracted.fallbacks.without_care()});
+    return steps;
   }
 
  private:
@@ -132,11 +114,11 @@ class Simplifier {
     mesh.copies.vertices.keep_channels(attributes_.channels());
   }
 
-  BuildTile load_joined(const Tree::Children& children) {
-    BuildTile first = load(children.nodes[0]);
+  BuildTile load_joined(const Tree::Children& children, std::vector<IndexedStep>& steps) {
+    BuildTile first = load(children.nodes[0], steps);
     if (children.count == 1)
       return first;
-    return cluster_simplify::join(first, children.nodes[0].index, load(children.nodes[1]),
+    return cluster_simplify::join(first, children.nodes[0].index, load(children.nodes[1], steps),
                                   children.nodes[1].index);
   }
 
@@ -157,56 +139,73 @@ class Simplifier {
   Forest& forest_;
   const AttributeLayout& attributes_;
   const StageContext& context_;
-  std::vector<Step> steps_;
 };
 
-/// The nodes of a level whose tiles are still to be made.
-std::vector<NodeId> tiles_left(const Tree& tree, Level level, const BuildJournal& journal) {
+/// The nodes of a part of a level whose tiles are still to be made.
+std::vector<NodeId> tiles_left(const Tree& tree, Level level, const Share& share,
+                               const BuildJournal& journal) {
+  const std::uint32_t count = tree.node_count(level);
   std::vector<NodeId> left;
-  for (std::uint32_t i = 0; i < tree.node_count(level); ++i) {
-    if (!journal.has_tile({level, i}))
-      left.push_back({level, i});
+  for (std::uint64_t i = share.begin(count); i < share.end(count); ++i) {
+    const NodeId node{level, static_cast<std::uint32_t>(i)};
+    if (!journal.has_tile(node))
+      left.push_back(node);
   }
   return left;
 }
 
+/// One for each of so many tiles.
+std::vector<Step> in_order(std::vector<IndexedStep> steps, std::uint32_t count) {
+  std::vector<Step> all(count);
+  for (IndexedStep& step : steps)
+    all.at(step.first) = std::move(step.second);
+  return all;
+}
+
+void note_root(Simplifier& simplifier, BuildJournal& journal, const Tree& tree) {
+  if (journal.has_root())
+    return;
+  std::vector<IndexedStep> steps;
+  simplifier.load(tree.root(), steps);
+  journal.note_root(steps);
+}
+
 }  // namespace
 
-TileErrors simplify(Forest& forest, BuildJournal& journal, const SourceSummary& source,
-                    const StageContext& context) {
+void simplify(Forest& forest, BuildJournal& journal, const AttributeLayout& attributes,
+              const LevelRange& levels, const StageContext& context) {
   const Tree& tree = context.tree();
-  std::vector<std::vector<NodeId>> left;  // by level
+  std::vector<std::vector<NodeId>> left;  // from levels.top on
   std::uint64_t total = 0;
-  for (int l = 0; l < raw(tree.depth()); ++l) {
-    left.push_back(tiles_left(tree, static_cast<Level>(l), journal));
+  for (int l = levels.top; l < levels.end; ++l) {
+    left.push_back(tiles_left(tree, static_cast<Level>(l), levels.share, journal));
     total += left.back().size();
   }
   context.progress.stage("simplify", total, "tiles");
-  Simplifier simplifier(forest, source.attributes, context);
-  BoundChain chain(tree, source.diagonal());
-  simplifier.begin(tree.depth(), {});
-  for (int l = raw(tree.depth()) - 1; l >= 0; --l) {
-    const auto level = static_cast<Level>(l);
-    const TileRoom room = room_for(forest, context.memory(), heaviest_contracted(forest, level));
+  Simplifier simplifier(forest, attributes, context);
+  for (int l = levels.end - 1; l >= levels.top; --l) {
+    const std::vector<NodeId>& nodes = left[l - levels.top];
+    const TileRoom room = room_for(forest, context.memory(), heaviest_contracted(forest, nodes));
     execution::ordered_for(
-        left[l].size(), room.in_flight(), context.cancel,
-        [&](std::size_t i) {
-          simplifier.make_tile(left[l][i]);
-          return left[l][i];
-        },
-        [&](std::size_t i, NodeId node) {
-          journal.note_tile(node, simplifier.steps_below(node));
+        nodes.size(), room.in_flight(), context.cancel,
+        [&](std::size_t i) { return simplifier.make_tile(nodes[i]); },
+        [&](std::size_t i, const std::vector<IndexedStep>& steps) {
+          journal.note_tile(nodes[i], steps);
           context.progress.advance(1);
           if ((i + 1) % room.items_between_releases() == 0)
             execution::release_free_memory();
         });
-    if (!simplifier.steps().empty())
-      chain.add(finer(level), simplifier.steps());
-    simplifier.begin(level, journal.take_steps(level));
   }
-  simplifier.load(tree.root());
-  if (tree.depth() > Level{0})
-    chain.add(Level{0}, simplifier.steps());
+  if (levels.top == 0)
+    note_root(simplifier, journal, tree);
+}
+
+TileErrors add_up(BuildJournal& journal, const Tree& tree, double diagonal) {
+  BoundChain chain(tree, diagonal);
+  for (int l = raw(tree.depth()) - 1; l >= 0; --l) {
+    const auto level = static_cast<Level>(l);
+    chain.add(level, in_order(journal.take_steps(level), tree.node_count(level)));
+  }
   return chain.errors();
 }
 

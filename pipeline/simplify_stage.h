@@ -3,6 +3,7 @@
 
 #include "hierarchy/published.h"
 #include "pipeline/journal/build_journal.h"
+#include "pipeline/plan/share.h"
 #include "pipeline/plan/stage_context.h"
 #include "pipeline/plan/tile_population.h"
 #include "pipeline/tiles/bound_chain.h"
@@ -16,16 +17,23 @@ StageTime simplify_time(const JobSize& job, const TilePopulation& tiles);
 /// Simplified tiles, parent maps and seam strips, until the end.
 DiskVolumes simplify_disk(const JobSize& job, const TilePopulation& tiles);
 
-/// Contracts all levels, from the partitions to one root tile, and returns error and bound of every
-/// tile, from the partitions (0) to the root, each more than its children's. Tiles that the journal
-/// has are not made again. If normals are computed, every tile gets those of its own surface
-/// (shading/own_normals.h).
+/// Contracts, level by level from the last to the top one, the tiles that the journal does not
+/// have. `attributes`: of the
+/// input. Requires all tiles of level `end`, and those of the whole levels between if there are
+/// any. If normals are computed, every tile that is read gets those of its own surface
+/// (shading/own_normals.h); the root, if it is made, too.
 ///
 /// How far a contraction moves the surface is measured while it is carried out (deviation.h), and
-/// at the seams when its level is complete (seam_strip.h). `bound` sums the certain distances of
-/// the steps along every way a point may have taken, through the tile itself and its neighbours
-/// (bound_chain.h); `error` adds the steps' root mean squares up the tree.
-TileErrors simplify(Forest& forest, BuildJournal& journal, const SourceSummary& source,
-                    const StageContext& context);
+/// at the seams when its level is complete (seam_strip.h): such steps are noted in the journal.
+void simplify(Forest& forest, BuildJournal& journal, const AttributeLayout& attributes,
+              const LevelRange& levels, const StageContext& context);
+
+/// Error and bound of every tile, from the partitions (0) to the root, each more than its
+/// children's, once all tiles and the root are noted; takes their steps from the journal.
+///
+/// `bound` sums the certain distances of the steps along every way a point may have taken, through
+/// the tile itself and its neighbours (bound_chain.h); `error` adds the steps' root mean squares up
+/// the tree. `diagonal`: of the input's bounds.
+TileErrors add_up(BuildJournal& journal, const Tree& tree, double diagonal);
 
 }  // namespace meshhier::pipeline

@@ -405,10 +405,12 @@ class TextureMaker {
   execution::MemoryGate gate_;
 };
 
-std::vector<NodeId> textures_left(const Tree& tree, Level level, const BuildJournal& journal) {
+std::vector<NodeId> textures_left(const Tree& tree, Level level, const Share& share,
+                                  const BuildJournal& journal) {
+  const std::uint32_t count = tree.node_count(level);
   std::vector<NodeId> left;
-  for (std::uint32_t i = 0; i < tree.node_count(level); ++i) {
-    const NodeId node{level, i};
+  for (std::uint64_t i = share.begin(count); i < share.end(count); ++i) {
+    const NodeId node{level, static_cast<std::uint32_t>(i)};
     if (!tree.is_early(node) && !journal.has_texture(node))
       left.push_back(node);
   }
@@ -418,23 +420,22 @@ std::vector<NodeId> textures_left(const Tree& tree, Level level, const BuildJour
 }  // namespace
 
 void make_textures(const Forest& forest, const TexturedInput& input, TextureStore& textures,
-                   BuildJournal& journal, const StageContext& context) {
-  const Tree& tree = context.tree();
-  std::vector<std::vector<NodeId>> left;  // by level
+                   BuildJournal& journal, const LevelRange& levels, const StageContext& context) {
+  std::vector<std::vector<NodeId>> left;  // from levels.top on
   std::uint64_t total = 0;
-  for (int l = 0; l <= raw(tree.depth()); ++l) {
-    left.push_back(textures_left(tree, static_cast<Level>(l), journal));
+  for (int l = levels.top; l < levels.end; ++l) {
+    left.push_back(textures_left(context.tree(), static_cast<Level>(l), levels.share, journal));
     total += left.back().size();
   }
   context.progress.stage("texture", total, "tiles");
   textures.set_cache_bytes(picture_cache_bytes(context.memory().work_bytes));
   TextureMaker maker(forest, input, textures, context);
-  for (int l = raw(tree.depth()); l >= 0; --l) {
+  for (auto nodes = left.rbegin(); nodes != left.rend(); ++nodes) {
     execution::ordered_for(
-        left[l].size(), context.plan.threads + 1, context.cancel,
+        nodes->size(), context.plan.threads + 1, context.cancel,
         [&](std::size_t i) {
-          maker.make(left[l][i]);
-          return left[l][i];
+          maker.make((*nodes)[i]);
+          return (*nodes)[i];
         },
         [&](std::size_t, NodeId node) {
           journal.note_texture(node);

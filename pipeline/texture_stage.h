@@ -5,6 +5,7 @@
 #pragma once
 
 #include "pipeline/journal/build_journal.h"
+#include "pipeline/plan/share.h"
 #include "pipeline/plan/stage_context.h"
 #include "pipeline/plan/tile_population.h"
 #include "pipeline/tiles/bound_chain.h"
@@ -28,9 +29,10 @@ StageTime texture_time(const JobSize& job, const TilePopulation& tiles);
 /// Pictures of tiles, until the end.
 DiskVolumes texture_disk(const JobSize& job, const TilePopulation& tiles);
 
-/// Makes the pictures of all tiles that the journal does not have.
+/// Makes the pictures of tiles that the journal does not have, level by level from the last on.
+/// Requires all of level `end`, and those of the whole levels between if there are any.
 void make_textures(const Forest& forest, const TexturedInput& input, TextureStore& textures,
-                   BuildJournal& journal, const StageContext& context);
+                   BuildJournal& journal, const LevelRange& levels, const StageContext& context);
 
 /// Errors that are no smaller than the texels of the tiles, where those are larger than the
 /// input's.

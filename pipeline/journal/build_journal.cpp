@@ -33,6 +33,13 @@ Value to_json(const IndexedStep& indexed) {
   return {indexed.first, step.certain, step.mean_square, step.finer_neighbours.numbers()};
 }
 
+Value to_json(std::span<const IndexedStep> steps) {
+  Value all = Value::array();
+  for (const IndexedStep& step : steps)
+    all.push_back(to_json(step));
+  return all;
+}
+
 IndexedStep indexed_step(const Value& json) {
   return {json.at(0),
           {json.at(1), json.at(2), TileSet(json.at(3).get<std::vector<std::uint32_t>>())}};
@@ -209,6 +216,8 @@ bool BuildJournal::take(const Entry& entry) {
     return take_image(value);
   if (kind == "simplify")
     return take_tile(value);
+  if (kind == "root")
+    return take_root(value);
   if (kind == "texture")
     return take_texture(value);
   return kind == "publish" && take_published(value);
@@ -259,11 +268,26 @@ bool BuildJournal::take_tile(const Entry& tile) {
     steps.push_back(indexed_step(step));
   if (!forest_.restore_tile(node, tile.at("stored")))
     return false;
-  std::move(steps.begin(), steps.end(),
-            std::back_inserter(steps_[raw(node.level) + std::size_t{1}]));
+  add_steps(steps, finer(node.level));
   *has = 1;
   ++found_;
   return true;
+}
+
+bool BuildJournal::take_root(const Entry& root) {
+  std::vector<IndexedStep> steps;
+  for (const Entry& step : root.at("steps"))
+    steps.push_back(indexed_step(step));
+  if (has_root_ || !forest_.restore_root(root.at("stored")))
+    return false;
+  add_steps(steps, Level{0});
+  has_root_ = true;
+  return true;
+}
+
+void BuildJournal::add_steps(std::span<const IndexedStep> steps, Level level) {
+  std::vector<IndexedStep>& to = steps_[raw(level)];
+  to.insert(to.end(), steps.begin(), steps.end());
 }
 
 bool BuildJournal::take_texture(const Entry& texture) {
@@ -277,8 +301,9 @@ bool BuildJournal::take_texture(const Entry& texture) {
 }
 
 bool BuildJournal::take_published(const Entry& published) {
-  const Value::binary_t& bytes = published.get_binary();
+  const Value::binary_t& bytes = published.at("record").get_binary();
   const TileRecord record = storage::decode_record(std::as_bytes(std::span(bytes)));
+  const double rounding = published.at("rounding");
   const std::filesystem::path path = storage::tile_path(built_, record.node);
   if (!files_.exists(path))
     return false;
@@ -289,7 +314,7 @@ bool BuildJournal::take_published(const Entry& published) {
   file->read_exact(0, content);
   if (storage::checksum(content) != record.checksum)
     return false;
-  published_.emplace(std::pair(record.node.level, record.node.index), record);
+  published_.emplace(std::pair(record.node.level, record.node.index), Published{record, rounding});
   ++found_;
   return true;
 }
@@ -323,9 +348,12 @@ std::vector<IndexedStep> BuildJournal::take_steps(Level level) {
   return std::exchange(steps_[raw(level)], {});
 }
 
-const TileRecord* BuildJournal::published(NodeId node) const {
-  const auto found = published_.find({node.level, node.index});
-  return found == published_.end() ? nullptr : &found->second;
+std::vector<Published> BuildJournal::published() const {
+  std::vector<Published> all;
+  all.reserve(published_.size());
+  for (const auto& [node, tile] : published_)
+    all.push_back(tile);
+  return all;
 }
 
 void BuildJournal::note_source(const DistributedSource& source) {
@@ -358,22 +386,31 @@ void BuildJournal::note_leaves(std::uint32_t chunk, std::uint64_t unreferenced_v
                      {{"chunk", chunk},
                       {"unreferenced", unreferenced_vertices},
                       {"stored", forest_.stored_chunk(chunk)}}}});
+  has_leaves_[chunk] = 1;
+  unreferenced_ += unreferenced_vertices;
 }
 
 void BuildJournal::note_tile(NodeId node, std::span<const IndexedStep> steps) {
-  Value all = Value::array();
-  for (const IndexedStep& step : steps)
-    all.push_back(to_json(step));
   journal_->append({{"simplify",
                      {{"node", {raw(node.level), node.index}},
-                      {"steps", std::move(all)},
+                      {"steps", to_json(steps)},
                       {"stored", forest_.stored_tile(node)}}}});
+  add_steps(steps, finer(node.level));
 }
 
-void BuildJournal::note_published(const TileRecord& record) {
-  const std::vector<std::byte> bytes = storage::encode_record(record);
+void BuildJournal::note_root(std::span<const IndexedStep> steps) {
+  journal_->append({{"root", {{"steps", to_json(steps)}, {"stored", forest_.stored_root()}}}});
+  add_steps(steps, Level{0});
+  has_root_ = true;
+}
+
+void BuildJournal::note_published(const Published& tile) {
+  const std::vector<std::byte> bytes = storage::encode_record(tile.record);
   const auto* first = reinterpret_cast<const std::uint8_t*>(bytes.data());
-  journal_->append({{"publish", Value::binary({first, first + bytes.size()})}});
+  journal_->append(
+      {{"publish",
+        {{"record", Value::binary({first, first + bytes.size()})}, {"rounding", tile.rounding}}}});
+  published_.emplace(std::pair(tile.record.node.level, tile.record.node.index), tile);
 }
 
 void BuildJournal::note_complete() {

@@ -8,6 +8,7 @@
 //   image      a decoded picture of a textured mesh
 //   leaves     a chunk's partitions
 //   simplify   a simplified tile, the maps to it, and how far its children had moved
+//   root       how far the root had moved, and its normals
 //   texture    a tile's picture
 //   publish    a tile's file
 //   complete   all files of the hierarchy; the scratch files are not needed any more
@@ -82,6 +83,12 @@ using BrokenImage = std::pair<std::uint32_t, std::string>;
 /// The step of a tile whose index on its level is known.
 using IndexedStep = std::pair<std::uint32_t, Step>;
 
+/// A tile's file.
+struct Published {
+  TileRecord record;    ///< but for error and bound, which are known when all tiles are there
+  double rounding = 0;  ///< how far its positions went to the lattice, at most
+};
+
 class BuildJournal {
  public:
   /// Opens the journal in the directory `work` and puts back into `forest` and `chunks` all that is
@@ -105,13 +112,15 @@ class BuildJournal {
   /// Vertices that no triangle uses, in all chunks whose leaves are done.
   std::uint64_t unreferenced_vertices() const { return unreferenced_; }
   bool has_tile(NodeId node) const { return has_tile_[raw(node.level)][node.index] != 0; }
-  /// Steps of tiles of a level that went into tiles that are done.
+  bool has_root() const { return has_root_; }
+  /// Steps of tiles of a level that went into tiles that are done; none are left.
   std::vector<IndexedStep> take_steps(Level level);
   /// Of the pictures that are decoded.
   const std::vector<BrokenImage>& broken_images() const { return broken_images_; }
   bool has_texture(NodeId node) const { return has_texture_[raw(node.level)][node.index] != 0; }
-  /// The record of a published tile, null if it is not done.
-  const TileRecord* published(NodeId node) const;
+  bool is_published(NodeId node) const { return published_.contains({node.level, node.index}); }
+  /// All tiles that are, ascending.
+  std::vector<Published> published() const;
 
   /// All that is left to do is to give the hierarchy its name.
   bool is_complete() const { return is_complete_; }
@@ -123,8 +132,10 @@ class BuildJournal {
   void note_leaves(std::uint32_t chunk, std::uint64_t unreferenced_vertices);
   /// `steps`: of the tile's children, if those are simplified tiles.
   void note_tile(NodeId node, std::span<const IndexedStep> steps);
+  /// `steps`: the root's, if it is a simplified tile.
+  void note_root(std::span<const IndexedStep> steps);
   void note_texture(NodeId node);
-  void note_published(const TileRecord& record);
+  void note_published(const Published& tile);
   void note_complete();
   void sync() { journal_->sync(); }
 
@@ -136,6 +147,8 @@ class BuildJournal {
   bool take_leaves(const Entry& leaves);
   bool take_image(const Entry& image);
   bool take_tile(const Entry& tile);
+  bool take_root(const Entry& root);
+  void add_steps(std::span<const IndexedStep> steps, Level level);
   bool take_texture(const Entry& texture);
   bool take_published(const Entry& published);
   bool can_make_all_leaves() const;
@@ -157,12 +170,13 @@ class BuildJournal {
   std::vector<images::StoredImage> images_;
   std::vector<BrokenImage> broken_images_;
   std::vector<std::vector<IndexedStep>> steps_;  ///< by level
-  std::map<std::pair<Level, std::uint32_t>, TileRecord> published_;
+  std::map<std::pair<Level, std::uint32_t>, Published> published_;
   std::uint64_t unreferenced_ = 0;
   std::uint64_t found_ = 0;
   bool is_sound_ = false;
   bool is_complete_ = false;
   bool input_was_touched_ = false;
+  bool has_root_ = false;
   std::optional<storage::Journal> journal_;
 };
 

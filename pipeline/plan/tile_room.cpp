@@ -39,10 +39,10 @@ std::uint64_t more_budget(const MemoryPlan& plan, std::uint64_t lacking) {
                   execution::exact_size_text(more_budget(plan, lacking))));
 }
 
-std::uint64_t most_triangle_bytes(const Forest& forest, Level level) {
+std::uint64_t most_triangle_bytes(const Forest& forest, std::span<const NodeId> nodes) {
   std::uint64_t most = 0;
-  for (std::uint32_t i = 0; i < forest.tree().node_count(level); ++i)
-    most = std::max(most, forest.triangle_bytes({level, i}));
+  for (const NodeId node : nodes)
+    most = std::max(most, forest.triangle_bytes(node));
   return most;
 }
 
@@ -73,19 +73,26 @@ TileRoom room_for(Forest& forest, const MemoryPlan& plan, std::uint64_t heaviest
   return {plan, forest.pool(), heaviest_bytes};
 }
 
+std::uint64_t heaviest_read(const Forest& forest, std::span<const NodeId> nodes) {
+  return most_triangle_bytes(forest, nodes) * TileRoom::kRead;
+}
+
+std::uint64_t heaviest_packed(const Forest& forest, std::span<const NodeId> nodes) {
+  return most_triangle_bytes(forest, nodes) * TileRoom::kPacked;
+}
+
 std::uint64_t heaviest_read(const Forest& forest, Level level) {
-  return most_triangle_bytes(forest, level) * TileRoom::kRead;
-}
-
-std::uint64_t heaviest_packed(const Forest& forest, Level level) {
-  return most_triangle_bytes(forest, level) * TileRoom::kPacked;
-}
-
-std::uint64_t heaviest_contracted(const Forest& forest, Level level) {
   std::uint64_t most = 0;
-  for (std::uint32_t i = 0; i < forest.tree().node_count(level); ++i) {
+  for (std::uint32_t i = 0; i < forest.tree().node_count(level); ++i)
+    most = std::max(most, forest.triangle_bytes({level, i}));
+  return most * TileRoom::kRead;
+}
+
+std::uint64_t heaviest_contracted(const Forest& forest, std::span<const NodeId> nodes) {
+  std::uint64_t most = 0;
+  for (const NodeId node : nodes) {
     std::uint64_t bytes = 0;
-    const Tree::Children children = forest.tree().children({level, i});
+    const Tree::Children children = forest.tree().children(node);
     for (const NodeId child : children.span())
       bytes += forest.triangle_bytes(child);
     most = std::max(most, bytes);

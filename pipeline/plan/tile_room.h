@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace meshhier::pipeline {
 
@@ -48,11 +49,13 @@ class TileRoom {
 /// goes back to the system.
 TileRoom room_for(Forest& forest, const MemoryPlan& plan, std::uint64_t heaviest_bytes);
 
-/// Of the level's tiles, what the heaviest takes while it is read, or also compressed.
+/// Of the tiles of these nodes, what the heaviest takes while it is read, or also compressed.
+std::uint64_t heaviest_read(const Forest& forest, std::span<const NodeId> nodes);
+std::uint64_t heaviest_packed(const Forest& forest, std::span<const NodeId> nodes);
+/// Of a whole level.
 std::uint64_t heaviest_read(const Forest& forest, Level level);
-std::uint64_t heaviest_packed(const Forest& forest, Level level);
-/// Of the level's nodes, what the heaviest takes while its tile is made of its children's.
-std::uint64_t heaviest_contracted(const Forest& forest, Level level);
+/// What the heaviest takes while its tile is made of its children's.
+std::uint64_t heaviest_contracted(const Forest& forest, std::span<const NodeId> nodes);
 
 /// A budget with room for such an item, if the pool is empty then.
 std::uint64_t budget_for(const MemoryPlan& plan, std::uint64_t heaviest_bytes);

@@ -342,6 +342,14 @@ bool Forest::restore_normals(NodeId node, const nlohmann::json& stored) {
          restore(level.boundary_normals, node.index, stored.at(1));
 }
 
+nlohmann::json Forest::stored_root() const {
+  return has_normals(tree_.root()) ? stored_normals(tree_.root()) : nlohmann::json();
+}
+
+bool Forest::restore_root(const nlohmann::json& stored) {
+  return !has_normals(tree_.root()) || restore_normals(tree_.root(), stored);
+}
+
 bool Forest::restore_tile(NodeId node, const nlohmann::json& stored) {
   LevelStore& level = levels_[raw(node.level)];
   level.own_counts[node.index] = stored.at("own");

@@ -108,10 +108,13 @@ class Forest {
   /// Of a simplified tile: all that was put when it was made, the maps to it and the normals of its
   /// children included.
   nlohmann::json stored_tile(NodeId node) const;
+  /// The normals of the root, when they are there.
+  nlohmann::json stored_root() const;
   /// False if the scratch file does not hold it as it was. Throws nlohmann::json::exception if
   /// `stored` is nothing of the kind.
   bool restore_chunk(std::uint32_t chunk, const nlohmann::json& stored);
   bool restore_tile(NodeId node, const nlohmann::json& stored);
+  bool restore_root(const nlohmann::json& stored);
 
  private:
   struct LevelStore {

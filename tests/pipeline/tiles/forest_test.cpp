@@ -92,14 +92,12 @@ class Grove {
     BuildPlan plan{.tree = tree_, .target_vertex_counts = 60};
     plan.memory.work_bytes = 1 << 20;
     plan.memory.tiles_in_flight = setting.in_flight;
-    SourceSummary source;
-    source.attributes = numbering();
-    source.bounds.add(Vec3d{0, 0, 0});
-    source.bounds.add(Vec3d{kForestDiagonal, 0, 0});
     const config::Config config;
     execution::NoProgress progress;
     const execution::CancelToken cancel;
-    errors_ = simplify(forest_, journal_, source, {config, plan, *files_, progress, cancel});
+    simplify(forest_, journal_, numbering(), {0, raw(tree_.depth())},
+             {config, plan, *files_, progress, cancel});
+    errors_ = add_up(journal_, tree_, kForestDiagonal);
     place_vertices();
   }
 
