@@ -56,6 +56,17 @@ TEST(AreaMeanTest, AVertexHasAThirdOfItsTriangles) {
                    (27 * triangles / (triangles + 32) + 300) / 2);
 }
 
+TEST(AreaMeanTest, ASpikeWhoseFootBecameNarrowKeepsItsArea) {
+  BuildTile tile = tests::tile_of(tests::open_grid(2, 1));
+  const TileTriangle spike = tile.mesh.interior[0];
+  std::vector<double> moved(6);
+  moved[raw(spike[2])] = 9;
+  tile.mesh.vertices.positions[raw(spike[0])] = {0, 0, 0};
+  tile.mesh.vertices.positions[raw(spike[1])] = {1e-6F, 0, 0};
+  tile.mesh.vertices.positions[raw(spike[2])] = {0, 0, 1e6F};
+  EXPECT_GT(mean_over_joined(tile.mesh, moved, {}, 8), 26);  // 27, but for the rest
+}
+
 TEST(AreaMeanTest, HalfOfWhatIsCertainIsTypicalWithoutCare) {
   DrawnMean mean(1, 1);
   mean.add(20, [] { return std::array{Vec3f{0, 0, 0}, Vec3f{3, 0, 0}, Vec3f{0, 3, 0}}; });
