@@ -493,4 +493,40 @@ Json resolved_json(const Config& config) {
   return result;
 }
 
+namespace {
+
+Json absolute(const Json& path, const std::filesystem::path& directory) {
+  return Json((directory / path.get<std::string>()).string());
+}
+
+Json with_absolute_paths(const ConfigKey& key, Json value, const std::filesystem::path& directory) {
+  if (key.kind == KeyKind::path || (key.kind == KeyKind::paths && value.is_string()))
+    return absolute(value, directory);
+  if (key.kind == KeyKind::paths) {
+    for (Json& one : value)
+      one = absolute(one, directory);
+  }
+  return value;
+}
+
+}  // namespace
+
+std::string complete_text(const Config& config, const std::filesystem::path& directory) {
+  Json result = Json::object();
+  for (const ConfigKey& key : config_keys()) {
+    Json value = key.show(config);
+    if (!value.is_null())
+      result[json_pointer_to(key.path)] = with_absolute_paths(key, std::move(value), directory);
+  }
+  if (config.partition.count)
+    result["partition"].erase("vertices");
+  try {
+    return result.dump();
+  } catch (const Json::exception&) {
+    throw Error(ErrorCode::usage,
+                "a path or text of the config is not UTF-8: it cannot be written "
+                "down for other machines");
+  }
+}
+
 }  // namespace meshhier::config

@@ -215,4 +215,9 @@ std::vector<std::filesystem::path> read_by(const Config& config);
 /// absent if it follows partition.count.
 nlohmann::ordered_json resolved_json(const Config& config);
 
+/// All of a config, for another process in whatever directory: parse_config() of it gives the same
+/// config, its paths absolute as seen from `directory`. Throws Error(usage) if a path or text is
+/// not UTF-8.
+std::string complete_text(const Config& config, const std::filesystem::path& directory);
+
 }  // namespace meshhier::config

@@ -1,5 +1,6 @@
 #include "images/image_store.h"
 
+#include "hierarchy/error.h"
 #include "images/block_cache.h"
 #include "images/block_grid.h"
 #include "images/pyramid_writer.h"
@@ -14,7 +15,10 @@
 #include <cstring>
 #include <functional>
 #include <memory>
+#include <mutex>
+#include <set>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace meshhier::images {
@@ -82,13 +86,37 @@ struct ImageStore::Impl {
   Impl(storage::ScratchFile& file, std::uint64_t cache_bytes) : scratch(file), cache(cache_bytes) {}
 
   bool is_there(const StoredImage& image) const;
+  /// Of a strip in a mounted file, the first time it is used. Throws Error(io).
+  void check(std::uint32_t image, std::uint32_t strip, std::size_t bytes);
   void read_block(std::uint32_t image, std::uint32_t level, std::uint32_t column, std::uint32_t row,
                   const BlockPart& part);
 
   storage::ScratchFile& scratch;
   BlockCache cache;
   std::vector<StoredImage> images;
+  std::mutex mutex;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> checked;  ///< image and strip
 };
+
+void ImageStore::Impl::check(std::uint32_t image, std::uint32_t strip, std::size_t bytes) {
+  const StoredStrip& stored = images[image].strips[strip];
+  if (!storage::ScratchFile::is_mounted(stored.offset))
+    return;
+  {
+    const std::lock_guard lock(mutex);
+    if (checked.contains({image, strip}))
+      return;
+  }
+  std::vector<std::byte> read(bytes);
+  scratch.read(stored.offset, read);
+  if (storage::checksum(read) != stored.checksum) {
+    throw Error(ErrorCode::io, scratch.path_at(stored.offset).string() +
+                                   " is not what was written to it: the disk, or another program, "
+                                   "changed it");
+  }
+  const std::lock_guard lock(mutex);
+  checked.insert({image, strip});
+}
 
 bool ImageStore::Impl::is_there(const StoredImage& image) const {
   const BlockGrid grid = grid_of(image.info);
@@ -100,6 +128,8 @@ bool ImageStore::Impl::is_there(const StoredImage& image) const {
       const auto read = std::span(bytes).first(grid.strip_bytes(level, row));
       if (!scratch.claim(strip->offset, read.size()))
         return false;
+      if (storage::ScratchFile::is_mounted(strip->offset))
+        continue;
       scratch.read(strip->offset, read);
       if (storage::checksum(read) != strip->checksum)
         return false;
@@ -118,6 +148,7 @@ void ImageStore::Impl::read_block(std::uint32_t image, std::uint32_t level, std:
   };
   if (cache.use(key, copy))
     return;
+  check(image, strip, grid.strip_bytes(level, row));
   std::array<std::byte, kMostBlockBytes> buffer;
   const auto block = std::span(buffer).first(std::size_t{part.block_width} * grid.rows(level, row) *
                                              grid.channels());
@@ -146,12 +177,15 @@ void ImageStore::add(ImageReader& reader, const std::function<void(std::uint64_t
 
 bool ImageStore::restore(std::span<const StoredImage> images) {
   assert(impl_->images.empty());
-  const bool all_there = std::all_of(images.begin(), images.end(), [&](const StoredImage& image) {
-    return is_sound(image) && impl_->is_there(image);
-  });
-  if (all_there)
-    impl_->images.assign(images.begin(), images.end());
-  return all_there;
+  std::vector<StoredImage> placed(images.begin(), images.end());
+  for (StoredImage& image : placed) {
+    for (StoredStrip& strip : image.strips)
+      strip.offset = impl_->scratch.placed(strip.offset);
+    if (!is_sound(image) || !impl_->is_there(image))
+      return false;
+  }
+  impl_->images = std::move(placed);
+  return true;
 }
 
 std::size_t ImageStore::size() const {

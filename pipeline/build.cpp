@@ -175,7 +175,7 @@ DiskNeed make_hierarchy(Workshop& workshop, const std::filesystem::path& directo
     check_disk(need, context.config.output, context.files);
   }
   const OutlineStageResult outline = make_outline(forest, source.diagonal(), context);
-  publish(forest, textures, journal, directory, context);
+  publish(forest, textures, journal, {directory}, {}, context);
   write_account(forest, textures, journal, outline, directory, context);
   journal.note_complete();
   return need;

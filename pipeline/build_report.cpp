@@ -62,27 +62,6 @@ std::string warning_text(const SourceSummary& source) {
   return text;
 }
 
-std::string report_text(const config::Config& config, const SourceSummary& source,
-                        const std::string& found, const BuildStats& stats) {
-  std::string text = fmt::format(
-      "made {}: {}, {} in {}, {}, {}, {}\n", plain_text(config.output.string(), kLongestPath),
-      counted_vertices(source.vertices, source.places), counted(source.triangles, "triangles"),
-      counted(stats.partitions, "partitions"), counted(stats.levels, "levels"),
-      counted(stats.tiles, "tiles"), execution::rounded_size_text(stats.output_bytes));
-  text +=
-      fmt::format("took {} and {} of memory\n", execution::duration_text(stats.total.wall_seconds),
-                  execution::rounded_size_text(stats.total.peak_resident_bytes));
-  if (!found.empty())
-    text += found + '\n';
-  if (source.degenerate_triangles > 0)
-    text += "dropped " + counted(source.degenerate_triangles, "degenerate triangles") + '\n';
-  if (source.unreferenced_vertices > 0) {
-    text += fmt::format("kept {} that no triangle uses\n",
-                        counted(source.unreferenced_vertices, "vertices"));
-  }
-  return text + warning_text(source);
-}
-
 std::string placement_text(const storage::Manifest& made, const config::Config& config) {
   return made.transform ? config::placement_text(config, made.source.bounds, *made.transform) : "";
 }
@@ -115,6 +94,31 @@ storage::InputNote note_of(const importing::InputRecord& input, std::uint64_t co
 
 }  // namespace
 
+std::string made_text(const storage::HierarchyReader& made, const std::filesystem::path& output,
+                      std::uint64_t output_bytes) {
+  const SourceSummary& source = made.manifest().source;
+  return fmt::format(
+      "made {}: {}, {} in {}, {}, {}, {}\n", plain_text(output.string(), kLongestPath),
+      counted_vertices(source.vertices, source.places), counted(source.triangles, "triangles"),
+      counted(made.tree().partition_count(), "partitions"),
+      counted(static_cast<std::uint64_t>(raw(made.tree().depth())) + 1, "levels"),
+      counted(made.records().size(), "tiles"), execution::rounded_size_text(output_bytes));
+}
+
+std::string notes_text(const storage::HierarchyReader& made, const config::Config& config) {
+  const SourceSummary& source = made.manifest().source;
+  std::string text;
+  if (source.degenerate_triangles > 0)
+    text += "dropped " + counted(source.degenerate_triangles, "degenerate triangles") + '\n';
+  if (source.unreferenced_vertices > 0) {
+    text += fmt::format("kept {} that no triangle uses\n",
+                        counted(source.unreferenced_vertices, "vertices"));
+  }
+  return text + warning_text(source) + placement_text(made.manifest(), config) +
+         storage::forced_collapses_text(
+             storage::summarize_forced_collapses(made.records(), source.places));
+}
+
 BuildReport make_report(const storage::HierarchyReader& made, const BuildOutcome& outcome,
                         const StageMeter& meter, const StageContext& context) {
   BuildReport report;
@@ -126,10 +130,13 @@ BuildReport make_report(const storage::HierarchyReader& made, const BuildOutcome
   report.stats.stages = meter.stages();
   report.stats.total = meter.total();
   const SourceSummary& source = made.manifest().source;
-  report.text = report_text(context.config, source, outcome.found, report.stats) +
-                placement_text(made.manifest(), context.config) +
-                storage::forced_collapses_text(
-                    storage::summarize_forced_collapses(made.records(), source.places));
+  report.text = made_text(made, context.config.output, outcome.output_bytes) +
+                fmt::format("took {} and {} of memory\n",
+                            execution::duration_text(report.stats.total.wall_seconds),
+                            execution::rounded_size_text(report.stats.total.peak_resident_bytes));
+  if (!outcome.found.empty())
+    report.text += outcome.found + '\n';
+  report.text += notes_text(made, context.config);
   report.account = account_text(source, report.stats);
   report.input = note_of(outcome.input, source.checksum);
   return report;

@@ -9,6 +9,7 @@
 #include "storage/format/input_note.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 
 namespace meshhier::pipeline {
@@ -28,6 +29,12 @@ struct BuildOutcome {
   DiskNeed predicted;  ///< from the header, or from the partitions if it was far off
   importing::InputRecord input;
 };
+
+/// One line for people: what was made, and how large it is.
+std::string made_text(const storage::HierarchyReader& made, const std::filesystem::path& output,
+                      std::uint64_t output_bytes);
+/// A line for each thing that is to be known of it; may be empty.
+std::string notes_text(const storage::HierarchyReader& made, const config::Config& config);
 
 /// Of the hierarchy `made`, when the last stage of `meter` has ended.
 BuildReport make_report(const storage::HierarchyReader& made, const BuildOutcome& outcome,

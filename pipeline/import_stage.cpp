@@ -13,16 +13,11 @@
 namespace meshhier::pipeline {
 namespace {
 
-importing::MeshInput::Place place_of(const storage::WorkDirectory& work, storage::MemoryPool& pool,
+importing::MeshInput::Place place_of(const std::filesystem::path& work, storage::MemoryPool& pool,
                                      std::uint64_t sort_bytes,
                                      const BuildEnvironment& environment) {
-  return {storage::imported_path(work.path()),
-          work.path() / "import",
-          pool,
-          sort_bytes,
-          environment.progress,
-          environment.cancel,
-          work.path() / "copies"};
+  return {storage::imported_path(work), work / "import",    pool,           sort_bytes,
+          environment.progress,         environment.cancel, work / "copies"};
 }
 
 bool is_to_be_looked_at(const config::Config& config) {
@@ -78,6 +73,29 @@ bool is_read_before_plan(const importing::MeshInput& input, const config::Config
   return input.needs_import() || is_to_be_looked_at(config);
 }
 
+namespace {
+
+BuildPlan plan_of(const importing::MeshInput& input, images::MaterialList materials,
+                  const config::Config& config, storage::FileSystem& files) {
+  BuildPlan plan = plan_build(config, input.description(), input.imported_bytes(),
+                              plan_textures(std::move(materials), config.missing_images, files));
+  input.files().check_unchanged();
+  return plan;
+}
+
+}  // namespace
+
+BuildPlan read_and_plan(importing::MeshInput& input, const std::filesystem::path& directory,
+                        storage::MemoryPool& pool, const config::Config& config,
+                        const BuildEnvironment& environment) {
+  const importing::ImportMemory memory = importing::plan_import(config.memory_budget);
+  pool.set_capacity(memory.pool_bytes);
+  environment.progress.expect(import_time(input, config));
+  read_once(input, config, place_of(directory, pool, memory.sort_bytes, environment));
+  execution::release_free_memory();
+  return plan_of(input, input.materials(), config, environment.files);
+}
+
 BuildPlan import_and_plan(importing::MeshInput& input, storage::WorkDirectory& work,
                           storage::MemoryPool& pool, const config::Config& config,
                           const BuildEnvironment& environment) {
@@ -85,22 +103,13 @@ BuildPlan import_and_plan(importing::MeshInput& input, storage::WorkDirectory& w
   work.keep(earlier.has_value());
   const auto recalled =
       earlier ? recall_import(*earlier, input, config, environment.cancel) : std::nullopt;
-  images::MaterialList materials;
-  if (recalled) {
+  const auto make_plan = [&] {
+    if (!recalled)
+      return read_and_plan(input, work.path(), pool, config, environment);
     input.recall(*recalled);
-    materials = earlier->materials;
-  } else {
-    const importing::ImportMemory memory = importing::plan_import(config.memory_budget);
-    pool.set_capacity(memory.pool_bytes);
-    environment.progress.expect(import_time(input, config));
-    read_once(input, config, place_of(work, pool, memory.sort_bytes, environment));
-    execution::release_free_memory();
-    materials = input.materials();
-  }
-  BuildPlan plan =
-      plan_build(config, input.description(), input.imported_bytes(),
-                 plan_textures(std::move(materials), config.missing_images, environment.files));
-  input.files().check_unchanged();
+    return plan_of(input, earlier->materials, config, environment.files);
+  };
+  BuildPlan plan = make_plan();
   plan.disk.temporary_bytes = std::max(plan.disk.temporary_bytes, import_disk(input, config));
   check_disk(plan.disk, config.output, environment.files);
   return plan;
@@ -112,8 +121,9 @@ void import_again(importing::MeshInput& input, const storage::WorkDirectory& wor
   const std::uint64_t sort_bytes =
       std::min(importing::plan_import(context.config.memory_budget).sort_bytes,
                context.memory().work_bytes / 4);
-  read_once(input, context.config,
-            place_of(work, pool, sort_bytes, {context.files, context.progress, context.cancel}));
+  read_once(
+      input, context.config,
+      place_of(work.path(), pool, sort_bytes, {context.files, context.progress, context.cancel}));
   const mesh_io::MeshDescription& mesh = input.description();
   if (mesh.vertex_count != recalled.vertex_count || mesh.places() != recalled.places() ||
       mesh.face_count != recalled.face_count || mesh.attributes != recalled.attributes) {

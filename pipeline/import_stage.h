@@ -8,6 +8,7 @@
 #include "storage/io/spool.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <vector>
 
 namespace meshhier::pipeline {
@@ -29,9 +30,14 @@ bool is_read_before_plan(const importing::MeshInput& input, const config::Config
 void read_once(importing::MeshInput& input, const config::Config& config,
                const importing::MeshInput::Place& place);
 
-/// Imports the input and finds places, unless an earlier build did whose work is still there; then
-/// it is known what there is to do. Keeps the work directory if there is earlier work. Throws as
-/// importing::import_input, importing::find_copies, plan_build and check_disk.
+/// Imports the input and finds places in `directory`; then it is known what there is to do. Throws
+/// as importing::import_input, importing::find_copies and plan_build.
+BuildPlan read_and_plan(importing::MeshInput& input, const std::filesystem::path& directory,
+                        storage::MemoryPool& pool, const config::Config& config,
+                        const BuildEnvironment& environment);
+
+/// The same, and checks the disk, unless an earlier build did whose work is still there.
+/// Keeps the work directory if there is earlier work. Throws also as check_disk.
 BuildPlan import_and_plan(importing::MeshInput& input, storage::WorkDirectory& work,
                           storage::MemoryPool& pool, const config::Config& config,
                           const BuildEnvironment& environment);

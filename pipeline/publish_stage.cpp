@@ -22,6 +22,7 @@
 #include "storage/format/tile_plan.h"
 #include "storage/format/tileset.h"
 #include "storage/io/hash.h"
+#include "storage/io/process.h"
 #include "texture/corners.h"
 
 #include <algorithm>
@@ -78,7 +79,7 @@ struct TileWriter {
   const Forest& forest;
   const TextureStore& textures;
   const storage::TileFormat format;
-  const std::filesystem::path& directory;
+  const TileFiles& to;
   const StageContext& context;
 };
 
@@ -142,6 +143,24 @@ FinishedMesh finish(const TileWriter& to, NodeId node, TileMesh mesh) {
   return finished;
 }
 
+void write_tile_file(const TileWriter& writer, NodeId node, std::span<const std::byte> bytes) {
+  storage::FileSystem& files = writer.context.files;
+  const auto& [directory, attempts] = writer.to;
+  const std::filesystem::path path = storage::tile_path(directory, node);
+  if (attempts.empty()) {
+    const auto file = files.create(path);
+    file->write_at(0, bytes);
+    if (writer.context.config.storage.container == storage::Container::files)
+      file->start_sync();
+    return;
+  }
+  const std::filesystem::path attempt = attempts / storage::unique_name();
+  const auto file = files.create(attempt);
+  file->write_at(0, bytes);
+  file->sync();
+  files.rename(attempt, path);
+}
+
 Published write_tile(const TileWriter& to, NodeId node) {
   const Forest& forest = to.forest;
   auto [mesh, shading, image, parent_map] = finish(to, node, forest.load(node).mesh);
@@ -158,10 +177,7 @@ Published write_tile(const TileWriter& to, NodeId node) {
   const std::vector<std::uint16_t> chains = forest.chains(node, mesh.ghosts);
   const std::vector<std::byte> bytes = storage::encode_tile(
       {node, mesh, shading, image, record.bounds, parent_map, chains}, forest.tree(), to.format);
-  const auto file = to.context.files.create(storage::tile_path(to.directory, node));
-  file->write_at(0, bytes);
-  if (to.context.config.storage.container == storage::Container::files)
-    file->start_sync();
+  write_tile_file(to, node, bytes);
   record.file_bytes = bytes.size();
   record.checksum = storage::checksum(bytes);
   return published;
@@ -196,15 +212,16 @@ std::uint64_t heaviest_written(const Forest& forest, std::span<const NodeId> nod
 }  // namespace
 
 void publish(Forest& forest, const TextureStore& textures, BuildJournal& journal,
-             const std::filesystem::path& directory, const StageContext& context) {
+             const TileFiles& to, const Share& share, const StageContext& context) {
   const Tree& tree = context.tree();
   for (int l = 0; l <= raw(tree.depth()); ++l) {
-    context.files.make_directories(storage::level_directory(directory, static_cast<Level>(l)));
+    context.files.make_directories(storage::level_directory(to.directory, static_cast<Level>(l)));
   }
   std::vector<NodeId> left;
-  for (const NodeId node : tree.tile_nodes()) {
-    if (!journal.is_published(node))
-      left.push_back(node);
+  const std::vector<NodeId> nodes = tree.tile_nodes();
+  for (std::uint64_t i = share.begin(nodes.size()); i < share.end(nodes.size()); ++i) {
+    if (!journal.is_published(nodes[i]))
+      left.push_back(nodes[i]);
   }
   context.progress.stage("publish", left.size(), "tiles");
   // A picture as it was stored, on its own, and in the tile's file.
@@ -212,8 +229,8 @@ void publish(Forest& forest, const TextureStore& textures, BuildJournal& journal
       heaviest_written(forest, left, context.config.storage) + 3 * textures.heaviest_bytes();
   const TileRoom room = room_for(forest, context.memory(), heaviest);
   const TileWriter writer{forest, textures,
-                          format_of(*journal.source(), forest.computes_normals(), context),
-                          directory, context};
+                          format_of(*journal.source(), forest.computes_normals(), context), to,
+                          context};
   execution::ordered_for(
       left.size(), room.in_flight(), context.cancel,
       [&](std::size_t i) { return write_tile(writer, left[i]); },

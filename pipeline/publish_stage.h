@@ -3,6 +3,7 @@
 
 #include "pipeline/journal/build_journal.h"
 #include "pipeline/outline_stage.h"
+#include "pipeline/plan/share.h"
 #include "pipeline/plan/stage_context.h"
 #include "pipeline/plan/tile_population.h"
 #include "pipeline/tiles/forest.h"
@@ -16,9 +17,17 @@ namespace meshhier::pipeline {
 OutputCost publish_output(const JobSize& job, const TilePopulation& tiles);
 StageTime publish_time(const JobSize& job, const TilePopulation& tiles);
 
-/// Writes the files of all tiles into `directory`, but for those the journal has.
+/// Where tile files go.
+struct TileFiles {
+  const std::filesystem::path& directory;  ///< of the hierarchy
+  /// Where each is until it is whole and on disk, as other processes may write the same; empty: it
+  /// is written in its place.
+  const std::filesystem::path attempts{};
+};
+
+/// Writes the files of the share of all tiles, but for those the journal has.
 void publish(Forest& forest, const TextureStore& textures, BuildJournal& journal,
-             const std::filesystem::path& directory, const StageContext& context);
+             const TileFiles& to, const Share& share, const StageContext& context);
 
 /// Writes all other files of the hierarchy, once all tiles are there, and adds up their errors and
 /// bounds.

@@ -99,39 +99,50 @@ std::string differences(const Value& was, const Value& is) {
   return text;
 }
 
+/// False also if what an entry has is of another kind.
+template <class Take>
+bool is_understood(const Take& take) {
+  try {
+    return take();
+  } catch (const Value::exception&) {
+    return false;
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::corrupt)
+      throw;
+    return false;
+  }
+}
+
 }  // namespace
+
+bool add_entry(const Value& entry, EarlierBuild& build) {
+  return is_understood([&] {
+    if (entry.contains("build")) {
+      build.decides_result = entry.at("build");
+      build.input_times = entry.at("times");
+    } else if (entry.contains("ingest")) {
+      const Value& source = entry.at("ingest");
+      build.source = storage::parse_source(nlohmann::ordered_json(source.at("summary")), "journal");
+      build.materials = material_list(source.at("materials"));
+      build.input = input_record(source.at("input"));
+      build.is_whole = build.decides_result.is_object();
+    }
+    return true;
+  });
+}
 
 std::optional<EarlierBuild> find_earlier_build(storage::FileSystem& files,
                                                const std::filesystem::path& work) {
   if (!files.exists(storage::journal_path(work)))
     return std::nullopt;
   EarlierBuild earlier;
-  bool is_whole = false;
   storage::ScratchUse uncounted;
-  const auto read = [&](const Value& entry) {
-    if (entry.contains("build")) {
-      earlier.decides_result = entry.at("build");
-      earlier.input_times = entry.at("times");
-    } else if (entry.contains("ingest")) {
-      earlier.source = storage::parse_source(
-          nlohmann::ordered_json(entry.at("ingest").at("summary")), "journal");
-      earlier.materials = material_list(entry.at("ingest").at("materials"));
-      earlier.input = input_record(entry.at("ingest").at("input"));
-      is_whole = earlier.decides_result.is_object();
-    }
-  };
   const storage::Journal journal(files, storage::journal_path(work), uncounted,
                                  [&](const Value& entry) {
-                                   try {
-                                     read(entry);
-                                   } catch (const Value::exception&) {
-                                   } catch (const Error& error) {
-                                     if (error.code() != ErrorCode::corrupt)
-                                       throw;
-                                   }
+                                   add_entry(entry, earlier);
                                    return true;
                                  });
-  return is_whole ? std::optional(std::move(earlier)) : std::nullopt;
+  return earlier.is_whole ? std::optional(std::move(earlier)) : std::nullopt;
 }
 
 BuildJournal::BuildJournal(storage::FileSystem& files, const std::filesystem::path& work,
@@ -145,13 +156,7 @@ BuildJournal::BuildJournal(storage::FileSystem& files, const std::filesystem::pa
       textures_(pieces.textures),
       pictures_(pieces.pictures),
       cancel_(cancel) {
-  const Tree& tree = forest_.tree();
-  has_leaves_.resize(chunks_.count());
-  steps_.resize(static_cast<std::size_t>(raw(tree.depth())) + 1);
-  for (int l = 0; l <= raw(tree.depth()); ++l)
-    has_tile_.emplace_back(tree.node_count(static_cast<Level>(l)));
-  has_texture_ = has_tile_;
-
+  make_room();
   look_ahead(storage::journal_path(work), use);
   std::optional<Value> build;  // whose journal is there
   bool is_same = true;
@@ -166,17 +171,9 @@ BuildJournal::BuildJournal(storage::FileSystem& files, const std::filesystem::pa
     has_other_work = has_other_work || entry.contains("ingest");
     return !is_same || take(entry);
   };
-  journal_.emplace(files, storage::journal_path(work), use, [&](const Entry& entry) {
-    try {
-      return read(entry);
-    } catch (const Value::exception&) {
-      return false;
-    } catch (const Error& error) {
-      if (error.code() != ErrorCode::corrupt)
-        throw;
-      return false;
-    }
-  });
+  sink_ = std::make_unique<storage::Journal>(
+      files, storage::journal_path(work), use,
+      [&](const Entry& entry) { return is_understood([&] { return read(entry); }); });
   if (!is_same && has_other_work) {
     throw Error(ErrorCode::exists,
                 fmt::format("{} holds the work of a build that was stopped, but {}; --restart "
@@ -184,9 +181,39 @@ BuildJournal::BuildJournal(storage::FileSystem& files, const std::filesystem::pa
                             work.string(), differences(*build, identity.decides_result)));
   }
   if (is_complete_)
-    is_sound_ = is_same && published_.size() == tree.tile_count();
+    is_sound_ = is_same && published_.size() == forest_.tree().tile_count();
   else
     is_sound_ = is_same && source_ && can_make_all_leaves() && can_make_all_textures();
+}
+
+BuildJournal::BuildJournal(storage::FileSystem& files, const std::filesystem::path& built,
+                           BuildIdentity identity, Workpieces pieces,
+                           std::unique_ptr<storage::EntrySink> sink,
+                           const execution::CancelToken& cancel)
+    : files_(files),
+      built_(built),
+      identity_(std::move(identity)),
+      forest_(pieces.forest),
+      chunks_(pieces.chunks),
+      textures_(pieces.textures),
+      pictures_(pieces.pictures),
+      cancel_(cancel),
+      is_sealed_(true),
+      sink_(std::move(sink)) {
+  make_room();
+}
+
+void BuildJournal::make_room() {
+  const Tree& tree = forest_.tree();
+  has_leaves_.resize(chunks_.count());
+  steps_.resize(static_cast<std::size_t>(raw(tree.depth())) + 1);
+  for (int l = 0; l <= raw(tree.depth()); ++l)
+    has_tile_.emplace_back(tree.node_count(static_cast<Level>(l)));
+  has_texture_ = has_tile_;
+}
+
+bool BuildJournal::take_sealed(const Entry& entry) {
+  return is_understood([&] { return entry.contains("build") || take(entry); });
 }
 
 /// Of a build that was complete the scratch files are gone: entries of what lay there say nothing.
@@ -216,6 +243,8 @@ bool BuildJournal::take(const Entry& entry) {
     return take_image(value);
   if (kind == "simplify")
     return take_tile(value);
+  if (kind == "took")
+    return true;
   if (kind == "root")
     return take_root(value);
   if (kind == "texture")
@@ -310,10 +339,12 @@ bool BuildJournal::take_published(const Entry& published) {
   const std::unique_ptr<storage::File> file = files_.open(path);
   if (file->size() != record.file_bytes)
     return false;
-  std::vector<std::byte> content(record.file_bytes);
-  file->read_exact(0, content);
-  if (storage::checksum(content) != record.checksum)
-    return false;
+  if (!is_sealed_) {
+    std::vector<std::byte> content(record.file_bytes);
+    file->read_exact(0, content);
+    if (storage::checksum(content) != record.checksum)
+      return false;
+  }
   published_.emplace(std::pair(record.node.level, record.node.index), Published{record, rounding});
   ++found_;
   return true;
@@ -333,7 +364,11 @@ bool BuildJournal::can_make_all_leaves() const {
 bool BuildJournal::can_make_all_textures() {
   const auto left = [](char has) { return has == 0; };
   return textures_ == nullptr || std::ranges::none_of(has_texture_.back(), left) ||
-         pictures_->restore(images_);
+         restore_pictures();
+}
+
+bool BuildJournal::restore_pictures() {
+  return pictures_->restore(images_);
 }
 
 std::uint64_t BuildJournal::steps() const {
@@ -357,49 +392,48 @@ std::vector<Published> BuildJournal::published() const {
 }
 
 void BuildJournal::note_source(const DistributedSource& source) {
-  journal_->append({{"build", identity_.decides_result}, {"times", identity_.input_times}});
+  sink_->append({{"build", identity_.decides_result}, {"times", identity_.input_times}});
   for (std::uint32_t chunk = 0; chunk < chunks_.count(); ++chunk)
-    journal_->append({{"partition", {chunk, chunks_.store(chunk)}}});
-  journal_->append({{"ingest",
-                     {{"summary", Value(storage::source_json(source.summary))},
-                      {"origin", to_json(source.origin)},
-                      {"materials", to_json(source.materials)},
-                      {"input", to_json(source.input)}}}});
+    sink_->append({{"partition", {chunk, chunks_.store(chunk)}}});
+  sink_->append({{"ingest",
+                  {{"summary", Value(storage::source_json(source.summary))},
+                   {"origin", to_json(source.origin)},
+                   {"materials", to_json(source.materials)},
+                   {"input", to_json(source.input)}}}});
   source_ = source;
 }
 
 void BuildJournal::note_image(const images::StoredImage& stored, const std::string& why) {
-  journal_->append({{"image", {{"stored", to_json(stored)}, {"broken", why}}}});
+  sink_->append({{"image", {{"stored", to_json(stored)}, {"broken", why}}}});
   if (!why.empty())
     broken_images_.emplace_back(static_cast<std::uint32_t>(images_.size()), why);
   images_.push_back(stored);
 }
 
 void BuildJournal::note_texture(NodeId node) {
-  journal_->append(
-      {{"texture",
-        {{"node", {raw(node.level), node.index}}, {"stored", textures_->stored(node)}}}});
+  sink_->append({{"texture",
+                  {{"node", {raw(node.level), node.index}}, {"stored", textures_->stored(node)}}}});
 }
 
 void BuildJournal::note_leaves(std::uint32_t chunk, std::uint64_t unreferenced_vertices) {
-  journal_->append({{"leaves",
-                     {{"chunk", chunk},
-                      {"unreferenced", unreferenced_vertices},
-                      {"stored", forest_.stored_chunk(chunk)}}}});
+  sink_->append({{"leaves",
+                  {{"chunk", chunk},
+                   {"unreferenced", unreferenced_vertices},
+                   {"stored", forest_.stored_chunk(chunk)}}}});
   has_leaves_[chunk] = 1;
   unreferenced_ += unreferenced_vertices;
 }
 
 void BuildJournal::note_tile(NodeId node, std::span<const IndexedStep> steps) {
-  journal_->append({{"simplify",
-                     {{"node", {raw(node.level), node.index}},
-                      {"steps", to_json(steps)},
-                      {"stored", forest_.stored_tile(node)}}}});
+  sink_->append({{"simplify",
+                  {{"node", {raw(node.level), node.index}},
+                   {"steps", to_json(steps)},
+                   {"stored", forest_.stored_tile(node)}}}});
   add_steps(steps, finer(node.level));
 }
 
 void BuildJournal::note_root(std::span<const IndexedStep> steps) {
-  journal_->append({{"root", {{"steps", to_json(steps)}, {"stored", forest_.stored_root()}}}});
+  sink_->append({{"root", {{"steps", to_json(steps)}, {"stored", forest_.stored_root()}}}});
   add_steps(steps, Level{0});
   has_root_ = true;
 }
@@ -407,14 +441,14 @@ void BuildJournal::note_root(std::span<const IndexedStep> steps) {
 void BuildJournal::note_published(const Published& tile) {
   const std::vector<std::byte> bytes = storage::encode_record(tile.record);
   const auto* first = reinterpret_cast<const std::uint8_t*>(bytes.data());
-  journal_->append(
+  sink_->append(
       {{"publish",
         {{"record", Value::binary({first, first + bytes.size()})}, {"rounding", tile.rounding}}}});
   published_.emplace(std::pair(tile.record.node.level, tile.record.node.index), tile);
 }
 
 void BuildJournal::note_complete() {
-  journal_->append({{"complete", true}});
+  sink_->append({{"complete", true}});
   is_complete_ = true;
 }
 

@@ -12,6 +12,7 @@
 //   texture    a tile's picture
 //   publish    a tile's file
 //   complete   all files of the hierarchy; the scratch files are not needed any more
+//   took       of a task of a build on many machines: its time; says nothing of the work
 //
 // Whatever an entry names is checked, by checksum, before it is believed. The stages before
 // `leaves` are one step: they take a twentieth of a build. `outline` takes no time.
@@ -32,6 +33,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -63,7 +65,10 @@ struct EarlierBuild {
   SourceSummary source;
   images::MaterialList materials;
   importing::InputRecord input;
+  bool is_whole = false;  ///< all of this is known
 };
+/// Takes what one entry tells of it. False if the entry is not understood.
+bool add_entry(const nlohmann::json& entry, EarlierBuild& build);
 /// Of the journal in the directory `work`, unless the input was not read as a whole. Whether all
 /// else is there is not looked at. Throws Error(io).
 std::optional<EarlierBuild> find_earlier_build(storage::FileSystem& files,
@@ -107,6 +112,18 @@ class BuildJournal {
   std::uint64_t found() const { return found_; }
   std::uint64_t steps() const;
 
+  /// Of one of several processes that build together (pipeline/tasks): nothing is done at first,
+  /// `sink` gets what is noted.
+  BuildJournal(storage::FileSystem& files, const std::filesystem::path& built,
+               BuildIdentity identity, Workpieces pieces, std::unique_ptr<storage::EntrySink> sink,
+               const execution::CancelToken& cancel);
+
+  /// Takes an entry of another process, whose scratch files are mounted. False if it is none of a
+  /// build of this tree.
+  bool take_sealed(const nlohmann::json& entry);
+  /// Puts back the pictures that entries named; false if the scratch file does not hold them.
+  bool restore_pictures();
+
   const std::optional<DistributedSource>& source() const { return source_; }
   bool has_leaves(std::uint32_t chunk) const { return has_leaves_[chunk] != 0; }
   /// Vertices that no triangle uses, in all chunks whose leaves are done.
@@ -137,10 +154,11 @@ class BuildJournal {
   void note_texture(NodeId node);
   void note_published(const Published& tile);
   void note_complete();
-  void sync() { journal_->sync(); }
+  void sync() { sink_->sync(); }
 
  private:
-  using Entry = storage::Journal::Entry;
+  using Entry = storage::EntrySink::Entry;
+  void make_room();
   void look_ahead(const std::filesystem::path& path, storage::ScratchUse& use);
   bool take(const Entry& entry);
   bool take_source(const Entry& source);
@@ -177,7 +195,8 @@ class BuildJournal {
   bool is_complete_ = false;
   bool input_was_touched_ = false;
   bool has_root_ = false;
-  std::optional<storage::Journal> journal_;
+  bool is_sealed_ = false;  ///< what entries name is whole, as others sealed it
+  std::unique_ptr<storage::EntrySink> sink_;
 };
 
 }  // namespace meshhier::pipeline

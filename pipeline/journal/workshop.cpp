@@ -10,6 +10,21 @@
 namespace meshhier::pipeline {
 namespace {
 
+/// But for the tiles.
+bool is_whole(storage::FileSystem& files, const std::filesystem::path& hierarchy) {
+  try {
+    const storage::HierarchyReader made(files, hierarchy);
+    made.read_outline();
+    if (made.manifest().preview)
+      made.read_preview();
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+}  // namespace
+
 BuildIdentity identity_of(const config::Config& config, const importing::MeshInput& input,
                           const BuildPlan& plan) {
   const Tree& tree = plan.tree;
@@ -26,37 +41,42 @@ BuildIdentity identity_of(const config::Config& config, const importing::MeshInp
           input.files().times()};
 }
 
-/// But for the tiles.
-bool is_whole(storage::FileSystem& files, const std::filesystem::path& hierarchy) {
-  try {
-    const storage::HierarchyReader made(files, hierarchy);
-    made.read_outline();
-    if (made.manifest().preview)
-      made.read_preview();
-    return true;
-  } catch (const Error&) {
-    return false;
-  }
-}
-
-}  // namespace
-
-Workshop::Workshop(const std::filesystem::path& work, const BuildIdentity& identity,
-                   const AttributeLayout& layout, storage::MemoryPool& pool,
-                   const StageContext& context)
-    : mesh_scratch(context.files, work / "mesh", pool, storage::ScratchFile::Stays::yes),
-      tile_scratch(context.files, work / "tiles", pool, storage::ScratchFile::Stays::yes),
-      picture_scratch(context.files, work / "pictures", pool, storage::ScratchFile::Stays::yes),
+Workshop::Workshop(const std::filesystem::path& directory, const AttributeLayout& layout,
+                   storage::MemoryPool& pool, const StageContext& context,
+                   const std::function<BuildJournal(const Workpieces&)>& open_journal)
+    : mesh_scratch(context.files, directory / "mesh", pool, storage::ScratchFile::Stays::yes),
+      tile_scratch(context.files, directory / "tiles", pool, storage::ScratchFile::Stays::yes),
+      picture_scratch(context.files, directory / "pictures", pool,
+                      storage::ScratchFile::Stays::yes),
       chunks(context.tree(), layout.channels(), context.plan.job.has_copies(), mesh_scratch,
              context.memory().spool_block_bytes),
       forest(context.tree(), chunks.level(), layout, tile_scratch,
              context.plan.job.computes_normals),
       textures(context.tree(), tile_scratch),
       pictures(picture_scratch, picture_cache_bytes(context.memory().work_bytes)),
-      journal(context.files, work, identity, pool.scratch_use(),
-              context.plan.textures.is_textured() ? Workpieces{forest, chunks, &textures, &pictures}
-                                                  : Workpieces{forest, chunks},
-              context.cancel) {}
+      journal(open_journal(pieces(context))) {}
+
+Workpieces Workshop::pieces(const StageContext& context) {
+  return context.plan.textures.is_textured() ? Workpieces{forest, chunks, &textures, &pictures}
+                                             : Workpieces{forest, chunks};
+}
+
+Workshop::Workshop(const std::filesystem::path& work, const BuildIdentity& identity,
+                   const AttributeLayout& layout, storage::MemoryPool& pool,
+                   const StageContext& context)
+    : Workshop(work, layout, pool, context, [&](const Workpieces& pieces) {
+        return BuildJournal(context.files, work, identity, pool.scratch_use(), pieces,
+                            context.cancel);
+      }) {}
+
+Workshop::Workshop(const std::filesystem::path& directory, const std::filesystem::path& built,
+                   const BuildIdentity& identity, const AttributeLayout& layout,
+                   storage::MemoryPool& pool, std::unique_ptr<storage::EntrySink> sink,
+                   const StageContext& context)
+    : Workshop(directory, layout, pool, context, [&](const Workpieces& pieces) {
+        return BuildJournal(context.files, built, identity, pieces, std::move(sink),
+                            context.cancel);
+      }) {}
 
 OpenWorkshop open_workshop(storage::WorkDirectory& work, importing::MeshInput& input,
                            storage::MemoryPool& pool, const StageContext& context) {
@@ -96,6 +116,18 @@ OpenWorkshop open_workshop(storage::WorkDirectory& work, importing::MeshInput& i
   return open;
 }
 
+mesh_io::MeshDescription description_of(const EarlierBuild& build) {
+  mesh_io::MeshDescription mesh;
+  mesh.vertex_count = build.source.vertices;
+  mesh.place_count = build.source.places;
+  mesh.face_count = build.decides_result.value("faces", std::uint64_t{0});
+  mesh.attributes = build.source.attributes;
+  if (!build.materials.empty())
+    mesh.attributes.texcoords = mesh.attributes.material = true;
+  mesh.vertices_in_place = true;
+  return mesh;
+}
+
 std::optional<mesh_io::MeshDescription> recall_import(const EarlierBuild& earlier,
                                                       importing::MeshInput& input,
                                                       const config::Config& asked,
@@ -115,15 +147,7 @@ std::optional<mesh_io::MeshDescription> recall_import(const EarlierBuild& earlie
     return std::nullopt;
   if (earlier.input_times != files.times() && input.checksum(cancel) != earlier.source.checksum)
     return std::nullopt;
-  mesh_io::MeshDescription mesh;
-  mesh.vertex_count = earlier.source.vertices;
-  mesh.place_count = earlier.source.places;
-  mesh.face_count = made_of.value("faces", std::uint64_t{0});
-  mesh.attributes = earlier.source.attributes;
-  if (!earlier.materials.empty())
-    mesh.attributes.texcoords = mesh.attributes.material = true;
-  mesh.vertices_in_place = true;
-  return mesh;
+  return description_of(earlier);
 }
 
 }  // namespace meshhier::pipeline

@@ -10,6 +10,7 @@
 #include "storage/format/work_directory.h"
 #include "storage/io/spool.h"
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,6 +21,12 @@ struct Workshop {
   Workshop(const std::filesystem::path& work, const BuildIdentity& identity,
            const AttributeLayout& layout, storage::MemoryPool& pool, const StageContext& context);
 
+  /// Of a task: what it makes goes to `directory` and its journal's entries to `sink`; nothing is
+  /// there yet. `built`: the hierarchy to be.
+  Workshop(const std::filesystem::path& directory, const std::filesystem::path& built,
+           const BuildIdentity& identity, const AttributeLayout& layout, storage::MemoryPool& pool,
+           std::unique_ptr<storage::EntrySink> sink, const StageContext& context);
+
   storage::ScratchFile mesh_scratch;  ///< what is needed until the leaves are done
   storage::ScratchFile tile_scratch;
   storage::ScratchFile picture_scratch;  ///< what is needed until the textures are done
@@ -28,7 +35,17 @@ struct Workshop {
   TextureStore textures;
   images::ImageStore pictures;
   BuildJournal journal;
+
+ private:
+  Workshop(const std::filesystem::path& directory, const AttributeLayout& layout,
+           storage::MemoryPool& pool, const StageContext& context,
+           const std::function<BuildJournal(const Workpieces&)>& open_journal);
+  Workpieces pieces(const StageContext& context);
 };
+
+/// What decides the result of a build, and when its input was changed last.
+BuildIdentity identity_of(const config::Config& config, const importing::MeshInput& input,
+                          const BuildPlan& plan);
 
 struct OpenWorkshop {
   std::unique_ptr<Workshop> workshop;
@@ -40,6 +57,9 @@ struct OpenWorkshop {
 /// Throws Error(exists) as BuildJournal does, Error(io).
 OpenWorkshop open_workshop(storage::WorkDirectory& work, importing::MeshInput& input,
                            storage::MemoryPool& pool, const StageContext& context);
+
+/// What reading its input found out.
+mesh_io::MeshDescription description_of(const EarlierBuild& build);
 
 /// What reading `input` would find out, from an earlier build of the same files; none if it was
 /// of others or if they were read in another way. Reads them all if they were touched since.

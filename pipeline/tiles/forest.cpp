@@ -226,7 +226,7 @@ std::vector<GhostRef> Forest::mapped(NodeId, std::span<const ChunkVertex> foreig
     const std::uint32_t chunk = foreign[begin].chunk;
     const std::uint32_t first = tree_.partitions({chunks_, chunk}).begin;
     std::vector<partition::LeafPlace> places(places_.size(chunk) / sizeof(partition::LeafPlace));
-    places_.read(chunk, 0, std::as_writable_bytes(std::span(places)));
+    places_.copy(chunk, std::as_writable_bytes(std::span(places)));
     for (std::size_t i = begin; i < end; ++i) {
       const partition::LeafPlace& place = partition::find_place(places, foreign[i].local);
       result.push_back({first + place.partition, place.index});
@@ -237,8 +237,7 @@ std::vector<GhostRef> Forest::mapped(NodeId, std::span<const ChunkVertex> foreig
 
 std::vector<std::uint16_t> Forest::parent_map(NodeId child, std::size_t count) const {
   std::vector<std::uint16_t> map(count);
-  levels_[raw(child.level)].parent_maps.read(child.index, 0,
-                                             std::as_writable_bytes(std::span(map)));
+  levels_[raw(child.level)].parent_maps.copy(child.index, std::as_writable_bytes(std::span(map)));
   return map;
 }
 

@@ -129,6 +129,18 @@ std::filesystem::path imported_path(const std::filesystem::path& work) {
   return work / "import.ply";
 }
 
+std::filesystem::path task_plan_path(const std::filesystem::path& work) {
+  return work / "plan.json";
+}
+
+std::filesystem::path segments_path(const std::filesystem::path& work) {
+  return work / "segments";
+}
+
+std::filesystem::path attempts_path(const std::filesystem::path& work) {
+  return work / "attempts";
+}
+
 std::optional<LeftoverName> leftover_name(std::string_view name) {
   const std::size_t mark = name.rfind(kMark);
   if (!name.starts_with('.') || mark == std::string_view::npos || mark < 2)

@@ -20,6 +20,10 @@
 //   .NAME.hier.meshhier-work/*               scratch files of the stages
 //   .NAME.hier.meshhier-work/hierarchy/      becomes NAME.hier
 //   .NAME.3tz.meshhier-work/archive          becomes NAME.3tz, of what is in hierarchy/
+//   WORK/plan.json                           of a build on many machines (pipeline/tasks)
+//   WORK/segments/STAGE-NNNNN                what a task has made (segment.h)
+//   WORK/attempts/*                          what tasks are making
+//   WORK/hierarchy/, WORK/archive            as above
 //   .NAME.hier.meshhier-old/                 a replaced hierarchy, for the moment of the rename
 //   .NAME.hier.meshhier-input                by `serve --watch`: which version of which file it was made of
 //   .NAME.hier.meshhier-verify-XXXXXXXX      beside a hierarchy while `verify` needs room
@@ -74,6 +78,9 @@ std::filesystem::path set_aside_path(const std::filesystem::path& work, std::uin
 std::filesystem::path built_path(const std::filesystem::path& work);
 std::filesystem::path packed_path(const std::filesystem::path& work);
 std::filesystem::path imported_path(const std::filesystem::path& work);
+std::filesystem::path task_plan_path(const std::filesystem::path& work);
+std::filesystem::path segments_path(const std::filesystem::path& work);
+std::filesystem::path attempts_path(const std::filesystem::path& work);
 
 /// What the names above that begin with a dot stand for.
 enum class Leftover {

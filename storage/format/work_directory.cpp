@@ -143,8 +143,22 @@ WorkDirectory::WorkDirectory(FileSystem& files, Output output, bool replace)
   restore_journal();
 }
 
+WorkDirectory::WorkDirectory(FileSystem& files, Output output, bool replace, fs::path shared)
+    : files_(files),
+      output_(std::move(output)),
+      path_(std::move(shared)),
+      lock_(files.try_lock(lock_path(path_))),
+      replace_(replace),
+      is_shared_(true) {
+  if (!lock_) {
+    throw Error(ErrorCode::io, fmt::format("another process is finishing the build in {}: try "
+                                           "again when it has ended",
+                                           path_.string()));
+  }
+}
+
 WorkDirectory::~WorkDirectory() {
-  if (published_ || kept_)
+  if (published_ || kept_ || is_shared_)
     return;
   try {
     files_.remove_all(path_);  // while it is locked: who comes now finds no lock, and makes another
@@ -189,7 +203,12 @@ void WorkDirectory::publish() {
   kept_ = false;
   try {
     files_.remove_all(replaced_path(output_.path));
-    files_.remove_all(path_);
+    if (is_shared_) {
+      files_.remove_all(built());
+      files_.remove_all(packed());
+    } else {
+      files_.remove_all(path_);
+    }
   } catch (const Error&) {  // the output is there; `meshhier clean` finds what is left
   }
 }

@@ -49,6 +49,9 @@ class WorkDirectory {
   /// is there and `replace` is false or if another build is at work here, Error(io) if its parent
   /// cannot be written.
   WorkDirectory(FileSystem& files, Output output, bool replace);
+  /// One of that name, on the output's file system, in which several processes have built: it stays
+  /// when it is published, but for the hierarchy. Throws Error(io) if another process has it.
+  WorkDirectory(FileSystem& files, Output output, bool replace, std::filesystem::path shared);
   WorkDirectory(const WorkDirectory&) = delete;
   WorkDirectory& operator=(const WorkDirectory&) = delete;
   /// Removes the directory and all in it, and directories made above it, unless it is kept or
@@ -88,6 +91,7 @@ class WorkDirectory {
       made_parent_;  ///< the topmost directory above the output that was not there before
   std::unique_ptr<FileLock> lock_;
   bool replace_;
+  bool is_shared_ = false;
   bool kept_ = false;
   bool published_ = false;
 };

@@ -3,6 +3,7 @@
 #include "hierarchy/error.h"
 #include "storage/io/hash.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cstring>
 
@@ -22,12 +23,15 @@ void BlobStore::put(std::size_t index, std::span<const std::byte> bytes) {
 }
 
 bool BlobStore::restore(std::size_t index, const StoredBlob& stored) {
-  if (!scratch_->claim(stored.offset, stored.bytes))
+  const StoredBlob here{scratch_->placed(stored.offset), stored.bytes, stored.checksum};
+  if (!scratch_->claim(here.offset, here.bytes))
     return false;
-  const auto bytes = std::make_unique_for_overwrite<std::byte[]>(stored.bytes);
-  if (!is_as_put(stored, {bytes.get(), stored.bytes}))
-    return false;
-  blobs_[index].stored = stored;
+  if (!ScratchFile::is_mounted(here.offset)) {
+    const auto bytes = std::make_unique_for_overwrite<std::byte[]>(here.bytes);
+    if (!is_as_put(here, {bytes.get(), here.bytes}))
+      return false;
+  }
+  blobs_[index].stored = here;
   return true;
 }
 
@@ -51,6 +55,16 @@ void BlobStore::read(std::size_t index, std::uint64_t offset, std::span<std::byt
   }
 }
 
+void BlobStore::copy(std::size_t index, std::span<std::byte> bytes) const {
+  if (ScratchFile::is_mounted(blobs_[index].stored.offset)) {
+    const BlobView whole = view(index);
+    assert(bytes.size() <= whole.bytes().size());
+    std::ranges::copy(whole.bytes().first(bytes.size()), bytes.begin());
+  } else {
+    read(index, 0, bytes);
+  }
+}
+
 BlobView BlobStore::view(std::size_t index) const {
   const Blob& blob = blobs_[index];
   const std::size_t size = blob.stored.bytes;
@@ -58,7 +72,7 @@ BlobView BlobStore::view(std::size_t index) const {
     return BlobView({blob.memory.get(), size});
   auto bytes = std::make_unique_for_overwrite<std::byte[]>(size);
   if (!is_as_put(blob.stored, {bytes.get(), size}))
-    throw Error(ErrorCode::io, scratch_->path().string() +
+    throw Error(ErrorCode::io, scratch_->path_at(blob.stored.offset).string() +
                                    " is not what was written to it: the "
                                    "disk, or another program, changed it");
   return BlobView(std::move(bytes), size);

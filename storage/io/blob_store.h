@@ -51,11 +51,15 @@ class BlobStore {
   /// For restore(), in another process even.
   const StoredBlob& stored(std::size_t index) const { return blobs_[index].stored; }
   /// Takes a blob that is in the scratch file already; false, and nothing happens, if what is there
-  /// is not what was put.
+  /// is not what was put. Of a mounted file only whether it is long enough is looked at: such a
+  /// blob is checked when it is viewed.
   bool restore(std::size_t index, const StoredBlob& stored);
 
-  /// Copies bytes.size() bytes from `offset`; requires them to be there.
+  /// Copies bytes.size() bytes from `offset`, without a check; requires them to be there.
   void read(std::size_t index, std::uint64_t offset, std::span<std::byte> bytes) const;
+  /// Copies as many bytes as there is room for, from the first on. Of a mounted file the whole blob
+  /// is checked: throws as view().
+  void copy(std::size_t index, std::span<std::byte> bytes) const;
   /// A whole blob, without a copy if it is in memory. Throws Error(io) if the disk has changed it.
   BlobView view(std::size_t index) const;
 

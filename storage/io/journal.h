@@ -29,20 +29,32 @@
 
 namespace meshhier::storage {
 
-class Journal {
+/// Where entries go that say what of a job is done.
+class EntrySink {
  public:
   using Entry = nlohmann::json;
 
+  EntrySink() = default;
+  EntrySink(const EntrySink&) = delete;
+  EntrySink& operator=(const EntrySink&) = delete;
+  virtual ~EntrySink() = default;
+
+  /// Not thread-safe. Throws Error(io); nothing is appended then.
+  virtual void append(const Entry& entry) = 0;
+  /// Forces them to the disk.
+  virtual void sync() = 0;
+};
+
+class Journal final : public EntrySink {
+ public:
   /// Opens the journal at `path`; begins one if there is none. `take` gets the entries that count,
   /// in order, until it returns false: that entry and all behind it are dropped. What is moved is
   /// counted in `use`. Throws Error(io).
   Journal(FileSystem& files, const std::filesystem::path& path, ScratchUse& use,
           const std::function<bool(const Entry&)>& take);
 
-  /// Not thread-safe. Throws Error(io); the journal is then as it was.
-  void append(const Entry& entry);
-  /// Forces it to the disk.
-  void sync() { file_->sync(); }
+  void append(const Entry& entry) override;
+  void sync() override { file_->sync(); }
 
  private:
   void read(const std::function<bool(const Entry&)>& take);

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <charconv>
 #include <cstdlib>
 #include <cstring>
+#include <random>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -54,6 +56,16 @@ ProcessUsage process_usage() {
   if (result.peak_resident_bytes == 0)
     result.peak_resident_bytes = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
   return result;
+}
+
+std::string unique_name() {
+  static const std::string process = [] {
+    std::random_device device;
+    const std::uint64_t number = std::uint64_t{device()} << 32 | device();
+    return fmt::format("{:016x}-{}", number, ::getpid());
+  }();
+  static std::atomic<std::uint64_t> next{0};
+  return fmt::format("{}-{}", process, next++);
 }
 
 std::filesystem::path make_temporary_directory() {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 namespace meshhier::storage {
 
@@ -16,6 +17,10 @@ struct ProcessUsage {
 
 /// Thread-safe; some 20 microseconds. A figure that the system does not tell is 0.
 ProcessUsage process_usage();
+
+/// A name that no other process has used or will use, on any machine: for a file until it is whole.
+/// Letters, digits and dashes.
+std::string unique_name();
 
 /// Makes a directory that only this user can enter, in the system's for temporary files. Throws
 /// Error(io).

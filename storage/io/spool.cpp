@@ -49,7 +49,20 @@ void ScratchFile::sync(const std::function<void()>& check) {
     file_->sync(check);
 }
 
+void ScratchFile::mount(std::unique_ptr<File> file) {
+  mounted_.push_back(std::move(file));
+}
+
+const std::filesystem::path& ScratchFile::path_at(std::uint64_t offset) const {
+  return is_mounted(offset) ? file_at(offset).path() : path_;
+}
+
 bool ScratchFile::claim(std::uint64_t offset, std::uint64_t bytes) {
+  if (is_mounted(offset)) {
+    const std::uint64_t place = offset & kOffsetMask;
+    const std::uint64_t there = offset >> kPlaceBits > mounted_.size() ? 0 : file_at(offset).size();
+    return place <= there && bytes <= there - place;
+  }
   if (!file_)
     return bytes == 0;
   const std::uint64_t there = file_->size();
@@ -89,6 +102,8 @@ std::uint64_t ScratchFile::append(std::span<const std::byte> bytes) {
 }
 
 void ScratchFile::release(std::uint64_t offset, std::uint64_t bytes) {
+  if (is_mounted(offset))
+    return;
   const std::lock_guard lock(mutex_);
   free_[bytes].push_back(offset);
 }
@@ -176,7 +191,7 @@ bool Spool::restore(const StoredSpool& stored) {
   size_ = stored.bytes;
   checksum_ = stored.checksum;
   for (const std::uint64_t offset : stored.blocks)
-    blocks_.push_back(Block::on_disk(offset));
+    blocks_.push_back(Block::on_disk(scratch_->placed(offset)));
   return true;
 }
 

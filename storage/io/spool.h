@@ -76,17 +76,35 @@ class ScratchFile {
   /// Says that bytes an earlier process appended are still needed; false if there are not so many.
   /// Before the first append().
   bool claim(std::uint64_t offset, std::uint64_t bytes);
+
+  /// Another file's bytes, which stay as they are, behind this one's own: what is said to lie at
+  /// `offset` of that file lies at placed(offset) here, until the next mount(). Each stays open.
+  void mount(std::unique_ptr<File> file);
+  std::uint64_t placed(std::uint64_t offset) const {
+    return (mounted_.size() << kPlaceBits) + offset;
+  }
+  /// Whether it lies in a file that was mounted.
+  static bool is_mounted(std::uint64_t offset) { return offset >> kPlaceBits > 0; }
+  /// Of the file in which `offset` lies.
+  const std::filesystem::path& path_at(std::uint64_t offset) const;
   /// Forces what was appended to the disk; `check` as for File::sync(). While others append, what
   /// was there before.
   void sync(const std::function<void()>& check);
   /// Removes the file; nothing is left of what was appended.
   void remove();
   void read(std::uint64_t offset, std::span<std::byte> bytes) const {
-    file_->read_exact(offset, bytes);
+    file_at(offset).read_exact(offset & kOffsetMask, bytes);
     pool_.scratch_use().add_read(bytes.size());
   }
 
  private:
+  static constexpr int kPlaceBits = 44;  // 16 TiB for each file
+  static constexpr std::uint64_t kOffsetMask = (std::uint64_t{1} << kPlaceBits) - 1;
+
+  const File& file_at(std::uint64_t offset) const {
+    return is_mounted(offset) ? *mounted_[(offset >> kPlaceBits) - 1] : *file_;
+  }
+
   FileSystem& files_;
   std::filesystem::path path_;
   MemoryPool& pool_;
@@ -95,6 +113,7 @@ class ScratchFile {
   std::unique_ptr<File> file_;
   std::atomic<std::uint64_t> size_{0};
   std::map<std::uint64_t, std::vector<std::uint64_t>> free_;  ///< offsets by size
+  std::vector<std::unique_ptr<File>> mounted_;
 };
 
 /// Where a scratch file holds a spool's bytes.

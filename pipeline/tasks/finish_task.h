@@ -1,0 +1,25 @@
+// The end of a build in tasks: the files that say something of all tiles, and the hierarchy's name.
+#pragma once
+
+#include "pipeline/journal/workshop.h"
+#include "pipeline/plan/stage_context.h"
+#include "pipeline/tasks/task_plan.h"
+#include "storage/format/segment.h"
+
+#include <filesystem>
+#include <string>
+
+namespace meshhier::pipeline {
+
+/// Completes the hierarchy in `work`, or its archive, of which all tiles are published, and notes
+/// what it is in `entries`. Throws Error(corrupt) if a tile is missing, Error(exists) if another
+/// process does the same.
+void finish_hierarchy(Workshop& workshop, const std::filesystem::path& work,
+                      storage::SegmentWriter& entries, const StageContext& context);
+
+/// Gives what was finished the output's name and removes what tasks have sealed, unless that is
+/// done already. Returns what there is, for people. Throws Error(exists) as check_output() does.
+std::string name_hierarchy(const TaskPlan& plan, const std::filesystem::path& work,
+                           storage::FileSystem& files);
+
+}  // namespace meshhier::pipeline

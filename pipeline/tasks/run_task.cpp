@@ -1,0 +1,324 @@
+#include "pipeline/tasks/run_task.h"
+
+#include "execution/allocator.h"
+#include "hierarchy/error.h"
+#include "import/mesh_input.h"
+#include "pipeline/images_stage.h"
+#include "pipeline/import_stage.h"
+#include "pipeline/journal/workshop.h"
+#include "pipeline/leaves_stage.h"
+#include "pipeline/plan/build_stats.h"
+#include "pipeline/publish_stage.h"
+#include "pipeline/read_stage.h"
+#include "pipeline/simplify_stage.h"
+#include "pipeline/stage_costs.h"
+#include "pipeline/tasks/attempt.h"
+#include "pipeline/tasks/finish_task.h"
+#include "pipeline/tasks/task_record.h"
+#include "pipeline/texture_stage.h"
+#include "storage/format/layout.h"
+#include "storage/format/segment.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+namespace meshhier::pipeline {
+namespace {
+
+/// One task, between segments.
+class Task {
+ public:
+  Task(const TaskPlan& plan, const TaskStage& stage, std::uint32_t index,
+       const TaskRequest& request, const BuildEnvironment& environment)
+      : plan_(plan),
+        stage_(stage),
+        index_(index),
+        work_(request.work),
+        environment_(environment),
+        pool_(0),
+        meter_({environment.progress, environment.files.counters(), pool_.scratch_use()}),
+        attempt_(environment.files, request.work, request.scratch) {}
+
+  /// Makes what the task is for and seals it.
+  void run() {
+    if (stage_.kind == TaskKind::read)
+      read();
+    else
+      go_on();
+  }
+
+ private:
+  storage::FileSystem& files() const { return environment_.files; }
+  storage::SegmentName name(const std::string& stage, std::uint32_t index) const {
+    return {plan_.fingerprint, stage, index};
+  }
+
+  void read();
+  void go_on();
+  /// What the stage `read` noted. Throws Error(corrupt).
+  EarlierBuild find_source() const;
+  void open_workshop(const BuildPlan& plan, const BuildIdentity& identity,
+                     const AttributeLayout& layout, const StageContext& context);
+  /// Takes what the tasks before have made, as far as this one needs it.
+  void mount_inputs();
+  void mount(const TaskStage& stage, storage::ScratchFile& scratch);
+  bool needs(const TaskStage& before) const;
+  storage::ScratchFile& scratch_of(TaskKind kind);
+
+  void make(const StageContext& context);
+  void leaves(const StageContext& context);
+  void textures(const LevelRange& levels, const StageContext& context);
+  /// Those of the stage; none if the tree is not so deep.
+  LevelRange levels() const;
+  /// So many levels above the partitions are cut into tasks.
+  int cut_levels() const;
+
+  void seal();
+
+  const TaskPlan& plan_;
+  const TaskStage& stage_;
+  std::uint32_t index_;
+  std::filesystem::path work_;
+  const BuildEnvironment& environment_;
+  storage::MemoryPool pool_;
+  StageMeter meter_;
+  Attempt attempt_;
+  storage::SegmentWriter* entries_ = nullptr;  ///< the journal's
+  std::unique_ptr<Workshop> workshop_;
+};
+
+void Task::open_workshop(const BuildPlan& plan, const BuildIdentity& identity,
+                         const AttributeLayout& layout, const StageContext& context) {
+  pool_.set_capacity(plan.memory.pool_bytes);
+  auto entries = std::make_unique<storage::SegmentWriter>(name(stage_.name, index_));
+  entries_ = entries.get();
+  workshop_ = std::make_unique<Workshop>(attempt_.directory(), storage::built_path(work_), identity,
+                                         layout, pool_, std::move(entries), context);
+}
+
+void Task::read() {
+  const config::Config& config = plan_.config;
+  importing::MeshInput input(
+      config.input, config.weld, files(),
+      config.texture.use ? importing::Textures::use : importing::Textures::ignore);
+  const BuildEnvironment environment{files(), meter_, environment_.cancel};
+  const BuildPlan plan =
+      is_read_before_plan(input, config)
+          ? read_and_plan(input, attempt_.directory(), pool_, config, environment)
+          : plan_build(config, input.description());
+  check_disk(plan.disk, config.output, files());
+  const StageContext context{config, plan, files(), meter_, environment_.cancel};
+  meter_.expect(wall_times(config, plan));
+  open_workshop(plan, identity_of(config, input, plan), input.description().attributes, context);
+  read_mesh(input, *workshop_, context);
+  seal();
+}
+
+EarlierBuild Task::find_source() const {
+  EarlierBuild source;
+  const auto segment = storage::Segment::open(files(), work_, name("read", 0));
+  if (!segment)
+    throw missing_task(work_, "read", 0);
+  segment->for_each(
+      [&](const storage::EntrySink::Entry& entry) { return add_entry(entry, source); });
+  if (!source.is_whole)
+    throw damaged_segment(work_, name("read", 0));
+  return source;
+}
+
+void Task::go_on() {
+  const config::Config& config = plan_.config;
+  const EarlierBuild source = find_source();
+  const mesh_io::MeshDescription mesh = description_of(source);
+  const BuildPlan plan =
+      plan_build(config, mesh, 0, plan_textures(source.materials, config.missing_images, files()));
+  if (plan.tree.partition_count() != source.decides_result.value("partitions", std::uint64_t{0})) {
+    throw Error(ErrorCode::input,
+                "pictures of the mesh were changed since the stage read: plan the build again");
+  }
+  const StageContext context{config, plan, files(), meter_, environment_.cancel};
+  open_workshop(plan, {source.decides_result, source.input_times}, mesh.attributes, context);
+  mount_inputs();
+  make(context);
+  seal();
+}
+
+bool Task::needs(const TaskStage& before) const {
+  switch (stage_.kind) {
+    case TaskKind::leaves:
+    case TaskKind::images:
+      return before.kind == TaskKind::read;
+    case TaskKind::level:
+      return before.kind == TaskKind::read ||
+             (stage_.levels_up == 1
+                  ? before.kind == TaskKind::leaves
+                  : before.kind == TaskKind::level && before.levels_up + 1 == stage_.levels_up);
+    default:
+      return true;
+  }
+}
+
+storage::ScratchFile& Task::scratch_of(TaskKind kind) {
+  switch (kind) {
+    case TaskKind::read:
+      return workshop_->mesh_scratch;
+    case TaskKind::images:
+      return workshop_->picture_scratch;
+    default:
+      return workshop_->tile_scratch;
+  }
+}
+
+void Task::mount(const TaskStage& stage, storage::ScratchFile& scratch) {
+  for (std::uint32_t i = 0; i < stage.tasks; ++i) {
+    environment_.cancel.check();
+    const auto segment = storage::Segment::open(files(), work_, name(stage.name, i));
+    if (!segment)
+      throw missing_task(work_, stage.name, i);
+    scratch.mount(segment->take_file());
+    segment->for_each([&](const storage::EntrySink::Entry& entry) {
+      return workshop_->journal.take_sealed(entry);
+    });
+  }
+}
+
+void Task::mount_inputs() {
+  for (const TaskStage& before : stages_of(plan_)) {
+    if (before.name == stage_.name)
+      break;
+    if (needs(before))
+      mount(before, scratch_of(before.kind));
+  }
+}
+
+int Task::cut_levels() const {
+  const Tree& tree = workshop_->forest.tree();
+  int count = 0;
+  while (count < static_cast<int>(plan_.levels) && count < raw(tree.depth()) &&
+         tree.node_count(static_cast<Level>(raw(tree.depth()) - count - 1)) >= plan_.tasks) {
+    ++count;
+  }
+  return count;
+}
+
+LevelRange Task::levels() const {
+  const int depth = raw(workshop_->forest.tree().depth());
+  const int cut = cut_levels();
+  if (stage_.kind == TaskKind::top || stage_.kind == TaskKind::texture_top)
+    return {0, depth - cut, {}};
+  const int up = static_cast<int>(stage_.levels_up);
+  if (up > cut)
+    return {depth, depth, {}};
+  return {depth - up, depth - up + 1, {index_, plan_.tasks}};
+}
+
+void Task::leaves(const StageContext& context) {
+  const Share share{index_, plan_.tasks};
+  const Chunks& chunks = workshop_->chunks;
+  for (std::uint64_t i = share.begin(chunks.count()); i < share.end(chunks.count()); ++i) {
+    environment_.cancel.check();
+    if (!chunks.is_as_stored(static_cast<std::uint32_t>(i)))
+      throw damaged_segment(work_, name("read", 0));
+  }
+  make_leaves(workshop_->chunks, workshop_->forest, workshop_->journal, share, context);
+}
+
+void Task::textures(const LevelRange& levels, const StageContext& context) {
+  if (!context.plan.textures.is_textured() || levels.top == levels.end)
+    return;
+  if (!workshop_->journal.restore_pictures())
+    throw damaged_segment(work_, name("images", 0));
+  const images::MaterialList materials =
+      decode_images(workshop_->pictures, workshop_->journal, context);
+  make_textures(workshop_->forest, {materials, workshop_->pictures}, workshop_->textures,
+                workshop_->journal, levels, context);
+}
+
+void Task::make(const StageContext& context) {
+  Workshop& workshop = *workshop_;
+  switch (stage_.kind) {
+    case TaskKind::leaves:
+      return leaves(context);
+    case TaskKind::level:
+      if (const LevelRange range = levels(); range.top < range.end)
+        simplify(workshop.forest, workshop.journal, workshop.journal.source()->summary.attributes,
+                 range, context);
+      return;
+    case TaskKind::top:
+      return simplify(workshop.forest, workshop.journal,
+                      workshop.journal.source()->summary.attributes, levels(), context);
+    case TaskKind::images:
+      if (context.plan.textures.is_textured())
+        decode_images(workshop.pictures, workshop.journal, context);
+      return;
+    case TaskKind::texture:
+    case TaskKind::texture_top:
+      return textures(levels(), context);
+    case TaskKind::publish: {
+      const std::filesystem::path built = storage::built_path(work_);
+      publish(workshop.forest, workshop.textures, workshop.journal,
+              {built, attempt_.shared_directory()}, {index_, plan_.tasks}, context);
+      files().sync_tree(built);
+      return;
+    }
+    default:
+      return finish_hierarchy(workshop, work_, *entries_, context);
+  }
+}
+
+void Task::seal() {
+  meter_.end();
+  entries_->append(took_entry(meter_.total()));
+  const std::filesystem::path data = scratch_of(stage_.kind).path();
+  attempt_.seal(*entries_, files().exists(data) ? data : std::filesystem::path(),
+                name(stage_.name, index_), environment_.cancel);
+}
+
+bool is_done(const TaskPlan& plan, const TaskStage& stage, std::uint32_t index,
+             const std::filesystem::path& work, storage::FileSystem& files) {
+  try {
+    return storage::Segment::open(files, work, {plan.fingerprint, stage.name, index}) != nullptr;
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::corrupt)
+      throw;
+    return false;  // it is made again
+  }
+}
+
+}  // namespace
+
+TaskReport run_tasks(const TaskRequest& request, const BuildEnvironment& environment) {
+  storage::FileSystem& files = environment.files;
+  TaskPlan plan = read_task_plan(files, request.work, request.program);
+  if (request.threads > 0)
+    plan.config.threads = request.threads;
+  if (request.memory_budget > 0)
+    plan.config.memory_budget = request.memory_budget;
+  const TaskStage stage = find_stage(plan, request.stage);
+  execution::configure_allocator(plan.config.memory_budget);
+  const tbb::global_control thread_limit(tbb::global_control::max_allowed_parallelism,
+                                         thread_count(plan.config));
+  TaskReport report;
+  const bool is_finished =
+      is_done(plan, {"finish", TaskKind::finish}, 0, request.work, files);  // the rest is gone
+  for (std::uint64_t i = request.worker.index; i < stage.tasks; i += request.worker.of) {
+    const auto index = static_cast<std::uint32_t>(i);
+    if (is_finished || is_done(plan, stage, index, request.work, files)) {
+      ++report.found;
+      continue;
+    }
+    Task(plan, stage, index, request, environment).run();
+    execution::release_free_memory();
+    ++report.done;
+  }
+  if (stage.kind == TaskKind::finish && request.worker.index == 0)
+    report.text = name_hierarchy(plan, request.work, files);
+  return report;
+}
+
+}  // namespace meshhier::pipeline

@@ -1,0 +1,220 @@
+#include "pipeline/tasks/task_plan.h"
+
+#include "config/partition_size.h"
+#include "hierarchy/error.h"
+#include "import/mesh_input.h"
+#include "pipeline/import_stage.h"
+#include "pipeline/stage_costs.h"
+#include "storage/format/layout.h"
+#include "storage/format/work_directory.h"
+#include "storage/io/hash.h"
+#include "storage/io/process.h"
+
+#include <algorithm>
+#include <bit>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+namespace meshhier::pipeline {
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+constexpr int kPlanVersion = 1;
+constexpr std::uint64_t kLargestPlanBytes = std::uint64_t{1} << 24;
+
+std::uint64_t checksum_of(const std::string& text) {
+  return storage::checksum(std::as_bytes(std::span(text)));
+}
+
+std::string text_of(const TaskPlan& plan) {
+  return Json{{"meshhier_task_plan", kPlanVersion},
+              {"program", plan.program},
+              {"tasks", plan.tasks},
+              {"levels", plan.levels},
+              {"textured", plan.textured},
+              {"replace", plan.replace},
+              {"config", Json::parse(config::complete_text(plan.config, fs::current_path()))}}
+             .dump(2) +
+         '\n';
+}
+
+TaskPlan parse_plan(const std::string& text, const fs::path& path) {
+  try {
+    const Json json = Json::parse(text);
+    if (json.at("meshhier_task_plan") != kPlanVersion)
+      throw Error(ErrorCode::corrupt, path.string() + " is a plan of another version");
+    TaskPlan plan;
+    plan.program = json.at("program");
+    plan.tasks = json.at("tasks");
+    plan.levels = json.at("levels");
+    plan.textured = json.at("textured");
+    plan.replace = json.at("replace");
+    plan.config = config::parse_config(json.at("config").dump(), {path.string(), {}}, {});
+    plan.fingerprint = checksum_of(text);
+    constexpr std::uint32_t kDeepest = 64;
+    if (plan.tasks == 0 || plan.tasks > kMostTasks || plan.levels > kDeepest)
+      throw Error(ErrorCode::corrupt, path.string() + " is not what `meshhier plan` writes");
+    return plan;
+  } catch (const Json::exception&) {
+    throw Error(ErrorCode::corrupt, path.string() + " is not what `meshhier plan` writes");
+  }
+}
+
+/// Of an input that is to be read before it is known how many vertices it has, no fewer.
+std::uint64_t most_vertices(const importing::MeshInput& input) {
+  constexpr std::uint64_t kBestPacking =
+      1032;  // of deflate; no format has less than a byte a vertex
+  std::uint64_t most = 1;
+  for (const importing::InputFileFacts& file : input.files().all())
+    most += file.identity.bytes * (file.format.is_gzip ? kBestPacking : 1);
+  return most;
+}
+
+/// The deepest tree that may come out has so many levels above the partitions that are cut.
+std::uint32_t most_levels(const config::Config& config, std::uint64_t vertices,
+                          std::uint64_t least_partition, std::uint32_t tasks) {
+  const std::uint64_t partitions = config.partition.count
+                                       ? std::uint64_t{*config.partition.count}
+                                       : (vertices + least_partition - 1) / least_partition;
+  const auto depth = static_cast<std::uint32_t>(std::bit_width(
+      std::max<std::uint64_t>(std::min<std::uint64_t>(partitions, std::uint64_t{1} << 31), 1) - 1));
+  const auto top = static_cast<std::uint32_t>(std::bit_width(tasks - 1U));
+  return depth > top ? depth - top : 0;
+}
+
+/// What a build would refuse before it reads anything, and how deep the tree may be.
+std::uint32_t check_and_count_levels(const config::Config& config, importing::MeshInput& input,
+                                     const TaskPlanRequest& request, storage::FileSystem& files) {
+  check_apart(config, files);
+  storage::check_output(files, {config.output, config.storage.container}, request.replace);
+  check_place(config.output, files);
+  if (!is_read_before_plan(input, config)) {
+    const BuildPlan plan = plan_build(config, input.description());
+    check_disk(plan.disk, config.output, files);
+    return most_levels(config, input.description().places(), config.partition.vertices,
+                       request.tasks);
+  }
+  check_import_disk(import_disk(input, config), config.output, files);
+  // The more texels a vertex has, the smaller are partitions.
+  const std::uint64_t least = input.needs_import() && config.texture.use
+                                  ? config::partition_vertices(config, 1, std::uint64_t{1} << 40)
+                                  : config.partition.vertices;
+  const std::uint64_t vertices =
+      input.needs_import() ? most_vertices(input) : input.description().vertex_count;
+  return most_levels(config, vertices, std::max<std::uint64_t>(least, 1), request.tasks);
+}
+
+/// The tasks' results get their places by being renamed.
+void check_one_file_system(const fs::path& work, const fs::path& output,
+                           storage::FileSystem& files) {
+  const fs::path name = storage::unique_name();
+  const fs::path from = storage::attempts_path(work) / name;
+  const fs::path to = existing_directory(output, files) / ("." + name.string());
+  storage::write_file(files, from, {});
+  try {
+    files.rename(from, to);
+  } catch (const Error& error) {
+    files.remove_all(from);
+    throw Error(ErrorCode::usage,
+                fmt::format("{} must be on the file system of the output {}, where files can be "
+                            "renamed from one to the other: {}",
+                            work.string(), output.string(), error.what()));
+  }
+  files.remove_all(to);
+}
+
+}  // namespace
+
+std::vector<TaskStage> stages_of(const TaskPlan& plan) {
+  std::vector<TaskStage> stages{{"read", TaskKind::read, 1},
+                                {"leaves", TaskKind::leaves, plan.tasks}};
+  for (std::uint32_t k = 1; k <= plan.levels; ++k)
+    stages.push_back({fmt::format("level-{}", k), TaskKind::level, plan.tasks, k});
+  stages.push_back({"top", TaskKind::top, 1});
+  if (plan.textured) {
+    stages.push_back({"images", TaskKind::images, 1});
+    for (std::uint32_t k = 0; k <= plan.levels; ++k)
+      stages.push_back({fmt::format("texture-{}", k), TaskKind::texture, plan.tasks, k});
+    stages.push_back({"texture-top", TaskKind::texture_top, 1});
+  }
+  stages.push_back({"publish", TaskKind::publish, plan.tasks});
+  stages.push_back({"finish", TaskKind::finish, 1});
+  return stages;
+}
+
+TaskStage find_stage(const TaskPlan& plan, std::string_view name) {
+  std::vector<std::string> names;
+  for (TaskStage& stage : stages_of(plan)) {
+    if (stage.name == name)
+      return std::move(stage);
+    names.push_back(stage.name);
+  }
+  throw Error(ErrorCode::usage, fmt::format("the plan has no stage \"{}\"; its stages are: {}",
+                                            name, fmt::join(names, ", ")));
+}
+
+TaskPlan make_task_plan(const config::Config& asked, const TaskPlanRequest& request,
+                        const BuildEnvironment& environment) {
+  storage::FileSystem& files = environment.files;
+  TaskPlan plan;
+  plan.config = config::parse_config(config::complete_text(asked, fs::current_path()), {}, {});
+  plan.config.output = storage::followed(files, plan.config.output);
+  plan.replace = request.replace;
+  plan.tasks = request.tasks;
+  plan.program = request.program;
+  importing::MeshInput input(
+      plan.config.input, plan.config.weld, files,
+      plan.config.texture.use ? importing::Textures::use : importing::Textures::ignore);
+  plan.textured = input.needs_import() && plan.config.texture.use;
+  plan.levels = check_and_count_levels(plan.config, input, request, files);
+  const std::string text = text_of(plan);
+  plan.fingerprint = checksum_of(text);
+
+  files.make_directories(storage::attempts_path(request.work));
+  files.make_directories(storage::segments_path(request.work));
+  files.make_directories(plan.config.output.parent_path());
+  check_one_file_system(request.work, plan.config.output, files);
+  const fs::path path = storage::task_plan_path(request.work);
+  const fs::path attempt = storage::attempts_path(request.work) / storage::unique_name();
+  const auto file = files.create(attempt);
+  file->write_at(0, std::as_bytes(std::span(text)));
+  file->sync();
+  if (!files.rename_new(attempt, path)) {
+    files.remove_all(attempt);
+    const auto there = storage::read_file(files, path, kLargestPlanBytes);
+    if (storage::checksum(there) != plan.fingerprint) {
+      throw Error(ErrorCode::exists,
+                  fmt::format("{} holds another plan: remove it, or plan in another directory",
+                              request.work.string()));
+    }
+  }
+  files.sync_directory(request.work);
+  return plan;
+}
+
+TaskPlan read_task_plan(storage::FileSystem& files, const fs::path& work,
+                        const std::string& program) {
+  const fs::path path = storage::task_plan_path(work);
+  if (!files.exists(path)) {
+    throw Error(ErrorCode::usage,
+                fmt::format("{} has no plan: `meshhier plan MESH --work {} --tasks N` makes one",
+                            work.string(), work.string()));
+  }
+  const auto bytes = storage::read_file(files, path, kLargestPlanBytes);
+  TaskPlan plan = parse_plan({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path);
+  if (plan.program != program) {
+    throw Error(ErrorCode::exists,
+                fmt::format("{} was planned by another program ({}) than this one ({}): every "
+                            "machine must run the same",
+                            work.string(), plan.program, program));
+  }
+  return plan;
+}
+
+}  // namespace meshhier::pipeline
