@@ -41,19 +41,6 @@ struct BuildArguments {
   std::string help_config;  ///< one of kReferences, or empty
 };
 
-/// --set takes all that follows it, so it swallows files that come last: items without "=" are
-/// given back.
-void give_back_files(BuildArguments& arguments) {
-  std::vector<std::string>& settings = arguments.settings;
-  const auto files = std::stable_partition(
-      settings.begin(), settings.end(),
-      [](const std::string& item) { return item.find('=') != std::string::npos; });
-  arguments.named.insert(arguments.named.end(), files, settings.end());
-  settings.erase(files, settings.end());
-  if (arguments.named.empty() && settings.empty())
-    throw CLI::RequiredError("A mesh or a config");
-}
-
 /// Which must not take the place of what the build reads or makes.
 storage::OutputRequest output_request(const std::string& path, const BuildArguments& arguments,
                                       const config::Config& config) {
@@ -243,7 +230,7 @@ void add_build_command(CLI::App& parser, Invocation& invocation) {
       };
       return;
     }
-    give_back_files(*arguments);
+    give_back_files(arguments->settings, arguments->named);
     invocation.run = [arguments, &invocation](Environment& environment) {
       return run_build(*arguments, invocation.progress, environment);
     };

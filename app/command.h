@@ -41,6 +41,8 @@ void add_preview_command(CLI::App& parser, Invocation& invocation);
 void add_progressive_command(CLI::App& parser, Invocation& invocation);
 void add_reconstruct_command(CLI::App& parser, Invocation& invocation);
 void add_serve_command(CLI::App& parser, Invocation& invocation);
+void add_plan_command(CLI::App& parser, Invocation& invocation);
+void add_task_command(CLI::App& parser, Invocation& invocation);
 void add_clean_command(CLI::App& parser, Invocation& invocation);
 /// These two tell what `parser` has when they run.
 void add_completion_command(CLI::App& parser, Invocation& invocation);

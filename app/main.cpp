@@ -40,6 +40,7 @@ constexpr const char* kFooter = R"(Examples:
   meshhier export david.hier --level 0 -o whole.ply  the coarse view of the whole model
   meshhier progressive david.hier -o david.prog      a base and details, for weak clients
   meshhier serve models --open                       show all hierarchies of a folder in the browser
+  meshhier plan david.ply --work w --tasks 16        cut a build into tasks for many machines
   meshhier clean                                     what builds that were stopped left here
 
 "meshhier COMMAND --help" tells more.
@@ -163,6 +164,8 @@ int run(int argc, char** argv) {
   add_progressive_command(parser, invocation);
   add_reconstruct_command(parser, invocation);
   add_serve_command(parser, invocation);
+  add_plan_command(parser, invocation);
+  add_task_command(parser, invocation);
   add_clean_command(parser, invocation);
   add_completion_command(parser, invocation);
   add_manual_command(parser, invocation);

@@ -102,10 +102,19 @@ CLI::Option* add_size_option(CLI::App& command, const std::string& name, const c
       refuse(name.c_str(), execution::kSizeSyntax, text);
     bytes = *parsed;
   };
-  return command
-      .add_option_function<std::string>(
-          name, store, fmt::format("{} [{}]", help, execution::exact_size_text(bytes)))
-      ->type_name("SIZE");
+  const std::string text =
+      bytes > 0 ? fmt::format("{} [{}]", help, execution::exact_size_text(bytes)) : help;
+  return command.add_option_function<std::string>(name, store, text)->type_name("SIZE");
+}
+
+void give_back_files(std::vector<std::string>& settings, std::vector<std::string>& files) {
+  const auto given = std::stable_partition(
+      settings.begin(), settings.end(),
+      [](const std::string& item) { return item.find('=') != std::string::npos; });
+  files.insert(files.end(), given, settings.end());
+  settings.erase(given, settings.end());
+  if (files.empty() && settings.empty())
+    throw CLI::RequiredError("A mesh or a config");
 }
 
 void add_memory_budget_option(CLI::App& command, std::uint64_t& bytes) {

@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -39,7 +40,11 @@ std::ostream& account_stream(const Environment& environment, const std::filesyst
 /// Throws Error(usage) if a mesh would be shown on a terminal.
 void require_no_terminal(const Environment& environment, const std::filesystem::path& output);
 
-/// An option whose value is a size, not 0. `bytes` is its default.
+/// --set takes all that follows it, so it swallows files that come last: items without "=" are
+/// given back. Throws CLI::RequiredError if there is neither.
+void give_back_files(std::vector<std::string>& settings, std::vector<std::string>& files);
+
+/// An option whose value is a size, not 0. `bytes` is its default, 0 if it has none.
 CLI::Option* add_size_option(CLI::App& command, const std::string& name, const char* help,
                              std::uint64_t& bytes);
 /// --memory-budget SIZE

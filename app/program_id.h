@@ -1,0 +1,14 @@
+// Which program this is, down to its bytes.
+#pragma once
+
+#include "storage/io/file.h"
+
+#include <string>
+
+namespace meshhier::app {
+
+/// "meshhier 0.1.0 0123456789abcdef": the version and the checksum of the program's file. Throws
+/// Error(io).
+std::string program_id(storage::FileSystem& files);
+
+}  // namespace meshhier::app

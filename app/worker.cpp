@@ -1,0 +1,100 @@
+#include "app/worker.h"
+
+#include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+
+#include <fmt/format.h>
+
+namespace meshhier::app {
+namespace {
+
+std::optional<std::uint32_t> number(const Variables& variables, const char* name) {
+  const std::optional<std::string> text = variables(name);
+  if (!text || text->empty())
+    return std::nullopt;
+  std::uint32_t value = 0;
+  const char* const end = text->data() + text->size();
+  if (const auto read = std::from_chars(text->data(), end, value);
+      read.ec != std::errc() || read.ptr != end) {
+    throw Error(ErrorCode::usage, fmt::format("the variable {} is \"{}\", and no number: give "
+                                              "--index and --of",
+                                              name, meshhier::plain_text(*text, 60)));
+  }
+  return value;
+}
+
+/// An array whose indices are the whole of a range counts from its first; of one that has only
+/// some, as when a few are run again, each has its own number.
+std::optional<pipeline::Share> slurm_array(const Variables& variables) {
+  const auto id = number(variables, "SLURM_ARRAY_TASK_ID");
+  if (!id)
+    return std::nullopt;
+  const std::uint32_t least = number(variables, "SLURM_ARRAY_TASK_MIN").value_or(0);
+  const std::uint32_t most = number(variables, "SLURM_ARRAY_TASK_MAX").value_or(*id);
+  const std::uint32_t step = std::max(number(variables, "SLURM_ARRAY_TASK_STEP").value_or(1), 1U);
+  const std::uint32_t count = number(variables, "SLURM_ARRAY_TASK_COUNT").value_or(0);
+  if (least <= *id && *id <= most && count == (most - least) / step + 1)
+    return pipeline::Share{(*id - least) / step, count};
+  return pipeline::Share{*id, std::max(most, *id) + 1};
+}
+
+/// Of srun. A batch script has these variables too, but is not one of so many processes.
+std::optional<pipeline::Share> slurm_step(const Variables& variables) {
+  const auto index = number(variables, "SLURM_PROCID");
+  const auto of = number(variables, "SLURM_NTASKS");
+  const bool is_batch_script = variables("SLURM_JOB_ID") && !variables("SLURM_STEP_ID");
+  if (!index || !of || is_batch_script)
+    return std::nullopt;
+  return pipeline::Share{*index, *of};
+}
+
+std::optional<pipeline::Share> indexed(const Variables& variables, const char* index,
+                                       const char* count, std::uint32_t tasks) {
+  const auto value = number(variables, index);
+  if (!value)
+    return std::nullopt;
+  return pipeline::Share{*value, number(variables, count).value_or(std::max(tasks, *value + 1))};
+}
+
+pipeline::Share of_environment(std::uint32_t tasks, const Variables& variables) {
+  const auto array = slurm_array(variables);
+  const auto step = slurm_step(variables);
+  if (array && step)
+    return {array->index * step->of + step->index, array->of * step->of};
+  if (array || step)
+    return array ? *array : *step;
+  if (const auto job = indexed(variables, "JOB_COMPLETION_INDEX", "JOB_COMPLETIONS", tasks))
+    return *job;
+  if (const auto job =
+          indexed(variables, "AWS_BATCH_JOB_ARRAY_INDEX", "AWS_BATCH_JOB_ARRAY_SIZE", tasks))
+    return *job;
+  return {};
+}
+
+}  // namespace
+
+Variables process_environment() {
+  return [](const char* name) -> std::optional<std::string> {
+    const char* const value = std::getenv(name);
+    return value != nullptr ? std::optional<std::string>(value) : std::nullopt;
+  };
+}
+
+pipeline::Share find_worker(const AskedWorker& asked, std::uint32_t tasks,
+                            const Variables& variables) {
+  pipeline::Share worker =
+      asked.index ? pipeline::Share{*asked.index, tasks} : of_environment(tasks, variables);
+  if (asked.of)
+    worker.of = *asked.of;
+  if (worker.index >= worker.of && (asked.index || asked.of)) {
+    throw Error(ErrorCode::usage, fmt::format("--index {} is not below {}: workers count from 0",
+                                              worker.index, worker.of));
+  }
+  return worker;
+}
+
+}  // namespace meshhier::app

@@ -1,0 +1,45 @@
+// How far a build in tasks is, from its sealed segments alone.
+#pragma once
+
+#include "pipeline/tasks/task_plan.h"
+#include "storage/io/file.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace meshhier::pipeline {
+
+struct StageStatus {
+  std::string name;
+  std::uint32_t tasks = 1;
+  std::uint32_t done = 0;
+  std::vector<std::uint32_t> damaged;  ///< tasks whose segment is no use; they are not done
+  std::uint64_t bytes = 0;             ///< of segments
+  double wall_seconds = 0;             ///< of the tasks that are done, one after another
+  double longest_seconds = 0;          ///< of one of them
+  double cpu_seconds = 0;
+  std::uint64_t peak_resident_bytes = 0;  ///< of the largest
+};
+
+struct TaskStatus {
+  std::vector<StageStatus> stages;  ///< in their order
+  bool is_finished = false;         ///< segments of other stages are gone then
+  std::uint32_t attempts = 0;       ///< tasks at work, or killed
+  /// CPU seconds that the tasks which are not done may take, from what the others took; none until
+  /// the input is read.
+  std::optional<double> cpu_seconds_left;
+};
+
+/// Throws Error(io).
+TaskStatus task_status(const TaskPlan& plan, const std::filesystem::path& work,
+                       storage::FileSystem& files);
+
+std::string status_text(const TaskStatus& status, const TaskPlan& plan);
+nlohmann::ordered_json status_json(const TaskStatus& status, const TaskPlan& plan);
+
+}  // namespace meshhier::pipeline
