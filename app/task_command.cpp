@@ -32,6 +32,7 @@ struct TaskArguments {
   std::uint64_t memory_budget = 0;
   bool status = false;
   bool stages = false;
+  bool next = false;
   bool json = false;
 };
 
@@ -50,6 +51,16 @@ int list_stages(const pipeline::TaskPlan& plan, Environment& environment) {
   return 0;
 }
 
+/// The first stage that is not complete, for scripts; nothing if all are.
+int show_next(const TaskArguments& arguments, const pipeline::TaskPlan& plan,
+              Environment& environment) {
+  const pipeline::TaskStatus status =
+      pipeline::task_status(plan, arguments.work, environment.files);
+  if (const pipeline::StageStatus* next = pipeline::next_stage(status))
+    environment.out << fmt::format("{} {}\n", next->name, next->tasks);
+  return 0;
+}
+
 int run_task(const TaskArguments& arguments, execution::ProgressMode mode,
              Environment& environment) {
   const std::string program = program_id(environment.files);
@@ -59,6 +70,8 @@ int run_task(const TaskArguments& arguments, execution::ProgressMode mode,
     return show_status(arguments, plan, environment);
   if (arguments.stages)
     return list_stages(plan, environment);
+  if (arguments.next)
+    return show_next(arguments, plan, environment);
   if (arguments.stage.empty()) {
     throw Error(ErrorCode::usage,
                 "which stage? --stages lists them, --status tells how far "
@@ -137,8 +150,16 @@ void add_task_command(CLI::App& parser, Invocation& invocation) {
   add_size_option(*command, "--memory-budget", "Instead of the config's", arguments->memory_budget);
   CLI::Option* status = command->add_flag(
       "--status", arguments->status, "Tell which tasks are done, what they took and what is left");
-  command->add_flag("--stages", arguments->stages, "List the stages, with their numbers of tasks")
-      ->excludes(status);
+  CLI::Option* stages =
+      command
+          ->add_flag("--stages", arguments->stages, "List the stages, with their numbers of tasks")
+          ->excludes(status);
+  command
+      ->add_flag("--next", arguments->next,
+                 "The first stage that is not complete, with its number of tasks; nothing if all "
+                 "is done")
+      ->excludes(status)
+      ->excludes(stages);
   command->add_flag("--json", arguments->json, "With --status: one JSON object, for programs")
       ->needs(status);
   add_progress_option(*command, invocation.progress);

@@ -52,12 +52,14 @@ std::optional<pipeline::Share> slurm_step(const Variables& variables) {
   return pipeline::Share{*index, *of};
 }
 
+/// `count`: null if the scheduler does not tell how many there are.
 std::optional<pipeline::Share> indexed(const Variables& variables, const char* index,
                                        const char* count, std::uint32_t tasks) {
   const auto value = number(variables, index);
   if (!value)
     return std::nullopt;
-  return pipeline::Share{*value, number(variables, count).value_or(std::max(tasks, *value + 1))};
+  const auto told = count != nullptr ? number(variables, count) : std::nullopt;
+  return pipeline::Share{*value, told.value_or(std::max(tasks, *value + 1))};
 }
 
 pipeline::Share of_environment(std::uint32_t tasks, const Variables& variables) {
@@ -67,7 +69,7 @@ pipeline::Share of_environment(std::uint32_t tasks, const Variables& variables) 
     return {array->index * step->of + step->index, array->of * step->of};
   if (array || step)
     return array ? *array : *step;
-  if (const auto job = indexed(variables, "JOB_COMPLETION_INDEX", "JOB_COMPLETIONS", tasks))
+  if (const auto job = indexed(variables, "JOB_COMPLETION_INDEX", nullptr, tasks))
     return *job;
   if (const auto job =
           indexed(variables, "AWS_BATCH_JOB_ARRAY_INDEX", "AWS_BATCH_JOB_ARRAY_SIZE", tasks))

@@ -1,6 +1,5 @@
 #include "images/image_store.h"
 
-#include "hierarchy/error.h"
 #include "images/block_cache.h"
 #include "images/block_grid.h"
 #include "images/pyramid_writer.h"
@@ -109,11 +108,8 @@ void ImageStore::Impl::check(std::uint32_t image, std::uint32_t strip, std::size
   }
   std::vector<std::byte> read(bytes);
   scratch.read(stored.offset, read);
-  if (storage::checksum(read) != stored.checksum) {
-    throw Error(ErrorCode::io, scratch.path_at(stored.offset).string() +
-                                   " is not what was written to it: the disk, or another program, "
-                                   "changed it");
-  }
+  if (storage::checksum(read) != stored.checksum)
+    throw scratch.changed(stored.offset);
   const std::lock_guard lock(mutex);
   checked.insert({image, strip});
 }

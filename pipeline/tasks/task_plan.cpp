@@ -176,10 +176,17 @@ TaskPlan make_task_plan(const config::Config& asked, const TaskPlanRequest& requ
   const std::string text = text_of(plan);
   plan.fingerprint = checksum_of(text);
 
+  const bool is_new = !files.exists(request.work);
   files.make_directories(storage::attempts_path(request.work));
   files.make_directories(storage::segments_path(request.work));
   files.make_directories(plan.config.output.parent_path());
-  check_one_file_system(request.work, plan.config.output, files);
+  try {
+    check_one_file_system(request.work, plan.config.output, files);
+  } catch (const Error&) {
+    if (is_new)
+      files.remove_all(request.work);
+    throw;
+  }
   const fs::path path = storage::task_plan_path(request.work);
   const fs::path attempt = storage::attempts_path(request.work) / storage::unique_name();
   const auto file = files.create(attempt);

@@ -134,13 +134,6 @@ std::uint32_t count_attempts(const std::filesystem::path& work, storage::FileSys
   return files.exists(attempts) ? static_cast<std::uint32_t>(files.children(attempts).size()) : 0;
 }
 
-/// The first that is not complete; null if all are.
-const StageStatus* next_stage(const TaskStatus& status) {
-  const auto next = std::ranges::find_if(
-      status.stages, [](const StageStatus& stage) { return stage.done < stage.tasks; });
-  return next == status.stages.end() ? nullptr : &*next;
-}
-
 }  // namespace
 
 TaskStatus task_status(const TaskPlan& plan, const std::filesystem::path& work,
@@ -154,6 +147,12 @@ TaskStatus task_status(const TaskPlan& plan, const std::filesystem::path& work,
   if (!status.is_finished)
     status.cpu_seconds_left = seconds_left(plan, status.stages, source, files);
   return status;
+}
+
+const StageStatus* next_stage(const TaskStatus& status) {
+  const auto next = std::ranges::find_if(
+      status.stages, [](const StageStatus& stage) { return stage.done < stage.tasks; });
+  return status.is_finished || next == status.stages.end() ? nullptr : &*next;
 }
 
 std::string status_text(const TaskStatus& status, const TaskPlan& plan) {
@@ -198,7 +197,7 @@ Json status_json(const TaskStatus& status, const TaskPlan& plan) {
                       {"cpu_seconds", stage.cpu_seconds},
                       {"peak_resident_bytes", stage.peak_resident_bytes}});
   }
-  const StageStatus* next = status.is_finished ? nullptr : next_stage(status);
+  const StageStatus* const next = next_stage(status);
   return {{"output", plan.config.output.string()},
           {"finished", status.is_finished},
           {"next", next != nullptr ? Json(next->name) : Json()},

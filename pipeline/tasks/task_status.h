@@ -39,6 +39,9 @@ struct TaskStatus {
 TaskStatus task_status(const TaskPlan& plan, const std::filesystem::path& work,
                        storage::FileSystem& files);
 
+/// The first stage that is not complete; null if all is done.
+const StageStatus* next_stage(const TaskStatus& status);
+
 std::string status_text(const TaskStatus& status, const TaskPlan& plan);
 nlohmann::ordered_json status_json(const TaskStatus& status, const TaskPlan& plan);
 

@@ -72,9 +72,7 @@ BlobView BlobStore::view(std::size_t index) const {
     return BlobView({blob.memory.get(), size});
   auto bytes = std::make_unique_for_overwrite<std::byte[]>(size);
   if (!is_as_put(blob.stored, {bytes.get(), size}))
-    throw Error(ErrorCode::io, scratch_->path_at(blob.stored.offset).string() +
-                                   " is not what was written to it: the "
-                                   "disk, or another program, changed it");
+    throw scratch_->changed(blob.stored.offset);
   return BlobView(std::move(bytes), size);
 }
 

@@ -53,8 +53,13 @@ void ScratchFile::mount(std::unique_ptr<File> file) {
   mounted_.push_back(std::move(file));
 }
 
-const std::filesystem::path& ScratchFile::path_at(std::uint64_t offset) const {
-  return is_mounted(offset) ? file_at(offset).path() : path_;
+Error ScratchFile::changed(std::uint64_t offset) const {
+  const std::filesystem::path& path = is_mounted(offset) ? file_at(offset).path() : path_;
+  const char* const advice = is_mounted(offset) ? "; remove it, and run its task again" : "";
+  return {ErrorCode::io, path.string() +
+                             " is not what was written to it: the disk, or another program, "
+                             "changed it" +
+                             advice};
 }
 
 bool ScratchFile::claim(std::uint64_t offset, std::uint64_t bytes) {

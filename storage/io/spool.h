@@ -5,6 +5,7 @@
 // never depends on it.
 #pragma once
 
+#include "hierarchy/error.h"
 #include "storage/io/file.h"
 #include "storage/io/scratch_use.h"
 
@@ -85,8 +86,8 @@ class ScratchFile {
   }
   /// Whether it lies in a file that was mounted.
   static bool is_mounted(std::uint64_t offset) { return offset >> kPlaceBits > 0; }
-  /// Of the file in which `offset` lies.
-  const std::filesystem::path& path_at(std::uint64_t offset) const;
+  /// Error(io): what lies at `offset` is not what was written there.
+  Error changed(std::uint64_t offset) const;
   /// Forces what was appended to the disk; `check` as for File::sync(). While others append, what
   /// was there before.
   void sync(const std::function<void()>& check);

@@ -896,5 +896,36 @@ TEST(NearestWord, TakesTheFirstOfTheNearest) {
   EXPECT_EQ(nearest_word("x", {}), std::nullopt);
 }
 
+TEST(Config, CompleteTextIsTheSameConfigAnywhere) {
+  const auto again = [](const Config& config) {
+    return parse_config(complete_text(config, "/elsewhere"), {"plan", "/nowhere"}, {});
+  };
+  for (const char* keys :
+       {"", R"("partition": {"count": 9}, "simplify": {"vertices": [100, 200]}, "threads": 3)",
+        R"("partition": {"vertices": 77}, "memory_budget": "300MiB", "weld": true)",
+        R"("texture": {"use": false}, "licence": "CC0", "up": "z", "preview": false,
+           "placement": {"crs": "EPSG:32632", "offset": [1, 2, 3]})",
+        R"("placement": {"metadata": "m.xml"}, "storage": {"container": "3tz"})",
+        R"("placement": {"longitude": 10, "latitude": 50, "height": 3, "anchor": [1, 2, 3]},
+           "storage": {"compression": "zlib", "positions": {"bits": 12}, "normals": "none"})"}) {
+    const Config config = parse(with(keys));
+    EXPECT_EQ(again(config), config) << keys;
+  }
+  Config several = parse(R"({"input": ["a.ply", "b.ply"], "output": "a.hier"})");
+  EXPECT_EQ(again(several), several);
+  several.input[0] = "a.ply";
+  several.input[1] = "/b.ply";
+  several.output = "a.hier";
+  EXPECT_EQ(again(several).input[0], "/elsewhere/a.ply");
+  EXPECT_EQ(again(several).input[1], "/b.ply");
+  EXPECT_EQ(again(several).output, "/elsewhere/a.hier");
+}
+
+TEST(Config, WhatIsNoTextCannotBeWrittenDown) {
+  Config config = parse(with(""));
+  config.input = std::filesystem::path("/data/\xff.ply");
+  EXPECT_THROW(complete_text(config, "/"), Error);
+}
+
 }  // namespace
 }  // namespace meshhier::config

@@ -1,0 +1,507 @@
+// A build in tasks makes the bytes of one on one machine: whatever it is cut into, in whatever
+// order tasks run, however often, and whatever happens to them.
+#include "bench/generator.h"
+#include "hierarchy/error.h"
+#include "pipeline/build.h"
+#include "pipeline/tasks/run_task.h"
+#include "pipeline/tasks/task_plan.h"
+#include "pipeline/tasks/task_status.h"
+#include "storage/format/layout.h"
+#include "storage/format/segment.h"
+#include "storage/io/hash.h"
+#include "tests/support/faulty_file_system.h"
+#include "tests/support/meshes.h"
+#include "tests/support/quick_config.h"
+#include "tests/support/sample_hierarchy.h"
+#include "tests/support/textured_torus.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <optional>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace meshhier::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using tests::Call;
+using tests::FaultyFileSystem;
+
+constexpr const char* kProgram = "this program";
+
+/// Hashes of files by their paths below the output.
+using Snapshot = std::map<std::string, std::uint64_t>;
+
+class TasksTest : public testing::Test {
+ protected:
+  TasksTest() {
+    config_.output = directory_.path() / "mesh.hier";
+    config_.partition.vertices = 90;
+    config_.simplify.vertices = 70;
+    config_.threads = 2;
+  }
+
+  fs::path work() const { return directory_.path() / "work"; }
+  fs::path file(const std::string& name) const { return directory_.path() / name; }
+
+  void use_sphere() {
+    tests::write_ply(tests::sphere(6000, 0.01F), file("mesh.ply"));
+    config_.input = file("mesh.ply");
+  }
+  void use_attributes() {
+    bench::SurfaceOptions options;
+    options.triangles = 5000;
+    options.noise = 0.5;
+    options.normals = options.colours = true;
+    bench::write_ply(files_, {file("mesh.ply")}, *bench::make_surface(options));
+    config_.input = file("mesh.ply");
+  }
+  void use_texture() {
+    config_.input = tests::write_obj(tests::make_textured_torus(6, 3), directory_.path());
+    config_.partition.vertices = 300;
+    config_.simplify.vertices = 300;
+    config_.texture.texels = 128;
+    config_.texture.format.format = ImageFormat::png;
+  }
+  void use_archive() {
+    use_sphere();
+    config_.output = file("mesh.3tz");
+    config_.storage.container = config::Container::archive;
+  }
+
+  Snapshot output() {
+    Snapshot all;
+    std::vector<fs::path> files{config_.output};
+    if (fs::is_directory(config_.output))
+      files = files_.list(config_.output);
+    for (const fs::path& path : files) {
+      all[fs::relative(path, config_.output).string()] =
+          storage::checksum(storage::read_file(files_, path, 1U << 30));
+    }
+    return all;
+  }
+
+  /// Of a build in one piece, which is gone then.
+  Snapshot expected() {
+    execution::NoProgress progress;
+    build_hierarchy(config_, {}, {files_, progress, cancel_});
+    const Snapshot result = output();
+    fs::remove_all(config_.output);
+    return result;
+  }
+
+  TaskPlan plan(std::uint32_t tasks, bool replace = false) {
+    execution::NoProgress progress;
+    return make_task_plan(config_, {work(), tasks, replace, kProgram}, {files_, progress, cancel_});
+  }
+
+  TaskReport run(const std::string& stage, Share worker = {}) {
+    execution::NoProgress progress;
+    return run_tasks({work(), stage, worker, scratch_, 0, 0, kProgram},
+                     {files_, progress, cancel_});
+  }
+
+  /// All stages, the tasks of each in an order that depends on `seed`.
+  void run_all(const TaskPlan& plan, std::uint32_t seed) {
+    std::mt19937 chance(seed);
+    for (const TaskStage& stage : stages_of(plan)) {
+      std::vector<std::uint32_t> order(stage.tasks);
+      for (std::uint32_t i = 0; i < stage.tasks; ++i)
+        order[i] = i;
+      std::shuffle(order.begin(), order.end(), chance);
+      for (const std::uint32_t task : order)
+        run(stage.name, {task, stage.tasks});
+    }
+  }
+
+  void run_until(const TaskPlan& plan, const std::string& end) {
+    for (const TaskStage& stage : stages_of(plan)) {
+      if (stage.name == end)
+        return;
+      run(stage.name);
+    }
+  }
+
+  /// The code that running a stage fails with; none if it succeeds.
+  std::optional<ErrorCode> failure(const std::string& stage) {
+    try {
+      run(stage);
+      return std::nullopt;
+    } catch (const Error& error) {
+      message_ = error.what();
+      return error.code();
+    }
+  }
+
+  fs::path segment(const TaskPlan& plan, const std::string& stage, std::uint32_t index) const {
+    return storage::segment_path(work(), {plan.fingerprint, stage, index});
+  }
+
+  void flip(const fs::path& path, std::int64_t from_end) {
+    const auto there = files_.reopen(path);
+    std::array<std::byte, 1> byte{};
+    const std::uint64_t at = there->size() - static_cast<std::uint64_t>(from_end);
+    there->read_exact(at, byte);
+    byte[0] ^= std::byte{1};
+    there->write_at(at, byte);
+  }
+
+  void expect_any_cut_makes_the_same() {
+    const Snapshot whole = expected();
+    std::uint32_t seed = 0;
+    for (const std::uint32_t tasks : {1U, 2U, 8U}) {
+      run_all(plan(tasks), ++seed);
+      EXPECT_EQ(output(), whole) << tasks;
+      fs::remove_all(config_.output);
+      fs::remove_all(work());
+    }
+  }
+
+  tests::TemporaryDirectory directory_{tests::TemporaryDirectory::Place::memory};
+  FaultyFileSystem files_;
+  execution::CancelToken cancel_;
+  config::Config config_;
+  fs::path scratch_;
+  std::string message_;
+};
+
+TEST_F(TasksTest, AnyCutMakesTheSameBytes) {
+  use_sphere();
+  expect_any_cut_makes_the_same();
+}
+
+TEST_F(TasksTest, AnyCutMakesTheSameBytesWithAttributes) {
+  use_attributes();
+  config_.storage.compression = config::Compression::meshopt_zlib;
+  config_.storage.position_bits = 14;
+  expect_any_cut_makes_the_same();
+}
+
+TEST_F(TasksTest, AnyCutMakesTheSameBytesWithTextures) {
+  use_texture();
+  expect_any_cut_makes_the_same();
+}
+
+TEST_F(TasksTest, AnyCutMakesTheSameArchive) {
+  use_archive();
+  expect_any_cut_makes_the_same();
+}
+
+TEST_F(TasksTest, OnePartitionIsEnough) {
+  use_sphere();
+  config_.partition.vertices = 8192;
+  expect_any_cut_makes_the_same();
+}
+
+TEST_F(TasksTest, ScratchOfTheMachineHoldsWhatIsNotSealed) {
+  use_sphere();
+  const Snapshot whole = expected();
+  scratch_ = file("local");
+  const TaskPlan planned = plan(3);
+  run_all(planned, 1);
+  EXPECT_EQ(output(), whole);
+  EXPECT_TRUE(fs::is_empty(scratch_));
+}
+
+TEST_F(TasksTest, WorkersShareTheTasksOfAStage) {
+  use_sphere();
+  plan(5);
+  run("read", {1, 2});  // has only one task, which is the other worker's
+  EXPECT_EQ(run("read", {0, 2}).done, 1);
+  EXPECT_EQ(run("leaves", {1, 2}).done, 2);
+  EXPECT_EQ(run("leaves", {0, 2}).done, 3);
+  const TaskReport again = run("leaves");
+  EXPECT_EQ(again.done, 0);
+  EXPECT_EQ(again.found, 5);
+}
+
+TEST_F(TasksTest, ATaskThatIsMissingIsNamed) {
+  use_sphere();
+  const TaskPlan planned = plan(3);
+  EXPECT_EQ(failure("leaves"), ErrorCode::io);
+  EXPECT_THAT(message_, HasSubstr("task 0 of stage read is not done"));
+  run_until(planned, "level-1");
+  fs::remove(segment(planned, "leaves", 1));
+  EXPECT_EQ(failure("level-1"), ErrorCode::io);
+  EXPECT_THAT(message_, HasSubstr("task 1 of stage leaves is not done"));
+  EXPECT_THAT(message_, HasSubstr("leaves --index 1"));
+}
+
+TEST_F(TasksTest, ATornSegmentIsMadeAgain) {
+  use_sphere();
+  const Snapshot whole = expected();
+  const TaskPlan planned = plan(3);
+  run_until(planned, "level-1");
+  const fs::path torn = segment(planned, "leaves", 1);
+  const std::uintmax_t size = fs::file_size(torn);
+  for (const std::uintmax_t bytes : {std::uintmax_t{0}, std::uintmax_t{20}, size / 2, size - 1}) {
+    fs::resize_file(torn, bytes);
+    EXPECT_EQ(failure("level-1"), ErrorCode::corrupt) << bytes;
+    EXPECT_THAT(message_, HasSubstr("run its task again"));
+    EXPECT_EQ(run("leaves").done, 1) << bytes;
+  }
+  run_all(planned, 1);
+  EXPECT_EQ(output(), whole);
+}
+
+/// Whatever byte of a segment is another: the task that reads it is refused, or did not need it.
+TEST_F(TasksTest, NoFlippedByteReachesTheResult) {
+  use_sphere();
+  const Snapshot whole = expected();
+  const TaskPlan planned = plan(2);
+  run_until(planned, "level-1");
+  const fs::path flipped = segment(planned, "leaves", 1);
+  const auto size = static_cast<std::int64_t>(fs::file_size(flipped));
+  int refused = 0;
+  for (std::int64_t from_end = 1; from_end <= size; from_end += size / 40) {
+    flip(flipped, from_end);
+    const auto code = failure("level-1");
+    EXPECT_TRUE(!code || code == ErrorCode::io || code == ErrorCode::corrupt) << message_;
+    refused += code ? 1 : 0;
+    if (code) {
+      EXPECT_THAT(message_, HasSubstr("leaves-00001"));
+    }
+    flip(flipped, from_end);
+    if (!code) {
+      run_all(planned, 1);
+      EXPECT_EQ(output(), whole) << from_end;
+      return;
+    }
+    for (std::uint32_t i = 0; i < 2; ++i)
+      fs::remove(segment(planned, "level-1", i));
+  }
+  EXPECT_GT(refused, 35);
+  run_all(planned, 1);
+  EXPECT_EQ(output(), whole);
+}
+
+TEST_F(TasksTest, ChunksThatAreDamagedAreNotRead) {
+  use_sphere();
+  const TaskPlan planned = plan(2);
+  run("read");
+  const fs::path read = segment(planned, "read", 0);
+  flip(read, static_cast<std::int64_t>(fs::file_size(read)) / 2 + 1000);
+  EXPECT_EQ(failure("leaves"), ErrorCode::corrupt);
+  EXPECT_THAT(message_, HasSubstr("read-00000"));
+}
+
+TEST_F(TasksTest, PicturesThatAreDamagedAreNotShown) {
+  use_texture();
+  const TaskPlan planned = plan(1);
+  run_until(planned, "texture-0");
+  flip(segment(planned, "images", 0),
+       static_cast<std::int64_t>(fs::file_size(segment(planned, "images", 0))));
+  EXPECT_EQ(failure("texture-0"), ErrorCode::io);
+  EXPECT_THAT(message_, HasSubstr("images-00000"));
+}
+
+TEST_F(TasksTest, ATaskMayRunTwiceAtOnce) {
+  use_sphere();
+  const Snapshot whole = expected();
+  const TaskPlan planned = plan(3);
+  for (const TaskStage& stage : stages_of(planned)) {
+    std::vector<std::thread> workers;
+    for (int i = 0; i < 3; ++i) {
+      workers.emplace_back([&] {
+        try {
+          run(stage.name);
+        } catch (const Error& error) {  // one finishes while the other wants to
+          EXPECT_EQ(stage.name, "finish") << error.what();
+          EXPECT_EQ(error.code(), ErrorCode::io) << error.what();
+        }
+      });
+    }
+    for (std::thread& worker : workers)
+      worker.join();
+  }
+  run("finish");
+  EXPECT_EQ(output(), whole);
+}
+
+TEST_F(TasksTest, WhatIsFinishedStaysSo) {
+  use_sphere();
+  const TaskPlan planned = plan(2);
+  run_all(planned, 1);
+  const Snapshot whole = output();
+  EXPECT_EQ(run("leaves").found, 2);
+  EXPECT_THAT(run("finish").text, HasSubstr("made "));
+  EXPECT_EQ(output(), whole);
+  EXPECT_THAT(status_text(task_status(planned, work(), files_), planned), HasSubstr("finished"));
+  fs::remove_all(config_.output);
+  EXPECT_EQ(failure("finish"), ErrorCode::io);  // what there was is gone
+  EXPECT_THAT(message_, HasSubstr("plan the build again"));
+}
+
+TEST_F(TasksTest, OnlyTheProgramThatPlannedGoesOn) {
+  use_sphere();
+  plan(2);
+  execution::NoProgress progress;
+  try {
+    run_tasks({work(), "read", {}, {}, 0, 0, "another program"}, {files_, progress, cancel_});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::exists);
+    EXPECT_THAT(error.what(), HasSubstr("another program"));
+  }
+}
+
+TEST_F(TasksTest, SegmentsOfAnotherPlanAreRefused) {
+  use_sphere();
+  const TaskPlan first = plan(2);
+  run_until(first, "level-1");
+  fs::rename(work(), file("first"));
+  config_.partition.vertices = 100;
+  const TaskPlan second = plan(2);
+  ASSERT_NE(second.fingerprint, first.fingerprint);
+  run("read");
+  for (const char* name : {"leaves-00000", "leaves-00001"})
+    fs::copy_file(file("first") / "segments" / name, work() / "segments" / name);
+  EXPECT_EQ(failure("level-1"), ErrorCode::corrupt);
+  EXPECT_THAT(message_, HasSubstr("belongs to another plan"));
+  EXPECT_EQ(run("leaves").done, 2) << "they are made again";
+  EXPECT_EQ(failure("level-1"), std::nullopt) << message_;
+}
+
+TEST_F(TasksTest, APlanIsMadeOnce) {
+  use_sphere();
+  const TaskPlan first = plan(2);
+  EXPECT_EQ(plan(2).fingerprint, first.fingerprint);
+  EXPECT_THROW(plan(3), Error);
+  EXPECT_EQ(read_task_plan(files_, work(), kProgram).config, first.config);
+  EXPECT_EQ(read_task_plan(files_, work(), kProgram).fingerprint, first.fingerprint);
+}
+
+TEST_F(TasksTest, AnOutputIsReplacedOnlyIfThePlanSaysSo) {
+  use_sphere();
+  execution::NoProgress progress;
+  config_.partition.vertices = 400;
+  build_hierarchy(config_, {}, {files_, progress, cancel_});
+  const Snapshot before = output();
+  config_.partition.vertices = 90;
+  EXPECT_THROW(plan(2), Error);
+  const TaskPlan planned = plan(2, true);
+  run_until(planned, "finish");
+  EXPECT_EQ(output(), before);
+  run("finish");
+  const Snapshot after = output();
+  EXPECT_NE(after, before);
+  run("finish");
+  EXPECT_EQ(output(), after);
+}
+
+TEST_F(TasksTest, AnOutputThatAppearsStays) {
+  use_sphere();
+  const TaskPlan planned = plan(2);
+  run_until(planned, "finish");
+  fs::create_directories(config_.output);
+  EXPECT_EQ(failure("finish"), ErrorCode::exists);
+  fs::remove_all(config_.output);
+  EXPECT_EQ(failure("finish"), std::nullopt) << message_;
+}
+
+/// Any call of any task fails, once; then all tasks run again.
+TEST_F(TasksTest, AnyCallMayFail) {
+  tests::write_ply(tests::sphere(500, 0.01F), file("mesh.ply"));
+  config_.input = file("mesh.ply");
+  config_.preview = false;
+  config_.threads = 1;
+  const Snapshot whole = expected();
+  for (std::uint64_t n = 1;; n += n < 60 ? 1 : 29) {
+    const TaskPlan planned = plan(2);
+    files_.fail(Call::any, n);
+    const std::uint64_t before = files_.calls(Call::any);
+    for (const TaskStage& stage : stages_of(planned)) {
+      const auto code = failure(stage.name);
+      if (code) {
+        EXPECT_EQ(code, ErrorCode::io) << message_;
+        EXPECT_EQ(failure(stage.name), std::nullopt) << n << ' ' << stage.name << ' ' << message_;
+      }
+    }
+    files_.fail(Call::any, 1, 0);
+    EXPECT_EQ(output(), whole) << n;
+    fs::remove_all(config_.output);
+    fs::remove_all(work());
+    if (files_.calls(Call::any) - before < n) {
+      EXPECT_GT(n, 500);  // so many calls there are
+      break;
+    }
+    ASSERT_FALSE(HasFailure()) << n;
+  }
+}
+
+/// As a power cut, or kill -9: nothing after it happens, not even what tidies up.
+TEST_F(TasksTest, ATaskMayBeKilledAtAnyMoment) {
+  tests::write_ply(tests::sphere(500, 0.01F), file("mesh.ply"));
+  config_.input = file("mesh.ply");
+  config_.preview = false;
+  config_.threads = 1;
+  const Snapshot whole = expected();
+  for (std::uint64_t n = 5;; n += 37) {
+    const TaskPlan planned = plan(2);
+    files_.fail(Call::any, n, std::numeric_limits<std::uint32_t>::max());
+    const std::uint64_t before = files_.calls(Call::any);
+    for (const TaskStage& stage : stages_of(planned)) {
+      if (failure(stage.name)) {
+        files_.fail(Call::any, 1, 0);
+        EXPECT_EQ(failure(stage.name), std::nullopt) << n << ' ' << stage.name << ' ' << message_;
+      }
+    }
+    files_.fail(Call::any, 1, 0);
+    EXPECT_EQ(output(), whole) << n;
+    fs::remove_all(config_.output);
+    fs::remove_all(work());
+    if (files_.calls(Call::any) - before < n)
+      break;
+    ASSERT_FALSE(HasFailure()) << n;
+  }
+}
+
+TEST_F(TasksTest, StatusComesFromTheSegmentsAlone) {
+  use_sphere();
+  const TaskPlan planned = plan(3);
+  TaskStatus status = task_status(planned, work(), files_);
+  EXPECT_EQ(status.stages.front().done, 0);
+  EXPECT_FALSE(status.cpu_seconds_left);
+  EXPECT_EQ(status_json(status, planned).at("next"), "read");
+  run("read");
+  run("leaves", {1, 3});
+  fs::copy_file(segment(planned, "leaves", 1), segment(planned, "leaves", 2));  // of another name
+  status = task_status(planned, work(), files_);
+  EXPECT_EQ(status.stages[0].done, 1);
+  EXPECT_EQ(status.stages[1].done, 1);
+  EXPECT_THAT(status.stages[1].damaged, testing::ElementsAre(2));
+  EXPECT_EQ(status.stages[1].bytes, fs::file_size(segment(planned, "leaves", 1)));
+  EXPECT_GT(status.stages[1].peak_resident_bytes, 0);
+  EXPECT_TRUE(status.cpu_seconds_left);
+  EXPECT_EQ(status_json(status, planned).at("next"), "leaves");
+  EXPECT_THAT(status_text(status, planned), HasSubstr("segment of task 2 is damaged"));
+}
+
+TEST_F(TasksTest, AnotherFileSystemIsRefused) {
+  use_sphere();
+  const fs::path elsewhere = fs::path(MESHHIER_SOURCE_DIR) / "build" / "tasks_test_elsewhere";
+  execution::NoProgress progress;
+  if (files_.free_bytes(directory_.path()) == files_.free_bytes(fs::path(MESHHIER_SOURCE_DIR)))
+    GTEST_SKIP() << "only one file system";
+  try {
+    make_task_plan(config_, {elsewhere, 2, false, kProgram}, {files_, progress, cancel_});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::usage);
+    EXPECT_THAT(error.what(), HasSubstr("must be on the file system of the output"));
+  }
+  EXPECT_FALSE(fs::exists(elsewhere));
+}
+
+}  // namespace
+}  // namespace meshhier::pipeline
