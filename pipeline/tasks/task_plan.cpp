@@ -88,26 +88,54 @@ std::uint32_t most_levels(const config::Config& config, std::uint64_t vertices,
   return depth > top ? depth - top : 0;
 }
 
-/// What a build would refuse before it reads anything, and how deep the tree may be.
-std::uint32_t check_and_count_levels(const config::Config& config, importing::MeshInput& input,
-                                     const TaskPlanRequest& request, storage::FileSystem& files) {
-  check_apart(config, files);
-  storage::check_output(files, {config.output, config.storage.container}, request.replace);
-  check_place(config.output, files);
-  if (!is_read_before_plan(input, config)) {
-    const BuildPlan plan = plan_build(config, input.description());
-    check_disk(plan.disk, config.output, files);
-    return most_levels(config, input.description().places(), config.partition.vertices,
-                       request.tasks);
-  }
-  check_import_disk(import_disk(input, config), config.output, files);
+/// How deep the tree may be.
+std::uint32_t count_levels(const config::Config& config, const importing::MeshInput& input,
+                           std::uint32_t tasks) {
+  if (!is_read_before_plan(input, config))
+    return most_levels(config, input.description().places(), config.partition.vertices, tasks);
   // The more texels a vertex has, the smaller are partitions.
   const std::uint64_t least = input.needs_import() && config.texture.use
                                   ? config::partition_vertices(config, 1, std::uint64_t{1} << 40)
                                   : config.partition.vertices;
   const std::uint64_t vertices =
       input.needs_import() ? most_vertices(input) : input.description().vertex_count;
-  return most_levels(config, vertices, std::max<std::uint64_t>(least, 1), request.tasks);
+  return most_levels(config, vertices, std::max<std::uint64_t>(least, 1), tasks);
+}
+
+/// Throws what a build would refuse before it reads more than a header.
+void check_build(const config::Config& config, bool replace, const importing::MeshInput& input,
+                 storage::FileSystem& files) {
+  check_apart(config, files);
+  storage::check_output(files, {config.output, config.storage.container}, replace);
+  check_place(config.output, files);
+  if (is_read_before_plan(input, config))
+    check_import_disk(import_disk(input, config), config.output, files);
+  else
+    check_disk(plan_build(config, input.description()).disk, config.output, files);
+}
+
+TaskPlan load_plan(const fs::path& work, const std::string& program, storage::FileSystem& files) {
+  const fs::path path = storage::task_plan_path(work);
+  const auto bytes = storage::read_file(files, path, kLargestPlanBytes);
+  TaskPlan plan = parse_plan({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path);
+  if (plan.program != program) {
+    throw Error(ErrorCode::exists,
+                fmt::format("{} was planned by another program ({}) than this one ({}): every "
+                            "machine must run the same; to begin anew remove it",
+                            work.string(), plan.program, program));
+  }
+  return plan;
+}
+
+/// Whether that plan is there already. Throws Error(exists) if another is.
+bool is_there(const TaskPlan& plan, const fs::path& work, storage::FileSystem& files) {
+  if (!files.exists(storage::task_plan_path(work)))
+    return false;
+  if (load_plan(work, plan.program, files).fingerprint == plan.fingerprint)
+    return true;
+  throw Error(
+      ErrorCode::exists,
+      fmt::format("{} holds another plan: remove it, or plan in another directory", work.string()));
 }
 
 /// The tasks' results get their places by being renamed.
@@ -127,6 +155,20 @@ void check_one_file_system(const fs::path& work, const fs::path& output,
                             work.string(), output.string(), error.what()));
   }
   files.remove_all(to);
+}
+
+void make_directories(const fs::path& work, const fs::path& output, storage::FileSystem& files) {
+  const bool is_new = !files.exists(work);
+  files.make_directories(storage::attempts_path(work));
+  files.make_directories(storage::segments_path(work));
+  files.make_directories(output.parent_path());
+  try {
+    check_one_file_system(work, output, files);
+  } catch (const Error&) {
+    if (is_new)
+      files.remove_all(work);
+    throw;
+  }
 }
 
 }  // namespace
@@ -172,34 +214,20 @@ TaskPlan make_task_plan(const config::Config& asked, const TaskPlanRequest& requ
       plan.config.input, plan.config.weld, files,
       plan.config.texture.use ? importing::Textures::use : importing::Textures::ignore);
   plan.textured = input.needs_import() && plan.config.texture.use;
-  plan.levels = check_and_count_levels(plan.config, input, request, files);
+  plan.levels = count_levels(plan.config, input, request.tasks);
   const std::string text = text_of(plan);
   plan.fingerprint = checksum_of(text);
-
-  const bool is_new = !files.exists(request.work);
-  files.make_directories(storage::attempts_path(request.work));
-  files.make_directories(storage::segments_path(request.work));
-  files.make_directories(plan.config.output.parent_path());
-  try {
-    check_one_file_system(request.work, plan.config.output, files);
-  } catch (const Error&) {
-    if (is_new)
-      files.remove_all(request.work);
-    throw;
-  }
-  const fs::path path = storage::task_plan_path(request.work);
+  if (is_there(plan, request.work, files))
+    return plan;
+  check_build(plan.config, plan.replace, input, files);
+  make_directories(request.work, plan.config.output, files);
   const fs::path attempt = storage::attempts_path(request.work) / storage::unique_name();
   const auto file = files.create(attempt);
   file->write_at(0, std::as_bytes(std::span(text)));
   file->sync();
-  if (!files.rename_new(attempt, path)) {
+  if (!files.rename_new(attempt, storage::task_plan_path(request.work))) {
     files.remove_all(attempt);
-    const auto there = storage::read_file(files, path, kLargestPlanBytes);
-    if (storage::checksum(there) != plan.fingerprint) {
-      throw Error(ErrorCode::exists,
-                  fmt::format("{} holds another plan: remove it, or plan in another directory",
-                              request.work.string()));
-    }
+    is_there(plan, request.work, files);
   }
   files.sync_directory(request.work);
   return plan;
@@ -207,21 +235,12 @@ TaskPlan make_task_plan(const config::Config& asked, const TaskPlanRequest& requ
 
 TaskPlan read_task_plan(storage::FileSystem& files, const fs::path& work,
                         const std::string& program) {
-  const fs::path path = storage::task_plan_path(work);
-  if (!files.exists(path)) {
+  if (!files.exists(storage::task_plan_path(work))) {
     throw Error(ErrorCode::usage,
                 fmt::format("{} has no plan: `meshhier plan MESH --work {} --tasks N` makes one",
                             work.string(), work.string()));
   }
-  const auto bytes = storage::read_file(files, path, kLargestPlanBytes);
-  TaskPlan plan = parse_plan({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path);
-  if (plan.program != program) {
-    throw Error(ErrorCode::exists,
-                fmt::format("{} was planned by another program ({}) than this one ({}): every "
-                            "machine must run the same",
-                            work.string(), plan.program, program));
-  }
-  return plan;
+  return load_plan(work, program, files);
 }
 
 }  // namespace meshhier::pipeline

@@ -336,6 +336,7 @@ TEST_F(TasksTest, WhatIsFinishedStaysSo) {
   EXPECT_EQ(run("leaves").found, 2);
   EXPECT_THAT(run("finish").text, HasSubstr("made "));
   EXPECT_EQ(output(), whole);
+  EXPECT_EQ(plan(2).fingerprint, planned.fingerprint) << "the same command goes on";
   EXPECT_THAT(status_text(task_status(planned, work(), files_), planned), HasSubstr("finished"));
   fs::remove_all(config_.output);
   EXPECT_EQ(failure("finish"), ErrorCode::io);  // what there was is gone
