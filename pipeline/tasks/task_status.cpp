@@ -30,6 +30,8 @@ void add_segment(storage::Segment& segment, StageStatus& stage, EarlierBuild& so
     stage.wall_seconds += cost->wall_seconds;
     stage.longest_seconds = std::max(stage.longest_seconds, cost->wall_seconds);
     stage.cpu_seconds += cost->cpu_seconds;
+    stage.bytes_read += cost->bytes_read;
+    stage.bytes_written += cost->bytes_written;
     stage.peak_resident_bytes = std::max(stage.peak_resident_bytes, cost->peak_resident_bytes);
     return true;
   });
@@ -195,6 +197,8 @@ Json status_json(const TaskStatus& status, const TaskPlan& plan) {
                       {"wall_seconds", stage.wall_seconds},
                       {"longest_seconds", stage.longest_seconds},
                       {"cpu_seconds", stage.cpu_seconds},
+                      {"bytes_read", stage.bytes_read},
+                      {"bytes_written", stage.bytes_written},
                       {"peak_resident_bytes", stage.peak_resident_bytes}});
   }
   const StageStatus* const next = next_stage(status);
