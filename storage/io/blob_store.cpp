@@ -4,6 +4,7 @@
 #include "storage/io/hash.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 #include <cstring>
 
@@ -26,7 +27,9 @@ bool BlobStore::restore(std::size_t index, const StoredBlob& stored) {
   const StoredBlob here{scratch_->placed(stored.offset), stored.bytes, stored.checksum};
   if (!scratch_->claim(here.offset, here.bytes))
     return false;
-  if (!ScratchFile::is_mounted(here.offset)) {
+  if (ScratchFile::is_mounted(here.offset)) {
+    checked_.resize(blobs_.size());
+  } else {
     const auto bytes = std::make_unique_for_overwrite<std::byte[]>(here.bytes);
     if (!is_as_put(here, {bytes.get(), here.bytes}))
       return false;
@@ -56,13 +59,15 @@ void BlobStore::read(std::size_t index, std::uint64_t offset, std::span<std::byt
 }
 
 void BlobStore::copy(std::size_t index, std::span<std::byte> bytes) const {
-  if (ScratchFile::is_mounted(blobs_[index].stored.offset)) {
-    const BlobView whole = view(index);
-    assert(bytes.size() <= whole.bytes().size());
-    std::ranges::copy(whole.bytes().first(bytes.size()), bytes.begin());
-  } else {
-    read(index, 0, bytes);
-  }
+  if (!ScratchFile::is_mounted(blobs_[index].stored.offset))
+    return read(index, 0, bytes);
+  const std::atomic_ref<char> checked(checked_[index]);
+  if (checked.load(std::memory_order_relaxed) != 0)
+    return read(index, 0, bytes);
+  const BlobView whole = view(index);
+  assert(bytes.size() <= whole.bytes().size());
+  std::ranges::copy(whole.bytes().first(bytes.size()), bytes.begin());
+  checked.store(1, std::memory_order_relaxed);
 }
 
 BlobView BlobStore::view(std::size_t index) const {

@@ -58,7 +58,7 @@ class BlobStore {
   /// Copies bytes.size() bytes from `offset`, without a check; requires them to be there.
   void read(std::size_t index, std::uint64_t offset, std::span<std::byte> bytes) const;
   /// Copies as many bytes as there is room for, from the first on. Of a mounted file the whole blob
-  /// is checked: throws as view().
+  /// is checked the first time: throws as view().
   void copy(std::size_t index, std::span<std::byte> bytes) const;
   /// A whole blob, without a copy if it is in memory. Throws Error(io) if the disk has changed it.
   BlobView view(std::size_t index) const;
@@ -77,6 +77,7 @@ class BlobStore {
 
   ScratchFile* scratch_;
   std::vector<Blob> blobs_;
+  mutable std::vector<char> checked_;  ///< those of mounted files that were as put; may be empty
 };
 
 }  // namespace meshhier::storage
