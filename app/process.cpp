@@ -6,7 +6,6 @@
 
 #include <fcntl.h>
 #include <sys/ioctl.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 namespace meshhier::app {
@@ -47,14 +46,6 @@ void reserve_standard_descriptors() {
       ::close(descriptor);
       return;
     }
-  }
-}
-
-void allow_many_open_files() {
-  rlimit limit{};
-  if (::getrlimit(RLIMIT_NOFILE, &limit) == 0) {
-    limit.rlim_cur = limit.rlim_max;
-    ::setrlimit(RLIMIT_NOFILE, &limit);
   }
 }
 

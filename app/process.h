@@ -16,9 +16,6 @@ void reserve_standard_descriptors();
 /// once.
 void cancel_on_signals(execution::CancelToken& token);
 
-/// From now on the process may have as many files open as the system lets it.
-void allow_many_open_files();
-
 /// What standard error is.
 execution::Terminal error_terminal();
 /// Whether standard output is a terminal.

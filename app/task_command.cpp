@@ -1,6 +1,5 @@
 #include "app/command.h"
 #include "app/options.h"
-#include "app/process.h"
 #include "app/program_id.h"
 #include "app/worker.h"
 #include "hierarchy/error.h"
@@ -8,6 +7,7 @@
 #include "pipeline/tasks/run_task.h"
 #include "pipeline/tasks/task_plan.h"
 #include "pipeline/tasks/task_status.h"
+#include "storage/io/process.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -78,7 +78,7 @@ int run_task(const TaskArguments& arguments, execution::ProgressMode mode,
                 "they are");
   }
   const pipeline::TaskStage stage = pipeline::find_stage(plan, arguments.stage);
-  allow_many_open_files();
+  storage::allow_many_open_files();
   const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
   const pipeline::TaskReport report =
       pipeline::run_tasks({arguments.work, stage.name,

@@ -68,7 +68,7 @@ std::map<std::string, double> expected_seconds(const TaskPlan& plan, const Build
   const Tree& tree = build.tree;
   // A level has half the tiles of the one below.
   const auto share = [&](std::uint32_t up) {
-    return static_cast<int>(up) > raw(tree.depth()) ? 0 : std::pow(0.5, up);
+    return static_cast<int>(up) > raw(tree.depth()) ? 0 : std::ldexp(1.0, -static_cast<int>(up));
   };
   double rest = 1, texture_rest = 1;
   for (const TaskStage& stage : stages_of(plan)) {

@@ -58,6 +58,14 @@ ProcessUsage process_usage() {
   return result;
 }
 
+void allow_many_open_files() {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) == 0) {
+    limit.rlim_cur = limit.rlim_max;
+    ::setrlimit(RLIMIT_NOFILE, &limit);
+  }
+}
+
 std::string unique_name() {
   static const std::string process = [] {
     std::random_device device;

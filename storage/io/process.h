@@ -18,6 +18,9 @@ struct ProcessUsage {
 /// Thread-safe; some 20 microseconds. A figure that the system does not tell is 0.
 ProcessUsage process_usage();
 
+/// From now on the process may have as many files open as the system lets it.
+void allow_many_open_files();
+
 /// A name that no other process has used or will use, on any machine: for a file until it is whole.
 /// Letters, digits and dashes.
 std::string unique_name();
