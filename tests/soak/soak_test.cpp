@@ -8,6 +8,9 @@
 #include "hierarchy/error.h"
 #include "inspection/verify.h"
 #include "pipeline/build.h"
+#include "pipeline/tasks/task_plan.h"
+#include "pipeline/tasks/task_status.h"
+#include "storage/format/layout.h"
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/interrupter.h"
 #include "tests/support/memory_files.h"
@@ -285,6 +288,120 @@ TEST(Soak, KilledBuildsEndTheSame) {
   for (std::uint64_t i = seed; i < seed + rounds; ++i) {
     SCOPED_TRACE("seed " + std::to_string(i));
     kill_builds(i);
+    ASSERT_FALSE(HasFailure()) << "seed " << i;
+  }
+}
+
+/// One round of a build in tasks, with the real program: tasks of any stage are run, killed, run
+/// twice at once, and what they have sealed is torn or lost.
+class KilledTasks {
+ public:
+  explicit KilledTasks(std::uint64_t seed) : dice_(seed), config_(random_config(dice_)) {
+    config_.input = directory_.path() / "mesh.ply";
+    config_.output = directory_.path() / "mesh.hier";
+    if (dice_.one_in(4))
+      config_.storage.container = config::Container::archive;
+    bench::write_ply(*files_, {config_.input.front(), true},
+                     *bench::as_generated(random_mesh(dice_)));
+    const std::string text = config::complete_text(config_, "/");
+    storage::write_file(*files_, json(), std::as_bytes(std::span(text)));
+  }
+
+  void run() {
+    if (run_program({"build", json()}) != 0)
+      return;  // refused, as KilledBuilds has it
+    const Files expected = output();
+    fs::remove_all(config_.output);
+    ASSERT_EQ(run_program({"plan", json(), "--work", work(), "--tasks",
+                           std::to_string(dice_.of_any_size(9))}),
+              0);
+    for (std::uint64_t left = dice_.from(1, 15); left > 0; --left)
+      disturb();
+    for (int tries = 0; tries < 200 && !next().empty(); ++tries)
+      run_program({"task", work(), next()});
+    EXPECT_EQ(run_program({"task", work(), "finish"}), 0);
+    EXPECT_EQ(output(), expected);
+    EXPECT_EQ(files_->children(work()).size(), 2U) << "something else was left";
+    EXPECT_EQ(files_->children(storage::segments_path(work())).size(), 1U);
+  }
+
+ private:
+  std::string json() const { return directory_.path() / "config.json"; }
+  std::string work() const { return directory_.path() / "work"; }
+
+  Files output() {
+    if (config_.storage.container == config::Container::files)
+      return content(*files_, config_.output);
+    const std::vector<std::byte> bytes = storage::read_file(*files_, config_.output, 1U << 30);
+    return {{"", {reinterpret_cast<const char*>(bytes.data()), bytes.size()}}};
+  }
+
+  TaskPlan plan() {
+    const std::vector<std::byte> bytes =
+        storage::read_file(*files_, storage::task_plan_path(work()), 1U << 20);
+    const auto* const first = reinterpret_cast<const char*>(bytes.data());
+    const auto text = nlohmann::json::parse(first, first + bytes.size());
+    return read_task_plan(*files_, work(), text.at("program"));
+  }
+
+  std::string next() {
+    const TaskStatus status = task_status(plan(), work(), *files_);
+    const StageStatus* const stage = next_stage(status);
+    return stage == nullptr ? "" : stage->name;
+  }
+
+  /// Runs some tasks, mostly of the first stage that is not complete, and may kill them.
+  void disturb() {
+    const std::vector<TaskStage> stages = stages_of(plan());
+    std::string stage = next();
+    if (stage.empty() || dice_.one_in(6))
+      stage = stages[dice_.from(0, stages.size() - 1)].name;
+    const std::uint64_t of = dice_.from(1, 3);
+    const std::vector<std::string> words{"task",
+                                         work(),
+                                         stage,
+                                         "--index",
+                                         std::to_string(dice_.from(0, of - 1)),
+                                         "--of",
+                                         std::to_string(of),
+                                         "--threads",
+                                         std::to_string(dice_.from(1, 3))};
+    const std::uint64_t time = dice_.one_in(2) ? 0 : dice_.of_any_size(60000);
+    std::thread twin;
+    if (dice_.one_in(3))
+      twin = std::thread([&] { run_program(words); });
+    run_program(words, time);
+    if (twin.joinable())
+      twin.join();
+    if (dice_.one_in(4))
+      damage();
+  }
+
+  /// Tears or removes a segment, if there is one.
+  void damage() {
+    const auto segments = files_->children(storage::segments_path(work()));
+    if (segments.empty() || fs::exists(config_.output))
+      return;
+    const fs::path& segment = segments[dice_.from(0, segments.size() - 1)];
+    const std::uint64_t bytes = fs::file_size(segment);
+    if (dice_.one_in(2))
+      fs::remove(segment);
+    else
+      fs::resize_file(segment, dice_.from(0, bytes - 1));
+  }
+
+  tests::TemporaryDirectory directory_;
+  std::unique_ptr<storage::FileSystem> files_ = storage::make_posix_file_system();
+  Dice dice_;
+  config::Config config_;
+};
+
+TEST(Soak, KilledTasksEndTheSame) {
+  const std::uint64_t seed = from_environment("MESHHIER_SOAK_SEED", 1);
+  const std::uint64_t rounds = from_environment("MESHHIER_SOAK_ROUNDS", 6);
+  for (std::uint64_t i = seed; i < seed + rounds; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(i));
+    KilledTasks(i).run();
     ASSERT_FALSE(HasFailure()) << "seed " << i;
   }
 }
