@@ -252,6 +252,37 @@ TEST_F(MemoryTest, AMillionVerticesIn64MiB) {
   expect_within("64MiB", {"partition.vertices=500"});
 }
 
+TEST_F(MemoryTest, EachTaskOfAMillionVerticesIn64MiB) {
+  write_mesh(million_vertices());
+  for (const char* setting : {"threads=2", "partition.vertices=500"}) {
+    std::vector<std::string> plan = {MESHHIER_BINARY,
+                                     "plan",
+                                     path("mesh.ply").string(),
+                                     "--work",
+                                     path("work").string(),
+                                     "--tasks",
+                                     "3",
+                                     "--force",
+                                     "--set",
+                                     "memory_budget=64MiB",
+                                     setting};
+    ASSERT_EQ(run(plan).code, 0) << run(plan).messages;
+    for (const std::string stage :
+         {"read", "leaves", "level-1", "level-2", "level-3", "level-4", "level-5", "level-6",
+          "level-7", "level-8", "level-9", "level-10", "top", "publish", "finish"}) {
+      std::vector<std::string> task = {MESHHIER_BINARY, "task", path("work").string(), stage};
+      const Outcome outcome = run(task);
+      if (outcome.code == 2)
+        continue;  // the tree is not so deep
+      EXPECT_EQ(outcome.code, 0) << outcome.messages;
+      EXPECT_LE(outcome.peak_bytes, 64 * kMiB) << stage << ' ' << setting;
+    }
+    EXPECT_TRUE(fs::exists(path("mesh.hier")));
+    fs::remove_all(path("mesh.hier"));
+    fs::remove_all(path("work"));
+  }
+}
+
 TEST_F(MemoryTest, AMillionVerticesInMoreThanEnough) {
   write_mesh(million_vertices());
   expect_within("256MiB", {"threads=8"});
