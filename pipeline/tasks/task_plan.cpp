@@ -8,6 +8,7 @@
 #include "storage/format/layout.h"
 #include "storage/format/work_directory.h"
 #include "storage/io/hash.h"
+#include "storage/io/paths.h"
 #include "storage/io/process.h"
 
 #include <algorithm>
@@ -100,6 +101,35 @@ std::uint32_t count_levels(const config::Config& config, const importing::MeshIn
   const std::uint64_t vertices =
       input.needs_import() ? most_vertices(input) : input.description().vertex_count;
   return most_levels(config, vertices, std::max<std::uint64_t>(least, 1), tasks);
+}
+
+/// Anything but what a `plan` leaves that was killed.
+bool has_foreign_files(const fs::path& work, storage::FileSystem& files) {
+  const fs::path attempts = storage::attempts_path(work);
+  const fs::path segments = storage::segments_path(work);
+  const auto is_foreign = [&](const fs::path& path) {
+    if (path == segments)
+      return !files.children(path).empty();
+    return path != attempts || !std::ranges::all_of(files.children(path), [](const fs::path& one) {
+             return storage::is_unique_name(one.filename().string());
+           });
+  };
+  return std::ranges::any_of(files.children(work), is_foreign);
+}
+
+/// `finish` removes what is in `work`: nothing of others may be there.
+void check_work(const fs::path& work, const fs::path& output, storage::FileSystem& files) {
+  const fs::path place = files.canonical(work);
+  const fs::path made = files.canonical(output);
+  if (storage::is_within(made, place) || storage::is_within(place, made)) {
+    throw Error(ErrorCode::usage, fmt::format("the directory {} and the output {} must lie apart",
+                                              work.string(), output.string()));
+  }
+  if (files.exists(work) && has_foreign_files(work, files)) {
+    throw Error(ErrorCode::exists, fmt::format("{} is not empty, and has no plan; choose a new "
+                                               "directory",
+                                               work.string()));
+  }
 }
 
 /// Throws what a build would refuse before it reads more than a header.
@@ -219,6 +249,7 @@ TaskPlan make_task_plan(const config::Config& asked, const TaskPlanRequest& requ
   plan.fingerprint = checksum_of(text);
   if (is_there(plan, request.work, files))
     return plan;
+  check_work(request.work, plan.config.output, files);
   check_build(plan.config, plan.replace, input, files);
   make_directories(request.work, plan.config.output, files);
   const fs::path attempt = storage::attempts_path(request.work) / storage::unique_name();

@@ -66,8 +66,8 @@ struct TaskPlanRequest {
 };
 
 /// Refuses what a build would refuse, as far as it is known from the input's header, and writes the
-/// plan; nothing happens if it is there already. Throws Error(exists) if there is another plan,
-/// Error(usage) if `work` is on another file system than the output.
+/// plan; nothing happens if it is there already. Throws Error(exists) if `work` has another plan or
+/// other files, Error(usage) if it lies in the output, or that in it, or on another file system.
 TaskPlan make_task_plan(const config::Config& config, const TaskPlanRequest& request,
                         const BuildEnvironment& environment);
 

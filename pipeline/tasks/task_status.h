@@ -24,7 +24,7 @@ struct StageStatus {
   double longest_seconds = 0;          ///< of one of them
   double cpu_seconds = 0;
   std::uint64_t bytes_read = 0, bytes_written = 0;  ///< by the tasks that are done
-  std::uint64_t peak_resident_bytes = 0;  ///< of the largest
+  std::uint64_t peak_resident_bytes = 0;            ///< of the largest
 };
 
 struct TaskStatus {

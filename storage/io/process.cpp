@@ -76,6 +76,13 @@ std::string unique_name() {
   return fmt::format("{}-{}", process, next++);
 }
 
+bool is_unique_name(std::string_view name) {
+  constexpr std::size_t kDigits = 16;
+  return name.size() > kDigits && name[kDigits] == '-' &&
+         name.find_first_not_of("0123456789abcdef") == kDigits &&
+         name.find_first_not_of("0123456789-", kDigits) == std::string_view::npos;
+}
+
 std::filesystem::path make_temporary_directory() {
   std::error_code error;
   const std::filesystem::path parent = std::filesystem::temp_directory_path(error);

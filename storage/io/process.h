@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace meshhier::storage {
 
@@ -24,6 +25,8 @@ void allow_many_open_files();
 /// A name that no other process has used or will use, on any machine: for a file until it is whole.
 /// Letters, digits and dashes.
 std::string unique_name();
+/// Whether it looks like one.
+bool is_unique_name(std::string_view name);
 
 /// Makes a directory that only this user can enter, in the system's for temporary files. Throws
 /// Error(io).

@@ -9,6 +9,7 @@
 #include "storage/format/layout.h"
 #include "storage/format/segment.h"
 #include "storage/io/hash.h"
+#include "storage/io/process.h"
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/meshes.h"
 #include "tests/support/quick_config.h"
@@ -486,6 +487,27 @@ TEST_F(TasksTest, StatusComesFromTheSegmentsAlone) {
   EXPECT_TRUE(status.cpu_seconds_left);
   EXPECT_EQ(status_json(status, planned).at("next"), "leaves");
   EXPECT_THAT(status_text(status, planned), HasSubstr("segment of task 2 is damaged"));
+}
+
+TEST_F(TasksTest, TheDirectoryHasNothingElse) {
+  use_sphere();
+  for (const char* name : {"segments/a", "attempts/a", "other"}) {
+    fs::create_directories(work() / name);
+    EXPECT_THROW(plan(2), Error) << name;
+    EXPECT_TRUE(fs::exists(work() / name));
+    fs::remove_all(work());
+  }
+  fs::create_directories(work() / "segments");  // as a plan that was killed leaves it
+  fs::create_directories(work() / "attempts" / storage::unique_name());
+  plan(2);
+  fs::remove_all(work());
+  for (const char* output : {"work", "work/mesh.hier", "work/hierarchy"}) {
+    config_.output = file(output);
+    EXPECT_THROW(plan(2), Error) << output;
+    EXPECT_FALSE(fs::exists(work()));
+  }
+  config_.output = directory_.path();
+  EXPECT_THROW(plan(2), Error);
 }
 
 TEST_F(TasksTest, AnotherFileSystemIsRefused) {
