@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -27,6 +28,12 @@ std::optional<std::uint32_t> number(const Variables& variables, const char* name
   return value;
 }
 
+/// The worker of that number, of so many that there is one of the largest number too.
+pipeline::Share with_number(std::uint32_t index, std::uint32_t largest) {
+  constexpr std::uint32_t kMost = std::numeric_limits<std::uint32_t>::max();
+  return {index, largest < kMost ? largest + 1 : kMost};
+}
+
 /// An array whose indices are the whole of a range counts from its first; of one that has only
 /// some, as when a few are run again, each has its own number.
 std::optional<pipeline::Share> slurm_array(const Variables& variables) {
@@ -37,9 +44,9 @@ std::optional<pipeline::Share> slurm_array(const Variables& variables) {
   const std::uint32_t most = number(variables, "SLURM_ARRAY_TASK_MAX").value_or(*id);
   const std::uint32_t step = std::max(number(variables, "SLURM_ARRAY_TASK_STEP").value_or(1), 1U);
   const std::uint32_t count = number(variables, "SLURM_ARRAY_TASK_COUNT").value_or(0);
-  if (least <= *id && *id <= most && count == (most - least) / step + 1)
+  if (least <= *id && *id <= most && count - 1 == (most - least) / step)
     return pipeline::Share{(*id - least) / step, count};
-  return pipeline::Share{*id, std::max(most, *id) + 1};
+  return with_number(*id, std::max(most, *id));
 }
 
 /// Of srun. A batch script has these variables too, but is not one of so many processes.
@@ -59,14 +66,18 @@ std::optional<pipeline::Share> indexed(const Variables& variables, const char* i
   if (!value)
     return std::nullopt;
   const auto told = count != nullptr ? number(variables, count) : std::nullopt;
-  return pipeline::Share{*value, told.value_or(std::max(tasks, *value + 1))};
+  return told ? pipeline::Share{*value, *told} : with_number(*value, std::max(tasks - 1, *value));
 }
 
 pipeline::Share of_environment(std::uint32_t tasks, const Variables& variables) {
   const auto array = slurm_array(variables);
   const auto step = slurm_step(variables);
-  if (array && step)
-    return {array->index * step->of + step->index, array->of * step->of};
+  if (array && step) {
+    const std::uint64_t of = std::uint64_t{array->of} * step->of;
+    if (of > std::numeric_limits<std::uint32_t>::max())
+      throw Error(ErrorCode::usage, "Slurm's variables tell of more workers than there can be");
+    return {array->index * step->of + step->index, static_cast<std::uint32_t>(of)};
+  }
   if (array || step)
     return array ? *array : *step;
   if (const auto job = indexed(variables, "JOB_COMPLETION_INDEX", nullptr, tasks))
@@ -92,8 +103,9 @@ pipeline::Share find_worker(const AskedWorker& asked, std::uint32_t tasks,
       asked.index ? pipeline::Share{*asked.index, tasks} : of_environment(tasks, variables);
   if (asked.of)
     worker.of = *asked.of;
-  if (worker.index >= worker.of && (asked.index || asked.of)) {
-    throw Error(ErrorCode::usage, fmt::format("--index {} is not below {}: workers count from 0",
+  if (worker.index >= worker.of) {
+    throw Error(ErrorCode::usage, fmt::format("worker {} of {} cannot be: workers count from 0; "
+                                              "give --index and --of",
                                               worker.index, worker.of));
   }
   return worker;

@@ -86,6 +86,17 @@ TEST(WorkerTest, PodsAndBatchJobsHaveATaskEach) {
             "1 of 4");
 }
 
+TEST(WorkerTest, WhatCannotBeIsRefused) {
+  EXPECT_THROW(found({{"SLURM_PROCID", "0"}, {"SLURM_NTASKS", "0"}}), Error);
+  EXPECT_THROW(found({{"SLURM_PROCID", "4"}, {"SLURM_NTASKS", "4"}}), Error);
+  EXPECT_THROW(found({{"AWS_BATCH_JOB_ARRAY_INDEX", "0"}, {"AWS_BATCH_JOB_ARRAY_SIZE", "0"}}),
+               Error);
+  EXPECT_THROW(
+      found({{"SLURM_ARRAY_TASK_ID", "65536"}, {"SLURM_PROCID", "0"}, {"SLURM_NTASKS", "65536"}}),
+      Error);
+  EXPECT_THROW(found({{"JOB_COMPLETION_INDEX", "4294967295"}}), Error);
+}
+
 TEST(WorkerTest, WhatIsNoNumberIsRefused) {
   for (const char* text : {"x", "-1", "1.5", "99999999999", "1 "}) {
     EXPECT_THROW(found({{"SLURM_ARRAY_TASK_ID", text}}), Error) << text;
