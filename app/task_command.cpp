@@ -40,8 +40,9 @@ int show_status(const TaskArguments& arguments, const pipeline::TaskPlan& plan,
                 Environment& environment) {
   const pipeline::TaskStatus status =
       pipeline::task_status(plan, arguments.work, environment.files);
-  environment.out << (arguments.json ? pretty_json(pipeline::status_json(status, plan))
-                                     : pipeline::status_text(status, plan));
+  const auto left = pipeline::cpu_seconds_left(status, plan, environment.files);
+  environment.out << (arguments.json ? pretty_json(pipeline::status_json(status, plan, left))
+                                     : pipeline::status_text(status, plan, left));
   return 0;
 }
 

@@ -34,9 +34,9 @@ pipeline::Share with_number(std::uint32_t index, std::uint32_t largest) {
   return {index, largest < kMost ? largest + 1 : kMost};
 }
 
-/// An array whose indices are the whole of a range counts from its first; of one that has only
-/// some, as when a few are run again, each has its own number.
-std::optional<pipeline::Share> slurm_array(const Variables& variables) {
+/// An array from 0 or 1 on is one of workers. Of another, or one that has only some indices, as
+/// when a few are run again, each has the number of its task.
+std::optional<pipeline::Share> slurm_array(const Variables& variables, std::uint32_t tasks) {
   const auto id = number(variables, "SLURM_ARRAY_TASK_ID");
   if (!id)
     return std::nullopt;
@@ -44,9 +44,10 @@ std::optional<pipeline::Share> slurm_array(const Variables& variables) {
   const std::uint32_t most = number(variables, "SLURM_ARRAY_TASK_MAX").value_or(*id);
   const std::uint32_t step = std::max(number(variables, "SLURM_ARRAY_TASK_STEP").value_or(1), 1U);
   const std::uint32_t count = number(variables, "SLURM_ARRAY_TASK_COUNT").value_or(0);
-  if (least <= *id && *id <= most && count - 1 == (most - least) / step)
+  const bool is_whole = least <= 1 && count > 1 && count - 1 == (most - least) / step;
+  if (least <= *id && *id <= most && is_whole)
     return pipeline::Share{(*id - least) / step, count};
-  return with_number(*id, std::max(most, *id));
+  return with_number(*id, std::max({most, *id, tasks - 1}));
 }
 
 /// Of srun. A batch script has these variables too, but is not one of so many processes.
@@ -70,7 +71,7 @@ std::optional<pipeline::Share> indexed(const Variables& variables, const char* i
 }
 
 pipeline::Share of_environment(std::uint32_t tasks, const Variables& variables) {
-  const auto array = slurm_array(variables);
+  const auto array = slurm_array(variables, tasks);
   const auto step = slurm_step(variables);
   if (array && step) {
     const std::uint64_t of = std::uint64_t{array->of} * step->of;

@@ -101,16 +101,13 @@ void ImageStore::Impl::check(std::uint32_t image, std::uint32_t strip, std::size
   const StoredStrip& stored = images[image].strips[strip];
   if (!storage::ScratchFile::is_mounted(stored.offset))
     return;
-  {
-    const std::lock_guard lock(mutex);
-    if (checked.contains({image, strip}))
-      return;
-  }
+  const std::lock_guard lock(mutex);  // one strip at a time is in memory
+  if (checked.contains({image, strip}))
+    return;
   std::vector<std::byte> read(bytes);
   scratch.read(stored.offset, read);
   if (storage::checksum(read) != stored.checksum)
     throw scratch.changed(stored.offset);
-  const std::lock_guard lock(mutex);
   checked.insert({image, strip});
 }
 

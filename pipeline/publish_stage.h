@@ -19,10 +19,10 @@ StageTime publish_time(const JobSize& job, const TilePopulation& tiles);
 
 /// Where tile files go.
 struct TileFiles {
-  const std::filesystem::path& directory;  ///< of the hierarchy
+  std::filesystem::path directory;  ///< of the hierarchy
   /// Where each is until it is whole and on disk, as other processes may write the same; empty: it
   /// is written in its place.
-  const std::filesystem::path attempts{};
+  std::filesystem::path attempts{};
 };
 
 /// Writes the files of the share of all tiles, but for those the journal has.

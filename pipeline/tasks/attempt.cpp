@@ -26,17 +26,6 @@ void copy_file(storage::FileSystem& files, const std::filesystem::path& from,
   }
 }
 
-bool is_sealed(storage::FileSystem& files, const std::filesystem::path& work,
-               const storage::SegmentName& name) {
-  try {
-    return storage::Segment::open(files, work, name) != nullptr;
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::corrupt)
-      throw;
-    return false;
-  }
-}
-
 }  // namespace
 
 Attempt::Attempt(storage::FileSystem& files, std::filesystem::path work,
@@ -80,7 +69,7 @@ void Attempt::seal(const storage::SegmentWriter& entries, const std::filesystem:
     entries.seal(*segment, segment->size());
   }
   const std::filesystem::path sealed = storage::segment_path(work_, name);
-  if (!files_.rename_new(file, sealed) && !is_sealed(files_, work_, name))
+  if (!files_.rename_new(file, sealed) && !storage::Segment::is_whole(files_, work_, name))
     files_.rename(file, sealed);
   files_.sync_directory(storage::segments_path(work_));
 }

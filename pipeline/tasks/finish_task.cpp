@@ -42,40 +42,47 @@ auto in_hierarchy(storage::FileSystem& files, const fs::path& path, storage::Con
   return visit(archive, path);
 }
 
-std::uint64_t manifest_checksum(storage::FileSystem& files, const fs::path& hierarchy) {
-  const auto manifest = files.open(storage::manifest_path(hierarchy));
-  return storage::checksum(storage::read_file(*manifest, manifest->size()));
-}
+/// What tells a finished hierarchy, or its archive, from any other.
+struct Finished {
+  std::uint64_t checksum = 0;  ///< of the manifest
+  std::uint64_t inode = 0;     ///< of the manifest's file, or the archive's; 0: not known
+  friend bool operator==(const Finished&, const Finished&) = default;
+};
 
-/// Whether it is the hierarchy, or its archive, whose manifest has that checksum.
-bool is_it(storage::FileSystem& files, const fs::path& path, storage::Container container,
-           std::uint64_t checksum) {
+/// Of what lies at `path`; none if that is no hierarchy of the container.
+std::optional<Finished> look_at(storage::FileSystem& files, const fs::path& path,
+                                storage::Container container) {
   if (!files.exists(path) || files.is_directory(path) != (container == storage::Container::files))
-    return false;
+    return std::nullopt;
   try {
-    return in_hierarchy(files, path, container, manifest_checksum) == checksum;
+    return in_hierarchy(files, path, container, [&](storage::FileSystem& in, const fs::path& at) {
+      const auto manifest = in.open(storage::manifest_path(at));
+      return Finished{storage::checksum(storage::read_file(*manifest, manifest->size())),
+                      manifest->version().inode};
+    });
   } catch (const Error& error) {
     if (error.code() != ErrorCode::io && error.code() != ErrorCode::corrupt)
       throw;
-    return false;
+    return std::nullopt;
   }
 }
 
-std::uint64_t finished_checksum(const TaskPlan& plan, const fs::path& work,
-                                storage::FileSystem& files) {
+Finished read_finished(const TaskPlan& plan, const fs::path& work, storage::FileSystem& files) {
   const storage::SegmentName name{plan.fingerprint, "finish", 0};
-  const auto segment = storage::Segment::open(files, work, name);
-  if (!segment)
-    throw missing_task(work, "finish", 0);
-  std::optional<std::uint64_t> checksum;
-  segment->for_each([&](const storage::EntrySink::Entry& entry) {
-    if (entry.contains("finished") && entry.at("finished").is_number_unsigned())
-      checksum = entry.at("finished").get<std::uint64_t>();
+  std::optional<Finished> finished;
+  open_segment(files, work, name)->for_each([&](const storage::EntrySink::Entry& entry) {
+    if (!entry.contains("finished"))
+      return true;
+    const auto& numbers = entry.at("finished");
+    if (!numbers.is_array() || numbers.size() != 2 || !numbers[0].is_number_unsigned() ||
+        !numbers[1].is_number_unsigned())
+      return false;
+    finished = Finished{numbers[0], numbers[1]};
     return true;
   });
-  if (!checksum)
+  if (!finished)
     throw damaged_segment(work, name);
-  return *checksum;
+  return *finished;
 }
 
 /// What tasks sealed or left, but for what says that all is done.
@@ -87,6 +94,8 @@ void remove_what_is_not_needed(const TaskPlan& plan, const fs::path& work,
       files.remove_all(segment);
   }
   files.remove_all(storage::attempts_path(work));
+  files.remove_all(storage::built_path(work));
+  files.remove_all(storage::packed_path(work));
 }
 
 std::uint64_t bytes_of(storage::FileSystem& files, const storage::HierarchyReader& made) {
@@ -98,7 +107,6 @@ std::uint64_t bytes_of(storage::FileSystem& files, const storage::HierarchyReade
 void finish_hierarchy(Workshop& workshop, const fs::path& work, storage::SegmentWriter& entries,
                       const StageContext& context) {
   storage::FileSystem& files = context.files;
-  const storage::WorkDirectory shared(files, output_of(context.config), true, work);
   if (workshop.journal.published().size() != context.tree().tile_count())
     throw Error(ErrorCode::corrupt, "files of tiles are missing: plan the build again");
   const fs::path built = storage::built_path(work);
@@ -111,21 +119,30 @@ void finish_hierarchy(Workshop& workshop, const fs::path& work, storage::Segment
   } else {
     files.sync_tree(built);
   }
-  entries.append({{"finished", manifest_checksum(files, built)}});
+  const storage::Container container = context.config.storage.container;
+  const std::optional<Finished> made = look_at(files, made_path(work, container), container);
+  if (!made)
+    throw Error(ErrorCode::io, built.string() + " was changed while it was finished");
+  entries.append({{"finished", {made->checksum, made->inode}}});
 }
 
-std::string name_hierarchy(const TaskPlan& plan, const fs::path& work, storage::FileSystem& files) {
+std::string name_hierarchy(const TaskPlan& plan, storage::WorkDirectory& shared,
+                           storage::FileSystem& files) {
+  const fs::path& work = shared.path();
   const storage::Output output = output_of(plan.config);
-  const std::uint64_t checksum = finished_checksum(plan, work, files);
-  storage::WorkDirectory shared(files, output, plan.replace, work);
-  if (!is_it(files, output.path, output.container, checksum)) {
-    if (!is_it(files, made_path(work, output.container), output.container, checksum)) {
-      throw Error(ErrorCode::io,
-                  fmt::format("{} is not the hierarchy that was finished in {}, and nor is what "
-                              "lies there: plan the build again",
-                              output.path.string(), work.string()));
-    }
+  const fs::path made_at = made_path(work, output.container);
+  const Finished finished = read_finished(plan, work, files);
+  const auto named = look_at(files, output.path, output.container);
+  const bool is_known = finished.inode != 0;
+  const bool is_there = is_known && named == finished;
+  if (!is_there && look_at(files, made_at, output.container) == finished) {
     shared.publish();
+  } else if (!is_there && (!named || named->checksum != finished.checksum ||
+                           (is_known && files.exists(made_at)))) {
+    throw Error(ErrorCode::corrupt,
+                fmt::format("{} is not the hierarchy that was finished in {}, and nor is what "
+                            "lies there: plan the build again",
+                            output.path.string(), work.string()));
   }
   remove_what_is_not_needed(plan, work, files);
   return in_hierarchy(files, output.path, output.container,
@@ -136,6 +153,11 @@ std::string name_hierarchy(const TaskPlan& plan, const fs::path& work, storage::
                                                         : bytes_of(in, made);
                         return made_text(made, path, bytes) + notes_text(made, plan.config);
                       });
+}
+
+bool is_named(const TaskPlan& plan, const fs::path& work, storage::FileSystem& files) {
+  return !files.exists(storage::built_path(work)) && !files.exists(storage::packed_path(work)) &&
+         storage::Segment::is_whole(files, work, {plan.fingerprint, "finish", 0});
 }
 
 }  // namespace meshhier::pipeline

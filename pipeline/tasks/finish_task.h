@@ -5,6 +5,7 @@
 #include "pipeline/plan/stage_context.h"
 #include "pipeline/tasks/task_plan.h"
 #include "storage/format/segment.h"
+#include "storage/format/work_directory.h"
 
 #include <filesystem>
 #include <string>
@@ -12,14 +13,17 @@
 namespace meshhier::pipeline {
 
 /// Completes the hierarchy in `work`, or its archive, of which all tiles are published, and notes
-/// what it is in `entries`. Throws Error(corrupt) if a tile is missing, Error(exists) if another
-/// process does the same.
+/// what it is in `entries`. Throws Error(corrupt) if a tile is missing.
 void finish_hierarchy(Workshop& workshop, const std::filesystem::path& work,
                       storage::SegmentWriter& entries, const StageContext& context);
 
 /// Gives what was finished the output's name and removes what tasks have sealed, unless that is
-/// done already. Returns what there is, for people. Throws Error(exists) as check_output() does.
-std::string name_hierarchy(const TaskPlan& plan, const std::filesystem::path& work,
+/// done already. Returns what there is, for people. Throws Error(exists) as check_output() does,
+/// Error(corrupt) if what was finished is gone.
+std::string name_hierarchy(const TaskPlan& plan, storage::WorkDirectory& shared,
                            storage::FileSystem& files);
+
+/// Whether that was done. Throws Error(io).
+bool is_named(const TaskPlan& plan, const std::filesystem::path& work, storage::FileSystem& files);
 
 }  // namespace meshhier::pipeline

@@ -18,6 +18,7 @@
 #include "pipeline/texture_stage.h"
 #include "storage/format/layout.h"
 #include "storage/format/segment.h"
+#include "storage/format/work_directory.h"
 
 #include <algorithm>
 #include <memory>
@@ -29,6 +30,17 @@
 
 namespace meshhier::pipeline {
 namespace {
+
+/// Throws Error(input) if a picture of the mesh is not what the stage `read` found.
+void check_pictures(const importing::InputRecord& input, storage::FileSystem& files) {
+  for (const importing::ReadFile& file : input.files) {
+    if (file.part == importing::InputPart::picture && files.identity(file.path) != file.identity) {
+      throw Error(ErrorCode::input,
+                  fmt::format("{} was changed since the stage read: plan the build again",
+                              file.path.string()));
+    }
+  }
+}
 
 /// One task, between segments.
 class Task {
@@ -121,9 +133,7 @@ void Task::read() {
 
 EarlierBuild Task::find_source() const {
   EarlierBuild source;
-  const auto segment = storage::Segment::open(files(), work_, name("read", 0));
-  if (!segment)
-    throw missing_task(work_, "read", 0);
+  const auto segment = open_segment(files(), work_, name("read", 0));
   segment->for_each(
       [&](const storage::EntrySink::Entry& entry) { return add_entry(entry, source); });
   if (!source.is_whole)
@@ -137,6 +147,7 @@ void Task::go_on() {
   const mesh_io::MeshDescription mesh = description_of(source);
   const BuildPlan plan =
       plan_build(config, mesh, 0, plan_textures(source.materials, config.missing_images, files()));
+  check_pictures(source.input, files());
   if (plan.tree.partition_count() != source.decides_result.value("partitions", std::uint64_t{0})) {
     throw Error(ErrorCode::input,
                 "pictures of the mesh were changed since the stage read: plan the build again");
@@ -177,10 +188,9 @@ storage::ScratchFile& Task::scratch_of(TaskKind kind) {
 void Task::mount(const TaskStage& stage, storage::ScratchFile& scratch) {
   for (std::uint32_t i = 0; i < stage.tasks; ++i) {
     environment_.cancel.check();
-    const auto segment = storage::Segment::open(files(), work_, name(stage.name, i));
-    if (!segment)
-      throw missing_task(work_, stage.name, i);
-    scratch.mount(segment->take_file());
+    const auto segment = open_segment(files(), work_, name(stage.name, i));
+    if (segment->data_bytes() > 0)  // or there is nothing to be read, and no file to be kept open
+      scratch.mount(segment->take_file());
     segment->for_each([&](const storage::EntrySink::Entry& entry) {
       return workshop_->journal.take_sealed(entry);
     });
@@ -279,15 +289,23 @@ void Task::seal() {
                 name(stage_.name, index_), environment_.cancel);
 }
 
-bool is_done(const TaskPlan& plan, const TaskStage& stage, std::uint32_t index,
-             const std::filesystem::path& work, storage::FileSystem& files) {
-  try {
-    return storage::Segment::open(files, work, {plan.fingerprint, stage.name, index}) != nullptr;
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::corrupt)
-      throw;
-    return false;  // it is made again
+/// One process at a time, from the first file to the name.
+TaskReport finish(const TaskPlan& plan, const TaskStage& stage, const TaskRequest& request,
+                  const BuildEnvironment& environment) {
+  TaskReport report;
+  if (request.worker.index != 0)
+    return report;
+  storage::FileSystem& files = environment.files;
+  storage::WorkDirectory shared(files, {plan.config.output, plan.config.storage.container},
+                                plan.replace, request.work);
+  if (storage::Segment::is_whole(files, request.work, {plan.fingerprint, stage.name, 0})) {
+    ++report.found;
+  } else {
+    Task(plan, stage, 0, request, environment).run();
+    ++report.done;
   }
+  report.text = name_hierarchy(plan, shared, files);
+  return report;
 }
 
 }  // namespace
@@ -303,12 +321,14 @@ TaskReport run_tasks(const TaskRequest& request, const BuildEnvironment& environ
   execution::configure_allocator(plan.config.memory_budget);
   const tbb::global_control thread_limit(tbb::global_control::max_allowed_parallelism,
                                          thread_count(plan.config));
+  if (stage.kind == TaskKind::finish)
+    return finish(plan, stage, request, environment);
   TaskReport report;
-  const bool is_finished =
-      is_done(plan, {"finish", TaskKind::finish}, 0, request.work, files);  // the rest is gone
+  const bool is_finished = is_named(plan, request.work, files);  // the segments are gone then
   for (std::uint64_t i = request.worker.index; i < stage.tasks; i += request.worker.of) {
     const auto index = static_cast<std::uint32_t>(i);
-    if (is_finished || is_done(plan, stage, index, request.work, files)) {
+    if (is_finished ||
+        storage::Segment::is_whole(files, request.work, {plan.fingerprint, stage.name, index})) {
       ++report.found;
       continue;
     }
@@ -316,8 +336,6 @@ TaskReport run_tasks(const TaskRequest& request, const BuildEnvironment& environ
     execution::release_free_memory();
     ++report.done;
   }
-  if (stage.kind == TaskKind::finish && request.worker.index == 0)
-    report.text = name_hierarchy(plan, request.work, files);
   return report;
 }
 

@@ -33,16 +33,27 @@ std::uint64_t checksum_of(const std::string& text) {
   return storage::checksum(std::as_bytes(std::span(text)));
 }
 
+Json json_of(const TaskPlan& plan) {
+  return {{"meshhier_task_plan", kPlanVersion},
+          {"program", plan.program},
+          {"tasks", plan.tasks},
+          {"levels", plan.levels},
+          {"textured", plan.textured},
+          {"replace", plan.replace},
+          {"config", Json::parse(config::complete_text(plan.config, fs::current_path()))}};
+}
+
 std::string text_of(const TaskPlan& plan) {
-  return Json{{"meshhier_task_plan", kPlanVersion},
-              {"program", plan.program},
-              {"tasks", plan.tasks},
-              {"levels", plan.levels},
-              {"textured", plan.textured},
-              {"replace", plan.replace},
-              {"config", Json::parse(config::complete_text(plan.config, fs::current_path()))}}
-             .dump(2) +
-         '\n';
+  return json_of(plan).dump(2) + '\n';
+}
+
+/// What does not decide the result may change from one plan to the next.
+std::uint64_t fingerprint_of(const TaskPlan& plan) {
+  Json json = json_of(plan);
+  for (const char* key : {"memory_budget", "threads"})
+    json["config"].erase(key);
+  json.erase("replace");
+  return checksum_of(json.dump());
 }
 
 TaskPlan parse_plan(const std::string& text, const fs::path& path) {
@@ -57,7 +68,7 @@ TaskPlan parse_plan(const std::string& text, const fs::path& path) {
     plan.textured = json.at("textured");
     plan.replace = json.at("replace");
     plan.config = config::parse_config(json.at("config").dump(), {path.string(), {}}, {});
-    plan.fingerprint = checksum_of(text);
+    plan.fingerprint = fingerprint_of(plan);
     constexpr std::uint32_t kDeepest = 64;
     if (plan.tasks == 0 || plan.tasks > kMostTasks || plan.levels > kDeepest)
       throw Error(ErrorCode::corrupt, path.string() + " is not what `meshhier plan` writes");
@@ -110,6 +121,8 @@ bool has_foreign_files(const fs::path& work, storage::FileSystem& files) {
   const auto is_foreign = [&](const fs::path& path) {
     if (path == segments)
       return !files.children(path).empty();
+    if (storage::is_unique_name(path.filename().string()))
+      return false;
     return path != attempts || !std::ranges::all_of(files.children(path), [](const fs::path& one) {
              return storage::is_unique_name(one.filename().string());
            });
@@ -179,12 +192,36 @@ void check_one_file_system(const fs::path& work, const fs::path& output,
     files.rename(from, to);
   } catch (const Error& error) {
     files.remove_all(from);
+    if (!files.why_not_writable(to.parent_path()).empty())
+      throw;
     throw Error(ErrorCode::usage,
                 fmt::format("{} must be on the file system of the output {}, where files can be "
                             "renamed from one to the other: {}",
                             work.string(), output.string(), error.what()));
   }
   files.remove_all(to);
+}
+
+/// In the place of what is there, which is the same plan for other machines.
+void write_plan(const TaskPlan& plan, const fs::path& work, storage::FileSystem& files) {
+  const std::string text = text_of(plan);
+  const fs::path attempt = work / storage::unique_name();
+  {
+    const auto file = files.create(attempt);
+    file->write_at(0, std::as_bytes(std::span(text)));
+    file->sync();
+  }
+  const fs::path path = storage::task_plan_path(work);
+  if (!files.rename_new(attempt, path)) {
+    try {
+      is_there(plan, work, files);
+    } catch (const Error&) {
+      files.remove_all(attempt);
+      throw;
+    }
+    files.rename(attempt, path);
+  }
+  files.sync_directory(work);
 }
 
 void make_directories(const fs::path& work, const fs::path& output, storage::FileSystem& files) {
@@ -245,22 +282,15 @@ TaskPlan make_task_plan(const config::Config& asked, const TaskPlanRequest& requ
       plan.config.texture.use ? importing::Textures::use : importing::Textures::ignore);
   plan.textured = input.needs_import() && plan.config.texture.use;
   plan.levels = count_levels(plan.config, input, request.tasks);
-  const std::string text = text_of(plan);
-  plan.fingerprint = checksum_of(text);
-  if (is_there(plan, request.work, files))
+  plan.fingerprint = fingerprint_of(plan);
+  if (is_there(plan, request.work, files)) {
+    write_plan(plan, request.work, files);
     return plan;
+  }
   check_work(request.work, plan.config.output, files);
   check_build(plan.config, plan.replace, input, files);
   make_directories(request.work, plan.config.output, files);
-  const fs::path attempt = storage::attempts_path(request.work) / storage::unique_name();
-  const auto file = files.create(attempt);
-  file->write_at(0, std::as_bytes(std::span(text)));
-  file->sync();
-  if (!files.rename_new(attempt, storage::task_plan_path(request.work))) {
-    files.remove_all(attempt);
-    is_there(plan, request.work, files);
-  }
-  files.sync_directory(request.work);
+  write_plan(plan, request.work, files);
   return plan;
 }
 

@@ -1,5 +1,11 @@
 #include "pipeline/tasks/task_record.h"
 
+#include "storage/format/layout.h"
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
 #include <fmt/format.h>
 
 namespace meshhier::pipeline {
@@ -34,6 +40,24 @@ Error damaged_segment(const std::filesystem::path& work, const storage::SegmentN
           fmt::format("{} is damaged: remove it, and run `meshhier task {} {} --index {}` again",
                       storage::segment_path(work, name).string(), work.string(), name.stage,
                       name.index)};
+}
+
+std::unique_ptr<storage::Segment> open_segment(storage::FileSystem& files,
+                                               const std::filesystem::path& work,
+                                               const storage::SegmentName& name) {
+  // A network file system may remember that a name was not there; its directory tells better.
+  constexpr int kTries = 20;
+  constexpr std::chrono::milliseconds kPause(250);
+  const std::filesystem::path path = storage::segment_path(work, name);
+  for (int i = 0; i < kTries; ++i) {
+    if (auto segment = storage::Segment::open(files, work, name))
+      return segment;
+    const auto there = files.children(storage::segments_path(work));
+    if (!std::ranges::binary_search(there, path))
+      break;
+    std::this_thread::sleep_for(kPause);
+  }
+  throw missing_task(work, name.stage, name.index);
 }
 
 }  // namespace meshhier::pipeline

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -27,6 +28,11 @@ struct TaskCost {
 nlohmann::json took_entry(const StageStats& total);
 /// None if it is no such entry.
 std::optional<TaskCost> task_cost(const nlohmann::json& entry);
+
+/// Throws missing_task() if there is none, and as Segment::open().
+std::unique_ptr<storage::Segment> open_segment(storage::FileSystem& files,
+                                               const std::filesystem::path& work,
+                                               const storage::SegmentName& name);
 
 /// Each says which task to run.
 Error missing_task(const std::filesystem::path& work, const std::string& stage,

@@ -5,6 +5,7 @@
 #include "hierarchy/plain_text.h"
 #include "pipeline/journal/workshop.h"
 #include "pipeline/stage_costs.h"
+#include "pipeline/tasks/finish_task.h"
 #include "pipeline/tasks/task_record.h"
 #include "storage/format/layout.h"
 #include "storage/format/segment.h"
@@ -39,14 +40,19 @@ void add_segment(storage::Segment& segment, StageStatus& stage, EarlierBuild& so
   stage.bytes += segment.take_file()->size();
 }
 
+/// `there`: the names in the directory. Looking for others, a network file system would remember
+/// for a while that they were not there.
 StageStatus stage_status(const TaskPlan& plan, const TaskStage& stage,
-                         const std::filesystem::path& work, storage::FileSystem& files,
-                         EarlierBuild& source) {
+                         const std::filesystem::path& work,
+                         const std::vector<std::filesystem::path>& there,
+                         storage::FileSystem& files, EarlierBuild& source) {
   StageStatus status{.name = stage.name, .tasks = stage.tasks, .damaged = {}};
   for (std::uint32_t i = 0; i < stage.tasks; ++i) {
+    const storage::SegmentName name{plan.fingerprint, stage.name, i};
+    if (!std::ranges::binary_search(there, storage::segment_path(work, name)))
+      continue;
     try {
-      if (const auto segment =
-              storage::Segment::open(files, work, {plan.fingerprint, stage.name, i}))
+      if (const auto segment = storage::Segment::open(files, work, name))
         add_segment(*segment, status, source);
     } catch (const Error& error) {
       if (error.code() != ErrorCode::corrupt)
@@ -112,25 +118,6 @@ std::map<std::string, double> expected_seconds(const TaskPlan& plan, const Build
   return by_task_stage;
 }
 
-std::optional<double> seconds_left(const TaskPlan& plan, const std::vector<StageStatus>& stages,
-                                   const EarlierBuild& source, storage::FileSystem& files) {
-  if (!source.is_whole)
-    return std::nullopt;
-  const BuildPlan build =
-      plan_build(plan.config, description_of(source), 0,
-                 plan_textures(source.materials, config::MissingImages::ignore, files));
-  const auto expected = expected_seconds(plan, build);
-  double took = 0, expected_done = 0, left = 0;
-  for (const StageStatus& stage : stages) {
-    const double whole = expected.at(stage.name);
-    const double done = whole * stage.done / stage.tasks;
-    took += stage.cpu_seconds;
-    expected_done += done;
-    left += whole - done;
-  }
-  return expected_done > 0 ? left * took / expected_done : left;
-}
-
 std::uint32_t count_attempts(const std::filesystem::path& work, storage::FileSystem& files) {
   const std::filesystem::path attempts = storage::attempts_path(work);
   return files.exists(attempts) ? static_cast<std::uint32_t>(files.children(attempts).size()) : 0;
@@ -141,14 +128,40 @@ std::uint32_t count_attempts(const std::filesystem::path& work, storage::FileSys
 TaskStatus task_status(const TaskPlan& plan, const std::filesystem::path& work,
                        storage::FileSystem& files) {
   TaskStatus status;
-  EarlierBuild source;
+  const std::filesystem::path segments = storage::segments_path(work);
+  std::vector<std::filesystem::path> there;
+  if (files.exists(segments))
+    there = files.children(segments);
   for (const TaskStage& stage : stages_of(plan))
-    status.stages.push_back(stage_status(plan, stage, work, files, source));
-  status.is_finished = status.stages.back().done > 0;
-  status.attempts = count_attempts(work, files);
+    status.stages.push_back(stage_status(plan, stage, work, there, files, status.source));
+  status.is_finished = is_named(plan, work, files);
   if (!status.is_finished)
-    status.cpu_seconds_left = seconds_left(plan, status.stages, source, files);
+    status.stages.back().done = 0;  // the output has not got its name
+  status.attempts = count_attempts(work, files);
   return status;
+}
+
+std::optional<double> cpu_seconds_left(const TaskStatus& status, const TaskPlan& plan,
+                                       storage::FileSystem& files) {
+  if (!status.source.is_whole || status.is_finished)
+    return std::nullopt;
+  try {
+    const BuildPlan build =
+        plan_build(plan.config, description_of(status.source), 0,
+                   plan_textures(status.source.materials, config::MissingImages::ignore, files));
+    const auto expected = expected_seconds(plan, build);
+    double took = 0, expected_done = 0, left = 0;
+    for (const StageStatus& stage : status.stages) {
+      const double whole = expected.at(stage.name);
+      const double done = whole * stage.done / stage.tasks;
+      took += stage.cpu_seconds;
+      expected_done += done;
+      left += whole - done;
+    }
+    return expected_done > 0 ? left * took / expected_done : left;
+  } catch (const Error&) {  // too little memory for this machine's share, a picture that is gone
+    return std::nullopt;
+  }
 }
 
 const StageStatus* next_stage(const TaskStatus& status) {
@@ -157,7 +170,8 @@ const StageStatus* next_stage(const TaskStatus& status) {
   return status.is_finished || next == status.stages.end() ? nullptr : &*next;
 }
 
-std::string status_text(const TaskStatus& status, const TaskPlan& plan) {
+std::string status_text(const TaskStatus& status, const TaskPlan& plan,
+                        std::optional<double> left) {
   if (status.is_finished)
     return fmt::format("finished: {}\n", plan.config.output.string());
   std::string text =
@@ -177,16 +191,14 @@ std::string status_text(const TaskStatus& status, const TaskPlan& plan) {
   }
   if (status.attempts > 0)
     text += counted(status.attempts, "tasks") + " at work, or killed\n";
-  if (status.cpu_seconds_left) {
-    text += fmt::format("about {} of CPU time left\n",
-                        execution::duration_text(*status.cpu_seconds_left));
-  }
+  if (left)
+    text += fmt::format("about {} of CPU time left\n", execution::duration_text(*left));
   if (const StageStatus* next = next_stage(status))
     text += fmt::format("next: stage {}\n", next->name);
   return text;
 }
 
-Json status_json(const TaskStatus& status, const TaskPlan& plan) {
+Json status_json(const TaskStatus& status, const TaskPlan& plan, std::optional<double> left) {
   Json stages = Json::array();
   for (const StageStatus& stage : status.stages) {
     stages.push_back({{"name", stage.name},
@@ -205,7 +217,7 @@ Json status_json(const TaskStatus& status, const TaskPlan& plan) {
   return {{"output", plan.config.output.string()},
           {"finished", status.is_finished},
           {"next", next != nullptr ? Json(next->name) : Json()},
-          {"cpu_seconds_left", status.cpu_seconds_left ? Json(*status.cpu_seconds_left) : Json()},
+          {"cpu_seconds_left", left ? Json(*left) : Json()},
           {"attempts", status.attempts},
           {"stages", stages}};
 }

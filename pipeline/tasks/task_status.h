@@ -1,6 +1,7 @@
 // How far a build in tasks is, from its sealed segments alone.
 #pragma once
 
+#include "pipeline/journal/build_journal.h"
 #include "pipeline/tasks/task_plan.h"
 #include "storage/io/file.h"
 
@@ -29,21 +30,26 @@ struct StageStatus {
 
 struct TaskStatus {
   std::vector<StageStatus> stages;  ///< in their order
-  bool is_finished = false;         ///< segments of other stages are gone then
+  bool is_finished = false;         ///< and the output named; other segments are gone then
   std::uint32_t attempts = 0;       ///< tasks at work, or killed
-  /// CPU seconds that the tasks which are not done may take, from what the others took; none until
-  /// the input is read.
-  std::optional<double> cpu_seconds_left;
+  EarlierBuild source;              ///< whole when the stage `read` is done
 };
 
 /// Throws Error(io).
 TaskStatus task_status(const TaskPlan& plan, const std::filesystem::path& work,
                        storage::FileSystem& files);
 
+/// CPU seconds that the tasks which are not done may take, from what the others took; none until
+/// the input is read, or if its pictures cannot be.
+std::optional<double> cpu_seconds_left(const TaskStatus& status, const TaskPlan& plan,
+                                       storage::FileSystem& files);
+
 /// The first stage that is not complete; null if all is done.
 const StageStatus* next_stage(const TaskStatus& status);
 
-std::string status_text(const TaskStatus& status, const TaskPlan& plan);
-nlohmann::ordered_json status_json(const TaskStatus& status, const TaskPlan& plan);
+/// `left`: cpu_seconds_left().
+std::string status_text(const TaskStatus& status, const TaskPlan& plan, std::optional<double> left);
+nlohmann::ordered_json status_json(const TaskStatus& status, const TaskPlan& plan,
+                                   std::optional<double> left);
 
 }  // namespace meshhier::pipeline

@@ -66,6 +66,17 @@ std::unique_ptr<Segment> Segment::open(FileSystem& files, const std::filesystem:
   return std::unique_ptr<Segment>(new Segment(files.open(path), name));
 }
 
+bool Segment::is_whole(FileSystem& files, const std::filesystem::path& work,
+                       const SegmentName& name) {
+  try {
+    return open(files, work, name) != nullptr;
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::corrupt)
+      throw;
+    return false;
+  }
+}
+
 Segment::Segment(std::unique_ptr<File> file, const SegmentName& name)
     : path_(file->path()), file_(std::move(file)) {
   const std::uint64_t size = file_->size();

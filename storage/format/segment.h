@@ -58,6 +58,10 @@ class Segment {
   static std::unique_ptr<Segment> open(FileSystem& files, const std::filesystem::path& work,
                                        const SegmentName& name);
 
+  /// Whether it is there and sealed; false also if what is there is damaged. Throws Error(io).
+  static bool is_whole(FileSystem& files, const std::filesystem::path& work,
+                       const SegmentName& name);
+
   /// Calls visit(entry) for each, in order. Throws Error(corrupt) if it is false for one.
   void for_each(const std::function<bool(const EntrySink::Entry&)>& visit) const;
 

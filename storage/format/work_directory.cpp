@@ -277,7 +277,7 @@ void WorkDirectory::replace(const fs::path& from) {
 void WorkDirectory::sync_names() {
   if (output_.container == Container::archive)
     files_.remove_all(built());  // or the disk takes them too, for nothing
-  files_.sync_tree(path_);       // which is beside the output
+  files_.sync_tree(path_);       // which is on the output's file system
 }
 
 }  // namespace meshhier::storage

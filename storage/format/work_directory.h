@@ -54,8 +54,8 @@ class WorkDirectory {
   WorkDirectory(FileSystem& files, Output output, bool replace, std::filesystem::path shared);
   WorkDirectory(const WorkDirectory&) = delete;
   WorkDirectory& operator=(const WorkDirectory&) = delete;
-  /// Removes the directory and all in it, and directories made above it, unless it is kept or
-  /// published.
+  /// Removes the directory and all in it, and directories made above it, unless it is kept,
+  /// published or shared.
   ~WorkDirectory();
 
   const std::filesystem::path& path() const {

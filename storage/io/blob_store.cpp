@@ -65,7 +65,8 @@ void BlobStore::copy(std::size_t index, std::span<std::byte> bytes) const {
   if (checked.load(std::memory_order_relaxed) != 0)
     return read(index, 0, bytes);
   const BlobView whole = view(index);
-  assert(bytes.size() <= whole.bytes().size());
+  if (bytes.size() > whole.bytes().size())
+    throw scratch_->changed(blobs_[index].stored.offset);
   std::ranges::copy(whole.bytes().first(bytes.size()), bytes.begin());
   checked.store(1, std::memory_order_relaxed);
 }

@@ -239,6 +239,14 @@ class PosixFileSystem final : public FileSystem {
       return false;
     if (!is_inability(errno))
       fail_system("rename to", to, errno);
+    if (!is_directory(from)) {  // a second name is as good: NFS has no RENAME_NOREPLACE
+      if (::link(from.c_str(), to.c_str()) == 0) {
+        ::unlink(from.c_str());
+        return true;
+      }
+      if (errno == EEXIST)
+        return false;
+    }
     if (exists(to))
       return false;
     rename(from, to);

@@ -50,16 +50,18 @@ void ScratchFile::sync(const std::function<void()>& check) {
 }
 
 void ScratchFile::mount(std::unique_ptr<File> file) {
+  if (mounted_.size() == kMostMounted)
+    throw Error(ErrorCode::io, path_.string() + ": too many files are read beside it");
   mounted_.push_back(std::move(file));
 }
 
 Error ScratchFile::changed(std::uint64_t offset) const {
-  const std::filesystem::path& path = is_mounted(offset) ? file_at(offset).path() : path_;
-  const char* const advice = is_mounted(offset) ? "; remove it, and run its task again" : "";
-  return {ErrorCode::io, path.string() +
-                             " is not what was written to it: the disk, or another program, "
-                             "changed it" +
-                             advice};
+  constexpr const char* kWhat =
+      " is not what was written to it: the disk, or another program, changed it";
+  if (!is_mounted(offset))
+    return {ErrorCode::io, path_.string() + kWhat};
+  return {ErrorCode::corrupt,
+          file_at(offset).path().string() + kWhat + "; remove it, and run its task again"};
 }
 
 bool ScratchFile::claim(std::uint64_t offset, std::uint64_t bytes) {
@@ -99,6 +101,8 @@ std::uint64_t ScratchFile::append(std::span<const std::byte> bytes) {
       free->second.pop_back();
     }
   }
+  if (offset + bytes.size() > kOffsetMask)
+    throw Error(ErrorCode::io, path_.string() + " would be larger than 16 TiB");
   file->write_at(offset, bytes);
   pool_.scratch_use().add_written(bytes.size());
   if (grows)

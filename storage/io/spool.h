@@ -80,13 +80,16 @@ class ScratchFile {
 
   /// Another file's bytes, which stay as they are, behind this one's own: what is said to lie at
   /// `offset` of that file lies at placed(offset) here, until the next mount(). Each stays open.
+  /// Throws Error(io) if there are too many.
   void mount(std::unique_ptr<File> file);
+  /// claim() refuses what no file can have.
   std::uint64_t placed(std::uint64_t offset) const {
-    return (mounted_.size() << kPlaceBits) + offset;
+    return offset <= kOffsetMask ? (mounted_.size() << kPlaceBits) + offset : kNowhere;
   }
   /// Whether it lies in a file that was mounted.
   static bool is_mounted(std::uint64_t offset) { return offset >> kPlaceBits > 0; }
-  /// Error(io): what lies at `offset` is not what was written there.
+  /// What lies at `offset` is not what was written there: Error(io), or Error(corrupt) of a mounted
+  /// file.
   Error changed(std::uint64_t offset) const;
   /// Forces what was appended to the disk; `check` as for File::sync(). While others append, what
   /// was there before.
@@ -101,6 +104,9 @@ class ScratchFile {
  private:
   static constexpr int kPlaceBits = 44;  // 16 TiB for each file
   static constexpr std::uint64_t kOffsetMask = (std::uint64_t{1} << kPlaceBits) - 1;
+  static constexpr std::uint64_t kMostMounted = std::uint64_t{1}
+                                                << 18;  // a spool's block has 63 bits
+  static constexpr std::uint64_t kNowhere = (kMostMounted + 1) << kPlaceBits;
 
   const File& file_at(std::uint64_t offset) const {
     return is_mounted(offset) ? *mounted_[(offset >> kPlaceBits) - 1] : *file_;

@@ -62,7 +62,10 @@ TEST(WorkerTest, ASlurmArrayCountsFromItsFirst) {
   EXPECT_EQ(found(array("8", "1", "8", "1", "8")), "7 of 8");
   EXPECT_EQ(found(array("6", "0", "8", "2", "5")), "3 of 5");
   EXPECT_EQ(found(array("7", "3", "7", "1", "2")), "7 of 8") << "some are run again";
-  EXPECT_EQ(found({{"SLURM_ARRAY_TASK_ID", "3"}}), "3 of 4");
+  EXPECT_EQ(found(array("5", "5", "5", "1", "1")), "5 of 8") << "one is run again";
+  EXPECT_EQ(found(array("4", "3", "5", "1", "3")), "4 of 8") << "some are";
+  EXPECT_EQ(found(array("9", "9", "9", "1", "1")), "9 of 10");
+  EXPECT_EQ(found({{"SLURM_ARRAY_TASK_ID", "3"}}), "3 of 8");
 }
 
 TEST(WorkerTest, StepsOfAnArrayShareItsPart) {
