@@ -41,13 +41,16 @@ function filled(template, inputs = {}) {
   return result;
 }
 
+const pod = path.join(folder, "tmp/");
+fs.mkdirSync(pod, { recursive: true });
 const bin = path.join(folder, "bin");
 fs.mkdirSync(bin, { recursive: true });
 fs.symlinkSync(program, path.join(bin, "meshhier"));
 
 function run(container, environment = {}, inputs = {}) {
   const [command, ...fixed] = container.command;
-  const args = [...fixed, ...container.args].map((argument) => filled(String(argument), inputs));
+  // Of a pod /tmp is its own.
+  const args = [...fixed, ...container.args].map((argument) => filled(String(argument), inputs).replaceAll("/tmp/", pod));
   return execFileSync(command, args, {
     env: { PATH: `${bin}:${process.env.PATH}`, ...environment },
     encoding: "utf8",
@@ -58,7 +61,7 @@ run(templates.get("plan").container);
 const ran = [];
 for (;;) {
   run(templates.get("next").container);
-  const [stage, count] = ["stage", "count"].map((name) => fs.readFileSync(`/tmp/${name}`, "utf8").trim());
+  const [stage, count] = ["stage", "count"].map((name) => fs.readFileSync(`${pod}${name}`, "utf8").trim());
   if (stage === "") break;
   require_true(!ran.includes(stage), `stage ${stage} is complete after its Job`);
   ran.push(stage);
