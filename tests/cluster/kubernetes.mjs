@@ -50,7 +50,8 @@ fs.symlinkSync(program, path.join(bin, "meshhier"));
 function run(container, environment = {}, inputs = {}) {
   const [command, ...fixed] = container.command;
   // Of a pod /tmp is its own.
-  const args = [...fixed, ...container.args].map((argument) => filled(String(argument), inputs).replaceAll("/tmp/", pod));
+  const args = [...fixed, ...container.args].map((argument) =>
+    filled(String(argument).replaceAll("/tmp/", pod), inputs));
   return execFileSync(command, args, {
     env: { PATH: `${bin}:${process.env.PATH}`, ...environment },
     encoding: "utf8",
