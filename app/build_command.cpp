@@ -21,6 +21,7 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 namespace meshhier::app {
 
@@ -49,6 +50,22 @@ storage::OutputRequest output_request(const std::string& path, const BuildArgume
   request.inputs.push_back(config.output);
   request.inputs.insert(request.inputs.end(), arguments.named.begin(), arguments.named.end());
   return request;
+}
+
+/// What was written to the one would go when the other gets its name.
+void require_two_files(const BuildArguments& arguments, storage::FileSystem& files) {
+  if (arguments.stats.empty() || arguments.input_note.empty())
+    return;
+  const bool are_standard_output = storage::is_standard_output(files, arguments.stats) &&
+                                   storage::is_standard_output(files, arguments.input_note);
+  const bool is_one_file =
+      files.canonical(arguments.stats) == files.canonical(arguments.input_note) &&
+      files.kind(arguments.stats) != storage::FileKind::stream;
+  if (are_standard_output || is_one_file) {
+    throw Error(
+        ErrorCode::usage,
+        fmt::format("--stats and --input-note both name {}; name two files", arguments.input_note));
+  }
 }
 
 /// Only an older note, or what --force may replace; checked before the build, and after it.
@@ -104,6 +121,15 @@ std::string serve_line(const config::Config& config, const std::string& program)
   return shell_word(program) + " serve " + shell_word(folder) + " --open";
 }
 
+std::vector<std::filesystem::path> others_of(const BuildArguments& arguments) {
+  std::vector<std::filesystem::path> others;
+  for (const std::string& path : {arguments.stats, arguments.input_note}) {
+    if (!path.empty() && path != storage::kStandardOutput)
+      others.emplace_back(path);
+  }
+  return others;
+}
+
 /// Null if all files may be read.
 std::unique_ptr<storage::FileSystem> guarded_files(const BuildArguments& arguments) {
   if (!arguments.within.empty())
@@ -127,6 +153,7 @@ int run_build(const BuildArguments& arguments, execution::ProgressMode mode,
       config::load_named(files, {arguments.named.begin(), arguments.named.end()}, std::move(words));
   if (arguments.dry_run)
     return run_estimate(config, arguments, environment);
+  require_two_files(arguments, environment.files);
   std::optional<storage::OutputFile> stats;
   if (!arguments.stats.empty()) {
     stats.emplace(environment.files, output_request(arguments.stats, arguments, config),
@@ -136,7 +163,7 @@ int run_build(const BuildArguments& arguments, execution::ProgressMode mode,
     note_request(arguments, config, environment.files);
   const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
   const pipeline::BuildReport report =
-      pipeline::build_hierarchy(config, {arguments.force, arguments.restart},
+      pipeline::build_hierarchy(config, {arguments.force, arguments.restart, others_of(arguments)},
                                 {environment.files, *progress, environment.cancel});
   progress->finish(config.output.string());
   if (stats)

@@ -107,7 +107,7 @@ void check_build(const config::Config& config, bool replace, const importing::Me
                  storage::FileSystem& files) {
   check_apart(config, files);
   storage::check_output(files, {config.output, config.storage.container}, replace);
-  check_place(config.output, files);
+  storage::check_place(files, config.output);
   if (is_read_before_plan(input, config))
     check_import_disk(import_disk(input, config), config.output, files);
   else
@@ -143,7 +143,7 @@ void check_one_file_system(const fs::path& work, const fs::path& output,
                            storage::FileSystem& files) {
   const fs::path name = storage::unique_name();
   const fs::path from = storage::attempts_path(work) / name;
-  const fs::path to = existing_directory(output, files) / ("." + name.string());
+  const fs::path to = storage::existing_directory(files, output) / ("." + name.string());
   storage::write_file(files, from, {});
   try {
     files.rename(from, to);
