@@ -1322,6 +1322,17 @@ TEST_F(CommandLine, AResultThatCannotBeWrittenIsAFailure) {
   EXPECT_THAT(outcome.messages, HasSubstr("standard output"));
 }
 
+TEST_F(CommandLine, HelpThatCannotBeWrittenIsAFailure) {
+  if (!std::filesystem::exists("/dev/full"))
+    GTEST_SKIP() << "there is no /dev/full here";
+  for (const Arguments& arguments :
+       {Arguments{"--help"}, {"--version"}, {"build", "--help"}, {"build", "--help-config"}}) {
+    const Outcome outcome = run(arguments, "/dev/full");
+    EXPECT_EQ(outcome.code, kIo) << arguments[0];
+    EXPECT_THAT(outcome.messages, HasSubstr("standard output"));
+  }
+}
+
 // ---- interruption
 
 /// A pipe that is full: whoever writes to it waits until the test reads.
