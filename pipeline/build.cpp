@@ -130,6 +130,7 @@ BuildReport run_stages(importing::MeshInput& input, storage::WorkDirectory& work
   const storage::HierarchyReader made(files, work.built());
   BuildOutcome outcome{.found = open.found,
                        .output_bytes = bytes_of(made, files),
+                       .has_area = has_area(made, context.cancel),
                        .predicted = predicted,
                        .input = workshop.journal.source()->input};
   context.cancel.check();

@@ -128,14 +128,15 @@ std::string name_hierarchy(const TaskPlan& plan, const fs::path& work, storage::
     shared.publish();
   }
   remove_what_is_not_needed(plan, work, files);
-  return in_hierarchy(files, output.path, output.container,
-                      [&](storage::FileSystem& in, const fs::path& path) {
-                        const storage::HierarchyReader made(in, path);
-                        const std::uint64_t bytes = output.container == storage::Container::archive
-                                                        ? files.open(path)->size()
-                                                        : bytes_of(in, made);
-                        return made_text(made, path, bytes) + notes_text(made, plan.config);
-                      });
+  return in_hierarchy(
+      files, output.path, output.container, [&](storage::FileSystem& in, const fs::path& path) {
+        const storage::HierarchyReader made(in, path);
+        const std::uint64_t bytes = output.container == storage::Container::archive
+                                        ? files.open(path)->size()
+                                        : bytes_of(in, made);
+        return made_text(made, path, bytes) +
+               notes_text(made, plan.config, has_area(made, execution::CancelToken()));
+      });
 }
 
 }  // namespace meshhier::pipeline

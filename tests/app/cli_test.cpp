@@ -505,6 +505,11 @@ TEST_F(CommandLine, ABuildThatShowsNothingWarns) {
       {vertices + "0" + lists + corners, "no triangles: viewers show nothing of points alone"},
       {vertices + "1" + lists + corners + "3 0 0 1\n", "all triangles of the mesh are degenerate"},
       {vertices + "1" + lists + point + "3 0 1 2\n", "all vertices of the mesh are at one point"},
+      {vertices + "2" + lists + "0 0 0\n1 0 0\n2 0 0\n3 0 0\n" + "3 0 1 2\n3 1 3 2\n",
+       "no triangle of the mesh has an area"},
+      {vertices + "2" + lists + "9 7 5\n9.1 7.3 5.7\n9.2 7.6 6.4\n9.3 7.9 7.1\n" +
+           "3 0 1 2\n3 1 3 2\n",
+       "no triangle of the mesh has an area"},
       {vertices + "3" + lists + corners + "3 0 0 1\n3 0 1 1\n3 0 1 2\n", "most triangles"},
   };
   for (const auto& [mesh, warning] : meshes) {
@@ -517,6 +522,9 @@ TEST_F(CommandLine, ABuildThatShowsNothingWarns) {
              "OFF\n7 1 0\n0 0 0\n1 0 0\n0 1 0\n5 5 5\n6 5 5\n5 6 5\n6 6 6\n3 0 1 2\n");
   EXPECT_THAT(run({"build", (work() / "a.off").string(), "--force"}).out,
               HasSubstr("warning: most vertices of the mesh belong to no triangle"));
+  write_text(work() / "a.off", "OFF\n4 2 0\n0 0 0\n1 0 0\n2 0 0\n2 0.001 0\n3 0 1 2\n3 0 2 3\n");
+  EXPECT_THAT(run({"build", (work() / "a.off").string(), "--force"}).out,
+              Not(HasSubstr("warning")));
 }
 
 TEST_F(CommandLine, AnAccountThatCannotBeWrittenIsRefusedBeforeTheBuild) {
