@@ -21,6 +21,7 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 namespace meshhier::app {
 
@@ -36,6 +37,7 @@ struct BuildArguments {
   bool restart = false;
   bool verbose = false;  ///< also the account
   bool no_links = false;
+  std::string within;  ///< the folder that holds all input; empty: anywhere
   bool dry_run = false;
   bool json = false;        ///< the estimate as JSON
   std::string help_config;  ///< one of kReferences, or empty
@@ -50,13 +52,31 @@ storage::OutputRequest output_request(const std::string& path, const BuildArgume
   return request;
 }
 
+/// What was written to the one would go when the other gets its name.
+void require_two_files(const BuildArguments& arguments, storage::FileSystem& files) {
+  if (arguments.stats.empty() || arguments.input_note.empty())
+    return;
+  const bool are_standard_output = storage::is_standard_output(files, arguments.stats) &&
+                                   storage::is_standard_output(files, arguments.input_note);
+  const bool is_one_file =
+      files.canonical(arguments.stats) == files.canonical(arguments.input_note) &&
+      files.kind(arguments.stats) != storage::FileKind::stream;
+  if (are_standard_output || is_one_file) {
+    throw Error(
+        ErrorCode::usage,
+        fmt::format("--stats and --input-note both name {}; name two files", arguments.input_note));
+  }
+}
+
 /// Only an older note, or what --force may replace; checked before the build, and after it.
 storage::OutputRequest note_request(const BuildArguments& arguments, const config::Config& config,
                                     storage::FileSystem& files) {
   storage::OutputRequest request = output_request(arguments.input_note, arguments, config);
-  if (request.replace || files.kind(request.path) != storage::FileKind::regular)
+  if (files.kind(request.path) != storage::FileKind::regular)
     return request;
   storage::require_apart(files, request.path, request.inputs);
+  if (request.replace)
+    return request;
   try {
     storage::read_input_note(*files.open(request.path), arguments.input_note);
     request.replace = true;  // it says which hierarchy it belongs to
@@ -101,11 +121,26 @@ std::string serve_line(const config::Config& config, const std::string& program)
   return shell_word(program) + " serve " + shell_word(folder) + " --open";
 }
 
+std::vector<std::filesystem::path> others_of(const BuildArguments& arguments) {
+  std::vector<std::filesystem::path> others;
+  for (const std::string& path : {arguments.stats, arguments.input_note}) {
+    if (!path.empty() && path != storage::kStandardOutput)
+      others.emplace_back(path);
+  }
+  return others;
+}
+
+/// Null if all files may be read.
+std::unique_ptr<storage::FileSystem> guarded_files(const BuildArguments& arguments) {
+  if (!arguments.within.empty())
+    return storage::make_posix_file_system({false, arguments.within});
+  return arguments.no_links ? storage::make_posix_file_system({false, std::nullopt}) : nullptr;
+}
+
 int run_build(const BuildArguments& arguments, execution::ProgressMode mode,
               const Environment& around) {
-  const auto without_links =
-      arguments.no_links ? storage::make_posix_file_system(storage::Links::refused) : nullptr;
-  Environment environment{without_links ? *without_links : around.files,
+  const auto guarded = guarded_files(arguments);
+  Environment environment{guarded ? *guarded : around.files,
                           around.cancel,
                           around.out,
                           around.messages,
@@ -113,10 +148,12 @@ int run_build(const BuildArguments& arguments, execution::ProgressMode mode,
                           around.program};
   config::CommandLine words(arguments.settings);
   words.output = arguments.output;
-  const config::Config config = config::load_named(
-      environment.files, {arguments.named.begin(), arguments.named.end()}, std::move(words));
+  storage::FileSystem& files = arguments.no_links ? environment.files.input() : environment.files;
+  const config::Config config =
+      config::load_named(files, {arguments.named.begin(), arguments.named.end()}, std::move(words));
   if (arguments.dry_run)
     return run_estimate(config, arguments, environment);
+  require_two_files(arguments, environment.files);
   std::optional<storage::OutputFile> stats;
   if (!arguments.stats.empty()) {
     stats.emplace(environment.files, output_request(arguments.stats, arguments, config),
@@ -126,7 +163,7 @@ int run_build(const BuildArguments& arguments, execution::ProgressMode mode,
     note_request(arguments, config, environment.files);
   const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
   const pipeline::BuildReport report =
-      pipeline::build_hierarchy(config, {arguments.force, arguments.restart},
+      pipeline::build_hierarchy(config, {arguments.force, arguments.restart, others_of(arguments)},
                                 {environment.files, *progress, environment.cancel});
   progress->finish(config.output.string());
   if (stats)
@@ -194,7 +231,15 @@ void add_build_command(CLI::App& parser, Invocation& invocation) {
                     "Throw away what an earlier build of this output, which was stopped, had done");
   command->add_flag("--verbose", arguments->verbose,
                     "Also print what each stage took of time, memory and disk");
-  command->add_flag("--no-links", arguments->no_links, "Refuse an input file that is a link");
+  CLI::Option* no_links =
+      command->add_flag("--no-links", arguments->no_links,
+                        "Refuse input files and configs with a link in their paths");
+  command
+      ->add_option("--within", arguments->within,
+                   "Read no input file that lies outside this folder, or behind a link in it")
+      ->type_name("FOLDER")
+      ->check(name_fault)
+      ->excludes(no_links);
   CLI::Option* dry_run =
       command->add_flag("--dry-run", arguments->dry_run,
                         "Read only the mesh's header (or import it to count it); "

@@ -177,8 +177,10 @@ int run(int argc, char** argv) {
   try {
     parser.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    // --help and --version arrive here too, with code 0.
-    return error.get_exit_code() == 0 ? parser.exit(error) : report_mistake(error.what(), as_json);
+    if (error.get_exit_code() != 0)
+      return report_mistake(error.what(), as_json);
+    invocation.run = [&](Environment&) { return parser.exit(error); };  // --help and --version
+    return execute_guarded(invocation);
   }
   return execute_guarded(invocation);
 }

@@ -46,6 +46,7 @@ bool is_config(storage::FileSystem& files, const fs::path& path) {
     return true;
   if (is_mesh_name(path.filename().string()))
     return false;
+  files.input().open(path);  // what must not be read is not quoted
   throw Error(
       ErrorCode::usage,
       fmt::format("{}: expected a mesh (PLY, OBJ, glTF, STL or OFF, perhaps in gzip) or a "

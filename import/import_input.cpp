@@ -37,7 +37,7 @@ class Import {
       : input_(input),
         env_(environment),
         room_{environment.scratch, environment.sort_bytes, environment.cancel},
-        named_(environment.files),
+        named_(input.system()),
         mesh_(environment.scratch) {}
 
   ImportFacts run(TemporaryFile& ply) {
@@ -80,7 +80,7 @@ class Import {
   /// Reads the file's content by `read(stream)`, and its checksum on the way.
   template <class Read>
   void read_stream(const InputFileFacts& facts, const Read& read) {
-    const auto file = env_.files.open(facts.path);
+    const auto file = input_.system().open(facts.path);
     const std::uint64_t bytes = file->size();
     storage::FileChecksum checksum(bytes);
     const auto stream =
@@ -99,7 +99,7 @@ class Import {
       all.add(library);
     for (const images::ImageSource& picture : mesh_.materials.list().images) {
       if (!picture.file.empty() && picture.bytes == 0)
-        all.add({picture.file, InputPart::picture, env_.files.identity(picture.file)});
+        all.add({picture.file, InputPart::picture, input_.system().identity(picture.file)});
     }
     all.await(mesh_.materials.companions().awaited());
     input_.set_companions(std::move(all));
@@ -191,7 +191,7 @@ class Import {
 
   Added add_ply(const InputFileFacts& facts, const std::filesystem::path& room) {
     if (!facts.format.is_gzip) {
-      const auto source = mesh_io::make_ply_source(env_.files.open(facts.path));
+      const auto source = mesh_io::make_ply_source(input_.system().open(facts.path));
       const Added added = add_plain_ply(*source, facts.path);
       checksums_.push_back(source->checksum([this] { env_.cancel.check(); }));
       env_.progress.advance(facts.identity.bytes);
@@ -235,8 +235,8 @@ class Import {
 
   Added add_gltf(const InputFileFacts& facts, const std::filesystem::path& room) {
     if (!facts.format.is_gzip) {
-      const Added added = add_plain_gltf(facts, env_.files.open(facts.path));
-      const auto file = env_.files.open(facts.path);
+      const Added added = add_plain_gltf(facts, input_.system().open(facts.path));
+      const auto file = input_.system().open(facts.path);
       checksums_.push_back(
           storage::FileChecksum(file->size()).complete(*file, [this] { env_.cancel.check(); }));
       env_.progress.advance(facts.identity.bytes);
@@ -252,7 +252,7 @@ class Import {
     constexpr std::uint64_t kLeast = 4 * kImportMiB;
     mesh_io::GltfFile file(
         std::move(content), facts.path.parent_path(),
-        {env_.files, env_.scratch, std::max(2 * room_.sort_bytes, kLeast),
+        {input_.system(), env_.scratch, std::max(2 * room_.sort_bytes, kLeast),
          facts.format.is_gzip ? mesh_io::GltfContent::temporary : mesh_io::GltfContent::lasting,
          [this] { env_.cancel.check(); }});
     const GltfImport import = import_gltf(file, mesh_, input_.textures(), room_);

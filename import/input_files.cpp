@@ -30,16 +30,16 @@ bool names_textures(const storage::File& file, const mesh_io::MeshFormat& format
 
 InputFiles::InputFiles(storage::FileSystem& files, const mesh_io::InputPaths& paths, bool weld,
                        Textures textures)
-    : files_(files), weld_(weld), textures_(textures) {
+    : files_(files.input()), weld_(weld), textures_(textures) {
   for (const std::filesystem::path& path : paths) {
-    if (files.is_directory(path)) {
+    if (files_.is_directory(path)) {
       throw Error(ErrorCode::io, path.string() +
                                      " is a folder; name the mesh in it (PLY, OBJ, glTF, STL "
                                      "or OFF)");
     }
-    const auto file = files.open(path);
+    const auto file = files_.open(path);
     const mesh_io::MeshFormat format = mesh_io::detect_format(*file);
-    InputFileFacts facts{path, format, files.identity(path)};
+    InputFileFacts facts{path, format, files_.identity(path)};
     facts.names_textures = textures == Textures::use && names_textures(*file, format);
     all_.push_back(std::move(facts));
     find_buffers(all_.back(), *file);

@@ -34,10 +34,12 @@ struct InputFileFacts {
 
 class InputFiles {
  public:
-  /// Looks at what each file is. Throws as mesh_io::detect_format.
+  /// Looks at what each file is. All is read by files.input(). Throws as mesh_io::detect_format.
   InputFiles(storage::FileSystem& files, const mesh_io::InputPaths& paths, bool weld,
              Textures textures = Textures::use);
 
+  /// Where all of them lie.
+  storage::FileSystem& system() const { return files_; }
   /// The meshes.
   const std::vector<InputFileFacts>& all() const { return all_; }
   /// What belongs to them: buffers of glTF files that are there; libraries and pictures as well
@@ -94,7 +96,7 @@ class InputFiles {
       visit(companion.path, companion.part, companion.identity);
   }
 
-  storage::FileSystem& files_;
+  storage::FileSystem& files_;  ///< that may refuse what it is asked for
   std::vector<InputFileFacts> all_;
   Companions companions_;
   bool weld_;

@@ -14,7 +14,7 @@ MeshInput::MeshInput(const mesh_io::InputPaths& paths, bool weld, storage::FileS
     : system_(files), input_(files, paths, weld, textures) {
   if (needs_import())
     return;
-  in_place_ = mesh_io::open_mesh(files, paths[0]);
+  in_place_ = mesh_io::open_mesh(files.input(), paths[0]);
   description_ = in_place_->description();
 }
 

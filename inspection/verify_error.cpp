@@ -31,13 +31,11 @@ constexpr std::size_t kBatchSamples = 131072;
 /// Positions and bounds are floats, rounded by up to 2^-24 of the coordinate in each axis at every
 /// level, and measured in doubles. 1e-6 of the largest coordinate is 17 such roundings.
 constexpr double kRounding = 1e-6;
+/// Means are less by far: half of it in each axis at each level, most of which evens out.
+constexpr double kMeanRounding = 0x1p-24;
 /// An error is an estimate of the root of the mean square, counted by vertices, or by area if that
 /// is far more: means by area are a half of it as a rule.
 constexpr double kMostMean = 2;
-/// Distances of vertices make it: where all of them lie on the new surface and its triangles do
-/// not, as along the lines of a ruled one, it is too small. A mean of less than this part of the
-/// bound is left alone.
-constexpr double kSmallPart = 1.0 / 64;
 
 /// Streams of random numbers: samples of the two surfaces must not be alike.
 constexpr std::uint64_t kForwardStream = 1;
@@ -230,6 +228,14 @@ double slack_of(const MeasureJob& job, const CutSurface& shown) {
                               largest_coordinate(shown.total().bounds));
 }
 
+/// What a mean of distances may be off by: vertices are rounded at each level above the partitions.
+double mean_slack_of(const MeasureJob& job, const CutSurface& shown) {
+  int steps = 1;
+  for (const NodeId node : shown.cut().nodes())
+    steps = std::max(steps, raw(job.reader.tree().depth()) - raw(node.level));
+  return steps * kMeanRounding / kRounding * slack_of(job, shown);
+}
+
 /// Bounds and errors hold to the input; quantized partitions, the original here, are so far away.
 double rounding_of(const MeasureJob& job) {
   const auto& quantization = job.reader.manifest().quantization;
@@ -242,8 +248,7 @@ void check_errors(const MeasureJob& job, const CutSurface& shown, const Distance
   for (const DistanceTally* tally : {&forward, &backward}) {
     const double told = tally->mean_error();
     result.error = std::max(result.error, told);
-    const double believed = std::max(kMostMean * told, kSmallPart * result.bound);
-    if (tally->least_mean() <= believed + rounding_of(job) + slack_of(job, shown))
+    if (tally->least_mean() <= kMostMean * told + rounding_of(job) + mean_slack_of(job, shown))
       continue;
     result.problems.push_back(fmt::format(
         "{}: {} is off by {:.6g} on average, more than twice the {:.6g} that its tiles' errors say",

@@ -14,6 +14,7 @@
 #include "pipeline/stage_costs.h"
 #include "pipeline/texture_stage.h"
 #include "storage/format/layout.h"
+#include "storage/format/work_directory.h"
 
 #include <future>
 #include <optional>
@@ -67,7 +68,7 @@ BuildReport build_hierarchy(const config::Config& asked, const BuildOptions& opt
                                          thread_count(config));
   const storage::Output output(config.output, config.storage.container);
   storage::check_output(files, output, options.force);
-  check_place(config.output, files);
+  storage::check_place(files, config.output);
   if (plan)
     check_disk(plan->disk, config.output, files);
   else
@@ -80,6 +81,7 @@ BuildReport build_hierarchy(const config::Config& asked, const BuildOptions& opt
   StageMeter meter({environment.progress, files.counters(), pool.scratch_use()});
   if (!plan)
     plan = import_and_plan(input, work, pool, config, {files, meter, environment.cancel});
+  check_apart(input.files().companions(), config, options.others, files);
   try {
     return run_stages(input, work, pool, meter, {config, *plan, files, meter, environment.cancel});
   } catch (const Error& error) {
@@ -126,8 +128,11 @@ BuildReport run_stages(importing::MeshInput& input, storage::WorkDirectory& work
   if (!workshop.journal.is_complete())
     predicted = make_hierarchy(workshop, work.built(), context);
   const storage::HierarchyReader made(files, work.built());
-  BuildOutcome outcome{open.found, bytes_of(made, files), 0, predicted,
-                       workshop.journal.source()->input};
+  BuildOutcome outcome{.found = open.found,
+                       .output_bytes = bytes_of(made, files),
+                       .has_area = has_area(made, context.cancel),
+                       .predicted = predicted,
+                       .input = workshop.journal.source()->input};
   context.cancel.check();
   if (context.config.storage.container == storage::Container::archive) {
     use.add_written(written_for_good(files, use) - before);

@@ -5,15 +5,20 @@
 #include "pipeline/build_report.h"
 #include "pipeline/plan/stage_context.h"
 
+#include <filesystem>
+#include <vector>
+
 namespace meshhier::pipeline {
 
 struct BuildOptions {
   bool force = false;    ///< replace an existing output
   bool restart = false;  ///< throw away what an earlier build of the output left
+  std::vector<std::filesystem::path> others{};  ///< files that its caller writes, besides
 };
 
 /// Builds config.output from config.input. An existing output is Error(exists), unless it is to be
-/// replaced, and then as it was until the new one is complete.
+/// replaced, and then as it was until the new one is complete. It is Error(usage) if a file of the
+/// input would be replaced, by the output or by one of the others.
 ///
 /// What is done is noted on disk, beside the output, as soon as the triangles are distributed. If a
 /// build is stopped after that, by Error(interrupted), Error(io) or a kill, it stays there, and the

@@ -4,9 +4,13 @@
 #include "config/placement.h"
 #include "execution/size_text.h"
 #include "hierarchy/plain_text.h"
+#include "hierarchy/widest_corner.h"
 #include "import/import_input.h"
 #include "storage/format/level_summary.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 
 #include <fmt/format.h>
@@ -46,7 +50,7 @@ BuildStats make_stats(const storage::HierarchyReader& made, const StageContext& 
 }
 
 /// What makes a hierarchy of which a viewer shows nothing, or less than its maker may think.
-std::string warning_text(const SourceSummary& source) {
+std::string warning_text(const SourceSummary& source, bool has_area) {
   std::string text;
   const auto warn = [&](const std::string& what) { text += "warning: " + what + '\n'; };
   if (source.triangles == 0 && source.faces == 0)
@@ -55,11 +59,31 @@ std::string warning_text(const SourceSummary& source) {
     warn("all triangles of the mesh are degenerate: viewers show nothing");
   else if (source.diagonal() == 0)
     warn("all vertices of the mesh are at one point: viewers show nothing");
+  else if (!has_area)
+    warn("no triangle of the mesh has an area, their corners lie on lines: viewers show nothing");
   else if (source.degenerate_triangles > source.triangles)
     warn("most triangles of the mesh are degenerate");
   if (source.triangles > 0 && source.unreferenced_vertices > source.vertices / 2)
     warn("most vertices of the mesh belong to no triangle");
   return text;
+}
+
+/// Corners are rounded by up to 2^-24 of their largest coordinate in each axis, which moves one by
+/// less than 2^-23 from the line of the others, and these likewise.
+bool has_area(const TileMesh& mesh) {
+  constexpr double kRounding = 0x1p-21;
+  const auto is_wide = [&](const TileTriangle& triangle) {
+    const auto corner = [&](int k) { return mesh.vertices.positions[raw(triangle[k])]; };
+    float largest = 0;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3f p = corner(k);
+      largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    }
+    const auto [first, second, third] = widest_first(corner(0), corner(1), corner(2));
+    return length(cross(second - first, third - first)) >
+           kRounding * largest * length(third - second);
+  };
+  return std::ranges::any_of(mesh.interior, is_wide) || std::ranges::any_of(mesh.border, is_wide);
 }
 
 std::string placement_text(const storage::Manifest& made, const config::Config& config) {
@@ -105,7 +129,15 @@ std::string made_text(const storage::HierarchyReader& made, const std::filesyste
       counted(made.records().size(), "tiles"), execution::rounded_size_text(output_bytes));
 }
 
-std::string notes_text(const storage::HierarchyReader& made, const config::Config& config) {
+bool has_area(const storage::HierarchyReader& made, const execution::CancelToken& cancel) {
+  return std::ranges::any_of(made.records(), [&](const TileRecord& record) {
+    cancel.check();
+    return has_area(made.read_tile(record.node).mesh);
+  });
+}
+
+std::string notes_text(const storage::HierarchyReader& made, const config::Config& config,
+                       bool has_area) {
   const SourceSummary& source = made.manifest().source;
   std::string text;
   if (source.degenerate_triangles > 0)
@@ -114,7 +146,7 @@ std::string notes_text(const storage::HierarchyReader& made, const config::Confi
     text += fmt::format("kept {} that no triangle uses\n",
                         counted(source.unreferenced_vertices, "vertices"));
   }
-  return text + warning_text(source) + placement_text(made.manifest(), config) +
+  return text + warning_text(source, has_area) + placement_text(made.manifest(), config) +
          storage::forced_collapses_text(
              storage::summarize_forced_collapses(made.records(), source.places));
 }
@@ -136,7 +168,7 @@ BuildReport make_report(const storage::HierarchyReader& made, const BuildOutcome
                             execution::rounded_size_text(report.stats.total.peak_resident_bytes));
   if (!outcome.found.empty())
     report.text += outcome.found + '\n';
-  report.text += notes_text(made, context.config);
+  report.text += notes_text(made, context.config, outcome.has_area);
   report.account = account_text(source, report.stats);
   report.input = note_of(outcome.input, source.checksum);
   return report;

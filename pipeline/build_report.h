@@ -25,6 +25,7 @@ struct BuildReport {
 struct BuildOutcome {
   std::string found;               ///< what an earlier build had done, for people; may be empty
   std::uint64_t output_bytes = 0;  ///< of the published files, or of the archive
+  bool has_area = true;            ///< as has_area()
   std::uint64_t peak_temporary_bytes = 0;
   DiskNeed predicted;  ///< from the header, or from the partitions if it was far off
   importing::InputRecord input;
@@ -33,8 +34,12 @@ struct BuildOutcome {
 /// One line for people: what was made, and how large it is.
 std::string made_text(const storage::HierarchyReader& made, const std::filesystem::path& output,
                       std::uint64_t output_bytes);
+/// Whether a triangle of any tile has an area, beyond what rounding its corners makes of a line.
+/// Reads tiles from the root on until one has: the first, as a rule.
+bool has_area(const storage::HierarchyReader& made, const execution::CancelToken& cancel);
 /// A line for each thing that is to be known of it; may be empty.
-std::string notes_text(const storage::HierarchyReader& made, const config::Config& config);
+std::string notes_text(const storage::HierarchyReader& made, const config::Config& config,
+                       bool has_area);
 
 /// Of the hierarchy `made`, when the last stage of `meter` has ended.
 BuildReport make_report(const storage::HierarchyReader& made, const BuildOutcome& outcome,

@@ -73,7 +73,7 @@ void count_by_reading(const config::Config& config, importing::MeshInput& input,
   const importing::ImportMemory memory = importing::plan_import(config.memory_budget);
   check_import_disk(import_disk(input, config), config.output, files);
   const std::filesystem::path beside =
-      existing_directory(config.output, files) / config.output.filename();
+      storage::existing_directory(files, config.output) / config.output.filename();
   std::random_device chance;
   const auto scratch = [&] { return storage::verify_scratch_path(beside, chance()); };
   const tbb::global_control thread_limit(tbb::global_control::max_allowed_parallelism,
@@ -114,7 +114,7 @@ BuildEstimate estimate_build(const config::Config& asked, bool force, storage::F
   config::Config config = asked;
   config.output = storage::followed(files, asked.output);
   check_apart(config, files);
-  check_place(config.output, files);
+  storage::check_place(files, config.output);
   storage::MemoryPool pool(0);
   importing::MeshInput input(config.input, config.weld, files);
   if (is_read_before_plan(input, config)) {
@@ -125,7 +125,7 @@ BuildEstimate estimate_build(const config::Config& asked, bool force, storage::F
                          .mesh = input.description(),
                          .tiles = {},
                          .time = {},
-                         .disk = existing_directory(config.output, files),
+                         .disk = storage::existing_directory(files, config.output),
                          .input = config.input,
                          .output = config.output};
   if (input.needs_import())

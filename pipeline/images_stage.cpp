@@ -60,7 +60,7 @@ images::MaterialList decode_images(images::ImageStore& pictures, BuildJournal& j
     };
     std::string why;
     try {
-      const auto reader = images::open_source(materials.images[i], context.files);
+      const auto reader = images::open_source(materials.images[i], context.files.input());
       pictures.add(*reader, step);
     } catch (const Error& error) {
       if (error.code() != ErrorCode::input)

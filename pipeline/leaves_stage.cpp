@@ -8,6 +8,7 @@
 #include "partition/chunk.h"
 #include "partition/leaf_tiles.h"
 #include "partition/top_tree.h"
+#include "pipeline/stage_costs.h"
 #include "storage/format/work_tile.h"
 
 #include <algorithm>
@@ -22,18 +23,43 @@ namespace {
 // the places of spooled blocks, too small for the tiles they turn into: some 3 MiB a chunk.
 constexpr std::size_t kChunksBetweenReleases = 8;
 
-/// A chunk whose triangles and copies alone exceed what a stage may hold: a place with an absurd
-/// number of them.
-void check_fits(const Chunks& chunks, std::uint32_t chunk, const MemoryPlan& plan) {
-  const std::uint64_t needed = (chunks.triangle_bytes(chunk) + chunks.copy_bytes(chunk)) * 4;
-  if (needed > plan.work_bytes + plan.pool_bytes / 2) {
-    throw Error(
-        ErrorCode::budget,
-        fmt::format("a part of the mesh has {} on {}; it needs a memory_budget larger by {}",
-                    counted(chunks.triangle_count(chunk), "triangles"),
-                    counted(chunks.map().size(chunk) + chunks.copy_count(chunk), "vertices"),
-                    execution::exact_size_text(needed)));
+bool fits(std::uint64_t chunk_bytes, const MemoryPlan& plan) {
+  return chunk_bytes <= plan.work_bytes + plan.pool_bytes / 2;
+}
+
+/// The least budget, in whole MiB, in which a chunk of so many bytes fits.
+std::uint64_t budget_for(std::uint64_t chunk_bytes, const StageContext& context) {
+  constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+  const MemoryCosts costs = memory_costs(context.plan.job);
+  std::uint64_t below = context.memory().budget_bytes / kMiB;
+  std::uint64_t least = below + 1;
+  for (; !fits(chunk_bytes, plan_memory(least * kMiB, costs)); least += least - below + 1) {
   }
+  while (least - below > 1) {
+    const std::uint64_t middle = below + (least - below) / 2;
+    (fits(chunk_bytes, plan_memory(middle * kMiB, costs)) ? least : below) = middle;
+  }
+  return least * kMiB;
+}
+
+/// Refuses chunks whose triangles and copies alone exceed what a stage may hold: a place with an
+/// absurd number of them.
+void check_fit(const Chunks& chunks, const std::vector<std::uint32_t>& all,
+               const StageContext& context) {
+  const auto bytes_of = [&](std::uint32_t chunk) {
+    return (chunks.triangle_bytes(chunk) + chunks.copy_bytes(chunk)) * 4;
+  };
+  const auto largest = std::ranges::max_element(all, {}, bytes_of);
+  if (largest == all.end() || fits(bytes_of(*largest), context.memory()))
+    return;
+  const std::uint64_t more =
+      budget_for(bytes_of(*largest), context) - context.memory().budget_bytes;
+  throw Error(
+      ErrorCode::budget,
+      fmt::format("a part of the mesh has {} on {}; it needs a memory_budget larger by {}",
+                  counted(chunks.triangle_count(*largest), "triangles"),
+                  counted(chunks.map().size(*largest) + chunks.copy_count(*largest), "vertices"),
+                  execution::exact_size_text(more)));
 }
 
 struct ChunkReport {
@@ -70,10 +96,10 @@ void make_leaves(Chunks& chunks, Forest& forest, BuildJournal& journal, const Sh
     partitions += tree.partitions({chunks.level(), chunk}).size();
   }
   context.progress.stage("leaves", partitions, "partitions");
+  check_fit(chunks, left, context);
   execution::ordered_for(
       left.size(), context.memory().chunks_in_flight, context.cancel,
       [&](std::size_t i) {
-        check_fits(chunks, left[i], context.memory());
         return put_leaves(chunks, left[i], context.config.partition.axis, forest);
       },
       [&](std::size_t i, const ChunkReport& report) {

@@ -62,7 +62,7 @@ bool collect(Forest& forest, Level level, outline::OutlineBuilder& builder, std:
   const std::uint32_t count = forest.tree().node_count(level);
   context.progress.stage("outline", count, "sectors");
   std::atomic<bool> too_many{false};
-  const TileRoom room = room_for(forest, context.memory(), heaviest_read(forest, level));
+  const TileRoom room = room_for(forest, context.memory(), {heaviest_read(forest, level)});
   const outline::Sectors sectors = divide(forest, level, parts, room, context);
   execution::ordered_for(
       count, room.in_flight(), context.cancel,
@@ -107,7 +107,7 @@ OutlineStageResult make_outline(Forest& forest, double diagonal, const StageCont
     if (!collect(forest, level, builder, sectors / tiles, context))
       continue;
     options.max_segments = level > Level{0} ? kMostSegments : SIZE_MAX;
-    const TileRoom room = room_for(forest, context.memory(), builder.edge_count() * kEdgeBytes);
+    const TileRoom room = room_for(forest, context.memory(), {builder.edge_count() * kEdgeBytes});
     if (auto result = builder.finish(options)) {
       return {std::move(result->outline),
               {raw(level), sectors, result->tolerance, result->polylines_found,

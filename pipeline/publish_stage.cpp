@@ -227,7 +227,7 @@ void publish(Forest& forest, const TextureStore& textures, BuildJournal& journal
   // A picture as it was stored, on its own, and in the tile's file.
   const std::uint64_t heaviest =
       heaviest_written(forest, left, context.config.storage) + 3 * textures.heaviest_bytes();
-  const TileRoom room = room_for(forest, context.memory(), heaviest);
+  const TileRoom room = room_for(forest, context.memory(), {heaviest});
   const TileWriter writer{forest, textures,
                           format_of(*journal.source(), forest.computes_normals(), context), to,
                           context};
@@ -289,7 +289,7 @@ void write_account(Forest& forest, const TextureStore& textures, BuildJournal& j
   if (context.config.preview) {
     // What is drawn takes as much as what is packed.
     const std::array root{tree.root()};
-    const TileRoom room = room_for(forest, context.memory(), heaviest_packed(forest, root));
+    const TileRoom room = room_for(forest, context.memory(), {heaviest_packed(forest, root)});
     preview = make_preview({directory, format, records}, context);
     storage::write_file(files, storage::preview_path(directory), preview->file);
   }

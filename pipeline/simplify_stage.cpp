@@ -185,7 +185,12 @@ void simplify(Forest& forest, BuildJournal& journal, const AttributeLayout& attr
   Simplifier simplifier(forest, attributes, context);
   for (int l = levels.end - 1; l >= levels.top; --l) {
     const std::vector<NodeId>& nodes = left[l - levels.top];
-    const TileRoom room = room_for(forest, context.memory(), heaviest_contracted(forest, nodes));
+    TileRoom::Heaviest heaviest{heaviest_contracted(forest, nodes)};
+    if (heaviest.now > context.memory().work_bytes) {
+      heaviest.ahead = heaviest_contracted_above(forest, static_cast<Level>(l + 1),
+                                                 static_cast<Level>(levels.top), context.plan.job);
+    }
+    const TileRoom room = room_for(forest, context.memory(), heaviest);
     execution::ordered_for(
         nodes.size(), room.in_flight(), context.cancel,
         [&](std::size_t i) { return simplifier.make_tile(nodes[i]); },

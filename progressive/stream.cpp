@@ -268,6 +268,7 @@ std::string write_progressive(storage::FileSystem& files, const fs::path& hierar
                                storage::Content::progressive_stream};
   storage::check_output(files, output, options.replace);
   storage::require_apart(files, options.output, std::array{hierarchy});
+  storage::check_place(files, output.path);
   execution::configure_allocator(options.memory_budget);
   const storage::HierarchyFiles place(files, hierarchy);
   const storage::HierarchyReader reader(place.files(), hierarchy);

@@ -22,6 +22,17 @@ bool has_controls(std::string_view text) {
   });
 }
 
+/// Method, target and version, with one blank between them and none elsewhere.
+bool is_request_line(std::string_view line) {
+  const std::size_t first = line.find(' ');
+  const std::size_t last = line.rfind(' ');
+  if (first == last || !is_token(line.substr(0, first)) || has_controls(line) ||
+      line.find('\t') != std::string_view::npos)
+    return false;
+  const std::string_view target = line.substr(first + 1, last - first - 1);
+  return !target.empty() && target.find(' ') == std::string_view::npos && last + 1 < line.size();
+}
+
 /// Not beyond what fits 64 bits.
 bool is_length(std::string_view text) {
   return !text.empty() && text.size() < 20 &&
@@ -96,8 +107,7 @@ std::optional<RequestHead> parse_head(std::string_view raw) {
   if (!has_only_whole_lines(raw))
     return std::nullopt;
   const std::string_view request_line = take_line(raw);
-  if (!is_token(request_line.substr(0, request_line.find(' '))) || has_controls(request_line) ||
-      request_line.find('\t') != std::string_view::npos)
+  if (!is_request_line(request_line))
     return std::nullopt;
   RequestHead head{.text = std::string(request_line).append(kLineEnd)};
   std::size_t ranges = 0;

@@ -29,8 +29,9 @@ struct RequestHead {
 
 /// `raw`: up to and with the empty line. Nothing if two readers could see two things in it (RFC
 /// 9112, sections 3, 5 and 6): a line that ends otherwise than with CR LF or goes on in the next
-/// one, a character of control, a name that is none or is followed by a blank, more than one Host,
-/// or a body whose length is said twice or in no number.
+/// one, a first line that is not three words with one blank between them, a character of control, a
+/// name that is none or is followed by a blank, more than one Host, or a body whose length is said
+/// twice or in no number.
 std::optional<RequestHead> parse_head(std::string_view raw);
 
 }  // namespace meshhier::server

@@ -40,6 +40,7 @@ Watch::Watch(WatchOptions options, storage::FileSystem& files, Hierarchies& hier
              Hierarchies::Tell tell)
     : options_(std::move(options)),
       files_(files),
+      inbox_files_(storage::make_posix_file_system({false, options_.inbox})),
       hierarchies_(hierarchies),
       tell_(std::move(tell)),
       folder_(storage::open_folder(options_.folder)),
@@ -240,7 +241,7 @@ bool Watch::is_made_of(const std::string& name, const Model& model, Unknown unkn
 
 /// They lie from the folder of their mesh.
 Companions Watch::companions_of(const std::string& name) const {
-  return {files_, (options_.inbox / name).parent_path()};
+  return {inbox_files_->input(), (options_.inbox / name).parent_path()};
 }
 
 /// 0 until a hierarchy of it was looked at.
@@ -364,8 +365,8 @@ std::vector<std::string> Watch::words(const std::string& name, const BuildTarget
   std::vector<std::string> list{options_.program, "build"};
   if (!options_.config.empty())
     list.push_back(options_.config.string());
-  list.insert(list.end(), {"--progress", "json", "--no-links", "--input-note",
-                           notes_.path(target.name).string()});
+  list.insert(list.end(), {"--progress", "json", "--within", options_.inbox.string(),
+                           "--input-note", notes_.path(target.name).string()});
   if (target.kind == BuildTarget::Kind::replace)
     list.emplace_back("--force");
   if (restart)

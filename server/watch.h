@@ -123,6 +123,7 @@ class Watch {
 
   WatchOptions options_;
   storage::FileSystem& files_;
+  std::unique_ptr<storage::FileSystem> inbox_files_;  ///< whose input() leads nowhere else
   Hierarchies& hierarchies_;
   Hierarchies::Tell tell_;
   std::shared_ptr<const storage::Folder> folder_;

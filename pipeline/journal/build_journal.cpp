@@ -329,22 +329,24 @@ bool BuildJournal::take_texture(const Entry& texture) {
   return true;
 }
 
-bool BuildJournal::take_published(const Entry& published) {
-  const Value::binary_t& bytes = published.at("record").get_binary();
-  const TileRecord record = storage::decode_record(std::as_bytes(std::span(bytes)));
-  const double rounding = published.at("rounding");
+bool BuildJournal::is_as_published(const TileRecord& record) const {
   const std::filesystem::path path = storage::tile_path(built_, record.node);
-  if (!files_.exists(path))
+  if (files_.kind(path) != storage::FileKind::regular)
     return false;
   const std::unique_ptr<storage::File> file = files_.open(path);
   if (file->size() != record.file_bytes)
     return false;
-  if (!is_sealed_) {
-    std::vector<std::byte> content(record.file_bytes);
-    file->read_exact(0, content);
-    if (storage::checksum(content) != record.checksum)
-      return false;
-  }
+  std::vector<std::byte> content(record.file_bytes);
+  file->read_exact(0, content);
+  return storage::checksum(content) == record.checksum;
+}
+
+bool BuildJournal::take_published(const Entry& published) {
+  const Value::binary_t& bytes = published.at("record").get_binary();
+  const TileRecord record = storage::decode_record(std::as_bytes(std::span(bytes)));
+  const double rounding = published.at("rounding");
+  if (!is_sealed_ && !is_as_published(record))
+    return false;
   published_.emplace(std::pair(record.node.level, record.node.index), Published{record, rounding});
   ++found_;
   return true;

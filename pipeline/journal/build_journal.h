@@ -136,6 +136,8 @@ class BuildJournal {
   const std::vector<BrokenImage>& broken_images() const { return broken_images_; }
   bool has_texture(NodeId node) const { return has_texture_[raw(node.level)][node.index] != 0; }
   bool is_published(NodeId node) const { return published_.contains({node.level, node.index}); }
+  /// Whether the file is there, and whole; reads it. Thread-safe.
+  bool is_as_published(const TileRecord& record) const;
   /// All tiles that are, ascending.
   std::vector<Published> published() const;
 
@@ -195,7 +197,8 @@ class BuildJournal {
   bool is_complete_ = false;
   bool input_was_touched_ = false;
   bool has_root_ = false;
-  bool is_sealed_ = false;  ///< what entries name is whole, as others sealed it
+  bool is_sealed_ =
+      false;  ///< others sealed the entries: what they name is checked when it is used
   std::unique_ptr<storage::EntrySink> sink_;
 };
 

@@ -8,6 +8,8 @@
 #include "storage/format/layout.h"
 #include "storage/format/tile_glb.h"
 #include "storage/format/tile_plan.h"
+#include "storage/format/work_directory.h"
+#include "storage/io/output_file.h"
 #include "storage/io/paths.h"
 
 #include <algorithm>
@@ -112,34 +114,9 @@ JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& m
   return job;
 }
 
-std::filesystem::path existing_directory(const std::filesystem::path& output,
-                                         storage::FileSystem& files) {
-  std::filesystem::path directory = output.parent_path();
-  while (!directory.empty() && !files.exists(directory))
-    directory = directory.parent_path();
-  return directory.empty() ? "." : directory;
-}
-
-void check_place(const std::filesystem::path& output, storage::FileSystem& files) {
-  constexpr std::size_t kLongestName = 255;  // of Linux's file systems
-  const auto refuse = [&](const std::string& why) {
-    throw Error(ErrorCode::io, fmt::format("cannot make {}: {}", output.string(), why));
-  };
-  const std::size_t length = storage::work_path(output).filename().string().size();
-  if (length > kLongestName)
-    refuse("its name is too long, by " + counted(length - kLongestName, "bytes"));
-  const std::filesystem::path directory = existing_directory(output, files);
-  if (!files.is_directory(directory))
-    refuse(fmt::format("{} is not a directory", directory.string()));
-  if (const std::string why = files.why_not_writable(directory); !why.empty()) {
-    refuse(fmt::format("{} cannot be written ({}); choose another place for the output",
-                       directory.string(), why));
-  }
-}
-
 void check_import_disk(std::uint64_t bytes, const std::filesystem::path& output,
                        storage::FileSystem& files) {
-  const std::filesystem::path directory = existing_directory(output, files);
+  const std::filesystem::path directory = storage::existing_directory(files, output);
   const std::uint64_t free = files.free_bytes(directory);
   if (free + bytes_left(output, files) < bytes) {
     throw Error(ErrorCode::budget,
@@ -152,7 +129,7 @@ void check_import_disk(std::uint64_t bytes, const std::filesystem::path& output,
 
 void check_disk(const DiskNeed& need, const std::filesystem::path& output,
                 storage::FileSystem& files) {
-  const std::filesystem::path directory = existing_directory(output, files);
+  const std::filesystem::path directory = storage::existing_directory(files, output);
   const std::uint64_t free = files.free_bytes(directory);
   if (free + bytes_left(output, files) < need.room_bytes) {
     throw Error(
@@ -165,15 +142,34 @@ void check_disk(const DiskNeed& need, const std::filesystem::path& output,
   }
 }
 
-void check_apart(const config::Config& config, storage::FileSystem& files) {
-  const std::filesystem::path output = files.canonical(config.output);
-  for (const std::filesystem::path& path : config::read_by(config)) {
+namespace {
+
+void require_none_within(const std::vector<std::filesystem::path>& inputs,
+                         const std::filesystem::path& asked, storage::FileSystem& files) {
+  const std::filesystem::path output = files.canonical(asked);
+  for (const std::filesystem::path& path : inputs) {
     const std::filesystem::path input = files.canonical(path);
     if (storage::is_within(input, output)) {
       throw Error(ErrorCode::usage, fmt::format("the input {} lies in the output {}",
                                                 input.string(), output.string()));
     }
   }
+}
+
+}  // namespace
+
+void check_apart(const importing::Companions& companions, const config::Config& config,
+                 const std::vector<std::filesystem::path>& others, storage::FileSystem& files) {
+  std::vector<std::filesystem::path> paths;
+  for (const importing::CompanionFile& file : companions.files())
+    paths.push_back(file.path);
+  for (const std::filesystem::path& other : others)
+    storage::require_apart(files, other, paths);
+  require_none_within(paths, config.output, files);
+}
+
+void check_apart(const config::Config& config, storage::FileSystem& files) {
+  require_none_within(config::read_by(config), config.output, files);
 }
 
 }  // namespace meshhier::pipeline

@@ -5,6 +5,7 @@
 #include "config/config.h"
 #include "hierarchy/target_vertex_counts.h"
 #include "hierarchy/tree.h"
+#include "import/input_record.h"
 #include "mesh_io/mesh_source.h"
 #include "pipeline/plan/disk_need.h"
 #include "pipeline/plan/job_size.h"
@@ -15,6 +16,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <vector>
 
 namespace meshhier::pipeline {
 
@@ -44,12 +46,10 @@ std::size_t thread_count(const config::Config& config);
 /// of it lies there.
 void check_apart(const config::Config& config, storage::FileSystem& files);
 
-/// The directory nearest above `output` that is there.
-std::filesystem::path existing_directory(const std::filesystem::path& output,
-                                         storage::FileSystem& files);
-
-/// Throws Error(io) if it is clear already that nothing can be made where `output` is to be.
-void check_place(const std::filesystem::path& output, storage::FileSystem& files);
+/// The same of what meshes name, which is known when they are read; `others`: files that are
+/// written besides the output.
+void check_apart(const importing::Companions& companions, const config::Config& config,
+                 const std::vector<std::filesystem::path>& others, storage::FileSystem& files);
 
 /// Throws Error(budget) if the disk that will hold `output` has less than `bytes` for an import.
 void check_import_disk(std::uint64_t bytes, const std::filesystem::path& output,

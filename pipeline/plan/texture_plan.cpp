@@ -38,7 +38,7 @@ std::uint64_t TexturePlan::adding_bytes() const {
 
 void TexturePlan::check_unchanged(std::size_t image, storage::FileSystem& files) const {
   const images::ImageSource& source = materials.images[image];
-  if (!source.file.empty() && files.identity(source.file) != identities[image]) {
+  if (!source.file.empty() && files.input().identity(source.file) != identities[image]) {
     throw Error(ErrorCode::input,
                 source.file.string() + " was changed while it was read; build it again");
   }
@@ -63,7 +63,7 @@ TexturePlan plan_textures(images::MaterialList materials, config::MissingImages 
   plan.materials.materials = std::move(materials.materials);
   for (std::uint32_t i = 0; i < materials.images.size(); ++i) {
     try {
-      plan.heads.push_back(images::open_source(materials.images[i], files)->info());
+      plan.heads.push_back(images::open_source(materials.images[i], files.input())->info());
     } catch (const Error& error) {
       if (error.code() != ErrorCode::input)
         throw;
@@ -78,7 +78,8 @@ TexturePlan plan_textures(images::MaterialList materials, config::MissingImages 
       continue;
     }
     const std::filesystem::path& file = materials.images[i].file;
-    plan.identities.push_back(file.empty() ? storage::FileIdentity() : files.identity(file));
+    plan.identities.push_back(file.empty() ? storage::FileIdentity()
+                                           : files.input().identity(file));
     plan.materials.images.push_back(std::move(materials.images[i]));
   }
   return plan;

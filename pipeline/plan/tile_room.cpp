@@ -5,6 +5,9 @@
 #include "hierarchy/error.h"
 
 #include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -28,14 +31,18 @@ std::uint64_t more_budget(const MemoryPlan& plan, std::uint64_t lacking) {
 }
 
 [[noreturn]] void refuse(const MemoryPlan& plan, const storage::MemoryPool& pool,
-                         std::uint64_t needed_bytes) {
-  const std::uint64_t lacking = needed_bytes - plan.work_bytes - pool.free_bytes();
+                         const TileRoom::Heaviest& heaviest) {
+  const std::uint64_t needed = std::max(heaviest.now, heaviest.ahead);
+  const std::uint64_t lacking = needed - plan.work_bytes - pool.free_bytes();
+  const std::string others =
+      needed > heaviest.now
+          ? fmt::format(", and others up to {}", execution::rounded_size_text(heaviest.ahead))
+          : "";
   throw Error(
       ErrorCode::budget,
       fmt::format("a tile of the mesh has so many triangles or vertices at few places that it "
-                  "takes "
-                  "{}; it needs a memory_budget larger by {}",
-                  execution::rounded_size_text(needed_bytes),
+                  "takes {}{}; it needs a memory_budget larger by {}",
+                  execution::rounded_size_text(heaviest.now), others,
                   execution::exact_size_text(more_budget(plan, lacking))));
 }
 
@@ -48,29 +55,29 @@ std::uint64_t most_triangle_bytes(const Forest& forest, std::span<const NodeId> 
 
 }  // namespace
 
-TileRoom::TileRoom(const MemoryPlan& plan, storage::MemoryPool& pool, std::uint64_t heaviest_bytes)
+TileRoom::TileRoom(const MemoryPlan& plan, storage::MemoryPool& pool, const Heaviest& heaviest)
     : pool_(pool),
       in_flight_(plan.tiles_in_flight),
       items_between_releases_(std::clamp<std::uint64_t>(
-          kBytesBetweenReleases / std::max<std::uint64_t>(heaviest_bytes, 1), 1,
+          kBytesBetweenReleases / std::max<std::uint64_t>(heaviest.now, 1), 1,
           kMostBetweenReleases)) {
-  if (heaviest_bytes * in_flight_ <= plan.work_bytes)
+  if (heaviest.now * in_flight_ <= plan.work_bytes)
     return;
-  if (heaviest_bytes > plan.work_bytes) {
-    const std::uint64_t lacking = heaviest_bytes - plan.work_bytes;
+  if (heaviest.now > plan.work_bytes) {
+    const std::uint64_t lacking = heaviest.now - plan.work_bytes;
     if (!pool.try_take(lacking))
-      refuse(plan, pool, heaviest_bytes);
+      refuse(plan, pool, heaviest);
     taken_ = lacking;
   }
-  in_flight_ = std::clamp<std::uint64_t>(plan.work_bytes / heaviest_bytes, 1, in_flight_);
+  in_flight_ = std::clamp<std::uint64_t>(plan.work_bytes / heaviest.now, 1, in_flight_);
 }
 
-TileRoom room_for(Forest& forest, const MemoryPlan& plan, std::uint64_t heaviest_bytes) {
-  if (heaviest_bytes > plan.work_bytes) {
-    forest.drop_copies(heaviest_bytes - plan.work_bytes);
+TileRoom room_for(Forest& forest, const MemoryPlan& plan, const TileRoom::Heaviest& heaviest) {
+  if (heaviest.now > plan.work_bytes) {
+    forest.drop_copies(heaviest.now - plan.work_bytes);
     execution::release_free_memory();
   }
-  return {plan, forest.pool(), heaviest_bytes};
+  return {plan, forest.pool(), heaviest};
 }
 
 std::uint64_t heaviest_read(const Forest& forest, std::span<const NodeId> nodes) {
@@ -96,6 +103,59 @@ std::uint64_t heaviest_contracted(const Forest& forest, std::span<const NodeId> 
     for (const NodeId child : children.span())
       bytes += forest.triangle_bytes(child);
     most = std::max(most, bytes);
+  }
+  return most * TileRoom::kContracted;
+}
+
+namespace {
+
+/// Of a tile's triangles, foreign corners and copies, for each of its vertices: tiles of surfaces
+/// have two triangles a vertex, some of which other tiles have too, and as many copies as the mesh
+/// has on average.
+std::uint64_t usual_bytes(const JobSize& job) {
+  const std::uint64_t triangles = 4 * sizeof(TileTriangle) + 2 * sizeof(GhostRef);
+  if (!job.has_copies())
+    return triangles;
+  const std::uint64_t copies = (job.vertex_count - job.place_count) / job.place_count + 1;
+  return triangles + 4 * sizeof(CornerWedges) +
+         2 * copies * job.vertex_bytes() / Forest::kCopyShare;
+}
+
+}  // namespace
+
+std::uint64_t heaviest_contracted_above(const Forest& forest, Level made, Level top,
+                                        const JobSize& job) {
+  const std::uint64_t usual_share = usual_bytes(job);
+  const Tree& tree = forest.tree();
+  std::vector<std::uint64_t> surplus(tree.node_count(made));
+  std::uint64_t usual = job.largest_tile * usual_share;
+  for (std::uint32_t i = 0; i < surplus.size(); ++i) {
+    const NodeId node{made, i};
+    if (forest.own_count(node) == 0)
+      continue;  // another task's
+    const std::uint64_t own = forest.own_count(node) * usual_share;
+    const std::uint64_t bytes = forest.triangle_bytes(node);
+    surplus[i] = bytes - std::min(bytes, own);
+    usual = std::max(usual, own);
+  }
+  std::uint64_t most = 0;
+  for (Level level = made; level > top; level = coarser(level)) {
+    // A tile has each of the mesh's triangles once; copies are not counted by the header.
+    const std::uint64_t corners = std::uint64_t{tree.node_count(level)} * job.largest_tile;
+    const std::uint64_t all =
+        job.has_copies() ? UINT64_MAX
+                         : job.face_count * sizeof(TileTriangle) + corners * sizeof(GhostRef);
+    std::vector<std::uint64_t> joined(tree.node_count(coarser(level)));
+    for (std::uint32_t i = 0; i < joined.size(); ++i) {
+      std::uint64_t bytes = 0;
+      const Tree::Children children = tree.children({coarser(level), i});
+      for (const NodeId child : children.span()) {
+        bytes += std::min(surplus[child.index], all) + usual;
+        joined[i] += surplus[child.index];
+      }
+      most = std::max(most, bytes);
+    }
+    surplus = std::move(joined);
   }
   return most * TileRoom::kContracted;
 }

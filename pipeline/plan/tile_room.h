@@ -1,6 +1,7 @@
 // Memory for tiles with far more triangles than vertices.
 #pragma once
 
+#include "pipeline/plan/job_size.h"
 #include "pipeline/plan/memory_plan.h"
 #include "pipeline/tiles/chunks.h"
 #include "pipeline/tiles/forest.h"
@@ -25,9 +26,14 @@ class TileRoom {
   /// results take 80 to 90 bytes a triangle more, of which triangle_bytes() tells 12.
   static constexpr std::uint64_t kPacked = kRead + 8;
 
-  /// `heaviest_bytes`: what the largest of the items takes at work. Throws Error(budget) naming
-  /// what would do.
-  TileRoom(const MemoryPlan& plan, storage::MemoryPool& pool, std::uint64_t heaviest_bytes);
+  /// What items take at work, in bytes.
+  struct Heaviest {
+    std::uint64_t now = 0;
+    std::uint64_t ahead = 0;  ///< of those that come in the same stage, as far as it is known
+  };
+  /// Throws Error(budget) if there is no room for what is to be done now, naming what would do for
+  /// all.
+  TileRoom(const MemoryPlan& plan, storage::MemoryPool& pool, const Heaviest& heaviest);
   TileRoom(const TileRoom&) = delete;
   TileRoom& operator=(const TileRoom&) = delete;
   ~TileRoom() { pool_.give_back(taken_); }
@@ -47,7 +53,7 @@ class TileRoom {
 
 /// A TileRoom in the forest's pool, of which tiles kept in memory make way; the memory they had
 /// goes back to the system.
-TileRoom room_for(Forest& forest, const MemoryPlan& plan, std::uint64_t heaviest_bytes);
+TileRoom room_for(Forest& forest, const MemoryPlan& plan, const TileRoom::Heaviest& heaviest);
 
 /// Of the tiles of these nodes, what the heaviest takes while it is read, or also compressed.
 std::uint64_t heaviest_read(const Forest& forest, std::span<const NodeId> nodes);
@@ -56,6 +62,10 @@ std::uint64_t heaviest_packed(const Forest& forest, std::span<const NodeId> node
 std::uint64_t heaviest_read(const Forest& forest, Level level);
 /// What the heaviest takes while its tile is made of its children's.
 std::uint64_t heaviest_contracted(const Forest& forest, std::span<const NodeId> nodes);
+/// The same of coarser levels down to `top`, while the tiles of `made` are there and no coarser
+/// ones: with all triangles that are too many for a tile's vertices now, wherever they meet again.
+std::uint64_t heaviest_contracted_above(const Forest& forest, Level made, Level top,
+                                        const JobSize& job);
 
 /// A budget with room for such an item, if the pool is empty then.
 std::uint64_t budget_for(const MemoryPlan& plan, std::uint64_t heaviest_bytes);

@@ -1,9 +1,11 @@
 #include "pipeline/tasks/finish_task.h"
 
+#include "execution/parallel.h"
 #include "hierarchy/error.h"
 #include "pipeline/build_report.h"
 #include "pipeline/outline_stage.h"
 #include "pipeline/pack_stage.h"
+#include "pipeline/plan/share.h"
 #include "pipeline/publish_stage.h"
 #include "pipeline/tasks/task_record.h"
 #include "storage/format/archive_files.h"
@@ -102,14 +104,60 @@ std::uint64_t bytes_of(storage::FileSystem& files, const storage::HierarchyReade
   return made.manifest().total_bytes + files.open(storage::manifest_path(made.directory()))->size();
 }
 
+/// The task of `publish` that makes the tile at that place among all.
+std::uint32_t publisher_of(std::size_t place, std::size_t count, std::uint32_t tasks) {
+  std::uint32_t task = 0;
+  while (place >= Share{task, tasks}.end(count))
+    ++task;
+  return task;
+}
+
+/// All tiles' files must be what was published: any program can reach them, so all are read.
+void check_tiles(const BuildJournal& journal, const fs::path& work, std::uint32_t tasks,
+                 const StageContext& context) {
+  const std::vector<Published> tiles = journal.published();
+  if (tiles.size() != context.tree().tile_count())
+    throw Error(ErrorCode::corrupt, "files of tiles are missing: plan the build again");
+  context.progress.stage("check", tiles.size(), "tiles");
+  execution::ordered_for(
+      tiles.size(), 2 * context.plan.threads, context.cancel,
+      [&](std::size_t i) { return journal.is_as_published(tiles[i].record); },
+      [&](std::size_t i, bool is_whole) {
+        context.progress.advance(1);
+        if (is_whole)
+          return;
+        const std::uint32_t task = publisher_of(i, tiles.size(), tasks);
+        throw Error(
+            ErrorCode::corrupt,
+            fmt::format(
+                "{} is missing or damaged: remove {}, and run `meshhier task {} publish "
+                "--index {}` again",
+                storage::tile_path(storage::built_path(work), tiles[i].record.node).string(),
+                (storage::segments_path(work) / fmt::format("publish-{:05}", task)).string(),
+                work.string(), task));
+      });
+}
+
+/// What others put there would become part of the output.
+void check_no_others(const fs::path& built, storage::FileSystem& files) {
+  for (const fs::path& file : files.list(built)) {
+    const std::string name = file.lexically_relative(built).generic_string();
+    if (!storage::is_hierarchy_file(name)) {
+      throw Error(ErrorCode::io, fmt::format("{} is no file of a hierarchy: remove it, and finish "
+                                             "again",
+                                             file.string()));
+    }
+  }
+}
+
 }  // namespace
 
-void finish_hierarchy(Workshop& workshop, const fs::path& work, storage::SegmentWriter& entries,
-                      const StageContext& context) {
+void finish_hierarchy(Workshop& workshop, const fs::path& work, std::uint32_t tasks,
+                      storage::SegmentWriter& entries, const StageContext& context) {
   storage::FileSystem& files = context.files;
-  if (workshop.journal.published().size() != context.tree().tile_count())
-    throw Error(ErrorCode::corrupt, "files of tiles are missing: plan the build again");
   const fs::path built = storage::built_path(work);
+  check_tiles(workshop.journal, work, tasks, context);
+  check_no_others(built, files);
   const OutlineStageResult outline =
       make_outline(workshop.forest, workshop.journal.source()->summary.diagonal(), context);
   write_account(workshop.forest, workshop.textures, workshop.journal, outline, built, context);
@@ -136,6 +184,12 @@ std::string name_hierarchy(const TaskPlan& plan, storage::WorkDirectory& shared,
   const bool is_known = finished.inode != 0;
   const bool is_there = is_known && named == finished;
   if (!is_there && look_at(files, made_at, output.container) == finished) {
+    if (!plan.replace && files.exists(output.path)) {
+      throw Error(ErrorCode::exists,
+                  fmt::format("{} appeared during the build: move it away, and finish again",
+                              output.path.string()));
+    }
+    files.make_directories(output.path.parent_path());
     shared.publish();
   } else if (!is_there && (!named || named->checksum != finished.checksum ||
                            (is_known && files.exists(made_at)))) {
@@ -145,14 +199,15 @@ std::string name_hierarchy(const TaskPlan& plan, storage::WorkDirectory& shared,
                             output.path.string(), work.string()));
   }
   remove_what_is_not_needed(plan, work, files);
-  return in_hierarchy(files, output.path, output.container,
-                      [&](storage::FileSystem& in, const fs::path& path) {
-                        const storage::HierarchyReader made(in, path);
-                        const std::uint64_t bytes = output.container == storage::Container::archive
-                                                        ? files.open(path)->size()
-                                                        : bytes_of(in, made);
-                        return made_text(made, path, bytes) + notes_text(made, plan.config);
-                      });
+  return in_hierarchy(
+      files, output.path, output.container, [&](storage::FileSystem& in, const fs::path& path) {
+        const storage::HierarchyReader made(in, path);
+        const std::uint64_t bytes = output.container == storage::Container::archive
+                                        ? files.open(path)->size()
+                                        : bytes_of(in, made);
+        return made_text(made, path, bytes) +
+               notes_text(made, plan.config, has_area(made, execution::CancelToken()));
+      });
 }
 
 bool is_named(const TaskPlan& plan, const fs::path& work, storage::FileSystem& files) {

@@ -13,8 +13,9 @@
 namespace meshhier::pipeline {
 
 /// Completes the hierarchy in `work`, or its archive, of which all tiles are published, and notes
-/// what it is in `entries`. Throws Error(corrupt) if a tile is missing.
-void finish_hierarchy(Workshop& workshop, const std::filesystem::path& work,
+/// what it is in `entries`. Reads all tiles. `tasks`: of the stage `publish`. Throws Error(corrupt)
+/// that names the task to run again if a tile is missing or not what was published.
+void finish_hierarchy(Workshop& workshop, const std::filesystem::path& work, std::uint32_t tasks,
                       storage::SegmentWriter& entries, const StageContext& context);
 
 /// Gives what was finished the output's name and removes what tasks have sealed, unless that is

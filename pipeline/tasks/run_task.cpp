@@ -123,6 +123,7 @@ void Task::read() {
       is_read_before_plan(input, config)
           ? read_and_plan(input, attempt_.directory(), pool_, config, environment)
           : plan_build(config, input.description());
+  check_apart(input.files().companions(), config, {}, files());
   check_disk(plan.disk, config.output, files());
   const StageContext context{config, plan, files(), meter_, environment_.cancel};
   meter_.expect(wall_times(config, plan));
@@ -277,7 +278,7 @@ void Task::make(const StageContext& context) {
       return;
     }
     default:
-      return finish_hierarchy(workshop, work_, *entries_, context);
+      return finish_hierarchy(workshop, work_, plan_.tasks, *entries_, context);
   }
 }
 

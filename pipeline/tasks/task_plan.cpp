@@ -2,6 +2,7 @@
 
 #include "config/partition_size.h"
 #include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
 #include "import/mesh_input.h"
 #include "pipeline/import_stage.h"
 #include "pipeline/stage_costs.h"
@@ -27,6 +28,8 @@ using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 constexpr int kPlanVersion = 1;
+constexpr std::uint32_t kDeepest = 64;
+constexpr std::size_t kLongestProgram = 80;
 constexpr std::uint64_t kLargestPlanBytes = std::uint64_t{1} << 24;
 
 std::uint64_t checksum_of(const std::string& text) {
@@ -61,16 +64,21 @@ TaskPlan parse_plan(const std::string& text, const fs::path& path) {
     const Json json = Json::parse(text);
     if (json.at("meshhier_task_plan") != kPlanVersion)
       throw Error(ErrorCode::corrupt, path.string() + " is a plan of another version");
+    const auto number = [&](const char* key, std::uint32_t most) {
+      const Json& value = json.at(key);
+      if (!value.is_number_unsigned() || value.get<std::uint64_t>() > most)
+        throw Error(ErrorCode::corrupt, path.string() + " is not what `meshhier plan` writes");
+      return value.get<std::uint32_t>();
+    };
     TaskPlan plan;
     plan.program = json.at("program");
-    plan.tasks = json.at("tasks");
-    plan.levels = json.at("levels");
+    plan.tasks = number("tasks", kMostTasks);
+    plan.levels = number("levels", kDeepest);
     plan.textured = json.at("textured");
     plan.replace = json.at("replace");
     plan.config = config::parse_config(json.at("config").dump(), {path.string(), {}}, {});
     plan.fingerprint = fingerprint_of(plan);
-    constexpr std::uint32_t kDeepest = 64;
-    if (plan.tasks == 0 || plan.tasks > kMostTasks || plan.levels > kDeepest)
+    if (plan.tasks == 0)
       throw Error(ErrorCode::corrupt, path.string() + " is not what `meshhier plan` writes");
     return plan;
   } catch (const Json::exception&) {
@@ -150,7 +158,7 @@ void check_build(const config::Config& config, bool replace, const importing::Me
                  storage::FileSystem& files) {
   check_apart(config, files);
   storage::check_output(files, {config.output, config.storage.container}, replace);
-  check_place(config.output, files);
+  storage::check_place(files, config.output);
   if (is_read_before_plan(input, config))
     check_import_disk(import_disk(input, config), config.output, files);
   else
@@ -165,7 +173,7 @@ TaskPlan load_plan(const fs::path& work, const std::string& program, storage::Fi
     throw Error(ErrorCode::exists,
                 fmt::format("{} was planned by another program ({}) than this one ({}): every "
                             "machine must run the same; to begin anew remove it",
-                            work.string(), plan.program, program));
+                            work.string(), plain_text(plan.program, kLongestProgram), program));
   }
   return plan;
 }
@@ -186,7 +194,7 @@ void check_one_file_system(const fs::path& work, const fs::path& output,
                            storage::FileSystem& files) {
   const fs::path name = storage::unique_name();
   const fs::path from = storage::attempts_path(work) / name;
-  const fs::path to = existing_directory(output, files) / ("." + name.string());
+  const fs::path to = storage::existing_directory(files, output) / ("." + name.string());
   storage::write_file(files, from, {});
   try {
     files.rename(from, to);

@@ -173,7 +173,7 @@ const StageStatus* next_stage(const TaskStatus& status) {
 std::string status_text(const TaskStatus& status, const TaskPlan& plan,
                         std::optional<double> left) {
   if (status.is_finished)
-    return fmt::format("finished: {}\n", plan.config.output.string());
+    return fmt::format("finished: {}\n", plain_text(plan.config.output.string(), 4096));
   std::string text =
       "stage           tasks    done       bytes    CPU time     longest      memory\n";
   for (const StageStatus& stage : status.stages) {

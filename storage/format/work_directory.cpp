@@ -1,6 +1,7 @@
 #include "storage/format/work_directory.h"
 
 #include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
 #include "storage/format/archive.h"
 #include "storage/format/layout.h"
 #include "storage/io/hash.h"
@@ -63,6 +64,30 @@ void require_outside(FileSystem& files, const fs::path& output) {
                                                 output.string(), parent.string()));
     }
     place = parent;
+  }
+}
+
+fs::path existing_directory(FileSystem& files, const fs::path& output) {
+  fs::path directory = output.parent_path();
+  while (!directory.empty() && !files.exists(directory))
+    directory = directory.parent_path();
+  return directory.empty() ? "." : directory;
+}
+
+void check_place(FileSystem& files, const fs::path& output) {
+  constexpr std::size_t kLongestName = 255;  // of Linux's file systems
+  const auto refuse = [&](const std::string& why) {
+    throw Error(ErrorCode::io, fmt::format("cannot make {}: {}", output.string(), why));
+  };
+  const std::size_t length = work_path(output).filename().string().size();
+  if (length > kLongestName)
+    refuse("its name is too long, by " + counted(length - kLongestName, "bytes"));
+  const fs::path directory = existing_directory(files, output);
+  if (!files.is_directory(directory))
+    refuse(fmt::format("{} is not a directory", directory.string()));
+  if (const std::string why = files.why_not_writable(directory); !why.empty()) {
+    refuse(fmt::format("{} cannot be written ({}); choose another place for the output",
+                       directory.string(), why));
   }
 }
 

@@ -34,6 +34,12 @@ struct Output {
 /// Where a link of that name leads to; the name itself if it is none.
 std::filesystem::path followed(FileSystem& files, const std::filesystem::path& output);
 
+/// The directory nearest above `output` that is there.
+std::filesystem::path existing_directory(FileSystem& files, const std::filesystem::path& output);
+
+/// Throws Error(io) if it is clear already that nothing can be made where `output` is to be.
+void check_place(FileSystem& files, const std::filesystem::path& output);
+
 /// Throws Error(usage) if the output lies in a hierarchy: it would be damage to that, and go when
 /// it is replaced. Not for standard output.
 void require_outside(FileSystem& files, const std::filesystem::path& output);

@@ -1,6 +1,7 @@
 #include "storage/io/file.h"
 
 #include "hierarchy/error.h"
+#include "storage/io/link_free_paths.h"
 #include "storage/io/posix_file.h"
 #include "storage/io/stream.h"
 #include "storage/io/system_failure.h"
@@ -67,28 +68,29 @@ bool is_inability(int error) {
   return error == EINVAL || error == ENOSYS || error == EOPNOTSUPP;
 }
 
-class PosixFileSystem final : public FileSystem {
- public:
-  explicit PosixFileSystem(Links links) : links_(links) {}
+// Without O_NONBLOCK a pipe that nobody writes to would hang.
+constexpr int kReading = O_RDONLY | O_CLOEXEC | O_NONBLOCK;
 
+FileKind kind_of(const struct stat& status) {
+  if (S_ISDIR(status.st_mode))
+    return FileKind::directory;
+  if (S_ISREG(status.st_mode))
+    return FileKind::regular;
+  return S_ISFIFO(status.st_mode) || S_ISCHR(status.st_mode) ? FileKind::stream : FileKind::other;
+}
+
+FileIdentity identity_of(const struct stat& status) {
+  return {static_cast<std::uint64_t>(status.st_size), nanoseconds(status.st_mtim),
+          nanoseconds(status.st_ctim)};
+}
+
+class PosixFileSystem : public FileSystem {
+ public:
   std::unique_ptr<File> open(const std::filesystem::path& path) override {
-    // Without O_NONBLOCK a pipe that nobody writes to would hang here.
-    const int no_link = links_ == Links::refused ? O_NOFOLLOW : 0;
-    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | no_link);
-    if (descriptor < 0 && errno == ELOOP && no_link != 0) {
-      throw Error(ErrorCode::io, fmt::format("cannot open {}: it is a link", path.string()));
-    }
-    if (descriptor < 0)
+    Descriptor file(::open(path.c_str(), kReading));
+    if (!file.is_open())
       fail_system("open", path, errno);
-    struct stat status {};
-    if (::fstat(descriptor, &status) == 0 && !S_ISREG(status.st_mode)) {
-      ::close(descriptor);
-      if (S_ISDIR(status.st_mode))
-        fail_system("open", path, EISDIR);
-      throw Error(ErrorCode::io,
-                  fmt::format("cannot open {}: it is not a regular file", path.string()));
-    }
-    return std::make_unique<PosixFile>(path, descriptor, counters_);
+    return take(std::move(file), path);
   }
 
   std::unique_ptr<File> create(const std::filesystem::path& path) override {
@@ -109,8 +111,7 @@ class PosixFileSystem final : public FileSystem {
     struct stat status {};
     if (::stat(path.c_str(), &status) != 0)
       fail_system("look at", path, errno);
-    return {static_cast<std::uint64_t>(status.st_size), nanoseconds(status.st_mtim),
-            nanoseconds(status.st_ctim)};
+    return identity_of(status);
   }
 
   std::unique_ptr<FileLock> try_lock(const std::filesystem::path& path) override {
@@ -150,13 +151,8 @@ class PosixFileSystem final : public FileSystem {
     struct stat status {};
     if (::stat(path.c_str(), &status) != 0)
       return FileKind::none;
-    if (S_ISDIR(status.st_mode))
-      return FileKind::directory;
-    if (is_own_output(path))
-      return FileKind::standard_output;
-    if (S_ISREG(status.st_mode))
-      return FileKind::regular;
-    return S_ISFIFO(status.st_mode) || S_ISCHR(status.st_mode) ? FileKind::stream : FileKind::other;
+    const FileKind kind = kind_of(status);
+    return kind != FileKind::directory && is_own_output(path) ? FileKind::standard_output : kind;
   }
 
   bool is_link(const std::filesystem::path& path) override {
@@ -282,6 +278,19 @@ class PosixFileSystem final : public FileSystem {
     return holds_files ? "" : "the system keeps no files there";
   }
 
+ protected:
+  /// Of a file that was opened for reading.
+  std::unique_ptr<File> take(Descriptor file, const std::filesystem::path& path) {
+    struct stat status {};
+    if (::fstat(file.number(), &status) == 0 && !S_ISREG(status.st_mode)) {
+      if (S_ISDIR(status.st_mode))
+        fail_system("open", path, EISDIR);
+      throw Error(ErrorCode::io,
+                  fmt::format("cannot open {}: it is not a regular file", path.string()));
+    }
+    return std::make_unique<PosixFile>(path, file.release(), counters_);
+  }
+
  private:
   static void sync_by(int (*call)(int), const std::filesystem::path& directory) {
     const int descriptor = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -293,8 +302,64 @@ class PosixFileSystem final : public FileSystem {
     if (result != 0)
       fail_system("sync", directory, error);
   }
+};
 
-  Links links_;
+/// Opens and looks at files by paths without links; their bytes count elsewhere.
+class LinkFreeFileSystem final : public PosixFileSystem {
+ public:
+  LinkFreeFileSystem(const std::optional<std::filesystem::path>& within,
+                     std::shared_ptr<IoCounters> counters)
+      : paths_(within) {
+    counters_ = std::move(counters);
+  }
+
+  std::unique_ptr<File> open(const std::filesystem::path& path) override {
+    Descriptor file = paths_.open(path, kReading);
+    if (!file.is_open())
+      paths_.fail("open", path, errno);
+    return take(std::move(file), path);
+  }
+
+  FileIdentity identity(const std::filesystem::path& path) override {
+    const Descriptor file = paths_.open(path, O_PATH);
+    struct stat status {};
+    if (!file.is_open() || ::fstat(file.number(), &status) != 0)
+      paths_.fail("look at", path, errno);
+    return identity_of(status);
+  }
+
+  bool exists(const std::filesystem::path& path) override { return kind(path) != FileKind::none; }
+
+  FileKind kind(const std::filesystem::path& path) override {
+    const Descriptor file = paths_.open(path, O_PATH);
+    struct stat status {};
+    return file.is_open() && ::fstat(file.number(), &status) == 0 ? kind_of(status)
+                                                                  : FileKind::none;
+  }
+
+  std::vector<std::filesystem::path> children(const std::filesystem::path& directory) override {
+    Descriptor opened = paths_.open(directory, O_RDONLY | O_DIRECTORY);
+    if (!opened.is_open())
+      paths_.fail("list", directory, errno);
+    std::vector<std::filesystem::path> found;
+    for (const std::string& name : names_in(std::move(opened), directory))
+      found.push_back(directory / name);
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+
+ private:
+  LinkFreePaths paths_;
+};
+
+class GuardedFileSystem final : public PosixFileSystem {
+ public:
+  explicit GuardedFileSystem(const std::optional<std::filesystem::path>& within)
+      : input_(within, counters_) {}
+  FileSystem& input() override { return input_; }
+
+ private:
+  LinkFreeFileSystem input_;
 };
 
 }  // namespace
@@ -340,8 +405,10 @@ void File::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
   }
 }
 
-std::unique_ptr<FileSystem> make_posix_file_system(Links links) {
-  return std::make_unique<PosixFileSystem>(links);
+std::unique_ptr<FileSystem> make_posix_file_system(const InputRule& input) {
+  if (input.follows_links && !input.within)
+    return std::make_unique<PosixFileSystem>();
+  return std::make_unique<GuardedFileSystem>(input.within);
 }
 
 std::uint64_t bytes_below(FileSystem& files, const std::filesystem::path& directory) {

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -162,17 +163,26 @@ class FileSystem {
   /// denied"; empty if nothing speaks against it.
   virtual std::string why_not_writable(const std::filesystem::path& /*directory*/) { return ""; }
 
+  /// The one to read a mesh with, and what a mesh names. It may refuse links, and what lies
+  /// elsewhere.
+  virtual FileSystem& input() { return *this; }
+
   const IoCounters& counters() const { return *counters_; }
 
  protected:
   std::shared_ptr<IoCounters> counters_ = std::make_shared<IoCounters>();
 };
 
-/// What open() does with a path whose last part is a link.
-enum class Links { followed, refused };
+/// What FileSystem::input() opens and looks at.
+struct InputRule {
+  bool follows_links = true;  ///< else no part of a path may be a link, at whatever moment
+  /// Nothing that lies elsewhere, and no link below it; the folder itself may be one, its path is
+  /// taken without "..", and so are those of files.
+  std::optional<std::filesystem::path> within{};
+};
 
-/// The real one.
-std::unique_ptr<FileSystem> make_posix_file_system(Links links = Links::followed);
+/// The real one. What input() refuses is Error(io) or, where it is looked for, not there.
+std::unique_ptr<FileSystem> make_posix_file_system(const InputRule& input = {});
 
 /// Of all files below `directory`. Throws Error(io).
 std::uint64_t bytes_below(FileSystem& files, const std::filesystem::path& directory);

@@ -1,5 +1,6 @@
 #include "storage/io/folder.h"
 
+#include "storage/io/link_free_paths.h"
 #include "storage/io/posix_file.h"
 #include "storage/io/system_failure.h"
 
@@ -10,30 +11,9 @@
 #include <dirent.h>
 #include <fcntl.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 namespace meshhier::storage {
 namespace {
-
-/// A descriptor that is closed with its object; below 0: none.
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  Descriptor(Descriptor&& other) noexcept : number_(other.release()) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    std::swap(number_, other.number_);
-    return *this;
-  }
-  ~Descriptor() {
-    if (number_ >= 0)
-      ::close(number_);
-  }
-  int number() const { return number_; }
-  int release() { return std::exchange(number_, -1); }
-
- private:
-  int number_;
-};
 
 /// What opening a name fails with if there is simply nothing of that name and kind.
 bool is_absence(int error) {
@@ -43,6 +23,16 @@ bool is_absence(int error) {
 
 bool is_folder_part(std::string_view part) {
   return !part.empty() && part != "." && part != ".." && part.find('\0') == std::string_view::npos;
+}
+
+bool is_folder_name(std::string_view name) {
+  for (std::size_t slash = name.find('/'); slash != std::string_view::npos;
+       slash = name.find('/')) {
+    if (!is_folder_part(name.substr(0, slash)))
+      return false;
+    name.remove_prefix(slash + 1);
+  }
+  return is_folder_part(name);
 }
 
 class PosixFolder final : public Folder {
@@ -84,23 +74,12 @@ class PosixFolder final : public Folder {
 
   /// Part by part, no link followed; none if there is nothing.
   Descriptor walk(std::string_view name, int flags) const {
-    Descriptor here(-1);
-    for (std::string_view rest = name;;) {
-      const std::size_t slash = rest.find('/');
-      const std::string part(rest.substr(0, slash));
-      if (!is_folder_part(part))
-        return Descriptor(-1);
-      const bool is_last = slash == std::string_view::npos;
-      const int start = here.number() < 0 ? descriptor_.number() : here.number();
-      Descriptor next(::openat(start, part.c_str(),
-                               (is_last ? flags : O_PATH | O_DIRECTORY) | O_NOFOLLOW | O_CLOEXEC));
-      if (next.number() < 0 && !is_absence(errno))
-        fail_system("open", path() / name, errno);
-      if (is_last || next.number() < 0)
-        return next;
-      here = std::move(next);
-      rest.remove_prefix(slash + 1);
-    }
+    if (!is_folder_name(name))
+      return Descriptor(-1);
+    Descriptor found = open_parts(descriptor_.number(), name, flags);
+    if (!found.is_open() && !is_absence(errno))
+      fail_system("open", path() / name, errno);
+    return found;
   }
 
   static std::vector<FolderEntry> read_entries(DIR& listing, const std::filesystem::path& path) {

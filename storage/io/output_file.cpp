@@ -16,10 +16,18 @@ namespace fs = std::filesystem;
 /// Unlike a work directory, the parent is not made: a mistyped path should be told.
 void require_parent(FileSystem& files, const OutputRequest& request, const fs::path& target) {
   const fs::path directory = target.parent_path();
-  if (directory.empty() || files.is_directory(directory))
+  if (directory.empty())
     return;
-  throw Error(ErrorCode::io, fmt::format("cannot write {}: there is no directory {}",
-                                         request.path.string(), directory.string()));
+  if (!files.is_directory(directory)) {
+    throw Error(ErrorCode::io, fmt::format("cannot write {}: there is no directory {}",
+                                           request.path.string(), directory.string()));
+  }
+  if (const std::string why = files.why_not_writable(directory); !why.empty()) {
+    throw Error(ErrorCode::io,
+                fmt::format("cannot write {}: {} cannot be written ({}); choose another place for "
+                            "the output",
+                            request.path.string(), directory.string(), why));
+  }
 }
 
 /// Files beside it have longer names.

@@ -505,6 +505,11 @@ TEST_F(CommandLine, ABuildThatShowsNothingWarns) {
       {vertices + "0" + lists + corners, "no triangles: viewers show nothing of points alone"},
       {vertices + "1" + lists + corners + "3 0 0 1\n", "all triangles of the mesh are degenerate"},
       {vertices + "1" + lists + point + "3 0 1 2\n", "all vertices of the mesh are at one point"},
+      {vertices + "2" + lists + "0 0 0\n1 0 0\n2 0 0\n3 0 0\n" + "3 0 1 2\n3 1 3 2\n",
+       "no triangle of the mesh has an area"},
+      {vertices + "2" + lists + "9 7 5\n9.1 7.3 5.7\n9.2 7.6 6.4\n9.3 7.9 7.1\n" +
+           "3 0 1 2\n3 1 3 2\n",
+       "no triangle of the mesh has an area"},
       {vertices + "3" + lists + corners + "3 0 0 1\n3 0 1 1\n3 0 1 2\n", "most triangles"},
   };
   for (const auto& [mesh, warning] : meshes) {
@@ -517,6 +522,9 @@ TEST_F(CommandLine, ABuildThatShowsNothingWarns) {
              "OFF\n7 1 0\n0 0 0\n1 0 0\n0 1 0\n5 5 5\n6 5 5\n5 6 5\n6 6 6\n3 0 1 2\n");
   EXPECT_THAT(run({"build", (work() / "a.off").string(), "--force"}).out,
               HasSubstr("warning: most vertices of the mesh belong to no triangle"));
+  write_text(work() / "a.off", "OFF\n4 2 0\n0 0 0\n1 0 0\n2 0 0\n2 0.001 0\n3 0 1 2\n3 0 2 3\n");
+  EXPECT_THAT(run({"build", (work() / "a.off").string(), "--force"}).out,
+              Not(HasSubstr("warning")));
 }
 
 TEST_F(CommandLine, AnAccountThatCannotBeWrittenIsRefusedBeforeTheBuild) {
@@ -534,6 +542,125 @@ TEST_F(CommandLine, AnAccountThatCannotBeWrittenIsRefusedBeforeTheBuild) {
     EXPECT_EQ(names(), (std::set<std::string>{"a.json", "a.ply"}));
   }
   EXPECT_EQ(text_of(mesh), before);
+}
+
+/// A triangle with a library and a picture (one red texel) of its own.
+class WithCompanions : public CommandLine {
+ protected:
+  WithCompanions() {
+    write_text(work() / "a.obj",
+               "mtllib a.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n"
+               "f 1/1 2/2 3/3\n");
+    write_library("a.png");
+    write_picture(work() / "a.png");
+  }
+  void write_library(const std::string& picture) const {
+    write_text(work() / "a.mtl", "newmtl m\nmap_Kd " + picture + '\n');
+  }
+  static void write_picture(const Path& path) {
+    constexpr unsigned char kPng[] = {
+        0x89, 'P',  'N',  'G',  '\r', '\n', 0x1a, '\n', 0,   0,    0,    13,   'I',  'H',
+        'D',  'R',  0,    0,    0,    1,    0,    0,    0,   1,    8,    2,    0,    0,
+        0,    0x90, 0x77, 0x53, 0xde, 0,    0,    0,    12,  'I',  'D',  'A',  'T',  0x78,
+        0x9c, 0x63, 0xf8, 0xcf, 0xc0, 0,    0,    3,    1,   1,    0,    0xc9, 0xfe, 0x92,
+        0xef, 0,    0,    0,    0,    'I',  'E',  'N',  'D', 0xae, 0x42, 0x60, 0x82};
+    write_text(path, {reinterpret_cast<const char*>(kPng), sizeof kPng});
+  }
+  std::uint64_t texels() const {
+    const json manifest = json::parse(text_of(Path(hierarchy()) / "hierarchy.json"));
+    return manifest["source"].contains("textures")
+               ? manifest["source"]["textures"]["texels"].get<std::uint64_t>()
+               : 0;
+  }
+  std::string obj() const { return (work() / "a.obj").string(); }
+};
+
+TEST_F(WithCompanions, WhatAMeshNamesIsNotReplacedByAnAccount) {
+  const auto before = contents(work());
+  for (const char* option : {"--stats", "--input-note"}) {
+    for (const char* name : {"a.mtl", "a.png", "a.obj"}) {
+      const Outcome outcome = run({"build", obj(), "--force", option, (work() / name).string()});
+      EXPECT_EQ(outcome.code, kUsage) << outcome.messages;
+      EXPECT_THAT(outcome.messages, HasSubstr("it would replace " + (work() / name).string()));
+      EXPECT_EQ(contents(work()), before) << option << ' ' << name;
+    }
+  }
+  std::filesystem::create_symlink("a.png", work() / "link");
+  EXPECT_EQ(run({"build", obj(), "--force", "--stats", (work() / "link").string()}).code, kUsage);
+  EXPECT_EQ(run({"build", obj(), "--stats", (work() / "s.json").string()}).code, 0);
+  EXPECT_EQ(texels(), 1U);
+}
+
+TEST_F(WithCompanions, AnOutputThatHoldsWhatAMeshNamesIsNotReplaced) {
+  ASSERT_EQ(run({"build", obj()}).code, 0);
+  write_picture(Path(hierarchy()) / "tiles/a.png");
+  write_library("a.hier/tiles/a.png");
+  const Outcome outcome = run({"build", obj(), "--force"});
+  EXPECT_NE(outcome.code, 0);
+  EXPECT_TRUE(std::filesystem::exists(Path(hierarchy()) / "tiles/a.png"));
+}
+
+TEST_F(CommandLine, TheAccountAndTheNoteAreTwoFiles) {
+  const std::string mesh = write_mesh("a.ply").string();
+  std::filesystem::create_symlink("x", work() / "y");
+  for (const auto& [stats, note] : std::vector<std::pair<std::string, std::string>>{
+           {(work() / "x").string(), (work() / "x").string()},
+           {(work() / "x").string(), (work() / "y").string()},
+           {"-", "-"}}) {
+    const Outcome outcome = run({"build", mesh, "--stats", stats, "--input-note", note, "--force"});
+    EXPECT_EQ(outcome.code, kUsage);
+    EXPECT_THAT(outcome.messages, HasSubstr("both name"));
+    EXPECT_EQ(names(), (std::set<std::string>{"a.ply", "y"}));
+  }
+}
+
+// ---- input that is guarded
+
+TEST_F(CommandLine, ALinkOnTheWayToAnInputIsNotFollowed) {
+  std::filesystem::create_directory(work() / "secret");
+  std::filesystem::create_directory_symlink("secret", work() / "house");
+  write_text(work() / "secret/a.off", "OFF\nroot:x:secret");
+  write_text(work() / "secret/shadow", "root:x:secret");
+  for (const char* name : {"house/a.off", "house/shadow"}) {
+    for (const Arguments& guard : {Arguments{"--no-links"}, {"--within", work().string()}}) {
+      Arguments arguments{"build", (work() / name).string()};
+      arguments.insert(arguments.end(), guard.begin(), guard.end());
+      const Outcome outcome = run(arguments);
+      EXPECT_EQ(outcome.code, kIo) << name;
+      EXPECT_THAT(outcome.messages, AllOf(HasSubstr("house is a link"), Not(HasSubstr("root:"))));
+    }
+  }
+  const Outcome outside =
+      run({"build", (work() / "secret/a.off").string(), "--within", (work() / "house").string()});
+  EXPECT_EQ(outside.code, kIo);
+  EXPECT_THAT(outside.messages, AllOf(HasSubstr("does not lie in"), Not(HasSubstr("root:"))));
+  EXPECT_EQ(run({"build", "a.ply", "--no-links", "--within", "."}).code, kUsage);
+}
+
+TEST_F(WithCompanions, WhatLiesElsewhereIsMissing) {
+  std::filesystem::create_directory(work() / "in");
+  for (const char* name : {"a.obj", "a.mtl"})
+    std::filesystem::rename(work() / name, work() / "in" / name);
+  const auto built = [&](const std::string& picture, const Arguments& guard) {
+    write_text(work() / "in/a.mtl", "newmtl m\nmap_Kd " + picture + '\n');
+    Arguments arguments{"build", (work() / "in/a.obj").string(), "-o", hierarchy(), "--force",
+                        "--set", "missing_images=ignore"};
+    arguments.insert(arguments.end(), guard.begin(), guard.end());
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, 0) << outcome.messages;
+    return texels();
+  };
+  const Arguments within{"--within", (work() / "in").string()};
+  EXPECT_EQ(built("../a.png", {}), 1U);
+  EXPECT_EQ(built("../a.png", {"--no-links"}), 1U);
+  EXPECT_EQ(built("../a.png", within), 0U);
+  EXPECT_EQ(built((work() / "a.png").string(), within), 0U);
+  std::filesystem::create_directory_symlink("..", work() / "in/up");
+  EXPECT_EQ(built("up/a.png", {}), 1U);
+  EXPECT_EQ(built("up/a.png", {"--no-links"}), 0U);
+  EXPECT_EQ(built("up/a.png", within), 0U);
+  std::filesystem::rename(work() / "a.png", work() / "in/a.png");
+  EXPECT_EQ(built("a.png", within), 1U);
 }
 
 TEST_F(CommandLine, ABuildThatFailsLeavesNoAccount) {
@@ -664,6 +791,25 @@ TEST_F(CommandLine, APlaceThatTakesNoOutputIsToldByTheNameThatWasGiven) {
     }
   }
   EXPECT_EQ(names(), (std::set<std::string>{"a.ply"}));
+}
+
+TEST_F(CommandLine, AFileThatCannotBeWrittenIsToldByTheNameThatWasGiven) {
+  if (!std::filesystem::exists("/proc"))
+    GTEST_SKIP() << "there is no /proc here";
+  build();
+  for (const Arguments& arguments :
+       {Arguments{"export", hierarchy(), "--level", "0", "-o", "/proc/x.ply"},
+        {"export", hierarchy(), "--level", "0", "-o", "/proc/x.obj"},
+        {"preview", hierarchy(), "-o", "/proc/x.png"},
+        {"build", write_config(), "--force", "--stats", "/proc/x.js"},
+        {"build", write_config(), "--force", "--input-note", "/proc/x"},
+        {"progressive", hierarchy(), "-o", "/proc/x.prog"}}) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, kIo) << arguments[0];
+    EXPECT_THAT(outcome.messages,
+                AllOf(HasSubstr(" /proc/x"), HasSubstr("/proc cannot be written"),
+                      HasSubstr("choose another place"), Not(HasSubstr("meshhier-"))));
+  }
 }
 
 TEST_F(CommandLine, ADamagedManifestIsToldWithoutTheParsersName) {
@@ -1182,6 +1328,17 @@ TEST_F(CommandLine, AResultThatCannotBeWrittenIsAFailure) {
   const Outcome outcome = run({"inspect", hierarchy()}, "/dev/full");
   EXPECT_EQ(outcome.code, kIo);
   EXPECT_THAT(outcome.messages, HasSubstr("standard output"));
+}
+
+TEST_F(CommandLine, HelpThatCannotBeWrittenIsAFailure) {
+  if (!std::filesystem::exists("/dev/full"))
+    GTEST_SKIP() << "there is no /dev/full here";
+  for (const Arguments& arguments :
+       {Arguments{"--help"}, {"--version"}, {"build", "--help"}, {"build", "--help-config"}}) {
+    const Outcome outcome = run(arguments, "/dev/full");
+    EXPECT_EQ(outcome.code, kIo) << arguments[0];
+    EXPECT_THAT(outcome.messages, HasSubstr("standard output"));
+  }
 }
 
 // ---- interruption

@@ -95,6 +95,7 @@ void request(Bytes input) {
   if (!head)
     return;
   require(head->text.size() <= raw.size(), "nothing is added");
+  require(std::ranges::count(first, ' ') == 2, "a request is three words");
   check_lines(head->text);
   if (head->range)
     check_range(*head->range);

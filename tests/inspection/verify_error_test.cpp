@@ -220,6 +220,42 @@ TEST_F(VerifyErrorTest, ErrorsOfLessThanHalfTheMeanAreAProblem) {
   }
 }
 
+/// Bounds are far larger than means where one vertex goes far.
+TEST_F(VerifyErrorTest, ErrorsAreHeldToTheMeanHoweverLargeTheBoundIs) {
+  tests::Sample sample = make(tests::torus(2000), {8, 40, false, false, {}});
+  const ErrorMeasurement before = measure_level(sample, 1);
+  const double mean = std::max(before.forward.mean, before.backward.mean);
+  const auto say = [&](double error) {
+    for (const std::uint32_t i : {0U, 1U}) {
+      sample.record(node(1, i)).error = static_cast<float>(error);
+      sample.record(node(1, i)).bound = static_cast<float>(1000 * mean);
+    }
+    return measure_level(sample, 1);
+  };
+  EXPECT_THAT(say(0.51 * mean).problems, IsEmpty());
+  for (const double error : {0.47 * mean, 7e-45})
+    EXPECT_THAT(say(error).problems, ElementsAre(HasSubstr("level 1 is off by")));
+}
+
+/// Coarse vertices on both sides of the line between what rounding does and what it does not.
+TEST_F(VerifyErrorTest, AMeanBeyondRoundingIsHeldToTheErrors) {
+  tests::TestMesh mesh = tests::open_grid(20, 20);
+  for (Vec3f& p : mesh.positions)
+    p.z += 1024;
+  const auto problems = [&](int roundings) {
+    tests::Sample sample = make(mesh, {2, 1000, false, false, {}});
+    auto& root = sample.tile(node(0, 0)).mesh.vertices.positions;  // a copy of the original
+    for (Vec3f& p : root)
+      p.z += static_cast<float>(roundings) * 0x1p-14F;  // 2^-24 of it
+    sample.record(node(0, 0)).bounds = bounds_of(root);
+    sample.record(node(0, 0)).bound = 1;
+    sample.record(node(0, 0)).error = 7e-45F;
+    return measure_level(sample, 0).problems;
+  };
+  EXPECT_THAT(problems(0), IsEmpty());
+  EXPECT_THAT(problems(2), ElementsAre(HasSubstr("level 0 is off by")));
+}
+
 /// As a scan whose triangles share no vertex: every piece vanishes by itself.
 TEST_F(VerifyErrorTest, ASoupSaysHowFarItIsOff) {
   const tests::TestMesh sphere = tests::sphere(4000);

@@ -292,6 +292,34 @@ TEST_F(BuildTest, AVertexOfAHundredThousandTriangles) {
   EXPECT_THAT(problems(), IsEmpty());
 }
 
+/// Its triangles reach across it: nearly all are in each tile of every level.
+TEST_F(BuildTest, ASoupIsToldOnceWhatDoes) {
+  constexpr std::uint32_t kVertices = 12'000, kTriangles = 80'000;
+  TestMesh soup = tests::points(kVertices);
+  const auto corner = [](std::uint32_t i, std::uint64_t stream) {
+    return static_cast<std::uint32_t>((tests::hash_noise(i, stream) / 2 + 0.5F) * kVertices) %
+           kVertices;
+  };
+  for (std::uint32_t i = 0; i < kTriangles; ++i)
+    soup.triangles.push_back({corner(i, 1), corner(i, 2), corner(i, 3)});
+  tests::write_ply(soup, mesh_path());
+  config::Config tight = config(1000);
+  tight.memory_budget = tight_budget(tight);
+  tight.threads = 1;
+  std::string message;
+  try {
+    build(tight);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::budget);
+    message = error.what();
+  }
+  const std::string before = "larger by ";
+  const std::size_t at = message.find(before);
+  ASSERT_NE(at, std::string::npos) << message;
+  tight.memory_budget += std::stoull(message.substr(at + before.size())) * kMiB;
+  EXPECT_THAT(build(tight).text, HasSubstr("went on"));
+}
+
 TEST_F(BuildTest, HugeAndTinyCoordinates) {
   for (const float unit : {1e30F, 1e-30F, 1e-40F}) {
     SCOPED_TRACE(unit);

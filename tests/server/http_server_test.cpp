@@ -163,6 +163,9 @@ TEST_F(HttpServerTest, WhatIsNoRequestIsRefused) {
   for (const std::string& bytes :
        {"GET\r\n\r\n"s, "GET /models.json\r\n\r\n"s, "GET /models.json HTTP/9.9\r\n\r\n"s,
         "BREW / HTTP/1.1\r\nHost: localhost\r\n\r\n"s,
+        "GET  /models.json HTTP/1.1\r\nHost: localhost\r\n\r\n"s,
+        "GET /models.json  HTTP/1.1\r\nHost: localhost\r\n\r\n"s,
+        "GET /models.json HTTP/1.1 \r\nHost: localhost\r\n\r\n"s,
         "GET /\0 HTTP/1.1\r\nHost: localhost\r\n\r\n"s, "\x16\x03\x01\x02\r\n\r\n"s,
         "GET / HTTP/1.1\nHost: localhost\n\n\r\n\r\n"s,
         "GET /models.json HTTP/1.1\r\nHost: localhost\nRange: bytes=0-\r\n\r\n"s}) {

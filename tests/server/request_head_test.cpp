@@ -88,7 +88,10 @@ TEST(RequestHeadTest, HeadersThatCanBeReadInTwoWaysAreRefused) {
                                    "Transfer-Encoding: chunked\r\nTransfer-Encoding: chunked"s,
                                    "Transfer-Encoding: gzip"s})
     EXPECT_EQ(parse_head("GET / HTTP/1.1\r\n" + lines + "\r\n\r\n"), std::nullopt) << lines;
-  for (const std::string& line : {"\r\n"s, " GET / HTTP/1.1\r\n"s, "GET /\t HTTP/1.1\r\n"s})
+  for (const std::string& line :
+       {"\r\n"s, " GET / HTTP/1.1\r\n"s, "GET /\t HTTP/1.1\r\n"s, "GET  / HTTP/1.1\r\n"s,
+        "GET /  HTTP/1.1\r\n"s, "GET / HTTP/1.1 \r\n"s, "GET /a b HTTP/1.1\r\n"s, "GET /\r\n"s,
+        "GET  HTTP/1.1\r\n"s})
     EXPECT_EQ(parse_head(line + "\r\n"), std::nullopt) << line;
 }
 

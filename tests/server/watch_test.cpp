@@ -410,6 +410,33 @@ TEST_F(WatchTest, AFileThatBecomesALinkBeforeItIsOpenedIsNotFollowed) {
   EXPECT_FALSE(fs::exists(models() / "a.hier"));
 }
 
+TEST_F(WatchTest, AFolderThatBecomesALinkIsNotFollowed) {
+  const fs::path secret = directory_.path() / "secret";
+  fs::create_directory(secret);
+  tests::write_text(secret / "a.off", "OFF\nnobody may read this");
+  tests::write_ply(tests::sphere(600), secret / "b.ply");
+  run_before_the_build("mv " + (inbox() / "h").string() + " " + (directory_.path() / "h").string() +
+                       " 2>/dev/null && ln -s " + secret.string() + " " + (inbox() / "h").string());
+  fs::create_directory(directory_.path() / "new");
+  tests::write_ply(tests::sphere(600), directory_.path() / "new/b.ply");
+  fs::rename(directory_.path() / "new", inbox() / "h");
+  start();
+  wait_until([&] { return told().size() >= 2; });
+  EXPECT_THAT(told()[1], HasSubstr("is a link"));
+  EXPECT_TRUE(fs::is_empty(models()));
+}
+
+TEST_F(WatchTest, WhatLiesOutsideTheInboxIsMissing) {
+  put_picture("wall.png", 16);
+  fs::rename(inbox() / "wall.png", directory_.path() / "wall.png");
+  drop_library("../wall.png");
+  drop_obj();
+  start();
+  wait_until([&] { return is_there("a.hier") && is_idle(); });
+  EXPECT_EQ(texels(), 0U);
+  EXPECT_EQ(builds_of("a.obj"), 1);
+}
+
 TEST_F(WatchTest, StoppingStopsTheBuildAndTheNextOneGoesOn) {
   stop_in_the_middle();
   start();

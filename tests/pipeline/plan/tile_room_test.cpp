@@ -17,7 +17,7 @@ class TileRoomTest : public testing::Test {
     plan_.tiles_in_flight = 4;
   }
   std::size_t in_flight(std::uint64_t heaviest) {
-    return TileRoom(plan_, pool_, heaviest).in_flight();
+    return TileRoom(plan_, pool_, {heaviest}).in_flight();
   }
 
   MemoryPlan plan_;
@@ -37,11 +37,22 @@ TEST_F(TileRoomTest, HeavierOnesAreFewerAtATime) {
 
 TEST_F(TileRoomTest, WhatOneNeedsBeyondThePlanComesFromThePoolForAWhile) {
   {
-    const TileRoom room(plan_, pool_, 150);
+    const TileRoom room(plan_, pool_, {150});
     EXPECT_EQ(room.in_flight(), 1U);
     EXPECT_EQ(pool_.free_bytes(), 10U);
   }
   EXPECT_EQ(pool_.free_bytes(), 60U);
+}
+
+TEST_F(TileRoomTest, ARefusalNamesWhatDoesForThoseAheadToo) {
+  EXPECT_EQ(TileRoom(plan_, pool_, {150, 1 << 22}).in_flight(), 1U) << "they may become fewer";
+  try {
+    const TileRoom room(plan_, pool_, {161, 1 << 22});
+    FAIL() << "expected an error";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("takes 161 B, and others up to 4"));
+    EXPECT_THAT(error.what(), HasSubstr("needs a memory_budget larger by 5MiB"));
+  }
 }
 
 TEST_F(TileRoomTest, ATileThatDoesNotFitIsRefusedWithWhatWouldDo) {

@@ -454,12 +454,41 @@ TEST_F(TasksTest, MemoryAndThreadsMayChange) {
   EXPECT_EQ(run("leaves").found, 2);
 }
 
+TEST_F(TasksTest, TilesThatChangeBeforeTheEndAreMadeAgain) {
+  use_sphere();
+  config_.preview = false;
+  const Snapshot whole = expected();
+  const TaskPlan planned = plan(3);
+  run_until(planned, "finish");
+  const fs::path tile = work() / "hierarchy" / "tiles" / "03" / "000002.glb";
+  const auto size = static_cast<std::int64_t>(fs::file_size(tile));
+  for (const std::int64_t from_end : {std::int64_t{1}, size / 2, std::int64_t{0}}) {
+    if (from_end > 0)
+      flip(tile, from_end);
+    else
+      fs::remove(tile);
+    EXPECT_EQ(failure("finish"), ErrorCode::corrupt);
+    EXPECT_THAT(message_, HasSubstr("tiles/03/000002.glb is missing or damaged"));
+    EXPECT_THAT(message_, HasSubstr("publish --index "));
+    const auto at = message_.find("--index ") + 8;
+    fs::remove(segment(planned, "publish", static_cast<std::uint32_t>(message_[at] - '0')));
+    EXPECT_EQ(run("publish").done, 1);
+  }
+  tests::write_ply(tests::sphere(100), work() / "hierarchy" / "tiles" / "00" / "other");
+  EXPECT_EQ(failure("finish"), ErrorCode::io);
+  EXPECT_THAT(message_, HasSubstr("no file of a hierarchy"));
+  fs::remove(work() / "hierarchy" / "tiles" / "00" / "other");
+  run("finish");
+  EXPECT_EQ(output(), whole);
+}
+
 TEST_F(TasksTest, AnOutputThatAppearsStays) {
   use_sphere();
   const TaskPlan planned = plan(2);
   run_until(planned, "finish");
   fs::create_directories(config_.output);
   EXPECT_EQ(failure("finish"), ErrorCode::exists);
+  EXPECT_THAT(message_, HasSubstr("move it away"));
   fs::remove_all(config_.output);
   EXPECT_EQ(failure("finish"), std::nullopt) << message_;
 }

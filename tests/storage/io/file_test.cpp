@@ -212,6 +212,83 @@ TEST_F(FileTest, WhatIsNotThereOrNoFileIsNamed) {
   EXPECT_EQ(error_of([&] { files_->rename(directory_ / "missing", path_); }).code(), ErrorCode::io);
 }
 
+/// A folder `in` with files and links; beside it `out`, with a file.
+class InputRuleTest : public FileTest {
+ protected:
+  void SetUp() override {
+    FileTest::SetUp();
+    namespace fs = std::filesystem;
+    fs::create_directories(in() / "sub/deep");
+    fs::create_directories(directory_ / "out");
+    for (const fs::path& file : {in() / "a", in() / "sub/b", in() / "sub/deep/c", out()})
+      write_file(*files_, file, pattern(10));
+    fs::create_symlink("a", in() / "link");
+    fs::create_directory_symlink("../out", in() / "away");
+    fs::create_directory_symlink("sub", in() / "inside");
+    fs::create_directory_symlink("in", directory_ / "door");
+  }
+  std::filesystem::path in() const { return directory_ / "in"; }
+  std::filesystem::path out() const { return directory_ / "out/secret"; }
+
+  static std::string refusal(FileSystem& files, const std::filesystem::path& path) {
+    EXPECT_EQ(files.input().kind(path), FileKind::none) << path;
+    EXPECT_FALSE(files.input().exists(path)) << path;
+    EXPECT_EQ(error_of([&] { (void)files.input().identity(path); }).code(), ErrorCode::io);
+    const Error error = error_of([&] { (void)files.input().open(path); });
+    EXPECT_EQ(error.code(), ErrorCode::io);
+    return error.what();
+  }
+  void expect_read(FileSystem& files, const std::filesystem::path& path) {
+    EXPECT_EQ(files.input().kind(path), FileKind::regular) << path;
+    EXPECT_EQ(files.input().identity(path), files_->identity(path)) << path;
+    EXPECT_EQ(read_file(files.input(), path, 10), pattern(10)) << path;
+  }
+};
+
+TEST_F(InputRuleTest, WithoutLinksNoPartOfAPathMayBeOne) {
+  const auto files = make_posix_file_system({.follows_links = false});
+  for (const auto& path : {in() / "a", in() / "sub/deep/c", in() / "sub/.././a", out(),
+                           std::filesystem::relative(in() / "sub/b")})
+    expect_read(*files, path);
+  EXPECT_THAT(refusal(*files, in() / "link"), HasSubstr(": it is a link"));
+  EXPECT_THAT(refusal(*files, in() / "away/secret"),
+              HasSubstr(": " + (in() / "away").string() + " is a link"));
+  EXPECT_THAT(refusal(*files, in() / "inside/deep/c"), HasSubstr("inside is a link"));
+  EXPECT_THAT(refusal(*files, directory_ / "door/a"), HasSubstr("door is a link"));
+  EXPECT_THAT(refusal(*files, in() / "none/c"), HasSubstr("No such file"));
+  EXPECT_THAT(refusal(*files, in() / "a/c"), HasSubstr("Not a directory"));
+  EXPECT_THAT(refusal(*files, "/proc/self/root/etc/passwd"), HasSubstr("is a link"));
+}
+
+TEST_F(InputRuleTest, WithinAFolderNothingElseIsRead) {
+  const auto files = make_posix_file_system({.within = directory_ / "door"});
+  for (const char* name : {"door/a", "door/sub/b", "door/sub/deep/../../a", "out/../door/a"})
+    expect_read(*files, directory_ / name);
+  EXPECT_THAT(refusal(*files, out()),
+              HasSubstr("does not lie in " + directory_.string() + "/door"));
+  EXPECT_THAT(refusal(*files, directory_ / "door/../out/secret"), HasSubstr("does not lie in"));
+  EXPECT_THAT(refusal(*files, directory_ / "doorway"), HasSubstr("does not lie in"));
+  for (const char* name : {"door/link", "door/away/secret", "door/inside/b"})
+    EXPECT_THAT(refusal(*files, directory_ / name), HasSubstr("is a link"));
+}
+
+TEST_F(InputRuleTest, FoldersAreListedUnlessALinkLeadsThere) {
+  const auto files = make_posix_file_system({.within = in()});
+  EXPECT_TRUE(files->input().is_directory(in()));
+  EXPECT_EQ(files->input().children(in() / "sub"), files_->children(in() / "sub"));
+  for (const char* name : {"away", "inside", "none", "../out"}) {
+    EXPECT_FALSE(files->input().is_directory(in() / name));
+    EXPECT_EQ(error_of([&] { (void)files->input().children(in() / name); }).code(), ErrorCode::io);
+  }
+}
+
+TEST_F(InputRuleTest, OnlyInputIsGuardedAndItsBytesAreCounted) {
+  const auto files = make_posix_file_system({.within = in()});
+  EXPECT_EQ(read_file(*files, in() / "away/secret", 10), pattern(10));
+  EXPECT_EQ(read_file(files->input(), in() / "a", 10), pattern(10));
+  EXPECT_EQ(files->counters().bytes_read, 20U);
+}
+
 TEST_F(FileTest, AnOpenedFileCannotBeWritten) {
   write_file(*files_, path_, pattern(10));
   const auto file = files_->open(path_);

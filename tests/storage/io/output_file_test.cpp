@@ -105,10 +105,14 @@ TEST_F(OutputFileTest, TheOldContentStaysUntilTheNewIsThere) {
 }
 
 TEST_F(OutputFileTest, ItsNameIsForcedToTheDisk) {
-  write({path_}, "new");
+  write({path_}, "old");
   EXPECT_EQ(files_.calls(Call::sync_tree), 1);
+  files_.fail(Call::sync, 1);
+  EXPECT_EQ(refusal({path_, true}), ErrorCode::io);
+  EXPECT_EQ(text(), "old");  // the content comes before the name
   files_.fail(Call::sync_tree, 1);
   EXPECT_EQ(refusal({path_, true}), ErrorCode::io);
+  EXPECT_EQ(text(), "new");  // and the directory after it
 }
 
 TEST_F(OutputFileTest, AFileThatIsThereStays) {
