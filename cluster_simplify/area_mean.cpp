@@ -51,8 +51,8 @@ void add_moved(AreaMean& mean, const TileMesh& mesh, const TileTriangle& t,
   const double a = moved[raw(t[0])], b = moved[raw(t[1])], c = moved[raw(t[2])];
   mean.add(std::max(std::max(a, b), c), [&] {
     const auto at = [&](std::size_t k) { return mesh.vertices.positions[raw(t[k])]; };
-    const double area = std::max(doubled_area(at(0), at(1), at(2)),
-                                 narrowest * longest_edge(at(0), at(1), at(2)));
+    const double area =
+        std::max(doubled_area(at(0), at(1), at(2)), narrowest * longest_edge(at(0), at(1), at(2)));
     return AreaMean::Patch{area, (a * a + b * b + c * c) / 3};
   });
 }
