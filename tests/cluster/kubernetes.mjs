@@ -12,7 +12,10 @@ import path from "node:path";
 import { parse } from "yaml";
 
 const [program, mesh, folder] = process.argv.slice(2);
-const text = fs.readFileSync(new URL("../../scripts/cluster/kubernetes.yaml", import.meta.url), "utf8");
+// Of a pod /tmp is its own.
+const pod = path.join(folder, "tmp/");
+const text = fs.readFileSync(new URL("../../scripts/cluster/kubernetes.yaml", import.meta.url), "utf8")
+  .replaceAll("/tmp/", pod);
 
 function require_true(holds, what) {
   if (!holds) {
@@ -41,7 +44,6 @@ function filled(template, inputs = {}) {
   return result;
 }
 
-const pod = path.join(folder, "tmp/");
 fs.mkdirSync(pod, { recursive: true });
 const bin = path.join(folder, "bin");
 fs.mkdirSync(bin, { recursive: true });
@@ -49,9 +51,7 @@ fs.symlinkSync(program, path.join(bin, "meshhier"));
 
 function run(container, environment = {}, inputs = {}) {
   const [command, ...fixed] = container.command;
-  // Of a pod /tmp is its own.
-  const args = [...fixed, ...container.args].map((argument) =>
-    filled(String(argument).replaceAll("/tmp/", pod), inputs));
+  const args = [...fixed, ...container.args].map((argument) => filled(String(argument), inputs));
   return execFileSync(command, args, {
     env: { PATH: `${bin}:${process.env.PATH}`, ...environment },
     encoding: "utf8",
