@@ -85,7 +85,7 @@ struct ImageStore::Impl {
   Impl(storage::ScratchFile& file, std::uint64_t cache_bytes) : scratch(file), cache(cache_bytes) {}
 
   bool is_there(const StoredImage& image) const;
-  /// Of a strip in a mounted file, the first time it is used. Throws Error(io).
+  /// Of a strip in a mounted file, the first time it is used. Throws Error(corrupt).
   void check(std::uint32_t image, std::uint32_t strip, std::size_t bytes);
   void read_block(std::uint32_t image, std::uint32_t level, std::uint32_t column, std::uint32_t row,
                   const BlockPart& part);

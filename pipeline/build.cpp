@@ -58,9 +58,7 @@ BuildReport build_hierarchy(const config::Config& asked, const BuildOptions& opt
   // Everything that can be refused is refused before anything is written.
   check_apart(config, files);
   storage::MemoryPool pool(0);
-  importing::MeshInput input(
-      config.input, config.weld, files,
-      config.texture.use ? importing::Textures::use : importing::Textures::ignore);
+  importing::MeshInput input = open_input(config, files);
   std::optional<BuildPlan> plan;
   if (!is_read_before_plan(input, config))
     plan = plan_build(config, input.description());
@@ -98,11 +96,6 @@ namespace {
 /// Bytes that went to files which are not temporary.
 std::uint64_t written_for_good(storage::FileSystem& files, const storage::ScratchUse& use) {
   return files.counters().bytes_written - use.bytes_written();
-}
-
-/// Of the files of a hierarchy.
-std::uint64_t bytes_of(const storage::HierarchyReader& made, storage::FileSystem& files) {
-  return made.manifest().total_bytes + files.open(storage::manifest_path(made.directory()))->size();
 }
 
 BuildReport run_stages(importing::MeshInput& input, storage::WorkDirectory& work,

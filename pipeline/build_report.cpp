@@ -6,6 +6,7 @@
 #include "hierarchy/plain_text.h"
 #include "hierarchy/widest_corner.h"
 #include "import/import_input.h"
+#include "storage/format/layout.h"
 #include "storage/format/level_summary.h"
 
 #include <algorithm>
@@ -117,6 +118,10 @@ storage::InputNote note_of(const importing::InputRecord& input, std::uint64_t co
 }
 
 }  // namespace
+
+std::uint64_t bytes_of(const storage::HierarchyReader& made, storage::FileSystem& files) {
+  return made.manifest().total_bytes + files.open(storage::manifest_path(made.directory()))->size();
+}
 
 std::string made_text(const storage::HierarchyReader& made, const std::filesystem::path& output,
                       std::uint64_t output_bytes) {

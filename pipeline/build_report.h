@@ -31,6 +31,9 @@ struct BuildOutcome {
   importing::InputRecord input;
 };
 
+/// Of the files of a hierarchy.
+std::uint64_t bytes_of(const storage::HierarchyReader& made, storage::FileSystem& files);
+
 /// One line for people: what was made, and how large it is.
 std::string made_text(const storage::HierarchyReader& made, const std::filesystem::path& output,
                       std::uint64_t output_bytes);

@@ -69,6 +69,11 @@ void read_once(importing::MeshInput& input, const config::Config& config,
     input.find_copies(place);
 }
 
+importing::MeshInput open_input(const config::Config& config, storage::FileSystem& files) {
+  return {config.input, config.weld, files,
+          config.texture.use ? importing::Textures::use : importing::Textures::ignore};
+}
+
 bool is_read_before_plan(const importing::MeshInput& input, const config::Config& config) {
   return input.needs_import() || is_to_be_looked_at(config);
 }

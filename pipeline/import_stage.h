@@ -13,6 +13,9 @@
 
 namespace meshhier::pipeline {
 
+/// The meshes of a config, as a build of it reads them. Throws as MeshInput.
+importing::MeshInput open_input(const config::Config& config, storage::FileSystem& files);
+
 /// About what the stage has in temporary files at most, before it is known what is in the input.
 std::uint64_t import_disk(const importing::MeshInput& input, const config::Config& config);
 

@@ -100,10 +100,6 @@ void remove_what_is_not_needed(const TaskPlan& plan, const fs::path& work,
   files.remove_all(storage::packed_path(work));
 }
 
-std::uint64_t bytes_of(storage::FileSystem& files, const storage::HierarchyReader& made) {
-  return made.manifest().total_bytes + files.open(storage::manifest_path(made.directory()))->size();
-}
-
 /// The task of `publish` that makes the tile at that place among all.
 std::uint32_t publisher_of(std::size_t place, std::size_t count, std::uint32_t tasks) {
   std::uint32_t task = 0;
@@ -133,7 +129,8 @@ void check_tiles(const BuildJournal& journal, const fs::path& work, std::uint32_
                 "{} is missing or damaged: remove {}, and run `meshhier task {} publish "
                 "--index {}` again",
                 storage::tile_path(storage::built_path(work), tiles[i].record.node).string(),
-                (storage::segments_path(work) / fmt::format("publish-{:05}", task)).string(),
+                storage::segment_path(work, {.plan = 0, .stage = "publish", .index = task})
+                    .string(),
                 work.string(), task));
       });
 }
@@ -155,19 +152,19 @@ void check_no_others(const fs::path& built, storage::FileSystem& files) {
 void finish_hierarchy(Workshop& workshop, const fs::path& work, std::uint32_t tasks,
                       storage::SegmentWriter& entries, const StageContext& context) {
   storage::FileSystem& files = context.files;
+  const storage::Container container = context.config.storage.container;
   const fs::path built = storage::built_path(work);
   check_tiles(workshop.journal, work, tasks, context);
   check_no_others(built, files);
   const OutlineStageResult outline =
       make_outline(workshop.forest, workshop.journal.source()->summary.diagonal(), context);
   write_account(workshop.forest, workshop.textures, workshop.journal, outline, built, context);
-  if (context.config.storage.container == storage::Container::archive) {
+  if (container == storage::Container::archive) {
     const storage::HierarchyReader made(files, built);
     pack(made, storage::packed_path(work), workshop.tile_scratch.pool().scratch_use(), context);
   } else {
     files.sync_tree(built);
   }
-  const storage::Container container = context.config.storage.container;
   const std::optional<Finished> made = look_at(files, made_path(work, container), container);
   if (!made)
     throw Error(ErrorCode::io, built.string() + " was changed while it was finished");
@@ -204,7 +201,7 @@ std::string name_hierarchy(const TaskPlan& plan, storage::WorkDirectory& shared,
         const storage::HierarchyReader made(in, path);
         const std::uint64_t bytes = output.container == storage::Container::archive
                                         ? files.open(path)->size()
-                                        : bytes_of(in, made);
+                                        : bytes_of(made, in);
         return made_text(made, path, bytes) +
                notes_text(made, plan.config, has_area(made, execution::CancelToken()));
       });

@@ -115,9 +115,7 @@ void Task::open_workshop(const BuildPlan& plan, const BuildIdentity& identity,
 
 void Task::read() {
   const config::Config& config = plan_.config;
-  importing::MeshInput input(
-      config.input, config.weld, files(),
-      config.texture.use ? importing::Textures::use : importing::Textures::ignore);
+  importing::MeshInput input = open_input(config, files());
   const BuildEnvironment environment{files(), meter_, environment_.cancel};
   const BuildPlan plan =
       is_read_before_plan(input, config)

@@ -59,6 +59,10 @@ std::uint64_t fingerprint_of(const TaskPlan& plan) {
   return checksum_of(json.dump());
 }
 
+Error not_a_plan(const fs::path& path) {
+  return {ErrorCode::corrupt, path.string() + " is not what `meshhier plan` writes"};
+}
+
 TaskPlan parse_plan(const std::string& text, const fs::path& path) {
   try {
     const Json json = Json::parse(text);
@@ -67,7 +71,7 @@ TaskPlan parse_plan(const std::string& text, const fs::path& path) {
     const auto number = [&](const char* key, std::uint32_t most) {
       const Json& value = json.at(key);
       if (!value.is_number_unsigned() || value.get<std::uint64_t>() > most)
-        throw Error(ErrorCode::corrupt, path.string() + " is not what `meshhier plan` writes");
+        throw not_a_plan(path);
       return value.get<std::uint32_t>();
     };
     TaskPlan plan;
@@ -79,10 +83,10 @@ TaskPlan parse_plan(const std::string& text, const fs::path& path) {
     plan.config = config::parse_config(json.at("config").dump(), {path.string(), {}}, {});
     plan.fingerprint = fingerprint_of(plan);
     if (plan.tasks == 0)
-      throw Error(ErrorCode::corrupt, path.string() + " is not what `meshhier plan` writes");
+      throw not_a_plan(path);
     return plan;
   } catch (const Json::exception&) {
-    throw Error(ErrorCode::corrupt, path.string() + " is not what `meshhier plan` writes");
+    throw not_a_plan(path);
   }
 }
 
@@ -285,9 +289,7 @@ TaskPlan make_task_plan(const config::Config& asked, const TaskPlanRequest& requ
   plan.replace = request.replace;
   plan.tasks = request.tasks;
   plan.program = request.program;
-  importing::MeshInput input(
-      plan.config.input, plan.config.weld, files,
-      plan.config.texture.use ? importing::Textures::use : importing::Textures::ignore);
+  const importing::MeshInput input = open_input(plan.config, files);
   plan.textured = input.needs_import() && plan.config.texture.use;
   plan.levels = count_levels(plan.config, input, request.tasks);
   plan.fingerprint = fingerprint_of(plan);

@@ -60,7 +60,8 @@ class BlobStore {
   /// Copies as many bytes as there is room for, from the first on. Of a mounted file the whole blob
   /// is checked the first time: throws as view().
   void copy(std::size_t index, std::span<std::byte> bytes) const;
-  /// A whole blob, without a copy if it is in memory. Throws Error(io) if the disk has changed it.
+  /// A whole blob, without a copy if it is in memory. Throws
+  /// ScratchFile::changed() if the disk has changed it.
   BlobView view(std::size_t index) const;
 
   /// Gives the memory back; all stays on disk. While there is no view.

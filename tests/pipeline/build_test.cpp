@@ -157,6 +157,21 @@ class BuildTest : public testing::Test {
     return execution::parse_size(message.substr(at + before.size())).value_or(0);
   }
 
+  /// Builds, is refused for want of memory, and adds what the refusal says.
+  void give_what_is_told(config::Config& config) {
+    std::string message;
+    try {
+      build(config);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::budget);
+      message = error.what();
+    }
+    const std::string before = "larger by ";
+    const std::size_t at = message.find(before);
+    ASSERT_NE(at, std::string::npos) << message;
+    config.memory_budget += std::stoull(message.substr(at + before.size())) * kMiB;
+  }
+
   /// The least budget to the byte: nothing is left for scratch data, all of it goes to the disk.
   std::uint64_t tight_budget(config::Config config) {
     std::uint64_t accepted = named_budget(config);  // rounded up
@@ -276,17 +291,7 @@ TEST_F(BuildTest, AVertexOfAHundredThousandTriangles) {
   config::Config tight = config(4096);
   tight.memory_budget = tight_budget(tight);
   tight.threads = 1;
-  std::string message;
-  try {
-    build(tight);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::budget);
-    message = error.what();
-  }
-  const std::string before = "larger by ";
-  const std::size_t at = message.find(before);
-  ASSERT_NE(at, std::string::npos) << message;
-  tight.memory_budget += std::stoull(message.substr(at + before.size())) * kMiB;
+  ASSERT_NO_FATAL_FAILURE(give_what_is_told(tight));
   const std::string report = build(tight).text;
   EXPECT_THAT(report, HasSubstr("went on")) << "with more memory it is the same build";
   EXPECT_THAT(problems(), IsEmpty());
@@ -306,17 +311,7 @@ TEST_F(BuildTest, ASoupIsToldOnceWhatDoes) {
   config::Config tight = config(1000);
   tight.memory_budget = tight_budget(tight);
   tight.threads = 1;
-  std::string message;
-  try {
-    build(tight);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::budget);
-    message = error.what();
-  }
-  const std::string before = "larger by ";
-  const std::size_t at = message.find(before);
-  ASSERT_NE(at, std::string::npos) << message;
-  tight.memory_budget += std::stoull(message.substr(at + before.size())) * kMiB;
+  ASSERT_NO_FATAL_FAILURE(give_what_is_told(tight));
   EXPECT_THAT(build(tight).text, HasSubstr("went on"));
 }
 

@@ -136,6 +136,18 @@ std::vector<std::string> problems(storage::FileSystem& files, const config::Conf
       .problems;
 }
 
+/// Calls round(seed) for each round; stops at the first that fails.
+template <class Round>
+void run_rounds(const Round& round) {
+  const std::uint64_t seed = from_environment("MESHHIER_SOAK_SEED", 1);
+  const std::uint64_t rounds = from_environment("MESHHIER_SOAK_ROUNDS", 6);
+  for (std::uint64_t i = seed; i < seed + rounds; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(i));
+    round(i);
+    ASSERT_FALSE(::testing::Test::HasFailure()) << "seed " << i;
+  }
+}
+
 /// One round in memory: a build that is disturbed up to a dozen times.
 class DisturbedBuild {
  public:
@@ -205,13 +217,7 @@ class DisturbedBuild {
 };
 
 TEST(Soak, DisturbedBuildsEndTheSame) {
-  const std::uint64_t seed = from_environment("MESHHIER_SOAK_SEED", 1);
-  const std::uint64_t rounds = from_environment("MESHHIER_SOAK_ROUNDS", 6);
-  for (std::uint64_t i = seed; i < seed + rounds; ++i) {
-    SCOPED_TRACE("seed " + std::to_string(i));
-    DisturbedBuild(i).run();
-    ASSERT_FALSE(HasFailure()) << "seed " << i;
-  }
+  run_rounds([](std::uint64_t seed) { DisturbedBuild(seed).run(); });
 }
 
 /// Runs the program; kills it after `microseconds` if that is not 0. Returns its wait status.
@@ -283,13 +289,7 @@ void kill_builds(std::uint64_t seed) {
 }
 
 TEST(Soak, KilledBuildsEndTheSame) {
-  const std::uint64_t seed = from_environment("MESHHIER_SOAK_SEED", 1);
-  const std::uint64_t rounds = from_environment("MESHHIER_SOAK_ROUNDS", 6);
-  for (std::uint64_t i = seed; i < seed + rounds; ++i) {
-    SCOPED_TRACE("seed " + std::to_string(i));
-    kill_builds(i);
-    ASSERT_FALSE(HasFailure()) << "seed " << i;
-  }
+  run_rounds(kill_builds);
 }
 
 /// One round of a build in tasks, with the real program: tasks of any stage are run, killed, run
@@ -397,13 +397,7 @@ class KilledTasks {
 };
 
 TEST(Soak, KilledTasksEndTheSame) {
-  const std::uint64_t seed = from_environment("MESHHIER_SOAK_SEED", 1);
-  const std::uint64_t rounds = from_environment("MESHHIER_SOAK_ROUNDS", 6);
-  for (std::uint64_t i = seed; i < seed + rounds; ++i) {
-    SCOPED_TRACE("seed " + std::to_string(i));
-    KilledTasks(i).run();
-    ASSERT_FALSE(HasFailure()) << "seed " << i;
-  }
+  run_rounds([](std::uint64_t seed) { KilledTasks(seed).run(); });
 }
 
 }  // namespace
