@@ -112,7 +112,7 @@ class Import {
   }
 
   void note_textures() {
-    const MaterialTable& table = mesh_.materials;
+    MaterialTable& table = mesh_.materials;
     count("missing_images", table.missing());
     for (const std::string& warning :
          {table.warning_of_libraries(), table.warning(mesh_.layout.material)}) {
@@ -121,6 +121,7 @@ class Import {
     }
     if (!mesh_.layout.material)
       return;
+    count("masked_materials", table.mask_mixed());
     facts_.materials = table.list();
     facts_.textures = {.materials = facts_.materials.materials.size(),
                        .images = facts_.materials.images.size() + table.missing(),

@@ -3,6 +3,7 @@
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
 
+#include <algorithm>
 #include <string_view>
 #include <utility>
 
@@ -46,6 +47,22 @@ std::uint32_t MaterialTable::add(images::Material material) {
     throw Error(ErrorCode::input, fmt::format("the input has more than {} materials", kMost));
   list_.materials.push_back(std::move(material));
   return static_cast<std::uint32_t>(list_.materials.size() - 1);
+}
+
+std::uint64_t MaterialTable::mask_mixed() {
+  const auto blends = [](const images::Material& m) { return m.alpha == AlphaMode::blend; };
+  if (std::ranges::all_of(list_.materials, blends))
+    return 0;
+  std::uint64_t count = 0;
+  for (images::Material& material : list_.materials) {
+    if (!blends(material))
+      continue;
+    const float most = material.image ? material.factor[3] : material.colour[3];
+    material.alpha = AlphaMode::mask;
+    material.alpha_cutoff = most > 0 ? most / 2 : images::Material().alpha_cutoff;
+    ++count;
+  }
+  return count;
 }
 
 void MaterialTable::miss(const std::string& name, const std::string& place,

@@ -267,6 +267,30 @@ TEST_F(TexturedObjTest, TheOpacityIsThatOfThePictureToo) {
   EXPECT_THAT(half.factor, ElementsAre(1, 1, 1, 0.5F));
 }
 
+TEST_F(TexturedObjTest, WhatBlendsBesideOthersBecomesAMask) {
+  put_pictures({"a.png"});
+  const auto import_pair = [&](const std::string& one, const std::string& two) {
+    put("a.mtl", "newmtl one\nmap_Kd a.png\n" + one + "\nnewmtl two\n" + two + '\n');
+    put("a.obj", std::string("mtllib a.mtl\nusemtl one\n") + kSquare +
+                     "f 1/1 2/2 3/3\nusemtl two\nf 1/1 3/3 4/4\n");
+    return import();
+  };
+  const Imported mixed = import_pair("d 0.5", "map_Kd a.png");
+  EXPECT_EQ(mixed.materials.materials.at(0).alpha, AlphaMode::mask);
+  EXPECT_EQ(mixed.materials.materials.at(0).alpha_cutoff, 0.25F);
+  EXPECT_EQ(mixed.materials.materials.at(1).alpha, AlphaMode::opaque);
+  EXPECT_EQ(mixed.count("masked_materials"), 1U);
+  const Imported plain = import_pair("", "d 0.125");
+  EXPECT_EQ(plain.materials.materials.at(1).alpha, AlphaMode::mask);
+  EXPECT_EQ(plain.materials.materials.at(1).alpha_cutoff, 0.0625F) << "of a material's colour";
+  const Imported clear = import_pair("", "d 0");
+  EXPECT_EQ(clear.materials.materials.at(1).alpha_cutoff, 0.5F) << "nothing of it is visible";
+  const Imported both = import_pair("d 0.5", "d 0.25");
+  EXPECT_EQ(both.materials.materials.at(0).alpha, AlphaMode::blend);
+  EXPECT_EQ(both.materials.materials.at(1).alpha, AlphaMode::blend);
+  EXPECT_EQ(both.count("masked_materials"), 0U);
+}
+
 TEST_F(TexturedObjTest, TheColourIsKeptForAPictureThatProvesBroken) {
   put_pictures({"a.png"});
   const images::Material red = import_with("map_Kd a.png\nKd 1 0 0").materials.materials.at(0);

@@ -30,3 +30,18 @@ export function standing({ covered, width }, pixels) {
   const mean = (channel) => places.reduce((sum, i) => sum + pixels[4 * i + channel], 0) / places.length;
   return { lower: places.length - upper, upper, colour: [mean(0), mean(1), mean(2)] };
 }
+
+/// Two pictures of one view, RGBA: the peak signal-to-noise ratio in decibels over pixels that both cover, and how many one of them
+/// covers alone, in parts of those.
+export function signalToNoise([one, other], [coveredByOne, coveredByOther]) {
+  let both = 0;
+  let alone = 0;
+  let squares = 0;
+  for (let i = 0; i < coveredByOne.length; ++i) {
+    if (!coveredByOne[i] !== !coveredByOther[i]) ++alone;
+    if (!coveredByOne[i] || !coveredByOther[i]) continue;
+    ++both;
+    for (let k = 4 * i; k < 4 * i + 3; ++k) squares += (one[k] - other[k]) ** 2;
+  }
+  return { covered: both, outline: alone / both, decibels: 10 * Math.log10((3 * both * 255 ** 2) / squares) };
+}

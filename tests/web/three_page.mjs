@@ -1,10 +1,10 @@
 // Shows a tileset with 3d-tiles-renderer and compares it with the mesh it was made from.
 import * as THREE from 'three';
-import { PLYLoader } from 'three/addons/loaders/PLYLoader.js';
 import { MeshoptDecoder } from 'three/addons/libs/meshopt_decoder.module.js';
 import { TilesRenderer } from '3d-tiles-renderer/three';
 import { GLTFExtensionsPlugin } from '3d-tiles-renderer/three/plugins';
-import { coveredAround, pixelsOf, standing } from './pixels.mjs';
+import { loadMesh, takeLight } from './original_mesh.mjs';
+import { coveredAround, pixelsOf, signalToNoise, standing } from './pixels.mjs';
 
 const SIZE = 512;
 // Frames without anything under way before the picture counts as complete.
@@ -62,20 +62,28 @@ function frame() {
   return new Promise((resolve) => requestAnimationFrame(resolve));
 }
 
+/// Around the middle of its box.
+function sphereAround(object) {
+  const center = new THREE.Box3().setFromObject(object, true).getCenter(new THREE.Vector3());
+  let square = 0;
+  const point = new THREE.Vector3();
+  object.traverse((node) => {
+    const positions = node.geometry?.getAttribute('position');
+    for (let i = 0; i < (positions?.count ?? 0); ++i) {
+      point.fromBufferAttribute(positions, i).applyMatrix4(node.matrixWorld);
+      square = Math.max(square, point.distanceToSquared(center));
+    }
+  });
+  return new THREE.Sphere(center, Math.sqrt(square));
+}
+
 /// Loads the mesh as 3D Tiles turn it: `up` is the axis of the mesh that points up.
 async function loadOriginal(mesh, up) {
-  const geometry = await new PLYLoader().loadAsync(mesh);
-  geometry.computeBoundingSphere();
-  if (geometry.getAttribute('normal') === undefined) geometry.computeVertexNormals();
-  const material = new THREE.MeshStandardMaterial({
-    side: THREE.DoubleSide,
-    vertexColors: geometry.getAttribute('color') !== undefined,
-  });
-  const object = new THREE.Mesh(geometry, material);
+  const object = await loadMesh(mesh);
   if (up === 'y') object.rotation.x = Math.PI / 2;
   original.add(object);
   object.updateMatrixWorld(true);
-  sphere = geometry.boundingSphere.clone().applyMatrix4(object.matrixWorld);
+  sphere = sphereAround(object);
 }
 
 /// Loads the tileset, and its `mesh`, if one is given to compare with.
@@ -167,6 +175,18 @@ function showOriginal() {
   renderer.render(original, camera);
 }
 
+/// How near the tileset's picture is to that of the original mesh, both without light, in decibels where both cover pixels, and which
+/// part of the covered pixels only one of them does.
+function comparePictures() {
+  const covered = [depthOf(shown), depthOf(original)];
+  const pictures = [shown, original].map((scene) => {
+    takeLight(scene);
+    renderer.render(scene, camera);
+    return pixelsOf(renderer.domElement);
+  });
+  return signalToNoise(pictures, covered);
+}
+
 /// What stands in the tileset's picture (pixels.mjs).
 function stand() {
   const covered = depthOf(shown);
@@ -174,4 +194,4 @@ function stand() {
   return standing({ covered, width: SIZE }, pixelsOf(renderer.domElement));
 }
 
-window.view = { load, look, settle, compare, showOriginal, stand };
+window.view = { load, look, settle, compare, comparePictures, showOriginal, stand };
