@@ -25,9 +25,9 @@ class MaterialTable {
   std::uint32_t add_picture(images::ImageSource picture);
   /// Returns the material's number. Throws Error(input) beyond kMost.
   std::uint32_t add(images::Material material);
-  /// Where materials that blend are beside others, they become masks: a tile has one material, and a
-  /// viewer that blends all of it draws it in the wrong order. Visible is what has at least half of
-  /// its material's alpha. Returns how many became one. Once, when all materials are there.
+  /// Where materials that blend are beside others, they become masks: a tile has one material, and
+  /// a viewer that blends all of it draws it in the wrong order. Visible is what has at least half
+  /// of its material's alpha. Returns how many became one. Once, when all materials are there.
   std::uint64_t mask_mixed();
   /// Notes that triangles should show a picture that is not there. One of the same name and place
   /// counts once. `name`: as `place`, a file, names it; `sought`: where it would have been found.
