@@ -21,7 +21,11 @@ async function loadObj(url) {
     materials.preload();
     loader.setMaterials(materials);
   }
-  return loader.loadAsync(url);
+  const object = await loader.loadAsync(url);
+  for (const material of materialsOf(object)) {
+    if (material.map) material.color.set(0xffffff); // Kd stands for a picture that is not there
+  }
+  return object;
 }
 
 async function loadGltf(url) {
@@ -53,13 +57,10 @@ function materialsOf(object) {
   return found;
 }
 
-/// The material's picture, or its colour where it has none, without light. What blends is drawn as a mask: tiles have no order.
+/// The material's colours without light. What blends is drawn as a mask: tiles have no order.
 function unlitOf({ map, color, vertexColors, alphaTest, transparent, opacity }) {
   return new THREE.MeshBasicMaterial({
-    map,
-    color: map === null ? color : 0xffffff,
-    vertexColors,
-    opacity,
+    map, color, vertexColors, opacity,
     alphaTest: transparent ? opacity / 2 : alphaTest,
     side: THREE.DoubleSide,
   });
