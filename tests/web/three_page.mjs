@@ -1,5 +1,6 @@
 // Shows a tileset with 3d-tiles-renderer and compares it with the mesh it was made from.
 import * as THREE from 'three';
+import { KTX2Loader } from 'three/addons/loaders/KTX2Loader.js';
 import { MeshoptDecoder } from 'three/addons/libs/meshopt_decoder.module.js';
 import { TilesRenderer } from '3d-tiles-renderer/three';
 import { GLTFExtensionsPlugin } from '3d-tiles-renderer/three/plugins';
@@ -14,6 +15,8 @@ const renderer = new THREE.WebGLRenderer({ preserveDrawingBuffer: true });
 renderer.setSize(SIZE, SIZE);
 renderer.setClearColor(0xffffff);
 document.body.append(renderer.domElement);
+
+const ktxLoader = new KTX2Loader().setTranscoderPath('/modules/three/examples/jsm/libs/basis/').detectSupport(renderer);
 
 const camera = new THREE.PerspectiveCamera(40, 1, 1, 2);
 const shown = new THREE.Scene();
@@ -90,7 +93,7 @@ async function loadOriginal(mesh, up) {
 async function load({ tileset, mesh, up }) {
   failures = [];
   tiles = new TilesRenderer(tileset);
-  tiles.registerPlugin(new GLTFExtensionsPlugin({ meshoptDecoder: MeshoptDecoder, autoDispose: false }));
+  tiles.registerPlugin(new GLTFExtensionsPlugin({ meshoptDecoder: MeshoptDecoder, ktxLoader, autoDispose: false }));
   tiles.addEventListener('load-error', (event) => failures.push(String(event.error ?? event.url)));
   tiles.setCamera(camera);
   tiles.setResolution(camera, SIZE, SIZE);
