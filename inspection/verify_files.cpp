@@ -7,14 +7,12 @@
 #include "storage/io/hash.h"
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
@@ -24,25 +22,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The number that a name starts with, if it has one.
-std::optional<std::uint32_t> leading_number(const std::string& name) {
-  std::uint32_t number = 0;
-  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
-  if (error != std::errc{} || end == name.data())
-    return std::nullopt;
-  return number;
-}
-
 /// `relative` is the name that storage/format/layout.h gives to the file of one of the tree's
 /// tiles.
 bool is_tile_file(const Tree& tree, const fs::path& relative) {
-  const auto level = leading_number(relative.parent_path().filename().string());
-  const auto index = leading_number(relative.filename().string());
-  if (!level || !index || *level > raw(tree.depth()))
-    return false;
-  const NodeId node{static_cast<Level>(*level), *index};
-  return tree.contains(node) && tree.tile_node(node) == node &&
-         storage::tile_path({}, node) == relative;
+  const auto node = storage::tile_of(relative.generic_string());
+  return node && raw(node->level) <= raw(tree.depth()) && tree.contains(*node) &&
+         tree.tile_node(*node) == *node;
 }
 
 bool is_known(const VerifyJob& job, const std::set<fs::path>& tilesets, const fs::path& relative) {
@@ -60,8 +45,11 @@ std::set<fs::path> known_directories(const Tree& tree, const std::set<fs::path>&
     for (fs::path above = path; !above.empty(); above = above.parent_path())
       known.insert(above);
   };
-  for (int level = 0; level <= raw(tree.depth()); ++level)
-    add_above(storage::level_directory({}, static_cast<Level>(level)));
+  for (int l = 0; l <= raw(tree.depth()); ++l) {
+    const auto level = static_cast<Level>(l);
+    for (const fs::path& directory : storage::tile_directories({}, level, tree.node_count(level)))
+      add_above(directory);
+  }
   for (const fs::path& tileset : tilesets)
     add_above(tileset.parent_path());
   return known;

@@ -215,7 +215,10 @@ void publish(Forest& forest, const TextureStore& textures, BuildJournal& journal
              const TileFiles& to, const Share& share, const StageContext& context) {
   const Tree& tree = context.tree();
   for (int l = 0; l <= raw(tree.depth()); ++l) {
-    context.files.make_directories(storage::level_directory(to.directory, static_cast<Level>(l)));
+    const auto level = static_cast<Level>(l);
+    for (const auto& directory :
+         storage::tile_directories(to.directory, level, tree.node_count(level)))
+      context.files.make_directories(directory);
   }
   std::vector<NodeId> left;
   const std::vector<NodeId> nodes = tree.tile_nodes();

@@ -106,7 +106,7 @@ bool Hierarchies::is_published(const std::string& hierarchy, const std::string& 
 
 std::optional<PublishedFile> Hierarchies::open_in(const std::string& hierarchy,
                                                   const std::string& name) {
-  const bool is_tile = storage::is_tile_file(name);
+  const bool is_tile = storage::tile_of(name).has_value();
   if (is_archive_name(hierarchy)) {
     if (std::unique_ptr<storage::File> file = folder_->open(hierarchy)) {
       const auto opened = archive(hierarchy, std::move(file));

@@ -1,6 +1,8 @@
 #include "storage/format/layout.h"
 
 #include <algorithm>
+#include <charconv>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -9,7 +11,9 @@ namespace meshhier::storage {
 namespace {
 
 constexpr std::string_view kMark = ".meshhier-";
-constexpr std::size_t kMostDigits = 10;  // of an index below 2^32
+constexpr std::size_t kMostDigits = 10;            // of an index below 2^32
+constexpr std::uint32_t kMostLevel = 255;          // a Level has no more; trees have 33
+constexpr std::uint32_t kTilesADirectory = 10000;  // file servers are slow with very many
 constexpr std::string_view kVerify = "verify-";
 
 /// Takes `least` digits or more off the front; false if there are not so many. Further ones do not
@@ -28,10 +32,27 @@ bool take(std::string_view& text, std::string_view start) {
   return is_there;
 }
 
-/// "LL/NNNNNN" and the extension.
-bool is_node_file(std::string_view name, std::string_view directory, std::string_view extension) {
-  return take(name, directory) && take_digits(name, 2) && take(name, "/") && take_digits(name, 6) &&
-         name == extension;
+/// "LL/NNNNNN.json".
+bool is_tileset_file(std::string_view name) {
+  return take(name, "tilesets/") && take_digits(name, 2) && take(name, "/") &&
+         take_digits(name, 6) && name == ".json";
+}
+
+/// Takes the number that `text` begins with.
+std::optional<std::uint32_t> take_number(std::string_view& text) {
+  std::uint32_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{})
+    return std::nullopt;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return number;
+}
+
+/// Of tiles from `first` on.
+std::filesystem::path tile_directory(const std::filesystem::path& hierarchy, Level level,
+                                     std::uint32_t first) {
+  const std::filesystem::path directory = level_directory(hierarchy, level);
+  return first == 0 ? directory : directory / fmt::format("{:06}", first);
 }
 
 }  // namespace
@@ -63,8 +84,17 @@ std::filesystem::path level_directory(const std::filesystem::path& hierarchy, Le
   return hierarchy / "tiles" / fmt::format("{:02}", raw(level));
 }
 
+std::vector<std::filesystem::path> tile_directories(const std::filesystem::path& hierarchy,
+                                                    Level level, std::uint32_t nodes) {
+  std::vector<std::filesystem::path> directories{level_directory(hierarchy, level)};
+  for (std::uint64_t first = kTilesADirectory; first < nodes; first += kTilesADirectory)
+    directories.push_back(tile_directory(hierarchy, level, static_cast<std::uint32_t>(first)));
+  return directories;
+}
+
 std::filesystem::path tile_path(const std::filesystem::path& hierarchy, NodeId node) {
-  return level_directory(hierarchy, node.level) / fmt::format("{:06}.glb", node.index);
+  const std::uint32_t first = node.index / kTilesADirectory * kTilesADirectory;
+  return tile_directory(hierarchy, node.level, first) / fmt::format("{:06}.glb", node.index);
 }
 
 std::filesystem::path progressive_index_path(const std::filesystem::path& stream) {
@@ -75,14 +105,25 @@ std::filesystem::path detail_path(const std::filesystem::path& stream, std::uint
   return stream / (step == 0 ? std::string("base.bin") : fmt::format("detail_{:02}.bin", step));
 }
 
-bool is_tile_file(std::string_view name) {
-  return is_node_file(name, "tiles/", ".glb");
+std::optional<NodeId> tile_of(std::string_view name) {
+  std::string_view rest = name;
+  if (!take(rest, "tiles/"))
+    return std::nullopt;
+  const auto level = take_number(rest);
+  rest.remove_prefix(std::min(rest.rfind('/'), rest.size()));
+  if (!level || *level > kMostLevel || !take(rest, "/"))
+    return std::nullopt;
+  const auto index = take_number(rest);
+  if (!index)
+    return std::nullopt;
+  const NodeId node{static_cast<Level>(*level), *index};
+  return tile_path({}, node).generic_string() == name ? std::optional(node) : std::nullopt;
 }
 
 bool is_hierarchy_file(std::string_view name) {
   return name == manifest_path({}) || name == index_path({}) || name == outline_path({}) ||
-         name == preview_path({}) || name == tileset_path({}) || is_tile_file(name) ||
-         is_node_file(name, "tilesets/", ".json");
+         name == preview_path({}) || name == tileset_path({}) || is_tileset_file(name) ||
+         tile_of(name);
 }
 
 bool is_stream_file(std::string_view name) {

@@ -8,7 +8,8 @@
 //   NAME.hier/preview.webp                   unless the config says no
 //   NAME.hier/tileset.json
 //   NAME.hier/tilesets/LL/NNNNNN.json        of the nodes below that one, where the tree is too large for one file
-//   NAME.hier/tiles/LL/NNNNNN.glb            level (two digits or more), index in it (six or more)
+//   NAME.hier/tiles/LL/NNNNNN.glb            level (two digits or more), index in it (six or more) below 10,000
+//   NAME.hier/tiles/LL/NN0000/NNNNNN.glb     any other: 10,000 in each directory
 //   NAME.prog/progressive.json
 //   NAME.prog/base.bin
 //   NAME.prog/detail_NN.bin                  in the order of their use, from 1 on
@@ -41,6 +42,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace meshhier::storage {
 
@@ -52,6 +54,9 @@ std::filesystem::path tileset_path(const std::filesystem::path& hierarchy);
 /// The file that tells of `node` and what is below it. Requires node.level > 0.
 std::filesystem::path tileset_path(const std::filesystem::path& hierarchy, NodeId node);
 std::filesystem::path level_directory(const std::filesystem::path& hierarchy, Level level);
+/// All that tile_path() names on a level of `nodes` nodes, level_directory() first.
+std::vector<std::filesystem::path> tile_directories(const std::filesystem::path& hierarchy,
+                                                    Level level, std::uint32_t nodes);
 std::filesystem::path tile_path(const std::filesystem::path& hierarchy, NodeId node);
 
 std::filesystem::path progressive_index_path(const std::filesystem::path& stream);
@@ -62,8 +67,8 @@ std::filesystem::path detail_path(const std::filesystem::path& stream, std::uint
 /// "tiles/00/000000.glb".
 bool is_hierarchy_file(std::string_view name);
 bool is_stream_file(std::string_view name);
-/// Whether it is one of a hierarchy's tiles.
-bool is_tile_file(std::string_view name);
+/// The node whose tile_path({}, node) it is.
+std::optional<NodeId> tile_of(std::string_view name);
 
 std::filesystem::path work_path(const std::filesystem::path& output);
 std::filesystem::path replaced_path(const std::filesystem::path& output);

@@ -333,6 +333,35 @@ TEST_F(CommandLine, BuildMakesAHierarchyAndNothingElse) {
   EXPECT_TRUE(std::filesystem::exists(work() / "a.hier" / "hierarchy.json"));
 }
 
+TEST_F(CommandLine, ManyTilesAreInSeveralDirectories) {
+  constexpr int kVertices = 40'004;  // of a strip, four a partition
+  std::string mesh =
+      "ply\nformat ascii 1.0\nelement vertex 40004\nproperty float x\nproperty float y\nproperty "
+      "float z\n"
+      "element face 40002\nproperty list uchar int vertex_indices\nend_header\n";
+  for (int i = 0; i < kVertices; ++i)
+    mesh += std::to_string(i / 2) + ' ' + std::to_string(i % 2) + " 0\n";
+  for (int i = 2; i < kVertices; ++i)
+    mesh +=
+        "3 " + std::to_string(i - 2) + ' ' + std::to_string(i - 1) + ' ' + std::to_string(i) + '\n';
+  write_text(work() / "strip.ply", mesh);
+  const std::string made = (work() / "strip.hier").string();
+  ASSERT_EQ(run({"build", (work() / "strip.ply").string(), "-o", made, "--set",
+                 "partition.vertices=4", "simplify.vertices=4", "simplify.method=cluster"})
+                .code,
+            0);
+  const auto tiles = [&](const char* directory) {
+    std::size_t count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(Path(made) / directory))
+      count += entry.is_regular_file() ? 1 : 0;
+    return count;
+  };
+  EXPECT_EQ(tiles("tiles/14"), 10'000U);
+  EXPECT_EQ(tiles("tiles/14/010000"), 1U);
+  EXPECT_EQ(run({"verify", made, "--cuts", "2"}).code, 0);
+  EXPECT_EQ(run({"verify", made, "--input", (work() / "strip.ply").string()}).code, 0);
+}
+
 TEST_F(CommandLine, BuildKeepsAnExistingOutputUnlessForced) {
   build();
   const auto before = contents(hierarchy());

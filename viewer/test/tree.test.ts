@@ -47,5 +47,8 @@ describe('Tree', () => {
     expect(new Set(keys).size).toBe(keys.length);
     expect(keys.every(Number.isSafeInteger)).toBe(true);
     expect(tilePath({ level: 3, index: 7 })).toBe('tiles/03/000007.glb');
+    expect(tilePath({ level: 14, index: 9_999 })).toBe('tiles/14/009999.glb');
+    expect(tilePath({ level: 14, index: 10_000 })).toBe('tiles/14/010000/010000.glb');
+    expect(tilePath({ level: 21, index: 1_234_567 })).toBe('tiles/21/1230000/1234567.glb');
   });
 });

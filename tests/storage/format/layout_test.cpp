@@ -22,7 +22,32 @@ TEST(Layout, FilesOfAHierarchyHaveTheirDocumentedNames) {
 
 TEST(Layout, NumbersGrowBeyondTheirLeastDigits) {
   EXPECT_EQ(level_directory("h", Level{132}), "h/tiles/132");
-  EXPECT_EQ(tile_path("h", {Level{31}, 2147483647}), "h/tiles/31/2147483647.glb");
+  EXPECT_EQ(tile_path("h", {Level{31}, 2147483647}), "h/tiles/31/2147480000/2147483647.glb");
+}
+
+TEST(Layout, NoDirectoryHasMoreThanTenThousandTiles) {
+  const Level level{14};
+  EXPECT_EQ(tile_path({}, {level, 9999}), "tiles/14/009999.glb");
+  EXPECT_EQ(tile_path({}, {level, 10000}), "tiles/14/010000/010000.glb");
+  EXPECT_EQ(tile_path({}, {level, 1234567}), "tiles/14/1230000/1234567.glb");
+  for (const std::uint32_t nodes : {1U, 10000U, 10001U, 30000U, 65536U}) {
+    std::set<std::filesystem::path> used;
+    for (std::uint32_t i = 0; i < nodes; ++i)
+      used.insert(tile_path("h", {level, i}).parent_path());
+    const auto all = tile_directories("h", level, nodes);
+    EXPECT_EQ(std::set(all.begin(), all.end()), used) << nodes;
+    EXPECT_EQ(all.size(), used.size());
+    EXPECT_EQ(all.front(), level_directory("h", level));
+  }
+}
+
+TEST(Layout, TilesAreFoundByTheirNamesAlone) {
+  for (const std::uint32_t index : {0U, 9999U, 10000U, 19999U, 4294967295U}) {
+    for (const int level : {0, 9, 14, 132}) {
+      const NodeId node{static_cast<Level>(level), index};
+      EXPECT_EQ(tile_of(tile_path({}, node).generic_string()), node);
+    }
+  }
 }
 
 TEST(Layout, WorkGoesOnBesideTheOutputInHiddenDirectories) {
@@ -71,8 +96,8 @@ TEST(Layout, FilesOfAHierarchyAreKnownByTheirNames) {
     EXPECT_TRUE(is_stream_file(path.string())) << path;
     EXPECT_FALSE(is_hierarchy_file(path.string())) << path;
   }
-  EXPECT_TRUE(is_tile_file("tiles/00/000000.glb"));
-  EXPECT_FALSE(is_tile_file("outline.glb"));
+  EXPECT_TRUE(tile_of("tiles/00/000000.glb"));
+  EXPECT_FALSE(tile_of("outline.glb"));
 }
 
 TEST(Layout, NoOtherNameIsAFileOfAHierarchy) {
@@ -93,6 +118,14 @@ TEST(Layout, NoOtherNameIsAFileOfAHierarchy) {
                            "/tiles/00/000000.glb",
                            "tiles/../tiles.bin",
                            "tiles/00/99999999999.glb",
+                           "tiles/14/010000.glb",
+                           "tiles/14/010000/009999.glb",
+                           "tiles/14/010000/020000.glb",
+                           "tiles/14/10000/010000.glb",
+                           "tiles/14/000000/000001.glb",
+                           "tiles/14/010001/010001.glb",
+                           "tiles/256/000000.glb",
+                           "tiles/14/010000/010000/010000.glb",
                            "tilesets/00/000000.glb",
                            "Tiles.bin",
                            "tiles.bin/",

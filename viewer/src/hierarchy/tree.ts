@@ -105,7 +105,12 @@ export class Tree {
   }
 }
 
+const TILES_A_DIRECTORY = 10_000;
+
 /// Where a tile's file is, relative to the hierarchy.
 export function tilePath({ level, index }: Node): string {
-  return `tiles/${String(level).padStart(2, '0')}/${String(index).padStart(6, '0')}.glb`;
+  const digits = (count: number) => String(count).padStart(6, '0');
+  const first = index - (index % TILES_A_DIRECTORY);
+  const directory = first === 0 ? '' : `${digits(first)}/`;
+  return `tiles/${String(level).padStart(2, '0')}/${directory}${digits(index)}.glb`;
 }
