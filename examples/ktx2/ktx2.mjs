@@ -77,13 +77,20 @@ function fail(text, code) {
 
 async function main() {
   const options = process.argv.slice(2).filter((argument) => argument.startsWith('--'));
-  const [source, output, ...more] = process.argv.slice(2).filter((argument) => !argument.startsWith('--'));
-  if (output === undefined || more.length > 0 || options.some((option) => option !== '--etc1s')) fail('usage: node ktx2.mjs HIERARCHY OUTPUT [--etc1s]', 2);
-  if (!existsSync(path.join(source, 'tileset.json'))) fail(`${source} is no directory of a hierarchy: it has no tileset.json`, 2);
+  const [source, given, ...more] = process.argv.slice(2).filter((argument) => !argument.startsWith('--'));
+  if (given === undefined || more.length > 0 || options.some((option) => option !== '--etc1s')) fail('usage: node ktx2.mjs HIERARCHY OUTPUT [--etc1s]', 2);
+  const missing = ['hierarchy.json', 'tileset.json'].find((name) => !existsSync(path.join(source, name)));
+  if (missing !== undefined) fail(`${source} is no directory of a hierarchy: it has no ${missing}`, 2);
   if (JSON.parse(readFileSync(path.join(source, 'hierarchy.json'), 'utf8')).source.textures === undefined) fail(`${source} has no pictures`, 2);
+  const output = path.resolve(given);
   if (existsSync(output)) fail(`${output} is there already: name a new directory`, 2);
   const target = `${output}.part`;
-  rmSync(target, { recursive: true, force: true });
+  const clean = () => rmSync(target, { recursive: true, force: true });
+  clean();
+  process.on('SIGINT', () => {
+    clean();
+    process.exit(130);
+  });
   try {
     const { tiles, tilesets } = filesOf(source);
     await convertAll(tiles, { source, target, isEtc1s: options.length > 0 });
@@ -94,7 +101,7 @@ async function main() {
     renameSync(target, output);
     console.log(`made ${output}: ${tiles.length} tiles`);
   } catch (error) {
-    rmSync(target, { recursive: true, force: true });
+    clean();
     fail(error.message, 1);
   }
 }
