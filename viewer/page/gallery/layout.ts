@@ -1,4 +1,5 @@
 // How an outline is turned and seen in its cell.
+import type { FirstView } from '../../src/hierarchy/first_view.js';
 
 /// Radians: about the upright axis, then towards the viewer.
 export interface Turn {
@@ -15,7 +16,9 @@ export interface Ball {
 /// 16 numbers, column by column.
 export type Matrix = readonly number[];
 
-const MOST_PITCH = 1.4;
+const MOST_PITCH = 1.56;
+const RADIANS = Math.PI / 180;
+export const USUAL_TURN: Turn = { yaw: -0.6, pitch: 0.25 };
 export const FOCUS = 3.2; // cotangent of half the angle of view
 const MARGIN = 0.98;
 /// From the eye to the ball's centre, in its radii.
@@ -40,6 +43,11 @@ export function ballOf(positions: Float32Array): Ball {
   const middle = (axis: number): number => least[axis] / 2 + most[axis] / 2;
   const centre = [middle(0), middle(1), middle(2)] as const;
   return { centre, radius: reachOf(positions, centre) || 1 };
+}
+
+/// What shows that view; null: none is better than others.
+export function turnTo(view: FirstView | null): Turn {
+  return view === null ? USUAL_TURN : { yaw: -view.azimuth * RADIANS, pitch: Math.min(Math.max(view.elevation * RADIANS, -MOST_PITCH), MOST_PITCH) };
 }
 
 /// `turn` after a drag by (x, y), a whole turn for two widths of the cell.

@@ -139,7 +139,8 @@ export class ModelCell implements Cell {
 
   private take(shape: Shape): void {
     this.shape = shape;
-    if (this.turning.lively) this.solid.await(shape.ball, this.turning.turn);
+    this.turning.start(shape.first);
+    if (this.turning.lively) this.solid.await(shape, this.turning.turn);
     if (shape.ends.length === 0) this.say(words.gallery.onePiece, false);
     this.arrange();
   }
@@ -158,7 +159,7 @@ export class ModelCell implements Cell {
   private enlivened(lively: boolean): void {
     if (lively) this.askOutline();
     if (!lively) this.solid.end();
-    else if (this.shape !== null) this.solid.await(this.shape.ball, this.turning.turn);
+    else if (this.shape !== null) this.solid.await(this.shape, this.turning.turn);
     if (lively) this.studio.animation.start(this);
     else this.studio.animation.stop(this);
     this.arrange();

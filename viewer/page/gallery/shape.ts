@@ -1,12 +1,14 @@
 // A model's outline as the gallery turns it.
 import type { Outline } from '../../src/hierarchy/outline.js';
-import { ballOf, type Ball } from './layout.js';
+import { ballOf, turnTo, type Ball, type Turn } from './layout.js';
 
 export interface Shape {
   /// Six numbers a segment.
   ends: Float32Array;
   ball: Ball;
   up: 'y' | 'z';
+  /// As it is seen first.
+  first: Turn;
 }
 
 function endsOf({ positions, segments }: Outline): Float32Array {
@@ -16,5 +18,5 @@ function endsOf({ positions, segments }: Outline): Float32Array {
 }
 
 export function shapeOf(outline: Outline): Shape {
-  return { ends: endsOf(outline), ball: ballOf(outline.positions), up: outline.up };
+  return { ends: endsOf(outline), ball: ballOf(outline.positions), up: outline.up, first: turnTo(outline.firstView) };
 }

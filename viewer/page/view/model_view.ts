@@ -213,7 +213,7 @@ export class ModelView {
 
   private reframe(): void {
     this.framed.copy(this.view.box);
-    this.navigation.frame(this.framed, this.stage.aspect);
+    this.navigation.frame(this.framed, this.stage.aspect, this.view.firstDirection);
   }
 
   private refuse(error: unknown): void {

@@ -1,5 +1,6 @@
 import { describe, expect, it } from 'vitest';
-import { ballOf, cellMatrix, dragged, multiply, type Matrix } from '../../page/gallery/layout.js';
+import { ballOf, cellMatrix, dragged, multiply, turnTo, USUAL_TURN, type Matrix } from '../../page/gallery/layout.js';
+import { directionOf } from '../../src/hierarchy/first_view.js';
 
 function project(matrix: Matrix, [x, y, z]: number[]): number[] {
   const at = (row: number): number => matrix[row] * x + matrix[4 + row] * y + matrix[8 + row] * z + matrix[12 + row];
@@ -38,6 +39,20 @@ describe('a turned outline', () => {
   it('shows its front in front', () => {
     const matrix = cellMatrix(ball, 'y', { yaw: 0, pitch: 0 }, 1);
     expect(project(matrix, [5, 6, 9])[2]).toBeLessThan(project(matrix, [5, 6, 5])[2]);
+  });
+
+  it.each([[0, 0], [90, 0], [213.75, 13], [-30, -40], [0, 90]])('is seen first from azimuth %d and elevation %d, as the model is', (azimuth, elevation) => {
+    const view = { azimuth, elevation };
+    const [x, y, z] = directionOf(view);
+    const matrix = cellMatrix({ centre: [0, 0, 0], radius: 1 }, 'y', turnTo(view), 1);
+    const nearest = project(matrix, [x, y, z]);
+    expect(Math.abs(nearest[0])).toBeLessThan(0.02);
+    expect(Math.abs(nearest[1])).toBeLessThan(0.02);
+    expect(nearest[2]).toBeCloseTo(-1);
+  });
+
+  it('is seen from the usual side where the hierarchy says none', () => {
+    expect(turnTo(null)).toBe(USUAL_TURN);
   });
 
   it('follows the pointer', () => {
