@@ -91,7 +91,7 @@ std::vector<render::Facet> root_facets(const PublishedTile& root, const Attribut
   return root.mesh.interior.empty() ? render::points_of(root, layout) : facets_of(root, layout);
 }
 
-/// How a model is seen of which the root is `whole`.
+/// How a model is seen.
 struct Portrait {
   render::Camera camera;
   render::ViewAxes axes;

@@ -50,6 +50,11 @@ export function turnTo(view: FirstView | null): Turn {
   return view === null ? USUAL_TURN : { yaw: -view.azimuth * RADIANS, pitch: Math.min(Math.max(view.elevation * RADIANS, -MOST_PITCH), MOST_PITCH) };
 }
 
+/// To the viewer, of length 1, in upright coordinates.
+export function towardsViewer({ yaw, pitch }: Turn): [number, number, number] {
+  return [-Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch), Math.cos(yaw) * Math.cos(pitch)];
+}
+
 /// `turn` after a drag by (x, y), a whole turn for two widths of the cell.
 export function dragged(turn: Turn, x: number, y: number, width: number): Turn {
   const scale = Math.PI / Math.max(width, 1);

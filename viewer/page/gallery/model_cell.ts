@@ -9,6 +9,7 @@ import type { Animation } from './animation.js';
 import type { Cell } from './cell.js';
 import { drawOutline } from './drawing.js';
 import type { DrawingQueue } from './drawing_queue.js';
+import type { Turn } from './layout.js';
 import { ModelSource, type Facts } from './model_source.js';
 import type { Shape } from './shape.js';
 import { Solid } from './solid.js';
@@ -66,6 +67,11 @@ export class ModelCell implements Cell {
     this.root = element('li', {}, this.link);
     this.solid = new Solid(model.url, this.stage);
     this.turning = new Turning(this.link, this.stage, { enlivened: (lively) => { this.enlivened(lively); }, turned: () => { this.turned(); } });
+  }
+
+  /// As its outline is turned just now; null: it shows none.
+  get turn(): Turn | null {
+    return this.turning.lively && this.shape !== null ? this.turning.turn : null;
   }
 
   load(): void {

@@ -5,7 +5,7 @@ import { HierarchyView } from '../../src/index.js';
 import { DEFAULT_LOOK } from '../../src/scene/settings.js';
 import { DEFAULT_STANDING } from '../../src/scene/standing.js';
 import { DEFAULT_LIGHT } from '../appearance.js';
-import { DISTANCE, FOCUS, type Turn } from '../gallery/layout.js';
+import { DISTANCE, FOCUS, towardsViewer, type Turn } from '../gallery/layout.js';
 import { Lighting } from './lighting.js';
 import { Presentation } from './presentation.js';
 
@@ -80,12 +80,12 @@ export class RootPicture {
 
   /// As layout.ts sees the outline.
   private aim(aspect: number): void {
-    const { camera, view, turn: { yaw, pitch } } = this;
+    const { camera, view, turn } = this;
     const radius = this.radius ?? (view.box.getSize(new Vector3()).length() / 2 || 1);
     camera.fov = MathUtils.radToDeg(2 * Math.atan(1 / (FOCUS * Math.min(aspect, 1))));
     Object.assign(camera, { aspect, near: (DISTANCE - 1) * radius * 0.9, far: (DISTANCE + 1) * radius * 1.1 });
     // Around the model, as the sun stays where it is.
-    camera.position.set(-Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch), Math.cos(yaw) * Math.cos(pitch)).multiplyScalar(DISTANCE * radius);
+    camera.position.set(...towardsViewer(turn)).multiplyScalar(DISTANCE * radius);
     camera.lookAt(0, 0, 0);
     camera.updateProjectionMatrix();
     view.position.copy(view.box.getCenter(new Vector3())).negate();

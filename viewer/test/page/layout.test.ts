@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { ballOf, cellMatrix, dragged, multiply, turnTo, USUAL_TURN, type Matrix } from '../../page/gallery/layout.js';
+import { ballOf, cellMatrix, dragged, multiply, towardsViewer, turnTo, USUAL_TURN, type Matrix } from '../../page/gallery/layout.js';
 import { directionOf } from '../../src/hierarchy/first_view.js';
 
 function project(matrix: Matrix, [x, y, z]: number[]): number[] {
@@ -49,6 +49,7 @@ describe('a turned outline', () => {
     expect(Math.abs(nearest[0])).toBeLessThan(0.02);
     expect(Math.abs(nearest[1])).toBeLessThan(0.02);
     expect(nearest[2]).toBeCloseTo(-1);
+    towardsViewer(turnTo(view)).forEach((value, axis) => { expect(value).toBeCloseTo([x, y, z][axis], 2); });
   });
 
   it('is seen from the usual side where the hierarchy says none', () => {
