@@ -14,11 +14,11 @@ export class Solid {
   /// `url`: of the hierarchy; `stage`: its class `solid` says that the picture is there.
   constructor(private readonly url: string, private readonly stage: HTMLElement) {}
 
-  /// Lines lie in a ball; where there are none the root tile tells how large the model is.
-  await({ ends, ball: { radius } }: Shape, turn: Turn): void {
+  /// As the outline is seen.
+  await(shape: Shape, turn: Turn): void {
     if (this.timer !== 0) return;
     this.turn = turn;
-    this.timer = window.setTimeout(() => { void this.begin(ends.length > 0 ? radius : null, this.epoch); }, STAY);
+    this.timer = window.setTimeout(() => { void this.begin(shape, this.epoch); }, STAY);
   }
 
   show(turn: Turn): void {
@@ -36,11 +36,11 @@ export class Solid {
   }
 
   /// Where the code does not come, or draws nothing, the outline stays.
-  private async begin(radius: number | null, epoch: number): Promise<void> {
+  private async begin(shape: Shape, epoch: number): Promise<void> {
     try {
       const { RootPicture } = await import('../view/model_view.js');
       if (epoch !== this.epoch || this.turn === null || !this.stage.checkVisibility()) return; // a model may have been opened meanwhile
-      this.picture = new RootPicture(this.url, radius, this.turn, () => { this.stage.classList.add('solid'); });
+      this.picture = new RootPicture(this.url, shape, this.turn, () => { this.stage.classList.add('solid'); });
       this.stage.append(this.picture.canvas);
     } catch {
       // nothing else shows it

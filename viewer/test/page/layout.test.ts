@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { ballOf, cellMatrix, dragged, multiply, towardsViewer, turnTo, USUAL_TURN, type Matrix } from '../../page/gallery/layout.js';
+import { ballOf, cellMatrix, dragged, fitAt, fitOf, multiply, towardsViewer, turnTo, USUAL_TURN, type Matrix } from '../../page/gallery/layout.js';
 import { directionOf } from '../../src/hierarchy/first_view.js';
 
 function project(matrix: Matrix, [x, y, z]: number[]): number[] {
@@ -54,6 +54,24 @@ describe('a turned outline', () => {
 
   it('is seen from the usual side where the hierarchy says none', () => {
     expect(turnTo(null)).toBe(USUAL_TURN);
+  });
+
+  it.each([0.5, 1, 2])('fills a cell of aspect %d at first, as a preview does, and less when it is turned', (aspect) => {
+    const lines = new Float32Array([4, 5, 7, 6, 5, 7, 5, 5.5, 7.5]);
+    const around = ballOf(lines);
+    const first = { yaw: 0.3, pitch: 0.2 };
+    const fit = fitOf(lines, around, 'z', first);
+    const across = (turn: typeof first): number => {
+      const matrix = cellMatrix(around, 'z', turn, aspect, fitAt(fit, first, turn));
+      const places = [0, 3, 6].map((i) => project(matrix, [...lines.subarray(i, i + 3)]));
+      const size = (axis: number): number => Math.max(...places.map((p) => p[axis])) - Math.min(...places.map((p) => p[axis]));
+      for (const place of places) expect(Math.max(Math.abs(place[0]), Math.abs(place[1]))).toBeLessThan(1.03);
+      return Math.max(size(0) * Math.max(aspect, 1), size(1) * Math.max(1 / aspect, 1)) / 2;
+    };
+    expect(across(first)).toBeCloseTo(0.92, 5);
+    for (let yaw = 0.3; yaw < 7; yaw += 0.2) across({ yaw, pitch: 0.2 });
+    expect(fitAt(fit, first, { yaw: 2, pitch: 0 }).zoom).toBe(1);
+    expect(fitOf(new Float32Array(), around, 'y', first).zoom).toBe(1);
   });
 
   it('follows the pointer', () => {
