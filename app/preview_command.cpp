@@ -23,7 +23,6 @@ namespace meshhier::app {
 namespace {
 
 using inspection::PreviewOptions;
-using inspection::Standpoint;
 
 struct PreviewArguments {
   std::string directory;
@@ -183,7 +182,7 @@ void add_look(CLI::App& command, PreviewArguments& arguments) {
                     [&options](const std::string& text) { return parse_size(text, options); });
   add_parsed_option(command, "--view",
                     "front, back, left, right, top, bottom, iso, or degrees from the front to the "
-                    "right and above the equator; if not given, from where the model is recognised",
+                    "right and above the equator; if not given, the hierarchy's first view",
                     "NAME|AZ,EL", "front, back, left, right, top, bottom, iso, or AZ,EL in degrees",
                     [&options](const std::string& text) {
                       options.view = parse_view(text);

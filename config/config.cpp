@@ -384,6 +384,12 @@ void check_placement(const Config& config, const Draft& draft) {
   }
 }
 
+/// One angle alone says no side.
+void check_first_view(const Config& config, const Draft& draft) {
+  if (config.first_view.azimuth.has_value() != config.first_view.elevation.has_value())
+    refuse(draft.origin_of("first_view"), "expected both \"azimuth\" and \"elevation\"");
+}
+
 constexpr const char* kMeshWords = "the mesh on the command line";
 constexpr const char* kOutputWord = "-o";
 constexpr const char* kContainerKey = "storage.container";
@@ -459,6 +465,7 @@ Config parse_config(std::string_view text, const ConfigOrigin& origin, const Com
     file = resolved_path(draft, "placement.metadata", file, origin.directory);
   check_output(config, draft);
   check_placement(config, draft);
+  check_first_view(config, draft);
   return config;
 }
 

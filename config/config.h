@@ -5,6 +5,7 @@
 
 #include "cluster_simplify/contraction.h"
 #include "hierarchy/frame.h"
+#include "hierarchy/standpoint.h"
 #include "hierarchy/target_vertex_counts.h"
 #include "hierarchy/texture.h"
 #include "hierarchy/topology.h"
@@ -80,6 +81,17 @@ struct OutlineConfig {
   std::uint32_t sectors = 128;  ///< about so many
   double tolerance = 0.002;     ///< as a part of the bounding-box diagonal, above 0, at most 1
   friend bool operator==(const OutlineConfig&, const OutlineConfig&) = default;
+};
+
+/// From where the model is looked at first, degrees as of a Standpoint: both or none, then the
+/// build chooses.
+struct FirstViewConfig {
+  std::optional<double> azimuth, elevation;
+  friend bool operator==(const FirstViewConfig&, const FirstViewConfig&) = default;
+
+  std::optional<Standpoint> standpoint() const {
+    return azimuth && elevation ? std::optional(Standpoint{*azimuth, *elevation}) : std::nullopt;
+  }
 };
 
 using Compression = storage::Compression;
@@ -164,6 +176,7 @@ struct Config {
   SimplifyConfig simplify;
   OutlineConfig outline;
   bool preview = true;  ///< the hierarchy has a picture of the whole model
+  FirstViewConfig first_view;
   StorageConfig storage;
   TextureConfig texture;
   MissingImages missing_images = MissingImages::warn;

@@ -316,6 +316,20 @@ std::vector<ConfigKey> make_config_keys() {
            .meaning =
                "`preview.webp`, a picture of the whole model for galleries and file managers"},
           [](auto& c) -> auto& { return c.preview; })),
+      deciding(number(
+          {.path = "first_view.azimuth",
+           .meaning = "where `preview.webp`, the outline, viewers and `meshhier preview` look "
+                      "from first: degrees from the model's front to its right",
+           .unset = "chosen by the build",
+           .needs = {"elevation"}},
+          {-2 * kHalfTurn, 2 * kHalfTurn}, [](auto& c) -> auto& { return c.first_view.azimuth; })),
+      deciding(number(
+          {.path = "first_view.elevation",
+           .meaning = "degrees above its equator; 90 is from above",
+           .unset = "chosen by the build",
+           .needs = {"azimuth"}},
+          {-kHalfTurn / 2, kHalfTurn / 2},
+          [](auto& c) -> auto& { return c.first_view.elevation; })),
       choice(
           {.path = "storage.container",
            .meaning = "a directory (`files`), or one file, a 3D Tiles archive with the same "
@@ -475,6 +489,7 @@ const std::vector<ConfigSection>& config_sections() {
       {"partition", "how the mesh is cut into partitions, the finest tiles"},
       {"simplify", "how the coarser tiles are made"},
       {"outline", "the shape-outline, the lines that are shown first"},
+      {"first_view", "from where the model is looked at before anybody turns it"},
       {"storage", "how tiles are stored"},
       {"storage.positions", "how positions are rounded; without it they keep every bit"},
       {"texture", "what becomes of the pictures of a textured mesh"},

@@ -16,6 +16,11 @@ constexpr std::string_view name_of(UpAxis up) {
   return up == UpAxis::z ? "z" : "y";
 }
 
+/// Of length 1.
+constexpr Vec3d direction_of(UpAxis up) {
+  return up == UpAxis::z ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0};
+}
+
 /// What the nodes of all files of a hierarchy share.
 struct Frame {
   Vec3d origin;           ///< added to every position

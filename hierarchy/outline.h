@@ -1,9 +1,11 @@
 // The shape-outline: a thumbnail of the model made of lines.
 #pragma once
 
+#include "hierarchy/standpoint.h"
 #include "hierarchy/vec.h"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace meshhier {
@@ -14,6 +16,7 @@ struct Outline {
   std::vector<Vec3f> vertices;  ///< relative to the hierarchy's origin
   std::vector<std::uint32_t> starts{
       0};  ///< ascending; starts.size() - 1 polylines; every one has 2 vertices or more
+  std::optional<Standpoint> first_view{};  ///< as PublishedTile's
 
   std::size_t polyline_count() const { return starts.size() - 1; }
 };

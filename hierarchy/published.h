@@ -4,6 +4,7 @@
 #include "hierarchy/bounds.h"
 #include "hierarchy/ghost_chains.h"
 #include "hierarchy/shading.h"
+#include "hierarchy/standpoint.h"
 #include "hierarchy/texture.h"
 #include "hierarchy/tile_mesh.h"
 #include "hierarchy/tree.h"
@@ -53,6 +54,8 @@ struct PublishedTile {
   GhostChains chains;  ///< one per ghost
   Shading shading;     ///< if the build computed normals or the tile has a picture, else empty
   TileImage image;     ///< empty unless the mesh is textured
+  /// From where the model is looked at first: of the root, unless an older program made it.
+  std::optional<Standpoint> first_view{};
 };
 
 /// A file that was imported.

@@ -266,6 +266,13 @@ std::string preview_text(const storage::Manifest& manifest) {
                      p.height);
 }
 
+std::string first_view_text(const storage::Manifest& manifest) {
+  if (!manifest.first_view)
+    return "first view   none\n";
+  const auto& [azimuth, elevation] = *manifest.first_view;
+  return fmt::format("first view   azimuth {}, elevation {} degrees\n", azimuth, elevation);
+}
+
 std::string tileset_text(const storage::Manifest& manifest) {
   return fmt::format("tileset      {} in {}, {} up{}{}\n", grouped(manifest.tileset_bytes, "bytes"),
                      grouped(manifest.tileset_files, "files"), name_of(manifest.up),
@@ -393,6 +400,13 @@ Json preview_json(const storage::Manifest& manifest) {
   return {{"bytes", p.bytes}, {"width", p.width}, {"height", p.height}};
 }
 
+Json first_view_json(const storage::Manifest& manifest) {
+  if (!manifest.first_view)
+    return nullptr;
+  const auto& [azimuth, elevation] = *manifest.first_view;
+  return {{"azimuth", azimuth}, {"elevation", elevation}};
+}
+
 Json tileset_json(const storage::Manifest& manifest) {
   return {{"files", manifest.tileset_files},
           {"bytes", manifest.tileset_bytes},
@@ -420,7 +434,7 @@ std::string inspect_text(storage::FileSystem& files, const std::filesystem::path
   std::string parameters;
   add_parameters("", manifest.config, parameters);
   std::string text = fmt::format("{} (format {}, by {})\n", directory.string(),
-                                 storage::kFormatVersion, shown(manifest.generator));
+                                 manifest.format_version(), shown(manifest.generator));
   text += source_text(manifest);
   text += fmt::format("parameters   {}\n", parameters);
   text += storage_text(manifest);
@@ -433,6 +447,7 @@ std::string inspect_text(storage::FileSystem& files, const std::filesystem::path
                           storage::summarize_compactness(reader.tree(), reader.records()));
   text += outline_text(manifest);
   text += preview_text(manifest);
+  text += first_view_text(manifest);
   text += tileset_text(manifest);
   text += totals_text(manifest, levels, bytes_on_disk(place, reader));
   text += "\n" + level_table(levels, std::nullopt);
@@ -457,6 +472,7 @@ Json inspect_json(storage::FileSystem& files, const std::filesystem::path& direc
        {{"partitions", to_json(partition_sizes(reader))}, {"all", to_json(all_sizes(reader))}}},
       {"outline", outline_json(manifest)},
       {"preview", preview_json(manifest)},
+      {"first_view", first_view_json(manifest)},
       {"tileset", tileset_json(manifest)},
       {"pictures", storage::to_json(storage::summarize_pictures(reader.records()))},
       {"forced_collapses", storage::to_json(forced_collapses_of(reader))},

@@ -9,6 +9,7 @@
 #include "inspection/cut_file.h"
 #include "inspection/shown_tiles.h"
 #include "render/painting.h"
+#include "render/points.h"
 #include "render/portrait.h"
 #include "render/tile_facets.h"
 #include "storage/format/archive_files.h"
@@ -32,26 +33,39 @@ using storage::HierarchyReader;
 constexpr int kQuality = 90;
 
 Vec3d up_of(const HierarchyReader& reader, const PreviewOptions& options) {
-  const UpAxis up = options.up.value_or(reader.manifest().up);
-  return up == UpAxis::z ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0};
+  return direction_of(options.up.value_or(reader.manifest().up));
 }
 
-/// Of the root tile, which has the extent of the whole.
+/// Of the root tile, which has the extent of the whole; its points if nothing else is there.
 std::vector<render::Facet> root_facets(const HierarchyReader& reader) {
   PublishedTile root = reader.read_tile({});
+  const AttributeLayout& layout = reader.tile_format().attributes;
+  if (root.mesh.interior.empty())
+    return render::points_of(root, layout);
   root.image = {};
   root.shading.texcoords.clear();
-  return render::scene_tile(root, reader.tile_format().attributes).facets;
+  return render::scene_tile(root, layout).facets;
 }
 
-render::Camera camera_for(const HierarchyReader& reader, std::span<const render::Facet> root,
-                          const PreviewOptions& options) {
-  const Vec3d up = up_of(reader, options);
-  const render::View view =
-      options.view ? render::view_from(options.view->azimuth, options.view->elevation, up)
-                   : render::portrait_view(root, up);
-  return render::portrait_camera(root, view,
-                                 {.width = options.width, .height = options.height, .samples = 2});
+/// An older hierarchy has none, and one that is stood on another axis may show another side.
+Standpoint first_view(const HierarchyReader& reader, std::span<const render::Facet> root,
+                      const PreviewOptions& options) {
+  const storage::Manifest& manifest = reader.manifest();
+  const bool is_as_built = manifest.first_view && options.up.value_or(manifest.up) == manifest.up;
+  return is_as_built ? *manifest.first_view : render::portrait_from(root, up_of(reader, options));
+}
+
+struct Seen {
+  render::Camera camera;
+  render::ViewAxes axes;
+};
+
+Seen seen_by(const HierarchyReader& reader, std::span<const render::Facet> root,
+             const PreviewOptions& options) {
+  const Standpoint from = options.view ? *options.view : first_view(reader, root, options);
+  const render::View view = render::view_from(from, up_of(reader, options));
+  const render::Framing framing{.width = options.width, .height = options.height, .samples = 2};
+  return {render::portrait_camera(root, view, framing), render::axes_of(view)};
 }
 
 /// The coarsest nodes with errors of at most that.
@@ -85,19 +99,29 @@ Cut cut_for(storage::FileSystem& files, const HierarchyReader& reader,
 
 /// Where levels meet, a tile reaches to the vertices of its coarser neighbour: then it may draw
 /// anywhere.
-std::vector<Bounds> boxes_of(const HierarchyReader& reader, const Cut& cut) {
+std::vector<Bounds> boxes_of(const HierarchyReader& reader, const Cut& cut, double point_side) {
   const auto level_of = [&](NodeId node) { return reader.record(node).node.level; };
   const auto same = [&](NodeId node) { return level_of(node) == level_of(cut[0]); };
   const bool is_even = std::ranges::all_of(cut.nodes(), same);
   std::vector<Bounds> boxes;
   Bounds all;
   for (const NodeId node : cut.nodes()) {
-    boxes.push_back(reader.record(node).bounds);
+    boxes.push_back(render::box_of_squares(reader.record(node).bounds, point_side));
     all.add(boxes.back());
   }
   if (!is_even)
     std::ranges::fill(boxes, all);
   return boxes;
+}
+
+/// 0: triangles are drawn.
+double point_side_of(const HierarchyReader& reader, const Cut& cut, const render::Camera& camera) {
+  if (reader.record(NodeId{}).interior_count > 0)
+    return 0;
+  std::uint64_t points = 0;
+  for (const NodeId node : cut.nodes())
+    points += reader.record(node).own_count;
+  return render::point_side(camera, points);
 }
 
 /// Of a picture, its file, and what encodes it.
@@ -145,10 +169,10 @@ std::string make_picture(storage::FileSystem& files, const std::filesystem::path
   storage::OutputFile output(files, request, [&] { cancel.check(); });
 
   AttributeLayout layout = reader.tile_format().attributes;
-  const render::Camera camera = [&] {
+  const auto [camera, axes] = [&] {
     const std::vector<render::Facet> root = root_facets(reader);
     layout = render::drawn_layout(root, layout);
-    return camera_for(reader, root, options);
+    return seen_by(reader, root, options);
   }();
   ShownTiles tiles(reader, cut_for(files, reader, options, camera.pixel()),
                    options.memory_budget / 8);
@@ -156,11 +180,15 @@ std::string make_picture(storage::FileSystem& files, const std::filesystem::path
   for (const NodeId node : tiles.cut().nodes())
     triangles +=
         std::uint64_t{reader.record(node).interior_count} + reader.record(node).drawn_border_count;
-  render::Scene scene{boxes_of(reader, tiles.cut()),
-                      [&](std::size_t i) {
-                        const ShownTile shown = tiles.load(i);
-                        return render::scene_tile(shown.tile, layout, shown.border);
-                      },
+  const double point_side = point_side_of(reader, tiles.cut(), camera);
+  const auto load = [&, &axes = axes](std::size_t i) {
+    const ShownTile shown = tiles.load(i);
+    if (point_side == 0)
+      return render::scene_tile(shown.tile, layout, shown.border);
+    return render::SceneTile{
+        render::squares_of(render::points_of(shown.tile, layout), axes, point_side), {}, {}};
+  };
+  render::Scene scene{boxes_of(reader, tiles.cut(), point_side), load,
                       reader.manifest().textures && reader.manifest().textures->unlit
                           ? render::Light::none
                           : render::Light::lamps};

@@ -5,6 +5,7 @@
 #include "execution/progress.h"
 #include "hierarchy/frame.h"
 #include "hierarchy/ids.h"
+#include "hierarchy/standpoint.h"
 #include "hierarchy/texture.h"
 #include "storage/io/file.h"
 
@@ -16,11 +17,6 @@
 #include <variant>
 
 namespace meshhier::inspection {
-
-/// From where the model is looked at, in degrees (render::view_from).
-struct Standpoint {
-  double azimuth = 0, elevation = 0;
-};
 
 /// Tiles that are no farther from the original than this, input units; the coarsest that do.
 struct LargestError {
@@ -39,7 +35,7 @@ struct PreviewOptions {
   std::uint32_t width = 1600, height = 1000;  ///< 1 to kMostPreviewPixels
   /// None: errors of a quarter of a pixel at most.
   std::optional<PreviewSelection> selection;
-  std::optional<Standpoint> view;                         ///< none: from where it is recognised
+  std::optional<Standpoint> view;                         ///< none: the first view
   std::optional<UpAxis> up;                               ///< none: as the hierarchy says
   std::optional<std::array<std::uint8_t, 3>> background;  ///< none: transparent
   std::uint64_t memory_budget = std::uint64_t{1} << 30;

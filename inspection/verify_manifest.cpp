@@ -110,6 +110,9 @@ void check_config_against_rest(const storage::Manifest& manifest, const config::
   }
   if (says("/preview"))
     problems.compare("the existence of \"preview\"", manifest.preview.has_value(), config.preview);
+  problems.require(
+      !config.first_view.standpoint() || manifest.first_view == config.first_view.standpoint(),
+      "\"first_view\" is not that of \"config\"");
   if (says("/up"))
     problems.compare("up", name_of(manifest.up), name_of(config.up));
   if (config.placement.crs) {

@@ -4,6 +4,7 @@
 #include "images/fitted.h"
 #include "render/drawing_cost.h"
 #include "render/painting.h"
+#include "render/points.h"
 #include "render/portrait.h"
 #include "render/tile_facets.h"
 #include "storage/format/index.h"
@@ -33,12 +34,19 @@ constexpr std::uint64_t kBandBytes =
 /// What is held beside a tile: samples, shadows, the picture; then what encodes it.
 constexpr std::uint64_t kPaintingBytes = kBandBytes + (3 << 20);
 
-/// Tiles draw all of their border, also what they leave to each other.
+/// Whether nothing but vertices is there to be drawn.
+bool is_of_points(std::span<const TileRecord> records) {
+  return storage::record_of(records, NodeId{}).interior_count == 0;
+}
+
+/// Tiles draw all of their border, also what they leave to each other; of points two triangles
+/// each.
 bool is_quick(const Cut& cut, std::span<const TileRecord> records) {
   std::uint64_t triangles = 0, texels = 0;
   for (const NodeId node : cut.nodes()) {
     const TileRecord& record = storage::record_of(records, node);
-    triangles += std::uint64_t{record.interior_count} + record.border_count;
+    triangles += is_of_points(records) ? 2 * std::uint64_t{record.own_count}
+                                       : std::uint64_t{record.interior_count} + record.border_count;
     texels += std::uint64_t{record.image_width} * record.image_height;
   }
   return triangles <= kMostTriangles && texels <= kMostTexels;
@@ -71,26 +79,71 @@ std::vector<render::Facet> facets_of(PublishedTile tile, const AttributeLayout& 
   return render::scene_tile(tile, layout).facets;
 }
 
+std::uint64_t vertices_of(const Cut& cut, std::span<const TileRecord> records) {
+  std::uint64_t sum = 0;
+  for (const NodeId node : cut.nodes())
+    sum += storage::record_of(records, node).own_count;
+  return sum;
+}
+
+/// Of the root: its points if nothing else is there.
+std::vector<render::Facet> root_facets(const PublishedTile& root, const AttributeLayout& layout) {
+  return root.mesh.interior.empty() ? render::points_of(root, layout) : facets_of(root, layout);
+}
+
+/// How a model is seen.
+struct Portrait {
+  render::Camera camera;
+  render::ViewAxes axes;
+  AttributeLayout layout;  ///< as it is drawn
+  double point_side = 0;   ///< 0: triangles are drawn
+};
+
+Portrait portrait_of(const PublishedTile& root, const PreviewInput& input, const Cut& cut) {
+  const std::vector<render::Facet> whole = root_facets(root, input.format.attributes);
+  const render::View view =
+      render::view_from(*root.first_view, direction_of(input.format.frame.up));
+  Portrait portrait{
+      render::portrait_camera(
+          whole, view,
+          {.width = storage::kMostPreviewSide, .height = storage::kMostPreviewSide, .samples = 2}),
+      render::axes_of(view), render::drawn_layout(whole, input.format.attributes)};
+  if (is_of_points(input.records))
+    portrait.point_side = render::point_side(portrait.camera, vertices_of(cut, input.records));
+  return portrait;
+}
+
+render::SceneTile drawn_tile(const PublishedTile& tile, const Portrait& portrait) {
+  if (portrait.point_side == 0)
+    return render::scene_tile(tile, portrait.layout);
+  render::SceneTile drawn;
+  drawn.facets = render::squares_of(render::points_of(tile, portrait.layout), portrait.axes,
+                                    portrait.point_side);
+  return drawn;
+}
+
 /// Tiles draw all of their border: twice what lies between two of them, and nothing is missing.
-render::Scene scene_of(const PreviewInput& input, const Cut& cut, const AttributeLayout& layout,
+render::Scene scene_of(const PreviewInput& input, const Cut& cut, const Portrait& portrait,
                        const StageContext& context) {
   render::Scene scene;
   if (input.format.textures && input.format.textures->unlit)
     scene.light = render::Light::none;
   for (const NodeId node : cut.nodes())
-    scene.boxes.push_back(storage::record_of(input.records, node).bounds);
-  scene.load = [&input, &context, layout, nodes = cut.nodes()](std::size_t i) {
-    return render::scene_tile(tile_of(input, nodes[i], context), layout);
+    scene.boxes.push_back(render::box_of_squares(storage::record_of(input.records, node).bounds,
+                                                 portrait.point_side));
+  scene.load = [&input, &context, portrait, nodes = cut.nodes()](std::size_t i) {
+    return drawn_tile(tile_of(input, nodes[i], context), portrait);
   };
   return scene;
 }
 
-std::uint64_t samples_of(const PreviewInput& input, const Cut& cut, const AttributeLayout& layout,
-                         const render::Camera& camera, const StageContext& context) {
+std::uint64_t samples_of(const PreviewInput& input, const Cut& cut, const Portrait& portrait,
+                         const StageContext& context) {
   std::uint64_t sum = 0;
   for (const NodeId node : cut.nodes()) {
     context.cancel.check();
-    sum += render::samples_to_draw(facets_of(tile_of(input, node, context), layout), camera);
+    sum += render::samples_to_draw(facets_of(tile_of(input, node, context), portrait.layout),
+                                   portrait.camera);
   }
   return sum;
 }
@@ -108,22 +161,20 @@ render::Camera affordable(const render::Camera& camera, std::uint64_t samples) {
 
 }  // namespace
 
+Standpoint choose_first_view(const PublishedTile& root, const storage::TileFormat& format) {
+  return render::portrait_from(root_facets(root, format.attributes), direction_of(format.frame.up));
+}
+
+PublishedTile read_root(const PreviewInput& input, const StageContext& context) {
+  return tile_of(input, context.tree().root(), context);
+}
+
 MadePreview make_preview(const PreviewInput& input, const StageContext& context) {
-  const Tree& tree = context.tree();
-  const Cut cut = shown_cut(tree, input.records);
-  const Vec3d up = input.format.frame.up == UpAxis::z ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0};
-  AttributeLayout layout = input.format.attributes;
-  const render::Camera camera = [&] {
-    const std::vector<render::Facet> whole = facets_of(tile_of(input, NodeId{}, context), layout);
-    layout = render::drawn_layout(whole, layout);
-    const render::View view = render::portrait_view(whole, up);
-    return render::portrait_camera(
-        whole, view,
-        {.width = storage::kMostPreviewSide, .height = storage::kMostPreviewSide, .samples = 2});
-  }();
-  const std::uint64_t samples = samples_of(input, cut, layout, camera, context);
+  const Cut cut = shown_cut(context.tree(), input.records);
+  const Portrait portrait = portrait_of(read_root(input, context), input, cut);
+  const std::uint64_t samples = samples_of(input, cut, portrait, context);
   images::FittedImage picture = images::encode_to_fit(
-      render::paint(scene_of(input, cut, layout, context), affordable(camera, samples),
+      render::paint(scene_of(input, cut, portrait, context), affordable(portrait.camera, samples),
                     {.band_bytes = kBandBytes, .step = [&] { context.cancel.check(); }}),
       storage::kMostPreviewBytes);
   const storage::Preview facts{picture.width, picture.height, picture.file.size(),
@@ -131,10 +182,14 @@ MadePreview make_preview(const PreviewInput& input, const StageContext& context)
   return {facts, std::move(picture.file)};
 }
 
-std::uint64_t preview_memory(const JobSize& job) {
+std::uint64_t first_view_memory(const JobSize& job) {
   // A tile as it is published and decoded, and what is drawn of it.
   constexpr std::uint64_t kTriangleBytes = sizeof(render::Facet) + sizeof(render::Skin) + 40;
-  return kPaintingBytes + job.part_triangles(job.largest_tile) * kTriangleBytes;
+  return job.part_triangles(job.largest_tile) * kTriangleBytes;
+}
+
+std::uint64_t preview_memory(const JobSize& job) {
+  return kPaintingBytes + first_view_memory(job);
 }
 
 }  // namespace meshhier::pipeline

@@ -81,6 +81,7 @@ struct TileWriter {
   const storage::TileFormat format;
   const TileFiles& to;
   const StageContext& context;
+  std::optional<Standpoint> first_view{};  ///< for the root
 };
 
 TileRecord describe(const TileWriter& to, NodeId node, const TileMesh& mesh,
@@ -143,6 +144,24 @@ FinishedMesh finish(const TileWriter& to, NodeId node, TileMesh mesh) {
   return finished;
 }
 
+/// As the config says, or from where the root is recognised.
+Standpoint first_view_of(const TileWriter& to, Forest& forest) {
+  if (const auto wished = to.context.config.first_view.standpoint())
+    return *wished;
+  const NodeId node = forest.tree().root();
+  // What is drawn takes as much as what is packed.
+  const TileRoom room =
+      room_for(forest, to.context.memory(), {heaviest_packed(forest, std::array{node})});
+  FinishedMesh root = finish(to, node, forest.load(node).mesh);
+  if (to.format.lattice)
+    round_to(*to.format.lattice, root.mesh);
+  PublishedTile tile;
+  tile.node = node;
+  tile.mesh = std::move(root.mesh);
+  tile.shading = std::move(root.shading);
+  return choose_first_view(tile, to.format);
+}
+
 void write_tile_file(const TileWriter& writer, NodeId node, std::span<const std::byte> bytes) {
   storage::FileSystem& files = writer.context.files;
   const auto& [directory, attempts] = writer.to;
@@ -175,8 +194,10 @@ Published write_tile(const TileWriter& to, NodeId node) {
     record.texel = to.textures.texels(node).own;
   }
   const std::vector<std::uint16_t> chains = forest.chains(node, mesh.ghosts);
-  const std::vector<std::byte> bytes = storage::encode_tile(
-      {node, mesh, shading, image, record.bounds, parent_map, chains}, forest.tree(), to.format);
+  const std::vector<std::byte> bytes =
+      storage::encode_tile({node, mesh, shading, image, record.bounds, parent_map, chains,
+                            node == forest.tree().root() ? to.first_view : std::nullopt},
+                           forest.tree(), to.format);
   write_tile_file(to, node, bytes);
   record.file_bytes = bytes.size();
   record.checksum = storage::checksum(bytes);
@@ -227,13 +248,14 @@ void publish(Forest& forest, const TextureStore& textures, BuildJournal& journal
       left.push_back(nodes[i]);
   }
   context.progress.stage("publish", left.size(), "tiles");
+  TileWriter writer{forest, textures,
+                    format_of(*journal.source(), forest.computes_normals(), context), to, context};
+  if (std::ranges::find(left, tree.root()) != left.end())
+    writer.first_view = first_view_of(writer, forest);
   // A picture as it was stored, on its own, and in the tile's file.
   const std::uint64_t heaviest =
       heaviest_written(forest, left, context.config.storage) + 3 * textures.heaviest_bytes();
   const TileRoom room = room_for(forest, context.memory(), {heaviest});
-  const TileWriter writer{forest, textures,
-                          format_of(*journal.source(), forest.computes_normals(), context), to,
-                          context};
   execution::ordered_for(
       left.size(), room.in_flight(), context.cancel,
       [&](std::size_t i) { return write_tile(writer, left[i]); },
@@ -284,16 +306,18 @@ void write_account(Forest& forest, const TextureStore& textures, BuildJournal& j
       complete_records(tiles, complete_errors(textures, journal, context), quantization, tree);
   const std::vector<std::byte> index = storage::encode_index(records);
   storage::write_file(files, storage::index_path(directory), index);
-  const std::vector<std::byte> outline_file =
-      storage::encode_outline(outline.outline, format.frame);
+  // What is drawn takes as much as what is packed.
+  const std::array root{tree.root()};
+  const TileRoom room = room_for(forest, context.memory(), {heaviest_packed(forest, root)});
+  const PreviewInput published{directory, format, records};
+  Outline lines = outline.outline;
+  lines.first_view = read_root(published, context).first_view;
+  const std::vector<std::byte> outline_file = storage::encode_outline(lines, format.frame);
   storage::write_file(files, storage::outline_path(directory), outline_file);
 
   std::optional<MadePreview> preview;
   if (context.config.preview) {
-    // What is drawn takes as much as what is packed.
-    const std::array root{tree.root()};
-    const TileRoom room = room_for(forest, context.memory(), {heaviest_packed(forest, root)});
-    preview = make_preview({directory, format, records}, context);
+    preview = make_preview(published, context);
     storage::write_file(files, storage::preview_path(directory), preview->file);
   }
 
@@ -302,6 +326,7 @@ void write_account(Forest& forest, const TextureStore& textures, BuildJournal& j
   manifest.source = source;
   manifest.origin = format.frame.origin;
   manifest.up = format.frame.up;
+  manifest.first_view = lines.first_view;
   manifest.transform = config::tileset_transform(context.config, source.bounds);
   manifest.licence = context.config.licence;
   manifest.partition_count = tree.partition_count();
@@ -341,7 +366,7 @@ StageTime publish_time(const JobSize& job, const TilePopulation& tiles) {
   return {"publish", "tiles",
           static_cast<std::uint64_t>(tiles.partitions.count + tiles.simplified.count -
                                      tiles.early.count),
-          vertices * kVertexSeconds + packed * kPackedByteSeconds +
+          vertices * kVertexSeconds + packed * kPackedByteSeconds + kFirstViewSeconds +
               (job.draws_preview ? kPreviewSeconds : 0)};
 }
 

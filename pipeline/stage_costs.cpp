@@ -34,7 +34,7 @@ MemoryCosts memory_costs(const JobSize& job) {
   return {bookkeeping_bytes(job), ingest_memory(job),
           partition_memory(job),  leaves_memory(job),
           simplify_memory(job),   images_memory(job),
-          texture_memory(job),    job.draws_preview ? preview_memory(job) : 0,
+          texture_memory(job),    job.draws_preview ? preview_memory(job) : first_view_memory(job),
           chunk_spools(job)};
 }
 

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 namespace meshhier::render {
 namespace {
@@ -22,16 +23,21 @@ constexpr double kOpen = 0.4;
 /// The cosine of how far from `up` it may face and is ground: 40 degrees.
 constexpr double kUpright = 0.77;
 
-/// Candidates: around the model, and how far above its equator.
+/// Candidates: around the model, and degrees above its equator.
 constexpr int kAround = 16;
-constexpr std::array kElevations{0.22, 0.45};  // radians: 13 and 26 degrees
-constexpr std::array kFromAbove{0.65};         // 37 degrees: roofs and streets are seen
+constexpr std::array kElevations{13.0, 26.0};
+constexpr std::array kFromAbove{37.0};  // roofs and streets are seen
+constexpr Standpoint kMapView{0, 90};
+/// Of points, which hide nothing: from the front, a little aside and above.
+constexpr Standpoint kPointView{30, 20};
+/// Where a surface faces is told as a multiple of this, degrees.
+constexpr double kStep = 0.25;
 /// A surface that hides nothing of itself from above, whatever its height.
 constexpr double kMap = 0.8;
 /// What is open above and lower than this part of its width is a map.
 constexpr double kFlat = 0.15;
 /// How much more than the back the front counts.
-constexpr double kFrontFavour = 0.25;
+constexpr double kFrontFavour = 0.05;
 /// Their pictures' side. What is smaller than a pixel of it is no form but roughness.
 constexpr std::uint32_t kTrialPixels = 80;
 
@@ -41,8 +47,8 @@ Vec3d area_of(const Facet& facet) {
   return cross(to_double(facet[1].position) - a, to_double(facet[2].position) - a);
 }
 
-/// Where the surface faces, as a part of its area.
-Vec3d facing_of(std::span<const Facet> facets) {
+/// Where the surface faces, as a part of its area; none if it has no area.
+std::optional<Vec3d> facing_of(std::span<const Facet> facets) {
   Vec3d sum;
   double area = 0;
   for (const Facet& facet : facets) {
@@ -52,7 +58,7 @@ Vec3d facing_of(std::span<const Facet> facets) {
     sum = sum + twice;
     area += length(twice);
   }
-  return area > 0 ? sum * (1 / area) : Vec3d{};
+  return area > 0 ? std::optional(sum * (1 / area)) : std::nullopt;
 }
 
 /// Two axes that are level, as `up` has it: the second is the first one, turned left.
@@ -88,29 +94,31 @@ double height_of(std::span<const Facet> facets, Vec3d up) {
   return size.y / std::max({size.x, size.z, std::numeric_limits<double>::min()});
 }
 
-/// What shows of a model's form in a picture of it.
+/// What shows of a model's form in a picture of it: above all where the surface turns sharply, as a
+/// face does and the back of a head does not; then how far it turns in all, and where one part
+/// stands before another (decision 031).
 double form_in(const Raster& raster) {
   const auto samples = raster.samples();
   const std::size_t columns = raster.columns();
-  // The least depth step that stands out, in pixels; what is larger counts no more.
-  constexpr double kDepthStep = 3, kMostTurn = 0.7, kSilhouette = 0.35;
+  // The least depth step that stands out, in pixels; what turns further counts no more.
+  constexpr double kDepthStep = 3, kMostTurn = 0.7;
+  constexpr double kTurnInAll = 0.1, kBefore = 0.05;
   const auto pair = [&](const Sample& a, const Sample& b) {
     if (!a.covered() || !b.covered())
-      return a.covered() != b.covered() ? kSilhouette : 0;
+      return 0.0;
     if (std::abs(double{a.depth} - b.depth) > kDepthStep)
-      return kMostTurn;
-    return std::min(kMostTurn, 1 - dot(to_double(a.normal), to_double(b.normal)));
+      return kBefore;
+    const double turn = std::max(1 - dot(to_double(a.normal), to_double(b.normal)), 0.0);
+    return std::min(kMostTurn, turn) + kTurnInAll * std::sqrt(2 * turn);
   };
   double form = 0;
-  std::size_t covered = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    covered += samples[i].covered() ? 1 : 0;
     if (i % columns + 1 < columns)
       form += pair(samples[i], samples[i + 1]);
     if (i + columns < samples.size())
       form += pair(samples[i], samples[i + columns]);
   }
-  return form + 0.06 * static_cast<double>(covered);
+  return form;
 }
 
 /// What a front is worth: a model's face is where glTF's +z is, or where y is least if z is up,
@@ -119,72 +127,76 @@ double favour(const View& view, Vec3d front) {
   return 1 + kFrontFavour * dot(view.direction, front * -1);
 }
 
-struct Angles {
-  double around = 0, elevation = 0;
-};
-
-View view_at(Vec3d up, const Angles& angles) {
-  const auto [first, second] = level_axes(up);
-  const UnitTurn around = turn_by(angles.around), raised = turn_by(angles.elevation);
-  const Vec3d level = first * around.cosine + second * around.sine;
-  return {(level * raised.cosine + up * raised.sine) * -1, up};
-}
-
 class BestView {
  public:
   BestView(std::span<const Facet> facets, Vec3d up)
       : facets_(facets), up_(up), front_(level_axes(up).second * -1) {}
 
-  void consider(const Angles& angles) {
-    const View view = view_at(up_, angles);
+  void consider(const Standpoint& from) {
+    const View view = view_from(from, up_);
     Raster raster(portrait_camera(facets_, view,
                                   {.width = kTrialPixels, .height = kTrialPixels, .samples = 1}));
     raster.draw(facets_);
     const double worth = form_in(raster) * favour(view, front_);
     if (worth > most_) {
       most_ = worth;
-      best_ = angles;
+      best_ = from;
     }
   }
 
-  const Angles& angles() const { return best_; }
-  View view() const { return view_at(up_, best_); }
+  const Standpoint& found() const { return best_; }
 
  private:
   std::span<const Facet> facets_;
   Vec3d up_, front_;
   double most_ = -1;
-  Angles best_;
+  Standpoint best_;
 };
 
 /// How far around shows more than how far above: that is tried from where it is best.
-View best_view(std::span<const Facet> facets, Vec3d up, std::span<const double> elevations) {
+Standpoint best_view(std::span<const Facet> facets, Vec3d up, std::span<const double> elevations) {
   BestView best(facets, up);
   for (int i = 0; i < kAround; ++i)
-    best.consider({kFullTurn * (i + 0.5) / kAround, elevations[0]});
+    best.consider({360 * (i + 0.5) / kAround, elevations[0]});
   for (const double elevation : elevations.subspan(1))
-    best.consider({best.angles().around, elevation});
-  return best.view();
+    best.consider({best.found().azimuth, elevation});
+  return best.found();
+}
+
+double in_steps(double radians) {
+  return std::floor(radians / kFullTurn * 360 / kStep + 0.5) * kStep;
+}
+
+/// From where a surface is seen that faces there.
+Standpoint facing(Vec3d direction, Vec3d up) {
+  const auto [right, behind] = level_axes(up);
+  const double x = dot(direction, right), front = -dot(direction, behind), y = dot(direction, up);
+  const double azimuth = in_steps(angle_of(front, std::abs(x)));
+  const double elevation = in_steps(angle_of(std::sqrt(x * x + front * front), std::abs(y)));
+  return {x < 0 && azimuth > 0 ? 360 - azimuth : azimuth, y < 0 ? -elevation : elevation};
 }
 
 }  // namespace
 
-View portrait_view(std::span<const Facet> facets, Vec3d up) {
-  const Vec3d upward = unit(up), facing = facing_of(facets);
-  if (length(facing) <= kOpen)
+Standpoint portrait_from(std::span<const Facet> facets, Vec3d up) {
+  const Vec3d upward = unit(up);
+  const std::optional<Vec3d> faces = facing_of(facets);
+  if (!faces)
+    return facets.empty() || height_of(facets, upward) > kFlat ? kPointView : kMapView;
+  if (length(*faces) <= kOpen)
     return best_view(facets, upward, kElevations);
-  if (dot(unit(facing), upward) <= kUpright)
-    return {unit(facing) * -1, upward};
-  if (length(facing) < kMap && height_of(facets, upward) > kFlat)
+  if (dot(unit(*faces), upward) <= kUpright)
+    return facing(unit(*faces), upward);
+  if (length(*faces) < kMap && height_of(facets, upward) > kFlat)
     return best_view(facets, upward, kFromAbove);
-  return {upward * -1, level_axes(upward).second};
+  return kMapView;
 }
 
-View view_from(double azimuth, double elevation, Vec3d up) {
+View view_from(const Standpoint& from, Vec3d up) {
   const Vec3d upward = unit(up);
   const auto [right, behind] = level_axes(upward);
-  const UnitTurn around = turn_by(azimuth / 360 * kFullTurn);
-  const UnitTurn raised = turn_by(elevation / 360 * kFullTurn);
+  const UnitTurn around = turn_by(from.azimuth / 360 * kFullTurn);
+  const UnitTurn raised = turn_by(from.elevation / 360 * kFullTurn);
   const Vec3d level = right * around.sine - behind * around.cosine;
   return {(level * raised.cosine + upward * raised.sine) * -1,
           upward * raised.cosine - level * raised.sine};

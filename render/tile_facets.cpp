@@ -42,6 +42,7 @@ class TileCorners {
       : tile_(tile), layout_(layout), normals_(normals) {}
 
   Facet facet(const TileTriangle& t) const { return {corner(t[0]), corner(t[1]), corner(t[2])}; }
+  Facet point(TileVertex number) const { return facet({number, number, number}); }
 
  private:
   /// A vertex among the first ones of places, or among copies.
@@ -112,6 +113,14 @@ std::vector<Facet> facets_of(const PublishedTile& tile, const AttributeLayout& l
   for (const TileTriangle& triangle : drawn_triangles(tile, border))
     facets.push_back(corners.facet(triangle));
   return facets;
+}
+
+std::vector<Facet> points_of(const PublishedTile& tile, const AttributeLayout& layout) {
+  const TileCorners corners(tile, layout, NormalKind::own);
+  std::vector<Facet> points;
+  for (std::uint32_t v = 0; v < tile.mesh.own_count; ++v)
+    points.push_back(corners.point(static_cast<TileVertex>(v)));
+  return points;
 }
 
 std::vector<Skin> skins_of(const PublishedTile& tile, const MipTexture& texture,

@@ -21,6 +21,9 @@ enum class NormalKind { own, facets };
 std::vector<Facet> facets_of(const PublishedTile& tile, const AttributeLayout& layout,
                              std::span<const std::uint32_t> border, NormalKind normals);
 
+/// The own vertices of a tile, each as a facet without area. Requires as facets_of(). Linear.
+std::vector<Facet> points_of(const PublishedTile& tile, const AttributeLayout& layout);
+
 /// The skins of the same facets: the tile's own coordinates in `texture`, its picture. Requires a
 /// tile that has texture coordinates of its own, and triangles.
 std::vector<Skin> skins_of(const PublishedTile& tile, const MipTexture& texture,

@@ -49,6 +49,9 @@ constexpr std::size_t kMaxJsonKeys = 4096;
 /// The parser's messages begin with the place and the cause; what they quote may be the whole file.
 constexpr std::size_t kMaxParserMessage = 200;
 
+/// In the extras of the root tile and of the outline.
+constexpr const char* kFirstView = "firstView";
+
 [[noreturn]] void fail(const std::string& name, const std::string& what) {
   throw Error(ErrorCode::corrupt, name + ": " + what);
 }
@@ -88,6 +91,19 @@ std::optional<std::string> first_difference(const Json& expected, const Json& fo
   if (expected == found)
     return std::nullopt;
   return fmt::format("{} is {}, expected {}", path, brief(found), brief(expected));
+}
+
+/// So many finite ones. Throws Error(corrupt).
+std::vector<double> require_numbers(const Json& document, const Json::json_pointer& place,
+                                    std::size_t count, const std::string& name) {
+  const Json found = document.contains(place) ? document[place] : Json();
+  const bool fits = found.is_array() && found.size() == count &&
+                    std::ranges::all_of(found, [](const Json& number) {
+                      return number.is_number() && std::isfinite(number.get<double>());
+                    });
+  if (!fits)
+    fail(name, fmt::format("JSON: {} is not {} finite numbers", place.to_string(), count));
+  return found.get<std::vector<double>>();
 }
 
 void append_chunk_header(std::vector<std::byte>& bytes, std::uint64_t length, std::uint32_t type) {
@@ -206,27 +222,30 @@ Json mesh_node(const Frame& frame, double scale) {
 }
 
 Frame read_frame(const Json& document, const std::string& name) {
-  const auto numbers = [&](const Json::json_pointer& place, std::size_t count) {
-    const Json& found = document[place];
-    const bool fits = found.is_array() && found.size() == count &&
-                      std::all_of(found.begin(), found.end(), [](const Json& number) {
-                        return number.is_number() && std::isfinite(number.get<double>());
-                      });
-    if (!fits) {
-      throw Error(ErrorCode::corrupt, fmt::format("{}: JSON: {} is not {} finite numbers", name,
-                                                  place.to_string(), count));
-    }
-    return found.get<std::vector<double>>();
-  };
   const Json::json_pointer matrix("/nodes/0/matrix"), translation("/nodes/0/translation");
   if (document.contains(matrix)) {
-    const std::vector<double> m = numbers(matrix, 16);
+    const std::vector<double> m = require_numbers(document, matrix, 16, name);
     return {{m[12], -m[14], m[13]}, UpAxis::z};
   }
   if (!document.contains(translation))
     return {};
-  const std::vector<double> t = numbers(translation, 3);
+  const std::vector<double> t = require_numbers(document, translation, 3, name);
   return {{t[0], t[1], t[2]}, UpAxis::y};
+}
+
+Json first_view_extras(const Standpoint& view) {
+  return {{kFirstView, Json::array({view.azimuth, view.elevation})}};
+}
+
+std::optional<Standpoint> read_first_view(const Json& document, const std::string& name) {
+  if (!document.contains("extras"))
+    return std::nullopt;
+  const Json::json_pointer place{std::string("/extras/") + kFirstView};
+  const std::vector<double> angles = require_numbers(document, place, 2, name);
+  const Standpoint view{angles[0], angles[1]};
+  if (!view.is_sound())
+    fail(name, fmt::format("JSON: {} is not two angles in degrees", place.to_string()));
+  return view;
 }
 
 std::vector<std::byte> begin_glb(std::string_view json, std::size_t bin_bytes,

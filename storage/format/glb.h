@@ -3,10 +3,12 @@
 #pragma once
 
 #include "hierarchy/frame.h"
+#include "hierarchy/standpoint.h"
 #include "storage/io/little_endian.h"
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -60,6 +62,14 @@ nlohmann::ordered_json mesh_node(const Frame& frame, double scale = 1);
 /// The frame that node 0 of a document has; that of no node if there is none. Throws Error(corrupt)
 /// that starts with `name` if it has none that mesh_node() writes.
 Frame read_frame(const nlohmann::ordered_json& document, const std::string& name);
+
+/// `{"firstView": [azimuth, elevation]}`, the extras of a document that has one.
+nlohmann::ordered_json first_view_extras(const Standpoint& view);
+
+/// The first view that a document has; none if it has no extras. Throws Error(corrupt) that starts
+/// with `name` if it has none that first_view_extras() writes.
+std::optional<Standpoint> read_first_view(const nlohmann::ordered_json& document,
+                                          const std::string& name);
 
 /// The two chunks of a GLB, pointing into its bytes.
 struct GlbView {

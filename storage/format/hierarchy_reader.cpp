@@ -78,6 +78,12 @@ const char* difference(const PublishedTile& tile, const TileRecord& record) {
   return nullptr;
 }
 
+void check_first_view(const std::optional<Standpoint>& found, const Manifest& manifest,
+                      const std::string& name) {
+  if (found != manifest.first_view)
+    throw Error(ErrorCode::corrupt, name + ": its first view is not that of the manifest");
+}
+
 TileFormat format_of(const Manifest& manifest) {
   TileFormat format{
       manifest.source.attributes, {manifest.origin, manifest.up}, manifest.compression, {}};
@@ -113,6 +119,8 @@ PublishedTile HierarchyReader::read_tile(NodeId node) const {
     throw Error(ErrorCode::corrupt,
                 fmt::format("{}: its {} are not those of the index", path.string(), what));
   }
+  if (tile.node == tree_.root())
+    check_first_view(tile.first_view, manifest_, path.string());
   return tile;
 }
 
@@ -120,7 +128,9 @@ Outline HierarchyReader::read_outline() const {
   const auto path = outline_path(directory_);
   const auto bytes = read_sealed(
       files_, path, {manifest_.outline_bytes, manifest_.outline_checksum}, kMaxGlbBytes);
-  return decode_outline(bytes, path.string());
+  Outline outline = decode_outline(bytes, path.string());
+  check_first_view(outline.first_view, manifest_, path.string());
+  return outline;
 }
 
 std::vector<std::byte> HierarchyReader::read_preview() const {

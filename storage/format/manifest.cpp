@@ -19,7 +19,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr SealedFormat kFormat{"meshhier", kFormatVersion, "build it again from the mesh"};
+constexpr SealedFormat kFormat{.name = "meshhier",
+                               .version = kFormatVersion,
+                               .way_out = "build it again from the mesh",
+                               .older_versions = kFormatVersion - kOldestFormatVersion};
 
 constexpr const char* kComputedNormals = "computed";
 
@@ -87,12 +90,18 @@ Json preview_json(const Preview& preview) {
           {"height", preview.height}};
 }
 
+Json view_json(const Standpoint& view) {
+  return {{"azimuth", view.azimuth}, {"elevation", view.elevation}};
+}
+
 Json manifest_json(const Manifest& manifest) {
   Json document;
   document["generator"] = manifest.generator;
   document["source"] = source_json(manifest.source);
   document["origin"] = point_json(manifest.origin);
   document["up"] = name_of(manifest.up);
+  if (manifest.first_view)
+    document["first_view"] = view_json(*manifest.first_view);
   document["transform"] = manifest.transform ? Json(*manifest.transform) : Json();
   document["licence"] = manifest.licence;
   document["partitions"] = manifest.partition_count;
@@ -229,6 +238,16 @@ void read_outline(const JsonObject& object, Manifest& manifest) {
   manifest.outline.polylines_dropped = object.count("polylines_dropped");
 }
 
+std::optional<Standpoint> read_view(const JsonObject& object) {
+  if (object.count("format_version") == kOldestFormatVersion)
+    return std::nullopt;
+  const JsonObject view = object.object("first_view");
+  const Standpoint found{view.number("azimuth"), view.number("elevation")};
+  if (!found.is_sound())
+    object.wrong("first_view", "an azimuth and an elevation in degrees");
+  return found;
+}
+
 std::uint32_t read_side(const JsonObject& object, const char* key) {
   const std::uint64_t side = object.count(key, kMostPreviewSide);
   if (side == 0)
@@ -274,7 +293,9 @@ SourceSummary parse_source(const Json& source, const std::string& name) {
 }
 
 std::string to_json_text(const Manifest& manifest) {
-  return sealed_text(kFormat, manifest_json(manifest));
+  SealedFormat format = kFormat;
+  format.version = manifest.format_version();
+  return sealed_text(format, manifest_json(manifest));
 }
 
 Manifest parse_manifest(const std::string& text, const std::string& name) {
@@ -286,6 +307,7 @@ Manifest parse_manifest(const std::string& text, const std::string& name) {
   manifest.source = read_source(object.object("source"));
   manifest.origin = object.point("origin");
   manifest.up = object.up("up");
+  manifest.first_view = read_view(object);
   manifest.transform = object.transform_or_null("transform");
   manifest.licence = object.text("licence");
   manifest.partition_count =

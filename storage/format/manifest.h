@@ -4,6 +4,7 @@
 #include "hierarchy/frame.h"
 #include "hierarchy/outline.h"
 #include "hierarchy/published.h"
+#include "hierarchy/standpoint.h"
 #include "hierarchy/vec.h"
 #include "storage/format/tile_glb.h"
 
@@ -16,7 +17,9 @@
 
 namespace meshhier::storage {
 
-inline constexpr int kFormatVersion = 6;
+inline constexpr int kFormatVersion = 7;
+/// The oldest that is read: the same without a first view.
+inline constexpr int kOldestFormatVersion = 6;
 
 /// What rounding to a lattice did.
 struct Quantization {
@@ -41,6 +44,8 @@ struct Manifest {
   SourceSummary source;
   Vec3d origin;           ///< add to every stored position
   UpAxis up = UpAxis::y;  ///< of the input
+  /// From where the model is looked at first; none: of format version 6.
+  std::optional<Standpoint> first_view;
   /// Of the tileset's root, for instance on the globe; from z-up coordinates, as 3D Tiles has them.
   std::optional<Transform> transform;
   std::string licence;  ///< may be empty
@@ -63,6 +68,8 @@ struct Manifest {
   std::uint64_t tileset_bytes = 0;     ///< of all of them
   std::uint64_t tileset_checksum = 0;  ///< XXH3-64 of all, one after another, tileset.json first
   std::uint64_t total_bytes = 0;       ///< of all files but this one
+
+  int format_version() const { return first_view ? kFormatVersion : kOldestFormatVersion; }
 };
 
 /// What the manifest says of the input, on its own. File names keep their bytes, UTF-8 or not.

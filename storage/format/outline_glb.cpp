@@ -23,8 +23,8 @@ constexpr unsigned kOutlineVersion = 1;
 constexpr unsigned kLines = 1;
 
 /// Every outline's JSON is padded to this, so that the size follows from the counts. With the
-/// longest coordinates and origin it has 856 bytes plus what the 8 counts add to one digit each: at
-/// most 9 to 12, together 90.
+/// longest coordinates, origin and first view it has 922 bytes plus what the 8 counts add to one
+/// digit each: at most 9 to 12, together 90.
 constexpr std::size_t kJsonBytes = 1024;
 
 // The BIN chunk, v vertices and s segments:
@@ -45,7 +45,8 @@ struct Sizes {
   std::size_t bin_bytes() const { return position_bytes() + index_bytes(); }
 };
 
-Json document_json(const Sizes& sizes, const Bounds& bounds, const Frame& frame) {
+Json document_json(const Sizes& sizes, const Bounds& bounds, const Frame& frame,
+                   const std::optional<Standpoint>& first_view) {
   Json document;
   document["asset"] = {{"version", "2.0"}, {"generator", "meshhier"}};
   document["extensionsUsed"] = Json::array({kExtension});
@@ -54,6 +55,8 @@ Json document_json(const Sizes& sizes, const Bounds& bounds, const Frame& frame)
   document["extensions"][kExtension] = {{"version", kOutlineVersion},
                                         {"vertexCount", sizes.vertices},
                                         {"segmentCount", sizes.segments}};
+  if (first_view)
+    document["extras"] = first_view_extras(*first_view);
   if (sizes.segments == 0)
     return document;
 
@@ -165,7 +168,7 @@ std::vector<std::byte> encode_outline(const Outline& outline, const Frame& frame
   if (bin.size() != sizes.bin_bytes()) {
     throw Error(ErrorCode::internal, "an outline has a polyline of fewer than two vertices");
   }
-  const std::string json = document_json(sizes, bounds, frame).dump();
+  const std::string json = document_json(sizes, bounds, frame, outline.first_view).dump();
   if (json.size() > kJsonBytes) {
     throw Error(ErrorCode::internal, "the outline's JSON is longer than its fixed size");
   }
@@ -187,7 +190,9 @@ Outline decode_outline(std::span<const std::byte> bytes, const std::string& name
   outline.starts = read_starts(glb.bin, sizes, name);
   // The frame is the manifest's business: any will do.
   const Frame frame = read_frame(document, name);
-  require_same_json(document_json(sizes, bounds_of(outline.vertices), frame), document, name);
+  outline.first_view = read_first_view(document, name);
+  require_same_json(document_json(sizes, bounds_of(outline.vertices), frame, outline.first_view),
+                    document, name);
   return outline;
 }
 

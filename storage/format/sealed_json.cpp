@@ -46,9 +46,12 @@ void check_version(const JsonObject& object, const SealedFormat& format) {
         fmt::format("format version {} is newer than {}, the newest known: use a newer meshhier",
                     version, known));
   }
-  if (version != known) {
-    object.fail(fmt::format("was made with format version {}, this program reads {}: {}", version,
-                            known, format.way_out));
+  const std::uint64_t oldest = known - static_cast<std::uint64_t>(format.older_versions);
+  if (version < oldest) {
+    object.fail(fmt::format(
+        "was made with format version {}, this program reads {}: {}", version,
+        oldest == known ? fmt::format("{}", known) : fmt::format("{} to {}", oldest, known),
+        format.way_out));
   }
 }
 

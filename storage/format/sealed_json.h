@@ -27,9 +27,10 @@ inline constexpr std::size_t kMostSealedBytes = std::size_t{1024} * 1024;
 /// What a file says that it is.
 struct SealedFormat {
   std::string_view name;                       ///< `format`
-  int version = 0;                             ///< `format_version`, the only one that is read
+  int version = 0;                             ///< `format_version`, the newest that is read
   std::string_view way_out = "make it again";  ///< from an older version: what to do
   std::size_t most_bytes = kMostSealedBytes;
+  int older_versions = 0;  ///< so many before it are read, too
 };
 
 /// `document`, an object without these keys, between `format` and `checksum`. Deterministic; what

@@ -263,6 +263,8 @@ TileShape read_shape(const Json& document, NodeId node, const Tree& tree, const 
     shape.splits = count("splitCount");
   if (shape.textures && shape.interior + shape.border > 0)
     shape.image = read_image_shape(document, extension, name);
+  if (node == tree.root())
+    shape.first_view = read_first_view(document, name);
   if (shape.own == 0)
     throw Error(ErrorCode::corrupt, name + ": a tile without vertices");
   if (shape.with_splits() > UINT32_MAX)
@@ -328,6 +330,7 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
                                    const TileFormat& format) {
   const TileMesh& mesh = tile.mesh;
   assert(mesh.own_count > 0 && mesh.own_count <= kMaxOwnVertices);
+  assert(!tile.first_view || tile.node == tree.root());
   assert(mesh.ghosts.size() == mesh.vertices.size() - mesh.own_count);
   assert(tile.parent_map.size() == (tile.node == tree.root() ? 0 : mesh.own_count));
   assert(mesh.vertices.channels == format.attributes.channels());
@@ -357,7 +360,8 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
                   {},
                   format.computed_normals,
                   format.textures,
-                  {tile.image.bytes.size(), tile.image.width, tile.image.height, tile.image.alpha}};
+                  {tile.image.bytes.size(), tile.image.width, tile.image.height, tile.image.alpha},
+                  tile.first_view};
   for (std::size_t i = 0; tree.is_partition(tile.node) && i < groups.size(); ++i) {
     shape.raw[i] = differs(shown, vertices.attributes, groups[i], vertices.channels);
   }
@@ -396,7 +400,7 @@ std::vector<std::byte> encode_tile(const PublishedTile& tile, const Tree& tree,
   assert(tile.chains.size() == tile.mesh.ghosts.size());
   return encode_tile(
       {tile.node, tile.mesh, tile.shading, tile.image, bounds_of(tile.mesh.vertices.positions),
-       tile.parent_map, tile.chains.entries()},
+       tile.parent_map, tile.chains.entries(), tile.first_view},
       tree, format);
 }
 

@@ -6,6 +6,7 @@
 #include "hierarchy/frame.h"
 #include "hierarchy/lattice.h"
 #include "hierarchy/published.h"
+#include "hierarchy/standpoint.h"
 #include "hierarchy/texture.h"
 #include "hierarchy/tree.h"
 
@@ -68,6 +69,7 @@ struct TileView {
   Bounds bounds;                              ///< of the mesh's positions
   std::span<const std::uint16_t> parent_map;  ///< as PublishedTile's
   std::span<const std::uint16_t> chains;      ///< the ghosts' chains, one after another
+  std::optional<Standpoint> first_view{};     ///< as PublishedTile's
 };
 
 /// Deterministic, O(size). Requires a consistent tile (see PublishedTile) with finite positions, on

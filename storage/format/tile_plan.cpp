@@ -329,6 +329,8 @@ Json TilePlan::document(const Bounds& bounds, const Frame& frame, const Packing*
   document["bufferViews"] = std::move(views);
   document["buffers"] = buffers_json(*this, packing);
   document["extensions"][kTileExtension] = extension_json(*this);
+  if (shape_.first_view)
+    document["extras"] = first_view_extras(*shape_.first_view);
   return document;
 }
 

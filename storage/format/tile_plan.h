@@ -6,6 +6,7 @@
 #include "hierarchy/frame.h"
 #include "hierarchy/ids.h"
 #include "hierarchy/lattice.h"
+#include "hierarchy/standpoint.h"
 #include "hierarchy/texture.h"
 #include "storage/format/tile_sums.h"
 
@@ -113,6 +114,7 @@ struct TileShape {
   bool computed_normals = false;
   std::optional<TextureFormat> textures{};  ///< of the hierarchy
   ImageShape image{};
+  std::optional<Standpoint> first_view{};  ///< of the root
 
   /// Whether there can be splits.
   bool is_shaded() const { return computed_normals || textures; }

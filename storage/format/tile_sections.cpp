@@ -122,6 +122,7 @@ class Reader {
                    {mesh.border, mesh.border_wedges, shading.border});
     tile.parent_map = parent_map();
     tile.image = image();
+    tile.first_view = shape.first_view;
     read_ghosts(tile);
     return tile;
   }

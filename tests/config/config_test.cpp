@@ -318,6 +318,17 @@ TEST(Config, APlaceOrATransformPutsTheModelSomewhere) {
   EXPECT_EQ(moved.placement.transform.value()[14], 7);
 }
 
+TEST(Config, AFirstViewIsTwoAngles) {
+  EXPECT_EQ(parse(with(R"("preview": true)")).first_view.standpoint(), std::nullopt);
+  const Config config = parse(with(R"("first_view": {"azimuth": -30.5, "elevation": 90})"));
+  EXPECT_EQ(config.first_view.standpoint(), (Standpoint{-30.5, 90}));
+  EXPECT_EQ(resolved_json(config)["first_view"].dump(), R"({"azimuth":-30.5,"elevation":90.0})");
+  EXPECT_THAT(refusal(with(R"("first_view": {"azimuth": 3})")),
+              HasSubstr("expected both \"azimuth\" and \"elevation\""));
+  EXPECT_THAT(refusal(with(R"("first_view": {"azimuth": 3, "elevation": 91})")),
+              HasSubstr("expected a number above -90 and at most 90"));
+}
+
 TEST(ConfigErrors, HalfAPlaceAndTwoPlacesAreRefused) {
   EXPECT_THAT(refusal(with(R"("placement": {"longitude": 1})")),
               HasSubstr("expected both \"longitude\" and \"latitude\""));

@@ -3,6 +3,7 @@
 #include "hierarchy/error.h"
 #include "images/image_codec.h"
 #include "pipeline/build.h"
+#include "storage/format/hierarchy_reader.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_hierarchy.h"
 
@@ -122,6 +123,25 @@ TEST_F(PictureTest, HasTheSizeAndTheViewAskedFor) {
   z_up.view = Standpoint{0, 90};
   const Covered map = covered(picture(z_up));
   EXPECT_NEAR(static_cast<double>(map.columns), 4.0 * static_cast<double>(map.rows), 4);
+}
+
+TEST_F(PictureTest, TheFirstViewIsShownUnlessAnotherIsAskedFor) {
+  build(tests::torus(4000, 0.05F));
+  const storage::HierarchyReader reader(*files_, hierarchy());
+  const images::Image usual = picture(options());
+  PreviewOptions same = options();
+  same.view = reader.manifest().first_view;
+  ASSERT_TRUE(same.view);
+  EXPECT_EQ(picture(same), usual);
+  same.view->azimuth += 40;
+  EXPECT_NE(picture(same), usual);
+}
+
+TEST_F(PictureTest, PointsAreShown) {
+  build(tests::points(500));
+  const Covered shown = covered(picture(options()));
+  EXPECT_GT(shown.columns, 3U);
+  EXPECT_GT(shown.rows, 3U);
 }
 
 TEST_F(PictureTest, AnyCutOfASheetCoversIt) {

@@ -4,7 +4,11 @@
 #include "inspection/verify.h"
 #include "pipeline/build.h"
 #include "storage/format/hierarchy_reader.h"
+#include "storage/format/index.h"
 #include "storage/format/layout.h"
+#include "storage/format/level_summary.h"
+#include "storage/format/outline_glb.h"
+#include "storage/format/tile_glb.h"
 #include "storage/io/hash.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_hierarchy.h"
@@ -138,11 +142,83 @@ TEST_F(PreviewTest, APreviewIsLeftOutIfNobodyWantsIt) {
   EXPECT_THAT(problems(), IsEmpty());
 }
 
-TEST_F(PreviewTest, PointsAloneHaveAnEmptyOne) {
-  build(tests::points(50), config());
-  const images::Image picture = images::decode_image(bytes(), "preview", 1 << 20);
-  EXPECT_EQ(coverage(picture), 0);
+TEST_F(PreviewTest, PointsAloneAreShown) {
+  for (const std::size_t count : {1U, 50U, 3000U}) {
+    build(tests::points(count), config());
+    const images::Image picture = images::decode_image(bytes(), "preview", 1 << 20);
+    EXPECT_GT(coverage(picture), 0) << count;
+    EXPECT_THAT(problems(), IsEmpty());
+  }
+}
+
+TEST_F(PreviewTest, ManifestRootAndOutlineHaveOneFirstView) {
+  for (const bool with_preview : {true, false}) {
+    config::Config wished = config();
+    wished.preview = with_preview;
+    build(tests::torus(3000, 0.1F), wished);
+    const storage::HierarchyReader reader(*files_, hierarchy());
+    const auto& view = reader.manifest().first_view;
+    ASSERT_TRUE(view);
+    EXPECT_GT(view->elevation, 0);
+    EXPECT_EQ(reader.read_tile({}).first_view, view);
+    EXPECT_EQ(reader.read_outline().first_view, view);
+    EXPECT_EQ(reader.read_tile({Level{1}, 0}).first_view, std::nullopt);
+  }
+}
+
+TEST_F(PreviewTest, TheConfigMaySayTheFirstView) {
+  config::Config wished = config();
+  wished.first_view = {.azimuth = -30.5, .elevation = 12};
+  build(tests::torus(3000, 0.1F), wished);
+  const auto from_the_left = bytes();
+  const storage::HierarchyReader reader(*files_, hierarchy());
+  EXPECT_EQ(reader.manifest().first_view, (Standpoint{-30.5, 12}));
+  EXPECT_EQ(reader.read_tile({}).first_view, (Standpoint{-30.5, 12}));
   EXPECT_THAT(problems(), IsEmpty());
+  wished.first_view = {.azimuth = 0, .elevation = 80};
+  build(tests::torus(3000, 0.1F), wished);
+  EXPECT_NE(bytes(), from_the_left);
+}
+
+/// As format version 6 had it.
+TEST_F(PreviewTest, AHierarchyWithoutAFirstViewIsReadAsBefore) {
+  build(tests::torus(3000, 0.1F), config());
+  const storage::HierarchyReader reader(*files_, hierarchy());
+  storage::Manifest manifest = reader.manifest();
+  std::vector<TileRecord> records = reader.records();
+  PublishedTile root = reader.read_tile({});
+  Outline outline = reader.read_outline();
+  root.first_view = outline.first_view = manifest.first_view = std::nullopt;
+  const auto tile = storage::encode_tile(root, reader.tree(), reader.tile_format());
+  manifest.total_bytes += tile.size() - records[0].file_bytes;
+  records[0].file_bytes = tile.size();
+  records[0].checksum = storage::checksum(tile);
+  const auto index = storage::encode_index(records);
+  manifest.index_checksum = storage::checksum(index);
+  const auto lines = storage::encode_outline(outline, {manifest.origin, manifest.up});
+  manifest.outline_checksum = storage::checksum(lines);
+  manifest.levels = nlohmann::ordered_json::array();
+  for (const auto& level : storage::summarize_levels(reader.tree(), records))
+    manifest.levels.push_back(storage::to_json(level));
+  const std::string text = storage::to_json_text(manifest);
+  storage::write_file(*files_, storage::tile_path(hierarchy(), {}), tile);
+  storage::write_file(*files_, storage::index_path(hierarchy()), index);
+  storage::write_file(*files_, storage::outline_path(hierarchy()), lines);
+  storage::write_file(*files_, storage::manifest_path(hierarchy()), std::as_bytes(std::span(text)));
+  EXPECT_THAT(problems(), IsEmpty());
+}
+
+TEST_F(PreviewTest, VerifyFindsAnotherFirstViewInTheManifest) {
+  config::Config wished = config();
+  wished.first_view = {.azimuth = 10, .elevation = 20};
+  build(tests::sphere(1000), wished);
+  storage::Manifest manifest = storage::HierarchyReader(*files_, hierarchy()).manifest();
+  manifest.first_view = Standpoint{10, 21};
+  const std::string text = storage::to_json_text(manifest);
+  storage::write_file(*files_, storage::manifest_path(hierarchy()), std::as_bytes(std::span(text)));
+  const std::vector<std::string> found = problems();
+  EXPECT_THAT(found, Contains(HasSubstr("its first view is not that of the manifest")));
+  EXPECT_THAT(found, Contains(HasSubstr("\"first_view\" is not that of \"config\"")));
 }
 
 TEST_F(PreviewTest, VerifyNamesAPreviewThatIsMissingCutOrAnother) {

@@ -27,6 +27,10 @@ std::vector<Facet> stretched(std::vector<Facet> facets, float z) {
   return facets;
 }
 
+View portrait_view(std::span<const Facet> facets, Vec3d up) {
+  return view_from(portrait_from(facets, up), up);
+}
+
 void expect_near(Vec3d a, Vec3d b) {
   EXPECT_LT(length(a - b), 0.05) << a.x << " " << a.y << " " << a.z;
 }
@@ -77,6 +81,29 @@ TEST(PortraitTest, TheModelFillsTheFrameAndNothingIsCutOff) {
   EXPECT_NEAR(std::max(width / 180, height / 108), 1, 1e-5);
   EXPECT_NEAR(left + right, 200, 1e-3);
   EXPECT_NEAR(top + bottom, 120, 1e-3);
+}
+
+TEST(PortraitTest, PointsAreLookedAtAsAMapIfTheyLieFlat) {
+  std::vector<Facet> points;
+  for (const Vec3f p : {Vec3f{0, 0, 0}, Vec3f{1, 0, 0}, Vec3f{0, 1, 0}, Vec3f{1, 1, 0.1F}})
+    points.push_back(flat_facet(p, p, p));
+  EXPECT_EQ(portrait_from(points, {0, 0, 1}), (Standpoint{0, 90}));
+  const Standpoint upright = portrait_from(points, {0, 1, 0});
+  EXPECT_GT(upright.elevation, 0);
+  EXPECT_LT(upright.elevation, 45);
+}
+
+TEST(PortraitTest, AnglesAreShortNumbers) {
+  std::vector<Facet> facets = facets_around_origin(tests::open_grid(20, 20));
+  for (Facet& facet : facets) {
+    for (FacetCorner& corner : facet)
+      corner.position.z += 0.3F * corner.position.x - 0.2F * corner.position.y;
+  }
+  const Standpoint from = portrait_from(facets, {0, 1, 0});
+  EXPECT_EQ(from.azimuth * 4, std::floor(from.azimuth * 4));
+  EXPECT_EQ(from.elevation * 4, std::floor(from.elevation * 4));
+  EXPECT_NEAR(from.azimuth, 343, 5);
+  EXPECT_NEAR(from.elevation, 11, 4);
 }
 
 TEST(PortraitTest, ModelsOfNothingHaveAView) {

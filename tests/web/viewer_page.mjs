@@ -394,6 +394,25 @@ async function checkLinks(visitor, name) {
   await visitor.close(page, 'link');
 }
 
+/// From where the camera looks at its target.
+function seenFrom({ position, target }) {
+  const away = position.map((value, axis) => value - target[axis]);
+  const distance = Math.hypot(...away);
+  return away.map((value) => value / distance);
+}
+
+async function checkFirstView(visitor, name) {
+  const page = await visitor.open(anchor(name));
+  await settle(page);
+  const [camera, { first_view: { azimuth, elevation } }] = await page.evaluate(
+    async (file) => [window.meshhier.camera(), await (await fetch(file)).json()], `models/${name}.hier/hierarchy.json`);
+  const [around, above] = [azimuth, elevation].map((degrees) => (degrees * Math.PI) / 180);
+  const told = [Math.sin(around) * Math.cos(above), Math.sin(above), Math.cos(around) * Math.cos(above)];
+  const off = Math.hypot(...seenFrom(camera).map((value, axis) => value - told[axis]));
+  visitor.check('first view', off < 1e-3, `the page opens from azimuth ${azimuth} and elevation ${elevation}, as the manifest says, but for ${off.toFixed(6)}`);
+  await visitor.close(page, 'first view');
+}
+
 async function checkRest(visitor, name) {
   const page = await visitor.open(anchor(name));
   await settle(page);
@@ -721,6 +740,7 @@ async function checkAll(browser, report, pictures, hierarchies, origin) {
   await checkOutlineAgain(visitor, names[0]);
   await checkModes(visitor, names[0], pictures);
   await checkLinks(visitor, names[0]);
+  await checkFirstView(visitor, names[0]);
   await checkRest(visitor, names[0]);
   await checkCamera(visitor, names[0]);
   await checkLateCode(visitor, names[0]);

@@ -2,6 +2,7 @@
 import { formatAddress, linkPath, NOWHERE, parseAddress, type Spot } from './address.js';
 import { EarlyStart } from './early_start.js';
 import { Gallery } from './gallery/gallery.js';
+import type { Turn } from './gallery/layout.js';
 import type { Order } from './gallery/orders.js';
 import { ListingWatch } from './listing_watch.js';
 import { modelOfPath, readable, type Listing, type Model } from './listing.js';
@@ -168,19 +169,20 @@ export class App {
     const entry = new ModelEntry(model, this.query.only === null ? model.path : '');
     this.entry = entry;
     entry.arrive(leavesEntries && (this.gallery?.shown ?? false));
+    const turn = this.gallery?.shown ? this.gallery.turnOf(model.path) : null;
     this.gallery?.hide();
     this.watch.stop();
     document.title = words.title(model.name);
-    this.load(entry, spot).catch((error: unknown) => { if (entry === this.entry) this.refuse(entry, messageOf(error), spot); });
+    this.load(entry, spot, turn).catch((error: unknown) => { if (entry === this.entry) this.refuse(entry, messageOf(error), spot); });
   }
 
-  private async load(entry: ModelEntry, spot: Spot): Promise<void> {
+  private async load(entry: ModelEntry, spot: Spot, turn: Turn | null): Promise<void> {
     const { model } = entry;
     const early = new EarlyStart(model.url);
     try {
       const { ModelView } = await loadView();
       if (entry !== this.entry) return;
-      this.view = new ModelView(model, this.surroundings(entry, spot, early));
+      this.view = new ModelView(model, { ...this.surroundings(entry, spot, early), turn });
     } finally {
       early.close();
     }
@@ -202,7 +204,7 @@ export class App {
     else this.problems.tell(notShown(model.name), { more: why, retry });
   }
 
-  private surroundings(entry: ModelEntry, spot: Spot, { fetch, createWorker }: EarlyStart): Surroundings {
+  private surroundings(entry: ModelEntry, spot: Spot, { fetch, createWorker }: EarlyStart): Omit<Surroundings, 'turn'> {
     return {
       fetch,
       createWorker,

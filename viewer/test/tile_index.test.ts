@@ -123,7 +123,7 @@ describe.skipIf(!hasProgram)('TileIndex', () => {
 });
 
 describe('readManifest', () => {
-  const hostile = ['', '[]', 'null', '{}', '{"format":"meshhier"}', '{"format":"meshhier","format_version":7}',
+  const hostile = ['', '[]', 'null', '{}', '{"format":"meshhier"}', '{"format":"meshhier","format_version":8}',
     '{"format":"meshhier","format_version":6,"source":[]}', '{"__proto__":{"format":"meshhier"}}'];
   it.each(hostile)('refuses %s', (text) => {
     expect(() => readManifest(text)).toThrow(HierarchyProblem);
@@ -135,6 +135,11 @@ describe('readManifest', () => {
       storage: { positions: null, texture }, index: { file: 'tiles.bin', bytes: 152 } });
   };
   const stored = { format: 'webp', quality: 90, unlit: true };
+
+  it('knows two versions of the format', () => {
+    for (const version of [6, 7])
+      expect(readManifest(textured(undefined, undefined).replace('"format_version":6', `"format_version":${version}`)).partitions).toBe(1);
+  });
 
   it('tells of pictures', () => {
     expect(readManifest(textured(undefined, undefined)).source.textures).toBeNull();

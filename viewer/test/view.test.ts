@@ -414,6 +414,16 @@ describe.skipIf(!hasProgram)('HierarchyView', () => {
     expect(changes).toBe(0);
   });
 
+  it('knows its first view with the root tile, as it stands', async () => {
+    const { view } = begin(fetchFrom(largeTorus()));
+    expect(view.firstDirection).toBeNull();
+    await view.opened;
+    expect(Math.hypot(...view.firstDirection!)).toBeCloseTo(1);
+    expect(view.firstDirection![1]).toBeGreaterThan(0);
+    view.setStanding({ up: 'x' });
+    expect(view.firstDirection).toBeNull();
+  });
+
   /// At rest, of a view that is opened there; and of one that was elsewhere before.
   async function cutsAt(from: Place, elsewhere: Place, threshold: number): Promise<[string[], string[]]> {
     const [first, second] = [0, 1].map(() => begin(fetchFrom(largeTorus()), { settings: { threshold } }));

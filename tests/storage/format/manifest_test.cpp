@@ -40,6 +40,7 @@ Manifest make_manifest() {
   manifest.source.attributes = {true, ColourType::u16, true, true};
   manifest.origin = {1234567.891, 0, -0.0};
   manifest.up = UpAxis::z;
+  manifest.first_view = Standpoint{-101.25, 90};
   manifest.transform = Transform{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 0.1, 1e300, -5, 16};
   manifest.licence = "CC \"BY\"";
   manifest.partition_count = 7;
@@ -83,6 +84,7 @@ void expect_same(const Manifest& a, const Manifest& b) {
   EXPECT_EQ(a.source.attributes, b.source.attributes);
   EXPECT_EQ(a.origin, b.origin);
   EXPECT_EQ(a.up, b.up);
+  EXPECT_EQ(a.first_view, b.first_view);
   EXPECT_EQ(a.transform, b.transform);
   EXPECT_EQ(a.licence, b.licence);
   EXPECT_EQ(a.tileset_files, b.tileset_files);
@@ -135,6 +137,27 @@ TEST(Manifest, GivesEveryValueBack) {
     other.source.attributes = {false, type, false, false};
     expect_same(other, parse_manifest(to_json_text(other), kManifestName));
   }
+}
+
+TEST(Manifest, OneOfVersion6HasNoFirstView) {
+  Manifest manifest = make_manifest();
+  manifest.first_view.reset();
+  const std::string text = to_json_text(manifest);
+  EXPECT_THAT(text, HasSubstr("\"format_version\": 6,\n"));
+  expect_same(manifest, parse_manifest(text, kManifestName));
+  EXPECT_THAT(to_json_text(make_manifest()), HasSubstr("\"format_version\": 7,\n"));
+}
+
+TEST(Manifest, UnsoundFirstViewsAreRefused) {
+  const auto with = [&](const Json& value) {
+    Json changed = Json::parse(to_json_text(make_manifest()));
+    changed["first_view"] = value;
+    return failure(sealed(changed));
+  };
+  EXPECT_EQ(with({{"azimuth", -360}, {"elevation", -90}}), "");
+  EXPECT_THAT(with(nullptr), HasSubstr("\"first_view\" is wrong"));
+  EXPECT_THAT(with({{"azimuth", 1}}), HasSubstr("\"first_view.elevation\" is missing"));
+  EXPECT_THAT(with({{"azimuth", 361}, {"elevation", 0}}), HasSubstr("in degrees"));
 }
 
 Manifest make_quantized() {
@@ -292,7 +315,7 @@ TEST(Manifest, WrongWordsOfAnImportAreNamed) {
 
 TEST(Manifest, IsReadable) {
   const std::string text = to_json_text(make_manifest());
-  EXPECT_THAT(text, StartsWith("{\n  \"format\": \"meshhier\",\n  \"format_version\": 6,\n"));
+  EXPECT_THAT(text, StartsWith("{\n  \"format\": \"meshhier\",\n  \"format_version\": 7,\n"));
   EXPECT_THAT(text, HasSubstr("\"checksum\": \"fedcba9876543210\""));
   EXPECT_THAT(text, HasSubstr("\"checksum\": \"00000000000000ab\""));
   EXPECT_THAT(text, HasSubstr("\"colours\": \"u16\""));
@@ -413,14 +436,15 @@ TEST(Manifest, EveryWrongValueIsNamed) {
 
 TEST(Manifest, OtherFormatsAndVersionsAreRefusedByTheirNumber) {
   Json document = Json::parse(to_json_text(make_manifest()));
-  document["format_version"] = 7;
-  EXPECT_THAT(failure(document.dump()), HasSubstr("format version 7 is newer than 6"));
+  document["format_version"] = 8;
+  EXPECT_THAT(failure(document.dump()), HasSubstr("format version 8 is newer than 7"));
   for (const int earlier : {0, 5}) {
     document["format_version"] = earlier;
-    EXPECT_EQ(failure(document.dump()),
-              fmt::format("{}: was made with format version {}, this program reads 6: build it "
-                          "again from the mesh",
-                          kManifestName, earlier));
+    EXPECT_EQ(
+        failure(document.dump()),
+        fmt::format("{}: was made with format version {}, this program reads 6 to 7: build it "
+                    "again from the mesh",
+                    kManifestName, earlier));
   }
   document["format"] = "nexus";
   EXPECT_THAT(failure(document.dump()), HasSubstr("\"format\" is wrong"));

@@ -50,6 +50,7 @@ void expect_round_trip(const Outline& outline, Vec3d origin) {
     const Outline back = decode_outline(bytes, kOutlineName);
     EXPECT_EQ(back.vertices, outline.vertices);
     EXPECT_EQ(back.starts, outline.starts);
+    EXPECT_EQ(back.first_view, outline.first_view);
   }
 }
 
@@ -78,7 +79,16 @@ TEST(OutlineGlb, TheSizeHoldsForTheLongestNumbers) {
   Outline outline;
   outline.vertices = {{low, low, low}, {tiny, tiny, tiny}};
   outline.starts = {0, 2};
+  outline.first_view = Standpoint{-123.45678901234567, far};
   expect_round_trip(outline, {far, far, far});
+}
+
+TEST(OutlineGlb, AFirstViewThatIsNoneIsRefused) {
+  Outline outline = random_outline(1, 7);
+  for (const Standpoint view : {Standpoint{361, 0}, Standpoint{0, -91}}) {
+    outline.first_view = view;
+    EXPECT_THAT(failure(encode_outline(outline, {})), HasSubstr("is not two angles in degrees"));
+  }
 }
 
 TEST(OutlineGlb, TakesWiderIndicesFrom65536VerticesOn) {

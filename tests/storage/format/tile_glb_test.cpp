@@ -121,6 +121,37 @@ TEST(TileGlb, GivesEveryTileBackForAnyLayoutAndTree) {
   }
 }
 
+TEST(TileGlb, TheRootAloneHasAFirstView) {
+  for (const storage::Compression compression :
+       {storage::Compression::none, storage::Compression::meshopt_zlib}) {
+    SampleHierarchy sample = full_sample();
+    sample.format.compression = compression;
+    PublishedTile& root = sample.tiles.front();
+    root.first_view = Standpoint{101.25, -13};
+    const Bytes bytes = encode_tile(root, sample.tree, sample.format);
+    const PublishedTile back = decode_tile(bytes, root.node, sample.tree, sample.format, kTileName);
+    EXPECT_EQ(back.first_view, root.first_view);
+    EXPECT_EQ(encode_tile(back, sample.tree, sample.format), bytes);
+  }
+}
+
+TEST(TileGlb, ExtrasThatAreNoFirstViewAreRefused) {
+  const SampleHierarchy sample = full_sample();
+  const auto failure_with = [&](const PublishedTile& tile, const Json& extras) {
+    OpenGlb glb(encode_tile(tile, sample.tree, sample.format));
+    glb.json["extras"] = extras;
+    return failure(glb.close(), tile.node, sample);
+  };
+  const PublishedTile& root = sample.tiles.front();
+  const Json good = {{"firstView", {1.5, -2}}};
+  EXPECT_EQ(failure_with(root, good), "");
+  EXPECT_THAT(failure_with(root, Json::object()), HasSubstr("not 2 finite numbers"));
+  EXPECT_THAT(failure_with(root, {{"firstView", {1, 2, 3}}}), HasSubstr("not 2 finite numbers"));
+  EXPECT_THAT(failure_with(root, {{"firstView", {0, 90.5}}}), HasSubstr("degrees"));
+  EXPECT_THAT(failure_with(root, {{"firstView", {1, 2}}, {"more", 1}}), HasSubstr("not expected"));
+  EXPECT_THAT(failure_with(sample.tiles.back(), good), HasSubstr("not expected"));
+}
+
 TEST(TileGlb, GivesBackCopiesForAnyLayoutAndTree) {
   for (const AttributeLayout& layout : sample_layouts()) {
     for (const std::uint32_t partitions : {1U, 2U, 3U, 8U}) {

@@ -1,5 +1,5 @@
 // Draws an outline into a canvas, fainter towards its back.
-import { cellMatrix, type Turn } from './layout.js';
+import { cellMatrix, fitAt, type Turn } from './layout.js';
 import type { Shape } from './shape.js';
 
 /// Where there is no graphics card, thousands of short lines take 15 times as long in the browser's stand-in for one.
@@ -59,6 +59,6 @@ export function drawOutline(canvas: HTMLCanvasElement, shape: Shape, turn: Turn,
   Object.assign(canvas, { width, height }); // clears it
   context.lineWidth = LINE_WIDTH * ratio;
   context.strokeStyle = colour;
-  const projected = project(shape.ends, cellMatrix(shape.ball, shape.up, turn, width / height), width, height);
+  const projected = project(shape.ends, cellMatrix(shape.ball, shape.up, turn, width / height, fitAt(shape.fit, shape.first, turn)), width, height);
   for (let shade = SHADES - 1; shade >= 0; --shade) strokeShade(context, projected, shade);
 }

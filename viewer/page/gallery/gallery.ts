@@ -8,6 +8,7 @@ import { arrangeModels, findJobs, type Group } from './arrangement.js';
 import type { Cell } from './cell.js';
 import { DrawingQueue } from './drawing_queue.js';
 import { JobCell } from './job_cell.js';
+import type { Turn } from './layout.js';
 import { ModelCell } from './model_cell.js';
 import type { Order } from './orders.js';
 import { Toolbar } from './toolbar.js';
@@ -86,6 +87,11 @@ export class Gallery {
   focus(path: string): void {
     const cell = this.visible.reveal(`model ${path}`);
     if (cell instanceof ModelCell) cell.focus();
+  }
+
+  /// As the model of that path is turned in its cell; null: it is not.
+  turnOf(path: string): Turn | null {
+    return this.cells.get(`model ${path}`)?.turn ?? null;
   }
 
   themeChanged(): void {

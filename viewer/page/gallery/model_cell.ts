@@ -9,6 +9,7 @@ import type { Animation } from './animation.js';
 import type { Cell } from './cell.js';
 import { drawOutline } from './drawing.js';
 import type { DrawingQueue } from './drawing_queue.js';
+import type { Turn } from './layout.js';
 import { ModelSource, type Facts } from './model_source.js';
 import type { Shape } from './shape.js';
 import { Solid } from './solid.js';
@@ -66,6 +67,11 @@ export class ModelCell implements Cell {
     this.root = element('li', {}, this.link);
     this.solid = new Solid(model.url, this.stage);
     this.turning = new Turning(this.link, this.stage, { enlivened: (lively) => { this.enlivened(lively); }, turned: () => { this.turned(); } });
+  }
+
+  /// As its outline is turned just now; null: it shows none.
+  get turn(): Turn | null {
+    return this.turning.lively && this.shape !== null ? this.turning.turn : null;
   }
 
   load(): void {
@@ -139,7 +145,8 @@ export class ModelCell implements Cell {
 
   private take(shape: Shape): void {
     this.shape = shape;
-    if (this.turning.lively) this.solid.await(shape.ball, this.turning.turn);
+    this.turning.start(shape.first);
+    if (this.turning.lively) this.solid.await(shape, this.turning.turn);
     if (shape.ends.length === 0) this.say(words.gallery.onePiece, false);
     this.arrange();
   }
@@ -158,7 +165,7 @@ export class ModelCell implements Cell {
   private enlivened(lively: boolean): void {
     if (lively) this.askOutline();
     if (!lively) this.solid.end();
-    else if (this.shape !== null) this.solid.await(this.shape.ball, this.turning.turn);
+    else if (this.shape !== null) this.solid.await(this.shape, this.turning.turn);
     if (lively) this.studio.animation.start(this);
     else this.studio.animation.stop(this);
     this.arrange();

@@ -1,12 +1,16 @@
 // A model's outline as the gallery turns it.
 import type { Outline } from '../../src/hierarchy/outline.js';
-import { ballOf, type Ball } from './layout.js';
+import { ballOf, fitOf, turnTo, type Ball, type Fit, type Turn } from './layout.js';
 
 export interface Shape {
   /// Six numbers a segment.
   ends: Float32Array;
   ball: Ball;
   up: 'y' | 'z';
+  /// As it is seen first.
+  first: Turn;
+  /// What shows it then as large as its preview is.
+  fit: Fit;
 }
 
 function endsOf({ positions, segments }: Outline): Float32Array {
@@ -16,5 +20,7 @@ function endsOf({ positions, segments }: Outline): Float32Array {
 }
 
 export function shapeOf(outline: Outline): Shape {
-  return { ends: endsOf(outline), ball: ballOf(outline.positions), up: outline.up };
+  const { positions, up, firstView } = outline;
+  const [ball, first] = [ballOf(positions), turnTo(firstView)];
+  return { ends: endsOf(outline), ball, up, first, fit: fitOf(positions, ball, up, first) };
 }

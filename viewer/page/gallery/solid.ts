@@ -1,6 +1,7 @@
 // The shaded root of what is pointed at or focused for a while. Its code, the view's, and its tile come only then.
 import type { RootPicture } from '../view/root_picture.js';
-import type { Ball, Turn } from './layout.js';
+import type { Turn } from './layout.js';
+import type { Shape } from './shape.js';
 
 const STAY = 900; // milliseconds that mean it: a tile and the view's code are larger than an outline
 
@@ -13,11 +14,11 @@ export class Solid {
   /// `url`: of the hierarchy; `stage`: its class `solid` says that the picture is there.
   constructor(private readonly url: string, private readonly stage: HTMLElement) {}
 
-  /// `ball`: around the model.
-  await({ radius }: Ball, turn: Turn): void {
+  /// As the outline is seen.
+  await(shape: Shape, turn: Turn): void {
     if (this.timer !== 0) return;
     this.turn = turn;
-    this.timer = window.setTimeout(() => { void this.begin(radius, this.epoch); }, STAY);
+    this.timer = window.setTimeout(() => { void this.begin(shape, this.epoch); }, STAY);
   }
 
   show(turn: Turn): void {
@@ -35,11 +36,11 @@ export class Solid {
   }
 
   /// Where the code does not come, or draws nothing, the outline stays.
-  private async begin(radius: number, epoch: number): Promise<void> {
+  private async begin(shape: Shape, epoch: number): Promise<void> {
     try {
       const { RootPicture } = await import('../view/model_view.js');
       if (epoch !== this.epoch || this.turn === null || !this.stage.checkVisibility()) return; // a model may have been opened meanwhile
-      this.picture = new RootPicture(this.url, radius, this.turn, () => { this.stage.classList.add('solid'); });
+      this.picture = new RootPicture(this.url, shape, this.turn, () => { this.stage.classList.add('solid'); });
       this.stage.append(this.picture.canvas);
     } catch {
       // nothing else shows it

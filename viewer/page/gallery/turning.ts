@@ -1,7 +1,6 @@
 // How an outline is turned: by itself, by a drag across it, and by the arrow keys; and when there is one to be turned.
-import { dragged, type Turn } from './layout.js';
+import { dragged, USUAL_TURN, type Turn } from './layout.js';
 
-const FIRST: Turn = { yaw: -0.6, pitch: 0.25 };
 const CLICK_REACH = 6; // pixels that a click may move
 const KEY_STEP = 0.2;
 const KEYS: Record<string, [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
@@ -15,7 +14,9 @@ export interface Turned {
 }
 
 export class Turning {
-  turn: Turn = FIRST;
+  turn: Turn = USUAL_TURN;
+  private first: Turn = USUAL_TURN;
+  private byHand = false; // and not by itself
   private held: { pointer: number; x: number; y: number } | null = null;
   private distance = 0; // of the last drag, in pixels
   private readonly reasons = new Set<'pointer' | 'focus'>();
@@ -40,6 +41,12 @@ export class Turning {
     return this.reasons.size > 0;
   }
 
+  /// What is seen first is known now; what was turned by hand stays.
+  start(first: Turn): void {
+    this.first = first;
+    if (!this.byHand) this.turn = first;
+  }
+
   /// Unless it is held.
   advance(angle: number): void {
     if (this.held === null) this.turn = { ...this.turn, yaw: this.turn.yaw + angle };
@@ -52,7 +59,20 @@ export class Turning {
 
   private calm(reason: 'pointer' | 'focus'): void {
     window.clearTimeout(this.timer);
-    if (this.reasons.delete(reason)) this.turned.enlivened(this.lively);
+    if (!this.reasons.delete(reason)) return;
+    if (!this.lively) this.rest();
+    this.turned.enlivened(this.lively);
+  }
+
+  private rest(): void {
+    this.turn = this.first;
+    this.byHand = false;
+  }
+
+  private turnBy(x: number, y: number, width: number): void {
+    this.turn = dragged(this.turn, x, y, width);
+    this.byHand = true;
+    this.turned.turned();
   }
 
   private grab(event: PointerEvent, link: HTMLElement): void {
@@ -69,8 +89,7 @@ export class Turning {
     this.held = { ...held, x: event.clientX, y: event.clientY };
     this.distance += Math.hypot(x, y);
     if (this.distance > CLICK_REACH) link.setPointerCapture(event.pointerId);
-    this.turn = dragged(this.turn, x, y, this.stage.clientWidth);
-    this.turned.turned();
+    this.turnBy(x, y, this.stage.clientWidth);
   }
 
   private release(): void {
@@ -86,7 +105,6 @@ export class Turning {
     const step = KEYS[event.key];
     if (step === undefined || event.ctrlKey || event.altKey || event.metaKey) return;
     event.preventDefault();
-    this.turn = dragged(this.turn, step[0] * KEY_STEP, step[1] * KEY_STEP, Math.PI);
-    this.turned.turned();
+    this.turnBy(step[0] * KEY_STEP, step[1] * KEY_STEP, Math.PI);
   }
 }

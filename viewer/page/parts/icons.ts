@@ -5,6 +5,7 @@ export const ICONS = {
   home: 'M4 9V4h5M15 4h5v5M20 15v5h-5M9 20H4v-5',
   plus: 'M12 5v14M5 12h14',
   minus: 'M5 12h14',
+  up: 'M6 15l6-6 6 6',
   sliders: 'M4 7h9M17 7h3M4 17h3M11 17h9M15 4.5v5M9 14.5v5',
   chart: 'M5 20V11M12 20V4M19 20v-6',
   share: 'M12 14V4M8 7.5L12 3.5l4 4M6 11H5v9h14v-9h-1',

@@ -51,6 +51,7 @@ export class CameraTool implements Tool {
     const full = textButton(camera.fullScreen, () => void this.fullScreen());
     full.hidden = !document.fullscreenEnabled;
     this.spinButton.setAttribute('aria-pressed', 'false');
+    for (const { root } of [width, height, bare]) root.classList.add('tool-extra');
     this.root = element('div', {}, this.list, textButton(camera.add, () => { this.bookmark(); }), this.spinButton, full, width.root, height.root, bare.root, this.shot, this.note);
     for (const sign of ['pointerdown', 'wheel'] as const) surface.addEventListener(sign, () => { this.stop(); }, { signal: this.ending.signal, passive: true });
     root.addEventListener('keydown', ({ key }) => { if (key.startsWith('Arrow')) this.stop(); }, { signal: this.ending.signal });

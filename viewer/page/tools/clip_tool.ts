@@ -40,7 +40,7 @@ export class ClipTool implements Tool {
   private readonly coordinates: Coordinates;
   private readonly painter: CutPainter;
   private readonly extent: Extent;
-  private readonly planeForm = element('div', { class: 'tool-form' });
+  private readonly planeForm = element('div', { class: 'tool-form tool-plane' });
   private readonly boxForm: HTMLElement;
   private readonly note = element('p', { class: 'tool-note', 'aria-live': 'polite' });
   private readonly caps: Control<boolean>;
@@ -66,9 +66,10 @@ export class ClipTool implements Tool {
     this.caps = checkbox(clip.caps, null, (on) => { this.isCapped = on; this.apply(); });
     this.caps.show(view.closed);
     this.caps.root.hidden = !view.closed;
+    this.caps.root.classList.add('tool-extra');
     this.makePlaneForm();
     this.boxForm = this.makeBoxForm();
-    const open = view.closed ? null : element('p', { class: 'tool-note' }, clip.noCaps);
+    const open = view.closed ? null : element('p', { class: 'tool-note tool-extra' }, clip.noCaps);
     this.root = element('div', {}, this.modes.root, this.planeForm, this.boxForm, this.caps.root, open, this.note);
     this.setMode('plane');
   }
@@ -79,6 +80,7 @@ export class ClipTool implements Tool {
     directions.show('x');
     const flip = textButton(clip.flip, () => { this.isFlipped = !this.isFlipped; this.apply(); });
     const save = textButton(clip.export, () => { this.export(); });
+    save.classList.add('tool-extra');
     this.planeForm.append(directions.root, this.position, flip, save);
     this.turn('x');
   }

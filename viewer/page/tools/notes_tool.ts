@@ -29,6 +29,7 @@ export class NotesTool implements Tool {
     file.addEventListener('change', () => void this.load(file));
     const save = textButton(words.notes.save, () => { download(new Blob([formatNotes(notebook, bench.name)], { type: 'application/json' }), `${bench.name}-notes.json`); });
     const load = textButton(words.notes.load, () => { file.click(); });
+    for (const button of [save, load]) button.classList.add('tool-extra');
     this.root = element('div', {}, element('p', { class: 'tool-note' }, words.notes.hint), this.list, this.note, save, load, file);
     notebook.onChange(() => { this.show(); });
     this.show();

@@ -2,7 +2,7 @@
 import type { Mark } from './overlay.js';
 
 export interface Tool {
-  /// What its card holds.
+  /// What its card holds. What has the class `tool-extra` is not in the strip that the card is on phones.
   readonly root: HTMLElement;
   /// A place of the picture, from -1 to 1 to the right and up.
   choose?(right: number, up: number): void;

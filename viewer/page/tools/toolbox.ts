@@ -58,6 +58,8 @@ export class Toolbox implements Tools {
   private readonly title = element('h2', {});
   private readonly body = element('div', { class: 'tool-body' });
   private readonly card: HTMLElement;
+  /// On phones the card is a strip until it is asked for.
+  private readonly grow = iconButton(words.more, ICONS.up, () => { this.setGrown(!this.card.classList.contains('grown')); });
   private readonly cross = element('div', { class: 'tool-cross', 'aria-hidden': 'true' });
   private readonly root: HTMLElement;
   private readonly made = new Map<ToolName, Tool>();
@@ -72,7 +74,9 @@ export class Toolbox implements Tools {
     this.buttons = Object.fromEntries(entries) as Record<ToolName, HTMLButtonElement>;
     this.bar = element('div', { class: 'bar tool-bar', role: 'toolbar', 'aria-label': words.title, 'aria-orientation': 'vertical' }, ...entries.map(([, button]) => button));
     const close = iconButton(words.close(words.title), ICONS.close, () => { this.put(null); });
-    this.card = element('section', { class: 'tool-card', hidden: true }, element('div', { class: 'sheet-head' }, this.title, close), this.body);
+    this.grow.classList.add('tool-grow');
+    this.card = element('section', { class: 'tool-card', hidden: true }, element('div', { class: 'sheet-head' }, this.title, this.grow, close), this.body);
+    this.setGrown(false);
     this.root = element('div', { class: 'tools', hidden: true }, this.cross, this.bar, this.card, this.cube.root, this.scaleLine.root);
     bench.root.append(this.overlay.root, this.root, this.lasting.root);
     // Ahead of the view: what a tool takes is taken.
@@ -135,6 +139,12 @@ export class Toolbox implements Tools {
     this.bench.redraw();
   }
 
+  private setGrown(grown: boolean): void {
+    this.card.classList.toggle('grown', grown);
+    this.grow.setAttribute('aria-expanded', String(grown));
+    if (!grown) this.card.scrollTop = 0;
+  }
+
   private put(name: ToolName | null): void {
     const inside = this.card.contains(document.activeElement);
     if (inside) (this.active === null ? this.bench.surface : this.buttons[this.active]).focus();
@@ -143,6 +153,7 @@ export class Toolbox implements Tools {
     for (const each of NAMES) this.buttons[each].setAttribute('aria-pressed', String(each === name));
     this.root.classList.toggle('working', name !== null);
     this.card.hidden = true;
+    this.setGrown(false);
     if (name !== null) void this.open(name);
     this.bench.redraw();
   }

@@ -18,7 +18,7 @@ export function unitsForm({ settings, chosen }: Workshop, changed: () => void): 
     chosen();
     changed();
   };
-  return element('div', { class: 'tool-units' },
+  return element('div', { class: 'tool-units tool-extra' },
     select(words.units.model, words.units.unknown, settings.modelUnit, set('modelUnit')),
     select(words.units.shown, words.units.asModel, settings.shownUnit, set('shownUnit')));
 }

@@ -92,10 +92,11 @@ function cornersOf({ min, max }: Box3): Vector3[] {
   );
 }
 
-/// All of the box in a picture of that aspect.
-export function wholeView(box: Box3, aspect: number): CameraPose {
+/// All of the box in a picture of that aspect. `direction`: to the viewer, of length 1; null: none is better than others.
+export function wholeView(box: Box3, aspect: number, direction: readonly [number, number, number] | null = null): CameraPose {
   const centre = box.getCenter(new Vector3());
-  const { right, up, forward } = axesOf(FIRST_DIRECTION.clone().negate());
+  const back = direction === null ? FIRST_DIRECTION : new Vector3(...direction);
+  const { right, up, forward } = axesOf(back.clone().negate());
   const slope = Math.tan(VIEW_ANGLE / 2);
   let distance = 0;
   for (const corner of cornersOf(box)) {
@@ -103,7 +104,7 @@ export function wholeView(box: Box3, aspect: number): CameraPose {
     const across = Math.max(Math.abs(corner.dot(right)) / aspect, Math.abs(corner.dot(up)));
     distance = Math.max(distance, across / slope - corner.dot(forward));
   }
-  return new CameraPose(FIRST_DIRECTION.clone().multiplyScalar((distance || 1) * MARGIN).add(centre), centre);
+  return new CameraPose(back.clone().multiplyScalar((distance || 1) * MARGIN).add(centre), centre);
 }
 
 /// Near and far plane that hold the box, and whatever is near the target.

@@ -4,6 +4,7 @@ import { HierarchyProblem, HierarchyView, type Look, type Settings, type Standin
 import type { PictureSize } from '../../src/tools/screenshot.js';
 import { problemOfPose, roundedPose, type Pose, type Spot } from '../address.js';
 import { COLOURS, formatChoices, keepStanding, readStanding, withChoices, type Appearance, type Light } from '../appearance.js';
+import { towardsViewer, type Turn } from '../gallery/layout.js';
 import type { Model } from '../listing.js';
 import { element } from '../parts/element.js';
 import { formatCount } from '../numbers.js';
@@ -31,6 +32,8 @@ export { RootPicture } from './root_picture.js'; // for the gallery, which has l
 
 export interface Surroundings extends Pick<ViewOptions, 'fetch' | 'createWorker'> {
   spot: Spot;
+  /// As the gallery showed the model, to go on from there; null: it was not turned.
+  turn: Turn | null;
   preferences: Preferences;
   /// Preferences have changed.
   chosen(): void;
@@ -73,6 +76,8 @@ export class ModelView {
   private dirty = true;
   private opened = false;
   private readonly framed = new Box3();
+  /// From where the whole is seen until it is there and the camera flies to its first view.
+  private approach: ReturnType<typeof towardsViewer> | null = null;
   private shown = false;
   private refused = false;
   private lost: (() => void) | null = null;
@@ -92,6 +97,7 @@ export class ModelView {
     this.presentation = new Presentation(this.view, this.stage.lighting, this.wished(around.spot));
     this.presentation.apply();
     this.stage.show(this.view);
+    if (around.turn !== null && this.view.standing.up === 'file') this.approach = towardsViewer(around.turn);
     this.navigation = new Navigation((right, up) => this.stage.pick(right, up), () => { this.redraw(); });
     const surface = this.makeSurface();
     this.chrome = new Chrome(model, surface, this.orders(), this.ending.signal);
@@ -213,7 +219,16 @@ export class ModelView {
 
   private reframe(): void {
     this.framed.copy(this.view.box);
-    this.navigation.frame(this.framed, this.stage.aspect);
+    this.navigation.frame(this.framed, this.stage.aspect, this.approach ?? this.view.firstDirection);
+  }
+
+  private arrive(): void {
+    const { pose, atHome } = this.navigation;
+    this.approach = null;
+    this.reframe();
+    if (!atHome) return; // it has been moved meanwhile
+    this.navigation.jump(pose);
+    this.navigation.goHome();
   }
 
   private refuse(error: unknown): void {
@@ -235,6 +250,7 @@ export class ModelView {
 
   private frame(now: number): Pace {
     if (this.lost !== null) return 'rest';
+    if (this.approach !== null && this.shown && this.view.manifest !== null) this.arrive();
     const moved = this.frozen === null && this.navigation.step(now);
     if (moved) this.startRest();
     const { framesPerSecond } = this.view.settings;

@@ -42,12 +42,12 @@ export class Navigation {
     return this.flight !== null || this.glide.busy;
   }
 
-  /// The model's box and the picture's aspect; what shows the whole goes on showing the whole.
-  frame(box: Box3, aspect: number): void {
+  /// The model's box, the picture's aspect, and from where the whole is seen, as wholeView() has it; what shows the whole goes on showing the whole.
+  frame(box: Box3, aspect: number, direction: Parameters<typeof wholeView>[2]): void {
     const follow = this.atHome;
     this.box = box.clone();
     this.aspect = aspect;
-    this.home = wholeView(this.box, aspect);
+    this.home = wholeView(this.box, aspect, direction);
     if (follow) this.jump(this.home);
   }
 

@@ -1,11 +1,12 @@
 // A model in a cell of the gallery: its root tile, shaded, turned as its outline is. Comes with the view's code.
-import { Group, MathUtils, NeutralToneMapping, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from 'three';
+import { MathUtils, Matrix4, NeutralToneMapping, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from 'three';
 import TileWorker from '../../src/hierarchy/tile_worker.js?worker';
 import { HierarchyView } from '../../src/index.js';
 import { DEFAULT_LOOK } from '../../src/scene/settings.js';
 import { DEFAULT_STANDING } from '../../src/scene/standing.js';
 import { DEFAULT_LIGHT } from '../appearance.js';
-import { DISTANCE, FOCUS, type Turn } from '../gallery/layout.js';
+import { DISTANCE, fitAt, fitMatrix, FOCUS, towardsViewer, type Turn } from '../gallery/layout.js';
+import type { Shape } from '../gallery/shape.js';
 import { Lighting } from './lighting.js';
 import { Presentation } from './presentation.js';
 
@@ -18,22 +19,20 @@ export class RootPicture {
   private readonly renderer = new WebGLRenderer({ antialias: true, alpha: true });
   private readonly scene = new Scene();
   private readonly camera = new PerspectiveCamera();
-  private readonly raised = new Group();
   private readonly view: HierarchyView;
   private readonly presentation: Presentation;
   private opened = false;
   private frame = 0;
 
-  /// `url`: of the hierarchy; `radius`: of a ball around the model. `drawn`: after the first picture. Throws where there is no WebGL 2.
-  constructor(url: string, private readonly radius: number, private turn: Turn, private readonly drawn: () => void) {
+  /// `url`: of the hierarchy; `shape`: its outline; without lines its box tells how large the model is. `drawn`: after the first picture. Throws where there is no WebGL 2.
+  constructor(url: string, private readonly shape: Shape, private turn: Turn, private readonly drawn: () => void) {
     this.canvas = this.renderer.domElement;
     this.canvas.className = 'cell-solid';
     this.canvas.setAttribute('aria-hidden', 'true');
     this.renderer.toneMapping = NeutralToneMapping;
     this.view = new HierarchyView(url, { createWorker: () => new TileWorker(), workers: 1, settings: ROOT_ONLY });
     this.presentation = new Presentation(this.view, new Lighting(this.scene, this.camera), { look: DEFAULT_LOOK, light: DEFAULT_LIGHT, standing: DEFAULT_STANDING });
-    this.raised.add(this.view);
-    this.scene.add(this.camera, this.raised);
+    this.scene.add(this.camera, this.view);
     this.view.addEventListener('change', () => { this.ask(); });
     this.view.opened.then(() => { this.begin(); }, () => undefined); // the outline stays
   }
@@ -82,12 +81,17 @@ export class RootPicture {
 
   /// As layout.ts sees the outline.
   private aim(aspect: number): void {
-    const { camera, radius, raised, view, turn: { yaw, pitch } } = this;
+    const { camera, view, turn } = this;
+    const { ends, ball, first, fit } = this.shape;
+    const radius = ends.length > 0 ? ball.radius : view.box.getSize(new Vector3()).length() / 2 || 1;
     camera.fov = MathUtils.radToDeg(2 * Math.atan(1 / (FOCUS * Math.min(aspect, 1))));
     Object.assign(camera, { aspect, near: (DISTANCE - 1) * radius * 0.9, far: (DISTANCE + 1) * radius * 1.1 });
-    camera.position.set(0, 0, DISTANCE * radius);
+    // Around the model, as the sun stays where it is.
+    camera.position.set(...towardsViewer(turn)).multiplyScalar(DISTANCE * radius);
+    camera.lookAt(0, 0, 0);
     camera.updateProjectionMatrix();
-    raised.rotation.set(pitch, yaw, 0); // first about the upright axis
+    camera.projectionMatrix.premultiply(new Matrix4().fromArray(fitMatrix(fitAt(fit, first, turn), aspect)));
+    camera.projectionMatrixInverse.copy(camera.projectionMatrix).invert();
     view.position.copy(view.box.getCenter(new Vector3())).negate();
     this.scene.updateMatrixWorld();
   }

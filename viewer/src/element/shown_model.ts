@@ -169,7 +169,8 @@ export class ShownModel {
       const { center, radius } = this.whole.getBoundingSphere(new Sphere());
       const slope = Math.sin((ANGLE * Math.PI) / 360) * Math.min(this.camera.aspect, 1);
       this.controls.target.copy(center);
-      this.camera.position.copy(FIRST_DIRECTION).multiplyScalar(radius / slope).add(center);
+      const { firstDirection } = this.view;
+      this.camera.position.copy(firstDirection === null ? FIRST_DIRECTION : new Vector3(...firstDirection)).multiplyScalar(radius / slope).add(center);
     }
     this.controls.update();
   }

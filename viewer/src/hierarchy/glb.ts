@@ -28,6 +28,8 @@ export interface Gltf {
   images?: { mimeType?: unknown }[];
   materials?: { alphaMode?: unknown; extensions?: Record<string, unknown> }[];
   extensions: Record<string, Record<string, number>>;
+  /// Of the root.
+  extras?: unknown;
 }
 
 /// No codec of meshoptimizer makes more of a byte: a vertex's byte takes a quarter of a bit at least, with headers; three indices

@@ -38,7 +38,8 @@ export interface Manifest {
 }
 
 const FILE = 'hierarchy.json';
-const FORMAT_VERSION = 6;
+const FORMAT_VERSION = 7;
+const OLDEST_VERSION = 6; // the same without a first view
 const MOST_BYTES = 2 ** 20;
 
 const MOST_SHORT_BITS = 16;
@@ -88,9 +89,9 @@ export function readManifest(text: string): Manifest {
   };
   const root = JsonValue.parse(text, refuse);
   root.at('format').oneOf('meshhier');
-  const version = root.at('format_version').number();
-  if (version < FORMAT_VERSION) refuse(`format version ${version}, made by an older meshhier: build the hierarchy again`);
-  if (version !== FORMAT_VERSION) refuse(`format version ${version}; this viewer knows ${FORMAT_VERSION}`);
+  const version = root.at('format_version').count();
+  if (version < OLDEST_VERSION) refuse(`format version ${version}, made by an older meshhier: build the hierarchy again`);
+  if (version > FORMAT_VERSION) refuse(`format version ${version}; this viewer knows ${FORMAT_VERSION}`);
   const partitions = root.at('partitions').count(1, 2 ** 32 - 1);
   const indexBytes = indexSize(2 * partitions - 1);
   const positions = root.at('storage').at('positions');

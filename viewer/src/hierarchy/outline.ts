@@ -1,5 +1,6 @@
 // The shape-outline, outline.glb (docs/file_format.md, sections 4.2 and 5).
 import { fetchBytes, type Fetch } from './bytes.js';
+import { readFirstView, type FirstView } from './first_view.js';
 import { readContainer } from './glb_container.js';
 import { HierarchyProblem } from './problem.js';
 
@@ -12,6 +13,7 @@ export interface Outline {
   up: 'y' | 'z';
   /// Turns stored positions upright and adds the origin; 16 numbers, column by column.
   matrix: readonly number[];
+  firstView: FirstView | null;
 }
 
 const FILE = 'outline.glb';
@@ -89,9 +91,10 @@ export function readOutline(bytes: Uint8Array): Outline {
   const counts = readCounts(root);
   const matrix = readMatrix(root);
   const up = upOf(matrix);
-  if (counts.segments > 0) return { ...readLines(bin, counts), up, matrix };
+  const firstView = readFirstView(root, () => { throw new HierarchyProblem(FILE, 'its first view is none'); });
+  if (counts.segments > 0) return { ...readLines(bin, counts), up, matrix, firstView };
   need(bin === null, 'has bytes after an outline without lines');
-  return { positions: new Float32Array(), segments: new Uint16Array(), up, matrix };
+  return { positions: new Float32Array(), segments: new Uint16Array(), up, matrix, firstView };
 }
 
 /// The outline of the hierarchy at `base`, which ends with a slash. Throws HierarchyProblem, and what ends `signal`.

@@ -1,4 +1,5 @@
 // A tile as it is drawn: what its file (docs/file_format.md, section 4) holds for that, in arrays of its own.
+import { readFirstView, type FirstView } from './first_view.js';
 import { Glb } from './glb.js';
 import { MeshoptDecoder } from 'meshoptimizer/decoder';
 import { normalCone, vertexNormals, type Cone } from './normals.js';
@@ -45,6 +46,8 @@ export interface Tile extends Places {
   readonly box: readonly number[];
   /// The mesh lies with its z axis up.
   readonly zUp: boolean;
+  /// Of the root; null: an older program made it.
+  readonly firstView: FirstView | null;
 }
 
 function readIndices(glb: Glb, primitive: number, triangles: number, end: number): Indices {
@@ -172,6 +175,7 @@ function decode(glb: Glb, values: TileValues, counts: Counts): Omit<Tile, 'pictu
     insideOut: closed && isInsideOut(positions, interior),
     box: boxOf(glb, positions),
     zUp: gltf.nodes[0].matrix !== undefined,
+    firstView: readFirstView(gltf, () => glb.fail('its first view is none')),
   };
 }
 

@@ -7,6 +7,7 @@ import { PAUSE_MS } from '../cut/rest_detail.js';
 import { TileStore, type ResidentTile } from '../cut/tile_store.js';
 import type { Vector, Viewpoint } from '../cut/viewpoint.js';
 import type { Fetch } from '../hierarchy/bytes.js';
+import { directionOf } from '../hierarchy/first_view.js';
 import type { Manifest } from '../hierarchy/manifest.js';
 import { HierarchyProblem } from '../hierarchy/problem.js';
 import { RemoteHierarchy, type Directory } from '../hierarchy/remote_hierarchy.js';
@@ -156,6 +157,14 @@ export class HierarchyView extends Group<ViewEvents> {
   /// Which way is up as the mesh stands, in its own coordinates.
   get upwards(): Vector {
     return upwards(this.standing.up, this.root?.zUp ?? false);
+  }
+
+  /// From where the model is looked at first: to the viewer, of length 1, in the coordinates of this group. Null: not known yet, an older
+  /// hierarchy does not say it, or the mesh stands on another axis.
+  get firstDirection(): Vector | null {
+    const { root, standing: { up } } = this;
+    if (root?.firstView == null) return null;
+    return up === 'file' || up === (root.zUp ? 'z' : 'y') ? directionOf(root.firstView) : null;
   }
 
   /// Whether the mesh has colours or pictures of its own; those that are white everywhere say nothing. Null: not known yet.

@@ -12,6 +12,8 @@ const CLAY = 0xd99a76;
 const WIRES = 0x101418;
 const POINTS = 0xd04a1e;
 const POINT_SIZE = 7; // pixels of the page
+const DOTS = 0x8d887f; // of a model without triangles, on light and dark grounds
+const DOT_SIZE = 4;
 const ROUND = `#include <clipping_planes_fragment>
 if (distance(gl_PointCoord, vec2(0.5)) > 0.5) discard;`;
 /// How far the surface stands back behind its own wires and points: more than programs differ by rounding.
@@ -70,6 +72,8 @@ export function surfaceKey({ colours, texture, relight, material, cavities, shad
 export interface SharedMaterials {
   readonly wires: Material;
   readonly points: Material;
+  /// Instead, where there is nothing but points; `coloured`: by the input.
+  readonly dots: { readonly plain: Material; readonly coloured: Material };
   /// Which side of triangles is outside: 1: the front, -1: the back.
   readonly outwards: { value: number };
   /// Which way is up in the tiles' coordinates, what lies low and high along it, and how many times steeper slopes are shaded.
@@ -165,10 +169,11 @@ function wireMaterial(): Material {
 }
 
 /// Round, and over the wires.
-function pointMaterial(): Material {
-  const material = new PointsMaterial({ color: POINTS, size: POINT_SIZE, sizeAttenuation: false, transparent: true });
+function pointMaterial(color: number, size: number, vertexColors = false): Material {
+  const material = new PointsMaterial({ color, size, vertexColors, sizeAttenuation: false, transparent: true });
   material.onBeforeCompile = (shader) => {
     shader.fragmentShader = shader.fragmentShader.replace('#include <clipping_planes_fragment>', ROUND);
+    shader.vertexShader = shader.vertexShader.replace('#include <color_vertex>', TO_LINEAR);
   };
   material.customProgramCacheKey = () => 'meshhier-round';
   return material;
@@ -176,5 +181,6 @@ function pointMaterial(): Material {
 
 export function sharedMaterials(): SharedMaterials {
   const uniforms = { outwards: { value: 1 }, upwards: { value: new Vector3(0, 1, 0) }, heights: { value: new Vector2(0, 1) }, relief: { value: 1 } };
-  return { wires: wireMaterial(), points: pointMaterial(), matcap: makeMatcap(), ...uniforms };
+  const dots = { plain: pointMaterial(DOTS, DOT_SIZE), coloured: pointMaterial(0xffffff, DOT_SIZE, true) };
+  return { wires: wireMaterial(), points: pointMaterial(POINTS, POINT_SIZE), dots, matcap: makeMatcap(), ...uniforms };
 }

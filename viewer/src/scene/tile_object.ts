@@ -1,6 +1,6 @@
 // A tile in a three scene: its triangles, and on request its edges and vertices.
 import { Box3, BufferAttribute, BufferGeometry, Color, DynamicDrawUsage, LineSegments, Mesh, Points, Sphere, Vector3 } from 'three';
-import type { Intersection, Raycaster, Texture } from 'three';
+import type { Intersection, Material, Raycaster, Texture } from 'three';
 import type { ResidentTile } from '../cut/tile_store.js';
 import type { Indices, Tile } from '../hierarchy/tile.js';
 import type { TileRecord } from '../hierarchy/tile_index.js';
@@ -156,6 +156,7 @@ export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
     }
     if (look.wires !== (this.wires !== null)) this.setWires(look.wires);
     if (look.points !== (this.points !== null)) this.setPoints(look.points);
+    if (this.points !== null) this.points.material = this.pointMaterial();
   }
 
   /// Of the whole tile.
@@ -179,10 +180,18 @@ export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
     if (!on) return;
     const geometry = new BufferGeometry();
     geometry.setAttribute('position', this.geometry.attributes.position);
+    const { color } = this.geometry.attributes;
+    if (color !== undefined) geometry.setAttribute('color', color);
     geometry.setDrawRange(0, this.resident.tile.own);
     geometry.boundingSphere = this.geometry.boundingSphere;
-    this.points = this.place(new Points(geometry, this.shared.points));
+    this.points = this.place(new Points(geometry, this.pointMaterial()));
     this.points.renderOrder = 1; // after the wires
+  }
+
+  private pointMaterial(): Material {
+    const { points, dots } = this.shared;
+    if (this.resident.tile.indices.length > 0) return points;
+    return this.look.colours === 'vertex' && this.painting.hasColours ? dots.coloured : dots.plain;
   }
 
   private place<Part extends LineSegments | Points>(part: Part): Part {
@@ -192,9 +201,9 @@ export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {
     return part;
   }
 
-  /// Positions are the triangles': they stay.
+  /// Positions and colours are the triangles': they stay.
   private discard(part: LineSegments | Points | null): null {
-    part?.geometry.deleteAttribute('position');
+    for (const name of ['position', 'color']) part?.geometry.deleteAttribute(name);
     part?.geometry.dispose();
     part?.removeFromParent();
     return null;

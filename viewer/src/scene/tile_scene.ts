@@ -119,6 +119,8 @@ export class TileScene extends Group {
     this.objects.clear();
     this.materials.wires.dispose();
     this.materials.points.dispose();
+    this.materials.dots.plain.dispose();
+    this.materials.dots.coloured.dispose();
     this.materials.matcap.dispose();
   }
 }

@@ -1,5 +1,6 @@
 import { describe, expect, it } from 'vitest';
-import { ballOf, cellMatrix, dragged, multiply, type Matrix } from '../../page/gallery/layout.js';
+import { ballOf, cellMatrix, dragged, fitAt, fitOf, multiply, towardsViewer, turnTo, USUAL_TURN, type Matrix } from '../../page/gallery/layout.js';
+import { directionOf } from '../../src/hierarchy/first_view.js';
 
 function project(matrix: Matrix, [x, y, z]: number[]): number[] {
   const at = (row: number): number => matrix[row] * x + matrix[4 + row] * y + matrix[8 + row] * z + matrix[12 + row];
@@ -38,6 +39,39 @@ describe('a turned outline', () => {
   it('shows its front in front', () => {
     const matrix = cellMatrix(ball, 'y', { yaw: 0, pitch: 0 }, 1);
     expect(project(matrix, [5, 6, 9])[2]).toBeLessThan(project(matrix, [5, 6, 5])[2]);
+  });
+
+  it.each([[0, 0], [90, 0], [213.75, 13], [-30, -40], [0, 90]])('is seen first from azimuth %d and elevation %d, as the model is', (azimuth, elevation) => {
+    const view = { azimuth, elevation };
+    const [x, y, z] = directionOf(view);
+    const matrix = cellMatrix({ centre: [0, 0, 0], radius: 1 }, 'y', turnTo(view), 1);
+    const nearest = project(matrix, [x, y, z]);
+    expect(Math.abs(nearest[0])).toBeLessThan(0.02);
+    expect(Math.abs(nearest[1])).toBeLessThan(0.02);
+    expect(nearest[2]).toBeCloseTo(-1);
+    towardsViewer(turnTo(view)).forEach((value, axis) => { expect(value).toBeCloseTo([x, y, z][axis], 2); });
+  });
+
+  it('is seen from the usual side where the hierarchy says none', () => {
+    expect(turnTo(null)).toBe(USUAL_TURN);
+  });
+
+  it.each([0.5, 1, 2])('fills a cell of aspect %d at first, as a preview does, and less when it is turned', (aspect) => {
+    const lines = new Float32Array([4, 5, 7, 6, 5, 7, 5, 5.5, 7.5]);
+    const around = ballOf(lines);
+    const first = { yaw: 0.3, pitch: 0.2 };
+    const fit = fitOf(lines, around, 'z', first);
+    const across = (turn: typeof first): number => {
+      const matrix = cellMatrix(around, 'z', turn, aspect, fitAt(fit, first, turn));
+      const places = [0, 3, 6].map((i) => project(matrix, [...lines.subarray(i, i + 3)]));
+      const size = (axis: number): number => Math.max(...places.map((p) => p[axis])) - Math.min(...places.map((p) => p[axis]));
+      for (const place of places) expect(Math.max(Math.abs(place[0]), Math.abs(place[1]))).toBeLessThan(1.03);
+      return Math.max(size(0) * Math.max(aspect, 1), size(1) * Math.max(1 / aspect, 1)) / 2;
+    };
+    expect(across(first)).toBeCloseTo(0.92, 5);
+    for (let yaw = 0.3; yaw < 7; yaw += 0.2) across({ yaw, pitch: 0.2 });
+    expect(fitAt(fit, first, { yaw: 2, pitch: 0 }).zoom).toBe(1);
+    expect(fitOf(new Float32Array(), around, 'y', first).zoom).toBe(1);
   });
 
   it('follows the pointer', () => {

@@ -7,7 +7,7 @@ vi.mock('../../page/view/model_view.js', () => ({
   RootPicture: class {
     readonly canvas = {};
     private readonly entry;
-    constructor(url: string, _radius: number, turn: unknown, drawn: () => void) {
+    constructor(url: string, _shape: unknown, turn: unknown, drawn: () => void) {
       this.entry = { url, turns: [turn], closed: false, drawn };
       made.push(this.entry);
     }
@@ -22,7 +22,7 @@ vi.mock('../../page/view/model_view.js', () => ({
   },
 }));
 
-const BALL = { centre: [0, 0, 0] as const, radius: 2 };
+const SHAPE = { ends: new Float32Array(6), ball: { centre: [0, 0, 0] as const, radius: 2 }, up: 'y' as const, first: { yaw: 0, pitch: 0 }, fit: { zoom: 1, right: 0, up: 0 } };
 const [FIRST, NEXT] = [{ yaw: 0, pitch: 0 }, { yaw: 1, pitch: 0 }];
 
 function makeStage(isVisible = true): { stage: HTMLElement; classes: Set<string> } {
@@ -46,7 +46,7 @@ describe('the shaded root of a cell', () => {
   it('comes to what is pointed at for a while, and turns on from where the outline is', async () => {
     const { stage, classes } = makeStage();
     const solid = new Solid('a.hier', stage);
-    solid.await(BALL, FIRST);
+    solid.await(SHAPE, FIRST);
     solid.show(NEXT);
     expect(made).toHaveLength(0);
     await vi.advanceTimersByTimeAsync(2000);
@@ -61,7 +61,7 @@ describe('the shaded root of a cell', () => {
 
   it('asks for nothing where a pointer passes by', async () => {
     const solid = new Solid('a.hier', makeStage().stage);
-    solid.await(BALL, FIRST);
+    solid.await(SHAPE, FIRST);
     await vi.advanceTimersByTimeAsync(300);
     solid.end();
     await vi.advanceTimersByTimeAsync(5000);
@@ -70,7 +70,7 @@ describe('the shaded root of a cell', () => {
 
   it('draws nothing in a cell that was left while its code came', async () => {
     const solid = new Solid('a.hier', makeStage(false).stage);
-    solid.await(BALL, FIRST);
+    solid.await(SHAPE, FIRST);
     await vi.advanceTimersByTimeAsync(2000);
     await vi.dynamicImportSettled();
     expect(made).toHaveLength(0);

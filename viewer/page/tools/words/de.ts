@@ -4,6 +4,7 @@ import type { ToolWords } from './en.js';
 export const de: ToolWords = {
   title: 'Werkzeuge',
   close: (name) => `${name} schließen`,
+  more: 'Ganze Karte',
   end: (what) => `${what}: beenden`,
   names: { pick: 'Punkt wählen', measure: 'Messen', clip: 'Aufschneiden', notes: 'Notizen', camera: 'Kamera und Bilder' },
   pick: {

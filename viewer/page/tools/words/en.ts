@@ -3,6 +3,7 @@
 export const en = {
   title: 'Tools',
   close: (name: string) => `Close ${name.toLowerCase()}`,
+  more: 'All of the card',
   end: (what: string) => `${what}: end this`,
   names: { pick: 'Pick a point', measure: 'Measure', clip: 'Cut open', notes: 'Notes', camera: 'Camera and pictures' },
   pick: {

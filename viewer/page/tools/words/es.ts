@@ -4,6 +4,7 @@ import type { ToolWords } from './en.js';
 export const es: ToolWords = {
   title: 'Herramientas',
   close: (name) => `Cerrar ${name.toLowerCase()}`,
+  more: 'Toda la tarjeta',
   end: (what) => `${what}: terminar`,
   names: { pick: 'Elegir un punto', measure: 'Medir', clip: 'Cortar', notes: 'Notas', camera: 'Cámara e imágenes' },
   pick: {
