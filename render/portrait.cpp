@@ -31,7 +31,7 @@ constexpr Standpoint kMapView{0, 90};
 /// Of points, which hide nothing: from the front, a little aside and above.
 constexpr Standpoint kPointView{30, 20};
 /// Where a surface faces is told as a multiple of this, degrees.
-constexpr double kStep = 0.25;
+constexpr double kAngleStep = 0.25;
 /// A surface that hides nothing of itself from above, whatever its height.
 constexpr double kMap = 0.8;
 /// What is open above and lower than this part of its width is a map.
@@ -164,7 +164,7 @@ Standpoint best_view(std::span<const Facet> facets, Vec3d up, std::span<const do
 }
 
 double in_steps(double radians) {
-  return std::floor(radians / kFullTurn * 360 / kStep + 0.5) * kStep;
+  return std::floor(radians / kFullTurn * 360 / kAngleStep + 0.5) * kAngleStep;
 }
 
 /// From where a surface is seen that faces there.

@@ -46,6 +46,9 @@
 
 namespace meshhier::storage {
 
+/// More tiles of a level are in several directories: file servers are slow with very many names.
+inline constexpr std::uint32_t kTilesADirectory = 10000;
+
 std::filesystem::path manifest_path(const std::filesystem::path& hierarchy);
 std::filesystem::path index_path(const std::filesystem::path& hierarchy);
 std::filesystem::path outline_path(const std::filesystem::path& hierarchy);

@@ -314,6 +314,10 @@ Manifest parse_manifest(const std::string& text, const std::string& name) {
       static_cast<std::uint32_t>(object.count("partitions", manifest.source.places));
   if (manifest.partition_count == 0)
     object.wrong("partitions", "at least 1");
+  if (!manifest.first_view && manifest.partition_count > kTilesADirectory) {
+    object.wrong("partitions", fmt::format("at most {} in format version {}: build it again",
+                                           kTilesADirectory, kOldestFormatVersion));
+  }
   const JsonObject storage = object.object("storage");
   manifest.compression = read_choice<Compression>(storage, "compression", kCompressionNames);
   manifest.quantization = read_quantization(storage);

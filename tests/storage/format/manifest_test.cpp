@@ -1,6 +1,7 @@
 #include "storage/format/manifest.h"
 
 #include "hierarchy/error.h"
+#include "storage/format/layout.h"
 #include "storage/io/hash.h"
 
 #include <random>
@@ -146,6 +147,20 @@ TEST(Manifest, OneOfVersion6HasNoFirstView) {
   EXPECT_THAT(text, HasSubstr("\"format_version\": 6,\n"));
   expect_same(manifest, parse_manifest(text, kManifestName));
   EXPECT_THAT(to_json_text(make_manifest()), HasSubstr("\"format_version\": 7,\n"));
+}
+
+TEST(Manifest, OneOfVersion6HasItsTilesElsewhereIfThereAreMany) {
+  Manifest manifest = make_manifest();
+  manifest.source.vertices = manifest.source.places = 100'000;
+  manifest.partition_count = kTilesADirectory + 1;
+  EXPECT_NO_THROW(parse_manifest(to_json_text(manifest), kManifestName));
+  manifest.first_view.reset();
+  try {
+    parse_manifest(to_json_text(manifest), kManifestName);
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("at most 10000 in format version 6: build it again"));
+  }
 }
 
 TEST(Manifest, UnsoundFirstViewsAreRefused) {

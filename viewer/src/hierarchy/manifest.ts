@@ -2,6 +2,7 @@
 import { JsonValue, type Fail } from '../json_value.js';
 import { fetchBytes, type Fetch } from './bytes.js';
 import { HierarchyProblem } from './problem.js';
+import { TILES_A_DIRECTORY } from './tree.js';
 import { indexSize } from './tile_index.js';
 
 export interface Manifest {
@@ -93,6 +94,7 @@ export function readManifest(text: string): Manifest {
   if (version < OLDEST_VERSION) refuse(`format version ${version}, made by an older meshhier: build the hierarchy again`);
   if (version > FORMAT_VERSION) refuse(`format version ${version}; this viewer knows ${FORMAT_VERSION}`);
   const partitions = root.at('partitions').count(1, 2 ** 32 - 1);
+  if (version === OLDEST_VERSION && partitions > TILES_A_DIRECTORY) refuse(`format version ${version} has its tiles elsewhere: build the hierarchy again`);
   const indexBytes = indexSize(2 * partitions - 1);
   const positions = root.at('storage').at('positions');
   return {

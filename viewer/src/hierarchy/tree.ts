@@ -105,7 +105,8 @@ export class Tree {
   }
 }
 
-const TILES_A_DIRECTORY = 10_000;
+/// More tiles of a level are in several directories.
+export const TILES_A_DIRECTORY = 10_000;
 
 /// Where a tile's file is, relative to the hierarchy.
 export function tilePath({ level, index }: Node): string {
