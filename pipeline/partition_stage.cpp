@@ -20,25 +20,28 @@ namespace meshhier::pipeline {
 namespace {
 
 using partition::RankTable;
+using partition::Renumberer;
 using partition::TopPlan;
 using partition::TopTree;
 using partition::WedgeRank;
 
 constexpr const char* kStage = "partition";
 
-/// Hands the vertices to parallel work(block, slot) and a serial sink(slot) in the order of ids.
+/// Hands a share of the vertices to parallel work(block, slot) and a serial sink(slot) in the order
+/// of ids.
 template <class Slot, class Work, class Sink>
-void for_each_block(const SourceMesh& mesh, const StageContext& context, const Work& work,
-                    const Sink& sink) {
+void for_each_block(const SourceMesh& mesh, const Share& share, const StageContext& context,
+                    const Work& work, const Sink& sink) {
   struct Read {
     mesh_io::BlockMemory memory;
     std::size_t count = 0;
     Slot slot;
   };
+  const std::uint64_t first = share.begin(mesh.vertex_blocks());
   execution::ordered_blocks<Read>(
-      mesh.vertex_blocks(), context.memory().blocks_in_flight, context.cancel,
+      share.end(mesh.vertex_blocks()) - first, context.memory().blocks_in_flight, context.cancel,
       [&](std::uint64_t i, Read& read) {
-        const SourceVertices block = mesh.read_vertex_block(i, read.memory);
+        const SourceVertices block = mesh.read_vertex_block(first + i, read.memory);
         read.count = block.positions.size();
         work(block, read.slot);
       },
@@ -81,35 +84,6 @@ struct BlockPlaces {
     return true;
   }
 };
-
-TopTree find_splits(SourceMesh& mesh, const importing::CopyList& copies,
-                    storage::ScratchFile& scratch, const StageContext& context) {
-  const Tree& tree = context.tree();
-  TopPlan plan = partition::plan_top(mesh.take_sample(copies), tree, context.config.partition.axis);
-  if (plan.splits.empty())
-    return {plan.chunks, {}};
-  for (;;) {
-    context.progress.stage(kStage, mesh.summary().vertices, "vertices");
-    const partition::Sweep sweep(plan);
-    partition::TopSelector selector(plan, tree, scratch, context.memory().work_bytes / 2);
-    struct Slot {
-      BlockPlaces places;
-      partition::SweepBlock swept;
-    };
-    for_each_block<Slot>(
-        mesh, context,
-        [&](const SourceVertices& block, Slot& slot) {
-          if (slot.places.pick(block, copies))
-            sweep.count(slot.places.positions, slot.places.ids, slot.swept);
-          else
-            sweep.count(block.positions, static_cast<std::uint32_t>(block.first), slot.swept);
-        },
-        [&](const Slot& slot) { selector.add(slot.swept); });
-    std::vector<partition::SplitPlane> planes = selector.settle(plan);
-    if (!planes.empty())
-      return {plan.chunks, std::move(planes)};
-  }
-}
 
 /// A block of vertices on its way to the chunks.
 struct DistributedBlock {
@@ -167,26 +141,37 @@ class Ranker {
   std::vector<std::uint32_t> next_;
 };
 
-/// Distributes the places' first vertices and fills the table of ranks. Copies wait in `copy_rows`
-/// until their places' ranks are known.
-template <class Rank>
-void distribute_vertices(const SourceMesh& mesh, const importing::CopyList& copies,
-                         const TopTree& top, Chunks& chunks, RankTable<Rank>& table,
-                         storage::RecordSpool<float>& copy_rows, const StageContext& context) {
+/// Distributes the places' first vertices of a share; keep(ranks, block) gets their ranks.
+template <class Rank, class Keep>
+void distribute_places(const SourceMesh& mesh, const importing::CopyList& copies,
+                       const TopTree& top, const Share& share, Chunks& chunks, const Keep& keep,
+                       const StageContext& context) {
   const partition::ChunkSearch search(top, mesh.stored_bounds());
   Ranker ranker(chunks);
   std::vector<Rank> ranks;
   for_each_block<DistributedBlock>(
-      mesh, context,
+      mesh, share, context,
       [&](const SourceVertices& block, DistributedBlock& distributed) {
         distributed.sort(block, copies, search, chunks.count());
       },
       [&](const DistributedBlock& distributed) {
         ranker.rank(distributed.sorted, ranks);
-        table.append(ranks, distributed.first, distributed.places.copies);
+        keep(ranks, distributed);
         chunks.append(distributed.sorted);
-        copy_rows.append(std::span<const float>(distributed.copy_rows));
       });
+}
+
+/// Distributes them all and fills the table of ranks. Copies wait in `copy_rows` until their
+/// places' ranks are known.
+template <class Rank>
+void fill_table(const SourceMesh& mesh, const importing::CopyList& copies, const TopTree& top,
+                Chunks& chunks, RankTable<Rank>& table, storage::RecordSpool<float>& copy_rows,
+                const StageContext& context) {
+  const auto keep = [&](const std::vector<Rank>& ranks, const DistributedBlock& block) {
+    table.append(ranks, block.first, block.places.copies);
+    copy_rows.append(std::span<const float>(block.copy_rows));
+  };
+  distribute_places<Rank>(mesh, copies, top, {}, chunks, keep, context);
 }
 
 /// Gives copies the ranks of their places, and their rows to the chunks.
@@ -237,63 +222,218 @@ struct TrianglesByWedge {
   }
 };
 
+/// Gives triangles to the chunks that they touch, through a table of ranks.
 template <class Slot, class Rank>
-mesh_io::FaceCounts distribute_triangles(SourceMesh& mesh, partition::Renumberer<Rank> renumberer,
-                                         Chunks& chunks, const StageContext& context) {
-  const std::size_t in_flight = context.memory().blocks_in_flight;
-  context.progress.stage(kStage, mesh.declared_faces(), "triangles");
-  const auto keep = [&](const Slot& slot) {
-    renumberer.keep(slot.renumbered);
-    chunks.append(slot.chunked);
-    return true;
-  };
-  const mesh_io::FaceCounts counts = mesh.read_triangles<Slot>(
-      in_flight, context.cancel,
-      [&](std::span<const Triangle<VertexId>> triangles, Slot& slot) {
-        slot.read = triangles.size();
-        renumberer.translate(triangles, slot.renumbered);
-        slot.sort(chunks.map());
-      },
-      [&](const Slot& slot) {
-        keep(slot);
-        context.progress.advance(slot.read);
-      });
-  while (renumberer.next_round()) {
-    execution::ordered_blocks<Slot>(
-        renumberer.batches(), in_flight, context.cancel,
-        [&](std::uint64_t batch, Slot& slot) {
-          renumberer.translate_batch(batch, slot.renumbered);
-          slot.sort(chunks.map());
-        },
-        keep);
+class TriangleDistribution {
+ public:
+  TriangleDistribution(SourceMesh& mesh, Renumberer<Rank> renumberer, Chunks& chunks,
+                       const StageContext& context)
+      : mesh_(mesh), renumberer_(std::move(renumberer)), chunks_(chunks), context_(context) {}
+
+  /// As SourceMesh::read_triangle_blocks().
+  FaceBlocks take_blocks(const Share& share) {
+    return mesh_.read_triangle_blocks<Slot>(
+        share, in_flight(), context_.cancel,
+        [&](std::span<const Triangle<VertexId>> triangles, Slot& slot) { sort(triangles, slot); },
+        [&](const Slot& slot) { keep_read(slot); });
   }
-  return counts;
+  /// As SourceMesh::read_triangles_from().
+  mesh_io::FaceCounts take_from(std::uint64_t face) {
+    return mesh_.read_triangles_from<Slot>(
+        face, in_flight(), context_.cancel,
+        [&](std::span<const Triangle<VertexId>> triangles, Slot& slot) { sort(triangles, slot); },
+        [&](const Slot& slot) { keep_read(slot); });
+  }
+  /// Those that wait for a part of the table. Call once, at the end.
+  void finish() {
+    while (renumberer_.next_round()) {
+      execution::ordered_blocks<Slot>(
+          renumberer_.batches(), in_flight(), context_.cancel,
+          [&](std::uint64_t batch, Slot& slot) {
+            renumberer_.translate_batch(batch, slot.renumbered);
+            slot.sort(chunks_.map());
+          },
+          [&](const Slot& slot) {
+            keep(slot);
+            return true;
+          });
+    }
+  }
+
+ private:
+  std::size_t in_flight() const { return context_.memory().blocks_in_flight; }
+  void sort(std::span<const Triangle<VertexId>> triangles, Slot& slot) const {
+    slot.read = triangles.size();
+    renumberer_.translate(triangles, slot.renumbered);
+    slot.sort(chunks_.map());
+  }
+  void keep(const Slot& slot) {
+    renumberer_.keep(slot.renumbered);
+    chunks_.append(slot.chunked);
+  }
+  void keep_read(const Slot& slot) {
+    keep(slot);
+    context_.progress.advance(slot.read);
+  }
+
+  SourceMesh& mesh_;
+  Renumberer<Rank> renumberer_;
+  Chunks& chunks_;
+  const StageContext& context_;
+};
+
+template <class Slot, class Rank>
+mesh_io::FaceCounts distribute_faces(SourceMesh& mesh, Renumberer<Rank> renumberer, Chunks& chunks,
+                                     const StageContext& context) {
+  context.progress.stage(kStage, mesh.declared_faces(), "triangles");
+  TriangleDistribution<Slot, Rank> triangles(mesh, std::move(renumberer), chunks, context);
+  const mesh_io::FaceCounts blocks = triangles.take_blocks({}).counts;
+  const mesh_io::FaceCounts rest = triangles.take_from(blocks.faces);
+  triangles.finish();
+  return blocks + rest;
 }
 
-/// Vertices, then triangles. `passing`: for what is needed meanwhile only.
+/// Ids from the first up to the last; none at first.
+struct IdRange {
+  std::uint32_t first = UINT32_MAX, last = 0;
+
+  std::uint64_t size() const { return first > last ? 0 : std::uint64_t{last} - first + 1; }
+  void add(const IdRange& other) {
+    first = std::min(first, other.first);
+    last = std::max(last, other.last);
+  }
+};
+
+/// Those that a share of the faces names. Reads the faces.
+IdRange ids_of(SourceMesh& mesh, const Share& share, const StageContext& context) {
+  IdRange all;
+  mesh.read_triangle_blocks<IdRange>(
+      share, context.memory().blocks_in_flight, context.cancel,
+      [](std::span<const Triangle<VertexId>> triangles, IdRange& ids) {
+        ids = {};
+        for (const Triangle<VertexId>& t : triangles)
+          ids.add({std::min({raw(t[0]), raw(t[1]), raw(t[2])}),
+                   std::max({raw(t[0]), raw(t[1]), raw(t[2])})});
+      },
+      [&](const IdRange& ids) { all.add(ids); });
+  return all;
+}
+
+/// Of the ranks of some ids. `passing`: for triangles that wait.
+Renumberer<std::uint32_t> renumberer_of(const SlicedRanks& ranks, const IdRange& ids,
+                                        storage::ScratchFile& passing,
+                                        const StageContext& context) {
+  const std::uint64_t first = ids.size() == 0 ? 0 : ids.first;
+  const auto read = [&ranks](std::uint64_t id, std::span<std::uint32_t> to) { ranks.read(id, to); };
+  return {
+      {first, ids.size(), read},
+      partition::plan_renumbering(ids.size(), sizeof(std::uint32_t), context.memory().table_bytes),
+      passing};
+}
+
+/// Of so many, what a share of the blocks has about.
+std::uint64_t about(std::uint64_t count, const Share& share) {
+  return share.end(count) - share.begin(count);
+}
+
+}  // namespace
+
+TopTree find_splits(SourceMesh& mesh, const importing::CopyList& copies,
+                    storage::ScratchFile& scratch, const StageContext& context) {
+  storage::ScratchFile windows = scratch.beside("windows");
+  const Tree& tree = context.tree();
+  TopPlan plan = partition::plan_top(mesh.take_sample(copies), tree, context.config.partition.axis);
+  if (plan.splits.empty())
+    return {plan.chunks, {}};
+  for (;;) {
+    context.progress.stage(kStage, mesh.summary().vertices, "vertices");
+    const partition::Sweep sweep(plan);
+    partition::TopSelector selector(plan, tree, windows, context.memory().work_bytes / 2);
+    struct Slot {
+      BlockPlaces places;
+      partition::SweepBlock swept;
+    };
+    for_each_block<Slot>(
+        mesh, {}, context,
+        [&](const SourceVertices& block, Slot& slot) {
+          if (slot.places.pick(block, copies))
+            sweep.count(slot.places.positions, slot.places.ids, slot.swept);
+          else
+            sweep.count(block.positions, static_cast<std::uint32_t>(block.first), slot.swept);
+        },
+        [&](const Slot& slot) { selector.add(slot.swept); });
+    std::vector<partition::SplitPlane> planes = selector.settle(plan);
+    if (!planes.empty())
+      return {plan.chunks, std::move(planes)};
+  }
+}
+
 mesh_io::FaceCounts distribute(SourceMesh& mesh, const importing::CopyList& copies,
-                               const TopTree& top, Chunks& chunks, storage::ScratchFile& passing,
+                               const TopTree& top, Chunks& chunks, storage::ScratchFile& scratch,
                                const StageContext& context) {
+  execution::release_free_memory();
+  storage::ScratchFile passing = scratch.beside("ranks");
   const std::uint64_t count = mesh.summary().vertices;
   context.progress.stage(kStage, count, "vertices");
   const auto triangles = [&]<class Slot>(auto& table, Slot) {
     execution::release_free_memory();
-    return distribute_triangles<Slot>(mesh, table.renumberer(), chunks, context);
+    const mesh_io::FaceCounts counts =
+        distribute_faces<Slot>(mesh, table.renumberer(), chunks, context);
+    warn_of_wide_triangles(chunks, context);
+    return counts;
   };
   storage::RecordSpool<float> copy_rows(passing, 1 << 18);
   if (copies.empty()) {
     RankTable<std::uint32_t> table(count, context.memory().table_bytes, passing);
-    distribute_vertices(mesh, copies, top, chunks, table, copy_rows, context);
+    fill_table(mesh, copies, top, chunks, table, copy_rows, context);
     return triangles(table, TrianglesByRank{});
   }
   RankTable<WedgeRank> table(count, context.memory().table_bytes, passing);
-  distribute_vertices(mesh, copies, top, chunks, table, copy_rows, context);
+  fill_table(mesh, copies, top, chunks, table, copy_rows, context);
   distribute_copies(copies, copy_rows, chunks.row_width(), chunks, table, context);
   copy_rows.clear();
   return triangles(table, TrianglesByWedge{});
 }
 
-/// The stage that would be refused comes late, and takes long where triangles reach across.
+void distribute_vertices(const SourceMesh& mesh, const TopTree& top, const Share& slice,
+                         Chunks& chunks, SlicedRanks& ranks, const StageContext& context) {
+  context.progress.stage(kStage, about(mesh.summary().vertices, slice), "vertices");
+  std::uint64_t block = slice.begin(mesh.vertex_blocks());
+  const auto keep = [&](const std::vector<std::uint32_t>& found, const DistributedBlock&) {
+    ranks.put(block++, found);
+  };
+  distribute_places<std::uint32_t>(mesh, {}, top, slice, chunks, keep, context);
+}
+
+FaceBlocks distribute_triangles(SourceMesh& mesh, const SlicedRanks& ranks, const Share& slice,
+                                Chunks& chunks, storage::ScratchFile& scratch,
+                                const StageContext& context) {
+  context.progress.stage(kStage, about(mesh.declared_faces(), slice), "triangles");
+  storage::ScratchFile passing = scratch.beside("ranks");
+  const IdRange ids = ids_of(mesh, slice, context);
+  TriangleDistribution<TrianglesByRank, std::uint32_t> triangles(
+      mesh, renumberer_of(ranks, ids, passing, context), chunks, context);
+  const FaceBlocks blocks = triangles.take_blocks(slice);
+  triangles.finish();
+  return blocks;
+}
+
+mesh_io::FaceCounts distribute_triangles_from(std::uint64_t face, SourceMesh& mesh,
+                                              const SlicedRanks& ranks, Chunks& chunks,
+                                              storage::ScratchFile& scratch,
+                                              const StageContext& context) {
+  const std::uint64_t left = mesh.declared_faces() - face;
+  context.progress.stage(kStage, left, "triangles");
+  storage::ScratchFile passing = scratch.beside("ranks");
+  const IdRange ids =
+      left == 0 ? IdRange{} : IdRange{0, static_cast<std::uint32_t>(mesh.summary().vertices - 1)};
+  TriangleDistribution<TrianglesByRank, std::uint32_t> triangles(
+      mesh, renumberer_of(ranks, ids, passing, context), chunks, context);
+  const mesh_io::FaceCounts counts = triangles.take_from(face);
+  triangles.finish();
+  return counts;
+}
+
 void warn_of_wide_triangles(const Chunks& chunks, const StageContext& context) {
   const MemoryPlan& plan = context.memory();
   const std::uint64_t expected = expected_contracted(chunks);
@@ -305,23 +445,6 @@ void warn_of_wide_triangles(const Chunks& chunks, const StageContext& context) {
       "need more than {}",
       execution::rounded_size_text(expected), execution::exact_size_text(plan.budget_bytes),
       execution::rounded_size_text(budget_for(plan, expected))));
-}
-
-}  // namespace
-
-mesh_io::FaceCounts partition_mesh(SourceMesh& mesh, const importing::CopyList& copies,
-                                   Chunks& chunks, storage::ScratchFile& scratch,
-                                   const StageContext& context) {
-  const TopTree top = [&] {
-    storage::ScratchFile windows = scratch.beside("windows");
-    return find_splits(mesh, copies, windows, context);
-  }();
-  execution::release_free_memory();
-  storage::ScratchFile passing = scratch.beside("ranks");
-  const mesh_io::FaceCounts counts = distribute(mesh, copies, top, chunks, passing, context);
-  warn_of_wide_triangles(chunks, context);
-  execution::release_free_memory();
-  return counts;
 }
 
 namespace {

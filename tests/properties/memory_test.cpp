@@ -268,8 +268,9 @@ TEST_F(MemoryTest, EachTaskOfAMillionVerticesIn64MiB) {
                                      setting};
     ASSERT_EQ(run(plan).code, 0) << run(plan).messages;
     for (const std::string stage :
-         {"read", "leaves", "level-1", "level-2", "level-3", "level-4", "level-5", "level-6",
-          "level-7", "level-8", "level-9", "level-10", "top", "publish", "finish"}) {
+         {"read", "distribute", "faces", "join", "leaves", "level-1", "level-2", "level-3",
+          "level-4", "level-5", "level-6", "level-7", "level-8", "level-9", "level-10", "top",
+          "publish", "finish"}) {
       std::vector<std::string> task = {MESHHIER_BINARY, "task", path("work").string(), stage};
       const Outcome outcome = run(task);
       if (outcome.code == 2)
