@@ -25,35 +25,47 @@ std::vector<StageTime> partition_time(const JobSize& job);
 /// triangles are distributed; chunks until the end of `leaves`.
 DiskVolumes partition_disk(const JobSize& job, const MemoryPlan& memory);
 
-/// Finds the exact splits above the chunks. What is needed meanwhile only is beside `scratch`, here
-/// and below.
+/// Finds the exact splits above the chunks, then distributes the vertices in one pass and the
+/// triangles in one; returns how many faces the mesh has. What is needed meanwhile only is beside
+/// `scratch`, here and below.
+mesh_io::FaceCounts partition_mesh(SourceMesh& mesh, const importing::CopyList& copies,
+                                   Chunks& chunks, storage::ScratchFile& scratch,
+                                   const StageContext& context);
+
+/// Finds the splits alone.
 partition::TopTree find_splits(SourceMesh& mesh, const importing::CopyList& copies,
                                storage::ScratchFile& scratch, const StageContext& context);
 
-/// Distributes the vertices in one pass and the triangles in one; returns how many faces the mesh
-/// has.
-mesh_io::FaceCounts distribute(SourceMesh& mesh, const importing::CopyList& copies,
-                               const partition::TopTree& top, Chunks& chunks,
-                               storage::ScratchFile& scratch, const StageContext& context);
+// The rest in slices of a mesh whose vertices are in place: first the vertices of all slices; then,
+// with the ranks of all of them, copies and triangles of all slices; and at last the faces that no
+// slice could take.
 
-// The same in slices, of a mesh whose vertices are in place and which has no copies: first the
-// vertices of all slices; then, with the ranks of all of them, the triangles of all slices; and at
-// last the faces that no slice could take.
+/// What slices work with.
+struct SlicedInput {
+  SourceMesh& mesh;
+  const importing::CopyList& copies;
+  SlicedRanks& ranks;
+};
 
-/// Distributes the vertices of a slice of the blocks.
-void distribute_vertices(const SourceMesh& mesh, const partition::TopTree& top, const Share& slice,
-                         Chunks& chunks, SlicedRanks& ranks, const StageContext& context);
+/// Distributes the places of a slice of the blocks and notes their ranks. Rows of copies wait in
+/// `copy_rows`.
+void distribute_vertices(SlicedInput& input, const partition::TopTree& top, const Share& slice,
+                         Chunks& chunks, storage::RecordSpool<float>& copy_rows,
+                         const StageContext& context);
+
+/// Distributes the copies of a slice, whose rows wait.
+void distribute_copies(SlicedInput& input, const Share& slice,
+                       const storage::RecordSpool<float>& copy_rows, Chunks& chunks,
+                       storage::ScratchFile& scratch, const StageContext& context);
 
 /// Distributes the triangles of a slice of the blocks, as SourceMesh::read_triangle_blocks(). Reads
 /// the faces twice, and of the ranks those from the least vertex that they name to the greatest.
-FaceBlocks distribute_triangles(SourceMesh& mesh, const SlicedRanks& ranks, const Share& slice,
-                                Chunks& chunks, storage::ScratchFile& scratch,
-                                const StageContext& context);
+FaceBlocks distribute_triangles(SlicedInput& input, const Share& slice, Chunks& chunks,
+                                storage::ScratchFile& scratch, const StageContext& context);
 
 /// Distributes the triangles of all faces from that one on, as SourceMesh::read_triangles_from().
-mesh_io::FaceCounts distribute_triangles_from(std::uint64_t face, SourceMesh& mesh,
-                                              const SlicedRanks& ranks, Chunks& chunks,
-                                              storage::ScratchFile& scratch,
+mesh_io::FaceCounts distribute_triangles_from(std::uint64_t face, SlicedInput& input,
+                                              Chunks& chunks, storage::ScratchFile& scratch,
                                               const StageContext& context);
 
 /// When all triangles are distributed: the stage that would be refused comes late, and takes long

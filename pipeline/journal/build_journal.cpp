@@ -216,6 +216,13 @@ bool BuildJournal::take_sealed(const Entry& entry) {
   return is_understood([&] { return entry.contains("build") || take(entry); });
 }
 
+bool BuildJournal::take_sealed_copies(const Entry& entry) {
+  return is_understood([&] {
+    const Entry& chunk = entry.at("partition");
+    return chunk.at(0) < chunks_.count() && chunks_.restore_copies(chunk.at(0), chunk.at(1));
+  });
+}
+
 /// Of a build that was complete the scratch files are gone: entries of what lay there say nothing.
 void BuildJournal::look_ahead(const std::filesystem::path& path, storage::ScratchUse& use) {
   if (!files_.exists(path))

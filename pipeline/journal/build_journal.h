@@ -123,6 +123,8 @@ class BuildJournal {
   /// Takes an entry of another process, whose scratch files are mounted. False if it is none of a
   /// build of this tree.
   bool take_sealed(const nlohmann::json& entry);
+  /// Likewise an entry `partition`, but of the chunk only the copies.
+  bool take_sealed_copies(const nlohmann::json& entry);
   /// Puts back the pictures that entries named; false if the scratch file does not hold them.
   bool restore_pictures();
 

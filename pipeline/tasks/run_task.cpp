@@ -22,7 +22,9 @@
 #include "storage/format/work_directory.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -81,7 +83,7 @@ class Task {
   void mount_inputs();
   void mount(const TaskStage& stage, storage::ScratchFile& scratch);
   /// Takes an entry of a segment that is mounted. False if it does not fit the plan.
-  bool take(const storage::EntrySink::Entry& entry, const storage::SegmentName& from);
+  bool take(const storage::EntrySink::Entry& entry, const TaskStage& stage, std::uint32_t index);
   /// Of the journal's entry of a chunk.
   bool needs_chunk(const storage::EntrySink::Entry& partition) const;
   bool is_slice() const {
@@ -112,8 +114,8 @@ class Task {
   storage::SegmentWriter* entries_ = nullptr;  ///< the journal's
   std::unique_ptr<Workshop> workshop_;
   bool has_slices_ = false;
-  std::unique_ptr<InputSlices> slices_;  ///< of the stages that read them
-  bool faces_ended_ = false;             ///< what further slices have is nothing
+  std::unique_ptr<InputSlices> slices_;    ///< of the stages that read them
+  std::uint32_t last_faces_ = UINT32_MAX;  ///< slices behind this one have no triangles
 };
 
 void Task::open_workshop(const BuildPlan& plan, const BuildIdentity& identity,
@@ -169,7 +171,8 @@ void Task::go_on() {
   const StageContext context{config, plan, files(), meter_, environment_.cancel};
   open_workshop(plan, {source.decides_result, source.input_times}, mesh.attributes, context);
   if (is_slice() && has_slices_)
-    slices_ = std::make_unique<InputSlices>(config, source, *workshop_, context);
+    slices_ = std::make_unique<InputSlices>(config, source, Share{index_, plan_.tasks}, *workshop_,
+                                            context);
   mount_inputs();
   make(context);
   seal();
@@ -209,24 +212,30 @@ storage::ScratchFile& Task::scratch_of(TaskKind kind) {
 }
 
 void Task::mount(const TaskStage& stage, storage::ScratchFile& scratch) {
-  for (std::uint32_t i = 0; i < stage.tasks && !faces_ended_; ++i) {
+  for (std::uint32_t i = 0; i < stage.tasks; ++i) {
     environment_.cancel.check();
-    const storage::SegmentName from = name(stage.name, i);
-    const auto segment = open_segment(files(), work_, from);
+    const auto segment = open_segment(files(), work_, name(stage.name, i));
     if (segment->data_bytes() > 0)  // or there is nothing to be read, and no file to be kept open
       scratch.mount(segment->take_file());
-    segment->for_each([&](const storage::EntrySink::Entry& entry) { return take(entry, from); });
+    segment->for_each(
+        [&](const storage::EntrySink::Entry& entry) { return take(entry, stage, i); });
   }
-  faces_ended_ = false;
 }
 
-bool Task::take(const storage::EntrySink::Entry& entry, const storage::SegmentName& from) {
+bool Task::take(const storage::EntrySink::Entry& entry, const TaskStage& stage,
+                std::uint32_t index) {
   if (InputSlices::is_entry(entry)) {
-    faces_ended_ = faces_ended_ || InputSlices::ends_faces(entry);
-    return !slices_ || slices_->take(entry, {from.index, plan_.tasks});
+    if (InputSlices::ends_faces(entry))
+      last_faces_ = std::min(last_faces_, index);
+    return !slices_ || slices_->take(entry, {index, plan_.tasks});
   }
-  return (entry.contains("partition") && !needs_chunk(entry.at("partition"))) ||
-         workshop_->journal.take_sealed(entry);
+  if (!entry.contains("partition"))
+    return workshop_->journal.take_sealed(entry);
+  if (!needs_chunk(entry.at("partition")))
+    return true;
+  return stage.kind == TaskKind::faces && index > last_faces_
+             ? workshop_->journal.take_sealed_copies(entry)
+             : workshop_->journal.take_sealed(entry);
 }
 
 bool Task::needs_chunk(const storage::EntrySink::Entry& partition) const {
@@ -301,9 +310,9 @@ void Task::make(const StageContext& context) {
     return;  // `read` has made all chunks
   switch (stage_.kind) {
     case TaskKind::distribute:
-      return slices_->distribute(share, *entries_);
+      return slices_->distribute(*entries_);
     case TaskKind::faces:
-      return slices_->take_faces(share, *entries_);
+      return slices_->take_faces(*entries_);
     case TaskKind::join:
       return slices_->join();
     case TaskKind::leaves:

@@ -2,6 +2,7 @@
 
 #include "hierarchy/power_of_two.h"
 #include "partition/top_tree.h"
+#include "pipeline/tiles/spool_json.h"
 
 #include <algorithm>
 #include <bit>
@@ -27,17 +28,6 @@ void counts_to_starts(std::vector<std::uint32_t>& counts, std::vector<std::uint3
 /// How many levels above these three nodes of one level their ancestors still are three.
 int levels_apart(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   return std::min({std::bit_width(a ^ b), std::bit_width(b ^ c), std::bit_width(a ^ c)}) - 1;
-}
-
-template <class Record>
-nlohmann::json store(JoinedSpool<Record>& spool) {
-  const storage::StoredSpool stored = spool.store();
-  return {stored.bytes, stored.checksum, stored.block_bytes, stored.blocks};
-}
-
-template <class Record>
-bool restore(JoinedSpool<Record>& spool, const nlohmann::json& stored) {
-  return spool.restore({stored.at(0), stored.at(1), stored.at(2), stored.at(3)});
 }
 
 }  // namespace
@@ -275,6 +265,10 @@ bool Chunks::restore(std::uint32_t chunk, const nlohmann::json& stored) {
          pipeline::restore(shared_[chunk], stored.at(2)) &&
          (!has_copies() || (pipeline::restore(copies_[chunk], stored.at(3)) &&
                             pipeline::restore(wedged_[chunk], stored.at(4))));
+}
+
+bool Chunks::restore_copies(std::uint32_t chunk, const nlohmann::json& stored) {
+  return !has_copies() || pipeline::restore(copies_[chunk], stored.at(3));
 }
 
 bool Chunks::has(std::uint32_t chunk) const {

@@ -156,6 +156,8 @@ class Chunks {
   /// Takes that, behind what is there of the chunk. False if it contradicts itself. Throws
   /// nlohmann::json::exception if `stored` is nothing of the kind.
   bool restore(std::uint32_t chunk, const nlohmann::json& stored);
+  /// Likewise, of what was stored the copies alone.
+  bool restore_copies(std::uint32_t chunk, const nlohmann::json& stored);
   /// Whether all vertices of a restored chunk are there, and the scratch file holds it as it was;
   /// reads it all.
   bool is_as_stored(std::uint32_t chunk) const;

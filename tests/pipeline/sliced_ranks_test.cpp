@@ -24,7 +24,7 @@ class SlicedRanksTest : public testing::Test {
 
   /// What a slice of so many stores.
   nlohmann::json slice(const Share& share) {
-    SlicedRanks ranks(map_, kBlocks, scratch_);
+    SlicedRanks ranks(map_, kVertices, kBlocks, scratch_);
     std::vector<std::uint32_t> counts(map_.count());
     for (std::uint64_t block = share.begin(kBlocks); block < share.end(kBlocks); ++block) {
       std::vector<std::uint32_t> of_block;
@@ -51,7 +51,7 @@ TEST_F(SlicedRanksTest, AnyCutGivesTheRanksOfOneSlice) {
   for (std::uint32_t id = 0; id < kVertices; ++id)
     expected[id] = map_.first_rank(chunk_of(id)) + next[chunk_of(id)]++;
   for (const std::uint32_t slices : {1U, 3U, 7U, 10U, 13U}) {
-    SlicedRanks ranks(map_, kBlocks, scratch_);
+    SlicedRanks ranks(map_, kVertices, kBlocks, scratch_);
     for (std::uint32_t i = 0; i < slices; ++i) {
       EXPECT_EQ(ranks.is_whole(), false);
       ASSERT_TRUE(ranks.restore({i, slices}, slice({i, slices}))) << i << " of " << slices;
@@ -71,7 +71,7 @@ TEST_F(SlicedRanksTest, AnyCutGivesTheRanksOfOneSlice) {
 TEST_F(SlicedRanksTest, SlicesThatDoNotFitAreRefused) {
   const nlohmann::json first = slice({0, 2}), second = slice({1, 2});
   const auto is_taken = [&](const Share& share, const nlohmann::json& stored) {
-    SlicedRanks ranks(map_, kBlocks, scratch_);
+    SlicedRanks ranks(map_, kVertices, kBlocks, scratch_);
     return ranks.restore({0, 2}, first) && ranks.restore(share, stored);
   };
   ASSERT_TRUE(is_taken({1, 2}, second));
@@ -84,10 +84,8 @@ TEST_F(SlicedRanksTest, SlicesThatDoNotFitAreRefused) {
   other["counts"].erase(3);
   EXPECT_FALSE(is_taken({1, 2}, other)) << "another number of chunks";
   other = second;
-  other["blocks"][0][1] = 119'996;
-  EXPECT_FALSE(is_taken({1, 2}, other)) << "a vertex less";
-  other["blocks"][0][1] = 119'997;
-  EXPECT_FALSE(is_taken({1, 2}, other)) << "no whole numbers";
+  other["blocks"].erase(4);
+  EXPECT_FALSE(is_taken({1, 2}, other)) << "a block less";
   other = second;
   other.erase("blocks");
   EXPECT_THROW(is_taken({1, 2}, other), nlohmann::json::exception);
@@ -96,12 +94,32 @@ TEST_F(SlicedRanksTest, SlicesThatDoNotFitAreRefused) {
 TEST_F(SlicedRanksTest, RanksThatAreNoneAreRefused) {
   std::vector<std::uint32_t> counts(map_.count(), 75'000);
   for (const std::uint32_t wrong : {kVertices, UINT32_MAX}) {
-    SlicedRanks made(map_, 1, scratch_), read(map_, 1, scratch_);
+    SlicedRanks made(map_, kVertices, 1, scratch_), read(map_, kVertices, 1, scratch_);
     made.put(0, std::vector<std::uint32_t>(kVertices, wrong));
     ASSERT_TRUE(read.restore({0, 1}, made.store({0, 1}, counts)));
     std::vector<std::uint32_t> ranks(1);
     EXPECT_THROW(read.read(5, ranks), Error);
+    EXPECT_THROW(read.read(kVertices, ranks), Error);
   }
+}
+
+TEST_F(SlicedRanksTest, CopiesHaveNoneOfTheirOwn) {
+  constexpr std::uint32_t kCopies = 2;
+  constexpr std::uint64_t kAll = kVertices + kCopies;
+  std::vector<std::uint32_t> all(kAll), counts;
+  for (std::uint32_t chunk = 0; chunk < map_.count(); ++chunk)
+    counts.push_back(map_.size(chunk));
+  for (std::uint32_t id = 0; id < kVertices; ++id)
+    all[id] = id;
+  all[kVertices] = all[kVertices + 1] = SlicedRanks::kCopy;
+  SlicedRanks made(map_, kAll, 1, scratch_), read(map_, kAll, 1, scratch_);
+  made.put(0, all);
+  ASSERT_TRUE(read.restore({0, 1}, made.store({0, 1}, counts)));
+  ASSERT_TRUE(read.is_whole());
+  std::vector<std::uint32_t> ranks(kAll);
+  read.read(0, ranks);
+  EXPECT_EQ(ranks, all);
+  EXPECT_EQ(read.ids_of({0, 1}).size(), kAll);
 }
 
 }  // namespace

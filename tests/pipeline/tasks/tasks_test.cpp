@@ -264,11 +264,33 @@ TEST_F(TasksTest, SlicesOfManyChunksMakeTheSameBytes) {
   expect_any_cut_makes_the_same({7});
 }
 
-TEST_F(TasksTest, InputWithoutSlicesMakesTheSameBytes) {
-  tests::write_ply(tests::duplicates(6000, 0.01F), file("mesh.ply"));
-  config_.input = file("mesh.ply");
-  expect_any_cut_makes_the_same({3});
+/// Vertices of one place are in different slices, and so are their triangles.
+TEST_F(TasksTest, SlicesOfAMeshWithCopiesMakeTheSameBytes) {
+  use_long_rows(tests::duplicates(6000, 0.01F), 1600, 800);
+  expect_any_cut_makes_the_same({1, 3, 7, 20});
   config_.topology = Topology::index;
+  expect_any_cut_makes_the_same({3});
+}
+
+TEST_F(TasksTest, SlicesOfManyChunksWithCopiesMakeTheSameBytes) {
+  use_long_rows(tests::shuffled(tests::duplicates(400'000, 0.001F), 1), 80, 32);
+  config_.partition.vertices = 8192;
+  config_.simplify.vertices = 2000;
+  expect_any_cut_makes_the_same({1, 7});
+}
+
+TEST_F(TasksTest, InputWithoutSlicesMakesTheSameBytes) {
+  const tests::TestMesh mesh = tests::duplicates(1500, 0.01F);
+  std::ofstream out(file("mesh.ply"));
+  out << "ply\nformat ascii 1.0\nelement vertex " << mesh.positions.size()
+      << "\nproperty float x\nproperty float y\nproperty float z\nelement face "
+      << mesh.triangles.size() << "\nproperty list uchar uint vertex_indices\nend_header\n";
+  for (const Vec3f& p : mesh.positions)
+    out << p.x << ' ' << p.y << ' ' << p.z << '\n';
+  for (const tests::MeshTriangle& t : mesh.triangles)
+    out << "3 " << t[0] << ' ' << t[1] << ' ' << t[2] << '\n';
+  out.close();
+  config_.input = file("mesh.ply");
   expect_any_cut_makes_the_same({3});
 }
 
@@ -279,7 +301,7 @@ TEST_F(TasksTest, PointsMakeTheSameBytes) {
 
 /// Behind a polygon no face has a known place: what slices make of the rest must not count.
 TEST_F(TasksTest, PolygonsBetweenTrianglesMakeTheSameBytes) {
-  const tests::TestMesh mesh = tests::sphere(6000, 0.01F);
+  const tests::TestMesh mesh = tests::duplicates(6000, 0.01F);
   std::vector<std::vector<std::uint32_t>> faces;
   for (const tests::MeshTriangle& t : mesh.triangles)
     faces.emplace_back(t.begin(), t.end());
@@ -415,7 +437,7 @@ TEST_F(TasksTest, NoFlippedByteReachesTheResult) {
 
 /// Likewise of what slices leave: some stage up to `leaves` refuses it.
 TEST_F(TasksTest, NoFlippedByteOfASliceReachesTheLeaves) {
-  use_blocks();
+  use_long_rows(tests::duplicates(6000, 0.01F), 1600, 800);
   const TaskPlan planned = plan(2);
   for (const std::string stage : {"distribute", "faces"}) {
     run_until(planned, "leaves");
