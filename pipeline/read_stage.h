@@ -24,7 +24,7 @@ struct InputSplits {
 };
 
 /// Reads the vertices and notes the source, without its faces and its checksum: all but what slices
-/// do (partition_stage.h). None if the input has no slices: it was imported, or its vertices are
+/// do (slice_stage.h). None if the input has no slices: it was imported, or its vertices are
 /// not in place. Then all is done as by read_mesh().
 std::optional<InputSplits> read_splits(importing::MeshInput& input, Workshop& workshop,
                                        const StageContext& context);

@@ -2,6 +2,7 @@
 
 #include "hierarchy/error.h"
 #include "pipeline/import_stage.h"
+#include "pipeline/partition_stage.h"
 #include "pipeline/tiles/blob_json.h"
 #include "pipeline/tiles/spool_json.h"
 

@@ -14,10 +14,10 @@
 #include "partition/top_tree.h"
 #include "pipeline/ingest_stage.h"
 #include "pipeline/journal/workshop.h"
-#include "pipeline/partition_stage.h"
 #include "pipeline/plan/share.h"
 #include "pipeline/plan/stage_context.h"
 #include "pipeline/read_stage.h"
+#include "pipeline/slice_stage.h"
 #include "pipeline/sliced_ranks.h"
 #include "storage/format/segment.h"
 
