@@ -22,18 +22,65 @@ using partition::WedgeRank;
 
 constexpr const char* kStage = "partition";
 
+/// Ids in whole blocks: all that some triangles name, and their neighbours in the file.
+class NamedIds {
+ public:
+  explicit NamedIds(std::uint64_t vertices = 0) : vertices_(vertices) {}
+
+  void clear() { blocks_.assign((vertices_ + kBlock - 1) / kBlock, 0); }
+  void add(VertexId id) { blocks_[raw(id) / kBlock] = 1; }
+  void add(const NamedIds& other) {
+    for (std::size_t i = 0; i < blocks_.size(); ++i)
+      blocks_[i] = static_cast<char>(blocks_[i] | other.blocks_[i]);
+  }
+  void add_all() { blocks_.assign(blocks_.size(), 1); }
+
+  std::uint64_t first() const { return begin_of(std::ranges::find(blocks_, 1) - blocks_.begin()); }
+  std::uint64_t end() const {
+    return begin_of(std::find(blocks_.rbegin(), blocks_.rend(), 1).base() - blocks_.begin());
+  }
+
+  /// Calls visit(first, end) for the runs of them within [first, end).
+  template <class Visit>
+  void for_each_run(std::uint64_t first, std::uint64_t end, const Visit& visit) const {
+    while (first < end) {
+      const auto begin = blocks_.begin() + static_cast<std::ptrdiff_t>(first / kBlock);
+      const auto other = std::find(begin, blocks_.end(), *begin == 0 ? 1 : 0);
+      const std::uint64_t next = std::min(end, begin_of(other - blocks_.begin()));
+      if (*begin != 0)
+        visit(first, next);
+      first = next;
+    }
+  }
+
+ private:
+  static constexpr std::uint64_t kBlock =
+      65536;  // about a block of vertices, which is read as a whole
+
+  std::uint64_t begin_of(std::ptrdiff_t block) const {
+    return std::min(static_cast<std::uint64_t>(block) * kBlock, vertices_);
+  }
+
+  std::uint64_t vertices_;
+  std::vector<char> blocks_;
+};
+
 /// Those that a share of the faces names. Reads the faces.
-IdRange ids_of(SourceMesh& mesh, const Share& share, const StageContext& context) {
-  IdRange all;
-  mesh.read_triangle_blocks<IdRange>(
+NamedIds ids_of(SourceMesh& mesh, const Share& share, const StageContext& context) {
+  const std::uint64_t vertices = mesh.summary().vertices;
+  NamedIds all(vertices);
+  all.clear();
+  mesh.read_triangle_blocks<NamedIds>(
       share, context.memory().blocks_in_flight, context.cancel,
-      [](std::span<const Triangle<VertexId>> triangles, IdRange& ids) {
-        ids = {};
-        for (const Triangle<VertexId>& t : triangles)
-          ids.add({std::min({raw(t[0]), raw(t[1]), raw(t[2])}),
-                   std::max({raw(t[0]), raw(t[1]), raw(t[2])})});
+      [&](std::span<const Triangle<VertexId>> triangles, NamedIds& ids) {
+        ids = NamedIds(vertices);
+        ids.clear();
+        for (const Triangle<VertexId>& t : triangles) {
+          for (const VertexId id : t)
+            ids.add(id);
+        }
       },
-      [&](const IdRange& ids) { all.add(ids); });
+      [&](const NamedIds& ids) { all.add(ids); });
   return all;
 }
 
@@ -69,29 +116,29 @@ class RankCursor {
   std::vector<std::uint32_t> block_;
 };
 
-/// Calls take(ranked copy) for the copies among some ids, in their order.
-template <class Take>
-void rank_copies(const SlicedInput& input, const IdRange& ids, storage::ScratchFile& passing,
+/// Calls take(ranked copy) for all copies that for_each(visit) visits, in the order of ids.
+template <class ForEach, class Take>
+void rank_copies(const SlicedInput& input, const ForEach& for_each, storage::ScratchFile& passing,
                  const StageContext& context, const Take& take) {
-  if (ids.size() == 0)
-    return;
   RankCursor rank_of(input.ranks, input.mesh.summary().vertices);
   partition::rank_copies(
-      [&](const auto& visit) {
-        input.copies.for_each(
-            ids.first, std::uint64_t{ids.last} + 1, [&] { context.cancel.check(); }, visit);
-      },
-      [&](std::uint32_t first) { return rank_of(first); }, passing, context.memory().table_bytes,
-      take);
+      for_each, [&](std::uint32_t first) { return rank_of(first); }, passing,
+      context.memory().table_bytes, take);
 }
 
 /// The table of ranks of some ids, in their order, of a mesh with copies.
 class WedgeTable {
  public:
-  WedgeTable(const SlicedInput& input, const IdRange& ids, storage::ScratchFile& passing,
+  WedgeTable(const SlicedInput& input, const NamedIds& ids, storage::ScratchFile& passing,
              const StageContext& context)
       : ranks_(input.ranks), copies_(passing, 1 << 18) {
-    rank_copies(input, ids, passing, context,
+    const auto for_each = [&](const auto& visit) {
+      ids.for_each_run(ids.first(), ids.end(), [&](std::uint64_t first, std::uint64_t end) {
+        input.copies.for_each(
+            first, end, [&] { context.cancel.check(); }, visit);
+      });
+    };
+    rank_copies(input, for_each, passing, context,
                 [&](const partition::RankedCopy& copy) { copies_.append(copy); });
     cursor_.emplace(copies_, context.cancel);
   }
@@ -126,30 +173,30 @@ class WedgeTable {
 
 /// Calls distribute(triangles) with a TriangleDistribution whose table is that of some ids.
 template <class Distribute>
-auto with_table(SlicedInput& input, const IdRange& ids, Chunks& chunks,
+auto with_table(SlicedInput& input, const NamedIds& ids, Chunks& chunks,
                 storage::ScratchFile& scratch, const StageContext& context,
                 const Distribute& distribute) {
   storage::ScratchFile passing = scratch.beside("ranks");
-  const std::uint64_t first = ids.size() == 0 ? 0 : ids.first;
-  const auto run = [&]<class Slot, class Rank>(Slot, RenumberTable<Rank> table) {
+  const std::uint64_t first = ids.first();
+  const std::uint64_t count = ids.end() - std::min(first, ids.end());
+  const auto run = [&]<class Slot, class Rank>(Slot, Rank, auto& table) {
+    const auto read = [&](std::uint64_t id, std::span<Rank> ranks) {
+      ids.for_each_run(id, id + ranks.size(), [&](std::uint64_t begin, std::uint64_t end) {
+        table.read(begin, ranks.subspan(begin - id, end - begin));
+      });
+    };
     const partition::RenumberPlan plan =
-        partition::plan_renumbering(table.entries, sizeof(Rank), context.memory().table_bytes);
+        partition::plan_renumbering(count, sizeof(Rank), context.memory().table_bytes);
     TriangleDistribution<Slot, Rank> triangles(
-        input.mesh, Renumberer<Rank>(std::move(table), plan, passing), chunks, context);
+        input.mesh, Renumberer<Rank>({first, count, read}, plan, passing), chunks, context);
     const auto result = distribute(triangles);
     triangles.finish();
     return result;
   };
-  if (input.copies.empty()) {
-    return run(TrianglesByRank{},
-               RenumberTable<std::uint32_t>{first, ids.size(), [&](std::uint64_t id, auto ranks) {
-                                              input.ranks.read(id, ranks);
-                                            }});
-  }
+  if (input.copies.empty())
+    return run(TrianglesByRank{}, std::uint32_t{}, input.ranks);
   WedgeTable table(input, ids, passing, context);
-  return run(TrianglesByWedge{},
-             RenumberTable<WedgeRank>{
-                 first, ids.size(), [&](std::uint64_t id, auto ranks) { table.read(id, ranks); }});
+  return run(TrianglesByWedge{}, WedgeRank{}, table);
 }
 
 /// Of so many, what a share of the blocks has about.
@@ -189,18 +236,22 @@ void distribute_vertices(SlicedInput& input, const partition::TopTree& top, cons
 void distribute_copies(SlicedInput& input, const Share& slice,
                        const storage::RecordSpool<float>& copy_rows, Chunks& chunks,
                        storage::ScratchFile& scratch, const StageContext& context) {
+  const auto [first, end] = input.ranks.ids_of(slice);
+  const auto for_each = [&, first = first, end = end](const auto& visit) {
+    input.copies.for_each(
+        first, end, [&] { context.cancel.check(); }, visit);
+  };
   storage::ScratchFile passing = scratch.beside("ranks");
   execution::SpoolCursor values(copy_rows, context.cancel);
   std::vector<float> row(chunks.row_width());
   std::uint64_t next = 0;
-  rank_copies(input, input.ranks.ids_of(slice), passing, context,
-              [&](const partition::RankedCopy& copy) {
-                if (copy_rows.size() - next < row.size())
-                  RankCursor::throw_unknown();
-                for (float& value : row)
-                  value = values.at(next++);
-                chunks.append_copy(copy.rank.rank, row);
-              });
+  rank_copies(input, for_each, passing, context, [&](const partition::RankedCopy& copy) {
+    if (copy_rows.size() - next < row.size())
+      RankCursor::throw_unknown();
+    for (float& value : row)
+      value = values.at(next++);
+    chunks.append_copy(copy.rank.rank, row);
+  });
 }
 
 FaceBlocks distribute_triangles(SlicedInput& input, const Share& slice, Chunks& chunks,
@@ -215,8 +266,11 @@ mesh_io::FaceCounts distribute_triangles_from(std::uint64_t face, SlicedInput& i
                                               const StageContext& context) {
   const std::uint64_t left = input.mesh.declared_faces() - face;
   context.progress.stage(kStage, left, "triangles");
-  const auto last = static_cast<std::uint32_t>(input.mesh.summary().vertices - 1);
-  return with_table(input, left == 0 ? IdRange{} : IdRange{0, last}, chunks, scratch, context,
+  NamedIds ids(input.mesh.summary().vertices);
+  ids.clear();
+  if (left > 0)
+    ids.add_all();
+  return with_table(input, ids, chunks, scratch, context,
                     [&](auto& triangles) { return triangles.take_from(face); });
 }
 

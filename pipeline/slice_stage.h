@@ -37,7 +37,7 @@ void distribute_copies(SlicedInput& input, const Share& slice,
                        storage::ScratchFile& scratch, const StageContext& context);
 
 /// Distributes the triangles of a slice of the blocks, as SourceMesh::read_triangle_blocks(). Reads
-/// the faces twice, and of the ranks those from the least vertex that they name to the greatest.
+/// the faces twice, and of the ranks about those of the vertices that they name.
 FaceBlocks distribute_triangles(SlicedInput& input, const Share& slice, Chunks& chunks,
                                 storage::ScratchFile& scratch, const StageContext& context);
 

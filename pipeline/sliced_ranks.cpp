@@ -56,11 +56,7 @@ bool SlicedRanks::is_whole() const {
 }
 
 IdRange SlicedRanks::ids_of(const Share& slice) const {
-  const std::uint64_t first = vertices_[slice.begin(blobs_.count())];
-  const std::uint64_t end = vertices_[slice.end(blobs_.count())];
-  return first == end
-             ? IdRange{}
-             : IdRange{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(end - 1)};
+  return {vertices_[slice.begin(blobs_.count())], vertices_[slice.end(blobs_.count())]};
 }
 
 void SlicedRanks::read(std::uint64_t id, std::span<std::uint32_t> ranks) const {

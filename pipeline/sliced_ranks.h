@@ -8,7 +8,6 @@
 #include "pipeline/plan/share.h"
 #include "storage/io/blob_store.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -17,15 +16,9 @@
 
 namespace meshhier::pipeline {
 
-/// Ids from the first up to the last; none at first.
+/// Ids [first, end).
 struct IdRange {
-  std::uint32_t first = UINT32_MAX, last = 0;
-
-  std::uint64_t size() const { return first > last ? 0 : std::uint64_t{last} - first + 1; }
-  void add(const IdRange& other) {
-    first = std::min(first, other.first);
-    last = std::max(last, other.last);
-  }
+  std::uint64_t first = 0, end = 0;
 };
 
 class SlicedRanks {
