@@ -17,7 +17,6 @@ namespace meshhier::pipeline {
 namespace {
 
 using partition::Renumberer;
-using partition::RenumberTable;
 using partition::WedgeRank;
 
 constexpr const char* kStage = "partition";
@@ -25,9 +24,9 @@ constexpr const char* kStage = "partition";
 /// Ids in whole blocks: all that some triangles name, and their neighbours in the file.
 class NamedIds {
  public:
-  explicit NamedIds(std::uint64_t vertices = 0) : vertices_(vertices) {}
+  explicit NamedIds(std::uint64_t vertices = 0)
+      : vertices_(vertices), blocks_((vertices + kBlock - 1) / kBlock) {}
 
-  void clear() { blocks_.assign((vertices_ + kBlock - 1) / kBlock, 0); }
   void add(VertexId id) { blocks_[raw(id) / kBlock] = 1; }
   void add(const NamedIds& other) {
     for (std::size_t i = 0; i < blocks_.size(); ++i)
@@ -54,8 +53,8 @@ class NamedIds {
   }
 
  private:
-  static constexpr std::uint64_t kBlock =
-      65536;  // about a block of vertices, which is read as a whole
+  // About a block of vertices, whose ranks are read as a whole.
+  static constexpr std::uint64_t kBlock = 65536;
 
   std::uint64_t begin_of(std::ptrdiff_t block) const {
     return std::min(static_cast<std::uint64_t>(block) * kBlock, vertices_);
@@ -69,12 +68,10 @@ class NamedIds {
 NamedIds ids_of(SourceMesh& mesh, const Share& share, const StageContext& context) {
   const std::uint64_t vertices = mesh.summary().vertices;
   NamedIds all(vertices);
-  all.clear();
   mesh.read_triangle_blocks<NamedIds>(
       share, context.memory().blocks_in_flight, context.cancel,
       [&](std::span<const Triangle<VertexId>> triangles, NamedIds& ids) {
         ids = NamedIds(vertices);
-        ids.clear();
         for (const Triangle<VertexId>& t : triangles) {
           for (const VertexId id : t)
             ids.add(id);
@@ -109,7 +106,8 @@ class RankCursor {
   }
 
  private:
-  static constexpr std::uint64_t kBlock = 65536;  // more than a block of vertices has
+  // No fewer than a block of vertices has, whose ranks are read as a whole.
+  static constexpr std::uint64_t kBlock = 65536;
   const SlicedRanks& ranks_;
   std::uint64_t vertices_;
   std::uint32_t first_ = 0;
@@ -156,8 +154,8 @@ class WedgeTable {
   }
 
  private:
-  static constexpr std::size_t kBlock =
-      262144;  // several blocks of vertices: each is read as a whole
+  // Several blocks of vertices, whose ranks are read as a whole.
+  static constexpr std::size_t kBlock = 262144;
 
   WedgeRank copy(std::uint64_t id) {
     if (next_ == copies_.size() || cursor_->at(next_).id != id)
@@ -267,7 +265,6 @@ mesh_io::FaceCounts distribute_triangles_from(std::uint64_t face, SlicedInput& i
   const std::uint64_t left = input.mesh.declared_faces() - face;
   context.progress.stage(kStage, left, "triangles");
   NamedIds ids(input.mesh.summary().vertices);
-  ids.clear();
   if (left > 0)
     ids.add_all();
   return with_table(input, ids, chunks, scratch, context,
