@@ -108,6 +108,7 @@ Exit codes that are worth another try: 4 (a file, a full disk, or a task before 
 
 Examples:
   meshhier task david.work read
+  meshhier task david.work distribute                    all tasks of the stage
   meshhier task david.work leaves --index 3              task 3 alone
   meshhier task david.work leaves --index 1 --of 4       tasks 1, 5, 9, ...
   srun -n 8 meshhier task david.work level-1

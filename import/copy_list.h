@@ -2,14 +2,22 @@
 #pragma once
 
 #include "hierarchy/copy_vertex.h"
+#include "storage/io/blob_store.h"
 #include "storage/io/spool.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
 namespace meshhier::importing {
+
+/// Where a scratch file holds the copies of a block of ids.
+struct StoredCopies {
+  std::uint64_t block = 0;
+  storage::StoredBlob blob;
+};
 
 /// All copies of a mesh, ascending by id, in a spool. An empty one holds nothing.
 class CopyList {
@@ -18,39 +26,81 @@ class CopyList {
   /// `scratch` must outlive the list.
   explicit CopyList(storage::ScratchFile& scratch);
 
+  /// Of so many vertices, for restore().
+  CopyList(storage::ScratchFile& scratch, std::uint64_t vertices);
+
   /// In ascending order.
   void append(const CopyVertex& copy);
 
-  std::uint64_t count() const { return copies_ ? copies_->size() : 0; }
+  /// Puts all into another scratch file, for restore(), in another process even; `check` as for
+  /// for_each().
+  template <class Check>
+  std::vector<StoredCopies> store(storage::ScratchFile& scratch, const Check& check) const;
+  /// Takes a block that was stored; false if it is none of this mesh, or if the scratch file does
+  /// not hold it.
+  bool restore(const StoredCopies& stored);
+
+  std::uint64_t count() const { return copies_ ? copies_->size() : restored_count_; }
   bool empty() const { return count() == 0; }
 
   /// Those with ids in [first, first + count), in `memory`. Thread-safe for different `memory`.
-  /// Reads whole blocks of kBlockIds ids.
+  /// Reads whole blocks of kBlockIds ids. Throws as BlobStore::view() of what was restored.
   std::span<const CopyVertex> read(std::uint64_t first, std::uint64_t count,
                                    std::vector<CopyVertex>& memory) const;
 
   /// Calls visit(copy) for all, ascending by id; `check` before each block, which may throw.
   template <class Check, class Visit>
   void for_each(const Check& check, const Visit& visit) const {
+    for_each(0, blocks() * kBlockIds, check, visit);
+  }
+  /// Likewise of those with ids in [first, end).
+  template <class Check, class Visit>
+  void for_each(std::uint64_t first, std::uint64_t end, const Check& check,
+                const Visit& visit) const {
     std::vector<CopyVertex> memory;
-    for (std::uint64_t block = 0; block < starts_.size(); ++block) {
+    end = std::min(end, blocks() * kBlockIds);
+    while (first < end) {
       check();
-      for (const CopyVertex& copy : read(block * kBlockIds, kBlockIds, memory))
+      const std::uint64_t next = std::min(end, (first / kBlockIds + 1) * kBlockIds);
+      for (const CopyVertex& copy : read(first, next - first, memory))
         visit(copy);
+      first = next;
     }
   }
 
   static constexpr std::uint64_t kBlockIds = 65536;  ///< as many as blocks of vertices have
 
  private:
+  std::uint64_t blocks() const { return blobs_ ? blobs_->count() : starts_.size(); }
+  /// Those of a block of ids, behind what is in `memory`.
+  void add_block(std::uint64_t block, std::vector<CopyVertex>& memory) const;
   /// The first copy of a block of ids, or behind it.
   std::uint64_t start(std::uint64_t block) const {
     return block < starts_.size() ? starts_[block] : count();
   }
 
   std::unique_ptr<storage::RecordSpool<CopyVertex>> copies_;
-  std::vector<std::uint64_t> starts_;  ///< of each block of ids that is begun
+  std::vector<std::uint64_t> starts_;          ///< of each block of ids that is begun
+  std::unique_ptr<storage::BlobStore> blobs_;  ///< of a restored list, by block of ids
+  std::uint64_t restored_count_ = 0;
 };
+
+template <class Check>
+std::vector<StoredCopies> CopyList::store(storage::ScratchFile& scratch, const Check& check) const {
+  storage::BlobStore blobs(scratch, blocks());
+  std::vector<StoredCopies> stored;
+  std::vector<CopyVertex> memory;
+  for (std::uint64_t block = 0; block < blocks(); ++block) {
+    check();
+    memory.clear();
+    add_block(block, memory);
+    if (memory.empty())
+      continue;
+    blobs.put(block, std::as_bytes(std::span(memory)));
+    stored.push_back({block, blobs.stored(block)});
+  }
+  return stored;
+}
 
 /// Asks for ids in ascending order whether they are copies.
 class CopyCursor {

@@ -6,6 +6,7 @@
 #include "hierarchy/triangle.h"
 #include "hierarchy/vec.h"
 #include "storage/io/file.h"
+#include "storage/io/file_checksum.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -47,6 +48,11 @@ struct FaceCounts {
   std::uint64_t triangles = 0;  ///< handed out
   std::uint64_t degenerate_triangles =
       0;  ///< dropped: a vertex twice, or a polygon of fewer than three corners
+
+  friend FaceCounts operator+(const FaceCounts& a, const FaceCounts& b) {
+    return {a.faces + b.faces, a.triangles + b.triangles,
+            a.degenerate_triangles + b.degenerate_triangles};
+  }
 };
 
 /// Some triangles of consecutive faces. Valid as long as the memory it was read into is not used.
@@ -108,6 +114,10 @@ class MeshSource {
   /// The file's storage::FileChecksum: reads what of the file was not read so far. `check` is
   /// called before each read and may throw.
   virtual std::uint64_t checksum(const std::function<void()>& check) = 0;
+  /// Of what was read so far.
+  virtual std::vector<storage::BlockSums> known_sums() const = 0;
+  /// Takes what another process has read of the same file; false if that is not so long.
+  virtual bool add_sums(const storage::BlockSums& sums) = 0;
 
   static constexpr std::size_t kBlockSize =
       65536;  ///< 768 KiB of positions: in the L2 cache, large enough to amortise

@@ -58,6 +58,8 @@ class PlyFileSource final : public PlySource {
   std::uint64_t checksum(const std::function<void()>& check) override {
     return checksum_.complete(*file_, check);
   }
+  std::vector<storage::BlockSums> known_sums() const override { return checksum_.known(); }
+  bool add_sums(const storage::BlockSums& sums) override { return checksum_.add(sums); }
 
  private:
   InputFile input() const { return {*file_, file_bytes_, &checksum_}; }

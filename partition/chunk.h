@@ -47,6 +47,25 @@ class ChunkMap {
   std::vector<std::uint64_t> starts_;
 };
 
+/// The chunk of a rank, mostly that of the rank before.
+class ChunkFinder {
+ public:
+  explicit ChunkFinder(const ChunkMap& map) : map_(map), size_(map.size(0)) {}
+
+  std::uint32_t chunk_of(std::uint32_t rank) {
+    if (rank - first_ >= size_) {
+      chunk_ = map_.chunk_of(rank);
+      first_ = map_.first_rank(chunk_);
+      size_ = map_.size(chunk_);
+    }
+    return chunk_;
+  }
+
+ private:
+  const ChunkMap& map_;
+  std::uint32_t chunk_ = 0, first_ = 0, size_;
+};
+
 /// Splits a chunk down to partitions of exact sizes. Returns each vertex's partition. `longest`
 /// splits at exact medians; `compactness` along short lines on the surface (graph_split.h), at
 /// medians if no triangle lies within the chunk. Independent of the order of the triangles.

@@ -22,6 +22,42 @@ struct WedgeRank {
   std::uint32_t wedge = 0;
 };
 
+/// What the corner of a copy becomes.
+struct RankedCopy {
+  std::uint32_t id = 0;
+  WedgeRank rank;
+};
+
+/// Finds the ranks of copies. for_each(visit) calls visit(copy) for all of them in the order of
+/// ids; rank_of(first) tells the rank of a place by its first vertex, in ascending order;
+/// take(ranked copy) is called for each in the order of ids. O(n log n), by sorting in
+/// `memory_bytes` besides what the scratch file's pool grants.
+template <class ForEach, class RankOf, class Take>
+void rank_copies(const ForEach& for_each, const RankOf& rank_of, storage::ScratchFile& scratch,
+                 std::uint64_t memory_bytes, const Take& take) {
+  struct ByFirst {
+    std::uint32_t operator()(const CopyVertex& copy) const { return copy.first; }
+  };
+  struct ById {
+    std::uint32_t operator()(const RankedCopy& copy) const { return copy.id; }
+  };
+  ExternalSort<RankedCopy, ById> by_id(scratch, memory_bytes / 2);
+  {
+    ExternalSort<CopyVertex, ByFirst> by_first(scratch, memory_bytes / 2);
+    for_each([&](const CopyVertex& copy) { by_first.add(copy); });
+    by_first.sort();
+    by_first.for_each_block([&](std::span<const CopyVertex> block) {
+      for (const CopyVertex& copy : block)
+        by_id.add({copy.id, {rank_of(copy.first), copy.slot}});
+    });
+  }
+  by_id.sort();
+  by_id.for_each_block([&](std::span<const RankedCopy> block) {
+    for (const RankedCopy& copy : block)
+      take(copy);
+  });
+}
+
 /// `Rank`: std::uint32_t for meshes without copies, WedgeRank for others. In memory if it fits,
 /// else in a spool.
 template <class Rank>
@@ -74,18 +110,6 @@ class RankTable {
   static constexpr std::size_t kSpoolBytes = 1 << 18;
   static constexpr Rank kUnknown{};
 
-  struct ByFirst {
-    std::uint32_t operator()(const CopyVertex& copy) const { return copy.first; }
-  };
-  /// What a copy's entry becomes.
-  struct Settled {
-    std::uint32_t id;
-    Rank rank;
-  };
-  struct ById {
-    std::uint32_t operator()(const Settled& entry) const { return entry.id; }
-  };
-
   /// Entries of a spool, asked for in ascending order.
   class Reader {
    public:
@@ -118,38 +142,23 @@ class RankTable {
 
   template <class ForEach, class Take>
   void settle_spooled(const ForEach& for_each, const Take& take) {
-    ExternalSort<Settled, ById> by_id(scratch_, memory_bytes_ / 2);
-    look_up(for_each, by_id);
-    by_id.sort();
     storage::RecordSpool<Rank>& settled = settled_.emplace(scratch_, kSpoolBytes);
-    Reader table(spooled_);
+    Reader firsts(spooled_), table(spooled_);
     std::uint64_t next = 0;
     const auto copy_until = [&](std::uint64_t id) {
       for (; next < id; ++next)
         settled.append(table[next]);
     };
-    by_id.for_each_block([&](std::span<const Settled> block) {
-      for (const Settled& entry : block) {
-        copy_until(entry.id);
-        settled.append(entry.rank);
-        ++next;
-        take(entry.rank.rank);
-      }
-    });
+    rank_copies(
+        for_each, [&](std::uint32_t first) { return firsts[first].rank; }, scratch_, memory_bytes_,
+        [&](const RankedCopy& copy) {
+          copy_until(copy.id);
+          settled.append(copy.rank);
+          ++next;
+          take(copy.rank.rank);
+        });
     copy_until(spooled_.size());
     spooled_.clear();
-  }
-
-  template <class ForEach>
-  void look_up(const ForEach& for_each, ExternalSort<Settled, ById>& result) {
-    ExternalSort<CopyVertex, ByFirst> by_first(scratch_, memory_bytes_ / 2);
-    for_each([&](const CopyVertex& copy) { by_first.add(copy); });
-    by_first.sort();
-    Reader table(spooled_);
-    by_first.for_each_block([&](std::span<const CopyVertex> block) {
-      for (const CopyVertex& copy : block)
-        result.add({copy.id, {table[copy.first].rank, copy.slot}});
-    });
   }
 
   storage::ScratchFile& scratch_;

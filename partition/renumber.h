@@ -19,6 +19,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -79,6 +80,15 @@ struct Renumbered {
   std::vector<WaitingTriangle<Value>> read_begun;
 };
 
+/// Where the values of the ids first, first + 1, ... come from.
+template <class Value>
+struct RenumberTable {
+  std::uint64_t first = 0;  ///< id
+  std::uint64_t entries = 0;
+  /// Reads the values of the ids from `id` on.
+  std::function<void(std::uint64_t id, std::span<Value> values)> read;
+};
+
 /// Translates triangles in rounds:
 ///
 ///   translate() and keep() all triangles of the source;
@@ -92,15 +102,16 @@ class Renumberer {
   static_assert(std::is_trivially_copyable_v<Value>);
 
  public:
-  /// Entry i of the table is the value of id i. Memory: `plan`'s, and what the scratch file's pool
-  /// grants. Refers to `table`, from which it is read once.
+  /// Memory: `plan`'s, and what the scratch file's pool grants. The table is read once.
+  Renumberer(RenumberTable<Value> table, const RenumberPlan& plan, storage::ScratchFile& scratch);
+  /// Entry i of the table is the value of id i. Refers to it.
   Renumberer(const storage::RecordSpool<Value>& table, const RenumberPlan& plan,
              storage::ScratchFile& scratch);
   /// The whole table in memory: nothing waits.
   Renumberer(std::vector<Value> table, storage::ScratchFile& scratch);
 
-  /// Ids are unsigned integers or enums of 32 bits. Throws Error(internal) if one is not below the
-  /// table's size: sources check their ids.
+  /// Ids are unsigned integers or enums of 32 bits. Throws Error(internal) if the table has no such
+  /// id: sources check their ids.
   template <class Id>
   void translate(std::span<const Triangle<Id>> triangles, Renumbered<Value>& result) const;
 
@@ -130,13 +141,17 @@ class Renumberer {
 
   void make_buckets();
   void load(std::uint64_t block);
+  template <class Id>
+  void translate(std::span<const Triangle<Id>> triangles, std::uint32_t first_id,
+                 Renumbered<Value>& result) const;
   bool is_loaded(std::uint32_t id) const { return id - first_ < loaded_.size(); }
   void route_fresh(const Triangle<std::uint32_t>& ids, Renumbered<Value>& result) const;
   void route_begun(Waiting& triangle, Renumbered<Value>& result) const;
   /// Number of the bucket that waits for `id`: those of this group's blocks, then all groups'.
   std::uint32_t bucket_of(std::uint32_t id) const;
 
-  const storage::RecordSpool<Value>* table_ = nullptr;  ///< null: all is loaded
+  // Within, ids count from the table's first.
+  RenumberTable<Value> table_;
   std::uint64_t entries_;
   RenumberPlan plan_;
   storage::ScratchFile& scratch_;

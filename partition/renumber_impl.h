@@ -48,14 +48,21 @@ double expected_waiting_bytes(const RenumberPlan& plan, std::uint64_t triangles)
 }
 
 template <class Value>
-Renumberer<Value>::Renumberer(const storage::RecordSpool<Value>& table, const RenumberPlan& plan,
+Renumberer<Value>::Renumberer(RenumberTable<Value> table, const RenumberPlan& plan,
                               storage::ScratchFile& scratch)
-    : table_(&table), entries_(table.size()), plan_(plan), scratch_(scratch) {
+    : table_(std::move(table)), entries_(table_.entries), plan_(plan), scratch_(scratch) {
   report_.table_blocks = plan_.blocks;
   if (plan_.blocks > 1)
     make_buckets();
   load(0);
 }
+
+template <class Value>
+Renumberer<Value>::Renumberer(const storage::RecordSpool<Value>& table, const RenumberPlan& plan,
+                              storage::ScratchFile& scratch)
+    : Renumberer({0, table.size(),
+                  [&table](std::uint64_t id, std::span<Value> values) { table.read(id, values); }},
+                 plan, scratch) {}
 
 template <class Value>
 Renumberer<Value>::Renumberer(std::vector<Value> table, storage::ScratchFile& scratch)
@@ -76,7 +83,7 @@ void Renumberer<Value>::load(std::uint64_t block) {
   group_ = block / plan_.group_blocks;
   first_ = block * plan_.block_entries;
   loaded_.resize(std::min(plan_.block_entries, entries_ - first_));
-  table_->read(first_, loaded_);
+  table_.read(table_.first + first_, loaded_);
 }
 
 template <class Value>
@@ -91,13 +98,20 @@ template <class Value>
 template <class Id>
 void Renumberer<Value>::translate(std::span<const Triangle<Id>> triangles,
                                   Renumbered<Value>& result) const {
+  translate(triangles, static_cast<std::uint32_t>(table_.first), result);
+}
+
+template <class Value>
+template <class Id>
+void Renumberer<Value>::translate(std::span<const Triangle<Id>> triangles, std::uint32_t first_id,
+                                  Renumbered<Value>& result) const {
   result.finished.clear();
   result.fresh.clear();
   result.begun.clear();
   for (const Triangle<Id>& triangle : triangles) {
     Triangle<std::uint32_t> ids;
     for (std::size_t corner = 0; corner < 3; ++corner)
-      ids[corner] = static_cast<std::uint32_t>(triangle[corner]);
+      ids[corner] = static_cast<std::uint32_t>(triangle[corner]) - first_id;
     const std::uint32_t greatest = std::max({ids[0], ids[1], ids[2]});
     if (greatest >= entries_) {
       throw Error(ErrorCode::internal, "renumbering: a triangle refers to id " +
@@ -193,10 +207,10 @@ void Renumberer<Value>::translate_batch(std::uint64_t batch, Renumbered<Value>& 
   const std::uint64_t fresh_batches = draining_->fresh_batches();
   if (batch < fresh_batches) {
     read(draining_->fresh, batch, result.read_fresh);
-    translate(std::span<const Triangle<std::uint32_t>>(result.read_fresh), result);
+    translate(std::span<const Triangle<std::uint32_t>>(result.read_fresh), 0, result);
     return;
   }
-  translate(std::span<const Triangle<std::uint32_t>>(), result);
+  translate(std::span<const Triangle<std::uint32_t>>(), 0, result);
   read(draining_->begun, batch - fresh_batches, result.read_begun);
   for (Waiting& triangle : result.read_begun)
     route_begun(triangle, result);

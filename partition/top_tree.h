@@ -100,6 +100,8 @@ class TopTree {
   TopTree(Level chunks, std::vector<SplitPlane> planes)
       : chunks_(chunks), planes_(std::move(planes)) {}
   Level chunks() const { return chunks_; }
+  /// In heap order, as TopPlan::splits.
+  const std::vector<SplitPlane>& planes() const { return planes_; }
   /// NodeId::index on the chunk level.
   std::uint32_t chunk_of(Vec3f position, std::uint32_t id) const {
     return chunk_below(0, position, id);

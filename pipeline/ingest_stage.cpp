@@ -82,6 +82,15 @@ SourceMesh ingest(std::unique_ptr<mesh_io::MeshSource> source, std::string file_
   return mesh;
 }
 
+SourceMesh ingested(std::unique_ptr<mesh_io::MeshSource> source, const SourceSummary& summary,
+                    Vec3d origin, storage::ScratchFile& scratch) {
+  SourceMesh mesh(std::move(source), summary.file_name, scratch);
+  mesh.summary_ = summary;
+  mesh.origin_ = origin;
+  mesh.float_exact_ = !summary.double_precision;
+  return mesh;
+}
+
 void SourceMesh::scan(const StageContext& context) {
   execution::Progress& progress = context.progress;
   summary_.places = context.tree().vertex_count();

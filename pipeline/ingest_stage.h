@@ -9,6 +9,7 @@
 #include "import/copy_list.h"
 #include "mesh_io/mesh_source.h"
 #include "partition/split_plane.h"
+#include "pipeline/plan/share.h"
 #include "pipeline/plan/stage_context.h"
 #include "storage/io/spool.h"
 
@@ -40,6 +41,12 @@ struct SourceVertices {
   std::size_t channels() const {
     return attributes.size() / std::max<std::size_t>(positions.size(), 1);
   }
+};
+
+/// What reading faces block by block came to.
+struct FaceBlocks {
+  mesh_io::FaceCounts counts;
+  bool whole = true;  ///< else it ended at a face that is no sound triangle, which is not counted
 };
 
 /// A mesh that was read once: all vertices are sound.
@@ -74,15 +81,32 @@ class SourceMesh {
   template <class Slot, class Work, class Sink>
   mesh_io::FaceCounts read_triangles(std::size_t in_flight, const execution::CancelToken& cancel,
                                      const Work& work, const Sink& sink);
+  /// The first part of it: a share of the faces that can be read in blocks as triangles, up to the
+  /// first that is none. Means nothing unless those before it are triangles.
+  template <class Slot, class Work, class Sink>
+  FaceBlocks read_triangle_blocks(const Share& share, std::size_t in_flight,
+                                  const execution::CancelToken& cancel, const Work& work,
+                                  const Sink& sink);
+  /// The rest: all faces from that one on, those before being sound triangles. Counts only these.
+  template <class Slot, class Work, class Sink>
+  mesh_io::FaceCounts read_triangles_from(std::uint64_t face, std::size_t in_flight,
+                                          const execution::CancelToken& cancel, const Work& work,
+                                          const Sink& sink);
 
   /// The input's storage::FileChecksum; cheap when all has been read.
   std::uint64_t checksum(const execution::CancelToken& cancel) {
     return source_->checksum([&] { cancel.check(); });
   }
+  /// What of it is known, and what other processes have read of the file: as MeshSource.
+  std::vector<storage::BlockSums> known_sums() const { return source_->known_sums(); }
+  bool add_sums(const storage::BlockSums& sums) { return source_->add_sums(sums); }
 
  private:
   friend SourceMesh ingest(std::unique_ptr<mesh_io::MeshSource> source, std::string file_name,
                            storage::ScratchFile& scratch, const StageContext& context);
+  friend SourceMesh ingested(std::unique_ptr<mesh_io::MeshSource> source,
+                             const SourceSummary& summary, Vec3d origin,
+                             storage::ScratchFile& scratch);
   SourceMesh(std::unique_ptr<mesh_io::MeshSource> source, std::string file_name,
              storage::ScratchFile& scratch);
   void scan(const StageContext& context);
@@ -103,30 +127,55 @@ class SourceMesh {
 SourceMesh ingest(std::unique_ptr<mesh_io::MeshSource> source, std::string file_name,
                   storage::ScratchFile& scratch, const StageContext& context);
 
+/// The same mesh in another process, which has read nothing: `summary` and `origin` are those of
+/// ingest(). Requires vertices in place.
+SourceMesh ingested(std::unique_ptr<mesh_io::MeshSource> source, const SourceSummary& summary,
+                    Vec3d origin, storage::ScratchFile& scratch);
+
 template <class Slot, class Work, class Sink>
 mesh_io::FaceCounts SourceMesh::read_triangles(std::size_t in_flight,
                                                const execution::CancelToken& cancel,
                                                const Work& work, const Sink& sink) {
+  const mesh_io::FaceCounts blocks =
+      read_triangle_blocks<Slot>({}, in_flight, cancel, work, sink).counts;
+  const mesh_io::FaceCounts rest =
+      read_triangles_from<Slot>(blocks.faces, in_flight, cancel, work, sink);
+  return blocks + rest;
+}
+
+template <class Slot, class Work, class Sink>
+FaceBlocks SourceMesh::read_triangle_blocks(const Share& share, std::size_t in_flight,
+                                            const execution::CancelToken& cancel, const Work& work,
+                                            const Sink& sink) {
   struct Read {
     mesh_io::BlockMemory memory;
     mesh_io::TriangleBlock block;
     Slot slot;
   };
-  mesh_io::FaceCounts counts;
+  FaceBlocks all;
+  const std::uint64_t count = source_->triangle_blocks();
+  const std::uint64_t first = share.begin(count);
   execution::ordered_blocks<Read>(
-      source_->triangle_blocks(), in_flight, cancel,
+      share.end(count) - first, in_flight, cancel,
       [&](std::uint64_t i, Read& read) {
-        read.block = source_->read_triangle_block(i, read.memory);
+        read.block = source_->read_triangle_block(first + i, read.memory);
         work(read.block.triangles, read.slot);
       },
       [&](Read& read) {
         sink(read.slot);
-        counts.faces += read.block.faces;
-        counts.triangles += read.block.triangles.size();
-        return read.block.whole;
+        all.counts.faces += read.block.faces;
+        all.counts.triangles += read.block.triangles.size();
+        all.whole = read.block.whole;
+        return all.whole;
       });
-  counts.degenerate_triangles = counts.faces - counts.triangles;
+  all.counts.degenerate_triangles = all.counts.faces - all.counts.triangles;
+  return all;
+}
 
+template <class Slot, class Work, class Sink>
+mesh_io::FaceCounts SourceMesh::read_triangles_from(std::uint64_t face, std::size_t in_flight,
+                                                    const execution::CancelToken& cancel,
+                                                    const Work& work, const Sink& sink) {
   struct Copied {
     std::vector<Triangle<VertexId>> triangles;
     Slot slot;
@@ -135,14 +184,13 @@ mesh_io::FaceCounts SourceMesh::read_triangles(std::size_t in_flight,
       in_flight,
       [&](Copied& copied) { work(std::span(std::as_const(copied.triangles)), copied.slot); },
       [&](Copied& copied) { sink(copied.slot); });
-  const mesh_io::FaceCounts last = source_->read_triangles_from(
-      counts.faces, [&](std::span<const Triangle<VertexId>> triangles) {
+  const mesh_io::FaceCounts counts =
+      source_->read_triangles_from(face, [&](std::span<const Triangle<VertexId>> triangles) {
         cancel.check();
         rest.next().triangles.assign(triangles.begin(), triangles.end());
       });
   rest.finish();
-  return {counts.faces + last.faces, counts.triangles + last.triangles,
-          counts.degenerate_triangles + last.degenerate_triangles};
+  return counts;
 }
 
 }  // namespace meshhier::pipeline

@@ -1,11 +1,11 @@
 #include "pipeline/partition_stage.h"
 
 #include "execution/allocator.h"
-#include "execution/parallel.h"
 #include "execution/size_text.h"
 #include "execution/spool_cursor.h"
 #include "partition/rank_table.h"
 #include "partition/top_tree.h"
+#include "pipeline/distribution.h"
 #include "pipeline/plan/tile_population.h"
 #include "pipeline/plan/tile_room.h"
 
@@ -20,173 +20,24 @@ namespace meshhier::pipeline {
 namespace {
 
 using partition::RankTable;
+using partition::Renumberer;
 using partition::TopPlan;
 using partition::TopTree;
 using partition::WedgeRank;
 
 constexpr const char* kStage = "partition";
 
-/// Hands the vertices to parallel work(block, slot) and a serial sink(slot) in the order of ids.
-template <class Slot, class Work, class Sink>
-void for_each_block(const SourceMesh& mesh, const StageContext& context, const Work& work,
-                    const Sink& sink) {
-  struct Read {
-    mesh_io::BlockMemory memory;
-    std::size_t count = 0;
-    Slot slot;
-  };
-  execution::ordered_blocks<Read>(
-      mesh.vertex_blocks(), context.memory().blocks_in_flight, context.cancel,
-      [&](std::uint64_t i, Read& read) {
-        const SourceVertices block = mesh.read_vertex_block(i, read.memory);
-        read.count = block.positions.size();
-        work(block, read.slot);
-      },
-      [&](Read& read) {
-        sink(read.slot);
-        context.progress.advance(read.count);
-        return true;
-      });
-}
-
-/// The first vertices of the places in a block, and the copies among its vertices.
-struct BlockPlaces {
-  std::vector<Vec3f> positions;
-  std::vector<float> attributes;
-  std::vector<std::uint32_t> ids;
-  std::vector<CopyVertex> memory;
-  std::span<const CopyVertex> copies;
-
-  /// False, and nothing picked, if all vertices of the block are.
-  bool pick(const SourceVertices& block, const importing::CopyList& list) {
-    copies = list.read(block.first, block.positions.size(), memory);
-    if (copies.empty())
-      return false;
-    const std::size_t channels = block.channels();
-    positions.clear();
-    attributes.clear();
-    ids.clear();
-    auto copy = copies.begin();
-    for (std::size_t i = 0; i < block.positions.size(); ++i) {
-      const auto id = static_cast<std::uint32_t>(block.first + i);
-      if (copy != copies.end() && copy->id == id) {
-        ++copy;
-        continue;
-      }
-      positions.push_back(block.positions[i]);
-      const auto values = block.attributes.subspan(i * channels, channels);
-      attributes.insert(attributes.end(), values.begin(), values.end());
-      ids.push_back(id);
-    }
-    return true;
-  }
-};
-
-TopTree find_splits(SourceMesh& mesh, const importing::CopyList& copies,
-                    storage::ScratchFile& scratch, const StageContext& context) {
-  const Tree& tree = context.tree();
-  TopPlan plan = partition::plan_top(mesh.take_sample(copies), tree, context.config.partition.axis);
-  if (plan.splits.empty())
-    return {plan.chunks, {}};
-  for (;;) {
-    context.progress.stage(kStage, mesh.summary().vertices, "vertices");
-    const partition::Sweep sweep(plan);
-    partition::TopSelector selector(plan, tree, scratch, context.memory().work_bytes / 2);
-    struct Slot {
-      BlockPlaces places;
-      partition::SweepBlock swept;
-    };
-    for_each_block<Slot>(
-        mesh, context,
-        [&](const SourceVertices& block, Slot& slot) {
-          if (slot.places.pick(block, copies))
-            sweep.count(slot.places.positions, slot.places.ids, slot.swept);
-          else
-            sweep.count(block.positions, static_cast<std::uint32_t>(block.first), slot.swept);
-        },
-        [&](const Slot& slot) { selector.add(slot.swept); });
-    std::vector<partition::SplitPlane> planes = selector.settle(plan);
-    if (!planes.empty())
-      return {plan.chunks, std::move(planes)};
-  }
-}
-
-/// A block of vertices on its way to the chunks.
-struct DistributedBlock {
-  ChunkedVertices sorted;  ///< the places' first vertices
-  // With copies only:
-  std::uint64_t first = 0;  ///< id
-  BlockPlaces places;
-  std::vector<float> copy_rows;
-
-  void sort(const SourceVertices& block, const importing::CopyList& list,
-            const partition::ChunkSearch& search, std::uint32_t chunk_count) {
-    first = block.first;
-    copy_rows.clear();
-    if (!places.pick(block, list)) {
-      sorted.chunk_of.resize(block.positions.size());
-      search.find(block.positions, static_cast<std::uint32_t>(block.first), sorted.chunk_of);
-      sorted.sort(chunk_count, block.positions, block.attributes);
-      return;
-    }
-    sorted.chunk_of.resize(places.positions.size());
-    search.find(places.positions, places.ids, sorted.chunk_of);
-    sorted.sort(chunk_count, places.positions, places.attributes);
-    take_copies(block);
-  }
-
- private:
-  void take_copies(const SourceVertices& block) {
-    const std::size_t channels = block.channels();
-    for (const CopyVertex& copy : places.copies) {
-      const std::size_t at = copy.id - block.first;
-      const Vec3f& p = block.positions[at];
-      copy_rows.insert(copy_rows.end(), {p.x, p.y, p.z});
-      const auto values = block.attributes.subspan(at * channels, channels);
-      copy_rows.insert(copy_rows.end(), values.begin(), values.end());
-    }
-  }
-};
-
-/// Gives the places' first vertices of a block their ranks.
-class Ranker {
- public:
-  explicit Ranker(const Chunks& chunks) : next_(chunks.count()) {
-    for (std::uint32_t c = 0; c < chunks.count(); ++c)
-      next_[c] = chunks.map().first_rank(c);
-  }
-
-  template <class Rank>
-  void rank(const ChunkedVertices& block, std::vector<Rank>& ranks) {
-    ranks.clear();
-    for (const std::uint32_t chunk : block.chunk_of)
-      ranks.push_back(Rank{next_[chunk]++});
-  }
-
- private:
-  std::vector<std::uint32_t> next_;
-};
-
-/// Distributes the places' first vertices and fills the table of ranks. Copies wait in `copy_rows`
-/// until their places' ranks are known.
+/// Distributes the first vertices of all places and fills the table of ranks. Copies wait in
+/// `copy_rows` until their places' ranks are known.
 template <class Rank>
-void distribute_vertices(const SourceMesh& mesh, const importing::CopyList& copies,
-                         const TopTree& top, Chunks& chunks, RankTable<Rank>& table,
-                         storage::RecordSpool<float>& copy_rows, const StageContext& context) {
-  const partition::ChunkSearch search(top, mesh.stored_bounds());
-  Ranker ranker(chunks);
-  std::vector<Rank> ranks;
-  for_each_block<DistributedBlock>(
-      mesh, context,
-      [&](const SourceVertices& block, DistributedBlock& distributed) {
-        distributed.sort(block, copies, search, chunks.count());
-      },
-      [&](const DistributedBlock& distributed) {
-        ranker.rank(distributed.sorted, ranks);
-        table.append(ranks, distributed.first, distributed.places.copies);
-        chunks.append(distributed.sorted);
-        copy_rows.append(std::span<const float>(distributed.copy_rows));
-      });
+void fill_table(const SourceMesh& mesh, const importing::CopyList& copies, const TopTree& top,
+                Chunks& chunks, RankTable<Rank>& table, storage::RecordSpool<float>& copy_rows,
+                const StageContext& context) {
+  const auto keep = [&](const std::vector<Rank>& ranks, const DistributedBlock& block) {
+    table.append(ranks, block.first, block.places.copies);
+    copy_rows.append(std::span<const float>(block.copy_rows));
+  };
+  distribute_places<Rank>(mesh, copies, top, {}, chunks, keep, context);
 }
 
 /// Gives copies the ranks of their places, and their rows to the chunks.
@@ -205,69 +56,15 @@ void distribute_copies(const importing::CopyList& copies,
                });
 }
 
-/// A block of triangles on its way to the chunks.
-struct TrianglesByRank {
-  std::size_t read = 0;
-  partition::Renumbered<std::uint32_t> renumbered;
-  ChunkedTriangles chunked;
-
-  void sort(const partition::ChunkMap& map) { chunked.sort(renumbered.finished, map); }
-};
-
-/// Likewise of a mesh with copies.
-struct TrianglesByWedge {
-  std::size_t read = 0;
-  partition::Renumbered<WedgeRank> renumbered;
-  std::vector<partition::RankTriangle> triangles;
-  std::vector<WedgedTriangle> wedged;
-  ChunkedTriangles chunked;
-
-  void sort(const partition::ChunkMap& map) {
-    triangles.clear();
-    wedged.clear();
-    for (const auto& [a, b, c] : renumbered.finished) {
-      const partition::RankTriangle ranks{a.rank, b.rank, c.rank};
-      if ((a.wedge | b.wedge | c.wedge) == 0)
-        triangles.push_back(ranks);
-      else
-        wedged.push_back({ranks, {a.wedge, b.wedge, c.wedge}});
-    }
-    chunked.sort(triangles, map);
-    chunked.sort_wedged(wedged, map);
-  }
-};
-
 template <class Slot, class Rank>
-mesh_io::FaceCounts distribute_triangles(SourceMesh& mesh, partition::Renumberer<Rank> renumberer,
-                                         Chunks& chunks, const StageContext& context) {
-  const std::size_t in_flight = context.memory().blocks_in_flight;
+mesh_io::FaceCounts distribute_faces(SourceMesh& mesh, Renumberer<Rank> renumberer, Chunks& chunks,
+                                     const StageContext& context) {
   context.progress.stage(kStage, mesh.declared_faces(), "triangles");
-  const auto keep = [&](const Slot& slot) {
-    renumberer.keep(slot.renumbered);
-    chunks.append(slot.chunked);
-    return true;
-  };
-  const mesh_io::FaceCounts counts = mesh.read_triangles<Slot>(
-      in_flight, context.cancel,
-      [&](std::span<const Triangle<VertexId>> triangles, Slot& slot) {
-        slot.read = triangles.size();
-        renumberer.translate(triangles, slot.renumbered);
-        slot.sort(chunks.map());
-      },
-      [&](const Slot& slot) {
-        keep(slot);
-        context.progress.advance(slot.read);
-      });
-  while (renumberer.next_round()) {
-    execution::ordered_blocks<Slot>(
-        renumberer.batches(), in_flight, context.cancel,
-        [&](std::uint64_t batch, Slot& slot) {
-          renumberer.translate_batch(batch, slot.renumbered);
-          slot.sort(chunks.map());
-        },
-        keep);
-  }
-  return counts;
+  TriangleDistribution<Slot, Rank> triangles(mesh, std::move(renumberer), chunks, context);
+  const mesh_io::FaceCounts blocks = triangles.take_blocks({}).counts;
+  const mesh_io::FaceCounts rest = triangles.take_from(blocks.faces);
+  triangles.finish();
+  return blocks + rest;
 }
 
 /// Vertices, then triangles. `passing`: for what is needed meanwhile only.
@@ -278,22 +75,65 @@ mesh_io::FaceCounts distribute(SourceMesh& mesh, const importing::CopyList& copi
   context.progress.stage(kStage, count, "vertices");
   const auto triangles = [&]<class Slot>(auto& table, Slot) {
     execution::release_free_memory();
-    return distribute_triangles<Slot>(mesh, table.renumberer(), chunks, context);
+    return distribute_faces<Slot>(mesh, table.renumberer(), chunks, context);
   };
   storage::RecordSpool<float> copy_rows(passing, 1 << 18);
   if (copies.empty()) {
     RankTable<std::uint32_t> table(count, context.memory().table_bytes, passing);
-    distribute_vertices(mesh, copies, top, chunks, table, copy_rows, context);
+    fill_table(mesh, copies, top, chunks, table, copy_rows, context);
     return triangles(table, TrianglesByRank{});
   }
   RankTable<WedgeRank> table(count, context.memory().table_bytes, passing);
-  distribute_vertices(mesh, copies, top, chunks, table, copy_rows, context);
+  fill_table(mesh, copies, top, chunks, table, copy_rows, context);
   distribute_copies(copies, copy_rows, chunks.row_width(), chunks, table, context);
   copy_rows.clear();
   return triangles(table, TrianglesByWedge{});
 }
 
-/// The stage that would be refused comes late, and takes long where triangles reach across.
+}  // namespace
+
+TopTree find_splits(SourceMesh& mesh, const importing::CopyList& copies,
+                    storage::ScratchFile& scratch, const StageContext& context) {
+  storage::ScratchFile windows = scratch.beside("windows");
+  const Tree& tree = context.tree();
+  TopPlan plan = partition::plan_top(mesh.take_sample(copies), tree, context.config.partition.axis);
+  if (plan.splits.empty())
+    return {plan.chunks, {}};
+  for (;;) {
+    context.progress.stage(kStage, mesh.summary().vertices, "vertices");
+    const partition::Sweep sweep(plan);
+    partition::TopSelector selector(plan, tree, windows, context.memory().work_bytes / 2);
+    struct Slot {
+      BlockPlaces places;
+      partition::SweepBlock swept;
+    };
+    for_each_block<Slot>(
+        mesh, {}, context,
+        [&](const SourceVertices& block, Slot& slot) {
+          if (slot.places.pick(block, copies))
+            sweep.count(slot.places.positions, slot.places.ids, slot.swept);
+          else
+            sweep.count(block.positions, static_cast<std::uint32_t>(block.first), slot.swept);
+        },
+        [&](const Slot& slot) { selector.add(slot.swept); });
+    std::vector<partition::SplitPlane> planes = selector.settle(plan);
+    if (!planes.empty())
+      return {plan.chunks, std::move(planes)};
+  }
+}
+
+mesh_io::FaceCounts partition_mesh(SourceMesh& mesh, const importing::CopyList& copies,
+                                   Chunks& chunks, storage::ScratchFile& scratch,
+                                   const StageContext& context) {
+  const TopTree top = find_splits(mesh, copies, scratch, context);
+  execution::release_free_memory();
+  storage::ScratchFile passing = scratch.beside("ranks");
+  const mesh_io::FaceCounts counts = distribute(mesh, copies, top, chunks, passing, context);
+  warn_of_wide_triangles(chunks, context);
+  execution::release_free_memory();
+  return counts;
+}
+
 void warn_of_wide_triangles(const Chunks& chunks, const StageContext& context) {
   const MemoryPlan& plan = context.memory();
   const std::uint64_t expected = expected_contracted(chunks);
@@ -305,23 +145,6 @@ void warn_of_wide_triangles(const Chunks& chunks, const StageContext& context) {
       "need more than {}",
       execution::rounded_size_text(expected), execution::exact_size_text(plan.budget_bytes),
       execution::rounded_size_text(budget_for(plan, expected))));
-}
-
-}  // namespace
-
-mesh_io::FaceCounts partition_mesh(SourceMesh& mesh, const importing::CopyList& copies,
-                                   Chunks& chunks, storage::ScratchFile& scratch,
-                                   const StageContext& context) {
-  const TopTree top = [&] {
-    storage::ScratchFile windows = scratch.beside("windows");
-    return find_splits(mesh, copies, windows, context);
-  }();
-  execution::release_free_memory();
-  storage::ScratchFile passing = scratch.beside("ranks");
-  const mesh_io::FaceCounts counts = distribute(mesh, copies, top, chunks, passing, context);
-  warn_of_wide_triangles(chunks, context);
-  execution::release_free_memory();
-  return counts;
 }
 
 namespace {

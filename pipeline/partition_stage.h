@@ -2,6 +2,7 @@
 #pragma once
 
 #include "mesh_io/mesh_source.h"
+#include "partition/top_tree.h"
 #include "pipeline/ingest_stage.h"
 #include "pipeline/plan/stage_context.h"
 #include "pipeline/tiles/chunks.h"
@@ -24,9 +25,17 @@ DiskVolumes partition_disk(const JobSize& job, const MemoryPlan& memory);
 
 /// Finds the exact splits above the chunks, then distributes the vertices in one pass and the
 /// triangles in one; returns how many faces the mesh has. What is needed meanwhile only is beside
-/// `scratch`.
+/// `scratch`, here and below.
 mesh_io::FaceCounts partition_mesh(SourceMesh& mesh, const importing::CopyList& copies,
                                    Chunks& chunks, storage::ScratchFile& scratch,
                                    const StageContext& context);
+
+/// Finds the splits alone.
+partition::TopTree find_splits(SourceMesh& mesh, const importing::CopyList& copies,
+                               storage::ScratchFile& scratch, const StageContext& context);
+
+/// When all triangles are distributed: the stage that would be refused comes late, and takes long
+/// where triangles reach across.
+void warn_of_wide_triangles(const Chunks& chunks, const StageContext& context);
 
 }  // namespace meshhier::pipeline

@@ -7,6 +7,14 @@
 namespace meshhier::pipeline {
 namespace {
 
+/// Reads the vertices; `scratch` must outlive the mesh.
+SourceMesh read_vertices(importing::MeshInput& input, storage::ScratchFile& scratch,
+                         const StageContext& context) {
+  SourceMesh mesh = ingest(input.open(), input.files().name(), scratch, context);
+  config::tileset_transform(context.config, mesh.summary().bounds);  // refused now, if at all
+  return mesh;
+}
+
 /// What ingest and partition learnt of the input, and import before them.
 SourceSummary summarize(SourceMesh& mesh, const mesh_io::FaceCounts& counts,
                         const importing::MeshInput& input, const execution::CancelToken& cancel) {
@@ -27,15 +35,35 @@ SourceSummary summarize(SourceMesh& mesh, const mesh_io::FaceCounts& counts,
 
 }  // namespace
 
-void read_mesh(importing::MeshInput& input, Workshop& workshop, const StageContext& context) {
-  storage::ScratchFile vertices = workshop.mesh_scratch.beside("vertices");
-  SourceMesh mesh = ingest(input.open(), input.files().name(), vertices, context);
-  config::tileset_transform(context.config, mesh.summary().bounds);  // refused now, if at all
-  const mesh_io::FaceCounts counts =
-      partition_mesh(mesh, input.copies(), workshop.chunks, workshop.mesh_scratch, context);
+void note_source(SourceMesh& mesh, const mesh_io::FaceCounts& counts,
+                 const importing::MeshInput& input, Workshop& workshop,
+                 const StageContext& context) {
   const SourceSummary summary = summarize(mesh, counts, input, context.cancel);
   workshop.journal.note_source(
       {summary, mesh.origin(), input.materials(), input.record(summary.checksum)});
+}
+
+void read_mesh(importing::MeshInput& input, Workshop& workshop, const StageContext& context) {
+  storage::ScratchFile vertices = workshop.mesh_scratch.beside("vertices");
+  SourceMesh mesh = read_vertices(input, vertices, context);
+  const mesh_io::FaceCounts counts =
+      partition_mesh(mesh, input.copies(), workshop.chunks, workshop.mesh_scratch, context);
+  note_source(mesh, counts, input, workshop, context);
+}
+
+std::optional<InputSplits> read_splits(importing::MeshInput& input, Workshop& workshop,
+                                       const StageContext& context) {
+  if (input.needs_import() || !input.description().vertices_in_place) {
+    read_mesh(input, workshop, context);
+    return std::nullopt;
+  }
+  storage::ScratchFile vertices = workshop.mesh_scratch.beside("vertices");
+  SourceMesh mesh = read_vertices(input, vertices, context);
+  partition::TopTree top = find_splits(mesh, input.copies(), workshop.mesh_scratch, context);
+  input.files().check_unchanged();
+  workshop.journal.note_source({mesh.summary(), mesh.origin(), input.materials(), input.record(0)});
+  return InputSplits{std::move(top), mesh.known_sums(),
+                     input.copies().store(workshop.mesh_scratch, [&] { context.cancel.check(); })};
 }
 
 }  // namespace meshhier::pipeline

@@ -216,6 +216,13 @@ bool BuildJournal::take_sealed(const Entry& entry) {
   return is_understood([&] { return entry.contains("build") || take(entry); });
 }
 
+bool BuildJournal::take_sealed_copies(const Entry& entry) {
+  return is_understood([&] {
+    const Entry& chunk = entry.at("partition");
+    return chunk.at(0) < chunks_.count() && chunks_.restore_copies(chunk.at(0), chunk.at(1));
+  });
+}
+
 /// Of a build that was complete the scratch files are gone: entries of what lay there say nothing.
 void BuildJournal::look_ahead(const std::filesystem::path& path, storage::ScratchUse& use) {
   if (!files_.exists(path))
@@ -395,14 +402,20 @@ std::vector<Published> BuildJournal::published() const {
 
 void BuildJournal::note_source(const DistributedSource& source) {
   sink_->append({{"build", identity_.decides_result}, {"times", identity_.input_times}});
-  for (std::uint32_t chunk = 0; chunk < chunks_.count(); ++chunk)
-    sink_->append({{"partition", {chunk, chunks_.store(chunk)}}});
+  note_chunks();
   sink_->append({{"ingest",
                   {{"summary", Value(storage::source_json(source.summary))},
                    {"origin", to_json(source.origin)},
                    {"materials", to_json(source.materials)},
                    {"input", to_json(source.input)}}}});
   source_ = source;
+}
+
+void BuildJournal::note_chunks() {
+  for (std::uint32_t chunk = 0; chunk < chunks_.count(); ++chunk) {
+    if (chunks_.has(chunk))
+      sink_->append({{"partition", {chunk, chunks_.store(chunk)}}});
+  }
 }
 
 void BuildJournal::note_image(const images::StoredImage& stored, const std::string& why) {

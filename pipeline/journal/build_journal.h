@@ -3,8 +3,10 @@
 // Entries of the journal, in the order in which a build makes them:
 //
 //   build      what decides the result: input, config, tree, version
-//   partition  where a chunk's spools are, when all triangles are distributed
-//   ingest     what was learnt of the input; with it the stages up to partition are done
+//   partition  where a chunk's spools are, when all triangles are distributed; of a slice of the
+//              input, where its part of them is
+//   ingest     what was learnt of the input; with it the stages up to partition are done, unless
+//              slices follow: then the last one counts
 //   image      a decoded picture of a textured mesh
 //   leaves     a chunk's partitions
 //   simplify   a simplified tile, the maps to it, and how far its children had moved
@@ -121,6 +123,8 @@ class BuildJournal {
   /// Takes an entry of another process, whose scratch files are mounted. False if it is none of a
   /// build of this tree.
   bool take_sealed(const nlohmann::json& entry);
+  /// Likewise an entry `partition`, but of the chunk only the copies.
+  bool take_sealed_copies(const nlohmann::json& entry);
   /// Puts back the pictures that entries named; false if the scratch file does not hold them.
   bool restore_pictures();
 
@@ -146,6 +150,8 @@ class BuildJournal {
 
   // Each notes what is done now; one call at a time. Throws Error(io).
   void note_source(const DistributedSource& source);
+  /// The part of it that is in the chunks, of a slice of the input.
+  void note_chunks();
   /// `why`: empty unless the picture is broken.
   void note_image(const images::StoredImage& stored, const std::string& why);
   void note_leaves(std::uint32_t chunk, std::uint64_t unreferenced_vertices);

@@ -14,6 +14,7 @@
 #include "pipeline/stage_costs.h"
 #include "pipeline/tasks/attempt.h"
 #include "pipeline/tasks/finish_task.h"
+#include "pipeline/tasks/input_slices.h"
 #include "pipeline/tasks/task_record.h"
 #include "pipeline/texture_stage.h"
 #include "storage/format/layout.h"
@@ -21,7 +22,9 @@
 #include "storage/format/work_directory.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -72,13 +75,21 @@ class Task {
 
   void read();
   void go_on();
-  /// What the stage `read` noted. Throws Error(corrupt).
-  EarlierBuild find_source() const;
+  /// What the stage `read` noted; also whether the input has slices. Throws Error(corrupt).
+  EarlierBuild find_source();
   void open_workshop(const BuildPlan& plan, const BuildIdentity& identity,
                      const AttributeLayout& layout, const StageContext& context);
   /// Takes what the tasks before have made, as far as this one needs it.
   void mount_inputs();
   void mount(const TaskStage& stage, storage::ScratchFile& scratch);
+  /// Takes an entry of a segment that is mounted. False if it does not fit the plan.
+  bool take(const storage::EntrySink::Entry& entry, const TaskStage& stage, std::uint32_t index);
+  /// Of the journal's entry of a chunk.
+  bool needs_chunk(const storage::EntrySink::Entry& partition) const;
+  bool is_slice() const {
+    return stage_.kind == TaskKind::distribute || stage_.kind == TaskKind::faces ||
+           stage_.kind == TaskKind::join;
+  }
   bool needs(const TaskStage& before) const;
   storage::ScratchFile& scratch_of(TaskKind kind);
 
@@ -102,6 +113,9 @@ class Task {
   Attempt attempt_;
   storage::SegmentWriter* entries_ = nullptr;  ///< the journal's
   std::unique_ptr<Workshop> workshop_;
+  bool has_slices_ = false;
+  std::unique_ptr<InputSlices> slices_;    ///< of the stages that read them
+  std::uint32_t last_faces_ = UINT32_MAX;  ///< slices behind this one have no triangles
 };
 
 void Task::open_workshop(const BuildPlan& plan, const BuildIdentity& identity,
@@ -126,15 +140,18 @@ void Task::read() {
   const StageContext context{config, plan, files(), meter_, environment_.cancel};
   meter_.expect(wall_times(config, plan));
   open_workshop(plan, identity_of(config, input, plan), input.description().attributes, context);
-  read_mesh(input, *workshop_, context);
+  if (const auto splits = read_splits(input, *workshop_, context))
+    InputSlices::note(*splits, *entries_);
   seal();
 }
 
-EarlierBuild Task::find_source() const {
+EarlierBuild Task::find_source() {
   EarlierBuild source;
   const auto segment = open_segment(files(), work_, name("read", 0));
-  segment->for_each(
-      [&](const storage::EntrySink::Entry& entry) { return add_entry(entry, source); });
+  segment->for_each([&](const storage::EntrySink::Entry& entry) {
+    has_slices_ = has_slices_ || InputSlices::has_slices(entry);
+    return add_entry(entry, source);
+  });
   if (!source.is_whole)
     throw damaged_segment(work_, name("read", 0));
   return source;
@@ -153,6 +170,9 @@ void Task::go_on() {
   }
   const StageContext context{config, plan, files(), meter_, environment_.cancel};
   open_workshop(plan, {source.decides_result, source.input_times}, mesh.attributes, context);
+  if (is_slice() && has_slices_)
+    slices_ = std::make_unique<InputSlices>(config, source, Share{index_, plan_.tasks}, *workshop_,
+                                            context);
   mount_inputs();
   make(context);
   seal();
@@ -160,7 +180,6 @@ void Task::go_on() {
 
 bool Task::needs(const TaskStage& before) const {
   switch (stage_.kind) {
-    case TaskKind::leaves:
     case TaskKind::images:
       return before.kind == TaskKind::read;
     case TaskKind::level:
@@ -168,14 +187,22 @@ bool Task::needs(const TaskStage& before) const {
              (stage_.levels_up == 1
                   ? before.kind == TaskKind::leaves
                   : before.kind == TaskKind::level && before.levels_up + 1 == stage_.levels_up);
-    default:
+    case TaskKind::distribute:
+    case TaskKind::faces:
+    case TaskKind::join:
+    case TaskKind::leaves:
       return true;
+    default:
+      return before.kind != TaskKind::distribute && before.kind != TaskKind::faces;
   }
 }
 
 storage::ScratchFile& Task::scratch_of(TaskKind kind) {
   switch (kind) {
     case TaskKind::read:
+    case TaskKind::distribute:
+    case TaskKind::faces:
+    case TaskKind::join:
       return workshop_->mesh_scratch;
     case TaskKind::images:
       return workshop_->picture_scratch;
@@ -190,10 +217,35 @@ void Task::mount(const TaskStage& stage, storage::ScratchFile& scratch) {
     const auto segment = open_segment(files(), work_, name(stage.name, i));
     if (segment->data_bytes() > 0)  // or there is nothing to be read, and no file to be kept open
       scratch.mount(segment->take_file());
-    segment->for_each([&](const storage::EntrySink::Entry& entry) {
-      return workshop_->journal.take_sealed(entry);
-    });
+    segment->for_each(
+        [&](const storage::EntrySink::Entry& entry) { return take(entry, stage, i); });
   }
+}
+
+bool Task::take(const storage::EntrySink::Entry& entry, const TaskStage& stage,
+                std::uint32_t index) {
+  if (InputSlices::is_entry(entry)) {
+    if (InputSlices::ends_faces(entry))
+      last_faces_ = std::min(last_faces_, index);
+    return !slices_ || slices_->take(entry, {index, plan_.tasks});
+  }
+  if (!entry.contains("partition"))
+    return workshop_->journal.take_sealed(entry);
+  if (!needs_chunk(entry.at("partition")))
+    return true;
+  return stage.kind == TaskKind::faces && index > last_faces_
+             ? workshop_->journal.take_sealed_copies(entry)
+             : workshop_->journal.take_sealed(entry);
+}
+
+bool Task::needs_chunk(const storage::EntrySink::Entry& partition) const {
+  if (!partition.is_array() || partition.empty() || !partition[0].is_number_unsigned())
+    return true;  // the journal refuses it
+  const Share share{index_, plan_.tasks};
+  const std::uint32_t chunks = workshop_->chunks.count();
+  const auto chunk = partition[0].get<std::uint64_t>();
+  return stage_.kind == TaskKind::leaves && share.begin(chunks) <= chunk &&
+         chunk < share.end(chunks);
 }
 
 void Task::mount_inputs() {
@@ -231,8 +283,11 @@ void Task::leaves(const StageContext& context) {
   const Chunks& chunks = workshop_->chunks;
   for (std::uint64_t i = share.begin(chunks.count()); i < share.end(chunks.count()); ++i) {
     environment_.cancel.check();
-    if (!chunks.is_as_stored(static_cast<std::uint32_t>(i)))
-      throw damaged_segment(work_, name("read", 0));
+    const auto chunk = static_cast<std::uint32_t>(i);
+    if (const std::optional<Error> change = chunks.find_change(chunk))
+      throw *change;
+    if (!chunks.is_whole(chunk))
+      throw Error(ErrorCode::corrupt, "vertices of a chunk are missing: plan the build again");
   }
   make_leaves(workshop_->chunks, workshop_->forest, workshop_->journal, share, context);
 }
@@ -250,7 +305,16 @@ void Task::textures(const LevelRange& levels, const StageContext& context) {
 
 void Task::make(const StageContext& context) {
   Workshop& workshop = *workshop_;
+  const Share share{index_, plan_.tasks};
+  if (is_slice() && !slices_)
+    return;  // `read` has made all chunks
   switch (stage_.kind) {
+    case TaskKind::distribute:
+      return slices_->distribute(*entries_);
+    case TaskKind::faces:
+      return slices_->take_faces(*entries_);
+    case TaskKind::join:
+      return slices_->join();
     case TaskKind::leaves:
       return leaves(context);
     case TaskKind::level:
@@ -271,7 +335,7 @@ void Task::make(const StageContext& context) {
     case TaskKind::publish: {
       const std::filesystem::path built = storage::built_path(work_);
       publish(workshop.forest, workshop.textures, workshop.journal,
-              {built, attempt_.shared_directory()}, {index_, plan_.tasks}, context);
+              {built, attempt_.shared_directory()}, share, context);
       files().sync_tree(built);
       return;
     }

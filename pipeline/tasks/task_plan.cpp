@@ -254,6 +254,9 @@ void make_directories(const fs::path& work, const fs::path& output, storage::Fil
 
 std::vector<TaskStage> stages_of(const TaskPlan& plan) {
   std::vector<TaskStage> stages{{"read", TaskKind::read, 1},
+                                {"distribute", TaskKind::distribute, plan.tasks},
+                                {"faces", TaskKind::faces, plan.tasks},
+                                {"join", TaskKind::join, 1},
                                 {"leaves", TaskKind::leaves, plan.tasks}};
   for (std::uint32_t k = 1; k <= plan.levels; ++k)
     stages.push_back({fmt::format("level-{}", k), TaskKind::level, plan.tasks, k});

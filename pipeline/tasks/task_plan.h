@@ -5,7 +5,10 @@
 // The stages, in their order; `N`: what the plan says.
 //
 //   stage             tasks   makes
-//   read              1       chunks of the input
+//   read              1       splits of the mesh; all chunks of an input that has no slices
+//   distribute        N       vertices of the chunks, of slices of the input
+//   faces             N       triangles of the chunks, likewise
+//   join              1       triangles that no slice could take, and what all learnt of the input
 //   leaves            N       partitions, of runs of chunks
 //   level-1 ...       N       simplified tiles of one level of the tree, the finest first
 //   top               1       those of all levels that have fewer nodes than N
@@ -43,7 +46,20 @@ struct TaskPlan {
   std::uint64_t fingerprint = 0;  ///< of all this
 };
 
-enum class TaskKind { read, leaves, level, top, images, texture, texture_top, publish, finish };
+enum class TaskKind {
+  read,
+  distribute,
+  faces,
+  join,
+  leaves,
+  level,
+  top,
+  images,
+  texture,
+  texture_top,
+  publish,
+  finish
+};
 
 struct TaskStage {
   std::string name;

@@ -76,16 +76,28 @@ std::map<std::string, double> expected_seconds(const TaskPlan& plan, const Build
   const auto share = [&](std::uint32_t up) {
     return static_cast<int>(up) > raw(tree.depth()) ? 0 : std::ldexp(1.0, -static_cast<int>(up));
   };
+  // Of the time of `partition`: a sweep, the vertices, and twice as many triangles.
+  constexpr double kSweep = 0.25, kVertices = 0.25, kTriangles = 0.5;
+  const double partition = by_stage["partition"];
   double rest = 1, texture_rest = 1;
   for (const TaskStage& stage : stages_of(plan)) {
     double& seconds = by_task_stage[stage.name];
     switch (stage.kind) {
       case TaskKind::read:
         for (const auto& [name, time] : by_stage) {
-          if (name != "leaves" && name != "simplify" && name != "texture" && name != "publish" &&
-              name != "outline" && name != "images")
+          if (name != "partition" && name != "leaves" && name != "simplify" && name != "texture" &&
+              name != "publish" && name != "outline" && name != "images")
             seconds += time;
         }
+        seconds += partition * kSweep;
+        break;
+      case TaskKind::distribute:
+        seconds = partition * kVertices;
+        break;
+      case TaskKind::faces:
+        seconds = partition * kTriangles;
+        break;
+      case TaskKind::join:
         break;
       case TaskKind::leaves:
         seconds = by_stage["leaves"];

@@ -32,7 +32,7 @@ struct TaskStatus {
   std::vector<StageStatus> stages;  ///< in their order
   bool is_finished = false;         ///< and the output named; other segments are gone then
   std::uint32_t attempts = 0;       ///< tasks at work, or killed
-  EarlierBuild source;              ///< whole when the stage `read` is done
+  EarlierBuild source;              ///< known when `read` is done, its counts when `join` is
 };
 
 /// Throws Error(io).

@@ -2,6 +2,7 @@
 
 #include "hierarchy/power_of_two.h"
 #include "partition/top_tree.h"
+#include "pipeline/tiles/spool_json.h"
 
 #include <algorithm>
 #include <bit>
@@ -11,6 +12,7 @@
 namespace meshhier::pipeline {
 namespace {
 
+using partition::ChunkFinder;
 using partition::RankTriangle;
 
 constexpr std::uint64_t kBatch = 16384;  // records read at a time: nothing is held twice
@@ -23,39 +25,9 @@ void counts_to_starts(std::vector<std::uint32_t>& counts, std::vector<std::uint3
   next.assign(counts.begin(), counts.end() - 1);
 }
 
-/// The chunk of a rank, mostly that of the rank before.
-class ChunkFinder {
- public:
-  explicit ChunkFinder(const partition::ChunkMap& map) : map_(map), size_(map.size(0)) {}
-
-  std::uint32_t chunk_of(std::uint32_t rank) {
-    if (rank - first_ >= size_) {
-      chunk_ = map_.chunk_of(rank);
-      first_ = map_.first_rank(chunk_);
-      size_ = map_.size(chunk_);
-    }
-    return chunk_;
-  }
-
- private:
-  const partition::ChunkMap& map_;
-  std::uint32_t chunk_ = 0, first_ = 0, size_;
-};
-
 /// How many levels above these three nodes of one level their ancestors still are three.
 int levels_apart(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   return std::min({std::bit_width(a ^ b), std::bit_width(b ^ c), std::bit_width(a ^ c)}) - 1;
-}
-
-template <class Record>
-nlohmann::json store(storage::RecordSpool<Record>& spool) {
-  const storage::StoredSpool stored = spool.store();
-  return {stored.bytes, stored.checksum, stored.block_bytes, stored.blocks};
-}
-
-template <class Record>
-bool restore(storage::RecordSpool<Record>& spool, const nlohmann::json& stored) {
-  return spool.restore({stored.at(0), stored.at(1), stored.at(2), stored.at(3)});
 }
 
 }  // namespace
@@ -168,13 +140,17 @@ void Chunks::append(const ChunkedTriangles& block) {
     shared_[chunk].append(triangle);
   for (const auto& [chunk, triangle] : block.wedged)
     wedged_[chunk].append(triangle);
+  add_wide(block.wide);
+}
+
+void Chunks::add_wide(const WideCounts& wide) {
   for (std::size_t k = 0; k < wide_.size(); ++k)
-    wide_[k] += block.wide[k];
+    wide_[k] += wide[k];
 }
 
 void Chunks::append_copy(std::uint32_t rank, std::span<const float> row) {
   const std::uint32_t chunk = map_.chunk_of(rank);
-  storage::RecordSpool<float>& spool = copies_[chunk];
+  JoinedSpool<float>& spool = copies_[chunk];
   spool.append(std::bit_cast<float>(rank - map_.first_rank(chunk)));
   spool.append(row);
 }
@@ -214,7 +190,9 @@ partition::ChunkMesh Chunks::take(std::uint32_t chunk) {
   shared_[chunk].read(0, std::span(mesh.triangles).subspan(inner_count));
   if (has_copies()) {
     mesh.copies = read_copies(chunk);
-    for (const WedgedTriangle& t : wedged_[chunk].read_all()) {
+    std::vector<WedgedTriangle> wedged(wedged_[chunk].size());
+    wedged_[chunk].read(0, wedged);
+    for (const WedgedTriangle& t : wedged) {
       mesh.triangles.push_back(t.ranks);
       mesh.wedges.push_back(t.wedges);
     }
@@ -289,10 +267,28 @@ bool Chunks::restore(std::uint32_t chunk, const nlohmann::json& stored) {
                             pipeline::restore(wedged_[chunk], stored.at(4))));
 }
 
+bool Chunks::restore_copies(std::uint32_t chunk, const nlohmann::json& stored) {
+  return !has_copies() || pipeline::restore(copies_[chunk], stored.at(3));
+}
+
+bool Chunks::has(std::uint32_t chunk) const {
+  return place_count(chunk) > 0 || triangle_count(chunk) > 0 || copy_count(chunk) > 0;
+}
+
 bool Chunks::is_as_stored(std::uint32_t chunk) const {
-  return vertices_[chunk].is_as_stored() && inner_[chunk].is_as_stored() &&
-         shared_[chunk].is_as_stored() &&
-         (!has_copies() || (copies_[chunk].is_as_stored() && wedged_[chunk].is_as_stored()));
+  return is_whole(chunk) && !find_change(chunk);
+}
+
+std::optional<Error> Chunks::find_change(std::uint32_t chunk) const {
+  std::optional<Error> change;
+  const auto is_as_stored = [&](const auto& spool) {
+    change = spool.find_change();
+    return !change;
+  };
+  if (is_as_stored(vertices_[chunk]) && is_as_stored(inner_[chunk]) &&
+      is_as_stored(shared_[chunk]) && has_copies() && is_as_stored(copies_[chunk]))
+    is_as_stored(wedged_[chunk]);
+  return change;
 }
 
 double Chunks::expected_triangle_bytes(std::uint64_t place_count, std::uint64_t face_count,

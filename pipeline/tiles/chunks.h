@@ -1,13 +1,16 @@
 // The chunks of a mesh while it is distributed to them, and until they are taken.
 #pragma once
 
+#include "hierarchy/error.h"
 #include "hierarchy/tree.h"
 #include "partition/chunk.h"
+#include "pipeline/tiles/joined_spool.h"
 #include "storage/io/spool.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -59,6 +62,9 @@ struct WedgedTriangle {
 };
 static_assert(sizeof(WedgedTriangle) == 24);
 
+/// Of triangles with corners in three chunks: [k] have them in three nodes up to k levels above.
+using WideCounts = std::array<std::uint64_t, 32>;
+
 /// A block of triangles sorted by chunk; keeps its memory from block to block.
 struct ChunkedTriangles {
   std::vector<std::uint32_t> starts;  ///< per chunk: its first in `inner`; one entry more
@@ -69,8 +75,7 @@ struct ChunkedTriangles {
   };
   std::vector<Shared> shared;  ///< the others, once for each chunk they touch
   std::vector<std::pair<std::uint32_t, WedgedTriangle>> wedged;  ///< as `shared`, by sort_wedged()
-  /// Of triangles with corners in three chunks: [k] have them in three nodes up to k levels above.
-  std::array<std::uint64_t, 32> wide{};
+  WideCounts wide{};
 
   void sort(std::span<const partition::RankTriangle> triangles, const partition::ChunkMap& map);
   /// After sort(): triangles that name copies.
@@ -141,14 +146,24 @@ class Chunks {
 
   /// Reads a chunk and forgets it. Thread-safe for different chunks.
   partition::ChunkMesh take(std::uint32_t chunk);
-  /// For the journal, when all is appended: where the scratch file holds a chunk, which is then on
-  /// disk.
+  /// Whether something of the chunk is there.
+  bool has(std::uint32_t chunk) const;
+  /// Whether all vertices of the chunk are there.
+  bool is_whole(std::uint32_t chunk) const { return place_count(chunk) == map_.size(chunk); }
+  /// For the journal, when all is appended: where the scratch file holds a chunk, or what of it was
+  /// appended here, which is then on disk.
   nlohmann::json store(std::uint32_t chunk);
-  /// False if the scratch file is too short. Throws nlohmann::json::exception if `stored` is
-  /// nothing of the kind.
+  /// Takes that, behind what is there of the chunk. False if it contradicts itself. Throws
+  /// nlohmann::json::exception if `stored` is nothing of the kind.
   bool restore(std::uint32_t chunk, const nlohmann::json& stored);
-  /// Whether the scratch file holds a restored chunk as it was; reads it all.
+  /// Likewise, of what was stored the copies alone.
+  bool restore_copies(std::uint32_t chunk, const nlohmann::json& stored);
+  /// Whether all vertices of a restored chunk are there, and the scratch file holds it as it was;
+  /// reads it all.
   bool is_as_stored(std::uint32_t chunk) const;
+  /// Which file holds something else of a restored chunk than what was stored, as
+  /// ScratchFile::changed(); none if all is as it was. Reads it all.
+  std::optional<Error> find_change(std::uint32_t chunk) const;
   /// Forgets a chunk that is not needed.
   void drop(std::uint32_t chunk);
 
@@ -163,6 +178,14 @@ class Chunks {
   /// Bytes a chunk's copies take in memory.
   std::uint64_t copy_bytes(std::uint32_t chunk) const;
 
+  /// Places of the chunk whose first vertices are there.
+  std::uint64_t place_count(std::uint32_t chunk) const {
+    return vertices_[chunk].size() / row_width();
+  }
+
+  /// Of all triangles that were appended; add_wide() takes those of other processes.
+  const WideCounts& wide() const { return wide_; }
+  void add_wide(const WideCounts& wide);
   /// Triangles appended whose corners are in three nodes of `level`, not below the chunks'. As
   /// vertices join within nodes only, none of them degenerates on that level or below.
   std::uint64_t wide_triangles(Level level) const;
@@ -174,13 +197,12 @@ class Chunks {
   Level level_;
   partition::ChunkMap map_;
   int channels_;
-  std::vector<storage::RecordSpool<float>> vertices_;
-  std::vector<storage::RecordSpool<PackedTriangle>> inner_;
-  std::vector<storage::RecordSpool<partition::RankTriangle>> shared_;
-  std::vector<storage::RecordSpool<float>>
-      copies_;  ///< rank in the chunk as bits, then as vertices
-  std::vector<storage::RecordSpool<WedgedTriangle>> wedged_;
-  decltype(ChunkedTriangles::wide) wide_{};
+  std::vector<JoinedSpool<float>> vertices_;
+  std::vector<JoinedSpool<PackedTriangle>> inner_;
+  std::vector<JoinedSpool<partition::RankTriangle>> shared_;
+  std::vector<JoinedSpool<float>> copies_;  ///< rank in the chunk as bits, then as vertices
+  std::vector<JoinedSpool<WedgedTriangle>> wedged_;
+  WideCounts wide_{};
 };
 
 }  // namespace meshhier::pipeline

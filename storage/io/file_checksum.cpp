@@ -45,6 +45,28 @@ void FileChecksum::add(std::uint64_t offset, std::span<const std::byte> bytes) {
   }
 }
 
+std::vector<BlockSums> FileChecksum::known() const {
+  std::vector<BlockSums> runs;
+  for (std::size_t block = 0; block < sums_.size(); ++block) {
+    if (!known_[block])
+      continue;
+    if (block == 0 || !known_[block - 1])
+      runs.push_back({block, {}});
+    runs.back().sums.push_back(sums_[block]);
+  }
+  return runs;
+}
+
+bool FileChecksum::add(const BlockSums& sums) {
+  if (sums.first > sums_.size() || sums.sums.size() > sums_.size() - sums.first)
+    return false;
+  for (std::size_t i = 0; i < sums.sums.size(); ++i) {
+    sums_[sums.first + i] = sums.sums[i];
+    known_[sums.first + i] = true;
+  }
+  return true;
+}
+
 std::uint64_t FileChecksum::missing() const {
   return static_cast<std::uint64_t>(
       std::count_if(known_.begin(), known_.end(), [](const auto& known) { return !known; }));

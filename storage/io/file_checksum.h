@@ -12,6 +12,12 @@
 
 namespace meshhier::storage {
 
+/// The XXH3-64s of some consecutive blocks of a FileChecksum.
+struct BlockSums {
+  std::uint64_t first = 0;  ///< block
+  std::vector<std::uint64_t> sums;
+};
+
 /// XXH3-64 over the XXH3-64s, 8 bytes each, little endian, of the file's consecutive blocks of
 /// kBlockBytes (the last one may be shorter; an empty file has none). Blocks are independent of
 /// each other, so they can come from several threads and in any order.
@@ -26,6 +32,11 @@ class FileChecksum {
   /// Takes the blocks that lie within `bytes`, read at `offset`, unless they are known.
   /// Thread-safe.
   void add(std::uint64_t offset, std::span<const std::byte> bytes);
+
+  /// All that are known, ascending; for add(), in another process even. Not together with add().
+  std::vector<BlockSums> known() const;
+  /// False if the file has no such blocks.
+  bool add(const BlockSums& sums);
 
   /// Reads the blocks that are not known yet; then the checksum. `check` is called before each read
   /// and may throw. Throws Error(io). Not together with add().

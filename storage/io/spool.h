@@ -159,6 +159,8 @@ class Spool {
   /// Of a restored spool: whether the scratch file holds what was stored; reads it all. Before
   /// anything is appended there.
   bool is_as_stored() const;
+  /// Of a restored spool that is not as it was stored: ScratchFile::changed().
+  Error changed() const { return scratch_->changed(blocks_.empty() ? 0 : blocks_[0].offset()); }
 
  private:
   /// Where a block's bytes are, in 8 bytes, as large meshes have many blocks. Owns nothing.
@@ -209,6 +211,7 @@ class RecordSpool {
   StoredSpool store() { return spool_.store(); }
   bool restore(const StoredSpool& stored) { return spool_.restore(stored); }
   bool is_as_stored() const { return spool_.is_as_stored(); }
+  Error changed() const { return spool_.changed(); }
 
  private:
   static_assert(std::is_trivially_copyable_v<Record>);

@@ -1728,7 +1728,8 @@ TEST_F(Tasks, MakeTheBytesOfABuild) {
 TEST_F(Tasks, TakeTheirIndexFromTheScheduler) {
   write_mesh("a.ply");
   ASSERT_EQ(plan().code, 0);
-  ASSERT_EQ(run({"task", shared(), "read"}).code, 0);
+  for (const char* stage : {"read", "distribute", "faces", "join"})
+    ASSERT_EQ(run({"task", shared(), stage}).code, 0) << stage;
   ::setenv("JOB_COMPLETION_INDEX", "1", 1);
   const Outcome pod = run({"task", shared(), "leaves"});
   ::unsetenv("JOB_COMPLETION_INDEX");
@@ -1750,7 +1751,7 @@ TEST_F(Tasks, SayWhatIsWrong) {
   EXPECT_EQ(plan("4").code, 5);
   const Outcome unknown = run({"task", shared(), "leave"});
   EXPECT_EQ(unknown.code, 2);
-  EXPECT_THAT(unknown.messages, HasSubstr("its stages are: read, leaves"));
+  EXPECT_THAT(unknown.messages, HasSubstr("its stages are: read, distribute, faces, join, leaves"));
   EXPECT_EQ(run({"task", shared()}).code, 2);
   const Outcome early = run({"task", shared(), "leaves"});
   EXPECT_EQ(early.code, 4) << "worth another try";

@@ -101,6 +101,32 @@ TEST_F(CopyListTest, KeepsWhatItIsGiven) {
   EXPECT_EQ(CopyRecords(read.begin(), read.end()), given);
 }
 
+TEST_F(CopyListTest, WhatIsStoredIsThereInAnotherProcess) {
+  const CopyList list = list_of(kIds);
+  const std::vector<StoredCopies> stored = list.store(scratch_, [] {});
+  ASSERT_EQ(stored.size(), 4U);
+  CopyList restored(scratch_, std::uint64_t{1} << 32);
+  EXPECT_TRUE(restored.empty());
+  for (const StoredCopies& block : stored)
+    ASSERT_TRUE(restored.restore(block));
+  EXPECT_EQ(restored.count(), kIds.size());
+  for (const std::uint64_t first : {0UL, 6UL, 65'536UL, 4'294'967'295UL}) {
+    for (const std::uint64_t count : {0UL, 1UL, 65'537UL, 200'000UL})
+      EXPECT_EQ(ids(restored, first, count), ids(list, first, count)) << first << ", " << count;
+  }
+  std::vector<std::uint32_t> visited;
+  restored.for_each([] {}, [&](const CopyVertex& copy) { visited.push_back(copy.id); });
+  EXPECT_EQ(visited, kIds);
+  visited.clear();
+  restored.for_each(
+      7, 65'537, [] {}, [&](const CopyVertex& copy) { visited.push_back(copy.id); });
+  EXPECT_THAT(visited, testing::ElementsAre(7, 65'535, 65'536));
+  EXPECT_FALSE(restored.restore(stored[0])) << "twice";
+  CopyList small(scratch_, 65'536);
+  EXPECT_FALSE(small.restore(stored[1])) << "no such ids";
+  EXPECT_FALSE(small.restore({0, {0, 11, 0}})) << "no whole records";
+}
+
 TEST_F(CopyListTest, ACursorTellsCopiesFromOthers) {
   const CopyList list = list_of(kIds);
   CopyCursor cursor(list);

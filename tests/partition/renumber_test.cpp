@@ -1,5 +1,6 @@
 #include "partition/renumber.h"
 
+#include "hierarchy/error.h"
 #include "storage/io/file.h"
 #include "tests/support/meshes.h"
 
@@ -107,6 +108,34 @@ TEST_F(RenumberTest, ATableThatFitsIsLoadedOnce) {
   expect_exact<std::uint32_t>(mesh.triangles, mesh.positions.size(), 1 << 20);
   EXPECT_EQ(report_.table_blocks, 1u);
   EXPECT_EQ(report_.spooled_bytes, 0u);
+}
+
+TEST_F(RenumberTest, ATableOfSomeIds) {
+  constexpr std::uint32_t kFirst = 1'000'000'000;
+  const tests::TestMesh mesh = tests::sphere(200'000);
+  std::vector<Triangle<std::uint32_t>> triangles, expected;
+  for (const Triangle<std::uint32_t>& t : mesh.triangles) {
+    triangles.push_back({kFirst + t[0], kFirst + t[1], kFirst + t[2]});
+    expected.push_back({kFirst + 2 * t[0], kFirst + 2 * t[1], kFirst + 2 * t[2]});
+  }
+  const RenumberTable<std::uint32_t> table{
+      kFirst, mesh.positions.size(), [](std::uint64_t id, std::span<std::uint32_t> values) {
+        for (std::uint32_t& value : values)
+          value = static_cast<std::uint32_t>(2 * (id++ - kFirst) + kFirst);
+      }};
+  storage::MemoryPool pool(0);
+  storage::ScratchFile scratch(*files_, path_, pool);
+  for (const std::uint64_t memory : {kSmall, std::uint64_t{1} << 20}) {
+    const RenumberPlan plan = plan_renumbering(table.entries, sizeof(std::uint32_t), memory);
+    auto found = run(Renumberer<std::uint32_t>(table, plan, scratch), triangles);
+    std::sort(found.begin(), found.end());
+    std::sort(expected.begin(), expected.end());
+    EXPECT_TRUE(found == expected) << memory;
+  }
+  Renumbered<std::uint32_t> part;
+  const Renumberer<std::uint32_t> renumberer(table, plan_renumbering(table.entries, 4, 1 << 20),
+                                             scratch);
+  EXPECT_THROW(renumberer.translate(std::span(mesh.triangles), part), Error) << "other ids";
 }
 
 TEST_F(RenumberTest, NoTrianglesAndNoIds) {

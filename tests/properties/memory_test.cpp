@@ -236,6 +236,36 @@ class MemoryTest : public testing::Test {
     EXPECT_GE(outcome.peak_bytes * 5, (pipeline::fixed_bytes(costs) + most) * 3);
   }
 
+  void expect_each_task_within(const std::string& budget, const std::string& setting) {
+    std::vector<std::string> plan = {MESHHIER_BINARY,
+                                     "plan",
+                                     path("mesh.ply").string(),
+                                     "--work",
+                                     path("work").string(),
+                                     "--tasks",
+                                     "3",
+                                     "--force",
+                                     "--set",
+                                     "memory_budget=" + budget,
+                                     setting};
+    ASSERT_EQ(run(plan).code, 0) << run(plan).messages;
+    for (const std::string stage :
+         {"read", "distribute", "faces", "join", "leaves", "level-1", "level-2", "level-3",
+          "level-4", "level-5", "level-6", "level-7", "level-8", "level-9", "level-10", "top",
+          "publish", "finish"}) {
+      std::vector<std::string> task = {MESHHIER_BINARY, "task", path("work").string(), stage};
+      const Outcome outcome = run(task);
+      if (outcome.code == 2)
+        continue;  // the tree is not so deep
+      EXPECT_EQ(outcome.code, 0) << outcome.messages;
+      EXPECT_LE(outcome.peak_bytes, execution::parse_size(budget).value())
+          << stage << ' ' << setting;
+    }
+    EXPECT_TRUE(fs::exists(path("mesh.hier")));
+    fs::remove_all(path("mesh.hier"));
+    fs::remove_all(path("work"));
+  }
+
   tests::TemporaryDirectory directory_;
 };
 
@@ -254,33 +284,8 @@ TEST_F(MemoryTest, AMillionVerticesIn64MiB) {
 
 TEST_F(MemoryTest, EachTaskOfAMillionVerticesIn64MiB) {
   write_mesh(million_vertices());
-  for (const char* setting : {"threads=2", "partition.vertices=500"}) {
-    std::vector<std::string> plan = {MESHHIER_BINARY,
-                                     "plan",
-                                     path("mesh.ply").string(),
-                                     "--work",
-                                     path("work").string(),
-                                     "--tasks",
-                                     "3",
-                                     "--force",
-                                     "--set",
-                                     "memory_budget=64MiB",
-                                     setting};
-    ASSERT_EQ(run(plan).code, 0) << run(plan).messages;
-    for (const std::string stage :
-         {"read", "leaves", "level-1", "level-2", "level-3", "level-4", "level-5", "level-6",
-          "level-7", "level-8", "level-9", "level-10", "top", "publish", "finish"}) {
-      std::vector<std::string> task = {MESHHIER_BINARY, "task", path("work").string(), stage};
-      const Outcome outcome = run(task);
-      if (outcome.code == 2)
-        continue;  // the tree is not so deep
-      EXPECT_EQ(outcome.code, 0) << outcome.messages;
-      EXPECT_LE(outcome.peak_bytes, 64 * kMiB) << stage << ' ' << setting;
-    }
-    EXPECT_TRUE(fs::exists(path("mesh.hier")));
-    fs::remove_all(path("mesh.hier"));
-    fs::remove_all(path("work"));
-  }
+  for (const char* setting : {"threads=2", "partition.vertices=500"})
+    expect_each_task_within("64MiB", setting);
 }
 
 TEST_F(MemoryTest, AMillionVerticesInMoreThanEnough) {
@@ -335,6 +340,12 @@ TEST_F(MemoryTest, SeveralVerticesAtEachPlaceInTheLeastBudgetAndMore) {
     expect_within("160MiB", {"partition.vertices=500"});
     fs::remove_all(path("mesh.hier"));
   }
+}
+
+TEST_F(MemoryTest, EachTaskWithSeveralVerticesAtEachPlace) {
+  write_split("soup", 400'000);
+  const std::string least = expect_within_least_budget();
+  expect_each_task_within(least, "threads=2");
 }
 
 /// A smooth sphere, a vertex at each place, and beside it one with a normal for each corner.

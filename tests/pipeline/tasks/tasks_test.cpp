@@ -17,14 +17,18 @@
 #include "tests/support/textured_torus.h"
 
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <map>
 #include <optional>
 #include <random>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -59,6 +63,46 @@ class TasksTest : public testing::Test {
     tests::write_ply(tests::sphere(6000, 0.01F), file("mesh.ply"));
     config_.input = file("mesh.ply");
   }
+  /// A mesh whose rows in the file are so long that it has many blocks of vertices and of faces;
+  /// `faces`: what its triangles become.
+  void use_long_rows(const tests::TestMesh& mesh, std::size_t vertex_bytes, std::size_t face_bytes,
+                     const std::vector<std::vector<std::uint32_t>>& faces = {}) {
+    const std::size_t count = faces.empty() ? mesh.triangles.size() : faces.size();
+    std::ofstream out(file("mesh.ply"), std::ios::binary);
+    const auto pad = [&](std::size_t bytes) {
+      for (std::size_t i = 0; i < bytes / 8; ++i)
+        out << "property double pad" << i << '\n';
+    };
+    out << "ply\nformat binary_little_endian 1.0\nelement vertex " << mesh.positions.size()
+        << "\nproperty float x\nproperty float y\nproperty float z\n";
+    pad(vertex_bytes);
+    out << "element face " << count << "\nproperty list uchar uint vertex_indices\n";
+    pad(face_bytes);
+    out << "end_header\n";
+    const auto write = [&](const auto& value) {
+      out.write(reinterpret_cast<const char*>(&value), sizeof value);
+    };
+    const std::string filling(std::max(vertex_bytes, face_bytes), 'x');
+    for (const Vec3f& p : mesh.positions) {
+      write(p);
+      out.write(filling.data(), static_cast<std::streamsize>(vertex_bytes));
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::vector<std::uint32_t> corners =
+          faces.empty()
+              ? std::vector<std::uint32_t>(mesh.triangles[i].begin(), mesh.triangles[i].end())
+              : faces[i];
+      write(static_cast<std::uint8_t>(corners.size()));
+      for (const std::uint32_t corner : corners)
+        write(corner);
+      out.write(filling.data(), static_cast<std::streamsize>(face_bytes));
+    }
+    config_.input = file("mesh.ply");
+    config_.preview = false;
+  }
+  /// Ten blocks of vertices and ten of faces.
+  void use_blocks() { use_long_rows(tests::sphere(6000, 0.01F), 1600, 800); }
+
   void use_attributes() {
     bench::SurfaceOptions options;
     options.triangles = 5000;
@@ -157,10 +201,10 @@ class TasksTest : public testing::Test {
     there->write_at(at, byte);
   }
 
-  void expect_any_cut_makes_the_same() {
+  void expect_any_cut_makes_the_same(const std::vector<std::uint32_t>& cuts = {1, 2, 8}) {
     const Snapshot whole = expected();
     std::uint32_t seed = 0;
-    for (const std::uint32_t tasks : {1U, 2U, 8U}) {
+    for (const std::uint32_t tasks : cuts) {
       run_all(plan(tasks), ++seed);
       EXPECT_EQ(output(), whole) << tasks;
       fs::remove_all(config_.output);
@@ -204,6 +248,105 @@ TEST_F(TasksTest, OnePartitionIsEnough) {
   expect_any_cut_makes_the_same();
 }
 
+TEST_F(TasksTest, AnyCutOfTheInputMakesTheSameBytes) {
+  use_blocks();
+  expect_any_cut_makes_the_same({1, 2, 3, 7, 8, 20});
+}
+
+/// Each slice has vertices and triangles of each chunk.
+TEST_F(TasksTest, SlicesOfManyChunksMakeTheSameBytes) {
+  use_long_rows(tests::shuffled(tests::torus(540'000), 1), 80, 32);
+  config_.partition.vertices = 8192;
+  config_.simplify.vertices = 2000;
+  expect_any_cut_makes_the_same({1, 3, 7});
+  config_.memory_budget = std::uint64_t{64} << 20;
+  config_.threads = 1;
+  expect_any_cut_makes_the_same({7});
+}
+
+/// Vertices of one place are in different slices, and so are their triangles.
+TEST_F(TasksTest, SlicesOfAMeshWithCopiesMakeTheSameBytes) {
+  use_long_rows(tests::duplicates(6000, 0.01F), 1600, 800);
+  expect_any_cut_makes_the_same({1, 3, 7, 20});
+  config_.topology = Topology::index;
+  expect_any_cut_makes_the_same({3});
+}
+
+TEST_F(TasksTest, SlicesOfManyChunksWithCopiesMakeTheSameBytes) {
+  use_long_rows(tests::shuffled(tests::duplicates(400'000, 0.001F), 1), 80, 32);
+  config_.partition.vertices = 8192;
+  config_.simplify.vertices = 2000;
+  expect_any_cut_makes_the_same({1, 7});
+}
+
+TEST_F(TasksTest, InputWithoutSlicesMakesTheSameBytes) {
+  const tests::TestMesh mesh = tests::duplicates(1500, 0.01F);
+  std::ofstream out(file("mesh.ply"));
+  out << "ply\nformat ascii 1.0\nelement vertex " << mesh.positions.size()
+      << "\nproperty float x\nproperty float y\nproperty float z\nelement face "
+      << mesh.triangles.size() << "\nproperty list uchar uint vertex_indices\nend_header\n";
+  for (const Vec3f& p : mesh.positions)
+    out << p.x << ' ' << p.y << ' ' << p.z << '\n';
+  for (const tests::MeshTriangle& t : mesh.triangles)
+    out << "3 " << t[0] << ' ' << t[1] << ' ' << t[2] << '\n';
+  out.close();
+  config_.input = file("mesh.ply");
+  expect_any_cut_makes_the_same({3});
+}
+
+TEST_F(TasksTest, PointsMakeTheSameBytes) {
+  use_long_rows(tests::points(3000), 1600, 0);
+  expect_any_cut_makes_the_same({1, 3});
+}
+
+/// Behind a polygon no face has a known place: what slices make of the rest must not count.
+TEST_F(TasksTest, PolygonsBetweenTrianglesMakeTheSameBytes) {
+  const tests::TestMesh mesh = tests::duplicates(6000, 0.01F);
+  std::vector<std::vector<std::uint32_t>> faces;
+  for (const tests::MeshTriangle& t : mesh.triangles)
+    faces.emplace_back(t.begin(), t.end());
+  for (const std::size_t at : {std::size_t{0}, std::size_t{2500}, faces.size() - 1}) {
+    auto polygons = faces;
+    const std::uint32_t other = polygons[at][0] < 1000 ? 2000 : 0;
+    polygons[at].push_back(other);
+    use_long_rows(mesh, 1600, 800, polygons);
+    expect_any_cut_makes_the_same({1, 3, 7});
+  }
+}
+
+TEST_F(TasksTest, ABrokenFaceIsToldAsByABuild) {
+  const tests::TestMesh mesh = tests::sphere(6000, 0.01F);
+  std::vector<std::vector<std::uint32_t>> faces;
+  for (const tests::MeshTriangle& t : mesh.triangles)
+    faces.emplace_back(t.begin(), t.end());
+  faces[4000][1] = 4'000'000;
+  use_long_rows(mesh, 1600, 800, faces);
+  std::string told;
+  try {
+    expected();
+  } catch (const Error& error) {
+    told = error.what();
+  }
+  EXPECT_THAT(told, HasSubstr("row 4000"));
+  const TaskPlan planned = plan(3);
+  run_until(planned, "join");
+  EXPECT_EQ(failure("join"), ErrorCode::input);
+  EXPECT_EQ(message_, told);
+}
+
+TEST_F(TasksTest, AnInputThatChangesBetweenSlicesIsRefused) {
+  use_blocks();
+  for (const char* stage : {"distribute", "faces", "join"}) {
+    const TaskPlan planned = plan(3);
+    run_until(planned, stage);
+    fs::last_write_time(file("mesh.ply"),
+                        fs::last_write_time(file("mesh.ply")) + std::chrono::seconds(1));
+    EXPECT_EQ(failure(stage), ErrorCode::input);
+    EXPECT_THAT(message_, HasSubstr("was changed since the stage read"));
+    fs::remove_all(work());
+  }
+}
+
 TEST_F(TasksTest, ScratchOfTheMachineHoldsWhatIsNotSealed) {
   use_sphere();
   const Snapshot whole = expected();
@@ -219,6 +362,8 @@ TEST_F(TasksTest, WorkersShareTheTasksOfAStage) {
   plan(5);
   run("read", {1, 2});  // has only one task, which is the other worker's
   EXPECT_EQ(run("read", {0, 2}).done, 1);
+  for (const char* stage : {"distribute", "faces", "join"})
+    run(stage);
   EXPECT_EQ(run("leaves", {1, 2}).done, 2);
   EXPECT_EQ(run("leaves", {0, 2}).done, 3);
   const TaskReport again = run("leaves");
@@ -231,6 +376,10 @@ TEST_F(TasksTest, ATaskThatIsMissingIsNamed) {
   const TaskPlan planned = plan(3);
   EXPECT_EQ(failure("leaves"), ErrorCode::io);
   EXPECT_THAT(message_, HasSubstr("task 0 of stage read is not done"));
+  run("read");
+  run("distribute", {0, 3});
+  EXPECT_EQ(failure("faces"), ErrorCode::io);
+  EXPECT_THAT(message_, HasSubstr("task 1 of stage distribute is not done"));
   run_until(planned, "level-1");
   fs::remove(segment(planned, "leaves", 1));
   EXPECT_EQ(failure("level-1"), ErrorCode::io);
@@ -286,14 +435,53 @@ TEST_F(TasksTest, NoFlippedByteReachesTheResult) {
   EXPECT_EQ(output(), whole);
 }
 
-TEST_F(TasksTest, ChunksThatAreDamagedAreNotRead) {
-  use_sphere();
+/// Likewise of what slices leave: some stage up to `leaves` refuses it.
+TEST_F(TasksTest, NoFlippedByteOfASliceReachesTheLeaves) {
+  use_long_rows(tests::duplicates(6000, 0.01F), 1600, 800);
   const TaskPlan planned = plan(2);
-  run("read");
-  const fs::path read = segment(planned, "read", 0);
-  flip(read, static_cast<std::int64_t>(fs::file_size(read)) / 2 + 1000);
-  EXPECT_EQ(failure("leaves"), ErrorCode::corrupt);
-  EXPECT_THAT(message_, HasSubstr("read-00000"));
+  for (const std::string stage : {"distribute", "faces"}) {
+    run_until(planned, "leaves");
+    const fs::path flipped = segment(planned, stage, 1);
+    const auto size = static_cast<std::int64_t>(fs::file_size(flipped));
+    for (std::int64_t from_end = 1; from_end <= size; from_end += size / 40) {
+      flip(flipped, from_end);
+      std::optional<ErrorCode> code;
+      for (const std::string reader : {"faces", "join", "leaves"}) {
+        if (reader == stage)
+          continue;
+        for (std::uint32_t i = 0; i < 2; ++i)
+          fs::remove(segment(planned, reader, i));
+        code = failure(reader);
+        if (code)
+          break;
+      }
+      EXPECT_EQ(code, ErrorCode::corrupt) << stage << ' ' << from_end;
+      EXPECT_THAT(message_, HasSubstr(stage + "-00001")) << from_end;
+      flip(flipped, from_end);
+    }
+  }
+}
+
+TEST_F(TasksTest, ATornSegmentOfASliceIsMadeAgain) {
+  use_blocks();
+  const Snapshot whole = expected();
+  const TaskPlan planned = plan(3);
+  const std::pair<const char*, const char*> stages[] = {
+      {"distribute", "faces"}, {"faces", "join"}, {"join", "leaves"}};
+  for (const auto& [stage, next] : stages) {
+    run_until(planned, next);
+    const std::uint32_t task = find_stage(planned, stage).tasks - 1;
+    const fs::path torn = segment(planned, stage, task);
+    const std::uintmax_t size = fs::file_size(torn);
+    for (const std::uintmax_t bytes : {std::uintmax_t{0}, std::uintmax_t{20}, size / 2, size - 1}) {
+      fs::resize_file(torn, bytes);
+      EXPECT_EQ(failure(next), ErrorCode::corrupt) << stage << bytes;
+      EXPECT_THAT(message_, HasSubstr("run its task again"));
+      EXPECT_EQ(run(stage).done, 1) << stage << bytes;
+    }
+  }
+  run_all(planned, 1);
+  EXPECT_EQ(output(), whole);
 }
 
 TEST_F(TasksTest, PicturesThatAreDamagedAreNotShown) {
@@ -366,7 +554,7 @@ TEST_F(TasksTest, SegmentsOfAnotherPlanAreRefused) {
   config_.partition.vertices = 100;
   const TaskPlan second = plan(2);
   ASSERT_NE(second.fingerprint, first.fingerprint);
-  run("read");
+  run_until(second, "leaves");
   for (const char* name : {"leaves-00000", "leaves-00001"})
     fs::copy_file(file("first") / "segments" / name, work() / "segments" / name);
   EXPECT_EQ(failure("level-1"), ErrorCode::corrupt);
@@ -433,8 +621,7 @@ TEST_F(TasksTest, ADamagedOutputOfTheSameMeshIsReplaced) {
 TEST_F(TasksTest, APictureThatChangesIsRefused) {
   use_texture();
   const TaskPlan planned = plan(1);
-  run("read");
-  run("leaves");
+  run_until(planned, "images");
   for (const auto& entry : fs::directory_iterator(directory_.path())) {
     if (entry.path().extension() == ".png")
       fs::resize_file(entry.path(), fs::file_size(entry.path()) - 10);
@@ -557,15 +744,15 @@ TEST_F(TasksTest, StatusComesFromTheSegmentsAlone) {
   EXPECT_EQ(status.stages.front().done, 0);
   EXPECT_FALSE(cpu_seconds_left(status, planned, files_));
   EXPECT_EQ(status_json(status, planned, {}).at("next"), "read");
-  run("read");
+  run_until(planned, "leaves");
   run("leaves", {1, 3});
   fs::copy_file(segment(planned, "leaves", 1), segment(planned, "leaves", 2));  // of another name
   status = task_status(planned, work(), files_);
   EXPECT_EQ(status.stages[0].done, 1);
-  EXPECT_EQ(status.stages[1].done, 1);
-  EXPECT_THAT(status.stages[1].damaged, testing::ElementsAre(2));
-  EXPECT_EQ(status.stages[1].bytes, fs::file_size(segment(planned, "leaves", 1)));
-  EXPECT_GT(status.stages[1].peak_resident_bytes, 0);
+  EXPECT_EQ(status.stages[4].done, 1);
+  EXPECT_THAT(status.stages[4].damaged, testing::ElementsAre(2));
+  EXPECT_EQ(status.stages[4].bytes, fs::file_size(segment(planned, "leaves", 1)));
+  EXPECT_GT(status.stages[4].peak_resident_bytes, 0);
   EXPECT_GT(cpu_seconds_left(status, planned, files_).value_or(0), 0);
   EXPECT_EQ(status_json(status, planned, {}).at("next"), "leaves");
   EXPECT_THAT(status_text(status, planned, {}), HasSubstr("segment of task 2 is damaged"));

@@ -118,6 +118,53 @@ TEST_F(ChunksTest, ATriangleGoesToEachChunkItTouches) {
 /// What a triangle's corners are: their ranks, and their wedges there.
 using Corners = std::pair<RankTriangle, CornerWedges>;
 
+TEST_F(ChunksTest, WhatSlicesHaveStoredIsOneBehindTheOther) {
+  const auto place = [](std::uint32_t id) { return Vec3f{static_cast<float>(id), 1, 2}; };
+  const auto slice = [&](std::uint32_t first, std::uint32_t end) {
+    auto chunks = std::make_unique<Chunks>(tree_, 1, false, scratch_, 4096);
+    ChunkedVertices vertices;
+    std::vector<Vec3f> positions;
+    for (std::uint32_t id = first; id < end; ++id)
+      positions.push_back(place(id));
+    vertices.chunk_of.assign(positions.size(), 2);
+    vertices.sort(4, positions, std::vector<float>(positions.size(), 7));
+    chunks->append(vertices);
+    ChunkedTriangles triangles;
+    triangles.sort(std::vector<RankTriangle>{{150'000 + first, 150'000 + end - 1, 150'001},
+                                             {first, 150'000, 150'001}},
+                   chunks->map());
+    chunks->append(triangles);
+    return chunks;
+  };
+  const auto empty = std::make_unique<Chunks>(tree_, 1, false, scratch_, 4096);
+  ASSERT_FALSE(chunks_.has(2));
+  std::uint32_t first = 0;
+  std::vector<std::unique_ptr<Chunks>> slices;  // what they have released would be used again
+  for (const std::uint32_t end : {20'000U, 20'001U, 75'000U}) {
+    ASSERT_FALSE(chunks_.is_whole(2));
+    slices.push_back(slice(first, end));
+    ASSERT_TRUE(slices.back()->has(2));
+    ASSERT_TRUE(chunks_.restore(2, slices.back()->store(2)));
+    ASSERT_TRUE(chunks_.restore(2, empty->store(2)));
+    first = end;
+  }
+  EXPECT_TRUE(chunks_.is_as_stored(2));
+  EXPECT_EQ(chunks_.triangle_count(2), 6U);
+  const partition::ChunkMesh chunk = chunks_.take(2);
+  ASSERT_EQ(chunk.vertices.size(), 75'000U);
+  for (std::uint32_t i = 0; i < 75'000; ++i)
+    ASSERT_EQ(chunk.vertices.positions[i], place(i));
+  EXPECT_THAT(chunk.triangles,
+              UnorderedElementsAre(
+                  RankTriangle{150'000, 169'999, 150'001}, RankTriangle{170'000, 170'000, 150'001},
+                  RankTriangle{170'001, 224'999, 150'001}, RankTriangle{0, 150'000, 150'001},
+                  RankTriangle{20'000, 150'000, 150'001}, RankTriangle{20'001, 150'000, 150'001}));
+  EXPECT_FALSE(chunks_.restore(
+      2,
+      {{3, 0, 4096, {0}}, {0, 0, 8, nlohmann::json::array()}, {0, 0, 8, nlohmann::json::array()}}))
+      << "no whole numbers";
+}
+
 class CopiedChunksTest : public ChunksTest {
  protected:
   CopiedChunksTest() {

@@ -84,6 +84,28 @@ TEST_F(FileChecksumTest, TakesWholeBlocksFromReadsOfAnyPlaceAndOrder) {
   EXPECT_EQ(sum.missing(), 0U);
 }
 
+TEST_F(FileChecksumTest, WhatSeveralHaveReadIsOneChecksum) {
+  const auto bytes = distinct_blocks(5 * kBlock + 77);
+  const auto file = file_of(bytes);
+  FileChecksum first(bytes.size()), second(bytes.size()), all(bytes.size());
+  first.add(0, std::span(bytes).first(kBlock));
+  first.add(2 * kBlock, std::span(bytes).subspan(2 * kBlock, 2 * kBlock));
+  second.add(3 * kBlock, std::span(bytes).subspan(3 * kBlock));
+  ASSERT_EQ(first.known().size(), 2U);
+  EXPECT_EQ(first.known()[1].first, 2U);
+  EXPECT_EQ(first.known()[1].sums.size(), 2U);
+  EXPECT_TRUE(all.known().empty());
+  for (const FileChecksum* part : {&first, &second}) {
+    for (const BlockSums& sums : part->known())
+      EXPECT_TRUE(all.add(sums));
+  }
+  EXPECT_EQ(all.missing(), 1U);
+  EXPECT_EQ(all.complete(*file, go_on), defined(bytes));
+  EXPECT_FALSE(all.add({5, {1, 2}}));
+  EXPECT_FALSE(all.add({7, {}}));
+  EXPECT_TRUE(all.add({6, {}}));
+}
+
 TEST_F(FileChecksumTest, EveryBlockCountsInItsPlace) {
   auto bytes = distinct_blocks(3 * kBlock);
   const std::uint64_t sum = defined(bytes);

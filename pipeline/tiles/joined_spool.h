@@ -1,0 +1,88 @@
+// Records of several spools in a row.
+#pragma once
+
+#include "hierarchy/error.h"
+#include "storage/io/spool.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace meshhier::pipeline {
+
+/// One spool that is written, or those that tasks have stored, one behind the other. As a spool:
+/// one writer, then any number of readers.
+template <class Record>
+class JoinedSpool {
+ public:
+  JoinedSpool(storage::ScratchFile& scratch, std::size_t block_bytes)
+      : scratch_(&scratch), first_(scratch, block_bytes) {}
+
+  void append(std::span<const Record> records) { first_.append(records); }
+  void append(const Record& record) { first_.append(record); }
+
+  std::uint64_t size() const {
+    std::uint64_t count = first_.size();
+    for (const storage::RecordSpool<Record>& part : more_)
+      count += part.size();
+    return count;
+  }
+
+  /// Requires first + records.size() <= size().
+  void read(std::uint64_t first, std::span<Record> records) const {
+    read_part(first_, first, records);
+    for (const storage::RecordSpool<Record>& part : more_)
+      read_part(part, first, records);
+  }
+
+  void clear() {
+    first_.clear();
+    more_.clear();
+  }
+
+  /// Of what was appended.
+  storage::StoredSpool store() { return first_.store(); }
+  /// Takes what was stored behind what is there; false if `stored` contradicts itself.
+  bool restore(const storage::StoredSpool& stored) {
+    if (stored.bytes % sizeof(Record) != 0)
+      return false;
+    if (stored.bytes == 0)
+      return stored.blocks.empty();
+    if (first_.size() == 0)
+      return first_.restore(stored);
+    return more_.emplace_back(*scratch_, stored.block_bytes).restore(stored);
+  }
+  /// Of what was restored: as Spool::changed() of what is not as it was stored; none if all is.
+  std::optional<Error> find_change() const {
+    if (!first_.is_as_stored())
+      return first_.changed();
+    for (const storage::RecordSpool<Record>& part : more_) {
+      if (!part.is_as_stored())
+        return part.changed();
+    }
+    return std::nullopt;
+  }
+
+ private:
+  /// Reads what of the records lies in the part; `first` becomes a place behind it.
+  static void read_part(const storage::RecordSpool<Record>& part, std::uint64_t& first,
+                        std::span<Record>& records) {
+    if (first >= part.size()) {
+      first -= part.size();
+      return;
+    }
+    const std::uint64_t count = std::min<std::uint64_t>(records.size(), part.size() - first);
+    part.read(first, records.first(count));
+    records = records.subspan(count);
+    first = 0;
+  }
+
+  storage::ScratchFile* scratch_;
+  storage::RecordSpool<Record> first_;
+  std::vector<storage::RecordSpool<Record>> more_;
+};
+
+}  // namespace meshhier::pipeline
