@@ -152,7 +152,7 @@ TEST(Manifest, OneOfVersion6HasNoFirstView) {
 TEST(Manifest, OneOfVersion6HasItsTilesElsewhereIfThereAreMany) {
   Manifest manifest = make_manifest();
   manifest.source.vertices = manifest.source.places = 100'000;
-  manifest.partition_count = kTilesADirectory + 1;
+  manifest.partition_count = storage::kTilesADirectory + 1;
   EXPECT_NO_THROW(parse_manifest(to_json_text(manifest), kManifestName));
   manifest.first_view.reset();
   try {
