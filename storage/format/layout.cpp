@@ -11,8 +11,8 @@ namespace meshhier::storage {
 namespace {
 
 constexpr std::string_view kMark = ".meshhier-";
-constexpr std::size_t kMostDigits = 10;            // of an index below 2^32
-constexpr std::uint32_t kMostLevel = 255;          // a Level has no more; trees have 33
+constexpr std::size_t kMostDigits = 10;    // of an index below 2^32
+constexpr std::uint32_t kMostLevel = 255;  // a Level has no more; trees have 33
 constexpr std::string_view kVerify = "verify-";
 
 /// Takes `least` digits or more off the front; false if there are not so many. Further ones do not
