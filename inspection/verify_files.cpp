@@ -26,8 +26,7 @@ namespace fs = std::filesystem;
 /// tiles.
 bool is_tile_file(const Tree& tree, const fs::path& relative) {
   const auto node = storage::tile_of(relative.generic_string());
-  return node && raw(node->level) <= raw(tree.depth()) && tree.contains(*node) &&
-         tree.tile_node(*node) == *node;
+  return node && tree.contains(*node) && tree.tile_node(*node) == *node;
 }
 
 bool is_known(const VerifyJob& job, const std::set<fs::path>& tilesets, const fs::path& relative) {

@@ -19,6 +19,9 @@
 
 namespace meshhier::pipeline {
 
+/// Under which progress tells of it.
+inline constexpr const char* kPartitionStage = "partition";
+
 /// Hands a share of the vertices to parallel work(block, slot) and a serial sink(slot) in the order
 /// of ids.
 template <class Slot, class Work, class Sink>

@@ -25,8 +25,6 @@ using partition::TopPlan;
 using partition::TopTree;
 using partition::WedgeRank;
 
-constexpr const char* kStage = "partition";
-
 /// Distributes the first vertices of all places and fills the table of ranks. Copies wait in
 /// `copy_rows` until their places' ranks are known.
 template <class Rank>
@@ -59,7 +57,7 @@ void distribute_copies(const importing::CopyList& copies,
 template <class Slot, class Rank>
 mesh_io::FaceCounts distribute_faces(SourceMesh& mesh, Renumberer<Rank> renumberer, Chunks& chunks,
                                      const StageContext& context) {
-  context.progress.stage(kStage, mesh.declared_faces(), "triangles");
+  context.progress.stage(kPartitionStage, mesh.declared_faces(), "triangles");
   TriangleDistribution<Slot, Rank> triangles(mesh, std::move(renumberer), chunks, context);
   const mesh_io::FaceCounts blocks = triangles.take_blocks({}).counts;
   const mesh_io::FaceCounts rest = triangles.take_from(blocks.faces);
@@ -72,7 +70,7 @@ mesh_io::FaceCounts distribute(SourceMesh& mesh, const importing::CopyList& copi
                                const TopTree& top, Chunks& chunks, storage::ScratchFile& passing,
                                const StageContext& context) {
   const std::uint64_t count = mesh.summary().vertices;
-  context.progress.stage(kStage, count, "vertices");
+  context.progress.stage(kPartitionStage, count, "vertices");
   const auto triangles = [&]<class Slot>(auto& table, Slot) {
     execution::release_free_memory();
     return distribute_faces<Slot>(mesh, table.renumberer(), chunks, context);
@@ -100,7 +98,7 @@ TopTree find_splits(SourceMesh& mesh, const importing::CopyList& copies,
   if (plan.splits.empty())
     return {plan.chunks, {}};
   for (;;) {
-    context.progress.stage(kStage, mesh.summary().vertices, "vertices");
+    context.progress.stage(kPartitionStage, mesh.summary().vertices, "vertices");
     const partition::Sweep sweep(plan);
     partition::TopSelector selector(plan, tree, windows, context.memory().work_bytes / 2);
     struct Slot {
@@ -181,11 +179,11 @@ StageMemory partition_memory(const JobSize& job) {
 std::vector<StageTime> partition_time(const JobSize& job) {
   constexpr double kVertexSeconds = 35e-9;
   constexpr double kTriangleSeconds = 35e-9;
-  const StageTime vertices{kStage, "vertices", job.vertex_count,
+  const StageTime vertices{kPartitionStage, "vertices", job.vertex_count,
                            static_cast<double>(job.vertex_count) * kVertexSeconds};
   return {vertices,
           vertices,
-          {kStage, "triangles", job.face_count,
+          {kPartitionStage, "triangles", job.face_count,
            static_cast<double>(job.face_count) * kTriangleSeconds}};
 }
 

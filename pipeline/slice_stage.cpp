@@ -19,8 +19,6 @@ namespace {
 using partition::Renumberer;
 using partition::WedgeRank;
 
-constexpr const char* kDistributeStage = "partition";
-
 /// Ids in whole blocks: all that some triangles name, and their neighbours in the file.
 class NamedIds {
  public:
@@ -208,7 +206,7 @@ void distribute_vertices(SlicedInput& input, const partition::TopTree& top, cons
                          Chunks& chunks, storage::RecordSpool<float>& copy_rows,
                          const StageContext& context) {
   const SourceMesh& mesh = input.mesh;
-  context.progress.stage(kDistributeStage, about(mesh.summary().vertices, slice), "vertices");
+  context.progress.stage(kPartitionStage, about(mesh.summary().vertices, slice), "vertices");
   std::uint64_t next = slice.begin(mesh.vertex_blocks());
   std::vector<std::uint32_t> ranks;
   const auto keep = [&](const std::vector<std::uint32_t>& of_places,
@@ -254,7 +252,7 @@ void distribute_copies(SlicedInput& input, const Share& slice,
 
 FaceBlocks distribute_triangles(SlicedInput& input, const Share& slice, Chunks& chunks,
                                 storage::ScratchFile& scratch, const StageContext& context) {
-  context.progress.stage(kDistributeStage, about(input.mesh.declared_faces(), slice), "triangles");
+  context.progress.stage(kPartitionStage, about(input.mesh.declared_faces(), slice), "triangles");
   return with_table(input, ids_of(input.mesh, slice, context), chunks, scratch, context,
                     [&](auto& triangles) { return triangles.take_blocks(slice); });
 }
@@ -263,7 +261,7 @@ mesh_io::FaceCounts distribute_triangles_from(std::uint64_t face, SlicedInput& i
                                               Chunks& chunks, storage::ScratchFile& scratch,
                                               const StageContext& context) {
   const std::uint64_t left = input.mesh.declared_faces() - face;
-  context.progress.stage(kDistributeStage, left, "triangles");
+  context.progress.stage(kPartitionStage, left, "triangles");
   NamedIds ids(input.mesh.summary().vertices);
   if (left > 0)
     ids.add_all();
