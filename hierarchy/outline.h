@@ -16,6 +16,9 @@ struct Outline {
   std::vector<Vec3f> vertices;  ///< relative to the hierarchy's origin
   std::vector<std::uint32_t> starts{
       0};  ///< ascending; starts.size() - 1 polylines; every one has 2 vertices or more
+  /// The last so many polylines draw the form: creases, ridges and valleys. The others are borders,
+  /// and where sectors meet.
+  std::size_t form_lines = 0;
   std::optional<Standpoint> first_view{};  ///< as PublishedTile's
 
   std::size_t polyline_count() const { return starts.size() - 1; }

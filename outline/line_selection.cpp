@@ -6,28 +6,36 @@
 namespace meshhier::outline {
 namespace {
 
-bool fits(const OutlineOptions& options, std::size_t vertices, std::size_t polylines) {
-  return !options.file_bytes ||
-         options.file_bytes(vertices, vertices - polylines) <= options.max_bytes;
-}
+/// What chosen lines take of a file.
+struct Taken {
+  std::size_t vertices = 0, lines = 0;
 
-/// How many of `order` fit with a tolerance in input units.
-std::size_t count_that_fit(const Lines& lines, std::span<const std::uint32_t> order,
-                           const OutlineOptions& options, double tolerance) {
-  std::size_t vertices = 0, count = 0;
-  for (; count < order.size(); ++count) {
-    vertices += lines.vertex_count(order[count], tolerance);
-    if (!fits(options, vertices, count + 1))
-      break;
+  bool fits(const OutlineOptions& options, std::size_t max_bytes) const {
+    return !options.file_bytes || options.file_bytes(vertices, vertices - lines) <= max_bytes;
   }
-  return count;
+};
+
+/// Adds lines of `order` to `taken` with a tolerance in input units, as long as all fits. Returns
+/// how many.
+std::size_t take(const Lines& lines, std::span<const std::uint32_t> order,
+                 const OutlineOptions& options, double tolerance, std::size_t max_bytes,
+                 Taken& taken) {
+  for (std::size_t count = 0; count < order.size(); ++count) {
+    const Taken more{taken.vertices + lines.vertex_count(order[count], tolerance), taken.lines + 1};
+    if (!more.fits(options, max_bytes))
+      return count;
+    taken = more;
+  }
+  return order.size();
 }
 
 }  // namespace
 
-Lines::Lines(const Network& network, double least, double crease)
-    : positions_(network.positions()), chains_(trace_chains(network.count(), network.segments())) {
-  add_long_ones(trace_chains(network.count(), network.creases()), crease);
+Lines::Lines(const Network& network, double least, double shortest)
+    : positions_(network.positions()),
+      chains_(trace_chains(network.count(), network.segments())),
+      form_begin_(chains_.size()) {
+  add_forms(trace_chains(network.count(), network.forms()), shortest);
   significance_.reserve(chains_.nodes.size());
   for (std::size_t chain = 0; chain < chains_.size(); ++chain) {
     const std::span<const std::uint32_t> nodes = chains_[chain];
@@ -69,28 +77,39 @@ std::vector<Vec3f> Lines::points_of(std::span<const std::uint32_t> nodes) const 
   return points;
 }
 
-void Lines::add_long_ones(const Chains& creases, double least) {
-  for (std::size_t chain = 0; chain < creases.size(); ++chain) {
-    if (length_of(points_of(creases[chain])) < least)
+void Lines::add_forms(const Chains& forms, double shortest) {
+  for (std::size_t chain = 0; chain < forms.size(); ++chain) {
+    if (length_of(points_of(forms[chain])) < shortest)
       continue;
-    chains_.nodes.insert(chains_.nodes.end(), creases[chain].begin(), creases[chain].end());
+    chains_.nodes.insert(chains_.nodes.end(), forms[chain].begin(), forms[chain].end());
     chains_.starts.push_back(static_cast<std::uint32_t>(chains_.nodes.size()));
   }
 }
 
 Selection select(const Lines& lines, const OutlineOptions& options) {
-  const std::vector<std::uint32_t> order = lines.by_length();
+  std::vector<std::uint32_t> order = lines.by_length();
+  const auto others_begin = std::stable_partition(
+      order.begin(), order.end(), [&](std::uint32_t chain) { return lines.is_form(chain); });
+  const std::span<const std::uint32_t> forms(order.begin(), others_begin);
+  const std::span<const std::uint32_t> others(others_begin, order.end());
+  Selection result;
+  Taken by_forms;
+  const std::size_t form_count = take(lines, forms, options, options.tolerance * options.diagonal,
+                                      options.max_bytes / 2, by_forms);
+  result.chains.assign(forms.begin(), forms.begin() + static_cast<std::ptrdiff_t>(form_count));
   for (double tolerance = options.tolerance;;
        tolerance = std::min(2 * tolerance, kCoarsestTolerance)) {
     const double distance = tolerance * options.diagonal;
-    const std::size_t count = count_that_fit(lines, order, options, distance);
+    Taken taken = by_forms;
+    const std::size_t count = take(lines, others, options, distance, options.max_bytes, taken);
     const bool only_specks_left =
-        count == order.size() || lines.length(order[count]) < kSpeckLength * distance;
+        count == others.size() || lines.length(others[count]) < kSpeckLength * distance;
     if (!only_specks_left && tolerance < kCoarsestTolerance)
       continue;
-    Selection result{{order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count)},
-                     tolerance};
+    result.chains.insert(result.chains.end(), others.begin(),
+                         others.begin() + static_cast<std::ptrdiff_t>(count));
     std::sort(result.chains.begin(), result.chains.end());
+    result.tolerance = tolerance;
     return result;
   }
 }

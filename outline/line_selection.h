@@ -13,14 +13,17 @@
 
 namespace meshhier::outline {
 
-/// All chains with the significance of their points, to be cut to any tolerance.
+/// All chains with the significance of their points, to be cut to any tolerance: first those of
+/// borders and sectors, then those that draw the form.
 class Lines {
  public:
-  /// `least`: the smallest tolerance that will be asked for, `crease`: creases that are shorter are
-  /// left out; both in input units. `network` must outlive it. O(s log s) for s segments.
-  Lines(const Network& network, double least, double crease);
+  /// `least`: the smallest tolerance that will be asked for, `shortest`: lines of the form that are
+  /// shorter are left out; both in input units. `network` must outlive it. O(s log s) for s
+  /// segments.
+  Lines(const Network& network, double least, double shortest);
 
   std::size_t size() const { return chains_.size(); }
+  bool is_form(std::size_t chain) const { return chain >= form_begin_; }
 
   /// Vertices of a chain that are left with a tolerance in input units.
   std::size_t vertex_count(std::size_t chain, double tolerance) const;
@@ -35,10 +38,11 @@ class Lines {
 
  private:
   std::vector<Vec3f> points_of(std::span<const std::uint32_t> nodes) const;
-  void add_long_ones(const Chains& creases, double least);
+  void add_forms(const Chains& forms, double shortest);
 
   std::span<const Vec3f> positions_;
   Chains chains_;
+  std::size_t form_begin_;
   std::vector<double> significance_;  ///< of chains_.nodes
   std::vector<double> lengths_;       ///< of the chains
 };
@@ -46,10 +50,12 @@ class Lines {
 /// Which chains an outline is made of, with which tolerance.
 struct Selection {
   std::vector<std::uint32_t> chains;  ///< ascending
-  double tolerance = 0;               ///< part of the diagonal
+  double tolerance = 0;               ///< of those that are no form, a part of the diagonal
 };
 
-/// The finest tolerance with which all but specks fit; then whatever fits, the longest first.
+/// Lines of the form come first, with options.tolerance, the longest first, in at most half of the
+/// file. Of the others the finest tolerance with which all but specks fit; then whatever fits, the
+/// longest first.
 Selection select(const Lines& lines, const OutlineOptions& options);
 
 }  // namespace meshhier::outline

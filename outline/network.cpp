@@ -30,14 +30,14 @@ Network::Network(std::span<SectorContent*> sectors) {
 }
 
 std::size_t Network::segment_count() const {
-  std::size_t count = segments_.size() + creases_.size() + 2 * lonely_.size();
+  std::size_t count = segments_.size() + forms_.size() + 2 * lonely_.size();
   for (std::size_t t = 0; t < triangles_.size(); ++t)
     count += is_repeated(t) ? 0U : touches_three(triangles_[t]) ? 3U : 1U;
   return count;
 }
 
 void Network::make_segments() {
-  segments_.reserve(segment_count() - creases_.size());
+  segments_.reserve(segment_count() - forms_.size());
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
     if (!is_repeated(t))
       add_line(triangles_[t], points_[t]);
@@ -53,6 +53,15 @@ void Network::make_segments() {
   lonely_ = {};
 }
 
+void Network::add_form(std::span<const Vec3f> points) {
+  const bool closed = points.front() == points.back();
+  const std::uint32_t base = count();
+  const auto fresh = static_cast<std::uint32_t>(points.size() - (closed ? 1 : 0));
+  positions_.insert(positions_.end(), points.begin(), points.begin() + fresh);
+  for (std::uint32_t i = 0; i + 1 < points.size(); ++i)
+    forms_.push_back({base + i, base + (i + 1) % fresh});
+}
+
 void Network::add_lines(TileLines& lines) {
   const std::uint32_t base = count();
   tiles_.push_back({lines.tile, lines.boundary_count, base, std::move(lines.inner)});
@@ -60,7 +69,7 @@ void Network::add_lines(TileLines& lines) {
   for (const auto& [a, b] : lines.borders)
     segments_.push_back({base + a, base + b});
   for (const auto& [a, b] : lines.creases)
-    creases_.push_back({base + a, base + b});
+    forms_.push_back({base + a, base + b});
 }
 
 std::vector<Network::CrossingEdge> Network::crossing_edges() const {

@@ -34,10 +34,13 @@ class Network {
   /// Throws Error(internal) if a triangle refers to a vertex that is not in its tile's boundary.
   void make_segments();
 
+  /// A line of its own, two points or more; a closed one repeats its first as its last.
+  void add_form(std::span<const Vec3f> points);
+
   std::uint32_t count() const { return static_cast<std::uint32_t>(positions_.size()); }
   std::span<const Vec3f> positions() const { return positions_; }
   std::span<const std::array<std::uint32_t, 2>> segments() const { return segments_; }
-  std::span<const std::array<std::uint32_t, 2>> creases() const { return creases_; }
+  std::span<const std::array<std::uint32_t, 2>> forms() const { return forms_; }
 
  private:
   struct Tile {
@@ -70,7 +73,8 @@ class Network {
 
   std::vector<Tile> tiles_;
   std::vector<Vec3f> positions_;
-  Edges segments_, creases_;
+  Edges segments_;
+  Edges forms_;  ///< creases, and what was added
   // Until segments are made:
   std::vector<PlacedTriangle> triangles_;  ///< sorted: a sector's come before the next one's
   std::vector<Points> points_;             ///< of each triangle

@@ -47,6 +47,7 @@ OutlineBuilder::Sector::~Sector() = default;
 
 struct OutlineBuilder::Parts {
   std::vector<Sector::Content> sectors;
+  std::vector<CrestLine> crests;
   std::size_t edge_count = 0;
 };
 
@@ -59,6 +60,10 @@ void OutlineBuilder::add(Sector sector) {
   parts_->edge_count += sector.content_->triangles.size() + sector.content_->lines.borders.size() +
                         sector.content_->lines.creases.size();
   parts_->sectors.push_back(std::move(*sector.content_));
+}
+
+void OutlineBuilder::add(std::vector<CrestLine> crests) {
+  parts_->crests = std::move(crests);
 }
 
 std::size_t OutlineBuilder::edge_count() const {
@@ -76,15 +81,20 @@ std::optional<OutlineResult> OutlineBuilder::finish(const OutlineOptions& option
   if (network.segment_count() > options.max_segments)
     return std::nullopt;
   network.make_segments();
+  for (const CrestLine& crest : parts_->crests)
+    network.add_form(crest.points);
   const Lines lines(network, options.tolerance * options.diagonal,
-                    kShortestCrease * options.diagonal);
+                    kShortestForm * options.diagonal);
   const Selection selection = select(lines, options);
   OutlineResult result;
   result.tolerance = selection.tolerance;
   result.polylines_found = lines.size();
   result.polylines_dropped = lines.size() - selection.chains.size();
-  for (std::uint32_t chain : selection.chains) {
-    lines.append_to(result.outline, chain, selection.tolerance * options.diagonal);
+  for (const std::uint32_t chain : selection.chains) {
+    const bool is_form = lines.is_form(chain);
+    const double tolerance = is_form ? options.tolerance : selection.tolerance;
+    lines.append_to(result.outline, chain, tolerance * options.diagonal);
+    result.outline.form_lines += is_form ? 1 : 0;
   }
   return result;
 }

@@ -6,13 +6,15 @@
 // sectors) to the midpoint of the other; in a triangle with corners in three sectors three lines
 // meet at the centroid. The mesh's own borders, edges with exactly one triangle, are lines too; a
 // crossing one goes over its midpoint, where the sectors' line ends. Lines between junctions are
-// simplified once, so both sectors share them (Douglas & Peucker 1973). Creases are edges within a
-// sector whose two triangles meet at an angle.
+// simplified once, so both sectors share them (Douglas & Peucker 1973). Lines of the form are
+// creases, edges within a sector whose two triangles meet at an angle, and crests of the whole
+// surface.
 #pragma once
 
 #include "hierarchy/ids.h"
 #include "hierarchy/outline.h"
 #include "hierarchy/tile_mesh.h"
+#include "outline/crest_lines.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -36,8 +38,8 @@ struct OutlineOptions {
 
 struct OutlineResult {
   Outline outline;
-  /// Used, as a part of `diagonal`: options.tolerance, doubled until all but specks fit, up to
-  /// kCoarsestTolerance.
+  /// Used for lines that are no form, as a part of `diagonal`: options.tolerance, doubled until all
+  /// but specks fit, up to kCoarsestTolerance.
   double tolerance = 0;
   std::uint64_t polylines_found = 0;
   std::uint64_t polylines_dropped = 0;  ///< the shortest, as many as did not fit
@@ -55,8 +57,8 @@ inline constexpr double kSpeckLength = 4;
 /// fine ones, and straightening the long ones further would not make room: the short ones go.
 inline constexpr double kCoarsestTolerance = 1.0 / 64;
 
-/// As a part of the diagonal: shorter creases are roughness, not form.
-inline constexpr double kShortestCrease = 0.03;
+/// As a part of the diagonal: shorter creases and crests are roughness, not form.
+inline constexpr double kShortestForm = 0.03;
 
 /// The sector within its tile of each own vertex, by the tile's NodeId::index; empty: each tile is
 /// one sector.
@@ -89,6 +91,9 @@ class OutlineBuilder {
 
   /// All sectors must be of one level, each added once.
   void add(Sector sector);
+
+  /// Those of the whole surface, once.
+  void add(std::vector<CrestLine> crests);
 
   /// What is held so far: triangles in several sectors, borders and creases. Of such a
   /// triangle finish() holds up to 220 bytes.

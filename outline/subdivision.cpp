@@ -1,10 +1,10 @@
 #include "outline/subdivision.h"
 
 #include "hierarchy/bounds.h"
+#include "outline/surface_normals.h"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <numeric>
 #include <span>
@@ -18,76 +18,6 @@ constexpr int kNormalRounds = 16;
 constexpr int kPartRounds = 6;
 /// A turn from one side to the other counts like so many widths of the part.
 constexpr double kTurnWidths = 1;
-
-/// Of own vertices, without those of other tiles.
-class Neighbours {
- public:
-  explicit Neighbours(const TileMesh& tile) : first_(tile.own_count + 1, 0) {
-    visit(tile, [&](std::uint32_t a, std::uint32_t) { ++first_[a + 1]; });
-    std::partial_sum(first_.begin(), first_.end(), first_.begin());
-    all_.resize(first_.back());
-    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-    visit(tile, [&](std::uint32_t a, std::uint32_t b) { all_[next[a]++] = b; });
-  }
-
-  /// Those behind it on the sides of its triangles: inside an oriented surface each one once.
-  std::span<const std::uint32_t> operator[](std::uint32_t vertex) const {
-    return std::span(all_).subspan(first_[vertex], first_[vertex + 1] - first_[vertex]);
-  }
-
- private:
-  template <class Visit>
-  static void visit(const TileMesh& tile, const Visit& visit) {
-    for (const std::vector<TileTriangle>* triangles : {&tile.interior, &tile.border}) {
-      for (const TileTriangle& t : *triangles) {
-        for (std::size_t i = 0; i < 3; ++i) {
-          const std::uint32_t a = raw(t[i]), b = raw(t[(i + 1) % 3]);
-          if (a != b && a < tile.own_count && b < tile.own_count)
-            visit(a, b);
-        }
-      }
-    }
-  }
-
-  std::vector<std::uint32_t> first_, all_;
-};
-
-Vec3f of_length_one(Vec3d v) {
-  const double size = length(v);
-  return size > 0 && std::isfinite(size) ? to_float(v * (1 / size)) : Vec3f{};
-}
-
-/// Weighted by area, of the own vertices.
-std::vector<Vec3f> normals_of(const TileMesh& tile) {
-  std::vector<Vec3d> sums(tile.own_count);
-  for (const std::vector<TileTriangle>* triangles : {&tile.interior, &tile.border}) {
-    for (const TileTriangle& t : *triangles) {
-      const auto at = [&](std::size_t i) { return to_double(tile.vertices.positions[raw(t[i])]); };
-      const Vec3d normal = cross(at(1) - at(0), at(2) - at(0));
-      for (const TileVertex v : t) {
-        if (raw(v) < tile.own_count)
-          sums[raw(v)] = sums[raw(v)] + normal;
-      }
-    }
-  }
-  std::vector<Vec3f> normals;
-  for (const Vec3d& sum : sums)
-    normals.push_back(of_length_one(sum));
-  return normals;
-}
-
-void smooth(std::vector<Vec3f>& normals, const Neighbours& neighbours) {
-  std::vector<Vec3f> next(normals.size());
-  for (int round = 0; round < kNormalRounds; ++round) {
-    for (std::uint32_t v = 0; v < normals.size(); ++v) {
-      Vec3d sum = to_double(normals[v]);
-      for (const std::uint32_t other : neighbours[v])
-        sum = sum + to_double(normals[other]);
-      next[v] = of_length_one(sum);
-    }
-    normals.swap(next);
-  }
-}
 
 /// What vertices are told apart by.
 struct Features {
@@ -181,8 +111,7 @@ std::vector<std::uint16_t> divide(const TileMesh& tile, std::uint32_t parts) {
   if (parts < 2)
     return part_of;
   const Neighbours neighbours(tile);
-  std::vector<Vec3f> normals = normals_of(tile);
-  smooth(normals, neighbours);
+  const std::vector<Vec3f> normals = smooth_normals(tile, neighbours, kNormalRounds);
   std::vector<std::uint32_t> vertices(tile.own_count);
   std::iota(vertices.begin(), vertices.end(), 0U);
   cut({tile.vertices.positions, normals}, vertices, 0, parts, part_of);

@@ -1,6 +1,7 @@
 #include "pipeline/outline_stage.h"
 
 #include "execution/parallel.h"
+#include "outline/crest_lines.h"
 #include "outline/outline_builder.h"
 #include "outline/subdivision.h"
 #include "pipeline/plan/tile_room.h"
@@ -11,6 +12,7 @@
 #include <cstdint>
 #include <optional>
 #include <utility>
+#include <vector>
 
 namespace meshhier::pipeline {
 namespace {
@@ -82,6 +84,11 @@ bool collect(Forest& forest, Level level, outline::OutlineBuilder& builder, std:
   return !too_many;
 }
 
+/// Of the coarsest level, which is one tile: the whole model at the scale of a thumbnail.
+std::vector<outline::CrestLine> crest_lines(Forest& forest) {
+  return outline::crest_lines(forest.load({Level{0}, 0}).mesh);
+}
+
 }  // namespace
 
 StageTime outline_time(const config::Config& config, const TilePopulation& tiles) {
@@ -106,6 +113,7 @@ OutlineStageResult make_outline(Forest& forest, double diagonal, const StageCont
     outline::OutlineBuilder builder;
     if (!collect(forest, level, builder, sectors / tiles, context))
       continue;
+    builder.add(crest_lines(forest));
     options.max_segments = level > Level{0} ? kMostSegments : SIZE_MAX;
     const TileRoom room = room_for(forest, context.memory(), {builder.edge_count() * kEdgeBytes});
     if (auto result = builder.finish(options)) {

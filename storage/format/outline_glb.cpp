@@ -23,9 +23,9 @@ constexpr unsigned kOutlineVersion = 1;
 constexpr unsigned kLines = 1;
 
 /// Every outline's JSON is padded to this, so that the size follows from the counts. With the
-/// longest coordinates, origin and first view it has 922 bytes plus what the 8 counts add to one
-/// digit each: at most 9 to 12, together 90.
-constexpr std::size_t kJsonBytes = 1024;
+/// longest coordinates, origin and first view it has 943 bytes plus what the 9 counts add to one
+/// digit each: at most 9 to 12, together 99.
+constexpr std::size_t kJsonBytes = 1056;
 
 // The BIN chunk, v vertices and s segments:
 //
@@ -38,6 +38,7 @@ constexpr std::size_t kJsonBytes = 1024;
 struct Sizes {
   std::size_t vertices = 0;
   std::size_t segments = 0;
+  std::size_t form_segments = 0;
 
   bool is_short() const { return vertices <= kMaxShortVertices; }
   std::size_t position_bytes() const { return 12 * vertices; }
@@ -55,6 +56,8 @@ Json document_json(const Sizes& sizes, const Bounds& bounds, const Frame& frame,
   document["extensions"][kExtension] = {{"version", kOutlineVersion},
                                         {"vertexCount", sizes.vertices},
                                         {"segmentCount", sizes.segments}};
+  if (sizes.form_segments > 0)
+    document["extensions"][kExtension]["formSegmentCount"] = sizes.form_segments;
   if (first_view)
     document["extras"] = first_view_extras(*first_view);
   if (sizes.segments == 0)
@@ -90,6 +93,24 @@ Json document_json(const Sizes& sizes, const Bounds& bounds, const Frame& frame,
   document["bufferViews"] = Json::array({positions, indices});
   document["buffers"] = Json::array({buffer});
   return document;
+}
+
+/// In the last so many polylines.
+std::size_t segments_of_last(const Outline& outline, std::size_t lines) {
+  const std::size_t first = outline.polyline_count() - lines;
+  return outline.vertices.size() - outline.starts[first] - lines;
+}
+
+/// The last polylines that have so many segments together.
+std::size_t last_lines(const Outline& outline, std::size_t segments, const std::string& name) {
+  std::size_t lines = 0;
+  while (lines < outline.polyline_count() && segments_of_last(outline, lines) < segments)
+    ++lines;
+  if (segments_of_last(outline, lines) != segments) {
+    throw Error(ErrorCode::corrupt,
+                fmt::format("{}: its last {} segments are not whole lines", name, segments));
+  }
+  return lines;
 }
 
 void append_segments(std::vector<std::byte>& bin, const Outline& outline, bool is_short) {
@@ -151,11 +172,15 @@ std::vector<std::uint32_t> read_starts(std::span<const std::byte> bin, const Siz
 }  // namespace
 
 std::size_t outline_bytes(std::size_t vertex_count, std::size_t segment_count) {
-  return glb_bytes(kJsonBytes, Sizes{vertex_count, segment_count}.bin_bytes());
+  return glb_bytes(kJsonBytes, Sizes{vertex_count, segment_count, 0}.bin_bytes());
 }
 
 std::vector<std::byte> encode_outline(const Outline& outline, const Frame& frame) {
-  const Sizes sizes{outline.vertices.size(), outline.vertices.size() - outline.polyline_count()};
+  const std::size_t lines = outline.polyline_count();
+  if (outline.form_lines > lines)
+    throw Error(ErrorCode::internal, "an outline has more lines of the form than lines");
+  const Sizes sizes{outline.vertices.size(), outline.vertices.size() - lines,
+                    segments_of_last(outline, outline.form_lines)};
   const Bounds bounds = bounds_of(outline.vertices);
   std::vector<std::byte> bin;
   bin.reserve(sizes.bin_bytes());
@@ -180,7 +205,10 @@ Outline decode_outline(std::span<const std::byte> bytes, const std::string& name
   const Json document = parse_json(glb.json, name);
   const Json& extension = require_extension(document, kExtension, kOutlineVersion, name);
   const Sizes sizes{require_count(extension, "vertexCount", UINT32_MAX, name),
-                    require_count(extension, "segmentCount", UINT32_MAX, name)};
+                    require_count(extension, "segmentCount", UINT32_MAX, name),
+                    extension.contains("formSegmentCount")
+                        ? require_count(extension, "formSegmentCount", UINT32_MAX, name)
+                        : 0};
   if (sizes.bin_bytes() != glb.bin.size()) {
     throw Error(ErrorCode::corrupt, fmt::format("{}: the BIN chunk has {} bytes, expected {}", name,
                                                 glb.bin.size(), sizes.bin_bytes()));
@@ -188,6 +216,7 @@ Outline decode_outline(std::span<const std::byte> bytes, const std::string& name
   Outline outline;
   outline.vertices = read_vertices(glb.bin, sizes.vertices, name);
   outline.starts = read_starts(glb.bin, sizes, name);
+  outline.form_lines = last_lines(outline, sizes.form_segments, name);
   // The frame is the manifest's business: any will do.
   const Frame frame = read_frame(document, name);
   outline.first_view = read_first_view(document, name);

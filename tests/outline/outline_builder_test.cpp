@@ -407,7 +407,7 @@ TEST(OutlineBuilder, NoPointIsFartherThanTheToleranceFromItsPolyline) {
 }
 
 TEST(OutlineBuilder, TheToleranceDoublesUntilTheFileFits) {
-  const TestMesh mesh = tests::torus(50'000, 0.01f);
+  const TestMesh mesh = tests::torus(50'000, 0.001f);
   const auto tiles = cut(mesh, sectors_by(mesh, nearest_of(25)));
   OutlineOptions options = options_for(mesh, 1.0 / 4096);
   const OutlineResult full = outline_of(tiles, unlimited(options));
@@ -462,6 +462,44 @@ TEST(OutlineBuilder, ThousandsOfLoopsFitTheBudgetAndTheLongestStay) {
   }
   EXPECT_DOUBLE_EQ(outer, 800);
   EXPECT_DOUBLE_EQ(hole, 80);
+}
+
+CrestLine line_over_the_grid(float x, float wave) {
+  CrestLine line;
+  for (int i = 0; i <= 200; ++i)
+    line.points.push_back({x + (i % 2 == 0 ? wave : -wave), static_cast<float>(i), 1});
+  line.strength = 1;
+  return line;
+}
+
+TEST(OutlineBuilder, LinesOfTheFormComeLastInTheFileAndFirstIntoIt) {
+  const TestMesh mesh = sieve(200);
+  const auto tiles = cut(mesh, std::vector<std::uint32_t>(mesh.positions.size(), 0));
+  const OutlineOptions options = options_for(mesh, 0.0005);
+  const auto with = [&](std::vector<CrestLine> crests) {
+    OutlineBuilder builder;
+    builder.add({0, tiles[0]});
+    builder.add(std::move(crests));
+    return *builder.finish(options);
+  };
+  const OutlineResult some = with({line_over_the_grid(50, 1), {{{0, 0, 1}, {1, 0, 1}}, 9}});
+  ASSERT_EQ(some.outline.form_lines, 1u) << "the other one is short";
+  const auto last = polyline(some.outline, some.outline.polyline_count() - 1);
+  EXPECT_EQ(last.size(), 201u) << "the tolerance of the others is larger";
+  EXPECT_GT(some.tolerance, options.tolerance);
+  EXPECT_LE(bytes_of(some.outline), options.max_bytes);
+
+  std::vector<CrestLine> many;
+  for (int i = 0; i < 100; ++i)
+    many.push_back(line_over_the_grid(static_cast<float>(i), 1));
+  const OutlineResult full = with(std::move(many));
+  EXPECT_GE(full.outline.form_lines, 3u);
+  std::size_t vertices = 0;
+  for (std::size_t i = full.outline.polyline_count() - full.outline.form_lines;
+       i < full.outline.polyline_count(); ++i)
+    vertices += polyline(full.outline, i).size();
+  EXPECT_LE(16 * vertices, options.max_bytes / 2);
+  EXPECT_GT(full.outline.polyline_count(), full.outline.form_lines + 2);
 }
 
 TEST(OutlineBuilder, AGhostOfAMissingSectorIsRefused) {

@@ -3,6 +3,7 @@
 #include "hierarchy/error.h"
 #include "storage/format/glb.h"
 
+#include <algorithm>
 #include <limits>
 #include <random>
 
@@ -50,6 +51,7 @@ void expect_round_trip(const Outline& outline, Vec3d origin) {
     const Outline back = decode_outline(bytes, kOutlineName);
     EXPECT_EQ(back.vertices, outline.vertices);
     EXPECT_EQ(back.starts, outline.starts);
+    EXPECT_EQ(back.form_lines, outline.form_lines);
     EXPECT_EQ(back.first_view, outline.first_view);
   }
 }
@@ -72,6 +74,30 @@ TEST(OutlineGlb, GivesPolylinesBackInTheSizeForetold) {
   }
 }
 
+TEST(OutlineGlb, TellsWhichLinesDrawTheForm) {
+  Outline outline = random_outline(40, 3);
+  for (const std::size_t forms : {1U, 7U, 39U, 40U}) {
+    outline.form_lines = forms;
+    expect_round_trip(outline, {});
+  }
+}
+
+TEST(OutlineGlb, PartsOfLinesAreNoLinesOfTheForm) {
+  Outline outline;
+  outline.vertices = {{0, 0, 0}, {1, 0, 0}, {2, 1, 0}, {3, 3, 0}};
+  outline.starts = {0, 4};
+  outline.form_lines = 1;
+  Bytes bytes = encode_outline(outline, {});
+  const std::string key = "\"formSegmentCount\":";
+  const auto found = std::search(bytes.begin(), bytes.end(), key.begin(), key.end(),
+                                 [](std::byte a, char b) { return static_cast<char>(a) == b; });
+  ASSERT_NE(found, bytes.end());
+  for (const char count : {'0', '1', '2', '4'}) {
+    found[static_cast<std::ptrdiff_t>(key.size())] = static_cast<std::byte>(count);
+    EXPECT_NE(failure(bytes), "") << count;
+  }
+}
+
 TEST(OutlineGlb, TheSizeHoldsForTheLongestNumbers) {
   const float low = -std::numeric_limits<float>::max() / 3;
   const float tiny = -std::numeric_limits<float>::denorm_min();
@@ -79,6 +105,7 @@ TEST(OutlineGlb, TheSizeHoldsForTheLongestNumbers) {
   Outline outline;
   outline.vertices = {{low, low, low}, {tiny, tiny, tiny}};
   outline.starts = {0, 2};
+  outline.form_lines = 1;
   outline.first_view = Standpoint{-123.45678901234567, far};
   expect_round_trip(outline, {far, far, far});
 }
@@ -150,7 +177,8 @@ TEST(OutlineGlb, SegmentsThatAreNoPolylinesAreRefused) {
 
 TEST(OutlineGlb, AVertexThatIsNotFiniteIsRefused) {
   Bytes bytes = encode_outline(random_outline(2, 6), {});
-  storage::store_little(std::numeric_limits<float>::quiet_NaN(), bytes.data() + 28 + 1024);
+  const std::size_t json_bytes = storage::load_little<std::uint32_t>(bytes.data() + 12);
+  storage::store_little(std::numeric_limits<float>::quiet_NaN(), bytes.data() + 28 + json_bytes);
   EXPECT_THAT(failure(bytes), HasSubstr("vertex 0 is not finite"));
 }
 

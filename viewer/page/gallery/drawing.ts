@@ -8,7 +8,11 @@ const LINE_WIDTH = 1.3;
 const MOST_RATIO = 2;
 const SHADES = 8; // from the front to the back; each is one stroke
 const FAINTEST = 0.16;
+const BESIDE_FORM = 0.3; // how strong lines of sectors are where others draw the form
 const [NEAR, FAR] = [0.25, 0.85]; // depths where lines begin to fade and have done so
+
+/// The first segment, and the one after the last.
+type Range = readonly [number, number];
 
 /// Four numbers a segment, in pixels, and its shade.
 interface Projected {
@@ -39,15 +43,19 @@ function project(ends: Float32Array, m: readonly number[], width: number, height
   return projected;
 }
 
-function strokeShade(context: CanvasRenderingContext2D, { ends, shades }: Projected, shade: number): void {
-  context.globalAlpha = 1 - (1 - FAINTEST) * (shade / (SHADES - 1));
+function strokeShade(context: CanvasRenderingContext2D, { ends, shades }: Projected, shade: number, [begin, end]: Range, strength: number): void {
+  context.globalAlpha = strength * (1 - (1 - FAINTEST) * (shade / (SHADES - 1)));
   context.beginPath();
-  shades.forEach((one, i) => {
-    if (one !== shade) return;
+  for (let i = begin; i < end; ++i) {
+    if (shades[i] !== shade) continue;
     context.moveTo(ends[4 * i], ends[4 * i + 1]);
     context.lineTo(ends[4 * i + 2], ends[4 * i + 3]);
-  });
+  }
   context.stroke();
+}
+
+function stroke(context: CanvasRenderingContext2D, projected: Projected, range: Range, strength: number): void {
+  for (let shade = SHADES - 1; shade >= 0; --shade) strokeShade(context, projected, shade, range, strength);
 }
 
 /// With as many pixels as the canvas has on the page; nothing happens while it has none.
@@ -60,5 +68,7 @@ export function drawOutline(canvas: HTMLCanvasElement, shape: Shape, turn: Turn,
   context.lineWidth = LINE_WIDTH * ratio;
   context.strokeStyle = colour;
   const projected = project(shape.ends, cellMatrix(shape.ball, shape.up, turn, width / height, fitAt(shape.fit, shape.first, turn)), width, height);
-  for (let shade = SHADES - 1; shade >= 0; --shade) strokeShade(context, projected, shade);
+  const count = projected.shades.length;
+  stroke(context, projected, [0, shape.formBegin], shape.formBegin < count ? BESIDE_FORM : 1);
+  stroke(context, projected, [shape.formBegin, count], 1);
 }

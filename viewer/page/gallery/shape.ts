@@ -5,6 +5,8 @@ import { ballOf, fitOf, turnTo, type Ball, type Fit, type Turn } from './layout.
 export interface Shape {
   /// Six numbers a segment.
   ends: Float32Array;
+  /// From this segment on they draw the form; those before are where sectors meet, and fainter.
+  formBegin: number;
   ball: Ball;
   up: 'y' | 'z';
   /// As it is seen first.
@@ -20,7 +22,7 @@ function endsOf({ positions, segments }: Outline): Float32Array {
 }
 
 export function shapeOf(outline: Outline): Shape {
-  const { positions, up, firstView } = outline;
+  const { positions, segments, formSegments, up, firstView } = outline;
   const [ball, first] = [ballOf(positions), turnTo(firstView)];
-  return { ends: endsOf(outline), ball, up, first, fit: fitOf(positions, ball, up, first) };
+  return { ends: endsOf(outline), formBegin: segments.length / 2 - formSegments, ball, up, first, fit: fitOf(positions, ball, up, first) };
 }

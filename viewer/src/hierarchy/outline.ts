@@ -9,6 +9,8 @@ export interface Outline {
   positions: Float32Array;
   /// Two vertices each, in the order of the vertices.
   segments: Uint16Array | Uint32Array;
+  /// The last so many draw the form: creases, ridges and valleys. The others are borders, and where sectors meet.
+  formSegments: number;
   /// The axis of the stored positions that points up.
   up: 'y' | 'z';
   /// Turns stored positions upright and adds the origin; 16 numbers, column by column.
@@ -24,6 +26,7 @@ const IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 interface Counts {
   vertices: number;
   segments: number;
+  formSegments: number;
 }
 
 type Json = Record<string, unknown>;
@@ -43,10 +46,10 @@ function isCount(value: unknown): value is number {
 function readCounts(document: Json): Counts {
   const extension = asObject(asObject(document.extensions).MESHHIER_outline);
   need(extension.version === 1, 'is no outline of version 1');
-  const { vertexCount, segmentCount } = extension;
-  need(isCount(vertexCount) && isCount(segmentCount), 'its counts are no counts');
-  need(segmentCount <= vertexCount && (segmentCount > 0 || vertexCount === 0), 'its counts cannot be');
-  return { vertices: vertexCount, segments: segmentCount };
+  const { vertexCount, segmentCount, formSegmentCount = 0 } = extension;
+  need(isCount(vertexCount) && isCount(segmentCount) && isCount(formSegmentCount), 'its counts are no counts');
+  need(segmentCount <= vertexCount && (segmentCount > 0 || vertexCount === 0) && formSegmentCount <= segmentCount, 'its counts cannot be');
+  return { vertices: vertexCount, segments: segmentCount, formSegments: formSegmentCount };
 }
 
 function numbers(value: unknown, count: number): number[] | null {
@@ -92,9 +95,10 @@ export function readOutline(bytes: Uint8Array): Outline {
   const matrix = readMatrix(root);
   const up = upOf(matrix);
   const firstView = readFirstView(root, () => { throw new HierarchyProblem(FILE, 'its first view is none'); });
-  if (counts.segments > 0) return { ...readLines(bin, counts), up, matrix, firstView };
+  const { formSegments } = counts;
+  if (counts.segments > 0) return { ...readLines(bin, counts), formSegments, up, matrix, firstView };
   need(bin === null, 'has bytes after an outline without lines');
-  return { positions: new Float32Array(), segments: new Uint16Array(), up, matrix, firstView };
+  return { positions: new Float32Array(), segments: new Uint16Array(), formSegments, up, matrix, firstView };
 }
 
 /// The outline of the hierarchy at `base`, which ends with a slash. Throws HierarchyProblem, and what ends `signal`.

@@ -15,6 +15,11 @@ describe('an outline', () => {
     expect(outline.matrix[0]).toBe(1);
   });
 
+  it('tells how many of its last segments draw the form', () => {
+    expect(readOutline(outlineBytes(CORNER)).formSegments).toBe(0);
+    expect(readOutline(outlineBytes({ ...CORNER, formSegmentCount: 2 })).formSegments).toBe(2);
+  });
+
   it('is read wherever its bytes lie in a buffer', () => {
     const bytes = outlineBytes(CORNER);
     const shifted = new Uint8Array(bytes.byteLength + 3);
@@ -52,6 +57,8 @@ describe('bytes that are no outline', () => {
     ['a count that is no integer', { ...CORNER, vertexCount: 2.5 }],
     ['a negative count', { ...CORNER, segmentCount: -1 }],
     ['more segments than vertices', { ...CORNER, segmentCount: 4 }],
+    ['more segments of the form than segments', { ...CORNER, formSegmentCount: 3 }],
+    ['half a segment of the form', { ...CORNER, formSegmentCount: 0.5 }],
     ['vertices without segments', { ...CORNER, segmentCount: 0 }],
     ['a segment beyond the vertices', { ...CORNER, segments: [0, 1, 1, 3] }],
     ['a position that is no number', { ...CORNER, positions: [0, 0, NaN, 1, 0, 0, 1, 2, 0] }],

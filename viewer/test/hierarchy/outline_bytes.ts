@@ -6,6 +6,7 @@ export interface OutlineParts {
   node?: Record<string, unknown>;
   vertexCount?: number;
   segmentCount?: number;
+  formSegmentCount?: number;
   version?: number;
 }
 
@@ -16,6 +17,7 @@ function jsonBytes(parts: OutlineParts): Uint8Array {
     version: parts.version ?? 1,
     vertexCount: parts.vertexCount ?? positions.length / 3,
     segmentCount: parts.segmentCount ?? segments.length / 2,
+    ...(parts.formSegmentCount === undefined ? {} : { formSegmentCount: parts.formSegmentCount }),
   };
   const text = JSON.stringify({ extensions: { MESHHIER_outline }, nodes: [parts.node ?? { mesh: 0 }] });
   return new TextEncoder().encode(text.padEnd(1024));

@@ -22,7 +22,7 @@ vi.mock('../../page/view/model_view.js', () => ({
   },
 }));
 
-const SHAPE = { ends: new Float32Array(6), ball: { centre: [0, 0, 0] as const, radius: 2 }, up: 'y' as const, first: { yaw: 0, pitch: 0 }, fit: { zoom: 1, right: 0, up: 0 } };
+const SHAPE = { ends: new Float32Array(6), formBegin: 0, ball: { centre: [0, 0, 0] as const, radius: 2 }, up: 'y' as const, first: { yaw: 0, pitch: 0 }, fit: { zoom: 1, right: 0, up: 0 } };
 const [FIRST, NEXT] = [{ yaw: 0, pitch: 0 }, { yaw: 1, pitch: 0 }];
 
 function makeStage(isVisible = true): { stage: HTMLElement; classes: Set<string> } {

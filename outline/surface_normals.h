@@ -1,0 +1,45 @@
+// Normals of a tile's own vertices, and which of them are neighbours.
+#pragma once
+
+#include "hierarchy/tile_mesh.h"
+#include "hierarchy/vec.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace meshhier::outline {
+
+/// Calls visit(triangle) for the interior and the border triangles.
+template <class Visit>
+void for_each_triangle(const TileMesh& tile, const Visit& visit) {
+  for (const std::vector<TileTriangle>* triangles : {&tile.interior, &tile.border}) {
+    for (const TileTriangle& t : *triangles)
+      visit(t);
+  }
+}
+
+/// Of own vertices, without those of other tiles. O(t) for t triangles.
+class Neighbours {
+ public:
+  explicit Neighbours(const TileMesh& tile);
+
+  /// Those behind it on the sides of its triangles: inside an oriented surface each one once.
+  std::span<const std::uint32_t> operator[](std::uint32_t vertex) const {
+    return std::span(all_).subspan(first_[vertex], first_[vertex + 1] - first_[vertex]);
+  }
+
+ private:
+  std::vector<std::uint32_t> first_, all_;
+};
+
+/// Zero where there is no direction.
+Vec3f of_length_one(Vec3d v);
+
+/// Of the own vertices, of length one or zero: the sum over the triangles weighted by area, then
+/// `rounds` times the mean with the neighbours. Roughness goes; the form of what is wider than
+/// about the root of `rounds` edges stays. O(t + rounds * n).
+std::vector<Vec3f> smooth_normals(const TileMesh& tile, const Neighbours& neighbours, int rounds);
+
+}  // namespace meshhier::outline
