@@ -3,7 +3,7 @@
 //   node random_use.mjs PICTURES PAGE SECONDS HIERARCHY...
 //
 // PAGE: the directory that `npm run build` of viewer/ makes, dist/page. Each hierarchy is used for SECONDS. What is done is chosen by
-// the same numbers each time. A picture of the end goes to the directory PICTURES. Exit code 2: wrong use; else see browser.mjs.
+// the same numbers each time; what is held afterwards is about what was held after a tenth of the time. A picture of the end goes to the directory PICTURES. Exit code 2: wrong use; else see browser.mjs.
 import path from 'node:path';
 import { collectComplaints, inChromium, readHierarchy } from './browser.mjs';
 import { random } from './random.mjs';
@@ -16,6 +16,10 @@ const KEYS = [...'abcdefghijklmnopqrstuvwxyz0123456789+-?', 'Enter', 'Escape', '
   'ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', 'Shift+ArrowLeft', 'Shift+Tab'];
 const ACTS = ['key', 'key', 'key', 'tool', 'tool', 'click', 'drag', 'wheel', 'control', 'control'];
 const TOOLS = ['i', 'm', 'x', 'n', 'k'];
+
+const EARLY = 0.1; // of the time: by then each tool's code is there
+/// What may be held later beside what was held early.
+const MORE = { heap: { factor: 1.2, some: 4e6 }, nodes: { factor: 1.2, some: 200 }, listeners: { factor: 1.2, some: 100 } };
 
 class Hand {
   constructor(page, seed) {
@@ -116,6 +120,17 @@ async function opened(page, address) {
   await page.waitForFunction(() => window.meshhier?.settled(), null, { timeout: PATIENCE });
 }
 
+/// What the page holds, with the model open afresh.
+async function held(page, session, address) {
+  await page.keyboard.press('Escape');
+  await page.evaluate(() => { window.meshhier.close(); });
+  await opened(page, address);
+  for (let round = 0; round < 3; ++round) await session.send('HeapProfiler.collectGarbage'); // a node may hold a script's object, and the other way
+  const { metrics } = await session.send('Performance.getMetrics');
+  const of = (name) => metrics.find((metric) => metric.name === name).value;
+  return { heap: of('JSHeapUsedSize'), nodes: of('Nodes'), listeners: of('JSEventListeners') };
+}
+
 async function use(browser, report, { pictures, seconds, origin, name, seed }) {
   const page = await browser.newPage({ viewport: VIEWPORT });
   page.setDefaultTimeout(PATIENCE);
@@ -123,13 +138,24 @@ async function use(browser, report, { pictures, seconds, origin, name, seed }) {
   collectComplaints(page, complaints);
   const address = `${origin}/index.html#models/${name}.hier`;
   await opened(page, address);
+  const session = await page.context().newCDPSession(page);
+  await session.send('Performance.enable');
   const hand = new Hand(page, seed);
-  for (const end = Date.now() + 1000 * seconds; Date.now() < end; ) {
-    await hand.burst();
-    if (!page.url().includes(`#models/${name}`)) await opened(page, address); // it went to the gallery
-  }
+  const goOn = async (part) => {
+    for (const end = Date.now() + 1000 * seconds * part; Date.now() < end; ) {
+      await hand.burst();
+      if (!page.url().includes(`#models/${name}`)) await opened(page, address); // it went to the gallery
+    }
+  };
+  await goOn(EARLY);
+  const early = await held(page, session, address);
+  await goOn(1 - EARLY);
   await page.screenshot({ path: path.join(pictures, `random-use-${name}.png`) });
   report.line(`random use ${name}`, complaints.length === 0, `${hand.done} acts; ${[...new Set(complaints)].join('; ') || 'no complaints'}`);
+  const late = await held(page, session, address);
+  const grown = Object.keys(MORE).filter((what) => late[what] > early[what] * MORE[what].factor + MORE[what].some);
+  report.line(`memory after random use ${name}`, grown.length === 0,
+    Object.keys(MORE).map((what) => `${what} ${early[what]} early, ${late[what]} late`).join('; '));
   await page.close();
 }
 
