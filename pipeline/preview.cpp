@@ -31,8 +31,9 @@ constexpr std::uint32_t kLeastSide = 16;
 /// Of samples at a time: as many as one for each pixel, which shadows are made of.
 constexpr std::uint64_t kBandBytes =
     sizeof(render::Sample) * storage::kMostPreviewSide * storage::kMostPreviewSide;
-/// What is held beside a tile: samples, shadows, the picture; then what encodes it.
-constexpr std::uint64_t kPaintingBytes = kBandBytes + (3 << 20);
+/// What is held beside a tile: samples, shadows, the picture; then what encodes it. And facets.
+constexpr std::uint64_t kPaintingBytes =
+    kBandBytes + (3 << 20) + kMostTriangles * sizeof(render::Facet);
 
 /// Whether nothing but vertices is there to be drawn.
 bool is_of_points(std::span<const TileRecord> records) {
@@ -122,28 +123,65 @@ render::SceneTile drawn_tile(const PublishedTile& tile, const Portrait& portrait
   return drawn;
 }
 
+/// Tiles as they are drawn, several times. Without pictures all that is shown is held: at most
+/// kMostTriangles of them.
+class DrawnTiles {
+ public:
+  DrawnTiles(const PreviewInput& input, const Cut& cut, const PublishedTile& root,
+             const Portrait& portrait, const StageContext& context)
+      : input_(input), nodes_(cut.nodes().begin(), cut.nodes().end()), portrait_(portrait), context_(context) {
+    if (input.format.textures || portrait.point_side > 0)
+      return;
+    if (nodes_.size() == 1 && root.mesh.interior.size() + root.mesh.border.size() > kMostTriangles)
+      return;
+    for (const NodeId node : nodes_) {
+      context.cancel.check();
+      held_.push_back(node == root.node ? drawn_tile(root, portrait).facets
+                                        : drawn_tile(tile_of(input, node, context), portrait).facets);
+    }
+  }
+
+  std::size_t count() const { return nodes_.size(); }
+  /// Also of what is drawn as points.
+  std::vector<render::Facet> facets(std::size_t tile) const {
+    return held_.empty() ? facets_of(tile_of(input_, nodes_[tile], context_), portrait_.layout)
+                         : held_[tile];
+  }
+  render::SceneTile drawn(std::size_t tile) const {
+    if (held_.empty())
+      return drawn_tile(tile_of(input_, nodes_[tile], context_), portrait_);
+    render::SceneTile drawn;
+    drawn.facets = held_[tile];
+    return drawn;
+  }
+
+ private:
+  const PreviewInput& input_;
+  std::vector<NodeId> nodes_;
+  const Portrait& portrait_;
+  const StageContext& context_;
+  std::vector<std::vector<render::Facet>> held_;  ///< of all tiles, or of none
+};
+
 /// Tiles draw all of their border: twice what lies between two of them, and nothing is missing.
 render::Scene scene_of(const PreviewInput& input, const Cut& cut, const Portrait& portrait,
-                       const StageContext& context) {
+                       const DrawnTiles& tiles) {
   render::Scene scene;
   if (input.format.textures && input.format.textures->unlit)
     scene.light = render::Light::none;
   for (const NodeId node : cut.nodes())
     scene.boxes.push_back(render::box_of_squares(storage::record_of(input.records, node).bounds,
                                                  portrait.point_side));
-  scene.load = [&input, &context, portrait, nodes = cut.nodes()](std::size_t i) {
-    return drawn_tile(tile_of(input, nodes[i], context), portrait);
-  };
+  scene.load = [&tiles](std::size_t i) { return tiles.drawn(i); };
   return scene;
 }
 
-std::uint64_t samples_of(const PreviewInput& input, const Cut& cut, const Portrait& portrait,
+std::uint64_t samples_of(const DrawnTiles& tiles, const render::Camera& camera,
                          const StageContext& context) {
   std::uint64_t sum = 0;
-  for (const NodeId node : cut.nodes()) {
+  for (std::size_t i = 0; i < tiles.count(); ++i) {
     context.cancel.check();
-    sum += render::samples_to_draw(facets_of(tile_of(input, node, context), portrait.layout),
-                                   portrait.camera);
+    sum += render::samples_to_draw(tiles.facets(i), camera);
   }
   return sum;
 }
@@ -169,14 +207,20 @@ PublishedTile read_root(const PreviewInput& input, const StageContext& context) 
   return tile_of(input, context.tree().root(), context);
 }
 
-MadePreview make_preview(const PreviewInput& input, const StageContext& context) {
+MadePreview make_preview(const PreviewInput& input, PublishedTile root,
+                         const StageContext& context) {
   const Cut cut = shown_cut(context.tree(), input.records);
-  const Portrait portrait = portrait_of(read_root(input, context), input, cut);
-  const std::uint64_t samples = samples_of(input, cut, portrait, context);
-  images::FittedImage picture = images::encode_to_fit(
-      render::paint(scene_of(input, cut, portrait, context), affordable(portrait.camera, samples),
-                    {.band_bytes = kBandBytes, .step = [&] { context.cancel.check(); }}),
-      storage::kMostPreviewBytes);
+  const Portrait portrait = portrait_of(root, input, cut);
+  images::Image painted = [&] {
+    const DrawnTiles tiles(input, cut, root, portrait, context);
+    root = {};
+    const std::uint64_t samples = samples_of(tiles, portrait.camera, context);
+    return render::paint(scene_of(input, cut, portrait, tiles),
+                         affordable(portrait.camera, samples),
+                         {.band_bytes = kBandBytes, .step = [&] { context.cancel.check(); }});
+  }();
+  images::FittedImage picture =
+      images::encode_to_fit(std::move(painted), storage::kMostPreviewBytes);
   const storage::Preview facts{picture.width, picture.height, picture.file.size(),
                                storage::checksum(picture.file)};
   return {facts, std::move(picture.file)};

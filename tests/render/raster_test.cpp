@@ -182,10 +182,10 @@ TEST(RasterTest, LittleIsLookedAtBehindOthers) {
   std::size_t asked = 0, covered = 0;
   for (int i = 0; i < 1000; ++i) {
     const float depth = static_cast<float>(i % 100);
-    const GridTriangle triangle(
-        {snapped({-300, -300, 0}), snapped({900, -300, 0}), snapped({-300, 900, 0})});
-    triangle.visit(
-        kSide, kSide,
+    const std::array corners{snapped({-300, -300, 0}), snapped({900, -300, 0}),
+                             snapped({-300, 900, 0})};
+    GridTriangle(corners).visit(
+        box_of(corners, kSide, kSide),
         [&](std::int64_t run, std::int64_t row) {
           ++asked;
           return !depths.hides(run, row, depth, [&](std::size_t at) { return samples[at]; });
