@@ -1,5 +1,7 @@
 #include "execution/allocator.h"
 
+#include "storage/io/process.h"
+
 #include <algorithm>
 
 #include <malloc.h>
@@ -26,6 +28,12 @@ void configure_allocator(std::uint64_t budget_bytes) {
 
 void release_free_memory() {
   malloc_trim(0);
+}
+
+void release_free_memory(std::uint64_t budget_bytes) {
+  const std::uint64_t resident = storage::resident_bytes();
+  if (resident == 0 || resident > budget_bytes / 4 * 3)
+    release_free_memory();
 }
 
 }  // namespace meshhier::execution

@@ -149,18 +149,22 @@ class GridTriangle {
   void visit_run(std::int64_t row, SampleSpan run, Values values, const Values& right,
                  const Values& least, const IsWanted& is_wanted, const Visit& visit) const {
     const std::int64_t steps = run.end - 1 - run.begin;
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (std::max(values[i], values[i] + steps * right[i]) < least[i])
-        return;  // all beyond one edge
-    }
+    const auto is_beyond = [&](std::size_t i) {
+      return std::max(values[i], values[i] + steps * right[i]) < least[i];
+    };
+    if (is_beyond(0) || is_beyond(1) || is_beyond(2))
+      return;
     if (!is_wanted())
       return;
+    // Not a loop over the three: they stay in registers. A sign bit is set beyond an edge.
+    std::int64_t first = values[0] - least[0], second = values[1] - least[1],
+                 third = values[2] - least[2];
     for (std::int64_t column = run.begin; column < run.end; ++column) {
-      // A sign bit is set if one of them is beyond its edge.
-      if (((values[0] - least[0]) | (values[1] - least[1]) | (values[2] - least[2])) >= 0)
-        visit(column, row, weights(values));
-      for (std::size_t i = 0; i < 3; ++i)
-        values[i] += right[i];
+      if ((first | second | third) >= 0)
+        visit(column, row, weights({first + least[0], second + least[1], third + least[2]}));
+      first += right[0];
+      second += right[1];
+      third += right[2];
     }
   }
 
