@@ -52,7 +52,7 @@ class Neighbours {
   std::vector<std::uint32_t> first_, all_;
 };
 
-Vec3f of_length_one(Vec3d v) {
+inline Vec3f of_length_one(Vec3d v) {
   const double size = length(v);
   return size > 0 && std::isfinite(size) ? to_float(v * (1 / size)) : Vec3f{};
 }
@@ -77,16 +77,19 @@ std::vector<Vec3f> normals_of(const TileMesh& tile) {
 }
 
 void smooth(std::vector<Vec3f>& normals, const Neighbours& neighbours) {
-  std::vector<Vec3f> next(normals.size());
+  // Floats, held as doubles: each is added six times for once that it is made.
+  std::vector<Vec3d> now(normals.size()), next(normals.size());
+  std::ranges::transform(normals, now.begin(), [](Vec3f n) { return to_double(n); });
   for (int round = 0; round < kNormalRounds; ++round) {
-    for (std::uint32_t v = 0; v < normals.size(); ++v) {
-      Vec3d sum = to_double(normals[v]);
+    for (std::uint32_t v = 0; v < now.size(); ++v) {
+      Vec3d sum = now[v];
       for (const std::uint32_t other : neighbours[v])
-        sum = sum + to_double(normals[other]);
-      next[v] = of_length_one(sum);
+        sum = sum + now[other];
+      next[v] = to_double(of_length_one(sum));
     }
-    normals.swap(next);
+    now.swap(next);
   }
+  std::ranges::transform(now, normals.begin(), [](Vec3d n) { return to_float(n); });
 }
 
 /// What vertices are told apart by.
@@ -160,6 +163,8 @@ std::uint16_t most_common(std::span<const std::uint32_t> neighbours,
       candidate = part_of[v];
     lead = part_of[v] == candidate ? lead + 1 : lead - 1;
   }
+  if (lead == neighbours.size())
+    return candidate;  // all of them
   for (const std::uint32_t v : neighbours)
     votes += part_of[v] == candidate ? 1 : 0;
   return 2 * votes > neighbours.size() ? candidate : own;

@@ -136,23 +136,24 @@ class DrawnTiles {
       return;
     for (const NodeId node : nodes_) {
       context.cancel.check();
-      held_.push_back(node == root.node ? drawn_tile(root, portrait).facets
-                                        : drawn_tile(tile_of(input, node, context), portrait).facets);
+      held_.push_back(
+          drawn_tile(node == root.node ? root : tile_of(input, node, context), portrait));
     }
   }
 
   std::size_t count() const { return nodes_.size(); }
-  /// Also of what is drawn as points.
-  std::vector<render::Facet> facets(std::size_t tile) const {
-    return held_.empty() ? facets_of(tile_of(input_, nodes_[tile], context_), portrait_.layout)
-                         : held_[tile];
+  std::span<const render::SceneTile> held() const { return held_; }
+  render::SceneTile load(std::size_t tile) const {
+    return drawn_tile(tile_of(input_, nodes_[tile], context_), portrait_);
   }
-  render::SceneTile drawn(std::size_t tile) const {
-    if (held_.empty())
-      return drawn_tile(tile_of(input_, nodes_[tile], context_), portrait_);
-    render::SceneTile drawn;
-    drawn.facets = held_[tile];
-    return drawn;
+  /// Of its triangles, also where points are drawn.
+  std::uint64_t samples(std::size_t tile) const {
+    const auto count = [&](std::span<const render::Facet> facets) {
+      return render::samples_to_draw(facets, portrait_.camera);
+    };
+    return held_.empty()
+               ? count(facets_of(tile_of(input_, nodes_[tile], context_), portrait_.layout))
+               : count(held_[tile].facets);
   }
 
  private:
@@ -160,7 +161,7 @@ class DrawnTiles {
   std::vector<NodeId> nodes_;
   const Portrait& portrait_;
   const StageContext& context_;
-  std::vector<std::vector<render::Facet>> held_;  ///< of all tiles, or of none
+  std::vector<render::SceneTile> held_;  ///< of all tiles, or of none
 };
 
 /// Tiles draw all of their border: twice what lies between two of them, and nothing is missing.
@@ -172,16 +173,16 @@ render::Scene scene_of(const PreviewInput& input, const Cut& cut, const Portrait
   for (const NodeId node : cut.nodes())
     scene.boxes.push_back(render::box_of_squares(storage::record_of(input.records, node).bounds,
                                                  portrait.point_side));
-  scene.load = [&tiles](std::size_t i) { return tiles.drawn(i); };
+  scene.load = [&tiles](std::size_t i) { return tiles.load(i); };
+  scene.held = tiles.held();
   return scene;
 }
 
-std::uint64_t samples_of(const DrawnTiles& tiles, const render::Camera& camera,
-                         const StageContext& context) {
+std::uint64_t samples_of(const DrawnTiles& tiles, const StageContext& context) {
   std::uint64_t sum = 0;
   for (std::size_t i = 0; i < tiles.count(); ++i) {
     context.cancel.check();
-    sum += render::samples_to_draw(tiles.facets(i), camera);
+    sum += tiles.samples(i);
   }
   return sum;
 }
@@ -214,7 +215,7 @@ MadePreview make_preview(const PreviewInput& input, PublishedTile root,
   images::Image painted = [&] {
     const DrawnTiles tiles(input, cut, root, portrait, context);
     root = {};
-    const std::uint64_t samples = samples_of(tiles, portrait.camera, context);
+    const std::uint64_t samples = samples_of(tiles, context);
     return render::paint(scene_of(input, cut, portrait, tiles),
                          affordable(portrait.camera, samples),
                          {.band_bytes = kBandBytes, .step = [&] { context.cancel.check(); }});

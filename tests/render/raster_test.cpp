@@ -1,8 +1,10 @@
 #include "render/raster.h"
 
+#include "render/distinct_places.h"
 #include "tests/render/drawn.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -172,6 +174,30 @@ TEST(RasterTest, WhatIsSkippedIsHidden) {
     ASSERT_EQ(together.samples()[i].depth, nearest[i].depth);
     ASSERT_EQ(together.samples()[i].colour, nearest[i].colour);
   }
+}
+
+std::vector<std::uint32_t> bits_of(const Raster& raster) {
+  std::vector<std::uint32_t> bits;
+  for (const Sample& sample : raster.samples()) {
+    for (const float value : {sample.depth, sample.normal.x, sample.normal.y, sample.normal.z,
+                              sample.colour.x, sample.colour.y, sample.colour.z})
+      bits.push_back(std::bit_cast<std::uint32_t>(value));
+  }
+  return bits;
+}
+
+TEST(RasterTest, PlacesOnceAndPlacesOfEachFacetGiveTheSameBits) {
+  std::vector<Facet> facets = facets_around_origin(tests::torus(700));
+  facets.push_back(flat_facet({std::numeric_limits<float>::quiet_NaN(), 0, 0}, {1, 0, 0}, {0, 1, 0}));
+  facets.push_back(facets[3]);
+  facets.push_back(flat_facet({-1e30F, 0, 0}, {1e30F, 0, 0}, {0, 1e30F, 0}));
+  const DistinctPlaces distinct = distinct_places(facets);
+  ASSERT_EQ(distinct.corners.size(), facets.size());
+  EXPECT_LT(distinct.places.size(), facets.size());  // 3 corners each, some 6 facets a place
+  const Camera camera = square_camera(64);
+  Raster once(camera);
+  once.draw(facets, distinct);
+  EXPECT_EQ(bits_of(once), bits_of(drawn(camera, facets)));
 }
 
 // Random soup of 30,000 triangles took 17 s of CPU time to draw.
