@@ -5,8 +5,8 @@
 
 namespace meshhier::execution {
 
-/// Sets the allocator up so that freed memory goes back to the system: the budget is about what is
-/// resident.
+/// Sets the allocator up for a budget, which is about what is resident: how much freed memory is
+/// kept for use again.
 void configure_allocator(std::uint64_t budget_bytes);
 /// Gives free memory back.
 void release_free_memory();

@@ -129,7 +129,10 @@ class DrawnTiles {
  public:
   DrawnTiles(const PreviewInput& input, const Cut& cut, const PublishedTile& root,
              const Portrait& portrait, const StageContext& context)
-      : input_(input), nodes_(cut.nodes().begin(), cut.nodes().end()), portrait_(portrait), context_(context) {
+      : input_(input),
+        nodes_(cut.nodes().begin(), cut.nodes().end()),
+        portrait_(portrait),
+        context_(context) {
     if (input.format.textures || portrait.point_side > 0)
       return;
     if (nodes_.size() == 1 && root.mesh.interior.size() + root.mesh.border.size() > kMostTriangles)

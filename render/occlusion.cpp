@@ -74,7 +74,8 @@ class Horizons {
     if (!here.covered())
       return 1;
     const double facing = std::max<double>(here.normal.z, kLeastFacing);
-    const Place place{column, row, index, here.depth, -here.normal.x / facing, here.normal.y / facing};
+    const Place place{
+        column, row, index, here.depth, -here.normal.x / facing, here.normal.y / facing};
     double hidden = 0;
     for (const Direction& direction : directions_)
       hidden += hidden_towards(place, direction);

@@ -138,7 +138,6 @@ Raster::Raster(const Camera& camera, PixelRows rows)
       samples_(std::size_t{camera.columns()} * rows.count * camera.framing().samples),
       run_depths_(camera.columns(), rows.count * camera.framing().samples) {}
 
-
 void Raster::draw(const Facet& facet, const Skin& skin) {
   const std::optional<Places> places = places_of(camera_, facet);
   if (!places)

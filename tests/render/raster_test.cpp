@@ -188,7 +188,8 @@ std::vector<std::uint32_t> bits_of(const Raster& raster) {
 
 TEST(RasterTest, PlacesOnceAndPlacesOfEachFacetGiveTheSameBits) {
   std::vector<Facet> facets = facets_around_origin(tests::torus(700));
-  facets.push_back(flat_facet({std::numeric_limits<float>::quiet_NaN(), 0, 0}, {1, 0, 0}, {0, 1, 0}));
+  facets.push_back(
+      flat_facet({std::numeric_limits<float>::quiet_NaN(), 0, 0}, {1, 0, 0}, {0, 1, 0}));
   facets.push_back(facets[3]);
   facets.push_back(flat_facet({-1e30F, 0, 0}, {1e30F, 0, 0}, {0, 1e30F, 0}));
   const DistinctPlaces distinct = distinct_places(facets);
