@@ -5,10 +5,13 @@
 
 namespace meshhier::execution {
 
-/// Sets the allocator up so that freed memory goes back to the system: the budget is about what is
-/// resident.
+/// Sets the allocator up for a budget, which is about what is resident: how much freed memory is
+/// kept for use again.
 void configure_allocator(std::uint64_t budget_bytes);
-/// Gives free memory back, between stages.
+/// Gives free memory back.
 void release_free_memory();
+/// The same where more than three quarters of the budget are resident: else what is free is used
+/// again, and each page that was given back would be made anew.
+void release_free_memory(std::uint64_t budget_bytes);
 
 }  // namespace meshhier::execution

@@ -34,6 +34,19 @@ constexpr std::array<double, 255> kLeastLight = [] {
   return least;
 }();
 
+/// The least value that a light may have, by a part of the range from 0 to 1.
+constexpr std::size_t kParts = 1024;
+constexpr std::array<std::uint8_t, kParts> kFirstValue = [] {
+  std::array<std::uint8_t, kParts> first{};
+  std::size_t value = 0;
+  for (std::size_t part = 0; part < kParts; ++part) {
+    while (value < kLeastLight.size() && kLeastLight[value] <= static_cast<double>(part) / kParts)
+      ++value;
+    first[part] = static_cast<std::uint8_t>(value);
+  }
+  return first;
+}();
+
 constexpr int kFullLight = 65535;
 
 }  // namespace
@@ -45,8 +58,12 @@ double light_of(double value) {
 std::uint8_t screen_value(double light) {
   if (!(light > 0))
     return 0;
-  const auto above = std::upper_bound(kLeastLight.begin(), kLeastLight.end(), light);
-  return static_cast<std::uint8_t>(above - kLeastLight.begin());
+  if (!(light < 1))
+    return 255;
+  std::size_t value = kFirstValue[static_cast<std::size_t>(light * kParts)];
+  while (value < kLeastLight.size() && kLeastLight[value] <= light)
+    ++value;
+  return static_cast<std::uint8_t>(value);
 }
 
 std::uint8_t screen_byte(float value) {

@@ -1,6 +1,6 @@
 #include "outline/surface_normals.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -18,20 +18,22 @@ void for_each_own_side(const TileMesh& tile, const Visit& visit) {
   });
 }
 
-std::vector<Vec3f> normals_by_area(const TileMesh& tile) {
-  std::vector<Vec3d> sums(tile.own_count);
+/// Floats, held as doubles: each is added six times for once that it is made.
+Vec3d rounded_to_length_one(Vec3d v) {
+  return to_double(of_length_one(v));
+}
+
+std::vector<Vec3d> normals_by_area(const TileMesh& tile) {
+  std::vector<Vec3d> normals(tile.own_count);
   for_each_triangle(tile, [&](const TileTriangle& t) {
     const auto at = [&](std::size_t i) { return to_double(tile.vertices.positions[raw(t[i])]); };
     const Vec3d normal = cross(at(1) - at(0), at(2) - at(0));
     for (const TileVertex v : t) {
       if (raw(v) < tile.own_count)
-        sums[raw(v)] = sums[raw(v)] + normal;
+        normals[raw(v)] = normals[raw(v)] + normal;
     }
   });
-  std::vector<Vec3f> normals;
-  normals.reserve(sums.size());
-  for (const Vec3d& sum : sums)
-    normals.push_back(of_length_one(sum));
+  std::ranges::transform(normals, normals.begin(), rounded_to_length_one);
   return normals;
 }
 
@@ -51,18 +53,20 @@ Vec3f of_length_one(Vec3d v) {
 }
 
 std::vector<Vec3f> smooth_normals(const TileMesh& tile, const Neighbours& neighbours, int rounds) {
-  std::vector<Vec3f> normals = normals_by_area(tile);
-  std::vector<Vec3f> next(normals.size());
+  std::vector<Vec3d> normals = normals_by_area(tile);
+  std::vector<Vec3d> next(normals.size());
   for (int round = 0; round < rounds; ++round) {
     for (std::uint32_t v = 0; v < normals.size(); ++v) {
-      Vec3d sum = to_double(normals[v]);
+      Vec3d sum = normals[v];
       for (const std::uint32_t other : neighbours[v])
-        sum = sum + to_double(normals[other]);
-      next[v] = of_length_one(sum);
+        sum = sum + normals[other];
+      next[v] = rounded_to_length_one(sum);
     }
     normals.swap(next);
   }
-  return normals;
+  std::vector<Vec3f> result(normals.size());
+  std::ranges::transform(normals, result.begin(), to_float);
+  return result;
 }
 
 }  // namespace meshhier::outline

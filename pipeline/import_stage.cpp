@@ -97,7 +97,7 @@ BuildPlan read_and_plan(importing::MeshInput& input, const std::filesystem::path
   pool.set_capacity(memory.pool_bytes);
   environment.progress.expect(import_time(input, config));
   read_once(input, config, place_of(directory, pool, memory.sort_bytes, environment));
-  execution::release_free_memory();
+  execution::release_free_memory(config.memory_budget);
   return plan_of(input, input.materials(), config, environment.files);
 }
 

@@ -106,7 +106,7 @@ void make_leaves(Chunks& chunks, Forest& forest, BuildJournal& journal, const Sh
         journal.note_leaves(left[i], report.unreferenced_vertices);
         context.progress.advance(report.partitions);
         if (i % kChunksBetweenReleases == kChunksBetweenReleases - 1)
-          execution::release_free_memory();
+          execution::release_free_memory(context.memory().budget_bytes);
       });
 }
 

@@ -72,7 +72,7 @@ mesh_io::FaceCounts distribute(SourceMesh& mesh, const importing::CopyList& copi
   const std::uint64_t count = mesh.summary().vertices;
   context.progress.stage(kPartitionStage, count, "vertices");
   const auto triangles = [&]<class Slot>(auto& table, Slot) {
-    execution::release_free_memory();
+    execution::release_free_memory(context.memory().budget_bytes);
     return distribute_faces<Slot>(mesh, table.renumberer(), chunks, context);
   };
   storage::RecordSpool<float> copy_rows(passing, 1 << 18);
@@ -124,11 +124,11 @@ mesh_io::FaceCounts partition_mesh(SourceMesh& mesh, const importing::CopyList& 
                                    Chunks& chunks, storage::ScratchFile& scratch,
                                    const StageContext& context) {
   const TopTree top = find_splits(mesh, copies, scratch, context);
-  execution::release_free_memory();
+  execution::release_free_memory(context.memory().budget_bytes);
   storage::ScratchFile passing = scratch.beside("ranks");
   const mesh_io::FaceCounts counts = distribute(mesh, copies, top, chunks, passing, context);
   warn_of_wide_triangles(chunks, context);
-  execution::release_free_memory();
+  execution::release_free_memory(context.memory().budget_bytes);
   return counts;
 }
 

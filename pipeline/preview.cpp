@@ -31,8 +31,9 @@ constexpr std::uint32_t kLeastSide = 16;
 /// Of samples at a time: as many as one for each pixel, which shadows are made of.
 constexpr std::uint64_t kBandBytes =
     sizeof(render::Sample) * storage::kMostPreviewSide * storage::kMostPreviewSide;
-/// What is held beside a tile: samples, shadows, the picture; then what encodes it.
-constexpr std::uint64_t kPaintingBytes = kBandBytes + (3 << 20);
+/// What is held beside a tile: samples, shadows, the picture; then what encodes it. And facets.
+constexpr std::uint64_t kPaintingBytes =
+    kBandBytes + (3 << 20) + kMostTriangles * sizeof(render::Facet);
 
 /// Whether nothing but vertices is there to be drawn.
 bool is_of_points(std::span<const TileRecord> records) {
@@ -122,28 +123,69 @@ render::SceneTile drawn_tile(const PublishedTile& tile, const Portrait& portrait
   return drawn;
 }
 
+/// Tiles as they are drawn, several times. Without pictures all that is shown is held: at most
+/// kMostTriangles of them.
+class DrawnTiles {
+ public:
+  DrawnTiles(const PreviewInput& input, const Cut& cut, const PublishedTile& root,
+             const Portrait& portrait, const StageContext& context)
+      : input_(input),
+        nodes_(cut.nodes().begin(), cut.nodes().end()),
+        portrait_(portrait),
+        context_(context) {
+    if (input.format.textures || portrait.point_side > 0)
+      return;
+    if (nodes_.size() == 1 && root.mesh.interior.size() + root.mesh.border.size() > kMostTriangles)
+      return;
+    for (const NodeId node : nodes_) {
+      context.cancel.check();
+      held_.push_back(
+          drawn_tile(node == root.node ? root : tile_of(input, node, context), portrait));
+    }
+  }
+
+  std::size_t count() const { return nodes_.size(); }
+  std::span<const render::SceneTile> held() const { return held_; }
+  render::SceneTile load(std::size_t tile) const {
+    return drawn_tile(tile_of(input_, nodes_[tile], context_), portrait_);
+  }
+  /// Of its triangles, also where points are drawn.
+  std::uint64_t samples(std::size_t tile) const {
+    const auto count = [&](std::span<const render::Facet> facets) {
+      return render::samples_to_draw(facets, portrait_.camera);
+    };
+    return held_.empty()
+               ? count(facets_of(tile_of(input_, nodes_[tile], context_), portrait_.layout))
+               : count(held_[tile].facets);
+  }
+
+ private:
+  const PreviewInput& input_;
+  std::vector<NodeId> nodes_;
+  const Portrait& portrait_;
+  const StageContext& context_;
+  std::vector<render::SceneTile> held_;  ///< of all tiles, or of none
+};
+
 /// Tiles draw all of their border: twice what lies between two of them, and nothing is missing.
 render::Scene scene_of(const PreviewInput& input, const Cut& cut, const Portrait& portrait,
-                       const StageContext& context) {
+                       const DrawnTiles& tiles) {
   render::Scene scene;
   if (input.format.textures && input.format.textures->unlit)
     scene.light = render::Light::none;
   for (const NodeId node : cut.nodes())
     scene.boxes.push_back(render::box_of_squares(storage::record_of(input.records, node).bounds,
                                                  portrait.point_side));
-  scene.load = [&input, &context, portrait, nodes = cut.nodes()](std::size_t i) {
-    return drawn_tile(tile_of(input, nodes[i], context), portrait);
-  };
+  scene.load = [&tiles](std::size_t i) { return tiles.load(i); };
+  scene.held = tiles.held();
   return scene;
 }
 
-std::uint64_t samples_of(const PreviewInput& input, const Cut& cut, const Portrait& portrait,
-                         const StageContext& context) {
+std::uint64_t samples_of(const DrawnTiles& tiles, const StageContext& context) {
   std::uint64_t sum = 0;
-  for (const NodeId node : cut.nodes()) {
+  for (std::size_t i = 0; i < tiles.count(); ++i) {
     context.cancel.check();
-    sum += render::samples_to_draw(facets_of(tile_of(input, node, context), portrait.layout),
-                                   portrait.camera);
+    sum += tiles.samples(i);
   }
   return sum;
 }
@@ -169,14 +211,20 @@ PublishedTile read_root(const PreviewInput& input, const StageContext& context) 
   return tile_of(input, context.tree().root(), context);
 }
 
-MadePreview make_preview(const PreviewInput& input, const StageContext& context) {
+MadePreview make_preview(const PreviewInput& input, PublishedTile root,
+                         const StageContext& context) {
   const Cut cut = shown_cut(context.tree(), input.records);
-  const Portrait portrait = portrait_of(read_root(input, context), input, cut);
-  const std::uint64_t samples = samples_of(input, cut, portrait, context);
-  images::FittedImage picture = images::encode_to_fit(
-      render::paint(scene_of(input, cut, portrait, context), affordable(portrait.camera, samples),
-                    {.band_bytes = kBandBytes, .step = [&] { context.cancel.check(); }}),
-      storage::kMostPreviewBytes);
+  const Portrait portrait = portrait_of(root, input, cut);
+  images::Image painted = [&] {
+    const DrawnTiles tiles(input, cut, root, portrait, context);
+    root = {};
+    const std::uint64_t samples = samples_of(tiles, context);
+    return render::paint(scene_of(input, cut, portrait, tiles),
+                         affordable(portrait.camera, samples),
+                         {.band_bytes = kBandBytes, .step = [&] { context.cancel.check(); }});
+  }();
+  images::FittedImage picture =
+      images::encode_to_fit(std::move(painted), storage::kMostPreviewBytes);
   const storage::Preview facts{picture.width, picture.height, picture.file.size(),
                                storage::checksum(picture.file)};
   return {facts, std::move(picture.file)};

@@ -42,7 +42,8 @@ PublishedTile read_root(const PreviewInput& input, const StageContext& context);
 
 /// Draws the finest level that is quick to draw, or the root, from its first view. Of a model
 /// without triangles its vertices are drawn. Throws Error(corrupt | io) if a tile is not as it was
-/// published. Requires that the root has a first view.
-MadePreview make_preview(const PreviewInput& input, const StageContext& context);
+/// published. `root`: as read_root() returns it. Requires that the root has a first view.
+MadePreview make_preview(const PreviewInput& input, PublishedTile root,
+                         const StageContext& context);
 
 }  // namespace meshhier::pipeline

@@ -310,14 +310,15 @@ void write_account(Forest& forest, const TextureStore& textures, BuildJournal& j
   const std::array root{tree.root()};
   const TileRoom room = room_for(forest, context.memory(), {heaviest_packed(forest, root)});
   const PreviewInput published{directory, format, records};
+  PublishedTile root_tile = read_root(published, context);
   Outline lines = outline.outline;
-  lines.first_view = read_root(published, context).first_view;
+  lines.first_view = root_tile.first_view;
   const std::vector<std::byte> outline_file = storage::encode_outline(lines, format.frame);
   storage::write_file(files, storage::outline_path(directory), outline_file);
 
   std::optional<MadePreview> preview;
   if (context.config.preview) {
-    preview = make_preview(published, context);
+    preview = make_preview(published, std::move(root_tile), context);
     storage::write_file(files, storage::preview_path(directory), preview->file);
   }
 

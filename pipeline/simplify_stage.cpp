@@ -198,7 +198,7 @@ void simplify(Forest& forest, BuildJournal& journal, const AttributeLayout& attr
           journal.note_tile(nodes[i], steps);
           context.progress.advance(1);
           if ((i + 1) % room.items_between_releases() == 0)
-            execution::release_free_memory();
+            execution::release_free_memory(context.memory().budget_bytes);
         });
   }
   if (levels.top == 0)

@@ -67,15 +67,4 @@ Camera Camera::with(const Framing& framing) const {
   return other;
 }
 
-Vec3d Camera::on_grid(Vec3f position) const {
-  const Vec3d p = (to_double(position) - centre_) * scale_;
-  return {columns() / 2.0 + dot(axes_.right, p), rows() / 2.0 - dot(axes_.up, p),
-          -dot(axes_.back, p)};
-}
-
-Vec3f Camera::turned(Vec3f direction) const {
-  const Vec3d d = to_double(direction);
-  return to_float({dot(axes_.right, d), dot(axes_.up, d), dot(axes_.back, d)});
-}
-
 }  // namespace meshhier::render

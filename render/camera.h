@@ -52,9 +52,16 @@ class Camera {
   /// Its size, in units of space.
   double pixel() const { return framing_.samples / scale_; }
 
-  Vec3d on_grid(Vec3f position) const;
+  Vec3d on_grid(Vec3f position) const {
+    const Vec3d p = (to_double(position) - centre_) * scale_;
+    return {columns() / 2.0 + dot(axes_.right, p), rows() / 2.0 - dot(axes_.up, p),
+            -dot(axes_.back, p)};
+  }
   /// A direction by the view's axes: x to the right, y up, z to the viewer.
-  Vec3f turned(Vec3f direction) const;
+  Vec3f turned(Vec3f direction) const {
+    const Vec3d d = to_double(direction);
+    return to_float({dot(axes_.right, d), dot(axes_.up, d), dot(axes_.back, d)});
+  }
 
  private:
   Framing framing_;

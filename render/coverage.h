@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -30,8 +29,9 @@ inline constexpr std::int64_t kSteps = 256;
 inline GridPoint snapped(Vec3d place) {
   constexpr double kFarthest = 1 << 20;
   const auto steps = [&](double samples) {
-    const double near = std::clamp(samples, -kFarthest, kFarthest);
-    return static_cast<std::int64_t>(std::floor(near * kSteps + 0.5));
+    const double step = std::clamp(samples, -kFarthest, kFarthest) * kSteps + 0.5;
+    const auto towards_zero = static_cast<std::int64_t>(step);
+    return towards_zero - (static_cast<double>(towards_zero) > step ? 1 : 0);
   };
   return {steps(place.x), steps(place.y)};
 }
@@ -59,6 +59,22 @@ constexpr SampleSpan samples_between(std::int64_t least, std::int64_t most, std:
   return {std::max<std::int64_t>(first_from(least), 0), std::min(first_from(most + 1), count)};
 }
 
+/// Of columns and rows.
+struct SampleBox {
+  SampleSpan across, down;
+
+  constexpr bool empty() const { return across.begin >= across.end || down.begin >= down.end; }
+};
+
+/// Around the samples that a triangle may cover.
+inline SampleBox box_of(const std::array<GridPoint, 3>& corners, std::int64_t columns,
+                        std::int64_t rows) {
+  const auto& [a, b, c] = corners;
+  const auto [left, right] = std::minmax({a.x, b.x, c.x});
+  const auto [top, bottom] = std::minmax({a.y, b.y, c.y});
+  return {samples_between(left, right, columns), samples_between(top, bottom, rows)};
+}
+
 /// The line from a to b: positive to its right, as y goes down.
 struct EdgeFunction {
   GridPoint a, b;
@@ -68,6 +84,8 @@ struct EdgeFunction {
   }
   /// What it grows by from one sample to the next.
   constexpr std::int64_t step_right() const { return -(b.y - a.y) * kSteps; }
+  /// The same from one row to the next.
+  constexpr std::int64_t step_down() const { return (b.x - a.x) * kSteps; }
   /// What it must be at least: points on the line are inside where it goes up, or right.
   constexpr std::int64_t least() const { return b.y < a.y || (b.y == a.y && b.x > a.x) ? 0 : 1; }
 };
@@ -82,74 +100,82 @@ class GridTriangle {
       std::swap(corners_[1], corners_[2]);
       area_ = -area_;
     }
+    share_ = 1 / static_cast<double>(area_);
   }
 
   /// Calls visit(column, row, weights) for each sample that it covers, row by row, but for the runs
   /// of which is_wanted(run, row) is false; it is asked of runs that the triangle may cover only.
+  /// `box`: box_of() its corners.
   template <class IsWanted, class Visit>
-  void visit(std::int64_t columns, std::int64_t rows, const IsWanted& is_wanted,
-             const Visit& visit) const {
+  void visit(const SampleBox& box, const IsWanted& is_wanted, const Visit& visit) const {
     if (area_ == 0)
       return;
+    // Each edge is that opposite to a corner, and its value that corner's share of the area.
     const auto& [a, b, c] = corners_;
-    const auto [left, right] = std::minmax({a.x, b.x, c.x});
-    const auto [top, bottom] = std::minmax({a.y, b.y, c.y});
-    const SampleSpan across = samples_between(left, right, columns);
-    const SampleSpan down = samples_between(top, bottom, rows);
-    if (across.begin >= across.end)
-      return;
-    for (std::int64_t row = down.begin; row < down.end; ++row)
-      visit_row(row, across, is_wanted, visit);
+    const std::array<EdgeFunction, 3> edges{EdgeFunction{b, c}, EdgeFunction{c, a},
+                                            EdgeFunction{a, b}};
+    const GridPoint start{middle_of(box.across.begin), middle_of(box.down.begin)};
+    Values values{edges[0](start), edges[1](start), edges[2](start)};
+    const Values right{edges[0].step_right(), edges[1].step_right(), edges[2].step_right()};
+    const Values down{edges[0].step_down(), edges[1].step_down(), edges[2].step_down()};
+    const Values least{edges[0].least(), edges[1].least(), edges[2].least()};
+    for (std::int64_t row = box.down.begin; row < box.down.end; ++row) {
+      visit_row(row, box.across, values, right, least, is_wanted, visit);
+      for (std::size_t i = 0; i < 3; ++i)
+        values[i] += down[i];
+    }
   }
 
  private:
   using Values = std::array<std::int64_t, 3>;
 
+  /// `values`: of the first sample of `across`.
   template <class IsWanted, class Visit>
-  void visit_row(std::int64_t row, SampleSpan across, const IsWanted& is_wanted,
-                 const Visit& visit) const {
+  void visit_row(std::int64_t row, SampleSpan across, const Values& values, const Values& right,
+                 const Values& least, const IsWanted& is_wanted, const Visit& visit) const {
     for (std::int64_t begin = across.begin; begin < across.end;) {
       const std::int64_t run = begin / kRunSamples;
       const std::int64_t end = std::min(across.end, (run + 1) * kRunSamples);
+      Values first;
+      for (std::size_t i = 0; i < 3; ++i)
+        first[i] = values[i] + (begin - across.begin) * right[i];
       visit_run(
-          row, {begin, end}, [&] { return is_wanted(run, row); }, visit);
+          row, {begin, end}, first, right, least, [&] { return is_wanted(run, row); }, visit);
       begin = end;
     }
   }
 
   template <class IsWanted, class Visit>
-  void visit_run(std::int64_t row, SampleSpan run, const IsWanted& is_wanted,
-                 const Visit& visit) const {
-    // Each edge is that opposite to a corner, and its value that corner's share of the area.
-    const auto& [a, b, c] = corners_;
-    const std::array<EdgeFunction, 3> edges{EdgeFunction{b, c}, EdgeFunction{c, a},
-                                            EdgeFunction{a, b}};
-    const GridPoint start{middle_of(run.begin), middle_of(row)};
-    Values values{edges[0](start), edges[1](start), edges[2](start)};
-    const Values least{edges[0].least(), edges[1].least(), edges[2].least()};
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::int64_t last = values[i] + (run.end - 1 - run.begin) * edges[i].step_right();
-      if (values[i] < least[i] && last < least[i])
-        return;  // all beyond one edge
-    }
+  void visit_run(std::int64_t row, SampleSpan run, Values values, const Values& right,
+                 const Values& least, const IsWanted& is_wanted, const Visit& visit) const {
+    const std::int64_t steps = run.end - 1 - run.begin;
+    const auto is_beyond = [&](std::size_t i) {
+      return std::max(values[i], values[i] + steps * right[i]) < least[i];
+    };
+    if (is_beyond(0) || is_beyond(1) || is_beyond(2))
+      return;
     if (!is_wanted())
       return;
+    // Not a loop over the three: they stay in registers. A sign bit is set beyond an edge.
+    std::int64_t first = values[0] - least[0], second = values[1] - least[1],
+                 third = values[2] - least[2];
     for (std::int64_t column = run.begin; column < run.end; ++column) {
-      if (values[0] >= least[0] && values[1] >= least[1] && values[2] >= least[2])
-        visit(column, row, weights(values));
-      for (std::size_t i = 0; i < 3; ++i)
-        values[i] += edges[i].step_right();
+      if ((first | second | third) >= 0)
+        visit(column, row, weights({first + least[0], second + least[1], third + least[2]}));
+      first += right[0];
+      second += right[1];
+      third += right[2];
     }
   }
 
   Weights weights(const Values& values) const {
-    const double share = 1 / static_cast<double>(area_);
-    const auto of = [&](std::size_t i) { return static_cast<double>(values[i]) * share; };
+    const auto of = [&](std::size_t i) { return static_cast<double>(values[i]) * share_; };
     return mirrored_ ? Weights{of(0), of(2), of(1)} : Weights{of(0), of(1), of(2)};
   }
 
   std::array<GridPoint, 3> corners_;
   std::int64_t area_ = 0;  ///< twice that, in steps squared
+  double share_ = 0;       ///< 1 / area_
   bool mirrored_ = false;
 };
 

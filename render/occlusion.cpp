@@ -27,12 +27,13 @@ constexpr double kLeastFacing = 0.08;
 struct Step {
   std::int64_t across = 0, down = 0;  ///< samples
   double squared = 0;                 ///< the distance's square
+  std::int64_t ahead = 0;             ///< in the rows of samples
 };
 
 /// The nearest first.
 using Direction = std::vector<Step>;
 
-std::array<Direction, kDirections> directions(double reach) {
+std::array<Direction, kDirections> directions(double reach, std::int64_t columns) {
   constexpr double kFullTurn = 6.283185307179586;
   std::array<Direction, kDirections> all;
   for (std::size_t i = 0; i < kDirections; ++i) {
@@ -40,8 +41,8 @@ std::array<Direction, kDirections> directions(double reach) {
     for (double far = kFirstStep; far < reach; far *= kStep) {
       const double across = std::floor(far * turn.cosine + 0.5);
       const double down = std::floor(far * turn.sine + 0.5);
-      all[i].push_back({static_cast<std::int64_t>(across), static_cast<std::int64_t>(down),
-                        across * across + down * down});
+      const auto right = static_cast<std::int64_t>(across), below = static_cast<std::int64_t>(down);
+      all[i].push_back({right, below, across * across + down * down, below * columns + right});
     }
   }
   return all;
@@ -55,19 +56,26 @@ double sine(double rise, double squared) {
 class Horizons {
  public:
   Horizons(const Raster& raster, double relief)
-      : samples_(raster.samples()),
+      : depths_(raster.samples().size()),
+        samples_(raster.samples()),
         columns_(raster.columns()),
         rows_(raster.rows()),
         relief_(relief),
         reach_(kReach * std::min(raster.columns(), raster.rows())),
-        directions_(directions(reach_)) {}
+        squared_reach_(reach_ * reach_),
+        directions_(directions(reach_, columns_)) {
+    for (std::size_t i = 0; i < depths_.size(); ++i)
+      depths_[i] = samples_[i].depth;
+  }
 
   float sky_from(std::int64_t column, std::int64_t row) const {
-    const Sample& here = at(column, row);
+    const std::int64_t index = row * columns_ + column;
+    const Sample& here = samples_[static_cast<std::size_t>(index)];
     if (!here.covered())
       return 1;
     const double facing = std::max<double>(here.normal.z, kLeastFacing);
-    const Place place{column, row, here.depth, -here.normal.x / facing, here.normal.y / facing};
+    const Place place{
+        column, row, index, here.depth, -here.normal.x / facing, here.normal.y / facing};
     double hidden = 0;
     for (const Direction& direction : directions_)
       hidden += hidden_towards(place, direction);
@@ -76,14 +84,10 @@ class Horizons {
 
  private:
   struct Place {
-    std::int64_t column = 0, row = 0;
+    std::int64_t column = 0, row = 0, index = 0;
     double depth = 0;
     double rise_across = 0, rise_down = 0;  ///< of the surface, for each sample
   };
-
-  const Sample& at(std::int64_t column, std::int64_t row) const {
-    return samples_[static_cast<std::size_t>(row * columns_ + column)];
-  }
 
   /// How far the horizon stands above the surface itself; what is farther counts less.
   double hidden_towards(const Place& place, const Direction& direction) const {
@@ -92,14 +96,15 @@ class Horizons {
       const std::int64_t x = place.column + step.across, y = place.row + step.down;
       if (x < 0 || y < 0 || x >= columns_ || y >= rows_)
         break;
-      const Sample& there = at(x, y);
-      if (!there.covered())
-        continue;
+      // Where nothing is, the depth is infinite and nothing rises.
+      const double depth = depths_[static_cast<std::size_t>(place.index + step.ahead)];
       const auto across = static_cast<double>(step.across), down = static_cast<double>(step.down);
       const double own = relief_ * (place.rise_across * across + place.rise_down * down);
-      const double rise = relief_ * (place.depth - there.depth);
-      const double share = 1 - (step.squared + rise * rise) / (reach_ * reach_);
-      if (rise <= own || share <= 0)
+      const double rise = relief_ * (place.depth - depth);
+      if (!(rise > own))
+        continue;
+      const double share = 1 - (step.squared + rise * rise) / squared_reach_;
+      if (share <= 0)
         continue;
       const double above = sine(rise, step.squared) - sine(own, step.squared);
       if (above > highest) {
@@ -110,9 +115,10 @@ class Horizons {
     return hidden;
   }
 
+  std::vector<float> depths_;
   std::span<const Sample> samples_;
   std::int64_t columns_, rows_;
-  double relief_, reach_;
+  double relief_, reach_, squared_reach_;
   std::array<Direction, kDirections> directions_;
 };
 

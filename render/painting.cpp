@@ -73,8 +73,12 @@ void draw(const Scene& scene, const Camera& camera, const PaintingOptions& optio
           Raster& raster) {
   for (std::size_t tile = 0; tile < scene.boxes.size(); ++tile) {
     options.step();
-    if (may_be_seen(raster, camera, scene.boxes[tile]))
+    if (!may_be_seen(raster, camera, scene.boxes[tile]))
+      continue;
+    if (scene.held.empty())
       scene.load(tile).draw(raster);
+    else
+      scene.held[tile].draw(raster);
   }
 }
 

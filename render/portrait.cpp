@@ -2,6 +2,7 @@
 
 #include "hierarchy/angle.h"
 #include "hierarchy/bounds.h"
+#include "render/distinct_places.h"
 #include "render/raster.h"
 #include "render/space.h"
 
@@ -73,17 +74,40 @@ Level2d level_axes(Vec3d up) {
   return {first, cross(up, first)};
 }
 
+void add_seen(BoundsD& box, Vec3f place, const ViewAxes& axes) {
+  const Vec3d p = to_double(place);
+  if (is_finite(p))
+    box.add(Vec3d{dot(axes.right, p), dot(axes.up, p), dot(axes.back, p)});
+}
+
 /// By a view's axes. Empty if no corner is finite.
 BoundsD seen_box(std::span<const Facet> facets, const ViewAxes& axes) {
   BoundsD box;
   for (const Facet& facet : facets) {
-    for (const FacetCorner& corner : facet) {
-      const Vec3d p = to_double(corner.position);
-      if (is_finite(p))
-        box.add(Vec3d{dot(axes.right, p), dot(axes.up, p), dot(axes.back, p)});
-    }
+    for (const FacetCorner& corner : facet)
+      add_seen(box, corner.position, axes);
   }
   return box;
+}
+
+BoundsD seen_box(std::span<const Vec3f> places, const ViewAxes& axes) {
+  BoundsD box;
+  for (const Vec3f& place : places)
+    add_seen(box, place, axes);
+  return box;
+}
+
+/// Shows what takes that box of the view, as large as the frame takes it.
+Camera camera_on(const BoundsD& seen, const View& view, const ViewAxes& axes,
+                 const Framing& framing) {
+  if (seen.empty())
+    return {view, Vec3d{}, 1, framing};
+  const Vec3d middle = (seen.min + seen.max) * 0.5;
+  const Vec3d size = seen.max - seen.min;
+  const double free = 1 - 2 * framing.margin;
+  const double pixel = std::max(size.x / (framing.width * free), size.y / (framing.height * free));
+  const Vec3d centre = axes.right * middle.x + axes.up * middle.y + axes.back * middle.z;
+  return {view, centre, pixel > 0 ? pixel : 1, framing};
 }
 
 /// How high the facets reach, as a part of how wide they do. Requires finite ones.
@@ -130,13 +154,17 @@ double favour(const View& view, Vec3d front) {
 class BestView {
  public:
   BestView(std::span<const Facet> facets, Vec3d up)
-      : facets_(facets), up_(up), front_(level_axes(up).second * -1) {}
+      : facets_(facets),
+        distinct_(distinct_places(facets)),
+        up_(up),
+        front_(level_axes(up).second * -1) {}
 
   void consider(const Standpoint& from) {
     const View view = view_from(from, up_);
-    Raster raster(portrait_camera(facets_, view,
-                                  {.width = kTrialPixels, .height = kTrialPixels, .samples = 1}));
-    raster.draw(facets_);
+    const ViewAxes axes = axes_of(view);
+    Raster raster(camera_on(seen_box(distinct_.places, axes), view, axes,
+                            {.width = kTrialPixels, .height = kTrialPixels, .samples = 1}));
+    raster.draw(facets_, distinct_);
     const double worth = form_in(raster) * favour(view, front_);
     if (worth > most_) {
       most_ = worth;
@@ -148,6 +176,7 @@ class BestView {
 
  private:
   std::span<const Facet> facets_;
+  DistinctPlaces distinct_;
   Vec3d up_, front_;
   double most_ = -1;
   Standpoint best_;
@@ -204,15 +233,7 @@ View view_from(const Standpoint& from, Vec3d up) {
 
 Camera portrait_camera(std::span<const Facet> facets, const View& view, const Framing& framing) {
   const ViewAxes axes = axes_of(view);
-  const BoundsD seen = seen_box(facets, axes);
-  if (seen.empty())
-    return {view, Vec3d{}, 1, framing};
-  const Vec3d middle = (seen.min + seen.max) * 0.5;
-  const Vec3d size = seen.max - seen.min;
-  const double free = 1 - 2 * framing.margin;
-  const double pixel = std::max(size.x / (framing.width * free), size.y / (framing.height * free));
-  const Vec3d centre = axes.right * middle.x + axes.up * middle.y + axes.back * middle.z;
-  return {view, centre, pixel > 0 ? pixel : 1, framing};
+  return camera_on(seen_box(facets, axes), view, axes, framing);
 }
 
 }  // namespace meshhier::render

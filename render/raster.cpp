@@ -1,5 +1,6 @@
 #include "render/raster.h"
 
+#include "render/distinct_places.h"
 #include "render/mip_texture.h"
 #include "render/space.h"
 
@@ -12,12 +13,13 @@
 namespace meshhier::render {
 namespace {
 
-Vec3f blend(const Weights& weights, Vec3f a, Vec3f b, Vec3f c) {
-  return to_float(to_double(a) * weights[0] + to_double(b) * weights[1] +
-                  to_double(c) * weights[2]);
+using Three = std::array<Vec3d, 3>;  ///< of a facet's corners
+
+Vec3f blend(const Weights& weights, const Three& corners) {
+  return to_float(corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2]);
 }
 
-using Places = std::array<Vec3d, 3>;  ///< of a facet's corners, on the grid
+using Places = Three;  ///< on the grid
 
 /// Of the side from which the corners turn counter-clockwise, by the view's axes. The grid's y goes
 /// down and its z away: both turn.
@@ -63,20 +65,25 @@ class SeenSurface {
       flat_ = flat_ * -1;
     for (std::size_t i = 0; i < 3; ++i) {
       const Vec3f normal = camera.turned(unit_or_zero(facet[i].normal));
-      normals_[i] = is_behind ? normal * -1 : normal;
-      colours_[i] = facet[i].colour;
+      normals_[i] = to_double(is_behind ? normal * -1 : normal);
+      colours_[i] = to_double(facet[i].colour);
     }
+    colour_ = facet[0].colour;
+    is_one_colour_ = facet[1].colour == colour_ && facet[2].colour == colour_;
     if (skin.texture != nullptr)
       level_ = level_of(skin, places);
   }
 
   Vec3f normal(const Weights& w) const {
-    const Vec3f unit = unit_or_zero(blend(w, normals_[0], normals_[1], normals_[2]));
+    const Vec3f unit = unit_or_zero(blend(w, normals_));
     return unit == Vec3f{} ? flat_ : unit;
   }
   Vec3f colour(const Weights& w) const {
-    return skin_.texture == nullptr ? blend(w, colours_[0], colours_[1], colours_[2])
-                                    : skin_.texture->light_at(texcoord(w), level_);
+    if (skin_.texture != nullptr)
+      return skin_.texture->light_at(texcoord(w), level_);
+    // The sum of weights is 1 but for the last bits of a double: a float's blend with itself is
+    // that float.
+    return is_one_colour_ ? colour_ : blend(w, colours_);
   }
   bool is_opaque() const { return skin_.texture == nullptr || skin_.texture->is_opaque(); }
   bool is_seen(const Weights& w, double threshold) const {
@@ -92,7 +99,9 @@ class SeenSurface {
 
   Skin skin_;
   Vec3f flat_;  ///< the facet's own normal
-  std::array<Vec3f, 3> normals_, colours_;
+  Three normals_, colours_;
+  Vec3f colour_;  ///< of the first corner
+  bool is_one_colour_ = false;
   double level_ = 0;  ///< of its texture
 };
 
@@ -129,41 +138,67 @@ Raster::Raster(const Camera& camera, PixelRows rows)
       samples_(std::size_t{camera.columns()} * rows.count * camera.framing().samples),
       run_depths_(camera.columns(), rows.count * camera.framing().samples) {}
 
-GridPoint Raster::in_rows(Vec3d place) const {
-  GridPoint point = snapped(place);
-  point.y -= kSteps * rows_.first * framing().samples;
-  return point;
-}
-
 void Raster::draw(const Facet& facet, const Skin& skin) {
   const std::optional<Places> places = places_of(camera_, facet);
   if (!places)
     return;
   const auto& [a, b, c] = *places;
-  const GridTriangle triangle({in_rows(a), in_rows(b), in_rows(c)});
+  const std::array<GridPoint, 3> corners{in_rows(a), in_rows(b), in_rows(c)};
+  const SampleBox box = box_of(corners, columns(), rows());
+  if (!box.empty())
+    draw(facet, skin, *places, corners, box);
+}
+
+void Raster::draw(const Facet& facet, const Skin& skin, const std::array<Vec3d, 3>& places,
+                  const std::array<GridPoint, 3>& corners, const SampleBox& box) {
   std::optional<SeenSurface> surface;  // many facets lie between samples, or behind others
-  const float least = least_depth(*places);
+  const float least = least_depth(places);
   const auto is_seen = [&](std::int64_t run, std::int64_t row) {
     return !run_depths_.hides(run, row, least, [&](std::size_t i) { return samples_[i].depth; });
   };
-  triangle.visit(columns(), rows(), is_seen,
-                 [&](std::int64_t column, std::int64_t row, const Weights& weights) {
-                   Sample& sample = samples_[static_cast<std::size_t>(row * columns() + column)];
-                   const float depth = depth_at(*places, weights);
-                   if (!(depth < sample.depth))
-                     return;
-                   if (!surface)
-                     surface.emplace(camera_, facet, skin, *places);
-                   if (!surface->is_opaque() &&
-                       !surface->is_seen(weights, threshold_at(column, row, framing().samples)))
-                     return;
-                   sample = {depth, surface->normal(weights), surface->colour(weights)};
-                 });
+  const std::int64_t row_samples = columns();
+  GridTriangle(corners).visit(
+      box, is_seen, [&](std::int64_t column, std::int64_t row, const Weights& weights) {
+        Sample& sample = samples_[static_cast<std::size_t>(row * row_samples + column)];
+        const float depth = depth_at(places, weights);
+        if (!(depth < sample.depth))
+          return;
+        if (!surface)
+          surface.emplace(camera_, facet, skin, places);
+        if (!surface->is_opaque() &&
+            !surface->is_seen(weights, threshold_at(column, row, framing().samples)))
+          return;
+        sample = {depth, surface->normal(weights), surface->colour(weights)};
+      });
 }
 
 void Raster::draw(std::span<const Facet> facets) {
   for (const Facet& facet : facets)
     draw(facet);
+}
+
+void Raster::draw(std::span<const Facet> facets, const DistinctPlaces& distinct) {
+  struct OnGrid {
+    Vec3d place;
+    GridPoint point;
+    bool is_finite = false;
+  };
+  std::vector<OnGrid> all;
+  all.reserve(distinct.places.size());
+  for (const Vec3f& position : distinct.places) {
+    const Vec3d place = camera_.on_grid(position);
+    all.push_back(is_finite(place) ? OnGrid{place, in_rows(place), true} : OnGrid{});
+  }
+  for (std::size_t i = 0; i < facets.size(); ++i) {
+    const auto& [p, q, r] = distinct.corners[i];
+    const OnGrid &a = all[p], &b = all[q], &c = all[r];
+    if (!a.is_finite || !b.is_finite || !c.is_finite)
+      continue;
+    const std::array<GridPoint, 3> corners{a.point, b.point, c.point};
+    const SampleBox box = box_of(corners, columns(), rows());
+    if (!box.empty())
+      draw(facets[i], Skin{}, {a.place, b.place, c.place}, corners, box);
+  }
 }
 
 }  // namespace meshhier::render

@@ -40,6 +40,7 @@ struct Scene {
   std::vector<Bounds> boxes;                        ///< of the tiles; all that they draw is there
   std::function<SceneTile(std::size_t tile)> load;  ///< the same whenever it is asked
   Light light = Light::lamps;                       ///< that falls on them
+  std::span<const SceneTile> held{};                ///< all of the tiles: none is loaded; or empty
 
   BoundsD box() const;
 };

@@ -26,9 +26,8 @@ double seconds(const timeval& time) {
   return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) * 1e-6;
 }
 
-/// The line "VmHWM:   12345 kB" of /proc/self/status; 0 where there is none. Unlike ru_maxrss it
-/// does not count what the process held before it became this program.
-std::uint64_t high_water_bytes() {
+/// The line "VmHWM:   12345 kB" of /proc/self/status has the key "VmHWM:"; 0 where there is none.
+std::uint64_t status_bytes(std::string_view key) {
   const int descriptor = ::open("/proc/self/status", O_RDONLY | O_CLOEXEC);
   if (descriptor < 0)
     return 0;
@@ -36,11 +35,10 @@ std::uint64_t high_water_bytes() {
   const ssize_t count = ::read(descriptor, buffer.data(), buffer.size());
   ::close(descriptor);
   std::string_view text(buffer.data(), count > 0 ? static_cast<std::size_t>(count) : 0);
-  constexpr std::string_view kKey = "VmHWM:";
-  const std::size_t at = text.find(kKey);
+  const std::size_t at = text.find(key);
   if (at == std::string_view::npos)
     return 0;
-  text.remove_prefix(at + kKey.size());
+  text.remove_prefix(at + key.size());
   text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
   std::uint64_t kibibytes = 0;
   std::from_chars(text.data(), text.data() + text.size(), kibibytes);
@@ -52,10 +50,16 @@ std::uint64_t high_water_bytes() {
 ProcessUsage process_usage() {
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
-  ProcessUsage result{seconds(usage.ru_utime), seconds(usage.ru_stime), high_water_bytes()};
+  // Unlike ru_maxrss the high-water mark does not count what the process held before it became
+  // this program.
+  ProcessUsage result{seconds(usage.ru_utime), seconds(usage.ru_stime), status_bytes("VmHWM:")};
   if (result.peak_resident_bytes == 0)
     result.peak_resident_bytes = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
   return result;
+}
+
+std::uint64_t resident_bytes() {
+  return status_bytes("VmRSS:");
 }
 
 void allow_many_open_files() {

@@ -19,6 +19,9 @@ struct ProcessUsage {
 /// Thread-safe; some 20 microseconds. A figure that the system does not tell is 0.
 ProcessUsage process_usage();
 
+/// Memory that is resident now. Thread-safe; some 20 microseconds. 0 if the system does not tell.
+std::uint64_t resident_bytes();
+
 /// From now on the process may have as many files open as the system lets it.
 void allow_many_open_files();
 

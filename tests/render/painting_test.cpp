@@ -42,6 +42,18 @@ TEST(PaintingTest, ThePictureDoesNotDependOnHowMuchIsDrawnAtATime) {
     EXPECT_EQ(paint(scene, camera, {.band_bytes = bytes}), whole) << bytes;
 }
 
+TEST(PaintingTest, TilesThatAreHeldAreDrawnAsLoadedOnes) {
+  Scene scene = scene_of({tests::sphere(500), moved(tests::torus(700), {1.5F, 0.5F, -1})});
+  const Camera camera = camera_of(scene);
+  const images::Image loaded = paint(scene, camera, {});
+  std::vector<SceneTile> tiles;
+  for (std::size_t i = 0; i < scene.boxes.size(); ++i)
+    tiles.push_back(scene.load(i));
+  scene.held = tiles;
+  scene.load = nullptr;
+  EXPECT_EQ(paint(scene, camera, {}), loaded);
+}
+
 TEST(PaintingTest, TheGroundIsTransparentAndTheModelIsNot) {
   const Scene scene = scene_of({tests::sphere(2000)});
   const images::Image picture = paint(scene, camera_of(scene, 64, 64), {});
