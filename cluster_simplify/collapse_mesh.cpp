@@ -47,39 +47,45 @@ void CollapseMesh::collect_stars() {
 }
 
 void CollapseMesh::collect_edges() {
-  // The sides of all triangles, by the lower of their ends, lie where the edges come to lie: an
-  // edge is written at or before its side. A side has its corner, 4 t + k, in place of a count.
-  std::vector<std::uint32_t> ends(vertex_count() + 1);  // of the sides at each vertex
-  const auto at_every_side = [&](const auto& visit) {
-    for (std::uint32_t t = 0; t < faces_.size(); ++t) {
-      const auto& corners = faces_[t].corners;
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        const std::uint32_t a = corners[k];
-        const std::uint32_t b = corners[after(k)];
-        visit(Edge{std::min(a, b), std::max(a, b), 4 * t + k});
-      }
-    }
-  };
-  at_every_side([&](const Edge& side) { ++ends[side.a + 1]; });
-  std::partial_sum(ends.begin(), ends.end(), ends.begin());
-  edges_.resize(3 * faces_.size());
-  at_every_side([&](const Edge& side) { edges_[ends[side.a]++] = side; });
-
-  // Nothing here can be guessed, so that nothing is asked: every side writes its edge.
+  // The stars have the sides of all triangles by the lower of their ends, in the triangles' order.
+  // Which sides meet cannot be guessed, so that it is not asked: every side writes its edge.
   struct Met {
     std::uint32_t low, edge;
   };
   std::vector<Met> last_met(vertex_count(), {kNone, 0});  // by its higher end
+  edges_.resize(3 * faces_.size() + 1);                   // and where the next one would be
   std::uint32_t count = 0;
-  for (std::size_t i = 0; i < edges_.size(); ++i) {
-    const auto [low, high, corner] = edges_[i];
-    Met& met = last_met[high];
-    const auto is_new = static_cast<std::uint32_t>(met.low != low);
-    const std::uint32_t e = met.edge + (count - met.edge) * is_new;
-    count += is_new;
-    met = {low, e};
-    faces_[corner / 4].edges[corner % 4] = e;
-    edges_[e] = {low, high, edges_[e].triangle_count * (1 - is_new) + 1};
+  for (std::uint32_t low = 0; low < stars_.size(); ++low) {
+    const auto meet = [&](std::uint32_t high, std::uint32_t& edge_of_side, bool is_side) {
+      Met& met = last_met[high];
+      const bool is_new = is_side & (met.low != low);
+      const std::uint32_t e = is_new ? count : met.edge;
+      edges_[count] = {low, high, 0};
+      edges_[e].triangle_count += std::uint32_t{is_side};
+      count += std::uint32_t{is_new};
+      met = {is_side ? low : met.low, e};
+      edge_of_side = is_side ? e : edge_of_side;
+    };
+    const Star star = stars_[low];
+    for (std::uint32_t i = star.begin; i < star.begin + star.count; ++i) {
+      Face& face = faces_[corners_[i] / 4];
+      const std::uint32_t k = corners_[i] % 4;
+      const std::uint32_t next = face.corners[after(k)];
+      const std::uint32_t previous = face.corners[before(k)];
+      const bool has_next = next >= low;  // one side of a corner that is there twice
+      const bool has_previous = previous > low;
+      // Most triangles begin with their smallest corner and are sorted by it: those come last.
+      if (!(has_next & has_previous)) {
+        meet(has_next ? next : previous, face.edges[has_next ? k : before(k)],
+             has_next | has_previous);
+      } else if (k == 0) {
+        meet(next, face.edges[0], true);
+        meet(previous, face.edges[2], true);
+      } else {
+        meet(previous, face.edges[before(k)], true);
+        meet(next, face.edges[k], true);
+      }
+    }
   }
   edges_.resize(count);
 }

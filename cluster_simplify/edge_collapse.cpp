@@ -32,28 +32,34 @@ void transpose(FourFloats& a, FourFloats& b, FourFloats& c, FourFloats& d) {
 
 static_assert(sizeof(VertexQuadric) == 3 * sizeof(FourFloats));
 
+struct FourColumns {
+  FourFloats a, b, c, d;
+};
+
 Planes<FourFloats> four_planes(const std::array<const VertexQuadric*, 4>& quadrics) {
-  std::array<std::array<FourFloats, 4>, 3> groups;
-  for (std::size_t group = 0; group < 3; ++group) {
-    auto& [a, b, c, d] = groups[group];
+  const auto columns = [&](std::size_t group) {
     const auto load = [&](std::size_t lane) {
       return load_four(reinterpret_cast<const std::byte*>(quadrics[lane]) +
                        group * sizeof(FourFloats));
     };
-    a = load(0);
-    b = load(1);
-    c = load(2);
-    d = load(3);
-    transpose(a, b, c, d);
-  }
-  return {groups[0][0], groups[0][1], groups[0][2], groups[0][3], groups[1][0], groups[1][1],
-          groups[1][2], groups[1][3], groups[2][0], groups[2][1], groups[2][2]};
+    FourColumns rows{load(0), load(1), load(2), load(3)};
+    transpose(rows.a, rows.b, rows.c, rows.d);
+    return rows;
+  };
+  const FourColumns first = columns(0);
+  const FourColumns second = columns(1);
+  const FourColumns third = columns(2);
+  return {first.a,  first.b,  first.c,  first.d, second.a, second.b,
+          second.c, second.d, third.a, third.b, third.c};
 }
 
 /// All that an edge's cost needs of one of its ends, in a cache line.
 struct alignas(64) PlacedQuadric {
   VertexQuadric quadric;
   Vec3f position;
+  float unused = 0;  ///< the position's fourth lane
+
+  FourFloats place() const { return load_four(&position); }
 };
 
 std::vector<PlacedQuadric> placed(std::span<const VertexQuadric> quadrics,
@@ -85,7 +91,8 @@ class OptimalPlacement {
     }
     for (std::size_t i = 0; i < edges.size(); i += 4) {
       const auto some = edges.subspan(i, std::min<std::size_t>(4, edges.size() - i));
-      const FourEdges four = look_up([&](std::size_t lane) { return some[lane % some.size()]; });
+      const FourEdges four =
+          look_up([&](std::size_t lane) { return some[std::min(lane, some.size() - 1)]; });
       const MeetingPoint<FourFloats> meeting = meet(four);
       for (std::size_t lane = 0; lane < some.size(); ++lane) {
         const Vec3f half{four.hx[lane], four.hy[lane], four.hz[lane]};
@@ -100,8 +107,10 @@ class OptimalPlacement {
   void costs(std::uint32_t first, std::span<float> costs) const {
     for (std::size_t i = 0; i < costs.size(); i += 4) {
       const std::size_t count = std::min<std::size_t>(4, costs.size() - i);
-      const FourFloats cost = meet(look_up([&](std::size_t lane) {
-                                return first + static_cast<std::uint32_t>(i + lane % count);
+      const auto begin = first + static_cast<std::uint32_t>(i);
+      const auto last = static_cast<std::uint32_t>(count - 1);
+      const FourFloats cost = meet(look_up([&](std::uint32_t lane) {
+                                return begin + std::min(lane, last);
                               })).cost;
       std::memcpy(&costs[i], &cost, count * sizeof(float));
     }
@@ -130,17 +139,19 @@ class OptimalPlacement {
   template <class EdgeOf>
   FourEdges look_up(const EdgeOf& edge_of) const {
     FourEdges four;
-    for (std::size_t lane = 0; lane < 4; ++lane) {
+    const auto half_way = [&](std::uint32_t lane) {
       const CollapseMesh::Edge& edge = mesh_.edge(edge_of(lane));
       const PlacedQuadric& a = placed_[edge.a];
       const PlacedQuadric& b = placed_[edge.b];
       four.a[lane] = &a.quadric;
       four.b[lane] = &b.quadric;
-      const Vec3f half = (b.position - a.position) * 0.5F;
-      four.hx[lane] = half.x;
-      four.hy[lane] = half.y;
-      four.hz[lane] = half.z;
-    }
+      return (b.place() - a.place()) * 0.5F;
+    };
+    four.hx = half_way(0);
+    four.hy = half_way(1);
+    four.hz = half_way(2);
+    FourFloats rest = half_way(3);
+    transpose(four.hx, four.hy, four.hz, rest);
     return four;
   }
 
