@@ -49,7 +49,7 @@ Planes<FourFloats> four_planes(const std::array<const VertexQuadric*, 4>& quadri
   const FourColumns first = columns(0);
   const FourColumns second = columns(1);
   const FourColumns third = columns(2);
-  return {first.a,  first.b,  first.c,  first.d, second.a, second.b,
+  return {first.a,  first.b,  first.c, first.d, second.a, second.b,
           second.c, second.d, third.a, third.b, third.c};
 }
 
@@ -109,9 +109,8 @@ class OptimalPlacement {
       const std::size_t count = std::min<std::size_t>(4, costs.size() - i);
       const auto begin = first + static_cast<std::uint32_t>(i);
       const auto last = static_cast<std::uint32_t>(count - 1);
-      const FourFloats cost = meet(look_up([&](std::uint32_t lane) {
-                                return begin + std::min(lane, last);
-                              })).cost;
+      const FourFloats cost =
+          meet(look_up([&](std::uint32_t lane) { return begin + std::min(lane, last); })).cost;
       std::memcpy(&costs[i], &cost, count * sizeof(float));
     }
   }
