@@ -42,6 +42,14 @@ describe('terrainOf', () => {
     expect(terrainOf(tile, [0, 1, 0])).toBeNull();
   });
 
+  it('knows a thin sheet on its side by its front, and none that is thick', async () => {
+    const sheet = terrainOf(await grid((x, y) => [x, y, 0.1 * Math.sin(x / 3)]), [0, 1, 0])!;
+    expect(sheet).toMatchObject({ along: [0, 0, 1], upright: false });
+    expect(sheet.high - sheet.low).toBeGreaterThan(0.1);
+    expect(terrainOf(await grid((x, y) => [x, y, 2 * Math.sin(x / 3)]), [0, 1, 0])).toBeNull();
+    expect(terrainOf(await grid(hills), UP)).toMatchObject({ along: UP, upright: true });
+  });
+
   it.each<[string, (x: number, y: number) => readonly [number, number, number]]>([
     ['a flat ball: half of it looks down', ball],
     ['a slope as high as it is wide', (x, y) => [x, y, x]],

@@ -18,18 +18,19 @@ type Model = Pick<HierarchyView, 'terrain' | 'hasColours' | 'hasTriangles'>;
 
 function rigOf({ name }: Light, terrain: Terrain | null): Rig {
   if (name === 'matcap') return 'studio';
-  return name === 'auto' ? (terrain === null ? 'studio' : 'sun') : name;
+  return name === 'auto' ? (terrain?.upright === true ? 'sun' : 'studio') : name;
 }
 
 function reliefOf({ slope }: Terrain, stretch: number): number {
   return Math.min(Math.max(SHOWN_SLOPE / Math.max(slope * stretch, 1e-9), 1), MOST_RELIEF);
 }
 
-/// What has no colours of its own is plain: white shows no form. But terrains are coloured by height, and under the sun their slopes are shaded steeper.
+/// What has no colours of its own is plain: white shows no form. But terrains are coloured by height, and under the sun, or seen from their front, their slopes are shaded steeper.
 export function shownOf({ look, light, standing }: Appearance, { terrain, hasColours, hasTriangles }: Model): Shown {
   const rig = rigOf(light, terrain);
   const colours = look.colours === 'vertex' && hasColours === false ? (terrain === null ? 'plain' : 'height') : look.colours;
-  const relief = terrain !== null && rig === 'sun' ? reliefOf(terrain, standing.stretch) : 1;
+  const isSteep = terrain !== null && (rig === 'sun' || !terrain.upright);
+  const relief = isSteep ? reliefOf(terrain, terrain.upright ? standing.stretch : 1) : 1;
   const key = light.key === null ? keyOf(rig) : { right: light.key[0], up: light.key[1] };
   const points = look.points || hasTriangles === false; // nothing else shows those
   return { look: { ...look, colours, points, relief, material: light.name === 'matcap' ? 'matcap' : 'lit' }, rig, key };

@@ -248,8 +248,9 @@ export class HierarchyView extends Group<ViewEvents> {
 
   /// Upright, as it is wished.
   private stand(root: Tile): void {
-    this.terrain = terrainOf(root, upwards(this.standing.up, root.zUp));
-    this.tiles.stand(this.standing, root);
+    const up = upwards(this.standing.up, root.zUp);
+    this.terrain = terrainOf(root, up);
+    this.tiles.stand(this.standing, root, this.terrain?.along ?? up);
     this.setBox();
   }
 

@@ -1,9 +1,14 @@
-// Whether a mesh is a terrain: seen from above, no part of it hides another one.
+// Whether a mesh is a terrain: seen from above, no part of it hides another one. Or one that lies on its side, as maps do whose file
+// says that another axis points up.
 import type { Tile } from '../hierarchy/tile.js';
 import type { Vector } from '../cut/viewpoint.js';
 
 export interface Terrain {
-  /// Along the direction that is up, in the tiles' coordinates: what few vertices lie below and above of.
+  /// Of the heights, in the tiles' coordinates; of length 1.
+  readonly along: Vector;
+  /// Heights go up. Otherwise it is a sheet that is seen from its front.
+  readonly upright: boolean;
+  /// Along that direction, in the tiles' coordinates: what few vertices lie below and above of.
   readonly low: number;
   readonly high: number;
   /// Mean slope: rise over run.
@@ -14,6 +19,9 @@ export interface Terrain {
 const MOST_DOWN = 0.03;
 /// Of the extent across.
 const MOST_HEIGHT = 0.35;
+/// The same of a sheet on its side: a thicker one is a relief, and light shows its form.
+const MOST_THICKNESS = 0.03;
+const FRONT: Vector = [0, 0, 1];
 /// Vertices on each side that do not count: outliers would take all colours.
 const OUTLIERS = 0.01;
 
@@ -57,11 +65,15 @@ function extentAcross({ box }: Tile, up: Vector): number {
   return Math.max(...[0, 1, 2].map((axis) => (up[axis] === 0 ? box[axis + 3] - box[axis] : 0)));
 }
 
-/// `root`: all of the mesh. Which way its triangles are wound is of no matter. O(n log n).
-export function terrainOf(root: Tile, up: Vector): Terrain | null {
-  const [low, high] = heightsOf(root, up);
-  const { above, below, ground } = areasOf(root, up);
-  const isFlat = high > low && high - low < MOST_HEIGHT * extentAcross(root, up);
+function terrainAlong(root: Tile, along: Vector, most: number, upright: boolean): Terrain | null {
+  const [low, high] = heightsOf(root, along);
+  const { above, below, ground } = areasOf(root, along);
+  const isFlat = high > low && high - low < most * extentAcross(root, along);
   if (!isFlat || Math.min(above, below) > MOST_DOWN * (above + below) || ground === 0) return null;
-  return { low, high, slope: Math.sqrt(Math.max(0, ((above + below) / ground) ** 2 - 1)) };
+  return { along, upright, low, high, slope: Math.sqrt(Math.max(0, ((above + below) / ground) ** 2 - 1)) };
+}
+
+/// `root`: all of the mesh; `up`: along an axis. Which way its triangles are wound is of no matter. O(n log n).
+export function terrainOf(root: Tile, up: Vector): Terrain | null {
+  return terrainAlong(root, up, MOST_HEIGHT, true) ?? (up[2] === 0 ? terrainAlong(root, FRONT, MOST_THICKNESS, false) : null);
 }

@@ -2,13 +2,14 @@
 import { Group } from 'three';
 import type { ChosenNode } from '../cut/choose_cut.js';
 import type { ResidentTile } from '../cut/tile_store.js';
+import type { Vector } from '../cut/viewpoint.js';
 import type { Tile } from '../hierarchy/tile.js';
 import { keyOf, type Node } from '../hierarchy/tree.js';
 import { ContextWatch } from './context_watch.js';
 import { errorColour, partitionColour, sharedMaterials } from './materials.js';
 import type { Look } from './settings.js';
 import type { DrawnTile } from './surface.js';
-import { upwards, uprightRows, type Standing } from './standing.js';
+import { uprightRows, type Standing } from './standing.js';
 import { heightsOf } from './terrain.js';
 import { TileObject } from './tile_object.js';
 
@@ -32,12 +33,11 @@ export class TileScene extends Group {
     this.materials.outwards.value = is ? -1 : 1;
   }
 
-  /// `root`: whose heights count.
-  stand(standing: Standing, root: Tile): void {
-    const up = upwards(standing.up, root.zUp);
+  /// `root`: whose heights count, along the direction `along`.
+  stand(standing: Standing, root: Tile, along: Vector): void {
     const [[a, b, c], [d, e, f], [g, h, i]] = uprightRows(standing, root.zUp);
-    this.materials.upwards.value.set(...up);
-    this.materials.heights.value.set(...heightsOf(root, up));
+    this.materials.upwards.value.set(...along);
+    this.materials.heights.value.set(...heightsOf(root, along));
     this.matrixAutoUpdate = false;
     this.matrix.set(a, b, c, 0, d, e, f, 0, g, h, i, 0, 0, 0, 0, 1);
     this.matrixWorldNeedsUpdate = true;

@@ -6,12 +6,17 @@ import { DEFAULT_LOOK } from '../../src/scene/settings.js';
 import { DEFAULT_STANDING } from '../../src/scene/standing.js';
 
 const PLAIN: Appearance = { look: DEFAULT_LOOK, light: DEFAULT_LIGHT, standing: DEFAULT_STANDING };
-const HILLS = { terrain: { low: 0, high: 10, slope: 0.05 }, hasColours: false, hasTriangles: true };
+const HILLS = { terrain: { along: [0, 1, 0] as const, upright: true, low: 0, high: 10, slope: 0.05 }, hasColours: false, hasTriangles: true };
+const SHEET = { ...HILLS, terrain: { ...HILLS.terrain, along: [0, 0, 1] as const, upright: false } };
 const FORM = { terrain: null, hasColours: false, hasTriangles: true };
 
 describe('what is shown', () => {
   it('is a terrain by height and under the sun, with slopes that show', () => {
     expect(shownOf(PLAIN, HILLS)).toMatchObject({ look: { colours: 'height', relief: 10, material: 'lit' }, rig: 'sun', key: keyOf('sun') });
+  });
+
+  it('is a sheet on its side by height and in a studio, with slopes that show', () => {
+    expect(shownOf({ ...PLAIN, standing: { up: 'file', stretch: 5 } }, SHEET)).toMatchObject({ look: { colours: 'height', relief: 10 }, rig: 'studio' });
   });
 
   it('keeps the colours of a terrain that has some, and those that were chosen', () => {
