@@ -3,7 +3,8 @@
 //   node random_use.mjs PICTURES PAGE SECONDS HIERARCHY...
 //
 // PAGE: the directory that `npm run build` of viewer/ makes, dist/page. Each hierarchy is used for SECONDS. What is done is chosen by
-// the same numbers each time; what is held afterwards is about what was held before. A picture of the end goes to the directory PICTURES. Exit code 2: wrong use; else see browser.mjs.
+// the same numbers each time. With the model open afresh the page must not hold more and more. A picture of the end goes to the
+// directory PICTURES. Exit code 2: wrong use; else see browser.mjs.
 import path from 'node:path';
 import { collectComplaints, inChromium, readHierarchy } from './browser.mjs';
 import { random } from './random.mjs';
