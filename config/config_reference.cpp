@@ -72,7 +72,7 @@ Json value_schema(const ConfigKey& key) {
       return integer;
     case KeyKind::number:
       return {{"type", "number"},
-              {"exclusiveMinimum", plain_number(key.minimum)},
+              {key.takes_minimum ? "minimum" : "exclusiveMinimum", plain_number(key.minimum)},
               {"maximum", plain_number(key.maximum)}};
     case KeyKind::numbers:
       return list({{"type", "number"}}, plain_number(key.maximum), plain_number(key.maximum));

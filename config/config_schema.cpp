@@ -325,9 +325,10 @@ std::vector<ConfigKey> make_config_keys() {
           {-2 * kHalfTurn, 2 * kHalfTurn}, [](auto& c) -> auto& { return c.first_view.azimuth; })),
       deciding(number(
           {.path = "first_view.elevation",
-           .meaning = "degrees above its equator; 90 is from above",
+           .meaning = "degrees above its equator; 90 is from above, -90 from below",
            .unset = "chosen by the build",
-           .needs = {"azimuth"}},
+           .needs = {"azimuth"},
+           .takes_minimum = true},
           {-kHalfTurn / 2, kHalfTurn / 2},
           [](auto& c) -> auto& { return c.first_view.elevation; })),
       choice(
@@ -441,6 +442,12 @@ std::vector<ConfigKey> make_config_keys() {
   };
 }
 
+bool is_number_within(const ConfigKey& key, const Json& value) {
+  if (!value.is_number() || !(value.get<double>() <= key.maximum))
+    return false;
+  return key.takes_minimum ? value.get<double>() >= key.minimum : value.get<double>() > key.minimum;
+}
+
 bool is_integer_within(const ConfigKey& key, const Json& value) {
   if (!value.is_number())
     return false;
@@ -532,8 +539,7 @@ bool accepts(const ConfigKey& key, const Json& value) {
     case KeyKind::integer:
       return is_integer_within(key, value);
     case KeyKind::number:
-      return value.is_number() && value.get<double>() > key.minimum &&
-             value.get<double>() <= key.maximum;
+      return is_number_within(key, value);
     case KeyKind::numbers:
       return is_list_of_numbers(key, value);
     case KeyKind::levels:
@@ -569,7 +575,9 @@ std::string expectation(const ConfigKey& key) {
     case KeyKind::integer:
       return fmt::format("an integer from {:.0f} to {:.0f}", key.minimum, key.maximum);
     case KeyKind::number:
-      return fmt::format("a number above {} and at most {}", key.minimum, key.maximum);
+      return key.takes_minimum
+                 ? fmt::format("a number from {} to {}", key.minimum, key.maximum)
+                 : fmt::format("a number above {} and at most {}", key.minimum, key.maximum);
     case KeyKind::numbers:
       return fmt::format("a list of {:.0f} numbers", key.maximum);
     case KeyKind::levels:

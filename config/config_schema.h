@@ -21,7 +21,7 @@ enum class KeyKind {
   paths,    ///< a path, or a list of 1 to `maximum` of them
   boolean,  ///< true or false
   integer,  ///< minimum to maximum
-  number,   ///< above minimum, up to maximum
+  number,   ///< above minimum, or from it if takes_minimum, up to maximum
   numbers,  ///< a list of so many finite numbers as `maximum` says
   levels,   ///< an integer, or a list of 1 to `most_levels` of them; each minimum to maximum
   size,     ///< bytes as a number, or a text for parse_size(); minimum to maximum
@@ -34,6 +34,7 @@ struct ConfigKey {
   std::string unset = "none";  ///< for people: what holds if there is neither value nor default
   std::vector<std::string> excludes{};  ///< keys of the same section that must not be there too
   std::vector<std::string> needs{};     ///< keys of the same section of which one must be there too
+  bool takes_minimum = false;           ///< of a number: the minimum itself is one, too
   bool required = false;
   bool decides_result = false;
   KeyKind kind{};

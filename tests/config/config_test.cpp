@@ -323,6 +323,8 @@ TEST(Config, AFirstViewIsTwoAngles) {
   const Config config = parse(with(R"("first_view": {"azimuth": -30.5, "elevation": 90})"));
   EXPECT_EQ(config.first_view.standpoint(), (Standpoint{-30.5, 90}));
   EXPECT_EQ(resolved_json(config)["first_view"].dump(), R"({"azimuth":-30.5,"elevation":90.0})");
+  EXPECT_EQ(parse(with(R"("first_view": {"azimuth": 0, "elevation": -90})")).first_view.elevation,
+            -90);
   EXPECT_THAT(refusal(with(R"("first_view": {"azimuth": 3})")),
               HasSubstr("expected both \"azimuth\" and \"elevation\""));
   EXPECT_THAT(refusal(with(R"("first_view": {"azimuth": 3, "elevation": 91})")),
