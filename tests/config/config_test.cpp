@@ -328,7 +328,7 @@ TEST(Config, AFirstViewIsTwoAngles) {
   EXPECT_THAT(refusal(with(R"("first_view": {"azimuth": 3})")),
               HasSubstr("expected both \"azimuth\" and \"elevation\""));
   EXPECT_THAT(refusal(with(R"("first_view": {"azimuth": 3, "elevation": 91})")),
-              HasSubstr("expected a number above -90 and at most 90"));
+              HasSubstr("expected a number from -90 to 90"));
 }
 
 TEST(ConfigErrors, HalfAPlaceAndTwoPlacesAreRefused) {
@@ -712,7 +712,7 @@ void expect_same_rule(const ConfigKey& key, const Json& schema) {
       break;
     case KeyKind::number:
       EXPECT_EQ(schema.at("type"), "number");
-      EXPECT_EQ(schema.at("exclusiveMinimum"), key.minimum);
+      EXPECT_EQ(schema.at(key.takes_minimum ? "minimum" : "exclusiveMinimum"), key.minimum);
       EXPECT_EQ(schema.at("maximum"), key.maximum);
       break;
     case KeyKind::numbers:
