@@ -64,7 +64,8 @@ function lookFrom(page, angle) {
   }, angle);
 }
 
-async function useTools(page) {
+/// `plain`: triangles that are drawn without tools.
+async function useTools(page, plain) {
   const { width, height } = page.viewportSize();
   await page.keyboard.press('m');
   await page.locator('.tool-card', { hasText: 'Measure' }).waitFor();
@@ -72,7 +73,7 @@ async function useTools(page) {
   await page.locator('.surface').focus();
   await page.keyboard.press('x');
   await page.locator('.tool-card', { hasText: 'Cut open' }).waitFor();
-  await settle(page);
+  await page.waitForFunction((least) => window.meshhier.settled() && window.device.lastTriangles > least, plain, { timeout: PATIENCE });
 }
 
 /// Means of the frames' rates, some frames at a time.
@@ -110,13 +111,13 @@ async function check(browser, report, { pictures, origin, name }) {
   await lookFrom(page, 0);
   await settle(page);
   const plain = await page.evaluate(() => window.device.lastTriangles);
-  await useTools(page);
+  await useTools(page, plain);
   const full = await page.evaluate(() => window.device.lastTriangles);
   const frames = await circle(page);
   const late = frames.filter(({ at }) => at >= 1000 * SETTLE_SECONDS);
   const rates = ratesOf(late);
   const good = rates.length > 0 && rates.every((rate) => Math.abs(rate / RATE - 1) <= 0.15);
-  report.line(`${name} frame rate with tools`, good && full > plain && complaints.length === 0,
+  report.line(`${name} frame rate with tools`, good && complaints.length === 0,
     `${Math.min(...rates).toFixed(1)} … ${Math.max(...rates).toFixed(1)} frames a second after ${SETTLE_SECONDS} s (asked for: ${RATE}); at rest ${full} triangles are drawn, ` +
       `without tools ${plain}, on the way ${late.at(-1)?.triangles}; ${complaints.join('; ') || 'no complaints'}`);
   await page.screenshot({ path: path.join(pictures, `tool-frame-rate-${name}.png`) });
