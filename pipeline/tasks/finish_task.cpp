@@ -51,19 +51,23 @@ struct Finished {
   friend bool operator==(const Finished&, const Finished&) = default;
 };
 
-/// Of what lies at `path`; none if that is no hierarchy of the container.
+/// Of what lies at `path`; none if that is no hierarchy of the container. Throws Error(io) if it
+/// cannot be read: then nobody knows what it is.
 std::optional<Finished> look_at(storage::FileSystem& files, const fs::path& path,
                                 storage::Container container) {
   if (!files.exists(path) || files.is_directory(path) != (container == storage::Container::files))
     return std::nullopt;
   try {
-    return in_hierarchy(files, path, container, [&](storage::FileSystem& in, const fs::path& at) {
+    using Found = std::optional<Finished>;
+    return in_hierarchy(files, path, container, [](auto& in, const fs::path& at) -> Found {
+      if (!in.exists(storage::manifest_path(at)))
+        return std::nullopt;
       const auto manifest = in.open(storage::manifest_path(at));
       return Finished{storage::checksum(storage::read_file(*manifest, manifest->size())),
                       manifest->version().inode};
     });
   } catch (const Error& error) {
-    if (error.code() != ErrorCode::io && error.code() != ErrorCode::corrupt)
+    if (error.code() != ErrorCode::corrupt)
       throw;
     return std::nullopt;
   }
