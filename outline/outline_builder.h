@@ -7,7 +7,7 @@
 // meet at the centroid. The mesh's own borders, edges with exactly one triangle, are lines too; a
 // crossing one goes over its midpoint, where the sectors' line ends. Lines between junctions are
 // simplified once, so both sectors share them (Douglas & Peucker 1973). Lines of the form are
-// creases, edges within a sector whose two triangles meet at an angle, and crests of the whole
+// creases, edges within a tile whose two triangles meet at an angle, and crests of the whole
 // surface.
 #pragma once
 

@@ -99,14 +99,12 @@ TileLines lines_of(std::uint32_t tile_index, const TileMesh& tile,
     number[vertex] = static_cast<std::uint32_t>(lines.positions.size());
     lines.positions.push_back(tile.vertices.positions[vertex]);
   }
-  const auto keep = [&](const Edges& from, Edges& to) {
-    for (const auto& [a, b] : from) {
-      if (!is_crossing(a, b))
-        to.push_back({number[a], number[b]});
-    }
-  };
-  keep(edges.borders, lines.borders);
-  keep(edges.creases, lines.creases);
+  for (const auto& [a, b] : edges.borders) {
+    if (!is_crossing(a, b))
+      lines.borders.push_back({number[a], number[b]});
+  }
+  for (const auto& [a, b] : edges.creases)
+    lines.creases.push_back({number[a], number[b]});
   return lines;
 }
 

@@ -22,7 +22,8 @@ struct TileLines {
   std::uint32_t boundary_count = 0;
   std::vector<std::uint32_t> inner;  ///< of the other vertices, which they are
   std::vector<Vec3f> positions;
-  Edges borders, creases;  ///< of positions, without those that cross from sector to sector
+  Edges borders;  ///< of positions, without those that cross from sector to sector
+  Edges creases;  ///< of positions
 };
 
 /// Lines of the tile with the NodeId::index `tile_index`. `is_crossing(a, b)`: whether own vertices

@@ -464,6 +464,24 @@ TEST(OutlineBuilder, ThousandsOfLoopsFitTheBudgetAndTheLongestStay) {
   EXPECT_DOUBLE_EQ(hole, 80);
 }
 
+/// A cube of eight vertices: its edges are what one draws of it, wherever its sectors meet.
+TEST(OutlineBuilder, EdgesOfACubeAreLinesWhateverItsSectors) {
+  TestMesh mesh;
+  for (int v = 0; v < 8; ++v)
+    mesh.positions.push_back(
+        {static_cast<float>(v & 1), static_cast<float>(v >> 1 & 1), static_cast<float>(v >> 2)});
+  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  const auto tiles = cut(mesh, std::vector<std::uint32_t>(8, 0));
+  OutlineBuilder builder;
+  builder.add({0, tiles[0], {{0, 1, 2, 3, 4, 5, 6, 7}}});
+  const OutlineResult result = *builder.finish(unlimited(options_for(mesh, 0.001)));
+  ASSERT_EQ(result.outline.form_lines, 12u);
+  for (std::size_t i = result.outline.polyline_count() - 12; i < result.outline.polyline_count();
+       ++i)
+    EXPECT_EQ(length_of(polyline(result.outline, i)), 1);
+}
+
 CrestLine line_over_the_grid(float x, float wave) {
   CrestLine line;
   for (int i = 0; i <= 200; ++i)
