@@ -13,6 +13,7 @@ import { withSite } from './site.mjs';
 const VIEWPORT = { width: 480, height: 360 };
 const BURST = 8; // acts at once: the page has no time to rest
 const PATIENCE = 120_000; // milliseconds
+const DRAG_PATIENCE = 30_000; // milliseconds
 const KEYS = [...'abcdefghijklmnopqrstuvwxyz0123456789+-?', 'Enter', 'Escape', 'Backspace', 'Delete', 'Tab', ' ', 'Home',
   'ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', 'Shift+ArrowLeft', 'Shift+Tab'];
 const ACTS = ['key', 'key', 'key', 'tool', 'tool', 'click', 'drag', 'wheel', 'control', 'control'];
@@ -49,7 +50,17 @@ class Hand {
     await this.page.mouse.click(...this.place());
   }
 
+  /// Other acts move the same pointer meanwhile, and the driver may wait for a move that never comes. Then the drag is left alone;
+  /// the frame after the burst shows whether the page lives.
   async drag() {
+    const dragged = this.dragged();
+    dragged.catch(() => undefined); // when it is left alone
+    let timer;
+    const late = new Promise((resolve) => { timer = setTimeout(resolve, DRAG_PATIENCE); });
+    await Promise.race([dragged, late]).finally(() => { clearTimeout(timer); });
+  }
+
+  async dragged() {
     await this.page.mouse.move(...this.place());
     await this.page.mouse.down({ button: this.one(['left', 'left', 'right']) });
     for (let i = 0; i < 3; ++i) await this.page.mouse.move(...this.place());
