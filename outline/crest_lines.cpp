@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <utility>
 
@@ -47,7 +46,12 @@ struct TangentFrame {
   }
 };
 
-/// The symmetric matrix (a b, b c) that takes steps (x, y) to changes (p, q) with the least squared
+/// The symmetric matrix (a b, b c), by the axes of a TangentFrame.
+struct Tensor {
+  double a = 0, b = 0, c = 0;
+};
+
+/// The one that takes steps (x, y) to changes (p, q) with the least squared
 /// error.
 class TensorFit {
  public:
@@ -60,33 +64,49 @@ class TensorFit {
     yq_ += y * q;
   }
 
-  struct Tensor {
-    double a, b, c;
-  };
-
-  std::optional<Tensor> solve() const {
+  /// Zero where the steps do not tell.
+  Tensor solve() const {
     if (!(xx_ > 0 && yy_ > 0))
-      return std::nullopt;
+      return {};
     const double divisor = xx_ + yy_ - xy_ * xy_ / xx_ - xy_ * xy_ / yy_;
     if (!(divisor > 1e-9 * (xx_ + yy_)))
-      return std::nullopt;
+      return {};
     const double b = (mixed_ - xy_ * xp_ / xx_ - xy_ * yq_ / yy_) / divisor;
-    return Tensor{(xp_ - b * xy_) / xx_, b, (yq_ - b * xy_) / yy_};
+    return {(xp_ - b * xy_) / xx_, b, (yq_ - b * xy_) / yy_};
   }
 
  private:
   double xx_ = 0, xy_ = 0, yy_ = 0, xp_ = 0, mixed_ = 0, yq_ = 0;
 };
 
+/// How the normal turns along the surface at each vertex.
+std::vector<Tensor> curvatures(const TileMesh& tile, const Neighbours& neighbours,
+                               std::span<const Vec3f> normals) {
+  const auto position = [&](std::uint32_t v) { return to_double(tile.vertices.positions[v]); };
+  std::vector<Tensor> tensors(tile.own_count);
+  for (std::uint32_t v = 0; v < tile.own_count; ++v) {
+    const Vec3d normal = to_double(normals[v]);
+    const TangentFrame frame(normal);
+    TensorFit fit;
+    for (const std::uint32_t other : neighbours[v]) {
+      const Vec3d step = position(other) - position(v);
+      const Vec3d turn = to_double(normals[other]) - normal;
+      fit.add(dot(step, frame.u), dot(step, frame.v), dot(turn, frame.u), dot(turn, frame.v));
+    }
+    tensors[v] = fit.solve();
+  }
+  return tensors;
+}
+
 class Crests {
  public:
   /// `side`: 1 for ridges, -1 for valleys.
   Crests(const TileMesh& tile, const Neighbours& neighbours, std::span<const Vec3f> normals,
-         double side)
+         std::span<const Tensor> curvatures, double side)
       : tile_(tile), neighbours_(neighbours) {
     bends_.resize(tile.own_count);
     for (std::uint32_t v = 0; v < tile.own_count; ++v)
-      bends_[v] = bend_at(v, normals, side);
+      bends_[v] = bend_of(curvatures[v], to_double(normals[v]), side);
     for (std::uint32_t v = 0; v < tile.own_count; ++v)
       bends_[v].slope = slope_at(v);
   }
@@ -109,21 +129,11 @@ class Crests {
 
   Vec3d position(std::uint32_t v) const { return to_double(tile_.vertices.positions[v]); }
 
-  Bend bend_at(std::uint32_t v, std::span<const Vec3f> normals, double side) const {
-    const Vec3d normal = to_double(normals[v]);
+  static Bend bend_of(const Tensor& curvature, Vec3d normal, double side) {
     if (!(dot(normal, normal) > 0))
       return {};
     const TangentFrame frame(normal);
-    TensorFit fit;
-    for (const std::uint32_t other : neighbours_[v]) {
-      const Vec3d step = position(other) - position(v);
-      const Vec3d turn = (to_double(normals[other]) - normal) * side;
-      fit.add(dot(step, frame.u), dot(step, frame.v), dot(turn, frame.u), dot(turn, frame.v));
-    }
-    const auto tensor = fit.solve();
-    if (!tensor)
-      return {};
-    const auto [a, b, c] = *tensor;
+    const double a = side * curvature.a, b = side * curvature.b, c = side * curvature.c;
     const double mean = (a + c) / 2, half = (a - c) / 2;
     const double radius = std::sqrt(half * half + b * b);
     if (!(radius > 0) || !std::isfinite(radius))
@@ -216,9 +226,10 @@ class Crests {
 std::vector<CrestLine> crest_lines(const TileMesh& tile) {
   const Neighbours neighbours(tile);
   const std::vector<Vec3f> normals = smooth_normals(tile, neighbours, kCrestRounds);
+  const std::vector<Tensor> tensors = curvatures(tile, neighbours, normals);
   std::vector<CrestLine> lines;
   for (const double side : {1.0, -1.0})
-    Crests(tile, neighbours, normals, side).append_lines(lines);
+    Crests(tile, neighbours, normals, tensors, side).append_lines(lines);
   return lines;
 }
 

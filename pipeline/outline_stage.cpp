@@ -107,13 +107,14 @@ OutlineStageResult make_outline(Forest& forest, double diagonal, const StageCont
   options.diagonal = std::max(diagonal, 1e-30);
   options.max_bytes = kOutlineBytes;
   options.file_bytes = storage::outline_bytes;
+  const std::vector<outline::CrestLine> crests = crest_lines(forest);
   for (Level level = sector_level(forest.tree(), config.sectors);; level = coarser(level)) {
     const std::uint32_t tiles = forest.tree().node_count(level);
     const std::uint32_t sectors = outline_sectors(tiles, config.sectors);
     outline::OutlineBuilder builder;
     if (!collect(forest, level, builder, sectors / tiles, context))
       continue;
-    builder.add(crest_lines(forest));
+    builder.add(crests);
     options.max_segments = level > Level{0} ? kMostSegments : SIZE_MAX;
     const TileRoom room = room_for(forest, context.memory(), {builder.edge_count() * kEdgeBytes});
     if (auto result = builder.finish(options)) {

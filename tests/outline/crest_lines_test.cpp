@@ -1,6 +1,7 @@
 #include "outline/crest_lines.h"
 
 #include "outline/polyline.h"
+#include "tests/outline/one_tile.h"
 #include "tests/support/meshes.h"
 
 #include <algorithm>
@@ -14,21 +15,12 @@
 namespace meshhier::outline {
 namespace {
 
-TileMesh tile_of(const tests::TestMesh& mesh) {
-  TileMesh tile;
-  tile.vertices.positions = mesh.positions;
-  tile.own_count = static_cast<std::uint32_t>(mesh.positions.size());
-  for (const tests::MeshTriangle& t : mesh.triangles)
-    tile.interior.push_back({TileVertex{t[0]}, TileVertex{t[1]}, TileVertex{t[2]}});
-  return tile;
-}
-
 /// A square of side 41 in the plane of x and y, as high as `height` says.
 TileMesh relief(const std::function<float(float, float)>& height) {
   tests::TestMesh mesh = tests::open_grid(41, 41);
   for (Vec3f& p : mesh.positions)
     p.z = height(p.x, p.y);
-  return tile_of(mesh);
+  return tests::one_tile(mesh);
 }
 
 float roof(float x, float) {
@@ -68,11 +60,11 @@ TEST(CrestLines, AValleyIsARidgeFromBelow) {
 
 TEST(CrestLines, APlaneAndASphereHaveNone) {
   EXPECT_TRUE(crest_lines(relief([](float x, float y) { return 0.3F * x - 0.1F * y; })).empty());
-  EXPECT_TRUE(crest_lines(tile_of(tests::sphere(8000))).empty());
+  EXPECT_TRUE(crest_lines(tests::one_tile(tests::sphere(8000))).empty());
 }
 
 TEST(CrestLines, TheUnitOfLengthDoesNotMatter) {
-  TileMesh tile = tile_of(tests::torus(8000, 0.02F));
+  TileMesh tile = tests::one_tile(tests::torus(8000, 0.02F));
   const auto lines = crest_lines(tile);
   ASSERT_FALSE(lines.empty());
   for (Vec3f& p : tile.vertices.positions)
@@ -95,7 +87,7 @@ TEST(CrestLines, WhatIsNoSurfaceIsNoObstacle) {
     p = p * 1e38F;
   for (const tests::TestMesh& mesh :
        {tests::points(0), tests::points(5), tests::soup(300), flat, far}) {
-    for (const CrestLine& line : crest_lines(tile_of(mesh))) {
+    for (const CrestLine& line : crest_lines(tests::one_tile(mesh))) {
       EXPECT_GE(line.points.size(), 2U);
       EXPECT_TRUE(std::isfinite(line.strength));
       for (const Vec3f& p : line.points)

@@ -1,5 +1,6 @@
 #include "outline/subdivision.h"
 
+#include "tests/outline/one_tile.h"
 #include "tests/support/meshes.h"
 
 #include <algorithm>
@@ -13,15 +14,6 @@
 namespace meshhier::outline {
 namespace {
 
-TileMesh tile_of_mesh(const tests::TestMesh& mesh) {
-  TileMesh tile;
-  tile.vertices.positions = mesh.positions;
-  tile.own_count = static_cast<std::uint32_t>(mesh.positions.size());
-  for (const tests::MeshTriangle& t : mesh.triangles)
-    tile.interior.push_back({TileVertex{t[0]}, TileVertex{t[1]}, TileVertex{t[2]}});
-  return tile;
-}
-
 std::vector<std::size_t> counts(const std::vector<std::uint16_t>& part_of, std::uint32_t parts) {
   std::vector<std::size_t> counts(parts);
   for (const std::uint16_t part : part_of)
@@ -30,7 +22,7 @@ std::vector<std::size_t> counts(const std::vector<std::uint16_t>& part_of, std::
 }
 
 TEST(Subdivision, PartsAreAboutEqual) {
-  const TileMesh tile = tile_of_mesh(tests::torus(20'000, 0.01F));
+  const TileMesh tile = tests::one_tile(tests::torus(20'000, 0.01F));
   for (const std::uint32_t parts : {1U, 2U, 3U, 18U, 128U}) {
     const auto found = counts(divide(tile, parts), parts);
     const std::size_t mean = tile.own_count / parts;
@@ -42,7 +34,7 @@ TEST(Subdivision, PartsAreAboutEqual) {
 TEST(Subdivision, MorePartsThanVerticesAreNoObstacle) {
   for (const tests::TestMesh& mesh :
        {tests::sphere(8), tests::points(3), tests::points(0), tests::soup(20)}) {
-    const TileMesh tile = tile_of_mesh(mesh);
+    const TileMesh tile = tests::one_tile(mesh);
     const std::vector<std::uint16_t> part_of = divide(tile, 65536);
     EXPECT_EQ(part_of.size(), tile.own_count);
   }
@@ -83,7 +75,7 @@ TEST(Subdivision, ALimbIsDividedAlongItToo) {
 
 TEST(Subdivision, LinesAreEven) {
   const tests::TestMesh mesh = tests::sphere(20'000, 0.02F);
-  const TileMesh tile = tile_of_mesh(mesh);
+  const TileMesh tile = tests::one_tile(mesh);
   const std::vector<std::uint16_t> part_of = divide(tile, 16);
   std::size_t lonely = 0;
   std::vector<bool> has_like(part_of.size());

@@ -94,17 +94,6 @@ class MemoryTest : public testing::Test {
     ASSERT_EQ(status, 0);
   }
 
-  void write_surface_apart(const bench::SurfaceOptions& options) {
-    const pid_t child = fork();
-    if (child == 0) {
-      write_mesh(options);
-      _exit(0);
-    }
-    int status = -1;
-    ASSERT_EQ(waitpid(child, &status, 0), child);
-    ASSERT_EQ(status, 0);
-  }
-
   void write_textured(const bench::AtlasOptions& atlas) {
     const pid_t child = fork();
     if (child == 0) {
@@ -292,7 +281,8 @@ bench::SurfaceOptions million_vertices() {
 // Each page of a buffer that is given back after a tile is made anew for the next: 2.3 times the
 // peak was made for this mesh. Large pages are made in fewer steps, never in more.
 TEST_F(MemoryTest, FreedMemoryIsUsedAgain) {
-  write_surface_apart({.shape = bench::Shape::torus, .triangles = 1'000'000});
+  write_apart(
+      [] { return bench::SurfaceOptions{.shape = bench::Shape::torus, .triangles = 1'000'000}; });
   const Outcome outcome = build("512MiB", {"threads=2"});
   ASSERT_EQ(outcome.code, 0) << outcome.messages;
   EXPECT_GT(outcome.new_page_bytes, 0U);
