@@ -1,5 +1,7 @@
 #include "cluster_simplify/disc_gap.h"
 
+#include "hierarchy/tangent_frame.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -51,13 +53,7 @@ bool DiscGapMeter::project(std::span<const Vec3f> positions, const EdgeStar& sta
   if (!(area > 0))
     return false;
   const Vec3f n = normal * (1 / area);
-  // A frame without roots or branches (Duff et al., Building an Orthonormal Basis, Revisited,
-  // 2017).
-  const float sign = std::copysign(1.0F, n.z);
-  const float a = -1 / (sign + n.z);
-  const float b = n.x * n.y * a;
-  const Vec3f u{1 + sign * n.x * n.x * a, sign * b, -sign * n.x};
-  const Vec3f v{b, sign + n.y * n.y * a, -n.y};
+  const auto [u, v] = TangentFrame(n);
 
   radius_ = largest_of(squared);
   for (const auto& [laid, vertex] : {std::pair(&from_, star.from()), std::pair(&to_, star.to())}) {

@@ -1,8 +1,10 @@
 #include "outline/crest_lines.h"
 
+#include "hierarchy/tangent_frame.h"
 #include "outline/polyline.h"
 #include "outline/surface_normals.h"
 #include "outline/tile_lines.h"
+#include "outline/tile_triangles.h"
 
 #include <algorithm>
 #include <array>
@@ -31,19 +33,6 @@ struct Bend {
 
   /// A ball bends alike in all directions: it has no crest.
   double lead() const { return most - std::abs(other); }
-};
-
-struct TangentFrame {
-  Vec3d u, v;
-
-  /// `n` of length one (Duff et al., Building an Orthonormal Basis, Revisited, 2017).
-  explicit TangentFrame(Vec3d n) {
-    const double sign = std::copysign(1.0, n.z);
-    const double a = -1 / (sign + n.z);
-    const double b = n.x * n.y * a;
-    u = {1 + sign * n.x * n.x * a, sign * b, -sign * n.x};
-    v = {b, sign + n.y * n.y * a, -n.y};
-  }
 };
 
 /// The symmetric matrix (a b, b c), by the axes of a TangentFrame.

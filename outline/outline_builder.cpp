@@ -2,6 +2,7 @@
 
 #include "outline/line_selection.h"
 #include "outline/network.h"
+#include "outline/tile_triangles.h"
 
 #include <algorithm>
 #include <cassert>
@@ -26,18 +27,16 @@ OutlineBuilder::Sector::Sector(std::uint32_t index, const TileMesh& tile, const 
   content_->lines = lines_of(index, tile, [&](std::uint32_t a, std::uint32_t b) {
     return !in_one_sector(corner(a), corner(b));
   });
-  for (const std::vector<TileTriangle>* triangles : {&tile.interior, &tile.border}) {
-    for (const TileTriangle& t : *triangles) {
-      if (is_degenerate(t))
-        continue;
-      PlacedTriangle triangle = {corner(raw(t[0])), corner(raw(t[1])), corner(raw(t[2]))};
-      std::sort(triangle.begin(), triangle.end(),
-                [](const Corner& a, const Corner& b) { return a.key < b.key; });
-      // Every tile it touches has it; the lowest brings it.
-      if (tile_of(triangle[0].key) == index && !touches_one(triangle))
-        content_->triangles.push_back(triangle);
-    }
-  }
+  for_each_triangle(tile, [&](const TileTriangle& t) {
+    if (is_degenerate(t))
+      return;
+    PlacedTriangle triangle = {corner(raw(t[0])), corner(raw(t[1])), corner(raw(t[2]))};
+    std::sort(triangle.begin(), triangle.end(),
+              [](const Corner& a, const Corner& b) { return a.key < b.key; });
+    // Every tile it touches has it; the lowest brings it.
+    if (tile_of(triangle[0].key) == index && !touches_one(triangle))
+      content_->triangles.push_back(triangle);
+  });
   std::sort(content_->triangles.begin(), content_->triangles.end(), before);
 }
 

@@ -1,5 +1,7 @@
 #include "outline/surface_normals.h"
 
+#include "outline/tile_triangles.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>

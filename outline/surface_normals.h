@@ -11,15 +11,6 @@
 
 namespace meshhier::outline {
 
-/// Calls visit(triangle) for the interior and the border triangles.
-template <class Visit>
-void for_each_triangle(const TileMesh& tile, const Visit& visit) {
-  for (const std::vector<TileTriangle>* triangles : {&tile.interior, &tile.border}) {
-    for (const TileTriangle& t : *triangles)
-      visit(t);
-  }
-}
-
 /// Of own vertices, without those of other tiles. O(t) for t triangles.
 class Neighbours {
  public:

@@ -1,5 +1,7 @@
 #include "outline/tile_lines.h"
 
+#include "outline/tile_triangles.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -45,18 +47,16 @@ OwnEdges own_edges(const TileMesh& tile) {
   };
   std::vector<std::uint32_t> first(tile.own_count + 1, 0);
   const auto visit_edges = [&tile](auto&& visit) {
-    for (const std::vector<TileTriangle>* triangles : {&tile.interior, &tile.border}) {
-      for (const TileTriangle& t : *triangles) {
-        if (is_degenerate(t))
-          continue;
-        for (std::size_t i = 0; i < 3; ++i) {
-          const std::uint32_t a = raw(t[i]), b = raw(t[(i + 1) % 3]);
-          const std::uint32_t low = std::min(a, b), high = std::max(a, b);
-          if (high < tile.own_count)
-            visit(low, End{high, {&t, a < b}});
-        }
+    for_each_triangle(tile, [&](const TileTriangle& t) {
+      if (is_degenerate(t))
+        return;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::uint32_t a = raw(t[i]), b = raw(t[(i + 1) % 3]);
+        const std::uint32_t low = std::min(a, b), high = std::max(a, b);
+        if (high < tile.own_count)
+          visit(low, End{high, {&t, a < b}});
       }
-    }
+    });
   };
   visit_edges([&](std::uint32_t low, const End&) { ++first[low + 1]; });
   std::partial_sum(first.begin(), first.end(), first.begin());

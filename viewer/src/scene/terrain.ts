@@ -67,9 +67,9 @@ function extentAcross({ box }: Tile, up: Vector): number {
 
 function terrainAlong(root: Tile, along: Vector, most: number, upright: boolean): Terrain | null {
   const [low, high] = heightsOf(root, along);
+  if (!(high > low && high - low < most * extentAcross(root, along))) return null;
   const { above, below, ground } = areasOf(root, along);
-  const isFlat = high > low && high - low < most * extentAcross(root, along);
-  if (!isFlat || Math.min(above, below) > MOST_DOWN * (above + below) || ground === 0) return null;
+  if (Math.min(above, below) > MOST_DOWN * (above + below) || ground === 0) return null;
   return { along, upright, low, high, slope: Math.sqrt(Math.max(0, ((above + below) / ground) ** 2 - 1)) };
 }
 
