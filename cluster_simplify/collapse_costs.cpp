@@ -4,6 +4,7 @@
 #include "cluster_simplify/vanishing.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 
 namespace meshhier::cluster_simplify {
@@ -83,10 +84,17 @@ bool keeps_sides(std::span<const Vec3f> positions, const EdgeStar& star, Vec3f p
          keeps_sides(positions, star.to(), star.from(), place, star.around_to());
 }
 
-TopologyPrices::TopologyPrices(const CollapseMesh& mesh, std::span<const Vec3f> positions,
-                               float area)
-    : least_area_(kLeastShare * area / static_cast<float>(std::max(1U, mesh.vertex_count()))),
-      vanishing_(vanishing_distances(mesh, positions)) {}
+TopologyPrices::TopologyPrices(const TileMesh& tile, const LocalFrame& frame, float area)
+    : tile_(tile),
+      frame_(frame),
+      least_area_(kLeastShare * area /
+                  static_cast<float>(std::max<std::size_t>(1, tile.vertices.size()))) {}
+
+const std::vector<float>& TopologyPrices::vanishing() const {
+  if (!vanishing_)
+    vanishing_ = vanishing_distances(tile_, frame_.to_local(tile_.vertices.positions));
+  return *vanishing_;
+}
 
 float TopologyPrices::of(TopologyChange change, std::uint32_t vertex, Vec3f along,
                          float area) const {
@@ -96,7 +104,7 @@ float TopologyPrices::of(TopologyChange change, std::uint32_t vertex, Vec3f alon
     case TopologyChange::tears:
       return kTearing * area * dot(along, along);
     case TopologyChange::vanishes: {
-      const float lost = vanishing_[vertex];
+      const float lost = vanishing()[vertex];
       if (lost == std::numeric_limits<float>::infinity())
         break;  // whatever its area, which may be zero
       return kTearing * area * dot(along, along) + kVanishing * std::max(area, least_area_) * lost;

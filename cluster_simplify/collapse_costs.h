@@ -3,11 +3,14 @@
 
 #include "cluster_simplify/edge_star.h"
 #include "cluster_simplify/link_condition.h"
+#include "cluster_simplify/local_frame.h"
 #include "cluster_simplify/meeting_point.h"
 #include "cluster_simplify/vertex_quadric.h"
+#include "hierarchy/tile_mesh.h"
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,16 +31,23 @@ bool keeps_sides(std::span<const Vec3f> positions, const EdgeStar& star, Vec3f p
 /// handles, and specks of it vanish, when that harms less than any other collapse.
 class TopologyPrices {
  public:
-  /// `area`: twice that of the whole tile.
-  TopologyPrices(const CollapseMesh& mesh, std::span<const Vec3f> positions, float area);
+  /// `tile` and `frame`: as they were before the first collapse, and stay. `area`: twice that of
+  /// the whole tile.
+  TopologyPrices(const TileMesh& tile, const LocalFrame& frame, float area);
 
   /// In the units of quadric_cost. `vertex`: an end of the edge; `along`: the edge; `area`: twice
   /// that of the surface its ends stand for.
   float of(TopologyChange change, std::uint32_t vertex, Vec3f along, float area) const;
 
  private:
-  float least_area_;              ///< twice what a piece counts for at least
-  std::vector<float> vanishing_;  ///< squared distance from a piece to the next larger one
+  const std::vector<float>& vanishing() const;
+
+  const TileMesh& tile_;
+  const LocalFrame& frame_;
+  float least_area_;  ///< twice what a piece counts for at least
+  /// Squared distance from a piece to the next larger one; most tiles have no small piece, and
+  /// never ask for it.
+  mutable std::optional<std::vector<float>> vanishing_;
 };
 
 }  // namespace meshhier::cluster_simplify

@@ -74,11 +74,11 @@ std::vector<PlacedQuadric> placed(std::span<const VertexQuadric> quadrics,
 /// Vertices meet where the sum of their quadrics is least.
 class OptimalPlacement {
  public:
-  OptimalPlacement(const CollapseMesh& mesh, std::vector<Vec3f> positions,
+  OptimalPlacement(const CollapseMesh& mesh, const TileMesh& tile, const LocalFrame& frame,
                    std::span<const PlaceEdge> seams, VertexArray& vertices)
-      : mesh_(mesh), positions_(std::move(positions)), vertices_(vertices) {
+      : mesh_(mesh), positions_(frame.to_local(tile.vertices.positions)), vertices_(vertices) {
     const std::vector<VertexQuadric> quadrics = vertex_quadrics(mesh, positions_, seams);
-    prices_.emplace(mesh, positions_, total_area(quadrics));
+    prices_.emplace(tile, frame, total_area(quadrics));
     placed_ = placed(quadrics, positions_);
   }
 
@@ -188,7 +188,7 @@ Contraction edge_collapse(const BuildTile& joined, std::uint32_t target,
   CollapseMesh mesh(joined.mesh);
   VertexArray vertices = joined.mesh.vertices;
   const LocalFrame frame(surface_bounds(mesh, vertices.positions));
-  OptimalPlacement costs(mesh, frame.to_local(vertices.positions), seams, vertices);
+  OptimalPlacement costs(mesh, joined.mesh, frame, seams, vertices);
   DeviationMeter deviation(mesh, joined.history.weights);
   const FallbackCounts fallbacks = collapse_edges(mesh, costs, deviation, target);
   for (std::uint32_t v = 0; v < mesh.own_count(); ++v) {

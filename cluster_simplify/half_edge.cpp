@@ -20,11 +20,12 @@ Collapse cheaper(Collapse first, Collapse second) {
 /// One vertex takes over the other's quadric.
 class QuadricCosts {
  public:
-  QuadricCosts(CollapseMesh& mesh, std::vector<Vec3f> positions, std::span<const PlaceEdge> seams)
+  QuadricCosts(CollapseMesh& mesh, const TileMesh& tile, const LocalFrame& frame,
+               std::span<const PlaceEdge> seams)
       : mesh_(mesh),
-        positions_(std::move(positions)),
+        positions_(frame.to_local(tile.vertices.positions)),
         quadrics_(vertex_quadrics(mesh, positions_, seams)),
-        prices_(mesh, positions_, total_area(quadrics_)) {}
+        prices_(tile, frame, total_area(quadrics_)) {}
 
   std::span<const Vec3f> positions() const { return positions_; }
 
@@ -72,8 +73,9 @@ class QuadricCosts {
 /// edges do, and are not left.
 class MelaxCosts {
  public:
-  MelaxCosts(CollapseMesh& mesh, std::vector<Vec3f> positions, std::span<const PlaceEdge>)
-      : mesh_(mesh), positions_(std::move(positions)), prices_(mesh, positions_, 0) {}
+  MelaxCosts(CollapseMesh& mesh, const TileMesh& tile, const LocalFrame& frame,
+             std::span<const PlaceEdge>)
+      : mesh_(mesh), positions_(frame.to_local(tile.vertices.positions)), prices_(tile, frame, 0) {}
 
   std::span<const Vec3f> positions() const { return positions_; }
 
@@ -176,7 +178,7 @@ Contraction contract_with(const BuildTile& joined, std::uint32_t target,
   CollapseMesh mesh(joined.mesh);
   const VertexArray& vertices = joined.mesh.vertices;
   const LocalFrame frame(surface_bounds(mesh, vertices.positions));
-  Costs costs(mesh, frame.to_local(vertices.positions), seams);
+  Costs costs(mesh, joined.mesh, frame, seams);
   DeviationMeter deviation(mesh, joined.history.weights);
   const FallbackCounts fallbacks = collapse_edges(mesh, costs, deviation, target);
   Contraction result = choose_representatives(

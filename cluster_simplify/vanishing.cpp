@@ -1,11 +1,11 @@
 #include "cluster_simplify/vanishing.h"
 
 #include "cluster_simplify/nearest.h"
+#include "hierarchy/union_find.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 
 namespace meshhier::cluster_simplify {
 namespace {
@@ -14,51 +14,46 @@ namespace {
 // worth next to nothing.
 constexpr std::uint32_t kSmallPiece = 32;
 
-/// Of each vertex, the highest vertex of its connected piece; ghosts come last.
-std::vector<std::uint32_t> piece_of_vertices(const CollapseMesh& mesh) {
-  std::vector<std::uint32_t> above(mesh.vertex_count());
-  std::iota(above.begin(), above.end(), 0U);
-  const auto find = [&](std::uint32_t v) {
-    while (above[v] != v) {
-      above[v] = above[above[v]];
-      v = above[v];
+/// Of each vertex, the least of its connected piece.
+std::vector<std::uint32_t> piece_of_vertices(const TileMesh& tile) {
+  const auto count = static_cast<std::uint32_t>(tile.vertices.size());
+  UnionFind pieces(count);
+  for (const auto* triangles : {&tile.interior, &tile.border}) {
+    for (const TileTriangle& t : *triangles) {
+      pieces.join(raw(t[0]), raw(t[1]));
+      pieces.join(raw(t[0]), raw(t[2]));
     }
-    return v;
-  };
-  // From the last edge: edges come by their lower vertices, so most meet a piece that is known.
-  for (std::size_t e = mesh.edges().size(); e-- > 0;) {
-    const CollapseMesh::Edge& edge = mesh.edges()[e];
-    if (above[edge.a] == above[edge.b])
-      continue;
-    const std::uint32_t a = find(edge.a);
-    const std::uint32_t b = find(edge.b);
-    above[std::min(a, b)] = std::max(a, b);
   }
-  for (std::uint32_t v = mesh.vertex_count(); v-- > 0;)
-    above[v] = above[above[v]];  // what is above has its piece already
-  return above;
+  std::vector<std::uint32_t> piece_of(count);
+  for (std::uint32_t v = 0; v < count; ++v)
+    piece_of[v] = pieces.find(v);
+  return piece_of;
 }
 
 }  // namespace
 
-std::vector<float> vanishing_distances(const CollapseMesh& mesh, std::span<const Vec3f> positions) {
-  const std::vector<std::uint32_t> pieces = piece_of_vertices(mesh);
-  std::vector<std::uint32_t> sizes(mesh.vertex_count());
-  for (const std::uint32_t piece : pieces)
-    ++sizes[piece];
+std::vector<float> vanishing_distances(const TileMesh& tile, std::span<const Vec3f> positions) {
+  const std::vector<std::uint32_t> pieces = piece_of_vertices(tile);
+  const auto count = static_cast<std::uint32_t>(pieces.size());
+  std::vector<std::uint32_t> sizes(count);
+  std::vector<char> has_ghost(count);
+  for (std::uint32_t v = 0; v < count; ++v) {
+    ++sizes[pieces[v]];
+    has_ghost[pieces[v]] |= static_cast<char>(v >= tile.own_count);
+  }
   const auto is_large = [&](std::uint32_t v) {
-    return sizes[pieces[v]] > kSmallPiece || pieces[v] >= mesh.own_count();
+    return sizes[pieces[v]] > kSmallPiece || has_ghost[pieces[v]] != 0;
   };
   std::vector<std::uint32_t> small;
-  for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
+  for (std::uint32_t v = 0; v < count; ++v) {
     if (!is_large(v) && sizes[pieces[v]] > 1)  // alone: shows nothing
       small.push_back(v);
   }
-  std::vector<float> distances(mesh.vertex_count(), std::numeric_limits<float>::infinity());
+  std::vector<float> distances(count, std::numeric_limits<float>::infinity());
   if (small.empty())
     return distances;
   std::vector<std::uint32_t> large;
-  for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
+  for (std::uint32_t v = 0; v < count; ++v) {
     if (is_large(v))
       large.push_back(v);
   }

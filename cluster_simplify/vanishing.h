@@ -1,7 +1,7 @@
 // What it costs the surface to lose a small piece of itself.
 #pragma once
 
-#include "cluster_simplify/collapse_mesh.h"
+#include "hierarchy/tile_mesh.h"
 #include "hierarchy/vec.h"
 
 #include <span>
@@ -14,6 +14,6 @@ namespace meshhier::cluster_simplify {
 /// surface is off where the piece was, once it has collapsed to nothing. Infinite for the vertices
 /// of larger pieces: they do not vanish before they have become small. `positions`: one per vertex.
 /// O(n), and O(n log n) if there are small pieces.
-std::vector<float> vanishing_distances(const CollapseMesh& mesh, std::span<const Vec3f> positions);
+std::vector<float> vanishing_distances(const TileMesh& tile, std::span<const Vec3f> positions);
 
 }  // namespace meshhier::cluster_simplify

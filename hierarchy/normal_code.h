@@ -34,7 +34,9 @@ inline NormalCode normal_code(const Vec3d& normal) {
   if (!(size > 0) || !std::isfinite(size))
     return kNoDirection;
   const auto rounded = [](const Vec3d& steps) -> NormalCode {
-    const auto axis = [](double value) { return static_cast<std::int8_t>(std::lround(value)); };
+    const auto axis = [](double value) {
+      return static_cast<std::int8_t>(value + std::copysign(0.5, value));
+    };
     return {axis(steps.x), axis(steps.y), axis(steps.z), 0};
   };
   const auto is_at = [](const NormalCode& code, const Vec3d& steps) {

@@ -11,7 +11,10 @@ namespace meshhier {
 /// [0, count) in disjoint sets, each named by its least element, whatever the order of the joins.
 class UnionFind {
  public:
-  explicit UnionFind(std::uint32_t count) : parent_(count) {
+  explicit UnionFind(std::uint32_t count) { reset(count); }
+  /// All are apart again.
+  void reset(std::uint32_t count) {
+    parent_.resize(count);
     std::iota(parent_.begin(), parent_.end(), 0U);
   }
   /// The name of the set that has `v`. O(log n) amortised.

@@ -1,107 +1,19 @@
 #include "shading/fan_groups.h"
 
 #include "hierarchy/sort_few.h"
-#include "hierarchy/union_find.h"
 #include "shading/crease.h"
 
 #include <algorithm>
-#include <array>
-#include <cstddef>
-#include <numeric>
+#include <limits>
 
 namespace meshhier::shading {
 namespace {
 
 constexpr std::size_t kMostGroups = 32;
 
-/// Around most places there are no more corners.
-constexpr std::size_t kFew = 16;
-
 double cosine_between(const Vec3d& a, const Vec3d& b) {
   const double size = length(a) * length(b);
   return size > 0 ? dot(a, b) / size : -1;
-}
-
-/// A corner at one of its two edges.
-struct Side {
-  std::uint32_t far_place = 0;
-  std::uint32_t corner = 0;
-};
-
-/// Sorts the sides, and calls visit(a, b) for the corners at each edge that exactly two have.
-template <class Visit>
-void visit_neighbours(std::span<Side> sides, const Visit& visit) {
-  sort_few(sides,
-           [](const Side& side) { return std::uint64_t{side.far_place} << 32 | side.corner; });
-  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
-    while (end < sides.size() && sides[end].far_place == sides[begin].far_place)
-      ++end;
-    if (end - begin == 2)
-      visit(sides[begin].corner, sides[begin + 1].corner);
-  }
-}
-
-/// Of each corner the least one of its fan; none if all are one fan.
-std::vector<std::uint32_t> find_fans(std::span<const FanCorner> corners, double cosine) {
-  std::vector<Side> sides;
-  sides.reserve(2 * corners.size());
-  for (std::uint32_t i = 0; i < corners.size(); ++i) {
-    sides.push_back({corners[i].next, i});
-    sides.push_back({corners[i].previous, i});
-  }
-  UnionFind fans(static_cast<std::uint32_t>(corners.size()));
-  std::size_t count = corners.size();
-  visit_neighbours(std::span(sides), [&](std::uint32_t a, std::uint32_t b) {
-    if (cosine_between(corners[a].area, corners[b].area) >= cosine)
-      count -= std::size_t{fans.join(a, b)};
-  });
-  if (count <= 1)
-    return {};
-  std::vector<std::uint32_t> fan_of(corners.size());
-  for (std::uint32_t i = 0; i < corners.size(); ++i)
-    fan_of[i] = fans.find(i);
-  return fan_of;
-}
-
-/// The same of a few corners, without memory of its own: whether all are one fan.
-bool are_one_fan(std::span<const FanCorner> corners, double cosine) {
-  std::array<Side, 2 * kFew> room;
-  std::array<double, kFew> sizes;
-  std::array<std::size_t, kFew> fan_of;
-  const auto sides = std::span(room).first(2 * corners.size());
-  for (std::uint32_t i = 0; i < corners.size(); ++i) {
-    sides[2 * i] = {corners[i].next, i};
-    sides[2 * i + 1] = {corners[i].previous, i};
-    sizes[i] = length(corners[i].area);
-    fan_of[i] = i;
-  }
-  std::size_t count = corners.size();
-  visit_neighbours(sides, [&](std::uint32_t a, std::uint32_t b) {
-    const double size = sizes[a] * sizes[b];
-    const bool meet = (size > 0 ? dot(corners[a].area, corners[b].area) / size : -1) >= cosine;
-    const std::size_t gone = fan_of[b];
-    const std::size_t stays = fan_of[a];
-    if (!meet || gone == stays)
-      return;
-    for (std::size_t i = 0; i < corners.size(); ++i)
-      fan_of[i] = fan_of[i] == gone ? stays : fan_of[i];
-    --count;
-  });
-  return count <= 1;
-}
-
-/// The fans, the one of the longest sum first.
-std::vector<std::uint32_t> by_size(const std::vector<std::uint32_t>& fan_of,
-                                   const std::vector<Vec3d>& sums) {
-  std::vector<std::uint32_t> fans;
-  for (std::uint32_t i = 0; i < fan_of.size(); ++i) {
-    if (fan_of[i] == i)
-      fans.push_back(i);
-  }
-  std::stable_sort(fans.begin(), fans.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return dot(sums[a], sums[a]) > dot(sums[b], sums[b]);
-  });
-  return fans;
 }
 
 struct Nearest {
@@ -120,48 +32,143 @@ Nearest nearest_leader(const std::vector<Vec3d>& leaders, const Vec3d& direction
   return best;
 }
 
-FanGroups one_group(std::span<const FanCorner> corners) {
-  Vec3d sum;
-  for (const FanCorner& corner : corners)
-    sum = sum + corner.area;
-  return {std::vector<std::uint32_t>(corners.size()), {sum}};
-}
-
 }  // namespace
 
-bool is_one_fan(std::span<const FanCorner> corners) {
-  const double cosine = crease_cosine();
-  return corners.size() <= kFew ? are_one_fan(corners, cosine) : find_fans(corners, cosine).empty();
+const FanGroups& FanGrouper::group(std::span<const FanCorner> corners) {
+  groups_.is_one_fan = find_fans(corners) <= 1;
+  groups_.group_of.assign(corners.size(), 0);
+  groups_.normals.clear();
+  if (groups_.is_one_fan) {
+    Vec3d& sum = groups_.normals.emplace_back();
+    for (const FanCorner& corner : corners)
+      sum = sum + corner.area;
+  } else {
+    join_fans(corners);
+  }
+  return groups_;
 }
 
-FanGroups group_fans(std::span<const FanCorner> corners) {
-  const double cosine = crease_cosine();
-  const std::vector<std::uint32_t> fan_of = find_fans(corners, cosine);
-  if (fan_of.empty())
-    return one_group(corners);
-  std::vector<Vec3d> sums(corners.size());
-  for (std::size_t i = 0; i < corners.size(); ++i)
-    sums[fan_of[i]] = sums[fan_of[i]] + corners[i].area;
-
-  FanGroups groups;
-  std::vector<Vec3d> leaders;
-  std::vector<std::uint32_t> group_of_fan(corners.size());
-  for (const std::uint32_t fan : by_size(fan_of, sums)) {
-    const bool has_direction = dot(sums[fan], sums[fan]) > 0;
-    Nearest nearest = nearest_leader(leaders, sums[fan]);
-    const bool leads = has_direction && nearest.cosine < cosine && leaders.size() < kMostGroups;
-    if (leads || leaders.empty()) {
-      nearest.leader = leaders.size();
-      leaders.push_back(sums[fan]);
-      groups.normals.emplace_back();
-    }
-    groups.normals[nearest.leader] = groups.normals[nearest.leader] + sums[fan];
-    group_of_fan[fan] = static_cast<std::uint32_t>(nearest.leader);
+/// Fills fan_of_, unless there is but one. Returns how many there are.
+std::size_t FanGrouper::find_fans(std::span<const FanCorner> corners) {
+  sizes_.clear();
+  for (const FanCorner& corner : corners)
+    sizes_.push_back(length(corner.area));
+  if (!walk_around(corners))
+    return join_neighbours(corners);
+  const std::size_t count = round_.size();
+  sharp_.clear();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!is_smooth(corners, round_[i], round_[i + 1 < count ? i + 1 : 0]))
+      sharp_.push_back(i);
   }
-  groups.group_of.resize(corners.size());
+  return divide_round();
+}
+
+/// Whether the corners lie in one round about the place, two at each edge, turned alike; as they
+/// do inside a surface.
+bool FanGrouper::walk_around(std::span<const FanCorner> corners) {
+  const std::size_t count = corners.size();
+  if (count == 0 || count > std::numeric_limits<std::uint8_t>::max())
+    return false;
+  for (std::size_t i = 0; i < count; ++i)
+    corner_of_[corners[i].next] = static_cast<std::uint8_t>(i);
+  round_.clear();
+  std::uint32_t corner = 0;
+  do {
+    round_.push_back(corner);
+    const std::uint32_t edge = corners[corner].previous;
+    corner = corner_of_[edge];
+    if (corner >= count || corners[corner].next != edge)
+      return false;  // left by another place
+  } while (corner != 0 && round_.size() < count);
+  return corner == 0 && round_.size() == count;
+}
+
+/// A fan goes from crease to crease; a single crease divides nothing.
+std::size_t FanGrouper::divide_round() {
+  if (sharp_.size() <= 1)
+    return 1;
+  const std::size_t begin = sharp_[0] + 1;
+  std::rotate(round_.begin(), round_.begin() + static_cast<std::ptrdiff_t>(begin), round_.end());
+  sharp_.push_back(sharp_[0] + round_.size());
+  fan_of_.resize(round_.size());
+  for (std::size_t i = 1; i < sharp_.size(); ++i) {
+    const auto fan =
+        std::span(round_).subspan(sharp_[i - 1] + 1 - begin, sharp_[i] - sharp_[i - 1]);
+    const std::uint32_t least = *std::min_element(fan.begin(), fan.end());
+    for (const std::uint32_t corner : fan)
+      fan_of_[corner] = least;
+  }
+  return sharp_.size() - 1;
+}
+
+/// At open borders, and wherever a surface is none.
+std::size_t FanGrouper::join_neighbours(std::span<const FanCorner> corners) {
+  const auto count = static_cast<std::uint32_t>(corners.size());
+  sides_.clear();
+  for (std::uint32_t i = 0; i < count; ++i) {
+    for (const std::uint32_t far_place : {corners[i].next, corners[i].previous})
+      sides_.push_back(std::uint64_t{far_place} << 32 | i);
+  }
+  sort_few(std::span(sides_), [](std::uint64_t side) { return side; });
+  joined_.reset(count);
+  std::size_t fan_count = count;
+  for (std::size_t begin = 0, end = 0; begin < sides_.size(); begin = end) {
+    while (end < sides_.size() && sides_[end] >> 32 == sides_[begin] >> 32)
+      ++end;
+    const auto a = static_cast<std::uint32_t>(sides_[begin]);
+    const auto b = static_cast<std::uint32_t>(sides_[end - 1]);
+    if (end - begin == 2 && is_smooth(corners, a, b))
+      fan_count -= std::size_t{joined_.join(a, b)};
+  }
+  fan_of_.resize(count);
+  for (std::uint32_t i = 0; i < count; ++i)
+    fan_of_[i] = joined_.find(i);
+  return fan_count;
+}
+
+bool FanGrouper::is_smooth(std::span<const FanCorner> corners, std::uint32_t a,
+                           std::uint32_t b) const {
+  const double size = sizes_[a] * sizes_[b];
+  return (size > 0 ? dot(corners[a].area, corners[b].area) / size : -1) >= crease_cosine();
+}
+
+/// The fan of the longest sum leads the first group.
+void FanGrouper::join_fans(std::span<const FanCorner> corners) {
+  sums_.assign(corners.size(), {});
   for (std::size_t i = 0; i < corners.size(); ++i)
-    groups.group_of[i] = group_of_fan[fan_of[i]];
-  return groups;
+    sums_[fan_of_[i]] = sums_[fan_of_[i]] + corners[i].area;
+  fans_.clear();
+  for (std::uint32_t i = 0; i < corners.size(); ++i) {
+    if (fan_of_[i] == i)
+      fans_.push_back(i);
+  }
+  std::sort(fans_.begin(), fans_.end(), [&](std::uint32_t a, std::uint32_t b) {
+    const double size_of_a = dot(sums_[a], sums_[a]);
+    const double size_of_b = dot(sums_[b], sums_[b]);
+    return size_of_a != size_of_b ? size_of_a > size_of_b : a < b;
+  });
+  leaders_.clear();
+  group_of_fan_.resize(corners.size());
+  for (const std::uint32_t fan : fans_) {
+    const std::size_t group = nearest_or_new_group(sums_[fan]);
+    groups_.normals[group] = groups_.normals[group] + sums_[fan];
+    group_of_fan_[fan] = static_cast<std::uint32_t>(group);
+  }
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    groups_.group_of[i] = group_of_fan_[fan_of_[i]];
+}
+
+std::size_t FanGrouper::nearest_or_new_group(const Vec3d& sum) {
+  const bool has_direction = dot(sum, sum) > 0;
+  const Nearest nearest = nearest_leader(leaders_, sum);
+  const bool leads =
+      has_direction && nearest.cosine < crease_cosine() && leaders_.size() < kMostGroups;
+  if (!leads && !leaders_.empty())
+    return nearest.leader;
+  leaders_.push_back(sum);
+  groups_.normals.emplace_back();
+  return leaders_.size() - 1;
 }
 
 }  // namespace meshhier::shading

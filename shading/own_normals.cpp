@@ -25,13 +25,7 @@ Vec3d area_of(std::span<const Vec3f> positions, const TileTriangle& triangle) {
 /// The triangles of a tile, interior first, with their areas and the wedges of their corners.
 class Corners {
  public:
-  explicit Corners(const TileMesh& mesh) : mesh_(mesh) {
-    areas_.reserve(count());
-    for (const auto* triangles : {&mesh.interior, &mesh.border}) {
-      for (const TileTriangle& t : *triangles)
-        areas_.push_back(area_of(mesh.vertices.positions, t));
-    }
-  }
+  explicit Corners(const TileMesh& mesh) : mesh_(mesh), areas_(count()) {}
 
   std::size_t count() const { return mesh_.interior.size() + mesh_.border.size(); }
   const TileTriangle& operator[](std::size_t t) const {
@@ -41,8 +35,9 @@ class Corners {
     const auto& wedges = is_interior(t) ? mesh_.interior_wedges : mesh_.border_wedges;
     return wedges.empty() ? 0 : wedges[is_interior(t) ? t : t - mesh_.interior.size()][corner];
   }
-  /// Along the triangle's normal, twice its area long.
+  /// Along the triangle's normal, twice its area long; once it is set.
   const Vec3d& area(std::size_t t) const { return areas_[t]; }
+  Vec3d& area(std::size_t t) { return areas_[t]; }
 
   /// Calls visit(t, triangle) for each.
   template <class Visit>
@@ -60,31 +55,41 @@ class Corners {
   std::vector<Vec3d> areas_;
 };
 
-/// The sum of the areas around each place; of those of ghosts, around as much as the tile has.
-std::vector<Vec3d> smooth_normals(const TileMesh& mesh, const Corners& corners) {
-  std::vector<Vec3d> sums(mesh.vertices.size());
+/// All that is asked of a place for each of its triangles, in one cache line.
+struct alignas(32) Place {
+  Vec3d sum;         ///< of the areas around it; around a ghost, of as much as the tile has
+  double limit = 0;  ///< part of a triangle's size along `sum`: with less it may be a crease apart
+};
+
+/// Sets the areas of all triangles, and sums them around each place.
+std::vector<Place> sum_areas(const TileMesh& mesh, Corners& corners) {
+  std::vector<Place> places(mesh.vertices.size());
   corners.for_each([&](std::uint32_t t, const TileTriangle& triangle) {
-    const Vec3d area = corners.area(t);
+    const Vec3d area = area_of(mesh.vertices.positions, triangle);
+    corners.area(t) = area;
     for (const TileVertex v : triangle)
-      sums[raw(v)] = sums[raw(v)] + area;
+      places[raw(v)].sum = places[raw(v)].sum + area;
   });
-  return sums;
+  return places;
 }
 
 /// Of each place, whether it is an own one with a triangle so far from the mean that two may be a
 /// crease apart.
 std::vector<char> find_rough_places(const TileMesh& mesh, const Corners& corners,
-                                    const std::vector<Vec3d>& sums) {
+                                    std::vector<Place>& places) {
   const double cosine = crease_cosine(0.5);
-  std::vector<double> limits(sums.size(), -std::numeric_limits<double>::infinity());
   for (std::size_t v = 0; v < mesh.own_count; ++v)
-    limits[v] = cosine * length(sums[v]);
-  std::vector<char> is_rough(sums.size());
+    places[v].limit = cosine * length(places[v].sum);
+  for (std::size_t v = mesh.own_count; v < places.size(); ++v)
+    places[v].limit = -std::numeric_limits<double>::infinity();
+  std::vector<char> is_rough(places.size());
   corners.for_each([&](std::uint32_t t, const TileTriangle& triangle) {
     const Vec3d area = corners.area(t);
     const double size = length(area);
-    for (const TileVertex v : triangle)
-      is_rough[raw(v)] |= static_cast<char>(dot(area, sums[raw(v)]) < limits[raw(v)] * size);
+    for (const TileVertex v : triangle) {
+      const Place& place = places[raw(v)];
+      is_rough[raw(v)] |= static_cast<char>(dot(area, place.sum) < place.limit * size);
+    }
   });
   return is_rough;
 }
@@ -99,39 +104,42 @@ struct RoughCorner {
 /// By their places; those of a place in the order of the triangles.
 std::vector<RoughCorner> rough_corners(const TileMesh& mesh, const Corners& corners,
                                        const std::vector<char>& is_rough) {
+  std::vector<RoughCorner> found;
   std::vector<std::uint32_t> ends(mesh.own_count + 1);
-  const auto for_each = [&](const auto& visit) {
-    corners.for_each([&](std::uint32_t t, const TileTriangle& triangle) {
-      if ((is_rough[raw(triangle[0])] | is_rough[raw(triangle[1])] | is_rough[raw(triangle[2])]) ==
-          0)
-        return;
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        if (is_rough[raw(triangle[k])] != 0)
-          visit(RoughCorner{raw(triangle[k]), t, k});
-      }
-    });
-  };
-  for_each([&](const RoughCorner& corner) { ++ends[corner.place + 1]; });
+  corners.for_each([&](std::uint32_t t, const TileTriangle& triangle) {
+    if ((is_rough[raw(triangle[0])] | is_rough[raw(triangle[1])] | is_rough[raw(triangle[2])]) == 0)
+      return;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      if (is_rough[raw(triangle[k])] == 0)
+        continue;
+      found.push_back({raw(triangle[k]), t, k});
+      ++ends[raw(triangle[k]) + 1];
+    }
+  });
   std::partial_sum(ends.begin(), ends.end(), ends.begin());
-  std::vector<RoughCorner> found(ends.back());
-  for_each([&](const RoughCorner& corner) { found[ends[corner.place]++] = corner; });
-  return found;
+  std::vector<RoughCorner> sorted(found.size());
+  for (const RoughCorner& corner : found)
+    sorted[ends[corner.place]++] = corner;
+  return sorted;
 }
 
 /// Makes the normals of one place after another.
 class Shader {
  public:
   explicit Shader(const TileMesh& mesh)
-      : mesh_(mesh), corners_(mesh), copy_count_(mesh.copies.first_of(mesh.own_count)) {}
+      : mesh_(mesh),
+        corners_(mesh),
+        copy_count_(mesh.copies.first_of(mesh.own_count)),
+        grouper_(mesh.vertices.size()) {}
 
   OwnShading operator()() && {
-    const std::vector<Vec3d> sums = smooth_normals(mesh_, corners_);
-    const std::vector<char> is_rough = find_rough_places(mesh_, corners_, sums);
-    shading_.normals.reserve(mesh_.own_count + copy_count_);
+    std::vector<Place> places = sum_areas(mesh_, corners_);
+    const std::vector<char> is_rough = find_rough_places(mesh_, corners_, places);
+    shading_.normals.resize(mesh_.own_count + copy_count_);
     for (std::size_t v = 0; v < mesh_.own_count; ++v)
-      shading_.normals.push_back(normal_code(sums[v]));
+      shading_.normals[v] = normal_code(places[v].sum);
     for (std::size_t i = 0; i < copy_count_; ++i)
-      shading_.normals.push_back(shading_.normals[mesh_.copies.places[i]]);
+      shading_.normals[mesh_.own_count + i] = shading_.normals[mesh_.copies.places[i]];
     const std::vector<RoughCorner> rough = rough_corners(mesh_, corners_, is_rough);
     for (std::size_t begin = 0, end = 0; begin < rough.size(); begin = end) {
       while (end < rough.size() && rough[end].place == rough[begin].place)
@@ -167,21 +175,21 @@ class Shader {
       fan_[i] = {raw(t[(rough[i].corner + 1) % 3]), raw(t[(rough[i].corner + 2) % 3]),
                  corners_.area(rough[i].triangle)};
     }
-    if (is_one_fan(fan_))
+    const FanGroups& groups = grouper_.group(fan_);
+    if (groups.is_one_fan)
       return;  // the sum of all areas is its normal
-    const FanGroups groups = group_fans(fan_);
-    std::vector<Shown> shown(rough.size());
+    shown_.resize(rough.size());
     for (std::size_t i = 0; i < rough.size(); ++i)
-      shown[i] = {vertex_of(rough[i]), groups.group_of[i]};
-    std::sort(shown.begin(), shown.end());
-    shown.erase(std::unique(shown.begin(), shown.end()), shown.end());
+      shown_[i] = {vertex_of(rough[i]), groups.group_of[i]};
+    std::sort(shown_.begin(), shown_.end());
+    shown_.erase(std::unique(shown_.begin(), shown_.end()), shown_.end());
     set_all(rough[0].place, normal_code(groups.normals[0]));
-    for (std::size_t i = 0; i < shown.size(); ++i) {
-      const NormalCode normal = normal_code(groups.normals[shown[i].group]);
-      if (i == 0 || shown[i].vertex != shown[i - 1].vertex)
-        shading_.normals[shown[i].vertex] = normal;
+    for (std::size_t i = 0; i < shown_.size(); ++i) {
+      const NormalCode normal = normal_code(groups.normals[shown_[i].group]);
+      if (i == 0 || shown_[i].vertex != shown_[i - 1].vertex)
+        shading_.normals[shown_[i].vertex] = normal;
       else
-        splits_.push_back({shown[i].vertex, normal});
+        splits_.push_back({shown_[i].vertex, normal});
     }
   }
 
@@ -207,7 +215,10 @@ class Shader {
   std::size_t copy_count_;  ///< of own places
   OwnShading shading_;
   std::vector<Split> splits_;
-  std::vector<FanCorner> fan_;  ///< of the place at hand
+  FanGrouper grouper_;
+  // Of the place at hand.
+  std::vector<FanCorner> fan_;
+  std::vector<Shown> shown_;
 };
 
 }  // namespace

@@ -19,7 +19,7 @@ using testing::Each;
 constexpr float kNever = std::numeric_limits<float>::infinity();
 
 std::vector<float> distances_of(const BuildTile& tile) {
-  return vanishing_distances(CollapseMesh(tile.mesh), tile.mesh.vertices.positions);
+  return vanishing_distances(tile.mesh, tile.mesh.vertices.positions);
 }
 
 std::vector<float> part(const std::vector<float>& all, std::size_t begin, std::size_t end) {

@@ -2,9 +2,11 @@
 
 #include "shading/crease.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -30,6 +32,17 @@ std::vector<FanCorner> closed_fan(const std::vector<Vec3d>& areas) {
   for (std::uint32_t i = 0; i < areas.size(); ++i)
     corners.push_back({(i + 1) % static_cast<std::uint32_t>(areas.size()), i, areas[i]});
   return corners;
+}
+
+FanGroups group_fans(const std::vector<FanCorner>& corners) {
+  std::uint32_t places = 0;
+  for (const FanCorner& corner : corners)
+    places = std::max({places, corner.next + 1, corner.previous + 1});
+  return FanGrouper(places).group(corners);
+}
+
+bool is_one_fan(const std::vector<FanCorner>& corners) {
+  return group_fans(corners).is_one_fan;
 }
 
 double degrees_between(const Vec3d& a, const Vec3d& b) {
@@ -129,6 +142,45 @@ TEST(FanGroups, OneFanIsOneGroupOfAllAreas) {
   EXPECT_LT(found, 450U);
   EXPECT_FALSE(is_one_fan(closed_fan({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}})));
   EXPECT_TRUE(is_one_fan(closed_fan({tilted(-10, 3), tilted(0), tilted(10)})));
+}
+
+/// Around a place inside a surface, with creases.
+std::vector<FanCorner> folded_fan(std::uint32_t seed) {
+  std::vector<Vec3d> areas;
+  for (std::uint32_t i = 0; i < 3 + seed % 20; ++i)
+    areas.push_back(tilted(std::fmod(53.0 * seed * (i / 2), 30.0 + seed % 170), 1 + seed % 3));
+  return closed_fan(areas);
+}
+
+// With one triangle turned over the same fan has no round to walk, but the same edges.
+TEST(FanGroups, ARoundHasTheGroupsOfItsEdges) {
+  std::size_t several = 0;
+  for (std::uint32_t seed = 0; seed < 500; ++seed) {
+    std::vector<FanCorner> corners = folded_fan(seed);
+    const FanGroups round = group_fans(corners);
+    FanCorner& turned = corners[seed % corners.size()];
+    std::swap(turned.next, turned.previous);
+    const FanGroups edges = group_fans(corners);
+    EXPECT_EQ(round.group_of, edges.group_of) << seed;
+    EXPECT_EQ(round.normals, edges.normals) << seed;
+    EXPECT_EQ(round.is_one_fan, edges.is_one_fan) << seed;
+    several += std::size_t{round.normals.size() > 1};
+  }
+  EXPECT_GT(several, 100U);
+  EXPECT_LT(several, 450U);
+}
+
+TEST(FanGroups, WhatAnotherPlaceLeftIsForgotten) {
+  FanGrouper grouper(100);
+  for (std::uint32_t seed = 0; seed < 300; ++seed) {
+    std::vector<FanCorner> corners = folded_fan(seed * 7);
+    if (seed % 3 == 0)
+      corners.erase(corners.begin());  // open
+    const FanGroups alone = group_fans(corners);
+    const FanGroups& next = grouper.group(corners);
+    EXPECT_EQ(next.group_of, alone.group_of) << seed;
+    EXPECT_EQ(next.normals, alone.normals) << seed;
+  }
 }
 
 TEST(FanGroups, ManyTrianglesMakeFewGroups) {
