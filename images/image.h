@@ -26,4 +26,11 @@ struct Image {
   friend bool operator==(const Image&, const Image&) = default;
 };
 
+/// Of 3 or 4 channels.
+inline void copy_texel(const std::uint8_t* from, std::uint8_t* to, std::uint32_t channels) {
+  to[0] = from[0], to[1] = from[1], to[2] = from[2];
+  if (channels == 4)
+    to[3] = from[3];
+}
+
 }  // namespace meshhier::images

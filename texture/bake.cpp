@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -122,6 +123,8 @@ class Painter {
   }
 
  private:
+  /// Texels of a block along each side.
+  static constexpr std::uint32_t kBlock = 8;
   /// What is compared of a picture: one in so many texels along each side.
   static constexpr std::uint32_t kLostStep = 4;
   /// Of 8-bit values: 32 decibels.
@@ -142,11 +145,23 @@ class Painter {
     return {plane.left, plane.top, plane.right, plane.bottom};
   }
 
+  /// Block by block of texels, which have much around them in common.
   void measure(const ChartPlane& plane, TexelMeans& means) {
-    for (std::uint32_t y = plane.top; y < plane.bottom; ++y) {
-      for (std::uint32_t i = plane.left; i < plane.right; ++i) {
+    for (std::uint32_t top = plane.top; top < plane.bottom; top += kBlock) {
+      for (std::uint32_t left = plane.left; left < plane.right; left += kBlock) {
+        const TexelRange block{left, top, std::min(left + kBlock, plane.right),
+                               std::min(top + kBlock, plane.bottom)};
+        look_around(block);
+        measure(plane, block, means);
+      }
+    }
+  }
+
+  void measure(const ChartPlane& plane, const TexelRange& block, TexelMeans& means) {
+    for (std::uint32_t y = block.top; y < block.bottom; ++y) {
+      for (std::uint32_t i = block.left; i < block.right; ++i) {
         // To and fro: each texel is beside the last one.
-        const std::uint32_t x = (y - plane.top) % 2 == 0 ? i : plane.left + plane.right - 1 - i;
+        const std::uint32_t x = (y - block.top) % 2 == 0 ? i : block.left + block.right - 1 - i;
         const std::size_t number = std::size_t{y} * means.width + x;
         const TexelSample& sample = samples_.at(x, y);
         if (sample.triangle == kNoFace || means.is_known[number] != 0)
@@ -158,6 +173,23 @@ class Painter {
         }
       }
     }
+  }
+
+  void look_around(const TexelRange& block) {
+    constexpr double kFar = std::numeric_limits<double>::infinity();
+    Vec3d low{kFar, kFar, kFar}, high{-kFar, -kFar, -kFar};
+    for (std::uint32_t y = block.top; y < block.bottom; ++y) {
+      for (std::uint32_t x = block.left; x < block.right; ++x) {
+        const TexelSample& sample = samples_.at(x, y);
+        if (sample.triangle == kNoFace)
+          continue;
+        const Vec3d& p = sample.point;
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+      }
+    }
+    if (low.x <= high.x)
+      nearest_.look_around(low, high);
   }
 
   NearestTriangle::Found find(const ChartPlane& plane, const TexelSample& sample,

@@ -41,8 +41,8 @@ class Filler {
     }
     for (std::size_t i = 0; i < nearest_.size(); ++i) {
       if (nearest_[i] != i)
-        std::copy_n(image_.texels.data() + std::size_t{nearest_[i]} * image_.channels,
-                    image_.channels, image_.texels.data() + i * image_.channels);
+        images::copy_texel(image_.texels.data() + std::size_t{nearest_[i]} * image_.channels,
+                           image_.texels.data() + i * image_.channels, image_.channels);
     }
   }
 
@@ -50,14 +50,19 @@ class Filler {
   static constexpr std::uint32_t kFar = 1 << 24;
 
   void look(int x, int y, int direction) {
+    if (is_known(x, y))
+      return;
     for (const Step& step : kSteps)
       look_at(x, y, {step.x * direction, step.y * direction, step.length});
   }
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * image_.width + static_cast<std::size_t>(x);
+  }
+  bool is_known(int x, int y) const { return distance_[index(x, y)] == 0; }
   void look_at(int x, int y, const Step& step) {
     const int width = static_cast<int>(image_.width), height = static_cast<int>(image_.height);
-    const std::size_t here =
-        static_cast<std::size_t>(y) * image_.width + static_cast<std::size_t>(x);
-    if (distance_[here] == 0 || x + step.x < 0 || x + step.x >= width || y + step.y < 0 ||
+    const std::size_t here = index(x, y);
+    if (is_known(x, y) || x + step.x < 0 || x + step.x >= width || y + step.y < 0 ||
         y + step.y >= height)
       return;
     const std::size_t there = here + static_cast<std::size_t>(step.y * width + step.x);

@@ -10,7 +10,28 @@ namespace {
 
 constexpr float kNever = std::numeric_limits<float>::infinity();
 
+// Boxes are measured in single precision, too: those that are hardly too far are looked into.
+constexpr float kRounding = 1.00001f;
+
+/// Around a box with more leaves than these nothing is collected: the tree is as quick.
+constexpr std::size_t kMostAround = 256;
+
 }  // namespace
+
+inline NearestTriangle::Four NearestTriangle::Node::distances(Four from_x, Four from_y, Four from_z,
+                                                              Four to_x, Four to_y,
+                                                              Four to_z) const {
+  const Four zero{};
+  const auto apart = [&](Four low, Four high, Four from, Four to) {
+    const Four below = low - to, above = from - high;
+    const Four outside = below > above ? below : above;
+    return outside > 0.0f ? outside : zero;
+  };
+  const Four x = apart(low_x, high_x, from_x, to_x);
+  const Four y = apart(low_y, high_y, from_y, to_y);
+  const Four z = apart(low_z, high_z, from_z, to_z);
+  return x * x + y * y + z * z;
+}
 
 /// Halves by the middles of triangles along the longest axis, twice for each node.
 class NearestTriangle::Builder {
@@ -182,8 +203,6 @@ void NearestTriangle::search(Query& q) const {
     float distance;
     std::uint32_t name;
   };
-  // Boxes are measured in single precision, too: those that are hardly too far are looked into.
-  constexpr float kRounding = 1.00001f;
   std::array<Open, 128> open;
   std::size_t count = 0;
   open[count++] = {0, root_};
@@ -198,16 +217,7 @@ void NearestTriangle::search(Query& q) const {
       continue;
     }
     const Node& node = nodes_[next.name];
-    const Four zero{};
-    const auto beyond = [&](Four low, Four high, Four at) {
-      const Four below = low - at, above = at - high;
-      const Four outside = below > above ? below : above;
-      return outside > 0.0f ? outside : zero;
-    };
-    const Four x = beyond(node.low_x, node.high_x, q.x);
-    const Four y = beyond(node.low_y, node.high_y, q.y);
-    const Four z = beyond(node.low_z, node.high_z, q.z);
-    const Four distance = x * x + y * y + z * z;
+    const Four distance = node.distances(q.x, q.y, q.z, q.x, q.y, q.z);
     const std::size_t first = count;
     for (std::size_t k = 0; k < 4; ++k) {
       if (node.children[k] == kNone || distance[k] > q.nearest * kRounding)
@@ -220,6 +230,76 @@ void NearestTriangle::search(Query& q) const {
   }
 }
 
+void NearestTriangle::look_around(const Vec3d& low, const Vec3d& high) {
+  around_.low = moved(low), around_.high = moved(high);
+  around_.count = 0;
+  around_.leaves.clear();
+  // Half as far again as the last answers, and some of the box, whose points are no nearer to them.
+  const Vec3f size = around_.high - around_.low;
+  around_.reach = 2.25f * farthest_ + dot(size, size) / 64;
+  farthest_ = 0;
+  if (nodes_.empty())
+    return;
+  const Four zero{};
+  const Vec3f &from = around_.low, &to = around_.high;
+  const Four from_x = zero + from.x, from_y = zero + from.y, from_z = zero + from.z;
+  const Four to_x = zero + to.x, to_y = zero + to.y, to_z = zero + to.z;
+  std::array<std::uint32_t, 128> open;
+  std::size_t count = 0;
+  open[count++] = root_;
+  while (count > 0) {
+    const Node& node = nodes_[open[--count]];
+    const Four distance = node.distances(from_x, from_y, from_z, to_x, to_y, to_z);
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (node.children[k] == kNone || distance[k] > around_.reach * kRounding)
+        continue;
+      if ((node.children[k] & kIsLeaf) == 0)
+        open[count++] = node.children[k];
+      else
+        add_around(node, k);
+    }
+    if (around_.count > kMostAround)
+      return forget_around();
+  }
+}
+
+void NearestTriangle::forget_around() {
+  around_.count = 0;
+  around_.leaves.clear();
+  around_.reach = -1;
+}
+
+/// The child is a leaf.
+void NearestTriangle::add_around(const Node& node, std::size_t child) {
+  const std::size_t k = around_.count++ % 4;
+  if (k == 0) {
+    const Four nowhere = Four{} + kNever;
+    around_.leaves.push_back({nowhere, nowhere, nowhere, nowhere, nowhere, nowhere, {}});
+  }
+  Node& four = around_.leaves.back();
+  four.low_x[k] = node.low_x[child], four.high_x[k] = node.high_x[child];
+  four.low_y[k] = node.low_y[child], four.high_y[k] = node.high_y[child];
+  four.low_z[k] = node.low_z[child], four.high_z[k] = node.high_z[child];
+  four.children[k] = node.children[child];
+}
+
+bool NearestTriangle::is_around(const Vec3f& point) const {
+  const Vec3f &low = around_.low, &high = around_.high;
+  return around_.count > 0 && point.x >= low.x && point.y >= low.y && point.z >= low.z &&
+         point.x <= high.x && point.y <= high.y && point.z <= high.z;
+}
+
+void NearestTriangle::measure_around(Query& q) const {
+  const std::uint32_t measured = q.leaf;
+  for (const Node& four : around_.leaves) {
+    const Four distance = four.distances(q.x, q.y, q.z, q.x, q.y, q.z);
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (distance[k] <= q.nearest * kRounding && (four.children[k] & ~kIsLeaf) != measured)
+        measure(four.children[k] & ~kIsLeaf, q);
+    }
+  }
+}
+
 NearestTriangle::Found NearestTriangle::operator()(const Vec3d& point, const Vec3d& facing,
                                                    double reach) {
   if (corners_.empty())
@@ -228,6 +308,7 @@ NearestTriangle::Found NearestTriangle::operator()(const Vec3d& point, const Vec
   const Four zero{};
   Query query{zero + at.x, zero + at.y, zero + at.z, zero + to.x, zero + to.y, zero + to.z};
   query.nearest = static_cast<float>(reach * scale_ * (reach * scale_));
+  const bool has_around = is_around(at);
   for (const bool any : {false, true}) {
     query.any = any;
     if (any)
@@ -236,13 +317,17 @@ NearestTriangle::Found NearestTriangle::operator()(const Vec3d& point, const Vec
       measure(last_leaf_, query);
       query.leaf = last_leaf_;
     }
-    search(query);
+    if (has_around)
+      measure_around(query);
+    if (!has_around || query.nearest > around_.reach)
+      search(query);
     if (query.triangle != kNone)
       break;
   }
   if (query.triangle == kNone)
     return {0, 0, 0};  // farther than single precision has numbers for
   last_leaf_ = query.leaf;
+  farthest_ = std::max(farthest_, query.nearest);
   const Corners& corners = corners_[query.triangle];
   const ClosestPoint closest = closest_point(
       to_double(at), {to_double(corners[0]), to_double(corners[1]), to_double(corners[2])});

@@ -2,7 +2,8 @@
 //
 // A tree of boxes, four children each, over triangles sorted by halves; in its leaves four
 // triangles are measured at once. Who asks for points side by side begins with the last answer: it
-// is near, so that few boxes are nearer.
+// is near, so that few boxes are nearer. Who asks for many points of a small box has its
+// surroundings looked up once for all of them.
 #pragma once
 
 #include "hierarchy/vec.h"
@@ -34,12 +35,20 @@ class NearestTriangle {
   /// one of the lowest number. O(log n) for points near the triangles.
   Found operator()(const Vec3d& point, const Vec3d& facing, double reach);
 
+  /// Points within the box will be asked for, until the next one: collects what is near it, as near
+  /// as the last answers were. What is farther, and other points, are searched for in the tree.
+  void look_around(const Vec3d& low, const Vec3d& high);
+
  private:
   static constexpr std::uint32_t kIsLeaf = std::uint32_t{1} << 31;
   using Four = float __attribute__((vector_size(16)));
   struct Node {
     Four low_x, low_y, low_z, high_x, high_y, high_z;
     std::array<std::uint32_t, 4> children;  ///< nodes, or leaves with kIsLeaf; kNone
+
+    /// Of the children's boxes from another one, squared.
+    [[gnu::always_inline]] Four distances(Four from_x, Four from_y, Four from_z, Four to_x,
+                                          Four to_y, Four to_z) const;
   };
   /// Corner a and edges to b and c.
   struct Leaf {
@@ -58,6 +67,18 @@ class NearestTriangle {
   class Builder;
   void measure(std::uint32_t leaf, Query& query) const;
   void search(Query& query) const;
+  void add_around(const Node& node, std::size_t child);
+  void forget_around();
+  bool is_around(const Vec3f& point) const;
+  void measure_around(Query& query) const;
+
+  /// What is near a box: boxes of leaves, four at a time.
+  struct Surroundings {
+    Vec3f low, high;
+    float reach = 0;  ///< squared: leaves within it are there
+    std::vector<Node> leaves;
+    std::size_t count = 0;
+  };
 
   Vec3d centre_;
   double scale_;
@@ -66,6 +87,8 @@ class NearestTriangle {
   std::vector<Corners> corners_;  ///< from the centre
   std::uint32_t root_ = kNone;
   std::uint32_t last_leaf_ = kNone;
+  Surroundings around_;
+  float farthest_ = 0;  ///< of the answers since the last look around, squared
 };
 
 }  // namespace meshhier::texture

@@ -47,12 +47,15 @@ void Reduction::find_copies(std::span<const CornerTexcoords> corners) {
   constexpr std::uint32_t kNone = ~std::uint32_t{0};
   std::vector<std::uint32_t> from(distance_.size(), kNone);
   const TexelRange all{0, 0, result_.width, result_.height};
+  const auto is_open = [&](std::uint32_t x, std::uint32_t y) {
+    return distance_[std::size_t{y} * result_.width + x] > 0;
+  };
   for (const CornerTexcoords& triangle : corners) {
     const std::array<TexelPoint, 3> at = in_texels(triangle, result_.width, result_.height);
     for (std::size_t k = 0; k < 3; ++k) {
       TexelSegment(at[k], at[(k + 1) % 3])
           .for_each_near(
-              all, [&](std::uint32_t x, std::uint32_t y, const TexelSegment::Foot& foot) {
+              all, is_open, [&](std::uint32_t x, std::uint32_t y, const TexelSegment::Foot& foot) {
                 const std::size_t to = std::size_t{y} * result_.width + x;
                 if (foot.distance >= distance_[to])
                   return;
@@ -80,8 +83,9 @@ void Reduction::add(const images::Image& band) {
   const std::size_t first = std::size_t{row_} * width_;
   row_ += band.height;
   for (; copied_ < copies_.size() && copies_[copied_].from < std::size_t{row_} * width_; ++copied_)
-    std::copy_n(band.texels.data() + (copies_[copied_].from - first) * band.channels, band.channels,
-                result_.texels.data() + std::size_t{copies_[copied_].to} * band.channels);
+    images::copy_texel(band.texels.data() + (copies_[copied_].from - first) * band.channels,
+                       result_.texels.data() + std::size_t{copies_[copied_].to} * band.channels,
+                       band.channels);
 }
 
 void Reduction::average(const images::Image& band, std::uint32_t x, std::uint32_t y) {

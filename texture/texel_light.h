@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 namespace meshhier::texture {
 
@@ -16,11 +17,14 @@ using Light = std::array<float, 4>;
 
 /// Adds `weight` times a texel of 3 or 4 channels.
 inline void add_texel(Light& sum, const std::uint8_t* texel, std::uint32_t channels, float weight) {
+  using Four = float __attribute__((vector_size(16)));
+  static_assert(sizeof(Four) == sizeof(Light));
   if (channels == 4)
     weight *= static_cast<float>(texel[3]) / 255;
-  for (std::size_t k = 0; k < 3; ++k)
-    sum[k] += weight * kLight[texel[k]];
-  sum[3] += weight;
+  Four lanes;
+  std::memcpy(&lanes, &sum, sizeof lanes);
+  lanes += Four{kLight[texel[0]], kLight[texel[1]], kLight[texel[2]], 1} * weight;
+  std::memcpy(&sum, &lanes, sizeof lanes);
 }
 
 /// Stores a mean; what is not there at all is black.

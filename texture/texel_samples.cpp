@@ -82,7 +82,10 @@ void TexelSamples::cover_borders() {
 void TexelSamples::cover_beyond(const ChartPlane& plane, std::uint32_t t, std::size_t k) {
   const TexelSegment edge(corners_[t][k], corners_[t][(k + 1) % 3]);
   const Vec3d start = position(t, k), along = position(t, k + 1) - start;
-  edge.for_each_near({plane.left, plane.top, plane.right, plane.bottom},
+  const auto is_outside = [&](std::uint32_t x, std::uint32_t y) {
+    return !samples_[index(x, y)].is_inside();
+  };
+  edge.for_each_near({plane.left, plane.top, plane.right, plane.bottom}, is_outside,
                      [&](std::uint32_t x, std::uint32_t y, const TexelSegment::Foot& foot) {
                        TexelSample& texel = samples_[index(x, y)];
                        if (texel.triangle == kNoFace || foot.distance < texel.distance)

@@ -25,15 +25,18 @@ class TexelSegment {
     double distance = 0;          ///< squared
   };
 
-  /// Calls visit(x, y, foot) for the texels of the range that show at a point of the line if they
-  /// are filtered: not farther than a texel on both axes. O(their number + rows).
-  template <class Visit>
-  void for_each_near(const TexelRange& range, const Visit& visit) const {
+  /// Calls visit(x, y, foot) for the texels of the range that is_asked(x, y), and that show at a
+  /// point of the line if they are filtered: not farther than a texel on both axes. O(their number
+  /// + rows).
+  template <class IsAsked, class Visit>
+  void for_each_near(const TexelRange& range, const IsAsked& is_asked, const Visit& visit) const {
     const auto [top, bottom] = rounded(from_.y + std::min(dy_, 0.0), from_.y + std::max(dy_, 0.0),
                                        range.top, range.bottom);
     for (std::uint32_t y = top; y < bottom; ++y) {
       const auto [left, right] = columns(y, range);
       for (std::uint32_t x = left; x < right; ++x) {
+        if (!is_asked(x, y))
+          continue;
         if (const Foot at = foot(x, y); at.distance <= kFarthest)
           visit(x, y, at);
       }

@@ -64,7 +64,7 @@ std::vector<std::uint8_t> blocks_of(const texture::LeafAtlas& atlas) {
 void fill_block(const std::uint8_t* texel, Image& image, std::uint32_t left, std::uint32_t top) {
   for (std::uint32_t y = top; y < top + kLeafAlignment; ++y) {
     for (std::uint32_t x = left; x < left + kLeafAlignment; ++x)
-      std::copy_n(texel, image.channels, image.at(x, y));
+      images::copy_texel(texel, image.at(x, y), image.channels);
   }
 }
 
@@ -96,6 +96,9 @@ void LeafPicture::find_shown(std::span<const texture::CornerTexcoords> corners) 
   const std::uint32_t width = background_.width, height = background_.height;
   const std::vector<std::uint8_t> is_piece = blocks_of(atlas_);
   is_shown_.resize(is_piece.size());
+  const auto is_hidden = [&](std::uint32_t x, std::uint32_t y) {
+    return is_shown_[std::size_t{y} * width + x] == 0;
+  };
   const auto show = [&](std::uint32_t x, std::uint32_t y, const auto&...) {
     const std::size_t block = std::size_t{y} * width + x;
     is_shown_[block] = is_piece[block];
@@ -104,7 +107,8 @@ void LeafPicture::find_shown(std::span<const texture::CornerTexcoords> corners) 
     const std::array<texture::TexelPoint, 3> at = texture::in_texels(triangle, width, height);
     texture::RasterTriangle(at).for_each(width, height, show);
     for (std::size_t k = 0; k < 3; ++k)
-      texture::TexelSegment(at[k], at[(k + 1) % 3]).for_each_near({0, 0, width, height}, show);
+      texture::TexelSegment(at[k], at[(k + 1) % 3])
+          .for_each_near({0, 0, width, height}, is_hidden, show);
   }
 }
 
