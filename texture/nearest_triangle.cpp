@@ -3,7 +3,6 @@
 #include "hierarchy/closest_point.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace meshhier::texture {
 namespace {
@@ -36,16 +35,19 @@ inline NearestTriangle::Four NearestTriangle::Node::distances(Four from_x, Four 
 /// Halves by the middles of triangles along the longest axis, twice for each node.
 class NearestTriangle::Builder {
  public:
-  Builder(NearestTriangle& tree) : tree_(tree), order_(tree.corners_.size()) {
-    std::iota(order_.begin(), order_.end(), 0U);
-    middles_.reserve(order_.size());
+  Builder(NearestTriangle& tree) : tree_(tree) {
+    order_.reserve(tree.corners_.size());
     for (const Corners& t : tree.corners_)
-      middles_.push_back(t[0] + t[1] + t[2]);
+      order_.push_back({t[0] + t[1] + t[2], static_cast<std::uint32_t>(order_.size())});
   }
 
   std::uint32_t operator()() { return order_.empty() ? kNone : build(order_).name; }
 
  private:
+  struct Item {
+    Vec3f middle;  ///< three times that
+    std::uint32_t triangle;
+  };
   struct SpaceBox {
     std::array<float, 3> low{kNever, kNever, kNever}, high{-kNever, -kNever, -kNever};
 
@@ -73,7 +75,7 @@ class NearestTriangle::Builder {
     SpaceBox box;
   };
 
-  Child build(std::span<std::uint32_t> part) {
+  Child build(std::span<Item> part) {
     if (part.size() <= 4)
       return leaf(part);
     const auto number = static_cast<std::uint32_t>(tree_.nodes_.size());
@@ -81,7 +83,7 @@ class NearestTriangle::Builder {
     std::array<Child, 4> children;
     std::size_t count = 0;
     const std::size_t half = halve(part);
-    for (const std::span<std::uint32_t> side : {part.first(half), part.subspan(half)}) {
+    for (const std::span<Item> side : {part.first(half), part.subspan(half)}) {
       if (side.size() <= 4) {
         children[count++] = leaf(side);
         continue;
@@ -104,25 +106,26 @@ class NearestTriangle::Builder {
   }
 
   /// Sorts the lower half before the upper one, both of full leaves if that is possible.
-  std::size_t halve(std::span<std::uint32_t> part) {
+  std::size_t halve(std::span<Item> part) {
     SpaceBox middles;
-    for (const std::uint32_t t : part)
-      middles.add(middles_[t]);
+    for (const Item& item : part)
+      middles.add(item.middle);
     const int axis = middles.longest_axis();
     const std::size_t half = ((part.size() + 3) / 4 + 1) / 2 * 4;
     std::nth_element(part.begin(), part.begin() + static_cast<std::ptrdiff_t>(half), part.end(),
-                     [&](std::uint32_t a, std::uint32_t b) {
-                       const float at_a = middles_[a][axis], at_b = middles_[b][axis];
-                       return at_a != at_b ? at_a < at_b : a < b;
+                     [&](const Item& a, const Item& b) {
+                       const float at_a = a.middle[axis], at_b = b.middle[axis];
+                       return at_a != at_b ? at_a < at_b : a.triangle < b.triangle;
                      });
     return half;
   }
 
-  Child leaf(std::span<const std::uint32_t> part) {
+  Child leaf(std::span<const Item> part) {
     Child result{static_cast<std::uint32_t>(tree_.leaves_.size()) | kIsLeaf, {}};
     Leaf& leaf = tree_.leaves_.emplace_back();
     for (std::size_t k = 0; k < 4; ++k) {
-      const std::uint32_t t = part[std::min(k, part.size() - 1)];  // the last one fills it up
+      const std::uint32_t t =
+          part[std::min(k, part.size() - 1)].triangle;  // the last one fills it up
       const Corners& corners = tree_.corners_[t];
       const Vec3f& a = corners[0];
       const Vec3f b = corners[1] - a, c = corners[2] - a;
@@ -137,8 +140,7 @@ class NearestTriangle::Builder {
   }
 
   NearestTriangle& tree_;
-  std::vector<std::uint32_t> order_;
-  std::vector<Vec3f> middles_;
+  std::vector<Item> order_;
 };
 
 NearestTriangle::NearestTriangle(const std::vector<Corners>& triangles, const Vec3d& centre,

@@ -74,14 +74,15 @@ class RasterTriangle {
   /// dx * x + dy * y + offset is twice the area on it: >= least on its inner side.
   struct Edge {
     std::int64_t dx, dy, offset, least;
+    double texels;  ///< of a row, for each 1 of twice the area: 1 / (|dx| * kOne), or infinite
     std::int64_t at(std::int64_t x, std::int64_t y) const { return dx * x + dy * y + offset; }
     /// Takes the texels of a row from `columns`, first and last, that are beyond.
     void cut(std::int64_t row, std::array<std::int64_t, 2>& columns) const {
       const std::int64_t missing = least - at(kOne / 2, middle(row));
       if (dx > 0)
-        columns[0] = std::max(columns[0], -floor_divided(-missing, dx * kOne));
+        columns[0] = std::max(columns[0], -floor_divided(-missing, dx * kOne, texels));
       else if (dx < 0)
-        columns[1] = std::min(columns[1], floor_divided(-missing, -dx * kOne));
+        columns[1] = std::min(columns[1], floor_divided(-missing, -dx * kOne, texels));
       else if (missing > 0)
         columns[1] = columns[0] - 1;
     }
@@ -94,6 +95,13 @@ class RasterTriangle {
   /// `by` > 0.
   static std::int64_t floor_divided(std::int64_t what, std::int64_t by) {
     return what >= 0 ? what / by : -((by - 1 - what) / by);
+  }
+  /// Without a division; `inverse`: 1 / by, about. Requires |what / by| < 2^50.
+  static std::int64_t floor_divided(std::int64_t what, std::int64_t by, double inverse) {
+    auto quotient = static_cast<std::int64_t>(static_cast<double>(what) * inverse);
+    const std::int64_t rest = what - quotient * by;
+    quotient += std::int64_t{rest >= by} - std::int64_t{rest < 0};
+    return quotient;
   }
   static std::int64_t middle(std::int64_t texel) { return texel * kOne + kOne / 2; }
 
@@ -111,7 +119,8 @@ class RasterTriangle {
     const Fixed &a = corners_[from], &b = corners_[to];
     const std::int64_t dx = (a.y - b.y) * turn, dy = (b.x - a.x) * turn;
     const bool is_own = dx > 0 || (dx == 0 && dy > 0);
-    return {dx, dy, -(dx * a.x + dy * a.y), is_own ? 0 : 1};
+    return {dx, dy, -(dx * a.x + dy * a.y), is_own ? 0 : 1,
+            1 / static_cast<double>(std::abs(dx) * kOne)};
   }
 
   std::array<Fixed, 3> corners_;
