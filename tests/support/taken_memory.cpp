@@ -7,6 +7,7 @@
 namespace {
 
 std::atomic<std::size_t> g_taken{0};
+std::atomic<std::size_t> g_count{0};
 
 }  // namespace
 
@@ -15,6 +16,7 @@ std::atomic<std::size_t> g_taken{0};
 
 void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
   g_taken += bytes;
+  ++g_count;
   return std::malloc(bytes == 0 ? 1 : bytes);
 }
 void* operator new(std::size_t bytes) {
@@ -36,6 +38,9 @@ namespace meshhier::tests {
 
 std::size_t taken_bytes() {
   return g_taken;
+}
+std::size_t taken_count() {
+  return g_count;
 }
 
 }  // namespace meshhier::tests
