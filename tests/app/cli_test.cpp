@@ -237,6 +237,7 @@ TEST_F(CommandLine, MistakesExitWithUsageAndSayWhatIsWrong) {
       {{MESHHIER_BINARY}, "a command is missing; did you mean \"meshhier build "},
       {{"biuld", "a.json"}, "unknown command \"biuld\"; did you mean \"build\"?"},
       {{"build"}, "A mesh or a config is required"},
+      {{"build", "a.ply", "b.hier"}, "b.hier: this is no mesh; the output is named by -o"},
       {{"build", "a.json", "--froce"}, "--froce"},
       {{"build", "a.json", "--progress", "loud"}, "auto, bar, json or none"},
       {{"build", "a.json", "--json"}, "--dry-run"},
