@@ -17,9 +17,12 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 namespace meshhier::app {
@@ -70,14 +73,29 @@ std::vector<std::string> command_names(const CLI::App& parser) {
   return names;
 }
 
+/// Of those that the help lists.
+std::string listed_commands(const CLI::App& parser) {
+  std::vector<std::string> names;
+  for (const CLI::App* command :
+       parser.get_subcommands([](const CLI::App* one) { return !one->get_group().empty(); }))
+    names.push_back(command->get_name());
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 /// The parser's own message for a misspelt command is only that one is missing.
 bool is_unknown_command(const std::string& word, const std::vector<std::string>& names) {
   return !word.starts_with('-') && std::find(names.begin(), names.end(), word) == names.end();
 }
 
-std::string unknown_command(const std::string& word, const std::vector<std::string>& names) {
-  const std::optional<std::string> near = config::nearest_word(word, names);
-  return "unknown command \"" + word + '"' + (near ? "; did you mean \"" + *near + "\"?" : "");
+/// A file in the place of the command is taken for a mesh.
+std::string unknown_command(const std::string& word, const CLI::App& parser) {
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(word, ignored))
+    return fmt::format("a command is missing; did you mean \"meshhier build {}\"?", word);
+  const std::optional<std::string> near = config::nearest_word(word, command_names(parser));
+  return "unknown command \"" + word + '"' +
+         (near ? "; did you mean \"" + *near + "\"?"
+               : "; expected one of " + listed_commands(parser));
 }
 
 /// Programs that read the progress get the end of it in the same form.
@@ -173,7 +191,9 @@ int run(int argc, char** argv) {
   const std::vector<std::string> names = command_names(parser);
   const bool as_json = asks_for_json({argv, static_cast<std::size_t>(argc)});
   if (argc > 1 && is_unknown_command(argv[1], names))
-    return report_mistake(unknown_command(argv[1], names), as_json);
+    return report_mistake(unknown_command(argv[1], parser), as_json);
+  if (argc == 1)
+    return report_mistake("a command is missing: " + listed_commands(parser), as_json);
   try {
     parser.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -54,10 +54,20 @@ bool is_config(storage::FileSystem& files, const fs::path& path) {
                   path.string(), start.empty() ? "an empty file" : mesh_io::in_quotes(start)));
 }
 
+/// As other programs take it: behind the meshes.
+void require_no_output_among(const std::vector<fs::path>& named) {
+  const std::string ending = named.empty() ? "" : named.back().extension().string();
+  if (named.size() > 1 && (ending == ".hier" || ending == ".3tz")) {
+    throw Error(ErrorCode::usage,
+                named.back().string() + ": this is no mesh; the output is named by -o");
+  }
+}
+
 }  // namespace
 
 Config load_named(storage::FileSystem& files, const std::vector<fs::path>& named,
                   CommandLine words) {
+  require_no_output_among(named);
   const auto config =
       std::ranges::find_if(named, [&](const fs::path& path) { return is_config(files, path); });
   if (config == named.end()) {

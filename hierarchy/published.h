@@ -97,8 +97,9 @@ struct SourceSummary {
   bool double_precision = false;           ///< coordinates do not fit float exactly
   AttributeLayout attributes;              ///< without texture coordinates if it has textures
   std::optional<SourceTextures> textures;  ///< none: no picture, or the build was to ignore them
-  std::vector<SourceFile> files;    ///< in their order; empty: one PLY that was read in place
-  std::vector<SourceCount> counts;  ///< of an import, those that are not 0; by name
+  std::vector<SourceFile> files;  ///< in their order; empty: one PLY that was read in place
+  std::vector<SourceCount>
+      counts;  ///< of an import, and of what became 0: those that are not 0; by name
 
   /// Of the bounding box.
   double diagonal() const { return length(bounds.max - bounds.min); }

@@ -327,6 +327,7 @@ class GltfImporter {
       add_normal(all, vertex, transform, channels);
       add_colour(all, vertex, channels);
       add_texcoord(all, vertex, channels);
+      import_.zeroed += mesh_io::zero_what_is_not_finite(import_.layout, channels);
       mesh_.attributes.append(channels);
     }
   }
@@ -373,9 +374,10 @@ class GltfImporter {
     Vec3d normal;
     if (all.normals) {
       const std::span<const double> n = all.normals->at(vertex);
-      for (const double value : n)
-        checked(*all.normals, vertex, value);
-      normal = turned_normal({n[0], n[1], n[2]}, transform);
+      const Vec3d given{n[0], n[1], n[2]};
+      normal = std::ranges::all_of(n, [](double number) { return std::isfinite(number); })
+                   ? turned_normal(given, transform)
+                   : given;
     }
     channels.insert(channels.end(), {static_cast<float>(normal.x), static_cast<float>(normal.y),
                                      static_cast<float>(normal.z)});
@@ -413,8 +415,6 @@ class GltfImporter {
       std::ranges::copy(all.texcoords->at(vertex), uv.begin());
       if (all.texture != nullptr && *all.texture != mesh_io::GltfTextureTransform{})
         uv = transformed(*all.texture, uv[0], uv[1]);
-      for (const double value : uv)
-        checked(*all.texcoords, vertex, value);
     }
     channels.insert(channels.end(), {static_cast<float>(uv[0]), static_cast<float>(uv[1])});
     if (import_.layout.material)

@@ -4,6 +4,7 @@
 #include "import/input_files.h"
 #include "import/raw_mesh.h"
 #include "mesh_io/gltf_file.h"
+#include "mesh_io/zeroed.h"
 
 #include <cstdint>
 #include <vector>
@@ -17,6 +18,7 @@ struct GltfImport {
   std::uint64_t triangles = 0;         ///< as primitives declare them
   std::uint64_t degenerate_triangles = 0;
   std::vector<SourceCount> counts;  ///< of what was filled in, left out or ignored
+  mesh_io::ZeroedCounts zeroed;
 };
 
 /// Appends the mesh of a file to `mesh`, but for its layout: primitive by primitive in the order of

@@ -77,6 +77,11 @@ class Import {
       found->count += count;
   }
 
+  void count(const mesh_io::ZeroedCounts& zeroed) {
+    for (const SourceCount& one : source_counts(zeroed))
+      count(one.name, one.count);
+  }
+
   /// Reads the file's content by `read(stream)`, and its checksum on the way.
   template <class Read>
   void read_stream(const InputFileFacts& facts, const Read& read) {
@@ -209,6 +214,7 @@ class Import {
     const PlyImport import = import_textured_ply(source, path, mesh_, named_, room_);
     checked_base(path, 0);
     count("split_vertices", import.split_vertices);
+    count(import.zeroed);
     return {import.layout, import.fits_float, import.counts.faces,
             import.counts.degenerate_triangles};
   }
@@ -226,6 +232,7 @@ class Import {
       mesh_.positions.append(block.exact);
       added.fits_float = added.fits_float && std::ranges::all_of(block.exact, fits_float);
       mesh_.attributes.append(block.attributes);
+      count(block.zeroed);
     });
     const mesh_io::FaceCounts counts = source.read_triangles(
         [&](std::span<const Triangle<VertexId>> triangles) { append(triangles, base); });
@@ -259,6 +266,7 @@ class Import {
     const GltfImport import = import_gltf(file, mesh_, input_.textures(), room_);
     for (const SourceCount& one : import.counts)
       count(one.name, one.count);
+    count(import.zeroed);
     return {import.layout, import.fits_float, import.triangles, import.degenerate_triangles,
             import.material_colours};
   }
@@ -274,6 +282,7 @@ class Import {
     count("missing_material_libraries", import.missing_libraries);
     count("undefined_materials", import.undefined_materials);
     count("ignored_alpha_images", import.other_alphas);
+    count(counts.zeroed);
     count("groups", counts.groups);
     count("objects", counts.objects);
     count("material_uses", counts.materials);
@@ -323,6 +332,7 @@ class Import {
         });
     checked_base(path, 0);
     count("ignored_face_colours", counts.coloured_faces);
+    count(counts.zeroed);
     return {counts.attributes, counts.fits_float, counts.faces.faces,
             counts.faces.degenerate_triangles};
   }
@@ -401,7 +411,9 @@ void ImportFacts::complete(SourceSummary& summary) const {
     summary.file_bytes += file.bytes;
   summary.checksum = joined_checksum(files);
   summary.files = files;
-  summary.counts = counts;
+  // Of an unpacked PLY they were counted while it was read.
+  summary.counts.insert(summary.counts.end(), counts.begin(), counts.end());
+  std::ranges::sort(summary.counts, {}, &SourceCount::name);
   summary.textures = textures;
   if (faces)
     summary.faces = *faces;

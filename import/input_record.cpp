@@ -60,6 +60,15 @@ std::vector<SourceFile> source_files(const std::vector<ReadFile>& files,
   return all;
 }
 
+std::vector<SourceCount> source_counts(const mesh_io::ZeroedCounts& zeroed) {
+  std::vector<SourceCount> counts;
+  if (zeroed.normals > 0)
+    counts.push_back({std::string(kZeroedNormals), zeroed.normals});
+  if (zeroed.texcoords > 0)
+    counts.push_back({std::string(kZeroedTexcoords), zeroed.texcoords});
+  return counts;
+}
+
 bool shows_materials(const SourceSummary& source) {
   if (source.textures || std::ranges::any_of(source.counts, [](const SourceCount& one) {
         return one.name == kMaterialColours;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "hierarchy/published.h"
+#include "mesh_io/zeroed.h"
 #include "storage/io/file.h"
 
 #include <cstdint>
@@ -58,6 +59,13 @@ std::vector<SourceFile> source_files(const std::vector<ReadFile>& files,
 
 /// SourceCount of the colours of materials that vertices have.
 inline constexpr std::string_view kMaterialColours = "material_colours";
+
+/// SourceCounts of normals and texture coordinates that were no numbers.
+inline constexpr std::string_view kZeroedNormals = "normals_made_zero";
+inline constexpr std::string_view kZeroedTexcoords = "texcoords_made_zero";
+
+/// Those that are not 0, by name.
+std::vector<SourceCount> source_counts(const mesh_io::ZeroedCounts& zeroed);
 
 /// Whether the import looked for materials, as Textures::use makes it: there are textures or
 /// colours of materials, or a library or a picture is among the files.

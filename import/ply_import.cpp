@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <optional>
 #include <set>
 #include <utility>
@@ -24,6 +25,12 @@ struct TexturedTriangle {
   Triangle<std::uint32_t> corners;
   std::int32_t texture;  ///< -1: none
 };
+
+/// Of a corner; none if they are not finite.
+std::optional<Texcoord> texcoord_of(const mesh_io::PlyFace& face, std::size_t corner) {
+  const Texcoord at{face.texcoords[2 * corner], face.texcoords[2 * corner + 1]};
+  return std::isfinite(at[0]) && std::isfinite(at[1]) ? std::optional(at) : std::nullopt;
+}
 
 /// The triangles of a file.
 struct PlyTriangles {
@@ -65,6 +72,8 @@ class PlyImporter {
     room_.cancel.check();
     const bool has_texcoords = !source_.has_face_texcoords() || !face.texcoords.empty();
     const std::int32_t texture = has_texcoords ? face.texture : -1;
+    for (std::size_t i = 0; i < face.texcoords.size() / 2; ++i)
+      import_.zeroed.texcoords += texcoord_of(face, i) ? 0 : 1;
     import_.counts.degenerate_triangles += face.corners.size() < 3 ? 1 : 0;
     for (std::size_t i = 2; i < face.corners.size(); ++i)
       add(face, {0, i - 1, i}, texture);
@@ -77,7 +86,7 @@ class PlyImporter {
     for (std::size_t k = 0; k < 3; ++k) {
       triangle.corners[k] = face.corners[corners[k]];
       if (!face.texcoords.empty())
-        texcoords[k] = {face.texcoords[2 * corners[k]], face.texcoords[2 * corners[k] + 1]};
+        texcoords[k] = texcoord_of(face, corners[k]).value_or(Texcoord{});
     }
     if (is_degenerate(triangle.corners)) {
       ++import_.counts.degenerate_triangles;
@@ -197,6 +206,7 @@ class PlyImporter {
     const auto channels = static_cast<std::size_t>(given_.channels());
     source_.read_vertices([&](const mesh_io::VertexBlock& block) {
       room_.cancel.check();
+      import_.zeroed += block.zeroed;
       const std::size_t count = block.positions.size() + block.exact.size();
       for (std::size_t i = 0; i < count; ++i) {
         const Vec3d position = block.exact.empty() ? to_double(block.positions[i]) : block.exact[i];

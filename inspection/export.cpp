@@ -17,8 +17,11 @@
 #include "storage/io/spool.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -193,6 +196,20 @@ ExportFormat format_of(const fs::path& output) {
                             : ExportFormat::ply;
 }
 
+/// Another mesh's ending would name a PLY that nobody can open under it.
+void require_no_other_ending(const fs::path& output) {
+  constexpr std::array<std::string_view, 12> kOthers{".3ds",  ".3mf", ".dae", ".fbx",
+                                                     ".gltf", ".off", ".stl", ".usd",
+                                                     ".usdz", ".wrl", ".x3d", ".zip"};
+  const std::string ending = storage::lower_extension(output);
+  const bool is_packed = ending == ".gz";
+  if (!is_packed && std::ranges::find(kOthers, ending) == kOthers.end())
+    return;
+  throw Error(ErrorCode::usage,
+              fmt::format("{}: export writes .ply, .glb and .obj; {}", output.string(),
+                          is_packed ? "pack it yourself: -o - | gzip" : "choose one of these"));
+}
+
 VertexArray first_vertices(const VertexArray& from, std::size_t count) {
   VertexArray vertices;
   vertices.channels = from.channels;
@@ -264,6 +281,7 @@ std::string export_selection(const ExportJob& job, const ExportSelection& select
 std::string export_mesh(storage::FileSystem& files, const fs::path& hierarchy,
                         const ExportOptions& options, execution::Progress& progress,
                         const execution::CancelToken& cancel) {
+  require_no_other_ending(options.output);
   storage::OutputRequest request{options.output, options.replace, {hierarchy}};
   if (const auto* cut = std::get_if<fs::path>(&options.selection))
     request.inputs.push_back(*cut);

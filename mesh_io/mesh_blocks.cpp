@@ -9,6 +9,7 @@
 #include <cstring>
 #include <limits>
 #include <span>
+#include <utility>
 
 namespace meshhier::mesh_io {
 namespace {
@@ -83,6 +84,13 @@ double VertexRows::value_of(std::size_t row, int slot) const {
   return wide_ ? memory_.exact[row][slot] : static_cast<double>(memory_.positions[row][slot]);
 }
 
+ZeroedCounts VertexRows::zero_what_is_not_finite(std::size_t first, std::size_t count) {
+  const std::span<float> rows =
+      std::span(memory_.attributes).subspan(first * channels_, count * channels_);
+  return all_finite(rows.data(), rows.size()) ? ZeroedCounts{}
+                                              : mesh_io::zero_what_is_not_finite(layout_, rows);
+}
+
 std::optional<VertexRows::Defect> VertexRows::find_defect(std::size_t first, std::size_t count,
                                                           bool check_colours) const {
   const bool sound =
@@ -107,8 +115,10 @@ std::optional<VertexRows::Defect> VertexRows::find_defect(std::size_t first, std
   return std::nullopt;
 }
 
-VertexBlock VertexRows::block(std::uint64_t first_id, std::size_t rows) const {
+VertexBlock VertexRows::block(std::uint64_t first_id, std::size_t rows,
+                              const ZeroedCounts& zeroed) const {
   VertexBlock block;
+  block.zeroed = zeroed;
   block.first = first_id;
   if (wide_) {
     block.exact = std::span<const Vec3d>(memory_.exact).first(rows);
@@ -134,6 +144,7 @@ void VertexBlocks::set(int slot, double value) {
 }
 
 std::optional<VertexRows::Defect> VertexBlocks::commit(bool check_colours) {
+  zeroed_ += rows_.zero_what_is_not_finite(filled_, 1);
   if (const auto defect = rows_.find_defect(filled_, 1, check_colours))
     return defect;
   if (++filled_ == MeshSource::kBlockSize)
@@ -144,7 +155,7 @@ std::optional<VertexRows::Defect> VertexBlocks::commit(bool check_colours) {
 void VertexBlocks::flush() {
   if (filled_ == 0)
     return;
-  const VertexBlock block = rows_.block(first_, filled_);
+  const VertexBlock block = rows_.block(first_, filled_, std::exchange(zeroed_, {}));
   first_ += filled_;
   filled_ = 0;
   visit_(block);

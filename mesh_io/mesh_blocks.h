@@ -27,6 +27,9 @@ class VertexRows {
   };
   Column column(std::size_t row, int slot);
 
+  /// Of rows [first, first + count), as zero_what_is_not_finite().
+  ZeroedCounts zero_what_is_not_finite(std::size_t first, std::size_t count);
+
   struct Defect {
     std::size_t row = 0;  ///< from the first one looked at
     int slot = 0;
@@ -38,7 +41,7 @@ class VertexRows {
   std::optional<Defect> find_defect(std::size_t first, std::size_t count, bool check_colours) const;
 
   /// The first `rows` rows; `first_id`: VertexId of the first.
-  VertexBlock block(std::uint64_t first_id, std::size_t rows) const;
+  VertexBlock block(std::uint64_t first_id, std::size_t rows, const ZeroedCounts& zeroed) const;
 
  private:
   double value_of(std::size_t row, int slot) const;
@@ -56,7 +59,7 @@ class VertexBlocks {
   VertexBlocks(const MeshDescription& mesh, const VertexVisitor& visit);
 
   void set(int slot, double value);
-  /// Ends the row, unless it has a defect.
+  /// Ends the row, unless it has a defect. What is not finite may become 0 before.
   std::optional<VertexRows::Defect> commit(bool check_colours);
 
   /// Hands out what is left.
@@ -69,6 +72,7 @@ class VertexBlocks {
   BlockMemory memory_;
   VertexRows rows_;
   std::size_t filled_ = 0;
+  ZeroedCounts zeroed_;  ///< of the rows that are filled
   std::uint64_t first_ = 0;
 };
 

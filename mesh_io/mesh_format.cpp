@@ -148,8 +148,9 @@ MeshFormat detect_format(const storage::File& file) {
     return *format;
   std::string hint;
   if (const auto size = stl_size(start); size && !packed && !is_text(start)) {
-    hint = fmt::format("; as a binary STL it would have {} bytes, it has {} (truncated?)", *size,
-                       bytes);
+    hint =
+        fmt::format("; as a binary STL it would have {} bytes, it has {} ({})", *size, bytes,
+                    bytes < *size ? "truncated?" : "its count of facets is wrong, or more follows");
   }
   fail_file(file.path(), fmt::format("expected a mesh (PLY, OBJ, glTF, STL or OFF, or one of "
                                      "them packed by gzip), found {}{}",

@@ -5,6 +5,7 @@
 #include "hierarchy/ids.h"
 #include "hierarchy/triangle.h"
 #include "hierarchy/vec.h"
+#include "mesh_io/zeroed.h"
 #include "storage/io/file.h"
 #include "storage/io/file_checksum.h"
 
@@ -40,6 +41,7 @@ struct VertexBlock {
   std::span<const Vec3f> positions;   ///< empty if wide_coordinates
   std::span<const Vec3d> exact;       ///< empty unless wide_coordinates
   std::span<const float> attributes;  ///< count * attributes.channels(), see hierarchy/attributes.h
+  ZeroedCounts zeroed;                ///< among these attributes
 };
 
 /// What reading all faces found.
@@ -128,9 +130,10 @@ class MeshSource {
 ///
 /// PLY, ASCII and binary little and big endian: ply_header.h and ply_plan.h say what is read. In
 /// text a row is a line; in binary a line end may follow the data (ply_body.h). Coordinates and
-/// attributes that are not finite are errors, as no average or bound can be made of them; so are a
-/// negative list length, and an index that is no vertex's. read_triangles() also checks everything
-/// behind the faces, up to the end of the file.
+/// colours that are not finite are errors, as no average or bound can be made of them; normals and
+/// texture coordinates become 0 (zeroed.h). Errors are also a negative list length, and an index
+/// that is no vertex's. read_triangles() also checks everything behind the faces, up to the end of
+/// the file.
 std::unique_ptr<MeshSource> open_mesh(storage::FileSystem& files,
                                       const std::filesystem::path& path);
 

@@ -67,6 +67,13 @@ bool float_says_it(std::string_view word, double value) {
   return parse_real<float>(word) == narrow;
 }
 
+/// As older programs on Windows write what is no number: "-1.#IND00", "1.#QNAN0", "1.#INF".
+bool is_no_number(std::string_view word) {
+  word.remove_prefix(word.starts_with('-') ? 1 : 0);
+  return word.starts_with("1.#IND") || word.starts_with("1.#INF") || word.starts_with("1.#QNAN") ||
+         word.starts_with("1.#SNAN");
+}
+
 }  // namespace
 
 std::optional<std::int64_t> parse_integer(std::string_view word) {
@@ -96,8 +103,10 @@ std::optional<Scalar> parse_real(std::string_view word) {
   Scalar value = 0;
   const char* const end = digits.data() + digits.size();
   const auto [at, error] = std::from_chars(digits.data(), end, value);
-  if (error == std::errc::invalid_argument || at != end)
-    return std::nullopt;
+  if (error == std::errc::invalid_argument || at != end) {
+    return is_no_number(digits) ? std::optional(std::numeric_limits<Scalar>::quiet_NaN())
+                                : std::nullopt;
+  }
   if (error == std::errc::result_out_of_range) {
     value = is_large(digits) ? std::numeric_limits<Scalar>::infinity() : Scalar{0};
     if (digits[0] == '-')

@@ -11,8 +11,8 @@ namespace meshhier::mesh_io {
 std::optional<std::int64_t> parse_integer(std::string_view word);
 
 /// A decimal number with optional sign, fraction and exponent, or "inf" or "nan" in any case;
-/// nothing else in `word`. Correctly rounded to `Scalar` (float or double); too large becomes
-/// infinite, too small zero.
+/// nothing else in `word`. "-nan(ind)", "1.#QNAN" and the like of Windows are no numbers, too.
+/// Correctly rounded to `Scalar` (float or double); too large becomes infinite, too small zero.
 template <class Scalar>
 std::optional<Scalar> parse_real(std::string_view word);
 

@@ -115,10 +115,11 @@ class ObjReader {
   }
 
   void read_texcoord() {
-    std::array<float, 3> texcoord{words_.take_float("a texture coordinate")};
+    std::array<float, 3> texcoord{words_.take_any_float("a texture coordinate")};
     for (std::size_t i = 1; i < texcoord.size() && words_.to_word(); ++i)
-      texcoord[i] = words_.take_float("a texture coordinate");
+      texcoord[i] = words_.take_any_float("a texture coordinate");
     words_.expect_line_end();
+    counts_.zeroed += zero_what_is_not_finite({.texcoords = true}, std::span(texcoord).first<2>());
     count_one(texcoords_);
     visitor_.add_texcoord({texcoord[0], texcoord[1]});
   }
@@ -126,8 +127,9 @@ class ObjReader {
   void read_normal() {
     std::array<float, 3> normal{};
     for (float& part : normal)
-      part = words_.take_float("a normal");
+      part = words_.take_any_float("a normal");
     words_.expect_line_end();
+    counts_.zeroed += zero_what_is_not_finite({.normals = true}, normal);
     count_one(normals_);
     visitor_.add_normal({normal[0], normal[1], normal[2]});
   }

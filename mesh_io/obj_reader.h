@@ -3,6 +3,7 @@
 
 #include "hierarchy/vec.h"
 #include "mesh_io/input_stream.h"
+#include "mesh_io/zeroed.h"
 
 #include <array>
 #include <cstdint>
@@ -56,6 +57,7 @@ struct ObjCounts {
   std::uint64_t points_and_lines = 0;  ///< p, l: ignored
   std::uint64_t others = 0;            ///< smoothing groups, curves, surfaces, ...: ignored
   bool fits_float = true;              ///< all coordinates do (DecimalNumber)
+  ZeroedCounts zeroed;                 ///< among normals and texcoords
 };
 
 /// Whether a line of an OBJ file can begin with that word.

@@ -116,8 +116,8 @@ class OffReader {
     while (channel_count_ < channels_.size() && words_.to_word()) {
       const std::string_view word = words_.take_word();
       const auto value = parse_real<float>(word);
-      if (!value || !std::isfinite(*value))
-        words_.fail("expected a finite number for an attribute, found " + in_quotes(word));
+      if (!value)
+        words_.fail("expected a number for an attribute, found " + in_quotes(word));
       are_bytes[channel_count_] = is_byte_integer(word);
       channels_[channel_count_++] = *value;
     }
@@ -130,9 +130,13 @@ class OffReader {
                       "the first vertex say, found {}",
                       expected(), channel_count_));
     }
+    counts_.zeroed += zero_what_is_not_finite(layout, std::span(channels_).first(channel_count_));
     for (int i = 0; i < layout.colour_channels(); ++i) {
-      byte_colours_ =
-          byte_colours_ && are_bytes[static_cast<std::size_t>(layout.colour_offset() + i)];
+      const auto channel = static_cast<std::size_t>(layout.colour_offset() + i);
+      if (!std::isfinite(channels_[channel]))
+        words_.fail(
+            fmt::format("expected a finite number for a colour, found {}", channels_[channel]));
+      byte_colours_ = byte_colours_ && are_bytes[channel];
     }
   }
 

@@ -23,6 +23,7 @@ struct OffCounts {
   std::uint64_t coloured_faces = 0;  ///< whose colours are ignored
   AttributeLayout attributes;        ///< colours are u8 if all are integers from 0 to 255, else f32
   bool fits_float = true;            ///< all coordinates do (DecimalNumber)
+  ZeroedCounts zeroed;
 };
 
 /// One vertex; `attributes`: its channels in the order of AttributeLayout.

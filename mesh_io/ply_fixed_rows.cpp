@@ -141,6 +141,7 @@ VertexBlock PlyVertexBlocks::read(const InputFile& input, std::uint64_t index,
     fail_truncated(input, block.first);
   VertexRows rows(mesh_, block.rows, memory);
   decode(bytes, block.rows, rows);
+  const ZeroedCounts zeroed = rows.zero_what_is_not_finite(0, block.rows);
   if (const auto bad = rows.find_defect(0, block.rows, plan_.check_colours)) {
     const auto field = std::find_if(fields_.begin(), fields_.end(),
                                     [&](const Field& f) { return f.slot == bad->slot; });
@@ -150,7 +151,7 @@ VertexBlock PlyVertexBlocks::read(const InputFile& input, std::uint64_t index,
   }
   if (block.rows < wanted)
     fail_truncated(input, block.first + block.rows);
-  return rows.block(block.first, block.rows);
+  return rows.block(block.first, block.rows, zeroed);
 }
 
 PlyTriangleBlocks::PlyTriangleBlocks(const PlyPlan& plan, const PlyElementPlan& faces,

@@ -159,6 +159,16 @@ DecimalNumber WordStream::take_number(const char* what) {
   return *number;
 }
 
+float WordStream::take_any_float(const char* what) {
+  if (!to_word())
+    fail(fmt::format("expected a number for {}, found the end of the line", what));
+  const std::string_view word = take_word();
+  const auto number = parse_real<float>(word);
+  if (!number)
+    fail(fmt::format("expected a number for {}, found {}", what, in_quotes(word)));
+  return *number;
+}
+
 float WordStream::take_float(const char* what) {
   const auto value = static_cast<float>(take_number(what).value);
   if (!std::isfinite(value))

@@ -46,6 +46,8 @@ class WordStream {
   /// The next word of this line as a finite number; `what`: it is for messages.
   DecimalNumber take_number(const char* what);
   float take_float(const char* what);
+  /// Perhaps infinite or "nan".
+  float take_any_float(const char* what);
   /// Three coordinates; clears `fits_float` if one of them does not.
   Vec3d take_position(bool& fits_float);
   void expect_line_end();

@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -64,6 +65,13 @@ std::string warning_text(const SourceSummary& source, bool has_area) {
     warn("no triangle of the mesh has an area, their corners lie on lines: viewers show nothing");
   else if (source.degenerate_triangles > source.triangles)
     warn("most triangles of the mesh are degenerate");
+  for (const auto& [name, what] : {std::pair(importing::kZeroedNormals, "normals"),
+                                   std::pair(importing::kZeroedTexcoords, "texture coordinates")}) {
+    const auto found = std::ranges::find(source.counts, name, &SourceCount::name);
+    if (found != source.counts.end())
+      warn(counted(found->count, what) +
+           " of the mesh became 0: the file has no finite numbers there");
+  }
   if (source.triangles > 0 && source.unreferenced_vertices > source.vertices / 2)
     warn("most vertices of the mesh belong to no triangle");
   return text;

@@ -1,6 +1,7 @@
 #include "pipeline/ingest_stage.h"
 
 #include "hierarchy/power_of_two.h"
+#include "import/input_record.h"
 #include "partition/top_tree.h"
 
 #include <algorithm>
@@ -37,8 +38,10 @@ struct BlockScan {
   BoundsD bounds;
   bool float_exact = true;
   std::vector<Vec3d> sample;  ///< those that `ids` name
+  mesh_io::ZeroedCounts zeroed;
 
   void look_at(const mesh_io::VertexBlock& block, const partition::SampleIds& ids) {
+    zeroed = block.zeroed;
     float_exact = std::all_of(block.exact.begin(), block.exact.end(), fits_float);
     block.exact.empty() ? look_at(block.first, block.positions, ids)
                         : look_at(block.first, block.exact, ids);
@@ -77,7 +80,7 @@ SourceMesh::SourceMesh(std::unique_ptr<mesh_io::MeshSource> source, std::string 
 SourceMesh ingest(std::unique_ptr<mesh_io::MeshSource> source, std::string file_name,
                   storage::ScratchFile& scratch, const StageContext& context) {
   SourceMesh mesh(std::move(source), std::move(file_name), scratch);
-  mesh.scan(context);
+  mesh.summary_.counts = importing::source_counts(mesh.scan(context));
   mesh.choose_origin();
   return mesh;
 }
@@ -91,13 +94,15 @@ SourceMesh ingested(std::unique_ptr<mesh_io::MeshSource> source, const SourceSum
   return mesh;
 }
 
-void SourceMesh::scan(const StageContext& context) {
+mesh_io::ZeroedCounts SourceMesh::scan(const StageContext& context) {
   execution::Progress& progress = context.progress;
   summary_.places = context.tree().vertex_count();
   progress.stage("ingest", summary_.vertices, "vertices");
   const partition::SampleIds ids(summary_.vertices);
   sample_positions_.reserve(ids.count());
+  mesh_io::ZeroedCounts zeroed;
   const auto take = [&](const BlockScan& block) {
+    zeroed += block.zeroed;
     summary_.bounds.add(block.bounds);
     float_exact_ = float_exact_ && block.float_exact;
     sample_positions_.insert(sample_positions_.end(), block.sample.begin(), block.sample.end());
@@ -115,7 +120,7 @@ void SourceMesh::scan(const StageContext& context) {
           slot.scan.look_at(source_->read_vertex_block(i, slot.memory), ids);
         },
         [&](const Slot& slot) { return take(slot.scan); });
-    return;
+    return zeroed;
   }
   BlockScan scan;
   source_->read_vertices([&](const mesh_io::VertexBlock& block) {
@@ -126,6 +131,7 @@ void SourceMesh::scan(const StageContext& context) {
     spooled_positions_.append(wide ? std::as_bytes(block.exact) : std::as_bytes(block.positions));
     spooled_attributes_.append(std::as_bytes(block.attributes));
   });
+  return zeroed;
 }
 
 void SourceMesh::choose_origin() {

@@ -109,7 +109,7 @@ class SourceMesh {
                              storage::ScratchFile& scratch);
   SourceMesh(std::unique_ptr<mesh_io::MeshSource> source, std::string file_name,
              storage::ScratchFile& scratch);
-  void scan(const StageContext& context);
+  mesh_io::ZeroedCounts scan(const StageContext& context);
   void choose_origin();
 
   std::unique_ptr<mesh_io::MeshSource> source_;

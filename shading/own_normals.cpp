@@ -74,12 +74,12 @@ std::vector<Place> sum_areas(const TileMesh& mesh, Corners& corners) {
 }
 
 /// Of each place, whether it is an own one with a triangle so far from the mean that two may be a
-/// crease apart.
+/// crease apart. Where two sides cancel there is no mean: any triangle is far from it.
 std::vector<char> find_rough_places(const TileMesh& mesh, const Corners& corners,
                                     std::vector<Place>& places) {
   const double cosine = crease_cosine(0.5);
   for (std::size_t v = 0; v < mesh.own_count; ++v)
-    places[v].limit = cosine * length(places[v].sum);
+    places[v].limit = places[v].sum == Vec3d{} ? 1 : cosine * length(places[v].sum);
   for (std::size_t v = mesh.own_count; v < places.size(); ++v)
     places[v].limit = -std::numeric_limits<double>::infinity();
   std::vector<char> is_rough(places.size());

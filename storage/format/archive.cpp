@@ -24,8 +24,11 @@ ArchiveEnd find_end(const File& file) {
   file.read_exact(0, first);
   if (!looks_like_archive(first, last)) {
     throw Error(ErrorCode::io,
-                fmt::format("{}: not a hierarchy: neither a directory nor a 3tz archive",
-                            file.path().string()));
+                fmt::format("{}: not a hierarchy: neither a directory nor a 3tz archive{}",
+                            file.path().string(),
+                            file.path().filename() == manifest_path({})
+                                ? "; name the directory that it lies in"
+                                : ""));
   }
   return parse_archive_end(last, size, file.path().string());
 }

@@ -56,6 +56,13 @@ Json source_textures_json(const SourceTextures& textures) {
           {"texels", textures.texels}};
 }
 
+Json counts_json(const std::vector<SourceCount>& counts) {
+  Json json = Json::object();
+  for (const SourceCount& count : counts)
+    json[count.name] = count.count;
+  return json;
+}
+
 Json import_json(const SourceSummary& source) {
   Json files = Json::array();
   for (const SourceFile& file : source.files) {
@@ -64,10 +71,7 @@ Json import_json(const SourceSummary& source) {
                      {"bytes", file.bytes},
                      {"checksum", hex_digits(file.checksum)}});
   }
-  Json counts = Json::object();
-  for (const SourceCount& count : source.counts)
-    counts[count.name] = count.count;
-  return {{"files", std::move(files)}, {"counts", std::move(counts)}};
+  return {{"files", std::move(files)}, {"counts", counts_json(source.counts)}};
 }
 
 Json outline_json(const Manifest& manifest) {
@@ -186,15 +190,20 @@ SourceTextures read_source_textures(const JsonObject& object) {
   return textures;
 }
 
+std::vector<SourceCount> read_counts(const JsonObject& object) {
+  std::vector<SourceCount> counts;
+  for (const std::string& name : object.keys())
+    counts.push_back({name, object.count(name.c_str())});
+  return counts;
+}
+
 void read_import(const JsonObject& object, SourceSummary& source) {
   for (const JsonObject& file : object.objects("files"))
     source.files.push_back(
         {file.text("name"), file.text("format"), file.count("bytes"), file.hash("checksum")});
   if (source.files.empty())
     object.wrong("files", "at least one");
-  const JsonObject counts = object.object("counts");
-  for (const std::string& name : counts.keys())
-    source.counts.push_back({name, counts.count(name.c_str())});
+  source.counts = read_counts(object.object("counts"));
 }
 
 SourceSummary read_source(const JsonObject& object) {
@@ -225,6 +234,8 @@ SourceSummary read_source(const JsonObject& object) {
     object.wrong("attributes", "no texture coordinates beside textures");
   if (object.has("import"))
     read_import(object.object("import"), source);
+  else if (object.has("counts"))
+    source.counts = read_counts(object.object("counts"));
   return source;
 }
 
@@ -283,6 +294,8 @@ Json source_json(const SourceSummary& source) {
     json["textures"] = source_textures_json(*source.textures);
   if (!source.files.empty())
     json["import"] = import_json(source);
+  else if (!source.counts.empty())
+    json["counts"] = counts_json(source.counts);
   return json;
 }
 

@@ -286,7 +286,8 @@ class PosixFileSystem : public FileSystem {
       if (S_ISDIR(status.st_mode))
         fail_system("open", path, EISDIR);
       throw Error(ErrorCode::io,
-                  fmt::format("cannot open {}: it is not a regular file", path.string()));
+                  fmt::format("cannot open {}: it is not a regular file, which can be read again",
+                              path.string()));
     }
     return std::make_unique<PosixFile>(path, file.release(), counters_);
   }

@@ -232,9 +232,12 @@ TEST_F(CommandLine, VersionIsPrinted) {
 
 TEST_F(CommandLine, MistakesExitWithUsageAndSayWhatIsWrong) {
   const std::vector<std::pair<Arguments, std::string>> mistakes{
-      {{}, "subcommand is required"},
+      {{}, ", clean, completion, manual\nRun with --help"},
+      {{"view", "x.hier"}, "unknown command \"view\"; expected one of build, inspect, "},
+      {{MESHHIER_BINARY}, "a command is missing; did you mean \"meshhier build "},
       {{"biuld", "a.json"}, "unknown command \"biuld\"; did you mean \"build\"?"},
       {{"build"}, "A mesh or a config is required"},
+      {{"build", "a.ply", "b.hier"}, "b.hier: this is no mesh; the output is named by -o"},
       {{"build", "a.json", "--froce"}, "--froce"},
       {{"build", "a.json", "--progress", "loud"}, "auto, bar, json or none"},
       {{"build", "a.json", "--json"}, "--dry-run"},
@@ -257,6 +260,8 @@ TEST_F(CommandLine, MistakesExitWithUsageAndSayWhatIsWrong) {
       {{"export", "x", "-o", "y.ply"}, "--outline"},
       {{"export", "x", "--level", "1", "--outline", "-o", "y.ply"}, "--outline"},
       {{"export", "x", "--cut", "", "-o", "y.ply"}, "--cut"},
+      {{"export", "x", "--level", "0", "-o", "y.STL"}, "y.STL: export writes .ply, .glb and .obj"},
+      {{"export", "x", "--level", "0", "-o", "y.ply.gz"}, "pack it yourself: -o - | gzip"},
       {{"preview", "x"}, "--output"},
       {{"preview", "x", "-o", "y.jpg"}, ".png or .webp"},
       {{"preview", "x", "-o", "-"}, "--format"},

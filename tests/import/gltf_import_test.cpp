@@ -552,11 +552,26 @@ TEST_F(GltfImportTest, NumbersThatAreNoneNameTheirAccessor) {
                {"indices", gltf.accessor(kSquareCorners, "SCALAR")}});
     EXPECT_THAT(failure(gltf), HasSubstr("accessors[0]: element 2 has"));
   }
-  GltfBuilder gltf;
-  GltfJson primitive = square(gltf);
-  primitive["attributes"]["NORMAL"] = gltf.accessor(std::vector<float>(12, std::nanf("")), "VEC3");
-  gltf.show(primitive);
-  EXPECT_THAT(failure(gltf), HasSubstr("accessors[2]: element 0 has nan, expected a finite"));
+}
+
+TEST_F(GltfImportTest, NormalsAndTextureCoordinatesThatAreNoNumbersAreZero) {
+  for (const bool is_turned : {false, true}) {
+    GltfBuilder gltf;
+    GltfJson primitive = square(gltf);
+    std::vector<float> normals{0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
+    normals[4] = std::nanf("");
+    primitive["attributes"]["NORMAL"] = gltf.accessor(normals, "VEC3");
+    primitive["attributes"]["TEXCOORD_0"] = gltf.accessor(
+        std::vector<float>{0, 0, 1, std::numeric_limits<float>::infinity(), 1, 1, 0, 1}, "VEC2");
+    gltf.show(primitive);
+    if (is_turned)
+      gltf.json["nodes"][0]["rotation"] = {0, 0, 1, 0};
+    const Imported mesh = import(gltf);
+    EXPECT_EQ(mesh.count("normals_made_zero"), 1U);
+    EXPECT_EQ(mesh.count("texcoords_made_zero"), 1U);
+    const std::vector<float> second(mesh.attributes.begin() + 5, mesh.attributes.begin() + 10);
+    EXPECT_EQ(second, std::vector<float>(5, 0.0F));
+  }
 }
 
 TEST_F(GltfImportTest, UnknownRequiredExtensionsAreRefusedByName) {

@@ -238,6 +238,25 @@ TEST_F(ImportTest, EveryFormatOfAMeshGivesTheSameTiles) {
   }
 }
 
+// Once read in place, once imported.
+TEST_F(ImportTest, NormalsThatAreNoNumbersAreZeroAndCounted) {
+  std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+      "property float z\nproperty float nx\nproperty float ny\nproperty float nz\n"
+      "element face 2\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0 0 0 1\n1 0 0 nan nan nan\n1 1 0 0 0 1\n0 1 0 0 0 -nan(ind)\n3 0 1 2\n3 0 2 3\n";
+  put("mesh.ply", ply);
+  put("mesh.ply.gz", tests::gzip(content("mesh.ply")));
+  for (const char* name : {"mesh.ply", "mesh.ply.gz"}) {
+    const config::Config with = config({name});
+    const pipeline::BuildReport report = build(with);
+    EXPECT_THAT(report.text, HasSubstr("warning: 2 normals of the mesh became 0")) << name;
+    EXPECT_EQ(count_of(with, "normals_made_zero"), 2U) << name;
+    EXPECT_THAT(problems(with, with.input), IsEmpty()) << name;
+  }
+  EXPECT_EQ(made(config({"mesh.ply"})), made(config({"mesh.ply.gz"})));
+}
+
 TEST_F(ImportTest, TheNameSaysNothing) {
   put("mesh.ply", obj_text(tests::sphere(500)));
   build(config({"mesh.ply"}));

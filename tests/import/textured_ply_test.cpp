@@ -5,6 +5,7 @@
 #include "tests/support/gzip.h"
 #include "tests/support/memory_files.h"
 
+#include <cmath>
 #include <filesystem>
 #include <string>
 
@@ -233,9 +234,7 @@ TEST_F(TexturedPlyTest, FailuresNameTheFace) {
         with_texcoords({0, 0, 1, 0, 1}),
         HasSubstr("expected 6 numbers or none, two a corner, in list 'texcoord' of row 0 of "
                   "1 of element 'face', found 5"));
-    EXPECT_THAT(with_texcoords({0, 0, 1, 0, 1, 1e300}),
-                HasSubstr(encoding == PlyEncoding::ascii ? "row 0 of 1 of element 'face'"
-                                                         : "expected finite numbers"));
+    EXPECT_EQ(with_texcoords({0, 0, 1, 0, 1, std::nan("")}), "");
   }
 }
 

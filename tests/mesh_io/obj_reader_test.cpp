@@ -69,6 +69,16 @@ TEST(ObjReader, ReadsVerticesOfAllKinds) {
   EXPECT_TRUE(taken.counts.fits_float);
 }
 
+// As programs write them for faces without an area.
+TEST(ObjReader, NormalsAndTextureCoordinatesThatAreNoNumbersAreZero) {
+  const Taken taken(
+      "vn nan nan nan\nvn 0 -nan(ind) 1\nvn 0 0 1\nvt 0.5 -1.#IND\nvt 0.5 inf 0\nvt 0.5 0.25 "
+      "nan\n");
+  EXPECT_THAT(taken.normals, ElementsAre("0 0 0", "0 0 0", "0 0 1"));
+  EXPECT_THAT(taken.texcoords, ElementsAre("0 0", "0 0", "0.5 0.25"));
+  EXPECT_EQ(taken.counts.zeroed, (ZeroedCounts{2, 2}));
+}
+
 TEST(ObjReader, ReadsCornersOfAllForms) {
   const Taken taken(std::string(kSquare) +
                     "vt 0 0\nvt 1 0\nvn 0 0 1\n"
@@ -153,7 +163,8 @@ TEST(ObjReader, RefusesWhatIsWrongAndNamesTheLine) {
   EXPECT_THAT(after("v 1 2 3 4 5\n"), HasSubstr("line 3: expected 3, 4, 6 or 7 numbers"));
   EXPECT_THAT(after("v 1 2 3 4 5 6 7 8\n"), HasSubstr("line 3: expected 3, 4, 6 or 7 numbers"));
   EXPECT_THAT(after("vn 1 2\n"), HasSubstr("line 3: expected a number for a normal"));
-  EXPECT_THAT(after("vn 1 2 1e39\n"), HasSubstr("within single precision"));
+  EXPECT_THAT(after("v 1 2 3 0.5 0.5 1e39\n"), HasSubstr("within single precision"));
+  EXPECT_THAT(after("vn 1 2 up\n"), HasSubstr("line 3: expected a number for a normal"));
   EXPECT_THAT(after("vt\n"), HasSubstr("line 3: expected a number for a texture coordinate"));
   EXPECT_THAT(after("\n# x\nfoo 1 2 3\n"), HasSubstr("line 5: expected a statement"));
   EXPECT_THAT(after("v " + std::string(5000, '1') + "\n"), HasSubstr("more than 4096 bytes"));

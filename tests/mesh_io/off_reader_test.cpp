@@ -75,6 +75,12 @@ TEST(OffReader, ReadsAttributesInTheirOrder) {
   EXPECT_FALSE(large.counts.attributes.alpha);
 }
 
+TEST(OffReader, NormalsAndTextureCoordinatesThatAreNoNumbersAreZero) {
+  const Taken taken("STNOFF\n2 0 0\n1 2 3 0 nan 1 0.5 0.25\n4 5 6 0 0 1 0.5 inf\n");
+  EXPECT_THAT(taken.vertices, ElementsAre("1 2 3 0 0 0 0.5 0.25", "4 5 6 0 0 1 0 0"));
+  EXPECT_EQ(taken.counts.zeroed, (ZeroedCounts{1, 1}));
+}
+
 TEST(OffReader, CountsColoursOfFacesAndDegenerateFaces) {
   const Taken taken("OFF 4 4 0\n" + std::string(kSquare) +
                     "3 0 1 2 255 0 0\n3 0 1 1\n2 0 1\n3 1 2 3 7\n");
@@ -105,7 +111,8 @@ TEST(OffReader, RefusesWhatIsWrongAndNamesTheLine) {
   EXPECT_THAT(refusal("OFF\n1 0 0\n1 2 3 4\n"), HasSubstr("line 3: expected 0 numbers behind"));
   EXPECT_THAT(refusal("COFF\n2 0 0\n1 2 3 1 1 1\n1 2 3 1 1 1 1\n"),
               HasSubstr("line 4: expected 3 numbers behind"));
-  EXPECT_THAT(refusal("NOFF\n1 0 0\n1 2 3 0 0 inf\n"), HasSubstr("line 3: expected a finite"));
+  EXPECT_THAT(refusal("NOFF\n1 0 0\n1 2 3 0 0 up\n"), HasSubstr("line 3: expected a number"));
+  EXPECT_THAT(refusal("COFF\n1 0 0\n1 2 3 0 nan 0\n"), HasSubstr("line 3: expected a finite"));
   EXPECT_THAT(refusal("OFF\n1 0 0\n1 2 nan\n"), HasSubstr("line 3: expected a finite number"));
   const auto faces = [](const std::string& face) {
     return refusal("OFF\n4 1 0\n" + std::string(kSquare) + face);

@@ -99,15 +99,16 @@ TEST(PlyErrors, CoordinatesTooLargeForTheirType) {
   EXPECT_THAT(error_of(ply.bytes()), HasSubstr("line 8: expected a finite number as 'x'"));
 }
 
-TEST(PlyErrors, AttributesThatAreNotFinite) {
+TEST(PlyErrors, ColoursThatAreNotFinite) {
   for (const PlyEncoding encoding : kEncodings) {
-    for (const double bad : {kNan, 1e300}) {
-      PlyText ply = vertices(encoding, "1", "double").line("property double s");
-      ply.line("property double t").end_header();
+    for (const double bad : {kNan, kInfinity}) {
+      PlyText ply = vertices(encoding, "1", "float").line("property float red");
+      ply.line("property float green").line("property float blue").end_header();
       const std::size_t data = ply.bytes().size();
-      ply.row(PlyType::f64, {1, 2, 3, 4, bad});
+      ply.row(PlyType::f32, {1, 2, 3, 4, 5, bad});
       EXPECT_THAT(error_of(ply.bytes()),
-                  HasSubstr(place(encoding, data + 32, 10) + "expected a finite number as 't'"));
+                  HasSubstr(place(encoding, data + (encoding == PlyEncoding::ascii ? 0 : 20), 11) +
+                            "expected a finite number as 'blue'"));
     }
   }
 }

@@ -3,6 +3,8 @@
 
 #include "ply_samples.h"
 
+#include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -299,6 +301,36 @@ TEST(PlySource, AttributesInEveryEncoding) {
       std::vector<float> twice = c.expected;
       twice.insert(twice.end(), c.expected.begin(), c.expected.end());
       EXPECT_EQ(mesh.attributes, twice);
+    }
+  }
+}
+
+// As programs write them for vertices of faces without an area.
+TEST(PlySource, NormalsAndTextureCoordinatesThatAreNoNumbersAreZero) {
+  const double none = std::nan("");
+  for (const PlyEncoding encoding : kEncodings) {
+    // A list behind the vertex takes another path than rows of one length.
+    for (const bool has_list : {false, true}) {
+      SCOPED_TRACE(fmt::format("{} {}", name_of(encoding), has_list));
+      PlyText ply(encoding);
+      ply.line("element vertex 3");
+      for (const char* name : {"x", "y", "z", "nx", "ny", "nz", "s", "t"})
+        ply.line(fmt::format("property float {}", name));
+      if (has_list)
+        ply.line("property list uchar uchar more");
+      ply.end_header();
+      for (const std::vector<double>& row : std::vector<std::vector<double>>{
+               {1, 2, 3, 0, none, 1, 0.5, 0.25},
+               {1, 2, 3, 0, 0, 1, -std::numeric_limits<double>::infinity(), 0.25},
+               {1, 2, 3, none, none, none, none, none}}) {
+        for (const double value : row)
+          ply.value(PlyType::f32, value);
+        if (has_list)
+          ply.list(PlyType::u8, PlyType::u8, {});
+        ply.end_row();
+      }
+      EXPECT_EQ(read_bytes(ply.bytes()).attributes,
+                (std::vector<float>{0, 0, 0, 0.5, 0.25, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0}));
     }
   }
 }

@@ -82,6 +82,25 @@ TEST(ShadeOwn, ASphereIsSmooth) {
   EXPECT_TRUE(shade_tile(mesh, own, no_neighbour).interior.empty());
 }
 
+// As some modelling programs write them, so that both sides are seen.
+TEST(ShadeOwn, EachSideOfASheetWithTwoSidesHasItsOwnNormals) {
+  tests::TestMesh sheet = tests::open_grid(12, 12, 0.1F);
+  const std::size_t count = sheet.triangles.size();
+  for (std::size_t t = 0; t < count; ++t) {
+    const auto [a, b, c] = sheet.triangles[t];
+    sheet.triangles.push_back({a, c, b});
+  }
+  const TileMesh mesh = tests::tile_of(sheet).mesh;
+  const OwnShading own = shade(mesh);
+  EXPECT_EQ(own.split_of.size(), mesh.own_count);
+  const Shading all = shade_tile(mesh, own, no_neighbour);
+  for (std::size_t t = 0; t < mesh.interior.size(); ++t) {
+    const Vec3d side = to_double(normal_of(flat(mesh, t)));
+    for (std::size_t k = 0; k < 3; ++k)
+      ASSERT_GT(dot(to_double(normal_of(shown(mesh, all, t, k))), side), 0.5) << t;
+  }
+}
+
 // The seam of a texture is none of the surface.
 TEST(ShadeOwn, VerticesOfAPlaceAgreeWhereTheSurfaceIsSmooth) {
   const TileMesh mesh = tests::tile_of(with_charts(tests::sphere(3000))).mesh;

@@ -299,6 +299,19 @@ TEST(Manifest, GivesBackWhatWasImported) {
   EXPECT_EQ(again.counts[1].count, UINT64_MAX);
 }
 
+TEST(Manifest, GivesBackWhatWasCountedInPlace) {
+  SourceSummary source = make_manifest().source;
+  EXPECT_FALSE(storage::source_json(source).contains("counts"));
+  source.counts = {{"normals_made_zero", 3}};
+  const Json json = storage::source_json(source);
+  EXPECT_FALSE(json.contains("import"));
+  const SourceSummary again = storage::parse_source(json, kManifestName);
+  EXPECT_THAT(again.files, testing::IsEmpty());
+  ASSERT_EQ(again.counts.size(), 1U);
+  EXPECT_EQ(again.counts[0].name, "normals_made_zero");
+  EXPECT_EQ(again.counts[0].count, 3U);
+}
+
 TEST(Manifest, WrongWordsOfAnImportAreNamed) {
   SourceSummary source = make_manifest().source;
   source.files = {{"a.obj", "OBJ", 5, 1}};

@@ -1,0 +1,29 @@
+// Normals and texture coordinates that are no numbers.
+#pragma once
+
+#include "hierarchy/attributes.h"
+
+#include <cstdint>
+#include <span>
+
+namespace meshhier::mesh_io {
+
+/// How many became 0.
+struct ZeroedCounts {
+  std::uint64_t normals = 0;
+  std::uint64_t texcoords = 0;
+
+  ZeroedCounts& operator+=(const ZeroedCounts& other) {
+    normals += other.normals;
+    texcoords += other.texcoords;
+    return *this;
+  }
+  friend bool operator==(const ZeroedCounts&, const ZeroedCounts&) = default;
+};
+
+/// Makes the whole normal 0 if one of its numbers is not finite, and likewise the texture
+/// coordinates. Many programs write "nan" as the normal of what has no area. `rows`: of each vertex
+/// its layout.channels() floats.
+ZeroedCounts zero_what_is_not_finite(const AttributeLayout& layout, std::span<float> rows);
+
+}  // namespace meshhier::mesh_io
