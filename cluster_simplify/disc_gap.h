@@ -8,7 +8,7 @@
 #pragma once
 
 #include "cluster_simplify/edge_star.h"
-#include "cluster_simplify/four_floats.h"
+#include "hierarchy/four_floats.h"
 #include "hierarchy/vec.h"
 
 #include <array>

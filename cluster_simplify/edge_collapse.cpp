@@ -2,10 +2,10 @@
 
 #include "cluster_simplify/collapse_costs.h"
 #include "cluster_simplify/collapse_driver.h"
-#include "cluster_simplify/four_floats.h"
 #include "cluster_simplify/local_frame.h"
 #include "cluster_simplify/meeting_point.h"
 #include "cluster_simplify/representatives.h"
+#include "hierarchy/four_floats.h"
 
 #include <algorithm>
 #include <array>

@@ -1,10 +1,11 @@
 #include "cluster_simplify/vertex_quadric.h"
 
+#include "hierarchy/four_floats.h"
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <memory>
 
 namespace meshhier::cluster_simplify {
@@ -34,10 +35,6 @@ void add_upright(VertexQuadric& q, Vec3f along, Vec3f normal, float weight) {
   if (size > 0)
     q.add_plane(upright * (1 / size), weight * dot(along, along));
 }
-
-// Four floats at a time: sums and products are those of single floats, bit for bit, in a third of
-// the instructions.
-using FourFloats = float __attribute__((vector_size(16)));
 
 FourFloats padded(Vec3f v) {
   return FourFloats{v.x, v.y, v.z, 0};
@@ -72,12 +69,7 @@ struct TrianglePlane {
   }
 
  private:
-  static void add(FourFloats values, std::byte* to) {
-    FourFloats sum;
-    std::memcpy(&sum, to, sizeof sum);
-    sum += values;
-    std::memcpy(to, &sum, sizeof sum);
-  }
+  static void add(FourFloats values, std::byte* to) { store_four(to, load_four(to) + values); }
 };
 
 /// Planes upright on a triangle of that normal, through an edge of it, about both ends.

@@ -35,7 +35,7 @@ inline NormalCode normal_code(const Vec3d& normal) {
     return kNoDirection;
   const auto rounded = [](const Vec3d& steps) -> NormalCode {
     const auto axis = [](double value) {
-      return static_cast<std::int8_t>(value + std::copysign(0.5, value));
+      return static_cast<std::int8_t>(static_cast<int>(value + std::copysign(0.5, value)));
     };
     return {axis(steps.x), axis(steps.y), axis(steps.z), 0};
   };

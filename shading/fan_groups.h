@@ -35,8 +35,8 @@ class FanGrouper {
   /// `place_count`: the corners' places are less.
   explicit FanGrouper(std::size_t place_count) : corner_of_(place_count) {}
 
-  /// The result holds until the next call. O(n) around a place inside a surface, else O(n log n);
-  /// O(fans) for each fan, and no more than 32 groups are compared with it.
+  /// The result holds until the next call. Finds fans in O(n) inside a surface, else in
+  /// O(n log n); compares each with the groups.
   const FanGroups& group(std::span<const FanCorner> corners);
 
  private:

@@ -1,5 +1,6 @@
 #include "texture/bake.h"
 
+#include "hierarchy/bounds.h"
 #include "texture/fill.h"
 #include "texture/nearest_triangle.h"
 #include "texture/texel_fit.h"
@@ -11,7 +12,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -30,13 +30,8 @@ NearestTriangle joined(std::span<const TexturedSurface> surfaces, std::span<cons
       triangles.push_back({surface.positions[raw(t[0])], surface.positions[raw(t[1])],
                            surface.positions[raw(t[2])]});
   }
-  Vec3d low = to_double(tile[0]), high = low;
-  for (const Vec3f& p : tile) {
-    low = {std::min<double>(low.x, p.x), std::min<double>(low.y, p.y),
-           std::min<double>(low.z, p.z)};
-    high = {std::max<double>(high.x, p.x), std::max<double>(high.y, p.y),
-            std::max<double>(high.z, p.z)};
-  }
+  const Bounds box = bounds_of(tile);
+  const Vec3d low = to_double(box.min), high = to_double(box.max);
   const double size = length(high - low);
   return {triangles, (low + high) * 0.5, size > 0 ? size : 1};
 }
@@ -176,20 +171,16 @@ class Painter {
   }
 
   void look_around(const TexelRange& block) {
-    constexpr double kFar = std::numeric_limits<double>::infinity();
-    Vec3d low{kFar, kFar, kFar}, high{-kFar, -kFar, -kFar};
+    BoundsD box;
     for (std::uint32_t y = block.top; y < block.bottom; ++y) {
       for (std::uint32_t x = block.left; x < block.right; ++x) {
         const TexelSample& sample = samples_.at(x, y);
-        if (sample.triangle == kNoFace)
-          continue;
-        const Vec3d& p = sample.point;
-        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+        if (sample.triangle != kNoFace)
+          box.add(sample.point);
       }
     }
-    if (low.x <= high.x)
-      nearest_.look_around(low, high);
+    if (!box.empty())
+      nearest_.look_around(box);
   }
 
   NearestTriangle::Found find(const ChartPlane& plane, const TexelSample& sample,

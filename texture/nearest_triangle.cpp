@@ -232,10 +232,9 @@ void NearestTriangle::search(Query& q) const {
   }
 }
 
-void NearestTriangle::look_around(const Vec3d& low, const Vec3d& high) {
-  around_.low = moved(low), around_.high = moved(high);
-  around_.count = 0;
-  around_.leaves.clear();
+void NearestTriangle::look_around(const BoundsD& box) {
+  around_.low = moved(box.min), around_.high = moved(box.max);
+  around_.clear();
   // Half as far again as the last answers, and some of the box, whose points are no nearer to them.
   const Vec3f size = around_.high - around_.low;
   around_.reach = 2.25f * farthest_ + dot(size, size) / 64;
@@ -261,14 +260,8 @@ void NearestTriangle::look_around(const Vec3d& low, const Vec3d& high) {
         add_around(node, k);
     }
     if (around_.count > kMostAround)
-      return forget_around();
+      return around_.clear();
   }
-}
-
-void NearestTriangle::forget_around() {
-  around_.count = 0;
-  around_.leaves.clear();
-  around_.reach = -1;
 }
 
 /// The child is a leaf.

@@ -6,6 +6,8 @@
 // surroundings looked up once for all of them.
 #pragma once
 
+#include "hierarchy/bounds.h"
+#include "hierarchy/four_floats.h"
 #include "hierarchy/vec.h"
 
 #include <array>
@@ -37,11 +39,11 @@ class NearestTriangle {
 
   /// Points within the box will be asked for, until the next one: collects what is near it, as near
   /// as the last answers were. What is farther, and other points, are searched for in the tree.
-  void look_around(const Vec3d& low, const Vec3d& high);
+  void look_around(const BoundsD& box);
 
  private:
   static constexpr std::uint32_t kIsLeaf = std::uint32_t{1} << 31;
-  using Four = float __attribute__((vector_size(16)));
+  using Four = FourFloats;
   struct Node {
     Four low_x, low_y, low_z, high_x, high_y, high_z;
     std::array<std::uint32_t, 4> children;  ///< nodes, or leaves with kIsLeaf; kNone
@@ -68,7 +70,6 @@ class NearestTriangle {
   void measure(std::uint32_t leaf, Query& query) const;
   void search(Query& query) const;
   void add_around(const Node& node, std::size_t child);
-  void forget_around();
   bool is_around(const Vec3f& point) const;
   void measure_around(Query& query) const;
 
@@ -77,7 +78,12 @@ class NearestTriangle {
     Vec3f low, high;
     float reach = 0;  ///< squared: leaves within it are there
     std::vector<Node> leaves;
-    std::size_t count = 0;
+    std::size_t count = 0;  ///< of leaves
+
+    void clear() {
+      leaves.clear();
+      count = 0;
+    }
   };
 
   Vec3d centre_;

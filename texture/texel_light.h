@@ -1,6 +1,7 @@
 // Texels as light, to make means of them.
 #pragma once
 
+#include "hierarchy/four_floats.h"
 #include "texture/light.h"
 #include "texture/texel_raster.h"
 
@@ -8,7 +9,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 
 namespace meshhier::texture {
 
@@ -17,14 +17,11 @@ using Light = std::array<float, 4>;
 
 /// Adds `weight` times a texel of 3 or 4 channels.
 inline void add_texel(Light& sum, const std::uint8_t* texel, std::uint32_t channels, float weight) {
-  using Four = float __attribute__((vector_size(16)));
-  static_assert(sizeof(Four) == sizeof(Light));
+  static_assert(sizeof(FourFloats) == sizeof(Light));
   if (channels == 4)
     weight *= static_cast<float>(texel[3]) / 255;
-  Four lanes;
-  std::memcpy(&lanes, &sum, sizeof lanes);
-  lanes += Four{kLight[texel[0]], kLight[texel[1]], kLight[texel[2]], 1} * weight;
-  std::memcpy(&sum, &lanes, sizeof lanes);
+  const FourFloats light{kLight[texel[0]], kLight[texel[1]], kLight[texel[2]], 1};
+  store_four(&sum, load_four(&sum) + light * weight);
 }
 
 /// Stores a mean; what is not there at all is black.

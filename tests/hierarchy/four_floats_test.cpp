@@ -1,4 +1,4 @@
-#include "cluster_simplify/four_floats.h"
+#include "hierarchy/four_floats.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace meshhier::cluster_simplify {
+namespace meshhier {
 namespace {
 
 std::array<std::int32_t, 4> lanes_of(FourInts four) {
@@ -79,4 +79,4 @@ TEST(FourFloatsTest, SumsArePairsFirst) {
 }
 
 }  // namespace
-}  // namespace meshhier::cluster_simplify
+}  // namespace meshhier

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <cstring>
 
-namespace meshhier::cluster_simplify {
+namespace meshhier {
 
 /// Operations on them are those of single floats, bit for bit.
 using FourFloats = float __attribute__((vector_size(16)));
@@ -54,4 +54,4 @@ inline FourInts first_lanes(std::int32_t count) {
   return FourInts{0, 1, 2, 3} < count;
 }
 
-}  // namespace meshhier::cluster_simplify
+}  // namespace meshhier
