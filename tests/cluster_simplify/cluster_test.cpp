@@ -20,12 +20,9 @@ namespace {
 
 using testing::Each;
 using tests::tile_of;
+using tests::tile_triangle;
 
 constexpr std::array kAll{Representative::mean, Representative::quadric, Representative::vertex};
-
-TileTriangle triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-  return {TileVertex{a}, TileVertex{b}, TileVertex{c}};
-}
 
 /// Appends a vertex that belongs to another tile.
 std::uint32_t add_ghost(BuildTile& tile, Vec3f position) {
@@ -190,7 +187,7 @@ TEST(ClusterTest, BorderTrianglesShapeTheCell) {
     return cluster(tile, 1, {}, Representative::quadric).representatives.positions[0].z;
   };
   EXPECT_NEAR(z(), 0.5, 1e-6);
-  tile.mesh.border = {triangle(2, 3, a), triangle(3, b, a)};
+  tile.mesh.border = {tile_triangle(2, 3, a), tile_triangle(3, b, a)};
   EXPECT_NEAR(z(), 1, 0.01);
 }
 
@@ -201,7 +198,7 @@ TEST(ClusterTest, ATriangleCountsOnceInACellHoweverManyCornersItHasThere) {
   const std::uint32_t a = add_ghost(tile, {0, 1, 0});
   const std::uint32_t b = add_ghost(tile, {1, 0, 1});
   const std::uint32_t c = add_ghost(tile, {0, 1, 1});
-  tile.mesh.border = {triangle(0, 1, a), triangle(2, b, c)};
+  tile.mesh.border = {tile_triangle(0, 1, a), tile_triangle(2, b, c)};
   const Contraction found = cluster(tile, 1, {}, Representative::quadric);
   EXPECT_NEAR(found.representatives.positions[0].z, 0.5, 1e-3);
 }

@@ -34,7 +34,7 @@ std::vector<float> many_costs() {
 }
 
 /// The same promises kept the slow way.
-class Reference {
+class ReferenceQueue {
  public:
   void push(std::uint32_t item, float cost) {
     buckets_[CollapseQueue::bucket_of(cost)].push_back(item);
@@ -234,7 +234,7 @@ TEST(CollapseQueueTest, ABucketHoldsAnyNumber) {
 void do_what_a_reference_does(std::uint32_t most, const auto& cost_at) {
   constexpr std::uint32_t kItems = 300;
   CollapseQueue queue(kItems);
-  Reference reference;
+  ReferenceQueue reference;
   std::vector<bool> in(kItems);
   for (std::uint64_t step = 0; step < 60'000; ++step) {
     if (pick(step, 1, 4 * most) == 0 && reference.size() > 0) {

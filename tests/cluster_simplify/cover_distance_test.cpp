@@ -17,8 +17,8 @@ namespace {
 
 using tests::Corners;
 
-constexpr int kSteps = 24;
-constexpr double kSlack = 1e-12;  // of sums in double precision near one
+constexpr int kCoverDistanceSteps = 24;
+constexpr double kCoverDistanceSlack = 1e-12;  // of sums in double precision near one
 
 /// What the header promises where pieces suffice.
 constexpr double kTight = 1.25;
@@ -51,7 +51,7 @@ struct Scene {
   }
   double sampled() const {
     double most = 0;
-    for (const Vec3d p : tests::samples_of(triangle, kSteps))
+    for (const Vec3d p : tests::samples_of(triangle, kCoverDistanceSteps))
       most = std::max(most, distance(p));
     return most;
   }
@@ -93,7 +93,7 @@ TEST(CoverDistanceTest, NoSampleIsFartherThanTheBound) {
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
     const Scene scene = wild_scene(seed);
     const double bound = distance(scene.triangle, scene.covers(), 0);
-    ASSERT_GE(bound * (1 + kSlack), scene.sampled()) << seed;
+    ASSERT_GE(bound * (1 + kCoverDistanceSlack), scene.sampled()) << seed;
     ASSERT_LE(bound, 2 * std::sqrt(12.0) + 0.2);  // the farthest that points of the scene can be
   }
 }
@@ -106,10 +106,10 @@ TEST(CoverDistanceTest, EveryPointIsAsNearToACoverAsItsLandingSays) {
     const std::span<const double> landings = distance.landings();
     ASSERT_EQ(landings.size(), scene.surface.size());
     ASSERT_LE(*std::ranges::max_element(landings), bound);
-    for (const Vec3d p : tests::samples_of(scene.triangle, kSteps)) {
+    for (const Vec3d p : tests::samples_of(scene.triangle, kCoverDistanceSteps)) {
       bool landed = false;
       for (std::size_t i = 0; i < landings.size(); ++i)
-        landed = landed || scene.distance(p, i) <= landings[i] * (1 + kSlack);
+        landed = landed || scene.distance(p, i) <= landings[i] * (1 + kCoverDistanceSlack);
       ASSERT_TRUE(landed) << seed;
     }
   }
@@ -121,7 +121,7 @@ TEST(CoverDistanceTest, IsTightOverAFan) {
     const Scene scene = fan_scene(seed, 0.3);
     const double bound = distance(scene.triangle, scene.covers(), 0);
     const double sampled = scene.sampled();
-    ASSERT_GE(bound * (1 + kSlack), sampled) << seed;
+    ASSERT_GE(bound * (1 + kCoverDistanceSlack), sampled) << seed;
     ASSERT_LE(bound, kTight * sampled * 1.02) << seed;  // the samples miss a little
   }
 }
@@ -155,8 +155,9 @@ TEST(CoverDistanceTest, BelowEnoughItMayBeLooseButNeverWrong) {
     for (const double part : {0.5, 0.9, 1.5, 4.0}) {
       const double enough = part * sampled;
       const double bound = distance(scene.triangle, scene.covers(), enough);
-      ASSERT_GE(bound * (1 + kSlack), sampled) << seed;
-      ASSERT_LE(bound, std::max(enough, kTight * sampled * 1.02) * (1 + kSlack)) << seed;
+      ASSERT_GE(bound * (1 + kCoverDistanceSlack), sampled) << seed;
+      ASSERT_LE(bound, std::max(enough, kTight * sampled * 1.02) * (1 + kCoverDistanceSlack))
+          << seed;
     }
   }
 }
@@ -172,7 +173,7 @@ TEST(CoverDistanceTest, TrianglesOfCommonPointsAreLikeSingleOnes) {
       points.push_back(random_point(seed * 8 + i, 21));
     together.begin(covers, points);
     for (std::size_t i = 0; i < points.size(); ++i)
-      ASSERT_NEAR(together.nearest(i), scene.distance(points[i]), kSlack);
+      ASSERT_NEAR(together.nearest(i), scene.distance(points[i]), kCoverDistanceSlack);
     for (std::size_t i = 0; i + 2 < points.size(); ++i) {
       const Corners triangle{points[i], points[i + 1], points[i + 2]};
       ASSERT_EQ(together.triangle({i, i + 1, i + 2}, 0), one_by_one(triangle, covers, 0));
@@ -205,7 +206,7 @@ TEST(CoverDistanceTest, TrianglesWithoutAreaAreServed) {
     if (seed % 5 == 0)
       scene.triangle[0] = scene.triangle[1] = scene.triangle[2];
     const double bound = distance(scene.triangle, scene.covers(), 0);
-    ASSERT_GE(bound * (1 + kSlack), scene.sampled()) << seed;
+    ASSERT_GE(bound * (1 + kCoverDistanceSlack), scene.sampled()) << seed;
     ASSERT_TRUE(std::isfinite(bound));
   }
 }

@@ -25,11 +25,11 @@ using tests::farthest_sample;
 using tests::samples_of;
 using tests::surface_of;
 
-constexpr int kSteps = 4;
-constexpr double kSlack = 1e-6;  // of places in single precision near one
+constexpr int kDeviationMeterSteps = 4;
+constexpr double kDeviationMeterSlack = 1e-6;  // of places in single precision near one
 
 /// Closed, open, folded, with pieces that meet in edges and points, without area.
-std::vector<tests::NamedMesh> meshes() {
+std::vector<tests::NamedMesh> metered_meshes() {
   tests::TestMesh spiky = tests::sphere(200);
   for (std::uint32_t v = 0; v < spiky.positions.size(); v += 5)
     spiky.positions[v] = spiky.positions[v] * 1.6F;
@@ -140,25 +140,26 @@ std::vector<Corners> local_surface(const Collapsing& tile, const tests::TestMesh
 /// No point of a triangle is farther from what was there at first than its deviation.
 void expect_near_the_original(const Surface& now, const std::vector<Corners>& original) {
   for (std::size_t t = 0; t < now.triangles.size(); ++t) {
-    for (const Vec3d p : samples_of(now.triangles[t], kSteps))
-      ASSERT_LE(distance_to_surface(p, original), now.deviations[t] + kSlack) << "triangle " << t;
+    for (const Vec3d p : samples_of(now.triangles[t], kDeviationMeterSteps))
+      ASSERT_LE(distance_to_surface(p, original), now.deviations[t] + kDeviationMeterSlack)
+          << "triangle " << t;
   }
 }
 
 /// Every point of what was there at first is within the deviation of some triangle.
 void expect_original_covered(const Surface& now, const std::vector<Corners>& original) {
   for (const Corners& corners : original) {
-    for (const Vec3d p : samples_of(corners, kSteps)) {
+    for (const Vec3d p : samples_of(corners, kDeviationMeterSteps)) {
       double missing = std::numeric_limits<double>::infinity();
       for (std::size_t t = 0; t < now.triangles.size(); ++t)
         missing = std::min(missing, distance_to_triangle(p, now.triangles[t]) - now.deviations[t]);
-      ASSERT_LE(missing, kSlack);
+      ASSERT_LE(missing, kDeviationMeterSlack);
     }
   }
 }
 
 TEST(DeviationMeterTest, DeviationsOfManyCollapsesHoldBothWays) {
-  for (const auto& [name, mesh] : meshes()) {
+  for (const auto& [name, mesh] : metered_meshes()) {
     const BuildTile input = tests::tile_of(mesh);
     for (const double part : {0.1, 0.5, 0.8}) {
       for (std::uint64_t seed = 0; seed < 3; ++seed) {
@@ -178,7 +179,7 @@ TEST(DeviationMeterTest, DeviationsOfManyCollapsesHoldBothWays) {
 }
 
 TEST(DeviationMeterTest, GhostsStayAndTheirTrianglesDeviation) {
-  for (const auto& [name, mesh] : meshes()) {
+  for (const auto& [name, mesh] : metered_meshes()) {
     SCOPED_TRACE(name);
     const BuildTile input = tests::part_of(mesh, 0.1F);
     if (input.mesh.interior.empty())
@@ -204,8 +205,8 @@ TEST(DeviationMeterTest, IsNotLooseAfterManyCollapses) {
     RandomCollapses(tile, 3, false).run(input.mesh.own_count / 3);
     const Surface now = living(tile);
     const std::vector<Corners> original = local_surface(tile, mesh);
-    const double sampled = std::max(farthest_sample(now.triangles, original, kSteps),
-                                    farthest_sample(original, now.triangles, kSteps));
+    const double sampled = std::max(farthest_sample(now.triangles, original, kDeviationMeterSteps),
+                                    farthest_sample(original, now.triangles, kDeviationMeterSteps));
     EXPECT_LE(*std::ranges::max_element(now.deviations), 4 * sampled);
   }
 }
@@ -260,7 +261,7 @@ TEST(DeviationMeterTest, WhatLandsExactlyBringsItsDeviation) {
 
 TEST(DeviationMeterTest, OfAllThatCollapsedNothingIsLeftUnseen) {
   // Pieces vanish: what is left, the deviations and what was lost cover the original together.
-  for (const auto& [name, mesh] : meshes()) {
+  for (const auto& [name, mesh] : metered_meshes()) {
     for (std::uint64_t seed = 0; seed < 3; ++seed) {
       SCOPED_TRACE(name + " " + std::to_string(seed));
       const BuildTile input = tests::tile_of(mesh);
@@ -277,7 +278,8 @@ TEST(DeviationMeterTest, OfAllThatCollapsedNothingIsLeftUnseen) {
         bound = std::max(bound, double{deviation});
       const std::vector<Corners> image = surface_of(tests::image_of(input, chosen));
       const double size = tile.frame().to_global(1.0);
-      EXPECT_LE(farthest_sample(surface_of(mesh), image, kSteps), bound + kSlack * size);
+      EXPECT_LE(farthest_sample(surface_of(mesh), image, kDeviationMeterSteps),
+                bound + kDeviationMeterSlack * size);
     }
   }
 }

@@ -26,9 +26,9 @@ std::vector<Vec3f> random_points(std::size_t count, std::uint64_t seed) {
 }
 
 /// The contract once more, by whole sorts: what kd_cells() must return.
-class Reference {
+class ReferenceCells {
  public:
-  Reference(std::span<const Vec3f> points, std::uint32_t cells)
+  ReferenceCells(std::span<const Vec3f> points, std::uint32_t cells)
       : points_(points), cells_(cells), order_(points.size()), cell_of_(points.size()) {
     std::iota(order_.begin(), order_.end(), 0U);
     split(0, cells);
@@ -100,7 +100,8 @@ TEST(KdCellsTest, SizesDifferByAtMostOneForAnyPairOfCounts) {
 TEST(KdCellsTest, SplitsAtExactMediansAlongTheLongestAxis) {
   for (const std::uint32_t cells : {1U, 2U, 3U, 10U, 333U, 1000U}) {
     const std::vector<Vec3f> points = random_points(1000, 40 + cells);
-    EXPECT_EQ(kd_cells(points, cells), Reference(points, cells).cell_of()) << cells << " cells";
+    EXPECT_EQ(kd_cells(points, cells), ReferenceCells(points, cells).cell_of())
+        << cells << " cells";
   }
 }
 
@@ -113,7 +114,7 @@ TEST(KdCellsTest, EqualCoordinatesAreOrderedByIndex) {
     lattice.push_back({static_cast<float>(i * 5 % 8), static_cast<float>(i * 3 / 8 % 8),
                        static_cast<float>(i / 64)});
   }
-  EXPECT_EQ(kd_cells(lattice, 37), Reference(lattice, 37).cell_of());
+  EXPECT_EQ(kd_cells(lattice, 37), ReferenceCells(lattice, 37).cell_of());
 }
 
 TEST(KdCellsTest, CellsAreNumberedAlongTheSplitAxis) {

@@ -25,8 +25,8 @@ using tests::distance_to_surface;
 using tests::samples_of;
 using tests::surface_of;
 
-constexpr int kSteps = 4;
-constexpr double kSlack = 1e-6;  // of single precision, of the size of the meshes
+constexpr int kMotionSteps = 4;
+constexpr double kMotionSlack = 1e-6;  // of single precision, of the size of the meshes
 
 /// What the triangles around each representative may have deviated, as neighbours will see it.
 double deviation_of(const Contraction& contraction, const tests::MeshTriangle& t) {
@@ -56,7 +56,7 @@ void expect_drawn_near(const BuildTile& tile, const Contraction& found,
         is_interior ? std::min(deviation_of(found, t), double{found.deviation.interior})
                     : deviation_of(found, t);
     const Corners corners = surface_of(tests::TestMesh{image.positions, {t}})[0];
-    for (const Vec3d p : samples_of(corners, kSteps))
+    for (const Vec3d p : samples_of(corners, kMotionSteps))
       ASSERT_LE(distance_to_surface(p, before), deviation + slack);
   }
 }
@@ -74,7 +74,7 @@ void expect_joined_near(const BuildTile& tile, const Contraction& found,
   for (const tests::MeshTriangle& t : image.triangles)
     deviations.push_back(std::max(deviation_of(found, t), double{found.deviation.lost}));
   for (const Corners& corners : surface_of(tile.mesh)) {
-    for (const Vec3d p : samples_of(corners, kSteps)) {
+    for (const Vec3d p : samples_of(corners, kMotionSteps)) {
       double missing = std::numeric_limits<double>::infinity();
       for (std::size_t t = 0; t < after.size(); ++t)
         missing = std::min(missing, tests::distance_to_triangle(p, after[t]) - deviations[t]);
@@ -87,7 +87,7 @@ void expect_deviation_holds(const BuildTile& tile, const Contraction& found) {
   ASSERT_EQ(found.deviation.around.size(), found.representatives.size());
   EXPECT_GE(found.deviation.mean_square, 0);
   const tests::TestMesh image = tests::image_of(tile, found);
-  const double slack = kSlack * size_of(tile);
+  const double slack = kMotionSlack * size_of(tile);
   expect_drawn_near(tile, found, image, slack);
   expect_joined_near(tile, found, image, slack);
 }
@@ -160,7 +160,7 @@ double mean_distance(const BuildTile& tile, const Contraction& found) {
   double sum = 0;
   double whole = 0;
   for (const Corners& corners : surface_of(tile.mesh)) {
-    const std::vector<Vec3d> samples = samples_of(corners, kSteps);
+    const std::vector<Vec3d> samples = samples_of(corners, kMotionSteps);
     const double area = length(cross(corners[1] - corners[0], corners[2] - corners[0]));
     for (const Vec3d p : samples)
       sum += area / static_cast<double>(samples.size()) * distance_to_surface(p, after);

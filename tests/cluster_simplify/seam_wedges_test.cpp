@@ -34,7 +34,7 @@ struct Corner {
   std::uint32_t wedge = 0;
   friend auto operator<=>(const Corner&, const Corner&) = default;
 };
-using Corners = std::array<Corner, 3>;
+using TriangleCorners = std::array<Corner, 3>;
 
 constexpr std::uint32_t kTiles = 4;
 constexpr std::uint32_t kMostWedges = 16;
@@ -44,20 +44,20 @@ float attribute_of(const Corner& vertex) {
   return static_cast<float>(vertex.place * kMostWedges + vertex.wedge);
 }
 
-Corners smallest_first(Corners t) {
+TriangleCorners smallest_first(TriangleCorners t) {
   std::ranges::rotate(t, std::ranges::min_element(t));
   return t;
 }
 
-bool is_flat(const Corners& t) {
+bool is_flat(const TriangleCorners& t) {
   return t[0].place == t[1].place || t[1].place == t[2].place || t[2].place == t[0].place;
 }
 
 /// A mesh whose every third place has one to three copies, cut into tiles of one level: what tiles
 /// must agree with, as numbers of the whole mesh.
-struct World {
+struct WedgeWorld {
   std::vector<Vec3f> positions;
-  std::vector<Corners> triangles;
+  std::vector<TriangleCorners> triangles;
   std::vector<std::uint32_t> tile_of, local_of;
   std::vector<std::vector<std::uint32_t>> own;  ///< tile, local -> place
   std::vector<std::uint32_t> boundary_counts;
@@ -65,17 +65,17 @@ struct World {
   static std::uint32_t copies_at(std::uint32_t place) {
     return place % 3 == 0 ? 1 + place / 3 % 3 : 0;
   }
-  bool touches(const Corners& t, std::uint32_t tile) const {
+  bool touches(const TriangleCorners& t, std::uint32_t tile) const {
     return std::ranges::any_of(t, [&](const Corner& c) { return tile_of[c.place] == tile; });
   }
-  bool is_inside(const Corners& t) const {
+  bool is_inside(const TriangleCorners& t) const {
     return std::ranges::all_of(
         t, [&](const Corner& c) { return tile_of[c.place] == tile_of[t[0].place]; });
   }
 
   void number() {
     std::vector<bool> on_boundary(positions.size());
-    for (const Corners& t : triangles) {
+    for (const TriangleCorners& t : triangles) {
       for (const Corner& corner : t)
         on_boundary[corner.place] = on_boundary[corner.place] || !is_inside(t);
     }
@@ -95,9 +95,10 @@ struct World {
   }
 
   /// Triangles with a corner in a tile of `tiles`, all of them or not; flat ones, too, or not.
-  std::vector<Corners> select(const std::set<std::uint32_t>& tiles, bool inside, bool flat) const {
-    std::vector<Corners> selected;
-    for (const Corners& t : triangles) {
+  std::vector<TriangleCorners> select(const std::set<std::uint32_t>& tiles, bool inside,
+                                      bool flat) const {
+    std::vector<TriangleCorners> selected;
+    for (const TriangleCorners& t : triangles) {
       const auto corners = std::ranges::count_if(
           t, [&](const Corner& c) { return tiles.contains(tile_of[c.place]); });
       if (corners > 0 && (corners == 3) == inside && (flat || !cluster_simplify::is_flat(t)))
@@ -108,8 +109,8 @@ struct World {
   }
 };
 
-World make_world(const tests::TestMesh& mesh, bool scattered) {
-  World world;
+WedgeWorld make_world(const tests::TestMesh& mesh, bool scattered) {
+  WedgeWorld world;
   world.positions = mesh.positions;
   for (std::uint32_t place = 0; place < mesh.positions.size(); ++place) {
     const float where = scattered ? tests::hash_noise(place, 77) : mesh.positions[place].x / 1.5F;
@@ -117,13 +118,13 @@ World make_world(const tests::TestMesh& mesh, bool scattered) {
         static_cast<std::uint32_t>(std::clamp((where + 1) / 2, 0.0F, 0.999F) * kTiles));
   }
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    Corners& corners = world.triangles.emplace_back();
+    TriangleCorners& corners = world.triangles.emplace_back();
     for (std::uint32_t k = 0; k < 3; ++k) {
       const std::uint32_t place = mesh.triangles[i][k];
-      corners[k] = {place, i % 4 == 0 ? 0 : (i + k) % (World::copies_at(place) + 1)};
+      corners[k] = {place, i % 4 == 0 ? 0 : (i + k) % (WedgeWorld::copies_at(place) + 1)};
     }
     const Corner first = corners[0];
-    if (i % 50 == 0 && World::copies_at(first.place) > 0)  // as inputs have them
+    if (i % 50 == 0 && WedgeWorld::copies_at(first.place) > 0)  // as inputs have them
       world.triangles.push_back({Corner{first.place, 0}, {first.place, 1}, corners[1]});
   }
   world.number();
@@ -131,12 +132,12 @@ World make_world(const tests::TestMesh& mesh, bool scattered) {
 }
 
 /// What a tile shows: its own places, [0, count) of them, and their copies.
-Boundary shown(const World& world, std::uint32_t tile, std::uint32_t count) {
+Boundary shown(const WedgeWorld& world, std::uint32_t tile, std::uint32_t count) {
   Boundary boundary;
   boundary.vertices.channels = boundary.copies.vertices.channels = 1;
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t place = world.own[tile][i];
-    for (std::uint32_t wedge = 0; wedge <= World::copies_at(place); ++wedge) {
+    for (std::uint32_t wedge = 0; wedge <= WedgeWorld::copies_at(place); ++wedge) {
       const float attribute = attribute_of({place, wedge});
       (wedge == 0 ? boundary.vertices : boundary.copies.vertices)
           .append(world.positions[place], std::span(&attribute, 1));
@@ -148,7 +149,7 @@ Boundary shown(const World& world, std::uint32_t tile, std::uint32_t count) {
 }
 
 /// The tile as its own stage would leave it: foreign corners named as in their tiles.
-SimplifiedTile work_tile(const World& world, std::uint32_t tile) {
+SimplifiedTile work_tile(const WedgeWorld& world, std::uint32_t tile) {
   SimplifiedTile work;
   const auto own_count = static_cast<std::uint32_t>(world.own[tile].size());
   Boundary all = shown(world, tile, own_count);
@@ -157,9 +158,9 @@ SimplifiedTile work_tile(const World& world, std::uint32_t tile) {
   work.history.weights.assign(own_count, 1);
   work.boundary_count = world.boundary_counts[tile];
   std::set<GhostRef> refs;
-  const std::vector<Corners> inside = world.select({tile}, true, true);
-  const std::vector<Corners> across = world.select({tile}, false, true);
-  for (const Corners& t : across) {
+  const std::vector<TriangleCorners> inside = world.select({tile}, true, true);
+  const std::vector<TriangleCorners> across = world.select({tile}, false, true);
+  for (const TriangleCorners& t : across) {
     for (const Corner& corner : t) {
       if (world.tile_of[corner.place] != tile)
         refs.insert({world.tile_of[corner.place], world.local_of[corner.place]});
@@ -174,20 +175,20 @@ SimplifiedTile work_tile(const World& world, std::uint32_t tile) {
             ? ref.index
             : own_count + static_cast<std::uint32_t>(std::distance(refs.begin(), refs.find(ref))));
   };
-  const auto add = [&](const Corners& t, std::vector<TileTriangle>& triangles,
+  const auto add = [&](const TriangleCorners& t, std::vector<TileTriangle>& triangles,
                        std::vector<CornerWedges>& wedges) {
     triangles.push_back({local(t[0].place), local(t[1].place), local(t[2].place)});
     wedges.push_back({t[0].wedge, t[1].wedge, t[2].wedge});
   };
-  for (const Corners& t : inside)
+  for (const TriangleCorners& t : inside)
     add(t, work.interior, work.interior_wedges);
-  for (const Corners& t : across)
+  for (const TriangleCorners& t : across)
     add(t, work.border, work.border_wedges);
   normalize_triangles(work.interior, work.interior_wedges, false);
   return work;
 }
 
-BuildTile build_tile(const World& world, std::uint32_t tile) {
+BuildTile build_tile(const WedgeWorld& world, std::uint32_t tile) {
   SimplifiedTile work = work_tile(world, tile);
   std::vector<GhostRef> same;
   for (const FinerGhost& corner : work.foreign)
@@ -200,13 +201,13 @@ BuildTile build_tile(const World& world, std::uint32_t tile) {
   return built;
 }
 
-BuildTile join_pair(const World& world, std::uint32_t pair) {
+BuildTile join_pair(const WedgeWorld& world, std::uint32_t pair) {
   return join(build_tile(world, 2 * pair), 2 * pair, build_tile(world, 2 * pair + 1), 2 * pair + 1);
 }
 
 /// A tile, and the places of the world that its own ones are.
 struct Placed {
-  const World& world;
+  const WedgeWorld& world;
   const TileMesh& mesh;
   std::vector<std::uint32_t> own;
 
@@ -214,12 +215,12 @@ struct Placed {
     return mesh.is_own(v) ? own.at(raw(v)) : world.own[mesh.ghost(v).tile].at(mesh.ghost(v).index);
   }
   /// Triangles as the world has them, told by the attributes at their corners.
-  std::vector<Corners> triangles(std::span<const TileTriangle> places,
-                                 std::span<const CornerWedges> wedges) const {
+  std::vector<TriangleCorners> triangles(std::span<const TileTriangle> places,
+                                         std::span<const CornerWedges> wedges) const {
     EXPECT_TRUE(wedges.empty() || wedges.size() == places.size());
-    std::vector<Corners> result;
+    std::vector<TriangleCorners> result;
     for (std::size_t i = 0; i < places.size(); ++i) {
-      Corners corners;
+      TriangleCorners corners;
       for (std::size_t k = 0; k < 3; ++k) {
         const std::uint32_t wedge = wedges.empty() ? 0 : wedges[i][k];
         const auto id =
@@ -234,7 +235,7 @@ struct Placed {
   }
 };
 
-Placed placed_pair(const World& world, const TileMesh& mesh, std::uint32_t pair) {
+Placed placed_pair(const WedgeWorld& world, const TileMesh& mesh, std::uint32_t pair) {
   Placed placed{world, mesh, world.own[2 * pair]};
   const std::vector<std::uint32_t>& second = world.own[2 * pair + 1];
   placed.own.insert(placed.own.end(), second.begin(), second.end());
@@ -247,10 +248,10 @@ void expect_copies(const Placed& placed, const std::set<std::uint32_t>& tiles) {
   const TileMesh& mesh = placed.mesh;
   std::set<Corner> expected;  // of the world
   for (const std::uint32_t place : placed.own) {
-    for (std::uint32_t k = 1; k <= World::copies_at(place); ++k)
+    for (std::uint32_t k = 1; k <= WedgeWorld::copies_at(place); ++k)
       expected.insert({place, k});
   }
-  for (const Corners& t : placed.world.select(tiles, false, true)) {
+  for (const TriangleCorners& t : placed.world.select(tiles, false, true)) {
     for (const Corner& corner : t) {
       if (corner.wedge > 0)
         expected.insert(corner);
@@ -287,7 +288,7 @@ void expect_named(const TileMesh& mesh) {
   }
 }
 
-std::vector<std::pair<std::string, World>> worlds() {
+std::vector<std::pair<std::string, WedgeWorld>> worlds() {
   return {{"sphere", make_world(tests::sphere(1200, 0.02F), false)},
           {"sphere, scattered tiles", make_world(tests::sphere(600), true)},
           {"torus", make_world(tests::torus(900), false)},
@@ -314,8 +315,8 @@ TEST(SeamWedgesTest, AResolvedTileNamesItsNeighboursVertices) {
 }
 
 TEST(SeamWedgesTest, ATileWithoutCopiesNamesNone) {
-  World world = make_world(tests::sphere(600), false);
-  for (Corners& t : world.triangles) {
+  WedgeWorld world = make_world(tests::sphere(600), false);
+  for (TriangleCorners& t : world.triangles) {
     for (Corner& corner : t)
       corner.wedge = 0;
   }
@@ -331,7 +332,7 @@ TEST(SeamWedgesTest, ATileWithoutCopiesNamesNone) {
 }
 
 TEST(SeamWedgesTest, AWedgeThatTheNeighbourDoesNotHaveIsADefect) {
-  const World world = make_world(tests::sphere(600), false);
+  const WedgeWorld world = make_world(tests::sphere(600), false);
   SimplifiedTile work = work_tile(world, 0);
   std::vector<GhostRef> same;
   for (const FinerGhost& corner : work.foreign)
@@ -513,7 +514,7 @@ TEST(SeamWedgesTest, OfTrianglesOfTheSamePlacesAllTilesKeepTheSame) {
 }
 
 TEST(SeamWedgesTest, CopiesFollowTheirRepresentatives) {
-  const World world = make_world(tests::sphere(1200, 0.02F), false);
+  const WedgeWorld world = make_world(tests::sphere(1200, 0.02F), false);
   const BuildTile joined = join_pair(world, 0);
   const auto [contraction, wedges] = wild_contraction(joined.mesh, 60);
   const ContractedTile result = apply(joined, contraction, wedges);

@@ -23,10 +23,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::SizeIs;
 using Triangles = std::vector<tests::MeshTriangle>;
-
-TileTriangle triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-  return {TileVertex{a}, TileVertex{b}, TileVertex{c}};
-}
+using tests::tile_triangle;
 
 /// Smallest corner first, sorted: equal for equal sets of triangles. `unique` drops repeats.
 Triangles normalized(Triangles triangles, bool unique) {
@@ -158,9 +155,9 @@ SimplifiedTile work_tile(const World& world, std::uint32_t tile) {
                                                   work.foreign.begin());
   };
   for (const tests::MeshTriangle& t : world.interior(tile))
-    work.interior.push_back(triangle(local(t[0]), local(t[1]), local(t[2])));
+    work.interior.push_back(tile_triangle(local(t[0]), local(t[1]), local(t[2])));
   for (const tests::MeshTriangle& t : world.border(tile))
-    work.border.push_back(triangle(local(t[0]), local(t[1]), local(t[2])));
+    work.border.push_back(tile_triangle(local(t[0]), local(t[1]), local(t[2])));
   normalize_triangles(work.interior, false);
   return work;
 }
@@ -253,36 +250,36 @@ SimplifiedTile small_tile() {
 
 TEST(ResolveTest, ForeignCornersThatBecameOneVertexBecomeOneGhost) {
   SimplifiedTile tile = small_tile();
-  tile.border = {triangle(0, 2, 4), triangle(0, 3, 5)};
+  tile.border = {tile_triangle(0, 2, 4), tile_triangle(0, 3, 5)};
   const std::vector<GhostRef> mapped = {{1, 3}, {1, 3}, {1, 9}, {1, 3}};
   const BuildTile built = resolve(tile, mapped, true, 0);
   EXPECT_THAT(built.mesh.ghosts, ElementsAre(GhostRef{1, 3}, GhostRef{1, 9}));
-  EXPECT_THAT(built.mesh.border, ElementsAre(triangle(0, 2, 3)));  // the other lost its area
+  EXPECT_THAT(built.mesh.border, ElementsAre(tile_triangle(0, 2, 3)));  // the other lost its area
 }
 
 TEST(ResolveTest, AGhostThatNoTriangleUsesAnyMoreGoes) {
   SimplifiedTile tile = small_tile();
-  tile.border = {triangle(0, 2, 3), triangle(0, 1, 5)};
+  tile.border = {tile_triangle(0, 2, 3), tile_triangle(0, 1, 5)};
   const std::vector<GhostRef> mapped = {{1, 4}, {1, 4}, {1, 0}, {3, 7}};
   const BuildTile built = resolve(tile, mapped, true, 0);
   EXPECT_THAT(built.mesh.ghosts, ElementsAre(GhostRef{3, 7}));
-  EXPECT_THAT(built.mesh.border, ElementsAre(triangle(0, 1, 2)));
+  EXPECT_THAT(built.mesh.border, ElementsAre(tile_triangle(0, 1, 2)));
 }
 
 TEST(ResolveTest, OnlyExactDuplicatesGoAndOnlyIfAskedTo) {
   SimplifiedTile tile = small_tile();
   // The same triangle, turned; and its mirror image, which must stay.
-  tile.border = {triangle(0, 1, 2), triangle(3, 0, 1), triangle(1, 0, 2)};
+  tile.border = {tile_triangle(0, 1, 2), tile_triangle(3, 0, 1), tile_triangle(1, 0, 2)};
   const std::vector<GhostRef> mapped = {{1, 4}, {1, 4}, {1, 4}, {1, 4}};
   EXPECT_THAT(resolve(tile, mapped, true, 0).mesh.border,
-              ElementsAre(triangle(0, 1, 2), triangle(0, 2, 1)));
+              ElementsAre(tile_triangle(0, 1, 2), tile_triangle(0, 2, 1)));
   EXPECT_THAT(resolve(tile, mapped, false, 0).mesh.border,
-              ElementsAre(triangle(0, 1, 2), triangle(0, 1, 2), triangle(0, 2, 1)));
+              ElementsAre(tile_triangle(0, 1, 2), tile_triangle(0, 1, 2), tile_triangle(0, 2, 1)));
 }
 
 TEST(FillGhostsTest, AGhostOutsideTheBoundaryIsADefect) {
   SimplifiedTile work = small_tile();
-  work.border = {triangle(0, 1, 4)};
+  work.border = {tile_triangle(0, 1, 4)};
   const std::vector<GhostRef> mapped = refs_of(work.foreign);
   BuildTile tile = resolve(work, mapped, true, 0);
   Boundary boundary;
@@ -497,13 +494,14 @@ TEST(ApplyTest, RepeatsGoMirrorImagesStay) {
   tile.mesh.vertices.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 1, 0.1F}};
   tile.mesh.own_count = 4;
   tile.history = {{1, 1, 1, 1}};
-  tile.mesh.interior = {triangle(0, 1, 2), triangle(0, 1, 3), triangle(0, 3, 1), triangle(0, 2, 3)};
+  tile.mesh.interior = {tile_triangle(0, 1, 2), tile_triangle(0, 1, 3), tile_triangle(0, 3, 1),
+                        tile_triangle(0, 2, 3)};
   Contraction contraction;
   contraction.parent_of = {0, 1, 2, 2};
   contraction.representatives.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   contraction.deviation.around = {0, 0, 0};
   EXPECT_THAT(apply(tile, contraction).tile.interior,
-              ElementsAre(triangle(0, 1, 2), triangle(0, 2, 1)));
+              ElementsAre(tile_triangle(0, 1, 2), tile_triangle(0, 2, 1)));
 }
 
 TEST(ApplyTest, DeviationsFollowTheirRepresentatives) {

@@ -67,14 +67,6 @@ BuildTile part_of(TestMesh mesh, float limit) {
   return tile_of(mesh, own_count);
 }
 
-void append(TestMesh& mesh, const TestMesh& other, Vec3f shift, float scale) {
-  const std::uint32_t base = count_of(mesh.positions);
-  for (const Vec3f p : other.positions)
-    mesh.positions.push_back(p * scale + shift);
-  for (const MeshTriangle& t : other.triangles)
-    mesh.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
-}
-
 TestMesh cube(std::uint32_t n) {
   TestMesh mesh;
   std::map<std::array<std::uint32_t, 3>, std::uint32_t> known;

@@ -32,9 +32,6 @@ BuildTile part_of(TestMesh mesh, float limit);
 void add_attributes(BuildTile& tile);
 inline constexpr AttributeLayout kAllAttributes{true, ColourType::u8, true, true};
 
-/// Appends `other`, scaled, then shifted.
-void append(TestMesh& mesh, const TestMesh& other, Vec3f shift = {}, float scale = 1);
-
 /// The surface of [-1, 1]^3, closed, n x n quads a face, 6 n^2 + 2 vertices; the corners are there
 /// exactly.
 TestMesh cube(std::uint32_t n);

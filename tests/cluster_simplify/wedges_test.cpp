@@ -32,8 +32,8 @@ using testing::SizeIs;
 using tests::WedgeMesh;
 using Attributes = std::vector<float>;
 
-constexpr AttributeLayout kTextured{.texcoords = true};
-constexpr AttributeLayout kShaded{.normals = true};
+constexpr AttributeLayout kTexturedWedges{.texcoords = true};
+constexpr AttributeLayout kShadedWedges{.normals = true};
 constexpr AttributeLayout kColoured{.colour = ColourType::u8};
 
 Attributes to_vector(std::span<const float> values) {
@@ -41,7 +41,7 @@ Attributes to_vector(std::span<const float> values) {
 }
 
 /// A tile, what a method made of it, and its wedges.
-struct Contracted {
+struct ContractedTile {
   BuildTile tile;
   Contraction contraction;
   ContractedWedges wedges;
@@ -67,7 +67,7 @@ struct Contracted {
 
 /// Calls visit(place, wedge, whether it is own) for the corners of each triangle that survives.
 template <class Visit>
-void for_each_survivor(const Contracted& c, const Visit& visit) {
+void for_each_survivor(const ContractedTile& c, const Visit& visit) {
   const TileMesh& mesh = c.tile.mesh;
   const auto image = [&](TileVertex v) {
     return mesh.is_own(v) ? c.place(raw(v)) : raw(v) + 1000000;
@@ -84,7 +84,7 @@ void for_each_survivor(const Contracted& c, const Visit& visit) {
 }
 
 /// All that holds whatever the tile: sizes, order, a total map, no wedge that nothing shows.
-void expect_sound(const Contracted& c) {
+void expect_sound(const ContractedTile& c) {
   const auto& [attributes, copies, map] = c.wedges;
   const VertexArray& representatives = c.contraction.representatives;
   ASSERT_EQ(attributes.size(), representatives.attributes.size());
@@ -123,10 +123,10 @@ void expect_sound(const Contracted& c) {
   }
 }
 
-Contracted contracted(BuildTile tile, Contraction contraction, const AttributeLayout& layout,
-                      const WedgeOptions& options = {}) {
+ContractedTile contracted(BuildTile tile, Contraction contraction, const AttributeLayout& layout,
+                          const WedgeOptions& options = {}) {
   ContractedWedges wedges = contract_wedges(tile, contraction, layout, options);
-  Contracted result{std::move(tile), std::move(contraction), std::move(wedges), layout};
+  ContractedTile result{std::move(tile), std::move(contraction), std::move(wedges), layout};
   expect_sound(result);
   return result;
 }
@@ -169,8 +169,8 @@ std::vector<NamedMethod> methods() {
           {"vertex", {Method::cluster, Representative::vertex}}};
 }
 
-Contracted contracted(BuildTile tile, std::uint32_t target, const AttributeLayout& layout,
-                      const NamedMethod& method) {
+ContractedTile contracted(BuildTile tile, std::uint32_t target, const AttributeLayout& layout,
+                          const NamedMethod& method) {
   Contraction contraction = contract(tile, target, layout, method.options);
   return contracted(std::move(tile), std::move(contraction), layout);
 }
@@ -200,7 +200,7 @@ bool is_right(std::span<const float> uv) {
 }
 
 /// Every corner that is left of a triangle is in the triangle's chart.
-void expect_charts_kept(const Contracted& c) {
+void expect_charts_kept(const ContractedTile& c) {
   const TileMesh& mesh = c.tile.mesh;
   for_each_survivor(c, [&](const TileTriangle& t, const CornerWedges& wedges) {
     const bool right = is_right(tests::wedge_of(mesh, raw(t[0]), wedges[0]));
@@ -220,7 +220,7 @@ TEST(WedgesTest, ATexturesSeamStaysASeamWithAnyMethod) {
     SCOPED_TRACE(method.name);
     for (const float limit : {100.0F, 9.0F, 6.0F, 4.0F}) {
       const BuildTile tile = tests::tile_of(textured_strip(), limit);
-      const Contracted c = contracted(tile, tile.mesh.own_count / 2, kTextured, method);
+      const ContractedTile c = contracted(tile, tile.mesh.own_count / 2, kTexturedWedges, method);
       expect_charts_kept(c);
       EXPECT_EQ(c.wedges.copies.empty(), limit < kSeam);
     }
@@ -232,7 +232,8 @@ TEST(WedgesTest, TextureCoordinatesAreThoseOfTheSurfaceWhereAPlaceComesToLie) {
     if (method.options.method == Method::cluster)
       continue;  // a cell may hold places of a chart that no edge connects
     SCOPED_TRACE(method.name);
-    const Contracted c = contracted(tests::tile_of(textured_strip()), 58, kTextured, method);
+    const ContractedTile c =
+        contracted(tests::tile_of(textured_strip()), 58, kTexturedWedges, method);
     for (std::uint32_t p = 0; p < 58; ++p) {
       for (std::uint32_t k = 0; k < c.count_at(p) && c.count_at(p) > 1; ++k) {
         const Vec3f position = c.contraction.representatives.positions[p];
@@ -258,8 +259,8 @@ TEST(WedgesTest, HalfEdgeKeepsTheAttributesOfVerticesThatStayBitForBit) {
                   strip.attributes[2 * v], strip.attributes[2 * v + 1]});
   }
   for (const HalfEdgeCost cost : {HalfEdgeCost::quadric, HalfEdgeCost::melax}) {
-    const Contracted c = contracted(tests::tile_of(mesh), 58, tests::kAllAttributes,
-                                    {"", {Method::half_edge, {}, cost}});
+    const ContractedTile c = contracted(tests::tile_of(mesh), 58, tests::kAllAttributes,
+                                        {"", {Method::half_edge, {}, cost}});
     const TileMesh& tile = c.tile.mesh;
     std::size_t stay = 0;
     for_each_survivor(c, [&](const TileTriangle& t, const CornerWedges& wedges) {
@@ -298,7 +299,7 @@ struct SplitMiddle {
 TEST(WedgesTest, CoordinatesThatDifferInTheSignOfAZeroAreOne) {
   const SplitMiddle split(2, {0.0F, 0.5F}, {-0.0F, 0.5F});
   const BuildTile tile = tests::tile_of(split.mesh);
-  const Contracted c = contracted(tile, identity(tile), kTextured);
+  const ContractedTile c = contracted(tile, identity(tile), kTexturedWedges);
   EXPECT_THAT(c.wedges.copies.places, IsEmpty());
   EXPECT_THAT(c.at(0, 0), ElementsAre(0.0F, 0.5F));
 }
@@ -307,7 +308,7 @@ TEST(WedgesTest, EqualPositionsWithZerosOfEitherSignAreOnePlace) {
   SplitMiddle split(2, {0.25F, 0.5F}, {0.75F, 0.5F});
   split.mesh.positions[split.middle[1]] = {-0.0F, 0, -0.0F};
   const BuildTile tile = tests::tile_of(split.mesh);
-  const Contracted c = contracted(tile, identity(tile), kTextured);
+  const ContractedTile c = contracted(tile, identity(tile), kTexturedWedges);
   EXPECT_EQ(c.at(0, c.wedges.map(0, 0)), (Attributes{0.25F, 0.5F}));
   EXPECT_EQ(c.at(0, c.wedges.map(0, 1)), (Attributes{0.75F, 0.5F}));
 }
@@ -317,7 +318,7 @@ TEST(WedgesTest, TrianglesWithoutPlacesOfTheirOwnTieNoSidesTogether) {
   split.mesh.triangles.push_back({split.middle[0], split.middle[1], split.corners[1]});
   const BuildTile tile = tests::tile_of(split.mesh);
   ASSERT_THAT(tile.mesh.interior, SizeIs(5));
-  const Contracted c = contracted(tile, identity(tile), kTextured);
+  const ContractedTile c = contracted(tile, identity(tile), kTexturedWedges);
   EXPECT_EQ(c.image(0, 0), (Attributes{0.25F, 0.5F}));
   EXPECT_EQ(c.image(0, 1), (Attributes{0.75F, 0.5F}));
 }
@@ -327,7 +328,7 @@ TEST(WedgesTest, CoordinatesThatAreNotFiniteStayWithTheirWedges) {
   const float infinite = std::numeric_limits<float>::infinity();
   const SplitMiddle split(2, {0.25F, 0.5F}, {nan, infinite});
   const BuildTile tile = tests::tile_of(split.mesh);
-  const Contracted c = contracted(tile, identity(tile), kTextured);
+  const ContractedTile c = contracted(tile, identity(tile), kTexturedWedges);
   EXPECT_EQ(c.image(0, 0), (Attributes{0.25F, 0.5F}));
   EXPECT_TRUE(std::isnan(c.image(0, 1)[0]));
   EXPECT_EQ(c.image(0, 1)[1], infinite);
@@ -353,7 +354,8 @@ TEST(WedgesTest, AChartThatVanishesGoesToAWedgeOfItsPlace) {
       positions.push_back(tile.mesh.vertices.positions[p]);
   }
   ASSERT_EQ(positions.size(), 33U);
-  const Contracted c = contracted(tile, contraction_to(parent_of, positions, 2), kTextured);
+  const ContractedTile c =
+      contracted(tile, contraction_to(parent_of, positions, 2), kTexturedWedges);
   EXPECT_THAT(c.wedges.copies.places, IsEmpty());
   const Attributes uv = c.at(0, 0);
   EXPECT_LE(uv[0], 0.5F);
@@ -371,9 +373,10 @@ TEST(WedgesTest, AWedgeWithoutATriangleStaysInItsChart) {
   const auto right = mesh.add({2, 0, 0}, {0.2F, 0});
   const auto below = mesh.add({1, -1, 0}, {0.5F, 0.1F});
   mesh.triangles = {{gone, kept, above}, {kept, right, above}, {beside, below, right}};
-  const Contracted c = contracted(
-      tests::tile_of(mesh),
-      contraction_to({0, 0, 1, 2, 3}, {{1, 0, 0}, {0, 1, 0}, {2, 0, 0}, {1, -1, 0}}, 2), kTextured);
+  const ContractedTile c =
+      contracted(tests::tile_of(mesh),
+                 contraction_to({0, 0, 1, 2, 3}, {{1, 0, 0}, {0, 1, 0}, {2, 0, 0}, {1, -1, 0}}, 2),
+                 kTexturedWedges);
   EXPECT_EQ(c.image(1, 0), (Attributes{0.1F, 0}));
   EXPECT_EQ(c.image(1, 1), (Attributes{0.5F, 0}));
   EXPECT_EQ(c.image(0, 0), (Attributes{0.1F, 0}));
@@ -402,7 +405,7 @@ TEST(WedgesTest, HardEdgesOfACubeStayHard) {
       SCOPED_TRACE(method.name);
       const WedgeMesh mesh = soup ? flat_shaded(cube) : tests::welded(flat_shaded(cube));
       const BuildTile tile = tests::tile_of(mesh);
-      const Contracted c = contracted(tile, 100, kShaded, method);
+      const ContractedTile c = contracted(tile, 100, kShadedWedges, method);
       std::size_t apart = 0;
       std::size_t count = 0;
       for_each_survivor(c, [&](const TileTriangle& t, const CornerWedges& wedges) {
@@ -424,7 +427,7 @@ TEST(WedgesTest, AFineSurfaceWithANormalAFaceBecomesSmooth) {
   EXPECT_GT(tile.mesh.copies.size(), 4000U);
   for (const NamedMethod& method : methods()) {
     SCOPED_TRACE(method.name);
-    const Contracted c = contracted(tile, tile.mesh.own_count / 2, kShaded, method);
+    const ContractedTile c = contracted(tile, tile.mesh.own_count / 2, kShadedWedges, method);
     EXPECT_THAT(c.wedges.copies.places, IsEmpty());
     for (std::uint32_t p = 0; p < c.contraction.representatives.size(); ++p) {
       const Attributes n = c.at(p, 0);
@@ -443,15 +446,17 @@ TEST(WedgesTest, TheCreaseAngleDecidesWhatIsAnEdge) {
   };
   const SplitMiddle split(3, normal(-15), normal(15));  // triangles of equal area
   const BuildTile tile = tests::tile_of(split.mesh);
-  const Contracted smooth = contracted(tile, identity(tile), kShaded, {.crease_angle = 31});
+  const ContractedTile smooth =
+      contracted(tile, identity(tile), kShadedWedges, {.crease_angle = 31});
   EXPECT_THAT(smooth.wedges.copies.places, IsEmpty());
   EXPECT_NEAR(smooth.at(0, 0)[1], 0, 1e-6);
   EXPECT_NEAR(smooth.at(0, 0)[2], 1, 1e-6);
-  const Contracted sharp = contracted(tile, identity(tile), kShaded, {.crease_angle = 29});
+  const ContractedTile sharp =
+      contracted(tile, identity(tile), kShadedWedges, {.crease_angle = 29});
   EXPECT_THAT(sharp.wedges.copies.places, ElementsAre(0));
   EXPECT_EQ(sharp.at(0, 0), normal(-15));
   EXPECT_EQ(sharp.at(0, 1), normal(15));
-  const Contracted all = contracted(tile, identity(tile), kShaded, {.crease_angle = 0});
+  const ContractedTile all = contracted(tile, identity(tile), kShadedWedges, {.crease_angle = 0});
   EXPECT_THAT(all.wedges.copies.places, ElementsAre(0));
 }
 
@@ -469,7 +474,7 @@ TEST(WedgesTest, WhatShowsMostLeadsItsGroup) {
       mesh.triangles.push_back({tip, side, mesh.add({x, 5, size / 10}, normals[k])});
     }
     const BuildTile tile = tests::tile_of(mesh);
-    const Contracted c = contracted(tile, identity(tile), kShaded);
+    const ContractedTile c = contracted(tile, identity(tile), kShadedWedges);
     EXPECT_EQ(c.wedges.copies.size(), largest == 1 ? 0U : 1U) << largest;
   }
 }
@@ -483,13 +488,13 @@ TEST(WedgesTest, NormalsWithoutADirectionChangeNothing) {
       const Attributes up{0, 0, 1};
       const SplitMiddle split(3, first ? nothing : up, first ? up : nothing);
       const BuildTile tile = tests::tile_of(split.mesh);
-      const Contracted c = contracted(tile, identity(tile), kShaded);
+      const ContractedTile c = contracted(tile, identity(tile), kShadedWedges);
       EXPECT_THAT(c.wedges.copies.places, IsEmpty());
       EXPECT_EQ(c.at(0, 0), up);
     }
     const SplitMiddle split(3, nothing, nothing);
     const BuildTile tile = tests::tile_of(split.mesh);
-    EXPECT_THAT(contracted(tile, identity(tile), kShaded).wedges.copies.places, IsEmpty());
+    EXPECT_THAT(contracted(tile, identity(tile), kShadedWedges).wedges.copies.places, IsEmpty());
   }
 }
 
@@ -505,7 +510,7 @@ TEST(WedgesTest, ShadingStaysSmoothAcrossASeamOfTheTexture) {
   ASSERT_FALSE(tile.mesh.copies.empty());
   for (const NamedMethod& method : methods()) {
     SCOPED_TRACE(method.name);
-    const Contracted c = contracted(tile, tile.mesh.own_count / 2, kBoth, method);
+    const ContractedTile c = contracted(tile, tile.mesh.own_count / 2, kBoth, method);
     ASSERT_FALSE(c.wedges.copies.empty());
     for (const std::uint32_t p : c.wedges.copies.places) {
       const Attributes a = c.at(p, 0);
@@ -531,7 +536,7 @@ TEST(WedgesTest, ACubeKeepsChartsAndHardEdges) {
   const BuildTile tile = tests::tile_of(mesh);
   for (const NamedMethod& method : methods()) {
     SCOPED_TRACE(method.name);
-    const Contracted c = contracted(tile, 60, kBoth, method);
+    const ContractedTile c = contracted(tile, 60, kBoth, method);
     for_each_survivor(c, [&](const TileTriangle& t, const CornerWedges& wedges) {
       for (std::size_t k = 0; k < 3; ++k) {
         const auto old = tests::wedge_of(tile.mesh, raw(t[k]), wedges[k]);
@@ -557,7 +562,7 @@ TEST(WedgesTest, AColourAFaceStaysApartAndNoiseDoesNot) {
   for (const NamedMethod& method : methods()) {
     SCOPED_TRACE(method.name);
     const BuildTile apart = tests::tile_of(coloured(17));  // 255 / 16 = 15.9
-    const Contracted c = contracted(apart, 40, kColoured, method);
+    const ContractedTile c = contracted(apart, 40, kColoured, method);
     EXPECT_FALSE(c.wedges.copies.empty());
     for_each_survivor(c, [&](const TileTriangle& t, const CornerWedges& wedges) {
       for (std::size_t k = 0; k < 3; ++k)
@@ -565,7 +570,7 @@ TEST(WedgesTest, AColourAFaceStaysApartAndNoiseDoesNot) {
                   to_vector(tests::wedge_of(apart.mesh, raw(t[k]), wedges[k])));
     });
     const BuildTile noisy = tests::tile_of(coloured(15));
-    const Contracted one = contracted(noisy, 40, kColoured, method);
+    const ContractedTile one = contracted(noisy, 40, kColoured, method);
     EXPECT_THAT(one.wedges.copies.places, IsEmpty());
     for (const float channel : one.wedges.attributes) {
       EXPECT_GE(channel, 50);
@@ -593,7 +598,7 @@ TEST(WedgesTest, ColoursThatAreNotFiniteChangeNothing) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const SplitMiddle split(3, {nan, 0, 0}, {0.5F, 0.5F, 0.5F});
   const BuildTile tile = tests::tile_of(split.mesh);
-  const Contracted c = contracted(tile, identity(tile), kFloat);
+  const ContractedTile c = contracted(tile, identity(tile), kFloat);
   EXPECT_THAT(c.wedges.copies.places, IsEmpty());
   EXPECT_THAT(c.at(0, 0), Each(0.5F));
 }
@@ -606,7 +611,7 @@ TEST(WedgesTest, WithoutAttributesAllWedgesOfAPlaceAreOne) {
   const BuildTile tile = tests::tile_of(soup);
   ASSERT_GT(tile.mesh.copies.size(), 1000U);
   for (const NamedMethod& method : methods()) {
-    const Contracted c = contracted(tile, 100, {}, method);
+    const ContractedTile c = contracted(tile, 100, {}, method);
     EXPECT_THAT(c.wedges.copies.places, IsEmpty());
     EXPECT_THAT(c.wedges.map.firsts, Each(0U));
     EXPECT_THAT(c.wedges.map.copies, Each(0U));
@@ -617,7 +622,7 @@ TEST(WedgesTest, WithoutAttributesAllWedgesOfAPlaceAreOne) {
 TEST(WedgesTest, PlacesWithoutCopiesKeepWhatTheContractionGaveThem) {
   const SplitMiddle split(2, {0.25F, 0.5F}, {0.75F, 0.5F});
   const BuildTile tile = tests::tile_of(split.mesh);
-  const Contracted c = contracted(tile, identity(tile), kTextured);
+  const ContractedTile c = contracted(tile, identity(tile), kTexturedWedges);
   for (std::uint32_t p = 1; p < 5; ++p)
     EXPECT_THAT(c.at(p, 0), Each(kUntouched));
   EXPECT_NE(c.at(0, 0)[0], kUntouched);
@@ -645,7 +650,8 @@ TEST(WedgesTest, SheetsThatComeTogetherAcrossAGapDoNotBlend) {
     if (known == positions.end())
       positions.push_back(to);
   }
-  const Contracted c = contracted(tile, contraction_to(parent_of, positions, 2), kTextured);
+  const ContractedTile c =
+      contracted(tile, contraction_to(parent_of, positions, 2), kTexturedWedges);
   EXPECT_EQ(c.wedges.copies.size(), 1U + 5U);
   for (std::uint32_t p = 0; p < tile.mesh.own_count; ++p) {
     const Vec3f at = tile.mesh.vertices.positions[p];
@@ -658,8 +664,8 @@ TEST(WedgesTest, SheetsThatComeTogetherAcrossAGapDoNotBlend) {
 TEST(WedgesTest, WhereNothingSurvivesOneWedgeIsLeftAsItWas) {
   const SplitMiddle split(2, {0.25F, 0.5F}, {0.75F, 0.5F});
   const BuildTile tile = tests::tile_of(split.mesh);
-  const Contracted c =
-      contracted(tile, contraction_to({0, 0, 0, 0, 0}, {{0.5F, 0, 0}}, 2), kTextured);
+  const ContractedTile c =
+      contracted(tile, contraction_to({0, 0, 0, 0, 0}, {{0.5F, 0, 0}}, 2), kTexturedWedges);
   EXPECT_THAT(c.wedges.copies.places, IsEmpty());
   EXPECT_THAT(c.at(0, 0), Each(kUntouched));
   EXPECT_THAT(c.wedges.map.copies, ElementsAre(0));
@@ -678,7 +684,8 @@ TEST(WedgesTest, GhostsWithCopiesGiveTheirSideOfTheSeam) {
   const BuildTile tile = tests::tile_of(mesh, 0.5F);
   ASSERT_EQ(tile.mesh.own_count, 1U);
   ASSERT_EQ(tile.mesh.copies.places, (std::vector<std::uint32_t>{0, 1}));
-  const Contracted c = contracted(tile, contraction_to({0}, {{0.5F, 0, 0}}, 2), kTextured);
+  const ContractedTile c =
+      contracted(tile, contraction_to({0}, {{0.5F, 0, 0}}, 2), kTexturedWedges);
   EXPECT_THAT(c.wedges.copies.places, ElementsAre(0));
   EXPECT_NEAR(c.image(0, 0)[0], 0.15F, 1e-6);
   EXPECT_NEAR(c.image(0, 1)[0], 0.85F, 1e-6);
@@ -689,7 +696,7 @@ TEST(WedgesTest, CopiesOfGhostsAloneChangeNothing) {
   const BuildTile tile = tests::tile_of(split.mesh, -0.5F);
   ASSERT_EQ(tile.mesh.own_count, 1U);
   ASSERT_FALSE(tile.mesh.copies.empty());
-  const Contracted c = contracted(tile, identity(tile), kTextured);
+  const ContractedTile c = contracted(tile, identity(tile), kTexturedWedges);
   EXPECT_THAT(c.wedges.attributes, Each(kUntouched));
 }
 
@@ -722,7 +729,7 @@ TEST(WedgesTest, NoTwoWedgesOfAPlaceAreEqual) {
   const tests::TestMesh wheel = tests::wheel(8, 1);
   mesh = tests::soup_of(wheel, 2, [](std::uint32_t, Vec3f) { return Attributes{0.5F, 0.5F}; });
   const BuildTile tile = tests::tile_of(mesh);
-  const Contracted c = contracted(tile, 5, kTextured, methods()[0]);
+  const ContractedTile c = contracted(tile, 5, kTexturedWedges, methods()[0]);
   EXPECT_THAT(c.wedges.copies.places, IsEmpty());
 }
 
@@ -749,7 +756,7 @@ TEST(WedgesTest, AHundredThousandWedgesAtOnePlaceAreOneMore) {
   }
   const BuildTile& joined = tile;
   const Contraction contraction = contraction_to(parent_of, positions, 2);
-  const ContractedWedges made = contract_wedges(joined, contraction, kTextured, {});
+  const ContractedWedges made = contract_wedges(joined, contraction, kTexturedWedges, {});
   const auto at_apex = std::ranges::count(made.copies.places, apex);
   EXPECT_GT(at_apex, kCount / 2 - 10);
   EXPECT_LT(at_apex, kCount / 2 + 10);
@@ -758,7 +765,7 @@ TEST(WedgesTest, AHundredThousandWedgesAtOnePlaceAreOneMore) {
 TEST(WedgesTest, NumbersFollowTheFirstOldWedges) {
   const SplitMiddle split(2, {0.75F, 0.5F}, {0.25F, 0.5F});
   const BuildTile tile = tests::tile_of(split.mesh);
-  const Contracted c = contracted(tile, identity(tile), kTextured);
+  const ContractedTile c = contracted(tile, identity(tile), kTexturedWedges);
   EXPECT_EQ(c.wedges.map(0, 0), 0U);
   EXPECT_EQ(c.wedges.map(0, 1), 1U);
   EXPECT_EQ(c.at(0, 0), (Attributes{0.75F, 0.5F}));

@@ -1,6 +1,7 @@
 #include "hierarchy/tile_mesh.h"
 
 #include "hierarchy/build_tile.h"
+#include "tests/support/meshes.h"
 
 #include <algorithm>
 #include <random>
@@ -19,17 +20,13 @@ static_assert(!kMixes<GhostRef, FinerGhost> && !kMixes<FinerGhost, GhostRef>);
 static_assert(!kMixes<ChunkVertex, FinerGhost> && !kMixes<FinerGhost, ChunkVertex>);
 static_assert(!kMixes<ChunkVertex, GhostRef> && !kMixes<GhostRef, ChunkVertex>);
 
-TileTriangle triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-  return {static_cast<TileVertex>(a), static_cast<TileVertex>(b), static_cast<TileVertex>(c)};
-}
-
 std::vector<TileTriangle> random_triangles(std::size_t count, std::uint32_t corners) {
   std::mt19937 random(7);
   std::vector<TileTriangle> triangles;
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t a = static_cast<std::uint32_t>(random()) % corners;
     const std::uint32_t b = static_cast<std::uint32_t>(random()) % corners;
-    triangles.push_back(triangle(a, b, static_cast<std::uint32_t>(random()) % corners));
+    triangles.push_back(tile_triangle(a, b, static_cast<std::uint32_t>(random()) % corners));
   }
   return triangles;
 }
@@ -77,16 +74,17 @@ TEST(TileMesh, NormalizingDoesNotDependOnTheOrderGiven) {
 }
 
 TEST(TileMesh, OfDuplicatesOneIsKeptAndTheMirrorImageStays) {
-  std::vector<TileTriangle> triangles{triangle(7, 2, 4), triangle(2, 4, 7), triangle(4, 2, 7),
-                                      triangle(4, 7, 2), triangle(7, 4, 2)};
+  std::vector<TileTriangle> triangles{tile_triangle(7, 2, 4), tile_triangle(2, 4, 7),
+                                      tile_triangle(4, 2, 7), tile_triangle(4, 7, 2),
+                                      tile_triangle(7, 4, 2)};
   normalize_triangles(triangles, true);
-  EXPECT_EQ(triangles, (std::vector<TileTriangle>{triangle(2, 4, 7), triangle(2, 7, 4)}));
+  EXPECT_EQ(triangles, (std::vector<TileTriangle>{tile_triangle(2, 4, 7), tile_triangle(2, 7, 4)}));
 }
 
 TEST(TileMesh, DuplicatesStayUnlessTheyAreUnwanted) {
-  std::vector<TileTriangle> triangles{triangle(7, 2, 4), triangle(2, 4, 7)};
+  std::vector<TileTriangle> triangles{tile_triangle(7, 2, 4), tile_triangle(2, 4, 7)};
   normalize_triangles(triangles, false);
-  EXPECT_EQ(triangles, (std::vector<TileTriangle>{triangle(2, 4, 7), triangle(2, 4, 7)}));
+  EXPECT_EQ(triangles, (std::vector<TileTriangle>{tile_triangle(2, 4, 7), tile_triangle(2, 4, 7)}));
 }
 
 VertexArray numbered(std::size_t count, int channels, float first) {

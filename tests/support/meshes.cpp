@@ -55,14 +55,6 @@ void add_quad(TestMesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c,
 }
 
 /// Appends `other`, its vertices after those of `mesh`.
-void append(TestMesh& mesh, const TestMesh& other) {
-  const std::uint32_t base = u32(mesh.positions.size());
-  mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
-  for (const MeshTriangle& t : other.triangles) {
-    mesh.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
-  }
-}
-
 /// The rings of an octahedron of n edges a side: ring j of 2n + 1 has 4 min(j, 2n - j) vertices,
 /// the first and the last have the one pole.
 class OctahedronRings {
@@ -229,6 +221,14 @@ void shuffle(std::vector<Value>& values, std::uint64_t seed) {
 }
 
 }  // namespace
+
+void append(TestMesh& mesh, const TestMesh& other, Vec3f shift, float scale) {
+  const std::uint32_t base = u32(mesh.positions.size());
+  for (const Vec3f p : other.positions)
+    mesh.positions.push_back(p * scale + shift);
+  for (const MeshTriangle& t : other.triangles)
+    mesh.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+}
 
 TestMesh by_first_appearance(const TestMesh& mesh) {
   std::vector<std::uint32_t> number(mesh.positions.size(), UINT32_MAX);

@@ -3,6 +3,7 @@
 // Independent of the library's readers and writers. Everything is deterministic.
 #pragma once
 
+#include "hierarchy/tile_mesh.h"
 #include "hierarchy/triangle.h"
 #include "hierarchy/vec.h"
 
@@ -17,10 +18,17 @@ namespace meshhier::tests {
 
 using MeshTriangle = Triangle<std::uint32_t>;
 
+constexpr TileTriangle tile_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  return {TileVertex{a}, TileVertex{b}, TileVertex{c}};
+}
+
 struct TestMesh {
   std::vector<Vec3f> positions;
   std::vector<MeshTriangle> triangles;  ///< counter-clockwise seen from outside, where there is one
 };
+
+/// Appends `other`, scaled, then shifted.
+void append(TestMesh& mesh, const TestMesh& other, Vec3f shift = {}, float scale = 1);
 
 // Common parameters: `triangles` asks for at least so many triangles (the next count the shape
 // allows is made; see each maker for the factor); `noise` is the largest displacement of a vertex
