@@ -14,6 +14,7 @@
 #include "tests/support/meshes.h"
 #include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
+#include "tests/support/share.h"
 #include "tests/support/tight_budget.h"
 #include "tests/support/try_build.h"
 
@@ -138,20 +139,21 @@ class FaultsTest : public testing::TestWithParam<config::Container> {
     std::uint64_t times = 1;   ///< so many calls, one after the other
     bool replaces = false;     ///< an output that is there
     bool can_exchange = true;  ///< else by two renames
-    std::string from;  ///< the stage whose calls are counted, and those after it; empty: all
+    std::string from{};  ///< the stage whose calls are counted, and those after it; empty: all
   };
 
-  /// Lets the n-th call fail, and `times` - 1 after it, for all n that a build gets to. Every time
-  /// the output must be the old one or the new one, and the next build must make the new one and
-  /// leave nothing else. Returns how many builds failed.
-  /// Of archives, which are made the same way but for the last calls, every fourth, unless a stage
-  /// is asked for.
+  /// Lets the n-th call fail, and `times` - 1 after it, for all n of the share that a build gets
+  /// to. Every time the output must be the old one or the new one, and the next build must make the
+  /// new one and leave nothing else. Returns how many builds failed, or would, were it all n. Of
+  /// archives, which are made the same way but for the last calls, every fourth, unless a stage is
+  /// asked for.
   int fail_every_call(const Failures& failures) {
     const auto& [times, replaces, can_exchange, from] = failures;
     const Snapshot after = expected();
     const std::uint64_t step = from.empty() ? static_cast<std::uint64_t>(stride()) : 1;
+    const tests::Share& share = tests::share();
     int failed = 0;
-    for (std::uint64_t n = 1;; n += step) {
+    for (std::uint64_t n = 1 + share.index * step;; n += share.count * step) {
       SCOPED_TRACE("call " + std::to_string(n));
       const Snapshot before = replaces ? place_old_output() : Snapshot();
       FaultyFileSystem files;
@@ -184,7 +186,7 @@ class FaultsTest : public testing::TestWithParam<config::Container> {
       EXPECT_EQ(names(), only_output());
       fs::remove_all(config_.output);
       if (!reached || HasFailure())
-        return failed;
+        return failed * static_cast<int>(share.count);
     }
   }
 
@@ -284,7 +286,9 @@ TEST_P(FaultsTest, ADiskThatIsFullAtAnyByte) {
   ASSERT_EQ(run(measuring), std::nullopt);
   fs::remove_all(config_.output);
   const std::uint64_t written = measuring.counters().bytes_written;
-  for (std::uint64_t room = 1; room < written; room += written / 60 + 7) {
+  const tests::Share share = tests::share().of(60);
+  const std::uint64_t step = written / 60 + 7;
+  for (std::uint64_t room = 1 + share.index * step; room < written; room += share.count * step) {
     SCOPED_TRACE(room);
     FaultyFileSystem files;
     files.limit_writes(room);

@@ -15,6 +15,7 @@
 #include "tests/support/interrupter.h"
 #include "tests/support/memory_files.h"
 #include "tests/support/sample_hierarchy.h"
+#include "tests/support/share.h"
 #include "tests/support/simplify_methods.h"
 #include "tests/support/try_build.h"
 
@@ -141,7 +142,8 @@ template <class Round>
 void run_rounds(const Round& round) {
   const std::uint64_t seed = from_environment("MESHHIER_SOAK_SEED", 1);
   const std::uint64_t rounds = from_environment("MESHHIER_SOAK_ROUNDS", 6);
-  for (std::uint64_t i = seed; i < seed + rounds; ++i) {
+  const tests::Share share = tests::share().of(rounds);
+  for (std::uint64_t i = seed + share.index; i < seed + rounds; i += share.count) {
     SCOPED_TRACE("seed " + std::to_string(i));
     round(i);
     ASSERT_FALSE(::testing::Test::HasFailure()) << "seed " << i;

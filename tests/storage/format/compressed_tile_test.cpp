@@ -7,6 +7,7 @@
 #include "storage/format/tile_glb.h"
 #include "storage/format/tile_pack.h"
 #include "support/same_tile.h"
+#include "tests/support/share.h"
 
 #include <algorithm>
 #include <array>
@@ -195,9 +196,9 @@ TEST(CompressedTile, TruncationAtEveryByteIsRefused) {
 
 TEST(CompressedTile, RandomFlipsInTheSectionsAreRefusedOrHarmless) {
   const SampleHierarchy sample = full_sample(storage::Compression::meshopt);
-  std::mt19937 random(7);
   std::size_t refused = 0;
-  for (int round = 0; round < 4000; ++round) {
+  for (std::size_t round = share().index; round < 4000; round += share().count) {
+    std::mt19937 random(7'000 + static_cast<std::uint32_t>(round));
     const PublishedTile& tile = sample.tiles[random() % sample.tiles.size()];
     Bytes bytes = encode_tile(tile, sample.tree, sample.format);
     const std::size_t bin = storage::split_glb(bytes, kTileName).bin.size();
@@ -205,21 +206,21 @@ TEST(CompressedTile, RandomFlipsInTheSectionsAreRefusedOrHarmless) {
       bytes[bytes.size() - 1 - random() % bin] ^= static_cast<std::byte>(1U << random() % 8);
     refused += failure(bytes, tile, sample).empty() ? 0 : 1;
   }
-  EXPECT_GT(refused, 1000U);
+  EXPECT_GT(refused, share().part_of(4000) / 4);
 }
 
 TEST(CompressedTile, RandomFlipsInSectionsWithCopiesAreRefusedOrHarmless) {
   const SampleHierarchy sample = with_copies(full_sample(storage::Compression::meshopt));
-  std::mt19937 random(9);
   std::size_t refused = 0;
-  for (int round = 0; round < 4000; ++round) {
+  for (std::size_t round = share().index; round < 4000; round += share().count) {
+    std::mt19937 random(9'000 + static_cast<std::uint32_t>(round));
     const PublishedTile& tile = sample.tiles[random() % sample.tiles.size()];
     Bytes bytes = encode_tile(tile, sample.tree, sample.format);
     const std::size_t bin = storage::split_glb(bytes, kTileName).bin.size();
     bytes[bytes.size() - 1 - random() % bin] ^= static_cast<std::byte>(1U << random() % 8);
     refused += failure(bytes, tile, sample).empty() ? 0 : 1;
   }
-  EXPECT_GT(refused, 1000U);
+  EXPECT_GT(refused, share().part_of(4000) / 4);
 }
 
 TEST(CompressedTile, RandomNumbersInTheJsonAreRefused) {
@@ -228,9 +229,9 @@ TEST(CompressedTile, RandomNumbersInTheJsonAreRefused) {
     SampleHierarchy sample = quantized(full_sample(compression), 14);
     const TileFormat inner{sample.format.attributes, sample.format.frame,
                            storage::Compression::meshopt, sample.format.lattice};
-    std::mt19937 random(8);
     const std::array<Json, 7> values{-1, 0, 3, 4294967295U, 1e300, "x", Json::array()};
-    for (int round = 0; round < 1000; ++round) {
+    for (std::size_t round = share().index; round < 1000; round += share().count) {
+      std::mt19937 random(8'000 + static_cast<std::uint32_t>(round));
       const PublishedTile& tile = sample.tiles[random() % sample.tiles.size()];
       const Bytes bytes = encode_tile(tile, sample.tree, inner);
       const storage::GlbView glb = storage::split_glb(bytes, kTileName);
