@@ -1,11 +1,11 @@
 #include "inspection/surface_distance.h"
 
+#include "execution/parallel.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
-
-#include <tbb/parallel_for.h>
 
 namespace meshhier::inspection {
 namespace {
@@ -73,7 +73,7 @@ std::vector<std::shared_ptr<const TriangleSearch>> TreeCache::get(
     entries_.splice(entries_.begin(), entries_, found->second);
     trees[i] = found->second->tree;
   }
-  tbb::parallel_for(std::size_t{0}, missing.size(), [&](std::size_t i) {
+  execution::parallel_for(missing.size(), [&](std::size_t i) {
     trees[missing[i]] =
         std::make_shared<const TriangleSearch>(surface_.load(positions[missing[i]]).triangles);
   });
@@ -149,7 +149,7 @@ std::vector<double> SurfaceDistance::answer_batch(std::span<const Vec3d> points,
   }
   const auto trees = trees_.get(tiles);
   std::vector<double> answers(batch.size());
-  tbb::parallel_for(std::size_t{0}, block_count(batch.size()), [&](std::size_t block) {
+  execution::parallel_for(block_count(batch.size()), [&](std::size_t block) {
     const auto queries = block_of(batch, block);
     const auto results = block_of(std::span(answers), block);
     std::size_t tree = 0;
@@ -209,7 +209,7 @@ std::vector<double> SurfaceDistance::distances(std::span<const Vec3d> points,
     return squared;
   std::vector<std::vector<Candidate>> near(block_count(points.size()));
   std::vector<Query> first(points.size());
-  tbb::parallel_for(std::size_t{0}, near.size(), [&](std::size_t block) {
+  execution::parallel_for(near.size(), [&](std::size_t block) {
     near[block] = candidates(block_of(points, block));
     const std::size_t begin = block * kBlockPoints;
     const std::size_t end = std::min(begin + kBlockPoints, points.size());

@@ -6,6 +6,7 @@
 // MiB); what is beyond that goes through one merge more, and only the excess does.
 #pragma once
 
+#include "partition/parallel_sort.h"
 #include "storage/io/spool.h"
 
 #include <algorithm>
@@ -18,8 +19,6 @@
 #include <type_traits>
 #include <utility>
 #include <vector>
-
-#include <tbb/parallel_sort.h>
 
 namespace meshhier::partition {
 
@@ -106,6 +105,7 @@ class ExternalSort {
   }
 
   void make_room();
+  std::span<Record> sorted_buffer();
   void spill_run();
   void new_spool();
   void reduce_runs();
@@ -171,10 +171,15 @@ void ExternalSort<Record, KeyOf>::new_spool() {
 }
 
 template <class Record, class KeyOf>
+std::span<Record> ExternalSort<Record, KeyOf>::sorted_buffer() {
+  const std::span<Record> records(buffer_.get(), filled_);
+  parallel_sort(records, [this](const Record& a, const Record& b) { return less(a, b); });
+  return records;
+}
+
+template <class Record, class KeyOf>
 void ExternalSort<Record, KeyOf>::spill_run() {
-  const std::span<Record> run(buffer_.get(), filled_);
-  tbb::parallel_sort(run.begin(), run.end(),
-                     [this](const Record& a, const Record& b) { return less(a, b); });
+  const std::span<Record> run = sorted_buffer();
   if (spools_.empty())
     new_spool();
   const Spool& spool = *spools_.back();
@@ -188,9 +193,7 @@ template <class Record, class KeyOf>
 void ExternalSort<Record, KeyOf>::sort() {
   assert(!sorted_);
   if (runs_.empty()) {
-    output_ = {buffer_.get(), filled_};
-    tbb::parallel_sort(output_.begin(), output_.end(),
-                       [this](const Record& a, const Record& b) { return less(a, b); });
+    output_ = sorted_buffer();
   } else {
     if (filled_ > 0)
       spill_run();

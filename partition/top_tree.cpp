@@ -1,5 +1,6 @@
 #include "partition/top_tree.h"
 
+#include "partition/parallel_sort.h"
 #include "partition/select.h"
 
 #include <algorithm>
@@ -7,7 +8,6 @@
 #include <cmath>
 
 #include <tbb/parallel_invoke.h>
-#include <tbb/parallel_sort.h>
 
 namespace meshhier::partition {
 namespace {
@@ -58,7 +58,7 @@ struct Keyed {
   SplitKey key() const { return {projection, id}; }
 };
 
-/// Below so many points, sorting or planning in parallel does not pay its bookkeeping.
+/// Below so many points, planning in parallel does not pay its bookkeeping.
 constexpr std::size_t kParallelPoints = 8192;
 
 /// Sorts the sample along the direction; returns the keys in order.
@@ -68,12 +68,7 @@ std::vector<Keyed> sort_along(Vec3d direction, std::span<IdPoint> sample) {
     const SplitKey key = key_along(direction, sample[i].position, sample[i].id);
     keyed[i] = {key.projection, key.id, static_cast<std::uint32_t>(i)};
   }
-  const auto less = [](const Keyed& a, const Keyed& b) { return a.key() < b.key(); };
-  if (keyed.size() > kParallelPoints) {
-    tbb::parallel_sort(keyed.begin(), keyed.end(), less);
-  } else {
-    std::sort(keyed.begin(), keyed.end(), less);
-  }
+  parallel_sort(std::span(keyed), [](const Keyed& a, const Keyed& b) { return a.key() < b.key(); });
   const std::vector<IdPoint> unsorted(sample.begin(), sample.end());
   for (std::size_t i = 0; i < sample.size(); ++i)
     sample[i] = unsorted[keyed[i].place];

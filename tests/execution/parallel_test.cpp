@@ -28,6 +28,21 @@ std::size_t uneven_work(std::size_t i) {
   return i * 3 + (state == 1 ? 1 : 0);
 }
 
+TEST(ParallelForTest, RunsEachOnce) {
+  std::vector<std::atomic<int>> runs(500);
+  parallel_for(runs.size(), [&](std::size_t i) { ++runs[i]; });
+  EXPECT_TRUE(std::all_of(runs.begin(), runs.end(), [](int count) { return count == 1; }));
+  parallel_for(0, [](std::size_t) { ADD_FAILURE(); });
+}
+
+TEST(ParallelForTest, AFailureIsThrownAgain) {
+  const auto work = [](std::size_t i) {
+    if (i == 50)
+      throw Error(ErrorCode::io, "item 50");
+  };
+  EXPECT_THROW(parallel_for(1000, work), Error);
+}
+
 TEST(OrderedForTest, HandsEveryResultOnInOrder) {
   for (const std::size_t in_flight : {1U, 2U, 16U}) {
     std::vector<std::size_t> order;
@@ -91,14 +106,16 @@ TEST(OrderedForTest, AFailureLeavesNoResultBehind) {
   }
 }
 
-TEST(OrderedForTest, AFailureOfTheWorkEndsItAndIsThrownAgain) {
+TEST(OrderedForTest, OfSeveralFailuresTheFirstInOrderIsThrownBehindAllResultsBeforeIt) {
   std::vector<std::size_t> order;
   try {
     ordered_for(
         1000, 4, CancelToken(),
         [](std::size_t i) {
           if (i == 50)
-            throw Error(ErrorCode::io, "item 50");
+            uneven_work(7);
+          if (i >= 50)
+            throw Error(ErrorCode::io, "item " + std::to_string(i));
           return i;
         },
         [&](std::size_t i, std::size_t) { order.push_back(i); });
@@ -107,7 +124,7 @@ TEST(OrderedForTest, AFailureOfTheWorkEndsItAndIsThrownAgain) {
     EXPECT_EQ(error.code(), ErrorCode::io);
     EXPECT_STREQ(error.what(), "item 50");
   }
-  EXPECT_LE(order.size(), 50U);
+  ASSERT_EQ(order.size(), 50U);
   for (std::size_t i = 0; i < order.size(); ++i)
     EXPECT_EQ(order[i], i);
 }
