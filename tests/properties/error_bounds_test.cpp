@@ -56,14 +56,6 @@ class ErrorBoundsTest : public testing::Test {
   std::unique_ptr<storage::FileSystem> files_ = storage::make_posix_file_system();
 };
 
-void append(tests::TestMesh& mesh, const tests::TestMesh& other, Vec3f shift, float scale) {
-  const auto base = static_cast<std::uint32_t>(mesh.positions.size());
-  for (const Vec3f p : other.positions)
-    mesh.positions.push_back(p * scale + shift);
-  for (const tests::MeshTriangle& t : other.triangles)
-    mesh.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
-}
-
 /// A bumpy sheet with triangles that hang on single corners of it.
 tests::TestMesh hung_on_corners() {
   tests::TestMesh mesh = tests::open_grid(25, 25, 0.2F);
