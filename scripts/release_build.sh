@@ -1,7 +1,8 @@
 # shellcheck shell=bash
-# For scripts/install, scripts/package and scripts/sample: the program in build/release and the viewer's page. To be sourced at the root.
+# For scripts to source: the programs in build/release and the viewer's page. To be sourced at the root.
 
 release=build/release
+page=viewer/dist/page
 
 # Builds the targets that are given. Uses what is built already; a build that was set up in another way stays so.
 build_program() {
@@ -9,16 +10,36 @@ build_program() {
   cmake --build "$release" --target "$@"
 }
 
-# Prints why there is no new page, if there is none. Packages that scripts/install_dependencies installed are used.
+# Whether nothing in viewer/ is newer than what its build makes last.
+page_is_new() {
+  local last=$page/meshhier-viewer.js.gz
+  [[ -s $page/index.html && -s $last ]] &&
+    [[ -z $(find viewer -mindepth 1 \( -path viewer/dist -o -path viewer/node_modules -o -path viewer/test \) -prune -o -newer "$last" -print -quit) ]]
+}
+
+# Prints why there is no new page, if there is none. One that is new is left as it is, and so are packages that
+# scripts/install_dependencies installed.
 build_page() {
-  if ! command -v npm >/dev/null; then
+  if page_is_new; then
+    return
+  elif ! command -v npm >/dev/null; then
     echo "npm is not there (Debian: packages nodejs and npm)"
   elif ! cmp -s viewer/package-lock.json viewer/node_modules/.installed-lock.json &&
     ! npm ci --prefix viewer --ignore-scripts --no-audit --no-fund --loglevel=error >&2; then
     echo "npm ci failed in viewer/, see above"
-  elif ! npm run --prefix viewer build >&2; then
+  elif ! npm run --silent --prefix viewer build >&2; then
     echo "npm run build failed in viewer/, see above"
-  elif [[ ! -f viewer/dist/page/index.html ]]; then
-    echo "npm run build made no viewer/dist/page/index.html"
+  elif [[ ! -f $page/index.html ]]; then
+    echo "npm run build made no $page/index.html"
   fi
+}
+
+# The same where there must be a page: ends with 1 if there is none.
+require_page() {
+  local missing
+  missing=$(build_page)
+  [[ -z $missing ]] || {
+    echo "without the viewer's page: $missing" >&2
+    return 1
+  }
 }

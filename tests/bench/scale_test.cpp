@@ -1,4 +1,4 @@
-// scripts/benchmark_scale and the tables that scripts/scale_tables.jq makes of what it measured.
+// The benchmark `scale` and the tables that its scale.jq makes of what it measured.
 #include "tests/support/sample_hierarchy.h"
 
 #include <array>
@@ -39,7 +39,7 @@ Outcome run(const std::string& command) {
 }
 
 std::string script(const char* name) {
-  return fmt::format("'{}/scripts/{}'", MESHHIER_SOURCE_DIR, name);
+  return fmt::format("'{}/scripts/benchmarks/{}'", MESHHIER_SOURCE_DIR, name);
 }
 
 // ---- the script
@@ -48,7 +48,7 @@ class ScaleScript : public testing::Test {
  protected:
   Outcome scale(const std::string& options) const {
     return run(fmt::format("{} --work '{}' --programs '{}' --smallest 2000 {} 2>&1",
-                           script("benchmark_scale"), directory_.path().string(),
+                           script("scale"), directory_.path().string(),
                            fs::path(MESHHIER_BINARY).parent_path().string(), options));
   }
   bool is_clean() const { return fs::is_empty(directory_.path()); }
@@ -116,7 +116,7 @@ std::string tables(const std::vector<Json>& builds) {
       run(fmt::format("jq -rs --arg meshes 'a torus' --argjson gains '{{\"2\": 1.9}}' "
                       "--argjson triangles 1000000 --arg method edge_collapse --argjson threads 2 "
                       "-f {} '{}'",
-                      script("scale_tables.jq"), rows.string()));
+                      script("scale.jq"), rows.string()));
   EXPECT_EQ(outcome.code, 0);
   return outcome.out;
 }

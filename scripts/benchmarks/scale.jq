@@ -1,4 +1,4 @@
-# The tables of scripts/benchmark_scale, in Markdown: sizes, budgets, threads, methods, order.
+# The tables of the benchmark `scale`, in Markdown: sizes, budgets, threads, methods, order.
 #
 # Input: one object a build, as `meshhier build --stats` writes it, with .copy_seconds and .setting: triangles, shuffled, method,
 # threads, budget (bytes). The first build has the usual budget.
