@@ -331,8 +331,12 @@ async function checkDepth(visitor, page, pictures) {
   visitor.check('view zoomed', /^(ZSV|DZM)/.test(zoomed), zoomed);
   await page.waitForFunction(() => location.hash.includes('&'));
   await press(page, 'w', 'p', '3', 's');
-  const figures = await page.getByRole('region', { name: 'Figures' }).innerText();
-  visitor.check('view figures', /Triangles\s+[1-9]/.test(figures), figures.replace(/\s+/g, ' '));
+  let figures = '';
+  const isFilled = await until(page, async () => {
+    figures = await page.getByRole('region', { name: 'Figures' }).innerText();
+    return /Triangles\s+[1-9]/.test(figures);
+  });
+  visitor.check('view figures', isFilled, figures.replace(/\s+/g, ' '));
   const look = await page.evaluate(() => window.meshhier.view.look);
   visitor.check('view look keys', look.wires && look.points && look.colours === 'partition', JSON.stringify(look));
   await page.screenshot({ path: path.join(pictures, 'page-zoomed.png') });
