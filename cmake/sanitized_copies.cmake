@@ -16,7 +16,7 @@ function(meshhier_sanitized_copies)
     add_library(${library}_sanitized STATIC EXCLUDE_FROM_ALL ${sources})
     target_link_libraries(${library}_sanitized PUBLIC meshhier_sanitizers)
     target_compile_options(${library}_sanitized PRIVATE
-      -O1 -g1 -UNDEBUG -D_GLIBCXX_ASSERTIONS
+      -Og -g1 -UNDEBUG -D_GLIBCXX_ASSERTIONS
       -fno-sanitize=object-size,vptr,pointer-overflow,nonnull-attribute,returns-nonnull-attribute)
     foreach(property COMPILE_DEFINITIONS INCLUDE_DIRECTORIES SYSTEM UNITY_BUILD INTERFACE_INCLUDE_DIRECTORIES)
       get_target_property(value ${library} ${property})

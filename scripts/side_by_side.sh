@@ -43,13 +43,13 @@ side_by_side() {
   ((failed == 0)) || exit 1
 }
 
-# Sets `turn` to those of the commands whose turn it is: a quarter of them with MESHHIER_TEST_SHARE="k/n", so that any four shares in a
+# Sets `turn` to those of the commands whose turn it is: an eighth of them with MESHHIER_TEST_SHARE="k/n", so that any eight shares in a
 # row have all; all without it. The others are named.
 take_turns() {
   local number=0 command
   turn=()
   for command in "$@"; do
-    if [[ -z ${MESHHIER_TEST_SHARE:-} ]] || ((number % 4 == ${MESHHIER_TEST_SHARE%/*} % 4)); then
+    if [[ -z ${MESHHIER_TEST_SHARE:-} ]] || ((number % 8 == ${MESHHIER_TEST_SHARE%/*} % 8)); then
       turn+=("$command")
     else
       echo "not in this share: $command"

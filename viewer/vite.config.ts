@@ -23,5 +23,5 @@ export default defineConfig({
   plugins: [packedCopies()],
   build: { outDir: '../dist/page', emptyOutDir: true, target: 'es2022', chunkSizeWarningLimit: 1000 },
   worker: { format: 'es' },
-  test: { root: '.', include: ['test/**/*.test.ts'] },
+  test: { root: '.', include: ['test/**/*.test.ts'], pool: 'threads', isolate: false },
 });

@@ -19,7 +19,7 @@ std::string format_of(const std::string& content) {
   return name_of(detect_format(Streamed(content).file()));
 }
 
-std::string refusal(const std::string& content) {
+std::string format_refusal(const std::string& content) {
   return input_error_of([&] { format_of(content); });
 }
 
@@ -59,21 +59,21 @@ TEST(MeshFormat, IsKnownInGzip) {
 
 TEST(MeshFormat, WhatIsNoMeshIsRefused) {
   EXPECT_EQ(
-      refusal(""),
+      format_refusal(""),
       "mesh: expected a mesh (PLY, OBJ, glTF, STL or OFF, or one of them packed by gzip), found an "
       "empty file");
-  EXPECT_THAT(refusal("hello world"), HasSubstr("found 'hello world'"));
-  EXPECT_THAT(refusal("plyx"), HasSubstr("found 'plyx'"));
-  EXPECT_THAT(refusal(gzip("hello world")), HasSubstr("found 'hello world'"));
-  EXPECT_THAT(refusal("\x7f"
-                      "ELF\1\2"),
+  EXPECT_THAT(format_refusal("hello world"), HasSubstr("found 'hello world'"));
+  EXPECT_THAT(format_refusal("plyx"), HasSubstr("found 'plyx'"));
+  EXPECT_THAT(format_refusal(gzip("hello world")), HasSubstr("found 'hello world'"));
+  EXPECT_THAT(format_refusal("\x7f"
+                             "ELF\1\2"),
               HasSubstr(R"(found '?ELF?)"));
 }
 
 TEST(MeshFormat, AnStlOfAnotherSizeIsToldWhatItShouldHave) {
   for (const std::size_t bytes : {std::size_t{99}, std::size_t{101}}) {
     EXPECT_THAT(
-        refusal(binary_stl("a part", 2, bytes)),
+        format_refusal(binary_stl("a part", 2, bytes)),
         HasSubstr(
             "as a binary STL it would have 184 bytes, it has " + std::to_string(84 + bytes) +
             (bytes < 100 ? " (truncated?)" : " (its count of facets is wrong, or more follows)")));

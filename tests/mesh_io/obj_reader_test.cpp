@@ -50,7 +50,7 @@ class Taken final : public ObjVisitor {
   ObjCounts counts;
 };
 
-std::string refusal(const std::string& content) {
+std::string obj_refusal(const std::string& content) {
   return input_error_of([&] { Taken{content}; });
 }
 
@@ -149,7 +149,9 @@ TEST(ObjReader, LongLinesAndManyCornersTakeNoMemory) {
 }
 
 TEST(ObjReader, RefusesWhatIsWrongAndNamesTheLine) {
-  const auto after = [](const std::string& line) { return refusal("v 0 0 0\nv 1 0 0\n" + line); };
+  const auto after = [](const std::string& line) {
+    return obj_refusal("v 0 0 0\nv 1 0 0\n" + line);
+  };
   EXPECT_EQ(after("v 1 2\n"),
             "mesh: line 3: expected a number for a coordinate, found the end of the line");
   EXPECT_EQ(after("v 1 2 x\n"),
@@ -172,7 +174,7 @@ TEST(ObjReader, RefusesWhatIsWrongAndNamesTheLine) {
 
 TEST(ObjReader, RefusesIndicesOfWhatIsNotThere) {
   const auto after = [](const std::string& line) {
-    return refusal("v 0 0 0\nv 1 0 0\nv 0 1 0\n" + line + "\nvt 0 0\n");
+    return obj_refusal("v 0 0 0\nv 1 0 0\nv 0 1 0\n" + line + "\nvt 0 0\n");
   };
   EXPECT_THAT(after("f 1 2 4"), HasSubstr("line 4: expected the number of a vertex up to 3, as "
                                           "many as the file has, found 4"));

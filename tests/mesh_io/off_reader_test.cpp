@@ -16,8 +16,8 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-struct Taken {
-  explicit Taken(const std::string& content) {
+struct OffTaken {
+  explicit OffTaken(const std::string& content) {
     Streamed streamed(content);
     counts = read_off(
         streamed.stream(), "mesh",
@@ -35,14 +35,15 @@ struct Taken {
   OffCounts counts;
 };
 
-std::string refusal(const std::string& content) {
-  return input_error_of([&] { Taken{content}; });
+std::string off_refusal(const std::string& content) {
+  return input_error_of([&] { OffTaken{content}; });
 }
 
-constexpr const char* kSquare = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+constexpr const char* kOffSquare = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
 
 TEST(OffReader, ReadsVerticesAndFaces) {
-  const Taken taken("# a\nOFF # b\n\n4 2 0\n" + std::string(kSquare) + "\n# c\n3 0 1 2\n4 0 1 2 3");
+  const OffTaken taken("# a\nOFF # b\n\n4 2 0\n" + std::string(kOffSquare) +
+                       "\n# c\n3 0 1 2\n4 0 1 2 3");
   EXPECT_THAT(taken.vertices, ElementsAre("0 0 0", "1 0 0", "1 1 0", "0 1 0"));
   EXPECT_THAT(taken.triangles, ElementsAre("0 1 2", "0 1 2", "0 2 3"));
   EXPECT_EQ(taken.counts.faces.faces, 2U);
@@ -52,7 +53,7 @@ TEST(OffReader, ReadsVerticesAndFaces) {
 
 TEST(OffReader, CountsMayStandOnTheFirstLineOrWithoutEdges) {
   for (const char* start : {"OFF 4 1 0\n", "OFF 4 1\n", "OFF\r\n4 1\r\n", "OFF\r4 1 5\r"}) {
-    const Taken taken(start + std::string(kSquare) + "3 0 1 2\n");
+    const OffTaken taken(start + std::string(kOffSquare) + "3 0 1 2\n");
     EXPECT_THAT(taken.triangles, ElementsAre("0 1 2")) << start;
   }
 }
@@ -61,61 +62,64 @@ TEST(OffReader, ReadsAttributesInTheirOrder) {
   AttributeLayout all;
   all.normals = all.texcoords = true;
   all.colour = ColourType::u8;
-  const Taken bytes("STCNOFF\n1 0 0\n1 2 3 0 0 1 255 128 0 0.5 0.25\n");
+  const OffTaken bytes("STCNOFF\n1 0 0\n1 2 3 0 0 1 255 128 0 0.5 0.25\n");
   EXPECT_THAT(bytes.vertices, ElementsAre("1 2 3 0 0 1 255 128 0 0.5 0.25"));
   EXPECT_EQ(bytes.counts.attributes, all);
 
-  const Taken floats("COFF\n2 0 0\n1 2 3 1 0.5 0 1\n1 2 3 1 0 0 1\n");
+  const OffTaken floats("COFF\n2 0 0\n1 2 3 1 0.5 0 1\n1 2 3 1 0 0 1\n");
   EXPECT_THAT(floats.vertices, ElementsAre("1 2 3 1 0.5 0 1", "1 2 3 1 0 0 1"));
   EXPECT_EQ(floats.counts.attributes.colour, ColourType::f32);
   EXPECT_TRUE(floats.counts.attributes.alpha);
 
-  const Taken large("COFF\n1 0 0\n1 2 3 256 0 0\n");
+  const OffTaken large("COFF\n1 0 0\n1 2 3 256 0 0\n");
   EXPECT_EQ(large.counts.attributes.colour, ColourType::f32);
   EXPECT_FALSE(large.counts.attributes.alpha);
 }
 
 TEST(OffReader, NormalsAndTextureCoordinatesThatAreNoNumbersAreZero) {
-  const Taken taken("STNOFF\n2 0 0\n1 2 3 0 nan 1 0.5 0.25\n4 5 6 0 0 1 0.5 inf\n");
+  const OffTaken taken("STNOFF\n2 0 0\n1 2 3 0 nan 1 0.5 0.25\n4 5 6 0 0 1 0.5 inf\n");
   EXPECT_THAT(taken.vertices, ElementsAre("1 2 3 0 0 0 0.5 0.25", "4 5 6 0 0 1 0 0"));
   EXPECT_EQ(taken.counts.zeroed, (ZeroedCounts{1, 1}));
 }
 
 TEST(OffReader, CountsColoursOfFacesAndDegenerateFaces) {
-  const Taken taken("OFF 4 4 0\n" + std::string(kSquare) +
-                    "3 0 1 2 255 0 0\n3 0 1 1\n2 0 1\n3 1 2 3 7\n");
+  const OffTaken taken("OFF 4 4 0\n" + std::string(kOffSquare) +
+                       "3 0 1 2 255 0 0\n3 0 1 1\n2 0 1\n3 1 2 3 7\n");
   EXPECT_THAT(taken.triangles, ElementsAre("0 1 2", "1 2 3"));
   EXPECT_EQ(taken.counts.coloured_faces, 2U);
   EXPECT_EQ(taken.counts.faces.degenerate_triangles, 2U);
 }
 
 TEST(OffReader, ACommentMayFollowAWordAtOnce) {
-  const Taken taken("OFF#x\n3 1 0#y\n0 0 0#z\n1 0 0 # \n0 1 0\n3 0 1 2#3 0 1 2");
+  const OffTaken taken("OFF#x\n3 1 0#y\n0 0 0#z\n1 0 0 # \n0 1 0\n3 0 1 2#3 0 1 2");
   EXPECT_THAT(taken.triangles, ElementsAre("0 1 2"));
   EXPECT_EQ(taken.counts.coloured_faces, 0U);
 }
 
 TEST(OffReader, RefusesWhatIsWrongAndNamesTheLine) {
-  EXPECT_THAT(refusal("OF\n"), HasSubstr("line 1: expected 'OFF'"));
-  EXPECT_THAT(refusal("4OFF\n1 0 0\n1 2 3 4\n"), HasSubstr("line 1: expected three coordinates"));
-  EXPECT_THAT(refusal("OFF BINARY\n"), HasSubstr("binary OFF is not read"));
-  EXPECT_THAT(refusal("OFF\n"), HasSubstr("expected the counts of vertices and faces"));
-  EXPECT_THAT(refusal("OFF\n-1 0 0\n"), HasSubstr("line 2: expected the count of vertices"));
-  EXPECT_THAT(refusal("OFF\n1\n"), HasSubstr("line 2: expected the count of faces"));
-  EXPECT_THAT(refusal("OFF\n4294967296 0 0\n"), HasSubstr("expected the count of vertices"));
-  EXPECT_THAT(refusal("OFF\n1 0 0 0\n1 2 3\n"), HasSubstr("line 2: expected the end of the line"));
-  EXPECT_THAT(refusal("OFF\n4000000000 4000000000 0\n1 2 3\n"),
+  EXPECT_THAT(off_refusal("OF\n"), HasSubstr("line 1: expected 'OFF'"));
+  EXPECT_THAT(off_refusal("4OFF\n1 0 0\n1 2 3 4\n"),
+              HasSubstr("line 1: expected three coordinates"));
+  EXPECT_THAT(off_refusal("OFF BINARY\n"), HasSubstr("binary OFF is not read"));
+  EXPECT_THAT(off_refusal("OFF\n"), HasSubstr("expected the counts of vertices and faces"));
+  EXPECT_THAT(off_refusal("OFF\n-1 0 0\n"), HasSubstr("line 2: expected the count of vertices"));
+  EXPECT_THAT(off_refusal("OFF\n1\n"), HasSubstr("line 2: expected the count of faces"));
+  EXPECT_THAT(off_refusal("OFF\n4294967296 0 0\n"), HasSubstr("expected the count of vertices"));
+  EXPECT_THAT(off_refusal("OFF\n1 0 0 0\n1 2 3\n"),
+              HasSubstr("line 2: expected the end of the line"));
+  EXPECT_THAT(off_refusal("OFF\n4000000000 4000000000 0\n1 2 3\n"),
               HasSubstr("expected vertex 1 of 4000000000, found the end of the file (truncated)"));
-  EXPECT_THAT(refusal("OFF\n1 0 0\n1 2\n"), HasSubstr("line 3: expected a number"));
-  EXPECT_THAT(refusal("OFF\n1 0 0\n1 2 9e37\n"), HasSubstr("line 3: expected a coordinate from"));
-  EXPECT_THAT(refusal("OFF\n1 0 0\n1 2 3 4\n"), HasSubstr("line 3: expected 0 numbers behind"));
-  EXPECT_THAT(refusal("COFF\n2 0 0\n1 2 3 1 1 1\n1 2 3 1 1 1 1\n"),
+  EXPECT_THAT(off_refusal("OFF\n1 0 0\n1 2\n"), HasSubstr("line 3: expected a number"));
+  EXPECT_THAT(off_refusal("OFF\n1 0 0\n1 2 9e37\n"),
+              HasSubstr("line 3: expected a coordinate from"));
+  EXPECT_THAT(off_refusal("OFF\n1 0 0\n1 2 3 4\n"), HasSubstr("line 3: expected 0 numbers behind"));
+  EXPECT_THAT(off_refusal("COFF\n2 0 0\n1 2 3 1 1 1\n1 2 3 1 1 1 1\n"),
               HasSubstr("line 4: expected 3 numbers behind"));
-  EXPECT_THAT(refusal("NOFF\n1 0 0\n1 2 3 0 0 up\n"), HasSubstr("line 3: expected a number"));
-  EXPECT_THAT(refusal("COFF\n1 0 0\n1 2 3 0 nan 0\n"), HasSubstr("line 3: expected a finite"));
-  EXPECT_THAT(refusal("OFF\n1 0 0\n1 2 nan\n"), HasSubstr("line 3: expected a finite number"));
+  EXPECT_THAT(off_refusal("NOFF\n1 0 0\n1 2 3 0 0 up\n"), HasSubstr("line 3: expected a number"));
+  EXPECT_THAT(off_refusal("COFF\n1 0 0\n1 2 3 0 nan 0\n"), HasSubstr("line 3: expected a finite"));
+  EXPECT_THAT(off_refusal("OFF\n1 0 0\n1 2 nan\n"), HasSubstr("line 3: expected a finite number"));
   const auto faces = [](const std::string& face) {
-    return refusal("OFF\n4 1 0\n" + std::string(kSquare) + face);
+    return off_refusal("OFF\n4 1 0\n" + std::string(kOffSquare) + face);
   };
   EXPECT_THAT(faces(""), HasSubstr("expected face 0 of 1, found the end of the file"));
   EXPECT_THAT(faces("3 0 1\n"), HasSubstr("line 7: expected a corner of face 0"));

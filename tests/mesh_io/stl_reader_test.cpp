@@ -50,14 +50,14 @@ std::vector<Facet> many_facets(std::size_t count) {
   return facets;
 }
 
-struct Taken {
+struct StlTaken {
   std::vector<std::string> facets;
   StlCounts counts;
 };
 
 template <class Read>
-Taken take(const std::string& content, const Read& read) {
-  Taken taken;
+StlTaken take(const std::string& content, const Read& read) {
+  StlTaken taken;
   Streamed streamed(content);
   taken.counts = read(streamed.stream(), "mesh", [&](std::span<const SoupTriangle> triangles) {
     for (const SoupTriangle& t : triangles) {
@@ -67,10 +67,10 @@ Taken take(const std::string& content, const Read& read) {
   });
   return taken;
 }
-Taken take_binary(const std::string& content) {
+StlTaken take_binary(const std::string& content) {
   return take(content, read_binary_stl);
 }
-Taken take_text(const std::string& content) {
+StlTaken take_text(const std::string& content) {
   return take(content, read_text_stl);
 }
 
@@ -82,7 +82,7 @@ std::string facet_text(const std::string& corner = "0 1 0") {
 TEST(StlReader, ReadsBinaryFilesOfAnySize) {
   for (const std::size_t count : {0, 1, 4096, 4097, 9000}) {
     const std::vector<Facet> facets = many_facets(count);
-    const Taken taken = take_binary(binary_stl(facets));
+    const StlTaken taken = take_binary(binary_stl(facets));
     ASSERT_EQ(taken.facets.size(), count);
     EXPECT_EQ(taken.counts.facets, count);
     EXPECT_EQ(taken.counts.attributes, 0U);
@@ -99,7 +99,7 @@ TEST(StlReader, CountsAttributesOfBinaryFacets) {
 }
 
 TEST(StlReader, ReadsTextOfSeveralSolidsInAnyCase) {
-  const Taken taken =
+  const StlTaken taken =
       take_text("solid a b c\n" + facet_text() +
                 "endsolid a b c\nSOLID\nFACET NORMAL x y z\nOuter "
                 "Loop\nVERTEX 1 2 3\nVERTEX 4 5 6\nVERTEX 7 8 9\nENDLOOP\nENDFACET\nENDSOLID");
@@ -113,7 +113,7 @@ TEST(StlReader, HandsOutManyFacetsOfAText) {
   std::string text = "solid\n";
   for (int i = 0; i < 5000; ++i)
     text += facet_text(fmt::format("0 1 {}", i));
-  const Taken taken = take_text(text + "endsolid\n");
+  const StlTaken taken = take_text(text + "endsolid\n");
   ASSERT_EQ(taken.facets.size(), 5000U);
   EXPECT_EQ(taken.facets[4999], "0 0 0, 1 0 0, 0 1 4999");
 }

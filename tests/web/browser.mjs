@@ -29,6 +29,14 @@ class Report {
   }
 }
 
+const TURNS = 8; // as in scripts/side_by_side.sh
+const SHARE = process.env.MESHHIER_TEST_SHARE;
+
+/// Those whose turn it is: an eighth with MESHHIER_TEST_SHARE="k/n", so that any eight shares in a row have all; all without it.
+export function inTurn(all) {
+  return SHARE ? all.filter((_, i) => i % TURNS === Number.parseInt(SHARE, 10) % TURNS) : all;
+}
+
 const MOST_WAIT = 120_000; // milliseconds
 
 /// Whether it comes to that.
@@ -81,6 +89,11 @@ async function openPage(browser, url, errors) {
 /// Calls window.view's function `name` in the page.
 export function call(page, name, argument) {
   return page.evaluate(([f, x]) => window.view[f](x), [name, argument]);
+}
+
+/// To run in a page of viewer/ before its scripts: a view at rest becomes no finer than a moving one, which takes a second each time.
+export function withoutRestDetail() {
+  if (localStorage.getItem('meshhier') === null) localStorage.setItem('meshhier', '{"settings": {"restDetail": 1}}');
 }
 
 /// The page of viewer/ loses its graphics device, and gets it back with nothing on it.

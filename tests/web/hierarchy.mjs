@@ -3,12 +3,12 @@
 //
 //   node hierarchy.mjs PICTURES HIERARCHY=MESH...
 //
-// All are looked at; bytes, rate and memory are told of the last. MESH: the closed mesh, a PLY file, that the hierarchy was made from.
+// All are looked at; bytes, rate and memory are told of the last. Of paths, sides and checks each share has an eighth. MESH: the closed mesh, a PLY file, that the hierarchy was made from.
 // Pictures go to the directory PICTURES. Exit code 2: wrong use; else see browser.mjs.
 import { readFileSync } from 'node:fs';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { call, inChromium, readHierarchy, SLOW_LINE, withPage } from './browser.mjs';
+import { call, inChromium, inTurn, readHierarchy, SLOW_LINE, withPage } from './browser.mjs';
 import { random } from './random.mjs';
 
 const VIEWER = path.join(path.dirname(fileURLToPath(import.meta.url)), '../../viewer');
@@ -38,16 +38,24 @@ function between(one, other, part) {
   };
 }
 
-async function checkSeams(page, { name, frames }, pictures, report) {
+/// Twice as many as are looked at: some views say nothing.
+function seamPaths(frames) {
   const next = random(11);
+  const paths = Array.from({ length: (2 * frames) / FRAMES_A_PATH }, (_, i) =>
+    ({ from: randomPose(next), to: randomPose(next), threshold: [0.25, 0.5, 1, 2][Math.floor(i / 4) % 4] }));
+  return inTurn(paths);
+}
+
+async function checkSeams(page, name, most, pictures, report) {
+  const paths = seamPaths(most);
+  const frames = (paths.length * FRAMES_A_PATH) / 2;
   let told = 0;
   let holes = 0;
   let cracks = 0;
   let covered = 0;
   let mixed = 0;
-  for (let i = 0; told < frames && i < 2 * frames; i += FRAMES_A_PATH) {
-    const [from, to] = [randomPose(next), randomPose(next)];
-    await call(page, 'set', { threshold: [0.25, 0.5, 1, 2][(i / FRAMES_A_PATH) % 4] });
+  for (const { from, to, threshold } of paths) {
+    await call(page, 'set', { threshold });
     for (let step = 0; step < FRAMES_A_PATH && told < frames; ++step) {
       await call(page, 'pose', between(from, to, step / FRAMES_A_PATH));
       const { worstError, finestLevel, coarsestLevel } = await call(page, 'frame');
@@ -73,17 +81,19 @@ const MOST_DEVIATION = 6;
 
 /// From all sides, what is seen is as fine as was asked for: nothing in sight is taken for hidden.
 async function checkFaithful(page, name, report) {
+  const sides = inTurn(SIDES);
+  if (sides.length === 0) return;
   await call(page, 'reopen');
   let worst = 0;
   let backs = 0;
-  for (const direction of SIDES) {
+  for (const direction of sides) {
     await call(page, 'pose', { direction, distance: 1.6 });
     await call(page, 'settle');
     worst = Math.max(worst, (await call(page, 'deviation')).pixels);
     backs += await call(page, 'backs');
   }
-  report.line(`${name} faithful`, worst <= MOST_DEVIATION, `at rest ${worst.toFixed(2)} pixels from the original at the most, at 99 of 100 places, from ${SIDES.length} sides`);
-  report.line(`${name} silhouettes`, backs <= SIDES.length, `${backs} pixels where backs shine through`);
+  report.line(`${name} faithful`, worst <= MOST_DEVIATION, `at rest ${worst.toFixed(2)} pixels from the original at the most, at 99 of 100 places, from ${sides.length} sides`);
+  report.line(`${name} silhouettes`, backs <= sides.length, `${backs} pixels where backs shine through`);
 }
 
 /// Recorded in the page of viewer/ each half a second, over the dragon: drags, wheel and glides; around the model, down to it, along
@@ -97,7 +107,7 @@ const PATHS = Object.entries(JSON.parse(readFileSync(new URL('camera_paths.json'
 /// Views at rest become no finer than moving ones.
 const AS_ASKED = { settings: { restDetail: 1 } };
 
-async function checkDifferences(page, name, report) {
+async function checkDifferences(page, { name }, report) {
   for (const { way, stops } of PATHS) {
     await call(page, 'reopen', AS_ASKED);
     let last;
@@ -114,7 +124,7 @@ async function checkDifferences(page, name, report) {
 const LATENCY_STEP = 5; // each fifth stop
 
 /// How long a view takes behind a slow line, and how long to fetch it whole; told, no more.
-async function tellLatency(page, name, report) {
+async function tellLatency(page, { name }, report) {
   const session = await page.context().newCDPSession(page);
   await session.send('Network.enable');
   await call(page, 'reopen', AS_ASKED);
@@ -140,7 +150,7 @@ const RATE = 30;
 const SETTLE_SECONDS = 2;
 
 /// A device that shows half of what the view asks for at the rate asked for.
-async function checkFrameRate(page, name, report) {
+async function checkFrameRate(page, { name }, report) {
   await call(page, 'reopen', AS_ASKED);
   await call(page, 'set', { framesPerSecond: RATE, threshold: 0.25 });
   await call(page, 'pose', { direction: [1, 0.3, 0], distance: 1.6 });
@@ -194,19 +204,15 @@ async function checkMemory(page, { name, vertices }, report) {
 }
 
 async function checkPicture(page, hierarchy, pictures, report) {
-  const { name, mesh } = hierarchy;
+  const { name, mesh, frames } = hierarchy;
   const original = `/mesh/${path.basename(mesh)}`;
   await call(page, 'open', { url: '/hierarchy', size: SEAM_SIZE, original });
-  await checkSeams(page, hierarchy, pictures, report);
+  await checkSeams(page, name, frames, pictures, report);
   await checkFaithful(page, name, report);
 }
 
 async function checkTraffic(page, hierarchy, report) {
-  const { name } = hierarchy;
-  await checkDifferences(page, name, report);
-  await tellLatency(page, name, report);
-  await checkFrameRate(page, name, report);
-  await checkMemory(page, hierarchy, report);
+  for (const check of inTurn([checkDifferences, tellLatency, checkFrameRate, checkMemory])) await check(page, hierarchy, report);
 }
 
 async function check(page, hierarchy, isLast, pictures, report) {

@@ -4,11 +4,11 @@
 //
 // PAGE: the directory that `npm run build` of viewer/ makes, dist/page. The hierarchy must be closed, and should have some
 // partitions. The pages of examples/ that use the library's tools are used, too. Pictures go to the directory PICTURES.
-// CHECK: one of the tools, memory, narrow, or examples; all without any. Exit code 2: wrong use; else see browser.mjs.
+// CHECK: one of the tools, memory, narrow, or examples; all without any, or an eighth in a share. Exit code 2: wrong use; else see browser.mjs.
 import { readFileSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { collectComplaints, inChromium, readHierarchy, until } from './browser.mjs';
+import { collectComplaints, inChromium, inTurn, readHierarchy, until, withoutRestDetail } from './browser.mjs';
 import { serve } from './server.mjs';
 import { withSite } from './site.mjs';
 
@@ -30,6 +30,7 @@ class Visitor {
   async open(options = WIDE) {
     const page = await this.browser.newPage({ reducedMotion: 'reduce', ...options });
     page.setDefaultTimeout(PATIENCE);
+    await page.addInitScript(withoutRestDetail);
     page.complaints = [];
     page.asked = [];
     page.on('request', (request) => page.asked.push(request.url().replace(`${this.origin}/`, '')));
@@ -460,7 +461,7 @@ async function checkAll(browser, report, { pictures, hierarchy, origin, checks }
 
 async function serveAndCheck(browser, report, [pictures, page, directory, ...checks]) {
   const hierarchy = readHierarchy(directory);
-  await withSite(page, [hierarchy], (origin) => checkAll(browser, report, { pictures, hierarchy, origin, checks: checks.length > 0 ? checks : Object.keys(CHECKS) }));
+  await withSite(page, [hierarchy], (origin) => checkAll(browser, report, { pictures, hierarchy, origin, checks: checks.length > 0 ? checks : inTurn(Object.keys(CHECKS)) }));
 }
 
 const [pictures, ...others] = process.argv.slice(2);

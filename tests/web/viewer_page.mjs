@@ -4,9 +4,9 @@
 //   node viewer_page.mjs PICTURES PAGE HIERARCHY...
 //
 // PAGE: the directory that `npm run build` of viewer/ makes, dist/page. The first hierarchy should have some
-// partitions. Pictures go to the directory PICTURES. Exit code 2: wrong use; else see browser.mjs.
+// partitions. Each share has an eighth of most checks (MESHHIER_TEST_SHARE). Pictures go to the directory PICTURES. Exit code 2: wrong use; else see browser.mjs.
 import path from 'node:path';
-import { inChromium, loseDevice, readHierarchy, until } from './browser.mjs';
+import { inChromium, inTurn, loseDevice, readHierarchy, until, withoutRestDetail } from './browser.mjs';
 import { withSite } from './site.mjs';
 
 const WIDE = { viewport: { width: 1280, height: 800 } };
@@ -46,8 +46,9 @@ class Visitor {
   }
 
   /// A page at `link`, with what it asked for and what its console complained of.
-  async open(link, { prepare = null, routes = null, ...options } = WIDE) {
+  async open(link, { prepare = null, routes = null, restDetail = false, ...options } = WIDE) {
     const page = await this.browser.newPage({ reducedMotion: 'reduce', ...options });
+    if (!restDetail) await page.addInitScript(withoutRestDetail);
     if (prepare !== null) await page.addInitScript(prepare);
     await routes?.(page);
     page.asked = [];
@@ -244,7 +245,7 @@ async function checkSearch(visitor, page) {
   visitor.check('gallery order', true, 'most triangles first');
 }
 
-async function checkFolders(visitor, name) {
+async function checkFolders(visitor, [name]) {
   const page = await visitor.open('?models=folders.json');
   await page.locator('.group-name').first().waitFor();
   const groups = await page.locator('.group').evaluateAll((all) => all.map((one) => `${one.querySelector('h2')?.textContent ?? ''}: ${[...one.querySelectorAll('.cell-name')].map((cell) => cell.textContent)}`));
@@ -286,7 +287,7 @@ async function checkChangingListing(visitor) {
 }
 
 /// An outline that fails is asked for once more when its cell is seen again.
-async function checkOutlineAgain(visitor, name) {
+async function checkOutlineAgain(visitor, [name]) {
   let refused = 0;
   const prepare = async (page) => {
     await page.route('**/preview.webp', (route) => route.fulfill({ status: 404 })); // where there is a picture, no outline is asked for
@@ -313,7 +314,7 @@ function anchor(name) {
 }
 
 async function checkModes(visitor, name, pictures) {
-  const page = await visitor.open('');
+  const page = await visitor.open('', { ...WIDE, restDetail: true });
   await page.locator('a.cell', { hasText: name }).first().click();
   await settle(page);
   const tiles = page.asked.filter((file) => file.includes('/tiles/'));
@@ -376,7 +377,7 @@ async function thereAndBack(page, part) {
   }
 }
 
-async function checkLinks(visitor, name) {
+async function checkLinks(visitor, [name]) {
   const page = await visitor.open(anchor(name));
   await settle(page);
   const root = page.asked.findIndex((file) => file.endsWith('tiles/00/000000.glb'));
@@ -405,7 +406,7 @@ function seenFrom({ position, target }) {
   return away.map((value) => value / distance);
 }
 
-async function checkFirstView(visitor, name) {
+async function checkFirstView(visitor, [name]) {
   const page = await visitor.open(anchor(name));
   await settle(page);
   const [camera, { first_view: { azimuth, elevation } }] = await page.evaluate(
@@ -417,8 +418,8 @@ async function checkFirstView(visitor, name) {
   await visitor.close(page, 'first view');
 }
 
-async function checkRest(visitor, name) {
-  const page = await visitor.open(anchor(name));
+async function checkRest(visitor, [name]) {
+  const page = await visitor.open(anchor(name), { ...WIDE, restDetail: true });
   await settle(page);
   await page.waitForTimeout(600);
   const frames = await page.evaluate(async () => {
@@ -445,7 +446,7 @@ const ROOT = '**/tiles/00/000000.glb';
 const WORKER = '**/assets/tile_worker-*.js';
 
 /// To a model, back, and to it again, before there is the code that draws it.
-async function checkLateCode(visitor, name) {
+async function checkLateCode(visitor, [name]) {
   let release;
   const late = new Promise((done) => { release = done; });
   const page = await visitor.open('', { ...WIDE, routes: (one) => one.route(CODE, (route) => late.then(() => route.continue())) });
@@ -461,7 +462,7 @@ async function checkLateCode(visitor, name) {
 }
 
 /// To a model and back before its root is there: that is given up, and no failure.
-async function checkLateRoot(visitor, name) {
+async function checkLateRoot(visitor, [name]) {
   let release;
   const late = new Promise((done) => { release = done; });
   const forward = (route) => late.then(() => route.continue()).catch(() => undefined); // it was given up
@@ -504,7 +505,7 @@ async function comesToGallery(page) {
 }
 
 /// To a model and back; its camera comes to rest in between, when the address is the gallery's already.
-async function checkLateRest(visitor, name) {
+async function checkLateRest(visitor, [name]) {
   const page = await visitor.open('');
   const cell = page.locator('a.cell', { hasText: name }).first();
   await cell.waitFor();
@@ -518,7 +519,7 @@ async function checkLateRest(visitor, name) {
 }
 
 /// Escape twice, before the first has led anywhere; Escape from a model that was there before the gallery.
-async function checkEscapes(visitor, name) {
+async function checkEscapes(visitor, [name]) {
   const page = await visitor.open('');
   await page.locator('a.cell', { hasText: name }).first().click();
   await settle(page);
@@ -539,7 +540,7 @@ async function checkEscapes(visitor, name) {
   await visitor.close(linked, 'Escape from a link again');
 }
 
-async function checkLostCode(visitor, name) {
+async function checkLostCode(visitor, [name]) {
   const page = await visitor.open('', { ...WIDE, routes: (one) => one.route(CODE, (route) => route.abort()) });
   await page.locator('a.cell', { hasText: name }).first().click();
   const told = page.getByRole('alert').locator('.problem');
@@ -553,7 +554,7 @@ async function checkLostCode(visitor, name) {
 }
 
 /// A worker whose script could not be had before anyone listened is not used.
-async function checkLostWorker(visitor, name) {
+async function checkLostWorker(visitor, [name]) {
   let asked = 0;
   const routes = async (page) => {
     await page.route(WORKER, (route) => (++asked === 1 ? route.abort() : route.continue()));
@@ -568,7 +569,7 @@ async function checkLostWorker(visitor, name) {
   await page.close();
 }
 
-async function checkCamera(visitor, name) {
+async function checkCamera(visitor, [name]) {
   const page = await visitor.open(anchor(name));
   await settle(page);
   const refusals = await page.evaluate(() => [NaN, 0].map((x) => {
@@ -584,7 +585,11 @@ async function checkCamera(visitor, name) {
 
 // ---- narrow screens, and what can be heard
 
-async function checkNarrow(visitor, name, pictures, colorScheme) {
+async function checkNarrow(visitor, [name], pictures) {
+  for (const scheme of ['light', 'dark']) await checkNarrowIn(scheme, visitor, name, pictures);
+}
+
+async function checkNarrowIn(colorScheme, visitor, name, pictures) {
   const page = await visitor.open(anchor(name), { ...NARROW, colorScheme });
   await settle(page);
   for (const sheet of ['', 'Look and settings', 'Figures', 'Help']) {
@@ -610,7 +615,7 @@ async function checkNarrowGallery(visitor, names, pictures) {
   await visitor.close(page, 'narrow gallery');
 }
 
-async function checkNames(visitor, name) {
+async function checkNames(visitor, [name]) {
   const page = await visitor.open(anchor(name));
   await settle(page);
   for (const control of ['Back', 'Whole model', 'Look and settings', 'Figures', 'Help', 'Closer', 'Farther'])
@@ -633,7 +638,7 @@ async function checkNames(visitor, name) {
 
 // ---- what is missing
 
-async function checkMissing(visitor, name) {
+async function checkMissing(visitor, [name]) {
   const lost = await visitor.open('#models/nothing.hier');
   const alert = lost.getByRole('alert').locator('.problem').first();
   await alert.waitFor();
@@ -652,7 +657,7 @@ async function checkMissing(visitor, name) {
 }
 
 /// Addresses that no one can fetch, at first and after a model.
-async function checkUnreachable(visitor, name) {
+async function checkUnreachable(visitor, [name]) {
   for (const link of ['?model=ftp://x', '?models=ftp://x', '#ftp://x']) {
     const page = await visitor.open(link);
     const alert = page.getByRole('alert').locator('.problem');
@@ -671,7 +676,7 @@ async function checkUnreachable(visitor, name) {
 }
 
 /// A host that is away for all tiles but the root: one message, which goes when they come.
-async function checkTroubledTiles(visitor, name) {
+async function checkTroubledTiles(visitor, [name]) {
   const finer = /\/tiles\/(?!00\/)/;
   const page = await visitor.open(anchor(name), { ...WIDE, routes: (one) => one.route(finer, (route) => route.abort()) });
   const problem = page.getByRole('alert').locator('.problem');
@@ -686,7 +691,7 @@ async function checkTroubledTiles(visitor, name) {
 }
 
 /// A root that is no tile, until it is one.
-async function checkCorruptRoot(visitor, name) {
+async function checkCorruptRoot(visitor, [name]) {
   const page = await visitor.open(anchor(name), { ...WIDE, routes: (one) => one.route(ROOT, (route) => route.fulfill({ body: 'no tile at all' })) });
   const problem = page.getByRole('alert').locator('.problem', { hasText: 'cannot be opened' });
   await problem.waitFor();
@@ -701,7 +706,7 @@ async function checkCorruptRoot(visitor, name) {
 }
 
 /// A listing of an empty folder names it, and the inbox; a model that comes is shown without a visit more.
-async function checkEmptyFolder(visitor, name) {
+async function checkEmptyFolder(visitor, [name]) {
   let listing = { models: [], folder: '/data/models', inbox: '/data/inbox' };
   const page = await visitor.open('', { ...WIDE, routes: (one) => one.route('**/models.json', (route) => route.fulfill({ json: listing })) });
   const note = page.locator('.gallery-note', { hasText: 'no hierarchies' });
@@ -721,7 +726,7 @@ function withoutWebGl() {
   };
 }
 
-async function checkWithoutWebGl(visitor, name) {
+async function checkWithoutWebGl(visitor, [name]) {
   const page = await visitor.open('', { ...WIDE, prepare: withoutWebGl });
   await page.locator('.cell-outline:visible').first().waitFor();
   visitor.check('gallery without WebGL 2', (await page.locator('.problem').count()) === 0, 'shows outlines');
@@ -737,31 +742,12 @@ async function checkAll(browser, report, pictures, hierarchies, origin) {
   const names = hierarchies.map(({ name }) => name);
   const visitor = new Visitor(browser, origin, report);
   await checkGallery(visitor, names, pictures);
-  await checkMotion(visitor, names);
-  await checkLongGallery(visitor);
-  await checkFolders(visitor, names[0]);
-  await checkChangingListing(visitor);
-  await checkOutlineAgain(visitor, names[0]);
   await checkModes(visitor, names[0], pictures);
-  await checkLinks(visitor, names[0]);
-  await checkFirstView(visitor, names[0]);
-  await checkRest(visitor, names[0]);
-  await checkCamera(visitor, names[0]);
-  await checkLateCode(visitor, names[0]);
-  await checkLateRoot(visitor, names[0]);
-  await checkTroubledTiles(visitor, names[0]);
-  await checkCorruptRoot(visitor, names[0]);
-  await checkEmptyFolder(visitor, names[0]);
-  await checkLateRest(visitor, names[0]);
-  await checkEscapes(visitor, names[0]);
-  await checkLostCode(visitor, names[0]);
-  await checkLostWorker(visitor, names[0]);
-  await checkNames(visitor, names[0]);
-  await checkNarrowGallery(visitor, names, pictures);
-  for (const scheme of ['light', 'dark']) await checkNarrow(visitor, names[0], pictures, scheme);
-  await checkMissing(visitor, names[0]);
-  await checkUnreachable(visitor, names[0]);
-  await checkWithoutWebGl(visitor, names[0]);
+  const others = [
+    checkMotion, checkLongGallery, checkFolders, checkChangingListing, checkOutlineAgain, checkLinks, checkFirstView, checkRest, checkCamera,
+    checkLateCode, checkLateRoot, checkTroubledTiles, checkCorruptRoot, checkEmptyFolder, checkLateRest, checkEscapes, checkLostCode,
+    checkLostWorker, checkNames, checkNarrowGallery, checkNarrow, checkMissing, checkUnreachable, checkWithoutWebGl];
+  for (const check of inTurn(others)) await check(visitor, names, pictures);
 }
 
 async function serveAndCheck(browser, report, [pictures, page, ...directories]) {

@@ -36,7 +36,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::array kCompressed{storage::Compression::zlib, storage::Compression::meshopt,
                                  storage::Compression::meshopt_zlib};
 
-const char* const kTileName = "some/tile.glb";
+const char* const kPackedName = "some/tile.glb";
 
 void expect_same(const PublishedTile& a, const PublishedTile& b) {
   expect_same_mesh(a, b);
@@ -48,11 +48,11 @@ void expect_twins(const SampleHierarchy& sample) {
   for (const PublishedTile& tile : sample.tiles) {
     TileFormat format = sample.format;
     const PublishedTile plain = decode_tile(encode_tile(tile, sample.tree, format), tile.node,
-                                            sample.tree, format, kTileName);
+                                            sample.tree, format, kPackedName);
     for (const storage::Compression compression : kCompressed) {
       format.compression = compression;
       const Bytes bytes = encode_tile(tile, sample.tree, format);
-      const PublishedTile back = decode_tile(bytes, tile.node, sample.tree, format, kTileName);
+      const PublishedTile back = decode_tile(bytes, tile.node, sample.tree, format, kPackedName);
       expect_same(back, plain);
       EXPECT_EQ(encode_tile(back, sample.tree, format), bytes);
     }
@@ -64,12 +64,13 @@ SampleHierarchy full_sample(storage::Compression compression) {
   return make_sample(torus(200, 0.05F), 5, {layout, {1.5, 0, -1e7}, compression, {}});
 }
 
-std::string failure(const Bytes& bytes, const PublishedTile& tile, const SampleHierarchy& sample) {
+std::string packed_failure(const Bytes& bytes, const PublishedTile& tile,
+                           const SampleHierarchy& sample) {
   try {
-    decode_tile(bytes, tile.node, sample.tree, sample.format, kTileName);
+    decode_tile(bytes, tile.node, sample.tree, sample.format, kPackedName);
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::corrupt);
-    EXPECT_THAT(error.what(), StartsWith(kTileName));
+    EXPECT_THAT(error.what(), StartsWith(kPackedName));
     return error.what();
   }
   return {};
@@ -138,7 +139,7 @@ TEST(CompressedTile, IsSmaller) {
 TEST(CompressedTile, TheJsonNamesTheExtensionsThatViewersNeed) {
   const auto json_of = [](const SampleHierarchy& sample) {
     const Bytes bytes = encode_tile(sample.tiles[0], sample.tree, sample.format);
-    return Json::parse(storage::split_glb(bytes, kTileName).json);
+    return Json::parse(storage::split_glb(bytes, kPackedName).json);
   };
   SampleHierarchy sample = quantized(make_sample(torus(100), 1), 12);
   EXPECT_EQ(json_of(sample)["extensionsRequired"].dump(), R"(["KHR_mesh_quantization"])");
@@ -163,10 +164,10 @@ TEST(CompressedTile, TheJsonNamesTheExtensionsThatViewersNeed) {
 TEST(CompressedTile, PositionsOffTheLatticeAreRefused) {
   SampleHierarchy sample = quantized(make_sample(torus(100), 1), 20);
   const Bytes bytes = encode_tile(sample.tiles[0], sample.tree, sample.format);
-  EXPECT_EQ(failure(bytes, sample.tiles[0], sample), "");
+  EXPECT_EQ(packed_failure(bytes, sample.tiles[0], sample), "");
   sample.format.lattice->step *= 4;
   sample.format.lattice->corner = {};
-  EXPECT_THAT(failure(bytes, sample.tiles[0], sample), HasSubstr("not on the lattice"));
+  EXPECT_THAT(packed_failure(bytes, sample.tiles[0], sample), HasSubstr("not on the lattice"));
 }
 
 TEST(CompressedTile, AnotherCompressionThanTheHierarchysIsRefused) {
@@ -177,7 +178,7 @@ TEST(CompressedTile, AnotherCompressionThanTheHierarchysIsRefused) {
       SampleHierarchy sample = full_sample(written);
       const Bytes bytes = encode_tile(sample.tiles[0], sample.tree, sample.format);
       sample.format.compression = read;
-      EXPECT_EQ(failure(bytes, sample.tiles[0], sample).empty(), written == read);
+      EXPECT_EQ(packed_failure(bytes, sample.tiles[0], sample).empty(), written == read);
     }
   }
 }
@@ -189,7 +190,7 @@ TEST(CompressedTile, TruncationAtEveryByteIsRefused) {
     const Bytes bytes = encode_tile(tile, sample.tree, sample.format);
     for (std::size_t size = 0; size < bytes.size(); ++size) {
       const Bytes cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
-      EXPECT_NE(failure(cut, tile, sample), "") << size;
+      EXPECT_NE(packed_failure(cut, tile, sample), "") << size;
     }
   }
 }
@@ -201,10 +202,10 @@ TEST(CompressedTile, RandomFlipsInTheSectionsAreRefusedOrHarmless) {
     std::mt19937 random(7'000 + static_cast<std::uint32_t>(round));
     const PublishedTile& tile = sample.tiles[random() % sample.tiles.size()];
     Bytes bytes = encode_tile(tile, sample.tree, sample.format);
-    const std::size_t bin = storage::split_glb(bytes, kTileName).bin.size();
+    const std::size_t bin = storage::split_glb(bytes, kPackedName).bin.size();
     for (std::size_t i = 0; i <= random() % 3; ++i)
       bytes[bytes.size() - 1 - random() % bin] ^= static_cast<std::byte>(1U << random() % 8);
-    refused += failure(bytes, tile, sample).empty() ? 0 : 1;
+    refused += packed_failure(bytes, tile, sample).empty() ? 0 : 1;
   }
   EXPECT_GT(refused, share().part_of(4000) / 4);
 }
@@ -216,9 +217,9 @@ TEST(CompressedTile, RandomFlipsInSectionsWithCopiesAreRefusedOrHarmless) {
     std::mt19937 random(9'000 + static_cast<std::uint32_t>(round));
     const PublishedTile& tile = sample.tiles[random() % sample.tiles.size()];
     Bytes bytes = encode_tile(tile, sample.tree, sample.format);
-    const std::size_t bin = storage::split_glb(bytes, kTileName).bin.size();
+    const std::size_t bin = storage::split_glb(bytes, kPackedName).bin.size();
     bytes[bytes.size() - 1 - random() % bin] ^= static_cast<std::byte>(1U << random() % 8);
-    refused += failure(bytes, tile, sample).empty() ? 0 : 1;
+    refused += packed_failure(bytes, tile, sample).empty() ? 0 : 1;
   }
   EXPECT_GT(refused, share().part_of(4000) / 4);
 }
@@ -234,7 +235,7 @@ TEST(CompressedTile, RandomNumbersInTheJsonAreRefused) {
       std::mt19937 random(8'000 + static_cast<std::uint32_t>(round));
       const PublishedTile& tile = sample.tiles[random() % sample.tiles.size()];
       const Bytes bytes = encode_tile(tile, sample.tree, inner);
-      const storage::GlbView glb = storage::split_glb(bytes, kTileName);
+      const storage::GlbView glb = storage::split_glb(bytes, kPackedName);
       Json json = Json::parse(glb.json);
       const Json flat = json.flatten();
       auto place = flat.begin();
@@ -245,13 +246,13 @@ TEST(CompressedTile, RandomNumbersInTheJsonAreRefused) {
       Bytes changed = storage::join_glb(json.dump(), glb.bin);
       if (storage::is_gzipped(compression))
         changed = storage::gzip(changed);
-      EXPECT_EQ(failure(changed, tile, sample).empty(), same) << place.key() << value;
+      EXPECT_EQ(packed_failure(changed, tile, sample).empty(), same) << place.key() << value;
     }
   }
 }
 
 /// One change to the JSON of a good compressed tile, and what is said of it.
-struct Damage {
+struct PackedDamage {
   const char* name;
   std::function<void(Json&)> apply;
   const char* message;
@@ -261,7 +262,7 @@ TEST(CompressedTile, LyingSizesAreRefusedByName) {
   const auto view = [](Json& json, int number) -> Json& {
     return json["bufferViews"][number]["extensions"]["EXT_meshopt_compression"];
   };
-  const std::vector<Damage> damages{
+  const std::vector<PackedDamage> damages{
       {"no extension", [&](Json& j) { j["bufferViews"][0].erase("extensions"); },
        "\"byteLength\" is missing"},
       {"longer", [&](Json& j) { view(j, 0)["byteLength"] = 4000000000U; }, "expected an integer"},
@@ -292,11 +293,11 @@ TEST(CompressedTile, LyingSizesAreRefusedByName) {
       make_sample(torus(200, 0.05F), 3, {{}, {}, storage::Compression::meshopt, {}});
   const PublishedTile& tile = sample.tiles.back();
   const Bytes bytes = encode_tile(tile, sample.tree, sample.format);
-  const storage::GlbView glb = storage::split_glb(bytes, kTileName);
-  for (const Damage& damage : damages) {
+  const storage::GlbView glb = storage::split_glb(bytes, kPackedName);
+  for (const PackedDamage& damage : damages) {
     Json json = Json::parse(glb.json);
     damage.apply(json);
-    EXPECT_THAT(failure(storage::join_glb(json.dump(), glb.bin), tile, sample),
+    EXPECT_THAT(packed_failure(storage::join_glb(json.dump(), glb.bin), tile, sample),
                 HasSubstr(damage.message))
         << damage.name;
   }

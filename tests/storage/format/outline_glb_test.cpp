@@ -56,7 +56,7 @@ void expect_round_trip(const Outline& outline, Vec3d origin) {
   }
 }
 
-std::string failure(const Bytes& bytes) {
+std::string outline_failure(const Bytes& bytes) {
   try {
     decode_outline(bytes, kOutlineName);
   } catch (const Error& error) {
@@ -94,7 +94,7 @@ TEST(OutlineGlb, PartsOfLinesAreNoLinesOfTheForm) {
   ASSERT_NE(found, bytes.end());
   for (const char count : {'0', '1', '2', '4'}) {
     found[static_cast<std::ptrdiff_t>(key.size())] = static_cast<std::byte>(count);
-    EXPECT_NE(failure(bytes), "") << count;
+    EXPECT_NE(outline_failure(bytes), "") << count;
   }
 }
 
@@ -114,7 +114,8 @@ TEST(OutlineGlb, AFirstViewThatIsNoneIsRefused) {
   Outline outline = random_outline(1, 7);
   for (const Standpoint view : {Standpoint{361, 0}, Standpoint{0, -91}}) {
     outline.first_view = view;
-    EXPECT_THAT(failure(encode_outline(outline, {})), HasSubstr("is not two angles in degrees"));
+    EXPECT_THAT(outline_failure(encode_outline(outline, {})),
+                HasSubstr("is not two angles in degrees"));
   }
 }
 
@@ -136,11 +137,11 @@ TEST(OutlineGlb, TruncationAtEveryByteIsRefused) {
   const Bytes bytes = encode_outline(random_outline(5, 3), {});
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     Bytes cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
-    EXPECT_NE(failure(cut), "") << size;
+    EXPECT_NE(outline_failure(cut), "") << size;
     if (size < 12)
       continue;
     storage::store_little(static_cast<std::uint32_t>(size), cut.data() + 8);
-    EXPECT_NE(failure(cut), "") << size;
+    EXPECT_NE(outline_failure(cut), "") << size;
   }
 }
 
@@ -168,10 +169,10 @@ TEST(OutlineGlb, SegmentsThatAreNoPolylinesAreRefused) {
   for (const std::uint16_t value : {std::uint16_t{2}, std::uint16_t{9}, std::uint16_t{65535}}) {
     Bytes bytes = good;
     storage::store_little(value, bytes.data() + indices);
-    EXPECT_THAT(failure(bytes), HasSubstr("segment 0 is"));
+    EXPECT_THAT(outline_failure(bytes), HasSubstr("segment 0 is"));
     bytes = good;
     storage::store_little(value, bytes.data() + bytes.size() - 2);
-    EXPECT_THAT(failure(bytes), HasSubstr("segment"));
+    EXPECT_THAT(outline_failure(bytes), HasSubstr("segment"));
   }
 }
 
@@ -179,7 +180,7 @@ TEST(OutlineGlb, AVertexThatIsNotFiniteIsRefused) {
   Bytes bytes = encode_outline(random_outline(2, 6), {});
   const std::size_t json_bytes = storage::load_little<std::uint32_t>(bytes.data() + 12);
   storage::store_little(std::numeric_limits<float>::quiet_NaN(), bytes.data() + 28 + json_bytes);
-  EXPECT_THAT(failure(bytes), HasSubstr("vertex 0 is not finite"));
+  EXPECT_THAT(outline_failure(bytes), HasSubstr("vertex 0 is not finite"));
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ const PARTITIONS = { partition: { vertices: 200 } };
 
 /// A settled view.
 async function settledView(fetch: Fetch, from: Vector, settings = { threshold: 1 }): Promise<{ view: HierarchyView; camera: PerspectiveCamera }> {
-  const view = new HierarchyView('', { fetch, settings });
+  const view = new HierarchyView('', { fetch, settings: { restDetail: 1, ...settings } });
   const camera = new PerspectiveCamera(45, VIEWPORT.width / VIEWPORT.height, 1e-3, 1e9);
   await view.opened;
   const middle = view.box.getCenter(new Vector3());

@@ -85,7 +85,7 @@ describe.skipIf(!hasProgram)('a section of a hierarchy', () => {
 
   it.each([[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 2, 3]] as Vector[])('is closed lines over tiles of several levels, across %d %d %d', async (...normal) => {
     const directory = workshop.build('torus', ['surface', '--triangles', '12000', '--shape', 'torus'], { partition: { vertices: 200 } });
-    const view = new HierarchyView('', { fetch: fetchFrom(directory) });
+    const view = new HierarchyView('', { fetch: fetchFrom(directory), settings: { threshold: 0.25, restDetail: 1 } });
     const camera = new PerspectiveCamera(45, 4 / 3, 1e-3, 1e9);
     camera.position.set(0.9, 0.3, 1.2);
     camera.lookAt(0.7, 0, 0);
@@ -111,7 +111,7 @@ describe.skipIf(!hasProgram)('a view that shows the inside', () => {
 
   it('refines what looks away as well', async () => {
     const directory = workshop.build('sphere', ['surface', '--triangles', '24000', '--height', '0.05'], { partition: { vertices: 100 } });
-    const view = new HierarchyView('', { fetch: fetchFrom(directory), settings: { threshold: 0.05 } });
+    const view = new HierarchyView('', { fetch: fetchFrom(directory), settings: { threshold: 0.05, restDetail: 1 } });
     const camera = new PerspectiveCamera(45, 4 / 3, 1e-3, 1e9);
     camera.position.set(0, 0, 5);
     camera.lookAt(0, 0, 0);
