@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-[[noreturn]] void refuse(const std::string& name, const std::string& what) {
+[[noreturn]] void refuse_pack(const std::string& name, const std::string& what) {
   throw Error(ErrorCode::corrupt, name + ": " + what);
 }
 
@@ -146,13 +146,13 @@ Packing read_packing(const Json& document, const TilePlan& plan, std::span<const
       packing.exponential |= part == Part::position && extension.contains("filter");
     }
     if (section.bytes() > most_bytes(section, part, packing.bytes[i])) {
-      refuse(name, fmt::format("{} of {} bytes cannot come from {} compressed ones", key_of(part),
-                               section.bytes(), packing.bytes[i]));
+      refuse_pack(name, fmt::format("{} of {} bytes cannot come from {} compressed ones",
+                                    key_of(part), section.bytes(), packing.bytes[i]));
     }
   }
   if (packing.total() != bin.size()) {
-    refuse(name,
-           fmt::format("the BIN chunk has {} bytes, expected {}", bin.size(), packing.total()));
+    refuse_pack(
+        name, fmt::format("the BIN chunk has {} bytes, expected {}", bin.size(), packing.total()));
   }
   return packing;
 }
@@ -167,10 +167,10 @@ std::vector<std::byte> unpack_bin(const TilePlan& plan, const Packing& packing,
       continue;
     const auto target = std::span(plain).subspan(section.offset, section.bytes());
     if (!unpack_section(section, part, bin.subspan(packing.offset(part), packing.bytes[i]), target))
-      refuse(name, fmt::format("the compressed {} cannot be decoded", key_of(part)));
+      refuse_pack(name, fmt::format("the compressed {} cannot be decoded", key_of(part)));
     if (part == Part::position && packing.exponential &&
         (section.component != kF32 || !unfilter_positions(target)))
-      refuse(name, "the filtered positions cannot be decoded");
+      refuse_pack(name, "the filtered positions cannot be decoded");
   }
   return plain;
 }
