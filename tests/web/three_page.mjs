@@ -10,6 +10,8 @@ import { coveredAround, pixelsOf, signalToNoise, standing } from './pixels.mjs';
 const SIZE = 512;
 // Frames without anything under way before the picture counts as complete.
 const QUIET_FRAMES = 10;
+// Within so many something is in sight: what has come may be in no count for a while.
+const MOST_FRAMES = 1000;
 
 const renderer = new THREE.WebGLRenderer({ preserveDrawingBuffer: true });
 renderer.setSize(SIZE, SIZE);
@@ -131,12 +133,14 @@ function look({ direction, distance, close = false }) {
 /// Refines until nothing is left to do for `errorTarget` pixels.
 async function settle(errorTarget) {
   tiles.errorTarget = errorTarget;
-  for (let quiet = 0; quiet < QUIET_FRAMES; ) {
+  for (let quiet = 0, frames = 0; quiet < QUIET_FRAMES; ++frames) {
     await frame();
     tiles.update();
     renderer.render(shown, camera);
     const { queued = 0, downloading, parsing } = tiles.stats;
-    quiet = queued + downloading + parsing === 0 ? quiet + 1 : 0;
+    const isComing = queued + downloading + parsing > 0;
+    const isThere = tiles.visibleTiles.size > 0 || failures.length > 0 || frames >= MOST_FRAMES;
+    quiet = isComing || !isThere ? 0 : quiet + 1;
   }
   const names = [];
   tiles.forEachLoadedModel((scene, tile) => {
