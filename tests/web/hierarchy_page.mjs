@@ -288,6 +288,7 @@ window.view = {
   async wander({ steps, milliseconds, seed }) {
     const next = random(seed);
     let geometries = 0;
+    let mostTiles = 0;
     for (let step = 0; step < steps; ++step) {
       const around = () => 2 * next() - 1;
       pose({ direction: [around(), around(), around()], distance: 0.05 + 2.5 * next() ** 2, target: [around() / 2, around() / 2, around() / 2] });
@@ -295,10 +296,11 @@ window.view = {
         clock += milliseconds / 3;
         await new Promise((resolve) => setTimeout(resolve, 0));
         frame(clock);
+        mostTiles = Math.max(mostTiles, view.stats().residentTiles);
       }
       geometries = Math.max(geometries, renderer.info.memory.geometries);
     }
-    return { ...view.stats(), geometries, problems };
+    return { ...view.stats(), geometries, mostTiles, problems };
   },
   close() {
     view.dispose();
