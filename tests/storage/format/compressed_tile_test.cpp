@@ -6,6 +6,7 @@
 #include "storage/format/meshopt_codec.h"
 #include "storage/format/tile_glb.h"
 #include "storage/format/tile_pack.h"
+#include "support/decode_failure.h"
 #include "support/same_tile.h"
 #include "tests/support/share.h"
 
@@ -36,8 +37,6 @@ using Json = nlohmann::ordered_json;
 constexpr std::array kCompressed{storage::Compression::zlib, storage::Compression::meshopt,
                                  storage::Compression::meshopt_zlib};
 
-const char* const kPackedName = "some/tile.glb";
-
 void expect_same(const PublishedTile& a, const PublishedTile& b) {
   expect_same_mesh(a, b);
   expect_same_attributes(a, b);
@@ -48,11 +47,11 @@ void expect_twins(const SampleHierarchy& sample) {
   for (const PublishedTile& tile : sample.tiles) {
     TileFormat format = sample.format;
     const PublishedTile plain = decode_tile(encode_tile(tile, sample.tree, format), tile.node,
-                                            sample.tree, format, kPackedName);
+                                            sample.tree, format, kTileName);
     for (const storage::Compression compression : kCompressed) {
       format.compression = compression;
       const Bytes bytes = encode_tile(tile, sample.tree, format);
-      const PublishedTile back = decode_tile(bytes, tile.node, sample.tree, format, kPackedName);
+      const PublishedTile back = decode_tile(bytes, tile.node, sample.tree, format, kTileName);
       expect_same(back, plain);
       EXPECT_EQ(encode_tile(back, sample.tree, format), bytes);
     }
@@ -62,18 +61,6 @@ void expect_twins(const SampleHierarchy& sample) {
 SampleHierarchy full_sample(storage::Compression compression) {
   const AttributeLayout layout{.normals = true, .colour = ColourType::u8, .texcoords = true};
   return make_sample(torus(200, 0.05F), 5, {layout, {1.5, 0, -1e7}, compression, {}});
-}
-
-std::string packed_failure(const Bytes& bytes, const PublishedTile& tile,
-                           const SampleHierarchy& sample) {
-  try {
-    decode_tile(bytes, tile.node, sample.tree, sample.format, kPackedName);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::corrupt);
-    EXPECT_THAT(error.what(), StartsWith(kPackedName));
-    return error.what();
-  }
-  return {};
 }
 
 TEST(CompressedTile, IsReadAsItsPlainTwinForAnyLayoutAndTree) {
@@ -139,7 +126,7 @@ TEST(CompressedTile, IsSmaller) {
 TEST(CompressedTile, TheJsonNamesTheExtensionsThatViewersNeed) {
   const auto json_of = [](const SampleHierarchy& sample) {
     const Bytes bytes = encode_tile(sample.tiles[0], sample.tree, sample.format);
-    return Json::parse(storage::split_glb(bytes, kPackedName).json);
+    return Json::parse(storage::split_glb(bytes, kTileName).json);
   };
   SampleHierarchy sample = quantized(make_sample(torus(100), 1), 12);
   EXPECT_EQ(json_of(sample)["extensionsRequired"].dump(), R"(["KHR_mesh_quantization"])");
@@ -164,10 +151,10 @@ TEST(CompressedTile, TheJsonNamesTheExtensionsThatViewersNeed) {
 TEST(CompressedTile, PositionsOffTheLatticeAreRefused) {
   SampleHierarchy sample = quantized(make_sample(torus(100), 1), 20);
   const Bytes bytes = encode_tile(sample.tiles[0], sample.tree, sample.format);
-  EXPECT_EQ(packed_failure(bytes, sample.tiles[0], sample), "");
+  EXPECT_EQ(decode_failure(bytes, sample.tiles[0].node, sample), "");
   sample.format.lattice->step *= 4;
   sample.format.lattice->corner = {};
-  EXPECT_THAT(packed_failure(bytes, sample.tiles[0], sample), HasSubstr("not on the lattice"));
+  EXPECT_THAT(decode_failure(bytes, sample.tiles[0].node, sample), HasSubstr("not on the lattice"));
 }
 
 TEST(CompressedTile, AnotherCompressionThanTheHierarchysIsRefused) {
@@ -178,7 +165,7 @@ TEST(CompressedTile, AnotherCompressionThanTheHierarchysIsRefused) {
       SampleHierarchy sample = full_sample(written);
       const Bytes bytes = encode_tile(sample.tiles[0], sample.tree, sample.format);
       sample.format.compression = read;
-      EXPECT_EQ(packed_failure(bytes, sample.tiles[0], sample).empty(), written == read);
+      EXPECT_EQ(decode_failure(bytes, sample.tiles[0].node, sample).empty(), written == read);
     }
   }
 }
@@ -190,7 +177,7 @@ TEST(CompressedTile, TruncationAtEveryByteIsRefused) {
     const Bytes bytes = encode_tile(tile, sample.tree, sample.format);
     for (std::size_t size = 0; size < bytes.size(); ++size) {
       const Bytes cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
-      EXPECT_NE(packed_failure(cut, tile, sample), "") << size;
+      EXPECT_NE(decode_failure(cut, tile.node, sample), "") << size;
     }
   }
 }
@@ -202,10 +189,10 @@ TEST(CompressedTile, RandomFlipsInTheSectionsAreRefusedOrHarmless) {
     std::mt19937 random(7'000 + static_cast<std::uint32_t>(round));
     const PublishedTile& tile = sample.tiles[random() % sample.tiles.size()];
     Bytes bytes = encode_tile(tile, sample.tree, sample.format);
-    const std::size_t bin = storage::split_glb(bytes, kPackedName).bin.size();
+    const std::size_t bin = storage::split_glb(bytes, kTileName).bin.size();
     for (std::size_t i = 0; i <= random() % 3; ++i)
       bytes[bytes.size() - 1 - random() % bin] ^= static_cast<std::byte>(1U << random() % 8);
-    refused += packed_failure(bytes, tile, sample).empty() ? 0 : 1;
+    refused += decode_failure(bytes, tile.node, sample).empty() ? 0 : 1;
   }
   EXPECT_GT(refused, share().part_of(4000) / 4);
 }
@@ -217,9 +204,9 @@ TEST(CompressedTile, RandomFlipsInSectionsWithCopiesAreRefusedOrHarmless) {
     std::mt19937 random(9'000 + static_cast<std::uint32_t>(round));
     const PublishedTile& tile = sample.tiles[random() % sample.tiles.size()];
     Bytes bytes = encode_tile(tile, sample.tree, sample.format);
-    const std::size_t bin = storage::split_glb(bytes, kPackedName).bin.size();
+    const std::size_t bin = storage::split_glb(bytes, kTileName).bin.size();
     bytes[bytes.size() - 1 - random() % bin] ^= static_cast<std::byte>(1U << random() % 8);
-    refused += packed_failure(bytes, tile, sample).empty() ? 0 : 1;
+    refused += decode_failure(bytes, tile.node, sample).empty() ? 0 : 1;
   }
   EXPECT_GT(refused, share().part_of(4000) / 4);
 }
@@ -235,7 +222,7 @@ TEST(CompressedTile, RandomNumbersInTheJsonAreRefused) {
       std::mt19937 random(8'000 + static_cast<std::uint32_t>(round));
       const PublishedTile& tile = sample.tiles[random() % sample.tiles.size()];
       const Bytes bytes = encode_tile(tile, sample.tree, inner);
-      const storage::GlbView glb = storage::split_glb(bytes, kPackedName);
+      const storage::GlbView glb = storage::split_glb(bytes, kTileName);
       Json json = Json::parse(glb.json);
       const Json flat = json.flatten();
       auto place = flat.begin();
@@ -246,7 +233,7 @@ TEST(CompressedTile, RandomNumbersInTheJsonAreRefused) {
       Bytes changed = storage::join_glb(json.dump(), glb.bin);
       if (storage::is_gzipped(compression))
         changed = storage::gzip(changed);
-      EXPECT_EQ(packed_failure(changed, tile, sample).empty(), same) << place.key() << value;
+      EXPECT_EQ(decode_failure(changed, tile.node, sample).empty(), same) << place.key() << value;
     }
   }
 }
@@ -293,11 +280,11 @@ TEST(CompressedTile, LyingSizesAreRefusedByName) {
       make_sample(torus(200, 0.05F), 3, {{}, {}, storage::Compression::meshopt, {}});
   const PublishedTile& tile = sample.tiles.back();
   const Bytes bytes = encode_tile(tile, sample.tree, sample.format);
-  const storage::GlbView glb = storage::split_glb(bytes, kPackedName);
+  const storage::GlbView glb = storage::split_glb(bytes, kTileName);
   for (const PackedDamage& damage : damages) {
     Json json = Json::parse(glb.json);
     damage.apply(json);
-    EXPECT_THAT(packed_failure(storage::join_glb(json.dump(), glb.bin), tile, sample),
+    EXPECT_THAT(decode_failure(storage::join_glb(json.dump(), glb.bin), tile.node, sample),
                 HasSubstr(damage.message))
         << damage.name;
   }

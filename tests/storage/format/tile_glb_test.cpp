@@ -5,6 +5,7 @@
 #include "storage/format/glb.h"
 #include "storage/format/showable.h"
 #include "storage/io/hash.h"
+#include "support/decode_failure.h"
 #include "support/open_glb.h"
 #include "support/same_tile.h"
 
@@ -32,20 +33,6 @@ using testing::HasSubstr;
 using testing::StartsWith;
 using Bytes = std::vector<std::byte>;
 using Json = nlohmann::ordered_json;
-
-const char* const kTileName = "some/tile.glb";
-
-/// The message with which decoding fails; empty if it does not.
-std::string failure(const Bytes& bytes, NodeId node, const SampleHierarchy& sample) {
-  try {
-    decode_tile(bytes, node, sample.tree, sample.format, kTileName);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::corrupt);
-    EXPECT_THAT(error.what(), StartsWith(kTileName));
-    return error.what();
-  }
-  return {};
-}
 
 void expect_wedges_there(const std::vector<TileTriangle>& triangles,
                          const std::vector<CornerWedges>& wedges, const Copies& copies) {
@@ -140,7 +127,7 @@ TEST(TileGlb, ExtrasThatAreNoFirstViewAreRefused) {
   const auto failure_with = [&](const PublishedTile& tile, const Json& extras) {
     OpenGlb glb(encode_tile(tile, sample.tree, sample.format));
     glb.json["extras"] = extras;
-    return failure(glb.close(), tile.node, sample);
+    return decode_failure(glb.close(), tile.node, sample);
   };
   const PublishedTile& root = sample.tiles.front();
   const Json good = {{"firstView", {1.5, -2}}};
@@ -272,7 +259,7 @@ TEST(TileGlb, RawAttributesAboveThePartitionsAreRefused) {
   const Bytes bytes = encode_tile(tile, sample.tree, sample.format);
   decode_tile(bytes, tile.node, sample.tree, sample.format, kTileName);
   const SampleHierarchy deeper = make_sample(torus(100), 2, sample.format);
-  EXPECT_THAT(failure(bytes, tile.node, deeper), HasSubstr("the BIN chunk has"));
+  EXPECT_THAT(decode_failure(bytes, tile.node, deeper), HasSubstr("the BIN chunk has"));
 }
 
 TEST(TileGlb, SimplifiedTilesKeepWhatGltfCanSay) {
@@ -436,12 +423,12 @@ TEST(TileGlb, TruncationAtEveryByteIsRefused) {
   const Bytes bytes = encode_tile(tile, sample.tree, sample.format);
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     Bytes cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
-    EXPECT_NE(failure(cut, tile.node, sample), "") << size;
+    EXPECT_NE(decode_failure(cut, tile.node, sample), "") << size;
     if (size < 12)
       continue;
     // The same with a header that tells the new length.
     storage::store_little(static_cast<std::uint32_t>(size), cut.data() + 8);
-    EXPECT_NE(failure(cut, tile.node, sample), "") << size;
+    EXPECT_NE(decode_failure(cut, tile.node, sample), "") << size;
   }
 }
 
@@ -483,7 +470,7 @@ TEST(TileGlb, RandomNumbersInTheJsonAreRefused) {
     if (place.key().ends_with("rimCount"))  // a boundary may be larger than it need be
       continue;
     glb.json[Json::json_pointer(place.key())] = value;
-    EXPECT_EQ(failure(glb.close(), tile.node, sample).empty(), same) << place.key() << value;
+    EXPECT_EQ(decode_failure(glb.close(), tile.node, sample).empty(), same) << place.key() << value;
   }
 }
 
@@ -505,7 +492,7 @@ TEST_P(DamagedTile, IsRefusedByName) {
   const PublishedTile& tile = sample.tiles.back();
   OpenGlb glb(encode_tile(tile, sample.tree, sample.format));
   GetParam().apply(glb);
-  EXPECT_THAT(failure(glb.close(), tile.node, sample), HasSubstr(GetParam().message));
+  EXPECT_THAT(decode_failure(glb.close(), tile.node, sample), HasSubstr(GetParam().message));
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -594,10 +581,10 @@ TEST_P(DamagedCopies, AreRefusedByName) {
   const SampleHierarchy sample = with_copies(full_sample());
   const PublishedTile& tile = sample.tiles.back();
   const Bytes bytes = encode_tile(tile, sample.tree, sample.format);
-  ASSERT_EQ(failure(bytes, tile.node, sample), "");
+  ASSERT_EQ(decode_failure(bytes, tile.node, sample), "");
   OpenGlb glb(bytes);
   GetParam().apply(glb);
-  EXPECT_THAT(failure(glb.close(), tile.node, sample), HasSubstr(GetParam().message));
+  EXPECT_THAT(decode_failure(glb.close(), tile.node, sample), HasSubstr(GetParam().message));
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -685,7 +672,7 @@ TEST(TileGlb, APlaceTwiceInATriangleIsRefusedAboveThePartitions) {
   const PublishedTile& root = sample.tiles.front();
   OpenGlb glb(encode_tile(root, sample.tree, sample.format));
   store_triangle(glb.indices(0), {0, 1, first_copy_of(glb, 1)});
-  EXPECT_THAT(failure(glb.close(), root.node, sample),
+  EXPECT_THAT(decode_failure(glb.close(), root.node, sample),
               HasSubstr("interior triangle 0 (0, 1, 1) has a place twice, above the partitions"));
 }
 
@@ -697,7 +684,7 @@ TEST(TileGlb, AQuantizedCopyElsewhereIsRefused) {
     const std::size_t stride = bits <= 16 ? 8 : 12;
     std::copy_n(glb.attribute("POSITION"), stride,
                 glb.attribute("POSITION") + stride * first_copy_of(glb, 1));
-    EXPECT_THAT(failure(glb.close(), tile.node, sample),
+    EXPECT_THAT(decode_failure(glb.close(), tile.node, sample),
                 HasSubstr("copy 0 does not lie where its vertex 1 does"));
   }
 }
@@ -729,17 +716,18 @@ TEST(TileGlb, AChainThroughAnEarlyNodeKeepsTheNumber) {
   OpenGlb glb(encode_tile(tile, sample.tree, sample.format));
   const std::size_t entries = glb.extension()["chainEntryCount"].get<std::size_t>();
   store_u16(glb.view("ghostChains") + 2 * (entries - 1), 32000);
-  EXPECT_THAT(failure(glb.close(), tile.node, sample), HasSubstr("without a parent tile"));
+  EXPECT_THAT(decode_failure(glb.close(), tile.node, sample), HasSubstr("without a parent tile"));
 }
 
 TEST(TileGlb, DeepJsonIsRefused) {
   const SampleHierarchy sample = make_sample(torus(100), 2);
   const std::string deep = std::string(30000, '[') + std::string(30000, ']');
-  EXPECT_THAT(failure(storage::join_glb(deep, {}), {}, sample), HasSubstr("nested deeper"));
+  EXPECT_THAT(decode_failure(storage::join_glb(deep, {}), {}, sample), HasSubstr("nested deeper"));
   const std::string open(60000, '{');
-  EXPECT_THAT(failure(storage::join_glb(open, {}), {}, sample), HasSubstr("not valid JSON"));
+  EXPECT_THAT(decode_failure(storage::join_glb(open, {}), {}, sample), HasSubstr("not valid JSON"));
   const std::string large(70000, ' ');
-  EXPECT_THAT(failure(storage::join_glb(large, {}), {}, sample), HasSubstr("JSON chunk has"));
+  EXPECT_THAT(decode_failure(storage::join_glb(large, {}), {}, sample),
+              HasSubstr("JSON chunk has"));
 }
 
 TEST(TileGlb, JsonOfThousandsOfKeysIsRefused) {
@@ -747,13 +735,14 @@ TEST(TileGlb, JsonOfThousandsOfKeysIsRefused) {
   std::string keys = "{\"a\":0";
   for (int i = 0; i < 5000; ++i)
     keys += ",\"" + std::to_string(i) + "\":0";
-  EXPECT_THAT(failure(storage::join_glb(keys + "}", {}), {}, sample), HasSubstr("more than 4096"));
+  EXPECT_THAT(decode_failure(storage::join_glb(keys + "}", {}), {}, sample),
+              HasSubstr("more than 4096"));
 }
 
 TEST(TileGlb, WhatIsQuotedFromBrokenJsonIsShortAndPlain) {
   const SampleHierarchy sample = make_sample(torus(100), 2);
   for (const std::string& json : {std::string("{\x7f\x1b"), '"' + std::string(60000, 'x')}) {
-    const std::string message = failure(storage::join_glb(json, {}), {}, sample);
+    const std::string message = decode_failure(storage::join_glb(json, {}), {}, sample);
     EXPECT_LT(message.size(), 300U);
     EXPECT_EQ(message.find_first_of("\x1b\x7f"), std::string::npos) << message;
   }
@@ -763,16 +752,16 @@ TEST(TileGlb, ForeignFilesAreRefused) {
   const SampleHierarchy sample = make_sample(torus(100), 2);
   Bytes bytes = encode_tile(sample.tiles[0], sample.tree, sample.format);
   Bytes ply{std::byte{'p'}, std::byte{'l'}, std::byte{'y'}};
-  EXPECT_THAT(failure(ply, {}, sample), HasSubstr("expected at least 12"));
+  EXPECT_THAT(decode_failure(ply, {}, sample), HasSubstr("expected at least 12"));
   Bytes magic = bytes;
   magic[0] = std::byte{'G'};
-  EXPECT_THAT(failure(magic, {}, sample), HasSubstr("(glTF)"));
+  EXPECT_THAT(decode_failure(magic, {}, sample), HasSubstr("(glTF)"));
   Bytes version = bytes;
   version[4] = std::byte{1};
-  EXPECT_THAT(failure(version, {}, sample), HasSubstr("GLB version"));
+  EXPECT_THAT(decode_failure(version, {}, sample), HasSubstr("GLB version"));
   Bytes chunk = bytes;
   chunk[16] = std::byte{0};
-  EXPECT_THAT(failure(chunk, {}, sample), HasSubstr("chunk type at byte 16"));
+  EXPECT_THAT(decode_failure(chunk, {}, sample), HasSubstr("chunk type at byte 16"));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "hierarchy/error.h"
 #include "hierarchy/vertex_numbers.h"
 #include "storage/format/tile_glb.h"
+#include "support/decode_failure.h"
 #include "support/open_glb.h"
 #include "support/same_tile.h"
 #include "tests/support/share.h"
@@ -30,19 +31,6 @@ using testing::HasSubstr;
 PublishedTile read_shaded(const std::vector<std::byte>& bytes, NodeId node,
                           const SampleHierarchy& sample) {
   return storage::decode_tile(bytes, node, sample.tree, sample.format, "shaded.glb");
-}
-
-/// The message with which reading fails; empty if it does not.
-std::string shaded_failure(const std::vector<std::byte>& bytes, NodeId node,
-                           const SampleHierarchy& sample) {
-  try {
-    read_shaded(bytes, node, sample);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::corrupt);
-    EXPECT_THAT(error.what(), testing::StartsWith("shaded.glb"));
-    return error.what();
-  }
-  return {};
 }
 
 /// Of any layout, tree, lattice and kind of mesh, with copies and without.
@@ -207,7 +195,7 @@ TEST(TileNormals, MoreSplitsThanCornersAreRefused) {
       tile.shading.split_of.assign(splits, 2);
       tile.shading.normals.assign(3 + splits, kNoDirection);
       const auto bytes = encode_tile(tile, sample.tree, sample.format);
-      const std::string failure = shaded_failure(bytes, tile.node, sample);
+      const std::string failure = decode_failure(bytes, tile.node, sample);
       EXPECT_THAT(failure,
                   splits > 3 ? HasSubstr("more splits than corners of triangles") : HasSubstr(""));
       EXPECT_EQ(failure.empty(), splits <= 3);
@@ -224,8 +212,8 @@ TEST(TileNormals, AHierarchyHasThemInAllTilesOrInNone) {
       const NodeId node = with.tiles[i].node;
       const auto shaded_bytes = encode_tile(with.tiles[i], with.tree, with.format);
       const auto bytes = encode_tile(without.tiles[i], without.tree, without.format);
-      EXPECT_NE(shaded_failure(shaded_bytes, node, without), "");
-      EXPECT_THAT(shaded_failure(bytes, node, with), HasSubstr("\"splitCount\" is missing"));
+      EXPECT_NE(decode_failure(shaded_bytes, node, without), "");
+      EXPECT_THAT(decode_failure(bytes, node, with), HasSubstr("\"splitCount\" is missing"));
     }
   }
 }
@@ -265,10 +253,10 @@ TEST_P(DamagedNormals, AreRefusedByName) {
   const SampleHierarchy sample = full_shaded();
   const PublishedTile& tile = sample.tiles.back();
   const auto bytes = encode_tile(tile, sample.tree, sample.format);
-  ASSERT_EQ(shaded_failure(bytes, tile.node, sample), "");
+  ASSERT_EQ(decode_failure(bytes, tile.node, sample), "");
   OpenGlb glb(bytes);
   GetParam().apply(glb);
-  EXPECT_THAT(shaded_failure(glb.close(), tile.node, sample), HasSubstr(GetParam().message));
+  EXPECT_THAT(decode_failure(glb.close(), tile.node, sample), HasSubstr(GetParam().message));
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -371,7 +359,7 @@ TEST(TileNormals, TwinsOfOtherSplitsAreRefusedInPackedTiles) {
   tile.mesh.interior_wedges.insert(tile.mesh.interior_wedges.begin() + t,
                                    tile.mesh.interior_wedges[t]);
   tile.shading.interior.insert(tile.shading.interior.begin() + t, other);
-  EXPECT_THAT(shaded_failure(encode_tile(tile, sample.tree, sample.format), tile.node, sample),
+  EXPECT_THAT(decode_failure(encode_tile(tile, sample.tree, sample.format), tile.node, sample),
               HasSubstr("has other splits than the equal one before it"));
 }
 
@@ -381,15 +369,15 @@ TEST(TileNormals, LyingSizesOfPackedTilesAreRefused) {
   const auto bytes = encode_tile(tile, sample.tree, sample.format);
   OpenGlb splits(bytes);
   splits.extension()["splitCount"] = 2000000000U;
-  EXPECT_THAT(shaded_failure(splits.close(), tile.node, sample),
+  EXPECT_THAT(decode_failure(splits.close(), tile.node, sample),
               HasSubstr("more splits than corners"));
   OpenGlb corners(bytes);
   corners.extension()["splitCount"] =
       3 * (number_at(corners, "interiorCount") + number_at(corners, "borderCount"));
-  EXPECT_NE(shaded_failure(corners.close(), tile.node, sample), "");
+  EXPECT_NE(decode_failure(corners.close(), tile.node, sample), "");
   OpenGlb both(bytes);
   both.extension()["splitCount"] = both.extension()["interiorCount"] = 2000000000U;
-  EXPECT_THAT(shaded_failure(both.close(), tile.node, sample), HasSubstr("cannot come from"));
+  EXPECT_THAT(decode_failure(both.close(), tile.node, sample), HasSubstr("cannot come from"));
 }
 
 TEST(TileNormals, RandomFlipsAreRefusedOrHarmless) {
@@ -402,7 +390,7 @@ TEST(TileNormals, RandomFlipsAreRefusedOrHarmless) {
       auto bytes = encode_tile(tile, sample.tree, sample.format);
       const std::size_t bin = OpenGlb(bytes).bin.size();
       bytes[bytes.size() - 1 - random() % bin] ^= static_cast<std::byte>(1U << random() % 8);
-      if (!shaded_failure(bytes, tile.node, sample).empty()) {
+      if (!decode_failure(bytes, tile.node, sample).empty()) {
         ++refused;
         continue;
       }
@@ -428,7 +416,7 @@ TEST(TileNormals, RandomNumbersInTheJsonAreRefused) {
       continue;
     const bool same = place.value() == value;
     glb.json[nlohmann::ordered_json::json_pointer(place.key())] = value;
-    EXPECT_EQ(shaded_failure(glb.close(), tile.node, sample).empty(), same) << place.key() << value;
+    EXPECT_EQ(decode_failure(glb.close(), tile.node, sample).empty(), same) << place.key() << value;
   }
 }
 

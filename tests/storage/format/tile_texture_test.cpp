@@ -2,6 +2,7 @@
 #include "gltf/sample_hierarchy.h"
 #include "hierarchy/error.h"
 #include "storage/format/tile_glb.h"
+#include "support/decode_failure.h"
 #include "support/open_glb.h"
 #include "support/same_tile.h"
 #include "support/sample_texture.h"
@@ -29,19 +30,6 @@ using testing::HasSubstr;
 PublishedTile read_textured(const std::vector<std::byte>& bytes, NodeId node,
                             const SampleHierarchy& sample) {
   return storage::decode_tile(bytes, node, sample.tree, sample.format, "textured.glb");
-}
-
-/// The message with which reading fails; empty if it does not.
-std::string textured_failure(const std::vector<std::byte>& bytes, NodeId node,
-                             const SampleHierarchy& sample) {
-  try {
-    read_textured(bytes, node, sample);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::corrupt);
-    EXPECT_THAT(error.what(), testing::StartsWith("textured.glb"));
-    return error.what();
-  }
-  return {};
 }
 
 struct PictureKind {
@@ -195,8 +183,8 @@ TEST(TileTextures, AHierarchyHasThemInAllTilesOrInNone) {
       const NodeId node = with.tiles[i].node;
       const auto textured_bytes = encode_tile(with.tiles[i], with.tree, with.format);
       const auto bytes = encode_tile(without.tiles[i], without.tree, without.format);
-      EXPECT_NE(textured_failure(textured_bytes, node, without), "");
-      EXPECT_THAT(textured_failure(bytes, node, with), HasSubstr("\"splitCount\" is missing"));
+      EXPECT_NE(decode_failure(textured_bytes, node, without), "");
+      EXPECT_THAT(decode_failure(bytes, node, with), HasSubstr("\"splitCount\" is missing"));
     }
   }
 }
@@ -235,10 +223,10 @@ TEST_P(DamagedTextures, AreRefusedByName) {
   const SampleHierarchy sample = full_textured();
   const PublishedTile& tile = sample.tiles.back();
   const auto bytes = encode_tile(tile, sample.tree, sample.format);
-  ASSERT_EQ(textured_failure(bytes, tile.node, sample), "");
+  ASSERT_EQ(decode_failure(bytes, tile.node, sample), "");
   OpenGlb glb(bytes);
   GetParam().apply(glb);
-  EXPECT_THAT(textured_failure(glb.close(), tile.node, sample), HasSubstr(GetParam().message));
+  EXPECT_THAT(decode_failure(glb.close(), tile.node, sample), HasSubstr(GetParam().message));
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -310,7 +298,7 @@ TEST(TileTextures, SplitsKeepNormalsThatAreNotComputed) {
   ASSERT_FALSE(tile.shading.split_of.empty());
   OpenGlb glb(encode_tile(tile, sample.tree, sample.format));
   glb.attribute("NORMAL")[12 * first_split_number(glb)] ^= std::byte{1};
-  EXPECT_THAT(textured_failure(glb.close(), tile.node, sample),
+  EXPECT_THAT(decode_failure(glb.close(), tile.node, sample),
               HasSubstr("split 0 has not the NORMAL of its vertex"));
 }
 
@@ -325,7 +313,7 @@ TEST(TileTextures, RandomFlipsAreRefusedOrHarmless) {
       const std::size_t bin = OpenGlb(bytes).bin.size() - tile.image.bytes.size() - 3;
       const std::size_t end = bytes.size() - tile.image.bytes.size() - 3;
       bytes[end - 1 - random() % bin] ^= static_cast<std::byte>(1U << random() % 8);
-      if (!textured_failure(bytes, tile.node, sample).empty()) {
+      if (!decode_failure(bytes, tile.node, sample).empty()) {
         ++refused;
         continue;
       }
@@ -354,8 +342,7 @@ TEST(TileTextures, RandomNumbersInTheJsonAreRefused) {
       continue;
     const bool same = place.value() == value;
     glb.json[nlohmann::ordered_json::json_pointer(place.key())] = value;
-    EXPECT_EQ(textured_failure(glb.close(), tile.node, sample).empty(), same)
-        << place.key() << value;
+    EXPECT_EQ(decode_failure(glb.close(), tile.node, sample).empty(), same) << place.key() << value;
   }
 }
 
