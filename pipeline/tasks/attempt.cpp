@@ -13,14 +13,14 @@ namespace {
 
 void copy_file(storage::FileSystem& files, const std::filesystem::path& from,
                const std::filesystem::path& to, const execution::CancelToken& cancel) {
-  constexpr std::uint64_t kBlock = std::uint64_t{4} << 20;
+  constexpr std::uint64_t kCopiedAtOnce = std::uint64_t{4} << 20;
   const auto source = files.open(from);
   const auto copy = files.create(to);
   const std::uint64_t size = source->size();
-  std::vector<std::byte> buffer(std::min(size, kBlock));
-  for (std::uint64_t at = 0; at < size; at += kBlock) {
+  std::vector<std::byte> buffer(std::min(size, kCopiedAtOnce));
+  for (std::uint64_t at = 0; at < size; at += kCopiedAtOnce) {
     cancel.check();
-    const auto block = std::span(buffer).first(std::min(size - at, kBlock));
+    const auto block = std::span(buffer).first(std::min(size - at, kCopiedAtOnce));
     source->read_exact(at, block);
     copy->write_at(at, block);
   }

@@ -85,7 +85,7 @@ describe.skipIf(!hasProgram)('a section of a hierarchy', () => {
 
   it.each([[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 2, 3]] as Vector[])('is closed lines over tiles of several levels, across %d %d %d', async (...normal) => {
     const directory = workshop.build('torus', ['surface', '--triangles', '12000', '--shape', 'torus'], { partition: { vertices: 200 } });
-    const view = new HierarchyView('', { fetch: fetchFrom(directory), settings: { threshold: 0.25, restDetail: 1 } });
+    const view = new HierarchyView('', { fetch: fetchFrom(directory), settings: { threshold: 0.125, restDetail: 1 } });
     const camera = new PerspectiveCamera(45, 4 / 3, 1e-3, 1e9);
     camera.position.set(0.9, 0.3, 1.2);
     camera.lookAt(0.7, 0, 0);
