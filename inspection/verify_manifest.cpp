@@ -147,7 +147,7 @@ void check_config(const VerifyJob& job, const ManifestProblems& problems) {
 /// How far the partitions' box may be from the input's: by rounding, which has an end near 0.
 double bounds_slack(const storage::Manifest& manifest, const BoundsD& box) {
   const double rounding = manifest.quantization ? manifest.quantization->worst_rounding : 0;
-  if (!manifest.source.double_precision)
+  if (manifest.origin == Vec3d{} && !manifest.source.double_precision)
     return rounding;
   const Vec3d from_origin = box.max - manifest.origin;
   const Vec3d to_origin = box.min - manifest.origin;

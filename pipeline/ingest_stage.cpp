@@ -1,29 +1,17 @@
 #include "pipeline/ingest_stage.h"
 
-#include "hierarchy/power_of_two.h"
 #include "import/input_record.h"
 #include "partition/top_tree.h"
+#include "pipeline/origin.h"
+#include "pipeline/used_bounds.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 namespace meshhier::pipeline {
 namespace {
 
 constexpr std::size_t kBlock = mesh_io::MeshSource::kBlockSize;
-
-/// The coordinate nearest to the middle that is a multiple of a power of two about a thousandth of
-/// the extent: it has few digits, and what is left of the coordinates is small.
-double round_origin(double low, double high) {
-  const double extent = std::max(high - low, std::abs(high) * 1e-6);
-  if (!(extent > 0) || !std::isfinite(extent))
-    return 0;
-  const double grid = power_of_two_from(extent) / 1024;
-  const double origin = std::round((low / 2 + high / 2) / grid) * grid;
-  return std::isfinite(origin) ? origin : 0;
-}
 
 Vec3d widened(Vec3f p) {
   return to_double(p);
@@ -81,7 +69,7 @@ SourceMesh ingest(std::unique_ptr<mesh_io::MeshSource> source, std::string file_
                   storage::ScratchFile& scratch, const StageContext& context) {
   SourceMesh mesh(std::move(source), std::move(file_name), scratch);
   mesh.summary_.counts = importing::source_counts(mesh.scan(context));
-  mesh.choose_origin();
+  mesh.choose_origin(context);
   return mesh;
 }
 
@@ -134,13 +122,13 @@ mesh_io::ZeroedCounts SourceMesh::scan(const StageContext& context) {
   return zeroed;
 }
 
-void SourceMesh::choose_origin() {
+void SourceMesh::choose_origin(const StageContext& context) {
   summary_.double_precision = !float_exact_;
-  if (float_exact_)
+  const BoundsD& all = summary_.bounds;
+  if (!is_far_from_zero(all) && !may_have_strays(sample_positions_, all))
     return;
-  const BoundsD& b = summary_.bounds;
-  origin_ = {round_origin(b.min.x, b.max.x), round_origin(b.min.y, b.max.y),
-             round_origin(b.min.z, b.max.z)};
+  const BoundsD used = used_bounds(*this, context);
+  origin_ = origin_of(used.empty() ? all : used);
 }
 
 std::vector<partition::IdPoint> SourceMesh::take_sample(const importing::CopyList& copies) {
@@ -161,36 +149,47 @@ std::uint64_t SourceMesh::vertex_blocks() const {
   return vertices_in_place() ? source_->vertex_blocks() : (summary_.vertices + kBlock - 1) / kBlock;
 }
 
-SourceVertices SourceMesh::read_vertex_block(std::uint64_t index,
-                                             mesh_io::BlockMemory& memory) const {
-  const bool wide = source_->description().wide_coordinates;
-  const auto make_relative = [&](std::span<const Vec3d> exact) {
-    memory.positions.resize(exact.size());
-    std::transform(exact.begin(), exact.end(), memory.positions.begin(),
-                   [&](Vec3d p) { return to_float(p - origin_); });
-  };
-  if (vertices_in_place()) {
-    const mesh_io::VertexBlock block = source_->read_vertex_block(index, memory);
-    if (wide)
-      make_relative(block.exact);
-    return {block.first, memory.positions, block.attributes};
-  }
+mesh_io::VertexBlock SourceMesh::read_input_block(std::uint64_t index,
+                                                  mesh_io::BlockMemory& memory) const {
+  if (vertices_in_place())
+    return source_->read_vertex_block(index, memory);
   const std::uint64_t first = index * kBlock;
   const std::size_t count = std::min<std::uint64_t>(kBlock, summary_.vertices - first);
   const auto channels = static_cast<std::size_t>(summary_.attributes.channels());
   memory.attributes.resize(count * channels);
   spooled_attributes_.read(first * channels * sizeof(float),
                            std::as_writable_bytes(std::span(memory.attributes)));
-  if (wide) {
+  mesh_io::VertexBlock block;
+  block.first = first;
+  block.attributes = memory.attributes;
+  if (source_->description().wide_coordinates) {
     memory.exact.resize(count);
     spooled_positions_.read(first * sizeof(Vec3d), std::as_writable_bytes(std::span(memory.exact)));
-    make_relative(memory.exact);
+    block.exact = memory.exact;
   } else {
     memory.positions.resize(count);
     spooled_positions_.read(first * sizeof(Vec3f),
                             std::as_writable_bytes(std::span(memory.positions)));
+    block.positions = memory.positions;
   }
-  return {first, memory.positions, memory.attributes};
+  return block;
+}
+
+SourceVertices SourceMesh::read_vertex_block(std::uint64_t index,
+                                             mesh_io::BlockMemory& memory) const {
+  const mesh_io::VertexBlock block = read_input_block(index, memory);
+  if (!block.exact.empty()) {
+    memory.positions.resize(block.exact.size());
+    std::transform(block.exact.begin(), block.exact.end(), memory.positions.begin(),
+                   [&](Vec3d p) { return to_float(p - origin_); });
+    return {block.first, memory.positions, block.attributes};
+  }
+  if (origin_ == Vec3d{})
+    return {block.first, block.positions, block.attributes};
+  memory.positions.resize(block.positions.size());  // they may be there already
+  std::transform(block.positions.begin(), block.positions.end(), memory.positions.begin(),
+                 [&](Vec3f p) { return to_float(to_double(p) - origin_); });
+  return {block.first, memory.positions, block.attributes};
 }
 
 std::uint64_t input_block_bytes(const JobSize& job) {
@@ -205,7 +204,7 @@ std::uint64_t sample_bytes(const JobSize& job) {
 
 StageMemory ingest_memory(const JobSize& job) {
   const std::uint64_t block = input_block_bytes(job);
-  const std::uint64_t least = 2 * block + sample_bytes(job);
+  const std::uint64_t least = 2 * block + sample_bytes(job) + used_bounds_bytes(job.vertex_count);
   return {block, 2 * job.threads, least, least};
 }
 

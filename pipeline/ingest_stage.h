@@ -57,8 +57,7 @@ class SourceMesh {
   std::uint64_t declared_faces() const { return source_->description().face_count; }
   bool vertices_in_place() const { return source_->description().vertices_in_place; }
 
-  /// Add to positions to get input coordinates. 0 if all coordinates fit float exactly; else near
-  /// the middle.
+  /// Add to positions to get input coordinates: origin_of() the vertices that triangles use.
   Vec3d origin() const { return origin_; }
 
   /// Of the positions, relative to the origin.
@@ -74,6 +73,11 @@ class SourceMesh {
   std::uint64_t vertex_blocks() const;
   /// Thread-safe for different `memory`.
   SourceVertices read_vertex_block(std::uint64_t index, mesh_io::BlockMemory& memory) const;
+
+  /// visit(id, position) for the vertices of a block, in input coordinates. As read_vertex_block().
+  template <class Visit>
+  void visit_input_block(std::uint64_t index, mesh_io::BlockMemory& memory,
+                         const Visit& visit) const;
 
   /// Reads all triangles once and counts them. work(triangles, slot) runs in parallel, each with
   /// one of `in_flight` slots; sink(slot) follows in file order. What work() is given may turn out
@@ -110,7 +114,8 @@ class SourceMesh {
   SourceMesh(std::unique_ptr<mesh_io::MeshSource> source, std::string file_name,
              storage::ScratchFile& scratch);
   mesh_io::ZeroedCounts scan(const StageContext& context);
-  void choose_origin();
+  void choose_origin(const StageContext& context);
+  mesh_io::VertexBlock read_input_block(std::uint64_t index, mesh_io::BlockMemory& memory) const;
 
   std::unique_ptr<mesh_io::MeshSource> source_;
   storage::Spool spooled_positions_;  ///< Vec3f or Vec3d
@@ -131,6 +136,16 @@ SourceMesh ingest(std::unique_ptr<mesh_io::MeshSource> source, std::string file_
 /// ingest(). Requires vertices in place.
 SourceMesh ingested(std::unique_ptr<mesh_io::MeshSource> source, const SourceSummary& summary,
                     Vec3d origin, storage::ScratchFile& scratch);
+
+template <class Visit>
+void SourceMesh::visit_input_block(std::uint64_t index, mesh_io::BlockMemory& memory,
+                                   const Visit& visit) const {
+  const mesh_io::VertexBlock block = read_input_block(index, memory);
+  for (std::size_t i = 0; i < block.exact.size(); ++i)
+    visit(block.first + i, block.exact[i]);
+  for (std::size_t i = 0; i < block.positions.size(); ++i)
+    visit(block.first + i, to_double(block.positions[i]));
+}
 
 template <class Slot, class Work, class Sink>
 mesh_io::FaceCounts SourceMesh::read_triangles(std::size_t in_flight,

@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <iomanip>
 #include <limits>
 #include <memory>
 #include <sstream>
@@ -193,6 +194,60 @@ TEST_F(SourceMeshTest, GeographicCoordinatesAreStoredRelativeToARoundOrigin) {
   }
 }
 
+/// A grid of half metres in map coordinates that fit floats, and further vertices behind it.
+std::string grid_on_the_map(const std::vector<Vec3d>& strays, const std::string& type,
+                            const std::string& further_faces = "", int further_count = 0) {
+  constexpr int kSide = 20;
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(3);
+  text << text_header(
+      kSide * kSide + strays.size(),
+      static_cast<std::size_t>((kSide - 1) * (kSide - 1) + further_count),
+      "property " + type + " x\nproperty " + type + " y\nproperty " + type + " z\n");
+  for (int i = 0; i < kSide * kSide; ++i)
+    text << 447213 + i % kSide * 0.5 << ' ' << 5428731 + i / kSide * 0.5 << " 300\n";
+  for (const Vec3d& p : strays)
+    text << p.x << ' ' << p.y << ' ' << p.z << '\n';
+  for (int i = 0; i < (kSide - 1) * (kSide - 1); ++i) {
+    const int corner = i / (kSide - 1) * kSide + i % (kSide - 1);
+    text << "3 " << corner << ' ' << corner + 1 << ' ' << corner + kSide << '\n';
+  }
+  text << further_faces;
+  return text.str();
+}
+
+TEST_F(SourceMeshTest, CoordinatesThatAreLargeAgainstTheMeshGetAnOriginThoughTheyFitFloats) {
+  const SourceMesh mesh = open_text(grid_on_the_map({}, "float"));
+  EXPECT_FALSE(mesh.summary().double_precision);
+  EXPECT_NEAR(mesh.origin().x, 447218, 1);
+  EXPECT_NEAR(mesh.origin().y, 5428736, 1);
+  const Streamed all = stream(mesh);
+  for (std::size_t i = 0; i < all.positions.size(); ++i) {
+    ASSERT_EQ(to_double(all.positions[i]) + mesh.origin(),
+              (Vec3d{447213 + static_cast<double>(i % 20) * 0.5,
+                     5428731 + static_cast<double>(i / 20) * 0.5, 300}));
+  }
+}
+
+TEST_F(SourceMeshTest, VerticesThatNoTriangleUsesDoNotMoveTheOrigin) {
+  const Vec3d origin = open_text(grid_on_the_map({}, "float")).origin();
+  ASSERT_NE(origin, Vec3d{});
+  const std::vector<std::vector<Vec3d>> strays = {
+      {{0, 0, 0}},
+      {{447220, 5428760, 300}},
+      {{0.1, 0.1, 0.1}},
+      {{-1e9, 1e9, 0}},
+      {{0, 0, 0}, {1e6, 0, 0}, {0, 1e7, 0}},
+      std::vector<Vec3d>(1000, Vec3d{}),
+  };
+  for (const std::vector<Vec3d>& stray : strays) {
+    for (const char* type : {"float", "double"})
+      EXPECT_EQ(open_text(grid_on_the_map(stray, type)).origin(), origin) << type << stray.size();
+  }
+  // One that a triangle uses does.
+  EXPECT_EQ(open_text(grid_on_the_map({{0, 0, 0}}, "float", "3 0 1 400\n", 1)).origin(), Vec3d{});
+}
+
 TEST_F(SourceMeshTest, TextDoublesEqualBinaryDoubles) {
   const std::vector<Vec3d> points = {{500123.25, 5812345.125, 0.1}, {500200.7, 5812300.3, 9}};
   const SourceMesh binary = open_points(points);
@@ -313,8 +368,8 @@ TEST_F(SourceMeshTest, OfSeveralBrokenFacesTheFirstIsNamed) {
     faces[bad] = {0, 1, 3};
   const std::string bytes = binary_faces(faces);
   for (int round = 0; round < 5; ++round) {
-    SourceMesh mesh = open_text(bytes);
     try {
+      SourceMesh mesh = open_text(bytes);
       read_triangles(mesh, 8);
       FAIL() << "a vertex that is not there was accepted";
     } catch (const Error& error) {

@@ -335,7 +335,7 @@ TEST_F(AttributesTest, GeographicCoordinatesAreKeptRelativeToTheOrigin) {
   }
 }
 
-TEST_F(AttributesTest, FloatCoordinatesHaveNoOrigin) {
+TEST_F(AttributesTest, CoordinatesAboutZeroHaveNoOrigin) {
   const TestMesh mesh = tests::sphere(3000, 0.01F);
   build(mesh, {}, {}, config::Representative::quadric);
   EXPECT_EQ(reader_->manifest().origin, Vec3d{});
