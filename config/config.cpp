@@ -27,8 +27,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Configs have a few hundred bytes; more is some other file given by mistake.
-constexpr std::uint64_t kLargestConfigBytes = std::uint64_t{1} << 20;
+/// Configs have a few hundred bytes, or a hundred thousand paths; more is some other file given by
+/// mistake.
+constexpr std::uint64_t kLargestConfigBytes = std::uint64_t{1} << 24;
 /// Sections are two levels deep; a little more lets the message be about the key instead.
 constexpr std::size_t kDeepestNesting = 8;
 /// There are a few dozen keys; looking for one goes through those before it, and a MiB of them

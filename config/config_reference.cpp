@@ -61,7 +61,7 @@ Json value_schema(const ConfigKey& key) {
   };
   switch (key.kind) {
     case KeyKind::text:
-      return {{"type", "string"}};
+      return {{"type", "string"}, {"maxLength", plain_number(key.maximum)}};
     case KeyKind::path:
       return path;
     case KeyKind::paths:

@@ -30,7 +30,9 @@ constexpr double kMostSectors = 65536;
 /// More than any machine has; catches a size that was meant for the budget.
 constexpr double kMostThreads = 4096;
 /// Each is a line of the manifest and of the journal, which have a MiB.
-constexpr double kMostInputs = 1000;
+constexpr double kMostInputs = 100000;
+/// Of texts that the manifest repeats, which has 1 MiB.
+constexpr double kMostTextBytes = 32768;
 /// JSON numbers are exact up to here.
 constexpr double kMostBytes = 9007199254740991.0;  // 2^53 - 1
 
@@ -73,6 +75,7 @@ Json shown(const std::optional<Value>& value) {
 
 ConfigKey ignored_text(ConfigKey key) {
   key.kind = KeyKind::text;
+  key.maximum = kMostTextBytes;
   key.assign = [](Config&, const Json&) {};
   key.show = [](const Config&) { return Json(); };
   return key;
@@ -150,6 +153,7 @@ ConfigKey number(ConfigKey key, Limits limits, Field field) {
 template <class Field>
 ConfigKey text(ConfigKey key, Field field) {
   key.kind = KeyKind::text;
+  key.maximum = kMostTextBytes;
   key.assign = [field](Config& config, const Json& value) {
     field(config) = value.get<std::string>();
   };
@@ -163,6 +167,7 @@ ConfigKey text(ConfigKey key, Field field) {
 template <class Field>
 ConfigKey optional_text(ConfigKey key, Field field) {
   key.kind = KeyKind::text;
+  key.maximum = kMostTextBytes;
   key.assign = [field](Config& config, const Json& value) {
     field(config) = value.get<std::string>();
   };
@@ -527,7 +532,8 @@ Json::json_pointer json_pointer_to(std::string path) {
 bool accepts(const ConfigKey& key, const Json& value) {
   switch (key.kind) {
     case KeyKind::text:
-      return value.is_string();
+      return value.is_string() &&
+             static_cast<double>(value.get_ref<const std::string&>().size()) <= key.maximum;
     case KeyKind::path:
       return is_usable_path(value);
     case KeyKind::paths:
@@ -565,7 +571,7 @@ ConfigKey level_entry(const ConfigKey& key) {
 std::string expectation(const ConfigKey& key) {
   switch (key.kind) {
     case KeyKind::text:
-      return "a string";
+      return fmt::format("a string of at most {:.0f} bytes", key.maximum);
     case KeyKind::path:
       return "a path";
     case KeyKind::paths:

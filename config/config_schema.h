@@ -16,7 +16,7 @@
 namespace meshhier::config {
 
 enum class KeyKind {
-  text,     ///< any string
+  text,     ///< a string of at most `maximum` bytes
   path,     ///< a string that is not empty
   paths,    ///< a path, or a list of 1 to `maximum` of them
   boolean,  ///< true or false

@@ -13,6 +13,8 @@
 #include <span>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace meshhier::importing {
 
 namespace {
@@ -76,10 +78,13 @@ bool InputFiles::recall(const InputRecord& earlier) {
 
 std::string InputFiles::name() const {
   std::string name;
-  for (const InputFileFacts& file : all_) {
+  const std::size_t listed = all_.size() <= kMostListedMeshes ? all_.size() : kMostListedMeshes - 1;
+  for (const InputFileFacts& file : std::span(all_).first(listed)) {
     name += name.empty() ? "" : ", ";
     name += file.path.filename().string();
   }
+  if (listed < all_.size())
+    name += fmt::format(" and {} more", all_.size() - listed);
   return name;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,21 +14,18 @@ namespace {
 
 constexpr std::array<const char*, 4> kPartNames{"mesh", "buffer", "material library", "picture"};
 
-/// Of all files of a part.
-SourceFile joined(const std::vector<ReadFile>& files, InputPart part) {
+/// Of at least one file of a part.
+SourceFile joined(std::span<const ReadFile> files) {
   SourceFile all;
-  all.format = kPartNames[static_cast<std::size_t>(part)];
+  all.name = files[0].path.filename().string();
+  all.format = kPartNames[static_cast<std::size_t>(files[0].part)];
   std::vector<std::uint64_t> checksums;
   for (const ReadFile& file : files) {
-    if (file.part != part)
-      continue;
-    if (checksums.empty())
-      all.name = file.path.filename().string();
     all.bytes += file.identity.bytes;
     checksums.push_back(file.checksum);
   }
-  if (checksums.size() > 1)
-    all.name += fmt::format(" and {} more", checksums.size() - 1);
+  if (files.size() > 1)
+    all.name += fmt::format(" and {} more", files.size() - 1);
   all.checksum = joined_checksum(checksums);
   return all;
 }
@@ -48,14 +46,20 @@ void Companions::await(const std::vector<std::filesystem::path>& places) {
 
 std::vector<SourceFile> source_files(const std::vector<ReadFile>& files,
                                      const std::vector<std::string>& formats) {
+  std::span<const ReadFile> left(files);
+  const std::size_t listed =
+      formats.size() <= kMostListedMeshes ? formats.size() : kMostListedMeshes - 1;
   std::vector<SourceFile> all;
-  for (std::size_t i = 0; i < formats.size(); ++i) {
+  for (std::size_t i = 0; i < listed; ++i) {
     const ReadFile& mesh = files[i];
     all.push_back({mesh.path.filename().string(), formats[i], mesh.identity.bytes, mesh.checksum});
   }
-  for (const InputPart part : {InputPart::buffer, InputPart::library, InputPart::picture}) {
-    if (std::ranges::find(files, part, &ReadFile::part) != files.end())
-      all.push_back(joined(files, part));
+  left = left.subspan(listed);
+  while (!left.empty()) {
+    const auto end = std::ranges::upper_bound(left, left[0].part, {}, &ReadFile::part);
+    const auto count = static_cast<std::size_t>(end - left.begin());
+    all.push_back(joined(left.first(count)));
+    left = left.subspan(count);
   }
   return all;
 }

@@ -52,8 +52,12 @@ struct InputRecord {
   std::vector<std::filesystem::path> awaited;
 };
 
-/// As SourceSummary has them: one entry a mesh, and one for all files of each other part.
-/// `formats`: of the meshes, for people.
+/// So many meshes are listed one by one, or one fewer and an entry for all behind these: the
+/// manifest has room for that, with names of any length.
+inline constexpr std::size_t kMostListedMeshes = 50;
+
+/// As SourceSummary has them: an entry for each of kMostListedMeshes, and one for all files of each
+/// other part. `files`: by part, meshes first. `formats`: of the meshes, for people.
 std::vector<SourceFile> source_files(const std::vector<ReadFile>& files,
                                      const std::vector<std::string>& formats);
 

@@ -267,7 +267,7 @@ TEST(ConfigErrors, IllTypedValuesNameKeyExpectedAndFound) {
   EXPECT_EQ(refusal(R"({"input": "a", "output": ["b"]})"),
             "config.json: output: expected a path, found a list");
   EXPECT_EQ(refusal(with(R"("$schema": 1)")),
-            "config.json: $schema: expected a string, found the number 1");
+            "config.json: $schema: expected a string of at most 32768 bytes, found the number 1");
   EXPECT_THAT(refusal(with(R"("memory_budget": "512MiBs")")),
               AllOf(HasSubstr("memory_budget: expected a size such as"),
                     HasSubstr("found the string \"512MiBs\"")));
@@ -346,7 +346,7 @@ TEST(ConfigErrors, HalfAPlaceAndTwoPlacesAreRefused) {
 
 TEST(ConfigErrors, MissingKeysAreNamed) {
   EXPECT_EQ(refusal(R"({"output": "b"})"),
-            "config.json: input is missing: expected a path or a list of 1 to 1000 paths");
+            "config.json: input is missing: expected a path or a list of 1 to 100000 paths");
   EXPECT_EQ(refusal(R"({"input": "b"})"), "config.json: output is missing: expected a path");
 }
 
@@ -570,13 +570,28 @@ TEST(ConfigInput, AnOverrideMayBeAListOrText) {
   EXPECT_EQ(with_input("input=x.ply"), "x.ply");
 }
 
+TEST(ConfigInput, MayHaveAHundredThousandPaths) {
+  const Json many{{"input", std::vector<std::string>(100'000, "a")}, {"output", "c"}};
+  EXPECT_EQ(parse_config(many.dump(), {"config.json", "/data"}, {}).input.size(), 100'000);
+}
+
+TEST(ConfigErrors, TextsAreNotLongerThanTheManifestHasRoomFor) {
+  const auto with_licence = [](std::size_t bytes) {
+    return Json{{"input", "a"}, {"output", "c"}, {"licence", std::string(bytes, 'x')}}.dump();
+  };
+  EXPECT_EQ(parse_config(with_licence(32768), {"config.json", "/data"}, {}).licence.size(), 32768);
+  EXPECT_THAT(refusal(with_licence(32769)),
+              HasSubstr("licence: expected a string of at most 32768 bytes, found"));
+  EXPECT_THAT(refusal(with_licence(1'000'000)), HasSubstr("at most 32768 bytes"));
+}
+
 TEST(ConfigInput, IsRefusedIfItIsNoListOfPaths) {
   for (const char* input : {"[]", R"([""])", R"(["a", 1])", R"({"a": 1})", "1", R"([["a"]])"}) {
     EXPECT_THAT(refusal(fmt::format(R"({{"input": {}, "output": "c"}})", input)),
-                HasSubstr("input: expected a path or a list of 1 to 1000 paths"))
+                HasSubstr("input: expected a path or a list of 1 to 100000 paths"))
         << input;
   }
-  Json many{{"input", std::vector<std::string>(1001, "a")}, {"output", "c"}};
+  Json many{{"input", std::vector<std::string>(100'001, "a")}, {"output", "c"}};
   EXPECT_THAT(refusal(many.dump()), HasSubstr("found a list"));
   EXPECT_THAT(refusal(R"({"input": ["a", "c/b"], "output": "c"})"), HasSubstr("holds the input"));
 }
@@ -691,6 +706,7 @@ void expect_same_rule(const ConfigKey& key, const Json& schema) {
   switch (key.kind) {
     case KeyKind::text:
       EXPECT_EQ(schema.at("type"), "string");
+      EXPECT_EQ(schema.at("maxLength"), key.maximum);
       break;
     case KeyKind::path:
       EXPECT_EQ(schema.at("type"), "string");
