@@ -3,6 +3,7 @@
 #include "config/placement.h"
 #include "hierarchy/error.h"
 #include "hierarchy/mesh_name.h"
+#include "mesh_io/foreign_format.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/mesh_format.h"
 
@@ -32,16 +33,29 @@ bool begins_as_config(std::string_view text) {
   return text.starts_with('{') || text.starts_with("//") || text.starts_with("/*");
 }
 
+/// Throws if the file is known to be something else.
+void refuse_foreign(const fs::path& path, const std::string& start) {
+  if (const std::string found = mesh_io::foreign_format(start); !found.empty()) {
+    throw Error(ErrorCode::usage, fmt::format("{}: expected a mesh (PLY, OBJ, glTF, STL or OFF) or "
+                                              "a config (JSON), found {}",
+                                              path.string(), found));
+  }
+}
+
 /// What is told as a mesh is refused as one, if it is none.
 bool is_config(storage::FileSystem& files, const fs::path& path) {
-  if (path.extension() == ".json")
-    return true;
+  const bool is_json = path.extension() == ".json";
   if (files.is_directory(path))
-    return false;
+    return is_json;
   const auto file = files.open(path);
+  if (is_json) {
+    refuse_foreign(path, first_bytes(*file));
+    return true;
+  }
   if (mesh_io::find_format(*file))
     return false;
   const std::string start = first_bytes(*file);
+  refuse_foreign(path, start);
   if (begins_as_config(start))
     return true;
   if (is_mesh_name(path.filename().string()))

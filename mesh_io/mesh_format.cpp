@@ -1,5 +1,6 @@
 #include "mesh_io/mesh_format.h"
 
+#include "mesh_io/foreign_format.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/obj_reader.h"
 #include "mesh_io/off_reader.h"
@@ -146,6 +147,9 @@ MeshFormat detect_format(const storage::File& file) {
   const std::string start = start_of(file);
   if (const auto format = format_of(bytes, packed, start))
     return *format;
+  if (const std::string foreign = foreign_format(start); !foreign.empty()) {
+    fail_file(file.path(), "expected a mesh (PLY, OBJ, glTF, STL or OFF), found " + foreign);
+  }
   std::string hint;
   if (const auto size = stl_size(start); size && !packed && !is_text(start)) {
     hint =
