@@ -541,7 +541,7 @@ TEST_F(CommandLine, ABuildThatShowsNothingWarns) {
       {vertices + "1" + lists + point + "3 0 1 2\n", "all vertices of the mesh are at one point"},
       {vertices + "2" + lists + "0 0 0\n1 0 0\n2 0 0\n3 0 0\n" + "3 0 1 2\n3 1 3 2\n",
        "no triangle of the mesh has an area"},
-      {vertices + "2" + lists + "9 7 5\n9.1 7.3 5.7\n9.2 7.6 6.4\n9.3 7.9 7.1\n" +
+      {vertices + "2" + lists + "0.1 0.2 0.3\n0.2 0.5 1\n0.3 0.8 1.7\n0.4 1.1 2.4\n" +
            "3 0 1 2\n3 1 3 2\n",
        "no triangle of the mesh has an area"},
       {vertices + "3" + lists + corners + "3 0 0 1\n3 0 1 1\n3 0 1 2\n", "most triangles"},
