@@ -244,7 +244,7 @@ std::vector<ConfigKey> make_config_keys() {
           {.path = "input",
            .meaning =
                "the mesh: a PLY, OBJ, glTF, STL or OFF file, perhaps in gzip; the files of a "
-               "list are joined in its order, and must have the same vertex attributes",
+               "list are joined in its order",
            .decides_result = true},
           kMostInputs, [](auto& c) -> auto& { return c.input; }),
       path(

@@ -48,7 +48,7 @@ class Import {
       for (const InputFileFacts& file : input_.all())
         add(file, ply);
       facts_.faces = faces_;
-      count("untextured_files", join_layouts(joined_, mesh_, room_));
+      join();
       write(input_.weld() ? weld() : mesh_, ply);
     }
     note_files();
@@ -58,6 +58,15 @@ class Import {
   }
 
  private:
+  void join() {
+    const JoinCounts counts = join_layouts(joined_, mesh_, room_);
+    count("untextured_files", counts.untextured_files);
+    count("dropped_normals", counts.dropped_normals);
+    count("dropped_texcoords", counts.dropped_texcoords);
+    count("vertices_made_white", counts.white_vertices);
+    count("converted_colours", counts.converted_colours);
+  }
+
   /// What a file adds to the mesh besides vertices and triangles.
   struct Added {
     AttributeLayout layout;
@@ -173,9 +182,7 @@ class Import {
         break;
     }
     count(kMaterialColours, added.material_colours);
-    joined_.push_back(
-        {facts.path, added.layout, mesh_.vertex_count() - vertices, added.material_colours > 0});
-    require_joinable(joined_);
+    joined_.push_back({added.layout, mesh_.vertex_count() - vertices, added.material_colours > 0});
     mesh_.fits_float = mesh_.fits_float && added.fits_float;
     faces_ += added.faces;
     facts_.degenerate_triangles += added.degenerate_triangles;

@@ -1,8 +1,6 @@
 #include "import/join_layouts.h"
 
-#include "hierarchy/attribute_names.h"
 #include "import/material_colours.h"
-#include "mesh_io/input_error.h"
 
 #include <algorithm>
 #include <array>
@@ -10,27 +8,14 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-
 namespace meshhier::importing {
 namespace {
 
 constexpr std::uint64_t kBlockVertices = 4096;
 
-[[noreturn]] void fail(const JoinedFile& first, const JoinedFile& other) {
-  mesh_io::fail_file(other.path,
-                     fmt::format("has attributes: {}; {} has: {}. Files that are joined must have "
-                                 "the same",
-                                 attribute_names(other.layout), first.path.string(),
-                                 attribute_names(first.layout)));
-}
-
-/// But for texture coordinates and colours of materials: what all files must have.
-AttributeLayout kept_layout(const JoinedFile& file) {
-  AttributeLayout layout = file.layout.without_texcoords();
-  if (file.is_painted)
-    layout.colour = ColourType::none;
-  return layout;
+/// Of a file's own, but for colours of materials.
+ColourType own_colour(const JoinedFile& file) {
+  return file.is_painted ? ColourType::none : file.layout.colour;
 }
 
 /// Materials without pictures, one for each colour.
@@ -70,7 +55,7 @@ void for_each_row(const JoinedFile& file, const storage::RecordSpool<float>& fro
   }
 }
 
-PlainColour colour_of(const JoinedFile& file, std::span<const float> row) {
+PlainColour paint_of(const JoinedFile& file, std::span<const float> row) {
   PlainColour colour;
   if (file.is_painted) {
     const auto values = row.subspan(static_cast<std::size_t>(file.layout.colour_offset()));
@@ -80,27 +65,92 @@ PlainColour colour_of(const JoinedFile& file, std::span<const float> row) {
   return colour;
 }
 
-/// Appends the vertices of an untextured file as a textured mesh has them.
-void append_textured(const JoinedFile& file, const storage::RecordSpool<float>& from,
-                     std::uint64_t channel, PlainMaterials& plain, storage::RecordSpool<float>& to,
-                     const ImportRoom& room) {
-  const auto kept = static_cast<std::size_t>(kept_layout(file).channels());
-  for_each_row(file, from, channel, room, [&](std::span<const float> row) {
-    to.append(row.first(kept));
-    to.append(std::array{0.0F, 0.0F, plain.number(colour_of(file, row))});
-  });
+/// What stands for white, and for opaque.
+float full(ColourType type) {
+  return type == ColourType::u8 ? 255.0F : type == ColourType::u16 ? 65535.0F : 1.0F;
 }
 
-/// Appends the vertices of a file without colours as white ones.
-void append_white(const JoinedFile& file, const storage::RecordSpool<float>& from,
-                  std::uint64_t channel, storage::RecordSpool<float>& to, const ImportRoom& room) {
-  const auto before = static_cast<std::size_t>(file.layout.colour_offset());
-  for_each_row(file, from, channel, room, [&](std::span<const float> row) {
-    to.append(row.first(before));
-    to.append(PlainColour().values());
-    to.append(row.subspan(before));
-  });
+/// From a type to one that is not narrower.
+float converted(float value, ColourType from, ColourType to) {
+  if (from == to)
+    return value;
+  return to == ColourType::u16 ? value * 257 : value / full(from);
 }
+
+AttributeLayout joined_layout(std::span<const JoinedFile> files) {
+  AttributeLayout joined{.normals = true, .texcoords = true};
+  for (const JoinedFile& file : files) {
+    joined.normals = joined.normals && file.layout.normals;
+    joined.texcoords = joined.texcoords && file.layout.texcoords;
+    joined.material = joined.material || file.layout.material;
+  }
+  joined.texcoords = joined.texcoords || joined.material;
+  for (const JoinedFile& file : files) {
+    // Beside pictures a material's colour stays one.
+    const ColourType colour = joined.material ? own_colour(file) : file.layout.colour;
+    joined.colour = std::max(joined.colour, colour);
+    joined.alpha = joined.alpha || (colour != ColourType::none && file.layout.alpha);
+  }
+  return joined;
+}
+
+/// Vertices of one file on their way to the layout of all.
+class RowJoin {
+ public:
+  RowJoin(const JoinedFile& file, const AttributeLayout& to, PlainMaterials& plain)
+      : file_(file), to_(to), plain_(plain) {
+    keeps_paint_ = file.is_painted && !to.material;
+    colour_ = keeps_paint_ ? file.layout.colour : own_colour(file);
+  }
+
+  void append(std::span<const float> row, storage::RecordSpool<float>& joined) const {
+    if (to_.normals)
+      joined.append(row.first(3));
+    append_colour(row, joined);
+    if (!to_.texcoords)
+      return;
+    if (shows_texcoords())
+      joined.append(row.subspan(static_cast<std::size_t>(file_.layout.texcoord_offset())));
+    else
+      joined.append(std::array{0.0F, 0.0F, plain_.number(paint_of(file_, row))});
+  }
+
+  void count(JoinCounts& counts) const {
+    const std::uint64_t n = file_.vertices;
+    const AttributeLayout& from = file_.layout;
+    counts.untextured_files += to_.material && !from.material ? 1 : 0;
+    counts.dropped_normals += from.normals && !to_.normals ? n : 0;
+    counts.dropped_texcoords += from.texcoords && !shows_texcoords() ? n : 0;
+    if (to_.colour == ColourType::none)
+      return;
+    counts.white_vertices += colour_ == ColourType::none ? n : 0;
+    counts.converted_colours += colour_ != ColourType::none && colour_ != to_.colour ? n : 0;
+  }
+
+ private:
+  bool shows_texcoords() const {
+    return to_.texcoords && file_.layout.texcoords && file_.layout.material == to_.material;
+  }
+  void append_colour(std::span<const float> row, storage::RecordSpool<float>& joined) const {
+    if (to_.colour == ColourType::none)
+      return;
+    const auto from = static_cast<std::size_t>(file_.layout.colour_offset());
+    const int given = colour_ == ColourType::none ? 0 : file_.layout.colour_channels();
+    std::array<float, 4> colour;
+    colour.fill(full(to_.colour));
+    for (int c = 0; c < std::min(given, to_.colour_channels()); ++c) {
+      const auto i = static_cast<std::size_t>(c);
+      colour[i] = converted(row[from + i], colour_, to_.colour);
+    }
+    joined.append(std::span(colour).first(static_cast<std::size_t>(to_.colour_channels())));
+  }
+
+  const JoinedFile& file_;
+  const AttributeLayout& to_;
+  PlainMaterials& plain_;
+  bool keeps_paint_ = false;
+  ColourType colour_{};
+};
 
 /// So many channels from `first` on.
 void copy(const storage::RecordSpool<float>& from, std::uint64_t first, std::uint64_t count,
@@ -116,45 +166,31 @@ void copy(const storage::RecordSpool<float>& from, std::uint64_t first, std::uin
 
 }  // namespace
 
-void require_joinable(std::span<const JoinedFile> files) {
-  if (kept_layout(files.back()) != kept_layout(files[0]))
-    fail(files[0], files.back());
-}
-
-std::uint64_t join_layouts(std::span<const JoinedFile> files, RawMesh& mesh,
-                           const ImportRoom& room) {
-  const auto is_textured = [](const JoinedFile& file) { return file.layout.material; };
+JoinCounts join_layouts(std::span<const JoinedFile> files, RawMesh& mesh, const ImportRoom& room) {
   mesh.layout = files.empty() ? AttributeLayout() : files[0].layout;
   if (std::ranges::all_of(files,
                           [&](const JoinedFile& file) { return file.layout == files[0].layout; }))
-    return 0;
-  const auto textured = static_cast<std::uint64_t>(std::ranges::count_if(files, is_textured));
-  if (textured > 0) {
-    mesh.layout = std::ranges::find_if(files, is_textured)->layout;
-  } else {
-    const auto other = std::ranges::find_if(files, [&](const JoinedFile& file) {
-      return file.layout.texcoords != files[0].layout.texcoords;
-    });
-    if (other != files.end())
-      fail(files[0], *other);
-    mesh.layout = std::ranges::find_if(files, &JoinedFile::is_painted)->layout;
-  }
+    return {};
+  mesh.layout = joined_layout(files);
+  JoinCounts counts;
   PlainMaterials plain(mesh.materials);
   storage::RecordSpool<float> joined(room.scratch, kImportSpoolBytes);
   std::uint64_t channel = 0;
   for (const JoinedFile& file : files) {
     const std::uint64_t count = file.vertices * static_cast<std::uint64_t>(file.layout.channels());
-    if (file.layout == mesh.layout)
+    const RowJoin join(file, mesh.layout, plain);
+    join.count(counts);
+    if (file.layout == mesh.layout) {
       copy(mesh.attributes, channel, count, joined, room);
-    else if (textured > 0)
-      append_textured(file, mesh.attributes, channel, plain, joined, room);
-    else
-      append_white(file, mesh.attributes, channel, joined, room);
+    } else {
+      for_each_row(file, mesh.attributes, channel, room,
+                   [&](std::span<const float> row) { join.append(row, joined); });
+    }
     channel += count;
   }
   mesh.attributes.clear();
   copy(joined, 0, joined.size(), mesh.attributes, room);
-  return textured > 0 ? files.size() - textured : 0;
+  return counts;
 }
 
 }  // namespace meshhier::importing

@@ -1,4 +1,4 @@
-// Files of a list that have textures or colours of materials beside files that have none.
+// Files of a list that have other attributes than each other.
 #pragma once
 
 #include "import/raw_mesh.h"
@@ -11,23 +11,29 @@ namespace meshhier::importing {
 
 /// A file of a list, whose vertices come behind those of the files before.
 struct JoinedFile {
-  std::filesystem::path path;
   AttributeLayout layout;
   std::uint64_t vertices = 0;
   bool is_painted = false;  ///< its colours are those of its materials
 };
 
-/// Throws Error(input) if the last file has other normals or colours than the first one; those of
-/// materials do not count.
-void require_joinable(std::span<const JoinedFile> files);
+/// What files got or lost to be like the others.
+struct JoinCounts {
+  std::uint64_t untextured_files = 0;   ///< beside textured ones
+  std::uint64_t dropped_normals = 0;    ///< of vertices
+  std::uint64_t dropped_texcoords = 0;  ///< of vertices, of files without pictures
+  std::uint64_t white_vertices = 0;     ///< of files without colours, beside files with colours
+  std::uint64_t converted_colours = 0;  ///< of vertices, to the type of other files
+};
 
 /// Gives all vertices of `mesh`, which have the channels of their own files, those of all files
-/// together. If one file is textured, vertices of files that are not have the coordinates 0 0 and
-/// a material of their material's colour, else a white one, one for each colour. If one is painted
-/// and none textured, vertices of files that are neither are white. Returns how many untextured
-/// files there are beside textured ones. Throws Error(input) if no file is textured and not all
-/// have texture coordinates or none.
-std::uint64_t join_layouts(std::span<const JoinedFile> files, RawMesh& mesh,
-                           const ImportRoom& room);
+/// together:
+/// * normals, if all files have them: others are made by the build;
+/// * colours, if a file has them, of the type that holds those of all; where there are none, white;
+/// * texture coordinates of pictures, if a file has them: where there are none, 0 0 in a material
+/// of
+///   the colour that the file's material has, else a white one;
+/// * other texture coordinates, if all files have them.
+/// A list of equal layouts stays as it is.
+JoinCounts join_layouts(std::span<const JoinedFile> files, RawMesh& mesh, const ImportRoom& room);
 
 }  // namespace meshhier::importing

@@ -414,7 +414,8 @@ void TexelCheck::compare() {
   impl_->compare_all(expected);
   const Comparison& all = impl_->all;
   const std::string same =
-      all.unequal == 0
+      all.texels == 0 ? "nothing is known of their pictures"
+      : all.unequal == 0
           ? "all equal"
           : fmt::format("{} of them not equal, off by {:.2f} of 255 (root mean square)",
                         all.unequal, all.difference());

@@ -30,6 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::Contains;
+using testing::Field;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -458,15 +459,20 @@ TEST_F(ImportTest, FilesAreWeldedTogether) {
   EXPECT_THAT(problems(with, with.input), IsEmpty());
 }
 
-TEST_F(ImportTest, FilesOfOtherAttributesAreRefused) {
+TEST_F(ImportTest, NormalsThatOnlySomeFilesHaveAreDropped) {
   put("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n");
   put("b.off", "OFF\n3 1 0\n1 0 0\n0 1 0\n1 1 0\n3 0 2 1\n");
-  const Error error = failure(config({"a.obj", "b.off"}));
-  EXPECT_EQ(error.code(), ErrorCode::input);
-  EXPECT_STREQ(
-      error.what(),
-      "w/in/b.off: has attributes: none; w/in/a.obj has: normals. Files that are joined must "
-      "have the same");
+  for (const std::vector<std::string>& order :
+       {std::vector<std::string>{"a.obj", "b.off"}, {"b.off", "a.obj"}}) {
+    const config::Config with = config(order);
+    build(with);
+    EXPECT_FALSE(source(with).attributes.normals);
+    EXPECT_EQ(source(with).vertices, 6U);
+    EXPECT_THAT(source(with).counts, Contains(AllOf(Field(&SourceCount::name, "dropped_normals"),
+                                                    Field(&SourceCount::count, 3U))));
+    EXPECT_THAT(problems(with, with.input), IsEmpty());
+    std::filesystem::remove_all(with.output);
+  }
 }
 
 // ---- what goes wrong, and going on ---------------------------------------------------------

@@ -210,16 +210,14 @@ TEST_F(MaterialColoursTest, PlainFilesBesideColouredOnesAreWhite) {
   }
 }
 
-TEST_F(MaterialColoursTest, FilesWithColoursOfVerticesAreNotJoinedWithOthers) {
+TEST_F(MaterialColoursTest, AreJoinedWithColoursOfVertices) {
   import_square(kRedAndBlue);
   put("own.obj", "v 0 0 0 0 1 0\nv 1 0 0 0 1 0\nv 1 1 0 0 1 0\nf 1 2 3\n");
-  try {
-    import_of({"a.obj", "own.obj"});
-    ADD_FAILURE();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::input);
-    EXPECT_THAT(error.what(), HasSubstr("own.obj"));
-  }
+  const Imported mesh = import_of({"a.obj", "own.obj"});
+  EXPECT_EQ(mesh.layout.colour, ColourType::f32);
+  EXPECT_THAT(corner_colours(mesh, 0), Each("1 0 0"));
+  EXPECT_THAT(corner_colours(mesh, 2), Each("0 1 0"));
+  EXPECT_EQ(mesh.count("converted_colours"), 6U);
 }
 
 TEST_F(MaterialColoursTest, BesideTexturesTheyAreMaterials) {

@@ -358,8 +358,12 @@ TEST_F(TexturedObjTest, UntexturedFilesOfAListShowTheirColoursOrAreWhite) {
   EXPECT_EQ(mesh.positions.size(), 4U + 3U);
   mesh = import_of({"bare.obj", "a.obj", "bare.obj"}, {.weld = true});
   EXPECT_THAT(mesh.all_shown(), ElementsAre("#ffffff", textured, "#ffffff"));
-  EXPECT_THROW(import_of({"a.obj", "normals.obj"}), Error);
-  EXPECT_THROW(import_of({"bare.obj", "red.obj"}), Error) << "none is textured";
+  mesh = import_of({"a.obj", "normals.obj"});
+  EXPECT_THAT(mesh.all_shown(), ElementsAre(textured, "#ffffff"));
+  EXPECT_EQ(mesh.count("dropped_normals"), 3U);
+  mesh = import_of({"bare.obj", "red.obj"});
+  EXPECT_EQ(mesh.layout.texcoords, false);
+  EXPECT_EQ(mesh.count("dropped_texcoords"), 4U);
 }
 
 TEST_F(TexturedObjTest, ResultsDoNotDependOnTheMemory) {
