@@ -183,6 +183,9 @@ class GltfImporter {
     } else if (import_.layout.colour == ColourType::none && materials_.colours().are_seen()) {
       import_.layout.colour = PlainColours::kType;
       import_.material_colours = materials_.colours().count();
+      import_.is_painted = true;
+    } else if (import_.layout.colour != ColourType::none && materials_.colours().are_seen()) {
+      import_.material_colours = materials_.colours().count();
     }
   }
 
@@ -285,7 +288,7 @@ class GltfImporter {
   /// The attributes of a primitive that the mesh has.
   struct Attributes {
     std::optional<GltfElements> normals, colours, texcoords;
-    std::optional<PlainColour> colour;  ///< of the material, if vertices have it
+    PlainColour factor;  ///< of the material, if vertices have its colour
     float material = 0;
     const mesh_io::GltfTextureTransform* texture = nullptr;
   };
@@ -297,8 +300,8 @@ class GltfImporter {
     if (layout.normals)
       attributes.normals = elements(sources, "NORMAL", 3, 3, count);
     if (import_.material_colours > 0)
-      attributes.colour = materials_.colour(primitive.material);
-    else if (layout.colour != ColourType::none)
+      attributes.factor = materials_.colour(primitive.material);
+    if (layout.colour != ColourType::none)
       attributes.colours =
           elements(sources, "COLOR_0", 3, 4, count, layout.colour != ColourType::f32);
     if (layout.texcoords)
@@ -335,7 +338,8 @@ class GltfImporter {
   void count_filled(const Attributes& all, std::uint64_t vertices) {
     const AttributeLayout& layout = import_.layout;
     without_normal_ += layout.normals && !all.normals ? vertices : 0;
-    made_white_ += layout.colour != ColourType::none && !all.colours && !all.colour ? vertices : 0;
+    const bool is_white = !all.colours && !import_.is_painted && all.factor == PlainColour();
+    made_white_ += layout.colour != ColourType::none && is_white ? vertices : 0;
     without_texcoord_ += layout.texcoords && !all.texcoords ? vertices : 0;
   }
 
@@ -396,15 +400,25 @@ class GltfImporter {
     const AttributeLayout& layout = import_.layout;
     const auto size = static_cast<std::size_t>(layout.colour_channels());
     const std::size_t end = channels.size() + size;
-    if (all.colour) {
-      std::ranges::copy(all.colour->values(), std::back_inserter(channels));
-    } else if (size > 0 && all.colours) {
+    const std::size_t begin = channels.size();
+    if (size > 0 && all.colours) {
       for (const double value : all.colours->at(vertex)) {
         if (channels.size() < end)
           channels.push_back(checked(*all.colours, vertex, value));
       }
     }
     channels.resize(end, white(layout.colour));
+    if (all.factor != PlainColour())
+      paint(std::span(channels).subspan(begin).first<3>(), all.factor);
+  }
+
+  /// Whole numbers stay whole.
+  void paint(std::span<float, 3> colour, const PlainColour& factor) const {
+    const bool is_whole = import_.layout.colour != ColourType::f32;
+    for (std::size_t c = 0; c < colour.size(); ++c) {
+      const float painted = colour[c] * static_cast<float>(factor.channels[c]) / 255;
+      colour[c] = is_whole ? std::round(painted) : painted;
+    }
   }
 
   void add_texcoord(Attributes& all, std::uint32_t vertex, std::vector<float>& channels) const {

@@ -15,6 +15,7 @@ struct GltfImport {
   AttributeLayout layout;
   bool fits_float = true;
   std::uint64_t material_colours = 0;  ///< that vertices have
+  bool is_painted = false;             ///< vertices have no other colours
   std::uint64_t triangles = 0;         ///< as primitives declare them
   std::uint64_t degenerate_triangles = 0;
   std::vector<SourceCount> counts;  ///< of what was filled in, left out or ignored

@@ -74,6 +74,7 @@ class Import {
     std::uint64_t faces = 0;
     std::uint64_t degenerate_triangles = 0;
     std::uint64_t material_colours = 0;  ///< that vertices have
+    bool is_painted = false;             ///< no vertex has another one
   };
 
   void count(std::string_view name, std::uint64_t count) {
@@ -182,7 +183,7 @@ class Import {
         break;
     }
     count(kMaterialColours, added.material_colours);
-    joined_.push_back({added.layout, mesh_.vertex_count() - vertices, added.material_colours > 0});
+    joined_.push_back({added.layout, mesh_.vertex_count() - vertices, added.is_painted});
     mesh_.fits_float = mesh_.fits_float && added.fits_float;
     faces_ += added.faces;
     facts_.degenerate_triangles += added.degenerate_triangles;
@@ -274,8 +275,9 @@ class Import {
     for (const SourceCount& one : import.counts)
       count(one.name, one.count);
     count(import.zeroed);
-    return {import.layout, import.fits_float, import.triangles, import.degenerate_triangles,
-            import.material_colours};
+    return {import.layout,           import.fits_float,
+            import.triangles,        import.degenerate_triangles,
+            import.material_colours, import.is_painted};
   }
 
   Added add_obj(InputStream& stream, const std::filesystem::path& path) {
@@ -296,8 +298,8 @@ class Import {
     count("material_libraries", counts.libraries);
     count("ignored_points_and_lines", counts.points_and_lines);
     count("ignored_statements", counts.others);
-    return {import.layout, import.fits_float, counts.faces, counts.degenerate_triangles,
-            import.material_colours};
+    return {import.layout,           import.fits_float, counts.faces, counts.degenerate_triangles,
+            import.material_colours, import.is_painted};
   }
 
   /// Binary files hold floats.

@@ -8,6 +8,7 @@
 #include "partition/external_sort.h"
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -22,6 +23,12 @@ using mesh_io::ObjTriangle;
 using Texcoord = std::array<float, 2>;
 
 constexpr ObjColour kWhite{1, 1, 1};
+/// In a spool: of a position that has none. No file has such a colour.
+constexpr ObjColour kNoColour{std::numeric_limits<float>::infinity()};
+
+bool is_colour(const ObjColour& colour) {
+  return colour[0] != kNoColour[0];
+}
 
 // CornerParts::parts of an OBJ file, each from 1 on.
 constexpr std::size_t kTexcoord = 0;
@@ -49,10 +56,10 @@ class ObjParts final : public mesh_io::ObjVisitor {
     positions.append(position);
     if (colour && colours.size() == 0) {
       for (std::uint64_t i = 1; i < positions.size(); ++i)
-        colours.append(kWhite);
+        colours.append(kNoColour);
     }
     if (colour || colours.size() > 0)
-      colours.append(colour.value_or(kWhite));
+      colours.append(colour.value_or(kNoColour));
   }
   void add_texcoord(Texcoord texcoord) override { texcoords.append(texcoord); }
   void add_normal(Vec3f normal) override { normals.append(normal); }
@@ -72,7 +79,7 @@ class ObjParts final : public mesh_io::ObjVisitor {
 
   MaterialNames names;
   storage::RecordSpool<Vec3d> positions;
-  storage::RecordSpool<ObjColour> colours;  ///< none, or one a position
+  storage::RecordSpool<ObjColour> colours;  ///< none, or one a position, perhaps kNoColour
   storage::RecordSpool<Texcoord> texcoords;
   storage::RecordSpool<Vec3f> normals;
   storage::RecordSpool<ObjTriangle> triangles;
@@ -248,28 +255,34 @@ std::unique_ptr<ObjSurface> find_surface(const ObjParts& parts,
   return textures.has_pictures() ? std::move(surface) : nullptr;
 }
 
-/// The colours of a file without pictures.
+/// The colours that materials have in a file without pictures.
 class ObjPaint {
  public:
   explicit ObjPaint(const std::vector<LibraryMaterial>& materials) {
     for (const LibraryMaterial& material : materials) {
-      of_names_.push_back(PlainColour::of(material.material));
-      all_.add(of_names_.back());
+      of_names_.push_back({PlainColour::of(material.material), material.is_defined});
+      all_.add(of_names_.back().colour);
     }
   }
 
   bool is_seen() const { return all_.are_seen(); }
   std::size_t count() const { return all_.count(); }
 
-  /// CornerParts::kMaterial of a triangle of that name.
-  std::uint32_t part(std::uint32_t name) const { return of_names_[name].number() + 1; }
-  /// Of a vertex with that part; white of one that no triangle uses.
+  /// CornerParts::kMaterial of a triangle of that name; 0 if nobody says its colour.
+  std::uint32_t part(std::uint32_t name) const {
+    return of_names_[name].is_defined ? of_names_[name].colour.number() + 1 : 0;
+  }
+  /// Of a vertex with that part.
   static PlainColour colour(std::uint32_t part) {
     return part == 0 ? PlainColour() : PlainColour::from(part - 1);
   }
 
  private:
-  std::vector<PlainColour> of_names_;
+  struct Named {
+    PlainColour colour;
+    bool is_defined = false;
+  };
+  std::vector<Named> of_names_;
   PlainColours all_;
 };
 
@@ -281,15 +294,16 @@ struct ObjLook {
 
 ObjLook find_look(const ObjParts& parts, ObjImport& import, RawMesh& mesh,
                   mesh_io::NamedFiles& files, const ImportRoom& room) {
-  const bool has_colours = import.layout.colour != ColourType::none;
+  const bool all_have_colours = import.counts.coloured == import.counts.positions;
   ObjLook look;
-  if (!import.layout.texcoords && (has_colours || !parts.names.are_used()))
+  if (!import.layout.texcoords && (all_have_colours || !parts.names.are_used()))
     return look;
   std::vector<LibraryMaterial> materials = find_materials(parts, import, mesh, files, room);
   ObjPaint paint(materials);
   if (import.layout.texcoords)
     look.surface = find_surface(parts, std::move(materials), mesh, files, room);
-  if (!look.surface && !has_colours && paint.is_seen())
+  // Beside colours of vertices, one shade of grey is one as well.
+  if (!look.surface && !all_have_colours && (import.counts.coloured > 0 || paint.is_seen()))
     look.paint = std::move(paint);
   return look;
 }
@@ -321,8 +335,24 @@ void add_corners(const ObjParts& parts, const ObjLook& look, CornerSplitter& spl
   }
 }
 
-void append_vertices(const ObjParts& parts, const SplitVertices& vertices, const ObjLook& look,
-                     const AttributeLayout& layout, RawMesh& mesh, const ImportRoom& room) {
+/// The vertex's own one, else that of a material (ObjPaint::part), as the file's own are; false if
+/// there is none, which is white.
+bool append_colour(ObjColour colour, std::uint32_t paint, RawMesh& mesh) {
+  const bool is_known = is_colour(colour) || paint > 0;
+  if (!is_colour(colour)) {
+    colour = ObjPaint::colour(paint).values();
+    for (float& channel : colour)
+      channel /= 255;
+  }
+  mesh.attributes.append(colour);
+  return is_known;
+}
+
+/// Returns how many became white.
+std::uint64_t append_vertices(const ObjParts& parts, const SplitVertices& vertices,
+                              const ObjLook& look, const AttributeLayout& layout, RawMesh& mesh,
+                              const ImportRoom& room) {
+  std::uint64_t made_white = 0;
   storage::RecordSpool<Texcoord> texcoords(room.scratch, kImportSpoolBytes);
   storage::RecordSpool<Vec3f> normals(room.scratch, kImportSpoolBytes);
   if (layout.texcoords)
@@ -343,10 +373,12 @@ void append_vertices(const ObjParts& parts, const SplitVertices& vertices, const
       const Vec3f n = all_normals.at(i);
       mesh.attributes.append(std::array{n.x, n.y, n.z});
     }
-    if (look.paint)
+    if (layout.colour == PlainColours::kType) {
       mesh.attributes.append(ObjPaint::colour(materials.at(i)).values());
-    else if (layout.colour != ColourType::none)
-      mesh.attributes.append(colours.at(position));
+    } else if (layout.colour != ColourType::none) {
+      const std::uint32_t paint = look.paint ? materials.at(i) : 0;
+      made_white += append_colour(colours.at(position), paint, mesh) ? 0 : 1;
+    }
     if (layout.texcoords && !layout.material)
       mesh.attributes.append(all_texcoords.at(i));
     if (layout.material) {
@@ -358,17 +390,19 @@ void append_vertices(const ObjParts& parts, const SplitVertices& vertices, const
       mesh.attributes.append(std::array{at.u, at.v, static_cast<float>(material)});
     }
   }
+  return made_white;
 }
 
-/// Corners refer to positions alone.
-void append_plain(const ObjParts& parts, RawMesh& mesh, const ImportRoom& room) {
+/// Corners refer to positions alone. Returns how many became white.
+std::uint64_t append_plain(const ObjParts& parts, RawMesh& mesh, const ImportRoom& room) {
+  std::uint64_t made_white = 0;
   const std::uint64_t base = mesh.vertex_count();
   execution::SpoolCursor positions(parts.positions, room.cancel);
   for (std::uint64_t i = 0; i < positions.size(); ++i)
     mesh.positions.append(positions.at(i));
   execution::SpoolCursor colours(parts.colours, room.cancel);
   for (std::uint64_t i = 0; i < colours.size(); ++i)
-    mesh.attributes.append(colours.at(i));
+    made_white += append_colour(colours.at(i), 0, mesh) ? 0 : 1;
   execution::SpoolCursor triangles(parts.triangles, room.cancel);
   for (std::uint64_t i = 0; i < triangles.size(); ++i) {
     const ObjTriangle& t = triangles.at(i);
@@ -376,6 +410,27 @@ void append_plain(const ObjParts& parts, RawMesh& mesh, const ImportRoom& room) 
                            static_cast<std::uint32_t>(base + t[1].position),
                            static_cast<std::uint32_t>(base + t[2].position)});
   }
+  return made_white;
+}
+
+/// Corners that name several things at a position become vertices.
+void append_split(ObjParts& parts, const ObjLook& look, ObjImport& import, RawMesh& mesh,
+                  const ImportRoom& room) {
+  SplitVertices vertices(room.scratch);
+  CornerSplitter splitter(room);
+  add_corners(parts, look, splitter, room);
+  parts.triangles.clear();
+  if (look.paint && parts.colours.size() > 0) {
+    execution::SpoolCursor colours(parts.colours, room.cancel);
+    splitter.split(parts.positions.size(), vertices, mesh,
+                   [&](std::uint32_t position) { return is_colour(colours.at(position)); });
+  } else {
+    splitter.split(parts.positions.size(), vertices, mesh);
+  }
+  import.filled_colours = append_vertices(parts, vertices, look, import.layout, mesh, room);
+  import.split_vertices = vertices.count() - parts.positions.size();
+  import.filled_texcoords = import.layout.texcoords ? vertices.without[kTexcoord] : 0;
+  import.filled_normals = import.layout.normals ? vertices.without[kNormal] : 0;
 }
 
 }  // namespace
@@ -388,31 +443,22 @@ ObjImport import_obj(mesh_io::InputStream& stream, const std::filesystem::path& 
   import.fits_float = import.counts.fits_float;
   import.layout.texcoords = import.counts.textured_corners > 0;
   import.layout.normals = import.counts.normal_corners > 0;
-  if (import.counts.coloured > 0) {
+  if (import.counts.coloured > 0)
     import.layout.colour = ColourType::f32;
-    import.filled_colours = import.counts.positions - import.counts.coloured;
-  }
   ObjLook look;
   if (textures == Textures::use)
     look = find_look(parts, import, mesh, files, room);
   import.layout.material = look.surface != nullptr;
   if (look.paint) {
-    import.layout.colour = PlainColours::kType;
+    import.is_painted = import.layout.colour == ColourType::none;
+    if (import.is_painted)
+      import.layout.colour = PlainColours::kType;
     import.material_colours = look.paint->count();
   }
-  if (!import.layout.texcoords && !import.layout.normals && !look.paint) {
-    append_plain(parts, mesh, room);
-    return import;
-  }
-  SplitVertices vertices(room.scratch);
-  CornerSplitter splitter(room);
-  add_corners(parts, look, splitter, room);
-  parts.triangles.clear();
-  splitter.split(parts.positions.size(), vertices, mesh);
-  append_vertices(parts, vertices, look, import.layout, mesh, room);
-  import.split_vertices = vertices.count() - parts.positions.size();
-  import.filled_texcoords = import.layout.texcoords ? vertices.without[kTexcoord] : 0;
-  import.filled_normals = import.layout.normals ? vertices.without[kNormal] : 0;
+  if (import.layout.texcoords || import.layout.normals || look.paint)
+    append_split(parts, look, import, mesh, room);
+  else
+    import.filled_colours = append_plain(parts, mesh, room);
   return import;
 }
 

@@ -18,9 +18,10 @@ struct ObjImport {
   bool fits_float = true;
   std::uint64_t split_vertices = 0;    ///< that a position has beyond one
   std::uint64_t material_colours = 0;  ///< that vertices have
-  std::uint64_t filled_colours = 0;  ///< positions without a colour in a file that has some: white
-  std::uint64_t filled_texcoords = 0;     ///< vertices without one in a file that has some: 0 0
-  std::uint64_t filled_normals = 0;       ///< likewise: 0 0 0
+  bool is_painted = false;             ///< vertices have no other colours
+  std::uint64_t filled_colours = 0;    ///< vertices without a colour in a file that has some: white
+  std::uint64_t filled_texcoords = 0;  ///< vertices without one in a file that has some: 0 0
+  std::uint64_t filled_normals = 0;    ///< likewise: 0 0 0
   std::uint64_t missing_libraries = 0;    ///< that a file names whose materials are looked for
   std::uint64_t undefined_materials = 0;  ///< likewise; they are white
   std::uint64_t other_alphas = 0;  ///< materials whose map_d is another picture than map_Kd: unused
@@ -37,10 +38,10 @@ struct ObjImport {
 /// material's colour, with 0 0 as coordinates. Pictures that triangles should show and that are not
 /// there are noted in the table in any case.
 ///
-/// In a file without such pictures and without vertex colours, the colours of the materials that
-/// triangles have are those of the vertices, if they are to be seen (PlainColours): then a
-/// combination ends with the colour. `files`: of the file system that has the libraries and
-/// pictures. Throws as mesh_io::read_obj and read_libraries.
+/// In a file without such pictures, the colours of the materials that triangles have are those of
+/// the vertices where these have none: then a combination ends with the colour. If no vertex has
+/// one, only those that are to be seen (PlainColours). `files`: of the file system that has the
+/// libraries and pictures. Throws as mesh_io::read_obj and read_libraries.
 ObjImport import_obj(mesh_io::InputStream& stream, const std::filesystem::path& path, RawMesh& mesh,
                      mesh_io::NamedFiles& files, Textures textures, const ImportRoom& room);
 

@@ -22,13 +22,16 @@ void CornerSplitter::add(const CornerParts& corner) {
   ++corners_;
 }
 
-void CornerSplitter::split(std::uint64_t positions, SplitVertices& vertices, RawMesh& mesh) {
+void CornerSplitter::split(std::uint64_t positions, SplitVertices& vertices, RawMesh& mesh,
+                           const std::function<bool(std::uint32_t)>& hides_material) {
   CornerSort corners(room_.scratch, room_.sort_bytes);
-  number(positions, vertices, corners);
+  number(positions, hides_material, vertices, corners);
   append_triangles(corners, mesh.vertex_count(), mesh);
 }
 
-void CornerSplitter::number(std::uint64_t positions, SplitVertices& vertices, CornerSort& corners) {
+void CornerSplitter::number(std::uint64_t positions,
+                            const std::function<bool(std::uint32_t)>& hides_material,
+                            SplitVertices& vertices, CornerSort& corners) {
   uses_.sort();
   std::uint32_t next = 0;  // position
   CornerParts last{};
@@ -38,10 +41,14 @@ void CornerSplitter::number(std::uint64_t positions, SplitVertices& vertices, Co
       const bool is_first = next <= use.shown.position;
       while (next < use.shown.position)
         vertices.add({next++});
-      if (is_first || use.shown != last)
-        vertices.add(use.shown);
-      next = use.shown.position + 1;
-      last = use.shown;
+      CornerParts shown = use.shown;
+      // The material is the last part, so that equal ones stay together without it.
+      if (hides_material && hides_material(shown.position))
+        shown.parts[CornerParts::kMaterial] = 0;
+      if (is_first || shown != last)
+        vertices.add(shown);
+      next = shown.position + 1;
+      last = shown;
       corners.add({use.corner(), vertices.count() - 1});
     }
   });

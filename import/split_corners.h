@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <utility>
 
 namespace meshhier::importing {
@@ -48,8 +49,11 @@ class CornerSplitter {
 
   void add(const CornerParts& corner);
   /// Appends the triangles to `mesh`, whose next vertices will be `vertices`: they are ordered by
-  /// position, then by their parts. `positions`: how many the file has. Once.
-  void split(std::uint64_t positions, SplitVertices& vertices, RawMesh& mesh);
+  /// position, then by their parts. `positions`: how many the file has. `hides_material`: asked of
+  /// ascending positions, of the same one perhaps again, whether corners there have no material
+  /// after all; empty: none. Once.
+  void split(std::uint64_t positions, SplitVertices& vertices, RawMesh& mesh,
+             const std::function<bool(std::uint32_t)>& hides_material = {});
 
  private:
   struct Use {
@@ -74,7 +78,8 @@ class CornerSplitter {
   };
   using CornerSort = partition::ExternalSort<CornerVertex, CornerKey>;
 
-  void number(std::uint64_t positions, SplitVertices& vertices, CornerSort& corners);
+  void number(std::uint64_t positions, const std::function<bool(std::uint32_t)>& hides_material,
+              SplitVertices& vertices, CornerSort& corners);
   void append_triangles(CornerSort& corners, std::uint64_t base, RawMesh& mesh);
 
   const ImportRoom& room_;

@@ -80,7 +80,7 @@ bool WordStream::to_word() {
     if (is_blank(c)) {
       ++begin_;
     } else if (c == '#') {
-      skip_line();
+      skip_comment();
       return false;
     } else if (!skip_joint()) {
       return !is_line_end(c);
@@ -113,28 +113,41 @@ std::string_view WordStream::take_word() {
   return word;
 }
 
-void WordStream::skip_line() {
-  while (look_ahead(3)) {
-    while (begin_ != end_ && !is_line_end(buffer_[begin_]) && buffer_[begin_] != '\\')
+void WordStream::skip_comment() {
+  while (look_ahead(1)) {
+    while (begin_ != end_ && !is_line_end(buffer_[begin_]))
       ++begin_;
-    if (begin_ == end_)
-      continue;
-    if (is_line_end(buffer_[begin_]))
+    if (begin_ != end_)
       return;
-    if (!skip_joint())
-      ++begin_;
+  }
+}
+
+void WordStream::skip_line() {
+  bool in_word = true;  // behind the first one
+  while (look_ahead(3) && !is_line_end(buffer_[begin_])) {
+    if (skip_joint()) {
+      in_word = false;
+      continue;
+    }
+    const char c = buffer_[begin_];
+    if (c == '#' && !in_word)
+      return skip_comment();
+    in_word = !is_blank(c);
+    ++begin_;
   }
 }
 
 std::string WordStream::take_rest() {
   std::string rest;
-  std::size_t blanks = 0;  // not known yet whether something follows them
+  std::size_t blanks = 0;   // not known yet whether something follows them
+  bool in_comment = false;  // perhaps: a name may have a '#' as well
   while (look_ahead(3) && !is_line_end(buffer_[begin_])) {
-    if (skip_joint()) {
+    if (!in_comment && skip_joint()) {
       ++blanks;
       continue;
     }
     const char c = buffer_[begin_++];
+    in_comment = in_comment || (c == '#' && (blanks > 0 || rest.empty()));
     if (is_blank(c)) {
       ++blanks;
       continue;

@@ -15,8 +15,8 @@
 namespace meshhier::mesh_io {
 
 /// Lines end with LF, CRLF or CR; words are separated by blanks and tabs; '#' where a word could
-/// begin begins a comment, up to the end of the line. A byte order mark of UTF-8 at the start is
-/// passed over. Memory: one buffer, however long a line is.
+/// begin begins a comment, up to the end of the line, even if a backslash stands there. A byte
+/// order mark of UTF-8 at the start is passed over. Memory: one buffer, however long a line is.
 class WordStream {
  public:
   /// What differs from format to format.
@@ -38,6 +38,7 @@ class WordStream {
   /// The word here, valid until the next call. Requires that to_row() or to_word() was true just
   /// before. A word that is too long is an error.
   std::string_view take_word();
+  /// Goes to the end of this line, over what is joined with it.
   void skip_line();
   /// The rest of this line but for blanks around it, comments too; lines that are joined have a
   /// blank between them. One that is too long is an error.
@@ -60,6 +61,7 @@ class WordStream {
   bool look_ahead(std::size_t bytes);
   std::size_t joint_at(std::size_t place);
   bool skip_joint();
+  void skip_comment();
 
   InputStream& stream_;
   std::filesystem::path path_;

@@ -4,9 +4,11 @@
 #include "tests/support/gltf_builder.h"
 #include "tests/support/memory_files.h"
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <fmt/format.h>
@@ -194,6 +196,59 @@ TEST_F(MaterialColoursTest, ResultsDoNotDependOnTheMemory) {
   EXPECT_EQ(roomy.count("material_colours"), 9U);
 }
 
+// ---- beside colours of vertices ------------------------------------------------------------
+
+constexpr const char* kOwnColours = "v 0 0 0 0 1 0\nv 1 0 0 0 1 0\nv 1 1 0 0 1 0\n";
+
+TEST_F(MaterialColoursTest, ObjectsWithoutColoursOfVerticesShowTheirMaterials) {
+  put("a.mtl", "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n");
+  put("a.obj", std::string("mtllib a.mtl\n") + kOwnColours +
+                   "usemtl red\nf 1 2 3\nv 0 0 1\nv 1 0 1\nv 1 1 1\nf 4 5 6\n"
+                   "usemtl blue\nv 0 0 2\nv 1 0 2\nv 1 1 2\nf 7 8 9\n");
+  for (const ImportHow& how : {ImportHow{}, ImportHow{.memory = tests::kTight}}) {
+    const Imported mesh = import_of({"a.obj"}, how);
+    EXPECT_EQ(mesh.layout, AttributeLayout{.colour = ColourType::f32});
+    EXPECT_THAT(corner_colours(mesh, 0), Each("0 1 0"));
+    EXPECT_THAT(corner_colours(mesh, 1), Each("1 0 0"));
+    EXPECT_THAT(corner_colours(mesh, 2), Each("0 0 1"));
+    EXPECT_THAT(mesh.positions, SizeIs(9));
+    EXPECT_EQ(mesh.count("vertices_made_white"), 0U);
+  }
+}
+
+TEST_F(MaterialColoursTest, OneMaterialBesideColoursOfVerticesIsShownThoughItIsGrey) {
+  put("a.mtl", "newmtl grey\nKd 0.2 0.2 0.2\n");
+  put("a.obj", std::string("mtllib a.mtl\n") + kOwnColours +
+                   "usemtl grey\nf 1 2 3\nv 0 0 1\nv 1 0 1\nv 1 1 1\nf 4 5 6\n");
+  const Imported mesh = import_of({"a.obj"});
+  EXPECT_THAT(corner_colours(mesh, 0), Each("0 1 0"));
+  EXPECT_THAT(corner_colours(mesh, 1), Each("0.2 0.2 0.2"));
+}
+
+TEST_F(MaterialColoursTest, WhatHasNeitherColourNorMaterialIsWhiteAndCounted) {
+  put("a.mtl", "newmtl red\nKd 1 0 0\n");
+  put("a.obj", std::string("mtllib a.mtl\n") + kOwnColours +
+                   "f 1 2 3\nv 0 0 1\nv 1 0 1\nv 1 1 1\nf 4 5 6\n"
+                   "v 0 0 2\nv 1 0 2\nv 1 1 2\nusemtl red\nf 7 8 9\nusemtl nobody\nv 0 0 3\n"
+                   "v 1 0 3\nv 1 1 3\nf 10 11 12\n");
+  const Imported mesh = import_of({"a.obj"});
+  EXPECT_THAT(corner_colours(mesh, 1), Each("1 1 1"));
+  EXPECT_THAT(corner_colours(mesh, 2), Each("1 0 0"));
+  EXPECT_THAT(corner_colours(mesh, 3), Each("1 1 1"));
+  EXPECT_EQ(mesh.count("vertices_made_white"), 6U);
+}
+
+TEST_F(MaterialColoursTest, AVertexOfTwoMaterialsIsSplitOnlyWhereItHasNoColour) {
+  put("a.mtl", "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n");
+  put("a.obj",
+      "mtllib a.mtl\nv 0 0 0 0 1 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+      "usemtl red\nf 1 2 3\nusemtl blue\nf 1 3 4\n");
+  const Imported mesh = import_of({"a.obj"});
+  EXPECT_THAT(corner_colours(mesh, 0), ElementsAre("0 1 0", "1 0 0", "1 0 0"));
+  EXPECT_THAT(corner_colours(mesh, 1), ElementsAre("0 1 0", "0 0 1", "0 0 1"));
+  EXPECT_THAT(mesh.positions, SizeIs(5));
+}
+
 // ---- lists ---------------------------------------------------------------------------------
 
 TEST_F(MaterialColoursTest, PlainFilesBesideColouredOnesAreWhite) {
@@ -266,6 +321,71 @@ TEST_F(MaterialColoursTest, TheGreyOfProgramsIsNoBaseColour) {
   gltf.show(primitive(gltf, material(gltf, {0.8, 0.8, 0.8, 1})));
   put("a.glb", gltf.glb());
   EXPECT_EQ(import_of({"a.glb"}).layout, AttributeLayout());
+}
+
+/// A triangle with colours of its own, all the same.
+template <class Number>
+GltfJson coloured(GltfBuilder& gltf, std::array<Number, 3> colour,
+                  std::optional<std::size_t> material) {
+  GltfJson made = primitive(gltf, material);
+  std::vector<Number> values;
+  for (int corner = 0; corner < 3; ++corner)
+    values.insert(values.end(), colour.begin(), colour.end());
+  made["attributes"]["COLOR_0"] = gltf.accessor(
+      values, "VEC3",
+      std::is_integral_v<Number> ? GltfJson{{"normalized", true}} : GltfJson::object());
+  return made;
+}
+
+TEST_F(MaterialColoursTest, EachPartShowsItsBaseColourThoughAnotherHasColoursOfVertices) {
+  GltfBuilder gltf;
+  gltf.show(primitive(gltf, material(gltf, {1, 0, 0, 1})));
+  gltf.show(primitive(gltf, material(gltf, {0, 0, 1, 1})));
+  gltf.show(coloured<std::uint8_t>(gltf, {10, 200, 30}, std::nullopt));
+  gltf.show(primitive(gltf, std::nullopt));
+  put("a.glb", gltf.glb());
+  const Imported mesh = import_of({"a.glb"});
+  EXPECT_EQ(mesh.layout, kColoured);
+  EXPECT_THAT(corner_colours(mesh, 0), Each("255 0 0"));
+  EXPECT_THAT(corner_colours(mesh, 1), Each("0 0 255"));
+  EXPECT_THAT(corner_colours(mesh, 2), Each("10 200 30"));
+  EXPECT_THAT(corner_colours(mesh, 3), Each("255 255 255"));
+  EXPECT_EQ(mesh.count("material_colours"), 3U);
+  EXPECT_EQ(mesh.count("vertices_made_white"), 3U) << "of the part without either";
+}
+
+TEST_F(MaterialColoursTest, BaseColoursAreFactorsOfColoursOfVertices) {
+  GltfBuilder gltf;
+  gltf.show(coloured<std::uint8_t>(gltf, {255, 255, 255}, material(gltf, {1, 0, 0, 1})));
+  gltf.show(coloured<std::uint8_t>(gltf, {255, 255, 255}, material(gltf, {0, 0.5, 1, 1})));
+  gltf.show(coloured<std::uint8_t>(gltf, {100, 100, 100}, material(gltf, {0.5, 1, 0, 1})));
+  put("a.glb", gltf.glb());
+  const Imported mesh = import_of({"a.glb"});
+  EXPECT_THAT(corner_colours(mesh, 0), Each("255 0 0"));
+  EXPECT_THAT(corner_colours(mesh, 1), Each("0 188 255"));
+  EXPECT_THAT(corner_colours(mesh, 2), Each("74 100 0"));
+  EXPECT_EQ(mesh.count("vertices_made_white"), 0U);
+  const Imported plain = import_of({"a.glb"}, {.textures = Textures::ignore});
+  EXPECT_THAT(corner_colours(plain, 0), Each("255 255 255"));
+}
+
+TEST_F(MaterialColoursTest, FactorsKeepTheTypeOfTheColours) {
+  GltfBuilder gltf;
+  gltf.show(coloured<std::uint16_t>(gltf, {65535, 1000, 3}, material(gltf, {0.5, 1, 0, 1})));
+  gltf.show(primitive(gltf, material(gltf, {1, 0, 0, 1})));
+  put("a.glb", gltf.glb());
+  const Imported shorts = import_of({"a.glb"});
+  EXPECT_EQ(shorts.layout.colour, ColourType::u16);
+  EXPECT_THAT(corner_colours(shorts, 0), Each("48316 1000 0"));
+  EXPECT_THAT(corner_colours(shorts, 1), Each("65535 0 0"));
+  GltfBuilder floats;
+  floats.show(coloured<float>(floats, {0.25F, 0.5F, 1}, material(floats, {1, 0, 1, 1})));
+  floats.show(primitive(floats, material(floats, {0, 1, 0, 1})));
+  put("b.glb", floats.glb());
+  const Imported mesh = import_of({"b.glb"});
+  EXPECT_EQ(mesh.layout.colour, ColourType::f32);
+  EXPECT_THAT(corner_colours(mesh, 0), Each("0.25 0 1"));
+  EXPECT_THAT(corner_colours(mesh, 1), Each("0 1 0"));
 }
 
 }  // namespace

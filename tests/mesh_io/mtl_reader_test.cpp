@@ -56,6 +56,20 @@ TEST(MtlReader, WordsAreOfAnyCaseAndOthersArePassedOver) {
   EXPECT_EQ(material.alpha.value().file, "c.png");
 }
 
+TEST(MtlReader, ABackslashEndsNoComment) {
+  for (const char* before : {"# made in C:\\models\\", "Ns 10 # C:\\", "Kd 1 0 0 # C:\\",
+                             "map_Kd a.png # C:\\", "d 1 #\\", "illum 2 # \\"}) {
+    for (const char* end : {"\n", "\r\n", "\r"}) {
+      const auto all =
+          read_library("newmtl a\n" + std::string(before) + end + "newmtl b\nKd 0 1 0\n");
+      ASSERT_THAT(all, SizeIs(2)) << before;
+      EXPECT_EQ(all[1].name, "b");
+      EXPECT_THAT(all[1].colour, ElementsAre(0, 1, 0));
+    }
+  }
+  EXPECT_EQ(read_library("newmtl a # C:\\\nnewmtl b\n").size(), 2U);
+}
+
 TEST(MtlReader, OpacityIsWhatDSaysElseTr) {
   EXPECT_EQ(read_one("Tr 0.25").opacity, 0.75F);
   EXPECT_EQ(read_one("Tr 1").opacity, 1.0F);

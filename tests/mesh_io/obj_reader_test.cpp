@@ -14,6 +14,7 @@
 namespace meshhier::mesh_io::tests {
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -111,9 +112,32 @@ TEST(ObjReader, PolygonsBecomeFansAndDegenerateOnesAreCounted) {
 
 TEST(ObjReader, LinesMayBeJoinedAndEndInAnyWay) {
   const Taken taken(
-      "v 0 0 0\r\nv 1 \\\r\n 0 0\rv 1 1\\\n 0\n\n# v 9 9 9 \\\n 1\nf 1 \\\n2 \\\n\\\n3 # end");
+      "v 0 0 0\r\nv 1 \\\r\n 0 0\rv 1 1\\\n 0\n\n# v 9 9 9 \\\nf 1 \\\n2 \\\n\\\n3 # end");
   EXPECT_THAT(taken.positions, ElementsAre("0 0 0", "1 0 0", "1 1 0"));
   EXPECT_THAT(taken.triangles, ElementsAre("0,-,- 1,-,- 2,-,-"));
+}
+
+TEST(ObjReader, ABackslashEndsNoComment) {
+  for (const char* comment :
+       {"# from C:\\scans\\", "#\\", "\t# a \\ b \\\\", "v 7 7 7 # a folder\\",
+        "g roof # C:\\roof\\", "s off # C:\\", "usemtl wall # C:\\", "mtllib a.mtl # C:\\", "#",
+        "f 1 2 \\\n 3 # C:\\"}) {
+    for (const char* end : {"\n", "\r\n", "\r"}) {
+      const Taken taken(std::string(kSquare) + comment + end + "v 9 9 9\nf 1 2 5\n");
+      EXPECT_THAT(taken.positions, Contains("9 9 9")) << comment;
+      EXPECT_FALSE(taken.triangles.empty());
+    }
+  }
+  EXPECT_THAT(Taken("v 0 0 0 # C:\\").positions, ElementsAre("0 0 0")) << "at the end of the file";
+  const std::string far(300'000, 'x');
+  EXPECT_THAT(Taken("# " + far + "\\\nv 0 0 0\n").positions, ElementsAre("0 0 0"));
+  EXPECT_THAT(Taken("g " + far + " # \\\nv 0 0 0\n").positions, ElementsAre("0 0 0"));
+}
+
+TEST(ObjReader, ABackslashJoinsLinesThatHaveNoComment) {
+  const Taken taken(std::string(kSquare) + "g a#b \\\nv 8 8 8\nf 1 2 \\\n 3\n");
+  EXPECT_THAT(taken.positions, SizeIs(4)) << "a '#' within a word is none";
+  EXPECT_THAT(taken.triangles, SizeIs(1));
 }
 
 TEST(ObjReader, CountsWhatIsNoSurface) {
