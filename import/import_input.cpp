@@ -341,6 +341,7 @@ class Import {
         });
     checked_base(path, 0);
     count("ignored_face_colours", counts.coloured_faces);
+    count("ignored_lines_behind", counts.lines_behind);
     count(counts.zeroed);
     return {counts.attributes, counts.fits_float, counts.faces.faces,
             counts.faces.degenerate_triangles};

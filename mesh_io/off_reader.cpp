@@ -22,6 +22,7 @@ struct Keyword {
   bool colours = false;
   bool normals = false;
   bool more_dimensions = false;  ///< 4 or n
+  std::string_view glued;        ///< digits right behind it: the count of vertices, as in ModelNet
 };
 
 Keyword parse_keyword(std::string_view word) {
@@ -36,7 +37,11 @@ Keyword parse_keyword(std::string_view word) {
   keyword.normals = take("N");
   keyword.more_dimensions = take("4");
   keyword.more_dimensions = take("n") || keyword.more_dimensions;
-  keyword.is_off = word == "OFF";
+  keyword.is_off = take("OFF");
+  if (!word.empty() && keyword.is_off) {
+    keyword.glued = word;
+    keyword.is_off = word.find_first_not_of("0123456789") == std::string_view::npos;
+  }
   return keyword;
 }
 
@@ -59,17 +64,16 @@ class OffReader {
     TriangleBlocks blocks(visit_triangles);
     for (std::uint64_t i = 0; i < face_count_; ++i)
       read_face(i, blocks);
-    if (words_.to_row()) {
-      words_.fail(fmt::format("expected the end of the file behind {} faces, found {}", face_count_,
-                              in_quotes(words_.take_word())));
-    }
+    for (; words_.to_row(); ++counts_.lines_behind)
+      words_.skip_line();
     counts_.faces = blocks.finish();
     return counts_;
   }
 
  private:
   void read_header() {
-    const Keyword keyword = words_.to_row() ? parse_keyword(words_.take_word()) : Keyword();
+    const std::string word(words_.to_row() ? words_.take_word() : std::string_view());
+    const Keyword keyword = parse_keyword(word);
     if (!keyword.is_off)
       words_.fail("expected 'OFF', perhaps with ST, C or N before it");
     if (keyword.more_dimensions)
@@ -77,9 +81,14 @@ class OffReader {
     counts_.attributes.normals = keyword.normals;
     counts_.attributes.colour = keyword.colours ? ColourType::f32 : ColourType::none;
     counts_.attributes.texcoords = keyword.texcoords;
-    if (!words_.to_word() && !words_.to_row())
-      fail_truncated("the counts of vertices and faces");
-    counts_.vertices = take_count("vertices", UINT32_MAX);
+    is_plain_ = counts_.attributes == AttributeLayout();
+    if (!keyword.glued.empty()) {
+      counts_.vertices = checked_count(keyword.glued, "vertices", UINT32_MAX);
+    } else {
+      if (!words_.to_word() && !words_.to_row())
+        fail_truncated("the counts of vertices and faces");
+      counts_.vertices = take_count("vertices", UINT32_MAX);
+    }
     face_count_ = take_count("faces", UINT64_MAX >> 2);
     if (words_.to_word())
       words_.take_word();  // edges, which nobody counts
@@ -91,7 +100,10 @@ class OffReader {
   }
 
   std::uint64_t take_count(const char* what, std::uint64_t most) {
-    const std::string_view word = words_.to_word() ? words_.take_word() : std::string_view();
+    return checked_count(words_.to_word() ? words_.take_word() : std::string_view(), what, most);
+  }
+
+  std::uint64_t checked_count(std::string_view word, const char* what, std::uint64_t most) const {
     const auto count = parse_integer(word);
     if (!count || *count < 0 || static_cast<std::uint64_t>(*count) > most) {
       words_.fail(fmt::format("expected the count of {} ({}), found {}", what,
@@ -122,6 +134,9 @@ class OffReader {
       channels_[channel_count_++] = *value;
     }
     const auto expected = [&] { return static_cast<std::size_t>(layout.channels()); };
+    // MeshLab and others write colours without saying so in the first line.
+    if (is_first && is_plain_ && (channel_count_ == 3 || channel_count_ == 4))
+      layout.colour = ColourType::f32;
     if (is_first && layout.colour != ColourType::none)
       layout.alpha = channel_count_ == expected() + 1;
     if (channel_count_ != expected() || words_.to_word()) {
@@ -174,6 +189,7 @@ class OffReader {
   std::array<float, kMaxChannels> channels_{};
   std::size_t channel_count_ = 0;
   std::uint64_t face_count_ = 0;
+  bool is_plain_ = false;  ///< the first line says nothing of attributes
   bool byte_colours_ = true;
   OffCounts counts_;
 };

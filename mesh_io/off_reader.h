@@ -21,6 +21,7 @@ struct OffCounts {
   std::uint64_t vertices = 0;
   FaceCounts faces;
   std::uint64_t coloured_faces = 0;  ///< whose colours are ignored
+  std::uint64_t lines_behind = 0;    ///< with words, behind the last face
   AttributeLayout attributes;        ///< colours are u8 if all are integers from 0 to 255, else f32
   bool fits_float = true;            ///< all coordinates do (DecimalNumber)
   ZeroedCounts zeroed;
@@ -32,11 +33,13 @@ using OffVertexVisitor = std::function<void(Vec3d position, std::span<const floa
 /// Reads, with comments from # to the end of a line,
 ///
 ///   [ST][C][N]OFF
-///   vertices faces [edges]               also on the first line
+///   vertices faces [edges]               also on the first line, even right behind OFF
 ///   x y z [nx ny nz] [r g b [a]] [s t]   a line each; alpha if the first vertex has it
 ///   n i1 ... in [colour]                 a line each; polygons become fans
 ///
-/// Corners are below the count of vertices, numbers finite. Files of four dimensions or in binary
+/// Colours may also stand in a file whose first line does not say so: if the first vertex has three
+/// or four numbers behind its coordinates. What lies behind the last face is counted. Corners are
+/// below the count of vertices, numbers finite. Files of four dimensions or in binary
 /// are refused. Throws Error(input) naming the line, Error(io).
 OffCounts read_off(InputStream& stream, const std::filesystem::path& path,
                    const OffVertexVisitor& visit_vertex, const TriangleVisitor& visit_triangles);

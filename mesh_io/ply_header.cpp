@@ -157,7 +157,11 @@ bool HeaderParser::parse_line(std::string_view line) {
 }
 
 void HeaderParser::parse_comment(std::string_view rest) {
-  if (take_word(rest) == "TextureFile" && !rest.empty())
+  constexpr std::string_view kTextureFile = "texturefile";
+  const bool names_texture = std::ranges::equal(
+      take_word(rest), kTextureFile, {},
+      [](char c) -> char { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  if (names_texture && !rest.empty())
     header_.texture_files.emplace_back(rest);
 }
 

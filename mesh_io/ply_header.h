@@ -47,7 +47,7 @@ struct PlyElement {
 struct PlyHeader {
   PlyEncoding encoding{};
   std::vector<PlyElement> elements;        ///< names are unique
-  std::vector<std::string> texture_files;  ///< NAME of each "comment TextureFile NAME"
+  std::vector<std::string> texture_files;  ///< NAME of each "comment TextureFile NAME", in any case
   std::uint64_t data_offset = 0;           ///< byte behind the line end of end_header
   std::uint64_t data_line = 0;  ///< number of the line at data_offset; the first of a file is 1
 };

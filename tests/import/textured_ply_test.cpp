@@ -78,7 +78,7 @@ std::string with_vertex_texcoords(const std::string& names, const std::string& f
       "property float z\nproperty float {}\nproperty float {}\nelement face {}\n"
       "property list uchar int vertex_indices\nproperty int texnumber\nend_header\n"
       "0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n{}",
-      "comment TextureFile a.png\ncomment TextureFile  b c.png \n",
+      "comment TextureFile a.png\ncomment TEXTUREfile  b c.png \n",
       names.substr(0, names.find(' ')), names.substr(names.find(' ') + 1), count, faces);
 }
 

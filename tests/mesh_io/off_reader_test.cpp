@@ -113,6 +113,10 @@ TEST(OffReader, RefusesWhatIsWrongAndNamesTheLine) {
   EXPECT_THAT(off_refusal("OFF\n1 0 0\n1 2 9e37\n"),
               HasSubstr("line 3: expected a coordinate from"));
   EXPECT_THAT(off_refusal("OFF\n1 0 0\n1 2 3 4\n"), HasSubstr("line 3: expected 0 numbers behind"));
+  EXPECT_THAT(off_refusal("OFF\n2 0 0\n1 2 3 4 5 6\n1 2 3\n"),
+              HasSubstr("line 4: expected 3 numbers behind"));
+  EXPECT_THAT(off_refusal("OFF3x 1 0\n"), HasSubstr("line 1: expected 'OFF'"));
+  EXPECT_THAT(off_refusal("OFF4294967296 1 0\n"), HasSubstr("expected the count of vertices"));
   EXPECT_THAT(off_refusal("COFF\n2 0 0\n1 2 3 1 1 1\n1 2 3 1 1 1 1\n"),
               HasSubstr("line 4: expected 3 numbers behind"));
   EXPECT_THAT(off_refusal("NOFF\n1 0 0\n1 2 3 0 0 up\n"), HasSubstr("line 3: expected a number"));
@@ -127,8 +131,33 @@ TEST(OffReader, RefusesWhatIsWrongAndNamesTheLine) {
   EXPECT_THAT(faces("3 0 1 -1\n"), HasSubstr("found '-1'"));
   EXPECT_THAT(faces("-3 0 1 2\n"), HasSubstr("expected the number of a face's corners"));
   EXPECT_THAT(faces("99999999999 0 1 2\n"), HasSubstr("expected a corner of face 0"));
-  EXPECT_THAT(faces("3 0 1 2\n3 0 1 2\n"),
-              HasSubstr("line 8: expected the end of the file behind 1 faces, found '3'"));
+}
+
+TEST(OffReader, TheCountOfVerticesMayStandRightBehindTheKeyword) {
+  for (const char* start : {"OFF4 1 0\n", "OFF4 1\n", "OFF4 1 0 # c\r\n", "OFF4  1 0\n"}) {
+    const OffTaken taken(start + std::string(kOffSquare) + "3 0 1 2\n");
+    EXPECT_THAT(taken.vertices, ElementsAre("0 0 0", "1 0 0", "1 1 0", "0 1 0")) << start;
+    EXPECT_THAT(taken.triangles, ElementsAre("0 1 2")) << start;
+  }
+  const OffTaken coloured("COFF3 1 0\n0 0 0 1 2 3\n1 0 0 1 2 3\n0 1 0 1 2 3\n3 0 1 2\n");
+  EXPECT_EQ(coloured.counts.attributes.colour, ColourType::u8);
+  EXPECT_TRUE(is_off_keyword("OFF490"));
+  EXPECT_FALSE(is_off_keyword("OFFER"));
+}
+
+TEST(OffReader, ColoursMayStandInAPlainFile) {
+  const OffTaken bytes("OFF\n3 1 0\n0 0 0 200 90 40 255\n1 0 0 0 0 0 0\n0 1 0 1 2 3 4\n3 0 1 2\n");
+  EXPECT_EQ(bytes.counts.attributes, (AttributeLayout{.colour = ColourType::u8, .alpha = true}));
+  EXPECT_THAT(bytes.vertices, ElementsAre("0 0 0 200 90 40 255", "1 0 0 0 0 0 0", "0 1 0 1 2 3 4"));
+  const OffTaken floats("OFF3 1 0\n0 0 0 0.5 0 1\n1 0 0 1 1 1\n0 1 0 0 0 0\n3 0 1 2\n");
+  EXPECT_EQ(floats.counts.attributes, AttributeLayout{.colour = ColourType::f32});
+}
+
+TEST(OffReader, CountsWhatLiesBehindTheFaces) {
+  const std::string square = "OFF\n4 1 0\n" + std::string(kOffSquare) + "3 0 1 2\n";
+  EXPECT_EQ(OffTaken(square).counts.lines_behind, 0U);
+  EXPECT_EQ(OffTaken(square + "\n  \n# end\n").counts.lines_behind, 0U);
+  EXPECT_EQ(OffTaken(square + "3 0 1 2\n\nthe end\n").counts.lines_behind, 2U);
 }
 
 }  // namespace
