@@ -3,9 +3,9 @@
 #include "execution/cancel.h"
 #include "execution/progress.h"
 #include "hierarchy/error.h"
+#include "hierarchy/srgb.h"
 #include "images/image_codec.h"
 #include "images/material_list.h"
-#include "images/srgb.h"
 #include "import/mesh_input.h"
 #include "mesh_io/mesh_source.h"
 #include "storage/io/spool.h"
@@ -48,7 +48,7 @@ class MaterialLoader {
     ShownMaterial result;
     if (material.image)
       result.texture = texture(*material.image, {material.wrap_u, material.wrap_v});
-    const auto light = [&](std::size_t c) { return images::light_of(material.colour[c]); };
+    const auto light = [&](std::size_t c) { return light_of(material.colour[c]); };
     result.colour = to_float({light(0), light(1), light(2)});
     return result;
   }

@@ -10,7 +10,7 @@ using Part = std::span<const float>;
 /// The mean of a group, of those at the new place if there are any.
 class GroupMean {
  public:
-  void add(Part part, const AttributePoint& point, const ClusterWedge& wedge) {
+  void add(Part part, const AttributePoint& summand, const ClusterWedge& wedge) {
     if (wedge.at_place && !at_place_)
       *this = {};
     else if (at_place_ && !wedge.at_place)
@@ -20,8 +20,8 @@ class GroupMean {
       part_ = part;
     are_equal_ = are_equal_ && std::ranges::equal(part_, part);
     weight_ += wedge.area;
-    for (std::size_t k = 0; k < point.size(); ++k)
-      sum_[k] += wedge.area * point[k];
+    for (std::size_t k = 0; k < summand.size(); ++k)
+      sum_[k] += wedge.area * summand[k];
   }
 
   std::array<float, 4> value(const AttributeKind& kind) const {
@@ -65,7 +65,7 @@ AttributeGroups group_attributes(const AttributeKind& kind, const TileWedges& we
     const auto [leader, distance] = leaders.nearest(*point);
     groups.group_of[i] = leader;
     if (distance <= kind.limit())
-      means[leader].add(part(i), *point, cluster[i]);
+      means[leader].add(part(i), kind.summand(*point), cluster[i]);
   }
   for (const GroupMean& mean : means)
     groups.values.push_back(mean.value(kind));

@@ -12,10 +12,6 @@ namespace {
 // How far a direction may seem to be from itself, by rounding: 1 - cosine.
 constexpr double kSameDirection = 1e-12;
 
-double colour_range(ColourType type) {
-  return type == ColourType::u8 ? 255 : type == ColourType::u16 ? 65535 : 1;
-}
-
 double squared_sum(const AttributePoint& p) {
   return p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3];
 }
@@ -36,25 +32,31 @@ std::optional<AttributePoint> direction(const AttributePoint& p) {
 AttributeKind AttributeKind::normals(const AttributeLayout& layout, const WedgeOptions& options) {
   const double cosine = turn_by(options.crease_angle * std::numbers::pi / 180).cosine;
   return {static_cast<std::size_t>(layout.normal_offset()), std::size_t{layout.normals ? 3U : 0U},
-          layout.normals, 1 - cosine + kSameDirection};
+          Numbers::directions, 1, 1 - cosine + kSameDirection};
 }
 
 AttributeKind AttributeKind::colours(const AttributeLayout& layout, const WedgeOptions& options) {
+  const double range = full_number(layout.colour);
   return {static_cast<std::size_t>(layout.colour_offset()),
-          static_cast<std::size_t>(layout.colour_channels()), false,
-          options.colour_tolerance * colour_range(layout.colour)};
+          static_cast<std::size_t>(layout.colour_channels()),
+          layout.space == ColourSpace::linear ? Numbers::light : Numbers::values, range,
+          options.colour_tolerance * range};
 }
 
 std::optional<AttributePoint> AttributeKind::point(std::span<const float> part) const {
   AttributePoint p{};
   std::copy(part.begin(), part.end(), p.begin());
-  if (is_direction_)
+  if (numbers_ == Numbers::directions)
     return direction(p);
-  return std::isfinite(squared_sum(p)) ? std::optional(p) : std::nullopt;
+  if (!std::isfinite(squared_sum(p)))
+    return std::nullopt;
+  return numbers_ == Numbers::light
+             ? changed(p, [](double light) { return LightCurve::get().value(light); })
+             : p;
 }
 
 double AttributeKind::distance(const AttributePoint& a, const AttributePoint& b) const {
-  if (is_direction_)
+  if (numbers_ == Numbers::directions)
     return 1 - (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
   double most = 0;
   for (std::size_t k = 0; k < a.size(); ++k)
@@ -68,10 +70,21 @@ bool AttributeKind::are_apart(std::span<const float> a, std::span<const float> b
   return p && q && distance(*p, *q) > limit_;
 }
 
+AttributePoint AttributeKind::summand(const AttributePoint& point) const {
+  if (numbers_ == Numbers::directions)
+    return point;
+  return changed(point, [](double value) { return LightCurve::get().light(value); });
+}
+
 std::optional<AttributePoint> AttributeKind::mean(const AttributePoint& sum, double weight) const {
-  if (is_direction_)
+  if (numbers_ == Numbers::directions)
     return direction(sum);
-  return weight > 0 ? std::optional(scaled(sum, 1 / weight)) : std::nullopt;
+  if (!(weight > 0))
+    return std::nullopt;
+  const AttributePoint mean = scaled(sum, 1 / weight);
+  if (numbers_ == Numbers::light)
+    return mean;
+  return changed(mean, [](double light) { return LightCurve::get().value(light); });
 }
 
 double squared_difference(const AttributeLayout& layout, std::span<const float> a,
@@ -80,7 +93,7 @@ double squared_difference(const AttributeLayout& layout, std::span<const float> 
   const auto after = static_cast<std::size_t>(layout.texcoord_offset());
   double sum = 0;
   for (std::size_t k = 0; k < a.size(); ++k) {
-    const double range = k >= colours && k < after ? colour_range(layout.colour) : 1;
+    const double range = k >= colours && k < after ? double{full_number(layout.colour)} : 1;
     const double difference = (double{a[k]} - double{b[k]}) / range;
     sum += difference * difference;
   }

@@ -4,6 +4,7 @@
 #include "cluster_simplify/wedge_options.h"
 #include "hierarchy/attributes.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -11,7 +12,7 @@
 
 namespace meshhier::cluster_simplify {
 
-/// A normal of unit length, or a colour.
+/// A normal of unit length, or a colour as a screen has it, in the range of its type.
 using AttributePoint = std::array<double, 4>;
 
 class AttributeKind {
@@ -33,15 +34,30 @@ class AttributeKind {
   /// Of two parts; what says nothing is like everything.
   bool are_apart(std::span<const float> a, std::span<const float> b) const;
 
-  /// `sum`: of points, each times its weight. Nothing if it has no direction, or no weight.
+  /// What means are made of: a direction, or light.
+  AttributePoint summand(const AttributePoint& point) const;
+  /// A part again. `sum`: of summands, each times its weight. Nothing if it has no direction, or no
+  /// weight.
   std::optional<AttributePoint> mean(const AttributePoint& sum, double weight) const;
 
  private:
-  AttributeKind(std::size_t offset, std::size_t channels, bool is_direction, double limit)
-      : offset_(offset), channels_(channels), is_direction_(is_direction), limit_(limit) {}
+  enum class Numbers { directions, values, light };
+
+  AttributeKind(std::size_t offset, std::size_t channels, Numbers numbers, double range,
+                double limit)
+      : offset_(offset), channels_(channels), numbers_(numbers), range_(range), limit_(limit) {}
+
+  /// Of red, green and blue.
+  template <class Change>
+  AttributePoint changed(AttributePoint p, const Change& change) const {
+    for (std::size_t k = 0; k < std::min<std::size_t>(channels_, 3); ++k)
+      p[k] = range_ * change(p[k] / range_);
+    return p;
+  }
 
   std::size_t offset_, channels_;
-  bool is_direction_;
+  Numbers numbers_;
+  double range_;  ///< of colours
   double limit_;
 };
 

@@ -22,7 +22,7 @@ struct CellMeans {
 };
 
 CellMeans means_of(const BuildTile& joined, const std::vector<std::uint32_t>& cell_of,
-                   std::uint32_t cell_count) {
+                   std::uint32_t cell_count, const ColourLight& colours) {
   const auto channels = static_cast<std::size_t>(joined.mesh.vertices.channels);
   CellMeans means{std::vector<Vec3d>(cell_count), std::vector<double>(cell_count * channels)};
   std::vector<double> weights(cell_count);
@@ -34,7 +34,8 @@ CellMeans means_of(const BuildTile& joined, const std::vector<std::uint32_t>& ce
         means.positions[cell] + to_double(joined.mesh.vertices.positions[i]) * weight;
     const auto values = joined.mesh.vertices.attributes_of(i);
     for (std::size_t k = 0; k < channels; ++k)
-      means.attributes[cell * channels + k] += weight * double{values[k]};
+      means.attributes[cell * channels + k] +=
+          weight * (colours.has(k) ? colours.light(values[k]) : double{values[k]});
   }
   for (std::uint32_t cell = 0; cell < cell_count; ++cell) {
     means.positions[cell] = means.positions[cell] * (1 / weights[cell]);
@@ -125,7 +126,8 @@ Contraction cluster(const BuildTile& joined, std::uint32_t target, const Attribu
   Contraction result;
   result.parent_of =
       kd_cells({joined.mesh.vertices.positions.data(), joined.mesh.own_count}, target);
-  const CellMeans means = means_of(joined, result.parent_of, target);
+  const ColourLight colours(layout);
+  const CellMeans means = means_of(joined, result.parent_of, target, colours);
   std::vector<Vec3d> points;
   switch (representative) {
     case Representative::mean:
@@ -143,8 +145,10 @@ Contraction cluster(const BuildTile& joined, std::uint32_t target, const Attribu
   result.representatives.reserve(target);
   std::vector<float> attributes(channels);
   for (std::uint32_t cell = 0; cell < target; ++cell) {
-    for (std::size_t k = 0; k < channels; ++k)
-      attributes[k] = static_cast<float>(means.attributes[cell * channels + k]);
+    for (std::size_t k = 0; k < channels; ++k) {
+      const double mean = means.attributes[cell * channels + k];
+      attributes[k] = static_cast<float>(colours.has(k) ? colours.number(mean) : mean);
+    }
     normalize_average(layout, attributes);
     result.representatives.append(to_float(points[cell]), attributes);
   }

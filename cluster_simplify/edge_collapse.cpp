@@ -75,8 +75,12 @@ std::vector<PlacedQuadric> placed(std::span<const VertexQuadric> quadrics,
 class OptimalPlacement {
  public:
   OptimalPlacement(const CollapseMesh& mesh, const TileMesh& tile, const LocalFrame& frame,
-                   std::span<const PlaceEdge> seams, VertexArray& vertices)
-      : mesh_(mesh), positions_(frame.to_local(tile.vertices.positions)), vertices_(vertices) {
+                   std::span<const PlaceEdge> seams, const AttributeLayout& layout,
+                   VertexArray& vertices)
+      : mesh_(mesh),
+        positions_(frame.to_local(tile.vertices.positions)),
+        colours_(layout),
+        vertices_(vertices) {
     const std::vector<VertexQuadric> quadrics = vertex_quadrics(mesh, positions_, seams);
     prices_.emplace(tile, frame, total_area(quadrics));
     placed_ = placed(quadrics, positions_);
@@ -158,6 +162,13 @@ class OptimalPlacement {
     return meeting_point(four_planes(four.a), four_planes(four.b), four.hx, four.hy, four.hz);
   }
 
+  float mixed_colour(float a, float b, float part) const {
+    if (a == b)
+      return a;
+    return static_cast<float>(
+        colours_.number(colours_.light(a) * (1 - part) + colours_.light(b) * part));
+  }
+
   /// Attributes at the point of the edge that is nearest to the new place.
   void interpolate_attributes(const Collapse& c) {
     if (vertices_.channels == 0)
@@ -171,13 +182,15 @@ class OptimalPlacement {
     float* to = vertices_.attributes.data() + c.to * channels;
     const float* from = vertices_.attributes.data() + c.from * channels;
     for (std::size_t k = 0; k < channels; ++k)
-      to[k] = to[k] * (1 - part) + from[k] * part;
+      to[k] = colours_.has(k) ? mixed_colour(to[k], from[k], part)
+                              : to[k] * (1 - part) + from[k] * part;
   }
 
   const CollapseMesh& mesh_;
   std::vector<Vec3f> positions_;
   std::vector<PlacedQuadric> placed_;
   std::optional<TopologyPrices> prices_;
+  ColourLight colours_;
   VertexArray& vertices_;
 };
 
@@ -188,7 +201,7 @@ Contraction edge_collapse(const BuildTile& joined, std::uint32_t target,
   CollapseMesh mesh(joined.mesh);
   VertexArray vertices = joined.mesh.vertices;
   const LocalFrame frame(surface_bounds(mesh, vertices.positions));
-  OptimalPlacement costs(mesh, joined.mesh, frame, seams, vertices);
+  OptimalPlacement costs(mesh, joined.mesh, frame, seams, layout, vertices);
   DeviationMeter deviation(mesh, joined.history.weights);
   const FallbackCounts fallbacks = collapse_edges(mesh, costs, deviation, target);
   for (std::uint32_t v = 0; v < mesh.own_count(); ++v) {

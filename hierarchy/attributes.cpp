@@ -4,6 +4,11 @@
 
 namespace meshhier {
 
+ColourLight::ColourLight(const AttributeLayout& layout)
+    : full_(full_number(layout.colour)),
+      first_(static_cast<std::size_t>(layout.colour_offset())),
+      count_(layout.colour != ColourType::none && layout.space == ColourSpace::srgb ? 3 : 0) {}
+
 void normalize_average(const AttributeLayout& layout, std::span<float> channels) {
   if (!layout.normals)
     return;

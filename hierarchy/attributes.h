@@ -11,6 +11,9 @@
 // u8, u16 and float values are exact as float, so attributes survive bit for bit.
 #pragma once
 
+#include "hierarchy/srgb.h"
+
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -18,12 +21,24 @@ namespace meshhier {
 
 enum class ColourType : std::uint8_t { none, u8, u16, f32 };
 
+/// White as the type has it.
+constexpr float full_number(ColourType type) {
+  return type == ColourType::u8 ? 255.0F : type == ColourType::u16 ? 65535.0F : 1.0F;
+}
+
+/// What the numbers of red, green and blue are in proportion to; alpha's are always a part.
+enum class ColourSpace : std::uint8_t {
+  srgb,   ///< the values of a screen (IEC 61966-2-1): PLY, OBJ, OFF, colours of materials
+  linear  ///< light: glTF's COLOR_0
+};
+
 struct AttributeLayout {
   bool normals = false;
   ColourType colour = ColourType::none;
   bool alpha = false;  ///< colours have a fourth channel
   bool texcoords = false;
   bool material = false;  ///< texture coordinates name a material; only with texcoords
+  ColourSpace space = ColourSpace::srgb;  ///< of colours
 
   constexpr int colour_channels() const { return colour == ColourType::none ? 0 : alpha ? 4 : 3; }
   constexpr int normal_offset() const { return 0; }
@@ -32,12 +47,31 @@ struct AttributeLayout {
   constexpr int material_offset() const { return texcoord_offset() + (texcoords ? 2 : 0); }
   constexpr int channels() const { return material_offset() + (material ? 1 : 0); }
   /// Normals and colours, which lie first.
-  constexpr AttributeLayout without_texcoords() const { return {normals, colour, alpha}; }
+  constexpr AttributeLayout without_texcoords() const {
+    return {.normals = normals, .colour = colour, .alpha = alpha, .space = space};
+  }
   friend constexpr bool operator==(const AttributeLayout&, const AttributeLayout&) = default;
 };
 
 /// The largest channel count of any layout: 3 + 4 + 2 + 1.
 inline constexpr int kMaxChannels = 10;
+
+/// Colours as their light, 0 to 1, so that means are those of light; what is outside is cut.
+class ColourLight {
+ public:
+  explicit ColourLight(const AttributeLayout& layout);
+
+  /// Of channel `k` of a vertex: whether its numbers are not in proportion to its light.
+  bool has(std::size_t k) const { return k - first_ < count_; }
+  double light(double number) const { return curve_.light(number / full_); }
+  /// The inverse, but for rounding.
+  double number(double light) const { return full_ * curve_.value(light); }
+
+ private:
+  const LightCurve& curve_ = LightCurve::get();
+  double full_;
+  std::size_t first_, count_;
+};
 
 /// Makes an average of attribute vectors an attribute vector again: normals to unit length (a zero
 /// normal stays zero); the rest unchanged. `channels`: layout.channels() floats of one vertex.

@@ -1,6 +1,6 @@
 #include "images/pyramid.h"
 
-#include "images/srgb.h"
+#include "hierarchy/srgb.h"
 
 #include <algorithm>
 #include <array>

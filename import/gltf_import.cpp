@@ -11,6 +11,7 @@
 #include "mesh_io/mesh_blocks.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <memory>
@@ -31,11 +32,6 @@ using mesh_io::GltfElementSource;
 using mesh_io::GltfFile;
 using mesh_io::GltfPrimitive;
 using mesh_io::GltfTransform;
-
-/// The largest number of a colour channel, which is white.
-float white(ColourType type) {
-  return type == ColourType::u8 ? 255.0F : type == ColourType::u16 ? 65535.0F : 1.0F;
-}
 
 ColourType colour_type(GltfComponent component) {
   return component == GltfComponent::u8    ? ColourType::u8
@@ -137,12 +133,19 @@ class GltfImporter {
 
   GltfImport run() {
     look();
+    if (textures_ == Textures::use && file_.document().requires_ktx2 && materials_.shows_ktx2()) {
+      file_.fail(
+          "requires KHR_texture_basisu: its pictures are in KTX2, which is not read; export them "
+          "as PNG or JPEG, or leave them out with \"texture\": {\"use\": false}");
+    }
     materials_.tell_missing(mesh_.materials);
     if (is_textured())
       materials_.add_to(mesh_.materials);
     for (const mesh_io::GltfInstance& instance : scene_.instances) {
-      for (const GltfPrimitive& primitive : primitives(instance))
-        append(primitive, instance.transform);
+      for_each_copy(instance, [&](const GltfTransform& transform) {
+        for (const GltfPrimitive& primitive : primitives(instance))
+          append(primitive, transform);
+      });
     }
     return finish();
   }
@@ -150,6 +153,50 @@ class GltfImporter {
  private:
   const std::vector<GltfPrimitive>& primitives(const mesh_io::GltfInstance& instance) const {
     return file_.document().meshes[instance.mesh].primitives;
+  }
+
+  /// Of EXT_mesh_gpu_instancing.
+  std::optional<GltfElements> placements(std::optional<std::uint32_t> accessor,
+                                         std::uint32_t components) const {
+    if (!accessor)
+      return std::nullopt;
+    GltfElementSource source = gltf_elements_of(file_, *accessor);
+    if (source.components != components)
+      file_.fail(fmt::format("{} has {} components, but places copies of a mesh by {}", source.name,
+                             source.components, components));
+    return GltfElements(file_, std::move(source));
+  }
+
+  template <class Visit>
+  void for_each_copy(const mesh_io::GltfInstance& instance, const Visit& visit) {
+    if (!instance.copies)
+      return visit(instance.transform);
+    std::array<std::optional<GltfElements>, 3> parts{placements(instance.copies->translation, 3),
+                                                     placements(instance.copies->rotation, 4),
+                                                     placements(instance.copies->scale, 3)};
+    std::optional<std::uint64_t> count;
+    for (const auto& part : parts) {
+      if (part && part->size() != count.value_or(part->size()))
+        file_.fail(fmt::format("{} places {} copies of a mesh, others place {}",
+                               part->source().name, part->size(), *count));
+      count = part ? part->size() : count;
+    }
+    const auto numbers = [&](std::size_t part, std::uint64_t i, std::array<double, 4> otherwise) {
+      if (parts[part])
+        std::ranges::copy(parts[part]->at(i), otherwise.begin());
+      return otherwise;
+    };
+    copies_ += count.value_or(1);
+    for (std::uint64_t i = 0; i < count.value_or(1); ++i) {
+      const auto t = numbers(0, i, {0, 0, 0, 0});
+      const auto turn = numbers(1, i, {0, 0, 0, 1});
+      const auto s = numbers(2, i, {1, 1, 1, 0});
+      if (turn == std::array<double, 4>{})
+        file_.fail(
+            fmt::format("{}: element {} is a rotation of zeros", parts[1]->source().name, i));
+      visit(instance.transform *
+            mesh_io::gltf_placement({t[0], t[1], t[2]}, turn, {s[0], s[1], s[2]}));
+    }
   }
 
   static bool is_shown(const GltfPrimitive& primitive) {
@@ -184,9 +231,15 @@ class GltfImporter {
       import_.layout.colour = PlainColours::kType;
       import_.material_colours = materials_.colours().count();
       import_.is_painted = true;
-    } else if (import_.layout.colour != ColourType::none && materials_.colours().are_seen()) {
+    } else if (import_.layout.colour != ColourType::none && materials_.colours().are_coloured()) {
       import_.material_colours = materials_.colours().count();
+      // Products of light with 8 bits would be bands.
+      widens_colours_ = import_.layout.colour == ColourType::u8;
+      if (widens_colours_)
+        import_.layout.colour = ColourType::u16;
     }
+    if (import_.layout.colour != ColourType::none && !import_.is_painted)
+      import_.layout.space = ColourSpace::linear;
   }
 
   void look_at(const GltfPrimitive& primitive, CommonLayout& layout) {
@@ -288,7 +341,7 @@ class GltfImporter {
   /// The attributes of a primitive that the mesh has.
   struct Attributes {
     std::optional<GltfElements> normals, colours, texcoords;
-    PlainColour factor;  ///< of the material, if vertices have its colour
+    std::array<double, 4> factor{1, 1, 1, 1};  ///< of the material, if vertices have its colour
     float material = 0;
     const mesh_io::GltfTextureTransform* texture = nullptr;
   };
@@ -300,7 +353,7 @@ class GltfImporter {
     if (layout.normals)
       attributes.normals = elements(sources, "NORMAL", 3, 3, count);
     if (import_.material_colours > 0)
-      attributes.factor = materials_.colour(primitive.material);
+      attributes.factor = factor_of(primitive.material);
     if (layout.colour != ColourType::none)
       attributes.colours =
           elements(sources, "COLOR_0", 3, 4, count, layout.colour != ColourType::f32);
@@ -312,6 +365,20 @@ class GltfImporter {
         attributes.texture = &file_.document().materials[*primitive.material].transform;
     }
     return attributes;
+  }
+
+  /// Light, but as the 8-bit colours that vertices have if no primitive has any of its own.
+  std::array<double, 4> factor_of(std::optional<std::uint32_t> material) const {
+    if (import_.is_painted) {
+      const auto [red, green, blue] = materials_.colour(material).channels;
+      return {red / 255.0, green / 255.0, blue / 255.0, 1};
+    }
+    std::array<double, 4> factor{1, 1, 1, 1};
+    if (material)
+      factor = file_.document().materials[*material].factor;
+    for (double& part : factor)
+      part = std::clamp(part, 0.0, 1.0);
+    return factor;
   }
 
   void append_vertices(const GltfPrimitive& primitive, const PrimitiveSources& sources,
@@ -338,7 +405,7 @@ class GltfImporter {
   void count_filled(const Attributes& all, std::uint64_t vertices) {
     const AttributeLayout& layout = import_.layout;
     without_normal_ += layout.normals && !all.normals ? vertices : 0;
-    const bool is_white = !all.colours && !import_.is_painted && all.factor == PlainColour();
+    const bool is_white = !all.colours && layout.material;
     made_white_ += layout.colour != ColourType::none && is_white ? vertices : 0;
     without_texcoord_ += layout.texcoords && !all.texcoords ? vertices : 0;
   }
@@ -404,20 +471,20 @@ class GltfImporter {
     if (size > 0 && all.colours) {
       for (const double value : all.colours->at(vertex)) {
         if (channels.size() < end)
-          channels.push_back(checked(*all.colours, vertex, value));
+          channels.push_back(checked(*all.colours, vertex, value) * (widens_colours_ ? 257 : 1));
       }
     }
-    channels.resize(end, white(layout.colour));
-    if (all.factor != PlainColour())
-      paint(std::span(channels).subspan(begin).first<3>(), all.factor);
+    channels.resize(end, full_number(layout.colour));
+    if (all.factor != std::array<double, 4>{1, 1, 1, 1})
+      multiply(std::span(channels).subspan(begin), all.factor);
   }
 
   /// Whole numbers stay whole.
-  void paint(std::span<float, 3> colour, const PlainColour& factor) const {
+  void multiply(std::span<float> colour, const std::array<double, 4>& factor) const {
     const bool is_whole = import_.layout.colour != ColourType::f32;
     for (std::size_t c = 0; c < colour.size(); ++c) {
-      const float painted = colour[c] * static_cast<float>(factor.channels[c]) / 255;
-      colour[c] = is_whole ? std::round(painted) : painted;
+      const double product = double{colour[c]} * factor[c];
+      colour[c] = static_cast<float>(is_whole ? std::round(product) : product);
     }
   }
 
@@ -441,6 +508,8 @@ class GltfImporter {
                       {"ignored_points_and_lines", ignored_primitives_},
                       {"ignored_morph_targets", morph_targets_},
                       {"repeated_meshes", repeated_},
+                      {"instanced_meshes", copies_},
+                      {"hidden_meshes", scene_.hidden},
                       {"ignored_skins", scene_.skinned},
                       {"vertices_left_out", left_out_},
                       {"vertices_made_white", made_white_},
@@ -456,6 +525,8 @@ class GltfImporter {
   mesh_io::GltfScene scene_;
   GltfMaterials materials_;
   GltfImport import_;
+  bool widens_colours_ = false;  ///< from 8 bits to 16
+  std::uint64_t copies_ = 0;     ///< of EXT_mesh_gpu_instancing
   std::uint64_t repeated_ = 0, morph_targets_ = 0, ignored_primitives_ = 0, left_out_ = 0;
   std::uint64_t made_white_ = 0, without_normal_ = 0, without_texcoord_ = 0;
 };

@@ -1,6 +1,6 @@
 #include "import/gltf_materials.h"
 
-#include "images/srgb.h"
+#include "hierarchy/srgb.h"
 
 #include <algorithm>
 #include <utility>
@@ -11,7 +11,7 @@ namespace {
 /// A linear value as that of a screen, as fine as pictures have it.
 float srgb(double linear) {
   constexpr float kWhite = 255;
-  return static_cast<float>(images::screen_value(linear)) / kWhite;
+  return static_cast<float>(screen_value(linear)) / kWhite;
 }
 
 /// What it shows without a picture.
@@ -33,6 +33,7 @@ GltfMaterials::Use GltfMaterials::look_up(const mesh_io::GltfMaterial& material)
     return use;
   const mesh_io::GltfTexture& texture = file_.document().textures[*material.texture];
   const char* unknown = texture.is_ktx2 ? "one in KTX2, which cannot be read," : "a picture";
+  shows_ktx2_ = shows_ktx2_ || (texture.is_ktx2 && !texture.image);
   use.picture =
       texture.image ? file_.picture(*texture.image) : mesh_io::GltfPicture{.name = unknown};
   return use;

@@ -21,6 +21,8 @@ class GltfMaterials {
 
   /// Whether a picture is there for any triangle.
   bool is_textured() const { return is_textured_; }
+  /// Whether a picture of any is in KTX2 alone.
+  bool shows_ktx2() const { return shows_ktx2_; }
   /// The base colours of all, without pictures.
   const PlainColours& colours() const { return colours_; }
   PlainColour colour(std::optional<std::uint32_t> material) const;
@@ -50,6 +52,7 @@ class GltfMaterials {
   mesh_io::GltfFile& file_;
   std::map<std::int64_t, Use> uses_;
   bool is_textured_ = false;
+  bool shows_ktx2_ = false;
   PlainColours colours_;
 };
 

@@ -324,6 +324,7 @@ class Import {
     count("welded_corners", welded.merged);
     count("ignored_facet_normals", counts.facets);
     count("ignored_facet_attributes", counts.attributes);
+    count("ignored_bytes_behind", counts.bytes_behind);
     return {{}, counts.fits_float, counts.facets, welded.degenerate_triangles};
   }
 
@@ -357,6 +358,7 @@ class Import {
   }
 
   void write(RawMesh& mesh, TemporaryFile& ply) {
+    facts_.writer = mesh_io::PlyWrittenBy::import;
     mesh_io::PlyContent content;
     content.vertex_count = mesh.vertex_count();
     content.triangle_count = mesh.triangles.size();

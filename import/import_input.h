@@ -15,6 +15,7 @@
 #include "images/material_list.h"
 #include "import/input_files.h"
 #include "mesh_io/mesh_source.h"
+#include "mesh_io/ply_plan.h"
 #include "storage/io/file.h"
 #include "storage/io/spool.h"
 
@@ -54,6 +55,8 @@ struct ImportFacts {
   InputRecord record;             ///< of the files that were read, and those that were not there
   std::vector<SourceFile> files;  ///< the same as the hierarchy tells it
   std::vector<SourceCount> counts;
+  mesh_io::PlyWrittenBy writer =
+      mesh_io::PlyWrittenBy::anyone;   ///< of the PLY; else it is unpacked
   std::optional<std::uint64_t> faces;  ///< none: as many as the PLY has
   std::uint64_t degenerate_triangles = 0;
   /// Those that triangles use, as AttributeLayout::material of the PLY numbers them; empty unless

@@ -1,9 +1,11 @@
 #include "import/join_layouts.h"
 
+#include "hierarchy/srgb.h"
 #include "import/material_colours.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <utility>
 #include <vector>
@@ -65,16 +67,25 @@ PlainColour paint_of(const JoinedFile& file, std::span<const float> row) {
   return colour;
 }
 
-/// What stands for white, and for opaque.
-float full(ColourType type) {
-  return type == ColourType::u8 ? 255.0F : type == ColourType::u16 ? 65535.0F : 1.0F;
+/// The type that light has of colours of a screen.
+ColourType type_of_light(ColourType type) {
+  return type == ColourType::u8    ? ColourType::u16
+         : type == ColourType::u16 ? ColourType::f32
+                                   : type;
 }
 
-/// From a type to one that is not narrower.
-float converted(float value, ColourType from, ColourType to) {
-  if (from == to)
-    return value;
-  return to == ColourType::u16 ? value * 257 : value / full(from);
+/// A colour's channel of one layout in the numbers of another one, whose type is not narrower.
+float converted(float number, std::size_t channel, const AttributeLayout& from,
+                const AttributeLayout& to) {
+  constexpr std::size_t kAlpha = 3;
+  const bool becomes_light = from.space != to.space && channel != kAlpha;
+  if (from.colour == to.colour && !becomes_light)
+    return number;
+  if (!becomes_light && to.colour == ColourType::u16)
+    return number * 257;
+  const double part = double{number} / full_number(from.colour);
+  const double full = double{full_number(to.colour)} * (becomes_light ? light_of(part) : part);
+  return static_cast<float>(to.colour == ColourType::f32 ? full : std::round(full));
 }
 
 AttributeLayout joined_layout(std::span<const JoinedFile> files) {
@@ -85,10 +96,15 @@ AttributeLayout joined_layout(std::span<const JoinedFile> files) {
     joined.material = joined.material || file.layout.material;
   }
   joined.texcoords = joined.texcoords || joined.material;
+  const auto is_light = [](const JoinedFile& file) {
+    return file.layout.space == ColourSpace::linear;
+  };
+  joined.space = std::ranges::any_of(files, is_light) ? ColourSpace::linear : ColourSpace::srgb;
   for (const JoinedFile& file : files) {
     // Beside pictures a material's colour stays one.
     const ColourType colour = joined.material ? own_colour(file) : file.layout.colour;
-    joined.colour = std::max(joined.colour, colour);
+    joined.colour =
+        std::max(joined.colour, file.layout.space == joined.space ? colour : type_of_light(colour));
     joined.alpha = joined.alpha || (colour != ColourType::none && file.layout.alpha);
   }
   return joined;
@@ -124,7 +140,8 @@ class RowJoin {
     if (to_.colour == ColourType::none)
       return;
     counts.white_vertices += colour_ == ColourType::none ? n : 0;
-    counts.converted_colours += colour_ != ColourType::none && colour_ != to_.colour ? n : 0;
+    const bool is_converted = colour_ != to_.colour || from.space != to_.space;
+    counts.converted_colours += colour_ != ColourType::none && is_converted ? n : 0;
   }
 
  private:
@@ -137,10 +154,10 @@ class RowJoin {
     const auto from = static_cast<std::size_t>(file_.layout.colour_offset());
     const int given = colour_ == ColourType::none ? 0 : file_.layout.colour_channels();
     std::array<float, 4> colour;
-    colour.fill(full(to_.colour));
+    colour.fill(full_number(to_.colour));
     for (int c = 0; c < std::min(given, to_.colour_channels()); ++c) {
       const auto i = static_cast<std::size_t>(c);
-      colour[i] = converted(row[from + i], colour_, to_.colour);
+      colour[i] = converted(row[from + i], i, file_.layout, to_);
     }
     joined.append(std::span(colour).first(static_cast<std::size_t>(to_.colour_channels())));
   }

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "hierarchy/attributes.h"
+#include "hierarchy/srgb.h"
 #include "images/material_list.h"
-#include "images/srgb.h"
 
 #include <array>
 #include <compare>
@@ -19,7 +19,7 @@ struct PlainColour {
 
   static PlainColour of(const images::Material& material) {
     const auto& [red, green, blue, alpha] = material.colour;
-    return {{images::screen_byte(red), images::screen_byte(green), images::screen_byte(blue)}};
+    return {{screen_byte(red), screen_byte(green), screen_byte(blue)}};
   }
 
   bool is_grey() const { return channels[0] == channels[1] && channels[1] == channels[2]; }
@@ -50,6 +50,10 @@ class PlainColours {
   /// chose a colour.
   bool are_seen() const {
     return colours_.size() > 1 || (colours_.size() == 1 && !colours_.begin()->is_grey());
+  }
+  /// Whether any is not white.
+  bool are_coloured() const {
+    return colours_.size() > 1 || (colours_.size() == 1 && *colours_.begin() != PlainColour());
   }
 
  private:

@@ -58,8 +58,7 @@ std::unique_ptr<mesh_io::MeshSource> MeshInput::open() {
 
 std::unique_ptr<mesh_io::MeshSource> MeshInput::open_imported() {
   return mesh_io::make_ply_source(
-      mesh_io::renamed(system_.open(ply_->path()), input_.imported_name()),
-      facts_.textures ? mesh_io::PlyMaterials::read : mesh_io::PlyMaterials::skipped);
+      mesh_io::renamed(system_.open(ply_->path()), input_.imported_name()), facts_.writer);
 }
 
 InputRecord MeshInput::record(std::uint64_t checksum) const {

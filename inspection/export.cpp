@@ -3,6 +3,7 @@
 #include "hierarchy/cut.h"
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
+#include "hierarchy/srgb.h"
 #include "inspection/cut_file.h"
 #include "inspection/cut_mesh.h"
 #include "inspection/cut_vertices.h"
@@ -56,17 +57,36 @@ bool has_origin(const storage::HierarchyReader& reader) {
 mesh_io::PlyContent content_for(const storage::HierarchyReader& reader, const std::string& what) {
   mesh_io::PlyContent content;
   content.attributes = reader.tile_format().attributes;
+  content.attributes.space = ColourSpace::srgb;
   content.double_coordinates = has_origin(reader);
   content.comments = {"meshhier export: " + what};
   return content;
+}
+
+/// As PLY has colours: those of a screen.
+std::vector<float> screen_attributes(const storage::HierarchyReader& reader,
+                                     const VertexArray& vertices, std::size_t count) {
+  const AttributeLayout& layout = reader.tile_format().attributes;
+  const auto channels = static_cast<std::size_t>(vertices.channels);  // of an outline: none
+  std::vector<float> attributes(
+      vertices.attributes.begin(),
+      vertices.attributes.begin() + static_cast<std::ptrdiff_t>(count * channels));
+  if (layout.space != ColourSpace::linear || channels == 0)
+    return attributes;
+  const double full = full_number(layout.colour);
+  for (std::size_t v = 0; v < count; ++v) {
+    float* colour = &attributes[v * channels + static_cast<std::size_t>(layout.colour_offset())];
+    std::transform(colour, colour + 3, colour,
+                   [&](float x) { return static_cast<float>(full * value_of(x / full)); });
+  }
+  return attributes;
 }
 
 /// `count` vertices from the first on, in doubles where the hierarchy has an origin.
 void write_vertices(mesh_io::PlyWriter& writer, const storage::HierarchyReader& reader,
                     const VertexArray& vertices, std::size_t count) {
   const auto positions = std::span(vertices.positions).first(count);
-  const auto attributes =
-      std::span(vertices.attributes).first(count * static_cast<std::size_t>(vertices.channels));
+  const std::vector<float> attributes = screen_attributes(reader, vertices, count);
   if (!has_origin(reader))
     return writer.write_vertices(positions, attributes);
   std::vector<Vec3d> exact(count);

@@ -8,6 +8,7 @@
 #include "storage/format/glb.h"
 #include "storage/format/glb_material.h"
 #include "storage/format/showable.h"
+#include "storage/format/tile_colours.h"
 #include "storage/io/little_endian.h"
 
 #include <algorithm>
@@ -78,7 +79,7 @@ class GlbLayout {
     const bool has_normals = layout.normals || format_.computed_normals;
     const bool has_colours = layout.colour != ColourType::none;
     const bool has_texcoords = layout.texcoords || part.image_bytes > 0;
-    const unsigned colour = colour_component(layout.colour);
+    const unsigned colour = colour_component(storage::TileColours(layout, false).stored_type());
     const std::uint64_t colour_bytes =
         static_cast<std::uint64_t>(layout.colour_channels()) * component_bytes(colour);
     return {{{"POSITION", "VEC3", storage::kF32, n, 12},
@@ -271,7 +272,8 @@ class PartBytes {
   PartBytes(const storage::TileFormat& format, const CutPart& part)
       : layout_(format.attributes),
         part_(part),
-        shown_(storage::showable_attributes(layout_, part.vertices)),
+        colours_(layout_, false),
+        shown_(colours_.all_stored(storage::showable_attributes(layout_, part.vertices))),
         sections_(GlbLayout(format).sections(facts_of(part))) {}
 
   void write(ByteStream& to) {
@@ -318,9 +320,9 @@ class PartBytes {
 
   void append_colour(std::size_t vertex) {
     for (const float value : channels(vertex, layout_.colour_offset(), layout_.colour_channels())) {
-      if (layout_.colour == ColourType::u8)
+      if (colours_.stored_type() == ColourType::u8)
         storage::append_little(bytes_, static_cast<std::uint8_t>(value));
-      else if (layout_.colour == ColourType::u16)
+      else if (colours_.stored_type() == ColourType::u16)
         storage::append_little(bytes_, static_cast<std::uint16_t>(value));
       else
         storage::append_little(bytes_, value);
@@ -346,7 +348,8 @@ class PartBytes {
 
   const AttributeLayout& layout_;
   const CutPart& part_;
-  std::vector<float> shown_;
+  storage::TileColours colours_;
+  std::vector<float> shown_;  ///< as the sections hold them
   std::array<GlbSection, 6> sections_;
   std::vector<std::byte> bytes_;
 };

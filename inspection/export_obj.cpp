@@ -1,5 +1,6 @@
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
+#include "hierarchy/srgb.h"
 #include "images/image_codec.h"
 #include "inspection/byte_stream.h"
 #include "inspection/export_parts.h"
@@ -191,11 +192,13 @@ class ObjWriter {
   }
 
   std::string colour_text(std::span<const float> channels) const {
-    const float full = layout_.colour == ColourType::u8    ? 255.0F
-                       : layout_.colour == ColourType::u16 ? 65535.0F
-                                                           : 1.0F;
+    const float full = full_number(layout_.colour);
     const auto rgb = channels.subspan(static_cast<std::size_t>(layout_.colour_offset()), 3);
-    return fmt::format(" {} {} {}", rgb[0] / full, rgb[1] / full, rgb[2] / full);
+    const auto value = [&](float number) {
+      const float part = number / full;
+      return layout_.space == ColourSpace::linear ? static_cast<float>(value_of(part)) : part;
+    };
+    return fmt::format(" {} {} {}", value(rgb[0]), value(rgb[1]), value(rgb[2]));
   }
 
   /// OBJ counts v from below. A mesh without pictures has its own texture coordinates.

@@ -387,8 +387,10 @@ void verify_input(const VerifyJob& job) {
   compare_files(job, files, problems);
   const auto source = files.open();
   const AttributeLayout& layout = source->description().attributes;
-  if (kept_layout(layout) != expected.attributes ||
-      layout.material != expected.textures.has_value()) {
+  AttributeLayout kept = kept_layout(layout);
+  if (job.reader.manifest().screen_colours)
+    kept.space = expected.attributes.space;  // which these formats did not tell apart
+  if (kept != expected.attributes || layout.material != expected.textures.has_value()) {
     problems.add("has other vertex attributes than the mesh the hierarchy was made of");
     return;
   }

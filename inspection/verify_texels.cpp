@@ -7,10 +7,10 @@
 #include "hierarchy/error.h"
 #include "hierarchy/plain_text.h"
 #include "hierarchy/shown_corners.h"
+#include "hierarchy/srgb.h"
 #include "images/image_store.h"
 #include "images/material_texels.h"
 #include "images/open_source.h"
-#include "images/srgb.h"
 #include "import/mesh_input.h"
 #include "partition/external_sort.h"
 #include "storage/io/hash.h"
@@ -358,7 +358,7 @@ struct TexelCheck::Impl {
                              const Image& image, Comparison& result) {
     std::array<std::uint8_t, 3> colour{};
     for (std::size_t c = 0; c < 3; ++c)
-      colour[c] = images::screen_byte(material.colour[c]);
+      colour[c] = screen_byte(material.colour[c]);
     result.add(texel_at(image, (shown[0][0] + shown[1][0] + shown[2][0]) / 3,
                         (shown[0][1] + shown[1][1] + shown[2][1]) / 3),
                colour.data());

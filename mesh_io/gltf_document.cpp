@@ -19,14 +19,27 @@ constexpr std::uint64_t kMostGltfElements = std::numeric_limits<std::uint32_t>::
 constexpr std::uint64_t kMostStride = 256;
 constexpr std::size_t kLongestGltfName = 255;
 
+/// Pictures in KTX2: whoever shows them finds that they cannot be read.
+constexpr const char* kBasisExtension = "KHR_texture_basisu";
+
 /// Extensions that a document may require: those that are read, and those that change neither
 /// geometry nor base colour. Other materials' extensions (kMaterialExtensions) are of these, too.
-constexpr std::array<std::string_view, 13> kKnownExtensions{
-    "EXT_meshopt_compression", "EXT_texture_webp",         "KHR_draco_mesh_compression",
-    "KHR_mesh_quantization",   "KHR_texture_transform",    "KHR_lights_punctual",
-    "KHR_animation_pointer",   "KHR_node_visibility",      "KHR_xmp",
-    "KHR_xmp_json_ld",         "CESIUM_primitive_outline", "EXT_mesh_features",
-    "EXT_structural_metadata"};
+constexpr std::array<std::string_view, 16> kKnownExtensions{"EXT_meshopt_compression",
+                                                            "EXT_texture_webp",
+                                                            "KHR_draco_mesh_compression",
+                                                            "KHR_mesh_quantization",
+                                                            "KHR_texture_transform",
+                                                            "KHR_lights_punctual",
+                                                            "KHR_animation_pointer",
+                                                            "KHR_node_visibility",
+                                                            "KHR_xmp",
+                                                            "KHR_xmp_json_ld",
+                                                            "CESIUM_primitive_outline",
+                                                            "EXT_mesh_features",
+                                                            "EXT_structural_metadata",
+                                                            "EXT_mesh_gpu_instancing",
+                                                            "CESIUM_RTC",
+                                                            kBasisExtension};
 constexpr std::string_view kMaterialExtensions = "KHR_materials_";
 
 bool is_known(std::string_view extension) {
@@ -88,6 +101,7 @@ class DocumentReader {
   GltfDocument read() {
     check_version();
     check_extensions();
+    read_centre();
     root_.for_each("buffers", [&](const GltfObject& o) { read_buffer(o); });
     root_.for_each("bufferViews", [&](const GltfObject& o) { read_view(o); });
     root_.for_each("accessors", [&](const GltfObject& o) { read_accessor(o); });
@@ -108,8 +122,9 @@ class DocumentReader {
           "is no glTF 2.0, which has an asset.version \"2.0\"; convert the file to glTF 2.0");
   }
 
-  void check_extensions() const {
+  void check_extensions() {
     for (const std::string& name : root_.texts("extensionsRequired")) {
+      document_.requires_ktx2 = document_.requires_ktx2 || name == kBasisExtension;
       if (!is_known(name)) {
         root_.fail(
             fmt::format("requires the extension {}, which is not read; export the mesh "
@@ -117,6 +132,15 @@ class DocumentReader {
                         plain_text(name, kLongestGltfName)));
       }
     }
+  }
+
+  /// Cesium adds the centre to what it has turned from y up to z up.
+  void read_centre() {
+    const auto rtc = root_.extension("CESIUM_RTC");
+    if (!rtc)
+      return;
+    const auto c = numbers<3>(*rtc, "center", {0, 0, 0});
+    document_.centre = {c[0], c[2], -c[1]};
   }
 
   void read_buffer(const GltfObject& o) {
@@ -198,7 +222,7 @@ class DocumentReader {
                           o.index("sampler", document_.samplers.size())};
       if (const auto webp = o.extension("EXT_texture_webp"))
         texture.image = webp->require_index("source", document_.images.size());
-      texture.is_ktx2 = o.extension("KHR_texture_basisu").has_value();
+      texture.is_ktx2 = o.extension(kBasisExtension).has_value();
       document_.textures.push_back(texture);
     });
   }
@@ -227,11 +251,14 @@ class DocumentReader {
   void read_material(const GltfObject& o) {
     constexpr std::array<std::string_view, 3> kAlphaModes{"OPAQUE", "MASK", "BLEND"};
     GltfMaterial material{.name = read_name(o)};
-    if (const auto metallic = o.object("pbrMetallicRoughness")) {
+    const auto metallic = o.object("pbrMetallicRoughness");
+    const bool has_base =
+        metallic && (metallic->has("baseColorFactor") || metallic->has("baseColorTexture"));
+    const auto glossy = o.extension("KHR_materials_pbrSpecularGlossiness");
+    if (has_base)
       read_colour(*metallic, "baseColorFactor", "baseColorTexture", material);
-    } else if (const auto glossy = o.extension("KHR_materials_pbrSpecularGlossiness")) {
+    else if (glossy)
       read_colour(*glossy, "diffuseFactor", "diffuseTexture", material);
-    }
     if (const auto light = o.object("emissiveTexture"); light && !material.texture) {
       const auto factor = numbers<3>(o, "emissiveFactor", {0, 0, 0});
       material.factor = {factor[0], factor[1], factor[2], material.factor[3]};
@@ -287,12 +314,24 @@ class DocumentReader {
                           as_vector(numbers<3>(o, "scale", {1, 1, 1})));
   }
 
+  std::optional<GltfInstancing> read_instancing(const GltfObject& o) const {
+    const auto extension = o.extension("EXT_mesh_gpu_instancing");
+    if (!extension)
+      return std::nullopt;
+    const GltfObject attributes = extension->require_object("attributes");
+    const std::size_t accessors = document_.accessors.size();
+    return GltfInstancing{attributes.index("TRANSLATION", accessors),
+                          attributes.index("ROTATION", accessors),
+                          attributes.index("SCALE", accessors)};
+  }
+
   void read_node(const GltfObject& o) {
-    if (o.extension("EXT_mesh_gpu_instancing"))
-      o.fail("has EXT_mesh_gpu_instancing, which is not read; export the instances as nodes");
-    document_.nodes.push_back({o.index("mesh", document_.meshes.size()),
-                               o.indices("children", root_.item_count("nodes")), read_transform(o),
-                               o.has("skin"), o.has("camera")});
+    const auto visibility = o.extension("KHR_node_visibility");
+    document_.nodes.push_back(
+        {o.index("mesh", document_.meshes.size()), o.indices("children", root_.item_count("nodes")),
+         read_transform(o), o.has("skin"), o.has("camera"),
+         !visibility || !visibility->has("visible") || visibility->flag("visible"),
+         read_instancing(o)});
   }
 
   void read_roots() {

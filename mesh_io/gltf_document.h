@@ -91,12 +91,20 @@ struct GltfMesh {
   std::vector<GltfPrimitive> primitives;
 };
 
+/// EXT_mesh_gpu_instancing: accessors of as many elements as there are copies of the node's mesh,
+/// placed within the node. None: nothing, no turn, size 1.
+struct GltfInstancing {
+  std::optional<std::uint32_t> translation, rotation, scale;
+};
+
 struct GltfNode {
   std::optional<std::uint32_t> mesh;
   std::vector<std::uint32_t> children;
   GltfTransform transform;
   bool is_skinned = false;
   bool is_camera = false;
+  bool is_visible = true;  ///< KHR_node_visibility; else neither it nor what is below it is shown
+  std::optional<GltfInstancing> instancing{};
 };
 
 /// KHR_texture_transform: offset + rotation * (scale * coordinate).
@@ -145,6 +153,9 @@ struct GltfDocument {
   std::vector<GltfImage> images;
   std::vector<std::uint32_t> roots;  ///< of the scene that is shown
   std::uint64_t animations = 0;
+  /// CESIUM_RTC: what is added to all positions, in the document's own axes.
+  Vec3d centre{};
+  bool requires_ktx2 = false;  ///< KHR_texture_basisu
 };
 
 /// The document of a JSON text. The scene is the one that it names, else the first; if there is

@@ -222,6 +222,18 @@ GltfRange GltfFile::view(std::uint32_t index) {
   return {decoded.get(), 0, view.bytes};
 }
 
+void GltfFile::find_picture(std::string_view uri, GltfPicture& picture) {
+  picture.name = plain_text(std::string(uri), kLongestUri);
+  for (const std::string& name : names_of_uri(uri)) {
+    if ((picture.file = named_.find(folder_, name)))
+      return;
+  }
+  for (const std::string& name : names_of_uri(uri)) {
+    const auto places = sought_places(folder_, name);
+    picture.sought.insert(picture.sought.end(), places.begin(), places.end());
+  }
+}
+
 GltfPicture GltfFile::picture(std::uint32_t index) {
   const GltfImage& image = document_.images[index];
   const std::string name = fmt::format("images[{}]", index);
@@ -253,14 +265,7 @@ GltfPicture GltfFile::picture(std::uint32_t index) {
       if (!decode_base64(*base64, take))
         fail(name + ": its data URI is no base64");
     } else {
-      picture.name = plain_text(*image.uri, kLongestUri);
-      picture.file = file_of_uri(*image.uri, folder_);
-      if (!picture.file) {
-        picture.name += ", which is no path below the folder,";
-      } else if (!is_regular(*picture.file)) {
-        picture.sought.push_back(*std::move(picture.file));
-        picture.file.reset();
-      }
+      find_picture(*image.uri, picture);
     }
   }
   return picture;

@@ -3,6 +3,7 @@
 
 #include "mesh_io/gltf_bytes.h"
 #include "mesh_io/gltf_document.h"
+#include "mesh_io/named_files.h"
 #include "storage/io/file.h"
 #include "storage/io/spool.h"
 
@@ -12,6 +13,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace meshhier::mesh_io {
@@ -52,8 +54,8 @@ class GltfFile {
   /// Error(budget) if decoding takes more memory than there is, Error(io).
   GltfRange view(std::uint32_t index);
 
-  /// Throws Error(input) if the picture lies in a compressed view, or in a temporary file: no file
-  /// has its bytes when they are needed. A file
+  /// A file is found as NamedFiles finds it. Throws Error(input) if the picture lies in a
+  /// compressed view, or in a temporary file: no file has its bytes when they are needed. A file
   /// that is not there, or no regular one, is none.
   GltfPicture picture(std::uint32_t image);
 
@@ -78,10 +80,12 @@ class GltfFile {
                   const std::string& name);
   std::unique_ptr<GltfBytes> decode_view(const GltfMeshopt& packed, const std::string& name);
   bool is_regular(const std::filesystem::path& path) const;
+  void find_picture(std::string_view uri, GltfPicture& picture);
 
   std::shared_ptr<const storage::File> file_;
   std::filesystem::path folder_;
   GltfRoom room_;
+  NamedFiles named_{room_.files};
   std::optional<GltfFileBytes> chunk_;  ///< of a GLB
   std::uint64_t chunk_offset_ = 0;
   GltfDocument document_;

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 namespace meshhier::mesh_io {
@@ -13,12 +14,14 @@ namespace meshhier::mesh_io {
 struct GltfInstance {
   std::uint32_t mesh = 0;
   GltfTransform transform;
+  std::optional<GltfInstancing> copies{};  ///< within `transform`
 };
 
 struct GltfScene {
   std::vector<GltfInstance> instances;  ///< in the order of the tree, parents first
   std::uint64_t skinned = 0;            ///< of them
   std::uint64_t cameras = 0;
+  std::uint64_t hidden = 0;  ///< meshes of nodes that are not visible
 };
 
 /// Throws Error(input) naming a node that is reached twice: a child of two nodes, or in a circle.

@@ -89,6 +89,15 @@ bool decode_base64(std::string_view text,
   return true;
 }
 
+std::vector<std::string> names_of_uri(std::string_view uri) {
+  std::vector<std::string> names;
+  if (auto decoded = percent_decoded(uri))
+    names.push_back(*std::move(decoded));
+  if (names.empty() || names[0] != uri)
+    names.emplace_back(uri);
+  return names;
+}
+
 std::optional<std::filesystem::path> file_of_uri(std::string_view uri,
                                                  const std::filesystem::path& folder) {
   if (has_scheme(uri))

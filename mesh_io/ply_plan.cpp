@@ -18,8 +18,8 @@ using Role = PlyElementPlan::Role;
 class Planner {
  public:
   Planner(const PlyHeader& header, std::uint64_t file_bytes, const std::filesystem::path& path,
-          PlyMaterials materials)
-      : header_(header), file_bytes_(file_bytes), path_(path), materials_(materials) {}
+          PlyWrittenBy writer)
+      : header_(header), file_bytes_(file_bytes), path_(path), writer_(writer) {}
 
   PlyPlan plan() {
     plan_.encoding = header_.encoding;
@@ -57,7 +57,7 @@ class Planner {
   const PlyHeader& header_;
   std::uint64_t file_bytes_;
   const std::filesystem::path& path_;
-  PlyMaterials materials_;
+  PlyWrittenBy writer_;
   PlyPlan plan_;
 };
 
@@ -157,7 +157,7 @@ void Planner::plan_attributes(PlyElementPlan& vertices) {
     assign_slots(vertices, std::span(found).first(2), layout.texcoord_offset());
     break;
   }
-  if (layout.texcoords && materials_ == PlyMaterials::read)
+  if (layout.texcoords && writer_ == PlyWrittenBy::import)
     plan_materials(vertices);
 }
 
@@ -176,15 +176,19 @@ ColourType colour_type(PlyType type) {
 }
 
 void Planner::plan_colours(PlyElementPlan& vertices) {
-  constexpr std::array<std::array<std::string_view, 5>, 3> kColours{
+  constexpr std::array<std::array<std::string_view, 5>, 4> kColours{
       {{"red", "green", "blue", "alpha", "a"},
        {"r", "g", "b", "a", "alpha"},
-       {"diffuse_red", "diffuse_green", "diffuse_blue", "diffuse_alpha", "alpha"}}};
+       {"diffuse_red", "diffuse_green", "diffuse_blue", "diffuse_alpha", "alpha"},
+       {kLinearColours[0], kLinearColours[1], kLinearColours[2], "alpha", "a"}}};
   const PlyElement& element = vertices.element;
   const auto type_of = [&](int property) {
     return element.properties[static_cast<std::size_t>(property)].type;
   };
   for (const auto& names : kColours) {
+    const bool is_light = names[0] == kLinearColours[0];
+    if (is_light && writer_ != PlyWrittenBy::import)
+      continue;
     std::array<int, 4> found{};
     if (!find_all(element, std::span(names).first(3), found))
       continue;
@@ -195,6 +199,7 @@ void Planner::plan_colours(PlyElementPlan& vertices) {
     if (found[3] < 0)
       found[3] = find_scalar(element, names[4]);
     plan_.attributes.colour = colour_type(type);
+    plan_.attributes.space = is_light ? ColourSpace::linear : ColourSpace::srgb;
     plan_.attributes.alpha = found[3] >= 0 && type_of(found[3]) == type;
     plan_.check_colours = is_integer(type) && type != PlyType::u8 && type != PlyType::u16;
     const auto count = static_cast<std::size_t>(plan_.attributes.colour_channels());
@@ -295,8 +300,8 @@ void Planner::check_sizes() const {
 }  // namespace
 
 PlyPlan make_ply_plan(const PlyHeader& header, std::uint64_t file_bytes,
-                      const std::filesystem::path& path, PlyMaterials materials) {
-  return Planner(header, file_bytes, path, materials).plan();
+                      const std::filesystem::path& path, PlyWrittenBy writer) {
+  return Planner(header, file_bytes, path, writer).plan();
 }
 
 }  // namespace meshhier::mesh_io

@@ -4,9 +4,11 @@
 #include "hierarchy/attributes.h"
 #include "mesh_io/ply_header.h"
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 namespace meshhier::mesh_io {
@@ -40,9 +42,14 @@ struct PlyPlan {
   bool check_colours = false;  ///< the stored type holds values that `attributes.colour` does not
 };
 
-/// Whether the vertices' property `material` is read as AttributeLayout::material. No file can ask
-/// for it: only who wrote the file knows that its numbers are those of a MaterialList.
-enum class PlyMaterials : std::uint8_t { skipped, read };
+/// Colours whose numbers are light, in files that the import wrote.
+inline constexpr std::array<std::string_view, 3> kLinearColours{"linear_red", "linear_green",
+                                                                "linear_blue"};
+
+/// Of what the import wrote the vertices' property `material` is AttributeLayout::material, and
+/// kLinearColours are colours. No file can ask for it: only who wrote the file knows that its
+/// numbers are those of a MaterialList, or light.
+enum class PlyWrittenBy : std::uint8_t { anyone, import };
 
 /// Decides what is read:
 ///
@@ -68,6 +75,6 @@ enum class PlyMaterials : std::uint8_t { skipped, read };
 /// Allocates nothing that a count sizes.
 PlyPlan make_ply_plan(const PlyHeader& header, std::uint64_t file_bytes,
                       const std::filesystem::path& path,
-                      PlyMaterials materials = PlyMaterials::skipped);
+                      PlyWrittenBy writer = PlyWrittenBy::anyone);
 
 }  // namespace meshhier::mesh_io

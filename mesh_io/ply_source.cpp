@@ -19,10 +19,10 @@ namespace {
 
 class PlyFileSource final : public PlySource {
  public:
-  PlyFileSource(std::unique_ptr<storage::File> file, PlyMaterials materials)
+  PlyFileSource(std::unique_ptr<storage::File> file, PlyWrittenBy writer)
       : file_(std::move(file)), file_bytes_(file_->size()), checksum_(file_bytes_) {
     const PlyHeader header = read_header();
-    plan_ = make_ply_plan(header, file_bytes_, file_->path(), materials);
+    plan_ = make_ply_plan(header, file_bytes_, file_->path(), writer);
     starts_.resize(plan_.elements.size() + 1);
     starts_[0] = PlyPosition{header.data_offset, header.data_line};
     locate_fixed_elements();
@@ -231,8 +231,8 @@ bool ply_names_textures(std::string_view start, const std::filesystem::path& pat
 }
 
 std::unique_ptr<PlySource> make_ply_source(std::unique_ptr<storage::File> file,
-                                           PlyMaterials materials) {
-  return std::make_unique<PlyFileSource>(std::move(file), materials);
+                                           PlyWrittenBy writer) {
+  return std::make_unique<PlyFileSource>(std::move(file), writer);
 }
 
 }  // namespace meshhier::mesh_io

@@ -33,6 +33,6 @@ bool ply_names_textures(std::string_view start, const std::filesystem::path& pat
 /// Reads the header of `file` and checks it. What is accepted: ply_header.h, ply_plan.h,
 /// ply_body.h.
 std::unique_ptr<PlySource> make_ply_source(std::unique_ptr<storage::File> file,
-                                           PlyMaterials materials = PlyMaterials::skipped);
+                                           PlyWrittenBy writer = PlyWrittenBy::anyone);
 
 }  // namespace meshhier::mesh_io

@@ -1,5 +1,7 @@
 #include "mesh_io/ply_writer.h"
 
+#include "mesh_io/ply_plan.h"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -35,8 +37,9 @@ std::string attribute_lines(const AttributeLayout& layout) {
       add("float", name);
   }
   constexpr std::array<std::string_view, 4> kColours{"red", "green", "blue", "alpha"};
-  for (int i = 0; i < layout.colour_channels(); ++i) {
-    add(colour_type_name(layout.colour), kColours[static_cast<std::size_t>(i)]);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(layout.colour_channels()); ++i) {
+    const bool is_light = layout.space == ColourSpace::linear && i < kLinearColours.size();
+    add(colour_type_name(layout.colour), is_light ? kLinearColours[i] : kColours[i]);
   }
   if (layout.texcoords) {
     for (const std::string_view name : {"s", "t"})

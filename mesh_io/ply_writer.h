@@ -26,9 +26,9 @@ struct PlyContent {
 
 /// Vertices, then triangles, then edges, in the declared numbers, each in as many calls as one
 /// likes, from the file's first byte to its last. Colours are written in their stored type
-/// (attributes.h), materials as `float material`, indices as `int` (`uint` from 2^31 vertices on).
-/// Buffered: at most 1 MiB. Throws Error(io). finish() is required and asserts that all declared
-/// content came.
+/// (attributes.h), those that are light as kLinearColours, materials as `float material`, indices
+/// as `int` (`uint` from 2^31 vertices on). Buffered: at most 1 MiB. Throws Error(io). finish() is
+/// required and asserts that all declared content came.
 class PlyWriter {
  public:
   PlyWriter(std::shared_ptr<storage::File> file, const PlyContent& content);

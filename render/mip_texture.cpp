@@ -1,7 +1,7 @@
 #include "render/mip_texture.h"
 
+#include "hierarchy/srgb.h"
 #include "images/pyramid.h"
-#include "images/srgb.h"
 
 #include <algorithm>
 #include <cmath>
@@ -57,7 +57,7 @@ MipTexture::TexelPair pair_at(double coordinate, double size, std::uint32_t coun
   return {{wrapped(texel, count, wrap), wrapped(texel + 1, count, wrap)}, at - first};
 }
 
-Vec3d light_of_texel(const images::LightTable& table, const std::uint8_t* texel) {
+Vec3d light_of_texel(const LightTable& table, const std::uint8_t* texel) {
   const auto light = [&](std::size_t c) { return static_cast<double>(table.light(texel[c])); };
   return {light(0), light(1), light(2)};
 }
@@ -116,7 +116,7 @@ MipTexture::TexelSquare MipTexture::square_on(std::uint32_t level, Vec2f texcoor
 
 Vec3d MipTexture::light_on(std::uint32_t level, Vec2f texcoord) const {
   const images::Image& image = levels_[level];
-  const images::LightTable& table = images::LightTable::get();
+  const LightTable& table = LightTable::get();
   const auto [across, down] = square_on(level, texcoord);
   const auto row = [&, &across = across](std::uint32_t y) {
     return mix(light_of_texel(table, image.at(across.texels[0], y)),

@@ -1,6 +1,6 @@
 #include "render/shade.h"
 
-#include "images/srgb.h"
+#include "hierarchy/srgb.h"
 #include "render/occlusion.h"
 
 #include <algorithm>
@@ -92,7 +92,7 @@ PixelSum sum_of_pixel(const Raster& raster, std::size_t column, std::size_t row,
 void put(const PixelSum& sum, std::uint32_t samples, std::uint8_t* texel) {
   const Vec3d mean = sum.covered > 0 ? sum.light * (1.0 / sum.covered) : Vec3d{};
   for (const double light : {mean.x, mean.y, mean.z})
-    *texel++ = images::screen_value(light);
+    *texel++ = screen_value(light);
   *texel = static_cast<std::uint8_t>((255 * sum.covered + samples / 2) / samples);
 }
 

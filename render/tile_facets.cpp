@@ -1,7 +1,7 @@
 #include "render/tile_facets.h"
 
 #include "hierarchy/shown_corners.h"
-#include "images/srgb.h"
+#include "hierarchy/srgb.h"
 
 #include <algorithm>
 #include <array>
@@ -11,28 +11,18 @@
 namespace meshhier::render {
 namespace {
 
-/// The number that a colour's full light has.
-double full_light(ColourType type) {
-  switch (type) {
-    case ColourType::u8:
-      return 255;
-    case ColourType::u16:
-      return 65535;
-    default:
-      return 1;
-  }
-}
-
-/// Of a channel whose full light has the number `full`.
-double light(float value, double full) {
+/// Of a number, in the light that `full` stands for.
+double light(float number, double full, ColourSpace space) {
+  if (space == ColourSpace::linear)
+    return number > 0 ? std::min(number / full, 1.0) : 0;
   static const std::array<double, 256> bytes = [] {
     std::array<double, 256> lights{};
     for (std::size_t i = 0; i < lights.size(); ++i)
-      lights[i] = images::light_of(static_cast<double>(i) / 255);
+      lights[i] = light_of(static_cast<double>(i) / 255);
     return lights;
   }();
-  const bool is_byte = full == 255 && value >= 0 && value <= 255 && value == std::floor(value);
-  return is_byte ? bytes[static_cast<std::size_t>(value)] : images::light_of(value / full);
+  const bool is_byte = full == 255 && number >= 0 && number <= 255 && number == std::floor(number);
+  return is_byte ? bytes[static_cast<std::size_t>(number)] : light_of(number / full);
 }
 
 /// The corners that a tile's vertices are, each by its number in the file.
@@ -79,9 +69,10 @@ class TileCorners {
   Vec3f colour(std::span<const float> attributes) const {
     if (layout_.colour == ColourType::none)
       return kPlainColour;
-    const double full = full_light(layout_.colour);
-    const Vec3f stored = channels(attributes, layout_.colour_offset());
-    return to_float({light(stored.x, full), light(stored.y, full), light(stored.z, full)});
+    const double full = full_number(layout_.colour);
+    const Vec3f rgb = channels(attributes, layout_.colour_offset());
+    const auto of = [&](float number) { return light(number, full, layout_.space); };
+    return to_float({of(rgb.x), of(rgb.y), of(rgb.z)});
   }
 
   static Vec3f channels(std::span<const float> attributes, int offset) {

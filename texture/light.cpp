@@ -1,6 +1,6 @@
 #include "texture/light.h"
 
-#include "images/srgb.h"
+#include "hierarchy/srgb.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -10,13 +10,13 @@ namespace meshhier::texture {
 const std::array<float, 256> kLight = [] {
   std::array<float, 256> lights{};
   for (std::size_t i = 0; i < lights.size(); ++i)
-    lights[i] = static_cast<float>(images::light_of(static_cast<double>(i) / 255));
+    lights[i] = static_cast<float>(light_of(static_cast<double>(i) / 255));
   return lights;
 }();
 
 std::uint8_t value_of_light(float light) {
   const float steps = std::clamp(light, 0.0f, 1.0f) * 65535;
-  return images::LightTable::get().value(static_cast<std::uint32_t>(steps + 0.5f));
+  return LightTable::get().value(static_cast<std::uint32_t>(steps + 0.5f));
 }
 
 }  // namespace meshhier::texture

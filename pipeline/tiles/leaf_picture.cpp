@@ -1,6 +1,6 @@
 #include "pipeline/tiles/leaf_picture.h"
 
-#include "images/srgb.h"
+#include "hierarchy/srgb.h"
 #include "texture/fill.h"
 #include "texture/shown_texels.h"
 #include "texture/texel_raster.h"
@@ -41,7 +41,7 @@ void fill(const images::Material& material, Image& image, std::uint32_t left, st
   for (std::uint32_t y = top; y < top + height; ++y) {
     for (std::uint32_t x = left; x < left + width; ++x) {
       for (std::uint32_t c = 0; c < image.channels; ++c)
-        image.at(x, y)[c] = images::screen_byte(colour[c]);
+        image.at(x, y)[c] = screen_byte(colour[c]);
     }
   }
 }

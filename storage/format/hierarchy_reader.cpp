@@ -91,6 +91,7 @@ TileFormat format_of(const Manifest& manifest) {
     format.lattice = manifest.quantization->lattice;
   format.computed_normals = manifest.computed_normals;
   format.textures = manifest.textures;
+  format.screen_colours = manifest.screen_colours;
   return format;
 }
 

@@ -150,6 +150,7 @@ SizeSummary summarize_sizes(std::span<const TileRecord> records, const TileForma
     shape.splits = record.split_count;
     shape.computed_normals = format.computed_normals;
     shape.textures = format.textures;
+    shape.screen_colours = format.screen_colours;
     shape.image.bytes = texel_count(record) * 3;
     shape.interior = record.interior_count;
     shape.border = record.border_count;

@@ -321,6 +321,7 @@ Manifest parse_manifest(const std::string& text, const std::string& name) {
   manifest.origin = object.point("origin");
   manifest.up = object.up("up");
   manifest.first_view = read_view(object);
+  manifest.screen_colours = object.count("format_version") <= kScreenColoursFormatVersion;
   manifest.transform = object.transform_or_null("transform");
   manifest.licence = object.text("licence");
   manifest.partition_count =

@@ -17,8 +17,10 @@
 
 namespace meshhier::storage {
 
-inline constexpr int kFormatVersion = 7;
-/// The oldest that is read: the same without a first view.
+inline constexpr int kFormatVersion = 8;
+/// The same with tiles that hold colours as screens have them.
+inline constexpr int kScreenColoursFormatVersion = 7;
+/// The oldest that is read: that without a first view.
 inline constexpr int kOldestFormatVersion = 6;
 
 /// What rounding to a lattice did.
@@ -44,7 +46,7 @@ struct Manifest {
   SourceSummary source;
   Vec3d origin;           ///< add to every stored position
   UpAxis up = UpAxis::y;  ///< of the input
-  /// From where the model is looked at first; none: of format version 6.
+  /// From where the model is looked at first; none: of format version 6, with screen_colours.
   std::optional<Standpoint> first_view;
   /// Of the tileset's root, for instance on the globe; from z-up coordinates, as 3D Tiles has them.
   std::optional<Transform> transform;
@@ -54,6 +56,7 @@ struct Manifest {
   std::optional<Quantization> quantization;  ///< none: positions are exact
   bool computed_normals = false;  ///< tiles have normals that the build computed; the source none
   std::optional<TextureFormat> textures;  ///< of tiles' pictures; if and only if the source has any
+  bool screen_colours = false;            ///< as TileFormat's; of format versions up to 7
   /// An object: the resolved config, what decides the result (not budget, threads, paths).
   nlohmann::ordered_json config;
   std::uint64_t index_bytes = 0;
@@ -69,7 +72,11 @@ struct Manifest {
   std::uint64_t tileset_checksum = 0;  ///< XXH3-64 of all, one after another, tileset.json first
   std::uint64_t total_bytes = 0;       ///< of all files but this one
 
-  int format_version() const { return first_view ? kFormatVersion : kOldestFormatVersion; }
+  int format_version() const {
+    return !screen_colours ? kFormatVersion
+           : first_view    ? kScreenColoursFormatVersion
+                           : kOldestFormatVersion;
+  }
 };
 
 /// What the manifest says of the input, on its own. File names keep their bytes, UTF-8 or not.

@@ -219,6 +219,8 @@ AttributeLayout JsonObject::attributes(const char* key) const {
   attributes.normals = from.boolean("normals");
   attributes.alpha = from.boolean("alpha");
   attributes.texcoords = from.boolean("texcoords");
+  if (from.has("linear_colours") && from.boolean("linear_colours"))
+    attributes.space = ColourSpace::linear;
   const std::string colours = from.text("colours");
   for (std::size_t i = 0; i < kColourTypes.size(); ++i) {
     if (colours != kColourTypes[i])
@@ -247,10 +249,13 @@ Json point_json(Vec3d point) {
 }
 
 Json attributes_json(const AttributeLayout& attributes) {
-  return {{"normals", attributes.normals},
-          {"colours", kColourTypes[static_cast<std::size_t>(attributes.colour)]},
-          {"alpha", attributes.alpha},
-          {"texcoords", attributes.texcoords}};
+  Json json{{"normals", attributes.normals},
+            {"colours", kColourTypes[static_cast<std::size_t>(attributes.colour)]},
+            {"alpha", attributes.alpha},
+            {"texcoords", attributes.texcoords}};
+  if (attributes.space == ColourSpace::linear)
+    json["linear_colours"] = true;
+  return json;
 }
 
 }  // namespace meshhier::storage

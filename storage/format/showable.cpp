@@ -23,7 +23,7 @@ float showable_colour(float value, ColourType type) {
   if (type == ColourType::f32)
     return std::clamp(value, 0.0F, 1.0F);
   // A number of the type has no -0.
-  return std::clamp(std::round(value), 0.0F, type == ColourType::u8 ? 255.0F : 65535.0F) + 0.0F;
+  return std::clamp(std::round(value), 0.0F, full_number(type)) + 0.0F;
 }
 
 /// One vertex's attributes as the standard glTF accessors hold them.

@@ -5,6 +5,7 @@
 #include "storage/format/glb.h"
 #include "storage/format/gzip.h"
 #include "storage/format/showable.h"
+#include "storage/format/tile_colours.h"
 #include "storage/format/tile_pack.h"
 #include "storage/format/tile_plan.h"
 #include "storage/format/tile_sections.h"
@@ -243,7 +244,8 @@ ImageShape read_image_shape(const Json& document, const Json& extension, const s
 /// Counts are bounded by 2^32, so that no product or sum of sizes overflows 64 bits.
 TileShape read_shape(const Json& document, NodeId node, const Tree& tree, const TileFormat& format,
                      const std::string& name) {
-  const Json& extension = require_extension(document, kTileExtension, kTileExtensionVersion, name);
+  const Json& extension =
+      require_extension(document, kTileExtension, tile_version(format.screen_colours), name);
   const auto count = [&](const char* key, std::uint64_t max = UINT32_MAX) {
     return require_count(extension, key, max, name);
   };
@@ -259,6 +261,7 @@ TileShape read_shape(const Json& document, NodeId node, const Tree& tree, const 
   shape.copies = count("copyCount");
   shape.computed_normals = format.computed_normals;
   shape.textures = format.textures;
+  shape.screen_colours = format.screen_colours;
   if (shape.is_shaded())
     shape.splits = count("splitCount");
   if (shape.textures && shape.interior + shape.border > 0)
@@ -344,7 +347,9 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
   const bool places_only = mesh.copies.empty() && shading.split_of.empty();
   const VertexArray joined = places_only ? VertexArray{} : with_copies(mesh, shading);
   const VertexArray& vertices = places_only ? mesh.vertices : joined;
-  const std::vector<float> shown = showable_attributes(format.attributes, vertices);
+  const TileColours colours(format.attributes, format.screen_colours);
+  const std::vector<float> stored =
+      colours.all_stored(showable_attributes(format.attributes, vertices));
   const auto groups = groups_of(format.attributes);
 
   TileShape shape{tile.node,
@@ -361,9 +366,12 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
                   format.computed_normals,
                   format.textures,
                   {tile.image.bytes.size(), tile.image.width, tile.image.height, tile.image.alpha},
-                  tile.first_view};
-  for (std::size_t i = 0; tree.is_partition(tile.node) && i < groups.size(); ++i) {
-    shape.raw[i] = differs(shown, vertices.attributes, groups[i], vertices.channels);
+                  tile.first_view,
+                  format.screen_colours};
+  if (tree.is_partition(tile.node)) {
+    const std::vector<float> read = colours.all_numbers(stored);
+    for (std::size_t i = 0; i < groups.size(); ++i)
+      shape.raw[i] = differs(read, vertices.attributes, groups[i], vertices.channels);
   }
   const TilePlan plan(shape, format.attributes, format.lattice);
 
@@ -377,7 +385,7 @@ std::vector<std::byte> encode_tile(const TileView& tile, const Tree& tree,
   writer.put_normals(shading.normals);
   writer.put_texcoords(shading.texcoords);
   for (std::size_t i = 0; i < groups.size(); ++i) {
-    writer.put_group(groups[i].part, groups[i], shown);
+    writer.put_group(groups[i].part, groups[i], stored);
     writer.put_group(groups[i].raw, groups[i], vertices.attributes);
   }
   put_triangles(mesh, shading, writer);

@@ -58,6 +58,8 @@ struct TileFormat {
   /// Tiles with triangles have a picture and a Shading with texture coordinates; `attributes` has
   /// none then.
   std::optional<TextureFormat> textures{};
+  /// Format versions up to 7: tiles hold colours as screens have them, else as TileColours says.
+  bool screen_colours = false;
 };
 
 /// What a tile's file is made of.

@@ -8,6 +8,7 @@
 #include "hierarchy/lattice.h"
 #include "hierarchy/standpoint.h"
 #include "hierarchy/texture.h"
+#include "storage/format/tile_colours.h"
 #include "storage/format/tile_sums.h"
 
 #include <array>
@@ -20,7 +21,12 @@
 namespace meshhier::storage {
 
 inline constexpr const char* kTileExtension = "MESHHIER_tile";
-inline constexpr unsigned kTileExtensionVersion = 3;
+inline constexpr unsigned kTileExtensionVersion = 4;
+/// The one before: the same with colours as screens have them.
+inline constexpr unsigned kScreenColoursVersion = 3;
+constexpr unsigned tile_version(bool screen_colours) {
+  return screen_colours ? kScreenColoursVersion : kTileExtensionVersion;
+}
 inline constexpr const char* kMeshoptExtension = "EXT_meshopt_compression";
 inline constexpr const char* kQuantizationExtension = "KHR_mesh_quantization";
 
@@ -115,6 +121,7 @@ struct TileShape {
   std::optional<TextureFormat> textures{};  ///< of the hierarchy
   ImageShape image{};
   std::optional<Standpoint> first_view{};  ///< of the root
+  bool screen_colours = false;             ///< of the hierarchy, see TileFormat
 
   /// Whether there can be splits.
   bool is_shaded() const { return computed_normals || textures; }
@@ -144,6 +151,7 @@ class TilePlan {
 
   const TileShape& shape() const { return shape_; }
   const AttributeLayout& layout() const { return layout_; }
+  TileColours colours() const { return {layout_, shape_.screen_colours}; }
   const std::optional<Lattice>& lattice() const { return lattice_; }
   /// Whether positions are the lattice's numbers in 16 bits.
   bool has_short_positions() const { return lattice_ && lattice_->is_short(); }
@@ -156,7 +164,7 @@ class TilePlan {
                                   const Packing* packing = nullptr) const;
 
  private:
-  unsigned component_of(const ChannelGroup& group) const;
+  unsigned component_of_group(const ChannelGroup& group) const;
   void add(Part part, unsigned component, std::size_t components, std::uint64_t count);
 
   TileShape shape_;

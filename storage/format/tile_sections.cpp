@@ -82,6 +82,7 @@ class Reader {
  public:
   Reader(const TileSections& sections, const Tree& tree, const std::string& name)
       : plan_(sections.plan),
+        colours_(plan_.colours()),
         bin_(sections.bin),
         is_packed_(sections.is_packed),
         tree_(tree),
@@ -352,8 +353,18 @@ class Reader {
         if (require_finite && !std::isfinite(value)) {
           fail(fmt::format("{} of vertex {} is not finite", key_of(part), v));
         }
+        if (part == Part::colour)
+          value = colour(value, v, c);
       }
     }
+  }
+
+  /// As the input had it.
+  float colour(float stored, std::size_t vertex, std::size_t channel) const {
+    if (!colours_.is_sound(stored, channel))
+      fail(fmt::format("a colour of vertex {} is {}, which no 8-bit colour becomes", vertex,
+                       stored));
+    return colours_.number(stored, channel);
   }
 
   std::uint32_t number(const Section& section, std::size_t element) const {
@@ -437,6 +448,7 @@ class Reader {
   }
 
   const TilePlan& plan_;
+  TileColours colours_;
   std::span<const std::byte> bin_;
   bool is_packed_;
   const Tree& tree_;

@@ -2,6 +2,7 @@
 
 #include "cluster_simplify/kd_cells.h"
 #include "cluster_simplify/quadric.h"
+#include "hierarchy/srgb.h"
 #include "tests/cluster_simplify/test_tiles.h"
 #include "tests/support/meshes.h"
 
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -219,8 +221,18 @@ TEST(ClusterTest, AttributesAreMeansOverTheOriginalVertices) {
   const std::array<float, 9> expected = {
       3 / std::sqrt(10.0F), 1 / std::sqrt(10.0F), 0, 20, 30, 40, 205, 0.25F, 0.75F};
   ASSERT_EQ(values.size(), expected.size());
-  for (std::size_t k = 0; k < expected.size(); ++k)
+  for (const std::size_t k : {0U, 1U, 2U, 6U, 7U, 8U})
     EXPECT_NEAR(values[k], expected[k], 1e-5) << "channel " << k;
+  for (std::size_t k = 3; k < 6; ++k) {  // of light, which is more than the mean of the numbers
+    const std::span<const float> all = tile.mesh.vertices.attributes;
+    const double mean = (3 * light_of(all[k] / 255.0) + light_of(all[9 + k] / 255.0)) / 4;
+    EXPECT_NEAR(light_of(values[k] / 255.0), mean, 1e-6) << "channel " << k;
+    EXPECT_GT(values[k], expected[k] + 2);
+  }
+  layout.space = ColourSpace::linear;
+  const Contraction linear = cluster(tile, 1, layout, Representative::mean);
+  for (std::size_t k = 3; k < 6; ++k)
+    EXPECT_NEAR(linear.representatives.attributes_of(0)[k], expected[k], 1e-5);
 }
 
 TEST(ClusterTest, OppositeNormalsLeaveAZeroNormal) {

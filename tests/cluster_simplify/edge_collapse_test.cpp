@@ -1,5 +1,6 @@
 #include "cluster_simplify/edge_collapse.h"
 
+#include "hierarchy/srgb.h"
 #include "tests/cluster_simplify/test_tiles.h"
 #include "tests/support/meshes.h"
 
@@ -226,7 +227,8 @@ TEST(EdgeCollapseTest, LinearColoursStayLinearOnFlatGround) {
   for (const Vec3f p : vertices.positions)
     vertices.attributes.insert(vertices.attributes.end(), {p.x, p.y, kSide - p.x - p.y});
   for (const std::uint32_t target : {500U, 100U, 30U}) {
-    const auto [tile, found, image] = contracted(grid, target, kColours);
+    const auto [tile, found, image] =
+        contracted(grid, target, {.colour = ColourType::f32, .space = ColourSpace::linear});
     // At a border a point lies beside its edge, where interpolation along the edge says the same as
     // at its foot: a part of the mean distance of the vertices.
     const double spacing = kSide / std::sqrt(target);
@@ -241,6 +243,25 @@ TEST(EdgeCollapseTest, LinearColoursStayLinearOnFlatGround) {
     }
     EXPECT_LT(sum / target, 0.1 * spacing);
   }
+}
+
+TEST(EdgeCollapseTest, ColoursOfAScreenAreMixedAsLight) {
+  BuildTile grid = tests::tile_of(tests::open_grid(32, 32));
+  VertexArray& vertices = grid.mesh.vertices;
+  vertices.channels = 3;
+  std::size_t i = 0;
+  for (const Vec3f p : vertices.positions) {
+    const float stripe = static_cast<int>(p.x) % 2 == 0 ? 0.0F : 255.0F;
+    vertices.attributes.insert(vertices.attributes.end(), {stripe, 124, i++ % 2 == 0 ? 0.0F : 255});
+  }
+  const auto [tile, found, image] = contracted(grid, 40, {.colour = ColourType::u8});
+  double light = 0;
+  for (std::uint32_t v = 0; v < 40; ++v) {
+    const auto colour = found.representatives.attributes_of(v);
+    light += light_of(colour[0] / 255.0) / 40;
+    ASSERT_EQ(colour[1], 124);  // what is equal stays so, bit for bit
+  }
+  EXPECT_NEAR(light, 0.5, 0.15);  // half of the numbers' range would be 0.21
 }
 
 TEST(EdgeCollapseTest, ColoursStayBetweenThoseOfTheirVertices) {

@@ -71,6 +71,7 @@ std::string with_number(std::string text, const std::string& before, const std::
 storage::Manifest small_manifest() {
   storage::Manifest manifest;
   manifest.generator = "meshhier";
+  manifest.first_view = Standpoint{};
   manifest.source.file_name = "a.ply";
   manifest.source.vertices = 10;
   manifest.source.places = 10;

@@ -67,6 +67,8 @@ Place take_place(Take& take) {
   place.format.attributes = {(bits & 1) != 0, static_cast<ColourType>(bits >> 4 & 3),
                              (bits & 2) != 0 && !computed, (bits & 4) != 0};
   place.format.computed_normals = computed;
+  if ((bits & 8) != 0 && place.format.attributes.colour != ColourType::none)
+    place.format.attributes.space = ColourSpace::linear;
   if ((bits & 51) == 3)
     take_textures(take, place.format);
   if ((bits & 8) != 0)
@@ -315,7 +317,9 @@ void check_written(const PublishedTile& tile, const Place& place) {
 
 void tile(Bytes input) {
   Take take(input);
-  const Place place = take_place(take);
+  Place place = take_place(take);
+  place.format.screen_colours =
+      text_of(take.rest()).find(R"("version":3,)") != std::string_view::npos;
   const bool is_gzip = text_of(take.rest()).starts_with("\x1f\x8b");
   const bool is_glb = is_gzip || text_of(take.rest()).starts_with("glTF");
   std::vector<std::byte> file =

@@ -1,9 +1,9 @@
 #include "images/image_store.h"
 
 #include "hierarchy/error.h"
+#include "hierarchy/srgb.h"
 #include "images/material_texels.h"
 #include "images/pyramid.h"
-#include "images/srgb.h"
 #include "storage/io/file.h"
 #include "support/memory_files.h"
 #include "tests/images/samples.h"

@@ -345,13 +345,14 @@ TEST_F(MaterialColoursTest, EachPartShowsItsBaseColourThoughAnotherHasColoursOfV
   gltf.show(primitive(gltf, std::nullopt));
   put("a.glb", gltf.glb());
   const Imported mesh = import_of({"a.glb"});
-  EXPECT_EQ(mesh.layout, kColoured);
-  EXPECT_THAT(corner_colours(mesh, 0), Each("255 0 0"));
-  EXPECT_THAT(corner_colours(mesh, 1), Each("0 0 255"));
-  EXPECT_THAT(corner_colours(mesh, 2), Each("10 200 30"));
-  EXPECT_THAT(corner_colours(mesh, 3), Each("255 255 255"));
+  EXPECT_EQ(mesh.layout,
+            (AttributeLayout{.colour = ColourType::u16, .space = ColourSpace::linear}));
+  EXPECT_THAT(corner_colours(mesh, 0), Each("65535 0 0"));
+  EXPECT_THAT(corner_colours(mesh, 1), Each("0 0 65535"));
+  EXPECT_THAT(corner_colours(mesh, 2), Each("2570 51400 7710"));
+  EXPECT_THAT(corner_colours(mesh, 3), Each("65535 65535 65535"));
   EXPECT_EQ(mesh.count("material_colours"), 3U);
-  EXPECT_EQ(mesh.count("vertices_made_white"), 3U) << "of the part without either";
+  EXPECT_EQ(mesh.count("vertices_made_white"), 0U) << "the part without either is white in glTF";
 }
 
 TEST_F(MaterialColoursTest, BaseColoursAreFactorsOfColoursOfVertices) {
@@ -361,22 +362,22 @@ TEST_F(MaterialColoursTest, BaseColoursAreFactorsOfColoursOfVertices) {
   gltf.show(coloured<std::uint8_t>(gltf, {100, 100, 100}, material(gltf, {0.5, 1, 0, 1})));
   put("a.glb", gltf.glb());
   const Imported mesh = import_of({"a.glb"});
-  EXPECT_THAT(corner_colours(mesh, 0), Each("255 0 0"));
-  EXPECT_THAT(corner_colours(mesh, 1), Each("0 188 255"));
-  EXPECT_THAT(corner_colours(mesh, 2), Each("74 100 0"));
+  EXPECT_THAT(corner_colours(mesh, 0), Each("65535 0 0"));
+  EXPECT_THAT(corner_colours(mesh, 1), Each("0 32768 65535"));
+  EXPECT_THAT(corner_colours(mesh, 2), Each("12850 25700 0"));
   EXPECT_EQ(mesh.count("vertices_made_white"), 0U);
   const Imported plain = import_of({"a.glb"}, {.textures = Textures::ignore});
   EXPECT_THAT(corner_colours(plain, 0), Each("255 255 255"));
 }
 
-TEST_F(MaterialColoursTest, FactorsKeepTheTypeOfTheColours) {
+TEST_F(MaterialColoursTest, FactorsKeepTypesThatProductsOfLightFit) {
   GltfBuilder gltf;
   gltf.show(coloured<std::uint16_t>(gltf, {65535, 1000, 3}, material(gltf, {0.5, 1, 0, 1})));
   gltf.show(primitive(gltf, material(gltf, {1, 0, 0, 1})));
   put("a.glb", gltf.glb());
   const Imported shorts = import_of({"a.glb"});
   EXPECT_EQ(shorts.layout.colour, ColourType::u16);
-  EXPECT_THAT(corner_colours(shorts, 0), Each("48316 1000 0"));
+  EXPECT_THAT(corner_colours(shorts, 0), Each("32768 1000 0"));
   EXPECT_THAT(corner_colours(shorts, 1), Each("65535 0 0"));
   GltfBuilder floats;
   floats.show(coloured<float>(floats, {0.25F, 0.5F, 1}, material(floats, {1, 0, 1, 1})));

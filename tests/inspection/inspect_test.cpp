@@ -109,7 +109,7 @@ TEST_F(InspectTest, RawBytesCountComputedNormals) {
   sample_.record(node(3, 2)).split_count = kSplits;
   fs::remove_all(path());
   tests::write_sample(*files_, path(), sample_);
-  constexpr std::uint64_t kNormal = 4, kPosition = 12, kColour = 4;
+  constexpr std::uint64_t kNormal = 4, kPosition = 12, kColour = 8;
   EXPECT_EQ(raw_bytes(), before + kNormal * vertices + (kNormal + kPosition + kColour) * kSplits);
 }
 
@@ -170,8 +170,8 @@ TEST_F(InspectTest, SizesAreToldAgainstRawFloatsAndIndices) {
     if (raw(r.node.level) != 3)
       continue;
     bytes += r.file_bytes;
-    // Of 8-bit colours with a stride of 4; indices of 16 bits.
-    raw_bytes += (r.own_count + r.ghost_count) * (12 + 4) + (r.interior_count + r.border_count) * 6;
+    // Light of 16 bits with a stride of 8; indices of 16 bits.
+    raw_bytes += (r.own_count + r.ghost_count) * (12 + 8) + (r.interior_count + r.border_count) * 6;
     vertices += r.own_count;
     triangles += r.interior_count + r.drawn_border_count;
   }

@@ -255,7 +255,8 @@ GltfBuilder draco_gltf(const std::string& stream) {
 TEST_F(GltfCodecsTest, DracoPrimitivesOfBothMethodsAreDecoded) {
   for (const int method : {draco::MESH_SEQUENTIAL_ENCODING, draco::MESH_EDGEBREAKER_ENCODING}) {
     const Imported mesh = import(draco_gltf(draco_square(method)));
-    EXPECT_EQ(mesh.layout, AttributeLayout{.colour = ColourType::u8});
+    EXPECT_EQ(mesh.layout,
+              (AttributeLayout{.colour = ColourType::u8, .space = ColourSpace::linear}));
     ASSERT_EQ(mesh.positions.size(), 4U);
     EXPECT_EQ(mesh.triangles.size(), 2U);
     std::size_t found = 0;

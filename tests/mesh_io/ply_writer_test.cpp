@@ -4,6 +4,7 @@
 #include "mesh_io/ply_source.h"
 #include "ply_samples.h"
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -103,12 +104,33 @@ TEST(PlyWriter, MaterialsAreReadOnlyByWhoAsksForThem) {
   const std::vector<float> attributes{0.5F, 0.25F, 7, 1, 0, 16777215};
   writer.write_vertices(positions, attributes);
   writer.finish();
-  const ReadMesh asked = read_mesh(*make_ply_source(files.open("out.ply"), PlyMaterials::read));
+  const ReadMesh asked = read_mesh(*make_ply_source(files.open("out.ply"), PlyWrittenBy::import));
   EXPECT_EQ(asked.description.attributes, content.attributes);
   EXPECT_EQ(asked.attributes, attributes);
   const ReadMesh other = read_mesh(*open_mesh(files, "out.ply"));
   EXPECT_EQ(other.description.attributes, AttributeLayout{.texcoords = true});
   EXPECT_EQ(other.attributes, (std::vector<float>{0.5F, 0.25F, 1, 0}));
+}
+
+TEST(PlyWriter, LightIsReadOnlyOfWhatTheImportWrote) {
+  for (const bool alpha : {false, true}) {
+    for (const ColourType type : {ColourType::u8, ColourType::u16, ColourType::f32}) {
+      PlyContent content;
+      content.vertex_count = 1;
+      content.attributes = {.colour = type, .alpha = alpha, .space = ColourSpace::linear};
+      MemoryFiles files;
+      PlyWriter writer(files.create("out.ply"), content);
+      const std::vector<Vec3f> positions{{1, 2, 3}};
+      const std::vector<float> attributes{0, 1, 0, 1};
+      writer.write_vertices(positions, std::span(attributes).first(alpha ? 4 : 3));
+      writer.finish();
+      const ReadMesh ours =
+          read_mesh(*make_ply_source(files.open("out.ply"), PlyWrittenBy::import));
+      EXPECT_EQ(ours.description.attributes, content.attributes);
+      const ReadMesh other = read_mesh(*open_mesh(files, "out.ply"));
+      EXPECT_EQ(other.description.attributes, AttributeLayout{});
+    }
+  }
 }
 
 TEST(PlyWriter, HeaderAndBytes) {

@@ -186,13 +186,28 @@ TEST_F(PreviewTest, AHierarchyWithoutAFirstViewIsReadAsBefore) {
   const storage::HierarchyReader reader(*files_, hierarchy());
   storage::Manifest manifest = reader.manifest();
   std::vector<TileRecord> records = reader.records();
-  PublishedTile root = reader.read_tile({});
   Outline outline = reader.read_outline();
-  root.first_view = outline.first_view = manifest.first_view = std::nullopt;
-  const auto tile = storage::encode_tile(root, reader.tree(), reader.tile_format());
-  manifest.total_bytes += tile.size() - records[0].file_bytes;
-  records[0].file_bytes = tile.size();
-  records[0].checksum = storage::checksum(tile);
+  outline.first_view = manifest.first_view = std::nullopt;
+  manifest.screen_colours = true;
+  storage::TileFormat format = reader.tile_format();
+  format.screen_colours = true;
+  const auto rewrite = [&](NodeId node, TileRecord& record) {
+    PublishedTile tile = reader.read_tile(node);
+    tile.first_view.reset();
+    const auto bytes = storage::encode_tile(tile, reader.tree(), format);
+    manifest.total_bytes += bytes.size() - record.file_bytes;
+    record.file_bytes = bytes.size();
+    record.checksum = storage::checksum(bytes);
+    storage::write_file(*files_, storage::tile_path(hierarchy(), node), bytes);
+  };
+  std::size_t i = 0;
+  for (int level = 0; level <= raw(reader.tree().depth()); ++level) {
+    for (std::uint32_t n = 0; n < reader.tree().node_count(static_cast<Level>(level)); ++n) {
+      const NodeId node{static_cast<Level>(level), n};
+      if (!reader.tree().is_early(node))
+        rewrite(node, records[i++]);
+    }
+  }
   const auto index = storage::encode_index(records);
   manifest.index_checksum = storage::checksum(index);
   const auto lines = storage::encode_outline(outline, {manifest.origin, manifest.up});
@@ -201,7 +216,6 @@ TEST_F(PreviewTest, AHierarchyWithoutAFirstViewIsReadAsBefore) {
   for (const auto& level : storage::summarize_levels(reader.tree(), records))
     manifest.levels.push_back(storage::to_json(level));
   const std::string text = storage::to_json_text(manifest);
-  storage::write_file(*files_, storage::tile_path(hierarchy(), {}), tile);
   storage::write_file(*files_, storage::index_path(hierarchy()), index);
   storage::write_file(*files_, storage::outline_path(hierarchy()), lines);
   storage::write_file(*files_, storage::manifest_path(hierarchy()), std::as_bytes(std::span(text)));

@@ -1,7 +1,7 @@
 // Textures, looked up and drawn.
 #include "render/mip_texture.h"
 
-#include "images/srgb.h"
+#include "hierarchy/srgb.h"
 #include "render/shade.h"
 #include "tests/render/drawn.h"
 
@@ -56,7 +56,7 @@ TEST(MipTextureTest, MiddlesOfTexelsShowThem) {
   const MipTexture texture(reds({0, 100, 200, 255}));
   for (std::uint32_t x = 0; x < 4; ++x) {
     const Vec3f light = texture.light_at({(static_cast<float>(x) + 0.5F) / 4, 0.5F}, 0);
-    EXPECT_EQ(images::screen_value(light.x), (std::array{0, 100, 200, 255})[x]);
+    EXPECT_EQ(screen_value(light.x), (std::array{0, 100, 200, 255})[x]);
     EXPECT_EQ(light.y, 0);
   }
 }
@@ -78,7 +78,7 @@ TEST(MipTextureTest, LevelsAreMeansAndMixedBetween) {
 TEST(MipTextureTest, WrapsAsItsMaterialSays) {
   const images::Image image = reds({0, 100, 200, 255});
   const auto value = [&](Wrap wrap, float u) {
-    return int{images::screen_value(MipTexture(image, {wrap, wrap}).light_at({u, 0.5F}, 0).x)};
+    return int{screen_value(MipTexture(image, {wrap, wrap}).light_at({u, 0.5F}, 0).x)};
   };
   EXPECT_EQ(value(Wrap::repeat, 1.375F), 100);
   EXPECT_EQ(value(Wrap::repeat, -0.875F), 0);
@@ -141,7 +141,7 @@ TEST(TexturedRasterTest, ACheckerIsItsCoverageAtEachScale) {
       for (std::uint32_t x = 0; x < size; ++x) {
         const double across = white_between(x, square), down = white_between(y, square);
         const double white = across * down + (1 - across) * (1 - down);
-        off += std::abs(images::light_of(picture.at(x, y)[0] / 255.0) - white);
+        off += std::abs(light_of(picture.at(x, y)[0] / 255.0) - white);
       }
     }
     // Pixels along edges differ: filters are wider than a pixel.
@@ -162,12 +162,12 @@ TEST(TexturedRasterTest, NoSeamIsSeenBetweenFacetsOfOneTexture) {
   images::Image ramp(64, 64, 3);
   for (std::uint32_t y = 0; y < 64; ++y) {
     for (std::uint32_t x = 0; x < 64; ++x)
-      ramp.at(x, y)[0] = images::screen_value((x + y) / 126.0);
+      ramp.at(x, y)[0] = screen_value((x + y) / 126.0);
   }
   const images::Image picture = drawn_square(40, 2, MipTexture(ramp));
   for (std::uint32_t y = 2; y < 38; ++y) {
     for (std::uint32_t x = 2; x < 38; ++x) {
-      EXPECT_NEAR(images::light_of(picture.at(x, y)[0] / 255.0), (x + y + 1) / 80.0, 0.02);
+      EXPECT_NEAR(light_of(picture.at(x, y)[0] / 255.0), (x + y + 1) / 80.0, 0.02);
       ASSERT_EQ(picture.at(x, y)[3], 255);
     }
   }
@@ -216,7 +216,7 @@ TEST(TexturedRasterTest, OfTwoFacetsTheNearestIsSeenWithItsSkin) {
   raster.draw(flat_facet({-9, -9, -2}, {9, -9, -2}, {0, 20, -2}));
   EXPECT_EQ(shade(raster, {.kind = Light::none}).at(1, 1)[0], 255);
   raster.draw(flat_facet({-9, -9, 0}, {9, -9, 0}, {0, 20, 0}));
-  EXPECT_EQ(shade(raster, {.kind = Light::none}).at(1, 1)[0], images::screen_value(kPlainColour.x));
+  EXPECT_EQ(shade(raster, {.kind = Light::none}).at(1, 1)[0], screen_value(kPlainColour.x));
 }
 
 }  // namespace

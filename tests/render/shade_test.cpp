@@ -1,6 +1,6 @@
 #include "render/shade.h"
 
-#include "images/srgb.h"
+#include "hierarchy/srgb.h"
 #include "render/directions.h"
 #include "tests/render/drawn.h"
 
@@ -68,8 +68,8 @@ TEST(ShadeTest, SamplesAreAveragedAsLight) {
   for (FacetCorner& corner : facets[1])
     corner.colour = {};
   const Image picture = shade(drawn(square_camera(2, 2), facets));
-  const double full = images::light_of(pixel(picture, 1, 0)[0] / 255.0);
-  EXPECT_NEAR(pixel(picture, 0, 0)[0], images::screen_value(full / 2), 1);
+  const double full = light_of(pixel(picture, 1, 0)[0] / 255.0);
+  EXPECT_NEAR(pixel(picture, 0, 0)[0], screen_value(full / 2), 1);
   EXPECT_LT(pixel(picture, 0, 0)[0], pixel(picture, 1, 0)[0]);
 }
 

@@ -1,6 +1,6 @@
 #include "render/tile_facets.h"
 
-#include "images/srgb.h"
+#include "hierarchy/srgb.h"
 #include "render/mip_texture.h"
 
 #include <array>
@@ -110,8 +110,8 @@ TEST(TileFacetsTest, ColoursAreLight) {
     const AttributeLayout layout{.normals = true, .colour = type, .alpha = true};
     const auto facets = facets_of(sample_tile(layout), layout, {}, NormalKind::own);
     const Vec3f colour = facets[0][0].colour;
-    EXPECT_EQ(colour.x, static_cast<float>(images::light_of(13 / full)));
-    EXPECT_EQ(colour.z, static_cast<float>(images::light_of(15 / full)));
+    EXPECT_EQ(colour.x, static_cast<float>(light_of(13 / full)));
+    EXPECT_EQ(colour.z, static_cast<float>(light_of(15 / full)));
   }
 }
 

@@ -57,4 +57,9 @@ inline void store_triangle(std::byte* at, std::array<unsigned, 3> corners) {
     store_u16(at + 2 * c, corners[c]);
 }
 
+/// A colour's channel of 16 bits.
+inline void make_white(std::byte* channel) {
+  channel[0] = channel[1] = std::byte{255};
+}
+
 }  // namespace meshhier::tests

@@ -332,6 +332,8 @@ std::vector<float> colours_of(const std::vector<std::uint32_t>& order) {
   return colours;
 }
 
+constexpr Standpoint kFirstView{30, 15};
+
 storage::Manifest make_manifest(const Sample& sample, const fs::path& source) {
   storage::Manifest manifest;
   manifest.generator = "sample";
@@ -359,6 +361,7 @@ storage::Manifest make_manifest(const Sample& sample, const fs::path& source) {
   }
   manifest.origin = sample.format.frame.origin;
   manifest.up = sample.format.frame.up;
+  manifest.first_view = kFirstView;
   manifest.partition_count = sample.tree.partition_count();
   manifest.config = {{"partition", {{"count", sample.tree.partition_count()}}}};
   manifest.levels = nlohmann::ordered_json::array();
@@ -423,6 +426,7 @@ Sample make_sample(const TestMesh& mesh, const SampleOptions& options, const fs:
       sample.records.push_back(make_record(tree, sample.tiles.back(), options));
     }
   }
+  sample.tile({}).first_view = kFirstView;
   sample.manifest = make_manifest(sample, source);
   return sample;
 }
@@ -441,7 +445,9 @@ void write_sample(storage::FileSystem& files, const fs::path& directory, Sample&
   }
   const auto index = storage::encode_index(sample.records);
   storage::write_file(files, storage::index_path(directory), index);
-  const auto outline = storage::encode_outline(square(), sample.format.frame);
+  Outline lines = square();
+  lines.first_view = manifest.first_view;
+  const auto outline = storage::encode_outline(lines, sample.format.frame);
   storage::write_file(files, storage::outline_path(directory), outline);
   manifest.index_bytes = index.size();
   manifest.index_checksum = storage::checksum(index);

@@ -55,4 +55,11 @@ async function load(url) {
   };
 }
 
-window.view = { load };
+/// Shows the tile's colours without light.
+async function showColours() {
+  for (const material of container.materials) material.unlit = true;
+  await scene.whenReadyAsync();
+  scene.render();
+}
+
+window.view = { load, showColours };

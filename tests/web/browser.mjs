@@ -57,6 +57,7 @@ export function readHierarchy(directory) {
     vertices: manifest.source.vertices,
     triangles: manifest.source.triangles,
     bytes: manifest.total_bytes,
+    isTextured: manifest.source.textures !== undefined,
     lastLevel: manifest.levels.length - 1,
   };
 }

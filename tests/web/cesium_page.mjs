@@ -129,4 +129,9 @@ async function showGlobe(show) {
   } while (show && !scene.globe.tilesLoaded);
 }
 
-window.view = { load, look, settle, keepOutline, compare, stand, place, showGlobe };
+/// Shows the tileset's colours without light from now on.
+function showColours() {
+  tileset.customShader = new Cesium.CustomShader({ lightingModel: Cesium.LightingModel.UNLIT });
+}
+
+window.view = { showColours, load, look, settle, keepOutline, compare, stand, place, showGlobe };

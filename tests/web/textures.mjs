@@ -1,5 +1,6 @@
-// Shows hierarchies of the textured square (textured_square.mjs) in all viewers, in headless Chromium: each of its corners has the
-// colour of the picture, unlit, and is where it belongs.
+// Shows hierarchies of the textured or coloured square (textured_square.mjs) in all viewers, in headless Chromium: each of its corners
+// has the colour of the picture or of its vertices, unlit, and is where it belongs. The page of viewer/ lights vertices' colours: there
+// hierarchies with such colours look the same, wherever their colours come from.
 //
 //   node textures.mjs PICTURES PAGE HIERARCHY...
 //
@@ -47,8 +48,23 @@ function judgeColours(report, what, pixels) {
   report.line(what, flat >= LEAST_FLAT && Math.min(...parts) > 0.05, `of what is covered ${parts.map((part) => `${(100 * part).toFixed(1)} %`).join(', ')} have the corners' colours`);
 }
 
-async function showTileset(page, decoder, { viewer, name, pictures, report }) {
+let firstLit = null;
+
+/// Under one light the corners of all squares look the same.
+function judgeLit(report, what, pixels) {
+  const seen = CORNERS.map(({ right, up }) => {
+    const i = 4 * ((SIZE / 2 - up * OFFSET) * SIZE + SIZE / 2 + right * OFFSET);
+    return [...pixels.slice(i, i + 3)];
+  });
+  firstLit ??= seen;
+  const most = Math.max(...seen.map((colour, i) => Math.max(...colour.map((value, c) => Math.abs(value - firstLit[i][c])))));
+  const apart = Math.max(...seen[0].map((value, c) => Math.abs(value - seen[2][c])));
+  report.line(what, most <= TOLERANCE && apart > 3 * TOLERANCE, `corners ${seen.map((colour) => colour.join(' ')).join(', ')}; off by ${most}`);
+}
+
+async function showTileset(page, decoder, { viewer, name, isTextured, pictures, report }) {
   await call(page, 'load', { tileset: '/hierarchy/tileset.json' });
+  if (!isTextured) await call(page, 'showColours');
   await call(page, 'look', { direction: [0, -1, 0], distance: 3 });
   for (const [what, error] of [['coarse', COARSE], ['exact', EXACT]]) {
     const { visible, failures } = await call(page, 'settle', error);
@@ -57,8 +73,9 @@ async function showTileset(page, decoder, { viewer, name, pictures, report }) {
   }
 }
 
-async function showTile(page, decoder, { name, pictures, report }) {
+async function showTile(page, decoder, { name, isTextured, pictures, report }) {
   await call(page, 'load', '/hierarchy/tiles/00/000000.glb');
+  if (!isTextured) await call(page, 'showColours');
   const picture = await page.screenshot({ path: path.join(pictures, `${name}-babylon.png`) });
   judgeColours(report, `${name} babylon root`, await decodePicture(decoder, picture));
 }
@@ -74,6 +91,13 @@ async function showInPage(browser, decoder, pagePath, hierarchy, { pictures, rep
     await page.goto(`${origin}/index.html#models/${hierarchy.name}.hier`);
     await settled(page);
     await page.evaluate(() => { window.meshhier.setCamera({ position: [0, 0, 4], target: [0, 0, 0] }); });
+    if (!hierarchy.isTextured) {
+      await settled(page);
+      const picture = await page.screenshot({ path: path.join(pictures, `${hierarchy.name}-page.png`) });
+      judgeLit(report, `${hierarchy.name} page`, await decodePicture(decoder, picture));
+      await page.close();
+      return;
+    }
     for (const [what, threshold] of [['root', 1000], ['exact', 0.01]]) {
       await page.evaluate((pixels) => { window.meshhier.view.setSettings({ threshold: pixels }); }, threshold);
       await settled(page);
@@ -97,10 +121,10 @@ async function showInPage(browser, decoder, pagePath, hierarchy, { pictures, rep
 async function showAll(browser, report, pictures, pagePath, hierarchies) {
   const decoder = await browser.newPage();
   for (const hierarchy of hierarchies.map(readHierarchy)) {
-    const { name, directory } = hierarchy;
+    const { name, directory, isTextured } = hierarchy;
     for (const [viewer, show] of [['three', showTileset], ['cesium', showTileset], ['babylon', showTile]])
       await withPage(browser, report, { viewer, name, directories: { '/hierarchy': directory } }, (page) =>
-        show(page, decoder, { viewer, name, pictures, report }));
+        show(page, decoder, { viewer, name, isTextured, pictures, report }));
     await showInPage(browser, decoder, pagePath, hierarchy, { pictures, report });
   }
 }

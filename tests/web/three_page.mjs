@@ -201,4 +201,10 @@ function stand() {
   return standing({ covered, width: SIZE }, pixelsOf(renderer.domElement));
 }
 
-window.view = { load, look, settle, compare, comparePictures, showOriginal, stand };
+/// Shows the tileset's colours without light from now on.
+function showColours() {
+  tiles.forEachLoadedModel((scene) => takeLight(scene));
+  tiles.addEventListener('load-model', ({ scene }) => takeLight(scene));
+}
+
+window.view = { showColours, load, look, settle, compare, comparePictures, showOriginal, stand };

@@ -123,7 +123,7 @@ describe.skipIf(!hasProgram)('TileIndex', () => {
 });
 
 describe('readManifest', () => {
-  const hostile = ['', '[]', 'null', '{}', '{"format":"meshhier"}', '{"format":"meshhier","format_version":8}',
+  const hostile = ['', '[]', 'null', '{}', '{"format":"meshhier"}', '{"format":"meshhier","format_version":9}',
     '{"format":"meshhier","format_version":6,"source":[]}', '{"__proto__":{"format":"meshhier"}}'];
   it.each(hostile)('refuses %s', (text) => {
     expect(() => readManifest(text)).toThrow(HierarchyProblem);
@@ -136,8 +136,8 @@ describe('readManifest', () => {
   };
   const stored = { format: 'webp', quality: 90, unlit: true };
 
-  it('knows two versions of the format', () => {
-    for (const version of [6, 7])
+  it('knows three versions of the format', () => {
+    for (const version of [6, 7, 8])
       expect(readManifest(textured(undefined, undefined).replace('"format_version":6', `"format_version":${version}`)).partitions).toBe(1);
   });
 

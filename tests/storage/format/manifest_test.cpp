@@ -87,6 +87,7 @@ void expect_same(const Manifest& a, const Manifest& b) {
   EXPECT_EQ(a.origin, b.origin);
   EXPECT_EQ(a.up, b.up);
   EXPECT_EQ(a.first_view, b.first_view);
+  EXPECT_EQ(a.screen_colours, b.screen_colours);
   EXPECT_EQ(a.transform, b.transform);
   EXPECT_EQ(a.licence, b.licence);
   EXPECT_EQ(a.tileset_files, b.tileset_files);
@@ -138,16 +139,29 @@ TEST(Manifest, GivesEveryValueBack) {
   for (const ColourType type : {ColourType::none, ColourType::u8, ColourType::f32}) {
     other.source.attributes = {false, type, false, false};
     expect_same(other, parse_manifest(to_json_text(other), kManifestName));
+    if (type == ColourType::none)
+      continue;
+    other.source.attributes.space = ColourSpace::linear;
+    expect_same(other, parse_manifest(to_json_text(other), kManifestName));
   }
 }
 
 TEST(Manifest, OneOfVersion6HasNoFirstView) {
   Manifest manifest = make_manifest();
   manifest.first_view.reset();
+  manifest.screen_colours = true;
   const std::string text = to_json_text(manifest);
   EXPECT_THAT(text, HasSubstr("\"format_version\": 6,\n"));
   expect_same(manifest, parse_manifest(text, kManifestName));
-  EXPECT_THAT(to_json_text(make_manifest()), HasSubstr("\"format_version\": 7,\n"));
+}
+
+TEST(Manifest, OneOfVersion7HasTilesWithColoursOfAScreen) {
+  Manifest manifest = make_manifest();
+  manifest.screen_colours = true;
+  const std::string text = to_json_text(manifest);
+  EXPECT_THAT(text, HasSubstr("\"format_version\": 7,\n"));
+  expect_same(manifest, parse_manifest(text, kManifestName));
+  EXPECT_THAT(to_json_text(make_manifest()), HasSubstr("\"format_version\": 8,\n"));
 }
 
 TEST(Manifest, OneOfVersion6HasItsTilesElsewhereIfThereAreMany) {
@@ -156,6 +170,7 @@ TEST(Manifest, OneOfVersion6HasItsTilesElsewhereIfThereAreMany) {
   manifest.partition_count = storage::kTilesADirectory + 1;
   EXPECT_NO_THROW(parse_manifest(to_json_text(manifest), kManifestName));
   manifest.first_view.reset();
+  manifest.screen_colours = true;
   try {
     parse_manifest(to_json_text(manifest), kManifestName);
     ADD_FAILURE();
@@ -344,7 +359,7 @@ TEST(Manifest, WrongWordsOfAnImportAreNamed) {
 
 TEST(Manifest, IsReadable) {
   const std::string text = to_json_text(make_manifest());
-  EXPECT_THAT(text, StartsWith("{\n  \"format\": \"meshhier\",\n  \"format_version\": 7,\n"));
+  EXPECT_THAT(text, StartsWith("{\n  \"format\": \"meshhier\",\n  \"format_version\": 8,\n"));
   EXPECT_THAT(text, HasSubstr("\"checksum\": \"fedcba9876543210\""));
   EXPECT_THAT(text, HasSubstr("\"checksum\": \"00000000000000ab\""));
   EXPECT_THAT(text, HasSubstr("\"colours\": \"u16\""));
@@ -465,13 +480,13 @@ TEST(Manifest, EveryWrongValueIsNamed) {
 
 TEST(Manifest, OtherFormatsAndVersionsAreRefusedByTheirNumber) {
   Json document = Json::parse(to_json_text(make_manifest()));
-  document["format_version"] = 8;
-  EXPECT_THAT(failure(document.dump()), HasSubstr("format version 8 is newer than 7"));
+  document["format_version"] = 9;
+  EXPECT_THAT(failure(document.dump()), HasSubstr("format version 9 is newer than 8"));
   for (const int earlier : {0, 5}) {
     document["format_version"] = earlier;
     EXPECT_EQ(
         failure(document.dump()),
-        fmt::format("{}: was made with format version {}, this program reads 6 to 7: build it "
+        fmt::format("{}: was made with format version {}, this program reads 6 to 8: build it "
                     "again from the mesh",
                     kManifestName, earlier));
   }

@@ -379,7 +379,7 @@ TEST(TileGlb, TheJsonIsThatOfTheDocument) {
             R"("min":[0.0,0.0,0.0],"max":[1.0,1.0,0.10000000149011612]})");
   EXPECT_EQ(
       glb.extension().dump(),
-      R"({"version":3,"level":1,"index":0,"ownCount":2,"rimCount":2,"ghostCount":2,)"
+      R"({"version":4,"level":1,"index":0,"ownCount":2,"rimCount":2,"ghostCount":2,)"
       R"("copyCount":0,"neighbourCount":1,"chainEntryCount":2,"interiorCount":0,"borderCount":2,)"
       R"("interiorPrimitive":-1,"borderPrimitive":0,"parentMap":2,"neighbours":3,)"
       R"("ghostStarts":4,"ghostChains":5,"copyOf":-1,"rawNormals":-1,"rawColours":-1,)"
@@ -390,22 +390,26 @@ TEST(TileGlb, TheJsonIsThatOfTheDocument) {
 
 // A failure here says that files of the same version have other bytes than before: existing
 // hierarchies no longer match. Raise the version (docs/file_format.md), then the number here.
-TEST(TileGlb, TheBytesOfVersion3StayTheSame) {
+TEST(TileGlb, TheBytesOfAVersionStayTheSame) {
   const AttributeLayout layout{.normals = true, .colour = ColourType::u8, .texcoords = true};
-  const SampleHierarchy sample = make_sample(open_grid(7, 6), 3, {layout, {0.5, 0, 0}});
+  SampleHierarchy sample = make_sample(open_grid(7, 6), 3, {layout, {0.5, 0, 0}});
   const auto sum_of = [](const SampleHierarchy& tiles) {
     storage::Checksum sum;
     for (const PublishedTile& tile : tiles.tiles)
       sum.add(encode_tile(tile, tiles.tree, tiles.format));
     return sum.value();
   };
+  EXPECT_EQ(sum_of(sample), 1847876224033139254ULL);
+  EXPECT_EQ(sum_of(with_copies(sample)), 4349102185125013716ULL);
+  sample.format.screen_colours = true;  // version 3
   EXPECT_EQ(sum_of(sample), 16409328135631630208ULL);
   EXPECT_EQ(sum_of(with_copies(sample)), 13912142381089594659ULL);
 }
 
 TEST(TileGlb, WithoutCopiesTheBytesAreThoseOfVersion1ButForTheNewKeys) {
   const AttributeLayout layout{.normals = true, .colour = ColourType::u8, .texcoords = true};
-  const SampleHierarchy sample = make_sample(open_grid(7, 6), 3, {layout, {0.5, 0, 0}});
+  SampleHierarchy sample = make_sample(open_grid(7, 6), 3, {layout, {0.5, 0, 0}});
+  sample.format.screen_colours = true;
   storage::Checksum sum;
   for (const PublishedTile& tile : sample.tiles) {
     OpenGlb glb(encode_tile(tile, sample.tree, sample.format));
@@ -415,6 +419,22 @@ TEST(TileGlb, WithoutCopiesTheBytesAreThoseOfVersion1ButForTheNewKeys) {
     sum.add(glb.close());
   }
   EXPECT_EQ(sum.value(), 8496102127265295638ULL);  // as version 1 had it
+}
+
+TEST(TileGlb, TilesOfVersion3AreReadAsTheyAre) {
+  for (const AttributeLayout& layout : sample_layouts()) {
+    SampleHierarchy sample = make_sample(torus(250, 0.05F), 3, {layout, {}});
+    const SampleHierarchy now = sample;
+    sample.format.screen_colours = true;
+    for (const PublishedTile& tile : sample.tiles) {
+      const Bytes bytes = encode_tile(tile, sample.tree, sample.format);
+      const PublishedTile back =
+          decode_tile(bytes, tile.node, sample.tree, sample.format, kTileName);
+      EXPECT_EQ(encode_tile(back, sample.tree, sample.format), bytes);
+      EXPECT_THAT(decode_failure(bytes, tile.node, now),
+                  HasSubstr("version of MESHHIER_tile is 3, expected 4"));
+    }
+  }
 }
 
 TEST(TileGlb, TruncationAtEveryByteIsRefused) {
@@ -500,9 +520,9 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         TileDamage{"no_extension", [](OpenGlb& g) { g.json.erase("extensions"); },
                    "extension MESHHIER_tile is missing"},
-        TileDamage{"newer", [](OpenGlb& g) { g.extension()["version"] = 4; }, "newer meshhier"},
+        TileDamage{"newer", [](OpenGlb& g) { g.extension()["version"] = 5; }, "newer meshhier"},
         TileDamage{"older", [](OpenGlb& g) { g.extension()["version"] = 1; },
-                   "version of MESHHIER_tile is 1, expected 3"},
+                   "version of MESHHIER_tile is 1, expected 4"},
         TileDamage{"other_level", [](OpenGlb& g) { g.extension()["level"] = 1; }, "level is 1"},
         TileDamage{"other_index", [](OpenGlb& g) { g.extension()["index"] = 3; }, "index is 3"},
         TileDamage{"missing_count", [](OpenGlb& g) { g.extension().erase("ghostCount"); },

@@ -39,8 +39,8 @@ export interface Manifest {
 }
 
 const FILE = 'hierarchy.json';
-const FORMAT_VERSION = 7;
-const OLDEST_VERSION = 6; // the same without a first view
+const FORMAT_VERSION = 8; // 7: tiles hold colours as screens have them
+const OLDEST_VERSION = 6; // that without a first view
 const MOST_BYTES = 2 ** 20;
 
 const MOST_SHORT_BITS = 16;

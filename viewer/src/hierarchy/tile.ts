@@ -145,7 +145,7 @@ function decode(glb: Glb, values: TileValues, counts: Counts): Omit<Tile, 'pictu
   const given = attribute('NORMAL');
   const normals = given ? readNormals(glb, given, vertices) : normalsByPlace(positions, places, surface, toPlaces(places, border));
   const colour = attribute('COLOR_0') ?? attribute('_COLOR_0');
-  const colours = colour ? readColours(glb, colour, vertices) : null;
+  const colours = colour ? readColours(glb, colour, vertices, counts.screenColours) : null;
   const normalsFrom = given === undefined ? 'viewer' : normals instanceof Int8Array ? 'build' : 'input';
   const texcoords = counts.pictureWidth > 0 ? readTexcoords(glb, attribute('TEXCOORD_0') ?? glb.fail('a picture without texture coordinates'), vertices) : null;
   if (counts.splits > 0 && normalsFrom !== 'build' && !texcoords) glb.fail('splits without computed normals or a picture');

@@ -18,11 +18,14 @@ export interface ExpectedCounts {
 }
 
 export interface Counts extends ExpectedCounts {
+  /// Colours are values of a screen; else they are light, as glTF has it.
+  readonly screenColours: boolean;
   readonly neighbours: number;
   readonly chains: number;
 }
 
-const VERSION = 3;
+const VERSION = 4;
+const SCREEN_COLOURS_VERSION = 3; // the same with colours as screens have them
 const KEYS = ['level', 'index', 'own', 'ghosts', 'copies', 'splits', 'interior', 'border', 'pictureWidth', 'pictureHeight'] as const;
 /// What tiles without splits or pictures need not say.
 const ABSENT = { splitCount: 0, splitOf: -1, imageWidth: 0, imageHeight: 0, image: -1 };
@@ -41,8 +44,10 @@ function count(glb: Glb, values: TileValues, key: string, least: number, most: n
 }
 
 function parse(glb: Glb, values: TileValues): Counts {
-  if (values.version !== VERSION) glb.fail(`version ${values.version} of MESHHIER_tile is not known; this viewer knows ${VERSION}`);
+  const screenColours = values.version === SCREEN_COLOURS_VERSION;
+  if (values.version !== VERSION && !screenColours) glb.fail(`version ${values.version} of MESHHIER_tile is not known; this viewer knows ${VERSION}`);
   return {
+    screenColours,
     level: count(glb, values, 'level', 0, 32),
     index: count(glb, values, 'index', 0, 2 ** 32 - 1),
     own: count(glb, values, 'ownCount', 1, MOST_OWN),

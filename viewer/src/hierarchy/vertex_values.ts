@@ -36,7 +36,19 @@ const COLOUR_TYPES: Record<number, { bytes: number; most: number }> = {
   5126: { bytes: 4, most: 1 },
 };
 
-export function readColours(glb: Glb, accessor: Accessor, vertices: number): Uint8Array {
+let screenValues: Uint8Array | null = null;
+
+/// Of lights in parts of 65535 (IEC 61966-2-1, sRGB).
+function valuesOfLight(): Uint8Array {
+  screenValues ??= Uint8Array.from({ length: 65536 }, (_, i) => {
+    const light = i / 65535;
+    return Math.round(255 * (light <= 0.0031308 ? 12.92 * light : 1.055 * light ** (1 / 2.4) - 0.055));
+  });
+  return screenValues;
+}
+
+/// r, g, b, a as a screen has them.
+export function readColours(glb: Glb, accessor: Accessor, vertices: number, areScreenValues: boolean): Uint8Array {
   const type = COLOUR_TYPES[accessor.componentType];
   const width = accessor.type === 'VEC4' ? 4 : 3;
   if (type === undefined) glb.fail('colours of an unknown type');
@@ -44,8 +56,13 @@ export function readColours(glb: Glb, accessor: Accessor, vertices: number): Uin
   const bytes = detached(glb.section(accessor.bufferView, stride * vertices));
   const values = type.bytes === 1 ? new Uint8Array(bytes) : type.bytes === 2 ? new Uint16Array(bytes) : new Float32Array(bytes);
   const colours = new Uint8ClampedArray(4 * vertices).fill(255);
-  for (let v = 0; v < vertices; ++v)
-    for (let c = 0; c < width; ++c) colours[4 * v + c] = (255 * values[(v * stride) / type.bytes + c]) / type.most;
+  const ofLight = areScreenValues ? null : valuesOfLight();
+  for (let v = 0; v < vertices; ++v) {
+    for (let c = 0; c < width; ++c) {
+      const part = values[(v * stride) / type.bytes + c] / type.most;
+      colours[4 * v + c] = ofLight && c < 3 ? ofLight[Math.round(65535 * Math.min(Math.max(part, 0), 1))] : 255 * part;
+    }
+  }
   return new Uint8Array(colours.buffer);
 }
 

@@ -1,11 +1,11 @@
-#include "images/srgb.h"
+#include "hierarchy/srgb.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 
-namespace meshhier::images {
+namespace meshhier {
 namespace {
 
 /// Of a number from 0.001 to 1, by Newton's method: 20 steps reach the last bits from above.
@@ -15,6 +15,14 @@ constexpr double fifth_root(double x) {
     const double squared = root * root;
     root = (4 * root + x / (squared * squared)) / 5;
   }
+  return root;
+}
+
+/// Of a number from 0.0007 to 1, likewise.
+double cube_root(double x) {
+  double root = 1;
+  for (int step = 0; step < 14; ++step)
+    root = (2 * root + x / (root * root)) / 3;
   return root;
 }
 
@@ -55,6 +63,16 @@ double light_of(double value) {
   return value > 0 ? light(std::min(value, 1.0)) : 0;
 }
 
+double value_of(double light) {
+  if (!(light > 0))
+    return 0;
+  if (!(light < 1))
+    return 1;
+  if (light <= 0.0031308)
+    return light * 12.92;
+  return 1.055 * cube_root(light * std::sqrt(std::sqrt(light))) - 0.055;  // power of 1 / 2.4
+}
+
 std::uint8_t screen_value(double light) {
   if (!(light > 0))
     return 0;
@@ -84,4 +102,40 @@ const LightTable& LightTable::get() {
   return table;
 }
 
-}  // namespace meshhier::images
+LightCurve::LightCurve() {
+  for (std::size_t i = 0; i < lights_.size(); ++i)
+    lights_[i] = light_of(static_cast<double>(i) / kParts);
+  std::uint16_t point = 0;
+  for (std::size_t part = 0; part < kParts; ++part) {
+    while (lights_[point + 1U] <= static_cast<double>(part) / kParts)
+      ++point;
+    first_points_[part] = point;
+  }
+}
+
+const LightCurve& LightCurve::get() {
+  static const LightCurve curve;
+  return curve;
+}
+
+double LightCurve::light(double value) const {
+  if (!(value > 0))
+    return 0;
+  if (!(value < 1))
+    return 1;
+  const auto i = static_cast<std::size_t>(value * kParts);
+  return lights_[i] + (value * kParts - static_cast<double>(i)) * (lights_[i + 1] - lights_[i]);
+}
+
+double LightCurve::value(double light) const {
+  if (!(light > 0))
+    return 0;
+  if (!(light < 1))
+    return 1;
+  std::size_t i = first_points_[static_cast<std::size_t>(light * kParts)];
+  while (lights_[i + 1] <= light)
+    ++i;
+  return (static_cast<double>(i) + (light - lights_[i]) / (lights_[i + 1] - lights_[i])) / kParts;
+}
+
+}  // namespace meshhier
