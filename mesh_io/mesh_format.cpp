@@ -1,13 +1,16 @@
 #include "mesh_io/mesh_format.h"
 
+#include "mesh_io/coordinate_range.h"
 #include "mesh_io/foreign_format.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/obj_reader.h"
 #include "mesh_io/off_reader.h"
 #include "mesh_io/stl_reader.h"
+#include "storage/io/little_endian.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <optional>
 #include <span>
@@ -56,6 +59,34 @@ std::optional<std::uint64_t> stl_size(std::string_view start) {
   for (std::size_t i = 4; i-- > 0;)
     count = count << 8 | static_cast<unsigned char>(start[kStlHeaderBytes - 4 + i]);
   return kStlHeaderBytes + std::uint64_t{count} * kStlFacetBytes;
+}
+
+/// Whether numbers of the first facets are such as meshes have.
+bool has_facets(std::string_view start) {
+  constexpr std::size_t kLooked = 16;
+  constexpr std::size_t kNormalBytes = 12, kNumbers = 9;
+  constexpr float kLeast = 1e-25F;
+  for (std::size_t facet = 0; facet < kLooked; ++facet) {
+    const std::size_t begin = kStlHeaderBytes + facet * kStlFacetBytes;
+    if (begin + kStlFacetBytes > start.size())
+      return facet > 0;
+    for (std::size_t i = 0; i < kNumbers; ++i) {
+      const auto number = storage::load_little<float>(std::as_bytes(std::span(start)).data() +
+                                                      begin + kNormalBytes + i * sizeof(float));
+      if (!is_coordinate(number) || (number != 0 && std::abs(number) < kLeast))
+        return false;
+    }
+  }
+  return true;
+}
+
+/// Whether a file is a binary STL although its header's count, by which it would have `size` bytes,
+/// does not say so: bytes of another kind follow, fewer than the facets have, or the count is 0.
+bool is_stl_with_more(std::string_view start, std::uint64_t size, std::uint64_t file_bytes) {
+  if (file_bytes <= size || !has_facets(start))
+    return false;
+  const std::uint64_t more = file_bytes - size;
+  return size == kStlHeaderBytes ? more % kStlFacetBytes == 0 : more < size;
 }
 
 bool is_ply(std::string_view start) {
@@ -107,7 +138,10 @@ std::optional<MeshKind> kind_of(std::string_view start, std::uint64_t file_bytes
   }
   if (is_off_keyword(word))
     return MeshKind::off;  // a binary one, which its reader refuses by name
-  return is_gzip && size ? std::optional(MeshKind::stl_binary) : std::nullopt;
+  const bool is_stl =
+      size &&
+      (is_gzip || (is_stl_with_more(start, *size, file_bytes) && foreign_format(start).empty()));
+  return is_stl ? std::optional(MeshKind::stl_binary) : std::nullopt;
 }
 
 /// What is looked at of the content; a PLY is known by its first bytes.

@@ -20,9 +20,10 @@ struct MeshFormat {
 std::string name_of(const MeshFormat& format);
 
 /// Looks at the first 64 KiB of the content, and of a binary STL at the file's size: one that
-/// begins with "solid", as texts do, is binary if its size says so or (where it is packed) if the
-/// first bytes are no text. A glTF is an object of JSON whose first
-/// key is one of glTF's. Throws Error(input) if it is none of these, Error(io).
+/// begins with "solid", as texts do, is binary if its size says so or (where it is packed, or where
+/// its first facets have numbers as meshes have) if the first bytes are no text. A glTF is an
+/// object of JSON whose first key is one of glTF's. Throws Error(input) if it is none of these,
+/// Error(io).
 MeshFormat detect_format(const storage::File& file);
 
 /// The same; nothing if it is none of these.

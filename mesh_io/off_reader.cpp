@@ -64,6 +64,10 @@ class OffReader {
     TriangleBlocks blocks(visit_triangles);
     for (std::uint64_t i = 0; i < face_count_; ++i)
       read_face(i, blocks);
+    // Where lines say nothing, a number too many may be one that was taken for another.
+    if (is_wrapped_ && words_.to_row())
+      words_.fail("expected the end of the file behind the faces, found " +
+                  in_quotes(words_.take_word()));
     for (; words_.to_row(); ++counts_.lines_behind)
       words_.skip_line();
     counts_.faces = blocks.finish();
@@ -116,15 +120,32 @@ class OffReader {
   void read_vertex(std::uint64_t number, const OffVertexVisitor& visit) {
     if (!words_.to_row())
       fail_truncated(fmt::format("vertex {} of {}", number, counts_.vertices));
+    if (number == 0 && is_plain_)
+      look_at_first_row();
     const Vec3d position = words_.take_position(counts_.fits_float);
     take_attributes(number == 0);
     visit(position, std::span(channels_).first(channel_count_));
+  }
+
+  /// Numbers of a file may be in lines of any length: vertices of three numbers then.
+  void look_at_first_row() {
+    constexpr std::size_t kPosition = 3, kWithColour = 7;
+    const std::size_t words = words_.words_ahead(kWithColour + 1);
+    if (words < kPosition || words > kWithColour)
+      join_lines();
+  }
+
+  void join_lines() {
+    is_wrapped_ = true;
+    words_.join_all_lines();
   }
 
   void take_attributes(bool is_first) {
     AttributeLayout& layout = counts_.attributes;
     std::array<bool, kMaxChannels> are_bytes{};
     channel_count_ = 0;
+    if (is_wrapped_)
+      return;
     while (channel_count_ < channels_.size() && words_.to_word()) {
       const std::string_view word = words_.take_word();
       const auto value = parse_real<float>(word);
@@ -162,14 +183,25 @@ class OffReader {
     const auto corners = parse_integer(length);
     if (!corners || *corners < 0)
       words_.fail("expected the number of a face's corners, found " + in_quotes(length));
+    if (number == 0 && !is_wrapped_)
+      look_at_first_face(static_cast<std::uint64_t>(*corners));
     blocks.begin_polygon();
     for (std::int64_t i = 0; i < *corners; ++i)
       blocks.add_polygon_corner(take_corner(number));
     blocks.end_polygon();
-    if (words_.to_word()) {
+    if (!is_wrapped_ && words_.to_word()) {
       ++counts_.coloured_faces;
       words_.skip_line();
     }
+  }
+
+  /// A colour has one number, three or four.
+  void look_at_first_face(std::uint64_t corners) {
+    constexpr std::uint64_t kMostCorners = 50;
+    constexpr std::size_t kColour = 4;
+    const std::size_t words = words_.words_ahead(64);
+    if (corners <= kMostCorners && words > corners + kColour)
+      join_lines();
   }
 
   std::uint32_t take_corner(std::uint64_t face) {
@@ -189,7 +221,8 @@ class OffReader {
   std::array<float, kMaxChannels> channels_{};
   std::size_t channel_count_ = 0;
   std::uint64_t face_count_ = 0;
-  bool is_plain_ = false;  ///< the first line says nothing of attributes
+  bool is_plain_ = false;    ///< the first line says nothing of attributes
+  bool is_wrapped_ = false;  ///< lines end anywhere
   bool byte_colours_ = true;
   OffCounts counts_;
 };

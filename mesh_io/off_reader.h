@@ -38,9 +38,12 @@ using OffVertexVisitor = std::function<void(Vec3d position, std::span<const floa
 ///   n i1 ... in [colour]                 a line each; polygons become fans
 ///
 /// Colours may also stand in a file whose first line does not say so: if the first vertex has three
-/// or four numbers behind its coordinates. What lies behind the last face is counted. Corners are
-/// below the count of vertices, numbers finite. Files of four dimensions or in binary
-/// are refused. Throws Error(input) naming the line, Error(io).
+/// or four numbers behind its coordinates. If the first vertex of such a file has a line of
+/// fewer than three or more than seven numbers, or the first face a line that is too long for it
+/// and a colour, lines may end anywhere, there are no colours, and nothing may follow. What else
+/// lies behind the last face is counted. Corners are below the count of vertices, numbers finite.
+/// Files of four dimensions or in binary are refused. Throws Error(input) naming the line,
+/// Error(io).
 OffCounts read_off(InputStream& stream, const std::filesystem::path& path,
                    const OffVertexVisitor& visit_vertex, const TriangleVisitor& visit_triangles);
 

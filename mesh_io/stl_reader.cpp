@@ -9,6 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
@@ -34,32 +35,48 @@ class BinaryStl {
     if (stream_.read(std::span(bytes_).first(kStlHeaderBytes)) < kStlHeaderBytes)
       fail_file(path_, "expected the header of a binary STL, found the end of the data");
     counts_.facets = load<std::uint32_t, kSwap>(bytes_.data() + kStlHeaderBytes - 4);
+    if (counts_.facets == 0)
+      return read_all(visit);
     while (done_ < counts_.facets) {
       read_block();
       visit(block_);
     }
-    if (stream_.read(std::span(bytes_).first(1)) > 0) {
-      fail_at_byte(
-          path_, offset(),
-          fmt::format("expected the end of the data behind {} facets, found more", counts_.facets));
-    }
+    while (const std::size_t more = stream_.read(bytes_))
+      counts_.bytes_behind += more;
     return counts_;
   }
 
  private:
+  StlCounts read_all(const SoupVisitor& visit) {
+    for (bool is_full = true; is_full;) {
+      const std::size_t size = stream_.read(bytes_);
+      is_full = size == bytes_.size();
+      take_facets(size);
+      visit(block_);
+      counts_.bytes_behind = size % kStlFacetBytes;
+    }
+    counts_.facets = done_;
+    return counts_;
+  }
+
   std::uint64_t offset() const { return kStlHeaderBytes + done_ * kStlFacetBytes; }
 
   void read_block() {
     const std::size_t wanted = std::min<std::uint64_t>(kBlockFacets, counts_.facets - done_);
     const std::size_t size = stream_.read(std::span(bytes_).first(wanted * kStlFacetBytes));
-    block_.clear();
-    for (std::size_t i = 0; i < size / kStlFacetBytes; ++i, ++done_)
-      block_.push_back(facet(bytes_.data() + i * kStlFacetBytes));
+    take_facets(size);
     if (block_.size() < wanted) {
       fail_at_byte(path_, offset(),
                    fmt::format("expected facet {} of {}, found the end of the data (truncated)",
                                done_, counts_.facets));
     }
+  }
+
+  /// Of the first bytes of the buffer.
+  void take_facets(std::size_t bytes) {
+    block_.clear();
+    for (std::size_t i = 0; i < bytes / kStlFacetBytes; ++i, ++done_)
+      block_.push_back(facet(bytes_.data() + i * kStlFacetBytes));
   }
 
   SoupTriangle facet(const std::byte* bytes) {
@@ -111,13 +128,13 @@ class TextStl {
   bool read_facet() {
     if (!words_.to_row())
       words_.fail("expected 'facet' or 'endsolid', found the end of the file (truncated)");
-    const std::string_view word = words_.take_word();
-    if (is_stl_keyword(word, "endsolid")) {
+    const std::string word(words_.take_word());
+    if (!is_stl_keyword(word, "facet")) {
+      if (!ends_solid(word))
+        words_.fail("expected 'facet' or 'endsolid', found " + in_quotes(word));
       words_.skip_line();
       return false;
     }
-    if (!is_stl_keyword(word, "facet"))
-      words_.fail("expected 'facet' or 'endsolid', found " + in_quotes(word));
     words_.skip_line();  // the normal
     expect_row("outer");
     words_.skip_line();
@@ -128,6 +145,15 @@ class TextStl {
     expect_row("endfacet");
     ++counts_.facets;
     return true;
+  }
+
+  /// `word` begins the line.
+  bool ends_solid(std::string_view word) {
+    constexpr std::string_view kEnd = "endsolid";
+    if (is_stl_keyword(word.substr(0, kEnd.size()), kEnd))
+      return true;
+    return is_stl_keyword(word, "end") && words_.to_word() &&
+           is_stl_keyword(words_.take_word(), "solid");
   }
 
   Vec3d read_vertex() {

@@ -25,19 +25,23 @@ struct StlCounts {
   std::uint64_t facets = 0;
   std::uint64_t solids = 0;  ///< of a text
   std::uint64_t attributes =
-      0;                   ///< facets of a binary file whose last two bytes are not 0: ignored
-  bool fits_float = true;  ///< all coordinates do (DecimalNumber)
+      0;  ///< facets of a binary file whose last two bytes are not 0: ignored
+  std::uint64_t bytes_behind = 0;  ///< the last facet of a binary file: ignored
+  bool fits_float = true;          ///< all coordinates do (DecimalNumber)
 };
 
 /// Words of an ASCII file are in any case.
 bool is_stl_keyword(std::string_view word, std::string_view keyword);
 
 /// Hands out all facets in order, in blocks; their normals, which follow from the corners, are
-/// ignored. Coordinates are finite. Throws Error(input) naming the byte of the content, Error(io).
+/// ignored. A count of 0 in the header means all facets up to the end: some programs do not go back
+/// to write it. Coordinates are finite. Throws Error(input) naming the byte of the content,
+/// Error(io).
 StlCounts read_binary_stl(InputStream& stream, const std::filesystem::path& path,
                           const SoupVisitor& visit);
 
-/// The same of an ASCII file, of one solid or several; errors name the line.
+/// The same of an ASCII file, of one solid or several; errors name the line. A solid's end may be
+/// glued to its name, or be two words.
 StlCounts read_text_stl(InputStream& stream, const std::filesystem::path& path,
                         const SoupVisitor& visit);
 

@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::size_t kCapacity = std::size_t{1} << 18;
+constexpr std::size_t kLookAhead = std::size_t{1} << 16;
 
 bool is_line_end(char c) {
   return c == '\n' || c == '\r';
@@ -75,6 +76,26 @@ bool WordStream::skip_joint() {
 }
 
 bool WordStream::to_word() {
+  return is_one_line_ ? to_row() : to_word_of_line();
+}
+
+std::size_t WordStream::words_ahead(std::size_t most) {
+  look_ahead(kLookAhead);
+  std::size_t words = 0;
+  bool in_word = false;
+  for (std::size_t at = begin_; at != end_ && !is_line_end(buffer_[at]); ++at) {
+    if (buffer_[at] == '#' && (!in_word || rules_.cuts_words))
+      break;
+    const bool begins = !is_blank(buffer_[at]) && !in_word;
+    in_word = !is_blank(buffer_[at]);
+    words += begins ? 1 : 0;
+    if (words == most)
+      break;
+  }
+  return words;
+}
+
+bool WordStream::to_word_of_line() {
   while (look_ahead(1)) {
     const char c = buffer_[begin_];
     if (is_blank(c)) {
@@ -90,7 +111,7 @@ bool WordStream::to_word() {
 }
 
 bool WordStream::to_row() {
-  while (!to_word()) {
+  while (!to_word_of_line()) {
     if (!look_ahead(2))
       return false;
     const bool joined = buffer_[begin_] == '\r' && begin_ + 1 < end_ && buffer_[begin_ + 1] == '\n';

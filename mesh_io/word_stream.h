@@ -35,6 +35,11 @@ class WordStream {
   bool to_row();
   /// Goes on to the next word of this line; false if there is none.
   bool to_word();
+  /// From now on lines go on in the next one: to_word() is to_row().
+  void join_all_lines() { is_one_line_ = true; }
+  /// How many words there are from here to the end of the line, up to `most`, which is at most 64;
+  /// of what has no more than 64 KiB. Takes none.
+  std::size_t words_ahead(std::size_t most);
   /// The word here, valid until the next call. Requires that to_row() or to_word() was true just
   /// before. A word that is too long is an error.
   std::string_view take_word();
@@ -59,6 +64,7 @@ class WordStream {
  private:
   void skip_byte_order_mark();
   bool look_ahead(std::size_t bytes);
+  bool to_word_of_line();
   std::size_t joint_at(std::size_t place);
   bool skip_joint();
   void skip_comment();
@@ -67,6 +73,7 @@ class WordStream {
   std::filesystem::path path_;
   Rules rules_;
   bool ended_ = false;
+  bool is_one_line_ = false;
   std::unique_ptr<char[]> buffer_;
   std::size_t begin_ = 0;
   std::size_t end_ = 0;

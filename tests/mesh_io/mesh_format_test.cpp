@@ -71,13 +71,26 @@ TEST(MeshFormat, WhatIsNoMeshIsRefused) {
 }
 
 TEST(MeshFormat, AnStlOfAnotherSizeIsToldWhatItShouldHave) {
-  for (const std::size_t bytes : {std::size_t{99}, std::size_t{101}}) {
-    EXPECT_THAT(
-        format_refusal(binary_stl("a part", 2, bytes)),
-        HasSubstr(
-            "as a binary STL it would have 184 bytes, it has " + std::to_string(84 + bytes) +
-            (bytes < 100 ? " (truncated?)" : " (its count of facets is wrong, or more follows)")));
-  }
+  const auto refusal = [](std::size_t bytes) {
+    return format_refusal(binary_stl("a part", 2, bytes));
+  };
+  EXPECT_THAT(refusal(99), HasSubstr("as a binary STL it would have 184 bytes, it has 183 (trunc"));
+  EXPECT_THAT(refusal(500),
+              HasSubstr("it has 584 (its count of facets is wrong, or more follows)"));
+}
+
+TEST(MeshFormat, ABinaryStlMayBeLongerThanItsCountSays) {
+  for (const std::size_t more : {1, 2, 40, 50, 183})
+    EXPECT_EQ(format_of(binary_stl("solid made by x", 2, 100 + more)), "binary STL") << more;
+  EXPECT_EQ(format_of(binary_stl("", 0, 150)), "binary STL");
+  for (const std::size_t bytes : {1, 49, 51})
+    EXPECT_NE(format_refusal(binary_stl("", 0, bytes)), "") << bytes;
+  std::string odd = binary_stl("", 2, 101);
+  odd.replace(84 + 12, 4, "\xff\xff\xff\xff");  // no number
+  EXPECT_NE(format_refusal(odd), "");
+  odd.replace(84 + 12, 4, std::string("\1\0\0\0", 4));  // smaller than any coordinate
+  EXPECT_NE(format_refusal(odd), "");
+  EXPECT_NE(format_refusal("PK\3\4" + binary_stl("", 2, 101).substr(4)), "");
 }
 
 }  // namespace

@@ -109,7 +109,7 @@ TEST(OffReader, RefusesWhatIsWrongAndNamesTheLine) {
               HasSubstr("line 2: expected the end of the line"));
   EXPECT_THAT(off_refusal("OFF\n4000000000 4000000000 0\n1 2 3\n"),
               HasSubstr("expected vertex 1 of 4000000000, found the end of the file (truncated)"));
-  EXPECT_THAT(off_refusal("OFF\n1 0 0\n1 2\n"), HasSubstr("line 3: expected a number"));
+  EXPECT_THAT(off_refusal("OFF\n1 0 0\n1 2\n"), HasSubstr("line 4: expected a number"));
   EXPECT_THAT(off_refusal("OFF\n1 0 0\n1 2 9e37\n"),
               HasSubstr("line 3: expected a coordinate from"));
   EXPECT_THAT(off_refusal("OFF\n1 0 0\n1 2 3 4\n"), HasSubstr("line 3: expected 0 numbers behind"));
@@ -151,6 +151,25 @@ TEST(OffReader, ColoursMayStandInAPlainFile) {
   EXPECT_THAT(bytes.vertices, ElementsAre("0 0 0 200 90 40 255", "1 0 0 0 0 0 0", "0 1 0 1 2 3 4"));
   const OffTaken floats("OFF3 1 0\n0 0 0 0.5 0 1\n1 0 0 1 1 1\n0 1 0 0 0 0\n3 0 1 2\n");
   EXPECT_EQ(floats.counts.attributes, AttributeLayout{.colour = ColourType::f32});
+}
+
+TEST(OffReader, LinesMayEndAnywhere) {
+  for (const char* text : {"OFF\n4 2 0\n0 0 0 1 0 0 1 1 0 0 1 0\n3 0 1 2 3 0 2 3\n",
+                           "OFF\n4 2 0\n0\n0\n0\n1 0 0 1 1\n0 0 1 0 3 0 1\n2 3 0\n2 3",
+                           "OFF4 2\n0 0 0 1 0 0 1 1\n0 0 1 0 # c\n3\n0 1 2 3 0 2 3",
+                           "OFF\r\n4 2 0\r\n0 0\r\n0 1 0 0 1 1 0 0 1 0 3 0 1 2 3 0 2 3\r\n"}) {
+    const OffTaken taken(text);
+    EXPECT_THAT(taken.vertices, ElementsAre("0 0 0", "1 0 0", "1 1 0", "0 1 0")) << text;
+    EXPECT_THAT(taken.triangles, ElementsAre("0 1 2", "0 2 3")) << text;
+    EXPECT_EQ(taken.counts.lines_behind, 0U) << text;
+  }
+  const OffTaken faces("OFF\n4 3 0\n" + std::string(kOffSquare) + "3 0 1 2 3 0 2 3 3\n3 2 1\n");
+  EXPECT_THAT(faces.triangles, ElementsAre("0 1 2", "0 2 3", "3 2 1"));
+  EXPECT_EQ(faces.counts.coloured_faces, 0U);
+  EXPECT_THAT(off_refusal("OFF\n3 1 0\n0 0 0 1 0 0 1 1 0\n3 0 1 2 7\n"),
+              HasSubstr("line 4: expected the end of the file behind the faces, found '7'"));
+  EXPECT_THAT(off_refusal("OFF\n3 1 0\n0 0 0 1 0 0 1 1 0\n3 0 1\n"),
+              HasSubstr("expected a corner of face 0"));
 }
 
 TEST(OffReader, CountsWhatLiesBehindTheFaces) {

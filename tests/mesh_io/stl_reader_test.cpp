@@ -123,7 +123,41 @@ TEST(StlReader, KnowsWhetherFloatsSayAllThatTheTextDoes) {
   EXPECT_FALSE(take_text("solid\n" + facet_text("400123.123 0 0") + "endsolid").counts.fits_float);
 }
 
-TEST(StlReader, RefusesBinaryFilesThatAreCutAnywhereOrTooLong) {
+TEST(StlReader, CountsWhatLiesBehindBinaryFacets) {
+  const std::string file = binary_stl(many_facets(2));
+  EXPECT_EQ(take_binary(file).counts.bytes_behind, 0U);
+  for (const std::size_t more : {std::size_t{1}, std::size_t{50}, std::size_t{500'000}}) {
+    const StlTaken taken = take_binary(file + std::string(more, 'x'));
+    EXPECT_EQ(taken.facets.size(), 2U);
+    EXPECT_EQ(taken.counts.bytes_behind, more);
+  }
+}
+
+TEST(StlReader, ACountOf0IsAllFacetsThatAreThere) {
+  for (const std::size_t count : {1, 4095, 4096, 4097, 9000}) {
+    std::string file = binary_stl(many_facets(count));
+    const StlTaken whole = take_binary(file);
+    std::fill_n(file.begin() + 80, 4, '\0');
+    const StlTaken taken = take_binary(file);
+    EXPECT_EQ(taken.facets, whole.facets);
+    EXPECT_EQ(taken.counts.facets, count);
+    EXPECT_EQ(take_binary(file + "more").counts.bytes_behind, 4U);
+  }
+}
+
+TEST(StlReader, ASolidMayEndInOtherWords) {
+  for (const char* end : {"endsolid", "endsolidScene", "EndSolid\tScene", "end solid",
+                          "END SOLID x", "endsolid_1 \n", " end  solid  cube\n\n"}) {
+    const StlTaken taken = take_text("solid x\n" + facet_text() + end);
+    EXPECT_EQ(taken.facets.size(), 1U) << end;
+    EXPECT_EQ(take_text("solid x\n" + facet_text() + end + "\nsolid y\n" + facet_text() + end)
+                  .counts.solids,
+              2U)
+        << end;
+  }
+}
+
+TEST(StlReader, RefusesBinaryFilesThatAreCutAnywhere) {
   const std::string file = binary_stl(many_facets(2));
   const auto refusal = [](const std::string& content) {
     return input_error_of([&] { take_binary(content); });
@@ -132,8 +166,6 @@ TEST(StlReader, RefusesBinaryFilesThatAreCutAnywhereOrTooLong) {
     EXPECT_NE(refusal(file.substr(0, size)), "") << size;
   EXPECT_EQ(refusal(file.substr(0, 150)),
             "mesh: byte 134: expected facet 1 of 2, found the end of the data (truncated)");
-  EXPECT_EQ(refusal(file + "x"),
-            "mesh: byte 184: expected the end of the data behind 2 facets, found more");
   std::string lying = file;
   lying[83] = '\x7f';  // two billion facets
   EXPECT_THAT(refusal(lying), HasSubstr("mesh: byte 184: expected facet 2 of 213070"));
@@ -158,6 +190,9 @@ TEST(StlReader, RefusesTextThatIsNoneAndNamesTheLine) {
             "mesh: line 2: expected 'facet' or 'endsolid', found the end of the file (truncated)");
   EXPECT_EQ(refusal("solid\nfacets\n"),
             "mesh: line 2: expected 'facet' or 'endsolid', found 'facets'");
+  EXPECT_EQ(refusal("solid\nend\n"), "mesh: line 2: expected 'facet' or 'endsolid', found 'end'");
+  EXPECT_EQ(refusal("solid\nend loop\n"),
+            "mesh: line 2: expected 'facet' or 'endsolid', found 'end'");
   EXPECT_EQ(refusal("solid\nendsolid\nmore\n"), "mesh: line 3: expected 'solid', found 'more'");
   EXPECT_EQ(refusal("solid\nfacet\nouter loop\nvertex 1 2 3\nendloop\n"),
             "mesh: line 5: expected 'vertex', found 'endloop'");
