@@ -130,7 +130,8 @@ class Import {
     MaterialTable& table = mesh_.materials;
     count("missing_images", table.missing());
     for (const std::string& warning :
-         {table.warning_of_libraries(), table.warning(mesh_.layout.material)}) {
+         {table.warning_of_libraries(), table.warning_of_materials(),
+          table.warning_of_left_materials(), table.warning(mesh_.layout.material)}) {
       if (!warning.empty())
         env_.progress.warn(warning);
     }
@@ -291,6 +292,7 @@ class Import {
     count("missing_material_libraries", import.missing_libraries);
     count("undefined_materials", import.undefined_materials);
     count("ignored_alpha_images", import.other_alphas);
+    count("ignored_polypaint", import.ignored_polypaint);
     count(counts.zeroed);
     count("groups", counts.groups);
     count("objects", counts.objects);

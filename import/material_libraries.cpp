@@ -1,5 +1,6 @@
 #include "import/material_libraries.h"
 
+#include "hierarchy/small_letters.h"
 #include "mesh_io/input_error.h"
 
 #include <algorithm>
@@ -47,14 +48,18 @@ class LibraryReader {
  public:
   LibraryReader(const MaterialNames& names, mesh_io::NamedFiles& files, Companions& companions,
                 const execution::CancelToken& cancel)
-      : folder_(names.obj().parent_path()),
+      : names_(names),
+        folder_(names.obj().parent_path()),
         files_(files),
         companions_(companions),
         cancel_(cancel) {
     read_.materials.resize(names.all().size());
     for (std::size_t i = 0; i < names.all().size(); ++i) {
-      if (const auto& name = names.all()[i].name)
-        wanted_[*name].push_back(i);
+      const auto& name = names.all()[i].name;
+      if (!name)
+        continue;
+      wanted_[*name].push_back(i);
+      loose_.emplace(small_letters(*name), Loose{});
     }
     add_names_without_comments();
   }
@@ -62,10 +67,54 @@ class LibraryReader {
   Libraries read(const std::vector<std::string>& statements) {
     for (const std::string& statement : statements)
       read_statement(statement);
+    use_other_cases();
+    if (has_undefined())
+      read_namesake();
+    if (!names_.are_used() && read_.materials.size() == 1 && defined_.size() == 1)
+      read_.materials[0] = *std::move(only_);
+    read_.defined = defined_.size();
     return std::move(read_);
   }
 
  private:
+  /// What a name in small letters may mean.
+  struct Loose {
+    std::optional<LibraryMaterial> material;
+    bool is_clear = true;  ///< of one name alone
+  };
+
+  bool is_undefined(std::size_t number) const {
+    return names_.all()[number].name && !read_.materials[number].is_defined;
+  }
+
+  bool has_undefined() const {
+    for (std::size_t i = 0; i < read_.materials.size(); ++i) {
+      if (is_undefined(i))
+        return true;
+    }
+    return false;
+  }
+
+  void use_other_cases() {
+    for (std::size_t i = 0; i < read_.materials.size(); ++i) {
+      if (!is_undefined(i))
+        continue;
+      const Loose& loose = loose_.at(small_letters(*names_.all()[i].name));
+      if (loose.material && loose.is_clear)
+        read_.materials[i] = *loose.material;
+    }
+  }
+
+  /// NAME.mtl beside NAME.obj.
+  void read_namesake() {
+    const std::string name = names_.obj().stem().string() + ".mtl";
+    if (const auto file = files_.find(folder_, name))
+      read_file(*file);
+    else
+      companions_.await(mesh_io::sought_places(folder_, name));
+    use_other_cases();
+  }
+
   /// Only those that are no name of their own.
   void add_names_without_comments() {
     std::map<std::string, std::vector<std::size_t>> more;
@@ -130,6 +179,10 @@ class LibraryReader {
   }
 
   void define(const mesh_io::MtlMaterial& read, const fs::path& library) {
+    const bool is_first = defined_.size() < 2 && defined_.insert(read.name).second;
+    if (is_first && defined_.size() == 1)
+      only_ = made_of(read, library);
+    define_loosely(read, library);
     const auto wanted = wanted_.find(read.name);
     if (wanted == wanted_.end())
       return;
@@ -138,6 +191,17 @@ class LibraryReader {
       if (!material.is_defined)
         material = made_of(read, library);
     }
+  }
+
+  void define_loosely(const mesh_io::MtlMaterial& read, const fs::path& library) {
+    const auto found = loose_.find(small_letters(read.name));
+    if (found == loose_.end())
+      return;
+    Loose& loose = found->second;
+    if (loose.material)
+      loose.is_clear = loose.is_clear && loose.material->material.name == read.name;
+    else
+      loose.material = made_of(read, library);
   }
 
   static LibraryMaterial made_of(const mesh_io::MtlMaterial& read, const fs::path& library) {
@@ -158,11 +222,15 @@ class LibraryReader {
     return made;
   }
 
+  const MaterialNames& names_;
   fs::path folder_;
   mesh_io::NamedFiles& files_;
   Companions& companions_;
   const execution::CancelToken& cancel_;
   std::map<std::string, std::vector<std::size_t>> wanted_;  ///< numbers of each name
+  std::map<std::string, Loose> loose_;                      ///< what is wanted, in small letters
+  std::set<std::string> defined_;                           ///< names, two at most
+  std::optional<LibraryMaterial> only_;
   std::set<fs::path> done_;
   Libraries read_;
 };

@@ -47,6 +47,8 @@ class MaterialNames {
     bool has_texcoords = false;  ///< of a triangle at least
   };
   const std::vector<Use>& all() const { return uses_; }
+  /// A triangle has a name, or a statement one of a library.
+  bool are_any() const { return !libraries_.empty() || are_used(); }
   /// A triangle has a name.
   bool are_used() const;
   const std::filesystem::path& obj() const { return obj_; }
@@ -80,12 +82,16 @@ struct LibraryMaterial {
 
 struct Libraries {
   std::vector<LibraryMaterial> materials;  ///< of each name in MaterialNames::all()
+  std::size_t defined = 0;                 ///< names that the libraries define
   std::uint64_t missing = 0;               ///< libraries that are not there
   std::string first_missing;               ///< as the file names it
 };
 
-/// Reads the libraries that an OBJ file names. The first definition of a name counts. Throws as
-/// mesh_io::read_mtl, and Error(input) if a library is too large. `companions` gets the libraries.
+/// Reads the libraries that an OBJ file names, and if materials are not defined then, the one
+/// beside it that has its name. The first definition of a name counts; one that nobody defines is
+/// that whose name differs by the case of letters alone, if there is one such. If no triangle has a
+/// name and the libraries define one material alone, all have that. Throws as mesh_io::read_mtl,
+/// and Error(input) if a library is too large. `companions` gets the libraries.
 Libraries read_libraries(const MaterialNames& names, mesh_io::NamedFiles& files,
                          Companions& companions, const execution::CancelToken& cancel);
 

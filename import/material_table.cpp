@@ -78,6 +78,31 @@ void MaterialTable::miss_library(const std::string& name, const std::filesystem:
     first_missing_library_ = named(name, obj.string());
 }
 
+void MaterialTable::miss_material(const std::string& name, const std::filesystem::path& obj) {
+  if (++missing_materials_ == 1)
+    first_missing_material_ = named(name, obj.string());
+}
+
+std::string MaterialTable::warning_of_materials() const {
+  if (missing_materials_ == 0)
+    return {};
+  return fmt::format(
+      "no material library defines {} of the mesh ({}{}): their triangles are shown without "
+      "colours "
+      "and pictures; name the library by mtllib, or put it beside the mesh under the mesh's name",
+      counted(missing_materials_, "materials"), missing_materials_ == 1 ? "" : "the first is ",
+      first_missing_material_);
+}
+
+std::string MaterialTable::warning_of_left_materials() const {
+  if (left_.empty())
+    return {};
+  return fmt::format(
+      "{} names libraries with several materials, but none of its faces has one (usemtl): their "
+      "colours and pictures are not shown",
+      plain_text(left_[0], kLongestName));
+}
+
 std::string MaterialTable::warning(bool is_textured) const {
   return missing_text(missing_.size(), "pictures", first_missing_,
                       is_textured ? "triangles show the colour of their material instead"

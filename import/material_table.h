@@ -37,6 +37,11 @@ class MaterialTable {
   /// Notes that a library is not there which defines materials that triangles have. `obj` names it.
   void miss_library(const std::string& name, const std::filesystem::path& obj);
 
+  /// Notes that no library defines a material that triangles have, or that libraries define some
+  /// and no triangle has any.
+  void miss_material(const std::string& name, const std::filesystem::path& obj);
+  void leave_materials(const std::filesystem::path& obj) { left_.push_back(obj.string()); }
+
   /// Files that the materials come from, but for the pictures, and where missing ones would be.
   Companions& companions() { return companions_; }
 
@@ -47,6 +52,9 @@ class MaterialTable {
   std::string warning(bool is_textured) const;
   /// The same of missing libraries.
   std::string warning_of_libraries() const;
+  /// The same of materials.
+  std::string warning_of_materials() const;
+  std::string warning_of_left_materials() const;
 
  private:
   using Place = std::tuple<std::string, std::uint64_t, std::uint64_t>;
@@ -58,6 +66,9 @@ class MaterialTable {
   std::string first_missing_;
   std::uint64_t missing_libraries_ = 0;
   std::string first_missing_library_;
+  std::uint64_t missing_materials_ = 0;
+  std::string first_missing_material_;
+  std::vector<std::string> left_;  ///< files whose materials nobody has
 };
 
 }  // namespace meshhier::importing

@@ -1,6 +1,7 @@
 #include "import/obj_import.h"
 
 #include "execution/spool_cursor.h"
+#include "hierarchy/small_letters.h"
 #include "import/material_colours.h"
 #include "import/obj_textures.h"
 #include "import/split_corners.h"
@@ -54,12 +55,26 @@ class ObjParts final : public mesh_io::ObjVisitor {
 
   void add_position(Vec3d position, const std::optional<ObjColour>& colour) override {
     positions.append(position);
-    if (colour && colours.size() == 0) {
+    if (colour && !has_colours_) {
+      colours.clear();  // of ZBrush
+      has_colours_ = true;
       for (std::uint64_t i = 1; i < positions.size(); ++i)
         colours.append(kNoColour);
     }
-    if (colour || colours.size() > 0)
+    if (has_colours_)
       colours.append(colour.value_or(kNoColour));
+  }
+  void add_polypaint(const ObjColour& colour) override {
+    if (!has_colours_)
+      colours.append(colour);
+  }
+  /// Once all is there: colours of ZBrush are those of all vertices, or of none.
+  bool has_polypaint() {
+    if (has_colours_ || colours.size() == 0)
+      return false;
+    if (colours.size() != positions.size())
+      colours.clear();
+    return colours.size() > 0;
   }
   void add_texcoord(Texcoord texcoord) override { texcoords.append(texcoord); }
   void add_normal(Vec3f normal) override { normals.append(normal); }
@@ -87,6 +102,7 @@ class ObjParts final : public mesh_io::ObjVisitor {
 
  private:
   bool keeps_materials_;
+  bool has_colours_ = false;  ///< of v
 };
 
 struct Reference {
@@ -217,6 +233,12 @@ struct ObjSurface {
   storage::RecordSpool<std::uint32_t> tiles;  ///< one a triangle if a material has them
 };
 
+/// What programs write where there is no material is none.
+bool is_name(const std::string& name) {
+  const std::string small = small_letters(name);
+  return !small.empty() && small != "none" && small != "(null)" && small != "null";
+}
+
 /// Of each name in `parts`.
 std::vector<LibraryMaterial> find_materials(const ObjParts& parts, ObjImport& import, RawMesh& mesh,
                                             mesh_io::NamedFiles& files, const ImportRoom& room) {
@@ -226,9 +248,14 @@ std::vector<LibraryMaterial> find_materials(const ObjParts& parts, ObjImport& im
   const std::vector<MaterialNames::Use>& uses = parts.names.all();
   for (std::size_t i = 0; i < uses.size(); ++i) {
     const LibraryMaterial& material = libraries.materials[i];
-    import.undefined_materials += uses[i].name && !material.is_defined ? 1 : 0;
+    const bool is_undefined = uses[i].name && !material.is_defined;
+    import.undefined_materials += is_undefined ? 1 : 0;
+    if (is_undefined && libraries.missing == 0 && is_name(*uses[i].name))
+      mesh.materials.miss_material(*uses[i].name, parts.names.obj());
     import.other_alphas += material.has_other_alpha ? 1 : 0;
   }
+  if (libraries.defined > 1 && !parts.names.are_used())
+    mesh.materials.leave_materials(parts.names.obj());
   if (libraries.missing > 0 && import.undefined_materials > 0)
     mesh.materials.miss_library(libraries.first_missing, parts.names.obj());
   return std::move(libraries.materials);
@@ -296,7 +323,7 @@ ObjLook find_look(const ObjParts& parts, ObjImport& import, RawMesh& mesh,
                   mesh_io::NamedFiles& files, const ImportRoom& room) {
   const bool all_have_colours = import.counts.coloured == import.counts.positions;
   ObjLook look;
-  if (!import.layout.texcoords && (all_have_colours || !parts.names.are_used()))
+  if (!import.layout.texcoords && (all_have_colours || !parts.names.are_any()))
     return look;
   std::vector<LibraryMaterial> materials = find_materials(parts, import, mesh, files, room);
   ObjPaint paint(materials);
@@ -443,6 +470,10 @@ ObjImport import_obj(mesh_io::InputStream& stream, const std::filesystem::path& 
   import.fits_float = import.counts.fits_float;
   import.layout.texcoords = import.counts.textured_corners > 0;
   import.layout.normals = import.counts.normal_corners > 0;
+  if (parts.has_polypaint())
+    import.counts.coloured = import.counts.positions;
+  else
+    import.ignored_polypaint = import.counts.painted;
   if (import.counts.coloured > 0)
     import.layout.colour = ColourType::f32;
   ObjLook look;

@@ -3,6 +3,7 @@
 #include "hierarchy/small_letters.h"
 #include "mesh_io/input_error.h"
 #include "mesh_io/number_text.h"
+#include "mesh_io/utf16_stream.h"
 #include "mesh_io/word_stream.h"
 
 #include <algorithm>
@@ -81,6 +82,10 @@ class MtlReader {
       return read_transparency();
     if (word == "map_kd")
       return read_map(material_.picture);
+    if (word == "map_ke")
+      return read_map(light_);
+    if (word == "map_ka")
+      return read_map(ambient_);
     if (word == "map_d")
       return read_map(material_.alpha);
     words_.skip_line();
@@ -89,6 +94,7 @@ class MtlReader {
   void begin(std::string name) {
     finish();
     material_ = {};
+    light_ = ambient_ = std::nullopt;
     material_.name = std::move(name);
     has_begun_ = true;
     has_opacity_ = false;
@@ -98,6 +104,10 @@ class MtlReader {
   void finish() {
     if (material_.opacity == 0)
       material_.opacity = 1;
+    for (const std::optional<MtlMap>& other : {light_, ambient_}) {
+      if (!material_.picture)
+        material_.picture = other;
+    }
     if (has_begun_)
       visit_(material_);
   }
@@ -193,7 +203,8 @@ class MtlReader {
   WordStream words_;
   const std::function<void(const MtlMaterial&)>& visit_;
   MtlMaterial material_;
-  bool has_begun_ = false;  ///< not before the first newmtl
+  std::optional<MtlMap> light_, ambient_;  ///< map_Ke, map_Ka
+  bool has_begun_ = false;                 ///< not before the first newmtl
   bool has_opacity_ = false;
 };
 
@@ -201,7 +212,8 @@ class MtlReader {
 
 void read_mtl(InputStream& stream, const std::filesystem::path& path,
               const std::function<void(const MtlMaterial&)>& visit) {
-  MtlReader(stream, path, visit).read();
+  Utf16Stream text(stream, path);
+  MtlReader(text, path, visit).read();
 }
 
 }  // namespace meshhier::mesh_io

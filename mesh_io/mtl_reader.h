@@ -24,7 +24,7 @@ struct MtlMaterial {
   std::string name;                      ///< the rest of the line of newmtl; may be empty
   std::array<float, 3> colour{1, 1, 1};  ///< Kd, 0 ... 1
   float opacity = 1;                     ///< d, else 1 - Tr, up to 1; 1 if that is 0
-  std::optional<MtlMap> picture;         ///< map_Kd
+  std::optional<MtlMap> picture;         ///< map_Kd, else map_Ke, else map_Ka
   std::optional<MtlMap> alpha;           ///< map_d
 };
 
@@ -33,13 +33,15 @@ struct MtlMaterial {
 ///   newmtl NAME                 NAME may have spaces
 ///   Kd r [g b]                  numbers beyond 0 ... 1 become 0 or 1
 ///   d [-halo] a | Tr a
-///   map_Kd [options] FILE       FILE may have spaces, and stand in quotes
+///   map_Kd [options] FILE       FILE may have spaces, and stand in quotes; without it map_Ke or
+///                               map_Ka: some programs write nothing else
 ///   map_d [options] FILE
 ///
-/// with words in any case, and passes all other statements over, as well as those before the first
-/// newmtl. Of a statement that comes twice the last one counts, of maps the first. Options: -o and
-/// -s are used, and -clamp; -blendu, -blendv, -bm, -boost, -cc, -imfchan, -mm, -t, -texres and
-/// -type are passed over. Throws Error(input) naming the line, Error(io).
+/// in UTF-8, or in UTF-16 with a byte order mark, with words in any case, and passes all other
+/// statements over, as well as those before the first newmtl. Of a statement that comes twice the
+/// last one counts, of maps the first. Options: -o and -s are used, and -clamp; -blendu, -blendv,
+/// -bm, -boost, -cc, -imfchan, -mm, -t, -texres and -type are passed over. Throws Error(input)
+/// naming the line, Error(io).
 void read_mtl(InputStream& stream, const std::filesystem::path& path,
               const std::function<void(const MtlMaterial&)>& visit);
 

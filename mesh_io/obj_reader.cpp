@@ -5,6 +5,7 @@
 #include "mesh_io/word_stream.h"
 
 #include <algorithm>
+#include <charconv>
 #include <span>
 #include <string>
 
@@ -20,6 +21,8 @@ constexpr std::string_view kIgnored[] = {
     "curv2", "surf",  "parm",     "trim",       "hole",     "scrv",   "sp",     "end",
     "con",   "bevel", "c_interp", "d_interp",   "lod",      "maplib", "usemap", "call",
     "csh",   "ctech", "stech",    "shadow_obj", "trace_obj"};
+
+constexpr std::string_view kPolypaint = "#MRGB";
 
 constexpr std::uint64_t kMostElements = UINT32_MAX;  // the last value means none
 
@@ -38,7 +41,9 @@ struct Kind {
 class ObjReader {
  public:
   ObjReader(InputStream& stream, const std::filesystem::path& path, ObjVisitor& visitor)
-      : words_(stream, path, {.joins_lines = true}), path_(path), visitor_(visitor) {}
+      : words_(stream, path, {.joins_lines = true, .kept_comment = kPolypaint}),
+        path_(path),
+        visitor_(visitor) {}
 
   ObjCounts read() {
     while (words_.to_row())
@@ -65,8 +70,25 @@ class ObjReader {
       return read_material();
     if (word == "mtllib")
       return read_libraries();
+    if (word.starts_with('#'))
+      return word == kPolypaint ? read_polypaint() : words_.skip_line();
     count_statement(word);
     words_.skip_line();
+  }
+
+  /// What is no such number ends it: this is a comment after all.
+  void read_polypaint() {
+    constexpr std::size_t kDigits = 8;
+    const std::string text = words_.take_rest();
+    for (std::size_t at = 0; at + kDigits <= text.size(); at += kDigits) {
+      std::uint32_t mrgb = 0;
+      const char* const end = text.data() + at + kDigits;
+      if (std::from_chars(text.data() + at, end, mrgb, 16).ptr != end)
+        return;
+      const auto part = [&](int shift) { return static_cast<float>(mrgb >> shift & 255) / 255; };
+      ++counts_.painted;
+      visitor_.add_polypaint({part(16), part(8), part(0)});
+    }
   }
 
   void read_material() {

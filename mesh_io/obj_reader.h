@@ -29,6 +29,8 @@ class ObjVisitor {
  public:
   virtual ~ObjVisitor() = default;
   virtual void add_position(Vec3d position, const std::optional<ObjColour>& colour) = 0;
+  /// Of the next vertex that has none of these: ZBrush writes them behind all vertices.
+  virtual void add_polypaint(const ObjColour& /*colour*/) {}
   virtual void add_texcoord(std::array<float, 2> texcoord) = 0;
   virtual void add_normal(Vec3f normal) = 0;
   /// usemtl: of the triangles from here on; the rest of the line.
@@ -42,6 +44,7 @@ class ObjVisitor {
 struct ObjCounts {
   std::uint64_t positions = 0;
   std::uint64_t coloured = 0;  ///< positions with a colour
+  std::uint64_t painted = 0;   ///< colours of #MRGB
   std::uint64_t texcoords = 0;
   std::uint64_t normals = 0;
   std::uint64_t faces = 0;
@@ -71,6 +74,9 @@ bool is_obj_statement(std::string_view word);
 ///   f corner corner corner ...           corner: v | v/vt | v//vn | v/vt/vn, from 1 on, or from -1
 ///                                        back; polygons become fans
 ///   usemtl NAME | mtllib NAME [NAME ...]
+///   #MRGB mmrrggbb...                    colours of ZBrush, 8 hexadecimal digits a vertex; the
+///   mask
+///                                        mm is ignored
 ///
 /// and counts all other statements. Indices may be of what comes later; all are looked at. Numbers
 /// are finite. Less than 2^32 - 1 of each. Throws Error(input) naming the line, Error(io).

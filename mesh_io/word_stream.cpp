@@ -100,7 +100,7 @@ bool WordStream::to_word_of_line() {
     const char c = buffer_[begin_];
     if (is_blank(c)) {
       ++begin_;
-    } else if (c == '#') {
+    } else if (c == '#' && !begins_kept_comment()) {
       skip_comment();
       return false;
     } else if (!skip_joint()) {
@@ -108,6 +108,12 @@ bool WordStream::to_word_of_line() {
     }
   }
   return false;
+}
+
+bool WordStream::begins_kept_comment() {
+  const std::string_view kept = rules_.kept_comment;
+  return !kept.empty() && look_ahead(kept.size()) &&
+         std::string_view(buffer_.get() + begin_, end_ - begin_).starts_with(kept);
 }
 
 bool WordStream::to_row() {

@@ -23,6 +23,7 @@ class WordStream {
   struct Rules {
     bool joins_lines = false;  ///< a backslash before a line's end joins it with the next one
     bool cuts_words = false;   ///< '#' begins a comment within a word as well
+    std::string_view kept_comment = {};  ///< a line that begins so is words like any other
   };
 
   /// As TextCursor's.
@@ -65,6 +66,7 @@ class WordStream {
   void skip_byte_order_mark();
   bool look_ahead(std::size_t bytes);
   bool to_word_of_line();
+  bool begins_kept_comment();
   std::size_t joint_at(std::size_t place);
   bool skip_joint();
   void skip_comment();

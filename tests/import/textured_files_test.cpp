@@ -42,8 +42,7 @@ std::string facts_of(const tests::Imported& mesh) {
 void check(const tests::Imported& mesh) {
   EXPECT_EQ(mesh.layout.material, !mesh.materials.empty());
   EXPECT_EQ(mesh.layout.material, mesh.summary.textures.has_value());
-  const std::uint64_t undefined =
-      mesh.count("missing_material_libraries") > 0 ? mesh.count("undefined_materials") : 0;
+  const std::uint64_t undefined = mesh.count("undefined_materials");
   EXPECT_EQ(mesh.warnings.size(),
             (mesh.count("missing_images") > 0 ? 1U : 0U) + (undefined > 0 ? 1U : 0U));
   if (!mesh.layout.material)

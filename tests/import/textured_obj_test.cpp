@@ -3,8 +3,11 @@
 #include "import/imported.h"
 #include "tests/support/memory_files.h"
 
+#include <array>
 #include <filesystem>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -166,6 +169,129 @@ TEST_F(TexturedObjTest, MaterialsThatNobodyDefinesAreWhite) {
   EXPECT_THAT(mesh.all_shown(), ElementsAre("#ffffff", "#ffffff", "a.png 0 1, 1 0, 0 0"));
   EXPECT_EQ(mesh.count("undefined_materials"), 1U);
   EXPECT_EQ(mesh.count("missing_material_libraries"), 1U);
+}
+
+TEST_F(TexturedObjTest, AMaterialIsFoundThoughItsNameHasOtherCases) {
+  put_pictures({"a.png", "b.png"});
+  const std::string faces = std::string(kSquare) + "usemtl Wall\nf 1/1 2/2 3/3\n";
+  put("a.obj", "mtllib a.mtl\n" + faces);
+  for (const char* name : {"wall", "WALL", "wAll"}) {
+    put("a.mtl", std::string("newmtl ") + name + "\nmap_Kd a.png\nnewmtl other\nmap_Kd b.png\n");
+    EXPECT_THAT(import().all_shown(), ElementsAre("a.png 0 1, 1 1, 1 0")) << name;
+  }
+  put("a.mtl", "newmtl wall\nmap_Kd b.png\nnewmtl Wall\nmap_Kd a.png\n");
+  EXPECT_THAT(import().all_shown(), ElementsAre("a.png 0 1, 1 1, 1 0")) << "as it is written";
+  put("a.mtl", "newmtl wall\nmap_Kd b.png\nnewmtl WALL\nmap_Kd a.png\n");
+  const Imported unclear = import();
+  EXPECT_FALSE(unclear.layout.material);
+  ASSERT_THAT(unclear.warnings, SizeIs(1));
+  EXPECT_THAT(unclear.warnings[0], HasSubstr("defines 1 material of the mesh (Wall of w/a.obj)"));
+}
+
+TEST_F(TexturedObjTest, TheLibraryOfTheMeshsNameIsFoundThoughNobodyNamesIt) {
+  put_pictures({"a.png"});
+  put("a.mtl", "newmtl m\nmap_Kd a.png\n");
+  const std::string faces = std::string(kSquare) + "usemtl m\nf 1/1 2/2 3/3\n";
+  for (const char* start : {"", "mtllib gone.mtl\n", "mtllib empty.mtl\n"}) {
+    put("empty.mtl", "# nothing\n");
+    put("a.obj", start + faces);
+    const Imported mesh = import();
+    EXPECT_THAT(mesh.all_shown(), ElementsAre("a.png 0 1, 1 1, 1 0")) << start;
+    EXPECT_THAT(mesh.warnings, IsEmpty()) << start;
+  }
+  put("other.mtl", "newmtl m\nmap_Kd none.png\n");
+  put("a.obj", "mtllib other.mtl\n" + faces);
+  EXPECT_FALSE(import().layout.material) << "what is defined stays so";
+  put("b.obj", faces);
+  const Imported mesh = tests::import_files(files_, fs::path("w/b.obj"));
+  EXPECT_FALSE(mesh.layout.material);
+  ASSERT_THAT(mesh.warnings, SizeIs(1));
+  EXPECT_THAT(mesh.warnings[0], HasSubstr("put it beside the mesh under the mesh's name"));
+  EXPECT_THAT(mesh.companions(), ElementsAre("no w/b.mtl"));
+}
+
+TEST_F(TexturedObjTest, TheOnlyMaterialIsThatOfFacesWithoutAny) {
+  put_pictures({"a.png"});
+  const std::string faces = std::string(kSquare) + "f 1/1 2/2 3/3\n";
+  put("a.obj", "mtllib a.mtl\n" + faces);
+  put("a.mtl", "newmtl m\nmap_Kd a.png\n");
+  EXPECT_THAT(import().all_shown(), ElementsAre("a.png 0 1, 1 1, 1 0"));
+  put("a.mtl", "newmtl m\nmap_Kd a.png\nnewmtl m\nmap_Kd b.png\n");
+  EXPECT_THAT(import().all_shown(), ElementsAre("a.png 0 1, 1 1, 1 0")) << "one name";
+  put("a.mtl", "newmtl m\nmap_Kd a.png\nnewmtl n\nmap_Kd a.png\n");
+  const Imported unclear = import();
+  EXPECT_FALSE(unclear.layout.material);
+  ASSERT_THAT(unclear.warnings, SizeIs(1));
+  EXPECT_THAT(unclear.warnings[0], HasSubstr("w/a.obj names libraries with several materials"));
+  put("a.mtl", "newmtl m\nKd 1 0 0\n");
+  put("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
+  const Imported red = import();
+  EXPECT_EQ(red.layout.colour, ColourType::u8);
+  EXPECT_EQ(red.attributes[0], 255);
+  EXPECT_EQ(red.attributes[1], 0);
+}
+
+TEST_F(TexturedObjTest, LibrariesMayBeInUtf16) {
+  put_pictures({"a.png"});
+  const std::string name = "W\xc3\xa4nde \xf0\x9f\xa7\xb1";  // a letter of two bytes, a brick
+  put("a.obj", "mtllib a.mtl\n" + std::string(kSquare) + "usemtl " + name + "\nf 1/1 2/2 3/3\n");
+  const std::u16string text = u"newmtl W\u00e4nde \U0001F9F1\r\nmap_Kd a.png\r\n";
+  for (const bool is_big : {false, true}) {
+    std::string bytes = is_big ? "\xfe\xff" : "\xff\xfe";
+    for (const char16_t unit : text) {
+      const std::array halves{static_cast<char>(unit >> 8), static_cast<char>(unit & 255)};
+      bytes += is_big ? halves[0] : halves[1];
+      bytes += is_big ? halves[1] : halves[0];
+    }
+    put("a.mtl", bytes);
+    EXPECT_THAT(import().all_shown(), ElementsAre("a.png 0 1, 1 1, 1 0")) << is_big;
+    put("a.mtl", bytes + "x");
+    EXPECT_THAT(failure(), HasSubstr("a.mtl: is a text in UTF-16, but ends within a character"));
+  }
+  put("a.mtl", std::string("\xff\xfe\x00\xd8n\x00", 6));  // half a character
+  EXPECT_FALSE(import().layout.material);
+}
+
+TEST_F(TexturedObjTest, OtherMapsAreThePictureWhereNoneIsNamed) {
+  put_pictures({"a.png", "b.png", "c.png"});
+  put("a.obj", "mtllib a.mtl\n" + std::string(kSquare) + "usemtl m\nf 1/1 2/2 3/3\n");
+  const std::vector<std::pair<const char*, const char*>> cases{
+      {"map_Ke a.png", "a.png"},
+      {"map_Ka b.png", "b.png"},
+      {"map_Ka b.png\nmap_Ke a.png", "a.png"},
+      {"map_Ke a.png\nmap_Ka b.png\nmap_Kd c.png", "c.png"},
+      {"MAP_KE -clamp on a.png\nKe 1 1 1\nKd 0 0 0", "a.png"}};
+  for (const auto& [maps, picture] : cases) {
+    put("a.mtl", std::string("newmtl m\n") + maps + "\n");
+    EXPECT_THAT(import().all_shown(), ElementsAre(HasSubstr(picture))) << maps;
+  }
+}
+
+TEST_F(TexturedObjTest, PolypaintOfZBrushIsColoursOfVertices) {
+  const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+  const auto colours_of = [&](const std::string& text) {
+    put("a.obj", text);
+    return import();
+  };
+  for (const char* paint : {"#MRGB ffc05028ff00ff0000000000ffffffff\n",
+                            "#MRGB ffc05028ff00ff00\n#MRGB 00000000FFFFFFFF\n",
+                            "#MRGB ffc05028ff00ff0000000000ffffffff\r\n# End of MRGB block\n",
+                            "# Auto scale\n#MRGB ffc05028ff00ff0000000000\n#MRGB ffffffff"}) {
+    for (const std::string& text : {square + paint, "g x\n" + square + paint}) {
+      const Imported mesh = colours_of(text);
+      ASSERT_EQ(mesh.layout, AttributeLayout{.colour = ColourType::f32}) << paint;
+      EXPECT_EQ(mesh.attributes, (std::vector<float>{0xc0 / 255.0F, 0x50 / 255.0F, 0x28 / 255.0F, 0,
+                                                     1, 0, 0, 0, 0, 1, 1, 1}));
+    }
+  }
+  for (const char* paint : {"#MRGB ffc05028\n", "#MRGB zzzzzzzz\n", "#MRGB\n", "#MRGBffffffff\n"}) {
+    const Imported mesh = colours_of(square + paint);
+    EXPECT_EQ(mesh.layout, AttributeLayout{}) << paint;
+    EXPECT_EQ(mesh.count("ignored_polypaint"), std::string(paint) == "#MRGB ffc05028\n" ? 1U : 0U);
+  }
+  const Imported own = colours_of(
+      "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 1 1 0 1 0 0\nf 1 2 3\n#MRGB 000000000000000000000000\n");
+  EXPECT_EQ(own.attributes[0], 1) << "colours of v are what all programs read";
 }
 
 TEST_F(TexturedObjTest, LibrariesAreNamedInManyWays) {
