@@ -5,6 +5,7 @@
 #include "import/gltf_import.h"
 #include "import/join_layouts.h"
 #include "import/obj_import.h"
+#include "import/place_lookup.h"
 #include "import/ply_import.h"
 #include "import/raw_mesh.h"
 #include "import/weld.h"
@@ -89,6 +90,11 @@ class Import {
 
   void count(const mesh_io::ZeroedCounts& zeroed) {
     for (const SourceCount& one : source_counts(zeroed))
+      count(one.name, one.count);
+  }
+
+  void count(const mesh_io::PolygonCounts& polygons) {
+    for (const SourceCount& one : source_counts(polygons))
       count(one.name, one.count);
   }
 
@@ -223,6 +229,7 @@ class Import {
     const PlyImport import = import_textured_ply(source, path, mesh_, named_, room_);
     checked_base(path, 0);
     count("split_vertices", import.split_vertices);
+    count(import.counts.polygons);
     count(import.zeroed);
     return {import.layout, import.fits_float, import.counts.faces,
             import.counts.degenerate_triangles};
@@ -247,6 +254,7 @@ class Import {
         [&](std::span<const Triangle<VertexId>> triangles) { append(triangles, base); });
     added.faces = counts.faces;
     added.degenerate_triangles = counts.degenerate_triangles;
+    count(counts.polygons);
     return added;
   }
 
@@ -299,6 +307,7 @@ class Import {
     count("material_uses", counts.materials);
     count("material_libraries", counts.libraries);
     count("ignored_points_and_lines", counts.points_and_lines);
+    count(counts.polygons);
     count("ignored_statements", counts.others);
     return {import.layout,           import.fits_float, counts.faces, counts.degenerate_triangles,
             import.material_colours, import.is_painted};
@@ -332,6 +341,7 @@ class Import {
 
   Added add_off(InputStream& stream, const std::filesystem::path& path) {
     const std::uint32_t base = checked_base(path, 0);
+    SpoolLookup<Vec3d> places(mesh_.positions);
     const mesh_io::OffCounts counts = mesh_io::read_off(
         stream, path,
         [&](Vec3d position, std::span<const float> attributes) {
@@ -341,8 +351,10 @@ class Import {
         [&](std::span<const Triangle<VertexId>> triangles) {
           checked_base(path, 0);
           append(triangles, base);
-        });
+        },
+        [&](std::uint32_t vertex) { return places.at(base + vertex); });
     checked_base(path, 0);
+    count(counts.faces.polygons);
     count("ignored_face_colours", counts.coloured_faces);
     count("ignored_lines_behind", counts.lines_behind);
     count(counts.zeroed);

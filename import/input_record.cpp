@@ -64,6 +64,14 @@ std::vector<SourceFile> source_files(const std::vector<ReadFile>& files,
   return all;
 }
 
+std::vector<SourceCount> source_counts(const mesh_io::PolygonCounts& polygons) {
+  std::vector<SourceCount> counts{{"concave_polygons", polygons.concave},
+                                  {"crossed_polygons", polygons.crossed},
+                                  {"unchecked_polygons", polygons.large}};
+  std::erase_if(counts, [](const SourceCount& one) { return one.count == 0; });
+  return counts;
+}
+
 std::vector<SourceCount> source_counts(const mesh_io::ZeroedCounts& zeroed) {
   std::vector<SourceCount> counts;
   if (zeroed.normals > 0)

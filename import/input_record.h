@@ -2,6 +2,7 @@
 #pragma once
 
 #include "hierarchy/published.h"
+#include "mesh_io/polygon_counts.h"
 #include "mesh_io/zeroed.h"
 #include "storage/io/file.h"
 
@@ -70,6 +71,8 @@ inline constexpr std::string_view kZeroedTexcoords = "texcoords_made_zero";
 
 /// Those that are not 0, by name.
 std::vector<SourceCount> source_counts(const mesh_io::ZeroedCounts& zeroed);
+/// The same of polygons.
+std::vector<SourceCount> source_counts(const mesh_io::PolygonCounts& polygons);
 
 /// Whether the import looked for materials, as Textures::use makes it: there are textures or
 /// colours of materials, or a library or a picture is among the files.

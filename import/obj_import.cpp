@@ -4,6 +4,7 @@
 #include "hierarchy/small_letters.h"
 #include "import/material_colours.h"
 #include "import/obj_textures.h"
+#include "import/place_lookup.h"
 #include "import/split_corners.h"
 #include "mesh_io/input_error.h"
 #include "partition/external_sort.h"
@@ -51,7 +52,8 @@ class ObjParts final : public mesh_io::ObjVisitor {
         normals(scratch, kImportSpoolBytes),
         triangles(scratch, kImportSpoolBytes),
         materials(scratch, kImportSpoolBytes),
-        keeps_materials_(use == Textures::use) {}
+        keeps_materials_(use == Textures::use),
+        places_(positions) {}
 
   void add_position(Vec3d position, const std::optional<ObjColour>& colour) override {
     positions.append(position);
@@ -76,6 +78,7 @@ class ObjParts final : public mesh_io::ObjVisitor {
       colours.clear();
     return colours.size() > 0;
   }
+  Vec3d position(std::uint32_t number) override { return places_.at(number); }
   void add_texcoord(Texcoord texcoord) override { texcoords.append(texcoord); }
   void add_normal(Vec3f normal) override { normals.append(normal); }
   void use_material(const std::string& name) override {
@@ -103,6 +106,7 @@ class ObjParts final : public mesh_io::ObjVisitor {
  private:
   bool keeps_materials_;
   bool has_colours_ = false;  ///< of v
+  SpoolLookup<Vec3d> places_;
 };
 
 struct Reference {

@@ -2,6 +2,7 @@
 
 #include "execution/spool_cursor.h"
 #include "import/split_corners.h"
+#include "mesh_io/polygon_cut.h"
 
 #include <algorithm>
 #include <array>
@@ -67,7 +68,7 @@ class PlyImporter {
   }
 
  private:
-  /// Polygons become fans.
+  /// Polygons become triangles, as mesh_io::TriangleBlocks makes them.
   void add(const mesh_io::PlyFace& face) {
     room_.cancel.check();
     const bool has_texcoords = !source_.has_face_texcoords() || !face.texcoords.empty();
@@ -75,8 +76,29 @@ class PlyImporter {
     for (std::size_t i = 0; i < face.texcoords.size() / 2; ++i)
       import_.zeroed.texcoords += texcoord_of(face, i) ? 0 : 1;
     import_.counts.degenerate_triangles += face.corners.size() < 3 ? 1 : 0;
+    if (face.corners.size() > 3 && cut(face) == mesh_io::PolygonCut::Kind::ears) {
+      for (const Triangle<std::uint32_t>& t : cut_.triangles())
+        add(face, {t[0], t[1], t[2]}, texture);
+      return;
+    }
     for (std::size_t i = 2; i < face.corners.size(); ++i)
       add(face, {0, i - 1, i}, texture);
+  }
+
+  mesh_io::PolygonCut::Kind cut(const mesh_io::PlyFace& face) {
+    using Kind = mesh_io::PolygonCut::Kind;
+    mesh_io::PolygonCounts& polygons = import_.counts.polygons;
+    if (face.corners.size() > mesh_io::PolygonCut::kMostCorners) {
+      ++polygons.large;
+      return Kind::fan;
+    }
+    places_.clear();
+    for (const std::uint32_t corner : face.corners)
+      places_.push_back(source_.place_of(corner));
+    const Kind kind = cut_.cut(places_);
+    polygons.concave += kind == Kind::ears ? 1 : 0;
+    polygons.crossed += kind == Kind::crossed ? 1 : 0;
+    return kind;
   }
 
   void add(const mesh_io::PlyFace& face, const std::array<std::size_t, 3>& corners,
@@ -239,6 +261,8 @@ class PlyImporter {
   const ImportRoom& room_;
   PlyTriangles triangles_;
   AttributeLayout given_;
+  mesh_io::PolygonCut cut_;
+  std::vector<Vec3d> places_;                                   ///< of a face
   std::vector<std::optional<std::filesystem::path>> pictures_;  ///< of each texture
   std::vector<std::uint32_t> numbers_;  ///< of each texture from -1 on; 0: not used yet
   PlyImport import_;

@@ -162,6 +162,20 @@ void VertexBlocks::flush() {
 }
 
 void TriangleBlocks::add_polygon_corner(std::uint32_t corner) {
+  if (place_of_ == nullptr || corner_count_ > PolygonCut::kMostCorners)
+    return add_fan_corner(corner);
+  corners_.push_back(corner);
+  ++corner_count_;
+  if (corner_count_ > PolygonCut::kMostCorners) {
+    ++counts_.polygons.large;
+    corner_count_ = 0;
+    for (const std::uint32_t known : corners_)
+      add_fan_corner(known);
+    corners_.clear();
+  }
+}
+
+void TriangleBlocks::add_fan_corner(std::uint32_t corner) {
   if (corner_count_ == 0)
     first_ = corner;
   if (corner_count_ >= 2)
@@ -174,6 +188,27 @@ void TriangleBlocks::end_polygon() {
   ++counts_.faces;
   if (corner_count_ < 3)
     ++counts_.degenerate_triangles;
+  else if (corners_.size() >= 3)
+    cut_polygon();
+}
+
+void TriangleBlocks::cut_polygon() {
+  auto kind = PolygonCut::Kind::fan;
+  if (corners_.size() > 3) {
+    places_.clear();
+    for (const std::uint32_t corner : corners_)
+      places_.push_back((*place_of_)(corner));
+    kind = cut_.cut(places_);
+  }
+  counts_.polygons.crossed += kind == PolygonCut::Kind::crossed ? 1 : 0;
+  if (kind == PolygonCut::Kind::ears) {
+    ++counts_.polygons.concave;
+    for (const Triangle<std::uint32_t>& t : cut_.triangles())
+      add(corners_[t[0]], corners_[t[1]], corners_[t[2]]);
+    return;
+  }
+  for (std::size_t i = 1; i + 1 < corners_.size(); ++i)
+    add(corners_[0], corners_[i], corners_[i + 1]);
 }
 
 void TriangleBlocks::add_strip_corner(std::uint32_t corner) {

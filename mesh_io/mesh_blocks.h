@@ -2,9 +2,11 @@
 #pragma once
 
 #include "mesh_io/mesh_source.h"
+#include "mesh_io/polygon_cut.h"
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -76,11 +78,17 @@ class VertexBlocks {
   std::uint64_t first_ = 0;
 };
 
+/// Where a vertex lies.
+using PlaceOf = std::function<Vec3d(std::uint32_t vertex)>;
+
 /// Triangles of polygons and strips. All corners given are < the vertex count.
 class TriangleBlocks {
  public:
-  explicit TriangleBlocks(const TriangleVisitor& visit)
+  /// `place_of`: of a vertex, so that polygons that are not convex are cut as their shape asks for
+  /// (polygon_cut.h). Without it all become fans. Both must outlive it.
+  explicit TriangleBlocks(const TriangleVisitor& visit, const PlaceOf* place_of = nullptr)
       : visit_(visit),
+        place_of_(place_of),
         block_(std::make_unique_for_overwrite<Triangle<VertexId>[]>(MeshSource::kBlockSize)) {}
 
   /// A whole face of three corners.
@@ -89,8 +97,12 @@ class TriangleBlocks {
     add(a, b, c);
   }
 
-  /// A polygon corner by corner, of any number: only the first and the last corner are kept.
-  void begin_polygon() { corner_count_ = 0; }
+  /// A polygon corner by corner, of any number: of a large one only the first and the last corner
+  /// are kept.
+  void begin_polygon() {
+    corner_count_ = 0;
+    corners_.clear();
+  }
   void add_polygon_corner(std::uint32_t corner);
   void end_polygon();
 
@@ -115,8 +127,14 @@ class TriangleBlocks {
       flush();
   }
   void flush();
+  void add_fan_corner(std::uint32_t corner);
+  void cut_polygon();
 
   const TriangleVisitor& visit_;
+  const PlaceOf* place_of_;
+  std::vector<std::uint32_t> corners_;  ///< of a polygon, if places are known
+  std::vector<Vec3d> places_;
+  PolygonCut cut_;
   std::unique_ptr<Triangle<VertexId>[]> block_;  ///< kBlockSize
   std::size_t filled_ = 0;
   FaceCounts counts_;

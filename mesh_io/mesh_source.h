@@ -5,6 +5,7 @@
 #include "hierarchy/ids.h"
 #include "hierarchy/triangle.h"
 #include "hierarchy/vec.h"
+#include "mesh_io/polygon_counts.h"
 #include "mesh_io/zeroed.h"
 #include "storage/io/file.h"
 #include "storage/io/file_checksum.h"
@@ -50,10 +51,11 @@ struct FaceCounts {
   std::uint64_t triangles = 0;  ///< handed out
   std::uint64_t degenerate_triangles =
       0;  ///< dropped: a vertex twice, or a polygon of fewer than three corners
+  PolygonCounts polygons;
 
   friend FaceCounts operator+(const FaceCounts& a, const FaceCounts& b) {
     return {a.faces + b.faces, a.triangles + b.triangles,
-            a.degenerate_triangles + b.degenerate_triangles};
+            a.degenerate_triangles + b.degenerate_triangles, a.polygons + b.polygons};
   }
 };
 
@@ -91,8 +93,8 @@ class MeshSource {
   virtual void read_vertices(const VertexVisitor& visit) = 0;
 
   /// Visits all triangles in file order, in blocks of at most kBlockSize: polygons cut into fans
-  /// (0, i, i + 1), strips unrolled with alternating orientation; every index is < N; degenerate
-  /// triangles dropped and counted.
+  /// (0, i, i + 1), or as their shape asks for (polygon_cut.h), strips unrolled with alternating
+  /// orientation; every index is < N; degenerate triangles dropped and counted.
   virtual FaceCounts read_triangles(const TriangleVisitor& visit) = 0;
 
   /// Blocks of vertices that can be read one by one: 0 unless vertices_in_place.

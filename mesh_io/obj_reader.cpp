@@ -2,12 +2,14 @@
 
 #include "mesh_io/input_error.h"
 #include "mesh_io/number_text.h"
+#include "mesh_io/polygon_cut.h"
 #include "mesh_io/word_stream.h"
 
 #include <algorithm>
 #include <charconv>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -156,19 +158,57 @@ class ObjReader {
     visitor_.add_normal({normal[0], normal[1], normal[2]});
   }
 
+  /// Of a face with very many corners only the first and the last one are kept.
   void read_face() {
-    ObjCorner first, previous;
+    corners_.clear();
     std::uint64_t count = 0;
     for (; words_.to_word(); ++count) {
-      const ObjCorner corner = parse_corner(words_.take_word());
-      if (count == 0)
-        first = corner;
-      if (count >= 2)
-        add({first, previous, corner});
-      previous = corner;
+      if (corners_.size() > PolygonCut::kMostCorners) {
+        const ObjCorner corner = parse_corner(words_.take_word());
+        add({corners_.front(), corners_.back(), corner});
+        corners_.back() = corner;
+      } else {
+        corners_.push_back(parse_corner(words_.take_word()));
+        if (corners_.size() > PolygonCut::kMostCorners)
+          begin_large_face();
+      }
     }
     ++counts_.faces;
     counts_.degenerate_triangles += count < 3 ? 1 : 0;
+    if (count <= PolygonCut::kMostCorners)
+      add_polygon();
+  }
+
+  void begin_large_face() {
+    ++counts_.polygons.large;
+    add_fan();
+  }
+
+  void add_fan() {
+    for (std::size_t i = 1; i + 1 < corners_.size(); ++i)
+      add({corners_[0], corners_[i], corners_[i + 1]});
+  }
+
+  void add_polygon() {
+    const auto kind = corners_.size() > 3 ? shape() : PolygonCut::Kind::fan;
+    counts_.polygons.crossed += kind == PolygonCut::Kind::crossed ? 1 : 0;
+    if (kind != PolygonCut::Kind::ears)
+      return add_fan();
+    ++counts_.polygons.concave;
+    for (const Triangle<std::uint32_t>& t : cut_.triangles())
+      add({corners_[t[0]], corners_[t[1]], corners_[t[2]]});
+  }
+
+  PolygonCut::Kind shape() {
+    places_.clear();
+    for (const ObjCorner& corner : corners_) {
+      if (corner.position >= positions_.count) {
+        ++counts_.polygons.large;
+        return PolygonCut::Kind::fan;
+      }
+      places_.push_back(visitor_.position(corner.position));
+    }
+    return cut_.cut(places_);
   }
 
   void add(const ObjTriangle& t) {
@@ -231,6 +271,9 @@ class ObjReader {
   const std::filesystem::path& path_;
   ObjVisitor& visitor_;
   Kind positions_{"vertex"}, texcoords_{"texture coordinate"}, normals_{"normal"};
+  std::vector<ObjCorner> corners_;  ///< of a face
+  std::vector<Vec3d> places_;
+  PolygonCut cut_;
   ObjCounts counts_;
 };
 

@@ -3,6 +3,7 @@
 
 #include "hierarchy/vec.h"
 #include "mesh_io/input_stream.h"
+#include "mesh_io/polygon_counts.h"
 #include "mesh_io/zeroed.h"
 
 #include <array>
@@ -37,6 +38,8 @@ class ObjVisitor {
   virtual void use_material(const std::string& /*name*/) {}
   /// mtllib: the rest of the line, which is one name or several.
   virtual void use_libraries(const std::string& /*names*/) {}
+  /// A position that was added; for polygons whose shape must be known.
+  virtual Vec3d position(std::uint32_t number) = 0;
   /// Three different positions.
   virtual void add_triangle(const ObjTriangle& triangle) = 0;
 };
@@ -51,6 +54,7 @@ struct ObjCounts {
   std::uint64_t triangles = 0;
   std::uint64_t degenerate_triangles = 0;  ///< dropped: a position twice, or fewer than 3 corners
   std::uint64_t corners = 0;               ///< of the triangles
+  PolygonCounts polygons;  ///< large ones, and those before their vertices, are fans
   std::uint64_t textured_corners = 0;
   std::uint64_t normal_corners = 0;
   std::uint64_t groups = 0;            ///< statements g
@@ -72,7 +76,7 @@ bool is_obj_statement(std::string_view word);
 ///   vt u [v [w]]                         v is 0 if it is not there, w is ignored
 ///   vn x y z
 ///   f corner corner corner ...           corner: v | v/vt | v//vn | v/vt/vn, from 1 on, or from -1
-///                                        back; polygons become fans
+///                                        back; polygons are cut as their shape asks for
 ///   usemtl NAME | mtllib NAME [NAME ...]
 ///   #MRGB mmrrggbb...                    colours of ZBrush, 8 hexadecimal digits a vertex; the
 ///   mask

@@ -55,13 +55,14 @@ class OffReader {
   OffReader(InputStream& stream, const std::filesystem::path& path)
       : words_(stream, path, {.cuts_words = true}) {}
 
-  OffCounts read(const OffVertexVisitor& visit_vertex, const TriangleVisitor& visit_triangles) {
+  OffCounts read(const OffVertexVisitor& visit_vertex, const TriangleVisitor& visit_triangles,
+                 const PlaceOf& place_of) {
     read_header();
     for (std::uint64_t i = 0; i < counts_.vertices; ++i)
       read_vertex(i, visit_vertex);
     if (counts_.attributes.colour != ColourType::none)
       counts_.attributes.colour = byte_colours_ ? ColourType::u8 : ColourType::f32;
-    TriangleBlocks blocks(visit_triangles);
+    TriangleBlocks blocks(visit_triangles, &place_of);
     for (std::uint64_t i = 0; i < face_count_; ++i)
       read_face(i, blocks);
     // Where lines say nothing, a number too many may be one that was taken for another.
@@ -234,8 +235,9 @@ bool is_off_keyword(std::string_view word) {
 }
 
 OffCounts read_off(InputStream& stream, const std::filesystem::path& path,
-                   const OffVertexVisitor& visit_vertex, const TriangleVisitor& visit_triangles) {
-  return OffReader(stream, path).read(visit_vertex, visit_triangles);
+                   const OffVertexVisitor& visit_vertex, const TriangleVisitor& visit_triangles,
+                   const PlaceOf& place_of) {
+  return OffReader(stream, path).read(visit_vertex, visit_triangles, place_of);
 }
 
 }  // namespace meshhier::mesh_io

@@ -4,6 +4,7 @@
 #include "hierarchy/attributes.h"
 #include "hierarchy/vec.h"
 #include "mesh_io/input_stream.h"
+#include "mesh_io/mesh_blocks.h"
 #include "mesh_io/mesh_source.h"
 
 #include <cstdint>
@@ -35,7 +36,7 @@ using OffVertexVisitor = std::function<void(Vec3d position, std::span<const floa
 ///   [ST][C][N]OFF
 ///   vertices faces [edges]               also on the first line, even right behind OFF
 ///   x y z [nx ny nz] [r g b [a]] [s t]   a line each; alpha if the first vertex has it
-///   n i1 ... in [colour]                 a line each; polygons become fans
+///   n i1 ... in [colour]                 a line each; polygons are cut as TriangleBlocks does
 ///
 /// Colours may also stand in a file whose first line does not say so: if the first vertex has three
 /// or four numbers behind its coordinates. If the first vertex of such a file has a line of
@@ -44,7 +45,10 @@ using OffVertexVisitor = std::function<void(Vec3d position, std::span<const floa
 /// lies behind the last face is counted. Corners are below the count of vertices, numbers finite.
 /// Files of four dimensions or in binary are refused. Throws Error(input) naming the line,
 /// Error(io).
+///
+/// `place_of`: a vertex that was visited.
 OffCounts read_off(InputStream& stream, const std::filesystem::path& path,
-                   const OffVertexVisitor& visit_vertex, const TriangleVisitor& visit_triangles);
+                   const OffVertexVisitor& visit_vertex, const TriangleVisitor& visit_triangles,
+                   const PlaceOf& place_of);
 
 }  // namespace meshhier::mesh_io

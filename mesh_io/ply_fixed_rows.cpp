@@ -132,6 +132,15 @@ void PlyVertexBlocks::fail_truncated(const InputFile& input, std::uint64_t row) 
                            row_name(vertices, row), input.bytes - offset));
 }
 
+VertexBlock PlyVertexBlocks::rows(const InputFile& input, std::uint64_t first, std::size_t count,
+                                  BlockMemory& memory) const {
+  memory.bytes.resize(count * static_cast<std::size_t>(blocks_.stride()));
+  input.read(blocks_.offset_of(first), memory.bytes);
+  VertexRows rows(mesh_, count, memory);
+  decode(memory.bytes.data(), count, rows);
+  return rows.block(first, count, {});
+}
+
 VertexBlock PlyVertexBlocks::read(const InputFile& input, std::uint64_t index,
                                   BlockMemory& memory) const {
   RowBlocks::Block block = blocks_[index];

@@ -4,6 +4,7 @@
 #include "mesh_io/ply_body.h"
 #include "mesh_io/ply_fixed_rows.h"
 #include "mesh_io/ply_header.h"
+#include "mesh_io/ply_places.h"
 #include "mesh_io/ply_plan.h"
 
 #include <algorithm>
@@ -55,6 +56,7 @@ class PlyFileSource final : public PlySource {
         plan_.elements, [](const PlyElementPlan& plan) { return plan.texcoords.has_value(); });
   }
   FaceCounts read_textured_faces(const PlyFaceVisitor& visit) override;
+  Vec3d place_of(std::uint32_t vertex) override { return places().at(vertex); }
   std::uint64_t checksum(const std::function<void()>& check) override {
     return checksum_.complete(*file_, check);
   }
@@ -69,6 +71,7 @@ class PlyFileSource final : public PlySource {
   void plan_blocks();
   std::unique_ptr<PlyBody> body_at(std::size_t element);
   std::size_t first_face_element() const;
+  PlyPlaces& places();
 
   std::unique_ptr<storage::File> file_;
   std::uint64_t file_bytes_;
@@ -78,6 +81,7 @@ class PlyFileSource final : public PlySource {
   std::vector<std::optional<PlyPosition>> starts_;
   MeshDescription description_;
   std::optional<PlyVertexBlocks> vertex_blocks_;
+  std::optional<PlyPlaces> places_;
   std::optional<PlyTriangleBlocks> triangle_blocks_;  ///< of the first element with faces
 };
 
@@ -145,6 +149,14 @@ std::size_t PlyFileSource::first_face_element() const {
   return static_cast<std::size_t>(found - plan_.elements.begin());
 }
 
+PlyPlaces& PlyFileSource::places() {
+  if (!places_) {
+    const PlyPosition start = body_at(plan_.vertex_element)->position();
+    places_.emplace(input(), plan_, description_, start);
+  }
+  return *places_;
+}
+
 void PlyFileSource::read_vertices(const VertexVisitor& visit) {
   const std::size_t element = plan_.vertex_element;
   const auto body = body_at(element);
@@ -169,7 +181,8 @@ FaceCounts PlyFileSource::read_triangles_from(std::uint64_t face, const Triangle
   auto body = body_at(first);
   if (face > 0)
     body = make_binary_body(input(), plan_, PlyPosition{triangle_blocks_->offset_of(face), 0});
-  TriangleBlocks blocks(visit);
+  const PlaceOf place = [this](std::uint32_t vertex) { return place_of(vertex); };
+  TriangleBlocks blocks(visit, &place);
   for (std::size_t i = first; i < plan_.elements.size(); ++i) {
     if (plan_.elements[i].has_faces()) {
       body->read_faces(plan_.elements[i], i == first ? face : 0, blocks);

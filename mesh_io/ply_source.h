@@ -24,6 +24,8 @@ class PlySource : public MeshSource {
   /// of picture 0. Returns how many faces the file has, and what degenerate triangles strips had;
   /// polygons are visited as they are.
   virtual FaceCounts read_textured_faces(const PlyFaceVisitor& visit) = 0;
+  /// Where a vertex lies; reads it again. Throws Error(io).
+  virtual Vec3d place_of(std::uint32_t vertex) = 0;
 };
 
 /// Whether the file at the start of which is `start` names pictures and has coordinates in them;

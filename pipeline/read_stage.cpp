@@ -4,6 +4,9 @@
 #include "pipeline/ingest_stage.h"
 #include "pipeline/partition_stage.h"
 
+#include <algorithm>
+#include <vector>
+
 namespace meshhier::pipeline {
 namespace {
 
@@ -25,6 +28,9 @@ SourceSummary summarize(SourceMesh& mesh, const mesh_io::FaceCounts& counts,
   if (input.needs_import()) {
     input.complete(summary);
   } else {
+    const std::vector<SourceCount> polygons = importing::source_counts(counts.polygons);
+    summary.counts.insert(summary.counts.end(), polygons.begin(), polygons.end());
+    std::ranges::sort(summary.counts, {}, &SourceCount::name);
     summary.checksum = mesh.checksum(cancel);
     input.files().check_unchanged();
   }

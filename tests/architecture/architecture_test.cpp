@@ -225,7 +225,7 @@ const std::vector<ThirdParty>& third_parties() {
                         "pipeline/journal", "pipeline/plan", "pipeline/tiles", "server",
                         "storage/format", "storage/io"})},
       {"CLI/", in({"app", "bench"})},
-      {"CGAL/", of({"inspection/triangle_search.cpp"})},
+      {"CGAL/", of({"inspection/triangle_search.cpp", "mesh_io/polygon_turns.cpp"})},
       {"benchmark/", in({"bench"})},
       {"proj.h", of({"geodesy/proj_library.h"})},
       {"md5.h", of({"storage/io/hash.cpp"})},

@@ -26,7 +26,9 @@ class Taken final : public ObjVisitor {
     Streamed streamed(content);
     counts = read_obj(streamed.stream(), "mesh", *this);
   }
+  Vec3d position(std::uint32_t number) override { return places.at(number); }
   void add_position(Vec3d p, const std::optional<ObjColour>& colour) override {
+    places.push_back(p);
     positions.push_back(fmt::format("{} {} {}", p.x, p.y, p.z));
     if (colour)
       positions.back() += fmt::format(" / {} {} {}", (*colour)[0], (*colour)[1], (*colour)[2]);
@@ -47,6 +49,7 @@ class Taken final : public ObjVisitor {
     triangles.push_back(text);
   }
 
+  std::vector<Vec3d> places;
   std::vector<std::string> positions, texcoords, normals, triangles;
   ObjCounts counts;
 };

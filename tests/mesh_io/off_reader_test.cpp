@@ -22,6 +22,7 @@ struct OffTaken {
     counts = read_off(
         streamed.stream(), "mesh",
         [&](Vec3d p, std::span<const float> attributes) {
+          places.push_back(p);
           vertices.push_back(fmt::format("{} {} {}", p.x, p.y, p.z));
           for (const float value : attributes)
             vertices.back() += fmt::format(" {}", value);
@@ -29,8 +30,10 @@ struct OffTaken {
         [&](std::span<const Triangle<VertexId>> all) {
           for (const Triangle<VertexId>& t : all)
             triangles.push_back(fmt::format("{} {} {}", raw(t[0]), raw(t[1]), raw(t[2])));
-        });
+        },
+        [&](std::uint32_t vertex) { return places.at(vertex); });
   }
+  std::vector<Vec3d> places;
   std::vector<std::string> vertices, triangles;
   OffCounts counts;
 };

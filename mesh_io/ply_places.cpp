@@ -1,0 +1,82 @@
+#include "mesh_io/ply_places.h"
+
+#include <algorithm>
+#include <memory>
+
+namespace meshhier::mesh_io {
+namespace {
+
+constexpr std::uint64_t kLeastRun = 128;
+constexpr std::uint64_t kMostIndexed = std::uint64_t{1} << 16;
+
+std::unique_ptr<PlyBody> body_from(const InputFile& input, const PlyPlan& plan, PlyPosition start) {
+  return plan.encoding == PlyEncoding::ascii ? make_text_body(input, plan, start)
+                                             : make_binary_body(input, plan, start);
+}
+
+void append_places(const VertexBlock& block, std::vector<Vec3d>& places) {
+  places.insert(places.end(), block.exact.begin(), block.exact.end());
+  for (const Vec3f& p : block.positions)
+    places.push_back(to_double(p));
+}
+
+}  // namespace
+
+PlyPlaces::PlyPlaces(const InputFile& input, const PlyPlan& plan, const MeshDescription& mesh,
+                     PlyPosition start)
+    : input_{input.file, input.bytes},
+      plan_(plan),
+      mesh_(mesh),
+      start_(start),
+      is_fixed_(plan.elements[plan.vertex_element].stride.has_value()),
+      run_vertices_(is_fixed_ ? kLeastRun
+                              : std::max(kLeastRun, mesh.vertex_count / kMostIndexed + 1)) {}
+
+Vec3d PlyPlaces::at(std::uint32_t vertex) {
+  const std::uint64_t number = vertex / run_vertices_;
+  Run& run = runs_[number % kRuns];
+  if (run.places.empty() || run.first != number * run_vertices_)
+    load(run, number * run_vertices_);
+  return run.places[vertex - run.first];
+}
+
+void PlyPlaces::load(Run& run, std::uint64_t first) {
+  const auto count = static_cast<std::size_t>(std::min(run_vertices_, mesh_.vertex_count - first));
+  run.places.clear();
+  run.first = first;
+  is_fixed_ ? load_fixed(run, first, count) : load_indexed(run, first, count);
+}
+
+void PlyPlaces::load_fixed(Run& run, std::uint64_t first, std::size_t count) {
+  const PlyVertexBlocks rows(plan_, mesh_, start_.offset);
+  append_places(rows.rows(input_, first, count, memory_), run.places);
+}
+
+void PlyPlaces::make_index() {
+  const auto body = body_from(input_, plan_, start_);
+  PlyElementPlan part = plan_.elements[plan_.vertex_element];
+  for (std::uint64_t first = 0; first < mesh_.vertex_count; first += run_vertices_) {
+    index_.push_back(body->position());
+    part.element.count = std::min(run_vertices_, mesh_.vertex_count - first);
+    body->skip(part);
+  }
+  index_.push_back(body->position());
+}
+
+void PlyPlaces::load_indexed(Run& run, std::uint64_t first, std::size_t count) {
+  if (index_.empty())
+    make_index();
+  const std::uint64_t number = first / run_vertices_;
+  const InputFile part_of_file{input_.file, index_[number + 1].offset};
+  const auto body = body_from(part_of_file, plan_, index_[number]);
+  PlyElementPlan part = plan_.elements[plan_.vertex_element];
+  part.element.count = count;
+  MeshDescription mesh = mesh_;
+  mesh.vertex_count = count;
+  const VertexVisitor take = [&](const VertexBlock& block) { append_places(block, run.places); };
+  VertexBlocks blocks(mesh, take);
+  body->read_vertices(part, blocks);
+  blocks.finish();
+}
+
+}  // namespace meshhier::mesh_io

@@ -1,0 +1,19 @@
+// What polygons became.
+#pragma once
+
+#include <cstdint>
+
+namespace meshhier::mesh_io {
+
+/// Of polygons that are no fans.
+struct PolygonCounts {
+  std::uint64_t concave = 0;  ///< cut so that their triangles cover their shape
+  std::uint64_t crossed = 0;  ///< no triangles cover them; fans
+  std::uint64_t large = 0;    ///< not looked at; fans
+
+  friend PolygonCounts operator+(const PolygonCounts& a, const PolygonCounts& b) {
+    return {a.concave + b.concave, a.crossed + b.crossed, a.large + b.large};
+  }
+};
+
+}  // namespace meshhier::mesh_io
