@@ -64,6 +64,8 @@ std::vector<SourceFile> source_files(const std::vector<ReadFile>& files,
 
 /// SourceCount of the colours of materials that vertices have.
 inline constexpr std::string_view kMaterialColours = "material_colours";
+/// Of vertices: in a wider type, but all of them are such numbers.
+inline constexpr std::string_view kColoursTakenForBytes = "colours_taken_for_bytes";
 
 /// SourceCounts of normals and texture coordinates that were no numbers.
 inline constexpr std::string_view kZeroedNormals = "normals_made_zero";

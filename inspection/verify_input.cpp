@@ -390,6 +390,11 @@ void verify_input(const VerifyJob& job) {
   AttributeLayout kept = kept_layout(layout);
   if (job.reader.manifest().screen_colours)
     kept.space = expected.attributes.space;  // which these formats did not tell apart
+  const auto are_bytes = [](const SourceCount& one) {
+    return one.name == importing::kColoursTakenForBytes;
+  };
+  if (kept.colour != ColourType::none && std::ranges::any_of(expected.counts, are_bytes))
+    kept.colour = ColourType::u8;
   if (kept != expected.attributes || layout.material != expected.textures.has_value()) {
     problems.add("has other vertex attributes than the mesh the hierarchy was made of");
     return;

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace meshhier::pipeline {
 namespace {
 
@@ -27,9 +29,13 @@ struct BlockScan {
   bool float_exact = true;
   std::vector<Vec3d> sample;  ///< those that `ids` name
   mesh_io::ZeroedCounts zeroed;
+  ColourRange colours;
 
-  void look_at(const mesh_io::VertexBlock& block, const partition::SampleIds& ids) {
+  void look_at(const mesh_io::VertexBlock& block, const AttributeLayout& layout,
+               const partition::SampleIds& ids) {
     zeroed = block.zeroed;
+    colours = {};
+    colours.add(block.attributes, layout);
     float_exact = std::all_of(block.exact.begin(), block.exact.end(), fits_float);
     block.exact.empty() ? look_at(block.first, block.positions, ids)
                         : look_at(block.first, block.exact, ids);
@@ -69,6 +75,7 @@ SourceMesh ingest(std::unique_ptr<mesh_io::MeshSource> source, std::string file_
                   storage::ScratchFile& scratch, const StageContext& context) {
   SourceMesh mesh(std::move(source), std::move(file_name), scratch);
   mesh.summary_.counts = importing::source_counts(mesh.scan(context));
+  mesh.choose_colour_type(context.progress);
   mesh.choose_origin(context);
   return mesh;
 }
@@ -88,9 +95,11 @@ mesh_io::ZeroedCounts SourceMesh::scan(const StageContext& context) {
   progress.stage("ingest", summary_.vertices, "vertices");
   const partition::SampleIds ids(summary_.vertices);
   sample_positions_.reserve(ids.count());
+  const AttributeLayout layout = summary_.attributes;
   mesh_io::ZeroedCounts zeroed;
   const auto take = [&](const BlockScan& block) {
     zeroed += block.zeroed;
+    colours_.add(block.colours);
     summary_.bounds.add(block.bounds);
     float_exact_ = float_exact_ && block.float_exact;
     sample_positions_.insert(sample_positions_.end(), block.sample.begin(), block.sample.end());
@@ -105,7 +114,7 @@ mesh_io::ZeroedCounts SourceMesh::scan(const StageContext& context) {
     execution::ordered_blocks<Slot>(
         source_->vertex_blocks(), context.memory().blocks_in_flight, context.cancel,
         [&](std::uint64_t i, Slot& slot) {
-          slot.scan.look_at(source_->read_vertex_block(i, slot.memory), ids);
+          slot.scan.look_at(source_->read_vertex_block(i, slot.memory), layout, ids);
         },
         [&](const Slot& slot) { return take(slot.scan); });
     return zeroed;
@@ -113,13 +122,25 @@ mesh_io::ZeroedCounts SourceMesh::scan(const StageContext& context) {
   BlockScan scan;
   source_->read_vertices([&](const mesh_io::VertexBlock& block) {
     context.cancel.check();
-    scan.look_at(block, ids);
+    scan.look_at(block, layout, ids);
     take(scan);
     const bool wide = !block.exact.empty();
     spooled_positions_.append(wide ? std::as_bytes(block.exact) : std::as_bytes(block.positions));
     spooled_attributes_.append(std::as_bytes(block.attributes));
   });
   return zeroed;
+}
+
+void SourceMesh::choose_colour_type(execution::Progress& progress) {
+  AttributeLayout& layout = summary_.attributes;
+  if (!colours_.are_bytes(layout))
+    return;
+  progress.warn(
+      fmt::format("all colours of the mesh are {} of at most {}: they are taken for 8-bit "
+                  "colours",
+                  layout.colour == ColourType::u16 ? "16-bit numbers" : "floats", colours_.most()));
+  layout.colour = ColourType::u8;
+  summary_.counts.push_back({std::string(importing::kColoursTakenForBytes), summary_.vertices});
 }
 
 void SourceMesh::choose_origin(const StageContext& context) {

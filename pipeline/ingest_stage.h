@@ -9,6 +9,7 @@
 #include "import/copy_list.h"
 #include "mesh_io/mesh_source.h"
 #include "partition/split_plane.h"
+#include "pipeline/colour_range.h"
 #include "pipeline/plan/share.h"
 #include "pipeline/plan/stage_context.h"
 #include "storage/io/spool.h"
@@ -114,6 +115,7 @@ class SourceMesh {
   SourceMesh(std::unique_ptr<mesh_io::MeshSource> source, std::string file_name,
              storage::ScratchFile& scratch);
   mesh_io::ZeroedCounts scan(const StageContext& context);
+  void choose_colour_type(execution::Progress& progress);
   void choose_origin(const StageContext& context);
   mesh_io::VertexBlock read_input_block(std::uint64_t index, mesh_io::BlockMemory& memory) const;
 
@@ -123,6 +125,7 @@ class SourceMesh {
   SourceSummary summary_;
   Vec3d origin_;
   bool float_exact_ = true;
+  ColourRange colours_;
   std::vector<Vec3d> sample_positions_;
 };
 

@@ -25,12 +25,12 @@ SourceSummary summarize(SourceMesh& mesh, const mesh_io::FaceCounts& counts,
   summary.faces = counts.faces;
   summary.triangles = counts.triangles;
   summary.degenerate_triangles = counts.degenerate_triangles;
+  const std::vector<SourceCount> polygons = importing::source_counts(counts.polygons);
+  summary.counts.insert(summary.counts.end(), polygons.begin(), polygons.end());
+  std::ranges::sort(summary.counts, {}, &SourceCount::name);
   if (input.needs_import()) {
     input.complete(summary);
   } else {
-    const std::vector<SourceCount> polygons = importing::source_counts(counts.polygons);
-    summary.counts.insert(summary.counts.end(), polygons.begin(), polygons.end());
-    std::ranges::sort(summary.counts, {}, &SourceCount::name);
     summary.checksum = mesh.checksum(cancel);
     input.files().check_unchanged();
   }

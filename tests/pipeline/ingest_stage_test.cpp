@@ -15,6 +15,7 @@
 #include <fstream>
 #include <functional>
 #include <iomanip>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <sstream>
@@ -246,6 +247,55 @@ TEST_F(SourceMeshTest, VerticesThatNoTriangleUsesDoNotMoveTheOrigin) {
   }
   // One that a triangle uses does.
   EXPECT_EQ(open_text(grid_on_the_map({{0, 0, 0}}, "float", "3 0 1 400\n", 1)).origin(), Vec3d{});
+}
+
+TEST_F(SourceMeshTest, BytesInAWiderTypeAreColoursOf8Bits) {
+  struct Case {
+    const char* type;
+    const char* colours;  // of two vertices
+    ColourType expected;
+  };
+  const std::vector<Case> cases{{"ushort", "200 180 40 0 0 255", ColourType::u8},
+                                {"ushort", "200 180 40 0 0 256", ColourType::u16},
+                                {"ushort", "65535 180 40 0 0 255", ColourType::u16},
+                                {"ushort", "0 0 0 0 0 0", ColourType::u16},
+                                {"float", "200 177.063 40 0 0 255", ColourType::u8},
+                                {"float", "3 0 0 0 0 0", ColourType::u8},
+                                {"float", "1 0.5 0.25 0 0 1", ColourType::f32},
+                                {"float", "1.5 0.5 0.25 0 0 2", ColourType::f32},
+                                {"float", "200 0 0 -1 0 0", ColourType::f32},
+                                {"float", "200 0 0 256 0 0", ColourType::f32},
+                                {"double", "200 0 0 255 0 0", ColourType::u8},
+                                {"uchar", "1 2 3 4 5 6", ColourType::u8}};
+  for (const Case& one : cases) {
+    const std::string type = one.type;
+    std::istringstream numbers(one.colours);
+    std::vector<std::string> words{std::istream_iterator<std::string>(numbers), {}};
+    std::ofstream(path()) << "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\n"
+                             "property float y\nproperty float z\nproperty "
+                          << type << " red\nproperty " << type << " green\nproperty " << type
+                          << " blue\nend_header\n0 0 0 " << words[0] << ' ' << words[1] << ' '
+                          << words[2] << "\n1 0 0 " << words[3] << ' ' << words[4] << ' '
+                          << words[5] << "\n";
+    const SourceMesh mesh = open(path());
+    const bool is_told = type != "uchar" && one.expected == ColourType::u8;
+    EXPECT_EQ(mesh.summary().attributes.colour, one.expected) << type << ' ' << one.colours;
+    EXPECT_EQ(mesh.summary().counts.size(), is_told ? 1U : 0U) << one.colours;
+  }
+}
+
+TEST(ColourRangeTest, LightIsWhatItIs) {
+  ColourRange range;
+  const AttributeLayout light{.colour = ColourType::u16, .space = ColourSpace::linear};
+  const std::vector<float> dark{1, 2, 255};
+  range.add(dark, light);
+  EXPECT_FALSE(range.are_bytes(light));
+  EXPECT_TRUE(range.are_bytes({.colour = ColourType::u16}));
+  ColourRange other;
+  other.add(std::vector<float>{0, 0, 1, 256, 0, 0}, {.normals = true, .colour = ColourType::u16});
+  range.add(other);
+  EXPECT_FALSE(range.are_bytes({.colour = ColourType::u16}));
+  EXPECT_FALSE(ColourRange().are_bytes({.colour = ColourType::u16})) << "of no vertices";
 }
 
 TEST_F(SourceMeshTest, TextDoublesEqualBinaryDoubles) {
