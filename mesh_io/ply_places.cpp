@@ -14,10 +14,11 @@ std::unique_ptr<PlyBody> body_from(const InputFile& input, const PlyPlan& plan, 
                                              : make_binary_body(input, plan, start);
 }
 
-void append_places(const VertexBlock& block, std::vector<Vec3d>& places) {
-  places.insert(places.end(), block.exact.begin(), block.exact.end());
+std::vector<Vec3d> places_of(const VertexBlock& block) {
+  std::vector<Vec3d> places(block.exact.begin(), block.exact.end());
   for (const Vec3f& p : block.positions)
     places.push_back(to_double(p));
+  return places;
 }
 
 }  // namespace
@@ -40,32 +41,35 @@ Vec3d PlyPlaces::at(std::uint32_t vertex) {
   return run.places[vertex - run.first];
 }
 
+/// Throws without a trace in the run: who reads on after an error finds none of it.
 void PlyPlaces::load(Run& run, std::uint64_t first) {
   const auto count = static_cast<std::size_t>(std::min(run_vertices_, mesh_.vertex_count - first));
   run.places.clear();
+  run.places = is_fixed_ ? fixed_places(first, count) : indexed_places(first, count);
   run.first = first;
-  is_fixed_ ? load_fixed(run, first, count) : load_indexed(run, first, count);
 }
 
-void PlyPlaces::load_fixed(Run& run, std::uint64_t first, std::size_t count) {
+std::vector<Vec3d> PlyPlaces::fixed_places(std::uint64_t first, std::size_t count) {
   const PlyVertexBlocks rows(plan_, mesh_, start_.offset);
-  append_places(rows.rows(input_, first, count, memory_), run.places);
+  return places_of(rows.rows(input_, first, count, memory_));
 }
 
-void PlyPlaces::make_index() {
+std::vector<PlyPosition> PlyPlaces::make_index() const {
+  std::vector<PlyPosition> index;
   const auto body = body_from(input_, plan_, start_);
   PlyElementPlan part = plan_.elements[plan_.vertex_element];
   for (std::uint64_t first = 0; first < mesh_.vertex_count; first += run_vertices_) {
-    index_.push_back(body->position());
+    index.push_back(body->position());
     part.element.count = std::min(run_vertices_, mesh_.vertex_count - first);
     body->skip(part);
   }
-  index_.push_back(body->position());
+  index.push_back(body->position());
+  return index;
 }
 
-void PlyPlaces::load_indexed(Run& run, std::uint64_t first, std::size_t count) {
+std::vector<Vec3d> PlyPlaces::indexed_places(std::uint64_t first, std::size_t count) {
   if (index_.empty())
-    make_index();
+    index_ = make_index();
   const std::uint64_t number = first / run_vertices_;
   const InputFile part_of_file{input_.file, index_[number + 1].offset};
   const auto body = body_from(part_of_file, plan_, index_[number]);
@@ -73,10 +77,15 @@ void PlyPlaces::load_indexed(Run& run, std::uint64_t first, std::size_t count) {
   part.element.count = count;
   MeshDescription mesh = mesh_;
   mesh.vertex_count = count;
-  const VertexVisitor take = [&](const VertexBlock& block) { append_places(block, run.places); };
+  std::vector<Vec3d> places;
+  const VertexVisitor take = [&](const VertexBlock& block) {
+    const std::vector<Vec3d> more = places_of(block);
+    places.insert(places.end(), more.begin(), more.end());
+  };
   VertexBlocks blocks(mesh, take);
   body->read_vertices(part, blocks);
   blocks.finish();
+  return places;
 }
 
 }  // namespace meshhier::mesh_io

@@ -31,10 +31,10 @@ class PlyPlaces {
     std::vector<Vec3d> places;
   };
 
-  void make_index();
+  std::vector<PlyPosition> make_index() const;
   void load(Run& run, std::uint64_t first);
-  void load_fixed(Run& run, std::uint64_t first, std::size_t count);
-  void load_indexed(Run& run, std::uint64_t first, std::size_t count);
+  std::vector<Vec3d> fixed_places(std::uint64_t first, std::size_t count);
+  std::vector<Vec3d> indexed_places(std::uint64_t first, std::size_t count);
 
   static constexpr std::size_t kRuns = 256;
 
