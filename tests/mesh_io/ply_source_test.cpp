@@ -3,8 +3,11 @@
 
 #include "ply_samples.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -41,6 +44,63 @@ TEST(PlySource, EveryCoordinateCountAndIndexTypeInEveryEncoding) {
       }
     }
   }
+}
+
+/// Arrows whose first corner is behind their tip: the second diagonal cuts them.
+TEST(PlySource, PolygonsAreCutByTheirShapeInEveryEncoding) {
+  constexpr int kArrows = 300;  // more vertices than are looked up at once
+  for (const PlyEncoding encoding : kEncodings) {
+    for (const bool has_lists : {false, true}) {
+      PlyText ply(encoding);
+      ply.line(fmt::format("element vertex {}", 4 * kArrows));
+      for (const char* axis : {"x", "y", "z"})
+        ply.line(fmt::format("property double {}", axis));
+      if (has_lists)
+        ply.line("property list uchar uchar more");
+      ply.line(fmt::format("element face {}", kArrows));
+      ply.line("property list uchar int vertex_indices").end_header();
+      for (int arrow = 0; arrow < kArrows; ++arrow) {
+        for (const auto& [x, y] :
+             std::vector<std::array<double, 2>>{{0, 0}, {2, 1}, {0, 2}, {0.5, 1}}) {
+          for (const double value : {x + arrow, y, 0.0})
+            ply.value(PlyType::f64, value);
+          if (has_lists)
+            ply.value(PlyType::u8, 0);
+          ply.end_row();
+        }
+      }
+      std::vector<Corners> expected;
+      for (int i = 0; i < kArrows; ++i) {
+        const int arrow = i * 7 % kArrows;  // not in their order
+        const double a = 4.0 * arrow;
+        ply.list(PlyType::u8, PlyType::i32, {a, a + 1, a + 2, a + 3});
+        const auto corner = [&](int k) { return static_cast<std::uint32_t>(4 * arrow + k); };
+        expected.push_back({corner(3), corner(0), corner(1)});
+        expected.push_back({corner(1), corner(2), corner(3)});
+      }
+      const ReadMesh mesh = read_bytes(ply.bytes());
+      EXPECT_EQ(mesh.counts.polygons.concave, static_cast<std::uint64_t>(kArrows));
+      ASSERT_EQ(mesh.triangles.size(), expected.size());
+      const auto sorted = [](std::vector<Corners> all) {
+        for (Corners& t : all)
+          std::ranges::rotate(t, std::ranges::min_element(t));
+        std::ranges::sort(all);
+        return all;
+      };
+      EXPECT_EQ(sorted(mesh.triangles), sorted(expected)) << name_of(encoding) << has_lists;
+    }
+  }
+}
+
+TEST(PlySource, PolygonsOfVerticesThatCannotBeReadFailAgainAndAgain) {
+  MemoryFiles files;
+  files.put("a.ply",
+            "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+            "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+            "end_header\n0 0 0\n2 1 0\n0 x 0\n1 1 0\n4 0 1 2 3\n");
+  const auto source = open_mesh(files, "a.ply");
+  for (int time = 0; time < 3; ++time)
+    EXPECT_THROW(source->read_triangles([](std::span<const Triangle<VertexId>>) {}), Error);
 }
 
 TEST(PlySource, Description) {
