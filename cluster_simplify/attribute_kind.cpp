@@ -12,6 +12,13 @@ namespace {
 // How far a direction may seem to be from itself, by rounding: 1 - cosine.
 constexpr double kSameDirection = 1e-12;
 
+double light_of_value(double value) {
+  return LightCurve::get().light(value);
+}
+double screen_value_of(double light) {
+  return LightCurve::get().value(light);
+}
+
 double squared_sum(const AttributePoint& p) {
   return p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3];
 }
@@ -50,9 +57,7 @@ std::optional<AttributePoint> AttributeKind::point(std::span<const float> part) 
     return direction(p);
   if (!std::isfinite(squared_sum(p)))
     return std::nullopt;
-  return numbers_ == Numbers::light
-             ? changed(p, [](double light) { return LightCurve::get().value(light); })
-             : p;
+  return numbers_ == Numbers::light ? changed(p, screen_value_of) : p;
 }
 
 double AttributeKind::distance(const AttributePoint& a, const AttributePoint& b) const {
@@ -73,7 +78,7 @@ bool AttributeKind::are_apart(std::span<const float> a, std::span<const float> b
 AttributePoint AttributeKind::summand(const AttributePoint& point) const {
   if (numbers_ == Numbers::directions)
     return point;
-  return changed(point, [](double value) { return LightCurve::get().light(value); });
+  return changed(point, light_of_value);
 }
 
 std::optional<AttributePoint> AttributeKind::mean(const AttributePoint& sum, double weight) const {
@@ -84,7 +89,7 @@ std::optional<AttributePoint> AttributeKind::mean(const AttributePoint& sum, dou
   const AttributePoint mean = scaled(sum, 1 / weight);
   if (numbers_ == Numbers::light)
     return mean;
-  return changed(mean, [](double light) { return LightCurve::get().value(light); });
+  return changed(mean, screen_value_of);
 }
 
 double squared_difference(const AttributeLayout& layout, std::span<const float> a,

@@ -76,29 +76,12 @@ class PlyImporter {
     for (std::size_t i = 0; i < face.texcoords.size() / 2; ++i)
       import_.zeroed.texcoords += texcoord_of(face, i) ? 0 : 1;
     import_.counts.degenerate_triangles += face.corners.size() < 3 ? 1 : 0;
-    if (face.corners.size() > 3 && cut(face) == mesh_io::PolygonCut::Kind::ears) {
-      for (const Triangle<std::uint32_t>& t : cut_.triangles())
-        add(face, {t[0], t[1], t[2]}, texture);
-      return;
-    }
-    for (std::size_t i = 2; i < face.corners.size(); ++i)
-      add(face, {0, i - 1, i}, texture);
-  }
-
-  mesh_io::PolygonCut::Kind cut(const mesh_io::PlyFace& face) {
-    using Kind = mesh_io::PolygonCut::Kind;
-    mesh_io::PolygonCounts& polygons = import_.counts.polygons;
-    if (face.corners.size() > mesh_io::PolygonCut::kMostCorners) {
-      ++polygons.large;
-      return Kind::fan;
-    }
-    places_.clear();
-    for (const std::uint32_t corner : face.corners)
-      places_.push_back(source_.place_of(corner));
-    const Kind kind = cut_.cut(places_);
-    polygons.concave += kind == Kind::ears ? 1 : 0;
-    polygons.crossed += kind == Kind::crossed ? 1 : 0;
-    return kind;
+    cut_.for_each_triangle(
+        face.corners.size(), [&](std::size_t i) { return source_.place_of(face.corners[i]); },
+        import_.counts.polygons,
+        [&](std::size_t i, std::size_t j, std::size_t k) {
+          add(face, {i, j, k}, texture);
+        });
   }
 
   void add(const mesh_io::PlyFace& face, const std::array<std::size_t, 3>& corners,

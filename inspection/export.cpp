@@ -63,19 +63,13 @@ mesh_io::PlyContent content_for(const storage::HierarchyReader& reader, const st
   return content;
 }
 
-/// As PLY has colours: those of a screen.
-std::vector<float> screen_attributes(const storage::HierarchyReader& reader,
-                                     const VertexArray& vertices, std::size_t count) {
-  const AttributeLayout& layout = reader.tile_format().attributes;
-  const auto channels = static_cast<std::size_t>(vertices.channels);  // of an outline: none
-  std::vector<float> attributes(
-      vertices.attributes.begin(),
-      vertices.attributes.begin() + static_cast<std::ptrdiff_t>(count * channels));
-  if (layout.space != ColourSpace::linear || channels == 0)
-    return attributes;
+/// Light as PLY has colours: those of a screen.
+std::vector<float> screen_attributes(const AttributeLayout& layout, std::span<const float> given) {
+  const auto channels = static_cast<std::size_t>(layout.channels());
+  std::vector<float> attributes(given.begin(), given.end());
   const double full = full_number(layout.colour);
-  for (std::size_t v = 0; v < count; ++v) {
-    float* colour = &attributes[v * channels + static_cast<std::size_t>(layout.colour_offset())];
+  for (std::size_t v = 0; v < attributes.size(); v += channels) {
+    float* colour = &attributes[v + static_cast<std::size_t>(layout.colour_offset())];
     std::transform(colour, colour + 3, colour,
                    [&](float x) { return static_cast<float>(full * value_of(x / full)); });
   }
@@ -86,7 +80,13 @@ std::vector<float> screen_attributes(const storage::HierarchyReader& reader,
 void write_vertices(mesh_io::PlyWriter& writer, const storage::HierarchyReader& reader,
                     const VertexArray& vertices, std::size_t count) {
   const auto positions = std::span(vertices.positions).first(count);
-  const std::vector<float> attributes = screen_attributes(reader, vertices, count);
+  const auto given =
+      std::span(vertices.attributes).first(count * static_cast<std::size_t>(vertices.channels));
+  const AttributeLayout& layout = reader.tile_format().attributes;
+  std::vector<float> converted;
+  if (layout.space == ColourSpace::linear)
+    converted = screen_attributes(layout, given);
+  const std::span<const float> attributes = converted.empty() ? given : std::span(converted);
   if (!has_origin(reader))
     return writer.write_vertices(positions, attributes);
   std::vector<Vec3d> exact(count);

@@ -56,12 +56,6 @@ struct GlbSection {
   std::uint64_t bytes() const { return count * stride; }
 };
 
-unsigned colour_component(ColourType type) {
-  return type == ColourType::u8    ? storage::kU8
-         : type == ColourType::u16 ? storage::kU16
-                                   : storage::kF32;
-}
-
 std::uint64_t component_bytes(unsigned component) {
   return component == storage::kU8 ? 1 : component == storage::kU16 ? 2 : 4;
 }
@@ -79,7 +73,7 @@ class GlbLayout {
     const bool has_normals = layout.normals || format_.computed_normals;
     const bool has_colours = layout.colour != ColourType::none;
     const bool has_texcoords = layout.texcoords || part.image_bytes > 0;
-    const unsigned colour = colour_component(storage::TileColours(layout, false).stored_type());
+    const unsigned colour = storage::TileColours(layout, false).component();
     const std::uint64_t colour_bytes =
         static_cast<std::uint64_t>(layout.colour_channels()) * component_bytes(colour);
     return {{{"POSITION", "VEC3", storage::kF32, n, 12},

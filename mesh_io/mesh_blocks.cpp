@@ -193,22 +193,11 @@ void TriangleBlocks::end_polygon() {
 }
 
 void TriangleBlocks::cut_polygon() {
-  auto kind = PolygonCut::Kind::fan;
-  if (corners_.size() > 3) {
-    places_.clear();
-    for (const std::uint32_t corner : corners_)
-      places_.push_back((*place_of_)(corner));
-    kind = cut_.cut(places_);
-  }
-  counts_.polygons.crossed += kind == PolygonCut::Kind::crossed ? 1 : 0;
-  if (kind == PolygonCut::Kind::ears) {
-    ++counts_.polygons.concave;
-    for (const Triangle<std::uint32_t>& t : cut_.triangles())
-      add(corners_[t[0]], corners_[t[1]], corners_[t[2]]);
-    return;
-  }
-  for (std::size_t i = 1; i + 1 < corners_.size(); ++i)
-    add(corners_[0], corners_[i], corners_[i + 1]);
+  cut_.for_each_triangle(
+      corners_.size(), [&](std::size_t i) { return (*place_of_)(corners_[i]); }, counts_.polygons,
+      [&](std::size_t i, std::size_t j, std::size_t k) {
+        add(corners_[i], corners_[j], corners_[k]);
+      });
 }
 
 void TriangleBlocks::add_strip_corner(std::uint32_t corner) {

@@ -133,7 +133,6 @@ class TriangleBlocks {
   const TriangleVisitor& visit_;
   const PlaceOf* place_of_;
   std::vector<std::uint32_t> corners_;  ///< of a polygon, if places are known
-  std::vector<Vec3d> places_;
   PolygonCut cut_;
   std::unique_ptr<Triangle<VertexId>[]> block_;  ///< kBlockSize
   std::size_t filled_ = 0;

@@ -190,25 +190,15 @@ class ObjReader {
   }
 
   void add_polygon() {
-    const auto kind = corners_.size() > 3 ? shape() : PolygonCut::Kind::fan;
-    counts_.polygons.crossed += kind == PolygonCut::Kind::crossed ? 1 : 0;
-    if (kind != PolygonCut::Kind::ears)
-      return add_fan();
-    ++counts_.polygons.concave;
-    for (const Triangle<std::uint32_t>& t : cut_.triangles())
-      add({corners_[t[0]], corners_[t[1]], corners_[t[2]]});
-  }
-
-  PolygonCut::Kind shape() {
-    places_.clear();
-    for (const ObjCorner& corner : corners_) {
-      if (corner.position >= positions_.count) {
-        ++counts_.polygons.large;
-        return PolygonCut::Kind::fan;
-      }
-      places_.push_back(visitor_.position(corner.position));
-    }
-    return cut_.cut(places_);
+    const auto place_at = [&](std::size_t i) {
+      const std::uint32_t position = corners_[i].position;
+      return position < positions_.count ? std::optional(visitor_.position(position))
+                                         : std::nullopt;
+    };
+    cut_.for_each_triangle(corners_.size(), place_at, counts_.polygons,
+                           [&](std::size_t i, std::size_t j, std::size_t k) {
+                             add({corners_[i], corners_[j], corners_[k]});
+                           });
   }
 
   void add(const ObjTriangle& t) {
@@ -272,7 +262,6 @@ class ObjReader {
   ObjVisitor& visitor_;
   Kind positions_{"vertex"}, texcoords_{"texture coordinate"}, normals_{"normal"};
   std::vector<ObjCorner> corners_;  ///< of a face
-  std::vector<Vec3d> places_;
   PolygonCut cut_;
   ObjCounts counts_;
 };

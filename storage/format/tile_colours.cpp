@@ -1,6 +1,7 @@
 #include "storage/format/tile_colours.h"
 
 #include "hierarchy/srgb.h"
+#include "storage/format/glb.h"
 
 #include <cmath>
 #include <cstdint>
@@ -24,6 +25,11 @@ ColourType TileColours::stored_type() const {
   if (!become_light_)
     return layout_.colour;
   return layout_.colour == ColourType::u8 ? ColourType::u16 : ColourType::f32;
+}
+
+unsigned TileColours::component() const {
+  const ColourType type = stored_type();
+  return type == ColourType::u8 ? kU8 : type == ColourType::u16 ? kU16 : kF32;
 }
 
 float TileColours::stored(float number, std::size_t channel) const {

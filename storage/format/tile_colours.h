@@ -26,6 +26,8 @@ class TileColours {
 
   /// Of COLOR_0; none without colours.
   ColourType stored_type() const;
+  /// Its glTF component type.
+  unsigned component() const;
 
   /// Of channel 0 to 3, of a number that showable_attributes() lets stand.
   float stored(float number, std::size_t channel) const;

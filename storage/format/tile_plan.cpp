@@ -26,10 +26,6 @@ std::uint64_t component_bytes(unsigned component) {
   return component == kI8 || component == kU8 ? 1 : component == kU16 ? 2 : 4;
 }
 
-unsigned component_of(ColourType type) {
-  return type == ColourType::u8 ? kU8 : type == ColourType::u16 ? kU16 : kF32;
-}
-
 /// In the order of ViewMode.
 constexpr std::array<const char*, 4> kModes{"", "ATTRIBUTES", "TRIANGLES", "INDICES"};
 
@@ -261,7 +257,7 @@ TilePlan::TilePlan(const TileShape& shape, const AttributeLayout& layout,
   if (shape.computed_normals)
     add(Part::normal, kI8, 3, shape.with_splits());
   for (const ChannelGroup& group : groups) {
-    add(group.part, component_of_group(group), group.channels, shape.with_splits());
+    add(group.part, component_of(group), group.channels, shape.with_splits());
   }
   if (shape.has_image())
     add(Part::texcoord, kF32, 2, shape.with_splits());
@@ -279,8 +275,8 @@ TilePlan::TilePlan(const TileShape& shape, const AttributeLayout& layout,
   add(Part::image, kU8, 1, shape.image.bytes);
 }
 
-unsigned TilePlan::component_of_group(const ChannelGroup& group) const {
-  return group.part == Part::colour ? component_of(colours().stored_type()) : kF32;
+unsigned TilePlan::component_of(const ChannelGroup& group) const {
+  return group.part == Part::colour ? colours().component() : kF32;
 }
 
 void TilePlan::add(Part part, unsigned component, std::size_t components, std::uint64_t count) {
@@ -337,9 +333,8 @@ Json TilePlan::document(const Bounds& bounds, const Frame& frame, const Packing*
 }
 
 std::uint64_t published_attribute_bytes(const AttributeLayout& layout) {
-  const ColourType stored = TileColours(layout, false).stored_type();
-  const std::uint64_t colour =
-      static_cast<std::uint64_t>(layout.colour_channels()) * component_bytes(component_of(stored));
+  const std::uint64_t component = component_bytes(TileColours(layout, false).component());
+  const std::uint64_t colour = static_cast<std::uint64_t>(layout.colour_channels()) * component;
   return (layout.normals ? 12 : 0) + (colour + 3) / 4 * 4 + (layout.texcoords ? 8 : 0);
 }
 

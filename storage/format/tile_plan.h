@@ -164,7 +164,7 @@ class TilePlan {
                                   const Packing* packing = nullptr) const;
 
  private:
-  unsigned component_of_group(const ChannelGroup& group) const;
+  unsigned component_of(const ChannelGroup& group) const;
   void add(Part part, unsigned component, std::size_t components, std::uint64_t count);
 
   TileShape shape_;
