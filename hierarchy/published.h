@@ -100,6 +100,7 @@ struct SourceSummary {
   std::vector<SourceFile> files;  ///< in their order; empty: one PLY that was read in place
   std::vector<SourceCount>
       counts;  ///< of an import, and of what became 0: those that are not 0; by name
+  std::vector<std::string> unused;  ///< what the input has besides, for people: "vertex.intensity"
 
   /// Of the bounding box.
   double diagonal() const { return length(bounds.max - bounds.min); }

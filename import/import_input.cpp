@@ -225,8 +225,9 @@ class Import {
     return add_plain_ply(*source, facts.path);
   }
 
-  Added add_textured_ply(mesh_io::PlySource& source, const std::filesystem::path& path) {
-    const PlyImport import = import_textured_ply(source, path, mesh_, named_, room_);
+  Added add_cornered_ply(mesh_io::PlySource& source, const std::filesystem::path& path) {
+    const PlyImport import =
+        import_ply_corners(source, path, input_.textures(), mesh_, named_, room_);
     checked_base(path, 0);
     count("split_vertices", import.split_vertices);
     count(import.counts.polygons);
@@ -238,8 +239,8 @@ class Import {
   Added add_plain_ply(mesh_io::PlySource& source, const std::filesystem::path& path) {
     const mesh_io::MeshDescription& description = source.description();
     const std::uint32_t base = checked_base(path, description.vertex_count);
-    if (input_.textures() == Textures::use && !source.texture_files().empty())
-      return add_textured_ply(source, path);
+    if (has_corner_attributes(source.plan(), input_.textures()))
+      return add_cornered_ply(source, path);
     Added added{.layout = description.attributes};
     source.read_vertices([&](const mesh_io::VertexBlock& block) {
       env_.cancel.check();
@@ -471,20 +472,21 @@ std::uint64_t predict_import(const InputFiles& input, const ImportMemory& memory
   // The PLY has at most the size of the text or soup. What lies in spools and sorts beside it, up
   // to the pool in memory: once the size of a text of floats, three times where corners have
   // attributes, and three times that of an STL, whose corners are sorted. Five times that of a
-  // textured PLY: its corners are sorted twice, 40 bytes each, and a face has 17. Gzip packs such
+  // PLY with textured or coloured faces: corners are sorted twice, 40 bytes each, and a face has
+  // 17. Gzip packs such
   // files to a third or a quarter.
   constexpr std::uint64_t kSpools = 3;
-  constexpr std::uint64_t kTexturedSpools = 5;
+  constexpr std::uint64_t kCorneredSpools = 5;
   constexpr std::uint64_t kPacked = 4;
   std::uint64_t content = input.geometry_bytes();
-  std::uint64_t textured = 0;
+  std::uint64_t cornered = 0;
   for (const InputFileFacts& file : input.all()) {
     const std::uint64_t bytes = file.identity.bytes * (file.format.is_gzip ? kPacked : 1);
     content += bytes - file.identity.bytes;
-    textured += file.names_textures ? bytes : 0;
+    cornered += file.has_corner_attributes ? bytes : 0;
   }
   const std::uint64_t spools =
-      input.is_unpacked_only() ? 0 : kSpools * content + (kTexturedSpools - kSpools) * textured;
+      input.is_unpacked_only() ? 0 : kSpools * content + (kCorneredSpools - kSpools) * cornered;
   return content + spools - std::min(spools, memory.pool_bytes);
 }
 

@@ -1,6 +1,7 @@
 #include "import/input_files.h"
 
 #include "hierarchy/error.h"
+#include "hierarchy/plain_text.h"
 #include "mesh_io/gltf_buffer_files.h"
 #include "mesh_io/input_stream.h"
 #include "mesh_io/ply_header.h"
@@ -19,16 +20,23 @@ namespace meshhier::importing {
 
 namespace {
 
-bool names_textures(const storage::File& file, const mesh_io::MeshFormat& format) {
-  if (format.kind != mesh_io::MeshKind::ply)
-    return false;
+// Of names in messages.
+constexpr std::size_t kLongestPath = 4096;
+constexpr std::size_t kLongestUnused = 100;
+
+std::optional<mesh_io::PlyPlan> plan_of(const storage::File& file) {
   std::string start(mesh_io::kMaxHeaderBytes, '\0');
   const auto stream = mesh_io::open_stream({file, file.size()}, {});
   start.resize(stream->read(std::as_writable_bytes(std::span(start))));
-  return mesh_io::ply_names_textures(start, file.path());
+  return mesh_io::plan_of(start, file.path());
 }
 
 }  // namespace
+
+bool has_corner_attributes(const mesh_io::PlyPlan& plan, Textures textures) {
+  return plan.face_colour != ColourType::none ||
+         (textures == Textures::use && plan.texcoords != mesh_io::PlyTexcoords::none);
+}
 
 InputFiles::InputFiles(storage::FileSystem& files, const mesh_io::InputPaths& paths, bool weld,
                        Textures textures)
@@ -42,10 +50,60 @@ InputFiles::InputFiles(storage::FileSystem& files, const mesh_io::InputPaths& pa
     const auto file = files_.open(path);
     const mesh_io::MeshFormat format = mesh_io::detect_format(*file);
     InputFileFacts facts{path, format, files_.identity(path)};
-    facts.names_textures = textures == Textures::use && names_textures(*file, format);
+    if (format.kind == mesh_io::MeshKind::ply)
+      look_into_ply(*file, facts);
     all_.push_back(std::move(facts));
     find_buffers(all_.back(), *file);
   }
+}
+
+void InputFiles::look_into_ply(const storage::File& file, InputFileFacts& facts) {
+  const std::optional<mesh_io::PlyPlan> plan = plan_of(file);
+  if (!plan)
+    return;
+  facts.has_corner_attributes = importing::has_corner_attributes(*plan, textures_);
+  for (const std::string& name : plan->unused) {
+    if (std::ranges::find(unused_, name) == unused_.end())
+      unused_.push_back(name);
+  }
+  if (textures_ == Textures::ignore)
+    return;
+  for (const std::string& picture : plan->unused_pictures) {
+    warnings_.push_back(fmt::format(
+        "{} names the picture {}, but {}: it is not used",
+        plain_text(facts.path.string(), kLongestPath), plain_text(picture, kLongestPath),
+        plan->texture_files.empty() ? "has no texture coordinates" : "no face of it can show it"));
+  }
+  if (plan->texcoords == mesh_io::PlyTexcoords::none && plan->unused_pictures.empty() &&
+      (plan->attributes.texcoords || plan->has_unnamed_texcoords))
+    look_for_picture(facts);
+}
+
+/// A picture beside may be the mesh's texture, or of anything else, as a photograph of the object.
+void InputFiles::look_for_picture(const InputFileFacts& facts) {
+  std::filesystem::path name = facts.path;
+  if (facts.format.is_gzip && name.extension() == ".gz")
+    name.replace_extension();
+  for (const char* ending : {".png", ".jpg", ".jpeg", ".webp"}) {
+    name.replace_extension(ending);
+    if (files_.kind(name) != storage::FileKind::regular)
+      continue;
+    const std::string picture = plain_text(name.filename().string(), kLongestPath);
+    warnings_.push_back(fmt::format(
+        "{} has texture coordinates but names no picture: {} beside it is not used; if it is its "
+        "texture, add the line 'comment TextureFile {}' to the header",
+        plain_text(facts.path.string(), kLongestPath), picture, picture));
+    return;
+  }
+}
+
+std::vector<std::string> InputFiles::unused() const {
+  std::vector<std::string> names;
+  for (const std::string& name : std::span(unused_).first(std::min(unused_.size(), kMostUnused)))
+    names.push_back(plain_text(name, kLongestUnused));
+  if (unused_.size() > kMostUnused)
+    names.push_back(fmt::format("{} more", unused_.size() - kMostUnused));
+  return names;
 }
 
 void InputFiles::find_buffers(const InputFileFacts& file, const storage::File& content) {

@@ -7,6 +7,7 @@
 #include "mesh_io/input_paths.h"
 #include "mesh_io/mesh_format.h"
 #include "mesh_io/mesh_source.h"
+#include "mesh_io/ply_plan.h"
 #include "storage/io/file.h"
 
 #include <cstdint>
@@ -21,16 +22,22 @@ namespace meshhier::importing {
 /// Whether textures that a mesh names are used, or passed over as if there were none.
 enum class Textures : std::uint8_t { use, ignore };
 
+/// Whether a PLY's faces give their corners something of their own, so that it is imported.
+bool has_corner_attributes(const mesh_io::PlyPlan& plan, Textures textures);
+
 struct InputFileFacts {
   std::filesystem::path path;
   mesh_io::MeshFormat format;
   storage::FileIdentity identity;
-  bool names_textures = false;  ///< a PLY that is read with its pictures
+  bool has_corner_attributes = false;  ///< as importing::has_corner_attributes()
 
   bool is_plain_ply() const { return format.kind == mesh_io::MeshKind::ply && !format.is_gzip; }
   /// What its content is called in messages when it is no longer packed.
   std::string unpacked_name() const { return path.string() + " (unpacked)"; }
 };
+
+/// So many names of SourceSummary::unused are kept.
+inline constexpr std::size_t kMostUnused = 100;
 
 class InputFiles {
  public:
@@ -49,17 +56,21 @@ class InputFiles {
   /// Takes those of an earlier build, as they are now. False if one is not there any more, or if
   /// one that was not there is; then nothing is changed.
   bool recall(const InputRecord& earlier);
+  /// As SourceSummary's, each once: the first kMostUnused and how many more.
+  std::vector<std::string> unused() const;
+  /// What all should know of pictures that are not used, a line each.
+  const std::vector<std::string>& warnings() const { return warnings_; }
   bool weld() const { return weld_; }
   Textures textures() const { return textures_; }
   /// Not one PLY that is read in place as it is.
   bool needs_import() const {
-    return weld_ || all_.size() != 1 || !all_[0].is_plain_ply() || all_[0].names_textures;
+    return weld_ || all_.size() != 1 || !all_[0].is_plain_ply() || all_[0].has_corner_attributes;
   }
 
   /// One packed PLY, to be unpacked and nothing else.
   bool is_unpacked_only() const {
     return !weld_ && all_.size() == 1 && all_[0].format.kind == mesh_io::MeshKind::ply &&
-           !all_[0].names_textures;
+           !all_[0].has_corner_attributes;
   }
 
   /// File names, with ", " between them.
@@ -84,6 +95,8 @@ class InputFiles {
   std::vector<SourceFile> describe(const InputRecord& record) const;
 
  private:
+  void look_into_ply(const storage::File& file, InputFileFacts& facts);
+  void look_for_picture(const InputFileFacts& facts);
   void find_buffers(const InputFileFacts& file, const storage::File& content);
   std::uint64_t checksum_of(const std::filesystem::path& path,
                             const execution::CancelToken& cancel) const;
@@ -99,6 +112,7 @@ class InputFiles {
   storage::FileSystem& files_;  ///< that may refuse what it is asked for
   std::vector<InputFileFacts> all_;
   Companions companions_;
+  std::vector<std::string> unused_, warnings_;
   bool weld_;
   Textures textures_;
 };

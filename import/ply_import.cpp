@@ -1,6 +1,8 @@
 #include "import/ply_import.h"
 
 #include "execution/spool_cursor.h"
+#include "import/ply_pictures.h"
+#include "import/ply_texture_faces.h"
 #include "import/split_corners.h"
 #include "mesh_io/polygon_cut.h"
 
@@ -10,19 +12,23 @@
 #include <cmath>
 #include <optional>
 #include <set>
+#include <span>
 #include <utility>
 #include <vector>
 
 namespace meshhier::importing {
 namespace {
 
-// CornerParts::parts of a PLY file.
+// CornerParts::parts of a PLY file that shows pictures.
 constexpr std::size_t kU = 0;  ///< its bits
 constexpr std::size_t kV = 1;
 
 using Texcoord = std::array<float, 2>;
+using Colour = std::array<float, 4>;
+using Parts = std::array<std::uint32_t, CornerParts::kCount>;
+using mesh_io::PlyTexcoords;
 
-struct TexturedTriangle {
+struct FaceTriangle {
   Triangle<std::uint32_t> corners;
   std::int32_t texture;  ///< -1: none
 };
@@ -33,45 +39,99 @@ std::optional<Texcoord> texcoord_of(const mesh_io::PlyFace& face, std::size_t co
   return std::isfinite(at[0]) && std::isfinite(at[1]) ? std::optional(at) : std::nullopt;
 }
 
+/// The numbers of a colour as parts of a corner, and back: integers of 16 bits, or three floats.
+Parts parts_of(const Colour& colour, ColourType type) {
+  if (type == ColourType::f32) {
+    return {std::bit_cast<std::uint32_t>(colour[0]), std::bit_cast<std::uint32_t>(colour[1]),
+            std::bit_cast<std::uint32_t>(colour[2])};
+  }
+  const auto pair = [&](std::size_t i) {
+    return static_cast<std::uint32_t>(colour[i]) << 16 | static_cast<std::uint32_t>(colour[i + 1]);
+  };
+  return {pair(0), pair(2), 0};
+}
+
+Colour colour_of(const Parts& parts, ColourType type) {
+  if (type == ColourType::f32) {
+    return {std::bit_cast<float>(parts[0]), std::bit_cast<float>(parts[1]),
+            std::bit_cast<float>(parts[2]), 0};
+  }
+  const auto number = [](std::uint32_t bits) { return static_cast<float>(bits & 0xffff); };
+  return {number(parts[0] >> 16), number(parts[0]), number(parts[1] >> 16), number(parts[1])};
+}
+
 /// The triangles of a file.
 struct PlyTriangles {
   explicit PlyTriangles(storage::ScratchFile& scratch)
-      : all(scratch, kImportSpoolBytes), texcoords(scratch, kImportSpoolBytes) {}
+      : all(scratch, kImportSpoolBytes),
+        texcoords(scratch, kImportSpoolBytes),
+        colours(scratch, kImportSpoolBytes) {}
 
-  storage::RecordSpool<TexturedTriangle> all;
+  void clear() {
+    all.clear();
+    texcoords.clear();
+    colours.clear();
+  }
+
+  storage::RecordSpool<FaceTriangle> all;
   storage::RecordSpool<std::array<Texcoord, 3>> texcoords;  ///< of each, if faces have their own
+  storage::RecordSpool<Colour> colours;                     ///< the same
   std::set<std::int32_t> textures;
 };
 
 class PlyImporter {
  public:
-  PlyImporter(mesh_io::PlySource& source, const std::filesystem::path& path, RawMesh& mesh,
-              mesh_io::NamedFiles& files, const ImportRoom& room)
+  PlyImporter(mesh_io::PlySource& source, const std::filesystem::path& path, Textures textures,
+              RawMesh& mesh, mesh_io::NamedFiles& files, const ImportRoom& room)
       : source_(source),
+        plan_(source.plan()),
         path_(path),
         mesh_(mesh),
         files_(files),
         room_(room),
+        texcoords_(textures == Textures::use ? plan_.texcoords : PlyTexcoords::none),
         triangles_(room.scratch),
         given_(source.description().attributes) {}
 
   PlyImport run() {
+    if (texcoords_ == PlyTexcoords::of_texture_faces)
+      texture_faces_.emplace(source_, path_, room_);
     const mesh_io::FaceCounts read =
-        source_.read_textured_faces([this](const mesh_io::PlyFace& face) { add(face); });
+        source_.read_faces([this](const mesh_io::PlyFace& face) { add(face); });
+    texture_faces_.reset();
     import_.counts.faces = read.faces;
     import_.counts.degenerate_triangles += read.degenerate_triangles;
-    if (find_pictures())
+    if (texcoords_ != PlyTexcoords::none)
+      pictures_.emplace(plan_, path_, triangles_.textures, files_, mesh_.materials);
+    if (pictures_ && pictures_->any_is_there())
       append_textured();
+    else if (has_colours())
+      append_coloured();
     else
       append_plain();
     return import_;
   }
 
  private:
-  /// Polygons become triangles, as mesh_io::TriangleBlocks makes them.
+  bool has_own_texcoords() const {
+    return texcoords_ == PlyTexcoords::of_faces || texcoords_ == PlyTexcoords::of_texture_faces;
+  }
+  bool has_colours() const { return plan_.face_colour != ColourType::none; }
+
   void add(const mesh_io::PlyFace& face) {
     room_.cancel.check();
-    const bool has_texcoords = !source_.has_face_texcoords() || !face.texcoords.empty();
+    if (texture_faces_) {
+      mesh_io::PlyFace shown = face;
+      texture_faces_->complete(shown);
+      cut(shown);
+    } else {
+      cut(face);
+    }
+  }
+
+  /// Polygons become triangles, as mesh_io::TriangleBlocks makes them.
+  void cut(const mesh_io::PlyFace& face) {
+    const bool has_texcoords = !has_own_texcoords() || !face.texcoords.empty();
     const std::int32_t texture = has_texcoords ? face.texture : -1;
     for (std::size_t i = 0; i < face.texcoords.size() / 2; ++i)
       import_.zeroed.texcoords += texcoord_of(face, i) ? 0 : 1;
@@ -86,7 +146,7 @@ class PlyImporter {
 
   void add(const mesh_io::PlyFace& face, const std::array<std::size_t, 3>& corners,
            std::int32_t texture) {
-    TexturedTriangle triangle{{}, texture};
+    FaceTriangle triangle{{}, texture};
     std::array<Texcoord, 3> texcoords{};
     for (std::size_t k = 0; k < 3; ++k) {
       triangle.corners[k] = face.corners[corners[k]];
@@ -99,69 +159,32 @@ class PlyImporter {
     }
     ++import_.counts.triangles;
     triangles_.all.append(triangle);
-    if (source_.has_face_texcoords())
+    if (has_own_texcoords())
       triangles_.texcoords.append(texcoords);
+    if (has_colours())
+      triangles_.colours.append(face.colour);
     triangles_.textures.insert(texture);
   }
 
-  /// Of the textures that triangles use; false if none is there.
-  bool find_pictures() {
-    const std::vector<std::string>& names = source_.texture_files();
-    pictures_.resize(names.size());
-    for (const std::int32_t texture : triangles_.textures) {
-      if (texture < 0)
-        continue;
-      const auto i = static_cast<std::size_t>(texture);
-      const std::filesystem::path folder = path_.parent_path();
-      pictures_[i] = files_.find(folder, names[i]);
-      if (!pictures_[i]) {
-        mesh_.materials.miss(names[i], path_.string(), mesh_io::sought_places(folder, names[i]));
-      }
-    }
-    return std::ranges::any_of(pictures_, [](const auto& picture) { return picture.has_value(); });
-  }
-
-  /// The number of a texture's material in the table, from 1 on.
-  std::uint32_t material_of(std::int32_t texture) {
-    std::uint32_t& number = numbers_[static_cast<std::size_t>(texture + 1)];
-    if (number > 0)
-      return number;
-    images::Material material;
-    if (texture >= 0) {
-      const auto i = static_cast<std::size_t>(texture);
-      material.name = source_.texture_files()[i];
-      if (pictures_[i])
-        material.image = mesh_.materials.add_picture({material.name, *pictures_[i]});
-    }
-    number = mesh_.materials.add(std::move(material)) + 1;
-    return number;
-  }
-
-  bool has_picture(std::int32_t texture) const {
-    return texture >= 0 && pictures_[static_cast<std::size_t>(texture)];
-  }
-
   void append_textured() {
-    numbers_.resize(pictures_.size() + 1);
     CornerSplitter splitter(room_);
-    add_corners(splitter);
-    triangles_.all.clear();
-    triangles_.texcoords.clear();
-    SplitVertices vertices(room_.scratch);
-    splitter.split(source_.description().vertex_count, vertices, mesh_);
-    import_.split_vertices = vertices.count() - source_.description().vertex_count;
+    add_shown_corners(splitter);
     import_.layout = given_.without_texcoords();
     import_.layout.texcoords = import_.layout.material = true;
-    append_vertices(vertices);
+    const auto channels = static_cast<std::size_t>(given_.texcoord_offset());
+    append_split(splitter, [&](std::span<const float> given, const Parts& parts) {
+      mesh_.attributes.append(given.first(channels));
+      append_shown(given, parts);
+    });
   }
 
-  void add_corners(CornerSplitter& splitter) {
+  void add_shown_corners(CornerSplitter& splitter) {
     execution::SpoolCursor triangles(triangles_.all, room_.cancel);
     execution::SpoolCursor texcoords(triangles_.texcoords, room_.cancel);
     for (std::uint64_t i = 0; i < triangles.size(); ++i) {
       const auto& [corners, texture] = triangles.at(i);
-      const std::uint32_t material = material_of(texture);
-      const bool has_own = source_.has_face_texcoords() && has_picture(texture);
+      const std::uint32_t material = pictures_->material_of(texture, mesh_.materials) + 1;
+      const bool has_own = has_own_texcoords() && pictures_->is_there(texture);
       for (std::size_t k = 0; k < 3; ++k) {
         const Texcoord at = has_own ? texcoords.at(i)[k] : Texcoord{};
         splitter.add(
@@ -171,38 +194,63 @@ class PlyImporter {
     }
   }
 
-  void append_vertices(const SplitVertices& vertices) {
-    execution::SpoolCursor positions(vertices.positions, room_.cancel);
-    std::array<execution::SpoolCursor<std::uint32_t>, CornerParts::kCount> parts{
-        {{vertices.parts[kU], room_.cancel},
-         {vertices.parts[kV], room_.cancel},
-         {vertices.parts[CornerParts::kMaterial], room_.cancel}}};
-    const auto channels = static_cast<std::size_t>(given_.channels());
-    std::uint64_t next = 0;
-    read_vertices([&](std::uint64_t vertex, Vec3d position, std::span<const float> attributes) {
-      for (; next < vertices.count() && positions.at(next) == vertex; ++next) {
-        mesh_.positions.append(position);
-        append_attributes(attributes.first(channels), parts[kU].at(next), parts[kV].at(next),
-                          parts[CornerParts::kMaterial].at(next));
-      }
-    });
-  }
-
-  void append_attributes(std::span<const float> given, std::uint32_t u, std::uint32_t v,
-                         std::uint32_t part) {
-    const auto texcoord = static_cast<std::size_t>(given_.texcoord_offset());
-    mesh_.attributes.append(given.first(texcoord));
+  void append_shown(std::span<const float> given, const Parts& parts) {
     // A vertex that no triangle uses has no material: any will do.
+    const std::uint32_t part = parts[CornerParts::kMaterial];
     const std::uint32_t material = std::max(part, std::uint32_t{1}) - 1;
     std::array<float, 3> shown{0, 0, static_cast<float>(material)};
     if (part > 0 && mesh_.materials.list().materials[material].image) {
-      const Texcoord at = source_.has_face_texcoords()
-                              ? Texcoord{std::bit_cast<float>(u), std::bit_cast<float>(v)}
-                              : Texcoord{given[texcoord], given[texcoord + 1]};
+      const auto texcoord = static_cast<std::size_t>(given_.texcoord_offset());
+      const Texcoord at = has_own_texcoords() ? Texcoord{std::bit_cast<float>(parts[kU]),
+                                                         std::bit_cast<float>(parts[kV])}
+                                              : Texcoord{given[texcoord], given[texcoord + 1]};
       shown[0] = at[0];
       shown[1] = static_cast<float>(1 - double{at[1]});
     }
     mesh_.attributes.append(shown);
+  }
+
+  void append_coloured() {
+    CornerSplitter splitter(room_);
+    execution::SpoolCursor triangles(triangles_.all, room_.cancel);
+    execution::SpoolCursor colours(triangles_.colours, room_.cancel);
+    for (std::uint64_t i = 0; i < triangles.size(); ++i) {
+      const Parts parts = parts_of(colours.at(i), plan_.face_colour);
+      for (const std::uint32_t corner : triangles.at(i).corners)
+        splitter.add({corner, parts});
+    }
+    import_.layout = given_;
+    import_.layout.colour = plan_.face_colour;
+    import_.layout.alpha = plan_.face_alpha;
+    const auto before = static_cast<std::size_t>(import_.layout.colour_offset());
+    const auto count = static_cast<std::size_t>(import_.layout.colour_channels());
+    append_split(splitter, [&](std::span<const float> given, const Parts& parts) {
+      const Colour colour = colour_of(parts, plan_.face_colour);
+      mesh_.attributes.append(given.first(before));
+      mesh_.attributes.append(std::span(colour).first(count));
+      mesh_.attributes.append(given.subspan(before));
+    });
+  }
+
+  /// Calls append(attributes of the file, parts) for each vertex, whose place is appended here.
+  template <class Append>
+  void append_split(CornerSplitter& splitter, const Append& append) {
+    triangles_.clear();
+    SplitVertices vertices(room_.scratch);
+    splitter.split(source_.description().vertex_count, vertices, mesh_);
+    import_.split_vertices = vertices.count() - source_.description().vertex_count;
+    execution::SpoolCursor positions(vertices.positions, room_.cancel);
+    std::array<execution::SpoolCursor<std::uint32_t>, CornerParts::kCount> parts{
+        {{vertices.parts[0], room_.cancel},
+         {vertices.parts[1], room_.cancel},
+         {vertices.parts[2], room_.cancel}}};
+    std::uint64_t next = 0;
+    read_vertices([&](std::uint64_t vertex, Vec3d position, std::span<const float> attributes) {
+      for (; next < vertices.count() && positions.at(next) == vertex; ++next) {
+        mesh_.positions.append(position);
+        append(attributes, {parts[0].at(next), parts[1].at(next), parts[2].at(next)});
+      }
+    });
   }
 
   /// Calls take(number, position, attributes) for each vertex of the file.
@@ -238,24 +286,26 @@ class PlyImporter {
   }
 
   mesh_io::PlySource& source_;
+  const mesh_io::PlyPlan& plan_;
   const std::filesystem::path& path_;
   RawMesh& mesh_;
   mesh_io::NamedFiles& files_;
   const ImportRoom& room_;
+  PlyTexcoords texcoords_;
   PlyTriangles triangles_;
   AttributeLayout given_;
   mesh_io::PolygonCut cut_;
-  std::vector<Vec3d> places_;                                   ///< of a face
-  std::vector<std::optional<std::filesystem::path>> pictures_;  ///< of each texture
-  std::vector<std::uint32_t> numbers_;  ///< of each texture from -1 on; 0: not used yet
+  std::optional<PlyTextureFaces> texture_faces_;
+  std::optional<PlyPictures> pictures_;
   PlyImport import_;
 };
 
 }  // namespace
 
-PlyImport import_textured_ply(mesh_io::PlySource& source, const std::filesystem::path& path,
-                              RawMesh& mesh, mesh_io::NamedFiles& files, const ImportRoom& room) {
-  return PlyImporter(source, path, mesh, files, room).run();
+PlyImport import_ply_corners(mesh_io::PlySource& source, const std::filesystem::path& path,
+                             Textures textures, RawMesh& mesh, mesh_io::NamedFiles& files,
+                             const ImportRoom& room) {
+  return PlyImporter(source, path, textures, mesh, files, room).run();
 }
 
 }  // namespace meshhier::importing

@@ -1,7 +1,8 @@
-// PLY files that name pictures as meshes: corners that show another picture, or another place of
-// it, are other vertices.
+// PLY files whose faces show pictures or have colours as meshes: corners that show another picture,
+// another place of it or another colour are other vertices.
 #pragma once
 
+#include "import/input_files.h"
 #include "import/raw_mesh.h"
 #include "mesh_io/named_files.h"
 #include "mesh_io/ply_source.h"
@@ -23,11 +24,13 @@ struct PlyImport {
 /// Appends the mesh of `source` to `mesh`, but for its layout. `path`: of the file, whose folder
 /// has the pictures. If a triangle shows a picture that is there, the file is textured: vertices
 /// are ordered as in the file, then by the bits of their texture coordinates, which are glTF's,
-/// then by their material. There is one material for each texture file that triangles use, by first
-/// use; triangles without a picture are white. Else the mesh is that of the vertices and triangles
-/// alone. Pictures that triangles should show and that are not there are noted in the mesh's table.
-/// Throws as PlySource. Requires that the file has texture files.
-PlyImport import_textured_ply(mesh_io::PlySource& source, const std::filesystem::path& path,
-                              RawMesh& mesh, mesh_io::NamedFiles& files, const ImportRoom& room);
+/// then by their material. There is one material for each picture that triangles use, by first
+/// use; triangles without a picture are white. Else, if faces have colours, vertices are ordered as
+/// in the file, then by their colour. Else the mesh is that of the vertices and triangles alone.
+/// Pictures that triangles should show and that are not there are noted in the mesh's table.
+/// Throws as PlySource. Requires plan().has_corner_attributes().
+PlyImport import_ply_corners(mesh_io::PlySource& source, const std::filesystem::path& path,
+                             Textures textures, RawMesh& mesh, mesh_io::NamedFiles& files,
+                             const ImportRoom& room);
 
 }  // namespace meshhier::importing

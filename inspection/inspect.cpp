@@ -147,6 +147,9 @@ std::string source_text(const storage::Manifest& manifest) {
   }
   if (!s.counts.empty())
     text += fmt::format("counted      {}\n", shown(importing::counts_text(s.counts)));
+  for (std::size_t i = 0; i < s.unused.size(); ++i)
+    text += (i == 0 ? "not used     " : ", ") + shown(s.unused[i]);
+  text += s.unused.empty() ? "" : "\n";
   return text;
 }
 
@@ -353,7 +356,8 @@ Json source_json(const storage::Manifest& manifest) {
           {"attributes", attribute_names(s.attributes)},
           {"textures", textures_json(s.textures)},
           {"imported_files", files},
-          {"counts", counts}};
+          {"counts", counts},
+          {"unused", s.unused}};
 }
 
 Json partitions_json(const storage::LevelSummary& last,

@@ -27,8 +27,7 @@ class BinaryBody final : public PlyBody {
   void skip(const PlyElementPlan& plan) override;
   void read_vertices(const PlyElementPlan& plan, VertexBlocks& blocks) override;
   void read_faces(const PlyElementPlan& plan, std::uint64_t first, TriangleBlocks& blocks) override;
-  void read_textured_faces(const PlyElementPlan& plan, std::size_t textures,
-                           const PlyFaceVisitor& visit) override;
+  void read_rows(const PlyElementPlan& plan, const PlyRowVisitor& visit) override;
   void expect_end() override;
 
  private:
@@ -51,8 +50,7 @@ class BinaryBody final : public PlyBody {
   template <class Take>
   void take_list(const Row& row, const PlyProperty& property, std::uint64_t count,
                  const Take& take);
-  std::uint64_t take_face_count(const Row& row, const PlyProperty& property, std::uint64_t most);
-  std::int64_t take_textured_row(const Row& row, PlyFace& face);
+  void take_property(const Row& row, std::size_t property, std::vector<double>& values);
   std::int64_t load_integer(PlyType type) const;
 
   ByteWindow window_;
@@ -224,57 +222,39 @@ std::int64_t BinaryBody<Swap>::load_integer(PlyType type) const {
 }
 
 template <bool Swap>
-void BinaryBody<Swap>::read_textured_faces(const PlyElementPlan& plan, std::size_t textures,
-                                           const PlyFaceVisitor& visit) {
-  PlyFace face;
-  for (std::uint64_t i = 0; i < plan.element.count; ++i) {
+void BinaryBody<Swap>::read_rows(const PlyElementPlan& plan, const PlyRowVisitor& visit) {
+  PlyRow taken;
+  taken.values.resize(plan.element.properties.size());
+  for (taken.number = 0; taken.number < plan.element.count; ++taken.number) {
     const std::uint64_t start = window_.offset();
-    face.clear();
-    const std::int64_t number = take_textured_row({plan, i}, face);
-    const std::string defect = texture_defect(plan, i, face, number, textures);
+    const Row row{plan, taken.number};
+    for (std::size_t i = 0; i < taken.values.size(); ++i) {
+      if (plan.takes(i)) {
+        take_property(row, i, taken.values[i]);
+      } else {
+        skip_property(row, plan.element.properties[i]);
+      }
+    }
+    const std::string defect = visit(taken);
     if (!defect.empty())
       fail(start, defect);
-    face.texture = static_cast<std::int32_t>(number);
-    visit(face);
   }
 }
 
-/// Returns the number of the texture.
 template <bool Swap>
-std::int64_t BinaryBody<Swap>::take_textured_row(const Row& row, PlyFace& face) {
-  std::int64_t number = 0;
-  for (std::size_t i = 0; i < row.plan.element.properties.size(); ++i) {
-    const PlyProperty& property = row.plan.element.properties[i];
-    if (i == row.plan.corners) {
-      take_list(row, property, take_face_count(row, property, PlyFace::kMostCorners), [&] {
-        const std::int64_t index = load_integer(property.type);
-        if (index < 0 || static_cast<std::uint64_t>(index) >= vertex_count_)
-          fail(window_.offset(), index_text(row.plan, row.number, index, vertex_count_));
-        face.corners.push_back(static_cast<std::uint32_t>(index));
-      });
-    } else if (i == row.plan.texcoords) {
-      take_list(row, property, take_face_count(row, property, 2 * PlyFace::kMostCorners), [&] {
-        face.texcoords.push_back(with_type(property.type, [&](auto zero) {
-          return static_cast<float>(load<decltype(zero), Swap>(window_.begin()));
-        }));
-      });
-    } else if (i == row.plan.texnumber) {
-      take_list(row, property, 1, [&] { number = load_integer(property.type); });
-    } else {
-      skip_property(row, property);
-    }
-  }
-  return number;
-}
-
-template <bool Swap>
-std::uint64_t BinaryBody<Swap>::take_face_count(const Row& row, const PlyProperty& property,
-                                                std::uint64_t most) {
+void BinaryBody<Swap>::take_property(const Row& row, std::size_t index,
+                                     std::vector<double>& values) {
+  const PlyProperty& property = row.plan.element.properties[index];
   const std::uint64_t start = window_.offset();
-  const std::uint64_t count = take_count(row, property);
-  if (count > most)
+  const std::uint64_t count = property.is_list() ? take_count(row, property) : 1;
+  if (count > most_items(row.plan, index))
     fail(start, corners_text(row.plan, row.number, count));
-  return count;
+  values.clear();
+  take_list(row, property, count, [&] {
+    values.push_back(with_type(property.type, [&](auto zero) {
+      return static_cast<double>(load<decltype(zero), Swap>(window_.begin()));
+    }));
+  });
 }
 
 /// Some writers end every file with a line end, also behind zeros that fill up to a multiple of

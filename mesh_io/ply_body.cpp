@@ -33,22 +33,8 @@ std::string defect_text(const PlyElementPlan& plan, std::uint64_t row, int slot,
                      row_name(plan, row), value);
 }
 
-std::string texture_defect(const PlyElementPlan& plan, std::uint64_t row, const PlyFace& face,
-                           std::int64_t number, std::size_t textures) {
-  if (number < -1 || number >= static_cast<std::int64_t>(textures)) {
-    return fmt::format(
-        "expected the number of one of {} texture files, from 0 on, or -1 for none, "
-        "as 'texnumber' in {}, found {}",
-        textures, row_name(plan, row), number);
-  }
-  const std::size_t expected = 2 * face.corners.size();
-  if (!face.texcoords.empty() && face.texcoords.size() != expected) {
-    return fmt::format(
-        "expected {} numbers or none, two a corner, in list 'texcoord' of {}, found "
-        "{}",
-        expected, row_name(plan, row), face.texcoords.size());
-  }
-  return {};
+std::size_t most_items(const PlyElementPlan& plan, std::size_t property) {
+  return property == plan.corners ? PlyFace::kMostCorners : 2 * PlyFace::kMostCorners;
 }
 
 std::string corners_text(const PlyElementPlan& plan, std::uint64_t row, std::uint64_t count) {

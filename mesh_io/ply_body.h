@@ -31,9 +31,9 @@ class PlyBody {
   /// position() is that of row `first`.
   virtual void read_faces(const PlyElementPlan& plan, std::uint64_t first,
                           TriangleBlocks& blocks) = 0;
-  /// Polygons with their textures; `textures`: how many files there are.
-  virtual void read_textured_faces(const PlyElementPlan& plan, std::size_t textures,
-                                   const PlyFaceVisitor& visit) = 0;
+  /// Whole rows of any element, of the properties that plan.takes() says; lists of at most
+  /// 2 * PlyFace::kMostCorners items, of corners half as many. Vertex indices of any value.
+  virtual void read_rows(const PlyElementPlan& plan, const PlyRowVisitor& visit) = 0;
   /// Requires that nothing follows but one line end, perhaps behind up to two zeros (binary), or
   /// blanks and blank lines (text).
   virtual void expect_end() = 0;
@@ -56,10 +56,9 @@ bool is_strip_restart(std::int64_t index, PlyType type);
 std::string row_name(const PlyElementPlan& plan, std::uint64_t row);
 /// The number read for a slot is not finite, no coordinate, or no colour.
 std::string defect_text(const PlyElementPlan& plan, std::uint64_t row, int slot, double value);
-/// What of a face's texture is wrong; empty if nothing is. `number`: as read.
-std::string texture_defect(const PlyElementPlan& plan, std::uint64_t row, const PlyFace& face,
-                           std::int64_t number, std::size_t textures);
-/// A face that is read with its texture has too many corners.
+/// Of a list that is read as a whole.
+std::size_t most_items(const PlyElementPlan& plan, std::size_t property);
+/// Such a list is longer.
 std::string corners_text(const PlyElementPlan& plan, std::uint64_t row, std::uint64_t count);
 /// A face refers to a vertex that is not there.
 std::string index_text(const PlyElementPlan& plan, std::uint64_t row, std::int64_t index,

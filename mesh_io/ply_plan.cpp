@@ -1,6 +1,8 @@
 #include "mesh_io/ply_plan.h"
 
 #include "mesh_io/input_error.h"
+#include "mesh_io/ply_face_plan.h"
+#include "mesh_io/ply_properties.h"
 
 #include <algorithm>
 #include <array>
@@ -26,11 +28,10 @@ class Planner {
     for (const PlyElement& element : header_.elements)
       plan_.elements.push_back(measure(element));
     plan_vertices();
-    for (PlyElementPlan& element : plan_.elements)
-      plan_faces(element);
-    plan_textures();
+    plan_faces(plan_, header_.texture_files, path_);
     check_range_grid();
     check_sizes();
+    plan_.list_unused();
     return std::move(plan_);
   }
 
@@ -41,18 +42,18 @@ class Planner {
   void plan_vertices();
   void plan_attributes(PlyElementPlan& vertices);
   void plan_colours(PlyElementPlan& vertices);
+  void take_colours(PlyElementPlan& vertices, const PlyColour& colour, ColourSpace space);
   void plan_materials(PlyElementPlan& vertices);
-  void plan_faces(PlyElementPlan& plan) const;
-  void plan_textures();
-  void plan_face_textures(PlyElementPlan& plan) const;
   void check_range_grid() const;
   void check_sizes() const;
 
-  /// Index of the scalar property `name`, or -1; fails if there are two.
-  int find_scalar(const PlyElement& element, std::string_view name) const;
-  /// True if all `names` are there; fills `found` with their indices.
+  int find_scalar(const PlyElement& element, std::string_view name) const {
+    return mesh_io::find_scalar(element, name, path_);
+  }
   bool find_all(const PlyElement& element, std::span<const std::string_view> names,
-                std::span<int> found) const;
+                std::span<int> found) const {
+    return mesh_io::find_all(element, names, found, path_);
+  }
 
   const PlyHeader& header_;
   std::uint64_t file_bytes_;
@@ -80,29 +81,6 @@ PlyElementPlan Planner::measure(const PlyElement& element) const {
                      in_quotes(element.name), element.count));
   }
   return plan;
-}
-
-int Planner::find_scalar(const PlyElement& element, std::string_view name) const {
-  int found = -1;
-  for (std::size_t i = 0; i < element.properties.size(); ++i) {
-    const PlyProperty& property = element.properties[i];
-    if (property.is_list() || property.name != name)
-      continue;
-    if (found >= 0) {
-      fail(fmt::format("expected property {} of element {} once, found it twice", in_quotes(name),
-                       in_quotes(element.name)));
-    }
-    found = static_cast<int>(i);
-  }
-  return found;
-}
-
-bool Planner::find_all(const PlyElement& element, std::span<const std::string_view> names,
-                       std::span<int> found) const {
-  for (std::size_t i = 0; i < names.size(); ++i)
-    found[i] = find_scalar(element, names[i]);
-  return std::all_of(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(names.size()),
-                     [](int property) { return property >= 0; });
 }
 
 void Planner::plan_vertices() {
@@ -142,14 +120,23 @@ void assign_slots(PlyElementPlan& vertices, std::span<const int> properties, int
 void Planner::plan_attributes(PlyElementPlan& vertices) {
   AttributeLayout& layout = plan_.attributes;
   std::array<int, 3> found{};
-  constexpr std::array<std::string_view, 3> kNormals{"nx", "ny", "nz"};
-  if (find_all(vertices.element, kNormals, found)) {
+  constexpr std::array<std::array<std::string_view, 3>, 3> kNormals{
+      {{"nx", "ny", "nz"},
+       {"normalx", "normaly", "normalz"},
+       {"normal_x", "normal_y", "normal_z"}}};
+  for (const auto& names : kNormals) {
+    if (!find_all(vertices.element, names, found))
+      continue;
     layout.normals = true;
     assign_slots(vertices, found, layout.normal_offset());
+    break;
   }
   plan_colours(vertices);
-  constexpr std::array<std::array<std::string_view, 2>, 4> kTexcoords{
-      {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}}};
+  constexpr std::array<std::array<std::string_view, 2>, 5> kTexcoords{{{"s", "t"},
+                                                                       {"u", "v"},
+                                                                       {"texture_u", "texture_v"},
+                                                                       {"texture_s", "texture_t"},
+                                                                       {"tu", "tv"}}};
   for (const auto& names : kTexcoords) {
     if (!find_all(vertices.element, names, found))
       continue;
@@ -169,96 +156,26 @@ void Planner::plan_materials(PlyElementPlan& vertices) {
   assign_slots(vertices, std::span(&found, 1), plan_.attributes.material_offset());
 }
 
-ColourType colour_type(PlyType type) {
-  if (!is_integer(type))
-    return ColourType::f32;
-  return type == PlyType::u16 ? ColourType::u16 : ColourType::u8;
-}
-
 void Planner::plan_colours(PlyElementPlan& vertices) {
-  constexpr std::array<std::array<std::string_view, 5>, 4> kColours{
-      {{"red", "green", "blue", "alpha", "a"},
-       {"r", "g", "b", "a", "alpha"},
-       {"diffuse_red", "diffuse_green", "diffuse_blue", "diffuse_alpha", "alpha"},
-       {kLinearColours[0], kLinearColours[1], kLinearColours[2], "alpha", "a"}}};
-  const PlyElement& element = vertices.element;
-  const auto type_of = [&](int property) {
-    return element.properties[static_cast<std::size_t>(property)].type;
-  };
-  for (const auto& names : kColours) {
-    const bool is_light = names[0] == kLinearColours[0];
-    if (is_light && writer_ != PlyWrittenBy::import)
-      continue;
-    std::array<int, 4> found{};
-    if (!find_all(element, std::span(names).first(3), found))
-      continue;
-    const PlyType type = type_of(found[0]);
-    if (type_of(found[1]) != type || type_of(found[2]) != type)
-      continue;
-    found[3] = find_scalar(element, names[3]);
-    if (found[3] < 0)
-      found[3] = find_scalar(element, names[4]);
-    plan_.attributes.colour = colour_type(type);
-    plan_.attributes.space = is_light ? ColourSpace::linear : ColourSpace::srgb;
-    plan_.attributes.alpha = found[3] >= 0 && type_of(found[3]) == type;
-    plan_.check_colours = is_integer(type) && type != PlyType::u8 && type != PlyType::u16;
-    const auto count = static_cast<std::size_t>(plan_.attributes.colour_channels());
-    assign_slots(vertices, std::span(found).first(count), plan_.attributes.colour_offset());
-    return;
+  for (const PlyColourNames& names : kPlyColours) {
+    if (const auto found = find_colour(vertices.element, names, path_)) {
+      take_colours(vertices, *found, ColourSpace::srgb);
+      return;
+    }
   }
+  if (writer_ != PlyWrittenBy::import)
+    return;
+  const auto& [red, green, blue] = kLinearColours;
+  if (const auto found = find_colour(vertices.element, {red, green, blue, "alpha", "a"}, path_))
+    take_colours(vertices, *found, ColourSpace::linear);
 }
 
-void Planner::plan_faces(PlyElementPlan& plan) const {
-  const PlyElement& element = plan.element;
-  if (element.name != "face" && element.name != "tristrips")
-    return;
-  if (element.count == 0)
-    return;
-  std::size_t lists = 0;
-  for (std::size_t i = 0; i < element.properties.size(); ++i) {
-    const PlyProperty& property = element.properties[i];
-    if (property.name != "vertex_indices" && property.name != "vertex_index")
-      continue;
-    if (!property.is_list())
-      continue;
-    ++lists;
-    plan.corners = i;
-  }
-  if (lists != 1) {
-    fail(fmt::format(
-        "expected one list property 'vertex_indices' or 'vertex_index' of element {}, found {}",
-        in_quotes(element.name), lists));
-  }
-  const PlyType type = element.properties[plan.corners].type;
-  if (!is_integer(type)) {
-    fail(fmt::format("expected an integer type for the vertex indices of element {}, found '{}'",
-                     in_quotes(element.name), name_of(type)));
-  }
-  plan.role = element.name == "face" ? Role::polygons : Role::strips;
-}
-
-void Planner::plan_textures() {
-  if (header_.texture_files.empty())
-    return;
-  bool has_coordinates = plan_.attributes.texcoords;
-  for (PlyElementPlan& plan : plan_.elements) {
-    if (plan.role == Role::polygons)
-      plan_face_textures(plan);
-    has_coordinates = has_coordinates || plan.texcoords;
-  }
-  if (has_coordinates)
-    plan_.texture_files = header_.texture_files;
-}
-
-void Planner::plan_face_textures(PlyElementPlan& plan) const {
-  const std::vector<PlyProperty>& properties = plan.element.properties;
-  for (std::size_t i = 0; i < properties.size(); ++i) {
-    const PlyProperty& property = properties[i];
-    if (property.is_list() && property.name == "texcoord" && i != plan.corners && !plan.texcoords)
-      plan.texcoords = i;
-    if (!property.is_list() && property.name == "texnumber" && is_integer(property.type))
-      plan.texnumber = i;
-  }
+void Planner::take_colours(PlyElementPlan& vertices, const PlyColour& colour, ColourSpace space) {
+  plan_.attributes.colour = colour.kind;
+  plan_.attributes.space = space;
+  plan_.attributes.alpha = colour.properties.size() == 4;
+  plan_.check_colours = colour.is_checked;
+  assign_slots(vertices, colour.properties, plan_.attributes.colour_offset());
 }
 
 /// A raw scan's grid is no list of faces, and to take such a file for a cloud of points would lose
@@ -298,6 +215,39 @@ void Planner::check_sizes() const {
 }
 
 }  // namespace
+
+bool PlyElementPlan::takes(std::size_t property) const {
+  switch (role) {
+    case Role::texture_vertices:
+      return property == texcoord[0] || property == texcoord[1];
+    case Role::polygons:
+    case Role::texture_faces:
+      return property == corners || property == texcoords || property == texnumber ||
+             property == face || std::ranges::find(colour, property) != colour.end();
+    case Role::strips:
+      return property == corners;
+    case Role::vertices:
+      return slots[property] != kSkipped;
+    case Role::skipped:
+      break;
+  }
+  return false;
+}
+
+void PlyPlan::list_unused() {
+  for (const PlyElementPlan& plan : elements) {
+    if (plan.element.count == 0)
+      continue;
+    if (plan.role == Role::skipped) {
+      unused.push_back(plan.element.name);
+      continue;
+    }
+    for (std::size_t i = 0; i < plan.element.properties.size(); ++i) {
+      if (!plan.takes(i))
+        unused.push_back(plan.element.name + '.' + plan.element.properties[i].name);
+    }
+  }
+}
 
 PlyPlan make_ply_plan(const PlyHeader& header, std::uint64_t file_bytes,
                       const std::filesystem::path& path, PlyWrittenBy writer) {

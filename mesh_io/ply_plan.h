@@ -18,28 +18,59 @@ inline constexpr int kSkipped = -1;
 inline constexpr int kFirstAttributeSlot = 3;
 
 struct PlyElementPlan {
-  enum class Role : std::uint8_t { skipped, vertices, polygons, strips };
+  enum class Role : std::uint8_t {
+    skipped,
+    vertices,
+    polygons,
+    strips,
+    texture_vertices,  ///< that corners of texture faces name
+    texture_faces      ///< what polygons show, beside them
+  };
 
   PlyElement element;
   Role role = Role::skipped;
   std::vector<int> slots;   ///< one per property: kSkipped or where a vertex property goes
-  std::size_t corners = 0;  ///< of polygons and strips: the property with the vertex indices
+  std::size_t corners = 0;  ///< of faces of any kind: the property with the vertex indices
   std::optional<std::size_t> texcoords;  ///< of polygons: the property with those of the corners
-  std::optional<std::size_t> texnumber;  ///< of polygons: the property with the texture's number
+  std::optional<std::size_t> texnumber;  ///< of polygons and texture faces: the texture's number
+  std::optional<std::size_t> face;       ///< of texture faces: whose they are; none: in their order
+  std::array<std::size_t, 2> texcoord{};  ///< of texture vertices: the properties u and v
+  std::vector<std::size_t> colour;        ///< of polygons: the three or four properties of theirs
   std::uint64_t min_row_bytes = 0;  ///< of a row, all lists empty; in text the fewest characters
   std::optional<std::uint64_t> stride;  ///< bytes of every row: binary, and no property is a list
 
   bool has_faces() const { return role == Role::polygons || role == Role::strips; }
+  /// Whether a property is looked at where corners have something of their own.
+  bool takes(std::size_t property) const;
 };
+
+/// Where the coordinates in pictures are.
+enum class PlyTexcoords : std::uint8_t { none, of_vertices, of_faces, of_texture_faces };
 
 struct PlyPlan {
   PlyEncoding encoding{};
   std::vector<PlyElementPlan> elements;  ///< in the order of the file
   std::size_t vertex_element = 0;
   AttributeLayout attributes;
-  bool wide_coordinates = false;           ///< a coordinate is double, int or uint
-  std::vector<std::string> texture_files;  ///< empty if nothing has coordinates in them
+  bool wide_coordinates = false;  ///< a coordinate is double, int or uint
+  /// None if no picture is shown: of coordinates of vertices `attributes` tells.
+  PlyTexcoords texcoords = PlyTexcoords::none;
+  /// Empty if no picture is shown, or if `texcoords` is of_texture_faces and none is named.
+  std::vector<std::string> texture_files;
   bool check_colours = false;  ///< the stored type holds values that `attributes.colour` does not
+  /// Of faces: only if vertices have none. `face_alpha`: with integers alone.
+  ColourType face_colour = ColourType::none;
+  bool face_alpha = false;
+  std::vector<std::string> unused;  ///< what is skipped: "vertex.intensity", or an element: "edge"
+  bool has_unnamed_texcoords = false;        ///< faces have them, and no picture is named
+  std::vector<std::string> unused_pictures;  ///< that are named and cannot be shown
+
+  /// Fills `unused`.
+  void list_unused();
+  /// Whether corners have something of their own, which read_faces() tells.
+  bool has_corner_attributes() const {
+    return texcoords != PlyTexcoords::none || face_colour != ColourType::none;
+  }
 };
 
 /// Colours whose numbers are light, in files that the import wrote.
@@ -54,25 +85,35 @@ enum class PlyWrittenBy : std::uint8_t { anyone, import };
 /// Decides what is read:
 ///
 ///   element vertex       x y z                           required, any scalar type
-///                        nx ny nz                        any scalar type, as given
+///                        nx ny nz                        or normalx ..., or normal_x ...; any
+///                                                        scalar type, as given
 ///                        red green blue [alpha]          or r g b [a], or diffuse_red ... [alpha]
-///                        s t | u v | texture_u texture_v | texture_s texture_t
+///                        s t | u v | texture_u texture_v | texture_s texture_t | tu tv
 ///                        material                        behind the coordinates, if it is asked
 ///                        for
 ///   element face         list vertex_indices | vertex_index
+///                        red green blue [alpha]          if vertices have no colour
 ///   element tristrips    list vertex_indices | vertex_index
 ///
 /// and, if comments name texture files (TextureFile NAME), of polygons also
 ///
-///   list texcoord        u v of each corner, or nothing; any scalar type
+///   list texcoord        or texcoords, texture_coordinates, ...: u v of each corner, or nothing;
+///                        any scalar type
 ///   texnumber            the texture file, from 0 on; -1: none; an integer type
 ///
+/// or, as Artec Studio writes them, instead of these, whether texture files are named or not
+///
+///   element multi_texture_vertex   u v                              any scalar type
+///   element multi_texture_face     list texture_vertex_indices      of a face's corners
+///                                  tx, tn                           the texture; the face
+///
+/// Scalars that are not there as written are looked for without regard to the case of letters.
 /// Attributes of which not all parts are there are skipped. The parts of a colour must be of one
 /// type, else they are skipped: uchar is u8, ushort is u16, float and double are f32; the other
 /// integer types are read as u8, as 0 to 255 is what files mean by them (other values are errors).
-/// Everything else is skipped. Throws Error(input) if the vertices or faces cannot be read, if
-/// there are 2^32 vertices or more, or if the declared counts do not fit into `file_bytes`.
-/// Allocates nothing that a count sizes.
+/// Everything else is skipped, and listed. Throws Error(input) if the vertices or faces cannot be
+/// read, if there are 2^32 vertices or more, or if the declared counts do not fit into
+/// `file_bytes`. Allocates nothing that a count sizes.
 PlyPlan make_ply_plan(const PlyHeader& header, std::uint64_t file_bytes,
                       const std::filesystem::path& path,
                       PlyWrittenBy writer = PlyWrittenBy::anyone);

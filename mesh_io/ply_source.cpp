@@ -50,12 +50,10 @@ class PlyFileSource final : public PlySource {
     return triangle_blocks_->read(input(), index, memory);
   }
   FaceCounts read_triangles_from(std::uint64_t face, const TriangleVisitor& visit) override;
-  const std::vector<std::string>& texture_files() const override { return plan_.texture_files; }
-  bool has_face_texcoords() const override {
-    return std::ranges::any_of(
-        plan_.elements, [](const PlyElementPlan& plan) { return plan.texcoords.has_value(); });
-  }
-  FaceCounts read_textured_faces(const PlyFaceVisitor& visit) override;
+  const PlyPlan& plan() const override { return plan_; }
+  FaceCounts read_faces(const PlyFaceVisitor& visit) override;
+  void read_texture_vertices(const std::function<void(std::array<float, 2>)>& visit) override;
+  void read_texture_faces(const PlyTextureFaceVisitor& visit) override;
   Vec3d place_of(std::uint32_t vertex) override { return places().at(vertex); }
   std::uint64_t checksum(const std::function<void()>& check) override {
     return checksum_.complete(*file_, check);
@@ -71,6 +69,8 @@ class PlyFileSource final : public PlySource {
   void plan_blocks();
   std::unique_ptr<PlyBody> body_at(std::size_t element);
   std::size_t first_face_element() const;
+  std::size_t element_of(PlyElementPlan::Role role) const;
+  std::size_t texture_count() const;
   PlyPlaces& places();
 
   std::unique_ptr<storage::File> file_;
@@ -149,6 +149,17 @@ std::size_t PlyFileSource::first_face_element() const {
   return static_cast<std::size_t>(found - plan_.elements.begin());
 }
 
+std::size_t PlyFileSource::element_of(PlyElementPlan::Role role) const {
+  const auto found = std::ranges::find(plan_.elements, role, &PlyElementPlan::role);
+  return static_cast<std::size_t>(found - plan_.elements.begin());
+}
+
+std::size_t PlyFileSource::texture_count() const {
+  const bool is_unnamed =
+      plan_.texcoords == PlyTexcoords::of_texture_faces && plan_.texture_files.empty();
+  return is_unnamed ? kMostUnnamedTextures : plan_.texture_files.size();
+}
+
 PlyPlaces& PlyFileSource::places() {
   if (!places_) {
     const PlyPosition start = body_at(plan_.vertex_element)->position();
@@ -209,8 +220,10 @@ FaceCounts read_strips(PlyBody& body, const PlyElementPlan& plan, const PlyFaceV
   return blocks.finish();
 }
 
-FaceCounts PlyFileSource::read_textured_faces(const PlyFaceVisitor& visit) {
+FaceCounts PlyFileSource::read_faces(const PlyFaceVisitor& visit) {
   const std::size_t first = first_face_element();
+  const PlyFaceLimits limits{description_.vertex_count, 0, texture_count()};
+  PlyFace face;
   const auto body = body_at(first);
   FaceCounts counts;
   for (std::size_t i = first; i < plan_.elements.size(); ++i) {
@@ -220,7 +233,12 @@ FaceCounts PlyFileSource::read_textured_faces(const PlyFaceVisitor& visit) {
       counts.faces += strips.faces;
       counts.degenerate_triangles += strips.degenerate_triangles;
     } else if (element.has_faces()) {
-      body->read_textured_faces(element, plan_.texture_files.size(), visit);
+      body->read_rows(element, [&](const PlyRow& row) {
+        std::string defect = take_face(element, row, limits, face);
+        if (defect.empty())
+          visit(face);
+        return defect;
+      });
       counts.faces += element.element.count;
     } else {
       body->skip(element);
@@ -231,15 +249,39 @@ FaceCounts PlyFileSource::read_textured_faces(const PlyFaceVisitor& visit) {
   return counts;
 }
 
+void PlyFileSource::read_texture_vertices(const std::function<void(std::array<float, 2>)>& visit) {
+  const std::size_t index = element_of(PlyElementPlan::Role::texture_vertices);
+  const auto [u, v] = plan_.elements[index].texcoord;
+  body_at(index)->read_rows(plan_.elements[index], [&](const PlyRow& row) {
+    visit({static_cast<float>(row.values[u][0]), static_cast<float>(row.values[v][0])});
+    return std::string();
+  });
+}
+
+void PlyFileSource::read_texture_faces(const PlyTextureFaceVisitor& visit) {
+  const std::size_t index = element_of(PlyElementPlan::Role::texture_faces);
+  const PlyElementPlan& plan = plan_.elements[index];
+  const auto count_of = [&](PlyElementPlan::Role role) {
+    return plan_.elements[element_of(role)].element.count;
+  };
+  const PlyFaceLimits limits{count_of(PlyElementPlan::Role::texture_vertices),
+                             count_of(PlyElementPlan::Role::polygons), texture_count()};
+  PlyTextureFace face;
+  body_at(index)->read_rows(plan, [&](const PlyRow& row) {
+    std::string defect = take_texture_face(plan, row, limits, face);
+    if (defect.empty())
+      visit(face);
+    return defect;
+  });
+}
+
 }  // namespace
 
-bool ply_names_textures(std::string_view start, const std::filesystem::path& path) {
+std::optional<PlyPlan> plan_of(std::string_view start, const std::filesystem::path& path) {
   try {
-    const PlyHeader header = parse_ply_header(start, path);
-    return !header.texture_files.empty() &&
-           !make_ply_plan(header, UINT64_MAX, path).texture_files.empty();
+    return make_ply_plan(parse_ply_header(start, path), UINT64_MAX, path);
   } catch (const Error&) {
-    return false;  // who reads it says why it cannot be read
+    return std::nullopt;  // who reads it says why it cannot be read
   }
 }
 

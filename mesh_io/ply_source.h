@@ -6,31 +6,35 @@
 #include "mesh_io/ply_plan.h"
 #include "storage/io/file.h"
 
+#include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
-#include <string>
-#include <vector>
+#include <optional>
+#include <string_view>
 
 namespace meshhier::mesh_io {
 
-/// A PLY file, which may name pictures.
+/// A PLY file, whose faces may show pictures or have colours.
 class PlySource : public MeshSource {
  public:
-  /// The pictures that faces number; empty unless vertices or faces have texture coordinates.
-  virtual const std::vector<std::string>& texture_files() const = 0;
-  /// Whether faces have coordinates of their own, which count instead of those of vertices.
-  virtual bool has_face_texcoords() const = 0;
-  /// As read_triangles(), but whole faces with their textures; triangle strips as single triangles,
+  virtual const PlyPlan& plan() const = 0;
+  /// As read_triangles(), but whole faces with what they show; triangle strips as single triangles,
   /// of picture 0. Returns how many faces the file has, and what degenerate triangles strips had;
   /// polygons are visited as they are.
-  virtual FaceCounts read_textured_faces(const PlyFaceVisitor& visit) = 0;
+  virtual FaceCounts read_faces(const PlyFaceVisitor& visit) = 0;
+  /// Visits u and v of all texture vertices. Both require PlyTexcoords::of_texture_faces.
+  virtual void read_texture_vertices(const std::function<void(std::array<float, 2>)>& visit) = 0;
+  virtual void read_texture_faces(const PlyTextureFaceVisitor& visit) = 0;
   /// Where a vertex lies; reads it again. Throws Error(io).
   virtual Vec3d place_of(std::uint32_t vertex) = 0;
 };
 
-/// Whether the file at the start of which is `start` names pictures and has coordinates in them;
-/// false also if its header cannot be read.
-bool ply_names_textures(std::string_view start, const std::filesystem::path& path);
+/// Texture faces may have this many pictures if the header does not name them.
+inline constexpr std::size_t kMostUnnamedTextures = std::size_t{1} << 16;
+
+/// What is read of the file at the start of which is `start`; none if its header cannot be read.
+std::optional<PlyPlan> plan_of(std::string_view start, const std::filesystem::path& path);
 
 /// Reads the header of `file` and checks it. What is accepted: ply_header.h, ply_plan.h,
 /// ply_body.h.

@@ -40,8 +40,7 @@ class TextBody final : public PlyBody {
   void skip(const PlyElementPlan& plan) override;
   void read_vertices(const PlyElementPlan& plan, VertexBlocks& blocks) override;
   void read_faces(const PlyElementPlan& plan, std::uint64_t first, TriangleBlocks& blocks) override;
-  void read_textured_faces(const PlyElementPlan& plan, std::size_t textures,
-                           const PlyFaceVisitor& visit) override;
+  void read_rows(const PlyElementPlan& plan, const PlyRowVisitor& visit) override;
   void expect_end() override;
 
  private:
@@ -64,8 +63,7 @@ class TextBody final : public PlyBody {
   void skip_property(const Row& row, const PlyProperty& property);
   void take_corners(const Row& row, const PlyProperty& property, TriangleBlocks& blocks);
   std::int64_t take_index(const Row& row, const PlyProperty& property);
-  std::uint64_t take_face_count(const Row& row, const PlyProperty& property, std::uint64_t most);
-  std::int64_t take_textured_row(const Row& row, PlyFace& face);
+  void take_property(const Row& row, std::size_t property, std::vector<double>& values);
 
   TextCursor cursor_;
   std::uint64_t vertex_count_;
@@ -230,53 +228,37 @@ std::int64_t TextBody::take_index(const Row& row, const PlyProperty& property) {
   return *index;
 }
 
-void TextBody::read_textured_faces(const PlyElementPlan& plan, std::size_t textures,
-                                   const PlyFaceVisitor& visit) {
-  PlyFace face;
-  for (std::uint64_t i = 0; i < plan.element.count; ++i) {
-    const Row row{plan, i};
+void TextBody::read_rows(const PlyElementPlan& plan, const PlyRowVisitor& visit) {
+  PlyRow taken;
+  taken.values.resize(plan.element.properties.size());
+  for (taken.number = 0; taken.number < plan.element.count; ++taken.number) {
+    const Row row{plan, taken.number};
     begin_row(row);
-    face.clear();
-    const std::int64_t number = take_textured_row(row, face);
+    for (std::size_t i = 0; i < taken.values.size(); ++i) {
+      if (plan.takes(i)) {
+        take_property(row, i, taken.values[i]);
+      } else {
+        skip_property(row, plan.element.properties[i]);
+      }
+    }
     end_row(row);
-    const std::string defect = texture_defect(plan, i, face, number, textures);
+    const std::string defect = visit(taken);
     if (!defect.empty())
       fail(defect);
-    face.texture = static_cast<std::int32_t>(number);
-    visit(face);
   }
 }
 
-/// Returns the number of the texture.
-std::int64_t TextBody::take_textured_row(const Row& row, PlyFace& face) {
-  std::int64_t number = 0;
-  for (std::size_t k = 0; k < row.plan.element.properties.size(); ++k) {
-    const PlyProperty& property = row.plan.element.properties[k];
-    if (k == row.plan.corners) {
-      for (std::uint64_t n = take_face_count(row, property, PlyFace::kMostCorners); n > 0; --n) {
-        const std::int64_t index = take_index(row, property);
-        if (index < 0 || static_cast<std::uint64_t>(index) >= vertex_count_)
-          fail(index_text(row.plan, row.number, index, vertex_count_));
-        face.corners.push_back(static_cast<std::uint32_t>(index));
-      }
-    } else if (k == row.plan.texcoords) {
-      for (std::uint64_t n = take_face_count(row, property, 2 * PlyFace::kMostCorners); n > 0; --n)
-        face.texcoords.push_back(static_cast<float>(take_number(row, property)));
-    } else if (k == row.plan.texnumber) {
-      number = take_integer(row, property, property.type);
-    } else {
-      skip_property(row, property);
-    }
-  }
-  return number;
-}
-
-std::uint64_t TextBody::take_face_count(const Row& row, const PlyProperty& property,
-                                        std::uint64_t most) {
-  const std::uint64_t count = take_count(row, property);
-  if (count > most)
+void TextBody::take_property(const Row& row, std::size_t index, std::vector<double>& values) {
+  const PlyProperty& property = row.plan.element.properties[index];
+  const std::uint64_t count = property.is_list() ? take_count(row, property) : 1;
+  if (count > most_items(row.plan, index))
     fail(corners_text(row.plan, row.number, count));
-  return count;
+  values.clear();
+  for (std::uint64_t i = 0; i < count; ++i) {
+    values.push_back(index == row.plan.corners && row.plan.role != Role::texture_vertices
+                         ? static_cast<double>(take_index(row, property))
+                         : take_number(row, property));
+  }
 }
 
 void TextBody::expect_end() {

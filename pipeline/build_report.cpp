@@ -107,6 +107,8 @@ std::string account_text(const SourceSummary& source, const BuildStats& stats) {
   }
   if (!source.counts.empty())
     text += "counted " + importing::counts_text(source.counts) + '\n';
+  if (!source.unused.empty())
+    text += fmt::format("not used: {}\n", fmt::join(source.unused, ", "));
   return text + stats_text(stats);
 }
 

@@ -58,6 +58,9 @@ class SourceMesh {
   std::uint64_t declared_faces() const { return source_->description().face_count; }
   bool vertices_in_place() const { return source_->description().vertices_in_place; }
 
+  /// SourceSummary::unused.
+  void note_unused(std::vector<std::string> names) { summary_.unused = std::move(names); }
+
   /// Add to positions to get input coordinates: origin_of() the vertices that triangles use.
   Vec3d origin() const { return origin_; }
 

@@ -111,7 +111,7 @@ bool InputSlices::take_faces_entry(const Entry& faces) {
     return true;
   faces_ended_ = !faces.at("whole").get<bool>();
   const Entry& counts = faces.at("counts");
-  counts_ = counts_ + mesh_io::FaceCounts{counts.at(0), counts.at(1), counts.at(2)};
+  counts_ = counts_ + mesh_io::FaceCounts{counts.at(0), counts.at(1), counts.at(2), {}};
   workshop_.chunks.add_wide(faces.at("wide").get<WideCounts>());
   return counts_.faces <= file_->description().face_count;
 }

@@ -236,6 +236,8 @@ SourceSummary read_source(const JsonObject& object) {
     read_import(object.object("import"), source);
   else if (object.has("counts"))
     source.counts = read_counts(object.object("counts"));
+  if (object.has("unused"))
+    source.unused = object.texts("unused");
   return source;
 }
 
@@ -296,6 +298,8 @@ Json source_json(const SourceSummary& source) {
     json["import"] = import_json(source);
   else if (!source.counts.empty())
     json["counts"] = counts_json(source.counts);
+  if (!source.unused.empty())
+    json["unused"] = source.unused;
   return json;
 }
 

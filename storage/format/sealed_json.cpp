@@ -163,6 +163,14 @@ bool JsonObject::boolean(const char* key) const {
   return at(key).get<bool>();
 }
 
+std::vector<std::string> JsonObject::texts(const char* key) const {
+  const Json& value = at(key);
+  const auto is_text = [](const Json& one) { return one.is_string(); };
+  if (!value.is_array() || !std::ranges::all_of(value, is_text))
+    wrong(key, "an array of texts");
+  return value.get<std::vector<std::string>>();
+}
+
 std::string JsonObject::text(const char* key) const {
   if (!at(key).is_string())
     wrong(key, "a text");

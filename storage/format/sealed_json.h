@@ -64,6 +64,7 @@ class JsonObject {
   std::uint32_t short_count(const char* key) const;
   bool boolean(const char* key) const;
   std::string text(const char* key) const;
+  std::vector<std::string> texts(const char* key) const;
   double number(const char* key) const;  ///< finite
   Vec3d point(const char* key) const;
   std::optional<Transform> transform_or_null(const char* key) const;

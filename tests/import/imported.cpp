@@ -113,7 +113,9 @@ Imported import_files(storage::FileSystem& files, const mesh_io::InputPaths& inp
   read(*input.open(), result);
   input.complete(result.summary);
   result.record = input.record(0);
-  result.warnings = warnings.all;
+  result.warnings = input.files().warnings();
+  result.warnings.insert(result.warnings.end(), warnings.all.begin(), warnings.all.end());
+  result.summary.unused = input.files().unused();
   result.disk_bytes = pool.scratch_use().peak_bytes_on_disk();
   result.predicted_bytes = importing::predict_import(input.files(), how.memory);
   return result;

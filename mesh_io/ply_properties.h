@@ -1,0 +1,48 @@
+// Properties of a PLY file's elements by the names that programs give them.
+//
+// A name is looked for as it is written, else without regard to the case of ASCII letters, if one
+// property alone fits.
+#pragma once
+
+#include "hierarchy/attributes.h"
+#include "mesh_io/ply_header.h"
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace meshhier::mesh_io {
+
+/// Index of the scalar property `name`, or -1. Throws Error(input) if there are two.
+int find_scalar(const PlyElement& element, std::string_view name,
+                const std::filesystem::path& path);
+
+/// True if all `names` are there; fills `found` with their indices.
+bool find_all(const PlyElement& element, std::span<const std::string_view> names,
+              std::span<int> found, const std::filesystem::path& path);
+
+/// The first list property that has one of `names`; none if there is none.
+std::optional<std::size_t> find_list(const PlyElement& element,
+                                     std::span<const std::string_view> names);
+
+/// Red, green, blue, and two names that alpha has.
+using PlyColourNames = std::array<std::string_view, 5>;
+inline constexpr std::array<PlyColourNames, 3> kPlyColours{
+    {{"red", "green", "blue", "alpha", "a"},
+     {"r", "g", "b", "a", "alpha"},
+     {"diffuse_red", "diffuse_green", "diffuse_blue", "diffuse_alpha", "alpha"}}};
+
+struct PlyColour {
+  std::vector<int> properties;  ///< three, or four with alpha
+  ColourType kind = ColourType::none;
+  bool is_checked = false;  ///< the type holds values that `kind` does not
+};
+
+/// None unless the three are there and of one type.
+std::optional<PlyColour> find_colour(const PlyElement& element, const PlyColourNames& names,
+                                     const std::filesystem::path& path);
+
+}  // namespace meshhier::mesh_io
