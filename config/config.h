@@ -9,6 +9,7 @@
 #include "hierarchy/target_vertex_counts.h"
 #include "hierarchy/texture.h"
 #include "hierarchy/topology.h"
+#include "hierarchy/unit.h"
 #include "mesh_io/input_paths.h"
 #include "partition/direction.h"
 #include "storage/format/tile_glb.h"
@@ -144,6 +145,12 @@ enum class MissingImages {
 inline constexpr std::array kMissingImages{NamedValue{"warn", MissingImages::warn},
                                            NamedValue{"ignore", MissingImages::ignore}};
 
+inline constexpr std::array kUnits{
+    NamedValue{name_of(Unit::mm), Unit::mm},      NamedValue{name_of(Unit::cm), Unit::cm},
+    NamedValue{name_of(Unit::m), Unit::m},        NamedValue{name_of(Unit::km), Unit::km},
+    NamedValue{name_of(Unit::in), Unit::in},      NamedValue{name_of(Unit::ft), Unit::ft},
+    NamedValue{name_of(Unit::us_ft), Unit::us_ft}};
+
 inline constexpr std::array kUpAxes{NamedValue{name_of(UpAxis::y), UpAxis::y},
                                     NamedValue{name_of(UpAxis::z), UpAxis::z}};
 
@@ -181,6 +188,7 @@ struct Config {
   TextureConfig texture;
   MissingImages missing_images = MissingImages::warn;
   UpAxis up = UpAxis::y;
+  std::optional<Unit> units;  ///< of the input's coordinates; none: as the format says, or unknown
   PlacementConfig placement;
   std::string licence;  ///< of the model; for the tileset; may be empty
   friend bool operator==(const Config&, const Config&) = default;

@@ -397,6 +397,12 @@ std::vector<ConfigKey> make_config_keys() {
            .meaning = "which axis of the input points up: `y` as in glTF, `z` as in maps and "
                       "medical images"},
           kUpAxes, [](auto& c) -> auto& { return c.up; })),
+      deciding(choice(
+          {.path = "units",
+           .meaning = "what lengths of the input are in: the tileset and its place are in metres, "
+                      "and viewers show it (`us_ft`: the foot of US surveys)",
+           .unset = "metres of glTF, else not known: placed as metres, or as the map's unit"},
+          kUnits, [](auto& c) -> auto& { return c.units; })),
       deciding(number(
           {.path = "placement.longitude", .meaning = "degrees east", .needs = {"latitude"}},
           {-kHalfTurn, kHalfTurn}, [](auto& c) -> auto& { return c.placement.longitude; })),
@@ -438,7 +444,7 @@ std::vector<ConfigKey> make_config_keys() {
       deciding(numbers(
           {.path = "placement.transform",
            .meaning = "instead of a place: the matrix of the tileset's root, column "
-                      "by column, from z-up coordinates",
+                      "by column, from z-up coordinates (in metres, if `units` are given)",
            .excludes = {"longitude"}},
           [](auto& c) -> auto& { return c.placement.transform; })),
       deciding(text(

@@ -67,24 +67,37 @@ BoundsD z_up_box(const BoundsD& bounds, UpAxis up) {
   return box;
 }
 
-geodesy::MappedModel mapped_model(const Config& config, const BoundsD& bounds) {
+/// Metres that a unit of the input is, as the config says it.
+double metres(const Config& config) {
+  return config.units ? metres_of(*config.units) : 1;
+}
+
+geodesy::MappedModel mapped_model(const Config& config, const BoundsD& bounds,
+                                  const geodesy::MapProjection& projection) {
   const PlacementConfig& place = config.placement;
   const Vec3d anchor =
       place.anchor ? to_vec(*place.anchor) : bounds.min + (bounds.max - bounds.min) * 0.5;
-  return {to_vec(place.offset.value_or(std::array<double, 3>{})), to_z_up(anchor, config.up)};
+  const double scale = config.units ? metres(config) / projection.unit_metres() : 1;
+  return {to_vec(place.offset.value_or(std::array<double, 3>{})), to_z_up(anchor, config.up),
+          scale};
 }
 
-/// The projection as it is where the model lies.
-geodesy::MapProjection settled(const PlacementConfig& place, const geodesy::MappedModel& model) {
-  geodesy::MapProjection projection = projection_of(place);
-  about("placement", [&] { projection.settle_at(model.anchor + model.offset); });
-  return projection;
-}
+/// A model on its map, and the projection as it is where the model lies.
+struct Mapped {
+  Mapped(const Config& config, const BoundsD& bounds)
+      : projection(projection_of(config.placement)),
+        model(mapped_model(config, bounds, projection)) {
+    about("placement", [&] { projection.settle_at(model.to_map(model.anchor)); });
+  }
+
+  geodesy::MapProjection projection;
+  geodesy::MappedModel model;
+};
 
 Transform map_transform(const Config& config, const BoundsD& bounds) {
-  const geodesy::MappedModel model = mapped_model(config, bounds);
-  const geodesy::MapProjection projection = settled(config.placement, model);
-  return about("placement", [&] { return geodesy::map_transform(projection, model); });
+  const Mapped mapped(config, bounds);
+  return about("placement",
+               [&] { return geodesy::map_transform(mapped.projection, mapped.model); });
 }
 
 /// Rounded up.
@@ -102,6 +115,18 @@ std::string exactness_text(const geodesy::MapProjection& projection, double larg
   return text;
 }
 
+/// Of a model that the config puts on the globe itself.
+std::string globe_text(const Config& config, const BoundsD& bounds) {
+  const PlacementConfig& place = config.placement;
+  const BoundsD box = z_up_box(bounds, config.up);
+  const Vec3d size = (box.max - box.min) * metres(config);
+  return fmt::format(
+      "placed at longitude {:.6f}, latitude {:.6f}, height {:.1f} m: {:.4g} m from west to east, "
+      "{:.4g} m from south to north, {:.4g} m high{}\n",
+      *place.longitude, *place.latitude, place.height.value_or(0), size.x, size.y, size.z,
+      config.units ? "" : " (taken to be in metres: \"units\" says others)");
+}
+
 }  // namespace
 
 Config with_map(storage::FileSystem& files, Config config) {
@@ -117,18 +142,19 @@ std::optional<Transform> tileset_transform(const Config& config, const BoundsD& 
   const PlacementConfig& place = config.placement;
   if (place.crs)
     return map_transform(config, bounds);
+  const double scale = metres(config);
   if (!place.longitude)
-    return place.transform;
-  return storage::globe_transform(*place.longitude, *place.latitude, place.height.value_or(0),
-                                  to_vec(place.anchor.value_or(std::array<double, 3>{})),
-                                  config.up);
+    return place.transform ? std::optional(scaled(*place.transform, scale)) : std::nullopt;
+  const Vec3d anchor = to_vec(place.anchor.value_or(std::array<double, 3>{})) * scale;
+  return scaled(storage::globe_transform(*place.longitude, *place.latitude,
+                                         place.height.value_or(0), anchor, config.up),
+                scale);
 }
 
 bool fits_map(const Config& config, const BoundsD& bounds, const Transform& transform) try {
   constexpr double kVersionsApart = 10;
-  const geodesy::MappedModel model = mapped_model(config, bounds);
-  const geodesy::MapProjection projection = settled(config.placement, model);
-  const auto error_of = [&](const Transform& one) {
+  const auto [projection, model] = Mapped(config, bounds);
+  const auto error_of = [&, &projection = projection, &model = model](const Transform& one) {
     return geodesy::largest_error(projection, model, one, z_up_box(bounds, config.up));
   };
   return error_of(transform) <=
@@ -139,12 +165,13 @@ bool fits_map(const Config& config, const BoundsD& bounds, const Transform& tran
 
 std::string placement_text(const Config& config, const BoundsD& bounds,
                            const Transform& transform) {
+  if (config.placement.longitude)
+    return globe_text(config, bounds);
   if (!config.placement.crs)
     return "";
-  const geodesy::MappedModel model = mapped_model(config, bounds);
-  const geodesy::MapProjection projection = settled(config.placement, model);
+  const auto [projection, model] = Mapped(config, bounds);
   const geodesy::Geodetic place =
-      projection.to_geodetic(projection.to_geocentric(model.anchor + model.offset));
+      projection.to_geodetic(projection.to_geocentric(model.to_map(model.anchor)));
   const double off =
       geodesy::largest_error(projection, model, transform, z_up_box(bounds, config.up));
   std::string text = fmt::format(

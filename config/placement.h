@@ -30,7 +30,8 @@ std::optional<Transform> tileset_transform(const Config& config, const BoundsD& 
 /// metres apart. True if this PROJ cannot tell.
 bool fits_map(const Config& config, const BoundsD& bounds, const Transform& transform);
 
-/// For people, of a model with a crs: where it stands, and how exactly; else "". Each line ends.
+/// For people, of a model with a place: where it stands, and how large it is there or how exactly;
+/// else "". Each line ends.
 /// `transform`: tileset_transform().
 std::string placement_text(const Config& config, const BoundsD& bounds, const Transform& transform);
 

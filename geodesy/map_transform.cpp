@@ -37,9 +37,9 @@ Vec3d applied(const Transform& m, Vec3d p) {
 Transform map_transform(const MapProjection& projection, const MappedModel& model) {
   constexpr int kDerivativeBits = 27;
   constexpr int kPlaceBits = 13;
-  const Vec3d map = model.anchor + model.offset;
+  const Vec3d map = model.to_map(model.anchor);
   const auto along = [&](Vec3d axis) {
-    return rounded(derivative(projection, map, axis), kDerivativeBits);
+    return rounded(derivative(projection, map, axis), kDerivativeBits) * model.scale;
   };
   const Vec3d x = along({1, 0, 0}), y = along({0, 1, 0}), z = along({0, 0, 1});
   const Vec3d place = rounded(projection.to_geocentric(map), kPlaceBits);
@@ -55,7 +55,7 @@ double largest_error(const MapProjection& projection, const MappedModel& model,
     const Vec3d p{(corner & 1) != 0 ? box.max.x : box.min.x,
                   (corner & 2) != 0 ? box.max.y : box.min.y,
                   (corner & 4) != 0 ? box.max.z : box.min.z};
-    const Vec3d exact = projection.to_geocentric(p + model.offset);
+    const Vec3d exact = projection.to_geocentric(model.to_map(p));
     const double off = length(applied(transform, p) - exact);
     largest = std::max(largest, std::isfinite(off) ? off : std::numeric_limits<double>::infinity());
   }

@@ -9,8 +9,11 @@ namespace meshhier::geodesy {
 
 /// A model in coordinates of a map; all of its own coordinates are z-up.
 struct MappedModel {
-  Vec3d offset;  ///< added to the model's coordinates it makes those of the map
-  Vec3d anchor;  ///< of the model: where the transform is exact
+  Vec3d offset;      ///< added to the model's coordinates it makes those of the map
+  Vec3d anchor;      ///< of the model: where the transform is exact
+  double scale = 1;  ///< units of the map that one of the model's is, before the offset
+
+  Vec3d to_map(Vec3d p) const { return p * scale + offset; }
 };
 
 /// From the model's coordinates to geocentric ones: right at the anchor, with the derivatives that

@@ -37,4 +37,13 @@ constexpr Vec3d to_z_up(Vec3d p, UpAxis up) {
 /// A 4 x 4 matrix, column by column.
 using Transform = std::array<double, 16>;
 
+/// Of points that are scaled before.
+constexpr Transform scaled(Transform transform, double scale) {
+  for (std::size_t i = 0; i < 12; ++i)
+    transform[i] *= scale;
+  return transform;
+}
+
+inline constexpr Transform kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+
 }  // namespace meshhier

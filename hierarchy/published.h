@@ -8,6 +8,7 @@
 #include "hierarchy/texture.h"
 #include "hierarchy/tile_mesh.h"
 #include "hierarchy/tree.h"
+#include "hierarchy/unit.h"
 
 #include <cstdint>
 #include <optional>
@@ -95,6 +96,7 @@ struct SourceSummary {
   std::uint64_t unreferenced_vertices = 0;
   BoundsD bounds;                          ///< input coordinates
   bool double_precision = false;           ///< coordinates do not fit float exactly
+  std::optional<Unit> units;               ///< of coordinates, if the format says it
   AttributeLayout attributes;              ///< without texture coordinates if it has textures
   std::optional<SourceTextures> textures;  ///< none: no picture, or the build was to ignore them
   std::vector<SourceFile> files;  ///< in their order; empty: one PLY that was read in place

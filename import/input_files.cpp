@@ -97,6 +97,14 @@ void InputFiles::look_for_picture(const InputFileFacts& facts) {
   }
 }
 
+std::optional<Unit> InputFiles::units() const {
+  const bool is_gltf = std::ranges::all_of(all_, [](const InputFileFacts& file) {
+    return file.format.kind == mesh_io::MeshKind::gltf ||
+           file.format.kind == mesh_io::MeshKind::glb;
+  });
+  return is_gltf ? std::optional(Unit::m) : std::nullopt;
+}
+
 std::vector<std::string> InputFiles::unused() const {
   std::vector<std::string> names;
   for (const std::string& name : std::span(unused_).first(std::min(unused_.size(), kMostUnused)))

@@ -56,6 +56,8 @@ class InputFiles {
   /// Takes those of an earlier build, as they are now. False if one is not there any more, or if
   /// one that was not there is; then nothing is changed.
   bool recall(const InputRecord& earlier);
+  /// As SourceSummary's: metres if all meshes are glTF.
+  std::optional<Unit> units() const;
   /// As SourceSummary's, each once: the first kMostUnused and how many more.
   std::vector<std::string> unused() const;
   /// What all should know of pictures that are not used, a line each.

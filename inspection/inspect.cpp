@@ -132,6 +132,8 @@ std::string source_text(const storage::Manifest& manifest) {
                   grouped(s.faces, "faces"), grouped(s.degenerate_triangles));
   text += fmt::format("bounds       {} {} {} to {} {} {}{}\n", b.min.x, b.min.y, b.min.z, b.max.x,
                       b.max.y, b.max.z, s.double_precision ? ", double precision" : "");
+  if (manifest.units)
+    text += fmt::format("units        {}\n", name_of(*manifest.units));
   if (manifest.origin != Vec3d{}) {
     const Vec3d& o = manifest.origin;
     text += fmt::format("origin       {} {} {}\n", o.x, o.y, o.z);
@@ -415,6 +417,7 @@ Json tileset_json(const storage::Manifest& manifest) {
   return {{"files", manifest.tileset_files},
           {"bytes", manifest.tileset_bytes},
           {"up", name_of(manifest.up)},
+          {"units", manifest.units ? Json(name_of(*manifest.units)) : Json()},
           {"transform", manifest.transform ? Json(*manifest.transform) : Json()},
           {"licence", manifest.licence}};
 }

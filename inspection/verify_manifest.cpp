@@ -115,6 +115,8 @@ void check_config_against_rest(const storage::Manifest& manifest, const config::
       "\"first_view\" is not that of \"config\"");
   if (says("/up"))
     problems.compare("up", name_of(manifest.up), name_of(config.up));
+  problems.require(manifest.units == (config.units ? config.units : manifest.source.units),
+                   "\"units\" are not those of \"config\" or the source");
   if (config.placement.crs) {
     problems.require(
         manifest.transform && config::fits_map(config, manifest.source.bounds, *manifest.transform),

@@ -58,8 +58,11 @@ class SourceMesh {
   std::uint64_t declared_faces() const { return source_->description().face_count; }
   bool vertices_in_place() const { return source_->description().vertices_in_place; }
 
-  /// SourceSummary::unused.
-  void note_unused(std::vector<std::string> names) { summary_.unused = std::move(names); }
+  /// As SourceSummary has them.
+  void note(std::optional<Unit> units, std::vector<std::string> unused) {
+    summary_.units = units;
+    summary_.unused = std::move(unused);
+  }
 
   /// Add to positions to get input coordinates: origin_of() the vertices that triangles use.
   Vec3d origin() const { return origin_; }

@@ -327,6 +327,7 @@ void write_account(Forest& forest, const TextureStore& textures, BuildJournal& j
   manifest.source = source;
   manifest.origin = format.frame.origin;
   manifest.up = format.frame.up;
+  manifest.units = context.config.units ? context.config.units : source.units;
   manifest.first_view = lines.first_view;
   manifest.transform = config::tileset_transform(context.config, source.bounds);
   manifest.licence = context.config.licence;

@@ -14,7 +14,7 @@ namespace {
 SourceMesh read_vertices(importing::MeshInput& input, storage::ScratchFile& scratch,
                          const StageContext& context) {
   SourceMesh mesh = ingest(input.open(), input.files().name(), scratch, context);
-  mesh.note_unused(input.files().unused());
+  mesh.note(input.files().units(), input.files().unused());
   for (const std::string& warning : input.files().warnings())
     context.progress.warn(warning);
   config::tileset_transform(context.config, mesh.summary().bounds);  // refused now, if at all

@@ -104,6 +104,8 @@ Json manifest_json(const Manifest& manifest) {
   document["source"] = source_json(manifest.source);
   document["origin"] = point_json(manifest.origin);
   document["up"] = name_of(manifest.up);
+  if (manifest.units)
+    document["units"] = name_of(*manifest.units);
   if (manifest.first_view)
     document["first_view"] = view_json(*manifest.first_view);
   document["transform"] = manifest.transform ? Json(*manifest.transform) : Json();
@@ -206,6 +208,17 @@ void read_import(const JsonObject& object, SourceSummary& source) {
   source.counts = read_counts(object.object("counts"));
 }
 
+std::optional<Unit> read_units(const JsonObject& object) {
+  if (!object.has("units"))
+    return std::nullopt;
+  const std::string name = object.text("units");
+  for (int i = 0; i <= static_cast<int>(Unit::us_ft); ++i) {
+    if (name_of(static_cast<Unit>(i)) == name)
+      return static_cast<Unit>(i);
+  }
+  object.wrong("units", "a unit of length");
+}
+
 SourceSummary read_source(const JsonObject& object) {
   SourceSummary source;
   source.file_name = object.text("file_name");
@@ -227,6 +240,7 @@ SourceSummary read_source(const JsonObject& object) {
   if (!(size.x >= 0 && size.y >= 0 && size.z >= 0))
     object.wrong("bounds", "min <= max");
   source.double_precision = object.boolean("double_precision");
+  source.units = read_units(object);
   source.attributes = object.attributes("attributes");
   if (object.has("textures"))
     source.textures = read_source_textures(object.object("textures"));
@@ -298,6 +312,8 @@ Json source_json(const SourceSummary& source) {
     json["import"] = import_json(source);
   else if (!source.counts.empty())
     json["counts"] = counts_json(source.counts);
+  if (source.units)
+    json["units"] = name_of(*source.units);
   if (!source.unused.empty())
     json["unused"] = source.unused;
   return json;
@@ -324,6 +340,7 @@ Manifest parse_manifest(const std::string& text, const std::string& name) {
   manifest.source = read_source(object.object("source"));
   manifest.origin = object.point("origin");
   manifest.up = object.up("up");
+  manifest.units = read_units(object);
   manifest.first_view = read_view(object);
   manifest.screen_colours = object.count("format_version") <= kScreenColoursFormatVersion;
   manifest.transform = object.transform_or_null("transform");

@@ -44,8 +44,9 @@ inline constexpr std::uint64_t kMostPreviewBytes = 40000;
 struct Manifest {
   std::string generator;  ///< "meshhier 0.1.0"
   SourceSummary source;
-  Vec3d origin;           ///< add to every stored position
-  UpAxis up = UpAxis::y;  ///< of the input
+  Vec3d origin;               ///< add to every stored position
+  UpAxis up = UpAxis::y;      ///< of the input
+  std::optional<Unit> units;  ///< of the input's coordinates, if they are known
   /// From where the model is looked at first; none: of format version 6, with screen_colours.
   std::optional<Standpoint> first_view;
   /// Of the tileset's root, for instance on the globe; from z-up coordinates, as 3D Tiles has them.
@@ -71,6 +72,13 @@ struct Manifest {
   std::uint64_t tileset_bytes = 0;     ///< of all of them
   std::uint64_t tileset_checksum = 0;  ///< XXH3-64 of all, one after another, tileset.json first
   std::uint64_t total_bytes = 0;       ///< of all files but this one
+
+  /// Of the tileset's root: its coordinates become metres. None: they are, or are not known.
+  std::optional<Transform> root_transform() const {
+    if (transform || !units || *units == Unit::m)
+      return transform;
+    return scaled(kIdentity, metres_of(*units));
+  }
 
   int format_version() const {
     return !screen_colours ? kFormatVersion

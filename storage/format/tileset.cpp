@@ -44,6 +44,16 @@ class Boxes {
   std::vector<std::vector<Bounds>> levels_;
 };
 
+/// How much longer a transform makes a line at most, of those along the axes; what a map or the
+/// rounding of a turn does to it is not looked at.
+double largest_scale(const Transform& m) {
+  constexpr double kNearlyOne = 0.01;
+  double largest = 0;
+  for (std::size_t column = 0; column < 12; column += 4)
+    largest = std::max(largest, length(Vec3d{m[column], m[column + 1], m[column + 2]}));
+  return std::abs(largest - 1) < kNearlyOne ? 1 : largest;
+}
+
 class TilesetWriter {
  public:
   TilesetWriter(const Manifest& manifest, const Tree& tree, std::span<const TileRecord> records)
@@ -83,12 +93,13 @@ class TilesetWriter {
       document["asset"]["extras"] = {{"generator", manifest_.generator}};
       describe_source(document);
     }
-    // What is missing while nothing is drawn.
-    const double error = record(root).error;
-    document["geometricError"] = std::max(diagonal(boxes_[root]), 2 * error);
+    // What is missing while nothing is drawn, in metres: no transform is above.
+    const std::optional<Transform> transform = manifest_.root_transform();
+    const double error = std::max(diagonal(boxes_[root]), 2.0 * record(root).error);
+    document["geometricError"] = error * (transform ? largest_scale(*transform) : 1);
     document["root"] = tile_json(root, root);
-    if (is_first && manifest_.transform)
-      document["root"]["transform"] = *manifest_.transform;
+    if (is_first && transform)
+      document["root"]["transform"] = *transform;
     return document.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
   }
 

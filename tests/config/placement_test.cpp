@@ -6,6 +6,7 @@
 #include <array>
 #include <string>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -161,7 +162,71 @@ TEST(PlacementTransform, IsToldToPeople) {
   EXPECT_THAT(text(R"("crs": "EPSG:25832")"),
               HasSubstr("warning: the model lies outside the area that ETRS89 / UTM zone 32N is "
                         "meant for"));
-  EXPECT_THAT(text(R"("longitude": 5, "latitude": 6)"), IsEmpty());
+  EXPECT_EQ(text(R"("longitude": 5, "latitude": 6)"),
+            "placed at longitude 5.000000, latitude 6.000000, height 0.0 m: 2000 m from west to "
+            "east, 2000 m from south to north, 20 m high (taken to be in metres: \"units\" says "
+            "others)\n");
+  EXPECT_THAT(text(R"("transform": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1])"), IsEmpty());
+}
+
+/// The same placement of a model in metres, and of it in other units: the same point of the model.
+TEST(PlacementUnits, MoveNoPointOfTheModel) {
+  struct Case {
+    const char* units;
+    double metres;
+  };
+  for (const auto& [units, metres] :
+       {Case{"mm", 0.001}, Case{"cm", 0.01}, Case{"km", 1000}, Case{"in", 0.0254},
+        Case{"ft", 0.3048}, Case{"us_ft", 1200.0 / 3937}}) {
+    const Vec3d point{120, -50, 30};
+    const Vec3d same = point * (1 / metres);
+    const auto box = [&](double scale) {
+      return box_to(Vec3d{-200, -100, 0} * scale, Vec3d{200, 100, 60} * scale);
+    };
+    const auto key = [](const char* unit) {
+      return fmt::format(R"("up": "z", "units": "{}")", unit);
+    };
+    const auto anchor = [&](double scale) {
+      return fmt::format(R"(, "anchor": [{}, {}, {}])", 10 * scale, 20 * scale, 5 * scale);
+    };
+    for (const std::string place :
+         {R"("longitude": 9, "latitude": 48, "height": 400)", kCrs.c_str(),
+          R"("crs": "EPSG:2263", "offset": [980000, 190000, 0])"}) {
+      const Config in_metres = placed(place + anchor(1), key("m"));
+      const Config in_units = placed(place + anchor(1 / metres), key(units));
+      const Transform wanted = tileset_transform(in_metres, box(1)).value();
+      const Transform found = tileset_transform(in_units, box(1 / metres)).value();
+      EXPECT_LT(length(config::apply(found, same) - config::apply(wanted, point)), 1e-5)
+          << units << ' ' << place;
+      EXPECT_TRUE(!in_units.placement.crs || fits_map(in_units, box(1 / metres), found));
+    }
+  }
+}
+
+TEST(PlacementUnits, ScaleATransformThatIsGiven) {
+  const std::string matrix = R"("transform": [0, 2, 0, 0, -2, 0, 0, 0, 0, 0, 2, 0, 7, 8, 9, 1])";
+  const BoundsD box = box_to({0, 0, 0}, {1, 1, 1});
+  const Transform m = tileset_transform(placed(matrix, R"("units": "mm")"), box).value();
+  EXPECT_EQ(m, (Transform{0, 0.002, 0, 0, -0.002, 0, 0, 0, 0, 0, 0.002, 0, 7, 8, 9, 1}));
+  EXPECT_FALSE(tileset_transform(placed("", R"("units": "mm")"), box)) << "it has no place";
+}
+
+TEST(PlacementUnits, OfTheMapAreTakenIfNoneAreGiven) {
+  const BoundsD box = box_to({980000, 190000, 0}, {981000, 191000, 100});
+  const std::string place = R"("crs": "EPSG:2263")";  // US feet
+  EXPECT_LT(
+      length(config::apply(tileset_transform(placed(place), box).value(), box.max) -
+             config::apply(
+                 tileset_transform(placed(place, R"("up": "z", "units": "us_ft")"), box).value(),
+                 box.max)),
+      1e-5);
+}
+
+TEST(PlacementUnits, AreNamed) {
+  for (const auto& [name, unit] : kUnits)
+    EXPECT_EQ(placed("", fmt::format(R"("units": "{}")", name)).units, unit);
+  EXPECT_EQ(placed("").units, std::nullopt);
+  EXPECT_THROW(placed("", R"("units": "feet")"), Error);
 }
 
 // ---- keys that exclude or need each other

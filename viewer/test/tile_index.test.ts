@@ -141,6 +141,14 @@ describe('readManifest', () => {
       expect(readManifest(textured(undefined, undefined).replace('"format_version":6', `"format_version":${version}`)).partitions).toBe(1);
   });
 
+  it('tells of units', () => {
+    const text = textured(undefined, undefined);
+    const withUnits = (units: string): string => text.replace('"up":"y"', `"up":"y","units":${units}`);
+    expect(readManifest(text).units).toBeNull();
+    expect(readManifest(withUnits('"us_ft"')).units).toBe('us_ft');
+    for (const wrong of ['"furlong"', 'null', '1']) expect(() => readManifest(withUnits(wrong))).toThrow(HierarchyProblem);
+  });
+
   it('tells of pictures', () => {
     expect(readManifest(textured(undefined, undefined)).source.textures).toBeNull();
     expect(readManifest(textured({ images: 3, missing_images: 1 }, stored)).source.textures).toEqual({ images: 3, missingImages: 1 });

@@ -328,6 +328,29 @@ TEST(Manifest, GivesBackWhatWasCountedInPlace) {
   EXPECT_EQ(again.counts[0].count, 3U);
 }
 
+TEST(Manifest, GivesBackUnitsAndWhatIsNotUsed) {
+  SourceSummary source = make_manifest().source;
+  EXPECT_FALSE(storage::source_json(source).contains("unused"));
+  EXPECT_FALSE(storage::source_json(source).contains("units"));
+  for (const Unit unit : {Unit::mm, Unit::cm, Unit::m, Unit::km, Unit::in, Unit::ft, Unit::us_ft}) {
+    source.units = unit;
+    source.unused = {"vertex.intensity", "edge"};
+    const SourceSummary again = storage::parse_source(storage::source_json(source), "job.json");
+    EXPECT_EQ(again.units, unit);
+    EXPECT_EQ(again.unused, source.unused);
+    Manifest whole = make_manifest();
+    whole.units = unit;
+    EXPECT_EQ(parse_manifest(to_json_text(whole), kManifestName).units, unit);
+  }
+  for (const auto& [key, wrong] :
+       {std::pair{"units", Json("furlong")}, std::pair{"units", Json(1)},
+        std::pair{"unused", Json("edge")}, std::pair{"unused", Json({1, 2})}}) {
+    Json json = storage::source_json(source);
+    json[key] = wrong;
+    EXPECT_THROW(storage::parse_source(json, "job.json"), Error) << json;
+  }
+}
+
 TEST(Manifest, WrongWordsOfAnImportAreNamed) {
   SourceSummary source = make_manifest().source;
   source.files = {{"a.obj", "OBJ", 5, 1}};

@@ -161,6 +161,30 @@ TEST(Tileset, TellsOfTheSource) {
   EXPECT_EQ(document["root"]["refine"], "REPLACE");
 }
 
+TEST(Tileset, IsInMetres) {
+  const Tree tree(100, 2);
+  const auto records = records_of(tree);
+  const auto document = [&](std::optional<Unit> units, std::optional<Transform> transform) {
+    Manifest manifest;
+    manifest.units = units;
+    manifest.transform = transform;
+    return Tileset(manifest, tree, records).document(storage::tileset_path({}));
+  };
+  const Json unknown = document({}, {});
+  EXPECT_FALSE(unknown["root"].contains("transform"));
+  EXPECT_EQ(document(Unit::m, {}), unknown);
+  const Json in_feet = document(Unit::ft, {});
+  const Transform feet{0.3048, 0, 0, 0, 0, 0.3048, 0, 0, 0, 0, 0.3048, 0, 0, 0, 0, 1};
+  EXPECT_EQ(in_feet["root"]["transform"], Json(feet));
+  EXPECT_EQ(in_feet["root"]["geometricError"], unknown["root"]["geometricError"])
+      << "viewers scale what lies below a transform";
+  EXPECT_DOUBLE_EQ(in_feet["geometricError"].get<double>(),
+                   0.3048 * unknown["geometricError"].get<double>());
+  EXPECT_EQ(document(Unit::ft, feet), in_feet) << "a place has its scale";
+  const Transform place = storage::globe_transform(9, 48, 0, {}, UpAxis::y);
+  EXPECT_EQ(document({}, place)["geometricError"], unknown["geometricError"]);
+}
+
 Vec3d apply(const Transform& m, Vec3d p) {
   return {m[0] * p.x + m[4] * p.y + m[8] * p.z + m[12],
           m[1] * p.x + m[5] * p.y + m[9] * p.z + m[13],

@@ -1,14 +1,18 @@
 // What is known of a model, for people: of what is not known there is no line.
 import type { Manifest } from '../../src/index.js';
+import { UNITS, unitOfModel } from '../../src/tools/units.js';
 import type { Model } from '../listing.js';
 import { formatBytes, formatCount, formatDate, formatLength } from '../numbers.js';
 import { words } from '../words/words.js';
 
 export type Fact = readonly [name: string, text: string];
 
-/// Along the axes of the input.
-function extentOf({ min, max }: Manifest['source']): string {
-  return max.map((value, axis) => formatLength(value - min[axis])).join(' × ');
+/// Along the axes of the input, in the model's unit if that is known.
+function extentOf(manifest: Manifest): string {
+  const { min, max } = manifest.source;
+  const sides = max.map((value, axis) => formatLength(value - min[axis])).join(' × ');
+  const unit = unitOfModel(manifest);
+  return unit === null ? sides : `${sides} ${UNITS[unit].sign}`;
 }
 
 function colours({ source: { textures, hasColours } }: Manifest): string | null {
@@ -26,7 +30,7 @@ export function factsOf(model: Model, manifest: Manifest): Fact[] {
     [names.triangles, formatCount(source.triangles)],
     [names.vertices, formatCount(source.vertices)],
     [names.colours, colours(manifest)],
-    [names.extent, extentOf(source)],
+    [names.extent, extentOf(manifest)],
     [names.sourceBytes, formatBytes(source.fileBytes)],
     [names.bytes, formatBytes(totalBytes)],
     [names.modified, model.modified === null ? null : formatDate(model.modified)],
@@ -35,7 +39,7 @@ export function factsOf(model: Model, manifest: Manifest): Fact[] {
 }
 
 /// In a sentence or two, for those who do not see the model.
-export function summaryOf(model: Model, { source }: Manifest): string {
-  const triangles = words.counts.triangles(source.triangles, formatCount(source.triangles));
-  return words.info.summary(model.name, triangles, extentOf(source));
+export function summaryOf(model: Model, manifest: Manifest): string {
+  const { triangles } = manifest.source;
+  return words.info.summary(model.name, words.counts.triangles(triangles, formatCount(triangles)), extentOf(manifest));
 }

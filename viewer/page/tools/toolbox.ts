@@ -1,6 +1,5 @@
 // The tools' bar, and the one that is in use. All of it is loaded when it is first asked for.
-import { Coordinates } from '../../src/tools/coordinates.js';
-import { LengthScale, unitOfMetres } from '../../src/tools/units.js';
+import { LengthScale, unitOfModel } from '../../src/tools/units.js';
 import { element, iconButton } from '../parts/element.js';
 import { ICONS } from '../parts/icons.js';
 import type { Bench, ToolName, Tools } from './bench.js';
@@ -33,7 +32,7 @@ const NAMES = Object.keys(LOADS) as readonly ToolName[];
 
 function makeShop(bench: Bench): Workshop {
   const { manifest } = bench.view;
-  const settings = loadToolSettings(unitOfMetres(manifest && new Coordinates(manifest).metresPerUnit));
+  const settings = loadToolSettings(manifest && unitOfModel(manifest));
   return {
     bench,
     pointing: new Pointing(bench),

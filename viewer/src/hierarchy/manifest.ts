@@ -5,6 +5,8 @@ import { HierarchyProblem } from './problem.js';
 import { TILES_A_DIRECTORY } from './tree.js';
 import { indexSize } from './tile_index.js';
 
+export const MANIFEST_UNITS = ['mm', 'cm', 'm', 'km', 'in', 'ft', 'us_ft'] as const;
+
 export interface Manifest {
   readonly source: {
     readonly fileName: string;
@@ -28,6 +30,8 @@ export interface Manifest {
   /// The largest distance that a position was moved to the lattice of a quantized hierarchy; 0 of others.
   readonly worstRounding: number;
   readonly up: 'y' | 'z';
+  /// What the input's lengths are in, as the manifest names it; null: not known.
+  readonly units: (typeof MANIFEST_UNITS)[number] | null;
   /// 4 x 4, column by column: from 3D Tiles' coordinates, z up, to the earth's; null: the model has no place.
   readonly transform: readonly number[] | null;
   readonly licence: string;
@@ -103,6 +107,7 @@ export function readManifest(text: string): Manifest {
     place: readPlace(positions),
     worstRounding: positions.isNull() ? 0 : positions.at('worst_rounding').number(),
     up: root.at('up').oneOf('y', 'z'),
+    units: root.has('units') ? root.at('units').oneOf(...MANIFEST_UNITS) : null,
     transform: readTransform(root.at('transform')),
     licence: root.at('licence').text(),
     partitions,

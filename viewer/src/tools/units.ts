@@ -1,4 +1,6 @@
-// Units of length. A model's is not known unless somebody says it, or the model is placed on the globe.
+// Units of length. A model's is not known unless its manifest says it, somebody else does, or it is placed on the globe.
+import type { Manifest } from '../hierarchy/manifest.js';
+import { Coordinates } from './coordinates.js';
 
 export type UnitName = 'unit' | 'mm' | 'cm' | 'm' | 'km' | 'in' | 'ft' | 'ftUS';
 
@@ -30,6 +32,12 @@ export function isUnitName(value: unknown): value is UnitName {
 /// The unit of that many metres; null: there is none.
 export function unitOfMetres(metres: number | null): UnitName | null {
   return UNIT_NAMES.find((name) => metres !== null && Math.abs((UNITS[name].metres ?? 0) - metres) < 1e-9 * metres) ?? null;
+}
+
+/// Of a model; null: not known.
+export function unitOfModel(manifest: Manifest): UnitName | null {
+  if (manifest.units !== null) return manifest.units === 'us_ft' ? 'ftUS' : manifest.units;
+  return unitOfMetres(new Coordinates(manifest).metresPerUnit);
 }
 
 /// How lengths of a model are told: in which unit they are, and in which one they are shown.

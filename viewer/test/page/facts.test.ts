@@ -11,6 +11,8 @@ const MANIFEST = {
   },
   licence: ' ',
   totalBytes: 7e6,
+  units: null,
+  transform: null,
 } as unknown as Manifest;
 
 function facts(change: Partial<Manifest> = {}, known = {}): Record<string, string> {
@@ -27,6 +29,13 @@ describe('about a model', () => {
     expect(facts({ licence: 'CC0', source: { ...MANIFEST.source, textures } }, { modified: 1_790_000_000 })).toMatchObject({
       Licence: 'CC0', Colours: '3 pictures, 1 of them missing', Made: 'Sep 21, 2026',
     });
+  });
+
+  it('there is its size in its unit, if that is known', () => {
+    expect(facts({ units: 'mm' }).Extent).toBe('1.5 × 2 × 0.0001 mm');
+    expect(facts({ units: 'us_ft' }).Extent).toBe('1.5 × 2 × 0.0001 US ft');
+    expect(facts({ transform: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 6e6, 0, 0, 1] }).Extent).toBe('1.5 × 2 × 0.0001 m');
+    expect(facts({ transform: [0.7, 0, 0, 0, 0, 0.7, 0, 0, 0, 0, 0.7, 0, 6e6, 0, 0, 1] }).Extent).toBe('1.5 × 2 × 0.0001');
   });
 
   it('there is a summary in words', () => {
