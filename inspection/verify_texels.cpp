@@ -318,7 +318,7 @@ struct TexelCheck::Impl {
     const double area = area_of(source);
     const auto [left, right] = std::minmax({source[0][0], source[1][0], source[2][0]});
     const auto [top, bottom] = std::minmax({source[0][1], source[1][1], source[2][1]});
-    if (std::abs(area) < kLeastArea)
+    if (std::abs(area) < kLeastArea || std::uint64_t{info.width} * info.height == 1)
       return;
     const bool is_copied = std::abs(area_of(shown)) > 0.5 * std::abs(area) &&
                            right - left < kMostSide && bottom - top < kMostSide;

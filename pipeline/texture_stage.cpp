@@ -3,6 +3,7 @@
 #include "execution/memory_gate.h"
 #include "execution/parallel.h"
 #include "hierarchy/bounds.h"
+#include "hierarchy/plain_text.h"
 #include "hierarchy/vertex_numbers.h"
 #include "images/image_codec.h"
 #include "images/row_writer.h"
@@ -12,12 +13,16 @@
 #include "texture/reduction.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <set>
 #include <span>
+#include <string>
+
+#include <fmt/format.h>
 
 namespace meshhier::pipeline {
 namespace {
@@ -256,6 +261,19 @@ class TextureMaker {
       bake(node);
   }
 
+  /// What all should know of texels that partitions do not show, in one line; empty if there are
+  /// none.
+  std::string warning() const {
+    if (reduced_ == 0)
+      return {};
+    return fmt::format(
+        "{} of the partitions show their pictures by up to {} times fewer texels a side than the "
+        "input has: their pictures are larger than those of partitions may be ({} a side), or "
+        "repeat many times over few triangles; smaller partitions (\"partition.vertices\") lose "
+        "less, unless a single triangle shows so much",
+        counted(reduced_, "triangles"), std::uint64_t{1} << coarsest_level_, kLeafSide);
+  }
+
  private:
   /// The picture of a partition.
   void cut(NodeId node) {
@@ -265,6 +283,7 @@ class TextureMaker {
     const LeafCorners leaf = corners_of(mesh, forest_.layout(node.level));
     texture::LeafAtlas atlas = texture::plan_leaf_atlas(
         {leaf.triangles, leaf.texcoords, leaf.materials}, materials_, kLeafSide);
+    note_reduced(atlas);
     BakeSource source;
     source.corners = std::move(atlas.corners);
     add_triangles(mesh, source);
@@ -279,6 +298,15 @@ class TextureMaker {
     const TileTexture texture = painted(picture, written, source);
     const float texel = texture::texel_size(source.surface(), atlas.width, atlas.height);
     textures_.put(node, texture, source, {texel, texel, 0});
+  }
+
+  void note_reduced(const texture::LeafAtlas& atlas) {
+    reduced_ += atlas.reduced;
+    std::uint32_t level = coarsest_level_;
+    for (const texture::AtlasPiece& piece : atlas.pieces) {
+      while (piece.level > level && !coarsest_level_.compare_exchange_weak(level, piece.level)) {
+      }
+    }
   }
 
   /// Encodes the picture, and gives the source a smaller one.
@@ -403,6 +431,8 @@ class TextureMaker {
   const TextureFormat format_;
   const std::uint32_t side_;
   execution::MemoryGate gate_;
+  std::atomic<std::uint64_t> reduced_ = 0;  ///< triangles that a coarser level of a picture shows
+  std::atomic<std::uint32_t> coarsest_level_ = 0;
 };
 
 std::vector<NodeId> textures_left(const Tree& tree, Level level, const Share& share,
@@ -442,6 +472,8 @@ void make_textures(const Forest& forest, const TexturedInput& input, TextureStor
           context.progress.advance(1);
         });
   }
+  if (const std::string warning = maker.warning(); !warning.empty())
+    context.progress.warn(warning);
 }
 
 TileErrors with_texels(TileErrors errors, const Tree& tree, const TextureStore& textures) {

@@ -12,14 +12,16 @@
 #include "pipeline/tiles/forest.h"
 #include "pipeline/tiles/leaf_picture.h"
 #include "pipeline/tiles/texture_store.h"
+#include "texture/leaf_atlas.h"
 
 #include <vector>
 
 namespace meshhier::pipeline {
 
-/// The largest side of a partition's picture. Where the input has more texels, as of pictures that
-/// repeat, a coarser level of them is shown.
-inline constexpr std::uint32_t kLeafSide = 4096;
+/// The largest side of a partition's picture: one of the input of 4,096 texels with the gutter
+/// around it. Where the input has more texels, as of pictures that repeat, a coarser level of them
+/// is shown, with a warning.
+inline constexpr std::uint32_t kLeafSide = 4096 + 2 * texture::kLeafGutter;
 
 /// Items are tiles, with their pictures. None if the mesh has no textures.
 StageMemory texture_memory(const JobSize& job);

@@ -27,6 +27,7 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -265,6 +266,60 @@ Image halved(const Image& image) {
 }
 
 // Black between charts would darken their borders there.
+class Warnings final : public execution::Progress {
+ public:
+  void stage(std::string_view, std::uint64_t, std::string_view) override {}
+  void advance(std::uint64_t) override {}
+  void finish(std::string_view) override {}
+  void warn(std::string_view message) override { all.emplace_back(message); }
+
+  std::vector<std::string> all;
+};
+
+/// A square that shows a picture of noise `repeats` times along u.
+struct NoiseCase {
+  std::uint32_t width, height;
+  int repeats;
+  bool is_exact;
+};
+
+TEST_F(TexturesTest, PicturesOfAnyShapeAreExactOrTheirLossIsTold) {
+  for (const auto& [width, height, repeats, is_exact] :
+       {NoiseCase{4096, 1, 1, true}, NoiseCase{1, 4096, 1, true}, NoiseCase{4096, 3, 1, true},
+        NoiseCase{2, 2, 1, true}, NoiseCase{7, 5, 585, true}, NoiseCase{16, 16, 250, true},
+        NoiseCase{4105, 2, 1, false}, NoiseCase{1, 65500, 1, false},
+        NoiseCase{64, 64, 100, false}}) {
+    Image noise(width, height, 3);
+    std::uint32_t state = 1;
+    for (std::uint8_t& channel : noise.texels)
+      channel = static_cast<std::uint8_t>((state = state * 1664525 + 1013904223) >> 24);
+    const std::vector<std::byte> png = images::encode_image(noise, ImageFormat::png, 100);
+    std::ofstream(directory_.path() / "noise.png", std::ios::binary)
+        .write(reinterpret_cast<const char*>(png.data()), std::streamsize(png.size()));
+    std::ofstream(directory_.path() / "noise.mtl") << "newmtl a\nmap_Kd noise.png\n";
+    std::ofstream(directory_.path() / "noise.obj")
+        << "mtllib noise.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt " << repeats
+        << " 0\nvt " << repeats << " 1\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3 4/4\n";
+    config::Config job = config(directory_.path() / "noise.obj");
+    job.partition.count = 1;
+    Warnings progress;
+    BuildOptions options;
+    options.force = true;
+    build_hierarchy(job, options, {*files_, progress, execution::CancelToken()});
+    const auto report = inspection::verify_hierarchy(*files_, job.output, {.input = job.input},
+                                                     progress, execution::CancelToken());
+    EXPECT_THAT(report.problems, IsEmpty());
+    const std::string name = fmt::format("{} x {}, {} times", width, height, repeats);
+    if (is_exact) {
+      EXPECT_THAT(progress.all, IsEmpty()) << name;
+      EXPECT_THAT(report.checks, Contains(HasSubstr("partitions, all equal"))) << name;
+    } else {
+      EXPECT_THAT(progress.all, ElementsAre(HasSubstr("times fewer texels a side"))) << name;
+      EXPECT_THAT(report.checks, Contains(HasSubstr("2 triangles shown by fewer texels"))) << name;
+    }
+  }
+}
+
 TEST_F(TexturesTest, SmallVersionsOfPicturesAreNoDarkerThanTheInput) {
   constexpr std::uint8_t kDarkest = 28;  // of torus_colour()
   TexturedTorus torus = tests::make_textured_torus(7, 3);
@@ -518,15 +573,6 @@ TEST_F(TexturesTest, TheReportNamesAllThatWasReadAndWhatWasMissing) {
 }
 
 /// Keeps warnings.
-class Warnings final : public execution::Progress {
- public:
-  void stage(std::string_view, std::uint64_t, std::string_view) override {}
-  void advance(std::uint64_t) override {}
-  void finish(std::string_view) override {}
-  void warn(std::string_view message) override { all.emplace_back(message); }
-
-  std::vector<std::string> all;
-};
 
 TEST_F(TexturesTest, ABrokenPictureIsRefusedWithWhatCanBeDone) {
   const config::Config job = config(write(tests::make_textured_torus(4, 2)));
