@@ -357,7 +357,10 @@ ContractedTile keep(const BuildTile& tile) {
     name_ghost_wedges(mesh, result.tile.border_wedges);
   }
   normalize_triangles(result.tile.interior, result.tile.interior_wedges, true);
-  normalize_triangles(result.tile.border, result.tile.border_wedges, true);
+  // As apply() does, so that all neighbours choose the same ones in resolve().
+  normalize_triangles(result.tile.border, result.tile.border_wedges,
+                      result.tile.border_wedges.empty());
+  drop_equal(result.tile.border, result.tile.border_wedges);
   result.deviation.around.assign(mesh.own_count, 0);
   return result;
 }
