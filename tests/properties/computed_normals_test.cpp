@@ -22,10 +22,12 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -193,6 +195,55 @@ TEST(ComputedNormals, OfACubeAreThoseOfItsSidesInAllPartitions) {
       splits += tile.shading.split_of.size();
     }
     EXPECT_EQ(splits > 0, name.empty() || name == "face_colours");
+  }
+}
+
+/// Random triangles of vertices at 27 places, with texture coordinates: many have the same places.
+std::string soup_with_texcoords(std::uint32_t seed) {
+  std::uint32_t state = seed;
+  const auto below = [&](std::uint32_t limit) {
+    state = state * 1664525 + 1013904223;
+    return (state >> 8) % limit;
+  };
+  std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 60\nproperty float x\nproperty float y\n"
+      "property float z\nproperty float s\nproperty float t\nelement face 120\n"
+      "property list uchar int vertex_indices\nend_header\n";
+  for (int i = 0; i < 60; ++i)
+    text += fmt::format("{} {} {} 0.{} 0.{}\n", below(3), below(3), below(3), below(99), below(99));
+  for (int i = 0; i < 120; ++i)
+    text += fmt::format("3 {} {} {}\n", below(60), below(60), below(60));
+  return text;
+}
+
+/// With these counts of partitions some stand for their parents, beside simplified tiles.
+TEST(ComputedNormals, AgreeAtBordersOfPartitionsThatStandForTheirParents) {
+  const tests::TemporaryDirectory directory;
+  const auto files = storage::make_posix_file_system();
+  execution::NoProgress progress;
+  config::Config config = tests::quick_config();
+  config.input = directory.path() / "soup.ply";
+  config.output = directory.path() / "soup.hier";
+  config.simplify.vertices = 5;
+  for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+    const std::string soup = soup_with_texcoords(seed);
+    storage::write_file(*files, config.input[0], std::as_bytes(std::span(soup)));
+    for (const std::uint32_t count : {3U, 5U, 6U, 7U}) {
+      for (const auto method :
+           {cluster_simplify::Method::edge_collapse, cluster_simplify::Method::half_edge,
+            cluster_simplify::Method::cluster}) {
+        config.partition.count = count;
+        config.simplify.method = method;
+        BuildOptions options;
+        options.force = true;
+        build_hierarchy(config, options, {*files, progress, execution::CancelToken()});
+        EXPECT_THAT(inspection::verify_hierarchy(*files, config.output, {.input = config.input},
+                                                 progress, execution::CancelToken())
+                        .problems,
+                    IsEmpty())
+            << seed << ", " << count << " partitions, method " << static_cast<int>(method);
+      }
+    }
   }
 }
 
