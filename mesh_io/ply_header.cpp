@@ -53,6 +53,11 @@ std::string_view take_word(std::string_view& text) {
   return word;
 }
 
+/// Perhaps misspelt.
+bool looks_like_statement(std::string_view keyword) {
+  return keyword.starts_with("elem") || keyword.starts_with("prop") || keyword.starts_with("end");
+}
+
 class HeaderParser {
  public:
   HeaderParser(std::string_view start, const std::filesystem::path& path)
@@ -147,6 +152,8 @@ bool HeaderParser::parse_line(std::string_view line) {
     if (!rest.empty())
       fail("expected a line end after 'end_header', found " + in_quotes(rest));
     return true;
+  } else if (has_format_ && header_.elements.empty() && !looks_like_statement(keyword)) {
+    return false;  // a remark without its keyword, as old versions of Blender write it
   } else {
     fail(
         "expected 'format', 'comment', 'obj_info', 'element', 'property' or 'end_header', "

@@ -62,7 +62,8 @@ inline constexpr std::size_t kMaxHeaderLineBytes = std::size_t{1} << 16;
 /// Parses the header at the start of a file. `start`: the first min(file size, kMaxHeaderBytes)
 /// bytes; `path` is for messages only. Lines end with LF, CRLF, or (if the first line does) CR
 /// alone; blanks around lines and blank lines are allowed; a property's name is the rest of its
-/// line, so names with spaces, which some writers produce, are read. Throws Error(input) naming the
+/// line, so names with spaces, which some writers produce, are read. Lines of no known keyword
+/// between the format and the first element are passed over. Throws Error(input) naming the
 /// line. Pure.
 PlyHeader parse_ply_header(std::string_view start, const std::filesystem::path& path);
 

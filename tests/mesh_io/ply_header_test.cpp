@@ -65,6 +65,19 @@ TEST(PlyHeader, CommentsBlanksAndEmptyLinesMayBeAnywhere) {
   EXPECT_EQ(header.data_line, 11U);
 }
 
+TEST(PlyHeader, RemarksWithoutTheirKeywordArePassedOver) {
+  for (const char* remark : {"Created by Blender3D 247 - www.blender.org, source file: ",
+                             "# a remark", "author me", "comments: none", "\"x\""}) {
+    const std::string text = std::string("ply\nformat ascii 1.0\n") + remark + "\nelement e 1\n";
+    const PlyHeader header = parse_ply_header(text + "property int p\nend_header\n", "h.ply");
+    EXPECT_EQ(header.elements.size(), 1U);
+    EXPECT_EQ(header.data_line, 7U);
+    EXPECT_THAT(error_of(text + remark + "\nend_header\n"), HasSubstr("line 5: expected 'format'"))
+        << "what is behind an element may be a property";
+    EXPECT_THAT(error_of(std::string("ply\n") + remark + "\n"), HasSubstr("line 2"));
+  }
+}
+
 TEST(PlyHeader, NamesWithSpacesAreRead) {
   const PlyHeader header = parse_ply_header(
       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float scalar field 2\nend_header\n", "h");

@@ -1,0 +1,210 @@
+// Compares what meshhier makes of mesh files with what other readers say of them: three.js's loaders (PLY, OBJ, STL) and assimp.
+//
+//   node check_inputs.mjs MESHHIER REASONS ROOT=NAME...
+//
+// Builds each mesh below each ROOT, exports its last level, and compares area, volume, bounds and mean colour of its vertices. REASONS: a
+// JSON file of known differences, {"NAME/path": {"reader": "why"}}. Each difference is printed; exit code 1 if one has no reason, or a
+// reason no difference; 2: wrong use. INPUTS_SHARE=K/N in the environment checks every N-th file only.
+import { execFile } from 'node:child_process';
+import { mkdtemp, readdir, readFile, rm } from 'node:fs/promises';
+import os from 'node:os';
+import path from 'node:path';
+import { promisify } from 'node:util';
+import { OBJLoader } from 'three/examples/jsm/loaders/OBJLoader.js';
+import { PLYLoader } from 'three/examples/jsm/loaders/PLYLoader.js';
+import { STLLoader } from 'three/examples/jsm/loaders/STLLoader.js';
+
+const run = promisify(execFile);
+const KINDS = /\.(ply|obj|stl|off|gltf|glb)$/i;
+const SECONDS = 120;
+const FLOAT = 2 ** -23; // a float's relative rounding, there and back
+const PART = 1e-5; // of a measure: sums in another order, numbers written with few digits
+const COLOUR = 0.004; // of mean light: bytes, rounded
+
+const subtract = (a, b) => a.map((x, i) => x - b[i]);
+const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+
+/// Of triangles, from what each of `geometries` has: an array of 3 n numbers, and perhaps as many of colours.
+function measure(soups) {
+  const found = { triangles: 0, area: 0, volume: 0, edges: 0, min: [Infinity, Infinity, Infinity], max: [-Infinity, -Infinity, -Infinity], colour: null };
+  const sum = [0, 0, 0];
+  let coloured = 0;
+  for (const { places } of soups) {
+    for (let i = 0; i < places.length; ++i) {
+      found.min[i % 3] = Math.min(found.min[i % 3], places[i]);
+      found.max[i % 3] = Math.max(found.max[i % 3], places[i]);
+    }
+  }
+  for (const { places, colours } of soups) {
+    for (let i = 0; i + 9 <= places.length; i += 9) {
+      const corners = [0, 3, 6].map((k) => subtract([places[i + k], places[i + k + 1], places[i + k + 2]], found.min));
+      const normal = cross(subtract(corners[1], corners[0]), subtract(corners[2], corners[0]));
+      const area = Math.sqrt(dot(normal, normal)) / 2;
+      found.triangles += 1;
+      found.area += area;
+      found.volume += dot(corners[0], cross(corners[1], corners[2])) / 6;
+      found.edges += Math.hypot(...subtract(corners[1], corners[0])) + Math.hypot(...subtract(corners[2], corners[1])) + Math.hypot(...subtract(corners[0], corners[2]));
+      if (!colours) continue;
+      coloured += area;
+      for (let c = 0; c < 9; ++c) sum[c % 3] += (area * colours[i + c]) / 3;
+    }
+  }
+  if (coloured > 0) found.colour = sum.map((s) => s / coloured);
+  return found;
+}
+
+/// Of a geometry of three.
+function soupOf({ attributes: { position, color }, index }) {
+  const corners = index ? index.count : position.count - (position.count % 3);
+  const places = new Float64Array(3 * corners);
+  const colours = color ? new Float64Array(3 * corners) : null;
+  for (let i = 0; i < corners; ++i) {
+    const v = index ? index.getX(i) : i;
+    places.set([position.getX(v), position.getY(v), position.getZ(v)], 3 * i);
+    colours?.set([color.getX(v), color.getY(v), color.getZ(v)], 3 * i);
+  }
+  return { places, colours };
+}
+
+const bytesOf = async (file) => {
+  const bytes = await readFile(file);
+  return bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength);
+};
+
+/// Where faces have something of their own, three makes corners of vertices: no index then.
+async function readPly(file) {
+  const bytes = await bytesOf(file);
+  const geometry = new PLYLoader().parse(bytes);
+  const hasFaces = /element\s+face\s+[1-9]/.test(Buffer.from(bytes).toString('latin1', 0, 65536));
+  return geometry.index || hasFaces ? [soupOf(geometry)] : [];
+}
+
+const READERS = {
+  three: async (file) => {
+    if (/\.ply$/i.test(file)) return readPly(file);
+    if (/\.stl$/i.test(file)) return [soupOf(new STLLoader().parse(await bytesOf(file)))];
+    if (!/\.obj$/i.test(file)) return null;
+    const soups = [];
+    new OBJLoader().parse(await readFile(file, 'utf8')).traverse((part) => {
+      if (part.isMesh) soups.push(soupOf(part.geometry));
+    });
+    return soups;
+  },
+  assimp: async (file, work) => {
+    const stl = path.join(work, 'assimp.stl');
+    await rm(stl, { force: true });
+    await run('assimp', ['export', file, stl, '-fstlb', '-ptv'], { timeout: 1000 * SECONDS });
+    const view = new DataView(await bytesOf(stl));
+    const count = view.getUint32(80, true);
+    const places = new Float64Array(9 * count);
+    for (let i = 0; i < count; ++i) {
+      for (let k = 0; k < 9; ++k) places[9 * i + k] = view.getFloat32(84 + 50 * i + 12 + 4 * k, true);
+    }
+    return [{ places, colours: null }];
+  },
+};
+
+/// Throws the first line that meshhier says.
+async function built(meshhier, file, work) {
+  const hierarchy = path.join(work, 'a.hier');
+  const ply = path.join(work, 'a.ply');
+  const call = async (...words) => {
+    try {
+      return (await run(meshhier, words, { timeout: 1000 * SECONDS, maxBuffer: 2 ** 26 })).stdout;
+    } catch (error) {
+      throw new Error(String(error.stderr || error.message).trim().split('\n').at(-1));
+    }
+  };
+  await call('build', file, '-o', hierarchy, '--force', '--progress', 'none', '--set', 'preview=false', '--set', 'storage.normals=none', '--set', 'missing_images=ignore');
+  const levels = JSON.parse(await call('inspect', hierarchy, '--json')).levels.length;
+  await call('export', hierarchy, '--level', String(levels - 1), '-o', ply, '--force', '--progress', 'none');
+  return measure(await readPly(ply));
+}
+
+const say = (line) => process.stdout.write(`${line}\n`);
+const rounded = (value) => Number(value.toPrecision(6));
+
+/// In words; empty if both are the same surface.
+function difference(ours, theirs) {
+  if (theirs.triangles === 0) return ''; // who finds nothing says nothing
+  if (ours.triangles === 0) return theirs.area === 0 ? '' : `no triangles, there area ${rounded(theirs.area)}`;
+  const rounding = FLOAT * Math.max(...[ours, theirs].flatMap(({ min, max }) => [...min, ...max].map(Math.abs)));
+  const size = Math.hypot(...subtract(theirs.max, theirs.min));
+  const told = [];
+  const compare = (name, a, b, most) => {
+    if (!(Math.abs(a - b) <= most)) told.push(`${name} ${rounded(a)}, there ${rounded(b)}`);
+  };
+  compare('area', ours.area, theirs.area, PART * theirs.area + rounding * theirs.edges);
+  compare('volume', ours.volume, theirs.volume, (PART * size + 4 * rounding) * theirs.area);
+  for (const end of ['min', 'max']) {
+    for (let axis = 0; axis < 3; ++axis) compare(`${end} ${'xyz'[axis]}`, ours[end][axis], theirs[end][axis], 2 * rounding + PART * size);
+  }
+  if (theirs.colour) {
+    if (ours.colour === null) told.push('no colours');
+    else ours.colour.forEach((c, i) => { compare('rgb'[i], c, theirs.colour[i], COLOUR); });
+  }
+  return told.join('; ');
+}
+
+async function filesBelow(root) {
+  const entries = await readdir(root, { withFileTypes: true, recursive: true });
+  return entries.filter((entry) => entry.isFile() && KINDS.test(entry.name)).map((entry) => path.join(entry.parentPath ?? entry.path, entry.name)).sort();
+}
+
+async function check(name, file, meshhier, reasons, work) {
+  let ours = null;
+  let refusal = '';
+  try {
+    ours = await built(meshhier, file, work);
+  } catch (error) {
+    refusal = error.message;
+  }
+  const lines = [];
+  for (const [reader, read] of Object.entries(READERS)) {
+    let soups = null;
+    try {
+      soups = await read(file, work);
+    } catch {
+      // what others refuse says nothing
+    }
+    if (soups === null) continue;
+    const theirs = measure(soups);
+    const found = ours ? difference(ours, theirs) : theirs.area > 0 ? `refused: ${refusal}` : '';
+    const reason = reasons[name]?.[reader];
+    if (found !== '') lines.push([reason ? 'known' : 'FAIL', `${name} (${reader}): ${found}${reason ? `; ${reason}` : ''}`]);
+    else if (reason) lines.push(['FAIL', `${name} (${reader}): there is no difference any more (${reason})`]);
+  }
+  return lines;
+}
+
+const [meshhier, reasonsFile, ...roots] = process.argv.slice(2);
+if (roots.length === 0 || roots.some((root) => !root.includes('='))) {
+  console.log('usage: node check_inputs.mjs MESHHIER REASONS ROOT=NAME...');
+  process.exit(2);
+}
+const reasons = JSON.parse(await readFile(reasonsFile, 'utf8'));
+const [share, shares] = (process.env.INPUTS_SHARE ?? '0/1').split('/').map(Number);
+const all = [];
+for (const [root, name] of roots.map((argument) => argument.split('='))) {
+  for (const file of await filesBelow(root)) all.push([path.posix.join(name, path.relative(root, file)), file]);
+}
+const mine = all.filter((_, i) => i % shares === share % shares);
+let failures = 0;
+let known = 0;
+async function work() {
+  const directory = await mkdtemp(path.join(os.tmpdir(), 'check_inputs-'));
+  for (let next = mine.shift(); next; next = mine.shift()) {
+    for (const [kind, line] of await check(...next, meshhier, reasons, directory)) {
+      say(`${kind}  ${line}`);
+      if (kind === 'FAIL') failures += 1;
+      else known += 1;
+    }
+  }
+  await rm(directory, { recursive: true, force: true });
+}
+const count = mine.length;
+console.log = console.warn = console.error = () => undefined; // the loaders' own words
+await Promise.all([work(), work()]);
+say(`${count} of ${all.length} files: ${known} known differences, ${failures} others`);
+process.exitCode = failures > 0 ? 1 : 0;
