@@ -358,6 +358,8 @@ ContractedTile keep(const BuildTile& tile) {
   }
   normalize_triangles(result.tile.interior, result.tile.interior_wedges, true);
   // As apply() does, so that all neighbours choose the same ones in resolve().
+  if (!result.tile.border_wedges.empty())
+    drop_degenerate(result.tile.border, result.tile.border_wedges);
   normalize_triangles(result.tile.border, result.tile.border_wedges,
                       result.tile.border_wedges.empty());
   drop_equal(result.tile.border, result.tile.border_wedges);
