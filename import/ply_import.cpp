@@ -60,6 +60,11 @@ Colour colour_of(const Parts& parts, ColourType type) {
   return {number(parts[0] >> 16), number(parts[0]), number(parts[1] >> 16), number(parts[1])};
 }
 
+Colour white(ColourType type) {
+  const float most = full_number(type);
+  return {most, most, most, most};
+}
+
 /// The triangles of a file.
 struct PlyTriangles {
   explicit PlyTriangles(storage::ScratchFile& scratch)
@@ -90,6 +95,7 @@ class PlyImporter {
         files_(files),
         room_(room),
         texcoords_(textures == Textures::use ? plan_.texcoords : PlyTexcoords::none),
+        white_(white(plan_.face_colour)),
         triangles_(room.scratch),
         given_(source.description().attributes) {}
 
@@ -162,7 +168,7 @@ class PlyImporter {
     if (has_own_texcoords())
       triangles_.texcoords.append(texcoords);
     if (has_colours())
-      triangles_.colours.append(face.colour);
+      triangles_.colours.append(face.row ? face.colour : white_);
     triangles_.textures.insert(texture);
   }
 
@@ -292,6 +298,7 @@ class PlyImporter {
   mesh_io::NamedFiles& files_;
   const ImportRoom& room_;
   PlyTexcoords texcoords_;
+  Colour white_;  ///< of strips
   PlyTriangles triangles_;
   AttributeLayout given_;
   mesh_io::PolygonCut cut_;

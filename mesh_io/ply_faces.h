@@ -21,7 +21,7 @@ struct PlyFace {
   std::vector<std::uint32_t> corners;  ///< as the file has them
   std::vector<float> texcoords;        ///< u v of each corner, v from the bottom row; or empty
   std::int32_t texture = 0;            ///< number of its picture; -1: none
-  std::array<float, 4> colour{};       ///< as attributes have it; 0 if faces have none
+  std::array<float, 4> colour{};       ///< as attributes have it; of polygons, if they have any
 };
 
 /// What a face shows, in a list of its own.

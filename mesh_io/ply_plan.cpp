@@ -236,8 +236,8 @@ bool PlyElementPlan::takes(std::size_t property) const {
 
 void PlyPlan::list_unused() {
   for (const PlyElementPlan& plan : elements) {
-    if (plan.element.count == 0)
-      continue;
+    if (plan.element.count == 0 || plan.role == Role::texture_vertices)
+      continue;  // whose number of a picture is that of their faces
     if (plan.role == Role::skipped) {
       unused.push_back(plan.element.name);
       continue;

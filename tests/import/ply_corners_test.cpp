@@ -119,6 +119,7 @@ TEST_F(PlyCornersTest, PicturesOfArtecLieBesideUnderTheNameOfTheMesh) {
     EXPECT_THAT(mesh.all_shown(),
                 ElementsAre("Side table_0.jpg 0 1, 1 1, 1 0", "Side table_1.PNG 0 1, 1 0, 0 0"));
     EXPECT_THAT(mesh.companions(), ElementsAre("w/Side table_0.jpg", "w/Side table_1.PNG"));
+    EXPECT_THAT(mesh.summary.unused, IsEmpty());
   }
 }
 
@@ -256,6 +257,19 @@ TEST_F(PlyCornersTest, FacesOfOneColourSplitNothing) {
   EXPECT_EQ(mesh.count("split_vertices"), 0U);
   EXPECT_THAT(mesh.positions, SizeIs(4));
   EXPECT_EQ(colour_of(mesh, 3), (std::vector<float>{5, 6, 7}));
+}
+
+TEST_F(PlyCornersTest, StripsBesideColouredFacesAreWhite) {
+  put("a.ply",
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+      "property uchar red\nproperty uchar green\nproperty uchar blue\nelement tristrips 1\n"
+      "property list int int vertex_indices\nend_header\n"
+      "0 0 0\n1 0 0\n1 1 0\n0 1 1\n3 0 1 2 250 1 2\n4 0 1 2 3\n");
+  const Imported mesh = import();
+  EXPECT_EQ(colour_of(mesh, 0), (std::vector<float>{250, 1, 2}));
+  EXPECT_EQ(colour_of(mesh, 1), (std::vector<float>{255, 255, 255}));
+  EXPECT_EQ(colour_of(mesh, 2), (std::vector<float>{255, 255, 255}));
 }
 
 TEST_F(PlyCornersTest, ColoursOfFacesMustBeNumbersOfTheirRange) {
