@@ -9,28 +9,18 @@ namespace meshhier {
 
 enum class Unit : std::uint8_t { mm, cm, m, km, in, ft, us_ft };
 
-namespace detail {
-struct UnitFacts {
-  std::string_view name;
-  double metres;
-};
-/// In the order of Unit. A survey foot of the US is 1200 / 3937 m.
-inline constexpr std::array<UnitFacts, 7> kUnits{{{"mm", 0.001},
-                                                  {"cm", 0.01},
-                                                  {"m", 1},
-                                                  {"km", 1000},
-                                                  {"in", 0.0254},
-                                                  {"ft", 0.3048},
-                                                  {"us_ft", 1200.0 / 3937}}};
-}  // namespace detail
+inline constexpr std::array<std::string_view, 7> kUnitNames{"mm", "cm", "m",    "km",
+                                                            "in", "ft", "us_ft"};
 
-/// "mm" ... "us_ft".
 constexpr std::string_view name_of(Unit unit) {
-  return detail::kUnits[static_cast<std::size_t>(unit)].name;
+  return kUnitNames[static_cast<std::size_t>(unit)];
 }
 
+/// A survey foot of the US is 1200 / 3937 m.
 constexpr double metres_of(Unit unit) {
-  return detail::kUnits[static_cast<std::size_t>(unit)].metres;
+  constexpr std::array<double, kUnitNames.size()> kMetres{0.001,  0.01,         1, 1000, 0.0254,
+                                                          0.3048, 1200.0 / 3937};
+  return kMetres[static_cast<std::size_t>(unit)];
 }
 
 }  // namespace meshhier

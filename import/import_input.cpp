@@ -473,8 +473,7 @@ std::uint64_t predict_import(const InputFiles& input, const ImportMemory& memory
   // to the pool in memory: once the size of a text of floats, three times where corners have
   // attributes, and three times that of an STL, whose corners are sorted. Five times that of a
   // PLY with textured or coloured faces: corners are sorted twice, 40 bytes each, and a face has
-  // 17. Gzip packs such
-  // files to a third or a quarter.
+  // 17. Gzip packs such files to a third or a quarter.
   constexpr std::uint64_t kSpools = 3;
   constexpr std::uint64_t kCorneredSpools = 5;
   constexpr std::uint64_t kPacked = 4;

@@ -33,6 +33,10 @@ std::optional<mesh_io::PlyPlan> plan_of(const storage::File& file) {
 
 }  // namespace
 
+std::filesystem::path without_gz(std::filesystem::path path) {
+  return path.extension() == ".gz" ? path.replace_extension() : path;
+}
+
 bool has_corner_attributes(const mesh_io::PlyPlan& plan, Textures textures) {
   return plan.face_colour != ColourType::none ||
          (textures == Textures::use && plan.texcoords != mesh_io::PlyTexcoords::none);
@@ -63,7 +67,7 @@ void InputFiles::look_into_ply(const storage::File& file, InputFileFacts& facts)
     return;
   facts.has_corner_attributes = importing::has_corner_attributes(*plan, textures_);
   for (const std::string& name : plan->unused) {
-    if (std::ranges::find(unused_, name) == unused_.end())
+    if (known_unused_.insert(name).second)
       unused_.push_back(name);
   }
   if (textures_ == Textures::ignore)
@@ -81,9 +85,7 @@ void InputFiles::look_into_ply(const storage::File& file, InputFileFacts& facts)
 
 /// A picture beside may be the mesh's texture, or of anything else, as a photograph of the object.
 void InputFiles::look_for_picture(const InputFileFacts& facts) {
-  std::filesystem::path name = facts.path;
-  if (facts.format.is_gzip && name.extension() == ".gz")
-    name.replace_extension();
+  std::filesystem::path name = without_gz(facts.path);
   for (const char* ending : {".png", ".jpg", ".jpeg", ".webp"}) {
     name.replace_extension(ending);
     if (files_.kind(name) != storage::FileKind::regular)

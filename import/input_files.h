@@ -14,6 +14,8 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -21,6 +23,9 @@ namespace meshhier::importing {
 
 /// Whether textures that a mesh names are used, or passed over as if there were none.
 enum class Textures : std::uint8_t { use, ignore };
+
+/// What a file is called unpacked: "a.ply" of "a.ply.gz".
+std::filesystem::path without_gz(std::filesystem::path path);
 
 /// Whether a PLY's faces give their corners something of their own, so that it is imported.
 bool has_corner_attributes(const mesh_io::PlyPlan& plan, Textures textures);
@@ -115,6 +120,7 @@ class InputFiles {
   std::vector<InputFileFacts> all_;
   Companions companions_;
   std::vector<std::string> unused_, warnings_;
+  std::set<std::string> known_unused_;
   bool weld_;
   Textures textures_;
 };

@@ -127,9 +127,9 @@ class PlyImporter {
   void add(const mesh_io::PlyFace& face) {
     room_.cancel.check();
     if (texture_faces_) {
-      mesh_io::PlyFace shown = face;
-      texture_faces_->complete(shown);
-      cut(shown);
+      shown_ = face;
+      texture_faces_->complete(shown_);
+      cut(shown_);
     } else {
       cut(face);
     }
@@ -303,6 +303,7 @@ class PlyImporter {
   AttributeLayout given_;
   mesh_io::PolygonCut cut_;
   std::optional<PlyTextureFaces> texture_faces_;
+  mesh_io::PlyFace shown_;  ///< with what its texture face says
   std::optional<PlyPictures> pictures_;
   PlyImport import_;
 };

@@ -28,7 +28,7 @@ struct PlyImport {
 /// use; triangles without a picture are white. Else, if faces have colours, vertices are ordered as
 /// in the file, then by their colour. Else the mesh is that of the vertices and triangles alone.
 /// Pictures that triangles should show and that are not there are noted in the mesh's table.
-/// Throws as PlySource. Requires plan().has_corner_attributes().
+/// Throws as PlySource. Requires has_corner_attributes().
 PlyImport import_ply_corners(mesh_io::PlySource& source, const std::filesystem::path& path,
                              Textures textures, RawMesh& mesh, mesh_io::NamedFiles& files,
                              const ImportRoom& room);

@@ -1,5 +1,7 @@
 #include "import/ply_pictures.h"
 
+#include "import/input_files.h"
+
 #include <utility>
 #include <vector>
 
@@ -14,10 +16,9 @@ std::vector<std::string> names_of(std::int32_t texture, const mesh_io::PlyPlan& 
   const auto number = static_cast<std::size_t>(texture);
   if (number < plan.texture_files.size())
     return {plan.texture_files[number]};
-  const std::filesystem::path unpacked = ply.extension() == ".gz" ? ply.stem() : ply.filename();
   std::vector<std::string> names;
   for (const char* ending : {"jpg", "jpeg", "png", "webp"})
-    names.push_back(fmt::format("{}_{}.{}", unpacked.stem().string(), texture, ending));
+    names.push_back(fmt::format("{}_{}.{}", without_gz(ply).stem().string(), texture, ending));
   return names;
 }
 

@@ -1,5 +1,6 @@
 #include "mesh_io/ply_header.h"
 
+#include "hierarchy/small_letters.h"
 #include "mesh_io/input_error.h"
 
 #include <algorithm>
@@ -164,10 +165,7 @@ bool HeaderParser::parse_line(std::string_view line) {
 }
 
 void HeaderParser::parse_comment(std::string_view rest) {
-  constexpr std::string_view kTextureFile = "texturefile";
-  const bool names_texture = std::ranges::equal(
-      take_word(rest), kTextureFile, {},
-      [](char c) -> char { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  const bool names_texture = small_letters(take_word(rest)) == "texturefile";
   if (names_texture && !rest.empty())
     header_.texture_files.emplace_back(rest);
 }

@@ -31,7 +31,7 @@ class Planner {
     plan_faces(plan_, header_.texture_files, path_);
     check_range_grid();
     check_sizes();
-    plan_.list_unused();
+    list_unused();
     return std::move(plan_);
   }
 
@@ -46,6 +46,7 @@ class Planner {
   void plan_materials(PlyElementPlan& vertices);
   void check_range_grid() const;
   void check_sizes() const;
+  void list_unused();
 
   int find_scalar(const PlyElement& element, std::string_view name) const {
     return mesh_io::find_scalar(element, name, path_);
@@ -214,6 +215,21 @@ void Planner::check_sizes() const {
   }
 }
 
+void Planner::list_unused() {
+  for (const PlyElementPlan& plan : plan_.elements) {
+    if (plan.element.count == 0 || plan.role == Role::texture_vertices)
+      continue;  // whose number of a picture is that of their faces
+    if (plan.role == Role::skipped) {
+      plan_.unused.push_back(plan.element.name);
+      continue;
+    }
+    for (std::size_t i = 0; i < plan.element.properties.size(); ++i) {
+      if (!plan.takes(i))
+        plan_.unused.push_back(plan.element.name + '.' + plan.element.properties[i].name);
+    }
+  }
+}
+
 }  // namespace
 
 bool PlyElementPlan::takes(std::size_t property) const {
@@ -232,21 +248,6 @@ bool PlyElementPlan::takes(std::size_t property) const {
       break;
   }
   return false;
-}
-
-void PlyPlan::list_unused() {
-  for (const PlyElementPlan& plan : elements) {
-    if (plan.element.count == 0 || plan.role == Role::texture_vertices)
-      continue;  // whose number of a picture is that of their faces
-    if (plan.role == Role::skipped) {
-      unused.push_back(plan.element.name);
-      continue;
-    }
-    for (std::size_t i = 0; i < plan.element.properties.size(); ++i) {
-      if (!plan.takes(i))
-        unused.push_back(plan.element.name + '.' + plan.element.properties[i].name);
-    }
-  }
 }
 
 PlyPlan make_ply_plan(const PlyHeader& header, std::uint64_t file_bytes,

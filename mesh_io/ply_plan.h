@@ -64,13 +64,6 @@ struct PlyPlan {
   std::vector<std::string> unused;  ///< what is skipped: "vertex.intensity", or an element: "edge"
   bool has_unnamed_texcoords = false;        ///< faces have them, and no picture is named
   std::vector<std::string> unused_pictures;  ///< that are named and cannot be shown
-
-  /// Fills `unused`.
-  void list_unused();
-  /// Whether corners have something of their own, which read_faces() tells.
-  bool has_corner_attributes() const {
-    return texcoords != PlyTexcoords::none || face_colour != ColourType::none;
-  }
 };
 
 /// Colours whose numbers are light, in files that the import wrote.

@@ -1,5 +1,6 @@
 #include "mesh_io/ply_properties.h"
 
+#include "hierarchy/small_letters.h"
 #include "mesh_io/input_error.h"
 
 #include <algorithm>
@@ -9,12 +10,8 @@
 namespace meshhier::mesh_io {
 namespace {
 
-constexpr char small_letter(char c) {
-  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
-
 bool is_same_word(std::string_view a, std::string_view b) {
-  return std::ranges::equal(a, b, {}, small_letter, small_letter);
+  return small_letters(a) == small_letters(b);
 }
 
 ColourType colour_type(PlyType type) {

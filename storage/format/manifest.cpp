@@ -211,12 +211,7 @@ void read_import(const JsonObject& object, SourceSummary& source) {
 std::optional<Unit> read_units(const JsonObject& object) {
   if (!object.has("units"))
     return std::nullopt;
-  const std::string name = object.text("units");
-  for (int i = 0; i <= static_cast<int>(Unit::us_ft); ++i) {
-    if (name_of(static_cast<Unit>(i)) == name)
-      return static_cast<Unit>(i);
-  }
-  object.wrong("units", "a unit of length");
+  return read_choice<Unit>(object, "units", kUnitNames);
 }
 
 SourceSummary read_source(const JsonObject& object) {

@@ -1,5 +1,7 @@
 #include "import/imported.h"
 
+#include "tests/support/warnings.h"
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -8,16 +10,6 @@
 
 namespace meshhier::tests {
 namespace {
-
-class Warnings final : public execution::Progress {
- public:
-  void stage(std::string_view, std::uint64_t, std::string_view) override {}
-  void advance(std::uint64_t) override {}
-  void finish(std::string_view) override {}
-  void warn(std::string_view message) override { all.emplace_back(message); }
-
-  std::vector<std::string> all;
-};
 
 void read(mesh_io::MeshSource& source, Imported& into) {
   source.read_vertices([&](const mesh_io::VertexBlock& block) {

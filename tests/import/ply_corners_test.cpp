@@ -1,12 +1,9 @@
 // PLY files as scanners and segmentation write them: texture faces in lists of their own, colours
 // of faces, and names that differ.
-#include "hierarchy/error.h"
-#include "import/imported.h"
+#include "import/import_test.h"
 #include "mesh_io/ply_samples.h"
 #include "tests/support/gzip.h"
-#include "tests/support/memory_files.h"
 
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,7 +15,6 @@
 namespace meshhier::importing {
 namespace {
 
-namespace fs = std::filesystem;
 using mesh_io::PlyEncoding;
 using mesh_io::PlyType;
 using mesh_io::tests::kEncodings;
@@ -30,26 +26,15 @@ using testing::SizeIs;
 using tests::Imported;
 using tests::ImportHow;
 
-class PlyCornersTest : public testing::Test {
+class PlyCornersTest : public tests::ImportTest {
  protected:
-  void put(const std::string& name, const std::string& content) {
-    files_.put(fs::path("w") / name, content);
-  }
   Imported import(const std::string& name = "a.ply", const ImportHow& how = {}) {
-    return tests::import_files(files_, fs::path("w") / name, how);
+    return import_file(name, how);
   }
   std::string failure_of(const std::string& content) {
     put("a.ply", content);
-    try {
-      import();
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::input);
-      return error.what();
-    }
-    return {};
+    return failure_of_file("a.ply");
   }
-
-  tests::MemoryFiles files_;
 };
 
 /// A square of two triangles as Artec Studio writes it; each row of texture faces: tx tn n i ....

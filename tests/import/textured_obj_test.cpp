@@ -1,6 +1,6 @@
 // OBJ files with material libraries and pictures.
 #include "hierarchy/error.h"
-#include "import/imported.h"
+#include "import/import_test.h"
 #include "tests/support/memory_files.h"
 
 #include <array>
@@ -28,11 +28,8 @@ using tests::ImportHow;
 constexpr const char* kSquare =
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
 
-class TexturedObjTest : public testing::Test {
+class TexturedObjTest : public tests::ImportTest {
  protected:
-  void put(const std::string& name, const std::string& content) {
-    files_.put(fs::path("w") / name, content);
-  }
   void put_pictures(std::initializer_list<std::string> names) {
     for (const std::string& name : names)
       put(name, "a picture");
@@ -51,17 +48,7 @@ class TexturedObjTest : public testing::Test {
     return import();
   }
   std::string shown_with(const std::string& definition) { return import_with(definition).shown(0); }
-  std::string failure() {
-    try {
-      import();
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::input);
-      return error.what();
-    }
-    return {};
-  }
-
-  tests::MemoryFiles files_;
+  std::string failure() { return failure_of_file("a.obj"); }
 };
 
 TEST_F(TexturedObjTest, CornersNameTheirMaterialAndCoordinatesFromTheTop) {

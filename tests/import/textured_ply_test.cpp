@@ -1,12 +1,9 @@
 // PLY files that name pictures.
-#include "hierarchy/error.h"
-#include "import/imported.h"
+#include "import/import_test.h"
 #include "mesh_io/ply_samples.h"
 #include "tests/support/gzip.h"
-#include "tests/support/memory_files.h"
 
 #include <cmath>
-#include <filesystem>
 #include <string>
 
 #include <fmt/format.h>
@@ -16,7 +13,6 @@
 namespace meshhier::importing {
 namespace {
 
-namespace fs = std::filesystem;
 using mesh_io::PlyEncoding;
 using mesh_io::PlyType;
 using mesh_io::tests::kEncodings;
@@ -48,26 +44,15 @@ PlyText square(PlyEncoding encoding, const std::vector<std::string>& files,
   return ply;
 }
 
-class TexturedPlyTest : public testing::Test {
+class TexturedPlyTest : public tests::ImportTest {
  protected:
-  void put(const std::string& name, const std::string& content) {
-    files_.put(fs::path("w") / name, content);
-  }
   Imported import(const ImportHow& how = {}, const std::string& name = "a.ply") {
-    return tests::import_files(files_, fs::path("w") / name, how);
+    return import_file(name, how);
   }
   std::string failure_of(const std::string& content) {
     put("a.ply", content);
-    try {
-      import();
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::input);
-      return error.what();
-    }
-    return {};
+    return failure_of_file("a.ply");
   }
-
-  tests::MemoryFiles files_;
 };
 
 /// A text with coordinates of vertices, and faces of the numbers given.

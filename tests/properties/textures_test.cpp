@@ -10,6 +10,7 @@
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/sizes.h"
 #include "tests/support/textured_torus.h"
+#include "tests/support/warnings.h"
 
 #include <algorithm>
 #include <array>
@@ -44,6 +45,7 @@ using tests::AtStage;
 using tests::kMiB;
 using tests::TexturedTorus;
 using tests::TexturedTriangle;
+using tests::Warnings;
 
 /// A triangle as a tile shows it.
 struct ShownTriangle {
@@ -265,17 +267,6 @@ Image halved(const Image& image) {
   return half;
 }
 
-// Black between charts would darken their borders there.
-class Warnings final : public execution::Progress {
- public:
-  void stage(std::string_view, std::uint64_t, std::string_view) override {}
-  void advance(std::uint64_t) override {}
-  void finish(std::string_view) override {}
-  void warn(std::string_view message) override { all.emplace_back(message); }
-
-  std::vector<std::string> all;
-};
-
 /// A square that shows a picture of noise `repeats` times along u.
 struct NoiseCase {
   std::uint32_t width, height;
@@ -320,6 +311,7 @@ TEST_F(TexturesTest, PicturesOfAnyShapeAreExactOrTheirLossIsTold) {
   }
 }
 
+// Black between charts would darken their borders there.
 TEST_F(TexturesTest, SmallVersionsOfPicturesAreNoDarkerThanTheInput) {
   constexpr std::uint8_t kDarkest = 28;  // of torus_colour()
   TexturedTorus torus = tests::make_textured_torus(7, 3);
@@ -571,8 +563,6 @@ TEST_F(TexturesTest, TheReportNamesAllThatWasReadAndWhatWasMissing) {
   EXPECT_THAT(note.awaited, ElementsAre("picture_1.png"));
   EXPECT_EQ(note.content, storage::HierarchyReader(*files_, job.output).manifest().source.checksum);
 }
-
-/// Keeps warnings.
 
 TEST_F(TexturesTest, ABrokenPictureIsRefusedWithWhatCanBeDone) {
   const config::Config job = config(write(tests::make_textured_torus(4, 2)));

@@ -1,0 +1,37 @@
+// What tests of imports share: files in the folder "w" of a memory, and what becomes of them.
+#pragma once
+
+#include "hierarchy/error.h"
+#include "import/imported.h"
+#include "tests/support/memory_files.h"
+
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace meshhier::tests {
+
+class ImportTest : public testing::Test {
+ protected:
+  void put(const std::string& name, const std::string& content) {
+    files_.put(std::filesystem::path("w") / name, content);
+  }
+  Imported import_file(const std::string& name, const ImportHow& how = {}) {
+    return import_files(files_, std::filesystem::path("w") / name, how);
+  }
+  /// The message of the Error(input) that the import of a file throws; empty if there is none.
+  std::string failure_of_file(const std::string& name) {
+    try {
+      import_file(name);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::input);
+      return error.what();
+    }
+    return {};
+  }
+
+  MemoryFiles files_;
+};
+
+}  // namespace meshhier::tests
