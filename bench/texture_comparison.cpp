@@ -125,7 +125,7 @@ void draw_tile(const inspection::ShownTile& shown, render::Raster& raster) {
       images::decode_image(image.bytes, "the picture of a tile", texels),
       {Wrap::clamp, Wrap::clamp});
   const auto facets = render::facets_of(shown.tile, {}, shown.border, render::NormalKind::facets);
-  const auto skins = render::skins_of(shown.tile, texture, shown.border);
+  const auto skins = render::skins_of(shown.tile, {}, texture, shown.border);
   for (std::size_t i = 0; i < facets.size(); ++i)
     raster.draw(facets[i], skins[i]);
 }

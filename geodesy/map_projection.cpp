@@ -197,10 +197,6 @@ Object make_geodetic(PJ_CONTEXT* context) {
   return Object(library().normalize_for_visualization(context, operation.get()));
 }
 
-bool is_finite(Vec3d p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
-
 }  // namespace
 
 struct MapProjection::Parts {

@@ -39,6 +39,9 @@ struct AttributeLayout {
   bool texcoords = false;
   bool material = false;  ///< texture coordinates name a material; only with texcoords
   ColourSpace space = ColourSpace::srgb;  ///< of colours
+  /// Colours are what the light of pictures is multiplied by, as glTF has it, and are seen where
+  /// there is no picture; else they are seen without pictures alone. Only of textured meshes.
+  bool tints = false;
 
   constexpr int colour_channels() const { return colour == ColourType::none ? 0 : alpha ? 4 : 3; }
   constexpr int normal_offset() const { return 0; }
@@ -48,7 +51,7 @@ struct AttributeLayout {
   constexpr int channels() const { return material_offset() + (material ? 1 : 0); }
   /// Normals and colours, which lie first.
   constexpr AttributeLayout without_texcoords() const {
-    return {.normals = normals, .colour = colour, .alpha = alpha, .space = space};
+    return {.normals = normals, .colour = colour, .alpha = alpha, .space = space, .tints = tints};
   }
   friend constexpr bool operator==(const AttributeLayout&, const AttributeLayout&) = default;
 };

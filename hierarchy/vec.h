@@ -44,6 +44,11 @@ constexpr Vec3f to_float(Vec3d a) {
   return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
 }
 
+template <class Scalar>
+bool is_finite(Vec3<Scalar> p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
 /// Whether all three coordinates are floats.
 inline bool fits_float(Vec3d p) {
   constexpr double kMost = std::numeric_limits<float>::max();

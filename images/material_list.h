@@ -32,6 +32,7 @@ struct Material {
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
   AlphaMode alpha = AlphaMode::opaque;
   float alpha_cutoff = 0.5f;
+  bool is_alpha_unsaid = false;  ///< its file does not say whether the alpha of its picture counts
   friend bool operator==(const Material&, const Material&) = default;
 };
 

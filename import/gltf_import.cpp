@@ -240,6 +240,7 @@ class GltfImporter {
     }
     if (import_.layout.colour != ColourType::none && !import_.is_painted)
       import_.layout.space = ColourSpace::linear;
+    import_.layout.tints = import_.layout.material && import_.layout.colour != ColourType::none;
   }
 
   void look_at(const GltfPrimitive& primitive, CommonLayout& layout) {
@@ -405,8 +406,6 @@ class GltfImporter {
   void count_filled(const Attributes& all, std::uint64_t vertices) {
     const AttributeLayout& layout = import_.layout;
     without_normal_ += layout.normals && !all.normals ? vertices : 0;
-    const bool is_white = !all.colours && layout.material;
-    made_white_ += layout.colour != ColourType::none && is_white ? vertices : 0;
     without_texcoord_ += layout.texcoords && !all.texcoords ? vertices : 0;
   }
 
@@ -512,7 +511,6 @@ class GltfImporter {
                       {"hidden_meshes", scene_.hidden},
                       {"ignored_skins", scene_.skinned},
                       {"vertices_left_out", left_out_},
-                      {"vertices_made_white", made_white_},
                       {"vertices_without_normal", without_normal_},
                       {"vertices_without_texcoord", without_texcoord_}};
     return std::move(import_);
@@ -528,7 +526,7 @@ class GltfImporter {
   bool widens_colours_ = false;  ///< from 8 bits to 16
   std::uint64_t copies_ = 0;     ///< of EXT_mesh_gpu_instancing
   std::uint64_t repeated_ = 0, morph_targets_ = 0, ignored_primitives_ = 0, left_out_ = 0;
-  std::uint64_t made_white_ = 0, without_normal_ = 0, without_texcoord_ = 0;
+  std::uint64_t without_normal_ = 0, without_texcoord_ = 0;
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "import/join_layouts.h"
 #include "import/obj_import.h"
 #include "import/place_lookup.h"
+#include "import/place_vertices.h"
 #include "import/ply_import.h"
 #include "import/raw_mesh.h"
 #include "import/weld.h"
@@ -50,7 +51,8 @@ class Import {
         add(file, ply);
       facts_.faces = faces_;
       join();
-      write(input_.weld() ? weld() : mesh_, ply);
+      RawMesh& placed = unplaced_.count > 0 ? place() : mesh_;
+      write(input_.weld() ? weld(placed) : placed, ply);
     }
     note_files();
     note_textures();
@@ -64,7 +66,8 @@ class Import {
     count("untextured_files", counts.untextured_files);
     count("dropped_normals", counts.dropped_normals);
     count("dropped_texcoords", counts.dropped_texcoords);
-    count("vertices_made_white", counts.white_vertices);
+    count(kMadeWhite, counts.white_vertices);
+    count(kHiddenColours, counts.hidden_colours);
     count("converted_colours", counts.converted_colours);
   }
 
@@ -76,6 +79,7 @@ class Import {
     std::uint64_t degenerate_triangles = 0;
     std::uint64_t material_colours = 0;  ///< that vertices have
     bool is_painted = false;             ///< no vertex has another one
+    mesh_io::UnplacedVertices unplaced{};
   };
 
   void count(std::string_view name, std::uint64_t count) {
@@ -194,6 +198,9 @@ class Import {
     mesh_.fits_float = mesh_.fits_float && added.fits_float;
     faces_ += added.faces;
     facts_.degenerate_triangles += added.degenerate_triangles;
+    if (unplaced_.count == 0)
+      unplaced_.first = added.unplaced.first;
+    unplaced_.count += added.unplaced.count;
   }
 
   std::uint32_t checked_base(const std::filesystem::path& path, std::uint64_t more) const {
@@ -210,9 +217,14 @@ class Import {
           Triangle<std::uint32_t>{base + raw(t[0]), base + raw(t[1]), base + raw(t[2])});
   }
 
+  static std::unique_ptr<mesh_io::PlySource> open_ply(std::unique_ptr<storage::File> file) {
+    return mesh_io::make_ply_source(std::move(file), mesh_io::PlyWrittenBy::anyone,
+                                    mesh_io::Unplaced::visited);
+  }
+
   Added add_ply(const InputFileFacts& facts, const std::filesystem::path& room) {
     if (!facts.format.is_gzip) {
-      const auto source = mesh_io::make_ply_source(input_.system().open(facts.path));
+      const auto source = open_ply(input_.system().open(facts.path));
       const Added added = add_plain_ply(*source, facts.path);
       checksums_.push_back(source->checksum([this] { env_.cancel.check(); }));
       env_.progress.advance(facts.identity.bytes);
@@ -220,8 +232,7 @@ class Import {
     }
     TemporaryFile unpacked(env_.files, room, env_.scratch.pool().scratch_use());
     unpack(facts, unpacked);
-    const auto source =
-        mesh_io::make_ply_source(mesh_io::renamed(env_.files.open(room), facts.unpacked_name()));
+    const auto source = open_ply(mesh_io::renamed(env_.files.open(room), facts.unpacked_name()));
     return add_plain_ply(*source, facts.path);
   }
 
@@ -230,10 +241,14 @@ class Import {
         import_ply_corners(source, path, input_.textures(), mesh_, named_, room_);
     checked_base(path, 0);
     count("split_vertices", import.split_vertices);
+    count(kHiddenColours, import.hidden_colours);
     count(import.counts.polygons);
     count(import.zeroed);
-    return {import.layout, import.fits_float, import.counts.faces,
-            import.counts.degenerate_triangles};
+    return {.layout = import.layout,
+            .fits_float = import.fits_float,
+            .faces = import.counts.faces,
+            .degenerate_triangles = import.counts.degenerate_triangles,
+            .unplaced = import.unplaced};
   }
 
   Added add_plain_ply(mesh_io::PlySource& source, const std::filesystem::path& path) {
@@ -247,7 +262,8 @@ class Import {
       for (const Vec3f& p : block.positions)
         mesh_.positions.append(to_double(p));
       mesh_.positions.append(block.exact);
-      added.fits_float = added.fits_float && std::ranges::all_of(block.exact, fits_float);
+      added.fits_float = added.fits_float && block.fits_float();
+      count_unplaced(block, path, added.unplaced);
       mesh_.attributes.append(block.attributes);
       count(block.zeroed);
     });
@@ -295,7 +311,8 @@ class Import {
     checked_base(path, 0);
     const mesh_io::ObjCounts& counts = import.counts;
     count("split_vertices", import.split_vertices);
-    count("vertices_made_white", import.filled_colours);
+    count(kMadeWhite, import.filled_colours);
+    count(kHiddenColours, import.hidden_colours);
     count("vertices_without_texcoord", import.filled_texcoords);
     count("vertices_without_normal", import.filled_normals);
     count("missing_material_libraries", import.missing_libraries);
@@ -310,8 +327,8 @@ class Import {
     count("ignored_points_and_lines", counts.points_and_lines);
     count(counts.polygons);
     count("ignored_statements", counts.others);
-    return {import.layout,           import.fits_float, counts.faces, counts.degenerate_triangles,
-            import.material_colours, import.is_painted};
+    return {import.layout,           import.fits_float, counts.faces,   counts.degenerate_triangles,
+            import.material_colours, import.is_painted, counts.unplaced};
   }
 
   /// Binary files hold floats.
@@ -359,13 +376,22 @@ class Import {
     count("ignored_face_colours", counts.coloured_faces);
     count("ignored_lines_behind", counts.lines_behind);
     count(counts.zeroed);
-    return {counts.attributes, counts.fits_float, counts.faces.faces,
-            counts.faces.degenerate_triangles};
+    return {.layout = counts.attributes,
+            .fits_float = counts.fits_float,
+            .faces = counts.faces.faces,
+            .degenerate_triangles = counts.faces.degenerate_triangles,
+            .unplaced = counts.unplaced};
   }
 
-  RawMesh& weld() {
+  RawMesh& place() {
+    placed_.emplace(env_.scratch);
+    count(kDroppedUnplaced, drop_unplaced(mesh_, *placed_, unplaced_.first, room_));
+    return *placed_;
+  }
+
+  RawMesh& weld(RawMesh& mesh) {
     welded_.emplace(env_.scratch);
-    const WeldCounts counts = weld_vertices(mesh_, *welded_, room_);
+    const WeldCounts counts = weld_vertices(mesh, *welded_, room_);
     count("welded_vertices", counts.merged);
     count("triangles_lost_by_welding", counts.degenerate_triangles);
     facts_.degenerate_triangles += counts.degenerate_triangles;
@@ -408,7 +434,8 @@ class Import {
   ImportRoom room_;
   mesh_io::NamedFiles named_;
   RawMesh mesh_;
-  std::optional<RawMesh> welded_;
+  std::optional<RawMesh> placed_, welded_;
+  mesh_io::UnplacedVertices unplaced_;
   std::uint64_t faces_ = 0;
   std::vector<JoinedFile> joined_;
   std::vector<std::uint64_t> checksums_;  ///< of the meshes that are read

@@ -68,16 +68,20 @@ class InputFiles {
   /// What all should know of pictures that are not used, a line each.
   const std::vector<std::string>& warnings() const { return warnings_; }
   bool weld() const { return weld_; }
+  /// Says that there are vertices with coordinates that are not finite: an import leaves them out.
+  void note_unplaced() { has_unplaced_ = true; }
+  bool has_unplaced() const { return has_unplaced_; }
   Textures textures() const { return textures_; }
   /// Not one PLY that is read in place as it is.
   bool needs_import() const {
-    return weld_ || all_.size() != 1 || !all_[0].is_plain_ply() || all_[0].has_corner_attributes;
+    return weld_ || has_unplaced_ || all_.size() != 1 || !all_[0].is_plain_ply() ||
+           all_[0].has_corner_attributes;
   }
 
   /// One packed PLY, to be unpacked and nothing else.
   bool is_unpacked_only() const {
-    return !weld_ && all_.size() == 1 && all_[0].format.kind == mesh_io::MeshKind::ply &&
-           !all_[0].has_corner_attributes;
+    return !weld_ && !has_unplaced_ && all_.size() == 1 &&
+           all_[0].format.kind == mesh_io::MeshKind::ply && !all_[0].has_corner_attributes;
   }
 
   /// File names, with ", " between them.
@@ -122,6 +126,7 @@ class InputFiles {
   std::vector<std::string> unused_, warnings_;
   std::set<std::string> known_unused_;
   bool weld_;
+  bool has_unplaced_ = false;
   Textures textures_;
 };
 

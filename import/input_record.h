@@ -66,6 +66,12 @@ std::vector<SourceFile> source_files(const std::vector<ReadFile>& files,
 inline constexpr std::string_view kMaterialColours = "material_colours";
 /// Of vertices: in a wider type, but all of them are such numbers.
 inline constexpr std::string_view kColoursTakenForBytes = "colours_taken_for_bytes";
+/// Vertices without a colour, where others have one.
+inline constexpr std::string_view kMadeWhite = "vertices_made_white";
+/// Vertices that show no picture, and whose colour is not seen either, as others have both.
+inline constexpr std::string_view kHiddenColours = "vertices_with_hidden_colours";
+/// Vertices that no triangle uses, of which a coordinate is not finite.
+inline constexpr std::string_view kDroppedUnplaced = "dropped_unplaced_vertices";
 
 /// SourceCounts of normals and texture coordinates that were no numbers.
 inline constexpr std::string_view kZeroedNormals = "normals_made_zero";

@@ -88,6 +88,17 @@ float converted(float number, std::size_t channel, const AttributeLayout& from,
   return static_cast<float>(to.colour == ColourType::f32 ? full : std::round(full));
 }
 
+bool has_own_colours(const JoinedFile& file) {
+  return own_colour(file) != ColourType::none;
+}
+
+/// Whether pictures stay as they are if colours of all files tint them.
+bool may_tint(std::span<const JoinedFile> files) {
+  return std::ranges::none_of(files, [](const JoinedFile& file) {
+    return has_own_colours(file) && file.layout.material && !file.layout.tints;
+  });
+}
+
 AttributeLayout joined_layout(std::span<const JoinedFile> files) {
   AttributeLayout joined{.normals = true, .texcoords = true};
   for (const JoinedFile& file : files) {
@@ -107,6 +118,7 @@ AttributeLayout joined_layout(std::span<const JoinedFile> files) {
         std::max(joined.colour, file.layout.space == joined.space ? colour : type_of_light(colour));
     joined.alpha = joined.alpha || (colour != ColourType::none && file.layout.alpha);
   }
+  joined.tints = joined.material && joined.colour != ColourType::none && may_tint(files);
   return joined;
 }
 
@@ -139,7 +151,10 @@ class RowJoin {
     counts.dropped_texcoords += from.texcoords && !shows_texcoords() ? n : 0;
     if (to_.colour == ColourType::none)
       return;
-    counts.white_vertices += colour_ == ColourType::none ? n : 0;
+    counts.white_vertices += colour_ == ColourType::none && !to_.material ? n : 0;
+    const bool is_plain = !from.material || from.tints;
+    counts.hidden_colours +=
+        to_.material && !to_.tints && is_plain && has_own_colours(file_) ? n : 0;
     const bool is_converted = colour_ != to_.colour || from.space != to_.space;
     counts.converted_colours += colour_ != ColourType::none && is_converted ? n : 0;
   }

@@ -21,7 +21,9 @@ struct JoinCounts {
   std::uint64_t untextured_files = 0;   ///< beside textured ones
   std::uint64_t dropped_normals = 0;    ///< of vertices
   std::uint64_t dropped_texcoords = 0;  ///< of vertices, of files without pictures
-  std::uint64_t white_vertices = 0;     ///< of files without colours, beside files with colours
+  /// Of files without colours, beside files with colours, and without pictures.
+  std::uint64_t white_vertices = 0;
+  std::uint64_t hidden_colours = 0;     ///< of vertices that show no picture or were to tint theirs
   std::uint64_t converted_colours = 0;  ///< of vertices, to the type of other files
 };
 
@@ -29,6 +31,7 @@ struct JoinCounts {
 /// together:
 /// * normals, if all files have them: others are made by the build;
 /// * colours, if a file has them, of the type that holds those of all; where there are none, white;
+/// they tint pictures unless a file has both and does not mean that;
 /// * texture coordinates of pictures, if a file has them: where there are none, 0 0 in a material
 /// of
 ///   the colour that the file's material has, else a white one;

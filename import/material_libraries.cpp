@@ -216,6 +216,7 @@ class LibraryReader {
       made.material.wrap_u = made.material.wrap_v = Wrap::clamp;
     const bool is_own_alpha = read.alpha && read.picture && read.alpha->file == read.picture->file;
     made.has_other_alpha = read.alpha && !is_own_alpha;
+    made.material.is_alpha_unsaid = read.picture && !read.alpha && read.opacity == 1;
     made.material.alpha = read.opacity < 1 ? AlphaMode::blend
                           : is_own_alpha   ? AlphaMode::mask
                                            : AlphaMode::opaque;

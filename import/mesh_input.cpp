@@ -26,7 +26,25 @@ void MeshInput::import(const Place& place) {
   description_ = open_imported()->description();
 }
 
+void MeshInput::note_unplaced() {
+  input_.note_unplaced();
+  in_place_.reset();
+}
+
 void MeshInput::find_copies(const Place& place) {
+  try {
+    return look_for_copies(place);
+  } catch (const mesh_io::UnplacedVertexError&) {
+    if (input_.has_unplaced())
+      throw;
+  }
+  note_unplaced();
+  ply_.reset();
+  import(place);
+  look_for_copies(place);
+}
+
+void MeshInput::look_for_copies(const Place& place) {
   place.progress.stage("import", description_.vertex_count, "vertices");
   const std::unique_ptr<mesh_io::MeshSource> imported = in_place_ ? nullptr : open_imported();
   mesh_io::MeshSource& source = in_place_ ? *in_place_ : *imported;
@@ -41,6 +59,8 @@ void MeshInput::find_copies(const Place& place) {
 }
 
 void MeshInput::recall(const mesh_io::MeshDescription& found) {
+  if (!needs_import() && found.vertex_count < description_.vertex_count)
+    note_unplaced();
   if (needs_import())
     description_ = found;
   description_.place_count = found.place_count;

@@ -34,11 +34,14 @@ class MeshInput {
 
   const InputFiles& files() const { return input_; }
   bool needs_import() const { return input_.needs_import(); }
+  /// As InputFiles::note_unplaced.
+  void note_unplaced();
 
   /// Imports; the PLY stays until drop() or the end of this object.
   void import(const Place& place);
   /// Finds the vertices that lie where others do: copies() and the description's place_count are
-  /// known then. The list stays until drop() or the end of this object.
+  /// known then. The list stays until drop() or the end of this object. Imports a PLY that has
+  /// vertices without a place, if there is one.
   void find_copies(const Place& place);
   /// Empty unless find_copies() has found any.
   const CopyList& copies() const { return copies_; }
@@ -69,6 +72,7 @@ class MeshInput {
   std::uint64_t checksum(const execution::CancelToken& cancel);
 
  private:
+  void look_for_copies(const Place& place);
   std::unique_ptr<mesh_io::MeshSource> open_imported();
 
   storage::FileSystem& system_;

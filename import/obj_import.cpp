@@ -339,30 +339,94 @@ ObjLook find_look(const ObjParts& parts, ObjImport& import, RawMesh& mesh,
   return look;
 }
 
-void add_corners(const ObjParts& parts, const ObjLook& look, CornerSplitter& splitter,
-                 const ImportRoom& room) {
-  ObjSurface* const surface = look.surface.get();
-  execution::SpoolCursor triangles(parts.triangles, room.cancel);
-  execution::SpoolCursor names(parts.materials, room.cancel);
-  std::optional<execution::SpoolCursor<std::uint32_t>> tiles;
-  if (surface != nullptr)
-    tiles.emplace(surface->tiles, room.cancel);
-  for (std::uint64_t i = 0; i < triangles.size(); ++i) {
-    const ObjTriangle& triangle = triangles.at(i);
-    bool shows_texcoords = true;
-    std::uint32_t material = 0;
-    if (surface != nullptr) {
-      const std::uint32_t name = names.at(i);
-      const auto tile = has_texcoords(triangle) ? surface->tile(name, i, *tiles) : std::nullopt;
-      const ObjTextures::Shown shown = surface->textures.show(name, tile);
-      shows_texcoords = shown.has_picture;
-      material = shown.number + 1;
-    } else if (look.paint) {
-      material = look.paint->part(names.at(i));
+/// Triangles of a textured file with what they show, from the first on.
+class ShownTriangles {
+ public:
+  ShownTriangles(const ObjParts& parts, ObjSurface& surface, const ImportRoom& room)
+      : surface_(surface),
+        triangles_(parts.triangles, room.cancel),
+        names_(parts.materials, room.cancel),
+        tiles_(surface.tiles, room.cancel) {}
+
+  std::uint64_t count() const { return triangles_.size(); }
+  const ObjTriangle& triangle(std::uint64_t i) { return triangles_.at(i); }
+  ObjTextures::Shown shown(std::uint64_t i) {
+    const std::uint32_t name = names_.at(i);
+    const auto tile =
+        has_texcoords(triangles_.at(i)) ? surface_.tile(name, i, tiles_) : std::nullopt;
+    return surface_.textures.show(name, tile);
+  }
+
+ private:
+  ObjSurface& surface_;
+  execution::SpoolCursor<ObjTriangle> triangles_;
+  execution::SpoolCursor<std::uint32_t> names_, tiles_;
+};
+
+/// Of corners of triangles, which of them the file has.
+class CornerColours {
+ public:
+  explicit CornerColours(const ObjParts& parts) : colours_(parts.colours) {}
+
+  std::size_t count(const ObjTriangle& triangle) {
+    return static_cast<std::size_t>(std::ranges::count_if(
+        triangle, [this](const ObjCorner& c) { return is_colour(colours_.at(c.position)); }));
+  }
+
+ private:
+  SpoolLookup<ObjColour> colours_;
+};
+
+/// Whether colours of a textured file tint: vertices have them where there is no picture, and there
+/// alone. Programs colour the vertices of what they paint with pictures, too: that says the same
+/// twice.
+bool do_colours_tint(const ObjParts& parts, ObjSurface& surface, const ImportRoom& room) {
+  ShownTriangles triangles(parts, surface, room);
+  CornerColours colours(parts);
+  bool is_plain_coloured = false;
+  for (std::uint64_t i = 0; i < triangles.count(); ++i) {
+    const bool has_picture = triangles.shown(i).has_picture;  // materials are numbered as asked for
+    if (colours.count(triangles.triangle(i)) == 0)
+      continue;
+    if (has_picture)
+      return false;
+    is_plain_coloured = true;
+  }
+  return is_plain_coloured;
+}
+
+/// Where all corners have colours that tint, no material changes them.
+void add_shown_corners(const ObjParts& parts, ObjSurface& surface, bool tint, RawMesh& mesh,
+                       CornerSplitter& splitter, const ImportRoom& room) {
+  ShownTriangles triangles(parts, surface, room);
+  std::optional<CornerColours> colours;
+  if (tint)
+    colours.emplace(parts);
+  std::optional<std::uint32_t> white;
+  for (std::uint64_t i = 0; i < triangles.count(); ++i) {
+    const ObjTriangle& triangle = triangles.triangle(i);
+    ObjTextures::Shown shown = triangles.shown(i);
+    if (tint && !shown.has_picture && colours->count(triangle) == triangle.size()) {
+      if (!white)
+        white = mesh.materials.add({});
+      shown.number = *white;
     }
     // kNone + 1 is 0.
-    for (const ObjCorner& c : triangle)
-      splitter.add({c.position, {shows_texcoords ? c.texcoord + 1 : 0, c.normal + 1, material}});
+    for (const ObjCorner& c : triangle) {
+      splitter.add(
+          {c.position, {shown.has_picture ? c.texcoord + 1 : 0, c.normal + 1, shown.number + 1}});
+    }
+  }
+}
+
+void add_plain_corners(const ObjParts& parts, const std::optional<ObjPaint>& paint,
+                       CornerSplitter& splitter, const ImportRoom& room) {
+  execution::SpoolCursor triangles(parts.triangles, room.cancel);
+  execution::SpoolCursor names(parts.materials, room.cancel);
+  for (std::uint64_t i = 0; i < triangles.size(); ++i) {
+    const std::uint32_t material = paint ? paint->part(names.at(i)) : 0;
+    for (const ObjCorner& c : triangles.at(i))
+      splitter.add({c.position, {c.texcoord + 1, c.normal + 1, material}});
   }
 }
 
@@ -379,11 +443,9 @@ bool append_colour(ObjColour colour, std::uint32_t paint, RawMesh& mesh) {
   return is_known;
 }
 
-/// Returns how many became white.
-std::uint64_t append_vertices(const ObjParts& parts, const SplitVertices& vertices,
-                              const ObjLook& look, const AttributeLayout& layout, RawMesh& mesh,
-                              const ImportRoom& room) {
-  std::uint64_t made_white = 0;
+void append_vertices(const ObjParts& parts, const SplitVertices& vertices, const ObjLook& look,
+                     ObjImport& import, RawMesh& mesh, const ImportRoom& room) {
+  const AttributeLayout& layout = import.layout;
   storage::RecordSpool<Texcoord> texcoords(room.scratch, kImportSpoolBytes);
   storage::RecordSpool<Vec3f> normals(room.scratch, kImportSpoolBytes);
   if (layout.texcoords)
@@ -408,7 +470,10 @@ std::uint64_t append_vertices(const ObjParts& parts, const SplitVertices& vertic
       mesh.attributes.append(ObjPaint::colour(materials.at(i)).values());
     } else if (layout.colour != ColourType::none) {
       const std::uint32_t paint = look.paint ? materials.at(i) : 0;
-      made_white += append_colour(colours.at(position), paint, mesh) ? 0 : 1;
+      const bool is_coloured = append_colour(colours.at(position), paint, mesh);
+      import.filled_colours += is_coloured || layout.material ? 0 : 1;
+      const bool is_plain = layout.material && materials.at(i) > 0 && shown.at(i) == 0;
+      import.hidden_colours += is_coloured && is_plain && !layout.tints ? 1 : 0;
     }
     if (layout.texcoords && !layout.material)
       mesh.attributes.append(all_texcoords.at(i));
@@ -421,7 +486,6 @@ std::uint64_t append_vertices(const ObjParts& parts, const SplitVertices& vertic
       mesh.attributes.append(std::array{at.u, at.v, static_cast<float>(material)});
     }
   }
-  return made_white;
 }
 
 /// Corners refer to positions alone. Returns how many became white.
@@ -449,7 +513,12 @@ void append_split(ObjParts& parts, const ObjLook& look, ObjImport& import, RawMe
                   const ImportRoom& room) {
   SplitVertices vertices(room.scratch);
   CornerSplitter splitter(room);
-  add_corners(parts, look, splitter, room);
+  if (look.surface) {
+    import.layout.tints = import.counts.coloured > 0 && do_colours_tint(parts, *look.surface, room);
+    add_shown_corners(parts, *look.surface, import.layout.tints, mesh, splitter, room);
+  } else {
+    add_plain_corners(parts, look.paint, splitter, room);
+  }
   parts.triangles.clear();
   if (look.paint && parts.colours.size() > 0) {
     execution::SpoolCursor colours(parts.colours, room.cancel);
@@ -458,7 +527,7 @@ void append_split(ObjParts& parts, const ObjLook& look, ObjImport& import, RawMe
   } else {
     splitter.split(parts.positions.size(), vertices, mesh);
   }
-  import.filled_colours = append_vertices(parts, vertices, look, import.layout, mesh, room);
+  append_vertices(parts, vertices, look, import, mesh, room);
   import.split_vertices = vertices.count() - parts.positions.size();
   import.filled_texcoords = import.layout.texcoords ? vertices.without[kTexcoord] : 0;
   import.filled_normals = import.layout.normals ? vertices.without[kNormal] : 0;

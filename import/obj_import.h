@@ -20,6 +20,7 @@ struct ObjImport {
   std::uint64_t material_colours = 0;  ///< that vertices have
   bool is_painted = false;             ///< vertices have no other colours
   std::uint64_t filled_colours = 0;    ///< vertices without a colour in a file that has some: white
+  std::uint64_t hidden_colours = 0;    ///< of vertices that show no picture
   std::uint64_t filled_texcoords = 0;  ///< vertices without one in a file that has some: 0 0
   std::uint64_t filled_normals = 0;    ///< likewise: 0 0 0
   std::uint64_t missing_libraries = 0;    ///< that a file names whose materials are looked for

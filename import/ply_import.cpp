@@ -1,6 +1,7 @@
 #include "import/ply_import.h"
 
 #include "execution/spool_cursor.h"
+#include "import/place_vertices.h"
 #include "import/ply_pictures.h"
 #include "import/ply_texture_faces.h"
 #include "import/split_corners.h"
@@ -205,7 +206,10 @@ class PlyImporter {
     const std::uint32_t part = parts[CornerParts::kMaterial];
     const std::uint32_t material = std::max(part, std::uint32_t{1}) - 1;
     std::array<float, 3> shown{0, 0, static_cast<float>(material)};
-    if (part > 0 && mesh_.materials.list().materials[material].image) {
+    const bool shows_picture = mesh_.materials.list().materials[material].image.has_value();
+    import_.hidden_colours +=
+        part > 0 && !shows_picture && given_.colour != ColourType::none ? 1 : 0;
+    if (part > 0 && shows_picture) {
       const auto texcoord = static_cast<std::size_t>(given_.texcoord_offset());
       const Texcoord at = has_own_texcoords() ? Texcoord{std::bit_cast<float>(parts[kU]),
                                                          std::bit_cast<float>(parts[kV])}
@@ -266,10 +270,11 @@ class PlyImporter {
     source_.read_vertices([&](const mesh_io::VertexBlock& block) {
       room_.cancel.check();
       import_.zeroed += block.zeroed;
+      import_.fits_float = import_.fits_float && block.fits_float();
+      count_unplaced(block, path_, import_.unplaced);
       const std::size_t count = block.positions.size() + block.exact.size();
       for (std::size_t i = 0; i < count; ++i) {
         const Vec3d position = block.exact.empty() ? to_double(block.positions[i]) : block.exact[i];
-        import_.fits_float = import_.fits_float && (block.exact.empty() || fits_float(position));
         take(block.first + i, position, block.attributes.subspan(i * channels, channels));
       }
     });

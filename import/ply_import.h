@@ -6,6 +6,7 @@
 #include "import/raw_mesh.h"
 #include "mesh_io/named_files.h"
 #include "mesh_io/ply_source.h"
+#include "mesh_io/unplaced.h"
 #include "mesh_io/zeroed.h"
 
 #include <cstdint>
@@ -18,7 +19,9 @@ struct PlyImport {
   bool fits_float = true;
   mesh_io::FaceCounts counts;
   std::uint64_t split_vertices = 0;  ///< that a vertex of the file has beyond one
-  mesh_io::ZeroedCounts zeroed;      ///< of vertices, and of corners of polygons
+  std::uint64_t hidden_colours = 0;  ///< of vertices that show no picture, beside those that do
+  mesh_io::UnplacedVertices unplaced;
+  mesh_io::ZeroedCounts zeroed;  ///< of vertices, and of corners of polygons
 };
 
 /// Appends the mesh of `source` to `mesh`, but for its layout. `path`: of the file, whose folder

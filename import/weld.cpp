@@ -2,8 +2,8 @@
 
 #include "execution/spool_cursor.h"
 #include "hierarchy/error.h"
+#include "import/renumber_triangles.h"
 #include "partition/external_sort.h"
-#include "partition/renumber.h"
 
 #include <bit>
 #include <type_traits>
@@ -167,55 +167,6 @@ std::uint64_t weld_into(const RawMesh& mesh, RawMesh& welded,
   return weld_into<16>(mesh, welded, table, room);
 }
 
-/// Translates triangles and drops those that became degenerate; returns how many did.
-class TriangleWelder {
- public:
-  TriangleWelder(const storage::RecordSpool<std::uint32_t>& table, RawMesh& welded,
-                 const ImportRoom& room)
-      : renumberer_(
-            table,
-            partition::plan_renumbering(table.size(), sizeof(std::uint32_t), room.sort_bytes),
-            room.scratch),
-        welded_(welded),
-        cancel_(room.cancel) {}
-
-  std::uint64_t weld(const storage::RecordSpool<Triangle<std::uint32_t>>& triangles) {
-    constexpr std::uint64_t kBlockTriangles = 16384;
-    std::vector<Triangle<std::uint32_t>> block;
-    for (std::uint64_t i = 0; i < triangles.size(); i += block.size()) {
-      block.resize(std::min(kBlockTriangles, triangles.size() - i));
-      triangles.read(i, block);
-      renumberer_.translate(std::span<const Triangle<std::uint32_t>>(block), renumbered_);
-      keep();
-    }
-    while (renumberer_.next_round()) {
-      for (std::uint64_t batch = 0; batch < renumberer_.batches(); ++batch) {
-        renumberer_.translate_batch(batch, renumbered_);
-        keep();
-      }
-    }
-    return degenerate_;
-  }
-
- private:
-  void keep() {
-    cancel_.check();
-    for (const Triangle<std::uint32_t>& t : renumbered_.finished) {
-      if (is_degenerate(t))
-        ++degenerate_;
-      else
-        welded_.triangles.append(t);
-    }
-    renumberer_.keep(renumbered_);
-  }
-
-  partition::Renumberer<std::uint32_t> renumberer_;
-  partition::Renumbered<std::uint32_t> renumbered_;
-  RawMesh& welded_;
-  const execution::CancelToken& cancel_;
-  std::uint64_t degenerate_ = 0;
-};
-
 }  // namespace
 
 template <class Scalar>
@@ -264,7 +215,12 @@ WeldCounts weld_vertices(RawMesh& mesh, RawMesh& welded, const ImportRoom& room)
   counts.merged = mesh.vertex_count() - weld_into(mesh, welded, table, room);
   mesh.positions.clear();
   mesh.attributes.clear();
-  counts.degenerate_triangles = TriangleWelder(table, welded, room).weld(mesh.triangles);
+  renumber_triangles(mesh.triangles, table, room, [&](const Triangle<std::uint32_t>& t) {
+    if (is_degenerate(t))
+      ++counts.degenerate_triangles;
+    else
+      welded.triangles.append(t);
+  });
   mesh.triangles.clear();
   return counts;
 }

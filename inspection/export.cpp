@@ -58,6 +58,7 @@ mesh_io::PlyContent content_for(const storage::HierarchyReader& reader, const st
   mesh_io::PlyContent content;
   content.attributes = reader.tile_format().attributes;
   content.attributes.space = ColourSpace::srgb;
+  content.attributes.tints = false;
   content.double_coordinates = has_origin(reader);
   content.comments = {"meshhier export: " + what};
   return content;

@@ -78,8 +78,9 @@ class GlbLayout {
         static_cast<std::uint64_t>(layout.colour_channels()) * component_bytes(colour);
     return {{{"POSITION", "VEC3", storage::kF32, n, 12},
              {"NORMAL", "VEC3", storage::kF32, has_normals ? n : 0, 12},
-             {format_.textures ? "_COLOR_0" : "COLOR_0", layout.alpha ? "VEC4" : "VEC3", colour,
-              has_colours ? n : 0, storage::aligned4(colour_bytes), colour != storage::kF32},
+             {format_.textures && !layout.tints ? "_COLOR_0" : "COLOR_0",
+              layout.alpha ? "VEC4" : "VEC3", colour, has_colours ? n : 0,
+              storage::aligned4(colour_bytes), colour != storage::kF32},
              {"TEXCOORD_0", "VEC2", storage::kF32, has_texcoords ? n : 0, 8},
              {"", "SCALAR", index_component(n), 3 * std::uint64_t{part.triangles},
               component_bytes(index_component(n))},

@@ -352,6 +352,10 @@ bool was_welded(const VerifyJob& job) {
   return weld != config.end() && weld->is_boolean() && weld->get<bool>();
 }
 
+bool has_count(const SourceSummary& source, std::string_view name) {
+  return std::ranges::find(source.counts, name, &SourceCount::name) != source.counts.end();
+}
+
 /// As the build did.
 importing::Textures textures_of(const SourceSummary& source) {
   return importing::shows_materials(source) ? importing::Textures::use
@@ -379,6 +383,8 @@ void verify_input(const VerifyJob& job) {
   const InputProblems problems(job);
   const SourceSummary& expected = job.reader.manifest().source;
   importing::MeshInput files(job.options.input, was_welded(job), job.files, textures_of(expected));
+  if (has_count(expected, importing::kDroppedUnplaced))
+    files.note_unplaced();
   if (files.needs_import()) {
     files.import({job.scratch.path().string() + "-import", job.scratch.path().string() + "-sorts",
                   job.scratch.pool(), job.options.memory_budget / 8, job.progress, job.cancel});
@@ -390,10 +396,8 @@ void verify_input(const VerifyJob& job) {
   AttributeLayout kept = kept_layout(layout);
   if (job.reader.manifest().screen_colours)
     kept.space = expected.attributes.space;  // which these formats did not tell apart
-  const auto are_bytes = [](const SourceCount& one) {
-    return one.name == importing::kColoursTakenForBytes;
-  };
-  if (kept.colour != ColourType::none && std::ranges::any_of(expected.counts, are_bytes))
+  kept.tints = expected.attributes.tints;    // says how colours are seen, not which they are
+  if (kept.colour != ColourType::none && has_count(expected, importing::kColoursTakenForBytes))
     kept.colour = ColourType::u8;
   if (kept != expected.attributes || layout.material != expected.textures.has_value()) {
     problems.add("has other vertex attributes than the mesh the hierarchy was made of");

@@ -9,10 +9,17 @@
 
 namespace meshhier::mesh_io {
 
-void fail_file(const std::filesystem::path& path, const std::string& message) {
+namespace {
+
+std::string file_message(const std::filesystem::path& path, const std::string& message) {
   constexpr std::size_t kLongestPath = 4096;
-  throw Error(ErrorCode::input,
-              fmt::format("{}: {}", plain_text(path.string(), kLongestPath), message));
+  return fmt::format("{}: {}", plain_text(path.string(), kLongestPath), message);
+}
+
+}  // namespace
+
+void fail_file(const std::filesystem::path& path, const std::string& message) {
+  throw Error(ErrorCode::input, file_message(path, message));
 }
 
 void fail_at_byte(const std::filesystem::path& path, std::uint64_t offset,
@@ -20,9 +27,14 @@ void fail_at_byte(const std::filesystem::path& path, std::uint64_t offset,
   fail_file(path, fmt::format("byte {}: {}", offset, message));
 }
 
+std::string line_message(const std::filesystem::path& path, std::uint64_t line,
+                         const std::string& message) {
+  return file_message(path, fmt::format("line {}: {}", line, message));
+}
+
 void fail_at_line(const std::filesystem::path& path, std::uint64_t line,
                   const std::string& message) {
-  fail_file(path, fmt::format("line {}: {}", line, message));
+  throw Error(ErrorCode::input, line_message(path, line, message));
 }
 
 std::string in_quotes(std::string_view text) {

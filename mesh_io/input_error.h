@@ -13,7 +13,10 @@ namespace meshhier::mesh_io {
 /// Throws Error(input): "PATH: byte OFFSET: MESSAGE". The first byte of a file is 0.
 [[noreturn]] void fail_at_byte(const std::filesystem::path& path, std::uint64_t offset,
                                const std::string& message);
-/// Throws Error(input): "PATH: line LINE: MESSAGE". The first line of a file is 1.
+/// "PATH: line LINE: MESSAGE". The first line of a file is 1.
+std::string line_message(const std::filesystem::path& path, std::uint64_t line,
+                         const std::string& message);
+/// Throws Error(input) that says so.
 [[noreturn]] void fail_at_line(const std::filesystem::path& path, std::uint64_t line,
                                const std::string& message);
 

@@ -1,7 +1,6 @@
 #include "mesh_io/mesh_blocks.h"
 
 #include "mesh_io/coordinate_range.h"
-#include "mesh_io/ply_plan.h"
 
 #include <algorithm>
 #include <bit>
@@ -84,6 +83,10 @@ double VertexRows::value_of(std::size_t row, int slot) const {
   return wide_ ? memory_.exact[row][slot] : static_cast<double>(memory_.positions[row][slot]);
 }
 
+bool VertexRows::is_placed(std::size_t row) const {
+  return wide_ ? is_finite(memory_.exact[row]) : is_finite(memory_.positions[row]);
+}
+
 ZeroedCounts VertexRows::zero_what_is_not_finite(std::size_t first, std::size_t count) {
   const std::span<float> rows =
       std::span(memory_.attributes).subspan(first * channels_, count * channels_);
@@ -92,20 +95,22 @@ ZeroedCounts VertexRows::zero_what_is_not_finite(std::size_t first, std::size_t 
 }
 
 std::optional<VertexRows::Defect> VertexRows::find_defect(std::size_t first, std::size_t count,
-                                                          bool check_colours) const {
+                                                          const RowChecks& checks) const {
   const bool sound =
       (wide_ ? all_in_range(std::span<const Vec3d>(memory_.exact).subspan(first, count))
              : all_in_range(std::span<const Vec3f>(memory_.positions).subspan(first, count))) &&
       all_finite(memory_.attributes.data() + first * channels_, count * channels_);
-  if (sound && !check_colours)
+  if (sound && !checks.colours)
     return std::nullopt;
   const int slots = kFirstAttributeSlot + layout_.channels();
   const int first_colour = kFirstAttributeSlot + layout_.colour_offset();
   const int last_colour = first_colour + layout_.colour_channels();
   for (std::size_t row = 0; row < count; ++row) {
+    if (!checks.unplaced && !is_placed(first + row))
+      continue;
     for (int slot = 0; slot < slots; ++slot) {
       const double value = value_of(first + row, slot);
-      const bool colour = check_colours && slot >= first_colour && slot < last_colour;
+      const bool colour = checks.colours && slot >= first_colour && slot < last_colour;
       const bool coordinate = slot < kFirstAttributeSlot;
       if (!std::isfinite(value) || (colour && !is_byte(value)) ||
           (coordinate && !is_coordinate(value)))
@@ -143,9 +148,9 @@ void VertexBlocks::set(int slot, double value) {
   std::memcpy(target.data, &narrow, sizeof(narrow));
 }
 
-std::optional<VertexRows::Defect> VertexBlocks::commit(bool check_colours) {
+std::optional<VertexRows::Defect> VertexBlocks::commit(const RowChecks& checks) {
   zeroed_ += rows_.zero_what_is_not_finite(filled_, 1);
-  if (const auto defect = rows_.find_defect(filled_, 1, check_colours))
+  if (const auto defect = rows_.find_defect(filled_, 1, checks))
     return defect;
   if (++filled_ == MeshSource::kBlockSize)
     flush();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "mesh_io/mesh_source.h"
+#include "mesh_io/ply_plan.h"
 #include "mesh_io/polygon_cut.h"
 
 #include <cstddef>
@@ -37,16 +38,17 @@ class VertexRows {
     int slot = 0;
     double value = 0;
   };
-  /// The first number of rows [first, first + count) that is not finite, is a coordinate
-  /// out of range, or (if `check_colours`) not
-  /// one of the integers 0 to 255 where a colour must be.
-  std::optional<Defect> find_defect(std::size_t first, std::size_t count, bool check_colours) const;
+  /// The first number of rows [first, first + count) that is not finite, is a coordinate out of
+  /// range, or is not what `checks` ask for.
+  std::optional<Defect> find_defect(std::size_t first, std::size_t count,
+                                    const RowChecks& checks) const;
 
   /// The first `rows` rows; `first_id`: VertexId of the first.
   VertexBlock block(std::uint64_t first_id, std::size_t rows, const ZeroedCounts& zeroed) const;
 
  private:
   double value_of(std::size_t row, int slot) const;
+  bool is_placed(std::size_t row) const;
 
   AttributeLayout layout_;
   std::size_t channels_;
@@ -62,7 +64,7 @@ class VertexBlocks {
 
   void set(int slot, double value);
   /// Ends the row, unless it has a defect. What is not finite may become 0 before.
-  std::optional<VertexRows::Defect> commit(bool check_colours);
+  std::optional<VertexRows::Defect> commit(const RowChecks& checks);
 
   /// Hands out what is left.
   void finish() { flush(); }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "hierarchy/attributes.h"
+#include "hierarchy/error.h"
 #include "hierarchy/ids.h"
 #include "hierarchy/triangle.h"
 #include "hierarchy/vec.h"
@@ -43,6 +44,9 @@ struct VertexBlock {
   std::span<const Vec3d> exact;       ///< empty unless wide_coordinates
   std::span<const float> attributes;  ///< count * attributes.channels(), see hierarchy/attributes.h
   ZeroedCounts zeroed;                ///< among these attributes
+
+  /// All coordinates do, but those that are not finite.
+  bool fits_float() const;
 };
 
 /// What reading all faces found.
@@ -77,6 +81,13 @@ struct BlockMemory {
 
 using VertexVisitor = std::function<void(const VertexBlock&)>;
 using TriangleVisitor = std::function<void(std::span<const Triangle<VertexId>>)>;
+
+/// A vertex has coordinates that are not finite. If no face uses it the mesh is whole without it:
+/// PlySource of Unplaced::visited reads it.
+class UnplacedVertexError : public Error {
+ public:
+  explicit UnplacedVertexError(const Error& error) : Error(error) {}
+};
 
 /// Every failure throws Error(input) naming file, byte offset (binary) or line (text), what was
 /// expected and what was found; Error(io) if the file cannot be read. An exception of a visitor

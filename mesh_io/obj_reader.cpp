@@ -123,7 +123,7 @@ class ObjReader {
   }
 
   void read_position() {
-    const Vec3d position = words_.take_position(counts_.fits_float);
+    const Vec3d position = words_.take_position(counts_.fits_float, &counts_.unplaced);
     std::array<float, 4> rest{};
     std::size_t more = 0;
     for (; words_.to_word() && more < rest.size(); ++more)

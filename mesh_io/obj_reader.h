@@ -4,6 +4,7 @@
 #include "hierarchy/vec.h"
 #include "mesh_io/input_stream.h"
 #include "mesh_io/polygon_counts.h"
+#include "mesh_io/unplaced.h"
 #include "mesh_io/zeroed.h"
 
 #include <array>
@@ -64,6 +65,7 @@ struct ObjCounts {
   std::uint64_t points_and_lines = 0;  ///< p, l: ignored
   std::uint64_t others = 0;            ///< smoothing groups, curves, surfaces, ...: ignored
   bool fits_float = true;              ///< all coordinates do (DecimalNumber)
+  UnplacedVertices unplaced;           ///< are visited
   ZeroedCounts zeroed;                 ///< among normals and texcoords
 };
 

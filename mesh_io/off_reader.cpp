@@ -123,7 +123,7 @@ class OffReader {
       fail_truncated(fmt::format("vertex {} of {}", number, counts_.vertices));
     if (number == 0 && is_plain_)
       look_at_first_row();
-    const Vec3d position = words_.take_position(counts_.fits_float);
+    const Vec3d position = words_.take_position(counts_.fits_float, &counts_.unplaced);
     take_attributes(number == 0);
     visit(position, std::span(channels_).first(channel_count_));
   }

@@ -6,6 +6,7 @@
 #include "mesh_io/input_stream.h"
 #include "mesh_io/mesh_blocks.h"
 #include "mesh_io/mesh_source.h"
+#include "mesh_io/unplaced.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -25,6 +26,7 @@ struct OffCounts {
   std::uint64_t lines_behind = 0;    ///< with words, behind the last face
   AttributeLayout attributes;        ///< colours are u8 if all are integers from 0 to 255, else f32
   bool fits_float = true;            ///< all coordinates do (DecimalNumber)
+  UnplacedVertices unplaced;         ///< are visited
   ZeroedCounts zeroed;
 };
 

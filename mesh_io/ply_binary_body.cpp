@@ -18,7 +18,7 @@ template <bool Swap>
 class BinaryBody final : public PlyBody {
  public:
   BinaryBody(const InputFile& input, const PlyPlan& plan, PlyPosition start)
-      : window_(input), check_colours_(plan.check_colours) {
+      : window_(input), checks_(plan.checks) {
     vertex_count_ = plan.elements[plan.vertex_element].element.count;
     window_.seek(start.offset);
   }
@@ -54,7 +54,7 @@ class BinaryBody final : public PlyBody {
   std::int64_t load_integer(PlyType type) const;
 
   ByteWindow window_;
-  bool check_colours_;
+  RowChecks checks_;
   std::uint64_t vertex_count_ = 0;
 };
 
@@ -138,9 +138,8 @@ void BinaryBody<Swap>::read_vertex_row(const Row& row, VertexBlocks& blocks) {
                }));
     window_.advance(size_of(property.type));
   }
-  if (const auto bad = blocks.commit(check_colours_)) {
-    fail(start, defect_text(row.plan, row.number, bad->slot, bad->value));
-  }
+  if (const auto bad = blocks.commit(checks_))
+    fail_for(*bad, [&] { fail(start, defect_text(row.plan, row.number, bad->slot, bad->value)); });
 }
 
 /// Takes rows of usual triangles as long as all is well, and leaves any other row, the last of the

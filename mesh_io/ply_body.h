@@ -1,11 +1,13 @@
 // The data behind a PLY header, element by element, in binary or in text.
 #pragma once
 
+#include "hierarchy/error.h"
 #include "mesh_io/byte_window.h"
 #include "mesh_io/mesh_blocks.h"
 #include "mesh_io/ply_faces.h"
 #include "mesh_io/ply_plan.h"
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -56,6 +58,18 @@ bool is_strip_restart(std::int64_t index, PlyType type);
 std::string row_name(const PlyElementPlan& plan, std::uint64_t row);
 /// The number read for a slot is not finite, no coordinate, or no colour.
 std::string defect_text(const PlyElementPlan& plan, std::uint64_t row, int slot, double value);
+/// Throws what `fail` does, as UnplacedVertexError if the defect is that a coordinate is not
+/// finite.
+template <class Fail>
+void fail_for(const VertexRows::Defect& defect, const Fail& fail) {
+  try {
+    fail();
+  } catch (const Error& error) {
+    if (defect.slot < kFirstAttributeSlot && !std::isfinite(defect.value))
+      throw UnplacedVertexError(error);
+    throw;
+  }
+}
 /// Of a list that is read as a whole.
 std::size_t most_items(const PlyElementPlan& plan, std::size_t property);
 /// Such a list is longer.

@@ -151,12 +151,14 @@ VertexBlock PlyVertexBlocks::read(const InputFile& input, std::uint64_t index,
   VertexRows rows(mesh_, block.rows, memory);
   decode(bytes, block.rows, rows);
   const ZeroedCounts zeroed = rows.zero_what_is_not_finite(0, block.rows);
-  if (const auto bad = rows.find_defect(0, block.rows, plan_.check_colours)) {
+  if (const auto bad = rows.find_defect(0, block.rows, plan_.checks)) {
     const auto field = std::find_if(fields_.begin(), fields_.end(),
                                     [&](const Field& f) { return f.slot == bad->slot; });
     const std::uint64_t row = block.first + bad->row;
-    fail_at_byte(input.file.path(), blocks_.offset_of(row) + field->offset,
-                 defect_text(plan_.elements[plan_.vertex_element], row, bad->slot, bad->value));
+    fail_for(*bad, [&] {
+      fail_at_byte(input.file.path(), blocks_.offset_of(row) + field->offset,
+                   defect_text(plan_.elements[plan_.vertex_element], row, bad->slot, bad->value));
+    });
   }
   if (block.rows < wanted)
     fail_truncated(input, block.first + block.rows);

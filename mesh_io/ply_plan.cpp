@@ -42,7 +42,7 @@ class Planner {
   void plan_vertices();
   void plan_attributes(PlyElementPlan& vertices);
   void plan_colours(PlyElementPlan& vertices);
-  void take_colours(PlyElementPlan& vertices, const PlyColour& colour, ColourSpace space);
+  void take_colours(PlyElementPlan& vertices, const PlyColour& colour);
   void plan_materials(PlyElementPlan& vertices);
   void check_range_grid() const;
   void check_sizes() const;
@@ -160,22 +160,30 @@ void Planner::plan_materials(PlyElementPlan& vertices) {
 void Planner::plan_colours(PlyElementPlan& vertices) {
   for (const PlyColourNames& names : kPlyColours) {
     if (const auto found = find_colour(vertices.element, names, path_)) {
-      take_colours(vertices, *found, ColourSpace::srgb);
+      take_colours(vertices, *found);
       return;
     }
   }
   if (writer_ != PlyWrittenBy::import)
     return;
-  const auto& [red, green, blue] = kLinearColours;
-  if (const auto found = find_colour(vertices.element, {red, green, blue, "alpha", "a"}, path_))
-    take_colours(vertices, *found, ColourSpace::linear);
+  for (const ColourSpace space : {ColourSpace::srgb, ColourSpace::linear}) {
+    for (const bool tints : {false, true}) {
+      const auto [red, green, blue] = imported_colour_names(space, tints);
+      const auto found = find_colour(vertices.element, {red, green, blue, "alpha", "a"}, path_);
+      if (!found)
+        continue;
+      take_colours(vertices, *found);
+      plan_.attributes.space = space;
+      plan_.attributes.tints = tints;
+      return;
+    }
+  }
 }
 
-void Planner::take_colours(PlyElementPlan& vertices, const PlyColour& colour, ColourSpace space) {
+void Planner::take_colours(PlyElementPlan& vertices, const PlyColour& colour) {
   plan_.attributes.colour = colour.kind;
-  plan_.attributes.space = space;
   plan_.attributes.alpha = colour.properties.size() == 4;
-  plan_.check_colours = colour.is_checked;
+  plan_.checks.colours = colour.is_checked;
   assign_slots(vertices, colour.properties, plan_.attributes.colour_offset());
 }
 
@@ -231,6 +239,16 @@ void Planner::list_unused() {
 }
 
 }  // namespace
+
+std::array<std::string_view, 3> imported_colour_names(ColourSpace space, bool tints) {
+  if (space == ColourSpace::srgb) {
+    return tints ? std::array<std::string_view, 3>{"tint_red", "tint_green", "tint_blue"}
+                 : std::array<std::string_view, 3>{"red", "green", "blue"};
+  }
+  return tints ? std::array<std::string_view, 3>{"linear_tint_red", "linear_tint_green",
+                                                 "linear_tint_blue"}
+               : std::array<std::string_view, 3>{"linear_red", "linear_green", "linear_blue"};
+}
 
 bool PlyElementPlan::takes(std::size_t property) const {
   switch (role) {

@@ -44,6 +44,12 @@ struct PlyElementPlan {
   bool takes(std::size_t property) const;
 };
 
+/// What is looked for in rows of vertices besides what is always wrong.
+struct RowChecks {
+  bool colours = false;  ///< must be integers from 0 to 255
+  bool unplaced = true;  ///< coordinates must be finite; else a row where one is not is let through
+};
+
 /// Where the coordinates in pictures are.
 enum class PlyTexcoords : std::uint8_t { none, of_vertices, of_faces, of_texture_faces };
 
@@ -57,7 +63,7 @@ struct PlyPlan {
   PlyTexcoords texcoords = PlyTexcoords::none;
   /// Empty if no picture is shown, or if `texcoords` is of_texture_faces and none is named.
   std::vector<std::string> texture_files;
-  bool check_colours = false;  ///< the stored type holds values that `attributes.colour` does not
+  RowChecks checks;  ///< colours: if the stored type holds values that `attributes.colour` has not
   /// Of faces: only if vertices have none. `face_alpha`: with integers alone.
   ColourType face_colour = ColourType::none;
   bool face_alpha = false;
@@ -66,14 +72,18 @@ struct PlyPlan {
   std::vector<std::string> unused_pictures;  ///< that are named and cannot be shown
 };
 
-/// Colours whose numbers are light, in files that the import wrote.
-inline constexpr std::array<std::string_view, 3> kLinearColours{"linear_red", "linear_green",
-                                                                "linear_blue"};
+/// What red, green and blue are called in files that the import writes.
+std::array<std::string_view, 3> imported_colour_names(ColourSpace space, bool tints);
 
 /// Of what the import wrote the vertices' property `material` is AttributeLayout::material, and
-/// kLinearColours are colours. No file can ask for it: only who wrote the file knows that its
-/// numbers are those of a MaterialList, or light.
+/// imported_colour_names() are those of colours. No file can ask for it: only who wrote the file
+/// knows that its numbers are those of a MaterialList, or light, or what pictures are multiplied
+/// by.
 enum class PlyWrittenBy : std::uint8_t { anyone, import };
+
+/// What becomes of vertices with coordinates that are not finite: they are an error, or visited as
+/// they are.
+enum class Unplaced : std::uint8_t { refused, visited };
 
 /// Decides what is read:
 ///

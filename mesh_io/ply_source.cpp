@@ -20,10 +20,11 @@ namespace {
 
 class PlyFileSource final : public PlySource {
  public:
-  PlyFileSource(std::unique_ptr<storage::File> file, PlyWrittenBy writer)
+  PlyFileSource(std::unique_ptr<storage::File> file, PlyWrittenBy writer, Unplaced unplaced)
       : file_(std::move(file)), file_bytes_(file_->size()), checksum_(file_bytes_) {
     const PlyHeader header = read_header();
     plan_ = make_ply_plan(header, file_bytes_, file_->path(), writer);
+    plan_.checks.unplaced = unplaced == Unplaced::refused;
     starts_.resize(plan_.elements.size() + 1);
     starts_[0] = PlyPosition{header.data_offset, header.data_line};
     locate_fixed_elements();
@@ -285,9 +286,9 @@ std::optional<PlyPlan> plan_of(std::string_view start, const std::filesystem::pa
   }
 }
 
-std::unique_ptr<PlySource> make_ply_source(std::unique_ptr<storage::File> file,
-                                           PlyWrittenBy writer) {
-  return std::make_unique<PlyFileSource>(std::move(file), writer);
+std::unique_ptr<PlySource> make_ply_source(std::unique_ptr<storage::File> file, PlyWrittenBy writer,
+                                           Unplaced unplaced) {
+  return std::make_unique<PlyFileSource>(std::move(file), writer, unplaced);
 }
 
 }  // namespace meshhier::mesh_io

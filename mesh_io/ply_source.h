@@ -39,6 +39,7 @@ std::optional<PlyPlan> plan_of(std::string_view start, const std::filesystem::pa
 /// Reads the header of `file` and checks it. What is accepted: ply_header.h, ply_plan.h,
 /// ply_body.h.
 std::unique_ptr<PlySource> make_ply_source(std::unique_ptr<storage::File> file,
-                                           PlyWrittenBy writer = PlyWrittenBy::anyone);
+                                           PlyWrittenBy writer = PlyWrittenBy::anyone,
+                                           Unplaced unplaced = Unplaced::refused);
 
 }  // namespace meshhier::mesh_io

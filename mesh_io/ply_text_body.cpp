@@ -34,7 +34,7 @@ class TextBody final : public PlyBody {
   TextBody(const InputFile& input, const PlyPlan& plan, PlyPosition start)
       : cursor_(input, start.offset, start.line),
         vertex_count_(plan.elements[plan.vertex_element].element.count),
-        check_colours_(plan.check_colours) {}
+        checks_(plan.checks) {}
 
   PlyPosition position() const override { return {cursor_.offset(), cursor_.line()}; }
   void skip(const PlyElementPlan& plan) override;
@@ -67,7 +67,7 @@ class TextBody final : public PlyBody {
 
   TextCursor cursor_;
   std::uint64_t vertex_count_;
-  bool check_colours_;
+  RowChecks checks_;
 };
 
 void TextBody::begin_row(const Row& row) {
@@ -179,9 +179,8 @@ void TextBody::read_vertices(const PlyElementPlan& plan, VertexBlocks& blocks) {
       }
     }
     end_row(row);
-    if (const auto bad = blocks.commit(check_colours_)) {
-      fail(defect_text(plan, i, bad->slot, bad->value));
-    }
+    if (const auto bad = blocks.commit(checks_))
+      fail_for(*bad, [&] { fail(defect_text(plan, i, bad->slot, bad->value)); });
   }
 }
 

@@ -36,11 +36,12 @@ std::string attribute_lines(const AttributeLayout& layout) {
     for (const std::string_view name : {"nx", "ny", "nz"})
       add("float", name);
   }
-  constexpr std::array<std::string_view, 4> kColours{"red", "green", "blue", "alpha"};
-  for (std::size_t i = 0; i < static_cast<std::size_t>(layout.colour_channels()); ++i) {
-    const bool is_light = layout.space == ColourSpace::linear && i < kLinearColours.size();
-    add(colour_type_name(layout.colour), is_light ? kLinearColours[i] : kColours[i]);
+  if (layout.colour != ColourType::none) {
+    for (const std::string_view name : imported_colour_names(layout.space, layout.tints))
+      add(colour_type_name(layout.colour), name);
   }
+  if (layout.alpha)
+    add(colour_type_name(layout.colour), "alpha");
   if (layout.texcoords) {
     for (const std::string_view name : {"s", "t"})
       add("float", name);

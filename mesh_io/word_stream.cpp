@@ -26,6 +26,10 @@ bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\v' || c == '\f';
 }
 
+std::string not_finite(const char* what, std::string_view word) {
+  return fmt::format("expected a finite number for {}, found {}", what, in_quotes(word));
+}
+
 }  // namespace
 
 WordStream::WordStream(InputStream& stream, std::filesystem::path path, Rules rules)
@@ -189,20 +193,22 @@ std::string WordStream::take_rest() {
   return rest;
 }
 
-DecimalNumber WordStream::take_number(const char* what) {
+std::string_view WordStream::take_word_for(const char* what) {
   if (!to_word())
     fail(fmt::format("expected a number for {}, found the end of the line", what));
-  const std::string_view word = take_word();
+  return take_word();
+}
+
+DecimalNumber WordStream::take_number(const char* what) {
+  const std::string_view word = take_word_for(what);
   const auto number = parse_decimal(word);
   if (!number || !std::isfinite(number->value))
-    fail(fmt::format("expected a finite number for {}, found {}", what, in_quotes(word)));
+    fail(not_finite(what, word));
   return *number;
 }
 
 float WordStream::take_any_float(const char* what) {
-  if (!to_word())
-    fail(fmt::format("expected a number for {}, found the end of the line", what));
-  const std::string_view word = take_word();
+  const std::string_view word = take_word_for(what);
   const auto number = parse_real<float>(word);
   if (!number)
     fail(fmt::format("expected a number for {}, found {}", what, in_quotes(word)));
@@ -216,14 +222,22 @@ float WordStream::take_float(const char* what) {
   return value;
 }
 
-Vec3d WordStream::take_position(bool& fits_float) {
+Vec3d WordStream::take_position(bool& fits_float, UnplacedVertices* unplaced) {
+  constexpr const char* kWhat = "a coordinate";
   std::array<double, 3> position{};
+  bool is_placed = true;
   for (double& coordinate : position) {
-    const DecimalNumber number = take_number("a coordinate");
-    if (!is_coordinate(number.value))
-      fail(fmt::format("expected {}, found {}", kCoordinateRange, number.value));
-    coordinate = number.value;
-    fits_float = fits_float && number.fits_float;
+    const std::string_view word = take_word_for(kWhat);
+    const auto number = parse_decimal(word);
+    const bool is_finite = number && std::isfinite(number->value);
+    if (!number || (!is_finite && unplaced == nullptr))
+      fail(not_finite(kWhat, word));
+    if (is_finite && !is_coordinate(number->value))
+      fail(fmt::format("expected {}, found {}", kCoordinateRange, number->value));
+    if (!is_finite && std::exchange(is_placed, false) && unplaced->count++ == 0)
+      unplaced->first = line_message(path_, line_, not_finite(kWhat, word));
+    coordinate = number->value;
+    fits_float = fits_float && (number->fits_float || !is_finite);
   }
   return {position[0], position[1], position[2]};
 }

@@ -4,6 +4,7 @@
 #include "hierarchy/vec.h"
 #include "mesh_io/input_stream.h"
 #include "mesh_io/number_text.h"
+#include "mesh_io/unplaced.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -55,8 +56,9 @@ class WordStream {
   float take_float(const char* what);
   /// Perhaps infinite or "nan".
   float take_any_float(const char* what);
-  /// Three coordinates; clears `fits_float` if one of them does not.
-  Vec3d take_position(bool& fits_float);
+  /// Three coordinates; clears `fits_float` if one of them does not. If one is not finite the
+  /// vertex is counted in `unplaced`; without that it is an error.
+  Vec3d take_position(bool& fits_float, UnplacedVertices* unplaced = nullptr);
   void expect_line_end();
 
   /// Throws Error(input) naming file and line.
@@ -67,6 +69,7 @@ class WordStream {
   bool look_ahead(std::size_t bytes);
   bool to_word_of_line();
   bool begins_kept_comment();
+  std::string_view take_word_for(const char* what);
   std::size_t joint_at(std::size_t place);
   bool skip_joint();
   void skip_comment();

@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -51,6 +52,22 @@ BuildStats make_stats(const storage::HierarchyReader& made, const StageContext& 
   return stats;
 }
 
+/// A count that all should know of: "3 normals of the mesh became 0".
+struct CountWarning {
+  std::string_view count;
+  const char* what;
+  const char* became;
+};
+
+constexpr const char* kBecameZero = " of the mesh became 0: the file has no finite numbers there";
+constexpr std::array kCountWarnings{
+    CountWarning{importing::kZeroedNormals, "normals", kBecameZero},
+    CountWarning{importing::kZeroedTexcoords, "texture coordinates", kBecameZero},
+    CountWarning{importing::kMadeWhite, "vertices",
+                 " of the mesh became white: others have colours"},
+    CountWarning{importing::kHiddenColours, "vertices",
+                 " without a picture have colours that are not shown: others have both"}};
+
 /// What makes a hierarchy of which a viewer shows nothing, or less than its maker may think.
 std::string warning_text(const SourceSummary& source, bool has_area) {
   std::string text;
@@ -65,12 +82,10 @@ std::string warning_text(const SourceSummary& source, bool has_area) {
     warn("no triangle of the mesh has an area, their corners lie on lines: viewers show nothing");
   else if (source.degenerate_triangles > source.triangles)
     warn("most triangles of the mesh are degenerate");
-  for (const auto& [name, what] : {std::pair(importing::kZeroedNormals, "normals"),
-                                   std::pair(importing::kZeroedTexcoords, "texture coordinates")}) {
-    const auto found = std::ranges::find(source.counts, name, &SourceCount::name);
+  for (const CountWarning& warning : kCountWarnings) {
+    const auto found = std::ranges::find(source.counts, warning.count, &SourceCount::name);
     if (found != source.counts.end())
-      warn(counted(found->count, what) +
-           " of the mesh became 0: the file has no finite numbers there");
+      warn(counted(found->count, warning.what) + warning.became);
   }
   if (source.triangles > 0 && source.unreferenced_vertices > source.vertices / 2)
     warn("most vertices of the mesh belong to no triangle");

@@ -24,6 +24,51 @@ class NoPicture final : public images::ImageReader {
   images::ImageInfo info_{ImageFormat::png, 1, 1, 3, 0};
 };
 
+/// A picture on its way, of which it looks for texels that are not opaque.
+class AlphaWatch final : public images::ImageReader {
+ public:
+  explicit AlphaWatch(images::ImageReader& from) : from_(from) {}
+
+  const images::ImageInfo& info() const override { return from_.info(); }
+  void read_rows(std::uint8_t* rows, std::uint32_t count) override {
+    from_.read_rows(rows, count);
+    const std::size_t channels = info().channels;
+    if (channels < kAlpha + 1)
+      return;
+    const std::size_t texels = std::size_t{count} * info().width;
+    for (std::size_t i = 0; i < texels && !is_any_; ++i)
+      is_any_ = rows[i * channels + kAlpha] != kOpaque;
+  }
+  bool is_any() const { return is_any_; }
+
+ private:
+  static constexpr std::size_t kAlpha = 3;
+  static constexpr std::uint8_t kOpaque = 255;
+  images::ImageReader& from_;
+  bool is_any_ = false;
+};
+
+/// Whether nobody says what the alpha of a picture is.
+bool is_alpha_unsaid(std::uint32_t image, const images::MaterialList& materials) {
+  return std::ranges::any_of(materials.materials, [&](const images::Material& material) {
+    return material.image == image && material.is_alpha_unsaid;
+  });
+}
+
+/// In one line. `names`: of pictures.
+void warn_of_alpha(const std::vector<std::string>& names, execution::Progress& progress) {
+  constexpr std::size_t kLongestName = 255;
+  if (names.empty())
+    return;
+  const bool is_one = names.size() == 1;
+  const std::string first = plain_text(names[0], kLongestName);
+  progress.warn(fmt::format(
+      "{} of the mesh {} transparent texels, which are shown opaque ({}{}): if they are holes, add "
+      "the line 'map_d {}' to the materials that show {}",
+      counted(names.size(), "pictures"), is_one ? "has" : "have",
+      is_one ? "" : "the first: ", first, first, is_one ? "it" : "them"));
+}
+
 /// In one line.
 void warn_of_broken(const std::vector<std::string>& why, execution::Progress& progress) {
   if (why.empty())
@@ -53,6 +98,7 @@ images::MaterialList decode_images(images::ImageStore& pictures, BuildJournal& j
       left += std::uint64_t{plan.heads[i].width} * plan.heads[i].height;
   }
   context.progress.stage("images", left, "texels");
+  std::vector<std::string> transparent;
   for (std::size_t i = pictures.size(); i < plan.heads.size(); ++i) {
     const auto step = [&](std::uint64_t texels) {
       context.cancel.check();
@@ -61,7 +107,10 @@ images::MaterialList decode_images(images::ImageStore& pictures, BuildJournal& j
     std::string why;
     try {
       const auto reader = images::open_source(materials.images[i], context.files.input());
-      pictures.add(*reader, step);
+      AlphaWatch watch(*reader);
+      pictures.add(watch, step);
+      if (watch.is_any() && is_alpha_unsaid(static_cast<std::uint32_t>(i), materials))
+        transparent.push_back(materials.images[i].name);
     } catch (const Error& error) {
       if (error.code() != ErrorCode::input)
         throw;
@@ -77,6 +126,7 @@ images::MaterialList decode_images(images::ImageStore& pictures, BuildJournal& j
   for (const auto& [image, why] : journal.broken_images())
     leave_out(image, materials);
   warn_of_broken(broken_pictures(plan, journal), context.progress);
+  warn_of_alpha(transparent, context.progress);
   return materials;
 }
 

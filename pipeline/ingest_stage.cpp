@@ -1,5 +1,6 @@
 #include "pipeline/ingest_stage.h"
 
+#include "hierarchy/error.h"
 #include "import/input_record.h"
 #include "partition/top_tree.h"
 #include "pipeline/origin.h"
@@ -36,7 +37,7 @@ struct BlockScan {
     zeroed = block.zeroed;
     colours = {};
     colours.add(block.attributes, layout);
-    float_exact = std::all_of(block.exact.begin(), block.exact.end(), fits_float);
+    float_exact = block.fits_float();
     block.exact.empty() ? look_at(block.first, block.positions, ids)
                         : look_at(block.first, block.exact, ids);
   }
@@ -74,7 +75,13 @@ SourceMesh::SourceMesh(std::unique_ptr<mesh_io::MeshSource> source, std::string 
 SourceMesh ingest(std::unique_ptr<mesh_io::MeshSource> source, std::string file_name,
                   storage::ScratchFile& scratch, const StageContext& context) {
   SourceMesh mesh(std::move(source), std::move(file_name), scratch);
-  mesh.summary_.counts = importing::source_counts(mesh.scan(context));
+  try {
+    mesh.summary_.counts = importing::source_counts(mesh.scan(context));
+  } catch (const mesh_io::UnplacedVertexError& error) {
+    throw Error(ErrorCode::input, std::string(error.what()) +
+                                      "; if no face uses such vertices, \"topology\": \"place\" "
+                                      "leaves them out");
+  }
   mesh.choose_colour_type(context.progress);
   mesh.choose_origin(context);
   return mesh;

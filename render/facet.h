@@ -25,10 +25,11 @@ using Facet = std::array<FacetCorner, 3>;
 
 class MipTexture;
 
-/// What a facet has in place of its corners' colours.
+/// What a facet has in place of its corners' colours, or is tinted by them.
 struct Skin {
   const MipTexture* texture = nullptr;  ///< none: colours stay
   std::array<Vec2f, 3> texcoords{};     ///< of the corners
+  bool is_tinted = false;               ///< its light is multiplied by that of the colours
 };
 
 /// Of length 1; 0 of what has no direction.

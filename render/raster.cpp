@@ -79,11 +79,13 @@ class SeenSurface {
     return unit == Vec3f{} ? flat_ : unit;
   }
   Vec3f colour(const Weights& w) const {
-    if (skin_.texture != nullptr)
-      return skin_.texture->light_at(texcoord(w), level_);
-    // The sum of weights is 1 but for the last bits of a double: a float's blend with itself is
-    // that float.
-    return is_one_colour_ ? colour_ : blend(w, colours_);
+    if (skin_.texture == nullptr)
+      return corner_colour(w);
+    const Vec3f light = skin_.texture->light_at(texcoord(w), level_);
+    if (!skin_.is_tinted)
+      return light;
+    const Vec3f tint = corner_colour(w);
+    return {light.x * tint.x, light.y * tint.y, light.z * tint.z};
   }
   bool is_opaque() const { return skin_.texture == nullptr || skin_.texture->is_opaque(); }
   bool is_seen(const Weights& w, double threshold) const {
@@ -91,6 +93,11 @@ class SeenSurface {
   }
 
  private:
+  Vec3f corner_colour(const Weights& w) const {
+    // The sum of weights is 1 but for the last bits of a double: a float's blend with itself is
+    // that float.
+    return is_one_colour_ ? colour_ : blend(w, colours_);
+  }
   Vec2f texcoord(const Weights& w) const {
     const auto& [a, b, c] = skin_.texcoords;
     return {static_cast<float>(a.u * w[0] + b.u * w[1] + c.u * w[2]),

@@ -26,7 +26,7 @@ SceneTile scene_tile(const PublishedTile& tile, const AttributeLayout& layout,
     result.texture = std::make_unique<const MipTexture>(
         images::decode_image(image.bytes, "the picture of tile " + to_text(tile.node), texels),
         Wraps{Wrap::clamp, Wrap::clamp}, image.alpha);
-    result.skins = skins_of(tile, *result.texture, border);
+    result.skins = skins_of(tile, layout, *result.texture, border);
   }
   drop_repeated(result.facets, result.skins);
   return result;

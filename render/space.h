@@ -7,10 +7,6 @@
 
 namespace meshhier::render {
 
-inline bool is_finite(Vec3d p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
-
 /// The same direction, of length 1. Requires that it has one.
 inline Vec3d unit(Vec3d vector) {
   return vector * (1 / length(vector));

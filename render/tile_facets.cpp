@@ -114,12 +114,13 @@ std::vector<Facet> points_of(const PublishedTile& tile, const AttributeLayout& l
   return points;
 }
 
-std::vector<Skin> skins_of(const PublishedTile& tile, const MipTexture& texture,
-                           std::span<const std::uint32_t> border) {
+std::vector<Skin> skins_of(const PublishedTile& tile, const AttributeLayout& layout,
+                           const MipTexture& texture, std::span<const std::uint32_t> border) {
   const auto at = [&](TileVertex number) { return tile.shading.texcoords[raw(number)]; };
+  const bool is_tinted = layout.tints && layout.colour != ColourType::none;
   std::vector<Skin> skins;
   for (const TileTriangle& t : drawn_triangles(tile, border))
-    skins.push_back({&texture, {at(t[0]), at(t[1]), at(t[2])}});
+    skins.push_back({&texture, {at(t[0]), at(t[1]), at(t[2])}, is_tinted});
   return skins;
 }
 

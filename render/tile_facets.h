@@ -24,10 +24,10 @@ std::vector<Facet> facets_of(const PublishedTile& tile, const AttributeLayout& l
 /// The own vertices of a tile, each as a facet without area. Requires as facets_of(). Linear.
 std::vector<Facet> points_of(const PublishedTile& tile, const AttributeLayout& layout);
 
-/// The skins of the same facets: the tile's own coordinates in `texture`, its picture. Requires a
-/// tile that has texture coordinates of its own, and triangles.
-std::vector<Skin> skins_of(const PublishedTile& tile, const MipTexture& texture,
-                           std::span<const std::uint32_t> border);
+/// The skins of the same facets: the tile's own coordinates in `texture`, its picture; tinted as
+/// `layout` has it. Requires a tile that has texture coordinates of its own, and triangles.
+std::vector<Skin> skins_of(const PublishedTile& tile, const AttributeLayout& layout,
+                           const MipTexture& texture, std::span<const std::uint32_t> border);
 
 /// `layout` as it is drawn where the root tile has these facets: without colours if all of them are
 /// white. Such colours say nothing, and would hide the form.

@@ -28,10 +28,13 @@ images::ImageSource image_source(const nlohmann::json& json) {
 }
 
 nlohmann::json to_json(const images::Material& material) {
-  nlohmann::json json{
-      {"name", to_binary(material.name)}, {"colour", material.colour},
-      {"factor", material.factor},        {"wraps", {material.wrap_u, material.wrap_v}},
-      {"alpha", material.alpha},          {"cutoff", material.alpha_cutoff}};
+  nlohmann::json json{{"name", to_binary(material.name)},
+                      {"colour", material.colour},
+                      {"factor", material.factor},
+                      {"wraps", {material.wrap_u, material.wrap_v}},
+                      {"alpha", material.alpha},
+                      {"cutoff", material.alpha_cutoff},
+                      {"alpha_unsaid", material.is_alpha_unsaid}};
   if (material.image)
     json["image"] = *material.image;
   return json;
@@ -46,6 +49,7 @@ images::Material material_of(const nlohmann::json& json) {
   material.wrap_v = json.at("wraps").at(1);
   material.alpha = json.at("alpha");
   material.alpha_cutoff = json.at("cutoff");
+  material.is_alpha_unsaid = json.at("alpha_unsaid");
   if (json.contains("image"))
     material.image = json.at("image").get<std::uint32_t>();
   return material;

@@ -229,6 +229,7 @@ AttributeLayout JsonObject::attributes(const char* key) const {
   attributes.texcoords = from.boolean("texcoords");
   if (from.has("linear_colours") && from.boolean("linear_colours"))
     attributes.space = ColourSpace::linear;
+  attributes.tints = from.has("tints") && from.boolean("tints");
   const std::string colours = from.text("colours");
   for (std::size_t i = 0; i < kColourTypes.size(); ++i) {
     if (colours != kColourTypes[i])
@@ -236,6 +237,8 @@ AttributeLayout JsonObject::attributes(const char* key) const {
     attributes.colour = static_cast<ColourType>(i);
     if (attributes.alpha && attributes.colour == ColourType::none)
       from.wrong("alpha", "false without colours");
+    if (attributes.tints && attributes.colour == ColourType::none)
+      from.wrong("tints", "false without colours");
     return attributes;
   }
   from.wrong("colours", "none, u8, u16 or f32");
@@ -263,6 +266,8 @@ Json attributes_json(const AttributeLayout& attributes) {
             {"texcoords", attributes.texcoords}};
   if (attributes.space == ColourSpace::linear)
     json["linear_colours"] = true;
+  if (attributes.tints)
+    json["tints"] = true;
   return json;
 }
 

@@ -19,7 +19,7 @@ constexpr std::array<const char*, kPartCount> kKeys{
     "parentMap",  "neighbours", "ghostStarts",  "ghostChains", "copyOf",   "splitOf",
     "rawNormals", "rawColours", "rawTexcoords", "image"};
 
-/// Colours that glTF does not multiply with the texture.
+/// Of colours that do not tint the picture: viewers multiply it by `COLOR_0`.
 constexpr const char* kHiddenColour = "_COLOR_0";
 
 std::uint64_t component_bytes(unsigned component) {
@@ -92,7 +92,8 @@ Json accessor_json(const TilePlan& plan, Part part, const Bounds& bounds) {
 }
 
 const char* attribute_name(const TilePlan& plan, Part part) {
-  return part == Part::colour && plan.shape().textures ? kHiddenColour : key_of(part);
+  const bool is_hidden = part == Part::colour && plan.shape().textures && !plan.layout().tints;
+  return is_hidden ? kHiddenColour : key_of(part);
 }
 
 /// Accessors have the numbers of their buffer views: the parts with an accessor come first.

@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -59,6 +60,18 @@ std::string obj_text(const TestMesh& mesh) {
     text += "v " + point_text(p) + '\n';
   for (const MeshTriangle& t : mesh.triangles)
     text += fmt::format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+  return text;
+}
+
+std::string ply_text(const TestMesh& mesh) {
+  std::string text = fmt::format(
+      "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\n"
+      "property float z\nelement face {}\nproperty list uchar int vertex_indices\nend_header\n",
+      mesh.positions.size(), mesh.triangles.size());
+  for (const Vec3f& p : mesh.positions)
+    text += point_text(p) + '\n';
+  for (const MeshTriangle& t : mesh.triangles)
+    text += fmt::format("3 {} {} {}\n", t[0], t[1], t[2]);
   return text;
 }
 
@@ -301,6 +314,79 @@ TEST_F(ImportTest, UnreferencedVerticesStay) {
   EXPECT_EQ(count_of(with, "vertices_without_texcoord"), 1U);
 }
 
+// As grids of scanners have them, where they saw nothing.
+TestMesh with_unplaced(const TestMesh& mesh) {
+  const float none = std::numeric_limits<float>::quiet_NaN();
+  const float far = std::numeric_limits<float>::infinity();
+  TestMesh more;
+  std::vector<std::uint32_t> numbers;
+  for (const Vec3f& p : mesh.positions) {
+    if (numbers.size() % 5 == 0)
+      more.positions.push_back({none, none, none});
+    if (numbers.size() % 7 == 0)
+      more.positions.push_back({p.x, -far, p.z});
+    numbers.push_back(static_cast<std::uint32_t>(more.positions.size()));
+    more.positions.push_back(p);
+  }
+  for (const MeshTriangle& t : mesh.triangles)
+    more.triangles.push_back({numbers[t[0]], numbers[t[1]], numbers[t[2]]});
+  return more;
+}
+
+TEST_F(ImportTest, VerticesWithoutAPlaceThatNoFaceUsesGo) {
+  const TestMesh mesh = tests::by_first_appearance(tests::torus(5000, 0.01F));
+  const TestMesh more = with_unplaced(mesh);
+  put_ply("good.ply", mesh);
+  put_ply("mesh.ply", more);
+  put("text.ply", ply_text(more));
+  put("mesh.obj", obj_text(more));
+  put("mesh.off", off_text(more));
+  put("packed.ply.gz", tests::gzip(content("mesh.ply")));
+  const auto expected = made(config({"good.ply"}));
+  for (const char* name : {"mesh.ply", "text.ply", "mesh.obj", "mesh.off", "packed.ply.gz"}) {
+    for (const bool weld : {false, true}) {
+      config::Config with = config({name});
+      with.weld = weld;
+      EXPECT_EQ(made(with), expected) << name;
+      EXPECT_THAT(problems(with, with.input), IsEmpty()) << name;
+      EXPECT_EQ(count_of(with, "dropped_unplaced_vertices"),
+                more.positions.size() - mesh.positions.size())
+          << name;
+    }
+    EXPECT_EQ(imported({name}, true, kTight), imported({name}, true, kRoomy)) << name;
+  }
+  const config::Config joined = config({"good.ply", "mesh.ply"});
+  build(joined);
+  EXPECT_EQ(source(joined).vertices, 2 * mesh.positions.size());
+  EXPECT_THAT(problems(joined, joined.input), IsEmpty());
+}
+
+TEST_F(ImportTest, VerticesWithoutAPlaceThatFacesUseAreRefused) {
+  TestMesh mesh = with_unplaced(tests::sphere(500));
+  mesh.triangles.push_back({2, 3, 0});
+  put_ply("mesh.ply", mesh);
+  put("mesh.obj", obj_text(mesh));
+  put("mesh.off", off_text(mesh));
+  constexpr const char* kWhy =
+      "; that is so of vertices that faces use, so the mesh cannot be built";
+  EXPECT_EQ(failure(config({"mesh.ply"})).what(),
+            std::string("w/in/mesh.ply: vertex 0 has the coordinates nan nan nan, which are not "
+                        "finite") +
+                kWhy);
+  EXPECT_EQ(failure(config({"mesh.obj"})).what(),
+            std::string("w/in/mesh.obj: line 2: expected a finite number for a coordinate, found "
+                        "'nan'") +
+                kWhy);
+  EXPECT_THAT(failure(config({"mesh.off"})).what(), HasSubstr(kWhy));
+}
+
+TEST_F(ImportTest, WithoutALookForCopiesAVertexWithoutAPlaceIsRefused) {
+  put_ply("mesh.ply", with_unplaced(tests::sphere(500)));
+  config::Config with = config({"mesh.ply"});
+  with.topology = Topology::index;
+  EXPECT_THAT(failure(with).what(), HasSubstr("\"topology\": \"place\" leaves them out"));
+}
+
 // ---- corners and attributes ----------------------------------------------------------------
 
 /// Positions and attributes of the only partition, sorted texts.
@@ -514,6 +600,9 @@ class ImportResumeTest : public ImportTest {
  protected:
   void SetUp() override {
     put("a.stl", stl_bytes(tests::torus(5000, 0.01F)));
+    expect_now();
+  }
+  void expect_now() {
     expected_ = made(with_);
     const fs::path manifest = storage::manifest_path(with_.output);
     expected_[manifest] = files_.content(manifest);
@@ -558,6 +647,18 @@ TEST_F(ImportResumeTest, GoesOnWithoutImportingAgain) {
   const std::set<std::string> stages = stages_of_rest();
   EXPECT_THAT(stages, Contains("resume"));
   EXPECT_THAT(stages, Not(Contains("import")));
+}
+
+TEST_F(ImportResumeTest, APlyWithVerticesWithoutAPlaceGoesOnToo) {
+  put_ply("a.ply", with_unplaced(tests::torus(5000, 0.01F)));
+  with_ = config({"a.ply"});
+  expect_now();
+  stop_in_leaves();
+  EXPECT_THAT(stages_of_rest(), Not(Contains("import")));
+  files_.remove_all(with_.output);
+  stop_in_leaves();
+  files_.put(work() / "mesh", std::string(files_.content(work() / "mesh").size(), 'x'));
+  EXPECT_THAT(stages_of_rest(), Contains("import"));
 }
 
 TEST_F(ImportResumeTest, AnInputThatWasTouchedIsTheSame) {

@@ -115,7 +115,25 @@ TEST_F(JoinLayoutsTest, ColoursOfVerticesStayBesidePictures) {
   add(kPictures, {0.5F, 0.25F, 0});
   add(kBytes, {10, 20, 30});
   EXPECT_THAT(join(), ElementsAre(255, 255, 255, 0.5F, 0.25F, 0, 10, 20, 30, 0, 0, 1));
-  EXPECT_EQ(counts_.white_vertices, 1U);
+  EXPECT_EQ(counts_.white_vertices, 0U) << "white leaves the picture as it is";
+  EXPECT_EQ(counts_.hidden_colours, 0U);
+  EXPECT_TRUE(mesh_.layout.tints);
+}
+
+// A file's colours that say what its picture says would darken it.
+TEST_F(JoinLayoutsTest, ColoursDoNotTintIfAFileHasThemBesideItsPictures) {
+  mesh_.materials.add({});
+  AttributeLayout both = kPictures;
+  both.colour = ColourType::u8;
+  add(both, {1, 2, 3, 0.5F, 0.25F, 0});
+  add(kBytes, {10, 20, 30});
+  AttributeLayout tinting = both;
+  tinting.tints = true;
+  add(tinting, {4, 5, 6, 0.5F, 0.25F, 0});
+  EXPECT_THAT(join(),
+              ElementsAre(1, 2, 3, 0.5F, 0.25F, 0, 10, 20, 30, 0, 0, 1, 4, 5, 6, 0.5F, 0.25F, 0));
+  EXPECT_FALSE(mesh_.layout.tints);
+  EXPECT_EQ(counts_.hidden_colours, 2U);
 }
 
 }  // namespace

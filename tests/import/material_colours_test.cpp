@@ -216,6 +216,39 @@ TEST_F(MaterialColoursTest, ObjectsWithoutColoursOfVerticesShowTheirMaterials) {
   }
 }
 
+// What a part without a picture shows beside one that has one: its colours, whatever its material.
+TEST_F(MaterialColoursTest, ColoursOfVerticesAreSeenBesideAPictureThatHasNone) {
+  put("b.png", "a picture");
+  put("a.mtl", "newmtl red\nKd 1 0 0\nnewmtl scan\nmap_Kd b.png\n");
+  const std::string textured = "v 0 0 9\nv 1 0 9\nv 1 1 9\nvt 0 0\nusemtl scan\nf 4/1 5/1 6/1\n";
+  const std::string rest = "usemtl red\nf 1 2 3\nv 0 0 5\nv 1 0 5\nv 1 1 5\nf 7 8 9\nf 1 2 9\n";
+  put("a.obj", std::string("mtllib a.mtl\n") + kOwnColours + textured + rest);
+  for (const ImportHow& how : {ImportHow{}, ImportHow{.memory = tests::kTight}}) {
+    const Imported mesh = import_of({"a.obj"}, how);
+    EXPECT_TRUE(mesh.layout.tints);
+    EXPECT_THAT(corner_colours(mesh, 0), Each("1 1 1")) << "the picture stays as it is";
+    EXPECT_THAT(mesh.all_shown(),
+                ElementsAre("b.png 0 1, 0 1, 0 1", "#ffffff", "#ff0000", "#ff0000"));
+    EXPECT_THAT(corner_colours(mesh, 1), Each("0 1 0"));
+    EXPECT_THAT(corner_colours(mesh, 2), Each("1 1 1"));
+    EXPECT_EQ(mesh.count("vertices_made_white"), 0U);
+    EXPECT_EQ(mesh.count("vertices_with_hidden_colours"), 0U);
+  }
+}
+
+TEST_F(MaterialColoursTest, ColoursThatPicturesHaveTooAreHidden) {
+  put("b.png", "a picture");
+  put("a.mtl", "newmtl red\nKd 1 0 0\nnewmtl scan\nmap_Kd b.png\n");
+  put("a.obj", std::string("mtllib a.mtl\n") + kOwnColours +
+                   "v 0 0 9 1 0 1\nv 1 0 9 1 1 0\nv 1 1 9 0 1 1\nvt 0 0\nusemtl scan\n"
+                   "f 4/1 5/1 6/1\nusemtl red\nf 1 2 3\n");
+  const Imported mesh = import_of({"a.obj"});
+  EXPECT_FALSE(mesh.layout.tints);
+  EXPECT_THAT(mesh.all_shown(), ElementsAre("b.png 0 1, 0 1, 0 1", "#ff0000"));
+  EXPECT_THAT(corner_colours(mesh, 1), Each("0 1 0")) << "nothing is lost";
+  EXPECT_EQ(mesh.count("vertices_with_hidden_colours"), 3U);
+}
+
 TEST_F(MaterialColoursTest, OneMaterialBesideColoursOfVerticesIsShownThoughItIsGrey) {
   put("a.mtl", "newmtl grey\nKd 0.2 0.2 0.2\n");
   put("a.obj", std::string("mtllib a.mtl\n") + kOwnColours +

@@ -112,13 +112,13 @@ TEST(VertexBlocks, ADefectIsFoundAndNothingTaken) {
   VertexBlocks blocks(mesh, visit);
   for (int slot = 0; slot < 6; ++slot)
     blocks.set(slot, slot);
-  EXPECT_EQ(blocks.commit(true), std::nullopt);
+  EXPECT_EQ(blocks.commit({.colours = true}), std::nullopt);
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(),
                            std::numeric_limits<double>::infinity(), 256.0, -1.0, 0.5}) {
     for (int slot = 0; slot < 6; ++slot)
       blocks.set(slot, slot);
     blocks.set(4, bad);
-    const auto defect = blocks.commit(true);
+    const auto defect = blocks.commit({.colours = true});
     ASSERT_TRUE(defect) << bad;
     EXPECT_EQ(defect->row, 0U);
     EXPECT_EQ(defect->slot, 4);

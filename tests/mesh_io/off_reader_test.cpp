@@ -124,7 +124,7 @@ TEST(OffReader, RefusesWhatIsWrongAndNamesTheLine) {
               HasSubstr("line 4: expected 3 numbers behind"));
   EXPECT_THAT(off_refusal("NOFF\n1 0 0\n1 2 3 0 0 up\n"), HasSubstr("line 3: expected a number"));
   EXPECT_THAT(off_refusal("COFF\n1 0 0\n1 2 3 0 nan 0\n"), HasSubstr("line 3: expected a finite"));
-  EXPECT_THAT(off_refusal("OFF\n1 0 0\n1 2 nan\n"), HasSubstr("line 3: expected a finite number"));
+  EXPECT_THAT(off_refusal("OFF\n1 0 0\n1 2 x\n"), HasSubstr("line 3: expected a finite number"));
   const auto faces = [](const std::string& face) {
     return off_refusal("OFF\n4 1 0\n" + std::string(kOffSquare) + face);
   };

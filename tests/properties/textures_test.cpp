@@ -36,6 +36,7 @@ namespace meshhier::pipeline {
 namespace {
 
 using images::Image;
+using testing::AllOf;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -594,6 +595,47 @@ TEST_F(TexturesTest, BrokenPicturesThatAreToBeIgnoredGiveOneWarning) {
   EXPECT_EQ(textures.images, 2U);
   EXPECT_EQ(textures.missing_images, 2U);
   EXPECT_THAT(problems(job), IsEmpty());
+}
+
+/// A picture with an alpha channel.
+std::vector<std::byte> png_of_alpha(std::uint8_t one_texel) {
+  Image image(64, 64, 4);
+  std::ranges::fill(image.texels, std::uint8_t{255});
+  image.at(40, 50)[3] = one_texel;
+  return images::encode_image(image, ImageFormat::png, 90);
+}
+
+TEST_F(TexturesTest, AlphaThatNobodySpeaksOfGivesOneWarning) {
+  const config::Config job = config(write(tests::make_textured_torus(6, 3)));
+  const auto put_picture = [&](const char* name, std::uint8_t one_texel) {
+    const auto bytes = png_of_alpha(one_texel);
+    std::ofstream(directory_.path() / name, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()),
+               static_cast<std::streamsize>(bytes.size()));
+  };
+  const auto warnings = [&] {
+    Warnings progress;
+    build_hierarchy(job, {.force = true}, {*files_, progress, execution::CancelToken()});
+    return progress.all;
+  };
+  put_picture("picture_0.png", 255);
+  EXPECT_THAT(warnings(), IsEmpty()) << "a channel that says nothing";
+  put_picture("picture_0.png", 254);
+  EXPECT_THAT(warnings(), ElementsAre(AllOf(HasSubstr("1 picture of the mesh has transparent"),
+                                            HasSubstr("'map_d picture_0.png'"))));
+  put_picture("picture_1.png", 0);
+  EXPECT_THAT(warnings(), ElementsAre(HasSubstr("2 pictures of the mesh have transparent texels, "
+                                                "which are shown opaque (the first: ")));
+  const std::filesystem::path library = directory_.path() / "torus.mtl";
+  std::string text{std::istreambuf_iterator(std::ifstream(library).rdbuf()), {}};
+  for (const char* name : {"picture_0.png", "picture_1.png"}) {
+    const std::string line = fmt::format("map_Kd {}\n", name);
+    const std::size_t at = text.find(line);
+    ASSERT_NE(at, std::string::npos) << text;
+    text.insert(at, fmt::format("map_d {}\n", name));
+  }
+  std::ofstream(library) << text;
+  EXPECT_THAT(warnings(), IsEmpty());
 }
 
 TEST_F(TexturesTest, AListMayMixTexturedAndUntexturedFiles) {

@@ -209,6 +209,24 @@ TEST(TexturedRasterTest, HalfOfAPixelIsSeenOfWhatIsHalfTransparent) {
   EXPECT_NEAR(small.at(0, 2)[3], 64, 1);
 }
 
+TEST(TexturedRasterTest, ColoursMultiplyTheLightOfATintedSkin) {
+  images::Image grey(1, 1, 3);
+  grey.texels = {128, 128, 128};
+  const MipTexture texture(std::move(grey));
+  Facet facet = flat_facet({-9, -9, -1}, {9, -9, -1}, {0, 20, -1});
+  for (FacetCorner& corner : facet)
+    corner.colour = {0.5F, 1, 0};
+  const auto drawn = [&](bool is_tinted) {
+    Raster raster(square_camera(4));
+    raster.draw(facet, {&texture, {}, is_tinted});
+    const images::Image image = shade(raster, {.kind = Light::none});
+    return std::array{image.at(1, 1)[0], image.at(1, 1)[1], image.at(1, 1)[2]};
+  };
+  EXPECT_EQ(drawn(false), (std::array<std::uint8_t, 3>{128, 128, 128}));
+  const auto half = screen_value(static_cast<float>(light_of(128.0 / 255) / 2));
+  EXPECT_EQ(drawn(true), (std::array<std::uint8_t, 3>{half, 128, 0}));
+}
+
 TEST(TexturedRasterTest, OfTwoFacetsTheNearestIsSeenWithItsSkin) {
   const MipTexture white(checker(8, 8));
   Raster raster(square_camera(4));

@@ -124,7 +124,7 @@ TEST(TileFacetsTest, SkinsHaveTheCoordinatesOfCornersAndOfSplits) {
   tile.shading.border = {triangle(0, 1, 3), triangle(4, 5, 3)};
   const MipTexture texture(images::Image(1, 1, 3));
   const std::vector<std::uint32_t> border{1};
-  const auto skins = skins_of(tile, texture, border);
+  const auto skins = skins_of(tile, {}, texture, border);
   ASSERT_EQ(skins.size(), facets_of(tile, {}, border, NormalKind::facets).size());
   EXPECT_EQ(skins[0].texcoords, (std::array{Vec2f{0, 0}, Vec2f{6, 0}, Vec2f{2, 0}}));
   EXPECT_EQ(skins[1].texcoords, (std::array{Vec2f{4, 0}, Vec2f{5, 0}, Vec2f{3, 0}}));

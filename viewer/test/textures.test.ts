@@ -168,6 +168,16 @@ describe('TileObject', () => {
     expect([...geometry.attributes.uv.array]).toEqual(SQUARE.texcoords);
   });
 
+  it.each([true, false])('multiplies the picture by colours that tint it: unlit %s', async (unlit) => {
+    const parts = { ...SQUARE, picture: { ...PICTURE, unlit } };
+    const { material } = await made({ ...parts, coloursTint: true });
+    expect(material).toMatchObject({ vertexColors: true, map: expect.anything() });
+    const other = (await made(parts)).material;
+    expect(other.vertexColors).toBe(false);
+    expect(material.customProgramCacheKey()).not.toBe(other.customProgramCacheKey());
+    expect((await made({ ...parts, coloursTint: true }, { colours: 'plain' })).material.vertexColors).toBe(false);
+  });
+
   it('lights the picture where they have not', async () => {
     const { material } = await made(lit);
     expect(material).toBeInstanceOf(MeshStandardMaterial);

@@ -17,7 +17,8 @@ TEST(MaterialJsonTest, AListComesBack) {
                         .wrap_u = Wrap::mirrored,
                         .wrap_v = Wrap::clamp,
                         .alpha = AlphaMode::blend,
-                        .alpha_cutoff = 0.25f};
+                        .alpha_cutoff = 0.25f,
+                        .is_alpha_unsaid = true};
   list.materials = {wall, images::Material{}};
   EXPECT_EQ(material_list(to_json(list)), list);
   EXPECT_EQ(material_list(to_json(images::MaterialList{})), images::MaterialList{});

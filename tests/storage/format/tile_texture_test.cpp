@@ -165,6 +165,22 @@ TEST(TileTextures, ColoursDoNotTintThePicture) {
   }
 }
 
+TEST(TileTextures, ColoursThatTintAreThoseThatViewersMultiply) {
+  const SampleHierarchy hidden = full_textured();
+  SampleHierarchy sample = hidden;
+  sample.format.attributes.tints = true;
+  for (const PublishedTile& tile : sample.tiles) {
+    const auto bytes = encode_tile(tile, sample.tree, sample.format);
+    OpenGlb glb(bytes);
+    const auto& attributes = glb.json["meshes"][0]["primitives"][0]["attributes"];
+    EXPECT_FALSE(attributes.contains("_COLOR_0"));
+    EXPECT_TRUE(attributes.contains("COLOR_0"));
+    const auto other = encode_tile(tile, hidden.tree, hidden.format);
+    EXPECT_EQ(read_textured(bytes, tile.node, sample).mesh.vertices.attributes,
+              read_textured(other, tile.node, hidden).mesh.vertices.attributes);
+  }
+}
+
 TEST(TileTextures, ATileWithoutTrianglesHasNone) {
   const SampleHierarchy sample = textured(make_sample(points(50), 2));
   OpenGlb glb(encode_tile(sample.tiles.back(), sample.tree, sample.format));

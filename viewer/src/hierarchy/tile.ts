@@ -26,6 +26,8 @@ export interface Tile extends Places {
   readonly normalsFrom: NormalSource;
   /// r, g, b, a of each vertex as in the input (not linear); or null.
   readonly colours: Uint8Array | null;
+  /// The picture's light is multiplied by that of the colours; else they are seen without it alone.
+  readonly coloursTint: boolean;
   /// u, v of each vertex in the picture; both or none. Whoever drops the tile lets go of the picture: see letGo().
   readonly texcoords: Float32Array | null;
   readonly picture: Picture | null;
@@ -163,6 +165,7 @@ function decode(glb: Glb, values: TileValues, counts: Counts): Omit<Tile, 'pictu
     normals,
     normalsFrom,
     colours,
+    coloursTint: texcoords !== null && attribute('COLOR_0') !== undefined,
     texcoords,
     indices: withRoom(interior, border),
     interiorCount: counts.interior,

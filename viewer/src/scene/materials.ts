@@ -38,6 +38,10 @@ const TO_LINEAR = `#include <color_vertex>
   vColor.rgb = mix(vColor.rgb / 12.92, pow((vColor.rgb + 0.055) / 1.055, vec3(2.4)), step(0.04045, vColor.rgb));
 #endif`;
 
+function takeScreenColours(shader: { vertexShader: string }): void {
+  shader.vertexShader = shader.vertexShader.replace('#include <color_vertex>', TO_LINEAR);
+}
+
 /// Slopes as steep as they are to be shaded.
 const RELIEF = `#include <beginnormal_vertex>
 vec3 along = dot(objectNormal, upwards) * upwards;
@@ -86,6 +90,8 @@ export interface SharedMaterials {
 /// What of a tile its surface shows.
 export interface Painting {
   readonly hasColours: boolean;
+  /// The picture's light is multiplied by theirs.
+  readonly coloursTint: boolean;
   readonly picture: Picture | null;
   /// The picture's.
   readonly texture: Texture | null;
@@ -106,9 +112,13 @@ function standing({ wires, points }: Look): { polygonOffset: boolean; polygonOff
   return { polygonOffset: wires || points, polygonOffsetFactor: BEHIND.slopes, polygonOffsetUnits: BEHIND.units };
 }
 
-/// The picture's colours, no others.
-function unlitMaterial(look: Look, { picture, texture }: Painting): MeshBasicMaterial {
-  return new MeshBasicMaterial({ side: DoubleSide, toneMapped: false, ...standing(look), ...picturing(picture, texture) });
+/// The picture's colours, and what tints them.
+function unlitMaterial(look: Look, { picture, texture, coloursTint }: Painting): MeshBasicMaterial {
+  const material = new MeshBasicMaterial({ side: DoubleSide, toneMapped: false, vertexColors: coloursTint, ...standing(look), ...picturing(picture, texture) });
+  if (!coloursTint) return material;
+  material.onBeforeCompile = takeScreenColours;
+  material.customProgramCacheKey = () => 'meshhier-tinted';
+  return material;
 }
 
 /// What three's shaders are changed by, for a look.
@@ -117,7 +127,7 @@ function edit(shader: Shader, { colours, cavities }: Look, vertexColors: boolean
   const height = colours === 'height' ? 'varying float vHeight;\n' : '';
   change('vertexShader', 'beginnormal_vertex', RELIEF);
   change('fragmentShader', 'normal_fragment_begin', BACKS);
-  if (vertexColors) change('vertexShader', 'color_vertex', TO_LINEAR);
+  if (vertexColors) takeScreenColours(shader);
   if (cavities) change('fragmentShader', 'normal_fragment_maps', CAVITIES);
   if (height !== '') change('vertexShader', 'begin_vertex', HEIGHT);
   if (height !== '') change('fragmentShader', 'color_fragment', RAMP);
@@ -125,9 +135,9 @@ function edit(shader: Shader, { colours, cavities }: Look, vertexColors: boolean
   shader.fragmentShader = `uniform float outwards;\n${height}${shader.fragmentShader}`;
 }
 
-function litMaterial(look: Look, { picture, texture, hasColours }: Painting, shared: SharedMaterials): MeshStandardMaterial | MeshMatcapMaterial {
+function litMaterial(look: Look, { picture, texture, hasColours, coloursTint }: Painting, shared: SharedMaterials): MeshStandardMaterial | MeshMatcapMaterial {
   const { colours, cavities, shading } = look;
-  const vertexColors = colours === 'vertex' && hasColours && texture === null;
+  const vertexColors = colours === 'vertex' && hasColours && (texture === null || coloursTint);
   const plain = look.material === 'matcap' ? CLAY : PLAIN;
   const own = { color: vertexColors || texture || colours === 'height' ? 0xffffff : plain, side: DoubleSide, flatShading: shading === 'flat', vertexColors };
   const parameters = { ...own, ...standing(look), ...picturing(picture, texture) };
@@ -173,7 +183,7 @@ function pointMaterial(color: number, size: number, vertexColors = false): Mater
   const material = new PointsMaterial({ color, size, vertexColors, sizeAttenuation: false, transparent: true });
   material.onBeforeCompile = (shader) => {
     shader.fragmentShader = shader.fragmentShader.replace('#include <clipping_planes_fragment>', ROUND);
-    shader.vertexShader = shader.vertexShader.replace('#include <color_vertex>', TO_LINEAR);
+    takeScreenColours(shader);
   };
   material.customProgramCacheKey = () => 'meshhier-round';
   return material;

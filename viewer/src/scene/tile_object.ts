@@ -57,9 +57,9 @@ function edgesOf(triangles: Indices, corners: number): Indices {
   return edges;
 }
 
-function paintingOf({ level, colours, picture }: Tile): Painting {
+function paintingOf({ level, colours, coloursTint, picture }: Tile): Painting {
   const texture: Texture | null = picture && tileTexture(picture, level);
-  return { hasColours: colours !== null, picture, texture };
+  return { hasColours: colours !== null, coloursTint, picture, texture };
 }
 
 export class TileObject extends Mesh<BufferGeometry, SurfaceMaterial> {

@@ -22,6 +22,7 @@ export interface TileParts {
   readonly codeAccessor?: object;
   /// r, g, b, a of each vertex.
   readonly colours?: readonly number[];
+  readonly coloursTint?: boolean;
   /// u, v of each vertex, and what they are in.
   readonly texcoords?: readonly number[] | Float32Array | null;
   readonly picture?: PictureParts;
@@ -95,7 +96,7 @@ function written(parts: TileParts, change: Record<string, number>, isPacked: boo
   attribute('POSITION', Float32Array.from(positions), { componentType: 5126, type: 'VEC3' });
   if (normals) attribute('NORMAL', Float32Array.from(normals), { componentType: 5126, type: 'VEC3' });
   if (codes) attribute('NORMAL', coded(codes), { componentType: 5120, normalized: true, type: 'VEC3', ...parts.codeAccessor });
-  if (colours) attribute(parts.picture ? '_COLOR_0' : 'COLOR_0', Uint8Array.from(colours), { componentType: 5121, normalized: true, type: 'VEC4' });
+  if (colours) attribute(parts.picture && !parts.coloursTint ? '_COLOR_0' : 'COLOR_0', Uint8Array.from(colours), { componentType: 5121, normalized: true, type: 'VEC4' });
   if (parts.texcoords) attribute('TEXCOORD_0', Float32Array.from(parts.texcoords), { componentType: 5126, type: 'VEC2' });
   const numbers = (values: readonly number[]): number => section(Uint16Array.from(values), { stride: 2, mode: 'INDICES' });
   const primitives: object[] = [];

@@ -1,0 +1,24 @@
+// Vertices without a place: their coordinates are not finite.
+#pragma once
+
+#include "import/raw_mesh.h"
+#include "mesh_io/mesh_source.h"
+#include "mesh_io/unplaced.h"
+
+#include <cstdint>
+#include <filesystem>
+
+namespace meshhier::importing {
+
+/// Counts those of a block of a PLY file.
+void count_unplaced(const mesh_io::VertexBlock& block, const std::filesystem::path& path,
+                    mesh_io::UnplacedVertices& unplaced);
+
+/// Fills `placed` with `mesh`, whose spools are cleared, without the vertices that have no place.
+/// The order of vertices stays, and that of triangles but for those that wait for a part of a large
+/// table. Returns how many vertices went. Throws Error(input) if a triangle uses one of them;
+/// `first`: UnplacedVertices::first, for the message. O(n).
+std::uint64_t drop_unplaced(RawMesh& mesh, RawMesh& placed, const std::string& first,
+                            const ImportRoom& room);
+
+}  // namespace meshhier::importing
