@@ -5,13 +5,12 @@
 #include "import/gltf_import.h"
 #include "import/join_layouts.h"
 #include "import/obj_import.h"
-#include "import/place_lookup.h"
+#include "import/off_import.h"
 #include "import/place_vertices.h"
 #include "import/ply_import.h"
 #include "import/raw_mesh.h"
 #include "import/weld.h"
 #include "mesh_io/input_error.h"
-#include "mesh_io/off_reader.h"
 #include "mesh_io/ply_source.h"
 #include "mesh_io/ply_writer.h"
 #include "mesh_io/renamed_file.h"
@@ -358,25 +357,16 @@ class Import {
   }
 
   Added add_off(InputStream& stream, const std::filesystem::path& path) {
-    const std::uint32_t base = checked_base(path, 0);
-    SpoolLookup<Vec3d> places(mesh_.positions);
-    const mesh_io::OffCounts counts = mesh_io::read_off(
-        stream, path,
-        [&](Vec3d position, std::span<const float> attributes) {
-          mesh_.positions.append(position);
-          mesh_.attributes.append(attributes);
-        },
-        [&](std::span<const Triangle<VertexId>> triangles) {
-          checked_base(path, 0);
-          append(triangles, base);
-        },
-        [&](std::uint32_t vertex) { return places.at(base + vertex); });
+    const OffImport import = import_off(stream, path, mesh_, room_);
     checked_base(path, 0);
+    const mesh_io::OffCounts& counts = import.counts;
+    count("split_vertices", import.split_vertices);
     count(counts.faces.polygons);
-    count("ignored_face_colours", counts.coloured_faces);
+    count("ignored_face_colours", import.ignored_colours);
+    count(kFacesMadeWhite, import.white_faces);
     count("ignored_lines_behind", counts.lines_behind);
     count(counts.zeroed);
-    return {.layout = counts.attributes,
+    return {.layout = import.layout,
             .fits_float = counts.fits_float,
             .faces = counts.faces.faces,
             .degenerate_triangles = counts.faces.degenerate_triangles,

@@ -68,6 +68,8 @@ inline constexpr std::string_view kMaterialColours = "material_colours";
 inline constexpr std::string_view kColoursTakenForBytes = "colours_taken_for_bytes";
 /// Vertices without a colour, where others have one.
 inline constexpr std::string_view kMadeWhite = "vertices_made_white";
+/// The same of faces.
+inline constexpr std::string_view kFacesMadeWhite = "faces_made_white";
 /// Vertices that show no picture, and whose colour is not seen either, as others have both.
 inline constexpr std::string_view kHiddenColours = "vertices_with_hidden_colours";
 /// Vertices that no triangle uses, of which a coordinate is not finite.

@@ -1,6 +1,7 @@
 #include "import/ply_import.h"
 
 #include "execution/spool_cursor.h"
+#include "import/face_colours.h"
 #include "import/place_vertices.h"
 #include "import/ply_pictures.h"
 #include "import/ply_texture_faces.h"
@@ -25,8 +26,7 @@ constexpr std::size_t kU = 0;  ///< its bits
 constexpr std::size_t kV = 1;
 
 using Texcoord = std::array<float, 2>;
-using Colour = std::array<float, 4>;
-using Parts = std::array<std::uint32_t, CornerParts::kCount>;
+
 using mesh_io::PlyTexcoords;
 
 struct FaceTriangle {
@@ -38,32 +38,6 @@ struct FaceTriangle {
 std::optional<Texcoord> texcoord_of(const mesh_io::PlyFace& face, std::size_t corner) {
   const Texcoord at{face.texcoords[2 * corner], face.texcoords[2 * corner + 1]};
   return std::isfinite(at[0]) && std::isfinite(at[1]) ? std::optional(at) : std::nullopt;
-}
-
-/// The numbers of a colour as parts of a corner, and back: integers of 16 bits, or three floats.
-Parts parts_of(const Colour& colour, ColourType type) {
-  if (type == ColourType::f32) {
-    return {std::bit_cast<std::uint32_t>(colour[0]), std::bit_cast<std::uint32_t>(colour[1]),
-            std::bit_cast<std::uint32_t>(colour[2])};
-  }
-  const auto pair = [&](std::size_t i) {
-    return static_cast<std::uint32_t>(colour[i]) << 16 | static_cast<std::uint32_t>(colour[i + 1]);
-  };
-  return {pair(0), pair(2), 0};
-}
-
-Colour colour_of(const Parts& parts, ColourType type) {
-  if (type == ColourType::f32) {
-    return {std::bit_cast<float>(parts[0]), std::bit_cast<float>(parts[1]),
-            std::bit_cast<float>(parts[2]), 0};
-  }
-  const auto number = [](std::uint32_t bits) { return static_cast<float>(bits & 0xffff); };
-  return {number(parts[0] >> 16), number(parts[0]), number(parts[1] >> 16), number(parts[1])};
-}
-
-Colour white(ColourType type) {
-  const float most = full_number(type);
-  return {most, most, most, most};
 }
 
 /// The triangles of a file.
@@ -81,7 +55,7 @@ struct PlyTriangles {
 
   storage::RecordSpool<FaceTriangle> all;
   storage::RecordSpool<std::array<Texcoord, 3>> texcoords;  ///< of each, if faces have their own
-  storage::RecordSpool<Colour> colours;                     ///< the same
+  storage::RecordSpool<FaceColour> colours;                 ///< the same
   std::set<std::int32_t> textures;
 };
 
@@ -96,7 +70,7 @@ class PlyImporter {
         files_(files),
         room_(room),
         texcoords_(textures == Textures::use ? plan_.texcoords : PlyTexcoords::none),
-        white_(white(plan_.face_colour)),
+        white_(white_face(plan_.face_colour)),
         triangles_(room.scratch),
         given_(source.description().attributes) {}
 
@@ -179,7 +153,7 @@ class PlyImporter {
     import_.layout = given_.without_texcoords();
     import_.layout.texcoords = import_.layout.material = true;
     const auto channels = static_cast<std::size_t>(given_.texcoord_offset());
-    append_split(splitter, [&](std::span<const float> given, const Parts& parts) {
+    append_split(splitter, [&](std::span<const float> given, const FaceColourParts& parts) {
       mesh_.attributes.append(given.first(channels));
       append_shown(given, parts);
     });
@@ -201,7 +175,7 @@ class PlyImporter {
     }
   }
 
-  void append_shown(std::span<const float> given, const Parts& parts) {
+  void append_shown(std::span<const float> given, const FaceColourParts& parts) {
     // A vertex that no triangle uses has no material: any will do.
     const std::uint32_t part = parts[CornerParts::kMaterial];
     const std::uint32_t material = std::max(part, std::uint32_t{1}) - 1;
@@ -225,7 +199,7 @@ class PlyImporter {
     execution::SpoolCursor triangles(triangles_.all, room_.cancel);
     execution::SpoolCursor colours(triangles_.colours, room_.cancel);
     for (std::uint64_t i = 0; i < triangles.size(); ++i) {
-      const Parts parts = parts_of(colours.at(i), plan_.face_colour);
+      const FaceColourParts parts = parts_of(colours.at(i), plan_.face_colour);
       for (const std::uint32_t corner : triangles.at(i).corners)
         splitter.add({corner, parts});
     }
@@ -234,8 +208,8 @@ class PlyImporter {
     import_.layout.alpha = plan_.face_alpha;
     const auto before = static_cast<std::size_t>(import_.layout.colour_offset());
     const auto count = static_cast<std::size_t>(import_.layout.colour_channels());
-    append_split(splitter, [&](std::span<const float> given, const Parts& parts) {
-      const Colour colour = colour_of(parts, plan_.face_colour);
+    append_split(splitter, [&](std::span<const float> given, const FaceColourParts& parts) {
+      const FaceColour colour = colour_of(parts, plan_.face_colour);
       mesh_.attributes.append(given.first(before));
       mesh_.attributes.append(std::span(colour).first(count));
       mesh_.attributes.append(given.subspan(before));
@@ -303,7 +277,7 @@ class PlyImporter {
   mesh_io::NamedFiles& files_;
   const ImportRoom& room_;
   PlyTexcoords texcoords_;
-  Colour white_;  ///< of strips
+  FaceColour white_;  ///< of strips
   PlyTriangles triangles_;
   AttributeLayout given_;
   mesh_io::PolygonCut cut_;

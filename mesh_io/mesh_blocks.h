@@ -115,6 +115,9 @@ class TriangleBlocks {
   void add_strip_corner(std::uint32_t corner);
   void end_strip() { ++counts_.faces; }
 
+  /// Made so far, handed out or not.
+  std::uint64_t triangles() const { return counts_.triangles + filled_; }
+
   /// Hands out what is left.
   FaceCounts finish();
 

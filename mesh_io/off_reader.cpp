@@ -56,7 +56,7 @@ class OffReader {
       : words_(stream, path, {.cuts_words = true}) {}
 
   OffCounts read(const OffVertexVisitor& visit_vertex, const TriangleVisitor& visit_triangles,
-                 const PlaceOf& place_of) {
+                 const OffFaceVisitor& visit_face, const PlaceOf& place_of) {
     read_header();
     for (std::uint64_t i = 0; i < counts_.vertices; ++i)
       read_vertex(i, visit_vertex);
@@ -64,7 +64,7 @@ class OffReader {
       counts_.attributes.colour = byte_colours_ ? ColourType::u8 : ColourType::f32;
     TriangleBlocks blocks(visit_triangles, &place_of);
     for (std::uint64_t i = 0; i < face_count_; ++i)
-      read_face(i, blocks);
+      read_face(i, blocks, visit_face);
     // Where lines say nothing, a number too many may be one that was taken for another.
     if (is_wrapped_ && words_.to_row())
       words_.fail("expected the end of the file behind the faces, found " +
@@ -177,7 +177,7 @@ class OffReader {
     }
   }
 
-  void read_face(std::uint64_t number, TriangleBlocks& blocks) {
+  void read_face(std::uint64_t number, TriangleBlocks& blocks, const OffFaceVisitor& visit) {
     if (!words_.to_row())
       fail_truncated(fmt::format("face {} of {}", number, face_count_));
     const std::string_view length = words_.take_word();
@@ -190,10 +190,29 @@ class OffReader {
     for (std::int64_t i = 0; i < *corners; ++i)
       blocks.add_polygon_corner(take_corner(number));
     blocks.end_polygon();
-    if (!is_wrapped_ && words_.to_word()) {
-      ++counts_.coloured_faces;
-      words_.skip_line();
+    visit(blocks.triangles(), is_wrapped_ ? std::nullopt : take_face_colour());
+  }
+
+  /// What is left of the line. One number is that of a colour in a table that nobody has.
+  std::optional<OffColour> take_face_colour() {
+    OffColour colour;
+    colour.are_bytes = true;
+    bool is_sound = true;
+    std::size_t count = 0;
+    for (; words_.to_word() && count < colour.numbers.size(); ++count) {
+      const std::string_view word = words_.take_word();
+      const auto value = parse_real<float>(word);
+      is_sound = is_sound && value && std::isfinite(*value);
+      colour.are_bytes = colour.are_bytes && is_byte_integer(word);
+      colour.numbers[count] = value.value_or(0);
     }
+    if (count == 0)
+      return std::nullopt;
+    is_sound = is_sound && count >= 3 && !words_.to_word();
+    words_.skip_line();
+    counts_.unknown_colours += is_sound ? 0 : 1;
+    colour.has_alpha = count == colour.numbers.size();
+    return is_sound ? std::optional(colour) : std::nullopt;
   }
 
   /// A colour has one number, three or four.
@@ -236,8 +255,8 @@ bool is_off_keyword(std::string_view word) {
 
 OffCounts read_off(InputStream& stream, const std::filesystem::path& path,
                    const OffVertexVisitor& visit_vertex, const TriangleVisitor& visit_triangles,
-                   const PlaceOf& place_of) {
-  return OffReader(stream, path).read(visit_vertex, visit_triangles, place_of);
+                   const OffFaceVisitor& visit_face, const PlaceOf& place_of) {
+  return OffReader(stream, path).read(visit_vertex, visit_triangles, visit_face, place_of);
 }
 
 }  // namespace meshhier::mesh_io

@@ -8,9 +8,11 @@
 #include "mesh_io/mesh_source.h"
 #include "mesh_io/unplaced.h"
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -22,16 +24,27 @@ bool is_off_keyword(std::string_view word);
 struct OffCounts {
   std::uint64_t vertices = 0;
   FaceCounts faces;
-  std::uint64_t coloured_faces = 0;  ///< whose colours are ignored
-  std::uint64_t lines_behind = 0;    ///< with words, behind the last face
-  AttributeLayout attributes;        ///< colours are u8 if all are integers from 0 to 255, else f32
-  bool fits_float = true;            ///< all coordinates do (DecimalNumber)
-  UnplacedVertices unplaced;         ///< are visited
+  std::uint64_t unknown_colours = 0;  ///< of faces: not three or four finite numbers
+  std::uint64_t lines_behind = 0;     ///< with words, behind the last face
+  AttributeLayout attributes;  ///< colours are u8 if all are integers from 0 to 255, else f32
+  bool fits_float = true;      ///< all coordinates do (DecimalNumber)
+  UnplacedVertices unplaced;   ///< are visited
   ZeroedCounts zeroed;
 };
 
 /// One vertex; `attributes`: its channels in the order of AttributeLayout.
 using OffVertexVisitor = std::function<void(Vec3d position, std::span<const float> attributes)>;
+
+/// Of a face; 1 for alpha if it has none.
+struct OffColour {
+  std::array<float, 4> numbers{1, 1, 1, 1};  ///< as the file has them
+  bool has_alpha = false;
+  bool are_bytes = false;  ///< integers from 0 to 255
+};
+
+/// One face, whose triangles are visited next or were; `triangles`: of all faces so far.
+using OffFaceVisitor =
+    std::function<void(std::uint64_t triangles, const std::optional<OffColour>& colour)>;
 
 /// Reads, with comments from # to the end of a line,
 ///
@@ -51,6 +64,6 @@ using OffVertexVisitor = std::function<void(Vec3d position, std::span<const floa
 /// `place_of`: a vertex that was visited.
 OffCounts read_off(InputStream& stream, const std::filesystem::path& path,
                    const OffVertexVisitor& visit_vertex, const TriangleVisitor& visit_triangles,
-                   const PlaceOf& place_of);
+                   const OffFaceVisitor& visit_face, const PlaceOf& place_of);
 
 }  // namespace meshhier::mesh_io

@@ -60,11 +60,12 @@ struct CountWarning {
 };
 
 constexpr const char* kBecameZero = " of the mesh became 0: the file has no finite numbers there";
+constexpr const char* kBecameWhite = " of the mesh became white: others have colours";
 constexpr std::array kCountWarnings{
     CountWarning{importing::kZeroedNormals, "normals", kBecameZero},
     CountWarning{importing::kZeroedTexcoords, "texture coordinates", kBecameZero},
-    CountWarning{importing::kMadeWhite, "vertices",
-                 " of the mesh became white: others have colours"},
+    CountWarning{importing::kMadeWhite, "vertices", kBecameWhite},
+    CountWarning{importing::kFacesMadeWhite, "faces", kBecameWhite},
     CountWarning{importing::kHiddenColours, "vertices",
                  " without a picture have colours that are not shown: others have both"}};
 

@@ -321,6 +321,56 @@ TEST_F(MaterialColoursTest, BesideTexturesTheyAreMaterials) {
   EXPECT_EQ(mesh.count("untextured_files"), 2U);
 }
 
+// ---- OFF -----------------------------------------------------------------------------------
+
+constexpr const char* kPyramid = "OFF\n5 5 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0.5 0.5 1\n";
+
+TEST_F(MaterialColoursTest, FacesOfAnOffHaveColours) {
+  put("a.off",
+      std::string(kPyramid) +
+          "4 3 2 1 0 10 20 30\n3 0 1 4 255 0 0\n3 1 2 4 255 0 0\n3 2 3 4\n3 3 0 4 1 2 3 4\n");
+  for (const ImportHow& how : {ImportHow{}, ImportHow{.memory = tests::kTight}}) {
+    const Imported mesh = import_of({"a.off"}, how);
+    EXPECT_EQ(mesh.layout, (AttributeLayout{.colour = ColourType::u8, .alpha = true}));
+    EXPECT_THAT(corner_colours(mesh, 0), Each("10 20 30"));
+    EXPECT_THAT(corner_colours(mesh, 1), Each("10 20 30"));
+    EXPECT_THAT(corner_colours(mesh, 2), Each("255 0 0"));
+    EXPECT_THAT(corner_colours(mesh, 4), Each("255 255 255"));
+    EXPECT_THAT(corner_colours(mesh, 5), Each("1 2 3"));
+    EXPECT_EQ(mesh.triangles[2][2], mesh.triangles[3][2]) << "one vertex for both red faces";
+    EXPECT_EQ(mesh.count("faces_made_white"), 1U);
+    EXPECT_THAT(mesh.positions, SizeIs(3 + 2 + 3 + 3 + 3));
+  }
+}
+
+TEST_F(MaterialColoursTest, ColoursOfFacesOfAnOffAreFloatsIfOneIs) {
+  put("a.off", std::string(kPyramid) +
+                   "4 3 2 1 0\n3 0 1 4 1 0 0\n3 1 2 4 0.5 0 0 0.5\n3 2 3 4 9\n3 3 0 4\n");
+  const Imported mesh = import_of({"a.off"});
+  EXPECT_EQ(mesh.layout, AttributeLayout{.colour = ColourType::f32});
+  EXPECT_THAT(corner_colours(mesh, 0), Each("1 1 1"));
+  EXPECT_THAT(corner_colours(mesh, 2), Each("1 0 0"));
+  EXPECT_THAT(corner_colours(mesh, 3), Each("0.5 0 0"));
+  EXPECT_EQ(mesh.count("faces_made_white"), 3U);
+  EXPECT_EQ(mesh.count("ignored_face_colours"), 1U);
+}
+
+TEST_F(MaterialColoursTest, ColoursOfVerticesOfAnOffCountBeforeThoseOfFaces) {
+  put("a.off",
+      "CNOFF\n3 1 0\n0 0 0 0 0 1 9 8 7\n1 0 0 0 0 1 9 8 7\n0 1 0 0 0 1 9 8 7\n3 0 1 2 255 0 0\n");
+  put("b.off", "NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 1 0\n0 1 0 1 0 0\n3 0 1 2 255 0 0\n");
+  const Imported mesh = import_of({"a.off"});
+  EXPECT_THAT(corner_colours(mesh, 0), Each("9 8 7"));
+  EXPECT_EQ(mesh.count("ignored_face_colours"), 1U);
+  const Imported other = import_of({"b.off"});
+  EXPECT_EQ(other.layout, (AttributeLayout{.normals = true, .colour = ColourType::u8}));
+  EXPECT_THAT(other.attributes,
+              ElementsAre(0, 0, 1, 255, 0, 0, 0, 1, 0, 255, 0, 0, 1, 0, 0, 255, 0, 0));
+  const Imported both = import_of({"b.off", "a.off"});
+  EXPECT_THAT(corner_colours(both, 0), Each("255 0 0"));
+  EXPECT_THAT(corner_colours(both, 1), Each("9 8 7"));
+}
+
 // ---- glTF ----------------------------------------------------------------------------------
 
 GltfJson primitive(GltfBuilder& gltf, std::optional<std::size_t> material) {

@@ -3,10 +3,12 @@
 
 #include "streams.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,6 +17,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::SizeIs;
 
 struct OffTaken {
   explicit OffTaken(const std::string& content) {
@@ -31,9 +34,18 @@ struct OffTaken {
           for (const Triangle<VertexId>& t : all)
             triangles.push_back(fmt::format("{} {} {}", raw(t[0]), raw(t[1]), raw(t[2])));
         },
+        [&](std::uint64_t made, const std::optional<OffColour>& colour) {
+          faces.push_back(fmt::format("{}:", made));
+          if (colour) {
+            faces.back() +=
+                fmt::format(" {}{}{}", fmt::join(colour->numbers, " "),
+                            colour->has_alpha ? " alpha" : "", colour->are_bytes ? " bytes" : "");
+          }
+        },
         [&](std::uint32_t vertex) { return places.at(vertex); });
   }
   std::vector<Vec3d> places;
+  std::vector<std::string> faces;
   std::vector<std::string> vertices, triangles;
   OffCounts counts;
 };
@@ -85,18 +97,21 @@ TEST(OffReader, NormalsAndTextureCoordinatesThatAreNoNumbersAreZero) {
   EXPECT_EQ(taken.counts.zeroed, (ZeroedCounts{1, 1}));
 }
 
-TEST(OffReader, CountsColoursOfFacesAndDegenerateFaces) {
-  const OffTaken taken("OFF 4 4 0\n" + std::string(kOffSquare) +
-                       "3 0 1 2 255 0 0\n3 0 1 1\n2 0 1\n3 1 2 3 7\n");
-  EXPECT_THAT(taken.triangles, ElementsAre("0 1 2", "1 2 3"));
-  EXPECT_EQ(taken.counts.coloured_faces, 2U);
+TEST(OffReader, FacesHaveColours) {
+  const OffTaken taken("OFF 4 9 0\n" + std::string(kOffSquare) +
+                       "3 0 1 2 255 0 0\n3 0 1 1\n2 0 1\n3 1 2 3 7\n4 0 1 2 3 0.5 0 1 0.25\n"
+                       "3 0 1 2 1 2 256 # x\n3 0 1 2 1 2\n3 0 1 2 1 nan 3\n3 0 1 2 red\n");
+  EXPECT_THAT(taken.faces, ElementsAre("1: 255 0 0 1 bytes", "1:", "1:", "2:",
+                                       "4: 0.5 0 1 0.25 alpha", "5: 1 2 256 1", "6:", "7:", "8:"));
+  EXPECT_THAT(taken.triangles, SizeIs(8));
+  EXPECT_EQ(taken.counts.unknown_colours, 4U);
   EXPECT_EQ(taken.counts.faces.degenerate_triangles, 2U);
 }
 
 TEST(OffReader, ACommentMayFollowAWordAtOnce) {
   const OffTaken taken("OFF#x\n3 1 0#y\n0 0 0#z\n1 0 0 # \n0 1 0\n3 0 1 2#3 0 1 2");
   EXPECT_THAT(taken.triangles, ElementsAre("0 1 2"));
-  EXPECT_EQ(taken.counts.coloured_faces, 0U);
+  EXPECT_EQ(taken.counts.unknown_colours, 0U);
 }
 
 TEST(OffReader, RefusesWhatIsWrongAndNamesTheLine) {
@@ -168,7 +183,7 @@ TEST(OffReader, LinesMayEndAnywhere) {
   }
   const OffTaken faces("OFF\n4 3 0\n" + std::string(kOffSquare) + "3 0 1 2 3 0 2 3 3\n3 2 1\n");
   EXPECT_THAT(faces.triangles, ElementsAre("0 1 2", "0 2 3", "3 2 1"));
-  EXPECT_EQ(faces.counts.coloured_faces, 0U);
+  EXPECT_EQ(faces.counts.unknown_colours, 0U);
   EXPECT_THAT(off_refusal("OFF\n3 1 0\n0 0 0 1 0 0 1 1 0\n3 0 1 2 7\n"),
               HasSubstr("line 4: expected the end of the file behind the faces, found '7'"));
   EXPECT_THAT(off_refusal("OFF\n3 1 0\n0 0 0 1 0 0 1 1 0\n3 0 1\n"),

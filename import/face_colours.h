@@ -1,0 +1,44 @@
+// Colours of faces on their way to the vertices of their corners.
+#pragma once
+
+#include "hierarchy/attributes.h"
+#include "import/split_corners.h"
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+namespace meshhier::importing {
+
+using FaceColour = std::array<float, 4>;
+using FaceColourParts = std::array<std::uint32_t, CornerParts::kCount>;
+
+/// The numbers of a colour as parts of a corner, and back: integers of 16 bits, or three floats.
+inline FaceColourParts parts_of(const FaceColour& colour, ColourType type) {
+  if (type == ColourType::f32) {
+    return {std::bit_cast<std::uint32_t>(colour[0]), std::bit_cast<std::uint32_t>(colour[1]),
+            std::bit_cast<std::uint32_t>(colour[2])};
+  }
+  const auto pair = [&](std::size_t i) {
+    return static_cast<std::uint32_t>(colour[i]) << 16 | static_cast<std::uint32_t>(colour[i + 1]);
+  };
+  return {pair(0), pair(2), 0};
+}
+
+inline FaceColour colour_of(const FaceColourParts& parts, ColourType type) {
+  if (type == ColourType::f32) {
+    return {std::bit_cast<float>(parts[0]), std::bit_cast<float>(parts[1]),
+            std::bit_cast<float>(parts[2]), 0};
+  }
+  const auto number = [](std::uint32_t bits) { return static_cast<float>(bits & 0xffff); };
+  return {number(parts[0] >> 16), number(parts[0]), number(parts[1] >> 16), number(parts[1])};
+}
+
+/// Of faces without a colour.
+inline FaceColour white_face(ColourType type) {
+  const float most = full_number(type);
+  return {most, most, most, most};
+}
+
+}  // namespace meshhier::importing
